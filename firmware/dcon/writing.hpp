@@ -1,0 +1,32 @@
+// How DCON replies write channels and addresses.
+#pragma once
+
+#include <cstdint>
+
+#include "firmware/request/reply.hpp"
+#include "firmware/request/state.hpp"
+
+namespace ex9000::dcon {
+
+/// First and Second data (manuals 1.10): more than 8 outputs fill both, high byte first; else outputs are First and
+/// inputs Second; a module without outputs has its inputs in First.
+inline void put_data(const Model& model, std::uint16_t outputs, std::uint16_t inputs, Reply& reply) {
+  if (model.outputs > 8) {
+    reply.put_hex(outputs >> 8U);
+    reply.put_hex(outputs & 0xFFU);
+  } else if (model.has_outputs()) {
+    reply.put_hex(outputs);
+    reply.put_hex(inputs);
+  } else {
+    reply.put_hex(inputs);
+    reply.put_hex(0);
+  }
+}
+
+/// `!AA`, the beginning of most replies; AA is the address in force, 00 in INIT mode.
+inline void put_valid(const State& state, Reply& reply) {
+  reply.put('!');
+  reply.put_hex(state.in_force.address);
+}
+
+}  // namespace ex9000::dcon

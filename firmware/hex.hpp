@@ -1,0 +1,31 @@
+// Hex digits as the DCON protocol writes them: upper case only.
+#pragma once
+
+#include <cstdint>
+
+namespace ex9000 {
+
+/// 0 to 15, or -1 where `character` is no upper-case hex digit.
+constexpr int hex_value(std::uint8_t character) {
+  if (character >= '0' && character <= '9') {
+    return character - '0';
+  }
+  if (character >= 'A' && character <= 'F') {
+    return character - 'A' + 10;
+  }
+  return -1;
+}
+
+/// Two digits as 0 to 255, or -1.
+constexpr int hex_byte(std::uint8_t high, std::uint8_t low) {
+  const int upper = hex_value(high);
+  const int lower = hex_value(low);
+  return upper < 0 || lower < 0 ? -1 : upper * 16 + lower;
+}
+
+/// The digit of the low four bits.
+constexpr std::uint8_t hex_digit(unsigned value) {
+  return static_cast<std::uint8_t>("0123456789ABCDEF"[value & 0xFU]);
+}
+
+}  // namespace ex9000

@@ -1,0 +1,87 @@
+#include "firmware/line/receiver.hpp"
+
+namespace ex9000 {
+
+void Receiver::listen(const Listening& how) {
+  how_ = how;
+  dcon_.use_checksum(how.checksum);
+  rtu_.use(how.timing, how.gap);
+}
+
+Duration Receiver::on_byte(std::uint8_t byte, ByteStatus status, Time now) {
+  forget_if_spoken();
+  const std::uint8_t own_address = address_.load();
+  if (how_.protocol == Protocol::Ascii) {
+    note(dcon_.byte(byte, status, own_address, now), now);
+    return Duration();
+  }
+  // A frame that this byte ends from behind had its last byte earlier.
+  const Time before = last_byte_;
+  last_byte_ = now;
+  const Verdict verdict = rtu_.byte(byte, status, own_address, now);
+  if (verdict != Verdict::Open) {
+    note(verdict, before);
+  }
+  return how_.timing.rtu_silence;
+}
+
+Duration Receiver::on_silence() {
+  forget_if_spoken();
+  note(rtu_.silence(address_.load()), last_byte_);
+  return rtu_.wants_more_silence() ? how_.timing.character : Duration();
+}
+
+void Receiver::forget_if_spoken() {
+  const std::uint8_t spoken = spoken_.load();
+  if (spoken != spoken_seen_) {
+    spoken_seen_ = spoken;
+    dcon_.forget();
+    rtu_.forget();
+  }
+}
+
+void Receiver::note(Verdict verdict, Time now) {
+  if (verdict == Verdict::Open) {
+    return;
+  }
+  tally(verdict);
+  if (verdict == Verdict::HostOk) {
+    host_ok_time_.store_in_interrupt(now.microseconds());
+    host_oks_.store_in_interrupt(static_cast<std::uint8_t>(host_oks_.load() + 1U));
+  }
+}
+
+void Receiver::tally(Verdict verdict) {
+  switch (verdict) {
+    case Verdict::Accepted:
+      tallies_.bus_messages.count_in_interrupt();
+      tallies_.server_messages.count_in_interrupt();
+      break;
+    case Verdict::HostOk:
+      tallies_.bus_messages.count_in_interrupt();
+      tallies_.server_messages.count_in_interrupt();
+      tallies_.no_responses.count_in_interrupt();
+      break;
+    case Verdict::Foreign:
+      tallies_.bus_messages.count_in_interrupt();
+      break;
+    case Verdict::NoRoom:
+      tallies_.bus_messages.count_in_interrupt();
+      tallies_.overruns.count_in_interrupt();
+      break;
+    case Verdict::Overrun:
+      tallies_.bus_errors.count_in_interrupt();
+      tallies_.overruns.count_in_interrupt();
+      break;
+    case Verdict::BadCheck:
+    case Verdict::TooShort:
+    case Verdict::TooLong:
+    case Verdict::LineError:
+      tallies_.bus_errors.count_in_interrupt();
+      break;
+    case Verdict::Open:
+      break;
+  }
+}
+
+}  // namespace ex9000

@@ -1,0 +1,86 @@
+// The interrupt side of the line: bytes in, whole frames for this module out.
+#pragma once
+
+#include <cstdint>
+
+#include "firmware/line/crossing.hpp"
+#include "firmware/line/dcon_assembler.hpp"
+#include "firmware/line/frame_queue.hpp"
+#include "firmware/line/rtu_assembler.hpp"
+#include "firmware/line/verdict.hpp"
+#include "firmware/model/baud.hpp"
+#include "firmware/settings/settings.hpp"
+#include "firmware/time.hpp"
+
+namespace ex9000 {
+
+/// What the receive interrupt counts for Modbus function 08 (Modbus over Serial Line V1.02, appendix A).
+struct LineTallies {
+  EventTally bus_messages;
+  EventTally bus_errors;
+  EventTally server_messages;
+  EventTally no_responses;
+  EventTally overruns;
+};
+
+/// How to listen, from one reset to the next.
+struct Listening {
+  Protocol protocol = Protocol::Ascii;
+  bool checksum = false;
+  LineTiming timing{};
+  InterCharacterGap gap = InterCharacterGap::Tolerated;
+};
+
+class Receiver {
+ public:
+  constexpr Receiver() : dcon_(queue_), rtu_(queue_) {}
+  // The assemblers refer to the queue beside them.
+  Receiver(const Receiver&) = delete;
+  Receiver& operator=(const Receiver&) = delete;
+
+  /// Main loop, before bytes are passed on.
+  void listen(const Listening& how);
+
+  // --- interrupts, which must not interrupt each other ---
+
+  /// A byte was received; `now` is the end of its stop bit. Returns after how long a silence `on_silence` is to be
+  /// called, counted from now and restarted by every byte; zero: not at all.
+  Duration on_byte(std::uint8_t byte, ByteStatus status, Time now);
+
+  /// The silence has come. Returns as `on_byte` does.
+  Duration on_silence();
+
+  // --- main loop ---
+
+  /// The address to answer to; takes effect with the next frame that ends.
+  void answer_to(std::uint8_t address) { address_.store_in_main_loop(address); }
+  /// This module's own driver goes on: an open frame is forgotten (D9).
+  void speaking() { spoken_.store_in_main_loop(static_cast<std::uint8_t>(spoken_.load() + 1U)); }
+
+  FrameQueue& queue() { return queue_; }
+  [[nodiscard]] const FrameQueue& queue() const { return queue_; }
+  LineTallies& tallies() { return tallies_; }
+  /// Counts host OKs, so that a new one is one that differs from the last look.
+  [[nodiscard]] std::uint8_t host_oks() const { return host_oks_.load(); }
+  /// When the latest of them was received.
+  [[nodiscard]] Time host_ok_time() const { return Time(host_ok_time_.load()); }
+
+ private:
+  void forget_if_spoken();
+  void note(Verdict verdict, Time now);
+  void tally(Verdict verdict);
+
+  FrameQueue queue_;
+  DconAssembler dcon_;
+  RtuAssembler rtu_;
+  Listening how_;
+  LineTallies tallies_;
+  WrittenByMainLoop<std::uint8_t> address_;
+  WrittenByMainLoop<std::uint8_t> spoken_;
+  std::uint8_t spoken_seen_ = 0;  // interrupt
+  Time last_byte_;                // interrupt
+  WrittenByInterrupt<std::uint8_t> host_oks_;
+  WrittenByInterrupt<std::uint32_t> host_ok_time_;
+};
+
+}  // namespace ex9000

@@ -1,0 +1,123 @@
+#include "firmware/line/rtu_assembler.hpp"
+
+namespace ex9000 {
+
+namespace {
+
+constexpr std::uint16_t kShortestFrame = 4;
+constexpr std::uint8_t kCrcBytes = 2;
+constexpr std::uint8_t kTurnAround = 0x00;
+constexpr std::uint8_t kBroadcast = 0;
+
+/// Modbus 0x3038, read with 03 or 04 and quantity 0 or 1: "Send Host OK" (manuals, Modbus part).
+bool is_host_ok(Bytes frame) {
+  return frame.size == 6 && (frame[1] == 0x03 || frame[1] == 0x04) && frame.word(2) == 0x3038 && frame.word(4) <= 1;
+}
+
+}  // namespace
+
+void RtuAssembler::open() {
+  whole_ = Crc16();
+  behind_first_ = Crc16();
+  lapsed_ = first_spoiled_ = rest_spoiled_ = overrun_ = false;
+  received_ = 0;
+}
+
+Verdict RtuAssembler::byte(std::uint8_t byte, ByteStatus status, std::uint8_t own_address, Time now) {
+  Verdict before = Verdict::Open;
+  if (received_ != 0) {
+    const Duration since_last = now.since(last_);
+    if (!(since_last < timing_.rtu_separate)) {
+      before = end(own_address);  // the timer interrupt is late
+    } else if (gap_ == InterCharacterGap::Refused && timing_.rtu_slack < since_last) {
+      rest_spoiled_ = true;
+    }
+  }
+  if (received_ == 0) {
+    open();
+  }
+  lapsed_ = false;
+  last_ = now;
+
+  Frame& frame = queue_.assembling();
+  const bool good = status == ByteStatus::Good;
+  if (received_ == 0) {
+    first_spoiled_ = !good;
+  } else {
+    rest_spoiled_ |= !good;
+    if (frame.storage[0] == kTurnAround) {
+      behind_first_.add(byte);
+    }
+  }
+  overrun_ |= status == ByteStatus::Overrun;
+  whole_.add(byte);
+  if (received_ < frame.storage.size()) {
+    frame.storage[received_] = byte;
+  }
+  if (received_ <= frame.storage.size()) {
+    ++received_;  // stops one beyond the longest, which is too long whatever follows
+  }
+  return before;
+}
+
+Verdict RtuAssembler::silence(std::uint8_t own_address) {
+  if (received_ == 0) {
+    return Verdict::Open;
+  }
+  if (!lapsed_ && start() == kNowhere) {
+    lapsed_ = true;
+    return Verdict::Open;
+  }
+  return end(own_address);
+}
+
+Verdict RtuAssembler::end(std::uint8_t own_address) {
+  const std::uint8_t begin = start();
+  const Verdict verdict = begin == kNowhere ? why_lost() : accept(begin, own_address);
+  forget();
+  return verdict;
+}
+
+std::uint8_t RtuAssembler::start() const {
+  if (rest_spoiled_) {
+    return kNowhere;
+  }
+  if (!first_spoiled_ && received_ >= kShortestFrame && received_ <= kLongestFrame && whole_.value() == 0) {
+    return 0;
+  }
+  if (queue_.assembling().storage[0] == kTurnAround && received_ > kShortestFrame && received_ <= kLongestFrame + 1 &&
+      behind_first_.value() == 0) {
+    return 1;
+  }
+  return kNowhere;
+}
+
+Verdict RtuAssembler::why_lost() const {
+  if (overrun_) {
+    return Verdict::Overrun;
+  }
+  if (first_spoiled_ || rest_spoiled_) {
+    return Verdict::LineError;
+  }
+  if (received_ < kShortestFrame) {
+    return Verdict::TooShort;
+  }
+  return received_ > kLongestFrame ? Verdict::TooLong : Verdict::BadCheck;
+}
+
+Verdict RtuAssembler::accept(std::uint8_t start, std::uint8_t own_address) {
+  Frame& frame = queue_.assembling();
+  const std::uint8_t address = frame.storage[start];
+  if (address != own_address && address != kBroadcast) {
+    return Verdict::Foreign;
+  }
+  frame.offset = start;
+  frame.size = static_cast<std::uint8_t>(received_ - start - kCrcBytes);
+  frame.received = last_;
+  if (is_host_ok(frame.bytes())) {
+    return Verdict::HostOk;
+  }
+  return queue_.complete_in_interrupt() ? Verdict::Accepted : Verdict::NoRoom;
+}
+
+}  // namespace ex9000

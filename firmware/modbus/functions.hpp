@@ -1,0 +1,69 @@
+// The Modbus functions, one row a function - wire.md section 7.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <string_view>
+
+#include "firmware/bytes.hpp"
+#include "firmware/model/model.hpp"
+#include "firmware/request/outcome.hpp"
+#include "firmware/request/reply.hpp"
+#include "firmware/request/state.hpp"
+
+namespace ex9000::modbus {
+
+/// A request that is for this module: address, function code and data, without CRC. At least 2 bytes.
+struct Request {
+  Bytes frame;
+  bool broadcast = false;
+};
+
+/// Judges a request, appends to `reply` what follows address and function code, and says what is to be done. A pure
+/// function of request and state.
+using Handler = Refusal (*)(const State& state, const Request& request, Outcome& outcome, Reply& reply);
+
+// read_functions.cpp
+Refusal read_bits(const State& state, const Request& request, Outcome& outcome, Reply& reply);
+Refusal read_words(const State& state, const Request& request, Outcome& outcome, Reply& reply);
+// write_functions.cpp
+Refusal write_single_coil(const State& state, const Request& request, Outcome& outcome, Reply& reply);
+Refusal write_single_register(const State& state, const Request& request, Outcome& outcome, Reply& reply);
+Refusal write_multiple_coils(const State& state, const Request& request, Outcome& outcome, Reply& reply);
+Refusal write_multiple_registers(const State& state, const Request& request, Outcome& outcome, Reply& reply);
+// diagnostics.cpp
+Refusal diagnose(const State& state, const Request& request, Outcome& outcome, Reply& reply);
+// identification.cpp
+Refusal report_server_id(const State& state, const Request& request, Outcome& outcome, Reply& reply);
+Refusal read_device_identification(const State& state, const Request& request, Outcome& outcome, Reply& reply);
+Refusal vendor_function(const State& state, const Request& request, Outcome& outcome, Reply& reply);
+
+struct FunctionRow {
+  std::uint8_t code = 0;
+  Needs needs = Needs::Nothing;
+  bool by_broadcast = false;  ///< carried out, without answer, when sent to address 0; else ignored there
+  Handler handler = nullptr;
+};
+
+struct Function {
+  std::string_view name;
+  std::string_view source;
+  FunctionRow row;
+};
+
+constexpr std::array<Function, 12> kFunctions{{
+    {"Read Coils", "manuals; V1.1b3 6.1", {0x01, Needs::Nothing, false, read_bits}},
+    {"Read Discrete Inputs", "EX9052D manual; V1.1b3 6.2", {0x02, Needs::Inputs, false, read_bits}},
+    {"Read Holding Registers", "manuals; V1.1b3 6.3", {0x03, Needs::Nothing, false, read_words}},
+    {"Read Input Registers", "manuals; V1.1b3 6.4", {0x04, Needs::Nothing, false, read_words}},
+    {"Write Single Coil", "manuals; V1.1b3 6.5", {0x05, Needs::Nothing, true, write_single_coil}},
+    {"Write Single Register", "manuals; V1.1b3 6.6", {0x06, Needs::Nothing, true, write_single_register}},
+    {"Diagnostics", "V1.1b3 6.8", {0x08, Needs::Nothing, false, diagnose}},
+    {"Write Multiple Coils", "manuals; V1.1b3 6.11", {0x0F, Needs::Nothing, true, write_multiple_coils}},
+    {"Write Multiple Registers", "V1.1b3 6.12", {0x10, Needs::Nothing, true, write_multiple_registers}},
+    {"Report Server ID", "V1.1b3 6.13", {0x11, Needs::Nothing, false, report_server_id}},
+    {"Read Device Identification", "V1.1b3 6.21", {0x2B, Needs::Nothing, false, read_device_identification}},
+    {"Module code and address", "manuals, sub-function 0x46", {0x46, Needs::Nothing, false, vendor_function}},
+}};
+
+}  // namespace ex9000::modbus

@@ -1,0 +1,154 @@
+// Who is there: functions 11 and 2B/0E (Modbus Application Protocol V1.1b3, 6.13 and 6.21) and the maker's own 46
+// (manuals, mapping table).
+#include "firmware/modbus/functions.hpp"
+
+namespace ex9000::modbus {
+
+namespace {
+
+constexpr std::uint8_t kRunning = 0xFF;
+
+constexpr std::string_view kVendor = "OpenEX9000";
+constexpr std::uint8_t kReadDeviceIdMei = 0x0E;
+constexpr std::uint8_t kConformity = 0x82;  // regular identification, by stream and by object
+
+enum ReadDeviceIdCode : std::uint8_t { kBasic = 1, kRegular = 2, kExtended = 3, kOneObject = 4 };
+enum ObjectId : std::uint8_t {
+  kVendorName = 0,
+  kProductCode = 1,
+  kRevision = 2,
+  kVendorUrl = 3,  // optional in the standard, and absent
+  kProductName = 4,
+  kModelName = 5,
+  kUserApplicationName = 6,
+};
+
+constexpr bool exists(std::uint8_t object, std::uint8_t last) { return object <= last && object != kVendorUrl; }
+
+void put_object(const State& state, std::uint8_t object, Reply& reply) {
+  reply.put(object);
+  const std::size_t length_at = reply.size();
+  reply.put(std::uint8_t{0});
+  switch (object) {
+    case kVendorName:
+      reply.put(kVendor);
+      break;
+    case kProductCode:
+    case kModelName:
+      reply.put(state.model.designation);
+      break;
+    case kRevision:
+      reply.put(kFirmwareVersion);
+      break;
+    case kProductName:
+      reply.put(state.model.description);
+      break;
+    default:
+      reply.put(state.settings.name.bytes());
+      break;
+  }
+  reply.patch(length_at, reply.size() - length_at - 1);
+}
+
+}  // namespace
+
+Refusal report_server_id(const State& state, const Request& request, Outcome& /*outcome*/, Reply& reply) {
+  if (request.frame.size != 2) {
+    return Refusal::WrongLength;
+  }
+  const Bytes name = state.settings.name.bytes();
+  reply.put(static_cast<std::uint8_t>(name.size + 3));
+  reply.put_word(state.model.modbus_code);
+  reply.put(kRunning);
+  reply.put(name);
+  return Refusal::None;
+}
+
+Refusal read_device_identification(const State& state, const Request& request, Outcome& /*outcome*/, Reply& reply) {
+  constexpr std::size_t kMeiAt = 2;
+  constexpr std::size_t kCodeAt = 3;
+  constexpr std::size_t kObjectAt = 4;
+  const Bytes frame = request.frame;
+  if (frame.size <= kMeiAt) {
+    return Refusal::WrongLength;
+  }
+  if (frame[kMeiAt] != kReadDeviceIdMei) {
+    return Refusal::UnknownSubfunction;
+  }
+  if (frame.size != kObjectAt + 1) {
+    return Refusal::WrongLength;
+  }
+  const std::uint8_t code = frame[kCodeAt];
+  std::uint8_t object = frame[kObjectAt];
+  if (code < kBasic || code > kOneObject) {
+    return Refusal::WrongValue;
+  }
+  const std::uint8_t last_of_level = code == kBasic ? kRevision : kUserApplicationName;
+  if (!exists(object, last_of_level)) {
+    if (code == kOneObject) {
+      return Refusal::UnknownObject;
+    }
+    object = kVendorName;  // the standard: begin at the beginning
+  }
+  const std::uint8_t last = code == kOneObject ? object : last_of_level;
+  reply.put(kReadDeviceIdMei);
+  reply.put(code);
+  reply.put(kConformity);
+  reply.put(std::uint8_t{0});  // nothing follows in another reply
+  reply.put(std::uint8_t{0});
+  const std::size_t count_at = reply.size();
+  reply.put(std::uint8_t{0});
+  std::size_t count = 0;
+  for (; object <= last; ++object) {
+    if (exists(object, last)) {
+      put_object(state, object, reply);
+      ++count;
+    }
+  }
+  reply.patch(count_at, count);
+  return Refusal::None;
+}
+
+Refusal vendor_function(const State& state, const Request& request, Outcome& outcome, Reply& reply) {
+  constexpr std::size_t kSubfunctionAt = 2;
+  constexpr std::size_t kAddressAt = 3;
+  constexpr std::size_t kSetAddressSize = 7;
+  constexpr std::uint8_t kReadCode = 0x00;
+  constexpr std::uint8_t kSetAddress = 0x04;
+  const Bytes frame = request.frame;
+  if (frame.size <= kSubfunctionAt) {
+    return Refusal::WrongLength;
+  }
+  const std::uint8_t subfunction = frame[kSubfunctionAt];
+  if (subfunction == kReadCode) {
+    if (frame.size != kSubfunctionAt + 1) {
+      return Refusal::WrongLength;
+    }
+    reply.put(kReadCode);
+    reply.put(std::uint8_t{0});
+    reply.put_word(state.model.modbus_code);
+    reply.put(std::uint8_t{0});
+    return Refusal::None;
+  }
+  if (subfunction != kSetAddress) {
+    return Refusal::UnknownSubfunction;
+  }
+  if (frame.size != kSetAddressSize) {
+    return Refusal::WrongLength;
+  }
+  for (const std::uint8_t reserved : frame.from(kAddressAt + 1)) {
+    if (reserved != 0) {
+      return Refusal::WrongValue;
+    }
+  }
+  if (!is_modbus_address(frame[kAddressAt])) {
+    return Refusal::WrongValue;
+  }
+  outcome.change.address(frame[kAddressAt]);
+  reply.put(kSetAddress);
+  reply.put_word(0);
+  reply.put_word(0);
+  return Refusal::None;
+}
+
+}  // namespace ex9000::modbus

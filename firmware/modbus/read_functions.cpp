@@ -1,0 +1,69 @@
+// Functions 01 to 04: Modbus Application Protocol V1.1b3, 6.1 to 6.4.
+#include "firmware/modbus/functions.hpp"
+#include "firmware/modbus/registers.hpp"
+
+namespace ex9000::modbus {
+
+namespace {
+
+constexpr std::size_t kRequestSize = 6;
+constexpr unsigned kMostBits = 2000;
+constexpr unsigned kMostWords = 125;
+
+Functions function_of(const Request& request) { return static_cast<Functions>(1U << request.frame[1]); }
+
+}  // namespace
+
+Refusal read_bits(const State& state, const Request& request, Outcome& /*outcome*/, Reply& reply) {
+  const Bytes frame = request.frame;
+  if (frame.size != kRequestSize) {
+    return Refusal::WrongLength;
+  }
+  const std::uint16_t start = frame.word(2);
+  const unsigned quantity = frame.word(4);
+  if (quantity == 0 || quantity > kMostBits) {
+    return Refusal::WrongQuantity;
+  }
+  const BitRow* row = find_bits(state.model, function_of(request), start);
+  if (row == nullptr) {
+    return Refusal::WrongAddress;
+  }
+  const unsigned index = unsigned{start} - row->first;
+  if (index + quantity > width_of(row->width, state.model)) {
+    return Refusal::WrongAddress;
+  }
+  const unsigned bits = (unsigned{row->read(state)} >> index) & ((1U << quantity) - 1U);
+  reply.put(static_cast<std::uint8_t>(quantity > 8 ? 2 : 1));
+  reply.put(static_cast<std::uint8_t>(bits));
+  if (quantity > 8) {
+    reply.put(static_cast<std::uint8_t>(bits >> 8U));
+  }
+  return Refusal::None;
+}
+
+Refusal read_words(const State& state, const Request& request, Outcome& /*outcome*/, Reply& reply) {
+  const Bytes frame = request.frame;
+  if (frame.size != kRequestSize) {
+    return Refusal::WrongLength;
+  }
+  const std::uint16_t start = frame.word(2);
+  const unsigned quantity = frame.word(4);
+  if (quantity == 0 || quantity > kMostWords) {
+    return Refusal::WrongQuantity;
+  }
+  reply.put(static_cast<std::uint8_t>(2 * quantity));
+  for (unsigned i = 0; i < quantity; ++i) {
+    // Beyond 0xFFFF there is nothing; what wraps to 0 must not be found.
+    const unsigned address = start + i;
+    const WordRow* row = address > 0xFFFF
+                             ? nullptr
+                             : find_words(state.model, function_of(request), static_cast<std::uint16_t>(address));
+    if (row == nullptr) {
+      return Refusal::WrongAddress;
+    }
+    reply.put_word(row->read(state, address - row->first));
+  }
+  return Refusal::None;
+}
+
+}  // namespace ex9000::modbus

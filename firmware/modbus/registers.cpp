@@ -1,0 +1,46 @@
+#include "firmware/modbus/registers.hpp"
+
+namespace ex9000::modbus {
+
+namespace {
+
+// The rows without their texts.
+constexpr auto kBitRows = [] {
+  std::array<BitRow, kBitRegisters.size()> rows{};
+  for (std::size_t i = 0; i < rows.size(); ++i) {
+    rows[i] = kBitRegisters[i].row;
+  }
+  return rows;
+}();
+
+constexpr auto kWordRows = [] {
+  std::array<WordRow, kWordRegisters.size()> rows{};
+  for (std::size_t i = 0; i < rows.size(); ++i) {
+    rows[i] = kWordRegisters[i].row;
+  }
+  return rows;
+}();
+
+}  // namespace
+
+const BitRow* find_bits(const Model& model, Functions function, std::uint16_t address) {
+  for (const BitRow& row : kBitRows) {
+    const unsigned index = unsigned{address} - row.first;
+    if ((row.functions & function) != 0 && index < width_of(row.width, model) && meets(model, row.needs)) {
+      return &row;
+    }
+  }
+  return nullptr;
+}
+
+const WordRow* find_words(const Model& model, Functions function, std::uint16_t address) {
+  for (const WordRow& row : kWordRows) {
+    const unsigned index = unsigned{address} - row.first;
+    if ((row.functions & function) != 0 && index < row.count && meets(model, row.needs)) {
+      return &row;
+    }
+  }
+  return nullptr;
+}
+
+}  // namespace ex9000::modbus

@@ -1,0 +1,150 @@
+// Functions 05, 06, 0F, 10: Modbus Application Protocol V1.1b3, 6.5, 6.6, 6.11, 6.12. What is wrong is found in the
+// order length and quantity, address, value, timeout status; nothing is changed unless all of it is right.
+#include "firmware/modbus/functions.hpp"
+#include "firmware/modbus/registers.hpp"
+
+namespace ex9000::modbus {
+
+namespace {
+
+constexpr std::size_t kSingleSize = 6;
+constexpr std::size_t kMultipleHeader = 7;
+constexpr unsigned kMostCoils = 1968;
+constexpr unsigned kMostRegisters = 123;
+constexpr std::uint16_t kCoilOn = 0xFF00;
+constexpr std::uint16_t kCoilOff = 0x0000;
+
+/// The reply of all four: the request's address and value, or quantity.
+void put_echo(const Request& request, Reply& reply) { reply.put(request.frame.first(kSingleSize).from(2)); }
+
+Refusal write_bits(const State& state, const Request& request, const BitRow& row, BitWrite bits, Outcome& outcome,
+                   Reply& reply) {
+  if (request.broadcast && row.configuration) {
+    return Refusal::None;  // ignored: one frame must not reconfigure every module
+  }
+  const Refusal refusal = row.write(state, bits, outcome);
+  if (refusal != Refusal::None) {
+    return refusal;
+  }
+  if (row.drives_outputs && state.outputs_blocked()) {
+    return Refusal::OutputsBlocked;
+  }
+  put_echo(request, reply);
+  return Refusal::None;
+}
+
+Refusal check_value(const State& state, const WordRow& row, std::uint16_t value, Outcome& outcome) {
+  if (value < row.lowest || value > row.highest) {
+    return Refusal::WrongValue;
+  }
+  return row.write(state, value, outcome);
+}
+
+/// Length, quantity and byte count of 0F and 10, which carry `bits` a value.
+Refusal check_multiple(Bytes frame, unsigned most, unsigned bits) {
+  if (frame.size < kMultipleHeader) {
+    return Refusal::WrongLength;
+  }
+  const unsigned quantity = frame.word(4);
+  if (quantity == 0 || quantity > most) {
+    return Refusal::WrongQuantity;
+  }
+  const unsigned data = (quantity * bits + 7) / 8;
+  return frame[6] == data && frame.size == kMultipleHeader + data ? Refusal::None : Refusal::WrongLength;
+}
+
+}  // namespace
+
+Refusal write_single_coil(const State& state, const Request& request, Outcome& outcome, Reply& reply) {
+  const Bytes frame = request.frame;
+  if (frame.size != kSingleSize) {
+    return Refusal::WrongLength;
+  }
+  const std::uint16_t address = frame.word(2);
+  const std::uint16_t value = frame.word(4);
+  if (value != kCoilOn && value != kCoilOff) {
+    return Refusal::WrongCoilValue;
+  }
+  const BitRow* row = find_bits(state.model, kWriteSingleCoil, address);
+  if (row == nullptr) {
+    return Refusal::WrongAddress;
+  }
+  if (row->only_on && value != kCoilOn) {
+    return Refusal::WrongValue;
+  }
+  const auto bit = static_cast<std::uint16_t>(1U << (unsigned{address} - row->first));
+  return write_bits(state, request, *row, {bit, value == kCoilOn ? bit : std::uint16_t{0}}, outcome, reply);
+}
+
+Refusal write_multiple_coils(const State& state, const Request& request, Outcome& outcome, Reply& reply) {
+  const Bytes frame = request.frame;
+  const Refusal refusal = check_multiple(frame, kMostCoils, 1);
+  if (refusal != Refusal::None) {
+    return refusal;
+  }
+  const std::uint16_t start = frame.word(2);
+  const unsigned quantity = frame.word(4);
+  const BitRow* row = find_bits(state.model, kWriteMultipleCoils, start);
+  if (row == nullptr) {
+    return Refusal::WrongAddress;
+  }
+  const unsigned index = unsigned{start} - row->first;
+  if (index + quantity > width_of(row->width, state.model)) {
+    return Refusal::WrongAddress;
+  }
+  const unsigned mask = (1U << quantity) - 1U;
+  const unsigned values = frame[kMultipleHeader] | (quantity > 8 ? frame[kMultipleHeader + 1U] << 8U : 0U);
+  return write_bits(
+      state, request, *row,
+      {static_cast<std::uint16_t>(mask << index), static_cast<std::uint16_t>((values & mask) << index)}, outcome, reply);
+}
+
+Refusal write_single_register(const State& state, const Request& request, Outcome& outcome, Reply& reply) {
+  const Bytes frame = request.frame;
+  if (frame.size != kSingleSize) {
+    return Refusal::WrongLength;
+  }
+  const WordRow* row = find_words(state.model, kWriteRegisters, frame.word(2));
+  if (row == nullptr) {
+    return Refusal::WrongAddress;
+  }
+  if (request.broadcast && row->configuration) {
+    return Refusal::None;
+  }
+  put_echo(request, reply);
+  return check_value(state, *row, frame.word(4), outcome);
+}
+
+Refusal write_multiple_registers(const State& state, const Request& request, Outcome& outcome, Reply& reply) {
+  const Bytes frame = request.frame;
+  const Refusal refusal = check_multiple(frame, kMostRegisters, 16);
+  if (refusal != Refusal::None) {
+    return refusal;
+  }
+  const unsigned start = frame.word(2);
+  const unsigned quantity = frame.word(4);
+  bool configuration = false;
+  for (unsigned i = 0; i < quantity; ++i) {
+    const unsigned address = start + i;
+    const WordRow* row =
+        address > 0xFFFF ? nullptr : find_words(state.model, kWriteRegisters, static_cast<std::uint16_t>(address));
+    if (row == nullptr) {
+      return Refusal::WrongAddress;
+    }
+    configuration |= row->configuration;
+  }
+  if (request.broadcast && configuration) {
+    return Refusal::None;
+  }
+  for (unsigned i = 0; i < quantity; ++i) {
+    const WordRow* row = find_words(state.model, kWriteRegisters, static_cast<std::uint16_t>(start + i));
+    const Refusal wrong = check_value(state, *row, frame.word(kMultipleHeader + 2 * i), outcome);
+    if (wrong != Refusal::None) {
+      return wrong;
+    }
+  }
+  put_echo(request, reply);
+  return Refusal::None;
+}
+
+}  // namespace ex9000::modbus

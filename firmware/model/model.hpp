@@ -1,0 +1,84 @@
+// The models: one row each. A sister model is one more row; no protocol code knows a model by name.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <string_view>
+
+namespace ex9000 {
+
+/// This firmware's version as `$AAF` and Modbus object 02 tell it, shape `Dnn.nn` (manuals 2.8).
+constexpr std::string_view kFirmwareVersion = "D01.00";
+
+/// How `~AA0` tells the host watchdog's state (manuals 2.16; 2.18 of the EX9052D).
+enum class StatusStyle : std::uint8_t {
+  TimeoutOnly,        ///< 00, 04
+  EnableAndTimeout,  ///< 00, 80, 84
+};
+
+struct Model {
+  std::string_view designation;   ///< as on the label, e.g. "EX9042D-M"
+  std::uint8_t inputs;            ///< channels, 0 to 8
+  std::uint8_t outputs;           ///< channels, 0 to 16
+  std::uint16_t modbus_code;      ///< as function 46 tells it, 0x9042; 0: the model speaks ASCII only
+  StatusStyle status_style;
+  std::string_view factory_name;  ///< what `$AAM` answers from the factory
+  std::uint8_t longest_name;      ///< what `~AAO` accepts, in characters
+  std::string_view description;   ///< Modbus object 04, and for people
+
+  [[nodiscard]] constexpr bool speaks_modbus() const { return modbus_code != 0; }
+  [[nodiscard]] constexpr bool has_inputs() const { return inputs != 0; }
+  [[nodiscard]] constexpr bool has_outputs() const { return outputs != 0; }
+  /// One bit for each output channel.
+  [[nodiscard]] constexpr std::uint16_t output_mask() const {
+    return static_cast<std::uint16_t>((1UL << outputs) - 1U);
+  }
+  [[nodiscard]] constexpr std::uint16_t input_mask() const {
+    return static_cast<std::uint16_t>((1UL << inputs) - 1U);
+  }
+};
+
+constexpr unsigned kMaxInputs = 8;
+constexpr unsigned kMaxOutputs = 16;
+constexpr unsigned kMaxNameLength = 7;
+
+constexpr std::array<Model, 17> kModels{{
+    // The modules of the four manuals.
+    {"EX9042D", 0, 13, 0, StatusStyle::EnableAndTimeout, "9042D", 6, "13 open-collector outputs"},
+    {"EX9042D-M", 0, 13, 0x9042, StatusStyle::EnableAndTimeout, "9042M", 6, "13 open-collector outputs"},
+    {"EX9043D", 0, 16, 0, StatusStyle::TimeoutOnly, "9043D", 6, "16 open-collector outputs"},
+    {"EX9043D-M", 0, 16, 0x9043, StatusStyle::TimeoutOnly, "9043M", 6, "16 open-collector outputs"},
+    {"EX9052D", 8, 0, 0, StatusStyle::EnableAndTimeout, "9052", 6, "8 inputs with latches and counters"},
+    {"EX9052D-M", 8, 0, 0x9052, StatusStyle::EnableAndTimeout, "9052M", 6, "8 inputs with latches and counters"},
+    {"EX9068D-M", 0, 8, 0x9068, StatusStyle::TimeoutOnly, "9068D-M", 7, "8 relay outputs"},
+    {"EX9068AD-M", 0, 8, 0x9068, StatusStyle::TimeoutOnly, "9068D-M", 7, "8 PhotoMOS outputs"},
+    // Their ASCII-only sisters: outputs from the manuals' tables 2.3 and 2.11, inputs from the ICP DAS I-70xx.
+    {"EX9044D", 4, 8, 0, StatusStyle::TimeoutOnly, "9044", 6, "4 inputs, 8 open-collector outputs"},
+    {"EX9050D", 7, 8, 0, StatusStyle::TimeoutOnly, "9050", 6, "7 inputs, 8 open-collector outputs"},
+    {"EX9055D", 8, 8, 0, StatusStyle::TimeoutOnly, "9055", 6, "8 inputs, 8 open-collector outputs"},
+    {"EX9060D", 4, 4, 0, StatusStyle::TimeoutOnly, "9060", 6, "4 inputs, 4 relay outputs"},
+    {"EX9063D", 8, 3, 0, StatusStyle::TimeoutOnly, "9063", 6, "8 inputs, 3 relay outputs"},
+    {"EX9065D", 4, 5, 0, StatusStyle::TimeoutOnly, "9065", 6, "4 inputs, 5 relay outputs"},
+    {"EX9066D", 0, 7, 0, StatusStyle::TimeoutOnly, "9066", 6, "7 PhotoMOS outputs"},
+    {"EX9067D", 0, 7, 0, StatusStyle::TimeoutOnly, "9067", 6, "7 relay outputs"},
+    {"EX9068D", 0, 8, 0, StatusStyle::TimeoutOnly, "9068", 6, "8 relay outputs"},
+}};
+
+/// Which models a command or register exists on.
+enum class Needs : std::uint8_t { Nothing, Outputs, Inputs, Modbus };
+
+constexpr bool meets(const Model& model, Needs needs) {
+  switch (needs) {
+    case Needs::Outputs:
+      return model.has_outputs();
+    case Needs::Inputs:
+      return model.has_inputs();
+    case Needs::Modbus:
+      return model.speaks_modbus();
+    case Needs::Nothing:
+      break;
+  }
+  return true;
+}
+
+}  // namespace ex9000

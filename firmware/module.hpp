@@ -1,0 +1,127 @@
+// One module: what interrupts tell it, what the main loop does, and what it wants of the board.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+
+#include "firmware/bytes.hpp"
+#include "firmware/channels/inputs.hpp"
+#include "firmware/line/receiver.hpp"
+#include "firmware/model/model.hpp"
+#include "firmware/panel/debounce.hpp"
+#include "firmware/panel/status_led.hpp"
+#include "firmware/request/outcome.hpp"
+#include "firmware/request/reply.hpp"
+#include "firmware/request/state.hpp"
+#include "firmware/settings/store.hpp"
+#include "firmware/time.hpp"
+#include "firmware/watchdog/host_watchdog.hpp"
+#include "firmware/watchdog/module_watchdog.hpp"
+
+namespace ex9000 {
+
+/// The device without its board. It touches no peripheral and reads no clock: bytes, edges, levels and the time come in
+/// as arguments; outputs, LED, reply and memory job are asked for. An object lives from one reset to the next.
+///
+/// Functions named `on_...` are for interrupts, which must not interrupt each other within one line: `on_byte` and
+/// `on_silence` share a level, `on_edge` and `on_tick` may have others. All else is for the main loop. Nothing blocks.
+class Module {
+ public:
+  explicit constexpr Module(const Model& model) : state_(model), store_(model) {}
+  Module(const Module&) = delete;
+  Module& operator=(const Module&) = delete;
+
+  /// Once, before anything else. `input_levels`: bit n is channel n, 1 = +4 to +30 V.
+  void begin(std::uint16_t input_levels, Time now, InterCharacterGap gap = InterCharacterGap::Tolerated);
+
+  // --- interrupts ---
+
+  /// See Receiver::on_byte; only while `listening()`, and not while the own driver is on.
+  Duration on_byte(std::uint8_t byte, ByteStatus status, Time now) { return receiver_.on_byte(byte, status, now); }
+  Duration on_silence() { return receiver_.on_silence(); }
+  /// See InputEdges::on_edge.
+  void on_edge(unsigned channel, bool level) { edges_.on_edge(channel, level); }
+  void on_tick() { module_watchdog_.tick_alive(); }
+
+  // --- main loop ---
+
+  /// One turn. `init_switch`: INIT* is asserted (tied to GND), not debounced.
+  void step(bool init_switch, Time now);
+  /// How long nothing will happen by itself; zero: step again at once; nothing: until an interrupt or a finished job.
+  [[nodiscard]] std::optional<Duration> idle_for(Time now) const;
+
+  /// Levels to drive: bit n is channel n, 1 = energised. All 0 until the settings are read.
+  [[nodiscard]] std::uint16_t outputs() const { return state_.outputs; }
+  [[nodiscard]] bool led_lit() const { return led_.lit(); }
+  /// Whether to feed the hardware watchdog; asks once a turn.
+  bool feed_watchdog() { return module_watchdog_.main_loop_alive(); }
+
+  /// Settings and INIT* are known: the line may be opened at `baud()`.
+  [[nodiscard]] bool listening() const { return phase_ != Phase::Booting; }
+  /// Bits per second, from one reset to the next.
+  [[nodiscard]] std::uint32_t baud() const { return baud_rate(state_.in_force.baud_code); }
+
+  /// What to do with the memory; the same until `memory_done`.
+  [[nodiscard]] MemoryJob memory_job() { return store_.job(); }
+  void memory_done(bool ok) { store_.done(ok); }
+
+  /// The reply to send now; empty: none, or not yet. It lives until `reply_sent`. From here on the own driver is on.
+  Bytes take_reply(Time now);
+  /// The last stop bit has left and the driver is off.
+  void reply_sent();
+
+  // --- for those who look on: panels, logs, tests ---
+
+  [[nodiscard]] const State& state() const { return state_; }
+  /// What the last request came to.
+  [[nodiscard]] const Outcome& outcome() const { return outcome_; }
+  /// Whether the settings in the memory could not be read at reset, and none have been stored since.
+  [[nodiscard]] bool settings_unreadable() const { return store_.found() == SettingsStore::Found::Unreadable; }
+
+ private:
+  enum class Phase : std::uint8_t {
+    Booting,     ///< reading settings, waiting for INIT* to settle
+    Idle,        ///< the next frame may be judged
+    MustStore,   ///< judged; the memory is busy with something else
+    Storing,     ///< judged; the memory is taking the change
+    ReplyReady,  ///< done; the reply waits for its moment
+    Replying,    ///< the driver is on
+  };
+
+  void boot(Time now);
+  void use_settings(Time now);
+  void start_listening();
+  void collect_tallies();
+  void heed_host_ok();
+  void expire_host_watchdog(Time now);
+  void go_on_storing(Time now);
+  void store_timeout(Time now);
+  void judge(const Frame& frame, Time now);
+  void carry_out(Time now);
+  void refuse_store();
+  void count_exception();
+  void finish_request();
+  [[nodiscard]] bool memory_is_free() const;
+
+  Receiver receiver_;
+  InputEdges edges_;
+  ModuleWatchdog module_watchdog_;
+
+  State state_;
+  SettingsStore store_;
+  HostWatchdog host_watchdog_;
+  StatusLed led_;
+  Debounce init_switch_;
+
+  Phase phase_ = Phase::Booting;
+  InterCharacterGap gap_ = InterCharacterGap::Tolerated;
+  bool settings_known_ = false;
+  bool storing_timeout_ = false;  ///< the save that is under way was not asked for by a command
+  Deadline timeout_store_retry_;
+  std::uint8_t host_oks_heeded_ = 0;
+  Outcome outcome_;
+  Reply reply_;
+  Deadline reply_due_;
+};
+
+}  // namespace ex9000

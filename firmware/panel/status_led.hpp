@@ -1,0 +1,56 @@
+// The status LED's patterns.
+#pragma once
+
+#include <array>
+#include <cstdint>
+
+#include "firmware/time.hpp"
+
+namespace ex9000 {
+
+class StatusLed {
+ public:
+  enum class Pattern : std::uint8_t {
+    Steady,              ///< on
+    HostTimeout,         ///< 2 Hz, until the timeout status is cleared (manuals 1.8, 2.19)
+    SettingsUnreadable,  ///< two short flashes every 2 s (D8)
+  };
+
+  /// Main loop, once a turn.
+  void show(Pattern pattern, Time now) {
+    if (pattern != pattern_) {
+      pattern_ = pattern;
+      phase_ = 0;
+      arm(now);
+    } else if (next_.reached(now)) {
+      phase_ = (phase_ + 1U) % kPhases;
+      arm(now);
+    }
+  }
+
+  /// Even phases are lit.
+  [[nodiscard]] bool lit() const { return phase_ % 2 == 0; }
+  /// When it changes; disarmed while it is steady.
+  [[nodiscard]] Deadline next_change() const { return next_; }
+
+ private:
+  static constexpr unsigned kPhases = 4;
+  static constexpr std::array<Duration, kPhases> kHostTimeout{milliseconds(250), milliseconds(250),
+                                                              milliseconds(250), milliseconds(250)};
+  static constexpr std::array<Duration, kPhases> kSettingsUnreadable{milliseconds(100), milliseconds(100),
+                                                                     milliseconds(100), milliseconds(1700)};
+
+  void arm(Time now) {
+    if (pattern_ == Pattern::Steady) {
+      next_.disarm();
+    } else {
+      next_.set(now + (pattern_ == Pattern::HostTimeout ? kHostTimeout : kSettingsUnreadable)[phase_]);
+    }
+  }
+
+  Pattern pattern_ = Pattern::Steady;
+  unsigned phase_ = 0;
+  Deadline next_;
+};
+
+}  // namespace ex9000

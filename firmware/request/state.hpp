@@ -1,0 +1,58 @@
+// Everything a request is judged by.
+#pragma once
+
+#include <cstdint>
+
+#include "firmware/channels/inputs.hpp"
+#include "firmware/model/model.hpp"
+#include "firmware/settings/settings.hpp"
+
+namespace ex9000 {
+
+/// What was taken from the settings, or from INIT mode, at reset and holds until the next one.
+struct InForce {
+  std::uint8_t address = 0;  ///< the exception: `%` changes it at once
+  std::uint8_t baud_code = kFactoryBaudCode;
+  Protocol protocol = Protocol::Ascii;
+  bool checksum = false;
+  bool init_mode = false;
+};
+
+/// The synchronized sample of `#**` (manuals 2.2, 2.5).
+struct Sample {
+  bool taken = false;
+  bool read = false;
+  std::uint16_t outputs = 0;
+  std::uint16_t inputs = 0;
+};
+
+/// Modbus function 08, sub-functions 0B to 0F and 12 (D1).
+struct Diagnostics {
+  std::uint16_t bus_messages = 0;
+  std::uint16_t bus_errors = 0;
+  std::uint16_t exceptions = 0;
+  std::uint16_t server_messages = 0;
+  std::uint16_t no_responses = 0;
+  std::uint16_t overruns = 0;
+};
+
+struct State {
+  explicit constexpr State(const Model& which) : model(which) {}
+
+  const Model& model;
+  Settings settings;
+  InForce in_force;
+  bool init_asserted = false;  ///< INIT* at this moment
+  std::uint16_t outputs = 0;   ///< bit n is channel n, 1 = energised
+  Inputs inputs;
+  Sample sample;
+  bool reset_status = true;
+  Diagnostics diagnostics;
+
+  /// Section 2: what commands marked (I) need.
+  [[nodiscard]] bool configuration_permitted() const { return in_force.init_mode || init_asserted; }
+  /// Section 6: output commands are ignored.
+  [[nodiscard]] bool outputs_blocked() const { return settings.timeout_status; }
+};
+
+}  // namespace ex9000

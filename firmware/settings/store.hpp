@@ -1,0 +1,83 @@
+// Keeps the settings in a memory that takes time to write and may lose power at any instant.
+#pragma once
+
+#include <array>
+#include <cstdint>
+
+#include "firmware/bytes.hpp"
+#include "firmware/model/model.hpp"
+#include "firmware/settings/record.hpp"
+#include "firmware/settings/settings.hpp"
+
+namespace ex9000 {
+
+/// What the store wants done with the memory. The buffers live until `SettingsStore::done`.
+struct MemoryJob {
+  enum class Kind : std::uint8_t { None, Read, Write };
+
+  Kind kind = Kind::None;
+  std::uint16_t address = 0;  ///< of the first byte; a job never crosses a page
+  Bytes source;               ///< to be written
+  MutableBytes destination;   ///< to be filled
+};
+
+/// Two copies, each in a page of its own. A save overwrites the older or broken one, reads it back, and only then does
+/// it count; the other copy stays as it is, so a power cut leaves either the old settings or the new ones.
+///
+/// The store does nothing by itself: whoever owns the memory starts `job()`, and reports `done()` when it has ended.
+class SettingsStore {
+ public:
+  enum class Found : std::uint8_t {
+    Settings,    ///< a good copy
+    Blank,       ///< never written: factory settings
+    Unreadable,  ///< something else; factory settings are used, and not written
+  };
+
+  explicit constexpr SettingsStore(const Model& model) : model_(model) {}
+
+  /// Reads both copies, each up to three times. Afterwards `found()` and `stored()` hold.
+  void begin_loading();
+  [[nodiscard]] bool loading() const { return step_ == Step::Load; }
+  [[nodiscard]] Found found() const { return found_; }
+
+  /// Writes and verifies, up to three times. Only while not `busy()`. Afterwards `saved()` and `stored()` hold.
+  void begin_saving(const Settings& settings);
+  [[nodiscard]] bool busy() const { return step_ != Step::Idle; }
+  /// Whether the last save succeeded.
+  [[nodiscard]] bool saved() const { return saved_; }
+
+  /// What a reset now would find.
+  [[nodiscard]] const Settings& stored() const { return stored_.settings; }
+
+  /// What is to be done; the same until `done`.
+  [[nodiscard]] MemoryJob job();
+  /// The job has ended: `ok` unless the memory did not answer.
+  void done(bool ok);
+
+ private:
+  enum class Step : std::uint8_t { Idle, Load, Write, Verify, Invalidate };
+
+  void loaded_copy(bool ok);
+  void finish_loading();
+  void retry_or_give_up();
+  void finish_saving(bool saved);
+
+  static constexpr std::uint8_t kCopies = 2;
+  static constexpr std::uint8_t kNoCopy = 0xFF;
+  static constexpr std::uint8_t kAttempts = 3;
+
+  const Model& model_;
+  Step step_ = Step::Idle;
+  Found found_ = Found::Unreadable;
+  bool saved_ = false;
+  std::uint8_t copy_ = 0;
+  std::uint8_t attempt_ = 0;
+  std::uint8_t blank_copies_ = 0;
+  std::uint8_t current_copy_ = kNoCopy;  ///< the one that holds `stored_`
+  StoredSettings stored_;
+  StoredSettings pending_;
+  Record record_{};     ///< what is written
+  Record read_back_{};  ///< what is read
+};
+
+}  // namespace ex9000

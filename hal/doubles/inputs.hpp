@@ -1,0 +1,24 @@
+#pragma once
+
+#include "hal/inputs.hpp"
+
+namespace ex9000::hal::doubles {
+
+class Inputs final : public hal::Inputs {
+ public:
+  [[nodiscard]] std::uint16_t levels() const override { return levels_; }
+  [[nodiscard]] bool level(unsigned channel) const { return (levels_ >> channel & 1U) != 0; }
+
+  /// True where this is an edge; then call the interrupt.
+  bool set(unsigned channel, bool level) {
+    const auto bit = static_cast<std::uint16_t>(1U << channel);
+    const std::uint16_t before = levels_;
+    levels_ = static_cast<std::uint16_t>(level ? levels_ | bit : levels_ & ~bit);
+    return levels_ != before;
+  }
+
+ private:
+  std::uint16_t levels_ = 0;
+};
+
+}  // namespace ex9000::hal::doubles

@@ -1,0 +1,63 @@
+#include "hal/doubles/memory.hpp"
+
+#include <algorithm>
+#include <stdexcept>
+
+namespace ex9000::hal::doubles {
+
+void Memory::begin(bool writing, std::uint16_t address, std::size_t size) {
+  if (busy()) {
+    throw std::logic_error("memory: a job was started while another is under way");
+  }
+  if (address + size > kSize || (writing && address / kPage != (address + size - 1) / kPage)) {
+    throw std::logic_error("memory: a job leaves the memory, or a write its page");
+  }
+  constexpr std::int64_t kAddressing = 4;  // device address twice, word address in two bytes
+  writing_ = writing;
+  address_ = address;
+  began_ = clock_.virtual_now();
+  ends_ = began_ + kByteOnBus * (static_cast<std::int64_t>(size) + kAddressing) + (writing ? kProgram : VirtualTime(0));
+}
+
+void Memory::start_read(std::uint16_t address, MutableBytes destination) {
+  begin(false, address, destination.size);
+  destination_ = destination;
+}
+
+void Memory::start_write(std::uint16_t address, Bytes source) {
+  begin(true, address, source.size);
+  source_ = source;
+  ++writes_;
+}
+
+void Memory::run() {
+  if (ends_ > clock_.virtual_now()) {
+    return;
+  }
+  ends_ = kNever;
+  succeeded_ = !failing_;
+  if (failing_) {
+    return;
+  }
+  if (writing_) {
+    std::copy(source_.begin(), source_.end(), contents_.begin() + address_);
+  } else {
+    std::copy_n(contents_.begin() + address_, destination_.size, destination_.data);
+  }
+}
+
+void Memory::cut() {
+  if (busy() && writing_ && !failing_) {
+    const VirtualTime programming_began = ends_ - kProgram;
+    const VirtualTime had = std::max(clock_.virtual_now() - programming_began, VirtualTime(0));
+    const auto done = static_cast<std::size_t>(had * static_cast<std::int64_t>(source_.size) / kProgram);
+    std::copy_n(source_.begin(), done, contents_.begin() + address_);
+    if (had != VirtualTime(0) && done < source_.size) {
+      constexpr std::uint8_t kHalfErased = 0xA5;
+      contents_[address_ + done] |= kHalfErased;
+    }
+  }
+  ends_ = kNever;
+}
+
+}  // namespace ex9000::hal::doubles

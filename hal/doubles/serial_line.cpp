@@ -1,0 +1,42 @@
+#include "hal/doubles/serial_line.hpp"
+
+namespace ex9000::hal::doubles {
+
+void SerialLine::send(Bytes bytes) {
+  bytes_ = bytes;
+  sent_ = 0;
+  driving_ = true;
+  wire_.drive(true);
+  first_start_bit_ = next_ = clock_.virtual_now() + kDriverLead;
+}
+
+void SerialLine::run() {
+  if (next_ > clock_.virtual_now()) {
+    return;
+  }
+  if (sent_ == bytes_.size) {
+    driving_ = false;
+    next_ = kNever;
+    wire_.drive(false);
+    return;
+  }
+  wire_.put(bytes_[sent_++], baud_);
+  // From the first start bit on, so that rounding does not add up.
+  constexpr std::int64_t kBits = 10;
+  constexpr std::int64_t kSecond = 1'000'000'000;
+  next_ = first_start_bit_ + VirtualTime(static_cast<std::int64_t>(sent_) * kBits * kSecond / baud_);
+  if (sent_ == bytes_.size) {
+    next_ += kDriverTail;
+  }
+}
+
+void SerialLine::abort() {
+  if (driving_) {
+    driving_ = false;
+    wire_.drive(false);
+  }
+  baud_ = 0;
+  next_ = kNever;
+}
+
+}  // namespace ex9000::hal::doubles

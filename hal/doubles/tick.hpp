@@ -1,0 +1,35 @@
+#pragma once
+
+#include "hal/doubles/virtual_clock.hpp"
+#include "hal/tick.hpp"
+
+namespace ex9000::hal::doubles {
+
+class Tick final : public hal::Tick {
+ public:
+  explicit Tick(const VirtualClock& clock) : clock_(clock) {}
+
+  void start(Duration period) override {
+    period_ = std::chrono::microseconds(period.microseconds());
+    next_ = clock_.virtual_now() + period_;
+  }
+
+  [[nodiscard]] VirtualTime next() const { return next_; }
+  /// Whether it fires now; then call the interrupt.
+  bool fire() {
+    if (next_ > clock_.virtual_now()) {
+      return false;
+    }
+    next_ += period_;
+    return true;
+  }
+  /// The tick stops, as if its timer had died.
+  void stop() { next_ = kNever; }
+
+ private:
+  const VirtualClock& clock_;
+  VirtualTime period_{0};
+  VirtualTime next_ = kNever;
+};
+
+}  // namespace ex9000::hal::doubles

@@ -1,0 +1,32 @@
+// Time that somebody turns by hand; the doubles' and the virtual bus's clock.
+#pragma once
+
+#include <chrono>
+
+#include "hal/clock.hpp"
+
+namespace ex9000::hal::doubles {
+
+/// Since the start of the simulation; 64 bits of nanoseconds last 292 years.
+using VirtualTime = std::chrono::nanoseconds;
+
+constexpr VirtualTime kNever = VirtualTime::max();
+
+class VirtualClock final : public Clock {
+ public:
+  [[nodiscard]] Time now() const override {
+    return Time(static_cast<std::uint32_t>(std::chrono::duration_cast<std::chrono::microseconds>(now_).count()));
+  }
+  [[nodiscard]] VirtualTime virtual_now() const { return now_; }
+  void set(VirtualTime now) { now_ = now; }
+
+  /// The first instant at which `now()` shows `after` more than it does now.
+  [[nodiscard]] VirtualTime when(Duration after) const {
+    return std::chrono::duration_cast<std::chrono::microseconds>(now_) + std::chrono::microseconds(after.microseconds());
+  }
+
+ private:
+  VirtualTime now_{0};
+};
+
+}  // namespace ex9000::hal::doubles
