@@ -73,6 +73,7 @@ class Module {
   // --- for those who look on: panels, logs, tests ---
 
   [[nodiscard]] const State& state() const { return state_; }
+  [[nodiscard]] StatusLed::Pattern led_pattern() const { return led_.pattern(); }
   /// What the last request came to.
   [[nodiscard]] const Outcome& outcome() const { return outcome_; }
   /// Whether the settings in the memory could not be read at reset, and none have been stored since.

@@ -3,6 +3,7 @@
 #include <array>
 
 #include "firmware/dcon/commands.hpp"
+#include "firmware/hex.hpp"
 
 namespace ex9000::dcon {
 
@@ -90,6 +91,9 @@ std::size_t find_command(const Model& model, Bytes frame) {
 }
 
 void answer(const State& state, Bytes frame, Outcome& outcome, Reply& reply) {
+  if (!is_broadcast(frame) && hex_byte(frame[1], frame[2]) != state.in_force.address) {
+    return;  // `%` has changed the address since the frame came in (D16)
+  }
   const std::size_t command = find_command(state.model, frame);
   outcome.refusal = command == kNoCommand
                         ? Refusal::UnknownCommand

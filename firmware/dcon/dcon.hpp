@@ -18,7 +18,7 @@ constexpr std::size_t kNoCommand = static_cast<std::size_t>(-1);
 std::size_t find_command(const Model& model, Bytes frame);
 
 /// Judges an accepted frame. `reply` is what to send, checksum and CR included, once the outcome is done; it stays
-/// empty where a module is silent. Changes nothing by itself.
+/// empty for broadcasts and for another address. Changes nothing by itself.
 void answer(const State& state, Bytes frame, Outcome& outcome, Reply& reply);
 
 /// The reply of a command that could not be stored.

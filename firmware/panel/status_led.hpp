@@ -28,6 +28,7 @@ class StatusLed {
     }
   }
 
+  [[nodiscard]] Pattern pattern() const { return pattern_; }
   /// Even phases are lit.
   [[nodiscard]] bool lit() const { return phase_ % 2 == 0; }
   /// When it changes; disarmed while it is steady.

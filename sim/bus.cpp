@@ -1,0 +1,154 @@
+#include "sim/bus.hpp"
+
+#include <algorithm>
+
+namespace ex9000::sim {
+
+/// One station's end of the wires.
+struct Bus::End final : Wire {
+  End(Bus& its_bus, Station& its_station, std::size_t its_index)
+      : bus(its_bus), station(its_station), index(its_index) {}
+
+  void drive(bool on) override { bus.drive(*this, on); }
+  void put(std::uint8_t byte, std::uint32_t baud) override { bus.put(*this, byte, baud); }
+
+  Bus& bus;
+  Station& station;
+  std::size_t index;
+  bool driving = false;
+  UartSampler sampler;
+};
+
+Bus::Bus(VirtualClock& clock) : clock_(clock) {}
+
+Bus::~Bus() = default;
+
+Wire& Bus::attach(Station& station) {
+  ends_.push_back(std::make_unique<End>(*this, station, ends_.size()));
+  return *ends_.back();
+}
+
+VirtualTime Bus::next() const {
+  VirtualTime next = next_sample_;
+  for (const Byte& byte : on_the_wire_) {
+    next = std::min(next, byte.wave.end());
+  }
+  for (const auto& end : ends_) {
+    next = std::min(next, end->station.next());
+  }
+  return next;
+}
+
+void Bus::run_until(VirtualTime until) {
+  for (VirtualTime now = next(); now <= until; now = next()) {
+    clock_.set(std::max(now, clock_.virtual_now()));
+    run_wire();
+    for (const auto& end : ends_) {
+      if (end->station.next() <= clock_.virtual_now()) {
+        end->station.run();
+      }
+    }
+  }
+  clock_.set(std::max(until, clock_.virtual_now()));
+}
+
+void Bus::drive(End& end, bool on) {
+  if (end.driving == on) {
+    return;
+  }
+  end.driving = on;
+  drivers_on_ += on ? 1U : -1U;
+  const VirtualTime now = clock_.virtual_now();
+  if (drivers_on_ > 1) {
+    for (Byte& byte : on_the_wire_) {
+      byte.collided = true;
+    }
+  }
+  if (!on) {
+    // Whatever it was sending ends here; the rest of the byte is the idle level.
+    on_the_wire_.erase(std::remove_if(on_the_wire_.begin(), on_the_wire_.end(),
+                                      [&](const Byte& byte) { return byte.station == end.index && byte.wave.end() > now; }),
+                       on_the_wire_.end());
+  }
+  for (BusObserver* observer : observers_) {
+    observer->driver(end.index, on, now);
+  }
+}
+
+void Bus::put(End& end, std::uint8_t byte, std::uint32_t baud) {
+  const Wave wave{clock_.virtual_now(), baud, byte};
+  const bool collided = drivers_on_ > 1 || !on_the_wire_.empty();
+  for (Byte& other : on_the_wire_) {
+    other.collided = true;
+  }
+  on_the_wire_.push_back({end.index, collided, wave});
+  waves_.push_back(wave);
+  run_wire();
+}
+
+/// Whether a receiver has to look at the wave itself, rather than be handed whole bytes.
+bool Bus::samples(const End& end) const {
+  const std::uint32_t baud = end.station.baud();
+  if (baud == 0) {
+    return false;
+  }
+  return end.sampler.busy() || std::any_of(on_the_wire_.begin(), on_the_wire_.end(), [&](const Byte& byte) {
+           return byte.collided || byte.wave.baud != baud || end.sampler.position() > byte.wave.start;
+         });
+}
+
+void Bus::sample(End& end) {
+  const std::uint32_t baud = end.station.baud();
+  while (const auto received = end.sampler.advance(waves_, baud, clock_.virtual_now())) {
+    end.station.receive(received->byte, received->status);
+  }
+}
+
+void Bus::run_wire() {
+  const VirtualTime now = clock_.virtual_now();
+  for (const auto& end : ends_) {
+    if (samples(*end)) {
+      sample(*end);
+    }
+  }
+  for (std::size_t i = 0; i < on_the_wire_.size();) {
+    if (on_the_wire_[i].wave.end() > now) {
+      ++i;
+      continue;
+    }
+    const Byte over = on_the_wire_[i];
+    on_the_wire_.erase(on_the_wire_.begin() + static_cast<std::ptrdiff_t>(i));
+    for (BusObserver* observer : observers_) {
+      observer->byte(over.station, over.wave.byte, over.wave.baud, over.collided, over.wave.start, now);
+    }
+    for (const auto& end : ends_) {
+      const bool whole = !over.collided && !end->sampler.busy() && end->sampler.position() <= over.wave.start;
+      if (whole && end->station.baud() == over.wave.baud) {
+        end->sampler.skip_to(now);
+        end->station.receive(over.wave.byte, ByteStatus::Good);
+      }
+    }
+  }
+  // Half a receiver's bit is often enough to hand over what it has sampled.
+  next_sample_ = kNever;
+  for (const auto& end : ends_) {
+    if (samples(*end)) {
+      next_sample_ = std::min(next_sample_, now + VirtualTime(500'000'000 / end->station.baud()));
+    }
+  }
+  forget_waves();
+}
+
+void Bus::forget_waves() {
+  while (!waves_.empty() && waves_.front().end() <= clock_.virtual_now()) {
+    const bool needed = std::any_of(ends_.begin(), ends_.end(), [this](const auto& end) {
+      return end->sampler.busy() && end->sampler.position() < waves_.front().end();
+    });
+    if (needed) {
+      return;
+    }
+    waves_.pop_front();
+  }
+}
+
+}  // namespace ex9000::sim

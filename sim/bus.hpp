@@ -1,0 +1,102 @@
+// The virtual RS-485 line: any number of stations on two wires, in virtual time.
+#pragma once
+
+#include <cstdint>
+#include <deque>
+#include <memory>
+#include <vector>
+
+#include "firmware/line/verdict.hpp"
+#include "hal/doubles/serial_line.hpp"
+#include "hal/doubles/virtual_clock.hpp"
+#include "sim/uart_sampler.hpp"
+
+namespace ex9000::sim {
+
+using hal::doubles::kNever;
+using hal::doubles::VirtualClock;
+using hal::doubles::VirtualTime;
+using hal::doubles::Wire;
+
+/// Something on the two wires: a module, or a master.
+class Station {
+ public:
+  /// When `run` has something to do; kNever: only when a byte comes.
+  [[nodiscard]] virtual VirtualTime next() const = 0;
+  /// The clock shows a time at or behind `next()`.
+  virtual void run() = 0;
+  /// Bits per second its receiver listens at; 0: it does not listen.
+  [[nodiscard]] virtual std::uint32_t baud() const = 0;
+  /// The stop bit of a byte has passed; its own bytes come back too, as on two wires.
+  virtual void receive(std::uint8_t byte, ByteStatus status) = 0;
+
+ protected:
+  ~Station() = default;
+};
+
+/// Sees all that happens on the wires.
+class BusObserver {
+ public:
+  /// `station` counts from 0 in the order of attaching.
+  virtual void driver(std::size_t station, bool on, VirtualTime now) = 0;
+  /// A byte began at `start` and is over now. `collided`: another driver was on meanwhile.
+  virtual void byte(std::size_t station, std::uint8_t byte, std::uint32_t baud, bool collided, VirtualTime start,
+                    VirtualTime end) = 0;
+
+ protected:
+  ~BusObserver() = default;
+};
+
+/// Half duplex, 8N1. A byte takes ten bits at its sender's rate. A receiver of the same rate gets it when its stop bit
+/// has passed; one of another rate samples the wave at its own and sees framing errors and garbage. Where two drivers
+/// are on at once, a 0 of either wins, and what arrives is what that wave looks like.
+///
+/// The clock jumps from event to event; nothing here knows real time.
+class Bus {
+ public:
+  explicit Bus(VirtualClock& clock);
+  Bus(const Bus&) = delete;
+  Bus& operator=(const Bus&) = delete;
+  ~Bus();
+
+  /// `station` and the returned end of the wires live as long as the bus is used.
+  Wire& attach(Station& station);
+  void observe(BusObserver& observer) { observers_.push_back(&observer); }
+
+  /// The next event of bus or stations.
+  [[nodiscard]] VirtualTime next() const;
+  /// Lets everything happen up to and including `until`; the clock shows it then.
+  void run_until(VirtualTime until);
+  void run_for(VirtualTime duration) { run_until(clock_.virtual_now() + duration); }
+
+  /// A byte or more is under way, or a driver is on.
+  [[nodiscard]] bool busy() const { return !on_the_wire_.empty() || drivers_on_ != 0; }
+  VirtualClock& clock() { return clock_; }
+
+ private:
+  struct End;
+
+  void drive(End& end, bool on);
+  void put(End& end, std::uint8_t byte, std::uint32_t baud);
+  void sample(End& end);
+  [[nodiscard]] bool samples(const End& end) const;
+  void forget_waves();
+  void run_wire();
+
+  /// A byte that is being sent.
+  struct Byte {
+    std::size_t station;
+    bool collided;
+    Wave wave;
+  };
+
+  VirtualClock& clock_;
+  std::vector<std::unique_ptr<End>> ends_;
+  std::vector<BusObserver*> observers_;
+  std::vector<Byte> on_the_wire_;
+  std::deque<Wave> waves_;  ///< what samplers may still look at
+  unsigned drivers_on_ = 0;
+  VirtualTime next_sample_ = kNever;
+};
+
+}  // namespace ex9000::sim

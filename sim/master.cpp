@@ -1,0 +1,51 @@
+#include "sim/master.hpp"
+
+#include <utility>
+
+namespace ex9000::sim {
+
+Master::Master(Bus& bus, std::uint32_t baud, Receive receive)
+    : clock_(bus.clock()), wire_(bus.attach(*this)), baud_(baud), receive_(std::move(receive)) {}
+
+void Master::send(const std::uint8_t* bytes, std::size_t size) {
+  waiting_.insert(waiting_.end(), bytes, bytes + size);
+  if (!driving_ && !waiting_.empty()) {
+    driving_ = true;
+    wire_.drive(true);
+    burst_began_ = next_ = clock_.virtual_now();
+    burst_bytes_ = 0;
+  }
+}
+
+void Master::set_baud(std::uint32_t baud) {
+  if (baud != baud_) {
+    baud_ = baud;
+    burst_began_ = next_;
+    burst_bytes_ = 0;
+  }
+}
+
+void Master::run() {
+  if (waiting_.empty()) {
+    driving_ = false;
+    next_ = kNever;
+    wire_.drive(false);
+    return;
+  }
+  const std::uint8_t byte = waiting_.front();
+  waiting_.pop_front();
+  wire_.put(byte, baud_);
+  // From the first byte on, so that rounding does not add up.
+  constexpr std::int64_t kBits = 10;
+  constexpr std::int64_t kSecond = 1'000'000'000;
+  ++burst_bytes_;
+  next_ = burst_began_ + VirtualTime(burst_bytes_ * kBits * kSecond / baud_);
+}
+
+void Master::receive(std::uint8_t byte, ByteStatus status) {
+  if (!driving_) {
+    receive_(byte, status);
+  }
+}
+
+}  // namespace ex9000::sim

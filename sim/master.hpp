@@ -1,0 +1,48 @@
+// The master's end of the line: bytes that somebody hands in go out on the wires, one after the other.
+#pragma once
+
+#include <cstdint>
+#include <deque>
+#include <functional>
+
+#include "sim/bus.hpp"
+
+namespace ex9000::sim {
+
+class Master final : public Station {
+ public:
+  using Receive = std::function<void(std::uint8_t byte, ByteStatus status)>;
+
+  /// Attaches itself to `bus`. `receive` is called with everything that others send.
+  Master(Bus& bus, std::uint32_t baud, Receive receive);
+  Master(const Master&) = delete;
+  Master& operator=(const Master&) = delete;
+
+  /// Behind what is waiting already; the driver is on from the first byte to the last.
+  void send(const std::uint8_t* bytes, std::size_t size);
+  [[nodiscard]] bool sending() const { return driving_; }
+  /// Bytes handed in whose start bit has not begun.
+  [[nodiscard]] std::size_t waiting() const { return waiting_.size(); }
+
+  /// From the next byte on.
+  void set_baud(std::uint32_t baud);
+
+  // --- Station ---
+  [[nodiscard]] VirtualTime next() const override { return next_; }
+  void run() override;
+  [[nodiscard]] std::uint32_t baud() const override { return baud_; }
+  void receive(std::uint8_t byte, ByteStatus status) override;
+
+ private:
+  VirtualClock& clock_;
+  Wire& wire_;
+  std::uint32_t baud_;
+  Receive receive_;
+  std::deque<std::uint8_t> waiting_;
+  bool driving_ = false;
+  VirtualTime burst_began_{0};
+  std::int64_t burst_bytes_ = 0;
+  VirtualTime next_ = kNever;
+};
+
+}  // namespace ex9000::sim

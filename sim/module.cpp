@@ -1,0 +1,144 @@
+#include "sim/module.hpp"
+
+#include <algorithm>
+
+#include "firmware/settings/record.hpp"
+
+namespace ex9000::sim {
+
+namespace {
+
+/// The tick only feeds the watchdog here, all deadlines being kept to the microsecond, so a slow one does.
+constexpr Duration kTick = milliseconds(400);
+
+}  // namespace
+
+SimulatedModule::Mcu::Mcu(SimulatedModule& module)
+    : line(module.clock_, module.wire_),
+      silence_timer(module.clock_),
+      tick(module.clock_),
+      watchdog(module.clock_),
+      board{module.clock_,   line,           silence_timer,       module.inputs_, module.outputs_,
+            module.memory_, module.init_switch_, module.led_, tick,           watchdog},
+      device(module.model_, board) {}
+
+SimulatedModule::SimulatedModule(Bus& bus, const Model& model, InterCharacterGap gap)
+    : clock_(bus.clock()), model_(model), gap_(gap), wire_(bus.attach(*this)), memory_(clock_) {}
+
+void SimulatedModule::power(bool on) {
+  if (on == powered()) {
+    return;
+  }
+  if (on) {
+    start();
+  } else {
+    stop();
+    led_.light(false);
+  }
+}
+
+void SimulatedModule::reset() {
+  if (powered()) {
+    stop();
+    start();
+  }
+}
+
+void SimulatedModule::start() {
+  hung_ = false;
+  mcu_.emplace(*this);
+  mcu_->device.start(kTick, gap_);
+  turn();
+}
+
+void SimulatedModule::stop() {
+  mcu_->line.abort();
+  mcu_.reset();
+  memory_.cut();
+  outputs_.drive(0);
+  wakes_ = kNever;
+}
+
+void SimulatedModule::set_init(bool asserted) {
+  init_switch_.set(asserted);
+  if (powered()) {
+    turn();
+  }
+}
+
+void SimulatedModule::set_input(unsigned channel, bool level) {
+  if (inputs_.set(channel, level)) {
+    edge(channel, level);
+  }
+}
+
+void SimulatedModule::pulse_input(unsigned channel, std::uint32_t count) {
+  const bool level = inputs_.level(channel);
+  for (std::uint32_t i = 0; i < count; ++i) {
+    edge(channel, !level);
+    edge(channel, level);
+    if (i % 1024 == 0 && powered()) {
+      turn();  // as the main loop of a board does all the while
+    }
+  }
+}
+
+void SimulatedModule::edge(unsigned channel, bool level) {
+  if (powered() && channel < model_.inputs) {
+    mcu_->device.on_edge(channel, level);
+  }
+}
+
+void SimulatedModule::store(const Settings& settings) {
+  const Record record = encode_record(model_, {settings, 1});
+  std::fill(memory_.contents().begin(), memory_.contents().end(), 0xFF);
+  std::copy(record.begin(), record.end(), memory_.contents().begin());
+}
+
+VirtualTime SimulatedModule::next() const {
+  if (!mcu_) {
+    return kNever;
+  }
+  return std::min({wakes_, mcu_->line.next(), mcu_->silence_timer.next(), mcu_->tick.next(), mcu_->watchdog.next(),
+                   memory_.next()});
+}
+
+void SimulatedModule::run() {
+  if (mcu_->watchdog.bites()) {
+    ++watchdog_resets_;
+    reset();
+    return;
+  }
+  mcu_->line.run();
+  memory_.run();
+  if (mcu_->silence_timer.fire()) {
+    mcu_->device.on_silence();
+  }
+  if (mcu_->tick.fire()) {
+    mcu_->device.on_tick();
+  }
+  turn();
+}
+
+void SimulatedModule::receive(std::uint8_t byte, ByteStatus status) {
+  mcu_->device.on_receive(byte, status);
+  if (mcu_->device.module().idle_for(clock_.now()) == Duration()) {
+    turn();
+  }
+}
+
+/// A main loop turns until there is nothing left to do; here it takes no time for it.
+void SimulatedModule::turn() {
+  wakes_ = kNever;
+  if (hung_) {
+    return;
+  }
+  std::optional<Duration> idle;
+  do {
+    mcu_->device.turn();
+    idle = mcu_->device.module().idle_for(clock_.now());
+  } while (idle == Duration());
+  wakes_ = idle ? clock_.when(*idle) : kNever;
+}
+
+}  // namespace ex9000::sim

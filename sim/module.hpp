@@ -1,0 +1,105 @@
+// A simulated module: the device on the peripherals' doubles. The simulator's composition file.
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <optional>
+
+#include "firmware/model/model.hpp"
+#include "firmware/settings/settings.hpp"
+#include "hal/device.hpp"
+#include "hal/doubles/init_switch.hpp"
+#include "hal/doubles/inputs.hpp"
+#include "hal/doubles/memory.hpp"
+#include "hal/doubles/outputs.hpp"
+#include "hal/doubles/serial_line.hpp"
+#include "hal/doubles/silence_timer.hpp"
+#include "hal/doubles/status_led.hpp"
+#include "hal/doubles/tick.hpp"
+#include "hal/doubles/virtual_clock.hpp"
+#include "hal/doubles/watchdog.hpp"
+#include "sim/bus.hpp"
+
+namespace ex9000::sim {
+
+/// One module on a bus, with its supply off at first. What can be done to a real one from outside can be done here.
+class SimulatedModule final : public Station {
+ public:
+  /// Attaches itself to `bus`. `model` is a row of kModels.
+  SimulatedModule(Bus& bus, const Model& model, InterCharacterGap gap = InterCharacterGap::Tolerated);
+  SimulatedModule(const SimulatedModule&) = delete;
+  SimulatedModule& operator=(const SimulatedModule&) = delete;
+
+  // --- from outside, between two runs of the bus ---
+
+  /// The supply. Off cuts a write that is under way and takes everything but the memory.
+  void power(bool on);
+  [[nodiscard]] bool powered() const { return mcu_.has_value(); }
+  /// A reset without loss of power; none without power.
+  void reset();
+  /// INIT* tied to GND, or released.
+  void set_init(bool asserted);
+  /// Level of an input channel, from 0; channels the model lacks may be set and do nothing.
+  void set_input(unsigned channel, bool level);
+  /// `count` full pulses from the present level and back, all at this instant.
+  void pulse_input(unsigned channel, std::uint32_t count);
+  /// The main loop stops being run, until the next reset.
+  void hang() { hung_ = true; }
+  /// What the memory holds at the next reset.
+  void store(const Settings& settings);
+
+  [[nodiscard]] const Model& model() const { return model_; }
+  /// What the device itself knows; only while powered.
+  [[nodiscard]] const Module& module() const { return mcu_->device.module(); }
+  [[nodiscard]] std::uint16_t outputs() const { return outputs_.channels(); }
+  [[nodiscard]] bool led_lit() const { return led_.lit(); }
+  [[nodiscard]] bool init_asserted() const { return init_switch_.asserted(); }
+  [[nodiscard]] std::uint16_t input_levels() const { return inputs_.levels(); }
+  hal::doubles::Memory& memory() { return memory_; }
+  hal::doubles::Outputs& output_pins() { return outputs_; }
+  hal::doubles::StatusLed& led() { return led_; }
+  /// Resets by the hardware watchdog since the object exists.
+  [[nodiscard]] std::uint64_t watchdog_resets() const { return watchdog_resets_; }
+  /// The tick stops, until the next reset.
+  void stop_tick() { mcu_->tick.stop(); }
+
+  // --- Station ---
+  [[nodiscard]] VirtualTime next() const override;
+  void run() override;
+  [[nodiscard]] std::uint32_t baud() const override { return mcu_ ? mcu_->line.baud() : 0; }
+  void receive(std::uint8_t byte, ByteStatus status) override;
+
+ private:
+  /// What loses its state at a reset.
+  struct Mcu {
+    explicit Mcu(SimulatedModule& module);
+
+    hal::doubles::SerialLine line;
+    hal::doubles::SilenceTimer silence_timer;
+    hal::doubles::Tick tick;
+    hal::doubles::Watchdog watchdog;
+    hal::Board board;
+    hal::Device device;
+  };
+
+  void start();
+  void stop();
+  void turn();
+  void edge(unsigned channel, bool level);
+
+  VirtualClock& clock_;
+  const Model& model_;
+  InterCharacterGap gap_;
+  Wire& wire_;
+  hal::doubles::Memory memory_;
+  hal::doubles::Inputs inputs_;
+  hal::doubles::Outputs outputs_;
+  hal::doubles::StatusLed led_;
+  hal::doubles::InitSwitch init_switch_;
+  std::optional<Mcu> mcu_;
+  VirtualTime wakes_ = kNever;  ///< when the main loop has something to do by itself
+  bool hung_ = false;
+  std::uint64_t watchdog_resets_ = 0;
+};
+
+}  // namespace ex9000::sim

@@ -1,0 +1,65 @@
+// All transcripts against the core in virtual time.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cstdio>
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "tests/runner/core_target.hpp"
+#include "tests/runner/coverage.hpp"
+#include "tests/runner/player.hpp"
+#include "tests/runner/transcript.hpp"
+
+namespace ex9000 {
+namespace {
+
+std::vector<std::string> transcript_files() {
+  std::vector<std::string> files;
+  for (const auto& entry : std::filesystem::recursive_directory_iterator(EX9000_CONFORMANCE_DIR)) {
+    if (entry.path().extension() == ".txt") {
+      files.push_back(entry.path().string());
+    }
+  }
+  std::sort(files.begin(), files.end());
+  return files;
+}
+
+TEST(Conformance, TheCorePassesEveryTranscriptOnEveryModelItNames) {
+  const std::vector<std::string> files = transcript_files();
+  ASSERT_FALSE(files.empty());
+  std::size_t runs = 0;
+  std::size_t steps = 0;
+  std::set<std::string_view> models;
+  runner::Coverage coverage;
+  for (const std::string& file : files) {
+    for (const runner::Transcript& transcript : runner::load_transcripts(file)) {
+      runner::CoreTarget target(&coverage);
+      const runner::Result result = runner::play(transcript, target);
+      EXPECT_TRUE(result.passed()) << result.failure;
+      ++runs;
+      steps += result.steps;
+      models.insert(transcript.model->designation);
+    }
+  }
+  for (const Model& model : kModels) {
+    EXPECT_EQ(models.count(model.designation), 1U) << model.designation << " is in no transcript";
+  }
+  for (const std::string& id : coverage.missing()) {
+    ADD_FAILURE() << id << " is reached by no transcript";
+  }
+  std::printf("core: %zu files, %zu runs, %zu steps, %zu rows and refusals reached\n", files.size(), runs, steps,
+              coverage.reached());
+}
+
+TEST(Conformance, WaitsStayUnderTwoSecondsUnlessTheFileSaysSlow) {
+  for (const std::string& file : transcript_files()) {
+    for (const runner::Transcript& transcript : runner::load_transcripts(file)) {
+      EXPECT_TRUE(transcript.slow || transcript.waits() < std::chrono::seconds(2)) << file;
+    }
+  }
+}
+
+}  // namespace
+}  // namespace ex9000

@@ -1,0 +1,173 @@
+#include "tests/runner/player.hpp"
+
+#include <array>
+#include <stdexcept>
+
+namespace ex9000::runner {
+
+namespace {
+
+constexpr std::chrono::milliseconds kLongestReply{250};
+/// The rest of a reply that is longer than it should be shows itself within this.
+constexpr std::chrono::milliseconds kAfterReply{2};
+
+/// DCON's checksum and Modbus's CRC once more, the plain way, so that the tests do not judge the firmware by itself.
+std::string checksum_of(const std::string& text) {
+  unsigned sum = 0;
+  for (const char character : text) {
+    sum += static_cast<unsigned char>(character);
+  }
+  constexpr std::array<char, 17> kDigits{"0123456789ABCDEF"};
+  return {kDigits[sum / 16 % 16], kDigits[sum % 16]};
+}
+
+Bytes with_crc(Bytes frame) {
+  unsigned crc = 0xFFFF;
+  for (const std::uint8_t byte : frame) {
+    crc ^= byte;
+    for (int bit = 0; bit < 8; ++bit) {
+      const bool carry = crc % 2 != 0;
+      crc /= 2;
+      crc ^= carry ? 0xA001U : 0U;
+    }
+  }
+  frame.push_back(static_cast<std::uint8_t>(crc % 256));
+  frame.push_back(static_cast<std::uint8_t>(crc / 256));
+  return frame;
+}
+
+Bytes bytes_of(const std::string& text) { return {text.begin(), text.end()}; }
+
+/// As a person reads it: text where it is text, hex otherwise.
+std::string shown(const Bytes& bytes) {
+  bool text = !bytes.empty();
+  for (std::size_t i = 0; i < bytes.size(); ++i) {
+    text = text && ((bytes[i] >= 0x20 && bytes[i] < 0x7F) || (bytes[i] == '\r' && i + 1 == bytes.size()));
+  }
+  if (bytes.empty()) {
+    return "nothing";
+  }
+  if (text) {
+    std::string result = "'";
+    for (const std::uint8_t byte : bytes) {
+      result += byte == '\r' ? std::string("\\r") : std::string(1, static_cast<char>(byte));
+    }
+    return result + "'";
+  }
+  std::string result;
+  constexpr std::array<char, 17> kDigits{"0123456789ABCDEF"};
+  for (const std::uint8_t byte : bytes) {
+    result += {kDigits[byte / 16], kDigits[byte % 16], ' '};
+  }
+  return result + "(" + std::to_string(bytes.size()) + " bytes)";
+}
+
+const char* name_of(step::Led::Shows shows) {
+  switch (shows) {
+    case step::Led::Shows::On:
+      return "on";
+    case step::Led::Shows::Off:
+      return "off";
+    case step::Led::Shows::Flashing:
+      break;
+  }
+  return "flashing";
+}
+
+std::string hex_word(unsigned value) {
+  std::string text;
+  constexpr std::array<char, 17> kDigits{"0123456789ABCDEF"};
+  for (unsigned shift = 16; shift != 0;) {
+    shift -= 4;
+    text += kDigits[value >> shift & 0xFU];
+  }
+  return text;
+}
+
+/// Carries out one step; throws std::runtime_error where what comes is not what is expected.
+class Playing {
+ public:
+  Playing(Target& target, bool checksum) : target_(target), checksum_(checksum) {}
+
+  void operator()(const step::SendDcon& step) {
+    nothing_more();
+    target_.send(bytes_of(step.text + (checksum_ ? checksum_of(step.text) : "") + "\r"));
+  }
+  void operator()(const step::ExpectDcon& step) {
+    expect(bytes_of(step.text + (checksum_ ? checksum_of(step.text) : "") + "\r"));
+  }
+  void operator()(const step::SendModbus& step) {
+    nothing_more();
+    target_.send(with_crc(step.frame));
+  }
+  void operator()(const step::ExpectModbus& step) { expect(with_crc(step.frame)); }
+  void operator()(const step::SendBytes& step) { target_.send(step.bytes); }
+  void operator()(const step::Silence& /*step*/) { nothing_for(kSilence); }
+  void operator()(const step::Wait& step) { nothing_for(step.time); }
+  void operator()(const step::Checksum& step) { checksum_ = step.on; }
+  void operator()(const step::Baud& step) { target_.set_baud(step.rate); }
+  void operator()(const step::Power& step) { target_.power(step.on); }
+  void operator()(const step::PowerCycle& /*step*/) {
+    target_.power(false);
+    target_.power(true);
+  }
+  void operator()(const step::Reset& /*step*/) { target_.reset(); }
+  void operator()(const step::Init& step) { target_.set_init(step.asserted); }
+  void operator()(const step::Input& step) { target_.set_input(step.channel, step.level); }
+  void operator()(const step::Pulse& step) { target_.pulse_input(step.channel, step.count); }
+  void operator()(const step::Outputs& step) {
+    const std::uint16_t outputs = target_.outputs();
+    if (outputs != step.channels) {
+      throw std::runtime_error("outputs are " + hex_word(outputs));
+    }
+  }
+  void operator()(const step::Led& step) {
+    const step::Led::Shows shows = target_.led();
+    if (shows != step.shows) {
+      throw std::runtime_error(std::string("the LED is ") + name_of(shows));
+    }
+  }
+
+  void nothing_more() { nothing_for(kAfterReply); }
+
+ private:
+  void expect(const Bytes& wanted) {
+    const Bytes heard = target_.receive(wanted.size(), kLongestReply);
+    if (heard != wanted) {
+      throw std::runtime_error("expected " + shown(wanted) + ", heard " + shown(heard));
+    }
+  }
+
+  void nothing_for(std::chrono::milliseconds time) {
+    const Bytes heard = target_.listen(time);
+    if (!heard.empty()) {
+      throw std::runtime_error("expected nothing, heard " + shown(heard));
+    }
+  }
+
+  Target& target_;
+  bool checksum_;
+};
+
+}  // namespace
+
+Result play(const Transcript& transcript, Target& target) {
+  Result result;
+  target.start(*transcript.model, transcript.preset_given ? &transcript.preset : nullptr);
+  target.set_baud(baud_rate(transcript.preset.baud_code));
+  Playing playing(target, (transcript.preset.format & kFormatChecksum) != 0);
+  std::string where = transcript.file + ": at the end";
+  try {
+    for (const Step& step : transcript.steps) {
+      ++result.steps;
+      where = transcript.file + ":" + std::to_string(step.line) + ": " + step.text;
+      std::visit(playing, step.action);
+    }
+    playing.nothing_more();
+  } catch (const std::runtime_error& error) {
+    result.failure = where + ": " + error.what() + " (" + std::string(transcript.model->designation) + ")";
+  }
+  return result;
+}
+
+}  // namespace ex9000::runner

@@ -1,0 +1,47 @@
+// What a transcript is played against.
+#pragma once
+
+#include <chrono>
+#include <cstddef>
+#include <cstdint>
+
+#include "firmware/model/model.hpp"
+#include "firmware/settings/settings.hpp"
+#include "tests/runner/transcript.hpp"
+
+namespace ex9000::runner {
+
+/// One module and the master's end of its line. Every call returns when it is done; where that takes time, the target
+/// lets it pass.
+class Target {
+ public:
+  Target() = default;
+  Target(const Target&) = delete;
+  Target& operator=(const Target&) = delete;
+  virtual ~Target() = default;
+
+  /// A module of this model with `preset` stored (nothing stored where it is null), supply on, INIT* released, inputs
+  /// off. Called once, first.
+  virtual void start(const Model& model, const Settings* preset) = 0;
+
+  /// Puts `bytes` on the line without a gap, at the master's rate.
+  virtual void send(const Bytes& bytes) = 0;
+  /// What is heard until `count` bytes are there or nothing came for `patience`.
+  virtual Bytes receive(std::size_t count, std::chrono::milliseconds patience) = 0;
+  /// What is heard while `time` passes.
+  virtual Bytes listen(std::chrono::milliseconds time) = 0;
+  /// The master's rate.
+  virtual void set_baud(std::uint32_t rate) = 0;
+
+  /// The supply; after it comes on, the module has been given the time to come up.
+  virtual void power(bool on) = 0;
+  /// A reset with the supply on; likewise.
+  virtual void reset() = 0;
+  virtual void set_init(bool asserted) = 0;
+  virtual void set_input(unsigned channel, bool level) = 0;
+  virtual void pulse_input(unsigned channel, std::uint32_t count) = 0;
+  virtual std::uint16_t outputs() = 0;
+  virtual step::Led::Shows led() = 0;
+};
+
+}  // namespace ex9000::runner

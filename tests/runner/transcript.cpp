@@ -1,0 +1,321 @@
+#include "tests/runner/transcript.hpp"
+
+#include <algorithm>
+#include <cctype>
+#include <fstream>
+#include <optional>
+#include <sstream>
+#include <stdexcept>
+
+namespace ex9000::runner {
+
+namespace {
+
+using Variables = std::map<std::string, std::string>;
+
+struct Line {
+  unsigned number;
+  std::string text;
+};
+
+struct ModelRun {
+  const Model* model;
+  Variables variables;
+};
+
+[[noreturn]] void fail(const std::string& what) { throw std::runtime_error(what); }
+
+std::string trimmed(const std::string& text) {
+  const auto first = text.find_first_not_of(" \t\r");
+  const auto last = text.find_last_not_of(" \t\r");
+  return first == std::string::npos ? "" : text.substr(first, last - first + 1);
+}
+
+std::vector<std::string> words(const std::string& text) {
+  std::istringstream stream(text);
+  std::vector<std::string> result;
+  for (std::string word; stream >> word;) {
+    result.push_back(word);
+  }
+  return result;
+}
+
+unsigned long number(const std::string& text, int base = 10) {
+  std::size_t used = 0;
+  unsigned long value = 0;
+  try {
+    value = std::stoul(text, &used, base);
+  } catch (const std::exception&) {
+    used = 0;
+  }
+  if (text.empty() || used != text.size()) {
+    fail("'" + text + "' is no number");
+  }
+  return value;
+}
+
+Bytes hex_bytes(const std::string& text) {
+  std::string digits;
+  std::copy_if(text.begin(), text.end(), std::back_inserter(digits), [](char c) { return c != ' '; });
+  if (digits.empty() || digits.size() % 2 != 0) {
+    fail("hex wants pairs of digits");
+  }
+  Bytes bytes;
+  for (std::size_t i = 0; i < digits.size(); i += 2) {
+    bytes.push_back(static_cast<std::uint8_t>(number(digits.substr(i, 2), 16)));
+  }
+  return bytes;
+}
+
+bool on_off(const std::string& text) {
+  if (text != "on" && text != "off") {
+    fail("'" + text + "' is neither 'on' nor 'off'");
+  }
+  return text == "on";
+}
+
+std::chrono::milliseconds duration(const std::string& text) {
+  std::size_t used = 0;
+  const double value = std::stod(text, &used);
+  const std::string unit = text.substr(used);
+  if (unit == "ms") {
+    return std::chrono::milliseconds(static_cast<int>(value));
+  }
+  if (unit != "s") {
+    fail("'" + text + "' wants 'ms' or 's'");
+  }
+  return std::chrono::milliseconds(static_cast<int>(value * 1000 + 0.5));
+}
+
+const Model& model_named(const std::string& name) {
+  const auto* found = std::find_if(kModels.begin(), kModels.end(), [&](const Model& m) { return m.designation == name; });
+  if (found == kModels.end()) {
+    fail("no model '" + name + "'");
+  }
+  return *found;
+}
+
+std::pair<std::string, std::string> key_and_value(const std::string& word) {
+  const auto equals = word.find('=');
+  if (equals == std::string::npos) {
+    fail("'" + word + "' wants KEY=VALUE");
+  }
+  return {word.substr(0, equals), word.substr(equals + 1)};
+}
+
+void apply_preset(const std::string& word, Settings& settings) {
+  const auto [key, value] = key_and_value(word);
+  const auto format_bit = [&settings](std::uint8_t bit, bool on) {
+    settings.format = static_cast<std::uint8_t>(on ? settings.format | bit : settings.format & ~bit);
+  };
+  if (key == "protocol" && (value == "ascii" || value == "modbus")) {
+    settings.protocol = value == "modbus" ? Protocol::ModbusRtu : Protocol::Ascii;
+  } else if (key == "address") {
+    settings.address = static_cast<std::uint8_t>(number(value, 16));
+  } else if (key == "checksum") {
+    format_bit(kFormatChecksum, on_off(value));
+  } else if (key == "edge" && (value == "rising" || value == "falling")) {
+    format_bit(kFormatRisingEdge, value == "rising");
+  } else if (key == "baud") {
+    const auto* found = std::find(kBaudRates.begin(), kBaudRates.end(), number(value));
+    if (found == kBaudRates.end()) {
+      fail("no baud rate '" + value + "'");
+    }
+    settings.baud_code = static_cast<std::uint8_t>(kFirstBaudCode + (found - kBaudRates.begin()));
+  } else {
+    fail("no preset '" + word + "'");
+  }
+}
+
+std::string substitute(std::string text, const Variables& variables) {
+  for (const auto& [name, value] : variables) {
+    const std::string pattern = "{" + name + "}";
+    for (auto at = text.find(pattern); at != std::string::npos; at = text.find(pattern, at + value.size())) {
+      text.replace(at, pattern.size(), value);
+    }
+  }
+  return text;
+}
+
+Action parse_action(const std::string& text) {
+  const auto rest_after = [&text](std::size_t lead) {
+    return text.size() > lead ? text.substr(lead + 1) : std::string();
+  };
+  if (text[0] == '>') {
+    return step::SendDcon{rest_after(1)};
+  }
+  if (text.rfind("<=", 0) == 0) {
+    return step::ExpectModbus{hex_bytes(rest_after(2))};
+  }
+  if (text[0] == '<') {
+    return step::ExpectDcon{rest_after(1)};
+  }
+  if (text.rfind("=>", 0) == 0) {
+    return step::SendModbus{hex_bytes(rest_after(2))};
+  }
+  const std::vector<std::string> word = words(text);
+  const std::string& verb = word[0];
+  const auto takes = [&](std::size_t count) {
+    if (word.size() != count + 1) {
+      fail("'" + verb + "' has the wrong number of words behind it");
+    }
+    return true;
+  };
+  if (verb == "bytes") {
+    return step::SendBytes{hex_bytes(rest_after(5))};
+  }
+  if (verb == "silence" && takes(0)) {
+    return step::Silence{};
+  }
+  if (verb == "wait" && takes(1)) {
+    return step::Wait{duration(word[1])};
+  }
+  if (verb == "checksum" && takes(1)) {
+    return step::Checksum{on_off(word[1])};
+  }
+  if (verb == "baud" && takes(1)) {
+    return step::Baud{static_cast<std::uint32_t>(number(word[1]))};
+  }
+  if (verb == "power" && takes(1)) {
+    return step::Power{on_off(word[1])};
+  }
+  if (verb == "power-cycle" && takes(0)) {
+    return step::PowerCycle{};
+  }
+  if (verb == "reset" && takes(0)) {
+    return step::Reset{};
+  }
+  if (verb == "init" && takes(1)) {
+    return step::Init{on_off(word[1])};
+  }
+  if (verb == "input" && takes(2)) {
+    return step::Input{static_cast<unsigned>(number(word[1])), on_off(word[2])};
+  }
+  if (verb == "pulse" && (word.size() == 2 || (takes(2) && word[2][0] == 'x'))) {
+    return step::Pulse{static_cast<unsigned>(number(word[1])),
+                       word.size() == 2 ? 1U : static_cast<std::uint32_t>(number(word[2].substr(1)))};
+  }
+  if (verb == "outputs" && takes(1)) {
+    return step::Outputs{static_cast<std::uint16_t>(number(word[1], 16))};
+  }
+  if (verb == "led" && takes(1)) {
+    if (word[1] == "flashing") {
+      return step::Led{step::Led::Shows::Flashing};
+    }
+    return step::Led{on_off(word[1]) ? step::Led::Shows::On : step::Led::Shows::Off};
+  }
+  fail("no step '" + text + "'");
+}
+
+std::optional<std::string> header_value(const std::string& text, const std::string& key) {
+  return text.rfind(key + ":", 0) == 0 ? std::optional(trimmed(text.substr(key.size() + 1))) : std::nullopt;
+}
+
+/// What is written of a file, before it is bound to a model.
+struct Source {
+  bool names_its_source = false;
+  bool slow = false;
+  std::vector<ModelRun> models;
+  std::vector<std::string> presets;
+  std::vector<Line> steps;
+};
+
+bool read_header(const std::string& text, Source& source) {
+  if (const auto from = header_value(text, "source")) {
+    source.names_its_source = !from->empty();
+  } else if (const auto model = header_value(text, "model")) {
+    const std::vector<std::string> word = words(*model);
+    if (word.empty()) {
+      fail("'model:' wants a name");
+    }
+    ModelRun run{&model_named(word[0]), {}};
+    for (std::size_t i = 1; i < word.size(); ++i) {
+      run.variables.insert(key_and_value(word[i]));
+    }
+    source.models.push_back(run);
+  } else if (const auto preset = header_value(text, "preset")) {
+    source.presets = words(*preset);
+  } else if (const auto tags = header_value(text, "tags")) {
+    if (*tags != "slow") {
+      fail("no tag '" + *tags + "'");
+    }
+    source.slow = true;
+  } else {
+    return false;
+  }
+  return true;
+}
+
+void read_line(const std::string& raw, unsigned number, Source& source) {
+  const auto comment = raw.find("  ;");
+  const std::string text = trimmed(raw[0] == ';' ? "" : raw.substr(0, comment));
+  if (text.empty()) {
+    return;
+  }
+  if (source.steps.empty() && read_header(text, source)) {
+    return;
+  }
+  source.steps.push_back({number, text});
+}
+
+Transcript bind(const std::string& path, const Source& source, const ModelRun& run, unsigned& line) {
+  Transcript transcript;
+  transcript.file = path;
+  transcript.model = run.model;
+  transcript.preset = Settings::factory(*run.model);
+  transcript.preset_given = !source.presets.empty();
+  for (const std::string& preset : source.presets) {
+    apply_preset(preset, transcript.preset);
+  }
+  transcript.slow = source.slow;
+  for (const Line& raw : source.steps) {
+    line = raw.number;
+    const std::string text = substitute(raw.text, run.variables);
+    transcript.steps.push_back({raw.number, text, parse_action(text)});
+  }
+  return transcript;
+}
+
+}  // namespace
+
+std::chrono::milliseconds Transcript::waits() const {
+  std::chrono::milliseconds total{0};
+  for (const Step& step : steps) {
+    if (const auto* wait = std::get_if<step::Wait>(&step.action)) {
+      total += wait->time;
+    } else if (std::holds_alternative<step::Silence>(step.action)) {
+      total += kSilence;
+    }
+  }
+  return total;
+}
+
+std::vector<Transcript> load_transcripts(const std::string& path) {
+  std::ifstream file(path);
+  if (!file) {
+    fail(path + ": cannot be read");
+  }
+  unsigned line = 0;
+  try {
+    Source source;
+    for (std::string raw; std::getline(file, raw);) {
+      ++line;
+      if (!raw.empty()) {
+        read_line(raw, line, source);
+      }
+    }
+    line = 1;
+    if (!source.names_its_source || source.models.empty() || source.steps.empty()) {
+      fail("wants 'source:', at least one 'model:' and a step");
+    }
+    std::vector<Transcript> transcripts;
+    for (const ModelRun& run : source.models) {
+      transcripts.push_back(bind(path, source, run, line));
+    }
+    return transcripts;
+  } catch (const std::exception& error) {
+    fail(path + ":" + std::to_string(line) + ": " + error.what());
+  }
+}
+
+}  // namespace ex9000::runner

@@ -1,0 +1,69 @@
+// A conformance transcript as data; tests/conformance/README.md is its format.
+#pragma once
+
+#include <chrono>
+#include <cstdint>
+#include <map>
+#include <string>
+#include <variant>
+#include <vector>
+
+#include "firmware/model/model.hpp"
+#include "firmware/settings/settings.hpp"
+
+namespace ex9000::runner {
+
+using Bytes = std::vector<std::uint8_t>;
+
+namespace step {
+
+struct SendDcon { std::string text; };
+struct ExpectDcon { std::string text; };
+struct SendModbus { Bytes frame; };    ///< without CRC
+struct ExpectModbus { Bytes frame; };  ///< likewise
+struct SendBytes { Bytes bytes; };
+struct Silence {};
+struct Wait { std::chrono::milliseconds time; };
+struct Checksum { bool on; };
+struct Baud { std::uint32_t rate; };
+struct Power { bool on; };
+struct PowerCycle {};
+struct Reset {};
+struct Init { bool asserted; };
+struct Input { unsigned channel; bool level; };
+struct Pulse { unsigned channel; std::uint32_t count; };
+struct Outputs { std::uint16_t channels; };
+struct Led { enum class Shows { On, Off, Flashing } shows; };
+
+}  // namespace step
+
+using Action = std::variant<step::SendDcon, step::ExpectDcon, step::SendModbus, step::ExpectModbus, step::SendBytes,
+                            step::Silence, step::Wait, step::Checksum, step::Baud, step::Power, step::PowerCycle,
+                            step::Reset, step::Init, step::Input, step::Pulse, step::Outputs, step::Led>;
+
+struct Step {
+  unsigned line;     ///< in the file, from 1
+  std::string text;  ///< as written, variables replaced
+  Action action;
+};
+
+/// One run of a file on one model.
+struct Transcript {
+  std::string file;
+  const Model* model;
+  Settings preset;  ///< factory settings with what the header changes
+  bool preset_given = false;
+  bool slow = false;
+  std::vector<Step> steps;
+
+  /// `wait` and `silence` together.
+  [[nodiscard]] std::chrono::milliseconds waits() const;
+};
+
+/// Nothing may be heard in this time where `silence` is expected; longer than any reply may take.
+constexpr std::chrono::milliseconds kSilence{250};
+
+/// All runs of a file, one a `model:` line. Throws std::runtime_error that names file, line and what is wrong.
+std::vector<Transcript> load_transcripts(const std::string& path);
+
+}  // namespace ex9000::runner
