@@ -1,0 +1,73 @@
+// ex9000-sim: simulated modules on a pseudo-terminal.
+#include <unistd.h>
+
+#include <boost/asio/io_context.hpp>
+#include <boost/asio/signal_set.hpp>
+#include <cstdio>
+#include <exception>
+#include <string>
+
+#include "sim/arguments.hpp"
+#include "sim/bus_log.hpp"
+#include "sim/greeting.hpp"
+#include "sim/line.hpp"
+#include "sim/pacer.hpp"
+#include "sim/pty.hpp"
+
+namespace {
+
+using namespace ex9000::sim;
+
+constexpr int kCannotStart = 1;
+
+void print(const std::string& line) { std::printf("%s\n", line.c_str()); }
+
+std::vector<std::string> speakers(const Arguments& arguments) {
+  std::vector<std::string> names{"master"};
+  for (const ModuleSpec& spec : arguments.modules) {
+    names.push_back(hex_byte_text(spec.address()) + " " + std::string(spec.model->designation));
+  }
+  return names;
+}
+
+void run(const Arguments& arguments) {
+  Pty pty(arguments.pty_link, arguments.line_baud());
+  boost::asio::io_context io;
+  Pacer* pacer = nullptr;
+  Line line(arguments.modules, arguments.line_baud(),
+            arguments.strict_gaps ? ex9000::InterCharacterGap::Refused : ex9000::InterCharacterGap::Tolerated,
+            [&pacer](std::uint8_t byte, ex9000::ByteStatus /*status*/) { pacer->hear(byte); });
+  BusLog log(speakers(arguments), print);
+  if (arguments.log) {
+    line.bus().observe(log);
+  }
+  Pacer paced(io, line, pty, arguments.log ? &log : nullptr,
+              [&](const std::string& text) { log.note(line.clock().virtual_now(), text); });
+  pacer = &paced;
+
+  boost::asio::signal_set signals(io, SIGINT, SIGTERM, SIGHUP);
+  signals.async_wait([&io](const boost::system::error_code& /*error*/, int /*signal*/) { io.stop(); });
+  print(greeting(arguments, pty.device()));
+  paced.start();
+  io.run();
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  // A log is read while it grows, by people and by pipes.
+  std::setvbuf(stdout, nullptr, _IOLBF, BUFSIZ);
+  const Parsed parsed = parse_arguments(argc, argv);
+  std::fputs(parsed.output.c_str(), stdout);
+  std::fputs(parsed.error.c_str(), stderr);
+  if (!parsed.arguments) {
+    return parsed.exit_status;
+  }
+  try {
+    run(*parsed.arguments);
+  } catch (const std::exception& error) {
+    std::fprintf(stderr, "ex9000-sim: %s\n", error.what());
+    return kCannotStart;
+  }
+  return 0;
+}

@@ -1,0 +1,140 @@
+#include "sim/meaning.hpp"
+
+#include <algorithm>
+#include <string_view>
+
+#include "firmware/dcon/commands.hpp"
+#include "firmware/hex.hpp"
+#include "firmware/line/crc16.hpp"
+#include "firmware/modbus/functions.hpp"
+#include "firmware/modbus/registers.hpp"
+#include "sim/module_spec.hpp"
+
+namespace ex9000::sim {
+
+namespace {
+
+constexpr std::string_view kDelimiters = "#$%@~";
+constexpr std::string_view kLeads = "!>?";
+
+bool printable(std::uint8_t byte) { return byte >= 0x20 && byte <= 0x7E; }
+
+std::string dcon_request(const FrameBytes& bytes) {
+  const std::string text(bytes.begin(), bytes.end() - (bytes.back() == '\r' ? 1 : 0));
+  if (text.size() < 3) {
+    return "";
+  }
+  const bool broadcast = text.compare(1, 2, "**") == 0;
+  // A checksum may or may not be there, so the command without two more characters counts as well.
+  for (const std::size_t checksum : {0U, 2U}) {
+    for (const dcon::Command& command : dcon::kCommands) {
+      const dcon::Dispatch& row = command.dispatch;
+      const bool keyed = row.key != dcon::kNoKey && row.key != dcon::kBroadcastKey;
+      const std::size_t lead = keyed ? 4 : 3;
+      if (text[0] != row.delimiter || broadcast != (row.key == dcon::kBroadcastKey) || text.size() < lead + checksum ||
+          (keyed && text[3] != row.key)) {
+        continue;
+      }
+      const std::size_t args = text.size() - lead - checksum;
+      if (args >= row.fewest_args && args <= row.most_args) {
+        return std::string(command.syntax) + ": " + std::string(command.meaning);
+      }
+    }
+  }
+  return "no command";
+}
+
+std::string dcon_reply(const FrameBytes& bytes) {
+  switch (bytes.front()) {
+    case '?':
+      return "refused";
+    case '!':
+      return bytes.size() == 2 ? "ignored: the timeout status is set" : "answer";
+    default:
+      return "answer";
+  }
+}
+
+std::string hex_word_text(unsigned value) { return hex_byte_text(value >> 8U & 0xFFU) + hex_byte_text(value & 0xFFU); }
+
+std::string row_meaning(unsigned function, unsigned address) {
+  if (function > 0x10 || function == 0x08) {
+    return "";
+  }
+  const auto listed = static_cast<modbus::Functions>(1U << (function == 0x10 ? 6U : function));
+  constexpr unsigned kHostOk = 0x3038;
+  if (address == kHostOk && (function == 3 || function == 4)) {
+    return ", host OK";
+  }
+  for (const auto& entry : modbus::kBitRegisters) {
+    const unsigned width = entry.row.width == modbus::Width::One ? 1 : kMaxOutputs;
+    if ((entry.row.functions & listed) != 0 && address - entry.row.first < width) {
+      return ", " + std::string(entry.meaning);
+    }
+  }
+  for (const auto& entry : modbus::kWordRegisters) {
+    if ((entry.row.functions & listed) != 0 && address - entry.row.first < entry.row.count) {
+      return ", " + std::string(entry.meaning);
+    }
+  }
+  return ", no such address";
+}
+
+std::string modbus_meaning(const FrameBytes& bytes, Speaker speaker) {
+  if (bytes.size() < 4) {
+    return "too short for a frame";
+  }
+  if (crc16({bytes.data(), bytes.size()}).value() != 0) {
+    return "wrong CRC";
+  }
+  const std::string who = bytes[0] == 0 ? "all modules: " : hex_byte_text(bytes[0]) + ": ";
+  const unsigned function = bytes[1];
+  const auto* row = std::find_if(modbus::kFunctions.begin(), modbus::kFunctions.end(),
+                                 [function](const modbus::Function& f) { return f.row.code == (function & 0x7FU); });
+  const std::string name = row == modbus::kFunctions.end() ? "function " + hex_byte_text(function) : std::string(row->name);
+  if (speaker == Speaker::Module) {
+    return who + name + (function >= 0x80 ? ", exception " + hex_byte_text(bytes[2]) : ", answer");
+  }
+  if (bytes.size() < 8 || row == modbus::kFunctions.end() || function > 0x10 || function == 0x08) {
+    return who + name;
+  }
+  const unsigned address = bytes[2] * 256U + bytes[3];
+  const unsigned value = bytes[4] * 256U + bytes[5];
+  const bool single = function == 5 || function == 6;
+  return who + name + " " + hex_word_text(address) + (single ? " = " + hex_word_text(value) : " x " + std::to_string(value)) +
+         row_meaning(function, address);
+}
+
+}  // namespace
+
+bool looks_like_dcon(const FrameBytes& bytes) {
+  if (bytes.empty() || (kDelimiters.find(static_cast<char>(bytes[0])) == std::string_view::npos &&
+                        kLeads.find(static_cast<char>(bytes[0])) == std::string_view::npos)) {
+    return false;
+  }
+  const auto text_end = bytes.back() == '\r' ? bytes.end() - 1 : bytes.end();
+  return std::all_of(bytes.begin(), text_end, printable);
+}
+
+std::string shown(const FrameBytes& bytes) {
+  std::string text;
+  if (looks_like_dcon(bytes)) {
+    for (const std::uint8_t byte : bytes) {
+      text += byte == '\r' ? std::string("\\r") : std::string(1, static_cast<char>(byte));
+    }
+    return text;
+  }
+  for (const std::uint8_t byte : bytes) {
+    text += (text.empty() ? "" : " ") + hex_byte_text(byte);
+  }
+  return text;
+}
+
+std::string meaning(const FrameBytes& bytes, Speaker speaker) {
+  if (!looks_like_dcon(bytes)) {
+    return modbus_meaning(bytes, speaker);
+  }
+  return speaker == Speaker::Master ? dcon_request(bytes) : dcon_reply(bytes);
+}
+
+}  // namespace ex9000::sim

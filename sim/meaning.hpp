@@ -1,0 +1,24 @@
+// What a frame on the line means, in a few words from the core's own tables.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+namespace ex9000::sim {
+
+using FrameBytes = std::vector<std::uint8_t>;
+
+enum class Speaker { Master, Module };
+
+/// Whether the bytes are a DCON frame, as far as one can tell: a delimiter or a reply's lead, then printable
+/// characters, up to CR.
+bool looks_like_dcon(const FrameBytes& bytes);
+
+/// As people read it: DCON as text with \r, everything else in hex.
+std::string shown(const FrameBytes& bytes);
+
+/// Empty where nothing can be told.
+std::string meaning(const FrameBytes& bytes, Speaker speaker);
+
+}  // namespace ex9000::sim

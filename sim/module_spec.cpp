@@ -1,0 +1,133 @@
+#include "sim/module_spec.hpp"
+
+#include <algorithm>
+#include <cctype>
+#include <sstream>
+#include <stdexcept>
+
+#include "firmware/hex.hpp"
+#include "firmware/model/baud.hpp"
+
+namespace ex9000::sim {
+
+namespace {
+
+[[noreturn]] void fail(const std::string& what) { throw std::invalid_argument(what); }
+
+std::string upper(std::string text) {
+  std::transform(text.begin(), text.end(), text.begin(),
+                 [](unsigned char c) { return static_cast<char>(std::toupper(c)); });
+  return text;
+}
+
+const Model& find_model(const std::string& name) {
+  const std::string wanted = upper(name);
+  for (const Model& model : kModels) {
+    constexpr std::size_t kPrefix = 2;  // EX may be left out
+    if (wanted == model.designation || wanted == model.designation.substr(kPrefix)) {
+      return model;
+    }
+  }
+  fail("'" + name + "' is no model; --models lists them");
+}
+
+std::uint8_t parse_address(const std::string& text) {
+  const std::string digits = upper(text.size() == 1 ? "0" + text : text);
+  const int address = digits.size() == 2 ? hex_byte(static_cast<std::uint8_t>(digits[0]), static_cast<std::uint8_t>(digits[1])) : -1;
+  if (address < 0) {
+    fail("address '" + text + "' is not one or two hex digits, 00 to FF");
+  }
+  return static_cast<std::uint8_t>(address);
+}
+
+bool parse_choice(const std::string& key, const std::string& value, const char* yes, const char* no) {
+  if (value != yes && value != no) {
+    fail("'" + key + "=" + value + "' wants " + yes + " or " + no);
+  }
+  return value == yes;
+}
+
+std::uint8_t parse_baud(const std::string& value) {
+  for (std::uint8_t code = kFirstBaudCode; code <= kLastBaudCode; ++code) {
+    if (value == std::to_string(baud_rate(code))) {
+      return code;
+    }
+  }
+  fail("'baud=" + value + "' wants 1200, 2400, 4800, 9600, 19200, 38400, 57600 or 115200");
+}
+
+Name parse_name(const Model& model, const std::string& value) {
+  const bool characters = std::all_of(value.begin(), value.end(),
+                                      [](char c) { return Name::is_name_character(static_cast<std::uint8_t>(c)); });
+  if (value.empty() || value.size() > model.longest_name || !characters) {
+    fail("'name=" + value + "' wants 1 to " + std::to_string(model.longest_name) + " printable ASCII characters on the " +
+         std::string(model.designation));
+  }
+  return Name(std::string_view(value));
+}
+
+void set_format(Settings& settings, std::uint8_t bit, bool on) {
+  settings.format = static_cast<std::uint8_t>(on ? settings.format | bit : settings.format & ~bit);
+}
+
+void apply(ModuleSpec& spec, const std::string& option) {
+  const auto equals = option.find('=');
+  const std::string key = option.substr(0, equals);
+  const std::string value = equals == std::string::npos ? "" : option.substr(equals + 1);
+  Settings& settings = spec.settings;
+  if (key == "protocol") {
+    const bool modbus = parse_choice(key, value, "modbus", "ascii");
+    if (modbus && !spec.model->speaks_modbus()) {
+      fail("'protocol=modbus': the " + std::string(spec.model->designation) + " speaks ASCII only");
+    }
+    settings.protocol = modbus ? Protocol::ModbusRtu : Protocol::Ascii;
+  } else if (key == "baud") {
+    settings.baud_code = parse_baud(value);
+  } else if (key == "checksum") {
+    set_format(settings, kFormatChecksum, parse_choice(key, value, "on", "off"));
+  } else if (key == "edge") {
+    set_format(settings, kFormatRisingEdge, parse_choice(key, value, "rising", "falling"));
+  } else if (key == "name") {
+    settings.name = parse_name(*spec.model, value);
+  } else if (key == "init") {
+    spec.init_asserted = parse_choice(key, value, "on", "off");
+  } else {
+    fail("'" + option + "' is no setting; there are protocol=, baud=, checksum=, edge=, name= and init=");
+  }
+}
+
+}  // namespace
+
+std::string hex_byte_text(unsigned value) {
+  return {static_cast<char>(hex_digit(value >> 4U)), static_cast<char>(hex_digit(value))};
+}
+
+std::uint32_t ModuleSpec::baud() const { return baud_rate(init_asserted ? kFactoryBaudCode : settings.baud_code); }
+
+std::uint8_t ModuleSpec::address() const { return init_asserted ? std::uint8_t{0} : settings.address; }
+
+ModuleSpec parse_module_spec(const std::string& text) {
+  try {
+    std::istringstream parts(text);
+    std::string name;
+    std::getline(parts, name, ',');
+    const auto at = name.find('@');
+    ModuleSpec spec;
+    spec.model = &find_model(name.substr(0, at));
+    spec.settings = Settings::factory(*spec.model);
+    if (at != std::string::npos) {
+      spec.settings.address = parse_address(name.substr(at + 1));
+    }
+    for (std::string option; std::getline(parts, option, ',');) {
+      apply(spec, option);
+    }
+    if (spec.settings.protocol == Protocol::ModbusRtu && !is_modbus_address(spec.settings.address)) {
+      fail("address " + hex_byte_text(spec.settings.address) + " is none of Modbus, which has 01 to F7; or add protocol=ascii");
+    }
+    return spec;
+  } catch (const std::invalid_argument& error) {
+    fail((text.empty() ? "an empty argument" : text) + ": " + error.what());
+  }
+}
+
+}  // namespace ex9000::sim

@@ -1,0 +1,117 @@
+#include "sim/pacer.hpp"
+
+#include <sys/prctl.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <utility>
+
+namespace ex9000::sim {
+
+namespace {
+
+/// Beyond this many bytes that the line has not carried yet, the master has to wait, as behind a full UART.
+constexpr std::size_t kMostWaiting = 4096;
+
+/// The kernel may put timers off by 50 us to save power; on a line at 115200 baud that is half a character.
+constexpr unsigned long kTimerSlackNanoseconds = 1;
+
+}  // namespace
+
+Pacer::Pacer(boost::asio::io_context& io, Line& line, Pty& pty, BusLog* log,
+             std::function<void(const std::string&)> notice)
+    : timer_(io),
+      descriptor_(io, dup(pty.master_fd())),
+      line_(line),
+      pty_(pty),
+      log_(log),
+      notice_(std::move(notice)),
+      rate_(line.master().baud()) {}
+
+void Pacer::start() {
+  prctl(PR_SET_TIMERSLACK, kTimerSlackNanoseconds);
+  began_ = std::chrono::steady_clock::now();
+  read();
+  follow();
+}
+
+VirtualTime Pacer::wall() const { return std::chrono::steady_clock::now() - began_; }
+
+/// Runs what is due, and leaves the clock at the last event rather than at `until`: see kHostLatency.
+void Pacer::catch_up(VirtualTime until) {
+  for (VirtualTime next = line_.bus().next(); next <= until; next = line_.bus().next()) {
+    line_.bus().run_until(next);
+  }
+}
+
+void Pacer::follow() {
+  catch_up(wall());
+  write_heard();
+  if (log_ != nullptr) {
+    log_->run(wall());
+  }
+  if (!reading_ && line_.master().waiting() < kMostWaiting) {
+    read();
+  }
+  arm_timer();
+}
+
+void Pacer::arm_timer() {
+  const VirtualTime next = std::min(line_.bus().next(), log_ == nullptr ? kNever : log_->next());
+  if (next == kNever) {
+    return;
+  }
+  timer_.expires_at(began_ + next);
+  timer_.async_wait([this](const boost::system::error_code& error) {
+    if (!error) {
+      follow();
+    }
+  });
+}
+
+void Pacer::read() {
+  reading_ = true;
+  descriptor_.async_read_some(boost::asio::buffer(buffer_),
+                              [this](const boost::system::error_code& error, std::size_t size) {
+                                reading_ = false;
+                                if (!error) {
+                                  on_read(size);
+                                  follow();
+                                }
+                              });
+}
+
+void Pacer::on_read(std::size_t size) {
+  const VirtualTime written = wall() - kHostLatency;
+  catch_up(written);
+  line_.bus().run_until(std::max(written, line_.clock().virtual_now()));
+  take_rate();
+  line_.master().send(buffer_.data(), size);
+}
+
+/// What nobody reads is lost, as on wires; the pseudo-terminal holds some 4 KiB before that.
+void Pacer::write_heard() {
+  if (!heard_.empty()) {
+    [[maybe_unused]] const ssize_t written = write(pty_.master_fd(), heard_.data(), heard_.size());
+    heard_.clear();
+  }
+}
+
+void Pacer::take_rate() {
+  const auto rate = pty_.baud();
+  if (!rate || *rate == rate_) {
+    return;
+  }
+  rate_ = *rate;
+  line_.master().set_baud(rate_);
+  for (std::size_t i = 0; i < line_.size(); ++i) {
+    SimulatedModule& module = line_.module(i);
+    if (module.baud() != rate_) {
+      notice_("the master is at " + std::to_string(rate_) + " baud, " + std::string(module.model().designation) +
+              " at " + hex_byte_text(module.module().state().in_force.address) + " listens at " +
+              std::to_string(module.baud()));
+    }
+  }
+}
+
+}  // namespace ex9000::sim

@@ -1,0 +1,145 @@
+#include "sim/pty.hpp"
+
+#include <fcntl.h>
+#include <sys/stat.h>
+#include <termios.h>
+#include <unistd.h>
+
+#include <array>
+#include <cerrno>
+#include <climits>
+#include <cstdlib>
+#include <cstring>
+#include <stdexcept>
+#include <utility>
+
+namespace ex9000::sim {
+
+namespace {
+
+constexpr std::array<std::pair<speed_t, std::uint32_t>, 16> kSpeeds{{{B300, 300},
+                                                                     {B600, 600},
+                                                                     {B1200, 1200},
+                                                                     {B1800, 1800},
+                                                                     {B2400, 2400},
+                                                                     {B4800, 4800},
+                                                                     {B9600, 9600},
+                                                                     {B19200, 19200},
+                                                                     {B38400, 38400},
+                                                                     {B57600, 57600},
+                                                                     {B115200, 115200},
+                                                                     {B230400, 230400},
+                                                                     {B460800, 460800},
+                                                                     {B500000, 500000},
+                                                                     {B576000, 576000},
+                                                                     {B921600, 921600}}};
+
+std::string reason() { return std::strerror(errno); }
+
+std::optional<std::string> link_target(const std::string& link) {
+  std::array<char, PATH_MAX> target{};
+  const ssize_t size = readlink(link.c_str(), target.data(), target.size() - 1);
+  return size < 0 ? std::nullopt : std::optional<std::string>(std::string(target.data(), static_cast<std::size_t>(size)));
+}
+
+struct flock whole_file(int type) {
+  struct flock lock {};
+  lock.l_type = static_cast<short>(type);
+  lock.l_whence = SEEK_SET;
+  return lock;
+}
+
+/// Whether a running simulator holds the slave: it keeps a record lock on it, which nobody else takes on a terminal.
+bool is_held(const std::string& device) {
+  const int fd = open(device.c_str(), O_RDWR | O_NOCTTY | O_NONBLOCK | O_CLOEXEC);
+  if (fd < 0) {
+    return false;
+  }
+  struct flock lock = whole_file(F_WRLCK);
+  const bool held = fcntl(fd, F_GETLK, &lock) == 0 && lock.l_type != F_UNLCK;
+  close(fd);
+  return held;
+}
+
+/// Makes room for the link, or throws.
+void clear_the_way(const std::string& link) {
+  struct stat status {};
+  if (lstat(link.c_str(), &status) != 0) {
+    return;
+  }
+  const auto target = link_target(link);
+  if (!target || target->rfind("/dev/pts/", 0) != 0) {
+    throw std::runtime_error("--pty " + link + ": something else is there; remove it or name another path");
+  }
+  if (is_held(*target)) {
+    throw std::runtime_error("--pty " + link + ": another simulator is running there; end it or name another path");
+  }
+  unlink(link.c_str());
+}
+
+}  // namespace
+
+Pty::Pty(std::string link, std::uint32_t baud) : link_(std::move(link)) {
+  clear_the_way(link_);
+  try {
+    master_ = posix_openpt(O_RDWR | O_NOCTTY | O_CLOEXEC | O_NONBLOCK);
+    std::array<char, 64> name{};
+    if (master_ < 0 || grantpt(master_) != 0 || unlockpt(master_) != 0 ||
+        ptsname_r(master_, name.data(), name.size()) != 0) {
+      throw std::runtime_error("no pseudo-terminal to be had: " + reason());
+    }
+    device_ = name.data();
+    slave_ = open(device_.c_str(), O_RDWR | O_NOCTTY | O_CLOEXEC);
+    termios settings{};
+    if (slave_ < 0 || tcgetattr(slave_, &settings) != 0) {
+      throw std::runtime_error(device_ + ": " + reason());
+    }
+    cfmakeraw(&settings);
+    for (const auto& [speed, rate] : kSpeeds) {
+      if (rate == baud) {
+        cfsetspeed(&settings, speed);
+      }
+    }
+    struct flock lock = whole_file(F_WRLCK);
+    if (tcsetattr(slave_, TCSANOW, &settings) != 0 || fcntl(slave_, F_SETLK, &lock) != 0) {
+      throw std::runtime_error(device_ + ": " + reason());
+    }
+    if (symlink(device_.c_str(), link_.c_str()) != 0) {
+      throw std::runtime_error("--pty " + link_ + ": " + reason() + "; name a path that can be written");
+    }
+  } catch (...) {
+    close_all();
+    throw;
+  }
+}
+
+Pty::~Pty() {
+  if (link_target(link_) == device_) {
+    unlink(link_.c_str());
+  }
+  close_all();
+}
+
+void Pty::close_all() const {
+  if (slave_ >= 0) {
+    close(slave_);
+  }
+  if (master_ >= 0) {
+    close(master_);
+  }
+}
+
+std::optional<std::uint32_t> Pty::baud() const {
+  termios settings{};
+  if (tcgetattr(master_, &settings) != 0) {
+    return std::nullopt;
+  }
+  for (const auto& [speed, rate] : kSpeeds) {
+    if (cfgetospeed(&settings) == speed) {
+      return rate;
+    }
+  }
+  return std::nullopt;
+}
+
+}  // namespace ex9000::sim

@@ -1,0 +1,40 @@
+// A pseudo-terminal with a link to it.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+
+namespace ex9000::sim {
+
+/// Owns both ends: the slave is kept open too, so that a master's coming and going hangs nothing up and the line
+/// settings stay. Raw mode.
+class Pty {
+ public:
+  /// Makes a pseudo-terminal set to `baud` and a symbolic link to its slave at `link`. A link that a dead simulator has
+  /// left is taken over. Throws std::runtime_error, one line, where anything else is there or the path cannot be made;
+  /// then nothing is left behind.
+  Pty(std::string link, std::uint32_t baud);
+  /// Removes the link, if it is still this one's.
+  ~Pty();
+  Pty(const Pty&) = delete;
+  Pty& operator=(const Pty&) = delete;
+
+  /// The end that the simulator reads and writes; non-blocking.
+  [[nodiscard]] int master_fd() const { return master_; }
+  [[nodiscard]] const std::string& link() const { return link_; }
+  /// Of the slave, as /dev/pts/5.
+  [[nodiscard]] const std::string& device() const { return device_; }
+  /// The rate that is set on the slave now, in bits per second; nothing where it has no number.
+  [[nodiscard]] std::optional<std::uint32_t> baud() const;
+
+ private:
+  void close_all() const;
+
+  std::string link_;
+  std::string device_;
+  int master_ = -1;
+  int slave_ = -1;
+};
+
+}  // namespace ex9000::sim
