@@ -1,0 +1,380 @@
+// An hour of noise at each protocol: nothing is answered, and no output changes, but by a frame that is right. What is
+// right is judged here once more, by nothing of the firmware's.
+#include <gtest/gtest.h>
+
+#include <cstdio>
+#include <deque>
+#include <optional>
+#include <random>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "sim/bus.hpp"
+#include "sim/module.hpp"
+#include "sim/module_spec.hpp"
+
+namespace ex9000::sim {
+namespace {
+
+using std::chrono::milliseconds;
+using std::chrono::nanoseconds;
+
+constexpr VirtualTime kAnHour = std::chrono::hours(1);
+constexpr VirtualTime kByte = nanoseconds(10'000'000'000 / 9600);
+/// A reply, or an effect, comes within this after its request.
+constexpr VirtualTime kLongest = milliseconds(300);
+
+/// Two hex digits of an upper-case address, or -1.
+int address_in(const std::string& text) {
+  const std::string digits = "0123456789ABCDEF";
+  const auto high = digits.find(text[1]);
+  const auto low = digits.find(text[2]);
+  return high == std::string::npos || low == std::string::npos ? -1 : static_cast<int>(high * 16 + low);
+}
+
+/// What is right of what came in: nothing, a frame that is carried out in silence, or one that is answered.
+enum class Finding { Nothing, Silent, Request };
+
+/// wire.md 3, in the order it is written there.
+class DconJudge {
+ public:
+  explicit DconJudge(bool checksum) : checksum_(checksum) {}
+
+  Finding feed(std::uint8_t byte, bool good) {
+    const bool ends = byte == '\r' && good;
+    if (skipping_) {
+      skipping_ = !ends;
+      return Finding::Nothing;
+    }
+    if (text_.empty()) {
+      if (good && std::string("#$%@~").find(static_cast<char>(byte)) != std::string::npos) {
+        text_ = static_cast<char>(byte);
+        spoiled_ = false;
+      } else if (good && (byte == '!' || byte == '>' || byte == '?')) {
+        skipping_ = true;
+      }
+      return Finding::Nothing;
+    }
+    if (!ends) {
+      spoiled_ = spoiled_ || !good;
+      text_ += static_cast<char>(byte);
+      return Finding::Nothing;
+    }
+    const Finding finding = judge();
+    text_.clear();
+    return finding;
+  }
+  void forget() {
+    text_.clear();
+    skipping_ = false;
+  }
+
+ private:
+  [[nodiscard]] Finding judge() const {
+    std::string text = text_;
+    if (spoiled_ || text.size() > 32) {
+      return Finding::Nothing;
+    }
+    if (checksum_) {
+      if (text.size() < 5) {
+        return Finding::Nothing;
+      }
+      const std::string sent = text.substr(text.size() - 2);
+      text.resize(text.size() - 2);
+      unsigned sum = 0;
+      for (const char c : text) {
+        sum += static_cast<unsigned char>(c);
+      }
+      if (sent != hex_byte_text(sum % 256)) {
+        return Finding::Nothing;
+      }
+    }
+    if (text.size() < 3) {
+      return Finding::Nothing;
+    }
+    if (text == "#**" || text == "~**") {
+      return Finding::Silent;
+    }
+    return address_in(text) == 1 ? Finding::Request : Finding::Nothing;
+  }
+
+  bool checksum_;
+  bool skipping_ = false;
+  bool spoiled_ = false;
+  std::string text_;
+};
+
+bool crc_is_right(const std::vector<std::uint8_t>& bytes, std::size_t from) {
+  unsigned crc = 0xFFFF;
+  for (std::size_t i = from; i < bytes.size(); ++i) {
+    crc ^= bytes[i];
+    for (int bit = 0; bit < 8; ++bit) {
+      crc = crc % 2 != 0 ? crc / 2 ^ 0xA001U : crc / 2;
+    }
+  }
+  return crc == 0;
+}
+
+/// wire.md 7: a frame that a silence has ended.
+Finding judge_rtu(const std::vector<std::uint8_t>& bytes, const std::vector<bool>& good) {
+  for (const std::size_t from : {0U, 1U}) {
+    const std::size_t size = bytes.size() - from;
+    bool fits = bytes.size() > from && size >= 4 && size <= 256 && (from == 0 || bytes[0] == 0x00);
+    for (std::size_t i = from; fits && i < bytes.size(); ++i) {
+      fits = good[i];
+    }
+    if (!fits || !crc_is_right(bytes, from)) {
+      continue;
+    }
+    const std::vector<std::uint8_t> frame(bytes.begin() + static_cast<std::ptrdiff_t>(from), bytes.end());
+    if (frame[0] > 1) {
+      return Finding::Nothing;
+    }
+    const bool host_ok = frame.size() == 8 && (frame[1] == 3 || frame[1] == 4) && frame[2] == 0x30 &&
+                         frame[3] == 0x38 && frame[4] == 0 && frame[5] <= 1;
+    return frame[0] == 0 || host_ok ? Finding::Silent : Finding::Request;
+  }
+  return Finding::Nothing;
+}
+
+/// A powered module whose receiver is fed byte by byte, and what it does about it.
+class NoisyLine final : public BusObserver {
+ public:
+  explicit NoisyLine(const std::string& spec) {
+    const ModuleSpec parsed = parse_module_spec(spec);
+    module_.emplace(bus_, *parsed.model);
+    module_->store(parsed.settings);
+    bus_.observe(*this);
+    module_->power(true);
+    module_->output_pins().on_change([this](std::uint16_t /*channels*/) { ++output_changes_; });
+    bus_.run_for(milliseconds(100));
+  }
+
+  [[nodiscard]] VirtualTime now() { return clock_.virtual_now(); }
+  void run(VirtualTime time) {
+    bus_.run_for(time);
+    check();
+  }
+  /// The byte is over one byte time from now. `judge` is asked first, if the module can hear it; `forget` is called
+  /// where the module's own driver was on since the last byte.
+  template <class Judge, class Forget>
+  void put(std::uint8_t byte, ByteStatus status, Judge judge, Forget forget) {
+    run(kByte);
+    if (std::exchange(spoken_, false)) {
+      forget();
+    }
+    if (!speaking_) {
+      note(judge(byte, status == ByteStatus::Good));
+    }
+    module_->receive(byte, status);
+    check();
+  }
+  void note(Finding finding) {
+    if (finding == Finding::Request) {
+      requests_.push_back(now());
+      ++judged_right_;
+    }
+    if (finding != Finding::Nothing) {
+      accepted_ = now();
+    }
+  }
+
+  void driver(std::size_t /*station*/, bool on, VirtualTime /*now*/) override {
+    speaking_ = on;
+    if (on) {
+      spoken_ = true;
+      ++replies_;
+    }
+  }
+  void byte(std::size_t /*station*/, std::uint8_t /*byte*/, std::uint32_t /*baud*/, bool /*collided*/,
+            VirtualTime /*start*/, VirtualTime /*end*/) override {}
+
+  [[nodiscard]] std::size_t replies() const { return replies_; }
+  [[nodiscard]] std::size_t judged_right() const { return judged_right_; }
+
+ private:
+  void check() {
+    while (!requests_.empty() && now() - requests_.front() > kLongest) {
+      requests_.pop_front();  // lost: one was waiting already
+    }
+    for (; judged_replies_ < replies_; ++judged_replies_) {
+      ASSERT_FALSE(requests_.empty()) << "an answer that nobody asked for at " << now().count() << " ns";
+      requests_.pop_front();
+    }
+    if (output_changes_ != 0) {
+      output_changes_ = 0;
+      ASSERT_LT(now() - accepted_, kLongest) << "an output changed by itself at " << now().count() << " ns";
+    }
+  }
+
+  VirtualClock clock_;
+  Bus bus_{clock_};
+  std::optional<SimulatedModule> module_;
+  std::deque<VirtualTime> requests_;
+  VirtualTime accepted_{-1'000'000'000};
+  bool speaking_ = false;
+  bool spoken_ = false;
+  std::size_t replies_ = 0;
+  std::size_t judged_replies_ = 0;
+  std::size_t judged_right_ = 0;
+  unsigned output_changes_ = 0;
+};
+
+class Noise {
+ public:
+  explicit Noise(std::uint32_t seed) : random_(seed) {}
+
+  unsigned below(unsigned limit) { return static_cast<unsigned>(random_() % limit); }
+  bool once_in(unsigned times) { return below(times) == 0; }
+  std::uint8_t byte() { return static_cast<std::uint8_t>(random_()); }
+  ByteStatus status() {
+    if (!once_in(200)) {
+      return ByteStatus::Good;
+    }
+    constexpr ByteStatus kErrors[] = {ByteStatus::FramingError, ByteStatus::Break, ByteStatus::Overrun};
+    return kErrors[below(3)];
+  }
+  template <class Container>
+  auto pick(const Container& container) {
+    return container[below(static_cast<unsigned>(container.size()))];
+  }
+
+ private:
+  std::mt19937 random_;
+};
+
+std::string dcon_noise(Noise& noise, bool checksum) {
+  static const std::vector<std::string> commands{"$012", "$016", "@01",  "@01FF", "#0100AA", "#010", "$01C", "$01L1",
+                                                 "~010", "$014", "~012", "~**",   "#**",     "~011", "$01F", "$01M",
+                                                 "@0155", "#011701", "~01OABC", "$015", "!01", ">", "?01$01M"};
+  std::string text;
+  switch (noise.below(4)) {
+    case 0:
+      for (unsigned i = noise.below(40); i > 0; --i) {
+        text += static_cast<char>(noise.byte());
+      }
+      return text;
+    case 1:
+      for (unsigned i = noise.below(12); i > 0; --i) {
+        text += noise.pick(std::string("#$%@~!>?01M26\r\n*AF"));
+      }
+      return text;
+    default:
+      text = noise.pick(commands);
+      if (noise.once_in(10)) {
+        text.insert(text.begin() + noise.below(static_cast<unsigned>(text.size()) + 1), 1 + noise.below(40), 'x');
+      }
+      if (checksum && !noise.once_in(5)) {
+        unsigned sum = 0;
+        for (const char c : text) {
+          sum += static_cast<unsigned char>(c);
+        }
+        text += hex_byte_text(sum % 256);
+      }
+      if (noise.once_in(4)) {
+        const unsigned at = noise.below(static_cast<unsigned>(text.size()));
+        text[at] = static_cast<char>(text[at] ^ (1U << noise.below(8)));
+      }
+      return text + (noise.once_in(8) ? "" : "\r");
+  }
+}
+
+void report(const char* what, std::size_t bytes, const NoisyLine& line) {
+  std::printf("%s: %zu bytes in an hour, %zu requests right, %zu answered\n", what, bytes, line.judged_right(),
+              line.replies());
+  // One that comes while another is being answered is lost; most are not.
+  EXPECT_GT(line.judged_right(), 1000U);
+  EXPECT_GT(line.replies(), line.judged_right() / 2);
+}
+
+void an_hour_of_dcon(bool checksum, std::uint32_t seed) {
+  NoisyLine line(checksum ? "EX9055D,checksum=on" : "EX9055D");
+  Noise noise(seed);
+  DconJudge judge(checksum);
+  std::size_t bytes = 0;
+  while (line.now() < kAnHour && !testing::Test::HasFatalFailure()) {
+    for (const char character : dcon_noise(noise, checksum)) {
+      line.put(static_cast<std::uint8_t>(character), noise.status(),
+               [&](std::uint8_t byte, bool good) { return judge.feed(byte, good); }, [&] { judge.forget(); });
+      ++bytes;
+    }
+    if (noise.once_in(2)) {
+      line.run(milliseconds(noise.below(40)));
+    }
+  }
+  report(checksum ? "DCON with checksum" : "DCON", bytes, line);
+}
+
+std::vector<std::uint8_t> rtu_noise(Noise& noise) {
+  static const std::vector<std::vector<std::uint8_t>> requests{
+      {1, 1, 0, 0, 0, 13},          {1, 5, 0, 3, 0xFF, 0},    {1, 15, 0, 0, 0, 13, 2, 0xAA, 0x15},
+      {1, 3, 1, 0xE2, 0, 4},        {1, 6, 1, 0xE8, 0, 200},  {1, 8, 0, 0, 0x12, 0x34},
+      {1, 17},                      {1, 0x2B, 0x0E, 1, 0},    {1, 0x46, 0},
+      {0, 5, 0, 1, 0xFF, 0},        {0, 3, 0x30, 0x38, 0, 0}, {1, 3, 0x30, 0x38, 0, 1},
+      {2, 1, 0, 0, 0, 13},          {1, 0x99, 1, 2},          {77, 5, 0, 0, 0xFF, 0}};
+  std::vector<std::uint8_t> frame;
+  if (noise.once_in(3)) {
+    for (unsigned i = noise.below(noise.once_in(50) ? 300 : 20); i > 0; --i) {
+      frame.push_back(noise.byte());
+    }
+    return frame;
+  }
+  frame = noise.pick(requests);
+  unsigned crc = 0xFFFF;
+  for (const std::uint8_t byte : frame) {
+    crc ^= byte;
+    for (int bit = 0; bit < 8; ++bit) {
+      crc = crc % 2 != 0 ? crc / 2 ^ 0xA001U : crc / 2;
+    }
+  }
+  frame.push_back(static_cast<std::uint8_t>(crc));
+  frame.push_back(static_cast<std::uint8_t>(crc >> 8U));
+  if (noise.once_in(4)) {
+    const unsigned at = noise.below(static_cast<unsigned>(frame.size()));
+    frame[at] = static_cast<std::uint8_t>(frame[at] ^ (1U << noise.below(8)));
+  }
+  if (noise.once_in(6)) {
+    frame.insert(frame.begin(), 0x00);
+  }
+  if (noise.once_in(20)) {
+    frame.resize(noise.below(static_cast<unsigned>(frame.size())));
+  }
+  return frame;
+}
+
+void an_hour_of_modbus(std::uint32_t seed) {
+  NoisyLine line("EX9042D-M");
+  Noise noise(seed);
+  std::size_t bytes = 0;
+  while (line.now() < kAnHour && !testing::Test::HasFatalFailure()) {
+    std::vector<std::uint8_t> heard;
+    std::vector<bool> good;
+    for (const std::uint8_t byte : rtu_noise(noise)) {
+      line.put(byte, noise.status(),
+               [&](std::uint8_t value, bool is_good) {
+                 heard.push_back(value);
+                 good.push_back(is_good);
+                 return Finding::Nothing;
+               },
+               [&] {
+                 heard.clear();
+                 good.clear();
+               });
+      ++bytes;
+      if (noise.once_in(50)) {
+        line.run(std::chrono::microseconds(noise.below(2900)));  // with the next byte less than T3.5
+      }
+    }
+    line.note(judge_rtu(heard, good));
+    line.run(milliseconds(5 + noise.below(20)));
+  }
+  report("Modbus RTU", bytes, line);
+}
+
+TEST(RandomLine, AnHourOfDconNoiseIsAnsweredOnlyWhereAFrameIsRight) { an_hour_of_dcon(false, 1); }
+TEST(RandomLine, AnHourOfDconNoiseWithChecksumLikewise) { an_hour_of_dcon(true, 2); }
+TEST(RandomLine, AnHourOfModbusNoiseLikewise) { an_hour_of_modbus(3); }
+
+}  // namespace
+}  // namespace ex9000::sim

@@ -1,0 +1,90 @@
+// The tables of models, commands and registers agree with themselves and with each other.
+#include <gtest/gtest.h>
+
+#include <set>
+#include <string>
+
+#include "firmware/dcon/commands.hpp"
+#include "firmware/modbus/functions.hpp"
+#include "firmware/modbus/registers.hpp"
+#include "firmware/model/model.hpp"
+#include "firmware/settings/settings.hpp"
+
+namespace ex9000 {
+namespace {
+
+template <class Table, class Id>
+void expect_unique(const Table& table, Id id) {
+  std::set<std::string> seen;
+  for (const auto& row : table) {
+    EXPECT_TRUE(seen.insert(std::string(id(row))).second) << id(row);
+  }
+}
+
+TEST(Tables, EveryRowHasAnIdOfItsOwn) {
+  expect_unique(kModels, [](const Model& row) { return row.designation; });
+  expect_unique(dcon::kCommands, [](const dcon::Command& row) { return row.id; });
+  expect_unique(dcon::kCommands, [](const dcon::Command& row) { return row.syntax; });
+  expect_unique(modbus::kBitRegisters, [](const modbus::BitRegister& row) { return row.id; });
+  expect_unique(modbus::kWordRegisters, [](const modbus::WordRegister& row) { return row.id; });
+  expect_unique(modbus::kFunctions, [](const modbus::Function& row) { return row.name; });
+}
+
+TEST(Tables, EveryModelFitsTheLimitsAndLeavesTheFactoryWithSettingsOfItsOwn) {
+  for (const Model& model : kModels) {
+    EXPECT_LE(model.inputs, kMaxInputs) << model.designation;
+    EXPECT_LE(model.outputs, kMaxOutputs) << model.designation;
+    EXPECT_TRUE(model.has_inputs() || model.has_outputs()) << model.designation;
+    EXPECT_TRUE(Settings::factory(model).possible_for(model)) << model.designation;
+    // Only -M models have a code, and it is their four digits.
+    const bool m = model.designation.substr(model.designation.size() - 2) == "-M";
+    EXPECT_EQ(model.speaks_modbus(), m) << model.designation;
+    if (m) {
+      EXPECT_EQ(model.modbus_code, std::stoul(std::string(model.designation.substr(2, 4)), nullptr, 16));
+    }
+  }
+}
+
+TEST(Tables, ACommandsSyntaxSaysWhatItsDispatchMatches) {
+  for (const dcon::Command& command : dcon::kCommands) {
+    const dcon::Dispatch& row = command.dispatch;
+    EXPECT_EQ(command.syntax[0], row.delimiter) << command.syntax;
+    EXPECT_EQ(command.syntax.substr(1, 2), row.key == dcon::kBroadcastKey ? "**" : "AA") << command.syntax;
+    if (row.key != dcon::kNoKey && row.key != dcon::kBroadcastKey) {
+      EXPECT_EQ(command.syntax[3], row.key) << command.syntax;
+    }
+    EXPECT_LE(row.fewest_args, row.most_args) << command.syntax;
+    EXPECT_NE(row.handler, nullptr) << command.syntax;
+  }
+}
+
+TEST(Tables, RowsListedForOneFunctionNeverOverlapAndDoWhatTheyAreListedFor) {
+  for (unsigned code = 1; code < 16; ++code) {
+    const auto function = static_cast<modbus::Functions>(1U << code);
+    for (const Model& model : kModels) {
+      std::set<unsigned> addresses;
+      for (const modbus::BitRegister& entry : modbus::kBitRegisters) {
+        if ((entry.row.functions & function) == 0 || !meets(model, entry.row.needs)) {
+          continue;
+        }
+        const bool writes = (function & (modbus::kWriteSingleCoil | modbus::kWriteMultipleCoils)) != 0;
+        EXPECT_TRUE(writes ? entry.row.write != nullptr : entry.row.read != nullptr) << entry.id;
+        for (unsigned i = 0; i < modbus::width_of(entry.row.width, model); ++i) {
+          EXPECT_TRUE(addresses.insert(entry.row.first + i).second) << entry.id;
+        }
+      }
+      for (const modbus::WordRegister& entry : modbus::kWordRegisters) {
+        if ((entry.row.functions & function) == 0 || !meets(model, entry.row.needs)) {
+          continue;
+        }
+        EXPECT_TRUE(function == modbus::kWriteSingleRegister ? entry.row.write != nullptr : entry.row.read != nullptr);
+        for (unsigned i = 0; i < entry.row.count; ++i) {
+          EXPECT_TRUE(addresses.insert(entry.row.first + i).second) << entry.id;
+        }
+      }
+    }
+  }
+}
+
+}  // namespace
+}  // namespace ex9000
