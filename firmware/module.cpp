@@ -7,7 +7,8 @@ namespace ex9000 {
 
 namespace {
 
-constexpr Duration kTimeoutStoreRetry = milliseconds(1000);  // D15
+constexpr Duration kStoreRetry = milliseconds(1000);    // D15
+constexpr Duration kInitGivesUp = milliseconds(50);      // D13
 
 constexpr std::uint8_t kInitModeAddress = 0x00;
 
@@ -21,26 +22,34 @@ void Module::begin(std::uint16_t input_levels, Time now, InterCharacterGap gap) 
   gap_ = gap;
   edges_.begin(input_levels & state_.model.input_mask());
   store_.begin_loading();
+  init_gives_up_.set(now + kInitGivesUp);
   led_.show(StatusLed::Pattern::Steady, now);
 }
 
 void Module::step(bool init_switch, Time now) {
   init_switch_.sample(init_switch, now);
   state_.init_asserted = init_switch_.level();
-  if (phase_ == Phase::Booting) {
-    boot(now);
+  if (!settings_known_ && !store_.loading()) {
+    use_settings(now);
   }
-  if (phase_ != Phase::Booting) {
+  if (line_quiet_.reached(now)) {
+    line_quiet_.disarm();
+  }
+  if (settings_known_) {
+    if (phase_ == Phase::Booting && init_is_known(now)) {
+      start_listening();
+    }
+    // What a frame is judged by is collected after it was there, so that it includes the frame itself.
+    const Frame* frame = receiver_.queue().waiting();
     collect_tallies();
     heed_host_ok();
     expire_host_watchdog(now);  // before anything that drives outputs
     go_on_storing(now);
-    const Frame* frame = receiver_.queue().waiting();
     if (phase_ == Phase::Idle && frame != nullptr) {
       judge(*frame, now);
       receiver_.queue().drop_in_main_loop();
     }
-    store_timeout(now);
+    store_leftovers(now);
   }
   led_.show(state_.settings.timeout_status ? StatusLed::Pattern::HostTimeout
             : settings_known_ && settings_unreadable() ? StatusLed::Pattern::SettingsUnreadable
@@ -50,17 +59,8 @@ void Module::step(bool init_switch, Time now) {
 
 // --- reset ---
 
-void Module::boot(Time now) {
-  if (store_.loading()) {
-    return;
-  }
-  if (!settings_known_) {
-    use_settings(now);
-  }
-  if (init_switch_.known()) {
-    start_listening();
-  }
-}
+/// A switch that never stands still is no reason not to come up.
+bool Module::init_is_known(Time now) const { return init_switch_.known() || init_gives_up_.reached(now); }
 
 void Module::use_settings(Time now) {
   settings_known_ = true;
@@ -87,6 +87,7 @@ void Module::start_listening() {
   state_.inputs.configure(in_force.protocol == Protocol::Ascii ? Inputs::CounterRange::FiveDigits
                                                                : Inputs::CounterRange::SixteenBits,
                           (settings.format & kFormatRisingEdge) != 0);
+  init_gives_up_.disarm();
   receiver_.answer_to(in_force.address);
   receiver_.listen({in_force.protocol, in_force.checksum, LineTiming::at(baud()), gap_});
   phase_ = Phase::Idle;
@@ -95,6 +96,9 @@ void Module::start_listening() {
 // --- what the interrupts have gathered ---
 
 void Module::collect_tallies() {
+  if (phase_ == Phase::Booting) {
+    return;  // what the counters count is not settled yet
+  }
   state_.inputs.collect(edges_, state_.model.inputs);
   LineTallies& tallies = receiver_.tallies();
   Diagnostics& diagnostics = state_.diagnostics;
@@ -111,7 +115,7 @@ void Module::heed_host_ok() {
     return;
   }
   host_oks_heeded_ = host_oks;
-  // It counts from when it was received, and comes too late where the timeout was over by then.
+  // It counts from when it was over, and comes too late where the timeout was over before.
   const Time received = receiver_.host_ok_time();
   expire_host_watchdog(received);
   host_watchdog_.restart(received);
@@ -121,7 +125,8 @@ void Module::expire_host_watchdog(Time now) {
   if (!host_watchdog_.expired(state_.settings, now)) {
     return;
   }
-  // At once and whatever the memory does; that it is stored follows (store_timeout).
+  // At once and whatever the memory does; that it is stored follows (store_leftovers).
+  expired_since_judged_ = true;
   state_.settings.timeout_status = true;
   state_.settings.watchdog_enabled = false;
   state_.outputs = state_.settings.safe_value;
@@ -131,6 +136,7 @@ void Module::expire_host_watchdog(Time now) {
 
 void Module::judge(const Frame& frame, Time now) {
   outcome_ = Outcome();
+  expired_since_judged_ = false;
   reply_.clear();
   const bool ascii = state_.in_force.protocol == Protocol::Ascii;
   if (ascii) {
@@ -138,8 +144,7 @@ void Module::judge(const Frame& frame, Time now) {
   } else {
     modbus::answer(state_, frame.bytes(), outcome_, reply_);
   }
-  const LineTiming timing = LineTiming::at(baud());
-  reply_due_.set(frame.received + (ascii ? timing.character : timing.rtu_silence));
+  reply_due_.set(frame.received + turn_around());
   if (outcome_.refusal != Refusal::None) {
     outcome_ = Outcome::refused(outcome_.refusal);  // a refused request changes nothing
     count_exception();
@@ -147,9 +152,8 @@ void Module::judge(const Frame& frame, Time now) {
   if (reply_.empty()) {
     ++state_.diagnostics.no_responses;
   }
-  const Settings changed = outcome_.change.applied_to(state_.settings);
-  if (changed == state_.settings || (changed == store_.stored() && !store_.busy())) {
-    carry_out(now);  // nothing changes, so nothing is written
+  if (outcome_.change.empty()) {
+    carry_out(now);
   } else {
     phase_ = Phase::MustStore;
     go_on_storing(now);
@@ -159,6 +163,7 @@ void Module::judge(const Frame& frame, Time now) {
 void Module::carry_out(Time now) {
   Settings& settings = state_.settings;
   settings = outcome_.change.applied_to(settings);
+  settings.timeout_status |= expired_since_judged_;  // what was cleared is the timeout before that (D17)
   if (outcome_.take_address) {
     state_.in_force.address = settings.address;
     receiver_.answer_to(settings.address);
@@ -206,17 +211,25 @@ void Module::count_exception() {
 
 void Module::finish_request() { phase_ = reply_.empty() ? Phase::Idle : Phase::ReplyReady; }
 
+/// Silence before a reply: behind the request, and behind the reply before it.
+Duration Module::turn_around() const {
+  const LineTiming timing = LineTiming::at(baud());
+  return state_.in_force.protocol == Protocol::Ascii ? timing.character : timing.rtu_silence;
+}
+
 Bytes Module::take_reply(Time now) {
-  if (phase_ != Phase::ReplyReady || !reply_due_.reached(now)) {
+  if (phase_ != Phase::ReplyReady || !reply_due_.reached(now) || line_quiet_.armed()) {
     return {};
   }
   phase_ = Phase::Replying;
   reply_due_.disarm();
-  receiver_.speaking();
   return reply_.bytes();
 }
 
-void Module::reply_sent() { phase_ = Phase::Idle; }
+void Module::reply_sent(Time now) {
+  phase_ = Phase::Idle;
+  line_quiet_.set(now + turn_around());
+}
 
 // --- storing ---
 
@@ -224,15 +237,20 @@ void Module::go_on_storing(Time now) {
   if (store_.busy()) {
     return;
   }
-  if (storing_timeout_) {
-    storing_timeout_ = false;
+  if (storing_leftovers_) {
+    storing_leftovers_ = false;
     if (!store_.saved()) {
-      timeout_store_retry_.set(now + kTimeoutStoreRetry);
+      leftovers_retry_.set(now + kStoreRetry);
     }
   }
   if (phase_ == Phase::MustStore) {
-    store_.begin_saving(outcome_.change.applied_to(state_.settings));
-    phase_ = Phase::Storing;
+    const Settings changed = outcome_.change.applied_to(state_.settings);
+    if (changed == store_.stored()) {
+      carry_out(now);  // a command that changes nothing writes nothing
+    } else {
+      store_.begin_saving(changed);
+      phase_ = Phase::Storing;
+    }
   } else if (phase_ == Phase::Storing) {
     if (store_.saved()) {
       carry_out(now);
@@ -242,17 +260,23 @@ void Module::go_on_storing(Time now) {
   }
 }
 
-void Module::store_timeout(Time now) {
-  if (state_.settings == store_.stored()) {
-    timeout_store_retry_.disarm();
+/// A timeout that is not stored yet; a copy in the memory that may hold what was refused.
+void Module::store_leftovers(Time now) {
+  const bool unstored = state_.settings != store_.stored();
+  if (!unstored && !store_.doubtful()) {
+    leftovers_retry_.disarm();
     return;
   }
-  if (!memory_is_free() || (timeout_store_retry_.armed() && !timeout_store_retry_.reached(now))) {
+  if (!memory_is_free() || (leftovers_retry_.armed() && !leftovers_retry_.reached(now))) {
     return;
   }
-  timeout_store_retry_.disarm();
-  storing_timeout_ = true;
-  store_.begin_saving(state_.settings);
+  leftovers_retry_.disarm();
+  storing_leftovers_ = true;
+  if (unstored) {
+    store_.begin_saving(state_.settings);
+  } else {
+    store_.begin_settling();
+  }
 }
 
 bool Module::memory_is_free() const {
@@ -260,6 +284,13 @@ bool Module::memory_is_free() const {
 }
 
 std::optional<Duration> Module::idle_for(Time now) const {
+  const bool memory_has_news = !store_.busy() && (!settings_known_ || storing_leftovers_ ||
+                                                  phase_ == Phase::MustStore || phase_ == Phase::Storing);
+  const bool line_has_news = (phase_ == Phase::Idle && receiver_.queue().waiting() != nullptr) ||
+                             receiver_.host_oks() != host_oks_heeded_;
+  if (memory_has_news || line_has_news) {
+    return Duration();
+  }
   std::optional<Duration> idle;
   const auto consider = [&idle, now](const Deadline& deadline) {
     if (deadline.armed() && (!idle || deadline.remaining(now) < *idle)) {
@@ -268,19 +299,16 @@ std::optional<Duration> Module::idle_for(Time now) const {
   };
   consider(init_switch_.settles());
   consider(led_.next_change());
-  if (phase_ == Phase::Booting) {
+  if (!settings_known_) {
     return idle;
   }
-  if ((phase_ == Phase::Idle && receiver_.queue().waiting() != nullptr) ||
-      receiver_.host_oks() != host_oks_heeded_) {
-    return Duration();
-  }
+  consider(init_gives_up_);
   consider(host_watchdog_.expiry(state_.settings));
   if (memory_is_free()) {
-    consider(timeout_store_retry_);
+    consider(leftovers_retry_);
   }
   if (phase_ == Phase::ReplyReady) {
-    consider(reply_due_);
+    consider(line_quiet_.armed() ? line_quiet_ : reply_due_);
   }
   return idle;
 }

@@ -38,7 +38,7 @@ class Module {
 
   /// See Receiver::on_byte; only while `listening()`, and not while the own driver is on.
   Duration on_byte(std::uint8_t byte, ByteStatus status, Time now) { return receiver_.on_byte(byte, status, now); }
-  Duration on_silence() { return receiver_.on_silence(); }
+  Duration on_silence(Time now) { return receiver_.on_silence(now); }
   /// See InputEdges::on_edge.
   void on_edge(unsigned channel, bool level) { edges_.on_edge(channel, level); }
   void on_tick() { module_watchdog_.tick_alive(); }
@@ -65,10 +65,12 @@ class Module {
   [[nodiscard]] MemoryJob memory_job() { return store_.job(); }
   void memory_done(bool ok) { store_.done(ok); }
 
-  /// The reply to send now; empty: none, or not yet. It lives until `reply_sent`. From here on the own driver is on.
+  /// The reply to send now; empty: none, or not yet. It lives until `reply_sent`.
   Bytes take_reply(Time now);
+  /// The own driver has come on for it.
+  void reply_started() { receiver_.speaking(); }
   /// The last stop bit has left and the driver is off.
-  void reply_sent();
+  void reply_sent(Time now);
 
   // --- for those who look on: panels, logs, tests ---
 
@@ -89,14 +91,15 @@ class Module {
     Replying,    ///< the driver is on
   };
 
-  void boot(Time now);
   void use_settings(Time now);
   void start_listening();
+  [[nodiscard]] bool init_is_known(Time now) const;
   void collect_tallies();
+  [[nodiscard]] Duration turn_around() const;
   void heed_host_ok();
   void expire_host_watchdog(Time now);
   void go_on_storing(Time now);
-  void store_timeout(Time now);
+  void store_leftovers(Time now);
   void judge(const Frame& frame, Time now);
   void carry_out(Time now);
   void refuse_store();
@@ -117,12 +120,15 @@ class Module {
   Phase phase_ = Phase::Booting;
   InterCharacterGap gap_ = InterCharacterGap::Tolerated;
   bool settings_known_ = false;
-  bool storing_timeout_ = false;  ///< the save that is under way was not asked for by a command
-  Deadline timeout_store_retry_;
+  bool storing_leftovers_ = false;    ///< the store that is under way was not asked for by a command
+  bool expired_since_judged_ = false; ///< the host watchdog has expired while a command waits for its store
+  Deadline leftovers_retry_;
+  Deadline init_gives_up_;
   std::uint8_t host_oks_heeded_ = 0;
   Outcome outcome_;
   Reply reply_;
   Deadline reply_due_;
+  Deadline line_quiet_;  ///< after the last reply
 };
 
 }  // namespace ex9000

@@ -19,7 +19,7 @@ void Device::on_receive(std::uint8_t byte, ByteStatus status) {
 }
 
 void Device::on_silence() {
-  const Duration more = module_.on_silence();
+  const Duration more = module_.on_silence(board_.clock.now());
   if (!(more == Duration())) {
     board_.silence_timer.restart(more);
   }
@@ -51,12 +51,13 @@ void Device::look_after_line(Time now) {
       return;
     }
     reply_under_way_ = false;
-    module_.reply_sent();
+    module_.reply_sent(now);
   }
   const Bytes reply = module_.take_reply(now);
   if (reply.size != 0) {
     reply_under_way_ = true;
     board_.line.send(reply);
+    module_.reply_started();
   }
 }
 

@@ -8,8 +8,6 @@ namespace ex9000::sim {
 
 namespace {
 
-constexpr int kWrongArguments = 2;
-
 constexpr const char* kDescription =
     "Simulated EX9000 modules on one RS-485 line, on a pseudo-terminal that a Modbus or DCON master opens.";
 
@@ -76,7 +74,7 @@ Parsed parse_arguments(int argc, const char* const* argv) {
   app.add_option("--pty", arguments.pty_link, "make a pseudo-terminal and link it at this path")->type_name("LINK")->capture_default_str();
   app.add_option("--baud", baud, "the line's rate until a master sets one (default: the first module's)")->type_name("RATE");
   app.add_flag("--log", arguments.log, "print the bus, a line a frame: time, direction, bytes, meaning");
-  app.add_flag("--strict-gaps", arguments.strict_gaps, "Modbus: a gap of more than 1.5 characters spoils a frame, to the letter of the standard");
+  app.add_flag("--strict-gaps", arguments.strict_gaps, "Modbus to the letter: a gap of more than 1.5 characters spoils a frame, and a master that does not wait 3.5 characters between frames is on its own");
   app.add_flag("--models", models, "list the models and exit");
   app.set_version_flag("--version", "ex9000-sim " + std::string(kFirmwareVersion));
   try {

@@ -21,6 +21,9 @@ struct Arguments {
   [[nodiscard]] std::uint32_t line_baud() const { return baud.value_or(modules.front().baud()); }
 };
 
+/// Exit status where an argument is wrong.
+constexpr int kWrongArguments = 2;
+
 /// What the command line comes to: either something to do, or text to print and a status to exit with.
 struct Parsed {
   std::optional<Arguments> arguments;

@@ -16,6 +16,7 @@ struct Bus::End final : Wire {
   Station& station;
   std::size_t index;
   bool driving = false;
+  std::uint32_t sampled_baud = 0;  ///< what the sampler samples at; 0: nothing
   UartSampler sampler;
 };
 
@@ -65,10 +66,16 @@ void Bus::drive(End& end, bool on) {
     }
   }
   if (!on) {
-    // Whatever it was sending ends here; the rest of the byte is the idle level.
-    on_the_wire_.erase(std::remove_if(on_the_wire_.begin(), on_the_wire_.end(),
-                                      [&](const Byte& byte) { return byte.station == end.index && byte.wave.end() > now; }),
-                       on_the_wire_.end());
+    // Whatever it was sending ends here; the rest of the byte is the idle level, for each receiver to make sense of.
+    for (Byte& byte : on_the_wire_) {
+      if (byte.station == end.index && byte.wave.end() > now) {
+        byte.collided = byte.cut_off = true;
+        byte.wave.cut_off = now;
+        std::find_if(waves_.rbegin(), waves_.rend(), [&](const Wave& wave) {
+          return wave.start == byte.wave.start && wave.byte == byte.wave.byte;
+        })->cut_off = now;
+      }
+    }
   }
   for (BusObserver* observer : observers_) {
     observer->driver(end.index, on, now);
@@ -81,14 +88,24 @@ void Bus::put(End& end, std::uint8_t byte, std::uint32_t baud) {
   for (Byte& other : on_the_wire_) {
     other.collided = true;
   }
-  on_the_wire_.push_back({end.index, collided, wave});
+  on_the_wire_.push_back({end.index, collided, false, wave});
   waves_.push_back(wave);
   run_wire();
 }
 
+/// A receiver that was off, or at another rate, begins now, be it in the middle of a byte.
+void Bus::take_rate(End& end) {
+  const std::uint32_t baud = end.station.baud();
+  if (baud != end.sampled_baud) {
+    end.sampled_baud = baud;
+    end.sampler = UartSampler();
+    end.sampler.skip_to(clock_.virtual_now());
+  }
+}
+
 /// Whether a receiver has to look at the wave itself, rather than be handed whole bytes.
 bool Bus::samples(const End& end) const {
-  const std::uint32_t baud = end.station.baud();
+  const std::uint32_t baud = end.sampled_baud;
   if (baud == 0) {
     return false;
   }
@@ -98,8 +115,7 @@ bool Bus::samples(const End& end) const {
 }
 
 void Bus::sample(End& end) {
-  const std::uint32_t baud = end.station.baud();
-  while (const auto received = end.sampler.advance(waves_, baud, clock_.virtual_now())) {
+  while (const auto received = end.sampler.advance(waves_, end.sampled_baud, clock_.virtual_now())) {
     end.station.receive(received->byte, received->status);
   }
 }
@@ -107,6 +123,7 @@ void Bus::sample(End& end) {
 void Bus::run_wire() {
   const VirtualTime now = clock_.virtual_now();
   for (const auto& end : ends_) {
+    take_rate(*end);
     if (samples(*end)) {
       sample(*end);
     }
@@ -118,12 +135,15 @@ void Bus::run_wire() {
     }
     const Byte over = on_the_wire_[i];
     on_the_wire_.erase(on_the_wire_.begin() + static_cast<std::ptrdiff_t>(i));
+    if (over.cut_off) {
+      continue;
+    }
     for (BusObserver* observer : observers_) {
       observer->byte(over.station, over.wave.byte, over.wave.baud, over.collided, over.wave.start, now);
     }
     for (const auto& end : ends_) {
       const bool whole = !over.collided && !end->sampler.busy() && end->sampler.position() <= over.wave.start;
-      if (whole && end->station.baud() == over.wave.baud) {
+      if (whole && end->sampled_baud == over.wave.baud) {
         end->sampler.skip_to(now);
         end->station.receive(over.wave.byte, ByteStatus::Good);
       }
@@ -133,7 +153,7 @@ void Bus::run_wire() {
   next_sample_ = kNever;
   for (const auto& end : ends_) {
     if (samples(*end)) {
-      next_sample_ = std::min(next_sample_, now + VirtualTime(500'000'000 / end->station.baud()));
+      next_sample_ = std::min(next_sample_, now + VirtualTime(500'000'000 / end->sampled_baud));
     }
   }
   forget_waves();
@@ -142,7 +162,7 @@ void Bus::run_wire() {
 void Bus::forget_waves() {
   while (!waves_.empty() && waves_.front().end() <= clock_.virtual_now()) {
     const bool needed = std::any_of(ends_.begin(), ends_.end(), [this](const auto& end) {
-      return end->sampler.busy() && end->sampler.position() < waves_.front().end();
+      return end->sampled_baud != 0 && end->sampler.busy() && end->sampler.position() < waves_.front().end();
     });
     if (needed) {
       return;

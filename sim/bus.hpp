@@ -39,7 +39,7 @@ class BusObserver {
  public:
   /// `station` counts from 0 in the order of attaching.
   virtual void driver(std::size_t station, bool on, VirtualTime now) = 0;
-  /// A byte began at `start` and is over now. `collided`: another driver was on meanwhile.
+  /// A byte began at `start` and is over now, unless its driver went off before. `collided`: another was on meanwhile.
   virtual void byte(std::size_t station, std::uint8_t byte, std::uint32_t baud, bool collided, VirtualTime start,
                     VirtualTime end) = 0;
 
@@ -79,6 +79,7 @@ class Bus {
   void drive(End& end, bool on);
   void put(End& end, std::uint8_t byte, std::uint32_t baud);
   void sample(End& end);
+  void take_rate(End& end);
   [[nodiscard]] bool samples(const End& end) const;
   void forget_waves();
   void run_wire();
@@ -87,6 +88,7 @@ class Bus {
   struct Byte {
     std::size_t station;
     bool collided;
+    bool cut_off;
     Wave wave;
   };
 

@@ -61,15 +61,14 @@ std::string shared_addresses(const std::vector<ModuleSpec>& modules) {
 std::string greeting(const Arguments& arguments, const std::string& device) {
   const std::string link = quoted(arguments.pty_link);
   std::string text = "ex9000-sim " + std::string(kFirmwareVersion) + ", line at " + std::to_string(arguments.line_baud()) +
-                     " baud on " + link + " (" + device + "), Ctrl-C ends it\n";
+                     " baud on " + link + " (" + device + "):\n";
   for (const ModuleSpec& spec : arguments.modules) {
     text += "  " + std::string(spec.model->designation) + " at " + hex_byte_text(spec.address()) + ", " +
             (spec.speaks_ascii() ? "ASCII" : "Modbus RTU") + ", " + std::to_string(spec.baud()) + " baud\n";
     text += spec.speaks_ascii() ? terminal(spec, link) : mbpoll(spec, link);
   }
   text += shared_addresses(arguments.modules);
-  text.pop_back();
-  return text;
+  return text + "Ctrl-C ends it";
 }
 
 }  // namespace ex9000::sim

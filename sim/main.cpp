@@ -4,7 +4,7 @@
 #include <boost/asio/io_context.hpp>
 #include <boost/asio/signal_set.hpp>
 #include <cstdio>
-#include <exception>
+#include <stdexcept>
 #include <string>
 
 #include "sim/arguments.hpp"
@@ -34,14 +34,15 @@ void run(const Arguments& arguments) {
   Pty pty(arguments.pty_link, arguments.line_baud());
   boost::asio::io_context io;
   Pacer* pacer = nullptr;
-  Line line(arguments.modules, arguments.line_baud(),
-            arguments.strict_gaps ? ex9000::InterCharacterGap::Refused : ex9000::InterCharacterGap::Tolerated,
+  const ex9000::InterCharacterGap gap =
+      arguments.strict_gaps ? ex9000::InterCharacterGap::Refused : ex9000::InterCharacterGap::Tolerated;
+  Line line(arguments.modules, arguments.line_baud(), gap,
             [&pacer](std::uint8_t byte, ex9000::ByteStatus /*status*/) { pacer->hear(byte); });
   BusLog log(speakers(arguments), print);
   if (arguments.log) {
     line.bus().observe(log);
   }
-  Pacer paced(io, line, pty, arguments.log ? &log : nullptr,
+  Pacer paced(io, line, pty, arguments.log ? &log : nullptr, gap,
               [&](const std::string& text) { log.note(line.clock().virtual_now(), text); });
   pacer = &paced;
 
@@ -65,6 +66,9 @@ int main(int argc, char** argv) {
   }
   try {
     run(*parsed.arguments);
+  } catch (const std::invalid_argument& error) {
+    std::fprintf(stderr, "ex9000-sim: %s\n", error.what());
+    return kWrongArguments;
   } catch (const std::exception& error) {
     std::fprintf(stderr, "ex9000-sim: %s\n", error.what());
     return kCannotStart;

@@ -1,5 +1,6 @@
 #include "sim/master.hpp"
 
+#include <algorithm>
 #include <utility>
 
 namespace ex9000::sim {
@@ -7,13 +8,13 @@ namespace ex9000::sim {
 Master::Master(Bus& bus, std::uint32_t baud, Receive receive)
     : clock_(bus.clock()), wire_(bus.attach(*this)), baud_(baud), receive_(std::move(receive)) {}
 
-void Master::send(const std::uint8_t* bytes, std::size_t size) {
+void Master::send(const std::uint8_t* bytes, std::size_t size, VirtualTime not_before) {
   waiting_.insert(waiting_.end(), bytes, bytes + size);
-  if (!driving_ && !waiting_.empty()) {
-    driving_ = true;
-    wire_.drive(true);
-    burst_began_ = next_ = clock_.virtual_now();
-    burst_bytes_ = 0;
+  if (!sending() && !waiting_.empty()) {
+    next_ = std::max(clock_.virtual_now(), not_before);
+    if (next_ == clock_.virtual_now()) {
+      run();
+    }
   }
 }
 
@@ -31,6 +32,12 @@ void Master::run() {
     next_ = kNever;
     wire_.drive(false);
     return;
+  }
+  if (!driving_) {
+    driving_ = true;
+    wire_.drive(true);
+    burst_began_ = clock_.virtual_now();
+    burst_bytes_ = 0;
   }
   const std::uint8_t byte = waiting_.front();
   waiting_.pop_front();

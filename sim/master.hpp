@@ -18,9 +18,11 @@ class Master final : public Station {
   Master(const Master&) = delete;
   Master& operator=(const Master&) = delete;
 
-  /// Behind what is waiting already; the driver is on from the first byte to the last.
-  void send(const std::uint8_t* bytes, std::size_t size);
-  [[nodiscard]] bool sending() const { return driving_; }
+  /// Behind what is waiting already, or at once, but not before `not_before`; the driver is on from the first byte to
+  /// the last.
+  void send(const std::uint8_t* bytes, std::size_t size, VirtualTime not_before = VirtualTime(0));
+  /// Bytes are waiting or under way.
+  [[nodiscard]] bool sending() const { return next_ != kNever; }
   /// Bytes handed in whose start bit has not begun.
   [[nodiscard]] std::size_t waiting() const { return waiting_.size(); }
 

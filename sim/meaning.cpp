@@ -57,6 +57,15 @@ std::string dcon_reply(const FrameBytes& bytes) {
 
 std::string hex_word_text(unsigned value) { return hex_byte_text(value >> 8U & 0xFFU) + hex_byte_text(value & 0xFFU); }
 
+/// On any model.
+template <class Row>
+bool lies_in(const Row& row, modbus::Functions listed, unsigned address) {
+  return (row.functions & listed) != 0 &&
+         std::any_of(kModels.begin(), kModels.end(), [&](const Model& model) {
+           return meets(model, row.needs) && address - row.first < modbus::width_of(row.width, model);
+         });
+}
+
 std::string row_meaning(unsigned function, unsigned address) {
   if (function > 0x10 || function == 0x08) {
     return "";
@@ -67,13 +76,12 @@ std::string row_meaning(unsigned function, unsigned address) {
     return ", host OK";
   }
   for (const auto& entry : modbus::kBitRegisters) {
-    const unsigned width = entry.row.width == modbus::Width::One ? 1 : kMaxOutputs;
-    if ((entry.row.functions & listed) != 0 && address - entry.row.first < width) {
+    if (lies_in(entry.row, listed, address)) {
       return ", " + std::string(entry.meaning);
     }
   }
   for (const auto& entry : modbus::kWordRegisters) {
-    if ((entry.row.functions & listed) != 0 && address - entry.row.first < entry.row.count) {
+    if (lies_in(entry.row, listed, address)) {
       return ", " + std::string(entry.meaning);
     }
   }

@@ -53,8 +53,8 @@ void SimulatedModule::start() {
 
 void SimulatedModule::stop() {
   mcu_->line.abort();
+  memory_.cut();  // before the buffers go that it was writing from
   mcu_.reset();
-  memory_.cut();
   outputs_.drive(0);
   wakes_ = kNever;
 }

@@ -13,24 +13,31 @@ namespace {
 /// Beyond this many bytes that the line has not carried yet, the master has to wait, as behind a full UART.
 constexpr std::size_t kMostWaiting = 4096;
 
+/// Modules are up by then; who reads that the line is there may ask at once.
+constexpr VirtualTime kComingUp = std::chrono::milliseconds(100);
+
 /// The kernel may put timers off by 50 us to save power; on a line at 115200 baud that is half a character.
 constexpr unsigned long kTimerSlackNanoseconds = 1;
 
 }  // namespace
 
-Pacer::Pacer(boost::asio::io_context& io, Line& line, Pty& pty, BusLog* log,
+Pacer::Pacer(boost::asio::io_context& io, Line& line, Pty& pty, BusLog* log, InterCharacterGap gap,
              std::function<void(const std::string&)> notice)
     : timer_(io),
       descriptor_(io, dup(pty.master_fd())),
       line_(line),
       pty_(pty),
       log_(log),
+      gap_(gap),
       notice_(std::move(notice)),
-      rate_(line.master().baud()) {}
+      rate_(line.master().baud()) {
+  line.bus().observe(*this);
+}
 
 void Pacer::start() {
   prctl(PR_SET_TIMERSLACK, kTimerSlackNanoseconds);
-  began_ = std::chrono::steady_clock::now();
+  line_.bus().run_for(kComingUp);
+  began_ = std::chrono::steady_clock::now() - line_.clock().virtual_now();
   read();
   follow();
 }
@@ -86,7 +93,27 @@ void Pacer::on_read(std::size_t size) {
   catch_up(written);
   line_.bus().run_until(std::max(written, line_.clock().virtual_now()));
   take_rate();
-  line_.master().send(buffer_.data(), size);
+  line_.master().send(buffer_.data(), size, silence_before(buffer_[0]));
+}
+
+/// Until when a frame to `address` has to wait so that a module that has heard the last one takes it for another.
+VirtualTime Pacer::silence_before(std::uint8_t address) {
+  if (gap_ == InterCharacterGap::Refused || last_speaker_ == 0) {
+    return VirtualTime(0);
+  }
+  const InForce& speaker = line_.module(last_speaker_ - 1).module().state().in_force;
+  if (speaker.protocol == Protocol::Ascii || speaker.address == address) {
+    return VirtualTime(0);
+  }
+  return last_byte_ + std::chrono::microseconds(LineTiming::at(rate_).rtu_silence.microseconds());
+}
+
+void Pacer::driver(std::size_t /*station*/, bool /*on*/, VirtualTime /*now*/) {}
+
+void Pacer::byte(std::size_t station, std::uint8_t /*byte*/, std::uint32_t /*baud*/, bool /*collided*/,
+                 VirtualTime /*start*/, VirtualTime end) {
+  last_speaker_ = station;
+  last_byte_ = end;
 }
 
 /// What nobody reads is lost, as on wires; the pseudo-terminal holds some 4 KiB before that.

@@ -23,13 +23,20 @@ namespace ex9000::sim {
 /// What a process pays for waking up and reading is not charged to the line: bytes that a master has written are taken
 /// as written up to kHostLatency earlier, but never before anything that has happened already. Without it the host's
 /// own delays would add to every transaction.
-class Pacer {
+///
+/// A master that begins to send before T3.5 of silence has passed is heard by the module it has just talked to, which
+/// does not hear its own reply, and by no other: for those the two frames are one. Many masters do so, libmodbus among
+/// them, and get away with it behind adapters that take their time. So does this end: where a frame goes to another
+/// address than that of the module that has just spoken, it waits until the silence is over - unless the line is to
+/// keep to the letter of the standard.
+class Pacer final : private BusObserver {
  public:
   static constexpr std::chrono::microseconds kHostLatency{300};
 
   /// Puts what `line`'s master hears on `pty`, and what comes from it on the line. `log` may be null. All live as long
   /// as `io` runs. `notice` gets a line for people whenever the line's rate changes.
-  Pacer(boost::asio::io_context& io, Line& line, Pty& pty, BusLog* log, std::function<void(const std::string&)> notice);
+  Pacer(boost::asio::io_context& io, Line& line, Pty& pty, BusLog* log, InterCharacterGap gap,
+        std::function<void(const std::string&)> notice);
 
   void start();
   /// From the master's end of the line to the pseudo-terminal; for Line's constructor.
@@ -44,18 +51,25 @@ class Pacer {
   void on_read(std::size_t size);
   void write_heard();
   void take_rate();
+  [[nodiscard]] VirtualTime silence_before(std::uint8_t address);
+  void driver(std::size_t station, bool on, VirtualTime now) override;
+  void byte(std::size_t station, std::uint8_t byte, std::uint32_t baud, bool collided, VirtualTime start,
+            VirtualTime end) override;
 
   boost::asio::steady_timer timer_;
   boost::asio::posix::stream_descriptor descriptor_;
   Line& line_;
   Pty& pty_;
   BusLog* log_;
+  InterCharacterGap gap_;
   std::function<void(const std::string&)> notice_;
   std::chrono::steady_clock::time_point began_;
   std::array<std::uint8_t, 4096> buffer_{};
   std::vector<std::uint8_t> heard_;
   bool reading_ = false;
   std::uint32_t rate_;
+  std::size_t last_speaker_ = 0;  ///< station; 0: the master
+  VirtualTime last_byte_{0};      ///< when its last byte was over
 };
 
 }  // namespace ex9000::sim

@@ -69,10 +69,10 @@ void clear_the_way(const std::string& link) {
   }
   const auto target = link_target(link);
   if (!target || target->rfind("/dev/pts/", 0) != 0) {
-    throw std::runtime_error("--pty " + link + ": something else is there; remove it or name another path");
+    throw std::invalid_argument("--pty " + link + ": something else is there; remove it or name another path");
   }
   if (is_held(*target)) {
-    throw std::runtime_error("--pty " + link + ": another simulator is running there; end it or name another path");
+    throw std::invalid_argument("--pty " + link + ": another simulator is running there; end it or name another path");
   }
   unlink(link.c_str());
 }
@@ -105,7 +105,7 @@ Pty::Pty(std::string link, std::uint32_t baud) : link_(std::move(link)) {
       throw std::runtime_error(device_ + ": " + reason());
     }
     if (symlink(device_.c_str(), link_.c_str()) != 0) {
-      throw std::runtime_error("--pty " + link_ + ": " + reason() + "; name a path that can be written");
+      throw std::invalid_argument("--pty " + link_ + ": " + reason() + "; name a path that can be written");
     }
   } catch (...) {
     close_all();

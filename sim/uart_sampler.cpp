@@ -26,6 +26,9 @@ std::optional<VirtualTime> find_level(const Waves& waves, bool level, VirtualTim
         boundaries.push_back(wave.boundary(bit));
       }
     }
+    if (wave.cut_off > from && wave.cut_off < until) {
+      boundaries.push_back(wave.cut_off);
+    }
   }
   std::sort(boundaries.begin(), boundaries.end());
   const auto found = std::find_if(boundaries.begin(), boundaries.end(),
@@ -38,7 +41,7 @@ std::optional<VirtualTime> find_level(const Waves& waves, bool level, VirtualTim
 VirtualTime Wave::boundary(unsigned index) const { return start + VirtualTime(index * kSecond / baud); }
 
 bool Wave::level(VirtualTime at) const {
-  if (at < start || at >= end()) {
+  if (at < start || at >= end() || at >= cut_off) {
     return true;
   }
   unsigned bit = 0;

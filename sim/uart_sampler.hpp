@@ -17,6 +17,7 @@ struct Wave {
   VirtualTime start;
   std::uint32_t baud;
   std::uint8_t byte;
+  VirtualTime cut_off = hal::doubles::kNever;  ///< the driver went off here
 
   static constexpr unsigned kBits = 10;
 

@@ -20,7 +20,7 @@ void InputEdges::on_edge(unsigned channel, bool level) {
 
 void Inputs::collect(InputEdges& edges, unsigned channels) {
   const std::uint32_t modulus = range_ == CounterRange::FiveDigits ? 100'000U : 65'536U;
-  levels_ = edges.levels();
+  levels_ = static_cast<std::uint16_t>(edges.levels() & ((1U << channels) - 1U));
   for (unsigned channel = 0; channel < channels; ++channel) {
     const auto bit = static_cast<std::uint16_t>(1U << channel);
     const std::uint16_t rising = edges.rising(channel).collect();

@@ -16,7 +16,7 @@ class InputEdges {
   void begin(std::uint16_t levels) { levels_.store_in_interrupt(levels); }
 
   /// Edge interrupt: an edge was flagged on `channel`, whose level is now `level`. Where the level is what it was
-  /// before, there were two edges since. Channels the model lacks are ignored.
+  /// before, there were two edges since. Channels beyond kMaxInputs are ignored.
   void on_edge(unsigned channel, bool level);
 
   [[nodiscard]] std::uint16_t levels() const { return levels_.load(); }
@@ -40,7 +40,7 @@ class Inputs {
     count_rising_edges_ = count_rising_edges;
   }
 
-  /// Takes in what the interrupt has seen; at least every 65535 edges of a channel.
+  /// Takes in what the interrupt has seen on the first `channels`; at least every 65535 edges of a channel.
   void collect(InputEdges& edges, unsigned channels);
 
   [[nodiscard]] std::uint16_t levels() const { return levels_; }

@@ -9,34 +9,28 @@ void Receiver::listen(const Listening& how) {
 }
 
 Duration Receiver::on_byte(std::uint8_t byte, ByteStatus status, Time now) {
-  forget_if_spoken();
+  cut_off_if_spoken(now);
   const std::uint8_t own_address = address_.load();
   if (how_.protocol == Protocol::Ascii) {
     note(dcon_.byte(byte, status, own_address, now), now);
     return Duration();
   }
-  // A frame that this byte ends from behind had its last byte earlier.
-  const Time before = last_byte_;
-  last_byte_ = now;
-  const Verdict verdict = rtu_.byte(byte, status, own_address, now);
-  if (verdict != Verdict::Open) {
-    note(verdict, before);
-  }
+  note(rtu_.byte(byte, status, own_address, now), now);
   return how_.timing.rtu_silence;
 }
 
-Duration Receiver::on_silence() {
-  forget_if_spoken();
-  note(rtu_.silence(address_.load()), last_byte_);
+Duration Receiver::on_silence(Time now) {
+  cut_off_if_spoken(now);
+  note(rtu_.silence(address_.load(), now), now);
   return rtu_.wants_more_silence() ? how_.timing.character : Duration();
 }
 
-void Receiver::forget_if_spoken() {
+void Receiver::cut_off_if_spoken(Time now) {
   const std::uint8_t spoken = spoken_.load();
   if (spoken != spoken_seen_) {
     spoken_seen_ = spoken;
     dcon_.forget();
-    rtu_.forget();
+    note(rtu_.cut_off(address_.load()), now);
   }
 }
 

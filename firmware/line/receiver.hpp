@@ -48,13 +48,13 @@ class Receiver {
   Duration on_byte(std::uint8_t byte, ByteStatus status, Time now);
 
   /// The silence has come. Returns as `on_byte` does.
-  Duration on_silence();
+  Duration on_silence(Time now);
 
   // --- main loop ---
 
   /// The address to answer to; takes effect with the next frame that ends.
   void answer_to(std::uint8_t address) { address_.store_in_main_loop(address); }
-  /// This module's own driver goes on: an open frame is forgotten (D9).
+  /// This module's own driver has come on: a frame that is open and not whole is forgotten (D9).
   void speaking() { spoken_.store_in_main_loop(static_cast<std::uint8_t>(spoken_.load() + 1U)); }
 
   FrameQueue& queue() { return queue_; }
@@ -62,11 +62,11 @@ class Receiver {
   LineTallies& tallies() { return tallies_; }
   /// Counts host OKs, so that a new one is one that differs from the last look.
   [[nodiscard]] std::uint8_t host_oks() const { return host_oks_.load(); }
-  /// When the latest of them was received.
+  /// When the latest of them was over: its CR, or the silence behind it.
   [[nodiscard]] Time host_ok_time() const { return Time(host_ok_time_.load()); }
 
  private:
-  void forget_if_spoken();
+  void cut_off_if_spoken(Time now);
   void note(Verdict verdict, Time now);
   void tally(Verdict verdict);
 
@@ -78,7 +78,6 @@ class Receiver {
   WrittenByMainLoop<std::uint8_t> address_;
   WrittenByMainLoop<std::uint8_t> spoken_;
   std::uint8_t spoken_seen_ = 0;  // interrupt
-  Time last_byte_;                // interrupt
   WrittenByInterrupt<std::uint8_t> host_oks_;
   WrittenByInterrupt<std::uint32_t> host_ok_time_;
 };

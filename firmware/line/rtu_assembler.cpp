@@ -60,8 +60,8 @@ Verdict RtuAssembler::byte(std::uint8_t byte, ByteStatus status, std::uint8_t ow
   return before;
 }
 
-Verdict RtuAssembler::silence(std::uint8_t own_address) {
-  if (received_ == 0) {
+Verdict RtuAssembler::silence(std::uint8_t own_address, Time now) {
+  if (received_ == 0 || now.since(last_) < timing_.rtu_silence) {
     return Verdict::Open;
   }
   if (!lapsed_ && start() == kNowhere) {
@@ -74,8 +74,16 @@ Verdict RtuAssembler::silence(std::uint8_t own_address) {
 Verdict RtuAssembler::end(std::uint8_t own_address) {
   const std::uint8_t begin = start();
   const Verdict verdict = begin == kNowhere ? why_lost() : accept(begin, own_address);
-  forget();
+  close();
   return verdict;
+}
+
+Verdict RtuAssembler::cut_off(std::uint8_t own_address) {
+  if (received_ != 0 && start() != kNowhere) {
+    return end(own_address);
+  }
+  close();
+  return Verdict::Open;
 }
 
 std::uint8_t RtuAssembler::start() const {

@@ -31,20 +31,22 @@ class RtuAssembler {
   Verdict byte(std::uint8_t byte, ByteStatus status, std::uint8_t own_address, Time now);
 
   /// Timer interrupt: no byte was complete since T3.5. Where the CRC is not right yet, a byte may be under way that
-  /// started in time: then `wants_more_silence()`, and the second call without a byte between ends the frame.
+  /// started in time: then `wants_more_silence()`, and the second call without a byte between ends the frame. A call
+  /// that comes too early, because a byte came while it was pending, does nothing.
   /// An accepted frame holds address, function and data, without CRC and without a turn-around 00 before it.
-  Verdict silence(std::uint8_t own_address);
+  Verdict silence(std::uint8_t own_address, Time now);
 
   [[nodiscard]] bool wants_more_silence() const { return lapsed_; }
 
-  /// Interrupt. Forgets an open frame.
-  void forget() {
-    received_ = 0;
-    lapsed_ = false;
-  }
+  /// Interrupt. The own driver has come on: a frame whose CRC is right was whole and is judged, any other is forgotten.
+  Verdict cut_off(std::uint8_t own_address);
 
  private:
   void open();
+  void close() {
+    received_ = 0;
+    lapsed_ = false;
+  }
   Verdict end(std::uint8_t own_address);
   /// Where the frame begins (0, or 1 behind a turn-around 00), or kNowhere where no CRC is right.
   [[nodiscard]] std::uint8_t start() const;

@@ -21,10 +21,9 @@ constexpr auto kWordRows = [] {
   return rows;
 }();
 
-}  // namespace
-
-const BitRow* find_bits(const Model& model, Functions function, std::uint16_t address) {
-  for (const BitRow& row : kBitRows) {
+template <class Rows>
+auto find_in(const Rows& rows, const Model& model, Functions function, std::uint16_t address) -> decltype(&rows[0]) {
+  for (const auto& row : rows) {
     const unsigned index = unsigned{address} - row.first;
     if ((row.functions & function) != 0 && index < width_of(row.width, model) && meets(model, row.needs)) {
       return &row;
@@ -33,14 +32,14 @@ const BitRow* find_bits(const Model& model, Functions function, std::uint16_t ad
   return nullptr;
 }
 
+}  // namespace
+
+const BitRow* find_bits(const Model& model, Functions function, std::uint16_t address) {
+  return find_in(kBitRows, model, function, address);
+}
+
 const WordRow* find_words(const Model& model, Functions function, std::uint16_t address) {
-  for (const WordRow& row : kWordRows) {
-    const unsigned index = unsigned{address} - row.first;
-    if ((row.functions & function) != 0 && index < row.count && meets(model, row.needs)) {
-      return &row;
-    }
-  }
-  return nullptr;
+  return find_in(kWordRows, model, function, address);
 }
 
 }  // namespace ex9000::modbus

@@ -23,8 +23,8 @@ constexpr Functions kWriteMultipleCoils = 1U << 0xFU;
 /// Function 10 (hex) is allowed wherever 06 is.
 constexpr Functions kWriteRegisters = kWriteSingleRegister;
 
-/// How many coils a row has.
-enum class Width : std::uint8_t { One, PerOutput, PerInput };
+/// How many coils or registers a row has.
+enum class Width : std::uint8_t { One, Two, PerOutput, PerInput };
 
 constexpr unsigned width_of(Width width, const Model& model) {
   switch (width) {
@@ -32,6 +32,8 @@ constexpr unsigned width_of(Width width, const Model& model) {
       return model.outputs;
     case Width::PerInput:
       return model.inputs;
+    case Width::Two:
+      return 2;
     case Width::One:
       break;
   }
@@ -60,7 +62,7 @@ struct BitRow {
 /// Likewise of registers.
 struct WordRow {
   std::uint16_t first = 0;
-  std::uint16_t count = 1;
+  Width width = Width::One;
   Needs needs = Needs::Nothing;
   Functions functions = 0;
   bool configuration = false;
@@ -149,22 +151,22 @@ constexpr std::array<BitRegister, 12> kBitRegisters{{
 
 constexpr std::array<WordRegister, 6> kWordRegisters{{
     {"counters", "input counters", "",
-     {0x0000, kMaxInputs, Needs::Inputs, kReadHoldingRegisters | kReadInputRegisters, false, 0, 0, read_counter,
+     {0x0000, Width::PerInput, Needs::Inputs, kReadHoldingRegisters | kReadInputRegisters, false, 0, 0, read_counter,
       nullptr}},
     {"module-code", "module code: 0x0090, then the last two digits", "",
-     {0x01E2, 2, Needs::Nothing, kReadHoldingRegisters, false, 0, 0, read_module_code, nullptr}},
+     {0x01E2, Width::Two, Needs::Nothing, kReadHoldingRegisters, false, 0, 0, read_module_code, nullptr}},
     {"address", "stored address, from the next reset on", "1 to 247; not by broadcast",
-     {0x01E4, 1, Needs::Nothing, kReadHoldingRegisters | kWriteRegisters, true, kFirstModbusAddress,
+     {0x01E4, Width::One, Needs::Nothing, kReadHoldingRegisters | kWriteRegisters, true, kFirstModbusAddress,
       kLastModbusAddress, read_address, write_address}},
     {"baud-code", "stored baud code, from the next reset on", "0x03 to 0x0A; not by broadcast",
-     {0x01E5, 1, Needs::Nothing, kReadHoldingRegisters | kWriteRegisters, true, kFirstBaudCode, kLastBaudCode,
+     {0x01E5, Width::One, Needs::Nothing, kReadHoldingRegisters | kWriteRegisters, true, kFirstBaudCode, kLastBaudCode,
       read_baud_code, write_baud_code}},
     {"watchdog-timeout", "host watchdog timeout in 0.1 s", "0 to 255; not 0 while enabled",
-     {0x01E8, 1, Needs::Nothing, kReadHoldingRegisters | kWriteRegisters, false, 0, 255, read_watchdog_timeout,
+     {0x01E8, Width::One, Needs::Nothing, kReadHoldingRegisters | kWriteRegisters, false, 0, 255, read_watchdog_timeout,
       write_watchdog_timeout}},
     // For people only: host OK is decided where the frame is received and never looked up, so no function is listed.
     {"host-ok", "host OK: read by function 03 or 04 with quantity 0 or 1; restarts the host watchdog, no reply", "",
-     {0x3038, 1, Needs::Nothing, 0, false, 0, 0, nullptr, nullptr}},
+     {0x3038, Width::One, Needs::Nothing, 0, false, 0, 0, nullptr, nullptr}},
 }};
 
 /// The row of coils or discrete inputs that `address` lies in and that is listed for `function` on this model, or null.

@@ -112,6 +112,8 @@ class SettingsChange {
     return set(kTimeoutStatus, values_.timeout_status, value);
   }
 
+  /// It names nothing.
+  [[nodiscard]] constexpr bool empty() const { return fields_ == 0; }
   /// `settings` with this change made; what it does not name stays.
   [[nodiscard]] Settings applied_to(const Settings& settings) const;
 

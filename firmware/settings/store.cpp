@@ -13,15 +13,17 @@ constexpr std::array<std::uint8_t, kCheckBytes> kNoCheck{};
 
 constexpr std::uint16_t address_of(std::uint8_t copy) { return static_cast<std::uint16_t>(copy * kCopyDistance); }
 
-/// Sequence numbers wrap; two copies are never further apart than one.
+/// Sequence numbers wrap; the later one is less than half the range ahead.
 constexpr bool is_later(std::uint16_t a, std::uint16_t b) {
   return static_cast<std::uint16_t>(a - b) - 1U < 0x7FFFU;
 }
 
 }  // namespace
 
-void SettingsStore::begin_loading() {
-  step_ = Step::Load;
+void SettingsStore::begin_loading() { begin_reading(Step::Load); }
+
+void SettingsStore::begin_reading(Step step) {
+  step_ = step;
   copy_ = 0;
   attempt_ = 0;
   blank_copies_ = 0;
@@ -29,9 +31,16 @@ void SettingsStore::begin_loading() {
 }
 
 void SettingsStore::begin_saving(const Settings& settings) {
-  pending_.settings = settings;
-  pending_.sequence = static_cast<std::uint16_t>(stored_.sequence + 1U);
-  record_ = encode_record(model_, pending_);
+  pending_ = settings;
+  if (found_ == Found::Unreadable) {
+    begin_reading(Step::LookAgain);
+  } else {
+    begin_writing();
+  }
+}
+
+void SettingsStore::begin_writing() {
+  record_ = encode_record(model_, {pending_, static_cast<std::uint16_t>(stored_.sequence + 1U)});
   copy_ = current_copy_ == 0 ? 1 : 0;
   attempt_ = 0;
   step_ = Step::Write;
@@ -42,6 +51,7 @@ MemoryJob SettingsStore::job() {
   job.address = address_of(copy_);
   switch (step_) {
     case Step::Load:
+    case Step::LookAgain:
     case Step::Verify:
       job.kind = MemoryJob::Kind::Read;
       job.destination = {read_back_.data(), read_back_.size()};
@@ -64,7 +74,8 @@ MemoryJob SettingsStore::job() {
 void SettingsStore::done(bool ok) {
   switch (step_) {
     case Step::Load:
-      loaded_copy(ok);
+    case Step::LookAgain:
+      read_copy(ok);
       break;
     case Step::Write:
       if (ok) {
@@ -81,6 +92,7 @@ void SettingsStore::done(bool ok) {
       }
       break;
     case Step::Invalidate:
+      doubtful_ = !ok;
       finish_saving(false);
       break;
     case Step::Idle:
@@ -88,24 +100,35 @@ void SettingsStore::done(bool ok) {
   }
 }
 
-void SettingsStore::loaded_copy(bool ok) {
+void SettingsStore::read_copy(bool ok) {
   const auto copy = ok ? decode_record(model_, read_back_) : std::nullopt;
   const bool blank = ok && is_blank(read_back_);
   if (!copy && !blank && ++attempt_ < kAttempts) {
     return;
   }
+  if (!ok && step_ == Step::LookAgain) {
+    finish_saving(false);  // what does not answer is not written to either
+    return;
+  }
   blank_copies_ = static_cast<std::uint8_t>(blank_copies_ + (blank ? 1U : 0U));
   if (copy && (current_copy_ == kNoCopy || is_later(copy->sequence, stored_.sequence))) {
-    stored_ = *copy;
+    stored_.sequence = copy->sequence;
     current_copy_ = copy_;
+    if (step_ == Step::Load) {
+      stored_.settings = copy->settings;
+    }
   }
   attempt_ = 0;
   if (++copy_ == kCopies) {
-    finish_loading();
+    finish_reading();
   }
 }
 
-void SettingsStore::finish_loading() {
+void SettingsStore::finish_reading() {
+  if (step_ == Step::LookAgain) {
+    begin_writing();
+    return;
+  }
   step_ = Step::Idle;
   if (current_copy_ != kNoCopy) {
     found_ = Found::Settings;
@@ -124,7 +147,8 @@ void SettingsStore::finish_saving(bool saved) {
   saved_ = saved;
   step_ = Step::Idle;
   if (saved) {
-    stored_ = pending_;
+    stored_ = {pending_, static_cast<std::uint16_t>(stored_.sequence + 1U)};
+    doubtful_ = false;
     current_copy_ = copy_;
     found_ = Found::Settings;
   }

@@ -41,10 +41,18 @@ class SettingsStore {
   [[nodiscard]] Found found() const { return found_; }
 
   /// Writes and verifies, up to three times. Only while not `busy()`. Afterwards `saved()` and `stored()` hold.
+  ///
+  /// Where no copy could be read at reset, both are read once more first: one that answers now must not count as the
+  /// later one after the next reset.
   void begin_saving(const Settings& settings);
   [[nodiscard]] bool busy() const { return step_ != Step::Idle; }
   /// Whether the last save succeeded.
   [[nodiscard]] bool saved() const { return saved_; }
+
+  /// A save has failed, and its copy may hold the refused settings all the same.
+  [[nodiscard]] bool doubtful() const { return doubtful_; }
+  /// Makes sure that it does not count. Only while not `busy()`; `doubtful()` stays where this fails too.
+  void begin_settling() { step_ = Step::Invalidate; }
 
   /// What a reset now would find.
   [[nodiscard]] const Settings& stored() const { return stored_.settings; }
@@ -55,10 +63,12 @@ class SettingsStore {
   void done(bool ok);
 
  private:
-  enum class Step : std::uint8_t { Idle, Load, Write, Verify, Invalidate };
+  enum class Step : std::uint8_t { Idle, Load, LookAgain, Write, Verify, Invalidate };
 
-  void loaded_copy(bool ok);
-  void finish_loading();
+  void begin_reading(Step step);
+  void read_copy(bool ok);
+  void finish_reading();
+  void begin_writing();
   void retry_or_give_up();
   void finish_saving(bool saved);
 
@@ -70,12 +80,13 @@ class SettingsStore {
   Step step_ = Step::Idle;
   Found found_ = Found::Unreadable;
   bool saved_ = false;
+  bool doubtful_ = false;
   std::uint8_t copy_ = 0;
   std::uint8_t attempt_ = 0;
   std::uint8_t blank_copies_ = 0;
-  std::uint8_t current_copy_ = kNoCopy;  ///< the one that holds `stored_`
-  StoredSettings stored_;
-  StoredSettings pending_;
+  std::uint8_t current_copy_ = kNoCopy;  ///< the one that counts
+  StoredSettings stored_;                ///< what it holds
+  Settings pending_;
   Record record_{};     ///< what is written
   Record read_back_{};  ///< what is read
 };

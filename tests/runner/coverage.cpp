@@ -104,13 +104,11 @@ void Coverage::note(const Module& module, const Bytes& sent) {
     verdict_of(sent, [&](std::uint8_t byte) {
       return assembler.byte(byte, ByteStatus::Good, in_force.address, Time());
     });
-    assembler.silence(in_force.address);
-    verdict = queue.waiting() != nullptr ? Verdict::Accepted : assembler.silence(in_force.address);
-    if (verdict == Verdict::Open) {  // decided at the first silence
-      RtuAssembler again(queue);
-      again.use(LineTiming::at(module.baud()), InterCharacterGap::Tolerated);
-      verdict_of(sent, [&](std::uint8_t byte) { return again.byte(byte, ByteStatus::Good, in_force.address, Time()); });
-      verdict = again.silence(in_force.address);
+    const LineTiming timing = LineTiming::at(module.baud());
+    const Time silent = Time() + timing.rtu_silence;
+    verdict = assembler.silence(in_force.address, silent);
+    if (verdict == Verdict::Open) {
+      verdict = assembler.silence(in_force.address, silent + timing.character);
     }
   }
   const std::string name = name_in(kVerdicts, verdict);
@@ -154,7 +152,7 @@ void Coverage::note_request(const Module& module, ex9000::Bytes frame) {
   }
   for (const auto& row : modbus::kWordRegisters) {
     const unsigned index = unsigned{frame.word(2)} - row.row.first;
-    if ((row.row.functions & bit) != 0 && index < row.row.count) {
+    if ((row.row.functions & bit) != 0 && index < modbus::width_of(row.row.width, model)) {
       reached_.insert(register_id("register", row, function));
     }
   }

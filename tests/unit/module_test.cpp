@@ -232,7 +232,7 @@ TEST(HostWatchdog, ExpiryDrivesTheSafeValueAtOnceEvenWhileACommandIsBeingStored)
   bench.ask(Bytes{1, 0x0F, 0x00, 0x00, 0x00, 0x10, 0x02, 0x0F, 0x00});
   bench.ask(Bytes{1, 0x05, 0x01, 0x04, 0xFF, 0x00});
   bench.send(ModuleBench::with_crc({1, 0x03, 0x30, 0x38, 0x00, 0x00}));
-  const VirtualTime restarted = bench.now();
+  const VirtualTime restarted = bench.now() + microseconds(1750);  // the silence that ends the frame
   std::vector<OutputChange> changes;
   watch_outputs(bench, changes);
   // Storing the power-on value takes some 10 ms and would drive all outputs; the timeout falls into it.
@@ -435,7 +435,7 @@ TEST(Time, NothingHappensWhenTheMicrosecondsWrap) {
   // A frame across the wrap.
   bench.line().bus().run_until(kWrap - milliseconds(4));
   bench.send(host_ok);
-  const VirtualTime restarted = bench.now();
+  const VirtualTime restarted = bench.now() + microseconds(4010);  // T3.5
   ASSERT_GT(restarted, kWrap);
   std::vector<OutputChange> changes;
   watch_outputs(bench, changes);

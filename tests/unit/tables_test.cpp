@@ -78,7 +78,7 @@ TEST(Tables, RowsListedForOneFunctionNeverOverlapAndDoWhatTheyAreListedFor) {
           continue;
         }
         EXPECT_TRUE(function == modbus::kWriteSingleRegister ? entry.row.write != nullptr : entry.row.read != nullptr);
-        for (unsigned i = 0; i < entry.row.count; ++i) {
+        for (unsigned i = 0; i < modbus::width_of(entry.row.width, model); ++i) {
           EXPECT_TRUE(addresses.insert(entry.row.first + i).second) << entry.id;
         }
       }

@@ -1,0 +1,143 @@
+// The program as a program: start, end, and what it says to wrong arguments.
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <csignal>
+#include <filesystem>
+#include <fstream>
+#include <sstream>
+#include <string>
+#include <vector>
+
+#include "tests/system/simulator_process.hpp"
+
+namespace ex9000::system {
+namespace {
+
+namespace fs = std::filesystem;
+
+class Directory {
+ public:
+  Directory() {
+    std::string pattern = (fs::temp_directory_path() / "ex9000-XXXXXX").string();
+    path_ = mkdtemp(pattern.data());
+  }
+  ~Directory() { fs::remove_all(path_); }
+  Directory(const Directory&) = delete;
+  Directory& operator=(const Directory&) = delete;
+  [[nodiscard]] const std::string& path() const { return path_; }
+
+ private:
+  std::string path_;
+};
+
+Finished simulator(std::vector<std::string> arguments, const std::string& directory) {
+  arguments.insert(arguments.begin(), simulator_path());
+  return run(arguments, directory);
+}
+
+TEST(Program, EndsCleanlyAndRemovesItsLink) {
+  for (const int signal : {SIGINT, SIGTERM}) {
+    SimulatorProcess process({"EX9042D-M"});
+    ASSERT_TRUE(fs::is_symlink(process.tty()));
+    EXPECT_EQ(process.end(signal), 0);
+    EXPECT_FALSE(fs::is_symlink(process.tty()));
+  }
+}
+
+TEST(Program, WrongArgumentsGiveOneLineThatNamesThemExitStatus2AndLeaveNothingBehind) {
+  struct Case {
+    std::vector<std::string> arguments;
+    std::string names;
+    std::string mend;
+  };
+  const std::vector<Case> cases{
+      {{}, "no module", "EX9042D-M"},
+      {{"EX1234"}, "EX1234", "--models"},
+      {{"EX9042D-M@"}, "EX9042D-M@", "hex"},
+      {{"EX9042D-M@123"}, "123", "hex"},
+      {{"EX9042D-M@00"}, "00", "01 to F7"},
+      {{"EX9042D-M@F8"}, "F8", "01 to F7"},
+      {{"EX9042D,protocol=modbus"}, "protocol=modbus", "ASCII only"},
+      {{"EX9042D-M,protocol=rtu"}, "protocol=rtu", "modbus or ascii"},
+      {{"EX9042D,baud=9601"}, "baud=9601", "9600"},
+      {{"EX9042D,checksum=yes"}, "checksum=yes", "on or off"},
+      {{"EX9052D,edge=up"}, "edge=up", "rising or falling"},
+      {{"EX9042D,name="}, "name=", "1 to 6"},
+      {{"EX9042D,name=SEVENTY"}, "name=SEVENTY", "1 to 6"},
+      {{"EX9042D,colour=red"}, "colour=red", "protocol="},
+      {{"EX9042D,init"}, "init", "on or off"},
+      {{"EX9042D", "--baud", "12"}, "--baud 12", "1200"},
+      {{"EX9042D", "--bogus"}, "--bogus", "--help"},
+      {{"EX9042D", "--pty", "/no/such/place/tty"}, "--pty /no/such/place/tty", "path"},
+      {{"EX9042D", "--pty", ""}, "--pty", "path"},
+  };
+  for (const Case& wrong : cases) {
+    Directory directory;
+    const Finished finished = simulator(wrong.arguments, directory.path());
+    EXPECT_EQ(finished.status, 2) << finished.error;
+    EXPECT_EQ(finished.output, "");
+    EXPECT_EQ(std::count(finished.error.begin(), finished.error.end(), '\n'), 1) << finished.error;
+    EXPECT_NE(finished.error.find(wrong.names), std::string::npos) << finished.error;
+    EXPECT_NE(finished.error.find(wrong.mend), std::string::npos) << finished.error;
+    EXPECT_TRUE(fs::is_empty(directory.path())) << finished.error;
+  }
+}
+
+TEST(Program, SomethingElseWhereTheLinkShouldGoIsLeftAlone) {
+  Directory directory;
+  std::ofstream(directory.path() + "/ex9000.tty") << "precious";
+  const Finished finished = simulator({"EX9042D"}, directory.path());
+  EXPECT_EQ(finished.status, 2);
+  EXPECT_NE(finished.error.find("something else is there"), std::string::npos) << finished.error;
+  EXPECT_TRUE(fs::is_regular_file(directory.path() + "/ex9000.tty"));
+}
+
+TEST(Program, ALinkInUseIsRefusedAndOneLeftByADeadProcessIsTakenOver) {
+  SimulatorProcess process({"EX9042D-M"});
+  const Finished second = simulator({"EX9042D"}, process.directory());
+  EXPECT_EQ(second.status, 2);
+  EXPECT_NE(second.error.find("another simulator"), std::string::npos) << second.error;
+  EXPECT_TRUE(fs::is_symlink(process.tty()));
+  process.end(SIGKILL);
+  ASSERT_TRUE(fs::is_symlink(process.tty()));
+  SimulatorProcess heir({"EX9042D", "--pty", process.tty()});
+  EXPECT_NE(heir.output().find("Ctrl-C ends it"), std::string::npos);
+  EXPECT_EQ(heir.end(SIGTERM), 0);
+  EXPECT_FALSE(fs::is_symlink(process.tty()));
+}
+
+TEST(Program, TellsItsVersionModelsAndHelp) {
+  Directory directory;
+  EXPECT_EQ(simulator({"--version"}, directory.path()).output, "ex9000-sim D01.00\n");
+  const Finished models = simulator({"--models"}, directory.path());
+  EXPECT_EQ(models.status, 0);
+  EXPECT_EQ(std::count(models.output.begin(), models.output.end(), '\n'), 17);
+  EXPECT_NE(models.output.find("EX9068AD-M"), std::string::npos);
+  const Finished help = simulator({"--help"}, directory.path());
+  EXPECT_EQ(help.status, 0);
+  for (const char* option : {"--pty", "--baud", "--log", "--models", "--version", "--strict-gaps", "protocol=", "edge=",
+                             "checksum=", "name=", "init=", "baud="}) {
+    EXPECT_NE(help.output.find(option), std::string::npos) << option;
+  }
+  EXPECT_TRUE(fs::is_empty(directory.path()));
+}
+
+TEST(Program, PrintsMbpollLinesThatWorkWhenPasted) {
+  SimulatorProcess process({"EX9042D-M@01", "EX9052D-M@1A"});
+  int pasted = 0;
+  std::string line;
+  for (std::istringstream lines(process.output()); std::getline(lines, line);) {
+    if (line.find("mbpoll ") == std::string::npos) {
+      continue;
+    }
+    const Finished finished = run({"sh", "-c", line}, process.directory());
+    EXPECT_EQ(finished.status, 0) << line << "\n" << finished.output << finished.error;
+    ++pasted;
+  }
+  EXPECT_EQ(pasted, 4);
+}
+
+}  // namespace
+}  // namespace ex9000::system

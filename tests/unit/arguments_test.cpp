@@ -1,0 +1,160 @@
+// The command line of ex9000-sim.
+#include "sim/arguments.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <string>
+#include <vector>
+
+namespace ex9000::sim {
+namespace {
+
+Parsed parse(const std::vector<const char*>& words) {
+  std::vector<const char*> argv{"ex9000-sim"};
+  argv.insert(argv.end(), words.begin(), words.end());
+  return parse_arguments(static_cast<int>(argv.size()), argv.data());
+}
+
+Arguments accepted(const std::vector<const char*>& words) {
+  const Parsed parsed = parse(words);
+  EXPECT_TRUE(parsed.arguments) << parsed.error;
+  EXPECT_EQ(parsed.exit_status, 0);
+  EXPECT_EQ(parsed.output, "");
+  EXPECT_EQ(parsed.error, "");
+  return parsed.arguments.value_or(Arguments());
+}
+
+/// Refused in one line that names what is wrong and what would be right.
+void expect_error(const std::vector<const char*>& words, const std::string& wrong, const std::string& mend) {
+  const Parsed parsed = parse(words);
+  EXPECT_FALSE(parsed.arguments);
+  EXPECT_EQ(parsed.output, "");
+  EXPECT_NE(parsed.exit_status, 0);
+  EXPECT_EQ(parsed.error.find("ex9000-sim: "), 0U) << parsed.error;
+  EXPECT_NE(parsed.error.find(wrong), std::string::npos) << parsed.error;
+  EXPECT_NE(parsed.error.find(mend), std::string::npos) << parsed.error;
+  EXPECT_EQ(std::count(parsed.error.begin(), parsed.error.end(), '\n'), 1) << parsed.error;
+  EXPECT_EQ(parsed.error.back(), '\n');
+}
+
+/// Text for standard output, and nothing to do.
+std::string printed(const std::vector<const char*>& words) {
+  const Parsed parsed = parse(words);
+  EXPECT_FALSE(parsed.arguments);
+  EXPECT_EQ(parsed.exit_status, 0);
+  EXPECT_EQ(parsed.error, "");
+  EXPECT_EQ(parsed.output.empty() ? ' ' : parsed.output.back(), '\n');
+  return parsed.output;
+}
+
+TEST(Arguments, OneModuleIsEnough) {
+  const Arguments arguments = accepted({"EX9042D-M"});
+  ASSERT_EQ(arguments.modules.size(), 1U);
+  EXPECT_EQ(arguments.modules[0].model->designation, "EX9042D-M");
+  EXPECT_FALSE(arguments.baud);
+  EXPECT_FALSE(arguments.log);
+  EXPECT_FALSE(arguments.strict_gaps);
+  EXPECT_FALSE(arguments.pty_link.empty());
+}
+
+TEST(Arguments, ModulesKeepTheirOrder) {
+  const Arguments arguments =
+      accepted({"EX9042D-M@01", "EX9052D-M@02,edge=rising", "9068d-m@0A,protocol=ascii"});
+  ASSERT_EQ(arguments.modules.size(), 3U);
+  EXPECT_EQ(arguments.modules[0].address(), 0x01);
+  EXPECT_EQ(arguments.modules[1].address(), 0x02);
+  EXPECT_EQ(arguments.modules[1].settings.format, 0x80);
+  EXPECT_EQ(arguments.modules[2].address(), 0x0A);
+  EXPECT_TRUE(arguments.modules[2].speaks_ascii());
+}
+
+TEST(Arguments, OptionsMayStandBeforeBehindAndBetweenModules) {
+  const Arguments arguments = accepted({"--log", "EX9042D", "--baud", "1200", "EX9052D@02", "--strict-gaps"});
+  EXPECT_EQ(arguments.modules.size(), 2U);
+  EXPECT_TRUE(arguments.log);
+  EXPECT_TRUE(arguments.strict_gaps);
+  EXPECT_EQ(arguments.baud, 1200U);
+}
+
+TEST(Arguments, ThePseudoTerminalsLinkCanBeChosen) {
+  EXPECT_EQ(accepted({"EX9042D", "--pty", "line.tty"}).pty_link, "line.tty");
+  EXPECT_EQ(accepted({"EX9042D", "--pty=line.tty"}).pty_link, "line.tty");
+}
+
+TEST(Arguments, TheLineHasTheFirstModulesRateUnlessOneIsGiven) {
+  EXPECT_EQ(accepted({"EX9042D"}).line_baud(), 9600U);
+  EXPECT_EQ(accepted({"EX9042D,baud=115200", "EX9052D@02"}).line_baud(), 115200U);
+  EXPECT_EQ(accepted({"EX9042D,baud=115200,init=on"}).line_baud(), 9600U);
+  EXPECT_EQ(accepted({"EX9042D,baud=115200", "--baud", "2400"}).line_baud(), 2400U);
+}
+
+TEST(Arguments, EveryRateOfTheModulesCanBeTheLines) {
+  for (const char* rate : {"1200", "2400", "4800", "9600", "19200", "38400", "57600", "115200"}) {
+    EXPECT_EQ(std::to_string(accepted({"EX9042D", "--baud", rate}).line_baud()), rate);
+  }
+}
+
+TEST(Arguments, NoModuleIsRefusedWithAnExample) {
+  expect_error({}, "no module", "EX9042D-M");
+  expect_error({"--log"}, "no module", "--help");
+}
+
+TEST(Arguments, AWrongModuleIsRefused) {
+  expect_error({"EX9999"}, "EX9999", "--models");
+  expect_error({"EX9042D", "EX9052D@GG"}, "EX9052D@GG", "hex digits");
+  expect_error({""}, "empty argument", "--models");
+}
+
+TEST(Arguments, AWrongRateIsRefusedWithTheRightOnes) {
+  for (const char* rate : {"300", "9601", "9600x", "fast", "-1", "0"}) {
+    expect_error({"EX9042D", "--baud", rate}, rate, "9600");
+  }
+}
+
+TEST(Arguments, AnEmptyRateIsRefused) {
+  expect_error({"EX9042D", "--baud", ""}, "--baud", "9600");
+}
+
+TEST(Arguments, AnUnknownOptionIsRefused) {
+  expect_error({"EX9042D", "--verbose"}, "--verbose", "--help");
+}
+
+TEST(Arguments, AnOptionWithoutItsValueIsRefused) {
+  expect_error({"EX9042D", "--baud"}, "--baud", "--help");
+  expect_error({"EX9042D", "--pty"}, "--pty", "--help");
+}
+
+TEST(Arguments, AnEmptyLinkIsRefused) {
+  expect_error({"EX9042D", "--pty", ""}, "--pty", "path");
+}
+
+TEST(Arguments, ModelsListsEveryModelAndWhatItSpeaks) {
+  const std::string text = printed({"--models"});
+  for (const Model& model : kModels) {
+    EXPECT_NE(("\n" + text).find("\n" + std::string(model.designation) + " "), std::string::npos)
+        << model.designation;
+  }
+  EXPECT_EQ(std::count(text.begin(), text.end(), '\n'), 17);
+  EXPECT_NE(text.find("Modbus RTU"), std::string::npos);
+}
+
+TEST(Arguments, HelpTellsOfEveryOptionAndKey) {
+  const std::string text = printed({"--help"});
+  for (const char* word : {"MODULE", "--pty", "--baud", "--log", "--strict-gaps", "--models", "--version",
+                           "protocol=", "baud=", "checksum=", "edge=", "name=", "init=", "@ADDR"}) {
+    EXPECT_NE(text.find(word), std::string::npos) << word;
+  }
+}
+
+TEST(Arguments, VersionIsTheFirmwares) {
+  EXPECT_EQ(printed({"--version"}), "ex9000-sim D01.00\n");
+}
+
+TEST(Arguments, HelpVersionAndModelsNeedNoModuleAndTakeOne) {
+  EXPECT_EQ(printed({"--models", "EX9042D"}), printed({"--models"}));
+  EXPECT_EQ(printed({"EX9042D", "--version"}), printed({"--version"}));
+}
+
+}  // namespace
+}  // namespace ex9000::sim

@@ -1,0 +1,291 @@
+// Edges, latches and counters: wire.md section 5.
+#include "firmware/channels/inputs.hpp"
+
+#include <gtest/gtest.h>
+
+namespace ex9000 {
+namespace {
+
+constexpr unsigned kAll = kMaxInputs;
+
+class InputsTest : public testing::Test {
+ protected:
+  void rise(unsigned channel) { edges_.on_edge(channel, true); }
+  void fall(unsigned channel) { edges_.on_edge(channel, false); }
+  void pulse(unsigned channel, unsigned times) {
+    for (unsigned i = 0; i < times; ++i) {
+      rise(channel);
+      fall(channel);
+    }
+  }
+  void collect(unsigned channels = kAll) { inputs_.collect(edges_, channels); }
+  void pulse_and_collect(unsigned channel, unsigned times) {
+    constexpr unsigned kAtOnce = 30'000;
+    for (; times > kAtOnce; times -= kAtOnce) {
+      pulse(channel, kAtOnce);
+      collect();
+    }
+    pulse(channel, times);
+    collect();
+  }
+
+  InputEdges edges_;
+  Inputs inputs_;
+};
+
+TEST_F(InputsTest, TheLevelAtResetIsNoEdge) {
+  edges_.begin(0x00A5);
+  collect();
+  EXPECT_EQ(inputs_.levels(), 0x00A5);
+  EXPECT_EQ(inputs_.latched_high(), 0);
+  EXPECT_EQ(inputs_.latched_low(), 0);
+  for (unsigned channel = 0; channel < kAll; ++channel) {
+    EXPECT_EQ(inputs_.counter(channel), 0U);
+  }
+}
+
+TEST_F(InputsTest, ARisingEdgeRaisesTheLevelAndSetsLatchHigh) {
+  for (unsigned channel = 0; channel < kAll; ++channel) {
+    rise(channel);
+    collect();
+    EXPECT_EQ(inputs_.levels(), (1U << (channel + 1)) - 1);
+    EXPECT_EQ(inputs_.latched_high(), (1U << (channel + 1)) - 1);
+    EXPECT_EQ(inputs_.latched_low(), 0);
+  }
+}
+
+TEST_F(InputsTest, AFallingEdgeLowersTheLevelAndSetsLatchLow) {
+  edges_.begin(0x00FF);
+  fall(3);
+  collect();
+  EXPECT_EQ(inputs_.levels(), 0x00F7);
+  EXPECT_EQ(inputs_.latched_high(), 0);
+  EXPECT_EQ(inputs_.latched_low(), 0x0008);
+}
+
+TEST_F(InputsTest, AnEdgeThatLeavesTheLevelHighWasTwo) {
+  edges_.begin(0x0002);
+  inputs_.configure(Inputs::CounterRange::FiveDigits, false);
+  rise(1);
+  collect();
+  EXPECT_EQ(inputs_.levels(), 0x0002);
+  EXPECT_EQ(inputs_.latched_high(), 0x0002);
+  EXPECT_EQ(inputs_.latched_low(), 0x0002);
+  EXPECT_EQ(inputs_.counter(1), 1U);
+}
+
+TEST_F(InputsTest, AnEdgeThatLeavesTheLevelLowWasTwo) {
+  inputs_.configure(Inputs::CounterRange::FiveDigits, true);
+  fall(1);
+  collect();
+  EXPECT_EQ(inputs_.levels(), 0);
+  EXPECT_EQ(inputs_.latched_high(), 0x0002);
+  EXPECT_EQ(inputs_.latched_low(), 0x0002);
+  EXPECT_EQ(inputs_.counter(1), 1U);
+}
+
+TEST_F(InputsTest, CountersCountRisingEdgesWhereTheyAreToldTo) {
+  inputs_.configure(Inputs::CounterRange::FiveDigits, true);
+  rise(0);
+  collect();
+  EXPECT_EQ(inputs_.counter(0), 1U);
+  fall(0);
+  collect();
+  EXPECT_EQ(inputs_.counter(0), 1U);
+}
+
+TEST_F(InputsTest, CountersCountFallingEdgesWhereTheyAreToldTo) {
+  inputs_.configure(Inputs::CounterRange::FiveDigits, false);
+  rise(0);
+  collect();
+  EXPECT_EQ(inputs_.counter(0), 0U);
+  fall(0);
+  collect();
+  EXPECT_EQ(inputs_.counter(0), 1U);
+}
+
+TEST_F(InputsTest, FallingEdgesAreCountedFromTheFactory) {
+  rise(0);
+  collect();
+  EXPECT_EQ(inputs_.counter(0), 0U);
+  fall(0);
+  collect();
+  EXPECT_EQ(inputs_.counter(0), 1U);
+}
+
+TEST_F(InputsTest, EveryChannelHasACounterOfItsOwn) {
+  for (unsigned channel = 0; channel < kAll; ++channel) {
+    pulse(channel, channel + 1);
+  }
+  collect();
+  for (unsigned channel = 0; channel < kAll; ++channel) {
+    EXPECT_EQ(inputs_.counter(channel), channel + 1);
+  }
+}
+
+TEST_F(InputsTest, EdgesBetweenTwoLooksAreAllCountedAndNoneTwice) {
+  pulse(2, 1000);
+  collect();
+  collect();
+  EXPECT_EQ(inputs_.counter(2), 1000U);
+  pulse(2, 1);
+  collect();
+  EXPECT_EQ(inputs_.counter(2), 1001U);
+}
+
+TEST_F(InputsTest, AsMuchAs65535EdgesBetweenTwoLooksAreCounted) {
+  pulse(0, 65'535);
+  collect();
+  EXPECT_EQ(inputs_.counter(0), 65'535U);
+}
+
+TEST_F(InputsTest, TheTallyOfEdgesMayPass65536) {
+  pulse_and_collect(0, 65'530);
+  pulse_and_collect(0, 20);
+  EXPECT_EQ(inputs_.counter(0), 65'550U);
+}
+
+TEST_F(InputsTest, AnAsciiCounterWrapsFrom99999To0) {
+  inputs_.configure(Inputs::CounterRange::FiveDigits, false);
+  pulse_and_collect(0, 99'999);
+  EXPECT_EQ(inputs_.counter(0), 99'999U);
+  pulse_and_collect(0, 1);
+  EXPECT_EQ(inputs_.counter(0), 0U);
+  pulse_and_collect(0, 5);
+  EXPECT_EQ(inputs_.counter(0), 5U);
+}
+
+TEST_F(InputsTest, AnAsciiCounterMayWrapWithinOneLook) {
+  inputs_.configure(Inputs::CounterRange::FiveDigits, false);
+  pulse_and_collect(0, 99'990);
+  pulse_and_collect(0, 25);
+  EXPECT_EQ(inputs_.counter(0), 15U);
+}
+
+TEST_F(InputsTest, AModbusCounterWrapsFrom65535To0) {
+  inputs_.configure(Inputs::CounterRange::SixteenBits, false);
+  pulse_and_collect(0, 65'535);
+  EXPECT_EQ(inputs_.counter(0), 65'535U);
+  pulse_and_collect(0, 1);
+  EXPECT_EQ(inputs_.counter(0), 0U);
+  pulse_and_collect(0, 65'536 + 7);
+  EXPECT_EQ(inputs_.counter(0), 7U);
+}
+
+TEST_F(InputsTest, AWrapLeavesTheOtherCountersAlone) {
+  inputs_.configure(Inputs::CounterRange::SixteenBits, false);
+  pulse_and_collect(1, 3);
+  pulse_and_collect(0, 65'536);
+  EXPECT_EQ(inputs_.counter(1), 3U);
+}
+
+TEST_F(InputsTest, LatchesStayUntilTheyAreCleared) {
+  pulse(5, 1);
+  collect();
+  collect();
+  EXPECT_EQ(inputs_.latched_high(), 0x0020);
+  EXPECT_EQ(inputs_.latched_low(), 0x0020);
+  inputs_.clear_latches();
+  EXPECT_EQ(inputs_.latched_high(), 0);
+  EXPECT_EQ(inputs_.latched_low(), 0);
+}
+
+TEST_F(InputsTest, ClearedLatchesStayClearAtAnyLevelThatDoesNotChange) {
+  rise(0);
+  collect();
+  inputs_.clear_latches();
+  collect();
+  EXPECT_EQ(inputs_.levels(), 0x0001);
+  EXPECT_EQ(inputs_.latched_high(), 0);
+  EXPECT_EQ(inputs_.latched_low(), 0);
+}
+
+TEST_F(InputsTest, AClearedLatchIsSetByTheNextEdge) {
+  rise(0);
+  collect();
+  inputs_.clear_latches();
+  fall(0);
+  collect();
+  EXPECT_EQ(inputs_.latched_high(), 0);
+  EXPECT_EQ(inputs_.latched_low(), 0x0001);
+}
+
+TEST_F(InputsTest, ClearingLatchesLeavesCountersAndLevels) {
+  pulse(0, 3);
+  rise(1);
+  collect();
+  inputs_.clear_latches();
+  EXPECT_EQ(inputs_.counter(0), 3U);
+  EXPECT_EQ(inputs_.levels(), 0x0002);
+}
+
+TEST_F(InputsTest, ACounterIsClearedAndTheOthersStay) {
+  for (unsigned channel = 0; channel < kAll; ++channel) {
+    pulse(channel, 9);
+  }
+  collect();
+  inputs_.clear_counters(0x0024);
+  for (unsigned channel = 0; channel < kAll; ++channel) {
+    EXPECT_EQ(inputs_.counter(channel), channel == 2 || channel == 5 ? 0U : 9U) << channel;
+  }
+}
+
+TEST_F(InputsTest, ClearingCountersLeavesTheLatches) {
+  pulse(0, 1);
+  collect();
+  inputs_.clear_counters(0x00FF);
+  EXPECT_EQ(inputs_.latched_high(), 0x0001);
+  EXPECT_EQ(inputs_.latched_low(), 0x0001);
+}
+
+TEST_F(InputsTest, AClearedCounterCountsFrom0) {
+  pulse(0, 100);
+  collect();
+  inputs_.clear_counters(0x0001);
+  collect();
+  EXPECT_EQ(inputs_.counter(0), 0U);
+  pulse(0, 2);
+  collect();
+  EXPECT_EQ(inputs_.counter(0), 2U);
+}
+
+TEST_F(InputsTest, BitsWithoutACounterClearNothing) {
+  pulse(0, 1);
+  collect();
+  inputs_.clear_counters(0xFF00);
+  EXPECT_EQ(inputs_.counter(0), 1U);
+}
+
+TEST_F(InputsTest, EdgesOfChannelsThatNoModelHasAreIgnored) {
+  edges_.on_edge(8, true);
+  edges_.on_edge(15, true);
+  edges_.on_edge(1000, true);
+  collect();
+  EXPECT_EQ(inputs_.levels(), 0);
+  EXPECT_EQ(inputs_.latched_high(), 0);
+}
+
+TEST_F(InputsTest, EdgesOfChannelsThatThisModelLacksSetNoLatchAndNoCounter) {
+  constexpr unsigned kFourInputs = 4;
+  pulse(4, 3);
+  pulse(7, 3);
+  pulse(3, 3);
+  collect(kFourInputs);
+  EXPECT_EQ(inputs_.latched_high(), 0x0008);
+  EXPECT_EQ(inputs_.latched_low(), 0x0008);
+  EXPECT_EQ(inputs_.counter(3), 3U);
+  EXPECT_EQ(inputs_.counter(4), 0U);
+  EXPECT_EQ(inputs_.counter(7), 0U);
+}
+
+// An edge interrupt may come up on a pin that the board has and the model does not.
+TEST_F(InputsTest, ALevelOnAChannelThatThisModelLacksReads0) {
+  constexpr unsigned kFourInputs = 4;
+  rise(7);
+  rise(0);
+  collect(kFourInputs);
+  EXPECT_EQ(inputs_.levels(), 0x0001);
+}
+
+}  // namespace
+}  // namespace ex9000

@@ -1,0 +1,392 @@
+// The receiver: which protocol is heard, what is counted for function 08 (wire.md D1), host OK, D9.
+#include "firmware/line/receiver.hpp"
+
+#include <gtest/gtest.h>
+
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace ex9000 {
+namespace {
+
+using FrameBytes = std::vector<std::uint8_t>;
+
+constexpr std::uint8_t kOwn = 0x01;
+constexpr std::uint32_t kBaud = 9600;
+constexpr Duration kCharacter = Duration(1042);
+
+const FrameBytes kChannel0On{0x01, 0x05, 0x00, 0x00, 0xFF, 0x00, 0x8C, 0x3A};
+const FrameBytes kHostOk{0x01, 0x03, 0x30, 0x38, 0x00, 0x00, 0xCB, 0x07};
+const FrameBytes kGuideExample{0x02, 0x07, 0x41, 0x12};  // for module 02
+
+/// What the receiver has counted, in the order of the sub-functions 0B, 0C, 0E, 0F, 12.
+struct Counts {
+  unsigned bus_messages;
+  unsigned bus_errors;
+  unsigned server_messages;
+  unsigned no_responses;
+  unsigned overruns;
+
+  friend bool operator==(const Counts& a, const Counts& b) {
+    return a.bus_messages == b.bus_messages && a.bus_errors == b.bus_errors &&
+           a.server_messages == b.server_messages && a.no_responses == b.no_responses &&
+           a.overruns == b.overruns;
+  }
+  friend std::ostream& operator<<(std::ostream& out, const Counts& c) {
+    return out << "0B " << c.bus_messages << ", 0C " << c.bus_errors << ", 0E " << c.server_messages
+               << ", 0F " << c.no_responses << ", 12 " << c.overruns;
+  }
+};
+
+class ReceiverTest : public testing::Test {
+ protected:
+  void listen(Protocol protocol, bool checksum = false) {
+    receiver_.listen({protocol, checksum, LineTiming::at(kBaud), InterCharacterGap::Tolerated});
+    receiver_.answer_to(kOwn);
+  }
+
+  Duration byte(std::uint8_t value, ByteStatus status = ByteStatus::Good) {
+    now_ = now_ + kCharacter;
+    return receiver_.on_byte(value, status, now_);
+  }
+  void bytes(const FrameBytes& values) {
+    for (const std::uint8_t value : values) {
+      byte(value);
+    }
+  }
+  void text(std::string_view characters) {
+    for (const char character : characters) {
+      byte(static_cast<std::uint8_t>(character));
+    }
+  }
+  /// So long that every frame is over.
+  void silence() {
+    now_ = now_ + milliseconds(50);
+    while (!(receiver_.on_silence(now_) == Duration())) {
+    }
+  }
+  void frame(const FrameBytes& values) {
+    bytes(values);
+    silence();
+  }
+
+  Counts counts() {
+    LineTallies& tallies = receiver_.tallies();
+    return {tallies.bus_messages.collect(), tallies.bus_errors.collect(), tallies.server_messages.collect(),
+            tallies.no_responses.collect(), tallies.overruns.collect()};
+  }
+  void expect_host_ok_between(Time earliest, Time latest) {
+    EXPECT_LE(receiver_.host_ok_time().since(earliest).microseconds(), latest.since(earliest).microseconds());
+  }
+  bool took_frame() {
+    if (receiver_.queue().waiting() == nullptr) {
+      return false;
+    }
+    receiver_.queue().drop_in_main_loop();
+    return true;
+  }
+
+  Receiver receiver_;
+  Time now_{1000};
+};
+
+// --- tallies ---
+
+TEST_F(ReceiverTest, CountsNothingBeforeAnythingIsReceived) {
+  listen(Protocol::ModbusRtu);
+  EXPECT_EQ(counts(), (Counts{0, 0, 0, 0, 0}));
+}
+
+TEST_F(ReceiverTest, AFrameForThisModuleIsABusAndAServerMessage) {
+  listen(Protocol::ModbusRtu);
+  frame(kChannel0On);
+  EXPECT_EQ(counts(), (Counts{1, 0, 1, 0, 0}));
+}
+
+TEST_F(ReceiverTest, AFrameForAnotherModuleIsABusMessage) {
+  listen(Protocol::ModbusRtu);
+  frame(kGuideExample);
+  EXPECT_EQ(counts(), (Counts{1, 0, 0, 0, 0}));
+}
+
+TEST_F(ReceiverTest, AHostOkIsAServerMessageWithoutAReply) {
+  listen(Protocol::ModbusRtu);
+  frame(kHostOk);
+  EXPECT_EQ(counts(), (Counts{1, 0, 1, 1, 0}));
+}
+
+TEST_F(ReceiverTest, AWrongCrcIsABusError) {
+  listen(Protocol::ModbusRtu);
+  frame({0x01, 0x05, 0x00, 0x00, 0xFF, 0x00, 0x8C, 0x3B});
+  EXPECT_EQ(counts(), (Counts{0, 1, 0, 0, 0}));
+}
+
+TEST_F(ReceiverTest, AFrameOfLessThan4BytesIsABusError) {
+  listen(Protocol::ModbusRtu);
+  frame({0x01});
+  frame({0x01, 0x05, 0x00});
+  EXPECT_EQ(counts(), (Counts{0, 2, 0, 0, 0}));
+}
+
+TEST_F(ReceiverTest, AFrameOfMoreThan256BytesIsOneBusError) {
+  listen(Protocol::ModbusRtu);
+  frame(FrameBytes(257, 0x55));
+  frame(FrameBytes(600, 0x55));
+  EXPECT_EQ(counts(), (Counts{0, 2, 0, 0, 0}));
+}
+
+TEST_F(ReceiverTest, AFrameSpoiledByALineErrorIsOneBusError) {
+  listen(Protocol::ModbusRtu);
+  for (const ByteStatus status : {ByteStatus::FramingError, ByteStatus::Break}) {
+    byte(0x01);
+    byte(0x05, status);
+    byte(0x00, status);
+    frame({0x00, 0xFF, 0x00, 0x8C, 0x3A});
+    EXPECT_EQ(counts(), (Counts{0, 1, 0, 0, 0}));
+  }
+}
+
+TEST_F(ReceiverTest, AFrameLostToAnOverrunIsABusErrorAndAnOverrun) {
+  listen(Protocol::ModbusRtu);
+  byte(0x01);
+  byte(0x05, ByteStatus::Overrun);
+  byte(0x00, ByteStatus::Overrun);
+  frame({0x00, 0xFF, 0x00, 0x8C, 0x3A});
+  EXPECT_EQ(counts(), (Counts{0, 1, 0, 0, 1}));
+}
+
+TEST_F(ReceiverTest, AFrameThatFindsNoRoomIsABusMessageAndAnOverrun) {
+  listen(Protocol::ModbusRtu);
+  frame(kChannel0On);
+  counts();
+  frame(kChannel0On);
+  const Counts counted = counts();
+  EXPECT_EQ(counted.bus_messages, 1U);
+  EXPECT_EQ(counted.bus_errors, 0U);
+  EXPECT_EQ(counted.overruns, 1U);
+}
+
+TEST_F(ReceiverTest, CountsEveryFrameOnce) {
+  listen(Protocol::ModbusRtu);
+  for (int i = 0; i < 300; ++i) {
+    frame(kChannel0On);
+    EXPECT_TRUE(took_frame());
+    frame(kGuideExample);
+    frame({0xFF});
+  }
+  EXPECT_EQ(counts(), (Counts{600, 300, 300, 0, 0}));
+}
+
+TEST_F(ReceiverTest, AFrameThatALateByteEndsIsCountedToo) {
+  listen(Protocol::ModbusRtu);
+  bytes(kChannel0On);
+  now_ = now_ + milliseconds(10);
+  byte(0x01);
+  EXPECT_EQ(counts(), (Counts{1, 0, 1, 0, 0}));
+}
+
+TEST_F(ReceiverTest, AnOpenFrameIsNotCounted) {
+  listen(Protocol::ModbusRtu);
+  bytes(kChannel0On);
+  EXPECT_EQ(counts(), (Counts{0, 0, 0, 0, 0}));
+}
+
+// --- host OK ---
+
+TEST_F(ReceiverTest, AHostOkOfModbusIsReceivedWithTheSilenceBehindIt) {
+  listen(Protocol::ModbusRtu);
+  const std::uint8_t before = receiver_.host_oks();
+  bytes(kHostOk);
+  const Time end = now_;
+  EXPECT_EQ(receiver_.host_oks(), before);
+  silence();
+  EXPECT_EQ(receiver_.host_oks(), before + 1);
+  expect_host_ok_between(end, now_);
+}
+
+TEST_F(ReceiverTest, AHostOkThatALateByteEndsIsReceivedByThen) {
+  listen(Protocol::ModbusRtu);
+  bytes(kHostOk);
+  const Time end = now_;
+  now_ = now_ + milliseconds(10);
+  byte(0x01);
+  EXPECT_EQ(receiver_.host_oks(), 1);
+  expect_host_ok_between(end, now_);
+}
+
+TEST_F(ReceiverTest, AHostOkOfAsciiCountsFromItsCarriageReturn) {
+  listen(Protocol::Ascii);
+  text("~**\r");
+  EXPECT_EQ(receiver_.host_oks(), 1);
+  EXPECT_EQ(receiver_.host_ok_time().microseconds(), now_.microseconds());
+}
+
+TEST_F(ReceiverTest, EveryHostOkIsCounted) {
+  listen(Protocol::Ascii);
+  for (std::uint8_t i = 1; i <= 200; ++i) {
+    text("~**\r");
+    EXPECT_EQ(receiver_.host_oks(), i);
+  }
+}
+
+TEST_F(ReceiverTest, NoOtherFrameIsAHostOk) {
+  listen(Protocol::Ascii);
+  text("$01M\r$02M\r#**\r~**X\r");
+  EXPECT_EQ(receiver_.host_oks(), 0);
+}
+
+TEST_F(ReceiverTest, AHostOkIsNotLostWhileAFrameWaits) {
+  listen(Protocol::Ascii);
+  text("$01M\r");
+  text("~**\r");
+  EXPECT_EQ(receiver_.host_oks(), 1);
+  EXPECT_TRUE(took_frame());
+  EXPECT_FALSE(took_frame());
+}
+
+TEST_F(ReceiverTest, AHostOkAcrossTheWrapOfTheClockKeepsItsTime) {
+  now_ = Time(0U - 4 * kCharacter.microseconds());
+  listen(Protocol::Ascii);
+  text("~**\r");
+  EXPECT_EQ(receiver_.host_ok_time().microseconds(), 0U);
+}
+
+// --- protocol, checksum, address ---
+
+TEST_F(ReceiverTest, ModbusDoesNotHearAscii) {
+  listen(Protocol::ModbusRtu);
+  text("$01M\r");
+  silence();
+  EXPECT_FALSE(took_frame());
+}
+
+TEST_F(ReceiverTest, AsciiDoesNotHearModbus) {
+  listen(Protocol::Ascii);
+  frame(kChannel0On);
+  byte('\r');
+  EXPECT_FALSE(took_frame());
+}
+
+TEST_F(ReceiverTest, TheChecksumIsWantedWhereItIsEnabled) {
+  listen(Protocol::Ascii, true);
+  text("$012\r");
+  EXPECT_FALSE(took_frame());
+  text("$012B7\r");
+  EXPECT_TRUE(took_frame());
+}
+
+TEST_F(ReceiverTest, ANewAddressHoldsForTheNextFrameThatEnds) {
+  listen(Protocol::Ascii);
+  text("$02M");
+  receiver_.answer_to(0x02);
+  text("\r");
+  EXPECT_TRUE(took_frame());
+  text("$01M\r");
+  EXPECT_FALSE(took_frame());
+}
+
+TEST_F(ReceiverTest, ANewAddressHoldsForModbusToo) {
+  listen(Protocol::ModbusRtu);
+  frame(kGuideExample);
+  EXPECT_FALSE(took_frame());
+  receiver_.answer_to(0x02);
+  frame(kGuideExample);
+  EXPECT_TRUE(took_frame());
+}
+
+// --- the durations ---
+
+TEST_F(ReceiverTest, AsciiWantsNoSilence) {
+  listen(Protocol::Ascii);
+  for (const char character : std::string_view("$01M\r")) {
+    EXPECT_EQ(byte(static_cast<std::uint8_t>(character)).microseconds(), 0U);
+  }
+  EXPECT_EQ(receiver_.on_silence(now_ + milliseconds(50)).microseconds(), 0U);
+}
+
+TEST_F(ReceiverTest, ModbusWantsT35BehindEveryByteAndNeverLess) {
+  listen(Protocol::ModbusRtu);
+  constexpr double kT35 = 3.5 * 11 * 1e6 / kBaud;
+  constexpr double kRounding = 3;
+  for (const std::uint8_t value : kChannel0On) {
+    const std::uint32_t wanted = byte(value).microseconds();
+    EXPECT_GE(wanted, kT35);
+    EXPECT_LE(wanted, kT35 + kRounding);
+  }
+}
+
+TEST_F(ReceiverTest, ModbusWantsNoMoreSilenceBehindARightCrc) {
+  listen(Protocol::ModbusRtu);
+  bytes(kChannel0On);
+  EXPECT_EQ(receiver_.on_silence(now_ + milliseconds(50)).microseconds(), 0U);
+  EXPECT_TRUE(took_frame());
+}
+
+TEST_F(ReceiverTest, ModbusWantsOneMoreCharacterBehindAWrongCrc) {
+  listen(Protocol::ModbusRtu);
+  bytes({0x01, 0x05, 0x00});
+  constexpr double kTenBits = 10 * 1e6 / kBaud;
+  constexpr double kRounding = 3;
+  const std::uint32_t wanted = receiver_.on_silence(now_ + milliseconds(50)).microseconds();
+  EXPECT_GE(wanted, kTenBits);
+  EXPECT_LE(wanted, kTenBits + kRounding);
+  EXPECT_EQ(receiver_.on_silence(now_ + milliseconds(50)).microseconds(), 0U);
+}
+
+TEST_F(ReceiverTest, SilenceWithoutAFrameWantsNoMore) {
+  listen(Protocol::ModbusRtu);
+  EXPECT_EQ(receiver_.on_silence(now_ + milliseconds(50)).microseconds(), 0U);
+  EXPECT_EQ(counts(), (Counts{0, 0, 0, 0, 0}));
+}
+
+// --- speaking ---
+
+TEST_F(ReceiverTest, AnOpenAsciiFrameIsForgottenWhenTheModuleSpeaks) {
+  listen(Protocol::Ascii);
+  text("$01");
+  receiver_.speaking();
+  text("M\r");
+  EXPECT_FALSE(took_frame());
+  text("$01M\r");
+  EXPECT_TRUE(took_frame());
+}
+
+TEST_F(ReceiverTest, AnOpenModbusFrameIsForgottenWhenTheModuleSpeaks) {
+  listen(Protocol::ModbusRtu);
+  bytes({0x01, 0x05, 0x00});
+  receiver_.speaking();
+  EXPECT_EQ(receiver_.on_silence(now_ + milliseconds(50)).microseconds(), 0U);
+  EXPECT_EQ(counts(), (Counts{0, 0, 0, 0, 0}));
+  frame(kChannel0On);
+  EXPECT_TRUE(took_frame());
+}
+
+TEST_F(ReceiverTest, TheNextFrameDoesNotContinueOneForgotten) {
+  listen(Protocol::ModbusRtu);
+  bytes({0x01, 0x05, 0x00});
+  receiver_.speaking();
+  frame(kChannel0On);
+  EXPECT_TRUE(took_frame());
+  EXPECT_EQ(counts(), (Counts{1, 0, 1, 0, 0}));
+}
+
+TEST_F(ReceiverTest, SpeakingLeavesTheWaitingFrame) {
+  listen(Protocol::Ascii);
+  text("$01M\r");
+  receiver_.speaking();
+  text("$02M\r");
+  EXPECT_TRUE(took_frame());
+}
+
+TEST_F(ReceiverTest, SpeakingForgetsOnlyWhatIsOpenThen) {
+  listen(Protocol::Ascii);
+  for (int i = 0; i < 300; ++i) {
+    receiver_.speaking();
+    text("$01M\r");
+    EXPECT_TRUE(took_frame()) << i;
+  }
+}
+
+}  // namespace
+}  // namespace ex9000

@@ -1,0 +1,305 @@
+// Settings: what a module comes with, what a model can have, and how a command changes them (wire.md 2, 4, 7,
+// 8).
+#include "firmware/settings/settings.hpp"
+
+#include <gtest/gtest.h>
+
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+namespace ex9000 {
+namespace {
+
+const Model& model(std::string_view designation) {
+  for (const Model& each : kModels) {
+    if (each.designation == designation) {
+      return each;
+    }
+  }
+  ADD_FAILURE() << designation;
+  return kModels[0];
+}
+
+std::string text_of(const Name& name) {
+  return {name.bytes().begin(), name.bytes().end()};
+}
+
+// --- factory ---
+
+TEST(FactorySettings, AreThoseOfSection2OnEveryModel) {
+  for (const Model& each : kModels) {
+    const Settings factory = Settings::factory(each);
+    EXPECT_EQ(factory.address, 0x01) << each.designation;
+    EXPECT_EQ(factory.baud_code, 0x06) << each.designation;
+    EXPECT_EQ(factory.format, 0x00) << each.designation;
+    EXPECT_EQ(factory.power_on_value, 0) << each.designation;
+    EXPECT_EQ(factory.safe_value, 0) << each.designation;
+    EXPECT_FALSE(factory.watchdog_enabled) << each.designation;
+    EXPECT_EQ(factory.watchdog_timeout, 0xFF) << each.designation;
+    EXPECT_FALSE(factory.timeout_status) << each.designation;
+  }
+}
+
+TEST(FactorySettings, AnMModelSpeaksModbusAndTheOthersAscii) {
+  for (const Model& each : kModels) {
+    const bool is_m = each.designation.substr(each.designation.size() - 2) == "-M";
+    EXPECT_EQ(Settings::factory(each).protocol, is_m ? Protocol::ModbusRtu : Protocol::Ascii)
+        << each.designation;
+  }
+}
+
+TEST(FactorySettings, HaveTheNameOfSection1) {
+  const std::vector<std::pair<std::string, std::string>> names{
+      {"EX9042D", "9042D"},     {"EX9042D-M", "9042M"},    {"EX9043D", "9043D"}, {"EX9043D-M", "9043M"},
+      {"EX9052D", "9052"},      {"EX9052D-M", "9052M"},    {"EX9044D", "9044"},  {"EX9050D", "9050"},
+      {"EX9068D-M", "9068D-M"}, {"EX9068AD-M", "9068D-M"}, {"EX9055D", "9055"},  {"EX9060D", "9060"},
+      {"EX9063D", "9063"},      {"EX9065D", "9065"},       {"EX9066D", "9066"},  {"EX9067D", "9067"},
+      {"EX9068D", "9068"}};
+  ASSERT_EQ(names.size(), kModels.size());
+  for (const auto& [designation, name] : names) {
+    EXPECT_EQ(text_of(Settings::factory(model(designation)).name), name) << designation;
+  }
+}
+
+TEST(FactorySettings, ArePossibleOnTheirModel) {
+  for (const Model& each : kModels) {
+    EXPECT_TRUE(Settings::factory(each).possible_for(each)) << each.designation;
+  }
+}
+
+// --- names ---
+
+TEST(Name, HoldsUpTo7Characters) {
+  EXPECT_EQ(text_of(Name("9068D-M")), "9068D-M");
+  EXPECT_EQ(text_of(Name("x")), "x");
+  EXPECT_EQ(text_of(Name()), "");
+}
+
+TEST(Name, EqualsOneOfTheSameCharactersOnly) {
+  EXPECT_TRUE(Name("9042D") == Name("9042D"));
+  EXPECT_FALSE(Name("9042D") == Name("9042d"));
+  EXPECT_FALSE(Name("9042") == Name("9042D"));
+  EXPECT_FALSE(Name("9042") == Name("9042 "));
+}
+
+TEST(Name, TakesCharactersFrom20To7E) {
+  for (unsigned character = 0; character < 256; ++character) {
+    EXPECT_EQ(Name::is_name_character(static_cast<std::uint8_t>(character)),
+              character >= 0x20 && character <= 0x7E);
+  }
+}
+
+// --- possible_for ---
+
+class Possible : public testing::Test {
+ protected:
+  [[nodiscard]] bool possible() const { return settings_.possible_for(model_); }
+  void use(std::string_view designation) {
+    model_ = model(designation);
+    settings_ = Settings::factory(model_);
+  }
+  Model model_ = model("EX9042D-M");
+  Settings settings_ = Settings::factory(model_);
+};
+
+TEST_F(Possible, EveryAddressInAscii) {
+  settings_.protocol = Protocol::Ascii;
+  for (unsigned address = 0; address < 256; ++address) {
+    settings_.address = static_cast<std::uint8_t>(address);
+    EXPECT_TRUE(possible()) << address;
+  }
+}
+
+TEST_F(Possible, Addresses1To247InModbus) {
+  for (unsigned address = 0; address < 256; ++address) {
+    settings_.address = static_cast<std::uint8_t>(address);
+    EXPECT_EQ(possible(), address >= 1 && address <= 247) << address;
+  }
+}
+
+TEST_F(Possible, ModbusOnMModelsOnly) {
+  for (const Model& each : kModels) {
+    Settings settings = Settings::factory(each);
+    settings.protocol = Protocol::ModbusRtu;
+    EXPECT_EQ(settings.possible_for(each), each.designation.substr(each.designation.size() - 2) == "-M");
+    settings.protocol = Protocol::Ascii;
+    EXPECT_TRUE(settings.possible_for(each));
+  }
+}
+
+TEST_F(Possible, BaudCodes03To0A) {
+  for (unsigned code = 0; code < 256; ++code) {
+    settings_.baud_code = static_cast<std::uint8_t>(code);
+    EXPECT_EQ(possible(), code >= 0x03 && code <= 0x0A) << code;
+  }
+}
+
+TEST_F(Possible, OnlyBits7And6OfTheFormat) {
+  for (unsigned format = 0; format < 256; ++format) {
+    settings_.format = static_cast<std::uint8_t>(format);
+    EXPECT_EQ(possible(), (format & 0x3FU) == 0) << format;
+  }
+}
+
+TEST_F(Possible, OutputValuesOfTheModelsChannelsOnly) {
+  const std::vector<std::pair<std::string_view, unsigned>> outputs{
+      {"EX9042D", 13}, {"EX9043D", 16}, {"EX9052D", 0}, {"EX9068D-M", 8}, {"EX9060D", 4}, {"EX9063D", 3}};
+  for (const auto& [designation, channels] : outputs) {
+    use(designation);
+    for (unsigned bit = 0; bit < 16; ++bit) {
+      settings_.power_on_value = static_cast<std::uint16_t>(1U << bit);
+      settings_.safe_value = 0;
+      EXPECT_EQ(possible(), bit < channels) << designation << " power-on bit " << bit;
+      settings_.safe_value = settings_.power_on_value;
+      settings_.power_on_value = 0;
+      EXPECT_EQ(possible(), bit < channels) << designation << " safe bit " << bit;
+    }
+  }
+}
+
+TEST_F(Possible, NamesOf1To6Characters) {
+  settings_.name = Name();
+  EXPECT_FALSE(possible());
+  settings_.name = Name("A");
+  EXPECT_TRUE(possible());
+  settings_.name = Name("ABCDEF");
+  EXPECT_TRUE(possible());
+  settings_.name = Name("ABCDEFG");
+  EXPECT_FALSE(possible());
+}
+
+TEST_F(Possible, NamesOf7CharactersOnTheTwoEX9068MModels) {
+  for (const char* designation : {"EX9068D-M", "EX9068AD-M"}) {
+    use(designation);
+    settings_.name = Name("ABCDEFG");
+    EXPECT_TRUE(possible());
+  }
+  use("EX9068D");
+  settings_.name = Name("ABCDEFG");
+  EXPECT_FALSE(possible());
+}
+
+TEST_F(Possible, NamesOfPrintableCharactersOnly) {
+  settings_.name = Name(" ~$01m");
+  EXPECT_TRUE(possible());
+  for (const char* name : {"\x1F", "A\x7F", "AB\r", "\xFF"}) {
+    settings_.name = Name(name);
+    EXPECT_FALSE(possible()) << name;
+  }
+}
+
+TEST_F(Possible, Timeout0OnlyWhileTheWatchdogIsDisabled) {
+  settings_.watchdog_timeout = 0;
+  EXPECT_TRUE(possible());
+  settings_.watchdog_enabled = true;
+  EXPECT_FALSE(possible());
+  settings_.watchdog_timeout = 1;
+  EXPECT_TRUE(possible());
+}
+
+TEST_F(Possible, TheTimeoutStatusWithAndWithoutTheWatchdogArmedAgain) {
+  settings_.timeout_status = true;
+  EXPECT_TRUE(possible());
+  settings_.watchdog_enabled = true;
+  EXPECT_TRUE(possible());
+}
+
+// --- changes ---
+
+struct FieldChange {
+  const char* field;
+  SettingsChange change;
+  Settings expected;
+};
+
+/// One for each field, each with another value than `from`.
+std::vector<FieldChange> changes_of_each_field(const Settings& from) {
+  std::vector<FieldChange> changes;
+  const auto add = [&](const char* field, const SettingsChange& change, auto mutate) {
+    Settings expected = from;
+    mutate(expected);
+    changes.push_back({field, change, expected});
+  };
+  add("address", SettingsChange().address(0x2A), [](Settings& s) { s.address = 0x2A; });
+  add("baud code", SettingsChange().baud_code(0x0A), [](Settings& s) { s.baud_code = 0x0A; });
+  add("format", SettingsChange().format(0xC0), [](Settings& s) { s.format = 0xC0; });
+  add("protocol", SettingsChange().protocol(Protocol::Ascii),
+      [](Settings& s) { s.protocol = Protocol::Ascii; });
+  add("name", SettingsChange().name(Name("pump")), [](Settings& s) { s.name = Name("pump"); });
+  add("power-on value", SettingsChange().power_on_value(0x1234),
+      [](Settings& s) { s.power_on_value = 0x1234; });
+  add("safe value", SettingsChange().safe_value(0x0F0F), [](Settings& s) { s.safe_value = 0x0F0F; });
+  add("watchdog enable", SettingsChange().watchdog_enabled(true),
+      [](Settings& s) { s.watchdog_enabled = true; });
+  add("timeout", SettingsChange().watchdog_timeout(0x64), [](Settings& s) { s.watchdog_timeout = 0x64; });
+  add("timeout status", SettingsChange().timeout_status(true), [](Settings& s) { s.timeout_status = true; });
+  return changes;
+}
+
+TEST(SettingsChange, OfNothingLeavesAllAsItIs) {
+  for (const Model& each : kModels) {
+    EXPECT_TRUE(SettingsChange().applied_to(Settings::factory(each)) == Settings::factory(each));
+  }
+}
+
+TEST(SettingsChange, OfOneFieldChangesThatFieldAlone) {
+  const Settings factory = Settings::factory(model("EX9042D-M"));
+  for (const FieldChange& each : changes_of_each_field(factory)) {
+    EXPECT_TRUE(each.change.applied_to(factory) == each.expected) << each.field;
+  }
+}
+
+TEST(SettingsChange, OfOneFieldMakesADifference) {
+  const Settings factory = Settings::factory(model("EX9042D-M"));
+  for (const FieldChange& each : changes_of_each_field(factory)) {
+    EXPECT_TRUE(each.change.applied_to(factory) != factory) << each.field;
+  }
+}
+
+TEST(SettingsChange, OfOneFieldKeepsWhatOthersHaveChanged) {
+  const Settings factory = Settings::factory(model("EX9042D-M"));
+  Settings all = factory;
+  for (const FieldChange& each : changes_of_each_field(factory)) {
+    all = each.change.applied_to(all);
+  }
+  EXPECT_EQ(all.address, 0x2A);
+  EXPECT_EQ(all.baud_code, 0x0A);
+  EXPECT_EQ(all.format, 0xC0);
+  EXPECT_EQ(all.protocol, Protocol::Ascii);
+  EXPECT_EQ(text_of(all.name), "pump");
+  EXPECT_EQ(all.power_on_value, 0x1234);
+  EXPECT_EQ(all.safe_value, 0x0F0F);
+  EXPECT_TRUE(all.watchdog_enabled);
+  EXPECT_EQ(all.watchdog_timeout, 0x64);
+  EXPECT_TRUE(all.timeout_status);
+}
+
+TEST(SettingsChange, OfSeveralFieldsChangesThemTogether) {
+  const Settings factory = Settings::factory(model("EX9042D-M"));
+  const Settings changed = SettingsChange().address(7).baud_code(3).applied_to(factory);
+  Settings expected = factory;
+  expected.address = 7;
+  expected.baud_code = 3;
+  EXPECT_TRUE(changed == expected);
+}
+
+TEST(SettingsChange, TheLastValueOfAFieldCounts) {
+  const Settings factory = Settings::factory(model("EX9042D-M"));
+  EXPECT_EQ(SettingsChange().address(7).address(8).applied_to(factory).address, 8);
+}
+
+TEST(SettingsChange, ToFalseOr0IsAChangeToo) {
+  Settings settings = Settings::factory(model("EX9042D-M"));
+  settings.watchdog_enabled = settings.timeout_status = true;
+  settings.safe_value = 0x1FFF;
+  const Settings changed =
+      SettingsChange().watchdog_enabled(false).timeout_status(false).safe_value(0).applied_to(settings);
+  EXPECT_FALSE(changed.watchdog_enabled);
+  EXPECT_FALSE(changed.timeout_status);
+  EXPECT_EQ(changed.safe_value, 0);
+}
+
+}  // namespace
+}  // namespace ex9000
