@@ -7,8 +7,8 @@ namespace ex9000 {
 
 namespace {
 
-constexpr Duration kStoreRetry = milliseconds(1000);    // D15
-constexpr Duration kInitGivesUp = milliseconds(50);      // D13
+constexpr Duration kStoreRetry = milliseconds(1000);  // D15
+constexpr Duration kInitGivesUp = milliseconds(50);   // D13
 
 constexpr std::uint8_t kInitModeAddress = 0x00;
 
@@ -51,7 +51,7 @@ void Module::step(bool init_switch, Time now) {
     }
     store_leftovers(now);
   }
-  led_.show(state_.settings.timeout_status ? StatusLed::Pattern::HostTimeout
+  led_.show(state_.settings.timeout_status             ? StatusLed::Pattern::HostTimeout
             : settings_known_ && settings_unreadable() ? StatusLed::Pattern::SettingsUnreadable
                                                        : StatusLed::Pattern::Steady,
             now);
@@ -60,7 +60,9 @@ void Module::step(bool init_switch, Time now) {
 // --- reset ---
 
 /// A switch that never stands still is no reason not to come up.
-bool Module::init_is_known(Time now) const { return init_switch_.known() || init_gives_up_.reached(now); }
+bool Module::init_is_known(Time now) const {
+  return init_switch_.known() || init_gives_up_.reached(now);
+}
 
 void Module::use_settings(Time now) {
   settings_known_ = true;
@@ -209,7 +211,9 @@ void Module::count_exception() {
   }
 }
 
-void Module::finish_request() { phase_ = reply_.empty() ? Phase::Idle : Phase::ReplyReady; }
+void Module::finish_request() {
+  phase_ = reply_.empty() ? Phase::Idle : Phase::ReplyReady;
+}
 
 /// Silence before a reply: behind the request, and behind the reply before it.
 Duration Module::turn_around() const {

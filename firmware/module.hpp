@@ -20,11 +20,13 @@
 
 namespace ex9000 {
 
-/// The device without its board. It touches no peripheral and reads no clock: bytes, edges, levels and the time come in
-/// as arguments; outputs, LED, reply and memory job are asked for. An object lives from one reset to the next.
+/// The device without its board. It touches no peripheral and reads no clock: bytes, edges, levels and the
+/// time come in as arguments; outputs, LED, reply and memory job are asked for. An object lives from one
+/// reset to the next.
 ///
-/// Functions named `on_...` are for interrupts, which must not interrupt each other within one line: `on_byte` and
-/// `on_silence` share a level, `on_edge` and `on_tick` may have others. All else is for the main loop. Nothing blocks.
+/// Functions named `on_...` are for interrupts, which must not interrupt each other within one line:
+/// `on_byte` and `on_silence` share a level, `on_edge` and `on_tick` may have others. All else is for the
+/// main loop. Nothing blocks.
 class Module {
  public:
   explicit constexpr Module(const Model& model) : state_(model), store_(model) {}
@@ -37,7 +39,9 @@ class Module {
   // --- interrupts ---
 
   /// See Receiver::on_byte; only while `listening()`, and not while the own driver is on.
-  Duration on_byte(std::uint8_t byte, ByteStatus status, Time now) { return receiver_.on_byte(byte, status, now); }
+  Duration on_byte(std::uint8_t byte, ByteStatus status, Time now) {
+    return receiver_.on_byte(byte, status, now);
+  }
   Duration on_silence(Time now) { return receiver_.on_silence(now); }
   /// See InputEdges::on_edge.
   void on_edge(unsigned channel, bool level) { edges_.on_edge(channel, level); }
@@ -47,7 +51,8 @@ class Module {
 
   /// One turn. `init_switch`: INIT* is asserted (tied to GND), not debounced.
   void step(bool init_switch, Time now);
-  /// How long nothing will happen by itself; zero: step again at once; nothing: until an interrupt or a finished job.
+  /// How long nothing will happen by itself; zero: step again at once; nothing: until an interrupt or a
+  /// finished job.
   [[nodiscard]] std::optional<Duration> idle_for(Time now) const;
 
   /// Levels to drive: bit n is channel n, 1 = energised. All 0 until the settings are read.
@@ -79,7 +84,9 @@ class Module {
   /// What the last request came to.
   [[nodiscard]] const Outcome& outcome() const { return outcome_; }
   /// Whether the settings in the memory could not be read at reset, and none have been stored since.
-  [[nodiscard]] bool settings_unreadable() const { return store_.found() == SettingsStore::Found::Unreadable; }
+  [[nodiscard]] bool settings_unreadable() const {
+    return store_.found() == SettingsStore::Found::Unreadable;
+  }
 
  private:
   enum class Phase : std::uint8_t {
@@ -120,8 +127,8 @@ class Module {
   Phase phase_ = Phase::Booting;
   InterCharacterGap gap_ = InterCharacterGap::Tolerated;
   bool settings_known_ = false;
-  bool storing_leftovers_ = false;    ///< the store that is under way was not asked for by a command
-  bool expired_since_judged_ = false; ///< the host watchdog has expired while a command waits for its store
+  bool storing_leftovers_ = false;     ///< the store that is under way was not asked for by a command
+  bool expired_since_judged_ = false;  ///< the host watchdog has expired while a command waits for its store
   Deadline leftovers_retry_;
   Deadline init_gives_up_;
   std::uint8_t host_oks_heeded_ = 0;

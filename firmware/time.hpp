@@ -23,10 +23,12 @@ class Duration {
   std::uint32_t microseconds_ = 0;
 };
 
-constexpr Duration milliseconds(std::uint32_t value) { return Duration(value * 1000U); }
+constexpr Duration milliseconds(std::uint32_t value) {
+  return Duration(value * 1000U);
+}
 
-/// A point in time. It wraps, so it has no order: ask for the Duration since an earlier point, which is right while
-/// less than 71.6 minutes lie between the two.
+/// A point in time. It wraps, so it has no order: ask for the Duration since an earlier point, which is right
+/// while less than 71.6 minutes lie between the two.
 class Time {
  public:
   constexpr Time() = default;
@@ -45,8 +47,8 @@ class Time {
   std::uint32_t microseconds_ = 0;
 };
 
-/// A point in time that may lie ahead. Right while it is asked about less than 35 minutes from the point; whoever has
-/// acted on it disarms it.
+/// A point in time that may lie ahead. Right while it is asked about less than 35 minutes from the point;
+/// whoever has acted on it disarms it.
 class Deadline {
  public:
   constexpr void set(Time when) {

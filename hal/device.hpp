@@ -31,8 +31,8 @@ struct Board {
   Watchdog& watchdog;
 };
 
-/// Lives from one reset to the next. A composition file makes one, calls `start`, points the interrupts at the `on_...`
-/// functions and calls `turn` for ever.
+/// Lives from one reset to the next. A composition file makes one, calls `start`, points the interrupts at
+/// the `on_...` functions and calls `turn` for ever.
 class Device {
  public:
   constexpr Device(const Model& model, const Board& board) : module_(model), board_(board) {}

@@ -6,23 +6,23 @@
 
 namespace ex9000::hal {
 
-/// A nonvolatile memory that takes its time, such as an AT24C64: one job at once, begun here and looked after while the
-/// main loop goes on.
+/// A nonvolatile memory that takes its time, such as an AT24C64: one job at once, begun here and looked after
+/// while the main loop goes on.
 class Memory {
  public:
-  /// Begins to read `destination.size` bytes from `address` on. Main loop, only while not `busy()`; does not block.
-  /// `destination` lives until then.
+  /// Begins to read `destination.size` bytes from `address` on. Main loop, only while not `busy()`; does not
+  /// block. `destination` lives until then.
   virtual void start_read(std::uint16_t address, MutableBytes destination) = 0;
 
-  /// Begins to write; the job never crosses a 32-byte page. Ends when the memory has programmed the bytes, not when it
-  /// has taken them. Likewise.
+  /// Begins to write; the job never crosses a 32-byte page. Ends when the memory has programmed the bytes,
+  /// not when it has taken them. Likewise.
   virtual void start_write(std::uint16_t address, Bytes source) = 0;
 
   /// Whether a job is under way. Main loop.
   [[nodiscard]] virtual bool busy() const = 0;
 
-  /// Whether the last job succeeded; false where the memory did not answer or took longer than its data sheet says.
-  /// Main loop, while not `busy()`.
+  /// Whether the last job succeeded; false where the memory did not answer or took longer than its data sheet
+  /// says. Main loop, while not `busy()`.
   [[nodiscard]] virtual bool succeeded() const = 0;
 
  protected:

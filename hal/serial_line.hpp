@@ -8,16 +8,18 @@ namespace ex9000::hal {
 
 /// The UART and the RS-485 driver behind it, 8N1, half duplex.
 ///
-/// What it receives it hands to `Device::on_receive` in its receive interrupt, errors included, echo included.
+/// What it receives it hands to `Device::on_receive` in its receive interrupt, errors included, echo
+/// included.
 class SerialLine {
  public:
-  /// Starts receiving at `baud` bits per second (1200 to 115200). Before it, the line is neither heard nor driven. Main
-  /// loop, once after reset; does not block.
+  /// Starts receiving at `baud` bits per second (1200 to 115200). Before it, the line is neither heard nor
+  /// driven. Main loop, once after reset; does not block.
   virtual void open(std::uint32_t baud) = 0;
 
-  /// Driver on, then all of `bytes`, then driver off. The driver is on before the first start bit, and off after the
-  /// last stop bit has left the shift register (transmission complete, not "data register empty"), within one character
-  /// time. Main loop, only while not `sending()`; does not block. `bytes` live until `sending()` is false again.
+  /// Driver on, then all of `bytes`, then driver off. The driver is on before the first start bit, and off
+  /// after the last stop bit has left the shift register (transmission complete, not "data register empty"),
+  /// within one character time. Main loop, only while not `sending()`; does not block. `bytes` live until
+  /// `sending()` is false again.
   virtual void send(Bytes bytes) = 0;
 
   /// Whether the driver is on. Interrupts and main loop.

@@ -71,10 +71,15 @@ Parsed parse_arguments(int argc, const char* const* argv) {
   std::string baud;
   bool models = false;
   app.add_option("MODULE", modules, "modules on the line, one after the other");
-  app.add_option("--pty", arguments.pty_link, "make a pseudo-terminal and link it at this path")->type_name("LINK")->capture_default_str();
-  app.add_option("--baud", baud, "the line's rate until a master sets one (default: the first module's)")->type_name("RATE");
+  app.add_option("--pty", arguments.pty_link, "make a pseudo-terminal and link it at this path")
+      ->type_name("LINK")
+      ->capture_default_str();
+  app.add_option("--baud", baud, "the line's rate until a master sets one (default: the first module's)")
+      ->type_name("RATE");
   app.add_flag("--log", arguments.log, "print the bus, a line a frame: time, direction, bytes, meaning");
-  app.add_flag("--strict-gaps", arguments.strict_gaps, "Modbus to the letter: a gap of more than 1.5 characters spoils a frame, and a master that does not wait 3.5 characters between frames is on its own");
+  app.add_flag("--strict-gaps", arguments.strict_gaps,
+               "Modbus to the letter: a gap of more than 1.5 characters spoils a frame, and a master that "
+               "does not wait 3.5 characters between frames is on its own");
   app.add_flag("--models", models, "list the models and exit");
   app.set_version_flag("--version", "ex9000-sim " + std::string(kFirmwareVersion));
   try {
@@ -96,7 +101,7 @@ Parsed parse_arguments(int argc, const char* const* argv) {
     return parsed;
   }
   try {
-    if (!baud.empty()) {
+    if (app.count("--baud") != 0) {
       arguments.baud = parse_line_baud(baud);
     }
     for (const std::string& module : modules) {

@@ -27,8 +27,8 @@ constexpr int kWrongArguments = 2;
 /// What the command line comes to: either something to do, or text to print and a status to exit with.
 struct Parsed {
   std::optional<Arguments> arguments;
-  std::string output;   ///< for standard output
-  std::string error;    ///< one line for standard error
+  std::string output;  ///< for standard output
+  std::string error;   ///< one line for standard error
   int exit_status = 0;
 };
 

@@ -66,7 +66,8 @@ void Bus::drive(End& end, bool on) {
     }
   }
   if (!on) {
-    // Whatever it was sending ends here; the rest of the byte is the idle level, for each receiver to make sense of.
+    // Whatever it was sending ends here; the rest of the byte is the idle level, for each receiver to make
+    // sense of.
     for (Byte& byte : on_the_wire_) {
       if (byte.station == end.index && byte.wave.end() > now) {
         byte.collided = byte.cut_off = true;

@@ -39,17 +39,18 @@ class BusObserver {
  public:
   /// `station` counts from 0 in the order of attaching.
   virtual void driver(std::size_t station, bool on, VirtualTime now) = 0;
-  /// A byte began at `start` and is over now, unless its driver went off before. `collided`: another was on meanwhile.
-  virtual void byte(std::size_t station, std::uint8_t byte, std::uint32_t baud, bool collided, VirtualTime start,
-                    VirtualTime end) = 0;
+  /// A byte began at `start` and is over now, unless its driver went off before. `collided`: another was on
+  /// meanwhile.
+  virtual void byte(std::size_t station, std::uint8_t byte, std::uint32_t baud, bool collided,
+                    VirtualTime start, VirtualTime end) = 0;
 
  protected:
   ~BusObserver() = default;
 };
 
-/// Half duplex, 8N1. A byte takes ten bits at its sender's rate. A receiver of the same rate gets it when its stop bit
-/// has passed; one of another rate samples the wave at its own and sees framing errors and garbage. Where two drivers
-/// are on at once, a 0 of either wins, and what arrives is what that wave looks like.
+/// Half duplex, 8N1. A byte takes ten bits at its sender's rate. A receiver of the same rate gets it when its
+/// stop bit has passed; one of another rate samples the wave at its own and sees framing errors and garbage.
+/// Where two drivers are on at once, a 0 of either wins, and what arrives is what that wave looks like.
 ///
 /// The clock jumps from event to event; nothing here knows real time.
 class Bus {

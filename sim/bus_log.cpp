@@ -24,8 +24,8 @@ std::string stamp(VirtualTime time) {
 BusLog::BusLog(std::vector<std::string> speakers, Print print)
     : speakers_(std::move(speakers)), print_(std::move(print)), frames_(speakers_.size()) {}
 
-void BusLog::byte(std::size_t station, std::uint8_t byte, std::uint32_t /*baud*/, bool collided, VirtualTime start,
-                  VirtualTime end) {
+void BusLog::byte(std::size_t station, std::uint8_t byte, std::uint32_t /*baud*/, bool collided,
+                  VirtualTime start, VirtualTime end) {
   Frame& frame = frames_[station];
   if (frame.bytes.empty()) {
     frame.began = start;
@@ -73,7 +73,8 @@ void BusLog::print(std::size_t station) {
     return;
   }
   const Speaker speaker = station == 0 ? Speaker::Master : Speaker::Module;
-  std::string line = stamp(frame.began) + (station == 0 ? "  > " : "  < ") + speakers_[station] + "  " + shown(frame.bytes);
+  std::string line =
+      stamp(frame.began) + (station == 0 ? "  > " : "  < ") + speakers_[station] + "  " + shown(frame.bytes);
   const std::string means = frame.collided ? "collision: two drivers were on" : meaning(frame.bytes, speaker);
   if (!means.empty()) {
     line += "  ; " + means;
@@ -81,6 +82,8 @@ void BusLog::print(std::size_t station) {
   print_(line);
 }
 
-void BusLog::note(VirtualTime now, const std::string& text) { print_(stamp(now) + "  - " + text); }
+void BusLog::note(VirtualTime now, const std::string& text) {
+  print_(stamp(now) + "  - " + text);
+}
 
 }  // namespace ex9000::sim

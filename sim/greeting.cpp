@@ -20,25 +20,29 @@ std::string quoted(const std::string& path) {
   return text + "'";
 }
 
-/// mbpoll counts from 1 and wants `-P none`: its own default is even parity, which a pseudo-terminal swallows without a
-/// word and a real bus does not.
+/// mbpoll counts from 1 and wants `-P none`: its own default is even parity, which a pseudo-terminal swallows
+/// without a word and a real bus does not.
 std::string mbpoll(const ModuleSpec& spec, const std::string& link) {
-  const std::string common = "mbpoll -m rtu -a " + std::to_string(spec.address()) + " -b " + std::to_string(spec.baud()) + " -P none ";
+  const std::string common = "mbpoll -m rtu -a " + std::to_string(spec.address()) + " -b " +
+                             std::to_string(spec.baud()) + " -P none ";
   std::string text;
   if (spec.model->has_outputs()) {
-    text += "    " + common + "-t 0 -r 1 -c " + std::to_string(spec.model->outputs) + " -1 " + link + "    # read the outputs\n";
+    text += "    " + common + "-t 0 -r 1 -c " + std::to_string(spec.model->outputs) + " -1 " + link +
+            "    # read the outputs\n";
     text += "    " + common + "-t 0 -r 1 " + link + " 1" + "    # switch output 0 on\n";
   }
   if (spec.model->has_inputs()) {
-    text += "    " + common + "-t 1 -r 1 -c " + std::to_string(spec.model->inputs) + " -1 " + link + "    # read the inputs\n";
-    text += "    " + common + "-t 3 -r 1 -c " + std::to_string(spec.model->inputs) + " -1 " + link + "    # read the counters\n";
+    text += "    " + common + "-t 1 -r 1 -c " + std::to_string(spec.model->inputs) + " -1 " + link +
+            "    # read the inputs\n";
+    text += "    " + common + "-t 3 -r 1 -c " + std::to_string(spec.model->inputs) + " -1 " + link +
+            "    # read the counters\n";
   }
   return text;
 }
 
 std::string terminal(const ModuleSpec& spec, const std::string& link) {
-  return "    picocom -q -b " + std::to_string(spec.baud()) + " --omap crlf,delbs --imap crcrlf --echo " + link +
-         "    # then type $" + hex_byte_text(spec.address()) + "M and Enter\n";
+  return "    picocom -q -b " + std::to_string(spec.baud()) + " --omap crlf,delbs --imap crcrlf --echo " +
+         link + "    # then type $" + hex_byte_text(spec.address()) + "M and Enter\n";
 }
 
 std::string shared_addresses(const std::vector<ModuleSpec>& modules) {
@@ -60,8 +64,8 @@ std::string shared_addresses(const std::vector<ModuleSpec>& modules) {
 
 std::string greeting(const Arguments& arguments, const std::string& device) {
   const std::string link = quoted(arguments.pty_link);
-  std::string text = "ex9000-sim " + std::string(kFirmwareVersion) + ", line at " + std::to_string(arguments.line_baud()) +
-                     " baud on " + link + " (" + device + "):\n";
+  std::string text = "ex9000-sim " + std::string(kFirmwareVersion) + ", line at " +
+                     std::to_string(arguments.line_baud()) + " baud on " + link + " (" + device + "):\n";
   for (const ModuleSpec& spec : arguments.modules) {
     text += "  " + std::string(spec.model->designation) + " at " + hex_byte_text(spec.address()) + ", " +
             (spec.speaks_ascii() ? "ASCII" : "Modbus RTU") + ", " + std::to_string(spec.baud()) + " baud\n";

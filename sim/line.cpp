@@ -4,7 +4,8 @@
 
 namespace ex9000::sim {
 
-Line::Line(const std::vector<ModuleSpec>& modules, std::uint32_t baud, InterCharacterGap gap, Master::Receive receive)
+Line::Line(const std::vector<ModuleSpec>& modules, std::uint32_t baud, InterCharacterGap gap,
+           Master::Receive receive)
     : master_(bus_, baud, std::move(receive)) {
   for (const ModuleSpec& spec : modules) {
     modules_.push_back(std::make_unique<SimulatedModule>(bus_, *spec.model, gap));

@@ -14,7 +14,8 @@ namespace ex9000::sim {
 /// Station 0 is the master; modules follow in the order given. All have their supply on from the start.
 class Line {
  public:
-  Line(const std::vector<ModuleSpec>& modules, std::uint32_t baud, InterCharacterGap gap, Master::Receive receive);
+  Line(const std::vector<ModuleSpec>& modules, std::uint32_t baud, InterCharacterGap gap,
+       Master::Receive receive);
 
   VirtualClock& clock() { return clock_; }
   Bus& bus() { return bus_; }

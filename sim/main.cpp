@@ -20,7 +20,9 @@ using namespace ex9000::sim;
 
 constexpr int kCannotStart = 1;
 
-void print(const std::string& line) { std::printf("%s\n", line.c_str()); }
+void print(const std::string& line) {
+  std::printf("%s\n", line.c_str());
+}
 
 std::vector<std::string> speakers(const Arguments& arguments) {
   std::vector<std::string> names{"master"};

@@ -18,8 +18,8 @@ class Master final : public Station {
   Master(const Master&) = delete;
   Master& operator=(const Master&) = delete;
 
-  /// Behind what is waiting already, or at once, but not before `not_before`; the driver is on from the first byte to
-  /// the last.
+  /// Behind what is waiting already, or at once, but not before `not_before`; the driver is on from the first
+  /// byte to the last.
   void send(const std::uint8_t* bytes, std::size_t size, VirtualTime not_before = VirtualTime(0));
   /// Bytes are waiting or under way.
   [[nodiscard]] bool sending() const { return next_ != kNever; }

@@ -17,7 +17,9 @@ namespace {
 constexpr std::string_view kDelimiters = "#$%@~";
 constexpr std::string_view kLeads = "!>?";
 
-bool printable(std::uint8_t byte) { return byte >= 0x20 && byte <= 0x7E; }
+bool printable(std::uint8_t byte) {
+  return byte >= 0x20 && byte <= 0x7E;
+}
 
 std::string dcon_request(const FrameBytes& bytes) {
   const std::string text(bytes.begin(), bytes.end() - (bytes.back() == '\r' ? 1 : 0));
@@ -31,8 +33,8 @@ std::string dcon_request(const FrameBytes& bytes) {
       const dcon::Dispatch& row = command.dispatch;
       const bool keyed = row.key != dcon::kNoKey && row.key != dcon::kBroadcastKey;
       const std::size_t lead = keyed ? 4 : 3;
-      if (text[0] != row.delimiter || broadcast != (row.key == dcon::kBroadcastKey) || text.size() < lead + checksum ||
-          (keyed && text[3] != row.key)) {
+      if (text[0] != row.delimiter || broadcast != (row.key == dcon::kBroadcastKey) ||
+          text.size() < lead + checksum || (keyed && text[3] != row.key)) {
         continue;
       }
       const std::size_t args = text.size() - lead - checksum;
@@ -55,7 +57,9 @@ std::string dcon_reply(const FrameBytes& bytes) {
   }
 }
 
-std::string hex_word_text(unsigned value) { return hex_byte_text(value >> 8U & 0xFFU) + hex_byte_text(value & 0xFFU); }
+std::string hex_word_text(unsigned value) {
+  return hex_byte_text(value >> 8U & 0xFFU) + hex_byte_text(value & 0xFFU);
+}
 
 /// On any model.
 template <class Row>
@@ -66,13 +70,13 @@ bool lies_in(const Row& row, modbus::Functions listed, unsigned address) {
          });
 }
 
-std::string row_meaning(unsigned function, unsigned address) {
+std::string row_meaning(unsigned function, unsigned address, unsigned value) {
   if (function > 0x10 || function == 0x08) {
     return "";
   }
   const auto listed = static_cast<modbus::Functions>(1U << (function == 0x10 ? 6U : function));
   constexpr unsigned kHostOk = 0x3038;
-  if (address == kHostOk && (function == 3 || function == 4)) {
+  if (address == kHostOk && (function == 3 || function == 4) && value <= 1) {
     return ", host OK";
   }
   for (const auto& entry : modbus::kBitRegisters) {
@@ -97,9 +101,11 @@ std::string modbus_meaning(const FrameBytes& bytes, Speaker speaker) {
   }
   const std::string who = bytes[0] == 0 ? "all modules: " : hex_byte_text(bytes[0]) + ": ";
   const unsigned function = bytes[1];
-  const auto* row = std::find_if(modbus::kFunctions.begin(), modbus::kFunctions.end(),
-                                 [function](const modbus::Function& f) { return f.row.code == (function & 0x7FU); });
-  const std::string name = row == modbus::kFunctions.end() ? "function " + hex_byte_text(function) : std::string(row->name);
+  const auto* row =
+      std::find_if(modbus::kFunctions.begin(), modbus::kFunctions.end(),
+                   [function](const modbus::Function& f) { return f.row.code == (function & 0x7FU); });
+  const std::string name =
+      row == modbus::kFunctions.end() ? "function " + hex_byte_text(function) : std::string(row->name);
   if (speaker == Speaker::Module) {
     return who + name + (function >= 0x80 ? ", exception " + hex_byte_text(bytes[2]) : ", answer");
   }
@@ -109,8 +115,9 @@ std::string modbus_meaning(const FrameBytes& bytes, Speaker speaker) {
   const unsigned address = bytes[2] * 256U + bytes[3];
   const unsigned value = bytes[4] * 256U + bytes[5];
   const bool single = function == 5 || function == 6;
-  return who + name + " " + hex_word_text(address) + (single ? " = " + hex_word_text(value) : " x " + std::to_string(value)) +
-         row_meaning(function, address);
+  return who + name + " " + hex_word_text(address) +
+         (single ? " = " + hex_word_text(value) : " x " + std::to_string(value)) +
+         row_meaning(function, address, value);
 }
 
 }  // namespace

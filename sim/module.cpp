@@ -18,8 +18,8 @@ SimulatedModule::Mcu::Mcu(SimulatedModule& module)
       silence_timer(module.clock_),
       tick(module.clock_),
       watchdog(module.clock_),
-      board{module.clock_,   line,           silence_timer,       module.inputs_, module.outputs_,
-            module.memory_, module.init_switch_, module.led_, tick,           watchdog},
+      board{module.clock_,       line,        silence_timer, module.inputs_, module.outputs_, module.memory_,
+            module.init_switch_, module.led_, tick,          watchdog},
       device(module.model_, board) {}
 
 SimulatedModule::SimulatedModule(Bus& bus, const Model& model, InterCharacterGap gap)
@@ -99,8 +99,8 @@ VirtualTime SimulatedModule::next() const {
   if (!mcu_) {
     return kNever;
   }
-  return std::min({wakes_, mcu_->line.next(), mcu_->silence_timer.next(), mcu_->tick.next(), mcu_->watchdog.next(),
-                   memory_.next()});
+  return std::min({wakes_, mcu_->line.next(), mcu_->silence_timer.next(), mcu_->tick.next(),
+                   mcu_->watchdog.next(), memory_.next()});
 }
 
 void SimulatedModule::run() {

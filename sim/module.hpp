@@ -22,7 +22,8 @@
 
 namespace ex9000::sim {
 
-/// One module on a bus, with its supply off at first. What can be done to a real one from outside can be done here.
+/// One module on a bus, with its supply off at first. What can be done to a real one from outside can be done
+/// here.
 class SimulatedModule final : public Station {
  public:
   /// Attaches itself to `bus`. `model` is a row of kModels.

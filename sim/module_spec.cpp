@@ -12,7 +12,9 @@ namespace ex9000::sim {
 
 namespace {
 
-[[noreturn]] void fail(const std::string& what) { throw std::invalid_argument(what); }
+[[noreturn]] void fail(const std::string& what) {
+  throw std::invalid_argument(what);
+}
 
 std::string upper(std::string text) {
   std::transform(text.begin(), text.end(), text.begin(),
@@ -33,7 +35,9 @@ const Model& find_model(const std::string& name) {
 
 std::uint8_t parse_address(const std::string& text) {
   const std::string digits = upper(text.size() == 1 ? "0" + text : text);
-  const int address = digits.size() == 2 ? hex_byte(static_cast<std::uint8_t>(digits[0]), static_cast<std::uint8_t>(digits[1])) : -1;
+  const int address = digits.size() == 2 ? hex_byte(static_cast<std::uint8_t>(digits[0]),
+                                                    static_cast<std::uint8_t>(digits[1]))
+                                         : -1;
   if (address < 0) {
     fail("address '" + text + "' is not one or two hex digits, 00 to FF");
   }
@@ -57,11 +61,12 @@ std::uint8_t parse_baud(const std::string& value) {
 }
 
 Name parse_name(const Model& model, const std::string& value) {
-  const bool characters = std::all_of(value.begin(), value.end(),
-                                      [](char c) { return Name::is_name_character(static_cast<std::uint8_t>(c)); });
+  const bool characters = std::all_of(value.begin(), value.end(), [](char c) {
+    return Name::is_name_character(static_cast<std::uint8_t>(c));
+  });
   if (value.empty() || value.size() > model.longest_name || !characters) {
-    fail("'name=" + value + "' wants 1 to " + std::to_string(model.longest_name) + " printable ASCII characters on the " +
-         std::string(model.designation));
+    fail("'name=" + value + "' wants 1 to " + std::to_string(model.longest_name) +
+         " printable ASCII characters on the " + std::string(model.designation));
   }
   return Name(std::string_view(value));
 }
@@ -102,9 +107,13 @@ std::string hex_byte_text(unsigned value) {
   return {static_cast<char>(hex_digit(value >> 4U)), static_cast<char>(hex_digit(value))};
 }
 
-std::uint32_t ModuleSpec::baud() const { return baud_rate(init_asserted ? kFactoryBaudCode : settings.baud_code); }
+std::uint32_t ModuleSpec::baud() const {
+  return baud_rate(init_asserted ? kFactoryBaudCode : settings.baud_code);
+}
 
-std::uint8_t ModuleSpec::address() const { return init_asserted ? std::uint8_t{0} : settings.address; }
+std::uint8_t ModuleSpec::address() const {
+  return init_asserted ? std::uint8_t{0} : settings.address;
+}
 
 ModuleSpec parse_module_spec(const std::string& text) {
   try {
@@ -121,8 +130,12 @@ ModuleSpec parse_module_spec(const std::string& text) {
     for (std::string option; std::getline(parts, option, ',');) {
       apply(spec, option);
     }
+    if (text.back() == ',') {
+      fail("nothing behind the last comma");
+    }
     if (spec.settings.protocol == Protocol::ModbusRtu && !is_modbus_address(spec.settings.address)) {
-      fail("address " + hex_byte_text(spec.settings.address) + " is none of Modbus, which has 01 to F7; or add protocol=ascii");
+      fail("address " + hex_byte_text(spec.settings.address) +
+           " is none of Modbus, which has 01 to F7; or add protocol=ascii");
     }
     return spec;
   } catch (const std::invalid_argument& error) {

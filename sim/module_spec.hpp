@@ -10,7 +10,7 @@ namespace ex9000::sim {
 
 struct ModuleSpec {
   const Model* model = nullptr;
-  Settings settings;          ///< stored before power-on
+  Settings settings;  ///< stored before power-on
   bool init_asserted = false;
 
   /// Bits per second that it listens at after power-on.

@@ -42,7 +42,9 @@ void Pacer::start() {
   follow();
 }
 
-VirtualTime Pacer::wall() const { return std::chrono::steady_clock::now() - began_; }
+VirtualTime Pacer::wall() const {
+  return std::chrono::steady_clock::now() - began_;
+}
 
 /// Runs what is due, and leaves the clock at the last event rather than at `until`: see kHostLatency.
 void Pacer::catch_up(VirtualTime until) {
@@ -96,7 +98,8 @@ void Pacer::on_read(std::size_t size) {
   line_.master().send(buffer_.data(), size, silence_before(buffer_[0]));
 }
 
-/// Until when a frame to `address` has to wait so that a module that has heard the last one takes it for another.
+/// Until when a frame to `address` has to wait so that a module that has heard the last one takes it for
+/// another.
 VirtualTime Pacer::silence_before(std::uint8_t address) {
   if (gap_ == InterCharacterGap::Refused || last_speaker_ == 0) {
     return VirtualTime(0);
@@ -134,8 +137,9 @@ void Pacer::take_rate() {
   for (std::size_t i = 0; i < line_.size(); ++i) {
     SimulatedModule& module = line_.module(i);
     if (module.baud() != rate_) {
-      notice_("the master is at " + std::to_string(rate_) + " baud, " + std::string(module.model().designation) +
-              " at " + hex_byte_text(module.module().state().in_force.address) + " listens at " +
+      notice_("the master is at " + std::to_string(rate_) + " baud, " +
+              std::string(module.model().designation) + " at " +
+              hex_byte_text(module.module().state().in_force.address) + " listens at " +
               std::to_string(module.baud()));
     }
   }

@@ -17,24 +17,24 @@
 
 namespace ex9000::sim {
 
-/// Virtual time follows the wall clock from `start` on and never runs ahead of it: events happen when the wall clock
-/// has reached them, so a transaction can only take longer than on a real line.
+/// Virtual time follows the wall clock from `start` on and never runs ahead of it: events happen when the
+/// wall clock has reached them, so a transaction can only take longer than on a real line.
 ///
-/// What a process pays for waking up and reading is not charged to the line: bytes that a master has written are taken
-/// as written up to kHostLatency earlier, but never before anything that has happened already. Without it the host's
-/// own delays would add to every transaction.
+/// What a process pays for waking up and reading is not charged to the line: bytes that a master has written
+/// are taken as written up to kHostLatency earlier, but never before anything that has happened already.
+/// Without it the host's own delays would add to every transaction.
 ///
-/// A master that begins to send before T3.5 of silence has passed is heard by the module it has just talked to, which
-/// does not hear its own reply, and by no other: for those the two frames are one. Many masters do so, libmodbus among
-/// them, and get away with it behind adapters that take their time. So does this end: where a frame goes to another
-/// address than that of the module that has just spoken, it waits until the silence is over - unless the line is to
-/// keep to the letter of the standard.
+/// A master that begins to send before T3.5 of silence has passed is heard by the module it has just talked
+/// to, which does not hear its own reply, and by no other: for those the two frames are one. Many masters do
+/// so, libmodbus among them, and get away with it behind adapters that take their time. So does this end:
+/// where a frame goes to another address than that of the module that has just spoken, it waits until the
+/// silence is over - unless the line is to keep to the letter of the standard.
 class Pacer final : private BusObserver {
  public:
   static constexpr std::chrono::microseconds kHostLatency{300};
 
-  /// Puts what `line`'s master hears on `pty`, and what comes from it on the line. `log` may be null. All live as long
-  /// as `io` runs. `notice` gets a line for people whenever the line's rate changes.
+  /// Puts what `line`'s master hears on `pty`, and what comes from it on the line. `log` may be null. All
+  /// live as long as `io` runs. `notice` gets a line for people whenever the line's rate changes.
   Pacer(boost::asio::io_context& io, Line& line, Pty& pty, BusLog* log, InterCharacterGap gap,
         std::function<void(const std::string&)> notice);
 

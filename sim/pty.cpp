@@ -34,12 +34,15 @@ constexpr std::array<std::pair<speed_t, std::uint32_t>, 16> kSpeeds{{{B300, 300}
                                                                      {B576000, 576000},
                                                                      {B921600, 921600}}};
 
-std::string reason() { return std::strerror(errno); }
+std::string reason() {
+  return std::strerror(errno);
+}
 
 std::optional<std::string> link_target(const std::string& link) {
   std::array<char, PATH_MAX> target{};
   const ssize_t size = readlink(link.c_str(), target.data(), target.size() - 1);
-  return size < 0 ? std::nullopt : std::optional<std::string>(std::string(target.data(), static_cast<std::size_t>(size)));
+  return size < 0 ? std::nullopt
+                  : std::optional<std::string>(std::string(target.data(), static_cast<std::size_t>(size)));
 }
 
 struct flock whole_file(int type) {
@@ -49,7 +52,8 @@ struct flock whole_file(int type) {
   return lock;
 }
 
-/// Whether a running simulator holds the slave: it keeps a record lock on it, which nobody else takes on a terminal.
+/// Whether a running simulator holds the slave: it keeps a record lock on it, which nobody else takes on a
+/// terminal.
 bool is_held(const std::string& device) {
   const int fd = open(device.c_str(), O_RDWR | O_NOCTTY | O_NONBLOCK | O_CLOEXEC);
   if (fd < 0) {
@@ -69,10 +73,12 @@ void clear_the_way(const std::string& link) {
   }
   const auto target = link_target(link);
   if (!target || target->rfind("/dev/pts/", 0) != 0) {
-    throw std::invalid_argument("--pty " + link + ": something else is there; remove it or name another path");
+    throw std::invalid_argument("--pty " + link +
+                                ": something else is there; remove it or name another path");
   }
   if (is_held(*target)) {
-    throw std::invalid_argument("--pty " + link + ": another simulator is running there; end it or name another path");
+    throw std::invalid_argument("--pty " + link +
+                                ": another simulator is running there; end it or name another path");
   }
   unlink(link.c_str());
 }

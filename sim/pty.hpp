@@ -7,13 +7,14 @@
 
 namespace ex9000::sim {
 
-/// Owns both ends: the slave is kept open too, so that a master's coming and going hangs nothing up and the line
-/// settings stay. Raw mode.
+/// Owns both ends: the slave is kept open too, so that a master's coming and going hangs nothing up and the
+/// line settings stay. Raw mode.
 class Pty {
  public:
-  /// Makes a pseudo-terminal set to `baud` and a symbolic link to its slave at `link`. A link that a dead simulator has
-  /// left is taken over. Throws std::invalid_argument, one line, where anything else is there or the path cannot be
-  /// made, std::runtime_error where the system has no pseudo-terminal; then nothing is left behind.
+  /// Makes a pseudo-terminal set to `baud` and a symbolic link to its slave at `link`. A link that a dead
+  /// simulator has left is taken over. Throws std::invalid_argument, one line, where anything else is there
+  /// or the path cannot be made, std::runtime_error where the system has no pseudo-terminal; then nothing is
+  /// left behind.
   Pty(std::string link, std::uint32_t baud);
   /// Removes the link, if it is still this one's.
   ~Pty();

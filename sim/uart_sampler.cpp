@@ -38,7 +38,9 @@ std::optional<VirtualTime> find_level(const Waves& waves, bool level, VirtualTim
 
 }  // namespace
 
-VirtualTime Wave::boundary(unsigned index) const { return start + VirtualTime(index * kSecond / baud); }
+VirtualTime Wave::boundary(unsigned index) const {
+  return start + VirtualTime(index * kSecond / baud);
+}
 
 bool Wave::level(VirtualTime at) const {
   if (at < start || at >= end() || at >= cut_off) {
@@ -54,7 +56,8 @@ bool Wave::level(VirtualTime at) const {
   return (byte >> (bit - 1) & 1U) != 0;
 }
 
-std::optional<UartSampler::Received> UartSampler::advance(const Waves& waves, std::uint32_t baud, VirtualTime until) {
+std::optional<UartSampler::Received> UartSampler::advance(const Waves& waves, std::uint32_t baud,
+                                                          VirtualTime until) {
   while (position_ < until) {
     if (!receiving_) {
       const auto found = find_level(waves, wants_idle_, position_, until);

@@ -49,8 +49,8 @@ TEST(Conformance, TheCorePassesEveryTranscriptOnEveryModelItNames) {
   for (const std::string& id : coverage.missing()) {
     ADD_FAILURE() << id << " is reached by no transcript";
   }
-  std::printf("core: %zu files, %zu runs, %zu steps, %zu rows and refusals reached\n", files.size(), runs, steps,
-              coverage.reached());
+  std::printf("core: %zu files, %zu runs, %zu steps, %zu rows and refusals reached\n", files.size(), runs,
+              steps, coverage.reached());
 }
 
 TEST(Conformance, WaitsStayUnderTwoSecondsUnlessTheFileSaysSlow) {

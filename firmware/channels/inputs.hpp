@@ -15,8 +15,8 @@ class InputEdges {
   /// Main loop, before edge interrupts come: the levels at reset, bit n for channel n, are no edges.
   void begin(std::uint16_t levels) { levels_.store_in_interrupt(levels); }
 
-  /// Edge interrupt: an edge was flagged on `channel`, whose level is now `level`. Where the level is what it was
-  /// before, there were two edges since. Channels beyond kMaxInputs are ignored.
+  /// Edge interrupt: an edge was flagged on `channel`, whose level is now `level`. Where the level is what it
+  /// was before, there were two edges since. Channels beyond kMaxInputs are ignored.
   void on_edge(unsigned channel, bool level);
 
   [[nodiscard]] std::uint16_t levels() const { return levels_.load(); }

@@ -20,7 +20,9 @@ constexpr auto kDispatch = [] {
   return rows;
 }();
 
-bool is_broadcast(Bytes frame) { return frame[1] == '*'; }
+bool is_broadcast(Bytes frame) {
+  return frame[1] == '*';
+}
 
 /// What stands behind the key.
 Bytes arguments(const Dispatch& row, Bytes frame) {
@@ -40,7 +42,8 @@ bool matches(const Dispatch& row, const Model& model, Bytes frame) {
   return args >= row.fewest_args && args <= row.most_args && meets(model, row.needs);
 }
 
-/// Refused commands that set outputs are answered without the address (manuals 2.3, 2.11); D12 says which they are.
+/// Refused commands that set outputs are answered without the address (manuals 2.3, 2.11); D12 says which
+/// they are.
 bool refused_without_address(const Model& model, Bytes frame) {
   const std::size_t body = frame.size - kBodyAt;
   if (!model.has_outputs()) {
@@ -95,9 +98,9 @@ void answer(const State& state, Bytes frame, Outcome& outcome, Reply& reply) {
     return;  // `%` has changed the address since the frame came in (D16)
   }
   const std::size_t command = find_command(state.model, frame);
-  outcome.refusal = command == kNoCommand
-                        ? Refusal::UnknownCommand
-                        : kDispatch[command].handler(state, arguments(kDispatch[command], frame), outcome, reply);
+  outcome.refusal = command == kNoCommand ? Refusal::UnknownCommand
+                                          : kDispatch[command].handler(
+                                                state, arguments(kDispatch[command], frame), outcome, reply);
   if (outcome.refusal != Refusal::None) {
     refuse(state, frame, outcome.refusal, reply);
   }

@@ -13,12 +13,12 @@ namespace ex9000::dcon {
 
 constexpr std::size_t kNoCommand = static_cast<std::size_t>(-1);
 
-/// Row of kCommands that `frame` calls for on `model`, or kNoCommand. `frame` is as the assembler accepted it: from the
-/// delimiter on, without checksum and CR.
+/// Row of kCommands that `frame` calls for on `model`, or kNoCommand. `frame` is as the assembler accepted
+/// it: from the delimiter on, without checksum and CR.
 std::size_t find_command(const Model& model, Bytes frame);
 
-/// Judges an accepted frame. `reply` is what to send, checksum and CR included, once the outcome is done; it stays
-/// empty for broadcasts and for another address. Changes nothing by itself.
+/// Judges an accepted frame. `reply` is what to send, checksum and CR included, once the outcome is done; it
+/// stays empty for broadcasts and for another address. Changes nothing by itself.
 void answer(const State& state, Bytes frame, Outcome& outcome, Reply& reply);
 
 /// The reply of a command that could not be stored.

@@ -44,7 +44,8 @@ Drive single(const Model& model, std::uint8_t selector, int channel, int data) {
   return {static_cast<std::uint16_t>(bit), static_cast<std::uint16_t>(data == 1 ? bit : 0U)};
 }
 
-/// One digit stands for 4 outputs; how many a full set takes on this model, and what the examples shorten it to (E4).
+/// One digit stands for 4 outputs; how many a full set takes on this model, and what the examples shorten it
+/// to (E4).
 struct Digits {
   std::size_t full;
   std::size_t shortened;

@@ -8,8 +8,8 @@
 
 namespace ex9000::dcon {
 
-/// First and Second data (manuals 1.10): more than 8 outputs fill both, high byte first; else outputs are First and
-/// inputs Second; a module without outputs has its inputs in First.
+/// First and Second data (manuals 1.10): more than 8 outputs fill both, high byte first; else outputs are
+/// First and inputs Second; a module without outputs has its inputs in First.
 inline void put_data(const Model& model, std::uint16_t outputs, std::uint16_t inputs, Reply& reply) {
   if (model.outputs > 8) {
     reply.put_hex(outputs >> 8U);

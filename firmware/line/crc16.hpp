@@ -10,8 +10,8 @@ namespace ex9000 {
 
 namespace detail {
 
-/// One entry a byte value: 512 bytes of flash buy a byte's CRC in a handful of instructions, which the receive
-/// interrupt pays for every byte.
+/// One entry a byte value: 512 bytes of flash buy a byte's CRC in a handful of instructions, which the
+/// receive interrupt pays for every byte.
 constexpr std::array<std::uint16_t, 256> make_crc16_table() {
   constexpr std::uint16_t kReflectedPolynomial = 0xA001;
   std::array<std::uint16_t, 256> table{};

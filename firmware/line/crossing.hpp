@@ -9,8 +9,9 @@ namespace ex9000 {
 
 namespace detail {
 
-/// One aligned value up to a machine word, so that a load or a store is one instruction and needs no lock. There is
-/// one core: what the compiler must not do is reorder accesses around it, and that is what the fence forbids.
+/// One aligned value up to a machine word, so that a load or a store is one instruction and needs no lock.
+/// There is one core: what the compiler must not do is reorder accesses around it, and that is what the fence
+/// forbids.
 template <class T>
 class Crossing {
   static_assert(std::is_trivially_copyable<T>::value && sizeof(T) <= sizeof(void*),
@@ -49,8 +50,8 @@ class WrittenByMainLoop : public detail::Crossing<T> {
   void store_in_main_loop(T value) { this->store(value); }
 };
 
-/// Counts events in an interrupt and hands them to the main loop, none lost and none twice, as long as the main loop
-/// collects before 65536 have gathered. Neither side ever writes what the other writes.
+/// Counts events in an interrupt and hands them to the main loop, none lost and none twice, as long as the
+/// main loop collects before 65536 have gathered. Neither side ever writes what the other writes.
 class EventTally {
  public:
   /// Interrupt.

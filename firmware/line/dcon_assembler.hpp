@@ -12,15 +12,16 @@ namespace ex9000 {
 /// Most characters before CR that are judged.
 constexpr std::uint8_t kLongestDconFrame = 32;
 
-/// delimiter, address, body, [CHK], CR - wire.md section 3. There is no inter-character timeout: a person may type.
+/// delimiter, address, body, [CHK], CR - wire.md section 3. There is no inter-character timeout: a person may
+/// type.
 class DconAssembler {
  public:
   explicit constexpr DconAssembler(FrameQueue& queue) : queue_(queue) {}
 
   void use_checksum(bool on) { checksum_ = on; }
 
-  /// Interrupt. `own_address` is the one this module answers to at this moment. An accepted frame holds the characters
-  /// from the delimiter on, without CHK and CR.
+  /// Interrupt. `own_address` is the one this module answers to at this moment. An accepted frame holds the
+  /// characters from the delimiter on, without CHK and CR.
   Verdict byte(std::uint8_t byte, ByteStatus status, std::uint8_t own_address, Time now);
 
   /// Interrupt. Forgets an open frame.

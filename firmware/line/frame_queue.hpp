@@ -24,8 +24,8 @@ struct Frame {
   [[nodiscard]] Bytes bytes() const { return {storage.data() + offset, size}; }
 };
 
-/// One frame waits while the next is being assembled: while a command is executed or stored, one more is kept. What
-/// comes on top of that is lost, and the interrupt is told so.
+/// One frame waits while the next is being assembled: while a command is executed or stored, one more is
+/// kept. What comes on top of that is lost, and the interrupt is told so.
 class FrameQueue {
  public:
   /// Interrupt: where the frame that is coming in is assembled; always there.

@@ -43,8 +43,8 @@ class Receiver {
 
   // --- interrupts, which must not interrupt each other ---
 
-  /// A byte was received; `now` is the end of its stop bit. Returns after how long a silence `on_silence` is to be
-  /// called, counted from now and restarted by every byte; zero: not at all.
+  /// A byte was received; `now` is the end of its stop bit. Returns after how long a silence `on_silence` is
+  /// to be called, counted from now and restarted by every byte; zero: not at all.
   Duration on_byte(std::uint8_t byte, ByteStatus status, Time now);
 
   /// The silence has come. Returns as `on_byte` does.

@@ -11,7 +11,8 @@ constexpr std::uint8_t kBroadcast = 0;
 
 /// Modbus 0x3038, read with 03 or 04 and quantity 0 or 1: "Send Host OK" (manuals, Modbus part).
 bool is_host_ok(Bytes frame) {
-  return frame.size == 6 && (frame[1] == 0x03 || frame[1] == 0x04) && frame.word(2) == 0x3038 && frame.word(4) <= 1;
+  return frame.size == 6 && (frame[1] == 0x03 || frame[1] == 0x04) && frame.word(2) == 0x3038 &&
+         frame.word(4) <= 1;
 }
 
 }  // namespace
@@ -27,10 +28,12 @@ Verdict RtuAssembler::byte(std::uint8_t byte, ByteStatus status, std::uint8_t ow
   Verdict before = Verdict::Open;
   if (received_ != 0) {
     const Duration since_last = now.since(last_);
-    if (!(since_last < timing_.rtu_separate)) {
+    const bool silence_was_due = !(since_last < timing_.rtu_silence) && start() != kNowhere;
+    if (silence_was_due || !(since_last < timing_.rtu_separate)) {
       before = end(own_address);  // the timer interrupt is late
     } else if (gap_ == InterCharacterGap::Refused && timing_.rtu_slack < since_last) {
-      rest_spoiled_ = true;
+      // Behind the first byte the gap may be one behind a turn-around 00, which does not spoil what follows.
+      (received_ == 1 ? first_spoiled_ : rest_spoiled_) = true;
     }
   }
   if (received_ == 0) {
@@ -93,8 +96,8 @@ std::uint8_t RtuAssembler::start() const {
   if (!first_spoiled_ && received_ >= kShortestFrame && received_ <= kLongestFrame && whole_.value() == 0) {
     return 0;
   }
-  if (queue_.assembling().storage[0] == kTurnAround && received_ > kShortestFrame && received_ <= kLongestFrame + 1 &&
-      behind_first_.value() == 0) {
+  if (queue_.assembling().storage[0] == kTurnAround && received_ > kShortestFrame &&
+      received_ <= kLongestFrame + 1 && behind_first_.value() == 0) {
     return 1;
   }
   return kNowhere;

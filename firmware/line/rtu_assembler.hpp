@@ -11,12 +11,13 @@
 
 namespace ex9000 {
 
-/// Whether a gap of more than T1.5 inside a frame spoils it (Modbus over Serial Line V1.02, 2.5.1.1). USB adapters and
-/// gateways make such gaps, so they are tolerated unless somebody asks for the letter of the standard.
+/// Whether a gap of more than T1.5 inside a frame spoils it (Modbus over Serial Line V1.02, 2.5.1.1). USB
+/// adapters and gateways make such gaps, so they are tolerated unless somebody asks for the letter of the
+/// standard.
 enum class InterCharacterGap : std::uint8_t { Tolerated, Refused };
 
-/// address, function, data, CRC, then T3.5 of silence - wire.md section 7. The CRC is taken along byte by byte, so that
-/// at the silence the judgement is there at once.
+/// address, function, data, CRC, then T3.5 of silence - wire.md section 7. The CRC is taken along byte by
+/// byte, so that at the silence the judgement is there at once.
 class RtuAssembler {
  public:
   explicit constexpr RtuAssembler(FrameQueue& queue) : queue_(queue) {}
@@ -26,19 +27,20 @@ class RtuAssembler {
     gap_ = gap;
   }
 
-  /// Receive interrupt; `now` is when the byte was complete. Tells what became of the frame before it where it came so
-  /// late that it opens the next one. Restart the silence timer with `silence()` after it.
+  /// Receive interrupt; `now` is when the byte was complete. Tells what became of the frame before it where
+  /// it came so late that it opens the next one. Restart the silence timer with `silence()` after it.
   Verdict byte(std::uint8_t byte, ByteStatus status, std::uint8_t own_address, Time now);
 
-  /// Timer interrupt: no byte was complete since T3.5. Where the CRC is not right yet, a byte may be under way that
-  /// started in time: then `wants_more_silence()`, and the second call without a byte between ends the frame. A call
-  /// that comes too early, because a byte came while it was pending, does nothing.
-  /// An accepted frame holds address, function and data, without CRC and without a turn-around 00 before it.
+  /// Timer interrupt: no byte was complete since T3.5. Where the CRC is not right yet, a byte may be under
+  /// way that started in time: then `wants_more_silence()`, and the second call without a byte between ends
+  /// the frame. A call that comes too early, because a byte came while it was pending, does nothing. An
+  /// accepted frame holds address, function and data, without CRC and without a turn-around 00 before it.
   Verdict silence(std::uint8_t own_address, Time now);
 
   [[nodiscard]] bool wants_more_silence() const { return lapsed_; }
 
-  /// Interrupt. The own driver has come on: a frame whose CRC is right was whole and is judged, any other is forgotten.
+  /// Interrupt. The own driver has come on: a frame whose CRC is right was whole and is judged, any other is
+  /// forgotten.
   Verdict cut_off(std::uint8_t own_address);
 
  private:
@@ -58,14 +60,14 @@ class RtuAssembler {
   FrameQueue& queue_;
   LineTiming timing_{};
   InterCharacterGap gap_ = InterCharacterGap::Tolerated;
-  bool lapsed_ = false;        ///< T3.5 has passed once
-  bool first_spoiled_ = false; ///< the first byte came with an error
-  bool rest_spoiled_ = false;  ///< any other did
+  bool lapsed_ = false;         ///< T3.5 has passed once
+  bool first_spoiled_ = false;  ///< the first byte came with an error
+  bool rest_spoiled_ = false;   ///< any other did
   bool overrun_ = false;
-  std::uint16_t received_ = 0; ///< bytes of the open frame, also those there is no room for; 0: none is open
-  Time last_;                  ///< when the last byte was complete
-  Crc16 whole_;                ///< over all bytes
-  Crc16 behind_first_;         ///< over all but the first, where that is 00
+  std::uint16_t received_ = 0;  ///< bytes of the open frame, also those there is no room for; 0: none is open
+  Time last_;                   ///< when the last byte was complete
+  Crc16 whole_;                 ///< over all bytes
+  Crc16 behind_first_;          ///< over all but the first, where that is 00
 };
 
 }  // namespace ex9000

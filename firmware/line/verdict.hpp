@@ -8,8 +8,8 @@ namespace ex9000 {
 /// What the UART says of a byte.
 enum class ByteStatus : std::uint8_t { Good, FramingError, Break, Overrun };
 
-/// What became of the frame that a byte or a silence ended. Only Accepted reaches the main loop; to all others the
-/// module stays silent.
+/// What became of the frame that a byte or a silence ended. Only Accepted reaches the main loop; to all
+/// others the module stays silent.
 enum class Verdict : std::uint8_t {
   Open,       ///< no frame ended
   Accepted,   ///< for this module or a broadcast, its check is right: it waits in the queue

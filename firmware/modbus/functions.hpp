@@ -19,8 +19,8 @@ struct Request {
   bool broadcast = false;
 };
 
-/// Judges a request, appends to `reply` what follows address and function code, and says what is to be done. A pure
-/// function of request and state.
+/// Judges a request, appends to `reply` what follows address and function code, and says what is to be done.
+/// A pure function of request and state.
 using Handler = Refusal (*)(const State& state, const Request& request, Outcome& outcome, Reply& reply);
 
 // read_functions.cpp
@@ -35,7 +35,8 @@ Refusal write_multiple_registers(const State& state, const Request& request, Out
 Refusal diagnose(const State& state, const Request& request, Outcome& outcome, Reply& reply);
 // identification.cpp
 Refusal report_server_id(const State& state, const Request& request, Outcome& outcome, Reply& reply);
-Refusal read_device_identification(const State& state, const Request& request, Outcome& outcome, Reply& reply);
+Refusal read_device_identification(const State& state, const Request& request, Outcome& outcome,
+                                   Reply& reply);
 Refusal vendor_function(const State& state, const Request& request, Outcome& outcome, Reply& reply);
 
 struct FunctionRow {

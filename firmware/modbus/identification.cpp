@@ -1,5 +1,5 @@
-// Who is there: functions 11 and 2B/0E (Modbus Application Protocol V1.1b3, 6.13 and 6.21) and the maker's own 46
-// (manuals, mapping table).
+// Who is there: functions 11 and 2B/0E (Modbus Application Protocol V1.1b3, 6.13 and 6.21) and the maker's
+// own 46 (manuals, mapping table).
 #include "firmware/modbus/functions.hpp"
 
 namespace ex9000::modbus {
@@ -23,7 +23,9 @@ enum ObjectId : std::uint8_t {
   kUserApplicationName = 6,
 };
 
-constexpr bool exists(std::uint8_t object, std::uint8_t last) { return object <= last && object != kVendorUrl; }
+constexpr bool exists(std::uint8_t object, std::uint8_t last) {
+  return object <= last && object != kVendorUrl;
+}
 
 void put_object(const State& state, std::uint8_t object, Reply& reply) {
   reply.put(object);
@@ -64,7 +66,8 @@ Refusal report_server_id(const State& state, const Request& request, Outcome& /*
   return Refusal::None;
 }
 
-Refusal read_device_identification(const State& state, const Request& request, Outcome& /*outcome*/, Reply& reply) {
+Refusal read_device_identification(const State& state, const Request& request, Outcome& /*outcome*/,
+                                   Reply& reply) {
   constexpr std::size_t kMeiAt = 2;
   constexpr std::size_t kCodeAt = 3;
   constexpr std::size_t kObjectAt = 4;

@@ -10,7 +10,9 @@ constexpr std::size_t kRequestSize = 6;
 constexpr unsigned kMostBits = 2000;
 constexpr unsigned kMostWords = 125;
 
-Functions function_of(const Request& request) { return static_cast<Functions>(1U << request.frame[1]); }
+Functions function_of(const Request& request) {
+  return static_cast<Functions>(1U << request.frame[1]);
+}
 
 }  // namespace
 
@@ -55,9 +57,9 @@ Refusal read_words(const State& state, const Request& request, Outcome& /*outcom
   for (unsigned i = 0; i < quantity; ++i) {
     // Beyond 0xFFFF there is nothing; what wraps to 0 must not be found.
     const unsigned address = start + i;
-    const WordRow* row = address > 0xFFFF
-                             ? nullptr
-                             : find_words(state.model, function_of(request), static_cast<std::uint16_t>(address));
+    const WordRow* row =
+        address > 0xFFFF ? nullptr
+                         : find_words(state.model, function_of(request), static_cast<std::uint16_t>(address));
     if (row == nullptr) {
       return Refusal::WrongAddress;
     }

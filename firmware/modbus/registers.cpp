@@ -22,7 +22,8 @@ constexpr auto kWordRows = [] {
 }();
 
 template <class Rows>
-auto find_in(const Rows& rows, const Model& model, Functions function, std::uint16_t address) -> decltype(&rows[0]) {
+auto find_in(const Rows& rows, const Model& model, Functions function, std::uint16_t address)
+    -> decltype(&rows[0]) {
   for (const auto& row : rows) {
     const unsigned index = unsigned{address} - row.first;
     if ((row.functions & function) != 0 && index < width_of(row.width, model) && meets(model, row.needs)) {

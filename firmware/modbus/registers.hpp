@@ -52,9 +52,9 @@ struct BitRow {
   Width width = Width::One;
   Needs needs = Needs::Nothing;
   Functions functions = 0;
-  bool drives_outputs = false;  ///< refused with 04 while the timeout status is set
-  bool only_on = false;         ///< function 05 with 0000 is refused with 03
-  bool configuration = false;   ///< never by broadcast
+  bool drives_outputs = false;                          ///< refused with 04 while the timeout status is set
+  bool only_on = false;                                 ///< function 05 with 0000 is refused with 03
+  bool configuration = false;                           ///< never by broadcast
   std::uint16_t (*read)(const State& state) = nullptr;  ///< the whole row; bit 0 is the first
   Refusal (*write)(const State& state, BitWrite bits, Outcome& outcome) = nullptr;
 };
@@ -100,11 +100,12 @@ Refusal write_baud_code(const State& state, std::uint16_t value, Outcome& outcom
 std::uint16_t read_watchdog_timeout(const State& state, unsigned index);
 Refusal write_watchdog_timeout(const State& state, std::uint16_t value, Outcome& outcome);
 
-/// A row with what people read of it. The texts are not referred to by the module, so an image does not carry them.
+/// A row with what people read of it. The texts are not referred to by the module, so an image does not carry
+/// them.
 struct BitRegister {
-  std::string_view id;       ///< stable, for coverage and cross-reference
+  std::string_view id;  ///< stable, for coverage and cross-reference
   std::string_view meaning;
-  std::string_view range;    ///< of what may be written; empty where nothing may
+  std::string_view range;  ///< of what may be written; empty where nothing may
   BitRow row;
 };
 
@@ -116,60 +117,99 @@ struct WordRegister {
 };
 
 constexpr std::array<BitRegister, 12> kBitRegisters{{
-    {"outputs", "outputs", "0 off, 1 on",
-     {0x0000, Width::PerOutput, Needs::Outputs, kReadCoils | kWriteSingleCoil | kWriteMultipleCoils, true, false, false,
-      read_outputs, write_outputs}},
-    {"inputs", "inputs", "",
-     {0x0000, Width::PerInput, Needs::Inputs, kReadDiscreteInputs, false, false, false, read_inputs, nullptr}},
-    {"input-coils", "inputs", "",
+    {"outputs",
+     "outputs",
+     "0 off, 1 on",
+     {0x0000, Width::PerOutput, Needs::Outputs, kReadCoils | kWriteSingleCoil | kWriteMultipleCoils, true,
+      false, false, read_outputs, write_outputs}},
+    {"inputs",
+     "inputs",
+     "",
+     {0x0000, Width::PerInput, Needs::Inputs, kReadDiscreteInputs, false, false, false, read_inputs,
+      nullptr}},
+    {"input-coils",
+     "inputs",
+     "",
      {0x0020, Width::PerInput, Needs::Inputs, kReadCoils, false, false, false, read_inputs, nullptr}},
-    {"latch-high", "latch high: a rising edge was seen", "",
+    {"latch-high",
+     "latch high: a rising edge was seen",
+     "",
      {0x0040, Width::PerInput, Needs::Inputs, kReadCoils, false, false, false, read_latch_high, nullptr}},
-    {"latch-low", "latch low: a falling edge was seen", "",
+    {"latch-low",
+     "latch low: a falling edge was seen",
+     "",
      {0x0060, Width::PerInput, Needs::Inputs, kReadCoils, false, false, false, read_latch_low, nullptr}},
-    {"safe-value", "safe value; the outputs follow", "0 off, 1 on",
-     {0x0080, Width::PerOutput, Needs::Outputs, kReadCoils | kWriteSingleCoil | kWriteMultipleCoils, true, false, false,
-      read_safe_value, write_safe_value}},
-    {"power-on-value", "power-on value; the outputs follow", "0 off, 1 on",
-     {0x00A0, Width::PerOutput, Needs::Outputs, kReadCoils | kWriteSingleCoil | kWriteMultipleCoils, true, false, false,
-      read_power_on_value, write_power_on_value}},
-    {"protocol", "stored protocol, from the next reset on", "0 ASCII, 1 Modbus RTU; not by broadcast",
+    {"safe-value",
+     "safe value; the outputs follow",
+     "0 off, 1 on",
+     {0x0080, Width::PerOutput, Needs::Outputs, kReadCoils | kWriteSingleCoil | kWriteMultipleCoils, true,
+      false, false, read_safe_value, write_safe_value}},
+    {"power-on-value",
+     "power-on value; the outputs follow",
+     "0 off, 1 on",
+     {0x00A0, Width::PerOutput, Needs::Outputs, kReadCoils | kWriteSingleCoil | kWriteMultipleCoils, true,
+      false, false, read_power_on_value, write_power_on_value}},
+    {"protocol",
+     "stored protocol, from the next reset on",
+     "0 ASCII, 1 Modbus RTU; not by broadcast",
      {0x0100, Width::One, Needs::Nothing, kReadCoils | kWriteSingleCoil, false, false, true, read_protocol,
       write_protocol}},
-    {"watchdog-enable", "host watchdog enable", "0 off, 1 on and restart; on wants a timeout other than 0",
-     {0x0104, Width::One, Needs::Nothing, kReadCoils | kWriteSingleCoil, false, false, false, read_watchdog_enable,
-      write_watchdog_enable}},
-    {"clear-latches", "clear both latches of all channels", "1 only",
+    {"watchdog-enable",
+     "host watchdog enable",
+     "0 off, 1 on and restart; on wants a timeout other than 0",
+     {0x0104, Width::One, Needs::Nothing, kReadCoils | kWriteSingleCoil, false, false, false,
+      read_watchdog_enable, write_watchdog_enable}},
+    {"clear-latches",
+     "clear both latches of all channels",
+     "1 only",
      {0x0107, Width::One, Needs::Inputs, kWriteSingleCoil, false, true, false, nullptr, write_clear_latches}},
-    {"timeout-status", "host watchdog timeout status", "1 only: clears it",
-     {0x010D, Width::One, Needs::Nothing, kReadCoils | kWriteSingleCoil, false, true, false, read_timeout_status,
-      write_clear_timeout_status}},
-    {"clear-counters", "clear the channel's counter", "1 clears; function 0F: 0 leaves it",
-     {0x0200, Width::PerInput, Needs::Inputs, kWriteSingleCoil | kWriteMultipleCoils, false, true, false, nullptr,
-      write_clear_counters}},
+    {"timeout-status",
+     "host watchdog timeout status",
+     "1 only: clears it",
+     {0x010D, Width::One, Needs::Nothing, kReadCoils | kWriteSingleCoil, false, true, false,
+      read_timeout_status, write_clear_timeout_status}},
+    {"clear-counters",
+     "clear the channel's counter",
+     "1 clears; function 0F: 0 leaves it",
+     {0x0200, Width::PerInput, Needs::Inputs, kWriteSingleCoil | kWriteMultipleCoils, false, true, false,
+      nullptr, write_clear_counters}},
 }};
 
 constexpr std::array<WordRegister, 6> kWordRegisters{{
-    {"counters", "input counters", "",
-     {0x0000, Width::PerInput, Needs::Inputs, kReadHoldingRegisters | kReadInputRegisters, false, 0, 0, read_counter,
-      nullptr}},
-    {"module-code", "module code: 0x0090, then the last two digits", "",
+    {"counters",
+     "input counters",
+     "",
+     {0x0000, Width::PerInput, Needs::Inputs, kReadHoldingRegisters | kReadInputRegisters, false, 0, 0,
+      read_counter, nullptr}},
+    {"module-code",
+     "module code: 0x0090, then the last two digits",
+     "",
      {0x01E2, Width::Two, Needs::Nothing, kReadHoldingRegisters, false, 0, 0, read_module_code, nullptr}},
-    {"address", "stored address, from the next reset on", "1 to 247; not by broadcast",
+    {"address",
+     "stored address, from the next reset on",
+     "1 to 247; not by broadcast",
      {0x01E4, Width::One, Needs::Nothing, kReadHoldingRegisters | kWriteRegisters, true, kFirstModbusAddress,
       kLastModbusAddress, read_address, write_address}},
-    {"baud-code", "stored baud code, from the next reset on", "0x03 to 0x0A; not by broadcast",
-     {0x01E5, Width::One, Needs::Nothing, kReadHoldingRegisters | kWriteRegisters, true, kFirstBaudCode, kLastBaudCode,
-      read_baud_code, write_baud_code}},
-    {"watchdog-timeout", "host watchdog timeout in 0.1 s", "0 to 255; not 0 while enabled",
-     {0x01E8, Width::One, Needs::Nothing, kReadHoldingRegisters | kWriteRegisters, false, 0, 255, read_watchdog_timeout,
-      write_watchdog_timeout}},
-    // For people only: host OK is decided where the frame is received and never looked up, so no function is listed.
-    {"host-ok", "host OK: read by function 03 or 04 with quantity 0 or 1; restarts the host watchdog, no reply", "",
+    {"baud-code",
+     "stored baud code, from the next reset on",
+     "0x03 to 0x0A; not by broadcast",
+     {0x01E5, Width::One, Needs::Nothing, kReadHoldingRegisters | kWriteRegisters, true, kFirstBaudCode,
+      kLastBaudCode, read_baud_code, write_baud_code}},
+    {"watchdog-timeout",
+     "host watchdog timeout in 0.1 s",
+     "0 to 255; not 0 while enabled",
+     {0x01E8, Width::One, Needs::Nothing, kReadHoldingRegisters | kWriteRegisters, false, 0, 255,
+      read_watchdog_timeout, write_watchdog_timeout}},
+    // For people only: host OK is decided where the frame is received and never looked up, so no function is
+    // listed.
+    {"host-ok",
+     "host OK: read by function 03 or 04 with quantity 0 or 1; restarts the host watchdog, no reply",
+     "",
      {0x3038, Width::One, Needs::Nothing, 0, false, 0, 0, nullptr, nullptr}},
 }};
 
-/// The row of coils or discrete inputs that `address` lies in and that is listed for `function` on this model, or null.
+/// The row of coils or discrete inputs that `address` lies in and that is listed for `function` on this
+/// model, or null.
 const BitRow* find_bits(const Model& model, Functions function, std::uint16_t address);
 /// Likewise for registers.
 const WordRow* find_words(const Model& model, Functions function, std::uint16_t address);

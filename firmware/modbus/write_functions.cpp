@@ -1,5 +1,6 @@
-// Functions 05, 06, 0F, 10: Modbus Application Protocol V1.1b3, 6.5, 6.6, 6.11, 6.12. What is wrong is found in the
-// order length and quantity, address, value, timeout status; nothing is changed unless all of it is right.
+// Functions 05, 06, 0F, 10: Modbus Application Protocol V1.1b3, 6.5, 6.6, 6.11, 6.12. What is wrong is found
+// in the order length and quantity, address, value, timeout status; nothing is changed unless all of it is
+// right.
 #include "firmware/modbus/functions.hpp"
 #include "firmware/modbus/registers.hpp"
 
@@ -15,10 +16,12 @@ constexpr std::uint16_t kCoilOn = 0xFF00;
 constexpr std::uint16_t kCoilOff = 0x0000;
 
 /// The reply of all four: the request's address and value, or quantity.
-void put_echo(const Request& request, Reply& reply) { reply.put(request.frame.first(kSingleSize).from(2)); }
+void put_echo(const Request& request, Reply& reply) {
+  reply.put(request.frame.first(kSingleSize).from(2));
+}
 
-Refusal write_bits(const State& state, const Request& request, const BitRow& row, BitWrite bits, Outcome& outcome,
-                   Reply& reply) {
+Refusal write_bits(const State& state, const Request& request, const BitRow& row, BitWrite bits,
+                   Outcome& outcome, Reply& reply) {
   if (request.broadcast && row.configuration) {
     return Refusal::None;  // ignored: one frame must not reconfigure every module
   }
@@ -96,7 +99,8 @@ Refusal write_multiple_coils(const State& state, const Request& request, Outcome
   const unsigned values = frame[kMultipleHeader] | (quantity > 8 ? frame[kMultipleHeader + 1U] << 8U : 0U);
   return write_bits(
       state, request, *row,
-      {static_cast<std::uint16_t>(mask << index), static_cast<std::uint16_t>((values & mask) << index)}, outcome, reply);
+      {static_cast<std::uint16_t>(mask << index), static_cast<std::uint16_t>((values & mask) << index)},
+      outcome, reply);
 }
 
 Refusal write_single_register(const State& state, const Request& request, Outcome& outcome, Reply& reply) {
@@ -126,8 +130,9 @@ Refusal write_multiple_registers(const State& state, const Request& request, Out
   bool configuration = false;
   for (unsigned i = 0; i < quantity; ++i) {
     const unsigned address = start + i;
-    const WordRow* row =
-        address > 0xFFFF ? nullptr : find_words(state.model, kWriteRegisters, static_cast<std::uint16_t>(address));
+    const WordRow* row = address > 0xFFFF
+                             ? nullptr
+                             : find_words(state.model, kWriteRegisters, static_cast<std::uint16_t>(address));
     if (row == nullptr) {
       return Refusal::WrongAddress;
     }

@@ -12,15 +12,15 @@ constexpr std::string_view kFirmwareVersion = "D01.00";
 
 /// How `~AA0` tells the host watchdog's state (manuals 2.16; 2.18 of the EX9052D).
 enum class StatusStyle : std::uint8_t {
-  TimeoutOnly,        ///< 00, 04
+  TimeoutOnly,       ///< 00, 04
   EnableAndTimeout,  ///< 00, 80, 84
 };
 
 struct Model {
-  std::string_view designation;   ///< as on the label, e.g. "EX9042D-M"
-  std::uint8_t inputs;            ///< channels, 0 to 8
-  std::uint8_t outputs;           ///< channels, 0 to 16
-  std::uint16_t modbus_code;      ///< as function 46 tells it, 0x9042; 0: the model speaks ASCII only
+  std::string_view designation;  ///< as on the label, e.g. "EX9042D-M"
+  std::uint8_t inputs;           ///< channels, 0 to 8
+  std::uint8_t outputs;          ///< channels, 0 to 16
+  std::uint16_t modbus_code;     ///< as function 46 tells it, 0x9042; 0: the model speaks ASCII only
   StatusStyle status_style;
   std::string_view factory_name;  ///< what `$AAM` answers from the factory
   std::uint8_t longest_name;      ///< what `~AAO` accepts, in characters
@@ -49,10 +49,12 @@ constexpr std::array<Model, 17> kModels{{
     {"EX9043D", 0, 16, 0, StatusStyle::TimeoutOnly, "9043D", 6, "16 open-collector outputs"},
     {"EX9043D-M", 0, 16, 0x9043, StatusStyle::TimeoutOnly, "9043M", 6, "16 open-collector outputs"},
     {"EX9052D", 8, 0, 0, StatusStyle::EnableAndTimeout, "9052", 6, "8 inputs with latches and counters"},
-    {"EX9052D-M", 8, 0, 0x9052, StatusStyle::EnableAndTimeout, "9052M", 6, "8 inputs with latches and counters"},
+    {"EX9052D-M", 8, 0, 0x9052, StatusStyle::EnableAndTimeout, "9052M", 6,
+     "8 inputs with latches and counters"},
     {"EX9068D-M", 0, 8, 0x9068, StatusStyle::TimeoutOnly, "9068D-M", 7, "8 relay outputs"},
     {"EX9068AD-M", 0, 8, 0x9068, StatusStyle::TimeoutOnly, "9068D-M", 7, "8 PhotoMOS outputs"},
-    // Their ASCII-only sisters: outputs from the manuals' tables 2.3 and 2.11, inputs from the ICP DAS I-70xx.
+    // Their ASCII-only sisters: outputs from the manuals' tables 2.3 and 2.11, inputs from the ICP DAS
+    // I-70xx.
     {"EX9044D", 4, 8, 0, StatusStyle::TimeoutOnly, "9044", 6, "4 inputs, 8 open-collector outputs"},
     {"EX9050D", 7, 8, 0, StatusStyle::TimeoutOnly, "9050", 6, "7 inputs, 8 open-collector outputs"},
     {"EX9055D", 8, 8, 0, StatusStyle::TimeoutOnly, "9055", 6, "8 inputs, 8 open-collector outputs"},

@@ -35,8 +35,8 @@ struct Drive {
   std::uint16_t value = 0;
 };
 
-/// What is to be done, in one go, before the reply leaves. A change of settings is stored first; all else happens when
-/// it is.
+/// What is to be done, in one go, before the reply leaves. A change of settings is stored first; all else
+/// happens when it is.
 struct Outcome {
   static constexpr Outcome refused(Refusal why) {
     Outcome outcome;

@@ -10,8 +10,8 @@ constexpr std::size_t kNameAt = 14;
 constexpr std::uint8_t kFlagWatchdogEnabled = 0x01;
 constexpr std::uint8_t kFlagTimeoutStatus = 0x02;
 
-/// CRC-32 (IEEE 802.3) bit by bit: it runs once a store, and a torn page must not slip through as it would once in
-/// 65536 times with 16 bits.
+/// CRC-32 (IEEE 802.3) bit by bit: it runs once a store, and a torn page must not slip through as it would
+/// once in 65536 times with 16 bits.
 class Crc32 {
  public:
   void add(std::uint8_t byte) {

@@ -12,7 +12,8 @@
 
 namespace ex9000 {
 
-/// One copy of the settings. It fits one page of the EEPROM (32 bytes on an AT24C64), so that one page write stores it.
+/// One copy of the settings. It fits one page of the EEPROM (32 bytes on an AT24C64), so that one page write
+/// stores it.
 ///
 ///     0      layout, 1
 ///     1-2    sequence, low byte first: the copy with the later one counts
@@ -28,8 +29,8 @@ namespace ex9000 {
 ///     14-20  name, filled up with 0
 ///     21-24  CRC-32 over the model's designation and bytes 0 to 20, low byte first
 ///
-/// The CRC begins with the designation, so that what another model has written never counts: its power-on value was
-/// meant for other outputs.
+/// The CRC begins with the designation, so that what another model has written never counts: its power-on
+/// value was meant for other outputs.
 constexpr std::size_t kRecordSize = 25;
 using Record = std::array<std::uint8_t, kRecordSize>;
 

@@ -21,10 +21,10 @@ bool Settings::possible_for(const Model& model) const {
 }
 
 bool operator==(const Settings& a, const Settings& b) {
-  return a.address == b.address && a.baud_code == b.baud_code && a.format == b.format && a.protocol == b.protocol &&
-         a.name == b.name && a.power_on_value == b.power_on_value && a.safe_value == b.safe_value &&
-         a.watchdog_enabled == b.watchdog_enabled && a.watchdog_timeout == b.watchdog_timeout &&
-         a.timeout_status == b.timeout_status;
+  return a.address == b.address && a.baud_code == b.baud_code && a.format == b.format &&
+         a.protocol == b.protocol && a.name == b.name && a.power_on_value == b.power_on_value &&
+         a.safe_value == b.safe_value && a.watchdog_enabled == b.watchdog_enabled &&
+         a.watchdog_timeout == b.watchdog_timeout && a.timeout_status == b.timeout_status;
 }
 
 Settings SettingsChange::applied_to(const Settings& settings) const {

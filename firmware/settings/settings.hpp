@@ -101,7 +101,9 @@ class SettingsChange {
   constexpr SettingsChange& power_on_value(std::uint16_t value) {
     return set(kPowerOnValue, values_.power_on_value, value);
   }
-  constexpr SettingsChange& safe_value(std::uint16_t value) { return set(kSafeValue, values_.safe_value, value); }
+  constexpr SettingsChange& safe_value(std::uint16_t value) {
+    return set(kSafeValue, values_.safe_value, value);
+  }
   constexpr SettingsChange& watchdog_enabled(bool value) {
     return set(kWatchdogEnabled, values_.watchdog_enabled, value);
   }

@@ -4,14 +4,17 @@ namespace ex9000 {
 
 namespace {
 
-/// Apart by a page of the smallest pages that any supported EEPROM has, so that a torn page harms one copy only.
+/// Apart by a page of the smallest pages that any supported EEPROM has, so that a torn page harms one copy
+/// only.
 constexpr std::uint16_t kCopyDistance = 32;
 static_assert(kRecordSize <= kCopyDistance, "a copy must fit one page");
 
 constexpr std::size_t kCheckBytes = 4;
 constexpr std::array<std::uint8_t, kCheckBytes> kNoCheck{};
 
-constexpr std::uint16_t address_of(std::uint8_t copy) { return static_cast<std::uint16_t>(copy * kCopyDistance); }
+constexpr std::uint16_t address_of(std::uint8_t copy) {
+  return static_cast<std::uint16_t>(copy * kCopyDistance);
+}
 
 /// Sequence numbers wrap; the later one is less than half the range ahead.
 constexpr bool is_later(std::uint16_t a, std::uint16_t b) {
@@ -20,7 +23,9 @@ constexpr bool is_later(std::uint16_t a, std::uint16_t b) {
 
 }  // namespace
 
-void SettingsStore::begin_loading() { begin_reading(Step::Load); }
+void SettingsStore::begin_loading() {
+  begin_reading(Step::Load);
+}
 
 void SettingsStore::begin_reading(Step step) {
   step_ = step;
@@ -139,7 +144,8 @@ void SettingsStore::finish_reading() {
 }
 
 void SettingsStore::retry_or_give_up() {
-  // The copy may hold the new settings all the same and only not have said so. It must not count after a reset.
+  // The copy may hold the new settings all the same and only not have said so. It must not count after a
+  // reset.
   step_ = ++attempt_ < kAttempts ? Step::Write : Step::Invalidate;
 }
 

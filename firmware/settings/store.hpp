@@ -21,10 +21,12 @@ struct MemoryJob {
   MutableBytes destination;   ///< to be filled
 };
 
-/// Two copies, each in a page of its own. A save overwrites the older or broken one, reads it back, and only then does
-/// it count; the other copy stays as it is, so a power cut leaves either the old settings or the new ones.
+/// Two copies, each in a page of its own. A save overwrites the older or broken one, reads it back, and only
+/// then does it count; the other copy stays as it is, so a power cut leaves either the old settings or the
+/// new ones.
 ///
-/// The store does nothing by itself: whoever owns the memory starts `job()`, and reports `done()` when it has ended.
+/// The store does nothing by itself: whoever owns the memory starts `job()`, and reports `done()` when it has
+/// ended.
 class SettingsStore {
  public:
   enum class Found : std::uint8_t {
@@ -40,10 +42,11 @@ class SettingsStore {
   [[nodiscard]] bool loading() const { return step_ == Step::Load; }
   [[nodiscard]] Found found() const { return found_; }
 
-  /// Writes and verifies, up to three times. Only while not `busy()`. Afterwards `saved()` and `stored()` hold.
+  /// Writes and verifies, up to three times. Only while not `busy()`. Afterwards `saved()` and `stored()`
+  /// hold.
   ///
-  /// Where no copy could be read at reset, both are read once more first: one that answers now must not count as the
-  /// later one after the next reset.
+  /// Where no copy could be read at reset, both are read once more first: one that answers now must not count
+  /// as the later one after the next reset.
   void begin_saving(const Settings& settings);
   [[nodiscard]] bool busy() const { return step_ != Step::Idle; }
   /// Whether the last save succeeded.

@@ -30,7 +30,8 @@ class HostWatchdog {
  private:
   static constexpr Duration timeout(const Settings& settings) {
     constexpr std::uint32_t kUnitMilliseconds = 100;
-    constexpr Duration kRoundUp(1);  // the restart happened up to a microsecond after the time it is noted with
+    constexpr Duration kRoundUp(
+        1);  // the restart happened up to a microsecond after the time it is noted with
     return milliseconds(settings.watchdog_timeout * kUnitMilliseconds) + kRoundUp;
   }
 

@@ -7,8 +7,8 @@
 
 namespace ex9000 {
 
-/// Fed only when the main loop and the tick interrupt have both shown life since the last feed: a main loop that spins
-/// beside a dead tick is as lost as one that hangs.
+/// Fed only when the main loop and the tick interrupt have both shown life since the last feed: a main loop
+/// that spins beside a dead tick is as lost as one that hangs.
 class ModuleWatchdog {
  public:
   /// Tick interrupt.

@@ -16,7 +16,8 @@ void Memory::begin(bool writing, std::uint16_t address, std::size_t size) {
   writing_ = writing;
   address_ = address;
   began_ = clock_.virtual_now();
-  ends_ = began_ + kByteOnBus * (static_cast<std::int64_t>(size) + kAddressing) + (writing ? kProgram : VirtualTime(0));
+  ends_ = began_ + kByteOnBus * (static_cast<std::int64_t>(size) + kAddressing) +
+          (writing ? kProgram : VirtualTime(0));
 }
 
 void Memory::start_read(std::uint16_t address, MutableBytes destination) {

@@ -9,8 +9,8 @@
 
 namespace ex9000::hal::doubles {
 
-/// An AT24C64 as the core sees it: 8 KiB, erased to FF, on a 100 kHz bus, 5 ms to program a page. Loses power in the
-/// middle of a job if told so.
+/// An AT24C64 as the core sees it: 8 KiB, erased to FF, on a 100 kHz bus, 5 ms to program a page. Loses power
+/// in the middle of a job if told so.
 class Memory final : public hal::Memory {
  public:
   static constexpr std::size_t kSize = 8192;
@@ -28,8 +28,8 @@ class Memory final : public hal::Memory {
   [[nodiscard]] VirtualTime next() const { return ends_; }
   void run();
 
-  /// The supply fails or the MCU is reset. A write under way leaves the page as far as it got: the first bytes new, in
-  /// proportion to the time it had, one byte spoiled, the rest old.
+  /// The supply fails or the MCU is reset. A write under way leaves the page as far as it got: the first
+  /// bytes new, in proportion to the time it had, one byte spoiled, the rest old.
   void cut();
 
   /// From now on no job succeeds, and nothing is written.

@@ -15,14 +15,16 @@ constexpr VirtualTime kNever = VirtualTime::max();
 class VirtualClock final : public Clock {
  public:
   [[nodiscard]] Time now() const override {
-    return Time(static_cast<std::uint32_t>(std::chrono::duration_cast<std::chrono::microseconds>(now_).count()));
+    return Time(
+        static_cast<std::uint32_t>(std::chrono::duration_cast<std::chrono::microseconds>(now_).count()));
   }
   [[nodiscard]] VirtualTime virtual_now() const { return now_; }
   void set(VirtualTime now) { now_ = now; }
 
   /// The first instant at which `now()` shows `after` more than it does now.
   [[nodiscard]] VirtualTime when(Duration after) const {
-    return std::chrono::duration_cast<std::chrono::microseconds>(now_) + std::chrono::microseconds(after.microseconds());
+    return std::chrono::duration_cast<std::chrono::microseconds>(now_) +
+           std::chrono::microseconds(after.microseconds());
   }
 
  private:

@@ -12,7 +12,8 @@ constexpr std::uint32_t kAnyRate = 9600;
 }  // namespace
 
 void CoreTarget::start(const Model& model, const Settings* preset) {
-  master_.emplace(bus_, kAnyRate, [this](std::uint8_t byte, ByteStatus /*status*/) { heard_.push_back(byte); });
+  master_.emplace(bus_, kAnyRate,
+                  [this](std::uint8_t byte, ByteStatus /*status*/) { heard_.push_back(byte); });
   module_.emplace(bus_, model);
   if (preset != nullptr) {
     module_->store(*preset);
@@ -48,9 +49,13 @@ Bytes CoreTarget::listen(std::chrono::milliseconds time) {
   return take_heard();
 }
 
-Bytes CoreTarget::take_heard() { return std::exchange(heard_, {}); }
+Bytes CoreTarget::take_heard() {
+  return std::exchange(heard_, {});
+}
 
-void CoreTarget::set_baud(std::uint32_t rate) { master_->set_baud(rate); }
+void CoreTarget::set_baud(std::uint32_t rate) {
+  master_->set_baud(rate);
+}
 
 void CoreTarget::power(bool on) {
   module_->power(on);
@@ -65,7 +70,8 @@ void CoreTarget::reset() {
 }
 
 step::Led::Shows CoreTarget::led() {
-  // No time passes: the steps around this one measure it. That the pin flashes as the pattern says is a unit test.
+  // No time passes: the steps around this one measure it. That the pin flashes as the pattern says is a unit
+  // test.
   if (module_->powered() && module_->module().led_pattern() == StatusLed::Pattern::HostTimeout) {
     return step::Led::Shows::Flashing;
   }

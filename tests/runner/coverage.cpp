@@ -28,7 +28,8 @@ constexpr std::array<std::pair<Refusal, const char*>, 13> kRefusals{{
     {Refusal::WrongValue, "WrongValue"},
     {Refusal::UnknownObject, "UnknownObject"},
     {Refusal::OutputsBlocked, "OutputsBlocked"},
-    // Refusal::StoreFailed needs a broken memory, which no master can bring about: tests/unit/module_test.cpp.
+    // Refusal::StoreFailed needs a broken memory, which no master can bring about:
+    // tests/unit/module_test.cpp.
 }};
 
 constexpr std::array<std::pair<Verdict, const char*>, 6> kVerdicts{{

@@ -11,7 +11,8 @@ constexpr std::chrono::milliseconds kLongestReply{250};
 /// The rest of a reply that is longer than it should be shows itself within this.
 constexpr std::chrono::milliseconds kAfterReply{2};
 
-/// DCON's checksum and Modbus's CRC once more, the plain way, so that the tests do not judge the firmware by itself.
+/// DCON's checksum and Modbus's CRC once more, the plain way, so that the tests do not judge the firmware by
+/// itself.
 std::string checksum_of(const std::string& text) {
   unsigned sum = 0;
   for (const char character : text) {
@@ -36,7 +37,9 @@ Bytes with_crc(Bytes frame) {
   return frame;
 }
 
-Bytes bytes_of(const std::string& text) { return {text.begin(), text.end()}; }
+Bytes bytes_of(const std::string& text) {
+  return {text.begin(), text.end()};
+}
 
 /// As a person reads it: text where it is text, hex otherwise.
 std::string shown(const Bytes& bytes) {

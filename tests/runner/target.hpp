@@ -11,8 +11,8 @@
 
 namespace ex9000::runner {
 
-/// One module and the master's end of its line. Every call returns when it is done; where that takes time, the target
-/// lets it pass.
+/// One module and the master's end of its line. Every call returns when it is done; where that takes time,
+/// the target lets it pass.
 class Target {
  public:
   Target() = default;
@@ -20,8 +20,8 @@ class Target {
   Target& operator=(const Target&) = delete;
   virtual ~Target() = default;
 
-  /// A module of this model with `preset` stored (nothing stored where it is null), supply on, INIT* released, inputs
-  /// off. Called once, first.
+  /// A module of this model with `preset` stored (nothing stored where it is null), supply on, INIT*
+  /// released, inputs off. Called once, first.
   virtual void start(const Model& model, const Settings* preset) = 0;
 
   /// Puts `bytes` on the line without a gap, at the master's rate.

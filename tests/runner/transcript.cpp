@@ -23,7 +23,9 @@ struct ModelRun {
   Variables variables;
 };
 
-[[noreturn]] void fail(const std::string& what) { throw std::runtime_error(what); }
+[[noreturn]] void fail(const std::string& what) {
+  throw std::runtime_error(what);
+}
 
 std::string trimmed(const std::string& text) {
   const auto first = text.find_first_not_of(" \t\r");
@@ -88,7 +90,8 @@ std::chrono::milliseconds duration(const std::string& text) {
 }
 
 const Model& model_named(const std::string& name) {
-  const auto* found = std::find_if(kModels.begin(), kModels.end(), [&](const Model& m) { return m.designation == name; });
+  const auto* found =
+      std::find_if(kModels.begin(), kModels.end(), [&](const Model& m) { return m.designation == name; });
   if (found == kModels.end()) {
     fail("no model '" + name + "'");
   }

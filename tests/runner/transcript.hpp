@@ -17,29 +17,60 @@ using Bytes = std::vector<std::uint8_t>;
 
 namespace step {
 
-struct SendDcon { std::string text; };
-struct ExpectDcon { std::string text; };
-struct SendModbus { Bytes frame; };    ///< without CRC
-struct ExpectModbus { Bytes frame; };  ///< likewise
-struct SendBytes { Bytes bytes; };
+struct SendDcon {
+  std::string text;
+};
+struct ExpectDcon {
+  std::string text;
+};
+struct SendModbus {
+  Bytes frame;
+};  ///< without CRC
+struct ExpectModbus {
+  Bytes frame;
+};  ///< likewise
+struct SendBytes {
+  Bytes bytes;
+};
 struct Silence {};
-struct Wait { std::chrono::milliseconds time; };
-struct Checksum { bool on; };
-struct Baud { std::uint32_t rate; };
-struct Power { bool on; };
+struct Wait {
+  std::chrono::milliseconds time;
+};
+struct Checksum {
+  bool on;
+};
+struct Baud {
+  std::uint32_t rate;
+};
+struct Power {
+  bool on;
+};
 struct PowerCycle {};
 struct Reset {};
-struct Init { bool asserted; };
-struct Input { unsigned channel; bool level; };
-struct Pulse { unsigned channel; std::uint32_t count; };
-struct Outputs { std::uint16_t channels; };
-struct Led { enum class Shows { On, Off, Flashing } shows; };
+struct Init {
+  bool asserted;
+};
+struct Input {
+  unsigned channel;
+  bool level;
+};
+struct Pulse {
+  unsigned channel;
+  std::uint32_t count;
+};
+struct Outputs {
+  std::uint16_t channels;
+};
+struct Led {
+  enum class Shows { On, Off, Flashing } shows;
+};
 
 }  // namespace step
 
-using Action = std::variant<step::SendDcon, step::ExpectDcon, step::SendModbus, step::ExpectModbus, step::SendBytes,
-                            step::Silence, step::Wait, step::Checksum, step::Baud, step::Power, step::PowerCycle,
-                            step::Reset, step::Init, step::Input, step::Pulse, step::Outputs, step::Led>;
+using Action =
+    std::variant<step::SendDcon, step::ExpectDcon, step::SendModbus, step::ExpectModbus, step::SendBytes,
+                 step::Silence, step::Wait, step::Checksum, step::Baud, step::Power, step::PowerCycle,
+                 step::Reset, step::Init, step::Input, step::Pulse, step::Outputs, step::Led>;
 
 struct Step {
   unsigned line;     ///< in the file, from 1
@@ -63,7 +94,8 @@ struct Transcript {
 /// Nothing may be heard in this time where `silence` is expected; longer than any reply may take.
 constexpr std::chrono::milliseconds kSilence{250};
 
-/// All runs of a file, one a `model:` line. Throws std::runtime_error that names file, line and what is wrong.
+/// All runs of a file, one a `model:` line. Throws std::runtime_error that names file, line and what is
+/// wrong.
 std::vector<Transcript> load_transcripts(const std::string& path);
 
 }  // namespace ex9000::runner

@@ -26,7 +26,8 @@ Arguments both_modules(int baud) {
 
 class LibmodbusMaster {
  public:
-  LibmodbusMaster(const std::string& tty, int baud) : context_(modbus_new_rtu(tty.c_str(), baud, 'N', 8, 1), modbus_free) {
+  LibmodbusMaster(const std::string& tty, int baud)
+      : context_(modbus_new_rtu(tty.c_str(), baud, 'N', 8, 1), modbus_free) {
     modbus_set_response_timeout(context_.get(), 1, 0);
     if (modbus_connect(context_.get()) != 0) {
       throw std::runtime_error(modbus_strerror(errno));
@@ -106,7 +107,8 @@ TEST_P(Masters, MbpollPollsBothModulesAlternately) {
     EXPECT_NE(written.output.find("Written 1 references"), std::string::npos) << written.output;
     const Finished outputs = mbpoll({"-a", "1", "-t", "0", "-r", "1", "-c", "13", "-1", tty});
     EXPECT_EQ(outputs.status, 0) << outputs.error;
-    EXPECT_NE(outputs.output.find("[" + std::to_string(round + 1) + "]: \t1"), std::string::npos) << outputs.output;
+    EXPECT_NE(outputs.output.find("[" + std::to_string(round + 1) + "]: \t1"), std::string::npos)
+        << outputs.output;
     const Finished inputs = mbpoll({"-a", "2", "-t", "1", "-r", "1", "-c", "8", "-1", tty});
     EXPECT_EQ(inputs.status, 0) << inputs.error;
     EXPECT_NE(inputs.output.find("[8]: \t0"), std::string::npos) << inputs.output;
@@ -133,7 +135,9 @@ class Terminal {
   Terminal(const Terminal&) = delete;
   Terminal& operator=(const Terminal&) = delete;
 
-  void type(const std::string& text) { ASSERT_EQ(write(fd_, text.data(), text.size()), static_cast<ssize_t>(text.size())); }
+  void type(const std::string& text) {
+    ASSERT_EQ(write(fd_, text.data(), text.size()), static_cast<ssize_t>(text.size()));
+  }
   /// Up to CR, or what has come within half a second.
   std::string read_line() {
     std::string line;
@@ -177,7 +181,8 @@ TEST(Dcon, TheRateThatAMasterSetsIsTheLinesAndAMismatchIsSaid) {
   Terminal terminal(simulator.tty(), B1200);
   terminal.type("$052\r");
   EXPECT_EQ(terminal.read_line(), "");
-  EXPECT_TRUE(simulator.wait_for("the master is at 1200 baud, EX9042D at 05 listens at 19200")) << simulator.output();
+  EXPECT_TRUE(simulator.wait_for("the master is at 1200 baud, EX9042D at 05 listens at 19200"))
+      << simulator.output();
 }
 
 }  // namespace

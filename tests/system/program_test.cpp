@@ -117,8 +117,8 @@ TEST(Program, TellsItsVersionModelsAndHelp) {
   EXPECT_NE(models.output.find("EX9068AD-M"), std::string::npos);
   const Finished help = simulator({"--help"}, directory.path());
   EXPECT_EQ(help.status, 0);
-  for (const char* option : {"--pty", "--baud", "--log", "--models", "--version", "--strict-gaps", "protocol=", "edge=",
-                             "checksum=", "name=", "init=", "baud="}) {
+  for (const char* option : {"--pty", "--baud", "--log", "--models", "--version", "--strict-gaps",
+                             "protocol=", "edge=", "checksum=", "name=", "init=", "baud="}) {
     EXPECT_NE(help.output.find(option), std::string::npos) << option;
   }
   EXPECT_TRUE(fs::is_empty(directory.path()));

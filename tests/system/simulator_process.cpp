@@ -48,7 +48,9 @@ int spawn(const std::vector<std::string>& command, const std::string& directory,
   return pid;
 }
 
-int status_of(int raw) { return WIFEXITED(raw) ? WEXITSTATUS(raw) : 128 + WTERMSIG(raw); }
+int status_of(int raw) {
+  return WIFEXITED(raw) ? WEXITSTATUS(raw) : 128 + WTERMSIG(raw);
+}
 
 bool append_from(int fd, std::string& text) {
   std::array<char, 4096> buffer{};
@@ -62,7 +64,9 @@ bool append_from(int fd, std::string& text) {
 
 }  // namespace
 
-std::string simulator_path() { return EX9000_SIMULATOR; }
+std::string simulator_path() {
+  return EX9000_SIMULATOR;
+}
 
 SimulatorProcess::SimulatorProcess(const std::vector<std::string>& arguments) {
   std::string pattern = (std::filesystem::temp_directory_path() / "ex9000-XXXXXX").string();
@@ -85,7 +89,8 @@ SimulatorProcess::~SimulatorProcess() {
 }
 
 bool SimulatorProcess::read_more() {
-  constexpr int kPatienceMilliseconds = 20'000;  // for a machine under load; what waits for an event needs none of it
+  constexpr int kPatienceMilliseconds =
+      20'000;  // for a machine under load; what waits for an event needs none of it
   pollfd ready{out_, POLLIN, 0};
   return poll(&ready, 1, kPatienceMilliseconds) == 1 && append_from(out_, output_);
 }

@@ -8,8 +8,8 @@ namespace ex9000::system {
 
 class SimulatorProcess {
  public:
-  /// Starts the program with `arguments` in a fresh directory of its own and returns when it has said on which
-  /// pseudo-terminal it is, or has ended.
+  /// Starts the program with `arguments` in a fresh directory of its own and returns when it has said on
+  /// which pseudo-terminal it is, or has ended.
   explicit SimulatorProcess(const std::vector<std::string>& arguments);
   /// Ends it, by force if need be.
   ~SimulatorProcess();

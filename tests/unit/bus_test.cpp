@@ -48,7 +48,9 @@ class BusTest : public testing::Test {
   std::unique_ptr<Master> master(std::uint32_t baud) {
     return std::make_unique<Master>(bus_, baud, [](std::uint8_t /*byte*/, ByteStatus /*status*/) {});
   }
-  static void send(Master& master, std::vector<std::uint8_t> bytes) { master.send(bytes.data(), bytes.size()); }
+  static void send(Master& master, std::vector<std::uint8_t> bytes) {
+    master.send(bytes.data(), bytes.size());
+  }
 
   VirtualClock clock_;
   Bus bus_{clock_};

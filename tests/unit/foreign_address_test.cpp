@@ -52,7 +52,8 @@ void every_command_to_every_other_address(const char* model) {
       if (address == kOwnAddress || command.dispatch.key == dcon::kBroadcastKey) {
         continue;
       }
-      const std::string key = command.dispatch.key == dcon::kNoKey ? "" : std::string(1, command.dispatch.key);
+      const std::string key =
+          command.dispatch.key == dcon::kNoKey ? "" : std::string(1, command.dispatch.key);
       bench.send(command.dispatch.delimiter + hex_byte_text(address) + key + arguments(command) + "\r");
       bench.run(std::chrono::milliseconds(5));
     }
@@ -75,7 +76,8 @@ void every_function_to_every_other_address(const char* model) {
       if (address == kOwnAddress) {
         continue;
       }
-      // Coil 0000 on, or register 0000, or quantity 0xFF00: right or wrong, it is none of this module's business.
+      // Coil 0000 on, or register 0000, or quantity 0xFF00: right or wrong, it is none of this module's
+      // business.
       Bytes frame{static_cast<std::uint8_t>(address), static_cast<std::uint8_t>(function), 0, 0, 0xFF, 0};
       if (function == 0x0F) {
         frame = {frame[0], frame[1], 0, 0, 0, 8, 1, 0xFF};

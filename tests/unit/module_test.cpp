@@ -20,8 +20,9 @@ struct OutputChange {
 };
 
 void watch_outputs(ModuleBench& bench, std::vector<OutputChange>& changes) {
-  bench.module().output_pins().on_change(
-      [&](std::uint16_t channels) { changes.push_back({bench.now(), channels}); });
+  bench.module().output_pins().on_change([&](std::uint16_t channels) {
+    changes.push_back({bench.now(), channels});
+  });
 }
 
 // --- wire.md 8: a reply means it is stored ---
@@ -63,7 +64,8 @@ TEST(Storing, ABroadcastThatCannotBeStoredStaysSilent) {
 
 TEST(Storing, ACommandThatChangesNothingWritesNothing) {
   ModuleBench ascii("EX9042D");
-  const std::vector<std::string> commands{"%0101400680", "~01OABC", "~013105", "~01OABC", "~013005", "~011", "~015P", "~015S"};
+  const std::vector<std::string> commands{"%0101400680", "~01OABC", "~013105", "~01OABC",
+                                          "~013005",     "~011",    "~015P",   "~015S"};
   for (const std::string& command : commands) {
     ascii.ask(command);
     const auto writes = ascii.module().memory().writes();
@@ -86,8 +88,9 @@ TEST(Storing, ACommandThatChangesNothingWritesNothing) {
 
 TEST(Storing, ReadingAndRefusedCommandsWriteNothing) {
   ModuleBench bench("EX9055D");
-  for (const char* command : {"$012", "$016", "@01", "#010", "~010", "~012", "~014P", "$01F", "$01M", "$015", "~01O",
-                              "~013000", "%0101410600", "@01FFF", "~015X", "$01P1", "@01FF", "#0100AA"}) {
+  for (const char* command :
+       {"$012", "$016", "@01", "#010", "~010", "~012", "~014P", "$01F", "$01M", "$015", "~01O", "~013000",
+        "%0101410600", "@01FFF", "~015X", "$01P1", "@01FF", "#0100AA"}) {
     bench.ask(command);
   }
   EXPECT_EQ(bench.module().memory().writes(), 0U);
@@ -133,7 +136,8 @@ TEST(Storing, WhereverThePowerFailsACommandIsWhollyDoneOrNotAtAllAndAnAcknowledg
         undisturbed.ask("@011FFF");
         undisturbed.ask(command);
         const Settings done = undisturbed.module().module().state().settings;
-        ASSERT_TRUE(after == done || (!acknowledged && after == before)) << command << " cut at " << cut.count() << " ns";
+        ASSERT_TRUE(after == done || (!acknowledged && after == before))
+            << command << " cut at " << cut.count() << " ns";
       }
     }
   }
@@ -144,7 +148,8 @@ TEST(Storing, SettingsThatCannotBeReadGiveFactorySettingsUnwrittenWithin100msAnd
   ModuleBench bench("EX9042D,name=OLD");
   for (const bool no_answer : {false, true}) {
     bench.module().power(false);
-    std::fill(bench.module().memory().contents().begin(), bench.module().memory().contents().end(), std::uint8_t{0x5A});
+    std::fill(bench.module().memory().contents().begin(), bench.module().memory().contents().end(),
+              std::uint8_t{0x5A});
     bench.module().memory().fail(no_answer);
     const auto writes = bench.module().memory().writes();
     bench.module().power(true);
@@ -368,9 +373,13 @@ TEST(Reset, ABouncingInitSwitchCountsOnlyOnceItStandsStill) {
 TEST(Timing, AnAsciiReplyStartsOneCharacterAfterCrAtTheEarliestAndWithin20msOr200WhereSomethingIsStored) {
   for (const std::uint32_t baud : kBaudRates) {
     ModuleBench bench("EX9055D,baud=" + std::to_string(baud));
-    for (const auto& [command, most] : std::vector<std::pair<std::string, VirtualTime>>{
-             {"$012", milliseconds(20)}, {"@01FF", milliseconds(20)}, {"#010", milliseconds(20)},
-             {"$01Z", milliseconds(20)}, {"~01ONEW", milliseconds(200)}, {"~0131FF", milliseconds(200)}}) {
+    for (const auto& [command, most] :
+         std::vector<std::pair<std::string, VirtualTime>>{{"$012", milliseconds(20)},
+                                                          {"@01FF", milliseconds(20)},
+                                                          {"#010", milliseconds(20)},
+                                                          {"$01Z", milliseconds(20)},
+                                                          {"~01ONEW", milliseconds(200)},
+                                                          {"~0131FF", milliseconds(200)}}) {
       bench.recorder().clear();
       ASSERT_NE(bench.ask(command), "") << command;
       const std::size_t request = command.size() + 1;
@@ -385,11 +394,11 @@ TEST(Timing, AModbusReplyStartsAfterThreeAndAHalfCharactersAtTheEarliestAndSoon)
   for (const std::uint32_t baud : kBaudRates) {
     ModuleBench bench("EX9042D-M,baud=" + std::to_string(baud));
     const VirtualTime silence = baud > 19200 ? VirtualTime(1'750'000) : VirtualTime(38'500'000'000 / baud);
-    for (const auto& [frame, most] : std::vector<std::pair<Bytes, VirtualTime>>{
-             {{1, 0x01, 0, 0, 0, 13}, milliseconds(20)},
-             {{1, 0x05, 0, 0, 0xFF, 0}, milliseconds(20)},
-             {{1, 0x41}, milliseconds(20)},
-             {{1, 0x06, 0x01, 0xE8, 0, 50}, milliseconds(200)}}) {
+    for (const auto& [frame, most] :
+         std::vector<std::pair<Bytes, VirtualTime>>{{{1, 0x01, 0, 0, 0, 13}, milliseconds(20)},
+                                                    {{1, 0x05, 0, 0, 0xFF, 0}, milliseconds(20)},
+                                                    {{1, 0x41}, milliseconds(20)},
+                                                    {{1, 0x06, 0x01, 0xE8, 0, 50}, milliseconds(200)}}) {
       bench.recorder().clear();
       ASSERT_FALSE(bench.ask(frame).empty());
       const std::size_t request = frame.size() + 2;

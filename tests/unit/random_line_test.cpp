@@ -1,5 +1,5 @@
-// An hour of noise at each protocol: nothing is answered, and no output changes, but by a frame that is right. What is
-// right is judged here once more, by nothing of the firmware's.
+// An hour of noise at each protocol: nothing is answered, and no output changes, but by a frame that is
+// right. What is right is judged here once more, by nothing of the firmware's.
 #include <gtest/gtest.h>
 
 #include <cstdio>
@@ -156,8 +156,8 @@ class NoisyLine final : public BusObserver {
     bus_.run_for(time);
     check();
   }
-  /// The byte is over one byte time from now. `judge` is asked first, if the module can hear it; `forget` is called
-  /// where the module's own driver was on since the last byte.
+  /// The byte is over one byte time from now. `judge` is asked first, if the module can hear it; `forget` is
+  /// called where the module's own driver was on since the last byte.
   template <class Judge, class Forget>
   void put(std::uint8_t byte, ByteStatus status, Judge judge, Forget forget) {
     run(kByte);
@@ -245,9 +245,10 @@ class Noise {
 };
 
 std::string dcon_noise(Noise& noise, bool checksum) {
-  static const std::vector<std::string> commands{"$012", "$016", "@01",  "@01FF", "#0100AA", "#010", "$01C", "$01L1",
-                                                 "~010", "$014", "~012", "~**",   "#**",     "~011", "$01F", "$01M",
-                                                 "@0155", "#011701", "~01OABC", "$015", "!01", ">", "?01$01M"};
+  static const std::vector<std::string> commands{"$012",    "$016",  "@01",  "@01FF", "#0100AA", "#010",
+                                                 "$01C",    "$01L1", "~010", "$014",  "~012",    "~**",
+                                                 "#**",     "~011",  "$01F", "$01M",  "@0155",   "#011701",
+                                                 "~01OABC", "$015",  "!01",  ">",     "?01$01M"};
   std::string text;
   switch (noise.below(4)) {
     case 0:
@@ -263,7 +264,8 @@ std::string dcon_noise(Noise& noise, bool checksum) {
     default:
       text = noise.pick(commands);
       if (noise.once_in(10)) {
-        text.insert(text.begin() + noise.below(static_cast<unsigned>(text.size()) + 1), 1 + noise.below(40), 'x');
+        text.insert(text.begin() + noise.below(static_cast<unsigned>(text.size()) + 1), 1 + noise.below(40),
+                    'x');
       }
       if (checksum && !noise.once_in(5)) {
         unsigned sum = 0;
@@ -281,8 +283,8 @@ std::string dcon_noise(Noise& noise, bool checksum) {
 }
 
 void report(const char* what, std::size_t bytes, const NoisyLine& line) {
-  std::printf("%s: %zu bytes in an hour, %zu requests right, %zu answered\n", what, bytes, line.judged_right(),
-              line.replies());
+  std::printf("%s: %zu bytes in an hour, %zu requests right, %zu answered\n", what, bytes,
+              line.judged_right(), line.replies());
   // One that comes while another is being answered is lost; most are not.
   EXPECT_GT(line.judged_right(), 1000U);
   EXPECT_GT(line.replies(), line.judged_right() / 2);
@@ -295,8 +297,9 @@ void an_hour_of_dcon(bool checksum, std::uint32_t seed) {
   std::size_t bytes = 0;
   while (line.now() < kAnHour && !testing::Test::HasFatalFailure()) {
     for (const char character : dcon_noise(noise, checksum)) {
-      line.put(static_cast<std::uint8_t>(character), noise.status(),
-               [&](std::uint8_t byte, bool good) { return judge.feed(byte, good); }, [&] { judge.forget(); });
+      line.put(
+          static_cast<std::uint8_t>(character), noise.status(),
+          [&](std::uint8_t byte, bool good) { return judge.feed(byte, good); }, [&] { judge.forget(); });
       ++bytes;
     }
     if (noise.once_in(2)) {
@@ -307,12 +310,21 @@ void an_hour_of_dcon(bool checksum, std::uint32_t seed) {
 }
 
 std::vector<std::uint8_t> rtu_noise(Noise& noise) {
-  static const std::vector<std::vector<std::uint8_t>> requests{
-      {1, 1, 0, 0, 0, 13},          {1, 5, 0, 3, 0xFF, 0},    {1, 15, 0, 0, 0, 13, 2, 0xAA, 0x15},
-      {1, 3, 1, 0xE2, 0, 4},        {1, 6, 1, 0xE8, 0, 200},  {1, 8, 0, 0, 0x12, 0x34},
-      {1, 17},                      {1, 0x2B, 0x0E, 1, 0},    {1, 0x46, 0},
-      {0, 5, 0, 1, 0xFF, 0},        {0, 3, 0x30, 0x38, 0, 0}, {1, 3, 0x30, 0x38, 0, 1},
-      {2, 1, 0, 0, 0, 13},          {1, 0x99, 1, 2},          {77, 5, 0, 0, 0xFF, 0}};
+  static const std::vector<std::vector<std::uint8_t>> requests{{1, 1, 0, 0, 0, 13},
+                                                               {1, 5, 0, 3, 0xFF, 0},
+                                                               {1, 15, 0, 0, 0, 13, 2, 0xAA, 0x15},
+                                                               {1, 3, 1, 0xE2, 0, 4},
+                                                               {1, 6, 1, 0xE8, 0, 200},
+                                                               {1, 8, 0, 0, 0x12, 0x34},
+                                                               {1, 17},
+                                                               {1, 0x2B, 0x0E, 1, 0},
+                                                               {1, 0x46, 0},
+                                                               {0, 5, 0, 1, 0xFF, 0},
+                                                               {0, 3, 0x30, 0x38, 0, 0},
+                                                               {1, 3, 0x30, 0x38, 0, 1},
+                                                               {2, 1, 0, 0, 0, 13},
+                                                               {1, 0x99, 1, 2},
+                                                               {77, 5, 0, 0, 0xFF, 0}};
   std::vector<std::uint8_t> frame;
   if (noise.once_in(3)) {
     for (unsigned i = noise.below(noise.once_in(50) ? 300 : 20); i > 0; --i) {
@@ -351,16 +363,17 @@ void an_hour_of_modbus(std::uint32_t seed) {
     std::vector<std::uint8_t> heard;
     std::vector<bool> good;
     for (const std::uint8_t byte : rtu_noise(noise)) {
-      line.put(byte, noise.status(),
-               [&](std::uint8_t value, bool is_good) {
-                 heard.push_back(value);
-                 good.push_back(is_good);
-                 return Finding::Nothing;
-               },
-               [&] {
-                 heard.clear();
-                 good.clear();
-               });
+      line.put(
+          byte, noise.status(),
+          [&](std::uint8_t value, bool is_good) {
+            heard.push_back(value);
+            good.push_back(is_good);
+            return Finding::Nothing;
+          },
+          [&] {
+            heard.clear();
+            good.clear();
+          });
       ++bytes;
       if (noise.once_in(50)) {
         line.run(std::chrono::microseconds(noise.below(2900)));  // with the next byte less than T3.5
@@ -372,9 +385,15 @@ void an_hour_of_modbus(std::uint32_t seed) {
   report("Modbus RTU", bytes, line);
 }
 
-TEST(RandomLine, AnHourOfDconNoiseIsAnsweredOnlyWhereAFrameIsRight) { an_hour_of_dcon(false, 1); }
-TEST(RandomLine, AnHourOfDconNoiseWithChecksumLikewise) { an_hour_of_dcon(true, 2); }
-TEST(RandomLine, AnHourOfModbusNoiseLikewise) { an_hour_of_modbus(3); }
+TEST(RandomLine, AnHourOfDconNoiseIsAnsweredOnlyWhereAFrameIsRight) {
+  an_hour_of_dcon(false, 1);
+}
+TEST(RandomLine, AnHourOfDconNoiseWithChecksumLikewise) {
+  an_hour_of_dcon(true, 2);
+}
+TEST(RandomLine, AnHourOfModbusNoiseLikewise) {
+  an_hour_of_modbus(3);
+}
 
 }  // namespace
 }  // namespace ex9000::sim

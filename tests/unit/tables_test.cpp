@@ -77,7 +77,8 @@ TEST(Tables, RowsListedForOneFunctionNeverOverlapAndDoWhatTheyAreListedFor) {
         if ((entry.row.functions & function) == 0 || !meets(model, entry.row.needs)) {
           continue;
         }
-        EXPECT_TRUE(function == modbus::kWriteSingleRegister ? entry.row.write != nullptr : entry.row.read != nullptr);
+        EXPECT_TRUE(function == modbus::kWriteSingleRegister ? entry.row.write != nullptr
+                                                             : entry.row.read != nullptr);
         for (unsigned i = 0; i < modbus::width_of(entry.row.width, model); ++i) {
           EXPECT_TRUE(addresses.insert(entry.row.first + i).second) << entry.id;
         }
