@@ -87,9 +87,9 @@ class Bus {
 
   /// A byte that is being sent.
   struct Byte {
-    std::size_t station;
-    bool collided;
-    bool cut_off;
+    std::size_t station = 0;
+    bool collided = false;
+    bool cut_off = false;
     Wave wave;
   };
 

@@ -1,8 +1,8 @@
 #include "sim/bus_log.hpp"
 
 #include <algorithm>
-#include <array>
-#include <cstdio>
+#include <iomanip>
+#include <sstream>
 #include <utility>
 
 namespace ex9000::sim {
@@ -13,10 +13,11 @@ namespace {
 constexpr VirtualTime kPatienceForRest = std::chrono::milliseconds(5);
 constexpr VirtualTime kPatienceForTyping = std::chrono::seconds(5);
 
+/// Seconds with six decimals, right-aligned.
 std::string stamp(VirtualTime time) {
-  std::array<char, 32> text{};
-  std::snprintf(text.data(), text.size(), "%12.6f", std::chrono::duration<double>(time).count());
-  return text.data();
+  std::ostringstream text;
+  text << std::fixed << std::setprecision(6) << std::setw(12) << std::chrono::duration<double>(time).count();
+  return text.str();
 }
 
 }  // namespace

@@ -1,9 +1,7 @@
 // ex9000-sim: simulated modules on a pseudo-terminal.
-#include <unistd.h>
-
 #include <boost/asio/io_context.hpp>
 #include <boost/asio/signal_set.hpp>
-#include <cstdio>
+#include <iostream>
 #include <stdexcept>
 #include <string>
 
@@ -58,21 +56,19 @@ void run(const Arguments& arguments) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  // A log is read while it grows, by people and by pipes.
-  std::setvbuf(stdout, nullptr, _IOLBF, BUFSIZ);
   const Parsed parsed = parse_arguments(argc, argv);
-  std::fputs(parsed.output.c_str(), stdout);
-  std::fputs(parsed.error.c_str(), stderr);
+  std::cout << parsed.output;
+  std::cerr << parsed.error;
   if (!parsed.arguments) {
     return parsed.exit_status;
   }
   try {
     run(*parsed.arguments);
   } catch (const std::invalid_argument& error) {
-    std::fprintf(stderr, "ex9000-sim: %s\n", error.what());
+    std::cerr << "ex9000-sim: " << error.what() << '\n';
     return kWrongArguments;
   } catch (const std::exception& error) {
-    std::fprintf(stderr, "ex9000-sim: %s\n", error.what());
+    std::cerr << "ex9000-sim: " << error.what() << '\n';
     return kCannotStart;
   }
   return 0;

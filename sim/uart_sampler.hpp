@@ -14,9 +14,9 @@ using hal::doubles::VirtualTime;
 
 /// Start bit, 8 data bits low first, stop bit, as one driver puts them on the wires.
 struct Wave {
-  VirtualTime start;
-  std::uint32_t baud;
-  std::uint8_t byte;
+  VirtualTime start{0};
+  std::uint32_t baud = 0;
+  std::uint8_t byte = 0;
   VirtualTime cut_off = hal::doubles::kNever;  ///< the driver went off here
 
   static constexpr unsigned kBits = 10;

@@ -13,7 +13,7 @@ Duration Receiver::on_byte(std::uint8_t byte, ByteStatus status, Time now) {
   const std::uint8_t own_address = address_.load();
   if (how_.protocol == Protocol::Ascii) {
     note(dcon_.byte(byte, status, own_address, now), now);
-    return Duration();
+    return {};
   }
   note(rtu_.byte(byte, status, own_address, now), now);
   return how_.timing.rtu_silence;

@@ -96,7 +96,8 @@ Refusal write_multiple_coils(const State& state, const Request& request, Outcome
     return Refusal::WrongAddress;
   }
   const unsigned mask = (1U << quantity) - 1U;
-  const unsigned values = frame[kMultipleHeader] | (quantity > 8 ? frame[kMultipleHeader + 1U] << 8U : 0U);
+  const unsigned values =
+      frame[kMultipleHeader] | (quantity > 8 ? unsigned{frame[kMultipleHeader + 1U]} << 8U : 0U);
   return write_bits(
       state, request, *row,
       {static_cast<std::uint16_t>(mask << index), static_cast<std::uint16_t>((values & mask) << index)},
@@ -143,7 +144,7 @@ Refusal write_multiple_registers(const State& state, const Request& request, Out
   }
   for (unsigned i = 0; i < quantity; ++i) {
     const WordRow* row = find_words(state.model, kWriteRegisters, static_cast<std::uint16_t>(start + i));
-    const Refusal wrong = check_value(state, *row, frame.word(kMultipleHeader + 2 * i), outcome);
+    const Refusal wrong = check_value(state, *row, frame.word(kMultipleHeader + std::size_t{2} * i), outcome);
     if (wrong != Refusal::None) {
       return wrong;
     }

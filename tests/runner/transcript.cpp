@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cctype>
+#include <cmath>
 #include <fstream>
 #include <optional>
 #include <sstream>
@@ -80,13 +81,10 @@ std::chrono::milliseconds duration(const std::string& text) {
   std::size_t used = 0;
   const double value = std::stod(text, &used);
   const std::string unit = text.substr(used);
-  if (unit == "ms") {
-    return std::chrono::milliseconds(static_cast<int>(value));
-  }
-  if (unit != "s") {
+  if (unit != "ms" && unit != "s") {
     fail("'" + text + "' wants 'ms' or 's'");
   }
-  return std::chrono::milliseconds(static_cast<int>(value * 1000 + 0.5));
+  return std::chrono::milliseconds(std::lround(unit == "s" ? value * 1000 : value));
 }
 
 const Model& model_named(const std::string& name) {

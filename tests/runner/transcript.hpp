@@ -81,7 +81,7 @@ struct Step {
 /// One run of a file on one model.
 struct Transcript {
   std::string file;
-  const Model* model;
+  const Model* model = nullptr;
   Settings preset;  ///< factory settings with what the header changes
   bool preset_given = false;
   bool slow = false;

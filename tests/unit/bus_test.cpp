@@ -35,6 +35,8 @@ class Listener final : public Station {
     heard.push_back({byte, status, clock_.virtual_now()});
   }
 
+  void set_baud(std::uint32_t baud) { baud_ = baud; }
+
   std::vector<Heard> heard;
 
  private:
@@ -175,6 +177,39 @@ TEST_F(BusTest, ADriverThatGoesOffInTheMiddleOfAByteLeavesTheRestIdle) {
   EXPECT_FALSE(bus_.busy());
   EXPECT_EQ(recorder.bytes.size(), 9U);
   EXPECT_FALSE(recorder.drivers.back().on);
+}
+
+TEST_F(BusTest, WhatIsSentToAModuleWithoutPowerIsNotCarriedOutWhenItComesBack) {
+  const auto sender = master(9600);
+  SimulatedModule module(bus_, kModels[2]);  // EX9043D
+  module.power(true);
+  bus_.run_for(milliseconds(100));
+  send(*sender, {0x00});
+  bus_.run_for(microseconds(300));
+  module.power(false);
+  bus_.run_for(milliseconds(10));
+  send(*sender, {'@', '0', '1', 'F', 'F', 'F', 'F', '\r'});
+  bus_.run_for(milliseconds(100));
+  module.power(true);
+  bus_.run_for(milliseconds(100));
+  BusRecorder recorder;
+  bus_.observe(recorder);
+  send(*sender, {'$', '0', '1', 'M', '\r'});
+  bus_.run_for(milliseconds(100));
+  EXPECT_EQ(module.outputs(), 0);
+  EXPECT_EQ(recorder.sent_by(1), (std::vector<std::uint8_t>{'!', '0', '1', '9', '0', '4', '3', 'D', '\r'}));
+}
+
+TEST_F(BusTest, AReceiverThatIsOpenedInTheMiddleOfAByteDoesNotGetItWhole) {
+  const auto sender = master(9600);
+  Listener listener(bus_, 0);
+  send(*sender, {0x55});
+  bus_.run_for(microseconds(500));
+  listener.set_baud(9600);
+  bus_.run_for(milliseconds(5));
+  for (const Heard& heard : listener.heard) {
+    EXPECT_NE(heard.byte, 0x55);
+  }
 }
 
 }  // namespace

@@ -165,6 +165,54 @@ TEST(Storing, SettingsThatCannotBeReadGiveFactorySettingsUnwrittenWithin100msAnd
   EXPECT_EQ(bench.ask("$01M"), "!01NEW");
 }
 
+TEST(Storing, WhatIsStoredAfterAMemoryThatDidNotAnswerAtResetIsThereAtTheNext) {
+  ModuleBench bench("EX9042D,name=OLD");
+  for (const char* name : {"OLD1", "OLD2", "OLD3"}) {
+    ASSERT_EQ(bench.ask(std::string("~01O") + name), "!01");
+  }
+  bench.module().memory().fail(true);
+  bench.power_cycle();
+  ASSERT_TRUE(bench.module().module().settings_unreadable());
+  EXPECT_EQ(bench.ask("~01ONEW"), "?01");
+  bench.module().memory().fail(false);
+  EXPECT_EQ(bench.ask("~01ONEW"), "!01");
+  bench.power_cycle();
+  EXPECT_EQ(bench.ask("$01M"), "!01NEW");
+}
+
+TEST(Storing, ARefusedStoreIsNotInForceAfterTheNextResetThoughItsWriteHadLanded) {
+  ModuleBench bench("EX9042D,name=OLD");
+  bench.send("~01ONEW\r");
+  const auto writes = bench.module().memory().writes();
+  while (bench.module().memory().writes() == writes || bench.module().memory().next() == kNever) {
+    bench.line().bus().run_until(bench.line().bus().next());
+  }
+  bench.line().bus().run_until(bench.module().memory().next());  // written; now it is to be read back
+  bench.module().memory().fail(true);
+  bench.forget_heard();
+  bench.run(milliseconds(200));
+  EXPECT_EQ(bench.heard_text(), "?01\r");
+  bench.module().memory().fail(false);
+  bench.run(milliseconds(1500));
+  bench.power_cycle();
+  EXPECT_EQ(bench.ask("$01M"), "!01OLD");
+}
+
+TEST(Storing, AReplyWaitsForATimeoutThatIsNotStoredYet) {
+  // The timeout has switched the watchdog off, but the memory does not know: "off" is not stored before it
+  // does.
+  ModuleBench bench("EX9042D");
+  ASSERT_EQ(bench.ask("~013103"), "!01");
+  bench.module().memory().fail(true);
+  bench.run(milliseconds(500));
+  ASSERT_EQ(bench.ask("~012"), "!01003");
+  EXPECT_EQ(bench.ask("~013003"), "?01");
+  bench.module().memory().fail(false);
+  EXPECT_EQ(bench.ask("~013003"), "!01");
+  bench.power_cycle();
+  EXPECT_EQ(bench.ask("~012"), "!01003");
+}
+
 TEST(Storing, AnotherModelsSettingsDoNotCount) {
   ModuleBench bench("EX9043D");
   ModuleBench other("EX9042D");
@@ -197,7 +245,89 @@ TEST(Queueing, AHostOkBehindAFullQueueIsNotLost) {
   EXPECT_FALSE(bench.module().module().state().settings.timeout_status);
 }
 
+TEST(Queueing, AWholeModbusFrameSurvivesTheReplyToTheOneBeforeIt) {
+  // The host OK is over, but for its silence, when the driver comes on.
+  ModuleBench bench("EX9068D-M");
+  bench.ask(Bytes{1, 0x06, 0x01, 0xE8, 0x00, 0x05});
+  bench.ask(Bytes{1, 0x05, 0x01, 0x04, 0xFF, 0x00});
+  bench.run(milliseconds(150));
+  bench.send(ModuleBench::with_crc({1, 0x05, 0x00, 0xA0, 0xFF, 0x00}));
+  bench.run(microseconds(4100));
+  bench.send(ModuleBench::with_crc({1, 0x03, 0x30, 0x38, 0x00, 0x00}));
+  const VirtualTime sent = bench.now();
+  bench.recorder().clear();
+  bench.run(milliseconds(400));
+  ASSERT_FALSE(bench.recorder().drivers.empty());
+  EXPECT_LT(bench.recorder().drivers[0].at, sent + microseconds(4010));  // else this shows nothing
+  EXPECT_FALSE(bench.module().module().state().settings.timeout_status);
+}
+
+TEST(Queueing, TwoRepliesAreNeverOneFrameToTheMaster) {
+  ModuleBench bench("EX9068D-M,baud=115200");
+  bench.send(ModuleBench::with_crc({1, 0x05, 0x00, 0xA0, 0xFF, 0x00}));
+  bench.run(microseconds(1800));
+  bench.send(ModuleBench::with_crc({1, 0x01, 0x00, 0x00, 0x00, 0x08}));
+  bench.run(milliseconds(100));
+  std::vector<BusRecorder::Driver> on;
+  std::vector<BusRecorder::Driver> off;
+  for (const auto& driver : bench.recorder().drivers) {
+    if (driver.station == 1) {
+      (driver.on ? on : off).push_back(driver);
+    }
+  }
+  ASSERT_EQ(on.size(), 2U);
+  EXPECT_GE(on[1].at - off[0].at, microseconds(1750));
+}
+
 // --- wire.md 6: host watchdog ---
+
+TEST(HostWatchdog, HostOksCloserThanTheTimeoutKeepItFromExpiringAtAnyRate) {
+  for (const std::uint32_t baud : kBaudRates) {
+    ModuleBench bench("EX9068D-M,baud=" + std::to_string(baud));
+    const Bytes host_ok = ModuleBench::with_crc({1, 0x03, 0x30, 0x38, 0x00, 0x00});
+    bench.ask(Bytes{1, 0x06, 0x01, 0xE8, 0x00, 0x03});
+    bench.send(ModuleBench::with_crc({1, 0x05, 0x01, 0x04, 0xFF, 0x00}));
+    bench.run(milliseconds(150));
+    for (int i = 0; i < 20; ++i) {
+      const VirtualTime began = bench.now();
+      bench.send(host_ok);
+      bench.line().bus().run_until(began + milliseconds(299));
+    }
+    EXPECT_FALSE(bench.module().module().state().settings.timeout_status) << baud;
+  }
+}
+
+TEST(HostWatchdog, ATimeoutBehindAClearingThatIsBeingStoredIsNotClearedByIt) {
+  ModuleBench bench("EX9043D,baud=115200");
+  ASSERT_EQ(bench.ask("~013101"), "!01");  // has expired by now
+  bench.send("~013101\r");                 // armed again
+  bench.run(milliseconds(15));
+  while (bench.module().module().state().settings.watchdog_enabled == false) {
+    bench.run(milliseconds(1));
+  }
+  bench.run(milliseconds(86));
+  bench.forget_heard();
+  bench.send("~011\r");
+  bench.run(milliseconds(50));
+  EXPECT_EQ(bench.heard_text(), "!01\r");
+  EXPECT_EQ(bench.ask("~010"), "!0104");
+  bench.power_cycle();
+  EXPECT_EQ(bench.ask("~010"), "!0104");
+}
+
+TEST(HostWatchdog, RunsThoughTheInitSwitchNeverStandsStill) {
+  ModuleBench bench("EX9043D");
+  ASSERT_EQ(bench.ask("@010001"), ">");
+  ASSERT_EQ(bench.ask("~015P"), "!01");
+  ASSERT_EQ(bench.ask("~013104"), "!01");
+  bench.module().reset();
+  for (int i = 0; i < 200; ++i) {
+    bench.module().set_init(i % 2 == 0);
+    bench.run(milliseconds(3));
+  }
+  EXPECT_EQ(bench.module().outputs(), 0);
+  EXPECT_EQ(bench.ask("~010"), "!0104");  // and it has come up, with INIT* taken for released
+}
 
 TEST(HostWatchdog, ExpiresAfterEveryTimeoutNeverEarlyAndAtMostAMillisecondLate) {
   for (unsigned timeout = 1; timeout <= 255; ++timeout) {

@@ -1,0 +1,103 @@
+// What the core itself takes from a request's first byte to its reply, receive interrupts included; no line,
+// no time.
+#include <benchmark/benchmark.h>
+
+#include <string>
+#include <vector>
+
+#include "firmware/line/crc16.hpp"
+#include "firmware/module.hpp"
+
+namespace ex9000::bench {
+namespace {
+
+/// A module on a memory that answers at once, with a clock that is moved by hand.
+class BareModule {
+ public:
+  explicit BareModule(const Model& model, bool ascii) : module_(model), memory_(8192, 0xFF) {
+    if (ascii && model.speaks_modbus()) {
+      Settings settings = Settings::factory(model);
+      settings.protocol = Protocol::Ascii;
+      const Record record = encode_record(model, {settings, 1});
+      std::copy(record.begin(), record.end(), memory_.begin());
+    }
+    module_.begin(0, now_);
+    while (!module_.listening()) {
+      pass(1000);
+    }
+  }
+
+  /// The reply's size.
+  std::size_t ask(const std::vector<std::uint8_t>& request) {
+    for (const std::uint8_t byte : request) {
+      now_ = now_ + Duration(1042);
+      module_.on_byte(byte, ByteStatus::Good, now_);
+    }
+    now_ = now_ + Duration(4013);
+    module_.on_silence(now_);
+    module_.step(false, now_);
+    const Bytes reply = module_.take_reply(now_);
+    module_.reply_started();
+    module_.reply_sent(now_);
+    now_ = now_ + Duration(10'000);
+    return reply.size;
+  }
+
+ private:
+  void pass(std::uint32_t microseconds) {
+    const MemoryJob job = module_.memory_job();
+    if (job.kind == MemoryJob::Kind::Read) {
+      std::copy_n(memory_.begin() + job.address, job.destination.size, job.destination.data);
+      module_.memory_done(true);
+    }
+    now_ = now_ + Duration(microseconds);
+    module_.step(false, now_);
+  }
+
+  Module module_;
+  std::vector<std::uint8_t> memory_;
+  Time now_;
+};
+
+const Model& model(std::string_view designation) {
+  for (const Model& each : kModels) {
+    if (each.designation == designation) {
+      return each;
+    }
+  }
+  return kModels[0];
+}
+
+std::vector<std::uint8_t> dcon(const std::string& command) {
+  std::vector<std::uint8_t> bytes(command.begin(), command.end());
+  bytes.push_back('\r');
+  return bytes;
+}
+
+std::vector<std::uint8_t> modbus(std::vector<std::uint8_t> frame) {
+  const Crc16 crc = crc16({frame.data(), frame.size()});
+  frame.push_back(crc.low_byte());
+  frame.push_back(crc.high_byte());
+  return frame;
+}
+
+void request_to_reply(benchmark::State& state, std::string_view designation, bool ascii,
+                      const std::vector<std::uint8_t>& request) {
+  BareModule module(model(designation), ascii);
+  for ([[maybe_unused]] auto _ : state) {
+    if (module.ask(request) == 0) {
+      state.SkipWithError("no answer");
+      break;
+    }
+  }
+}
+
+BENCHMARK_CAPTURE(request_to_reply, read 13 coils, "EX9042D-M", false, modbus({1, 1, 0, 0, 0, 13}));
+BENCHMARK_CAPTURE(request_to_reply, write 13 coils, "EX9042D-M", false,
+                  modbus({1, 15, 0, 0, 0, 13, 2, 0x55, 0x15}));
+BENCHMARK_CAPTURE(request_to_reply, read 8 counters, "EX9052D-M", false, modbus({1, 4, 0, 0, 0, 8}));
+BENCHMARK_CAPTURE(request_to_reply, DCON read channels, "EX9042D-M", true, dcon("$016"));
+BENCHMARK_CAPTURE(request_to_reply, DCON set outputs, "EX9042D-M", true, dcon("@011555"));
+
+}  // namespace
+}  // namespace ex9000::bench

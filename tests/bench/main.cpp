@@ -1,0 +1,50 @@
+// Runs the benchmarks; fails where a `figure` is below its `at_least` or above its `at_most`.
+#include <benchmark/benchmark.h>
+
+#include <iostream>
+#include <limits>
+#include <vector>
+
+namespace {
+
+class DemandingReporter final : public benchmark::ConsoleReporter {
+ public:
+  DemandingReporter() : ConsoleReporter(OO_Tabular) {}
+
+  void ReportRuns(const std::vector<Run>& runs) override {
+    ConsoleReporter::ReportRuns(runs);
+    for (const Run& run : runs) {
+      failed_ = failed_ || run.error_occurred || !meets_its_demand(run);
+    }
+  }
+  [[nodiscard]] bool failed() const { return failed_; }
+
+ private:
+  static double counter(const Run& run, const char* name, double otherwise) {
+    const auto found = run.counters.find(name);
+    return found == run.counters.end() ? otherwise : found->second.value;
+  }
+  static bool meets_its_demand(const Run& run) {
+    constexpr double kNoLimit = std::numeric_limits<double>::infinity();
+    const double figure = counter(run, "figure", 0);
+    if (figure >= counter(run, "at_least", -kNoLimit) && figure <= counter(run, "at_most", kNoLimit)) {
+      return true;
+    }
+    std::cerr << run.benchmark_name() << ": " << figure << " is not what is demanded\n";
+    return false;
+  }
+
+  bool failed_ = false;
+};
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  benchmark::Initialize(&argc, argv);
+  if (benchmark::ReportUnrecognizedArguments(argc, argv)) {
+    return 2;
+  }
+  DemandingReporter reporter;
+  benchmark::RunSpecifiedBenchmarks(&reporter);
+  return reporter.failed() ? 1 : 0;
+}

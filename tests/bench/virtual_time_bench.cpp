@@ -1,0 +1,99 @@
+// How much faster than real time a virtual line runs.
+#include <benchmark/benchmark.h>
+
+#include <array>
+#include <string>
+#include <vector>
+
+#include "firmware/line/crc16.hpp"
+#include "sim/line.hpp"
+
+namespace ex9000::bench {
+namespace {
+
+using sim::Line;
+using sim::ModuleSpec;
+using sim::VirtualTime;
+using std::chrono::milliseconds;
+
+constexpr unsigned kModules = 32;
+
+std::vector<ModuleSpec> a_line_of_modules() {
+  const std::array<const char*, 5> models{"9042d-m", "9043d-m", "9052d-m", "9068d-m", "9068ad-m"};
+  std::vector<ModuleSpec> specs;
+  for (unsigned i = 0; i < kModules; ++i) {
+    specs.push_back(sim::parse_module_spec(std::string(models[i % models.size()]) + "@" +
+                                           sim::hex_byte_text(i + 1) + ",baud=115200"));
+  }
+  return specs;
+}
+
+std::vector<std::uint8_t> frame(std::vector<std::uint8_t> bytes) {
+  const Crc16 crc = crc16({bytes.data(), bytes.size()});
+  bytes.push_back(crc.low_byte());
+  bytes.push_back(crc.high_byte());
+  return bytes;
+}
+
+double seconds(VirtualTime time) {
+  return std::chrono::duration<double>(time).count();
+}
+
+/// All watchdogs armed, one module past its timeout with the LED flashing; a host OK every 20 s.
+void idle_line(benchmark::State& state) {
+  Line line(a_line_of_modules(), 115200, InterCharacterGap::Tolerated, [](std::uint8_t, ByteStatus) {});
+  const auto tell = [&line](std::vector<std::uint8_t> bytes, VirtualTime then) {
+    const auto sent = frame(std::move(bytes));
+    line.master().send(sent.data(), sent.size());
+    line.bus().run_for(then);
+  };
+  line.bus().run_for(milliseconds(100));
+  tell({1, 0x06, 0x01, 0xE8, 0x00, 0x01}, milliseconds(100));
+  tell({1, 0x05, 0x01, 0x04, 0xFF, 0x00}, milliseconds(300));
+  for (std::uint8_t address = 2; address <= kModules; ++address) {
+    tell({address, 0x05, 0x01, 0x04, 0xFF, 0x00}, milliseconds(100));
+  }
+  VirtualTime ran{0};
+  for ([[maybe_unused]] auto _ : state) {
+    tell({0, 0x03, 0x30, 0x38, 0x00, 0x00}, std::chrono::seconds(20));
+    ran += std::chrono::seconds(20);
+  }
+  if (line.module(0).module().led_pattern() != StatusLed::Pattern::HostTimeout ||
+      line.module(1).module().state().settings.timeout_status) {
+    state.SkipWithError("one module must flash, and no other");
+  }
+  state.counters["figure"] = benchmark::Counter(seconds(ran), benchmark::Counter::kIsRate);
+  state.counters["at_least"] = 1000;
+}
+BENCHMARK(idle_line)->Name("32 modules idle, watchdogs armed: x real time");
+
+/// Every module polled in turn, the next request as soon as the silence behind the last reply is over.
+void loaded_line(benchmark::State& state) {
+  bool heard = false;
+  Line line(a_line_of_modules(), 115200, InterCharacterGap::Tolerated,
+            [&heard](std::uint8_t, ByteStatus) { heard = true; });
+  line.bus().run_for(milliseconds(100));
+  std::vector<std::vector<std::uint8_t>> requests;
+  for (std::uint8_t address = 1; address <= kModules; ++address) {
+    requests.push_back(frame({address, 0x03, 0x01, 0xE2, 0x00, 0x04}));
+  }
+  const VirtualTime began = line.clock().virtual_now();
+  std::size_t next = 0;
+  for ([[maybe_unused]] auto _ : state) {
+    heard = false;
+    line.master().send(requests[next].data(), requests[next].size());
+    next = (next + 1) % requests.size();
+    // 8 and 13 characters, twice 1.75 ms of silence, and what rounding adds.
+    line.bus().run_for(std::chrono::microseconds(21 * 10 * 1'000'000 / 115200 + 2 * 1752 + 10));
+    if (!heard) {
+      state.SkipWithError("no answer");
+    }
+  }
+  state.counters["figure"] =
+      benchmark::Counter(seconds(line.clock().virtual_now() - began), benchmark::Counter::kIsRate);
+  state.counters["at_least"] = 20;
+}
+BENCHMARK(loaded_line)->Name("32 modules polled at 115200 baud: x real time");
+
+}  // namespace
+}  // namespace ex9000::bench
