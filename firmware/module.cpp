@@ -60,9 +60,7 @@ void Module::step(bool init_switch, Time now) {
 // --- reset ---
 
 /// A switch that never stands still is no reason not to come up.
-bool Module::init_is_known(Time now) const {
-  return init_switch_.known() || init_gives_up_.reached(now);
-}
+bool Module::init_is_known(Time now) const { return init_switch_.known() || init_gives_up_.reached(now); }
 
 void Module::use_settings(Time now) {
   settings_known_ = true;
@@ -211,9 +209,7 @@ void Module::count_exception() {
   }
 }
 
-void Module::finish_request() {
-  phase_ = reply_.empty() ? Phase::Idle : Phase::ReplyReady;
-}
+void Module::finish_request() { phase_ = reply_.empty() ? Phase::Idle : Phase::ReplyReady; }
 
 /// Silence before a reply: behind the request, and behind the reply before it.
 Duration Module::turn_around() const {

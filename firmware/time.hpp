@@ -23,9 +23,7 @@ class Duration {
   std::uint32_t microseconds_ = 0;
 };
 
-constexpr Duration milliseconds(std::uint32_t value) {
-  return Duration(value * 1000U);
-}
+constexpr Duration milliseconds(std::uint32_t value) { return Duration(value * 1000U); }
 
 /// A point in time. It wraps, so it has no order: ask for the Duration since an earlier point, which is right
 /// while less than 71.6 minutes lie between the two.

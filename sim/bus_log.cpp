@@ -83,8 +83,6 @@ void BusLog::print(std::size_t station) {
   print_(line);
 }
 
-void BusLog::note(VirtualTime now, const std::string& text) {
-  print_(stamp(now) + "  - " + text);
-}
+void BusLog::note(VirtualTime now, const std::string& text) { print_(stamp(now) + "  - " + text); }
 
 }  // namespace ex9000::sim

@@ -18,9 +18,8 @@ using namespace ex9000::sim;
 
 constexpr int kCannotStart = 1;
 
-void print(const std::string& line) {
-  std::printf("%s\n", line.c_str());
-}
+/// Flushed: a log is read while it grows, by people and by pipes.
+void print(const std::string& line) { std::cout << line << std::endl; }
 
 std::vector<std::string> speakers(const Arguments& arguments) {
   std::vector<std::string> names{"master"};

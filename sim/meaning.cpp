@@ -17,9 +17,7 @@ namespace {
 constexpr std::string_view kDelimiters = "#$%@~";
 constexpr std::string_view kLeads = "!>?";
 
-bool printable(std::uint8_t byte) {
-  return byte >= 0x20 && byte <= 0x7E;
-}
+bool printable(std::uint8_t byte) { return byte >= 0x20 && byte <= 0x7E; }
 
 std::string dcon_request(const FrameBytes& bytes) {
   const std::string text(bytes.begin(), bytes.end() - (bytes.back() == '\r' ? 1 : 0));

@@ -12,9 +12,7 @@ namespace ex9000::sim {
 
 namespace {
 
-[[noreturn]] void fail(const std::string& what) {
-  throw std::invalid_argument(what);
-}
+[[noreturn]] void fail(const std::string& what) { throw std::invalid_argument(what); }
 
 std::string upper(std::string text) {
   std::transform(text.begin(), text.end(), text.begin(),
@@ -111,9 +109,7 @@ std::uint32_t ModuleSpec::baud() const {
   return baud_rate(init_asserted ? kFactoryBaudCode : settings.baud_code);
 }
 
-std::uint8_t ModuleSpec::address() const {
-  return init_asserted ? std::uint8_t{0} : settings.address;
-}
+std::uint8_t ModuleSpec::address() const { return init_asserted ? std::uint8_t{0} : settings.address; }
 
 ModuleSpec parse_module_spec(const std::string& text) {
   try {

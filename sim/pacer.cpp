@@ -24,6 +24,7 @@ constexpr unsigned long kTimerSlackNanoseconds = 1;
 Pacer::Pacer(boost::asio::io_context& io, Line& line, Pty& pty, BusLog* log, InterCharacterGap gap,
              std::function<void(const std::string&)> notice)
     : timer_(io),
+      visits_(io, dup(pty.visits_fd())),
       descriptor_(io, dup(pty.master_fd())),
       line_(line),
       pty_(pty),
@@ -38,13 +39,22 @@ void Pacer::start() {
   prctl(PR_SET_TIMERSLACK, kTimerSlackNanoseconds);
   line_.bus().run_for(kComingUp);
   began_ = std::chrono::steady_clock::now() - line_.clock().virtual_now();
+  watch_visits();
   read();
   follow();
 }
 
-VirtualTime Pacer::wall() const {
-  return std::chrono::steady_clock::now() - began_;
+void Pacer::watch_visits() {
+  visits_.async_wait(boost::asio::posix::stream_descriptor::wait_read,
+                     [this](const boost::system::error_code& error) {
+                       if (!error) {
+                         pty_.take_visits();
+                         watch_visits();
+                       }
+                     });
 }
+
+VirtualTime Pacer::wall() const { return std::chrono::steady_clock::now() - began_; }
 
 /// Runs what is due, and leaves the clock at the last event rather than at `until`: see kHostLatency.
 void Pacer::catch_up(VirtualTime until) {

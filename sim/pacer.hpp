@@ -47,6 +47,7 @@ class Pacer final : private BusObserver {
   void follow();
   void catch_up(VirtualTime until);
   void arm_timer();
+  void watch_visits();
   void read();
   void on_read(std::size_t size);
   void write_heard();
@@ -57,6 +58,7 @@ class Pacer final : private BusObserver {
             VirtualTime end) override;
 
   boost::asio::steady_timer timer_;
+  boost::asio::posix::stream_descriptor visits_;
   boost::asio::posix::stream_descriptor descriptor_;
   Line& line_;
   Pty& pty_;

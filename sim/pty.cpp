@@ -1,6 +1,7 @@
 #include "sim/pty.hpp"
 
 #include <fcntl.h>
+#include <sys/inotify.h>
 #include <sys/stat.h>
 #include <termios.h>
 #include <unistd.h>
@@ -34,9 +35,7 @@ constexpr std::array<std::pair<speed_t, std::uint32_t>, 16> kSpeeds{{{B300, 300}
                                                                      {B576000, 576000},
                                                                      {B921600, 921600}}};
 
-std::string reason() {
-  return std::strerror(errno);
-}
+std::string reason() { return std::strerror(errno); }
 
 std::optional<std::string> link_target(const std::string& link) {
   std::array<char, PATH_MAX> target{};
@@ -110,6 +109,10 @@ Pty::Pty(std::string link, std::uint32_t baud) : link_(std::move(link)) {
     if (tcsetattr(slave_, TCSANOW, &settings) != 0 || fcntl(slave_, F_SETLK, &lock) != 0) {
       throw std::runtime_error(device_ + ": " + reason());
     }
+    visits_ = inotify_init1(IN_NONBLOCK | IN_CLOEXEC);
+    if (visits_ < 0 || inotify_add_watch(visits_, device_.c_str(), IN_OPEN | IN_CLOSE) < 0) {
+      throw std::runtime_error(device_ + ": " + reason());
+    }
     if (symlink(device_.c_str(), link_.c_str()) != 0) {
       throw std::invalid_argument("--pty " + link_ + ": " + reason() + "; name a path that can be written");
     }
@@ -126,7 +129,27 @@ Pty::~Pty() {
   close_all();
 }
 
+void Pty::take_visits() {
+  alignas(inotify_event) std::array<char, 4096> buffer{};
+  ssize_t size = 0;
+  while ((size = ::read(visits_, buffer.data(), buffer.size())) > 0) {
+    // Events of a watched file carry no name, so all are of one size.
+    for (std::size_t at = 0; at < static_cast<std::size_t>(size); at += sizeof(inotify_event)) {
+      inotify_event event{};
+      std::memcpy(&event, buffer.data() + at, sizeof event);
+      if ((event.mask & IN_OPEN) == 0) {
+        --visitors_;
+      } else if (visitors_++ == 0) {
+        tcflush(slave_, TCIFLUSH);
+      }
+    }
+  }
+}
+
 void Pty::close_all() const {
+  if (visits_ >= 0) {
+    close(visits_);
+  }
   if (slave_ >= 0) {
     close(slave_);
   }

@@ -26,6 +26,12 @@ class Pty {
   [[nodiscard]] const std::string& link() const { return link_; }
   /// Of the slave, as /dev/pts/5.
   [[nodiscard]] const std::string& device() const { return device_; }
+  /// Becomes readable when somebody opens or closes the slave; then call `take_visits`.
+  [[nodiscard]] int visits_fd() const { return visits_; }
+  /// Counts who has the slave open. What was written while nobody had is forgotten when somebody comes, as it
+  /// is on a serial port: a reply to the last master must not be the next one's first.
+  void take_visits();
+
   /// The rate that is set on the slave now, in bits per second; nothing where it has no number.
   [[nodiscard]] std::optional<std::uint32_t> baud() const;
 
@@ -36,6 +42,8 @@ class Pty {
   std::string device_;
   int master_ = -1;
   int slave_ = -1;
+  int visits_ = -1;
+  int visitors_ = 0;
 };
 
 }  // namespace ex9000::sim

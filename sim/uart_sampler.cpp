@@ -38,9 +38,7 @@ std::optional<VirtualTime> find_level(const Waves& waves, bool level, VirtualTim
 
 }  // namespace
 
-VirtualTime Wave::boundary(unsigned index) const {
-  return start + VirtualTime(index * kSecond / baud);
-}
+VirtualTime Wave::boundary(unsigned index) const { return start + VirtualTime(index * kSecond / baud); }
 
 bool Wave::level(VirtualTime at) const {
   if (at < start || at >= end() || at >= cut_off) {

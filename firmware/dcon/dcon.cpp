@@ -20,9 +20,7 @@ constexpr auto kDispatch = [] {
   return rows;
 }();
 
-bool is_broadcast(Bytes frame) {
-  return frame[1] == '*';
-}
+bool is_broadcast(Bytes frame) { return frame[1] == '*'; }
 
 /// What stands behind the key.
 Bytes arguments(const Dispatch& row, Bytes frame) {

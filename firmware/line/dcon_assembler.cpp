@@ -14,9 +14,7 @@ constexpr bool is_delimiter(std::uint8_t byte) {
   return byte == '#' || byte == '$' || byte == '%' || byte == '@' || byte == '~';
 }
 
-constexpr bool is_reply_lead(std::uint8_t byte) {
-  return byte == '!' || byte == '>' || byte == '?';
-}
+constexpr bool is_reply_lead(std::uint8_t byte) { return byte == '!' || byte == '>' || byte == '?'; }
 
 }  // namespace
 

@@ -10,9 +10,7 @@ constexpr std::size_t kRequestSize = 6;
 constexpr unsigned kMostBits = 2000;
 constexpr unsigned kMostWords = 125;
 
-Functions function_of(const Request& request) {
-  return static_cast<Functions>(1U << request.frame[1]);
-}
+Functions function_of(const Request& request) { return static_cast<Functions>(1U << request.frame[1]); }
 
 }  // namespace
 

@@ -13,18 +13,14 @@ std::uint16_t read_module_code(const State& state, unsigned index) {
   return static_cast<std::uint16_t>(index == 0 ? code >> 8U : code << 8U);
 }
 
-std::uint16_t read_address(const State& state, unsigned /*index*/) {
-  return state.settings.address;
-}
+std::uint16_t read_address(const State& state, unsigned /*index*/) { return state.settings.address; }
 
 Refusal write_address(const State& /*state*/, std::uint16_t value, Outcome& outcome) {
   outcome.change.address(static_cast<std::uint8_t>(value));
   return Refusal::None;
 }
 
-std::uint16_t read_baud_code(const State& state, unsigned /*index*/) {
-  return state.settings.baud_code;
-}
+std::uint16_t read_baud_code(const State& state, unsigned /*index*/) { return state.settings.baud_code; }
 
 Refusal write_baud_code(const State& /*state*/, std::uint16_t value, Outcome& outcome) {
   outcome.change.baud_code(static_cast<std::uint8_t>(value));

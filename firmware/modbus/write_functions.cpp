@@ -16,9 +16,7 @@ constexpr std::uint16_t kCoilOn = 0xFF00;
 constexpr std::uint16_t kCoilOff = 0x0000;
 
 /// The reply of all four: the request's address and value, or quantity.
-void put_echo(const Request& request, Reply& reply) {
-  reply.put(request.frame.first(kSingleSize).from(2));
-}
+void put_echo(const Request& request, Reply& reply) { reply.put(request.frame.first(kSingleSize).from(2)); }
 
 Refusal write_bits(const State& state, const Request& request, const BitRow& row, BitWrite bits,
                    Outcome& outcome, Reply& reply) {

@@ -16,14 +16,10 @@ constexpr std::uint8_t kFactoryBaudCode = 0x06;
 constexpr std::array<std::uint32_t, kLastBaudCode - kFirstBaudCode + 1> kBaudRates{
     1200, 2400, 4800, 9600, 19200, 38400, 57600, 115200};
 
-constexpr bool is_baud_code(unsigned code) {
-  return code >= kFirstBaudCode && code <= kLastBaudCode;
-}
+constexpr bool is_baud_code(unsigned code) { return code >= kFirstBaudCode && code <= kLastBaudCode; }
 
 /// `code` must be a baud code.
-constexpr std::uint32_t baud_rate(std::uint8_t code) {
-  return kBaudRates[code - kFirstBaudCode];
-}
+constexpr std::uint32_t baud_rate(std::uint8_t code) { return kBaudRates[code - kFirstBaudCode]; }
 
 /// The times a receiver needs at one rate.
 struct LineTiming {

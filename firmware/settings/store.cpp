@@ -23,9 +23,7 @@ constexpr bool is_later(std::uint16_t a, std::uint16_t b) {
 
 }  // namespace
 
-void SettingsStore::begin_loading() {
-  begin_reading(Step::Load);
-}
+void SettingsStore::begin_loading() { begin_reading(Step::Load); }
 
 void SettingsStore::begin_reading(Step step) {
   step_ = step;

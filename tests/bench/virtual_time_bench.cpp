@@ -35,9 +35,7 @@ std::vector<std::uint8_t> frame(std::vector<std::uint8_t> bytes) {
   return bytes;
 }
 
-double seconds(VirtualTime time) {
-  return std::chrono::duration<double>(time).count();
-}
+double seconds(VirtualTime time) { return std::chrono::duration<double>(time).count(); }
 
 /// All watchdogs armed, one module past its timeout with the LED flashing; a host OK every 20 s.
 void idle_line(benchmark::State& state) {

@@ -49,13 +49,9 @@ Bytes CoreTarget::listen(std::chrono::milliseconds time) {
   return take_heard();
 }
 
-Bytes CoreTarget::take_heard() {
-  return std::exchange(heard_, {});
-}
+Bytes CoreTarget::take_heard() { return std::exchange(heard_, {}); }
 
-void CoreTarget::set_baud(std::uint32_t rate) {
-  master_->set_baud(rate);
-}
+void CoreTarget::set_baud(std::uint32_t rate) { master_->set_baud(rate); }
 
 void CoreTarget::power(bool on) {
   module_->power(on);

@@ -37,9 +37,7 @@ Bytes with_crc(Bytes frame) {
   return frame;
 }
 
-Bytes bytes_of(const std::string& text) {
-  return {text.begin(), text.end()};
-}
+Bytes bytes_of(const std::string& text) { return {text.begin(), text.end()}; }
 
 /// As a person reads it: text where it is text, hex otherwise.
 std::string shown(const Bytes& bytes) {

@@ -24,9 +24,7 @@ struct ModelRun {
   Variables variables;
 };
 
-[[noreturn]] void fail(const std::string& what) {
-  throw std::runtime_error(what);
-}
+[[noreturn]] void fail(const std::string& what) { throw std::runtime_error(what); }
 
 std::string trimmed(const std::string& text) {
   const auto first = text.find_first_not_of(" \t\r");

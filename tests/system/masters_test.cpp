@@ -171,6 +171,18 @@ TEST(Dcon, ATypedSessionIsAnswered) {
   EXPECT_TRUE(simulator.wait_for("< 0A EX9068D-M  !0APUMP\\r  ; answer")) << simulator.output();
 }
 
+TEST(Dcon, AReplyThatNobodyHasWaitedForIsNotTheNextMastersFirst) {
+  SimulatorProcess simulator({"EX9042D@05,name=FIRST", "--log"});
+  {
+    Terminal impatient(simulator.tty(), B9600);
+    impatient.type("$05M\r");
+  }
+  ASSERT_TRUE(simulator.wait_for("!05FIRST")) << simulator.output();
+  Terminal terminal(simulator.tty(), B9600);
+  terminal.type("$052\r");
+  EXPECT_EQ(terminal.read_line(), "!05400600\r");
+}
+
 TEST(Dcon, TheRateThatAMasterSetsIsTheLinesAndAMismatchIsSaid) {
   SimulatorProcess simulator({"EX9042D@05,baud=19200", "--baud", "9600"});
   {

@@ -10,6 +10,7 @@
 #include <string>
 #include <vector>
 
+#include "firmware/model/model.hpp"
 #include "tests/system/simulator_process.hpp"
 
 namespace ex9000::system {
@@ -113,7 +114,8 @@ TEST(Program, TellsItsVersionModelsAndHelp) {
   EXPECT_EQ(simulator({"--version"}, directory.path()).output, "ex9000-sim D01.00\n");
   const Finished models = simulator({"--models"}, directory.path());
   EXPECT_EQ(models.status, 0);
-  EXPECT_EQ(std::count(models.output.begin(), models.output.end(), '\n'), 17);
+  EXPECT_EQ(std::count(models.output.begin(), models.output.end(), '\n'),
+            static_cast<std::ptrdiff_t>(kModels.size()));
   EXPECT_NE(models.output.find("EX9068AD-M"), std::string::npos);
   const Finished help = simulator({"--help"}, directory.path());
   EXPECT_EQ(help.status, 0);

@@ -48,9 +48,7 @@ int spawn(const std::vector<std::string>& command, const std::string& directory,
   return pid;
 }
 
-int status_of(int raw) {
-  return WIFEXITED(raw) ? WEXITSTATUS(raw) : 128 + WTERMSIG(raw);
-}
+int status_of(int raw) { return WIFEXITED(raw) ? WEXITSTATUS(raw) : 128 + WTERMSIG(raw); }
 
 bool append_from(int fd, std::string& text) {
   std::array<char, 4096> buffer{};
@@ -64,9 +62,7 @@ bool append_from(int fd, std::string& text) {
 
 }  // namespace
 
-std::string simulator_path() {
-  return EX9000_SIMULATOR;
-}
+std::string simulator_path() { return EX9000_SIMULATOR; }
 
 SimulatorProcess::SimulatorProcess(const std::vector<std::string>& arguments) {
   std::string pattern = (std::filesystem::temp_directory_path() / "ex9000-XXXXXX").string();

@@ -11,9 +11,7 @@ namespace {
 
 using FrameBytes = std::vector<std::uint8_t>;
 
-Crc16 crc_of(const FrameBytes& bytes) {
-  return crc16({bytes.data(), bytes.size()});
-}
+Crc16 crc_of(const FrameBytes& bytes) { return crc16({bytes.data(), bytes.size()}); }
 
 /// The frames "worked out" in wire.md section 7, CRC included.
 const std::vector<FrameBytes> kWorkedFrames{
@@ -28,9 +26,7 @@ const std::vector<FrameBytes> kWorkedFrames{
     {0x01, 0x11, 0x08, 0x90, 0x42, 0xFF, 0x39, 0x30, 0x34, 0x32, 0x4D, 0x4D, 0x71},
 };
 
-TEST(Crc16, StartsAtFFFF) {
-  EXPECT_EQ(Crc16().value(), 0xFFFF);
-}
+TEST(Crc16, StartsAtFFFF) { EXPECT_EQ(Crc16().value(), 0xFFFF); }
 
 TEST(Crc16, TheCheckValueIs4B37) {
   Crc16 crc;

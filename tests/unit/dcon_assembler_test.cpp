@@ -54,9 +54,7 @@ class DconAssemblerTest : public testing::Test {
 };
 
 /// `$01` and so many characters in all, before CHK and CR.
-std::string frame_of(std::size_t characters) {
-  return "$01" + std::string(characters - 3, 'X');
-}
+std::string frame_of(std::size_t characters) { return "$01" + std::string(characters - 3, 'X'); }
 
 /// The checksum of wire.md section 3, computed here on its own.
 std::string with_checksum(std::string text) {

@@ -10,9 +10,7 @@ namespace {
 
 constexpr std::string_view kDigits = "0123456789ABCDEF";
 
-std::uint8_t digit(unsigned value) {
-  return static_cast<std::uint8_t>(kDigits[value]);
-}
+std::uint8_t digit(unsigned value) { return static_cast<std::uint8_t>(kDigits[value]); }
 
 TEST(Hex, SixteenDigitsHaveAValue) {
   for (unsigned value = 0; value < kDigits.size(); ++value) {

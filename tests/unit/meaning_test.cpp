@@ -11,9 +11,7 @@
 namespace ex9000::sim {
 namespace {
 
-FrameBytes dcon(std::string_view text) {
-  return {text.begin(), text.end()};
-}
+FrameBytes dcon(std::string_view text) { return {text.begin(), text.end()}; }
 
 FrameBytes rtu(FrameBytes bytes) {
   const Crc16 crc = crc16({bytes.data(), bytes.size()});
@@ -22,22 +20,12 @@ FrameBytes rtu(FrameBytes bytes) {
   return bytes;
 }
 
-std::string of_request(std::string_view text) {
-  return meaning(dcon(text), Speaker::Master);
-}
-std::string of_reply(std::string_view text) {
-  return meaning(dcon(text), Speaker::Module);
-}
-std::string of_request(const FrameBytes& bytes) {
-  return meaning(rtu(bytes), Speaker::Master);
-}
-std::string of_reply(const FrameBytes& bytes) {
-  return meaning(rtu(bytes), Speaker::Module);
-}
+std::string of_request(std::string_view text) { return meaning(dcon(text), Speaker::Master); }
+std::string of_reply(std::string_view text) { return meaning(dcon(text), Speaker::Module); }
+std::string of_request(const FrameBytes& bytes) { return meaning(rtu(bytes), Speaker::Master); }
+std::string of_reply(const FrameBytes& bytes) { return meaning(rtu(bytes), Speaker::Module); }
 
-bool has(const std::string& text, std::string_view part) {
-  return text.find(part) != std::string::npos;
-}
+bool has(const std::string& text, std::string_view part) { return text.find(part) != std::string::npos; }
 
 // --- which protocol ---
 
@@ -65,13 +53,9 @@ TEST(LooksLikeDcon, NothingElseDoes) {
 
 // --- as people read it ---
 
-TEST(Shown, DconIsText) {
-  EXPECT_EQ(shown(dcon("$01M\r")), "$01M\\r");
-}
+TEST(Shown, DconIsText) { EXPECT_EQ(shown(dcon("$01M\r")), "$01M\\r"); }
 
-TEST(Shown, DconWithoutCarriageReturnIsTextToo) {
-  EXPECT_EQ(shown(dcon("$01M")), "$01M");
-}
+TEST(Shown, DconWithoutCarriageReturnIsTextToo) { EXPECT_EQ(shown(dcon("$01M")), "$01M"); }
 
 TEST(Shown, AllElseIsHex) {
   EXPECT_EQ(shown({0x01, 0x05, 0x00, 0x00, 0xFF, 0x00, 0x8C, 0x3A}), "01 05 00 00 FF 00 8C 3A");

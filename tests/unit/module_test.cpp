@@ -183,10 +183,7 @@ TEST(Storing, WhatIsStoredAfterAMemoryThatDidNotAnswerAtResetIsThereAtTheNext) {
 TEST(Storing, ARefusedStoreIsNotInForceAfterTheNextResetThoughItsWriteHadLanded) {
   ModuleBench bench("EX9042D,name=OLD");
   bench.send("~01ONEW\r");
-  const auto writes = bench.module().memory().writes();
-  while (bench.module().memory().writes() == writes || bench.module().memory().next() == kNever) {
-    bench.line().bus().run_until(bench.line().bus().next());
-  }
+  ASSERT_EQ(bench.module().memory().writes(), 1U);               // begun
   bench.line().bus().run_until(bench.module().memory().next());  // written; now it is to be read back
   bench.module().memory().fail(true);
   bench.forget_heard();

@@ -14,9 +14,7 @@ using Pattern = StatusLed::Pattern;
 /// The last is so near the wrap that all that is timed here crosses it.
 constexpr Time kStarts[] = {Time(0), Time(123'456'789), Time(0xFFFF'FFFFU - 4'000)};
 
-Time ms(Time start, std::uint32_t after) {
-  return start + milliseconds(after);
-}
+Time ms(Time start, std::uint32_t after) { return start + milliseconds(after); }
 
 // --- INIT*, debounced for 10 ms (D13) ---
 

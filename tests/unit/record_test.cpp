@@ -37,13 +37,9 @@ StoredSettings changed_settings() {
   return {settings, 0xBEEF};
 }
 
-const Model& the_model() {
-  return model("EX9042D-M");
-}
+const Model& the_model() { return model("EX9042D-M"); }
 
-StoredSettings factory() {
-  return {Settings::factory(the_model()), 1};
-}
+StoredSettings factory() { return {Settings::factory(the_model()), 1}; }
 
 void expect_round_trip(const Model& which, const StoredSettings& stored) {
   const auto decoded = decode_record(which, encode_record(which, stored));
@@ -72,9 +68,7 @@ Record with_check(const Model& which, Record record) {
   return record;
 }
 
-TEST(Record, FitsAPageOfTheMemory) {
-  EXPECT_LE(sizeof(Record), 32U);
-}
+TEST(Record, FitsAPageOfTheMemory) { EXPECT_LE(sizeof(Record), 32U); }
 
 TEST(Record, FactorySettingsOfEveryModelComeBack) {
   for (const Model& each : kModels) {
@@ -82,9 +76,7 @@ TEST(Record, FactorySettingsOfEveryModelComeBack) {
   }
 }
 
-TEST(Record, EveryFieldComesBack) {
-  expect_round_trip(the_model(), changed_settings());
-}
+TEST(Record, EveryFieldComesBack) { expect_round_trip(the_model(), changed_settings()); }
 
 TEST(Record, EachFlagComesBackAlone) {
   StoredSettings stored = factory();

@@ -43,9 +43,7 @@ FrameBytes frame_of(std::size_t size, std::uint8_t address = kOwn) {
   return with_crc(bytes);
 }
 
-FrameBytes without_crc(const FrameBytes& frame) {
-  return {frame.begin(), frame.end() - 2};
-}
+FrameBytes without_crc(const FrameBytes& frame) { return {frame.begin(), frame.end() - 2}; }
 
 FrameBytes behind(std::uint8_t first, const FrameBytes& frame) {
   FrameBytes bytes{first};
@@ -57,12 +55,8 @@ FrameBytes behind(std::uint8_t first, const FrameBytes& frame) {
 Nanoseconds silence_of_half_characters(int halves, std::uint32_t baud, Nanoseconds fixed) {
   return baud <= 19200 ? Nanoseconds{halves} * 11 * 500'000'000 / baud : fixed;
 }
-Nanoseconds t15(std::uint32_t baud) {
-  return silence_of_half_characters(3, baud, 750'000);
-}
-Nanoseconds t35(std::uint32_t baud) {
-  return silence_of_half_characters(7, baud, 1'750'000);
-}
+Nanoseconds t15(std::uint32_t baud) { return silence_of_half_characters(3, baud, 750'000); }
+Nanoseconds t35(std::uint32_t baud) { return silence_of_half_characters(7, baud, 1'750'000); }
 
 /// The assembler's clock shows whole microseconds, and the times it compares with are rounded to them.
 constexpr Nanoseconds kClock = 5'000;

@@ -31,13 +31,9 @@ const Model& model(std::string_view designation) {
   return kModels[0];
 }
 
-const Model& the_model() {
-  return model("EX9042D-M");
-}
+const Model& the_model() { return model("EX9042D-M"); }
 
-Settings factory() {
-  return Settings::factory(the_model());
-}
+Settings factory() { return Settings::factory(the_model()); }
 
 /// Settings that tell themselves apart.
 Settings numbered(unsigned number) {
@@ -192,9 +188,7 @@ void put(FakeMemory& memory, std::size_t copy, const Settings& settings, std::ui
   std::copy(record.begin(), record.end(), memory.cells.begin() + copies().at(copy));
 }
 
-void corrupt(FakeMemory& memory, std::size_t copy) {
-  memory.cells[copies().at(copy) + 5U] ^= 0x01U;
-}
+void corrupt(FakeMemory& memory, std::size_t copy) { memory.cells[copies().at(copy) + 5U] ^= 0x01U; }
 
 // --- loading ---
 

@@ -22,9 +22,7 @@ const Model& model(std::string_view designation) {
   return kModels[0];
 }
 
-std::string text_of(const Name& name) {
-  return {name.bytes().begin(), name.bytes().end()};
-}
+std::string text_of(const Name& name) { return {name.bytes().begin(), name.bytes().end()}; }
 
 // --- factory ---
 

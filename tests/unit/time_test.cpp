@@ -10,9 +10,7 @@ constexpr std::uint32_t kLast = 0xFFFF'FFFFU;
 constexpr std::uint32_t kHalf = 0x8000'0000U;
 constexpr Time kShortlyBeforeTheWrap{kLast - 99};
 
-TEST(Duration, IsZeroUnlessSaidOtherwise) {
-  EXPECT_EQ(Duration().microseconds(), 0U);
-}
+TEST(Duration, IsZeroUnlessSaidOtherwise) { EXPECT_EQ(Duration().microseconds(), 0U); }
 
 TEST(Duration, AMillisecondIs1000Microseconds) {
   EXPECT_EQ(milliseconds(0).microseconds(), 0U);
@@ -32,9 +30,7 @@ TEST(Duration, IsEqualToOneOfTheSameLengthOnly) {
   EXPECT_FALSE(Duration(999) == milliseconds(1));
 }
 
-TEST(Duration, Adds) {
-  EXPECT_EQ((Duration(40) + milliseconds(2)).microseconds(), 2040U);
-}
+TEST(Duration, Adds) { EXPECT_EQ((Duration(40) + milliseconds(2)).microseconds(), 2040U); }
 
 TEST(Time, IsGivenBackAsItWasGiven) {
   EXPECT_EQ(Time().microseconds(), 0U);
