@@ -20,15 +20,17 @@ std::string upper(std::string text) {
   return text;
 }
 
-const Model& find_model(const std::string& name) {
+/// In any case, with or without EX.
+const Model& model_called(const std::string& name) {
   const std::string wanted = upper(name);
-  for (const Model& model : kModels) {
-    constexpr std::size_t kPrefix = 2;  // EX may be left out
-    if (wanted == model.designation || wanted == model.designation.substr(kPrefix)) {
-      return model;
-    }
+  const Model* model = find_model(wanted);
+  if (model == nullptr) {
+    model = find_model("EX" + wanted);
   }
-  fail("'" + name + "' is no model; --models lists them");
+  if (model == nullptr) {
+    fail("'" + name + "' is no model; --models lists them");
+  }
+  return *model;
 }
 
 std::uint8_t parse_address(const std::string& text) {
@@ -118,7 +120,7 @@ ModuleSpec parse_module_spec(const std::string& text) {
     std::getline(parts, name, ',');
     const auto at = name.find('@');
     ModuleSpec spec;
-    spec.model = &find_model(name.substr(0, at));
+    spec.model = &model_called(name.substr(0, at));
     spec.settings = Settings::factory(*spec.model);
     if (at != std::string::npos) {
       spec.settings.address = parse_address(name.substr(at + 1));

@@ -131,10 +131,10 @@ void Pacer::byte(std::size_t station, std::uint8_t /*byte*/, std::uint32_t /*bau
 
 /// What nobody reads is lost, as on wires; the pseudo-terminal holds some 4 KiB before that.
 void Pacer::write_heard() {
-  if (!heard_.empty()) {
+  if (!heard_.empty() && pty_.visited()) {
     [[maybe_unused]] const ssize_t written = write(pty_.master_fd(), heard_.data(), heard_.size());
-    heard_.clear();
   }
+  heard_.clear();
 }
 
 void Pacer::take_rate() {

@@ -137,9 +137,9 @@ void Pty::take_visits() {
     for (std::size_t at = 0; at < static_cast<std::size_t>(size); at += sizeof(inotify_event)) {
       inotify_event event{};
       std::memcpy(&event, buffer.data() + at, sizeof event);
-      if ((event.mask & IN_OPEN) == 0) {
-        --visitors_;
-      } else if (visitors_++ == 0) {
+      if ((event.mask & IN_OPEN) != 0) {
+        ++visitors_;
+      } else if (--visitors_ == 0) {
         tcflush(slave_, TCIFLUSH);
       }
     }

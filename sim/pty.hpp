@@ -28,9 +28,11 @@ class Pty {
   [[nodiscard]] const std::string& device() const { return device_; }
   /// Becomes readable when somebody opens or closes the slave; then call `take_visits`.
   [[nodiscard]] int visits_fd() const { return visits_; }
-  /// Counts who has the slave open. What was written while nobody had is forgotten when somebody comes, as it
-  /// is on a serial port: a reply to the last master must not be the next one's first.
+  /// Counts who has the slave open. What the last one has not read when it closes is forgotten, as on a
+  /// serial port: a reply to one master must not be the next one's first.
   void take_visits();
+  /// Somebody has the slave open. What is written while nobody has would wait for the next one, so do not.
+  [[nodiscard]] bool visited() const { return visitors_ > 0; }
 
   /// The rate that is set on the slave now, in bits per second; nothing where it has no number.
   [[nodiscard]] std::optional<std::uint32_t> baud() const;

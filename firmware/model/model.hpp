@@ -66,6 +66,16 @@ inline constexpr std::array kModels{
     Model{"EX9068D", 0, 8, 0, StatusStyle::TimeoutOnly, "9068", 6, "8 relay outputs"},
 };
 
+/// The row with this designation, or null.
+constexpr const Model* find_model(std::string_view designation) {
+  for (const Model& model : kModels) {
+    if (model.designation == designation) {
+      return &model;
+    }
+  }
+  return nullptr;
+}
+
 /// Which models a command or register exists on.
 enum class Needs : std::uint8_t { Nothing, Outputs, Inputs, Modbus };
 

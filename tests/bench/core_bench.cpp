@@ -59,15 +59,6 @@ class BareModule {
   Time now_;
 };
 
-const Model& model(std::string_view designation) {
-  for (const Model& each : kModels) {
-    if (each.designation == designation) {
-      return each;
-    }
-  }
-  return kModels[0];
-}
-
 std::vector<std::uint8_t> dcon(const std::string& command) {
   std::vector<std::uint8_t> bytes(command.begin(), command.end());
   bytes.push_back('\r');
@@ -83,7 +74,7 @@ std::vector<std::uint8_t> modbus(std::vector<std::uint8_t> frame) {
 
 void request_to_reply(benchmark::State& state, std::string_view designation, bool ascii,
                       const std::vector<std::uint8_t>& request) {
-  BareModule module(model(designation), ascii);
+  BareModule module(*find_model(designation), ascii);
   for ([[maybe_unused]] auto _ : state) {
     if (module.ask(request) == 0) {
       state.SkipWithError("no answer");

@@ -86,12 +86,11 @@ std::chrono::milliseconds duration(const std::string& text) {
 }
 
 const Model& model_named(const std::string& name) {
-  const auto* found =
-      std::find_if(kModels.begin(), kModels.end(), [&](const Model& m) { return m.designation == name; });
-  if (found == kModels.end()) {
+  const Model* model = find_model(name);
+  if (model == nullptr) {
     fail("no model '" + name + "'");
   }
-  return *found;
+  return *model;
 }
 
 std::pair<std::string, std::string> key_and_value(const std::string& word) {

@@ -162,7 +162,7 @@ TEST_F(BusTest, OverlappingBytesAreReportedAsACollisionAndArriveSpoiled) {
 TEST_F(BusTest, ADriverThatGoesOffInTheMiddleOfAByteLeavesTheRestIdle) {
   const auto sender = master(9600);
   Listener listener(bus_, 9600);
-  SimulatedModule module(bus_, kModels[1]);  // EX9042D-M
+  SimulatedModule module(bus_, *find_model("EX9042D-M"));
   module.power(true);
   bus_.run_for(milliseconds(100));
   send(*sender, {0x01, 0x01, 0x00, 0x00, 0x00, 0x0D, 0xFD, 0xCF});
@@ -181,7 +181,7 @@ TEST_F(BusTest, ADriverThatGoesOffInTheMiddleOfAByteLeavesTheRestIdle) {
 
 TEST_F(BusTest, WhatIsSentToAModuleWithoutPowerIsNotCarriedOutWhenItComesBack) {
   const auto sender = master(9600);
-  SimulatedModule module(bus_, kModels[2]);  // EX9043D
+  SimulatedModule module(bus_, *find_model("EX9043D"));
   module.power(true);
   bus_.run_for(milliseconds(100));
   send(*sender, {0x00});

@@ -11,15 +11,7 @@
 namespace ex9000 {
 namespace {
 
-const Model& model(std::string_view designation) {
-  for (const Model& each : kModels) {
-    if (each.designation == designation) {
-      return each;
-    }
-  }
-  ADD_FAILURE() << designation;
-  return kModels[0];
-}
+const Model& model(std::string_view designation) { return *find_model(designation); }
 
 /// Every field differs from the factory's.
 StoredSettings changed_settings() {

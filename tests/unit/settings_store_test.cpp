@@ -21,15 +21,7 @@ constexpr std::size_t kPage = 32;
 constexpr std::size_t kAttempts = 3;
 constexpr std::size_t kStuckCell = 3;
 
-const Model& model(std::string_view designation) {
-  for (const Model& each : kModels) {
-    if (each.designation == designation) {
-      return each;
-    }
-  }
-  ADD_FAILURE() << designation;
-  return kModels[0];
-}
+const Model& model(std::string_view designation) { return *find_model(designation); }
 
 const Model& the_model() { return model("EX9042D-M"); }
 

@@ -12,15 +12,7 @@
 namespace ex9000 {
 namespace {
 
-const Model& model(std::string_view designation) {
-  for (const Model& each : kModels) {
-    if (each.designation == designation) {
-      return each;
-    }
-  }
-  ADD_FAILURE() << designation;
-  return kModels[0];
-}
+const Model& model(std::string_view designation) { return *find_model(designation); }
 
 std::string text_of(const Name& name) { return {name.bytes().begin(), name.bytes().end()}; }
 
