@@ -1,6 +1,7 @@
 // ex9000-sim: simulated modules on a pseudo-terminal.
 #include <boost/asio/io_context.hpp>
 #include <boost/asio/signal_set.hpp>
+#include <csignal>
 #include <iostream>
 #include <stdexcept>
 #include <string>
@@ -18,9 +19,6 @@ using namespace ex9000::sim;
 
 constexpr int kCannotStart = 1;
 
-/// Flushed: a log is read while it grows, by people and by pipes.
-void print(const std::string& line) { std::cout << line << std::endl; }
-
 std::vector<std::string> speakers(const Arguments& arguments) {
   std::vector<std::string> names{"master"};
   for (const ModuleSpec& spec : arguments.modules) {
@@ -32,6 +30,13 @@ std::vector<std::string> speakers(const Arguments& arguments) {
 void run(const Arguments& arguments) {
   Pty pty(arguments.pty_link, arguments.line_baud());
   boost::asio::io_context io;
+  // Flushed, since a log is read while it grows; who closes the pipe behind it ends the program.
+  const auto print = [&io](const std::string& line) {
+    std::cout << line << std::endl;
+    if (!std::cout) {
+      io.stop();
+    }
+  };
   Pacer* pacer = nullptr;
   const ex9000::InterCharacterGap gap =
       arguments.strict_gaps ? ex9000::InterCharacterGap::Refused : ex9000::InterCharacterGap::Tolerated;
@@ -61,6 +66,7 @@ int main(int argc, char** argv) {
   if (!parsed.arguments) {
     return parsed.exit_status;
   }
+  std::signal(SIGPIPE, SIG_IGN);
   try {
     run(*parsed.arguments);
   } catch (const std::invalid_argument& error) {

@@ -47,6 +47,20 @@ TEST(Program, EndsCleanlyAndRemovesItsLink) {
   }
 }
 
+TEST(Program, EndsCleanlyWhenNobodyReadsItsLogAnyMore) {
+  Directory directory;
+  // A master that goes on talking makes the log grow after `head` has gone.
+  const Finished finished =
+      run({"sh", "-c",
+           "(" + simulator_path() +
+               " EX9042D --log; echo ended $? >&2) | head -n 1 & "
+               "until [ -L ex9000.tty ]; do :; done; "
+               "while [ -L ex9000.tty ]; do printf '$012\\r' > ex9000.tty; done 2>/dev/null; wait"},
+          directory.path());
+  EXPECT_NE(finished.error.find("ended 0"), std::string::npos) << finished.error;
+  EXPECT_FALSE(fs::is_symlink(directory.path() + "/ex9000.tty"));
+}
+
 TEST(Program, WrongArgumentsGiveOneLineThatNamesThemExitStatus2AndLeaveNothingBehind) {
   struct Case {
     std::vector<std::string> arguments;
