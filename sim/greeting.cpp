@@ -41,8 +41,8 @@ std::string mbpoll(const ModuleSpec& spec, const std::string& link) {
 }
 
 std::string terminal(const ModuleSpec& spec, const std::string& link) {
-  return "    picocom -q -b " + std::to_string(spec.baud()) + " --imap crcrlf --echo " +
-         link + "    # then type $" + hex_byte_text(spec.address()) + "M and Enter\n";
+  return "    picocom -q -b " + std::to_string(spec.baud()) + " --imap crcrlf --echo " + link +
+         "    # then type $" + hex_byte_text(spec.address()) + "M and Enter\n";
 }
 
 std::string shared_addresses(const std::vector<ModuleSpec>& modules) {

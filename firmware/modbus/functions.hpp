@@ -1,7 +1,6 @@
 // The Modbus functions, one row a function - wire.md section 7.
 #pragma once
 
-#include <array>
 #include <cstdint>
 #include <string_view>
 
@@ -10,6 +9,7 @@
 #include "firmware/request/outcome.hpp"
 #include "firmware/request/reply.hpp"
 #include "firmware/request/state.hpp"
+#include "firmware/table.hpp"
 
 namespace ex9000::modbus {
 
@@ -52,26 +52,22 @@ struct Function {
   FunctionRow row;
 };
 
-inline constexpr std::array kFunctions{
-    Function{"Read Coils", "manuals; V1.1b3 6.1", {0x01, Needs::Nothing, false, read_bits}},
-    Function{"Read Discrete Inputs", "EX9052D manual; V1.1b3 6.2", {0x02, Needs::Inputs, false, read_bits}},
-    Function{"Read Holding Registers", "manuals; V1.1b3 6.3", {0x03, Needs::Nothing, false, read_words}},
-    Function{"Read Input Registers", "manuals; V1.1b3 6.4", {0x04, Needs::Nothing, false, read_words}},
-    Function{"Write Single Coil", "manuals; V1.1b3 6.5", {0x05, Needs::Nothing, true, write_single_coil}},
+inline constexpr auto kFunctions = table<Function>({
+    {"Read Coils", "manuals; V1.1b3 6.1", {0x01, Needs::Nothing, false, read_bits}},
+    {"Read Discrete Inputs", "EX9052D manual; V1.1b3 6.2", {0x02, Needs::Inputs, false, read_bits}},
+    {"Read Holding Registers", "manuals; V1.1b3 6.3", {0x03, Needs::Nothing, false, read_words}},
+    {"Read Input Registers", "manuals; V1.1b3 6.4", {0x04, Needs::Nothing, false, read_words}},
+    {"Write Single Coil", "manuals; V1.1b3 6.5", {0x05, Needs::Nothing, true, write_single_coil}},
     Function{
         "Write Single Register", "manuals; V1.1b3 6.6", {0x06, Needs::Nothing, true, write_single_register}},
-    Function{"Diagnostics", "V1.1b3 6.8", {0x08, Needs::Nothing, false, diagnose}},
+    {"Diagnostics", "V1.1b3 6.8", {0x08, Needs::Nothing, false, diagnose}},
     Function{
         "Write Multiple Coils", "manuals; V1.1b3 6.11", {0x0F, Needs::Nothing, true, write_multiple_coils}},
     Function{
         "Write Multiple Registers", "V1.1b3 6.12", {0x10, Needs::Nothing, true, write_multiple_registers}},
-    Function{"Report Server ID", "V1.1b3 6.13", {0x11, Needs::Nothing, false, report_server_id}},
-    Function{"Read Device Identification",
-             "V1.1b3 6.21",
-             {0x2B, Needs::Nothing, false, read_device_identification}},
-    Function{"Module code and address",
-             "manuals, sub-function 0x46",
-             {0x46, Needs::Nothing, false, vendor_function}},
-};
+    {"Report Server ID", "V1.1b3 6.13", {0x11, Needs::Nothing, false, report_server_id}},
+    {"Read Device Identification", "V1.1b3 6.21", {0x2B, Needs::Nothing, false, read_device_identification}},
+    {"Module code and address", "manuals, sub-function 0x46", {0x46, Needs::Nothing, false, vendor_function}},
+});
 
 }  // namespace ex9000::modbus

@@ -1,13 +1,13 @@
 // The Modbus register map, one row a range of coils, discrete inputs or registers - wire.md section 7.
 #pragma once
 
-#include <array>
 #include <cstdint>
 #include <string_view>
 
 #include "firmware/model/model.hpp"
 #include "firmware/request/outcome.hpp"
 #include "firmware/request/state.hpp"
+#include "firmware/table.hpp"
 
 namespace ex9000::modbus {
 
@@ -116,18 +116,18 @@ struct WordRegister {
   WordRow row;
 };
 
-inline constexpr std::array kBitRegisters{
+inline constexpr auto kBitRegisters = table<BitRegister>({
     BitRegister{
         "outputs",
         "outputs",
         "0 off, 1 on",
         {0x0000, Width::PerOutput, Needs::Outputs, kReadCoils | kWriteSingleCoil | kWriteMultipleCoils, true,
          false, false, read_outputs, write_outputs}},
-    BitRegister{"inputs",
-                "inputs",
-                "",
-                {0x0000, Width::PerInput, Needs::Inputs, kReadDiscreteInputs, false, false, false,
-                 read_inputs, nullptr}},
+    {"inputs",
+     "inputs",
+     "",
+     {0x0000, Width::PerInput, Needs::Inputs, kReadDiscreteInputs, false, false, false, read_inputs,
+      nullptr}},
     BitRegister{
         "input-coils",
         "inputs",
@@ -155,59 +155,58 @@ inline constexpr std::array kBitRegisters{
         "0 off, 1 on",
         {0x00A0, Width::PerOutput, Needs::Outputs, kReadCoils | kWriteSingleCoil | kWriteMultipleCoils, true,
          false, false, read_power_on_value, write_power_on_value}},
-    BitRegister{"protocol",
-                "stored protocol, from the next reset on",
-                "0 ASCII, 1 Modbus RTU; not by broadcast",
-                {0x0100, Width::One, Needs::Nothing, kReadCoils | kWriteSingleCoil, false, false, true,
-                 read_protocol, write_protocol}},
-    BitRegister{"watchdog-enable",
-                "host watchdog enable",
-                "0 off, 1 on and restart; on wants a timeout other than 0",
-                {0x0104, Width::One, Needs::Nothing, kReadCoils | kWriteSingleCoil, false, false, false,
-                 read_watchdog_enable, write_watchdog_enable}},
-    BitRegister{"clear-latches",
-                "clear both latches of all channels",
-                "1 only",
-                {0x0107, Width::One, Needs::Inputs, kWriteSingleCoil, false, true, false, nullptr,
-                 write_clear_latches}},
-    BitRegister{"timeout-status",
-                "host watchdog timeout status",
-                "1 only: clears it",
-                {0x010D, Width::One, Needs::Nothing, kReadCoils | kWriteSingleCoil, false, true, false,
-                 read_timeout_status, write_clear_timeout_status}},
-    BitRegister{"clear-counters",
-                "clear the channel's counter",
-                "1 clears; function 0F: 0 leaves it",
-                {0x0200, Width::PerInput, Needs::Inputs, kWriteSingleCoil | kWriteMultipleCoils, false, true,
-                 false, nullptr, write_clear_counters}},
-};
+    {"protocol",
+     "stored protocol, from the next reset on",
+     "0 ASCII, 1 Modbus RTU; not by broadcast",
+     {0x0100, Width::One, Needs::Nothing, kReadCoils | kWriteSingleCoil, false, false, true, read_protocol,
+      write_protocol}},
+    {"watchdog-enable",
+     "host watchdog enable",
+     "0 off, 1 on and restart; on wants a timeout other than 0",
+     {0x0104, Width::One, Needs::Nothing, kReadCoils | kWriteSingleCoil, false, false, false,
+      read_watchdog_enable, write_watchdog_enable}},
+    {"clear-latches",
+     "clear both latches of all channels",
+     "1 only",
+     {0x0107, Width::One, Needs::Inputs, kWriteSingleCoil, false, true, false, nullptr, write_clear_latches}},
+    {"timeout-status",
+     "host watchdog timeout status",
+     "1 only: clears it",
+     {0x010D, Width::One, Needs::Nothing, kReadCoils | kWriteSingleCoil, false, true, false,
+      read_timeout_status, write_clear_timeout_status}},
+    {"clear-counters",
+     "clear the channel's counter",
+     "1 clears; function 0F: 0 leaves it",
+     {0x0200, Width::PerInput, Needs::Inputs, kWriteSingleCoil | kWriteMultipleCoils, false, true, false,
+      nullptr, write_clear_counters}},
+});
 
-inline constexpr std::array kWordRegisters{
-    WordRegister{"counters",
-                 "input counters",
-                 "",
-                 {0x0000, Width::PerInput, Needs::Inputs, kReadHoldingRegisters | kReadInputRegisters, false,
-                  0, 0, read_counter, nullptr}},
+inline constexpr auto kWordRegisters = table<WordRegister>({
+    {"counters",
+     "input counters",
+     "",
+     {0x0000, Width::PerInput, Needs::Inputs, kReadHoldingRegisters | kReadInputRegisters, false, 0, 0,
+      read_counter, nullptr}},
     WordRegister{
         "module-code",
         "module code: 0x0090, then the last two digits",
         "",
         {0x01E2, Width::Two, Needs::Nothing, kReadHoldingRegisters, false, 0, 0, read_module_code, nullptr}},
-    WordRegister{"address",
-                 "stored address, from the next reset on",
-                 "1 to 247; not by broadcast",
-                 {0x01E4, Width::One, Needs::Nothing, kReadHoldingRegisters | kWriteRegisters, true,
-                  kFirstModbusAddress, kLastModbusAddress, read_address, write_address}},
-    WordRegister{"baud-code",
-                 "stored baud code, from the next reset on",
-                 "0x03 to 0x0A; not by broadcast",
-                 {0x01E5, Width::One, Needs::Nothing, kReadHoldingRegisters | kWriteRegisters, true,
-                  kFirstBaudCode, kLastBaudCode, read_baud_code, write_baud_code}},
-    WordRegister{"watchdog-timeout",
-                 "host watchdog timeout in 0.1 s",
-                 "0 to 255; not 0 while enabled",
-                 {0x01E8, Width::One, Needs::Nothing, kReadHoldingRegisters | kWriteRegisters, false, 0, 255,
-                  read_watchdog_timeout, write_watchdog_timeout}},
+    {"address",
+     "stored address, from the next reset on",
+     "1 to 247; not by broadcast",
+     {0x01E4, Width::One, Needs::Nothing, kReadHoldingRegisters | kWriteRegisters, true, kFirstModbusAddress,
+      kLastModbusAddress, read_address, write_address}},
+    {"baud-code",
+     "stored baud code, from the next reset on",
+     "0x03 to 0x0A; not by broadcast",
+     {0x01E5, Width::One, Needs::Nothing, kReadHoldingRegisters | kWriteRegisters, true, kFirstBaudCode,
+      kLastBaudCode, read_baud_code, write_baud_code}},
+    {"watchdog-timeout",
+     "host watchdog timeout in 0.1 s",
+     "0 to 255; not 0 while enabled",
+     {0x01E8, Width::One, Needs::Nothing, kReadHoldingRegisters | kWriteRegisters, false, 0, 255,
+      read_watchdog_timeout, write_watchdog_timeout}},
     // For people only: host OK is decided where the frame is received and never looked up, so no function is
     // listed.
     WordRegister{
@@ -215,7 +214,7 @@ inline constexpr std::array kWordRegisters{
         "host OK: read by function 03 or 04 with quantity 0 or 1; restarts the host watchdog, no reply",
         "",
         {0x3038, Width::One, Needs::Nothing, 0, false, 0, 0, nullptr, nullptr}},
-};
+});
 
 /// The row of coils or discrete inputs that `address` lies in and that is listed for `function` on this
 /// model, or null.

@@ -1,9 +1,10 @@
 // The models: one row each. A sister model is one more row; no protocol code knows a model by name.
 #pragma once
 
-#include <array>
 #include <cstdint>
 #include <string_view>
+
+#include "firmware/table.hpp"
 
 namespace ex9000 {
 
@@ -42,29 +43,29 @@ constexpr unsigned kMaxInputs = 8;
 constexpr unsigned kMaxOutputs = 16;
 constexpr unsigned kMaxNameLength = 7;
 
-inline constexpr std::array kModels{
+inline constexpr auto kModels = table<Model>({
     // The modules of the four manuals.
-    Model{"EX9042D", 0, 13, 0, StatusStyle::EnableAndTimeout, "9042D", 6, "13 open-collector outputs"},
-    Model{"EX9042D-M", 0, 13, 0x9042, StatusStyle::EnableAndTimeout, "9042M", 6, "13 open-collector outputs"},
-    Model{"EX9043D", 0, 16, 0, StatusStyle::TimeoutOnly, "9043D", 6, "16 open-collector outputs"},
-    Model{"EX9043D-M", 0, 16, 0x9043, StatusStyle::TimeoutOnly, "9043M", 6, "16 open-collector outputs"},
-    Model{"EX9052D", 8, 0, 0, StatusStyle::EnableAndTimeout, "9052", 6, "8 inputs with latches and counters"},
-    Model{"EX9052D-M", 8, 0, 0x9052, StatusStyle::EnableAndTimeout, "9052M", 6,
-          "8 inputs with latches and counters"},
-    Model{"EX9068D-M", 0, 8, 0x9068, StatusStyle::TimeoutOnly, "9068D-M", 7, "8 relay outputs"},
-    Model{"EX9068AD-M", 0, 8, 0x9068, StatusStyle::TimeoutOnly, "9068D-M", 7, "8 PhotoMOS outputs"},
+    {"EX9042D", 0, 13, 0, StatusStyle::EnableAndTimeout, "9042D", 6, "13 open-collector outputs"},
+    {"EX9042D-M", 0, 13, 0x9042, StatusStyle::EnableAndTimeout, "9042M", 6, "13 open-collector outputs"},
+    {"EX9043D", 0, 16, 0, StatusStyle::TimeoutOnly, "9043D", 6, "16 open-collector outputs"},
+    {"EX9043D-M", 0, 16, 0x9043, StatusStyle::TimeoutOnly, "9043M", 6, "16 open-collector outputs"},
+    {"EX9052D", 8, 0, 0, StatusStyle::EnableAndTimeout, "9052", 6, "8 inputs with latches and counters"},
+    {"EX9052D-M", 8, 0, 0x9052, StatusStyle::EnableAndTimeout, "9052M", 6,
+     "8 inputs with latches and counters"},
+    {"EX9068D-M", 0, 8, 0x9068, StatusStyle::TimeoutOnly, "9068D-M", 7, "8 relay outputs"},
+    {"EX9068AD-M", 0, 8, 0x9068, StatusStyle::TimeoutOnly, "9068D-M", 7, "8 PhotoMOS outputs"},
     // Their ASCII-only sisters: outputs from the manuals' tables 2.3 and 2.11, inputs from the ICP DAS
     // I-70xx.
-    Model{"EX9044D", 4, 8, 0, StatusStyle::TimeoutOnly, "9044", 6, "4 inputs, 8 open-collector outputs"},
-    Model{"EX9050D", 7, 8, 0, StatusStyle::TimeoutOnly, "9050", 6, "7 inputs, 8 open-collector outputs"},
-    Model{"EX9055D", 8, 8, 0, StatusStyle::TimeoutOnly, "9055", 6, "8 inputs, 8 open-collector outputs"},
-    Model{"EX9060D", 4, 4, 0, StatusStyle::TimeoutOnly, "9060", 6, "4 inputs, 4 relay outputs"},
-    Model{"EX9063D", 8, 3, 0, StatusStyle::TimeoutOnly, "9063", 6, "8 inputs, 3 relay outputs"},
-    Model{"EX9065D", 4, 5, 0, StatusStyle::TimeoutOnly, "9065", 6, "4 inputs, 5 relay outputs"},
-    Model{"EX9066D", 0, 7, 0, StatusStyle::TimeoutOnly, "9066", 6, "7 PhotoMOS outputs"},
-    Model{"EX9067D", 0, 7, 0, StatusStyle::TimeoutOnly, "9067", 6, "7 relay outputs"},
-    Model{"EX9068D", 0, 8, 0, StatusStyle::TimeoutOnly, "9068", 6, "8 relay outputs"},
-};
+    {"EX9044D", 4, 8, 0, StatusStyle::TimeoutOnly, "9044", 6, "4 inputs, 8 open-collector outputs"},
+    {"EX9050D", 7, 8, 0, StatusStyle::TimeoutOnly, "9050", 6, "7 inputs, 8 open-collector outputs"},
+    {"EX9055D", 8, 8, 0, StatusStyle::TimeoutOnly, "9055", 6, "8 inputs, 8 open-collector outputs"},
+    {"EX9060D", 4, 4, 0, StatusStyle::TimeoutOnly, "9060", 6, "4 inputs, 4 relay outputs"},
+    {"EX9063D", 8, 3, 0, StatusStyle::TimeoutOnly, "9063", 6, "8 inputs, 3 relay outputs"},
+    {"EX9065D", 4, 5, 0, StatusStyle::TimeoutOnly, "9065", 6, "4 inputs, 5 relay outputs"},
+    {"EX9066D", 0, 7, 0, StatusStyle::TimeoutOnly, "9066", 6, "7 PhotoMOS outputs"},
+    {"EX9067D", 0, 7, 0, StatusStyle::TimeoutOnly, "9067", 6, "7 relay outputs"},
+    {"EX9068D", 0, 8, 0, StatusStyle::TimeoutOnly, "9068", 6, "8 relay outputs"},
+});
 
 /// The row with this designation, or null.
 constexpr const Model* find_model(std::string_view designation) {
