@@ -1,0 +1,60 @@
+// A DCON assembler that is sent text, for tests of it.
+#pragma once
+
+#include <gtest/gtest.h>
+
+#include <cstddef>
+#include <cstdint>
+#include <string>
+#include <string_view>
+
+#include "firmware/line/dcon_assembler.hpp"
+
+namespace ex9000 {
+
+inline constexpr std::uint8_t kOwn = 0x01;
+
+class DconAssemblerTest : public testing::Test {
+ protected:
+  Verdict put(char character, ByteStatus status = ByteStatus::Good) {
+    now_ = now_ + Duration(1042);
+    return assembler_.byte(static_cast<std::uint8_t>(character), status, own_, now_);
+  }
+
+  /// All characters; none but the last may end a frame.
+  Verdict put(std::string_view text) {
+    Verdict last = Verdict::Open;
+    for (const char character : text) {
+      EXPECT_EQ(last, Verdict::Open) << "within " << text;
+      last = put(character);
+    }
+    return last;
+  }
+
+  /// The frame that waits, as text; it is dropped.
+  std::string taken() {
+    const Frame* frame = queue_.waiting();
+    if (frame == nullptr) {
+      return "nothing";
+    }
+    const std::string text(frame->bytes().begin(), frame->bytes().end());
+    queue_.drop_in_main_loop();
+    return text;
+  }
+
+  /// The receiver hunts, and what was sent before has left nothing behind.
+  void expect_hunting() {
+    EXPECT_EQ(put("$01M\r"), Verdict::Accepted);
+    EXPECT_EQ(taken(), "$01M");
+  }
+
+  FrameQueue queue_;
+  DconAssembler assembler_{queue_};
+  std::uint8_t own_ = kOwn;
+  Time now_;
+};
+
+/// `$01` and so many characters in all, before CHK and CR.
+inline std::string frame_of(std::size_t characters) { return "$01" + std::string(characters - 3, 'X'); }
+
+}  // namespace ex9000

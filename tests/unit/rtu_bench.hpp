@@ -1,0 +1,138 @@
+// A wire with its silence timer, and the frames on it, for tests of the RTU assembler.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <vector>
+
+#include "firmware/line/rtu_assembler.hpp"
+
+namespace ex9000 {
+
+using FrameBytes = std::vector<std::uint8_t>;
+using Verdicts = std::vector<Verdict>;
+using Nanoseconds = std::int64_t;
+
+inline constexpr std::uint8_t kOwn = 0x01;
+inline constexpr Duration kLongSilence = milliseconds(100);
+
+/// Bit by bit, as appendix B of the guide describes it.
+inline FrameBytes with_crc(FrameBytes bytes) {
+  unsigned crc = 0xFFFF;
+  for (const std::uint8_t byte : bytes) {
+    crc ^= byte;
+    for (int bit = 0; bit < 8; ++bit) {
+      crc = (crc & 1U) != 0 ? (crc >> 1U) ^ 0xA001U : crc >> 1U;
+    }
+  }
+  bytes.push_back(static_cast<std::uint8_t>(crc & 0xFFU));
+  bytes.push_back(static_cast<std::uint8_t>(crc >> 8U));
+  return bytes;
+}
+
+inline const FrameBytes kChannel0On{0x01, 0x05, 0x00, 0x00, 0xFF, 0x00, 0x8C, 0x3A};  // wire.md, worked out
+
+/// `size` bytes, CRC included.
+inline FrameBytes frame_of(std::size_t size, std::uint8_t address = kOwn) {
+  FrameBytes bytes{address, 0x10};
+  while (bytes.size() < size - 2) {
+    bytes.push_back(static_cast<std::uint8_t>(bytes.size() * 11 + 5));
+  }
+  return with_crc(bytes);
+}
+
+inline FrameBytes without_crc(const FrameBytes& frame) { return {frame.begin(), frame.end() - 2}; }
+
+inline FrameBytes behind(std::uint8_t first, const FrameBytes& frame) {
+  FrameBytes bytes{first};
+  bytes.insert(bytes.end(), frame.begin(), frame.end());
+  return bytes;
+}
+
+/// T1.5 and T3.5 as the guide has them: 11-bit characters up to 19200 baud, 750 and 1750 microseconds above.
+inline Nanoseconds silence_of_half_characters(int halves, std::uint32_t baud, Nanoseconds fixed) {
+  return baud <= 19200 ? Nanoseconds{halves} * 11 * 500'000'000 / baud : fixed;
+}
+inline Nanoseconds t15(std::uint32_t baud) { return silence_of_half_characters(3, baud, 750'000); }
+inline Nanoseconds t35(std::uint32_t baud) { return silence_of_half_characters(7, baud, 1'750'000); }
+
+/// The assembler's clock shows whole microseconds, and the times it compares with are rounded to them.
+inline constexpr Nanoseconds kClock = 5'000;
+
+/// A wire at one rate, with the silence timer beside it. A byte takes ten bits; the assembler is told at its
+/// end.
+class Wire {
+ public:
+  Wire(RtuAssembler& assembler, FrameQueue& queue, std::uint32_t baud)
+      : assembler_(assembler), queue_(queue), baud_(baud), timing_(LineTiming::at(baud)) {
+    assembler_.use(timing_, InterCharacterGap::Tolerated);
+  }
+
+  [[nodiscard]] Nanoseconds character() const { return Nanoseconds{10} * 1'000'000'000 / baud_; }
+
+  void byte(std::uint8_t value, ByteStatus status = ByteStatus::Good) {
+    now_ += character();
+    run_timer();
+    note(assembler_.byte(value, status, own, time()));
+    due_ = now_ / 1000 + timing_.rtu_silence.microseconds();
+  }
+  void bytes(const FrameBytes& values) {
+    for (const std::uint8_t value : values) {
+      byte(value);
+    }
+  }
+  /// Between a stop bit and the next start bit.
+  void silence(Nanoseconds length) { now_ += length; }
+  /// Until no timer runs.
+  void rest() {
+    silence(1'000'000'000);
+    run_timer();
+  }
+  void frame(const FrameBytes& values) {
+    bytes(values);
+    rest();
+  }
+
+  [[nodiscard]] Time time() const { return Time(static_cast<std::uint32_t>(now_ / 1000)); }
+  void start_at(Time time) { now_ = Nanoseconds{time.microseconds()} * 1000; }
+
+  std::uint8_t own = kOwn;
+  bool timer_works = true;
+  bool collect = true;  ///< frames are taken as they come
+  Verdicts verdicts;
+  std::vector<FrameBytes> frames;
+  Time received;  ///< the latest frame's
+
+ private:
+  void run_timer() {
+    while (timer_works && due_ && *due_ < now_ / 1000) {
+      note(assembler_.silence(own, Time(static_cast<std::uint32_t>(*due_))));
+      if (assembler_.wants_more_silence()) {
+        *due_ += timing_.character.microseconds();
+      } else {
+        due_.reset();
+      }
+    }
+  }
+  void note(Verdict verdict) {
+    if (verdict == Verdict::Open) {
+      return;
+    }
+    verdicts.push_back(verdict);
+    const Frame* frame = queue_.waiting();
+    if (collect && frame != nullptr) {
+      frames.emplace_back(frame->bytes().begin(), frame->bytes().end());
+      received = frame->received;
+      queue_.drop_in_main_loop();
+    }
+  }
+
+  RtuAssembler& assembler_;
+  FrameQueue& queue_;
+  Nanoseconds baud_;
+  LineTiming timing_;
+  Nanoseconds now_ = 1'000'000'000;
+  std::optional<Nanoseconds> due_;  // microseconds
+};
+
+}  // namespace ex9000

@@ -1,0 +1,196 @@
+// A memory that can fail, and a module's settings store on it, for tests of the store.
+#pragma once
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cstdint>
+#include <optional>
+#include <set>
+#include <string_view>
+#include <vector>
+
+#include "firmware/settings/store.hpp"
+
+namespace ex9000 {
+
+using Found = SettingsStore::Found;
+
+inline constexpr std::size_t kPage = 32;
+inline constexpr std::size_t kAttempts = 3;
+inline constexpr std::size_t kStuckCell = 3;
+
+inline const Model& model(std::string_view designation) { return *find_model(designation); }
+
+inline const Model& the_model() { return model("EX9042D-M"); }
+
+inline Settings factory() { return Settings::factory(the_model()); }
+
+/// Settings that tell themselves apart.
+inline Settings numbered(unsigned number) {
+  Settings settings = factory();
+  settings.address = static_cast<std::uint8_t>(1 + number % 247);
+  settings.safe_value = static_cast<std::uint16_t>(number & 0x1FFFU);
+  settings.watchdog_timeout = static_cast<std::uint8_t>(number * 7 + 1);
+  return settings;
+}
+
+/// A few pages of memory that can fail in all the ways a memory can.
+class FakeMemory {
+ public:
+  enum class Garbage { None, Zeroes, Ones, MixedWithOld, MixedWithNew };
+  static constexpr Garbage kEveryGarbage[] = {Garbage::None, Garbage::Zeroes, Garbage::Ones,
+                                              Garbage::MixedWithOld, Garbage::MixedWithNew};
+
+  /// Does the job as far as there is power; nothing where it has failed meanwhile, else whether the memory
+  /// answered.
+  std::optional<bool> run(const MemoryJob& job) {
+    const bool writing = job.kind == MemoryJob::Kind::Write;
+    const std::size_t size = writing ? job.source.size : job.destination.size;
+    EXPECT_NE(size, 0U);
+    EXPECT_EQ(job.address / kPage, (job.address + size - 1) / kPage) << "a job crosses a page";
+    if (job.address + size > cells.size()) {
+      ADD_FAILURE() << "a job leaves the memory";
+      return false;
+    }
+    return writing ? write(job) : read(job);
+  }
+
+  std::vector<std::uint8_t> cells = std::vector<std::uint8_t>(4 * kPage, 0xFF);
+  std::size_t failing_reads = 0;      ///< so many next reads are not answered
+  std::size_t noisy_reads = 0;        ///< so many next reads read nonsense
+  std::size_t unanswered_writes = 0;  ///< so many next writes are not answered, and not done
+  bool unanswered_but_done = false;   ///< or done all the same
+  bool stuck = false;                 ///< the address of the settings cannot be written, in any page
+  std::optional<std::size_t> power;   ///< fails when so many more bytes are written
+  Garbage garbage = Garbage::None;    ///< in the byte that was being written then
+  std::vector<std::uint16_t> reads;   ///< addresses
+  std::vector<std::uint16_t> writes;  ///< likewise
+  std::size_t bytes_written = 0;
+
+ private:
+  std::optional<bool> read(const MemoryJob& job) {
+    reads.push_back(job.address);
+    if (failing_reads > 0) {
+      --failing_reads;
+      return false;
+    }
+    std::copy_n(cells.begin() + job.address, job.destination.size, job.destination.data);
+    if (noisy_reads > 0) {
+      --noisy_reads;
+      job.destination.data[job.destination.size / 2] ^= 0x10U;
+    }
+    return true;
+  }
+
+  std::optional<bool> write(const MemoryJob& job) {
+    writes.push_back(job.address);
+    const bool answers = unanswered_writes == 0;
+    if (!answers) {
+      --unanswered_writes;
+      if (!unanswered_but_done) {
+        return false;
+      }
+    }
+    for (std::size_t i = 0; i < job.source.size; ++i) {
+      std::uint8_t& cell = cells[job.address + i];
+      if (power && *power == 0) {
+        cell = spoiled(cell, job.source[i]);
+        return std::nullopt;
+      }
+      if (power) {
+        --*power;
+      }
+      if (!stuck || (job.address + i) % kPage != kStuckCell) {
+        cell = job.source[i];
+      }
+      ++bytes_written;
+    }
+    if (power && *power == 0) {
+      return std::nullopt;  // all is written, but nobody lives to hear of it
+    }
+    return answers;
+  }
+
+  [[nodiscard]] std::uint8_t spoiled(std::uint8_t old_byte, std::uint8_t new_byte) const {
+    switch (garbage) {
+      case Garbage::Zeroes:
+        return 0x00;
+      case Garbage::Ones:
+        return 0xFF;
+      case Garbage::MixedWithOld:
+        return static_cast<std::uint8_t>(old_byte ^ 0xA5U);
+      case Garbage::MixedWithNew:
+        return static_cast<std::uint8_t>(new_byte ^ 0x5AU);
+      case Garbage::None:
+        break;
+    }
+    return old_byte;
+  }
+};
+
+/// False where the power failed.
+inline bool drive(SettingsStore& store, FakeMemory& memory) {
+  for (int jobs = 0; store.busy(); ++jobs) {
+    if (jobs == 100) {
+      ADD_FAILURE() << "the store never finishes";
+      return false;
+    }
+    const std::optional<bool> ok = memory.run(store.job());
+    if (!ok) {
+      return false;
+    }
+    store.done(*ok);
+  }
+  return true;
+}
+
+/// A module's store from one reset to the next.
+class Boot {
+ public:
+  explicit Boot(FakeMemory& memory, const Model& which = the_model()) : memory_(memory), store_(which) {
+    store_.begin_loading();
+    drive(store_, memory_);
+  }
+  /// Whether the save was reported as done.
+  bool save(const Settings& settings) {
+    store_.begin_saving(settings);
+    return drive(store_, memory_) && store_.saved();
+  }
+  [[nodiscard]] const Settings& stored() const { return store_.stored(); }
+  [[nodiscard]] Found found() const { return store_.found(); }
+
+ private:
+  FakeMemory& memory_;
+  SettingsStore store_;
+};
+
+/// Where the two copies lie.
+inline std::vector<std::uint16_t> copies() {
+  FakeMemory memory;
+  const Boot run(memory);
+  const std::set<std::uint16_t> addresses(memory.reads.begin(), memory.reads.end());
+  return {addresses.begin(), addresses.end()};
+}
+
+inline void put(FakeMemory& memory, std::size_t copy, const Settings& settings, std::uint16_t sequence,
+                const Model& which = the_model()) {
+  const Record record = encode_record(which, {settings, sequence});
+  std::copy(record.begin(), record.end(), memory.cells.begin() + copies().at(copy));
+}
+
+inline void corrupt(FakeMemory& memory, std::size_t copy) { memory.cells[copies().at(copy) + 5U] ^= 0x01U; }
+
+/// All ways for a save to fail three times.
+inline const std::vector<void (*)(FakeMemory&)> kFailures{
+    [](FakeMemory& memory) { memory.noisy_reads = kAttempts; },
+    [](FakeMemory& memory) { memory.failing_reads = kAttempts; },
+    [](FakeMemory& memory) { memory.unanswered_writes = kAttempts; },
+    [](FakeMemory& memory) {
+      memory.unanswered_writes = kAttempts;
+      memory.unanswered_but_done = true;
+    },
+    [](FakeMemory& memory) { memory.stuck = true; },
+};
+
+}  // namespace ex9000
