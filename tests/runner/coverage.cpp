@@ -29,7 +29,7 @@ constexpr std::array<std::pair<Refusal, const char*>, 13> kRefusals{{
     {Refusal::UnknownObject, "UnknownObject"},
     {Refusal::OutputsBlocked, "OutputsBlocked"},
     // Refusal::StoreFailed needs a broken memory, which no master can bring about:
-    // tests/unit/module_test.cpp.
+    // tests/unit/module_storing_test.cpp.
 }};
 
 constexpr std::array<std::pair<Verdict, const char*>, 6> kVerdicts{{

@@ -12,6 +12,11 @@
 
 namespace ex9000::sim {
 
+struct OutputChange {
+  VirtualTime at;
+  std::uint16_t channels;
+};
+
 class ModuleBench {
  public:
   using Bytes = std::vector<std::uint8_t>;
@@ -74,6 +79,13 @@ class ModuleBench {
   /// All that was heard since the last `ask`.
   [[nodiscard]] std::string heard_text() const { return {heard_.begin(), heard_.end()}; }
   void forget_heard() { heard_.clear(); }
+
+  /// From now on every change of the outputs is appended to `changes`, which lives as long as this.
+  void watch_outputs(std::vector<OutputChange>& changes) {
+    module().output_pins().on_change([this, &changes](std::uint16_t channels) {
+      changes.push_back({now(), channels});
+    });
+  }
 
   void power_cycle() {
     module().power(false);

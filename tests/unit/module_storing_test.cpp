@@ -1,0 +1,271 @@
+// A module and its memory: what is stored when, what a power cut leaves, which frames are kept meanwhile.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cstdio>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "tests/unit/module_bench.hpp"
+
+namespace ex9000::sim {
+namespace {
+
+using Bytes = ModuleBench::Bytes;
+using std::chrono::microseconds;
+using std::chrono::milliseconds;
+
+// --- wire.md 8: a reply means it is stored ---
+
+TEST(Storing, ACommandThatCannotBeStoredIsRefusedAndChangesNothing) {
+  const std::vector<std::string> commands{"%0102400680", "~01OABC", "~013164", "~015P", "~015S"};
+  ModuleBench bench("EX9042D,name=OLD");
+  ASSERT_EQ(bench.ask("@010007"), ">");
+  const Settings before = bench.module().module().state().settings;
+  bench.module().memory().fail(true);
+  for (const std::string& command : commands) {
+    EXPECT_EQ(bench.ask(command), "?01") << command;
+    EXPECT_EQ(bench.module().module().outcome().refusal, Refusal::StoreFailed) << command;
+    EXPECT_EQ(bench.module().module().state().settings, before) << command;
+  }
+  bench.module().memory().fail(false);
+  bench.power_cycle();
+  EXPECT_EQ(bench.module().module().state().settings, before);
+  EXPECT_EQ(bench.ask("$01M"), "!01OLD");
+}
+
+TEST(Storing, AModbusRequestThatCannotBeStoredIsRefusedWithServerDeviceFailure) {
+  ModuleBench bench("EX9042D-M");
+  bench.module().memory().fail(true);
+  EXPECT_EQ(bench.ask(Bytes{1, 0x06, 0x01, 0xE4, 0x00, 0x05}), (Bytes{1, 0x86, 4}));
+  EXPECT_EQ(bench.ask(Bytes{1, 0x05, 0x00, 0x80, 0xFF, 0x00}), (Bytes{1, 0x85, 4}));
+  EXPECT_EQ(bench.ask(Bytes{1, 0x0F, 0x00, 0xA0, 0x00, 0x0D, 0x02, 0xFF, 0x1F}), (Bytes{1, 0x8F, 4}));
+  EXPECT_EQ(bench.ask(Bytes{1, 0x46, 0x04, 0x05, 0x00, 0x00, 0x00}), (Bytes{1, 0xC6, 4}));
+  EXPECT_EQ(bench.module().outputs(), 0);  // the outputs follow only what is stored
+  EXPECT_EQ(bench.ask(Bytes{1, 0x08, 0x00, 0x0D, 0x00, 0x00}), (Bytes{1, 0x08, 0x00, 0x0D, 0x00, 0x04}));
+}
+
+TEST(Storing, ABroadcastThatCannotBeStoredStaysSilent) {
+  ModuleBench bench("EX9042D-M");
+  bench.module().memory().fail(true);
+  EXPECT_EQ(bench.ask(Bytes{0, 0x05, 0x00, 0x80, 0xFF, 0x00}), Bytes());
+  EXPECT_EQ(bench.module().outputs(), 0);
+}
+
+TEST(Storing, ACommandThatChangesNothingWritesNothing) {
+  ModuleBench ascii("EX9042D");
+  const std::vector<std::string> commands{"%0101400680", "~01OABC", "~013105", "~01OABC",
+                                          "~013005",     "~011",    "~015P",   "~015S"};
+  for (const std::string& command : commands) {
+    ascii.ask(command);
+    const auto writes = ascii.module().memory().writes();
+    EXPECT_NE(ascii.ask(command), "?01") << command;
+    EXPECT_EQ(ascii.module().memory().writes(), writes) << command;
+    ascii.ask("~013005");
+  }
+  ModuleBench modbus("EX9042D-M");
+  const std::vector<Bytes> frames{{1, 0x06, 0x01, 0xE4, 0x00, 0x07}, {1, 0x06, 0x01, 0xE5, 0x00, 0x0A},
+                                  {1, 0x06, 0x01, 0xE8, 0x00, 0x64}, {1, 0x05, 0x00, 0x80, 0xFF, 0x00},
+                                  {1, 0x05, 0x00, 0xA3, 0xFF, 0x00}, {1, 0x05, 0x01, 0x00, 0x00, 0x00},
+                                  {1, 0x05, 0x01, 0x0D, 0xFF, 0x00}, {1, 0x46, 0x04, 0x09, 0x00, 0x00, 0x00}};
+  for (const Bytes& frame : frames) {
+    modbus.ask(frame);
+    const auto writes = modbus.module().memory().writes();
+    EXPECT_EQ(modbus.ask(frame).at(1), frame[1]);
+    EXPECT_EQ(modbus.module().memory().writes(), writes);
+  }
+}
+
+TEST(Storing, ReadingAndRefusedCommandsWriteNothing) {
+  ModuleBench bench("EX9055D");
+  for (const char* command :
+       {"$012", "$016", "@01", "#010", "~010", "~012", "~014P", "$01F", "$01M", "$015", "~01O", "~013000",
+        "%0101410600", "@01FFF", "~015X", "$01P1", "@01FF", "#0100AA"}) {
+    bench.ask(command);
+  }
+  EXPECT_EQ(bench.module().memory().writes(), 0U);
+}
+
+TEST(Storing, AnUnchangedSafeBitIsNotStoredButStillDrivesItsOutput) {
+  ModuleBench bench("EX9068D-M");
+  bench.ask(Bytes{1, 0x05, 0x00, 0x80, 0xFF, 0x00});
+  bench.ask(Bytes{1, 0x05, 0x00, 0x00, 0x00, 0x00});
+  ASSERT_EQ(bench.module().outputs(), 0);
+  const auto writes = bench.module().memory().writes();
+  bench.ask(Bytes{1, 0x05, 0x00, 0x80, 0xFF, 0x00});
+  EXPECT_EQ(bench.module().outputs(), 1);
+  EXPECT_EQ(bench.module().memory().writes(), writes);
+}
+
+TEST(Storing, WhereverThePowerFailsACommandIsWhollyDoneOrNotAtAllAndAnAcknowledgedOneIsDone) {
+  const std::vector<std::string> commands{"%0133400680", "~01OABCDEF", "~013164", "~015P", "~015S"};
+  int cuts = 0;
+  for (const std::string& command : commands) {
+    for (const bool stored_before : {false, true}) {
+      bool acknowledged = false;
+      for (VirtualTime cut = microseconds(0); !acknowledged; cut += microseconds(100)) {
+        ModuleBench bench(stored_before ? "EX9042D,name=OLD,edge=rising" : "EX9042D");
+        if (stored_before) {
+          ASSERT_EQ(bench.ask("~01OOLDER"), "!01");  // both copies hold something
+        }
+        ASSERT_EQ(bench.ask("@011FFF"), ">");
+        const Settings before = bench.module().module().state().settings;
+        bench.forget_heard();
+        bench.send(command + "\r");
+        bench.run(cut);
+        acknowledged = !bench.heard_text().empty();
+        bench.power_cycle();
+        ++cuts;
+        const Settings after = bench.module().module().state().settings;
+        ASSERT_FALSE(bench.module().module().settings_unreadable() && acknowledged);
+
+        ModuleBench undisturbed(stored_before ? "EX9042D,name=OLD,edge=rising" : "EX9042D");
+        if (stored_before) {
+          undisturbed.ask("~01OOLDER");
+        }
+        undisturbed.ask("@011FFF");
+        undisturbed.ask(command);
+        const Settings done = undisturbed.module().module().state().settings;
+        ASSERT_TRUE(after == done || (!acknowledged && after == before))
+            << command << " cut at " << cut.count() << " ns";
+      }
+    }
+  }
+  std::printf("power cuts of whole modules: %d\n", cuts);
+}
+
+TEST(Storing, SettingsThatCannotBeReadGiveFactorySettingsUnwrittenWithin100msAndAPatternOfTheirOwn) {
+  ModuleBench bench("EX9042D,name=OLD");
+  for (const bool no_answer : {false, true}) {
+    bench.module().power(false);
+    std::fill(bench.module().memory().contents().begin(), bench.module().memory().contents().end(),
+              std::uint8_t{0x5A});
+    bench.module().memory().fail(no_answer);
+    const auto writes = bench.module().memory().writes();
+    bench.module().power(true);
+    bench.run(milliseconds(100));
+    EXPECT_EQ(bench.ask("$01M"), "!019042D");
+    EXPECT_EQ(bench.module().module().led_pattern(), StatusLed::Pattern::SettingsUnreadable);
+    EXPECT_EQ(bench.module().memory().writes(), writes);
+  }
+  bench.module().memory().fail(false);
+  EXPECT_EQ(bench.ask("~01ONEW"), "!01");
+  EXPECT_EQ(bench.module().module().led_pattern(), StatusLed::Pattern::Steady);
+  bench.power_cycle();
+  EXPECT_EQ(bench.ask("$01M"), "!01NEW");
+}
+
+TEST(Storing, WhatIsStoredAfterAMemoryThatDidNotAnswerAtResetIsThereAtTheNext) {
+  ModuleBench bench("EX9042D,name=OLD");
+  for (const char* name : {"OLD1", "OLD2", "OLD3"}) {
+    ASSERT_EQ(bench.ask(std::string("~01O") + name), "!01");
+  }
+  bench.module().memory().fail(true);
+  bench.power_cycle();
+  ASSERT_TRUE(bench.module().module().settings_unreadable());
+  EXPECT_EQ(bench.ask("~01ONEW"), "?01");
+  bench.module().memory().fail(false);
+  EXPECT_EQ(bench.ask("~01ONEW"), "!01");
+  bench.power_cycle();
+  EXPECT_EQ(bench.ask("$01M"), "!01NEW");
+}
+
+TEST(Storing, ARefusedStoreIsNotInForceAfterTheNextResetThoughItsWriteHadLanded) {
+  ModuleBench bench("EX9042D,name=OLD");
+  bench.send("~01ONEW\r");
+  ASSERT_EQ(bench.module().memory().writes(), 1U);               // begun
+  bench.line().bus().run_until(bench.module().memory().next());  // written; now it is to be read back
+  bench.module().memory().fail(true);
+  bench.forget_heard();
+  bench.run(milliseconds(200));
+  EXPECT_EQ(bench.heard_text(), "?01\r");
+  bench.module().memory().fail(false);
+  bench.run(milliseconds(1500));
+  bench.power_cycle();
+  EXPECT_EQ(bench.ask("$01M"), "!01OLD");
+}
+
+TEST(Storing, AReplyWaitsForATimeoutThatIsNotStoredYet) {
+  // The timeout has switched the watchdog off, but the memory does not know: "off" is not stored before it
+  // does.
+  ModuleBench bench("EX9042D");
+  ASSERT_EQ(bench.ask("~013103"), "!01");
+  bench.module().memory().fail(true);
+  bench.run(milliseconds(500));
+  ASSERT_EQ(bench.ask("~012"), "!01003");
+  EXPECT_EQ(bench.ask("~013003"), "?01");
+  bench.module().memory().fail(false);
+  EXPECT_EQ(bench.ask("~013003"), "!01");
+  bench.power_cycle();
+  EXPECT_EQ(bench.ask("~012"), "!01003");
+}
+
+TEST(Storing, AnotherModelsSettingsDoNotCount) {
+  ModuleBench bench("EX9043D");
+  ModuleBench other("EX9042D");
+  ASSERT_EQ(other.ask("@011FFF"), ">");
+  ASSERT_EQ(other.ask("~015P"), "!01");
+  bench.module().power(false);
+  bench.module().memory().contents() = other.module().memory().contents();
+  bench.module().power(true);
+  bench.run(milliseconds(100));
+  EXPECT_EQ(bench.module().outputs(), 0);
+  EXPECT_TRUE(bench.module().module().settings_unreadable());
+}
+
+// --- wire.md 8: while one command is executed or stored, one more frame is kept ---
+
+TEST(Queueing, OfTwoFramesBehindAStoringOneTheFirstIsKept) {
+  ModuleBench bench("EX9042D,baud=115200");
+  bench.forget_heard();
+  bench.send("~01ONEW\r$01M\r$012\r");
+  bench.run(milliseconds(200));
+  EXPECT_EQ(bench.heard_text(), "!01\r!01NEW\r");
+}
+
+TEST(Queueing, AHostOkBehindAFullQueueIsNotLost) {
+  ModuleBench bench("EX9042D,baud=115200");
+  ASSERT_EQ(bench.ask("~013105"), "!01");
+  bench.run(milliseconds(200));  // 450 ms of the 500 are over with what `ask` waited
+  bench.send("~01ONEW\r$01M\r~**\r");
+  bench.run(milliseconds(300));
+  EXPECT_FALSE(bench.module().module().state().settings.timeout_status);
+}
+
+TEST(Queueing, AWholeModbusFrameSurvivesTheReplyToTheOneBeforeIt) {
+  // The host OK is over, but for its silence, when the driver comes on.
+  ModuleBench bench("EX9068D-M");
+  bench.ask(Bytes{1, 0x06, 0x01, 0xE8, 0x00, 0x05});
+  bench.ask(Bytes{1, 0x05, 0x01, 0x04, 0xFF, 0x00});
+  bench.run(milliseconds(150));
+  bench.send(ModuleBench::with_crc({1, 0x05, 0x00, 0xA0, 0xFF, 0x00}));
+  bench.run(microseconds(4100));
+  bench.send(ModuleBench::with_crc({1, 0x03, 0x30, 0x38, 0x00, 0x00}));
+  const VirtualTime sent = bench.now();
+  bench.recorder().clear();
+  bench.run(milliseconds(400));
+  ASSERT_FALSE(bench.recorder().drivers.empty());
+  EXPECT_LT(bench.recorder().drivers[0].at, sent + microseconds(4010));  // else this shows nothing
+  EXPECT_FALSE(bench.module().module().state().settings.timeout_status);
+}
+
+TEST(Queueing, TwoRepliesAreNeverOneFrameToTheMaster) {
+  ModuleBench bench("EX9068D-M,baud=115200");
+  bench.send(ModuleBench::with_crc({1, 0x05, 0x00, 0xA0, 0xFF, 0x00}));
+  bench.run(microseconds(1800));
+  bench.send(ModuleBench::with_crc({1, 0x01, 0x00, 0x00, 0x00, 0x08}));
+  bench.run(milliseconds(100));
+  std::vector<BusRecorder::Driver> on;
+  std::vector<BusRecorder::Driver> off;
+  for (const auto& driver : bench.recorder().drivers) {
+    if (driver.station == 1) {
+      (driver.on ? on : off).push_back(driver);
+    }
+  }
+  ASSERT_EQ(on.size(), 2U);
+  EXPECT_GE(on[1].at - off[0].at, microseconds(1750));
+}
+
+}  // namespace
+}  // namespace ex9000::sim
