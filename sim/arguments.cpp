@@ -45,20 +45,20 @@ std::uint32_t parse_line_baud(const std::string& text) {
                               ": wants 1200, 2400, 4800, 9600, 19200, 38400, 57600 or 115200");
 }
 
-Parsed wrong(const std::string& what) {
-  Parsed parsed;
-  parsed.error = "ex9000-sim: " + what + "\n";
-  parsed.exit_status = kWrongArguments;
-  return parsed;
-}
-
-/// CLI11's own words may have several lines.
+/// CLI11's own words may have several lines, and so may an argument.
 std::string one_line(std::string text) {
   std::replace(text.begin(), text.end(), '\n', ' ');
   while (!text.empty() && text.back() == ' ') {
     text.pop_back();
   }
   return text;
+}
+
+Parsed wrong(const std::string& what) {
+  Parsed parsed;
+  parsed.error = "ex9000-sim: " + one_line(what) + "\n";
+  parsed.exit_status = kWrongArguments;
+  return parsed;
 }
 
 }  // namespace
@@ -93,7 +93,7 @@ Parsed parse_arguments(int argc, const char* const* argv) {
     parsed.output = std::string(version.what()) + "\n";
     return parsed;
   } catch (const CLI::ParseError& error) {
-    return wrong(one_line(error.what()) + "; --help tells more");
+    return wrong(std::string(error.what()) + "; --help tells more");
   }
   if (models) {
     Parsed parsed;

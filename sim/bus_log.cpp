@@ -25,7 +25,7 @@ std::string stamp(VirtualTime time) {
 BusLog::BusLog(std::vector<std::string> speakers, Print print)
     : speakers_(std::move(speakers)), print_(std::move(print)), frames_(speakers_.size()) {}
 
-void BusLog::byte(std::size_t station, std::uint8_t byte, std::uint32_t /*baud*/, bool collided,
+void BusLog::byte(std::size_t station, std::uint8_t byte, std::uint32_t baud, bool collided,
                   VirtualTime start, VirtualTime end) {
   Frame& frame = frames_[station];
   if (frame.bytes.empty()) {
@@ -39,7 +39,8 @@ void BusLog::byte(std::size_t station, std::uint8_t byte, std::uint32_t /*baud*/
   if ((dcon && byte == '\r') || frame.bytes.size() >= kLongest) {
     print(station);
   } else {
-    frame.prints = end + (dcon ? kPatienceForTyping : kPatienceForRest);
+    constexpr VirtualTime kFourCharacters{40'000'000'000};  // bits in nanoseconds, at 1 baud
+    frame.prints = end + (dcon ? kPatienceForTyping : std::max(kPatienceForRest, kFourCharacters / baud));
   }
 }
 

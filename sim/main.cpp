@@ -1,4 +1,7 @@
 // ex9000-sim: simulated modules on a pseudo-terminal.
+#include <fcntl.h>
+#include <unistd.h>
+
 #include <boost/asio/io_context.hpp>
 #include <boost/asio/signal_set.hpp>
 #include <csignal>
@@ -57,9 +60,21 @@ void run(const Arguments& arguments) {
   io.run();
 }
 
+/// Where one of the three is closed, the next file would take its number, and a log be written into the line.
+void occupy_standard_streams() {
+  int fd = open("/dev/null", O_RDWR);
+  while (fd >= 0 && fd <= STDERR_FILENO) {
+    fd = open("/dev/null", O_RDWR);
+  }
+  if (fd >= 0) {
+    close(fd);
+  }
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
+  occupy_standard_streams();
   const Parsed parsed = parse_arguments(argc, argv);
   std::cout << parsed.output;
   std::cerr << parsed.error;

@@ -92,7 +92,8 @@ std::string row_meaning(unsigned function, unsigned address, unsigned value) {
 
 std::string modbus_meaning(const FrameBytes& bytes, Speaker speaker) {
   if (bytes.size() < 4) {
-    return "too short for a frame";
+    const bool noise = bytes.size() == 1 && bytes[0] < 0x20;  // the LF behind a CR, a turn-around 00
+    return noise ? "" : "too short for a frame";
   }
   if (crc16({bytes.data(), bytes.size()}).value() != 0) {
     return "wrong CRC";

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cctype>
+#include <set>
 #include <sstream>
 #include <stdexcept>
 
@@ -125,7 +126,12 @@ ModuleSpec parse_module_spec(const std::string& text) {
     if (at != std::string::npos) {
       spec.settings.address = parse_address(name.substr(at + 1));
     }
+    std::set<std::string> keys;
     for (std::string option; std::getline(parts, option, ',');) {
+      const std::string key = option.substr(0, option.find('='));
+      if (!keys.insert(key).second) {
+        fail("'" + key + "=' is given twice");
+      }
       apply(spec, option);
     }
     if (text.back() == ',') {

@@ -39,6 +39,7 @@ void Pacer::start() {
   prctl(PR_SET_TIMERSLACK, kTimerSlackNanoseconds);
   line_.bus().run_for(kComingUp);
   began_ = std::chrono::steady_clock::now() - line_.clock().virtual_now();
+  tell_mismatches();
   watch_visits();
   read();
   follow();
@@ -139,15 +140,18 @@ void Pacer::write_heard() {
 
 void Pacer::take_rate() {
   const auto rate = pty_.baud();
-  if (!rate || *rate == rate_) {
-    return;
+  if (rate && *rate != rate_) {
+    rate_ = *rate;
+    line_.master().set_baud(rate_);
+    tell_mismatches();
   }
-  rate_ = *rate;
-  line_.master().set_baud(rate_);
+}
+
+void Pacer::tell_mismatches() {
   for (std::size_t i = 0; i < line_.size(); ++i) {
     SimulatedModule& module = line_.module(i);
     if (module.baud() != rate_) {
-      notice_("the master is at " + std::to_string(rate_) + " baud, " +
+      notice_("the line is at " + std::to_string(rate_) + " baud, " +
               std::string(module.model().designation) + " at " +
               hex_byte_text(module.module().state().in_force.address) + " listens at " +
               std::to_string(module.baud()));

@@ -52,6 +52,7 @@ class Pacer final : private BusObserver {
   void on_read(std::size_t size);
   void write_heard();
   void take_rate();
+  void tell_mismatches();
   [[nodiscard]] VirtualTime silence_before(std::uint8_t address);
   void driver(std::size_t station, bool on, VirtualTime now) override;
   void byte(std::size_t station, std::uint8_t byte, std::uint32_t baud, bool collided, VirtualTime start,

@@ -39,17 +39,19 @@ Bytes CoreTarget::receive(std::size_t count, std::chrono::milliseconds patience)
       gives_up = clock_.virtual_now() + patience;
     }
   }
-  note_coverage();
   return take_heard();
 }
 
 Bytes CoreTarget::listen(std::chrono::milliseconds time) {
   bus_.run_for(time);
-  note_coverage();
   return take_heard();
 }
 
-Bytes CoreTarget::take_heard() { return std::exchange(heard_, {}); }
+Bytes CoreTarget::take_heard() {
+  Bytes heard = std::exchange(heard_, {});
+  note_coverage(heard);
+  return heard;
+}
 
 void CoreTarget::set_baud(std::uint32_t rate) { master_->set_baud(rate); }
 
@@ -74,11 +76,11 @@ step::Led::Shows CoreTarget::led() {
   return module_->led_lit() ? step::Led::Shows::On : step::Led::Shows::Off;
 }
 
-void CoreTarget::note_coverage() {
-  if (coverage_ != nullptr && !sent_.empty() && module_->powered()) {
-    coverage_->note(module_->module(), sent_);
-    sent_.clear();
+void CoreTarget::note_coverage(const Bytes& heard) {
+  if (coverage_ != nullptr && !sent_.empty() && module_->powered() && module_->baud() == master_->baud()) {
+    coverage_->note(module_->module(), sent_, heard);
   }
+  sent_.clear();
 }
 
 }  // namespace ex9000::runner

@@ -33,7 +33,7 @@ class CoreTarget final : public Target {
 
  private:
   Bytes take_heard();
-  void note_coverage();
+  void note_coverage(const Bytes& heard);
 
   Coverage* coverage_;
   sim::VirtualClock clock_;

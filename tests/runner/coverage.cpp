@@ -88,7 +88,7 @@ Verdict verdict_of(const Bytes& sent, Feed feed) {
 
 }  // namespace
 
-void Coverage::note(const Module& module, const Bytes& sent) {
+void Coverage::note(const Module& module, const Bytes& sent, const Bytes& heard) {
   // The same assemblers once more, beside the module, to learn what it made of the bytes.
   const InForce& in_force = module.state().in_force;
   FrameQueue queue;
@@ -119,13 +119,20 @@ void Coverage::note(const Module& module, const Bytes& sent) {
   if (verdict == Verdict::HostOk) {
     reached_.insert(in_force.protocol == Protocol::Ascii ? "dcon/host-ok" : "register/host-ok");
   }
-  if (queue.waiting() != nullptr) {
-    note_request(module, queue.waiting()->bytes());
+  if (queue.waiting() == nullptr) {
+    return;
+  }
+  const ex9000::Bytes frame = queue.waiting()->bytes();
+  const bool ascii = in_force.protocol == Protocol::Ascii;
+  if (ascii && frame[1] == '*') {
+    reached_.insert("dcon/sample");
+  } else if (!heard.empty()) {
+    note_answered(module, frame);
   }
 }
 
-void Coverage::note_request(const Module& module, ex9000::Bytes frame) {
-  const Refusal refusal = module.outcome().refusal;
+void Coverage::note_answered(const Module& module, ex9000::Bytes frame) {
+  const Refusal refusal = module.outcome().refusal;  // of this frame, since it was answered
   if (refusal != Refusal::None) {
     reached_.insert("refusal/" + name_in(kRefusals, refusal));
     return;

@@ -13,15 +13,16 @@ namespace ex9000::runner {
 /// `register/address/06`, `refusal/OutOfRange`, `verdict/Foreign`.
 class Coverage {
  public:
-  /// `sent` was put on the line and `module` has dealt with it.
-  void note(const Module& module, const Bytes& sent);
+  /// `sent` was put on the line at the module's rate, `module` has dealt with it, and `heard` is its answer.
+  /// What is not answered counts only where silence is the answer.
+  void note(const Module& module, const Bytes& sent, const Bytes& heard);
 
   /// Ids that can be reached by what a master may send, and were not.
   [[nodiscard]] std::set<std::string> missing() const;
   [[nodiscard]] std::size_t reached() const { return reached_.size(); }
 
  private:
-  void note_request(const Module& module, ex9000::Bytes frame);
+  void note_answered(const Module& module, ex9000::Bytes frame);
 
   std::set<std::string> reached_;
 };

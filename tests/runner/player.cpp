@@ -10,6 +10,9 @@ namespace {
 constexpr std::chrono::milliseconds kLongestReply{250};
 /// The rest of a reply that is longer than it should be shows itself within this.
 constexpr std::chrono::milliseconds kAfterReply{2};
+/// A reply that no step asks for begins within this, at any rate: T3.5 at 1200 baud, the 20 ms that a reply
+/// may take, and its first character.
+constexpr std::chrono::milliseconds kReplyBegins{65};
 
 /// DCON's checksum and Modbus's CRC once more, the plain way, so that the tests do not judge the firmware by
 /// itself.
@@ -91,28 +94,35 @@ class Playing {
   Playing(Target& target, bool checksum) : target_(target), checksum_(checksum) {}
 
   void operator()(const step::SendDcon& step) {
-    nothing_more();
-    target_.send(bytes_of(step.text + (checksum_ ? checksum_of(step.text) : "") + "\r"));
+    send(bytes_of(step.text + (checksum_ ? checksum_of(step.text) : "") + "\r"));
   }
   void operator()(const step::ExpectDcon& step) {
     expect(bytes_of(step.text + (checksum_ ? checksum_of(step.text) : "") + "\r"));
   }
-  void operator()(const step::SendModbus& step) {
-    nothing_more();
-    target_.send(with_crc(step.frame));
-  }
+  void operator()(const step::SendModbus& step) { send(with_crc(step.frame)); }
   void operator()(const step::ExpectModbus& step) { expect(with_crc(step.frame)); }
-  void operator()(const step::SendBytes& step) { target_.send(step.bytes); }
+  /// Nothing is awaited before them: they may be the rest of a frame.
+  void operator()(const step::SendBytes& step) {
+    target_.send(step.bytes);
+    open_question_ = true;
+  }
   void operator()(const step::Silence& /*step*/) { nothing_for(kSilence); }
   void operator()(const step::Wait& step) { nothing_for(step.time); }
   void operator()(const step::Checksum& step) { checksum_ = step.on; }
   void operator()(const step::Baud& step) { target_.set_baud(step.rate); }
-  void operator()(const step::Power& step) { target_.power(step.on); }
+  void operator()(const step::Power& step) {
+    nothing_more();
+    target_.power(step.on);
+  }
   void operator()(const step::PowerCycle& /*step*/) {
+    nothing_more();
     target_.power(false);
     target_.power(true);
   }
-  void operator()(const step::Reset& /*step*/) { target_.reset(); }
+  void operator()(const step::Reset& /*step*/) {
+    nothing_more();
+    target_.reset();
+  }
   void operator()(const step::Init& step) { target_.set_init(step.asserted); }
   void operator()(const step::Input& step) { target_.set_input(step.channel, step.level); }
   void operator()(const step::Pulse& step) { target_.pulse_input(step.channel, step.count); }
@@ -129,11 +139,19 @@ class Playing {
     }
   }
 
-  void nothing_more() { nothing_for(kAfterReply); }
+  /// Nothing that no step has asked for is on its way.
+  void nothing_more() { nothing_for(open_question_ ? kReplyBegins : kAfterReply); }
 
  private:
+  void send(const Bytes& bytes) {
+    nothing_more();
+    target_.send(bytes);
+    open_question_ = true;
+  }
+
   void expect(const Bytes& wanted) {
     const Bytes heard = target_.receive(wanted.size(), kLongestReply);
+    open_question_ = false;
     if (heard != wanted) {
       throw std::runtime_error("expected " + shown(wanted) + ", heard " + shown(heard));
     }
@@ -141,6 +159,7 @@ class Playing {
 
   void nothing_for(std::chrono::milliseconds time) {
     const Bytes heard = target_.listen(time);
+    open_question_ = open_question_ && time < kReplyBegins;
     if (!heard.empty()) {
       throw std::runtime_error("expected nothing, heard " + shown(heard));
     }
@@ -148,6 +167,7 @@ class Playing {
 
   Target& target_;
   bool checksum_;
+  bool open_question_ = false;  ///< something was sent, and an answer may still come
 };
 
 }  // namespace

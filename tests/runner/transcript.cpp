@@ -194,6 +194,9 @@ Action parse_action(const std::string& text) {
                        word.size() == 2 ? 1U : static_cast<std::uint32_t>(number(word[2].substr(1)))};
   }
   if (verb == "outputs" && takes(1)) {
+    if (word[1].size() > 4) {
+      fail("'" + word[1] + "' has more than 16 outputs");
+    }
     return step::Outputs{static_cast<std::uint16_t>(number(word[1], 16))};
   }
   if (verb == "led" && takes(1)) {
@@ -203,6 +206,16 @@ Action parse_action(const std::string& text) {
     return step::Led{on_off(word[1]) ? step::Led::Shows::On : step::Led::Shows::Off};
   }
   fail("no step '" + text + "'");
+}
+
+/// A channel that the model lacks would be driven in vain.
+void check_channel(const Model& model, const Action& action) {
+  const auto* input = std::get_if<step::Input>(&action);
+  const auto* pulse = std::get_if<step::Pulse>(&action);
+  if ((input != nullptr && input->channel >= model.inputs) ||
+      (pulse != nullptr && pulse->channel >= model.inputs)) {
+    fail("the " + std::string(model.designation) + " has no such input");
+  }
 }
 
 std::optional<std::string> header_value(const std::string& text, const std::string& key) {
@@ -270,6 +283,7 @@ Transcript bind(const std::string& path, const Source& source, const ModelRun& r
     line = raw.number;
     const std::string text = substitute(raw.text, run.variables);
     transcript.steps.push_back({raw.number, text, parse_action(text)});
+    check_channel(*run.model, transcript.steps.back().action);
   }
   return transcript;
 }

@@ -185,6 +185,8 @@ TEST(Dcon, AReplyThatNobodyHasWaitedForIsNotTheNextMastersFirst) {
 
 TEST(Dcon, TheRateThatAMasterSetsIsTheLinesAndAMismatchIsSaid) {
   SimulatorProcess simulator({"EX9042D@05,baud=19200", "--baud", "9600"});
+  EXPECT_TRUE(simulator.wait_for("the line is at 9600 baud, EX9042D at 05 listens at 19200"))
+      << simulator.output();
   {
     Terminal terminal(simulator.tty(), B19200);
     terminal.type("$052\r");
@@ -193,7 +195,7 @@ TEST(Dcon, TheRateThatAMasterSetsIsTheLinesAndAMismatchIsSaid) {
   Terminal terminal(simulator.tty(), B1200);
   terminal.type("$052\r");
   EXPECT_EQ(terminal.read_line(), "");
-  EXPECT_TRUE(simulator.wait_for("the master is at 1200 baud, EX9042D at 05 listens at 19200"))
+  EXPECT_TRUE(simulator.wait_for("the line is at 1200 baud, EX9042D at 05 listens at 19200"))
       << simulator.output();
 }
 

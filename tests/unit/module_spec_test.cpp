@@ -91,7 +91,10 @@ TEST(ModuleSpec, ChecksumAndEdgeSetTheirBitOfTheFormat) {
   EXPECT_EQ(parse_module_spec("EX9052D,edge=rising").settings.format, 0x80);
   EXPECT_EQ(parse_module_spec("EX9052D,edge=falling").settings.format, 0x00);
   EXPECT_EQ(parse_module_spec("EX9052D,checksum=on,edge=rising").settings.format, 0xC0);
-  EXPECT_EQ(parse_module_spec("EX9052D,checksum=on,edge=rising,checksum=off").settings.format, 0x80);
+}
+
+TEST(ModuleSpec, AKeyGivenTwiceIsRefused) {
+  EXPECT_THROW(parse_module_spec("EX9052D,checksum=on,edge=rising,checksum=off"), std::invalid_argument);
 }
 
 TEST(ModuleSpec, TheNameIsTakenAsItIsWritten) {

@@ -47,7 +47,6 @@ TEST(FactorySettings, HaveTheNameOfSection1) {
       {"EX9068D-M", "9068D-M"}, {"EX9068AD-M", "9068D-M"}, {"EX9055D", "9055"},  {"EX9060D", "9060"},
       {"EX9063D", "9063"},      {"EX9065D", "9065"},       {"EX9066D", "9066"},  {"EX9067D", "9067"},
       {"EX9068D", "9068"}};
-  ASSERT_EQ(names.size(), kModels.size());
   for (const auto& [designation, name] : names) {
     EXPECT_EQ(text_of(Settings::factory(model(designation)).name), name) << designation;
   }
