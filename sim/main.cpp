@@ -81,7 +81,7 @@ int main(int argc, char** argv) {
   if (!parsed.arguments) {
     return parsed.exit_status;
   }
-  std::signal(SIGPIPE, SIG_IGN);
+  static_cast<void>(std::signal(SIGPIPE, SIG_IGN));  // a write to a closed pipe fails, and that is looked at
   try {
     run(*parsed.arguments);
   } catch (const std::invalid_argument& error) {
