@@ -54,8 +54,6 @@ class SimulatedModule final : public Station {
   [[nodiscard]] const Module& module() const { return mcu_->device.module(); }
   [[nodiscard]] std::uint16_t outputs() const { return outputs_.channels(); }
   [[nodiscard]] bool led_lit() const { return led_.lit(); }
-  [[nodiscard]] bool init_asserted() const { return init_switch_.asserted(); }
-  [[nodiscard]] std::uint16_t input_levels() const { return inputs_.levels(); }
   hal::doubles::Memory& memory() { return memory_; }
   hal::doubles::Outputs& output_pins() { return outputs_; }
   hal::doubles::StatusLed& led() { return led_; }

@@ -34,7 +34,8 @@ class Pacer final : private BusObserver {
   static constexpr std::chrono::microseconds kHostLatency{300};
 
   /// Puts what `line`'s master hears on `pty`, and what comes from it on the line. `log` may be null. All
-  /// live as long as `io` runs. `notice` gets a line for people whenever the line's rate changes.
+  /// live as long as `io` runs. `notice` gets a line for people for every module that listens at another rate
+  /// than the line's, at the start and whenever that changes.
   Pacer(boost::asio::io_context& io, Line& line, Pty& pty, BusLog* log, InterCharacterGap gap,
         std::function<void(const std::string&)> notice);
 

@@ -20,6 +20,8 @@ unsigned status_of(const State& state) {
 
 }  // namespace
 
+/// The assembler hears `~**` in the interrupt, so that it is never lost, and keeps it from the queue; the
+/// row's function says the same to whoever hands the frame to `answer`.
 Refusal host_ok(const State& /*state*/, Bytes /*args*/, Outcome& outcome, Reply& /*reply*/) {
   outcome.restart_host_watchdog = true;
   return Refusal::None;

@@ -61,7 +61,7 @@ class RtuAssembler {
   LineTiming timing_{};
   InterCharacterGap gap_ = InterCharacterGap::Tolerated;
   bool lapsed_ = false;         ///< T3.5 has passed once
-  bool first_spoiled_ = false;  ///< the first byte came with an error
+  bool first_spoiled_ = false;  ///< the first byte came with an error, or stood apart from the rest
   bool rest_spoiled_ = false;   ///< any other did
   bool overrun_ = false;
   std::uint16_t received_ = 0;  ///< bytes of the open frame, also those there is no room for; 0: none is open

@@ -49,6 +49,11 @@ void SettingsStore::begin_writing() {
   step_ = Step::Write;
 }
 
+void SettingsStore::begin_settling() {
+  copy_ = doubtful_copy_;
+  step_ = Step::Invalidate;
+}
+
 MemoryJob SettingsStore::job() {
   MemoryJob job;
   job.address = address_of(copy_);
@@ -95,7 +100,7 @@ void SettingsStore::done(bool ok) {
       }
       break;
     case Step::Invalidate:
-      doubtful_ = !ok;
+      doubtful_copy_ = ok ? kNoCopy : copy_;
       finish_saving(false);
       break;
     case Step::Idle:
@@ -152,7 +157,7 @@ void SettingsStore::finish_saving(bool saved) {
   step_ = Step::Idle;
   if (saved) {
     stored_ = {pending_, static_cast<std::uint16_t>(stored_.sequence + 1U)};
-    doubtful_ = false;
+    doubtful_copy_ = kNoCopy;
     current_copy_ = copy_;
     found_ = Found::Settings;
   }

@@ -53,9 +53,9 @@ class SettingsStore {
   [[nodiscard]] bool saved() const { return saved_; }
 
   /// A save has failed, and its copy may hold the refused settings all the same.
-  [[nodiscard]] bool doubtful() const { return doubtful_; }
+  [[nodiscard]] bool doubtful() const { return doubtful_copy_ != kNoCopy; }
   /// Makes sure that it does not count. Only while not `busy()`; `doubtful()` stays where this fails too.
-  void begin_settling() { step_ = Step::Invalidate; }
+  void begin_settling();
 
   /// What a reset now would find.
   [[nodiscard]] const Settings& stored() const { return stored_.settings; }
@@ -83,12 +83,12 @@ class SettingsStore {
   Step step_ = Step::Idle;
   Found found_ = Found::Unreadable;
   bool saved_ = false;
-  bool doubtful_ = false;
   std::uint8_t copy_ = 0;
   std::uint8_t attempt_ = 0;
   std::uint8_t blank_copies_ = 0;
-  std::uint8_t current_copy_ = kNoCopy;  ///< the one that counts
-  StoredSettings stored_;                ///< what it holds
+  std::uint8_t current_copy_ = kNoCopy;   ///< the one that counts
+  std::uint8_t doubtful_copy_ = kNoCopy;  ///< the one that must not
+  StoredSettings stored_;                 ///< what it holds
   Settings pending_;
   Record record_{};     ///< what is written
   Record read_back_{};  ///< what is read

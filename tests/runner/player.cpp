@@ -109,7 +109,10 @@ class Playing {
   void operator()(const step::Silence& /*step*/) { nothing_for(kSilence); }
   void operator()(const step::Wait& step) { nothing_for(step.time); }
   void operator()(const step::Checksum& step) { checksum_ = step.on; }
-  void operator()(const step::Baud& step) { target_.set_baud(step.rate); }
+  void operator()(const step::Baud& step) {
+    nothing_more();
+    target_.set_baud(step.rate);
+  }
   void operator()(const step::Power& step) {
     nothing_more();
     target_.power(step.on);

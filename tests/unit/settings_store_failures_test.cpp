@@ -1,6 +1,7 @@
 // Saves that the memory does not take: wire.md section 8. "A reply means that it is stored."
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cstddef>
 #include <cstdint>
 
@@ -98,6 +99,43 @@ TEST(SettingsStore, AFailedSaveDoesNotTouchTheCopyThatHoldsTheOldSettings) {
   for (const std::uint16_t address : memory.writes) {
     EXPECT_NE(address / kPage, copies()[0] / kPage);
   }
+}
+
+/// Ends the store's jobs one after the other, `count` of them, read or written or not answered.
+void end_jobs(SettingsStore& store, bool answered, int count) {
+  for (int i = 0; i < count; ++i) {
+    const MemoryJob job = store.job();
+    if (job.kind == MemoryJob::Kind::Read && answered) {
+      std::fill_n(job.destination.data, job.destination.size, std::uint8_t{0x5A});
+    }
+    store.done(answered);
+  }
+}
+
+TEST(SettingsStore, WhatIsSettledIsTheDoubtfulCopyAndNotTheOneThatWasLastLookedAt) {
+  SettingsStore store(the_model());
+  store.begin_loading();
+  end_jobs(store, false, 6);
+  ASSERT_EQ(store.found(), SettingsStore::Found::Unreadable);
+  store.begin_saving(numbered(1));
+  end_jobs(store, true, 6);  // both copies are garbage
+  const std::uint16_t doubtful = store.job().address;
+  for (std::size_t attempt = 0; attempt < kAttempts; ++attempt) {
+    end_jobs(store, true, 1);   // written,
+    end_jobs(store, false, 1);  // and then silent
+  }
+  end_jobs(store, false, 1);  // not made invalid either
+  ASSERT_TRUE(store.doubtful());
+
+  store.begin_saving(numbered(2));
+  end_jobs(store, true, 3);
+  end_jobs(store, false, 3);  // the second copy does not answer
+  ASSERT_FALSE(store.busy());
+  ASSERT_TRUE(store.doubtful());
+  store.begin_settling();
+  EXPECT_EQ(store.job().address / kPage, doubtful / kPage);
+  end_jobs(store, true, 1);
+  EXPECT_FALSE(store.doubtful());
 }
 
 }  // namespace
