@@ -18,8 +18,8 @@ void add(std::uint16_t& counter, EventTally& tally) {
 
 }  // namespace
 
-void Module::begin(std::uint16_t input_levels, Time now, InterCharacterGap gap) {
-  gap_ = gap;
+void Module::begin(std::uint16_t input_levels, Time now, TimingAt timing_at) {
+  timing_at_ = timing_at;
   edges_.begin(input_levels & state_.model.input_mask());
   store_.begin_loading();
   init_gives_up_.set(now + kInitGivesUp);
@@ -89,7 +89,7 @@ void Module::start_listening() {
                           (settings.format & kFormatRisingEdge) != 0);
   init_gives_up_.disarm();
   receiver_.answer_to(in_force.address);
-  receiver_.listen({in_force.protocol, in_force.checksum, LineTiming::at(baud()), gap_});
+  receiver_.listen({in_force.protocol, in_force.checksum, timing_at_(baud())});
   phase_ = Phase::Idle;
 }
 
@@ -213,8 +213,8 @@ void Module::finish_request() { phase_ = reply_.empty() ? Phase::Idle : Phase::R
 
 /// Silence before a reply: behind the request, and behind the reply before it.
 Duration Module::turn_around() const {
-  const LineTiming timing = LineTiming::at(baud());
-  return state_.in_force.protocol == Protocol::Ascii ? timing.character : timing.rtu_silence;
+  const LineTiming& timing = receiver_.timing();
+  return state_.in_force.protocol == Protocol::Ascii ? timing.dcon_turn_around : timing.rtu_silence;
 }
 
 Bytes Module::take_reply(Time now) {

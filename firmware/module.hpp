@@ -34,7 +34,7 @@ class Module {
   Module& operator=(const Module&) = delete;
 
   /// Once, before anything else. `input_levels`: bit n is channel n, 1 = +4 to +30 V.
-  void begin(std::uint16_t input_levels, Time now, InterCharacterGap gap = InterCharacterGap::Tolerated);
+  void begin(std::uint16_t input_levels, Time now, TimingAt timing_at = LineTiming::at);
 
   // --- interrupts ---
 
@@ -125,7 +125,7 @@ class Module {
   Debounce init_switch_;
 
   Phase phase_ = Phase::Booting;
-  InterCharacterGap gap_ = InterCharacterGap::Tolerated;
+  TimingAt timing_at_ = LineTiming::at;
   bool settings_known_ = false;
   bool storing_leftovers_ = false;     ///< the store that is under way was not asked for by a command
   bool expired_since_judged_ = false;  ///< the host watchdog has expired while a command waits for its store

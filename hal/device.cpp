@@ -2,8 +2,8 @@
 
 namespace ex9000::hal {
 
-void Device::start(Duration tick, InterCharacterGap gap) {
-  module_.begin(board_.inputs.levels(), board_.clock.now(), gap);
+void Device::start(Duration tick, TimingAt timing_at) {
+  module_.begin(board_.inputs.levels(), board_.clock.now(), timing_at);
   board_.tick.start(tick);
   board_.watchdog.feed();
 }

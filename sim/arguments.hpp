@@ -7,18 +7,20 @@
 #include <vector>
 
 #include "sim/module_spec.hpp"
+#include "sim/ports/tcp_port.hpp"
 
 namespace ex9000::sim {
 
 struct Arguments {
-  std::vector<ModuleSpec> modules;  ///< at least one
-  std::string pty_link = "ex9000.tty";
-  std::optional<std::uint32_t> baud;  ///< of the line, until a master sets one
-  bool log = false;
+  std::vector<ModuleSpec> modules;     ///< at least one
+  std::optional<std::string> pty;      ///< where to link a pseudo-terminal
+  std::optional<TcpAddress> tcp;       ///< where to listen
+  std::optional<std::string> serial;   ///< the port to take; then there is no other
+  std::optional<std::string> control;  ///< where to make the control socket
+  std::optional<std::uint32_t> baud;   ///< of the line, until a master sets one
+  bool instant = false;                ///< bytes cost no time
   bool strict_gaps = false;
-
-  /// The line's rate at the start, bits per second.
-  [[nodiscard]] std::uint32_t line_baud() const { return baud.value_or(modules.front().baud()); }
+  bool log = false;
 };
 
 /// Exit status where an argument is wrong.

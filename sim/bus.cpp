@@ -11,18 +11,28 @@ struct Bus::End final : Wire {
 
   void drive(bool on) override { bus.drive(*this, on); }
   void put(std::uint8_t byte, std::uint32_t baud) override { bus.put(*this, byte, baud); }
+  [[nodiscard]] VirtualTime takes(std::size_t bytes, std::uint32_t baud) const override {
+    constexpr std::int64_t kBitNanoseconds = 1'000'000'000;
+    return VirtualTime(static_cast<std::int64_t>(bytes * Wave::kBits) * kBitNanoseconds / bus.bit_rate(baud));
+  }
 
   Bus& bus;
   Station& station;
   std::size_t index;
   bool driving = false;
-  std::uint32_t sampled_baud = 0;  ///< what the sampler samples at; 0: nothing
+  std::uint32_t bit_rate = 0;  ///< what the sampler samples at; 0: nothing
   UartSampler sampler;
 };
 
-Bus::Bus(VirtualClock& clock) : clock_(clock) {}
+Bus::Bus(VirtualClock& clock, std::uint32_t times_faster) : clock_(clock), times_faster_(times_faster) {}
 
 Bus::~Bus() = default;
+
+/// A bit must last whole nanoseconds; what a module listens at stays far below the fastest.
+std::uint32_t Bus::bit_rate(std::uint32_t baud) const {
+  constexpr std::uint64_t kFastest = 500'000'000;
+  return static_cast<std::uint32_t>(std::min(std::uint64_t{baud} * times_faster_, kFastest));
+}
 
 Wire& Bus::attach(Station& station) {
   ends_.push_back(std::make_unique<End>(*this, station, ends_.size()));
@@ -84,21 +94,21 @@ void Bus::drive(End& end, bool on) {
 }
 
 void Bus::put(End& end, std::uint8_t byte, std::uint32_t baud) {
-  const Wave wave{clock_.virtual_now(), baud, byte};
+  const Wave wave{clock_.virtual_now(), bit_rate(baud), byte};
   const bool collided = drivers_on_ > 1 || !on_the_wire_.empty();
   for (Byte& other : on_the_wire_) {
     other.collided = true;
   }
-  on_the_wire_.push_back({end.index, collided, false, wave});
+  on_the_wire_.push_back({end.index, collided, false, baud, wave});
   waves_.push_back(wave);
   run_wire();
 }
 
 /// A receiver that was off, or at another rate, begins now, be it in the middle of a byte.
 void Bus::take_rate(End& end) {
-  const std::uint32_t baud = end.station.baud();
-  if (baud != end.sampled_baud) {
-    end.sampled_baud = baud;
+  const std::uint32_t rate = bit_rate(end.station.baud());
+  if (rate != end.bit_rate) {
+    end.bit_rate = rate;
     end.sampler = UartSampler();
     end.sampler.skip_to(clock_.virtual_now());
   }
@@ -106,17 +116,16 @@ void Bus::take_rate(End& end) {
 
 /// Whether a receiver has to look at the wave itself, rather than be handed whole bytes.
 bool Bus::samples(const End& end) const {
-  const std::uint32_t baud = end.sampled_baud;
-  if (baud == 0) {
+  if (end.bit_rate == 0) {
     return false;
   }
   return end.sampler.busy() || std::any_of(on_the_wire_.begin(), on_the_wire_.end(), [&](const Byte& byte) {
-           return byte.collided || byte.wave.baud != baud || end.sampler.position() > byte.wave.start;
+           return byte.collided || byte.wave.baud != end.bit_rate || end.sampler.position() > byte.wave.start;
          });
 }
 
 void Bus::sample(End& end) {
-  while (const auto received = end.sampler.advance(waves_, end.sampled_baud, clock_.virtual_now())) {
+  while (const auto received = end.sampler.advance(waves_, end.bit_rate, clock_.virtual_now())) {
     end.station.receive(received->byte, received->status);
   }
 }
@@ -140,11 +149,11 @@ void Bus::run_wire() {
       continue;
     }
     for (BusObserver* observer : observers_) {
-      observer->byte(over.station, over.wave.byte, over.wave.baud, over.collided, over.wave.start, now);
+      observer->byte(over.station, over.wave.byte, over.baud, over.collided, over.wave.start, now);
     }
     for (const auto& end : ends_) {
       const bool whole = !over.collided && !end->sampler.busy() && end->sampler.position() <= over.wave.start;
-      if (whole && end->sampled_baud == over.wave.baud) {
+      if (whole && end->bit_rate == over.wave.baud) {
         end->sampler.skip_to(now);
         end->station.receive(over.wave.byte, ByteStatus::Good);
       }
@@ -154,7 +163,7 @@ void Bus::run_wire() {
   next_sample_ = kNever;
   for (const auto& end : ends_) {
     if (samples(*end)) {
-      next_sample_ = std::min(next_sample_, now + VirtualTime(500'000'000 / end->sampled_baud));
+      next_sample_ = std::min(next_sample_, now + VirtualTime(500'000'000 / end->bit_rate));
     }
   }
   forget_waves();
@@ -163,7 +172,7 @@ void Bus::run_wire() {
 void Bus::forget_waves() {
   while (!waves_.empty() && waves_.front().end() <= clock_.virtual_now()) {
     const bool needed = std::any_of(ends_.begin(), ends_.end(), [this](const auto& end) {
-      return end->sampled_baud != 0 && end->sampler.busy() && end->sampler.position() < waves_.front().end();
+      return end->bit_rate != 0 && end->sampler.busy() && end->sampler.position() < waves_.front().end();
     });
     if (needed) {
       return;

@@ -53,9 +53,12 @@ class BusObserver {
 /// Where two drivers are on at once, a 0 of either wins, and what arrives is what that wave looks like.
 ///
 /// The clock jumps from event to event; nothing here knows real time.
+///
+/// A line may be made so many times faster than its rates say: all rates are multiplied alike, so who
+/// understands whom, and what collides, stays the same.
 class Bus {
  public:
-  explicit Bus(VirtualClock& clock);
+  explicit Bus(VirtualClock& clock, std::uint32_t times_faster = 1);
   Bus(const Bus&) = delete;
   Bus& operator=(const Bus&) = delete;
   ~Bus();
@@ -77,6 +80,7 @@ class Bus {
  private:
   struct End;
 
+  [[nodiscard]] std::uint32_t bit_rate(std::uint32_t baud) const;
   void drive(End& end, bool on);
   void put(End& end, std::uint8_t byte, std::uint32_t baud);
   void sample(End& end);
@@ -90,10 +94,12 @@ class Bus {
     std::size_t station = 0;
     bool collided = false;
     bool cut_off = false;
+    std::uint32_t baud = 0;  ///< as its sender has it; the wave has the bit rate
     Wave wave;
   };
 
   VirtualClock& clock_;
+  std::uint32_t times_faster_;
   std::vector<std::unique_ptr<End>> ends_;
   std::vector<BusObserver*> observers_;
   std::vector<Byte> on_the_wire_;

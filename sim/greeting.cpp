@@ -1,7 +1,9 @@
 #include "sim/greeting.hpp"
 
 #include <map>
-#include <vector>
+
+#include "firmware/model/model.hpp"
+#include "sim/module_spec.hpp"
 
 namespace ex9000::sim {
 
@@ -22,33 +24,50 @@ std::string quoted(const std::string& path) {
 
 /// mbpoll counts from 1 and wants `-P none`: its own default is even parity, which a pseudo-terminal swallows
 /// without a word and a real bus does not.
-std::string mbpoll(const ModuleSpec& spec, const std::string& link) {
-  const std::string common = "mbpoll -m rtu -a " + std::to_string(spec.address()) + " -b " +
-                             std::to_string(spec.baud()) + " -P none ";
+std::string mbpoll(const ModuleIntroduced& module, const std::string& link) {
+  const std::string common = "mbpoll -m rtu -a " + std::to_string(module.address) + " -b " +
+                             std::to_string(module.baud) + " -P none ";
   std::string text;
-  if (spec.model->has_outputs()) {
-    text += "    " + common + "-t 0 -r 1 -c " + std::to_string(spec.model->outputs) + " -1 " + link +
+  if (module.outputs != 0) {
+    text += "    " + common + "-t 0 -r 1 -c " + std::to_string(module.outputs) + " -1 " + link +
             "    # read the outputs\n";
     text += "    " + common + "-t 0 -r 1 " + link + " 1" + "    # switch output 0 on\n";
   }
-  if (spec.model->has_inputs()) {
-    text += "    " + common + "-t 1 -r 1 -c " + std::to_string(spec.model->inputs) + " -1 " + link +
+  if (module.inputs != 0) {
+    text += "    " + common + "-t 1 -r 1 -c " + std::to_string(module.inputs) + " -1 " + link +
             "    # read the inputs\n";
-    text += "    " + common + "-t 3 -r 1 -c " + std::to_string(spec.model->inputs) + " -1 " + link +
+    text += "    " + common + "-t 3 -r 1 -c " + std::to_string(module.inputs) + " -1 " + link +
             "    # read the counters\n";
   }
   return text;
 }
 
-std::string terminal(const ModuleSpec& spec, const std::string& link) {
-  return "    picocom -q -b " + std::to_string(spec.baud()) + " --imap crcrlf --echo " + link +
-         "    # then type $" + hex_byte_text(spec.address()) + "M and Enter\n";
+std::string terminal(const ModuleIntroduced& module, const std::string& link) {
+  return "    picocom -q -b " + std::to_string(module.baud) + " --imap crcrlf --echo " + link +
+         "    # then type $" + hex_byte_text(module.address) + "M and Enter\n";
 }
 
-std::string shared_addresses(const std::vector<ModuleSpec>& modules) {
+std::string ports(const LineIntroduced& line) {
+  std::string text;
+  if (!line.pty.empty()) {
+    text += "  pseudo-terminal " + quoted(line.pty) + " (" + line.pty_device + ")\n";
+  }
+  if (!line.tcp.empty()) {
+    text += "  TCP " + line.tcp + ", the bytes as they are: Modbus RTU (not Modbus TCP) and ASCII\n";
+  }
+  if (!line.serial.empty()) {
+    text += "  serial port " + line.serial + "\n";
+  }
+  if (!line.control.empty()) {
+    text += "  control socket " + quoted(line.control) + "\n";
+  }
+  return text;
+}
+
+std::string shared_addresses(const std::vector<ModuleIntroduced>& modules) {
   std::map<unsigned, unsigned> users;
-  for (const ModuleSpec& spec : modules) {
-    ++users[spec.address()];
+  for (const ModuleIntroduced& module : modules) {
+    ++users[module.address];
   }
   std::string text;
   for (const auto& [address, count] : users) {
@@ -62,17 +81,20 @@ std::string shared_addresses(const std::vector<ModuleSpec>& modules) {
 
 }  // namespace
 
-std::string greeting(const Arguments& arguments, const std::string& device) {
-  const std::string link = quoted(arguments.pty_link);
+std::string greeting(const LineIntroduced& line) {
   std::string text = "ex9000-sim " + std::string(kFirmwareVersion) + ", line at " +
-                     std::to_string(arguments.line_baud()) + " baud on " + link + " (" + device + "):\n";
-  for (const ModuleSpec& spec : arguments.modules) {
-    text += "  " + std::string(spec.model->designation) + " at " + hex_byte_text(spec.address()) + ", " +
-            (spec.speaks_ascii() ? "ASCII" : "Modbus RTU") + ", " + std::to_string(spec.baud()) + " baud\n";
-    text += spec.speaks_ascii() ? terminal(spec, link) : mbpoll(spec, link);
+                     std::to_string(line.baud) + " baud" +
+                     (line.instant ? ", bytes cost no time" : "") + ":\n" + ports(line);
+  for (const ModuleIntroduced& module : line.modules) {
+    text += "  " + module.designation + " at " + hex_byte_text(module.address) + ", " +
+            (module.speaks_ascii ? "ASCII" : "Modbus RTU") + ", " + std::to_string(module.baud) + " baud" +
+            (module.remark.empty() ? "" : "; " + module.remark) + "\n";
+    if (!line.pty.empty()) {
+      const std::string link = quoted(line.pty);
+      text += module.speaks_ascii ? terminal(module, link) : mbpoll(module, link);
+    }
   }
-  text += shared_addresses(arguments.modules);
-  return text + "Ctrl-C ends it";
+  return text + shared_addresses(line.modules) + "Ctrl-C ends it";
 }
 
 }  // namespace ex9000::sim

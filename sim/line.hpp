@@ -11,21 +11,41 @@
 
 namespace ex9000::sim {
 
-/// Station 0 is the master; modules follow in the order given. All have their supply on from the start.
+/// What bytes cost on a line, and how its modules tell frames apart.
+struct LineKind {
+  std::uint32_t times_faster = 1;  ///< than its rates say
+  TimingAt timing_at = LineTiming::at;
+};
+
+/// Two wires.
+constexpr LineKind kPaced{};
+/// Two wires, and modules that keep to the letter: a gap of more than T1.5 spoils a Modbus frame.
+constexpr LineKind kStrictlyPaced{1, LineTiming::strictly_at};
+/// Bytes cost next to nothing. A Modbus frame is over when no byte follows at once and its CRC is right, else
+/// after 2 ms of quiet.
+extern const LineKind kInstant;
+
+/// Station 0 is the master; modules follow in the order given.
 class Line {
  public:
-  Line(const std::vector<ModuleSpec>& modules, std::uint32_t baud, InterCharacterGap gap,
-       Master::Receive receive);
+  /// All modules have their supply off.
+  Line(const std::vector<ModuleSpec>& modules, std::uint32_t baud, LineKind kind, Master::Receive receive);
+
+  /// The supply of all modules goes on, and the time passes that they may take until they answer.
+  void come_up();
 
   VirtualClock& clock() { return clock_; }
   Bus& bus() { return bus_; }
   Master& master() { return master_; }
   [[nodiscard]] std::size_t size() const { return modules_.size(); }
   SimulatedModule& module(std::size_t index) { return *modules_[index]; }
+  /// T3.5 on this line at the master's rate.
+  [[nodiscard]] VirtualTime rtu_silence() const;
 
  private:
   VirtualClock clock_;
-  Bus bus_{clock_};
+  LineKind kind_;
+  Bus bus_;
   Master master_;
   std::vector<std::unique_ptr<SimulatedModule>> modules_;
 };

@@ -1,4 +1,4 @@
-// ex9000-sim: simulated modules on a pseudo-terminal.
+// ex9000-sim: simulated modules on a line that masters reach.
 #include <fcntl.h>
 #include <unistd.h>
 
@@ -10,11 +10,7 @@
 #include <string>
 
 #include "sim/arguments.hpp"
-#include "sim/bus_log.hpp"
-#include "sim/greeting.hpp"
-#include "sim/line.hpp"
-#include "sim/pacer.hpp"
-#include "sim/pty.hpp"
+#include "sim/session.hpp"
 
 namespace {
 
@@ -22,16 +18,7 @@ using namespace ex9000::sim;
 
 constexpr int kCannotStart = 1;
 
-std::vector<std::string> speakers(const Arguments& arguments) {
-  std::vector<std::string> names{"master"};
-  for (const ModuleSpec& spec : arguments.modules) {
-    names.push_back(hex_byte_text(spec.address()) + " " + std::string(spec.model->designation));
-  }
-  return names;
-}
-
 void run(const Arguments& arguments) {
-  Pty pty(arguments.pty_link, arguments.line_baud());
   boost::asio::io_context io;
   // Flushed, since a log is read while it grows; who closes the pipe behind it ends the program.
   const auto print = [&io](const std::string& line) {
@@ -40,23 +27,10 @@ void run(const Arguments& arguments) {
       io.stop();
     }
   };
-  Pacer* pacer = nullptr;
-  const ex9000::InterCharacterGap gap =
-      arguments.strict_gaps ? ex9000::InterCharacterGap::Refused : ex9000::InterCharacterGap::Tolerated;
-  Line line(arguments.modules, arguments.line_baud(), gap,
-            [&pacer](std::uint8_t byte, ex9000::ByteStatus /*status*/) { pacer->hear(byte); });
-  BusLog log(speakers(arguments), print);
-  if (arguments.log) {
-    line.bus().observe(log);
-  }
-  Pacer paced(io, line, pty, arguments.log ? &log : nullptr, gap,
-              [&](const std::string& text) { log.note(line.clock().virtual_now(), text); });
-  pacer = &paced;
-
+  Session session(io, arguments, print);
   boost::asio::signal_set signals(io, SIGINT, SIGTERM, SIGHUP);
   signals.async_wait([&io](const boost::system::error_code& /*error*/, int /*signal*/) { io.stop(); });
-  print(greeting(arguments, pty.device()));
-  paced.start();
+  session.start();
   io.run();
 }
 

@@ -43,10 +43,7 @@ void Master::run() {
   waiting_.pop_front();
   wire_.put(byte, baud_);
   // From the first byte on, so that rounding does not add up.
-  constexpr std::int64_t kBits = 10;
-  constexpr std::int64_t kSecond = 1'000'000'000;
-  ++burst_bytes_;
-  next_ = burst_began_ + VirtualTime(burst_bytes_ * kBits * kSecond / baud_);
+  next_ = burst_began_ + wire_.takes(++burst_bytes_, baud_);
 }
 
 void Master::receive(std::uint8_t byte, ByteStatus status) {

@@ -18,6 +18,8 @@ class Master final : public Station {
   Master(const Master&) = delete;
   Master& operator=(const Master&) = delete;
 
+  /// How long so many bytes take on this line.
+  [[nodiscard]] VirtualTime takes(std::size_t bytes) const { return wire_.takes(bytes, baud_); }
   /// Behind what is waiting already, or at once, but not before `not_before`; the driver is on from the first
   /// byte to the last.
   void send(const std::uint8_t* bytes, std::size_t size, VirtualTime not_before = VirtualTime(0));
@@ -43,7 +45,7 @@ class Master final : public Station {
   std::deque<std::uint8_t> waiting_;
   bool driving_ = false;
   VirtualTime burst_began_{0};
-  std::int64_t burst_bytes_ = 0;
+  std::size_t burst_bytes_ = 0;
   VirtualTime next_ = kNever;
 };
 

@@ -22,8 +22,8 @@ SimulatedModule::Mcu::Mcu(SimulatedModule& module)
             module.init_switch_, module.led_, tick,          watchdog},
       device(module.model_, board) {}
 
-SimulatedModule::SimulatedModule(Bus& bus, const Model& model, InterCharacterGap gap)
-    : clock_(bus.clock()), model_(model), gap_(gap), wire_(bus.attach(*this)), memory_(clock_) {}
+SimulatedModule::SimulatedModule(Bus& bus, const Model& model, TimingAt timing_at)
+    : clock_(bus.clock()), model_(model), timing_at_(timing_at), wire_(bus.attach(*this)), memory_(clock_) {}
 
 void SimulatedModule::power(bool on) {
   if (on == powered()) {
@@ -47,7 +47,7 @@ void SimulatedModule::reset() {
 void SimulatedModule::start() {
   hung_ = false;
   mcu_.emplace(*this);
-  mcu_->device.start(kTick, gap_);
+  mcu_->device.start(kTick, timing_at_);
   turn();
 }
 
@@ -89,10 +89,16 @@ void SimulatedModule::edge(unsigned channel, bool level) {
   }
 }
 
-void SimulatedModule::store(const Settings& settings) {
-  const Record record = encode_record(model_, {settings, 1});
-  std::fill(memory_.contents().begin(), memory_.contents().end(), 0xFF);
-  std::copy(record.begin(), record.end(), memory_.contents().begin());
+void SimulatedModule::store(const Settings& settings) { memory_.contents() = memory_image(model_, settings); }
+
+/// What a factory-fresh module remembers is nothing (D8).
+std::vector<std::uint8_t> SimulatedModule::memory_image(const Model& model, const Settings& settings) {
+  std::vector<std::uint8_t> image(hal::doubles::Memory::kSize, 0xFF);
+  if (settings != Settings::factory(model)) {
+    const Record record = encode_record(model, {settings, 1});
+    std::copy(record.begin(), record.end(), image.begin());
+  }
+  return image;
 }
 
 VirtualTime SimulatedModule::next() const {

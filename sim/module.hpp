@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <functional>
 #include <optional>
+#include <vector>
 
 #include "firmware/model/model.hpp"
 #include "firmware/settings/settings.hpp"
@@ -27,7 +28,7 @@ namespace ex9000::sim {
 class SimulatedModule final : public Station {
  public:
   /// Attaches itself to `bus`. `model` is a row of kModels.
-  SimulatedModule(Bus& bus, const Model& model, InterCharacterGap gap = InterCharacterGap::Tolerated);
+  SimulatedModule(Bus& bus, const Model& model, TimingAt timing_at = LineTiming::at);
   SimulatedModule(const SimulatedModule&) = delete;
   SimulatedModule& operator=(const SimulatedModule&) = delete;
 
@@ -48,11 +49,15 @@ class SimulatedModule final : public Station {
   void hang() { hung_ = true; }
   /// What the memory holds at the next reset.
   void store(const Settings& settings);
+  /// The same as an image of the whole memory.
+  static std::vector<std::uint8_t> memory_image(const Model& model, const Settings& settings);
 
   [[nodiscard]] const Model& model() const { return model_; }
   /// What the device itself knows; only while powered.
   [[nodiscard]] const Module& module() const { return mcu_->device.module(); }
   [[nodiscard]] std::uint16_t outputs() const { return outputs_.channels(); }
+  /// Bit n is channel n.
+  [[nodiscard]] std::uint16_t input_levels() const { return inputs_.levels(); }
   [[nodiscard]] bool led_lit() const { return led_.lit(); }
   hal::doubles::Memory& memory() { return memory_; }
   hal::doubles::Outputs& output_pins() { return outputs_; }
@@ -88,7 +93,7 @@ class SimulatedModule final : public Station {
 
   VirtualClock& clock_;
   const Model& model_;
-  InterCharacterGap gap_;
+  TimingAt timing_at_;
   Wire& wire_;
   hal::doubles::Memory memory_;
   hal::doubles::Inputs inputs_;

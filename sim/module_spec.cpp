@@ -81,6 +81,18 @@ void apply(ModuleSpec& spec, const std::string& option) {
   const std::string key = option.substr(0, equals);
   const std::string value = equals == std::string::npos ? "" : option.substr(equals + 1);
   Settings& settings = spec.settings;
+  if (key == "eeprom") {
+    if (value.empty()) {
+      fail("'eeprom=' wants a path");
+    }
+    spec.eeprom = value;
+    return;
+  }
+  if (key == "init") {
+    spec.init_asserted = parse_choice(key, value, "on", "off");
+    return;
+  }
+  spec.settings_given = true;
   if (key == "protocol") {
     const bool modbus = parse_choice(key, value, "modbus", "ascii");
     if (modbus && !spec.model->speaks_modbus()) {
@@ -95,10 +107,9 @@ void apply(ModuleSpec& spec, const std::string& option) {
     set_format(settings, kFormatRisingEdge, parse_choice(key, value, "rising", "falling"));
   } else if (key == "name") {
     settings.name = parse_name(*spec.model, value);
-  } else if (key == "init") {
-    spec.init_asserted = parse_choice(key, value, "on", "off");
   } else {
-    fail("'" + option + "' is no setting; there are protocol=, baud=, checksum=, edge=, name= and init=");
+    fail("'" + option +
+         "' is no setting; there are protocol=, baud=, checksum=, edge=, name=, init= and eeprom=");
   }
 }
 
@@ -112,8 +123,6 @@ std::uint32_t ModuleSpec::baud() const {
   return baud_rate(init_asserted ? kFactoryBaudCode : settings.baud_code);
 }
 
-std::uint8_t ModuleSpec::address() const { return init_asserted ? std::uint8_t{0} : settings.address; }
-
 ModuleSpec parse_module_spec(const std::string& text) {
   try {
     std::istringstream parts(text);
@@ -125,6 +134,7 @@ ModuleSpec parse_module_spec(const std::string& text) {
     spec.settings = Settings::factory(*spec.model);
     if (at != std::string::npos) {
       spec.settings.address = parse_address(name.substr(at + 1));
+      spec.settings_given = true;
     }
     std::set<std::string> keys;
     for (std::string option; std::getline(parts, option, ',');) {

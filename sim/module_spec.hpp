@@ -10,14 +10,13 @@ namespace ex9000::sim {
 
 struct ModuleSpec {
   const Model* model = nullptr;
-  Settings settings;  ///< stored before power-on
+  Settings settings;            ///< stored before power-on, unless the EEPROM's file has others
+  bool settings_given = false;  ///< they are not just the factory's
   bool init_asserted = false;
+  std::string eeprom;  ///< path of the EEPROM's file; empty: what is stored lasts as long as the program
 
-  /// Bits per second that it listens at after power-on.
+  /// Bits per second that it listens at after power-on with these settings.
   [[nodiscard]] std::uint32_t baud() const;
-  /// The address that it answers to after power-on.
-  [[nodiscard]] std::uint8_t address() const;
-  [[nodiscard]] bool speaks_ascii() const { return init_asserted || settings.protocol == Protocol::Ascii; }
 };
 
 /// Throws std::invalid_argument, one line that names what is wrong and what would be right.

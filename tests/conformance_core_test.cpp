@@ -1,9 +1,7 @@
 // All transcripts against the core in virtual time.
 #include <gtest/gtest.h>
 
-#include <algorithm>
 #include <cstdio>
-#include <filesystem>
 #include <string>
 #include <vector>
 
@@ -15,19 +13,8 @@
 namespace ex9000 {
 namespace {
 
-std::vector<std::string> transcript_files() {
-  std::vector<std::string> files;
-  for (const auto& entry : std::filesystem::recursive_directory_iterator(EX9000_CONFORMANCE_DIR)) {
-    if (entry.path().extension() == ".txt") {
-      files.push_back(entry.path().string());
-    }
-  }
-  std::sort(files.begin(), files.end());
-  return files;
-}
-
 TEST(Conformance, TheCorePassesEveryTranscriptOnEveryModelItNames) {
-  const std::vector<std::string> files = transcript_files();
+  const std::vector<std::string> files = runner::transcript_files(EX9000_CONFORMANCE_DIR);
   ASSERT_FALSE(files.empty());
   std::size_t runs = 0;
   std::size_t steps = 0;
@@ -54,7 +41,7 @@ TEST(Conformance, TheCorePassesEveryTranscriptOnEveryModelItNames) {
 }
 
 TEST(Conformance, WaitsStayUnderTwoSecondsUnlessTheFileSaysSlow) {
-  for (const std::string& file : transcript_files()) {
+  for (const std::string& file : runner::transcript_files(EX9000_CONFORMANCE_DIR)) {
     for (const runner::Transcript& transcript : runner::load_transcripts(file)) {
       EXPECT_TRUE(transcript.slow || transcript.waits() < std::chrono::seconds(2)) << file;
     }

@@ -3,26 +3,26 @@
 namespace ex9000 {
 
 void Receiver::listen(const Listening& how) {
-  how_ = how;
+  protocol_ = how.protocol;
   dcon_.use_checksum(how.checksum);
-  rtu_.use(how.timing, how.gap);
+  rtu_.use(how.timing);
 }
 
 Duration Receiver::on_byte(std::uint8_t byte, ByteStatus status, Time now) {
   cut_off_if_spoken(now);
   const std::uint8_t own_address = address_.load();
-  if (how_.protocol == Protocol::Ascii) {
+  if (protocol_ == Protocol::Ascii) {
     note(dcon_.byte(byte, status, own_address, now), now);
     return {};
   }
   note(rtu_.byte(byte, status, own_address, now), now);
-  return how_.timing.rtu_silence;
+  return timing().rtu_silence;
 }
 
 Duration Receiver::on_silence(Time now) {
   cut_off_if_spoken(now);
   note(rtu_.silence(address_.load(), now), now);
-  return rtu_.wants_more_silence() ? how_.timing.character : Duration();
+  return rtu_.wants_more_silence() ? timing().rtu_grace : Duration();
 }
 
 void Receiver::cut_off_if_spoken(Time now) {

@@ -8,7 +8,7 @@
 #include "firmware/line/frame_queue.hpp"
 #include "firmware/line/rtu_assembler.hpp"
 #include "firmware/line/verdict.hpp"
-#include "firmware/model/baud.hpp"
+#include "firmware/line/timing.hpp"
 #include "firmware/settings/settings.hpp"
 #include "firmware/time.hpp"
 
@@ -28,7 +28,6 @@ struct Listening {
   Protocol protocol = Protocol::Ascii;
   bool checksum = false;
   LineTiming timing{};
-  InterCharacterGap gap = InterCharacterGap::Tolerated;
 };
 
 class Receiver {
@@ -57,6 +56,8 @@ class Receiver {
   /// This module's own driver has come on: a frame that is open and not whole is forgotten (D9).
   void speaking() { spoken_.store_in_main_loop(static_cast<std::uint8_t>(spoken_.load() + 1U)); }
 
+  /// As given to `listen`.
+  [[nodiscard]] const LineTiming& timing() const { return rtu_.timing(); }
   FrameQueue& queue() { return queue_; }
   [[nodiscard]] const FrameQueue& queue() const { return queue_; }
   LineTallies& tallies() { return tallies_; }
@@ -73,7 +74,7 @@ class Receiver {
   FrameQueue queue_;
   DconAssembler dcon_;
   RtuAssembler rtu_;
-  Listening how_;
+  Protocol protocol_ = Protocol::Ascii;
   LineTallies tallies_;
   WrittenByMainLoop<std::uint8_t> address_;
   WrittenByMainLoop<std::uint8_t> spoken_;

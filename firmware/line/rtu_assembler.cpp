@@ -31,7 +31,7 @@ Verdict RtuAssembler::byte(std::uint8_t byte, ByteStatus status, std::uint8_t ow
     const bool silence_was_due = !(since_last < timing_.rtu_silence) && start() != kNowhere;
     if (silence_was_due || !(since_last < timing_.rtu_separate)) {
       before = end(own_address);  // the timer interrupt is late
-    } else if (gap_ == InterCharacterGap::Refused && timing_.rtu_slack < since_last) {
+    } else if (timing_.rtu_slack < since_last) {
       // Behind the first byte the gap may be one behind a turn-around 00, which does not spoil what follows.
       (received_ == 1 ? first_spoiled_ : rest_spoiled_) = true;
     }

@@ -6,15 +6,10 @@
 #include "firmware/line/crc16.hpp"
 #include "firmware/line/frame_queue.hpp"
 #include "firmware/line/verdict.hpp"
-#include "firmware/model/baud.hpp"
+#include "firmware/line/timing.hpp"
 #include "firmware/time.hpp"
 
 namespace ex9000 {
-
-/// Whether a gap of more than T1.5 inside a frame spoils it (Modbus over Serial Line V1.02, 2.5.1.1). USB
-/// adapters and gateways make such gaps, so they are tolerated unless somebody asks for the letter of the
-/// standard.
-enum class InterCharacterGap : std::uint8_t { Tolerated, Refused };
 
 /// address, function, data, CRC, then T3.5 of silence - wire.md section 7. The CRC is taken along byte by
 /// byte, so that at the silence the judgement is there at once.
@@ -22,10 +17,8 @@ class RtuAssembler {
  public:
   explicit constexpr RtuAssembler(FrameQueue& queue) : queue_(queue) {}
 
-  void use(const LineTiming& timing, InterCharacterGap gap) {
-    timing_ = timing;
-    gap_ = gap;
-  }
+  void use(const LineTiming& timing) { timing_ = timing; }
+  [[nodiscard]] const LineTiming& timing() const { return timing_; }
 
   /// Receive interrupt; `now` is when the byte was complete. Tells what became of the frame before it where
   /// it came so late that it opens the next one. Restart the silence timer with `silence()` after it.
@@ -59,7 +52,6 @@ class RtuAssembler {
 
   FrameQueue& queue_;
   LineTiming timing_{};
-  InterCharacterGap gap_ = InterCharacterGap::Tolerated;
   bool lapsed_ = false;         ///< T3.5 has passed once
   bool first_spoiled_ = false;  ///< the first byte came with an error, or stood apart from the rest
   bool rest_spoiled_ = false;   ///< any other did

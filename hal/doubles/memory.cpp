@@ -42,6 +42,7 @@ void Memory::run() {
   }
   if (writing_) {
     std::copy(source_.begin(), source_.end(), contents_.begin() + address_);
+    succeeded_ = kept(source_.size);
   } else {
     std::copy_n(contents_.begin() + address_, destination_.size, destination_.data);
   }
@@ -57,8 +58,11 @@ void Memory::cut() {
       constexpr std::uint8_t kHalfErased = 0xA5;
       contents_[address_ + done] |= kHalfErased;
     }
+    kept(std::min(done + 1, source_.size));
   }
   ends_ = kNever;
 }
+
+bool Memory::kept(std::size_t size) { return !keep_ || keep_(address_, {contents_.data() + address_, size}); }
 
 }  // namespace ex9000::hal::doubles

@@ -2,6 +2,8 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <functional>
+#include <utility>
 #include <vector>
 
 #include "hal/doubles/virtual_clock.hpp"
@@ -32,6 +34,11 @@ class Memory final : public hal::Memory {
   /// bytes new, in proportion to the time it had, one byte spoiled, the rest old.
   void cut();
 
+  /// Told of every range that has been programmed, before the job is over, for contents that are to outlive
+  /// this object; false: that cannot be had, and the job fails.
+  using Keep = std::function<bool(std::uint16_t address, Bytes bytes)>;
+  void keep(Keep keep) { keep_ = std::move(keep); }
+
   /// From now on no job succeeds, and nothing is written.
   void fail(bool on) { failing_ = on; }
 
@@ -42,9 +49,11 @@ class Memory final : public hal::Memory {
 
  private:
   void begin(bool writing, std::uint16_t address, std::size_t size);
+  bool kept(std::size_t size);
 
   const VirtualClock& clock_;
   std::vector<std::uint8_t> contents_;
+  Keep keep_;
   bool failing_ = false;
   bool succeeded_ = true;
   bool writing_ = false;

@@ -22,9 +22,7 @@ void SerialLine::run() {
   }
   wire_.put(bytes_[sent_++], baud_);
   // From the first start bit on, so that rounding does not add up.
-  constexpr std::int64_t kBits = 10;
-  constexpr std::int64_t kSecond = 1'000'000'000;
-  next_ = first_start_bit_ + VirtualTime(static_cast<std::int64_t>(sent_) * kBits * kSecond / baud_);
+  next_ = first_start_bit_ + wire_.takes(sent_, baud_);
   if (sent_ == bytes_.size) {
     next_ += kDriverTail;
   }

@@ -15,6 +15,8 @@ class Wire {
   virtual void drive(bool on) = 0;
   /// The start bit of `byte` begins now; the driver is on. Start, 8 data, stop at `baud`.
   virtual void put(std::uint8_t byte, std::uint32_t baud) = 0;
+  /// How long so many bytes without a gap take at `baud`.
+  [[nodiscard]] virtual VirtualTime takes(std::size_t bytes, std::uint32_t baud) const = 0;
 
  protected:
   ~Wire() = default;

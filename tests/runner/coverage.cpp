@@ -101,7 +101,7 @@ void Coverage::note(const Module& module, const Bytes& sent, const Bytes& heard)
     });
   } else {
     RtuAssembler assembler(queue);
-    assembler.use(LineTiming::at(module.baud()), InterCharacterGap::Tolerated);
+    assembler.use(LineTiming::at(module.baud()));
     verdict_of(sent, [&](std::uint8_t byte) {
       return assembler.byte(byte, ByteStatus::Good, in_force.address, Time());
     });
@@ -109,7 +109,7 @@ void Coverage::note(const Module& module, const Bytes& sent, const Bytes& heard)
     const Time silent = Time() + timing.rtu_silence;
     verdict = assembler.silence(in_force.address, silent);
     if (verdict == Verdict::Open) {
-      verdict = assembler.silence(in_force.address, silent + timing.character);
+      verdict = assembler.silence(in_force.address, silent + timing.rtu_grace);
     }
   }
   const std::string name = name_in(kVerdicts, verdict);

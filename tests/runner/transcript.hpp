@@ -94,6 +94,9 @@ struct Transcript {
 /// Nothing may be heard in this time where `silence` is expected; longer than any reply may take.
 constexpr std::chrono::milliseconds kSilence{250};
 
+/// The transcripts below `directory`, in the order of their paths.
+std::vector<std::string> transcript_files(const std::string& directory);
+
 /// All runs of a file, one a `model:` line. Throws std::runtime_error that names file, line and what is
 /// wrong.
 std::vector<Transcript> load_transcripts(const std::string& path);

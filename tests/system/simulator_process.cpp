@@ -2,12 +2,14 @@
 
 #include <fcntl.h>
 #include <poll.h>
+#include <spawn.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
 #include <array>
 #include <csignal>
 #include <cstdlib>
+#include <cstring>
 #include <filesystem>
 #include <stdexcept>
 
@@ -28,22 +30,25 @@ Pipe make_pipe() {
   return {ends[0], ends[1]};
 }
 
+/// posix_spawn, since tests with threads start many of these.
 int spawn(const std::vector<std::string>& command, const std::string& directory, int out, int error) {
   std::vector<char*> words;
   for (const std::string& word : command) {
     words.push_back(const_cast<char*>(word.c_str()));
   }
   words.push_back(nullptr);
-  const int pid = fork();
-  if (pid == 0) {
-    dup2(out, STDOUT_FILENO);
-    if (error >= 0) {
-      dup2(error, STDERR_FILENO);
-    }
-    if (chdir(directory.c_str()) == 0) {
-      execvp(words[0], words.data());
-    }
-    _exit(127);
+  posix_spawn_file_actions_t actions{};
+  posix_spawn_file_actions_init(&actions);
+  posix_spawn_file_actions_adddup2(&actions, out, STDOUT_FILENO);
+  if (error >= 0) {
+    posix_spawn_file_actions_adddup2(&actions, error, STDERR_FILENO);
+  }
+  posix_spawn_file_actions_addchdir_np(&actions, directory.c_str());
+  int pid = -1;
+  const int failed = posix_spawnp(&pid, words[0], &actions, nullptr, words.data(), environ);
+  posix_spawn_file_actions_destroy(&actions);
+  if (failed != 0) {
+    throw std::runtime_error(command[0] + ": " + std::strerror(failed));
   }
   return pid;
 }

@@ -55,18 +55,22 @@ TEST(Arguments, OneModuleIsEnough) {
   EXPECT_FALSE(arguments.baud);
   EXPECT_FALSE(arguments.log);
   EXPECT_FALSE(arguments.strict_gaps);
-  EXPECT_FALSE(arguments.pty_link.empty());
+  EXPECT_FALSE(arguments.instant);
+  EXPECT_EQ(arguments.pty, "ex9000.tty");
+  EXPECT_FALSE(arguments.tcp);
+  EXPECT_FALSE(arguments.serial);
+  EXPECT_FALSE(arguments.control);
 }
 
 TEST(Arguments, ModulesKeepTheirOrder) {
   const Arguments arguments =
       accepted({"EX9042D-M@01", "EX9052D-M@02,edge=rising", "9068d-m@0A,protocol=ascii"});
   ASSERT_EQ(arguments.modules.size(), 3U);
-  EXPECT_EQ(arguments.modules[0].address(), 0x01);
-  EXPECT_EQ(arguments.modules[1].address(), 0x02);
+  EXPECT_EQ(arguments.modules[0].settings.address, 0x01);
+  EXPECT_EQ(arguments.modules[1].settings.address, 0x02);
   EXPECT_EQ(arguments.modules[1].settings.format, 0x80);
-  EXPECT_EQ(arguments.modules[2].address(), 0x0A);
-  EXPECT_TRUE(arguments.modules[2].speaks_ascii());
+  EXPECT_EQ(arguments.modules[2].settings.address, 0x0A);
+  EXPECT_EQ(arguments.modules[2].settings.protocol, Protocol::Ascii);
 }
 
 TEST(Arguments, OptionsMayStandBeforeBehindAndBetweenModules) {
@@ -78,20 +82,51 @@ TEST(Arguments, OptionsMayStandBeforeBehindAndBetweenModules) {
 }
 
 TEST(Arguments, ThePseudoTerminalsLinkCanBeChosen) {
-  EXPECT_EQ(accepted({"EX9042D", "--pty", "line.tty"}).pty_link, "line.tty");
-  EXPECT_EQ(accepted({"EX9042D", "--pty=line.tty"}).pty_link, "line.tty");
+  EXPECT_EQ(accepted({"EX9042D", "--pty", "line.tty"}).pty, "line.tty");
+  EXPECT_EQ(accepted({"EX9042D", "--pty=line.tty"}).pty, "line.tty");
 }
 
-TEST(Arguments, TheLineHasTheFirstModulesRateUnlessOneIsGiven) {
-  EXPECT_EQ(accepted({"EX9042D"}).line_baud(), 9600U);
-  EXPECT_EQ(accepted({"EX9042D,baud=115200", "EX9052D@02"}).line_baud(), 115200U);
-  EXPECT_EQ(accepted({"EX9042D,baud=115200,init=on"}).line_baud(), 9600U);
-  EXPECT_EQ(accepted({"EX9042D,baud=115200", "--baud", "2400"}).line_baud(), 2400U);
+TEST(Arguments, ThePseudoTerminalIsThereUnlessAnotherPortIs) {
+  EXPECT_FALSE(accepted({"EX9042D", "--tcp", "5020"}).pty);
+  EXPECT_FALSE(accepted({"EX9042D", "--serial", "/dev/ttyUSB0"}).pty);
+  EXPECT_EQ(accepted({"EX9042D", "--tcp", "5020", "--pty", "a"}).pty, "a");
+}
+
+TEST(Arguments, TcpTakesHostAndPortOrAPortAlone) {
+  const auto tcp = [](const char* text) {
+    const TcpAddress address = accepted({"EX9042D", "--tcp", text}).tcp.value_or(TcpAddress());
+    return address.host + " " + std::to_string(address.port);
+  };
+  EXPECT_EQ(tcp("5020"), "127.0.0.1 5020");
+  EXPECT_EQ(tcp(":5020"), "127.0.0.1 5020");
+  EXPECT_EQ(tcp("0.0.0.0:0"), "0.0.0.0 0");
+  EXPECT_EQ(tcp("localhost:65535"), "localhost 65535");
+  EXPECT_EQ(tcp("[::1]:5020"), "::1 5020");
+  for (const char* wrong : {"", ":", "localhost", "localhost:", ":65536", "::1:5020", "a:-1", "5020x", "1:2:3"}) {
+    expect_error({"EX9042D", "--tcp", wrong}, "--tcp", "HOST:PORT");
+  }
+}
+
+TEST(Arguments, TheLineIsPacedOrInstant) {
+  EXPECT_FALSE(accepted({"EX9042D", "--line", "paced"}).instant);
+  EXPECT_TRUE(accepted({"EX9042D", "--line", "instant"}).instant);
+  expect_error({"EX9042D", "--line", "fast"}, "--line fast", "paced or instant");
+  expect_error({"EX9042D", "--line", "instant", "--strict-gaps"}, "--strict-gaps", "leave one of them out");
+}
+
+TEST(Arguments, ARealLineStandsAlone) {
+  expect_error({"EX9042D", "--serial", "/dev/ttyUSB0", "--tcp", "5020"}, "--serial", "leave out");
+  expect_error({"EX9042D", "--serial", "/dev/ttyUSB0", "--pty", "a"}, "--serial", "leave out");
+}
+
+TEST(Arguments, TwoModulesDoNotShareAnEeprom) {
+  expect_error({"EX9042D,eeprom=a", "EX9052D@02,eeprom=a"}, "eeprom=a", "a file for each");
+  EXPECT_EQ(accepted({"EX9042D,eeprom=a", "EX9052D@02,eeprom=b"}).modules[1].eeprom, "b");
 }
 
 TEST(Arguments, EveryRateOfTheModulesCanBeTheLines) {
   for (const char* rate : {"1200", "2400", "4800", "9600", "19200", "38400", "57600", "115200"}) {
-    EXPECT_EQ(std::to_string(accepted({"EX9042D", "--baud", rate}).line_baud()), rate);
+    EXPECT_EQ(std::to_string(accepted({"EX9042D", "--baud", rate}).baud.value_or(0)), rate);
   }
 }
 
@@ -118,10 +153,17 @@ TEST(Arguments, AnUnknownOptionIsRefused) { expect_error({"EX9042D", "--verbose"
 
 TEST(Arguments, AnOptionWithoutItsValueIsRefused) {
   expect_error({"EX9042D", "--baud"}, "--baud", "--help");
-  expect_error({"EX9042D", "--pty"}, "--pty", "--help");
+  for (const char* option : {"--pty", "--tcp", "--serial", "--line", "--control"}) {
+    expect_error({"EX9042D", option}, option, "--help");
+  }
 }
 
-TEST(Arguments, AnEmptyLinkIsRefused) { expect_error({"EX9042D", "--pty", ""}, "--pty", "path"); }
+TEST(Arguments, AnEmptyPathIsRefused) {
+  for (const char* option : {"--pty", "--serial", "--control"}) {
+    expect_error({"EX9042D", option, ""}, option, "path");
+  }
+  expect_error({"EX9042D,eeprom="}, "eeprom=", "path");
+}
 
 TEST(Arguments, ModelsListsEveryModelAndWhatItSpeaks) {
   const std::string text = printed({"--models"});

@@ -38,7 +38,9 @@ TEST(ModuleSpec, AModelAloneHasItsFactorySettings) {
     EXPECT_EQ(spec.model->designation, model.designation);
     EXPECT_TRUE(spec.settings == Settings::factory(model));
     EXPECT_FALSE(spec.init_asserted);
-    EXPECT_EQ(spec.address(), 0x01);
+    EXPECT_EQ(spec.settings.address, 0x01);
+    EXPECT_FALSE(spec.settings_given);
+    EXPECT_EQ(spec.eeprom, "");
     EXPECT_EQ(spec.baud(), 9600U);
   }
 }
@@ -69,10 +71,8 @@ TEST(ModuleSpec, AModbusAddressIs01ToF7) {
 TEST(ModuleSpec, TheProtocolCanBeChosen) {
   const ModuleSpec ascii = parse_module_spec("EX9042D-M,protocol=ascii");
   EXPECT_EQ(ascii.settings.protocol, Protocol::Ascii);
-  EXPECT_TRUE(ascii.speaks_ascii());
   const ModuleSpec modbus = parse_module_spec("EX9042D-M,protocol=modbus");
   EXPECT_EQ(modbus.settings.protocol, Protocol::ModbusRtu);
-  EXPECT_FALSE(modbus.speaks_ascii());
 }
 
 TEST(ModuleSpec, EveryBaudRateOfSection4CanBeChosen) {
@@ -103,22 +103,28 @@ TEST(ModuleSpec, TheNameIsTakenAsItIsWritten) {
   EXPECT_EQ(name_of(parse_module_spec("EX9068D-M,name=ABCDEFG")), "ABCDEFG");
 }
 
-TEST(ModuleSpec, InitModeAnswersAt00In9600BaudAndAsciiWhateverIsStored) {
+TEST(ModuleSpec, InitModeIs9600BaudWhateverIsStored) {
   const ModuleSpec spec = parse_module_spec("EX9042D-M@2A,baud=115200,init=on");
   EXPECT_TRUE(spec.init_asserted);
-  EXPECT_TRUE(spec.speaks_ascii());
-  EXPECT_EQ(spec.address(), 0x00);
   EXPECT_EQ(spec.baud(), 9600U);
   EXPECT_EQ(spec.settings.address, 0x2A);
   EXPECT_EQ(spec.settings.baud_code, 0x0A);
   EXPECT_FALSE(parse_module_spec("EX9042D-M,init=off").init_asserted);
 }
 
+TEST(ModuleSpec, TheEepromsFileAndInitAreNoSettings) {
+  const ModuleSpec spec = parse_module_spec("EX9042D-M,eeprom=a dir/pump.bin,init=off");
+  EXPECT_EQ(spec.eeprom, "a dir/pump.bin");
+  EXPECT_FALSE(spec.settings_given);
+  EXPECT_TRUE(parse_module_spec("EX9042D-M@01").settings_given);
+  EXPECT_TRUE(parse_module_spec("EX9042D-M,baud=9600").settings_given);
+}
+
 TEST(ModuleSpec, AllCanBeSaidAtOnce) {
   const ModuleSpec spec =
       parse_module_spec("9052d-m@1F,protocol=ascii,baud=19200,checksum=on,edge=rising,name=x");
   EXPECT_EQ(spec.model->designation, "EX9052D-M");
-  EXPECT_EQ(spec.address(), 0x1F);
+  EXPECT_EQ(spec.settings.address, 0x1F);
   EXPECT_EQ(spec.baud(), 19200U);
   EXPECT_EQ(spec.settings.format, 0xC0);
   EXPECT_EQ(name_of(spec), "x");
@@ -177,7 +183,7 @@ TEST(ModuleSpec, ANameTheModelCannotStoreIsRefused) {
 
 TEST(ModuleSpec, AnUnknownKeyIsRefusedWithTheRightOnes) {
   for (const char* text : {"EX9042D,adress=01", "EX9042D,,baud=9600", "EX9042D,Baud=9600", "EX9042D,x"}) {
-    expect_error(text, "protocol=, baud=, checksum=, edge=, name= and init=");
+    expect_error(text, "protocol=, baud=, checksum=, edge=, name=, init= and eeprom=");
   }
 }
 

@@ -42,7 +42,7 @@ struct Counts {
 class ReceiverTest : public testing::Test {
  protected:
   void listen(Protocol protocol, bool checksum = false) {
-    receiver_.listen({protocol, checksum, LineTiming::at(kBaud), InterCharacterGap::Tolerated});
+    receiver_.listen({protocol, checksum, LineTiming::at(kBaud)});
     receiver_.answer_to(kOwn);
   }
 

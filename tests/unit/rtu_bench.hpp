@@ -65,7 +65,7 @@ class Wire {
  public:
   Wire(RtuAssembler& assembler, FrameQueue& queue, std::uint32_t baud)
       : assembler_(assembler), queue_(queue), baud_(baud), timing_(LineTiming::at(baud)) {
-    assembler_.use(timing_, InterCharacterGap::Tolerated);
+    assembler_.use(timing_);
   }
 
   [[nodiscard]] Nanoseconds character() const { return Nanoseconds{10} * 1'000'000'000 / baud_; }
@@ -108,7 +108,7 @@ class Wire {
     while (timer_works && due_ && *due_ < now_ / 1000) {
       note(assembler_.silence(own, Time(static_cast<std::uint32_t>(*due_))));
       if (assembler_.wants_more_silence()) {
-        *due_ += timing_.character.microseconds();
+        *due_ += timing_.rtu_grace.microseconds();
       } else {
         due_.reset();
       }

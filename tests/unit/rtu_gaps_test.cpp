@@ -7,6 +7,7 @@
 #include <string>
 
 #include "firmware/line/rtu_assembler.hpp"
+#include "firmware/model/baud.hpp"
 #include "tests/unit/rtu_bench.hpp"
 
 namespace ex9000 {
@@ -185,7 +186,7 @@ TEST_P(RtuGaps, AFrameAcrossTheWrapOfTheClockIsOneFrame) {
 }
 
 TEST_P(RtuGaps, StrictlyAGapLongerThanT15SpoilsTheFrame) {
-  assembler_.use(LineTiming::at(baud_), InterCharacterGap::Refused);
+  assembler_.use(LineTiming::strictly_at(baud_));
   for (std::size_t split = 1; split < kChannel0On.size(); ++split) {
     wire_.verdicts.clear();
     with_gap(kChannel0On, split, t15(baud_) + kClock);
@@ -196,7 +197,7 @@ TEST_P(RtuGaps, StrictlyAGapLongerThanT15SpoilsTheFrame) {
 }
 
 TEST_P(RtuGaps, StrictlyAGapOfT15IsAllowed) {
-  assembler_.use(LineTiming::at(baud_), InterCharacterGap::Refused);
+  assembler_.use(LineTiming::strictly_at(baud_));
   for (std::size_t split = 1; split < kChannel0On.size(); ++split) {
     wire_.verdicts.clear();
     with_gap(kChannel0On, split, t15(baud_));
@@ -205,7 +206,7 @@ TEST_P(RtuGaps, StrictlyAGapOfT15IsAllowed) {
 }
 
 TEST_P(RtuGaps, StrictlyAFrameWithoutGapsBehindASpoiledOneIsAccepted) {
-  assembler_.use(LineTiming::at(baud_), InterCharacterGap::Refused);
+  assembler_.use(LineTiming::strictly_at(baud_));
   with_gap(kChannel0On, 4, t15(baud_) + kClock);
   wire_.verdicts.clear();
   wire_.frame(kChannel0On);
@@ -213,7 +214,7 @@ TEST_P(RtuGaps, StrictlyAFrameWithoutGapsBehindASpoiledOneIsAccepted) {
 }
 
 TEST_P(RtuGaps, StrictlyAGapShorterThanT35StillDoesNotEndAFrame) {
-  assembler_.use(LineTiming::at(baud_), InterCharacterGap::Refused);
+  assembler_.use(LineTiming::strictly_at(baud_));
   with_gap(frame_of(20), 12, t35(baud_) - kClock);
   EXPECT_EQ(wire_.verdicts.size(), 1U);
   EXPECT_TRUE(wire_.frames.empty());
@@ -221,7 +222,7 @@ TEST_P(RtuGaps, StrictlyAGapShorterThanT35StillDoesNotEndAFrame) {
 
 // The gap is refused inside a frame, and the frame is judged without the 00.
 TEST_P(RtuGaps, StrictlyAGapBehindATurnAround00DoesNotSpoilTheFrame) {
-  assembler_.use(LineTiming::at(baud_), InterCharacterGap::Refused);
+  assembler_.use(LineTiming::strictly_at(baud_));
   with_gap(behind(0x00, kChannel0On), 1, t15(baud_) + kClock);
   EXPECT_EQ(wire_.verdicts, Verdicts{Verdict::Accepted});
 }

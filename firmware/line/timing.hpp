@@ -1,0 +1,57 @@
+// The times by which a receiver tells frames apart and a reply keeps its distance.
+#pragma once
+
+#include <cstdint>
+
+#include "firmware/time.hpp"
+
+namespace ex9000 {
+
+struct LineTiming {
+  Duration dcon_turn_around;  ///< between CR and the reply: one character, 10 bits; rounded up
+  Duration rtu_silence;       ///< T3.5, the silence that ends a Modbus RTU frame, and comes before a reply;
+                              ///< rounded up, so a reply is never early
+  Duration rtu_grace;         ///< how long behind it a byte that began before may still be coming in: one
+                              ///< character; rounded up
+  Duration rtu_separate;      ///< two bytes whose ends lie at least this far apart belong to two frames: T3.5
+                              ///< and the second byte itself; rounded down, so a frame after exactly T3.5 is
+                              ///< one of its own
+  Duration rtu_slack;         ///< bytes whose ends lie further apart than this spoil a frame
+
+  /// Modbus over Serial Line V1.02, 2.5.1.1: T3.5 counts 11-bit characters up to 19200 baud and is fixed
+  /// above. Gaps inside a frame are tolerated, since USB adapters and gateways make them. `baud` in bits per
+  /// second, 1200 to 115200.
+  static constexpr LineTiming at(std::uint32_t baud) {
+    const Duration character(microseconds(2 * 10, baud) + kRoundUp);
+    const std::uint32_t t35 = silence(7, baud, 1750);
+    return {character, Duration(t35 + kRoundUp), character,
+            Duration(t35 + microseconds(2 * 10, baud) - 1), Duration(0xFFFF'FFFFU)};
+  }
+
+  /// Likewise, but a gap of more than T1.5 spoils a frame, as the same clause has it.
+  static constexpr LineTiming strictly_at(std::uint32_t baud) {
+    LineTiming timing = at(baud);
+    timing.rtu_slack = Duration(silence(3, baud, 750) + microseconds(2 * 10, baud) + kRoundUp);
+    return timing;
+  }
+
+ private:
+  /// One for the division, one for a clock that shows whole microseconds.
+  static constexpr std::uint32_t kRoundUp = 2;
+
+  static constexpr std::uint32_t microseconds(std::uint32_t half_bits, std::uint32_t baud) {
+    constexpr std::uint32_t kHalfSecond = 500'000;
+    return half_bits * kHalfSecond / baud;
+  }
+  static constexpr std::uint32_t silence(std::uint32_t half_characters, std::uint32_t baud,
+                                         std::uint32_t fixed) {
+    constexpr std::uint32_t kFixedTimesAbove = 19200;
+    return baud > kFixedTimesAbove ? fixed : microseconds(half_characters * 11, baud);
+  }
+};
+
+/// What times hold at which rate: `LineTiming::at` on two wires. Other carriers, where bytes cost no time,
+/// have their own.
+using TimingAt = LineTiming (*)(std::uint32_t baud);
+
+}  // namespace ex9000

@@ -1,0 +1,134 @@
+#include "sim/control/control_socket.hpp"
+
+#include <sys/stat.h>
+#include <sys/un.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <boost/asio/buffer.hpp>
+#include <boost/asio/read_until.hpp>
+#include <boost/asio/write.hpp>
+#include <stdexcept>
+#include <utility>
+
+namespace ex9000::sim {
+
+namespace {
+
+using Local = boost::asio::local::stream_protocol;
+
+constexpr std::size_t kLongestLine = 1000;
+/// Far more than people and scripts that look at one line; beyond it somebody connects and never goes.
+constexpr std::size_t kMostClients = 64;
+
+[[noreturn]] void refuse(const std::string& path, const std::string& why) {
+  throw std::invalid_argument("--control " + path + ": " + why);
+}
+
+/// Makes room for the socket, or throws.
+void clear_the_way(boost::asio::io_context& io, const std::string& path) {
+  struct stat status {};
+  if (lstat(path.c_str(), &status) != 0) {
+    return;
+  }
+  if (!S_ISSOCK(status.st_mode)) {
+    refuse(path, "something else is there; remove it or name another path");
+  }
+  Local::socket visitor(io);
+  boost::system::error_code error;
+  visitor.connect(Local::endpoint(path), error);
+  if (error != boost::asio::error::connection_refused) {
+    refuse(path, error ? error.message() + "; name another path"
+                       : "another program listens there; end it or name another path");
+  }
+  unlink(path.c_str());
+}
+
+}  // namespace
+
+struct ControlSocket::Client {
+  explicit Client(Local::socket its_socket) : socket(std::move(its_socket)) {}
+
+  Local::socket socket;
+  std::string input;
+  std::string output;
+};
+
+ControlSocket::ControlSocket(boost::asio::io_context& io, std::string path, CarryOut carry_out,
+                             std::function<void()> quit)
+    : path_(std::move(path)), carry_out_(std::move(carry_out)), quit_(std::move(quit)), acceptor_(io) {
+  if (path_.empty() || path_.size() >= sizeof(sockaddr_un::sun_path)) {
+    refuse(path_, "wants a path of 1 to " + std::to_string(sizeof(sockaddr_un::sun_path) - 1) + " characters");
+  }
+  clear_the_way(io, path_);
+  boost::system::error_code error;
+  acceptor_.open(Local(), error);
+  if (!error) {
+    acceptor_.bind(Local::endpoint(path_), error);
+  }
+  struct stat status {};
+  if (!error && lstat(path_.c_str(), &status) == 0) {
+    device_ = status.st_dev;
+    inode_ = status.st_ino;
+    acceptor_.listen(Local::acceptor::max_listen_connections, error);
+  }
+  if (error) {
+    refuse(path_, error.message() + "; name a path that can be written");
+  }
+}
+
+ControlSocket::~ControlSocket() {
+  struct stat status {};
+  if (lstat(path_.c_str(), &status) == 0 && status.st_dev == device_ && status.st_ino == inode_) {
+    unlink(path_.c_str());
+  }
+}
+
+void ControlSocket::accept() {
+  acceptor_.async_accept([this](const boost::system::error_code& error, Local::socket socket) {
+    if (error == boost::asio::error::operation_aborted) {
+      return;
+    }
+    clients_.erase(std::remove_if(clients_.begin(), clients_.end(),
+                                  [](const std::weak_ptr<Client>& client) { return client.expired(); }),
+                   clients_.end());
+    if (!error && clients_.size() < kMostClients) {
+      const auto client = std::make_shared<Client>(std::move(socket));
+      clients_.push_back(client);
+      read(client);
+    }
+    accept();
+  });
+}
+
+void ControlSocket::read(const std::shared_ptr<Client>& client) {
+  boost::asio::async_read_until(
+      client->socket, boost::asio::dynamic_buffer(client->input, kLongestLine), '\n',
+      [this, client](const boost::system::error_code& error, std::size_t size) {
+        if (error == boost::asio::error::not_found) {
+          answer(client, "error: a line has up to " + std::to_string(kLongestLine) + " characters", Then::Part);
+        } else if (error == boost::asio::error::eof && !client->input.empty()) {
+          answer(client, "error: a command ends with a newline; this one did not and was left", Then::Part);
+        } else if (!error) {
+          const std::string line = client->input.substr(0, size - 1);
+          client->input.erase(0, size);
+          const Control::Reply reply = carry_out_(line);
+          answer(client, reply.text, reply.quit ? Then::Quit : Then::ReadOn);
+        }
+      });
+}
+
+void ControlSocket::answer(const std::shared_ptr<Client>& client, const std::string& text, Then then) {
+  client->output = text + "\n";
+  boost::asio::async_write(
+      client->socket, boost::asio::buffer(client->output),
+      [this, client, then](const boost::system::error_code& error, std::size_t /*size*/) {
+        if (then == Then::Quit) {
+          quit_();
+        } else if (then == Then::ReadOn && !error) {
+          read(client);
+        }
+      });
+}
+
+}  // namespace ex9000::sim

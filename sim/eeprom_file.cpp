@@ -1,0 +1,96 @@
+#include "sim/eeprom_file.hpp"
+
+#include <fcntl.h>
+#include <sys/file.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <cstdlib>
+#include <cstring>
+#include <stdexcept>
+#include <utility>
+
+#include "hal/doubles/memory.hpp"
+
+namespace ex9000::sim {
+
+namespace {
+
+constexpr std::size_t kSize = hal::doubles::Memory::kSize;
+
+std::string reason() { return std::strerror(errno); }
+
+}  // namespace
+
+EepromFile::EepromFile(std::string path) : path_(std::move(path)) {
+  fd_ = open(path_.c_str(), O_RDWR | O_CLOEXEC | O_NONBLOCK);
+  if (fd_ < 0 && errno == ENOENT) {
+    return;
+  }
+  struct stat status {};
+  if (fd_ < 0 || fstat(fd_, &status) != 0) {
+    refuse(reason() + "; name a file that can be read and written");
+  }
+  if (!S_ISREG(status.st_mode)) {
+    refuse("is no regular file; name another path");
+  }
+  // Nobody's write permission means hands off, also to root, whom open() lets through.
+  if ((status.st_mode & (S_IWUSR | S_IWGRP | S_IWOTH)) == 0) {
+    refuse("is read-only; chmod u+w, or name another path");
+  }
+  if (status.st_size != static_cast<off_t>(kSize)) {
+    refuse("has " + std::to_string(status.st_size) + " bytes, an image of the EEPROM has " +
+           std::to_string(kSize) + "; remove it or name another path");
+  }
+  lock();
+  std::vector<std::uint8_t> image(kSize);
+  if (pread(fd_, image.data(), kSize, 0) != static_cast<ssize_t>(kSize)) {
+    refuse("cannot be read: " + reason() + "; name another path");
+  }
+  found_ = std::move(image);
+}
+
+EepromFile::~EepromFile() {
+  if (fd_ >= 0) {
+    close(fd_);
+  }
+}
+
+/// Under another name first, and that name given up only when all is there: whoever dies in between leaves no
+/// file that is too short.
+void EepromFile::create(const std::vector<std::uint8_t>& image) {
+  std::string draft = path_ + ".XXXXXX";
+  fd_ = mkostemp(draft.data(), O_CLOEXEC);
+  if (fd_ < 0) {
+    refuse("cannot be made: " + reason() + "; name a path that can be written");
+  }
+  constexpr mode_t kPermissions = S_IRUSR | S_IWUSR | S_IRGRP | S_IROTH;
+  const bool made = fchmod(fd_, kPermissions) == 0 && write(0, {image.data(), image.size()}) &&
+                    flock(fd_, LOCK_EX | LOCK_NB) == 0 && link(draft.c_str(), path_.c_str()) == 0;
+  const std::string why = reason();
+  unlink(draft.c_str());
+  if (!made) {
+    refuse("cannot be made: " + why + "; name a path that can be written");
+  }
+}
+
+bool EepromFile::write(std::uint16_t address, Bytes bytes) const {
+  return pwrite(fd_, bytes.data, bytes.size, address) == static_cast<ssize_t>(bytes.size);
+}
+
+void EepromFile::lock() {
+  if (flock(fd_, LOCK_EX | LOCK_NB) != 0) {
+    refuse(errno == EWOULDBLOCK ? "is in use by another module; end that simulator or name another path"
+                                : reason() + "; name another path");
+  }
+}
+
+void EepromFile::refuse(const std::string& why) {
+  if (fd_ >= 0) {
+    close(std::exchange(fd_, -1));
+  }
+  throw std::invalid_argument("eeprom=" + path_ + ": " + why);
+}
+
+}  // namespace ex9000::sim

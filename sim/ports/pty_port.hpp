@@ -1,0 +1,37 @@
+// A pseudo-terminal that masters open as they would a serial port.
+#pragma once
+
+#include <array>
+#include <boost/asio/io_context.hpp>
+#include <boost/asio/posix/stream_descriptor.hpp>
+
+#include "sim/ports/port.hpp"
+#include "sim/ports/pty.hpp"
+
+namespace ex9000::sim {
+
+class PtyPort final : public Port {
+ public:
+  /// See Pty::Pty.
+  PtyPort(boost::asio::io_context& io, const std::string& link, std::uint32_t baud);
+
+  void start(Received received) override;
+  void resume() override;
+  void send(const std::vector<std::uint8_t>& bytes) override;
+  [[nodiscard]] std::optional<std::uint32_t> baud() const override { return pty_.baud(); }
+
+  [[nodiscard]] const Pty& pty() const { return pty_; }
+
+ private:
+  void read();
+  void watch_visits();
+
+  Pty pty_;
+  boost::asio::posix::stream_descriptor visits_;
+  boost::asio::posix::stream_descriptor descriptor_;
+  Received received_;
+  std::array<std::uint8_t, 4096> buffer_{};
+  bool paused_ = false;
+};
+
+}  // namespace ex9000::sim

@@ -1,0 +1,162 @@
+#include "sim/ports/tcp_port.hpp"
+
+#include <array>
+#include <boost/asio/buffer.hpp>
+#include <boost/asio/steady_timer.hpp>
+#include <cctype>
+#include <stdexcept>
+#include <utility>
+
+namespace ex9000::sim {
+
+namespace {
+
+using boost::asio::ip::tcp;
+
+constexpr const char* kLoopback = "127.0.0.1";
+/// Far more than masters that share a line; beyond it somebody connects and never goes.
+constexpr std::size_t kMostClients = 64;
+/// Who has said all there is to say may still wait for the answer to it.
+constexpr std::chrono::seconds kLinger{1};
+
+[[noreturn]] void refuse(const TcpAddress& address, const std::string& why) {
+  const std::string host = address.host.find(':') == std::string::npos ? address.host : "[" + address.host + "]";
+  throw std::invalid_argument("--tcp " + host + ":" + std::to_string(address.port) + ": " + why);
+}
+
+tcp::endpoint endpoint_of(boost::asio::io_context& io, const TcpAddress& address) {
+  boost::system::error_code error;
+  tcp::resolver resolver(io);
+  const auto found = resolver.resolve(address.host, std::to_string(address.port),
+                                      tcp::resolver::passive | tcp::resolver::numeric_service, error);
+  if (error || found.empty()) {
+    refuse(address, error.message() + "; name this machine or an address of it");
+  }
+  return found.begin()->endpoint();
+}
+
+}  // namespace
+
+TcpAddress parse_tcp_address(const std::string& text) {
+  const auto colon = text.rfind(':');
+  std::string host = colon == std::string::npos ? "" : text.substr(0, colon);
+  const std::string port = colon == std::string::npos ? text : text.substr(colon + 1);
+  constexpr unsigned long kLastPort = 65535;
+  const bool digits = !port.empty() && port.size() <= 5 && port.find_first_not_of("0123456789") == std::string::npos;
+  const bool brackets = host.size() > 2 && host.front() == '[' && host.back() == ']';
+  if (brackets) {
+    host = host.substr(1, host.size() - 2);
+  }
+  if (!digits || std::stoul(port) > kLastPort || (!brackets && host.find(':') != std::string::npos)) {
+    throw std::invalid_argument("--tcp " + text + ": wants HOST:PORT such as 127.0.0.1:5020, or a port alone");
+  }
+  return {host.empty() ? kLoopback : host, static_cast<std::uint16_t>(std::stoul(port))};
+}
+
+struct TcpPort::Client {
+  Client(boost::asio::io_context& io, tcp::socket its_socket) : socket(std::move(its_socket)), linger(io) {}
+
+  tcp::socket socket;
+  boost::asio::steady_timer linger;
+  std::array<std::uint8_t, 4096> buffer{};
+  bool paused = false;
+};
+
+TcpPort::TcpPort(boost::asio::io_context& io, const TcpAddress& address) : io_(io), acceptor_(io) {
+  const tcp::endpoint endpoint = endpoint_of(io, address);
+  boost::system::error_code error;
+  acceptor_.open(endpoint.protocol(), error);
+  // What connections of a dead process still linger must not keep this one from listening.
+  if (!error) {
+    acceptor_.set_option(tcp::acceptor::reuse_address(true), error);
+  }
+  if (!error) {
+    acceptor_.bind(endpoint, error);
+  }
+  if (!error) {
+    acceptor_.listen(tcp::acceptor::max_listen_connections, error);
+  }
+  if (error) {
+    refuse(address, error == boost::asio::error::address_in_use
+                        ? "another program listens there; end it or name another port"
+                        : error.message() + "; name an address of this machine and a port that may be had");
+  }
+}
+
+TcpPort::~TcpPort() = default;
+
+std::string TcpPort::address() const {
+  const tcp::endpoint endpoint = acceptor_.local_endpoint();
+  const std::string host = endpoint.address().to_string();
+  return (endpoint.address().is_v6() ? "[" + host + "]" : host) + ":" + std::to_string(endpoint.port());
+}
+
+void TcpPort::start(Received received) {
+  received_ = std::move(received);
+  accept();
+}
+
+void TcpPort::accept() {
+  acceptor_.async_accept([this](const boost::system::error_code& error, tcp::socket socket) {
+    if (error == boost::asio::error::operation_aborted) {
+      return;
+    }
+    if (!error && clients_.size() < kMostClients) {
+      boost::system::error_code ignored;
+      socket.set_option(tcp::no_delay(true), ignored);
+      socket.set_option(tcp::socket::keep_alive(true), ignored);
+      socket.non_blocking(true, ignored);
+      clients_.push_back(std::make_unique<Client>(io_, std::move(socket)));
+      read(*clients_.back());
+    }
+    accept();
+  });
+}
+
+void TcpPort::read(Client& client) {
+  client.paused = false;
+  client.socket.async_read_some(boost::asio::buffer(client.buffer),
+                                [this, &client](const boost::system::error_code& error, std::size_t size) {
+                                  if (error == boost::asio::error::operation_aborted) {
+                                    return;
+                                  }
+                                  if (error) {
+                                    part_with(client);
+                                    return;
+                                  }
+                                  client.paused = !received_(client.buffer.data(), size);
+                                  if (!client.paused) {
+                                    read(client);
+                                  }
+                                });
+}
+
+void TcpPort::resume() {
+  for (const auto& client : clients_) {
+    if (client->paused) {
+      read(*client);
+    }
+  }
+}
+
+void TcpPort::part_with(Client& client) {
+  client.linger.expires_after(kLinger);
+  client.linger.async_wait([this, &client](const boost::system::error_code& error) {
+    if (error != boost::asio::error::operation_aborted) {
+      forget(client);
+    }
+  });
+}
+
+void TcpPort::forget(Client& client) {
+  clients_.remove_if([&client](const auto& other) { return other.get() == &client; });
+}
+
+void TcpPort::send(const std::vector<std::uint8_t>& bytes) {
+  for (const auto& client : clients_) {
+    boost::system::error_code ignored;  // who has gone is noticed by reading
+    client->socket.write_some(boost::asio::buffer(bytes), ignored);
+  }
+}
+
+}  // namespace ex9000::sim

@@ -1,0 +1,51 @@
+// The line's bytes over TCP, as serial device servers hand them out.
+#pragma once
+
+#include <boost/asio/io_context.hpp>
+#include <boost/asio/ip/tcp.hpp>
+#include <list>
+#include <memory>
+#include <string>
+
+#include "sim/ports/port.hpp"
+
+namespace ex9000::sim {
+
+/// Where to listen. An empty host is the loopback.
+struct TcpAddress {
+  std::string host;
+  std::uint16_t port = 0;  ///< 0: any that is free
+};
+
+/// HOST:PORT, :PORT, PORT or [IPV6]:PORT. Throws std::invalid_argument, one line.
+TcpAddress parse_tcp_address(const std::string& text);
+
+/// The bytes and nothing else: no MBAP header, no telnet negotiation. All who are connected hear all that
+/// modules send, and what each sends goes on the line.
+class TcpPort final : public Port {
+ public:
+  /// Listens from now on. Throws std::invalid_argument, one line, where that cannot be had.
+  TcpPort(boost::asio::io_context& io, const TcpAddress& address);
+  ~TcpPort() override;
+
+  void start(Received received) override;
+  void resume() override;
+  void send(const std::vector<std::uint8_t>& bytes) override;
+  /// HOST:PORT where it listens.
+  [[nodiscard]] std::string address() const;
+
+ private:
+  struct Client;
+
+  void accept();
+  void read(Client& client);
+  void part_with(Client& client);
+  void forget(Client& client);
+
+  boost::asio::io_context& io_;
+  boost::asio::ip::tcp::acceptor acceptor_;
+  Received received_;
+  std::list<std::unique_ptr<Client>> clients_;
+};
+
+}  // namespace ex9000::sim

@@ -1,0 +1,77 @@
+// All transcripts against the running simulator, over its pseudo-terminal and its control socket.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <atomic>
+#include <cstdio>
+#include <string>
+#include <thread>
+#include <vector>
+
+#include "tests/runner/core_target.hpp"
+#include "tests/runner/player.hpp"
+#include "tests/runner/transcript.hpp"
+#include "tests/system/process_target.hpp"
+
+namespace ex9000 {
+namespace {
+
+/// They wait nearly all the time: a paced line takes as long as a real one.
+constexpr unsigned kAtOnce = 40;
+
+struct Played {
+  runner::Transcript transcript;
+  runner::Result result;
+};
+
+/// Those that take longest first, so that no few are left waiting for at the end.
+std::vector<Played> all_runs() {
+  std::vector<Played> runs;
+  for (const std::string& file : runner::transcript_files(EX9000_CONFORMANCE_DIR)) {
+    for (runner::Transcript& transcript : runner::load_transcripts(file)) {
+      runs.push_back({std::move(transcript), {}});
+    }
+  }
+  std::stable_sort(runs.begin(), runs.end(), [](const Played& a, const Played& b) {
+    return a.transcript.waits() > b.transcript.waits();
+  });
+  return runs;
+}
+
+void play_on_a_simulator(Played& run) {
+  try {
+    system::ProcessTarget target;
+    run.result = runner::play(run.transcript, target);
+  } catch (const std::exception& error) {
+    run.result.failure = run.transcript.file + ": " + error.what();
+  }
+}
+
+TEST(Conformance, TheSimulatorPassesEveryTranscriptOnEveryModelItNames) {
+  std::vector<Played> runs = all_runs();
+  std::atomic<std::size_t> next{0};
+  std::vector<std::thread> players;
+  for (unsigned i = 0; i < kAtOnce; ++i) {
+    players.emplace_back([&] {
+      for (std::size_t mine = next++; mine < runs.size(); mine = next++) {
+        play_on_a_simulator(runs[mine]);
+      }
+    });
+  }
+  for (std::thread& player : players) {
+    player.join();
+  }
+  std::size_t steps = 0;
+  std::size_t core_steps = 0;
+  for (const Played& run : runs) {
+    EXPECT_TRUE(run.result.passed()) << run.result.failure;
+    steps += run.result.steps;
+    runner::CoreTarget core;
+    core_steps += runner::play(run.transcript, core).steps;
+  }
+  EXPECT_EQ(steps, core_steps);
+  std::printf("process: %zu runs, %zu steps, as the core\n", runs.size(), steps);
+}
+
+}  // namespace
+}  // namespace ex9000

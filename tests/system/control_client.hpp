@@ -1,0 +1,34 @@
+// A client of the simulator's control socket.
+#pragma once
+
+#include <string>
+
+namespace ex9000::system {
+
+class ControlClient {
+ public:
+  /// Throws std::runtime_error where nobody listens at `path`.
+  explicit ControlClient(const std::string& path);
+  ~ControlClient();
+  ControlClient(const ControlClient&) = delete;
+  ControlClient& operator=(const ControlClient&) = delete;
+
+  /// Sends a command and waits for its reply, without newline; throws where the simulator has gone.
+  std::string ask(const std::string& command);
+  /// What follows `ok `; throws where the reply is another.
+  std::string ok(const std::string& command);
+  /// Sends bytes as they are.
+  void send(const std::string& bytes);
+  /// The next line, without newline; throws where the connection ends before.
+  std::string line();
+  /// Nothing comes any more.
+  bool at_end();
+
+ private:
+  bool read_more();
+
+  int fd_;
+  std::string input_;
+};
+
+}  // namespace ex9000::system

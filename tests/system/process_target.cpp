@@ -1,0 +1,128 @@
+#include "tests/system/process_target.hpp"
+
+#include <algorithm>
+#include <stdexcept>
+#include <utility>
+
+#include "firmware/hex.hpp"
+
+namespace ex9000::system {
+
+namespace {
+
+using runner::Bytes;
+
+constexpr std::chrono::milliseconds kComingUp{100};
+/// A simulator on a busy machine hears a byte this much later than it was written.
+constexpr std::chrono::milliseconds kHostLatency{20};
+/// And may keep an answer waiting this much longer than a module would: only a missing one costs it.
+constexpr std::chrono::seconds kPatience{3};
+
+std::string hex_byte(unsigned value) {
+  return {static_cast<char>(hex_digit(value >> 4U)), static_cast<char>(hex_digit(value))};
+}
+
+/// As on the command line.
+std::string spec_of(const Model& model, const Settings* preset) {
+  std::string spec(model.designation);
+  if (preset != nullptr) {
+    spec += "@" + hex_byte(preset->address);
+    spec += preset->protocol == Protocol::Ascii ? ",protocol=ascii" : ",protocol=modbus";
+    spec += ",baud=" + std::to_string(baud_rate(preset->baud_code));
+    spec += (preset->format & kFormatChecksum) != 0 ? ",checksum=on" : ",checksum=off";
+    spec += (preset->format & kFormatRisingEdge) != 0 ? ",edge=rising" : ",edge=falling";
+  }
+  return spec;
+}
+
+std::string on_off(bool on) { return on ? " on" : " off"; }
+
+}  // namespace
+
+void ProcessTarget::start(const Model& model, const Settings* preset) {
+  simulator_.emplace(std::vector<std::string>{spec_of(model, preset), "--control", "control"});
+  terminal_.emplace(simulator_->tty(), 9600);
+  control_.emplace(simulator_->directory() + "/control");
+}
+
+void ProcessTarget::send(const Bytes& bytes) {
+  terminal_->write(bytes);
+  constexpr std::chrono::nanoseconds kCharacterBits{10'000'000'000};
+  line_free_ = std::max(line_free_, Clock::now()) +
+               kCharacterBits * static_cast<std::int64_t>(bytes.size()) / std::int64_t{baud_};
+}
+
+void ProcessTarget::hear_until(Clock::time_point when) {
+  for (auto now = Clock::now(); now < when; now = Clock::now()) {
+    const Bytes bytes = terminal_->read(when - now);
+    heard_.insert(heard_.end(), bytes.begin(), bytes.end());
+  }
+}
+
+Bytes ProcessTarget::take_heard() { return std::exchange(heard_, {}); }
+
+Bytes ProcessTarget::receive(std::size_t count, std::chrono::milliseconds patience) {
+  Clock::time_point gives_up = std::max(line_free_, Clock::now()) + patience + kPatience;
+  while (heard_.size() < count && Clock::now() < gives_up) {
+    const Bytes bytes = terminal_->read(gives_up - Clock::now());
+    if (bytes.empty()) {
+      break;
+    }
+    heard_.insert(heard_.end(), bytes.begin(), bytes.end());
+    gives_up = Clock::now() + patience + kPatience;
+  }
+  return take_heard();
+}
+
+Bytes ProcessTarget::listen(std::chrono::milliseconds time) {
+  hear_until(std::max(line_free_, Clock::now()) + time);
+  return take_heard();
+}
+
+void ProcessTarget::set_baud(std::uint32_t rate) {
+  baud_ = rate;
+  terminal_->set_baud(rate);
+}
+
+std::string ProcessTarget::control(const std::string& command) {
+  if (Clock::now() < line_free_ + kHostLatency) {
+    hear_until(line_free_ + kHostLatency);
+  }
+  return control_->ok("1 " + command);
+}
+
+void ProcessTarget::power(bool on) {
+  control("power" + on_off(on));
+  if (on) {
+    hear_until(Clock::now() + kComingUp);
+  }
+}
+
+void ProcessTarget::reset() {
+  control("reset");
+  hear_until(Clock::now() + kComingUp);
+}
+
+void ProcessTarget::set_init(bool asserted) { control("init" + on_off(asserted)); }
+
+void ProcessTarget::set_input(unsigned channel, bool level) {
+  control("input " + std::to_string(channel) + on_off(level));
+}
+
+void ProcessTarget::pulse_input(unsigned channel, std::uint32_t count) {
+  control("pulse " + std::to_string(channel) + " " + std::to_string(count));
+}
+
+std::uint16_t ProcessTarget::outputs() {
+  return static_cast<std::uint16_t>(std::stoul(control("outputs"), nullptr, 16));
+}
+
+runner::step::Led::Shows ProcessTarget::led() {
+  const std::string shows = control("led");
+  if (shows == "flashing") {
+    return runner::step::Led::Shows::Flashing;
+  }
+  return shows == "on" ? runner::step::Led::Shows::On : runner::step::Led::Shows::Off;
+}
+
+}  // namespace ex9000::system

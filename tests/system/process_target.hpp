@@ -1,0 +1,45 @@
+// A running ex9000-sim as a transcript's target: its pseudo-terminal and its control socket, in real time.
+#pragma once
+
+#include <chrono>
+#include <optional>
+
+#include "tests/runner/target.hpp"
+#include "tests/system/control_client.hpp"
+#include "tests/system/simulator_process.hpp"
+#include "tests/system/terminal.hpp"
+
+namespace ex9000::system {
+
+class ProcessTarget final : public runner::Target {
+ public:
+  void start(const Model& model, const Settings* preset) override;
+  void send(const runner::Bytes& bytes) override;
+  runner::Bytes receive(std::size_t count, std::chrono::milliseconds patience) override;
+  runner::Bytes listen(std::chrono::milliseconds time) override;
+  void set_baud(std::uint32_t rate) override;
+  void power(bool on) override;
+  void reset() override;
+  void set_init(bool asserted) override;
+  void set_input(unsigned channel, bool level) override;
+  void pulse_input(unsigned channel, std::uint32_t count) override;
+  std::uint16_t outputs() override;
+  runner::step::Led::Shows led() override;
+
+ private:
+  using Clock = std::chrono::steady_clock;
+
+  /// A command for the module, once the line has carried what was sent before.
+  std::string control(const std::string& command);
+  void hear_until(Clock::time_point when);
+  runner::Bytes take_heard();
+
+  std::optional<SimulatorProcess> simulator_;
+  std::optional<Terminal> terminal_;
+  std::optional<ControlClient> control_;
+  std::uint32_t baud_ = 0;
+  Clock::time_point line_free_;  ///< when all that was sent has been on the line
+  runner::Bytes heard_;
+};
+
+}  // namespace ex9000::system
