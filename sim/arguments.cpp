@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "sim/control/control.hpp"
+#include "sim/reference.hpp"
 
 namespace ex9000::sim {
 
@@ -139,6 +140,17 @@ void take(const Texts& texts, Arguments& arguments) {
   check_paths(arguments);
 }
 
+/// Of all models where none is named.
+Parsed print_reference(const std::string& model) {
+  try {
+    Parsed parsed;
+    parsed.output = model.empty() ? reference() : reference(model_called(model));
+    return parsed;
+  } catch (const std::invalid_argument& error) {
+    return wrong(std::string("--reference: ") + error.what());
+  }
+}
+
 }  // namespace
 
 Parsed parse_arguments(int argc, const char* const* argv) {
@@ -147,6 +159,7 @@ Parsed parse_arguments(int argc, const char* const* argv) {
   Arguments arguments;
   Texts texts;
   bool models = false;
+  std::string reference_of;
   app.add_option("MODULE", texts.modules, "modules on the line, one after the other");
   app.add_option("--pty", arguments.pty,
                  std::string("make a pseudo-terminal and link it at this path (default: ") + kDefaultPty +
@@ -168,6 +181,10 @@ Parsed parse_arguments(int argc, const char* const* argv) {
                "Modbus to the letter: a gap of more than 1.5 characters spoils a frame, and a master that "
                "does not wait 3.5 characters between frames is on its own");
   app.add_flag("--models", models, "list the models and exit");
+  app.add_option("--reference", reference_of,
+                 "print the commands and registers of this model, or of all models, and exit")
+      ->type_name("[MODEL]")
+      ->expected(0, 1);
   app.set_version_flag("--version", "ex9000-sim " + std::string(kFirmwareVersion));
   try {
     app.parse(argc, argv);
@@ -186,6 +203,9 @@ Parsed parse_arguments(int argc, const char* const* argv) {
     Parsed parsed;
     parsed.output = list_models();
     return parsed;
+  }
+  if (app.count("--reference") != 0) {
+    return print_reference(reference_of);
   }
   try {
     take(texts, arguments);

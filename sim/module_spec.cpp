@@ -21,19 +21,6 @@ std::string upper(std::string text) {
   return text;
 }
 
-/// In any case, with or without EX.
-const Model& model_called(const std::string& name) {
-  const std::string wanted = upper(name);
-  const Model* model = find_model(wanted);
-  if (model == nullptr) {
-    model = find_model("EX" + wanted);
-  }
-  if (model == nullptr) {
-    fail("'" + name + "' is no model; --models lists them");
-  }
-  return *model;
-}
-
 std::uint8_t parse_address(const std::string& text) {
   const std::string digits = upper(text.size() == 1 ? "0" + text : text);
   const int address = digits.size() == 2 ? hex_byte(static_cast<std::uint8_t>(digits[0]),
@@ -114,6 +101,18 @@ void apply(ModuleSpec& spec, const std::string& option) {
 }
 
 }  // namespace
+
+const Model& model_called(const std::string& name) {
+  const std::string wanted = upper(name);
+  const Model* model = find_model(wanted);
+  if (model == nullptr) {
+    model = find_model("EX" + wanted);
+  }
+  if (model == nullptr) {
+    fail("'" + name + "' is no model; --models lists them");
+  }
+  return *model;
+}
 
 std::string hex_byte_text(unsigned value) {
   return {static_cast<char>(hex_digit(value >> 4U)), static_cast<char>(hex_digit(value))};

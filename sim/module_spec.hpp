@@ -22,6 +22,9 @@ struct ModuleSpec {
 /// Throws std::invalid_argument, one line that names what is wrong and what would be right.
 ModuleSpec parse_module_spec(const std::string& text);
 
+/// The model of this designation, in any case, with or without EX. Throws like parse_module_spec.
+const Model& model_called(const std::string& name);
+
 /// Two upper-case digits.
 std::string hex_byte_text(unsigned value);
 

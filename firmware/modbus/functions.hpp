@@ -67,7 +67,7 @@ inline constexpr auto kFunctions = table<Function>({
         "Write Multiple Registers", "V1.1b3 6.12", {0x10, Needs::Nothing, true, write_multiple_registers}},
     {"Report Server ID", "V1.1b3 6.13", {0x11, Needs::Nothing, false, report_server_id}},
     {"Read Device Identification", "V1.1b3 6.21", {0x2B, Needs::Nothing, false, read_device_identification}},
-    {"Module code and address", "manuals, sub-function 0x46", {0x46, Needs::Nothing, false, vendor_function}},
+    {"Module code and address", "manuals", {0x46, Needs::Nothing, false, vendor_function}},
 });
 
 }  // namespace ex9000::modbus

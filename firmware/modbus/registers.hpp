@@ -176,7 +176,7 @@ inline constexpr auto kBitRegisters = table<BitRegister>({
       read_timeout_status, write_clear_timeout_status}},
     {"clear-counters",
      "clear the channel's counter",
-     "1 clears; function 0F: 0 leaves it",
+     "1 clears; 0, by function 0F only, leaves it as it is",
      {0x0200, Width::PerInput, Needs::Inputs, kWriteSingleCoil | kWriteMultipleCoils, false, true, false,
       nullptr, write_clear_counters}},
 });
@@ -189,7 +189,7 @@ inline constexpr auto kWordRegisters = table<WordRegister>({
       read_counter, nullptr}},
     WordRegister{
         "module-code",
-        "module code: 0x0090, then the last two digits",
+        "module code, spread out: 0x9042 reads 0x0090, 0x4200",
         "",
         {0x01E2, Width::Two, Needs::Nothing, kReadHoldingRegisters, false, 0, 0, read_module_code, nullptr}},
     {"address",
@@ -203,17 +203,17 @@ inline constexpr auto kWordRegisters = table<WordRegister>({
      {0x01E5, Width::One, Needs::Nothing, kReadHoldingRegisters | kWriteRegisters, true, kFirstBaudCode,
       kLastBaudCode, read_baud_code, write_baud_code}},
     {"watchdog-timeout",
-     "host watchdog timeout in 0.1 s",
-     "0 to 255; not 0 while enabled",
+     "host watchdog timeout in units of 0.1 s",
+     "0 to 255; not 0 while the host watchdog is enabled",
      {0x01E8, Width::One, Needs::Nothing, kReadHoldingRegisters | kWriteRegisters, false, 0, 255,
       read_watchdog_timeout, write_watchdog_timeout}},
     // For people only: host OK is decided where the frame is received and never looked up, so no function is
     // listed.
-    WordRegister{
-        "host-ok",
-        "host OK: read by function 03 or 04 with quantity 0 or 1; restarts the host watchdog, no reply",
-        "",
-        {0x3038, Width::One, Needs::Nothing, 0, false, 0, 0, nullptr, nullptr}},
+    WordRegister{"host-ok",
+                 "host OK: a request for 0 or 1 registers from here restarts the host watchdog and gets no "
+                 "reply; address 0 reaches all modules",
+                 "",
+                 {0x3038, Width::One, Needs::Nothing, 0, false, 0, 0, nullptr, nullptr}},
 });
 
 /// The row of coils or discrete inputs that `address` lies in and that is listed for `function` on this

@@ -71,7 +71,12 @@ Bytes ProcessTarget::receive(std::size_t count, std::chrono::milliseconds patien
     heard_.insert(heard_.end(), bytes.begin(), bytes.end());
     gives_up = Clock::now() + patience + kPatience;
   }
-  return take_heard();
+  Bytes bytes = take_heard();
+  if (bytes.size() > count) {
+    heard_.assign(bytes.begin() + static_cast<std::ptrdiff_t>(count), bytes.end());
+    bytes.resize(count);
+  }
+  return bytes;
 }
 
 Bytes ProcessTarget::listen(std::chrono::milliseconds time) {

@@ -7,6 +7,8 @@
 #include <string>
 #include <vector>
 
+#include "sim/reference.hpp"
+
 namespace ex9000::sim {
 namespace {
 
@@ -175,18 +177,37 @@ TEST(Arguments, ModelsListsEveryModelAndWhatItSpeaks) {
   EXPECT_NE(text.find("Modbus RTU"), std::string::npos);
 }
 
+TEST(Arguments, ReferenceIsOfAllModels) { EXPECT_EQ(printed({"--reference"}), reference()); }
+
+TEST(Arguments, ReferenceIsOfOneModelInAnyCaseWithOrWithoutEx) {
+  const std::string text = reference(*find_model("EX9052D-M"));
+  for (const char* name : {"EX9052D-M", "ex9052d-m", "9052D-M", "9052d-m"}) {
+    EXPECT_EQ(printed({"--reference", name}), text) << name;
+  }
+  EXPECT_EQ(printed({"--reference=EX9042D"}), reference(*find_model("EX9042D")));
+}
+
+TEST(Arguments, AReferenceOfNoModelIsRefused) {
+  expect_error({"--reference", "EX9999"}, "--reference: 'EX9999'", "--models");
+  expect_error({"--reference=EX9042D@01"}, "EX9042D@01", "--models");
+  EXPECT_EQ(parse({"--reference", "EX9999"}).exit_status, kWrongArguments);
+}
+
 TEST(Arguments, HelpTellsOfEveryOptionAndKey) {
   const std::string text = printed({"--help"});
-  for (const char* word : {"MODULE", "--pty", "--baud", "--log", "--strict-gaps", "--models", "--version",
-                           "protocol=", "baud=", "checksum=", "edge=", "name=", "init=", "@ADDR"}) {
+  for (const char* word :
+       {"MODULE", "--pty", "--baud", "--log", "--strict-gaps", "--models", "--reference", "--version",
+        "protocol=", "baud=", "checksum=", "edge=", "name=", "init=", "@ADDR"}) {
     EXPECT_NE(text.find(word), std::string::npos) << word;
   }
 }
 
 TEST(Arguments, VersionIsTheFirmwares) { EXPECT_EQ(printed({"--version"}), "ex9000-sim D01.00\n"); }
 
-TEST(Arguments, HelpVersionAndModelsNeedNoModuleAndTakeOne) {
+TEST(Arguments, WhatIsPrintedNeedsNoModuleAndTakesOne) {
   EXPECT_EQ(printed({"--models", "EX9042D"}), printed({"--models"}));
+  EXPECT_EQ(printed({"EX9042D", "--reference"}), printed({"--reference"}));
+  EXPECT_EQ(printed({"--reference", "EX9060D", "EX9042D"}), printed({"--reference", "EX9060D"}));
   EXPECT_EQ(printed({"EX9042D", "--version"}), printed({"--version"}));
 }
 
