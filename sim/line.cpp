@@ -6,12 +6,12 @@ namespace ex9000::sim {
 
 namespace {
 
-/// A byte takes 0.04 us at 115200 baud and 4 us at 1200.
-constexpr std::uint32_t kInstantly = 2000;
+/// A byte takes 0.02 us at 115200 baud and 2 us at 1200.
+constexpr std::uint32_t kInstantly = 4000;
 
 /// What belongs together comes in one piece, so nearly any silence ends a frame.
 LineTiming instant(std::uint32_t /*baud*/) {
-  constexpr Duration kSilence(20);
+  constexpr Duration kSilence(6);
   constexpr Duration kQuiet = milliseconds(2);
   return {Duration(), kSilence, kQuiet, kSilence + kQuiet, Duration(0xFFFF'FFFFU)};
 }

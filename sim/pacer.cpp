@@ -12,6 +12,9 @@ namespace {
 /// Beyond this many bytes that the line has not carried yet, masters have to wait, as behind a full UART.
 constexpr std::size_t kMostWaiting = 4096;
 
+/// Many transactions in a row must not make watchdogs run out early.
+constexpr std::chrono::milliseconds kFarthestAhead{5};
+
 /// The kernel may put timers off by 50 us to save power; on a line at 115200 baud that is half a character.
 constexpr unsigned long kTimerSlackNanoseconds = 1;
 
@@ -38,18 +41,28 @@ VirtualTime Pacer::wall() const { return std::chrono::steady_clock::now() - bega
 
 /// Runs what is due, and leaves the clock at the last event rather than at `until`: see Pace::host_latency.
 void Pacer::catch_up(VirtualTime until) {
-  for (VirtualTime next = line_.bus().next(); next <= until; next = line_.bus().next()) {
+  for (VirtualTime next = line_.bus().next(); next <= until || leads(next); next = line_.bus().next()) {
     line_.bus().run_until(next);
   }
 }
 
+/// Whether the event at `next` need not wait for the wall clock.
+bool Pacer::leads(VirtualTime next) const {
+  return pace_.lead != VirtualTime(0) && (line_.bus().busy() || next <= last_byte_ + pace_.lead);
+}
+
+/// Masters have to wait: the line has enough to carry, or virtual time has run too far ahead.
+bool Pacer::is_full() const {
+  return line_.master().waiting() >= kMostWaiting || line_.clock().virtual_now() > wall() + kFarthestAhead;
+}
+
 void Pacer::follow() {
-  catch_up(wall() + pace_.lead);
+  catch_up(wall());
   hand_out();
   if (log_ != nullptr) {
     log_->run(wall());
   }
-  if (paused_ && line_.master().waiting() < kMostWaiting) {
+  if (paused_ && !is_full()) {
     paused_ = false;
     for (const auto& port : ports_) {
       port->resume();
@@ -59,11 +72,10 @@ void Pacer::follow() {
 }
 
 void Pacer::arm_timer() {
-  VirtualTime next = line_.bus().next();
-  if (next != kNever) {
-    next -= pace_.lead;
+  VirtualTime next = std::min(line_.bus().next(), log_ == nullptr ? kNever : log_->next());
+  if (paused_) {
+    next = std::min(next, line_.clock().virtual_now());
   }
-  next = std::min(next, log_ == nullptr ? kNever : log_->next());
   if (next == kNever) {
     return;
   }
@@ -91,7 +103,10 @@ bool Pacer::receive(const Port& port, const std::uint8_t* bytes, std::size_t siz
   take_rate(port);
   line_.master().send(bytes, size, silence_before(bytes[0]));
   follow();
-  paused_ |= line_.master().waiting() >= kMostWaiting;
+  if (is_full()) {
+    paused_ = true;
+    arm_timer();
+  }
   return !paused_;
 }
 

@@ -22,8 +22,9 @@ struct Pace {
   /// are taken as written up to this much earlier, but never before anything that has happened already.
   /// Without it the host's own delays would add to every transaction.
   VirtualTime host_latency = std::chrono::microseconds(300);
-  /// So far virtual time may run ahead of the wall clock. Zero: events happen when the wall clock has reached
-  /// them, so a transaction can only take longer than on a real line.
+  /// What happens while a byte is under way, or within this time behind one, does not wait for the wall clock;
+  /// when virtual time is some milliseconds ahead by that, masters wait. Zero: events happen when the wall clock has reached them, so a transaction can only take longer than on a
+  /// real line.
   VirtualTime lead{0};
   /// A frame to another module than the one that has just spoken waits until T3.5 of silence has passed. A
   /// master that begins before is heard by the module it has just talked to, which does not hear its own
@@ -36,7 +37,7 @@ struct Pace {
 constexpr Pace kWallPace{};
 /// Likewise, for masters that keep to the letter of the standard.
 constexpr Pace kStrictWallPace{kWallPace.host_latency, kWallPace.lead, false};
-/// Where bytes cost none: a request and its reply lie within the lead, so that no timer is waited for.
+/// Where bytes cost none: from a request to its reply no timer is waited for.
 constexpr Pace kInstantPace{VirtualTime(0), std::chrono::microseconds(200), true};
 
 /// Virtual time follows the wall clock from `start` on.
@@ -60,6 +61,8 @@ class Pacer final : private BusObserver {
   [[nodiscard]] VirtualTime wall() const;
   void follow();
   void catch_up(VirtualTime until);
+  [[nodiscard]] bool leads(VirtualTime next) const;
+  [[nodiscard]] bool is_full() const;
   void arm_timer();
   bool receive(const Port& port, const std::uint8_t* bytes, std::size_t size);
   void hand_out();

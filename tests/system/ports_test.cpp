@@ -1,0 +1,197 @@
+// The program's ways to the line besides the pseudo-terminal: TCP, and a real serial port.
+#include <fcntl.h>
+#include <gtest/gtest.h>
+#include <sys/file.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <array>
+#include <csignal>
+#include <cstdlib>
+#include <filesystem>
+#include <memory>
+#include <string>
+
+#include "tests/system/simulator_process.hpp"
+#include "tests/system/socket_client.hpp"
+#include "tests/system/terminal.hpp"
+
+namespace ex9000::system {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// Where a simulator started with `--tcp 0` says that it listens.
+std::uint16_t port_of(const SimulatorProcess& simulator) {
+  const std::string lead = "TCP 127.0.0.1:";
+  return static_cast<std::uint16_t>(
+      std::stoul(simulator.output().substr(simulator.output().find(lead) + lead.size())));
+}
+
+void expect_refused(const Finished& finished, const std::string& names, const std::string& mend) {
+  EXPECT_EQ(finished.status, 2) << finished.error;
+  EXPECT_EQ(finished.output, "");
+  EXPECT_EQ(std::count(finished.error.begin(), finished.error.end(), '\n'), 1) << finished.error;
+  EXPECT_NE(finished.error.find(names), std::string::npos) << finished.error;
+  EXPECT_NE(finished.error.find(mend), std::string::npos) << finished.error;
+}
+
+class Tcp : public testing::TestWithParam<const char*> {};
+
+TEST_P(Tcp, AloneThereIsNoPseudoTerminal) {
+  SimulatorProcess simulator({"EX9042D@05", "--tcp", "0", "--line", GetParam()});
+  SocketClient client(port_of(simulator));
+  client.send("$05M\r");
+  EXPECT_EQ(client.receive_text(9), "!059042D\r");
+  EXPECT_FALSE(fs::is_symlink(simulator.tty()));
+}
+
+TEST_P(Tcp, BesideThePseudoTerminalBothReachTheSameLine) {
+  SimulatorProcess simulator({"EX9042D@05", "--tcp", ":0", "--pty", "ex9000.tty", "--line", GetParam()});
+  SocketClient client(port_of(simulator));
+  Terminal terminal(simulator.tty(), 9600);
+  client.send("@050001\r");
+  EXPECT_EQ(client.receive_text(2), ">\r");
+  EXPECT_EQ(terminal.read_line(), ">\r");
+  terminal.type("@05\r");
+  EXPECT_EQ(terminal.read_line(), ">0001\r");
+  EXPECT_EQ(client.receive_text(6), ">0001\r");
+}
+
+TEST_P(Tcp, SeveralClientsShareTheLine) {
+  SimulatorProcess simulator({"EX9042D@05", "--tcp", "0", "--line", GetParam()});
+  SocketClient first(port_of(simulator));
+  auto second = std::make_unique<SocketClient>(port_of(simulator));
+  second->send("$05M\r");  // the first was let in before it
+  EXPECT_EQ(second->receive_text(9), "!059042D\r");
+  EXPECT_EQ(first.receive_text(9), "!059042D\r");
+  first.send("$052\r");
+  EXPECT_EQ(second->receive_text(10), "!05400600\r");
+  EXPECT_EQ(first.receive_text(10), "!05400600\r");
+  second.reset();
+  first.send("@05\r");
+  EXPECT_EQ(first.receive_text(6), ">0000\r");
+}
+
+TEST_P(Tcp, WhoHasNoMoreToSayIsStillAnsweredAndThenLetGo) {
+  SimulatorProcess simulator({"EX9042D@05", "--tcp", "0", "--line", GetParam()});
+  SocketClient client(port_of(simulator));
+  client.send("$05M\r");
+  client.close_writing();
+  EXPECT_EQ(client.receive_text(9), "!059042D\r");
+  EXPECT_TRUE(client.closed());
+}
+
+// Until the flood has run off, the client's command and the answer to it collide with it.
+TEST_P(Tcp, AFloodOfGarbageIsHeldBackAndTheLineGoesOn) {
+  SimulatorProcess simulator({"EX9042D@05,baud=115200", "--tcp", "0", "--line", GetParam()});
+  {
+    SocketClient flooder(port_of(simulator));
+    flooder.send(std::vector<std::uint8_t>(20'000, 'x'));
+  }
+  SocketClient client(port_of(simulator));
+  std::string heard;
+  for (int tries = 0; tries < 20 && heard.find("!059042D\r") == std::string::npos; ++tries) {
+    client.send("\r$05M\r");
+    heard += client.receive_text(9);
+  }
+  EXPECT_NE(heard.find("!059042D\r"), std::string::npos);
+}
+
+INSTANTIATE_TEST_SUITE_P(Lines, Tcp, testing::Values("paced", "instant"));
+
+TEST(TcpPort, InUseIsRefusedAndOneOfADeadProcessIsTakenOver) {
+  SimulatorProcess first({"EX9042D@05", "--tcp", "0"});
+  const std::string address = "127.0.0.1:" + std::to_string(port_of(first));
+  expect_refused(run({simulator_path(), "EX9042D", "--tcp", address}, first.directory()), "--tcp " + address,
+                 "another program listens there");
+  SocketClient client(port_of(first));
+  client.send("$05M\r");
+  EXPECT_EQ(client.receive_text(9), "!059042D\r");
+  first.end(SIGKILL);
+  SimulatorProcess second({"EX9042D@05", "--tcp", address});
+  SocketClient heir(port_of(second));
+  heir.send("$05M\r");
+  EXPECT_EQ(heir.receive_text(9), "!059042D\r");
+}
+
+TEST(TcpPort, AnAddressThatIsNotOursIsRefused) {
+  expect_refused(run({simulator_path(), "EX9042D", "--tcp", "192.0.2.1:5020"}), "--tcp 192.0.2.1:5020", "name");
+  expect_refused(run({simulator_path(), "EX9042D", "--tcp", "no.such.host.invalid:5020"}),
+                 "--tcp no.such.host.invalid:5020", "name");
+}
+
+/// The far end of a serial cable whose near end is a device.
+class Cable {
+ public:
+  Cable() : far_(posix_openpt(O_RDWR | O_NOCTTY | O_CLOEXEC)) {
+    std::array<char, 64> name{};
+    grantpt(far_);
+    unlockpt(far_);
+    ptsname_r(far_, name.data(), name.size());
+    device_ = name.data();
+  }
+  ~Cable() { pull(); }
+  Cable(const Cable&) = delete;
+  Cable& operator=(const Cable&) = delete;
+
+  [[nodiscard]] const std::string& device() const { return device_; }
+  void write(const std::string& text) const {
+    ASSERT_EQ(::write(far_, text.data(), text.size()), static_cast<ssize_t>(text.size()));
+  }
+  /// Up to CR.
+  [[nodiscard]] std::string read_line() const {
+    std::string line;
+    char character = 0;
+    while ((line.empty() || line.back() != '\r') && read(far_, &character, 1) == 1) {
+      line += character;
+    }
+    return line;
+  }
+  void pull() {
+    if (far_ >= 0) {
+      close(far_);
+      far_ = -1;
+    }
+  }
+
+ private:
+  int far_;
+  std::string device_;
+};
+
+TEST(SerialPort, TheModulesHangOnTheLineBehindIt) {
+  for (const char* line : {"paced", "instant"}) {
+    const Cable cable;
+    SimulatorProcess simulator({"EX9042D@05", "EX9052D@06", "--serial", cable.device(), "--line", line});
+    EXPECT_FALSE(fs::is_symlink(simulator.tty()));
+    for (int round = 0; round < 3; ++round) {
+      cable.write("$05M\r");
+      EXPECT_EQ(cable.read_line(), "!059042D\r");
+      cable.write("$06M\r");
+      EXPECT_EQ(cable.read_line(), "!069052\r");
+    }
+    EXPECT_EQ(simulator.end(SIGTERM), 0);
+  }
+}
+
+TEST(SerialPort, WhenItGoesTheProgramEndsAndSaysSo) {
+  Cable cable;
+  SimulatorProcess simulator({"EX9042D", "--serial", cable.device()});
+  cable.pull();
+  EXPECT_EQ(simulator.wait(), 1);
+}
+
+TEST(SerialPort, WhatCannotBeHadIsRefused) {
+  expect_refused(run({simulator_path(), "EX9042D", "--serial", "/no/such/port"}), "--serial /no/such/port", "name");
+  expect_refused(run({simulator_path(), "EX9042D", "--serial", "/dev/null"}), "--serial /dev/null", "no serial port");
+  const Cable cable;
+  const int holder = open(cable.device().c_str(), O_RDWR | O_NOCTTY | O_CLOEXEC);
+  ASSERT_EQ(flock(holder, LOCK_EX | LOCK_NB), 0);
+  expect_refused(run({simulator_path(), "EX9042D", "--serial", cable.device()}), "--serial " + cable.device(),
+                 "another program has it");
+  close(holder);
+}
+
+}  // namespace
+}  // namespace ex9000::system
