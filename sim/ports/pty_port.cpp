@@ -29,6 +29,7 @@ void PtyPort::read() {
                                 if (error) {
                                   return;
                                 }
+                                pty_.take_visits();  // who writes must be there when it is answered
                                 paused_ = !received_(buffer_.data(), size);
                                 if (!paused_) {
                                   read();
@@ -48,9 +49,6 @@ void PtyPort::watch_visits() {
 
 /// The pseudo-terminal holds some 4 KiB before anything is lost.
 void PtyPort::send(const std::vector<std::uint8_t>& bytes) {
-  if (!pty_.visited()) {
-    pty_.take_visits();  // who has just come may not have been noticed yet
-  }
   if (pty_.visited()) {
     [[maybe_unused]] const ssize_t written = write(pty_.master_fd(), bytes.data(), bytes.size());
   }

@@ -21,13 +21,6 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Where a simulator started with `--tcp 0` says that it listens.
-std::uint16_t port_of(const SimulatorProcess& simulator) {
-  const std::string lead = "TCP 127.0.0.1:";
-  return static_cast<std::uint16_t>(
-      std::stoul(simulator.output().substr(simulator.output().find(lead) + lead.size())));
-}
-
 void expect_refused(const Finished& finished, const std::string& names, const std::string& mend) {
   EXPECT_EQ(finished.status, 2) << finished.error;
   EXPECT_EQ(finished.output, "");
@@ -40,7 +33,7 @@ class Tcp : public testing::TestWithParam<const char*> {};
 
 TEST_P(Tcp, AloneThereIsNoPseudoTerminal) {
   SimulatorProcess simulator({"EX9042D@05", "--tcp", "0", "--line", GetParam()});
-  SocketClient client(port_of(simulator));
+  SocketClient client(simulator.tcp_port());
   client.send("$05M\r");
   EXPECT_EQ(client.receive_text(9), "!059042D\r");
   EXPECT_FALSE(fs::is_symlink(simulator.tty()));
@@ -48,20 +41,22 @@ TEST_P(Tcp, AloneThereIsNoPseudoTerminal) {
 
 TEST_P(Tcp, BesideThePseudoTerminalBothReachTheSameLine) {
   SimulatorProcess simulator({"EX9042D@05", "--tcp", ":0", "--pty", "ex9000.tty", "--line", GetParam()});
-  SocketClient client(port_of(simulator));
+  SocketClient client(simulator.tcp_port());
+  client.send("$05M\r");
+  EXPECT_EQ(client.receive_text(9), "!059042D\r");
   Terminal terminal(simulator.tty(), 9600);
-  client.send("@050001\r");
-  EXPECT_EQ(client.receive_text(2), ">\r");
+  terminal.type("@050001\r");
   EXPECT_EQ(terminal.read_line(), ">\r");
-  terminal.type("@05\r");
-  EXPECT_EQ(terminal.read_line(), ">0001\r");
+  EXPECT_EQ(client.receive_text(2), ">\r");
+  client.send("@05\r");
   EXPECT_EQ(client.receive_text(6), ">0001\r");
+  EXPECT_EQ(terminal.read_line(), ">0001\r");
 }
 
 TEST_P(Tcp, SeveralClientsShareTheLine) {
   SimulatorProcess simulator({"EX9042D@05", "--tcp", "0", "--line", GetParam()});
-  SocketClient first(port_of(simulator));
-  auto second = std::make_unique<SocketClient>(port_of(simulator));
+  SocketClient first(simulator.tcp_port());
+  auto second = std::make_unique<SocketClient>(simulator.tcp_port());
   second->send("$05M\r");  // the first was let in before it
   EXPECT_EQ(second->receive_text(9), "!059042D\r");
   EXPECT_EQ(first.receive_text(9), "!059042D\r");
@@ -75,7 +70,7 @@ TEST_P(Tcp, SeveralClientsShareTheLine) {
 
 TEST_P(Tcp, WhoHasNoMoreToSayIsStillAnsweredAndThenLetGo) {
   SimulatorProcess simulator({"EX9042D@05", "--tcp", "0", "--line", GetParam()});
-  SocketClient client(port_of(simulator));
+  SocketClient client(simulator.tcp_port());
   client.send("$05M\r");
   client.close_writing();
   EXPECT_EQ(client.receive_text(9), "!059042D\r");
@@ -86,10 +81,10 @@ TEST_P(Tcp, WhoHasNoMoreToSayIsStillAnsweredAndThenLetGo) {
 TEST_P(Tcp, AFloodOfGarbageIsHeldBackAndTheLineGoesOn) {
   SimulatorProcess simulator({"EX9042D@05,baud=115200", "--tcp", "0", "--line", GetParam()});
   {
-    SocketClient flooder(port_of(simulator));
+    SocketClient flooder(simulator.tcp_port());
     flooder.send(std::vector<std::uint8_t>(20'000, 'x'));
   }
-  SocketClient client(port_of(simulator));
+  SocketClient client(simulator.tcp_port());
   std::string heard;
   for (int tries = 0; tries < 20 && heard.find("!059042D\r") == std::string::npos; ++tries) {
     client.send("\r$05M\r");
@@ -102,15 +97,15 @@ INSTANTIATE_TEST_SUITE_P(Lines, Tcp, testing::Values("paced", "instant"));
 
 TEST(TcpPort, InUseIsRefusedAndOneOfADeadProcessIsTakenOver) {
   SimulatorProcess first({"EX9042D@05", "--tcp", "0"});
-  const std::string address = "127.0.0.1:" + std::to_string(port_of(first));
+  const std::string address = "127.0.0.1:" + std::to_string(first.tcp_port());
   expect_refused(run({simulator_path(), "EX9042D", "--tcp", address}, first.directory()), "--tcp " + address,
                  "another program listens there");
-  SocketClient client(port_of(first));
+  SocketClient client(first.tcp_port());
   client.send("$05M\r");
   EXPECT_EQ(client.receive_text(9), "!059042D\r");
   first.end(SIGKILL);
   SimulatorProcess second({"EX9042D@05", "--tcp", address});
-  SocketClient heir(port_of(second));
+  SocketClient heir(second.tcp_port());
   heir.send("$05M\r");
   EXPECT_EQ(heir.receive_text(9), "!059042D\r");
 }

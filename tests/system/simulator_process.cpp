@@ -1,141 +1,27 @@
 #include "tests/system/simulator_process.hpp"
 
-#include <fcntl.h>
-#include <poll.h>
-#include <spawn.h>
-#include <sys/wait.h>
-#include <unistd.h>
-
-#include <array>
-#include <csignal>
-#include <cstdlib>
-#include <cstring>
-#include <filesystem>
-#include <stdexcept>
-
 namespace ex9000::system {
 
 namespace {
 
-struct Pipe {
-  int read_end = -1;
-  int write_end = -1;
-};
-
-Pipe make_pipe() {
-  std::array<int, 2> ends{};
-  if (pipe2(ends.data(), O_CLOEXEC) != 0) {
-    throw std::runtime_error("pipe");
-  }
-  return {ends[0], ends[1]};
-}
-
-/// posix_spawn, since tests with threads start many of these.
-int spawn(const std::vector<std::string>& command, const std::string& directory, int out, int error) {
-  std::vector<char*> words;
-  for (const std::string& word : command) {
-    words.push_back(const_cast<char*>(word.c_str()));
-  }
-  words.push_back(nullptr);
-  posix_spawn_file_actions_t actions{};
-  posix_spawn_file_actions_init(&actions);
-  posix_spawn_file_actions_adddup2(&actions, out, STDOUT_FILENO);
-  if (error >= 0) {
-    posix_spawn_file_actions_adddup2(&actions, error, STDERR_FILENO);
-  }
-  posix_spawn_file_actions_addchdir_np(&actions, directory.c_str());
-  int pid = -1;
-  const int failed = posix_spawnp(&pid, words[0], &actions, nullptr, words.data(), environ);
-  posix_spawn_file_actions_destroy(&actions);
-  if (failed != 0) {
-    throw std::runtime_error(command[0] + ": " + std::strerror(failed));
-  }
-  return pid;
-}
-
-int status_of(int raw) { return WIFEXITED(raw) ? WEXITSTATUS(raw) : 128 + WTERMSIG(raw); }
-
-bool append_from(int fd, std::string& text) {
-  std::array<char, 4096> buffer{};
-  const ssize_t size = read(fd, buffer.data(), buffer.size());
-  if (size <= 0) {
-    return false;
-  }
-  text.append(buffer.data(), static_cast<std::size_t>(size));
-  return true;
+std::vector<std::string> command_of(const std::vector<std::string>& arguments) {
+  std::vector<std::string> command{simulator_path()};
+  command.insert(command.end(), arguments.begin(), arguments.end());
+  return command;
 }
 
 }  // namespace
 
 std::string simulator_path() { return EX9000_SIMULATOR; }
 
-SimulatorProcess::SimulatorProcess(const std::vector<std::string>& arguments) {
-  std::string pattern = (std::filesystem::temp_directory_path() / "ex9000-XXXXXX").string();
-  directory_ = mkdtemp(pattern.data());
-  const Pipe out = make_pipe();
-  std::vector<std::string> command{simulator_path()};
-  command.insert(command.end(), arguments.begin(), arguments.end());
-  pid_ = spawn(command, directory_, out.write_end, -1);
-  close(out.write_end);
-  out_ = out.read_end;
+SimulatorProcess::SimulatorProcess(const std::vector<std::string>& arguments)
+    : process_(command_of(arguments), directory_.path()) {
   wait_for("Ctrl-C ends it");
 }
 
-SimulatorProcess::~SimulatorProcess() {
-  if (pid_ > 0) {
-    end(SIGKILL);
-  }
-  close(out_);
-  std::filesystem::remove_all(directory_);
-}
-
-bool SimulatorProcess::read_more() {
-  constexpr int kPatienceMilliseconds =
-      20'000;  // for a machine under load; what waits for an event needs none of it
-  pollfd ready{out_, POLLIN, 0};
-  return poll(&ready, 1, kPatienceMilliseconds) == 1 && append_from(out_, output_);
-}
-
-bool SimulatorProcess::wait_for(const std::string& text) {
-  while (output_.find(text) == std::string::npos) {
-    if (!read_more()) {
-      return false;
-    }
-  }
-  return true;
-}
-
-int SimulatorProcess::end(int signal) {
-  kill(pid_, signal);
-  return wait();
-}
-
-int SimulatorProcess::wait() {
-  while (read_more()) {
-  }
-  int raw = 0;
-  waitpid(pid_, &raw, 0);
-  pid_ = -1;
-  return status_of(raw);
-}
-
-Finished run(const std::vector<std::string>& command, const std::string& directory) {
-  const Pipe out = make_pipe();
-  const Pipe error = make_pipe();
-  const int pid = spawn(command, directory, out.write_end, error.write_end);
-  close(out.write_end);
-  close(error.write_end);
-  Finished finished{};
-  while (append_from(out.read_end, finished.output)) {
-  }
-  while (append_from(error.read_end, finished.error)) {
-  }
-  close(out.read_end);
-  close(error.read_end);
-  int raw = 0;
-  waitpid(pid, &raw, 0);
-  finished.status = status_of(raw);
-  return finished;
+std::uint16_t SimulatorProcess::tcp_port() const {
+  const std::string lead = "TCP 127.0.0.1:";
+  return static_cast<std::uint16_t>(std::stoul(output().substr(output().find(lead) + lead.size())));
 }
 
 }  // namespace ex9000::system

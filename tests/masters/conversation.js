@@ -1,0 +1,130 @@
+// Plays conversation.txt with a master's library: what the programs in JavaScript share.
+"use strict";
+const fs = require("fs");
+const path = require("path");
+const timers = require("timers/promises");
+
+const RATES = [1200, 2400, 4800, 9600, 19200, 38400, 57600, 115200];
+const FIRST_RATE_CODE = 3;
+
+const TIMEOUT = 1000; // in milliseconds, as all times here
+// How long a master waits after a broadcast, which nobody answers: the longest one here on the line, and 100 ms.
+const turnaround = (baud) => 100 + 150000 / baud;
+
+const hex = (bytes) => Buffer.from(bytes).toString("hex").toUpperCase().replace(/..(?=.)/g, "$& ");
+const word = (frame, at) => frame.readUInt16BE(at);
+
+/** The values of a request of function 0F. */
+function bits(frame) {
+  return Array.from({ length: word(frame, 4) }, (_, i) => (frame[7 + (i >> 3)] >> (i & 7)) & 1);
+}
+
+/** The values of a request of function 10. */
+function words(frame) {
+  return Array.from({ length: word(frame, 4) }, (_, i) => word(frame, 7 + 2 * i));
+}
+
+/** The frame of a write's answer. */
+function written(frame, address, value) {
+  const answer = Buffer.from(frame.subarray(0, 6));
+  answer.writeUInt16BE(address, 2);
+  answer.writeUInt16BE(value, 4);
+  return answer;
+}
+
+/** The lines of the conversation, without its comments. */
+function lines(baud) {
+  const text = fs.readFileSync(path.join(__dirname, "conversation.txt"), "utf8");
+  return text
+    .replaceAll("{BAUD}", hex([FIRST_RATE_CODE + RATES.indexOf(baud)]))
+    .split("\n")
+    .map((line) => line.split(";")[0].trim())
+    .filter((line) => line);
+}
+
+/** The lines grouped: each request with its answer, each wait alone. */
+function steps(baud) {
+  const result = [];
+  for (const line of lines(baud)) {
+    if (line.startsWith("=> ")) {
+      result.push({ asked: line, frame: Buffer.from(line.slice(3).replaceAll(" ", ""), "hex") });
+    } else if (line.startsWith("wait ")) {
+      result.push({ wait: parseInt(line.slice(5)) });
+    } else {
+      result[result.length - 1].expected = line.replace("<= ", "");
+    }
+  }
+  return result;
+}
+
+class Checks {
+  passed = 0;
+  failed = 0;
+
+  /**
+   * `ask` promises what the library is told: the text of a frame, "silence", or what went wrong. A step without
+   * `expected` is carried out and not checked.
+   */
+  async play(steps, ask) {
+    for (const { asked, frame, expected, wait } of steps) {
+      if (wait) {
+        await timers.setTimeout(wait);
+        continue;
+      }
+      const got = await ask(frame);
+      if (got === expected) {
+        ++this.passed;
+      } else if (expected) {
+        ++this.failed;
+        console.log(`${asked}: expected ${expected}, got ${got}`);
+      }
+    }
+  }
+}
+
+function giveUp(what) {
+  console.error(`${path.basename(process.argv[1])}: ${what}`);
+  process.exit(2);
+}
+
+/** The values behind the options. */
+function options() {
+  const given = {};
+  for (let i = 2; i < process.argv.length; i += 2) {
+    const [option, value] = process.argv.slice(i);
+    if (!["--tty", "--tcp", "--baud"].includes(option) || value === undefined) {
+      giveUp(`${option}: wants --tty PATH or --tcp HOST:PORT, and --baud RATE`);
+    }
+    given[option.slice(2)] = value;
+  }
+  return given;
+}
+
+/** { tty, baud } or { host, port, baud }. */
+function whereTo() {
+  const { tty, tcp, baud = 9600 } = options();
+  if (!RATES.includes(Number(baud))) {
+    giveUp(`--baud ${baud}: wants one of ${RATES.join(", ")}`);
+  }
+  if ((tty === undefined) === (tcp === undefined)) {
+    giveUp("wants either --tty PATH or --tcp HOST:PORT");
+  }
+  if (tty !== undefined) {
+    return { tty, baud: Number(baud) };
+  }
+  const [, host, port] = tcp.match(/^(.+):(\d+)$/) ?? giveUp(`--tcp ${tcp}: wants HOST:PORT`);
+  return { host, port: Number(port), baud: Number(baud) };
+}
+
+/** Runs `converse(where, steps, checks)` and tells what came of it. */
+async function main(library, converse) {
+  const where = whereTo();
+  const checks = new Checks();
+  await converse(where, steps(where.baud), checks).catch((error) => giveUp(error.message));
+  const { version } = require(`${library}/package.json`);
+  const failed = checks.failed ? `, ${checks.failed} failed` : "";
+  console.log(`${library} ${version}: ${checks.passed} checks passed${failed}`);
+  process.exitCode = checks.failed ? 1 : 0;
+}
+
+module.exports = { TIMEOUT, turnaround, hex, word, bits, words, written, main };

@@ -1,0 +1,128 @@
+// Plays conversation.txt with modbus-serial, over a serial line or as RTU frames over TCP.
+"use strict";
+const events = require("events");
+const net = require("net");
+const ModbusRTU = require("modbus-serial");
+const crc16 = require("modbus-serial/utils/crc16");
+const { SerialPort } = require("serialport");
+const { TIMEOUT, turnaround, hex, word, bits, words, written, main } = require("./conversation");
+
+// The library has these functions and no others.
+const REQUESTS = {
+  0x01: (client, frame) => client.readCoils(word(frame, 2), word(frame, 4)),
+  0x02: (client, frame) => client.readDiscreteInputs(word(frame, 2), word(frame, 4)),
+  0x03: (client, frame) => client.readHoldingRegisters(word(frame, 2), word(frame, 4)),
+  0x04: (client, frame) => client.readInputRegisters(word(frame, 2), word(frame, 4)),
+  0x05: (client, frame) => client.writeCoil(word(frame, 2), word(frame, 4) === 0xff00),
+  0x06: (client, frame) => client.writeRegister(word(frame, 2), word(frame, 4)),
+  0x0f: (client, frame) => client.writeCoils(word(frame, 2), bits(frame)),
+  0x10: (client, frame) => client.writeRegisters(word(frame, 2), words(frame)),
+  0x11: (client) => client.reportServerID(0, 0), // two arguments that it takes and does not use
+  0x14: (client, frame) => client.readFileRecords(word(frame, 4), word(frame, 6)),
+  0x16: (client, frame) => client.maskWriteRegister(word(frame, 2), word(frame, 4), word(frame, 6)),
+  0x2b: (client, frame) => client.readDeviceIdentification(frame[3], frame[4]),
+};
+
+const read = (frame, { buffer }) => [frame[0], frame[1], buffer.length, ...buffer];
+
+/** Of the reply's head the library tells the conformity; more follows never. */
+function identification(frame, { data, conformityLevel }) {
+  const objects = Object.entries(data).map(([id, text]) => [Number(id), text.length, ...Buffer.from(text)]);
+  return [...frame.subarray(0, 4), conformityLevel, 0, 0, objects.length, ...objects.flat()];
+}
+
+// A frame, from what the library has made of it.
+const ANSWERS = {
+  0x01: read,
+  0x02: read,
+  0x03: read,
+  0x04: read,
+  0x05: (frame, { address, state }) => written(frame, address, state ? 0xff00 : 0),
+  0x06: (frame, { address, value }) => written(frame, address, value),
+  0x0f: (frame, { address, length }) => written(frame, address, length),
+  0x10: (frame, { address, length }) => written(frame, address, length),
+  // The library takes the first byte for the whole id and the second for "running"; the frame itself is right.
+  0x11: (frame, { responses }) => Buffer.concat(responses).subarray(0, -2),
+  0x2b: identification,
+};
+
+async function ask(client, baud, frame) {
+  client.setID(frame[0]);
+  client.setTimeout(frame[0] === 0 ? turnaround(baud) : TIMEOUT);
+  try {
+    return hex(ANSWERS[frame[1]](frame, await REQUESTS[frame[1]](client, frame)));
+  } catch (error) {
+    if (error.modbusCode) {
+      return hex([frame[0], 0x80 | frame[1], error.modbusCode]);
+    }
+    return error.errno === "ETIMEDOUT" ? "silence" : `${error.errno}: ${error.message}`;
+  }
+}
+
+/** The library sends no other MEI type than 0E. */
+const sends = (frame) => frame[1] in REQUESTS && !(frame[1] === 0x2b && frame[2] !== 0x0e);
+
+/**
+ * Whether the library's own port gets the answer: it has to know its length, and knows that of few functions. On a
+ * serial line it hands over the answer to 11 before the end has come.
+ */
+function reachesOwnPort({ tty }, frame) {
+  const reads = frame[1] <= 0x04;
+  return reads ? word(frame, 4) > 0 : [0x05, 0x06, 0x0f, 0x10].includes(frame[1]) || (tty && frame[1] === 0x2b);
+}
+
+/** connectTelnet is the library's RTU over TCP; what it calls TcpRTUBuffered has the head of Modbus TCP. */
+async function connectOwnPort(client, { tty, host, port, baud }) {
+  await (tty ? client.connectRTUBuffered(tty, { baudRate: baud }) : client.connectTelnet(host, { port }));
+}
+
+/** A port for the rest, such as the library lets one bring along: an answer is over when its CRC is right. */
+class FramePort extends events.EventEmitter {
+  constructor(line) {
+    super();
+    this.line = line;
+    this.isOpen = true;
+    let heard = Buffer.alloc(0);
+    line.on("data", (bytes) => {
+      heard = Buffer.concat([heard, bytes]);
+      const body = heard.length - 2;
+      if (body > 2 && crc16(heard.subarray(0, body)) === heard.readUInt16LE(body)) {
+        this.emit("data", heard);
+        heard = Buffer.alloc(0);
+      }
+    });
+  }
+  open(done) {
+    done();
+  }
+  write(bytes) {
+    this.line.write(bytes);
+  }
+  close(done) {
+    this.line.once("close", () => done());
+    this.line.destroy();
+  }
+}
+
+async function openLine({ tty, host, port, baud }) {
+  const line = tty ? new SerialPort({ path: tty, baudRate: baud }) : net.connect(port, host);
+  await events.once(line, tty ? "open" : "connect");
+  return line;
+}
+
+async function play(client, where, steps, checks) {
+  client.isDebugEnabled = true; // for `responses`
+  await checks.play(steps, (frame) => ask(client, where.baud, frame));
+  await client.close();
+}
+
+main("modbus-serial", async (where, steps, checks) => {
+  const able = steps.filter(({ wait, frame }) => wait || sends(frame));
+  const own = new ModbusRTU();
+  await connectOwnPort(own, where);
+  await play(own, where, able.filter(({ wait, frame }) => wait || reachesOwnPort(where, frame)), checks);
+
+  const rest = new ModbusRTU(new FramePort(await openLine(where)));
+  await new Promise((resolve) => rest.open(resolve));
+  await play(rest, where, able.filter(({ wait, frame }) => !wait && !reachesOwnPort(where, frame)), checks);
+});

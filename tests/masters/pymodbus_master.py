@@ -1,0 +1,277 @@
+#!/usr/bin/python3
+"""Plays conversation.txt with pymodbus, over a serial line or as RTU frames over TCP."""
+
+import argparse
+import logging
+import pathlib
+import struct
+import sys
+import time
+
+import pymodbus
+from pymodbus import diag_message
+from pymodbus.bit_read_message import ReadCoilsRequest, ReadDiscreteInputsRequest
+from pymodbus.bit_write_message import WriteMultipleCoilsRequest, WriteSingleCoilRequest
+from pymodbus.client import ModbusSerialClient, ModbusTcpClient
+from pymodbus.file_message import FileRecord, ReadFifoQueueRequest, ReadFileRecordRequest, WriteFileRecordRequest
+from pymodbus.mei_message import ReadDeviceInformationRequest
+from pymodbus.other_message import (
+    GetCommEventCounterRequest,
+    GetCommEventLogRequest,
+    ReadExceptionStatusRequest,
+    ReportSlaveIdRequest,
+)
+from pymodbus.pdu import ExceptionResponse, ModbusRequest, ModbusResponse
+from pymodbus.register_read_message import (
+    ReadHoldingRegistersRequest,
+    ReadInputRegistersRequest,
+    ReadWriteMultipleRegistersRequest,
+)
+from pymodbus.register_write_message import (
+    MaskWriteRegisterRequest,
+    WriteMultipleRegistersRequest,
+    WriteSingleRegisterRequest,
+)
+from pymodbus.transaction import ModbusRtuFramer
+from pymodbus.utilities import pack_bitstring, unpack_bitstring
+
+RATES = [1200, 2400, 4800, 9600, 19200, 38400, 57600, 115200]
+TIMEOUT = 1
+
+
+def words(data):
+    return struct.unpack(f">{len(data) // 2}H", data)
+
+
+def packed(*values):
+    return struct.pack(f">{len(values)}H", *values)
+
+
+def turnaround(baud):
+    """How long a master waits after a broadcast, which nobody answers: the longest one here on the line, and 0.1 s."""
+    return 0.1 + 150 / baud
+
+
+class IdentificationRequest(ReadDeviceInformationRequest):
+    """Knows how long its reply will be: the library cannot tell, and would listen for a pause, or until its timeout."""
+
+    def __init__(self, data, reply_size):
+        super().__init__(data[1], data[2])
+        self.sub_function_code = data[0]
+        self.reply_size = reply_size
+
+    def get_response_pdu_size(self):
+        return self.reply_size
+
+
+class MakersRequest(ModbusRequest):
+    """Function 46, as pymodbus wants functions that it does not know."""
+
+    function_code = 0x46
+
+    def __init__(self, data):
+        super().__init__()
+        self.data = data
+
+    def encode(self):
+        return self.data
+
+
+class MakersResponse(ModbusResponse):
+    function_code = 0x46
+    _rtu_frame_size = 9
+
+    def decode(self, data):
+        self.data = data
+
+
+DIAGNOSTICS = {
+    request.sub_function_code: request
+    for request in vars(diag_message).values()
+    if hasattr(request, "sub_function_code") and issubclass(request, ModbusRequest)
+}
+
+
+def diagnostics(data):
+    sub_function, *values = words(data)
+    request = DIAGNOSTICS[sub_function]()
+    if values != [request.message]:
+        request.message = values
+    return request
+
+
+def write_coils(data):
+    address, count = words(data[:4])
+    return WriteMultipleCoilsRequest(address, unpack_bitstring(data[5:])[:count])
+
+
+def file_record(data):
+    _, file, record, length = struct.unpack(">BHHH", data[1:8])
+    return FileRecord(file_number=file, record_number=record, record_length=length, record_data=data[8:])
+
+
+def read_write_registers(data):
+    read_address, read_count, write_address, _ = words(data[:8])
+    return ReadWriteMultipleRegistersRequest(
+        read_address=read_address,
+        read_count=read_count,
+        write_address=write_address,
+        write_registers=words(data[9:]),
+    )
+
+
+# The library's request for what follows the function in a frame.
+REQUESTS = {
+    0x01: lambda data: ReadCoilsRequest(*words(data)),
+    0x02: lambda data: ReadDiscreteInputsRequest(*words(data)),
+    0x03: lambda data: ReadHoldingRegistersRequest(*words(data)),
+    0x04: lambda data: ReadInputRegistersRequest(*words(data)),
+    0x05: lambda data: WriteSingleCoilRequest(words(data)[0], words(data)[1] == 0xFF00),
+    0x06: lambda data: WriteSingleRegisterRequest(*words(data)),
+    0x07: lambda data: ReadExceptionStatusRequest(),
+    0x08: diagnostics,
+    0x0B: lambda data: GetCommEventCounterRequest(),
+    0x0C: lambda data: GetCommEventLogRequest(),
+    0x0F: write_coils,
+    0x10: lambda data: WriteMultipleRegistersRequest(words(data[:2])[0], list(words(data[5:]))),
+    0x11: lambda data: ReportSlaveIdRequest(),
+    0x14: lambda data: ReadFileRecordRequest([file_record(data)]),
+    0x15: lambda data: WriteFileRecordRequest([file_record(data)]),
+    0x16: lambda data: MaskWriteRegisterRequest(*words(data)),
+    0x17: read_write_registers,
+    0x18: lambda data: ReadFifoQueueRequest(*words(data)),
+    0x46: MakersRequest,
+}
+
+
+def counted(data):
+    return bytes([len(data)]) + data
+
+
+def identification(response):
+    objects = b"".join(bytes([number]) + counted(text) for number, text in response.information.items())
+    head = [0x0E, response.read_code, response.conformity, response.more_follows, response.next_object_id]
+    return bytes(head + [response.number_of_objects]) + objects
+
+
+# What follows the function in a frame, from what the library has made of it.
+ANSWERS = {
+    0x01: lambda response: counted(pack_bitstring(response.bits)),
+    0x02: lambda response: counted(pack_bitstring(response.bits)),
+    0x03: lambda response: counted(packed(*response.registers)),
+    0x04: lambda response: counted(packed(*response.registers)),
+    0x05: lambda response: packed(response.address, 0xFF00 if response.value else 0),
+    0x06: lambda response: packed(response.address, response.value),
+    0x08: lambda response: packed(response.sub_function_code, *response.message),
+    0x0F: lambda response: packed(response.address, response.count),
+    0x10: lambda response: packed(response.address, response.count),
+    # Its own `status` is the last byte of the reply, which is part of the name here.
+    0x11: lambda response: counted(response.identifier),
+    0x2B: identification,
+    0x46: lambda response: response.data,
+}
+
+
+def request_of(frame, expected):
+    function, data = frame[1], frame[2:]
+    if function == 0x2B:
+        request = IdentificationRequest(data, reply_size=len(expected) - 1)
+    else:
+        request = REQUESTS[function](data)
+    request.unit_id = frame[0]
+    return request
+
+
+def ask(client, request):
+    """What the library is told, as the text of a frame."""
+    response = client.execute(request)
+    if request.unit_id == 0:
+        return "silence"
+    if not isinstance(response, ModbusResponse):
+        return f"nothing ({response})"
+    head = bytes([response.unit_id, response.function_code])
+    if isinstance(response, ExceptionResponse):
+        return text_of(head + bytes([response.exception_code]))
+    return text_of(head + ANSWERS[response.function_code](response))
+
+
+def bytes_of(step):
+    """The frame behind `=>` or `<=`."""
+    return b"" if step == "silence" else bytes.fromhex(step[3:])
+
+
+def text_of(frame):
+    return frame.hex(" ").upper()
+
+
+def steps(baud):
+    """The lines of the conversation, without its comments."""
+    text = pathlib.Path(__file__).with_name("conversation.txt").read_text()
+    text = text.replace("{BAUD}", f"{3 + RATES.index(baud):02X}")
+    lines = (line.split(";")[0].strip() for line in text.splitlines())
+    return [line for line in lines if line]
+
+
+def converse(client, baud):
+    """The number of checks passed and failed."""
+    passed = failed = 0
+    asked = ""
+    for step in steps(baud):
+        if step.startswith("=> "):
+            asked = step
+        elif step.startswith("wait "):
+            time.sleep(int(step[5:-2]) / 1000)
+        else:
+            expected = step.removeprefix("<= ")
+            got = ask(client, request_of(bytes_of(asked), bytes_of(step)))
+            if expected == "silence":
+                time.sleep(turnaround(baud))
+            if got == expected:
+                passed += 1
+            else:
+                failed += 1
+                print(f"{asked}: expected {expected}, got {got}")
+    return passed, failed
+
+
+def connected(arguments):
+    options = {"framer": ModbusRtuFramer, "timeout": TIMEOUT, "broadcast_enable": True}
+    if arguments.tty:
+        client = ModbusSerialClient(arguments.tty, baudrate=arguments.baud, **options)
+    else:
+        host, port = arguments.tcp
+        client = ModbusTcpClient(host, port=port, **options)
+    client.register(MakersResponse)
+    return client
+
+
+class Parser(argparse.ArgumentParser):
+    def error(self, message):
+        self.exit(2, f"{self.prog}: {message}\n")
+
+
+def host_and_port(text):
+    host, port = text.rsplit(":", 1)
+    return host, int(port)
+
+
+def main():
+    parser = Parser(description=__doc__)
+    where = parser.add_mutually_exclusive_group(required=True)
+    where.add_argument("--tty", metavar="PATH")
+    where.add_argument("--tcp", metavar="HOST:PORT", type=host_and_port)
+    parser.add_argument("--baud", metavar="RATE", type=int, choices=RATES, default=9600)
+    arguments = parser.parse_args()
+    logging.disable(logging.ERROR)
+    client = connected(arguments)
+    if not client.connect():
+        parser.error(f"cannot open {arguments.tty or arguments.tcp}")
+    passed, failed = converse(client, arguments.baud)
+    client.close()
+    version = ".".join(pymodbus.__version__.split(".")[:3])  # Debian's 3.0.0 calls itself 3.0.0.rc1
+    print(f"pymodbus {version}: {passed} checks passed" + (f", {failed} failed" if failed else ""))
+    return 1 if failed else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -1,0 +1,39 @@
+// libmodbus as a master on a pseudo-terminal.
+#pragma once
+
+#include <modbus/modbus.h>
+
+#include <cerrno>
+#include <memory>
+#include <stdexcept>
+#include <string>
+
+namespace ex9000::system {
+
+class LibmodbusMaster {
+ public:
+  LibmodbusMaster(const std::string& tty, int baud)
+      : context_(modbus_new_rtu(tty.c_str(), baud, 'N', 8, 1), modbus_free) {
+    wait_for_replies(1000);
+    if (modbus_connect(context_.get()) != 0) {
+      throw std::runtime_error(modbus_strerror(errno));
+    }
+  }
+  ~LibmodbusMaster() { modbus_close(context_.get()); }
+  LibmodbusMaster(const LibmodbusMaster&) = delete;
+  LibmodbusMaster& operator=(const LibmodbusMaster&) = delete;
+
+  void wait_for_replies(unsigned milliseconds) {
+    modbus_set_response_timeout(context_.get(), milliseconds / 1000, milliseconds % 1000 * 1000);
+  }
+
+  modbus_t* at(int address) {
+    modbus_set_slave(context_.get(), address);
+    return context_.get();
+  }
+
+ private:
+  std::unique_ptr<modbus_t, void (*)(modbus_t*)> context_;
+};
+
+}  // namespace ex9000::system
