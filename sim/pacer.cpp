@@ -21,7 +21,7 @@ constexpr unsigned long kTimerSlackNanoseconds = 1;
 }  // namespace
 
 Pacer::Pacer(boost::asio::io_context& io, Line& line, const Ports& ports, BusLog* log, Pace pace, Notice notice)
-    : timer_(io), line_(line), ports_(ports), log_(log), pace_(pace), notice_(std::move(notice)) {
+    : timer_(io), line_(line), ports_(ports), log_(log), pace_(pace), notice_(std::move(notice)), told_(line.size()) {
   line.bus().observe(*this);
 }
 
@@ -150,24 +150,29 @@ void Pacer::hand_out() {
   }
 }
 
-/// A port where nobody has set a rate since leaves the line's alone.
+/// A port where nobody has set a rate leaves the line's alone.
 void Pacer::take_rate(const Port& port) {
-  const auto rate = port.baud();
-  if (rate && *rate != line_.master().baud()) {
+  if (const auto rate = port.baud()) {
     line_.master().set_baud(*rate);
-    tell_mismatches();
   }
+  tell_mismatches();
 }
 
+/// Each mismatch once, until it is over.
 void Pacer::tell_mismatches() {
+  const std::uint32_t rate = line_.master().baud();
   for (std::size_t i = 0; i < line_.size(); ++i) {
     const SimulatedModule& module = line_.module(i);
-    const std::uint32_t rate = line_.master().baud();
-    if (module.powered() && module.baud() != rate) {
+    const bool listens = module.powered() && module.module().listening();
+    const Mismatch mismatch = listens && module.baud() != rate ? Mismatch{rate, module.baud()} : Mismatch{};
+    if (mismatch != told_[i] && mismatch != Mismatch{}) {
       notice_("the line is at " + std::to_string(rate) + " baud, " +
               std::string(module.model().designation) + " at " +
               hex_byte_text(module.module().state().in_force.address) + " listens at " +
               std::to_string(module.baud()));
+    }
+    if (listens) {
+      told_[i] = mismatch;
     }
   }
 }

@@ -8,6 +8,7 @@
 #include <functional>
 #include <memory>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "sim/bus_log.hpp"
@@ -48,7 +49,7 @@ class Pacer final : private BusObserver {
 
   /// Puts what `line`'s master hears on all `ports`, and what comes from them on the line. `log` may be null.
   /// All live as long as `io` runs. `notice` gets a line for people for every module that listens at another
-  /// rate than the line's, at the start and whenever that changes.
+  /// rate than the line's, at the start and when something is sent after that has changed.
   Pacer(boost::asio::io_context& io, Line& line, const Ports& ports, BusLog* log, Pace pace, Notice notice);
 
   void start();
@@ -79,6 +80,8 @@ class Pacer final : private BusObserver {
   BusLog* log_;
   Pace pace_;
   Notice notice_;
+  using Mismatch = std::pair<std::uint32_t, std::uint32_t>;  ///< rate of the line, rate of a module
+  std::vector<Mismatch> told_;                               ///< a module each; zeros: none
   std::chrono::steady_clock::time_point began_;
   std::vector<std::uint8_t> heard_;
   bool stopped_sending_ = false;  ///< a module, since `heard_` was handed out
