@@ -14,7 +14,8 @@ namespace ex9000::sim {
 namespace {
 
 constexpr const char* kDescription =
-    "Simulated EX9000 modules on one RS-485 line, for Modbus and DCON masters: on a pseudo-terminal, over TCP, "
+    "Simulated EX9000 modules on one RS-485 line, for Modbus and DCON masters: on a pseudo-terminal, over "
+    "TCP, "
     "or on a real serial port.";
 
 constexpr const char* kDefaultPty = "ex9000.tty";
@@ -96,8 +97,9 @@ struct Texts {
 };
 
 void check_paths(const Arguments& arguments) {
-  for (const auto& [option, path] : {std::pair("--pty", arguments.pty), std::pair("--serial", arguments.serial),
-                                     std::pair("--control", arguments.control)}) {
+  for (const auto& [option, path] :
+       {std::pair("--pty", arguments.pty), std::pair("--serial", arguments.serial),
+        std::pair("--control", arguments.control)}) {
     if (path && path->empty()) {
       throw std::invalid_argument(std::string(option) + ": wants a path");
     }
@@ -132,7 +134,8 @@ void take(const Texts& texts, Arguments& arguments) {
     throw std::invalid_argument("--serial: the master is on that line; leave out --pty and --tcp");
   }
   if (arguments.instant && arguments.strict_gaps) {
-    throw std::invalid_argument("--strict-gaps: gaps mean nothing with --line instant; leave one of them out");
+    throw std::invalid_argument(
+        "--strict-gaps: gaps mean nothing with --line instant; leave one of them out");
   }
   if (!arguments.pty && !arguments.tcp && !arguments.serial) {
     arguments.pty = kDefaultPty;
@@ -169,7 +172,8 @@ Parsed parse_arguments(int argc, const char* const* argv) {
       ->type_name("HOST:PORT");
   app.add_option("--serial", arguments.serial, "put the modules on this serial port, behind a real line")
       ->type_name("DEVICE");
-  app.add_option("--baud", texts.baud, "the line's rate until a master sets one (default: the first module's)")
+  app.add_option("--baud", texts.baud,
+                 "the line's rate until a master sets one (default: the first module's)")
       ->type_name("RATE");
   app.add_option("--line", texts.line,
                  "paced (default): bytes take their time; instant: they cost none, for tests and load")

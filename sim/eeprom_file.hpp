@@ -10,8 +10,8 @@
 
 namespace ex9000::sim {
 
-/// An image of the whole memory, byte for byte as the chip holds it: 8192 bytes, erased ones FF. Locked against
-/// other processes while this object lives.
+/// An image of the whole memory, byte for byte as the chip holds it: 8192 bytes, erased ones FF. Locked
+/// against other processes while this object lives.
 ///
 /// What `write` has returned true for is in the hands of the kernel: it survives the end of this process, of
 /// whatever kind, though not that of the machine.

@@ -83,8 +83,8 @@ std::string shared_addresses(const std::vector<ModuleIntroduced>& modules) {
 
 std::string greeting(const LineIntroduced& line) {
   std::string text = "ex9000-sim " + std::string(kFirmwareVersion) + ", line at " +
-                     std::to_string(line.baud) + " baud" +
-                     (line.instant ? ", bytes cost no time" : "") + ":\n" + ports(line);
+                     std::to_string(line.baud) + " baud" + (line.instant ? ", bytes cost no time" : "") +
+                     ":\n" + ports(line);
   for (const ModuleIntroduced& module : line.modules) {
     text += "  " + module.designation + " at " + hex_byte_text(module.address) + ", " +
             (module.speaks_ascii ? "ASCII" : "Modbus RTU") + ", " + std::to_string(module.baud) + " baud" +

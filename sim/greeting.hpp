@@ -22,11 +22,11 @@ struct LineIntroduced {
   std::uint32_t baud = 0;
   bool instant = false;
   std::vector<ModuleIntroduced> modules;
-  std::string pty;           ///< link of the pseudo-terminal; empty: there is none
-  std::string pty_device;    ///< where it leads
-  std::string tcp;           ///< HOST:PORT; likewise
-  std::string serial;        ///< the port taken; likewise
-  std::string control;       ///< the control socket; likewise
+  std::string pty;         ///< link of the pseudo-terminal; empty: there is none
+  std::string pty_device;  ///< where it leads
+  std::string tcp;         ///< HOST:PORT; likewise
+  std::string serial;      ///< the port taken; likewise
+  std::string control;     ///< the control socket; likewise
 };
 
 /// The line, its ports, its modules, and commands to paste that poll each of them; several lines.

@@ -6,21 +6,16 @@ namespace ex9000::sim {
 
 namespace {
 
-/// A byte takes 0.02 us at 115200 baud and 2 us at 1200.
-constexpr std::uint32_t kInstantly = 4000;
-
-/// What belongs together comes in one piece, so nearly any silence ends a frame.
-LineTiming instant(std::uint32_t /*baud*/) {
-  constexpr Duration kSilence(6);
-  constexpr Duration kQuiet = milliseconds(2);
-  return {Duration(), kSilence, kQuiet, kSilence + kQuiet, Duration(0xFFFF'FFFFU)};
-}
-
 constexpr std::chrono::milliseconds kComingUp{100};
 
 }  // namespace
 
-const LineKind kInstant{kInstantly, instant};
+/// What belongs together comes in one piece, so nearly any silence ends a frame.
+LineTiming instantly(std::uint32_t /*baud*/) {
+  constexpr Duration kSilence(6);
+  constexpr Duration kQuiet = milliseconds(2);
+  return {Duration(), kSilence, kQuiet, kSilence + kQuiet, Duration(0xFFFF'FFFFU)};
+}
 
 Line::Line(const std::vector<ModuleSpec>& modules, std::uint32_t baud, LineKind kind, Master::Receive receive)
     : kind_(kind), bus_(clock_, kind.times_faster), master_(bus_, baud, std::move(receive)) {

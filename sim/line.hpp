@@ -21,9 +21,10 @@ struct LineKind {
 constexpr LineKind kPaced{};
 /// Two wires, and modules that keep to the letter: a gap of more than T1.5 spoils a Modbus frame.
 constexpr LineKind kStrictlyPaced{1, LineTiming::strictly_at};
-/// Bytes cost next to nothing. A Modbus frame is over when no byte follows at once and its CRC is right, else
-/// after 2 ms of quiet.
-extern const LineKind kInstant;
+/// A Modbus frame is over when no byte follows at once and its CRC is right, else after 2 ms of quiet.
+LineTiming instantly(std::uint32_t baud);
+/// Bytes cost next to nothing: one takes 0.02 us at 115200 baud and 2 us at 1200.
+constexpr LineKind kInstant{4000, instantly};
 
 /// Station 0 is the master; modules follow in the order given.
 class Line {

@@ -20,8 +20,15 @@ constexpr unsigned long kTimerSlackNanoseconds = 1;
 
 }  // namespace
 
-Pacer::Pacer(boost::asio::io_context& io, Line& line, const Ports& ports, BusLog* log, Pace pace, Notice notice)
-    : timer_(io), line_(line), ports_(ports), log_(log), pace_(pace), notice_(std::move(notice)), told_(line.size()) {
+Pacer::Pacer(boost::asio::io_context& io, Line& line, const Ports& ports, BusLog* log, Pace pace,
+             Notice notice)
+    : timer_(io),
+      line_(line),
+      ports_(ports),
+      log_(log),
+      pace_(pace),
+      notice_(std::move(notice)),
+      told_(line.size()) {
   line.bus().observe(*this);
 }
 
@@ -166,9 +173,8 @@ void Pacer::tell_mismatches() {
     const bool listens = module.powered() && module.module().listening();
     const Mismatch mismatch = listens && module.baud() != rate ? Mismatch{rate, module.baud()} : Mismatch{};
     if (mismatch != told_[i] && mismatch != Mismatch{}) {
-      notice_("the line is at " + std::to_string(rate) + " baud, " +
-              std::string(module.model().designation) + " at " +
-              hex_byte_text(module.module().state().in_force.address) + " listens at " +
+      notice_("the line is at " + std::to_string(rate) + " baud, " + std::string(module.model().designation) +
+              " at " + hex_byte_text(module.module().state().in_force.address) + " listens at " +
               std::to_string(module.baud()));
     }
     if (listens) {

@@ -19,13 +19,13 @@ namespace ex9000::sim {
 
 /// How virtual time and the wall clock go together.
 struct Pace {
-  /// What a process pays for waking up and reading is not charged to the line: bytes that a master has written
-  /// are taken as written up to this much earlier, but never before anything that has happened already.
-  /// Without it the host's own delays would add to every transaction.
+  /// What a process pays for waking up and reading is not charged to the line: bytes that a master has
+  /// written are taken as written up to this much earlier, but never before anything that has happened
+  /// already. Without it the host's own delays would add to every transaction.
   VirtualTime host_latency = std::chrono::microseconds(300);
-  /// What happens while a byte is under way, or within this time behind one, does not wait for the wall clock;
-  /// when virtual time is some milliseconds ahead by that, masters wait. Zero: events happen when the wall clock has reached them, so a transaction can only take longer than on a
-  /// real line.
+  /// What happens while a byte is under way, or within this time behind one, does not wait for the wall
+  /// clock; when virtual time is some milliseconds ahead by that, masters wait. Zero: events happen when the
+  /// wall clock has reached them, so a transaction can only take longer than on a real line.
   VirtualTime lead{0};
   /// A frame to another module than the one that has just spoken waits until T3.5 of silence has passed. A
   /// master that begins before is heard by the module it has just talked to, which does not hear its own

@@ -27,8 +27,8 @@ Pace pace_of(const Arguments& arguments) {
 
 }  // namespace
 
-Session::Session(boost::asio::io_context& io, const Arguments& arguments, Print print)
-    : io_(io), arguments_(arguments), print_(std::move(print)) {
+Session::Session(boost::asio::io_context& io, Arguments arguments, Print print)
+    : io_(io), arguments_(std::move(arguments)), print_(std::move(print)) {
   for (const ModuleSpec& module : arguments_.modules) {
     memories_.push_back(module.eeprom.empty() ? nullptr : std::make_unique<EepromFile>(module.eeprom));
   }
@@ -81,7 +81,8 @@ void Session::open_control() {
     pacer_->now([&] { reply = control_->carry_out(command); });
     return reply;
   };
-  control_socket_ = std::make_unique<ControlSocket>(io_, *arguments_.control, carry_out, [this] { io_.stop(); });
+  control_socket_ =
+      std::make_unique<ControlSocket>(io_, *arguments_.control, carry_out, [this] { io_.stop(); });
   introduced_.control = *arguments_.control;
 }
 
@@ -142,8 +143,9 @@ void Session::start() {
   if (arguments_.log) {
     line_->bus().observe(*log_);
   }
-  pacer_ = std::make_unique<Pacer>(io_, *line_, ports_, arguments_.log ? &*log_ : nullptr, pace_of(arguments_),
-                                   [this](const std::string& text) { log_->note(line_->clock().virtual_now(), text); });
+  pacer_ = std::make_unique<Pacer>(
+      io_, *line_, ports_, arguments_.log ? &*log_ : nullptr, pace_of(arguments_),
+      [this](const std::string& text) { log_->note(line_->clock().virtual_now(), text); });
   print_(greeting(introduced_));
   pacer_->start();
   if (control_socket_) {

@@ -22,10 +22,10 @@ class Session {
  public:
   using Print = std::function<void(const std::string& line)>;
 
-  /// Opens all that the arguments name. Throws std::invalid_argument or std::runtime_error, one line; what was
-  /// opened is given back then, and no file has been made or changed. `print` and `io` live as long as this
-  /// object.
-  Session(boost::asio::io_context& io, const Arguments& arguments, Print print);
+  /// Opens all that the arguments name. Throws std::invalid_argument or std::runtime_error, one line; what
+  /// was opened is given back then, and no file has been made or changed. `print` and `io` live as long as
+  /// this object.
+  Session(boost::asio::io_context& io, Arguments arguments, Print print);
   ~Session();
   Session(const Session&) = delete;
   Session& operator=(const Session&) = delete;

@@ -7,8 +7,8 @@
 #include "firmware/line/dcon_assembler.hpp"
 #include "firmware/line/frame_queue.hpp"
 #include "firmware/line/rtu_assembler.hpp"
-#include "firmware/line/verdict.hpp"
 #include "firmware/line/timing.hpp"
+#include "firmware/line/verdict.hpp"
 #include "firmware/settings/settings.hpp"
 #include "firmware/time.hpp"
 

@@ -5,8 +5,8 @@
 
 #include "firmware/line/crc16.hpp"
 #include "firmware/line/frame_queue.hpp"
-#include "firmware/line/verdict.hpp"
 #include "firmware/line/timing.hpp"
+#include "firmware/line/verdict.hpp"
 #include "firmware/time.hpp"
 
 namespace ex9000 {

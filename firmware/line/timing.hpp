@@ -24,8 +24,8 @@ struct LineTiming {
   static constexpr LineTiming at(std::uint32_t baud) {
     const Duration character(microseconds(2 * 10, baud) + kRoundUp);
     const std::uint32_t t35 = silence(7, baud, 1750);
-    return {character, Duration(t35 + kRoundUp), character,
-            Duration(t35 + microseconds(2 * 10, baud) - 1), Duration(0xFFFF'FFFFU)};
+    return {character, Duration(t35 + kRoundUp), character, Duration(t35 + microseconds(2 * 10, baud) - 1),
+            Duration(0xFFFF'FFFFU)};
   }
 
   /// Likewise, but a gap of more than T1.5 spoils a frame, as the same clause has it.

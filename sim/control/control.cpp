@@ -33,7 +33,8 @@ Words words_of(const std::string& line) {
 /// Decimal digits and nothing else, up to `most`.
 std::optional<unsigned long> number(const std::string& text, unsigned long most) {
   constexpr std::size_t kMostDigits = 9;
-  if (text.empty() || text.size() > kMostDigits || text.find_first_not_of("0123456789") != std::string::npos) {
+  if (text.empty() || text.size() > kMostDigits ||
+      text.find_first_not_of("0123456789") != std::string::npos) {
     return std::nullopt;
   }
   const unsigned long value = std::stoul(text);
@@ -99,9 +100,13 @@ std::string pulse(SimulatedModule& module, const Words& args) {
   return "";
 }
 
-std::string inputs(SimulatedModule& module, const Words& /*args*/) { return hex_word_text(module.input_levels()); }
+std::string inputs(SimulatedModule& module, const Words& /*args*/) {
+  return hex_word_text(module.input_levels());
+}
 
-std::string outputs(SimulatedModule& module, const Words& /*args*/) { return hex_word_text(module.outputs()); }
+std::string outputs(SimulatedModule& module, const Words& /*args*/) {
+  return hex_word_text(module.outputs());
+}
 
 std::string led(SimulatedModule& module, const Words& /*args*/) {
   if (!module.powered()) {

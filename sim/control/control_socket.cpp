@@ -58,7 +58,8 @@ ControlSocket::ControlSocket(boost::asio::io_context& io, std::string path, Carr
                              std::function<void()> quit)
     : path_(std::move(path)), carry_out_(std::move(carry_out)), quit_(std::move(quit)), acceptor_(io) {
   if (path_.empty() || path_.size() >= sizeof(sockaddr_un::sun_path)) {
-    refuse(path_, "wants a path of 1 to " + std::to_string(sizeof(sockaddr_un::sun_path) - 1) + " characters");
+    refuse(path_,
+           "wants a path of 1 to " + std::to_string(sizeof(sockaddr_un::sun_path) - 1) + " characters");
   }
   clear_the_way(io, path_);
   boost::system::error_code error;
@@ -106,7 +107,8 @@ void ControlSocket::read(const std::shared_ptr<Client>& client) {
       client->socket, boost::asio::dynamic_buffer(client->input, kLongestLine), '\n',
       [this, client](const boost::system::error_code& error, std::size_t size) {
         if (error == boost::asio::error::not_found) {
-          answer(client, "error: a line has up to " + std::to_string(kLongestLine) + " characters", Then::Part);
+          answer(client, "error: a line has up to " + std::to_string(kLongestLine) + " characters",
+                 Then::Part);
         } else if (error == boost::asio::error::eof && !client->input.empty()) {
           answer(client, "error: a command ends with a newline; this one did not and was left", Then::Part);
         } else if (!error) {

@@ -23,7 +23,8 @@ class ControlSocket {
   /// Listens at `path` from now on; what a dead process has left there is taken over. Throws
   /// std::invalid_argument, one line, where the path is in use or cannot be made. What `quit` answers is sent
   /// before `quit` is called.
-  ControlSocket(boost::asio::io_context& io, std::string path, CarryOut carry_out, std::function<void()> quit);
+  ControlSocket(boost::asio::io_context& io, std::string path, CarryOut carry_out,
+                std::function<void()> quit);
   /// Removes the socket, if it is still this one's.
   ~ControlSocket();
   ControlSocket(const ControlSocket&) = delete;

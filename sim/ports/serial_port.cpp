@@ -36,8 +36,8 @@ void ask_for_low_latency(int fd) {
 
 }  // namespace
 
-SerialPort::SerialPort(boost::asio::io_context& io, const std::string& device, std::uint32_t baud)
-    : device_(device), baud_(baud), descriptor_(io), echo_(baud) {
+SerialPort::SerialPort(boost::asio::io_context& io, std::string device, std::uint32_t baud)
+    : device_(std::move(device)), baud_(baud), descriptor_(io), echo_(baud) {
   try {
     open_device();
   } catch (...) {
@@ -93,21 +93,20 @@ void SerialPort::resume() {
 
 void SerialPort::read() {
   paused_ = false;
-  descriptor_.async_read_some(boost::asio::buffer(buffer_),
-                              [this](const boost::system::error_code& error, std::size_t size) {
-                                if (error == boost::asio::error::operation_aborted) {
-                                  return;
-                                }
-                                if (error) {
-                                  throw std::runtime_error("--serial " + device_ + ": " + error.message() +
-                                                           "; the port has gone");
-                                }
-                                const bool echo = has_wires_ && echo_.covers(OwnEcho::Clock::now());
-                                paused_ = !echo && !received_(buffer_.data(), size);
-                                if (!paused_) {
-                                  read();
-                                }
-                              });
+  descriptor_.async_read_some(
+      boost::asio::buffer(buffer_), [this](const boost::system::error_code& error, std::size_t size) {
+        if (error == boost::asio::error::operation_aborted) {
+          return;
+        }
+        if (error) {
+          throw std::runtime_error("--serial " + device_ + ": " + error.message() + "; the port has gone");
+        }
+        const bool echo = has_wires_ && echo_.covers(OwnEcho::Clock::now());
+        paused_ = !echo && !received_(buffer_.data(), size);
+        if (!paused_) {
+          read();
+        }
+      });
 }
 
 void SerialPort::send(const std::vector<std::uint8_t>& bytes) {
@@ -127,7 +126,8 @@ void SerialPort::sent() {
 }
 
 void SerialPort::write_out() {
-  [[maybe_unused]] const ssize_t written = write(descriptor_.native_handle(), held_back_.data(), held_back_.size());
+  [[maybe_unused]] const ssize_t written =
+      write(descriptor_.native_handle(), held_back_.data(), held_back_.size());
   echo_.sent(held_back_.size(), OwnEcho::Clock::now());
   held_back_.clear();
 }

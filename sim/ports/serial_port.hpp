@@ -15,7 +15,7 @@ class SerialPort final : public Port {
  public:
   /// Opens `device` for this process alone, 8N1 at `baud`. Throws std::invalid_argument, one line, where that
   /// cannot be had.
-  SerialPort(boost::asio::io_context& io, const std::string& device, std::uint32_t baud);
+  SerialPort(boost::asio::io_context& io, std::string device, std::uint32_t baud);
   ~SerialPort() override;
 
   /// Ends the io_context's run with a std::runtime_error when the port goes away.

@@ -20,7 +20,8 @@ constexpr std::size_t kMostClients = 64;
 constexpr std::chrono::seconds kLinger{1};
 
 [[noreturn]] void refuse(const TcpAddress& address, const std::string& why) {
-  const std::string host = address.host.find(':') == std::string::npos ? address.host : "[" + address.host + "]";
+  const std::string host =
+      address.host.find(':') == std::string::npos ? address.host : "[" + address.host + "]";
   throw std::invalid_argument("--tcp " + host + ":" + std::to_string(address.port) + ": " + why);
 }
 
@@ -42,13 +43,15 @@ TcpAddress parse_tcp_address(const std::string& text) {
   std::string host = colon == std::string::npos ? "" : text.substr(0, colon);
   const std::string port = colon == std::string::npos ? text : text.substr(colon + 1);
   constexpr unsigned long kLastPort = 65535;
-  const bool digits = !port.empty() && port.size() <= 5 && port.find_first_not_of("0123456789") == std::string::npos;
+  const bool digits =
+      !port.empty() && port.size() <= 5 && port.find_first_not_of("0123456789") == std::string::npos;
   const bool brackets = host.size() > 2 && host.front() == '[' && host.back() == ']';
   if (brackets) {
     host = host.substr(1, host.size() - 2);
   }
   if (!digits || std::stoul(port) > kLastPort || (!brackets && host.find(':') != std::string::npos)) {
-    throw std::invalid_argument("--tcp " + text + ": wants HOST:PORT such as 127.0.0.1:5020, or a port alone");
+    throw std::invalid_argument("--tcp " + text +
+                                ": wants HOST:PORT such as 127.0.0.1:5020, or a port alone");
   }
   return {host.empty() ? kLoopback : host, static_cast<std::uint16_t>(std::stoul(port))};
 }

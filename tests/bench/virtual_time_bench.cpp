@@ -68,8 +68,7 @@ BENCHMARK(idle_line)->Name("32 modules idle, watchdogs armed: x real time");
 /// Every module polled in turn, the next request as soon as the silence behind the last reply is over.
 void loaded_line(benchmark::State& state) {
   bool heard = false;
-  Line line(a_line_of_modules(), 115200, sim::kPaced,
-            [&heard](std::uint8_t, ByteStatus) { heard = true; });
+  Line line(a_line_of_modules(), 115200, sim::kPaced, [&heard](std::uint8_t, ByteStatus) { heard = true; });
   line.come_up();
   std::vector<std::vector<std::uint8_t>> requests;
   for (std::uint8_t address = 1; address <= kModules; ++address) {

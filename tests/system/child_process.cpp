@@ -66,7 +66,8 @@ bool append_from(int fd, std::string& text) {
 
 }  // namespace
 
-ChildProcess::ChildProcess(const std::vector<std::string>& command, const std::string& directory, Errors errors) {
+ChildProcess::ChildProcess(const std::vector<std::string>& command, const std::string& directory,
+                           Errors errors) {
   const Pipe out = make_pipe();
   pid_ = spawn(command, directory, out.write_end, errors == Errors::WithOutput ? out.write_end : -1);
   close(out.write_end);

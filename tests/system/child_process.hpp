@@ -11,8 +11,8 @@ class ChildProcess {
  public:
   enum class Errors { Apart, WithOutput };
 
-  /// The first word is looked up in PATH. Throws std::runtime_error where it cannot be started. What it prints
-  /// on standard error goes where this program's goes, or into `output()`.
+  /// The first word is looked up in PATH. Throws std::runtime_error where it cannot be started. What it
+  /// prints on standard error goes where this program's goes, or into `output()`.
   ChildProcess(const std::vector<std::string>& command, const std::string& directory,
                Errors errors = Errors::Apart);
   ~ChildProcess();

@@ -87,7 +87,8 @@ TEST_P(LibmodbusRaw, HoldsTheWholeConversation) {
   EXPECT_GT(answers, 100);
 }
 
-INSTANTIATE_TEST_SUITE_P(Ways, LibmodbusRaw, testing::Values(Way{false, 9600}, Way{false, 115200}, Way{true, 115200}));
+INSTANTIATE_TEST_SUITE_P(Ways, LibmodbusRaw,
+                         testing::Values(Way{false, 9600}, Way{false, 115200}, Way{true, 115200}));
 
 }  // namespace
 }  // namespace ex9000::system

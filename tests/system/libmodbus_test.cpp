@@ -206,7 +206,8 @@ TEST_P(Libmodbus, ATimeoutOfTheHostWatchdogBlocksTheOutputs) {
   EXPECT_EQ(coils(kOutputs, 0, 1), Bits{1});
 }
 
-INSTANTIATE_TEST_SUITE_P(Ways, Libmodbus, testing::Values(Way{false, 9600}, Way{false, 115200}, Way{true, 115200}));
+INSTANTIATE_TEST_SUITE_P(Ways, Libmodbus,
+                         testing::Values(Way{false, 9600}, Way{false, 115200}, Way{true, 115200}));
 
 }  // namespace
 }  // namespace ex9000::system

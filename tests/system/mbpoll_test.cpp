@@ -106,7 +106,8 @@ TEST_P(Mbpoll, HostOkHasNoReplyAndATimeoutBlocksTheOutputs) {
   expect_line({"-a", "1", "-t", "0", "-r", "0"}, "Written 1 references.", {"1"});
 }
 
-INSTANTIATE_TEST_SUITE_P(Ways, Mbpoll, testing::Values(Way{false, 9600}, Way{false, 115200}, Way{true, 115200}));
+INSTANTIATE_TEST_SUITE_P(Ways, Mbpoll,
+                         testing::Values(Way{false, 9600}, Way{false, 115200}, Way{true, 115200}));
 
 }  // namespace
 }  // namespace ex9000::system

@@ -111,7 +111,8 @@ TEST(TcpPort, InUseIsRefusedAndOneOfADeadProcessIsTakenOver) {
 }
 
 TEST(TcpPort, AnAddressThatIsNotOursIsRefused) {
-  expect_refused(run({simulator_path(), "EX9042D", "--tcp", "192.0.2.1:5020"}), "--tcp 192.0.2.1:5020", "name");
+  expect_refused(run({simulator_path(), "EX9042D", "--tcp", "192.0.2.1:5020"}), "--tcp 192.0.2.1:5020",
+                 "name");
   expect_refused(run({simulator_path(), "EX9042D", "--tcp", "no.such.host.invalid:5020"}),
                  "--tcp no.such.host.invalid:5020", "name");
 }
@@ -178,8 +179,10 @@ TEST(SerialPort, WhenItGoesTheProgramEndsAndSaysSo) {
 }
 
 TEST(SerialPort, WhatCannotBeHadIsRefused) {
-  expect_refused(run({simulator_path(), "EX9042D", "--serial", "/no/such/port"}), "--serial /no/such/port", "name");
-  expect_refused(run({simulator_path(), "EX9042D", "--serial", "/dev/null"}), "--serial /dev/null", "no serial port");
+  expect_refused(run({simulator_path(), "EX9042D", "--serial", "/no/such/port"}), "--serial /no/such/port",
+                 "name");
+  expect_refused(run({simulator_path(), "EX9042D", "--serial", "/dev/null"}), "--serial /dev/null",
+                 "no serial port");
   const Cable cable;
   const int holder = open(cable.device().c_str(), O_RDWR | O_NOCTTY | O_CLOEXEC);
   ASSERT_EQ(flock(holder, LOCK_EX | LOCK_NB), 0);

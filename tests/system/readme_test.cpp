@@ -1,5 +1,5 @@
-// README's examples, pasted. In each section a `sh` block that starts the simulator is one terminal, all other
-// `sh` and `python` blocks are another, and what they print is the `text` block behind them.
+// README's examples, pasted. In each section a `sh` block that starts the simulator is one terminal, all
+// other `sh` and `python` blocks are another, and what they print is the `text` block behind them.
 #include <gtest/gtest.h>
 
 #include <cstdlib>
@@ -51,7 +51,8 @@ bool starts_the_simulator(const Block& block) { return block.text.rfind("ex9000-
 class Shell {
  public:
   void paste(const Block& block) {
-    script_ += block.language == "python" ? "/usr/bin/python3 - <<'PYTHON'\n" + block.text + "PYTHON\n" : block.text;
+    script_ +=
+        block.language == "python" ? "/usr/bin/python3 - <<'PYTHON'\n" + block.text + "PYTHON\n" : block.text;
   }
   [[nodiscard]] Finished run_in(const std::string& directory) const {
     return run({"bash", "-c", "trap 'kill $(jobs -p) 2>/dev/null' EXIT\n" + script_}, directory);

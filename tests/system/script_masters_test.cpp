@@ -1,5 +1,5 @@
-// Masters in Python and JavaScript on foreign libraries, unmodified, over the pseudo-terminal and as RTU frames
-// over TCP: tests/masters/.
+// Masters in Python and JavaScript on foreign libraries, unmodified, over the pseudo-terminal and as RTU
+// frames over TCP: tests/masters/.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -70,7 +70,8 @@ std::string library_of(const testing::TestParamInfo<Master>& info) {
   return name;
 }
 
-INSTANTIATE_TEST_SUITE_P(Libraries, ScriptMaster, testing::Values(kPymodbus, kModbusSerial, kJsmodbus), library_of);
+INSTANTIATE_TEST_SUITE_P(Libraries, ScriptMaster, testing::Values(kPymodbus, kModbusSerial, kJsmodbus),
+                         library_of);
 
 }  // namespace
 }  // namespace ex9000::system

@@ -23,13 +23,14 @@ struct Way {
 class TwoModules {
  public:
   explicit TwoModules(Way way)
-      : simulator_({"EX9042D-M@01,baud=" + std::to_string(way.baud), "EX9052D-M@02,baud=" + std::to_string(way.baud),
-                    "--log", way.over_tcp ? "--tcp=0" : "--pty=ex9000.tty"}) {
+      : simulator_({"EX9042D-M@01,baud=" + std::to_string(way.baud),
+                    "EX9052D-M@02,baud=" + std::to_string(way.baud), "--log",
+                    way.over_tcp ? "--tcp=0" : "--pty=ex9000.tty"}) {
     if (way.over_tcp) {
-      bridge_.emplace(std::vector<std::string>{"socat", "-d", "-d", "PTY,link=ex9000.tty,raw,echo=0",
-                                               "TCP:127.0.0.1:" + std::to_string(simulator_.tcp_port()) +
-                                                   ",nodelay"},
-                      simulator_.directory(), ChildProcess::Errors::WithOutput);
+      bridge_.emplace(
+          std::vector<std::string>{"socat", "-d", "-d", "PTY,link=ex9000.tty,raw,echo=0",
+                                   "TCP:127.0.0.1:" + std::to_string(simulator_.tcp_port()) + ",nodelay"},
+          simulator_.directory(), ChildProcess::Errors::WithOutput);
       bridge_->wait_for("starting data transfer loop");
     }
   }

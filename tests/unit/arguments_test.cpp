@@ -104,7 +104,8 @@ TEST(Arguments, TcpTakesHostAndPortOrAPortAlone) {
   EXPECT_EQ(tcp("0.0.0.0:0"), "0.0.0.0 0");
   EXPECT_EQ(tcp("localhost:65535"), "localhost 65535");
   EXPECT_EQ(tcp("[::1]:5020"), "::1 5020");
-  for (const char* wrong : {"", ":", "localhost", "localhost:", ":65536", "::1:5020", "a:-1", "5020x", "1:2:3"}) {
+  for (const char* wrong :
+       {"", ":", "localhost", "localhost:", ":65536", "::1:5020", "a:-1", "5020x", "1:2:3"}) {
     expect_error({"EX9042D", "--tcp", wrong}, "--tcp", "HOST:PORT");
   }
 }

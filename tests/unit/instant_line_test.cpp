@@ -32,9 +32,7 @@ constexpr microseconds kAtOnce{100};
 
 class InstantLine : public testing::TestWithParam<std::uint32_t> {
  protected:
-  explicit InstantLine() {
-    line_.come_up();
-  }
+  explicit InstantLine() { line_.come_up(); }
 
   static std::vector<ModuleSpec> modules() {
     const std::string rate = ",baud=" + std::to_string(GetParam());
