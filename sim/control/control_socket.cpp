@@ -17,7 +17,7 @@ namespace {
 
 using Local = boost::asio::local::stream_protocol;
 
-constexpr std::size_t kLongestLine = 1000;
+constexpr std::size_t kLongestLine = 1000;  // without its newline
 /// Far more than people and scripts that look at one line; beyond it somebody connects and never goes.
 constexpr std::size_t kMostClients = 64;
 
@@ -104,7 +104,7 @@ void ControlSocket::accept() {
 
 void ControlSocket::read(const std::shared_ptr<Client>& client) {
   boost::asio::async_read_until(
-      client->socket, boost::asio::dynamic_buffer(client->input, kLongestLine), '\n',
+      client->socket, boost::asio::dynamic_buffer(client->input, kLongestLine + 1), '\n',
       [this, client](const boost::system::error_code& error, std::size_t size) {
         if (error == boost::asio::error::not_found) {
           answer(client, "error: a line has up to " + std::to_string(kLongestLine) + " characters",
@@ -124,11 +124,11 @@ void ControlSocket::answer(const std::shared_ptr<Client>& client, const std::str
   client->output = text + "\n";
   boost::asio::async_write(
       client->socket, boost::asio::buffer(client->output),
-      [this, client, then](const boost::system::error_code& error, std::size_t /*size*/) {
+      [this, client, then](const boost::system::error_code& /*error*/, std::size_t /*size*/) {
         if (then == Then::Quit) {
           quit_();
-        } else if (then == Then::ReadOn && !error) {
-          read(client);
+        } else if (then == Then::ReadOn) {
+          read(client);  // also where nobody waits for the reply: what was sent is carried out
         }
       });
 }
