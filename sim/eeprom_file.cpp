@@ -75,6 +75,8 @@ void EepromFile::create(const std::vector<std::uint8_t>& image) {
   }
 }
 
+void EepromFile::discard() const { unlink(path_.c_str()); }
+
 bool EepromFile::write(std::uint16_t address, Bytes bytes) const {
   return pwrite(fd_, bytes.data, bytes.size, address) == static_cast<ssize_t>(bytes.size);
 }

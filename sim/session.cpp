@@ -86,18 +86,35 @@ void Session::open_control() {
   introduced_.control = *arguments_.control;
 }
 
-/// A store that reached a module's memory while it came up is in the image, or follows it.
+/// All or none.
 void Session::make_missing_memories() {
+  std::vector<const EepromFile*> made;
+  try {
+    for (std::size_t i = 0; i < line_->size(); ++i) {
+      EepromFile* file = memories_[i].get();
+      if (file != nullptr && !file->found()) {
+        file->create(line_->module(i).memory().contents());
+        made.push_back(file);
+      }
+    }
+  } catch (...) {
+    for (const EepromFile* file : made) {
+      file->discard();
+    }
+    throw;
+  }
+}
+
+/// A store that reached a module's memory while it came up is in the image, or follows it.
+void Session::keep_memories() {
   for (std::size_t i = 0; i < line_->size(); ++i) {
-    EepromFile* file = memories_[i].get();
+    const EepromFile* file = memories_[i].get();
     if (file == nullptr) {
       continue;
     }
     hal::doubles::Memory& memory = line_->module(i).memory();
-    if (!file->found()) {
-      file->create(memory.contents());
-    } else if (memory.contents() != *file->found() &&
-               !file->write(0, {memory.contents().data(), memory.contents().size()})) {
+    if (file->found() && memory.contents() != *file->found() &&
+        !file->write(0, {memory.contents().data(), memory.contents().size()})) {
       throw std::runtime_error("eeprom=" + file->path() + ": cannot be written");
     }
     memory.keep([file](std::uint16_t address, Bytes bytes) { return file->write(address, bytes); });
@@ -135,6 +152,7 @@ void Session::introduce() {
 
 void Session::start() {
   make_missing_memories();
+  keep_memories();
   std::vector<std::string> speakers{"master"};
   for (const ModuleIntroduced& module : introduced_.modules) {
     speakers.push_back(hex_byte_text(module.address) + " " + module.designation);

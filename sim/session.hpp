@@ -40,6 +40,7 @@ class Session {
   void open_ports();
   void open_control();
   void make_missing_memories();
+  void keep_memories();
   [[nodiscard]] std::string remark(std::size_t index) const;
   void introduce();
 
