@@ -28,6 +28,13 @@ void ControlClient::send(const std::string& bytes) {
   }
 }
 
+std::size_t ControlClient::offer(const std::string& bytes) {
+  const ssize_t sent = ::send(fd_, bytes.data(), bytes.size(), MSG_NOSIGNAL | MSG_DONTWAIT);
+  return sent < 0 ? 0 : static_cast<std::size_t>(sent);
+}
+
+void ControlClient::close_writing() { shutdown(fd_, SHUT_WR); }
+
 bool ControlClient::read_more() {
   std::array<char, 4096> buffer{};
   const ssize_t size = recv(fd_, buffer.data(), buffer.size(), 0);

@@ -1,6 +1,7 @@
 // A client of the simulator's control socket.
 #pragma once
 
+#include <cstddef>
 #include <string>
 
 namespace ex9000::system {
@@ -19,6 +20,10 @@ class ControlClient {
   std::string ok(const std::string& command);
   /// Sends bytes as they are.
   void send(const std::string& bytes);
+  /// Sends as much as goes without waiting for the simulator; how much that was.
+  std::size_t offer(const std::string& bytes);
+  /// Says that nothing more will come, and listens on.
+  void close_writing();
   /// The next line, without newline; throws where the connection ends before.
   std::string line();
   /// Nothing comes any more.

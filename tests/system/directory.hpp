@@ -1,11 +1,26 @@
-// A fresh directory.
+// A fresh directory, and the files in it.
 #pragma once
+
+#include <sys/stat.h>
 
 #include <cstdlib>
 #include <filesystem>
+#include <fstream>
+#include <functional>
+#include <iterator>
+#include <map>
 #include <string>
 
 namespace ex9000::system {
+
+inline std::string bytes_of_file(const std::string& path) {
+  std::ifstream file(path, std::ios::binary);
+  return {std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>()};
+}
+
+inline void write_file(const std::string& path, const std::string& bytes) {
+  std::ofstream(path, std::ios::binary) << bytes;
+}
 
 /// Lasts, with all that is in it, as long as this object.
 class Directory {
@@ -18,8 +33,34 @@ class Directory {
   Directory(const Directory&) = delete;
   Directory& operator=(const Directory&) = delete;
   [[nodiscard]] const std::string& path() const { return path_; }
+  /// The path of what is called `name` in here.
+  [[nodiscard]] std::string operator/(const std::string& name) const { return path_ + "/" + name; }
+
+  /// All that can be seen of what is in here, by its name: to compare with what it was.
+  [[nodiscard]] std::map<std::string, std::string> contents() const {
+    std::map<std::string, std::string> contents;
+    for (const auto& entry : std::filesystem::recursive_directory_iterator(path_)) {
+      contents[entry.path().lexically_relative(path_).string()] = looks_of(entry);
+    }
+    return contents;
+  }
 
  private:
+  static std::string looks_of(const std::filesystem::directory_entry& entry) {
+    struct stat status {};
+    lstat(entry.path().c_str(), &status);
+    std::string text =
+        "mode " + std::to_string(status.st_mode) + ", links " + std::to_string(status.st_nlink);
+    if (entry.is_symlink()) {
+      text += ", to " + std::filesystem::read_symlink(entry.path()).string();
+    } else if (entry.is_regular_file()) {
+      const std::string bytes = bytes_of_file(entry.path().string());
+      text += ", bytes " + std::to_string(bytes.size()) + ", hash " +
+              std::to_string(std::hash<std::string>()(bytes));
+    }
+    return text;
+  }
+
   std::string path_;
 };
 
