@@ -93,10 +93,14 @@ void ControlSocket::accept() {
     clients_.erase(std::remove_if(clients_.begin(), clients_.end(),
                                   [](const std::weak_ptr<Client>& client) { return client.expired(); }),
                    clients_.end());
-    if (!error && clients_.size() < kMostClients) {
+    if (!error) {
       const auto client = std::make_shared<Client>(std::move(socket));
-      clients_.push_back(client);
-      read(client);
+      if (clients_.size() < kMostClients) {
+        clients_.push_back(client);
+        read(client);
+      } else {
+        answer(client, "error: " + std::to_string(kMostClients) + " clients are here already", Then::Part);
+      }
     }
     accept();
   });
