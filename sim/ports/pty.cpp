@@ -11,6 +11,8 @@
 #include <climits>
 #include <cstdlib>
 #include <cstring>
+#include <filesystem>
+#include <functional>
 #include <stdexcept>
 #include <utility>
 
@@ -29,21 +31,30 @@ std::optional<std::string> link_target(const std::string& link) {
                   : std::optional<std::string>(std::string(target.data(), static_cast<std::size_t>(size)));
 }
 
-struct flock whole_file(int type) {
+/// A running simulator keeps a record lock on its slave, which nobody else takes on a terminal, at a place
+/// that follows from the path of its link: a link that a dead one has left may lead to where another is by
+/// now.
+struct flock lock_for(const std::string& link) {
+  const std::filesystem::path path(link);
+  const std::filesystem::path directory = path.has_parent_path() ? path.parent_path() : ".";
+  std::error_code error;
+  const std::filesystem::path canonical = std::filesystem::canonical(directory, error) / path.filename();
+  constexpr std::size_t kMostOffset = 0x7FFF'FFFF;
   struct flock lock {};
-  lock.l_type = static_cast<short>(type);
+  lock.l_type = F_WRLCK;
   lock.l_whence = SEEK_SET;
+  lock.l_start = static_cast<off_t>(std::hash<std::string>()(canonical.string()) & kMostOffset);
+  lock.l_len = 1;
   return lock;
 }
 
-/// Whether a running simulator holds the slave: it keeps a record lock on it, which nobody else takes on a
-/// terminal.
-bool is_held(const std::string& device) {
+/// Whether a running simulator has this device under this link.
+bool is_held(const std::string& device, const std::string& link) {
   const int fd = open(device.c_str(), O_RDWR | O_NOCTTY | O_NONBLOCK | O_CLOEXEC);
   if (fd < 0) {
     return false;
   }
-  struct flock lock = whole_file(F_WRLCK);
+  struct flock lock = lock_for(link);
   const bool held = fcntl(fd, F_GETLK, &lock) == 0 && lock.l_type != F_UNLCK;
   close(fd);
   return held;
@@ -60,7 +71,7 @@ void clear_the_way(const std::string& link) {
     throw std::invalid_argument("--pty " + link +
                                 ": something else is there; remove it or name another path");
   }
-  if (is_held(*target)) {
+  if (is_held(*target, link)) {
     throw std::invalid_argument("--pty " + link +
                                 ": another simulator is running there; end it or name another path");
   }
@@ -88,7 +99,7 @@ Pty::Pty(std::string link, std::uint32_t baud) : link_(std::move(link)) {
     if (const auto speed = termios_speed(baud)) {
       cfsetspeed(&settings, *speed);
     }
-    struct flock lock = whole_file(F_WRLCK);
+    struct flock lock = lock_for(link_);
     if (tcsetattr(slave_, TCSANOW, &settings) != 0 || fcntl(slave_, F_SETLK, &lock) != 0) {
       throw std::runtime_error(device_ + ": " + reason());
     }

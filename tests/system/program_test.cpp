@@ -72,6 +72,13 @@ TEST(Program, WrongArgumentsGiveOneLineThatNamesThemExitStatus2AndLeaveNothingBe
       {{"EX9042D", "--bogus"}, "--bogus", "--help"},
       {{"EX9042D", "--pty", "/no/such/place/tty"}, "--pty /no/such/place/tty", "path"},
       {{"EX9042D", "--pty", ""}, "--pty", "path"},
+      {{"EX9042D", "--tcp", "here"}, "--tcp here", "HOST:PORT"},
+      {{"EX9042D", "--tcp", "192.0.2.1:5020"}, "--tcp 192.0.2.1:5020", "name"},
+      {{"EX9042D", "--serial", "/no/such/port"}, "--serial /no/such/port", "name"},
+      {{"EX9042D", "--line", "fast"}, "--line fast", "paced or instant"},
+      {{"EX9042D", "--control", "/no/such/place/ctl"}, "--control /no/such/place/ctl", "path"},
+      {{"EX9042D,eeprom=/no/such/place/bin"}, "eeprom=/no/such/place/bin", "path"},
+      {{"EX9042D", "--reference", "EX1"}, "--reference", "--models"},
   };
   for (const Case& wrong : cases) {
     Directory directory;
@@ -108,6 +115,23 @@ TEST(Program, ALinkInUseIsRefusedAndOneLeftByADeadProcessIsTakenOver) {
   EXPECT_FALSE(fs::is_symlink(process.tty()));
 }
 
+TEST(Program, ALeftLinkThatLeadsToAnotherSimulatorByNowIsTakenOver) {
+  SimulatorProcess other({"EX9042D-M"});
+  const Directory directory;
+  const std::string link = directory.path() + "/left.tty";
+  fs::create_symlink(fs::read_symlink(other.tty()), link);
+  SimulatorProcess heir({"EX9042D", "--pty", link});
+  EXPECT_NE(heir.output().find("Ctrl-C ends it"), std::string::npos);
+  EXPECT_NE(fs::read_symlink(link), fs::read_symlink(other.tty()));
+}
+
+TEST(Program, AnInstalledProgramRunsFromWhereItIsPut) {
+  const Directory directory;
+  const Finished installed = run({"cmake", "--install", EX9000_BUILD, "--prefix", directory.path()});
+  EXPECT_EQ(installed.status, 0) << installed.error;
+  EXPECT_EQ(run({directory.path() + "/bin/ex9000-sim", "--version"}, "/").output, "ex9000-sim D01.00\n");
+}
+
 TEST(Program, TellsItsVersionModelsAndHelp) {
   Directory directory;
   EXPECT_EQ(simulator({"--version"}, directory.path()).output, "ex9000-sim D01.00\n");
@@ -118,7 +142,8 @@ TEST(Program, TellsItsVersionModelsAndHelp) {
   EXPECT_NE(models.output.find("EX9068AD-M"), std::string::npos);
   const Finished help = simulator({"--help"}, directory.path());
   EXPECT_EQ(help.status, 0);
-  for (const char* option : {"--pty", "--baud", "--log", "--models", "--version", "--strict-gaps",
+  for (const char* option : {"--pty", "--baud", "--log", "--models", "--version", "--strict-gaps", "--tcp",
+                             "--serial", "--line", "--control", "--reference", "eeprom=", "N pulse C",
                              "protocol=", "edge=", "checksum=", "name=", "init=", "baud="}) {
     EXPECT_NE(help.output.find(option), std::string::npos) << option;
   }
