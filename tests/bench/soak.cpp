@@ -1,0 +1,138 @@
+// Two buses with 32 modules each, polled back to back: no wrong answer, and no growth in memory.
+//
+//     soak [SECONDS]
+#include <array>
+#include <atomic>
+#include <chrono>
+#include <cstdio>
+#include <cstdlib>
+#include <fstream>
+#include <string>
+#include <thread>
+#include <vector>
+
+#include "tests/system/control_client.hpp"
+#include "tests/system/libmodbus_master.hpp"
+#include "tests/system/simulator_process.hpp"
+
+namespace {
+
+using ex9000::system::ControlClient;
+using ex9000::system::LibmodbusMaster;
+using ex9000::system::SimulatorProcess;
+using Clock = std::chrono::steady_clock;
+
+constexpr int kModules = 32;
+constexpr int kBaud = 115200;
+constexpr int kOutputs = 13;
+constexpr int kInputs = 8;
+/// What a process may take more than after its first seconds, in KiB.
+constexpr long kGrowth = 256;
+
+bool has_outputs(int address) { return address % 2 == 1; }
+
+std::vector<std::string> modules() {
+  constexpr std::array<char, 17> kDigits{"0123456789ABCDEF"};
+  std::vector<std::string> arguments;
+  for (int address = 1; address <= kModules; ++address) {
+    const auto byte = static_cast<unsigned>(address);
+    arguments.push_back(std::string(has_outputs(address) ? "EX9042D-M@" : "EX9052D-M@") + kDigits[byte / 16] +
+                        kDigits[byte % 16] + ",baud=" + std::to_string(kBaud));
+  }
+  arguments.insert(arguments.end(), {"--control", "control"});
+  return arguments;
+}
+
+/// One line, its master, and what is expected of the modules.
+class Bus {
+ public:
+  void poll_until(Clock::time_point end) {
+    while (Clock::now() < end) {
+      for (int address = 1; address <= kModules; ++address) {
+        if (has_outputs(address)) {
+          move_an_output(address);
+        } else {
+          count_a_pulse(address);
+        }
+      }
+      ++round_;
+    }
+  }
+
+  [[nodiscard]] long transactions() const { return transactions_; }
+  [[nodiscard]] long wrong() const { return wrong_; }
+  /// Resident memory of the simulator, in KiB.
+  [[nodiscard]] long memory() const {
+    std::ifstream status("/proc/" + std::to_string(simulator_.pid()) + "/status");
+    for (std::string line; std::getline(status, line);) {
+      if (line.rfind("VmRSS:", 0) == 0) {
+        return std::stol(line.substr(line.find(':') + 1));
+      }
+    }
+    return 0;
+  }
+
+ private:
+  void move_an_output(int address) {
+    const int channel = static_cast<int>(round_ % kOutputs);
+    const int on = static_cast<int>(round_ / kOutputs % 2 == 0);
+    judge(modbus_write_bit(master_.at(address), channel, on) == 1);
+    std::array<std::uint8_t, kOutputs> bits{};
+    judge(modbus_read_bits(master_.at(address), 0, kOutputs, bits.data()) == kOutputs &&
+          bits[static_cast<std::size_t>(channel)] == on);
+  }
+  void count_a_pulse(int address) {
+    const auto channel = static_cast<std::size_t>(round_ % kInputs);
+    control_.ok(std::to_string(address) + " pulse " + std::to_string(channel));
+    std::array<std::uint16_t, kInputs> counters{};
+    judge(modbus_read_registers(master_.at(address), 0, kInputs, counters.data()) == kInputs &&
+          counters[channel] == (round_ / kInputs + 1) % 65536);
+  }
+  void judge(bool right) {
+    ++transactions_;
+    wrong_ += right ? 0 : 1;
+  }
+
+  SimulatorProcess simulator_{modules()};
+  LibmodbusMaster master_{simulator_.tty(), kBaud};
+  ControlClient control_{simulator_.directory() + "/control"};
+  long round_ = 0;
+  std::atomic<long> transactions_{0};
+  std::atomic<long> wrong_{0};
+};
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  const long seconds = argc > 1 ? std::atol(argv[1]) : 600;
+  if (argc > 2 || seconds < 1) {
+    std::fprintf(stderr, "soak: wants a number of seconds, or nothing for 600\n");
+    return 2;
+  }
+  std::array<Bus, 2> buses;
+  const auto end = Clock::now() + std::chrono::seconds(seconds);
+  std::vector<std::thread> masters;
+  for (Bus& bus : buses) {
+    masters.emplace_back([&bus, end] { bus.poll_until(end); });
+  }
+  std::this_thread::sleep_for(std::chrono::seconds(1));
+  const std::array<long, 2> before{buses[0].memory(), buses[1].memory()};
+  constexpr std::chrono::seconds kTell{60};
+  for (auto tell = Clock::now() + kTell; tell < end; tell += kTell) {
+    std::this_thread::sleep_until(tell);
+    std::printf("%ld and %ld transactions, %ld wrong\n", buses[0].transactions(), buses[1].transactions(),
+                buses[0].wrong() + buses[1].wrong());
+    std::fflush(stdout);
+  }
+  for (std::thread& master : masters) {
+    master.join();
+  }
+  bool passed = true;
+  for (std::size_t i = 0; i < buses.size(); ++i) {
+    const long grown = buses[i].memory() - before[i];
+    std::printf("bus %zu: %ld transactions in %ld s, %ld wrong; %ld KiB, %+ld since the first second\n",
+                i + 1, buses[i].transactions(), seconds, buses[i].wrong(), buses[i].memory(), grown);
+    passed = passed && buses[i].wrong() == 0 && grown <= kGrowth && buses[i].transactions() > 0;
+  }
+  return passed ? 0 : 1;
+}
