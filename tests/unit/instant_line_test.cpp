@@ -4,8 +4,8 @@
 #include <string>
 #include <vector>
 
-#include "firmware/line/crc16.hpp"
 #include "sim/line.hpp"
+#include "tests/unit/module_bench.hpp"
 
 namespace ex9000::sim {
 namespace {
@@ -14,15 +14,7 @@ using Frame = std::vector<std::uint8_t>;
 using std::chrono::microseconds;
 using std::chrono::milliseconds;
 
-Frame with_crc(Frame frame) {
-  Crc16 crc;
-  for (const std::uint8_t byte : frame) {
-    crc.add(byte);
-  }
-  frame.push_back(static_cast<std::uint8_t>(crc.value() & 0xFFU));
-  frame.push_back(static_cast<std::uint8_t>(crc.value() >> 8U));
-  return frame;
-}
+Frame with_crc(const Frame& frame) { return ModuleBench::with_crc(frame); }
 
 const Frame kReadOutputs = with_crc({0x01, 0x01, 0x00, 0x00, 0x00, 0x0D});
 const Frame kOutputsOff = with_crc({0x01, 0x01, 0x02, 0x00, 0x00});
