@@ -33,7 +33,8 @@ class Module {
   Module(const Module&) = delete;
   Module& operator=(const Module&) = delete;
 
-  /// Once, before anything else. `input_levels`: bit n is channel n, 1 = +4 to +30 V.
+  /// Once, before anything else. `input_levels`: bit n is channel n, 1 = +4 to +30 V. `timing_at` is asked
+  /// once, in the main loop, when the rate is known; not null.
   void begin(std::uint16_t input_levels, Time now, TimingAt timing_at = LineTiming::at);
 
   // --- interrupts ---

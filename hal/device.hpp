@@ -37,7 +37,8 @@ class Device {
  public:
   constexpr Device(const Model& model, const Board& board) : module_(model), board_(board) {}
 
-  /// Once, before interrupts are enabled. `tick` is the period that suits the board, see Tick::start.
+  /// Once, before interrupts are enabled. `tick` is the period that suits the board, see Tick::start;
+  /// `timing_at` what Module::begin wants.
   void start(Duration tick, TimingAt timing_at = LineTiming::at);
 
   // --- interrupts; on_receive and on_silence share a priority, the others may have their own ---

@@ -133,6 +133,13 @@ void take(const Texts& texts, Arguments& arguments) {
   if (arguments.serial && (arguments.pty || arguments.tcp)) {
     throw std::invalid_argument("--serial: the master is on that line; leave out --pty and --tcp");
   }
+  if (arguments.echo && !arguments.serial) {
+    throw std::invalid_argument("--echo: only a serial port may have one; --serial names it");
+  }
+  if (arguments.instant && arguments.serial) {
+    throw std::invalid_argument(
+        "--line instant: on a real line bytes take their time; leave it out with --serial");
+  }
   if (arguments.instant && arguments.strict_gaps) {
     throw std::invalid_argument(
         "--strict-gaps: gaps mean nothing with --line instant; leave one of them out");
@@ -172,6 +179,7 @@ Parsed parse_arguments(int argc, const char* const* argv) {
       ->type_name("HOST:PORT");
   app.add_option("--serial", arguments.serial, "put the modules on this serial port, behind a real line")
       ->type_name("DEVICE");
+  app.add_flag("--echo", arguments.echo, "the serial port's adapter hears what it sends");
   app.add_option("--baud", texts.baud,
                  "the line's rate until a master sets one (default: the first module's)")
       ->type_name("RATE");

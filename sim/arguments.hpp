@@ -18,6 +18,7 @@ struct Arguments {
   std::optional<std::string> serial;   ///< the port to take; then there is no other
   std::optional<std::string> control;  ///< where to make the control socket
   std::optional<std::uint32_t> baud;   ///< of the line, until a master sets one
+  bool echo = false;                   ///< the serial port hears what it sends
   bool instant = false;                ///< bytes cost no time
   bool strict_gaps = false;
   bool log = false;

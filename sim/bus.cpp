@@ -28,7 +28,7 @@ Bus::Bus(VirtualClock& clock, std::uint32_t times_faster) : clock_(clock), times
 
 Bus::~Bus() = default;
 
-/// A bit must last whole nanoseconds; what a module listens at stays far below the fastest.
+/// Half a bit must last a nanosecond, for samplers to get on; rates beyond that are none of a module's.
 std::uint32_t Bus::bit_rate(std::uint32_t baud) const {
   constexpr std::uint64_t kFastest = 500'000'000;
   return static_cast<std::uint32_t>(std::min(std::uint64_t{baud} * times_faster_, kFastest));

@@ -54,8 +54,8 @@ class BusObserver {
 ///
 /// The clock jumps from event to event; nothing here knows real time.
 ///
-/// A line may be made so many times faster than its rates say: all rates are multiplied alike, so who
-/// understands whom, and what collides, stays the same.
+/// A line may be made so many times faster than its rates say: all rates of modules are multiplied alike, so
+/// who understands whom, and what collides, stays the same.
 class Bus {
  public:
   explicit Bus(VirtualClock& clock, std::uint32_t times_faster = 1);

@@ -21,6 +21,13 @@ constexpr std::size_t kSize = hal::doubles::Memory::kSize;
 
 std::string reason() { return std::strerror(errno); }
 
+/// What the user does not permit to files that are made; mkostemp permits less.
+mode_t file_mask() {
+  const mode_t mask = umask(0);
+  umask(mask);
+  return mask;
+}
+
 }  // namespace
 
 EepromFile::EepromFile(std::string path) : path_(std::move(path)) {
@@ -65,8 +72,7 @@ void EepromFile::create(const std::vector<std::uint8_t>& image) {
   if (fd_ < 0) {
     refuse("cannot be made: " + reason() + "; name a path that can be written");
   }
-  constexpr mode_t kPermissions = S_IRUSR | S_IWUSR | S_IRGRP | S_IROTH;
-  const bool made = fchmod(fd_, kPermissions) == 0 && write(0, {image.data(), image.size()}) &&
+  const bool made = fchmod(fd_, 0666 & ~file_mask()) == 0 && write(0, {image.data(), image.size()}) &&
                     flock(fd_, LOCK_EX | LOCK_NB) == 0 && link(draft.c_str(), path_.c_str()) == 0;
   const std::string why = reason();
   unlink(draft.c_str());

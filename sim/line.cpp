@@ -14,11 +14,19 @@ constexpr std::chrono::milliseconds kComingUp{100};
 LineTiming instantly(std::uint32_t /*baud*/) {
   constexpr Duration kSilence(6);
   constexpr Duration kQuiet = milliseconds(2);
-  return {Duration(), kSilence, kQuiet, kSilence + kQuiet, Duration(0xFFFF'FFFFU)};
+  LineTiming timing;
+  timing.dcon_turn_around = Duration();
+  timing.rtu_silence = kSilence;
+  timing.rtu_grace = kQuiet;
+  timing.rtu_separate = kSilence + kQuiet;
+  timing.rtu_slack = LineTiming::kAnyGap;
+  return timing;
 }
 
-Line::Line(const std::vector<ModuleSpec>& modules, std::uint32_t baud, LineKind kind, Master::Receive receive)
-    : kind_(kind), bus_(clock_, kind.times_faster), master_(bus_, baud, std::move(receive)) {
+Line::Line(const std::vector<ModuleSpec>& modules, LineKind kind, Master::Receive receive)
+    : kind_(kind),
+      bus_(clock_, kind.times_faster),
+      master_(bus_, baud_rate(kFactoryBaudCode), std::move(receive)) {
   for (const ModuleSpec& spec : modules) {
     modules_.push_back(std::make_unique<SimulatedModule>(bus_, *spec.model, kind.timing_at));
     SimulatedModule& module = *modules_.back();

@@ -29,8 +29,8 @@ constexpr LineKind kInstant{4000, instantly};
 /// Station 0 is the master; modules follow in the order given.
 class Line {
  public:
-  /// All modules have their supply off.
-  Line(const std::vector<ModuleSpec>& modules, std::uint32_t baud, LineKind kind, Master::Receive receive);
+  /// All modules have their supply off; the master is at the factory's rate.
+  Line(const std::vector<ModuleSpec>& modules, LineKind kind, Master::Receive receive);
 
   /// The supply of all modules goes on, and the time passes that they may take until they answer.
   void come_up();

@@ -118,10 +118,6 @@ std::string hex_byte_text(unsigned value) {
   return {static_cast<char>(hex_digit(value >> 4U)), static_cast<char>(hex_digit(value))};
 }
 
-std::uint32_t ModuleSpec::baud() const {
-  return baud_rate(init_asserted ? kFactoryBaudCode : settings.baud_code);
-}
-
 ModuleSpec parse_module_spec(const std::string& text) {
   try {
     std::istringstream parts(text);

@@ -14,9 +14,6 @@ struct ModuleSpec {
   bool settings_given = false;  ///< they are not just the factory's
   bool init_asserted = false;
   std::string eeprom;  ///< path of the EEPROM's file; empty: what is stored lasts as long as the program
-
-  /// Bits per second that it listens at after power-on with these settings.
-  [[nodiscard]] std::uint32_t baud() const;
 };
 
 /// Throws std::invalid_argument, one line that names what is wrong and what would be right.

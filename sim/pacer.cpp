@@ -80,8 +80,8 @@ void Pacer::follow() {
 
 void Pacer::arm_timer() {
   VirtualTime next = std::min(line_.bus().next(), log_ == nullptr ? kNever : log_->next());
-  if (paused_) {
-    next = std::min(next, line_.clock().virtual_now());
+  if (paused_ && line_.clock().virtual_now() > wall()) {
+    next = std::min(next, line_.clock().virtual_now() - kFarthestAhead);
   }
   if (next == kNever) {
     return;

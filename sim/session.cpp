@@ -32,7 +32,7 @@ Session::Session(boost::asio::io_context& io, Arguments arguments, Print print)
   for (const ModuleSpec& module : arguments_.modules) {
     memories_.push_back(module.eeprom.empty() ? nullptr : std::make_unique<EepromFile>(module.eeprom));
   }
-  line_ = std::make_unique<Line>(arguments_.modules, arguments_.modules.front().baud(), kind_of(arguments_),
+  line_ = std::make_unique<Line>(arguments_.modules, kind_of(arguments_),
                                  [this](std::uint8_t byte, ByteStatus /*status*/) { pacer_->hear(byte); });
   use_memories();
   line_->come_up();
@@ -66,7 +66,7 @@ void Session::open_ports() {
     ports_.push_back(std::move(port));
   }
   if (arguments_.serial) {
-    ports_.push_back(std::make_unique<SerialPort>(io_, *arguments_.serial, baud));
+    ports_.push_back(std::make_unique<SerialPort>(io_, *arguments_.serial, baud, arguments_.echo));
     introduced_.serial = *arguments_.serial;
   }
 }
@@ -84,6 +84,18 @@ void Session::open_control() {
   control_socket_ =
       std::make_unique<ControlSocket>(io_, *arguments_.control, carry_out, [this] { io_.stop(); });
   introduced_.control = *arguments_.control;
+}
+
+/// What a module has stored while it came up follows it.
+void Session::renew_memories() {
+  for (std::size_t i = 0; i < line_->size(); ++i) {
+    const EepromFile* file = memories_[i].get();
+    const std::vector<std::uint8_t>& contents = line_->module(i).memory().contents();
+    if (file != nullptr && file->found() && contents != *file->found() &&
+        !file->write(0, {contents.data(), contents.size()})) {
+      throw std::runtime_error("eeprom=" + file->path() + ": cannot be written");
+    }
+  }
 }
 
 /// All or none.
@@ -105,19 +117,12 @@ void Session::make_missing_memories() {
   }
 }
 
-/// A store that reached a module's memory while it came up is in the image, or follows it.
 void Session::keep_memories() {
   for (std::size_t i = 0; i < line_->size(); ++i) {
-    const EepromFile* file = memories_[i].get();
-    if (file == nullptr) {
-      continue;
+    if (const EepromFile* file = memories_[i].get()) {
+      line_->module(i).memory().keep(
+          [file](std::uint16_t address, Bytes bytes) { return file->write(address, bytes); });
     }
-    hal::doubles::Memory& memory = line_->module(i).memory();
-    if (file->found() && memory.contents() != *file->found() &&
-        !file->write(0, {memory.contents().data(), memory.contents().size()})) {
-      throw std::runtime_error("eeprom=" + file->path() + ": cannot be written");
-    }
-    memory.keep([file](std::uint16_t address, Bytes bytes) { return file->write(address, bytes); });
   }
 }
 
@@ -151,6 +156,7 @@ void Session::introduce() {
 }
 
 void Session::start() {
+  renew_memories();
   make_missing_memories();
   keep_memories();
   std::vector<std::string> speakers{"master"};

@@ -39,6 +39,7 @@ class Session {
   void use_memories();
   void open_ports();
   void open_control();
+  void renew_memories();
   void make_missing_memories();
   void keep_memories();
   [[nodiscard]] std::string remark(std::size_t index) const;

@@ -18,14 +18,22 @@ struct LineTiming {
                               ///< one of its own
   Duration rtu_slack;         ///< bytes whose ends lie further apart than this spoil a frame
 
+  /// For rtu_slack: no gap spoils a frame.
+  static constexpr Duration kAnyGap{0xFFFF'FFFFU};
+
   /// Modbus over Serial Line V1.02, 2.5.1.1: T3.5 counts 11-bit characters up to 19200 baud and is fixed
   /// above. Gaps inside a frame are tolerated, since USB adapters and gateways make them. `baud` in bits per
-  /// second, 1200 to 115200.
+  /// second, 50 to 4000000.
   static constexpr LineTiming at(std::uint32_t baud) {
-    const Duration character(microseconds(2 * 10, baud) + kRoundUp);
+    const std::uint32_t character = microseconds(2 * 10, baud);
     const std::uint32_t t35 = silence(7, baud, 1750);
-    return {character, Duration(t35 + kRoundUp), character, Duration(t35 + microseconds(2 * 10, baud) - 1),
-            Duration(0xFFFF'FFFFU)};
+    LineTiming timing;
+    timing.dcon_turn_around = Duration(character + kRoundUp);
+    timing.rtu_silence = Duration(t35 + kRoundUp);
+    timing.rtu_grace = Duration(character + kRoundUp);
+    timing.rtu_separate = Duration(t35 + character - 1);
+    timing.rtu_slack = kAnyGap;
+    return timing;
   }
 
   /// Likewise, but a gap of more than T1.5 spoils a frame, as the same clause has it.

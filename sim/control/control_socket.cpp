@@ -26,7 +26,11 @@ constexpr std::size_t kMostClients = 64;
 }
 
 /// Makes room for the socket, or throws.
-void clear_the_way(boost::asio::io_context& io, const std::string& path) {
+void clear_the_way(boost::asio::io_context& io, const std::string& path, const Claim& claim) {
+  const std::string in_use = "another program listens there; end it or name another path";
+  if (!claim.held()) {
+    refuse(path, in_use);
+  }
   struct stat status {};
   if (lstat(path.c_str(), &status) != 0) {
     return;
@@ -38,8 +42,7 @@ void clear_the_way(boost::asio::io_context& io, const std::string& path) {
   boost::system::error_code error;
   visitor.connect(Local::endpoint(path), error);
   if (error != boost::asio::error::connection_refused) {
-    refuse(path, error ? error.message() + "; name another path"
-                       : "another program listens there; end it or name another path");
+    refuse(path, error ? error.message() + "; name another path" : in_use);
   }
   unlink(path.c_str());
 }
@@ -56,12 +59,17 @@ struct ControlSocket::Client {
 
 ControlSocket::ControlSocket(boost::asio::io_context& io, std::string path, CarryOut carry_out,
                              std::function<void()> quit)
-    : path_(std::move(path)), carry_out_(std::move(carry_out)), quit_(std::move(quit)), acceptor_(io) {
+    : path_(std::move(path)),
+      claim_(path_),
+      carry_out_(std::move(carry_out)),
+      quit_(std::move(quit)),
+      acceptor_(io),
+      next_try_(io) {
   if (path_.empty() || path_.size() >= sizeof(sockaddr_un::sun_path)) {
     refuse(path_,
            "wants a path of 1 to " + std::to_string(sizeof(sockaddr_un::sun_path) - 1) + " characters");
   }
-  clear_the_way(io, path_);
+  clear_the_way(io, path_, claim_);
   boost::system::error_code error;
   acceptor_.open(Local(), error);
   if (!error) {
@@ -74,11 +82,14 @@ ControlSocket::ControlSocket(boost::asio::io_context& io, std::string path, Carr
     acceptor_.listen(Local::acceptor::max_listen_connections, error);
   }
   if (error) {
+    remove();
     refuse(path_, error.message() + "; name a path that can be written");
   }
 }
 
-ControlSocket::~ControlSocket() {
+ControlSocket::~ControlSocket() { remove(); }
+
+void ControlSocket::remove() const {
   struct stat status {};
   if (lstat(path_.c_str(), &status) == 0 && status.st_dev == device_ && status.st_ino == inode_) {
     unlink(path_.c_str());
@@ -93,16 +104,29 @@ void ControlSocket::accept() {
     clients_.erase(std::remove_if(clients_.begin(), clients_.end(),
                                   [](const std::weak_ptr<Client>& client) { return client.expired(); }),
                    clients_.end());
-    if (!error) {
-      const auto client = std::make_shared<Client>(std::move(socket));
-      if (clients_.size() < kMostClients) {
-        clients_.push_back(client);
-        read(client);
-      } else {
-        answer(client, "error: " + std::to_string(kMostClients) + " clients are here already", Then::Part);
-      }
+    if (error) {
+      accept_later();
+      return;
+    }
+    const auto client = std::make_shared<Client>(std::move(socket));
+    if (clients_.size() < kMostClients) {
+      clients_.push_back(client);
+      read(client);
+    } else {
+      answer(client, "error: " + std::to_string(kMostClients) + " clients are here already", Then::Part);
     }
     accept();
+  });
+}
+
+/// The process has as many files open as it may: trying again at once would take all of the processor.
+void ControlSocket::accept_later() {
+  constexpr std::chrono::milliseconds kPatience{100};
+  next_try_.expires_after(kPatience);
+  next_try_.async_wait([this](const boost::system::error_code& error) {
+    if (!error) {
+      accept();
+    }
   });
 }
 

@@ -5,12 +5,14 @@
 
 #include <boost/asio/io_context.hpp>
 #include <boost/asio/local/stream_protocol.hpp>
+#include <boost/asio/steady_timer.hpp>
 #include <functional>
 #include <memory>
 #include <string>
 #include <vector>
 
 #include "sim/control/control.hpp"
+#include "sim/ports/claim.hpp"
 
 namespace ex9000::sim {
 
@@ -36,16 +38,20 @@ class ControlSocket {
  private:
   struct Client;
 
+  void remove() const;
   void accept();
+  void accept_later();
   void read(const std::shared_ptr<Client>& client);
   /// What happens when the answer is on its way.
   enum class Then { ReadOn, Part, Quit };
   void answer(const std::shared_ptr<Client>& client, const std::string& text, Then then);
 
   std::string path_;
+  Claim claim_;
   CarryOut carry_out_;
   std::function<void()> quit_;
   boost::asio::local::stream_protocol::acceptor acceptor_;
+  boost::asio::steady_timer next_try_;
   std::vector<std::weak_ptr<Client>> clients_;
   dev_t device_ = 0;  ///< of the socket's file, with
   ino_t inode_ = 0;   ///< this number

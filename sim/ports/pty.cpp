@@ -1,6 +1,7 @@
 #include "sim/ports/pty.hpp"
 
 #include <fcntl.h>
+#include <poll.h>
 #include <sys/inotify.h>
 #include <sys/stat.h>
 #include <termios.h>
@@ -11,8 +12,6 @@
 #include <climits>
 #include <cstdlib>
 #include <cstring>
-#include <filesystem>
-#include <functional>
 #include <stdexcept>
 #include <utility>
 
@@ -31,37 +30,12 @@ std::optional<std::string> link_target(const std::string& link) {
                   : std::optional<std::string>(std::string(target.data(), static_cast<std::size_t>(size)));
 }
 
-/// A running simulator keeps a record lock on its slave, which nobody else takes on a terminal, at a place
-/// that follows from the path of its link: a link that a dead one has left may lead to where another is by
-/// now.
-struct flock lock_for(const std::string& link) {
-  const std::filesystem::path path(link);
-  const std::filesystem::path directory = path.has_parent_path() ? path.parent_path() : ".";
-  std::error_code error;
-  const std::filesystem::path canonical = std::filesystem::canonical(directory, error) / path.filename();
-  constexpr std::size_t kMostOffset = 0x7FFF'FFFF;
-  struct flock lock {};
-  lock.l_type = F_WRLCK;
-  lock.l_whence = SEEK_SET;
-  lock.l_start = static_cast<off_t>(std::hash<std::string>()(canonical.string()) & kMostOffset);
-  lock.l_len = 1;
-  return lock;
-}
-
-/// Whether a running simulator has this device under this link.
-bool is_held(const std::string& device, const std::string& link) {
-  const int fd = open(device.c_str(), O_RDWR | O_NOCTTY | O_NONBLOCK | O_CLOEXEC);
-  if (fd < 0) {
-    return false;
-  }
-  struct flock lock = lock_for(link);
-  const bool held = fcntl(fd, F_GETLK, &lock) == 0 && lock.l_type != F_UNLCK;
-  close(fd);
-  return held;
-}
-
 /// Makes room for the link, or throws.
-void clear_the_way(const std::string& link) {
+void clear_the_way(const std::string& link, const Claim& claim) {
+  if (!claim.held()) {
+    throw std::invalid_argument("--pty " + link +
+                                ": another simulator is running there; end it or name another path");
+  }
   struct stat status {};
   if (lstat(link.c_str(), &status) != 0) {
     return;
@@ -71,48 +45,68 @@ void clear_the_way(const std::string& link) {
     throw std::invalid_argument("--pty " + link +
                                 ": something else is there; remove it or name another path");
   }
-  if (is_held(*target, link)) {
-    throw std::invalid_argument("--pty " + link +
-                                ": another simulator is running there; end it or name another path");
-  }
   unlink(link.c_str());
 }
 
-}  // namespace
-
-Pty::Pty(std::string link, std::uint32_t baud) : link_(std::move(link)) {
-  clear_the_way(link_);
-  try {
-    master_ = posix_openpt(O_RDWR | O_NOCTTY | O_CLOEXEC | O_NONBLOCK);
-    std::array<char, 64> name{};
-    if (master_ < 0 || grantpt(master_) != 0 || unlockpt(master_) != 0 ||
-        ptsname_r(master_, name.data(), name.size()) != 0) {
-      throw std::runtime_error("no pseudo-terminal to be had: " + reason());
+/// For a moment; whoever is to hear of visits does not look yet, or takes this for one.
+class Slave {
+ public:
+  explicit Slave(const std::string& device)
+      : fd_(open(device.c_str(), O_RDWR | O_NOCTTY | O_NONBLOCK | O_CLOEXEC)) {}
+  ~Slave() {
+    if (fd_ >= 0) {
+      close(fd_);
     }
-    device_ = name.data();
-    slave_ = open(device_.c_str(), O_RDWR | O_NOCTTY | O_CLOEXEC);
+  }
+  Slave(const Slave&) = delete;
+  Slave& operator=(const Slave&) = delete;
+
+  [[nodiscard]] bool set_up(std::uint32_t baud) const {
     termios settings{};
-    if (slave_ < 0 || tcgetattr(slave_, &settings) != 0) {
-      throw std::runtime_error(device_ + ": " + reason());
+    if (fd_ < 0 || tcgetattr(fd_, &settings) != 0) {
+      return false;
     }
     cfmakeraw(&settings);
     if (const auto speed = termios_speed(baud)) {
       cfsetspeed(&settings, *speed);
     }
-    struct flock lock = lock_for(link_);
-    if (tcsetattr(slave_, TCSANOW, &settings) != 0 || fcntl(slave_, F_SETLK, &lock) != 0) {
-      throw std::runtime_error(device_ + ": " + reason());
-    }
-    visits_ = inotify_init1(IN_NONBLOCK | IN_CLOEXEC);
-    if (visits_ < 0 || inotify_add_watch(visits_, device_.c_str(), IN_OPEN | IN_CLOSE) < 0) {
-      throw std::runtime_error(device_ + ": " + reason());
-    }
-    if (symlink(device_.c_str(), link_.c_str()) != 0) {
-      throw std::invalid_argument("--pty " + link_ + ": " + reason() + "; name a path that can be written");
-    }
+    return tcsetattr(fd_, TCSANOW, &settings) == 0;
+  }
+  void forget_unread() const { tcflush(fd_, TCIFLUSH); }
+
+ private:
+  int fd_;
+};
+
+}  // namespace
+
+Pty::Pty(std::string link, std::uint32_t baud) : link_(std::move(link)), claim_(link_) {
+  clear_the_way(link_, claim_);
+  try {
+    make(baud);
   } catch (...) {
     close_all();
     throw;
+  }
+}
+
+void Pty::make(std::uint32_t baud) {
+  master_ = posix_openpt(O_RDWR | O_NOCTTY | O_CLOEXEC | O_NONBLOCK);
+  std::array<char, 64> name{};
+  if (master_ < 0 || grantpt(master_) != 0 || unlockpt(master_) != 0 ||
+      ptsname_r(master_, name.data(), name.size()) != 0) {
+    throw std::runtime_error("no pseudo-terminal to be had: " + reason());
+  }
+  device_ = name.data();
+  if (!Slave(device_).set_up(baud)) {
+    throw std::runtime_error(device_ + ": " + reason());
+  }
+  visits_ = inotify_init1(IN_NONBLOCK | IN_CLOEXEC);
+  if (visits_ < 0 || inotify_add_watch(visits_, device_.c_str(), IN_OPEN | IN_CLOSE) < 0) {
+    throw std::runtime_error(device_ + ": " + reason());
+  }
+  if (symlink(device_.c_str(), link_.c_str()) != 0) {
+    throw std::invalid_argument("--pty " + link_ + ": " + reason() + "; name a path that can be written");
   }
 }
 
@@ -123,33 +117,30 @@ Pty::~Pty() {
   close_all();
 }
 
-void Pty::take_visits() {
-  alignas(inotify_event) std::array<char, 4096> buffer{};
-  ssize_t size = 0;
-  while ((size = ::read(visits_, buffer.data(), buffer.size())) > 0) {
-    // Events of a watched file carry no name, so all are of one size.
-    for (std::size_t at = 0; at < static_cast<std::size_t>(size); at += sizeof(inotify_event)) {
-      inotify_event event{};
-      std::memcpy(&event, buffer.data() + at, sizeof event);
-      if ((event.mask & IN_OPEN) != 0) {
-        ++visitors_;
-      } else if (--visitors_ == 0) {
-        tcflush(slave_, TCIFLUSH);
-      }
+void Pty::close_all() const {
+  for (const int fd : {visits_, master_}) {
+    if (fd >= 0) {
+      close(fd);
     }
   }
 }
 
-void Pty::close_all() const {
-  if (visits_ >= 0) {
-    close(visits_);
+bool Pty::visited() const {
+  pollfd master{master_, 0, 0};
+  return poll(&master, 1, 0) == 0 || (master.revents & POLLHUP) == 0;
+}
+
+/// The events only say that something has changed: of two that are alike, one after the other, the kernel
+/// keeps one, so they cannot be counted.
+void Pty::take_visits() {
+  std::array<char, 4096> events{};
+  while (::read(visits_, events.data(), events.size()) > 0) {
   }
-  if (slave_ >= 0) {
-    close(slave_);
+  const bool there = visited();
+  if (there && deserted_) {
+    Slave(device_).forget_unread();
   }
-  if (master_ >= 0) {
-    close(master_);
-  }
+  deserted_ = !there;
 }
 
 std::optional<std::uint32_t> Pty::baud() const {

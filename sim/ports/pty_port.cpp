@@ -8,7 +8,13 @@
 namespace ex9000::sim {
 
 PtyPort::PtyPort(boost::asio::io_context& io, const std::string& link, std::uint32_t baud)
-    : pty_(link, baud), visits_(io, dup(pty_.visits_fd())), descriptor_(io, dup(pty_.master_fd())) {}
+    : pty_(link, baud), visits_(io, pty_.visits_fd()), descriptor_(io, pty_.master_fd()) {}
+
+/// They are the pseudo-terminal's.
+PtyPort::~PtyPort() {
+  visits_.release();
+  descriptor_.release();
+}
 
 void PtyPort::start(Received received) {
   received_ = std::move(received);
@@ -17,23 +23,24 @@ void PtyPort::start(Received received) {
 }
 
 void PtyPort::resume() {
-  if (paused_) {
-    read();
-  }
+  paused_ = false;
+  read();
 }
 
 void PtyPort::read() {
-  paused_ = false;
+  if (reading_ || paused_) {
+    return;
+  }
+  reading_ = true;
   descriptor_.async_read_some(boost::asio::buffer(buffer_),
                               [this](const boost::system::error_code& error, std::size_t size) {
+                                reading_ = false;
                                 if (error) {
-                                  return;
+                                  return;  // nobody is there any more
                                 }
                                 pty_.take_visits();  // who writes must be there when it is answered
                                 paused_ = !received_(buffer_.data(), size);
-                                if (!paused_) {
-                                  read();
-                                }
+                                read();
                               });
 }
 
@@ -42,6 +49,7 @@ void PtyPort::watch_visits() {
                      [this](const boost::system::error_code& error) {
                        if (!error) {
                          pty_.take_visits();
+                         read();
                          watch_visits();
                        }
                      });

@@ -4,6 +4,7 @@
 #include <array>
 #include <boost/asio/io_context.hpp>
 #include <boost/asio/posix/stream_descriptor.hpp>
+#include <string>
 
 #include "sim/ports/port.hpp"
 #include "sim/ports/pty.hpp"
@@ -14,6 +15,7 @@ class PtyPort final : public Port {
  public:
   /// See Pty::Pty.
   PtyPort(boost::asio::io_context& io, const std::string& link, std::uint32_t baud);
+  ~PtyPort() override;
 
   void start(Received received) override;
   void resume() override;
@@ -23,6 +25,7 @@ class PtyPort final : public Port {
   [[nodiscard]] const Pty& pty() const { return pty_; }
 
  private:
+  /// Goes on by itself; stops while nobody is there, and when it is told to wait.
   void read();
   void watch_visits();
 
@@ -31,6 +34,7 @@ class PtyPort final : public Port {
   boost::asio::posix::stream_descriptor descriptor_;
   Received received_;
   std::array<std::uint8_t, 4096> buffer_{};
+  bool reading_ = false;
   bool paused_ = false;
 };
 

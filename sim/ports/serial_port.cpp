@@ -7,7 +7,6 @@
 #include <termios.h>
 #include <unistd.h>
 
-#include <algorithm>
 #include <boost/asio/buffer.hpp>
 #include <cerrno>
 #include <cstring>
@@ -34,50 +33,57 @@ void ask_for_low_latency(int fd) {
   }
 }
 
-}  // namespace
-
-SerialPort::SerialPort(boost::asio::io_context& io, std::string device, std::uint32_t baud)
-    : device_(std::move(device)), baud_(baud), descriptor_(io), echo_(baud) {
-  try {
-    open_device();
-  } catch (...) {
-    if (fd_ >= 0) {
-      close(fd_);
-    }
-    throw;
-  }
-  descriptor_.assign(fd_);
-}
-
-SerialPort::~SerialPort() = default;
-
-void SerialPort::open_device() {
-  const auto refuse = [this](const std::string& why) {
-    throw std::invalid_argument("--serial " + device_ + ": " + why);
+/// Sets the open port up, or throws.
+void set_up(int fd, const std::string& device, std::uint32_t baud) {
+  const auto refuse = [&device](const std::string& why) {
+    throw std::invalid_argument("--serial " + device + ": " + why);
   };
-  fd_ = open(device_.c_str(), O_RDWR | O_NOCTTY | O_NONBLOCK | O_CLOEXEC);
-  if (fd_ < 0) {
-    refuse(errno == EBUSY ? "another program has it; end that or name another port"
-                          : reason() + "; name a serial port that can be read and written");
-  }
   termios settings{};
-  if (tcgetattr(fd_, &settings) != 0) {
+  if (tcgetattr(fd, &settings) != 0) {
     refuse("is no serial port; name one such as /dev/ttyUSB0");
   }
-  if (flock(fd_, LOCK_EX | LOCK_NB) != 0 || ioctl(fd_, TIOCEXCL) != 0) {
+  if (flock(fd, LOCK_EX | LOCK_NB) != 0 || ioctl(fd, TIOCEXCL) != 0) {
     refuse("another program has it; end that or name another port");
   }
   cfmakeraw(&settings);
+  settings.c_iflag = 0;  // XOFF would go out on the line, and parity errors count
   settings.c_cflag &= ~static_cast<tcflag_t>(CSTOPB | CRTSCTS);
   settings.c_cflag |= CLOCAL | CREAD;
-  const auto speed = termios_speed(baud_);
-  if (!speed || cfsetspeed(&settings, *speed) != 0 || tcsetattr(fd_, TCSANOW, &settings) != 0) {
-    refuse("cannot be set to " + std::to_string(baud_) + " baud; --baud names another rate");
+  const auto speed = termios_speed(baud);
+  termios taken{};  // tcsetattr is content with a part of what it is told
+  if (!speed || cfsetspeed(&settings, *speed) != 0 || tcsetattr(fd, TCSANOW, &settings) != 0 ||
+      tcgetattr(fd, &taken) != 0 || termios_rate(taken) != baud) {
+    refuse("cannot be set to " + std::to_string(baud) + " baud; --baud names another rate");
   }
-  int modem_lines = 0;
-  has_wires_ = ioctl(fd_, TIOCMGET, &modem_lines) == 0;
-  ask_for_low_latency(fd_);
-  tcflush(fd_, TCIOFLUSH);
+  ask_for_low_latency(fd);
+  tcflush(fd, TCIOFLUSH);
+}
+
+/// Closed again where it cannot be used.
+int open_port(const std::string& device, std::uint32_t baud) {
+  const int fd = open(device.c_str(), O_RDWR | O_NOCTTY | O_NONBLOCK | O_CLOEXEC);
+  if (fd < 0) {
+    throw std::invalid_argument("--serial " + device + ": " +
+                                (errno == EBUSY
+                                     ? "another program has it; end that or name another port"
+                                     : reason() + "; name a serial port that can be read and written"));
+  }
+  try {
+    set_up(fd, device, baud);
+  } catch (...) {
+    close(fd);
+    throw;
+  }
+  return fd;
+}
+
+}  // namespace
+
+SerialPort::SerialPort(boost::asio::io_context& io, std::string device, std::uint32_t baud, bool echo)
+    : device_(std::move(device)), descriptor_(io, open_port(device_, baud)) {
+  if (echo) {
+    echo_.emplace(baud);
+  }
 }
 
 void SerialPort::start(Received received) {
@@ -101,12 +107,16 @@ void SerialPort::read() {
         if (error) {
           throw std::runtime_error("--serial " + device_ + ": " + error.message() + "; the port has gone");
         }
-        const bool echo = has_wires_ && echo_.covers(OwnEcho::Clock::now());
-        paused_ = !echo && !received_(buffer_.data(), size);
+        take(size);
         if (!paused_) {
           read();
         }
       });
+}
+
+void SerialPort::take(std::size_t size) {
+  const std::size_t echo = echo_ ? echo_->in({buffer_.data(), size}, OwnEcho::Clock::now()) : 0;
+  paused_ = echo < size && !received_(buffer_.data() + echo, size - echo);
 }
 
 void SerialPort::send(const std::vector<std::uint8_t>& bytes) {
@@ -126,9 +136,11 @@ void SerialPort::sent() {
 }
 
 void SerialPort::write_out() {
+  if (echo_) {
+    echo_->sent({held_back_.data(), held_back_.size()}, OwnEcho::Clock::now());
+  }
   [[maybe_unused]] const ssize_t written =
       write(descriptor_.native_handle(), held_back_.data(), held_back_.size());
-  echo_.sent(held_back_.size(), OwnEcho::Clock::now());
   held_back_.clear();
 }
 

@@ -4,6 +4,7 @@
 #include <array>
 #include <boost/asio/io_context.hpp>
 #include <boost/asio/posix/stream_descriptor.hpp>
+#include <optional>
 #include <string>
 
 #include "sim/ports/own_echo.hpp"
@@ -13,10 +14,9 @@ namespace ex9000::sim {
 
 class SerialPort final : public Port {
  public:
-  /// Opens `device` for this process alone, 8N1 at `baud`. Throws std::invalid_argument, one line, where that
-  /// cannot be had.
-  SerialPort(boost::asio::io_context& io, std::string device, std::uint32_t baud);
-  ~SerialPort() override;
+  /// Opens `device`, 8N1 at `baud`, and keeps others from opening it. `echo`: the adapter hears what it
+  /// sends. Throws std::invalid_argument, one line, where that cannot be had.
+  SerialPort(boost::asio::io_context& io, std::string device, std::uint32_t baud, bool echo);
 
   /// Ends the io_context's run with a std::runtime_error when the port goes away.
   void start(Received received) override;
@@ -26,13 +26,11 @@ class SerialPort final : public Port {
   [[nodiscard]] bool is_a_line() const override { return true; }
 
  private:
-  void open_device();
   void read();
+  void take(std::size_t size);
   void write_out();
 
   std::string device_;
-  std::uint32_t baud_;
-  int fd_ = -1;
   boost::asio::posix::stream_descriptor descriptor_;
   Received received_;
   std::array<std::uint8_t, 4096> buffer_{};
@@ -40,8 +38,7 @@ class SerialPort final : public Port {
   std::vector<std::uint8_t> held_back_;
   OwnEcho::Clock::time_point began_;  ///< when the first of them came
   bool under_way_ = false;            ///< the beginning of a reply has been written
-  bool has_wires_ = false;            ///< what is sent takes its time; a pseudo-terminal has none
-  OwnEcho echo_;
+  std::optional<OwnEcho> echo_;
 };
 
 }  // namespace ex9000::sim

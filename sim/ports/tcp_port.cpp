@@ -2,7 +2,6 @@
 
 #include <array>
 #include <boost/asio/buffer.hpp>
-#include <boost/asio/steady_timer.hpp>
 #include <cctype>
 #include <stdexcept>
 #include <utility>
@@ -65,7 +64,8 @@ struct TcpPort::Client {
   bool paused = false;
 };
 
-TcpPort::TcpPort(boost::asio::io_context& io, const TcpAddress& address) : io_(io), acceptor_(io) {
+TcpPort::TcpPort(boost::asio::io_context& io, const TcpAddress& address)
+    : io_(io), acceptor_(io), next_try_(io) {
   const tcp::endpoint endpoint = endpoint_of(io, address);
   boost::system::error_code error;
   acceptor_.open(endpoint.protocol(), error);
@@ -104,7 +104,11 @@ void TcpPort::accept() {
     if (error == boost::asio::error::operation_aborted) {
       return;
     }
-    if (!error && clients_.size() < kMostClients) {
+    if (error) {
+      accept_later();
+      return;
+    }
+    if (clients_.size() < kMostClients) {
       boost::system::error_code ignored;
       socket.set_option(tcp::no_delay(true), ignored);
       socket.set_option(tcp::socket::keep_alive(true), ignored);
@@ -113,6 +117,17 @@ void TcpPort::accept() {
       read(*clients_.back());
     }
     accept();
+  });
+}
+
+/// The process has as many files open as it may: trying again at once would take all of the processor.
+void TcpPort::accept_later() {
+  constexpr std::chrono::milliseconds kPatience{100};
+  next_try_.expires_after(kPatience);
+  next_try_.async_wait([this](const boost::system::error_code& error) {
+    if (!error) {
+      accept();
+    }
   });
 }
 

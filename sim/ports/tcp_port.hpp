@@ -3,6 +3,7 @@
 
 #include <boost/asio/io_context.hpp>
 #include <boost/asio/ip/tcp.hpp>
+#include <boost/asio/steady_timer.hpp>
 #include <list>
 #include <memory>
 #include <string>
@@ -38,12 +39,14 @@ class TcpPort final : public Port {
   struct Client;
 
   void accept();
+  void accept_later();
   void read(Client& client);
   void part_with(Client& client);
   void forget(Client& client);
 
   boost::asio::io_context& io_;
   boost::asio::ip::tcp::acceptor acceptor_;
+  boost::asio::steady_timer next_try_;
   Received received_;
   std::list<std::unique_ptr<Client>> clients_;
 };

@@ -1,7 +1,9 @@
 // The program's ways to the line besides the pseudo-terminal: TCP, and a real serial port.
 #include <fcntl.h>
 #include <gtest/gtest.h>
+#include <poll.h>
 #include <sys/file.h>
+#include <termios.h>
 #include <unistd.h>
 
 #include <algorithm>
@@ -12,6 +14,7 @@
 #include <memory>
 #include <string>
 
+#include "firmware/line/crc16.hpp"
 #include "tests/system/simulator_process.hpp"
 #include "tests/system/socket_client.hpp"
 #include "tests/system/terminal.hpp"
@@ -135,14 +138,24 @@ class Cable {
   void write(const std::string& text) const {
     ASSERT_EQ(::write(far_, text.data(), text.size()), static_cast<ssize_t>(text.size()));
   }
-  /// Up to CR.
+  /// So many bytes, or what came before none came for 10 s.
+  [[nodiscard]] std::string read(std::size_t count) const {
+    std::string bytes;
+    while (bytes.size() < count && read_one(bytes)) {
+    }
+    return bytes;
+  }
+  /// Up to CR, likewise.
   [[nodiscard]] std::string read_line() const {
     std::string line;
-    char character = 0;
-    while ((line.empty() || line.back() != '\r') && read(far_, &character, 1) == 1) {
-      line += character;
+    while ((line.empty() || line.back() != '\r') && read_one(line)) {
     }
     return line;
+  }
+  [[nodiscard]] termios settings() const {
+    termios settings{};
+    tcgetattr(far_, &settings);
+    return settings;
   }
   void pull() {
     if (far_ >= 0) {
@@ -152,30 +165,82 @@ class Cable {
   }
 
  private:
+  bool read_one(std::string& bytes) const {
+    constexpr int kPatienceMilliseconds = 10'000;
+    pollfd ready{far_, POLLIN, 0};
+    char byte = 0;
+    if (poll(&ready, 1, kPatienceMilliseconds) != 1 || ::read(far_, &byte, 1) != 1) {
+      return false;
+    }
+    bytes += byte;
+    return true;
+  }
+
   int far_;
   std::string device_;
 };
 
 TEST(SerialPort, TheModulesHangOnTheLineBehindIt) {
-  for (const char* line : {"paced", "instant"}) {
-    const Cable cable;
-    SimulatorProcess simulator({"EX9042D@05", "EX9052D@06", "--serial", cable.device(), "--line", line});
-    EXPECT_FALSE(fs::is_symlink(simulator.tty()));
-    for (int round = 0; round < 3; ++round) {
-      cable.write("$05M\r");
-      EXPECT_EQ(cable.read_line(), "!059042D\r");
-      cable.write("$06M\r");
-      EXPECT_EQ(cable.read_line(), "!069052\r");
-    }
-    EXPECT_EQ(simulator.end(SIGTERM), 0);
+  const Cable cable;
+  SimulatorProcess simulator({"EX9042D@05", "EX9052D@06", "--serial", cable.device()});
+  EXPECT_FALSE(fs::is_symlink(simulator.tty()));
+  for (int round = 0; round < 3; ++round) {
+    cable.write("$05M\r");
+    EXPECT_EQ(cable.read_line(), "!059042D\r");
+    cable.write("$06M\r");
+    EXPECT_EQ(cable.read_line(), "!069052\r");
   }
+  EXPECT_EQ(simulator.end(SIGTERM), 0);
+}
+
+TEST(SerialPort, ItIsSetToTheLinesRateRaw) {
+  const Cable cable;
+  SimulatorProcess simulator({"EX9042D@05", "--serial", cable.device(), "--baud", "19200"});
+  const termios settings = cable.settings();
+  EXPECT_EQ(cfgetospeed(&settings), static_cast<speed_t>(B19200));
+  EXPECT_EQ(settings.c_iflag, 0U);
+  EXPECT_EQ(settings.c_lflag & static_cast<tcflag_t>(ICANON | ECHO | ISIG), 0U);
+  EXPECT_EQ(settings.c_cflag & static_cast<tcflag_t>(CSIZE | CSTOPB | PARENB), static_cast<tcflag_t>(CS8));
+}
+
+// 248 characters take a quarter of a second, so a reply to them is handed out in pieces.
+TEST(SerialPort, AReplyOfAnyLengthComesWhole) {
+  const Cable cable;
+  SimulatorProcess simulator({"EX9042D-M@05", "--serial", cable.device()});
+  std::string echo = std::string("\x05\x08\x00\x00", 4) + std::string(244, 'x');
+  const Crc16 crc = crc16({reinterpret_cast<const std::uint8_t*>(echo.data()), echo.size()});
+  echo += static_cast<char>(crc.low_byte());
+  echo += static_cast<char>(crc.high_byte());
+  cable.write(echo);
+  EXPECT_EQ(cable.read(echo.size()), echo);
+}
+
+// To a module its reply would be the request once more.
+TEST(SerialPort, AnAdapterThatHearsItselfIsToldOf) {
+  const Cable cable;
+  SimulatorProcess simulator({"EX9042D-M@01", "--serial", cable.device(), "--echo"});
+  const std::string switch_on("\x01\x05\x00\x00\xFF\x00\x8C\x3A", 8);
+  for (int round = 0; round < 5; ++round) {
+    cable.write(switch_on);
+    EXPECT_EQ(cable.read(switch_on.size()), switch_on);
+    cable.write(switch_on.substr(0, 3));  // the echo
+    cable.write(switch_on.substr(3));
+  }
+  const std::string read_outputs("\x01\x01\x00\x00\x00\x0D\xFD\xCF", 8);
+  cable.write(read_outputs);
+  EXPECT_EQ(cable.read(7).substr(0, 5), std::string("\x01\x01\x02\x01\x00", 5));
 }
 
 TEST(SerialPort, WhenItGoesTheProgramEndsAndSaysSo) {
   Cable cable;
-  SimulatorProcess simulator({"EX9042D", "--serial", cable.device()});
+  const Directory directory;
+  ChildProcess simulator({simulator_path(), "EX9042D", "--serial", cable.device()}, directory.path(),
+                         ChildProcess::Errors::WithOutput);
+  ASSERT_TRUE(simulator.wait_for("Ctrl-C ends it"));
   cable.pull();
   EXPECT_EQ(simulator.wait(), 1);
+  EXPECT_NE(simulator.output().find("--serial " + cable.device()), std::string::npos) << simulator.output();
+  EXPECT_NE(simulator.output().find("the port has gone"), std::string::npos) << simulator.output();
 }
 
 TEST(SerialPort, WhatCannotBeHadIsRefused) {

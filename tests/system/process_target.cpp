@@ -4,7 +4,7 @@
 #include <stdexcept>
 #include <utility>
 
-#include "firmware/hex.hpp"
+#include "sim/module_spec.hpp"
 
 namespace ex9000::system {
 
@@ -18,15 +18,11 @@ constexpr std::chrono::milliseconds kHostLatency{20};
 /// And may keep an answer waiting this much longer than a module would: only a missing one costs it.
 constexpr std::chrono::seconds kPatience{3};
 
-std::string hex_byte(unsigned value) {
-  return {static_cast<char>(hex_digit(value >> 4U)), static_cast<char>(hex_digit(value))};
-}
-
 /// As on the command line.
 std::string spec_of(const Model& model, const Settings* preset) {
   std::string spec(model.designation);
   if (preset != nullptr) {
-    spec += "@" + hex_byte(preset->address);
+    spec += "@" + sim::hex_byte_text(preset->address);
     spec += preset->protocol == Protocol::Ascii ? ",protocol=ascii" : ",protocol=modbus";
     spec += ",baud=" + std::to_string(baud_rate(preset->baud_code));
     spec += (preset->format & kFormatChecksum) != 0 ? ",checksum=on" : ",checksum=off";

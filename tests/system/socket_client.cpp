@@ -36,7 +36,7 @@ void SocketClient::send(const std::vector<std::uint8_t>& bytes) {
 void SocketClient::close_writing() { shutdown(fd_, SHUT_WR); }
 
 std::vector<std::uint8_t> SocketClient::receive(std::size_t count) {
-  constexpr int kPatienceMilliseconds = 2000;
+  constexpr int kPatienceMilliseconds = 10'000;
   std::vector<std::uint8_t> bytes;
   pollfd ready{fd_, POLLIN, 0};
   while (bytes.size() < count && poll(&ready, 1, kPatienceMilliseconds) == 1) {
@@ -56,7 +56,7 @@ std::string SocketClient::receive_text(std::size_t count) {
 }
 
 bool SocketClient::closed() {
-  constexpr int kPatienceMilliseconds = 5000;
+  constexpr int kPatienceMilliseconds = 10'000;
   pollfd ready{fd_, POLLIN, 0};
   char byte = 0;
   return poll(&ready, 1, kPatienceMilliseconds) == 1 && recv(fd_, &byte, 1, 0) <= 0;

@@ -20,10 +20,10 @@ class SocketClient {
   void send(const std::string& text) { send(std::vector<std::uint8_t>(text.begin(), text.end())); }
   /// Says that nothing more will come, and listens on.
   void close_writing();
-  /// What comes until `count` bytes are there, nothing came for 2 s, or the other side has closed.
+  /// What comes until `count` bytes are there, nothing came for 10 s, or the other side has closed.
   std::vector<std::uint8_t> receive(std::size_t count);
   std::string receive_text(std::size_t count);
-  /// Whether the other side has closed; waits 5 s for it.
+  /// Whether the other side has closed; waits 10 s for it.
   bool closed();
 
  private:

@@ -23,7 +23,7 @@ class Terminal {
   /// What is there, or comes within `patience`; empty: nothing.
   std::vector<std::uint8_t> read(std::chrono::nanoseconds patience);
   /// Up to CR, or what has come before nothing came for `patience`.
-  std::string read_line(std::chrono::milliseconds patience = std::chrono::milliseconds(500));
+  std::string read_line(std::chrono::milliseconds patience = std::chrono::seconds(10));
 
  private:
   int fd_;

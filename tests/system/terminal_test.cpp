@@ -36,6 +36,16 @@ TEST(Dcon, AReplyThatNobodyHasWaitedForIsNotTheNextMastersFirst) {
   EXPECT_EQ(terminal.read_line(), "!05400600\r");
 }
 
+TEST(Dcon, WhoGoesLeavesTheOthersAtTheLine) {
+  SimulatorProcess simulator({"EX9042D@05"});
+  for (int round = 0; round < 5; ++round) {
+    Terminal stays(simulator.tty(), 9600);
+    { const Terminal goes(simulator.tty(), 9600); }
+    stays.type("$05M\r");
+    EXPECT_EQ(stays.read_line(), "!059042D\r");
+  }
+}
+
 TEST(Dcon, TheRateThatAMasterSetsIsTheLinesAndAMismatchIsSaid) {
   SimulatorProcess simulator({"EX9042D@05,baud=19200", "--baud", "9600"});
   EXPECT_TRUE(simulator.wait_for("the line is at 9600 baud, EX9042D at 05 listens at 19200"))
@@ -47,7 +57,7 @@ TEST(Dcon, TheRateThatAMasterSetsIsTheLinesAndAMismatchIsSaid) {
   }
   Terminal terminal(simulator.tty(), 1200);
   terminal.type("$052\r");
-  EXPECT_EQ(terminal.read_line(), "");
+  EXPECT_EQ(terminal.read_line(std::chrono::milliseconds(500)), "");
   EXPECT_TRUE(simulator.wait_for("the line is at 1200 baud, EX9042D at 05 listens at 19200"))
       << simulator.output();
 }

@@ -122,6 +122,14 @@ TEST(Arguments, ARealLineStandsAlone) {
   expect_error({"EX9042D", "--serial", "/dev/ttyUSB0", "--pty", "a"}, "--serial", "leave out");
 }
 
+TEST(Arguments, OnlyARealLineHasAnEchoAndItIsNotInstant) {
+  EXPECT_FALSE(accepted({"EX9042D", "--serial", "/dev/ttyUSB0"}).echo);
+  EXPECT_TRUE(accepted({"EX9042D", "--serial", "/dev/ttyUSB0", "--echo"}).echo);
+  expect_error({"EX9042D", "--echo"}, "--echo", "--serial");
+  expect_error({"EX9042D", "--serial", "/dev/ttyUSB0", "--line", "instant"}, "--line instant",
+               "leave it out");
+}
+
 TEST(Arguments, TwoModulesDoNotShareAnEeprom) {
   expect_error({"EX9042D,eeprom=a", "EX9052D@02,eeprom=a"}, "eeprom=a", "a file for each");
   EXPECT_EQ(accepted({"EX9042D,eeprom=a", "EX9052D@02,eeprom=b"}).modules[1].eeprom, "b");

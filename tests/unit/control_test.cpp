@@ -93,7 +93,7 @@ class ThreeModules {
  private:
   Line line_{
       {parse_module_spec("EX9042D-M@01"), parse_module_spec("EX9052D@02"), parse_module_spec("EX9055D@0A")},
-      9600,
+
       kPaced,
       [](std::uint8_t, ByteStatus) {}};
   Control control_{line_};

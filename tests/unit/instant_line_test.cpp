@@ -24,7 +24,10 @@ constexpr microseconds kAtOnce{100};
 
 class InstantLine : public testing::TestWithParam<std::uint32_t> {
  protected:
-  explicit InstantLine() { line_.come_up(); }
+  explicit InstantLine() {
+    line_.come_up();
+    line_.master().set_baud(GetParam());
+  }
 
   static std::vector<ModuleSpec> modules() {
     const std::string rate = ",baud=" + std::to_string(GetParam());
@@ -40,7 +43,7 @@ class InstantLine : public testing::TestWithParam<std::uint32_t> {
   }
 
   Frame heard_;
-  Line line_{modules(), GetParam(), kInstant,
+  Line line_{modules(), kInstant,
              [this](std::uint8_t byte, ByteStatus /*status*/) { heard_.push_back(byte); }};
 };
 

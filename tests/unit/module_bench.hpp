@@ -24,10 +24,10 @@ class ModuleBench {
   /// `module` as on the simulator's command line. 100 ms have passed since power-on.
   explicit ModuleBench(const std::string& module)
       : spec_(parse_module_spec(module)),
-        line_({spec_}, spec_.baud(), kPaced,
-              [this](std::uint8_t byte, ByteStatus /*status*/) { heard_.push_back(byte); }) {
+        line_({spec_}, kPaced, [this](std::uint8_t byte, ByteStatus /*status*/) { heard_.push_back(byte); }) {
     line_.bus().observe(recorder_);
     line_.come_up();
+    line_.master().set_baud(line_.module(0).baud());
     recorder_.clear();
   }
 

@@ -2,29 +2,56 @@
 
 #include <gtest/gtest.h>
 
+#include <vector>
+
 namespace ex9000::sim {
 namespace {
 
 using std::chrono::milliseconds;
 
-// 9600 baud: a character takes 1.04 ms.
-TEST(OwnEcho, CoversWhatWasSentForAsLongAsItTakesOnTheLine) {
-  OwnEcho echo(9600);
-  const OwnEcho::Clock::time_point start{std::chrono::hours(1)};
-  EXPECT_FALSE(echo.covers(start));
-  echo.sent(8, start);
-  EXPECT_TRUE(echo.covers(start));
-  EXPECT_TRUE(echo.covers(start + milliseconds(8)));
-  EXPECT_FALSE(echo.covers(start + milliseconds(9)));
+const OwnEcho::Clock::time_point kStart{std::chrono::hours(1)};
+
+class Adapter {
+ public:
+  void sends(const std::vector<std::uint8_t>& bytes, milliseconds at) {
+    echo_.sent({bytes.data(), bytes.size()}, kStart + at);
+  }
+  std::size_t echo_in(const std::vector<std::uint8_t>& heard, milliseconds at) {
+    return echo_.in({heard.data(), heard.size()}, kStart + at);
+  }
+
+ private:
+  OwnEcho echo_{9600};
+};
+
+TEST(OwnEcho, WhatWasSentIsTakenOutOfWhatIsHeardOnce) {
+  Adapter adapter;
+  EXPECT_EQ(adapter.echo_in({1, 2, 3}, milliseconds(0)), 0U);
+  adapter.sends({1, 2, 3}, milliseconds(0));
+  EXPECT_EQ(adapter.echo_in({1, 2, 3}, milliseconds(5)), 3U);
+  EXPECT_EQ(adapter.echo_in({1, 2, 3}, milliseconds(6)), 0U);
 }
 
-TEST(OwnEcho, WhatIsSentInPiecesFollowsItself) {
-  OwnEcho echo(9600);
-  const OwnEcho::Clock::time_point start{std::chrono::hours(1)};
-  echo.sent(8, start);
-  echo.sent(8, start + milliseconds(1));
-  EXPECT_TRUE(echo.covers(start + milliseconds(16)));
-  EXPECT_FALSE(echo.covers(start + milliseconds(17)));
+TEST(OwnEcho, ItMayComeInPiecesAndLate) {
+  Adapter adapter;
+  adapter.sends({1, 2}, milliseconds(0));
+  adapter.sends({3, 4}, milliseconds(1));
+  EXPECT_EQ(adapter.echo_in({1}, milliseconds(20)), 1U);
+  EXPECT_EQ(adapter.echo_in({2, 3}, milliseconds(40)), 2U);
+  EXPECT_EQ(adapter.echo_in({4, 9, 9}, milliseconds(60)), 1U);
+}
+
+TEST(OwnEcho, WhatOthersSayEndsIt) {
+  Adapter adapter;
+  adapter.sends({1, 2, 3}, milliseconds(0));
+  EXPECT_EQ(adapter.echo_in({1, 9}, milliseconds(5)), 1U);
+  EXPECT_EQ(adapter.echo_in({2, 3}, milliseconds(6)), 0U);
+}
+
+TEST(OwnEcho, IsNotAwaitedForEver) {
+  Adapter adapter;
+  adapter.sends({1, 2, 3}, milliseconds(0));
+  EXPECT_EQ(adapter.echo_in({1, 2, 3}, milliseconds(200)), 0U);
 }
 
 }  // namespace

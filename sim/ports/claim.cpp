@@ -1,0 +1,45 @@
+#include "sim/ports/claim.hpp"
+
+#include <sys/socket.h>
+#include <sys/un.h>
+#include <unistd.h>
+
+#include <cstddef>
+#include <filesystem>
+#include <functional>
+
+namespace ex9000::sim {
+
+namespace {
+
+/// The same for all ways to write a path, and short enough for a socket's name.
+std::string name_of(const std::string& path) {
+  namespace fs = std::filesystem;
+  std::error_code error;
+  const fs::path directory = fs::path(path).has_parent_path() ? fs::path(path).parent_path() : ".";
+  const fs::path canonical = fs::canonical(directory, error) / fs::path(path).filename();
+  return "ex9000-sim/" + std::to_string(std::hash<std::string>()(canonical.string()));
+}
+
+}  // namespace
+
+/// An abstract socket: a name that the kernel gives to one process and takes back by itself.
+Claim::Claim(const std::string& path) : fd_(socket(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0)) {
+  sockaddr_un address{};
+  address.sun_family = AF_UNIX;
+  const std::string name = name_of(path);
+  name.copy(address.sun_path + 1, sizeof address.sun_path - 1);
+  const auto size = static_cast<socklen_t>(offsetof(sockaddr_un, sun_path) + 1 + name.size());
+  if (fd_ >= 0 && bind(fd_, reinterpret_cast<const sockaddr*>(&address), size) != 0) {
+    close(fd_);
+    fd_ = -1;
+  }
+}
+
+Claim::~Claim() {
+  if (fd_ >= 0) {
+    close(fd_);
+  }
+}
+
+}  // namespace ex9000::sim
