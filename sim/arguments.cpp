@@ -29,7 +29,7 @@ ADDR in hex as in `$AA2` (01 if left out); the keys:
   edge=falling|rising      what its counters count
   name=TEXT                what $AAM answers
   init=on|off              INIT* tied to GND: ASCII at address 00, 9600 baud
-  eeprom=FILE              keeps its settings there, made if missing; what it holds wins over the other keys
+  eeprom=FILE              keeps its settings there, made if missing; what it holds wins over those given here
 
 Commands on the control socket, a line each, answered with `ok ...` or `error: ...`; N is a module's position
 on the command line, from 1:
@@ -70,15 +70,6 @@ bool parse_line_kind(const std::string& text) {
     throw std::invalid_argument("--line " + text + ": wants paced or instant");
   }
   return text == "instant";
-}
-
-/// CLI11's own words may have several lines, and so may an argument.
-std::string one_line(std::string text) {
-  std::replace(text.begin(), text.end(), '\n', ' ');
-  while (!text.empty() && text.back() == ' ') {
-    text.pop_back();
-  }
-  return text;
 }
 
 Parsed wrong(const std::string& what) {
@@ -162,6 +153,14 @@ Parsed print_reference(const std::string& model) {
 }
 
 }  // namespace
+
+std::string one_line(std::string text) {
+  std::replace(text.begin(), text.end(), '\n', ' ');
+  while (!text.empty() && text.back() == ' ') {
+    text.pop_back();
+  }
+  return text;
+}
 
 Parsed parse_arguments(int argc, const char* const* argv) {
   CLI::App app(kDescription, "ex9000-sim");

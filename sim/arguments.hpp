@@ -35,6 +35,9 @@ struct Parsed {
   int exit_status = 0;
 };
 
+/// `text` with a blank for every newline; arguments may hold them.
+std::string one_line(std::string text);
+
 Parsed parse_arguments(int argc, const char* const* argv);
 
 }  // namespace ex9000::sim

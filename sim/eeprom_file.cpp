@@ -74,7 +74,7 @@ void EepromFile::create(const std::vector<std::uint8_t>& image) {
   }
   const bool made = fchmod(fd_, 0666 & ~file_mask()) == 0 && write(0, {image.data(), image.size()}) &&
                     flock(fd_, LOCK_EX | LOCK_NB) == 0 && link(draft.c_str(), path_.c_str()) == 0;
-  const std::string why = reason();
+  const std::string why = errno == EEXIST ? "it came up meanwhile, or is a link to nowhere" : reason();
   unlink(draft.c_str());
   if (!made) {
     refuse("cannot be made: " + why + "; name a path that can be written");
@@ -84,7 +84,11 @@ void EepromFile::create(const std::vector<std::uint8_t>& image) {
 void EepromFile::discard() const { unlink(path_.c_str()); }
 
 bool EepromFile::write(std::uint16_t address, Bytes bytes) const {
-  return pwrite(fd_, bytes.data, bytes.size, address) == static_cast<ssize_t>(bytes.size);
+  const ssize_t written = pwrite(fd_, bytes.data, bytes.size, address);
+  if (written >= 0 && static_cast<std::size_t>(written) < bytes.size) {
+    errno = ENOSPC;
+  }
+  return written == static_cast<ssize_t>(bytes.size);
 }
 
 void EepromFile::lock() {

@@ -46,4 +46,8 @@ VirtualTime Line::rtu_silence() const {
   return std::chrono::microseconds(kind_.timing_at(master_.baud()).rtu_silence.microseconds());
 }
 
+VirtualTime Line::rtu_separate() const {
+  return std::chrono::microseconds(kind_.timing_at(master_.baud()).rtu_separate.microseconds());
+}
+
 }  // namespace ex9000::sim

@@ -42,6 +42,8 @@ class Line {
   SimulatedModule& module(std::size_t index) { return *modules_[index]; }
   /// T3.5 on this line at the master's rate.
   [[nodiscard]] VirtualTime rtu_silence() const;
+  /// After how long whatever was sent before is no part of a frame any more, even if its CRC is wrong.
+  [[nodiscard]] VirtualTime rtu_separate() const;
 
  private:
   VirtualClock clock_;

@@ -4,7 +4,9 @@
 
 #include <boost/asio/io_context.hpp>
 #include <boost/asio/signal_set.hpp>
+#include <cerrno>
 #include <csignal>
+#include <cstring>
 #include <iostream>
 #include <stdexcept>
 #include <string>
@@ -18,20 +20,46 @@ using namespace ex9000::sim;
 
 constexpr int kCannotStart = 1;
 
+/// Those that whoever started this has not told it to ignore, as nohup does and shells for background jobs.
+void add_signals(boost::asio::signal_set& signals) {
+  for (const int signal : {SIGINT, SIGTERM, SIGHUP}) {
+    struct sigaction action {};
+    if (sigaction(signal, nullptr, &action) == 0 && action.sa_handler != SIG_IGN) {
+      signals.add(signal);
+    }
+  }
+}
+
+/// Flushed, since a log is read while it grows. False where nobody reads it any more; throws where it cannot
+/// be written otherwise.
+bool print(const std::string& text) {
+  errno = 0;
+  std::cout << text << std::flush;
+  if (!std::cout && errno != EPIPE) {
+    throw std::runtime_error(std::string("standard output: ") + std::strerror(errno));
+  }
+  return static_cast<bool>(std::cout);
+}
+
 void run(const Arguments& arguments) {
   boost::asio::io_context io;
-  // Flushed, since a log is read while it grows; who closes the pipe behind it ends the program.
-  const auto print = [&io](const std::string& line) {
-    std::cout << line << std::endl;
-    if (!std::cout) {
+  // Who closes the pipe behind the log ends the program.
+  const auto print_line = [&io](const std::string& line) {
+    if (!print(line + "\n")) {
       io.stop();
     }
   };
-  Session session(io, arguments, print);
-  boost::asio::signal_set signals(io, SIGINT, SIGTERM, SIGHUP);
+  boost::asio::signal_set signals(io);
+  add_signals(signals);  // before anything is made that is to be removed again
   signals.async_wait([&io](const boost::system::error_code& /*error*/, int /*signal*/) { io.stop(); });
+  Session session(io, arguments, print_line);
   session.start();
   io.run();
+}
+
+int fail(const std::exception& error, int status) {
+  std::cerr << one_line(std::string("ex9000-sim: ") + error.what()) << '\n';
+  return status;
 }
 
 /// Where one of the three is closed, the next file would take its number, and a log be written into the line.
@@ -49,21 +77,19 @@ void occupy_standard_streams() {
 
 int main(int argc, char** argv) {
   occupy_standard_streams();
-  const Parsed parsed = parse_arguments(argc, argv);
-  std::cout << parsed.output;
-  std::cerr << parsed.error;
-  if (!parsed.arguments) {
-    return parsed.exit_status;
-  }
   static_cast<void>(std::signal(SIGPIPE, SIG_IGN));  // a write to a closed pipe fails, and that is looked at
   try {
+    const Parsed parsed = parse_arguments(argc, argv);
+    print(parsed.output);
+    std::cerr << parsed.error;
+    if (!parsed.arguments) {
+      return parsed.exit_status;
+    }
     run(*parsed.arguments);
   } catch (const std::invalid_argument& error) {
-    std::cerr << "ex9000-sim: " << error.what() << '\n';
-    return kWrongArguments;
+    return fail(error, kWrongArguments);
   } catch (const std::exception& error) {
-    std::cerr << "ex9000-sim: " << error.what() << '\n';
-    return kCannotStart;
+    return fail(error, kCannotStart);
   }
   return 0;
 }

@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <utility>
 
+#include "firmware/line/crc16.hpp"
+
 namespace ex9000::sim {
 
 namespace {
@@ -108,7 +110,15 @@ bool Pacer::receive(const Port& port, const std::uint8_t* bytes, std::size_t siz
   catch_up(written);
   line_.bus().run_until(std::max(written, line_.clock().virtual_now()));
   take_rate(port);
-  line_.master().send(bytes, size, silence_before(bytes[0]));
+  Bytes rest{bytes, size};
+  while (rest.size != 0) {
+    const Bytes piece = rest.first(pace_.lead == VirtualTime(0) ? rest.size : first_frame_size(rest));
+    line_.master().send(piece.data, piece.size, silence_before(piece[0]));
+    rest = rest.from(piece.size);
+    if (rest.size != 0) {
+      catch_up(wall());
+    }
+  }
   follow();
   if (is_full()) {
     paused_ = true;
@@ -117,21 +127,54 @@ bool Pacer::receive(const Port& port, const std::uint8_t* bytes, std::size_t siz
   return !paused_;
 }
 
-/// Until when a frame to `address` has to wait so that a module that has heard the last one takes it for
-/// another.
+/// Where a request gets no answer, the next one often comes at once, and both are read in one piece. On a
+/// line where bytes cost no time a frame is over where its CRC is right; but what is right as a whole is one
+/// frame.
+std::size_t Pacer::first_frame_size(Bytes bytes) {
+  constexpr std::size_t kShortest = 4;
+  Crc16 crc;
+  std::size_t first = bytes.size;
+  for (std::size_t i = 0; i < bytes.size; ++i) {
+    crc.add(bytes[i]);
+    if (crc.value() == 0 && i + 1 >= kShortest && first == bytes.size) {
+      first = i + 1;
+    }
+  }
+  return crc.value() == 0 ? bytes.size : first;
+}
+
+/// Until when a frame to `address` has to wait so that a module that has heard what was on the line before
+/// does not take both for one.
 VirtualTime Pacer::silence_before(std::uint8_t address) {
-  if (!pace_.keep_frames_apart || last_speaker_ == 0) {
+  if (!pace_.keep_frames_apart) {
     return VirtualTime(0);
+  }
+  if (last_speaker_ == 0) {
+    return pace_.lead == VirtualTime(0) ? VirtualTime(0) : last_byte_ + line_.rtu_silence();
   }
   const SimulatedModule& speaker = line_.module(last_speaker_ - 1);
   if (!speaker.powered()) {
     return VirtualTime(0);
   }
   const InForce& in_force = speaker.module().state().in_force;
-  if (in_force.protocol == Protocol::Ascii || in_force.address == address) {
-    return VirtualTime(0);
+  if (in_force.protocol == Protocol::Ascii) {
+    return is_for_modbus(address) ? last_byte_ + line_.rtu_separate() : VirtualTime(0);
   }
-  return last_byte_ + line_.rtu_silence();
+  return in_force.address == address ? VirtualTime(0) : last_byte_ + line_.rtu_silence();
+}
+
+/// What begins with this byte may be a frame for a module that speaks Modbus.
+bool Pacer::is_for_modbus(std::uint8_t address) {
+  for (std::size_t i = 0; i < line_.size(); ++i) {
+    const SimulatedModule& module = line_.module(i);
+    if (module.powered()) {
+      const InForce& in_force = module.module().state().in_force;
+      if (in_force.protocol == Protocol::ModbusRtu && (address == 0 || address == in_force.address)) {
+        return true;
+      }
+    }
+  }
+  return false;
 }
 
 void Pacer::driver(std::size_t station, bool on, VirtualTime /*now*/) {

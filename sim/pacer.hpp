@@ -27,7 +27,8 @@ struct Pace {
   /// clock; when virtual time is some milliseconds ahead by that, masters wait. Zero: events happen when the
   /// wall clock has reached them, so a transaction can only take longer than on a real line.
   VirtualTime lead{0};
-  /// A frame to another module than the one that has just spoken waits until T3.5 of silence has passed. A
+  /// A frame to another module than the one that has just spoken waits until T3.5 of silence has passed (one
+  /// to a Modbus module behind an ASCII answer, until that is given up as a frame). A
   /// master that begins before is heard by the module it has just talked to, which does not hear its own
   /// reply, and by no other: for those the two frames are one. Many masters do so, libmodbus among them, and
   /// get away with it behind adapters that take their time.
@@ -69,7 +70,9 @@ class Pacer final : private BusObserver {
   void hand_out();
   void take_rate(const Port& port);
   void tell_mismatches();
+  static std::size_t first_frame_size(Bytes bytes);
   [[nodiscard]] VirtualTime silence_before(std::uint8_t address);
+  [[nodiscard]] bool is_for_modbus(std::uint8_t address);
   void driver(std::size_t station, bool on, VirtualTime now) override;
   void byte(std::size_t station, std::uint8_t byte, std::uint32_t baud, bool collided, VirtualTime start,
             VirtualTime end) override;

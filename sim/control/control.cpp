@@ -4,7 +4,6 @@
 #include <iomanip>
 #include <optional>
 #include <sstream>
-#include <stdexcept>
 #include <string_view>
 #include <vector>
 
@@ -15,8 +14,8 @@ namespace {
 using Words = std::vector<std::string>;
 
 /// Becomes an `error: ` reply.
-class Refused : public std::runtime_error {
-  using runtime_error::runtime_error;
+struct Refused {
+  std::string why;  ///< may hold any byte that a command may
 };
 
 constexpr unsigned long kMostPulses = 1'000'000;  // some milliseconds of work
@@ -43,7 +42,7 @@ std::optional<unsigned long> number(const std::string& text, unsigned long most)
 
 bool on_off(const std::string& word) {
   if (word != "on" && word != "off") {
-    throw Refused("'" + word + "' is neither on nor off");
+    throw Refused{"'" + word + "' is neither on nor off"};
   }
   return word == "on";
 }
@@ -52,15 +51,15 @@ unsigned input_channel(const SimulatedModule& module, const std::string& word) {
   const unsigned inputs = module.model().inputs;
   const auto channel = inputs == 0 ? std::nullopt : number(word, inputs - 1);
   if (!channel) {
-    throw Refused("the " + std::string(module.model().designation) + " has no input " + word +
-                  (inputs == 0 ? ", it has none at all" : "; it has 0 to " + std::to_string(inputs - 1)));
+    throw Refused{"the " + std::string(module.model().designation) + " has no input " + word +
+                  (inputs == 0 ? ", it has none at all" : "; it has 0 to " + std::to_string(inputs - 1))};
   }
   return static_cast<unsigned>(*channel);
 }
 
 void want_power(const SimulatedModule& module) {
   if (!module.powered()) {
-    throw Refused("the module has no power; 'power on' comes first");
+    throw Refused{"the module has no power; 'power on' comes first"};
   }
 }
 
@@ -94,7 +93,7 @@ std::string pulse(SimulatedModule& module, const Words& args) {
   const unsigned channel = input_channel(module, args[0]);
   const auto count = args.size() == 1 ? std::optional(1UL) : number(args[1], kMostPulses);
   if (!count || *count == 0) {
-    throw Refused("'" + args[1] + "' is no count from 1 to " + std::to_string(kMostPulses));
+    throw Refused{"'" + args[1] + "' is no count from 1 to " + std::to_string(kMostPulses)};
   }
   module.pulse_input(channel, static_cast<std::uint32_t>(*count));
   return "";
@@ -208,21 +207,21 @@ const Verb& verb_called(const std::string& name) {
       return verb;
     }
   }
-  throw Refused("no command '" + name + "'; there are " + all_shapes());
+  throw Refused{"no command '" + name + "'; there are " + all_shapes()};
 }
 
 std::string on_module(Line& line, const Words& words) {
   const auto position = number(words[0], line.size());
   if (!position || *position == 0) {
-    throw Refused("no module " + words[0] + "; this line has 1 to " + std::to_string(line.size()));
+    throw Refused{"no module " + words[0] + "; this line has 1 to " + std::to_string(line.size())};
   }
   if (words.size() == 1) {
-    throw Refused("'" + words[0] + "' alone is no command; there are " + all_shapes());
+    throw Refused{"'" + words[0] + "' alone is no command; there are " + all_shapes()};
   }
   const Verb& verb = verb_called(words[1]);
   const Words args(words.begin() + 2, words.end());
   if (args.size() < verb.fewest || args.size() > verb.most) {
-    throw Refused("the command is " + shape(verb));
+    throw Refused{"the command is " + shape(verb)};
   }
   return verb.handler(line.module(*position - 1), args);
 }
@@ -237,17 +236,17 @@ Control::Reply Control::carry_out(const std::string& command) {
     const bool quit = first == "quit";
     if (quit || first == "list" || first == "help") {
       if (words.size() != 1) {
-        throw Refused("nothing goes behind '" + first + "'");
+        throw Refused{"nothing goes behind '" + first + "'"};
       }
       result = quit ? "" : first == "list" ? list(line_) : all_shapes();
     } else if (first.empty() || first.find_first_not_of("0123456789") != std::string::npos) {
-      throw Refused("no command '" + first + "'; there are " + all_shapes());
+      throw Refused{"no command '" + first + "'; there are " + all_shapes()};
     } else {
       result = on_module(line_, words);
     }
     return {"ok" + (result.empty() ? "" : " " + result), quit};
   } catch (const Refused& refused) {
-    return {std::string("error: ") + refused.what(), false};
+    return {"error: " + refused.why, false};
   }
 }
 

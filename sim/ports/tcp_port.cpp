@@ -1,5 +1,6 @@
 #include "sim/ports/tcp_port.hpp"
 
+#include <algorithm>
 #include <array>
 #include <boost/asio/buffer.hpp>
 #include <cctype>
@@ -62,6 +63,7 @@ struct TcpPort::Client {
   boost::asio::steady_timer linger;
   std::array<std::uint8_t, 4096> buffer{};
   bool paused = false;
+  bool lingers = false;  ///< says nothing any more
 };
 
 TcpPort::TcpPort(boost::asio::io_context& io, const TcpAddress& address)
@@ -108,6 +110,7 @@ void TcpPort::accept() {
       accept_later();
       return;
     }
+    make_room();
     if (clients_.size() < kMostClients) {
       boost::system::error_code ignored;
       socket.set_option(tcp::no_delay(true), ignored);
@@ -118,6 +121,17 @@ void TcpPort::accept() {
     }
     accept();
   });
+}
+
+/// Who lingers longest goes first.
+void TcpPort::make_room() {
+  if (clients_.size() >= kMostClients) {
+    const auto oldest =
+        std::find_if(clients_.begin(), clients_.end(), [](const auto& client) { return client->lingers; });
+    if (oldest != clients_.end()) {
+      clients_.erase(oldest);
+    }
+  }
 }
 
 /// The process has as many files open as it may: trying again at once would take all of the processor.
@@ -139,7 +153,7 @@ void TcpPort::read(Client& client) {
                                     return;
                                   }
                                   if (error) {
-                                    part_with(client);
+                                    part_with(client, error == boost::asio::error::eof);
                                     return;
                                   }
                                   client.paused = !received_(client.buffer.data(), size);
@@ -157,7 +171,13 @@ void TcpPort::resume() {
   }
 }
 
-void TcpPort::part_with(Client& client) {
+/// Who has only said all there is to say is let go later.
+void TcpPort::part_with(Client& client, bool listens) {
+  if (!listens) {
+    forget(client);
+    return;
+  }
+  client.lingers = true;
   client.linger.expires_after(kLinger);
   client.linger.async_wait([this, &client](const boost::system::error_code& error) {
     if (error != boost::asio::error::operation_aborted) {
@@ -171,10 +191,11 @@ void TcpPort::forget(Client& client) {
 }
 
 void TcpPort::send(const std::vector<std::uint8_t>& bytes) {
-  for (const auto& client : clients_) {
-    boost::system::error_code ignored;  // who has gone is noticed by reading
-    client->socket.write_some(boost::asio::buffer(bytes), ignored);
-  }
+  clients_.remove_if([&bytes](const auto& client) {
+    boost::system::error_code error;
+    client->socket.write_some(boost::asio::buffer(bytes), error);
+    return error && error != boost::asio::error::would_block;
+  });
 }
 
 }  // namespace ex9000::sim

@@ -41,7 +41,8 @@ class TcpPort final : public Port {
   void accept();
   void accept_later();
   void read(Client& client);
-  void part_with(Client& client);
+  void make_room();
+  void part_with(Client& client, bool listens);
   void forget(Client& client);
 
   boost::asio::io_context& io_;

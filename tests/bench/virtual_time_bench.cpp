@@ -5,8 +5,8 @@
 #include <string>
 #include <vector>
 
-#include "firmware/line/crc16.hpp"
 #include "sim/line.hpp"
+#include "tests/modbus_frame.hpp"
 
 namespace ex9000::bench {
 namespace {
@@ -28,20 +28,15 @@ std::vector<ModuleSpec> a_line_of_modules() {
   return specs;
 }
 
-std::vector<std::uint8_t> frame(std::vector<std::uint8_t> bytes) {
-  const Crc16 crc = crc16({bytes.data(), bytes.size()});
-  bytes.push_back(crc.low_byte());
-  bytes.push_back(crc.high_byte());
-  return bytes;
-}
+std::vector<std::uint8_t> frame(const std::vector<std::uint8_t>& bytes) { return with_crc(bytes); }
 
 double seconds(VirtualTime time) { return std::chrono::duration<double>(time).count(); }
 
 /// All watchdogs armed, one module past its timeout with the LED flashing; a host OK every 20 s.
 void idle_line(benchmark::State& state) {
   Line line(a_line_of_modules(), sim::kPaced, [](std::uint8_t, ByteStatus) {});
-  const auto tell = [&line](std::vector<std::uint8_t> bytes, VirtualTime then) {
-    const auto sent = frame(std::move(bytes));
+  const auto tell = [&line](const std::vector<std::uint8_t>& bytes, VirtualTime then) {
+    const auto sent = frame(bytes);
     line.master().send(sent.data(), sent.size());
     line.bus().run_for(then);
   };

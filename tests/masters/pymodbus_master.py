@@ -4,6 +4,7 @@
 import argparse
 import logging
 import pathlib
+import select
 import struct
 import sys
 import time
@@ -186,7 +187,7 @@ def ask(client, request):
     """What the library is told, as the text of a frame."""
     response = client.execute(request)
     if request.unit_id == 0:
-        return "silence"
+        return "silence"  # the library does not listen; converse() looks
     if not isinstance(response, ModbusResponse):
         return f"nothing ({response})"
     head = bytes([response.unit_id, response.function_code])
@@ -226,6 +227,8 @@ def converse(client, baud):
             got = ask(client, request_of(bytes_of(asked), bytes_of(step)))
             if expected == "silence":
                 time.sleep(turnaround(baud))
+                if select.select([client.socket], [], [], 0)[0]:
+                    got = "an answer"
             if got == expected:
                 passed += 1
             else:

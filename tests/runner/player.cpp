@@ -3,6 +3,8 @@
 #include <array>
 #include <stdexcept>
 
+#include "tests/modbus_frame.hpp"
+
 namespace ex9000::runner {
 
 namespace {
@@ -14,8 +16,7 @@ constexpr std::chrono::milliseconds kAfterReply{2};
 /// may take, and its first character.
 constexpr std::chrono::milliseconds kReplyBegins{65};
 
-/// DCON's checksum and Modbus's CRC once more, the plain way, so that the tests do not judge the firmware by
-/// itself.
+/// DCON's checksum once more, the plain way, so that the tests do not judge the firmware by itself.
 std::string checksum_of(const std::string& text) {
   unsigned sum = 0;
   for (const char character : text) {
@@ -23,21 +24,6 @@ std::string checksum_of(const std::string& text) {
   }
   constexpr std::array<char, 17> kDigits{"0123456789ABCDEF"};
   return {kDigits[sum / 16 % 16], kDigits[sum % 16]};
-}
-
-Bytes with_crc(Bytes frame) {
-  unsigned crc = 0xFFFF;
-  for (const std::uint8_t byte : frame) {
-    crc ^= byte;
-    for (int bit = 0; bit < 8; ++bit) {
-      const bool carry = crc % 2 != 0;
-      crc /= 2;
-      crc ^= carry ? 0xA001U : 0U;
-    }
-  }
-  frame.push_back(static_cast<std::uint8_t>(crc % 256));
-  frame.push_back(static_cast<std::uint8_t>(crc / 256));
-  return frame;
 }
 
 Bytes bytes_of(const std::string& text) { return {text.begin(), text.end()}; }

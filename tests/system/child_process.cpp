@@ -118,9 +118,14 @@ Finished run(const std::vector<std::string>& command, const std::string& directo
   close(out.write_end);
   close(error.write_end);
   Finished finished{};
-  while (append_from(out.read_end, finished.output)) {
-  }
-  while (append_from(error.read_end, finished.error)) {
+  std::array<pollfd, 2> ready{{{out.read_end, POLLIN, 0}, {error.read_end, POLLIN, 0}}};
+  while ((ready[0].fd >= 0 || ready[1].fd >= 0) && poll(ready.data(), ready.size(), -1) > 0) {
+    if (ready[0].revents != 0 && !append_from(out.read_end, finished.output)) {
+      ready[0].fd = -1;
+    }
+    if (ready[1].revents != 0 && !append_from(error.read_end, finished.error)) {
+      ready[1].fd = -1;
+    }
   }
   close(out.read_end);
   close(error.read_end);

@@ -11,6 +11,7 @@
 #include <csignal>
 #include <cstdlib>
 #include <filesystem>
+#include <fstream>
 #include <memory>
 #include <string>
 
@@ -97,6 +98,62 @@ TEST_P(Tcp, AFloodOfGarbageIsHeldBackAndTheLineGoesOn) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Lines, Tcp, testing::Values("paced", "instant"));
+
+TEST(TcpPort, ManyOneAfterTheOtherAreAllServed) {
+  SimulatorProcess simulator({"EX9042D@05", "--tcp", "0", "--line", "instant"});
+  for (int visit = 0; visit < 300; ++visit) {
+    SocketClient client(simulator.tcp_port());
+    client.send("$05M\r");
+    ASSERT_EQ(client.receive_text(9), "!059042D\r") << visit;
+  }
+}
+
+TEST(TcpPort, SixtyFourAreServedAtOnceAndAPlaceThatIsFreeIsGivenAgain) {
+  SimulatorProcess simulator({"EX9042D@05", "--tcp", "0", "--line", "instant"});
+  std::vector<std::unique_ptr<SocketClient>> clients;
+  for (int i = 0; i < 64; ++i) {
+    clients.push_back(std::make_unique<SocketClient>(simulator.tcp_port()));
+  }
+  SocketClient too_many(simulator.tcp_port());
+  EXPECT_TRUE(too_many.closed());
+  clients.back()->send("$05M\r");
+  for (const auto& client : clients) {
+    EXPECT_EQ(client->receive_text(9), "!059042D\r");
+  }
+  clients.pop_back();
+  SocketClient next(simulator.tcp_port());
+  next.send("$052\r");
+  EXPECT_EQ(next.receive_text(10), "!05400600\r");
+}
+
+TEST(TcpPort, ListensWhereItIsTold) {
+  for (const char* host : {"localhost", "127.0.0.1", "[::1]"}) {
+    SimulatorProcess simulator({"EX9042D", "--tcp", std::string(host) + ":0"});
+    EXPECT_NE(simulator.output().find("  TCP "), std::string::npos) << simulator.output();
+  }
+}
+
+// A line that is full must not cost the processor: held back is not looked after.
+TEST(TcpPort, WhoIsHeldBackCostsNoTime) {
+  SimulatorProcess simulator({"EX9042D@05,baud=1200", "--tcp", "0"});
+  SocketClient flooder(simulator.tcp_port());
+  flooder.send(std::vector<std::uint8_t>(20'000, 'x'));  // some minutes at 1200 baud
+  const auto ticks = [&simulator] {
+    std::ifstream stat("/proc/" + std::to_string(simulator.pid()) + "/stat");
+    std::string word;
+    for (int i = 0; i < 13; ++i) {
+      stat >> word;
+    }
+    long user = 0;
+    long system = 0;
+    stat >> user >> system;
+    return user + system;
+  };
+  EXPECT_TRUE(flooder.hears_nothing_for(std::chrono::milliseconds(200)));
+  const long before = ticks();
+  EXPECT_TRUE(flooder.hears_nothing_for(std::chrono::milliseconds(1000)));
+  EXPECT_LT(ticks() - before, sysconf(_SC_CLK_TCK) / 2);
+}
 
 TEST(TcpPort, InUseIsRefusedAndOneOfADeadProcessIsTakenOver) {
   SimulatorProcess first({"EX9042D@05", "--tcp", "0"});

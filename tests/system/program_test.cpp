@@ -46,6 +46,51 @@ TEST(Program, EndsCleanlyWhenNobodyReadsItsLogAnyMore) {
   EXPECT_FALSE(fs::is_symlink(directory.path() + "/ex9000.tty"));
 }
 
+TEST(Program, ASignalThatItIsStartedToIgnoreIsIgnored) {
+  const Directory directory;
+  ChildProcess process({"sh", "-c", "trap '' HUP; exec " + simulator_path() + " EX9042D"}, directory.path());
+  ASSERT_TRUE(process.wait_for("Ctrl-C ends it"));
+  kill(process.pid(), SIGHUP);
+  EXPECT_EQ(process.end(SIGTERM), 0);  // were it ended by the first, its link would be gone before
+}
+
+TEST(Program, StandardStreamsMayBeClosed) {
+  const Directory directory;
+  const Finished finished =
+      run({"sh", "-c",
+           simulator_path() + " EX9042D@05 <&- >&- 2>&- & until [ -L ex9000.tty ]; do :; done; "
+                              "kill -TERM $!; wait $!"},
+          directory.path());
+  EXPECT_EQ(finished.status, 0);
+  EXPECT_TRUE(fs::is_empty(directory.path()));
+}
+
+TEST(Program, AFullDiskBehindItsOutputIsSaid) {
+  const Directory directory;
+  for (const char* arguments : {" EX9042D", " --help", " --reference"}) {
+    const Finished finished =
+        run({"sh", "-c", simulator_path() + arguments + " > /dev/full"}, directory.path());
+    EXPECT_EQ(finished.status, 1) << arguments;
+    EXPECT_NE(finished.error.find("standard output: "), std::string::npos) << finished.error;
+    EXPECT_EQ(std::count(finished.error.begin(), finished.error.end(), '\n'), 1) << finished.error;
+    EXPECT_TRUE(fs::is_empty(directory.path()));
+  }
+}
+
+TEST(Program, ALinkThatAnotherUsersSimulatorHasIsNotTakenOver) {
+  if (geteuid() != 0) {
+    std::printf("left to a run as root: another user's simulator\n");
+    return;
+  }
+  SimulatorProcess process({"EX9042D"});
+  fs::permissions(process.directory(), fs::perms::all);
+  const Finished other =
+      run({"setpriv", "--reuid=65534", "--clear-groups", simulator_path(), "EX9052D", "--pty", process.tty()},
+          process.directory());
+  EXPECT_EQ(other.status, 2) << other.error;
+  EXPECT_NE(other.error.find("another simulator is running there"), std::string::npos) << other.error;
+}
+
 TEST(Program, WrongArgumentsGiveOneLineThatNamesThemExitStatus2AndLeaveNothingBehind) {
   struct Case {
     std::vector<std::string> arguments;

@@ -1,5 +1,7 @@
 #include "tests/system/simulator_process.hpp"
 
+#include <stdexcept>
+
 namespace ex9000::system {
 
 namespace {
@@ -16,7 +18,9 @@ std::string simulator_path() { return EX9000_SIMULATOR; }
 
 SimulatorProcess::SimulatorProcess(const std::vector<std::string>& arguments)
     : process_(command_of(arguments), directory_.path()) {
-  wait_for("Ctrl-C ends it");
+  if (!wait_for("Ctrl-C ends it")) {
+    throw std::runtime_error("the simulator did not come up: " + output());
+  }
 }
 
 std::uint16_t SimulatorProcess::tcp_port() const {

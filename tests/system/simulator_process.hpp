@@ -12,8 +12,8 @@ namespace ex9000::system {
 
 class SimulatorProcess {
  public:
-  /// Starts the program with `arguments` in a fresh directory of its own and returns when it has greeted, or
-  /// has ended.
+  /// Starts the program with `arguments` in a fresh directory of its own and returns when it has greeted.
+  /// Throws std::runtime_error where it ends before.
   explicit SimulatorProcess(const std::vector<std::string>& arguments);
 
   /// Where it runs; the link `ex9000.tty` is there unless the arguments say otherwise.

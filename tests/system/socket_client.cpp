@@ -55,6 +55,11 @@ std::string SocketClient::receive_text(std::size_t count) {
   return {bytes.begin(), bytes.end()};
 }
 
+bool SocketClient::hears_nothing_for(std::chrono::milliseconds time) {
+  pollfd ready{fd_, POLLIN, 0};
+  return poll(&ready, 1, static_cast<int>(time.count())) == 0;
+}
+
 bool SocketClient::closed() {
   constexpr int kPatienceMilliseconds = 10'000;
   pollfd ready{fd_, POLLIN, 0};

@@ -23,6 +23,7 @@ class SocketClient {
   /// What comes until `count` bytes are there, nothing came for 10 s, or the other side has closed.
   std::vector<std::uint8_t> receive(std::size_t count);
   std::string receive_text(std::size_t count);
+  bool hears_nothing_for(std::chrono::milliseconds time);
   /// Whether the other side has closed; waits 10 s for it.
   bool closed();
 

@@ -84,7 +84,7 @@ void every_function_to_every_other_address(const char* model) {
       } else if (function == 0x46) {
         frame = {frame[0], frame[1], 4, 9, 0, 0, 0};
       }
-      bench.send(ModuleBench::with_crc(frame));
+      bench.send(with_crc(frame));
       bench.run(std::chrono::milliseconds(3));
     }
   }

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "sim/line.hpp"
-#include "tests/unit/module_bench.hpp"
+#include "tests/modbus_frame.hpp"
 
 namespace ex9000::sim {
 namespace {
@@ -13,8 +13,6 @@ namespace {
 using Frame = std::vector<std::uint8_t>;
 using std::chrono::microseconds;
 using std::chrono::milliseconds;
-
-Frame with_crc(const Frame& frame) { return ModuleBench::with_crc(frame); }
 
 const Frame kReadOutputs = with_crc({0x01, 0x01, 0x00, 0x00, 0x00, 0x0D});
 const Frame kOutputsOff = with_crc({0x01, 0x01, 0x02, 0x00, 0x00});

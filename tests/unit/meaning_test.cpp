@@ -6,19 +6,14 @@
 #include <string>
 #include <string_view>
 
-#include "firmware/line/crc16.hpp"
+#include "tests/modbus_frame.hpp"
 
 namespace ex9000::sim {
 namespace {
 
 FrameBytes dcon(std::string_view text) { return {text.begin(), text.end()}; }
 
-FrameBytes rtu(FrameBytes bytes) {
-  const Crc16 crc = crc16({bytes.data(), bytes.size()});
-  bytes.push_back(crc.low_byte());
-  bytes.push_back(crc.high_byte());
-  return bytes;
-}
+FrameBytes rtu(const FrameBytes& bytes) { return with_crc(bytes); }
 
 std::string of_request(std::string_view text) { return meaning(dcon(text), Speaker::Master); }
 std::string of_reply(std::string_view text) { return meaning(dcon(text), Speaker::Module); }

@@ -6,8 +6,8 @@
 #include <string>
 #include <vector>
 
-#include "firmware/line/crc16.hpp"
 #include "sim/line.hpp"
+#include "tests/modbus_frame.hpp"
 #include "tests/unit/bus_recorder.hpp"
 
 namespace ex9000::sim {
@@ -55,13 +55,6 @@ class ModuleBench {
       reply.pop_back();
     }
     return reply;
-  }
-
-  static Bytes with_crc(Bytes frame) {
-    const Crc16 crc = crc16({frame.data(), frame.size()});
-    frame.push_back(crc.low_byte());
-    frame.push_back(crc.high_byte());
-    return frame;
   }
 
   /// A frame without CRC, and its reply without CRC, empty where none comes within 250 ms.

@@ -239,9 +239,9 @@ TEST(Queueing, AWholeModbusFrameSurvivesTheReplyToTheOneBeforeIt) {
   bench.ask(Bytes{1, 0x06, 0x01, 0xE8, 0x00, 0x05});
   bench.ask(Bytes{1, 0x05, 0x01, 0x04, 0xFF, 0x00});
   bench.run(milliseconds(150));
-  bench.send(ModuleBench::with_crc({1, 0x05, 0x00, 0xA0, 0xFF, 0x00}));
+  bench.send(with_crc({1, 0x05, 0x00, 0xA0, 0xFF, 0x00}));
   bench.run(microseconds(4100));
-  bench.send(ModuleBench::with_crc({1, 0x03, 0x30, 0x38, 0x00, 0x00}));
+  bench.send(with_crc({1, 0x03, 0x30, 0x38, 0x00, 0x00}));
   const VirtualTime sent = bench.now();
   bench.recorder().clear();
   bench.run(milliseconds(400));
@@ -252,9 +252,9 @@ TEST(Queueing, AWholeModbusFrameSurvivesTheReplyToTheOneBeforeIt) {
 
 TEST(Queueing, TwoRepliesAreNeverOneFrameToTheMaster) {
   ModuleBench bench("EX9068D-M,baud=115200");
-  bench.send(ModuleBench::with_crc({1, 0x05, 0x00, 0xA0, 0xFF, 0x00}));
+  bench.send(with_crc({1, 0x05, 0x00, 0xA0, 0xFF, 0x00}));
   bench.run(microseconds(1800));
-  bench.send(ModuleBench::with_crc({1, 0x01, 0x00, 0x00, 0x00, 0x08}));
+  bench.send(with_crc({1, 0x01, 0x00, 0x00, 0x00, 0x08}));
   bench.run(milliseconds(100));
   std::vector<BusRecorder::Driver> on;
   std::vector<BusRecorder::Driver> off;

@@ -125,7 +125,7 @@ TEST(Time, NothingHappensWhenTheMicrosecondsWrap) {
   ASSERT_EQ(bench.ask(Bytes{1, 0x06, 0x01, 0xE8, 0x00, 0x14}).at(1), 0x06);
   bench.line().bus().run_until(kWrap - milliseconds(1000));
   ASSERT_EQ(bench.ask(Bytes{1, 0x05, 0x01, 0x04, 0xFF, 0x00}).at(1), 0x05);
-  const Bytes host_ok = ModuleBench::with_crc({1, 0x03, 0x30, 0x38, 0x00, 0x00});
+  const Bytes host_ok = with_crc({1, 0x03, 0x30, 0x38, 0x00, 0x00});
   // A frame across the wrap.
   bench.line().bus().run_until(kWrap - milliseconds(4));
   bench.send(host_ok);

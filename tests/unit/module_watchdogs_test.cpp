@@ -22,9 +22,9 @@ using std::chrono::seconds;
 TEST(HostWatchdog, HostOksCloserThanTheTimeoutKeepItFromExpiringAtAnyRate) {
   for (const std::uint32_t baud : kBaudRates) {
     ModuleBench bench("EX9068D-M,baud=" + std::to_string(baud));
-    const Bytes host_ok = ModuleBench::with_crc({1, 0x03, 0x30, 0x38, 0x00, 0x00});
+    const Bytes host_ok = with_crc({1, 0x03, 0x30, 0x38, 0x00, 0x00});
     bench.ask(Bytes{1, 0x06, 0x01, 0xE8, 0x00, 0x03});
-    bench.send(ModuleBench::with_crc({1, 0x05, 0x01, 0x04, 0xFF, 0x00}));
+    bench.send(with_crc({1, 0x05, 0x01, 0x04, 0xFF, 0x00}));
     bench.run(milliseconds(150));
     for (int i = 0; i < 20; ++i) {
       const VirtualTime began = bench.now();
@@ -104,14 +104,14 @@ TEST(HostWatchdog, ExpiryDrivesTheSafeValueAtOnceEvenWhileACommandIsBeingStored)
   bench.ask(Bytes{1, 0x06, 0x01, 0xE8, 0x00, 0x05});
   bench.ask(Bytes{1, 0x0F, 0x00, 0x00, 0x00, 0x10, 0x02, 0x0F, 0x00});
   bench.ask(Bytes{1, 0x05, 0x01, 0x04, 0xFF, 0x00});
-  bench.send(ModuleBench::with_crc({1, 0x03, 0x30, 0x38, 0x00, 0x00}));
+  bench.send(with_crc({1, 0x03, 0x30, 0x38, 0x00, 0x00}));
   const VirtualTime restarted = bench.now() + microseconds(1750);  // the silence that ends the frame
   std::vector<OutputChange> changes;
   bench.watch_outputs(changes);
   // Storing the power-on value takes some 10 ms and would drive all outputs; the timeout falls into it.
   bench.run(milliseconds(493));
   bench.forget_heard();
-  bench.send(ModuleBench::with_crc({1, 0x0F, 0x00, 0xA0, 0x00, 0x10, 0x02, 0xFF, 0xFF}));
+  bench.send(with_crc({1, 0x0F, 0x00, 0xA0, 0x00, 0x10, 0x02, 0xFF, 0xFF}));
   bench.run(milliseconds(250));
   ASSERT_EQ(changes.size(), 1U);
   EXPECT_EQ(changes[0].channels, 0);

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "firmware/line/rtu_assembler.hpp"
+#include "tests/modbus_frame.hpp"
 
 namespace ex9000 {
 
@@ -15,20 +16,6 @@ using Nanoseconds = std::int64_t;
 
 inline constexpr std::uint8_t kOwn = 0x01;
 inline constexpr Duration kLongSilence = milliseconds(100);
-
-/// Bit by bit, as appendix B of the guide describes it.
-inline FrameBytes with_crc(FrameBytes bytes) {
-  unsigned crc = 0xFFFF;
-  for (const std::uint8_t byte : bytes) {
-    crc ^= byte;
-    for (int bit = 0; bit < 8; ++bit) {
-      crc = (crc & 1U) != 0 ? (crc >> 1U) ^ 0xA001U : crc >> 1U;
-    }
-  }
-  bytes.push_back(static_cast<std::uint8_t>(crc & 0xFFU));
-  bytes.push_back(static_cast<std::uint8_t>(crc >> 8U));
-  return bytes;
-}
 
 inline const FrameBytes kChannel0On{0x01, 0x05, 0x00, 0x00, 0xFF, 0x00, 0x8C, 0x3A};  // wire.md, worked out
 
