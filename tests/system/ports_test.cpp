@@ -127,9 +127,13 @@ TEST(TcpPort, SixtyFourAreServedAtOnceAndAPlaceThatIsFreeIsGivenAgain) {
 }
 
 TEST(TcpPort, ListensWhereItIsTold) {
-  for (const char* host : {"localhost", "127.0.0.1", "[::1]"}) {
-    SimulatorProcess simulator({"EX9042D", "--tcp", std::string(host) + ":0"});
-    EXPECT_NE(simulator.output().find("  TCP "), std::string::npos) << simulator.output();
+  std::vector<std::string> hosts{"127.0.0.1"};
+  if (fs::exists("/proc/net/if_inet6")) {  // where there is no IPv6, there is no such address to listen at
+    hosts.emplace_back("[::1]");
+  }
+  for (const std::string& host : hosts) {
+    SimulatorProcess simulator({"EX9042D", "--tcp", host + ":0"});
+    EXPECT_NE(simulator.output().find("  TCP " + host + ":"), std::string::npos) << simulator.output();
   }
 }
 

@@ -3,6 +3,7 @@
 
 #include <string>
 
+#include "tests/system/control_client.hpp"
 #include "tests/system/simulator_process.hpp"
 #include "tests/system/terminal.hpp"
 
@@ -25,12 +26,14 @@ TEST(Dcon, ATypedSessionIsAnswered) {
 }
 
 TEST(Dcon, AReplyThatNobodyHasWaitedForIsNotTheNextMastersFirst) {
-  SimulatorProcess simulator({"EX9042D@05,name=FIRST", "--log"});
+  SimulatorProcess simulator({"EX9042D@05,name=FIRST", "--log", "--control", "control"});
   {
     Terminal impatient(simulator.tty(), 9600);
     impatient.type("$05M\r");
   }
   ASSERT_TRUE(simulator.wait_for("!05FIRST")) << simulator.output();
+  ControlClient(simulator.directory() + "/control")
+      .ok("list");  // by then its last byte has been handed out, too
   Terminal terminal(simulator.tty(), 9600);
   terminal.type("$052\r");
   EXPECT_EQ(terminal.read_line(), "!05400600\r");
