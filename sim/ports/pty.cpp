@@ -48,7 +48,8 @@ void clear_the_way(const std::string& link, const Claim& claim) {
   unlink(link.c_str());
 }
 
-/// For a moment; whoever is to hear of visits does not look yet, or takes this for one.
+/// The other end, opened for a moment: what only it can do. A visit like any other, so not while nobody is
+/// there.
 class Slave {
  public:
   explicit Slave(const std::string& device)

@@ -50,8 +50,15 @@ TEST(Program, ASignalThatItIsStartedToIgnoreIsIgnored) {
   const Directory directory;
   ChildProcess process({"sh", "-c", "trap '' HUP; exec " + simulator_path() + " EX9042D"}, directory.path());
   ASSERT_TRUE(process.wait_for("Ctrl-C ends it"));
-  kill(process.pid(), SIGHUP);
-  EXPECT_EQ(process.end(SIGTERM), 0);  // were it ended by the first, its link would be gone before
+  std::ifstream status("/proc/" + std::to_string(process.pid()) + "/status");
+  std::string line;
+  while (std::getline(status, line) && line.rfind("SigIgn:", 0) != 0) {
+  }
+  ASSERT_FALSE(line.empty());
+  const unsigned long ignored = std::stoul(line.substr(line.find('\t') + 1), nullptr, 16);
+  EXPECT_EQ(ignored >> (SIGHUP - 1) & 1U, 1U);  // it was not caught instead
+  EXPECT_EQ(ignored >> (SIGTERM - 1) & 1U, 0U);
+  EXPECT_EQ(process.end(SIGTERM), 0);
 }
 
 TEST(Program, StandardStreamsMayBeClosed) {
