@@ -20,41 +20,50 @@ void add(std::uint16_t& counter, EventTally& tally) {
 
 void Module::begin(std::uint16_t input_levels, Time now, TimingAt timing_at) {
   timing_at_ = timing_at;
-  edges_.begin(input_levels & state_.model.input_mask());
+  edges_.begin(input_levels & state_.model().input_mask());
   store_.begin_loading();
   init_gives_up_.set(now + kInitGivesUp);
   led_.show(StatusLed::Pattern::Steady, now);
 }
 
-void Module::step(bool init_switch, Time now) {
+void Module::look_around(bool init_switch, Time now) {
   init_switch_.sample(init_switch, now);
   state_.init_asserted = init_switch_.level();
+  led_.show(led_pattern_due(), now);
+}
+
+StatusLed::Pattern Module::led_pattern_due() const {
+  if (state_.settings.timeout_status) {
+    return StatusLed::Pattern::HostTimeout;
+  }
+  return settings_known_ && settings_unreadable() ? StatusLed::Pattern::SettingsUnreadable
+                                                  : StatusLed::Pattern::Steady;
+}
+
+void Module::step(Time now) {
   if (!settings_known_ && !store_.loading()) {
     use_settings(now);
   }
   if (line_quiet_.reached(now)) {
     line_quiet_.disarm();
   }
-  if (settings_known_) {
-    if (phase_ == Phase::Booting && init_is_known(now)) {
-      start_listening();
-    }
-    // What a frame is judged by is collected after it was there, so that it includes the frame itself.
-    const Frame* frame = receiver_.queue().waiting();
-    collect_tallies();
-    heed_host_ok();
-    expire_host_watchdog(now);  // before anything that drives outputs
-    go_on_storing(now);
-    if (phase_ == Phase::Idle && frame != nullptr) {
-      judge(*frame, now);
-      receiver_.queue().drop_in_main_loop();
-    }
-    store_leftovers(now);
+  if (!settings_known_) {
+    return;
   }
-  led_.show(state_.settings.timeout_status             ? StatusLed::Pattern::HostTimeout
-            : settings_known_ && settings_unreadable() ? StatusLed::Pattern::SettingsUnreadable
-                                                       : StatusLed::Pattern::Steady,
-            now);
+  if (phase_ == Phase::Booting && init_is_known(now)) {
+    start_listening();
+  }
+  // What a frame is judged by is collected after it was there, so that it includes the frame itself.
+  const Frame* frame = receiver_.queue().waiting();
+  collect_tallies();
+  heed_host_ok();
+  expire_host_watchdog(now);  // before anything that drives outputs
+  go_on_storing(now);
+  if (phase_ == Phase::Idle && frame != nullptr) {
+    judge(*frame, now);
+    receiver_.queue().drop_in_main_loop();
+  }
+  store_leftovers(now);
 }
 
 // --- reset ---
@@ -99,7 +108,7 @@ void Module::collect_tallies() {
   if (phase_ == Phase::Booting) {
     return;  // what the counters count is not settled yet
   }
-  state_.inputs.collect(edges_, state_.model.inputs);
+  state_.inputs.collect(edges_, state_.model().inputs);
   LineTallies& tallies = receiver_.tallies();
   Diagnostics& diagnostics = state_.diagnostics;
   add(diagnostics.bus_messages, tallies.bus_messages);
@@ -286,9 +295,9 @@ bool Module::memory_is_free() const {
 std::optional<Duration> Module::idle_for(Time now) const {
   const bool memory_has_news = !store_.busy() && (!settings_known_ || storing_leftovers_ ||
                                                   phase_ == Phase::MustStore || phase_ == Phase::Storing);
-  const bool line_has_news = (phase_ == Phase::Idle && receiver_.queue().waiting() != nullptr) ||
+  const bool request_waits = (phase_ == Phase::Idle && receiver_.queue().waiting() != nullptr) ||
                              receiver_.host_oks() != host_oks_heeded_;
-  if (memory_has_news || line_has_news) {
+  if (memory_has_news || request_waits || led_.pattern() != led_pattern_due()) {
     return Duration();
   }
   std::optional<Duration> idle;

@@ -50,8 +50,15 @@ class Module {
 
   // --- main loop ---
 
-  /// One turn. `init_switch`: INIT* is asserted (tied to GND), not debounced.
-  void step(bool init_switch, Time now);
+  /// What people see and touch, often enough for them: every few milliseconds. `init_switch`: INIT* is
+  /// asserted (tied to GND), not debounced.
+  void look_around(bool init_switch, Time now);
+  /// One turn: what the interrupts have gathered, what the clock says, what the memory has done.
+  void step(Time now);
+  /// Interrupts too: a frame or a host OK waits for `step`.
+  [[nodiscard]] bool line_has_news() const {
+    return receiver_.queue().waiting() != nullptr || receiver_.host_oks() != host_oks_heeded_;
+  }
   /// How long nothing will happen by itself; zero: step again at once; nothing: until an interrupt or a
   /// finished job.
   [[nodiscard]] std::optional<Duration> idle_for(Time now) const;
@@ -99,6 +106,7 @@ class Module {
     Replying,    ///< the driver is on
   };
 
+  [[nodiscard]] StatusLed::Pattern led_pattern_due() const;
   void use_settings(Time now);
   void start_listening();
   [[nodiscard]] bool init_is_known(Time now) const;

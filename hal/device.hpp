@@ -3,68 +3,141 @@
 
 #include <cstdint>
 
+#include "firmware/line/crossing.hpp"
 #include "firmware/module.hpp"
-#include "hal/clock.hpp"
-#include "hal/init_switch.hpp"
-#include "hal/inputs.hpp"
-#include "hal/memory.hpp"
-#include "hal/outputs.hpp"
-#include "hal/serial_line.hpp"
-#include "hal/silence_timer.hpp"
-#include "hal/status_led.hpp"
-#include "hal/tick.hpp"
-#include "hal/watchdog.hpp"
 
 namespace ex9000::hal {
 
-/// What a board provides.
-struct Board {
-  Clock& clock;
-  SerialLine& line;
-  SilenceTimer& silence_timer;
-  Inputs& inputs;
-  Outputs& outputs;
-  Memory& memory;
-  InitSwitch& init_switch;
-  StatusLed& status_led;
-  Tick& tick;
-  Watchdog& watchdog;
-};
-
 /// Lives from one reset to the next. A composition file makes one, calls `start`, points the interrupts at
-/// the `on_...` functions and calls `turn` for ever.
+/// the `on_...` functions and then, for ever, `look_around` after every tick and `turn` whenever there is
+/// `news`; it may sleep while there is none.
+///
+/// `Board` has the members of hal::Board, which say what each of them does.
+template <class Board>
 class Device {
  public:
+  /// With a board of its own.
+  explicit constexpr Device(const Model& model) : module_(model), board_() {}
+  /// On one that refers to somebody else's peripherals.
   constexpr Device(const Model& model, const Board& board) : module_(model), board_(board) {}
 
-  /// Once, before interrupts are enabled. `tick` is the period that suits the board, see Tick::start;
-  /// `timing_at` what Module::begin wants.
-  void start(Duration tick, TimingAt timing_at = LineTiming::at);
+  /// Once, before interrupts are enabled; the tick runs already. `timing_at` is what Module::begin wants.
+  void start(TimingAt timing_at = LineTiming::at) {
+    module_.begin(board_.inputs.start(), board_.clock.now(), timing_at);
+    board_.watchdog.feed();
+  }
 
   // --- interrupts; on_receive and on_silence share a priority, the others may have their own ---
 
   /// A byte was received, good or not; what comes while the own driver is on is the echo and is ignored.
-  void on_receive(std::uint8_t byte, ByteStatus status);
-  void on_silence();
+  void on_receive(std::uint8_t byte, ByteStatus status) {
+    if (board_.line.sending()) {
+      return;
+    }
+    const Duration silence = module_.on_byte(byte, status, board_.clock.now());
+    if (!(silence == Duration())) {
+      board_.silence_timer.restart(silence);
+    }
+  }
+  void on_silence() {
+    const Duration more = module_.on_silence(board_.clock.now());
+    if (!(more == Duration())) {
+      board_.silence_timer.restart(more);
+    }
+    if (module_.line_has_news()) {
+      wake();
+    }
+  }
   void on_edge(unsigned channel, bool level) { module_.on_edge(channel, level); }
-  void on_tick() { module_.on_tick(); }
+  void on_tick() {
+    module_.on_tick();
+    wake();
+  }
+  /// The main loop has something to go on with: the memory, the line.
+  void wake() { wakes_.store_in_interrupt(static_cast<std::uint8_t>(wakes_.load() + 1U)); }
 
-  // --- main loop ---
+  // --- main loop; none of it blocks ---
 
-  /// One turn of the main loop; does not block.
-  void turn();
+  [[nodiscard]] bool news() const { return restless_ || wakes_.load() != wakes_seen_; }
 
+  /// INIT*, the status LED and the hardware watchdog: every tick.
+  void look_around() {
+    module_.look_around(board_.init_switch.asserted(), board_.clock.now());
+    board_.status_led.light(module_.led_lit());
+    if (module_.feed_watchdog()) {
+      board_.watchdog.feed();
+    }
+  }
+
+  /// Requests, settings and outputs.
+  void turn() {
+    wakes_seen_ = wakes_.load();
+    const Time now = board_.clock.now();
+    look_after_memory(now);
+    module_.step(now);
+    board_.outputs.drive(module_.outputs());
+    look_after_line(now);
+    look_after_memory(now);
+  }
+
+  constexpr Board& board() { return board_; }
   [[nodiscard]] const Module& module() const { return module_; }
 
  private:
-  void look_after_line(Time now);
-  void look_after_memory();
+  void look_after_line(Time now) {
+    if (!line_open_) {
+      if (!module_.listening()) {
+        return;
+      }
+      line_open_ = true;
+      board_.line.open(module_.baud());
+    }
+    if (reply_under_way_) {
+      if (board_.line.sending()) {
+        return;
+      }
+      reply_under_way_ = false;
+      module_.reply_sent(now);
+    }
+    const Bytes reply = module_.take_reply(now);
+    if (reply.size != 0) {
+      reply_under_way_ = true;
+      board_.line.send(reply);
+      module_.reply_started();
+    }
+  }
+
+  void look_after_memory(Time now) {
+    restless_ = board_.memory.go_on(now);
+    if (board_.memory.busy()) {
+      return;
+    }
+    if (memory_job_under_way_) {
+      memory_job_under_way_ = false;
+      module_.memory_done(board_.memory.succeeded());
+    }
+    const MemoryJob job = module_.memory_job();
+    switch (job.kind) {
+      case MemoryJob::Kind::Read:
+        board_.memory.start_read(job.address, job.destination, now);
+        break;
+      case MemoryJob::Kind::Write:
+        board_.memory.start_write(job.address, job.source, now);
+        break;
+      case MemoryJob::Kind::None:
+        return;
+    }
+    memory_job_under_way_ = true;
+  }
 
   Module module_;
-  const Board& board_;
+  Board board_;
   bool line_open_ = false;
   bool reply_under_way_ = false;
   bool memory_job_under_way_ = false;
+  bool restless_ = false;  ///< the memory wants to be looked after without being told by an interrupt
+  std::uint8_t wakes_seen_ = 0;
+  WrittenByInterrupt<std::uint8_t> wakes_;
 };
 
 }  // namespace ex9000::hal

@@ -8,8 +8,9 @@ namespace ex9000::hal {
 /// after the edge flag was cleared.
 class Inputs {
  public:
-  /// Bit n is channel n, 1 = logic 1 (+4 to +30 V). Interrupts and main loop; does not block.
-  [[nodiscard]] virtual std::uint16_t levels() const = 0;
+  /// From now on edges are told. Returns the levels they start from: bit n is channel n, 1 = logic 1 (+4 to
+  /// +30 V). Main loop, once after reset; does not block.
+  virtual std::uint16_t start() = 0;
 
  protected:
   ~Inputs() = default;

@@ -3,6 +3,7 @@
 #include <cstdint>
 
 #include "firmware/bytes.hpp"
+#include "firmware/time.hpp"
 
 namespace ex9000::hal {
 
@@ -12,11 +13,15 @@ class Memory {
  public:
   /// Begins to read `destination.size` bytes from `address` on. Main loop, only while not `busy()`; does not
   /// block. `destination` lives until then.
-  virtual void start_read(std::uint16_t address, MutableBytes destination) = 0;
+  virtual void start_read(std::uint16_t address, MutableBytes destination, Time now) = 0;
 
   /// Begins to write; the job never crosses a 32-byte page. Ends when the memory has programmed the bytes,
   /// not when it has taken them. Likewise.
-  virtual void start_write(std::uint16_t address, Bytes source) = 0;
+  virtual void start_write(std::uint16_t address, Bytes source, Time now) = 0;
+
+  /// Goes on with the job. Main loop, every turn; does not block. True: wants to be called again at once, no
+  /// interrupt will tell when.
+  virtual bool go_on(Time now) = 0;
 
   /// Whether a job is under way. Main loop.
   [[nodiscard]] virtual bool busy() const = 0;

@@ -19,7 +19,7 @@ SimulatedModule::Mcu::Mcu(SimulatedModule& module)
       tick(module.clock_),
       watchdog(module.clock_),
       board{module.clock_,       line,        silence_timer, module.inputs_, module.outputs_, module.memory_,
-            module.init_switch_, module.led_, tick,          watchdog},
+            module.init_switch_, module.led_, watchdog},
       device(module.model_, board) {}
 
 SimulatedModule::SimulatedModule(Bus& bus, const Model& model, TimingAt timing_at)
@@ -47,7 +47,8 @@ void SimulatedModule::reset() {
 void SimulatedModule::start() {
   hung_ = false;
   mcu_.emplace(*this);
-  mcu_->device.start(kTick, timing_at_);
+  mcu_->tick.start(kTick);
+  mcu_->device.start(timing_at_);
   turn();
 }
 
@@ -141,6 +142,7 @@ void SimulatedModule::turn() {
   }
   std::optional<Duration> idle;
   do {
+    mcu_->device.look_around();
     mcu_->device.turn();
     idle = mcu_->device.module().idle_for(clock_.now());
   } while (idle == Duration());

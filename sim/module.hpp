@@ -8,6 +8,7 @@
 
 #include "firmware/model/model.hpp"
 #include "firmware/settings/settings.hpp"
+#include "hal/board.hpp"
 #include "hal/device.hpp"
 #include "hal/doubles/init_switch.hpp"
 #include "hal/doubles/inputs.hpp"
@@ -83,7 +84,7 @@ class SimulatedModule final : public Station {
     hal::doubles::Tick tick;
     hal::doubles::Watchdog watchdog;
     hal::Board board;
-    hal::Device device;
+    hal::Device<hal::Board> device;
   };
 
   void start();

@@ -23,21 +23,21 @@ Refusal read_sample(const State& state, Bytes /*args*/, Outcome& outcome, Reply&
   outcome.sample_read = true;
   reply.put('!');
   reply.put(sample.read ? '0' : '1');
-  put_data(state.model, sample.outputs, sample.inputs, reply);
+  put_data(state.model(), sample.outputs, sample.inputs, reply);
   reply.put(kEndOfData);
   return Refusal::None;
 }
 
 Refusal read_channels(const State& state, Bytes /*args*/, Outcome& /*outcome*/, Reply& reply) {
   reply.put('!');
-  put_data(state.model, state.outputs, state.inputs.levels(), reply);
+  put_data(state.model(), state.outputs, state.inputs.levels(), reply);
   reply.put(kEndOfData);
   return Refusal::None;
 }
 
 Refusal read_channels_short(const State& state, Bytes /*args*/, Outcome& /*outcome*/, Reply& reply) {
   reply.put('>');
-  put_data(state.model, state.outputs, state.inputs.levels(), reply);
+  put_data(state.model(), state.outputs, state.inputs.levels(), reply);
   return Refusal::None;
 }
 

@@ -70,7 +70,7 @@ Refusal read_name(const State& state, Bytes /*args*/, Outcome& /*outcome*/, Repl
 }
 
 Refusal set_name(const State& state, Bytes args, Outcome& outcome, Reply& reply) {
-  if (args.size > state.model.longest_name) {
+  if (args.size > state.model().longest_name) {
     return Refusal::OutOfRange;
   }
   for (const std::uint8_t character : args) {

@@ -4,6 +4,7 @@
 
 #include "firmware/dcon/commands.hpp"
 #include "firmware/hex.hpp"
+#include "firmware/model/built.hpp"
 
 namespace ex9000::dcon {
 
@@ -12,13 +13,7 @@ namespace {
 constexpr std::size_t kBodyAt = 3;
 
 /// The rows without their texts.
-constexpr auto kDispatch = [] {
-  std::array<Dispatch, kCommands.size()> rows{};
-  for (std::size_t i = 0; i < rows.size(); ++i) {
-    rows[i] = kCommands[i].dispatch;
-  }
-  return rows;
-}();
+constexpr auto kDispatch = rows_of_built_models<kCommands, &Command::dispatch>();
 
 bool is_broadcast(Bytes frame) { return frame[1] == '*'; }
 
@@ -60,7 +55,7 @@ void refuse(const State& state, Bytes frame, Refusal refusal, Reply& reply) {
     return;
   }
   reply.put('?');
-  if (!refused_without_address(state.model, frame)) {
+  if (!refused_without_address(state.model(), frame)) {
     reply.put_hex(state.in_force.address);
   }
 }
@@ -95,7 +90,7 @@ void answer(const State& state, Bytes frame, Outcome& outcome, Reply& reply) {
   if (!is_broadcast(frame) && hex_byte(frame[1], frame[2]) != state.in_force.address) {
     return;  // `%` has changed the address since the frame came in (D16)
   }
-  const std::size_t command = find_command(state.model, frame);
+  const std::size_t command = find_command(state.model(), frame);
   outcome.refusal = command == kNoCommand ? Refusal::UnknownCommand
                                           : kDispatch[command].handler(
                                                 state, arguments(kDispatch[command], frame), outcome, reply);

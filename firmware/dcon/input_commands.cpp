@@ -17,7 +17,7 @@ unsigned channel_of(const Model& model, std::uint8_t digit) {
 }  // namespace
 
 Refusal read_counter(const State& state, Bytes args, Outcome& /*outcome*/, Reply& reply) {
-  const unsigned channel = channel_of(state.model, args[0]);
+  const unsigned channel = channel_of(state.model(), args[0]);
   if (channel == kNoChannel) {
     return Refusal::OutOfRange;
   }
@@ -36,7 +36,7 @@ Refusal clear_latches(const State& state, Bytes /*args*/, Outcome& outcome, Repl
 }
 
 Refusal clear_counter(const State& state, Bytes args, Outcome& outcome, Reply& reply) {
-  const unsigned channel = channel_of(state.model, args[0]);
+  const unsigned channel = channel_of(state.model(), args[0]);
   if (channel == kNoChannel) {
     return Refusal::OutOfRange;
   }
@@ -52,7 +52,7 @@ Refusal read_latches(const State& state, Bytes args, Outcome& /*outcome*/, Reply
   // On a module with both, First is where the outputs stand elsewhere; here it is 00.
   const Inputs& inputs = state.inputs;
   reply.put('!');
-  put_data(state.model, 0, args[0] == '1' ? inputs.latched_high() : inputs.latched_low(), reply);
+  put_data(state.model(), 0, args[0] == '1' ? inputs.latched_high() : inputs.latched_low(), reply);
   reply.put_hex(0);
   return Refusal::None;
 }

@@ -65,13 +65,13 @@ Refusal set_output_group(const State& state, Bytes args, Outcome& outcome, Reply
   if (data < 0) {
     return Refusal::OutOfRange;
   }
-  const Drive wanted = args[0] == '0' ? group(state.model, args[1], data)
-                                      : single(state.model, args[0], hex_value(args[1]), data);
+  const Drive wanted = args[0] == '0' ? group(state.model(), args[1], data)
+                                      : single(state.model(), args[0], hex_value(args[1]), data);
   return wanted.mask == 0 ? Refusal::OutOfRange : drive(state, wanted, outcome, reply);
 }
 
 Refusal set_outputs(const State& state, Bytes args, Outcome& outcome, Reply& reply) {
-  const Digits accepted = digits(state.model);
+  const Digits accepted = digits(state.model());
   if (args.size != accepted.full && args.size != accepted.shortened) {
     return Refusal::OutOfRange;
   }
@@ -83,7 +83,7 @@ Refusal set_outputs(const State& state, Bytes args, Outcome& outcome, Reply& rep
     }
     value = (value << 4U) | static_cast<unsigned>(digit);
   }
-  const std::uint16_t channels = state.model.output_mask();
+  const std::uint16_t channels = state.model().output_mask();
   if ((value & ~unsigned{channels}) != 0) {
     return Refusal::OutOfRange;
   }
@@ -95,7 +95,8 @@ Refusal read_preset_value(const State& state, Bytes args, Outcome& /*outcome*/, 
     return Refusal::OutOfRange;
   }
   put_valid(state, reply);
-  put_data(state.model, args[0] == 'P' ? state.settings.power_on_value : state.settings.safe_value, 0, reply);
+  put_data(state.model(), args[0] == 'P' ? state.settings.power_on_value : state.settings.safe_value, 0,
+           reply);
   return Refusal::None;
 }
 

@@ -11,7 +11,7 @@ constexpr unsigned kStatusEnabled = 0x80;
 constexpr unsigned kStatusTimeout = 0x04;
 
 unsigned status_of(const State& state) {
-  const bool tells_enable = state.model.status_style == StatusStyle::EnableAndTimeout;
+  const bool tells_enable = state.model().status_style == StatusStyle::EnableAndTimeout;
   if (state.settings.timeout_status) {
     return tells_enable ? kStatusEnabled | kStatusTimeout : kStatusTimeout;
   }

@@ -37,13 +37,13 @@ void put_object(const State& state, std::uint8_t object, Reply& reply) {
       break;
     case kProductCode:
     case kModelName:
-      reply.put(state.model.designation);
+      reply.put(state.model().designation);
       break;
     case kRevision:
       reply.put(kFirmwareVersion);
       break;
     case kProductName:
-      reply.put(state.model.description);
+      reply.put(state.model().description);
       break;
     default:
       reply.put(state.settings.name.bytes());
@@ -60,7 +60,7 @@ Refusal report_server_id(const State& state, const Request& request, Outcome& /*
   }
   const Bytes name = state.settings.name.bytes();
   reply.put(static_cast<std::uint8_t>(name.size + 3));
-  reply.put_word(state.model.modbus_code);
+  reply.put_word(state.model().modbus_code);
   reply.put(kRunning);
   reply.put(name);
   return Refusal::None;
@@ -129,7 +129,7 @@ Refusal vendor_function(const State& state, const Request& request, Outcome& out
     }
     reply.put(kReadCode);
     reply.put(std::uint8_t{0});
-    reply.put_word(state.model.modbus_code);
+    reply.put_word(state.model().modbus_code);
     reply.put(std::uint8_t{0});
     return Refusal::None;
   }

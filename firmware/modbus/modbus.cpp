@@ -4,6 +4,7 @@
 
 #include "firmware/line/crc16.hpp"
 #include "firmware/modbus/functions.hpp"
+#include "firmware/model/built.hpp"
 
 namespace ex9000::modbus {
 
@@ -20,13 +21,7 @@ enum Exception : std::uint8_t {
   kServerDeviceFailure = 4,
 };
 
-constexpr auto kRows = [] {
-  std::array<FunctionRow, kFunctions.size()> rows{};
-  for (std::size_t i = 0; i < rows.size(); ++i) {
-    rows[i] = kFunctions[i].row;
-  }
-  return rows;
-}();
+constexpr auto kRows = rows_of_built_models<kFunctions, &Function::row>();
 
 const FunctionRow* find(const Model& model, std::uint8_t code) {
   for (const FunctionRow& row : kRows) {
@@ -77,7 +72,7 @@ void write_exception(std::uint8_t address, std::uint8_t function, Refusal refusa
 void answer(const State& state, Bytes frame, Outcome& outcome, Reply& reply) {
   const Request request{frame, frame[0] == kBroadcast};
   const std::uint8_t function = frame[1];
-  const FunctionRow* row = find(state.model, function);
+  const FunctionRow* row = find(state.model(), function);
   if (request.broadcast && (row == nullptr || !row->by_broadcast)) {
     return;
   }

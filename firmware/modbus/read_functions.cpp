@@ -24,12 +24,12 @@ Refusal read_bits(const State& state, const Request& request, Outcome& /*outcome
   if (quantity == 0 || quantity > kMostBits) {
     return Refusal::WrongQuantity;
   }
-  const BitRow* row = find_bits(state.model, function_of(request), start);
+  const BitRow* row = find_bits(state.model(), function_of(request), start);
   if (row == nullptr) {
     return Refusal::WrongAddress;
   }
   const unsigned index = unsigned{start} - row->first;
-  if (index + quantity > width_of(row->width, state.model)) {
+  if (index + quantity > width_of(row->width, state.model())) {
     return Refusal::WrongAddress;
   }
   const unsigned bits = (unsigned{row->read(state)} >> index) & ((1U << quantity) - 1U);
@@ -55,9 +55,9 @@ Refusal read_words(const State& state, const Request& request, Outcome& /*outcom
   for (unsigned i = 0; i < quantity; ++i) {
     // Beyond 0xFFFF there is nothing; what wraps to 0 must not be found.
     const unsigned address = start + i;
-    const WordRow* row =
-        address > 0xFFFF ? nullptr
-                         : find_words(state.model, function_of(request), static_cast<std::uint16_t>(address));
+    const WordRow* row = address > 0xFFFF ? nullptr
+                                          : find_words(state.model(), function_of(request),
+                                                       static_cast<std::uint16_t>(address));
     if (row == nullptr) {
       return Refusal::WrongAddress;
     }

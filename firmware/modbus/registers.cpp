@@ -1,25 +1,14 @@
 #include "firmware/modbus/registers.hpp"
 
+#include "firmware/model/built.hpp"
+
 namespace ex9000::modbus {
 
 namespace {
 
 // The rows without their texts.
-constexpr auto kBitRows = [] {
-  std::array<BitRow, kBitRegisters.size()> rows{};
-  for (std::size_t i = 0; i < rows.size(); ++i) {
-    rows[i] = kBitRegisters[i].row;
-  }
-  return rows;
-}();
-
-constexpr auto kWordRows = [] {
-  std::array<WordRow, kWordRegisters.size()> rows{};
-  for (std::size_t i = 0; i < rows.size(); ++i) {
-    rows[i] = kWordRegisters[i].row;
-  }
-  return rows;
-}();
+constexpr auto kBitRows = rows_of_built_models<kBitRegisters, &BitRegister::row>();
+constexpr auto kWordRows = rows_of_built_models<kWordRegisters, &WordRegister::row>();
 
 template <class Rows>
 auto find_in(const Rows& rows, const Model& model, Functions function, std::uint16_t address)

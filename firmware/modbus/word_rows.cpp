@@ -9,7 +9,7 @@ std::uint16_t read_counter(const State& state, unsigned index) {
 
 std::uint16_t read_module_code(const State& state, unsigned index) {
   // 0x9042 reads 0x0090, 0x4200.
-  const unsigned code = state.model.modbus_code;
+  const unsigned code = state.model().modbus_code;
   return static_cast<std::uint16_t>(index == 0 ? code >> 8U : code << 8U);
 }
 

@@ -66,7 +66,7 @@ Refusal write_single_coil(const State& state, const Request& request, Outcome& o
   if (value != kCoilOn && value != kCoilOff) {
     return Refusal::WrongCoilValue;
   }
-  const BitRow* row = find_bits(state.model, kWriteSingleCoil, address);
+  const BitRow* row = find_bits(state.model(), kWriteSingleCoil, address);
   if (row == nullptr) {
     return Refusal::WrongAddress;
   }
@@ -85,12 +85,12 @@ Refusal write_multiple_coils(const State& state, const Request& request, Outcome
   }
   const std::uint16_t start = frame.word(2);
   const unsigned quantity = frame.word(4);
-  const BitRow* row = find_bits(state.model, kWriteMultipleCoils, start);
+  const BitRow* row = find_bits(state.model(), kWriteMultipleCoils, start);
   if (row == nullptr) {
     return Refusal::WrongAddress;
   }
   const unsigned index = unsigned{start} - row->first;
-  if (index + quantity > width_of(row->width, state.model)) {
+  if (index + quantity > width_of(row->width, state.model())) {
     return Refusal::WrongAddress;
   }
   const unsigned mask = (1U << quantity) - 1U;
@@ -107,7 +107,7 @@ Refusal write_single_register(const State& state, const Request& request, Outcom
   if (frame.size != kSingleSize) {
     return Refusal::WrongLength;
   }
-  const WordRow* row = find_words(state.model, kWriteRegisters, frame.word(2));
+  const WordRow* row = find_words(state.model(), kWriteRegisters, frame.word(2));
   if (row == nullptr) {
     return Refusal::WrongAddress;
   }
@@ -129,9 +129,9 @@ Refusal write_multiple_registers(const State& state, const Request& request, Out
   bool configuration = false;
   for (unsigned i = 0; i < quantity; ++i) {
     const unsigned address = start + i;
-    const WordRow* row = address > 0xFFFF
-                             ? nullptr
-                             : find_words(state.model, kWriteRegisters, static_cast<std::uint16_t>(address));
+    const WordRow* row =
+        address > 0xFFFF ? nullptr
+                         : find_words(state.model(), kWriteRegisters, static_cast<std::uint16_t>(address));
     if (row == nullptr) {
       return Refusal::WrongAddress;
     }
@@ -141,7 +141,7 @@ Refusal write_multiple_registers(const State& state, const Request& request, Out
     return Refusal::None;
   }
   for (unsigned i = 0; i < quantity; ++i) {
-    const WordRow* row = find_words(state.model, kWriteRegisters, static_cast<std::uint16_t>(start + i));
+    const WordRow* row = find_words(state.model(), kWriteRegisters, static_cast<std::uint16_t>(start + i));
     const Refusal wrong = check_value(state, *row, frame.word(kMultipleHeader + std::size_t{2} * i), outcome);
     if (wrong != Refusal::None) {
       return wrong;

@@ -4,6 +4,7 @@
 #include <cstdint>
 
 #include "firmware/channels/inputs.hpp"
+#include "firmware/model/built.hpp"
 #include "firmware/model/model.hpp"
 #include "firmware/settings/settings.hpp"
 
@@ -37,9 +38,9 @@ struct Diagnostics {
 };
 
 struct State {
-  explicit constexpr State(const Model& which) : model(which) {}
+  explicit constexpr State(const Model& model) : chosen(model) {}
 
-  const Model& model;
+  ChosenModel chosen;
   Settings settings;
   InForce in_force;
   bool init_asserted = false;  ///< INIT* at this moment
@@ -49,6 +50,7 @@ struct State {
   bool reset_status = true;
   Diagnostics diagnostics;
 
+  [[nodiscard]] constexpr const Model& model() const { return chosen.get(); }
   /// Section 2: what commands marked (I) need.
   [[nodiscard]] bool configuration_permitted() const { return in_force.init_mode || init_asserted; }
   /// Section 6: output commands are ignored.

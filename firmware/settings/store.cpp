@@ -43,7 +43,7 @@ void SettingsStore::begin_saving(const Settings& settings) {
 }
 
 void SettingsStore::begin_writing() {
-  record_ = encode_record(model_, {pending_, static_cast<std::uint16_t>(stored_.sequence + 1U)});
+  record_ = encode_record(model_.get(), {pending_, static_cast<std::uint16_t>(stored_.sequence + 1U)});
   copy_ = current_copy_ == 0 ? 1 : 0;
   attempt_ = 0;
   step_ = Step::Write;
@@ -109,7 +109,7 @@ void SettingsStore::done(bool ok) {
 }
 
 void SettingsStore::read_copy(bool ok) {
-  const auto copy = ok ? decode_record(model_, read_back_) : std::nullopt;
+  const auto copy = ok ? decode_record(model_.get(), read_back_) : std::nullopt;
   const bool blank = ok && is_blank(read_back_);
   if (!copy && !blank && ++attempt_ < kAttempts) {
     return;
@@ -143,7 +143,7 @@ void SettingsStore::finish_reading() {
     return;
   }
   found_ = blank_copies_ == kCopies ? Found::Blank : Found::Unreadable;
-  stored_ = {Settings::factory(model_), 0};
+  stored_ = {Settings::factory(model_.get()), 0};
 }
 
 void SettingsStore::retry_or_give_up() {

@@ -5,6 +5,7 @@
 #include <cstdint>
 
 #include "firmware/bytes.hpp"
+#include "firmware/model/built.hpp"
 #include "firmware/model/model.hpp"
 #include "firmware/settings/record.hpp"
 #include "firmware/settings/settings.hpp"
@@ -79,7 +80,7 @@ class SettingsStore {
   static constexpr std::uint8_t kNoCopy = 0xFF;
   static constexpr std::uint8_t kAttempts = 3;
 
-  const Model& model_;
+  ChosenModel model_;
   Step step_ = Step::Idle;
   Found found_ = Found::Unreadable;
   bool saved_ = false;

@@ -6,7 +6,8 @@ namespace ex9000::hal::doubles {
 
 class Inputs final : public hal::Inputs {
  public:
-  [[nodiscard]] std::uint16_t levels() const override { return levels_; }
+  std::uint16_t start() override { return levels_; }
+  [[nodiscard]] std::uint16_t levels() const { return levels_; }
   [[nodiscard]] bool level(unsigned channel) const { return (levels_ >> channel & 1U) != 0; }
 
   /// True where this is an edge; then call the interrupt.

@@ -20,12 +20,12 @@ void Memory::begin(bool writing, std::uint16_t address, std::size_t size) {
           (writing ? kProgram : VirtualTime(0));
 }
 
-void Memory::start_read(std::uint16_t address, MutableBytes destination) {
+void Memory::start_read(std::uint16_t address, MutableBytes destination, Time /*now*/) {
   begin(false, address, destination.size);
   destination_ = destination;
 }
 
-void Memory::start_write(std::uint16_t address, Bytes source) {
+void Memory::start_write(std::uint16_t address, Bytes source, Time /*now*/) {
   begin(true, address, source.size);
   source_ = source;
   ++writes_;

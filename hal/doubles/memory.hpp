@@ -22,8 +22,10 @@ class Memory final : public hal::Memory {
 
   explicit Memory(const VirtualClock& clock) : clock_(clock), contents_(kSize, 0xFF) {}
 
-  void start_read(std::uint16_t address, MutableBytes destination) override;
-  void start_write(std::uint16_t address, Bytes source) override;
+  void start_read(std::uint16_t address, MutableBytes destination, Time now) override;
+  void start_write(std::uint16_t address, Bytes source, Time now) override;
+  /// The virtual clock does: `run`.
+  bool go_on(Time /*now*/) override { return false; }
   [[nodiscard]] bool busy() const override { return ends_ != kNever; }
   [[nodiscard]] bool succeeded() const override { return succeeded_; }
 

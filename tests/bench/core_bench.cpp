@@ -35,7 +35,8 @@ class BareModule {
     }
     now_ = now_ + Duration(4013);
     module_.on_silence(now_);
-    module_.step(false, now_);
+    module_.look_around(false, now_);
+    module_.step(now_);
     const Bytes reply = module_.take_reply(now_);
     module_.reply_started();
     module_.reply_sent(now_);
@@ -51,7 +52,8 @@ class BareModule {
       module_.memory_done(true);
     }
     now_ = now_ + Duration(microseconds);
-    module_.step(false, now_);
+    module_.look_around(false, now_);
+    module_.step(now_);
   }
 
   Module module_;

@@ -137,7 +137,7 @@ void Coverage::note_answered(const Module& module, ex9000::Bytes frame) {
     reached_.insert("refusal/" + name_in(kRefusals, refusal));
     return;
   }
-  const Model& model = module.state().model;
+  const Model& model = module.state().model();
   if (module.state().in_force.protocol == Protocol::Ascii) {
     const std::size_t command = dcon::find_command(model, frame);
     if (command != dcon::kNoCommand) {

@@ -1,0 +1,226 @@
+// An image from reset to the main loop: the drivers on the pins of `board.hpp`, the module on the drivers,
+// and the interrupts. Included once, by the main.cpp of a board.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <new>
+
+#include "boards/start_up.hpp"
+#include "firmware/model/built.hpp"
+#include "hal/at24c/at24c.hpp"
+#include "hal/device.hpp"
+#include "hal/stellaris/i2c.hpp"
+#include "hal/stellaris/inputs.hpp"
+#include "hal/stellaris/interrupts.hpp"
+#include "hal/stellaris/one_shot_timer.hpp"
+#include "hal/stellaris/outputs.hpp"
+#include "hal/stellaris/switches.hpp"
+#include "hal/stellaris/system_control.hpp"
+#include "hal/stellaris/system_timer.hpp"
+#include "hal/stellaris/uart.hpp"
+#include "hal/stellaris/watchdog.hpp"
+
+namespace ex9000::board {
+namespace {
+
+using namespace hal::stellaris;
+
+constexpr std::uint32_t kHertz = kClock.frequency();
+constexpr std::uint32_t kMegahertz = kHertz / 1'000'000;
+
+using Clock = SystemTimer<kMegahertz>;
+using SilenceTimer = OneShotTimer<0, kMegahertz>;
+using LineEndTimer = OneShotTimer<1, kMegahertz>;
+using Line = Uart<kUart, kHertz, kDriverEnable, LineEndTimer>;
+using Eeprom = hal::At24c<I2c<kFamily, kHertz>>;
+using Watchdog = HardwareWatchdog<kMegahertz>;
+
+/// See hal::Board.
+struct Board {
+  Clock clock;
+  Line line;
+  SilenceTimer silence_timer;
+  InputPins<kInputs, kOnlyModel.inputs, kInputsActiveHigh> inputs;
+  OutputPins<kOutputs, kOnlyModel.outputs, kOutputsActiveHigh> outputs;
+  Eeprom memory;
+  InitPin<kInitSwitch> init_switch;
+  LedPin<kStatusLed> status_led;
+  Watchdog watchdog;
+};
+
+/// Made by `main` and not by the start-up code, so that flash holds no image of its RAM.
+union Lifetime {
+  constexpr Lifetime() : not_yet() {}
+  char not_yet;
+  hal::Device<Board> device;
+};
+Lifetime lifetime;
+constexpr hal::Device<Board>& device = lifetime.device;
+constexpr Board& board = lifetime.device.board();
+
+// --- interrupts: none interrupts another ---
+
+void on_system_tick() {
+  board.clock.count_in_interrupt();
+  device.on_tick();
+}
+
+void on_line() {
+  board.line.on_interrupt([](std::uint8_t byte, ByteStatus status) { device.on_receive(byte, status); });
+}
+
+void on_silence_timer() {
+  SilenceTimer::acknowledge();
+  device.on_silence();
+}
+
+void on_line_end_timer() {
+  LineEndTimer::acknowledge();
+  board.line.on_end_timer();
+  device.wake();
+}
+
+void on_i2c() {
+  board.memory.master().on_interrupt();
+  device.wake();
+}
+
+template <Port port>
+void on_edges() {
+  board.inputs.take_edges<port>([](unsigned channel, bool level) { device.on_edge(channel, level); });
+}
+
+/// In the order in which they are served where several wait. A received byte must be taken within a
+/// character.
+struct Served {
+  Interrupt number;
+  Order order;
+  start_up::Handler handler;
+};
+constexpr std::array<Served, 4> kAlways{
+    Served{kUart == 0 ? Interrupt::Uart0 : Interrupt::Uart1, Order::Second, on_line},
+    Served{Interrupt::Timer0A, Order::Second, on_silence_timer},
+    Served{Interrupt::Timer1A, Order::Second, on_line_end_timer},
+    Served{Interrupt::I2c0, Order::Fourth, on_i2c},
+};
+constexpr std::array<Served, 5> kWithInputs{
+    Served{Interrupt::GpioA, Order::Third, on_edges<Port::A>},
+    Served{Interrupt::GpioB, Order::Third, on_edges<Port::B>},
+    Served{Interrupt::GpioC, Order::Third, on_edges<Port::C>},
+    Served{Interrupt::GpioD, Order::Third, on_edges<Port::D>},
+    Served{Interrupt::GpioE, Order::Third, on_edges<Port::E>},
+};
+
+constexpr bool has_inputs(Interrupt port) {
+  for (const PinGroup& group : kInputs) {
+    if (static_cast<unsigned>(group.port) == static_cast<unsigned>(port)) {
+      return kOnlyModel.has_inputs();
+    }
+  }
+  return false;
+}
+
+constexpr unsigned kInterrupts = 22;
+using Vectors = start_up::VectorTable<kInterrupts>;
+
+constexpr Vectors make_vectors() {
+  constexpr start_up::Handler kFault = start_up::fault_handler;
+  Vectors vectors{&start_up::stack_top,
+                  start_up::reset_handler,
+                  kFault,
+                  kFault,
+                  kFault,
+                  kFault,
+                  kFault,
+                  {kFault, kFault, kFault, kFault},
+                  kFault,
+                  kFault,
+                  kFault,
+                  kFault,
+                  on_system_tick,
+                  {}};
+  for (start_up::Handler& handler : vectors.interrupt) {
+    handler = kFault;
+  }
+  for (const Served& served : kAlways) {
+    vectors.interrupt[static_cast<unsigned>(served.number)] = served.handler;
+  }
+  for (const Served& served : kWithInputs) {
+    if (has_inputs(served.number)) {
+      vectors.interrupt[static_cast<unsigned>(served.number)] = served.handler;
+    }
+  }
+  return vectors;
+}
+
+__attribute__((section(".vectors"), used)) constexpr Vectors kVectors = make_vectors();
+
+constexpr std::uint32_t ports_of_the_module() {
+  std::uint32_t ports = 0;
+  const auto add = [&ports](Port port) { ports |= 1U << static_cast<unsigned>(port); };
+  for (const PinGroup& group : kOutputs) {
+    add(group.port);
+  }
+  for (const PinGroup& group : kInputs) {
+    add(group.port);
+  }
+  for (const Pin pin : {kUartPins[0], kUartPins[1], kDriverEnable, kInitSwitch, kStatusLed}) {
+    add(pin.port);
+  }
+  add(Port::B);  // I2C0
+  return ports;
+}
+
+constexpr ClockGates kClockGates{
+    clock_gate::kWatchdog,
+    (kUart == 0 ? clock_gate::kUart0 : clock_gate::kUart1) | clock_gate::kI2c0 | clock_gate::kTimer0 |
+        clock_gate::kTimer1,
+    ports_of_the_module(),
+};
+
+/// The watchdog first, so that nothing behind it can hang for ever; then the outputs, which float until here.
+void start() {
+  SystemControl::open(kClockGates);
+  Watchdog::start();
+  board.outputs.start();
+  board.line.start();
+  board.init_switch.start();
+  board.status_led.start();
+  SystemControl::use(kClock);
+  for (const Pin pin : kUartPins) {
+    Gpio(pin.port).make_peripheral(kFamily, pin.mask(), kUartFunction);
+  }
+  board.memory.master().start();
+  SilenceTimer::start();
+  LineEndTimer::start();
+  Interrupts::start();
+  board.clock.start(milliseconds(1));
+  device.start();
+  for (const Served& served : kAlways) {
+    Interrupts::enable(served.number, served.order);
+  }
+  for (const Served& served : kWithInputs) {
+    if (has_inputs(served.number)) {
+      Interrupts::enable(served.number, served.order);
+    }
+  }
+}
+
+}  // namespace
+}  // namespace ex9000::board
+
+int main() {
+  using namespace ex9000::board;
+  new (&device) ex9000::hal::Device<Board>(ex9000::kOnlyModel);
+  start();
+  std::uint32_t ticks_seen = 0;
+  for (;;) {
+    Interrupts::sleep_until([] { return device.news(); });
+    if (board.clock.ticks() != ticks_seen) {
+      ticks_seen = board.clock.ticks();
+      device.look_around();
+    }
+    device.turn();
+  }
+}

@@ -1,0 +1,47 @@
+// The EK-TM4C123GXL LaunchPad: clock, pins and polarity. How to wire them: README.md beside this file.
+#pragma once
+
+#include <array>
+#include <cstdint>
+
+#include "hal/stellaris/gpio.hpp"
+#include "hal/stellaris/system_control.hpp"
+
+namespace ex9000::board {
+
+using hal::stellaris::Pin;
+using hal::stellaris::PinGroup;
+using hal::stellaris::Port;
+
+inline constexpr auto kFamily = hal::stellaris::Family::Tm4c;
+
+/// A 16 MHz crystal, and 50 MHz from the PLL: what the LM3S6965 runs at too, so that one set of divisors is
+/// proven for both.
+inline constexpr hal::stellaris::ClockTree kClock{0x15, 4};
+
+#ifdef EX9000_BUS_ON_USB
+/// The line: UART0, which the debugger makes a serial port on USB.
+inline constexpr unsigned kUart = 0;
+inline constexpr auto kUartPins = std::array{Pin{Port::A, 0}, Pin{Port::A, 1}};
+inline constexpr std::uint32_t kUartFunction = 1;
+#else
+/// The line: UART1 on PC4 (receive) and PC5 (transmit).
+inline constexpr unsigned kUart = 1;
+inline constexpr auto kUartPins = std::array{Pin{Port::C, 4}, Pin{Port::C, 5}};
+inline constexpr std::uint32_t kUartFunction = 2;
+#endif
+inline constexpr Pin kDriverEnable{Port::C, 6};
+
+inline constexpr Pin kInitSwitch{Port::F, 4};  ///< SW1
+inline constexpr Pin kStatusLed{Port::F, 3};   ///< green
+
+/// In order of channels. A model has either more than eight outputs or inputs: they share the second eight.
+inline constexpr std::array<PinGroup, 2> kFirstEight{PinGroup{Port::A, 2, 6}, PinGroup{Port::D, 2, 2}};
+inline constexpr std::array<PinGroup, 2> kSecondEight{PinGroup{Port::E, 0, 6}, PinGroup{Port::B, 4, 2}};
+inline constexpr std::array<PinGroup, 4> kOutputs{kFirstEight[0], kFirstEight[1], kSecondEight[0],
+                                                  kSecondEight[1]};
+inline constexpr const auto& kInputs = kSecondEight;
+inline constexpr bool kOutputsActiveHigh = true;
+inline constexpr bool kInputsActiveHigh = true;
+
+}  // namespace ex9000::board

@@ -1,0 +1,41 @@
+// The Stellaris LM3S6965 evaluation board: clock, pins and polarity. How to wire them: README.md beside this
+// file.
+#pragma once
+
+#include <array>
+#include <cstdint>
+
+#include "hal/stellaris/gpio.hpp"
+#include "hal/stellaris/system_control.hpp"
+
+namespace ex9000::board {
+
+using hal::stellaris::Pin;
+using hal::stellaris::PinGroup;
+using hal::stellaris::Port;
+
+inline constexpr auto kFamily = hal::stellaris::Family::Lm3s;
+
+/// An 8 MHz crystal, and 50 MHz from the PLL: as fast as this family goes.
+inline constexpr hal::stellaris::ClockTree kClock{0x0E, 4};
+
+/// The line: UART0 on PA0 (receive) and PA1 (transmit).
+inline constexpr unsigned kUart = 0;
+inline constexpr auto kUartPins = std::array{Pin{Port::A, 0}, Pin{Port::A, 1}};
+inline constexpr std::uint32_t kUartFunction = 1;
+inline constexpr Pin kDriverEnable{Port::A, 6};
+
+inline constexpr Pin kInitSwitch{Port::A, 7};
+inline constexpr Pin kStatusLed{Port::F, 0};
+
+/// In order of channels. A model has either more than eight outputs or inputs: they share the second eight.
+inline constexpr std::array<PinGroup, 2> kFirstEight{PinGroup{Port::D, 1, 7}, PinGroup{Port::G, 0, 1}};
+inline constexpr std::array<PinGroup, 3> kSecondEight{PinGroup{Port::B, 0, 2}, PinGroup{Port::B, 4, 3},
+                                                      PinGroup{Port::C, 4, 3}};
+inline constexpr std::array<PinGroup, 5> kOutputs{kFirstEight[0], kFirstEight[1], kSecondEight[0],
+                                                  kSecondEight[1], kSecondEight[2]};
+inline constexpr const auto& kInputs = kSecondEight;
+inline constexpr bool kOutputsActiveHigh = true;
+inline constexpr bool kInputsActiveHigh = true;
+
+}  // namespace ex9000::board

@@ -1,0 +1,149 @@
+// An AT24C64 on an I2C bus. Facts: Atmel AT24C64 data sheet (doc. 0336), "write operations" and "read
+// operations".
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+
+#include "firmware/bytes.hpp"
+#include "firmware/time.hpp"
+#include "hal/i2c_master.hpp"
+
+namespace ex9000::hal {
+
+/// 8 KiB in pages of 32 bytes; see hal::Memory for what it offers. `Master`: see I2cTransfer.
+///
+/// While it programs a page it answers to nothing, which is how its end is found. It is read with STOP
+/// between the address and the data: its address counter keeps that, and a START in the middle of a transfer
+/// is nothing that every master can do.
+template <class Master>
+class At24c {
+ public:
+  Master& master() { return master_; }
+
+  void start_read(std::uint16_t address, MutableBytes destination, Time now) {
+    destination_ = destination;
+    begin(Step::Addressing, address, now);
+  }
+
+  void start_write(std::uint16_t address, Bytes source, Time now) {
+    rest_ = source;
+    begin(Step::Writing, address, now);
+  }
+
+  bool go_on(Time now) {
+    const bool again = master_.go_on(now);
+    if (step_ != Step::Idle && !master_.busy()) {
+      next(now);
+    }
+    return again;
+  }
+
+  [[nodiscard]] bool busy() const { return step_ != Step::Idle; }
+  [[nodiscard]] bool succeeded() const { return succeeded_; }
+
+ private:
+  enum class Step : std::uint8_t {
+    Idle,
+    Addressing,  ///< the address of what is to be read
+    Reading,
+    Writing,      ///< bytes of one page
+    Programming,  ///< until it answers again
+  };
+
+  static constexpr std::uint8_t kDevice = 0x50;  // A2, A1 and A0 to GND
+  static constexpr std::size_t kPage = 32;
+  /// A page takes 10 ms at most. Where a reset has come in between, the first to be read waits for it too.
+  static constexpr Duration kPatience = milliseconds(12);
+
+  void begin(Step step, std::uint16_t address, Time now) {
+    step_ = step;
+    header_ = {static_cast<std::uint8_t>(address >> 8U), static_cast<std::uint8_t>(address)};
+    patience_.set(now + kPatience);
+    transfer(now);
+  }
+
+  /// As many bytes as lie in the page that is written first.
+  [[nodiscard]] std::size_t chunk() const {
+    const std::size_t room = kPage - header_[1] % kPage;
+    return rest_.size < room ? rest_.size : room;
+  }
+
+  void transfer(Time now) {
+    I2cTransfer transfer;
+    transfer.device = kDevice;
+    switch (step_) {
+      case Step::Addressing:
+        transfer.header = {header_.data(), header_.size()};
+        break;
+      case Step::Reading:
+        transfer.destination = destination_;
+        break;
+      case Step::Writing:
+        transfer.header = {header_.data(), header_.size()};
+        transfer.source = rest_.first(chunk());
+        break;
+      case Step::Programming:
+        transfer.header = {header_.data(), 1};  // half an address, which writes nothing
+        break;
+      case Step::Idle:
+        return;
+    }
+    master_.begin(transfer, now);
+  }
+
+  void next(Time now) {
+    if (master_.result() == I2cResult::NoAcknowledge && !patience_.reached(now)) {
+      transfer(now);
+      return;
+    }
+    if (master_.result() != I2cResult::Done) {
+      finish(false);
+      return;
+    }
+    switch (step_) {
+      case Step::Addressing:
+        step_ = Step::Reading;
+        transfer(now);
+        break;
+      case Step::Writing:
+        step_ = Step::Programming;
+        patience_.set(now + kPatience);
+        transfer(now);
+        break;
+      case Step::Programming:
+        next_page(now);
+        break;
+      case Step::Reading:
+      case Step::Idle:
+        finish(true);
+        break;
+    }
+  }
+
+  void next_page(Time now) {
+    const std::size_t written = chunk();
+    if (rest_.size == written) {
+      finish(true);
+      return;
+    }
+    rest_ = rest_.from(written);
+    begin(Step::Writing, static_cast<std::uint16_t>((header_[0] << 8U) + header_[1] + written), now);
+  }
+
+  void finish(bool succeeded) {
+    succeeded_ = succeeded;
+    step_ = Step::Idle;
+  }
+
+  Master master_;
+  Step step_ = Step::Idle;
+  bool succeeded_ = false;
+  std::array<std::uint8_t, 2> header_{};
+  Bytes rest_;
+  MutableBytes destination_;
+  Deadline patience_;
+};
+
+}  // namespace ex9000::hal

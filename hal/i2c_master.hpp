@@ -1,0 +1,42 @@
+// What a driver of an I2C master is asked for and answers.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+
+#include "firmware/bytes.hpp"
+
+namespace ex9000::hal {
+
+/// One visit to a device: START, its address, bytes one way, STOP. A driver of a master offers, for the main
+/// loop alone and without blocking:
+///
+///     void begin(const I2cTransfer&, Time now)   only while not busy()
+///     bool go_on(Time now)                       every turn; true: again at once, no interrupt will tell
+///     bool busy() const
+///     I2cResult result() const                   of the last transfer, while not busy()
+///
+/// What a transfer points at lives while the master is busy with it.
+struct I2cTransfer {
+  std::uint8_t device = 0;   ///< 7 bits
+  Bytes header;              ///< written first
+  Bytes source;              ///< written behind it
+  MutableBytes destination;  ///< filled, where nothing is written
+
+  [[nodiscard]] constexpr bool writes() const { return header.size != 0; }
+  [[nodiscard]] constexpr std::size_t size() const {
+    return writes() ? header.size + source.size : destination.size;
+  }
+  /// The byte to be written in place `index`.
+  [[nodiscard]] constexpr std::uint8_t byte(std::size_t index) const {
+    return index < header.size ? header[index] : source[index - header.size];
+  }
+};
+
+enum class I2cResult : std::uint8_t {
+  Done,
+  NoAcknowledge,  ///< nobody answered to the address, or a byte was not taken
+  Failed,         ///< the bus did not move: a line is stuck, or somebody else is on it
+};
+
+}  // namespace ex9000::hal

@@ -1,0 +1,153 @@
+// General-purpose pins. Facts: LM3S6965 data sheet, 8.3 to 8.5; TM4C123GH6PM data sheet, 10.3 to 10.5 (the
+// same registers on its APB aperture, and GPIOPCTL and GPIOAMSEL beside them).
+#pragma once
+
+#include <cstdint>
+
+#include "hal/stellaris/register.hpp"
+
+namespace ex9000::hal::stellaris {
+
+enum class Family : std::uint8_t {
+  Lm3s,  ///< a pin has one peripheral function
+  Tm4c,  ///< GPIOPCTL chooses among many
+};
+
+enum class Port : std::uint8_t { A, B, C, D, E, F, G };
+
+struct Pin {
+  Port port;
+  std::uint8_t number;  ///< 0 to 7
+
+  [[nodiscard]] constexpr std::uint32_t mask() const { return 1U << number; }
+};
+
+/// Neighbouring pins of one port that carry neighbouring channels.
+struct PinGroup {
+  Port port;
+  std::uint8_t first_pin;
+  std::uint8_t count;
+
+  [[nodiscard]] constexpr std::uint32_t mask() const { return ((1U << count) - 1U) << first_pin; }
+};
+
+/// The registers of one port. `pins` is a mask, bit n for pin n.
+class Gpio {
+ public:
+  constexpr explicit Gpio(Port port)
+      : base_(port < Port::E ? 0x4000'4000U + static_cast<std::uint32_t>(port) * 0x1000U
+                             : 0x4002'4000U + (static_cast<std::uint32_t>(port) - 4U) * 0x1000U) {}
+
+  /// The data register answers at 256 addresses, whose bits 2 to 9 say which pins take part; so no read is
+  /// needed to leave the others alone, and no interrupt can come between.
+  [[nodiscard]] std::uint32_t read(std::uint32_t pins) const { return data(pins).read().value(); }
+  void write(std::uint32_t pins, std::uint32_t levels) const { data(pins).write(Bits<Data>(levels)); }
+
+  /// Digital input; `pull_up`: with the weak pull-up, else with the weak pull-down, so that an open pin reads
+  /// inactive.
+  void make_input(std::uint32_t pins, bool pull_up) const {
+    (pull_up ? pull_up_register() : pull_down_register()).set(Bits<Pull>(pins));
+    direction().clear(Bits<Direction>(pins));
+    digital_enable().set(Bits<DigitalEnable>(pins));
+  }
+
+  /// Digital output with 8 mA that begins at `levels`, without a glitch: a pin that is not enabled yet drives
+  /// nothing, and what hangs on it is pulled to its inactive side.
+  void make_output(std::uint32_t pins, std::uint32_t levels) const {
+    direction().set(Bits<Direction>(pins));
+    write(pins, levels);
+    drive_8_ma().set(Bits<Drive>(pins));
+    digital_enable().set(Bits<DigitalEnable>(pins));
+  }
+
+  /// Gives the pins to their peripheral; `function`: GPIOPCTL's number for it, on a TM4C.
+  void make_peripheral(Family family, std::uint32_t pins, std::uint32_t function) const {
+    if (family == Family::Tm4c) {
+      std::uint32_t field = 0;
+      std::uint32_t chosen = 0;
+      for (std::uint32_t pin = 0; pin < 8; ++pin) {
+        if ((pins & (1U << pin)) != 0) {
+          field |= 0xFU << (4U * pin);
+          chosen |= function << (4U * pin);
+        }
+      }
+      port_control().write(port_control().read().without(Bits<PortControl>(field)) |
+                           Bits<PortControl>(chosen));
+    }
+    alternate_function().set(Bits<AlternateFunction>(pins));
+    digital_enable().set(Bits<DigitalEnable>(pins));
+  }
+  void take_from_peripheral(std::uint32_t pins) const {
+    alternate_function().clear(Bits<AlternateFunction>(pins));
+  }
+  void set_open_drain(std::uint32_t pins) const { open_drain().set(Bits<OpenDrain>(pins)); }
+  void set_direction(std::uint32_t pins, bool output) const {
+    if (output) {
+      direction().set(Bits<Direction>(pins));
+    } else {
+      direction().clear(Bits<Direction>(pins));
+    }
+  }
+
+  // --- edges ---
+
+  /// Both edges of `pins` interrupt from now on.
+  void watch_edges(std::uint32_t pins) const {
+    both_edges().set(Bits<BothEdges>(pins));
+    clear_edges(pins);
+    interrupt_mask().set(Bits<InterruptMask>(pins));
+  }
+  /// Pins that have seen an edge since it was cleared.
+  [[nodiscard]] std::uint32_t edges() const { return masked_interrupt_status().read().value(); }
+  void clear_edges(std::uint32_t pins) const { interrupt_clear().write(Bits<InterruptClear>(pins)); }
+
+ private:
+  struct Data;
+  struct Direction;
+  struct BothEdges;
+  struct InterruptMask;
+  struct MaskedInterruptStatus;
+  struct InterruptClear;
+  struct AlternateFunction;
+  struct Drive;
+  struct OpenDrain;
+  struct Pull;
+  struct DigitalEnable;
+  struct PortControl;
+
+  [[nodiscard]] constexpr Register<Data> data(std::uint32_t pins) const {
+    return Register<Data>(base_ + (pins << 2U));
+  }
+  [[nodiscard]] constexpr Register<Direction> direction() const { return Register<Direction>(base_ + 0x400); }
+  [[nodiscard]] constexpr Register<BothEdges> both_edges() const {
+    return Register<BothEdges>(base_ + 0x408);
+  }
+  [[nodiscard]] constexpr Register<InterruptMask> interrupt_mask() const {
+    return Register<InterruptMask>(base_ + 0x410);
+  }
+  [[nodiscard]] constexpr Register<MaskedInterruptStatus> masked_interrupt_status() const {
+    return Register<MaskedInterruptStatus>(base_ + 0x418);
+  }
+  [[nodiscard]] constexpr Register<InterruptClear> interrupt_clear() const {
+    return Register<InterruptClear>(base_ + 0x41C);
+  }
+  [[nodiscard]] constexpr Register<AlternateFunction> alternate_function() const {
+    return Register<AlternateFunction>(base_ + 0x420);
+  }
+  [[nodiscard]] constexpr Register<Drive> drive_8_ma() const { return Register<Drive>(base_ + 0x508); }
+  [[nodiscard]] constexpr Register<OpenDrain> open_drain() const {
+    return Register<OpenDrain>(base_ + 0x50C);
+  }
+  [[nodiscard]] constexpr Register<Pull> pull_up_register() const { return Register<Pull>(base_ + 0x510); }
+  [[nodiscard]] constexpr Register<Pull> pull_down_register() const { return Register<Pull>(base_ + 0x514); }
+  [[nodiscard]] constexpr Register<DigitalEnable> digital_enable() const {
+    return Register<DigitalEnable>(base_ + 0x51C);
+  }
+  [[nodiscard]] constexpr Register<PortControl> port_control() const {
+    return Register<PortControl>(base_ + 0x52C);
+  }
+
+  std::uint32_t base_;
+};
+
+}  // namespace ex9000::hal::stellaris

@@ -1,0 +1,240 @@
+// I2C master 0. Facts: LM3S6965 data sheet, 14.3 to 14.5; TM4C123GH6PM data sheet, 16.3 to 16.5; freeing a
+// bus that is stuck: NXP UM10204, 3.1.16, and the AT24C64's data sheet, "memory reset".
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+
+#include "firmware/line/crossing.hpp"
+#include "firmware/time.hpp"
+#include "hal/i2c_master.hpp"
+#include "hal/stellaris/gpio.hpp"
+#include "hal/stellaris/register.hpp"
+
+namespace ex9000::hal::stellaris {
+
+/// 100 kHz, single master. A byte at a time: the interrupt counts what is complete and wakes the main loop,
+/// which goes on. See I2cTransfer for what it offers.
+template <Family family, std::uint32_t clock>
+class I2c {
+ public:
+  /// Once; the bus is free a little later.
+  void start() { begin_freeing(); }
+
+  void begin(const I2cTransfer& transfer, Time now) {
+    transfer_ = transfer;
+    done_ = 0;
+    busy_ = true;
+    if (step_ == Step::Idle) {
+      address(now);
+    }
+  }
+
+  bool go_on(Time now) {
+    switch (step_) {
+      case Step::Idle:
+        return false;
+      case Step::Freeing:
+        free_bus(now);
+        return true;
+      case Step::Stopping:
+        if (deadline_.reached(now)) {
+          finish(result_);
+        }
+        return true;
+      case Step::Moving:
+        break;
+    }
+    if (completed_.load() != completed_seen_) {
+      completed_seen_ = completed_.load();
+      next(now);
+    } else if (deadline_.reached(now)) {
+      result_ = I2cResult::Failed;
+      busy_ = false;
+      begin_freeing();
+    }
+    return false;
+  }
+
+  [[nodiscard]] bool busy() const { return busy_; }
+  [[nodiscard]] I2cResult result() const { return result_; }
+
+  /// Its interrupt: a byte is over, good or not.
+  void on_interrupt() {
+    kInterruptClear.write(Bits<InterruptClear>(1));
+    completed_.store_in_interrupt(static_cast<std::uint8_t>(completed_.load() + 1U));
+  }
+
+ private:
+  struct TargetAddress;
+  struct ControlStatus;
+  struct Data;
+  struct TimerPeriod;
+  struct InterruptMask;
+  struct InterruptClear;
+  struct Configuration;
+
+  enum class Step : std::uint8_t {
+    Freeing,  ///< the pins are moved by hand
+    Idle,
+    Moving,    ///< a byte is on its way
+    Stopping,  ///< behind an error
+  };
+
+  static constexpr std::uint32_t kBase = 0x4002'0000U;
+  static constexpr Register<TargetAddress> kTargetAddress{kBase + 0x000};
+  static constexpr Register<ControlStatus> kControlStatus{kBase + 0x004};
+  static constexpr Register<Data> kData{kBase + 0x008};
+  static constexpr Register<TimerPeriod> kTimerPeriod{kBase + 0x00C};
+  static constexpr Register<InterruptMask> kInterruptMask{kBase + 0x010};
+  static constexpr Register<InterruptClear> kInterruptClear{kBase + 0x01C};
+  static constexpr Register<Configuration> kConfiguration{kBase + 0x020};
+
+  // Written
+  static constexpr Bits<ControlStatus> kRun{1U << 0U};
+  static constexpr Bits<ControlStatus> kStart{1U << 1U};
+  static constexpr Bits<ControlStatus> kStop{1U << 2U};
+  static constexpr Bits<ControlStatus> kAcknowledge{1U << 3U};
+  // Read
+  static constexpr Bits<ControlStatus> kError{1U << 1U};
+  static constexpr Bits<ControlStatus> kArbitrationLost{1U << 4U};
+
+  // Its pins, the same on both families.
+  static constexpr Gpio kPort{Port::B};
+  static constexpr std::uint32_t kClock = 1U << 2U;
+  static constexpr std::uint32_t kDataPin = 1U << 3U;
+  static constexpr std::uint32_t kBoth = kClock | kDataPin;
+  static constexpr std::uint32_t kPortControlFunction = 3;
+
+  static constexpr Duration kHalfClock{5};
+  static constexpr Duration kByteTimeout = milliseconds(3);  ///< 90 us, and a main loop that was asleep
+  static constexpr Duration kStopTime{30};
+
+  // --- freeing the bus ---
+
+  /// A device that was interrupted in the middle of a byte may hold the data line. It is clocked until it
+  /// lets go, nine times at most, and then hears START and STOP.
+  void begin_freeing() {
+    kPort.take_from_peripheral(kBoth);
+    kPort.make_input(kBoth, true);  // the weak pull-ups keep a board quiet that has no EEPROM
+    step_ = Step::Freeing;
+    freeing_ = kFirstClock;
+    deadline_.disarm();
+  }
+
+  void free_bus(Time now) {
+    if (deadline_.armed() && !deadline_.reached(now)) {
+      return;
+    }
+    deadline_.set(now + kHalfClock);
+    const bool clock_released = freeing_ % 2 == kFirstClock;
+    if (freeing_ < kBusStart && clock_released && kPort.read(kDataPin) != 0) {
+      freeing_ = kBusStart;
+    }
+    if (freeing_ < kBusStart) {
+      pull(clock_released ? kClock : 0);
+    } else if (freeing_ == kBusStart) {
+      pull(kDataPin);
+    } else if (freeing_ == kBusStop) {
+      pull(0);
+    } else {
+      hand_over(now);
+      return;
+    }
+    ++freeing_;
+  }
+
+  /// Drives these pins low and lets the other float.
+  static void pull(std::uint32_t pins) {
+    kPort.write(kBoth, 0);
+    kPort.set_direction(kBoth & ~pins, false);
+    kPort.set_direction(pins, true);
+    kPort.write(pins, 0);
+  }
+
+  /// The pins become the peripheral's.
+  void hand_over(Time now) {
+    constexpr std::uint32_t kBitRate = 100'000;
+    constexpr std::uint32_t kClocksAStep = 2U * (6U + 4U);  // low and high time of SCL
+    constexpr Bits<Configuration> kMaster(1U << 4U);
+    kPort.make_peripheral(family, kBoth, kPortControlFunction);
+    if constexpr (family == Family::Lm3s) {
+      kPort.set_open_drain(kBoth);
+    } else {
+      kPort.set_open_drain(kDataPin);  // its clock pin must not be
+    }
+    kConfiguration.write(kMaster);
+    kTimerPeriod.write(
+        Bits<TimerPeriod>((clock + kClocksAStep * kBitRate - 1U) / (kClocksAStep * kBitRate) - 1U));
+    kControlStatus.write(kStop);  // the bus may count as busy from before a reset
+    kInterruptMask.write(Bits<InterruptMask>(1));
+    step_ = Step::Idle;
+    if (busy_) {
+      address(now);
+    }
+  }
+
+  // --- a transfer ---
+
+  void address(Time now) {
+    constexpr std::uint32_t kReading = 1;
+    kTargetAddress.write(
+        Bits<TargetAddress>((std::uint32_t{transfer_.device} << 1U) | (transfer_.writes() ? 0 : kReading)));
+    move(kStart, now);
+  }
+
+  /// Puts byte `done_` on its way, with STOP where it is the last.
+  void move(Bits<ControlStatus> start, Time now) {
+    const bool last = done_ + 1U == transfer_.size();
+    if (transfer_.writes()) {
+      kData.write(Bits<Data>(transfer_.byte(done_)));
+    }
+    step_ = Step::Moving;
+    deadline_.set(now + kByteTimeout);
+    kControlStatus.write(kRun | start |
+                         (last                 ? kStop
+                          : transfer_.writes() ? Bits<ControlStatus>()
+                                               : kAcknowledge));
+  }
+
+  void next(Time now) {
+    const Bits<ControlStatus> status = kControlStatus.read();
+    if (status.has(kError)) {
+      result_ = status.has(kArbitrationLost) ? I2cResult::Failed : I2cResult::NoAcknowledge;
+      kControlStatus.write(kStop);
+      step_ = Step::Stopping;
+      deadline_.set(now + kStopTime);
+      return;
+    }
+    if (!transfer_.writes()) {
+      transfer_.destination.data[done_] = static_cast<std::uint8_t>(kData.read().value());
+    }
+    if (++done_ == transfer_.size()) {
+      finish(I2cResult::Done);
+    } else {
+      move({}, now);
+    }
+  }
+
+  void finish(I2cResult result) {
+    result_ = result;
+    step_ = Step::Idle;
+    busy_ = false;
+  }
+
+  static constexpr std::uint8_t kFirstClock = 0;
+  static constexpr std::uint8_t kBusStart = 18;  ///< behind nine clocks
+  static constexpr std::uint8_t kBusStop = 19;
+
+  Step step_ = Step::Freeing;
+  I2cResult result_ = I2cResult::Failed;
+  bool busy_ = false;
+  std::uint8_t freeing_ = kFirstClock;
+  std::uint8_t done_ = 0;  ///< bytes of the transfer
+  std::uint8_t completed_seen_ = 0;
+  WrittenByInterrupt<std::uint8_t> completed_;
+  Deadline deadline_;
+  I2cTransfer transfer_;
+};
+
+}  // namespace ex9000::hal::stellaris

@@ -1,0 +1,71 @@
+// Input channels on pins, with both edges interrupting.
+#pragma once
+
+#include <array>
+#include <cstdint>
+
+#include "hal/stellaris/gpio.hpp"
+
+namespace ex9000::hal::stellaris {
+
+/// `groups` is an array of PinGroup that carry the channels in order, from channel 0 on; `active_high`: a
+/// high pin is logic 1.
+template <const auto& groups, unsigned channels, bool active_high>
+class InputPins {
+ public:
+  /// Bit n is channel n. Every edge behind what this returns is flagged. An edge while the levels are read
+  /// would be told as two, so they are read until none came between.
+  static std::uint16_t start() {
+    unsigned first = 0;
+    unsigned levels = 0;
+    for (const PinGroup& group : groups) {
+      const Gpio gpio(group.port);
+      const std::uint32_t pins = group.mask();
+      gpio.make_input(pins, !active_high);
+      gpio.watch_edges(pins);
+      std::uint32_t read = 0;
+      do {
+        gpio.clear_edges(pins);
+        read = logic(gpio.read(pins)) & pins;
+      } while ((gpio.edges() & pins) != 0);
+      levels |= (read >> group.first_pin) << first;
+      first += group.count;
+    }
+    return static_cast<std::uint16_t>(levels & ((1U << channels) - 1U));
+  }
+
+  /// The port's interrupt: `deliver(channel, level)` for each channel that has seen an edge, with the level
+  /// read after the flag was cleared, so that an edge in between is flagged anew.
+  template <Port port, class Deliver>
+  static void take_edges(Deliver deliver) {
+    static constexpr std::array<std::uint8_t, 8> kChannels = channels_of(port);
+    constexpr Gpio gpio(port);
+    std::uint32_t flagged = gpio.edges();
+    gpio.clear_edges(flagged);
+    const std::uint32_t levels = logic(gpio.read(flagged));
+    for (unsigned pin = 0; flagged != 0; ++pin, flagged >>= 1U) {
+      if ((flagged & 1U) != 0) {
+        deliver(kChannels[pin], (levels >> pin & 1U) != 0);
+      }
+    }
+  }
+
+ private:
+  static std::uint32_t logic(std::uint32_t levels) { return active_high ? levels : ~levels; }
+
+  /// The channel of each pin of a port; pins without one never have an edge to tell.
+  static constexpr std::array<std::uint8_t, 8> channels_of(Port port) {
+    std::array<std::uint8_t, 8> result{};
+    unsigned channel = 0;
+    for (const PinGroup& group : groups) {
+      for (unsigned i = 0; i < group.count; ++i, ++channel) {
+        if (group.port == port) {
+          result[group.first_pin + i] = static_cast<std::uint8_t>(channel);
+        }
+      }
+    }
+    return result;
+  }
+};
+
+}  // namespace ex9000::hal::stellaris

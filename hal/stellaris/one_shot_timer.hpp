@@ -1,0 +1,55 @@
+// A general-purpose timer as a 32-bit one-shot. Facts: LM3S6965 data sheet, 9.3 to 9.5; TM4C123GH6PM data
+// sheet, 11.3 to 11.5.
+#pragma once
+
+#include <cstdint>
+
+#include "firmware/time.hpp"
+#include "hal/stellaris/register.hpp"
+
+namespace ex9000::hal::stellaris {
+
+/// `number`: 0 for GPTM0, 1 for GPTM1. `cycles_per_microsecond` of the system clock.
+template <unsigned number, std::uint32_t cycles_per_microsecond>
+class OneShotTimer {
+ public:
+  /// Once, before `restart`.
+  static void start() {
+    constexpr Bits<Mode> kOneShot(0x1);
+    constexpr Bits<Configuration> kWhole32Bits(0x0);
+    kControl.write({});
+    kConfiguration.write(kWhole32Bits);
+    kMode.write(kOneShot);
+    kInterruptMask.write(kTimeout);
+  }
+
+  static void restart(Duration after) {
+    kControl.write({});
+    kInterval.write(Bits<Interval>(after.microseconds() * cycles_per_microsecond));
+    kControl.write(kEnable);
+  }
+
+  /// First thing in its interrupt.
+  static void acknowledge() { kInterruptClear.write(kTimeoutClear); }
+
+ private:
+  struct Configuration;
+  struct Mode;
+  struct Control;
+  struct InterruptMask;
+  struct InterruptClear;
+  struct Interval;
+  static constexpr Bits<Control> kEnable{1U << 0U};
+  static constexpr Bits<InterruptMask> kTimeout{1U << 0U};
+  static constexpr Bits<InterruptClear> kTimeoutClear{1U << 0U};
+
+  static constexpr std::uint32_t kBase = 0x4003'0000U + number * 0x1000U;
+  static constexpr Register<Configuration> kConfiguration{kBase + 0x000};
+  static constexpr Register<Mode> kMode{kBase + 0x004};
+  static constexpr Register<Control> kControl{kBase + 0x00C};
+  static constexpr Register<InterruptMask> kInterruptMask{kBase + 0x018};
+  static constexpr Register<InterruptClear> kInterruptClear{kBase + 0x024};
+  static constexpr Register<Interval> kInterval{kBase + 0x028};
+};
+
+}  // namespace ex9000::hal::stellaris

@@ -1,0 +1,63 @@
+// Output channels on pins.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <utility>
+
+#include "hal/stellaris/gpio.hpp"
+
+namespace ex9000::hal::stellaris {
+
+/// `groups` is an array of PinGroup that carry the channels in order, from channel 0 on; `active_high`: a
+/// high pin energises.
+template <const auto& groups, unsigned channels, bool active_high>
+class OutputPins {
+ public:
+  /// De-energised from here on, as they were while they floated. Once, before `drive`.
+  static void start() {
+    each_group(0, [](const Gpio& gpio, std::uint32_t pins, std::uint32_t levels) {
+      gpio.make_output(pins, levels);
+    });
+  }
+
+  /// One store a group, a few processor clocks apart.
+  static void drive(std::uint16_t energised) {
+    each_group(energised,
+               [](const Gpio& gpio, std::uint32_t pins, std::uint32_t levels) { gpio.write(pins, levels); });
+  }
+
+ private:
+  /// Channels that lie before `group`.
+  static constexpr unsigned before(std::size_t group) {
+    unsigned sum = 0;
+    for (std::size_t i = 0; i < group; ++i) {
+      sum += groups[i].count;
+    }
+    return sum;
+  }
+
+  template <std::size_t index, class Act>
+  static void act_on(std::uint32_t energised, Act act) {
+    constexpr PinGroup group = groups[index];
+    constexpr unsigned first = before(index);
+    if constexpr (first < channels) {
+      constexpr unsigned here = channels - first < group.count ? channels - first : group.count;
+      constexpr std::uint32_t pins = ((1U << here) - 1U) << group.first_pin;
+      const std::uint32_t bits = first < group.first_pin ? energised << (group.first_pin - first)
+                                                         : energised >> (first - group.first_pin);
+      act(Gpio(group.port), pins, (active_high ? bits : ~bits) & pins);
+    }
+  }
+
+  template <class Act, std::size_t... index>
+  static void each(std::uint32_t energised, Act act, std::index_sequence<index...> /*unused*/) {
+    (act_on<index>(energised, act), ...);
+  }
+  template <class Act>
+  static void each_group(std::uint32_t energised, Act act) {
+    each(energised, act, std::make_index_sequence<groups.size()>());
+  }
+};
+
+}  // namespace ex9000::hal::stellaris

@@ -1,0 +1,43 @@
+// Registers and their bits as types, so that the bits of one cannot be written to another.
+#pragma once
+
+#include <cstdint>
+
+#include "hal/stellaris/bus.hpp"
+
+namespace ex9000::hal::stellaris {
+
+/// What a register holds; `Name` is a type that stands for the register and for nothing else.
+template <class Name>
+class Bits {
+ public:
+  constexpr Bits() = default;
+  constexpr explicit Bits(std::uint32_t value) : value_(value) {}
+
+  [[nodiscard]] constexpr std::uint32_t value() const { return value_; }
+  /// Whether any of `bits` is set.
+  [[nodiscard]] constexpr bool has(Bits bits) const { return (value_ & bits.value_) != 0; }
+  [[nodiscard]] constexpr Bits without(Bits bits) const { return Bits(value_ & ~bits.value_); }
+  friend constexpr Bits operator|(Bits a, Bits b) { return Bits(a.value_ | b.value_); }
+
+ private:
+  std::uint32_t value_ = 0;
+};
+
+/// A 32-bit register. `set` and `clear` read and write, so they belong where no interrupt writes the same
+/// register.
+template <class Name>
+class Register {
+ public:
+  constexpr explicit Register(std::uint32_t address) : address_(address) {}
+
+  [[nodiscard]] Bits<Name> read() const { return Bits<Name>(bus::read(address_)); }
+  void write(Bits<Name> bits) const { bus::write(address_, bits.value()); }
+  void set(Bits<Name> bits) const { write(read() | bits); }
+  void clear(Bits<Name> bits) const { write(read().without(bits)); }
+
+ private:
+  std::uint32_t address_;
+};
+
+}  // namespace ex9000::hal::stellaris

@@ -1,0 +1,89 @@
+// Clock tree and clock gates. Facts: LM3S6965 data sheet, 6.4 and 6.5 (system control); TM4C123GH6PM data
+// sheet, 5.3 and 5.5, whose legacy RCC and RCGCn registers lie at the same addresses and mean the same.
+#pragma once
+
+#include <cstdint>
+
+#include "hal/stellaris/register.hpp"
+
+namespace ex9000::hal::stellaris {
+
+/// The clock a board runs on: a crystal on the main oscillator, the PLL's 400 MHz halved, and a divider.
+struct ClockTree {
+  std::uint32_t crystal_code;  ///< RCC field XTAL
+  std::uint32_t divider;       ///< of the PLL's 200 MHz, 4 to 16
+
+  /// Cycles a second.
+  [[nodiscard]] constexpr std::uint32_t frequency() const { return 200'000'000U / divider; }
+};
+
+/// What is to be given a clock, one bit a peripheral.
+struct ClockGates {
+  std::uint32_t rcgc0;
+  std::uint32_t rcgc1;
+  std::uint32_t rcgc2;
+};
+
+namespace clock_gate {
+constexpr std::uint32_t kWatchdog = 1U << 3U;  // RCGC0
+constexpr std::uint32_t kUart0 = 1U << 0U;     // RCGC1
+constexpr std::uint32_t kUart1 = 1U << 1U;
+constexpr std::uint32_t kI2c0 = 1U << 12U;
+constexpr std::uint32_t kTimer0 = 1U << 16U;
+constexpr std::uint32_t kTimer1 = 1U << 17U;
+}  // namespace clock_gate
+
+class SystemControl {
+ public:
+  /// Runs the processor on `clock`: waits for the PLL on the oscillator it came up with, a few hundred
+  /// microseconds. Once after reset; blocks until the PLL has locked, which the watchdog watches over.
+  static void use(const ClockTree& clock) {
+    constexpr Bits<Rcc> kBypass(1U << 11U);
+    constexpr Bits<Rcc> kPowerDown(1U << 13U);
+    constexpr Bits<Rcc> kOutputDisable(1U << 12U);  // LM3S only; reserved on the TM4C
+    constexpr Bits<Rcc> kUseDivider(1U << 22U);
+    constexpr Bits<Rcc> kDivider(0xFU << 23U);
+    constexpr Bits<Rcc> kCrystal(0x1FU << 6U);
+    constexpr Bits<Rcc> kOscillatorSource(0x3U << 4U);  // 0: the main oscillator
+    constexpr Bits<Rcc> kMainOscillatorOff(1U << 0U);
+    constexpr Bits<InterruptStatus> kPllLocked(1U << 6U);
+
+    // Off the PLL while it is set, as both data sheets order it.
+    Bits<Rcc> rcc = (kRcc.read() | kBypass).without(kUseDivider);
+    kRcc.write(rcc);
+    rcc = rcc.without(kCrystal | kOscillatorSource | kMainOscillatorOff | kPowerDown | kOutputDisable) |
+          Bits<Rcc>(clock.crystal_code << 6U);
+    kRcc.write(rcc);
+    rcc = rcc.without(kDivider) | Bits<Rcc>((clock.divider - 1U) << 23U) | kUseDivider;
+    kRcc.write(rcc);
+    while (!kRawInterruptStatus.read().has(kPllLocked)) {
+    }
+    kRcc.write(rcc.without(kBypass));
+  }
+
+  /// Gives `gates` a clock and waits until their registers can be written.
+  static void open(const ClockGates& gates) {
+    kRcgc0.set(Bits<Rcgc0>(gates.rcgc0));
+    kRcgc1.set(Bits<Rcgc1>(gates.rcgc1));
+    kRcgc2.set(Bits<Rcgc2>(gates.rcgc2));
+    // A peripheral must not be touched for 3 clocks (LM3S) or 5 (TM4C) after it was given one; each of these
+    // reads takes at least 2.
+    for (int i = 0; i < 3; ++i) {
+      (void)kRcgc2.read();
+    }
+  }
+
+ private:
+  struct Rcc;
+  struct InterruptStatus;
+  struct Rcgc0;
+  struct Rcgc1;
+  struct Rcgc2;
+  static constexpr Register<InterruptStatus> kRawInterruptStatus{0x400F'E050};
+  static constexpr Register<Rcc> kRcc{0x400F'E060};
+  static constexpr Register<Rcgc0> kRcgc0{0x400F'E100};
+  static constexpr Register<Rcgc1> kRcgc1{0x400F'E104};
+  static constexpr Register<Rcgc2> kRcgc2{0x400F'E108};
+};
+
+}  // namespace ex9000::hal::stellaris

@@ -1,0 +1,64 @@
+// SysTick: time and tick in one. Facts: ARMv7-M Architecture Reference Manual, B3.3, and B3.2.4 (ICSR).
+#pragma once
+
+#include <cstdint>
+
+#include "firmware/line/crossing.hpp"
+#include "firmware/time.hpp"
+#include "hal/stellaris/register.hpp"
+
+namespace ex9000::hal::stellaris {
+
+/// Counts milliseconds by interrupt and the microseconds in between from its counter.
+template <std::uint32_t cycles_per_microsecond>
+class SystemTimer {
+ public:
+  /// The tick is a millisecond, whatever is asked for: time is made of it.
+  static void start(Duration /*period*/) {
+    constexpr Bits<Control> kRunWithInterruptOnProcessorClock(0x7);
+    kReload.write(Bits<Reload>(kPeriod - 1U));
+    kCurrent.write({});
+    kControl.write(kRunWithInterruptOnProcessorClock);
+  }
+
+  [[nodiscard]] Time now() const {
+    constexpr Bits<InterruptControl> kPending(1U << 26U);
+    for (;;) {
+      const std::uint32_t counted = counted_.load();
+      std::uint32_t left = kCurrent.read().value();
+      std::uint32_t uncounted = 0;
+      if (kInterruptControl.read().has(kPending)) {
+        // It has begun anew and its interrupt must wait, for the one that asks. Whether it had when `left`
+        // was read nobody knows, so that is read again.
+        left = kCurrent.read().value();
+        uncounted = kTickMicroseconds;
+      }
+      if (counted == counted_.load()) {
+        return Time(counted + uncounted + (kPeriod - 1U - left) / cycles_per_microsecond);
+      }
+    }
+  }
+
+  /// Changes with every tick; any number of ticks may lie between two that look the same.
+  [[nodiscard]] std::uint32_t ticks() const { return counted_.load(); }
+
+  /// Its interrupt.
+  void count_in_interrupt() { counted_.store_in_interrupt(counted_.load() + kTickMicroseconds); }
+
+ private:
+  struct Control;
+  struct Reload;
+  struct Current;
+  struct InterruptControl;
+  static constexpr Register<Control> kControl{0xE000'E010};
+  static constexpr Register<Reload> kReload{0xE000'E014};
+  static constexpr Register<Current> kCurrent{0xE000'E018};
+  static constexpr Register<InterruptControl> kInterruptControl{0xE000'ED04};
+  static constexpr std::uint32_t kTickMicroseconds = 1000;
+
+  static constexpr std::uint32_t kPeriod = kTickMicroseconds * cycles_per_microsecond;
+
+  WrittenByInterrupt<std::uint32_t> counted_;  ///< microseconds, in whole ticks
+};
+
+}  // namespace ex9000::hal::stellaris

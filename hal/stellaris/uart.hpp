@@ -1,0 +1,151 @@
+// A UART and the RS-485 driver behind it. Facts: LM3S6965 data sheet, 12.3 to 12.5; TM4C123GH6PM data sheet,
+// 14.3 to 14.5.
+#pragma once
+
+#include <cstdint>
+
+#include "firmware/bytes.hpp"
+#include "firmware/line/crossing.hpp"
+#include "firmware/line/verdict.hpp"
+#include "firmware/time.hpp"
+#include "hal/stellaris/gpio.hpp"
+#include "hal/stellaris/register.hpp"
+#include "hal/stellaris/uart_rate.hpp"
+
+namespace ex9000::hal::stellaris {
+
+/// `number`: 0 or 1; `clock`: of the system, in Hz; `driver_enable`: high while this module speaks;
+/// `EndTimer`: a one-shot timer of its own, whose interrupt is `on_end_timer`.
+///
+/// The FIFOs stay off: each byte then interrupts as it arrives, and the silence behind it is measured from
+/// there. What that costs is an overrun where an interrupt waits for longer than a character.
+///
+/// One member has the main loop as its writer and one the interrupts; which of the two is ahead says whether
+/// the driver is on.
+template <unsigned number, std::uint32_t clock, const Pin& driver_enable, class EndTimer>
+class Uart {
+  static_assert(largest_baud_error(clock) < kTolerableBaudError, "this clock cannot make all baud rates");
+
+ public:
+  struct Received {
+    std::uint8_t byte;
+    ByteStatus status;
+  };
+
+  /// The driver off. Once, before `open`.
+  static void start() { Gpio(driver_enable.port).make_output(driver_enable.mask(), 0); }
+
+  // --- main loop; see hal::SerialLine ---
+
+  void open(std::uint32_t baud) {
+    constexpr std::uint32_t kBitsACharacter = 10;
+    constexpr std::uint32_t kMicroseconds = 1'000'000;
+    const std::uint32_t divisor = baud_divisor(clock, baud);
+    bit_ = Duration(kMicroseconds / baud + 1U);
+    character_ = Duration(kBitsACharacter * kMicroseconds / baud + 1U);
+    kControl.write({});
+    kIntegerDivisor.write(Bits<IntegerDivisor>(divisor >> 6U));
+    kFractionalDivisor.write(Bits<FractionalDivisor>(divisor & 0x3FU));
+    kLineControl.write(kEightBits);  // behind the divisors, which it makes take effect
+    kInterruptMask.write(kReceived | kTransmitted);
+    kControl.write(kEnable | kTransmitEnable | kReceiveEnable);
+  }
+
+  void send(Bytes bytes) {
+    rest_ = bytes.from(1);
+    begun_.store_in_main_loop(static_cast<std::uint8_t>(begun_.load() + 1U));
+    Gpio(driver_enable.port).write(driver_enable.mask(), driver_enable.mask());
+    kData.write(Bits<Data>(bytes[0]));
+  }
+
+  [[nodiscard]] bool sending() const { return begun_.load() != ended_.load(); }
+
+  // --- interrupts ---
+
+  /// The UART's: hands what was received to `deliver(byte, status)` and goes on sending.
+  template <class Deliver>
+  void on_interrupt(Deliver deliver) {
+    const Bits<MaskedInterrupts> why = kMaskedInterrupts.read();
+    kInterruptClear.write(Bits<InterruptClear>(why.value()));
+    while (!kFlags.read().has(kReceiverEmpty)) {
+      const Bits<Data> data = kData.read();
+      deliver(static_cast<std::uint8_t>(data.value()), status_of(data));
+    }
+    if (why.has(kWasTransmitted)) {
+      go_on_sending();
+    }
+  }
+
+  /// The last byte has had the time to leave. No interrupt tells that it has, on an LM3S: the busy flag does.
+  void on_end_timer() {
+    if (kFlags.read().has(kBusy)) {
+      EndTimer::restart(bit_);
+      return;
+    }
+    Gpio(driver_enable.port).write(driver_enable.mask(), 0);
+    ended_.store_in_interrupt(begun_.load());
+  }
+
+ private:
+  struct Data;
+  struct Flags;
+  struct IntegerDivisor;
+  struct FractionalDivisor;
+  struct LineControl;
+  struct Control;
+  struct InterruptMask;
+  struct MaskedInterrupts;
+  struct InterruptClear;
+
+  static constexpr std::uint32_t kBase = 0x4000'C000U + number * 0x1000U;
+  static constexpr Register<Data> kData{kBase + 0x000};
+  static constexpr Register<Flags> kFlags{kBase + 0x018};
+  static constexpr Register<IntegerDivisor> kIntegerDivisor{kBase + 0x024};
+  static constexpr Register<FractionalDivisor> kFractionalDivisor{kBase + 0x028};
+  static constexpr Register<LineControl> kLineControl{kBase + 0x02C};
+  static constexpr Register<Control> kControl{kBase + 0x030};
+  static constexpr Register<InterruptMask> kInterruptMask{kBase + 0x038};
+  static constexpr Register<MaskedInterrupts> kMaskedInterrupts{kBase + 0x040};
+  static constexpr Register<InterruptClear> kInterruptClear{kBase + 0x044};
+
+  static constexpr Bits<Data> kFramingError{1U << 8U};
+  static constexpr Bits<Data> kBreakError{1U << 10U};
+  static constexpr Bits<Data> kOverrunError{1U << 11U};
+  static constexpr Bits<Flags> kBusy{1U << 3U};
+  static constexpr Bits<Flags> kReceiverEmpty{1U << 4U};
+  static constexpr Bits<LineControl> kEightBits{0x3U << 5U};  // no parity, one stop bit, FIFOs off
+  static constexpr Bits<Control> kEnable{1U << 0U};
+  static constexpr Bits<Control> kTransmitEnable{1U << 8U};
+  static constexpr Bits<Control> kReceiveEnable{1U << 9U};
+  static constexpr Bits<InterruptMask> kReceived{1U << 4U};
+  static constexpr Bits<InterruptMask> kTransmitted{1U << 5U};
+  static constexpr Bits<MaskedInterrupts> kWasTransmitted{1U << 5U};
+
+  static ByteStatus status_of(Bits<Data> data) {
+    if (!data.has(kFramingError | kBreakError | kOverrunError)) {
+      return ByteStatus::Good;
+    }
+    if (data.has(kOverrunError)) {
+      return ByteStatus::Overrun;
+    }
+    return data.has(kBreakError) ? ByteStatus::Break : ByteStatus::FramingError;
+  }
+
+  /// The byte before has left the holding register for the shift register.
+  void go_on_sending() {
+    if (rest_.size != 0) {
+      kData.write(Bits<Data>(rest_[0]));
+      rest_ = rest_.from(1);
+    } else if (sending()) {
+      EndTimer::restart(character_);
+    }
+  }
+
+  Duration bit_;  ///< both rounded up
+  Duration character_;
+  Bytes rest_;  ///< main loop until the first byte is written, then interrupts until the last one is
+  WrittenByMainLoop<std::uint8_t> begun_;
+  WrittenByInterrupt<std::uint8_t> ended_;
+};
+
+}  // namespace ex9000::hal::stellaris

@@ -1,0 +1,46 @@
+// Watchdog timer 0. Facts: LM3S6965 data sheet, 10.3 to 10.5; TM4C123GH6PM data sheet, 12.3 to 12.5.
+#pragma once
+
+#include <cstdint>
+
+#include "hal/stellaris/register.hpp"
+#include "hal/watchdog.hpp"
+
+namespace ex9000::hal::stellaris {
+
+/// It counts down twice before it resets: the first time it only raises a flag, which nobody answers.
+template <std::uint32_t cycles_per_microsecond>
+class HardwareWatchdog {
+ public:
+  /// From now on it runs, until the next reset.
+  static void start() {
+    constexpr Bits<Control> kRunAndReset(0x3);
+    kLock.write(kUnlocked);
+    kLoad.write(Bits<Load>(kCountdown.microseconds() * cycles_per_microsecond));
+    kControl.write(kRunAndReset);
+    kLock.write(kLocked);
+  }
+
+  static void feed() {
+    kLock.write(kUnlocked);
+    kClear.write(Bits<Clear>(1));  // any value clears the flag and begins anew
+    kLock.write(kLocked);
+  }
+
+ private:
+  struct Load;
+  struct Control;
+  struct Clear;
+  struct Lock;
+  static constexpr Register<Load> kLoad{0x4000'0000};
+  static constexpr Register<Control> kControl{0x4000'0008};
+  static constexpr Register<Clear> kClear{0x4000'000C};
+  static constexpr Register<Lock> kLock{0x4000'0C00};
+  static constexpr Bits<Lock> kUnlocked{0x1ACC'E551};
+  static constexpr Bits<Lock> kLocked{0};
+
+  static constexpr Duration kCountdown = milliseconds(750);
+  static_assert(2 * kCountdown.microseconds() < kWatchdogPeriod.microseconds(), "it resets after two");
+};
+
+}  // namespace ex9000::hal::stellaris
