@@ -4,7 +4,6 @@
 
 #include <array>
 #include <cstdint>
-#include <new>
 
 #include "boards/start_up.hpp"
 #include "firmware/model/built.hpp"
@@ -49,15 +48,8 @@ struct Board {
   Watchdog watchdog;
 };
 
-/// Made by `main` and not by the start-up code, so that flash holds no image of its RAM.
-union Lifetime {
-  constexpr Lifetime() : not_yet() {}
-  char not_yet;
-  hal::Device<Board> device;
-};
-Lifetime lifetime;
-constexpr hal::Device<Board>& device = lifetime.device;
-constexpr Board& board = lifetime.device.board();
+hal::Device<Board> device(kOnlyModel);
+constexpr Board& board = device.board();
 
 // --- interrupts: none interrupts another ---
 
@@ -91,35 +83,28 @@ void on_edges() {
   board.inputs.take_edges<port>([](unsigned channel, bool level) { device.on_edge(channel, level); });
 }
 
-/// In the order in which they are served where several wait. A received byte must be taken within a
-/// character.
-struct Served {
-  Interrupt number;
-  Order order;
-  start_up::Handler handler;
-};
-constexpr std::array<Served, 4> kAlways{
-    Served{kUart == 0 ? Interrupt::Uart0 : Interrupt::Uart1, Order::Second, on_line},
-    Served{Interrupt::Timer0A, Order::Second, on_silence_timer},
-    Served{Interrupt::Timer1A, Order::Second, on_line_end_timer},
-    Served{Interrupt::I2c0, Order::Fourth, on_i2c},
-};
-constexpr std::array<Served, 5> kWithInputs{
-    Served{Interrupt::GpioA, Order::Third, on_edges<Port::A>},
-    Served{Interrupt::GpioB, Order::Third, on_edges<Port::B>},
-    Served{Interrupt::GpioC, Order::Third, on_edges<Port::C>},
-    Served{Interrupt::GpioD, Order::Third, on_edges<Port::D>},
-    Served{Interrupt::GpioE, Order::Third, on_edges<Port::E>},
-};
-
-constexpr bool has_inputs(Interrupt port) {
-  for (const PinGroup& group : kInputs) {
-    if (static_cast<unsigned>(group.port) == static_cast<unsigned>(port)) {
-      return kOnlyModel.has_inputs();
-    }
+/// Null where this model has no input on the port.
+template <Port port>
+constexpr start_up::Handler handler_of_edges() {
+  if constexpr (decltype(board.inputs)::on(port)) {
+    return on_edges<port>;
   }
-  return false;
+  return nullptr;
 }
+
+/// A received byte must be taken within a character, so the line comes first.
+constexpr auto kServed = table<Served>({
+    {kUart == 0 ? Interrupt::Uart0 : Interrupt::Uart1, Order::Second, on_line},
+    {Interrupt::Timer0A, Order::Second, on_silence_timer},
+    {Interrupt::Timer1A, Order::Second, on_line_end_timer},
+    {Interrupt::GpioA, Order::Third, handler_of_edges<Port::A>()},
+    {Interrupt::GpioB, Order::Third, handler_of_edges<Port::B>()},
+    {Interrupt::GpioC, Order::Third, handler_of_edges<Port::C>()},
+    {Interrupt::GpioD, Order::Third, handler_of_edges<Port::D>()},
+    {Interrupt::GpioE, Order::Third, handler_of_edges<Port::E>()},
+    {Interrupt::I2c0, Order::Fourth, on_i2c},
+});
+constexpr InterruptPlan kInterruptPlan = plan(kServed);
 
 constexpr unsigned kInterrupts = 22;
 using Vectors = start_up::VectorTable<kInterrupts>;
@@ -143,11 +128,8 @@ constexpr Vectors make_vectors() {
   for (start_up::Handler& handler : vectors.interrupt) {
     handler = kFault;
   }
-  for (const Served& served : kAlways) {
-    vectors.interrupt[static_cast<unsigned>(served.number)] = served.handler;
-  }
-  for (const Served& served : kWithInputs) {
-    if (has_inputs(served.number)) {
+  for (const Served& served : kServed) {
+    if (served.handler != nullptr) {
       vectors.interrupt[static_cast<unsigned>(served.number)] = served.handler;
     }
   }
@@ -165,7 +147,8 @@ constexpr std::uint32_t ports_of_the_module() {
   for (const PinGroup& group : kInputs) {
     add(group.port);
   }
-  for (const Pin pin : {kUartPins[0], kUartPins[1], kDriverEnable, kInitSwitch, kStatusLed}) {
+  add(kUartPins.port);
+  for (const Pin pin : {kDriverEnable, kInitSwitch, kStatusLed}) {
     add(pin.port);
   }
   add(Port::B);  // I2C0
@@ -188,23 +171,14 @@ void start() {
   board.init_switch.start();
   board.status_led.start();
   SystemControl::use(kClock);
-  for (const Pin pin : kUartPins) {
-    Gpio(pin.port).make_peripheral(kFamily, pin.mask(), kUartFunction);
-  }
+  Gpio(kUartPins.port).make_peripheral(kFamily, kUartPins.mask(), kUartFunction);
   board.memory.master().start();
   SilenceTimer::start();
   LineEndTimer::start();
   Interrupts::start();
   board.clock.start(milliseconds(1));
   device.start();
-  for (const Served& served : kAlways) {
-    Interrupts::enable(served.number, served.order);
-  }
-  for (const Served& served : kWithInputs) {
-    if (has_inputs(served.number)) {
-      Interrupts::enable(served.number, served.order);
-    }
-  }
+  Interrupts::enable(kInterruptPlan);
 }
 
 }  // namespace
@@ -212,7 +186,6 @@ void start() {
 
 int main() {
   using namespace ex9000::board;
-  new (&device) ex9000::hal::Device<Board>(ex9000::kOnlyModel);
   start();
   std::uint32_t ticks_seen = 0;
   for (;;) {

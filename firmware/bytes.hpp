@@ -11,17 +11,17 @@ struct Bytes {
   const std::uint8_t* data = nullptr;
   std::size_t size = 0;
 
-  constexpr std::uint8_t operator[](std::size_t index) const { return data[index]; }
+  [[gnu::always_inline]] constexpr std::uint8_t operator[](std::size_t index) const { return data[index]; }
   /// The bytes from `offset` on; none where there are no more.
-  [[nodiscard]] constexpr Bytes from(std::size_t offset) const {
+  [[nodiscard, gnu::always_inline]] constexpr Bytes from(std::size_t offset) const {
     return offset < size ? Bytes{data + offset, size - offset} : Bytes{};
   }
-  [[nodiscard]] constexpr Bytes first(std::size_t count) const { return {data, count < size ? count : size}; }
+  [[nodiscard, gnu::always_inline]] constexpr Bytes first(std::size_t count) const { return {data, count < size ? count : size}; }
   [[nodiscard]] constexpr const std::uint8_t* begin() const { return data; }
   [[nodiscard]] constexpr const std::uint8_t* end() const { return data + size; }
 
   /// 16 bits at `offset`, high byte first as Modbus sends them.
-  [[nodiscard]] constexpr std::uint16_t word(std::size_t offset) const {
+  [[nodiscard, gnu::always_inline]] constexpr std::uint16_t word(std::size_t offset) const {
     return static_cast<std::uint16_t>((data[offset] << 8U) | data[offset + 1]);
   }
 };

@@ -12,15 +12,14 @@ constexpr Duration kInitGivesUp = milliseconds(50);   // D13
 
 constexpr std::uint8_t kInitModeAddress = 0x00;
 
-void add(std::uint16_t& counter, EventTally& tally) {
-  counter = static_cast<std::uint16_t>(counter + tally.collect());
-}
-
 }  // namespace
 
 void Module::begin(std::uint16_t input_levels, Time now, TimingAt timing_at) {
   timing_at_ = timing_at;
-  edges_.begin(input_levels & state_.model().input_mask());
+  exchange_.tallies_ = &receiver_.tallies();
+  exchange_.state_.in_force.baud_code = kFactoryBaudCode;
+  exchange_.state_.reset_status = true;
+  edges_.begin(input_levels & state().model().input_mask());
   store_.begin_loading();
   init_gives_up_.set(now + kInitGivesUp);
   led_.show(StatusLed::Pattern::Steady, now);
@@ -28,12 +27,16 @@ void Module::begin(std::uint16_t input_levels, Time now, TimingAt timing_at) {
 
 void Module::look_around(bool init_switch, Time now) {
   init_switch_.sample(init_switch, now);
-  state_.init_asserted = init_switch_.level();
+  exchange_.state_.init_asserted = init_switch_.level();
   led_.show(led_pattern_due(), now);
+  collect_edges();
+  if (line_quiet_.reached(now)) {
+    line_quiet_.disarm();
+  }
 }
 
 StatusLed::Pattern Module::led_pattern_due() const {
-  if (state_.settings.timeout_status) {
+  if (state().settings.timeout_status) {
     return StatusLed::Pattern::HostTimeout;
   }
   return settings_known_ && settings_unreadable() ? StatusLed::Pattern::SettingsUnreadable
@@ -41,29 +44,25 @@ StatusLed::Pattern Module::led_pattern_due() const {
 }
 
 void Module::step(Time now) {
-  if (!settings_known_ && !store_.loading()) {
-    use_settings(now);
-  }
-  if (line_quiet_.reached(now)) {
-    line_quiet_.disarm();
+  if (phase_ == Phase::Booting) {
+    come_up(now);
   }
   if (!settings_known_) {
     return;
   }
-  if (phase_ == Phase::Booting && init_is_known(now)) {
-    start_listening();
-  }
-  // What a frame is judged by is collected after it was there, so that it includes the frame itself.
-  const Frame* frame = receiver_.queue().waiting();
-  collect_tallies();
   heed_host_ok();
   expire_host_watchdog(now);  // before anything that drives outputs
   go_on_storing(now);
-  if (phase_ == Phase::Idle && frame != nullptr) {
-    judge(*frame, now);
-    receiver_.queue().drop_in_main_loop();
+  if (phase_ == Phase::Idle) {
+    const Frame* frame = receiver_.queue().waiting();
+    if (frame != nullptr) {
+      judge(*frame, now);
+      receiver_.queue().drop_in_main_loop();
+    }
   }
-  store_leftovers(now);
+  if (leftovers_) {
+    store_leftovers(now);
+  }
 }
 
 // --- reset ---
@@ -71,16 +70,27 @@ void Module::step(Time now) {
 /// A switch that never stands still is no reason not to come up.
 bool Module::init_is_known(Time now) const { return init_switch_.known() || init_gives_up_.reached(now); }
 
+void Module::come_up(Time now) {
+  if (!settings_known_ && !store_.loading()) {
+    use_settings(now);
+  }
+  if (settings_known_ && init_is_known(now)) {
+    start_listening();
+  }
+}
+
 void Module::use_settings(Time now) {
   settings_known_ = true;
-  const Settings& settings = state_.settings = store_.stored();
-  state_.outputs = settings.timeout_status ? settings.safe_value : settings.power_on_value;
+  State& state = exchange_.state_;
+  state.settings = store_.stored();
+  state.outputs = state.settings.timeout_status ? state.settings.safe_value : state.settings.power_on_value;
   host_watchdog_.restart(now);
 }
 
 void Module::start_listening() {
-  const Settings& settings = state_.settings;
-  InForce& in_force = state_.in_force;
+  State& state = exchange_.state_;
+  const Settings& settings = state.settings;
+  InForce& in_force = state.in_force;
   in_force.init_mode = init_switch_.level();
   if (in_force.init_mode) {
     in_force.address = kInitModeAddress;
@@ -93,29 +103,25 @@ void Module::start_listening() {
     in_force.protocol = settings.protocol;
     in_force.checksum = (settings.format & kFormatChecksum) != 0;
   }
-  state_.inputs.configure(in_force.protocol == Protocol::Ascii ? Inputs::CounterRange::FiveDigits
-                                                               : Inputs::CounterRange::SixteenBits,
-                          (settings.format & kFormatRisingEdge) != 0);
+  state.inputs.configure(in_force.protocol == Protocol::Ascii ? Inputs::CounterRange::FiveDigits
+                                                              : Inputs::CounterRange::SixteenBits,
+                         (settings.format & kFormatRisingEdge) != 0);
   init_gives_up_.disarm();
   receiver_.answer_to(in_force.address);
-  receiver_.listen({in_force.protocol, in_force.checksum, timing_at_(baud())});
+  const LineTiming timing = timing_at_(baud());
+  turn_around_ = ascii() ? timing.dcon_turn_around : timing.rtu_silence;
+  receiver_.listen({in_force.protocol, in_force.checksum, timing});
   phase_ = Phase::Idle;
 }
 
 // --- what the interrupts have gathered ---
 
-void Module::collect_tallies() {
-  if (phase_ == Phase::Booting) {
-    return;  // what the counters count is not settled yet
+void Module::collect_edges() {
+  // Before it listens, which edges the counters count is not settled.
+  if (kBuiltInputs != 0 && listening()) {
+    edges_collected_ = edges_.edges();
+    exchange_.state_.inputs.collect(edges_, state().model().inputs);
   }
-  state_.inputs.collect(edges_, state_.model().inputs);
-  LineTallies& tallies = receiver_.tallies();
-  Diagnostics& diagnostics = state_.diagnostics;
-  add(diagnostics.bus_messages, tallies.bus_messages);
-  add(diagnostics.bus_errors, tallies.bus_errors);
-  add(diagnostics.server_messages, tallies.server_messages);
-  add(diagnostics.no_responses, tallies.no_responses);
-  add(diagnostics.overruns, tallies.overruns);
 }
 
 void Module::heed_host_ok() {
@@ -131,37 +137,42 @@ void Module::heed_host_ok() {
 }
 
 void Module::expire_host_watchdog(Time now) {
-  if (!host_watchdog_.expired(state_.settings, now)) {
+  State& state = exchange_.state_;
+  if (!host_watchdog_.expired(state.settings, now)) {
     return;
   }
   // At once and whatever the memory does; that it is stored follows (store_leftovers).
-  expired_since_judged_ = true;
-  state_.settings.timeout_status = true;
-  state_.settings.watchdog_enabled = false;
-  state_.outputs = state_.settings.safe_value;
+  expired_since_judged_ = leftovers_ = true;
+  state.settings.timeout_status = true;
+  state.settings.watchdog_enabled = false;
+  state.outputs = state.settings.safe_value;
 }
 
 // --- requests ---
 
 void Module::judge(const Frame& frame, Time now) {
-  outcome_ = Outcome();
-  expired_since_judged_ = false;
-  reply_.clear();
-  const bool ascii = state_.in_force.protocol == Protocol::Ascii;
-  if (ascii) {
-    dcon::answer(state_, frame.bytes(), outcome_, reply_);
-  } else {
-    modbus::answer(state_, frame.bytes(), outcome_, reply_);
+  if (edges_collected_ != edges_.edges()) {
+    collect_edges();
   }
-  reply_due_.set(frame.received + turn_around());
-  if (outcome_.refusal != Refusal::None) {
-    outcome_ = Outcome::refused(outcome_.refusal);  // a refused request changes nothing
+  expired_since_judged_ = false;
+  exchange_.frame = frame.bytes();
+  exchange_.outcome.clear();
+  exchange_.reply.clear();
+  if (ascii()) {
+    dcon::answer(exchange_);
+  } else {
+    modbus::answer(exchange_);
+  }
+  reply_due_.set(frame.received + turn_around_);
+  Outcome& outcome = exchange_.outcome;
+  if (outcome.refusal != Refusal::None) {
+    outcome.drop();  // a refused request changes nothing
     count_exception();
   }
-  if (reply_.empty()) {
-    ++state_.diagnostics.no_responses;
+  if (exchange_.reply.empty()) {
+    ++exchange_.state_.diagnostics.no_responses;
   }
-  if (outcome_.change.empty()) {
+  if (outcome.change.empty()) {
     carry_out(now);
   } else {
     phase_ = Phase::MustStore;
@@ -170,74 +181,88 @@ void Module::judge(const Frame& frame, Time now) {
 }
 
 void Module::carry_out(Time now) {
-  Settings& settings = state_.settings;
-  settings = outcome_.change.applied_to(settings);
-  settings.timeout_status |= expired_since_judged_;  // what was cleared is the timeout before that (D17)
-  if (outcome_.take_address) {
-    state_.in_force.address = settings.address;
-    receiver_.answer_to(settings.address);
+  State& state = exchange_.state_;
+  const Outcome& outcome = exchange_.outcome;
+  if (!outcome.change.empty()) {
+    state.settings = outcome.change.applied_to(state.settings);
+    if (expired_since_judged_) {
+      // What was cleared is the timeout before that (D17); the safe value may be new (D6).
+      state.settings.timeout_status = true;
+      state.outputs = state.settings.safe_value;
+    }
   }
-  if (outcome_.restart_host_watchdog) {
+  if (!state.outputs_blocked()) {
+    const Drive drive = outcome.drive;
+    state.outputs = static_cast<std::uint16_t>((state.outputs & ~drive.mask) | (drive.value & drive.mask));
+  }
+  if (outcome.has_effects()) {
+    have_effects(now);
+  }
+  if (outcome.clear_counters != 0) {
+    state.inputs.clear_counters(outcome.clear_counters);
+  }
+  phase_ = exchange_.reply.empty() ? Phase::Idle : Phase::ReplyReady;
+}
+
+void Module::have_effects(Time now) {
+  State& state = exchange_.state_;
+  const Outcome& outcome = exchange_.outcome;
+  if (outcome.asks_for(Effect::RestartHostWatchdog)) {
     host_watchdog_.restart(now);
   }
-  if (settings.timeout_status) {
-    state_.outputs = settings.safe_value;  // the host watchdog may have expired while this was stored (D6)
-  } else {
-    const Drive drive = outcome_.drive;
-    state_.outputs = static_cast<std::uint16_t>((state_.outputs & ~drive.mask) | (drive.value & drive.mask));
+  if (outcome.asks_for(Effect::TakeAddress)) {
+    state.in_force.address = state.settings.address;
+    receiver_.answer_to(state.settings.address);
   }
-  if (outcome_.take_sample) {
-    state_.sample = {true, false, state_.outputs, state_.inputs.levels()};
+  if (outcome.asks_for(Effect::TakeSample)) {
+    state.sample = {true, false, state.outputs, state.inputs.levels()};
   }
-  state_.sample.read |= outcome_.sample_read;
-  state_.reset_status &= !outcome_.reset_status_read;
-  if (outcome_.clear_latches) {
-    state_.inputs.clear_latches();
+  if (outcome.asks_for(Effect::MarkSampleRead)) {
+    state.sample.read = true;
   }
-  state_.inputs.clear_counters(outcome_.clear_counters);
-  if (outcome_.clear_diagnostics) {
-    state_.diagnostics = Diagnostics();
+  if (outcome.asks_for(Effect::ClearResetStatus)) {
+    state.reset_status = false;
   }
-  finish_request();
+  if (outcome.asks_for(Effect::ClearLatches)) {
+    state.inputs.clear_latches();
+  }
+  if (outcome.asks_for(Effect::ClearDiagnostics)) {
+    receiver_.tallies().clear();
+    state.diagnostics = Diagnostics();
+  }
 }
 
 void Module::refuse_store() {
-  outcome_ = Outcome::refused(Refusal::StoreFailed);
-  if (state_.in_force.protocol == Protocol::Ascii) {
-    dcon::refuse_store(state_, reply_);
+  exchange_.outcome.drop();
+  exchange_.outcome.refusal = Refusal::StoreFailed;
+  if (ascii()) {
+    dcon::refuse_store(exchange_);
   } else {
-    modbus::refuse_store(reply_);
+    modbus::refuse_store(exchange_);
   }
   count_exception();
-  finish_request();
+  phase_ = exchange_.reply.empty() ? Phase::Idle : Phase::ReplyReady;
 }
 
 void Module::count_exception() {
-  if (!reply_.empty()) {
-    ++state_.diagnostics.exceptions;
+  if (!exchange_.reply.empty()) {
+    ++exchange_.state_.diagnostics.exceptions;
   }
 }
 
-void Module::finish_request() { phase_ = reply_.empty() ? Phase::Idle : Phase::ReplyReady; }
-
-/// Silence before a reply: behind the request, and behind the reply before it.
-Duration Module::turn_around() const {
-  const LineTiming& timing = receiver_.timing();
-  return state_.in_force.protocol == Protocol::Ascii ? timing.dcon_turn_around : timing.rtu_silence;
-}
-
 Bytes Module::take_reply(Time now) {
-  if (phase_ != Phase::ReplyReady || !reply_due_.reached(now) || line_quiet_.armed()) {
+  if (phase_ != Phase::ReplyReady || !reply_due_.reached(now) ||
+      (line_quiet_.armed() && !line_quiet_.reached(now))) {
     return {};
   }
   phase_ = Phase::Replying;
   reply_due_.disarm();
-  return reply_.bytes();
+  return exchange_.reply.bytes();
 }
 
 void Module::reply_sent(Time now) {
   phase_ = Phase::Idle;
-  line_quiet_.set(now + turn_around());
+  line_quiet_.set(now + turn_around_);
 }
 
 // --- storing ---
@@ -253,7 +278,7 @@ void Module::go_on_storing(Time now) {
     }
   }
   if (phase_ == Phase::MustStore) {
-    const Settings changed = outcome_.change.applied_to(state_.settings);
+    const Settings changed = exchange_.outcome.change.applied_to(state().settings);
     if (changed == store_.stored()) {
       carry_out(now);  // a command that changes nothing writes nothing
     } else {
@@ -261,6 +286,7 @@ void Module::go_on_storing(Time now) {
       phase_ = Phase::Storing;
     }
   } else if (phase_ == Phase::Storing) {
+    leftovers_ = true;
     if (store_.saved()) {
       carry_out(now);
     } else {
@@ -271,8 +297,9 @@ void Module::go_on_storing(Time now) {
 
 /// A timeout that is not stored yet; a copy in the memory that may hold what was refused.
 void Module::store_leftovers(Time now) {
-  const bool unstored = state_.settings != store_.stored();
+  const bool unstored = state().settings != store_.stored();
   if (!unstored && !store_.doubtful()) {
+    leftovers_ = false;
     leftovers_retry_.disarm();
     return;
   }
@@ -282,7 +309,7 @@ void Module::store_leftovers(Time now) {
   leftovers_retry_.disarm();
   storing_leftovers_ = true;
   if (unstored) {
-    store_.begin_saving(state_.settings);
+    store_.begin_saving(state().settings);
   } else {
     store_.begin_settling();
   }
@@ -312,7 +339,7 @@ std::optional<Duration> Module::idle_for(Time now) const {
     return idle;
   }
   consider(init_gives_up_);
-  consider(host_watchdog_.expiry(state_.settings));
+  consider(host_watchdog_.expiry(state().settings));
   if (memory_is_free()) {
     consider(leftovers_retry_);
   }

@@ -10,9 +10,7 @@
 #include "firmware/model/model.hpp"
 #include "firmware/panel/debounce.hpp"
 #include "firmware/panel/status_led.hpp"
-#include "firmware/request/outcome.hpp"
-#include "firmware/request/reply.hpp"
-#include "firmware/request/state.hpp"
+#include "firmware/request/exchange.hpp"
 #include "firmware/settings/store.hpp"
 #include "firmware/time.hpp"
 #include "firmware/watchdog/host_watchdog.hpp"
@@ -29,7 +27,7 @@ namespace ex9000 {
 /// main loop. Nothing blocks.
 class Module {
  public:
-  explicit constexpr Module(const Model& model) : state_(model), store_(model) {}
+  explicit constexpr Module(const Model& model) : store_(model), exchange_(model) {}
   Module(const Module&) = delete;
   Module& operator=(const Module&) = delete;
 
@@ -64,7 +62,7 @@ class Module {
   [[nodiscard]] std::optional<Duration> idle_for(Time now) const;
 
   /// Levels to drive: bit n is channel n, 1 = energised. All 0 until the settings are read.
-  [[nodiscard]] std::uint16_t outputs() const { return state_.outputs; }
+  [[nodiscard]] std::uint16_t outputs() const { return state().outputs; }
   [[nodiscard]] bool led_lit() const { return led_.lit(); }
   /// Whether to feed the hardware watchdog; asks once a turn.
   bool feed_watchdog() { return module_watchdog_.main_loop_alive(); }
@@ -72,7 +70,7 @@ class Module {
   /// Settings and INIT* are known: the line may be opened at `baud()`.
   [[nodiscard]] bool listening() const { return phase_ != Phase::Booting; }
   /// Bits per second, from one reset to the next.
-  [[nodiscard]] std::uint32_t baud() const { return baud_rate(state_.in_force.baud_code); }
+  [[nodiscard]] std::uint32_t baud() const { return baud_rate(state().in_force.baud_code); }
 
   /// What to do with the memory; the same until `memory_done`.
   [[nodiscard]] MemoryJob memory_job() { return store_.job(); }
@@ -87,10 +85,10 @@ class Module {
 
   // --- for those who look on: panels, logs, tests ---
 
-  [[nodiscard]] const State& state() const { return state_; }
+  [[nodiscard]] const State& state() const { return exchange_.state(); }
   [[nodiscard]] StatusLed::Pattern led_pattern() const { return led_.pattern(); }
   /// What the last request came to.
-  [[nodiscard]] const Outcome& outcome() const { return outcome_; }
+  [[nodiscard]] const Outcome& outcome() const { return exchange_.outcome; }
   /// Whether the settings in the memory could not be read at reset, and none have been stored since.
   [[nodiscard]] bool settings_unreadable() const {
     return store_.found() == SettingsStore::Found::Unreadable;
@@ -107,44 +105,45 @@ class Module {
   };
 
   [[nodiscard]] StatusLed::Pattern led_pattern_due() const;
+  void come_up(Time now);
   void use_settings(Time now);
   void start_listening();
   [[nodiscard]] bool init_is_known(Time now) const;
-  void collect_tallies();
-  [[nodiscard]] Duration turn_around() const;
+  void collect_edges();
+  [[nodiscard]] bool ascii() const { return !kBuiltModbus || state().in_force.protocol == Protocol::Ascii; }
   void heed_host_ok();
   void expire_host_watchdog(Time now);
   void go_on_storing(Time now);
   void store_leftovers(Time now);
+  void have_effects(Time now);
   void judge(const Frame& frame, Time now);
   void carry_out(Time now);
   void refuse_store();
   void count_exception();
-  void finish_request();
   [[nodiscard]] bool memory_is_free() const;
 
-  Receiver receiver_;
-  InputEdges edges_;
-  ModuleWatchdog module_watchdog_;
-
-  State state_;
-  SettingsStore store_;
-  HostWatchdog host_watchdog_;
-  StatusLed led_;
-  Debounce init_switch_;
-
   Phase phase_ = Phase::Booting;
-  TimingAt timing_at_ = LineTiming::at;
+  TimingAt timing_at_ = nullptr;
   bool settings_known_ = false;
   bool storing_leftovers_ = false;     ///< the store that is under way was not asked for by a command
+  bool leftovers_ = false;             ///< the settings may not be what is stored, or the store is doubtful
   bool expired_since_judged_ = false;  ///< the host watchdog has expired while a command waits for its store
   Deadline leftovers_retry_;
   Deadline init_gives_up_;
   std::uint8_t host_oks_heeded_ = 0;
-  Outcome outcome_;
-  Reply reply_;
+  std::uint8_t edges_collected_ = 0;
+  Duration turn_around_;  ///< silence before a reply: behind the request, and behind the reply before it
   Deadline reply_due_;
   Deadline line_quiet_;  ///< after the last reply
+
+  InputEdges edges_;
+  ModuleWatchdog module_watchdog_;
+  HostWatchdog host_watchdog_;
+  StatusLed led_;
+  Debounce init_switch_;
+  SettingsStore store_;
+  Exchange exchange_;
+  Receiver receiver_;
 };
 
 }  // namespace ex9000

@@ -17,9 +17,9 @@ template <class Board>
 class Device {
  public:
   /// With a board of its own.
-  explicit constexpr Device(const Model& model) : module_(model), board_() {}
+  explicit constexpr Device(const Model& model) : board_(), module_(model) {}
   /// On one that refers to somebody else's peripherals.
-  constexpr Device(const Model& model, const Board& board) : module_(model), board_(board) {}
+  constexpr Device(const Model& model, const Board& board) : board_(board), module_(model) {}
 
   /// Once, before interrupts are enabled; the tick runs already. `timing_at` is what Module::begin wants.
   void start(TimingAt timing_at = LineTiming::at) {
@@ -119,10 +119,10 @@ class Device {
     const MemoryJob job = module_.memory_job();
     switch (job.kind) {
       case MemoryJob::Kind::Read:
-        board_.memory.start_read(job.address, job.destination, now);
+        board_.memory.start_read(job.address, job.bytes, now);
         break;
       case MemoryJob::Kind::Write:
-        board_.memory.start_write(job.address, job.source, now);
+        board_.memory.start_write(job.address, {job.bytes.data, job.bytes.size}, now);
         break;
       case MemoryJob::Kind::None:
         return;
@@ -130,7 +130,6 @@ class Device {
     memory_job_under_way_ = true;
   }
 
-  Module module_;
   Board board_;
   bool line_open_ = false;
   bool reply_under_way_ = false;
@@ -138,6 +137,7 @@ class Device {
   bool restless_ = false;  ///< the memory wants to be looked after without being told by an interrupt
   std::uint8_t wakes_seen_ = 0;
   WrittenByInterrupt<std::uint8_t> wakes_;
+  Module module_;
 };
 
 }  // namespace ex9000::hal

@@ -11,12 +11,11 @@ namespace ex9000::hal {
 /// One visit to a device: START, its address, bytes one way, STOP. A driver of a master offers, for the main
 /// loop alone and without blocking:
 ///
-///     void begin(const I2cTransfer&, Time now)   only while not busy()
+///     void begin(const I2cTransfer&, Time now)   only while not busy(); the transfer lives until then
 ///     bool go_on(Time now)                       every turn; true: again at once, no interrupt will tell
 ///     bool busy() const
 ///     I2cResult result() const                   of the last transfer, while not busy()
 ///
-/// What a transfer points at lives while the master is busy with it.
 struct I2cTransfer {
   std::uint8_t device = 0;   ///< 7 bits
   Bytes header;              ///< written first

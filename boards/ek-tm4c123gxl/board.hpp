@@ -22,12 +22,12 @@ inline constexpr hal::stellaris::ClockTree kClock{0x15, 4};
 #ifdef EX9000_BUS_ON_USB
 /// The line: UART0, which the debugger makes a serial port on USB.
 inline constexpr unsigned kUart = 0;
-inline constexpr auto kUartPins = std::array{Pin{Port::A, 0}, Pin{Port::A, 1}};
+inline constexpr PinGroup kUartPins{Port::A, 0, 2};
 inline constexpr std::uint32_t kUartFunction = 1;
 #else
 /// The line: UART1 on PC4 (receive) and PC5 (transmit).
 inline constexpr unsigned kUart = 1;
-inline constexpr auto kUartPins = std::array{Pin{Port::C, 4}, Pin{Port::C, 5}};
+inline constexpr PinGroup kUartPins{Port::C, 4, 2};
 inline constexpr std::uint32_t kUartFunction = 2;
 #endif
 inline constexpr Pin kDriverEnable{Port::C, 6};

@@ -21,7 +21,7 @@ inline constexpr hal::stellaris::ClockTree kClock{0x0E, 4};
 
 /// The line: UART0 on PA0 (receive) and PA1 (transmit).
 inline constexpr unsigned kUart = 0;
-inline constexpr auto kUartPins = std::array{Pin{Port::A, 0}, Pin{Port::A, 1}};
+inline constexpr PinGroup kUartPins{Port::A, 0, 2};
 inline constexpr std::uint32_t kUartFunction = 1;
 inline constexpr Pin kDriverEnable{Port::A, 6};
 

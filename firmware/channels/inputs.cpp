@@ -16,6 +16,7 @@ void InputEdges::on_edge(unsigned channel, bool level) {
   }
   arrival.count_in_interrupt();
   levels_.store_in_interrupt(static_cast<std::uint16_t>(level ? levels | bit : levels & ~bit));
+  edges_.store_in_interrupt(static_cast<std::uint8_t>(edges_.load() + 1U));
 }
 
 void Inputs::collect(InputEdges& edges, unsigned channels) {

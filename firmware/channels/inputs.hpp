@@ -20,11 +20,14 @@ class InputEdges {
   void on_edge(unsigned channel, bool level);
 
   [[nodiscard]] std::uint16_t levels() const { return levels_.load(); }
+  /// Edges of all channels, modulo 256; what is the same as before may be 256 more.
+  [[nodiscard]] std::uint8_t edges() const { return edges_.load(); }
   EventTally& rising(unsigned channel) { return rising_[channel]; }
   EventTally& falling(unsigned channel) { return falling_[channel]; }
 
  private:
   WrittenByInterrupt<std::uint16_t> levels_;
+  WrittenByInterrupt<std::uint8_t> edges_;
   std::array<EventTally, kMaxInputs> rising_;
   std::array<EventTally, kMaxInputs> falling_;
 };

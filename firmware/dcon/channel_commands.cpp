@@ -10,34 +10,34 @@ constexpr std::string_view kEndOfData = "00";
 
 }  // namespace
 
-Refusal take_sample(const State& /*state*/, Bytes /*args*/, Outcome& outcome, Reply& /*reply*/) {
-  outcome.take_sample = true;
+Refusal take_sample(Exchange& exchange) {
+  exchange.outcome.request(Effect::TakeSample);
   return Refusal::None;
 }
 
-Refusal read_sample(const State& state, Bytes /*args*/, Outcome& outcome, Reply& reply) {
-  const Sample& sample = state.sample;
+Refusal read_sample(Exchange& exchange) {
+  const Sample& sample = exchange.state().sample;
   if (!sample.taken) {
     return Refusal::NoSample;
   }
-  outcome.sample_read = true;
-  reply.put('!');
-  reply.put(sample.read ? '0' : '1');
-  put_data(state.model(), sample.outputs, sample.inputs, reply);
-  reply.put(kEndOfData);
+  exchange.outcome.request(Effect::MarkSampleRead);
+  exchange.reply.put('!');
+  exchange.reply.put(sample.read ? '0' : '1');
+  put_data(exchange, sample.outputs, sample.inputs);
+  exchange.reply.put(kEndOfData);
   return Refusal::None;
 }
 
-Refusal read_channels(const State& state, Bytes /*args*/, Outcome& /*outcome*/, Reply& reply) {
-  reply.put('!');
-  put_data(state.model(), state.outputs, state.inputs.levels(), reply);
-  reply.put(kEndOfData);
+Refusal read_channels(Exchange& exchange) {
+  exchange.reply.put('!');
+  put_data(exchange, exchange.state().outputs, exchange.state().inputs.levels());
+  exchange.reply.put(kEndOfData);
   return Refusal::None;
 }
 
-Refusal read_channels_short(const State& state, Bytes /*args*/, Outcome& /*outcome*/, Reply& reply) {
-  reply.put('>');
-  put_data(state.model(), state.outputs, state.inputs.levels(), reply);
+Refusal read_channels_short(Exchange& exchange) {
+  exchange.reply.put('>');
+  put_data(exchange, exchange.state().outputs, exchange.state().inputs.levels());
   return Refusal::None;
 }
 

@@ -4,50 +4,46 @@
 #include <cstdint>
 #include <string_view>
 
-#include "firmware/bytes.hpp"
 #include "firmware/model/model.hpp"
-#include "firmware/request/outcome.hpp"
-#include "firmware/request/reply.hpp"
-#include "firmware/request/state.hpp"
+#include "firmware/request/exchange.hpp"
 #include "firmware/table.hpp"
 
 namespace ex9000::dcon {
 
 /// Judges the arguments of one command, writes the reply without checksum and CR, and says what is to be
-/// done. A pure function of request and state. `args` are the characters behind address and key; their number
-/// fits the row.
-using Handler = Refusal (*)(const State& state, Bytes args, Outcome& outcome, Reply& reply);
+/// done. The arguments are the characters behind address and key; their number fits the row.
+using Handler = Refusal (*)(Exchange& exchange);
 
 // configuration_commands.cpp
-Refusal set_configuration(const State& state, Bytes args, Outcome& outcome, Reply& reply);
-Refusal read_configuration(const State& state, Bytes args, Outcome& outcome, Reply& reply);
-Refusal read_reset_status(const State& state, Bytes args, Outcome& outcome, Reply& reply);
-Refusal read_version(const State& state, Bytes args, Outcome& outcome, Reply& reply);
-Refusal read_name(const State& state, Bytes args, Outcome& outcome, Reply& reply);
-Refusal set_name(const State& state, Bytes args, Outcome& outcome, Reply& reply);
-Refusal read_protocol(const State& state, Bytes args, Outcome& outcome, Reply& reply);
-Refusal set_protocol(const State& state, Bytes args, Outcome& outcome, Reply& reply);
+Refusal set_configuration(Exchange& exchange);
+Refusal read_configuration(Exchange& exchange);
+Refusal read_reset_status(Exchange& exchange);
+Refusal read_version(Exchange& exchange);
+Refusal read_name(Exchange& exchange);
+Refusal set_name(Exchange& exchange);
+Refusal read_protocol(Exchange& exchange);
+Refusal set_protocol(Exchange& exchange);
 // channel_commands.cpp
-Refusal take_sample(const State& state, Bytes args, Outcome& outcome, Reply& reply);
-Refusal read_sample(const State& state, Bytes args, Outcome& outcome, Reply& reply);
-Refusal read_channels(const State& state, Bytes args, Outcome& outcome, Reply& reply);
-Refusal read_channels_short(const State& state, Bytes args, Outcome& outcome, Reply& reply);
+Refusal take_sample(Exchange& exchange);
+Refusal read_sample(Exchange& exchange);
+Refusal read_channels(Exchange& exchange);
+Refusal read_channels_short(Exchange& exchange);
 // output_commands.cpp
-Refusal set_output_group(const State& state, Bytes args, Outcome& outcome, Reply& reply);
-Refusal set_outputs(const State& state, Bytes args, Outcome& outcome, Reply& reply);
-Refusal read_preset_value(const State& state, Bytes args, Outcome& outcome, Reply& reply);
-Refusal store_preset_value(const State& state, Bytes args, Outcome& outcome, Reply& reply);
+Refusal set_output_group(Exchange& exchange);
+Refusal set_outputs(Exchange& exchange);
+Refusal read_preset_value(Exchange& exchange);
+Refusal store_preset_value(Exchange& exchange);
 // input_commands.cpp
-Refusal read_counter(const State& state, Bytes args, Outcome& outcome, Reply& reply);
-Refusal clear_latches(const State& state, Bytes args, Outcome& outcome, Reply& reply);
-Refusal clear_counter(const State& state, Bytes args, Outcome& outcome, Reply& reply);
-Refusal read_latches(const State& state, Bytes args, Outcome& outcome, Reply& reply);
+Refusal read_counter(Exchange& exchange);
+Refusal clear_latches(Exchange& exchange);
+Refusal clear_counter(Exchange& exchange);
+Refusal read_latches(Exchange& exchange);
 // watchdog_commands.cpp
-Refusal host_ok(const State& state, Bytes args, Outcome& outcome, Reply& reply);
-Refusal read_status(const State& state, Bytes args, Outcome& outcome, Reply& reply);
-Refusal clear_status(const State& state, Bytes args, Outcome& outcome, Reply& reply);
-Refusal read_watchdog(const State& state, Bytes args, Outcome& outcome, Reply& reply);
-Refusal set_watchdog(const State& state, Bytes args, Outcome& outcome, Reply& reply);
+Refusal host_ok(Exchange& exchange);
+Refusal read_status(Exchange& exchange);
+Refusal clear_status(Exchange& exchange);
+Refusal read_watchdog(Exchange& exchange);
+Refusal set_watchdog(Exchange& exchange);
 
 constexpr char kNoKey = 0;
 constexpr char kBroadcastKey = '*';
@@ -56,8 +52,8 @@ constexpr char kBroadcastKey = '*';
 struct Dispatch {
   char delimiter = 0;
   char key = kNoKey;  ///< the character behind the address; kBroadcastKey: the address is `**`
-  std::uint8_t fewest_args = 0;
-  std::uint8_t most_args = 0;
+  std::uint8_t fewest_args : 4;
+  std::uint8_t most_args : 4;
   Needs needs = Needs::Nothing;
   Handler handler = nullptr;
 };

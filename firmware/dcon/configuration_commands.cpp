@@ -12,15 +12,15 @@ constexpr int kDioTypeOfTheExample = 0x24;  // E1
 
 }  // namespace
 
-Refusal set_configuration(const State& state, Bytes args, Outcome& outcome, Reply& reply) {
-  const int address = hex_byte(args[0], args[1]);
-  const int type = hex_byte(args[2], args[3]);
-  const int baud_code = hex_byte(args[4], args[5]);
-  const int format = hex_byte(args[6], args[7]);
+Refusal set_configuration(Exchange& exchange) {
+  const int address = hex_byte(exchange.args[0], exchange.args[1]);
+  const int type = hex_byte(exchange.args[2], exchange.args[3]);
+  const int baud_code = hex_byte(exchange.args[4], exchange.args[5]);
+  const int format = hex_byte(exchange.args[6], exchange.args[7]);
   if (address < 0 || baud_code < 0 || format < 0 || (type != kDioType && type != kDioTypeOfTheExample)) {
     return Refusal::OutOfRange;
   }
-  const Settings& settings = state.settings;
+  const Settings& settings = exchange.state().settings;
   const auto new_address = static_cast<std::uint8_t>(address);
   const auto new_baud_code = static_cast<std::uint8_t>(baud_code);
   const auto new_format = static_cast<std::uint8_t>(format);
@@ -30,76 +30,82 @@ Refusal set_configuration(const State& state, Bytes args, Outcome& outcome, Repl
   }
   const bool changes_line =
       new_baud_code != settings.baud_code || ((new_format ^ settings.format) & kFormatChecksum) != 0;
-  if (changes_line && !state.configuration_permitted()) {
+  if (changes_line && !exchange.state().configuration_permitted()) {
     return Refusal::NotPermitted;
   }
-  outcome.change.address(new_address).baud_code(new_baud_code).format(new_format);
-  outcome.take_address = !state.in_force.init_mode;
-  reply.put('!');
-  reply.put_hex(new_address);
+  SettingsChange& change = exchange.outcome.change;
+  change.address(new_address);
+  change.baud_code(new_baud_code);
+  change.format(new_format);
+  if (!exchange.state().in_force.init_mode) {
+    exchange.outcome.request(Effect::TakeAddress);
+  }
+  exchange.reply.put('!');
+  exchange.reply.put_hex(new_address);
   return Refusal::None;
 }
 
-Refusal read_configuration(const State& state, Bytes /*args*/, Outcome& /*outcome*/, Reply& reply) {
+Refusal read_configuration(Exchange& exchange) {
   // The stored address, in INIT mode too: this is how a lost one is found.
-  reply.put('!');
-  reply.put_hex(state.settings.address);
-  reply.put_hex(kDioType);
-  reply.put_hex(state.settings.baud_code);
-  reply.put_hex(state.settings.format);
+  exchange.reply.put('!');
+  exchange.reply.put_hex(exchange.state().settings.address);
+  exchange.reply.put_hex(kDioType);
+  exchange.reply.put_hex(exchange.state().settings.baud_code);
+  exchange.reply.put_hex(exchange.state().settings.format);
   return Refusal::None;
 }
 
-Refusal read_reset_status(const State& state, Bytes /*args*/, Outcome& outcome, Reply& reply) {
-  outcome.reset_status_read = true;
-  put_valid(state, reply);
-  reply.put(state.reset_status ? '1' : '0');
+Refusal read_reset_status(Exchange& exchange) {
+  exchange.outcome.request(Effect::ClearResetStatus);
+  put_valid(exchange);
+  exchange.reply.put(exchange.state().reset_status ? '1' : '0');
   return Refusal::None;
 }
 
-Refusal read_version(const State& state, Bytes /*args*/, Outcome& /*outcome*/, Reply& reply) {
-  put_valid(state, reply);
-  reply.put(kFirmwareVersion);
+Refusal read_version(Exchange& exchange) {
+  put_valid(exchange);
+  exchange.reply.put(kFirmwareVersion);
   return Refusal::None;
 }
 
-Refusal read_name(const State& state, Bytes /*args*/, Outcome& /*outcome*/, Reply& reply) {
-  put_valid(state, reply);
-  reply.put(state.settings.name.bytes());
+Refusal read_name(Exchange& exchange) {
+  put_valid(exchange);
+  exchange.reply.put(exchange.state().settings.name.bytes());
   return Refusal::None;
 }
 
-Refusal set_name(const State& state, Bytes args, Outcome& outcome, Reply& reply) {
-  if (args.size > state.model().longest_name) {
+Refusal set_name(Exchange& exchange) {
+  if (exchange.args.size > exchange.model().longest_name) {
     return Refusal::OutOfRange;
   }
-  for (const std::uint8_t character : args) {
+  for (const std::uint8_t character : exchange.args) {
     if (!Name::is_name_character(character)) {
       return Refusal::OutOfRange;
     }
   }
-  outcome.change.name(Name(args));
-  put_valid(state, reply);
+  exchange.outcome.change.name(Name(exchange.args));
+  put_valid(exchange);
   return Refusal::None;
 }
 
-Refusal read_protocol(const State& state, Bytes /*args*/, Outcome& /*outcome*/, Reply& reply) {
-  put_valid(state, reply);
-  reply.put('1');
-  reply.put(state.settings.protocol == Protocol::ModbusRtu ? '1' : '0');
+Refusal read_protocol(Exchange& exchange) {
+  put_valid(exchange);
+  exchange.reply.put('1');
+  exchange.reply.put(exchange.state().settings.protocol == Protocol::ModbusRtu ? '1' : '0');
   return Refusal::None;
 }
 
-Refusal set_protocol(const State& state, Bytes args, Outcome& outcome, Reply& reply) {
-  const bool modbus = args[0] == '1';
-  if ((!modbus && args[0] != '0') || (modbus && !is_modbus_address(state.settings.address))) {
+Refusal set_protocol(Exchange& exchange) {
+  const bool modbus = exchange.args[0] == '1';
+  if ((!modbus && exchange.args[0] != '0') ||
+      (modbus && !is_modbus_address(exchange.state().settings.address))) {
     return Refusal::OutOfRange;
   }
-  if (!state.configuration_permitted()) {
+  if (!exchange.state().configuration_permitted()) {
     return Refusal::NotPermitted;
   }
-  outcome.change.protocol(modbus ? Protocol::ModbusRtu : Protocol::Ascii);
-  put_valid(state, reply);
+  exchange.outcome.change.protocol(modbus ? Protocol::ModbusRtu : Protocol::Ascii);
+  put_valid(exchange);
   return Refusal::None;
 }
 

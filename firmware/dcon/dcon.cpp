@@ -48,29 +48,31 @@ bool refused_without_address(const Model& model, Bytes frame) {
   return frame[0] == '@' && body != 0;
 }
 
-void refuse(const State& state, Bytes frame, Refusal refusal, Reply& reply) {
+void refuse(Exchange& exchange, Refusal refusal) {
+  Reply& reply = exchange.reply;
   reply.clear();
   if (refusal == Refusal::OutputsBlocked) {
     reply.put('!');
     return;
   }
   reply.put('?');
-  if (!refused_without_address(state.model(), frame)) {
-    reply.put_hex(state.in_force.address);
+  if (refusal == Refusal::StoreFailed || !refused_without_address(exchange.model(), exchange.frame)) {
+    reply.put_hex(exchange.state().in_force.address);
   }
 }
 
 /// Checksum, where it is in force, and CR.
-void finish(const State& state, Reply& reply) {
+void finish(Exchange& exchange) {
+  Reply& reply = exchange.reply;
   if (reply.empty()) {
     return;
   }
-  if (state.in_force.checksum) {
+  if (exchange.state().in_force.checksum) {
     unsigned sum = 0;
     for (const std::uint8_t byte : reply.bytes()) {
       sum += byte;
     }
-    reply.put_hex(sum & 0xFFU);
+    reply.put_hex(sum);
   }
   reply.put('\r');
 }
@@ -86,25 +88,27 @@ std::size_t find_command(const Model& model, Bytes frame) {
   return kNoCommand;
 }
 
-void answer(const State& state, Bytes frame, Outcome& outcome, Reply& reply) {
-  if (!is_broadcast(frame) && hex_byte(frame[1], frame[2]) != state.in_force.address) {
+void answer(Exchange& exchange) {
+  const Bytes frame = exchange.frame;
+  if (!is_broadcast(frame) && hex_byte(frame[1], frame[2]) != exchange.state().in_force.address) {
     return;  // `%` has changed the address since the frame came in (D16)
   }
-  const std::size_t command = find_command(state.model(), frame);
-  outcome.refusal = command == kNoCommand ? Refusal::UnknownCommand
-                                          : kDispatch[command].handler(
-                                                state, arguments(kDispatch[command], frame), outcome, reply);
-  if (outcome.refusal != Refusal::None) {
-    refuse(state, frame, outcome.refusal, reply);
+  Refusal refusal = Refusal::UnknownCommand;
+  const std::size_t command = find_command(exchange.model(), frame);
+  if (command != kNoCommand) {
+    exchange.args = arguments(kDispatch[command], frame);
+    refusal = kDispatch[command].handler(exchange);
   }
-  finish(state, reply);
+  exchange.outcome.refusal = refusal;
+  if (refusal != Refusal::None) {
+    refuse(exchange, refusal);
+  }
+  finish(exchange);
 }
 
-void refuse_store(const State& state, Reply& reply) {
-  reply.clear();
-  reply.put('?');
-  reply.put_hex(state.in_force.address);
-  finish(state, reply);
+void refuse_store(Exchange& exchange) {
+  refuse(exchange, Refusal::StoreFailed);
+  finish(exchange);
 }
 
 }  // namespace ex9000::dcon

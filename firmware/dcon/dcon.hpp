@@ -5,9 +5,7 @@
 
 #include "firmware/bytes.hpp"
 #include "firmware/model/model.hpp"
-#include "firmware/request/outcome.hpp"
-#include "firmware/request/reply.hpp"
-#include "firmware/request/state.hpp"
+#include "firmware/request/exchange.hpp"
 
 namespace ex9000::dcon {
 
@@ -17,11 +15,11 @@ constexpr std::size_t kNoCommand = static_cast<std::size_t>(-1);
 /// it: from the delimiter on, without checksum and CR.
 std::size_t find_command(const Model& model, Bytes frame);
 
-/// Judges an accepted frame. `reply` is what to send, checksum and CR included, once the outcome is done; it
-/// stays empty for broadcasts and for another address. Changes nothing by itself.
-void answer(const State& state, Bytes frame, Outcome& outcome, Reply& reply);
+/// Judges an accepted frame. The reply is what to send, checksum and CR included, once the outcome is done;
+/// it stays empty for broadcasts and for another address. Changes nothing by itself.
+void answer(Exchange& exchange);
 
 /// The reply of a command that could not be stored.
-void refuse_store(const State& state, Reply& reply);
+void refuse_store(Exchange& exchange);
 
 }  // namespace ex9000::dcon

@@ -16,44 +16,44 @@ unsigned channel_of(const Model& model, std::uint8_t digit) {
 
 }  // namespace
 
-Refusal read_counter(const State& state, Bytes args, Outcome& /*outcome*/, Reply& reply) {
-  const unsigned channel = channel_of(state.model(), args[0]);
+Refusal read_counter(Exchange& exchange) {
+  const unsigned channel = channel_of(exchange.model(), exchange.args[0]);
   if (channel == kNoChannel) {
     return Refusal::OutOfRange;
   }
-  put_valid(state, reply);
-  const std::uint32_t count = state.inputs.counter(channel);
+  put_valid(exchange);
+  const std::uint32_t count = exchange.state().inputs.counter(channel);
   for (std::uint32_t unit = 10'000; unit != 0; unit /= 10) {
-    reply.put(hex_digit(count / unit % 10));
+    exchange.reply.put(hex_digit(count / unit % 10));
   }
   return Refusal::None;
 }
 
-Refusal clear_latches(const State& state, Bytes /*args*/, Outcome& outcome, Reply& reply) {
-  outcome.clear_latches = true;
-  put_valid(state, reply);
+Refusal clear_latches(Exchange& exchange) {
+  exchange.outcome.request(Effect::ClearLatches);
+  put_valid(exchange);
   return Refusal::None;
 }
 
-Refusal clear_counter(const State& state, Bytes args, Outcome& outcome, Reply& reply) {
-  const unsigned channel = channel_of(state.model(), args[0]);
+Refusal clear_counter(Exchange& exchange) {
+  const unsigned channel = channel_of(exchange.model(), exchange.args[0]);
   if (channel == kNoChannel) {
     return Refusal::OutOfRange;
   }
-  outcome.clear_counters = static_cast<std::uint16_t>(1U << channel);
-  put_valid(state, reply);
+  exchange.outcome.clear_counters = static_cast<std::uint8_t>(1U << channel);
+  put_valid(exchange);
   return Refusal::None;
 }
 
-Refusal read_latches(const State& state, Bytes args, Outcome& /*outcome*/, Reply& reply) {
-  if (args[0] != '0' && args[0] != '1') {
+Refusal read_latches(Exchange& exchange) {
+  if (exchange.args[0] != '0' && exchange.args[0] != '1') {
     return Refusal::OutOfRange;
   }
   // On a module with both, First is where the outputs stand elsewhere; here it is 00.
-  const Inputs& inputs = state.inputs;
-  reply.put('!');
-  put_data(state.model(), 0, args[0] == '1' ? inputs.latched_high() : inputs.latched_low(), reply);
-  reply.put_hex(0);
+  const Inputs& inputs = exchange.state().inputs;
+  exchange.reply.put('!');
+  put_data(exchange, 0, exchange.args[0] == '1' ? inputs.latched_high() : inputs.latched_low());
+  exchange.reply.put_hex(0);
   return Refusal::None;
 }
 

@@ -11,12 +11,12 @@ constexpr std::uint16_t kLowGroup = 0x00FF;
 constexpr unsigned kHighGroupShift = 8;
 
 /// Form and range are right; now the timeout status decides.
-Refusal drive(const State& state, Drive drive, Outcome& outcome, Reply& reply) {
-  if (state.outputs_blocked()) {
+Refusal drive(Exchange& exchange, Drive drive) {
+  if (exchange.state().outputs_blocked()) {
     return Refusal::OutputsBlocked;
   }
-  outcome.drive = drive;
-  reply.put('>');
+  exchange.outcome.drive = drive;
+  exchange.reply.put('>');
   return Refusal::None;
 }
 
@@ -60,55 +60,58 @@ constexpr Digits digits(const Model& model) {
 
 }  // namespace
 
-Refusal set_output_group(const State& state, Bytes args, Outcome& outcome, Reply& reply) {
-  const int data = hex_byte(args[2], args[3]);
+Refusal set_output_group(Exchange& exchange) {
+  const int data = hex_byte(exchange.args[2], exchange.args[3]);
   if (data < 0) {
     return Refusal::OutOfRange;
   }
-  const Drive wanted = args[0] == '0' ? group(state.model(), args[1], data)
-                                      : single(state.model(), args[0], hex_value(args[1]), data);
-  return wanted.mask == 0 ? Refusal::OutOfRange : drive(state, wanted, outcome, reply);
+  const Drive wanted = exchange.args[0] == '0'
+                           ? group(exchange.model(), exchange.args[1], data)
+                           : single(exchange.model(), exchange.args[0], hex_value(exchange.args[1]), data);
+  return wanted.mask == 0 ? Refusal::OutOfRange : drive(exchange, wanted);
 }
 
-Refusal set_outputs(const State& state, Bytes args, Outcome& outcome, Reply& reply) {
-  const Digits accepted = digits(state.model());
-  if (args.size != accepted.full && args.size != accepted.shortened) {
+Refusal set_outputs(Exchange& exchange) {
+  const Digits accepted = digits(exchange.model());
+  if (exchange.args.size != accepted.full && exchange.args.size != accepted.shortened) {
     return Refusal::OutOfRange;
   }
   unsigned value = 0;
-  for (const std::uint8_t character : args) {
+  for (const std::uint8_t character : exchange.args) {
     const int digit = hex_value(character);
     if (digit < 0) {
       return Refusal::OutOfRange;
     }
     value = (value << 4U) | static_cast<unsigned>(digit);
   }
-  const std::uint16_t channels = state.model().output_mask();
+  const std::uint16_t channels = exchange.model().output_mask();
   if ((value & ~unsigned{channels}) != 0) {
     return Refusal::OutOfRange;
   }
-  return drive(state, {channels, static_cast<std::uint16_t>(value)}, outcome, reply);
+  return drive(exchange, {channels, static_cast<std::uint16_t>(value)});
 }
 
-Refusal read_preset_value(const State& state, Bytes args, Outcome& /*outcome*/, Reply& reply) {
-  if (args[0] != 'P' && args[0] != 'S') {
+Refusal read_preset_value(Exchange& exchange) {
+  if (exchange.args[0] != 'P' && exchange.args[0] != 'S') {
     return Refusal::OutOfRange;
   }
-  put_valid(state, reply);
-  put_data(state.model(), args[0] == 'P' ? state.settings.power_on_value : state.settings.safe_value, 0,
-           reply);
+  put_valid(exchange);
+  put_data(exchange,
+           exchange.args[0] == 'P' ? exchange.state().settings.power_on_value
+                                   : exchange.state().settings.safe_value,
+           0);
   return Refusal::None;
 }
 
-Refusal store_preset_value(const State& state, Bytes args, Outcome& outcome, Reply& reply) {
-  if (args[0] == 'P') {
-    outcome.change.power_on_value(state.outputs);
-  } else if (args[0] == 'S') {
-    outcome.change.safe_value(state.outputs);
+Refusal store_preset_value(Exchange& exchange) {
+  if (exchange.args[0] == 'P') {
+    exchange.outcome.change.power_on_value(exchange.state().outputs);
+  } else if (exchange.args[0] == 'S') {
+    exchange.outcome.change.safe_value(exchange.state().outputs);
   } else {
     return Refusal::OutOfRange;
   }
-  put_valid(state, reply);
+  put_valid(exchange);
   return Refusal::None;
 }
 

@@ -22,39 +22,42 @@ unsigned status_of(const State& state) {
 
 /// The assembler hears `~**` in the interrupt, so that it is never lost, and keeps it from the queue; the
 /// row's function says the same to whoever hands the frame to `answer`.
-Refusal host_ok(const State& /*state*/, Bytes /*args*/, Outcome& outcome, Reply& /*reply*/) {
-  outcome.restart_host_watchdog = true;
+Refusal host_ok(Exchange& exchange) {
+  exchange.outcome.request(Effect::RestartHostWatchdog);
   return Refusal::None;
 }
 
-Refusal read_status(const State& state, Bytes /*args*/, Outcome& /*outcome*/, Reply& reply) {
-  put_valid(state, reply);
-  reply.put_hex(status_of(state));
+Refusal read_status(Exchange& exchange) {
+  put_valid(exchange);
+  exchange.reply.put_hex(status_of(exchange.state()));
   return Refusal::None;
 }
 
-Refusal clear_status(const State& state, Bytes /*args*/, Outcome& outcome, Reply& reply) {
-  outcome.change.timeout_status(false);
-  put_valid(state, reply);
+Refusal clear_status(Exchange& exchange) {
+  exchange.outcome.change.timeout_status(false);
+  put_valid(exchange);
   return Refusal::None;
 }
 
-Refusal read_watchdog(const State& state, Bytes /*args*/, Outcome& /*outcome*/, Reply& reply) {
-  put_valid(state, reply);
-  reply.put(state.settings.watchdog_enabled ? '1' : '0');
-  reply.put_hex(state.settings.watchdog_timeout);
+Refusal read_watchdog(Exchange& exchange) {
+  put_valid(exchange);
+  exchange.reply.put(exchange.state().settings.watchdog_enabled ? '1' : '0');
+  exchange.reply.put_hex(exchange.state().settings.watchdog_timeout);
   return Refusal::None;
 }
 
-Refusal set_watchdog(const State& state, Bytes args, Outcome& outcome, Reply& reply) {
-  const int timeout = hex_byte(args[1], args[2]);
-  if ((args[0] != '0' && args[0] != '1') || timeout < 1) {
+Refusal set_watchdog(Exchange& exchange) {
+  const int timeout = hex_byte(exchange.args[1], exchange.args[2]);
+  if ((exchange.args[0] != '0' && exchange.args[0] != '1') || timeout < 1) {
     return Refusal::OutOfRange;
   }
-  const bool enable = args[0] == '1';
-  outcome.change.watchdog_enabled(enable).watchdog_timeout(static_cast<std::uint8_t>(timeout));
-  outcome.restart_host_watchdog = enable;
-  put_valid(state, reply);
+  const bool enable = exchange.args[0] == '1';
+  exchange.outcome.change.watchdog_enabled(enable);
+  exchange.outcome.change.watchdog_timeout(static_cast<std::uint8_t>(timeout));
+  if (enable) {
+    exchange.outcome.request(Effect::RestartHostWatchdog);
+  }
+  put_valid(exchange);
   return Refusal::None;
 }
 

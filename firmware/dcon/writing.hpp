@@ -3,8 +3,7 @@
 
 #include <cstdint>
 
-#include "firmware/request/reply.hpp"
-#include "firmware/request/state.hpp"
+#include "firmware/request/exchange.hpp"
 
 namespace ex9000::dcon {
 
@@ -23,10 +22,14 @@ inline void put_data(const Model& model, std::uint16_t outputs, std::uint16_t in
   }
 }
 
+inline void put_data(Exchange& exchange, std::uint16_t outputs, std::uint16_t inputs) {
+  put_data(exchange.model(), outputs, inputs, exchange.reply);
+}
+
 /// `!AA`, the beginning of most replies; AA is the address in force, 00 in INIT mode.
-inline void put_valid(const State& state, Reply& reply) {
-  reply.put('!');
-  reply.put_hex(state.in_force.address);
+inline void put_valid(Exchange& exchange) {
+  exchange.reply.put('!');
+  exchange.reply.put_hex(exchange.state().in_force.address);
 }
 
 }  // namespace ex9000::dcon

@@ -18,14 +18,14 @@ class Crossing {
                 "must be read and written by one instruction");
 
  public:
-  [[nodiscard]] T load() const {
+  [[nodiscard, gnu::always_inline]] T load() const {
     const T value = value_.load(std::memory_order_relaxed);
     std::atomic_signal_fence(std::memory_order_acquire);
     return value;
   }
 
  protected:
-  void store(T value) {
+  [[gnu::always_inline]] void store(T value) {
     std::atomic_signal_fence(std::memory_order_release);
     value_.store(value, std::memory_order_relaxed);
   }
@@ -40,14 +40,14 @@ class Crossing {
 template <class T>
 class WrittenByInterrupt : public detail::Crossing<T> {
  public:
-  void store_in_interrupt(T value) { this->store(value); }
+  [[gnu::always_inline]] void store_in_interrupt(T value) { this->store(value); }
 };
 
 /// Written by the main loop only; read by anybody.
 template <class T>
 class WrittenByMainLoop : public detail::Crossing<T> {
  public:
-  void store_in_main_loop(T value) { this->store(value); }
+  [[gnu::always_inline]] void store_in_main_loop(T value) { this->store(value); }
 };
 
 /// Counts events in an interrupt and hands them to the main loop, none lost and none twice, as long as the
@@ -57,13 +57,16 @@ class EventTally {
   /// Interrupt.
   void count_in_interrupt() { total_.store_in_interrupt(static_cast<std::uint16_t>(total_.load() + 1U)); }
 
-  /// Main loop: how many since it was last asked.
+  /// Main loop: how many since `collect` or `clear` was last called, modulo 65536.
+  [[nodiscard]] std::uint16_t count() const { return static_cast<std::uint16_t>(total_.load() - collected_); }
+  /// Main loop: likewise, and begins anew.
   std::uint16_t collect() {
     const std::uint16_t total = total_.load();
     const auto fresh = static_cast<std::uint16_t>(total - collected_);
     collected_ = total;
     return fresh;
   }
+  void clear() { collected_ = total_.load(); }
 
  private:
   WrittenByInterrupt<std::uint16_t> total_;

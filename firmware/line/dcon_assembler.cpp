@@ -18,12 +18,13 @@ constexpr bool is_reply_lead(std::uint8_t byte) { return byte == '!' || byte == 
 
 }  // namespace
 
-Verdict DconAssembler::byte(std::uint8_t byte, ByteStatus status, std::uint8_t own_address, Time now) {
+Verdict DconAssembler::byte(FrameQueue& queue, std::uint8_t byte, ByteStatus status, std::uint8_t own_address,
+                            Time now) {
   // A CR that came with an error may have been anything, so it ends nothing.
   const bool ends = byte == kCarriageReturn && status == ByteStatus::Good;
   switch (state_) {
     case State::Hunting:
-      open_or_skip(byte, status);
+      open_or_skip(queue, byte, status);
       return Verdict::Open;
     case State::Skipping:
       if (ends) {
@@ -41,24 +42,24 @@ Verdict DconAssembler::byte(std::uint8_t byte, ByteStatus status, std::uint8_t o
   }
   if (ends) {
     state_ = State::Hunting;
-    return judge(own_address, now);
+    return judge(queue, own_address, now);
   }
   if (status != ByteStatus::Good || size_ == kLongestDconFrame) {
     state_ = State::Spoiled;
     loss_ = status == ByteStatus::Good ? Verdict::TooLong : Verdict::LineError;
     return Verdict::Open;
   }
-  queue_.assembling().storage[size_++] = byte;
+  queue.assembling().storage[size_++] = byte;
   sum_ = static_cast<std::uint8_t>(sum_ + byte);
   return Verdict::Open;
 }
 
-void DconAssembler::open_or_skip(std::uint8_t byte, ByteStatus status) {
+void DconAssembler::open_or_skip(FrameQueue& queue, std::uint8_t byte, ByteStatus status) {
   if (status != ByteStatus::Good) {
     return;
   }
   if (is_delimiter(byte)) {
-    queue_.assembling().storage[0] = byte;
+    queue.assembling().storage[0] = byte;
     size_ = 1;
     sum_ = byte;
     state_ = State::InFrame;
@@ -67,8 +68,8 @@ void DconAssembler::open_or_skip(std::uint8_t byte, ByteStatus status) {
   }
 }
 
-Verdict DconAssembler::judge(std::uint8_t own_address, Time now) {
-  Frame& frame = queue_.assembling();
+Verdict DconAssembler::judge(FrameQueue& queue, std::uint8_t own_address, Time now) {
+  Frame& frame = queue.assembling();
   const auto& text = frame.storage;
   std::uint8_t size = size_;
   if (size < kDelimiterAndAddress + (checksum_ ? kChecksumDigits : 0)) {
@@ -94,7 +95,7 @@ Verdict DconAssembler::judge(std::uint8_t own_address, Time now) {
   frame.size = size;
   frame.offset = 0;
   frame.received = now;
-  return queue_.complete_in_interrupt() ? Verdict::Accepted : Verdict::NoRoom;
+  return queue.complete_in_interrupt() ? Verdict::Accepted : Verdict::NoRoom;
 }
 
 }  // namespace ex9000

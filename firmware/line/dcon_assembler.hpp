@@ -16,13 +16,11 @@ constexpr std::uint8_t kLongestDconFrame = 32;
 /// type.
 class DconAssembler {
  public:
-  explicit constexpr DconAssembler(FrameQueue& queue) : queue_(queue) {}
-
   void use_checksum(bool on) { checksum_ = on; }
 
   /// Interrupt. `own_address` is the one this module answers to at this moment. An accepted frame holds the
   /// characters from the delimiter on, without CHK and CR.
-  Verdict byte(std::uint8_t byte, ByteStatus status, std::uint8_t own_address, Time now);
+  Verdict byte(FrameQueue& queue, std::uint8_t byte, ByteStatus status, std::uint8_t own_address, Time now);
 
   /// Interrupt. Forgets an open frame.
   void forget() { state_ = State::Hunting; }
@@ -35,10 +33,9 @@ class DconAssembler {
     Skipping,  ///< another module is answering: whatever it says, up to its CR
   };
 
-  void open_or_skip(std::uint8_t byte, ByteStatus status);
-  Verdict judge(std::uint8_t own_address, Time now);
+  void open_or_skip(FrameQueue& queue, std::uint8_t byte, ByteStatus status);
+  Verdict judge(FrameQueue& queue, std::uint8_t own_address, Time now);
 
-  FrameQueue& queue_;
   State state_ = State::Hunting;
   Verdict loss_ = Verdict::Open;
   bool checksum_ = false;

@@ -7,12 +7,14 @@
 
 #include "firmware/bytes.hpp"
 #include "firmware/line/crossing.hpp"
+#include "firmware/model/built.hpp"
 #include "firmware/time.hpp"
 
 namespace ex9000 {
 
-/// Longest Modbus RTU frame (Modbus over Serial Line V1.02, 2.5.1).
-constexpr std::size_t kLongestFrame = 256;
+/// Longest Modbus RTU frame (Modbus over Serial Line V1.02, 2.5.1); without Modbus, longest DCON frame that
+/// is judged.
+constexpr std::size_t kLongestFrame = kBuiltModbus ? 256 : 32;
 
 /// A frame that is for this module and passed its check.
 struct Frame {

@@ -1,5 +1,7 @@
 #include "firmware/line/receiver.hpp"
 
+#include "firmware/model/built.hpp"
+
 namespace ex9000 {
 
 void Receiver::listen(const Listening& how) {
@@ -11,26 +13,34 @@ void Receiver::listen(const Listening& how) {
 Duration Receiver::on_byte(std::uint8_t byte, ByteStatus status, Time now) {
   cut_off_if_spoken(now);
   const std::uint8_t own_address = address_.load();
-  if (protocol_ == Protocol::Ascii) {
-    note(dcon_.byte(byte, status, own_address, now), now);
-    return {};
+  if (ascii()) {
+    const Verdict verdict = dcon_.byte(queue_, byte, status, own_address, now);
+    note(verdict, now);
+    return verdict == Verdict::Accepted ? timing().dcon_turn_around : Duration();
   }
-  note(rtu_.byte(byte, status, own_address, now), now);
+  note(rtu_.byte(queue_, byte, status, own_address, now), now);
   return timing().rtu_silence;
 }
 
 Duration Receiver::on_silence(Time now) {
+  if (ascii()) {
+    return {};
+  }
   cut_off_if_spoken(now);
-  note(rtu_.silence(address_.load(), now), now);
+  note(rtu_.silence(queue_, address_.load(), now), now);
   return rtu_.wants_more_silence() ? timing().rtu_grace : Duration();
 }
 
 void Receiver::cut_off_if_spoken(Time now) {
   const std::uint8_t spoken = spoken_.load();
-  if (spoken != spoken_seen_) {
-    spoken_seen_ = spoken;
+  if (spoken == spoken_seen_) {
+    return;
+  }
+  spoken_seen_ = spoken;
+  if (ascii()) {
     dcon_.forget();
-    note(rtu_.cut_off(address_.load()), now);
+  } else {
+    note(rtu_.cut_off(queue_, address_.load()), now);
   }
 }
 
@@ -38,7 +48,9 @@ void Receiver::note(Verdict verdict, Time now) {
   if (verdict == Verdict::Open) {
     return;
   }
-  tally(verdict);
+  if constexpr (kBuiltModbus) {
+    tally(verdict);
+  }
   if (verdict == Verdict::HostOk) {
     host_ok_time_.store_in_interrupt(now.microseconds());
     host_oks_.store_in_interrupt(static_cast<std::uint8_t>(host_oks_.load() + 1U));

@@ -6,22 +6,15 @@
 #include "firmware/line/crossing.hpp"
 #include "firmware/line/dcon_assembler.hpp"
 #include "firmware/line/frame_queue.hpp"
+#include "firmware/line/line_tallies.hpp"
 #include "firmware/line/rtu_assembler.hpp"
 #include "firmware/line/timing.hpp"
 #include "firmware/line/verdict.hpp"
+#include "firmware/model/built.hpp"
 #include "firmware/settings/settings.hpp"
 #include "firmware/time.hpp"
 
 namespace ex9000 {
-
-/// What the receive interrupt counts for Modbus function 08 (Modbus over Serial Line V1.02, appendix A).
-struct LineTallies {
-  EventTally bus_messages;
-  EventTally bus_errors;
-  EventTally server_messages;
-  EventTally no_responses;
-  EventTally overruns;
-};
 
 /// How to listen, from one reset to the next.
 struct Listening {
@@ -32,18 +25,14 @@ struct Listening {
 
 class Receiver {
  public:
-  constexpr Receiver() : dcon_(queue_), rtu_(queue_) {}
-  // The assemblers refer to the queue beside them.
-  Receiver(const Receiver&) = delete;
-  Receiver& operator=(const Receiver&) = delete;
-
   /// Main loop, before bytes are passed on.
   void listen(const Listening& how);
 
   // --- interrupts, which must not interrupt each other ---
 
   /// A byte was received; `now` is the end of its stop bit. Returns after how long a silence `on_silence` is
-  /// to be called, counted from now and restarted by every byte; zero: not at all.
+  /// to be called, counted from now and restarted by every byte; zero: as it was. Behind a DCON frame that is
+  /// the turn-around.
   Duration on_byte(std::uint8_t byte, ByteStatus status, Time now);
 
   /// The silence has come. Returns as `on_byte` does.
@@ -59,19 +48,20 @@ class Receiver {
   /// As given to `listen`.
   [[nodiscard]] const LineTiming& timing() const { return rtu_.timing(); }
   FrameQueue& queue() { return queue_; }
+  constexpr LineTallies& tallies() { return tallies_; }
+  [[nodiscard]] constexpr const LineTallies& tallies() const { return tallies_; }
   [[nodiscard]] const FrameQueue& queue() const { return queue_; }
-  LineTallies& tallies() { return tallies_; }
   /// Counts host OKs, so that a new one is one that differs from the last look.
   [[nodiscard]] std::uint8_t host_oks() const { return host_oks_.load(); }
   /// When the latest of them was over: its CR, or the silence behind it.
   [[nodiscard]] Time host_ok_time() const { return Time(host_ok_time_.load()); }
 
  private:
+  [[nodiscard]] bool ascii() const { return !kBuiltModbus || protocol_ == Protocol::Ascii; }
   void cut_off_if_spoken(Time now);
   void note(Verdict verdict, Time now);
   void tally(Verdict verdict);
 
-  FrameQueue queue_;
   DconAssembler dcon_;
   RtuAssembler rtu_;
   Protocol protocol_ = Protocol::Ascii;
@@ -81,6 +71,7 @@ class Receiver {
   std::uint8_t spoken_seen_ = 0;  // interrupt
   WrittenByInterrupt<std::uint8_t> host_oks_;
   WrittenByInterrupt<std::uint32_t> host_ok_time_;
+  FrameQueue queue_;  // last, being large: what lies before is reached by short instructions
 };
 
 }  // namespace ex9000

@@ -20,35 +20,33 @@ bool is_host_ok(Bytes frame) {
 void RtuAssembler::open() {
   whole_ = Crc16();
   behind_first_ = Crc16();
-  lapsed_ = first_spoiled_ = rest_spoiled_ = overrun_ = false;
-  received_ = 0;
+  rest_spoiled_ = overrun_ = false;
 }
 
-Verdict RtuAssembler::byte(std::uint8_t byte, ByteStatus status, std::uint8_t own_address, Time now) {
+Verdict RtuAssembler::byte(FrameQueue& queue, std::uint8_t byte, ByteStatus status, std::uint8_t own_address,
+                           Time now) {
   Verdict before = Verdict::Open;
   if (received_ != 0) {
     const Duration since_last = now.since(last_);
-    const bool silence_was_due = !(since_last < timing_.rtu_silence) && start() != kNowhere;
-    if (silence_was_due || !(since_last < timing_.rtu_separate)) {
-      before = end(own_address);  // the timer interrupt is late
-    } else if (timing_.rtu_slack < since_last) {
+    if (!(since_last < timing_.rtu_silence)) {
+      before = late(queue, own_address, since_last);
+    }
+    if (received_ != 0 && timing_.rtu_slack < since_last) {
       // Behind the first byte the gap may be one behind a turn-around 00, which does not spoil what follows.
       (received_ == 1 ? first_spoiled_ : rest_spoiled_) = true;
     }
   }
-  if (received_ == 0) {
-    open();
-  }
   lapsed_ = false;
   last_ = now;
 
-  Frame& frame = queue_.assembling();
-  const bool good = status == ByteStatus::Good;
+  Frame& frame = queue.assembling();
   if (received_ == 0) {
-    first_spoiled_ = !good;
+    open();
+    first_spoiled_ = status != ByteStatus::Good;
+    turned_around_ = byte == kTurnAround;
   } else {
-    rest_spoiled_ |= !good;
-    if (frame.storage[0] == kTurnAround) {
+    rest_spoiled_ |= status != ByteStatus::Good;
+    if (turned_around_) {
       behind_first_.add(byte);
     }
   }
@@ -63,41 +61,54 @@ Verdict RtuAssembler::byte(std::uint8_t byte, ByteStatus status, std::uint8_t ow
   return before;
 }
 
-Verdict RtuAssembler::silence(std::uint8_t own_address, Time now) {
+/// A byte came after T3.5: a frame that is right was over and only its timer interrupt is late; any other is
+/// over where the byte began after T3.5 too.
+Verdict RtuAssembler::late(FrameQueue& queue, std::uint8_t own_address, Duration since_last) {
+  const std::uint8_t begin = start(queue.assembling());
+  if (begin == kNowhere && since_last < timing_.rtu_separate) {
+    return Verdict::Open;
+  }
+  return end(queue, begin, own_address);
+}
+
+Verdict RtuAssembler::silence(FrameQueue& queue, std::uint8_t own_address, Time now) {
   if (received_ == 0 || now.since(last_) < timing_.rtu_silence) {
     return Verdict::Open;
   }
-  if (!lapsed_ && start() == kNowhere) {
+  const std::uint8_t begin = start(queue.assembling());
+  if (begin == kNowhere && !lapsed_) {
     lapsed_ = true;
     return Verdict::Open;
   }
-  return end(own_address);
+  return end(queue, begin, own_address);
 }
 
-Verdict RtuAssembler::end(std::uint8_t own_address) {
-  const std::uint8_t begin = start();
-  const Verdict verdict = begin == kNowhere ? why_lost() : accept(begin, own_address);
+Verdict RtuAssembler::end(FrameQueue& queue, std::uint8_t start, std::uint8_t own_address) {
+  const Verdict verdict = start == kNowhere ? why_lost() : accept(queue, start, own_address);
   close();
   return verdict;
 }
 
-Verdict RtuAssembler::cut_off(std::uint8_t own_address) {
-  if (received_ != 0 && start() != kNowhere) {
-    return end(own_address);
+Verdict RtuAssembler::cut_off(FrameQueue& queue, std::uint8_t own_address) {
+  if (received_ != 0) {
+    const std::uint8_t begin = start(queue.assembling());
+    if (begin != kNowhere) {
+      return end(queue, begin, own_address);
+    }
   }
   close();
   return Verdict::Open;
 }
 
-std::uint8_t RtuAssembler::start() const {
+std::uint8_t RtuAssembler::start(const Frame& frame) const {
   if (rest_spoiled_) {
     return kNowhere;
   }
   if (!first_spoiled_ && received_ >= kShortestFrame && received_ <= kLongestFrame && whole_.value() == 0) {
     return 0;
   }
-  if (queue_.assembling().storage[0] == kTurnAround && received_ > kShortestFrame &&
-      received_ <= kLongestFrame + 1 && behind_first_.value() == 0) {
+  if (frame.storage[0] == kTurnAround && received_ > kShortestFrame && received_ <= kLongestFrame + 1 &&
+      behind_first_.value() == 0) {
     return 1;
   }
   return kNowhere;
@@ -116,8 +127,8 @@ Verdict RtuAssembler::why_lost() const {
   return received_ > kLongestFrame ? Verdict::TooLong : Verdict::BadCheck;
 }
 
-Verdict RtuAssembler::accept(std::uint8_t start, std::uint8_t own_address) {
-  Frame& frame = queue_.assembling();
+Verdict RtuAssembler::accept(FrameQueue& queue, std::uint8_t start, std::uint8_t own_address) {
+  Frame& frame = queue.assembling();
   const std::uint8_t address = frame.storage[start];
   if (address != own_address && address != kBroadcast) {
     return Verdict::Foreign;
@@ -128,7 +139,7 @@ Verdict RtuAssembler::accept(std::uint8_t start, std::uint8_t own_address) {
   if (is_host_ok(frame.bytes())) {
     return Verdict::HostOk;
   }
-  return queue_.complete_in_interrupt() ? Verdict::Accepted : Verdict::NoRoom;
+  return queue.complete_in_interrupt() ? Verdict::Accepted : Verdict::NoRoom;
 }
 
 }  // namespace ex9000

@@ -15,26 +15,24 @@ namespace ex9000 {
 /// byte, so that at the silence the judgement is there at once.
 class RtuAssembler {
  public:
-  explicit constexpr RtuAssembler(FrameQueue& queue) : queue_(queue) {}
-
   void use(const LineTiming& timing) { timing_ = timing; }
   [[nodiscard]] const LineTiming& timing() const { return timing_; }
 
   /// Receive interrupt; `now` is when the byte was complete. Tells what became of the frame before it where
   /// it came so late that it opens the next one. Restart the silence timer with `silence()` after it.
-  Verdict byte(std::uint8_t byte, ByteStatus status, std::uint8_t own_address, Time now);
+  Verdict byte(FrameQueue& queue, std::uint8_t byte, ByteStatus status, std::uint8_t own_address, Time now);
 
   /// Timer interrupt: no byte was complete since T3.5. Where the CRC is not right yet, a byte may be under
   /// way that started in time: then `wants_more_silence()`, and the second call without a byte between ends
   /// the frame. A call that comes too early, because a byte came while it was pending, does nothing. An
   /// accepted frame holds address, function and data, without CRC and without a turn-around 00 before it.
-  Verdict silence(std::uint8_t own_address, Time now);
+  Verdict silence(FrameQueue& queue, std::uint8_t own_address, Time now);
 
   [[nodiscard]] bool wants_more_silence() const { return lapsed_; }
 
   /// Interrupt. The own driver has come on: a frame whose CRC is right was whole and is judged, any other is
   /// forgotten.
-  Verdict cut_off(std::uint8_t own_address);
+  Verdict cut_off(FrameQueue& queue, std::uint8_t own_address);
 
  private:
   void open();
@@ -42,24 +40,25 @@ class RtuAssembler {
     received_ = 0;
     lapsed_ = false;
   }
-  Verdict end(std::uint8_t own_address);
+  Verdict late(FrameQueue& queue, std::uint8_t own_address, Duration since_last);
+  Verdict end(FrameQueue& queue, std::uint8_t start, std::uint8_t own_address);
   /// Where the frame begins (0, or 1 behind a turn-around 00), or kNowhere where no CRC is right.
-  [[nodiscard]] std::uint8_t start() const;
+  [[nodiscard]] std::uint8_t start(const Frame& frame) const;
   [[nodiscard]] Verdict why_lost() const;
-  Verdict accept(std::uint8_t start, std::uint8_t own_address);
+  Verdict accept(FrameQueue& queue, std::uint8_t start, std::uint8_t own_address);
 
   static constexpr std::uint8_t kNowhere = 0xFF;
 
-  FrameQueue& queue_;
   LineTiming timing_{};
   bool lapsed_ = false;         ///< T3.5 has passed once
   bool first_spoiled_ = false;  ///< the first byte came with an error, or stood apart from the rest
   bool rest_spoiled_ = false;   ///< any other did
   bool overrun_ = false;
+  bool turned_around_ = false;  ///< the first byte is 00
   std::uint16_t received_ = 0;  ///< bytes of the open frame, also those there is no room for; 0: none is open
   Time last_;                   ///< when the last byte was complete
-  Crc16 whole_;                 ///< over all bytes
-  Crc16 behind_first_;          ///< over all but the first, where that is 00
+  Crc16 whole_ = Crc16::none();         ///< over all bytes
+  Crc16 behind_first_ = Crc16::none();  ///< over all but the first, where that is 00
 };
 
 }  // namespace ex9000

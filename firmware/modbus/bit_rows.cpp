@@ -53,12 +53,14 @@ Refusal write_watchdog_enable(const State& state, BitWrite bits, Outcome& outcom
     return Refusal::WrongValue;
   }
   outcome.change.watchdog_enabled(enable);
-  outcome.restart_host_watchdog = enable;
+  if (enable) {
+    outcome.request(Effect::RestartHostWatchdog);
+  }
   return Refusal::None;
 }
 
 Refusal write_clear_latches(const State& /*state*/, BitWrite /*bits*/, Outcome& outcome) {
-  outcome.clear_latches = true;
+  outcome.request(Effect::ClearLatches);
   return Refusal::None;
 }
 
@@ -70,7 +72,7 @@ Refusal write_clear_timeout_status(const State& /*state*/, BitWrite /*bits*/, Ou
 }
 
 Refusal write_clear_counters(const State& /*state*/, BitWrite bits, Outcome& outcome) {
-  outcome.clear_counters = bits.value & bits.mask;
+  outcome.clear_counters = static_cast<std::uint8_t>(bits.value & bits.mask);
   return Refusal::None;
 }
 

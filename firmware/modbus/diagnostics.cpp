@@ -20,29 +20,35 @@ enum Subfunction : std::uint16_t {
   kOverruns = 0x12,
 };
 
-const std::uint16_t* counter_of(const Diagnostics& diagnostics, std::uint16_t subfunction) {
+constexpr int kNoCounter = -1;
+
+int counter_of(const Exchange& exchange, std::uint16_t subfunction) {
+  const LineTallies& line = exchange.tallies();
+  const Diagnostics& own = exchange.state().diagnostics;
   switch (subfunction) {
+    case kClearCounters:
+      return 0;  // the reply is the request
     case kBusMessages:
-      return &diagnostics.bus_messages;
+      return line.bus_messages.count();
     case kBusErrors:
-      return &diagnostics.bus_errors;
+      return line.bus_errors.count();
     case kExceptions:
-      return &diagnostics.exceptions;
+      return own.exceptions;
     case kServerMessages:
-      return &diagnostics.server_messages;
+      return line.server_messages.count();
     case kNoResponses:
-      return &diagnostics.no_responses;
+      return static_cast<std::uint16_t>(line.no_responses.count() + own.no_responses);
     case kOverruns:
-      return &diagnostics.overruns;
+      return line.overruns.count();
     default:
-      return nullptr;
+      return kNoCounter;
   }
 }
 
 }  // namespace
 
-Refusal diagnose(const State& state, const Request& request, Outcome& outcome, Reply& reply) {
-  const Bytes frame = request.frame;
+Refusal diagnose(Exchange& exchange) {
+  const Bytes frame = exchange.frame;
   if (frame.size < kDataAt) {
     return Refusal::WrongLength;
   }
@@ -51,11 +57,11 @@ Refusal diagnose(const State& state, const Request& request, Outcome& outcome, R
     if (frame.size < kOneWord || frame.size % 2 != 0) {
       return Refusal::WrongLength;
     }
-    reply.put(frame.from(2));
+    exchange.reply.put(frame.from(2));
     return Refusal::None;
   }
-  const std::uint16_t* counter = counter_of(state.diagnostics, subfunction);
-  if (counter == nullptr && subfunction != kClearCounters) {
+  const int counter = counter_of(exchange, subfunction);
+  if (counter == kNoCounter) {
     return Refusal::UnknownSubfunction;
   }
   if (frame.size != kOneWord) {
@@ -64,9 +70,11 @@ Refusal diagnose(const State& state, const Request& request, Outcome& outcome, R
   if (frame.word(kDataAt) != 0) {
     return Refusal::WrongValue;
   }
-  outcome.clear_diagnostics = subfunction == kClearCounters;
-  reply.put_word(subfunction);
-  reply.put_word(counter == nullptr ? 0U : *counter);
+  if (subfunction == kClearCounters) {
+    exchange.outcome.request(Effect::ClearDiagnostics);
+  }
+  exchange.reply.put_word(subfunction);
+  exchange.reply.put_word(static_cast<unsigned>(counter));
   return Refusal::None;
 }
 

@@ -4,40 +4,30 @@
 #include <cstdint>
 #include <string_view>
 
-#include "firmware/bytes.hpp"
 #include "firmware/model/model.hpp"
-#include "firmware/request/outcome.hpp"
-#include "firmware/request/reply.hpp"
-#include "firmware/request/state.hpp"
+#include "firmware/request/exchange.hpp"
 #include "firmware/table.hpp"
 
 namespace ex9000::modbus {
 
-/// A request that is for this module: address, function code and data, without CRC. At least 2 bytes.
-struct Request {
-  Bytes frame;
-  bool broadcast = false;
-};
-
-/// Judges a request, appends to `reply` what follows address and function code, and says what is to be done.
-/// A pure function of request and state.
-using Handler = Refusal (*)(const State& state, const Request& request, Outcome& outcome, Reply& reply);
+/// Judges a request, appends to the reply what follows address and function code, and says what is to be
+/// done. The frame is address, function code and data, without CRC; at least 2 bytes.
+using Handler = Refusal (*)(Exchange& exchange);
 
 // read_functions.cpp
-Refusal read_bits(const State& state, const Request& request, Outcome& outcome, Reply& reply);
-Refusal read_words(const State& state, const Request& request, Outcome& outcome, Reply& reply);
+Refusal read_bits(Exchange& exchange);
+Refusal read_words(Exchange& exchange);
 // write_functions.cpp
-Refusal write_single_coil(const State& state, const Request& request, Outcome& outcome, Reply& reply);
-Refusal write_single_register(const State& state, const Request& request, Outcome& outcome, Reply& reply);
-Refusal write_multiple_coils(const State& state, const Request& request, Outcome& outcome, Reply& reply);
-Refusal write_multiple_registers(const State& state, const Request& request, Outcome& outcome, Reply& reply);
+Refusal write_single_coil(Exchange& exchange);
+Refusal write_single_register(Exchange& exchange);
+Refusal write_multiple_coils(Exchange& exchange);
+Refusal write_multiple_registers(Exchange& exchange);
 // diagnostics.cpp
-Refusal diagnose(const State& state, const Request& request, Outcome& outcome, Reply& reply);
+Refusal diagnose(Exchange& exchange);
 // identification.cpp
-Refusal report_server_id(const State& state, const Request& request, Outcome& outcome, Reply& reply);
-Refusal read_device_identification(const State& state, const Request& request, Outcome& outcome,
-                                   Reply& reply);
-Refusal vendor_function(const State& state, const Request& request, Outcome& outcome, Reply& reply);
+Refusal report_server_id(Exchange& exchange);
+Refusal read_device_identification(Exchange& exchange);
+Refusal vendor_function(Exchange& exchange);
 
 struct FunctionRow {
   std::uint8_t code = 0;

@@ -54,24 +54,23 @@ void put_object(const State& state, std::uint8_t object, Reply& reply) {
 
 }  // namespace
 
-Refusal report_server_id(const State& state, const Request& request, Outcome& /*outcome*/, Reply& reply) {
-  if (request.frame.size != 2) {
+Refusal report_server_id(Exchange& exchange) {
+  if (exchange.frame.size != 2) {
     return Refusal::WrongLength;
   }
-  const Bytes name = state.settings.name.bytes();
-  reply.put(static_cast<std::uint8_t>(name.size + 3));
-  reply.put_word(state.model().modbus_code);
-  reply.put(kRunning);
-  reply.put(name);
+  const Bytes name = exchange.state().settings.name.bytes();
+  exchange.reply.put(static_cast<std::uint8_t>(name.size + 3));
+  exchange.reply.put_word(exchange.model().modbus_code);
+  exchange.reply.put(kRunning);
+  exchange.reply.put(name);
   return Refusal::None;
 }
 
-Refusal read_device_identification(const State& state, const Request& request, Outcome& /*outcome*/,
-                                   Reply& reply) {
+Refusal read_device_identification(Exchange& exchange) {
   constexpr std::size_t kMeiAt = 2;
   constexpr std::size_t kCodeAt = 3;
   constexpr std::size_t kObjectAt = 4;
-  const Bytes frame = request.frame;
+  const Bytes frame = exchange.frame;
   if (frame.size <= kMeiAt) {
     return Refusal::WrongLength;
   }
@@ -94,31 +93,31 @@ Refusal read_device_identification(const State& state, const Request& request, O
     object = kVendorName;  // the standard: begin at the beginning
   }
   const std::uint8_t last = code == kOneObject ? object : last_of_level;
-  reply.put(kReadDeviceIdMei);
-  reply.put(code);
-  reply.put(kConformity);
-  reply.put(std::uint8_t{0});  // nothing follows in another reply
-  reply.put(std::uint8_t{0});
-  const std::size_t count_at = reply.size();
-  reply.put(std::uint8_t{0});
+  exchange.reply.put(kReadDeviceIdMei);
+  exchange.reply.put(code);
+  exchange.reply.put(kConformity);
+  exchange.reply.put(std::uint8_t{0});  // nothing follows in another reply
+  exchange.reply.put(std::uint8_t{0});
+  const std::size_t count_at = exchange.reply.size();
+  exchange.reply.put(std::uint8_t{0});
   std::size_t count = 0;
   for (; object <= last; ++object) {
     if (exists(object, last)) {
-      put_object(state, object, reply);
+      put_object(exchange.state(), object, exchange.reply);
       ++count;
     }
   }
-  reply.patch(count_at, count);
+  exchange.reply.patch(count_at, count);
   return Refusal::None;
 }
 
-Refusal vendor_function(const State& state, const Request& request, Outcome& outcome, Reply& reply) {
+Refusal vendor_function(Exchange& exchange) {
   constexpr std::size_t kSubfunctionAt = 2;
   constexpr std::size_t kAddressAt = 3;
   constexpr std::size_t kSetAddressSize = 7;
   constexpr std::uint8_t kReadCode = 0x00;
   constexpr std::uint8_t kSetAddress = 0x04;
-  const Bytes frame = request.frame;
+  const Bytes frame = exchange.frame;
   if (frame.size <= kSubfunctionAt) {
     return Refusal::WrongLength;
   }
@@ -127,10 +126,10 @@ Refusal vendor_function(const State& state, const Request& request, Outcome& out
     if (frame.size != kSubfunctionAt + 1) {
       return Refusal::WrongLength;
     }
-    reply.put(kReadCode);
-    reply.put(std::uint8_t{0});
-    reply.put_word(state.model().modbus_code);
-    reply.put(std::uint8_t{0});
+    exchange.reply.put(kReadCode);
+    exchange.reply.put(std::uint8_t{0});
+    exchange.reply.put_word(exchange.model().modbus_code);
+    exchange.reply.put(std::uint8_t{0});
     return Refusal::None;
   }
   if (subfunction != kSetAddress) {
@@ -147,10 +146,10 @@ Refusal vendor_function(const State& state, const Request& request, Outcome& out
   if (!is_modbus_address(frame[kAddressAt])) {
     return Refusal::WrongValue;
   }
-  outcome.change.address(frame[kAddressAt]);
-  reply.put(kSetAddress);
-  reply.put_word(0);
-  reply.put_word(0);
+  exchange.outcome.change.address(frame[kAddressAt]);
+  exchange.reply.put(kSetAddress);
+  exchange.reply.put_word(0);
+  exchange.reply.put_word(0);
   return Refusal::None;
 }
 

@@ -64,34 +64,39 @@ void write_exception(std::uint8_t address, std::uint8_t function, Refusal refusa
   reply.put(address);
   reply.put(static_cast<std::uint8_t>(function | kExceptionFlag));
   reply.put(exception_of(refusal, function));
-  append_crc(reply);
 }
 
 }  // namespace
 
-void answer(const State& state, Bytes frame, Outcome& outcome, Reply& reply) {
-  const Request request{frame, frame[0] == kBroadcast};
+void answer(Exchange& exchange) {
+  const Bytes frame = exchange.frame;
+  Reply& reply = exchange.reply;
   const std::uint8_t function = frame[1];
-  const FunctionRow* row = find(state.model(), function);
-  if (request.broadcast && (row == nullptr || !row->by_broadcast)) {
+  exchange.broadcast = frame[0] == kBroadcast;
+  const FunctionRow* row = find(exchange.model(), function);
+  if (exchange.broadcast && (row == nullptr || !row->by_broadcast)) {
     return;
   }
   reply.put(frame[0]);
   reply.put(function);
-  outcome.refusal = row == nullptr ? Refusal::UnknownFunction : row->handler(state, request, outcome, reply);
-  if (request.broadcast) {
+  const Refusal refusal = row == nullptr ? Refusal::UnknownFunction : row->handler(exchange);
+  exchange.outcome.refusal = refusal;
+  if (exchange.broadcast) {
     reply.clear();
-  } else if (outcome.refusal != Refusal::None) {
-    write_exception(frame[0], function, outcome.refusal, reply);
-  } else {
-    append_crc(reply);
+    return;
   }
+  if (refusal != Refusal::None) {
+    write_exception(frame[0], function, refusal, reply);
+  }
+  append_crc(reply);
 }
 
-void refuse_store(Reply& reply) {
+void refuse_store(Exchange& exchange) {
+  Reply& reply = exchange.reply;
   if (!reply.empty()) {
     const Bytes written = reply.bytes();
     write_exception(written[0], written[1], Refusal::StoreFailed, reply);
+    append_crc(reply);
   }
 }
 

@@ -10,12 +10,12 @@ constexpr std::size_t kRequestSize = 6;
 constexpr unsigned kMostBits = 2000;
 constexpr unsigned kMostWords = 125;
 
-Functions function_of(const Request& request) { return static_cast<Functions>(1U << request.frame[1]); }
+Functions function_of(Bytes frame) { return static_cast<Functions>(1U << frame[1]); }
 
 }  // namespace
 
-Refusal read_bits(const State& state, const Request& request, Outcome& /*outcome*/, Reply& reply) {
-  const Bytes frame = request.frame;
+Refusal read_bits(Exchange& exchange) {
+  const Bytes frame = exchange.frame;
   if (frame.size != kRequestSize) {
     return Refusal::WrongLength;
   }
@@ -24,25 +24,25 @@ Refusal read_bits(const State& state, const Request& request, Outcome& /*outcome
   if (quantity == 0 || quantity > kMostBits) {
     return Refusal::WrongQuantity;
   }
-  const BitRow* row = find_bits(state.model(), function_of(request), start);
+  const BitRow* row = find_bits(exchange.model(), function_of(frame), start);
   if (row == nullptr) {
     return Refusal::WrongAddress;
   }
   const unsigned index = unsigned{start} - row->first;
-  if (index + quantity > width_of(row->width, state.model())) {
+  if (index + quantity > width_of(row->width, exchange.model())) {
     return Refusal::WrongAddress;
   }
-  const unsigned bits = (unsigned{row->read(state)} >> index) & ((1U << quantity) - 1U);
-  reply.put(static_cast<std::uint8_t>(quantity > 8 ? 2 : 1));
-  reply.put(static_cast<std::uint8_t>(bits));
+  const unsigned bits = (unsigned{row->read(exchange.state())} >> index) & ((1U << quantity) - 1U);
+  exchange.reply.put(static_cast<std::uint8_t>(quantity > 8 ? 2 : 1));
+  exchange.reply.put(static_cast<std::uint8_t>(bits));
   if (quantity > 8) {
-    reply.put(static_cast<std::uint8_t>(bits >> 8U));
+    exchange.reply.put(static_cast<std::uint8_t>(bits >> 8U));
   }
   return Refusal::None;
 }
 
-Refusal read_words(const State& state, const Request& request, Outcome& /*outcome*/, Reply& reply) {
-  const Bytes frame = request.frame;
+Refusal read_words(Exchange& exchange) {
+  const Bytes frame = exchange.frame;
   if (frame.size != kRequestSize) {
     return Refusal::WrongLength;
   }
@@ -51,17 +51,17 @@ Refusal read_words(const State& state, const Request& request, Outcome& /*outcom
   if (quantity == 0 || quantity > kMostWords) {
     return Refusal::WrongQuantity;
   }
-  reply.put(static_cast<std::uint8_t>(2 * quantity));
+  exchange.reply.put(static_cast<std::uint8_t>(2 * quantity));
   for (unsigned i = 0; i < quantity; ++i) {
     // Beyond 0xFFFF there is nothing; what wraps to 0 must not be found.
     const unsigned address = start + i;
     const WordRow* row = address > 0xFFFF ? nullptr
-                                          : find_words(state.model(), function_of(request),
+                                          : find_words(exchange.model(), function_of(frame),
                                                        static_cast<std::uint16_t>(address));
     if (row == nullptr) {
       return Refusal::WrongAddress;
     }
-    reply.put_word(row->read(state, address - row->first));
+    exchange.reply.put_word(row->read(exchange.state(), address - row->first));
   }
   return Refusal::None;
 }

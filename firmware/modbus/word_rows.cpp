@@ -36,7 +36,9 @@ Refusal write_watchdog_timeout(const State& state, std::uint16_t value, Outcome&
     return Refusal::WrongValue;
   }
   outcome.change.watchdog_timeout(static_cast<std::uint8_t>(value));
-  outcome.restart_host_watchdog = state.settings.watchdog_enabled;
+  if (state.settings.watchdog_enabled) {
+    outcome.request(Effect::RestartHostWatchdog);
+  }
   return Refusal::None;
 }
 

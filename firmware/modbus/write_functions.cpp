@@ -16,29 +16,28 @@ constexpr std::uint16_t kCoilOn = 0xFF00;
 constexpr std::uint16_t kCoilOff = 0x0000;
 
 /// The reply of all four: the request's address and value, or quantity.
-void put_echo(const Request& request, Reply& reply) { reply.put(request.frame.first(kSingleSize).from(2)); }
+void put_echo(Exchange& exchange) { exchange.reply.put(exchange.frame.first(kSingleSize).from(2)); }
 
-Refusal write_bits(const State& state, const Request& request, const BitRow& row, BitWrite bits,
-                   Outcome& outcome, Reply& reply) {
-  if (request.broadcast && row.configuration) {
+Refusal write_bits(Exchange& exchange, const BitRow& row, BitWrite bits) {
+  if (exchange.broadcast && row.configuration) {
     return Refusal::None;  // ignored: one frame must not reconfigure every module
   }
-  const Refusal refusal = row.write(state, bits, outcome);
+  const Refusal refusal = row.write(exchange.state(), bits, exchange.outcome);
   if (refusal != Refusal::None) {
     return refusal;
   }
-  if (row.drives_outputs && state.outputs_blocked()) {
+  if (row.drives_outputs && exchange.state().outputs_blocked()) {
     return Refusal::OutputsBlocked;
   }
-  put_echo(request, reply);
+  put_echo(exchange);
   return Refusal::None;
 }
 
-Refusal check_value(const State& state, const WordRow& row, std::uint16_t value, Outcome& outcome) {
+Refusal check_value(Exchange& exchange, const WordRow& row, std::uint16_t value) {
   if (value < row.lowest || value > row.highest) {
     return Refusal::WrongValue;
   }
-  return row.write(state, value, outcome);
+  return row.write(exchange.state(), value, exchange.outcome);
 }
 
 /// Length, quantity and byte count of 0F and 10, which carry `bits` a value.
@@ -56,8 +55,8 @@ Refusal check_multiple(Bytes frame, unsigned most, unsigned bits) {
 
 }  // namespace
 
-Refusal write_single_coil(const State& state, const Request& request, Outcome& outcome, Reply& reply) {
-  const Bytes frame = request.frame;
+Refusal write_single_coil(Exchange& exchange) {
+  const Bytes frame = exchange.frame;
   if (frame.size != kSingleSize) {
     return Refusal::WrongLength;
   }
@@ -66,7 +65,7 @@ Refusal write_single_coil(const State& state, const Request& request, Outcome& o
   if (value != kCoilOn && value != kCoilOff) {
     return Refusal::WrongCoilValue;
   }
-  const BitRow* row = find_bits(state.model(), kWriteSingleCoil, address);
+  const BitRow* row = find_bits(exchange.model(), kWriteSingleCoil, address);
   if (row == nullptr) {
     return Refusal::WrongAddress;
   }
@@ -74,52 +73,51 @@ Refusal write_single_coil(const State& state, const Request& request, Outcome& o
     return Refusal::WrongValue;
   }
   const auto bit = static_cast<std::uint16_t>(1U << (unsigned{address} - row->first));
-  return write_bits(state, request, *row, {bit, value == kCoilOn ? bit : std::uint16_t{0}}, outcome, reply);
+  return write_bits(exchange, *row, {bit, value == kCoilOn ? bit : std::uint16_t{0}});
 }
 
-Refusal write_multiple_coils(const State& state, const Request& request, Outcome& outcome, Reply& reply) {
-  const Bytes frame = request.frame;
+Refusal write_multiple_coils(Exchange& exchange) {
+  const Bytes frame = exchange.frame;
   const Refusal refusal = check_multiple(frame, kMostCoils, 1);
   if (refusal != Refusal::None) {
     return refusal;
   }
   const std::uint16_t start = frame.word(2);
   const unsigned quantity = frame.word(4);
-  const BitRow* row = find_bits(state.model(), kWriteMultipleCoils, start);
+  const BitRow* row = find_bits(exchange.model(), kWriteMultipleCoils, start);
   if (row == nullptr) {
     return Refusal::WrongAddress;
   }
   const unsigned index = unsigned{start} - row->first;
-  if (index + quantity > width_of(row->width, state.model())) {
+  if (index + quantity > width_of(row->width, exchange.model())) {
     return Refusal::WrongAddress;
   }
   const unsigned mask = (1U << quantity) - 1U;
   const unsigned values =
       frame[kMultipleHeader] | (quantity > 8 ? unsigned{frame[kMultipleHeader + 1U]} << 8U : 0U);
   return write_bits(
-      state, request, *row,
-      {static_cast<std::uint16_t>(mask << index), static_cast<std::uint16_t>((values & mask) << index)},
-      outcome, reply);
+      exchange, *row,
+      {static_cast<std::uint16_t>(mask << index), static_cast<std::uint16_t>((values & mask) << index)});
 }
 
-Refusal write_single_register(const State& state, const Request& request, Outcome& outcome, Reply& reply) {
-  const Bytes frame = request.frame;
+Refusal write_single_register(Exchange& exchange) {
+  const Bytes frame = exchange.frame;
   if (frame.size != kSingleSize) {
     return Refusal::WrongLength;
   }
-  const WordRow* row = find_words(state.model(), kWriteRegisters, frame.word(2));
+  const WordRow* row = find_words(exchange.model(), kWriteRegisters, frame.word(2));
   if (row == nullptr) {
     return Refusal::WrongAddress;
   }
-  if (request.broadcast && row->configuration) {
+  if (exchange.broadcast && row->configuration) {
     return Refusal::None;
   }
-  put_echo(request, reply);
-  return check_value(state, *row, frame.word(4), outcome);
+  put_echo(exchange);
+  return check_value(exchange, *row, frame.word(4));
 }
 
-Refusal write_multiple_registers(const State& state, const Request& request, Outcome& outcome, Reply& reply) {
-  const Bytes frame = request.frame;
+Refusal write_multiple_registers(Exchange& exchange) {
+  const Bytes frame = exchange.frame;
   const Refusal refusal = check_multiple(frame, kMostRegisters, 16);
   if (refusal != Refusal::None) {
     return refusal;
@@ -131,23 +129,23 @@ Refusal write_multiple_registers(const State& state, const Request& request, Out
     const unsigned address = start + i;
     const WordRow* row =
         address > 0xFFFF ? nullptr
-                         : find_words(state.model(), kWriteRegisters, static_cast<std::uint16_t>(address));
+                         : find_words(exchange.model(), kWriteRegisters, static_cast<std::uint16_t>(address));
     if (row == nullptr) {
       return Refusal::WrongAddress;
     }
     configuration |= row->configuration;
   }
-  if (request.broadcast && configuration) {
+  if (exchange.broadcast && configuration) {
     return Refusal::None;
   }
   for (unsigned i = 0; i < quantity; ++i) {
-    const WordRow* row = find_words(state.model(), kWriteRegisters, static_cast<std::uint16_t>(start + i));
-    const Refusal wrong = check_value(state, *row, frame.word(kMultipleHeader + std::size_t{2} * i), outcome);
+    const WordRow* row = find_words(exchange.model(), kWriteRegisters, static_cast<std::uint16_t>(start + i));
+    const Refusal wrong = check_value(exchange, *row, frame.word(kMultipleHeader + std::size_t{2} * i));
     if (wrong != Refusal::None) {
       return wrong;
     }
   }
-  put_echo(request, reply);
+  put_echo(exchange);
   return Refusal::None;
 }
 

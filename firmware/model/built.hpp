@@ -10,6 +10,8 @@
 
 namespace ex9000 {
 
+// kBuiltInputs: the most inputs that one of them has.
+
 #ifdef EX9000_MODEL
 
 /// The image's own; EX9000_MODEL is a designation such as "EX9042D-M".
@@ -41,6 +43,9 @@ constexpr bool some_model_meets(Needs /*needs*/) { return true; }
 constexpr unsigned kBuiltInputs = kMaxInputs;
 
 #endif
+
+/// Whether a module of this program may speak Modbus; else none of it is built in.
+constexpr bool kBuiltModbus = some_model_meets(Needs::Modbus);
 
 /// The part of each row of `table` that `part` points to, without those that no model of this program has.
 template <const auto& table, auto part>

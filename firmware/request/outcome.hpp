@@ -35,26 +35,49 @@ struct Drive {
   std::uint16_t value = 0;
 };
 
+/// What a request does beside settings and outputs, when all else is done.
+enum class Effect : std::uint8_t {
+  RestartHostWatchdog = 1U << 0U,
+  TakeAddress = 1U << 1U,  ///< answer to the stored address from now on
+  TakeSample = 1U << 2U,
+  MarkSampleRead = 1U << 3U,
+  ClearResetStatus = 1U << 4U,
+  ClearLatches = 1U << 5U,
+  ClearDiagnostics = 1U << 6U,
+};
+
 /// What is to be done, in one go, before the reply leaves. A change of settings is stored first; all else
 /// happens when it is.
-struct Outcome {
-  static constexpr Outcome refused(Refusal why) {
-    Outcome outcome;
-    outcome.refusal = why;
-    return outcome;
+class Outcome {
+ public:
+  [[gnu::noinline]] void request(Effect effect) {
+    effects_ = static_cast<std::uint8_t>(effects_ | static_cast<std::uint8_t>(effect));
+  }
+  [[nodiscard]] bool asks_for(Effect effect) const {
+    return (effects_ & static_cast<std::uint8_t>(effect)) != 0;
+  }
+  [[nodiscard]] bool has_effects() const { return effects_ != 0; }
+
+  /// Nothing is to be done any more; why, stays.
+  void drop() {
+    change.clear();
+    drive = Drive();
+    effects_ = 0;
+    clear_counters = 0;
+  }
+  /// Likewise, and nothing was refused.
+  void clear() {
+    drop();
+    refusal = Refusal::None;
   }
 
   Refusal refusal = Refusal::None;
   SettingsChange change;
   Drive drive;
-  bool restart_host_watchdog = false;
-  bool take_address = false;  ///< answer to the stored address from now on
-  bool take_sample = false;
-  bool sample_read = false;
-  bool reset_status_read = false;
-  bool clear_latches = false;
-  std::uint16_t clear_counters = 0;  ///< bit n: counter n
-  bool clear_diagnostics = false;
+  std::uint8_t clear_counters = 0;  ///< bit n: counter n
+
+ private:
+  std::uint8_t effects_ = 0;
 };
 
 }  // namespace ex9000

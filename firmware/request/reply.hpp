@@ -12,16 +12,15 @@
 
 namespace ex9000 {
 
-/// Room for the longest frame; what does not fit is cut off, which no handler comes near.
+/// Room for the longest frame, which no handler exceeds; if one did, it would spoil its own beginning and
+/// nothing else.
 class Reply {
+  static_assert((kLongestFrame & (kLongestFrame - 1)) == 0, "an index is kept inside by a mask");
+
  public:
   void clear() { size_ = 0; }
 
-  void put(std::uint8_t byte) {
-    if (size_ < bytes_.size()) {
-      bytes_[size_++] = byte;
-    }
-  }
+  [[gnu::noinline]] void put(std::uint8_t byte) { bytes_[size_++ & (kLongestFrame - 1)] = byte; }
   void put(char character) { put(static_cast<std::uint8_t>(character)); }
   void put(Bytes bytes) {
     for (const std::uint8_t byte : bytes) {
@@ -34,12 +33,12 @@ class Reply {
     }
   }
   /// Two upper-case hex digits.
-  void put_hex(unsigned value) {
+  [[gnu::noinline]] void put_hex(unsigned value) {
     put(hex_digit(value >> 4U));
     put(hex_digit(value));
   }
   /// High byte first.
-  void put_word(unsigned value) {
+  [[gnu::noinline]] void put_word(unsigned value) {
     put(static_cast<std::uint8_t>(value >> 8U));
     put(static_cast<std::uint8_t>(value));
   }
@@ -52,7 +51,7 @@ class Reply {
 
  private:
   std::array<std::uint8_t, kLongestFrame> bytes_{};
-  std::size_t size_ = 0;
+  std::uint16_t size_ = 0;
 };
 
 }  // namespace ex9000

@@ -13,7 +13,7 @@ namespace ex9000 {
 /// What was taken from the settings, or from INIT mode, at reset and holds until the next one.
 struct InForce {
   std::uint8_t address = 0;  ///< the exception: `%` changes it at once
-  std::uint8_t baud_code = kFactoryBaudCode;
+  std::uint8_t baud_code = 0;
   Protocol protocol = Protocol::Ascii;
   bool checksum = false;
   bool init_mode = false;
@@ -27,14 +27,10 @@ struct Sample {
   std::uint16_t inputs = 0;
 };
 
-/// Modbus function 08, sub-functions 0B to 0F and 12 (D1).
+/// What the main loop adds to LineTallies for Modbus function 08, sub-functions 0B to 0F and 12 (D1).
 struct Diagnostics {
-  std::uint16_t bus_messages = 0;
-  std::uint16_t bus_errors = 0;
   std::uint16_t exceptions = 0;
-  std::uint16_t server_messages = 0;
   std::uint16_t no_responses = 0;
-  std::uint16_t overruns = 0;
 };
 
 struct State {
@@ -47,7 +43,7 @@ struct State {
   std::uint16_t outputs = 0;   ///< bit n is channel n, 1 = energised
   Inputs inputs;
   Sample sample;
-  bool reset_status = true;
+  bool reset_status = false;
   Diagnostics diagnostics;
 
   [[nodiscard]] constexpr const Model& model() const { return chosen.get(); }

@@ -2,11 +2,8 @@
 #pragma once
 
 #include <array>
-#include <cstddef>
 #include <cstdint>
-#include <optional>
 
-#include "firmware/bytes.hpp"
 #include "firmware/model/model.hpp"
 #include "firmware/settings/settings.hpp"
 
@@ -15,34 +12,42 @@ namespace ex9000 {
 /// One copy of the settings. It fits one page of the EEPROM (32 bytes on an AT24C64), so that one page write
 /// stores it.
 ///
-///     0      layout, 1
-///     1-2    sequence, low byte first: the copy with the later one counts
-///     3      address
-///     4      baud code
-///     5      format
-///     6      protocol
-///     7      bit 0 host watchdog enabled, bit 1 timeout status
-///     8      host watchdog timeout
-///     9-10   power-on value, low byte first
-///     11-12  safe value
-///     13     length of the name
-///     14-20  name, filled up with 0
-///     21-24  CRC-32 over the model's designation and bytes 0 to 20, low byte first
+///     0      address
+///     1      baud code
+///     2      format
+///     3      protocol
+///     4      host watchdog timeout
+///     5      host watchdog enabled, 0 or 1
+///     6      timeout status, 0 or 1
+///     7      0
+///     8-14   name, filled up with 0
+///     15     length of the name
+///     16-17  power-on value, low byte first
+///     18-19  safe value
+///     20-21  sequence: the copy with the later one counts
+///     22-23  layout, 2
+///     24-27  check over the model's designation and bytes 0 to 23, low byte first
 ///
-/// The CRC begins with the designation, so that what another model has written never counts: its power-on
-/// value was meant for other outputs.
-constexpr std::size_t kRecordSize = 25;
-using Record = std::array<std::uint8_t, kRecordSize>;
+/// The check begins with the designation, so that what another model has written never counts: its power-on
+/// value was meant for other outputs. It takes a multiplication and a rotation a word, both of which can be
+/// undone: two records that differ in one word only never have the same check, and other differences slip
+/// through once in 2^32 times. A torn page is one of those; the sixteen bits of a CRC-16 would be too few.
+constexpr std::size_t kRecordSize = 28;
+constexpr std::size_t kRecordCheckAt = 24;
 
-struct StoredSettings {
-  Settings settings;
-  std::uint16_t sequence = 0;
+struct alignas(4) Record {
+  std::array<std::uint8_t, kRecordSize> bytes{};
+
+  friend bool operator==(const Record& a, const Record& b);
 };
 
-Record encode_record(const Model& model, const StoredSettings& stored);
+Record make_record(const Model& model, const Settings& settings, std::uint16_t sequence);
 
-/// Nothing where layout or CRC is wrong, or where the model could not have stored this.
-std::optional<StoredSettings> decode_record(const Model& model, const Record& record);
+/// False where layout or check is wrong, or where the model could not have stored this.
+bool is_good(const Model& model, const Record& record);
+/// Of a good one.
+Settings settings_in(const Record& record);
+std::uint16_t sequence_in(const Record& record);
 
 /// Whether the memory was never written here: an erased EEPROM reads all FF.
 bool is_blank(const Record& record);

@@ -1,5 +1,7 @@
 #include "firmware/settings/settings.hpp"
 
+#include "firmware/words.hpp"
+
 namespace ex9000 {
 
 bool Settings::possible_for(const Model& model) const {
@@ -12,6 +14,9 @@ bool Settings::possible_for(const Model& model) const {
       return false;
     }
   }
+  if (protocol > Protocol::ModbusRtu) {
+    return false;
+  }
   const bool protocol_possible =
       protocol == Protocol::Ascii || (model.speaks_modbus() && is_modbus_address(address));
   const bool outputs_possible = ((power_on_value | safe_value) & ~model.output_mask()) == 0;
@@ -20,31 +25,40 @@ bool Settings::possible_for(const Model& model) const {
          (format & ~kFormatMask) == 0;
 }
 
-bool operator==(const Settings& a, const Settings& b) {
-  return a.address == b.address && a.baud_code == b.baud_code && a.format == b.format &&
-         a.protocol == b.protocol && a.name == b.name && a.power_on_value == b.power_on_value &&
-         a.safe_value == b.safe_value && a.watchdog_enabled == b.watchdog_enabled &&
-         a.watchdog_timeout == b.watchdog_timeout && a.timeout_status == b.timeout_status;
+bool operator==(const Settings& a, const Settings& b) { return words_of(a) == words_of(b); }
+
+void SettingsChange::clear() {
+  any_ = false;
+  named_ = {};
+}
+
+[[gnu::noinline]] void SettingsChange::set(std::size_t at, std::uint8_t value) {
+  any_ = true;
+  named_[at] = 0xFF;
+  values_[at] = value;
+}
+
+void SettingsChange::name(const Name& value) {
+  const auto bytes = bytes_of(value);
+  for (std::size_t i = 0; i < bytes.size(); ++i) {
+    set(offsetof(Settings, name) + i, bytes[i]);
+  }
+}
+
+void SettingsChange::set_word(std::size_t at, std::uint16_t value) {
+  const auto bytes = bytes_of(value);
+  set(at, bytes[0]);
+  set(at + 1, bytes[1]);
 }
 
 Settings SettingsChange::applied_to(const Settings& settings) const {
-  Settings changed = settings;
-  const auto take = [this](Field field, auto& slot, const auto& value) {
-    if ((fields_ & field) != 0) {
-      slot = value;
-    }
-  };
-  take(kAddress, changed.address, values_.address);
-  take(kBaudCode, changed.baud_code, values_.baud_code);
-  take(kFormat, changed.format, values_.format);
-  take(kProtocol, changed.protocol, values_.protocol);
-  take(kName, changed.name, values_.name);
-  take(kPowerOnValue, changed.power_on_value, values_.power_on_value);
-  take(kSafeValue, changed.safe_value, values_.safe_value);
-  take(kWatchdogEnabled, changed.watchdog_enabled, values_.watchdog_enabled);
-  take(kWatchdogTimeout, changed.watchdog_timeout, values_.watchdog_timeout);
-  take(kTimeoutStatus, changed.timeout_status, values_.timeout_status);
-  return changed;
+  const auto named = words_of(named_);
+  const auto values = words_of(values_);
+  auto words = words_of(settings);
+  for (std::size_t i = 0; i < words.size(); ++i) {
+    words[i] = (words[i] & ~named[i]) | (values[i] & named[i]);
+  }
+  return object_in<Settings>(words);
 }
 
 }  // namespace ex9000

@@ -2,8 +2,10 @@
 #pragma once
 
 #include <array>
+#include <cstddef>
 #include <cstdint>
 #include <string_view>
+#include <type_traits>
 
 #include "firmware/bytes.hpp"
 #include "firmware/model/baud.hpp"
@@ -63,21 +65,30 @@ class Name {
   std::uint8_t length_ = 0;
 };
 
-struct Settings {
-  std::uint8_t address = 1;
-  std::uint8_t baud_code = kFactoryBaudCode;
+constexpr std::uint8_t kFactoryAddress = 1;
+constexpr std::uint8_t kFactoryWatchdogTimeout = 0xFF;
+
+/// In the order of the record that keeps them (record.hpp), and without gaps. Nothing but zeros at first, as
+/// all that a module is made of: an image then needs no code to make it.
+struct alignas(4) Settings {
+  std::uint8_t address = 0;
+  std::uint8_t baud_code = 0;
   std::uint8_t format = 0;  ///< FF: kFormatRisingEdge, kFormatChecksum
   Protocol protocol = Protocol::Ascii;
+  std::uint8_t watchdog_timeout = 0;  ///< VV, in 0.1 s
+  bool watchdog_enabled = false;
+  bool timeout_status = false;  ///< the host watchdog has expired and nobody has cleared it
+  std::uint8_t unused = 0;
   Name name;
   std::uint16_t power_on_value = 0;  ///< bit n is output channel n
   std::uint16_t safe_value = 0;
-  bool watchdog_enabled = false;
-  std::uint8_t watchdog_timeout = 0xFF;  ///< VV, in 0.1 s
-  bool timeout_status = false;           ///< the host watchdog has expired and nobody has cleared it
 
   /// Section 2: what a module comes with.
   static constexpr Settings factory(const Model& model) {
     Settings settings;
+    settings.address = kFactoryAddress;
+    settings.baud_code = kFactoryBaudCode;
+    settings.watchdog_timeout = kFactoryWatchdogTimeout;
     settings.protocol = model.speaks_modbus() ? Protocol::ModbusRtu : Protocol::Ascii;
     settings.name = Name(model.factory_name);
     return settings;
@@ -90,58 +101,37 @@ struct Settings {
   friend bool operator!=(const Settings& a, const Settings& b) { return !(a == b); }
 };
 
+static_assert(sizeof(Settings) == 20 && std::is_trivially_copyable<Settings>::value,
+              "they are compared, merged and stored as they lie");
+
 /// Some fields of the settings and their new values: what one command changes, all or nothing.
 class SettingsChange {
  public:
-  constexpr SettingsChange& address(std::uint8_t value) { return set(kAddress, values_.address, value); }
-  constexpr SettingsChange& baud_code(std::uint8_t value) { return set(kBaudCode, values_.baud_code, value); }
-  constexpr SettingsChange& format(std::uint8_t value) { return set(kFormat, values_.format, value); }
-  constexpr SettingsChange& protocol(Protocol value) { return set(kProtocol, values_.protocol, value); }
-  constexpr SettingsChange& name(const Name& value) { return set(kName, values_.name, value); }
-  constexpr SettingsChange& power_on_value(std::uint16_t value) {
-    return set(kPowerOnValue, values_.power_on_value, value);
-  }
-  constexpr SettingsChange& safe_value(std::uint16_t value) {
-    return set(kSafeValue, values_.safe_value, value);
-  }
-  constexpr SettingsChange& watchdog_enabled(bool value) {
-    return set(kWatchdogEnabled, values_.watchdog_enabled, value);
-  }
-  constexpr SettingsChange& watchdog_timeout(std::uint8_t value) {
-    return set(kWatchdogTimeout, values_.watchdog_timeout, value);
-  }
-  constexpr SettingsChange& timeout_status(bool value) {
-    return set(kTimeoutStatus, values_.timeout_status, value);
-  }
+  void address(std::uint8_t value) { set(offsetof(Settings, address), value); }
+  void baud_code(std::uint8_t value) { set(offsetof(Settings, baud_code), value); }
+  void format(std::uint8_t value) { set(offsetof(Settings, format), value); }
+  void protocol(Protocol value) { set(offsetof(Settings, protocol), static_cast<std::uint8_t>(value)); }
+  void name(const Name& value);
+  void power_on_value(std::uint16_t value) { set_word(offsetof(Settings, power_on_value), value); }
+  void safe_value(std::uint16_t value) { set_word(offsetof(Settings, safe_value), value); }
+  void watchdog_enabled(bool value) { set(offsetof(Settings, watchdog_enabled), value ? 1 : 0); }
+  void watchdog_timeout(std::uint8_t value) { set(offsetof(Settings, watchdog_timeout), value); }
+  void timeout_status(bool value) { set(offsetof(Settings, timeout_status), value ? 1 : 0); }
 
   /// It names nothing.
-  [[nodiscard]] constexpr bool empty() const { return fields_ == 0; }
+  [[nodiscard]] bool empty() const { return !any_; }
+  void clear();
   /// `settings` with this change made; what it does not name stays.
   [[nodiscard]] Settings applied_to(const Settings& settings) const;
 
  private:
-  enum Field : std::uint16_t {
-    kAddress = 1U << 0U,
-    kBaudCode = 1U << 1U,
-    kFormat = 1U << 2U,
-    kProtocol = 1U << 3U,
-    kName = 1U << 4U,
-    kPowerOnValue = 1U << 5U,
-    kSafeValue = 1U << 6U,
-    kWatchdogEnabled = 1U << 7U,
-    kWatchdogTimeout = 1U << 8U,
-    kTimeoutStatus = 1U << 9U,
-  };
+  void set(std::size_t at, std::uint8_t value);
+  void set_word(std::size_t at, std::uint16_t value);
 
-  template <class T>
-  constexpr SettingsChange& set(Field field, T& slot, const T& value) {
-    slot = value;
-    fields_ = static_cast<std::uint16_t>(fields_ | field);
-    return *this;
-  }
-
-  std::uint16_t fields_ = 0;
-  Settings values_;
+  bool any_ = false;
+  // Byte by byte as the settings lie: FF where one is named, and its new value.
+  alignas(4) std::array<std::uint8_t, sizeof(Settings)> named_{};
+  alignas(4) std::array<std::uint8_t, sizeof(Settings)> values_{};
 };
 
 }  // namespace ex9000

@@ -9,8 +9,7 @@ namespace {
 constexpr std::uint16_t kCopyDistance = 32;
 static_assert(kRecordSize <= kCopyDistance, "a copy must fit one page");
 
-constexpr std::size_t kCheckBytes = 4;
-constexpr std::array<std::uint8_t, kCheckBytes> kNoCheck{};
+constexpr std::size_t kCheckBytes = kRecordSize - kRecordCheckAt;
 
 constexpr std::uint16_t address_of(std::uint8_t copy) {
   return static_cast<std::uint16_t>(copy * kCopyDistance);
@@ -23,7 +22,11 @@ constexpr bool is_later(std::uint16_t a, std::uint16_t b) {
 
 }  // namespace
 
-void SettingsStore::begin_loading() { begin_reading(Step::Load); }
+void SettingsStore::begin_loading() {
+  found_ = Found::Unreadable;
+  doubtful_copy_ = kNoCopy;
+  begin_reading(Step::Load);
+}
 
 void SettingsStore::begin_reading(Step step) {
   step_ = step;
@@ -34,7 +37,7 @@ void SettingsStore::begin_reading(Step step) {
 }
 
 void SettingsStore::begin_saving(const Settings& settings) {
-  pending_ = settings;
+  record_ = make_record(model_.get(), settings, static_cast<std::uint16_t>(sequence_ + 1U));
   if (found_ == Found::Unreadable) {
     begin_reading(Step::LookAgain);
   } else {
@@ -43,40 +46,29 @@ void SettingsStore::begin_saving(const Settings& settings) {
 }
 
 void SettingsStore::begin_writing() {
-  record_ = encode_record(model_.get(), {pending_, static_cast<std::uint16_t>(stored_.sequence + 1U)});
   copy_ = current_copy_ == 0 ? 1 : 0;
   attempt_ = 0;
   step_ = Step::Write;
 }
 
-void SettingsStore::begin_settling() {
-  copy_ = doubtful_copy_;
-  step_ = Step::Invalidate;
-}
-
 MemoryJob SettingsStore::job() {
-  MemoryJob job;
-  job.address = address_of(copy_);
+  using Kind = MemoryJob::Kind;
+  const std::uint16_t address = address_of(copy_);
   switch (step_) {
     case Step::Load:
     case Step::LookAgain:
     case Step::Verify:
-      job.kind = MemoryJob::Kind::Read;
-      job.destination = {read_back_.data(), read_back_.size()};
-      break;
+      return {Kind::Read, address, {read_back_.bytes.data(), kRecordSize}};
     case Step::Write:
-      job.kind = MemoryJob::Kind::Write;
-      job.source = {record_.data(), record_.size()};
-      break;
+      return {Kind::Write, address, {record_.bytes.data(), kRecordSize}};
     case Step::Invalidate:
-      job.kind = MemoryJob::Kind::Write;
-      job.address = static_cast<std::uint16_t>(job.address + kRecordSize - kCheckBytes);
-      job.source = {kNoCheck.data(), kNoCheck.size()};
-      break;
+      return {Kind::Write,
+              static_cast<std::uint16_t>(address + kRecordCheckAt),
+              {record_.bytes.data() + kRecordCheckAt, kCheckBytes}};
     case Step::Idle:
       break;
   }
-  return job;
+  return {Kind::None, 0, {}};
 }
 
 void SettingsStore::done(bool ok) {
@@ -109,9 +101,9 @@ void SettingsStore::done(bool ok) {
 }
 
 void SettingsStore::read_copy(bool ok) {
-  const auto copy = ok ? decode_record(model_.get(), read_back_) : std::nullopt;
+  const bool good = ok && is_good(model_.get(), read_back_);
   const bool blank = ok && is_blank(read_back_);
-  if (!copy && !blank && ++attempt_ < kAttempts) {
+  if (!good && !blank && ++attempt_ < kAttempts) {
     return;
   }
   if (!ok && step_ == Step::LookAgain) {
@@ -119,11 +111,14 @@ void SettingsStore::read_copy(bool ok) {
     return;
   }
   blank_copies_ = static_cast<std::uint8_t>(blank_copies_ + (blank ? 1U : 0U));
-  if (copy && (current_copy_ == kNoCopy || is_later(copy->sequence, stored_.sequence))) {
-    stored_.sequence = copy->sequence;
-    current_copy_ = copy_;
-    if (step_ == Step::Load) {
-      stored_.settings = copy->settings;
+  if (good) {
+    const std::uint16_t sequence = sequence_in(read_back_);
+    if (current_copy_ == kNoCopy || is_later(sequence, sequence_)) {
+      sequence_ = sequence;
+      current_copy_ = copy_;
+      if (step_ == Step::Load) {
+        stored_ = settings_in(read_back_);
+      }
     }
   }
   attempt_ = 0;
@@ -134,6 +129,8 @@ void SettingsStore::read_copy(bool ok) {
 
 void SettingsStore::finish_reading() {
   if (step_ == Step::LookAgain) {
+    // What was found may be later than what was known.
+    record_ = make_record(model_.get(), settings_in(record_), static_cast<std::uint16_t>(sequence_ + 1U));
     begin_writing();
     return;
   }
@@ -143,20 +140,38 @@ void SettingsStore::finish_reading() {
     return;
   }
   found_ = blank_copies_ == kCopies ? Found::Blank : Found::Unreadable;
-  stored_ = {Settings::factory(model_.get()), 0};
+  stored_ = Settings::factory(model_.get());
 }
 
 void SettingsStore::retry_or_give_up() {
-  // The copy may hold the new settings all the same and only not have said so. It must not count after a
-  // reset.
-  step_ = ++attempt_ < kAttempts ? Step::Write : Step::Invalidate;
+  if (++attempt_ < kAttempts) {
+    step_ = Step::Write;
+  } else {
+    // The copy may hold the new settings all the same and only not have said so. It must not count after a
+    // reset.
+    begin_invalidating();
+  }
+}
+
+void SettingsStore::begin_settling() {
+  copy_ = doubtful_copy_;
+  begin_invalidating();
+}
+
+/// A check of zeros: the odds of it being right are those of any other.
+void SettingsStore::begin_invalidating() {
+  for (std::size_t i = kRecordCheckAt; i < kRecordSize; ++i) {
+    record_.bytes[i] = 0;
+  }
+  step_ = Step::Invalidate;
 }
 
 void SettingsStore::finish_saving(bool saved) {
   saved_ = saved;
   step_ = Step::Idle;
   if (saved) {
-    stored_ = {pending_, static_cast<std::uint16_t>(stored_.sequence + 1U)};
+    stored_ = settings_in(record_);
+    ++sequence_;
     doubtful_copy_ = kNoCopy;
     current_copy_ = copy_;
     found_ = Found::Settings;

@@ -16,10 +16,9 @@ namespace ex9000 {
 struct MemoryJob {
   enum class Kind : std::uint8_t { None, Read, Write };
 
-  Kind kind = Kind::None;
-  std::uint16_t address = 0;  ///< of the first byte; a job never crosses a page
-  Bytes source;               ///< to be written
-  MutableBytes destination;   ///< to be filled
+  Kind kind;
+  std::uint16_t address;  ///< of the first byte; a job never crosses a page
+  MutableBytes bytes;     ///< to be filled, or to be written
 };
 
 /// Two copies, each in a page of its own. A save overwrites the older or broken one, reads it back, and only
@@ -59,7 +58,7 @@ class SettingsStore {
   void begin_settling();
 
   /// What a reset now would find.
-  [[nodiscard]] const Settings& stored() const { return stored_.settings; }
+  [[nodiscard]] const Settings& stored() const { return stored_; }
 
   /// What is to be done; the same until `done`.
   [[nodiscard]] MemoryJob job();
@@ -73,6 +72,7 @@ class SettingsStore {
   void read_copy(bool ok);
   void finish_reading();
   void begin_writing();
+  void begin_invalidating();
   void retry_or_give_up();
   void finish_saving(bool saved);
 
@@ -82,17 +82,17 @@ class SettingsStore {
 
   ChosenModel model_;
   Step step_ = Step::Idle;
-  Found found_ = Found::Unreadable;
+  Found found_ = {};
   bool saved_ = false;
   std::uint8_t copy_ = 0;
   std::uint8_t attempt_ = 0;
   std::uint8_t blank_copies_ = 0;
-  std::uint8_t current_copy_ = kNoCopy;   ///< the one that counts
-  std::uint8_t doubtful_copy_ = kNoCopy;  ///< the one that must not
-  StoredSettings stored_;                 ///< what it holds
-  Settings pending_;
-  Record record_{};     ///< what is written
-  Record read_back_{};  ///< what is read
+  std::uint8_t current_copy_ = 0;   ///< the one that counts
+  std::uint8_t doubtful_copy_ = 0;  ///< the one that must not
+  std::uint16_t sequence_ = 0;      ///< its
+  Settings stored_;                 ///< what it holds
+  Record record_;                   ///< what is written
+  Record read_back_;                ///< what is read
 };
 
 }  // namespace ex9000

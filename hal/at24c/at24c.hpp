@@ -71,26 +71,13 @@ class At24c {
   }
 
   void transfer(Time now) {
-    I2cTransfer transfer;
-    transfer.device = kDevice;
-    switch (step_) {
-      case Step::Addressing:
-        transfer.header = {header_.data(), header_.size()};
-        break;
-      case Step::Reading:
-        transfer.destination = destination_;
-        break;
-      case Step::Writing:
-        transfer.header = {header_.data(), header_.size()};
-        transfer.source = rest_.first(chunk());
-        break;
-      case Step::Programming:
-        transfer.header = {header_.data(), 1};  // half an address, which writes nothing
-        break;
-      case Step::Idle:
-        return;
-    }
-    master_.begin(transfer, now);
+    // What is read is addressed first; what was written is over when half an address, which writes nothing, is
+    // acknowledged.
+    transfer_.device = kDevice;
+    transfer_.header = {header_.data(), step_ == Step::Programming ? 1U : step_ == Step::Reading ? 0U : 2U};
+    transfer_.source = step_ == Step::Writing ? rest_.first(chunk()) : Bytes();
+    transfer_.destination = destination_;
+    master_.begin(transfer_, now);
   }
 
   void next(Time now) {
@@ -144,6 +131,7 @@ class At24c {
   Bytes rest_;
   MutableBytes destination_;
   Deadline patience_;
+  I2cTransfer transfer_;
 };
 
 }  // namespace ex9000::hal

@@ -45,23 +45,29 @@ class Gpio {
 
   /// Digital input; `pull_up`: with the weak pull-up, else with the weak pull-down, so that an open pin reads
   /// inactive.
-  void make_input(std::uint32_t pins, bool pull_up) const {
-    (pull_up ? pull_up_register() : pull_down_register()).set(Bits<Pull>(pins));
-    direction().clear(Bits<Direction>(pins));
-    digital_enable().set(Bits<DigitalEnable>(pins));
+  void make_input(std::uint32_t pins, bool pull_up) const { make_input_of(*this, pins, pull_up); }
+  [[gnu::noinline]] static void make_input_of(Gpio port, std::uint32_t pins, bool pull_up) {
+    (pull_up ? port.pull_up_register() : port.pull_down_register()).set(Bits<Pull>(pins));
+    port.direction().clear(Bits<Direction>(pins));
+    port.digital_enable().set(Bits<DigitalEnable>(pins));
   }
 
   /// Digital output with 8 mA that begins at `levels`, without a glitch: a pin that is not enabled yet drives
   /// nothing, and what hangs on it is pulled to its inactive side.
-  void make_output(std::uint32_t pins, std::uint32_t levels) const {
-    direction().set(Bits<Direction>(pins));
-    write(pins, levels);
-    drive_8_ma().set(Bits<Drive>(pins));
-    digital_enable().set(Bits<DigitalEnable>(pins));
+  void make_output(std::uint32_t pins, std::uint32_t levels) const { make_output_of(*this, pins, levels); }
+  [[gnu::noinline]] static void make_output_of(Gpio port, std::uint32_t pins, std::uint32_t levels) {
+    port.direction().set(Bits<Direction>(pins));
+    port.write(pins, levels);
+    port.drive_8_ma().set(Bits<Drive>(pins));
+    port.digital_enable().set(Bits<DigitalEnable>(pins));
   }
 
   /// Gives the pins to their peripheral; `function`: GPIOPCTL's number for it, on a TM4C.
   void make_peripheral(Family family, std::uint32_t pins, std::uint32_t function) const {
+    make_peripheral_of(*this, family, pins, function);
+  }
+  [[gnu::noinline]] static void make_peripheral_of(Gpio port, Family family, std::uint32_t pins,
+                                                   std::uint32_t function) {
     if (family == Family::Tm4c) {
       std::uint32_t field = 0;
       std::uint32_t chosen = 0;
@@ -71,11 +77,11 @@ class Gpio {
           chosen |= function << (4U * pin);
         }
       }
-      port_control().write(port_control().read().without(Bits<PortControl>(field)) |
-                           Bits<PortControl>(chosen));
+      port.port_control().write(port.port_control().read().without(Bits<PortControl>(field)) |
+                                Bits<PortControl>(chosen));
     }
-    alternate_function().set(Bits<AlternateFunction>(pins));
-    digital_enable().set(Bits<DigitalEnable>(pins));
+    port.alternate_function().set(Bits<AlternateFunction>(pins));
+    port.digital_enable().set(Bits<DigitalEnable>(pins));
   }
   void take_from_peripheral(std::uint32_t pins) const {
     alternate_function().clear(Bits<AlternateFunction>(pins));

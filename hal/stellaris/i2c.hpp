@@ -22,7 +22,7 @@ class I2c {
   void start() { begin_freeing(); }
 
   void begin(const I2cTransfer& transfer, Time now) {
-    transfer_ = transfer;
+    transfer_ = &transfer;
     done_ = 0;
     busy_ = true;
     if (step_ == Step::Idle) {
@@ -179,22 +179,22 @@ class I2c {
   void address(Time now) {
     constexpr std::uint32_t kReading = 1;
     kTargetAddress.write(
-        Bits<TargetAddress>((std::uint32_t{transfer_.device} << 1U) | (transfer_.writes() ? 0 : kReading)));
+        Bits<TargetAddress>((std::uint32_t{transfer_->device} << 1U) | (transfer_->writes() ? 0 : kReading)));
     move(kStart, now);
   }
 
   /// Puts byte `done_` on its way, with STOP where it is the last.
   void move(Bits<ControlStatus> start, Time now) {
-    const bool last = done_ + 1U == transfer_.size();
-    if (transfer_.writes()) {
-      kData.write(Bits<Data>(transfer_.byte(done_)));
+    const bool last = done_ + 1U == transfer_->size();
+    if (transfer_->writes()) {
+      kData.write(Bits<Data>(transfer_->byte(done_)));
     }
     step_ = Step::Moving;
     deadline_.set(now + kByteTimeout);
     kControlStatus.write(kRun | start |
-                         (last                 ? kStop
-                          : transfer_.writes() ? Bits<ControlStatus>()
-                                               : kAcknowledge));
+                         (last                  ? kStop
+                          : transfer_->writes() ? Bits<ControlStatus>()
+                                                : kAcknowledge));
   }
 
   void next(Time now) {
@@ -206,10 +206,10 @@ class I2c {
       deadline_.set(now + kStopTime);
       return;
     }
-    if (!transfer_.writes()) {
-      transfer_.destination.data[done_] = static_cast<std::uint8_t>(kData.read().value());
+    if (!transfer_->writes()) {
+      transfer_->destination.data[done_] = static_cast<std::uint8_t>(kData.read().value());
     }
-    if (++done_ == transfer_.size()) {
+    if (++done_ == transfer_->size()) {
       finish(I2cResult::Done);
     } else {
       move({}, now);
@@ -227,14 +227,14 @@ class I2c {
   static constexpr std::uint8_t kBusStop = 19;
 
   Step step_ = Step::Freeing;
-  I2cResult result_ = I2cResult::Failed;
+  I2cResult result_ = {};
   bool busy_ = false;
   std::uint8_t freeing_ = kFirstClock;
   std::uint8_t done_ = 0;  ///< bytes of the transfer
   std::uint8_t completed_seen_ = 0;
   WrittenByInterrupt<std::uint8_t> completed_;
   Deadline deadline_;
-  I2cTransfer transfer_;
+  const I2cTransfer* transfer_ = nullptr;
 };
 
 }  // namespace ex9000::hal::stellaris

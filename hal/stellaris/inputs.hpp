@@ -19,19 +19,33 @@ class InputPins {
     unsigned first = 0;
     unsigned levels = 0;
     for (const PinGroup& group : groups) {
-      const Gpio gpio(group.port);
-      const std::uint32_t pins = group.mask();
-      gpio.make_input(pins, !active_high);
-      gpio.watch_edges(pins);
-      std::uint32_t read = 0;
-      do {
-        gpio.clear_edges(pins);
-        read = logic(gpio.read(pins)) & pins;
-      } while ((gpio.edges() & pins) != 0);
-      levels |= (read >> group.first_pin) << first;
-      first += group.count;
+      if (first < channels) {
+        const Gpio gpio(group.port);
+        const std::uint32_t pins = group.mask();
+        gpio.make_input(pins, !active_high);
+        gpio.watch_edges(pins);
+        std::uint32_t read = 0;
+        do {
+          gpio.clear_edges(pins);
+          read = logic(gpio.read(pins)) & pins;
+        } while ((gpio.edges() & pins) != 0);
+        levels |= (read >> group.first_pin) << first;
+        first += group.count;
+      }
     }
     return static_cast<std::uint16_t>(levels & ((1U << channels) - 1U));
+  }
+
+  /// Whether any channel is on this port.
+  static constexpr bool on(Port port) {
+    unsigned first = 0;
+    for (const PinGroup& group : groups) {
+      if (group.port == port && first < channels) {
+        return true;
+      }
+      first += group.count;
+    }
+    return false;
   }
 
   /// The port's interrupt: `deliver(channel, level)` for each channel that has seen an edge, with the level

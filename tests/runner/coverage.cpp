@@ -94,22 +94,22 @@ void Coverage::note(const Module& module, const Bytes& sent, const Bytes& heard)
   FrameQueue queue;
   Verdict verdict = Verdict::Open;
   if (in_force.protocol == Protocol::Ascii) {
-    DconAssembler assembler(queue);
+    DconAssembler assembler;
     assembler.use_checksum(in_force.checksum);
     verdict = verdict_of(sent, [&](std::uint8_t byte) {
-      return assembler.byte(byte, ByteStatus::Good, in_force.address, Time());
+      return assembler.byte(queue, byte, ByteStatus::Good, in_force.address, Time());
     });
   } else {
-    RtuAssembler assembler(queue);
+    RtuAssembler assembler;
     assembler.use(LineTiming::at(module.baud()));
     verdict_of(sent, [&](std::uint8_t byte) {
-      return assembler.byte(byte, ByteStatus::Good, in_force.address, Time());
+      return assembler.byte(queue, byte, ByteStatus::Good, in_force.address, Time());
     });
     const LineTiming timing = LineTiming::at(module.baud());
     const Time silent = Time() + timing.rtu_silence;
-    verdict = assembler.silence(in_force.address, silent);
+    verdict = assembler.silence(queue, in_force.address, silent);
     if (verdict == Verdict::Open) {
-      verdict = assembler.silence(in_force.address, silent + timing.rtu_grace);
+      verdict = assembler.silence(queue, in_force.address, silent + timing.rtu_grace);
     }
   }
   const std::string name = name_in(kVerdicts, verdict);

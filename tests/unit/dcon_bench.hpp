@@ -18,7 +18,7 @@ class DconAssemblerTest : public testing::Test {
  protected:
   Verdict put(char character, ByteStatus status = ByteStatus::Good) {
     now_ = now_ + Duration(1042);
-    return assembler_.byte(static_cast<std::uint8_t>(character), status, own_, now_);
+    return assembler_.byte(queue_, static_cast<std::uint8_t>(character), status, own_, now_);
   }
 
   /// All characters; none but the last may end a frame.
@@ -49,7 +49,7 @@ class DconAssemblerTest : public testing::Test {
   }
 
   FrameQueue queue_;
-  DconAssembler assembler_{queue_};
+  DconAssembler assembler_;
   std::uint8_t own_ = kOwn;
   Time now_;
 };
