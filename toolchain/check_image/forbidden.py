@@ -1,0 +1,60 @@
+"""What an image must not hold: traces of a heap, of exceptions, of floating point, of code that runs before main."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterable
+
+from check_image.call_graph import Record
+from check_image.elf import Elf
+
+_SYMBOLS = [
+    (re.compile(pattern), what)
+    for pattern, what in (
+        (r"_?(malloc|calloc|realloc|free|sbrk)(_r)?$", "heap"),
+        (r"_Z(nw|na|dl|da)", "heap"),  # operator new, new[], delete, delete[]
+        (r"_Unwind_|__(aeabi|gnu)_unwind", "exceptions"),
+        (r"__cxa_", "the C++ run-time library"),
+        (r"__aeabi_u?ldivmod$|__u?(div|mod|divmod)di[34]$", "64-bit division"),
+        # Run-time ABI for the Arm Architecture 4.1.2, and libgcc's own names.
+        (r"__aeabi_([fdh]|c[fd]|u?[il]2[fd])", "floating point"),
+        (r"__gnu_[dfh]2|__(?!gnu)[a-z]+[hsdt]f([hsdt][fi])?[23]?$", "floating point"),
+        (r"_GLOBAL__(sub_)?[ID]_", "globals initialised at run time"),
+    )
+]
+_SECTIONS = [
+    (re.compile(pattern), what)
+    for pattern, what in (
+        (r"\.ARM\.ex(idx|tab)|\.eh_frame|\.gcc_except_table", "unwind tables"),
+        (r"\.(preinit_array|init_array|fini_array|ctors|dtors)", "globals initialised at run time"),
+    )
+]
+# One of each table of the core: commands, functions, coils and registers. An image must not carry what only people
+# read.
+_TEXTS = (b"clear both latches", b"Write Single Coil", b"host watchdog timeout status")
+
+
+def problems(elf: Elf, records: Iterable[Record]) -> list[str]:
+    found = []
+    for symbol in elf.symbols:
+        if symbol.is_undefined:
+            found.append(f"{symbol.name} is undefined")
+        what = _what(symbol.name)
+        if what:
+            found.append(f"{symbol.name}: {what}")
+    for section in elf.sections:
+        for pattern, what in _SECTIONS:
+            if section.size and pattern.match(section.name):
+                found.append(f"section {section.name}: {what}")
+        for text in _TEXTS:
+            if text in section.data:
+                found.append(f"section {section.name} has the text '{text.decode()}', which is for people")
+    # A linker script without .init_array would drop these without a word.
+    for record in records:
+        if _what(record.title.name) == "globals initialised at run time":
+            found.append(f"{record.location}: globals initialised at run time")
+    return found
+
+
+def _what(name: str) -> str:
+    return next((what for pattern, what in _SYMBOLS if pattern.match(name)), "")

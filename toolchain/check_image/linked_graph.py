@@ -1,0 +1,206 @@
+"""The compiler's call graph on the functions that the linker has kept, completed and checked by the machine code."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass
+
+from check_image.call_graph import Record, Title
+from check_image.call_sites import CallSite, VirtualCall
+from check_image.disassembly import Disassembly, Instruction, StackPointerUnknown, stack_of
+from check_image.elf import Elf
+from check_image.functions import Function, Functions
+from check_image.stack import Graph, Node
+
+
+@dataclass(frozen=True)
+class Foreign:
+    """A function that no compiler has recorded, and why its stack is known all the same."""
+
+    frame: int  # bytes, at most
+    reason: str
+
+
+# Its frame is compared with what its instructions push, its calls are those of its instructions.
+FOREIGN = {
+    "memcpy": Foreign(16, "newlib's, in assembler: loops over words, no calls"),
+    "memmove": Foreign(16, "newlib's: loops over words, no calls"),
+    "memset": Foreign(16, "newlib's: loops over words, no calls"),
+    "memcmp": Foreign(24, "newlib's: loops over words, no calls"),
+    "__aeabi_memcpy": Foreign(0, "newlib's: jumps to memcpy"),
+    "__aeabi_memcpy4": Foreign(0, "newlib's: jumps to memcpy"),
+    "__aeabi_memset": Foreign(8, "newlib's: exchanges two arguments and jumps to memset"),
+    "__aeabi_memclr": Foreign(8, "newlib's: sets an argument and jumps to memset"),
+}
+
+_VENEER = re.compile(r"__(.*)_veneer")
+
+
+class LinkedGraph:
+    """Functions are named by their address in hex in `graph`, so that equal names do not meet."""
+
+    def __init__(
+        self,
+        elf: Elf,
+        functions: Functions,
+        disassembly: Disassembly,
+        records: Iterable[Record],
+        call_sites: Mapping[tuple[str, str], set[CallSite]],
+    ) -> None:
+        self._elf = elf
+        self._functions = functions
+        self._disassembly = disassembly
+        self._call_sites = call_sites
+        self._address_taken = self._find_taken_addresses()
+        self._tables = self._find_virtual_tables()
+        self.problems: list[str] = []
+        self.locations: dict[int, str] = {}  # of the recorded functions, by address
+        self.graph: Graph = {}
+        self._calls_indirectly: set[int] = set()
+        for record in records:
+            function = self._find(record.title)
+            if function is not None:  # else inlined everywhere, or dropped by the linker
+                self._add(function, record)
+        for function in functions:
+            if function.address in self.locations:
+                self._compare_with_code(function)
+            else:
+                self._add_unrecorded(function)
+
+    def _find(self, title: Title) -> Function | None:
+        # GCC puts the file in front of inline functions as well, of which the linker keeps one of all units.
+        in_file = self._functions.local_named(title.name, title.file) if title.file else None
+        return in_file or self._functions.global_named(title.name)
+
+    def _add(self, function: Function, record: Record) -> None:
+        problem = "" if record.is_bounded else "takes as much stack as it likes"
+        calls = set()
+        for title in record.calls:
+            target = self._find(title)
+            if target is None:
+                problem = f"calls {title.name}, which the image does not have"
+            else:
+                calls.add(target.address)
+        for location in record.indirect_calls:
+            targets = self._indirect_targets(record.title.name, location)
+            if not targets:
+                problem = f"calls through a pointer at {location} what the image does not have"
+            calls |= targets
+        before = self.graph.get(function.address)  # an inline function that several units have compiled
+        self.graph[function.address] = Node(
+            name=str(function),
+            frame=max(record.frame, before.frame if before else 0),
+            calls=frozenset(calls | (before.calls if before else frozenset())),
+            problem=problem,
+        )
+        self.locations[function.address] = record.location
+        if record.indirect_calls:
+            self._calls_indirectly.add(function.address)
+
+    # --- calls through pointers ---
+
+    def _indirect_targets(self, caller: str, location: str) -> set[int]:
+        sites = self._call_sites.get((caller, location))
+        if not sites:
+            return {function.address for function in self._address_taken}
+        targets: set[int] = set()
+        for site in sites:
+            candidates = self._address_taken
+            if isinstance(site, VirtualCall):
+                candidates = [table[site.slot] for table in self._tables if site.slot < len(table)]
+            targets |= {function.address for function in candidates if site.can_reach(function)}
+        return targets
+
+    def _find_taken_addresses(self) -> list[Function]:
+        """The functions whose address is in a table, a variable's first value or a literal of the code."""
+        taken = set(self._disassembly.immediate_addresses())
+        for section in self._elf.sections:
+            if section.loaded and section.name != ".vectors":
+                start = -section.address % 4
+                end = start + (len(section.data) - start) // 4 * 4
+                taken.update(memoryview(section.data[start:end]).cast("I"))
+        return [function for function in self._functions if function.address | 1 in taken]
+
+    def _find_virtual_tables(self) -> list[list[Function]]:
+        """The functions of each virtual table, by slot (Itanium C++ ABI 2.5.2).
+
+        A table begins with two words that are no functions; that of a class with several bases is several of them.
+        """
+        tables = []
+        for symbol in self._elf.symbols:
+            if not symbol.name.startswith("_ZTV"):
+                continue
+            table: list[Function] = []
+            for address in range(symbol.address, symbol.address + symbol.size, 4):
+                word = self._elf.word_at(address) or 0
+                function = self._functions.at(word & ~1) if word & 1 else None
+                if function is not None:
+                    table.append(function)
+                elif table:
+                    tables.append(table)
+                    table = []
+            if table:
+                tables.append(table)
+        return tables
+
+    # --- the machine code ---
+
+    def _compare_with_code(self, function: Function) -> None:
+        node = self.graph[function.address]
+        code = self._disassembly.of(function)
+        for target in self._targets_in_code(function, code):
+            if target.address not in node.calls:
+                self.problems.append(f"{node.name} branches to {target}, unrecorded by the compiler")
+        if any(i.is_indirect for i in code) and function.address not in self._calls_indirectly:
+            if not node.calls:
+                self.problems.append(f"{node.name} branches through a register, unrecorded by the compiler")
+        try:
+            pushed = stack_of(code)
+        except StackPointerUnknown as unknown:
+            self.problems.append(f"{node.name} moves the stack pointer in a way that is not understood: {unknown}")
+            return
+        if pushed > node.frame:
+            self.problems.append(
+                f"{node.name} has {pushed} bytes on the stack, and only {node.frame} recorded by the compiler"
+            )
+
+    def _targets_in_code(self, function: Function, code: list[Instruction]) -> list[Function]:
+        """Other functions that are called or jumped to, each once, in the code's order."""
+        targets: dict[int, Function] = {}
+        for instruction in code:
+            target = instruction.branch_target
+            if target is None or function.address <= target < function.end:
+                continue
+            there = self._functions.around(target)
+            if there is not None:
+                callee = self._behind_veneer(there)
+                targets[callee.address] = callee
+        return list(targets.values())
+
+    def _behind_veneer(self, function: Function) -> Function:
+        """The linker's way to a function that is out of a branch's reach leads to that function."""
+        match = _VENEER.fullmatch(function.name)
+        there = self._functions.named(match.group(1)) if match else []
+        return there[0] if len(there) == 1 else function
+
+    def _add_unrecorded(self, function: Function) -> None:
+        code = self._disassembly.of(function)
+        calls = frozenset(t.address for t in self._targets_in_code(function, code))
+        known = next((FOREIGN[name] for name in function.names if name in FOREIGN), None)
+        frame, problem = 0, "has no recorded stack"
+        if known is not None:
+            frame, problem = known.frame, _compare_with_table(known, code)
+        self.graph[function.address] = Node(str(function), frame, calls, problem)
+
+
+def _compare_with_table(known: Foreign, code: list[Instruction]) -> str:
+    try:
+        pushed = stack_of(code)
+    except StackPointerUnknown as unknown:
+        return f"moves the stack pointer in a way that is not understood: {unknown}"
+    if pushed > known.frame:
+        return f"has {pushed} bytes on the stack, and only {known.frame} in the tool's table"
+    if any(instruction.is_indirect for instruction in code):
+        return "branches through a register"
+    return ""

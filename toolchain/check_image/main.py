@@ -1,0 +1,129 @@
+"""The command line of check-image."""
+
+from __future__ import annotations
+
+import argparse
+import sys
+from dataclasses import dataclass
+from pathlib import Path
+
+from check_image import call_graph, call_sites, forbidden, sizes
+from check_image.disassembly import Disassembly
+from check_image.elf import Elf, NotAnImage
+from check_image.functions import Functions
+from check_image.linked_graph import LinkedGraph
+from check_image.stack import Unbounded, WorstCase, worst_case
+from check_image.vectors import BadVectors, Vectors
+
+_TOP_SYMBOLS = 20
+
+
+@dataclass(frozen=True)
+class Units:
+    """What the compiler has written beside the object files."""
+
+    records: list[call_graph.Record]
+    call_sites: dict[tuple[str, str], set[call_sites.CallSite]]
+
+
+def main(arguments: list[str]) -> int:
+    options = _parse(arguments)
+    try:
+        return _check(options)
+    except (NotAnImage, BadVectors, Unbounded, call_graph.NotACallGraph, OSError) as error:
+        print(f"{options.image.name}: {error}", file=sys.stderr)
+        return 1
+
+
+def _parse(arguments: list[str]) -> argparse.Namespace:
+    parser = argparse.ArgumentParser(
+        prog="check-image", description="Size, worst-case stack and symbols of a firmware image, held to budgets."
+    )
+    parser.add_argument("image", type=Path, help="the linked ELF file, with a vector table in its section .vectors")
+    parser.add_argument(
+        "units",
+        type=Path,
+        nargs="+",
+        help="the compiler's call graphs (.ci), or the object files they lie beside; an object file without one is "
+        "assembler",
+    )
+    parser.add_argument("--flash", type=lambda text: int(text, 0), required=True, metavar="BYTES", help="budget")
+    parser.add_argument(
+        "--ram", type=lambda text: int(text, 0), required=True, metavar="BYTES", help="budget, the stack included"
+    )
+    parser.add_argument(
+        "--level",
+        action="append",
+        default=[],
+        metavar="HANDLER[,HANDLER]...",
+        help="interrupt handlers with a preemption priority of their own; the others share one",
+    )
+    parser.add_argument("--verbose", action="store_true", help="also the deepest calls, and what takes the flash")
+    return parser.parse_args(arguments)
+
+
+def _check(options: argparse.Namespace) -> int:
+    elf = Elf(options.image)
+    units = _read_units(options.units)
+    functions = Functions(elf)
+    vectors = Vectors(elf, functions)
+    linked = LinkedGraph(elf, functions, Disassembly(options.image), units.records, units.call_sites)
+    problems = forbidden.problems(elf, units.records) + linked.problems
+    try:
+        stack = worst_case(
+            linked.graph, vectors.reset.address, vectors.levels([level.split(",") for level in options.level])
+        )
+    except Unbounded as unbounded:
+        problems.append(str(unbounded))
+    else:
+        problems += _report(options, elf, stack)
+        if options.verbose:
+            _report_stack(stack)
+            _report_flash(elf, linked)
+    for problem in problems:
+        print(f"{options.image.name}: {problem}", file=sys.stderr)
+    return 1 if problems else 0
+
+
+def _read_units(paths: list[Path]) -> Units:
+    units = Units([], {})
+    for path in paths:
+        graph = path.with_suffix(".ci") if path.suffix in (".o", ".obj") else path
+        if graph != path and not graph.exists():
+            continue
+        units.records.extend(call_graph.parse(graph.read_text()))
+        for dump in graph.parent.glob(graph.stem + ".*t.optimized"):
+            for place, sites in call_sites.parse(dump.read_text()).items():
+                units.call_sites.setdefault(place, set()).update(sites)
+    return units
+
+
+def _report(options: argparse.Namespace, elf: Elf, stack: WorstCase) -> list[str]:
+    """Prints the line of figures; says which are over their budgets."""
+    flash, static = sizes.flash(elf), sizes.static_ram(elf)
+    ram = static + stack.size
+    print(
+        f"{options.image.name}: flash {flash} of {options.flash} bytes, RAM {ram} of {options.ram} bytes "
+        f"({static} static, {stack.size} stack at worst)"
+    )
+    return [
+        f"{what} is over its budget: {used} of {budget} bytes"
+        for what, used, budget in (("flash", flash, options.flash), ("RAM", ram, options.ram))
+        if used > budget
+    ]
+
+
+def _report_stack(stack: WorstCase) -> None:
+    print(f"  stack {stack.size}: main loop {stack.main.size}: {stack.main}")
+    for interruption in stack.interruptions:
+        print(f"    + {interruption.level} {interruption.size}: exception 36 -> {interruption.chain}")
+
+
+def _report_flash(elf: Elf, linked: LinkedGraph) -> None:
+    print("  flash by folder:")
+    root = Path(__file__).resolve().parents[2]
+    for size, folder in sizes.by_folder(elf, linked.locations, root):
+        print(f"    {size:6} {folder}")
+    print("  flash by symbol:")
+    for size, name in sizes.by_symbol(elf)[:_TOP_SYMBOLS]:
+        print(f"    {size:6} {name}")

@@ -1,0 +1,109 @@
+"""The deepest stack below a function of a call graph, and of a main loop that interrupts interrupt."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+
+# What an exception puts on the stack where there is no floating point: eight words, and one more where the stack is
+# not at a multiple of eight bytes (Armv7-M ARM B1.5.6 and B1.5.7).
+EXCEPTION_FRAME = 32 + 4
+
+
+@dataclass(frozen=True)
+class Node:
+    name: str
+    frame: int  # bytes
+    calls: frozenset[int]
+    problem: str = ""  # why nothing can be said of it; empty where something can
+
+
+Graph = dict[int, Node]  # by address
+
+
+class Unbounded(Exception):
+    """The stack below a function has no bound that is known."""
+
+
+@dataclass(frozen=True)
+class Chain:
+    """A function and the deepest of what it calls, and so on."""
+
+    nodes: tuple[Node, ...]
+
+    @property
+    def size(self) -> int:
+        return sum(node.frame for node in self.nodes)
+
+    def __str__(self) -> str:
+        return " -> ".join(f"{node.name} {node.frame}" for node in self.nodes)
+
+
+@dataclass(frozen=True)
+class Level:
+    """Exception handlers of which none interrupts another."""
+
+    name: str
+    handlers: Sequence[int]  # addresses
+
+
+class DeepestChains:
+    """Finds them, each once."""
+
+    def __init__(self, graph: Mapping[int, Node]) -> None:
+        self._graph = graph
+        self._found: dict[int, Chain] = {}
+        self._path: list[int] = []
+
+    def below(self, address: int) -> Chain:
+        if address in self._found:
+            return self._found[address]
+        if address in self._path:
+            cycle = self._path[self._path.index(address) :] + [address]
+            raise Unbounded("recursion: " + self._names(cycle))
+        self._path.append(address)
+        node = self._graph[address]
+        if node.problem:
+            raise Unbounded(f"{node.name} {node.problem} (reached by {self._names(self._path)})")
+        deepest = max((self.below(callee) for callee in sorted(node.calls)), key=lambda c: c.size, default=Chain(()))
+        self._path.pop()
+        chain = self._found[address] = Chain((node, *deepest.nodes))
+        return chain
+
+    def _names(self, path: Sequence[int]) -> str:
+        return " -> ".join(self._graph[address].name for address in path)
+
+
+@dataclass(frozen=True)
+class Interruption:
+    level: str
+    chain: Chain
+
+    @property
+    def size(self) -> int:
+        return EXCEPTION_FRAME + self.chain.size
+
+
+@dataclass(frozen=True)
+class WorstCase:
+    """The main loop at its deepest, interrupted there by the deepest handler of each level, each at its deepest."""
+
+    main: Chain
+    interruptions: tuple[Interruption, ...]
+
+    @property
+    def size(self) -> int:
+        return self.main.size + sum(interruption.size for interruption in self.interruptions)
+
+
+def worst_case(graph: Mapping[int, Node], reset: int, levels: Sequence[Level]) -> WorstCase:
+    """Raises Unbounded."""
+    chains = DeepestChains(graph)
+    return WorstCase(
+        chains.below(reset),
+        tuple(
+            Interruption(level.name, max((chains.below(h) for h in level.handlers), key=lambda chain: chain.size))
+            for level in levels
+            if level.handlers
+        ),
+    )

@@ -1,0 +1,68 @@
+"""The vector table of an image (Armv7-M ARM B1.5.2 and B1.5.3), and who in it may interrupt whom."""
+
+from __future__ import annotations
+
+import struct
+from collections.abc import Sequence
+
+from check_image.elf import Elf
+from check_image.functions import Function, Functions
+from check_image.stack import Level
+
+_RESET = 1
+_NMI = 2
+_HARD_FAULT = 3
+_CONFIGURABLE_FAULTS = range(4, 7)  # MemManage, BusFault, UsageFault
+
+
+class BadVectors(Exception):
+    """The table is missing, or holds what no processor could run."""
+
+
+class Vectors:
+    def __init__(self, elf: Elf, functions: Functions) -> None:
+        section = elf.named(".vectors")
+        if section is None or len(section.data) < 8:
+            raise BadVectors("there is no section .vectors with a vector table")
+        words = struct.unpack(f"<{len(section.data) // 4}I", section.data[: len(section.data) // 4 * 4])
+        self.stack_top = words[0]
+        self.handlers: dict[int, Function] = {}  # by exception number, Reset among them
+        for number, word in enumerate(words[1:], start=1):
+            if word == 0:
+                continue
+            function = functions.at(word & ~1)
+            if function is None or word & 1 == 0:
+                raise BadVectors(f"vector {number} holds {word:#010x}, which is no function")
+            self.handlers[number] = function
+        if _RESET not in self.handlers:
+            raise BadVectors("there is no reset handler")
+
+    @property
+    def reset(self) -> Function:
+        return self.handlers[_RESET]
+
+    def levels(self, named: Sequence[Sequence[str]]) -> list[Level]:
+        """The handlers by who may interrupt whom; each level may interrupt all others.
+
+        `named`: the interrupts that have a priority of their own, a level each; the other interrupts are one level. A
+        fault's handler may fault once more, which is a HardFault; and NMI interrupts that too.
+        """
+        own: list[Level] = []
+        left = {number: handler for number, handler in self.handlers.items() if number > _CONFIGURABLE_FAULTS[-1]}
+        for names in named:
+            chosen = {number for number, handler in left.items() if set(handler.names) & set(names)}
+            missing = set(names) - {name for number in chosen for name in left[number].names}
+            if missing:
+                raise BadVectors(f"no interrupt's handler is called {', '.join(sorted(missing))}")
+            own.append(Level("+".join(names), [left.pop(number).address for number in sorted(chosen)]))
+        return [
+            Level("interrupts", _addresses(left)),
+            *own,
+            Level("faults", _addresses({n: self.handlers[n] for n in _CONFIGURABLE_FAULTS if n in self.handlers})),
+            Level("HardFault", _addresses({n: h for n, h in self.handlers.items() if n == _HARD_FAULT})),
+            Level("NMI", _addresses({n: h for n, h in self.handlers.items() if n == _NMI})),
+        ]
+
+
+def _addresses(handlers: dict[int, Function]) -> list[int]:
+    return sorted({handler.address for handler in handlers.values()})
