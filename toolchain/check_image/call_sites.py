@@ -14,9 +14,11 @@ from check_image.functions import Function
 
 _HEADER = re.compile(r";; Function .*\((\S+), funcdef_no=")
 _LOCATION = re.compile(r"^  \[([^]]+:\d+:\d+)\] ")
-_POINTER = re.compile(r"^  .*?\(\*<T\w+>\) \((.*)\) (\w+);$")
+# `Refusal (*<T44ec>) (const struct State &, struct Bytes) _5;`, or to a member function
+# `void Thing::<T2b8> (struct Thing *) * f;`
+_POINTER = re.compile(r"^  .*?(?:\(\*<T\w+>\) \((.*)\)|::<T\w+> \((.*)\) \*) ([\w.]+);$")
 _VIRTUAL_CALL = re.compile(r"OBJ_TYPE_REF\(.*;\((const )?[^)]*\)[^>]*->(\d+)B?\) \((.*)\)")
-_POINTER_CALL = re.compile(r"(?:^| = |\] )(\w+)(?:\(D\))? \((.*)\);")
+_POINTER_CALL = re.compile(r"(?:^| = |\] )([\w.]+)(?:\(D\))? \((.*)\);")
 
 
 @dataclass(frozen=True)
@@ -31,10 +33,10 @@ class PointerCall:
         if theirs is None:
             return True
         ours = self.parameters if self.parameters is not None else ("",) * self.count
-        return _agree(ours, theirs) or (
-            # through a pointer to a member function, which names its class first
-            len(ours) > 0 and _agree(ours[1:], theirs) and "::" in target.readable
-        )
+        if _agree(ours, theirs):
+            return True
+        # The type of a pointer to a member function has the object in front.
+        return len(ours) > 0 and _may_be_object(ours[0]) and _agree(ours[1:], theirs)
 
 
 @dataclass(frozen=True)
@@ -66,7 +68,7 @@ def parse(text: str) -> dict[tuple[str, str], set[CallSite]]:
             caller, pointers = header.group(1), {}
         declared = _POINTER.match(line)
         if declared:
-            pointers[declared.group(2)] = split_list(declared.group(1))
+            pointers[declared.group(3)] = split_list(declared.group(1) or declared.group(2) or "")
         site = _call_site(line, pointers)
         location = _LOCATION.match(line)
         if site and location:
@@ -81,9 +83,11 @@ def _call_site(line: str, pointers: dict[str, tuple[str, ...]]) -> CallSite | No
         return VirtualCall(int(virtual.group(2)), virtual.group(1) is not None, count)
     call = _POINTER_CALL.search(line)
     if call:
-        # A direct call looks the same; it is never asked for, because the call graph has it.
-        arguments = split_list(call.group(2))
-        return PointerCall(pointers.get(call.group(1)), len(arguments))
+        name, arguments = call.group(1), split_list(call.group(2))
+        variable, numbered = re.subn(r"_\d+$", "", name)  # values are numbered; functions are not
+        parameters = pointers.get(name, pointers.get(variable))
+        if numbered or parameters is not None:
+            return PointerCall(parameters, len(arguments))
     return None
 
 
@@ -123,7 +127,19 @@ class _Shape:
     indirections: str  # `*` and `&`
 
 
-_NUMBERS = {"bool", "char", "short", "int", "long", "signed", "unsigned", "float", "double"}
+# Both spellings of numbers, and what newlib makes of <cstdint>'s.
+_NUMBERS = {"bool", "char", "short", "int", "long", "signed", "unsigned", "float", "double", "wchar_t"}
+_ALIASES = {
+    "int8_t": "signed char",
+    "uint8_t": "unsigned char",
+    "int16_t": "short int",
+    "uint16_t": "short unsigned int",
+    "int32_t": "long int",
+    "uint32_t": "long unsigned int",
+    "int64_t": "long long int",
+    "uint64_t": "long long unsigned int",
+    "size_t": "unsigned int",
+}
 
 
 def _agree(ours: tuple[str, ...], theirs: tuple[str, ...]) -> bool:
@@ -132,14 +148,17 @@ def _agree(ours: tuple[str, ...], theirs: tuple[str, ...]) -> bool:
     )
 
 
+def _may_be_object(ours: str) -> bool:
+    shape = _shape_in_dump(ours)
+    return shape is None or (shape.kind == "class" and shape.indirections == "*")
+
+
 def _may_be_same(ours: _Shape | None, theirs: _Shape | None) -> bool:
     if ours is None or theirs is None:
         return True
     if ours.indirections != theirs.indirections:
         return False
-    if ours.kind == "number":
-        return theirs.kind == "number"
-    return theirs.kind == "named" and ours.name == theirs.name
+    return ours.name == theirs.name and (ours.kind == "number") == (theirs.kind == "number")
 
 
 def _shape_in_dump(text: str) -> _Shape | None:
@@ -150,11 +169,7 @@ def _shape_in_dump(text: str) -> _Shape | None:
     record = re.fullmatch(r"(?:struct|union|class) (\w+)(<.*>)?", name)
     if record:
         return _Shape("class", record.group(1), indirections)
-    if set(name.split()) <= _NUMBERS and name:
-        return _Shape("number", "", indirections)
-    if re.fullmatch(r"u?int(8|16|32|64)_t|size_t", name):
-        return _Shape("number", "", indirections)
-    return None
+    return _number(_ALIASES.get(name, name), indirections)
 
 
 def _shape_demangled(text: str) -> _Shape | None:
@@ -162,9 +177,19 @@ def _shape_demangled(text: str) -> _Shape | None:
     name, indirections = _take_apart(text)
     if "(" in text:
         return None
-    if set(name.split()) <= _NUMBERS:
-        return _Shape("number", "", indirections)
-    return _Shape("named", re.sub(r"<.*", "", name).rpartition("::")[2], indirections)
+    return _number(name, indirections) or _Shape(
+        "named", re.sub(r"<.*", "", name).rpartition("::")[2], indirections
+    )
+
+
+def _number(name: str, indirections: str) -> _Shape | None:
+    """`long unsigned int` and `unsigned long` are one; None where it is no number."""
+    words = name.split()
+    if not words or not set(words) <= _NUMBERS:
+        return None
+    if len(words) > 1:
+        words = sorted(word for word in words if word != "int" and (word != "signed" or "char" in words))
+    return _Shape("number", " ".join(words or ["int"]), indirections)
 
 
 def _take_apart(text: str) -> tuple[str, str]:

@@ -12,10 +12,11 @@ from check_image.functions import Function
 _LINE = re.compile(r"^ *([0-9a-f]+):\t(\S+)(?:\t([^@;]*))?")
 _CONDITIONS = "eq|ne|cs|hs|cc|lo|mi|pl|vs|vc|hi|ls|ge|lt|gt|le"
 _BRANCH = re.compile(rf"(b|bl|blx|cbz|cbnz|b({_CONDITIONS})|bl({_CONDITIONS}))(\.[nw])?")
+_CALL = re.compile(rf"blx?({_CONDITIONS})?(\.[nw])?")
 _TARGET = re.compile(r"(?:\w+, )?([0-9a-f]+) <")
 _DIRECT_JUMP = re.compile(r"b(\.[nw])?")
 _CONDITIONAL_POP = re.compile(rf"(pop|ldmia|ldr|add)({_CONDITIONS})\b")
-_MOST_BELIEVED = 1 << 20
+_MOST_BELIEVED = 1 << 16
 _TABLE_JUMP = re.compile(r"tb[bh]")
 
 
@@ -33,16 +34,18 @@ class Instruction:
 
     @property
     def is_call(self) -> bool:
-        return self.mnemonic.startswith("bl") and not re.fullmatch(r"bl[se]|bl[st](\.[nw])?", self.mnemonic)
+        return _CALL.fullmatch(self.mnemonic) is not None
 
     @property
     def is_indirect(self) -> bool:
-        """Calls or jumps to an address in a register or in memory, and does not return."""
-        if re.match(r"blx|bx|mov", self.mnemonic):
-            to_register = re.fullmatch(r"(?:pc, )?(r\d+|sl|fp|ip|lr)", self.operands)
-            is_branch = not self.mnemonic.startswith("mov") or self.operands.startswith("pc,")
-            return is_branch and to_register is not None and (to_register.group(1) != "lr" or self.is_call)
-        return self.mnemonic.startswith("ldr") and re.match(r"pc, (?!\[pc, r)", self.operands) is not None
+        """Calls or jumps to a function whose address is in a register or in memory; a return is neither."""
+        if self.is_call:
+            return self.branch_target is None
+        if self.mnemonic.startswith("bx"):
+            return self.operands != "lr"
+        if self.mnemonic.startswith(("mov", "ldr")) and self.operands.startswith("pc, "):
+            return re.match(r"pc, (lr$|\[sp|\[pc, r)", self.operands) is None
+        return False
 
     @property
     def jumps_by_table(self) -> bool:
@@ -57,7 +60,12 @@ class Instruction:
     @property
     def goes_on(self) -> bool:
         """Whether the instruction behind it may be next."""
-        if self.is_data or self.jumps_by_table or self.mnemonic == "udf" or _DIRECT_JUMP.fullmatch(self.mnemonic):
+        if (
+            self.is_data
+            or self.jumps_by_table
+            or self.mnemonic == "udf"
+            or _DIRECT_JUMP.fullmatch(self.mnemonic)
+        ):
             return False
         if self.mnemonic in ("bx", "pop", "pop.w", "ldmia.w", "ldr", "ldr.w", "mov"):
             returns = self.mnemonic == "bx" or re.search(r"\bpc\b", self.operands.split("[")[0])
@@ -109,7 +117,8 @@ class Disassembly:
 def stack_of(code: list[Instruction]) -> int:
     """The most bytes that a function's own instructions have on the stack; what it calls is not in it.
 
-    Follows the code along its branches. Behind a jump by table begin the table's targets, at the depth of the jump.
+    Follows the code along its branches. Behind a jump by table begin the table's targets, at the depth of the
+    jump.
     """
     following = {a.address: b.address for a, b in zip(code, code[1:])}
     by_address = {instruction.address: instruction for instruction in code}

@@ -1,4 +1,4 @@
-"""What an image must not hold: traces of a heap, of exceptions, of floating point, of code that runs before main."""
+"""What an image must not hold: traces of a heap, exceptions, floating point, code that runs before main."""
 
 from __future__ import annotations
 
@@ -6,6 +6,7 @@ import re
 from collections.abc import Iterable
 
 from check_image.call_graph import Record
+from check_image.disassembly import Disassembly
 from check_image.elf import Elf
 
 _SYMBOLS = [
@@ -29,12 +30,12 @@ _SECTIONS = [
         (r"\.(preinit_array|init_array|fini_array|ctors|dtors)", "globals initialised at run time"),
     )
 ]
-# One of each table of the core: commands, functions, coils and registers. An image must not carry what only people
-# read.
+# One of each table of the core: commands, functions, coils and registers. An image must not carry what only
+# people read.
 _TEXTS = (b"clear both latches", b"Write Single Coil", b"host watchdog timeout status")
 
 
-def problems(elf: Elf, records: Iterable[Record]) -> list[str]:
+def problems(elf: Elf, records: Iterable[Record], disassembly: Disassembly) -> list[str]:
     found = []
     for symbol in elf.symbols:
         if symbol.is_undefined:
@@ -53,6 +54,9 @@ def problems(elf: Elf, records: Iterable[Record]) -> list[str]:
     for record in records:
         if _what(record.title.name) == "globals initialised at run time":
             found.append(f"{record.location}: globals initialised at run time")
+    # They would also make an exception's frame longer than this tool reckons.
+    if any(instruction.mnemonic.startswith("v") for instruction in disassembly.instructions.values()):
+        found.append("instructions of a floating-point unit: floating point")
     return found
 
 

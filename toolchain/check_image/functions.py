@@ -76,7 +76,9 @@ class Functions:
         there = self._locals.get(name, [])
         if len(there) == 1:
             return there[0][1]
-        return next((function for source, function in there if PurePath(source).name == PurePath(file).name), None)
+        return next(
+            (function for source, function in there if PurePath(source).name == PurePath(file).name), None
+        )
 
     def named(self, name: str) -> list[Function]:
         """All functions of a name, whatever file they are from."""
@@ -101,12 +103,12 @@ def demangle(names: list[str]) -> dict[str, str]:
 
 def without_parameters(readable: str) -> str:
     """`a::b(int)::{lambda(int)#1}::operator()(int) const` -> `a::b::{lambda#1}::operator()`."""
-    protected = readable.replace("(anonymous namespace)::", "").replace("operator()", "operator\0")
-    while True:
-        shorter = re.sub(r"\([^()]*\)( const)?", "", protected)
-        if shorter == protected:
-            return protected.replace("operator\0", "operator()")
-        protected = shorter
+    text = readable.replace("(anonymous namespace)::", "").replace("operator()", "operator\0")
+    while (shorter := re.sub(r"\([^()]*\)( const)?", "", text)) != text:
+        text = shorter
+    # In front of a template's instance stands what it returns.
+    text = re.sub(r"^[^<>{}]+? (?=[\w:]+<)", "", text) if "operator " not in text else text
+    return text.replace("operator\0", "operator()")
 
 
 def _function_symbols(elf: Elf) -> list[Symbol]:

@@ -1,4 +1,4 @@
-"""The compiler's call graph on the functions that the linker has kept, completed and checked by the machine code."""
+"""The compiler's call graph on the functions that the linker has kept, checked by the machine code."""
 
 from __future__ import annotations
 
@@ -22,23 +22,22 @@ class Foreign:
     reason: str
 
 
-# Its frame is compared with what its instructions push, its calls are those of its instructions.
+# Their frames are compared with what their instructions push; their calls are those of their instructions.
 FOREIGN = {
-    "memcpy": Foreign(16, "newlib's, in assembler: loops over words, no calls"),
-    "memmove": Foreign(16, "newlib's: loops over words, no calls"),
-    "memset": Foreign(16, "newlib's: loops over words, no calls"),
-    "memcmp": Foreign(24, "newlib's: loops over words, no calls"),
-    "__aeabi_memcpy": Foreign(0, "newlib's: jumps to memcpy"),
-    "__aeabi_memcpy4": Foreign(0, "newlib's: jumps to memcpy"),
-    "__aeabi_memset": Foreign(8, "newlib's: exchanges two arguments and jumps to memset"),
-    "__aeabi_memclr": Foreign(8, "newlib's: sets an argument and jumps to memset"),
+    "memcpy": Foreign(8, "newlib's, or newlib-nano's: loops, no calls"),
+    "memmove": Foreign(16, "newlib's, or newlib-nano's: loops, no calls"),
+    "memset": Foreign(16, "newlib's, or newlib-nano's: loops, no calls"),
+    "memcmp": Foreign(16, "newlib's, or newlib-nano's: loops, no calls"),
 }
 
 _VENEER = re.compile(r"__(.*)_veneer")
 
 
 class LinkedGraph:
-    """Functions are named by their address in hex in `graph`, so that equal names do not meet."""
+    """In `graph` a function is its address, so that aliases are one and equal names of two files are not.
+
+    `problems` says where compiler and machine code do not agree, whether that is reached or not.
+    """
 
     def __init__(
         self,
@@ -58,6 +57,8 @@ class LinkedGraph:
         self.locations: dict[int, str] = {}  # of the recorded functions, by address
         self.graph: Graph = {}
         self._calls_indirectly: set[int] = set()
+        self.pointer_calls: dict[tuple[str, str], list[str]] = {}  # what each reaches, by caller and location
+        self.untyped = 0  # of them, how many reach all functions whose address is taken
         for record in records:
             function = self._find(record.title)
             if function is not None:  # else inlined everywhere, or dropped by the linker
@@ -87,13 +88,12 @@ class LinkedGraph:
             if not targets:
                 problem = f"calls through a pointer at {location} what the image does not have"
             calls |= targets
+            self.pointer_calls[str(function), location] = [
+                str(self._functions.at(t)) for t in sorted(targets)
+            ]
+        node = Node(str(function), record.frame, frozenset(calls), problem)
         before = self.graph.get(function.address)  # an inline function that several units have compiled
-        self.graph[function.address] = Node(
-            name=str(function),
-            frame=max(record.frame, before.frame if before else 0),
-            calls=frozenset(calls | (before.calls if before else frozenset())),
-            problem=problem,
-        )
+        self.graph[function.address] = _worse_of(before, node) if before else node
         self.locations[function.address] = record.location
         if record.indirect_calls:
             self._calls_indirectly.add(function.address)
@@ -103,6 +103,7 @@ class LinkedGraph:
     def _indirect_targets(self, caller: str, location: str) -> set[int]:
         sites = self._call_sites.get((caller, location))
         if not sites:
+            self.untyped += 1
             return {function.address for function in self._address_taken}
         targets: set[int] = set()
         for site in sites:
@@ -125,7 +126,8 @@ class LinkedGraph:
     def _find_virtual_tables(self) -> list[list[Function]]:
         """The functions of each virtual table, by slot (Itanium C++ ABI 2.5.2).
 
-        A table begins with two words that are no functions; that of a class with several bases is several of them.
+        A table begins with two words that are no functions; that of a class with several bases is several
+        such tables.
         """
         tables = []
         for symbol in self._elf.symbols:
@@ -153,12 +155,13 @@ class LinkedGraph:
             if target.address not in node.calls:
                 self.problems.append(f"{node.name} branches to {target}, unrecorded by the compiler")
         if any(i.is_indirect for i in code) and function.address not in self._calls_indirectly:
-            if not node.calls:
-                self.problems.append(f"{node.name} branches through a register, unrecorded by the compiler")
+            self.problems.append(f"{node.name} branches through a register, unrecorded by the compiler")
         try:
             pushed = stack_of(code)
         except StackPointerUnknown as unknown:
-            self.problems.append(f"{node.name} moves the stack pointer in a way that is not understood: {unknown}")
+            self.problems.append(
+                f"{node.name} moves the stack pointer in a way that is not understood: {unknown}"
+            )
             return
         if pushed > node.frame:
             self.problems.append(
@@ -192,6 +195,11 @@ class LinkedGraph:
         if known is not None:
             frame, problem = known.frame, _compare_with_table(known, code)
         self.graph[function.address] = Node(str(function), frame, calls, problem)
+
+
+def _worse_of(a: Node, b: Node) -> Node:
+    """What holds for one function whichever of two records is that of the code in the image."""
+    return Node(a.name, max(a.frame, b.frame), a.calls | b.calls, a.problem or b.problem)
 
 
 def _compare_with_table(known: Foreign, code: list[Instruction]) -> str:

@@ -12,7 +12,7 @@ from check_image.disassembly import Disassembly
 from check_image.elf import Elf, NotAnImage
 from check_image.functions import Functions
 from check_image.linked_graph import LinkedGraph
-from check_image.stack import Unbounded, WorstCase, worst_case
+from check_image.stack import EXCEPTION_FRAME, Unbounded, WorstCase, worst_case
 from check_image.vectors import BadVectors, Vectors
 
 _TOP_SYMBOLS = 20
@@ -31,25 +31,36 @@ def main(arguments: list[str]) -> int:
     try:
         return _check(options)
     except (NotAnImage, BadVectors, Unbounded, call_graph.NotACallGraph, OSError) as error:
-        print(f"{options.image.name}: {error}", file=sys.stderr)
+        print(f"{options.image.stem}: {error}", file=sys.stderr)
         return 1
 
 
 def _parse(arguments: list[str]) -> argparse.Namespace:
     parser = argparse.ArgumentParser(
-        prog="check-image", description="Size, worst-case stack and symbols of a firmware image, held to budgets."
+        prog="check-image",
+        description="Size, worst-case stack and symbols of a firmware image, held to budgets.",
     )
-    parser.add_argument("image", type=Path, help="the linked ELF file, with a vector table in its section .vectors")
+    parser.add_argument(
+        "image", type=Path, help="the linked ELF file, with a vector table in its section .vectors"
+    )
     parser.add_argument(
         "units",
         type=Path,
         nargs="+",
-        help="the compiler's call graphs (.ci), or the object files they lie beside; an object file without one is "
-        "assembler",
+        help=(
+            "the compiler's call graphs (.ci), or the object files they lie beside; an object file without"
+            " one is assembler"
+        ),
     )
-    parser.add_argument("--flash", type=lambda text: int(text, 0), required=True, metavar="BYTES", help="budget")
     parser.add_argument(
-        "--ram", type=lambda text: int(text, 0), required=True, metavar="BYTES", help="budget, the stack included"
+        "--flash", type=lambda text: int(text, 0), required=True, metavar="BYTES", help="budget"
+    )
+    parser.add_argument(
+        "--ram",
+        type=lambda text: int(text, 0),
+        required=True,
+        metavar="BYTES",
+        help="budget, the stack included",
     )
     parser.add_argument(
         "--level",
@@ -58,7 +69,9 @@ def _parse(arguments: list[str]) -> argparse.Namespace:
         metavar="HANDLER[,HANDLER]...",
         help="interrupt handlers with a preemption priority of their own; the others share one",
     )
-    parser.add_argument("--verbose", action="store_true", help="also the deepest calls, and what takes the flash")
+    parser.add_argument(
+        "--verbose", action="store_true", help="also the deepest calls, and what takes the flash"
+    )
     return parser.parse_args(arguments)
 
 
@@ -67,21 +80,29 @@ def _check(options: argparse.Namespace) -> int:
     units = _read_units(options.units)
     functions = Functions(elf)
     vectors = Vectors(elf, functions)
-    linked = LinkedGraph(elf, functions, Disassembly(options.image), units.records, units.call_sites)
-    problems = forbidden.problems(elf, units.records) + linked.problems
+    disassembly = Disassembly(options.image)
+    linked = LinkedGraph(elf, functions, disassembly, units.records, units.call_sites)
+    problems = forbidden.problems(elf, units.records, disassembly) + linked.problems
     try:
         stack = worst_case(
             linked.graph, vectors.reset.address, vectors.levels([level.split(",") for level in options.level])
         )
     except Unbounded as unbounded:
         problems.append(str(unbounded))
+        if linked.untyped:
+            problems.append(
+                f"{linked.untyped} calls through pointers were taken to reach whatever has its address taken:"
+                " no dump of -fdump-tree-optimized-lineno lies beside the call graph, or it does not know"
+                " them"
+            )
     else:
         problems += _report(options, elf, stack)
         if options.verbose:
             _report_stack(stack)
-            _report_flash(elf, linked)
+            _report_pointer_calls(linked)
+            _report_flash(elf, options.image, linked)
     for problem in problems:
-        print(f"{options.image.name}: {problem}", file=sys.stderr)
+        print(f"{options.image.stem}: {problem}", file=sys.stderr)
     return 1 if problems else 0
 
 
@@ -103,7 +124,7 @@ def _report(options: argparse.Namespace, elf: Elf, stack: WorstCase) -> list[str
     flash, static = sizes.flash(elf), sizes.static_ram(elf)
     ram = static + stack.size
     print(
-        f"{options.image.name}: flash {flash} of {options.flash} bytes, RAM {ram} of {options.ram} bytes "
+        f"{options.image.stem}: flash {flash} of {options.flash} bytes, RAM {ram} of {options.ram} bytes "
         f"({static} static, {stack.size} stack at worst)"
     )
     return [
@@ -116,13 +137,22 @@ def _report(options: argparse.Namespace, elf: Elf, stack: WorstCase) -> list[str
 def _report_stack(stack: WorstCase) -> None:
     print(f"  stack {stack.size}: main loop {stack.main.size}: {stack.main}")
     for interruption in stack.interruptions:
-        print(f"    + {interruption.level} {interruption.size}: exception 36 -> {interruption.chain}")
+        print(
+            f"    + {interruption.level} {interruption.size}: exception {EXCEPTION_FRAME} ->"
+            f" {interruption.chain}"
+        )
 
 
-def _report_flash(elf: Elf, linked: LinkedGraph) -> None:
+def _report_pointer_calls(linked: LinkedGraph) -> None:
+    print("  calls through pointers, and what they reach:")
+    for (caller, location), targets in sorted(linked.pointer_calls.items()):
+        print(f"    {caller}, {location.rpartition('/')[2]}: {', '.join(targets)}")
+
+
+def _report_flash(elf: Elf, path: Path, linked: LinkedGraph) -> None:
     print("  flash by folder:")
     root = Path(__file__).resolve().parents[2]
-    for size, folder in sizes.by_folder(elf, linked.locations, root):
+    for size, folder in sizes.by_folder(elf, path, linked.locations, root):
         print(f"    {size:6} {folder}")
     print("  flash by symbol:")
     for size, name in sizes.by_symbol(elf)[:_TOP_SYMBOLS]:

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-import re
+import subprocess
+from collections import Counter
 from collections.abc import Mapping
 from pathlib import Path
 
@@ -19,7 +20,7 @@ def flash(elf: Elf) -> int:
 
 
 def static_ram(elf: Elf) -> int:
-    """Bytes of variables, whether they have first values or not; a room that is set aside as stack is none."""
+    """Bytes of variables, with or without first values; a section that keeps room for the stack is not."""
     return sum(s.size for s in elf.sections if s.address in _RAM and not s.name.startswith(".stack"))
 
 
@@ -30,24 +31,47 @@ def by_symbol(elf: Elf) -> list[tuple[int, str]]:
     return sorted(((s.size, without_parameters(readable[s.name])) for s in symbols), reverse=True)
 
 
-def by_folder(elf: Elf, locations: Mapping[int, str], root: Path) -> list[tuple[int, str]]:
-    """Flash a source folder, the most first; `locations` are of functions, by address. Tables have no location."""
-    sums: dict[str, int] = {}
-    for symbol in _in_flash(elf):
-        location = locations.get(symbol.address)
-        if location is not None:
-            folder = _folder(location, root)
-        else:
-            folder = "(unrecorded code)" if symbol.is_function else "(tables)"
-        sums[folder] = sums.get(folder, 0) + symbol.size
-    rest = flash(elf) - sum(sums.values())
-    sums["(vectors, padding, unnamed constants)"] = rest
+def by_folder(elf: Elf, path: Path, locations: Mapping[int, str], root: Path) -> list[tuple[int, str]]:
+    """Flash a source folder, the most first.
+
+    Code is attributed line by line, so that what was inlined counts where it was written. Where there is no
+    debugging information a function counts as a whole; `locations` are those of functions, by address.
+    """
+    sums: Counter[str] = Counter()
+    code = [symbol for symbol in _in_flash(elf) if symbol.is_function]
+    sources = iter(_sources(path, [address for symbol in code for address in _halfwords(symbol)]))
+    for symbol in code:
+        for _ in _halfwords(symbol):
+            source = next(sources)
+            sums[_folder(source if source != "??" else locations.get(symbol.address, ""), root)] += 2
+    sums["(tables)"] = sum(symbol.size for symbol in _in_flash(elf) if not symbol.is_function)
+    sums["(vectors, padding, constants without a name)"] = flash(elf) - sum(sums.values())
     return sorted(((size, folder) for folder, size in sums.items() if size), reverse=True)
 
 
-def _folder(location: str, root: Path) -> str:
-    path = Path(re.sub(r":\d+:\d+$", "", location))
-    return str(path.parent.relative_to(root) if path.is_relative_to(root) else path.parent)
+def _halfwords(symbol: Symbol) -> range:
+    return range(symbol.address, symbol.address + symbol.size, 2)
+
+
+def _sources(path: Path, addresses: list[int]) -> list[str]:
+    """The source file of each address; `??` where that is not known."""
+    done = subprocess.run(
+        ["arm-none-eabi-addr2line", "-e", str(path)],
+        input="\n".join(map(hex, addresses)),
+        capture_output=True,
+        text=True,
+        check=True,
+    )
+    return [line.partition(":")[0] for line in done.stdout.splitlines()]
+
+
+def _folder(source: str, root: Path) -> str:
+    if not source:
+        return "(unrecorded code)"
+    path = Path(source.partition(":")[0])
+    if path.is_relative_to(root):
+        return str(path.parent.relative_to(root))
+    return "(C++ library)" if "include" in path.parts else str(path.parent)
 
 
 def _in_flash(elf: Elf) -> list[Symbol]:

@@ -5,8 +5,8 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
-# What an exception puts on the stack where there is no floating point: eight words, and one more where the stack is
-# not at a multiple of eight bytes (Armv7-M ARM B1.5.6 and B1.5.7).
+# What an exception puts on the stack where there is no floating-point unit: eight words, and one more where
+# the stack is not at a multiple of eight bytes (Armv7-M ARM B1.5.6 and B1.5.7).
 EXCEPTION_FRAME = 32 + 4
 
 
@@ -65,7 +65,9 @@ class DeepestChains:
         node = self._graph[address]
         if node.problem:
             raise Unbounded(f"{node.name} {node.problem} (reached by {self._names(self._path)})")
-        deepest = max((self.below(callee) for callee in sorted(node.calls)), key=lambda c: c.size, default=Chain(()))
+        deepest = max(
+            (self.below(callee) for callee in sorted(node.calls)), key=lambda c: c.size, default=Chain(())
+        )
         self._path.pop()
         chain = self._found[address] = Chain((node, *deepest.nodes))
         return chain
@@ -86,7 +88,7 @@ class Interruption:
 
 @dataclass(frozen=True)
 class WorstCase:
-    """The main loop at its deepest, interrupted there by the deepest handler of each level, each at its deepest."""
+    """The main loop at its deepest, interrupted there by the deepest handler of each level."""
 
     main: Chain
     interruptions: tuple[Interruption, ...]
@@ -102,7 +104,9 @@ def worst_case(graph: Mapping[int, Node], reset: int, levels: Sequence[Level]) -
     return WorstCase(
         chains.below(reset),
         tuple(
-            Interruption(level.name, max((chains.below(h) for h in level.handlers), key=lambda chain: chain.size))
+            Interruption(
+                level.name, max((chains.below(h) for h in level.handlers), key=lambda chain: chain.size)
+            )
             for level in levels
             if level.handlers
         ),

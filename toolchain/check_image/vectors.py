@@ -44,11 +44,13 @@ class Vectors:
     def levels(self, named: Sequence[Sequence[str]]) -> list[Level]:
         """The handlers by who may interrupt whom; each level may interrupt all others.
 
-        `named`: the interrupts that have a priority of their own, a level each; the other interrupts are one level. A
-        fault's handler may fault once more, which is a HardFault; and NMI interrupts that too.
+        `named`: the interrupts that have a priority of their own, a level each; the other interrupts are one
+        level. A fault's handler may fault once more, which is a HardFault; and NMI interrupts that too.
         """
         own: list[Level] = []
-        left = {number: handler for number, handler in self.handlers.items() if number > _CONFIGURABLE_FAULTS[-1]}
+        left = {
+            number: handler for number, handler in self.handlers.items() if number > _CONFIGURABLE_FAULTS[-1]
+        }
         for names in named:
             chosen = {number for number, handler in left.items() if set(handler.names) & set(names)}
             missing = set(names) - {name for number in chosen for name in left[number].names}
@@ -58,7 +60,10 @@ class Vectors:
         return [
             Level("interrupts", _addresses(left)),
             *own,
-            Level("faults", _addresses({n: self.handlers[n] for n in _CONFIGURABLE_FAULTS if n in self.handlers})),
+            Level(
+                "faults",
+                _addresses({n: self.handlers[n] for n in _CONFIGURABLE_FAULTS if n in self.handlers}),
+            ),
             Level("HardFault", _addresses({n: h for n, h in self.handlers.items() if n == _HARD_FAULT})),
             Level("NMI", _addresses({n: h for n, h in self.handlers.items() if n == _NMI})),
         ]

@@ -1,0 +1,424 @@
+"""What check-image accepts, with exact figures, and what it refuses, with the reason."""
+
+from __future__ import annotations
+
+import re
+import unittest
+
+from sample import Verdict, check
+
+EXCEPTION = 36
+
+
+class Accepts(unittest.TestCase):
+    def stack(self, verdict: Verdict) -> int:
+        """The worst-case stack without the three exceptions that handlers of no depth add: faults and NMI."""
+        self.assertTrue(verdict.accepted, verdict.problems)
+        match = re.search(r"(\d+) stack at worst", verdict.figures)
+        assert match
+        return int(match.group(1)) - 2 * EXCEPTION
+
+    def test_a_main_loop_that_nothing_but_exceptions_interrupts(self) -> None:
+        self.assertEqual(self.stack(check('extern "C" void reset() { for (;;) {} }')), EXCEPTION)
+
+    def test_frames_add_up_along_the_deepest_calls(self) -> None:
+        verdict = check(
+            """
+            FAR void shallow() { room<16>(); }
+            FAR void deepest() { room<100>(); }
+            FAR void deep() { room<24>(); deepest(); }
+            extern "C" void reset() { for (;;) { shallow(); deep(); } }
+            """,
+            options="--verbose",
+        )
+        # 8 bytes for the registers that reset keeps, the arrays, and 4 to make it a multiple of eight.
+        self.assertIn("main loop 136: reset 8 -> deep 24 -> deepest 104", verdict.figures)
+        self.assertEqual(self.stack(verdict), 136 + EXCEPTION)
+
+    def test_interrupts_add_the_deepest_handler_of_each_level(self) -> None:
+        source = """
+            extern "C" void reset() { for (;;) {} }
+            extern "C" void interrupt() { room<40>(); }
+            """
+        self.assertEqual(self.stack(check(source)), EXCEPTION + 40)
+        # On a level of its own, with nobody left on the other.
+        self.assertEqual(self.stack(check(source, options="--level interrupt")), EXCEPTION + 40)
+
+    def test_pointers_reach_functions_of_their_type_only(self) -> None:
+        verdict = check(
+            """
+            struct One { int value; };
+            struct Other { int value; };
+            FAR int of_one(const One& one) { room<40>(); return one.value; }
+            FAR int of_one_too(const One& one) { room<48>(); return one.value; }
+            FAR int of_other(const Other& other) { room<400>(); return other.value; }
+            FAR int of_number(unsigned number) { room<800>(); return int(number); }
+            extern int (*const volatile ones[])(const One&);
+            extern int (*const volatile others[])(const Other&);
+            extern int (*const volatile numbers[])(unsigned);
+            int (*const volatile ones[])(const One&) = {of_one, of_one_too};
+            int (*const volatile others[])(const Other&) = {of_other};
+            int (*const volatile numbers[])(unsigned) = {of_number};
+            FAR int call_other(const Other& other) { return others[0](other) + numbers[0](1) ; }
+            extern "C" void reset() { One one{1}; for (volatile int i = 0;; i = 1 - i) one.value = ones[i](one); }
+            extern "C" void interrupt() { Other other{1}; call_other(other); }
+            """,
+            options="--verbose",
+        )
+        self.assertRegex(verdict.figures, r"main loop \d+: reset \d+ -> of_one_too 48\n")
+        self.assertRegex(verdict.figures, r"-> call_other \d+ -> of_number 80\d\n")
+        self.assertRegex(verdict.figures, r"reset, .*: of_one, of_one_too\n")
+
+    def test_virtual_calls_reach_the_functions_of_their_slot(self) -> None:
+        verdict = check(
+            """
+            struct Base {
+              virtual void first() = 0;
+              virtual int second() const = 0;
+              virtual int third() = 0; };
+            struct Flat : Base {
+              void first() override { room<400>(); }
+              int second() const override { room<40>(); return 1; }
+              int third() override { room<800>(); return 2; } };
+            struct Deep : Base {
+              void first() override { room<400>(); }
+              int second() const override { room<80>(); return 3; }
+              int third() override { room<800>(); return 4; } };
+            constexpr Flat flat; constexpr Deep deep;
+            const Base* volatile which;
+            FAR int ask(const Base& base) { return base.second() + 1; }
+            extern "C" void reset() { for (;;) { which = &flat; which = &deep; ask(*which); } }
+            """,
+            options="--verbose",
+        )
+        self.assertTrue(verdict.accepted, verdict.problems)
+        self.assertRegex(verdict.figures, r"-> ask \d+ -> Deep::second 80\n")
+        self.assertRegex(verdict.figures, r"ask, .*: Flat::second, Deep::second\n")
+
+    def test_static_functions_of_one_name_in_two_files_are_two(self) -> None:
+        verdict = check(
+            """
+            void other();
+            static FAR void same() { room<40>(); }
+            extern "C" void reset() { for (;;) { same(); other(); } }
+            """,
+            """
+            static FAR void same() { room<80>(); asm volatile(""); }
+            FAR void other() { same(); }
+            """,
+            options="--verbose",
+        )
+        self.assertRegex(verdict.figures, r"main loop \d+: reset 8 -> other 0 -> same 80\n")
+
+    def test_a_handler_under_another_name_is_the_same_function(self) -> None:
+        verdict = check(
+            """
+            extern "C" void reset() { for (;;) {} }
+            extern "C" FAR void real() { room<40>(); }
+            extern "C" void interrupt() __attribute__((alias("real")));
+            """
+        )
+        self.assertEqual(self.stack(verdict), EXCEPTION + 40)
+
+    def test_code_in_ram_is_reached_through_the_linkers_veneers(self) -> None:
+        verdict = check(
+            """
+            FAR __attribute__((section(".ram_code"))) void program() { room<40>(); }
+            extern "C" void reset() { for (;;) { program(); } }
+            """,
+            options="--verbose",
+        )
+        self.assertRegex(verdict.figures, r"main loop \d+: reset 8 -> program 40\n")
+        self.assertTrue(verdict.accepted, verdict.problems)
+
+    def test_newlibs_copying_has_the_stack_that_the_table_says(self) -> None:
+        source = """
+            #include <string.h>
+            unsigned char a[999], b[999];
+            volatile unsigned size;
+            volatile int sum;
+            extern "C" void reset() {
+              for (;;) {
+                memcpy(a, b, size); memmove(a + sum, a, size); memset(a, 1, size); sum = memcmp(a, b, size); } }
+            """
+        for library in ("-lc", "-lc_nano"):
+            verdict = check(source, link_options=library)
+            self.assertTrue(verdict.accepted, verdict.problems)
+
+    def test_a_function_pointer_to_a_member_function(self) -> None:
+        verdict = check(
+            """
+            struct Thing { int value; FAR void plain() { room<40>(); } FAR void other(int) { room<400>(); } };
+            void (Thing::* volatile which)() = &Thing::plain;
+            void (Thing::* volatile unused)(int) = &Thing::other;
+            extern "C" void reset() { Thing thing{1}; for (;;) { (thing.*which)(); unused = nullptr; } }
+            """,
+            options="--verbose",
+        )
+        self.assertRegex(verdict.figures, r"main loop \d+: reset \d+ -> Thing::plain 40\n")
+
+    def test_flash_and_ram_of_an_image(self) -> None:
+        verdict = check(
+            """
+            volatile unsigned char with_value[100] = {1};
+            volatile unsigned char without[200];
+            [[gnu::section(".noinit")]] volatile unsigned char kept[300];
+            extern "C" void reset() { for (;;) { with_value[0] = without[0] = kept[0]; } }
+            """
+        )
+        self.assertIn("(600 static,", verdict.figures)
+        self.assertRegex(verdict.figures, r"^image: flash 196 of 65536 bytes, RAM 708 of 20480 bytes")
+
+
+class Refuses(unittest.TestCase):
+    def refused(self, reason: str, source: str, *more: str, **how: str) -> None:
+        verdict = check(source, *more, **how)  # type: ignore[arg-type]
+        self.assertFalse(verdict.accepted, verdict.figures)
+        self.assertRegex(verdict.problems, f"(?m)^image: {reason}")
+
+    # --- stack ---
+
+    def test_recursion(self) -> None:
+        self.refused(
+            "recursion: ping -> pong -> ping$",
+            """
+            FAR int pong(int n);
+            FAR int ping(int n) { return n ? pong(n - 1) + 1 : 0; }
+            FAR int pong(int n) { return n ? ping(n - 1) + 2 : 0; }
+            extern "C" void reset() { for (volatile int i = 0;; ) i = ping(i); }
+            """,
+        )
+
+    def test_recursion_through_a_pointer(self) -> None:
+        self.refused(
+            "recursion: walk -> walk$",
+            """
+            struct Tree { int value; };
+            FAR int walk(const Tree& tree);
+            extern int (*const volatile visit)(const Tree&);
+            int (*const volatile visit)(const Tree&) = walk;
+            FAR int walk(const Tree& tree) { return visit(tree) + 1; }
+            extern "C" void reset() { Tree tree{1}; for (;;) tree.value = walk(tree); }
+            """,
+        )
+
+    def test_recursion_in_a_handler(self) -> None:
+        self.refused(
+            "recursion: interrupt -> interrupt$",
+            """
+            volatile int n;
+            extern "C" void reset() { for (;;) {} }
+            extern "C" FAR void interrupt() { if (n) { interrupt(); n = n - 1; interrupt(); n = n + 1; } }
+            """,
+        )
+
+    def test_an_unbounded_frame(self) -> None:
+        source = """
+            extern "C" void reset() {{ for (volatile int n = 0;; n = n + 1) {{ {} }} }}
+            """
+        for frame in (
+            "volatile char* p = static_cast<char*>(__builtin_alloca(unsigned(n))); *p = 1;",
+            "volatile char a[n]; a[0] = 1;",
+        ):
+            self.refused("reset takes as much stack as it likes", source.format(frame), compile_options="-w")
+
+    def test_an_assemblers_function_that_is_reached(self) -> None:
+        self.refused(
+            r"foreign has no recorded stack \(reached by reset -> foreign\)",
+            """
+            extern "C" void foreign();
+            asm(".section .text.foreign\\n.thumb_func\\n.global foreign\\n.type foreign, %function\\n"
+                "foreign: bx lr\\n.size foreign, .-foreign\\n.text");
+            extern "C" void reset() { for (;;) foreign(); }
+            """,
+        )
+
+    def test_a_copy_that_takes_more_than_the_table_says(self) -> None:
+        self.refused(
+            "memset has 64 bytes on the stack, and only 16 in the tool's table",
+            """
+            extern "C" void* memset(void*, int, size_t);
+            asm(".section .text.memset\\n.thumb_func\\n.global memset\\n.type memset, %function\\n"
+                "memset: sub sp, #64\\nadd sp, #64\\nbx lr\\n.size memset, .-memset\\n.text");
+            volatile unsigned size;
+            extern "C" void reset() { for (;;) memset(&stack_top, 0, size); }
+            """,
+        )
+
+    def test_a_call_that_the_compiler_has_not_seen(self) -> None:
+        self.refused(
+            "reset branches to hidden, unrecorded by the compiler",
+            """
+            extern "C" __attribute__((used)) FAR void hidden() { room<40>(); }
+            extern "C" void reset() { for (;;) asm volatile("bl hidden" ::: "lr", "memory"); }
+            """,
+        )
+
+    def test_a_jump_that_the_compiler_has_not_seen(self) -> None:
+        self.refused(
+            "interrupt branches to hidden, unrecorded by the compiler",
+            """
+            extern "C" __attribute__((used)) FAR void hidden() { room<40>(); }
+            extern "C" void reset() { for (;;) {} }
+            extern "C" __attribute__((naked)) void interrupt() { asm volatile("mrs r0, msp\\nb.w hidden"); }
+            """,
+        )
+
+    def test_a_call_through_a_register_that_the_compiler_has_not_seen(self) -> None:
+        self.refused(
+            "reset branches through a register, unrecorded by the compiler",
+            """
+            extern "C" void reset() { for (;;) asm volatile("blx r3" ::: "r3", "lr", "memory"); }
+            """,
+        )
+
+    def test_a_push_that_the_compiler_has_not_seen(self) -> None:
+        self.refused(
+            "reset has 8 bytes on the stack, and only 0 recorded by the compiler",
+            """
+            extern "C" void reset() { for (;;) asm volatile("push {r0, r1}\\npop {r0, r1}" ::: "memory"); }
+            """,
+        )
+
+    def test_a_stack_pointer_that_is_computed(self) -> None:
+        self.refused(
+            "reset moves the stack pointer in a way that is not understood",
+            """
+            extern "C" void reset() { for (;;) asm volatile("sub sp, sp, r0" ::: "memory"); }
+            """,
+        )
+
+    def test_a_level_of_a_handler_that_does_not_exist(self) -> None:
+        self.refused(
+            "no interrupt's handler is called timer",
+            'extern "C" void reset() { for (;;) {} }',
+            options="--level timer",
+        )
+
+    def test_a_vector_that_is_no_function(self) -> None:
+        self.refused(
+            "vector 15 holds 0x[0-9a-f]+, which is no function",
+            """
+            extern "C" void reset() { for (;;) {} }
+            asm(".global interrupt\\n.set interrupt, 0x08000003");
+            """,
+        )
+
+    # --- symbols and sections ---
+
+    def test_heap(self) -> None:
+        for source in (
+            """
+            FAR void* operator new(size_t) { return &stack_top; }
+            volatile int* volatile p;
+            extern "C" void reset() { for (;;) p = new int(1); }
+            """,
+            """
+            extern "C" FAR void* malloc(size_t) { room<8>(); return &stack_top; }
+            void* volatile p;
+            extern "C" void reset() { for (;;) p = malloc(3); }
+            """,
+        ):
+            self.refused(r"(_Znwj|malloc): heap", source)
+
+    def test_floating_point(self) -> None:
+        for kind, symbol in (("double", "__aeabi_dmul"), ("float", "__aeabi_fmul")):
+            self.refused(
+                f"{symbol}: floating point",
+                f'volatile {kind} d; extern "C" void reset() {{ for (;;) d = d * d; }}',
+                link_options="-lgcc",
+            )
+        self.refused(
+            "__aeabi_ui2d: floating point",
+            'volatile double d; volatile unsigned u; extern "C" void reset() { for (;;) d = u; }',
+            link_options="-lgcc",
+        )
+
+    def test_a_floating_point_unit(self) -> None:
+        self.refused(
+            "instructions of a floating-point unit",
+            'volatile float f; extern "C" void reset() { for (;;) f = f * f; }',
+            compile_options="-mcpu=cortex-m4 -mfpu=fpv4-sp-d16 -mfloat-abi=softfp",
+            link_options="-mcpu=cortex-m4 -mfpu=fpv4-sp-d16 -mfloat-abi=softfp",
+        )
+
+    def test_64_bit_division(self) -> None:
+        for kind in ("int64_t", "uint64_t"):
+            self.refused(
+                "__aeabi_u?ldivmod: 64-bit division",
+                f'volatile {kind} n = 7; extern "C" void reset() {{ for (;;) n = n / (n + 1); }}',
+                link_options="-lgcc -lc",
+            )
+
+    def test_the_cxx_runtime(self) -> None:
+        self.refused(
+            "__cxa_guard_acquire: the C\\+\\+ run-time library",
+            """
+            volatile int source;
+            extern "C" FAR int __cxa_guard_acquire(void*) { room<8>(); return 1; }
+            extern "C" void __cxa_guard_release(void*) {}
+            FAR int once() { static int value = source; return value; }
+            extern "C" void reset() { for (;;) source = once(); }
+            """,
+            compile_options="-fthreadsafe-statics",
+        )
+
+    def test_globals_initialised_at_run_time(self) -> None:
+        source = """
+            volatile int before;
+            volatile int global = before;
+            extern "C" void reset() { for (;;) before = global; }
+            """
+        self.refused("section .init_array: globals initialised at run time", source)
+        self.refused(".*: globals initialised at run time", source, link_options="-Wl,--no-gc-sections")
+
+    def test_unwind_tables(self) -> None:
+        self.refused(
+            "section .ARM.exidx: unwind tables",
+            'extern "C" void reset() { for (;;) {} } extern "C" void __aeabi_unwind_cpp_pr0() {}',
+            compile_options="-funwind-tables",
+        )
+
+    def test_a_call_of_what_need_not_be_there(self) -> None:
+        self.refused(
+            "reset calls missing, which the image does not have",
+            """
+            extern "C" __attribute__((weak)) void missing();
+            extern "C" void reset() { for (;;) if (missing) missing(); }
+            """,
+        )
+
+    def test_undefined_symbols(self) -> None:
+        self.refused(
+            "missing is undefined",
+            'extern "C" volatile int missing; extern "C" void reset() { for (;;) missing = 1; }',
+            link_options="-Wl,--unresolved-symbols=ignore-all",
+        )
+
+    def test_texts_for_people(self) -> None:
+        self.refused(
+            "section .text has the text 'clear both latches', which is for people",
+            """
+            extern const char text[];
+            const char text[] = "clear both latches of all channels";
+            volatile char c;
+            extern "C" void reset() { for (volatile int i = 0;;) c = text[i]; }
+            """,
+        )
+
+    # --- budgets ---
+
+    def test_more_than_the_budgets(self) -> None:
+        source = 'volatile char a[100]; extern "C" void reset() { for (;;) a[0] = 1; }'
+        flash = check(source, flash=64)
+        self.assertFalse(flash.accepted)
+        self.assertRegex(flash.problems, r"^image: flash is over its budget: \d+ of 64 bytes\n$")
+        # 100 bytes and three exceptions.
+        self.assertTrue(check(source, ram=208).accepted)
+        ram = check(source, ram=207)
+        self.assertFalse(ram.accepted)
+        self.assertEqual(ram.problems, "image: RAM is over its budget: 208 of 207 bytes\n")
+
+
+if __name__ == "__main__":
+    unittest.main()

@@ -1,0 +1,242 @@
+"""check-image's parts, each on text that is written here."""
+
+from __future__ import annotations
+
+import sys
+import unittest
+from pathlib import Path
+
+sys.path.insert(0, str(Path(__file__).resolve().parents[2] / "toolchain"))
+
+from check_image import call_graph, call_sites  # noqa: E402
+from check_image.disassembly import Instruction, StackPointerUnknown, stack_of  # noqa: E402
+from check_image.functions import Function, demangle, without_parameters  # noqa: E402
+from check_image.stack import DeepestChains, Graph, Level, Node, Unbounded, worst_case  # noqa: E402
+
+CALL_GRAPH = r"""graph: { title: "core.cpp"
+node: { title: "reset" label: "void reset()\ncore.cpp:1:1\n8 bytes (static)\n0 dynamic objects" }
+node: { title: "core.cpp:_ZL4turnv" label: "void turn()\ncore.cpp:2:1\n24 bytes (static)\n0 dynamic objects" }
+edge: { sourcename: "reset" targetname: "core.cpp:_ZL4turnv" label: "core.cpp:1:9" }
+node: { title: "_Z5writev" label: "void write()\ncore.cpp:3:1\n40 bytes (dynamic,bounded)\n0 dynamic objects" }
+edge: { sourcename: "core.cpp:_ZL4turnv" targetname: "_Z5writev" label: "core.cpp:2:9" }
+node: { title: "_Z4readv" label: "void read()\ncore.cpp:4:1\n16 bytes (static)\n0 dynamic objects" }
+edge: { sourcename: "core.cpp:_ZL4turnv" targetname: "_Z4readv" }
+node: { title: "memcpy" label: "void* memcpy(void*, const void*, size_t)\nstring.h:31:9" shape : ellipse }
+edge: { sourcename: "_Z4readv" targetname: "memcpy" label: "core.cpp:4:9" }
+node: { title: "__indirect_call" label: "Indirect Call Placeholder" shape : ellipse }
+edge: { sourcename: "_Z4readv" targetname: "__indirect_call" label: "core.cpp:4:20" }
+node: { title: "_Z4growj" label: "void grow(unsigned)\ncore.cpp:5:1\n16 bytes (dynamic)\n1 dynamic objects\n p" }
+node: { title: "_Zli2_mx" label: "long operator\"\" _m(long)\ncore.cpp:6:1\n0 bytes (static)\n0 dynamic objects" }
+}
+"""
+
+
+class CallGraph(unittest.TestCase):
+    def setUp(self) -> None:
+        self.records = {record.title.name: record for record in call_graph.parse(CALL_GRAPH)}
+
+    def test_only_what_was_compiled_has_a_record(self) -> None:
+        self.assertEqual(
+            list(self.records), ["reset", "_ZL4turnv", "_Z5writev", "_Z4readv", "_Z4growj", "_Zli2_mx"]
+        )
+        self.assertEqual(self.records["_ZL4turnv"].title.file, "core.cpp")
+        self.assertEqual(self.records["_Z5writev"].location, "core.cpp:3:1")
+
+    def test_frames(self) -> None:
+        self.assertEqual([record.frame for record in self.records.values()], [8, 24, 40, 16, 16, 0])
+
+    def test_only_frames_without_a_bound_are_unbounded(self) -> None:
+        self.assertEqual([name for name, r in self.records.items() if not r.is_bounded], ["_Z4growj"])
+
+    def test_calls(self) -> None:
+        self.assertEqual({title.name for title in self.records["_ZL4turnv"].calls}, {"_Z5writev", "_Z4readv"})
+        self.assertEqual({title.name for title in self.records["_Z4readv"].calls}, {"memcpy"})
+        self.assertEqual(self.records["_Z4readv"].indirect_calls, ["core.cpp:4:20"])
+
+    def test_any_other_text_is_refused(self) -> None:
+        for line in ("node: { }", 'edge: { sourcename: "unheard" targetname: "of" }', "region: {"):
+            with self.assertRaises(call_graph.NotACallGraph):
+                call_graph.parse(line)
+
+    def test_the_deepest_chain(self) -> None:
+        chain = DeepestChains(self.graph(4)).below(0)
+        self.assertEqual(str(chain), "reset 8 -> _ZL4turnv 24 -> _Z5writev 40")
+        self.assertEqual(chain.size, 72)
+        # 16 and 32 are more than 40.
+        self.assertEqual(
+            str(DeepestChains(self.graph(32)).below(0)), "reset 8 -> _ZL4turnv 24 -> _Z4readv 16 -> memcpy 32"
+        )
+
+    def graph(self, memcpy: int) -> Graph:
+        """The call graph with addresses by position."""
+        names = [*self.records, "memcpy"]
+        nodes = {
+            names.index(name): Node(name, r.frame, frozenset(names.index(title.name) for title in r.calls))
+            for name, r in self.records.items()
+        }
+        return {**nodes, names.index("memcpy"): Node("memcpy", memcpy, frozenset())}
+
+
+class WorstCase(unittest.TestCase):
+    GRAPH: Graph = {
+        0: Node("reset", 8, frozenset({1, 2})),
+        1: Node("turn", 100, frozenset({3})),
+        2: Node("start", 50, frozenset({3})),
+        3: Node("leaf", 4, frozenset()),
+        10: Node("uart", 16, frozenset({3})),
+        11: Node("timer", 24, frozenset()),
+        12: Node("tick", 12, frozenset({3})),
+        20: Node("again", 8, frozenset({21})),
+        21: Node("and_again", 8, frozenset({20})),
+        30: Node("unknown", 0, frozenset(), "has no recorded stack"),
+        31: Node("asks", 8, frozenset({3, 30})),
+    }
+
+    def test_handlers_of_one_level_count_once_the_deepest(self) -> None:
+        # 8 + 100 + 4; and 36 of the exception on 24.
+        self.assertEqual(worst_case(self.GRAPH, 0, [Level("interrupts", [10, 11, 12])]).size, 112 + 36 + 24)
+
+    def test_levels_add_up(self) -> None:
+        levels = [Level("interrupts", [10, 11]), Level("tick", [12]), Level("faults", [])]
+        self.assertEqual(worst_case(self.GRAPH, 0, levels).size, 112 + (36 + 24) + (36 + 16))
+
+    def test_recursion_has_no_bound(self) -> None:
+        with self.assertRaisesRegex(Unbounded, "^recursion: again -> and_again -> again$"):
+            worst_case(self.GRAPH, 20, [])
+
+    def test_what_is_unknown_has_no_bound_where_it_is_reached(self) -> None:
+        with self.assertRaisesRegex(
+            Unbounded, r"^unknown has no recorded stack \(reached by asks -> unknown\)$"
+        ):
+            worst_case(self.GRAPH, 0, [Level("interrupts", [31])])
+
+
+class CallsThroughPointers(unittest.TestCase):
+    DUMP = """
+;; Function answer (_Z6answerRK5State, funcdef_no=3, decl_uid=1, cgraph_uid=2, symbol_order=1)
+
+Refusal answer (const struct State & state, struct Bytes args)
+{
+  Refusal (*<T44ec>) (const struct State &, struct Bytes, uint16_t, Kind) _5;
+  void Thing::<T2b8> (struct Thing *) * SR.13;
+  Refusal _6;
+
+  <bb 2> [local count: 1073741824]:
+  [dcon.cpp:9:71] _6 = _5 (state_1(D), [dcon.cpp:9:70] args, 3, kind_2(D));
+  [dcon.cpp:10:5] SR.13_12 (_3); [tail call]
+  [dcon.cpp:11:5] direct (_3, 4);
+  [dcon.cpp:12:7] _9 = OBJ_TYPE_REF(_4;(const struct Memory)_2->3B) (_2, f_1 (D));
+  [dcon.cpp:13:7] alias_7(D) (_3, _4);
+}
+"""
+
+    def reaches(self, line: int, column: int, readable: str) -> bool:
+        """Whether all calls there can reach a function of this demangled name."""
+        sites = call_sites.parse(self.DUMP)["_Z6answerRK5State", f"dcon.cpp:{line}:{column}"]
+        return all(site.can_reach(Function("", readable, 0, 0, ())) for site in sites)
+
+    def test_parameters_decide(self) -> None:
+        for readable, expected in {
+            "ex::read(ex::State const&, ex::Bytes, unsigned short, ex::Kind)": True,
+            "ex::read(ex::State const&, ex::Bytes, unsigned short, char)": True,  # Kind may be one
+            "read": True,  # of C: it may be anything
+            "ex::read(ex::State const&, ex::Bytes, unsigned int, ex::Kind)": False,
+            "ex::read(ex::State*, ex::Bytes, unsigned short, ex::Kind)": False,
+            "ex::read(ex::Other const&, ex::Bytes, unsigned short, ex::Kind)": False,
+            "ex::read(ex::State const&, ex::Bytes, unsigned short)": False,
+            "run()::{lambda(ex::State const&, ex::Bytes)#1}::_FUN(ex::State const&, ex::Bytes)": False,
+        }.items():
+            with self.subTest(readable):
+                self.assertEqual(self.reaches(9, 71, readable), expected)
+
+    def test_a_member_function_has_its_object_in_front(self) -> None:
+        self.assertTrue(self.reaches(10, 5, "Thing::turn()"))
+        self.assertFalse(self.reaches(10, 5, "Thing::turn(int)"))
+
+    def test_a_virtual_function_has_slot_parameters_and_constness(self) -> None:
+        (site,) = call_sites.parse(self.DUMP)["_Z6answerRK5State", "dcon.cpp:12:7"]
+        self.assertEqual(site, call_sites.VirtualCall(3, True, 1))
+        self.assertTrue(self.reaches(12, 7, "Eeprom::busy(int) const"))
+        self.assertFalse(self.reaches(12, 7, "Eeprom::busy(int)"))
+        self.assertFalse(self.reaches(12, 7, "Eeprom::busy() const"))
+
+    def test_where_the_type_has_a_name_only_the_number_of_parameters_decides(self) -> None:
+        self.assertTrue(self.reaches(13, 7, "ex::at(int, ex::Time)"))
+        self.assertFalse(self.reaches(13, 7, "ex::at(int, ex::Time, int)"))
+
+    def test_direct_calls_are_left_to_the_call_graph(self) -> None:
+        self.assertNotIn(("_Z6answerRK5State", "dcon.cpp:11:5"), call_sites.parse(self.DUMP))
+
+
+class MachineCode(unittest.TestCase):
+    def stack(self, text: str) -> int:
+        """Of `mnemonic operands` a line; a line is 2 bytes, and branches go to `@line`, from 0."""
+        code = []
+        for number, line in enumerate(text.strip().splitlines()):
+            mnemonic, _, operands = line.strip().partition(" ")
+            at = operands.find("@")
+            if at >= 0:
+                operands = f"{operands[:at]}{2 * int(operands[at + 1:]):x} <f>"
+            code.append(Instruction(2 * number, mnemonic, operands))
+        return stack_of(code)
+
+    def test_pushes_and_frames_add_up(self) -> None:
+        self.assertEqual(
+            self.stack("push {r4, r5, r6, lr}\nsub sp, #24\nadd sp, #24\npop {r4, r5, r6, pc}"), 40
+        )
+        self.assertEqual(
+            self.stack("stmdb sp!, {r4-r11, lr}\nsub.w sp, sp, #512\nstrd r0, r1, [sp, #-8]!\nbx lr"), 556
+        )
+        self.assertEqual(self.stack("str.w lr, [sp, #-4]!\nldr.w pc, [sp], #4"), 4)
+
+    def test_ways_that_exclude_each_other_do_not_add_up(self) -> None:
+        text = "cbz r0, @4\npush {r4, lr}\nbl @0\npop {r4, pc}\npush {r3, r4, r5, lr}\npop {r3, r4, r5, pc}"
+        self.assertEqual(self.stack(text), 16)
+
+    def test_behind_a_conditional_return_the_frame_is_still_there(self) -> None:
+        self.assertEqual(
+            self.stack("push {r4, lr}\nit ne\npopne {r4, pc}\nsub sp, #8\nadd sp, #8\npop {r4, pc}"), 16
+        )
+
+    def test_a_tables_targets_begin_at_the_depth_of_the_jump(self) -> None:
+        text = "push {r4, lr}\ntbb [pc, r0]\n.short 0x0201\nsub sp, #8\nadd sp, #8\npop {r4, pc}"
+        self.assertEqual(self.stack(text), 16)
+
+    def test_a_conditional_branch_is_no_call(self) -> None:
+        self.assertEqual(self.stack("bls.n @2\nbx lr\npush {r4, lr}\npop {r4, pc}"), 8)
+
+    def test_what_is_computed_is_unknown(self) -> None:
+        for text in ("sub sp, r0", "mov sp, r7", "add.w sp, sp, r3", "push {r0}\nb.n @0"):
+            with self.subTest(text), self.assertRaises(StackPointerUnknown):
+                self.stack(text)
+
+    def test_calls_and_jumps_through_registers(self) -> None:
+        for mnemonic, operands, expected in (
+            ("blx", "r3", True),
+            ("bx", "r3", True),
+            ("ldr.w", "pc, [r0, #4]", True),
+            ("mov", "pc, r2", True),
+            ("bx", "lr", False),
+            ("mov", "pc, lr", False),
+            ("ldr.w", "pc, [sp], #4", False),
+            ("bl", "8000 <f>", False),
+            ("ldr.w", "pc, [pc, r2, lsl #2]", False),  # a table of its own
+        ):
+            with self.subTest(f"{mnemonic} {operands}"):
+                self.assertEqual(Instruction(0, mnemonic, operands).is_indirect, expected)
+
+
+class Names(unittest.TestCase):
+    def test_names_without_what_only_overloads_need(self) -> None:
+        for mangled, expected in {
+            "_ZN6ex90006Module5beginEtNS_4TimeEPFNS_10LineTimingEmE": "ex9000::Module::begin",
+            "_ZNK12_GLOBAL__N_11AclEi.isra.0": "A::operator()",
+            "_ZN1a1fILj3EEEvv": "a::f<3u>",
+            "_ZZ3lamiENKUliE_clEi": "lam::{lambda#1}::operator()",
+            "reset": "reset",
+        }.items():
+            self.assertEqual(without_parameters(demangle([mangled])[mangled]), expected)
+
+
+if __name__ == "__main__":
+    unittest.main()

@@ -1,0 +1,84 @@
+"""Images small enough to know every byte of: snippets of C++, compiled, linked and handed to check-image."""
+
+from __future__ import annotations
+
+import subprocess
+import tempfile
+from dataclasses import dataclass
+from pathlib import Path
+
+_HERE = Path(__file__).resolve().parent
+_TOOL = _HERE.parents[1] / "toolchain" / "check-image"
+_COMPILE = (
+    "arm-none-eabi-g++ -std=c++17 -mcpu=cortex-m3 -mthumb -Os -ffreestanding -fno-exceptions -fno-rtti"
+    " -ffunction-sections -fdata-sections -fno-threadsafe-statics -fno-unwind-tables"
+    " -fno-asynchronous-unwind-tables -fcallgraph-info=su,da -fdump-tree-optimized-lineno"
+).split()
+_LINK = "arm-none-eabi-g++ -mcpu=cortex-m3 -mthumb -nostdlib -Wl,--gc-sections,--no-warn-rwx-segments".split()
+
+# `room<N>()` takes N bytes of stack.
+PRELUDE = """
+#include <stddef.h>
+#include <stdint.h>
+using Handler = void (*)();
+extern "C" uint32_t stack_top;
+extern "C" void reset();
+extern "C" void interrupt();
+extern "C" void fault();
+#define FAR __attribute__((noinline, noclone))
+template <unsigned size> inline __attribute__((always_inline)) void room() {
+  volatile unsigned char bytes[size];
+  bytes[0] = 1;
+}
+"""
+NO_INTERRUPT = """
+extern "C" void interrupt() {}
+"""
+# Of an image that has one interrupt.
+VECTORS = """
+extern "C" void fault() { for (;;) {} }
+[[gnu::section(".vectors"), gnu::used]] const Handler vectors[] = {
+    reinterpret_cast<Handler>(&stack_top), reset, fault, fault, nullptr, nullptr, nullptr, nullptr,
+    nullptr, nullptr, nullptr, nullptr, nullptr, nullptr, nullptr, interrupt};
+"""
+
+
+@dataclass(frozen=True)
+class Verdict:
+    accepted: bool
+    figures: str
+    problems: str
+
+
+def check(
+    source: str,
+    *more_sources: str,
+    options: str = "",
+    compile_options: str = "",
+    link_options: str = "",
+    flash: int = 65536,
+    ram: int = 20480,
+) -> Verdict:
+    """Makes an image of the sources, each a translation unit; the first gets the vectors. Checks it."""
+    vectors = VECTORS if "interrupt" in source else NO_INTERRUPT + VECTORS
+    with tempfile.TemporaryDirectory(prefix="check-image-") as folder:
+        objects = []
+        for number, text in enumerate((source + vectors, *more_sources)):
+            cpp = Path(folder, f"unit{number}.cpp")
+            cpp.write_text(PRELUDE + text)
+            objects.append(str(cpp.with_suffix(".cpp.o")))
+            _run([*_COMPILE, *compile_options.split(), "-c", str(cpp), "-o", objects[-1]])
+        image = str(Path(folder, "image.elf"))
+        _run([*_LINK, "-T", str(_HERE / "image.ld"), *objects, *link_options.split(), "-o", image])
+        done = subprocess.run(
+            [str(_TOOL), image, *objects, "--flash", str(flash), "--ram", str(ram), *options.split()],
+            capture_output=True,
+            text=True,
+        )
+    return Verdict(done.returncode == 0, done.stdout, done.stderr)
+
+
+def _run(command: list[str]) -> None:
+    done = subprocess.run(command, capture_output=True, text=True)
+    if done.returncode != 0:
+        raise AssertionError(f"{' '.join(command)}:\n{done.stderr}")
