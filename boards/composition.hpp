@@ -63,14 +63,16 @@ void on_line() {
 }
 
 void on_silence_timer() {
-  SilenceTimer::acknowledge();
-  device.on_silence();
+  if (SilenceTimer::ran_out()) {
+    device.on_silence();
+  }
 }
 
 void on_line_end_timer() {
-  LineEndTimer::acknowledge();
-  board.line.on_end_timer();
-  device.wake();
+  if (LineEndTimer::ran_out()) {
+    board.line.on_end_timer();
+    device.wake();
+  }
 }
 
 void on_i2c() {

@@ -16,7 +16,9 @@ struct Bytes {
   [[nodiscard, gnu::always_inline]] constexpr Bytes from(std::size_t offset) const {
     return offset < size ? Bytes{data + offset, size - offset} : Bytes{};
   }
-  [[nodiscard, gnu::always_inline]] constexpr Bytes first(std::size_t count) const { return {data, count < size ? count : size}; }
+  [[nodiscard, gnu::always_inline]] constexpr Bytes first(std::size_t count) const {
+    return {data, count < size ? count : size};
+  }
   [[nodiscard]] constexpr const std::uint8_t* begin() const { return data; }
   [[nodiscard]] constexpr const std::uint8_t* end() const { return data + size; }
 

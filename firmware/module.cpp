@@ -52,17 +52,32 @@ void Module::step(Time now) {
   }
   heed_host_ok();
   expire_host_watchdog(now);  // before anything that drives outputs
-  go_on_storing(now);
-  if (phase_ == Phase::Idle) {
-    const Frame* frame = receiver_.queue().waiting();
-    if (frame != nullptr) {
-      judge(*frame, now);
-      receiver_.queue().drop_in_main_loop();
-    }
+  if (storing_leftovers_ || phase_ == Phase::MustStore || phase_ == Phase::Storing) {
+    go_on_storing(now);
+  }
+  if (phase_ == Phase::Idle && receiver_.queue().waiting() != nullptr) {
+    judge();
+  }
+  if (phase_ == Phase::Judged) {
+    do_as_judged(now);
   }
   if (leftovers_) {
     store_leftovers(now);
   }
+}
+
+Bytes Module::answer_at_once() {
+  // With the host watchdog running, what the clock says comes first.
+  if (phase_ != Phase::Idle || line_quiet_.armed() || state().settings.watchdog_enabled ||
+      receiver_.queue().waiting() == nullptr) {
+    return {};
+  }
+  judge();
+  if (phase_ != Phase::ReplyReady) {
+    return {};
+  }
+  phase_ = Phase::Replying;
+  return exchange_.reply.bytes();
 }
 
 // --- reset ---
@@ -138,7 +153,7 @@ void Module::heed_host_ok() {
 
 void Module::expire_host_watchdog(Time now) {
   State& state = exchange_.state_;
-  if (!host_watchdog_.expired(state.settings, now)) {
+  if (!state.settings.watchdog_enabled || !host_watchdog_.expired(state.settings, now)) {
     return;
   }
   // At once and whatever the memory does; that it is stored follows (store_leftovers).
@@ -150,13 +165,13 @@ void Module::expire_host_watchdog(Time now) {
 
 // --- requests ---
 
-void Module::judge(const Frame& frame, Time now) {
-  if (edges_collected_ != edges_.edges()) {
+void Module::judge() {
+  const Frame& frame = *receiver_.queue().waiting();
+  if (kBuiltInputs != 0 && edges_collected_ != edges_.edges()) {
     collect_edges();
   }
   expired_since_judged_ = false;
   exchange_.frame = frame.bytes();
-  exchange_.outcome.clear();
   exchange_.reply.clear();
   if (ascii()) {
     dcon::answer(exchange_);
@@ -166,19 +181,30 @@ void Module::judge(const Frame& frame, Time now) {
   reply_due_.set(frame.received + turn_around_);
   Outcome& outcome = exchange_.outcome;
   if (outcome.refusal != Refusal::None) {
-    outcome.drop();  // a refused request changes nothing
+    outcome.clear();  // a refused request changes nothing
     count_exception();
   }
   if (exchange_.reply.empty()) {
     ++exchange_.state_.diagnostics.no_responses;
   }
-  if (outcome.change.empty()) {
+  if (outcome.empty()) {
+    answered();
+  } else {
+    phase_ = Phase::Judged;
+  }
+  receiver_.queue().drop_in_main_loop();
+}
+
+void Module::do_as_judged(Time now) {
+  if (exchange_.outcome.change.empty()) {
     carry_out(now);
   } else {
     phase_ = Phase::MustStore;
     go_on_storing(now);
   }
 }
+
+void Module::answered() { phase_ = exchange_.reply.empty() ? Phase::Idle : Phase::ReplyReady; }
 
 void Module::carry_out(Time now) {
   State& state = exchange_.state_;
@@ -201,7 +227,8 @@ void Module::carry_out(Time now) {
   if (outcome.clear_counters != 0) {
     state.inputs.clear_counters(outcome.clear_counters);
   }
-  phase_ = exchange_.reply.empty() ? Phase::Idle : Phase::ReplyReady;
+  exchange_.outcome.clear();
+  answered();
 }
 
 void Module::have_effects(Time now) {
@@ -233,7 +260,7 @@ void Module::have_effects(Time now) {
 }
 
 void Module::refuse_store() {
-  exchange_.outcome.drop();
+  exchange_.outcome.clear();
   exchange_.outcome.refusal = Refusal::StoreFailed;
   if (ascii()) {
     dcon::refuse_store(exchange_);
@@ -241,7 +268,7 @@ void Module::refuse_store() {
     modbus::refuse_store(exchange_);
   }
   count_exception();
-  phase_ = exchange_.reply.empty() ? Phase::Idle : Phase::ReplyReady;
+  answered();
 }
 
 void Module::count_exception() {

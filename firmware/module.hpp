@@ -41,7 +41,7 @@ class Module {
   Duration on_byte(std::uint8_t byte, ByteStatus status, Time now) {
     return receiver_.on_byte(byte, status, now);
   }
-  Duration on_silence(Time now) { return receiver_.on_silence(now); }
+  Duration on_silence() { return receiver_.on_silence(); }
   /// See InputEdges::on_edge.
   void on_edge(unsigned channel, bool level) { edges_.on_edge(channel, level); }
   void on_tick() { module_watchdog_.tick_alive(); }
@@ -53,6 +53,9 @@ class Module {
   void look_around(bool init_switch, Time now);
   /// One turn: what the interrupts have gathered, what the clock says, what the memory has done.
   void step(Time now);
+  /// The short way, when a silence was told: the reply to a request that asks for nothing but an answer, as
+  /// `take_reply` gives it. Empty where `step` must decide.
+  Bytes answer_at_once();
   /// Interrupts too: a frame or a host OK waits for `step`.
   [[nodiscard]] bool line_has_news() const {
     return receiver_.queue().waiting() != nullptr || receiver_.host_oks() != host_oks_heeded_;
@@ -72,7 +75,8 @@ class Module {
   /// Bits per second, from one reset to the next.
   [[nodiscard]] std::uint32_t baud() const { return baud_rate(state().in_force.baud_code); }
 
-  /// What to do with the memory; the same until `memory_done`.
+  [[nodiscard]] bool wants_memory() const { return store_.busy(); }
+  /// What to do with the memory, where it is wanted; the same until `memory_done`.
   [[nodiscard]] MemoryJob memory_job() { return store_.job(); }
   void memory_done(bool ok) { store_.done(ok); }
 
@@ -98,6 +102,7 @@ class Module {
   enum class Phase : std::uint8_t {
     Booting,     ///< reading settings, waiting for INIT* to settle
     Idle,        ///< the next frame may be judged
+    Judged,      ///< there is something to do beside answering
     MustStore,   ///< judged; the memory is busy with something else
     Storing,     ///< judged; the memory is taking the change
     ReplyReady,  ///< done; the reply waits for its moment
@@ -116,8 +121,10 @@ class Module {
   void go_on_storing(Time now);
   void store_leftovers(Time now);
   void have_effects(Time now);
-  void judge(const Frame& frame, Time now);
+  void judge();
+  void do_as_judged(Time now);
   void carry_out(Time now);
+  void answered();
   void refuse_store();
   void count_exception();
   [[nodiscard]] bool memory_is_free() const;

@@ -56,7 +56,7 @@ class Deadline {
   constexpr void disarm() { armed_ = false; }
 
   [[nodiscard]] constexpr bool armed() const { return armed_; }
-  [[nodiscard]] constexpr bool reached(Time now) const {
+  [[nodiscard, gnu::always_inline]] constexpr bool reached(Time now) const {
     return armed_ && now.since(when_).microseconds() < kHalfRange;
   }
   /// How long until it is reached, 0 where it is; only for one that is armed.

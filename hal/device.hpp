@@ -40,12 +40,12 @@ class Device {
     }
   }
   void on_silence() {
-    const Duration more = module_.on_silence(board_.clock.now());
+    const Duration more = module_.on_silence();
     if (!(more == Duration())) {
       board_.silence_timer.restart(more);
     }
     if (module_.line_has_news()) {
-      wake();
+      silences_.store_in_interrupt(static_cast<std::uint8_t>(silences_.load() + 1U));
     }
   }
   void on_edge(unsigned channel, bool level) { module_.on_edge(channel, level); }
@@ -58,7 +58,9 @@ class Device {
 
   // --- main loop; none of it blocks ---
 
-  [[nodiscard]] bool news() const { return restless_ || wakes_.load() != wakes_seen_; }
+  [[nodiscard]] bool news() const {
+    return silences_.load() != silences_seen_ || wakes_.load() != wakes_seen_ || restless_;
+  }
 
   /// INIT*, the status LED and the hardware watchdog: every tick.
   void look_around() {
@@ -71,6 +73,14 @@ class Device {
 
   /// Requests, settings and outputs.
   void turn() {
+    if (silences_.load() != silences_seen_) {
+      silences_seen_ = silences_.load();
+      const Bytes reply = module_.answer_at_once();
+      if (reply.size != 0) {
+        send(reply);
+        return;
+      }
+    }
     wakes_seen_ = wakes_.load();
     const Time now = board_.clock.now();
     look_after_memory(now);
@@ -101,31 +111,36 @@ class Device {
     }
     const Bytes reply = module_.take_reply(now);
     if (reply.size != 0) {
-      reply_under_way_ = true;
-      board_.line.send(reply);
-      module_.reply_started();
+      send(reply);
     }
   }
 
+  void send(Bytes reply) {
+    reply_under_way_ = true;
+    board_.line.send(reply);
+    module_.reply_started();
+  }
+
   void look_after_memory(Time now) {
-    restless_ = board_.memory.go_on(now);
-    if (board_.memory.busy()) {
-      return;
-    }
     if (memory_job_under_way_) {
-      memory_job_under_way_ = false;
+      restless_ = board_.memory.go_on(now);
+      if (board_.memory.busy()) {
+        return;
+      }
+      memory_job_under_way_ = restless_ = false;
       module_.memory_done(board_.memory.succeeded());
     }
+    if (module_.wants_memory()) {
+      begin_memory_job(now);
+    }
+  }
+
+  void begin_memory_job(Time now) {
     const MemoryJob job = module_.memory_job();
-    switch (job.kind) {
-      case MemoryJob::Kind::Read:
-        board_.memory.start_read(job.address, job.bytes, now);
-        break;
-      case MemoryJob::Kind::Write:
-        board_.memory.start_write(job.address, {job.bytes.data, job.bytes.size}, now);
-        break;
-      case MemoryJob::Kind::None:
-        return;
+    if (job.kind == MemoryJob::Kind::Read) {
+      board_.memory.start_read(job.address, job.bytes, now);
+    } else {
+      board_.memory.start_write(job.address, {job.bytes.data, job.bytes.size}, now);
     }
     memory_job_under_way_ = true;
   }
@@ -136,7 +151,9 @@ class Device {
   bool memory_job_under_way_ = false;
   bool restless_ = false;  ///< the memory wants to be looked after without being told by an interrupt
   std::uint8_t wakes_seen_ = 0;
+  std::uint8_t silences_seen_ = 0;
   WrittenByInterrupt<std::uint8_t> wakes_;
+  WrittenByInterrupt<std::uint8_t> silences_;
   Module module_;
 };
 

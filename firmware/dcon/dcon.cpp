@@ -32,7 +32,7 @@ bool matches(const Dispatch& row, const Model& model, Bytes frame) {
     return false;
   }
   const std::size_t args = arguments(row, frame).size;
-  return args >= row.fewest_args && args <= row.most_args && meets(model, row.needs);
+  return args >= row.fewest_args && args <= row.most_args && has(model, row.needs);
 }
 
 /// Refused commands that set outputs are answered without the address (manuals 2.3, 2.11); D12 says which

@@ -44,26 +44,28 @@ class Crc16 {
   /// One that nothing has been added to, and nothing may be.
   static constexpr Crc16 none() { return Crc16(0); }
 
-  constexpr void add(std::uint8_t byte) {
-    const unsigned index = (value_ ^ byte) & 0xFFU;
-    value_ = static_cast<std::uint16_t>((value_ >> 8U) ^ detail::kCrc16Table.low[index & 0xFU] ^
-                                        detail::kCrc16Table.high[index >> 4U]);
+  [[gnu::always_inline]] constexpr void add(std::uint8_t byte) {
+    const std::uint32_t index = value_ ^ byte;
+    value_ =
+        (value_ >> 8U) ^ detail::kCrc16Table.low[index & 0xFU] ^ detail::kCrc16Table.high[index >> 4U & 0xFU];
   }
-  [[nodiscard]] constexpr std::uint16_t value() const { return value_; }
+  [[nodiscard]] constexpr std::uint16_t value() const { return static_cast<std::uint16_t>(value_); }
   [[nodiscard]] constexpr std::uint8_t low_byte() const { return static_cast<std::uint8_t>(value_); }
   [[nodiscard]] constexpr std::uint8_t high_byte() const { return static_cast<std::uint8_t>(value_ >> 8U); }
 
  private:
-  explicit constexpr Crc16(std::uint16_t value) : value_(value) {}
+  explicit constexpr Crc16(std::uint32_t value) : value_(value) {}
 
-  std::uint16_t value_ = 0xFFFF;
+  std::uint32_t value_ = 0xFFFF;  // 16 bits; a word is what the processor calculates with
 };
 
+/// Of at least one byte.
 constexpr Crc16 crc16(Bytes bytes) {
   Crc16 crc;
-  for (const std::uint8_t byte : bytes) {
-    crc.add(byte);
-  }
+  const std::uint8_t* byte = bytes.begin();
+  do {
+    crc.add(*byte);
+  } while (++byte != bytes.end());
   return crc;
 }
 

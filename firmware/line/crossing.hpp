@@ -55,7 +55,9 @@ class WrittenByMainLoop : public detail::Crossing<T> {
 class EventTally {
  public:
   /// Interrupt.
-  void count_in_interrupt() { total_.store_in_interrupt(static_cast<std::uint16_t>(total_.load() + 1U)); }
+  [[gnu::always_inline]] void count_in_interrupt() {
+    total_.store_in_interrupt(static_cast<std::uint16_t>(total_.load() + 1U));
+  }
 
   /// Main loop: how many since `collect` or `clear` was last called, modulo 65536.
   [[nodiscard]] std::uint16_t count() const { return static_cast<std::uint16_t>(total_.load() - collected_); }

@@ -31,10 +31,10 @@ struct Frame {
 class FrameQueue {
  public:
   /// Interrupt: where the frame that is coming in is assembled; always there.
-  Frame& assembling() { return frames_[written_.load() % kFrames]; }
+  [[gnu::always_inline]] Frame& assembling() { return frames_[written_.load() % kFrames]; }
 
   /// Interrupt: the assembled frame is complete. False where one is waiting already; then this one is lost.
-  bool complete_in_interrupt() {
+  [[gnu::always_inline]] bool complete_in_interrupt() {
     const std::uint8_t written = written_.load();
     if (static_cast<std::uint8_t>(written - read_.load()) >= kFrames - 1) {
       return false;
@@ -44,7 +44,7 @@ class FrameQueue {
   }
 
   /// Main loop: the frame that waits, or null. It stays until it is dropped.
-  [[nodiscard]] const Frame* waiting() const {
+  [[nodiscard, gnu::always_inline]] const Frame* waiting() const {
     const std::uint8_t read = read_.load();
     return written_.load() == read ? nullptr : &frames_[read % kFrames];
   }

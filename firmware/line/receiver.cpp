@@ -22,12 +22,13 @@ Duration Receiver::on_byte(std::uint8_t byte, ByteStatus status, Time now) {
   return timing().rtu_silence;
 }
 
-Duration Receiver::on_silence(Time now) {
+Duration Receiver::on_silence() {
   if (ascii()) {
     return {};
   }
+  const Time now = rtu_.silent_since();
   cut_off_if_spoken(now);
-  note(rtu_.silence(queue_, address_.load(), now), now);
+  note(rtu_.silence(queue_, address_.load()), now);
   return rtu_.wants_more_silence() ? timing().rtu_grace : Duration();
 }
 

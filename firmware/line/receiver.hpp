@@ -36,7 +36,7 @@ class Receiver {
   Duration on_byte(std::uint8_t byte, ByteStatus status, Time now);
 
   /// The silence has come. Returns as `on_byte` does.
-  Duration on_silence(Time now);
+  Duration on_silence();
 
   // --- main loop ---
 

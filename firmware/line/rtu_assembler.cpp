@@ -7,6 +7,8 @@ namespace {
 constexpr std::uint16_t kShortestFrame = 4;
 constexpr std::uint8_t kCrcBytes = 2;
 constexpr std::uint8_t kTurnAround = 0x00;
+/// One beyond the longest that is stored, and it stays there.
+constexpr std::uint16_t kTooLong = kLongestFrame + 2;
 constexpr std::uint8_t kBroadcast = 0;
 
 /// Modbus 0x3038, read with 03 or 04 and quantity 0 or 1: "Send Host OK" (manuals, Modbus part).
@@ -16,12 +18,6 @@ bool is_host_ok(Bytes frame) {
 }
 
 }  // namespace
-
-void RtuAssembler::open() {
-  whole_ = Crc16();
-  behind_first_ = Crc16();
-  rest_spoiled_ = overrun_ = false;
-}
 
 Verdict RtuAssembler::byte(FrameQueue& queue, std::uint8_t byte, ByteStatus status, std::uint8_t own_address,
                            Time now) {
@@ -33,49 +29,55 @@ Verdict RtuAssembler::byte(FrameQueue& queue, std::uint8_t byte, ByteStatus stat
     }
     if (received_ != 0 && timing_.rtu_slack < since_last) {
       // Behind the first byte the gap may be one behind a turn-around 00, which does not spoil what follows.
-      (received_ == 1 ? first_spoiled_ : rest_spoiled_) = true;
+      spoiled_ |= received_ == 1 ? kFirst : kRest;
     }
   }
   lapsed_ = false;
   last_ = now;
 
-  Frame& frame = queue.assembling();
   if (received_ == 0) {
-    open();
-    first_spoiled_ = status != ByteStatus::Good;
+    whole_ = Crc16();
+    behind_first_ = Crc16();
+    spoiled_ = 0;
     turned_around_ = byte == kTurnAround;
-  } else {
-    rest_spoiled_ |= status != ByteStatus::Good;
-    if (turned_around_) {
-      behind_first_.add(byte);
-    }
+  } else if (turned_around_) {
+    behind_first_.add(byte);
   }
-  overrun_ |= status == ByteStatus::Overrun;
+  if (status != ByteStatus::Good) {
+    spoil(status);
+  }
   whole_.add(byte);
+  Frame& frame = queue.assembling();
   if (received_ < frame.storage.size()) {
-    frame.storage[received_] = byte;
-  }
-  if (received_ <= frame.storage.size()) {
-    ++received_;  // stops one beyond the longest, which is too long whatever follows
+    frame.storage[received_++] = byte;
+  } else {
+    received_ = kTooLong;
   }
   return before;
+}
+
+void RtuAssembler::spoil(ByteStatus status) {
+  spoiled_ |= received_ == 0 ? kFirst : kRest;
+  if (status == ByteStatus::Overrun) {
+    spoiled_ |= kOverrun;
+  }
 }
 
 /// A byte came after T3.5: a frame that is right was over and only its timer interrupt is late; any other is
 /// over where the byte began after T3.5 too.
 Verdict RtuAssembler::late(FrameQueue& queue, std::uint8_t own_address, Duration since_last) {
-  const std::uint8_t begin = start(queue.assembling());
+  const std::uint8_t begin = start();
   if (begin == kNowhere && since_last < timing_.rtu_separate) {
     return Verdict::Open;
   }
   return end(queue, begin, own_address);
 }
 
-Verdict RtuAssembler::silence(FrameQueue& queue, std::uint8_t own_address, Time now) {
-  if (received_ == 0 || now.since(last_) < timing_.rtu_silence) {
+Verdict RtuAssembler::silence(FrameQueue& queue, std::uint8_t own_address) {
+  if (received_ == 0) {
     return Verdict::Open;
   }
-  const std::uint8_t begin = start(queue.assembling());
+  const std::uint8_t begin = start();
   if (begin == kNowhere && !lapsed_) {
     lapsed_ = true;
     return Verdict::Open;
@@ -91,7 +93,7 @@ Verdict RtuAssembler::end(FrameQueue& queue, std::uint8_t start, std::uint8_t ow
 
 Verdict RtuAssembler::cut_off(FrameQueue& queue, std::uint8_t own_address) {
   if (received_ != 0) {
-    const std::uint8_t begin = start(queue.assembling());
+    const std::uint8_t begin = start();
     if (begin != kNowhere) {
       return end(queue, begin, own_address);
     }
@@ -100,14 +102,12 @@ Verdict RtuAssembler::cut_off(FrameQueue& queue, std::uint8_t own_address) {
   return Verdict::Open;
 }
 
-std::uint8_t RtuAssembler::start(const Frame& frame) const {
-  if (rest_spoiled_) {
-    return kNowhere;
-  }
-  if (!first_spoiled_ && received_ >= kShortestFrame && received_ <= kLongestFrame && whole_.value() == 0) {
+std::uint8_t RtuAssembler::start() const {
+  const unsigned beyond_shortest = unsigned{received_} - kShortestFrame;
+  if (spoiled_ == 0 && beyond_shortest <= kLongestFrame - kShortestFrame && whole_.value() == 0) {
     return 0;
   }
-  if (frame.storage[0] == kTurnAround && received_ > kShortestFrame && received_ <= kLongestFrame + 1 &&
+  if (turned_around_ && (spoiled_ & kRest) == 0 && beyond_shortest - 1U <= kLongestFrame - kShortestFrame &&
       behind_first_.value() == 0) {
     return 1;
   }
@@ -115,10 +115,10 @@ std::uint8_t RtuAssembler::start(const Frame& frame) const {
 }
 
 Verdict RtuAssembler::why_lost() const {
-  if (overrun_) {
+  if ((spoiled_ & kOverrun) != 0) {
     return Verdict::Overrun;
   }
-  if (first_spoiled_ || rest_spoiled_) {
+  if (spoiled_ != 0) {
     return Verdict::LineError;
   }
   if (received_ < kShortestFrame) {

@@ -24,9 +24,11 @@ class RtuAssembler {
 
   /// Timer interrupt: no byte was complete since T3.5. Where the CRC is not right yet, a byte may be under
   /// way that started in time: then `wants_more_silence()`, and the second call without a byte between ends
-  /// the frame. A call that comes too early, because a byte came while it was pending, does nothing. An
-  /// accepted frame holds address, function and data, without CRC and without a turn-around 00 before it.
-  Verdict silence(FrameQueue& queue, std::uint8_t own_address, Time now);
+  /// the frame. An accepted frame holds address, function and data, without CRC and without a turn-around 00
+  /// before it.
+  Verdict silence(FrameQueue& queue, std::uint8_t own_address);
+  /// When the silence was over that `silence` tells of, at the earliest.
+  [[nodiscard]] Time silent_since() const { return last_ + timing_.rtu_silence; }
 
   [[nodiscard]] bool wants_more_silence() const { return lapsed_; }
 
@@ -35,25 +37,27 @@ class RtuAssembler {
   Verdict cut_off(FrameQueue& queue, std::uint8_t own_address);
 
  private:
-  void open();
   void close() {
     received_ = 0;
     lapsed_ = false;
   }
+  void spoil(ByteStatus status);
   Verdict late(FrameQueue& queue, std::uint8_t own_address, Duration since_last);
   Verdict end(FrameQueue& queue, std::uint8_t start, std::uint8_t own_address);
   /// Where the frame begins (0, or 1 behind a turn-around 00), or kNowhere where no CRC is right.
-  [[nodiscard]] std::uint8_t start(const Frame& frame) const;
+  [[nodiscard]] std::uint8_t start() const;
   [[nodiscard]] Verdict why_lost() const;
   Verdict accept(FrameQueue& queue, std::uint8_t start, std::uint8_t own_address);
 
   static constexpr std::uint8_t kNowhere = 0xFF;
+  static constexpr std::uint8_t kFirst =
+      1;  ///< the first byte came with an error, or stood apart from the rest
+  static constexpr std::uint8_t kRest = 2;     ///< any other did
+  static constexpr std::uint8_t kOverrun = 4;  ///< and it was an overrun
 
   LineTiming timing_{};
   bool lapsed_ = false;         ///< T3.5 has passed once
-  bool first_spoiled_ = false;  ///< the first byte came with an error, or stood apart from the rest
-  bool rest_spoiled_ = false;   ///< any other did
-  bool overrun_ = false;
+  std::uint8_t spoiled_ = 0;    ///< what kinds of bytes have: kFirst and so on
   bool turned_around_ = false;  ///< the first byte is 00
   std::uint16_t received_ = 0;  ///< bytes of the open frame, also those there is no room for; 0: none is open
   Time last_;                   ///< when the last byte was complete

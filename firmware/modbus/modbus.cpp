@@ -26,7 +26,7 @@ constexpr auto kRows = rows_of_built_models<kFunctions, &Function::row>();
 const FunctionRow* find(const Model& model, std::uint8_t code) {
   for (const FunctionRow& row : kRows) {
     if (row.code == code) {
-      return meets(model, row.needs) ? &row : nullptr;
+      return has(model, row.needs) ? &row : nullptr;
     }
   }
   return nullptr;

@@ -15,7 +15,7 @@ auto find_in(const Rows& rows, const Model& model, Functions function, std::uint
     -> decltype(&rows[0]) {
   for (const auto& row : rows) {
     const unsigned index = unsigned{address} - row.first;
-    if ((row.functions & function) != 0 && index < width_of(row.width, model) && meets(model, row.needs)) {
+    if ((row.functions & function) != 0 && index < width_of(row.width, model) && has(model, row.needs)) {
       return &row;
     }
   }

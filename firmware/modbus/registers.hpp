@@ -23,21 +23,14 @@ constexpr Functions kWriteMultipleCoils = 1U << 0xFU;
 /// Function 10 (hex) is allowed wherever 06 is.
 constexpr Functions kWriteRegisters = kWriteSingleRegister;
 
-/// How many coils or registers a row has.
-enum class Width : std::uint8_t { One, Two, PerOutput, PerInput };
+/// How many coils or registers a row has: so many, or as many as the model has channels.
+enum class Width : std::uint8_t { One = 1, Two = 2, PerOutput, PerInput };
 
 constexpr unsigned width_of(Width width, const Model& model) {
-  switch (width) {
-    case Width::PerOutput:
-      return model.outputs;
-    case Width::PerInput:
-      return model.inputs;
-    case Width::Two:
-      return 2;
-    case Width::One:
-      break;
+  if (width <= Width::Two) {
+    return static_cast<unsigned>(width);
   }
-  return 1;
+  return width == Width::PerOutput ? model.outputs : model.inputs;
 }
 
 /// Bits to write: those of `mask`, to the bits of `value`; bit 0 is the row's first coil.

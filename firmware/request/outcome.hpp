@@ -50,25 +50,24 @@ enum class Effect : std::uint8_t {
 /// happens when it is.
 class Outcome {
  public:
-  [[gnu::noinline]] void request(Effect effect) {
+  void request(Effect effect) {
     effects_ = static_cast<std::uint8_t>(effects_ | static_cast<std::uint8_t>(effect));
   }
   [[nodiscard]] bool asks_for(Effect effect) const {
     return (effects_ & static_cast<std::uint8_t>(effect)) != 0;
   }
   [[nodiscard]] bool has_effects() const { return effects_ != 0; }
+  /// Nothing is to be done but to answer.
+  [[nodiscard]] bool empty() const {
+    return effects_ == 0 && drive.mask == 0 && clear_counters == 0 && change.empty();
+  }
 
-  /// Nothing is to be done any more; why, stays.
-  void drop() {
+  /// Nothing is to be done any more; why a request was refused, stays.
+  void clear() {
     change.clear();
     drive = Drive();
     effects_ = 0;
     clear_counters = 0;
-  }
-  /// Likewise, and nothing was refused.
-  void clear() {
-    drop();
-    refusal = Refusal::None;
   }
 
   Refusal refusal = Refusal::None;

@@ -12,15 +12,20 @@
 
 namespace ex9000 {
 
-/// Room for the longest frame, which no handler exceeds; if one did, it would spoil its own beginning and
-/// nothing else.
+/// Room for the longest frame. No handler exceeds it: the longest reply is an echo of the longest request,
+/// and all others are a fraction of that.
 class Reply {
-  static_assert((kLongestFrame & (kLongestFrame - 1)) == 0, "an index is kept inside by a mask");
-
  public:
-  void clear() { size_ = 0; }
+  void clear() { end_ = bytes_.data(); }
 
-  [[gnu::noinline]] void put(std::uint8_t byte) { bytes_[size_++ & (kLongestFrame - 1)] = byte; }
+  /// One byte or several.
+  template <class... More>
+  [[gnu::always_inline]] void put(std::uint8_t byte, More... more) {
+    std::uint8_t* end = end_;
+    *end++ = byte;
+    ((*end++ = static_cast<std::uint8_t>(more)), ...);
+    end_ = end;
+  }
   void put(char character) { put(static_cast<std::uint8_t>(character)); }
   void put(Bytes bytes) {
     for (const std::uint8_t byte : bytes) {
@@ -33,25 +38,19 @@ class Reply {
     }
   }
   /// Two upper-case hex digits.
-  [[gnu::noinline]] void put_hex(unsigned value) {
-    put(hex_digit(value >> 4U));
-    put(hex_digit(value));
-  }
+  void put_hex(unsigned value) { put(hex_digit(value >> 4U), hex_digit(value)); }
   /// High byte first.
-  [[gnu::noinline]] void put_word(unsigned value) {
-    put(static_cast<std::uint8_t>(value >> 8U));
-    put(static_cast<std::uint8_t>(value));
-  }
+  void put_word(unsigned value) { put(static_cast<std::uint8_t>(value >> 8U), value); }
   /// Overwrites a byte that was put before.
   void patch(std::size_t at, std::size_t value) { bytes_[at] = static_cast<std::uint8_t>(value); }
 
-  [[nodiscard]] bool empty() const { return size_ == 0; }
-  [[nodiscard]] std::size_t size() const { return size_; }
-  [[nodiscard]] Bytes bytes() const { return {bytes_.data(), size_}; }
+  [[nodiscard]] bool empty() const { return end_ == bytes_.data(); }
+  [[nodiscard]] std::size_t size() const { return static_cast<std::size_t>(end_ - bytes_.data()); }
+  [[nodiscard]] Bytes bytes() const { return {bytes_.data(), size()}; }
 
  private:
+  std::uint8_t* end_ = nullptr;  ///< behind what was put; from the first `clear` on
   std::array<std::uint8_t, kLongestFrame> bytes_{};
-  std::uint16_t size_ = 0;
 };
 
 }  // namespace ex9000

@@ -28,8 +28,10 @@ bool Settings::possible_for(const Model& model) const {
 bool operator==(const Settings& a, const Settings& b) { return words_of(a) == words_of(b); }
 
 void SettingsChange::clear() {
-  any_ = false;
-  named_ = {};
+  if (any_) {
+    any_ = false;
+    named_ = {};
+  }
 }
 
 [[gnu::noinline]] void SettingsChange::set(std::size_t at, std::uint8_t value) {

@@ -54,21 +54,15 @@ void SettingsStore::begin_writing() {
 MemoryJob SettingsStore::job() {
   using Kind = MemoryJob::Kind;
   const std::uint16_t address = address_of(copy_);
-  switch (step_) {
-    case Step::Load:
-    case Step::LookAgain:
-    case Step::Verify:
-      return {Kind::Read, address, {read_back_.bytes.data(), kRecordSize}};
-    case Step::Write:
-      return {Kind::Write, address, {record_.bytes.data(), kRecordSize}};
-    case Step::Invalidate:
-      return {Kind::Write,
-              static_cast<std::uint16_t>(address + kRecordCheckAt),
-              {record_.bytes.data() + kRecordCheckAt, kCheckBytes}};
-    case Step::Idle:
-      break;
+  if (step_ == Step::Write) {
+    return {Kind::Write, address, {record_.bytes.data(), kRecordSize}};
   }
-  return {Kind::None, 0, {}};
+  if (step_ == Step::Invalidate) {
+    return {Kind::Write,
+            static_cast<std::uint16_t>(address + kRecordCheckAt),
+            {record_.bytes.data() + kRecordCheckAt, kCheckBytes}};
+  }
+  return {Kind::Read, address, {read_back_.bytes.data(), kRecordSize}};
 }
 
 void SettingsStore::done(bool ok) {

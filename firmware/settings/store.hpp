@@ -14,7 +14,7 @@ namespace ex9000 {
 
 /// What the store wants done with the memory. The buffers live until `SettingsStore::done`.
 struct MemoryJob {
-  enum class Kind : std::uint8_t { None, Read, Write };
+  enum class Kind : std::uint8_t { Read, Write };
 
   Kind kind;
   std::uint16_t address;  ///< of the first byte; a job never crosses a page
@@ -60,7 +60,7 @@ class SettingsStore {
   /// What a reset now would find.
   [[nodiscard]] const Settings& stored() const { return stored_; }
 
-  /// What is to be done; the same until `done`.
+  /// What is to be done, while `busy()`; the same until `done`.
   [[nodiscard]] MemoryJob job();
   /// The job has ended: `ok` unless the memory did not answer.
   void done(bool ok);

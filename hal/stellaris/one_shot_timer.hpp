@@ -25,22 +25,32 @@ class OneShotTimer {
 
   static void restart(Duration after) {
     kControl.write({});
+    kInterruptClear.write(kTimeoutClear);
     kInterval.write(Bits<Interval>(after.microseconds() * cycles_per_microsecond));
     kControl.write(kEnable);
   }
 
-  /// First thing in its interrupt.
-  static void acknowledge() { kInterruptClear.write(kTimeoutClear); }
+  /// First thing in its interrupt: whether it has run out. Where it was restarted while its interrupt was
+  /// pending, it has not.
+  static bool ran_out() {
+    if (!kMaskedInterrupts.read().has(kHasTimedOut)) {
+      return false;
+    }
+    kInterruptClear.write(kTimeoutClear);
+    return true;
+  }
 
  private:
   struct Configuration;
   struct Mode;
   struct Control;
   struct InterruptMask;
+  struct MaskedInterrupts;
   struct InterruptClear;
   struct Interval;
   static constexpr Bits<Control> kEnable{1U << 0U};
   static constexpr Bits<InterruptMask> kTimeout{1U << 0U};
+  static constexpr Bits<MaskedInterrupts> kHasTimedOut{1U << 0U};
   static constexpr Bits<InterruptClear> kTimeoutClear{1U << 0U};
 
   static constexpr std::uint32_t kBase = 0x4003'0000U + number * 0x1000U;
@@ -48,6 +58,7 @@ class OneShotTimer {
   static constexpr Register<Mode> kMode{kBase + 0x004};
   static constexpr Register<Control> kControl{kBase + 0x00C};
   static constexpr Register<InterruptMask> kInterruptMask{kBase + 0x018};
+  static constexpr Register<MaskedInterrupts> kMaskedInterrupts{kBase + 0x020};
   static constexpr Register<InterruptClear> kInterruptClear{kBase + 0x024};
   static constexpr Register<Interval> kInterval{kBase + 0x028};
 };

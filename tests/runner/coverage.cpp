@@ -105,11 +105,9 @@ void Coverage::note(const Module& module, const Bytes& sent, const Bytes& heard)
     verdict_of(sent, [&](std::uint8_t byte) {
       return assembler.byte(queue, byte, ByteStatus::Good, in_force.address, Time());
     });
-    const LineTiming timing = LineTiming::at(module.baud());
-    const Time silent = Time() + timing.rtu_silence;
-    verdict = assembler.silence(queue, in_force.address, silent);
+    verdict = assembler.silence(queue, in_force.address);
     if (verdict == Verdict::Open) {
-      verdict = assembler.silence(queue, in_force.address, silent + timing.rtu_grace);
+      verdict = assembler.silence(queue, in_force.address);
     }
   }
   const std::string name = name_in(kVerdicts, verdict);

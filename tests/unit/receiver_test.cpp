@@ -63,7 +63,7 @@ class ReceiverTest : public testing::Test {
   /// So long that every frame is over.
   void silence() {
     now_ = now_ + milliseconds(50);
-    while (!(receiver_.on_silence(now_) == Duration())) {
+    while (!(receiver_.on_silence() == Duration())) {
     }
   }
   void frame(const FrameBytes& values) {
