@@ -80,9 +80,13 @@ void on_i2c() {
   device.wake();
 }
 
+struct DeliverEdge {
+  void operator()(unsigned channel, bool level) const { device.on_edge(channel, level); }
+};
+
 template <Port port>
 void on_edges() {
-  board.inputs.take_edges<port>([](unsigned channel, bool level) { device.on_edge(channel, level); });
+  board.inputs.take_edges<port>(DeliverEdge());
 }
 
 /// Null where this model has no input on the port.
@@ -94,19 +98,31 @@ constexpr start_up::Handler handler_of_edges() {
   return nullptr;
 }
 
-/// A received byte must be taken within a character, so the line comes first.
+struct Served {
+  Interrupt number;
+  start_up::Handler handler;  ///< null: not by this image
+};
 constexpr auto kServed = table<Served>({
-    {kUart == 0 ? Interrupt::Uart0 : Interrupt::Uart1, Order::Second, on_line},
-    {Interrupt::Timer0A, Order::Second, on_silence_timer},
-    {Interrupt::Timer1A, Order::Second, on_line_end_timer},
-    {Interrupt::GpioA, Order::Third, handler_of_edges<Port::A>()},
-    {Interrupt::GpioB, Order::Third, handler_of_edges<Port::B>()},
-    {Interrupt::GpioC, Order::Third, handler_of_edges<Port::C>()},
-    {Interrupt::GpioD, Order::Third, handler_of_edges<Port::D>()},
-    {Interrupt::GpioE, Order::Third, handler_of_edges<Port::E>()},
-    {Interrupt::I2c0, Order::Fourth, on_i2c},
+    {kUart == 0 ? Interrupt::Uart0 : Interrupt::Uart1, on_line},
+    {Interrupt::Timer0A, on_silence_timer},
+    {Interrupt::Timer1A, on_line_end_timer},
+    {Interrupt::GpioA, handler_of_edges<Port::A>()},
+    {Interrupt::GpioB, handler_of_edges<Port::B>()},
+    {Interrupt::GpioC, handler_of_edges<Port::C>()},
+    {Interrupt::GpioD, handler_of_edges<Port::D>()},
+    {Interrupt::GpioE, handler_of_edges<Port::E>()},
+    {Interrupt::I2c0, on_i2c},
 });
-constexpr InterruptPlan kInterruptPlan = plan(kServed);
+
+constexpr std::uint32_t served_numbers() {
+  std::uint32_t numbers = 0;
+  for (const Served& served : kServed) {
+    if (served.handler != nullptr) {
+      numbers |= 1U << static_cast<unsigned>(served.number);
+    }
+  }
+  return numbers;
+}
 
 constexpr unsigned kInterrupts = 22;
 using Vectors = start_up::VectorTable<kInterrupts>;
@@ -177,10 +193,9 @@ void start() {
   board.memory.master().start();
   SilenceTimer::start();
   LineEndTimer::start();
-  Interrupts::start();
   board.clock.start(milliseconds(1));
   device.start();
-  Interrupts::enable(kInterruptPlan);
+  Interrupts::enable(served_numbers());
 }
 
 }  // namespace

@@ -5,17 +5,10 @@
 namespace ex9000::start_up {
 
 // The linker script's.
-extern "C" std::uint32_t data_begin;
-extern "C" std::uint32_t data_end;
-extern "C" const std::uint32_t data_image;
 extern "C" std::uint32_t zero_begin;
 extern "C" std::uint32_t zero_end;
 
 extern "C" void reset_handler() {
-  const std::uint32_t* image = &data_image;
-  for (std::uint32_t* word = &data_begin; word != &data_end; ++word) {
-    *word = *image++;
-  }
   for (std::uint32_t* word = &zero_begin; word != &zero_end; ++word) {
     *word = 0;
   }

@@ -30,7 +30,7 @@ struct VectorTable {
 /// The linker's; only its address counts.
 extern "C" std::uint32_t stack_top;
 
-/// Copies what is initialised, clears the rest and calls `main`.
+/// Clears the memory, for an image holds nothing that begins as anything else, and calls `main`.
 extern "C" [[noreturn]] __attribute__((externally_visible)) void reset_handler();
 
 /// Faults, and interrupts that nobody has asked for: resets the microcontroller at once, which lets go of all

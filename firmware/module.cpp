@@ -19,7 +19,9 @@ void Module::begin(std::uint16_t input_levels, Time now, TimingAt timing_at) {
   exchange_.tallies_ = &receiver_.tallies();
   exchange_.state_.in_force.baud_code = kFactoryBaudCode;
   exchange_.state_.reset_status = true;
-  edges_.begin(input_levels & state().model().input_mask());
+  const auto levels = static_cast<std::uint16_t>(input_levels & state().model().input_mask());
+  edges_.begin(levels);
+  exchange_.state_.inputs.begin(levels);
   store_.begin_loading();
   init_gives_up_.set(now + kInitGivesUp);
   led_.show(StatusLed::Pattern::Steady, now);
@@ -55,7 +57,8 @@ void Module::step(Time now) {
   if (storing_leftovers_ || phase_ == Phase::MustStore || phase_ == Phase::Storing) {
     go_on_storing(now);
   }
-  if (phase_ == Phase::Idle && receiver_.queue().waiting() != nullptr) {
+  if (phase_ == Phase::Idle && receiver_.queue().has_frame()) {
+    reply_due_.set(receiver_.queue().waiting()->received + turn_around_);
     judge();
   }
   if (phase_ == Phase::Judged) {
@@ -69,9 +72,10 @@ void Module::step(Time now) {
 Bytes Module::answer_at_once() {
   // With the host watchdog running, what the clock says comes first.
   if (phase_ != Phase::Idle || line_quiet_.armed() || state().settings.watchdog_enabled ||
-      receiver_.queue().waiting() == nullptr) {
+      !receiver_.queue().has_frame()) {
     return {};
   }
+  reply_due_.disarm();  // the silence was that before the reply
   judge();
   if (phase_ != Phase::ReplyReady) {
     return {};
@@ -140,7 +144,7 @@ void Module::collect_edges() {
 }
 
 void Module::heed_host_ok() {
-  const std::uint8_t host_oks = receiver_.host_oks();
+  const std::uint32_t host_oks = receiver_.host_oks();
   if (host_oks == host_oks_heeded_) {
     return;
   }
@@ -178,14 +182,10 @@ void Module::judge() {
   } else {
     modbus::answer(exchange_);
   }
-  reply_due_.set(frame.received + turn_around_);
   Outcome& outcome = exchange_.outcome;
   if (outcome.refusal != Refusal::None) {
     outcome.clear();  // a refused request changes nothing
     count_exception();
-  }
-  if (exchange_.reply.empty()) {
-    ++exchange_.state_.diagnostics.no_responses;
   }
   if (outcome.empty()) {
     answered();
@@ -196,7 +196,7 @@ void Module::judge() {
 }
 
 void Module::do_as_judged(Time now) {
-  if (exchange_.outcome.change.empty()) {
+  if (!exchange_.outcome.changes_settings()) {
     carry_out(now);
   } else {
     phase_ = Phase::MustStore;
@@ -204,13 +204,20 @@ void Module::do_as_judged(Time now) {
   }
 }
 
-void Module::answered() { phase_ = exchange_.reply.empty() ? Phase::Idle : Phase::ReplyReady; }
+void Module::answered() {
+  if (exchange_.reply.empty()) {
+    ++exchange_.state_.diagnostics.no_responses;
+    phase_ = Phase::Idle;
+  } else {
+    phase_ = Phase::ReplyReady;
+  }
+}
 
 void Module::carry_out(Time now) {
   State& state = exchange_.state_;
   const Outcome& outcome = exchange_.outcome;
-  if (!outcome.change.empty()) {
-    state.settings = outcome.change.applied_to(state.settings);
+  if (outcome.changes_settings()) {
+    state.settings = outcome.change().applied_to(state.settings);
     if (expired_since_judged_) {
       // What was cleared is the timeout before that (D17); the safe value may be new (D6).
       state.settings.timeout_status = true;
@@ -218,14 +225,11 @@ void Module::carry_out(Time now) {
     }
   }
   if (!state.outputs_blocked()) {
-    const Drive drive = outcome.drive;
+    const Drive drive = outcome.outputs_to_drive();
     state.outputs = static_cast<std::uint16_t>((state.outputs & ~drive.mask) | (drive.value & drive.mask));
   }
   if (outcome.has_effects()) {
     have_effects(now);
-  }
-  if (outcome.clear_counters != 0) {
-    state.inputs.clear_counters(outcome.clear_counters);
   }
   exchange_.outcome.clear();
   answered();
@@ -253,6 +257,9 @@ void Module::have_effects(Time now) {
   if (outcome.asks_for(Effect::ClearLatches)) {
     state.inputs.clear_latches();
   }
+  if (outcome.asks_for(Effect::ClearCounters)) {
+    state.inputs.clear_counters(outcome.counters_to_clear);
+  }
   if (outcome.asks_for(Effect::ClearDiagnostics)) {
     receiver_.tallies().clear();
     state.diagnostics = Diagnostics();
@@ -278,7 +285,7 @@ void Module::count_exception() {
 }
 
 Bytes Module::take_reply(Time now) {
-  if (phase_ != Phase::ReplyReady || !reply_due_.reached(now) ||
+  if (phase_ != Phase::ReplyReady || (reply_due_.armed() && !reply_due_.reached(now)) ||
       (line_quiet_.armed() && !line_quiet_.reached(now))) {
     return {};
   }
@@ -305,7 +312,7 @@ void Module::go_on_storing(Time now) {
     }
   }
   if (phase_ == Phase::MustStore) {
-    const Settings changed = exchange_.outcome.change.applied_to(state().settings);
+    const Settings changed = exchange_.outcome.change().applied_to(state().settings);
     if (changed == store_.stored()) {
       carry_out(now);  // a command that changes nothing writes nothing
     } else {
@@ -349,8 +356,8 @@ bool Module::memory_is_free() const {
 std::optional<Duration> Module::idle_for(Time now) const {
   const bool memory_has_news = !store_.busy() && (!settings_known_ || storing_leftovers_ ||
                                                   phase_ == Phase::MustStore || phase_ == Phase::Storing);
-  const bool request_waits = (phase_ == Phase::Idle && receiver_.queue().waiting() != nullptr) ||
-                             receiver_.host_oks() != host_oks_heeded_;
+  const bool request_waits =
+      (phase_ == Phase::Idle && receiver_.queue().has_frame()) || receiver_.host_oks() != host_oks_heeded_;
   if (memory_has_news || request_waits || led_.pattern() != led_pattern_due()) {
     return Duration();
   }
@@ -371,7 +378,11 @@ std::optional<Duration> Module::idle_for(Time now) const {
     consider(leftovers_retry_);
   }
   if (phase_ == Phase::ReplyReady) {
-    consider(line_quiet_.armed() ? line_quiet_ : reply_due_);
+    if (line_quiet_.armed() || reply_due_.armed()) {
+      consider(line_quiet_.armed() ? line_quiet_ : reply_due_);
+    } else {
+      return Duration();
+    }
   }
   return idle;
 }

@@ -58,7 +58,7 @@ class Module {
   Bytes answer_at_once();
   /// Interrupts too: a frame or a host OK waits for `step`.
   [[nodiscard]] bool line_has_news() const {
-    return receiver_.queue().waiting() != nullptr || receiver_.host_oks() != host_oks_heeded_;
+    return receiver_.queue().has_frame() || receiver_.host_oks() != host_oks_heeded_;
   }
   /// How long nothing will happen by itself; zero: step again at once; nothing: until an interrupt or a
   /// finished job.
@@ -137,8 +137,8 @@ class Module {
   bool expired_since_judged_ = false;  ///< the host watchdog has expired while a command waits for its store
   Deadline leftovers_retry_;
   Deadline init_gives_up_;
-  std::uint8_t host_oks_heeded_ = 0;
-  std::uint8_t edges_collected_ = 0;
+  std::uint32_t host_oks_heeded_ = 0;
+  std::uint32_t edges_collected_ = 0;
   Duration turn_around_;  ///< silence before a reply: behind the request, and behind the reply before it
   Deadline reply_due_;
   Deadline line_quiet_;  ///< after the last reply

@@ -45,7 +45,7 @@ class Device {
       board_.silence_timer.restart(more);
     }
     if (module_.line_has_news()) {
-      silences_.store_in_interrupt(static_cast<std::uint8_t>(silences_.load() + 1U));
+      silences_.store_in_interrupt(silences_.load() + 1U);
     }
   }
   void on_edge(unsigned channel, bool level) { module_.on_edge(channel, level); }
@@ -54,7 +54,7 @@ class Device {
     wake();
   }
   /// The main loop has something to go on with: the memory, the line.
-  void wake() { wakes_.store_in_interrupt(static_cast<std::uint8_t>(wakes_.load() + 1U)); }
+  void wake() { wakes_.store_in_interrupt(wakes_.load() + 1U); }
 
   // --- main loop; none of it blocks ---
 
@@ -150,10 +150,10 @@ class Device {
   bool reply_under_way_ = false;
   bool memory_job_under_way_ = false;
   bool restless_ = false;  ///< the memory wants to be looked after without being told by an interrupt
-  std::uint8_t wakes_seen_ = 0;
-  std::uint8_t silences_seen_ = 0;
-  WrittenByInterrupt<std::uint8_t> wakes_;
-  WrittenByInterrupt<std::uint8_t> silences_;
+  std::uint32_t wakes_seen_ = 0;
+  std::uint32_t silences_seen_ = 0;
+  WrittenByInterrupt<std::uint32_t> wakes_;
+  WrittenByInterrupt<std::uint32_t> silences_;
   Module module_;
 };
 

@@ -96,7 +96,8 @@ void SimulatedModule::store(const Settings& settings) { memory_.contents() = mem
 std::vector<std::uint8_t> SimulatedModule::memory_image(const Model& model, const Settings& settings) {
   std::vector<std::uint8_t> image(hal::doubles::Memory::kSize, 0xFF);
   if (settings != Settings::factory(model)) {
-    const Record record = make_record(model, settings, 1);
+    Record record;
+    make_record(model, settings, 1, record);
     std::copy(record.bytes.begin(), record.bytes.end(), image.begin());
   }
   return image;

@@ -9,27 +9,26 @@
 
 namespace ex9000 {
 
-/// Edges as they cross from the edge interrupt to the main loop: one tally a channel and direction.
+/// Edges as they cross from the edge interrupt to the main loop: one count a channel. Rising and falling ones
+/// take turns, so the count and the level before tell how many there were of each.
 class InputEdges {
  public:
   /// Main loop, before edge interrupts come: the levels at reset, bit n for channel n, are no edges.
-  void begin(std::uint16_t levels) { levels_.store_in_interrupt(levels); }
+  void begin(std::uint16_t levels) { levels_ = levels; }
 
   /// Edge interrupt: an edge was flagged on `channel`, whose level is now `level`. Where the level is what it
   /// was before, there were two edges since. Channels beyond kMaxInputs are ignored.
   void on_edge(unsigned channel, bool level);
 
-  [[nodiscard]] std::uint16_t levels() const { return levels_.load(); }
-  /// Edges of all channels, modulo 256; what is the same as before may be 256 more.
-  [[nodiscard]] std::uint8_t edges() const { return edges_.load(); }
-  EventTally& rising(unsigned channel) { return rising_[channel]; }
-  EventTally& falling(unsigned channel) { return falling_[channel]; }
+  /// Edges of all channels.
+  [[nodiscard]] std::uint32_t edges() const { return edges_.load(); }
+  /// Main loop: those of one channel since it was last asked; at least every 65535 of them.
+  std::uint16_t collect(unsigned channel) { return channels_[channel].collect(); }
 
  private:
-  WrittenByInterrupt<std::uint16_t> levels_;
-  WrittenByInterrupt<std::uint8_t> edges_;
-  std::array<EventTally, kMaxInputs> rising_;
-  std::array<EventTally, kMaxInputs> falling_;
+  std::uint16_t levels_ = 0;  // interrupt
+  WrittenByInterrupt<std::uint32_t> edges_;
+  std::array<EventTally, kMaxInputs> channels_;
 };
 
 /// What the protocols read; main loop only.
@@ -38,6 +37,8 @@ class Inputs {
   /// ASCII tells five decimal digits, Modbus 16 bits; counters wrap accordingly.
   enum class CounterRange : std::uint8_t { FiveDigits, SixteenBits };
 
+  /// `levels` as given to InputEdges::begin.
+  void begin(std::uint16_t levels) { levels_ = levels; }
   void configure(CounterRange range, bool count_rising_edges) {
     range_ = range;
     count_rising_edges_ = count_rising_edges;

@@ -40,7 +40,8 @@ Refusal clear_counter(Exchange& exchange) {
   if (channel == kNoChannel) {
     return Refusal::OutOfRange;
   }
-  exchange.outcome.clear_counters = static_cast<std::uint8_t>(1U << channel);
+  exchange.outcome.counters_to_clear = static_cast<std::uint8_t>(1U << channel);
+  exchange.outcome.request(Effect::ClearCounters);
   put_valid(exchange);
   return Refusal::None;
 }

@@ -9,9 +9,9 @@ namespace ex9000 {
 
 namespace detail {
 
-/// One aligned value up to a machine word, so that a load or a store is one instruction and needs no lock.
-/// There is one core: what the compiler must not do is reorder accesses around it, and that is what the fence
-/// forbids.
+/// One aligned value up to a machine word, so that a load or a store is one instruction and needs no lock;
+/// volatile, so that it is one each time. There is one core: what the compiler must not do is move other
+/// accesses across it, and that is what the fence forbids.
 template <class T>
 class Crossing {
   static_assert(std::is_trivially_copyable<T>::value && sizeof(T) <= sizeof(void*),
@@ -19,7 +19,7 @@ class Crossing {
 
  public:
   [[nodiscard, gnu::always_inline]] T load() const {
-    const T value = value_.load(std::memory_order_relaxed);
+    const T value = value_;
     std::atomic_signal_fence(std::memory_order_acquire);
     return value;
   }
@@ -27,11 +27,11 @@ class Crossing {
  protected:
   [[gnu::always_inline]] void store(T value) {
     std::atomic_signal_fence(std::memory_order_release);
-    value_.store(value, std::memory_order_relaxed);
+    value_ = value;
   }
 
  private:
-  std::atomic<T> value_{};
+  volatile T value_{};
 };
 
 }  // namespace detail
@@ -55,8 +55,8 @@ class WrittenByMainLoop : public detail::Crossing<T> {
 class EventTally {
  public:
   /// Interrupt.
-  [[gnu::always_inline]] void count_in_interrupt() {
-    total_.store_in_interrupt(static_cast<std::uint16_t>(total_.load() + 1U));
+  [[gnu::always_inline]] void count_in_interrupt(unsigned events = 1) {
+    total_.store_in_interrupt(static_cast<std::uint16_t>(total_.load() + events));
   }
 
   /// Main loop: how many since `collect` or `clear` was last called, modulo 65536.

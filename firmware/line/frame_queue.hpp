@@ -31,33 +31,36 @@ struct Frame {
 class FrameQueue {
  public:
   /// Interrupt: where the frame that is coming in is assembled; always there.
-  [[gnu::always_inline]] Frame& assembling() { return frames_[written_.load() % kFrames]; }
+  Frame& assembling() { return frames_[second_]; }
 
   /// Interrupt: the assembled frame is complete. False where one is waiting already; then this one is lost.
-  [[gnu::always_inline]] bool complete_in_interrupt() {
-    const std::uint8_t written = written_.load();
-    if (static_cast<std::uint8_t>(written - read_.load()) >= kFrames - 1) {
+  bool complete_in_interrupt() {
+    const std::uint32_t completed = completed_.load();
+    if (completed != dropped_.load()) {
       return false;
     }
-    written_.store_in_interrupt(static_cast<std::uint8_t>(written + 1U));
+    waiting_.store_in_interrupt(&frames_[second_]);
+    second_ ^= 1U;
+    completed_.store_in_interrupt(completed + 1U);
     return true;
   }
 
+  /// Whether a frame waits.
+  [[nodiscard, gnu::always_inline]] bool has_frame() const { return completed_.load() != dropped_.load(); }
   /// Main loop: the frame that waits, or null. It stays until it is dropped.
   [[nodiscard, gnu::always_inline]] const Frame* waiting() const {
-    const std::uint8_t read = read_.load();
-    return written_.load() == read ? nullptr : &frames_[read % kFrames];
+    return has_frame() ? waiting_.load() : nullptr;
   }
 
   /// Main loop: done with the waiting frame.
-  void drop_in_main_loop() { read_.store_in_main_loop(static_cast<std::uint8_t>(read_.load() + 1U)); }
+  void drop_in_main_loop() { dropped_.store_in_main_loop(dropped_.load() + 1U); }
 
  private:
-  static constexpr std::uint8_t kFrames = 2;
-
-  std::array<Frame, kFrames> frames_;
-  WrittenByInterrupt<std::uint8_t> written_;
-  WrittenByMainLoop<std::uint8_t> read_;
+  std::uint32_t second_ = 0;                  // interrupt: which of the two is assembled
+  WrittenByInterrupt<const Frame*> waiting_;  ///< the one that was completed last
+  WrittenByInterrupt<std::uint32_t> completed_;
+  WrittenByMainLoop<std::uint32_t> dropped_;
+  std::array<Frame, 2> frames_;
 };
 
 }  // namespace ex9000

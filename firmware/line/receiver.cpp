@@ -11,14 +11,21 @@ void Receiver::listen(const Listening& how) {
 }
 
 Duration Receiver::on_byte(std::uint8_t byte, ByteStatus status, Time now) {
-  cut_off_if_spoken(now);
-  const std::uint8_t own_address = address_.load();
+  if (spoken_.load() != spoken_seen_) {
+    cut_off(now);
+  }
   if (ascii()) {
-    const Verdict verdict = dcon_.byte(queue_, byte, status, own_address, now);
+    const Verdict verdict = dcon_.byte(queue_, byte, status, own_address(), now);
+    if (verdict == Verdict::Open) {
+      return {};
+    }
     note(verdict, now);
     return verdict == Verdict::Accepted ? timing().dcon_turn_around : Duration();
   }
-  note(rtu_.byte(queue_, byte, status, own_address, now), now);
+  const Verdict verdict = rtu_.byte(queue_, byte, status, own_address(), now);
+  if (verdict != Verdict::Open) {
+    note(verdict, now);
+  }
   return timing().rtu_silence;
 }
 
@@ -26,68 +33,49 @@ Duration Receiver::on_silence() {
   if (ascii()) {
     return {};
   }
-  const Time now = rtu_.silent_since();
-  cut_off_if_spoken(now);
-  note(rtu_.silence(queue_, address_.load()), now);
-  return rtu_.wants_more_silence() ? timing().rtu_grace : Duration();
+  if (spoken_.load() != spoken_seen_) {
+    cut_off(rtu_.silent_since());
+  }
+  const Verdict verdict = rtu_.silence(queue_, own_address());
+  if (verdict == Verdict::Open) {
+    return rtu_.wants_more_silence() ? timing().rtu_grace : Duration();
+  }
+  note(verdict, rtu_.silent_since());
+  return {};
 }
 
-void Receiver::cut_off_if_spoken(Time now) {
-  const std::uint8_t spoken = spoken_.load();
-  if (spoken == spoken_seen_) {
-    return;
-  }
-  spoken_seen_ = spoken;
+void Receiver::cut_off(Time now) {
+  spoken_seen_ = spoken_.load();
   if (ascii()) {
     dcon_.forget();
-  } else {
-    note(rtu_.cut_off(queue_, address_.load()), now);
+    return;
+  }
+  const Verdict verdict = rtu_.cut_off(queue_, own_address());
+  if (verdict != Verdict::Open) {
+    note(verdict, now);
   }
 }
 
 void Receiver::note(Verdict verdict, Time now) {
-  if (verdict == Verdict::Open) {
-    return;
-  }
   if constexpr (kBuiltModbus) {
     tally(verdict);
   }
   if (verdict == Verdict::HostOk) {
     host_ok_time_.store_in_interrupt(now.microseconds());
-    host_oks_.store_in_interrupt(static_cast<std::uint8_t>(host_oks_.load() + 1U));
+    host_oks_.store_in_interrupt(host_oks_.load() + 1U);
   }
 }
 
 void Receiver::tally(Verdict verdict) {
-  switch (verdict) {
-    case Verdict::Accepted:
-      tallies_.bus_messages.count_in_interrupt();
-      tallies_.server_messages.count_in_interrupt();
-      break;
-    case Verdict::HostOk:
-      tallies_.bus_messages.count_in_interrupt();
-      tallies_.server_messages.count_in_interrupt();
+  const bool right = verdict <= Verdict::NoRoom;
+  (right ? tallies_.bus_messages : tallies_.bus_errors).count_in_interrupt();
+  if (verdict <= Verdict::HostOk) {
+    tallies_.server_messages.count_in_interrupt();
+    if (verdict == Verdict::HostOk) {
       tallies_.no_responses.count_in_interrupt();
-      break;
-    case Verdict::Foreign:
-      tallies_.bus_messages.count_in_interrupt();
-      break;
-    case Verdict::NoRoom:
-      tallies_.bus_messages.count_in_interrupt();
-      tallies_.overruns.count_in_interrupt();
-      break;
-    case Verdict::Overrun:
-      tallies_.bus_errors.count_in_interrupt();
-      tallies_.overruns.count_in_interrupt();
-      break;
-    case Verdict::BadCheck:
-    case Verdict::TooShort:
-    case Verdict::TooLong:
-    case Verdict::LineError:
-      tallies_.bus_errors.count_in_interrupt();
-      break;
-    case Verdict::Open:
-      break;
+    }
+  } else if (verdict == Verdict::NoRoom || verdict == Verdict::Overrun) {
+    tallies_.overruns.count_in_interrupt();
   }
 }
 

@@ -43,7 +43,7 @@ class Receiver {
   /// The address to answer to; takes effect with the next frame that ends.
   void answer_to(std::uint8_t address) { address_.store_in_main_loop(address); }
   /// This module's own driver has come on: a frame that is open and not whole is forgotten (D9).
-  void speaking() { spoken_.store_in_main_loop(static_cast<std::uint8_t>(spoken_.load() + 1U)); }
+  void speaking() { spoken_.store_in_main_loop(spoken_.load() + 1U); }
 
   /// As given to `listen`.
   [[nodiscard]] const LineTiming& timing() const { return rtu_.timing(); }
@@ -52,13 +52,14 @@ class Receiver {
   [[nodiscard]] constexpr const LineTallies& tallies() const { return tallies_; }
   [[nodiscard]] const FrameQueue& queue() const { return queue_; }
   /// Counts host OKs, so that a new one is one that differs from the last look.
-  [[nodiscard]] std::uint8_t host_oks() const { return host_oks_.load(); }
+  [[nodiscard]] std::uint32_t host_oks() const { return host_oks_.load(); }
   /// When the latest of them was over: its CR, or the silence behind it.
   [[nodiscard]] Time host_ok_time() const { return Time(host_ok_time_.load()); }
 
  private:
   [[nodiscard]] bool ascii() const { return !kBuiltModbus || protocol_ == Protocol::Ascii; }
-  void cut_off_if_spoken(Time now);
+  [[nodiscard]] std::uint8_t own_address() const { return static_cast<std::uint8_t>(address_.load()); }
+  void cut_off(Time now);
   void note(Verdict verdict, Time now);
   void tally(Verdict verdict);
 
@@ -66,10 +67,10 @@ class Receiver {
   RtuAssembler rtu_;
   Protocol protocol_ = Protocol::Ascii;
   LineTallies tallies_;
-  WrittenByMainLoop<std::uint8_t> address_;
-  WrittenByMainLoop<std::uint8_t> spoken_;
-  std::uint8_t spoken_seen_ = 0;  // interrupt
-  WrittenByInterrupt<std::uint8_t> host_oks_;
+  WrittenByMainLoop<std::uint32_t> address_;
+  WrittenByMainLoop<std::uint32_t> spoken_;
+  std::uint32_t spoken_seen_ = 0;  // interrupt
+  WrittenByInterrupt<std::uint32_t> host_oks_;
   WrittenByInterrupt<std::uint32_t> host_ok_time_;
   FrameQueue queue_;  // last, being large: what lies before is reached by short instructions
 };

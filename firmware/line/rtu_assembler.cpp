@@ -10,11 +10,11 @@ constexpr std::uint8_t kTurnAround = 0x00;
 /// One beyond the longest that is stored, and it stays there.
 constexpr std::uint16_t kTooLong = kLongestFrame + 2;
 constexpr std::uint8_t kBroadcast = 0;
+constexpr unsigned kHostOkSize = 6;
 
 /// Modbus 0x3038, read with 03 or 04 and quantity 0 or 1: "Send Host OK" (manuals, Modbus part).
 bool is_host_ok(Bytes frame) {
-  return frame.size == 6 && (frame[1] == 0x03 || frame[1] == 0x04) && frame.word(2) == 0x3038 &&
-         frame.word(4) <= 1;
+  return (frame[1] == 0x03 || frame[1] == 0x04) && frame.word(2) == 0x3038 && frame.word(4) <= 1;
 }
 
 }  // namespace
@@ -66,52 +66,63 @@ void RtuAssembler::spoil(ByteStatus status) {
 /// A byte came after T3.5: a frame that is right was over and only its timer interrupt is late; any other is
 /// over where the byte began after T3.5 too.
 Verdict RtuAssembler::late(FrameQueue& queue, std::uint8_t own_address, Duration since_last) {
-  const std::uint8_t begin = start();
-  if (begin == kNowhere && since_last < timing_.rtu_separate) {
-    return Verdict::Open;
-  }
-  return end(queue, begin, own_address);
+  const Verdict verdict = conclude(queue, own_address);
+  return verdict == Verdict::Open && !(since_last < timing_.rtu_separate) ? lose() : verdict;
 }
 
 Verdict RtuAssembler::silence(FrameQueue& queue, std::uint8_t own_address) {
   if (received_ == 0) {
     return Verdict::Open;
   }
-  const std::uint8_t begin = start();
-  if (begin == kNowhere && !lapsed_) {
-    lapsed_ = true;
-    return Verdict::Open;
+  const Verdict verdict = conclude(queue, own_address);
+  if (verdict != Verdict::Open) {
+    return verdict;
   }
-  return end(queue, begin, own_address);
+  if (lapsed_) {
+    return lose();
+  }
+  lapsed_ = true;
+  return Verdict::Open;
 }
 
-Verdict RtuAssembler::end(FrameQueue& queue, std::uint8_t start, std::uint8_t own_address) {
-  const Verdict verdict = start == kNowhere ? why_lost() : accept(queue, start, own_address);
+Verdict RtuAssembler::cut_off(FrameQueue& queue, std::uint8_t own_address) {
+  const Verdict verdict = received_ == 0 ? Verdict::Open : conclude(queue, own_address);
   close();
   return verdict;
 }
 
-Verdict RtuAssembler::cut_off(FrameQueue& queue, std::uint8_t own_address) {
-  if (received_ != 0) {
-    const std::uint8_t begin = start();
-    if (begin != kNowhere) {
-      return end(queue, begin, own_address);
+/// Ends the open frame where a CRC is right, from its beginning or from behind a turn-around 00.
+Verdict RtuAssembler::conclude(FrameQueue& queue, std::uint8_t own_address) {
+  const unsigned beyond_shortest = unsigned{received_} - kShortestFrame;
+  unsigned start = 0;
+  if (spoiled_ != 0 || beyond_shortest > kLongestFrame - kShortestFrame || whole_.value() != 0) {
+    if (!turned_around_ || (spoiled_ & kRest) != 0 || beyond_shortest - 1U > kLongestFrame - kShortestFrame ||
+        behind_first_.value() != 0) {
+      return Verdict::Open;
     }
+    start = 1;
   }
+  const unsigned size = received_ - start - kCrcBytes;
   close();
-  return Verdict::Open;
+  Frame& frame = queue.assembling();
+  const std::uint8_t address = frame.storage[start];
+  if (address != own_address && address != kBroadcast) {
+    return Verdict::Foreign;
+  }
+  frame.offset = static_cast<std::uint8_t>(start);
+  frame.size = static_cast<std::uint8_t>(size);
+  frame.received = last_;
+  if (size == kHostOkSize && is_host_ok(frame.bytes())) {
+    return Verdict::HostOk;
+  }
+  return queue.complete_in_interrupt() ? Verdict::Accepted : Verdict::NoRoom;
 }
 
-std::uint8_t RtuAssembler::start() const {
-  const unsigned beyond_shortest = unsigned{received_} - kShortestFrame;
-  if (spoiled_ == 0 && beyond_shortest <= kLongestFrame - kShortestFrame && whole_.value() == 0) {
-    return 0;
-  }
-  if (turned_around_ && (spoiled_ & kRest) == 0 && beyond_shortest - 1U <= kLongestFrame - kShortestFrame &&
-      behind_first_.value() == 0) {
-    return 1;
-  }
-  return kNowhere;
+/// Ends the open frame, which is nothing.
+Verdict RtuAssembler::lose() {
+  const Verdict verdict = why_lost();
+  close();
+  return verdict;
 }
 
 Verdict RtuAssembler::why_lost() const {
@@ -125,21 +136,6 @@ Verdict RtuAssembler::why_lost() const {
     return Verdict::TooShort;
   }
   return received_ > kLongestFrame ? Verdict::TooLong : Verdict::BadCheck;
-}
-
-Verdict RtuAssembler::accept(FrameQueue& queue, std::uint8_t start, std::uint8_t own_address) {
-  Frame& frame = queue.assembling();
-  const std::uint8_t address = frame.storage[start];
-  if (address != own_address && address != kBroadcast) {
-    return Verdict::Foreign;
-  }
-  frame.offset = start;
-  frame.size = static_cast<std::uint8_t>(received_ - start - kCrcBytes);
-  frame.received = last_;
-  if (is_host_ok(frame.bytes())) {
-    return Verdict::HostOk;
-  }
-  return queue.complete_in_interrupt() ? Verdict::Accepted : Verdict::NoRoom;
 }
 
 }  // namespace ex9000

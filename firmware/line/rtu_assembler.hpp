@@ -43,13 +43,10 @@ class RtuAssembler {
   }
   void spoil(ByteStatus status);
   Verdict late(FrameQueue& queue, std::uint8_t own_address, Duration since_last);
-  Verdict end(FrameQueue& queue, std::uint8_t start, std::uint8_t own_address);
-  /// Where the frame begins (0, or 1 behind a turn-around 00), or kNowhere where no CRC is right.
-  [[nodiscard]] std::uint8_t start() const;
+  Verdict conclude(FrameQueue& queue, std::uint8_t own_address);
+  Verdict lose();
   [[nodiscard]] Verdict why_lost() const;
-  Verdict accept(FrameQueue& queue, std::uint8_t start, std::uint8_t own_address);
 
-  static constexpr std::uint8_t kNowhere = 0xFF;
   static constexpr std::uint8_t kFirst =
       1;  ///< the first byte came with an error, or stood apart from the rest
   static constexpr std::uint8_t kRest = 2;     ///< any other did

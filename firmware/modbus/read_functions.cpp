@@ -24,19 +24,16 @@ Refusal read_bits(Exchange& exchange) {
   if (quantity == 0 || quantity > kMostBits) {
     return Refusal::WrongQuantity;
   }
-  const BitRow* row = find_bits(exchange.model(), function_of(frame), start);
+  const BitRow* row = find_bits(exchange.model(), function_of(frame), start, quantity);
   if (row == nullptr) {
     return Refusal::WrongAddress;
   }
   const unsigned index = unsigned{start} - row->first;
-  if (index + quantity > width_of(row->width, exchange.model())) {
-    return Refusal::WrongAddress;
-  }
   const unsigned bits = (unsigned{row->read(exchange.state())} >> index) & ((1U << quantity) - 1U);
-  exchange.reply.put(static_cast<std::uint8_t>(quantity > 8 ? 2 : 1));
-  exchange.reply.put(static_cast<std::uint8_t>(bits));
   if (quantity > 8) {
-    exchange.reply.put(static_cast<std::uint8_t>(bits >> 8U));
+    exchange.reply.put(2, static_cast<std::uint8_t>(bits), static_cast<std::uint8_t>(bits >> 8U));
+  } else {
+    exchange.reply.put(1, static_cast<std::uint8_t>(bits));
   }
   return Refusal::None;
 }
@@ -53,11 +50,8 @@ Refusal read_words(Exchange& exchange) {
   }
   exchange.reply.put(static_cast<std::uint8_t>(2 * quantity));
   for (unsigned i = 0; i < quantity; ++i) {
-    // Beyond 0xFFFF there is nothing; what wraps to 0 must not be found.
     const unsigned address = start + i;
-    const WordRow* row = address > 0xFFFF ? nullptr
-                                          : find_words(exchange.model(), function_of(frame),
-                                                       static_cast<std::uint16_t>(address));
+    const WordRow* row = find_word(exchange.model(), function_of(frame), address);
     if (row == nullptr) {
       return Refusal::WrongAddress;
     }

@@ -11,12 +11,15 @@ constexpr auto kBitRows = rows_of_built_models<kBitRegisters, &BitRegister::row>
 constexpr auto kWordRows = rows_of_built_models<kWordRegisters, &WordRegister::row>();
 
 template <class Rows>
-auto find_in(const Rows& rows, const Model& model, Functions function, std::uint16_t address)
+auto find_in(const Rows& rows, const Model& model, Functions function, unsigned address, unsigned quantity)
     -> decltype(&rows[0]) {
   for (const auto& row : rows) {
-    const unsigned index = unsigned{address} - row.first;
-    if ((row.functions & function) != 0 && index < width_of(row.width, model) && has(model, row.needs)) {
-      return &row;
+    if ((row.functions & function) != 0) {
+      const unsigned index = address - row.first;
+      const unsigned width = width_of(row.width, model);
+      if (index < width && has(model, row.needs)) {
+        return index + quantity <= width ? &row : nullptr;
+      }
     }
   }
   return nullptr;
@@ -24,12 +27,12 @@ auto find_in(const Rows& rows, const Model& model, Functions function, std::uint
 
 }  // namespace
 
-const BitRow* find_bits(const Model& model, Functions function, std::uint16_t address) {
-  return find_in(kBitRows, model, function, address);
+const BitRow* find_bits(const Model& model, Functions function, unsigned address, unsigned quantity) {
+  return find_in(kBitRows, model, function, address, quantity);
 }
 
-const WordRow* find_words(const Model& model, Functions function, std::uint16_t address) {
-  return find_in(kWordRows, model, function, address);
+const WordRow* find_word(const Model& model, Functions function, unsigned address) {
+  return find_in(kWordRows, model, function, address, 1);
 }
 
 }  // namespace ex9000::modbus

@@ -45,9 +45,9 @@ struct BitRow {
   Width width = Width::One;
   Needs needs = Needs::Nothing;
   Functions functions = 0;
-  bool drives_outputs = false;                          ///< refused with 04 while the timeout status is set
-  bool only_on = false;                                 ///< function 05 with 0000 is refused with 03
-  bool configuration = false;                           ///< never by broadcast
+  bool drives_outputs : 1;                              ///< refused with 04 while the timeout status is set
+  bool only_on : 1;                                     ///< function 05 with 0000 is refused with 03
+  bool configuration : 1;                               ///< never by broadcast
   std::uint16_t (*read)(const State& state) = nullptr;  ///< the whole row; bit 0 is the first
   Refusal (*write)(const State& state, BitWrite bits, Outcome& outcome) = nullptr;
 };
@@ -57,10 +57,10 @@ struct WordRow {
   std::uint16_t first = 0;
   Width width = Width::One;
   Needs needs = Needs::Nothing;
-  Functions functions = 0;
-  bool configuration = false;
-  std::uint16_t lowest = 0;  ///< of the values that may be written
-  std::uint16_t highest = 0;
+  Functions functions : 15;
+  bool configuration : 1;
+  std::uint8_t lowest = 0;  ///< of the values that may be written
+  std::uint8_t highest = 0;
   std::uint16_t (*read)(const State& state, unsigned index) = nullptr;
   Refusal (*write)(const State& state, std::uint16_t value, Outcome& outcome) = nullptr;
 };
@@ -209,10 +209,10 @@ inline constexpr auto kWordRegisters = table<WordRegister>({
                  {0x3038, Width::One, Needs::Nothing, 0, false, 0, 0, nullptr, nullptr}},
 });
 
-/// The row of coils or discrete inputs that `address` lies in and that is listed for `function` on this
-/// model, or null.
-const BitRow* find_bits(const Model& model, Functions function, std::uint16_t address);
-/// Likewise for registers.
-const WordRow* find_words(const Model& model, Functions function, std::uint16_t address);
+/// The row of coils or discrete inputs that holds `quantity` of them (1 to 2000) from `address` on and that
+/// is listed for `function` on this model, or null.
+const BitRow* find_bits(const Model& model, Functions function, unsigned address, unsigned quantity);
+/// The row of registers that `address` (also one beyond 0xFFFF, where there is none) lies in; likewise.
+const WordRow* find_word(const Model& model, Functions function, unsigned address);
 
 }  // namespace ex9000::modbus

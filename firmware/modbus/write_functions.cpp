@@ -65,7 +65,7 @@ Refusal write_single_coil(Exchange& exchange) {
   if (value != kCoilOn && value != kCoilOff) {
     return Refusal::WrongCoilValue;
   }
-  const BitRow* row = find_bits(exchange.model(), kWriteSingleCoil, address);
+  const BitRow* row = find_bits(exchange.model(), kWriteSingleCoil, address, 1);
   if (row == nullptr) {
     return Refusal::WrongAddress;
   }
@@ -84,14 +84,11 @@ Refusal write_multiple_coils(Exchange& exchange) {
   }
   const std::uint16_t start = frame.word(2);
   const unsigned quantity = frame.word(4);
-  const BitRow* row = find_bits(exchange.model(), kWriteMultipleCoils, start);
+  const BitRow* row = find_bits(exchange.model(), kWriteMultipleCoils, start, quantity);
   if (row == nullptr) {
     return Refusal::WrongAddress;
   }
   const unsigned index = unsigned{start} - row->first;
-  if (index + quantity > width_of(row->width, exchange.model())) {
-    return Refusal::WrongAddress;
-  }
   const unsigned mask = (1U << quantity) - 1U;
   const unsigned values =
       frame[kMultipleHeader] | (quantity > 8 ? unsigned{frame[kMultipleHeader + 1U]} << 8U : 0U);
@@ -105,7 +102,7 @@ Refusal write_single_register(Exchange& exchange) {
   if (frame.size != kSingleSize) {
     return Refusal::WrongLength;
   }
-  const WordRow* row = find_words(exchange.model(), kWriteRegisters, frame.word(2));
+  const WordRow* row = find_word(exchange.model(), kWriteRegisters, frame.word(2));
   if (row == nullptr) {
     return Refusal::WrongAddress;
   }
@@ -126,10 +123,7 @@ Refusal write_multiple_registers(Exchange& exchange) {
   const unsigned quantity = frame.word(4);
   bool configuration = false;
   for (unsigned i = 0; i < quantity; ++i) {
-    const unsigned address = start + i;
-    const WordRow* row =
-        address > 0xFFFF ? nullptr
-                         : find_words(exchange.model(), kWriteRegisters, static_cast<std::uint16_t>(address));
+    const WordRow* row = find_word(exchange.model(), kWriteRegisters, start + i);
     if (row == nullptr) {
       return Refusal::WrongAddress;
     }
@@ -139,7 +133,7 @@ Refusal write_multiple_registers(Exchange& exchange) {
     return Refusal::None;
   }
   for (unsigned i = 0; i < quantity; ++i) {
-    const WordRow* row = find_words(exchange.model(), kWriteRegisters, static_cast<std::uint16_t>(start + i));
+    const WordRow* row = find_word(exchange.model(), kWriteRegisters, start + i);
     const Refusal wrong = check_value(exchange, *row, frame.word(kMultipleHeader + std::size_t{2} * i));
     if (wrong != Refusal::None) {
       return wrong;

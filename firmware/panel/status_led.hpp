@@ -36,16 +36,20 @@ class StatusLed {
 
  private:
   static constexpr unsigned kPhases = 4;
-  static constexpr std::array<Duration, kPhases> kHostTimeout{milliseconds(250), milliseconds(250),
-                                                              milliseconds(250), milliseconds(250)};
-  static constexpr std::array<Duration, kPhases> kSettingsUnreadable{milliseconds(100), milliseconds(100),
-                                                                     milliseconds(100), milliseconds(1700)};
+
+  /// How long a phase lasts.
+  [[nodiscard]] Duration length() const {
+    if (pattern_ == Pattern::HostTimeout) {
+      return milliseconds(250);
+    }
+    return phase_ == kPhases - 1 ? milliseconds(1700) : milliseconds(100);
+  }
 
   void arm(Time now) {
     if (pattern_ == Pattern::Steady) {
       next_.disarm();
     } else {
-      next_.set(now + (pattern_ == Pattern::HostTimeout ? kHostTimeout : kSettingsUnreadable)[phase_]);
+      next_.set(now + length());
     }
   }
 

@@ -44,39 +44,54 @@ enum class Effect : std::uint8_t {
   ClearResetStatus = 1U << 4U,
   ClearLatches = 1U << 5U,
   ClearDiagnostics = 1U << 6U,
+  ClearCounters = 1U << 7U,
 };
 
 /// What is to be done, in one go, before the reply leaves. A change of settings is stored first; all else
 /// happens when it is.
 class Outcome {
  public:
-  void request(Effect effect) {
-    effects_ = static_cast<std::uint8_t>(effects_ | static_cast<std::uint8_t>(effect));
+  [[gnu::noinline]] void request(Effect effect) {
+    asked_ = static_cast<std::uint16_t>(asked_ | static_cast<std::uint8_t>(effect));
   }
   [[nodiscard]] bool asks_for(Effect effect) const {
-    return (effects_ & static_cast<std::uint8_t>(effect)) != 0;
+    return (asked_ & static_cast<std::uint8_t>(effect)) != 0;
   }
-  [[nodiscard]] bool has_effects() const { return effects_ != 0; }
-  /// Nothing is to be done but to answer.
-  [[nodiscard]] bool empty() const {
-    return effects_ == 0 && drive.mask == 0 && clear_counters == 0 && change.empty();
-  }
+  [[nodiscard]] bool has_effects() const { return (asked_ & kEffects) != 0; }
 
+  void drive(Drive outputs) {
+    drive_ = outputs;
+    asked_ |= kDrive;
+  }
+  [[nodiscard]] Drive outputs_to_drive() const { return (asked_ & kDrive) != 0 ? drive_ : Drive(); }
+
+  /// The change of settings, to be added to.
+  [[gnu::noinline]] SettingsChange& change() {
+    asked_ |= kChange;
+    return change_;
+  }
+  [[nodiscard]] const SettingsChange& change() const { return change_; }
+  [[nodiscard]] bool changes_settings() const { return (asked_ & kChange) != 0; }
+
+  /// Nothing is to be done but to answer.
+  [[nodiscard]] bool empty() const { return asked_ == 0; }
   /// Nothing is to be done any more; why a request was refused, stays.
   void clear() {
-    change.clear();
-    drive = Drive();
-    effects_ = 0;
-    clear_counters = 0;
+    asked_ = 0;
+    change_.clear();
   }
 
   Refusal refusal = Refusal::None;
-  SettingsChange change;
-  Drive drive;
-  std::uint8_t clear_counters = 0;  ///< bit n: counter n
+  std::uint8_t counters_to_clear = 0;  ///< bit n: counter n; for Effect::ClearCounters
 
  private:
-  std::uint8_t effects_ = 0;
+  static constexpr std::uint16_t kEffects = 0xFF;
+  static constexpr std::uint16_t kDrive = 0x100;
+  static constexpr std::uint16_t kChange = 0x200;
+
+  std::uint16_t asked_ = 0;
+  Drive drive_;
+  SettingsChange change_;
 };
 
 }  // namespace ex9000

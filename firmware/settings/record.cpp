@@ -1,5 +1,7 @@
 #include "firmware/settings/record.hpp"
 
+#include <cstddef>
+
 #include "firmware/model/built.hpp"
 #include "firmware/words.hpp"
 
@@ -7,22 +9,14 @@ namespace ex9000 {
 
 namespace {
 
-static_assert(__BYTE_ORDER__ == __ORDER_LITTLE_ENDIAN__, "a record is stored as it lies");
+static_assert(__BYTE_ORDER__ == __ORDER_LITTLE_ENDIAN__, "settings are stored as they lie");
 
-constexpr std::uint16_t kLayout = 2;
+constexpr std::size_t kSettingsWords = kWordsOf<Settings>;
+constexpr std::size_t kSequenceAt = sizeof(Settings);
+constexpr std::size_t kCheckedWords = kRecordCheckAt / 4;
+static_assert(kSequenceAt == 20 && kRecordCheckAt == 24, "as the header says");
 
-struct Stored {
-  Settings settings;
-  std::uint16_t sequence;
-  std::uint16_t layout;
-};
-static_assert(sizeof(Stored) == kRecordCheckAt);
-
-struct Checked {
-  Stored stored;
-  std::uint32_t check;
-};
-static_assert(sizeof(Checked) == kRecordSize);
+constexpr std::uint32_t kLayout = 2;
 
 constexpr std::uint32_t mixed(std::uint32_t check, std::uint32_t word) {
   constexpr unsigned kRotation = 13;
@@ -49,41 +43,51 @@ std::uint32_t seed_of(const Model& model) {
 #endif
 }
 
-std::uint32_t check_of(const Model& model, const Stored& stored) {
+std::uint32_t check_of(const Model& model, const Record& record) {
   std::uint32_t check = seed_of(model);
-  for (const std::uint32_t word : words_of(stored)) {
-    check = mixed(check, word);
+  const Word* word = words_of(record);
+  for (std::size_t i = 0; i < kCheckedWords; ++i) {
+    check = mixed(check, *word++);
   }
   return check;
 }
 
 }  // namespace
 
-bool operator==(const Record& a, const Record& b) { return words_of(a) == words_of(b); }
+bool operator==(const Record& a, const Record& b) {
+  return same_words(words_of(a), words_of(b), kWordsOf<Record>);
+}
 
-Record make_record(const Model& model, const Settings& settings, std::uint16_t sequence) {
-  Checked checked{{settings, sequence, kLayout}, 0};
-  checked.check = check_of(model, checked.stored);
-  return object_in<Record>(checked);
+void make_record(const Model& model, const Settings& settings, std::uint16_t sequence, Record& record) {
+  Word* to = words_of(record);
+  const Word* from = words_of(settings);
+  for (std::size_t i = 0; i < kSettingsWords; ++i) {
+    *to++ = *from++;
+  }
+  *to++ = sequence | (kLayout << 16U);
+  *to = check_of(model, record);
 }
 
 bool is_good(const Model& model, const Record& record) {
-  constexpr std::size_t kEnabledAt = offsetof(Settings, watchdog_enabled);
-  constexpr std::size_t kTimeoutAt = offsetof(Settings, timeout_status);
-  if ((record.bytes[kEnabledAt] | record.bytes[kTimeoutAt]) > 1) {
+  const Word* words = words_of(record);
+  if (words[kCheckedWords] != check_of(model, record) || words[kSettingsWords] >> 16U != kLayout ||
+      (record.bytes[offsetof(Settings, watchdog_enabled)] |
+       record.bytes[offsetof(Settings, timeout_status)]) > 1) {
     return false;
   }
-  const auto checked = object_in<Checked>(record);
-  return checked.check == check_of(model, checked.stored) && checked.stored.layout == kLayout &&
-         checked.stored.settings.possible_for(model);
+  return settings_in(record).possible_for(model);
 }
 
-Settings settings_in(const Record& record) { return object_in<Checked>(record).stored.settings; }
-std::uint16_t sequence_in(const Record& record) { return object_in<Checked>(record).stored.sequence; }
+const Settings& settings_in(const Record& record) { return *reinterpret_cast<const Settings*>(&record); }
+
+std::uint16_t sequence_in(const Record& record) {
+  return static_cast<std::uint16_t>(words_of(record)[kSettingsWords]);
+}
 
 bool is_blank(const Record& record) {
-  for (const std::uint32_t word : words_of(record)) {
-    if (word != 0xFFFF'FFFFU) {
+  const Word* word = words_of(record);
+  for (std::size_t i = 0; i < kWordsOf<Record>; ++i) {
+    if (*word++ != 0xFFFF'FFFFU) {
       return false;
     }
   }

@@ -41,12 +41,12 @@ struct alignas(4) Record {
   friend bool operator==(const Record& a, const Record& b);
 };
 
-Record make_record(const Model& model, const Settings& settings, std::uint16_t sequence);
+void make_record(const Model& model, const Settings& settings, std::uint16_t sequence, Record& record);
 
 /// False where layout or check is wrong, or where the model could not have stored this.
 bool is_good(const Model& model, const Record& record);
 /// Of a good one.
-Settings settings_in(const Record& record);
+const Settings& settings_in(const Record& record);
 std::uint16_t sequence_in(const Record& record);
 
 /// Whether the memory was never written here: an erased EEPROM reads all FF.

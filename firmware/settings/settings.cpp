@@ -25,42 +25,41 @@ bool Settings::possible_for(const Model& model) const {
          (format & ~kFormatMask) == 0;
 }
 
-bool operator==(const Settings& a, const Settings& b) { return words_of(a) == words_of(b); }
-
-void SettingsChange::clear() {
-  if (any_) {
-    any_ = false;
-    named_ = {};
-  }
+bool operator==(const Settings& a, const Settings& b) {
+  return same_words(words_of(a), words_of(b), kWordsOf<Settings>);
 }
 
-[[gnu::noinline]] void SettingsChange::set(std::size_t at, std::uint8_t value) {
-  any_ = true;
-  named_[at] = 0xFF;
-  values_[at] = value;
+void SettingsChange::set(std::size_t at, std::uint8_t value) {
+  named_.bytes[at] = 0xFF;
+  values_.bytes[at] = value;
+}
+
+void SettingsChange::set_word(std::size_t at, std::uint16_t value) {
+  set(at, static_cast<std::uint8_t>(value));
+  set(at + 1, static_cast<std::uint8_t>(value >> 8U));
 }
 
 void SettingsChange::name(const Name& value) {
-  const auto bytes = bytes_of(value);
-  for (std::size_t i = 0; i < bytes.size(); ++i) {
+  const auto* bytes = reinterpret_cast<const std::uint8_t*>(&value);
+  for (std::size_t i = 0; i < sizeof value; ++i) {
     set(offsetof(Settings, name) + i, bytes[i]);
   }
 }
 
-void SettingsChange::set_word(std::size_t at, std::uint16_t value) {
-  const auto bytes = bytes_of(value);
-  set(at, bytes[0]);
-  set(at + 1, bytes[1]);
+void SettingsChange::clear() {
+  for (std::size_t i = 0; i < kWordsOf<Image>; ++i) {
+    words_of(named_)[i] = 0;
+  }
 }
 
 Settings SettingsChange::applied_to(const Settings& settings) const {
-  const auto named = words_of(named_);
-  const auto values = words_of(values_);
-  auto words = words_of(settings);
-  for (std::size_t i = 0; i < words.size(); ++i) {
-    words[i] = (words[i] & ~named[i]) | (values[i] & named[i]);
+  Settings changed = settings;
+  for (std::size_t i = 0; i < kWordsOf<Settings>; ++i) {
+    const Word named = words_of(named_)[i];
+    Word& word = words_of(changed)[i];
+    word = (word & ~named) | (words_of(values_)[i] & named);
   }
-  return object_in<Settings>(words);
+  return changed;
 }
 
 }  // namespace ex9000

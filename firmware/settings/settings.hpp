@@ -119,7 +119,6 @@ class SettingsChange {
   void timeout_status(bool value) { set(offsetof(Settings, timeout_status), value ? 1 : 0); }
 
   /// It names nothing.
-  [[nodiscard]] bool empty() const { return !any_; }
   void clear();
   /// `settings` with this change made; what it does not name stays.
   [[nodiscard]] Settings applied_to(const Settings& settings) const;
@@ -128,10 +127,12 @@ class SettingsChange {
   void set(std::size_t at, std::uint8_t value);
   void set_word(std::size_t at, std::uint16_t value);
 
-  bool any_ = false;
   // Byte by byte as the settings lie: FF where one is named, and its new value.
-  alignas(4) std::array<std::uint8_t, sizeof(Settings)> named_{};
-  alignas(4) std::array<std::uint8_t, sizeof(Settings)> values_{};
+  struct alignas(4) Image {
+    std::array<std::uint8_t, sizeof(Settings)> bytes{};
+  };
+  Image named_;
+  Image values_;
 };
 
 }  // namespace ex9000

@@ -37,7 +37,7 @@ void SettingsStore::begin_reading(Step step) {
 }
 
 void SettingsStore::begin_saving(const Settings& settings) {
-  record_ = make_record(model_.get(), settings, static_cast<std::uint16_t>(sequence_ + 1U));
+  make_record(model_.get(), settings, static_cast<std::uint16_t>(sequence_ + 1U), record_);
   if (found_ == Found::Unreadable) {
     begin_reading(Step::LookAgain);
   } else {
@@ -124,7 +124,7 @@ void SettingsStore::read_copy(bool ok) {
 void SettingsStore::finish_reading() {
   if (step_ == Step::LookAgain) {
     // What was found may be later than what was known.
-    record_ = make_record(model_.get(), settings_in(record_), static_cast<std::uint16_t>(sequence_ + 1U));
+    make_record(model_.get(), settings_in(record_), static_cast<std::uint16_t>(sequence_ + 1U), record_);
     begin_writing();
     return;
   }

@@ -12,19 +12,19 @@ namespace ex9000 {
 class ModuleWatchdog {
  public:
   /// Tick interrupt.
-  void tick_alive() { ticks_.store_in_interrupt(static_cast<std::uint8_t>(ticks_.load() + 1U)); }
+  void tick_alive() { ticks_.store_in_interrupt(ticks_.load() + 1U); }
 
   /// Main loop, once a turn; that it asks is its sign of life. True: feed now.
   bool main_loop_alive() {
-    const std::uint8_t ticks = ticks_.load();
+    const std::uint32_t ticks = ticks_.load();
     const bool both = ticks != ticks_at_feed_;
     ticks_at_feed_ = ticks;
     return both;
   }
 
  private:
-  WrittenByInterrupt<std::uint8_t> ticks_;
-  std::uint8_t ticks_at_feed_ = 0;
+  WrittenByInterrupt<std::uint32_t> ticks_;
+  std::uint32_t ticks_at_feed_ = 0;
 };
 
 }  // namespace ex9000

@@ -71,8 +71,8 @@ class At24c {
   }
 
   void transfer(Time now) {
-    // What is read is addressed first; what was written is over when half an address, which writes nothing, is
-    // acknowledged.
+    // What is read is addressed first; what was written is over when half an address, which writes nothing,
+    // is acknowledged.
     transfer_.device = kDevice;
     transfer_.header = {header_.data(), step_ == Step::Programming ? 1U : step_ == Step::Reading ? 0U : 2U};
     transfer_.source = step_ == Step::Writing ? rest_.first(chunk()) : Bytes();

@@ -87,12 +87,9 @@ class Gpio {
     alternate_function().clear(Bits<AlternateFunction>(pins));
   }
   void set_open_drain(std::uint32_t pins) const { open_drain().set(Bits<OpenDrain>(pins)); }
-  void set_direction(std::uint32_t pins, bool output) const {
-    if (output) {
-      direction().set(Bits<Direction>(pins));
-    } else {
-      direction().clear(Bits<Direction>(pins));
-    }
+  /// Of `pins` those of `outputs` drive, the others do not.
+  void choose_outputs(std::uint32_t pins, std::uint32_t outputs) const {
+    direction().write(direction().read().without(Bits<Direction>(pins)) | Bits<Direction>(outputs));
   }
 
   // --- edges ---

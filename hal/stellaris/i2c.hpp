@@ -62,7 +62,7 @@ class I2c {
   /// Its interrupt: a byte is over, good or not.
   void on_interrupt() {
     kInterruptClear.write(Bits<InterruptClear>(1));
-    completed_.store_in_interrupt(static_cast<std::uint8_t>(completed_.load() + 1U));
+    completed_.store_in_interrupt(completed_.load() + 1U);
   }
 
  private:
@@ -146,10 +146,8 @@ class I2c {
 
   /// Drives these pins low and lets the other float.
   static void pull(std::uint32_t pins) {
+    kPort.choose_outputs(kBoth, pins);
     kPort.write(kBoth, 0);
-    kPort.set_direction(kBoth & ~pins, false);
-    kPort.set_direction(pins, true);
-    kPort.write(pins, 0);
   }
 
   /// The pins become the peripheral's.
@@ -231,8 +229,8 @@ class I2c {
   bool busy_ = false;
   std::uint8_t freeing_ = kFirstClock;
   std::uint8_t done_ = 0;  ///< bytes of the transfer
-  std::uint8_t completed_seen_ = 0;
-  WrittenByInterrupt<std::uint8_t> completed_;
+  std::uint32_t completed_seen_ = 0;
+  WrittenByInterrupt<std::uint32_t> completed_;
   Deadline deadline_;
   const I2cTransfer* transfer_ = nullptr;
 };

@@ -53,18 +53,22 @@ class InputPins {
   template <Port port, class Deliver>
   static void take_edges(Deliver deliver) {
     static constexpr std::array<std::uint8_t, 8> kChannels = channels_of(port);
-    constexpr Gpio gpio(port);
+    take_edges(Gpio(port), kChannels.data(), deliver);
+  }
+
+ private:
+  template <class Deliver>
+  [[gnu::noinline]] static void take_edges(Gpio gpio, const std::uint8_t* channel, Deliver deliver) {
     std::uint32_t flagged = gpio.edges();
     gpio.clear_edges(flagged);
-    const std::uint32_t levels = logic(gpio.read(flagged));
-    for (unsigned pin = 0; flagged != 0; ++pin, flagged >>= 1U) {
+    std::uint32_t levels = logic(gpio.read(flagged));
+    for (; flagged != 0; ++channel, flagged >>= 1U, levels >>= 1U) {
       if ((flagged & 1U) != 0) {
-        deliver(kChannels[pin], (levels >> pin & 1U) != 0);
+        deliver(*channel, (levels & 1U) != 0);
       }
     }
   }
 
- private:
   static std::uint32_t logic(std::uint32_t levels) { return active_high ? levels : ~levels; }
 
   /// The channel of each pin of a port; pins without one never have an edge to tell.

@@ -2,7 +2,6 @@
 // Manual, B3.2 and B3.4.
 #pragma once
 
-#include <array>
 #include <cstdint>
 
 #include "hal/stellaris/processor.hpp"
@@ -24,54 +23,12 @@ enum class Interrupt : std::uint8_t {
   Timer1A = 21,
 };
 
-/// Which of several that wait comes first, 0 to 7. None interrupts another (see `Interrupts::start`).
-enum class Order : std::uint8_t { First = 0, Second = 1, Third = 2, Fourth = 3 };
-
-/// An interrupt that is to be served; a handler of null: not by this image.
-struct Served {
-  Interrupt number;
-  Order order;
-  void (*handler)();
-};
-
-/// What the controller is to be told, worked out beforehand.
-struct InterruptPlan {
-  std::uint32_t enabled = 0;
-  std::array<std::uint32_t, 6> priorities{};  ///< of 0 to 23, one byte each
-};
-
-template <class Table>
-constexpr InterruptPlan plan(const Table& served) {
-  constexpr unsigned kLowestPriorityBit = 5;
-  InterruptPlan result;
-  for (const Served& each : served) {
-    const auto number = static_cast<unsigned>(each.number);
-    if (each.handler != nullptr) {
-      result.enabled |= 1U << number;
-      result.priorities[number / 4] |= static_cast<std::uint32_t>(each.order)
-                                       << (8U * (number % 4) + kLowestPriorityBit);
-    }
-  }
-  return result;
-}
-
 class Interrupts {
  public:
-  /// All priority bits order what waits and none lets one interrupt another: the stack holds one interrupt at
-  /// a time, and what interrupts share they need not guard. Before the first `enable`.
-  static void start() {
-    constexpr Bits<ApplicationInterrupt> kKeyAndNoPreemption((0x05FAU << 16U) | (7U << 8U));
-    kApplicationInterrupt.write(kKeyAndNoPreemption);
-  }
-
-  static void enable(const InterruptPlan& plan) {
-    std::uint32_t address = kPriorities;
-    for (const std::uint32_t word : plan.priorities) {
-      Register<Priority>(address).write(Bits<Priority>(word));
-      address += 4;
-    }
-    kSetEnable.write(Bits<SetEnable>(plan.enabled));
-  }
+  /// `numbers`: a mask, bit n for interrupt n. All keep the priority that they have after reset, the same for
+  /// all: none interrupts another, so the stack holds one at a time, and what interrupts share they need not
+  /// guard. Where several wait, SysTick comes first, then the one with the lowest number.
+  static void enable(std::uint32_t numbers) { kSetEnable.write(Bits<SetEnable>(numbers)); }
 
   /// Sleeps until `news()`; interrupts that bring none are served meanwhile. Main loop. They are held back
   /// only between the question and the sleep, so that none comes in between unseen; one that waits ends the
@@ -101,9 +58,7 @@ class Interrupts {
 
  private:
   struct ApplicationInterrupt;
-  struct Priority;
   struct SetEnable;
-  static constexpr std::uint32_t kPriorities = 0xE000'E400;
   static constexpr Register<SetEnable> kSetEnable{0xE000'E100};
   static constexpr Register<ApplicationInterrupt> kApplicationInterrupt{0xE000'ED0C};
 };

@@ -13,12 +13,9 @@ namespace ex9000::hal::stellaris {
 template <unsigned number, std::uint32_t cycles_per_microsecond>
 class OneShotTimer {
  public:
-  /// Once, before `restart`.
+  /// Once, before `restart`; after reset it stands still and is 32 bits wide.
   static void start() {
     constexpr Bits<Mode> kOneShot(0x1);
-    constexpr Bits<Configuration> kWhole32Bits(0x0);
-    kControl.write({});
-    kConfiguration.write(kWhole32Bits);
     kMode.write(kOneShot);
     kInterruptMask.write(kTimeout);
   }
@@ -41,7 +38,6 @@ class OneShotTimer {
   }
 
  private:
-  struct Configuration;
   struct Mode;
   struct Control;
   struct InterruptMask;
@@ -54,7 +50,6 @@ class OneShotTimer {
   static constexpr Bits<InterruptClear> kTimeoutClear{1U << 0U};
 
   static constexpr std::uint32_t kBase = 0x4003'0000U + number * 0x1000U;
-  static constexpr Register<Configuration> kConfiguration{kBase + 0x000};
   static constexpr Register<Mode> kMode{kBase + 0x004};
   static constexpr Register<Control> kControl{kBase + 0x00C};
   static constexpr Register<InterruptMask> kInterruptMask{kBase + 0x018};

@@ -64,8 +64,8 @@ class SystemControl {
   /// Gives `gates` a clock and waits until their registers can be written.
   static void open(const ClockGates& gates) {
     kRcgc0.set(Bits<Rcgc0>(gates.rcgc0));
-    kRcgc1.set(Bits<Rcgc1>(gates.rcgc1));
-    kRcgc2.set(Bits<Rcgc2>(gates.rcgc2));
+    kRcgc1.write(Bits<Rcgc1>(gates.rcgc1));  // all off after reset
+    kRcgc2.write(Bits<Rcgc2>(gates.rcgc2));
     // A peripheral must not be touched for 3 clocks (LM3S) or 5 (TM4C) after it was given one; each of these
     // reads takes at least 2.
     for (int i = 0; i < 3; ++i) {

@@ -53,7 +53,7 @@ class Uart {
 
   void send(Bytes bytes) {
     rest_ = bytes.from(1);
-    begun_.store_in_main_loop(static_cast<std::uint8_t>(begun_.load() + 1U));
+    begun_.store_in_main_loop(begun_.load() + 1U);
     Gpio(driver_enable.port).write(driver_enable.mask(), driver_enable.mask());
     kData.write(Bits<Data>(bytes[0]));
   }
@@ -144,8 +144,8 @@ class Uart {
   Duration bit_;  ///< both rounded up
   Duration character_;
   Bytes rest_;  ///< main loop until the first byte is written, then interrupts until the last one is
-  WrittenByMainLoop<std::uint8_t> begun_;
-  WrittenByInterrupt<std::uint8_t> ended_;
+  WrittenByMainLoop<std::uint32_t> begun_;
+  WrittenByInterrupt<std::uint32_t> ended_;
 };
 
 }  // namespace ex9000::hal::stellaris

@@ -12,10 +12,9 @@ namespace ex9000::hal::stellaris {
 template <std::uint32_t cycles_per_microsecond>
 class HardwareWatchdog {
  public:
-  /// From now on it runs, until the next reset.
+  /// From now on it runs, until the next reset, which leaves it unlocked.
   static void start() {
     constexpr Bits<Control> kRunAndReset(0x3);
-    kLock.write(kUnlocked);
     kLoad.write(Bits<Load>(kCountdown.microseconds() * cycles_per_microsecond));
     kControl.write(kRunAndReset);
     kLock.write(kLocked);
