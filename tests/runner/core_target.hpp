@@ -29,7 +29,7 @@ class CoreTarget final : public Target {
   void set_input(unsigned channel, bool level) override { module_->set_input(channel, level); }
   void pulse_input(unsigned channel, std::uint32_t count) override { module_->pulse_input(channel, count); }
   std::uint16_t outputs() override { return module_->outputs(); }
-  step::Led::Shows led() override;
+  step::Led::Shows led(step::Led::Shows expected) override;
 
  private:
   Bytes take_heard();

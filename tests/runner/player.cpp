@@ -122,7 +122,7 @@ class Playing {
     }
   }
   void operator()(const step::Led& step) {
-    const step::Led::Shows shows = target_.led();
+    const step::Led::Shows shows = target_.led(step.shows);
     if (shows != step.shows) {
       throw std::runtime_error(std::string("the LED is ") + name_of(shows));
     }

@@ -41,7 +41,9 @@ class Target {
   virtual void set_input(unsigned channel, bool level) = 0;
   virtual void pulse_input(unsigned channel, std::uint32_t count) = 0;
   virtual std::uint16_t outputs() = 0;
-  virtual step::Led::Shows led() = 0;
+  /// `expected` is what the transcript says: a target that can but watch the lamp need not watch for longer
+  /// than it takes to tell this from everything else.
+  virtual step::Led::Shows led(step::Led::Shows expected) = 0;
 };
 
 }  // namespace ex9000::runner

@@ -118,7 +118,7 @@ std::uint16_t ProcessTarget::outputs() {
   return static_cast<std::uint16_t>(std::stoul(control("outputs"), nullptr, 16));
 }
 
-runner::step::Led::Shows ProcessTarget::led() {
+runner::step::Led::Shows ProcessTarget::led(runner::step::Led::Shows /*expected*/) {
   const std::string shows = control("led");
   if (shows == "flashing") {
     return runner::step::Led::Shows::Flashing;

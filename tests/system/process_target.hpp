@@ -24,7 +24,7 @@ class ProcessTarget final : public runner::Target {
   void set_input(unsigned channel, bool level) override;
   void pulse_input(unsigned channel, std::uint32_t count) override;
   std::uint16_t outputs() override;
-  runner::step::Led::Shows led() override;
+  runner::step::Led::Shows led(runner::step::Led::Shows expected) override;
 
  private:
   using Clock = std::chrono::steady_clock;

@@ -1,0 +1,119 @@
+// All transcripts of the manuals' models against their firmware images, on the emulated reference board.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <array>
+#include <atomic>
+#include <cstdio>
+#include <string>
+#include <string_view>
+#include <thread>
+#include <vector>
+
+#include "tests/rig/emulated_module.hpp"
+#include "tests/rig/image_target.hpp"
+#include "tests/runner/core_target.hpp"
+#include "tests/runner/player.hpp"
+#include "tests/runner/transcript.hpp"
+#include "tests/system/child_process.hpp"
+
+namespace ex9000 {
+namespace {
+
+/// They wait nearly all the time: an image takes as long as a real module.
+constexpr unsigned kAtOnce = 24;
+
+constexpr std::array<std::string_view, 8> kModelsOfTheManuals{
+    "EX9042D", "EX9042D-M", "EX9043D", "EX9043D-M", "EX9052D", "EX9052D-M", "EX9068D-M", "EX9068AD-M"};
+
+struct Played {
+  runner::Transcript transcript;
+  runner::Result result;
+};
+
+std::uint64_t pulses_of(const runner::Transcript& transcript) {
+  std::uint64_t pulses = 0;
+  for (const runner::Step& step : transcript.steps) {
+    const auto* pulse = std::get_if<runner::step::Pulse>(&step.action);
+    pulses += pulse != nullptr ? pulse->count : 0;
+  }
+  return pulses;
+}
+
+/// How long it takes, roughly.
+std::chrono::microseconds duration_of(const runner::Transcript& transcript) {
+  constexpr std::chrono::microseconds kPulse{100};
+  return transcript.waits() + kPulse * static_cast<std::int64_t>(pulses_of(transcript));
+}
+
+/// Those that take longest first, so that no few are left waiting for at the end.
+std::vector<Played> all_runs() {
+  std::vector<Played> runs;
+  for (const std::string& file : runner::transcript_files(EX9000_CONFORMANCE_DIR)) {
+    for (runner::Transcript& transcript : runner::load_transcripts(file)) {
+      if (std::count(kModelsOfTheManuals.begin(), kModelsOfTheManuals.end(), transcript.model->designation) !=
+          0) {
+        runs.push_back({std::move(transcript), {}});
+      }
+    }
+  }
+  std::stable_sort(runs.begin(), runs.end(), [](const Played& a, const Played& b) {
+    return duration_of(a.transcript) > duration_of(b.transcript);
+  });
+  return runs;
+}
+
+void play_on_the_image(Played& run) {
+  try {
+    rig::ImageTarget target;
+    run.result = runner::play(run.transcript, target);
+  } catch (const std::exception& error) {
+    run.result.failure = run.transcript.file + ": " + error.what() + " (" +
+                         std::string(run.transcript.model->designation) + ")";
+  }
+}
+
+TEST(Conformance, TheImagesOfTheManualsModelsPassEveryTranscriptThatNamesThem) {
+  for (const std::string_view model : kModelsOfTheManuals) {
+    const system::Finished sum = system::run({"sha256sum", rig::image_of(*find_model(model))});
+    ASSERT_EQ(sum.status, 0) << sum.error;
+    std::printf("%s", sum.output.c_str());
+  }
+  std::vector<Played> runs = all_runs();
+  std::atomic<std::size_t> next{0};
+  std::vector<std::thread> players;
+  for (unsigned i = 0; i < kAtOnce; ++i) {
+    players.emplace_back([&] {
+      for (std::size_t mine = next++; mine < runs.size(); mine = next++) {
+        play_on_the_image(runs[mine]);
+      }
+    });
+  }
+  for (std::thread& player : players) {
+    player.join();
+  }
+  // As with the simulator: on a machine that is busy with other things a wait may last longer than the
+  // transcript says, and a frame may be torn.
+  std::size_t again = 0;
+  for (Played& run : runs) {
+    if (!run.result.passed()) {
+      std::printf("alone once more: %s\n", run.result.failure.c_str());
+      ++again;
+      play_on_the_image(run);
+    }
+  }
+  std::size_t steps = 0;
+  std::size_t core_steps = 0;
+  for (const Played& run : runs) {
+    EXPECT_TRUE(run.result.passed()) << run.result.failure;
+    steps += run.result.steps;
+    runner::CoreTarget core;
+    core_steps += runner::play(run.transcript, core).steps;
+  }
+  EXPECT_EQ(steps, core_steps);
+  std::printf("images: %zu runs, %zu steps, as the core; %zu of them alone once more\n", runs.size(), steps,
+              again);
+}
+
+}  // namespace
+}  // namespace ex9000

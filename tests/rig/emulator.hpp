@@ -1,0 +1,46 @@
+// The reference board in QEMU.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "tests/rig/qmp_client.hpp"
+#include "tests/rig/qtest_client.hpp"
+#include "tests/rig/unix_socket.hpp"
+#include "tests/system/child_process.hpp"
+#include "tests/system/directory.hpp"
+
+namespace ex9000::rig {
+
+/// One microcontroller from power-on to power-off, with an EEPROM behind it. Made halted before its first
+/// instruction, so that its pins can be given their levels. Destroyed as by a power cut.
+///
+/// Where the image resets itself, or the watchdog does, the machine halts instead, for the same reason.
+class Emulator {
+ public:
+  /// Runs the ELF file `image`; `memory` is the file that holds the EEPROM's 8192 bytes. `options` are more
+  /// of QEMU's. Throws std::runtime_error where it does not come up.
+  Emulator(const std::string& image, const std::string& memory, const std::vector<std::string>& options = {});
+
+  void run() { qmp_->execute("cont", "RESUME"); }
+  void halt() { qmp_->execute("stop", "STOP"); }
+  /// As the reset pin does, while halted; it stays halted. Inputs read 0 after it.
+  void reset() { qmp_->execute("system_reset", "RESET"); }
+
+  QmpClient& qmp() { return *qmp_; }
+  QtestClient& bus() { return *bus_; }
+  /// UART0, without regard to rates; what it sends has to be taken now and then, for a full socket (278
+  /// bytes) halts the machine.
+  UnixSocket& uart() { return *uart_; }
+  [[nodiscard]] int pid() const { return process_->pid(); }
+
+ private:
+  system::Directory directory_;
+  std::optional<system::ChildProcess> process_;
+  std::optional<UnixSocket> uart_;
+  std::optional<QmpClient> qmp_;
+  std::optional<QtestClient> bus_;
+};
+
+}  // namespace ex9000::rig

@@ -1,0 +1,59 @@
+#include "tests/rig/qtest_client.hpp"
+
+#include <stdexcept>
+#include <utility>
+
+namespace ex9000::rig {
+
+namespace {
+
+std::string set_irq_in(const std::string& path, unsigned number, bool level) {
+  return "set_irq_in " + path + " unnamed-gpio-in " + std::to_string(number) + (level ? " 1\n" : " 0\n");
+}
+
+std::string readl(std::uint32_t address) { return "readl " + std::to_string(address) + "\n"; }
+
+}  // namespace
+
+QtestClient::QtestClient(UnixSocket socket) : socket_(std::move(socket)) {}
+
+/// `OK`, and what was asked for behind it.
+std::string QtestClient::reply() {
+  std::string line = socket_.receive_line();
+  if (line.rfind("OK", 0) != 0) {
+    throw std::runtime_error("qtest: " + line);
+  }
+  return line.substr(2);
+}
+
+std::uint32_t QtestClient::value() { return static_cast<std::uint32_t>(std::stoull(reply(), nullptr, 16)); }
+
+std::uint32_t QtestClient::read(std::uint32_t address) {
+  socket_.send(readl(address));
+  return value();
+}
+
+void QtestClient::write(std::uint32_t address, std::uint32_t value) {
+  socket_.send("writel " + std::to_string(address) + " " + std::to_string(value) + "\n");
+  reply();
+}
+
+void QtestClient::fill(std::uint32_t address, std::uint32_t size, std::uint8_t byte) {
+  socket_.send("memset " + std::to_string(address) + " " + std::to_string(size) + " " + std::to_string(byte) +
+               "\n");
+  reply();
+}
+
+void QtestClient::set_input(const std::string& path, unsigned number, bool level) {
+  socket_.send(set_irq_in(path, number, level));
+  reply();
+}
+
+std::uint32_t QtestClient::set_input_and_read(const std::string& path, unsigned number, bool level,
+                                              std::uint32_t address) {
+  socket_.send(set_irq_in(path, number, level) + readl(address));
+  reply();
+  return value();
+}
+
+}  // namespace ex9000::rig

@@ -1,0 +1,48 @@
+// Both ends of a UNIX socket, for a program that is told where to connect to.
+#pragma once
+
+#include <chrono>
+#include <cstdint>
+#include <string>
+#include <vector>
+
+namespace ex9000::rig {
+
+/// A connection. Whatever goes wrong throws std::runtime_error.
+class UnixSocket {
+ public:
+  explicit UnixSocket(int fd) : fd_(fd) {}
+  ~UnixSocket();
+  UnixSocket(UnixSocket&& other) noexcept;
+  UnixSocket& operator=(UnixSocket&&) = delete;
+
+  [[nodiscard]] int fd() const { return fd_; }
+  /// In one piece, as far as the kernel takes it; blocks until it has taken all.
+  void send(const std::uint8_t* bytes, std::size_t size);
+  void send(const std::string& text);
+  /// What is there, once there is something; nothing where nothing came for `patience`.
+  std::vector<std::uint8_t> receive(std::chrono::nanoseconds patience);
+  /// Up to LF, which is left out. Waits 20 s, for a machine under load.
+  std::string receive_line();
+
+ private:
+  int fd_;
+  std::string received_;  ///< behind the last line
+};
+
+/// Where one program will connect to.
+class UnixListener {
+ public:
+  explicit UnixListener(const std::string& path);
+  ~UnixListener();
+  UnixListener(const UnixListener&) = delete;
+  UnixListener& operator=(const UnixListener&) = delete;
+
+  /// Waits 20 s.
+  UnixSocket accept();
+
+ private:
+  int fd_;
+};
+
+}  // namespace ex9000::rig
