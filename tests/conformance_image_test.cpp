@@ -63,9 +63,8 @@ std::vector<Played> all_runs() {
   return runs;
 }
 
-void play_on_the_image(Played& run) {
+void play_on_the_image(Played& run, rig::ImageTarget& target) {
   try {
-    rig::ImageTarget target;
     run.result = runner::play(run.transcript, target);
   } catch (const std::exception& error) {
     run.result.failure = run.transcript.file + ": " + error.what() + " (" +
@@ -84,8 +83,9 @@ TEST(Conformance, TheImagesOfTheManualsModelsPassEveryTranscriptThatNamesThem) {
   std::vector<std::thread> players;
   for (unsigned i = 0; i < kAtOnce; ++i) {
     players.emplace_back([&] {
+      rig::ImageTarget target;
       for (std::size_t mine = next++; mine < runs.size(); mine = next++) {
-        play_on_the_image(runs[mine]);
+        play_on_the_image(runs[mine], target);
       }
     });
   }
@@ -99,7 +99,8 @@ TEST(Conformance, TheImagesOfTheManualsModelsPassEveryTranscriptThatNamesThem) {
     if (!run.result.passed()) {
       std::printf("alone once more: %s\n", run.result.failure.c_str());
       ++again;
-      play_on_the_image(run);
+      rig::ImageTarget target;
+      play_on_the_image(run, target);
     }
   }
   std::size_t steps = 0;

@@ -21,12 +21,21 @@ class EmulatedModule {
   /// The EEPROM holds `settings`, or nothing where they are null.
   EmulatedModule(const Model& model, const Settings* settings);
 
+  /// A module of which nothing is left of what was: INIT* released, inputs off, the EEPROM as the constructor
+  /// has it, supply on. Where it is on already this saves making an emulator: the EEPROM's file is read again
+  /// at a reset, and RAM is filled with what no image has left there.
+  void begin_anew(const Settings* settings);
   /// The supply. Whenever it comes on, it is a new emulator's, to which nothing but the EEPROM is left of
   /// what was; off is as sudden as SIGKILL.
   void power(bool on);
   [[nodiscard]] bool powered() const { return emulator_.has_value(); }
   /// By the reset pin; none without power.
   void reset();
+  /// Whether the image is about to be reset by its watchdog (`WATCHDOG`) or by itself (`SHUTDOWN`); waits 10
+  /// s.
+  bool halts_because(const std::string& event);
+  /// That reset.
+  void come_up_again();
   /// INIT* tied to GND, or released.
   void set_init(bool asserted);
   /// Level of an input channel; channels the model lacks may be set and do nothing. Returns when the image
@@ -41,6 +50,10 @@ class EmulatedModule {
   /// Bits per second of the UART as the image has set it up; 0 where it is off.
   [[nodiscard]] std::uint32_t baud();
 
+  /// The image's own clock: time since it has started it, in whole ticks; 0 without power. Under a host that
+  /// is busy it is behind, and all that the image measures is.
+  [[nodiscard]] std::chrono::microseconds time();
+
   /// Bytes on the line at the module's own rate.
   void send(const std::vector<std::uint8_t>& bytes);
   /// What the module has sent, once there is something; nothing where nothing came for `patience`.
@@ -54,6 +67,7 @@ class EmulatedModule {
   void set_memory(const std::string& bytes) { system::write_file(directory_ / "memory", bytes); }
 
  private:
+  void store(const Settings* settings);
   void give_levels();
 
   const Model& model_;

@@ -26,7 +26,7 @@ class Emulator {
   void run() { qmp_->execute("cont", "RESUME"); }
   void halt() { qmp_->execute("stop", "STOP"); }
   /// As the reset pin does, while halted; it stays halted. Inputs read 0 after it.
-  void reset() { qmp_->execute("system_reset", "RESET"); }
+  void reset();
 
   QmpClient& qmp() { return *qmp_; }
   QtestClient& bus() { return *bus_; }

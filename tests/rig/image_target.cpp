@@ -1,5 +1,6 @@
 #include "tests/rig/image_target.hpp"
 
+#include <chrono>
 #include <utility>
 
 #include "tests/rig/wrong_rate.hpp"
@@ -16,14 +17,26 @@ constexpr std::chrono::milliseconds kComingUp{100};
 constexpr std::chrono::milliseconds kHostLatency{20};
 /// And may keep an answer waiting this much longer than a module would: only a missing one costs it.
 constexpr std::chrono::seconds kPatience{3};
+/// An answer may be on its way before the pins show what it says.
+constexpr std::chrono::milliseconds kTurn{3};
+constexpr std::chrono::milliseconds kLook{5};
 /// The longer of a flashing LED's phases, and what the host adds to it.
-constexpr std::chrono::milliseconds kFlashing{350};
+constexpr std::chrono::milliseconds kFlashing{300};
 
 }  // namespace
 
 void ImageTarget::start(const Model& model, const Settings* preset) {
-  module_.emplace(model, preset);
-  power(true);
+  if (!module_ || &module_->model() != &model) {
+    module_.emplace(model, nullptr);
+  }
+  heard_.clear();
+  settled_ = {};
+  module_->begin_anew(preset);
+  // Unlike a power-on in the middle of a transcript, this one is not where anything is measured from.
+  const Clock::time_point gives_up = Clock::now() + kPatience;
+  while (module_->baud() == 0 && Clock::now() < gives_up) {
+    hear_until(Clock::now() + kLook);
+  }
 }
 
 void ImageTarget::send(const Bytes& bytes) {
@@ -45,6 +58,31 @@ void ImageTarget::hear_until(Clock::time_point when) {
   }
 }
 
+void ImageTarget::hear_for(std::chrono::milliseconds time) {
+  constexpr std::chrono::milliseconds kShort{10};
+  constexpr int kSlowest = 10;  // times slower than the host's clock
+  if (time < kShort || !module_->powered()) {
+    hear_until(Clock::now() + time);
+    return;
+  }
+  const Clock::time_point gives_up = Clock::now() + kPatience + kSlowest * time;
+  const std::chrono::microseconds until = module_->time() + time;
+  for (auto now = module_->time(); now < until && Clock::now() < gives_up; now = module_->time()) {
+    hear_until(Clock::now() + (until - now));
+  }
+}
+
+void ImageTarget::come_up() {
+  const Clock::time_point gives_up = Clock::now() + kPatience;
+  while (module_->baud() == 0 && Clock::now() < gives_up) {
+    hear_until(Clock::now() + kLook);
+  }
+  const std::chrono::microseconds now = module_->time();
+  if (now < kComingUp) {
+    hear_for(std::chrono::duration_cast<std::chrono::milliseconds>(kComingUp - now));
+  }
+}
+
 Bytes ImageTarget::receive(std::size_t count, std::chrono::milliseconds patience) {
   Clock::time_point gives_up = Clock::now() + patience + kPatience;
   while (heard_.size() < count && Clock::now() < gives_up) {
@@ -54,7 +92,7 @@ Bytes ImageTarget::receive(std::size_t count, std::chrono::milliseconds patience
       gives_up = Clock::now() + patience + kPatience;
     }
   }
-  settled_ = Clock::now();
+  settled_ = Clock::now() + kTurn;
   Bytes bytes = std::exchange(heard_, {});
   if (bytes.size() > count) {
     heard_.assign(bytes.begin() + static_cast<std::ptrdiff_t>(count), bytes.end());
@@ -64,7 +102,7 @@ Bytes ImageTarget::receive(std::size_t count, std::chrono::milliseconds patience
 }
 
 Bytes ImageTarget::listen(std::chrono::milliseconds time) {
-  hear_until(Clock::now() + time);
+  hear_for(time);
   return std::exchange(heard_, {});
 }
 
@@ -76,13 +114,15 @@ EmulatedModule& ImageTarget::settled() {
 void ImageTarget::power(bool on) {
   settled().power(on);
   if (on) {
-    hear_until(Clock::now() + kComingUp);
+    come_up();
   }
 }
 
 void ImageTarget::reset() {
   settled().reset();
-  hear_until(Clock::now() + kComingUp);
+  if (module_->powered()) {
+    come_up();
+  }
 }
 
 void ImageTarget::set_init(bool asserted) { settled().set_init(asserted); }
@@ -98,13 +138,15 @@ std::uint16_t ImageTarget::outputs() { return settled().outputs(); }
 /// A lamp that is lit may be about to go dark, if it flashes. To see it takes time that the steps around this
 /// one measure, so it is taken only where it is expected to.
 Led::Shows ImageTarget::led(Led::Shows expected) {
-  constexpr std::chrono::milliseconds kLook{10};
   const bool lit = settled().led_lit();
+  if (!module_->powered()) {
+    return Led::Shows::Off;
+  }
   if (lit && expected == Led::Shows::On) {
     return Led::Shows::On;
   }
-  const Clock::time_point gives_up = Clock::now() + kFlashing;
-  while (Clock::now() < gives_up) {
+  const std::chrono::microseconds gives_up = module_->time() + kFlashing;
+  while (module_->time() < gives_up) {
     hear_until(Clock::now() + kLook);
     if (module_->led_lit() != lit) {
       return Led::Shows::Flashing;

@@ -9,6 +9,8 @@
 
 namespace ex9000::rig {
 
+/// May play one transcript after the other; those of one model in a row are played on one emulator.
+///
 /// Bytes take no time on the emulated UART. What is sent at a rate that is not the image's is put on its line
 /// as the image would sample it, and the other way round.
 class ImageTarget final : public runner::Target {
@@ -33,6 +35,10 @@ class ImageTarget final : public runner::Target {
   EmulatedModule& settled();
   void hear(std::chrono::nanoseconds patience);
   void hear_until(Clock::time_point when);
+  /// While so much time passes on the image's clock, where it has one.
+  void hear_for(std::chrono::milliseconds time);
+  /// The image has had the time to come up.
+  void come_up();
 
   std::optional<EmulatedModule> module_;
   std::uint32_t baud_ = 0;

@@ -18,8 +18,8 @@ QmpClient::QmpClient(UnixSocket socket) : socket_(std::move(socket)) {
   execute("qmp_capabilities", "return");
 }
 
-void QmpClient::execute(const std::string& command, const std::string& event) {
-  socket_.send(R"({"execute": ")" + command + "\"}\n");
+void QmpClient::execute(const std::string& command, const std::string& event, const std::string& arguments) {
+  socket_.send(R"({"execute": ")" + command + R"(", "arguments": )" + arguments + "}\n");
   bool accepted = false;
   bool done = false;
   while (!accepted || !done) {
@@ -30,6 +30,16 @@ void QmpClient::execute(const std::string& command, const std::string& event) {
     accepted = accepted || has(line, "return");
     done = done || has(line, event);
   }
+}
+
+bool QmpClient::hears(const std::string& event, std::chrono::nanoseconds patience) {
+  for (std::string line = socket_.receive_line(patience); !line.empty();
+       line = socket_.receive_line(patience)) {
+    if (has(line, event)) {
+      return true;
+    }
+  }
+  return false;
 }
 
 }  // namespace ex9000::rig

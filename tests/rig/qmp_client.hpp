@@ -1,13 +1,14 @@
 // The emulator's monitor.
 #pragma once
 
+#include <chrono>
 #include <string>
 
 #include "tests/rig/unix_socket.hpp"
 
 namespace ex9000::rig {
 
-/// QMP, as far as a test bench needs it: commands without arguments, and events by their names.
+/// QMP, as far as a test bench needs it.
 class QmpClient {
  public:
   /// Takes the greeting, which comes once the machine is complete.
@@ -15,7 +16,10 @@ class QmpClient {
 
   /// Returns when the emulator has accepted the command and `event` has come that says it is carried out.
   /// Throws std::runtime_error where it refuses.
-  void execute(const std::string& command, const std::string& event);
+  /// `arguments` are a JSON object.
+  void execute(const std::string& command, const std::string& event, const std::string& arguments = "{}");
+  /// Whether this event comes before nothing has come for `patience`.
+  bool hears(const std::string& event, std::chrono::nanoseconds patience);
 
  private:
   UnixSocket socket_;

@@ -33,6 +33,18 @@ std::uint32_t QtestClient::read(std::uint32_t address) {
   return value();
 }
 
+std::vector<std::uint8_t> QtestClient::read(std::uint32_t address, std::uint32_t size) {
+  constexpr std::size_t kLead = 3;  // blank, 0x
+  constexpr int kHex = 16;
+  socket_.send("read " + std::to_string(address) + " " + std::to_string(size) + "\n");
+  const std::string hex = reply();
+  std::vector<std::uint8_t> bytes;
+  for (std::size_t at = kLead; at + 2 <= hex.size(); at += 2) {
+    bytes.push_back(static_cast<std::uint8_t>(std::stoul(hex.substr(at, 2), nullptr, kHex)));
+  }
+  return bytes;
+}
+
 void QtestClient::write(std::uint32_t address, std::uint32_t value) {
   socket_.send("writel " + std::to_string(address) + " " + std::to_string(value) + "\n");
   reply();
@@ -47,13 +59,6 @@ void QtestClient::fill(std::uint32_t address, std::uint32_t size, std::uint8_t b
 void QtestClient::set_input(const std::string& path, unsigned number, bool level) {
   socket_.send(set_irq_in(path, number, level));
   reply();
-}
-
-std::uint32_t QtestClient::set_input_and_read(const std::string& path, unsigned number, bool level,
-                                              std::uint32_t address) {
-  socket_.send(set_irq_in(path, number, level) + readl(address));
-  reply();
-  return value();
 }
 
 }  // namespace ex9000::rig

@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <string>
+#include <vector>
 
 #include "tests/rig/unix_socket.hpp"
 
@@ -15,14 +16,13 @@ class QtestClient {
 
   /// The 32-bit word at this bus address, with whatever reading it does.
   std::uint32_t read(std::uint32_t address);
+  /// So many bytes of memory.
+  std::vector<std::uint8_t> read(std::uint32_t address, std::uint32_t size);
   void write(std::uint32_t address, std::uint32_t value);
   /// Fills memory.
   void fill(std::uint32_t address, std::uint32_t size, std::uint8_t byte);
   /// Level of an input line of the device at `path`. A number it does not have ends the emulator.
   void set_input(const std::string& path, unsigned number, bool level);
-  /// The same, and then the word at `address`: one turn of the emulator less.
-  std::uint32_t set_input_and_read(const std::string& path, unsigned number, bool level,
-                                   std::uint32_t address);
 
  private:
   std::string reply();

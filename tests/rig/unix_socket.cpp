@@ -63,10 +63,18 @@ std::vector<std::uint8_t> UnixSocket::receive(std::chrono::nanoseconds patience)
 }
 
 std::string UnixSocket::receive_line() {
+  std::string line = receive_line(kPatience);
+  if (line.empty()) {
+    throw std::runtime_error("the emulator does not answer");
+  }
+  return line;
+}
+
+std::string UnixSocket::receive_line(std::chrono::nanoseconds patience) {
   for (std::size_t end = received_.find('\n'); end == std::string::npos; end = received_.find('\n')) {
-    const std::vector<std::uint8_t> bytes = receive(kPatience);
+    const std::vector<std::uint8_t> bytes = receive(patience);
     if (bytes.empty()) {
-      throw std::runtime_error("the emulator does not answer");
+      return {};
     }
     received_.append(bytes.begin(), bytes.end());
   }

@@ -24,6 +24,8 @@ class UnixSocket {
   std::vector<std::uint8_t> receive(std::chrono::nanoseconds patience);
   /// Up to LF, which is left out. Waits 20 s, for a machine under load.
   std::string receive_line();
+  /// The same, or nothing where nothing came for `patience`.
+  std::string receive_line(std::chrono::nanoseconds patience);
 
  private:
   int fd_;
