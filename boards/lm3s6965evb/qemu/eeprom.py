@@ -1,0 +1,39 @@
+"""The AT24C64's contents: a file that lasts, or memory."""
+
+from __future__ import annotations
+
+import fcntl
+import os
+from pathlib import Path
+
+from qemu.refusal import Refusal
+
+SIZE = 8192
+_BLANK = b"\xff" * SIZE
+
+
+def in_memory() -> int:
+    """A blank one that is gone with its descriptor."""
+    descriptor = os.memfd_create("eeprom")
+    os.write(descriptor, _BLANK)
+    return descriptor
+
+
+def in_file(path: Path) -> int:
+    """The descriptor holds the file against a second run. A missing file is made, blank."""
+    try:
+        descriptor = os.open(path, os.O_RDWR | os.O_CREAT | os.O_CLOEXEC, 0o666)
+    except OSError as error:
+        raise Refusal(f"--eeprom {path}: {error.strerror}; name a file that can be written") from error
+    try:
+        fcntl.flock(descriptor, fcntl.LOCK_EX | fcntl.LOCK_NB)
+    except OSError as error:
+        raise Refusal(f"--eeprom {path}: another run has it; end that one or name another file") from error
+    size = os.fstat(descriptor).st_size
+    if size == 0:
+        os.write(descriptor, _BLANK)
+    elif size != SIZE:
+        raise Refusal(
+            f"--eeprom {path}: {size} bytes, and an AT24C64 has {SIZE}; name another file or remove this one"
+        )
+    return descriptor

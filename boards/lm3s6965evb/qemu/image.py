@@ -1,0 +1,37 @@
+"""What is to be run: an ELF file for this board."""
+
+from __future__ import annotations
+
+import struct
+from pathlib import Path
+
+from qemu.refusal import Refusal
+
+_ARM = 40
+_LOADED = 1  # PT_LOAD
+_TOP_OF_RAM = 0x20010000  # 64 KiB, as image.ld has them
+
+
+def check(path: Path) -> None:
+    """Raises Refusal where QEMU would run something that can only be silent."""
+    try:
+        file = path.read_bytes()
+    except OSError as error:
+        raise Refusal(
+            f"{path}: {error.strerror}; build an image with `cmake --build --preset lm3s6965evb`"
+        ) from error
+    if file[:5] != b"\x7fELF\x01" or struct.unpack_from("<H", file, 18)[0] != _ARM:
+        raise Refusal(f"{path}: no ELF file for Arm; name MODEL.elf, not MODEL.bin or MODEL.hex")
+    if _initial_stack_pointer(file) != _TOP_OF_RAM:
+        raise Refusal(f"{path}: made for another board; QEMU runs images of the preset lm3s6965evb")
+
+
+def _initial_stack_pointer(file: bytes) -> int | None:
+    """The first word that the processor reads, from address 0."""
+    (headers,) = struct.unpack_from("<I", file, 28)
+    size, count = struct.unpack_from("<HH", file, 42)
+    for index in range(count):
+        kind, offset, _, address = struct.unpack_from("<IIII", file, headers + index * size)
+        if kind == _LOADED and address == 0:
+            return int(struct.unpack_from("<I", file, offset)[0])
+    return None

@@ -1,0 +1,95 @@
+"""Arguments, and the way of the bytes between the module and the pseudo-terminal."""
+
+from __future__ import annotations
+
+import argparse
+import contextlib
+import os
+import select
+import signal
+import sys
+from pathlib import Path
+
+from qemu import eeprom, image
+from qemu.machine import Ended, Machine
+from qemu.pseudo_terminal import PseudoTerminal
+from qemu.refusal import Refusal
+
+
+def _arguments(words: list[str]) -> argparse.Namespace:
+    parser = argparse.ArgumentParser(
+        prog="run",
+        description="Runs a firmware image in QEMU. The first line it prints is the pseudo-terminal that is the "
+        "module's RS-485 line. Ctrl-C or SIGTERM ends it.",
+    )
+    parser.add_argument("image", metavar="IMAGE.elf", type=Path, help="of the preset lm3s6965evb")
+    parser.add_argument(
+        "--link", metavar="PATH", type=Path, help="make a symbolic link to the pseudo-terminal"
+    )
+    parser.add_argument(
+        "--eeprom",
+        metavar="FILE",
+        type=Path,
+        help="keep what the module stores in this file of 8192 bytes; made if missing, as a factory-fresh module",
+    )
+    parser.add_argument("--init", action="store_true", help="INIT* tied to GND: ASCII, address 00, 9600 baud")
+    parser.add_argument("--gdb", metavar="PORT", type=int, help="let a debugger in at 127.0.0.1:PORT")
+    return parser.parse_args(words)
+
+
+def main(words: list[str]) -> int:
+    """The program's exit status: 0 when it was told to end, 1 where QEMU has ended, 2 for wrong arguments."""
+    arguments = _arguments(words)
+    try:
+        with contextlib.ExitStack() as at_the_end:
+            told_to_end = _told_to_end()
+            image.check(arguments.image)
+            terminal = PseudoTerminal()
+            if arguments.link:
+                terminal.link(arguments.link)
+                at_the_end.callback(terminal.unlink)
+            memory = eeprom.in_file(arguments.eeprom) if arguments.eeprom else eeprom.in_memory()
+            machine = Machine(arguments.image, memory, arguments.init, arguments.gdb)
+            at_the_end.callback(machine.end)
+            print(terminal.device)
+            print(f"{arguments.image.name} runs in QEMU; Ctrl-C ends it", flush=True)
+            _carry_bytes(machine, terminal, told_to_end)
+    except Refusal as refusal:
+        print(f"run: {refusal}", file=sys.stderr)
+        return 2
+    except Ended as ended:
+        print(f"run: {ended}", file=sys.stderr)
+        return 1
+    return 0
+
+
+def _told_to_end() -> int:
+    """Becomes readable with a signal that asks for the end."""
+    readable, writable = os.pipe()
+    os.set_blocking(writable, False)
+    signal.set_wakeup_fd(writable)
+    for number in (signal.SIGINT, signal.SIGTERM, signal.SIGHUP):
+        if signal.getsignal(number) != signal.SIG_IGN:  # as nohup wants it
+            signal.signal(number, lambda *_: None)
+    return readable
+
+
+def _carry_bytes(machine: Machine, terminal: PseudoTerminal, told_to_end: int) -> None:
+    """Neither side ever waits for the other: a UART whose bytes nobody takes would stop the whole machine."""
+    while True:
+        watched = [told_to_end, machine.events, terminal.visits, machine.line]
+        if terminal.visited():
+            watched.append(terminal.master)
+        ready, _, _ = select.select(watched, [], [], 0.001 if machine.has_more_to_say else None)
+        if told_to_end in ready:
+            return
+        if terminal.visits in ready:
+            terminal.take_visits()
+        if machine.events in ready:
+            machine.take_events()
+        if machine.line in ready:
+            terminal.write(machine.hear())
+        requests = terminal.read()  # whatever has happened: a master may have written and gone
+        if requests:
+            machine.say(requests)
+        machine.go_on()
