@@ -1,0 +1,10 @@
+# What OpenOCD calls the board, and where a module's line is.
+set(openocd_script board/ti_ek-tm4c123gxl.cfg)
+
+set(EX9000_BUS rs485 CACHE STRING "A module's line: rs485, a transceiver on UART1; usb, the debugger's serial port")
+set_property(CACHE EX9000_BUS PROPERTY STRINGS rs485 usb)
+if(EX9000_BUS STREQUAL usb)
+  set(board_definitions EX9000_BUS_ON_USB)
+elseif(NOT EX9000_BUS STREQUAL rs485)
+  message(FATAL_ERROR "EX9000_BUS is rs485 or usb, and not ${EX9000_BUS}")
+endif()

@@ -1,0 +1,98 @@
+"""toolchain/flash, as far as it goes without a board."""
+
+from __future__ import annotations
+
+import os
+import re
+import subprocess
+import tempfile
+import unittest
+from pathlib import Path
+
+ROOT = Path(__file__).resolve().parents[2]
+IMAGE = "/some where/EX9042D-M.elf"
+
+MOVES_A_BOARD = ("init", "reset", "flash", "verify_image", "poll")
+SAY_INSTEAD = "; ".join([f'proc {name} {{args}} {{ echo "> {name} $args" }}' for name in MOVES_A_BOARD])
+
+
+def openocd_scripts() -> dict[str, str]:
+    """Of each board that can be flashed."""
+    scripts = {}
+    for file in sorted(ROOT.glob("boards/*/board.cmake")):
+        match = re.search(r"set\(openocd_script (\S+)\)", file.read_text())
+        if match is not None:
+            scripts[file.parent.name] = match.group(1)
+    return scripts
+
+
+def flash(script: str, *, path: str) -> subprocess.CompletedProcess[str]:
+    words = ["/bin/sh", str(ROOT / "toolchain/flash"), script, IMAGE]
+    return subprocess.run(words, env={"PATH": path}, capture_output=True, text=True, timeout=20)
+
+
+def openocd_words(script: str) -> list[str]:
+    """What toolchain/flash calls OpenOCD with."""
+    with tempfile.TemporaryDirectory() as directory:
+        program = Path(directory, "openocd")
+        program.write_text("#!/bin/sh\nprintf '%s\\n' \"$@\"\n")
+        program.chmod(0o755)
+        finished = flash(script, path=directory)
+        assert finished.returncode == 0, finished.stderr
+        return finished.stdout.splitlines()
+
+
+def openocd(words: list[str]) -> subprocess.CompletedProcess[str]:
+    return subprocess.run(["openocd", *words], capture_output=True, text=True, timeout=20)
+
+
+class Flash(unittest.TestCase):
+    def test_every_board_has_a_script_that_openocd_understands(self) -> None:
+        self.assertEqual(set(openocd_scripts()), {"ek-tm4c123gxl", "lm3s6965evb"})
+        for board, script in openocd_scripts().items():
+            with self.subTest(board):
+                finished = openocd(["-f", script, "-c", "noinit", "-c", "shutdown"])
+                self.assertEqual(finished.returncode, 0, finished.stderr)
+
+    def test_openocd_is_told_to_write_to_compare_and_to_reset(self) -> None:
+        for board, script in openocd_scripts().items():
+            with self.subTest(board):
+                self.assertEqual(
+                    openocd_words(script), ["-f", script, "-c", f"program {{{IMAGE}}} verify reset exit"]
+                )
+
+    def test_openocd_does_so_in_this_order(self) -> None:
+        for board, script in openocd_scripts().items():
+            with self.subTest(board):
+                words = openocd_words(script)
+                finished = openocd([*words[:2], "-c", "noinit", "-c", SAY_INSTEAD, *words[2:]])
+                self.assertEqual(finished.returncode, 0, finished.stderr)
+                self.assertEqual(
+                    [line[2:].strip() for line in finished.stderr.splitlines() if line.startswith("> ")],
+                    [
+                        "init",
+                        "reset init",
+                        f"flash write_image erase {{{IMAGE}}}",
+                        f"verify_image {{{IMAGE}}}",
+                        "poll off",
+                        "reset run",
+                    ],
+                )
+
+    def test_a_failure_says_what_to_look_at(self) -> None:
+        with tempfile.TemporaryDirectory() as directory:
+            program = Path(directory, "openocd")
+            program.write_text("#!/bin/sh\nexit 1\n")
+            program.chmod(0o755)
+            finished = flash("board/any.cfg", path=directory)
+        self.assertEqual(finished.returncode, 1)
+        self.assertRegex(finished.stderr, rf"^flash: {IMAGE} is not on the board; .*USB.*\n$")
+
+    def test_where_openocd_is_missing_one_line_names_the_package(self) -> None:
+        finished = flash("board/any.cfg", path="/nowhere")
+        self.assertEqual(finished.returncode, 1)
+        self.assertEqual(finished.stderr, "flash: openocd is missing; install the package openocd\n")
+
+
+if __name__ == "__main__":
+    unittest.main()
