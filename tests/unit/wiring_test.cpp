@@ -1,0 +1,222 @@
+// A board's README is what people solder from: its tables say what board.hpp says. Built once for each board.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <array>
+#include <fstream>
+#include <map>
+#include <set>
+#include <sstream>
+#include <string>
+#include <vector>
+
+#include EX9000_BOARD_HEADER
+#include "firmware/model/model.hpp"
+
+namespace ex9000::board {
+namespace {
+
+using Row = std::vector<std::string>;
+using Table = std::vector<Row>;  ///< the head is the first row
+
+std::string trimmed(const std::string& text) {
+  const auto first = text.find_first_not_of(' ');
+  return first == std::string::npos ? "" : text.substr(first, text.find_last_not_of(' ') - first + 1);
+}
+
+std::vector<std::string> split(const std::string& text, char at) {
+  std::vector<std::string> parts;
+  std::istringstream stream(text);
+  for (std::string part; std::getline(stream, part, at);) {
+    parts.push_back(trimmed(part));
+  }
+  return parts;
+}
+
+std::vector<Table> tables() {
+  std::vector<Table> result;
+  std::ifstream file(EX9000_BOARD_README);
+  bool inside = false;
+  for (std::string line; std::getline(file, line);) {
+    if (line.rfind('|', 0) != 0) {
+      inside = false;
+    } else if (!inside) {
+      inside = true;
+      result.push_back({split(line.substr(1), '|')});
+    } else if (line.rfind("|--", 0) != 0) {
+      result.back().push_back(split(line.substr(1), '|'));
+    }
+  }
+  return result;
+}
+
+/// The only table whose first column has this head.
+Table table_of(const std::string& head) {
+  Table found;
+  for (const Table& table : tables()) {
+    if (table[0][0] == head) {
+      EXPECT_TRUE(found.empty()) << "two tables of " << head;
+      found = table;
+    }
+  }
+  EXPECT_FALSE(found.empty()) << "no table of " << head;
+  return found;
+}
+
+/// "PA2".
+std::string name_of(Pin pin) {
+  return {'P', static_cast<char>('A' + static_cast<int>(pin.port)), static_cast<char>('0' + pin.number)};
+}
+
+template <class Groups>
+std::vector<std::string> names_of(const Groups& groups) {
+  std::vector<std::string> names;
+  for (const PinGroup& group : groups) {
+    for (unsigned i = 0; i < group.count; ++i) {
+      names.push_back(name_of({group.port, static_cast<std::uint8_t>(group.first_pin + i)}));
+    }
+  }
+  return names;
+}
+
+/// What the model's label calls an output: RL1 is channel 0 (wire.md section 1).
+std::string output_label(const Model& model, unsigned channel) {
+  const bool is_relay = model.description.find("relay") != std::string_view::npos ||
+                        model.description.find("PhotoMOS") != std::string_view::npos;
+  return is_relay ? "RL" + std::to_string(channel + 1) : "DO" + std::to_string(channel);
+}
+
+/// What is at each pin of a model.
+std::map<std::string, std::string> terminals_of(const Model& model) {
+  std::map<std::string, std::string> terminals;
+  const std::vector<std::string> outputs = names_of(kOutputs);
+  const std::vector<std::string> inputs = names_of(kInputs);
+  for (unsigned channel = 0; channel < model.outputs; ++channel) {
+    EXPECT_TRUE(terminals.emplace(outputs.at(channel), output_label(model, channel)).second);
+  }
+  for (unsigned channel = 0; channel < model.inputs; ++channel) {
+    EXPECT_TRUE(terminals.emplace(inputs.at(channel), "DI" + std::to_string(channel)).second);
+  }
+  return terminals;
+}
+
+const char* const kNone = "–";
+
+std::size_t column_of(const Row& head, std::string_view model) {
+  std::size_t found = 0;
+  for (std::size_t column = 1; column < head.size(); ++column) {
+    const std::vector<std::string> models = split(head[column], ',');
+    if (std::find(models.begin(), models.end(), model) != models.end()) {
+      EXPECT_EQ(found, 0U) << model << " is there twice";
+      found = column;
+    }
+  }
+  return found;
+}
+
+TEST(Wiring, EveryModelHasItsTerminalsAtThePinsOfTheBoard) {
+  const Table table = table_of("pin");
+  for (const Model& model : kModels) {
+    const std::size_t column = column_of(table[0], model.designation);
+    ASSERT_NE(column, 0U) << model.designation;
+    std::map<std::string, std::string> written;
+    for (auto row = table.begin() + 1; row != table.end(); ++row) {
+      if (row->at(column) != kNone) {
+        EXPECT_TRUE(written.emplace(row->at(0), row->at(column)).second) << row->at(0) << " is there twice";
+      }
+    }
+    EXPECT_EQ(written, terminals_of(model)) << model.designation;
+  }
+}
+
+TEST(Wiring, WhatEveryModuleHasIsAtThePinsOfTheBoard) {
+  std::map<std::string, std::string> written;
+  const Table table = table_of("signal");
+  for (auto row = table.begin() + 1; row != table.end(); ++row) {
+    written[row->at(0)] = row->at(1);
+  }
+#ifdef EX9000_BOARD_HAS_HEADERS
+  // README's table is that of the transceiver; the image without one is a section of its own.
+  static_assert(kUart == 1);
+#endif
+  const std::map<std::string, std::string> expected{
+      {"receive", name_of({kUartPins.port, kUartPins.first_pin})},
+      {"transmit", name_of({kUartPins.port, static_cast<std::uint8_t>(kUartPins.first_pin + 1)})},
+      {"driver enable", name_of(kDriverEnable)},
+      {"EEPROM clock", "PB2"},  // I2C0's on both families
+      {"EEPROM data", "PB3"},
+      {"INIT*", name_of(kInitSwitch)},
+      {"status LED", name_of(kStatusLed)},
+  };
+  EXPECT_EQ(written, expected);
+}
+
+TEST(Wiring, NoPinIsTwoThings) {
+  std::set<std::string> pins;
+  const auto add = [&pins](const std::string& pin) { EXPECT_TRUE(pins.insert(pin).second) << pin; };
+  for (const std::string& pin : names_of(kOutputs)) {
+    add(pin);
+  }
+  const Table table = table_of("signal");
+  for (auto row = table.begin() + 1; row != table.end(); ++row) {
+    add(row->at(1));
+  }
+}
+
+TEST(Wiring, NoPinIsOneOfTheDebuggers) {
+  const std::array<std::string, 5> debugger{"PC0", "PC1", "PC2", "PC3", "PB7"};
+  for (const Table& table : {table_of("pin"), table_of("signal")}) {
+    for (const Row& row : table) {
+      for (const std::string& pin : debugger) {
+        EXPECT_EQ(std::count(row.begin(), row.begin() + 2, pin), 0) << pin;
+      }
+    }
+  }
+}
+
+#ifdef EX9000_BOARD_HAS_HEADERS
+/// The LaunchPad's headers, by its user's guide (SPMU296, 2.2), from position 1 on.
+const std::map<std::string, std::array<std::string, 10>> kHeaders{
+    {"J1", {"3.3V", "PB5", "PB0", "PB1", "PE4", "PE5", "PB4", "PA5", "PA6", "PA7"}},
+    {"J2", {"GND", "PB2", "PE0", "PF0", "RESET", "PB7", "PB6", "PA4", "PA3", "PA2"}},
+    {"J3", {"5V", "GND", "PD0", "PD1", "PD2", "PD3", "PE1", "PE2", "PE3", "PF1"}},
+    {"J4", {"PF2", "PF3", "PB3", "PC4", "PC5", "PC6", "PC7", "PD6", "PD7", "PF4"}},
+};
+
+std::string pin_at(const std::string& position) {
+  const std::size_t dot = position.find('.');
+  const int place = dot == std::string::npos ? 0 : std::stoi(position.substr(dot + 1));
+  const auto header = kHeaders.find(position.substr(0, dot));
+  return header != kHeaders.end() && place >= 1 && place <= 10
+             ? header->second.at(static_cast<std::size_t>(place - 1))
+             : "nothing";
+}
+
+TEST(Wiring, EveryPinIsWhereTheHeadersHaveIt) {
+  for (const auto& [head, pin_column] : std::map<std::string, std::size_t>{{"pin", 0}, {"signal", 1}}) {
+    const Table table = table_of(head);
+    ASSERT_EQ(table[0].at(pin_column + 1), "header");
+    for (auto row = table.begin() + 1; row != table.end(); ++row) {
+      EXPECT_EQ(pin_at(row->at(pin_column + 1)), row->at(pin_column)) << row->at(pin_column + 1);
+    }
+  }
+}
+
+TEST(Wiring, EveryPositionThatIsNamedWithItsPinIsThatPins) {
+  std::ifstream file(EX9000_BOARD_README);
+  const std::string text{std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>()};
+  int named = 0;
+  for (auto open = text.find(" (P"); open != std::string::npos; open = text.find(" (P", open + 1)) {
+    const auto start = text.rfind(' ', open - 1) + 1;
+    const std::string position = text.substr(start, open - start);  // "J4.4" of "J4.4 (PC4)"
+    if (position[0] == 'J') {
+      EXPECT_EQ(pin_at(position), text.substr(open + 2, 3)) << position;
+      ++named;
+    }
+  }
+  EXPECT_GE(named, 5);
+}
+#endif
+
+}  // namespace
+}  // namespace ex9000::board
