@@ -24,12 +24,7 @@ class InputPins {
         const std::uint32_t pins = group.mask();
         gpio.make_input(pins, !active_high);
         gpio.watch_edges(pins);
-        std::uint32_t read = 0;
-        do {
-          gpio.clear_edges(pins);
-          read = logic(gpio.read(pins)) & pins;
-        } while ((gpio.edges() & pins) != 0);
-        levels |= (read >> group.first_pin) << first;
+        levels |= ((settle(gpio, pins).levels & pins) >> group.first_pin) << first;
         first += group.count;
       }
     }
@@ -57,17 +52,35 @@ class InputPins {
   }
 
  private:
+  struct Settled {
+    std::uint32_t flagged;
+    std::uint32_t levels;
+  };
+
+  /// Clears the flags of `flagged` and what is flagged meanwhile, and reads the levels behind the last of these
+  /// edges. An edge between flag and level would else be told twice: by the level now, by its flag later.
+  [[gnu::noinline]] static Settled settle(Gpio gpio, std::uint32_t flagged) {
+    Settled settled{0, 0};
+    do {
+      settled.flagged |= flagged;
+      gpio.clear_edges(flagged);
+      settled.levels = logic(gpio.read(kAllPins));
+      flagged = gpio.edges();
+    } while (flagged != 0);
+    return settled;
+  }
+
   template <class Deliver>
   [[gnu::noinline]] static void take_edges(Gpio gpio, const std::uint8_t* channel, Deliver deliver) {
-    std::uint32_t flagged = gpio.edges();
-    gpio.clear_edges(flagged);
-    std::uint32_t levels = logic(gpio.read(flagged));
-    for (; flagged != 0; ++channel, flagged >>= 1U, levels >>= 1U) {
-      if ((flagged & 1U) != 0) {
-        deliver(*channel, (levels & 1U) != 0);
+    Settled settled = settle(gpio, gpio.edges());
+    for (; settled.flagged != 0; ++channel, settled.flagged >>= 1U, settled.levels >>= 1U) {
+      if ((settled.flagged & 1U) != 0) {
+        deliver(*channel, (settled.levels & 1U) != 0);
       }
     }
   }
+
+  static constexpr std::uint32_t kAllPins = 0xFF;
 
   static std::uint32_t logic(std::uint32_t levels) { return active_high ? levels : ~levels; }
 
