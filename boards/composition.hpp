@@ -189,7 +189,7 @@ void start() {
   board.init_switch.start();
   board.status_led.start();
   SystemControl::use(kClock);
-  Gpio(kUartPins.port).make_peripheral(kFamily, kUartPins.mask(), kUartFunction);
+  Gpio(kUartPins.port).make_peripheral<kFamily, kUartPins.mask(), kUartFunction>();
   board.memory.master().start();
   SilenceTimer::start();
   LineEndTimer::start();

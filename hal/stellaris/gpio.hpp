@@ -63,25 +63,15 @@ class Gpio {
   }
 
   /// Gives the pins to their peripheral; `function`: GPIOPCTL's number for it, on a TM4C.
-  void make_peripheral(Family family, std::uint32_t pins, std::uint32_t function) const {
-    make_peripheral_of(*this, family, pins, function);
-  }
-  [[gnu::noinline]] static void make_peripheral_of(Gpio port, Family family, std::uint32_t pins,
-                                                   std::uint32_t function) {
-    if (family == Family::Tm4c) {
-      std::uint32_t field = 0;
-      std::uint32_t chosen = 0;
-      for (std::uint32_t pin = 0; pin < 8; ++pin) {
-        if ((pins & (1U << pin)) != 0) {
-          field |= 0xFU << (4U * pin);
-          chosen |= function << (4U * pin);
-        }
-      }
-      port.port_control().write(port.port_control().read().without(Bits<PortControl>(field)) |
-                                Bits<PortControl>(chosen));
+  template <Family family, std::uint32_t pins, std::uint32_t function>
+  void make_peripheral() const {
+    if constexpr (family == Family::Tm4c) {
+      constexpr std::uint32_t kNibbles = one_a_nibble(pins);
+      port_control().write(port_control().read().without(Bits<PortControl>(kNibbles * 0xFU)) |
+                           Bits<PortControl>(kNibbles * function));
     }
-    port.alternate_function().set(Bits<AlternateFunction>(pins));
-    port.digital_enable().set(Bits<DigitalEnable>(pins));
+    alternate_function().set(Bits<AlternateFunction>(pins));
+    digital_enable().set(Bits<DigitalEnable>(pins));
   }
   void take_from_peripheral(std::uint32_t pins) const {
     alternate_function().clear(Bits<AlternateFunction>(pins));
@@ -94,10 +84,9 @@ class Gpio {
 
   // --- edges ---
 
-  /// Both edges of `pins` interrupt from now on.
+  /// Both edges of `pins` interrupt from now on, and what was flagged before.
   void watch_edges(std::uint32_t pins) const {
     both_edges().set(Bits<BothEdges>(pins));
-    clear_edges(pins);
     interrupt_mask().set(Bits<InterruptMask>(pins));
   }
   /// Pins that have seen an edge since it was cleared.
@@ -105,6 +94,15 @@ class Gpio {
   void clear_edges(std::uint32_t pins) const { interrupt_clear().write(Bits<InterruptClear>(pins)); }
 
  private:
+  /// Bit 4n for bit n: GPIOPCTL has four bits a pin.
+  static constexpr std::uint32_t one_a_nibble(std::uint32_t pins) {
+    std::uint32_t nibbles = 0;
+    for (std::uint32_t pin = 0; pin < 8; ++pin) {
+      nibbles |= (pins >> pin & 1U) << (4U * pin);
+    }
+    return nibbles;
+  }
+
   struct Data;
   struct Direction;
   struct BothEdges;

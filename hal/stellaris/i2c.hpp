@@ -155,7 +155,7 @@ class I2c {
     constexpr std::uint32_t kBitRate = 100'000;
     constexpr std::uint32_t kClocksAStep = 2U * (6U + 4U);  // low and high time of SCL
     constexpr Bits<Configuration> kMaster(1U << 4U);
-    kPort.make_peripheral(family, kBoth, kPortControlFunction);
+    kPort.make_peripheral<family, kBoth, kPortControlFunction>();
     if constexpr (family == Family::Lm3s) {
       kPort.set_open_drain(kBoth);
     } else {

@@ -24,7 +24,7 @@ class InputPins {
         const std::uint32_t pins = group.mask();
         gpio.make_input(pins, !active_high);
         gpio.watch_edges(pins);
-        levels |= ((settle(gpio, pins).levels & pins) >> group.first_pin) << first;
+        levels |= ((settle(gpio, pins) >> kLevels & pins) >> group.first_pin) << first;
         first += group.count;
       }
     }
@@ -52,34 +52,33 @@ class InputPins {
   }
 
  private:
-  struct Settled {
-    std::uint32_t flagged;
-    std::uint32_t levels;
-  };
-
-  /// Clears the flags of `flagged` and what is flagged meanwhile, and reads the levels behind the last of these
-  /// edges. An edge between flag and level would else be told twice: by the level now, by its flag later.
-  [[gnu::noinline]] static Settled settle(Gpio gpio, std::uint32_t flagged) {
-    Settled settled{0, 0};
+  /// Clears the flags of `flagged` and what is flagged meanwhile, and reads the levels behind the last of
+  /// these edges. An edge between flag and level would else be told twice: by the level now, by its flag
+  /// later. Returns the flags in bits 0 to 7 and the levels in bits 8 to 15.
+  [[gnu::noinline]] static std::uint32_t settle(Gpio gpio, std::uint32_t flagged) {
+    std::uint32_t told = 0;
+    std::uint32_t levels = 0;
     do {
-      settled.flagged |= flagged;
+      told |= flagged;
       gpio.clear_edges(flagged);
-      settled.levels = logic(gpio.read(kAllPins));
+      levels = logic(gpio.read(kAllPins)) & kAllPins;
       flagged = gpio.edges();
     } while (flagged != 0);
-    return settled;
+    return told | levels << kLevels;
   }
 
   template <class Deliver>
   [[gnu::noinline]] static void take_edges(Gpio gpio, const std::uint8_t* channel, Deliver deliver) {
-    Settled settled = settle(gpio, gpio.edges());
-    for (; settled.flagged != 0; ++channel, settled.flagged >>= 1U, settled.levels >>= 1U) {
-      if ((settled.flagged & 1U) != 0) {
-        deliver(*channel, (settled.levels & 1U) != 0);
+    const std::uint32_t settled = settle(gpio, gpio.edges());
+    std::uint32_t levels = settled >> kLevels;
+    for (std::uint32_t flagged = settled & kAllPins; flagged != 0; flagged >>= 1U, levels >>= 1U, ++channel) {
+      if ((flagged & 1U) != 0) {
+        deliver(*channel, (levels & 1U) != 0);
       }
     }
   }
 
+  static constexpr unsigned kLevels = 8;
   static constexpr std::uint32_t kAllPins = 0xFF;
 
   static std::uint32_t logic(std::uint32_t levels) { return active_high ? levels : ~levels; }
