@@ -1,0 +1,23 @@
+#pragma once
+
+#include <cstdint>
+#include <cstdio>
+#include <stdexcept>
+#include <string>
+
+namespace ex9000::registers {
+
+/// What the data sheet forbids, leaves undefined, or answers with a bus fault.
+class Fault : public std::runtime_error {
+ public:
+  Fault(std::uint32_t address, const std::string& what) : std::runtime_error(hex(address) + ": " + what) {}
+
+ private:
+  static std::string hex(std::uint32_t address) {
+    char text[11];
+    (void)std::snprintf(text, sizeof text, "0x%08X", address);
+    return text;
+  }
+};
+
+}  // namespace ex9000::registers
