@@ -46,7 +46,7 @@ void LineBench::send(const std::vector<std::uint8_t>& bytes) {
   }
 }
 
-void LineBench::send(Character character) {
+void LineBench::send_one(Character character) {
   waiting_.push_back(character);
   if (!sender_.busy()) {
     go_on();

@@ -35,7 +35,7 @@ class LineBench {
   [[nodiscard]] Instant bit_time() const { return bit_time_; }
   /// Puts characters on the line behind those that wait already, without a gap.
   void send(const std::vector<std::uint8_t>& bytes);
-  void send(Character character);
+  void send_one(Character character);
   [[nodiscard]] bool sending() const { return sender_.busy() || !waiting_.empty(); }
   /// When the last character that was sent was over.
   [[nodiscard]] Instant sent() const { return sent_; }

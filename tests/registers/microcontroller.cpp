@@ -197,7 +197,8 @@ void Microcontroller::wait_for_interrupt() {
 void Microcontroller::run_until(Instant when) {
   core.serve_pending();
   while (timeline_.now() < when) {
-    pass(std::min({when, timeline_.next(), std::max(core.next_wake(), timeline_.now() + Instant(1))}));
+    const Instant wakes = core.held() ? kNever : std::max(core.next_wake(), timeline_.now() + Instant(1));
+    pass(std::min({when, timeline_.next(), wakes}));
     core.serve_pending();
   }
 }
