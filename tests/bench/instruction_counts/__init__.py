@@ -1,0 +1,1 @@
+"""What tests/bench/instructions is made of."""

@@ -1,0 +1,79 @@
+"""What a TM4C123 can take of edges, reckoned from counts: no measurement."""
+
+import math
+
+from instruction_counts import execution
+
+HERTZ = 50_000_000
+CYCLES_AN_INSTRUCTION = 1.6
+CYCLES_AROUND_AN_INTERRUPT = 24  # entry and exit
+BAUD = 115200
+BITS_A_CHARACTER = 10
+TICKS_A_SECOND = 1000
+LEFT_TO_THE_MAIN_LOOP = 0.1
+PORTS = (6, 2)  # how many inputs lie on one port: boards/ek-tm4c123gxl/board.hpp
+
+
+def cycles(instructions):
+    return CYCLES_AN_INSTRUCTION * instructions + CYCLES_AROUND_AN_INTERRUPT
+
+
+class Found:
+    """The highest counts of all sessions."""
+
+    def __init__(self):
+        self.received_byte = 0
+        self.sent_byte = 0
+        self.interrupts = {}
+        self.edges = {}  # of the whole interrupt, by how many it serves
+
+    def add(self, counter):
+        """`counter` is a counter.Counter."""
+        self.received_byte = max(self.received_byte, counter.received_byte.count)
+        self.sent_byte = max(self.sent_byte, counter.sent_byte.count)
+        for mine, its in ((self.interrupts, counter.interrupts), (self.edges, counter.edges)):
+            for key, highest in its.items():
+                mine[key] = max(mine.get(key, 0), highest.count)
+
+    def merge(self, other):
+        self.received_byte = max(self.received_byte, other.received_byte)
+        self.sent_byte = max(self.sent_byte, other.sent_byte)
+        for mine, its in ((self.interrupts, other.interrupts), (self.edges, other.edges)):
+            for key, count in its.items():
+                mine[key] = max(mine.get(key, 0), count)
+
+    def edges_at_once(self, edges):
+        """Instructions of an interrupt that serves so many: a straight line through the counts for one and for
+        the most that were counted."""
+        most = max(self.edges)
+        one = self.edges[1]
+        return one + (edges - 1) * (self.edges[most] - one) / (most - 1)
+
+
+def capacity(found):
+    """The text to print."""
+    ports = [cycles(found.edges_at_once(edges)) for edges in PORTS]
+    byte = cycles(found.received_byte)
+    tick = cycles(found.interrupts[execution.TICK])
+    busy = byte * BAUD / BITS_A_CHARACTER / HERTZ + tick * TICKS_A_SECOND / HERTZ
+    left = max(0.0, 1 - busy - LEFT_TO_THE_MAIN_LOOP)
+    # An edge waits at worst for one of each other interrupt, and then until its own flag is cleared.
+    waits = (
+        sum(ports)
+        + max(byte, cycles(found.sent_byte))
+        + sum(cycles(count) for count in found.interrupts.values())
+    )
+    wait = waits / HERTZ
+    pulses = min(left * HERTZ / sum(ports) / 2, 1 / wait)
+    return "\n".join(
+        [
+            f"computed, not measured, for a TM4C123 at {HERTZ // 1_000_000} MHz with {CYCLES_AN_INSTRUCTION} cycles an "
+            f"instruction and {CYCLES_AROUND_AN_INTERRUPT} around an interrupt:",
+            f"  eight edges at once take {sum(ports) / HERTZ * 1e6:.1f} us, a received byte {byte / HERTZ * 1e6:.1f} us of "
+            f"the {BITS_A_CHARACTER / BAUD * 1e6:.1f} us that it takes on the line at {BAUD} baud",
+            f"  all eight inputs at once, both edges counted, the line saturated at {BAUD} baud, {LEFT_TO_THE_MAIN_LOOP:.0%} "
+            f"left to the main loop: {math.floor(pulses / 100) * 100} pulses a second on each input",
+            f"  an edge is served within {math.ceil(wait * 1e6)} us whatever other interrupts wait: a pulse as long as that "
+            "is seen edge by edge; one that is shorter is still counted, if it and the gap behind it last so long together",
+        ]
+    )

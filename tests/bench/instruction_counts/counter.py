@@ -1,0 +1,166 @@
+"""From what was executed to counts."""
+
+import threading
+
+from instruction_counts import execution
+from instruction_counts.requests import DONE, IGNORED, REPLY, STORE
+
+FALLING_ASLEEP = 24  # instructions: a turn of up to so many has only asked for news
+
+
+class Highest:
+    """The pass with the most instructions."""
+
+    def __init__(self):
+        self.wanted = 1
+        self.passes = 0
+        self.addresses = []
+
+    def note(self, addresses):
+        self.passes += 1
+        if len(addresses) > len(self.addresses):
+            self.addresses = addresses
+
+    @property
+    def count(self):
+        return len(self.addresses)
+
+
+class Counter:
+    """Listens to execution.follow. One request at a time is `awaited`; one pass counts from
+
+    - the first instruction of the silence's interrupt, or of CR's interrupt in ASCII,
+    - with the main loop asleep before it,
+    - to what `Request.until` says.
+
+    It has the instructions of that interrupt, of the one that ends ASCII's turn-around, and of the main loop's
+    turns. It has not those of turns in which nothing is done but to wait. A pass into which another interrupt
+    falls does not count, except where there is no reply: what such a request changes may wait for the tick,
+    which is left out, and so is what the main loop does for it.
+    """
+
+    def __init__(self, handlers, sleeps, of_the_tick, ends_with_cr):
+        self._first = {number: execution.as_logged(address) for number, address in handlers.items()}
+        self._awake = {execution.as_logged(address + 2) for address in sleeps}
+        self._of_the_tick = {execution.as_logged(address) for address in of_the_tick}
+        self._ends_with_cr = ends_with_cr
+        self._frame = bytearray()
+        self._request = None  # whose pass is under way
+        self._awaited = {}
+        self.over = threading.Event()  # a pass, good or not
+        self.requests = {}
+        self.spoiled = 0
+        self.edges_at_once = 0
+        self.bytes_taken = 0
+        self.nothing_to_do = False  # the tick's turns are nothing but that
+        self.forget()
+
+    def forget(self):
+        """Begins to count what is not a request."""
+        self.received_byte = Highest()
+        self.sent_byte = Highest()
+        self.interrupts = {}  # others, by the number of the exception
+        self.edges = {}  # by how many were served at once
+        self.ticks_turn = Highest()
+        self.idle_turn = Highest()
+
+    def expect(self, request):
+        self.over.clear()
+        self.requests.setdefault(request, Highest())
+        self._awaited = {frame: request for frame in request.frames}
+
+    # --- what execution.follow tells ---
+
+    def entered(self, span, main):
+        if span.exception == execution.SILENCE:
+            if not self._ends_with_cr:
+                self._begin(span, main)
+            self._frame.clear()
+
+    def left(self, span, main):
+        if span.addresses[:1] == [self._first.get(span.exception)]:  # logged from its begin on
+            self._note_interrupt(span)
+        if span.exception == execution.LINE:
+            self._frame += bytes(span.received)
+            self.bytes_taken += len(span.received)
+            if self._ends_with_cr and span.received[-1:] == [0x0D]:
+                self._begin(span, main)
+                self._frame.clear()
+        elif span.exception in execution.EDGES:
+            self.over.set()
+        if self._request is not None and span is not self._began:
+            if span.exception == execution.SILENCE and self._ends_with_cr:
+                self._turn_around += span.addresses
+            elif span.exception != execution.TICK or self._request.until != DONE or not self._turns:
+                self._spoil()
+
+    def slept(self, main):
+        if main.addresses[0] not in self._awake:
+            return  # logging began in between
+        if main.interrupts == [execution.TICK] and self.nothing_to_do:
+            self.ticks_turn.note(main.addresses)
+        if len(main.addresses) <= FALLING_ASLEEP:
+            self.idle_turn.note(main.addresses)
+        if self._request is None:
+            return
+        self._turns.append(self._without_the_ticks(main))
+        worked = len(main.addresses) > FALLING_ASLEEP
+        if self._request.until == IGNORED or (self._request.until == DONE and worked):
+            self._end([])
+
+    def sent(self, span):
+        if self._request is not None and span.exception == execution.MAIN:
+            if self._request.until == REPLY:
+                self._end(self._without_the_ticks(span))
+            else:
+                self._spoil()
+
+    def stored(self, span):
+        if self._request is not None and span.exception == execution.MAIN:
+            if self._request.until == STORE:
+                self._end(self._without_the_ticks(span))
+            else:
+                self._spoil()
+
+    def _note_interrupt(self, span):
+        if span.exception == execution.LINE:
+            if len(span.received) + span.sent == 1:
+                (self.sent_byte if span.sent else self.received_byte).note(span.addresses)
+        elif span.exception in execution.EDGES:
+            self.edges.setdefault(self.edges_at_once, Highest()).note(span.addresses)
+        else:
+            self.interrupts.setdefault(span.exception, Highest()).note(span.addresses)
+
+    # --- a pass ---
+
+    def _begin(self, span, main):
+        request = self._awaited.get(bytes(self._frame))
+        if request is None or not main.addresses:
+            return  # not asked for, or not logged
+        self._request = request
+        self._began = span
+        self._main = main
+        self._before = len(main.addresses)  # what the main loop had executed when it began
+        self._turn_around = []
+        self._turns = []
+        was_asleep = main.addresses[0] in self._awake and len(main.addresses) <= 2
+        if not was_asleep or len(main.interrupts) != 1 or len(span.received) > 1:
+            self._spoil()
+
+    def _without_the_ticks(self, turn):
+        addresses = turn.addresses[self._before :] if turn is self._main else turn.addresses
+        return [address for address in addresses if address not in self._of_the_tick]
+
+    def _spoil(self):
+        self.spoiled += 1
+        self._request = None
+        self.over.set()
+
+    def _end(self, last):
+        """The longest of the turns before the last is the one that judged the request, the others are idle;
+        all but the first, which begins with the request."""
+        turns = self._turns[:1] + sorted(self._turns[1:], key=len)[-1:] + [last]
+        began = [] if self._request.until == IGNORED and self._ends_with_cr else self._began.addresses
+        self.requests[self._request].note(sum(turns, began + self._turn_around))
+        self._request = None
+        self.over.set()

@@ -1,0 +1,78 @@
+"""The emulator's log of what was executed, cut into interrupts and turns of the main loop.
+
+A line is logged before its instruction is executed, which may come to nothing: because a peripheral is touched
+and the emulator begins the instruction anew for that ("cpu_io_recompile"), or because an interrupt comes first
+("Stopped"). The next line then says so, and the one before it does not count.
+"""
+
+MAIN = 0
+TICK = 15
+EDGES = range(16, 21)  # ports A to E
+LINE = 21
+I2C = 24
+SILENCE = 35
+LINE_END = 37
+
+
+class Span:
+    """An interrupt from its first instruction to its return; or a turn of the main loop, from waking to
+    falling asleep, without the interrupts in between."""
+
+    def __init__(self, exception):
+        self.exception = exception
+        self.addresses = []  # of all instructions; eight hexadecimal digits each, as logged
+        self.received = []  # bytes taken from the UART
+        self.sent = 0  # bytes given to it
+        self.interrupts = []  # exceptions that came in between
+
+
+def follow(log, sleeps, listener):
+    """Reads the log to its end. `sleeps` are the addresses of WFI. `listener` has the methods
+
+    - entered(span, main), left(span, main): an interrupt begins, or has returned
+    - slept(main): a turn is over
+    - sent(span), stored(span): a byte is given to the UART, or a transfer to the EEPROM begins; `span` goes up
+      to there, the instruction that does it included
+    """
+    main = Span(MAIN)
+    stack = [main]
+    here = main.addresses
+    sleeps = {as_logged(address) for address in sleeps}
+    instruction, begun_anew, stopped, interrupt, uart, i2c = b"TcSnpi"
+    for line in log:
+        lead = line[0]
+        if lead == instruction:
+            if here and here[-1] in sleeps:
+                listener.slept(main)
+                main = stack[0] = Span(MAIN)
+                here = main.addresses
+            at = line.index(b"/") + 1
+            here.append(line[at : at + 8])
+        elif lead in (begun_anew, stopped):
+            if here:
+                here.pop()
+        elif lead == interrupt:
+            if line.startswith(b"nvic_acknowledge_irq"):
+                span = Span(int(line.split(b"IRQ: ")[1].split()[0]))
+                main.interrupts.append(span.exception)
+                listener.entered(span, main)
+                stack[1:] = [span]  # none interrupts another; a reset leaves none
+            elif len(stack) > 1:
+                listener.left(stack.pop(), main)
+            here = stack[-1].addresses
+        elif lead == uart:
+            if b" addr 0x00000000 " in line:
+                if line.startswith(b"pl011_read "):
+                    stack[-1].received.append(int(line.rsplit(b"0x", 1)[1], 16) & 0xFF)
+                else:
+                    stack[-1].sent += 1
+                    listener.sent(stack[-1])
+            elif b" addr 0x00000fe0 " in line:  # Emulator.mark: instructions are logged from here on
+                main = stack[0] = Span(MAIN)
+                here = stack[-1].addresses
+        elif lead == i2c and b"start" in line:
+            listener.stored(stack[-1])
+
+
+def as_logged(address):
+    return f"{address:08x}".encode()

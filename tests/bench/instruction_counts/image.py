@@ -1,0 +1,69 @@
+"""A firmware image as it is flashed: its functions, its vectors, and what lies inlined at which address."""
+
+import bisect
+import struct
+import subprocess
+
+
+class Image:
+    """An ELF file, read with the cross tools."""
+
+    def __init__(self, path):
+        self.path = path
+        self._functions = []
+        for line in self._tool("nm", "-CSn", path).decode().splitlines():
+            fields = line.split(" ", 3)
+            if len(fields) == 4 and fields[2] in "tT":
+                begin = int(fields[0], 16)
+                self._functions.append((begin, begin + int(fields[1], 16), fields[3]))
+        self._begins = [begin for begin, _, _ in self._functions]
+        self._chains = {}
+
+    @staticmethod
+    def _tool(name, *arguments, text=None):
+        command = [f"arm-none-eabi-{name}", *arguments]
+        return subprocess.run(command, input=text, check=True, stdout=subprocess.PIPE).stdout
+
+    def handlers(self):
+        """The address of the first instruction of each exception, by its number."""
+        table = self._tool("objcopy", "-O", "binary", "-j", ".vectors", self.path, "/dev/stdout")
+        words = struct.unpack(f"<{len(table) // 4}I", table)
+        return {number: word & ~1 for number, word in enumerate(words) if number >= 1}
+
+    def sleeps(self):
+        """Where it sleeps: the addresses of WFI."""
+        lines = self._tool("objdump", "-d", self.path).decode().splitlines()
+        return {int(line.split(":")[0], 16) for line in lines if line.endswith("\twfi")}
+
+    def function(self, address):
+        """The function whose code this is, or the address."""
+        index = bisect.bisect_right(self._begins, address) - 1
+        if index >= 0 and address < self._functions[index][1]:
+            return self._functions[index][2]
+        return hex(address)
+
+    def inlined(self, addresses):
+        """For each address the names of the functions of the source that it belongs to, innermost first."""
+        unknown = sorted(set(addresses) - set(self._chains))
+        text = "\n".join(map(hex, unknown)).encode()
+        chain = []
+        is_name = True
+        for line in self._tool("addr2line", "-afiC", "-e", self.path, text=text).decode().splitlines():
+            if line.startswith("0x"):
+                chain = self._chains.setdefault(int(line, 16), [])
+                is_name = True
+            else:
+                if is_name:
+                    chain.append(line)
+                is_name = not is_name
+        return {address: self._chains[address] for address in addresses}
+
+    def addresses_of(self, name):
+        """The addresses of all code of the function `name` of the source, inlined or not, and of what is
+        inlined into it."""
+        everywhere = [address for begin, end, _ in self._functions for address in range(begin, end, 2)]
+        return {
+            address
+            for address, chain in self.inlined(everywhere).items()
+            if any(link.split("(")[0].split("::")[-1] == name for link in chain)
+        }
