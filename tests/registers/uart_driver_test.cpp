@@ -37,7 +37,11 @@ class UartBench : public DriverBench {
   explicit UartBench(const Chip& chip, std::uint32_t baud)
       : DriverBench(chip), line(timeline, pins.at('A', 1), pins.at('A', 6), pins.at('A', 0)) {
     uart.start();
-    Gpio(Port::A).make_peripheral(chip.port_control ? Family::Tm4c : Family::Lm3s, 0x03, 1);
+    if (chip.port_control) {
+      Gpio(Port::A).make_peripheral<Family::Tm4c, 0x03, 1>();
+    } else {
+      Gpio(Port::A).make_peripheral<Family::Lm3s, 0x03, 1>();
+    }
     EndTimer::start();
     serve(kUart0Interrupt, [this] {
       uart.on_interrupt([this](std::uint8_t byte, ByteStatus status) {
