@@ -18,8 +18,9 @@ class BareModule {
     if (ascii && model.speaks_modbus()) {
       Settings settings = Settings::factory(model);
       settings.protocol = Protocol::Ascii;
-      const Record record = encode_record(model, {settings, 1});
-      std::copy(record.begin(), record.end(), memory_.begin());
+      Record record;
+      make_record(model, settings, 1, record);
+      std::copy(record.bytes.begin(), record.bytes.end(), memory_.begin());
     }
     module_.begin(0, now_);
     while (!module_.listening()) {
@@ -34,7 +35,7 @@ class BareModule {
       module_.on_byte(byte, ByteStatus::Good, now_);
     }
     now_ = now_ + Duration(4013);
-    module_.on_silence(now_);
+    module_.on_silence();
     module_.look_around(false, now_);
     module_.step(now_);
     const Bytes reply = module_.take_reply(now_);
@@ -46,9 +47,9 @@ class BareModule {
 
  private:
   void pass(std::uint32_t microseconds) {
-    const MemoryJob job = module_.memory_job();
-    if (job.kind == MemoryJob::Kind::Read) {
-      std::copy_n(memory_.begin() + job.address, job.destination.size, job.destination.data);
+    if (module_.wants_memory()) {
+      const MemoryJob job = module_.memory_job();
+      std::copy_n(memory_.begin() + job.address, job.bytes.size, job.bytes.data);
       module_.memory_done(true);
     }
     now_ = now_ + Duration(microseconds);

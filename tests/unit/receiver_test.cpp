@@ -7,6 +7,8 @@
 #include <string_view>
 #include <vector>
 
+#include "firmware/model/baud.hpp"
+
 namespace ex9000 {
 namespace {
 
@@ -196,7 +198,7 @@ TEST_F(ReceiverTest, AnOpenFrameIsNotCounted) {
 
 TEST_F(ReceiverTest, AHostOkOfModbusIsReceivedWithTheSilenceBehindIt) {
   listen(Protocol::ModbusRtu);
-  const std::uint8_t before = receiver_.host_oks();
+  const std::uint32_t before = receiver_.host_oks();
   bytes(kHostOk);
   const Time end = now_;
   EXPECT_EQ(receiver_.host_oks(), before);
@@ -297,12 +299,56 @@ TEST_F(ReceiverTest, ANewAddressHoldsForModbusToo) {
 
 // --- the durations ---
 
-TEST_F(ReceiverTest, AsciiWantsNoSilence) {
+TEST_F(ReceiverTest, AsciiWantsNoSilenceWithinAFrameNorBehindOneThatIsNotAccepted) {
+  listen(Protocol::Ascii, true);
+  for (const std::string_view text : {"$01M", "\r", "$02MD3\r", "$012B8\r", "noise\r", "~**\r", "~**D2"}) {
+    for (const char character : text) {
+      EXPECT_EQ(byte(static_cast<std::uint8_t>(character)).microseconds(), 0U) << text;
+    }
+  }
+  EXPECT_FALSE(took_frame());
+}
+
+TEST_F(ReceiverTest, AsciiWantsTheTurnAroundBehindAnAcceptedFrameAndNeverLess) {
+  for (const std::uint32_t baud : kBaudRates) {
+    Receiver receiver;
+    receiver.listen({Protocol::Ascii, false, LineTiming::at(baud)});
+    receiver.answer_to(kOwn);
+    for (const char character : std::string_view("$01M")) {
+      EXPECT_EQ(receiver.on_byte(static_cast<std::uint8_t>(character), ByteStatus::Good, now_).microseconds(),
+                0U);
+    }
+    // One character of ten bits (wire.md section 3).
+    const double ten_bits = 10 * 1e6 / baud;
+    constexpr double kRounding = 3;
+    const std::uint32_t wanted = receiver.on_byte('\r', ByteStatus::Good, now_).microseconds();
+    EXPECT_GE(wanted, ten_bits) << baud;
+    EXPECT_LE(wanted, ten_bits + kRounding) << baud;
+  }
+}
+
+TEST_F(ReceiverTest, AsciiWantsNoMoreSilenceBehindTheTurnAround) {
   listen(Protocol::Ascii);
-  for (const char character : std::string_view("$01M\r")) {
+  EXPECT_EQ(receiver_.on_silence().microseconds(), 0U);
+  text("$01");
+  EXPECT_EQ(receiver_.on_silence().microseconds(), 0U);
+  text("M\r");
+  EXPECT_EQ(receiver_.on_silence().microseconds(), 0U);
+  EXPECT_TRUE(took_frame());
+}
+
+TEST_F(ReceiverTest, AsciiWantsNoSilenceBehindAHostOkOrAFrameThatThereIsNoRoomFor) {
+  listen(Protocol::Ascii);
+  for (const char character : std::string_view("~**\r")) {
     EXPECT_EQ(byte(static_cast<std::uint8_t>(character)).microseconds(), 0U);
   }
-  EXPECT_EQ(receiver_.on_silence(now_ + milliseconds(50)).microseconds(), 0U);
+  EXPECT_EQ(receiver_.host_oks(), 1U);
+  text("$01M\r");
+  for (const char character : std::string_view("$012\r")) {
+    EXPECT_EQ(byte(static_cast<std::uint8_t>(character)).microseconds(), 0U);
+  }
+  EXPECT_TRUE(took_frame());
+  EXPECT_FALSE(took_frame());
 }
 
 TEST_F(ReceiverTest, ModbusWantsT35BehindEveryByteAndNeverLess) {
@@ -319,7 +365,7 @@ TEST_F(ReceiverTest, ModbusWantsT35BehindEveryByteAndNeverLess) {
 TEST_F(ReceiverTest, ModbusWantsNoMoreSilenceBehindARightCrc) {
   listen(Protocol::ModbusRtu);
   bytes(kChannel0On);
-  EXPECT_EQ(receiver_.on_silence(now_ + milliseconds(50)).microseconds(), 0U);
+  EXPECT_EQ(receiver_.on_silence().microseconds(), 0U);
   EXPECT_TRUE(took_frame());
 }
 
@@ -328,15 +374,15 @@ TEST_F(ReceiverTest, ModbusWantsOneMoreCharacterBehindAWrongCrc) {
   bytes({0x01, 0x05, 0x00});
   constexpr double kTenBits = 10 * 1e6 / kBaud;
   constexpr double kRounding = 3;
-  const std::uint32_t wanted = receiver_.on_silence(now_ + milliseconds(50)).microseconds();
+  const std::uint32_t wanted = receiver_.on_silence().microseconds();
   EXPECT_GE(wanted, kTenBits);
   EXPECT_LE(wanted, kTenBits + kRounding);
-  EXPECT_EQ(receiver_.on_silence(now_ + milliseconds(50)).microseconds(), 0U);
+  EXPECT_EQ(receiver_.on_silence().microseconds(), 0U);
 }
 
 TEST_F(ReceiverTest, SilenceWithoutAFrameWantsNoMore) {
   listen(Protocol::ModbusRtu);
-  EXPECT_EQ(receiver_.on_silence(now_ + milliseconds(50)).microseconds(), 0U);
+  EXPECT_EQ(receiver_.on_silence().microseconds(), 0U);
   EXPECT_EQ(counts(), (Counts{0, 0, 0, 0, 0}));
 }
 
@@ -356,7 +402,7 @@ TEST_F(ReceiverTest, AnOpenModbusFrameIsForgottenWhenTheModuleSpeaks) {
   listen(Protocol::ModbusRtu);
   bytes({0x01, 0x05, 0x00});
   receiver_.speaking();
-  EXPECT_EQ(receiver_.on_silence(now_ + milliseconds(50)).microseconds(), 0U);
+  EXPECT_EQ(receiver_.on_silence().microseconds(), 0U);
   EXPECT_EQ(counts(), (Counts{0, 0, 0, 0, 0}));
   frame(kChannel0On);
   EXPECT_TRUE(took_frame());

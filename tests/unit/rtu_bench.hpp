@@ -15,7 +15,6 @@ using Verdicts = std::vector<Verdict>;
 using Nanoseconds = std::int64_t;
 
 inline constexpr std::uint8_t kOwn = 0x01;
-inline constexpr Duration kLongSilence = milliseconds(100);
 
 inline const FrameBytes kChannel0On{0x01, 0x05, 0x00, 0x00, 0xFF, 0x00, 0x8C, 0x3A};  // wire.md, worked out
 
@@ -93,7 +92,7 @@ class Wire {
  private:
   void run_timer() {
     while (timer_works && due_ && *due_ < now_ / 1000) {
-      note(assembler_.silence(queue_, own, Time(static_cast<std::uint32_t>(*due_))));
+      note(assembler_.silence(queue_, own));
       if (assembler_.wants_more_silence()) {
         *due_ += timing_.rtu_grace.microseconds();
       } else {

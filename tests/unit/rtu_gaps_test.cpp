@@ -144,11 +144,11 @@ TEST_P(RtuGaps, AFrameWithARightCrcIsOverAtT35ThoughAByteIsComingInAndTheTimerIs
 
 TEST_P(RtuGaps, AWrongCrcAtT35WaitsForAByteThatMayBeComingIn) {
   wire_.bytes({0x01, 0x05, 0x00});
-  EXPECT_EQ(assembler_.silence(queue_, kOwn, wire_.time() + kLongSilence), Verdict::Open);
+  EXPECT_EQ(assembler_.silence(queue_, kOwn), Verdict::Open);
   EXPECT_TRUE(assembler_.wants_more_silence());
-  EXPECT_EQ(assembler_.silence(queue_, kOwn, wire_.time() + kLongSilence), Verdict::TooShort);
+  EXPECT_EQ(assembler_.silence(queue_, kOwn), Verdict::TooShort);
   EXPECT_FALSE(assembler_.wants_more_silence());
-  EXPECT_EQ(assembler_.silence(queue_, kOwn, wire_.time() + kLongSilence), Verdict::Open);
+  EXPECT_EQ(assembler_.silence(queue_, kOwn), Verdict::Open);
 }
 
 TEST_P(RtuGaps, AByteThatStartedBeforeT35ContinuesALapsedFrame) {
@@ -172,8 +172,17 @@ TEST_P(RtuGaps, AFrameMayLapseMoreThanOnce) {
 
 TEST_P(RtuGaps, ARightCrcAtT35IsAcceptedAtOnce) {
   wire_.bytes(kChannel0On);
-  EXPECT_EQ(assembler_.silence(queue_, kOwn, wire_.time() + kLongSilence), Verdict::Accepted);
+  EXPECT_EQ(assembler_.silence(queue_, kOwn), Verdict::Accepted);
   EXPECT_FALSE(assembler_.wants_more_silence());
+}
+
+TEST_P(RtuGaps, TheSilenceWasOverT35BehindTheLastByteAndNeverBefore) {
+  for (const std::uint8_t byte : kChannel0On) {
+    wire_.byte(byte);
+    const Nanoseconds over = Nanoseconds{assembler_.silent_since().since(wire_.time()).microseconds()} * 1000;
+    EXPECT_GE(over, t35(baud_));
+    EXPECT_LE(over, t35(baud_) + kClock);
+  }
 }
 
 TEST_P(RtuGaps, AFrameAcrossTheWrapOfTheClockIsOneFrame) {

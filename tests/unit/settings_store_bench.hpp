@@ -18,7 +18,7 @@ using Found = SettingsStore::Found;
 
 inline constexpr std::size_t kPage = 32;
 inline constexpr std::size_t kAttempts = 3;
-inline constexpr std::size_t kStuckCell = 3;
+inline constexpr std::size_t kStuckCell = 0;  // of a page: where a record has the address
 
 inline const Model& model(std::string_view designation) { return *find_model(designation); }
 
@@ -46,7 +46,7 @@ class FakeMemory {
   /// answered.
   std::optional<bool> run(const MemoryJob& job) {
     const bool writing = job.kind == MemoryJob::Kind::Write;
-    const std::size_t size = writing ? job.source.size : job.destination.size;
+    const std::size_t size = job.bytes.size;
     EXPECT_NE(size, 0U);
     EXPECT_EQ(job.address / kPage, (job.address + size - 1) / kPage) << "a job crosses a page";
     if (job.address + size > cells.size()) {
@@ -75,10 +75,10 @@ class FakeMemory {
       --failing_reads;
       return false;
     }
-    std::copy_n(cells.begin() + job.address, job.destination.size, job.destination.data);
+    std::copy_n(cells.begin() + job.address, job.bytes.size, job.bytes.data);
     if (noisy_reads > 0) {
       --noisy_reads;
-      job.destination.data[job.destination.size / 2] ^= 0x10U;
+      job.bytes.data[job.bytes.size / 2] ^= 0x10U;
     }
     return true;
   }
@@ -92,17 +92,17 @@ class FakeMemory {
         return false;
       }
     }
-    for (std::size_t i = 0; i < job.source.size; ++i) {
+    for (std::size_t i = 0; i < job.bytes.size; ++i) {
       std::uint8_t& cell = cells[job.address + i];
       if (power && *power == 0) {
-        cell = spoiled(cell, job.source[i]);
+        cell = spoiled(cell, job.bytes.data[i]);
         return std::nullopt;
       }
       if (power) {
         --*power;
       }
       if (!stuck || (job.address + i) % kPage != kStuckCell) {
-        cell = job.source[i];
+        cell = job.bytes.data[i];
       }
       ++bytes_written;
     }
@@ -175,8 +175,9 @@ inline std::vector<std::uint16_t> copies() {
 
 inline void put(FakeMemory& memory, std::size_t copy, const Settings& settings, std::uint16_t sequence,
                 const Model& which = the_model()) {
-  const Record record = encode_record(which, {settings, sequence});
-  std::copy(record.begin(), record.end(), memory.cells.begin() + copies().at(copy));
+  Record record;
+  make_record(which, settings, sequence, record);
+  std::copy(record.bytes.begin(), record.bytes.end(), memory.cells.begin() + copies().at(copy));
 }
 
 inline void corrupt(FakeMemory& memory, std::size_t copy) { memory.cells[copies().at(copy) + 5U] ^= 0x01U; }

@@ -106,7 +106,7 @@ void end_jobs(SettingsStore& store, bool answered, int count) {
   for (int i = 0; i < count; ++i) {
     const MemoryJob job = store.job();
     if (job.kind == MemoryJob::Kind::Read && answered) {
-      std::fill_n(job.destination.data, job.destination.size, std::uint8_t{0x5A});
+      std::fill_n(job.bytes.data, job.bytes.size, std::uint8_t{0x5A});
     }
     store.done(answered);
   }

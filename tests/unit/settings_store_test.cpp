@@ -22,7 +22,6 @@ TEST(SettingsStore, DoesNothingBeforeItIsTold) {
   SettingsStore store(the_model());
   EXPECT_FALSE(store.busy());
   EXPECT_FALSE(store.loading());
-  EXPECT_EQ(store.job().kind, MemoryJob::Kind::None);
 }
 
 TEST(SettingsStore, LoadsUntilBothCopiesAreRead) {
@@ -35,7 +34,6 @@ TEST(SettingsStore, LoadsUntilBothCopiesAreRead) {
   drive(store, memory);
   EXPECT_FALSE(store.loading());
   EXPECT_FALSE(store.busy());
-  EXPECT_EQ(store.job().kind, MemoryJob::Kind::None);
 }
 
 TEST(SettingsStore, WantsTheSameJobUntilItIsDone) {
@@ -45,8 +43,8 @@ TEST(SettingsStore, WantsTheSameJobUntilItIsDone) {
   const MemoryJob second = store.job();
   EXPECT_EQ(first.kind, second.kind);
   EXPECT_EQ(first.address, second.address);
-  EXPECT_EQ(first.destination.data, second.destination.data);
-  EXPECT_EQ(first.destination.size, second.destination.size);
+  EXPECT_EQ(first.bytes.data, second.bytes.data);
+  EXPECT_EQ(first.bytes.size, second.bytes.size);
 }
 
 TEST(SettingsStore, FindsFactorySettingsOfEveryModelInABlankMemory) {

@@ -9,6 +9,8 @@
 #include <utility>
 #include <vector>
 
+#include "firmware/words.hpp"
+
 namespace ex9000 {
 namespace {
 
@@ -197,6 +199,14 @@ TEST_F(Possible, TheTimeoutStatusWithAndWithoutTheWatchdogArmedAgain) {
 
 // --- changes ---
 
+/// What `name` makes of a change that names nothing yet.
+template <class Naming>
+SettingsChange change(Naming name) {
+  SettingsChange change;
+  name(change);
+  return change;
+}
+
 struct FieldChange {
   const char* field;
   SettingsChange change;
@@ -206,24 +216,36 @@ struct FieldChange {
 /// One for each field, each with another value than `from`.
 std::vector<FieldChange> changes_of_each_field(const Settings& from) {
   std::vector<FieldChange> changes;
-  const auto add = [&](const char* field, const SettingsChange& change, auto mutate) {
+  const auto add = [&](const char* field, auto name, auto mutate) {
     Settings expected = from;
     mutate(expected);
-    changes.push_back({field, change, expected});
+    changes.push_back({field, change(name), expected});
   };
-  add("address", SettingsChange().address(0x2A), [](Settings& s) { s.address = 0x2A; });
-  add("baud code", SettingsChange().baud_code(0x0A), [](Settings& s) { s.baud_code = 0x0A; });
-  add("format", SettingsChange().format(0xC0), [](Settings& s) { s.format = 0xC0; });
-  add("protocol", SettingsChange().protocol(Protocol::Ascii),
+  using Change = SettingsChange;
+  add(
+      "address", [](Change& c) { c.address(0x2A); }, [](Settings& s) { s.address = 0x2A; });
+  add(
+      "baud code", [](Change& c) { c.baud_code(0x0A); }, [](Settings& s) { s.baud_code = 0x0A; });
+  add(
+      "format", [](Change& c) { c.format(0xC0); }, [](Settings& s) { s.format = 0xC0; });
+  add(
+      "protocol", [](Change& c) { c.protocol(Protocol::Ascii); },
       [](Settings& s) { s.protocol = Protocol::Ascii; });
-  add("name", SettingsChange().name(Name("pump")), [](Settings& s) { s.name = Name("pump"); });
-  add("power-on value", SettingsChange().power_on_value(0x1234),
+  add(
+      "name", [](Change& c) { c.name(Name("pump")); }, [](Settings& s) { s.name = Name("pump"); });
+  add(
+      "power-on value", [](Change& c) { c.power_on_value(0x1234); },
       [](Settings& s) { s.power_on_value = 0x1234; });
-  add("safe value", SettingsChange().safe_value(0x0F0F), [](Settings& s) { s.safe_value = 0x0F0F; });
-  add("watchdog enable", SettingsChange().watchdog_enabled(true),
+  add(
+      "safe value", [](Change& c) { c.safe_value(0x0F0F); }, [](Settings& s) { s.safe_value = 0x0F0F; });
+  add(
+      "watchdog enable", [](Change& c) { c.watchdog_enabled(true); },
       [](Settings& s) { s.watchdog_enabled = true; });
-  add("timeout", SettingsChange().watchdog_timeout(0x64), [](Settings& s) { s.watchdog_timeout = 0x64; });
-  add("timeout status", SettingsChange().timeout_status(true), [](Settings& s) { s.timeout_status = true; });
+  add(
+      "timeout", [](Change& c) { c.watchdog_timeout(0x64); }, [](Settings& s) { s.watchdog_timeout = 0x64; });
+  add(
+      "timeout status", [](Change& c) { c.timeout_status(true); },
+      [](Settings& s) { s.timeout_status = true; });
   return changes;
 }
 
@@ -267,7 +289,10 @@ TEST(SettingsChange, OfOneFieldKeepsWhatOthersHaveChanged) {
 
 TEST(SettingsChange, OfSeveralFieldsChangesThemTogether) {
   const Settings factory = Settings::factory(model("EX9042D-M"));
-  const Settings changed = SettingsChange().address(7).baud_code(3).applied_to(factory);
+  const Settings changed = change([](SettingsChange& c) {
+                             c.address(7);
+                             c.baud_code(3);
+                           }).applied_to(factory);
   Settings expected = factory;
   expected.address = 7;
   expected.baud_code = 3;
@@ -276,18 +301,79 @@ TEST(SettingsChange, OfSeveralFieldsChangesThemTogether) {
 
 TEST(SettingsChange, TheLastValueOfAFieldCounts) {
   const Settings factory = Settings::factory(model("EX9042D-M"));
-  EXPECT_EQ(SettingsChange().address(7).address(8).applied_to(factory).address, 8);
+  const SettingsChange twice = change([](SettingsChange& c) {
+    c.address(7);
+    c.address(8);
+  });
+  EXPECT_EQ(twice.applied_to(factory).address, 8);
+}
+
+TEST(SettingsChange, AShorterNameLeavesNothingOfALongerOne) {
+  Settings settings = Settings::factory(model("EX9068D-M"));
+  settings.name = Name("ABCDEFG");
+  Settings expected = settings;
+  expected.name = Name("x");
+  EXPECT_TRUE(change([](SettingsChange& c) { c.name(Name("x")); }).applied_to(settings) == expected);
+  const SettingsChange twice = change([](SettingsChange& c) {
+    c.name(Name("QRSTUVW"));
+    c.name(Name("x"));
+  });
+  EXPECT_TRUE(twice.applied_to(settings) == expected);
 }
 
 TEST(SettingsChange, ToFalseOr0IsAChangeToo) {
   Settings settings = Settings::factory(model("EX9042D-M"));
   settings.watchdog_enabled = settings.timeout_status = true;
   settings.safe_value = 0x1FFF;
-  const Settings changed =
-      SettingsChange().watchdog_enabled(false).timeout_status(false).safe_value(0).applied_to(settings);
+  const Settings changed = change([](SettingsChange& c) {
+                             c.watchdog_enabled(false);
+                             c.timeout_status(false);
+                             c.safe_value(0);
+                           }).applied_to(settings);
   EXPECT_FALSE(changed.watchdog_enabled);
   EXPECT_FALSE(changed.timeout_status);
   EXPECT_EQ(changed.safe_value, 0);
+}
+
+TEST(SettingsChange, ThatIsClearedNamesNothing) {
+  const Settings factory = Settings::factory(model("EX9042D-M"));
+  for (FieldChange& each : changes_of_each_field(factory)) {
+    each.change.clear();
+    EXPECT_TRUE(each.change.applied_to(factory) == factory) << each.field;
+  }
+}
+
+// A module has one that it uses again and again.
+TEST(SettingsChange, ThatWasClearedNamesOnlyWhatIsNamedThen) {
+  const Settings factory = Settings::factory(model("EX9042D-M"));
+  SettingsChange reused;
+  for (const FieldChange& each : changes_of_each_field(factory)) {
+    reused = each.change;
+    reused.clear();
+    reused.watchdog_timeout(0x64);
+    Settings expected = factory;
+    expected.watchdog_timeout = 0x64;
+    EXPECT_TRUE(reused.applied_to(factory) == expected) << each.field;
+  }
+}
+
+// --- as they lie ---
+
+TEST(Settings, DifferWhereAnyFieldDoes) {
+  const Settings factory = Settings::factory(model("EX9042D-M"));
+  const std::vector<FieldChange> changes = changes_of_each_field(factory);
+  for (const FieldChange& one : changes) {
+    for (const FieldChange& other : changes) {
+      EXPECT_EQ(one.expected == other.expected, &one == &other) << one.field << " and " << other.field;
+    }
+  }
+}
+
+TEST(Settings, AreNothingButZerosAtFirst) {
+  const Settings untouched;
+  for (std::size_t i = 0; i < kWordsOf<Settings>; ++i) {
+    EXPECT_EQ(words_of(untouched)[i], 0U);
+  }
 }
 
 }  // namespace

@@ -1,0 +1,122 @@
+// What a request comes to: what is asked for is all that is asked for, and nothing is left once it is
+// cleared.
+#include "firmware/request/outcome.hpp"
+
+#include <gtest/gtest.h>
+
+#include <vector>
+
+namespace ex9000 {
+namespace {
+
+const Model& the_model() { return *find_model("EX9042D-M"); }
+
+const std::vector<Effect> kEveryEffect{
+    Effect::RestartHostWatchdog, Effect::TakeAddress,  Effect::TakeSample,       Effect::MarkSampleRead,
+    Effect::ClearResetStatus,    Effect::ClearLatches, Effect::ClearDiagnostics, Effect::ClearCounters};
+
+Outcome of_everything() {
+  Outcome outcome;
+  for (const Effect effect : kEveryEffect) {
+    outcome.request(effect);
+  }
+  outcome.counters_to_clear = 0xFF;
+  outcome.drive({0x1FFF, 0x0AAA});
+  outcome.change().address(0x2A);
+  outcome.change().safe_value(0x1234);
+  return outcome;
+}
+
+void expect_nothing(const Outcome& outcome) {
+  EXPECT_TRUE(outcome.empty());
+  EXPECT_FALSE(outcome.has_effects());
+  for (const Effect effect : kEveryEffect) {
+    EXPECT_FALSE(outcome.asks_for(effect));
+  }
+  EXPECT_EQ(outcome.outputs_to_drive().mask, 0);
+  EXPECT_FALSE(outcome.changes_settings());
+  const Settings factory = Settings::factory(the_model());
+  EXPECT_TRUE(outcome.change().applied_to(factory) == factory);
+}
+
+TEST(Outcome, IsNothingAtFirst) {
+  const Outcome outcome;
+  expect_nothing(outcome);
+  EXPECT_EQ(outcome.refusal, Refusal::None);
+}
+
+TEST(Outcome, AsksForTheEffectsThatWereRequestedAndNoOthers) {
+  for (const Effect one : kEveryEffect) {
+    for (const Effect other : kEveryEffect) {
+      Outcome outcome;
+      outcome.request(one);
+      outcome.request(other);
+      EXPECT_FALSE(outcome.empty());
+      EXPECT_TRUE(outcome.has_effects());
+      for (const Effect each : kEveryEffect) {
+        EXPECT_EQ(outcome.asks_for(each), each == one || each == other);
+      }
+      EXPECT_EQ(outcome.outputs_to_drive().mask, 0);
+      EXPECT_FALSE(outcome.changes_settings());
+    }
+  }
+}
+
+TEST(Outcome, ToDriveOutputsIsNeitherAnEffectNorAChange) {
+  Outcome outcome;
+  outcome.drive({0x0003, 0x0002});
+  EXPECT_FALSE(outcome.empty());
+  EXPECT_FALSE(outcome.has_effects());
+  EXPECT_FALSE(outcome.changes_settings());
+  EXPECT_EQ(outcome.outputs_to_drive().mask, 0x0003);
+  EXPECT_EQ(outcome.outputs_to_drive().value, 0x0002);
+}
+
+TEST(Outcome, ToChangeSettingsIsNeitherAnEffectNorOutputsToDrive) {
+  Outcome outcome;
+  outcome.change().address(0x2A);
+  outcome.change().watchdog_timeout(0x64);
+  EXPECT_FALSE(outcome.empty());
+  EXPECT_FALSE(outcome.has_effects());
+  EXPECT_TRUE(outcome.changes_settings());
+  EXPECT_EQ(outcome.outputs_to_drive().mask, 0);
+  Settings expected = Settings::factory(the_model());
+  expected.address = 0x2A;
+  expected.watchdog_timeout = 0x64;
+  EXPECT_TRUE(outcome.change().applied_to(Settings::factory(the_model())) == expected);
+}
+
+TEST(Outcome, ThatIsClearedIsNothing) {
+  Outcome outcome = of_everything();
+  ASSERT_FALSE(outcome.empty());
+  outcome.clear();
+  expect_nothing(outcome);
+}
+
+TEST(Outcome, ThatIsClearedStillTellsWhyItWasRefused) {
+  Outcome outcome = of_everything();
+  outcome.refusal = Refusal::OutOfRange;
+  outcome.clear();
+  expect_nothing(outcome);
+  EXPECT_EQ(outcome.refusal, Refusal::OutOfRange);
+}
+
+// A module has one outcome, for one request after the other.
+TEST(Outcome, ThatWasClearedHoldsOnlyWhatCameAfter) {
+  Outcome outcome = of_everything();
+  outcome.clear();
+  outcome.change().watchdog_timeout(0x64);
+  outcome.request(Effect::TakeSample);
+  Settings expected = Settings::factory(the_model());
+  expected.watchdog_timeout = 0x64;
+  EXPECT_TRUE(outcome.change().applied_to(Settings::factory(the_model())) == expected);
+  EXPECT_TRUE(outcome.asks_for(Effect::TakeSample));
+  EXPECT_FALSE(outcome.asks_for(Effect::TakeAddress));
+  EXPECT_EQ(outcome.outputs_to_drive().mask, 0);
+  outcome.drive({0x0001, 0x0001});
+  EXPECT_EQ(outcome.outputs_to_drive().mask, 0x0001);
+  EXPECT_EQ(outcome.outputs_to_drive().value, 0x0001);
+}
+
+}  // namespace
+}  // namespace ex9000
