@@ -18,19 +18,22 @@ static_assert(kSequenceAt == 20 && kRecordCheckAt == 24, "as the header says");
 
 constexpr std::uint32_t kLayout = 2;
 
-constexpr std::uint32_t mixed(std::uint32_t check, std::uint32_t word) {
-  constexpr unsigned kRotation = 13;
-  constexpr std::uint32_t kOdd = 0x9E37'79B1;  // 2^32 by the golden ratio: no pattern of bits is a small one
-  const std::uint32_t sum = check ^ word;
-  return ((sum << kRotation) | (sum >> (32U - kRotation))) * kOdd;
+/// Bit by bit: it is taken where settings are loaded or stored, which takes milliseconds.
+constexpr std::uint32_t crc32(std::uint32_t crc, std::uint32_t data, unsigned bits) {
+  constexpr std::uint32_t kReflectedPolynomial = 0xEDB8'8320;
+  crc ^= data;
+  for (; bits != 0; --bits) {
+    crc = (crc & 1U) != 0 ? (crc >> 1U) ^ kReflectedPolynomial : crc >> 1U;
+  }
+  return crc;
 }
 
 constexpr std::uint32_t seed(const Model& model) {
-  std::uint32_t check = 0;
+  std::uint32_t crc = 0xFFFF'FFFF;
   for (const char character : model.designation) {
-    check = mixed(check, static_cast<std::uint8_t>(character));
+    crc = crc32(crc, static_cast<std::uint8_t>(character), 8);
   }
-  return check;
+  return crc;
 }
 
 std::uint32_t seed_of(const Model& model) {
@@ -44,12 +47,12 @@ std::uint32_t seed_of(const Model& model) {
 }
 
 std::uint32_t check_of(const Model& model, const Record& record) {
-  std::uint32_t check = seed_of(model);
+  std::uint32_t crc = seed_of(model);
   const Word* word = words_of(record);
   for (std::size_t i = 0; i < kCheckedWords; ++i) {
-    check = mixed(check, *word++);
+    crc = crc32(crc, *word++, 32);
   }
-  return check;
+  return ~crc;
 }
 
 }  // namespace

@@ -26,12 +26,12 @@ namespace ex9000 {
 ///     18-19  safe value
 ///     20-21  sequence: the copy with the later one counts
 ///     22-23  layout, 2
-///     24-27  check over the model's designation and bytes 0 to 23, low byte first
+///     24-27  CRC-32 (IEEE 802.3) over the model's designation and bytes 0 to 23, low byte first
 ///
-/// The check begins with the designation, so that what another model has written never counts: its power-on
-/// value was meant for other outputs. It takes a multiplication and a rotation a word, both of which can be
-/// undone: two records that differ in one word only never have the same check, and other differences slip
-/// through once in 2^32 times. A torn page is one of those; the sixteen bits of a CRC-16 would be too few.
+/// The CRC begins with the designation, so that what another model has written never counts: its power-on
+/// value was meant for other outputs. It sees every difference within one word, and every one of two or three
+/// bits wherever they are; others slip through once in 2^32 times. A torn page is one of those; the sixteen
+/// bits of a CRC-16 would be too few.
 constexpr std::size_t kRecordSize = 28;
 constexpr std::size_t kRecordCheckAt = 24;
 
