@@ -125,6 +125,7 @@ std::string channels(unsigned number) { return number == 0 ? kNone : std::to_str
 std::size_t data_byte_of(const Model& model, bool is_output, unsigned channel) {
   const auto on = static_cast<std::uint16_t>(1U << channel);
   Reply reply;
+  reply.clear();
   dcon::put_data(model, is_output ? on : std::uint16_t{0}, is_output ? std::uint16_t{0} : on, reply);
   const auto digit =
       std::find_if(reply.bytes().begin(), reply.bytes().end(), [](std::uint8_t c) { return c != '0'; });
