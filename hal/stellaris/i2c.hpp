@@ -37,11 +37,6 @@ class I2c {
       case Step::Freeing:
         free_bus(now);
         return true;
-      case Step::Stopping:
-        if (deadline_.reached(now)) {
-          finish(result_);
-        }
-        return true;
       case Step::Moving:
         break;
     }
@@ -49,9 +44,7 @@ class I2c {
       completed_seen_ = completed_.load();
       next(now);
     } else if (deadline_.reached(now)) {
-      result_ = I2cResult::Failed;
-      busy_ = false;
-      begin_freeing();
+      give_up(I2cResult::Failed);
     }
     return false;
   }
@@ -73,12 +66,12 @@ class I2c {
   struct InterruptMask;
   struct InterruptClear;
   struct Configuration;
+  struct SoftwareReset;
 
   enum class Step : std::uint8_t {
     Freeing,  ///< the pins are moved by hand
     Idle,
-    Moving,    ///< a byte is on its way
-    Stopping,  ///< behind an error
+    Moving,  ///< a byte is on its way
   };
 
   static constexpr std::uint32_t kBase = 0x4002'0000U;
@@ -89,6 +82,7 @@ class I2c {
   static constexpr Register<InterruptMask> kInterruptMask{kBase + 0x010};
   static constexpr Register<InterruptClear> kInterruptClear{kBase + 0x01C};
   static constexpr Register<Configuration> kConfiguration{kBase + 0x020};
+  static constexpr Register<SoftwareReset> kSoftwareReset{0x400F'E044};  // system control's
 
   // Written
   static constexpr Bits<ControlStatus> kRun{1U << 0U};
@@ -96,6 +90,7 @@ class I2c {
   static constexpr Bits<ControlStatus> kStop{1U << 2U};
   static constexpr Bits<ControlStatus> kAcknowledge{1U << 3U};
   // Read
+  static constexpr Bits<ControlStatus> kBusy{1U << 0U};  // while it is set, no other means anything
   static constexpr Bits<ControlStatus> kError{1U << 1U};
   static constexpr Bits<ControlStatus> kArbitrationLost{1U << 4U};
 
@@ -108,13 +103,16 @@ class I2c {
 
   static constexpr Duration kHalfClock{5};
   static constexpr Duration kByteTimeout = milliseconds(3);  ///< 90 us, and a main loop that was asleep
-  static constexpr Duration kStopTime{30};
 
   // --- freeing the bus ---
 
   /// A device that was interrupted in the middle of a byte may hold the data line. It is clocked until it
-  /// lets go, nine times at most, and then hears START and STOP.
+  /// lets go, nine times at most, and then hears START and STOP. The peripheral is reset, or it would go on
+  /// with a byte that it was stuck in, and tell that as the end of the next one.
   void begin_freeing() {
+    constexpr Bits<SoftwareReset> kI2c0(1U << 12U);
+    kSoftwareReset.write(kI2c0);
+    kSoftwareReset.write({});
     kPort.take_from_peripheral(kBoth);
     kPort.make_input(kBoth, true);  // the weak pull-ups keep a board quiet that has no EEPROM
     step_ = Step::Freeing;
@@ -197,11 +195,12 @@ class I2c {
 
   void next(Time now) {
     const Bits<ControlStatus> status = kControlStatus.read();
+    if (status.has(kBusy)) {
+      return;  // what was told was a byte that has been given up
+    }
     if (status.has(kError)) {
-      result_ = status.has(kArbitrationLost) ? I2cResult::Failed : I2cResult::NoAcknowledge;
-      kControlStatus.write(kStop);
-      step_ = Step::Stopping;
-      deadline_.set(now + kStopTime);
+      // Where there is no other master, arbitration is lost to a line that is stuck.
+      give_up(status.has(kArbitrationLost) ? I2cResult::Failed : I2cResult::NoAcknowledge);
       return;
     }
     if (!transfer_->writes()) {
@@ -212,6 +211,12 @@ class I2c {
     } else {
       move({}, now);
     }
+  }
+
+  /// Freeing the bus ends the transfer for the device as well.
+  void give_up(I2cResult result) {
+    finish(result);
+    begin_freeing();
   }
 
   void finish(I2cResult result) {
