@@ -1,4 +1,4 @@
-// A board by the contracts of its peripherals.
+// A board as what its peripherals promise.
 #pragma once
 
 #include "hal/clock.hpp"

@@ -16,9 +16,9 @@ namespace ex9000 {
 struct MemoryJob {
   enum class Kind : std::uint8_t { Read, Write };
 
-  Kind kind;
-  std::uint16_t address;  ///< of the first byte; a job never crosses a page
-  MutableBytes bytes;     ///< to be filled, or to be written
+  Kind kind = Kind::Read;
+  std::uint16_t address = 0;  ///< of the first byte; a job never crosses a page
+  MutableBytes bytes;         ///< to be filled, or to be written
 };
 
 /// Two copies, each in a page of its own. A save overwrites the older or broken one, reads it back, and only
