@@ -41,7 +41,6 @@ class I2c {
         break;
     }
     if (completed_.load() != completed_seen_) {
-      completed_seen_ = completed_.load();
       next(now);
     } else if (deadline_.reached(now)) {
       give_up(I2cResult::Failed);
@@ -187,6 +186,7 @@ class I2c {
     }
     step_ = Step::Moving;
     deadline_.set(now + kByteTimeout);
+    completed_seen_ = completed_.load();  // the last of them may be one that was given up
     kControlStatus.write(kRun | start |
                          (last                  ? kStop
                           : transfer_->writes() ? Bits<ControlStatus>()
