@@ -58,7 +58,6 @@ void Module::step(Time now) {
     go_on_storing(now);
   }
   if (phase_ == Phase::Idle && receiver_.queue().has_frame()) {
-    reply_due_.set(receiver_.queue().waiting()->received + turn_around_);
     judge();
   }
   if (phase_ == Phase::Judged) {
@@ -69,19 +68,13 @@ void Module::step(Time now) {
   }
 }
 
-Bytes Module::answer_at_once() {
+Bytes Module::answer_at_once(Time now) {
   // With the host watchdog running, what the clock says comes first.
-  if (phase_ != Phase::Idle || line_quiet_.armed() || state().settings.watchdog_enabled ||
-      !receiver_.queue().has_frame()) {
+  if (phase_ != Phase::Idle || state().settings.watchdog_enabled || !receiver_.queue().has_frame()) {
     return {};
   }
-  reply_due_.disarm();  // the silence was that before the reply
   judge();
-  if (phase_ != Phase::ReplyReady) {
-    return {};
-  }
-  phase_ = Phase::Replying;
-  return exchange_.reply.bytes();
+  return take_reply(now);  // the silence may have been that of a frame before
 }
 
 // --- reset ---
@@ -171,6 +164,7 @@ void Module::expire_host_watchdog(Time now) {
 
 void Module::judge() {
   const Frame& frame = *receiver_.queue().waiting();
+  reply_due_.set(frame.received + turn_around_);
   if (kBuiltInputs != 0 && edges_collected_ != edges_.edges()) {
     collect_edges();
   }
@@ -356,8 +350,8 @@ bool Module::memory_is_free() const {
 std::optional<Duration> Module::idle_for(Time now) const {
   const bool memory_has_news = !store_.busy() && (!settings_known_ || storing_leftovers_ ||
                                                   phase_ == Phase::MustStore || phase_ == Phase::Storing);
-  const bool request_waits =
-      (phase_ == Phase::Idle && receiver_.queue().has_frame()) || receiver_.host_oks() != host_oks_heeded_;
+  const bool request_waits = (phase_ == Phase::Idle && receiver_.queue().has_frame()) ||
+                             receiver_.host_oks() != host_oks_heeded_;
   if (memory_has_news || request_waits || led_.pattern() != led_pattern_due()) {
     return Duration();
   }

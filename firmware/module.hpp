@@ -55,7 +55,7 @@ class Module {
   void step(Time now);
   /// The short way, when a silence was told: the reply to a request that asks for nothing but an answer, as
   /// `take_reply` gives it. Empty where `step` must decide.
-  Bytes answer_at_once();
+  Bytes answer_at_once(Time now);
   /// Interrupts too: a frame or a host OK waits for `step`.
   [[nodiscard]] bool line_has_news() const {
     return receiver_.queue().has_frame() || receiver_.host_oks() != host_oks_heeded_;

@@ -75,7 +75,7 @@ class Device {
   void turn() {
     if (silences_.load() != silences_seen_) {
       silences_seen_ = silences_.load();
-      const Bytes reply = module_.answer_at_once();
+      const Bytes reply = module_.answer_at_once(board_.clock.now());
       if (reply.size != 0) {
         send(reply);
         return;
@@ -107,7 +107,7 @@ class Device {
         return;
       }
       reply_under_way_ = false;
-      module_.reply_sent(now);
+      module_.reply_sent(board_.clock.now());  // not `now`: it may have ended since
     }
     const Bytes reply = module_.take_reply(now);
     if (reply.size != 0) {
