@@ -10,6 +10,13 @@ from sample import Verdict, check
 EXCEPTION = 36
 
 
+def holding(code: str) -> str:
+    """Interrupts are held during this assembler code."""
+    return f"""
+        extern "C" void reset() {{ for (;;) asm volatile("cpsid i\\n{code}cpsie i" ::: "memory"); }}
+        """
+
+
 class Accepts(unittest.TestCase):
     def stack(self, verdict: Verdict) -> int:
         """The worst-case stack without the three exceptions that handlers of no depth add: faults and NMI."""
@@ -169,6 +176,20 @@ class Accepts(unittest.TestCase):
         self.assertIn("(600 static,", verdict.figures)
         self.assertRegex(verdict.figures, r"^image: flash 196 of 65536 bytes, RAM 708 of 20480 bytes")
 
+    def test_interrupts_that_are_held_are_counted_along_the_longest_way(self) -> None:
+        verdict = check(
+            """
+            extern "C" void reset() {
+              for (;;) asm volatile("cpsid i\\ncbz r0, 1f\\nnop\\nnop\\n1: wfi\\ncpsie i" ::: "memory");
+            }
+            """
+        )
+        self.assertTrue(verdict.accepted, verdict.problems)
+        self.assertIn("interrupts held for 4 instructions\n", verdict.figures)
+        self.assertIn(
+            "interrupts held for 20 instructions\n", check(holding("nop\\n" * 20)).figures
+        )
+
 
 class Refuses(unittest.TestCase):
     def refused(self, reason: str, source: str, *more: str, **how: str) -> None:
@@ -302,6 +323,47 @@ class Refuses(unittest.TestCase):
             extern "C" void reset() { for (;;) {} }
             asm(".global interrupt\\n.set interrupt, 0x08000003");
             """,
+        )
+
+    # --- interrupts that are held ---
+
+    def test_interrupts_held_for_long(self) -> None:
+        self.refused("interrupts are held for 21 instructions; 20 may be", holding("nop\\n" * 21))
+
+    def test_interrupts_held_in_a_loop(self) -> None:
+        self.refused(
+            "0x[0-9a-f]+: interrupts are held, and then there is a loop at .*",
+            holding("1: cbz r0, 2f\\nb 1b\\n2: "),
+        )
+
+    def test_interrupts_held_during_a_call(self) -> None:
+        self.refused(
+            "0x[0-9a-f]+: interrupts are held, and then 0x[0-9a-f]+ calls or jumps beyond what is followed",
+            """
+            FAR void far_away() { room<40>(); }
+            extern "C" void reset() {
+              for (;;) {
+                asm volatile("cpsid i" ::: "memory");
+                far_away();
+                asm volatile("cpsie i" ::: "memory");
+              }
+            }
+            """,
+        )
+
+    def test_interrupts_held_beyond_the_return(self) -> None:
+        self.refused(
+            "0x[0-9a-f]+: interrupts are held, and then 0x[0-9a-f]+ returns",
+            """
+            FAR void hold() { asm volatile("cpsid i" ::: "memory"); }
+            extern "C" void reset() { for (;;) hold(); }
+            """,
+        )
+
+    def test_interrupts_held_by_other_means(self) -> None:
+        self.refused(
+            "0x[0-9a-f]+: interrupts are held by PRIMASK, r0",
+            'extern "C" void reset() { for (;;) asm volatile("msr primask, r0" ::: "memory"); }',
         )
 
     # --- symbols and sections ---

@@ -11,6 +11,7 @@ from check_image import call_graph, call_sites, forbidden, sizes
 from check_image.disassembly import Disassembly
 from check_image.elf import Elf, NotAnImage
 from check_image.functions import Functions
+from check_image.held import HeldInterrupts
 from check_image.linked_graph import LinkedGraph
 from check_image.stack import EXCEPTION_FRAME, Unbounded, WorstCase, worst_case
 from check_image.vectors import BadVectors, Vectors
@@ -82,7 +83,8 @@ def _check(options: argparse.Namespace) -> int:
     vectors = Vectors(elf, functions)
     disassembly = Disassembly(options.image)
     linked = LinkedGraph(elf, functions, disassembly, units.records, units.call_sites)
-    problems = forbidden.problems(elf, units.records, disassembly) + linked.problems
+    held = HeldInterrupts(disassembly)
+    problems = forbidden.problems(elf, units.records, disassembly) + linked.problems + held.problems
     try:
         stack = worst_case(
             linked.graph, vectors.reset.address, vectors.levels([level.split(",") for level in options.level])
@@ -96,7 +98,7 @@ def _check(options: argparse.Namespace) -> int:
                 " them"
             )
     else:
-        problems += _report(options, elf, stack)
+        problems += _report(options, elf, stack, held)
         if options.verbose:
             _report_stack(stack)
             _report_pointer_calls(linked)
@@ -119,13 +121,13 @@ def _read_units(paths: list[Path]) -> Units:
     return units
 
 
-def _report(options: argparse.Namespace, elf: Elf, stack: WorstCase) -> list[str]:
+def _report(options: argparse.Namespace, elf: Elf, stack: WorstCase, held: HeldInterrupts) -> list[str]:
     """Prints the line of figures; says which are over their budgets."""
     flash, static = sizes.flash(elf), sizes.static_ram(elf)
     ram = static + stack.size
     print(
         f"{options.image.stem}: flash {flash} of {options.flash} bytes, RAM {ram} of {options.ram} bytes "
-        f"({static} static, {stack.size} stack at worst)"
+        f"({static} static, {stack.size} stack at worst), interrupts held for {held.longest} instructions"
     )
     return [
         f"{what} is over its budget: {used} of {budget} bytes"

@@ -1,0 +1,72 @@
+"""For how many instructions interrupts are held back: from each `cpsid i` to the `cpsie i` behind it."""
+
+from __future__ import annotations
+
+import re
+
+from check_image.disassembly import Disassembly, Instruction
+
+# An interrupt that waits for longer than a character loses a byte; this many take a microsecond or two.
+MOST = 20
+
+_HOLD, _RELEASE = "cpsid", "cpsie"
+_MASKS = re.compile(r"(PRIMASK|BASEPRI|BASEPRI_MAX|FAULTMASK),", re.IGNORECASE)
+
+
+class _HeldForEver(Exception):
+    """There is a way from here that never releases them, or whose length is not known."""
+
+
+class HeldInterrupts:
+    """`longest`: instructions between the two, on the longest way. `problems`: what cannot be reckoned."""
+
+    def __init__(self, disassembly: Disassembly) -> None:
+        self._code = disassembly.instructions
+        addresses = sorted(self._code)
+        self._following = dict(zip(addresses, addresses[1:]))
+        self._known: dict[int, int] = {}
+        self.longest = 0
+        self.problems: list[str] = []
+        for address in addresses:
+            instruction = self._code[address]
+            if instruction.mnemonic.startswith("msr") and _MASKS.match(instruction.operands):
+                self.problems.append(f"{address:#x}: interrupts are held by {instruction.operands}")
+            if instruction.mnemonic.startswith(_HOLD):
+                self._follow(address)
+        if self.longest > MOST:
+            self.problems.append(f"interrupts are held for {self.longest} instructions; {MOST} may be")
+
+    def _follow(self, held_at: int) -> None:
+        try:
+            self.longest = max(self.longest, self._behind(held_at, []))
+        except _HeldForEver as reason:
+            self.problems.append(f"{held_at:#x}: interrupts are held, and then {reason}")
+
+    def _behind(self, address: int, way: list[int]) -> int:
+        """The most instructions between this one and the release."""
+        if address in way:
+            raise _HeldForEver(f"there is a loop at {address:#x}")
+        if address not in self._known:
+            instruction = self._code[address]
+            self._known[address] = max(
+                self._from(behind, [*way, address]) for behind in self._next(instruction)
+            )
+        return self._known[address]
+
+    def _from(self, address: int, way: list[int]) -> int:
+        instruction = self._code.get(address)
+        if instruction is None or instruction.is_data:
+            raise _HeldForEver(f"there is no code at {address:#x}")
+        if instruction.mnemonic.startswith(_RELEASE):
+            return 0
+        return 1 + self._behind(address, way)
+
+    def _next(self, instruction: Instruction) -> list[int]:
+        if instruction.is_call or instruction.is_indirect or instruction.jumps_by_table:
+            raise _HeldForEver(f"{instruction.address:#x} calls or jumps beyond what is followed")
+        behind = [] if instruction.branch_target is None else [instruction.branch_target]
+        if instruction.goes_on:
+            behind += [self._following.get(instruction.address, -1)]
+        if not behind:
+            raise _HeldForEver(f"{instruction.address:#x} returns")
+        return behind
