@@ -138,10 +138,10 @@ void Module::collect_edges() {
 
 void Module::heed_host_ok() {
   const std::uint32_t host_oks = receiver_.host_oks();
-  if (host_oks == host_oks_heeded_) {
+  if (host_oks == host_oks_heeded_.load()) {
     return;
   }
-  host_oks_heeded_ = host_oks;
+  host_oks_heeded_.store_in_main_loop(host_oks);
   // It counts from when it was over, and comes too late where the timeout was over before.
   const Time received = receiver_.host_ok_time();
   expire_host_watchdog(received);
@@ -351,7 +351,7 @@ std::optional<Duration> Module::idle_for(Time now) const {
   const bool memory_has_news = !store_.busy() && (!settings_known_ || storing_leftovers_ ||
                                                   phase_ == Phase::MustStore || phase_ == Phase::Storing);
   const bool request_waits = (phase_ == Phase::Idle && receiver_.queue().has_frame()) ||
-                             receiver_.host_oks() != host_oks_heeded_;
+                             receiver_.host_oks() != host_oks_heeded_.load();
   if (memory_has_news || request_waits || led_.pattern() != led_pattern_due()) {
     return Duration();
   }

@@ -6,6 +6,7 @@
 
 #include "firmware/bytes.hpp"
 #include "firmware/channels/inputs.hpp"
+#include "firmware/line/crossing.hpp"
 #include "firmware/line/receiver.hpp"
 #include "firmware/model/model.hpp"
 #include "firmware/panel/debounce.hpp"
@@ -58,7 +59,7 @@ class Module {
   Bytes answer_at_once(Time now);
   /// Interrupts too: a frame or a host OK waits for `step`.
   [[nodiscard]] bool line_has_news() const {
-    return receiver_.queue().has_frame() || receiver_.host_oks() != host_oks_heeded_;
+    return receiver_.queue().has_frame() || receiver_.host_oks() != host_oks_heeded_.load();
   }
   /// How long nothing will happen by itself; zero: step again at once; nothing: until an interrupt or a
   /// finished job.
@@ -137,7 +138,7 @@ class Module {
   bool expired_since_judged_ = false;  ///< the host watchdog has expired while a command waits for its store
   Deadline leftovers_retry_;
   Deadline init_gives_up_;
-  std::uint32_t host_oks_heeded_ = 0;
+  WrittenByMainLoop<std::uint32_t> host_oks_heeded_;
   std::uint32_t edges_collected_ = 0;
   Duration turn_around_;  ///< silence before a reply: behind the request, and behind the reply before it
   Deadline reply_due_;

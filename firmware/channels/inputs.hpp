@@ -5,6 +5,7 @@
 #include <cstdint>
 
 #include "firmware/line/crossing.hpp"
+#include "firmware/line/event_tally.hpp"
 #include "firmware/model/model.hpp"
 
 namespace ex9000 {

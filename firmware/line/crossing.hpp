@@ -50,29 +50,17 @@ class WrittenByMainLoop : public detail::Crossing<T> {
   [[gnu::always_inline]] void store_in_main_loop(T value) { this->store(value); }
 };
 
-/// Counts events in an interrupt and hands them to the main loop, none lost and none twice, as long as the
-/// main loop collects before 65536 have gathered. Neither side ever writes what the other writes.
-class EventTally {
+/// Too large for one instruction, and handed over whole: the main loop's until it stores a WrittenByMainLoop
+/// that says so, then the interrupts' until they store a WrittenByInterrupt that gives it back. Either side
+/// touches it only while it is its own.
+template <class T>
+class HandedToInterrupt {
  public:
-  /// Interrupt.
-  [[gnu::always_inline]] void count_in_interrupt(unsigned events = 1) {
-    total_.store_in_interrupt(static_cast<std::uint16_t>(total_.load() + events));
-  }
-
-  /// Main loop: how many since `collect` or `clear` was last called, modulo 65536.
-  [[nodiscard]] std::uint16_t count() const { return static_cast<std::uint16_t>(total_.load() - collected_); }
-  /// Main loop: likewise, and begins anew.
-  std::uint16_t collect() {
-    const std::uint16_t total = total_.load();
-    const auto fresh = static_cast<std::uint16_t>(total - collected_);
-    collected_ = total;
-    return fresh;
-  }
-  void clear() { collected_ = total_.load(); }
+  [[gnu::always_inline]] void set_in_main_loop(const T& value) { value_ = value; }
+  [[gnu::always_inline]] T& in_interrupt() { return value_; }
 
  private:
-  WrittenByInterrupt<std::uint16_t> total_;
-  std::uint16_t collected_ = 0;  // main loop
+  T value_{};
 };
 
 }  // namespace ex9000

@@ -1,7 +1,7 @@
 // What the receive interrupt counts for Modbus function 08 (Modbus over Serial Line V1.02, appendix A).
 #pragma once
 
-#include "firmware/line/crossing.hpp"
+#include "firmware/line/event_tally.hpp"
 
 namespace ex9000 {
 

@@ -52,7 +52,7 @@ class Uart {
   }
 
   void send(Bytes bytes) {
-    rest_ = bytes.from(1);
+    rest_.set_in_main_loop(bytes.from(1));
     begun_.store_in_main_loop(begun_.load() + 1U);
     Gpio(driver_enable.port).write(driver_enable.mask(), driver_enable.mask());
     kData.write(Bits<Data>(bytes[0]));
@@ -133,9 +133,10 @@ class Uart {
 
   /// The byte before has left the holding register for the shift register.
   void go_on_sending() {
-    if (rest_.size != 0) {
-      kData.write(Bits<Data>(rest_[0]));
-      rest_ = rest_.from(1);
+    Bytes& rest = rest_.in_interrupt();
+    if (rest.size != 0) {
+      kData.write(Bits<Data>(rest[0]));
+      rest = rest.from(1);
     } else if (sending()) {
       EndTimer::restart(character_);
     }
@@ -143,7 +144,7 @@ class Uart {
 
   Duration bit_;  ///< both rounded up
   Duration character_;
-  Bytes rest_;  ///< main loop until the first byte is written, then interrupts until the last one is
+  HandedToInterrupt<Bytes> rest_;  ///< by `begun_`, and back by `ended_`
   WrittenByMainLoop<std::uint32_t> begun_;
   WrittenByInterrupt<std::uint32_t> ended_;
 };

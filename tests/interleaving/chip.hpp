@@ -1,0 +1,220 @@
+// The microcontroller around a module: a UART with its RS-485 driver, two timers, a memory, a clock.
+#pragma once
+
+#include <algorithm>
+#include <cstdint>
+#include <stdexcept>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "firmware/bytes.hpp"
+#include "firmware/time.hpp"
+#include "hal/stellaris/bus.hpp"
+#include "hal/stellaris/gpio.hpp"
+
+namespace ex9000::interleaving {
+
+inline constexpr hal::stellaris::Pin kDriverEnable{hal::stellaris::Port::A, 6};
+
+/// A reply as it left, or whatever else was sent while the driver was on once.
+struct Sent {
+  std::uint32_t started;  ///< microseconds, driver on
+  std::uint32_t ended;    ///< the last stop bit
+  std::string bytes;
+};
+
+/// Hardware only. It knows when it will interrupt; who owns it calls the interrupt when that time has come.
+class Chip final : public hal::stellaris::bus::Peripherals {
+ public:
+  static constexpr std::uint32_t kNever = 0xFFFF'FFFF;
+  static constexpr std::uint32_t kCharacter = 87;  ///< at 115200 baud, microseconds
+  static constexpr std::uint32_t kMemoryJob = 3000;
+
+  std::uint32_t now = 1000;
+  std::uint32_t tick_due = 2000;
+  std::uint32_t silence_due = kNever;
+  std::uint32_t line_end_due = kNever;
+  std::uint32_t memory_due = kNever;
+  std::uint32_t sent_due = kNever;  ///< the byte in the shift register has left
+
+  std::vector<Sent> sent;
+  std::uint16_t outputs = 0;
+  unsigned ticks = 0;
+  unsigned feeds = 0;  ///< of the watchdog
+
+  [[nodiscard]] std::uint32_t next() const {
+    return std::min({tick_due, silence_due, line_end_due, memory_due, sent_due});
+  }
+
+  // --- the UART; facts as in hal/stellaris/uart.hpp ---
+
+  [[nodiscard]] bool driving() const { return driving_; }
+  void receive(std::uint8_t byte) {
+    received_ = byte;
+    flagged_ |= kReceive;
+  }
+  /// The byte in the shift register has left; the one that waits goes in.
+  void shift() {
+    sent.back().bytes.push_back(static_cast<char>(shifting_));
+    sent.back().ended = now;
+    sent_due = kNever;
+    if (holding_ >= 0) {
+      begin_shifting(static_cast<std::uint8_t>(holding_));
+      holding_ = -1;
+    }
+  }
+  [[nodiscard]] bool interrupts() const { return (flagged_ & enabled_) != 0; }
+
+  std::uint32_t read(std::uint32_t address) override {
+    switch (address) {
+      case kUart + 0x000:
+        flagged_ &= ~kReceive;
+        return static_cast<std::uint32_t>(std::exchange(received_, -1));
+      case kUart + 0x018:
+        return (received_ < 0 ? 1U << 4U : 0) | (sent_due != kNever ? 1U << 3U : 0);
+      case kUart + 0x040:
+        return flagged_ & enabled_;
+      default:
+        return 0;
+    }
+  }
+  void write(std::uint32_t address, std::uint32_t value) override {
+    switch (address) {
+      case kUart + 0x000:
+        put(static_cast<std::uint8_t>(value));
+        break;
+      case kUart + 0x038:
+        enabled_ = value;
+        break;
+      case kUart + 0x044:
+        flagged_ &= ~value;
+        break;
+      case kPortA + (1U << kDriverEnable.number << 2U):
+        drive(value != 0);
+        break;
+      default:
+        break;
+    }
+  }
+
+ private:
+  static constexpr std::uint32_t kUart = 0x4000'C000;
+  static constexpr std::uint32_t kPortA = 0x4000'4000;
+  static constexpr std::uint32_t kReceive = 1U << 4U;
+  static constexpr std::uint32_t kTransmit = 1U << 5U;
+
+  void put(std::uint8_t byte) {
+    if (!driving_) {
+      throw std::logic_error("a byte is sent while the driver is off");
+    }
+    if (sent_due == kNever) {
+      begin_shifting(byte);
+    } else if (holding_ < 0) {
+      holding_ = byte;
+    } else {
+      throw std::logic_error("a byte is written over the one that waits");
+    }
+  }
+  void begin_shifting(std::uint8_t byte) {
+    shifting_ = byte;
+    sent_due = now + kCharacter;
+    flagged_ |= kTransmit;
+  }
+  void drive(bool on) {
+    if (on == driving_) {
+      throw std::logic_error("the driver is switched to what it is");
+    }
+    if (on) {
+      sent.push_back({now, kNever, ""});
+    } else if (sent_due != kNever || sent.back().bytes.empty()) {
+      throw std::logic_error("the driver goes off in the middle of a byte, or before the first");
+    }
+    driving_ = on;
+  }
+
+  std::uint32_t enabled_ = 0;
+  std::uint32_t flagged_ = 0;
+  std::int32_t received_ = -1;
+  std::uint8_t shifting_ = 0;
+  std::int32_t holding_ = -1;
+  bool driving_ = false;
+};
+
+/// The one that the drivers are on.
+inline Chip* chip = nullptr;
+
+struct Clock {
+  [[nodiscard]] static Time now() {
+    Points::pass();
+    const Time time(chip->now);
+    Points::pass();
+    return time;
+  }
+};
+
+struct SilenceTimer {
+  static void restart(Duration after) { chip->silence_due = chip->now + after.microseconds(); }
+};
+struct LineEndTimer {
+  static void restart(Duration after) { chip->line_end_due = chip->now + after.microseconds(); }
+};
+
+struct Inputs {
+  [[nodiscard]] static std::uint16_t start() { return 0; }
+};
+struct Outputs {
+  static void drive(std::uint16_t channels) {
+    Points::pass();
+    chip->outputs = channels;
+    Points::pass();
+  }
+};
+struct InitSwitch {
+  [[nodiscard]] static bool asserted() { return false; }
+};
+struct StatusLed {
+  static void light(bool /*on*/) {}
+};
+
+struct Watchdog {
+  static void feed() {
+    // The first is that at reset; each other takes a tick for itself.
+    if (chip->feeds++ > chip->ticks) {
+      throw std::logic_error("the watchdog is fed though no tick has come since it was");
+    }
+  }
+};
+
+/// What the main loop has begun is done when its time has come; an interrupt tells.
+class Memory {
+ public:
+  static constexpr std::size_t kSize = 64;
+
+  void start_read(std::uint16_t address, MutableBytes destination, Time /*now*/) {
+    Points::pass();
+    std::copy_n(contents.begin() + address, destination.size, destination.data);
+    begin();
+  }
+  void start_write(std::uint16_t address, Bytes source, Time /*now*/) {
+    Points::pass();
+    std::copy(source.begin(), source.end(), contents.begin() + address);
+    begin();
+  }
+  static bool go_on(Time /*now*/) { return false; }
+  [[nodiscard]] static bool busy() {
+    Points::pass();
+    return chip->memory_due != Chip::kNever;
+  }
+  [[nodiscard]] static bool succeeded() { return true; }
+
+  std::vector<std::uint8_t> contents = std::vector<std::uint8_t>(kSize, 0xFF);
+
+ private:
+  static void begin() {
+    chip->memory_due = chip->now + Chip::kMemoryJob;
+    Points::pass();
+  }
+};
+
+}  // namespace ex9000::interleaving
