@@ -14,6 +14,7 @@ namespace detail {
 /// accesses across it, and that is what the fence forbids.
 template <class T>
 class Crossing {
+  // NOLINTNEXTLINE(bugprone-sizeof-expression): where T is a pointer, its own size is meant
   static_assert(std::is_trivially_copyable<T>::value && sizeof(T) <= sizeof(std::uintptr_t),
                 "must be read and written by one instruction");
 
