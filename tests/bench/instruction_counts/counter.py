@@ -48,6 +48,7 @@ class Counter:
         self._request = None  # whose pass is under way
         self._awaited = {}
         self.over = threading.Event()  # a pass, good or not
+        self.ticked = threading.Event()
         self.requests = {}
         self.spoiled = 0
         self.edges_at_once = 0
@@ -86,6 +87,8 @@ class Counter:
             if self._ends_with_cr and span.received[-1:] == [0x0D]:
                 self._begin(span, main)
                 self._frame.clear()
+        elif span.exception == execution.TICK:
+            self.ticked.set()
         elif span.exception in execution.EDGES:
             self.over.set()
         if self._request is not None and span is not self._began:

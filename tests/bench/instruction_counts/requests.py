@@ -141,7 +141,7 @@ def modbus_requests(model, general):
                 "01 05 010D FF00",
                 until=STORE,
                 passes=10,
-                settles=0.14,
+                settles=0.25,
                 before=["01 10 01E8 0001 02 0001", "01 05 0104 FF00"],
             ),
             request(
@@ -197,7 +197,7 @@ def ascii_requests(model, general, checksum):
             request("~AA3EVV", "~0130FE", "~0130FF", until=STORE),
             request("refused", "$01Z"),
             request("for another address", "$052", until=IGNORED, limit=IGNORED_LIMIT),
-            request("~AA1", "~011", until=STORE, before=["~013101"], settles=0.14, passes=10),
+            request("~AA1", "~011", until=STORE, before=["~013101"], settles=0.25, passes=10),
         ]
     if model.outputs:
         values = ["@011555", "@010AAA"] if model.outputs > 8 else ["@0155", "@01AA"]
