@@ -40,8 +40,11 @@ class I2c {
       case Step::Moving:
         break;
     }
-    if (completed_.load() != completed_seen_) {
-      next(now);
+    const bool told = completed_.load() != completed_seen_;
+    const Bits<ControlStatus> status = kControlStatus.read();
+    // Where it is busy all the same, what was told was a byte that had been given up.
+    if (told && !status.has(kBusy)) {
+      next(status, now);
     } else if (deadline_.reached(now)) {
       give_up(I2cResult::Failed);
     }
@@ -193,11 +196,7 @@ class I2c {
                                                 : kAcknowledge));
   }
 
-  void next(Time now) {
-    const Bits<ControlStatus> status = kControlStatus.read();
-    if (status.has(kBusy)) {
-      return;  // what was told was a byte that has been given up
-    }
+  void next(Bits<ControlStatus> status, Time now) {
     if (status.has(kError)) {
       // Where there is no other master, arbitration is lost to a line that is stuck.
       give_up(status.has(kArbitrationLost) ? I2cResult::Failed : I2cResult::NoAcknowledge);

@@ -85,8 +85,11 @@ class I2cController final : public bus::Peripherals {
  public:
   I2cController() { bus::peripherals = this; }
   unsigned bytes_begun = 0;
+  bool busy = false;
 
-  std::uint32_t read(std::uint32_t address) override { return address == kControl ? 0 : 0xFFFF'FFFF; }
+  std::uint32_t read(std::uint32_t address) override {
+    return address == kControl ? (busy ? 1U : 0) : 0xFFFF'FFFF;
+  }
   void write(std::uint32_t address, std::uint32_t value) override {
     constexpr std::uint32_t kRun = 1;
     bytes_begun += address == kControl && (value & kRun) != 0 ? 1U : 0U;
@@ -141,6 +144,28 @@ TEST(I2c, AByteThatIsGivenUpIsNeverTakenForALaterOne) {
   }
   std::printf("points: %u\n", points);
   EXPECT_GT(points, 5U);
+}
+
+TEST(I2c, AByteThatIsToldToBeOverAndIsNotIsGivenUpInTheEnd) {
+  I2cController controller;
+  hal::stellaris::I2c<hal::stellaris::Family::Lm3s, 50'000'000> i2c;
+  Time now(0);
+  i2c.start();
+  while (i2c.go_on(now)) {
+    now = now + Duration(50);
+  }
+  const std::array<std::uint8_t, 3> bytes{1, 2, 3};
+  hal::I2cTransfer transfer;
+  transfer.header = {bytes.data(), bytes.size()};
+  i2c.begin(transfer, now);
+  controller.busy = true;
+  Points::interrupt([&] { i2c.on_interrupt(); });
+  i2c.go_on(now);
+  EXPECT_TRUE(i2c.busy());
+  EXPECT_EQ(controller.bytes_begun, 1U);
+  i2c.go_on(now + milliseconds(4));
+  EXPECT_FALSE(i2c.busy());
+  EXPECT_EQ(i2c.result(), hal::I2cResult::Failed);
 }
 
 }  // namespace
