@@ -41,7 +41,7 @@ std::uint32_t Core::read(std::uint32_t offset) {
     case kTickCurrent:
       return current();
     case kInterruptControl:
-      return pending_[kTick] ? kTickPending : 0;
+      return (pending_ >> kTick & 1U) != 0 ? kTickPending : 0;
     case kSetEnable:
       return enabled_;
     default:
@@ -103,8 +103,9 @@ unsigned Core::priority_of(unsigned exception) const {
 }
 
 void Core::pend(unsigned exception) {
-  if (!pending_.at(exception)) {
-    pending_.at(exception) = true;
+  const std::uint64_t bit = 1ULL << exception;
+  if ((pending_ & bit) == 0) {
+    pending_ |= bit;
     since_.at(exception) = timeline_.now();
   }
 }
@@ -119,10 +120,10 @@ void Core::interrupt_line_of(unsigned interrupt, bool asserted) {
 
 /// 0: none. It takes no notice of whether interrupts are held.
 unsigned Core::next_to_serve() const {
+  const std::uint64_t candidates = waiting();
   unsigned best = 0;
-  for (unsigned exception = kTick; exception < kExceptions; ++exception) {
-    const bool enabled = exception == kTick || (enabled_ >> (exception - kFirstInterrupt) & 1U) != 0;
-    if (pending_.at(exception) && enabled && since_.at(exception) + latency_ <= timeline_.now() &&
+  for (unsigned exception = kTick; candidates >> exception != 0; ++exception) {
+    if ((candidates >> exception & 1U) != 0 && since_.at(exception) + latency_ <= timeline_.now() &&
         (best == 0 || priority_of(exception) < priority_of(best))) {
       best = exception;
     }
@@ -134,10 +135,10 @@ unsigned Core::next_to_serve() const {
 }
 
 Instant Core::next_wake() const {
+  const std::uint64_t candidates = waiting();
   Instant next = kNever;
-  for (unsigned exception = kTick; exception < kExceptions; ++exception) {
-    const bool enabled = exception == kTick || (enabled_ >> (exception - kFirstInterrupt) & 1U) != 0;
-    if (pending_.at(exception) && enabled) {
+  for (unsigned exception = kTick; candidates >> exception != 0; ++exception) {
+    if ((candidates >> exception & 1U) != 0) {
       next = std::min(next, since_.at(exception) + latency_);
     }
   }
@@ -150,7 +151,7 @@ void Core::serve_pending() {
     if (exception == 0) {
       return;
     }
-    pending_.at(exception) = false;
+    pending_ &= ~(1ULL << exception);
     active_.push_back(exception);
     deepest_ = std::max(deepest_, active_.size());
     serve_(exception);

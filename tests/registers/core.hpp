@@ -65,6 +65,10 @@ class Core final : public Peripheral {
   [[nodiscard]] unsigned priority_of(unsigned exception) const;
   [[nodiscard]] unsigned group(unsigned priority) const { return priority >> (group_shift_ + 1U); }
   [[nodiscard]] unsigned next_to_serve() const;
+  /// Those that are pending and enabled.
+  [[nodiscard]] std::uint64_t waiting() const {
+    return pending_ & (1ULL << kTick | std::uint64_t{enabled_} << kFirstInterrupt);
+  }
   void pend(unsigned exception);
   void count_tick();
 
@@ -83,7 +87,7 @@ class Core final : public Peripheral {
   std::array<std::uint8_t, 32> priorities_{};
   unsigned group_shift_ = 0;
   std::array<bool, 32> lines_{};
-  std::array<bool, kExceptions> pending_{};
+  std::uint64_t pending_ = 0;  ///< a bit an exception
   std::array<Instant, kExceptions> since_{};
   std::vector<unsigned> active_;
   std::size_t deepest_ = 0;

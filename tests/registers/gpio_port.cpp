@@ -32,7 +32,7 @@ GpioPort::GpioPort(const Chip& chip, char letter, PortNets& nets)
   if (chip.port_control && letter == 'C') {
     control_ = 0x1111;
   }
-  drive_pins();
+  drive_pins(kAll);
 }
 
 GpioPort::~GpioPort() {
@@ -107,8 +107,9 @@ void GpioPort::check_lock(std::uint32_t offset, std::uint32_t changed) const {
 void GpioPort::write(std::uint32_t offset, std::uint32_t value) {
   if (offset < kDirection) {
     const std::uint32_t pins = offset >> 2U;
+    const std::uint32_t before = data_;
     data_ = (data_ & ~pins) | (value & pins);
-    drive_pins();
+    drive_pins(data_ ^ before);
     return;
   }
   if (offset == kClear) {
@@ -133,13 +134,21 @@ void GpioPort::write(std::uint32_t offset, std::uint32_t value) {
   } else if (offset == kPullDown) {
     pull_up_ &= ~value;
   }
-  drive_pins();
+  drive_pins(kAll);
   tell_interrupt();
 }
 
 bool GpioPort::given_to(unsigned pin, std::uint32_t function) const {
   const bool chosen = !chip_.port_control || (control_ >> (4 * pin) & 0xFU) == function;
   return chosen && (function_ >> pin & 1U) != 0 && (enable_ >> pin & 1U) != 0;
+}
+
+void GpioPort::drive_pins(std::uint32_t pins) {
+  for (unsigned pin = 0; pins >> pin != 0; ++pin) {
+    if ((pins >> pin & 1U) != 0) {
+      drive_pin(pin);
+    }
+  }
 }
 
 void GpioPort::drive_pin(unsigned pin) {

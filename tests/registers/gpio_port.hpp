@@ -61,11 +61,8 @@ class GpioPort final : public Peripheral {
   std::uint32_t& stored(std::uint32_t offset);
   void check_lock(std::uint32_t offset, std::uint32_t changed) const;
   void drive_pin(unsigned pin);
-  void drive_pins() {
-    for (unsigned pin = 0; pin < 8; ++pin) {
-      drive_pin(pin);
-    }
-  }
+  static constexpr std::uint32_t kAll = 0xFF;
+  void drive_pins(std::uint32_t pins);
   void tell_interrupt() { interrupt_line((raw_ & mask_) != 0); }
 
   const Chip& chip_;

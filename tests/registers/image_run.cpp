@@ -51,12 +51,13 @@ void ImageRun::run() {
 }
 
 void ImageRun::pass(Instant to) {
-  while (limit_ < to) {
+  if (limit_ < to) {
     timeline_.advance(limit_);
     hand_over(false);
     if (ending_) {
       throw Ended();
     }
+    return;  // whoever had the turn may have set alarms
   }
   timeline_.advance(to);
 }

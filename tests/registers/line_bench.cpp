@@ -20,8 +20,8 @@ LineBench::LineBench(Timeline& timeline, Net& transmit, Net& enable, Net& receiv
           }),
       ear_(timeline, [this](SerialReceiver::Received received) {
         const Instant started = timeline_.now() - bit_time_ / 2 - (kBitsACharacter - 1) * bit_time_;
-        heard.push_back(
-            {started, started + kBitsACharacter * bit_time_, received.byte, !received.framing_error});
+        last_ended_ = started + kBitsACharacter * bit_time_;
+        heard.push_back({started, last_ended_, received.byte, !received.framing_error});
       }) {
   // The resistors that every board has: idle while its pins float, and the driver off.
   transmit_.drive(End::Resistor, Drive::WeakHigh);
@@ -54,11 +54,14 @@ void LineBench::send_one(Character character) {
 }
 
 void LineBench::go_on() {
-  if (!waiting_.empty()) {
-    const Character next = waiting_.front();
-    waiting_.pop_front();
-    sender_.begin(next, bit_time_, timeline_.now());
+  if (waiting_.empty()) {
+    master_level_ = true;  // the line is idle, whatever the stop bit was
+    update();
+    return;
   }
+  const Character next = waiting_.front();
+  waiting_.pop_front();
+  sender_.begin(next, bit_time_, timeline_.now());
 }
 
 void LineBench::board_speaks() {
@@ -73,6 +76,8 @@ void LineBench::driver_switched() {
     drives.push_back({timeline_.now(), kNever});
   } else {
     drives.back().to = timeline_.now();
+    let_go_early += ear_.busy() || drives.back().to < last_ended_ - bit_time_ / 10 ? 1U : 0U;
+    let_go_late += drives.back().to > last_ended_ + kBitsACharacter * bit_time_ ? 1U : 0U;
   }
   update();
 }

@@ -45,6 +45,10 @@ class LineBench {
   std::vector<Driven> drives;
   /// What the board sends is on the line only while its driver is on. Not 0: bits began without it.
   unsigned bits_lost = 0;
+  /// How often its driver went off before the last stop bit was over, but for a tenth of a bit that clocks
+  /// may differ by; and how often it stayed on for more than a character behind it.
+  unsigned let_go_early = 0;
+  unsigned let_go_late = 0;
 
  private:
   void board_speaks();
@@ -60,7 +64,7 @@ class LineBench {
   bool master_level_ = true;
   Instant bit_time_{0};
   Instant sent_{0};
-  Instant edge_{0};
+  Instant last_ended_{0};  ///< of what was heard
   std::deque<Character> waiting_;
   SerialSender sender_;
   SerialReceiver ear_;

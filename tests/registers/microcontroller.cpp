@@ -66,7 +66,7 @@ Microcontroller::Microcontroller(const Chip& chip, Timeline& timeline, Pins& pin
   leads_to(watchdog, 18);
   leads_to(timer0, 19);
   leads_to(timer1, 21);
-  system_control.on_standstill([this](Instant until) { pass(until); });
+  system_control.on_standstill([this](Instant until) { pass_all(until); });
   system_control.on_software_reset([this](unsigned index, std::uint32_t bits) {
     if (index == 1 && (bits >> 12U & 1U) != 0) {
       i2c.software_reset();
@@ -146,8 +146,14 @@ void Microcontroller::pass(Instant to) {
   check_reset();
 }
 
+void Microcontroller::pass_all(Instant to) {
+  while (timeline_.now() < to) {
+    pass(to);
+  }
+}
+
 void Microcontroller::begin_access(std::uint32_t address, bool write, std::uint32_t value) {
-  pass(timeline_.now() + clocks_an_access_ * system_control.cycle());
+  pass_all(timeline_.now() + clocks_an_access_ * system_control.cycle());
   core.serve_pending();
   ++accesses_;
   if (recording_) {

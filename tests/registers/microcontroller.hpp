@@ -2,6 +2,7 @@
 // its time, and interrupts come between accesses.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstdint>
 #include <functional>
@@ -39,6 +40,12 @@ struct Pins {
   Pins& operator=(const Pins&) = delete;
 
   Net& at(char letter, unsigned pin) { return ports.at(static_cast<unsigned>(letter - 'A')).at(pin); }
+  /// On any of them two ends have driven hard against each other, ever.
+  [[nodiscard]] bool any_was_shorted() const {
+    return std::any_of(ports.begin(), ports.end(), [](const PortNets& port) {
+      return std::any_of(port.begin(), port.end(), [](const Net& net) { return net.was_shorted(); });
+    });
+  }
 
   std::array<PortNets, 7> ports;
   std::function<void(unsigned port, unsigned pin)> on_change;  ///< the microcontroller's
@@ -80,7 +87,7 @@ class Microcontroller {
 
   /// What serves `exception`; see Core.
   void on_exception(std::function<void(unsigned exception)> act) { core.on_exception(std::move(act)); }
-  /// How time passes up to a point; else Timeline::advance.
+  /// How time passes up to a point, or less far; else Timeline::advance.
   void pass_time_by(std::function<void(Instant to)> pass) { pass_ = std::move(pass); }
 
   /// The least that an access over the bus takes, in clocks, is 2; what comes between two is not counted, so
@@ -130,6 +137,7 @@ class Microcontroller {
   Peripheral& peripheral_at(std::uint32_t address);
   void begin_access(std::uint32_t address, bool write, std::uint32_t value);
   void pass(Instant to);
+  void pass_all(Instant to);
   void check_reset() const;
   void pin_changed(unsigned port, unsigned pin);
 

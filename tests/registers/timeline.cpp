@@ -7,22 +7,23 @@ namespace ex9000::registers {
 
 Instant Timeline::next() {
   if (!next_known_) {
-    next_ = kNever;
-    for (const Alarm* alarm : alarms_) {
-      next_ = std::min(next_, alarm->when_);
+    next_ = nullptr;
+    next_at_ = kNever;
+    for (Alarm* alarm : alarms_) {
+      if (alarm->when_ < next_at_) {
+        next_ = alarm;
+        next_at_ = alarm->when_;
+      }
     }
     next_known_ = true;
   }
-  return next_;
+  return next_at_;
 }
 
 void Timeline::advance(Instant to) {
-  while (next() <= to) {
-    const Instant due = next();
-    now_ = std::max(now_, due);
-    const auto alarm =
-        std::find_if(alarms_.begin(), alarms_.end(), [due](const Alarm* each) { return each->when_ == due; });
-    Alarm& rings = **alarm;
+  while (next() <= to && next_ != nullptr) {
+    now_ = std::max(now_, next_at_);
+    Alarm& rings = *next_;
     rings.cancel();
     rings.ring_();
   }

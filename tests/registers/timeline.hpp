@@ -34,7 +34,8 @@ class Timeline {
   Instant now_{0};
   std::vector<Alarm*> alarms_;
   bool next_known_ = false;
-  Instant next_ = kNever;
+  Alarm* next_ = nullptr;  ///< null: none is set
+  Instant next_at_ = kNever;
 };
 
 /// Rings once each time it is set. Belongs to whoever sets it; the timeline must outlive it.
@@ -46,8 +47,9 @@ class Alarm {
   Alarm& operator=(const Alarm&) = delete;
 
   void set(Instant when) {
+    // One that was not the next and is not to be either leaves the next what it is.
+    timeline_.next_known_ = timeline_.next_known_ && timeline_.next_ != this && when > timeline_.next_at_;
     when_ = when;
-    timeline_.next_known_ = false;
   }
   void set_after(Instant delay) { set(timeline_.now() + delay); }
   void cancel() { set(kNever); }
