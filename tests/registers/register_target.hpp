@@ -1,0 +1,37 @@
+// An image on its registers as a transcript's target.
+#pragma once
+
+#include <optional>
+
+#include "tests/registers/board_bench.hpp"
+#include "tests/runner/target.hpp"
+
+namespace ex9000::registers {
+
+class RegisterTarget final : public runner::Target {
+ public:
+  /// `image` is for the model that `start` is called with.
+  explicit RegisterTarget(const Image& image) : bench_(image) {}
+
+  void start(const Model& model, const Settings* preset) override;
+  void send(const runner::Bytes& bytes) override;
+  runner::Bytes receive(std::size_t count, std::chrono::milliseconds patience) override;
+  runner::Bytes listen(std::chrono::milliseconds time) override;
+  void set_baud(std::uint32_t rate) override { bench_.line.set_baud(rate); }
+  void power(bool on) override;
+  void reset() override;
+  void set_init(bool asserted) override { bench_.set_init(asserted); }
+  void set_input(unsigned channel, bool level) override;
+  void pulse_input(unsigned channel, std::uint32_t count) override;
+  std::uint16_t outputs() override { return bench_.outputs(); }
+  runner::step::Led::Shows led(runner::step::Led::Shows expected) override;
+
+  BoardBench& bench() { return bench_; }
+
+ private:
+  runner::Bytes take_heard();
+
+  BoardBench bench_;
+};
+
+}  // namespace ex9000::registers
