@@ -116,7 +116,8 @@ class At24c {
       return;
     }
     rest_ = rest_.from(written);
-    begin(Step::Writing, static_cast<std::uint16_t>((header_[0] << 8U) + header_[1] + written), now);
+    begin(Step::Writing, static_cast<std::uint16_t>((std::size_t{header_[0]} << 8U) + header_[1] + written),
+          now);
   }
 
   void finish(bool succeeded) {

@@ -39,14 +39,14 @@ class OutputPins {
 
   template <std::size_t index, class Act>
   static void act_on(std::uint32_t energised, Act act) {
-    constexpr PinGroup group = groups[index];
-    constexpr unsigned first = before(index);
-    if constexpr (first < channels) {
-      constexpr unsigned here = channels - first < group.count ? channels - first : group.count;
-      constexpr std::uint32_t pins = ((1U << here) - 1U) << group.first_pin;
-      const std::uint32_t bits = first < group.first_pin ? energised << (group.first_pin - first)
-                                                         : energised >> (first - group.first_pin);
-      act(Gpio(group.port), pins, (active_high ? bits : ~bits) & pins);
+    constexpr PinGroup kGroup = groups[index];
+    constexpr unsigned kFirst = before(index);
+    if constexpr (kFirst < channels) {
+      constexpr unsigned kHere = channels - kFirst < kGroup.count ? channels - kFirst : kGroup.count;
+      constexpr std::uint32_t kPins = ((1U << kHere) - 1U) << kGroup.first_pin;
+      const std::uint32_t bits = kFirst < kGroup.first_pin ? energised << (kGroup.first_pin - kFirst)
+                                                           : energised >> (kFirst - kGroup.first_pin);
+      act(Gpio(kGroup.port), kPins, (active_high ? bits : ~bits) & kPins);
     }
   }
 
