@@ -71,8 +71,9 @@ void on_silence_timer() {
 
 void on_line_end_timer() {
   if (LineEndTimer::ran_out()) {
-    board.line.on_end_timer();
-    device.wake();
+    if (board.line.on_end_timer()) {
+      device.on_sent();
+    }
   }
 }
 
@@ -99,12 +100,14 @@ constexpr start_up::Handler handler_of_edges() {
   return nullptr;
 }
 
+constexpr Interrupt kLineInterrupt = kUart == 0 ? Interrupt::Uart0 : Interrupt::Uart1;
+
 struct Served {
   Interrupt number;
   start_up::Handler handler;  ///< null: not by this image
 };
 constexpr auto kServed = table<Served>({
-    {kUart == 0 ? Interrupt::Uart0 : Interrupt::Uart1, on_line},
+    {kLineInterrupt, on_line},
     {Interrupt::Timer0A, on_silence_timer},
     {Interrupt::Timer1A, on_line_end_timer},
     {Interrupt::GpioA, handler_of_edges<Port::A>()},
@@ -196,7 +199,7 @@ void start() {
   LineEndTimer::start();
   board.clock.start(milliseconds(1));
   device.start();
-  Interrupts::enable(served_numbers());
+  Interrupts::enable(served_numbers(), kLineInterrupt);
 }
 
 }  // namespace

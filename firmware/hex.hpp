@@ -28,4 +28,9 @@ constexpr std::uint8_t hex_digit(unsigned value) {
   return static_cast<std::uint8_t>("0123456789ABCDEF"[value & 0xFU]);
 }
 
+/// The two digits of a byte, the upper one in the low byte: as they lie in a text.
+constexpr std::uint16_t hex_digits(std::uint8_t value) {
+  return static_cast<std::uint16_t>(hex_digit(value >> 4U) | hex_digit(value) << 8U);
+}
+
 }  // namespace ex9000

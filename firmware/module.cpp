@@ -29,7 +29,10 @@ void Module::begin(std::uint16_t input_levels, Time now, TimingAt timing_at) {
 
 void Module::look_around(bool init_switch, Time now) {
   init_switch_.sample(init_switch, now);
-  exchange_.state_.init_asserted = init_switch_.level();
+  if (exchange_.state_.init_asserted != init_switch_.level()) {
+    exchange_.state_.init_asserted = init_switch_.level();
+    judgement_stands_ = false;
+  }
   led_.show(led_pattern_due(), now);
   collect_edges();
   if (line_quiet_.reached(now)) {
@@ -57,24 +60,12 @@ void Module::step(Time now) {
   if (storing_leftovers_ || phase_ == Phase::MustStore || phase_ == Phase::Storing) {
     go_on_storing(now);
   }
-  if (phase_ == Phase::Idle && receiver_.queue().has_frame()) {
-    judge();
-  }
-  if (phase_ == Phase::Judged) {
-    do_as_judged(now);
+  if (phase_ == Phase::Idle) {
+    attend(now);
   }
   if (leftovers_) {
     store_leftovers(now);
   }
-}
-
-Bytes Module::answer_at_once(Time now) {
-  // With the host watchdog running, what the clock says comes first.
-  if (phase_ != Phase::Idle || state().settings.watchdog_enabled || !receiver_.queue().has_frame()) {
-    return {};
-  }
-  judge();
-  return take_reply(now);  // the silence may have been that of a frame before
 }
 
 // --- reset ---
@@ -119,10 +110,10 @@ void Module::start_listening() {
                                                               : Inputs::CounterRange::SixteenBits,
                          (settings.format & kFormatRisingEdge) != 0);
   init_gives_up_.disarm();
-  receiver_.answer_to(in_force.address);
   const LineTiming timing = timing_at_(baud());
   turn_around_ = ascii() ? timing.dcon_turn_around : timing.rtu_silence;
   receiver_.listen({in_force.protocol, in_force.checksum, timing});
+  receiver_.answer_to(in_force.address);
   phase_ = Phase::Idle;
 }
 
@@ -130,18 +121,19 @@ void Module::start_listening() {
 
 void Module::collect_edges() {
   // Before it listens, which edges the counters count is not settled.
-  if (kBuiltInputs != 0 && listening()) {
+  if (kBuiltInputs != 0 && listening() && edges_collected_ != edges_.edges()) {
     edges_collected_ = edges_.edges();
     exchange_.state_.inputs.collect(edges_, state().model().inputs);
+    judgement_stands_ = false;
   }
 }
 
 void Module::heed_host_ok() {
   const std::uint32_t host_oks = receiver_.host_oks();
-  if (host_oks == host_oks_heeded_.load()) {
+  if (host_oks == host_oks_heeded_) {
     return;
   }
-  host_oks_heeded_.store_in_main_loop(host_oks);
+  host_oks_heeded_ = host_oks;
   // It counts from when it was over, and comes too late where the timeout was over before.
   const Time received = receiver_.host_ok_time();
   expire_host_watchdog(received);
@@ -155,6 +147,7 @@ void Module::expire_host_watchdog(Time now) {
   }
   // At once and whatever the memory does; that it is stored follows (store_leftovers).
   expired_since_judged_ = leftovers_ = true;
+  judgement_stands_ = false;
   state.settings.timeout_status = true;
   state.settings.watchdog_enabled = false;
   state.outputs = state.settings.safe_value;
@@ -162,14 +155,46 @@ void Module::expire_host_watchdog(Time now) {
 
 // --- requests ---
 
-void Module::judge() {
-  const Frame& frame = *receiver_.queue().waiting();
-  reply_due_.set(frame.received + turn_around_);
-  if (kBuiltInputs != 0 && edges_collected_ != edges_.edges()) {
-    collect_edges();
+/// A request is judged in the silence behind it, and acted upon when that is over, unless what it was judged
+/// by has changed meanwhile.
+void Module::attend(Time now) {
+  collect_edges();
+  const FrameQueue& queue = receiver_.queue();
+  if (!queue.has_frame()) {
+    const std::uint32_t number = queue.announced();
+    if (number != judged_) {
+      judged_ = number;
+      judge(queue.coming(), false);
+    }
+    return;
   }
+  if (queue.waiting_number() != judged_ || !judgement_stands_) {
+    judged_ = queue.waiting_number();
+    judge(queue.completed(), true);
+  }
+  if (silence_left(now) == Duration()) {
+    receiver_.queue().drop_in_main_loop();
+    act(now);
+  }
+}
+
+/// Until the frame that waits may be acted upon. Of a Modbus frame only its silence tells that it is
+/// complete.
+Duration Module::silence_left(Time now) const {
+  if (!ascii()) {
+    return {};
+  }
+  const Duration passed = now.since(receiver_.queue().completed().received);
+  return passed < turn_around_ ? Duration(turn_around_.microseconds() - passed.microseconds()) : Duration();
+}
+
+/// Changes nothing but the exchange.
+void Module::judge(const Frame& frame, bool complete) {
+  judgement_stands_ = true;
   expired_since_judged_ = false;
   exchange_.frame = frame.bytes();
+  exchange_.tallied = complete;
+  exchange_.outcome.clear();
   exchange_.reply.clear();
   if (ascii()) {
     dcon::answer(exchange_);
@@ -179,22 +204,28 @@ void Module::judge() {
   Outcome& outcome = exchange_.outcome;
   if (outcome.refusal != Refusal::None) {
     outcome.clear();  // a refused request changes nothing
+  } else if (outcome.changes_settings()) {
+    prepare_store();
+  }
+}
+
+void Module::prepare_store() {
+  changed_ = exchange_.outcome.change().applied_to(state().settings);
+  stores_ = changed_ != store_.stored();
+}
+
+void Module::act(Time now) {
+  const Outcome& outcome = exchange_.outcome;
+  if (outcome.refusal != Refusal::None) {
     count_exception();
   }
   if (outcome.empty()) {
     answered();
-  } else {
-    phase_ = Phase::Judged;
-  }
-  receiver_.queue().drop_in_main_loop();
-}
-
-void Module::do_as_judged(Time now) {
-  if (!exchange_.outcome.changes_settings()) {
-    carry_out(now);
-  } else {
+  } else if (outcome.changes_settings()) {
     phase_ = Phase::MustStore;
     go_on_storing(now);
+  } else {
+    carry_out(now);
   }
 }
 
@@ -279,12 +310,10 @@ void Module::count_exception() {
 }
 
 Bytes Module::take_reply(Time now) {
-  if (phase_ != Phase::ReplyReady || (reply_due_.armed() && !reply_due_.reached(now)) ||
-      (line_quiet_.armed() && !line_quiet_.reached(now))) {
+  if (phase_ != Phase::ReplyReady || (line_quiet_.armed() && !line_quiet_.reached(now))) {
     return {};
   }
   phase_ = Phase::Replying;
-  reply_due_.disarm();
   return exchange_.reply.bytes();
 }
 
@@ -306,11 +335,13 @@ void Module::go_on_storing(Time now) {
     }
   }
   if (phase_ == Phase::MustStore) {
-    const Settings changed = exchange_.outcome.change().applied_to(state().settings);
-    if (changed == store_.stored()) {
+    if (!judgement_stands_) {
+      prepare_store();
+    }
+    if (!stores_) {
       carry_out(now);  // a command that changes nothing writes nothing
     } else {
-      store_.begin_saving(changed);
+      store_.begin_saving(changed_);
       phase_ = Phase::Storing;
     }
   } else if (phase_ == Phase::Storing) {
@@ -350,15 +381,20 @@ bool Module::memory_is_free() const {
 std::optional<Duration> Module::idle_for(Time now) const {
   const bool memory_has_news = !store_.busy() && (!settings_known_ || storing_leftovers_ ||
                                                   phase_ == Phase::MustStore || phase_ == Phase::Storing);
-  const bool request_waits = (phase_ == Phase::Idle && receiver_.queue().has_frame()) ||
-                             receiver_.host_oks() != host_oks_heeded_.load();
-  if (memory_has_news || request_waits || led_.pattern() != led_pattern_due()) {
+  const bool line_has_news = (phase_ == Phase::Idle && receiver_.queue().announced() != judged_) ||
+                             receiver_.host_oks() != host_oks_heeded_;
+  if (memory_has_news || line_has_news || led_.pattern() != led_pattern_due()) {
     return Duration();
   }
   std::optional<Duration> idle;
-  const auto consider = [&idle, now](const Deadline& deadline) {
-    if (deadline.armed() && (!idle || deadline.remaining(now) < *idle)) {
-      idle = deadline.remaining(now);
+  const auto wait_at_most = [&idle](Duration duration) {
+    if (!idle || duration < *idle) {
+      idle = duration;
+    }
+  };
+  const auto consider = [&wait_at_most, now](const Deadline& deadline) {
+    if (deadline.armed()) {
+      wait_at_most(deadline.remaining(now));
     }
   };
   consider(init_switch_.settles());
@@ -371,12 +407,11 @@ std::optional<Duration> Module::idle_for(Time now) const {
   if (memory_is_free()) {
     consider(leftovers_retry_);
   }
+  if (phase_ == Phase::Idle && receiver_.queue().has_frame()) {
+    wait_at_most(silence_left(now));
+  }
   if (phase_ == Phase::ReplyReady) {
-    if (line_quiet_.armed() || reply_due_.armed()) {
-      consider(line_quiet_.armed() ? line_quiet_ : reply_due_);
-    } else {
-      return Duration();
-    }
+    wait_at_most(line_quiet_.armed() ? line_quiet_.remaining(now) : Duration());
   }
   return idle;
 }

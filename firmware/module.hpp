@@ -43,6 +43,7 @@ class Module {
     return receiver_.on_byte(byte, status, now);
   }
   Duration on_silence() { return receiver_.on_silence(); }
+  void on_spoken() { receiver_.on_spoken(); }
   /// See InputEdges::on_edge.
   void on_edge(unsigned channel, bool level) { edges_.on_edge(channel, level); }
   void on_tick() { module_watchdog_.tick_alive(); }
@@ -54,13 +55,11 @@ class Module {
   void look_around(bool init_switch, Time now);
   /// One turn: what the interrupts have gathered, what the clock says, what the memory has done.
   void step(Time now);
-  /// The short way, when a silence was told: the reply to a request that asks for nothing but an answer, as
-  /// `take_reply` gives it. Empty where `step` must decide.
-  Bytes answer_at_once(Time now);
-  /// Interrupts too: a frame or a host OK waits for `step`.
-  [[nodiscard]] bool line_has_news() const {
-    return receiver_.queue().has_frame() || receiver_.host_oks() != host_oks_heeded_.load();
-  }
+  /// Interrupts too: changes with every frame that may be for this module, so that `step` can judge it while
+  /// the silence behind it lasts.
+  [[nodiscard]] std::uint32_t announced() const { return receiver_.queue().announced(); }
+  /// Interrupts too: a request is complete, so `step` can act upon it when the silence is over.
+  [[nodiscard]] bool request_waits() const { return receiver_.queue().has_frame(); }
   /// How long nothing will happen by itself; zero: step again at once; nothing: until an interrupt or a
   /// finished job.
   [[nodiscard]] std::optional<Duration> idle_for(Time now) const;
@@ -79,12 +78,14 @@ class Module {
   [[nodiscard]] bool wants_memory() const { return store_.busy(); }
   /// What to do with the memory, where it is wanted; the same until `memory_done`.
   [[nodiscard]] MemoryJob memory_job() { return store_.job(); }
-  void memory_done(bool ok) { store_.done(ok); }
+  void memory_started() { store_.started(); }
+  void memory_done(bool ok) {
+    store_.done(ok);
+    judgement_stands_ = false;  // what is stored may be something else now
+  }
 
   /// The reply to send now; empty: none, or not yet. It lives until `reply_sent`.
   Bytes take_reply(Time now);
-  /// The own driver has come on for it.
-  void reply_started() { receiver_.speaking(); }
   /// The last stop bit has left and the driver is off.
   void reply_sent(Time now);
 
@@ -102,8 +103,7 @@ class Module {
  private:
   enum class Phase : std::uint8_t {
     Booting,     ///< reading settings, waiting for INIT* to settle
-    Idle,        ///< the next frame may be judged
-    Judged,      ///< there is something to do beside answering
+    Idle,        ///< the next request may be judged and acted upon
     MustStore,   ///< judged; the memory is busy with something else
     Storing,     ///< judged; the memory is taking the change
     ReplyReady,  ///< done; the reply waits for its moment
@@ -122,8 +122,11 @@ class Module {
   void go_on_storing(Time now);
   void store_leftovers(Time now);
   void have_effects(Time now);
-  void judge();
-  void do_as_judged(Time now);
+  void attend(Time now);
+  void judge(const Frame& frame, bool complete);
+  [[nodiscard]] Duration silence_left(Time now) const;
+  void prepare_store();
+  void act(Time now);
   void carry_out(Time now);
   void answered();
   void refuse_store();
@@ -136,13 +139,14 @@ class Module {
   bool storing_leftovers_ = false;     ///< the store that is under way was not asked for by a command
   bool leftovers_ = false;             ///< the settings may not be what is stored, or the store is doubtful
   bool expired_since_judged_ = false;  ///< the host watchdog has expired while a command waits for its store
+  bool judgement_stands_ = false;      ///< nothing that `judge` goes by has changed since
   Deadline leftovers_retry_;
   Deadline init_gives_up_;
-  WrittenByMainLoop<std::uint32_t> host_oks_heeded_;
+  std::uint32_t judged_ = 0;  ///< the frame in `exchange_`, by its number
+  std::uint32_t host_oks_heeded_ = 0;
   std::uint32_t edges_collected_ = 0;
   Duration turn_around_;  ///< silence before a reply: behind the request, and behind the reply before it
-  Deadline reply_due_;
-  Deadline line_quiet_;  ///< after the last reply
+  Deadline line_quiet_;   ///< after the last reply
 
   InputEdges edges_;
   ModuleWatchdog module_watchdog_;
@@ -150,6 +154,8 @@ class Module {
   StatusLed led_;
   Debounce init_switch_;
   SettingsStore store_;
+  Settings changed_;     ///< what the request wants the settings to be
+  bool stores_ = false;  ///< and that is not what is stored
   Exchange exchange_;
   Receiver receiver_;
 };

@@ -9,6 +9,8 @@ class Clock {
  public:
   /// Never blocks; interrupts and main loop may call it. Never goes back.
   [[nodiscard]] virtual Time now() const = 0;
+  /// The same for interrupts that the clock's own does not interrupt, which may spare them something.
+  [[nodiscard]] virtual Time now_in_interrupt() const { return now(); }
 
  protected:
   ~Clock() = default;

@@ -27,26 +27,29 @@ class Device {
     board_.watchdog.feed();
   }
 
-  // --- interrupts; on_receive and on_silence share a priority, the others may have their own ---
+  // --- interrupts; on_receive, on_silence and on_sent share a priority, the others may have their own ---
 
-  /// A byte was received, good or not; what comes while the own driver is on is the echo and is ignored.
+  /// A byte was received, good or not, while the own driver was off.
   void on_receive(std::uint8_t byte, ByteStatus status) {
-    if (board_.line.sending()) {
-      return;
-    }
-    const Duration silence = module_.on_byte(byte, status, board_.clock.now());
+    const Duration silence = module_.on_byte(byte, status, board_.clock.now_in_interrupt());
     if (!(silence == Duration())) {
       board_.silence_timer.restart(silence);
     }
   }
   void on_silence() {
     const Duration more = module_.on_silence();
-    if (!(more == Duration())) {
+    // A frame that is still open behind an own reply is closed by its end.
+    if (!(more == Duration()) && !board_.line.sending()) {
       board_.silence_timer.restart(more);
     }
-    if (module_.line_has_news()) {
-      silences_.store_in_interrupt(silences_.load() + 1U);
+    if (module_.request_waits()) {
+      wake();
     }
+  }
+  /// The last stop bit has left and the driver is off.
+  void on_sent() {
+    module_.on_spoken();
+    wake();
   }
   void on_edge(unsigned channel, bool level) { module_.on_edge(channel, level); }
   void on_tick() {
@@ -58,14 +61,14 @@ class Device {
 
   // --- main loop; none of it blocks ---
 
-  [[nodiscard]] bool news() const {
-    return silences_.load() != silences_seen_ || wakes_.load() != wakes_seen_ || restless_;
-  }
+  [[nodiscard]] bool news() const { return happened() != seen_; }
 
-  /// INIT*, the status LED and the hardware watchdog: every tick.
+  /// INIT*, the status LED and the hardware watchdog: every tick. The outputs too, whatever may have happened
+  /// to their registers.
   void look_around() {
     module_.look_around(board_.init_switch.asserted(), board_.clock.now());
     board_.status_led.light(module_.led_lit());
+    drive_outputs();
     if (module_.feed_watchdog()) {
       board_.watchdog.feed();
     }
@@ -73,21 +76,15 @@ class Device {
 
   /// Requests, settings and outputs.
   void turn() {
-    if (silences_.load() != silences_seen_) {
-      silences_seen_ = silences_.load();
-      const Bytes reply = module_.answer_at_once(board_.clock.now());
-      if (reply.size != 0) {
-        send(reply);
-        return;
-      }
-    }
-    wakes_seen_ = wakes_.load();
+    seen_ = happened();
     const Time now = board_.clock.now();
     look_after_memory(now);
     module_.step(now);
-    board_.outputs.drive(module_.outputs());
+    if (module_.outputs() != driven_) {
+      drive_outputs();
+    }
     look_after_line(now);
-    look_after_memory(now);
+    begin_memory_job(now);
   }
 
   constexpr Board& board() { return board_; }
@@ -118,24 +115,33 @@ class Device {
   void send(Bytes reply) {
     reply_under_way_ = true;
     board_.line.send(reply);
-    module_.reply_started();
+  }
+
+  /// Both only count up.
+  [[nodiscard]] std::uint32_t happened() const { return wakes_.load() + module_.announced(); }
+
+  void drive_outputs() {
+    driven_ = module_.outputs();
+    board_.outputs.drive(driven_);
   }
 
   void look_after_memory(Time now) {
-    if (memory_job_under_way_) {
-      restless_ = board_.memory.go_on(now);
-      if (board_.memory.busy()) {
-        return;
-      }
-      memory_job_under_way_ = restless_ = false;
-      module_.memory_done(board_.memory.succeeded());
+    if (!memory_job_under_way_) {
+      return;
     }
-    if (module_.wants_memory()) {
-      begin_memory_job(now);
+    if (board_.memory.go_on(now)) {
+      --seen_;  // no interrupt will tell when it wants to be looked after again
+    }
+    if (!board_.memory.busy()) {
+      memory_job_under_way_ = false;
+      module_.memory_done(board_.memory.succeeded());
     }
   }
 
   void begin_memory_job(Time now) {
+    if (memory_job_under_way_ || !module_.wants_memory()) {
+      return;
+    }
     const MemoryJob job = module_.memory_job();
     if (job.kind == MemoryJob::Kind::Read) {
       board_.memory.start_read(job.address, job.bytes, now);
@@ -143,17 +149,16 @@ class Device {
       board_.memory.start_write(job.address, {job.bytes.data, job.bytes.size}, now);
     }
     memory_job_under_way_ = true;
+    module_.memory_started();
   }
 
   Board board_;
   bool line_open_ = false;
   bool reply_under_way_ = false;
   bool memory_job_under_way_ = false;
-  bool restless_ = false;  ///< the memory wants to be looked after without being told by an interrupt
-  std::uint32_t wakes_seen_ = 0;
-  std::uint32_t silences_seen_ = 0;
+  std::uint16_t driven_ = 0;
+  std::uint32_t seen_ = 0;
   WrittenByInterrupt<std::uint32_t> wakes_;
-  WrittenByInterrupt<std::uint32_t> silences_;
   Module module_;
 };
 

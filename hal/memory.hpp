@@ -16,7 +16,8 @@ class Memory {
   virtual void start_read(std::uint16_t address, MutableBytes destination, Time now) = 0;
 
   /// Begins to write; the job never crosses a 32-byte page. Ends when the memory has programmed the bytes,
-  /// not when it has taken them. Likewise.
+  /// not when it has taken them. `source` is read from the next call of `go_on` on, not before: whoever
+  /// starts the job may still complete it. Likewise.
   virtual void start_write(std::uint16_t address, Bytes source, Time now) = 0;
 
   /// Goes on with the job. Main loop, every turn; does not block. True: wants to be called again at once, no

@@ -8,8 +8,9 @@ namespace ex9000::hal {
 
 /// The UART and the RS-485 driver behind it, 8N1, half duplex.
 ///
-/// What it receives it hands to `Device::on_receive` in its receive interrupt, errors included, echo
-/// included.
+/// What it receives it hands to `Device::on_receive` in its receive interrupt, errors included; but nothing
+/// while the driver is on, for that is the echo. That it has sent it tells `Device::on_sent`, in an interrupt
+/// of the same priority.
 class SerialLine {
  public:
   /// Starts receiving at `baud` bits per second (1200 to 115200). Before it, the line is neither heard nor

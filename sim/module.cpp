@@ -117,7 +117,11 @@ void SimulatedModule::run() {
     reset();
     return;
   }
+  const bool was_sending = mcu_->line.sending();
   mcu_->line.run();
+  if (was_sending && !mcu_->line.sending()) {
+    mcu_->device.on_sent();
+  }
   memory_.run();
   if (mcu_->silence_timer.fire()) {
     mcu_->device.on_silence();
@@ -129,6 +133,9 @@ void SimulatedModule::run() {
 }
 
 void SimulatedModule::receive(std::uint8_t byte, ByteStatus status) {
+  if (mcu_->line.sending()) {
+    return;
+  }
   mcu_->device.on_receive(byte, status);
   if (mcu_->device.module().idle_for(clock_.now()) == Duration()) {
     turn();

@@ -49,14 +49,15 @@ class Crc16 {
     value_ =
         (value_ >> 8U) ^ detail::kCrc16Table.low[index & 0xFU] ^ detail::kCrc16Table.high[index >> 4U & 0xFU];
   }
-  [[nodiscard]] constexpr std::uint16_t value() const { return static_cast<std::uint16_t>(value_); }
+  /// 16 bits.
+  [[nodiscard]] constexpr std::uint32_t value() const { return value_; }
   [[nodiscard]] constexpr std::uint8_t low_byte() const { return static_cast<std::uint8_t>(value_); }
   [[nodiscard]] constexpr std::uint8_t high_byte() const { return static_cast<std::uint8_t>(value_ >> 8U); }
 
  private:
   explicit constexpr Crc16(std::uint32_t value) : value_(value) {}
 
-  std::uint32_t value_ = 0xFFFF;  // 16 bits; a word is what the processor calculates with
+  std::uint32_t value_ = 0xFFFF;  // a word is what the processor calculates with
 };
 
 /// Of at least one byte.

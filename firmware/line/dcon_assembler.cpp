@@ -16,86 +16,99 @@ constexpr bool is_delimiter(std::uint8_t byte) {
 
 constexpr bool is_reply_lead(std::uint8_t byte) { return byte == '!' || byte == '>' || byte == '?'; }
 
+/// The two characters from `text` on are these digits.
+bool are_digits(const std::uint8_t* text, std::uint32_t digits) {
+  return (unsigned{text[0]} | unsigned{text[1]} << 8U) == digits;
+}
+
 }  // namespace
 
-Verdict DconAssembler::byte(FrameQueue& queue, std::uint8_t byte, ByteStatus status, std::uint8_t own_address,
-                            Time now) {
-  // A CR that came with an error may have been anything, so it ends nothing.
-  const bool ends = byte == kCarriageReturn && status == ByteStatus::Good;
-  switch (state_) {
-    case State::Hunting:
-      open_or_skip(queue, byte, status);
-      return Verdict::Open;
-    case State::Skipping:
-      if (ends) {
-        state_ = State::Hunting;
-      }
-      return Verdict::Open;
-    case State::Spoiled:
-      if (!ends) {
-        return Verdict::Open;
-      }
-      state_ = State::Hunting;
-      return loss_;
-    case State::InFrame:
-      break;
-  }
-  if (ends) {
-    state_ = State::Hunting;
-    return judge(queue, own_address, now);
-  }
-  if (status != ByteStatus::Good || size_ == kLongestDconFrame) {
-    state_ = State::Spoiled;
-    loss_ = status == ByteStatus::Good ? Verdict::TooLong : Verdict::LineError;
+Verdict DconAssembler::byte(FrameQueue& queue, std::uint8_t byte, ByteStatus status, Time now) {
+  if (status != ByteStatus::Good) {
+    // It may have been anything: a CR ends nothing, a delimiter begins nothing.
+    if (state_ == State::InFrame) {
+      state_ = State::Spoiled;
+      loss_ = Verdict::LineError;
+    }
     return Verdict::Open;
   }
-  queue.assembling().storage[size_++] = byte;
-  sum_ = static_cast<std::uint8_t>(sum_ + byte);
+  if (byte == kCarriageReturn) {
+    return end(queue, now);
+  }
+  if (state_ == State::InFrame) {
+    if (size_ == kLongestDconFrame) {
+      state_ = State::Spoiled;
+      loss_ = Verdict::TooLong;
+    } else {
+      add(queue.assembling().storage.data(), byte);
+    }
+  } else if (state_ == State::Hunting) {
+    open_or_skip(queue, byte);
+  }
   return Verdict::Open;
 }
 
-void DconAssembler::open_or_skip(FrameQueue& queue, std::uint8_t byte, ByteStatus status) {
-  if (status != ByteStatus::Good) {
-    return;
+/// The last two characters may be the checksum, so the sum stays behind them.
+void DconAssembler::add(std::uint8_t* text, std::uint8_t byte) {
+  const unsigned size = size_;
+  text[size] = byte;
+  size_ = static_cast<std::uint8_t>(size + 1);
+  if (size >= kChecksumDigits) {
+    sum_ = static_cast<std::uint8_t>(sum_ + text[size - kChecksumDigits]);
   }
+}
+
+void DconAssembler::open_or_skip(FrameQueue& queue, std::uint8_t byte) {
   if (is_delimiter(byte)) {
     queue.assembling().storage[0] = byte;
     size_ = 1;
-    sum_ = byte;
+    sum_ = 0;
     state_ = State::InFrame;
   } else if (is_reply_lead(byte)) {
     state_ = State::Skipping;
   }
 }
 
-Verdict DconAssembler::judge(FrameQueue& queue, std::uint8_t own_address, Time now) {
-  Frame& frame = queue.assembling();
-  const auto& text = frame.storage;
-  std::uint8_t size = size_;
-  if (size < kDelimiterAndAddress + (checksum_ ? kChecksumDigits : 0)) {
-    return Verdict::TooShort;
+Verdict DconAssembler::end(FrameQueue& queue, Time now) {
+  const State ended = state_;
+  state_ = State::Hunting;
+  if (ended == State::InFrame) {
+    return judge(queue, now);
   }
+  return ended == State::Spoiled ? loss_ : Verdict::Open;
+}
+
+Verdict DconAssembler::judge(FrameQueue& queue, Time now) {
+  Frame& frame = queue.assembling();
+  const std::uint8_t* text = frame.storage.data();
+  unsigned size = size_;
   if (checksum_) {
-    size = static_cast<std::uint8_t>(size - kChecksumDigits);
-    const auto sum = static_cast<std::uint8_t>(sum_ - text[size] - text[size + 1U]);
-    if (hex_byte(text[size], text[size + 1U]) != sum) {
+    if (size < kDelimiterAndAddress + kChecksumDigits) {
+      return Verdict::TooShort;
+    }
+    size -= kChecksumDigits;
+    if (!are_digits(text + size, hex_digits(sum_))) {
       return Verdict::BadCheck;
     }
+  } else if (size < kDelimiterAndAddress) {
+    return Verdict::TooShort;
   }
-  if (text[1] == '*' && text[2] == '*' && size == kDelimiterAndAddress) {
+  if (!are_digits(text + 1, own_digits_.load())) {
+    constexpr std::uint16_t kEverybody = '*' | '*' << 8U;
+    if (!are_digits(text + 1, kEverybody) || size != kDelimiterAndAddress) {
+      return Verdict::Foreign;
+    }
     if (text[0] == '~') {
       return Verdict::HostOk;
     }
     if (text[0] != '#') {
       return Verdict::Foreign;
     }
-  } else if (hex_byte(text[1], text[2]) != own_address) {
-    return Verdict::Foreign;
   }
-  frame.size = size;
-  frame.offset = 0;
+  frame.size = static_cast<std::uint8_t>(size);
   frame.received = now;
-  return queue.complete_in_interrupt() ? Verdict::Accepted : Verdict::NoRoom;
+  queue.announce_in_interrupt(frame);
+  return queue.complete_in_interrupt(frame) ? Verdict::Accepted : Verdict::NoRoom;
 }
 
 }  // namespace ex9000

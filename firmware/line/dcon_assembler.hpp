@@ -3,6 +3,8 @@
 
 #include <cstdint>
 
+#include "firmware/hex.hpp"
+#include "firmware/line/crossing.hpp"
 #include "firmware/line/frame_queue.hpp"
 #include "firmware/line/verdict.hpp"
 #include "firmware/time.hpp"
@@ -17,10 +19,11 @@ constexpr std::uint8_t kLongestDconFrame = 32;
 class DconAssembler {
  public:
   void use_checksum(bool on) { checksum_ = on; }
+  /// Main loop, also while bytes come in: the module's address, from the next frame on that ends.
+  void answer_to(std::uint8_t address) { own_digits_.store_in_main_loop(hex_digits(address)); }
 
-  /// Interrupt. `own_address` is the one this module answers to at this moment. An accepted frame holds the
-  /// characters from the delimiter on, without CHK and CR.
-  Verdict byte(FrameQueue& queue, std::uint8_t byte, ByteStatus status, std::uint8_t own_address, Time now);
+  /// Interrupt. An accepted frame holds the characters from the delimiter on, without CHK and CR.
+  Verdict byte(FrameQueue& queue, std::uint8_t byte, ByteStatus status, Time now);
 
   /// Interrupt. Forgets an open frame.
   void forget() { state_ = State::Hunting; }
@@ -33,14 +36,17 @@ class DconAssembler {
     Skipping,  ///< another module is answering: whatever it says, up to its CR
   };
 
-  void open_or_skip(FrameQueue& queue, std::uint8_t byte, ByteStatus status);
-  Verdict judge(FrameQueue& queue, std::uint8_t own_address, Time now);
+  void add(std::uint8_t* text, std::uint8_t byte);
+  void open_or_skip(FrameQueue& queue, std::uint8_t byte);
+  Verdict end(FrameQueue& queue, Time now);
+  Verdict judge(FrameQueue& queue, Time now);
 
+  WrittenByMainLoop<std::uint32_t> own_digits_;
   State state_ = State::Hunting;
   Verdict loss_ = Verdict::Open;
   bool checksum_ = false;
   std::uint8_t size_ = 0;
-  std::uint8_t sum_ = 0;
+  std::uint8_t sum_ = 0;  ///< of all characters but the last two
 };
 
 }  // namespace ex9000

@@ -28,20 +28,30 @@ struct Frame {
 
 /// One frame waits while the next is being assembled: while a command is executed or stored, one more is
 /// kept. What comes on top of that is lost, and the interrupt is told so.
+///
+/// A frame is announced when its check comes out right, and complete when the silence behind it says that
+/// this was its end; where the check stands at a CR, that is one moment. The main loop may judge a frame as
+/// soon as it is announced, but do nothing else about it before it is complete.
 class FrameQueue {
  public:
   /// Interrupt: where the frame that is coming in is assembled; always there.
-  Frame& assembling() { return frames_[second_]; }
+  [[gnu::always_inline]] Frame& assembling() { return *reinterpret_cast<Frame*>(place_of_frames() + at_); }
 
-  /// Interrupt: the assembled frame is complete. False where one is waiting already; then this one is lost.
-  bool complete_in_interrupt() {
-    const std::uint32_t completed = completed_.load();
-    if (completed != dropped_.load()) {
+  /// Interrupt: the assembled frame would be right if nothing came behind it. It gets a number of its own.
+  [[gnu::always_inline]] void announce_in_interrupt(Frame& assembled) {
+    coming_.store_in_interrupt(&assembled);
+    announced_.store_in_interrupt(announced_.load() + 1U);
+  }
+
+  /// Interrupt: the assembled frame, which was announced last, is complete. False where one is waiting
+  /// already; then this one is lost.
+  [[gnu::always_inline]] bool complete_in_interrupt(Frame& assembled) {
+    if (has_frame()) {
       return false;
     }
-    waiting_.store_in_interrupt(&frames_[second_]);
-    second_ ^= 1U;
-    completed_.store_in_interrupt(completed + 1U);
+    waiting_.store_in_interrupt(&assembled);
+    at_ ^= sizeof(Frame);
+    completed_.store_in_interrupt(announced_.load());
     return true;
   }
 
@@ -51,15 +61,29 @@ class FrameQueue {
   [[nodiscard, gnu::always_inline]] const Frame* waiting() const {
     return has_frame() ? waiting_.load() : nullptr;
   }
+  /// Main loop: likewise, where one does.
+  [[nodiscard]] const Frame& completed() const { return *waiting_.load(); }
+  /// Main loop: its number.
+  [[nodiscard]] std::uint32_t waiting_number() const { return completed_.load(); }
+
+  /// The number of the latest frame that was announced; numbers count up and wrap. Whoever reads
+  /// `coming` behind it and later finds a frame with this number complete has read that one as it is.
+  [[nodiscard, gnu::always_inline]] std::uint32_t announced() const { return announced_.load(); }
+  /// Main loop: that frame. It may still be changed, but never beyond its bounds. Once there was one.
+  [[nodiscard]] const Frame& coming() const { return *coming_.load(); }
 
   /// Main loop: done with the waiting frame.
-  void drop_in_main_loop() { dropped_.store_in_main_loop(dropped_.load() + 1U); }
+  void drop_in_main_loop() { dropped_.store_in_main_loop(completed_.load()); }
 
  private:
-  std::uint32_t second_ = 0;                  // interrupt: which of the two is assembled
-  WrittenByInterrupt<const Frame*> waiting_;  ///< the one that was completed last
-  WrittenByInterrupt<std::uint32_t> completed_;
-  WrittenByMainLoop<std::uint32_t> dropped_;
+  std::uint8_t* place_of_frames() { return reinterpret_cast<std::uint8_t*>(frames_.data()); }
+
+  std::uint32_t at_ = 0;                     // interrupt: where the one is that is assembled, in bytes
+  WrittenByInterrupt<const Frame*> coming_;  ///< the one that was announced last
+  WrittenByInterrupt<std::uint32_t> announced_;
+  WrittenByInterrupt<const Frame*> waiting_;     ///< the one that was completed last
+  WrittenByInterrupt<std::uint32_t> completed_;  ///< its number
+  WrittenByMainLoop<std::uint32_t> dropped_;     ///< likewise of the one that was dropped last
   std::array<Frame, 2> frames_;
 };
 

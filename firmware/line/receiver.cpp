@@ -10,21 +10,37 @@ void Receiver::listen(const Listening& how) {
   rtu_.use(how.timing);
 }
 
-Duration Receiver::on_byte(std::uint8_t byte, ByteStatus status, Time now) {
-  if (spoken_.load() != spoken_seen_) {
-    cut_off(now);
-  }
+void Receiver::answer_to(std::uint8_t address) {
   if (ascii()) {
-    const Verdict verdict = dcon_.byte(queue_, byte, status, own_address(), now);
-    if (verdict == Verdict::Open) {
-      return {};
+    dcon_.answer_to(address);
+  } else {
+    rtu_.answer_to(address);
+  }
+}
+
+/// A silence has ended a frame. Function 08 tells of Modbus only, and which protocol it is stays until a
+/// reset.
+[[gnu::always_inline]] inline void Receiver::note(Verdict verdict) {
+  tallies_.count_in_interrupt(verdict);
+  if (verdict == Verdict::HostOk) {
+    host_ok(rtu_.silent_since());
+  }
+}
+
+Duration Receiver::on_byte(std::uint8_t byte, ByteStatus status, Time now) {
+  if (ascii()) {
+    const Verdict verdict = dcon_.byte(queue_, byte, status, now);
+    if (verdict == Verdict::HostOk) {
+      host_ok(now);
     }
-    note(verdict, now);
     return verdict == Verdict::Accepted ? timing().dcon_turn_around : Duration();
   }
-  const Verdict verdict = rtu_.byte(queue_, byte, status, own_address(), now);
+  const Verdict verdict = rtu_.byte(queue_, byte, status, now);
   if (verdict != Verdict::Open) {
-    note(verdict, now);
+    tallies_.count_in_interrupt(verdict);
+    if (verdict == Verdict::HostOk) {
+      host_ok(now);
+    }
   }
   return timing().rtu_silence;
 }
@@ -33,50 +49,36 @@ Duration Receiver::on_silence() {
   if (ascii()) {
     return {};
   }
-  if (spoken_.load() != spoken_seen_) {
-    cut_off(rtu_.silent_since());
-  }
-  const Verdict verdict = rtu_.silence(queue_, own_address());
+  const Verdict verdict = rtu_.conclude(queue_);
   if (verdict == Verdict::Open) {
-    return rtu_.wants_more_silence() ? timing().rtu_grace : Duration();
+    return lapse();
   }
-  note(verdict, rtu_.silent_since());
+  note(verdict);
   return {};
 }
 
-void Receiver::cut_off(Time now) {
-  spoken_seen_ = spoken_.load();
+Duration Receiver::lapse() {
+  const Verdict verdict = rtu_.lapse();
+  if (verdict != Verdict::Open) {
+    tallies_.count_in_interrupt(verdict);
+  }
+  return rtu_.wants_more_silence() ? timing().rtu_grace : Duration();
+}
+
+void Receiver::on_spoken() {
   if (ascii()) {
     dcon_.forget();
     return;
   }
-  const Verdict verdict = rtu_.cut_off(queue_, own_address());
+  const Verdict verdict = rtu_.cut_off(queue_);
   if (verdict != Verdict::Open) {
-    note(verdict, now);
+    note(verdict);
   }
 }
 
-void Receiver::note(Verdict verdict, Time now) {
-  if constexpr (kBuiltModbus) {
-    tally(verdict);
-  }
-  if (verdict == Verdict::HostOk) {
-    host_ok_time_.store_in_interrupt(now.microseconds());
-    host_oks_.store_in_interrupt(host_oks_.load() + 1U);
-  }
-}
-
-void Receiver::tally(Verdict verdict) {
-  const bool right = verdict <= Verdict::NoRoom;
-  (right ? tallies_.bus_messages : tallies_.bus_errors).count_in_interrupt();
-  if (verdict <= Verdict::HostOk) {
-    tallies_.server_messages.count_in_interrupt();
-    if (verdict == Verdict::HostOk) {
-      tallies_.no_responses.count_in_interrupt();
-    }
-  } else if (verdict == Verdict::NoRoom || verdict == Verdict::Overrun) {
-    tallies_.overruns.count_in_interrupt();
-  }
+void Receiver::host_ok(Time now) {
+  host_ok_time_.store_in_interrupt(now.microseconds());
+  host_oks_.store_in_interrupt(host_oks_.load() + 1U);
 }
 
 }  // namespace ex9000

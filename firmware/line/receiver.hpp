@@ -38,13 +38,14 @@ class Receiver {
   /// The silence has come. Returns as `on_byte` does.
   Duration on_silence();
 
+  /// This module's own driver was on, and no byte was passed on meanwhile: a frame that is open and not whole
+  /// is forgotten (D9).
+  void on_spoken();
+
   // --- main loop ---
 
-  /// The address to answer to; takes effect with the next frame that ends.
-  void answer_to(std::uint8_t address) { address_.store_in_main_loop(address); }
-  /// This module's own driver has come on: a frame that is open and not whole is forgotten (D9).
-  void speaking() { spoken_.store_in_main_loop(spoken_.load() + 1U); }
-
+  /// The address to answer to, behind `listen`; takes effect with the next frame that ends.
+  void answer_to(std::uint8_t address);
   /// As given to `listen`.
   [[nodiscard]] const LineTiming& timing() const { return rtu_.timing(); }
   FrameQueue& queue() { return queue_; }
@@ -58,18 +59,14 @@ class Receiver {
 
  private:
   [[nodiscard]] bool ascii() const { return !kBuiltModbus || protocol_ == Protocol::Ascii; }
-  [[nodiscard]] std::uint8_t own_address() const { return static_cast<std::uint8_t>(address_.load()); }
-  void cut_off(Time now);
-  void note(Verdict verdict, Time now);
-  void tally(Verdict verdict);
+  Duration lapse();
+  void note(Verdict verdict);
+  void host_ok(Time now);
 
   DconAssembler dcon_;
   RtuAssembler rtu_;
   Protocol protocol_ = Protocol::Ascii;
   LineTallies tallies_;
-  WrittenByMainLoop<std::uint32_t> address_;
-  WrittenByMainLoop<std::uint32_t> spoken_;
-  std::uint32_t spoken_seen_ = 0;  // interrupt
   WrittenByInterrupt<std::uint32_t> host_oks_;
   WrittenByInterrupt<std::uint32_t> host_ok_time_;
   FrameQueue queue_;  // last, being large: what lies before is reached by short instructions

@@ -25,21 +25,22 @@ constexpr int kNoCounter = -1;
 int counter_of(const Exchange& exchange, std::uint16_t subfunction) {
   const LineTallies& line = exchange.tallies();
   const Diagnostics& own = exchange.state().diagnostics;
+  const unsigned itself = exchange.tallied ? 0 : 1;
   switch (subfunction) {
     case kClearCounters:
       return 0;  // the reply is the request
     case kBusMessages:
-      return line.bus_messages.count();
+      return static_cast<std::uint16_t>(line.bus_messages() + itself);
     case kBusErrors:
-      return line.bus_errors.count();
+      return static_cast<std::uint16_t>(line.bus_errors());
     case kExceptions:
       return own.exceptions;
     case kServerMessages:
-      return line.server_messages.count();
+      return static_cast<std::uint16_t>(line.server_messages() + itself);
     case kNoResponses:
-      return static_cast<std::uint16_t>(line.no_responses.count() + own.no_responses);
+      return static_cast<std::uint16_t>(line.no_responses() + own.no_responses);
     case kOverruns:
-      return line.overruns.count();
+      return static_cast<std::uint16_t>(line.overruns());
     default:
       return kNoCounter;
   }

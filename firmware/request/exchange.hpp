@@ -25,6 +25,8 @@ class Exchange {
   Bytes args;
   /// A Modbus request to address 0.
   bool broadcast = false;
+  /// The line's tallies have this request already: it is judged behind its silence, not within.
+  bool tallied = false;
 
   Outcome outcome;
 

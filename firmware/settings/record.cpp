@@ -62,13 +62,17 @@ bool operator==(const Record& a, const Record& b) {
 }
 
 void make_record(const Model& model, const Settings& settings, std::uint16_t sequence, Record& record) {
-  Word* to = words_of(record);
-  const Word* from = words_of(settings);
-  for (std::size_t i = 0; i < kSettingsWords; ++i) {
-    *to++ = *from++;
-  }
-  *to++ = sequence | (kLayout << 16U);
-  *to = check_of(model, record);
+  fill_record(settings, sequence, record);
+  seal_record(model, record);
+}
+
+void fill_record(const Settings& settings, std::uint16_t sequence, Record& record) {
+  reinterpret_cast<Settings&>(record) = settings;
+  words_of(record)[kSettingsWords] = sequence | (kLayout << 16U);
+}
+
+void seal_record(const Model& model, Record& record) {
+  words_of(record)[kCheckedWords] = check_of(model, record);
 }
 
 bool is_good(const Model& model, const Record& record) {

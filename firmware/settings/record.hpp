@@ -42,6 +42,9 @@ struct alignas(4) Record {
 };
 
 void make_record(const Model& model, const Settings& settings, std::uint16_t sequence, Record& record);
+/// The same in two parts: all but the check, and the check.
+void fill_record(const Settings& settings, std::uint16_t sequence, Record& record);
+void seal_record(const Model& model, Record& record);
 
 /// False where layout or check is wrong, or where the model could not have stored this.
 bool is_good(const Model& model, const Record& record);

@@ -37,7 +37,7 @@ void SettingsStore::begin_reading(Step step) {
 }
 
 void SettingsStore::begin_saving(const Settings& settings) {
-  make_record(model_.get(), settings, static_cast<std::uint16_t>(sequence_ + 1U), record_);
+  fill_record(settings, static_cast<std::uint16_t>(sequence_ + 1U), record_);
   if (found_ == Found::Unreadable) {
     begin_reading(Step::LookAgain);
   } else {
@@ -63,6 +63,13 @@ MemoryJob SettingsStore::job() {
             {record_.bytes.data() + kRecordCheckAt, kCheckBytes}};
   }
   return {Kind::Read, address, {read_back_.bytes.data(), kRecordSize}};
+}
+
+/// The check takes its time; the bytes before it take longer on their way.
+void SettingsStore::started() {
+  if (step_ == Step::Write) {
+    seal_record(model_.get(), record_);
+  }
 }
 
 void SettingsStore::done(bool ok) {
@@ -124,7 +131,7 @@ void SettingsStore::read_copy(bool ok) {
 void SettingsStore::finish_reading() {
   if (step_ == Step::LookAgain) {
     // What was found may be later than what was known.
-    make_record(model_.get(), settings_in(record_), static_cast<std::uint16_t>(sequence_ + 1U), record_);
+    fill_record(settings_in(record_), static_cast<std::uint16_t>(sequence_ + 1U), record_);
     begin_writing();
     return;
   }

@@ -25,8 +25,8 @@ struct MemoryJob {
 /// then does it count; the other copy stays as it is, so a power cut leaves either the old settings or the
 /// new ones.
 ///
-/// The store does nothing by itself: whoever owns the memory starts `job()`, and reports `done()` when it has
-/// ended.
+/// The store does nothing by itself: whoever owns the memory starts `job()`, reports that it has `started()`,
+/// and reports `done()` when it has ended.
 class SettingsStore {
  public:
   enum class Found : std::uint8_t {
@@ -62,6 +62,8 @@ class SettingsStore {
 
   /// What is to be done, while `busy()`; the same until `done`.
   [[nodiscard]] MemoryJob job();
+  /// The memory was given the job. Of what is to be written the last bytes are there only from here on.
+  void started();
   /// The job has ended: `ok` unless the memory did not answer.
   void done(bool ok);
 

@@ -5,7 +5,8 @@ namespace ex9000::hal::stellaris::processor {
 
 /// Interrupts wait until they are released; faults do not. Main loop.
 inline void hold_interrupts() { __asm volatile("cpsid i" ::: "memory"); }
-inline void release_interrupts() { __asm volatile("cpsie i" ::: "memory"); }
+/// Those that wait are served before the next instruction, also where that holds them again.
+inline void release_interrupts() { __asm volatile("cpsie i\n\tisb" ::: "memory"); }
 
 /// Sleeps until an interrupt is pending, held or not. Main loop.
 inline void wait_for_interrupt() { __asm volatile("wfi" ::: "memory"); }

@@ -22,21 +22,25 @@ class SystemTimer {
   }
 
   [[nodiscard]] Time now() const {
-    constexpr Bits<InterruptControl> kPending(1U << 26U);
     for (;;) {
       const std::uint32_t counted = counted_.load();
-      std::uint32_t left = kCurrent.read().value();
-      std::uint32_t uncounted = 0;
-      if (kInterruptControl.read().has(kPending)) {
-        // It has begun anew and its interrupt must wait, for the one that asks. Whether it had when `left`
-        // was read nobody knows, so that is read again.
-        left = kCurrent.read().value();
-        uncounted = kTickMicroseconds;
-      }
+      const Time time = now_in_interrupt();
       if (counted == counted_.load()) {
-        return Time(counted + uncounted + (kPeriod - 1U - left) / cycles_per_microsecond);
+        return time;
       }
     }
+  }
+  [[nodiscard, gnu::always_inline]] Time now_in_interrupt() const {
+    constexpr Bits<InterruptControl> kPending(1U << 26U);
+    std::uint32_t counted = counted_.load();
+    std::uint32_t left = kCurrent.read().value();
+    if (kInterruptControl.read().has(kPending)) {
+      // It has begun anew and its interrupt must wait, for the one that asks. Whether it had when `left` was
+      // read nobody knows, so that is read again.
+      left = kCurrent.read().value();
+      counted += kTickMicroseconds;
+    }
+    return Time(counted + kLastMicrosecond - left / cycles_per_microsecond);
   }
 
   /// Changes with every tick; any number of ticks may lie between two that look the same.
@@ -55,6 +59,7 @@ class SystemTimer {
   static constexpr Register<Current> kCurrent{0xE000'E018};
   static constexpr Register<InterruptControl> kInterruptControl{0xE000'ED04};
   static constexpr std::uint32_t kTickMicroseconds = 1000;
+  static constexpr std::uint32_t kLastMicrosecond = kTickMicroseconds - 1U;  // the counter counts down to 0
 
   static constexpr std::uint32_t kPeriod = kTickMicroseconds * cycles_per_microsecond;
 

@@ -53,12 +53,13 @@ class Uart {
 
   void send(Bytes bytes) {
     rest_.set_in_main_loop(bytes.from(1));
+    kInterruptMask.write(kTransmitted);  // the echo
     begun_.store_in_main_loop(begun_.load() + 1U);
     Gpio(driver_enable.port).write(driver_enable.mask(), driver_enable.mask());
     kData.write(Bits<Data>(bytes[0]));
   }
 
-  [[nodiscard]] bool sending() const { return begun_.load() != ended_.load(); }
+  [[nodiscard, gnu::always_inline]] bool sending() const { return begun_.load() != ended_.load(); }
 
   // --- interrupts ---
 
@@ -66,24 +67,29 @@ class Uart {
   template <class Deliver>
   void on_interrupt(Deliver deliver) {
     const Bits<MaskedInterrupts> why = kMaskedInterrupts.read();
-    kInterruptClear.write(Bits<InterruptClear>(why.value()));
-    while (!kFlags.read().has(kReceiverEmpty)) {
+    if (why.has(kWasReceived)) {
+      // One byte, and reading it clears the flag. What else there is interrupts again.
       const Bits<Data> data = kData.read();
       deliver(static_cast<std::uint8_t>(data.value()), status_of(data));
-    }
-    if (why.has(kWasTransmitted)) {
+    } else if (why.has(kWasTransmitted)) {
+      kInterruptClear.write(kTransmittedClear);
+      take_echo();
       go_on_sending();
     }
   }
 
   /// The last byte has had the time to leave. No interrupt tells that it has, on an LM3S: the busy flag does.
-  void on_end_timer() {
+  /// True: it has, and the driver is off.
+  bool on_end_timer() {
     if (kFlags.read().has(kBusy)) {
       EndTimer::restart(bit_);
-      return;
+      return false;
     }
     Gpio(driver_enable.port).write(driver_enable.mask(), 0);
+    take_echo();
+    kInterruptMask.write(kReceived | kTransmitted);
     ended_.store_in_interrupt(begun_.load());
+    return true;
   }
 
  private:
@@ -119,6 +125,8 @@ class Uart {
   static constexpr Bits<Control> kReceiveEnable{1U << 9U};
   static constexpr Bits<InterruptMask> kReceived{1U << 4U};
   static constexpr Bits<InterruptMask> kTransmitted{1U << 5U};
+  static constexpr Bits<InterruptClear> kTransmittedClear{1U << 5U};
+  static constexpr Bits<MaskedInterrupts> kWasReceived{1U << 4U};
   static constexpr Bits<MaskedInterrupts> kWasTransmitted{1U << 5U};
 
   static ByteStatus status_of(Bits<Data> data) {
@@ -129,6 +137,13 @@ class Uart {
       return ByteStatus::Overrun;
     }
     return data.has(kBreakError) ? ByteStatus::Break : ByteStatus::FramingError;
+  }
+
+  /// Of the byte that has been sent, where the receiver hears it: it must not be full when the next comes.
+  static void take_echo() {
+    if (!kFlags.read().has(kReceiverEmpty)) {
+      static_cast<void>(kData.read());
+    }
   }
 
   /// The byte before has left the holding register for the shift register.

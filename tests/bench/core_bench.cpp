@@ -39,7 +39,7 @@ class BareModule {
     module_.look_around(false, now_);
     module_.step(now_);
     const Bytes reply = module_.take_reply(now_);
-    module_.reply_started();
+    module_.on_spoken();
     module_.reply_sent(now_);
     now_ = now_ + Duration(10'000);
     return reply.size;

@@ -41,9 +41,9 @@ WAKES = executed(0x102)
 TURN = list(range(0x400, 0x440, 2))  # 32 instructions, so more than it takes to fall asleep
 
 
-def count(log, frame, until, ends_with_cr):
+def count(log, frame, until, ends_with_cr, turn_around=True):
     its = counter.Counter(HANDLERS, {SLEEP}, {TICKS_OWN}, ends_with_cr)
-    request = requests.Request("it", [frame], until=until)
+    request = requests.Request("it", [frame], until=until, turn_around=turn_around)
     its.expect(request)
     execution.follow(log, {SLEEP}, its)
     return its, its.requests[request]
@@ -112,18 +112,31 @@ class Passes(unittest.TestCase):
         log = self.RTU + interrupt(execution.SILENCE, 0x3000, 0x3002) + executed(0x200, SLEEP) + WAKES
         self.assertEqual(count(log, b"\x01", requests.IGNORED, False)[1].count, 2 + 2)
 
-    def test_an_ascii_pass_has_the_turn_arounds_interrupt_and_not_the_waiting(self):
+    def test_an_ascii_pass_begins_where_the_turn_around_ends_and_what_was_done_before_is_told_apart(self):
         cr = interrupt(execution.LINE, 0x2000, received(0x0D), 0x2002)
-        log = ASLEEP + WAKES + cr + executed(0x200, SLEEP) + WAKES + interrupt(execution.SILENCE, 0x3000)
+        log = ASLEEP + WAKES + cr + executed(*TURN, SLEEP) + WAKES + interrupt(execution.SILENCE, 0x3000)
         log += executed(*TURN) + [SENT]
-        waking = 1  # in the second turn, before its interrupt
-        self.assertEqual(count(log, b"\r", requests.REPLY, True)[1].count, 2 + 2 + waking + 1 + 32)
+        found = count(log, b"\r", requests.REPLY, True)[1]
+        self.assertEqual((found.count, found.ahead), (1 + 32, 2 + 32 + 1))
+
+    def test_an_ascii_pass_without_a_turn_around_begins_with_cr(self):
+        cr = interrupt(execution.LINE, 0x2000, received(0x0D), 0x2002)
+        log = ASLEEP + WAKES + cr + executed(*TURN, SLEEP) + WAKES
+        found = count(log, b"\r", requests.DONE, True, turn_around=False)[1]
+        self.assertEqual((found.count, found.ahead), (2 + 32 + 1, 0))
+
+    def test_an_rtu_pass_tells_what_was_done_since_the_last_byte(self):
+        log = ASLEEP + WAKES + interrupt(execution.LINE, 0x2000, received(1)) + executed(*TURN, SLEEP) + WAKES
+        log += interrupt(execution.SILENCE, 0x3000) + executed(0x400) + [SENT]
+        found = count(log, b"\x01", requests.REPLY, False)[1]
+        self.assertEqual((found.count, found.ahead), (1 + 1, 1 + 32 + 1))
 
     def test_what_has_no_reply_may_wait_for_the_tick_whose_own_work_does_not_count(self):
         cr = interrupt(execution.LINE, 0x2000, received(0x0D))
         log = ASLEEP + WAKES + cr + executed(SLEEP) + WAKES + interrupt(execution.TICK, 0x1000, 0x1002)
         log += executed(TICKS_OWN, *TURN, SLEEP) + WAKES
-        self.assertEqual(count(log, b"\r", requests.DONE, True)[1].count, 1 + 1 + 1 + 32 + 1)
+        found = count(log, b"\r", requests.DONE, True, turn_around=False)[1]
+        self.assertEqual(found.count, 1 + 1 + 1 + 32 + 1)
 
     def test_an_interrupt_with_two_bytes_is_no_measure_of_one(self):
         log = ASLEEP + WAKES + interrupt(execution.LINE, 0x2000, received(1), received(2))

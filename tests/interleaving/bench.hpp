@@ -51,11 +51,7 @@ class Bench {
   Chip& hardware() { return chip_; }
   [[nodiscard]] const Module& module() const { return device_.module(); }
 
-  bool takes_bytes_for_its_echo() {
-    bool sending = false;
-    Points::interrupt([&] { sending = device_.board().line.sending(); });
-    return sending;
-  }
+  [[nodiscard]] bool takes_bytes_for_its_echo() const { return !chip_.hears(); }
 
   /// What the main loop of an image does between two sleeps.
   void turn() {
@@ -191,8 +187,9 @@ class Bench {
       device_.on_silence();
     }
     if (is_due(chip_.line_end_due)) {
-      device_.board().line.on_end_timer();
-      device_.wake();
+      if (device_.board().line.on_end_timer()) {
+        device_.on_sent();
+      }
     }
     if (is_due(chip_.memory_due)) {
       device_.wake();

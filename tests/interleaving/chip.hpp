@@ -50,6 +50,8 @@ class Chip final : public hal::stellaris::bus::Peripherals {
   // --- the UART; facts as in hal/stellaris/uart.hpp ---
 
   [[nodiscard]] bool driving() const { return driving_; }
+  /// Whether a byte that is received interrupts.
+  [[nodiscard]] bool hears() const { return (enabled_ & kReceive) != 0; }
   void receive(std::uint8_t byte) {
     received_ = byte;
     flagged_ |= kReceive;
@@ -151,6 +153,7 @@ struct Clock {
     Points::pass();
     return time;
   }
+  [[nodiscard]] static Time now_in_interrupt() { return Time(chip->now); }
 };
 
 struct SilenceTimer {

@@ -5,7 +5,9 @@
 // what it comes to before the turn, behind it, or between two of a script's steps.
 //
 // What both sides touch beside the crossings themselves, and what hands it over:
-//  - FrameQueue::frames_: the one that waits is the main loop's from `completed_` to `dropped_`;
+//  - FrameQueue::frames_: the one that waits is the main loop's from `completed_` to `dropped_`; what it
+//  reads of
+//    the one that was announced counts only if that is complete with the same number;
 //  - Uart::rest_, a HandedToInterrupt: the main loop's until `begun_`, the interrupts' until `ended_`;
 //  - Uart::bit_ and character_: written by `open`, before the UART may interrupt;
 //  - Receiver::protocol_, DconAssembler::checksum_, RtuAssembler::timing_: by `listen`, before `open`;
@@ -14,7 +16,7 @@
 // EventTally::collected_ is the main loop's alone; the interrupt only ever writes `total_`.
 //
 // Time is the line's: a byte takes 87 us also where it comes in the middle of a turn, so a turn may be held
-// up for milliseconds. Only between `line.send` and `reply_started` it never is for the whole of a reply.
+// up for milliseconds.
 #include <gtest/gtest.h>
 
 #include <cstdio>
@@ -288,8 +290,6 @@ std::vector<Scenario> scenarios() {
   const std::vector<Step> rtu_read = frame(kRtuRead, kRtuReadReply);
   std::vector<Scenario> all{
       dcon("a frame while idle", nothing, frame("@0105\r", ">\r"), {{">\r"}}, outputs_and_name),
-      // A reply as long as what comes meanwhile: the main loop is never held up between `line.send` and
-      // `reply_started` for the whole of a reply, and a frame that is open then is forgotten.
       dcon("a frame while the one before is answered", asked("$01F\r", "!01D01.00\r"), dcon_name,
            {{"!01D01.00\r", "!019055\r"}, {"!01D01.00\r"}}, outputs_and_name),
       dcon("a frame while the one before is carried out", asked("$015\r", "!011\r"), dcon_name,

@@ -58,12 +58,13 @@ class Core final : public Peripheral {
   [[nodiscard]] unsigned priority(unsigned interrupt) const {
     return priority_of(kFirstInterrupt + interrupt);
   }
+  /// Of a priority the part by which one interrupt interrupts another.
+  [[nodiscard]] unsigned group(unsigned priority) const { return priority >> (group_shift_ + 1U); }
   [[nodiscard]] std::uint32_t tick_reload() const { return reload_; }
 
  private:
   [[nodiscard]] std::uint32_t current() const;
   [[nodiscard]] unsigned priority_of(unsigned exception) const;
-  [[nodiscard]] unsigned group(unsigned priority) const { return priority >> (group_shift_ + 1U); }
   [[nodiscard]] unsigned next_to_serve() const;
   /// Those that are pending and enabled.
   [[nodiscard]] std::uint64_t waiting() const {

@@ -128,9 +128,9 @@ TEST_P(OnBoard, ComesUpWithin100msAfterAResetAtAnyMomentOfReadingItsSettings) {
 }
 
 TEST_P(OnBoard, HasOldOrNewSettingsAfterAPowerCutAtAnyMomentOfAStoreAndNewOnesOnceItHasAnswered) {
-  // The command takes 9.4 ms, and then 10 ms until it is stored; twice that where a cut before has left a
-  // copy that must be settled first.
-  constexpr microseconds kCommandIsSent{9300};
+  // The command takes 9.4 ms and its turn-around 1 ms, and then 10 ms until it is stored; twice that where a
+  // cut before has left a copy that must be settled first.
+  constexpr microseconds kCommandIsSent{10'300};
   constexpr microseconds kInBetween{5000};
   power_up();
   for (const bool torn_before : {false, true}) {
@@ -143,7 +143,7 @@ TEST_P(OnBoard, HasOldOrNewSettingsAfterAPowerCutAtAnyMomentOfAStoreAndNewOnesOn
         ASSERT_EQ(bench.ask("$01M"), "!01OLD");
       }
       const bool answered =
-          cut_while_it_stores("NEW", kCommandIsSent + microseconds(torn_before ? 450 : 240) * i);
+          cut_while_it_stores("NEW", kCommandIsSent + microseconds(torn_before ? 480 : 270) * i);
       const std::string name = bench.ask("$01M");
       ASSERT_TRUE(name == "!01NEW" || (name == "!01OLD" && !answered)) << i << ": " << name;
       outcomes.old += name == "!01OLD" ? 1U : 0U;

@@ -96,18 +96,18 @@ void Coverage::note(const Module& module, const Bytes& sent, const Bytes& heard)
   if (in_force.protocol == Protocol::Ascii) {
     DconAssembler assembler;
     assembler.use_checksum(in_force.checksum);
-    verdict = verdict_of(sent, [&](std::uint8_t byte) {
-      return assembler.byte(queue, byte, ByteStatus::Good, in_force.address, Time());
-    });
+    assembler.answer_to(in_force.address);
+    verdict = verdict_of(
+        sent, [&](std::uint8_t byte) { return assembler.byte(queue, byte, ByteStatus::Good, Time()); });
   } else {
     RtuAssembler assembler;
     assembler.use(LineTiming::at(module.baud()));
-    verdict_of(sent, [&](std::uint8_t byte) {
-      return assembler.byte(queue, byte, ByteStatus::Good, in_force.address, Time());
-    });
-    verdict = assembler.silence(queue, in_force.address);
+    assembler.answer_to(in_force.address);
+    verdict_of(sent,
+               [&](std::uint8_t byte) { return assembler.byte(queue, byte, ByteStatus::Good, Time()); });
+    verdict = assembler.silence(queue);
     if (verdict == Verdict::Open) {
-      verdict = assembler.silence(queue, in_force.address);
+      verdict = assembler.silence(queue);
     }
   }
   const std::string name = name_in(kVerdicts, verdict);

@@ -18,7 +18,8 @@ class DconAssemblerTest : public testing::Test {
  protected:
   Verdict put(char character, ByteStatus status = ByteStatus::Good) {
     now_ = now_ + Duration(1042);
-    return assembler_.byte(queue_, static_cast<std::uint8_t>(character), status, own_, now_);
+    assembler_.answer_to(own_);
+    return assembler_.byte(queue_, static_cast<std::uint8_t>(character), status, now_);
   }
 
   /// All characters; none but the last may end a frame.

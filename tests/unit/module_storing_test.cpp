@@ -174,6 +174,7 @@ TEST(Storing, WhatIsStoredAfterAMemoryThatDidNotAnswerAtResetIsThereAtTheNext) {
 TEST(Storing, ARefusedStoreIsNotInForceAfterTheNextResetThoughItsWriteHadLanded) {
   ModuleBench bench("EX9042D,name=OLD");
   bench.send("~01ONEW\r");
+  bench.line().bus().run_until(bench.line().bus().next());       // the turn-around is over
   ASSERT_EQ(bench.module().memory().writes(), 1U);               // begun
   bench.line().bus().run_until(bench.module().memory().next());  // written; now it is to be read back
   bench.module().memory().fail(true);

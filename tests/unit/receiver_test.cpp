@@ -75,8 +75,10 @@ class ReceiverTest : public testing::Test {
 
   Counts counts() {
     LineTallies& tallies = receiver_.tallies();
-    return {tallies.bus_messages.collect(), tallies.bus_errors.collect(), tallies.server_messages.collect(),
-            tallies.no_responses.collect(), tallies.overruns.collect()};
+    const Counts since_last{tallies.bus_messages(), tallies.bus_errors(), tallies.server_messages(),
+                            tallies.no_responses(), tallies.overruns()};
+    tallies.clear();
+    return since_last;
   }
   void expect_host_ok_between(Time earliest, Time latest) {
     EXPECT_LE(receiver_.host_ok_time().since(earliest).microseconds(), latest.since(earliest).microseconds());
@@ -391,7 +393,7 @@ TEST_F(ReceiverTest, SilenceWithoutAFrameWantsNoMore) {
 TEST_F(ReceiverTest, AnOpenAsciiFrameIsForgottenWhenTheModuleSpeaks) {
   listen(Protocol::Ascii);
   text("$01");
-  receiver_.speaking();
+  receiver_.on_spoken();
   text("M\r");
   EXPECT_FALSE(took_frame());
   text("$01M\r");
@@ -401,7 +403,7 @@ TEST_F(ReceiverTest, AnOpenAsciiFrameIsForgottenWhenTheModuleSpeaks) {
 TEST_F(ReceiverTest, AnOpenModbusFrameIsForgottenWhenTheModuleSpeaks) {
   listen(Protocol::ModbusRtu);
   bytes({0x01, 0x05, 0x00});
-  receiver_.speaking();
+  receiver_.on_spoken();
   EXPECT_EQ(receiver_.on_silence().microseconds(), 0U);
   EXPECT_EQ(counts(), (Counts{0, 0, 0, 0, 0}));
   frame(kChannel0On);
@@ -411,7 +413,7 @@ TEST_F(ReceiverTest, AnOpenModbusFrameIsForgottenWhenTheModuleSpeaks) {
 TEST_F(ReceiverTest, TheNextFrameDoesNotContinueOneForgotten) {
   listen(Protocol::ModbusRtu);
   bytes({0x01, 0x05, 0x00});
-  receiver_.speaking();
+  receiver_.on_spoken();
   frame(kChannel0On);
   EXPECT_TRUE(took_frame());
   EXPECT_EQ(counts(), (Counts{1, 0, 1, 0, 0}));
@@ -420,7 +422,7 @@ TEST_F(ReceiverTest, TheNextFrameDoesNotContinueOneForgotten) {
 TEST_F(ReceiverTest, SpeakingLeavesTheWaitingFrame) {
   listen(Protocol::Ascii);
   text("$01M\r");
-  receiver_.speaking();
+  receiver_.on_spoken();
   text("$02M\r");
   EXPECT_TRUE(took_frame());
 }
@@ -428,7 +430,7 @@ TEST_F(ReceiverTest, SpeakingLeavesTheWaitingFrame) {
 TEST_F(ReceiverTest, SpeakingForgetsOnlyWhatIsOpenThen) {
   listen(Protocol::Ascii);
   for (int i = 0; i < 300; ++i) {
-    receiver_.speaking();
+    receiver_.on_spoken();
     text("$01M\r");
     EXPECT_TRUE(took_frame()) << i;
   }

@@ -346,7 +346,7 @@ TEST_F(RtuAssemblerTest, AHostOkAndAForeignFrameNeedNoRoom) {
 
 TEST_F(RtuAssemblerTest, AnOpenFrameCanBeForgotten) {
   wire_.bytes({0x01, 0x05, 0x00});
-  EXPECT_EQ(assembler_.cut_off(queue_, kOwn), Verdict::Open);
+  EXPECT_EQ(assembler_.cut_off(queue_), Verdict::Open);
   wire_.rest();
   EXPECT_TRUE(wire_.verdicts.empty());
   expect_next_frame_accepted();
@@ -355,7 +355,7 @@ TEST_F(RtuAssemblerTest, AnOpenFrameCanBeForgotten) {
 TEST_F(RtuAssemblerTest, TheNextFrameMayFollowAForgottenOneAtOnce) {
   wire_.byte(0x01, ByteStatus::FramingError);
   wire_.byte(0x05, ByteStatus::Overrun);
-  EXPECT_EQ(assembler_.cut_off(queue_, kOwn), Verdict::Open);
+  EXPECT_EQ(assembler_.cut_off(queue_), Verdict::Open);
   expect_next_frame_accepted();
 }
 
@@ -363,7 +363,7 @@ TEST_F(RtuAssemblerTest, ALapsedFrameCanBeForgotten) {
   wire_.bytes({0x01, 0x05, 0x00});
   EXPECT_EQ(assembler_.silence(queue_, kOwn), Verdict::Open);
   ASSERT_TRUE(assembler_.wants_more_silence());
-  EXPECT_EQ(assembler_.cut_off(queue_, kOwn), Verdict::Open);
+  EXPECT_EQ(assembler_.cut_off(queue_), Verdict::Open);
   EXPECT_FALSE(assembler_.wants_more_silence());
   EXPECT_EQ(assembler_.silence(queue_, kOwn), Verdict::Open);
   expect_next_frame_accepted();

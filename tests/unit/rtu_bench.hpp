@@ -59,7 +59,8 @@ class Wire {
   void byte(std::uint8_t value, ByteStatus status = ByteStatus::Good) {
     now_ += character();
     run_timer();
-    note(assembler_.byte(queue_, value, status, own, time()));
+    assembler_.answer_to(own);
+    note(assembler_.byte(queue_, value, status, time()));
     due_ = now_ / 1000 + timing_.rtu_silence.microseconds();
   }
   void bytes(const FrameBytes& values) {
@@ -92,7 +93,7 @@ class Wire {
  private:
   void run_timer() {
     while (timer_works && due_ && *due_ < now_ / 1000) {
-      note(assembler_.silence(queue_, own));
+      note(assembler_.silence(queue_));
       if (assembler_.wants_more_silence()) {
         *due_ += timing_.rtu_grace.microseconds();
       } else {

@@ -136,7 +136,9 @@ inline bool drive(SettingsStore& store, FakeMemory& memory) {
       ADD_FAILURE() << "the store never finishes";
       return false;
     }
-    const std::optional<bool> ok = memory.run(store.job());
+    const MemoryJob job = store.job();
+    store.started();
+    const std::optional<bool> ok = memory.run(job);
     if (!ok) {
       return false;
     }

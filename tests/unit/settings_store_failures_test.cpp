@@ -105,6 +105,7 @@ TEST(SettingsStore, AFailedSaveDoesNotTouchTheCopyThatHoldsTheOldSettings) {
 void end_jobs(SettingsStore& store, bool answered, int count) {
   for (int i = 0; i < count; ++i) {
     const MemoryJob job = store.job();
+    store.started();
     if (job.kind == MemoryJob::Kind::Read && answered) {
       std::fill_n(job.bytes.data, job.bytes.size, std::uint8_t{0x5A});
     }

@@ -171,7 +171,9 @@ TEST(SettingsStore, EachCopyHasThreeReadsOfItsOwn) {
   SettingsStore store(the_model());
   store.begin_loading();
   for (std::size_t i = 0; i < kAttempts; ++i) {
-    store.done(*memory.run(store.job()));
+    const MemoryJob job = store.job();
+    store.started();
+    store.done(*memory.run(job));
   }
   memory.failing_reads = kAttempts - 1;
   drive(store, memory);

@@ -37,7 +37,7 @@ TEST(UntouchedModule, SoIsADevice) {
 TEST(UntouchedModule, DrivesNothingAndWantsNothing) {
   EXPECT_EQ(untouched_module.outputs(), 0);
   EXPECT_FALSE(untouched_module.wants_memory());
-  EXPECT_FALSE(untouched_module.line_has_news());
+  EXPECT_FALSE(untouched_module.request_waits());
 }
 
 }  // namespace

@@ -15,6 +15,7 @@ class Highest:
         self.wanted = 1
         self.passes = 0
         self.addresses = []
+        self.ahead = 0  # the most instructions in the silence before
 
     def note(self, addresses):
         self.passes += 1
@@ -29,14 +30,17 @@ class Highest:
 class Counter:
     """Listens to execution.follow. One request at a time is `awaited`; one pass counts from
 
-    - the first instruction of the silence's interrupt, or of CR's interrupt in ASCII,
+    - the first instruction of the interrupt that ends the silence behind the request, T3.5 or ASCII's
+      turn-around; where there is none, of CR's interrupt,
     - with the main loop asleep before it,
     - to what `Request.until` says.
 
-    It has the instructions of that interrupt, of the one that ends ASCII's turn-around, and of the main loop's
-    turns. It has not those of turns in which nothing is done but to wait. A pass into which another interrupt
-    falls does not count, except where there is no reply: what such a request changes may wait for the tick,
-    which is left out, and so is what the main loop does for it.
+    It has the instructions of that interrupt and of the main loop's turns. It has not those of turns in which
+    nothing is done but to wait. A pass into which another interrupt falls does not count, except where there is
+    no reply: what such a request changes may wait for the tick, which is left out, and so is what the main loop
+    does for it.
+
+    What was done before, while the silence lasted, is told apart: CR's interrupt, and the turn that judges.
     """
 
     def __init__(self, handlers, sleeps, of_the_tick, ends_with_cr):
@@ -47,6 +51,7 @@ class Counter:
         self._frame = bytearray()
         self._request = None  # whose pass is under way
         self._awaited = {}
+        self._judging = []  # turns since the last byte
         self.over = threading.Event()  # a pass, good or not
         self.ticked = threading.Event()
         self.requests = {}
@@ -74,7 +79,9 @@ class Counter:
 
     def entered(self, span, main):
         if span.exception == execution.SILENCE:
-            if not self._ends_with_cr:
+            if self._ends_with_cr:
+                self._go_on(span, main)
+            else:
                 self._begin(span, main)
             self._frame.clear()
 
@@ -82,6 +89,7 @@ class Counter:
         if span.addresses[:1] == [self._first.get(span.exception)]:  # logged from its begin on
             self._note_interrupt(span)
         if span.exception == execution.LINE:
+            self._judging = []
             self._frame += bytes(span.received)
             self.bytes_taken += len(span.received)
             if self._ends_with_cr and span.received[-1:] == [0x0D]:
@@ -92,9 +100,7 @@ class Counter:
         elif span.exception in execution.EDGES:
             self.over.set()
         if self._request is not None and span is not self._began:
-            if span.exception == execution.SILENCE and self._ends_with_cr:
-                self._turn_around += span.addresses
-            elif span.exception != execution.TICK or self._request.until != DONE or not self._turns:
+            if span.exception != execution.TICK or self._request.until != DONE or not self._turns:
                 self._spoil()
 
     def slept(self, main):
@@ -105,10 +111,12 @@ class Counter:
         if len(main.addresses) <= FALLING_ASLEEP:
             self.idle_turn.note(main.addresses)
         if self._request is None:
+            self._judging.append(len(main.addresses))
             return
         self._turns.append(self._without_the_ticks(main))
         worked = len(main.addresses) > FALLING_ASLEEP
-        if self._request.until == IGNORED or (self._request.until == DONE and worked):
+        acted = worked and (self._silent or not self._request.turn_around)
+        if self._request.until == IGNORED or (self._request.until == DONE and acted):
             self._end([])
 
     def sent(self, span):
@@ -141,13 +149,25 @@ class Counter:
         if request is None or not main.addresses:
             return  # not asked for, or not logged
         self._request = request
+        self._ahead = max(self._judging, default=0)
+        self._set_out(span, main, not self._ends_with_cr)
+        if len(span.received) > 1:
+            self._spoil()
+
+    def _go_on(self, span, main):
+        """ASCII's turn-around is over."""
+        if self._request is not None and not self._silent:
+            self._ahead = len(self._began.addresses) + max(map(len, self._turns), default=0)
+            self._set_out(span, main, True)
+
+    def _set_out(self, span, main, silent):
+        self._silent = silent
         self._began = span
         self._main = main
         self._before = len(main.addresses)  # what the main loop had executed when it began
-        self._turn_around = []
         self._turns = []
-        was_asleep = main.addresses[0] in self._awake and len(main.addresses) <= 2
-        if not was_asleep or len(main.interrupts) != 1 or len(span.received) > 1:
+        was_asleep = main.addresses[:1] and main.addresses[0] in self._awake and len(main.addresses) <= 2
+        if not was_asleep or len(main.interrupts) != 1:
             self._spoil()
 
     def _without_the_ticks(self, turn):
@@ -164,6 +184,8 @@ class Counter:
         all but the first, which begins with the request."""
         turns = self._turns[:1] + sorted(self._turns[1:], key=len)[-1:] + [last]
         began = [] if self._request.until == IGNORED and self._ends_with_cr else self._began.addresses
-        self.requests[self._request].note(sum(turns, began + self._turn_around))
+        highest = self.requests[self._request]
+        highest.note(sum(turns, began))
+        highest.ahead = max(highest.ahead, self._ahead)
         self._request = None
         self.over.set()

@@ -99,7 +99,9 @@ def run_session(options, model, ascii, general):
 def text_of(row):
     limit = "" if row.limit is None else f"of {row.limit}"
     mark = "OVER" if is_over(row) else ""
-    return f"{row.name:58} {count_of(row):5} {limit:7} {mark:4} {row.highest.passes:6} passes {row.until}".rstrip()
+    ahead = f", {row.highest.ahead} ahead" if row.highest.ahead else ""
+    passes = f"{row.highest.passes:6} passes {row.until}{ahead}"
+    return f"{row.name:58} {count_of(row):5} {limit:7} {mark:4} {passes}".rstrip()
 
 
 def profile(image, row):
@@ -119,8 +121,9 @@ def main(arguments):
     parser = argparse.ArgumentParser(
         prog="instructions",
         description="Counts the instructions that firmware images execute in QEMU, the highest of 100 passes each, and "
-        "holds them to limits: for a request from the interrupt that ends it to the first byte of the reply, or to the "
-        "begin of the write to the EEPROM. Exit status 1 where a limit is passed.",
+        "holds them to limits: for a request from the interrupt that ends the silence behind it to the first byte of the "
+        "reply, or to the begin of the write to the EEPROM; what was done ahead, while the silence lasted, is told "
+        "apart. Exit status 1 where a limit is passed.",
     )
     parser.add_argument("folder", help="with the images for lm3s6965evb, as ELF files")
     parser.add_argument(

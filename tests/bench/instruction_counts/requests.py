@@ -20,7 +20,16 @@ class Request:
     until what they do is done."""
 
     def __init__(
-        self, name, frames, until=REPLY, limit=ANSWER_LIMIT, before=(), settles=0.0, init=False, passes=100
+        self,
+        name,
+        frames,
+        until=REPLY,
+        limit=ANSWER_LIMIT,
+        before=(),
+        settles=0.0,
+        init=False,
+        passes=100,
+        turn_around=True,
     ):
         self.name = name
         self.frames = frames
@@ -30,6 +39,7 @@ class Request:
         self.settles = settles
         self.init = init  # INIT* is asserted
         self.passes = passes
+        self.turn_around = turn_around  # in ASCII: there is a silence behind it
 
 
 def crc16(data):
@@ -190,7 +200,7 @@ def ascii_requests(model, general, checksum):
             request("$AAM", "$01M"),
             request("@AA", "@01"),
             request("~AAO(Name)", "~01Oabcdef", "~01Oghijkl", until=STORE),
-            request("~**", "~**", until=DONE),
+            request("~**", "~**", until=DONE, turn_around=False),
             request("~AA0", "~010"),
             request("~AA1 clear already", "~011"),
             request("~AA2", "~012"),
