@@ -62,9 +62,9 @@ TEST_F(RtuAssemblerTest, NothingIsAcceptedBeforeTheSilence) {
 }
 
 TEST_F(RtuAssemblerTest, SilenceWithoutAFrameIsNothing) {
-  EXPECT_EQ(assembler_.silence(queue_, kOwn), Verdict::Open);
+  EXPECT_EQ(assembler_.silence(queue_), Verdict::Open);
   EXPECT_FALSE(assembler_.wants_more_silence());
-  EXPECT_EQ(assembler_.silence(queue_, kOwn), Verdict::Open);
+  EXPECT_EQ(assembler_.silence(queue_), Verdict::Open);
 }
 
 TEST_F(RtuAssemblerTest, AWrongCrcIsDropped) {
@@ -342,6 +342,68 @@ TEST_F(RtuAssemblerTest, AHostOkAndAForeignFrameNeedNoRoom) {
   EXPECT_EQ(verdict_of(frame_of(8, 0x02)), Verdict::Foreign);
 }
 
+// --- announced ---
+
+TEST_F(RtuAssemblerTest, AFrameIsAnnouncedWithItsLastByteAndCompleteWithTheSilence) {
+  const std::uint32_t before = queue_.announced();
+  wire_.bytes(without_crc(kChannel0On));
+  wire_.byte(0x8C);
+  EXPECT_EQ(queue_.announced(), before);
+  wire_.byte(0x3A);
+  EXPECT_EQ(queue_.announced(), before + 1);
+  const Bytes coming = queue_.coming().bytes();
+  EXPECT_EQ(FrameBytes(coming.begin(), coming.end()), without_crc(kChannel0On));
+  EXPECT_FALSE(queue_.has_frame());
+  wire_.collect = false;
+  wire_.rest();
+  ASSERT_TRUE(queue_.has_frame());
+  EXPECT_EQ(queue_.waiting_number(), before + 1);
+}
+
+TEST_F(RtuAssemblerTest, AFrameForAnotherModuleIsNeverAnnounced) {
+  const std::uint32_t before = queue_.announced();
+  EXPECT_EQ(verdict_of(frame_of(8, 0x02)), Verdict::Foreign);
+  EXPECT_EQ(queue_.announced(), before);
+}
+
+TEST_F(RtuAssemblerTest, WhatIsAnnouncedLateHasANumberOfItsOwnToo) {
+  // A broadcast, and a frame behind a turn-around 00, which begins like one.
+  wire_.collect = false;
+  for (const FrameBytes& bytes : {frame_of(8, 0x00), behind(0x00, kChannel0On)}) {
+    const std::uint32_t before = queue_.announced();
+    wire_.frame(bytes);
+    ASSERT_TRUE(queue_.has_frame());
+    EXPECT_EQ(queue_.waiting_number(), before + 1);
+    queue_.drop_in_main_loop();
+  }
+}
+
+TEST_F(RtuAssemblerTest, AFrameThatGoesOnBehindARightCrcHasAnotherNumber) {
+  wire_.bytes(kChannel0On);
+  const std::uint32_t beginning = queue_.announced();
+  FrameBytes whole = kChannel0On;
+  whole.push_back(0x00);
+  whole = with_crc(whole);
+  wire_.bytes({whole.begin() + static_cast<std::ptrdiff_t>(kChannel0On.size()), whole.end()});
+  wire_.collect = false;
+  wire_.rest();
+  ASSERT_TRUE(queue_.has_frame());
+  EXPECT_NE(queue_.waiting_number(), beginning);
+  EXPECT_EQ(queue_.completed().size, whole.size() - 2);
+}
+
+TEST_F(RtuAssemblerTest, ANewAddressHoldsForAFrameThatHasNotBeenAnnouncedForIt) {
+  wire_.bytes(frame_of(8, 0x02));
+  const std::uint32_t before = queue_.announced();
+  wire_.own = 0x02;
+  assembler_.answer_to(0x02);
+  wire_.collect = false;
+  wire_.rest();
+  ASSERT_TRUE(queue_.has_frame());
+  EXPECT_EQ(queue_.waiting_number(), before + 1);
+  EXPECT_EQ(queue_.completed().size, 6U);
+}
+
 // --- the own driver comes on ---
 
 TEST_F(RtuAssemblerTest, AnOpenFrameCanBeForgotten) {
@@ -361,11 +423,11 @@ TEST_F(RtuAssemblerTest, TheNextFrameMayFollowAForgottenOneAtOnce) {
 
 TEST_F(RtuAssemblerTest, ALapsedFrameCanBeForgotten) {
   wire_.bytes({0x01, 0x05, 0x00});
-  EXPECT_EQ(assembler_.silence(queue_, kOwn), Verdict::Open);
+  EXPECT_EQ(assembler_.silence(queue_), Verdict::Open);
   ASSERT_TRUE(assembler_.wants_more_silence());
   EXPECT_EQ(assembler_.cut_off(queue_), Verdict::Open);
   EXPECT_FALSE(assembler_.wants_more_silence());
-  EXPECT_EQ(assembler_.silence(queue_, kOwn), Verdict::Open);
+  EXPECT_EQ(assembler_.silence(queue_), Verdict::Open);
   expect_next_frame_accepted();
 }
 

@@ -144,11 +144,11 @@ TEST_P(RtuGaps, AFrameWithARightCrcIsOverAtT35ThoughAByteIsComingInAndTheTimerIs
 
 TEST_P(RtuGaps, AWrongCrcAtT35WaitsForAByteThatMayBeComingIn) {
   wire_.bytes({0x01, 0x05, 0x00});
-  EXPECT_EQ(assembler_.silence(queue_, kOwn), Verdict::Open);
+  EXPECT_EQ(assembler_.silence(queue_), Verdict::Open);
   EXPECT_TRUE(assembler_.wants_more_silence());
-  EXPECT_EQ(assembler_.silence(queue_, kOwn), Verdict::TooShort);
+  EXPECT_EQ(assembler_.silence(queue_), Verdict::TooShort);
   EXPECT_FALSE(assembler_.wants_more_silence());
-  EXPECT_EQ(assembler_.silence(queue_, kOwn), Verdict::Open);
+  EXPECT_EQ(assembler_.silence(queue_), Verdict::Open);
 }
 
 TEST_P(RtuGaps, AByteThatStartedBeforeT35ContinuesALapsedFrame) {
@@ -172,7 +172,7 @@ TEST_P(RtuGaps, AFrameMayLapseMoreThanOnce) {
 
 TEST_P(RtuGaps, ARightCrcAtT35IsAcceptedAtOnce) {
   wire_.bytes(kChannel0On);
-  EXPECT_EQ(assembler_.silence(queue_, kOwn), Verdict::Accepted);
+  EXPECT_EQ(assembler_.silence(queue_), Verdict::Accepted);
   EXPECT_FALSE(assembler_.wants_more_silence());
 }
 
