@@ -29,7 +29,7 @@ inline constexpr Pin kInitSwitch{Port::A, 7};
 inline constexpr Pin kStatusLed{Port::F, 0};
 
 /// In order of channels. A model has either more than eight outputs or inputs: they share the second eight.
-inline constexpr std::array<PinGroup, 2> kFirstEight{PinGroup{Port::D, 1, 7}, PinGroup{Port::G, 0, 1}};
+inline constexpr std::array<PinGroup, 2> kFirstEight{PinGroup{Port::D, 2, 6}, PinGroup{Port::G, 0, 2}};
 inline constexpr std::array<PinGroup, 3> kSecondEight{PinGroup{Port::B, 0, 2}, PinGroup{Port::B, 4, 3},
                                                       PinGroup{Port::C, 4, 3}};
 inline constexpr std::array<PinGroup, 5> kOutputs{kFirstEight[0], kFirstEight[1], kSecondEight[0],
