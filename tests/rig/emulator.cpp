@@ -11,8 +11,6 @@ constexpr std::uint32_t kControl = 0x30;
 constexpr std::uint32_t kControlAtReset = 0x300;
 constexpr std::uint32_t kInterruptMask = 0x38;
 
-/// Without -icount: it costs twice the host's time, and what it promises, that no time passes for the image
-/// while the host keeps it waiting, it does not keep where the image sleeps between two bytes.
 std::vector<std::string> command_of(const std::string& image, const std::string& memory) {
   return {"setpriv",  // whatever ends the test ends the emulator
           "--pdeathsig",
@@ -41,24 +39,39 @@ std::vector<std::string> command_of(const std::string& image, const std::string&
           "-qtest-log",
           "none",
           "-drive",
-          "if=none,id=memory,format=raw,file=" + memory,
+          "if=none,id=memory,format=raw,cache=unsafe,file=" + memory,
           "-device",
           "at24c-eeprom,bus=i2c,address=0x50,rom-size=8192,drive=memory"};
 }
 
+/// What AlarmClock needs: semihosting is how its interrupt asks the debugger for a stop.
+const std::vector<std::string> kTimeOfItsOwn{"-icount",
+                                             "shift=4,sleep=off",
+                                             "-semihosting-config",
+                                             "enable=on,target=gdb",
+                                             "-chardev",
+                                             "socket,id=gdb,path=gdb",
+                                             "-gdb",
+                                             "chardev:gdb"};
+
 }  // namespace
 
-Emulator::Emulator(const std::string& image, const std::string& memory,
-                   const std::vector<std::string>& options) {
+Emulator::Emulator(const std::string& image, const std::string& memory, Time time) {
   std::vector<std::string> command = command_of(image, memory);
-  command.insert(command.end(), options.begin(), options.end());
+  if (time == Time::Own) {
+    command.insert(command.end(), kTimeOfItsOwn.begin(), kTimeOfItsOwn.end());
+  }
   UnixListener uart(directory_ / "uart");
   UnixListener qmp(directory_ / "qmp");
   UnixListener qtest(directory_ / "qtest");
+  UnixListener gdb(directory_ / "gdb");
   process_.emplace(command, directory_.path(), system::ChildProcess::Errors::WithOutput);
   uart_.emplace(uart.accept());
   qmp_.emplace(qmp.accept());
   bus_.emplace(qtest.accept());
+  if (time == Time::Own) {
+    gdb_.emplace(gdb.accept());
+  }
 }
 
 /// Told to halt where there would be a reset, the emulator does so even if it is asked for one. And its UARTs

@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "tests/rig/gdb_client.hpp"
 #include "tests/rig/qmp_client.hpp"
 #include "tests/rig/qtest_client.hpp"
 #include "tests/rig/unix_socket.hpp"
@@ -19,10 +20,16 @@ namespace ex9000::rig {
 /// Where the image resets itself, or the watchdog does, the machine halts instead, for the same reason.
 class Emulator {
  public:
-  /// Runs the ELF file `image`; `memory` is the file that holds the EEPROM's 8192 bytes. `options` are more
-  /// of QEMU's. Throws std::runtime_error where it does not come up.
-  Emulator(const std::string& image, const std::string& memory, const std::vector<std::string>& options = {});
+  enum class Time {
+    Host,  ///< passes as the host's does: for whoever keeps no other
+    Own,   ///< 16 ns an instruction, and none between what it waits for and that; run by AlarmClock
+  };
 
+  /// Runs the ELF file `image`; `memory` is the file that holds the EEPROM's 8192 bytes. Throws
+  /// std::runtime_error where it does not come up.
+  Emulator(const std::string& image, const std::string& memory, Time time);
+
+  /// Not with a time of its own.
   void run() { qmp_->execute("cont", "RESUME"); }
   void halt() { qmp_->execute("stop", "STOP"); }
   /// As the reset pin does, while halted; it stays halted. Inputs read 0 after it.
@@ -30,6 +37,8 @@ class Emulator {
 
   QmpClient& qmp() { return *qmp_; }
   QtestClient& bus() { return *bus_; }
+  /// Only with a time of its own.
+  GdbClient& gdb() { return *gdb_; }
   /// UART0, without regard to rates; what it sends has to be taken now and then, for a full socket (278
   /// bytes) halts the machine.
   UnixSocket& uart() { return *uart_; }
@@ -41,6 +50,7 @@ class Emulator {
   std::optional<UnixSocket> uart_;
   std::optional<QmpClient> qmp_;
   std::optional<QtestClient> bus_;
+  std::optional<GdbClient> gdb_;
 };
 
 }  // namespace ex9000::rig

@@ -1,9 +1,7 @@
 #include "tests/rig/image_target.hpp"
 
-#include <chrono>
+#include <tuple>
 #include <utility>
-
-#include "tests/rig/wrong_rate.hpp"
 
 namespace ex9000::rig {
 
@@ -11,88 +9,51 @@ namespace {
 
 using runner::Bytes;
 using runner::step::Led;
+using std::chrono::milliseconds;
+using std::chrono::nanoseconds;
 
-constexpr std::chrono::milliseconds kComingUp{100};
-/// An image on a busy host has done what a frame asks for this much later than it was written.
-constexpr std::chrono::milliseconds kHostLatency{20};
-/// And may keep an answer waiting this much longer than a module would: only a missing one costs it.
-constexpr std::chrono::seconds kPatience{3};
-/// An answer may be on its way before the pins show what it says.
-constexpr std::chrono::milliseconds kTurn{3};
-constexpr std::chrono::milliseconds kLook{5};
-/// The longer of a flashing LED's phases, and what the host adds to it.
-constexpr std::chrono::milliseconds kFlashing{300};
+constexpr milliseconds kComingUp{100};
+/// The image has dealt with a byte, and shown it at its pins, in less.
+constexpr milliseconds kSettling{1};
+constexpr milliseconds kSlice{2};
+/// The longest phase of a flashing LED, and a bit.
+constexpr milliseconds kFlashing{300};
+constexpr milliseconds kLook{10};
 
 }  // namespace
 
 void ImageTarget::start(const Model& model, const Settings* preset) {
-  if (!module_ || &module_->model() != &model) {
-    module_.emplace(model, nullptr);
-  }
+  module_ =
+      &modules_.emplace(std::piecewise_construct, std::forward_as_tuple(&model), std::forward_as_tuple(model))
+           .first->second;
   heard_.clear();
-  settled_ = {};
+  settled_ = nanoseconds(0);
   module_->begin_anew(preset);
-  // Unlike a power-on in the middle of a transcript, this one is not where anything is measured from.
-  const Clock::time_point gives_up = Clock::now() + kPatience;
-  while (module_->baud() == 0 && Clock::now() < gives_up) {
-    hear_until(Clock::now() + kLook);
-  }
+  module_->run_for(kComingUp);
 }
 
 void ImageTarget::send(const Bytes& bytes) {
-  module_->send(heard_at_rate(bytes, baud_, module_->baud()));
-  settled_ = Clock::now() + kHostLatency;
+  module_->send(bytes, baud_);
+  settled_ = module_->now() + kSettling;
 }
 
-void ImageTarget::hear(std::chrono::nanoseconds patience) {
-  Bytes bytes = module_->hear(patience);
-  if (!bytes.empty()) {
-    bytes = heard_at_rate(bytes, module_->baud(), baud_);
-    heard_.insert(heard_.end(), bytes.begin(), bytes.end());
-  }
+void ImageTarget::hear() {
+  const Bytes bytes = module_->hear(baud_);
+  heard_.insert(heard_.end(), bytes.begin(), bytes.end());
 }
 
-void ImageTarget::hear_until(Clock::time_point when) {
-  for (auto now = Clock::now(); now < when; now = Clock::now()) {
-    hear(when - now);
-  }
-}
-
-void ImageTarget::hear_for(std::chrono::milliseconds time) {
-  constexpr std::chrono::milliseconds kShort{10};
-  constexpr int kSlowest = 10;  // times slower than the host's clock
-  if (time < kShort || !module_->powered()) {
-    hear_until(Clock::now() + time);
-    return;
-  }
-  const Clock::time_point gives_up = Clock::now() + kPatience + kSlowest * time;
-  const std::chrono::microseconds until = module_->time() + time;
-  for (auto now = module_->time(); now < until && Clock::now() < gives_up; now = module_->time()) {
-    hear_until(Clock::now() + (until - now));
-  }
-}
-
-void ImageTarget::come_up() {
-  const Clock::time_point gives_up = Clock::now() + kPatience;
-  while (module_->baud() == 0 && Clock::now() < gives_up) {
-    hear_until(Clock::now() + kLook);
-  }
-  const std::chrono::microseconds now = module_->time();
-  if (now < kComingUp) {
-    hear_for(std::chrono::duration_cast<std::chrono::milliseconds>(kComingUp - now));
-  }
-}
-
-Bytes ImageTarget::receive(std::size_t count, std::chrono::milliseconds patience) {
-  Clock::time_point gives_up = Clock::now() + patience + kPatience;
-  while (heard_.size() < count && Clock::now() < gives_up) {
+Bytes ImageTarget::receive(std::size_t count, milliseconds patience) {
+  hear();
+  nanoseconds gives_up = module_->now() + patience;
+  while (heard_.size() < count && module_->now() < gives_up) {
     const std::size_t had = heard_.size();
-    hear(gives_up - Clock::now());
+    module_->run_for(kSlice);
+    hear();
     if (heard_.size() != had) {
-      gives_up = Clock::now() + patience + kPatience;
+      gives_up = module_->now() + patience;
     }
   }
-  settled_ = Clock::now() + kTurn;
+  settled_ = module_->now() + kSettling;
   Bytes bytes = std::exchange(heard_, {});
   if (bytes.size() > count) {
     heard_.assign(bytes.begin() + static_cast<std::ptrdiff_t>(count), bytes.end());
@@ -101,28 +62,30 @@ Bytes ImageTarget::receive(std::size_t count, std::chrono::milliseconds patience
   return bytes;
 }
 
-Bytes ImageTarget::listen(std::chrono::milliseconds time) {
-  hear_for(time);
+Bytes ImageTarget::listen(milliseconds time) {
+  module_->run_for(time);
+  hear();
   return std::exchange(heard_, {});
 }
 
-EmulatedModule& ImageTarget::settled() {
-  hear_until(settled_);
+TimedModule& ImageTarget::settled() {
+  if (module_->now() < settled_) {
+    module_->run_for(settled_ - module_->now());
+  }
+  hear();
   return *module_;
 }
 
 void ImageTarget::power(bool on) {
   settled().power(on);
   if (on) {
-    come_up();
+    module_->run_for(kComingUp);
   }
 }
 
 void ImageTarget::reset() {
   settled().reset();
-  if (module_->powered()) {
-    come_up();
-  }
+  module_->run_for(kComingUp);
 }
 
 void ImageTarget::set_init(bool asserted) { settled().set_init(asserted); }
@@ -135,19 +98,18 @@ void ImageTarget::pulse_input(unsigned channel, std::uint32_t count) {
 
 std::uint16_t ImageTarget::outputs() { return settled().outputs(); }
 
-/// A lamp that is lit may be about to go dark, if it flashes. To see it takes time that the steps around this
-/// one measure, so it is taken only where it is expected to.
 Led::Shows ImageTarget::led(Led::Shows expected) {
   const bool lit = settled().led_lit();
   if (!module_->powered()) {
     return Led::Shows::Off;
   }
   if (lit && expected == Led::Shows::On) {
+    module_->believe_led_on();
     return Led::Shows::On;
   }
-  const std::chrono::microseconds gives_up = module_->time() + kFlashing;
-  while (module_->time() < gives_up) {
-    hear_until(Clock::now() + kLook);
+  const nanoseconds gives_up = module_->now() + kFlashing;
+  while (module_->now() < gives_up) {
+    module_->run_for(kLook);
     if (module_->led_lit() != lit) {
       return Led::Shows::Flashing;
     }

@@ -1,18 +1,16 @@
-// The firmware image on the emulated board as a transcript's target, in real time.
+// The firmware image on the emulated board as a transcript's target.
 #pragma once
 
 #include <chrono>
-#include <optional>
+#include <map>
 
-#include "tests/rig/emulated_module.hpp"
+#include "tests/rig/timed_module.hpp"
 #include "tests/runner/target.hpp"
 
 namespace ex9000::rig {
 
-/// May play one transcript after the other; those of one model in a row are played on one emulator.
-///
-/// Bytes take no time on the emulated UART. What is sent at a rate that is not the image's is put on its line
-/// as the image would sample it, and the other way round.
+/// May play one transcript after the other; each model has its own emulator. Time is the emulated machine's,
+/// so the host has no part in what happens.
 class ImageTarget final : public runner::Target {
  public:
   void start(const Model& model, const Settings* preset) override;
@@ -27,22 +25,17 @@ class ImageTarget final : public runner::Target {
   void pulse_input(unsigned channel, std::uint32_t count) override;
   std::uint16_t outputs() override;
   runner::step::Led::Shows led(runner::step::Led::Shows expected) override;
+  void end() override { module_->make_sure(); }
 
  private:
-  using Clock = std::chrono::steady_clock;
-
   /// The module, once it has done what was sent to it.
-  EmulatedModule& settled();
-  void hear(std::chrono::nanoseconds patience);
-  void hear_until(Clock::time_point when);
-  /// While so much time passes on the image's clock, where it has one.
-  void hear_for(std::chrono::milliseconds time);
-  /// The image has had the time to come up.
-  void come_up();
+  TimedModule& settled();
+  void hear();
 
-  std::optional<EmulatedModule> module_;
-  std::uint32_t baud_ = 0;
-  Clock::time_point settled_;  ///< when the image has had the time for what was sent
+  std::map<const Model*, TimedModule> modules_;
+  TimedModule* module_ = nullptr;
+  std::uint32_t baud_ = 9600;
+  std::chrono::nanoseconds settled_{0};  ///< when the image has had the time for what was sent
   runner::Bytes heard_;
 };
 

@@ -1,5 +1,7 @@
 #include "tests/rig/qtest_client.hpp"
 
+#include <algorithm>
+#include <array>
 #include <stdexcept>
 #include <utility>
 
@@ -33,6 +35,19 @@ std::uint32_t QtestClient::read(std::uint32_t address) {
   return value();
 }
 
+std::vector<std::uint32_t> QtestClient::read(const std::vector<std::uint32_t>& addresses) {
+  std::string commands;
+  for (const std::uint32_t address : addresses) {
+    commands += readl(address);
+  }
+  socket_.send(commands);
+  std::vector<std::uint32_t> values;
+  for (std::size_t i = 0; i < addresses.size(); ++i) {
+    values.push_back(value());
+  }
+  return values;
+}
+
 std::vector<std::uint8_t> QtestClient::read(std::uint32_t address, std::uint32_t size) {
   constexpr std::size_t kLead = 3;  // blank, 0x
   constexpr int kHex = 16;
@@ -46,8 +61,27 @@ std::vector<std::uint8_t> QtestClient::read(std::uint32_t address, std::uint32_t
 }
 
 void QtestClient::write(std::uint32_t address, std::uint32_t value) {
-  socket_.send("writel " + std::to_string(address) + " " + std::to_string(value) + "\n");
-  reply();
+  carry_out(write_command(address, value));
+}
+
+void QtestClient::write(std::uint32_t address, const std::vector<std::uint8_t>& bytes) {
+  constexpr std::array<char, 17> kDigits{"0123456789ABCDEF"};
+  std::string hex;
+  for (const std::uint8_t byte : bytes) {
+    hex += {kDigits[byte / 16], kDigits[byte % 16]};
+  }
+  carry_out("write " + std::to_string(address) + " " + std::to_string(bytes.size()) + " 0x" + hex + "\n");
+}
+
+std::string QtestClient::write_command(std::uint32_t address, std::uint32_t value) {
+  return "writel " + std::to_string(address) + " " + std::to_string(value) + "\n";
+}
+
+void QtestClient::carry_out(const std::string& commands) {
+  socket_.send(commands);
+  for (auto left = std::count(commands.begin(), commands.end(), '\n'); left != 0; --left) {
+    reply();
+  }
 }
 
 void QtestClient::fill(std::uint32_t address, std::uint32_t size, std::uint8_t byte) {

@@ -166,14 +166,16 @@ Result play(const Transcript& transcript, Target& target) {
   target.start(*transcript.model, transcript.preset_given ? &transcript.preset : nullptr);
   target.set_baud(baud_rate(transcript.preset.baud_code));
   Playing playing(target, (transcript.preset.format & kFormatChecksum) != 0);
-  std::string where = transcript.file + ": at the end";
+  std::string where;
   try {
     for (const Step& step : transcript.steps) {
       ++result.steps;
       where = transcript.file + ":" + std::to_string(step.line) + ": " + step.text;
       std::visit(playing, step.action);
     }
+    where = transcript.file + ": at the end";
     playing.nothing_more();
+    target.end();
   } catch (const std::runtime_error& error) {
     result.failure = where + ": " + error.what() + " (" + std::string(transcript.model->designation) + ")";
   }

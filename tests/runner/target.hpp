@@ -44,6 +44,9 @@ class Target {
   /// `expected` is what the transcript says: a target that can but watch the lamp need not watch for longer
   /// than it takes to tell this from everything else.
   virtual step::Led::Shows led(step::Led::Shows expected) = 0;
+
+  /// The transcript is over. Throws std::runtime_error where an answer given before turns out to be wrong.
+  virtual void end() {}
 };
 
 }  // namespace ex9000::runner

@@ -1,0 +1,50 @@
+// The emulated machine's time: it runs for as long as it is told to, and then stands still.
+#pragma once
+
+#include <chrono>
+#include <cstdint>
+#include <string>
+
+#include "tests/rig/emulator.hpp"
+#include "tests/rig/signals.hpp"
+
+namespace ex9000::rig {
+
+/// Of a machine that has a time of its own (Emulator::Time::Own). What happens in it depends on nothing but
+/// what is done to it while it stands still, to the nanosecond.
+///
+/// GPTM2, which no image uses, interrupts when the time is over, and the interrupt's code, in RAM that no
+/// image uses, makes the emulator stop. The image itself and its vectors stay as they are; a copy of these,
+/// with one more entry, takes their place. Its interrupt waits for others and holds them up, as the image's
+/// own do, for 5 us each time the machine stands still; on the stack it takes as much as they.
+///
+/// Whatever is not as it should be throws std::runtime_error, also where the image resets itself.
+class AlarmClock {
+ public:
+  explicit AlarmClock(Emulator& machine) : machine_(machine) {}
+
+  /// Behind every reset, before the first instruction.
+  void set_up();
+  /// Runs the machine. Less than 8 us takes 8 us.
+  void run_for(std::chrono::nanoseconds time);
+  /// Gives an input `edges` edges, one about each 10 us, and runs the machine meanwhile. Returns how long.
+  std::chrono::nanoseconds make_edges(Pin pin, std::uint32_t edges);
+
+  // --- how it was when it came to a stop ---
+
+  [[nodiscard]] bool receiver_empty() const;
+  [[nodiscard]] bool driver_on() const;
+  [[nodiscard]] bool led_lit() const;
+
+ private:
+  void run(std::uint32_t clocks, const std::string& more = {});
+  std::uint32_t clocks(std::chrono::nanoseconds time);
+  void wait_for_stop();
+
+  Emulator& machine_;
+  bool at_first_ = true;       ///< no alarm has gone off yet
+  bool stopped_once_ = false;  ///< and never since power-on
+  std::uint32_t seen_ = 0;     ///< what the interrupt's code has told
+};
+
+}  // namespace ex9000::rig
