@@ -1,5 +1,6 @@
 // All transcripts of the manuals' models against their firmware images, on the emulated reference board.
 #include <gtest/gtest.h>
+#include <sched.h>
 
 #include <algorithm>
 #include <array>
@@ -60,6 +61,29 @@ std::vector<Played> all_runs() {
   return runs;
 }
 
+/// The processors that this program may use.
+std::vector<int> processors() {
+  cpu_set_t allowed;
+  CPU_ZERO(&allowed);
+  sched_getaffinity(0, sizeof allowed, &allowed);
+  std::vector<int> result;
+  for (int i = 0; i < CPU_SETSIZE; ++i) {
+    if (CPU_ISSET(i, &allowed)) {
+      result.push_back(i);
+    }
+  }
+  return result;
+}
+
+/// The calling thread, and the emulators that it starts. They and it take turns, and so do an emulator's own
+/// threads; to wake one another across processors would take longer than all the rest.
+void stay_on(int processor) {
+  cpu_set_t only;
+  CPU_ZERO(&only);
+  CPU_SET(processor, &only);
+  sched_setaffinity(0, sizeof only, &only);
+}
+
 void play_on_the_image(Played& run, rig::ImageTarget& target) {
   try {
     run.result = runner::play(run.transcript, target);
@@ -78,8 +102,9 @@ TEST(Conformance, TheImagesOfTheManualsModelsPassEveryTranscriptThatNamesThem) {
   std::vector<Played> runs = all_runs();
   std::atomic<std::size_t> next{0};
   std::vector<std::thread> players;
-  for (unsigned i = 0; i < std::max(1U, std::thread::hardware_concurrency()); ++i) {
-    players.emplace_back([&] {
+  for (const int processor : processors()) {
+    players.emplace_back([&, processor] {
+      stay_on(processor);
       rig::ImageTarget target;
       for (std::size_t mine = next++; mine < runs.size(); mine = next++) {
         play_on_the_image(runs[mine], target);

@@ -56,7 +56,7 @@ constexpr std::uint32_t kUartFlags = 0x4000'C018;
 
 constexpr std::uint32_t kTickCounter = 0xE000'E018;
 /// From the alarm to its interrupt's end: the guard's time, and 40 instructions before and behind.
-constexpr nanoseconds kInterruptTakes{5640};
+constexpr nanoseconds kInterruptTakes{10'660};
 constexpr nanoseconds kAtLeast{2000};
 
 /// The interrupt.
@@ -92,7 +92,7 @@ constexpr std::array<std::uint16_t, 72> kHandler{
     0x6002,          //         str r2, [r0]            of the other level
     0xF8C1, 0xC000,  //         str r12, [r1]           and an input again
     0x4A1A,          //         ldr r2, =alarm
-    0xE02A,          //         b arm
+    0xE02B,          //         b arm
     0x4A1A,          // stop:   ldr r2, =guard
     0x2000,          //         movs r0, #0
     0x60D0,          //         str r0, [r2, #0x0C]     it stops being half a tick behind,
@@ -100,8 +100,9 @@ constexpr std::array<std::uint16_t, 72> kHandler{
     0x6050,          //         str r0, [r2, #0x04]
     0x6250,          //         str r0, [r2, #0x24]
     0x21FA,          //         movs r1, #250
+    0x0049,          //         lsls r1, r1, #1
     0x6291,          //         str r1, [r2, #0x28]
-    0x60D0,          //         str r0, [r2, #0x0C]     and runs out once, in 5 us
+    0x60D0,          //         str r0, [r2, #0x0C]     and runs out once, in 10 us
     0x4916,          //         ldr r1, =UART's flags
     0x6809,          //         ldr r1, [r1]
     0x4816,          //         ldr r0, =driver enable
@@ -118,7 +119,7 @@ constexpr std::array<std::uint16_t, 72> kHandler{
     0xD0F8,          //         beq again               until the guard has run out
     0x2002,          //         movs r0, #2
     0x6050,          //         str r0, [r2, #0x04]     it goes again and again
-    0x4910,          //         ldr r1, =SysTick's counter
+    0x490F,          //         ldr r1, =SysTick's counter
     0x6808,          //         ldr r0, [r1]
     0x6158,          //         str r0, [r3, #20]
     0xF246, 0x11A8,  //         movw r1, #25000
@@ -130,24 +131,28 @@ constexpr std::array<std::uint16_t, 72> kHandler{
     0x60D0,          //         str r0, [r2, #0x0C]     from half a tick behind the next one or the last
     0x0049,          //         lsls r1, r1, #1
     0x6291,          //         str r1, [r2, #0x28]     each tick
-    0x4A04,          //         ldr r2, =alarm
+    0x4A03,          //         ldr r2, =alarm
     0x6818,          // arm:    ldr r0, [r3]
     0x6290,          //         str r0, [r2, #0x28]
     0x2001,          //         movs r0, #1
     0x60D0,          //         str r0, [r2, #0x0C]
     0x4770,          //         bx lr
-    0x0000,          //         literals lie at words
 };
 
-/// Behind the code, in the order in which it reads them.
-std::array<std::uint32_t, 7> literals() {
-  return {kOrders,
-          kAlarm,
-          kGuard,
-          kUartFlags,
-          data_address(board::kDriverEnable),
-          data_address(board::kStatusLed),
-          kTickCounter};
+/// The interrupt's code and its literals.
+std::vector<std::uint8_t> code() {
+  std::vector<std::uint8_t> bytes;
+  for (const std::uint16_t instruction : kHandler) {
+    bytes.push_back(static_cast<std::uint8_t>(instruction));
+    bytes.push_back(static_cast<std::uint8_t>(instruction >> 8U));
+  }
+  for (const std::uint32_t literal : {kOrders, kAlarm, kGuard, kUartFlags, data_address(board::kDriverEnable),
+                                      data_address(board::kStatusLed), kTickCounter}) {
+    for (unsigned shift = 0; shift < 32; shift += 8) {
+      bytes.push_back(static_cast<std::uint8_t>(literal >> shift));
+    }
+  }
+  return bytes;
 }
 
 /// GDB's packet that writes these words to RAM.
@@ -182,14 +187,7 @@ void AlarmClock::set_up() {
   const std::vector<std::uint8_t> vectors = bus.read(0, kVectors * 4);
   bus.write(kTable, vectors);
   write(kTable + (kExceptions + kAlarmInterrupt) * 4, kCode | kThumb);
-  std::uint32_t at = kCode;
-  for (std::size_t i = 0; i < kHandler.size(); i += 2, at += 4) {
-    write(at, kHandler[i] | std::uint32_t{kHandler[i + 1]} << 16U);
-  }
-  for (const std::uint32_t literal : literals()) {
-    write(at, literal);
-    at += 4;
-  }
+  bus.write(kCode, code());
   write(kVectorTableOffset, kTable);
   for (std::uint32_t timer = kTimers; timer < kTimers + kTimerCount * kTimerSize; timer += kTimerSize) {
     // The emulated timers know no reset.
@@ -224,9 +222,9 @@ void AlarmClock::run_for(nanoseconds time) {
 }
 
 nanoseconds AlarmClock::make_edges(Pin pin, std::uint32_t edges) {
-  constexpr nanoseconds kEach{10'000};
+  constexpr nanoseconds kEach{4'000};
   constexpr std::uint32_t kDirection = 0x400;
-  constexpr std::uint32_t kAtOnce = 200'000;  // 2 s
+  constexpr std::uint32_t kAtOnce = 200'000;  // a second, which no watchdog minds
   const nanoseconds time = kEach * (std::int64_t{edges} + 1);
   while (edges != 0) {
     const std::uint32_t now = edges < kAtOnce ? edges : kAtOnce;

@@ -11,12 +11,14 @@
 namespace ex9000::rig {
 
 /// Of a machine that has a time of its own (Emulator::Time::Own). What happens in it depends on nothing but
-/// what is done to it while it stands still, to the nanosecond.
+/// what is done to it while it stands still. Only where the emulator lets time pass for a processor that has
+/// just fallen asleep, it may at times, by the host's doing, forget the last instructions: some tens of
+/// nanoseconds in one transcript of a hundred.
 ///
 /// GPTM2, which no image uses, interrupts when the time is over, and the interrupt's code, in RAM that no
 /// image uses, makes the emulator stop. The image itself and its vectors stay as they are; a copy of these,
 /// with one more entry, takes their place. Its interrupt waits for others and holds them up, as the image's
-/// own do, for 5 us each time the machine stands still; on the stack it takes as much as they.
+/// own do, for 10 us each time the machine stands still; on the stack it takes as much as they.
 ///
 /// Whatever is not as it should be throws std::runtime_error, also where the image resets itself.
 class AlarmClock {
@@ -25,9 +27,9 @@ class AlarmClock {
 
   /// Behind every reset, before the first instruction.
   void set_up();
-  /// Runs the machine. Less than 8 us takes 8 us.
+  /// Runs the machine. Less than 13 us takes 13 us.
   void run_for(std::chrono::nanoseconds time);
-  /// Gives an input `edges` edges, one about each 10 us, and runs the machine meanwhile. Returns how long.
+  /// Gives an input `edges` edges, one about each 4 us, and runs the machine meanwhile. Returns how long.
   std::chrono::nanoseconds make_edges(Pin pin, std::uint32_t edges);
 
   // --- how it was when it came to a stop ---
@@ -43,7 +45,7 @@ class AlarmClock {
 
   Emulator& machine_;
   bool at_first_ = true;       ///< no alarm has gone off yet
-  bool stopped_once_ = false;  ///< and never since power-on
+  bool stopped_once_ = false;  ///< and is waiting to be told to go on
   std::uint32_t seen_ = 0;     ///< what the interrupt's code has told
 };
 

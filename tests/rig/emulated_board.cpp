@@ -35,22 +35,24 @@ void EmulatedBoard::renew(const Settings* settings) {
   levels_ = {};
   init_asserted_ = false;
   store(settings);
-  if (!powered()) {
-    supply(true);
-    return;
-  }
-  fill_ram();
-  pull_reset();
+  supply(true);
 }
 
 void EmulatedBoard::supply(bool on) {
+  powered_ = on;
   if (!on) {
-    emulator_.reset();
+    if (time_ == Emulator::Time::Host) {
+      emulator_.reset();
+    }
     return;
   }
-  emulator_.emplace(image_of(model_), directory_ / "memory", time_);
+  if (!emulator_) {
+    emulator_.emplace(image_of(model_), directory_ / "memory", time_);
+    give_levels();
+  } else {
+    pull_reset();
+  }
   fill_ram();
-  give_levels();
 }
 
 /// What comes up in a real one is nothing an image may count on.

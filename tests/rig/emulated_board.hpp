@@ -20,7 +20,7 @@ class EmulatedBoard {
   EmulatedBoard& operator=(const EmulatedBoard&) = delete;
 
   [[nodiscard]] const Model& model() const { return model_; }
-  [[nodiscard]] bool powered() const { return emulator_.has_value(); }
+  [[nodiscard]] bool powered() const { return powered_; }
   /// INIT* tied to GND, or released.
   void set_init(bool asserted);
 
@@ -41,14 +41,15 @@ class EmulatedBoard {
   EmulatedBoard(const Model& model, const Settings* settings, Emulator::Time time);
   ~EmulatedBoard() = default;
 
-  /// When it comes on there is a new emulator, halted, to which nothing but the EEPROM is left of what was;
-  /// off is as sudden as SIGKILL.
+  /// When it comes on the machine is halted before its first instruction, and nothing but the EEPROM is left
+  /// of what was. Off is as sudden as SIGKILL, and is that in the host's time. With a time of its own, where
+  /// making an emulator would take most of it, the same one comes on again: halted and reset, by which it
+  /// reads the EEPROM's file again, with noise in RAM.
   void supply(bool on);
   /// By the reset pin, while halted; it stays halted.
   void pull_reset();
-  /// While halted: a board of which nothing is left of what was, with INIT* released, inputs off, the EEPROM
-  /// as the constructor has it, and supply just on. It saves making an emulator: the EEPROM's file is read
-  /// again at a reset, and RAM is filled with what no image has left there.
+  /// Another board with supply just on: INIT* released, inputs off, the EEPROM as the constructor has it. Not
+  /// in the host's time.
   void renew(const Settings* settings);
   /// Level of an input channel that the model has.
   void set_level(unsigned channel, bool level);
@@ -63,6 +64,7 @@ class EmulatedBoard {
   Emulator::Time time_;
   system::Directory directory_;
   std::optional<Emulator> emulator_;
+  bool powered_ = false;
   bool init_asserted_ = false;
   std::array<bool, kMaxInputs> levels_{};
 };

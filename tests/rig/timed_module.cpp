@@ -12,11 +12,7 @@ using std::chrono::milliseconds;
 using std::chrono::nanoseconds;
 
 void TimedModule::begin_anew(const Settings* settings) {
-  const bool was_on = powered();
   renew(settings);
-  if (!was_on) {
-    clock_.emplace(emulator());
-  }
   now_ = nanoseconds(0);
   come_up();
 }
@@ -26,10 +22,8 @@ void TimedModule::power(bool on) {
     return;
   }
   lamp_.forget();
-  clock_.reset();
   supply(on);
   if (on) {
-    clock_.emplace(emulator());
     come_up();
   }
 }
@@ -43,6 +37,9 @@ void TimedModule::reset() {
 
 void TimedModule::come_up() {
   lamp_.forget();
+  if (!clock_) {
+    clock_.emplace(emulator());
+  }
   clock_->set_up();
 }
 

@@ -13,7 +13,7 @@
 
 namespace ex9000::rig {
 
-/// Stands still between calls. The same calls have the same effects, whatever the host does.
+/// Stands still between calls. The same calls have the same effects, whatever the host does; see AlarmClock.
 class TimedModule : public EmulatedBoard {
  public:
   using Bytes = std::vector<std::uint8_t>;
@@ -28,7 +28,7 @@ class TimedModule : public EmulatedBoard {
   void reset();
   /// Level of an input channel; 100 us pass. Channels the model lacks may be set and do nothing.
   void set_input(unsigned channel, bool level);
-  /// `count` full pulses of 20 us from the present level and back.
+  /// `count` full pulses of 8 us from the present level and back.
   void pulse_input(unsigned channel, std::uint32_t count);
 
   /// Time passes, for the image where there is power.
@@ -52,7 +52,7 @@ class TimedModule : public EmulatedBoard {
   void put(std::uint8_t byte);
   void hold_memory(bool hold);
 
-  std::optional<AlarmClock> clock_;  ///< while there is power
+  std::optional<AlarmClock> clock_;  ///< from the first power-on
   std::chrono::nanoseconds now_{0};
   LampWatch lamp_;
 };
