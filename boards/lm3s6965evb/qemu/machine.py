@@ -97,13 +97,18 @@ class Machine:
         return self._received_from(self.line)
 
     @property
-    def has_more_to_say(self) -> bool:
-        """Then `go_on` in a moment."""
-        return bool(self._unsaid)
+    def go_on_within(self) -> float:
+        """Seconds until `go_on` is due."""
+        return 0.001 if self._unsaid else 0.1
 
     def go_on(self) -> None:
-        """What the module does not take is lost, as on a wire. Does not wait."""
-        if self._unsaid and not self._word_at(_DRIVER_ENABLE):
+        """What the module does not take is lost, as on a wire. Does not wait.
+
+        To be called even where there is nothing to say: of a module that hangs QEMU may forget the time, and so the
+        watchdog that is to reset it, unless somebody asks for something.
+        """
+        speaking = self._word_at(_DRIVER_ENABLE)
+        if self._unsaid and not speaking:
             with contextlib.suppress(BlockingIOError, BrokenPipeError):
                 self.line.send(self._unsaid)
             self._unsaid = b""

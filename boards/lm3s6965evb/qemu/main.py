@@ -80,7 +80,7 @@ def _carry_bytes(machine: Machine, terminal: PseudoTerminal, told_to_end: int) -
         watched = [told_to_end, machine.events, terminal.visits, machine.line]
         if terminal.visited():
             watched.append(terminal.master)
-        ready, _, _ = select.select(watched, [], [], 0.001 if machine.has_more_to_say else None)
+        ready, _, _ = select.select(watched, [], [], machine.go_on_within)
         if told_to_end in ready:
             return
         if terminal.visits in ready:
