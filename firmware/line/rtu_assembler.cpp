@@ -43,7 +43,6 @@ Verdict RtuAssembler::byte(FrameQueue& queue, std::uint8_t byte, ByteStatus stat
     spoiled_ = 0;
     announced_ = 0;
     first_ = byte;
-    frame.offset = 0;
   } else if (first_ == kTurnAround) {
     behind_first_.add(byte);
   }
@@ -60,6 +59,7 @@ Verdict RtuAssembler::byte(FrameQueue& queue, std::uint8_t byte, ByteStatus stat
   received_ = received + 1;
   if (whole.value() == 0 && first_ == own_address_.load()) {
     // This may have been the last byte. Whether it was is for `conclude`.
+    frame.offset = 0;
     frame.size = static_cast<std::uint8_t>(received + 1 - kCrcBytes);
     announced_ = received + 1;
     queue.announce_in_interrupt(frame);
@@ -78,8 +78,10 @@ void RtuAssembler::spoil(ByteStatus status) {
 /// one behind a turn-around 00, which does not spoil what follows.
 Verdict RtuAssembler::behind_a_gap(FrameQueue& queue, Duration since_last) {
   Verdict before = Verdict::Open;
-  if (!(since_last < timing_.rtu_separate) && lapsed_ == received_) {
-    before = lose();
+  if (lapsed_ == received_) {  // and the CRC was not right then
+    if (!(since_last < timing_.rtu_separate)) {
+      return lose();
+    }
   } else if (!(since_last < timing_.rtu_silence)) {
     before = late(queue, since_last);
   }
