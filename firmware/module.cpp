@@ -184,8 +184,10 @@ Duration Module::silence_left(Time now) const {
   if (!ascii()) {
     return {};
   }
-  const Duration passed = now.since(receiver_.queue().completed().received);
-  return passed < turn_around_ ? Duration(turn_around_.microseconds() - passed.microseconds()) : Duration();
+  // Not "how long since": it may have come in after the main loop took its `now`.
+  Deadline over;
+  over.set(receiver_.queue().completed().received + turn_around_);
+  return over.remaining(now);
 }
 
 /// Changes nothing but the exchange.
