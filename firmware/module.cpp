@@ -165,6 +165,8 @@ void Module::attend(Time now) {
     if (number != judged_) {
       judged_ = number;
       judge(queue.coming(), false);
+      // The silence ended meanwhile: what was read may be the next one's, and the tallies may have this one.
+      judgement_stands_ = !queue.has_frame();
     }
     return;
   }

@@ -436,6 +436,18 @@ TEST(Interleaving, AFrameThatEndsWhileTheMainLoopTurnsIsNotAnsweredTooEarly) {
   }
 }
 
+TEST(Interleaving, ARequestForTheBusMessagesCountsItselfOnceWhereverItsSilenceEnds) {
+  const std::string request = rtu({1, 0x08, 0, 0x0B, 0, 0});
+  const std::string reply = rtu({1, 0x08, 0, 0x0B, 0, 1});
+  const Scenario scenario = modbus(
+      "a silence while bus messages are read", [=](Bench& bench) { bench.asks(request, reply); }, {silence},
+      {{reply}}, outputs_and_name);
+  const int points = static_cast<int>(play(scenario, {kBehindTheTurn}).points);
+  for (int point = kBeforeTheTurn; point < points; ++point) {
+    EXPECT_NO_THROW(play(scenario, {point})) << point;
+  }
+}
+
 // --- whether it would be found ---
 
 TEST(Points, FindACountThatIsReadTwice) {
