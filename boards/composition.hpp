@@ -198,7 +198,7 @@ void start() {
   SilenceTimer::start();
   LineEndTimer::start();
   board.clock.start(milliseconds(1));
-  device.start();
+  device.start(LineTiming::told_in_the_stop_bit);
   Interrupts::enable(served_numbers(), kLineInterrupt);
 }
 

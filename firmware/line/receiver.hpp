@@ -30,9 +30,9 @@ class Receiver {
 
   // --- interrupts, which must not interrupt each other ---
 
-  /// A byte was received; `now` is the end of its stop bit. Returns after how long a silence `on_silence` is
-  /// to be called, counted from now and restarted by every byte; zero: as it was. Behind a DCON frame that is
-  /// the turn-around.
+  /// A byte was received; `now` is the end of its stop bit, or earlier by what the timing allows for. Returns
+  /// after how long a silence `on_silence` is to be called, counted from now and restarted by every byte;
+  /// zero: as it was. Behind a DCON frame that is the turn-around.
   Duration on_byte(std::uint8_t byte, ByteStatus status, Time now);
 
   /// The silence has come. Returns as `on_byte` does.

@@ -57,7 +57,7 @@ Verdict RtuAssembler::byte(FrameQueue& queue, std::uint8_t byte, ByteStatus stat
   }
   frame.storage[received] = byte;
   received_ = received + 1;
-  if (whole.value() == 0 && first_ == own_address_.load()) {
+  if (whole.value() == 0 && first_ == own_address_.load() && beyond_shortest(received + 1) <= kMostBeyond) {
     // This may have been the last byte. Whether it was is for `conclude`.
     frame.offset = 0;
     frame.size = static_cast<std::uint8_t>(received + 1 - kCrcBytes);

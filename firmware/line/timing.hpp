@@ -36,7 +36,17 @@ struct LineTiming {
     return timing;
   }
 
-  /// Likewise, but a gap of more than T1.5 spoils a frame, as the same clause has it.
+  /// Likewise, for a UART that tells of a byte when it has seen the middle of its stop bit, half a bit before
+  /// that is over.
+  static constexpr LineTiming told_in_the_stop_bit(std::uint32_t baud) {
+    LineTiming timing = at(baud);
+    const Duration half_bit(microseconds(1, baud) + 1U);
+    timing.dcon_turn_around = timing.dcon_turn_around + half_bit;
+    timing.rtu_silence = timing.rtu_silence + half_bit;
+    return timing;
+  }
+
+  /// As `at`, but a gap of more than T1.5 spoils a frame, as the same clause has it.
   static constexpr LineTiming strictly_at(std::uint32_t baud) {
     LineTiming timing = at(baud);
     timing.rtu_slack = Duration(silence(3, baud, 750) + microseconds(2 * 10, baud) + kRoundUp);

@@ -197,14 +197,21 @@ class Memory {
   void start_read(std::uint16_t address, MutableBytes destination, Time /*now*/) {
     Points::pass();
     std::copy_n(contents.begin() + address, destination.size, destination.data);
+    source_ = {};
     begin();
   }
+  /// What is to be written is looked at from `go_on` on.
   void start_write(std::uint16_t address, Bytes source, Time /*now*/) {
     Points::pass();
-    std::copy(source.begin(), source.end(), contents.begin() + address);
+    address_ = address;
+    source_ = source;
     begin();
   }
-  static bool go_on(Time /*now*/) { return false; }
+  bool go_on(Time /*now*/) {
+    std::copy(source_.begin(), source_.end(), contents.begin() + address_);
+    source_ = {};
+    return false;
+  }
   [[nodiscard]] static bool busy() {
     Points::pass();
     return chip->memory_due != Chip::kNever;
@@ -214,6 +221,9 @@ class Memory {
   std::vector<std::uint8_t> contents = std::vector<std::uint8_t>(kSize, 0xFF);
 
  private:
+  std::uint16_t address_ = 0;
+  Bytes source_;
+
   static void begin() {
     chip->memory_due = chip->now + Chip::kMemoryJob;
     Points::pass();

@@ -427,9 +427,9 @@ TEST(Interleaving, OneMoreFrameIsKeptFromWhereOneIsJudgedUntilTheDriverIsOn) {
 }
 
 TEST(Interleaving, AFrameThatEndsWhileTheMainLoopTurnsIsNotAnsweredTooEarly) {
-  const Scenario scenario = dcon(
-      "a CR behind the clock", nothing,
-      {[](Bench& bench) { bench.asks("@0105\r", ">\r"); }, silence}, {{">\r"}}, outputs_and_name);
+  const Scenario scenario =
+      dcon("a CR behind the clock", nothing, {[](Bench& bench) { bench.asks("@0105\r", ">\r"); }, silence},
+           {{">\r"}}, outputs_and_name);
   const int points = static_cast<int>(play(scenario, {kBehindTheTurn, kBehindTheTurn}).points);
   for (int point = kBeforeTheTurn; point < points; ++point) {
     EXPECT_NO_THROW(play(scenario, {point, kBehindTheTurn})) << point;

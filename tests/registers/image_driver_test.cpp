@@ -6,6 +6,7 @@
 #include "firmware/model/model.hpp"
 #include "firmware/settings/settings.hpp"
 #include "sim/module.hpp"
+#include "tests/modbus_frame.hpp"
 #include "tests/registers/board_bench.hpp"
 #include "tests/registers/images_under_test.hpp"
 
@@ -165,6 +166,37 @@ TEST_P(OnBoard, TheDriverIsOffUnlessItReplies) {
   EXPECT_EQ(bench.line.bits_lost, 0U);
 }
 
+TEST_P(OnBoard, RepliesAtOnceWhenTheTurnAroundIsOver) {
+  constexpr microseconds kAtOnce{100};  // not with the next tick
+  power_up();
+  for (int i = 0; i < 20; ++i) {
+    bench.run_for(milliseconds(20) + microseconds(51 * i));
+    bench.line.drives.clear();
+    EXPECT_EQ(bench.ask("$01M"), "!019055");
+    ASSERT_EQ(bench.line.drives.size(), 1U);
+    const Instant silence = bench.line.drives[0].from - bench.line.sent();
+    EXPECT_GE(silence, kBitsACharacter * bench.line.bit_time());
+    EXPECT_LE(silence, kBitsACharacter * bench.line.bit_time() + kAtOnce);
+  }
+}
+
+class ModbusOnBoard : public OnBoard {};
+
+TEST_P(ModbusOnBoard, RepliesAtOnceWhenT35IsOver) {
+  constexpr microseconds kAtOnce{100};
+  const Instant t35 = 77 * bench.line.bit_time() / 2;  // 3.5 characters of 11 bits
+  power_up();
+  for (int i = 0; i < 20; ++i) {
+    bench.run_for(milliseconds(20) + microseconds(51 * i));
+    bench.line.drives.clear();
+    EXPECT_EQ(bench.exchange(with_crc({1, 1, 0, 0, 0, 16})), with_crc({1, 1, 2, 0, 0}));
+    ASSERT_EQ(bench.line.drives.size(), 1U);
+    const Instant silence = bench.line.drives[0].from - bench.line.sent();
+    EXPECT_GE(silence, t35);
+    EXPECT_LE(silence, t35 + kAtOnce);
+  }
+}
+
 TEST_P(OnBoard, TakesABreakBetweenRequestsForNoiseAndDropsTheRequestThatHasOneInside) {
   constexpr Character kBreak{0, true, 30};
   power_up();
@@ -258,6 +290,10 @@ TEST_P(OnBoard, TouchesNothingWhileInterruptsAreHeld) {
 const auto kImages =
     testing::Values(ImageName{"lm3s6965evb", "EX9055D"}, ImageName{"ek-tm4c123gxl", "EX9055D"});
 INSTANTIATE_TEST_SUITE_P(Images, OnBoard, kImages, name_of);
+INSTANTIATE_TEST_SUITE_P(Images, ModbusOnBoard,
+                         testing::Values(ImageName{"lm3s6965evb", "EX9043D-M"},
+                                         ImageName{"ek-tm4c123gxl", "EX9043D-M"}),
+                         name_of);
 INSTANTIATE_TEST_SUITE_P(Images, OnBoardWhoseI2cWaits, kImages, name_of);
 
 }  // namespace

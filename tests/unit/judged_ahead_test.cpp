@@ -122,6 +122,27 @@ TEST(JudgedAhead, AFrameThatIsSpoiledBehindItsCrcIsNotActedUpon) {
   EXPECT_EQ(bench.heard_text(), "");
   EXPECT_EQ(bench.module().outputs(), 0U);
   EXPECT_EQ(bench.ask(kReadOutputs), (Bytes{0x01, 0x01, 0x01, 0x00}));
+  EXPECT_EQ(bench.module().outputs(), 0U) << "nor is it with the next one";
+}
+
+TEST(JudgedAhead, TheInitSwitchCountsAsItStandsWhereTheSilenceEnds) {
+  // At 1200 baud the turn-around takes 8.3 ms. The switch is moved so that it has settled, after 10 ms, in
+  // its middle.
+  constexpr microseconds kCharacter{10'000'000 / 1200};
+  constexpr milliseconds kMovedBeforeTheEnd{6};
+  const std::string command = "%0101400400\r";  // another baud rate: only with INIT* asserted
+  for (const bool asserted : {false, true}) {
+    ModuleBench bench("EX9042D,baud=1200");
+    bench.module().set_init(asserted);
+    bench.run(kLong);
+    const VirtualTime ends = bench.now() + static_cast<std::int64_t>(command.size()) * kCharacter;
+    bench.line().master().send(reinterpret_cast<const std::uint8_t*>(command.data()), command.size());
+    bench.line().bus().run_until(ends - kMovedBeforeTheEnd);
+    bench.module().set_init(!asserted);
+    bench.forget_heard();
+    bench.line().bus().run_until(ends + milliseconds(200));
+    EXPECT_EQ(bench.heard_text(), asserted ? "?01\r" : "!01\r");
+  }
 }
 
 TEST(JudgedAhead, ARequestCountsItselfAmongTheBusMessages) {

@@ -414,6 +414,25 @@ TEST_F(RtuAssemblerTest, AnOpenFrameCanBeForgotten) {
   expect_next_frame_accepted();
 }
 
+TEST_F(RtuAssemblerTest, AFrameThatIsWholeButForItsSilenceIsJudgedAllTheSame) {
+  wire_.bytes(kChannel0On);
+  EXPECT_EQ(assembler_.cut_off(queue_), Verdict::Accepted);
+  ASSERT_TRUE(queue_.has_frame());
+  EXPECT_EQ(queue_.completed().size, kChannel0On.size() - 2);
+  queue_.drop_in_main_loop();
+  wire_.rest();
+  EXPECT_TRUE(wire_.verdicts.empty());
+  expect_next_frame_accepted();
+}
+
+TEST_F(RtuAssemblerTest, WhatCannotBeAFrameIsNotAnnouncedWhateverItsCrcSays) {
+  const std::uint32_t before = queue_.announced();
+  wire_.frame(with_crc({kOwn}));
+  wire_.frame(frame_of(257));
+  wire_.frame(frame_of(258));
+  EXPECT_EQ(queue_.announced(), before);
+}
+
 TEST_F(RtuAssemblerTest, TheNextFrameMayFollowAForgottenOneAtOnce) {
   wire_.byte(0x01, ByteStatus::FramingError);
   wire_.byte(0x05, ByteStatus::Overrun);
