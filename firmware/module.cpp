@@ -164,9 +164,13 @@ void Module::attend(Time now) {
     const std::uint32_t number = queue.announced();
     if (number != judged_) {
       judged_ = number;
-      judge(queue.coming(), false);
-      // The silence ended meanwhile: what was read may be the next one's, and the tallies may have this one.
-      judgement_stands_ = !queue.has_frame();
+      judgement_stands_ = false;
+      if (queue.coming().is_possible()) {
+        judge(queue.coming(), false);
+        // Where the silence ended meanwhile, what was read may be the next one's, and the tallies may have
+        // this one.
+        judgement_stands_ = !queue.has_frame();
+      }
     }
     return;
   }

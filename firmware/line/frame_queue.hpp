@@ -24,6 +24,13 @@ struct Frame {
   std::array<std::uint8_t, kLongestFrame + 1> storage{};
 
   [[nodiscard]] Bytes bytes() const { return {storage.data() + offset, size}; }
+
+  /// Neither too short nor too long: what is only announced may be.
+  [[nodiscard]] bool is_possible() const {
+    constexpr std::size_t kShortest = 2;
+    constexpr std::size_t kLongest = kBuiltModbus ? kLongestFrame - 2 : kLongestFrame;
+    return size - kShortest <= kLongest - kShortest;
+  }
 };
 
 /// One frame waits while the next is being assembled: while a command is executed or stored, one more is

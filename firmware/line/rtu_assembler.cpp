@@ -40,6 +40,7 @@ Verdict RtuAssembler::byte(FrameQueue& queue, std::uint8_t byte, ByteStatus stat
   Frame& frame = queue.assembling();
   if (received == 0) {
     whole = behind_first_ = Crc16();
+    gap_ = strict() ? timing_.rtu_slack + Duration(1) : timing_.rtu_silence;
     spoiled_ = 0;
     announced_ = 0;
     first_ = byte;
@@ -57,7 +58,7 @@ Verdict RtuAssembler::byte(FrameQueue& queue, std::uint8_t byte, ByteStatus stat
   }
   frame.storage[received] = byte;
   received_ = received + 1;
-  if (whole.value() == 0 && first_ == own_address_.load() && beyond_shortest(received + 1) <= kMostBeyond) {
+  if (whole.value() == 0 && first_ == own_address_.load()) {
     // This may have been the last byte. Whether it was is for `conclude`.
     frame.offset = 0;
     frame.size = static_cast<std::uint8_t>(received + 1 - kCrcBytes);
@@ -78,14 +79,13 @@ void RtuAssembler::spoil(ByteStatus status) {
 /// one behind a turn-around 00, which does not spoil what follows.
 Verdict RtuAssembler::behind_a_gap(FrameQueue& queue, Duration since_last) {
   Verdict before = Verdict::Open;
-  if (lapsed_ == received_) {  // and the CRC was not right then
-    if (!(since_last < timing_.rtu_separate)) {
-      return lose();
-    }
-  } else if (!(since_last < timing_.rtu_silence)) {
+  if (lapsed_ == received_ && !(since_last < timing_.rtu_separate)) {
+    return lose();  // the CRC was not right then
+  }
+  if (!(since_last < timing_.rtu_silence)) {
     before = late(queue, since_last);
   }
-  if (received_ != 0 && timing_.rtu_slack < since_last) {
+  if (kBuiltStrictGaps && received_ != 0 && timing_.rtu_slack < since_last) {
     spoiled_ |= received_ == 1 ? kFirst : kRest;
   }
   return before;
@@ -111,6 +111,9 @@ Verdict RtuAssembler::lapse() {
   }
   lapsed_ = received_;
   loss_ = why_lost();
+  if (!strict()) {
+    gap_ = timing_.rtu_separate;  // a byte that comes before that goes on with the frame
+  }
   return Verdict::Open;
 }
 

@@ -8,6 +8,7 @@
 #include "firmware/line/frame_queue.hpp"
 #include "firmware/line/timing.hpp"
 #include "firmware/line/verdict.hpp"
+#include "firmware/model/built.hpp"
 #include "firmware/time.hpp"
 
 namespace ex9000 {
@@ -17,10 +18,7 @@ namespace ex9000 {
 /// is there at once.
 class RtuAssembler {
  public:
-  void use(const LineTiming& timing) {
-    timing_ = timing;
-    gap_ = timing.rtu_slack < timing.rtu_silence ? timing.rtu_slack + Duration(1) : timing.rtu_silence;
-  }
+  void use(const LineTiming& timing) { timing_ = timing; }
   [[nodiscard]] const LineTiming& timing() const { return timing_; }
   /// Main loop, also while bytes come in: the module's address, from the next frame on that ends.
   void answer_to(std::uint8_t address) { own_address_.store_in_main_loop(address); }
@@ -54,6 +52,7 @@ class RtuAssembler {
     received_ = 0;
     lapsed_ = 0;
   }
+  [[nodiscard]] bool strict() const { return kBuiltStrictGaps && timing_.rtu_slack < timing_.rtu_silence; }
   void spoil(ByteStatus status);
   Verdict behind_a_gap(FrameQueue& queue, Duration since_last);
   Verdict late(FrameQueue& queue, Duration since_last);
@@ -71,7 +70,7 @@ class RtuAssembler {
 
   WrittenByMainLoop<std::uint32_t> own_address_;
   LineTiming timing_{};
-  Duration gap_;                  ///< between two bytes, from which on it means something
+  Duration gap_;                  ///< between two bytes of the open frame, from which on it means something
   std::uint8_t spoiled_ = 0;      ///< what kinds of bytes have: kFirst and so on
   std::uint8_t first_ = 0;        ///< the first byte
   Verdict loss_ = Verdict::Open;  ///< what the frame is if nothing comes any more, from when T3.5 had passed

@@ -10,7 +10,8 @@
 
 namespace ex9000 {
 
-// kBuiltInputs: the most inputs that one of them has.
+// kBuiltInputs: the most inputs that one of them has. kBuiltStrictGaps: whether gaps may spoil a frame at all
+// (LineTiming::strictly_at).
 
 #ifdef EX9000_MODEL
 
@@ -26,6 +27,7 @@ class ChosenModel {
 
 constexpr bool some_model_meets(Needs needs) { return meets(kOnlyModel, needs); }
 constexpr unsigned kBuiltInputs = kOnlyModel.inputs;
+constexpr bool kBuiltStrictGaps = false;
 
 #else
 
@@ -41,6 +43,7 @@ class ChosenModel {
 
 constexpr bool some_model_meets(Needs /*needs*/) { return true; }
 constexpr unsigned kBuiltInputs = kMaxInputs;
+constexpr bool kBuiltStrictGaps = true;
 
 #endif
 

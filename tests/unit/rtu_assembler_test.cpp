@@ -425,12 +425,21 @@ TEST_F(RtuAssemblerTest, AFrameThatIsWholeButForItsSilenceIsJudgedAllTheSame) {
   expect_next_frame_accepted();
 }
 
-TEST_F(RtuAssemblerTest, WhatCannotBeAFrameIsNotAnnouncedWhateverItsCrcSays) {
-  const std::uint32_t before = queue_.announced();
-  wire_.frame(with_crc({kOwn}));
-  wire_.frame(frame_of(257));
-  wire_.frame(frame_of(258));
-  EXPECT_EQ(queue_.announced(), before);
+TEST_F(RtuAssemblerTest, WhatCannotBeAFrameIsNotPossibleWhateverItsCrcSays) {
+  wire_.collect = false;
+  for (const FrameBytes& bytes : {with_crc({kOwn}), frame_of(257)}) {
+    wire_.bytes(bytes);
+    EXPECT_FALSE(queue_.coming().is_possible()) << bytes.size();
+    wire_.rest();
+    EXPECT_FALSE(queue_.has_frame());
+  }
+  for (const FrameBytes& bytes : {frame_of(4), frame_of(256)}) {
+    wire_.bytes(bytes);
+    EXPECT_TRUE(queue_.coming().is_possible()) << bytes.size();
+    wire_.rest();
+    EXPECT_TRUE(queue_.has_frame());
+    queue_.drop_in_main_loop();
+  }
 }
 
 TEST_F(RtuAssemblerTest, TheNextFrameMayFollowAForgottenOneAtOnce) {
