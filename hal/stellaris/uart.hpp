@@ -85,9 +85,9 @@ class Uart {
       EndTimer::restart(bit_);
       return false;
     }
-    Gpio(driver_enable.port).write(driver_enable.mask(), 0);
     take_echo();
     kInterruptMask.write(kReceived | kTransmitted);
+    Gpio(driver_enable.port).write(driver_enable.mask(), 0);  // last: who sees it off may speak
     ended_.store_in_interrupt(begun_.load());
     return true;
   }
