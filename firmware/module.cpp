@@ -165,8 +165,9 @@ void Module::attend(Time now) {
     if (number != judged_) {
       judged_ = number;
       judgement_stands_ = false;
-      if (queue.coming().is_possible()) {
-        judge(queue.coming(), false);
+      const Bytes coming = queue.coming().bytes();
+      if (Frame::is_size(coming.size)) {
+        judge(coming, false);
         // Where the silence ended meanwhile, what was read may be the next one's, and the tallies may have
         // this one.
         judgement_stands_ = !queue.has_frame();
@@ -176,7 +177,7 @@ void Module::attend(Time now) {
   }
   if (queue.waiting_number() != judged_ || !judgement_stands_) {
     judged_ = queue.waiting_number();
-    judge(queue.completed(), true);
+    judge(queue.completed().bytes(), true);
   }
   if (silence_left(now) == Duration()) {
     receiver_.queue().drop_in_main_loop();
@@ -197,10 +198,10 @@ Duration Module::silence_left(Time now) const {
 }
 
 /// Changes nothing but the exchange.
-void Module::judge(const Frame& frame, bool complete) {
+void Module::judge(Bytes frame, bool complete) {
   judgement_stands_ = true;
   expired_since_judged_ = false;
-  exchange_.frame = frame.bytes();
+  exchange_.frame = frame;
   exchange_.tallied = complete;
   exchange_.outcome.clear();
   exchange_.reply.clear();

@@ -42,6 +42,7 @@ class Module {
   Duration on_byte(std::uint8_t byte, ByteStatus status, Time now) {
     return receiver_.on_byte(byte, status, now);
   }
+  /// See Receiver.
   Duration on_silence() { return receiver_.on_silence(); }
   void on_spoken() { receiver_.on_spoken(); }
   /// See InputEdges::on_edge.
@@ -123,7 +124,7 @@ class Module {
   void store_leftovers(Time now);
   void have_effects(Time now);
   void attend(Time now);
-  void judge(const Frame& frame, bool complete);
+  void judge(Bytes frame, bool complete);
   [[nodiscard]] Duration silence_left(Time now) const;
   void prepare_store();
   void act(Time now);

@@ -16,16 +16,13 @@ class EventTally {
     total_.store_in_interrupt(static_cast<std::uint16_t>(total_.load() + events));
   }
 
-  /// Main loop: how many since `collect` or `clear` was last called, modulo 65536.
-  [[nodiscard]] std::uint16_t count() const { return static_cast<std::uint16_t>(total_.load() - collected_); }
-  /// Main loop: likewise, and begins anew.
+  /// Main loop: how many since it was last called, modulo 65536.
   std::uint16_t collect() {
     const std::uint16_t total = total_.load();
     const auto fresh = static_cast<std::uint16_t>(total - collected_);
     collected_ = total;
     return fresh;
   }
-  void clear() { collected_ = total_.load(); }
 
  private:
   WrittenByInterrupt<std::uint16_t> total_;

@@ -25,8 +25,8 @@ struct Frame {
 
   [[nodiscard]] Bytes bytes() const { return {storage.data() + offset, size}; }
 
-  /// Neither too short nor too long: what is only announced may be.
-  [[nodiscard]] bool is_possible() const {
+  /// Whether a frame may have so many bytes that count. What is only announced may have fewer, or more.
+  static constexpr bool is_size(std::size_t size) {
     constexpr std::size_t kShortest = 2;
     constexpr std::size_t kLongest = kBuiltModbus ? kLongestFrame - 2 : kLongestFrame;
     return size - kShortest <= kLongest - kShortest;
@@ -64,11 +64,7 @@ class FrameQueue {
 
   /// Whether a frame waits.
   [[nodiscard, gnu::always_inline]] bool has_frame() const { return completed_.load() != dropped_.load(); }
-  /// Main loop: the frame that waits, or null. It stays until it is dropped.
-  [[nodiscard, gnu::always_inline]] const Frame* waiting() const {
-    return has_frame() ? waiting_.load() : nullptr;
-  }
-  /// Main loop: likewise, where one does.
+  /// Main loop: that frame, where one does. It stays until it is dropped.
   [[nodiscard]] const Frame& completed() const { return *waiting_.load(); }
   /// Main loop: its number.
   [[nodiscard]] std::uint32_t waiting_number() const { return completed_.load(); }
@@ -76,7 +72,8 @@ class FrameQueue {
   /// The number of the latest frame that was announced; numbers count up and wrap. Whoever reads
   /// `coming` behind it and later finds a frame with this number complete has read that one as it is.
   [[nodiscard, gnu::always_inline]] std::uint32_t announced() const { return announced_.load(); }
-  /// Main loop: that frame. It may still be changed, but never beyond its bounds. Once there was one.
+  /// Main loop: that frame, once there was one. It may be changed at any moment, so its `bytes()` are asked
+  /// for once, and their size is looked at before they are.
   [[nodiscard]] const Frame& coming() const { return *coming_.load(); }
 
   /// Main loop: done with the waiting frame.

@@ -11,7 +11,8 @@
 namespace ex9000 {
 
 /// Frames by what became of them: one count each, so that the interrupt has one to look after. Which of them
-/// make up a counter is for those who are asked for it.
+/// make up a counter is for those who are asked for it. Whole words, which cost the interrupt less than an
+/// EventTally's halves.
 class LineTallies {
  public:
   /// Interrupt.

@@ -37,6 +37,7 @@ Duration Receiver::on_byte(std::uint8_t byte, ByteStatus status, Time now) {
   }
   const Verdict verdict = rtu_.byte(queue_, byte, status, now);
   if (verdict != Verdict::Open) {
+    // As `note`, but of a silence that nobody has told.
     tallies_.count_in_interrupt(verdict);
     if (verdict == Verdict::HostOk) {
       host_ok(now);

@@ -43,7 +43,7 @@ class RtuAssembler {
 
   [[nodiscard]] bool wants_more_silence() const { return lapsed_ != 0 && lapsed_ == received_; }
 
-  /// Interrupt. The own driver has come on: a frame whose CRC is right was whole and is judged, any other is
+  /// Interrupt. The own driver was on: a frame whose CRC is right was whole and is judged, any other is
   /// forgotten.
   Verdict cut_off(FrameQueue& queue);
 

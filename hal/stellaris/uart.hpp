@@ -27,11 +27,6 @@ class Uart {
   static_assert(largest_baud_error(clock) < kTolerableBaudError, "this clock cannot make all baud rates");
 
  public:
-  struct Received {
-    std::uint8_t byte;
-    ByteStatus status;
-  };
-
   /// The driver off. Once, before `open`.
   static void start() { Gpio(driver_enable.port).make_output(driver_enable.mask(), 0); }
 
@@ -53,7 +48,7 @@ class Uart {
 
   void send(Bytes bytes) {
     rest_.set_in_main_loop(bytes.from(1));
-    kInterruptMask.write(kTransmitted);  // the echo
+    kInterruptMask.write(kTransmitted);  // what is received from here on is the echo
     begun_.store_in_main_loop(begun_.load() + 1U);
     Gpio(driver_enable.port).write(driver_enable.mask(), driver_enable.mask());
     kData.write(Bits<Data>(bytes[0]));

@@ -15,8 +15,8 @@ namespace {
 constexpr int kBaud = 115200;
 /// FC01 x 13: 8 characters there, 7 back, one silence of 1.75 ms.
 constexpr double kTransaction = 15.0 * 10 / kBaud + 1.75e-3;
-constexpr int kTransactions = 300;
-constexpr int kRounds = 5;
+constexpr int kTransactions = 60;
+constexpr int kRounds = 25;
 
 double share_of_the_limit(modbus_t* master) {
   std::array<std::uint8_t, 13> bits{};

@@ -117,10 +117,10 @@ void Coverage::note(const Module& module, const Bytes& sent, const Bytes& heard)
   if (verdict == Verdict::HostOk) {
     reached_.insert(in_force.protocol == Protocol::Ascii ? "dcon/host-ok" : "register/host-ok");
   }
-  if (queue.waiting() == nullptr) {
+  if (!queue.has_frame()) {
     return;
   }
-  const ex9000::Bytes frame = queue.waiting()->bytes();
+  const ex9000::Bytes frame = queue.completed().bytes();
   const bool ascii = in_force.protocol == Protocol::Ascii;
   if (ascii && frame[1] == '*') {
     reached_.insert("dcon/sample");

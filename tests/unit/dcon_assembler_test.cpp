@@ -27,10 +27,10 @@ TEST_F(DconAssemblerTest, EveryDelimiterOpensAFrame) {
 
 TEST_F(DconAssemblerTest, AFrameIsCompleteWhenItsCarriageReturnIs) {
   put("$01M");
-  EXPECT_EQ(queue_.waiting(), nullptr);
+  EXPECT_FALSE(queue_.has_frame());
   put('\r');
-  ASSERT_NE(queue_.waiting(), nullptr);
-  EXPECT_EQ(queue_.waiting()->received.microseconds(), now_.microseconds());
+  ASSERT_TRUE(queue_.has_frame());
+  EXPECT_EQ(queue_.completed().received.microseconds(), now_.microseconds());
 }
 
 TEST_F(DconAssemblerTest, ACarriageReturnBetweenFramesChangesNothing) {

@@ -84,7 +84,7 @@ class ReceiverTest : public testing::Test {
     EXPECT_LE(receiver_.host_ok_time().since(earliest).microseconds(), latest.since(earliest).microseconds());
   }
   bool took_frame() {
-    if (receiver_.queue().waiting() == nullptr) {
+    if (!receiver_.queue().has_frame()) {
       return false;
     }
     receiver_.queue().drop_in_main_loop();

@@ -312,8 +312,8 @@ TEST_F(RtuAssemblerTest, AFrameIsAssembledWhileOneWaits) {
   wire_.collect = false;
   EXPECT_EQ(verdict_of(kChannel0On), Verdict::Accepted);
   wire_.bytes(frame_of(20));
-  ASSERT_NE(queue_.waiting(), nullptr);
-  EXPECT_EQ(queue_.waiting()->bytes().size, kChannel0On.size() - 2);
+  ASSERT_TRUE(queue_.has_frame());
+  EXPECT_EQ(queue_.completed().bytes().size, kChannel0On.size() - 2);
   queue_.drop_in_main_loop();
   wire_.verdicts.clear();
   wire_.collect = true;
@@ -327,8 +327,8 @@ TEST_F(RtuAssemblerTest, AFrameThatEndsWhileOneWaitsHasNoRoomAndLeavesTheOtherAl
   EXPECT_EQ(verdict_of(kChannel0On), Verdict::Accepted);
   EXPECT_EQ(verdict_of(frame_of(256)), Verdict::NoRoom);
   EXPECT_EQ(verdict_of(behind(0x00, frame_of(20))), Verdict::NoRoom);
-  ASSERT_NE(queue_.waiting(), nullptr);
-  const Bytes waiting = queue_.waiting()->bytes();
+  ASSERT_TRUE(queue_.has_frame());
+  const Bytes waiting = queue_.completed().bytes();
   EXPECT_EQ(FrameBytes(waiting.begin(), waiting.end()), without_crc(kChannel0On));
   queue_.drop_in_main_loop();
   wire_.collect = true;
@@ -404,7 +404,7 @@ TEST_F(RtuAssemblerTest, ANewAddressHoldsForAFrameThatHasNotBeenAnnouncedForIt) 
   EXPECT_EQ(queue_.completed().size, 6U);
 }
 
-// --- the own driver comes on ---
+// --- the own driver was on ---
 
 TEST_F(RtuAssemblerTest, AnOpenFrameCanBeForgotten) {
   wire_.bytes({0x01, 0x05, 0x00});
@@ -425,17 +425,17 @@ TEST_F(RtuAssemblerTest, AFrameThatIsWholeButForItsSilenceIsJudgedAllTheSame) {
   expect_next_frame_accepted();
 }
 
-TEST_F(RtuAssemblerTest, WhatCannotBeAFrameIsNotPossibleWhateverItsCrcSays) {
+TEST_F(RtuAssemblerTest, WhatCannotBeAFrameIsSeenByItsSizeWhateverItsCrcSays) {
   wire_.collect = false;
   for (const FrameBytes& bytes : {with_crc({kOwn}), frame_of(257)}) {
     wire_.bytes(bytes);
-    EXPECT_FALSE(queue_.coming().is_possible()) << bytes.size();
+    EXPECT_FALSE(Frame::is_size(queue_.coming().size)) << bytes.size();
     wire_.rest();
     EXPECT_FALSE(queue_.has_frame());
   }
   for (const FrameBytes& bytes : {frame_of(4), frame_of(256)}) {
     wire_.bytes(bytes);
-    EXPECT_TRUE(queue_.coming().is_possible()) << bytes.size();
+    EXPECT_TRUE(Frame::is_size(queue_.coming().size)) << bytes.size();
     wire_.rest();
     EXPECT_TRUE(queue_.has_frame());
     queue_.drop_in_main_loop();

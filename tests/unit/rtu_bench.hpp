@@ -106,7 +106,7 @@ class Wire {
       return;
     }
     verdicts.push_back(verdict);
-    const Frame* frame = queue_.waiting();
+    const Frame* frame = queue_.has_frame() ? &queue_.completed() : nullptr;
     if (collect && frame != nullptr) {
       frames.emplace_back(frame->bytes().begin(), frame->bytes().end());
       received = frame->received;
