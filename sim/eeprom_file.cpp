@@ -7,19 +7,17 @@
 
 #include <cerrno>
 #include <cstdlib>
-#include <cstring>
 #include <stdexcept>
 #include <utility>
 
 #include "hal/doubles/memory.hpp"
+#include "sim/reason.hpp"
 
 namespace ex9000::sim {
 
 namespace {
 
 constexpr std::size_t kSize = hal::doubles::Memory::kSize;
-
-std::string reason() { return std::strerror(errno); }
 
 /// What the user does not permit to files that are made; mkostemp permits less.
 mode_t file_mask() {

@@ -55,10 +55,6 @@ std::string dcon_reply(const FrameBytes& bytes) {
   }
 }
 
-std::string hex_word_text(unsigned value) {
-  return hex_byte_text(value >> 8U & 0xFFU) + hex_byte_text(value & 0xFFU);
-}
-
 /// On any model.
 template <class Row>
 bool lies_in(const Row& row, modbus::Functions listed, unsigned address) {

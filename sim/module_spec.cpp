@@ -118,6 +118,10 @@ std::string hex_byte_text(unsigned value) {
   return {static_cast<char>(hex_digit(value >> 4U)), static_cast<char>(hex_digit(value))};
 }
 
+std::string hex_word_text(unsigned value) {
+  return hex_byte_text(value >> 8U & 0xFFU) + hex_byte_text(value & 0xFFU);
+}
+
 ModuleSpec parse_module_spec(const std::string& text) {
   try {
     std::istringstream parts(text);

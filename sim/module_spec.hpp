@@ -24,5 +24,7 @@ const Model& model_called(const std::string& name);
 
 /// Two upper-case digits.
 std::string hex_byte_text(unsigned value);
+/// Likewise, four digits of the lowest 16 bits.
+std::string hex_word_text(unsigned value);
 
 }  // namespace ex9000::sim

@@ -63,10 +63,6 @@ void want_power(const SimulatedModule& module) {
   }
 }
 
-std::string hex_word_text(unsigned value) {
-  return hex_byte_text(value >> 8U & 0xFFU) + hex_byte_text(value & 0xFFU);
-}
-
 std::string power(SimulatedModule& module, const Words& args) {
   module.power(on_off(args[0]));
   return "";

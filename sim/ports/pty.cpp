@@ -8,20 +8,17 @@
 #include <unistd.h>
 
 #include <array>
-#include <cerrno>
 #include <climits>
 #include <cstdlib>
-#include <cstring>
 #include <stdexcept>
 #include <utility>
 
 #include "sim/ports/termios_rates.hpp"
+#include "sim/reason.hpp"
 
 namespace ex9000::sim {
 
 namespace {
-
-std::string reason() { return std::strerror(errno); }
 
 std::optional<std::string> link_target(const std::string& link) {
   std::array<char, PATH_MAX> target{};

@@ -9,11 +9,11 @@
 
 #include <boost/asio/buffer.hpp>
 #include <cerrno>
-#include <cstring>
 #include <stdexcept>
 #include <utility>
 
 #include "sim/ports/termios_rates.hpp"
+#include "sim/reason.hpp"
 
 namespace ex9000::sim {
 
@@ -21,8 +21,6 @@ namespace {
 
 /// A reply goes out behind this much of itself, so that no hesitation of the host makes a gap in it.
 constexpr std::chrono::milliseconds kCushion{10};
-
-std::string reason() { return std::strerror(errno); }
 
 /// Adapters like to wait up to 16 ms for more bytes, which tears frames apart. Not all can be told not to.
 void ask_for_low_latency(int fd) {

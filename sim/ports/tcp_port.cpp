@@ -15,7 +15,7 @@ using boost::asio::ip::tcp;
 
 constexpr const char* kLoopback = "127.0.0.1";
 /// Far more than masters that share a line; beyond it somebody connects and never goes.
-constexpr std::size_t kMostClients = 64;
+constexpr std::size_t kMostMasters = 64;
 /// Who has said all there is to say may still wait for the answer to it.
 constexpr std::chrono::seconds kLinger{1};
 
@@ -111,7 +111,7 @@ void TcpPort::accept() {
       return;
     }
     make_room();
-    if (clients_.size() < kMostClients) {
+    if (clients_.size() < kMostMasters) {
       boost::system::error_code ignored;
       socket.set_option(tcp::no_delay(true), ignored);
       socket.set_option(tcp::socket::keep_alive(true), ignored);
@@ -125,7 +125,7 @@ void TcpPort::accept() {
 
 /// Who lingers longest goes first.
 void TcpPort::make_room() {
-  if (clients_.size() >= kMostClients) {
+  if (clients_.size() >= kMostMasters) {
     const auto oldest =
         std::find_if(clients_.begin(), clients_.end(), [](const auto& client) { return client->lingers; });
     if (oldest != clients_.end()) {
