@@ -83,7 +83,7 @@ void Bus::drive(End& end, bool on) {
         byte.collided = byte.cut_off = true;
         byte.wave.cut_off = now;
         std::find_if(waves_.rbegin(), waves_.rend(), [&](const Wave& wave) {
-          return wave.start == byte.wave.start && wave.byte == byte.wave.byte;
+          return wave.start == byte.wave.start && wave.levels == byte.wave.levels;
         })->cut_off = now;
       }
     }
@@ -94,12 +94,15 @@ void Bus::drive(End& end, bool on) {
 }
 
 void Bus::put(End& end, std::uint8_t byte, std::uint32_t baud) {
-  const Wave wave{clock_.virtual_now(), bit_rate(baud), byte};
+  Wave wave{clock_.virtual_now(), bit_rate(baud), levels_of(byte)};
+  if (disturbance_ != nullptr) {
+    wave.levels = disturbance_->disturbed({wave.levels, baud, wave.end(), drivers_on_ > 1});
+  }
   const bool collided = drivers_on_ > 1 || !on_the_wire_.empty();
   for (Byte& other : on_the_wire_) {
     other.collided = true;
   }
-  on_the_wire_.push_back({end.index, collided, false, baud, wave});
+  on_the_wire_.push_back({end.index, byte, collided, false, baud, wave});
   waves_.push_back(wave);
   run_wire();
 }
@@ -120,7 +123,8 @@ bool Bus::samples(const End& end) const {
     return false;
   }
   return end.sampler.busy() || std::any_of(on_the_wire_.begin(), on_the_wire_.end(), [&](const Byte& byte) {
-           return byte.collided || byte.wave.baud != end.bit_rate || end.sampler.position() > byte.wave.start;
+           return !byte.arrives_whole() || byte.wave.baud != end.bit_rate ||
+                  end.sampler.position() > byte.wave.start;
          });
 }
 
@@ -149,13 +153,14 @@ void Bus::run_wire() {
       continue;
     }
     for (BusObserver* observer : observers_) {
-      observer->byte(over.station, over.wave.byte, over.baud, over.collided, over.wave.start, now);
+      observer->byte(over.station, over.byte, over.baud, over.collided, over.wave.start, now);
     }
     for (const auto& end : ends_) {
-      const bool whole = !over.collided && !end->sampler.busy() && end->sampler.position() <= over.wave.start;
+      const bool whole =
+          over.arrives_whole() && !end->sampler.busy() && end->sampler.position() <= over.wave.start;
       if (whole && end->bit_rate == over.wave.baud) {
         end->sampler.skip_to(now);
-        end->station.receive(over.wave.byte, ByteStatus::Good);
+        end->station.receive(over.byte, ByteStatus::Good);
       }
     }
   }

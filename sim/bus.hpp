@@ -48,6 +48,22 @@ class BusObserver {
   ~BusObserver() = default;
 };
 
+/// What becomes of a byte on its way: noise.
+class Disturbance {
+ public:
+  struct Sent {
+    Levels levels;
+    std::uint32_t baud;
+    VirtualTime ends;
+    bool contended;  ///< another driver is on
+  };
+  /// What all receivers see in its place.
+  virtual Levels disturbed(const Sent& sent) = 0;
+
+ protected:
+  ~Disturbance() = default;
+};
+
 /// Half duplex, 8N1. A byte takes ten bits at its sender's rate. A receiver of the same rate gets it when its
 /// stop bit has passed; one of another rate samples the wave at its own and sees framing errors and garbage.
 /// Where two drivers are on at once, a 0 of either wins, and what arrives is what that wave looks like.
@@ -66,6 +82,9 @@ class Bus {
   /// `station` and the returned end of the wires live as long as the bus is used.
   Wire& attach(Station& station);
   void observe(BusObserver& observer) { observers_.push_back(&observer); }
+  /// From now on all that is sent goes through `disturbance`, which lives as long as the bus is used.
+  /// Observers see what was sent.
+  void disturb(Disturbance& disturbance) { disturbance_ = &disturbance; }
 
   /// The next event of bus or stations.
   [[nodiscard]] VirtualTime next() const;
@@ -92,16 +111,21 @@ class Bus {
   /// A byte that is being sent.
   struct Byte {
     std::size_t station = 0;
+    std::uint8_t byte = 0;
     bool collided = false;
     bool cut_off = false;
     std::uint32_t baud = 0;  ///< as its sender has it; the wave has the bit rate
     Wave wave;
+
+    /// Whether a receiver at its rate may be handed it as it was sent.
+    [[nodiscard]] bool arrives_whole() const { return !collided && wave.levels == levels_of(byte); }
   };
 
   VirtualClock& clock_;
   std::uint32_t times_faster_;
   std::vector<std::unique_ptr<End>> ends_;
   std::vector<BusObserver*> observers_;
+  Disturbance* disturbance_ = nullptr;
   std::vector<Byte> on_the_wire_;
   std::deque<Wave> waves_;  ///< what samplers may still look at
   unsigned drivers_on_ = 0;

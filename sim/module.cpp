@@ -47,6 +47,7 @@ void SimulatedModule::reset() {
 void SimulatedModule::start() {
   hung_ = false;
   mcu_.emplace(*this);
+  mcu_->line.release_late(driver_late_by_);
   mcu_->tick.start(kTick);
   mcu_->device.start(timing_at_);
   turn();
@@ -87,6 +88,13 @@ void SimulatedModule::pulse_input(unsigned channel, std::uint32_t count) {
 void SimulatedModule::edge(unsigned channel, bool level) {
   if (powered() && channel < model_.inputs) {
     mcu_->device.on_edge(channel, level);
+  }
+}
+
+void SimulatedModule::release_driver_late(VirtualTime by) {
+  driver_late_by_ = by;
+  if (powered()) {
+    mcu_->line.release_late(by);
   }
 }
 

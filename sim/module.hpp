@@ -48,6 +48,8 @@ class SimulatedModule final : public Station {
   void pulse_input(unsigned channel, std::uint32_t count);
   /// The main loop stops being run, until the next reset.
   void hang() { hung_ = true; }
+  /// Its driver stays on for so much longer behind each reply, through resets too.
+  void release_driver_late(VirtualTime by);
   /// What the memory holds at the next reset.
   void store(const Settings& settings);
   /// The same as an image of the whole memory.
@@ -103,6 +105,7 @@ class SimulatedModule final : public Station {
   hal::doubles::InitSwitch init_switch_;
   std::optional<Mcu> mcu_;
   VirtualTime wakes_ = kNever;  ///< when the main loop has something to do by itself
+  VirtualTime driver_late_by_{0};
   bool hung_ = false;
   std::uint64_t watchdog_resets_ = 0;
 };

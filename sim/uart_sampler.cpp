@@ -48,10 +48,7 @@ bool Wave::level(VirtualTime at) const {
   while (at >= boundary(bit + 1)) {
     ++bit;
   }
-  if (bit == 0 || bit == kBits - 1) {
-    return bit != 0;
-  }
-  return (byte >> (bit - 1) & 1U) != 0;
+  return (levels >> bit & 1U) != 0;
 }
 
 std::optional<UartSampler::Received> UartSampler::advance(const Waves& waves, std::uint32_t baud,

@@ -12,11 +12,16 @@ namespace ex9000::sim {
 
 using hal::doubles::VirtualTime;
 
-/// Start bit, 8 data bits low first, stop bit, as one driver puts them on the wires.
+/// What the wires show of a byte, bit by bit from bit 0 on: start bit, 8 data bits low first, stop bit.
+using Levels = std::uint16_t;
+constexpr Levels kIdleLevels = 0x3FF;
+constexpr Levels levels_of(std::uint8_t byte) { return static_cast<Levels>(0x200U | unsigned{byte} << 1U); }
+
+/// That, as one driver puts it on the wires.
 struct Wave {
   VirtualTime start{0};
   std::uint32_t baud = 0;
-  std::uint8_t byte = 0;
+  Levels levels = kIdleLevels;
   VirtualTime cut_off = hal::doubles::kNever;  ///< the driver went off here
 
   static constexpr unsigned kBits = 10;

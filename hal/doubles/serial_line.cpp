@@ -24,7 +24,7 @@ void SerialLine::run() {
   // From the first start bit on, so that rounding does not add up.
   next_ = first_start_bit_ + wire_.takes(sent_, baud_);
   if (sent_ == bytes_.size) {
-    next_ += kDriverTail;
+    next_ += kDriverTail + late_by_;
   }
 }
 

@@ -25,7 +25,8 @@ class Wire {
 /// A UART that sends at exactly its rate. What it receives is handed to the device by whoever owns the wire.
 class SerialLine final : public hal::SerialLine {
  public:
-  /// Driver on before the first start bit, and after the last stop bit: like a register write or two.
+  /// Driver on before the first start bit, and after the last stop bit: like a register write or two; that is,
+  /// where it is not made to go off late.
   static constexpr VirtualTime kDriverLead = std::chrono::microseconds(2);
   static constexpr VirtualTime kDriverTail = std::chrono::microseconds(2);
 
@@ -37,6 +38,8 @@ class SerialLine final : public hal::SerialLine {
 
   /// 0 until it is opened.
   [[nodiscard]] std::uint32_t baud() const { return baud_; }
+  /// By how much later its driver goes off than it should, from the next reply on.
+  void release_late(VirtualTime by) { late_by_ = by; }
   /// When `run` has something to do.
   [[nodiscard]] VirtualTime next() const { return next_; }
   void run();
@@ -52,6 +55,7 @@ class SerialLine final : public hal::SerialLine {
   std::size_t sent_ = 0;
   VirtualTime first_start_bit_{0};
   VirtualTime next_ = kNever;
+  VirtualTime late_by_{0};
 };
 
 }  // namespace ex9000::hal::doubles

@@ -13,10 +13,15 @@
 #include "sim/bus.hpp"
 #include "sim/module.hpp"
 #include "sim/module_spec.hpp"
+#include "tests/modbus_frame.hpp"
+#include "tests/noise/judges.hpp"
 
 namespace ex9000::sim {
 namespace {
 
+using noise::DconJudge;
+using noise::Finding;
+using noise::judge_rtu;
 using std::chrono::milliseconds;
 using std::chrono::nanoseconds;
 
@@ -24,119 +29,6 @@ constexpr VirtualTime kAnHour = std::chrono::hours(1);
 constexpr VirtualTime kByte = nanoseconds(10'000'000'000 / 9600);
 /// A reply, or an effect, comes within this after its request.
 constexpr VirtualTime kLongest = milliseconds(300);
-
-/// Two hex digits of an upper-case address, or -1.
-int address_in(const std::string& text) {
-  const std::string digits = "0123456789ABCDEF";
-  const auto high = digits.find(text[1]);
-  const auto low = digits.find(text[2]);
-  return high == std::string::npos || low == std::string::npos ? -1 : static_cast<int>(high * 16 + low);
-}
-
-/// What is right of what came in: nothing, a frame that is carried out in silence, or one that is answered.
-enum class Finding { Nothing, Silent, Request };
-
-/// wire.md 3, in the order it is written there.
-class DconJudge {
- public:
-  explicit DconJudge(bool checksum) : checksum_(checksum) {}
-
-  Finding feed(std::uint8_t byte, bool good) {
-    const bool ends = byte == '\r' && good;
-    if (skipping_) {
-      skipping_ = !ends;
-      return Finding::Nothing;
-    }
-    if (text_.empty()) {
-      if (good && std::string("#$%@~").find(static_cast<char>(byte)) != std::string::npos) {
-        text_ = static_cast<char>(byte);
-        spoiled_ = false;
-      } else if (good && (byte == '!' || byte == '>' || byte == '?')) {
-        skipping_ = true;
-      }
-      return Finding::Nothing;
-    }
-    if (!ends) {
-      spoiled_ = spoiled_ || !good;
-      text_ += static_cast<char>(byte);
-      return Finding::Nothing;
-    }
-    const Finding finding = judge();
-    text_.clear();
-    return finding;
-  }
-  void forget() {
-    text_.clear();
-    skipping_ = false;
-  }
-
- private:
-  [[nodiscard]] Finding judge() const {
-    std::string text = text_;
-    if (spoiled_ || text.size() > 32) {
-      return Finding::Nothing;
-    }
-    if (checksum_) {
-      if (text.size() < 5) {
-        return Finding::Nothing;
-      }
-      const std::string sent = text.substr(text.size() - 2);
-      text.resize(text.size() - 2);
-      unsigned sum = 0;
-      for (const char c : text) {
-        sum += static_cast<unsigned char>(c);
-      }
-      if (sent != hex_byte_text(sum % 256)) {
-        return Finding::Nothing;
-      }
-    }
-    if (text.size() < 3) {
-      return Finding::Nothing;
-    }
-    if (text == "#**" || text == "~**") {
-      return Finding::Silent;
-    }
-    return address_in(text) == 1 ? Finding::Request : Finding::Nothing;
-  }
-
-  bool checksum_;
-  bool skipping_ = false;
-  bool spoiled_ = false;
-  std::string text_;
-};
-
-bool crc_is_right(const std::vector<std::uint8_t>& bytes, std::size_t from) {
-  unsigned crc = 0xFFFF;
-  for (std::size_t i = from; i < bytes.size(); ++i) {
-    crc ^= bytes[i];
-    for (int bit = 0; bit < 8; ++bit) {
-      crc = crc % 2 != 0 ? crc / 2 ^ 0xA001U : crc / 2;
-    }
-  }
-  return crc == 0;
-}
-
-/// wire.md 7: a frame that a silence has ended.
-Finding judge_rtu(const std::vector<std::uint8_t>& bytes, const std::vector<bool>& good) {
-  for (const std::size_t from : {0U, 1U}) {
-    const std::size_t size = bytes.size() - from;
-    bool fits = bytes.size() > from && size >= 4 && size <= 256 && (from == 0 || bytes[0] == 0x00);
-    for (std::size_t i = from; fits && i < bytes.size(); ++i) {
-      fits = good[i];
-    }
-    if (!fits || !crc_is_right(bytes, from)) {
-      continue;
-    }
-    const std::vector<std::uint8_t> frame(bytes.begin() + static_cast<std::ptrdiff_t>(from), bytes.end());
-    if (frame[0] > 1) {
-      return Finding::Nothing;
-    }
-    const bool host_ok = frame.size() == 8 && (frame[1] == 3 || frame[1] == 4) && frame[2] == 0x30 &&
-                         frame[3] == 0x38 && frame[4] == 0 && frame[5] <= 1;
-    return frame[0] == 0 || host_ok ? Finding::Silent : Finding::Request;
-  }
-  return Finding::Nothing;
-}
 
 /// A powered module whose receiver is fed byte by byte, and what it does about it.
 class NoisyLine final : public BusObserver {
@@ -175,7 +67,7 @@ class NoisyLine final : public BusObserver {
       requests_.push_back(now());
       ++judged_right_;
     }
-    if (finding != Finding::Nothing) {
+    if (finding == Finding::Request || finding == Finding::Silent) {
       accepted_ = now();
     }
   }
@@ -268,11 +160,7 @@ std::string dcon_noise(Noise& noise, bool checksum) {
                     'x');
       }
       if (checksum && !noise.once_in(5)) {
-        unsigned sum = 0;
-        for (const char c : text) {
-          sum += static_cast<unsigned char>(c);
-        }
-        text += hex_byte_text(sum % 256);
+        text += DconJudge::sum_of(text);
       }
       if (noise.once_in(4)) {
         const unsigned at = noise.below(static_cast<unsigned>(text.size()));
@@ -332,16 +220,7 @@ std::vector<std::uint8_t> rtu_noise(Noise& noise) {
     }
     return frame;
   }
-  frame = noise.pick(requests);
-  unsigned crc = 0xFFFF;
-  for (const std::uint8_t byte : frame) {
-    crc ^= byte;
-    for (int bit = 0; bit < 8; ++bit) {
-      crc = crc % 2 != 0 ? crc / 2 ^ 0xA001U : crc / 2;
-    }
-  }
-  frame.push_back(static_cast<std::uint8_t>(crc));
-  frame.push_back(static_cast<std::uint8_t>(crc >> 8U));
+  frame = with_crc(noise.pick(requests));
   if (noise.once_in(4)) {
     const unsigned at = noise.below(static_cast<unsigned>(frame.size()));
     frame[at] = static_cast<std::uint8_t>(frame[at] ^ (1U << noise.below(8)));

@@ -1,0 +1,31 @@
+#include "sim/echo.hpp"
+
+namespace ex9000::sim {
+
+void Echo::receive(std::uint8_t byte, ByteStatus /*status*/) {
+  if (!driving_) {
+    heard_.push_back(byte);
+    next_ = clock_.virtual_now() + delay_;
+  }
+}
+
+void Echo::run() {
+  if (!driving_) {
+    driving_ = true;
+    began_ = clock_.virtual_now();
+    wire_.drive(true);
+  }
+  if (sent_ == heard_.size()) {
+    driving_ = false;
+    heard_.clear();
+    sent_ = 0;
+    next_ = kNever;
+    wire_.drive(false);
+    return;
+  }
+  wire_.put(heard_[sent_], rate_);
+  // From the first byte on, so that rounding does not add up.
+  next_ = began_ + wire_.takes(++sent_, rate_);
+}
+
+}  // namespace ex9000::sim
