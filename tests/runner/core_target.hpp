@@ -31,6 +31,8 @@ class CoreTarget final : public Target {
   std::uint16_t outputs() override { return module_->outputs(); }
   step::Led::Shows led(step::Led::Shows expected) override;
 
+  [[nodiscard]] sim::VirtualTime now() const { return clock_.virtual_now(); }
+
  private:
   Bytes take_heard();
   void note_coverage(const Bytes& heard);

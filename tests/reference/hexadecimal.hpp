@@ -1,0 +1,30 @@
+// Upper-case hex digits, as wire.md 3 wants them.
+#pragma once
+
+#include <optional>
+#include <string>
+
+namespace ex9000::reference {
+
+inline std::string hex(unsigned value, std::size_t digits) {
+  std::string text;
+  for (std::size_t i = 0; i < digits; ++i) {
+    text.insert(text.begin(), "0123456789ABCDEF"[value % 16]);
+    value /= 16;
+  }
+  return text;
+}
+
+/// Nothing where a character is no upper-case hex digit, or where there is none.
+inline std::optional<unsigned> number(const std::string& text) {
+  if (text.empty() || text.find_first_not_of("0123456789ABCDEF") != std::string::npos) {
+    return std::nullopt;
+  }
+  unsigned value = 0;
+  for (const char digit : text) {
+    value = value * 16 + static_cast<unsigned>(digit <= '9' ? digit - '0' : digit - 'A' + 10);
+  }
+  return value;
+}
+
+}  // namespace ex9000::reference

@@ -1,0 +1,16 @@
+// The CRC of Modbus frames: wire.md 7.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "tests/modbus_frame.hpp"
+
+namespace ex9000::reference {
+
+/// A frame that is long enough to have one, and has the right one.
+inline bool crc_is_right(const std::vector<std::uint8_t>& frame) {
+  return frame.size() >= 4 && with_crc({frame.begin(), frame.end() - 2}) == frame;
+}
+
+}  // namespace ex9000::reference

@@ -1,0 +1,28 @@
+// Random numbers that are the same everywhere: the standard's engine without its distributions.
+#pragma once
+
+#include <cstdint>
+#include <random>
+#include <vector>
+
+namespace ex9000::reference {
+
+class Random {
+ public:
+  explicit Random(std::uint64_t seed) : engine_(seed) {}
+
+  /// Of 0 to `count` - 1.
+  unsigned below(unsigned count) { return static_cast<unsigned>(engine_() % count); }
+  unsigned between(unsigned lowest, unsigned highest) { return lowest + below(highest - lowest + 1); }
+  /// Once in so many times.
+  bool once_in(unsigned times) { return below(times) == 0; }
+  template <typename T>
+  T one_of(std::initializer_list<T> values) {
+    return values.begin()[below(static_cast<unsigned>(values.size()))];
+  }
+
+ private:
+  std::mt19937_64 engine_;
+};
+
+}  // namespace ex9000::reference
