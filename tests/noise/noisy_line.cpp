@@ -7,6 +7,7 @@
 
 #include "tests/modbus_frame.hpp"
 #include "tests/noise/theory.hpp"
+#include "tests/reference/dcon_check.hpp"
 
 namespace ex9000::noise {
 
@@ -114,7 +115,7 @@ FrameBytes NoisyLine::a_request() {
   }
   std::string text = kind == 0 ? "@01" : kind == 1 ? "$016" : "@01" + hex(data, 4);
   if (check_ == Check::Sum) {
-    text += DconJudge::sum_of(text);
+    text += reference::check_of(text);
   }
   text += '\r';
   return {text.begin(), text.end()};
@@ -217,7 +218,7 @@ void NoisyLine::expect_the_first_clean_frame_is_answered() {
     const std::string answer = ">" + hex(now, 4);
     const bool sums = check_ == Check::Sum;
     for (const auto& [text, bytes] : {std::pair(asked, &request), std::pair(answer, &reply)}) {
-      const std::string whole = text + (sums ? DconJudge::sum_of(text) : "") + "\r";
+      const std::string whole = text + (sums ? reference::check_of(text) : "") + "\r";
       bytes->assign(whole.begin(), whole.end());
     }
   }

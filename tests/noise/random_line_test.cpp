@@ -15,6 +15,7 @@
 #include "sim/module_spec.hpp"
 #include "tests/modbus_frame.hpp"
 #include "tests/noise/judges.hpp"
+#include "tests/reference/dcon_check.hpp"
 
 namespace ex9000::sim {
 namespace {
@@ -160,7 +161,7 @@ std::string dcon_noise(Noise& noise, bool checksum) {
                     'x');
       }
       if (checksum && !noise.once_in(5)) {
-        text += DconJudge::sum_of(text);
+        text += reference::check_of(text);
       }
       if (noise.once_in(4)) {
         const unsigned at = noise.below(static_cast<unsigned>(text.size()));

@@ -51,6 +51,8 @@ class Module {
 
   // --- events ---
 
+  /// What it remembers at the next reset.
+  void store(const Stored& stored) { stored_ = stored; }
   /// The supply. What is on is given 100 ms to come up; the reset lies somewhere in them.
   void power(bool on, Time now);
   /// Likewise.

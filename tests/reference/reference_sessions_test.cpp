@@ -4,11 +4,11 @@
 #include <gtest/gtest.h>
 
 #include <cstdio>
-#include <cstdlib>
 #include <fstream>
 #include <string>
 #include <vector>
 
+#include "tests/environment.hpp"
 #include "tests/reference/generator.hpp"
 #include "tests/reference/rules.hpp"
 #include "tests/reference/session.hpp"
@@ -16,11 +16,6 @@
 
 namespace ex9000::reference {
 namespace {
-
-std::uint64_t environment(const char* name, std::uint64_t otherwise) {
-  const char* const text = std::getenv(name);
-  return text == nullptr ? otherwise : std::stoull(text);
-}
 
 /// Steps of a session; enough for what one of them leaves behind to matter to many others.
 constexpr unsigned kSteps = 300;
@@ -54,8 +49,8 @@ struct Played {
 };
 
 TEST(RandomSessions, TheFirmwareDoesWhatTheReferenceSays) {
-  const std::uint64_t wanted = environment("EX9000_TRANSACTIONS", 200'000);
-  std::uint64_t seed = environment("EX9000_SEED", 9042);
+  const std::uint64_t wanted = number_in_environment("EX9000_TRANSACTIONS", 200'000);
+  std::uint64_t seed = number_in_environment("EX9000_SEED", 9042);
   std::uint64_t transactions = 0;
   std::uint64_t left_open = 0;
   std::uint64_t sessions = 0;

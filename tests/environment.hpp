@@ -1,0 +1,25 @@
+// Numbers that a long run is given through its environment.
+#pragma once
+
+#include <cstdint>
+#include <cstdlib>
+#include <stdexcept>
+#include <string>
+
+namespace ex9000 {
+
+/// What `variable` says, or `otherwise` where it is not set. Throws std::runtime_error where it is no decimal
+/// number: a run that is shorter than it was meant to be must not pass for a long one.
+inline std::uint64_t number_in_environment(const char* variable, std::uint64_t otherwise) {
+  const char* const text = std::getenv(variable);  // NOLINT(concurrency-mt-unsafe): tests set none
+  if (text == nullptr) {
+    return otherwise;
+  }
+  const std::string digits = text;
+  if (digits.empty() || digits.size() > 18 || digits.find_first_not_of("0123456789") != std::string::npos) {
+    throw std::runtime_error(std::string(variable) + "=" + digits + " is no number of up to 18 digits");
+  }
+  return std::stoull(digits);
+}
+
+}  // namespace ex9000
