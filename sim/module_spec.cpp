@@ -63,7 +63,7 @@ void set_format(Settings& settings, std::uint8_t bit, bool on) {
   settings.format = static_cast<std::uint8_t>(on ? settings.format | bit : settings.format & ~bit);
 }
 
-void apply(ModuleSpec& spec, const std::string& option) {
+void apply_setting(ModuleSpec& spec, const std::string& option) {
   const auto equals = option.find('=');
   const std::string key = option.substr(0, equals);
   const std::string value = equals == std::string::npos ? "" : option.substr(equals + 1);
@@ -141,7 +141,7 @@ ModuleSpec parse_module_spec(const std::string& text) {
       if (!keys.insert(key).second) {
         fail("'" + key + "=' is given twice");
       }
-      apply(spec, option);
+      apply_setting(spec, option);
     }
     if (text.back() == ',') {
       fail("nothing behind the last comma");

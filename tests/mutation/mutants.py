@@ -1,0 +1,168 @@
+"""Small changes to C++ source that a test should notice, by rules.
+
+A source is cut into tokens, and each rule offers what it would change: operators, constants, statements that are
+left out, branches that are swapped. Comments, strings, preprocessor lines and static_assert are left alone: no test
+at run time can notice those.
+"""
+
+import dataclasses
+import random
+import re
+
+TOKEN = re.compile(
+    r"""
+    (?P<skip>\s+|//[^\n]*|/\*.*?\*/|^[ \t]*\#[^\n]*|"(?:\\.|[^"\\\n])*"|'(?:\\.|[^'\\\n])+')
+    |(?P<number>0[xX][0-9a-fA-F']+[uUlL]*|0b[01']+[uU]*|\d[\d']*[uUlL]*)
+    |(?P<word>[A-Za-z_]\w*)
+    |(?P<operator>->\*?|<<=|>>=|\+\+|--|&&|\|\||[-+*/%&|^=!<>]=|<<|>>|::|[-+*/%&|^=!<>~?:;,.(){}\[\]])
+    """,
+    re.VERBOSE | re.MULTILINE | re.DOTALL,
+)
+
+# What one operator becomes. Where it may be part of a declaration or a template, the rule below looks about.
+OPERATORS = {
+    "==": "!=",
+    "!=": "==",
+    "<=": "<",
+    ">=": ">",
+    "<": "<=",
+    ">": ">=",
+    "&&": "||",
+    "||": "&&",
+    "+": "-",
+    "-": "+",
+    "*": "+",
+    "/": "*",
+    "%": "/",
+    "&": "|",
+    "|": "&",
+    "^": "|",
+    "<<": ">>",
+    ">>": "<<",
+    "++": "--",
+    "--": "++",
+    "+=": "-=",
+    "-=": "+=",
+    "|=": "&=",
+    "&=": "|=",
+    "^=": "|=",
+}
+# clang-format puts spaces around an operator of two operands, and none around what a type has.
+BETWEEN_OPERANDS = {"<", ">", "+", "-", "*", "/", "%", "&", "|", "^", "<<", ">>", "&&"}
+
+STATEMENT = re.compile(r"^[ ]+(?P<statement>[a-z_][\w.>\[\]:+\- ]*(?:\(.*\)| [-+|&^]?= .*|\+\+|--);)$", re.MULTILINE)
+NO_STATEMENT = re.compile(
+    r"return|static_assert|using|constexpr|const |auto |case |default|break|continue|else|typedef|friend|explicit"
+    r"|virtual|delete|struct|class|enum|namespace|template|(?:[a-z]\w*::)*[A-Za-z]\w*[*&]? \w+(?: =|\(|;|{)"
+)
+CONDITION = re.compile(r"\bif \((?!constexpr)(?P<condition>.*)\) \{$", re.MULTILINE)
+
+
+@dataclasses.dataclass(frozen=True)
+class Mutant:
+    file: str
+    begin: int
+    end: int
+    text: str
+    rule: str
+
+    def of(self, source):
+        return source[: self.begin] + self.text + source[self.end :]
+
+    def told(self, source):
+        line = source.count("\n", 0, self.begin) + 1
+        start = source.rfind("\n", 0, self.begin) + 1
+        stop = source.find("\n", self.begin)
+        was = source[start:stop].strip()
+        now = self.of(source)
+        becomes = now[start : now.find("\n", self.begin + len(self.text) - self.text.count("\n"))].strip()
+        return f"{self.file}:{line}: {self.rule}: {was}  -->  {becomes}"
+
+
+def tokens(source):
+    at = 0
+    while at < len(source):
+        found = TOKEN.match(source, at)
+        if found is None:
+            at += 1
+            continue
+        at = found.end()
+        if found.lastgroup != "skip":
+            yield found
+
+
+def left_alone(source):
+    """Where static_assert stands."""
+    return [(each.start(), each.end()) for each in re.finditer(r"static_assert\(.*?\);", source, re.DOTALL)]
+
+
+def of_operators(file, source):
+    for token in tokens(source):
+        text = token.group()
+        if token.lastgroup != "operator" or text not in OPERATORS:
+            continue
+        spaced = source[token.start() - 1] == " " and source[token.end()] == " "
+        if text in BETWEEN_OPERANDS and not spaced:
+            continue
+        yield Mutant(file, token.start(), token.end(), OPERATORS[text], "operator")
+
+
+def of_constants(file, source):
+    for token in tokens(source):
+        text = token.group()
+        if token.lastgroup == "word" and text in ("true", "false"):
+            yield Mutant(file, token.start(), token.end(), "false" if text == "true" else "true", "constant")
+        if token.lastgroup != "number":
+            continue
+        digits = re.match(r"0[xX][0-9a-fA-F']+|0b[01']+|[\d']+", text).group()
+        suffix = text[len(digits) :]
+        value = int(digits.replace("'", ""), 0)
+        yield Mutant(file, token.start(), token.end(), f"{value + 1}{suffix}", "constant")
+        if value > 0:
+            yield Mutant(file, token.start(), token.end(), f"{value - 1}{suffix}", "constant")
+
+
+def of_statements(file, source):
+    for found in STATEMENT.finditer(source):
+        statement = found["statement"]
+        if not NO_STATEMENT.match(statement):
+            begin = found.start("statement")
+            yield Mutant(file, begin, begin + len(statement), ";", "removed statement")
+
+
+def of_branches(file, source):
+    for found in CONDITION.finditer(source):
+        if ";" in found["condition"]:
+            continue
+        begin, end = found.span("condition")
+        yield Mutant(file, begin, end, f"!({found['condition']})", "swapped branches")
+
+
+def all_of(file, source):
+    kept = left_alone(source)
+    for rule in (of_operators, of_constants, of_statements, of_branches):
+        for mutant in rule(file, source):
+            if not any(begin <= mutant.begin < end for begin, end in kept):
+                yield mutant
+
+
+def spread(sources, seed):
+    """All mutants of {file: source}, in an order by `seed` that takes the files in turn."""
+    chance = random.Random(seed)
+    heaps = []
+    for file, source in sorted(sources.items()):
+        # Rules in turn too: constants are many, and say little.
+        of_rules = {}
+        for mutant in all_of(file, source):
+            of_rules.setdefault(mutant.rule, []).append(mutant)
+        for mutants in of_rules.values():
+            chance.shuffle(mutants)
+        heap = []
+        while any(of_rules.values()):
+            heap += [mutants.pop() for mutants in of_rules.values() if mutants]
+        heaps.append(heap[::-1])
+    chance.shuffle(heaps)
+    while any(heaps):
+        for heap in heaps:
+            if heap:
+                yield heap.pop()

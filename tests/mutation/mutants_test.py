@@ -1,0 +1,67 @@
+import unittest
+
+import mutants
+
+SOURCE = """\
+#include "a.hpp"  // 1 + 1
+static_assert(sizeof(int) == 4, "4");
+int sum(const int& a, int b) {
+  if (a < b && b != 7) {
+    return a + b;
+  }
+  store(a, "x == y");
+  int c = 0;
+  c += 0x10U;
+  return true ? c : -1;
+}
+"""
+
+
+def changed(rule):
+    return {each.of(SOURCE).splitlines()[SOURCE.count("\n", 0, each.begin)].strip() for each in rule("f", SOURCE)}
+
+
+class Mutants(unittest.TestCase):
+    def test_operators_between_operands_become_others(self):
+        lines = changed(mutants.of_operators)
+        self.assertIn("if (a <= b && b != 7) {", lines)
+        self.assertIn("if (a < b || b != 7) {", lines)
+        self.assertIn("if (a < b && b == 7) {", lines)
+        self.assertIn("return a - b;", lines)
+        self.assertIn("c -= 0x10U;", lines)
+
+    def test_references_comments_and_strings_are_left_alone(self):
+        for line in changed(mutants.of_operators) | changed(mutants.of_constants):
+            self.assertNotIn("|", line.replace("||", ""))
+            self.assertFalse(line.startswith("#"))
+        self.assertNotIn('store(a, "x != y");', changed(mutants.of_operators))
+
+    def test_constants_are_one_more_or_one_less(self):
+        lines = changed(mutants.of_constants)
+        self.assertIn("c += 17U;", lines)
+        self.assertIn("c += 15U;", lines)
+        self.assertIn("int c = 1;", lines)
+        self.assertIn("return false ? c : -1;", lines)
+
+    def test_calls_and_assignments_are_left_out_and_declarations_stay(self):
+        left_out = [SOURCE[each.begin : each.end] for each in mutants.of_statements("f", SOURCE)]
+        self.assertEqual(left_out, ['store(a, "x == y");', "c += 0x10U;"])
+
+    def test_a_condition_is_turned_round(self):
+        self.assertEqual(changed(mutants.of_branches), {"if (!(a < b && b != 7)) {"})
+
+    def test_no_static_assert_is_touched(self):
+        for each in mutants.all_of("f", SOURCE):
+            self.assertNotIn("static_assert", SOURCE[SOURCE.rfind("\n", 0, each.begin) : each.end])
+
+    def test_the_same_seed_gives_the_same_order_which_takes_files_in_turn(self):
+        sources = {"a": SOURCE, "b": SOURCE, "c": SOURCE}
+        order = list(mutants.spread(sources, 1))
+        self.assertEqual(order, list(mutants.spread(sources, 1)))
+        self.assertNotEqual(order, list(mutants.spread(sources, 2)))
+        self.assertEqual({each.file for each in order[:3]}, {"a", "b", "c"})
+        self.assertEqual(len(order), 3 * len(list(mutants.all_of("a", SOURCE))))
+
+
+if __name__ == "__main__":
+    unittest.main()
