@@ -14,6 +14,7 @@ EepromChip::EepromChip(Timeline& timeline, Net& clock, Net& data, std::vector<st
     : timeline_(timeline), clock_(clock), data_(data), contents_(contents), programmed_(timeline, [this] {
         commit(order_.size());
         programmed_pages_.push_back({order_.front(), order_.size(), began_});
+        tell();
       }) {
   clock_.drive(End::Resistor, Drive::WeakHigh);
   data_.drive(End::Resistor, Drive::WeakHigh);
@@ -47,6 +48,16 @@ void EepromChip::lose_power() {
   pull(false);
 }
 
+std::vector<EepromChip::Cell> EepromChip::being_programmed() const {
+  std::vector<Cell> cells;
+  if (programming()) {
+    for (const std::uint16_t place : order_) {
+      cells.push_back({place, page_.at(place % kPage)});
+    }
+  }
+  return cells;
+}
+
 void EepromChip::commit(std::size_t size) {
   for (std::size_t i = 0; i < size; ++i) {
     contents_.at(order_[i]) = page_.at(order_[i] % kPage);
@@ -66,6 +77,7 @@ void EepromChip::data_changed() {
     bytes_ = 0;
     acknowledging_ = false;
     pull(false);
+    tell();
     return;
   }
   // Only whole bytes, and the STOP right behind an acknowledge, program a page.
@@ -75,6 +87,7 @@ void EepromChip::data_changed() {
   step_ = Step::Idle;
   acknowledging_ = false;
   pull(false);
+  tell();
 }
 
 void EepromChip::begin_programming() {
@@ -128,12 +141,14 @@ void EepromChip::clock_changed() {
   }
   if (bit_ == 8) {
     byte_taken();
+    tell();
   }
 }
 
 void EepromChip::put_next_bit() {
   if (bit_ == 8) {
     pull(false);  // for the master to acknowledge
+    tell();
     return;
   }
   if (bit_ == 0 || bit_ == 9) {

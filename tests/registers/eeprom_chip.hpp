@@ -4,6 +4,8 @@
 
 #include <array>
 #include <cstdint>
+#include <functional>
+#include <utility>
 #include <vector>
 
 #include "tests/registers/net.hpp"
@@ -29,7 +31,17 @@ class EepromChip {
   /// From now on it takes no more than this many bytes of a transfer, the address among them.
   void refuse_after(unsigned bytes) { patience_ = bytes; }
 
+  /// Told behind each START, byte and STOP on the bus, and when a page is programmed. One, or null.
+  void on_event(std::function<void()> act) { on_event_ = std::move(act); }
+
   [[nodiscard]] bool programming() const { return programmed_.is_set(); }
+  /// A byte of the array, and what it becomes.
+  struct Cell {
+    std::uint16_t place;
+    std::uint8_t value;
+  };
+  /// What is being programmed, in the order in which it was sent; empty: nothing is.
+  [[nodiscard]] std::vector<Cell> being_programmed() const;
   [[nodiscard]] bool pulls_data() const { return data_.driven_by(End::Device) == Drive::Low; }
   /// Pages programmed, of how many bytes each; and where they began.
   struct Programmed {
@@ -50,6 +62,11 @@ class EepromChip {
   void pull(bool low) { data_.drive(End::Device, low ? Drive::Low : Drive::Nothing); }
   void begin_programming();
   void put_next_bit();
+  void tell() const {
+    if (on_event_) {
+      on_event_();
+    }
+  }
   /// The first `size` bytes of what was written go to the array.
   void commit(std::size_t size);
 
@@ -75,6 +92,7 @@ class EepromChip {
   Alarm programmed_;
   std::vector<Programmed> programmed_pages_;
   unsigned polls_refused_ = 0;
+  std::function<void()> on_event_;
 };
 
 }  // namespace ex9000::registers

@@ -1,0 +1,91 @@
+// An image that stores, the contents of its EEPROM at every point at which the power may fail meanwhile, and
+// what it comes up with from them.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <map>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "firmware/model/model.hpp"
+#include "firmware/settings/settings.hpp"
+#include "tests/registers/board_bench.hpp"
+#include "tests/registers/storing_commands.hpp"
+
+namespace ex9000::registers {
+
+/// What the EEPROM holds where settings may lie; the rest of it is blank.
+using Contents = std::array<std::uint8_t, 64>;
+
+/// What power cuts in the course of one command leave.
+struct Cuts {
+  std::size_t points = 0;  ///< on the bus, and within each byte that is programmed
+  std::size_t cuts = 0;    ///< points, by what they may do to the page
+  /// Each of the contents that are left, once. True: of at least one of these cuts it is certain that the
+  /// command is done, for the reply to it had begun, or because it is long over where it has none.
+  std::map<Contents, bool> left;
+  std::uint16_t outputs = 0;    ///< before the command
+  std::vector<Instant> events;  ///< on the EEPROM's bus, behind the begin of the command
+};
+
+/// As a master finds a module that has come up.
+struct Found {
+  std::optional<Settings> settings;  ///< none: it does not answer
+  std::uint16_t outputs = 0;         ///< before the first request
+};
+
+class CutBench {
+ public:
+  CutBench(const Image& image, const Model& model) : model_(model), bench_(image) {}
+
+  /// The command carried out on a module that comes up with `contents`, which are `before`. That it is
+  /// answered as it should be, and drives what it should when it should, is expected by the way.
+  Cuts cut_everywhere(const Contents& contents, const Settings& before, const StoringCommand& command);
+
+  /// The same, but for a reset of the microcontroller so long behind the begin of the command, while the
+  /// EEPROM keeps its supply. What the EEPROM holds once the module is up again; `certainly_done` as in
+  /// Cuts::left.
+  Contents reset_after(Instant time, const Contents& contents, const Settings& before,
+                       const StoringCommand& command, bool& certainly_done);
+
+  /// The outputs from which such a command begins.
+  [[nodiscard]] std::uint16_t outputs_before(const Settings& settings) const;
+
+  /// Comes up with `contents`, and is asked for all its settings in the protocol, at the rate and the address
+  /// of the first of `guesses` at which it answers. What Modbus does not tell, the data format, is asked for
+  /// in INIT mode where `thoroughly`, and otherwise is the guess's.
+  Found come_up(const Contents& contents, const std::vector<Settings>& guesses, bool thoroughly);
+
+ private:
+  using Bytes = std::vector<std::uint8_t>;
+
+  /// How it is spoken to.
+  struct Manner {
+    Protocol protocol;
+    std::uint8_t address;
+    bool checksum;
+  };
+
+  void power_up(const Contents& contents, bool init);
+  UartPort& uart() { return bench_.image.uart == 0 ? bench_.mcu->uart0 : bench_.mcu->uart1; }
+  [[nodiscard]] Contents contents() const;
+  void note_cuts(Cuts& cuts);
+  Manner speak_as(const Settings& settings, bool init_mode);
+  void send(const Manner& manner, const Bytes& request);
+  Bytes hear();
+  Bytes ask(const Manner& manner, const Bytes& request);
+  std::string ask(const Manner& manner, const std::string& rest);
+  void set_outputs(const Manner& manner);
+  Manner get_ready(const Contents& contents, const Settings& before, const StoringCommand& command);
+  void carry_out(const Manner& manner, const StoringCommand& command, const Settings& before);
+  std::optional<Settings> read_ascii(const Manner& manner);
+  std::optional<Settings> read_modbus(const Manner& manner, std::uint8_t format);
+
+  const Model& model_;
+  BoardBench bench_;
+};
+
+}  // namespace ex9000::registers

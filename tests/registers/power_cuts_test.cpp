@@ -1,0 +1,263 @@
+// Power cuts at every point of every command that stores, and of a timeout: wire.md section 8. "At the next
+// reset each command is either wholly done or not done at all", and what was answered is done.
+//
+// The image stores, with its own drivers; what a cut at each point may leave in the EEPROM is judged by the
+// core's store, all of it, and by the image, which comes up from it and is asked for everything: some of it,
+// chosen by a seed, or with EX9000_CUTS=all in the environment all of it.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cstdio>
+#include <cstdlib>
+#include <random>
+#include <set>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "firmware/settings/record.hpp"
+#include "firmware/settings/store.hpp"
+#include "tests/registers/cut_bench.hpp"
+#include "tests/registers/images_under_test.hpp"
+
+namespace ex9000::registers {
+namespace {
+
+constexpr unsigned kSeed = 1;
+
+bool all_of_them() {
+  const char* which = std::getenv("EX9000_CUTS");  // NOLINT(concurrency-mt-unsafe): nobody sets it
+  return which != nullptr && std::string_view(which) == "all";
+}
+
+/// What the core's store finds.
+Settings settings_in(const Model& model, const Contents& contents) {
+  SettingsStore store(model);
+  store.begin_loading();
+  while (store.loading()) {
+    const MemoryJob job = store.job();
+    store.started();
+    std::copy_n(contents.begin() + job.address, job.bytes.size, job.bytes.data);
+    store.done(true);
+  }
+  return store.stored();
+}
+
+void put(const Model& model, const Settings& settings, std::uint16_t sequence, std::size_t page,
+         Contents& contents) {
+  constexpr std::size_t kPage = 32;
+  Record record;
+  make_record(model, settings, sequence, record);
+  std::copy(record.bytes.begin(), record.bytes.end(),
+            contents.begin() + static_cast<std::ptrdiff_t>(page * kPage));
+}
+
+enum class Beginning : std::uint8_t { Factory, Full };
+
+struct State {
+  Settings settings;
+  Contents contents;
+};
+
+/// A state from which `command` stores something. A module from the factory has a blank EEPROM, unless the
+/// command wants something else; one that is set up has both copies, the later with the last number before
+/// they begin anew, and nothing in it is as it comes from the factory.
+State begin_at(Beginning beginning, const Model& model, const StoringCommand& command) {
+  State state;
+  state.contents.fill(0xFF);
+  Settings& settings = state.settings;
+  settings = Settings::factory(model);
+  if (command.init != Init::SinceReset) {
+    settings.protocol = command.protocol;
+  }
+  if (beginning == Beginning::Factory) {
+    command.prepare(settings);
+    if (settings != Settings::factory(model)) {
+      put(model, settings, 1, 0, state.contents);
+    }
+    return state;
+  }
+  if (command.init == Init::SinceReset) {
+    settings.protocol = Protocol::Ascii;
+  }
+  settings.address = 0x37;
+  settings.baud_code = 0x0A;
+  settings.format = kFormatMask;
+  settings.name = Name(std::string_view("Pump 3"));
+  settings.watchdog_enabled = true;
+  settings.watchdog_timeout = 0xC8;
+  settings.timeout_status = true;
+  if (model.outputs != 0) {
+    settings.power_on_value = 0x5A5A;
+    settings.safe_value = 0xA5A4;
+  }
+  command.prepare(settings);
+  put(model, Settings::factory(model), 0xFFFE, 0, state.contents);
+  put(model, settings, 0xFFFF, 1, state.contents);
+  return state;
+}
+
+class PowerCutsOf : public testing::TestWithParam<ImageName> {
+ protected:
+  PowerCutsOf()
+      : model_(*find_model(GetParam().model)),
+        commands_(storing_commands(model_)),
+        bench_(image_of(GetParam().board, GetParam().model), model_) {}
+
+  [[nodiscard]] std::uint16_t outputs_from_reset(const Settings& settings) const {
+    return settings.timeout_status ? settings.safe_value : settings.power_on_value;
+  }
+
+  /// The core's store has judged `contents` already: they are `settings`.
+  void come_up(const Contents& contents, const Settings& settings, const Settings& otherwise) {
+    const Found found = bench_.come_up(contents, {settings, otherwise}, all_of_them());
+    ASSERT_TRUE(found.settings) << "it does not answer";
+    ASSERT_TRUE(*found.settings == settings);
+    ASSERT_EQ(found.outputs, outputs_from_reset(settings));
+    ++booted_;
+  }
+
+  /// Of what the cuts have left, so many by the image as well. `unfinished` is what a command that was cut
+  /// before would have made of the settings: see TwiceInARow.
+  void judge(const Cuts& cuts, const Settings& before, const Settings& done, std::size_t by_the_image,
+             const Settings* unfinished = nullptr) {
+    points_ += cuts.points;
+    cuts_ += cuts.cuts;
+    distinct_ += cuts.left.size();
+    for (const auto& [contents, certainly_done] : cuts.left) {
+      const Settings found = settings_in(model_, contents);
+      const bool finished_late =
+          unfinished != nullptr && found == *unfinished && found != before && found != done;
+      ASSERT_TRUE(found == done || (!certainly_done && (found == before || finished_late)));
+      olds_ += found == before ? 1U : 0U;
+      finished_late_ += finished_late ? 1U : 0U;
+    }
+    for (const Contents& contents : in_any_order(cuts)) {
+      if (by_the_image-- == 0 || HasFatalFailure()) {
+        return;
+      }
+      const Settings found = settings_in(model_, contents);
+      come_up(contents, found, found == done ? before : done);
+    }
+  }
+
+  template <class Do>
+  void for_each_command(Do what) {
+    for (const Beginning beginning : {Beginning::Factory, Beginning::Full}) {
+      for (const StoringCommand& command : commands_) {
+        SCOPED_TRACE(command.name + (beginning == Beginning::Factory ? ", factory state" : ", set up"));
+        what(begin_at(beginning, model_, command), command);
+        ASSERT_FALSE(HasFailure());
+      }
+    }
+  }
+
+  std::vector<Contents> in_any_order(const Cuts& cuts) {
+    std::vector<Contents> contents;
+    for (const auto& each : cuts.left) {
+      contents.push_back(each.first);
+    }
+    std::shuffle(contents.begin(), contents.end(), random_);
+    return contents;
+  }
+
+  /// All commands that can be sent to a module with these settings and change them.
+  std::vector<const StoringCommand*> storing_from(const Settings& settings) {
+    std::vector<const StoringCommand*> commands;
+    for (const StoringCommand& command : commands_) {
+      if ((command.init == Init::SinceReset || command.protocol == settings.protocol) &&
+          command.stores_from(settings, bench_.outputs_before(settings))) {
+        commands.push_back(&command);
+      }
+    }
+    std::shuffle(commands.begin(), commands.end(), random_);
+    return commands;
+  }
+
+  void TearDown() override {
+    std::printf(
+        "%s: %zu cuts at %zu points left %zu different contents; of these %zu are the old settings and %zu "
+        "those of "
+        "an earlier command that was cut; the image came up from %zu (seed %u)\n",
+        bench_name().c_str(), cuts_, points_, distinct_, olds_, finished_late_, booted_, kSeed);
+  }
+  static std::string bench_name() {
+    return std::string(testing::UnitTest::GetInstance()->current_test_info()->name());
+  }
+
+  const Model& model_;
+  std::vector<StoringCommand> commands_;
+  CutBench bench_;
+  std::mt19937 random_{kSeed};
+  std::size_t points_ = 0;
+  std::size_t cuts_ = 0;
+  std::size_t distinct_ = 0;
+  std::size_t olds_ = 0;
+  std::size_t finished_late_ = 0;
+  std::size_t booted_ = 0;
+};
+
+TEST_P(PowerCutsOf, LeaveEachCommandWhollyDoneOrNotAtAll) {
+  for_each_command([this](const State& state, const StoringCommand& command) {
+    const Cuts cuts = bench_.cut_everywhere(state.contents, state.settings, command);
+    judge(cuts, state.settings, command.done_to(state.settings, cuts.outputs), all_of_them() ? SIZE_MAX : 25);
+  });
+}
+
+/// From all that a first cut may leave, or from some of it, all that a second may.
+///
+/// There may be the settings of the first command after the second cut that were not there after the first: a
+/// page of which only one byte is wrong is a good one as soon as the next store has come to that byte, where
+/// it is to be the same. Wholly done it is all the same, and nothing that was answered is lost.
+TEST_P(PowerCutsOf, TwiceInARowLeaveEachCommandWhollyDoneOrNotAtAll) {
+  for_each_command([this](const State& state, const StoringCommand& first) {
+    std::size_t left = all_of_them() ? SIZE_MAX : 3;
+    const Cuts cuts = bench_.cut_everywhere(state.contents, state.settings, first);
+    const Settings unfinished = first.done_to(state.settings, cuts.outputs);
+    for (const Contents& contents : in_any_order(cuts)) {
+      const Settings settings = settings_in(model_, contents);
+      for (const StoringCommand* second : storing_from(settings)) {
+        if (HasFailure() || left == 0) {
+          return;
+        }
+        left -= all_of_them() ? 0 : 1;
+        SCOPED_TRACE("then " + second->name);
+        const Cuts again = bench_.cut_everywhere(contents, settings, *second);
+        judge(again, settings, second->done_to(settings, again.outputs), 1, &unfinished);
+        if (!all_of_them()) {
+          break;
+        }
+      }
+    }
+  });
+}
+
+/// The microcontroller alone begins anew, in the middle of the bus's traffic, and finds the EEPROM
+/// programming.
+TEST_P(PowerCutsOf, ThatTheEepromDoesNotNoticeLeaveEachCommandWhollyDoneOrNotAtAll) {
+  const std::size_t one_in = all_of_them() ? 1 : 20;
+  for_each_command([this, one_in](const State& state, const StoringCommand& command) {
+    const Cuts cuts = bench_.cut_everywhere(state.contents, state.settings, command);
+    const Settings done = command.done_to(state.settings, cuts.outputs);
+    for (std::size_t i = random_() % one_in; i < cuts.events.size(); i += one_in) {
+      Cuts one;
+      bool certainly_done = false;
+      const Contents left =
+          bench_.reset_after(cuts.events[i], state.contents, state.settings, command, certainly_done);
+      one.points = one.cuts = 1;
+      one.left[left] = certainly_done;
+      judge(one, state.settings, done, 1);
+      if (HasFailure()) {
+        return;
+      }
+    }
+  });
+}
+
+INSTANTIATE_TEST_SUITE_P(Images, PowerCutsOf,
+                         testing::Values(ImageName{"ek-tm4c123gxl", "EX9043D-M"},
+                                         ImageName{"ek-tm4c123gxl", "EX9052D-M"}),
+                         name_of);
+
+}  // namespace
+}  // namespace ex9000::registers
