@@ -112,8 +112,8 @@ void Core::pend(unsigned exception) {
 
 /// What has been pended stays so when the line falls.
 void Core::interrupt_line_of(unsigned interrupt, bool asserted) {
-  lines_.at(interrupt) = asserted;
-  if (asserted) {
+  lines_.at(interrupt) = asserted || (stuck_ >> interrupt & 1U) != 0;
+  if (lines_.at(interrupt)) {
     pend(kFirstInterrupt + interrupt);
   }
 }

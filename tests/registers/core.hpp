@@ -43,6 +43,11 @@ class Core final : public Peripheral {
   void set_latency(Instant latency) { latency_ = latency; }
 
   void interrupt_line_of(unsigned interrupt, bool asserted);
+  /// The line is asserted for ever, whatever its peripheral does.
+  void stick(unsigned interrupt) {
+    stuck_ |= 1U << interrupt;
+    interrupt_line_of(interrupt, true);
+  }
   void hold(bool on) { held_ = on; }
   [[nodiscard]] bool held() const { return held_; }
   /// Whether a sleeping processor wakes up.
@@ -88,6 +93,7 @@ class Core final : public Peripheral {
   std::array<std::uint8_t, 32> priorities_{};
   unsigned group_shift_ = 0;
   std::array<bool, 32> lines_{};
+  std::uint32_t stuck_ = 0;    ///< of the lines
   std::uint64_t pending_ = 0;  ///< a bit an exception
   std::array<Instant, kExceptions> since_{};
   std::vector<unsigned> active_;

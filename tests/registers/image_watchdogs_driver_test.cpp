@@ -1,1 +1,492 @@
+// Both watchdogs of an image, whatever it is doing: wire.md section 6.
 #include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cstdio>
+#include <cstdlib>
+#include <string>
+#include <string_view>
+#include <tuple>
+#include <utility>
+#include <vector>
+
+#include "sim/module.hpp"
+#include "tests/modbus_frame.hpp"
+#include "tests/registers/board_bench.hpp"
+#include "tests/registers/images_under_test.hpp"
+
+namespace ex9000::registers {
+namespace {
+
+using Bytes = std::vector<std::uint8_t>;
+using std::chrono::microseconds;
+using std::chrono::milliseconds;
+using std::chrono::seconds;
+
+constexpr milliseconds kComesUpWithin{100};
+constexpr milliseconds kResetsWithin{1600};
+constexpr milliseconds kTick{1};
+
+constexpr std::uint16_t kPowerOnValue = 0x5A5A;
+constexpr std::uint16_t kSafeValue = 0xA5A4;
+constexpr std::uint16_t kDriven = 0xC35A;
+constexpr std::uint8_t kTimeout = 0x64;
+
+std::string hex(unsigned value) {
+  char digits[3];
+  (void)std::snprintf(digits, sizeof digits, "%02X", value & 0xFFU);
+  return digits;
+}
+
+/// As with power cuts.
+bool all_of_them() {
+  const char* which = std::getenv("EX9000_CUTS");  // NOLINT(concurrency-mt-unsafe): nobody sets it
+  return which != nullptr && std::string_view(which) == "all";
+}
+
+/// A module that has been set up: all outputs values differ, and so does what is driven.
+Settings set_up(const Model& model, Protocol protocol) {
+  Settings settings = Settings::factory(model);
+  settings.protocol = protocol;
+  settings.watchdog_enabled = true;
+  settings.watchdog_timeout = kTimeout;
+  if (model.outputs != 0) {
+    settings.power_on_value = kPowerOnValue;
+    settings.safe_value = kSafeValue;
+  }
+  return settings;
+}
+
+/// A module on its board with a master that speaks its protocol.
+class WatchedModule {
+ public:
+  struct Change {
+    Instant at;
+    std::uint16_t outputs;
+  };
+
+  WatchedModule(const ImageName& name, const Settings& settings)
+      : model(*find_model(name.model)),
+        bench(image_of(name.board, name.model)),
+        protocol_(settings.protocol) {
+    bench.memory = sim::SimulatedModule::memory_image(model, settings);
+    for (unsigned channel = 0; channel < bench.image.outputs; ++channel) {
+      bench.net(bench.image.output_pins.at(channel)).on_change([this] {
+        changes.push_back({bench.timeline.now(), bench.outputs()});
+      });
+    }
+    power_up();
+  }
+
+  void power_up() {
+    bench.power_on();
+    bench.run_for(kComesUpWithin);
+    ASSERT_TRUE(uart().enabled());
+  }
+  void power_cycle() {
+    bench.power_off();
+    bench.run_for(milliseconds(20));
+    power_up();
+  }
+
+  [[nodiscard]] bool ascii() const { return protocol_ == Protocol::Ascii; }
+  UartPort& uart() { return bench.image.uart == 0 ? bench.mcu->uart0 : bench.mcu->uart1; }
+
+  /// ASCII with its CR, or a Modbus frame, whichever the module speaks.
+  [[nodiscard]] Bytes framed(const std::string& ascii_text, const Bytes& modbus) const {
+    if (!ascii()) {
+      return with_crc(modbus);
+    }
+    Bytes bytes(ascii_text.begin(), ascii_text.end());
+    bytes.push_back('\r');
+    return bytes;
+  }
+  Bytes ask(const std::string& ascii_text, const Bytes& modbus) {
+    return bench.exchange(framed(ascii_text, modbus));
+  }
+  Bytes text(const std::string& reply) { return framed(reply, {}); }
+
+  /// Drives `value` on all outputs; whether it was accepted.
+  bool drive(std::uint16_t value) {
+    const Bytes reply = bench.exchange(drive_frame(value));
+    return ascii() ? reply == text(">") : reply.size() == 8 && reply[1] == 0x0F;
+  }
+  [[nodiscard]] Bytes drive_frame(std::uint16_t value) const {
+    return framed("@01" + hex(value / 256U) + hex(value),
+                  {1, 0x0F, 0, 0, 0, 16, 2, static_cast<std::uint8_t>(value & 0xFFU),
+                   static_cast<std::uint8_t>(value >> 8U)});
+  }
+  bool timeout_status() {
+    const Bytes reply = ask("~010", {1, 0x01, 0x01, 0x0D, 0, 1});
+    return ascii() ? reply.at(4) == '4' : reply.at(3) == 1;
+  }
+  bool enabled() {
+    const Bytes reply = ask("~012", {1, 0x01, 0x01, 0x04, 0, 1});
+    return ascii() ? reply.at(3) == '1' : reply.at(3) == 1;
+  }
+  /// That there was a reset: `$AA5`, or in Modbus counters that begin with the request that asks for them.
+  bool was_reset() {
+    const Bytes reply = ask("$015", {1, 0x08, 0, 0x0B, 0, 0});
+    return ascii() ? reply.at(3) == '1' : (reply.at(4) << 8U | reply.at(5)) == 1;
+  }
+  bool stores_a_timeout(std::uint8_t timeout) {
+    const Bytes reply = ask("~0131" + hex(timeout), {1, 0x06, 0x01, 0xE8, 0, timeout});
+    return ascii() ? reply == text("!01") : reply.size() == 8 && reply[1] == 0x06;
+  }
+  /// Sends it, and returns when it was over: a Modbus frame with its silence, and a character with the middle
+  /// of its stop bit, for the UART tells of it then.
+  Instant host_ok() {
+    bench.line.send(framed("~**", {1, 0x03, 0x30, 0x38, 0, 0}));
+    while (bench.line.sending()) {
+      bench.run_for(microseconds(10));
+    }
+    const Instant bit = bench.line.bit_time();
+    return bench.line.sent() + (ascii() ? -bit / 2 : 77 * bit / 2);
+  }
+
+  const Model& model;
+  std::vector<Change> changes;  ///< of the outputs; outlives the board
+  BoardBench bench;
+
+ private:
+  Protocol protocol_;
+};
+
+// --- module watchdog ---
+
+enum class Doing : std::uint8_t { Nothing, Receiving, Answering, OnTheEepromsBus, Programming };
+constexpr Doing kEverything[] = {Doing::Nothing, Doing::Receiving, Doing::Answering, Doing::OnTheEepromsBus,
+                                 Doing::Programming};
+const char* name_of(Doing doing) {
+  switch (doing) {
+    case Doing::Nothing:
+      return "idle";
+    case Doing::Receiving:
+      return "receiving";
+    case Doing::Answering:
+      return "answering";
+    case Doing::OnTheEepromsBus:
+      return "writing to the EEPROM";
+    case Doing::Programming:
+      return "waiting for the EEPROM";
+  }
+  return "";
+}
+
+class FaultOnBoard : public testing::TestWithParam<std::tuple<ImageName, Protocol>> {
+ protected:
+  [[nodiscard]] ImageName image() const { return std::get<0>(GetParam()); }
+  [[nodiscard]] Protocol protocol() const { return std::get<1>(GetParam()); }
+
+  /// Until it is doing that. What it stores is the name, in Modbus the host watchdog's timeout.
+  static void make_it(WatchedModule& module, Doing doing) {
+    BoardBench& bench = module.bench;
+    const Bytes harmless = module.framed("$01M", {1, 0x11});
+    const Bytes storing = module.framed("~01OPUMP", {1, 0x06, 0x01, 0xE8, 0, 0x65});
+    unsigned events = 0;
+    bench.line.drives.clear();
+    switch (doing) {
+      case Doing::Nothing:
+        break;
+      case Doing::Receiving:
+        bench.line.send({harmless.begin(), harmless.begin() + 2});
+        bench.run_for(kBitsACharacter * 3 / 2 * bench.line.bit_time());
+        break;
+      case Doing::Answering:
+        bench.line.send(harmless);
+        while (bench.line.drives.empty()) {
+          bench.run_for(microseconds(100));
+        }
+        bench.run_for(kBitsACharacter * 3 / 2 * bench.line.bit_time());
+        ASSERT_TRUE(bench.line.driven());
+        break;
+      case Doing::OnTheEepromsBus:
+        bench.eeprom.on_event([&events] { ++events; });
+        bench.line.send(storing);
+        while (events < 12) {
+          bench.run_for(microseconds(10));
+        }
+        bench.eeprom.on_event(nullptr);
+        break;
+      case Doing::Programming:
+        bench.line.send(storing);
+        while (!bench.eeprom.programming()) {
+          bench.run_for(microseconds(100));
+        }
+        break;
+    }
+  }
+
+  template <class Fault>
+  void expect_reset(const std::string& what, Fault fault) {
+    for (const bool timeout_status : {false, true}) {
+      for (const Doing doing : kEverything) {
+        SCOPED_TRACE(what + " while " + name_of(doing) + (timeout_status ? ", timeout status set" : ""));
+        Settings settings = set_up(*find_model(image().model), protocol());
+        settings.timeout_status = timeout_status;
+        WatchedModule module(image(), settings);
+        BoardBench& bench = module.bench;
+        ASSERT_TRUE(module.was_reset());
+        ASSERT_FALSE(module.was_reset());
+        if (bench.image.outputs != 0) {
+          ASSERT_EQ(module.drive(kDriven), !timeout_status);
+        }
+        const std::uint16_t before = bench.outputs();
+        make_it(module, doing);
+        fault(bench);
+        module.changes.clear();
+        bench.run_for(kResetsWithin);
+        ASSERT_EQ(bench.watchdog_resets, 1U);
+        ASSERT_EQ(bench.resets, 1U);
+        bench.run_for(kComesUpWithin);
+        const std::uint16_t after = bench.image.outputs == 0 ? 0
+                                    : timeout_status         ? kSafeValue
+                                                             : kPowerOnValue;
+        EXPECT_EQ(bench.outputs(), after);
+        for (const WatchedModule::Change& change : module.changes) {
+          // Off from the reset on, and then the value from reset, pin by pin.
+          EXPECT_EQ(change.at <= bench.began ? change.outputs & ~before : change.outputs & ~after, 0);
+        }
+        EXPECT_TRUE(module.was_reset());
+        EXPECT_FALSE(module.was_reset());
+        EXPECT_EQ(module.timeout_status(), timeout_status);
+        EXPECT_TRUE(module.enabled());
+        EXPECT_TRUE(module.stores_a_timeout(0x40));
+        ASSERT_FALSE(HasFailure());
+        ++resets_;
+      }
+    }
+  }
+
+  void TearDown() override {
+    if (resets_ != 0) {
+      std::printf("%s: %u resets\n", testing::UnitTest::GetInstance()->current_test_info()->name(), resets_);
+    }
+  }
+
+  unsigned resets_ = 0;
+};
+
+TEST_P(FaultOnBoard, AMainLoopThatHangsIsReset) {
+  expect_reset("the main loop hangs", [](BoardBench& bench) { bench.mcu->hang(Hangs::MainLoop); });
+}
+
+TEST_P(FaultOnBoard, AnInterruptThatDoesNotEndIsReset) {
+  expect_reset("an interrupt hangs", [](BoardBench& bench) {
+    bench.mcu->hang(Hangs::Handler);
+    // Not every one of them looks at a register; this one does.
+    bench.mcu->core.stick(8);
+  });
+}
+
+TEST_P(FaultOnBoard, ATickThatStopsIsReset) {
+  expect_reset("the tick stops", [](BoardBench& bench) { bench.mcu->core.write(Core::kTickControl, 4); });
+}
+
+TEST_P(FaultOnBoard, AnInterruptThatStormsIsReset) {
+  const BoardBench bench(image_of(image().board, image().model));
+  WatchedModule module(image(), set_up(*find_model(image().model), protocol()));
+  const std::uint32_t enabled = module.bench.mcu->core.enabled();
+  ASSERT_NE(enabled, 0U);
+  for (unsigned interrupt = 0; interrupt < 32; ++interrupt) {
+    if ((enabled >> interrupt & 1U) != 0) {
+      expect_reset("interrupt " + std::to_string(interrupt) + " storms", [interrupt](BoardBench& stormy) {
+        stormy.mcu->core.stick(interrupt);
+        stormy.mcu->set_clocks_an_access(1000);  // not millions of them
+      });
+    }
+  }
+}
+
+TEST_P(FaultOnBoard, AWedgedEepromBusIsNoHangButRefusesToStoreUntilItIsFree) {
+  for (const unsigned line : {I2cBlock::kClockPin, I2cBlock::kDataPin}) {
+    for (const Doing doing : kEverything) {
+      SCOPED_TRACE(std::string(line == I2cBlock::kClockPin ? "the clock" : "the data line") +
+                   " stuck while " + name_of(doing));
+      WatchedModule module(image(), set_up(*find_model(image().model), protocol()));
+      BoardBench& bench = module.bench;
+      if (bench.image.outputs != 0) {
+        ASSERT_TRUE(module.drive(kDriven));
+      }
+      const std::uint16_t outputs = bench.outputs();
+      ASSERT_TRUE(module.stores_a_timeout(0xC8));
+      bench.line.heard.clear();
+      make_it(module, doing);
+      Net& wire = bench.pins.at('B', line);
+      wire.drive(End::Fault, Drive::Low);
+      module.changes.clear();
+      bench.run_for(seconds(2));
+      if (doing == Doing::OnTheEepromsBus || doing == Doing::Programming) {
+        // Answered, and refused: what cannot be read back is not stored.
+        ASSERT_GE(bench.line.heard.size(), 3U);
+        EXPECT_TRUE(module.ascii() ? bench.line.heard[0].byte == '?' : bench.line.heard[1].byte == 0x86U);
+      }
+      if (doing == Doing::Receiving) {
+        module.ask("", {});  // whatever it makes of the half request
+      }
+      EXPECT_FALSE(module.stores_a_timeout(0x40));
+      if (bench.image.outputs != 0) {
+        EXPECT_TRUE(module.drive(outputs));
+      }
+      EXPECT_FALSE(module.timeout_status());
+      EXPECT_EQ(bench.resets, 0U);
+      EXPECT_TRUE(module.changes.empty());
+      wire.drive(End::Fault, Drive::Nothing);
+      bench.run_for(seconds(3));
+      EXPECT_TRUE(module.stores_a_timeout(0x40));
+      module.power_cycle();
+      const Bytes reply = module.ask("~012", {1, 0x03, 0x01, 0xE8, 0, 1});
+      EXPECT_EQ(reply, module.framed("!01140", {1, 0x03, 2, 0, 0x40}));
+      ASSERT_FALSE(HasFailure());
+    }
+  }
+}
+
+// --- host watchdog ---
+
+class HostWatchdogOnBoard : public FaultOnBoard {
+ protected:
+  /// With outputs that only a command can have given it.
+  static void arm(WatchedModule& module, unsigned timeout) {
+    module.ask("~013001", {1, 0x05, 0x01, 0x04, 0, 0});
+    module.ask("~011", {1, 0x05, 0x01, 0x0D, 0xFF, 0});
+    module.ask("", {1, 0x06, 0x01, 0xE8, 0, static_cast<std::uint8_t>(timeout)});
+    ASSERT_TRUE(module.drive(kDriven));
+    module.ask("~0131" + hex(timeout), {1, 0x05, 0x01, 0x04, 0xFF, 0});
+  }
+  /// What commands may have stored.
+  static void restore(WatchedModule& module) {
+    module.ask("~011", {1, 0x05, 0x01, 0x0D, 0xFF, 0});
+    module.drive(kPowerOnValue);
+    module.ask("~015P", {1, 0x0F, 0, 0xA0, 0, 16, 2, kPowerOnValue & 0xFFU, kPowerOnValue >> 8U});
+    module.ask("~01O9043M", {1, 0x11});
+  }
+};
+
+TEST_P(HostWatchdogOnBoard, ExpiresWithinATickOfEveryTimeoutAndNeverEarlier) {
+  WatchedModule module(image(), set_up(*find_model(image().model), protocol()));
+  BoardBench& bench = module.bench;
+  Instant earliest = kNever;
+  Instant latest{0};
+  const unsigned step = all_of_them() ? 1 : module.ascii() ? 5 : 11;
+  unsigned timeouts = 0;
+  for (unsigned timeout = 1; timeout <= 0xFF; timeout += step, ++timeouts) {
+    SCOPED_TRACE(timeout);
+    arm(module, timeout);
+    const Instant over = module.host_ok() + timeout * milliseconds(100);
+    module.changes.clear();
+    bench.run_until(over + milliseconds(20));
+    ASSERT_FALSE(module.changes.empty());
+    for (const WatchedModule::Change& change : module.changes) {
+      earliest = std::min(earliest, change.at - over);
+      latest = std::max(latest, change.at - over);
+    }
+    ASSERT_EQ(bench.outputs(), kSafeValue);
+  }
+  EXPECT_GE(earliest, Instant(0));
+  EXPECT_LE(latest, kTick);
+  std::printf("%u timeouts: %.3f to %.3f ms after they were over\n", timeouts,
+              static_cast<double>(earliest.count()) / 1e9, static_cast<double>(latest.count()) / 1e9);
+}
+
+/// Commands that end at any moment about the expiry: one that drives alone, one that drives what it stores,
+/// and one that drives behind one that is being stored.
+TEST_P(HostWatchdogOnBoard, NoCommandDrivesAnythingOnceItHasExpired) {
+  constexpr unsigned kVv = 5;
+  constexpr std::uint16_t kCommanded = 0x3C96;
+  const Instant step = all_of_them() ? microseconds(100) : microseconds(2300);
+  WatchedModule module(image(), set_up(*find_model(image().model), protocol()));
+  BoardBench& bench = module.bench;
+  const Bytes drives = module.drive_frame(kCommanded);
+  const Bytes stores = module.framed("~01OPUMP", {1, 0x05, 0, 0xA1, 0, 0});
+  const Bytes stores_and_drives =
+      module.framed("~015P", {1, 0x0F, 0, 0xA0, 0, 16, 2, kCommanded & 0xFFU, kCommanded >> 8U});
+  unsigned moments = 0;
+  unsigned too_late = 0;
+  for (const auto& [first, second] :
+       {std::pair<Bytes, Bytes>(drives, {}), {stores_and_drives, {}}, {stores, drives}}) {
+    for (Instant early{0}; early < milliseconds(60); early += step, ++moments) {
+      SCOPED_TRACE(std::to_string(early.count() / 1'000'000) + " us before");
+      arm(module, kVv);
+      const Instant over = module.host_ok() + kVv * milliseconds(100);
+      bench.run_until(over - early);
+      bench.line.send(first);
+      while (bench.line.sending()) {
+        bench.run_for(microseconds(50));
+      }
+      if (!second.empty()) {
+        bench.run_for(milliseconds(6));  // it is being stored
+        bench.line.send(second);
+      }
+      bench.run_until(std::max(bench.timeline.now(), over + kTick));
+      const bool in_time = bench.timeline.now() == over + kTick;
+      EXPECT_EQ(bench.outputs(), kSafeValue);
+      module.changes.clear();
+      bench.run_for(milliseconds(100));
+      EXPECT_TRUE(module.changes.empty());
+      EXPECT_TRUE(module.timeout_status());
+      too_late += in_time ? 0U : 1U;
+      ASSERT_FALSE(HasFailure());
+      restore(module);
+    }
+  }
+  EXPECT_GT(moments, 2 * too_late);
+  std::printf("%u moments, %u of them beyond the expiry\n", moments, too_late);
+}
+
+TEST_P(HostWatchdogOnBoard, APowerCutAtAnyMomentAfterItHasExpiredGivesNoCommandedValueBack) {
+  constexpr unsigned kVv = 9;
+  const Instant step = all_of_them() ? microseconds(50) : microseconds(700);
+  WatchedModule module(image(), set_up(*find_model(image().model), protocol()));
+  BoardBench& bench = module.bench;
+  unsigned unstored = 0;
+  unsigned cuts = 0;
+  for (const bool writing : {false, true}) {
+    for (Instant late{0}; late < milliseconds(30); late += step, ++cuts) {
+      SCOPED_TRACE(std::to_string(late.count() / 1'000'000) + " us after");
+      arm(module, kVv);
+      const Instant over = module.host_ok() + kVv * milliseconds(100);
+      if (writing) {  // something else is being stored as it expires
+        bench.run_until(over - milliseconds(16));
+        bench.line.send(module.framed("~01OPUMP" + std::to_string(cuts % 10), {1, 0x06, 0x01, 0xE4, 0, 1}));
+      }
+      bench.run_until(over + kTick + late);
+      ASSERT_EQ(bench.outputs(), kSafeValue);
+      module.changes.clear();
+      module.power_cycle();
+      for (const WatchedModule::Change& change : module.changes) {
+        const bool safe = (change.outputs & ~kSafeValue) == 0;
+        EXPECT_TRUE(safe || (change.outputs & ~kPowerOnValue) == 0);
+      }
+      const bool stored = module.timeout_status();
+      unstored += stored ? 0U : 1U;
+      EXPECT_EQ(bench.outputs(), stored ? kSafeValue : kPowerOnValue);
+      EXPECT_EQ(module.enabled(), !stored);
+      EXPECT_EQ(module.drive(kDriven), !stored);
+      EXPECT_EQ(bench.outputs(), stored ? kSafeValue : kDriven);
+      ASSERT_FALSE(HasFailure());
+      module.ask("~011", {1, 0x05, 0x01, 0x0D, 0xFF, 0});
+    }
+  }
+  EXPECT_GT(unstored, 0U);
+  EXPECT_LT(unstored, cuts / 2);
+  std::printf("%u cuts, %u of them before it was stored\n", cuts, unstored);
+}
+
+const auto kProtocols = testing::Values(Protocol::Ascii, Protocol::ModbusRtu);
+std::string name_of_case(const testing::TestParamInfo<std::tuple<ImageName, Protocol>>& info) {
+  return name_of(testing::TestParamInfo<ImageName>(std::get<0>(info.param), info.index)) +
+         (std::get<1>(info.param) == Protocol::Ascii ? "_ASCII" : "_Modbus");
+}
+INSTANTIATE_TEST_SUITE_P(Images, FaultOnBoard,
+                         testing::Combine(testing::Values(ImageName{"ek-tm4c123gxl", "EX9043D-M"},
+                                                          ImageName{"ek-tm4c123gxl", "EX9052D-M"}),
+                                          kProtocols),
+                         name_of_case);
+INSTANTIATE_TEST_SUITE_P(Images, HostWatchdogOnBoard,
+                         testing::Combine(testing::Values(ImageName{"ek-tm4c123gxl", "EX9043D-M"}),
+                                          kProtocols),
+                         name_of_case);
+
+}  // namespace
+}  // namespace ex9000::registers

@@ -152,8 +152,19 @@ void Microcontroller::pass_all(Instant to) {
   }
 }
 
+/// Does not return where it hangs, but by a reset.
+void Microcontroller::hang_if_told() {
+  if (hangs_ == Hangs::MainLoop && !core.in_handler()) {
+    run_until(kNever);
+  }
+  while (hangs_ == Hangs::Handler && core.in_handler()) {
+    pass(std::max(timeline_.next(), timeline_.now() + Instant(1)));
+  }
+}
+
 void Microcontroller::begin_access(std::uint32_t address, bool write, std::uint32_t value) {
   pass_all(timeline_.now() + clocks_an_access_ * system_control.cycle());
+  hang_if_told();
   core.serve_pending();
   ++accesses_;
   if (recording_) {

@@ -61,6 +61,13 @@ struct Access {
 /// How it came to begin anew.
 class ResetRequest {};
 
+/// What does not go on any more.
+enum class Hangs : std::uint8_t {
+  Nothing,
+  MainLoop,  ///< from its next access on; interrupts are served
+  Handler,   ///< the next one that is served, from its next access on; none interrupts it
+};
+
 /// From one reset to the next. The drivers' bus leads to the one that was made last.
 class Microcontroller {
  public:
@@ -104,6 +111,9 @@ class Microcontroller {
     on_write_ = std::move(act);
   }
 
+  /// Until the next reset.
+  void hang(Hangs what) { hangs_ = what; }
+
   GpioPort& port(char letter) { return *ports_.at(static_cast<std::size_t>(letter - 'A')); }
   [[nodiscard]] const Chip& chip() const { return chip_; }
 
@@ -138,6 +148,7 @@ class Microcontroller {
   void begin_access(std::uint32_t address, bool write, std::uint32_t value);
   void pass(Instant to);
   void pass_all(Instant to);
+  void hang_if_told();
   void check_reset() const;
   void pin_changed(unsigned port, unsigned pin);
 
@@ -145,6 +156,7 @@ class Microcontroller {
   std::function<void(Instant)> pass_;
   std::function<void(std::uint32_t, std::uint32_t)> on_write_;
   int clocks_an_access_ = 2;
+  Hangs hangs_ = Hangs::Nothing;
   bool reset_requested_ = false;
   unsigned bites_ = 0;
   std::uint64_t accesses_ = 0;

@@ -113,8 +113,8 @@ std::vector<StoringCommand> modbus_commands(const Model& model) {
     const bool broadcast = name.rfind("broadcast", 0) == 0;
     commands.push_back({name, Protocol::ModbusRtu, Init::Released, std::move(prepare),
                         [rest, broadcast](const Settings& settings) {
-                          Bytes frame{broadcast ? std::uint8_t{0} : settings.address};
-                          frame.insert(frame.end(), rest.begin(), rest.end());
+                          Bytes frame = rest;
+                          frame.insert(frame.begin(), broadcast ? std::uint8_t{0} : settings.address);
                           return frame;
                         },
                         std::move(change), nullptr, !broadcast});
