@@ -4,8 +4,6 @@
 
 #include <algorithm>
 
-#include "tests/modbus_frame.hpp"
-
 namespace ex9000::registers {
 
 namespace {
@@ -23,14 +21,6 @@ std::uint8_t left(unsigned way, std::uint8_t old_byte, std::uint8_t new_byte) {
   const std::array<std::uint8_t, kWaysAByteIsLeft> ways{old_byte, new_byte, 0x00, 0xFF,
                                                         static_cast<std::uint8_t>(new_byte ^ 0x5AU)};
   return ways.at(way);
-}
-
-std::uint8_t hex_byte(const std::string& text, std::size_t at) {
-  return static_cast<std::uint8_t>(std::stoul(text.substr(at, 2), nullptr, 16));
-}
-
-std::uint16_t word(const std::vector<std::uint8_t>& reply, std::size_t at) {
-  return static_cast<std::uint16_t>(reply.at(at) << 8U | reply.at(at + 1));
 }
 
 }  // namespace
@@ -56,25 +46,20 @@ void CutBench::power_up(const Contents& contents, bool init) {
   ASSERT_TRUE(uart().enabled()) << "it does not come up";
 }
 
-CutBench::Manner CutBench::speak_as(const Settings& settings, bool init_mode) {
+Manner CutBench::speak_as(const Settings& settings, bool init_mode) {
   bench_.line.set_baud(baud_rate(init_mode ? kFactoryBaudCode : settings.baud_code));
-  if (init_mode) {
-    return {Protocol::Ascii, 0, false};
-  }
-  return {settings.protocol, settings.address, (settings.format & kFormatChecksum) != 0};
+  return init_mode ? Manner::init_mode() : Manner::of(settings);
 }
 
-/// Framed. The line is quiet for long enough before.
-void CutBench::send(const Manner& manner, const Bytes& request) {
+/// The line is quiet for long enough before.
+void CutBench::send(const Bytes& frame) {
   bench_.run_for(40 * bench_.line.bit_time() + microseconds(1800));
   bench_.line.heard.clear();
   bench_.line.drives.clear();
-  bench_.line.send(manner.protocol == Protocol::Ascii
-                       ? ascii_frame({request.begin(), request.end()}, manner.checksum)
-                       : with_crc(request));
+  bench_.line.send(frame);
 }
 
-/// Without its frame; nothing where none begins within 25 ms.
+/// Nothing where none begins within 25 ms.
 CutBench::Bytes CutBench::hear() {
   while (bench_.line.sending()) {
     bench_.run_for(microseconds(500));
@@ -91,90 +76,11 @@ CutBench::Bytes CutBench::hear() {
   return reply;
 }
 
-/// The reply without CRC.
-CutBench::Bytes CutBench::ask(const Manner& manner, const Bytes& request) {
-  send(manner, request);
-  Bytes reply = hear();
-  if (reply.size() < 4) {
-    return {};
-  }
-  const Bytes body(reply.begin(), reply.end() - 2);
-  EXPECT_EQ(with_crc(body), reply);
-  return body;
-}
-
-/// A command by its delimiter and what is behind its address; its reply without checksum and CR.
-std::string CutBench::ask(const Manner& manner, const std::string& command) {
-  constexpr const char* kDigits = "0123456789ABCDEF";
-  const std::string text =
-      command.substr(0, 1) + kDigits[manner.address / 16] + kDigits[manner.address % 16] + command.substr(1);
-  send(manner, {text.begin(), text.end()});
-  const Bytes reply = hear();
-  const std::size_t frame = manner.checksum ? 3 : 1;
-  if (reply.size() <= frame) {
-    return {};
-  }
-  const std::string body(reply.begin(), reply.end() - static_cast<std::ptrdiff_t>(frame));
-  EXPECT_EQ(ascii_frame(body, manner.checksum), reply);
-  return body;
-}
-
-std::optional<Settings> CutBench::read_ascii(const Manner& manner) {
-  const std::string configuration = ask(manner, std::string("$2"));
-  if (configuration.size() != 9) {
-    return std::nullopt;
-  }
-  Settings settings;
-  settings.address = hex_byte(configuration, 1);
-  settings.baud_code = hex_byte(configuration, 5);
-  settings.format = hex_byte(configuration, 7);
-  settings.protocol = ask(manner, std::string("$P")).at(4) == '1' ? Protocol::ModbusRtu : Protocol::Ascii;
-  settings.name = Name(std::string_view(ask(manner, std::string("$M")).substr(3)));
-  settings.timeout_status = (hex_byte(ask(manner, std::string("~0")), 3) & 0x04U) != 0;
-  const std::string watchdog = ask(manner, std::string("~2"));
-  settings.watchdog_enabled = watchdog.at(3) == '1';
-  settings.watchdog_timeout = hex_byte(watchdog, 4);
-  if (model_.outputs != 0) {
-    const auto value = [&](const char* command) {
-      const std::string reply = ask(manner, std::string(command));
-      return static_cast<std::uint16_t>(hex_byte(reply, 3) << 8U | hex_byte(reply, 5));
-    };
-    settings.power_on_value = value("~4P");
-    settings.safe_value = value("~4S");
-  }
-  return settings;
-}
-
-std::optional<Settings> CutBench::read_modbus(const Manner& manner, std::uint8_t format) {
-  const auto registers = [&](std::uint8_t low, std::uint8_t count) {
-    return ask(manner, Bytes{manner.address, 0x03, 0x01, low, 0x00, count});
-  };
-  const auto coil = [&](std::uint8_t low) {
-    return ask(manner, Bytes{manner.address, 0x01, 0x01, low, 0x00, 0x01}).at(3) == 1;
-  };
-  const Bytes address_and_rate = registers(0xE4, 2);
-  if (address_and_rate.size() != 7) {
-    return std::nullopt;
-  }
-  Settings settings;
-  settings.address = static_cast<std::uint8_t>(word(address_and_rate, 3));
-  settings.baud_code = static_cast<std::uint8_t>(word(address_and_rate, 5));
-  settings.format = format;
-  settings.protocol = coil(0x00) ? Protocol::ModbusRtu : Protocol::Ascii;
-  settings.watchdog_timeout = static_cast<std::uint8_t>(word(registers(0xE8, 1), 3));
-  settings.watchdog_enabled = coil(0x04);
-  settings.timeout_status = coil(0x0D);
-  const Bytes identification = ask(manner, Bytes{manner.address, 0x11});
-  settings.name = Name(std::string_view(std::string(identification.begin() + 6, identification.end())));
-  if (model_.outputs != 0) {
-    const auto value = [&](std::uint8_t row) {
-      const Bytes reply = ask(manner, Bytes{manner.address, 0x01, 0x00, row, 0x00, 0x10});
-      return static_cast<std::uint16_t>(reply.at(3) | reply.at(4) << 8U);
-    };
-    settings.safe_value = value(0x80);
-    settings.power_on_value = value(0xA0);
-  }
-  return settings;
+SettingsReader CutBench::master(const Manner& manner) {
+  return {model_, manner, [this](const Bytes& frame) {
+            send(frame);
+            return hear();
+          }};
 }
 
 Found CutBench::come_up(const Contents& contents, const std::vector<Settings>& guesses, bool thoroughly) {
@@ -182,16 +88,14 @@ Found CutBench::come_up(const Contents& contents, const std::vector<Settings>& g
   std::optional<std::uint8_t> format;
   if (thoroughly) {
     power_up(contents, true);
-    const std::string reply = ask(speak_as(Settings(), true), std::string("$2"));
+    const std::string reply = master(speak_as(Settings(), true)).ask(std::string("$2"));
     EXPECT_EQ(reply.size(), 9U) << reply;
     format = hex_byte(reply, 7);
   }
   power_up(contents, false);
   found.outputs = bench_.outputs();
   for (const Settings& guess : guesses) {
-    const Manner manner = speak_as(guess, false);
-    found.settings = manner.protocol == Protocol::Ascii ? read_ascii(manner)
-                                                        : read_modbus(manner, format.value_or(guess.format));
+    found.settings = master(speak_as(guess, false)).read(format.value_or(guess.format));
     if (found.settings) {
       break;
     }
@@ -234,10 +138,9 @@ void CutBench::note_cuts(Cuts& cuts) {
 
 void CutBench::set_outputs(const Manner& manner) {
   if (manner.protocol == Protocol::Ascii) {
-    ASSERT_EQ(ask(manner, std::string("@C35A")), ">");
+    ASSERT_EQ(master(manner).ask(std::string("@C35A")), ">");
   } else {
-    const Bytes reply =
-        ask(manner, Bytes{manner.address, 0x0F, 0, 0, 0, 16, 2, kDriven & 0xFFU, kDriven >> 8U});
+    const Bytes reply = master(manner).ask(Bytes{0x0F, 0, 0, 0, 16, 2, kDriven & 0xFFU, kDriven >> 8U});
     ASSERT_EQ(reply, (Bytes{manner.address, 0x0F, 0, 0, 0, 16}));
   }
   ASSERT_EQ(bench_.outputs(), kDriven);
@@ -247,7 +150,7 @@ void CutBench::set_outputs(const Manner& manner) {
 void CutBench::carry_out(const Manner& manner, const StoringCommand& command, const Settings& before) {
   const std::size_t had_programmed = bench_.eeprom.programmed().size();
   if (!command.is_timeout()) {
-    send(manner, command.frame(before));
+    send(manner.framed(command.frame(before)));
     while (bench_.line.sending()) {
       bench_.run_for(microseconds(500));
     }
@@ -272,8 +175,7 @@ std::uint16_t CutBench::outputs_before(const Settings& settings) const {
   return settings.timeout_status ? settings.safe_value : kDriven;
 }
 
-CutBench::Manner CutBench::get_ready(const Contents& contents, const Settings& before,
-                                     const StoringCommand& command) {
+Manner CutBench::get_ready(const Contents& contents, const Settings& before, const StoringCommand& command) {
   const bool init_mode = command.init == Init::SinceReset;
   power_up(contents, init_mode);
   const Manner manner = speak_as(before, init_mode);
@@ -319,7 +221,7 @@ Contents CutBench::reset_after(Instant time, const Contents& contents, const Set
   const Manner manner = get_ready(contents, before, command);
   const Instant when = bench_.timeline.now() + time;
   if (!command.is_timeout()) {
-    send(manner, command.frame(before));
+    send(manner.framed(command.frame(before)));
   }
   bench_.run_until(when);
   certainly_done = !bench_.line.drives.empty();

@@ -13,7 +13,8 @@
 #include "firmware/model/model.hpp"
 #include "firmware/settings/settings.hpp"
 #include "tests/registers/board_bench.hpp"
-#include "tests/registers/storing_commands.hpp"
+#include "tests/settings_reader.hpp"
+#include "tests/storing_commands.hpp"
 
 namespace ex9000::registers {
 
@@ -62,27 +63,17 @@ class CutBench {
  private:
   using Bytes = std::vector<std::uint8_t>;
 
-  /// How it is spoken to.
-  struct Manner {
-    Protocol protocol;
-    std::uint8_t address;
-    bool checksum;
-  };
-
   void power_up(const Contents& contents, bool init);
   UartPort& uart() { return bench_.image.uart == 0 ? bench_.mcu->uart0 : bench_.mcu->uart1; }
   [[nodiscard]] Contents contents() const;
   void note_cuts(Cuts& cuts);
   Manner speak_as(const Settings& settings, bool init_mode);
-  void send(const Manner& manner, const Bytes& request);
+  void send(const Bytes& frame);
   Bytes hear();
-  Bytes ask(const Manner& manner, const Bytes& request);
-  std::string ask(const Manner& manner, const std::string& rest);
+  SettingsReader master(const Manner& manner);
   void set_outputs(const Manner& manner);
   Manner get_ready(const Contents& contents, const Settings& before, const StoringCommand& command);
   void carry_out(const Manner& manner, const StoringCommand& command, const Settings& before);
-  std::optional<Settings> read_ascii(const Manner& manner);
-  std::optional<Settings> read_modbus(const Manner& manner, std::uint8_t format);
 
   const Model& model_;
   BoardBench bench_;

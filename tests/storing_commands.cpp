@@ -1,9 +1,9 @@
-#include "tests/registers/storing_commands.hpp"
+#include "tests/storing_commands.hpp"
 
 #include <array>
 #include <cstdio>
 
-namespace ex9000::registers {
+namespace ex9000 {
 
 namespace {
 
@@ -204,4 +204,4 @@ std::vector<std::uint8_t> ascii_frame(const std::string& text, bool checksum) {
   return {frame.begin(), frame.end()};
 }
 
-}  // namespace ex9000::registers
+}  // namespace ex9000

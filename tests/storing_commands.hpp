@@ -11,7 +11,7 @@
 #include "firmware/model/model.hpp"
 #include "firmware/settings/settings.hpp"
 
-namespace ex9000::registers {
+namespace ex9000 {
 
 /// INIT* when the command comes.
 enum class Init : std::uint8_t {
@@ -50,4 +50,4 @@ std::vector<StoringCommand> storing_commands(const Model& model);
 /// With CHK where `checksum`, and CR.
 std::vector<std::uint8_t> ascii_frame(const std::string& text, bool checksum);
 
-}  // namespace ex9000::registers
+}  // namespace ex9000
