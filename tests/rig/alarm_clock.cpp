@@ -1,6 +1,7 @@
 #include "tests/rig/alarm_clock.hpp"
 
 #include <array>
+#include <cstdio>
 #include <stdexcept>
 #include <vector>
 
@@ -236,39 +237,74 @@ nanoseconds AlarmClock::make_edges(Pin pin, std::uint32_t edges) {
 }
 
 void AlarmClock::run(std::uint32_t clocks, const std::string& more) {
-  const std::string go_on = GdbClient::framed(stopped_once_ ? "F0" : "c");
+  begin_to_run(clocks, more);
+  if (!wait_for_alarm()) {
+    throw std::runtime_error("a store that nobody waits for");
+  }
+}
+
+void AlarmClock::begin_to_run(std::uint32_t clocks, const std::string& more) {
   std::string packets = more + write_words(kOrders + kNextAlarm, {clocks});
-  GdbClient& gdb = machine_.gdb();
   if (at_first_) {
     packets += write_words(kOrders + kEdges, {0});
     machine_.bus().carry_out(QtestClient::write_command(kAlarm + kInterval, clocks) +
                              QtestClient::write_command(kAlarm + kControl, kEnable));
   }
-  gdb.send(packets + go_on);
-  wait_for_stop();
   at_first_ = false;
+  machine_.gdb().send(packets + GdbClient::framed(go_on_));
 }
 
-void AlarmClock::wait_for_stop() {
+/// False where it has stopped in front of a store.
+bool AlarmClock::wait_for_alarm() {
   for (;;) {
     const std::string packet = machine_.gdb().receive();
     if (packet == "OK") {
       continue;
+    }
+    if (packet.rfind("T05", 0) == 0 && packet.find("watch:") != std::string::npos) {
+      go_on_ = "c";
+      return false;
     }
     // Fwrite,2,ADDRESS,1
     const std::size_t address = packet.find(',', packet.find(',') + 1) + 1;
     if (packet.rfind("Fwrite,", 0) != 0 || address == 0) {
       throw std::runtime_error("the image has stopped running (" + packet + ")");
     }
-    stopped_once_ = true;
+    go_on_ = "F0";
     constexpr int kHex = 16;
     const auto told = static_cast<std::uint32_t>(std::stoull(packet.substr(address), nullptr, kHex));
     if (told != kNotYet) {
       seen_ = told;
-      return;
+      return true;
     }
-    machine_.gdb().send(GdbClient::framed("F0"));
+    machine_.gdb().send(GdbClient::framed(go_on_));
   }
+}
+
+void AlarmClock::watch_stores(std::uint32_t address, std::uint32_t size) {
+  std::array<char, 32> range{};
+  (void)std::snprintf(range.data(), range.size(), "2,%x,%x", address, size);
+  watched_ = range.data();
+  machine_.gdb().send(GdbClient::framed("Z" + watched_));
+  if (machine_.gdb().receive() != "OK") {
+    throw std::runtime_error("the emulator watches no stores");
+  }
+}
+
+/// Where the emulator counts instructions it stops in front of what is watched, and again each time that it
+/// is to go on: so that one instruction is carried out while nothing is watched.
+bool AlarmClock::run_to_store(nanoseconds time) {
+  if (at_store_) {
+    GdbClient& gdb = machine_.gdb();
+    gdb.send(GdbClient::framed("z" + watched_) + GdbClient::framed("s"));
+    while (gdb.receive() == "OK") {
+    }
+    gdb.send(GdbClient::framed("Z" + watched_) + GdbClient::framed("c"));
+  } else {
+    begin_to_run(clocks(time - kInterruptTakes), {});
+  }
+  at_store_ = !wait_for_alarm();
+  return at_store_;
 }
 
 bool AlarmClock::receiver_empty() const { return (seen_ & kReceiverEmpty) != 0; }

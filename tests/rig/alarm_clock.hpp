@@ -32,6 +32,12 @@ class AlarmClock {
   /// Gives an input `edges` edges, one about each 4 us, and runs the machine meanwhile. Returns how long.
   std::chrono::nanoseconds make_edges(Pin pin, std::uint32_t edges);
 
+  /// From now on the machine stops in front of every store to these bytes of the bus as well: then only
+  /// `run_to_store` is left.
+  void watch_stores(std::uint32_t address, std::uint32_t size);
+  /// Runs the machine until there is one, for as long as the first call says at most. Whether there was.
+  bool run_to_store(std::chrono::nanoseconds time);
+
   // --- how it was when it came to a stop ---
 
   [[nodiscard]] bool receiver_empty() const;
@@ -40,13 +46,16 @@ class AlarmClock {
 
  private:
   void run(std::uint32_t clocks, const std::string& more = {});
+  void begin_to_run(std::uint32_t clocks, const std::string& more);
   std::uint32_t clocks(std::chrono::nanoseconds time);
-  void wait_for_stop();
+  bool wait_for_alarm();
 
   Emulator& machine_;
-  bool at_first_ = true;       ///< no alarm has gone off yet
-  bool stopped_once_ = false;  ///< and is waiting to be told to go on
-  std::uint32_t seen_ = 0;     ///< what the interrupt's code has told
+  bool at_first_ = true;     ///< no alarm has gone off yet
+  const char* go_on_ = "c";  ///< what it waits for
+  bool at_store_ = false;    ///< it has stopped in front of one, and the alarm is still to come
+  std::string watched_;      ///< as the debugger names it
+  std::uint32_t seen_ = 0;   ///< what the interrupt's code has told
 };
 
 }  // namespace ex9000::rig

@@ -55,6 +55,11 @@ void EmulatedBoard::supply(bool on) {
   fill_ram();
 }
 
+void EmulatedBoard::kill() {
+  powered_ = false;
+  emulator_.reset();
+}
+
 /// What comes up in a real one is nothing an image may count on.
 void EmulatedBoard::fill_ram() {
   constexpr std::uint32_t kRam = 0x2000'0000;

@@ -46,6 +46,8 @@ class EmulatedBoard {
   /// making an emulator would take most of it, the same one comes on again: halted and reset, by which it
   /// reads the EEPROM's file again, with noise in RAM.
   void supply(bool on);
+  /// Off as by SIGKILL whatever time it has: the next `supply` makes another one.
+  void kill();
   /// By the reset pin, while halted; it stays halted.
   void pull_reset();
   /// Another board with supply just on: INIT* released, inputs off, the EEPROM as the constructor has it. Not

@@ -28,6 +28,12 @@ void TimedModule::power(bool on) {
   }
 }
 
+void TimedModule::kill() {
+  lamp_.forget();
+  clock_.reset();
+  EmulatedBoard::kill();
+}
+
 void TimedModule::reset() {
   if (powered()) {
     pull_reset();

@@ -24,6 +24,8 @@ class TimedModule : public EmulatedBoard {
   void begin_anew(const Settings* settings);
   /// The supply, in no time.
   void power(bool on);
+  /// Off, and its emulator killed: nothing but the EEPROM's file is left. In no time.
+  void kill();
   /// By the reset pin, in no time; none without power.
   void reset();
   /// Level of an input channel; 100 us pass. Channels the model lacks may be set and do nothing.
@@ -35,6 +37,12 @@ class TimedModule : public EmulatedBoard {
   void run_for(std::chrono::nanoseconds time);
   /// Time that has passed.
   [[nodiscard]] std::chrono::nanoseconds now() const { return now_; }
+
+  /// From now on `run_to_store` stops it in front of every store to these bytes of the bus; nothing else runs
+  /// it any more, until it is killed.
+  void watch_stores(std::uint32_t address, std::uint32_t size) { clock_->watch_stores(address, size); }
+  /// Until there is one, for as long as the first call says at most. Whether there was.
+  bool run_to_store(std::chrono::nanoseconds time) { return clock_->run_to_store(time); }
 
   /// Bytes on the line, at `baud` bits per second. What reaches a module that is speaking itself is lost.
   void send(const Bytes& bytes, std::uint32_t baud);
