@@ -268,6 +268,7 @@ bool AlarmClock::wait_for_alarm() {
     // Fwrite,2,ADDRESS,1
     const std::size_t address = packet.find(',', packet.find(',') + 1) + 1;
     if (packet.rfind("Fwrite,", 0) != 0 || address == 0) {
+      go_on_ = "c";
       throw std::runtime_error("the image has stopped running (" + packet + ")");
     }
     go_on_ = "F0";

@@ -84,6 +84,7 @@ void Emulator::reset() {
   bus_->write(kUart0 + kControl, kControlAtReset);
   bus_->write(kUart0 + kLineControl, kFifosOn);  // a change of it empties them
   bus_->write(kUart0 + kLineControl, 0);
+  bus_->read(kUart0);  // a byte that nobody has taken would leave its flag and its interrupt
 }
 
 }  // namespace ex9000::rig

@@ -3,22 +3,290 @@
 // back.
 #include <gtest/gtest.h>
 
+#include <cstdlib>
+#include <stdexcept>
 #include <string>
+#include <string_view>
 #include <vector>
 
+#include "tests/modbus_frame.hpp"
 #include "tests/rig/master.hpp"
+#include "tests/rig/signals.hpp"
+#include "tests/rig/timed_module.hpp"
 
 namespace ex9000::rig {
 namespace {
 
+using std::chrono::milliseconds;
+
 constexpr std::uint32_t kSysTickControl = 0xE000'E010;
 constexpr std::uint32_t kVectorTableOffset = 0xE000'ED08;
-constexpr std::uint32_t kVectors = 16 + 48;
+constexpr std::uint32_t kSetEnable = 0xE000'E100;
+constexpr std::uint32_t kClearEnable = 0xE000'E180;
+constexpr std::uint32_t kSetPending = 0xE000'E200;
 constexpr std::uint32_t kSysTickVector = 15;
-/// Between what the image keeps in RAM, at its bottom, and its stack, at its top.
-constexpr std::uint32_t kTable = 0x2000'8000;
-constexpr std::uint32_t kCode = 0x2000'8400;
+constexpr std::uint32_t kI2c0 = 8;
+constexpr std::uint32_t kI2c0Vector = 16 + kI2c0;
+/// Between what the image and the rig keep in RAM and the image's stack, at its top.
+constexpr std::uint32_t kCode = 0x2000'C000;
 constexpr std::uint32_t kThumb = 1;
+
+bool all_of_them() {
+  const char* which = std::getenv("EX9000_CUTS");  // NOLINT(concurrency-mt-unsafe): nobody sets it
+  return which != nullptr && std::string_view(which) == "all";
+}
+
+/// What an image is doing when it is made to hang.
+enum class Doing : std::uint8_t { Nothing, Receiving, Answering, Storing };
+constexpr Doing kEverything[] = {Doing::Nothing, Doing::Receiving, Doing::Answering, Doing::Storing};
+
+class FaultyImage : public testing::TestWithParam<Protocol> {
+ protected:
+  using Bytes = TimedModule::Bytes;
+  using Fault = void (FaultyImage::*)();
+
+  static constexpr std::uint16_t kPowerOnValue = 0x5A5A;
+  static constexpr std::uint16_t kSafeValue = 0xA5A4;
+  static constexpr milliseconds kComesUpWithin{100};
+
+  static bool ascii() { return GetParam() == Protocol::Ascii; }
+  QtestClient& bus() { return module_.emulator().bus(); }
+
+  static Bytes framed(const std::string& text, const Bytes& modbus) {
+    if (!ascii()) {
+      return with_crc(modbus);
+    }
+    Bytes bytes(text.begin(), text.end());
+    bytes.push_back('\r');
+    return bytes;
+  }
+  Bytes ask(const std::string& text, const Bytes& modbus) {
+    constexpr milliseconds kSilence{5};
+    module_.run_for(kSilence);
+    module_.hear(module_.baud());
+    module_.send(framed(text, modbus), module_.baud());
+    module_.run_for(3 * kSilence);
+    return module_.hear(module_.baud());
+  }
+  /// `$AA5`, or in Modbus counters that begin with the request that asks for them.
+  bool was_reset() {
+    const Bytes reply = ask("$015", {1, 0x08, 0, 0x0B, 0, 0});
+    return ascii() ? reply.at(3) == '1' : reply.at(5) == 1;
+  }
+  bool timeout_status() {
+    const Bytes reply = ask("~010", {1, 0x01, 0x01, 0x0D, 0, 1});
+    return ascii() ? reply.at(4) == '4' : reply.at(3) == 1;
+  }
+  bool stores() {
+    const Bytes reply = ask("~01OVALVE", {1, 0x06, 0x01, 0xE8, 0, 0x40});
+    return ascii() ? reply.at(0) == '!' : reply.at(1) == 0x06;
+  }
+
+  void begin(bool status) {
+    Settings settings = Settings::factory(model_);
+    settings.protocol = GetParam();
+    settings.power_on_value = kPowerOnValue;
+    settings.safe_value = kSafeValue;
+    settings.timeout_status = status;
+    module_.begin_anew(&settings);
+    module_.run_for(kComesUpWithin);
+    ASSERT_TRUE(was_reset());
+    ASSERT_FALSE(was_reset());
+    if (!status) {
+      ask("@01C35A", {1, 0x0F, 0, 0, 0, 16, 2, 0x5A, 0xC3});
+      ASSERT_EQ(module_.outputs(), 0xC35A);
+    }
+  }
+
+  void make_it(Doing doing) {
+    const Bytes harmless = framed("$01M", {1, 0x11});
+    constexpr int kLooks = 1000;
+    switch (doing) {
+      case Doing::Nothing:
+        break;
+      case Doing::Receiving:
+        module_.send({harmless.begin(), harmless.begin() + 2}, module_.baud());
+        break;
+      case Doing::Answering:
+        module_.send(harmless, module_.baud());
+        for (int i = 0; i < kLooks && !level_of(bus(), board::kDriverEnable); ++i) {
+          module_.run_for(std::chrono::microseconds(13));
+        }
+        ASSERT_TRUE(level_of(bus(), board::kDriverEnable));
+        break;
+      case Doing::Storing:
+        // The emulated EEPROM takes no time: the image waits for a byte that it is not told of.
+        module_.send(framed("~01OPUMP", {1, 0x06, 0x01, 0xE8, 0, 0x41}), module_.baud());
+        bus().write(kClearEnable, 1U << kI2c0);
+        module_.run_for(std::chrono::microseconds(ascii() ? 2500 : 5500));
+        bus().write(kSetEnable, 1U << kI2c0);
+        break;
+    }
+  }
+
+ public:
+  // --- faults ---
+
+  /// From now on this code is an interrupt's. Where it has to know its own entry in the table, or the image's
+  /// own code, that is said by kEntry and kOwn.
+  static constexpr std::uint32_t kEntry = 0xE1E1'E1E1;
+  static constexpr std::uint32_t kOwn = 0xE2E2'E2E2;
+  void make_interrupt_run(std::uint32_t vector, const std::vector<std::uint32_t>& code) {
+    const std::uint32_t entry = bus().read(kVectorTableOffset) + 4 * vector;
+    const std::uint32_t own = bus().read(entry);
+    std::uint32_t at = kCode;
+    for (const std::uint32_t word : code) {
+      bus().write(at, word == kEntry ? entry : word == kOwn ? own : word);
+      at += 4;
+    }
+    bus().write(entry, kCode | kThumb);
+  }
+
+  void hang_main_loop() {
+    // What the tick returns to becomes a jump to itself; then the image's own interrupt follows, and from the
+    // next one on it is that alone.
+    make_interrupt_run(kSysTickVector, {
+                                           0x4A044803,  // ldr r0, =entry; ldr r2, =own
+                                           0xA0016002,  // str r2, [r0]; adr r0, loop
+                                           0x47109006,  // str r0, [sp, #24]; bx r2
+                                           0x46C0E7FE,  // loop: b loop; nop
+                                           kEntry,
+                                           kOwn,
+                                       });
+  }
+  void hang_interrupt() { make_interrupt_run(kSysTickVector, {0xE7FEE7FE}); }  // b .
+  void stop_tick() { bus().write(kSysTickControl, 0); }
+  /// It asks for itself again each time, and does what it does.
+  void storm() {
+    make_interrupt_run(kI2c0Vector, {
+                                        0x21014803,  // ldr r0, =kSetPending; movs r1, #1
+                                        0x60010209,  // lsls r1, r1, #8; str r1, [r0]
+                                        0x47004802,  // ldr r0, =own; bx r0
+                                        0x46C046C0,  // nop; nop
+                                        kSetPending,
+                                        kOwn,
+                                    });
+    bus().write(kSetPending, 1U << kI2c0);
+  }
+  /// No byte on the bus of the EEPROM is told to have come to its end.
+  void wedge_bus() {
+    constexpr std::uint32_t kInterruptClear = 0x4002'001C;
+    make_interrupt_run(kI2c0Vector, {
+                                        0x21014801,  // ldr r0, =kInterruptClear; movs r1, #1
+                                        0x47706001,  // str r1, [r0]; bx lr
+                                        kInterruptClear,
+                                    });
+  }
+
+ protected:
+  /// Until its watchdog resets it; where nothing but that is left to be seen of the time, only by its
+  /// registers.
+  void expect_reset_in_time() {
+    constexpr std::uint32_t kWatchdogLoad = 0x4000'0000;
+    constexpr std::uint32_t kCountdowns = 2;
+    constexpr std::uint64_t kMilliseconds = 1600;
+    EXPECT_LE(std::uint64_t{bus().read(kWatchdogLoad)} * kCountdowns,
+              kMilliseconds * board::kClock.frequency() / 1000);
+    const auto latest = module_.now() + milliseconds(kMilliseconds);
+    bool runs = true;
+    try {
+      while (module_.now() < latest) {
+        module_.run_for(milliseconds(50));
+      }
+    } catch (const std::runtime_error&) {
+      runs = false;
+    }
+    // It halts the machine; where that was about to stop by itself, it is told all the same.
+    ASSERT_TRUE(module_.emulator().qmp().hears("WATCHDOG", std::chrono::seconds(1)))
+        << (runs ? "no reset" : "");
+  }
+
+  /// Each of the two statuses with half of what it may be doing. A storm takes the emulator seconds.
+  static bool belongs_to_short_form(Doing doing, bool status, Fault fault) {
+    const bool first_half = doing == Doing::Nothing || doing == Doing::Storing;
+    if (fault == &FaultyImage::storm) {
+      return ascii() && status && doing == Doing::Receiving;
+    }
+    return status != first_half && (ascii() || doing == Doing::Storing);
+  }
+
+  void expect_resets(const char* what, Fault fault) {
+    for (const Doing doing : kEverything) {
+      for (const bool status : {false, true}) {
+        if (!all_of_them() && !belongs_to_short_form(doing, status, fault)) {
+          continue;
+        }
+        SCOPED_TRACE(std::string(what) + " while it does " + std::to_string(static_cast<int>(doing)) +
+                     (status ? ", timeout status set" : ""));
+        begin(status);
+        make_it(doing);
+        ASSERT_FALSE(HasFailure());
+        (this->*fault)();
+        expect_reset_in_time();
+        ASSERT_FALSE(HasFailure());
+        module_.reset();
+        module_.run_for(kComesUpWithin);
+        EXPECT_EQ(module_.outputs(), status ? kSafeValue : kPowerOnValue);
+        EXPECT_TRUE(was_reset());
+        EXPECT_FALSE(was_reset());
+        EXPECT_EQ(timeout_status(), status);
+        EXPECT_TRUE(stores());
+        ASSERT_FALSE(HasFailure());
+      }
+    }
+  }
+
+  const Model& model_ = *find_model("EX9043D-M");
+  TimedModule module_{model_};
+};
+
+TEST_P(FaultyImage, IsResetWhereTheMainLoopHangsAndInterruptsGoOn) {
+  expect_resets("the main loop hangs", &FaultyImage::hang_main_loop);
+}
+
+TEST_P(FaultyImage, IsResetWhereItHangsInAnInterrupt) {
+  expect_resets("an interrupt hangs", &FaultyImage::hang_interrupt);
+}
+
+TEST_P(FaultyImage, IsResetWhereTheTickStops) { expect_resets("the tick stops", &FaultyImage::stop_tick); }
+
+TEST_P(FaultyImage, IsResetWhereAnInterruptStorms) {
+  expect_resets("an interrupt storms", &FaultyImage::storm);
+}
+
+TEST_P(FaultyImage, GoesOnWhereItsEepromsBusIsWedgedAndStoresOnceItIsNot) {
+  for (const Doing doing : kEverything) {
+    SCOPED_TRACE(static_cast<int>(doing));
+    begin(false);
+    make_it(doing);
+    const std::uint32_t entry = bus().read(kVectorTableOffset) + 4 * kI2c0Vector;
+    const std::uint32_t own = bus().read(entry);
+    wedge_bus();
+    module_.run_for(std::chrono::seconds(3));
+    EXPECT_EQ(module_.outputs(), 0xC35A);
+    if (doing == Doing::Receiving) {
+      ask("", {});
+    }
+    module_.hear(module_.baud());
+    module_.send(framed("~01OVALVE", {1, 0x06, 0x01, 0xE8, 0, 0x42}), module_.baud());
+    module_.run_for(milliseconds(200));
+    const Bytes reply = module_.hear(module_.baud());
+    ASSERT_GE(reply.size(), 3U);
+    EXPECT_TRUE(ascii() ? reply[0] == '?' : reply[1] == 0x86U);
+    EXPECT_FALSE(timeout_status());
+    EXPECT_FALSE(was_reset());
+    bus().write(entry, own);
+    module_.run_for(std::chrono::seconds(2));  // what had to be settled is
+    EXPECT_TRUE(stores());
+    ASSERT_FALSE(HasFailure());
+  }
+}
+
+std::string name_of(const testing::TestParamInfo<Protocol>& protocol) {
+  return protocol.param == Protocol::Ascii ? "ASCII" : "Modbus";
+}
+INSTANTIATE_TEST_SUITE_P(Speaking, FaultyImage, testing::Values(Protocol::Ascii, Protocol::ModbusRtu),
+                         name_of);
 
 class HungImage : public testing::Test {
  protected:
@@ -35,20 +303,6 @@ class HungImage : public testing::Test {
 
   QtestClient& bus() { return module_.emulator().bus(); }
 
-  /// From the next tick on the tick's interrupt is this code.
-  void make_tick_run(const std::vector<std::uint32_t>& code) {
-    for (std::uint32_t i = 0; i < kVectors; ++i) {
-      bus().write(kTable + 4 * i, bus().read(4 * i));
-    }
-    std::uint32_t at = kCode;
-    for (const std::uint32_t word : code) {
-      bus().write(at, word);
-      at += 4;
-    }
-    bus().write(kTable + 4 * kSysTickVector, kCode | kThumb);
-    bus().write(kVectorTableOffset, kTable);
-  }
-
   void expect_reset_because(const std::string& event) {
     ASSERT_TRUE(module_.halts_because(event));
     module_.come_up_again();
@@ -63,32 +317,6 @@ class HungImage : public testing::Test {
   Settings settings_ = ascii(model_);
   EmulatedModule module_{model_, &settings_};
 };
-
-TEST_F(HungImage, IsResetWhereTheMainLoopHangsAndInterruptsGoOn) {
-  // What the interrupt returns to becomes a jump to itself; then the image's own interrupt follows, and from
-  // the next one on it is that alone.
-  make_tick_run({
-      0x21004805,  // ldr r0, =kVectorTableOffset; movs r1, #0
-      0xA0026001,  // str r1, [r0]; adr r0, loop
-      0x4A049006,  // str r0, [sp, #24]; ldr r2, =its own interrupt
-      0x46C04710,  // bx r2; nop
-      0x46C0E7FE,  // loop: b loop; nop
-      0,
-      kVectorTableOffset,
-      bus().read(4 * kSysTickVector),
-  });
-  expect_reset_because("WATCHDOG");
-}
-
-TEST_F(HungImage, IsResetWhereItHangsInAnInterrupt) {
-  make_tick_run({0xE7FEE7FE});  // b .
-  expect_reset_because("WATCHDOG");
-}
-
-TEST_F(HungImage, IsResetWhereTheTickStops) {
-  bus().write(kSysTickControl, 0);
-  expect_reset_because("WATCHDOG");
-}
 
 TEST_F(HungImage, ResetsItselfAtAnInterruptThatNobodyHasAskedFor) {
   constexpr std::uint32_t kPend = 0xE000'E200;
