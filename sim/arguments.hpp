@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "sim/module_spec.hpp"
-#include "sim/ports/tcp_port.hpp"
+#include "sim/ports/tcp_address.hpp"
 
 namespace ex9000::sim {
 

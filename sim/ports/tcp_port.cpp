@@ -13,7 +13,6 @@ namespace {
 
 using boost::asio::ip::tcp;
 
-constexpr const char* kLoopback = "127.0.0.1";
 /// Far more than masters that share a line; beyond it somebody connects and never goes.
 constexpr std::size_t kMostMasters = 64;
 /// Who has said all there is to say may still wait for the answer to it.
@@ -37,24 +36,6 @@ tcp::endpoint endpoint_of(boost::asio::io_context& io, const TcpAddress& address
 }
 
 }  // namespace
-
-TcpAddress parse_tcp_address(const std::string& text) {
-  const auto colon = text.rfind(':');
-  std::string host = colon == std::string::npos ? "" : text.substr(0, colon);
-  const std::string port = colon == std::string::npos ? text : text.substr(colon + 1);
-  constexpr unsigned long kLastPort = 65535;
-  const bool digits =
-      !port.empty() && port.size() <= 5 && port.find_first_not_of("0123456789") == std::string::npos;
-  const bool brackets = host.size() > 2 && host.front() == '[' && host.back() == ']';
-  if (brackets) {
-    host = host.substr(1, host.size() - 2);
-  }
-  if (!digits || std::stoul(port) > kLastPort || (!brackets && host.find(':') != std::string::npos)) {
-    throw std::invalid_argument("--tcp " + text +
-                                ": wants HOST:PORT such as 127.0.0.1:5020, or a port alone");
-  }
-  return {host.empty() ? kLoopback : host, static_cast<std::uint16_t>(std::stoul(port))};
-}
 
 struct TcpPort::Client {
   Client(boost::asio::io_context& io, tcp::socket its_socket) : socket(std::move(its_socket)), linger(io) {}

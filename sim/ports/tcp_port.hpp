@@ -9,17 +9,9 @@
 #include <string>
 
 #include "sim/ports/port.hpp"
+#include "sim/ports/tcp_address.hpp"
 
 namespace ex9000::sim {
-
-/// Where to listen. An empty host is the loopback.
-struct TcpAddress {
-  std::string host;
-  std::uint16_t port = 0;  ///< 0: any that is free
-};
-
-/// HOST:PORT, :PORT, PORT or [IPV6]:PORT. Throws std::invalid_argument, one line.
-TcpAddress parse_tcp_address(const std::string& text);
 
 /// The bytes and nothing else: no MBAP header, no telnet negotiation. All who are connected hear all that
 /// modules send, and what each sends goes on the line.

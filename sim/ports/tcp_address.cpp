@@ -1,0 +1,31 @@
+#include "sim/ports/tcp_address.hpp"
+
+#include <stdexcept>
+
+namespace ex9000::sim {
+
+namespace {
+
+constexpr const char* kLoopback = "127.0.0.1";
+
+}  // namespace
+
+TcpAddress parse_tcp_address(const std::string& text) {
+  const auto colon = text.rfind(':');
+  std::string host = colon == std::string::npos ? "" : text.substr(0, colon);
+  const std::string port = colon == std::string::npos ? text : text.substr(colon + 1);
+  constexpr unsigned long kLastPort = 65535;
+  const bool digits =
+      !port.empty() && port.size() <= 5 && port.find_first_not_of("0123456789") == std::string::npos;
+  const bool brackets = host.size() > 2 && host.front() == '[' && host.back() == ']';
+  if (brackets) {
+    host = host.substr(1, host.size() - 2);
+  }
+  if (!digits || std::stoul(port) > kLastPort || (!brackets && host.find(':') != std::string::npos)) {
+    throw std::invalid_argument("--tcp " + text +
+                                ": wants HOST:PORT such as 127.0.0.1:5020, or a port alone");
+  }
+  return {host.empty() ? kLoopback : host, static_cast<std::uint16_t>(std::stoul(port))};
+}
+
+}  // namespace ex9000::sim
