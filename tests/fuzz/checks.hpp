@@ -1,0 +1,74 @@
+// The checks that frames, commands and settings carry, computed from their definitions, so that what is
+// fuzzed is not judged by itself.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <string_view>
+
+namespace ex9000::fuzz {
+
+namespace detail {
+
+/// What `bits` shifts of a reflected CRC make of each value of that many bits.
+template <class Crc, unsigned bits>
+constexpr std::array<Crc, 1U << bits> crc_table(Crc polynomial) {
+  std::array<Crc, 1U << bits> table{};
+  for (std::size_t i = 0; i < table.size(); ++i) {
+    auto crc = static_cast<Crc>(i);
+    for (unsigned bit = 0; bit < bits; ++bit) {
+      crc = static_cast<Crc>(crc % 2 != 0 ? crc / 2 ^ polynomial : crc / 2);
+    }
+    table[i] = crc;
+  }
+  return table;
+}
+
+inline constexpr auto kCrc16 = crc_table<std::uint16_t, 8>(0xA001);
+inline constexpr auto kCrc32 = crc_table<std::uint32_t, 8>(0xEDB88320);
+
+}  // namespace detail
+
+/// CRC-16/MODBUS; 0 over a frame that carries the right one.
+inline std::uint16_t crc16(const std::uint8_t* bytes, std::size_t size) {
+  unsigned crc = 0xFFFF;
+  for (std::size_t i = 0; i < size; ++i) {
+    crc = crc / 256 ^ detail::kCrc16[(crc ^ bytes[i]) % 256];
+  }
+  return static_cast<std::uint16_t>(crc);
+}
+
+/// CRC-32 of IEEE 802.3 over a text and the bytes behind it.
+inline std::uint32_t crc32(std::string_view text, const std::uint8_t* bytes, std::size_t size) {
+  std::uint32_t crc = 0xFFFFFFFF;
+  const auto add = [&crc](std::uint8_t byte) { crc = crc / 256 ^ detail::kCrc32[(crc ^ byte) % 256]; };
+  for (const char character : text) {
+    add(static_cast<std::uint8_t>(character));
+  }
+  for (std::size_t i = 0; i < size; ++i) {
+    add(bytes[i]);
+  }
+  return ~crc;
+}
+
+/// The sum of all characters, modulo 256.
+inline std::uint8_t dcon_sum(const std::uint8_t* text, std::size_t size) {
+  unsigned sum = 0;
+  for (std::size_t i = 0; i < size; ++i) {
+    sum += text[i];
+  }
+  return static_cast<std::uint8_t>(sum % 256);
+}
+
+/// The upper-case digit of a value below 16.
+constexpr std::uint8_t upper_hex(unsigned value) {
+  return static_cast<std::uint8_t>("0123456789ABCDEF"[value % 16]);
+}
+
+/// Two upper-case digits, and which value they have.
+constexpr bool are_digits_of(const std::uint8_t* text, unsigned value) {
+  return text[0] == upper_hex(value / 16) && text[1] == upper_hex(value);
+}
+
+}  // namespace ex9000::fuzz

@@ -1,0 +1,16 @@
+// Characters, pauses and line errors at all models, -M models among them, which speak ASCII unless the input
+// has it otherwise; input: byte_code.hpp.
+#include "tests/fuzz/byte_code.hpp"
+
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+  if (size != 0) {
+    const ex9000::Model& model = ex9000::kModels[data[0] % ex9000::kModels.size()];
+    ex9000::fuzz::live(model, ex9000::Protocol::Ascii, data, size);
+  }
+  return 0;
+}
+
+extern "C" std::size_t LLVMFuzzerCustomMutator(std::uint8_t* data, std::size_t size, std::size_t most,
+                                               unsigned seed) {
+  return ex9000::fuzz::mutate(data, size, most, seed, false);
+}

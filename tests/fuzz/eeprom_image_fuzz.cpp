@@ -1,0 +1,222 @@
+// A module comes up on whatever its EEPROM holds, and stores and remembers as if nothing had been.
+//
+// Byte 0 of the input is the model, byte 1:
+//
+//     bit 0, 1   layout and check of the first, the second copy are made right
+//     bit 2      INIT* tied to GND
+//     bit 3      the memory does not answer until the module has come up
+//
+// The rest is what the memory holds from address 0 on; behind it it is erased.
+#include <cstring>
+#include <initializer_list>
+#include <string>
+
+#include "tests/fuzz/session.hpp"
+
+namespace ex9000::fuzz {
+namespace {
+
+constexpr std::size_t kHeader = 2;
+constexpr std::size_t kCopyDistance = 32;
+
+/// A copy as firmware/settings/record.hpp lays it out, read once more.
+class Copy {
+ public:
+  Copy(const Model& model, const std::uint8_t* bytes) : model_(model), bytes_(bytes) {}
+
+  static void seal(const Model& model, std::uint8_t* bytes) {
+    bytes[22] = 2;
+    bytes[23] = 0;
+    const std::uint32_t check = crc32(model.designation, bytes, 24);
+    for (unsigned i = 0; i < 4; ++i) {
+      bytes[24 + i] = static_cast<std::uint8_t>(check >> 8 * i);
+    }
+  }
+
+  [[nodiscard]] bool is_blank() const {
+    return std::all_of(bytes_, bytes_ + 28, [](std::uint8_t byte) { return byte == 0xFF; });
+  }
+  [[nodiscard]] bool is_good() const {
+    const std::uint32_t check = crc32(model_.designation, bytes_, 24);
+    return word(24) == check % 65536 && word(26) == check / 65536 && word(22) == 2 && is_possible();
+  }
+  /// Of two good ones.
+  [[nodiscard]] bool is_later_than(const Copy& other) const {
+    const unsigned ahead = (word(20) - other.word(20)) & 0xFFFFU;
+    return ahead != 0 && ahead < 0x8000;
+  }
+
+  [[nodiscard]] Settings settings() const {
+    Settings settings;
+    settings.address = bytes_[0];
+    settings.baud_code = bytes_[1];
+    settings.format = bytes_[2];
+    settings.protocol = static_cast<Protocol>(bytes_[3]);
+    settings.watchdog_timeout = bytes_[4];
+    settings.watchdog_enabled = bytes_[5] != 0;
+    settings.timeout_status = bytes_[6] != 0;
+    settings.name = Name(Bytes{bytes_ + 8, bytes_[15]});
+    settings.power_on_value = static_cast<std::uint16_t>(word(16));
+    settings.safe_value = static_cast<std::uint16_t>(word(18));
+    return settings;
+  }
+
+ private:
+  [[nodiscard]] unsigned word(std::size_t at) const { return bytes_[at] + bytes_[at + 1] * 256U; }
+
+  /// wire.md 4 and 8: what commands could have stored.
+  [[nodiscard]] bool is_possible() const {
+    const std::uint8_t length = bytes_[15];
+    const bool name =
+        length >= 1 && length <= model_.longest_name &&
+        std::all_of(bytes_ + 8, bytes_ + 8 + length, [](std::uint8_t c) { return c >= 0x20 && c <= 0x7E; });
+    const bool protocol =
+        bytes_[3] == 0 || (bytes_[3] == 1 && model_.speaks_modbus() && bytes_[0] >= 1 && bytes_[0] <= 247);
+    const bool watchdog = bytes_[5] == 0 || (bytes_[5] == 1 && bytes_[4] != 0);
+    const unsigned beyond = ~((1U << model_.outputs) - 1U);
+    return name && protocol && watchdog && bytes_[6] <= 1 && bytes_[1] >= 0x03 && bytes_[1] <= 0x0A &&
+           (bytes_[2] & 0x3FU) == 0 && ((word(16) | word(18)) & beyond) == 0;
+  }
+
+  const Model& model_;
+  const std::uint8_t* bytes_;
+};
+
+/// What the module has to come up with.
+struct Expected {
+  Settings settings;
+  bool unreadable = false;
+};
+
+Expected expected_of(const Model& model, const std::uint8_t* memory, bool answers) {
+  const Copy first(model, memory);
+  const Copy second(model, memory + kCopyDistance);
+  if (!answers || (!first.is_good() && !second.is_good())) {
+    return {Settings::factory(model), !answers || !first.is_blank() || !second.is_blank()};
+  }
+  const bool second_counts = !first.is_good() || (second.is_good() && second.is_later_than(first));
+  return {(second_counts ? second : first).settings(), false};
+}
+
+bool same_name(const Name& a, const Name& b) {
+  return a.bytes().size == b.bytes().size &&
+         std::equal(a.bytes().begin(), a.bytes().end(), b.bytes().begin());
+}
+
+bool same(const Settings& a, const Settings& b) {
+  return a.address == b.address && a.baud_code == b.baud_code && a.format == b.format &&
+         a.protocol == b.protocol && a.watchdog_timeout == b.watchdog_timeout &&
+         a.watchdog_enabled == b.watchdog_enabled && a.timeout_status == b.timeout_status &&
+         same_name(a.name, b.name) && a.power_on_value == b.power_on_value && a.safe_value == b.safe_value;
+}
+
+class Trial {
+ public:
+  Trial(const Model& model, std::uint8_t flags, const std::uint8_t* contents, std::size_t size)
+      : model_(model), session_(model, false) {
+    auto& memory = session_.around().memory;
+    std::copy_n(contents, std::min(size, memory.size()), memory.begin());
+    for (const unsigned copy : {0U, 1U}) {
+      if ((flags >> copy & 1U) != 0) {
+        Copy::seal(model, memory.data() + copy * kCopyDistance);
+      }
+    }
+    session_.around().init_asserted = (flags & 4U) != 0;
+    session_.around().memory_answers = (flags & 8U) == 0;
+  }
+
+  void run() {
+    const Expected expected =
+        expected_of(model_, session_.around().memory.data(), session_.around().memory_answers);
+    session_.reset();
+    come_up_with(expected.settings);
+    require(session_.module().module().settings_unreadable() == expected.unreadable,
+            "settings that cannot be read are told from an erased memory");
+    session_.around().memory_answers = true;
+    tells(expected.settings);
+    store_something();
+    constexpr Microseconds kLeftovers = 1500 * kMillisecond;  // a timeout is stored too by then
+    session_.wait(kLeftovers);
+    const Settings before = state().settings;
+    session_.reset();
+    come_up_with(before);
+    tells(before);
+  }
+
+ private:
+  const State& state() { return session_.module().module().state(); }
+
+  void come_up_with(const Settings& settings) {
+    const bool init = session_.around().init_asserted;
+    const InForce& in_force = session_.in_force();
+    // No timeout is that short.
+    require(same(state().settings, settings),
+            "the later good copy counts, or else the factory's settings do");
+    require(state().outputs == (settings.timeout_status ? settings.safe_value : settings.power_on_value),
+            "outputs come up with the power-on value, or the safe value behind a timeout");
+    require(in_force.init_mode == init && in_force.address == (init ? 0 : settings.address) &&
+                in_force.baud_code == (init ? 0x06 : settings.baud_code) &&
+                in_force.protocol == (init ? Protocol::Ascii : settings.protocol) &&
+                in_force.checksum == (!init && (settings.format & 0x40U) != 0),
+            "what is stored is in force, or what INIT* says");
+  }
+
+  Bytes ask(std::string_view command) {
+    const std::uint8_t address = session_.in_force().address;
+    text_.assign(command);
+    text_[1] = static_cast<char>(upper_hex(address / 16U));
+    text_[2] = static_cast<char>(upper_hex(address));
+    return session_.ask({reinterpret_cast<const std::uint8_t*>(text_.data()), text_.size()});
+  }
+  Bytes ask(std::initializer_list<std::uint8_t> request) {
+    return session_.ask({request.begin(), request.size()});
+  }
+
+  void tells(const Settings& settings) {
+    if (session_.speaks_modbus()) {
+      const Bytes reply = ask({settings.address, 0x03, 0x01, 0xE4, 0x00, 0x02});
+      require(reply.size == 7 && reply.word(3) == settings.address && reply.word(5) == settings.baud_code,
+              "address and rate are read as they are stored");
+      return;
+    }
+    const Bytes configuration = ask("$..2");
+    require(configuration.size == 9 && are_digits_of(configuration.data + 1, settings.address) &&
+                are_digits_of(configuration.data + 5, settings.baud_code) &&
+                are_digits_of(configuration.data + 7, settings.format),
+            "the configuration is read as it is stored");
+    const Bytes name = ask("$..M").from(3);
+    require(same_name(Name(name), settings.name), "the name is read as it is stored");
+  }
+
+  void store_something() {
+    if (session_.speaks_modbus()) {
+      const auto next = static_cast<std::uint8_t>(state().settings.address % 247 + 1);
+      const std::uint8_t own = session_.in_force().address;
+      require(ask({own, 0x06, 0x01, 0xE4, 0x00, next}).size == 6 && state().settings.address == next,
+              "an address is stored");
+      return;
+    }
+    const bool is_pump = same_name(state().settings.name, Name(std::string_view("pump")));
+    const std::string_view name = is_pump ? "fan" : "pump";
+    require(ask("~..O" + std::string(name)).size == 3 && same_name(state().settings.name, Name(name)),
+            "a name is stored");
+  }
+  Bytes ask(const std::string& command) { return ask(std::string_view(command)); }
+  Bytes ask(const char* command) { return ask(std::string_view(command)); }
+
+  const Model& model_;
+  Session session_;
+  std::string text_;
+};
+
+}  // namespace
+}  // namespace ex9000::fuzz
+
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+  using namespace ex9000::fuzz;
+  if (size >= kHeader) {
+    const ex9000::Model& model = ex9000::kModels[data[0] % ex9000::kModels.size()];
+    Trial(model, data[1], data + kHeader, size - kHeader).run();
+  }
+  return 0;
+}

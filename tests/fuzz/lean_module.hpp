@@ -1,0 +1,314 @@
+// The device on peripherals that are plain values, in virtual microseconds. The simulator's module has the
+// same around it and more: a bus, logs, real ports; here a hundred million lives have to be lived in an hour.
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <limits>
+#include <optional>
+
+#include "firmware/bytes.hpp"
+#include "firmware/line/timing.hpp"
+#include "firmware/model/model.hpp"
+#include "hal/device.hpp"
+#include "tests/fuzz/require.hpp"
+
+namespace ex9000::fuzz {
+
+/// Since the first power-on.
+using Microseconds = std::uint64_t;
+constexpr Microseconds kNever = std::numeric_limits<Microseconds>::max();
+constexpr Microseconds kMillisecond = 1000;
+
+/// Sees what a module does to its surroundings, while it does it.
+class Onlooker {
+ public:
+  /// The driver goes on.
+  virtual void reply_begins(Bytes reply) = 0;
+  /// The driver is off again.
+  virtual void reply_ends() = 0;
+  virtual void outputs_change(std::uint16_t channels) = 0;
+
+ protected:
+  ~Onlooker() = default;
+};
+
+/// What outlasts a reset.
+struct Surroundings {
+  explicit Surroundings(Onlooker& who) : onlooker(who) { memory.fill(0xFF); }
+
+  Onlooker& onlooker;
+  Microseconds now = 0;
+  std::uint16_t input_levels = 0;
+  bool init_asserted = false;
+  bool memory_answers = true;
+  /// The settings' two copies; the core wants no more of an EEPROM.
+  std::array<std::uint8_t, 64> memory{};
+};
+
+/// The members of hal::Board.
+struct LeanBoard {
+  explicit LeanBoard(Surroundings& surroundings)
+      : clock{surroundings},
+        line{surroundings},
+        silence_timer{surroundings},
+        inputs{surroundings},
+        outputs{surroundings},
+        memory{surroundings},
+        init_switch{surroundings} {}
+
+  struct Clock {
+    Surroundings& around;
+    [[nodiscard]] Time now() const { return Time(static_cast<std::uint32_t>(around.now)); }
+    [[nodiscard]] Time now_in_interrupt() const { return now(); }
+  };
+
+  struct Line {
+    Surroundings& around;
+    std::uint32_t baud = 0;
+    Microseconds ends = kNever;
+
+    void open(std::uint32_t rate) { baud = rate; }
+    void send(Bytes bytes) {
+      ends = around.now + 4 + bytes.size * 10'000'000ULL / baud;
+      around.onlooker.reply_begins(bytes);
+    }
+    [[nodiscard]] bool sending() const { return ends != kNever; }
+  };
+
+  struct SilenceTimer {
+    Surroundings& around;
+    Microseconds fires = kNever;
+    void restart(Duration after) { fires = around.now + after.microseconds(); }
+  };
+
+  struct Inputs {
+    Surroundings& around;
+    [[nodiscard]] std::uint16_t start() const { return around.input_levels; }
+  };
+
+  struct Outputs {
+    Surroundings& around;
+    std::uint16_t driven = 0;
+    void drive(std::uint16_t channels) {
+      if (channels != driven) {
+        driven = channels;
+        around.onlooker.outputs_change(channels);
+      }
+    }
+  };
+
+  /// On a bus of 100 kHz, 5 ms to program a page.
+  struct Memory {
+    Surroundings& around;
+    Microseconds ends = kNever;
+    Microseconds began = 0;
+    bool ok = true;
+    std::uint16_t at = 0;
+    Bytes source{};
+    MutableBytes destination{};
+
+    void start_read(std::uint16_t address, MutableBytes bytes, Time /*now*/) {
+      start(address, bytes.size, 0);
+      destination = bytes;
+      source = {};
+    }
+    void start_write(std::uint16_t address, Bytes bytes, Time /*now*/) {
+      constexpr Microseconds kProgram = 5000;
+      constexpr unsigned kPage = 32;
+      require(address / kPage == (address + bytes.size - 1) / kPage, "a write stays within its page");
+      start(address, bytes.size, kProgram);
+      source = bytes;
+    }
+    void start(std::uint16_t address, std::size_t size, Microseconds program) {
+      constexpr Microseconds kByteOnBus = 90;
+      constexpr std::size_t kAddressing = 4;
+      require(!busy(), "one memory job at a time");
+      require(size != 0 && address + size <= around.memory.size(),
+              "a memory job stays where the settings are");
+      at = address;
+      began = around.now;
+      ends = began + (size + kAddressing) * kByteOnBus + program;
+    }
+    static bool go_on(Time /*now*/) { return false; }
+    [[nodiscard]] bool busy() const { return ends != kNever; }
+    [[nodiscard]] bool succeeded() const { return ok; }
+    void finish() {
+      ends = kNever;
+      ok = around.memory_answers;
+      if (!ok) {
+        return;
+      }
+      if (source.size != 0) {
+        std::copy(source.begin(), source.end(), around.memory.begin() + at);
+      } else {
+        std::copy_n(around.memory.begin() + at, destination.size, destination.data);
+      }
+    }
+    /// The supply fails: a write has got as far as its time went, and spoiled the byte it was at.
+    void cut() {
+      if (!busy() || source.size == 0 || !around.memory_answers) {
+        return;
+      }
+      const std::size_t done = source.size * (around.now - began) / (ends - began + 1);
+      std::copy_n(source.begin(), done, around.memory.begin() + at);
+      around.memory[at + done] |= 0xA5U;
+    }
+  };
+
+  struct InitSwitch {
+    Surroundings& around;
+    [[nodiscard]] bool asserted() const { return around.init_asserted; }
+  };
+
+  struct StatusLed {
+    static void light(bool /*on*/) {}
+  };
+
+  struct Watchdog {
+    static void feed() {}
+  };
+
+  Clock clock;
+  Line line;
+  SilenceTimer silence_timer;
+  Inputs inputs;
+  Outputs outputs;
+  Memory memory;
+  InitSwitch init_switch;
+  StatusLed status_led;
+  Watchdog watchdog;
+};
+
+class LeanModule {
+ public:
+  /// Without power.
+  LeanModule(const Model& model, Onlooker& onlooker, TimingAt timing_at)
+      : model_(model), timing_at_(timing_at), around_(onlooker) {}
+
+  /// A reset, or power-on; a write that was under way is cut. The module has come up then.
+  void reset() {
+    if (device_) {
+      board().memory.cut();
+      device_.reset();
+    }
+    held_ = false;
+    const Microseconds began = around_.now;
+    device_.emplace(model_, LeanBoard(around_));
+    device_->start(timing_at_);
+    main_loop();
+    constexpr Microseconds kLongest = 100 * kMillisecond;  // D13
+    while (!module().listening()) {
+      const Microseconds next = next_event();
+      require(next <= began + kLongest, "a module answers within 100 ms of reset");
+      advance_to(next);
+    }
+  }
+
+  /// Lets everything happen up to and including then.
+  void advance_to(Microseconds until) {
+    for (Microseconds next = next_event(); next <= until; next = next_event()) {
+      around_.now = std::max(around_.now, next);
+      happen();
+    }
+    around_.now = until;
+  }
+  void wait(Microseconds time) { advance_to(around_.now + time); }
+
+  /// A byte's stop bit is over now. Not while `sending()`, which nobody hears.
+  void receive(std::uint8_t byte, ByteStatus status) {
+    device_->on_receive(byte, status);
+    look();
+  }
+  [[nodiscard]] bool sending() { return board().line.sending(); }
+
+  void toggle_input(unsigned channel) {
+    around_.input_levels = static_cast<std::uint16_t>(around_.input_levels ^ (1U << channel));
+    if (channel < model_.inputs) {
+      device_->on_edge(channel, (around_.input_levels >> channel & 1U) != 0);
+      look();
+    }
+  }
+  void tick() {
+    device_->on_tick();
+    main_loop();
+  }
+  /// The main loop has something that keeps it busy, or has done with it. Interrupts go on.
+  void hold(bool held) {
+    held_ = held;
+    main_loop();
+  }
+  [[nodiscard]] bool held() const { return held_; }
+  /// How often the main loop has turned; only then the state has changed.
+  [[nodiscard]] std::uint64_t turns() const { return turns_; }
+
+  [[nodiscard]] const Model& model() const { return model_; }
+  [[nodiscard]] const Module& module() const { return device_->module(); }
+  [[nodiscard]] Microseconds now() const { return around_.now; }
+  Surroundings& around() { return around_; }
+
+ private:
+  LeanBoard& board() { return device_->board(); }
+
+  Microseconds next_event() {
+    const LeanBoard& its = board();
+    return std::min(std::min(its.line.ends, its.memory.ends), std::min(its.silence_timer.fires, wakes_));
+  }
+
+  void happen() {
+    LeanBoard& its = board();
+    if (its.line.ends <= around_.now) {
+      its.line.ends = kNever;
+      around_.onlooker.reply_ends();
+      device_->on_sent();
+    }
+    if (its.memory.ends <= around_.now) {
+      its.memory.finish();
+    }
+    if (its.silence_timer.fires <= around_.now) {
+      its.silence_timer.fires = kNever;
+      device_->on_silence();
+    }
+    main_loop();
+  }
+
+  /// After an interrupt that most often leaves the main loop nothing to do.
+  void look() {
+    if (device_->news()) {
+      main_loop();
+    }
+  }
+
+  /// Turns until there is nothing left to do; that takes no time here.
+  void main_loop() {
+    wakes_ = kNever;
+    if (held_) {
+      return;
+    }
+    std::optional<Duration> idle;
+    unsigned turns = 0;
+    do {
+      constexpr unsigned kMostTurns = 50;
+      require(++turns < kMostTurns, "the main loop comes to rest");
+      ++turns_;
+      device_->look_around();
+      device_->turn();
+      idle = module().idle_for(board().clock.now());
+    } while (idle == Duration());
+    if (idle) {
+      wakes_ = around_.now + idle->microseconds();
+    }
+  }
+
+  const Model& model_;
+  TimingAt timing_at_;
+  Surroundings around_;
+  std::optional<hal::Device<LeanBoard>> device_;
+  Microseconds wakes_ = kNever;
+  std::uint64_t turns_ = 0;
+  bool held_ = false;
+};
+
+}  // namespace ex9000::fuzz
