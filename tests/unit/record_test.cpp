@@ -319,7 +319,7 @@ TEST(Record, TwoThatDifferInOneWordOnlyNeverHaveTheSameCheck) {
     Stored stored = from;
     stored.settings.address = low;
     stored.settings.baud_code = static_cast<std::uint8_t>(3 + (i >> 8U & 7U));
-    stored.settings.format = static_cast<std::uint8_t>(i >> 11U & 3U) << 6U;
+    stored.settings.format = static_cast<std::uint8_t>((i >> 11U & 3U) << 6U);
     stored.settings.protocol = (i >> 13U & 1U) != 0 ? Protocol::ModbusRtu : Protocol::Ascii;
     if (i < 1U << 14U) {
       lines.add(stored);
