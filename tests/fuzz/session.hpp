@@ -56,7 +56,7 @@ class Session final : public Onlooker {
     held_until_ = kNever;
     booting_ = true;
     reply_ended_ = alive_ = module_.now();
-    timed_out_ = false;
+    timed_out_ = heard_host_ok_ = false;
     outputs_ = 0;
     module_.reset();
     booting_ = false;
@@ -76,6 +76,8 @@ class Session final : public Onlooker {
   void wait(Microseconds time) { advance_to(module_.now() + time); }
   /// The main loop does nothing for so long.
   void hold(Microseconds time) {
+    note_silence();
+    look();
     held_until_ = module_.now() + time;
     module_.hold(true);
   }
@@ -209,6 +211,7 @@ class Session final : public Onlooker {
   void note(const Finding& finding) {
     if (finding.kind == Finding::Kind::HostOk && !module_.held()) {
       alive_ = std::max(alive_, finding.last);
+      heard_host_ok_ = true;
     }
     if (finding.kind == Finding::Kind::Nothing || finding.kind == Finding::Kind::HostOk) {
       return;
@@ -330,6 +333,9 @@ class Session final : public Onlooker {
 
   /// What holds at all times.
   void look() {
+    if (!module_.held() && std::exchange(heard_host_ok_, false)) {
+      module_.tick();  // a host OK is no news; it is heeded with the next tick
+    }
     if (std::exchange(turns_, module_.turns()) != module_.turns()) {
       has_timed_out();
       require(!timed_out_ || outputs_ == state().settings.safe_value,
@@ -356,6 +362,7 @@ class Session final : public Onlooker {
   std::uint16_t outputs_ = 0;
   bool booting_ = false;
   bool timed_out_ = false;
+  bool heard_host_ok_ = false;
   std::uint8_t timeout_ = 0;  ///< as it was when that was looked at
   std::uint64_t turns_ = 0;
   Microseconds alive_ = 0;  ///< the last host OK, or the last reset
