@@ -54,6 +54,7 @@ Verdict RtuAssembler::byte(FrameQueue& queue, std::uint8_t byte, ByteStatus stat
   whole_ = whole;
   if (received >= frame.storage.size()) {
     received_ = kTooLong;
+    lapsed_ = 0;  // this byte came behind it, which the number does not tell
     return before;
   }
   frame.storage[received] = byte;

@@ -170,6 +170,19 @@ TEST_P(RtuGaps, AFrameMayLapseMoreThanOnce) {
   EXPECT_EQ(wire_.verdicts, Verdicts{Verdict::Accepted});
 }
 
+// The number of bytes that it counts by stands still by then.
+TEST_P(RtuGaps, AByteComingInAtT35BelongsToAFrameThatIsTooLongTimeAndAgain) {
+  wire_.bytes(FrameBytes(258, 0x02));
+  for (int i = 0; i < 3; ++i) {
+    wire_.silence(t35(baud_) - wire_.character() / 2);
+    wire_.byte(0x02);
+  }
+  EXPECT_EQ(wire_.verdicts, Verdicts{});
+  wire_.silence(t35(baud_) - wire_.character() / 2);
+  wire_.frame(kChannel0On);
+  EXPECT_EQ(wire_.verdicts, Verdicts{Verdict::TooLong});
+}
+
 TEST_P(RtuGaps, ARightCrcAtT35IsAcceptedAtOnce) {
   wire_.bytes(kChannel0On);
   EXPECT_EQ(assembler_.silence(queue_), Verdict::Accepted);
