@@ -410,6 +410,14 @@ TEST_F(ReceiverTest, AnOpenModbusFrameIsForgottenWhenTheModuleSpeaks) {
   EXPECT_TRUE(took_frame());
 }
 
+TEST_F(ReceiverTest, AModbusFrameWhoseCrcIsRightIsCountedAndTakenWhenTheModuleSpeaks) {
+  listen(Protocol::ModbusRtu);
+  bytes(kChannel0On);
+  receiver_.on_spoken();
+  EXPECT_EQ(counts(), (Counts{1, 0, 1, 0, 0}));
+  EXPECT_TRUE(took_frame());
+}
+
 TEST_F(ReceiverTest, TheNextFrameDoesNotContinueOneForgotten) {
   listen(Protocol::ModbusRtu);
   bytes({0x01, 0x05, 0x00});

@@ -198,6 +198,21 @@ TEST_P(RtuGaps, TheSilenceWasOverT35BehindTheLastByteAndNeverBefore) {
   }
 }
 
+// It tells of a byte half a bit before its end, so silences that begin there are half a bit longer.
+TEST_P(RtuGaps, SilencesCountFromTheEndOfTheStopBitThoughTheUartTellsOfItInTheMiddle) {
+  const LineTiming end = LineTiming::at(baud_);
+  const LineTiming middle = LineTiming::told_in_the_stop_bit(baud_);
+  const std::uint32_t half_bit = 500'000 / baud_;
+  for (const auto silence : {&LineTiming::rtu_silence, &LineTiming::dcon_turn_around}) {
+    const std::uint32_t longer = (middle.*silence).microseconds() - (end.*silence).microseconds();
+    EXPECT_GT(longer, half_bit);
+    EXPECT_LE(longer, half_bit + 1);
+  }
+  EXPECT_TRUE(middle.rtu_grace == end.rtu_grace);
+  EXPECT_TRUE(middle.rtu_separate == end.rtu_separate);
+  EXPECT_TRUE(middle.rtu_slack == end.rtu_slack);
+}
+
 TEST_P(RtuGaps, AFrameAcrossTheWrapOfTheClockIsOneFrame) {
   for (const std::uint32_t before : {1U, 100U, 3000U, 9000U, 40'000U}) {
     wire_.verdicts.clear();

@@ -68,6 +68,8 @@ TEST(Name, HoldsUpTo7Characters) {
   EXPECT_EQ(text_of(Name()), "");
 }
 
+TEST(Name, KeepsTheFirst7OfMore) { EXPECT_EQ(text_of(Name("9068AD-M")), "9068AD-"); }
+
 TEST(Name, EqualsOneOfTheSameCharactersOnly) {
   EXPECT_TRUE(Name("9042D") == Name("9042D"));
   EXPECT_FALSE(Name("9042D") == Name("9042d"));

@@ -1,0 +1,164 @@
+// A module whose main loop turns without looking around, as a board's does between two ticks, and what it
+// says of how long it may sleep.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <array>
+#include <string>
+
+#include "firmware/dcon/dcon.hpp"
+#include "firmware/module.hpp"
+
+namespace ex9000 {
+namespace {
+
+constexpr Duration kCharacter{1042};  // at 9600 baud
+constexpr Duration kUnitOfTimeout = milliseconds(100);
+
+class ModuleTurns : public testing::Test {
+ protected:
+  /// Comes up on an erased memory.
+  ModuleTurns() {
+    module_.begin(0, now_);
+    while (module_.wants_memory()) {
+      do_memory_job();
+      module_.step(now_);
+    }
+    while (!module_.listening()) {
+      pass(milliseconds(1));
+      module_.look_around(false, now_);
+      module_.step(now_);
+    }
+  }
+
+  void pass(Duration time) { now_ = now_ + time; }
+
+  /// Without a step behind it.
+  void do_memory_job() {
+    const MemoryJob job = module_.memory_job();
+    module_.memory_started();
+    for (std::size_t i = 0; i < job.bytes.size; ++i) {
+      if (job.kind == MemoryJob::Kind::Read) {
+        job.bytes.data[i] = written_ ? page_[i] : 0xFF;
+      } else {
+        page_[i] = job.bytes.data[i];
+        written_ = true;
+      }
+    }
+    module_.memory_done(true);
+  }
+
+  /// Until the turn-around is over.
+  void put(const std::string& command) {
+    for (const char character : command + "\r") {
+      pass(kCharacter);
+      module_.on_byte(static_cast<std::uint8_t>(character), ByteStatus::Good, now_);
+    }
+    pass(kCharacter + kCharacter);
+    module_.on_silence();
+  }
+  std::string take_reply() {
+    const Bytes reply = module_.take_reply(now_);
+    return {reply.begin(), reply.end()};
+  }
+  bool wants_to_go_on() { return module_.idle_for(now_) == Duration(); }
+
+  Module module_{*find_model("EX9043D")};
+  Time now_;
+
+ private:
+  std::array<std::uint8_t, 32> page_{};
+  bool written_ = false;
+};
+
+TEST_F(ModuleTurns, AReplyThatIsReadyWantsToBeTaken) {
+  put("$01M");
+  module_.step(now_);
+  EXPECT_TRUE(wants_to_go_on());
+  EXPECT_EQ(take_reply(), "!019043D\r");
+  EXPECT_FALSE(wants_to_go_on());
+}
+
+// wire.md D18.
+TEST_F(ModuleTurns, TheNextReplyLeavesASilenceBehindThisOneThoughNobodyLooksAround) {
+  put("$01M");
+  module_.step(now_);
+  put("$01F");
+  EXPECT_EQ(take_reply(), "!019043D\r");
+  module_.reply_sent(now_);
+  module_.step(now_);
+  EXPECT_EQ(take_reply(), "");
+  EXPECT_FALSE(wants_to_go_on());
+  pass(kCharacter);
+  EXPECT_EQ(take_reply(), "");
+  pass(Duration(2));
+  EXPECT_TRUE(wants_to_go_on());
+  EXPECT_EQ(take_reply(), "!01D01.00\r");
+}
+
+TEST_F(ModuleTurns, WhatTheMemoryHasDoneWantsToBeGoneOnWith) {
+  put("~01Opump");
+  module_.step(now_);
+  while (module_.wants_memory()) {
+    EXPECT_FALSE(wants_to_go_on());
+    do_memory_job();
+  }
+  EXPECT_TRUE(wants_to_go_on());
+  module_.step(now_);
+  EXPECT_EQ(take_reply(), "!01\r");
+}
+
+TEST_F(ModuleTurns, ATimeoutWantsItsLightAtOnceAndToBeGoneOnWithOnceItIsStored) {
+  put("~013101");
+  module_.step(now_);
+  while (module_.wants_memory()) {
+    do_memory_job();
+  }
+  module_.step(now_);
+  EXPECT_EQ(take_reply(), "!01\r");
+  module_.reply_sent(now_);
+  module_.step(now_);
+  pass(kUnitOfTimeout + milliseconds(1));
+  module_.step(now_);
+  ASSERT_TRUE(module_.state().settings.timeout_status);
+  EXPECT_TRUE(wants_to_go_on());
+  module_.look_around(false, now_);
+  EXPECT_FALSE(wants_to_go_on());
+  ASSERT_TRUE(module_.wants_memory());
+  while (module_.wants_memory()) {
+    do_memory_job();
+  }
+  EXPECT_TRUE(wants_to_go_on());
+  module_.step(now_);
+  EXPECT_FALSE(wants_to_go_on());
+}
+
+TEST(ModuleComesUp, OnceItsMemoryIsRead) {
+  Module module(*find_model("EX9043D"));
+  module.begin(0, Time());
+  module.look_around(false, Time());
+  while (module.wants_memory()) {
+    EXPECT_FALSE(module.idle_for(Time()) == Duration());
+    const MemoryJob job = module.memory_job();
+    module.memory_started();
+    std::fill_n(job.bytes.data, job.bytes.size, std::uint8_t{0xFF});
+    module.memory_done(true);
+  }
+  EXPECT_TRUE(module.idle_for(Time()) == Duration());
+}
+
+// The receiver keeps `~**` from the queue, so that it is never lost; whoever asks `answer` hears the same.
+TEST(HostOkCommand, RestartsTheHostWatchdogAndIsNotAnswered) {
+  const std::string command = "~**";
+  Exchange exchange(*find_model("EX9043D"));
+  exchange.outcome.clear();
+  exchange.reply.clear();
+  exchange.frame = {reinterpret_cast<const std::uint8_t*>(command.data()), command.size()};
+  dcon::answer(exchange);
+  EXPECT_TRUE(exchange.outcome.asks_for(Effect::RestartHostWatchdog));
+  EXPECT_EQ(exchange.outcome.refusal, Refusal::None);
+  EXPECT_TRUE(exchange.reply.empty());
+}
+
+}  // namespace
+}  // namespace ex9000
