@@ -57,7 +57,7 @@ void Module::step(Time now) {
   }
   heed_host_ok();
   expire_host_watchdog(now);  // before anything that drives outputs
-  if (storing_leftovers_ || phase_ == Phase::MustStore || phase_ == Phase::Storing) {
+  if (storing_leftovers_ || phase_ == Phase::Storing) {
     go_on_storing(now);
   }
   if (phase_ == Phase::Idle) {
@@ -371,7 +371,7 @@ void Module::store_leftovers(Time now) {
     leftovers_retry_.disarm();
     return;
   }
-  if (!memory_is_free() || (leftovers_retry_.armed() && !leftovers_retry_.reached(now))) {
+  if (store_.busy() || (leftovers_retry_.armed() && !leftovers_retry_.reached(now))) {
     return;
   }
   leftovers_retry_.disarm();
@@ -383,13 +383,9 @@ void Module::store_leftovers(Time now) {
   }
 }
 
-bool Module::memory_is_free() const {
-  return !store_.busy() && phase_ != Phase::MustStore && phase_ != Phase::Storing;
-}
-
 std::optional<Duration> Module::idle_for(Time now) const {
-  const bool memory_has_news = !store_.busy() && (!settings_known_ || storing_leftovers_ ||
-                                                  phase_ == Phase::MustStore || phase_ == Phase::Storing);
+  const bool memory_has_news =
+      !store_.busy() && (!settings_known_ || storing_leftovers_ || phase_ == Phase::Storing);
   const bool line_has_news = (phase_ == Phase::Idle && receiver_.queue().announced() != judged_) ||
                              receiver_.host_oks() != host_oks_heeded_;
   if (memory_has_news || line_has_news || led_.pattern() != led_pattern_due()) {
@@ -413,7 +409,7 @@ std::optional<Duration> Module::idle_for(Time now) const {
   }
   consider(init_gives_up_);
   consider(host_watchdog_.expiry(state().settings));
-  if (memory_is_free()) {
+  if (!store_.busy()) {
     consider(leftovers_retry_);
   }
   if (phase_ == Phase::Idle && receiver_.queue().has_frame()) {

@@ -105,7 +105,7 @@ class Module {
   enum class Phase : std::uint8_t {
     Booting,     ///< reading settings, waiting for INIT* to settle
     Idle,        ///< the next request may be judged and acted upon
-    MustStore,   ///< judged; the memory is busy with something else
+    MustStore,   ///< judged; the memory is busy with leftovers
     Storing,     ///< judged; the memory is taking the change
     ReplyReady,  ///< done; the reply waits for its moment
     Replying,    ///< the driver is on
@@ -132,7 +132,6 @@ class Module {
   void answered();
   void refuse_store();
   void count_exception();
-  [[nodiscard]] bool memory_is_free() const;
 
   Phase phase_ = Phase::Booting;
   TimingAt timing_at_ = nullptr;

@@ -45,7 +45,7 @@ bool refused_without_address(const Model& model, Bytes frame) {
   if (frame[0] == '#') {
     return !(model.has_inputs() && body == 1);
   }
-  return frame[0] == '@' && body != 0;
+  return frame[0] == '@';  // with data: without, it is never refused
 }
 
 void refuse(Exchange& exchange, Refusal refusal) {

@@ -50,7 +50,6 @@ class Receiver {
   [[nodiscard]] const LineTiming& timing() const { return rtu_.timing(); }
   FrameQueue& queue() { return queue_; }
   constexpr LineTallies& tallies() { return tallies_; }
-  [[nodiscard]] constexpr const LineTallies& tallies() const { return tallies_; }
   [[nodiscard]] const FrameQueue& queue() const { return queue_; }
   /// Counts host OKs, so that a new one is one that differs from the last look.
   [[nodiscard]] std::uint32_t host_oks() const { return host_oks_.load(); }
