@@ -193,8 +193,9 @@ class Session final : public Onlooker {
 
     [[nodiscard]] Bytes frame() const { return {bytes.data(), size}; }
   };
-  /// The module keeps one and executes one; others may have been lost, which only it knows.
-  static constexpr std::size_t kMostPending = 8;
+  /// The module keeps one and executes one; others may have been lost, which only it knows. As many as may
+  /// come in while the main loop is held.
+  static constexpr std::size_t kMostPending = 32;
 
   [[nodiscard]] const State& state() const { return module_.module().state(); }
 
