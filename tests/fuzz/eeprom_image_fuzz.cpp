@@ -135,8 +135,7 @@ class Trial {
     session_.around().memory_answers = true;
     tells(expected.settings);
     store_something();
-    constexpr Microseconds kLeftovers = 1500 * kMillisecond;  // a timeout is stored too by then
-    session_.wait(kLeftovers);
+    wait_for_leftovers();
     const Settings before = state().settings;
     session_.reset();
     come_up_with(before);
@@ -145,6 +144,16 @@ class Trial {
 
  private:
   const State& state() { return session_.module().module().state(); }
+
+  /// Until a timeout, which may come at any moment, is stored too.
+  void wait_for_leftovers() {
+    constexpr Microseconds kLongest = 1500 * kMillisecond;
+    bool timed_out = false;
+    do {
+      timed_out = state().settings.timeout_status;
+      session_.wait(kLongest);
+    } while (timed_out != state().settings.timeout_status);
+  }
 
   void come_up_with(const Settings& settings) {
     const bool init = session_.around().init_asserted;
