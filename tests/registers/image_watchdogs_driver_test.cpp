@@ -25,7 +25,9 @@ using std::chrono::seconds;
 
 constexpr milliseconds kComesUpWithin{100};
 constexpr milliseconds kResetsWithin{1600};
-constexpr milliseconds kTick{1};
+/// A tick, the microsecond to which the restart is known, and what the main loop takes behind the tick until
+/// the last pin has its level.
+constexpr microseconds kExpiresWithin{1010};
 
 constexpr std::uint16_t kPowerOnValue = 0x5A5A;
 constexpr std::uint16_t kSafeValue = 0xA5A4;
@@ -384,7 +386,7 @@ TEST_P(HostWatchdogOnBoard, ExpiresWithinATickOfEveryTimeoutAndNeverEarlier) {
     ASSERT_EQ(bench.outputs(), kSafeValue);
   }
   EXPECT_GE(earliest, Instant(0));
-  EXPECT_LE(latest, kTick);
+  EXPECT_LE(latest, kExpiresWithin);
   std::printf("%u timeouts: %.3f to %.3f ms after they were over\n", timeouts,
               static_cast<double>(earliest.count()) / 1e9, static_cast<double>(latest.count()) / 1e9);
 }
@@ -418,8 +420,8 @@ TEST_P(HostWatchdogOnBoard, NoCommandDrivesAnythingOnceItHasExpired) {
         bench.run_for(milliseconds(6));  // it is being stored
         bench.line.send(second);
       }
-      bench.run_until(std::max(bench.timeline.now(), over + kTick));
-      const bool in_time = bench.timeline.now() == over + kTick;
+      bench.run_until(std::max(bench.timeline.now(), over + kExpiresWithin));
+      const bool in_time = bench.timeline.now() == over + kExpiresWithin;
       EXPECT_EQ(bench.outputs(), kSafeValue);
       module.changes.clear();
       bench.run_for(milliseconds(100));
@@ -450,7 +452,7 @@ TEST_P(HostWatchdogOnBoard, APowerCutAtAnyMomentAfterItHasExpiredGivesNoCommande
         bench.run_until(over - milliseconds(16));
         bench.line.send(module.framed("~01OPUMP" + std::to_string(cuts % 10), {1, 0x06, 0x01, 0xE4, 0, 1}));
       }
-      bench.run_until(over + kTick + late);
+      bench.run_until(over + kExpiresWithin + late);
       ASSERT_EQ(bench.outputs(), kSafeValue);
       module.changes.clear();
       module.power_cycle();
