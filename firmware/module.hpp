@@ -56,9 +56,12 @@ class Module {
   void look_around(bool init_switch, Time now);
   /// One turn: what the interrupts have gathered, what the clock says, what the memory has done.
   void step(Time now);
-  /// Interrupts too: changes with every frame that may be for this module, so that `step` can judge it while
-  /// the silence behind it lasts.
-  [[nodiscard]] std::uint32_t announced() const { return receiver_.queue().announced(); }
+  /// Interrupts too: counts up with every frame that may be for this module, so that `step` can judge it
+  /// while the silence behind it lasts; and with every host OK, so that each is heeded before the next can
+  /// come.
+  [[nodiscard, gnu::always_inline]] std::uint32_t line_events() const {
+    return receiver_.queue().announced() + receiver_.host_oks();
+  }
   /// Interrupts too: a request is complete, so `step` can act upon it when the silence is over.
   [[nodiscard]] bool request_waits() const { return receiver_.queue().has_frame(); }
   /// How long nothing will happen by itself; zero: step again at once; nothing: until an interrupt or a

@@ -118,7 +118,9 @@ class Device {
   }
 
   /// Both only count up.
-  [[nodiscard]] std::uint32_t happened() const { return wakes_.load() + module_.announced(); }
+  [[nodiscard, gnu::always_inline]] std::uint32_t happened() const {
+    return wakes_.load() + module_.line_events();
+  }
 
   void drive_outputs() {
     driven_ = module_.outputs();

@@ -235,6 +235,28 @@ TEST_P(OnBoard, DropsTheRequestOfWhichACharacterIsLostToAnOverrun) {
   EXPECT_EQ(bench.ask("$01M"), "!019055");
 }
 
+TEST_P(OnBoard, HeedsAHostOkThatAnotherFollowsAtOnceBeforeTheTickCouldTellOfEither) {
+  const Model& model = *find_model(bench.image.model);
+  Settings settings = Settings::factory(model);
+  settings.baud_code = 0x0A;  // 115200 baud: a host OK takes 0.35 ms
+  bench.memory = sim::SimulatedModule::memory_image(model, settings);
+  power_up();
+  bench.line.set_baud(115200);
+  const std::vector<std::uint8_t> host_ok{'~', '*', '*', '\r'};
+  const Instant takes = 40 * bench.line.bit_time();
+  ASSERT_EQ(bench.ask("~013101"), "!01");
+  for (int phase = 0; phase < 20; ++phase) {
+    bench.line.send(host_ok);
+    bench.run_for(takes);
+    // The first is over before the time is, the second behind it.
+    bench.run_for(milliseconds(100) - 2 * takes + takes / 2);
+    bench.line.send(host_ok);
+    bench.line.send(host_ok);
+    bench.run_for(milliseconds(20) + microseconds(50) * phase);
+    ASSERT_EQ(bench.ask("~010"), "!0100") << phase;
+  }
+}
+
 TEST_P(OnBoard, CountsPulsesOnEveryInputHoweverLateTheInterruptIs) {
   power_up();
   bench.mcu->core.set_latency(microseconds(10));
