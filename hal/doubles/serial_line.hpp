@@ -25,8 +25,8 @@ class Wire {
 /// A UART that sends at exactly its rate. What it receives is handed to the device by whoever owns the wire.
 class SerialLine final : public hal::SerialLine {
  public:
-  /// Driver on before the first start bit, and after the last stop bit: like a register write or two; that is,
-  /// where it is not made to go off late.
+  /// Driver on before the first start bit, and after the last stop bit: like a register write or two; that
+  /// is, where it is not made to go off late.
   static constexpr VirtualTime kDriverLead = std::chrono::microseconds(2);
   static constexpr VirtualTime kDriverTail = std::chrono::microseconds(2);
 
