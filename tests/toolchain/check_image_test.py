@@ -190,6 +190,18 @@ class Accepts(unittest.TestCase):
             "interrupts held for 20 instructions\n", check(holding("nop\\n" * 20)).figures
         )
 
+    def test_data_that_reads_like_an_instruction_is_none(self) -> None:
+        for text in ("v-", "vmu", "vmul.f3"):
+            verdict = check(
+                f"""
+                extern "C" const volatile char text[];
+                asm(".section .text.text,\\"ax\\"\\n.global text\\n.type text, %object\\n.size text, 8\\n"
+                    "text: .ascii \\"{text:8}\\"");
+                extern "C" void reset() {{ for (;;) text[0]; }}
+                """
+            )
+            self.assertTrue(verdict.accepted, verdict.problems)
+
 
 class Refuses(unittest.TestCase):
     def refused(self, reason: str, source: str, *more: str, **how: str) -> None:

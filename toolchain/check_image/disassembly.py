@@ -9,7 +9,8 @@ from pathlib import Path
 
 from check_image.functions import Function
 
-_LINE = re.compile(r"^ *([0-9a-f]+):\t(\S+)(?:\t([^@;]*))?")
+# Of data that fills no word, objdump shows what it would be as text, which is no mnemonic but by chance.
+_LINE = re.compile(r"^ *([0-9a-f]+):\t(\.?[a-z][a-z0-9.]*)(?:\t([^@;]*)|$)")
 _CONDITIONS = "eq|ne|cs|hs|cc|lo|mi|pl|vs|vc|hi|ls|ge|lt|gt|le"
 _BRANCH = re.compile(rf"(b|bl|blx|cbz|cbnz|b({_CONDITIONS})|bl({_CONDITIONS}))(\.[nw])?")
 _CALL = re.compile(rf"blx?({_CONDITIONS})?(\.[nw])?")

@@ -55,7 +55,7 @@ def problems(elf: Elf, records: Iterable[Record], disassembly: Disassembly) -> l
         if _what(record.title.name) == "globals initialised at run time":
             found.append(f"{record.location}: globals initialised at run time")
     # They would also make an exception's frame longer than this tool reckons.
-    if any(instruction.mnemonic.startswith("v") for instruction in disassembly.instructions.values()):
+    if any(each.mnemonic.startswith("v") and each.operands for each in disassembly.instructions.values()):
         found.append("instructions of a floating-point unit: floating point")
     return found
 
