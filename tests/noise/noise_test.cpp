@@ -46,6 +46,7 @@ TEST_P(Checks, LetThroughWhatTheoryExpectsAndTheModuleDoesWhatItHeard) {
         static_cast<unsigned long long>(tally.sent), static_cast<unsigned long long>(tally.damaged),
         static_cast<unsigned long long>(tally.in_data), static_cast<unsigned long long>(tally.taken_in_data),
         seen.low, seen.high, tally.expected, static_cast<unsigned long long>(tally.taken_otherwise));
+    std::fflush(stdout);
     // Twice as wide as the interval of 95 %: of twelve rows one would fail otherwise in every second run.
     const double centre = static_cast<double>(tally.taken_in_data);
     EXPECT_GE(tally.expected, centre - 2 * (centre - seen.low));
