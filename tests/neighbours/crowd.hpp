@@ -48,9 +48,9 @@ class Crowd final : public sim::BusObserver {
  public:
   static constexpr std::size_t kModules = 32;
 
-  /// All models that have Modbus, in Modbus and in ASCII, and some that have ASCII alone, at addresses 01 to
-  /// 20 (hex). Those in ASCII have their checksum on, for without one the bytes of a Modbus frame might be a
-  /// command.
+  /// Of the models that have Modbus, most, some of them in ASCII, and some that have ASCII alone, at
+  /// addresses 01 to 20 (hex). Those in ASCII have their checksum on, for without one the bytes of a Modbus
+  /// frame might be a command.
   Crowd(std::uint32_t baud, std::uint64_t seed);
 
   [[nodiscard]] sim::VirtualTime now() { return line_.clock().virtual_now(); }
