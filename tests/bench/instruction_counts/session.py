@@ -22,7 +22,7 @@ BYTES_TAKEN = 0.02
 TICKS = 0.2
 BEHIND_A_TICK = 0.0002  # its turn is over
 TRIES = 10  # of a pass
-DEAF = 30  # passes that have not even begun
+DEAF = 30  # passes in a row that have not even begun
 BYTE_BY_BYTE = 10  # one pass in so many has the interrupts of all its bytes counted
 
 
@@ -114,10 +114,11 @@ class Session:
         self.counter.expect(request)
         highest = self.counter.requests[request]
         highest.wanted = passes
-        spoiled_before = self.counter.spoiled
+        begun, lost = None, 0
         for attempt in range(TRIES * passes):
-            begun = highest.passes + self.counter.spoiled - spoiled_before
-            if highest.passes >= passes or attempt > begun + DEAF:
+            begun_before, begun = begun, highest.passes + self.counter.spoiled
+            lost = lost + 1 if begun == begun_before else 0
+            if highest.passes >= passes or lost > DEAF:
                 break
             in_turn = len(request.before) == len(request.frames) > 1
             for frame in [request.before[attempt % len(request.before)]] if in_turn else request.before:
