@@ -42,6 +42,17 @@ void Line::come_up() {
   bus_.run_for(kComingUp);
 }
 
+Faults& Line::faults() {
+  if (!faults_) {
+    faults_ = std::make_unique<Faults>(bus_, master_, modules_);
+  }
+  return *faults_;
+}
+
+void Line::move_input(std::size_t index, const InputProgram& program, std::uint64_t seed) {
+  moved_inputs_.push_back(std::make_unique<MovedInput>(bus_, *modules_[index], program, seed));
+}
+
 VirtualTime Line::rtu_silence() const {
   return std::chrono::microseconds(kind_.timing_at(master_.baud()).rtu_silence.microseconds());
 }

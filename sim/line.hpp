@@ -5,6 +5,8 @@
 #include <vector>
 
 #include "sim/bus.hpp"
+#include "sim/faults/faults.hpp"
+#include "sim/input_program.hpp"
 #include "sim/master.hpp"
 #include "sim/module.hpp"
 #include "sim/module_spec.hpp"
@@ -40,6 +42,10 @@ class Line {
   Master& master() { return master_; }
   [[nodiscard]] std::size_t size() const { return modules_.size(); }
   SimulatedModule& module(std::size_t index) { return *modules_[index]; }
+  /// What goes wrong here; on the line from the first call on.
+  Faults& faults();
+  /// From now on the input of the module at `index` moves by itself. The same `seed` chatters alike.
+  void move_input(std::size_t index, const InputProgram& program, std::uint64_t seed);
   /// T3.5 on this line at the master's rate.
   [[nodiscard]] VirtualTime rtu_silence() const;
   /// After how long whatever was sent before is no part of a frame any more, even if its CRC is wrong.
@@ -51,6 +57,8 @@ class Line {
   Bus bus_;
   Master master_;
   std::vector<std::unique_ptr<SimulatedModule>> modules_;
+  std::unique_ptr<Faults> faults_;
+  std::vector<std::unique_ptr<MovedInput>> moved_inputs_;
 };
 
 }  // namespace ex9000::sim

@@ -23,7 +23,11 @@ SimulatedModule::Mcu::Mcu(SimulatedModule& module)
       device(module.model_, board) {}
 
 SimulatedModule::SimulatedModule(Bus& bus, const Model& model, TimingAt timing_at)
-    : clock_(bus.clock()), model_(model), timing_at_(timing_at), wire_(bus.attach(*this)), memory_(clock_) {}
+    : clock_(bus.clock()),
+      model_(model),
+      timing_at_(timing_at),
+      wire_(clock_, bus.attach(*this)),
+      memory_(clock_) {}
 
 void SimulatedModule::power(bool on) {
   if (on == powered()) {
@@ -55,6 +59,7 @@ void SimulatedModule::start() {
 
 void SimulatedModule::stop() {
   mcu_->line.abort();
+  wire_.abort();
   memory_.cut();  // before the buffers go that it was writing from
   mcu_.reset();
   outputs_.drive(0);
@@ -115,7 +120,7 @@ VirtualTime SimulatedModule::next() const {
   if (!mcu_) {
     return kNever;
   }
-  return std::min({wakes_, mcu_->line.next(), mcu_->silence_timer.next(), mcu_->tick.next(),
+  return std::min({wakes_, wire_.next(), mcu_->line.next(), mcu_->silence_timer.next(), mcu_->tick.next(),
                    mcu_->watchdog.next(), memory_.next()});
 }
 
@@ -125,6 +130,7 @@ void SimulatedModule::run() {
     reset();
     return;
   }
+  wire_.run();
   const bool was_sending = mcu_->line.sending();
   mcu_->line.run();
   if (was_sending && !mcu_->line.sending()) {
@@ -141,7 +147,7 @@ void SimulatedModule::run() {
 }
 
 void SimulatedModule::receive(std::uint8_t byte, ByteStatus status) {
-  if (mcu_->line.sending()) {
+  if (mcu_->line.sending() || wire_.sends_late()) {
     return;
   }
   mcu_->device.on_receive(byte, status);

@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <functional>
 #include <optional>
+#include <utility>
 #include <vector>
 
 #include "firmware/model/model.hpp"
@@ -21,6 +22,7 @@
 #include "hal/doubles/virtual_clock.hpp"
 #include "hal/doubles/watchdog.hpp"
 #include "sim/bus.hpp"
+#include "sim/faults/module_wire.hpp"
 
 namespace ex9000::sim {
 
@@ -50,6 +52,12 @@ class SimulatedModule final : public Station {
   void hang() { hung_ = true; }
   /// Its driver stays on for so much longer behind each reply, through resets too.
   void release_driver_late(VirtualTime by);
+  /// It listens and sends at this rate, whatever its settings say; 0: as they say.
+  void force_rate(std::uint32_t baud) { wire_.force_rate(baud); }
+  /// See ModuleWire::watch.
+  void watch_replies(ModuleWire::Begins begins, ModuleWire::Ends ends) {
+    wire_.watch(std::move(begins), std::move(ends));
+  }
   /// What the memory holds at the next reset.
   void store(const Settings& settings);
   /// The same as an image of the whole memory.
@@ -73,7 +81,7 @@ class SimulatedModule final : public Station {
   // --- Station ---
   [[nodiscard]] VirtualTime next() const override;
   void run() override;
-  [[nodiscard]] std::uint32_t baud() const override { return mcu_ ? mcu_->line.baud() : 0; }
+  [[nodiscard]] std::uint32_t baud() const override { return mcu_ ? wire_.rate(mcu_->line.baud()) : 0; }
   void receive(std::uint8_t byte, ByteStatus status) override;
 
  private:
@@ -97,7 +105,7 @@ class SimulatedModule final : public Station {
   VirtualClock& clock_;
   const Model& model_;
   TimingAt timing_at_;
-  Wire& wire_;
+  ModuleWire wire_;
   hal::doubles::Memory memory_;
   hal::doubles::Inputs inputs_;
   hal::doubles::Outputs outputs_;

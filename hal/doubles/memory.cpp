@@ -43,6 +43,9 @@ void Memory::run() {
   if (writing_) {
     std::copy(source_.begin(), source_.end(), contents_.begin() + address_);
     succeeded_ = kept(source_.size);
+    if (succeeded_ && written_) {
+      written_();
+    }
   } else {
     std::copy_n(contents_.begin() + address_, destination_.size, destination_.data);
   }

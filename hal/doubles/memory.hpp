@@ -41,6 +41,9 @@ class Memory final : public hal::Memory {
   using Keep = std::function<bool(std::uint16_t address, Bytes bytes)>;
   void keep(Keep keep) { keep_ = std::move(keep); }
 
+  /// Called behind every write that has succeeded, before whoever started it knows.
+  void on_write(std::function<void()> written) { written_ = std::move(written); }
+
   /// From now on no job succeeds, and nothing is written.
   void fail(bool on) { failing_ = on; }
 
@@ -56,6 +59,7 @@ class Memory final : public hal::Memory {
   const VirtualClock& clock_;
   std::vector<std::uint8_t> contents_;
   Keep keep_;
+  std::function<void()> written_;
   bool failing_ = false;
   bool succeeded_ = true;
   bool writing_ = false;

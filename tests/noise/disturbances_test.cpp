@@ -4,10 +4,10 @@
 #include <vector>
 
 #include "sim/bus.hpp"
-#include "sim/echo.hpp"
+#include "sim/faults/echo.hpp"
 #include "sim/line.hpp"
 #include "sim/master.hpp"
-#include "sim/noise.hpp"
+#include "sim/faults/noise.hpp"
 #include "tests/unit/bus_recorder.hpp"
 
 namespace ex9000::sim {
@@ -120,7 +120,8 @@ TEST(Noise, OfTheSameSeedIsTheSame) {
 
 TEST(Echo, SendsAgainWhatItHasHeardOnceItIsQuiet) {
   TwoOnALine line;
-  Echo echo(line.bus, 9600, milliseconds(5));
+  Echo echo(line.bus);
+  echo.switch_on(9600, milliseconds(5));
   line.send({1, 2, 3});
   EXPECT_EQ(line.heard, (Heard{{1, ByteStatus::Good},
                                {2, ByteStatus::Good},

@@ -8,7 +8,7 @@
 #include <cstdio>
 #include <functional>
 
-#include "sim/echo.hpp"
+#include "sim/faults/echo.hpp"
 #include "tests/environment.hpp"
 #include "tests/modbus_frame.hpp"
 #include "tests/noise/noisy_line.hpp"
@@ -94,7 +94,8 @@ void late_driver(NoisyLine& noisy, std::uint64_t exchanges) {
 }
 
 void echo(NoisyLine& noisy, std::uint64_t exchanges) {
-  auto& repeater = noisy.attach<sim::Echo>(NoisyLine::kBaud, milliseconds(3));
+  auto& repeater = noisy.attach<sim::Echo>();
+  repeater.switch_on(NoisyLine::kBaud, milliseconds(3));
   for (std::uint64_t i = 0; i < exchanges; ++i) {
     ask(noisy);
     noisy.line().bus().run_for(microseconds(noisy.below(6000)));

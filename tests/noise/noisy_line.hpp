@@ -11,7 +11,7 @@
 #include <vector>
 
 #include "sim/line.hpp"
-#include "sim/noise.hpp"
+#include "sim/faults/noise.hpp"
 #include "tests/noise/judges.hpp"
 
 namespace ex9000::noise {

@@ -1,16 +1,10 @@
-#include "sim/noise.hpp"
+#include "sim/faults/noise.hpp"
 
 namespace ex9000::sim {
 
 Noise::Noise(Bus& bus, NoiseRates rates, std::uint64_t seed)
-    : wire_(bus.attach(*this)), rates_(rates), random_(seed) {
+    : wire_(bus.attach(*this)), rates_(rates), chance_(seed) {
   bus.disturb(*this);
-}
-
-/// The engine's numbers are the same everywhere; what a library's distributions make of them is not.
-bool Noise::happens(double probability) {
-  constexpr double kOneIn2To64 = 1.0 / 18446744073709551616.0;
-  return probability > 0 && static_cast<double>(random_()) * kOneIn2To64 < probability;
 }
 
 Levels Noise::disturbed(const Sent& sent) {
@@ -20,19 +14,19 @@ Levels Noise::disturbed(const Sent& sent) {
   Levels levels = sent.levels;
   for (unsigned bit = 0; bit < Wave::kBits; ++bit) {
     const auto mask = static_cast<Levels>(1U << bit);
-    if (happens(rates_.flipped_bit)) {
+    if (chance_.happens(rates_.flipped_bit)) {
       levels = static_cast<Levels>(levels ^ mask);
     }
-    if (sent.contended && (levels & mask) == 0 && happens(rates_.lost_in_a_fight)) {
+    if (sent.contended && (levels & mask) == 0 && chance_.happens(rates_.lost_in_a_fight)) {
       levels = static_cast<Levels>(levels | mask);
     }
   }
-  if (happens(rates_.lost_character)) {
+  if (chance_.happens(rates_.lost_character)) {
     levels = kIdleLevels;
   }
-  const bool zero = happens(rates_.stray_zero);
-  if (zero || happens(rates_.stray_character)) {
-    stray_ = zero ? 0 : static_cast<std::uint8_t>(random_());
+  const bool zero = chance_.happens(rates_.stray_zero);
+  if (zero || chance_.happens(rates_.stray_character)) {
+    stray_ = zero ? 0 : static_cast<std::uint8_t>(chance_.number());
     stray_baud_ = sent.baud;
     stray_at_ = sent.ends;
   }

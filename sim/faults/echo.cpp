@@ -1,4 +1,4 @@
-#include "sim/echo.hpp"
+#include "sim/faults/echo.hpp"
 
 namespace ex9000::sim {
 

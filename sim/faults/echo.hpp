@@ -10,12 +10,16 @@ namespace ex9000::sim {
 
 class Echo final : public Station {
  public:
-  /// Attaches itself to `bus`. It listens and sends at `baud`, and sends when nothing has come for `delay`.
-  Echo(Bus& bus, std::uint32_t baud, VirtualTime delay)
-      : clock_(bus.clock()), wire_(bus.attach(*this)), baud_(baud), rate_(baud), delay_(delay) {}
+  /// Attaches itself to `bus`; it is off.
+  explicit Echo(Bus& bus) : clock_(bus.clock()), wire_(bus.attach(*this)) {}
   Echo(const Echo&) = delete;
   Echo& operator=(const Echo&) = delete;
 
+  /// It listens and sends at `baud`, and sends when nothing has come for `delay`.
+  void switch_on(std::uint32_t baud, VirtualTime delay) {
+    baud_ = rate_ = baud;
+    delay_ = delay;
+  }
   /// It listens no more; what it has heard it still sends.
   void switch_off() { baud_ = 0; }
 
@@ -28,9 +32,9 @@ class Echo final : public Station {
  private:
   VirtualClock& clock_;
   Wire& wire_;
-  std::uint32_t baud_;  ///< 0: it does not listen
-  std::uint32_t rate_;
-  VirtualTime delay_;
+  std::uint32_t baud_ = 0;  ///< 0: it does not listen
+  std::uint32_t rate_ = 0;
+  VirtualTime delay_{0};
   std::vector<std::uint8_t> heard_;
   std::size_t sent_ = 0;
   bool driving_ = false;

@@ -3,9 +3,9 @@
 #pragma once
 
 #include <cstdint>
-#include <random>
 
 #include "sim/bus.hpp"
+#include "sim/faults/chance.hpp"
 
 namespace ex9000::sim {
 
@@ -40,11 +40,9 @@ class Noise final : public Disturbance, public Station {
   void receive(std::uint8_t /*byte*/, ByteStatus /*status*/) override {}
 
  private:
-  bool happens(double probability);
-
   Wire& wire_;
   NoiseRates rates_;
-  std::mt19937_64 random_;
+  Chance chance_;
   std::uint64_t strikes_ = 0;
   std::uint8_t stray_ = 0;
   std::uint32_t stray_baud_ = 0;

@@ -1,0 +1,329 @@
+#include "sim/faults/faults.hpp"
+
+#include <algorithm>
+#include <stdexcept>
+#include <utility>
+
+#include "sim/time_text.hpp"
+
+namespace ex9000::sim {
+
+namespace {
+
+using When = Schedule::When;
+
+constexpr VirtualTime kPowerCutLasts = std::chrono::seconds(1);
+
+bool is_of(const Fault& fault, std::size_t module) { return !fault.module || *fault.module == module; }
+
+/// Over as soon as it has struck.
+bool is_a_moment(Trouble trouble) { return trouble == Trouble::ForeignTraffic || trouble == Trouble::Hang; }
+
+}  // namespace
+
+Faults::Faults(Bus& bus, const Master& master, Modules& modules)
+    : bus_(bus), master_(master), modules_(modules), off_(modules.size()) {
+  bus_.attach(*this);
+  for (std::size_t i = 0; i < modules_.size(); ++i) {
+    modules_[i]->watch_replies([this, i] { return reply_begins(i); }, [this, i] { reply_ends(i); });
+    modules_[i]->memory().on_write([this, i] { written(i); });
+  }
+}
+
+std::size_t Faults::add(const Fault& fault) {
+  if (fault.module && *fault.module >= modules_.size()) {
+    throw std::invalid_argument(fault.text + ": no module " + std::to_string(*fault.module + 1) +
+                                "; this line has 1 to " + std::to_string(modules_.size()));
+  }
+  const VirtualTime now = bus_.clock().virtual_now();
+  const Schedule& schedule = fault.schedule;
+  Armed armed;
+  armed.number = numbers_ + 1;
+  armed.fault = fault;
+  if (schedule.when == When::Always) {
+    armed.begins = now;
+  } else if (schedule.when == When::At) {
+    if (schedule.time < now) {
+      throw std::invalid_argument(fault.text + ": that is over, it is " + time_text(now) + " now");
+    }
+    armed.begins = schedule.time;
+  } else if (schedule.when == When::EveryTime) {
+    armed.begins = now + schedule.time;
+  }
+  prepare(fault.trouble);
+  ++numbers_;
+  armed_.push_back(armed);
+  act();
+  return numbers_;
+}
+
+/// On the line comes only what is needed there.
+void Faults::prepare(Trouble trouble) {
+  switch (trouble) {
+    case Trouble::BitErrors:
+    case Trouble::LostBytes:
+    case Trouble::InsertedBytes:
+    case Trouble::StrayZeros:
+      if (!noise_) {
+        noise_ = std::make_unique<Noise>(bus_, NoiseRates(), chance_.number());
+      }
+      break;
+    case Trouble::Echo:
+      if (!echo_) {
+        echo_ = std::make_unique<Echo>(bus_);
+      }
+      break;
+    case Trouble::ForeignTraffic:
+      if (!stranger_) {
+        stranger_ = std::make_unique<Master>(bus_, master_.baud(),
+                                             [](std::uint8_t /*byte*/, ByteStatus /*status*/) {});
+      }
+      break;
+    default:
+      break;
+  }
+}
+
+bool Faults::remove(std::size_t number) {
+  const auto found =
+      std::find_if(armed_.begin(), armed_.end(), [=](const Armed& armed) { return armed.number == number; });
+  if (found == armed_.end()) {
+    return false;
+  }
+  armed_.erase(found);
+  changed_ = true;
+  act();
+  return true;
+}
+
+void Faults::remove_all() {
+  armed_.clear();
+  changed_ = true;
+  act();
+}
+
+std::vector<Faults::Told> Faults::told() const {
+  std::vector<Told> all;
+  for (const Armed& armed : armed_) {
+    all.push_back({armed.number, armed.fault.text, armed.fault.module, armed.strikes, armed.strikes_so_far});
+  }
+  return all;
+}
+
+VirtualTime Faults::next() const {
+  if (changed_) {
+    return bus_.clock().virtual_now();
+  }
+  VirtualTime next = kNever;
+  for (const Armed& armed : armed_) {
+    next = std::min({next, armed.begins, armed.ends});
+  }
+  return next;
+}
+
+void Faults::run() { act(); }
+
+/// What is due: first what ends, then what begins.
+void Faults::act() {
+  const VirtualTime now = bus_.clock().virtual_now();
+  for (Armed& armed : armed_) {
+    if (armed.ends <= now) {
+      relent(armed);
+    }
+  }
+  for (Armed& armed : armed_) {
+    if (armed.begins <= now) {
+      armed.begins =
+          armed.fault.schedule.when == When::EveryTime ? armed.begins + armed.fault.schedule.time : kNever;
+      strike(armed, std::nullopt);
+    }
+  }
+  if (changed_) {
+    changed_ = false;
+    take_effect();
+  }
+}
+
+/// May be called from within a module: nothing happens to one before `act`.
+void Faults::strike(Armed& armed, std::optional<std::size_t> reply_of) {
+  const Fault& fault = armed.fault;
+  ++armed.strikes_so_far;
+  changed_ = true;
+  say(armed, "strikes");
+  if (fault.trouble == Trouble::ForeignTraffic) {
+    to_say_.push_back(fault.bytes);
+  }
+  if (fault.trouble == Trouble::Hang) {
+    for (std::size_t i = 0; i < modules_.size(); ++i) {
+      // Of a reply, whoever sends it; of all else, whoever the fault befalls.
+      if (is_of(fault, i) && reply_of.value_or(i) == i) {
+        hanging_.push_back(i);
+      }
+    }
+  }
+  if (is_a_moment(fault.trouble)) {
+    return;
+  }
+  armed.strikes = true;
+  armed.reply_of = reply_of;
+  auto lasts = fault.schedule.lasts;
+  if (!lasts && fault.trouble == Trouble::PowerCut) {
+    lasts = kPowerCutLasts;
+  }
+  armed.ends = lasts ? bus_.clock().virtual_now() + *lasts : kNever;
+}
+
+void Faults::relent(Armed& armed) {
+  armed.strikes = false;
+  armed.reply_of.reset();
+  armed.ends = kNever;
+  changed_ = true;
+  say(armed, "is over");
+}
+
+void Faults::say(const Armed& armed, const std::string& what) const {
+  if (notice_ && !armed.fault.schedule.of_replies()) {
+    notice_("fault " + std::to_string(armed.number) + " " + what + ": " + armed.fault.text);
+  }
+}
+
+ReplyFate Faults::reply_begins(std::size_t module) {
+  for (Armed& armed : armed_) {
+    const Schedule& schedule = armed.fault.schedule;
+    if (!schedule.of_replies() || !is_of(armed.fault, module)) {
+      continue;
+    }
+    const bool strikes = schedule.when == When::Probably ? chance_.happens(schedule.probability)
+                                                         : ++armed.counted % schedule.count == 0;
+    if (strikes) {
+      strike(armed, module);
+    }
+  }
+  if (changed_) {
+    set_noise();  // it is to hit this reply from its first bit on
+    set_late_drivers();
+  }
+  ReplyFate fate;
+  fate.lost = struck_by(Trouble::LostReply, module);
+  if (const Fault* late = striking(Trouble::LateReply, module)) {
+    fate.late_by = late->time;
+  }
+  return fate;
+}
+
+void Faults::reply_ends(std::size_t module) {
+  for (Armed& armed : armed_) {
+    if (armed.reply_of == module && armed.ends == kNever) {
+      relent(armed);
+    }
+  }
+}
+
+void Faults::written(std::size_t module) {
+  for (Armed& armed : armed_) {
+    const Schedule& schedule = armed.fault.schedule;
+    if (schedule.when == When::AfterWrites && is_of(armed.fault, module) &&
+        ++armed.counted == schedule.count) {
+      strike(armed, std::nullopt);
+    }
+  }
+}
+
+/// A fault of one module's reply befalls that one alone.
+const Fault* Faults::striking(Trouble trouble, std::size_t module) const {
+  for (const Armed& armed : armed_) {
+    if (armed.strikes && armed.fault.trouble == trouble && is_of(armed.fault, module) &&
+        armed.reply_of.value_or(module) == module) {
+      return &armed.fault;
+    }
+  }
+  return nullptr;
+}
+
+const Fault* Faults::striking_the_line(Trouble trouble) const {
+  for (const Armed& armed : armed_) {
+    if (armed.strikes && armed.fault.trouble == trouble) {
+      return &armed.fault;
+    }
+  }
+  return nullptr;
+}
+
+void Faults::take_effect() {
+  set_powers();
+  for (std::size_t i = 0; i < modules_.size(); ++i) {
+    const Fault* const wrong = striking(Trouble::WrongRate, i);
+    modules_[i]->force_rate(wrong == nullptr ? 0 : wrong->baud);
+  }
+  set_late_drivers();
+  for (const std::size_t module : std::exchange(hanging_, {})) {
+    modules_[module]->hang();
+  }
+  set_noise();
+  set_echo();
+  for (const auto& bytes : std::exchange(to_say_, {})) {
+    say_foreign(bytes);
+  }
+}
+
+/// A module that somebody else has switched off stays off.
+void Faults::set_powers() {
+  for (std::size_t i = 0; i < modules_.size(); ++i) {
+    const bool off = struck_by(Trouble::Gone, i) || struck_by(Trouble::PowerCut, i);
+    if (off && !off_[i] && modules_[i]->powered()) {
+      modules_[i]->power(false);
+      off_[i] = true;
+    } else if (!off && off_[i]) {
+      modules_[i]->power(true);
+      off_[i] = false;
+    }
+  }
+}
+
+void Faults::set_late_drivers() {
+  for (std::size_t i = 0; i < modules_.size(); ++i) {
+    const Fault* const late = striking(Trouble::LateDriver, i);
+    modules_[i]->release_driver_late(late == nullptr ? VirtualTime(0) : late->time);
+  }
+}
+
+/// Of several that strike at once, the worst.
+double Faults::rate_of(Trouble trouble) const {
+  double rate = 0;
+  for (const Armed& armed : armed_) {
+    if (armed.strikes && armed.fault.trouble == trouble) {
+      rate = std::max(rate, armed.fault.probability);
+    }
+  }
+  return rate;
+}
+
+void Faults::set_noise() {
+  NoiseRates rates;
+  rates.flipped_bit = rate_of(Trouble::BitErrors);
+  rates.lost_character = rate_of(Trouble::LostBytes);
+  rates.stray_character = rate_of(Trouble::InsertedBytes);
+  rates.stray_zero = rate_of(Trouble::StrayZeros);
+  if (noise_) {
+    noise_->set_rates(rates);
+  }
+}
+
+void Faults::set_echo() {
+  const Fault* const fault = striking_the_line(Trouble::Echo);
+  if (!echo_) {
+    return;
+  }
+  if (fault == nullptr) {
+    echo_->switch_off();
+  } else {
+    echo_->switch_on(master_.baud(), fault->time);
+  }
+}
+
+void Faults::say_foreign(const std::vector<std::uint8_t>& bytes) {
+  stranger_->set_baud(master_.baud());
+  stranger_->send(bytes.data(), bytes.size());
+}
+
+}  // namespace ex9000::sim

@@ -1,0 +1,76 @@
+// A module's way to the wires, and what may be wrong with it.
+#pragma once
+
+#include <cstdint>
+#include <deque>
+#include <functional>
+
+#include "hal/doubles/serial_line.hpp"
+#include "hal/doubles/virtual_clock.hpp"
+
+namespace ex9000::sim {
+
+using hal::doubles::kNever;
+using hal::doubles::VirtualClock;
+using hal::doubles::VirtualTime;
+using hal::doubles::Wire;
+
+/// What becomes of a reply.
+struct ReplyFate {
+  bool lost = false;
+  VirtualTime late_by{0};
+};
+
+/// Hands on what a UART sends: as it is, unless it has been told otherwise.
+class ModuleWire final : public Wire {
+ public:
+  ModuleWire(const VirtualClock& clock, Wire& wire) : clock_(clock), wire_(wire) {}
+
+  /// Asked as the driver goes on. It must not take the module's power.
+  using Begins = std::function<ReplyFate()>;
+  /// Called as it goes off, wherever the reply is then.
+  using Ends = std::function<void()>;
+  void watch(Begins begins, Ends ends);
+  /// The UART runs at `baud` whatever it was told; 0: as it was told.
+  void force_rate(std::uint32_t baud) { forced_ = baud; }
+  [[nodiscard]] std::uint32_t rate(std::uint32_t baud) const {
+    return forced_ != 0 && baud != 0 ? forced_ : baud;
+  }
+
+  /// A reply that is late is on its way, while the UART is done with it.
+  [[nodiscard]] bool sends_late() const { return driving_late_; }
+  [[nodiscard]] VirtualTime next() const { return late_.empty() ? kNever : late_.front().when; }
+  void run();
+  /// The supply is off: what has not been sent never will be.
+  void abort();
+
+  // --- Wire ---
+  void drive(bool on) override;
+  void put(std::uint8_t byte, std::uint32_t baud) override;
+  [[nodiscard]] VirtualTime takes(std::size_t bytes, std::uint32_t baud) const override {
+    return wire_.takes(bytes, rate(baud));
+  }
+
+ private:
+  enum class What { On, Byte, Off };
+  struct Late {
+    VirtualTime when;
+    What what;
+    std::uint8_t byte;
+    std::uint32_t baud;
+  };
+
+  void hand_on(What what, std::uint8_t byte, std::uint32_t baud);
+  void carry_out(What what, std::uint8_t byte, std::uint32_t baud);
+
+  const VirtualClock& clock_;
+  Wire& wire_;
+  Begins begins_;
+  Ends ends_;
+  ReplyFate fate_;
+  std::uint32_t forced_ = 0;
+  std::deque<Late> late_;
+  bool driving_late_ = false;
+};
+
+}  // namespace ex9000::sim

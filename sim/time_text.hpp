@@ -1,0 +1,16 @@
+// Spans of time as people write them: 12.5s, 50ms, 300us, 2min, 24h.
+#pragma once
+
+#include <string>
+
+#include "hal/doubles/virtual_clock.hpp"
+
+namespace ex9000::sim {
+
+/// Throws std::invalid_argument, one line, where `text` is no number with a unit, negative, or beyond a year.
+hal::doubles::VirtualTime parse_time(const std::string& text);
+
+/// In seconds, as parse_time reads it.
+std::string time_text(hal::doubles::VirtualTime time);
+
+}  // namespace ex9000::sim
