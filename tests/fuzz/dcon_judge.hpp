@@ -32,6 +32,7 @@ class DconJudge {
           state_ = State::InFrame;
           spoiled_ = false;
           text_[0] = byte;
+          first_ = now;
           size_ = 1;
         } else if (good && is_one_of(byte, "!>?")) {
           state_ = State::Skipping;
@@ -84,10 +85,10 @@ class DconJudge {
       const auto kind = frame[0] == '~'   ? Finding::Kind::HostOk
                         : frame[0] == '#' ? Finding::Kind::Broadcast
                                           : Finding::Kind::Nothing;
-      return {kind, frame, now};
+      return {kind, frame, first_, now};
     }
     if (are_digits_of(frame.data + 1, own_) || (next_ && are_digits_of(frame.data + 1, *next_))) {
-      return {Finding::Kind::Request, frame, now};
+      return {Finding::Kind::Request, frame, first_, now};
     }
     return {};
   }
@@ -100,6 +101,7 @@ class DconJudge {
   bool spoiled_ = false;
   std::array<std::uint8_t, 32> text_{};
   std::size_t size_ = 0;
+  Microseconds first_ = 0;
 };
 
 }  // namespace ex9000::fuzz

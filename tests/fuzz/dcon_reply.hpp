@@ -15,8 +15,9 @@ namespace ex9000::fuzz {
 /// What replies depend on beside the request.
 struct DconRules {
   std::uint8_t address = 0;
-  bool init_mode = false;        ///< `$002` tells another address
-  bool outputs_blocked = false;  ///< the timeout status is set
+  bool init_mode = false;  ///< `$002` tells another address
+  bool inputs = false;     ///< the model has some
+  bool outputs = false;    ///< likewise
 };
 
 namespace detail {
@@ -103,15 +104,22 @@ inline bool is_answer(std::string_view shape, Bytes request, Bytes reply, const 
   return true;
 }
 
+/// D12: whether a refusal carries no address.
+constexpr bool is_bare_where_refused(Bytes request, const DconRules& rules) {
+  const bool is_of_outputs =
+      (request[0] == '@' && request.size > 3) || (request[0] == '#' && (request.size != 4 || !rules.inputs));
+  return rules.outputs && is_of_outputs;
+}
+
 }  // namespace detail
 
 /// Both without checksum and CR, the request with delimiter and address.
 inline ReplyForm dcon_reply_form(Bytes request, Bytes reply, const DconRules& rules) {
-  const bool of_outputs = request[0] == '#' || request[0] == '@';
-  if (reply.size == 1 && of_outputs && (reply[0] == '?' || (reply[0] == '!' && rules.outputs_blocked))) {
-    return ReplyForm::Refusal;
-  }
-  if (reply.size == 3 && reply[0] == '?' && are_digits_of(reply.data + 1, rules.address)) {
+  if (detail::is_bare_where_refused(request, rules)) {
+    if (reply.size == 1 && (reply[0] == '?' || reply[0] == '!')) {
+      return ReplyForm::Refusal;
+    }
+  } else if (reply.size == 3 && reply[0] == '?' && are_digits_of(reply.data + 1, rules.address)) {
     return ReplyForm::Refusal;
   }
   for (const detail::Shape& shape : detail::kShapes) {
@@ -120,15 +128,6 @@ inline ReplyForm dcon_reply_form(Bytes request, Bytes reply, const DconRules& ru
     }
   }
   return ReplyForm::Wrong;
-}
-
-/// Whether a request is one to drive outputs with. While they are blocked, that is one that changes the safe
-/// value and was judged before (D6).
-inline bool dcon_may_drive(Bytes request, bool outputs_blocked) {
-  if (outputs_blocked) {
-    return detail::is_request("~..5S", request);
-  }
-  return (request[0] == '#' && request.size == 7) || (request[0] == '@' && request.size > 3);
 }
 
 }  // namespace ex9000::fuzz

@@ -15,8 +15,9 @@ struct Finding {
   };
 
   Kind kind = Kind::Nothing;
-  Bytes frame{};          ///< without its check; lives until the judge is told of the next byte
-  Microseconds last = 0;  ///< when its last byte was over
+  Bytes frame{};           ///< without its check; lives until the judge is told of the next byte
+  Microseconds first = 0;  ///< when its first byte was over
+  Microseconds last = 0;   ///< when its last byte was over
 };
 
 }  // namespace ex9000::fuzz

@@ -30,6 +30,8 @@ class Onlooker {
   /// The driver is off again.
   virtual void reply_ends() = 0;
   virtual void outputs_change(std::uint16_t channels) = 0;
+  /// The main loop has turned once; only then the state has changed.
+  virtual void turned() = 0;
 
  protected:
   ~Onlooker() = default;
@@ -241,8 +243,6 @@ class LeanModule {
     main_loop();
   }
   [[nodiscard]] bool held() const { return held_; }
-  /// How often the main loop has turned; only then the state has changed.
-  [[nodiscard]] std::uint64_t turns() const { return turns_; }
 
   [[nodiscard]] const Model& model() const { return model_; }
   [[nodiscard]] const Module& module() const { return device_->module(); }
@@ -292,9 +292,9 @@ class LeanModule {
     do {
       constexpr unsigned kMostTurns = 50;
       require(++turns < kMostTurns, "the main loop comes to rest");
-      ++turns_;
       device_->look_around();
       device_->turn();
+      around_.onlooker.turned();
       idle = module().idle_for(board().clock.now());
     } while (idle == Duration());
     if (idle) {
@@ -307,7 +307,6 @@ class LeanModule {
   Surroundings around_;
   std::optional<hal::Device<LeanBoard>> device_;
   Microseconds wakes_ = kNever;
-  std::uint64_t turns_ = 0;
   bool held_ = false;
 };
 

@@ -58,6 +58,7 @@ class RtuJudge {
     last_ = now;
     if (size_ == 0) {
       first_is_bad_ = rest_is_bad_ = second_is_apart_ = false;
+      first_ = now;
     }
     if (!good) {
       (size_ == 0 ? first_is_bad_ : rest_is_bad_) = true;
@@ -109,7 +110,7 @@ class RtuJudge {
     const auto kind = host_ok         ? Finding::Kind::HostOk
                       : frame[0] == 0 ? Finding::Kind::Broadcast
                                       : Finding::Kind::Request;
-    return {kind, frame, last_};
+    return {kind, frame, first_, last_};
   }
 
   std::uint8_t own_;
@@ -118,6 +119,7 @@ class RtuJudge {
   Microseconds apart_;  ///< between the ends of two bytes, from which on they are too far apart
   std::array<std::uint8_t, kLongest + 2> bytes_{};  ///< two more than a frame may have, and then it is none
   std::size_t size_ = 0;
+  Microseconds first_ = 0;
   Microseconds last_ = 0;
   bool first_is_bad_ = false;
   bool rest_is_bad_ = false;

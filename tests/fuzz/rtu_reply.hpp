@@ -113,7 +113,4 @@ inline ReplyForm rtu_reply_form(Bytes request, Bytes reply) {
   return reply[1] == request[1] && detail::is_answer(request, reply) ? ReplyForm::Answer : ReplyForm::Wrong;
 }
 
-/// Whether a request is one to drive outputs with.
-inline bool rtu_may_drive(Bytes request) { return request[1] == 0x05 || request[1] == 0x0F; }
-
 }  // namespace ex9000::fuzz

@@ -18,19 +18,31 @@
 #include "tests/fuzz/require.hpp"
 #include "tests/fuzz/rtu_judge.hpp"
 #include "tests/fuzz/rtu_reply.hpp"
+#include "tests/judges/dcon_demand.hpp"
+#include "tests/judges/demand.hpp"
+#include "tests/judges/rtu_demand.hpp"
 
 namespace ex9000::fuzz {
 
+using judges::Demand;
+using judges::Values;
+
 /// Aborts where
 ///  - a reply begins that no frame has asked for, or too early or too late, or that is not of the form that
-///  the request
-///    demands;
-///  - an output changes but by a command to drive outputs, a timeout of the host watchdog, or a reset;
-///  - a command is refused and an output has changed all the same;
+///    the request demands;
+///  - outputs, power-on and safe value, the host watchdog's timeout and enable, or the timeout status change
+///    to anything but what a command demands that was heard, to the bit, or a timeout of the host watchdog;
+///    or at a reset outputs are not what is stored;
+///  - a command is answered, or heard by a module with nothing else to do, and these are not what it demands;
+///  - a command is refused, and one of them has changed all the same; or an output command is refused that is
+///    right;
+///  - a frame for a module with nothing else to do gets no answer;
 ///  - the host watchdog expires too early;
 ///  - outputs are not the safe value while the timeout status is set, or a model drives one that it lacks.
 ///
-/// Of the module's own words it believes what is in force from a reset on, and the present settings.
+/// Of the module's own words it believes what is in force from a reset on, and which settings it has come up
+/// with: what of a command that the reset cut short is stored is a matter of power cuts
+/// (registers/power_cuts_test.cpp). All that values become from then on follows from frames.
 class Session final : public Onlooker {
  public:
   Session(const Model& model, bool strict_gaps)
@@ -55,8 +67,9 @@ class Session final : public Onlooker {
     pending_count_ = 0;
     held_until_ = kNever;
     booting_ = true;
-    reply_ended_ = alive_ = module_.now();
-    timed_out_ = heard_host_ok_ = false;
+    free_ = alive_ = busy_ = module_.now();
+    expired_ = 0;
+    broadcast_ = false;
     outputs_ = 0;
     module_.reset();
     booting_ = false;
@@ -68,9 +81,9 @@ class Session final : public Onlooker {
     }
     character_ = 10'000'000ULL / baud;
     silence_ = baud <= 19200 ? 38'500'000ULL / baud : 1750;
-    timed_out_ = state().settings.timeout_status;
-    timeout_ = state().settings.watchdog_timeout;
-    look();
+    values_ = values();
+    require(outputs_ == (values_.timed_out ? values_.safe : values_.power_on),
+            "outputs come up with the power-on value, or the safe value behind a timeout");
   }
 
   void wait(Microseconds time) { advance_to(module_.now() + time); }
@@ -81,14 +94,8 @@ class Session final : public Onlooker {
     held_until_ = module_.now() + time;
     module_.hold(true);
   }
-  void toggle_input(unsigned channel) {
-    module_.toggle_input(channel);
-    look();
-  }
-  void tick() {
-    module_.tick();
-    look();
-  }
+  void toggle_input(unsigned channel) { module_.toggle_input(channel); }
+  void tick() { module_.tick(); }
 
   /// A byte that begins `gap` from now, or a little later.
   void byte(std::uint8_t byte, ByteStatus status, Microseconds gap = 0) {
@@ -102,14 +109,18 @@ class Session final : public Onlooker {
     }
     const bool good = status == ByteStatus::Good;
     if (rtu_) {
-      note(rtu_->pass(end));
+      note_silence();
+      look();
       rtu_->byte(byte, good, end);
     } else {
       may_have_taken_address();
       note(dcon_->byte(byte, good, end));
     }
+    drop_stale();
+    if (pending_count_ != 0 || module_.held()) {
+      busy_ = end;
+    }
     module_.receive(byte, status);
-    look();
   }
 
   /// Until the module has been silent for 250 ms.
@@ -145,15 +156,15 @@ class Session final : public Onlooker {
   // --- Onlooker ---
 
   void reply_begins(Bytes reply) override {
+    follow();
     note_silence();
-    const ReplyForm form = rtu_ ? take_rtu_reply(reply) : take_dcon_reply(reply);
+    rtu_ ? take_rtu_reply(reply) : take_dcon_reply(reply);
     std::copy(reply.begin(), reply.end(), reply_.begin());
     reply_size_ = reply.size - (rtu_ ? 2 : dcon_->checksum() ? 3 : 1);
-    require(!(form == ReplyForm::Refusal && answered_.drove), "a refused request drives nothing");
   }
 
   void reply_ends() override {
-    reply_ended_ = module_.now();
+    free_ = module_.now() + distance();
     if (rtu_) {
       note(rtu_->spoken());
     } else {
@@ -162,25 +173,19 @@ class Session final : public Onlooker {
   }
 
   void outputs_change(std::uint16_t channels) override {
+    require(!booting_ || outputs_ == 0, "outputs come up without a glitch");
     outputs_ = channels;
-    if (booting_) {
-      return;
+    if (!booting_) {
+      follow();
     }
-    note_silence();
-    if (has_timed_out()) {
-      return;
+  }
+
+  void turned() override {
+    if (!booting_) {
+      follow();
+      require(!dcon_ || pending_count_ != 0 || in_force().address == dcon_->own_address(),
+              "the address changes by a command only");
     }
-    Pending* driver = nullptr;
-    unsigned drivers = 0;
-    for (std::size_t i = 0; i < pending_count_; ++i) {
-      Pending& each = pending(i);
-      if (!each.drove && is_fresh(each) && may_drive(each.frame())) {
-        driver = &each;
-        ++drivers;
-      }
-    }
-    require(drivers != 0, "an output changes by a command, a timeout or a reset only");
-    driver->drove = drivers == 1;
   }
 
  private:
@@ -188,8 +193,11 @@ class Session final : public Onlooker {
     std::array<std::uint8_t, 256> bytes;
     std::size_t size;
     Microseconds last;
+    Demand demand;
     bool broadcast;
-    bool drove;  ///< an output has changed, and by no other
+    bool alone;  ///< the module had nothing else to do
+    bool fresh;  ///< see mark_fresh
+    bool done;   ///< values have changed, and by no other
 
     [[nodiscard]] Bytes frame() const { return {bytes.data(), size}; }
   };
@@ -202,34 +210,44 @@ class Session final : public Onlooker {
   void advance_to(Microseconds until) {
     if (held_until_ <= until) {
       module_.advance_to(std::exchange(held_until_, kNever));
+      free_ = std::max(free_, module_.now());
       module_.hold(false);
-      released_ = module_.now();
     }
     module_.advance_to(until);
     look();
   }
 
   void note(const Finding& finding) {
-    if (finding.kind == Finding::Kind::HostOk && !module_.held()) {
-      alive_ = std::max(alive_, finding.last);
-      heard_host_ok_ = true;
+    if (finding.kind == Finding::Kind::Nothing) {
+      return;
     }
-    if (finding.kind == Finding::Kind::Nothing || finding.kind == Finding::Kind::HostOk) {
+    if (finding.kind == Finding::Kind::HostOk) {
+      if (!module_.held()) {  // of several, the module knows the last one then
+        alive_ = std::max(alive_, finding.last);
+      }
       return;
     }
     if (pending_count_ == kMostPending) {
       drop_oldest(1);
+      broadcast_ = false;
     }
     Pending& latest = pending(pending_count_++);
     std::copy(finding.frame.begin(), finding.frame.end(), latest.bytes.begin());
     latest.size = finding.frame.size;
     latest.last = finding.last;
+    latest.demand = rtu_ ? judges::rtu_demand(finding.frame, model_.outputs)
+                         : judges::dcon_demand(finding.frame, model_.outputs);
     latest.broadcast = finding.kind == Finding::Kind::Broadcast;
-    latest.drove = false;
+    latest.alone = finding.first > busy_;
+    latest.done = false;
+    broadcast_ =
+        latest.alone && latest.broadcast && latest.demand.drives() && !latest.demand.stores_something;
   }
   void note_silence() {
     if (rtu_) {
-      note(rtu_->pass(module_.now()));
+      Finding finding = rtu_->pass(module_.now());
+      finding.last += finding.kind == Finding::Kind::HostOk ? silence_ : 0;  // D11
+      note(finding);
     }
   }
   Pending& pending(std::size_t index) { return pending_[(oldest_ + index) % kMostPending]; }
@@ -238,48 +256,87 @@ class Session final : public Onlooker {
     pending_count_ -= count;
   }
 
-  /// Whether it may still be acted upon: within 200 ms of the end of its silence, or of what was done before
-  /// it.
-  [[nodiscard]] bool is_fresh(const Pending& request) const {
-    constexpr Microseconds kLatest = 200 * kMillisecond;
-    const Microseconds over = request.last + (rtu_ ? silence_ : character_);
-    return module_.now() <= std::max({over, reply_ended_, released_}) + kLatest;
+  /// From a request's last byte, or from the module's own, to a reply.
+  [[nodiscard]] Microseconds distance() const { return rtu_ ? silence_ : character_; }
+
+  /// wire.md 3 and 7: until when a request is acted upon, where the module was free from then on.
+  [[nodiscard]] Microseconds latest_of(const Pending& request, Microseconds free) const {
+    constexpr Microseconds kPlain = 20 * kMillisecond;
+    constexpr Microseconds kStoring = 200 * kMillisecond;
+    const Microseconds over = request.last + (rtu_ ? silence_ : 0);
+    return std::max(over, free) + (request.demand.stores_something ? kStoring : kPlain);
   }
-  [[nodiscard]] bool may_drive(Bytes request) const {
-    return rtu_ ? rtu_may_drive(request) : dcon_may_drive(request, state().settings.timeout_status);
+  /// What has no answer may be under way for all of its time.
+  static bool is_silent_store(const Pending& request) {
+    return request.broadcast && request.demand.stores_something;
   }
 
-  /// The request that `form_of` finds the reply to be one to; it and all before it are done with.
+  /// Which requests may still be acted upon.
+  void mark_fresh() {
+    Microseconds free = free_;
+    for (std::size_t i = 0; i < pending_count_; ++i) {
+      Pending& each = pending(i);
+      const Microseconds latest = latest_of(each, free);
+      each.fresh = module_.now() <= latest;
+      free = is_silent_store(each) ? latest : free;
+    }
+  }
+
+  /// Requests that cannot be acted upon any more.
+  void drop_stale() {
+    while (pending_count_ != 0 && !module_.held() && !module_.sending()) {
+      const Pending& oldest = pending(0);
+      const Microseconds latest = latest_of(oldest, free_);
+      if (module_.now() <= latest) {
+        return;
+      }
+      require(oldest.broadcast || !oldest.alone, "a module with nothing else to do answers in time");
+      if (is_silent_store(oldest)) {
+        free_ = latest;
+      }
+      drop_oldest(1);
+    }
+  }
+
+  /// The request that `form_of` finds the reply to be one to, and that has come to that; it and all before it
+  /// are done with.
   template <class FormOf>
-  ReplyForm answered(FormOf form_of) {
-    bool asked = false;
+  ReplyForm answered(bool refuses_outputs, FormOf form_of) {
+    mark_fresh();
+    const char* objection = "only a frame for the module is answered";
     for (std::size_t i = 0; i < pending_count_; ++i) {
       const Pending& request = pending(i);
-      if (request.broadcast || !is_fresh(request)) {
+      if (request.broadcast || !request.fresh) {
         continue;
       }
-      asked = true;
       const ReplyForm form = form_of(request.frame());
-      if (form == ReplyForm::Wrong) {
-        continue;
+      objection = form == ReplyForm::Wrong     ? "a reply has the form that its request demands"
+                  : form == ReplyForm::Refusal ? objection_to_refusal(request, refuses_outputs)
+                                               : objection_to_answer(request);
+      if (objection != nullptr) {
+        continue;  // it may have been lost
       }
-      require(module_.now() >= request.last + (rtu_ ? silence_ : character_), "a reply keeps its distance");
+      require(module_.now() >= request.last + distance(), "a reply keeps its distance");
+      if (form == ReplyForm::Answer && request.demand.restarts) {
+        alive_ = std::max(alive_, request.last + distance());
+      }
       answered_ = request;
       drop_oldest(i + 1);
       return form;
     }
-    require(asked, "only a frame for the module is answered");
-    require(false, "a reply has the form that its request demands");
+    require(false, objection);
     return ReplyForm::Wrong;
   }
 
-  ReplyForm take_rtu_reply(Bytes reply) {
+  void take_rtu_reply(Bytes reply) {
     require(reply.size >= 5 && reply.size <= 256, "a Modbus reply has 5 to 256 bytes");
     require(crc16(reply.data, reply.size) == 0, "a Modbus reply carries its CRC");
-    return answered([=](Bytes request) { return rtu_reply_form(request, reply.first(reply.size - 2)); });
+    constexpr std::uint8_t kFailure = 0x04;
+    answered(reply[2] == kFailure,
+             [=](Bytes request) { return rtu_reply_form(request, reply.first(reply.size - 2)); });
   }
 
-  ReplyForm take_dcon_reply(Bytes reply) {
+  void take_dcon_reply(Bytes reply) {
     require(reply.size >= 2 && reply[reply.size - 1] == '\r', "a DCON reply ends with CR");
     std::size_t size = reply.size - 1;
     for (const std::uint8_t c : reply.first(size)) {
@@ -291,14 +348,15 @@ class Session final : public Onlooker {
       require(are_digits_of(reply.data + size, dcon_sum(reply.data, size)),
               "a DCON reply carries the right checksum");
     }
-    const DconRules rules{dcon_->own_address(), in_force().init_mode, state().settings.timeout_status};
-    const ReplyForm form =
-        answered([&](Bytes request) { return dcon_reply_form(request, reply.first(size), rules); });
+    const DconRules rules{dcon_->own_address(), in_force().init_mode, model_.has_inputs(),
+                          model_.has_outputs()};
+    const ReplyForm form = answered(size == 1 && reply[0] == '!', [&](Bytes request) {
+      return dcon_reply_form(request, reply.first(size), rules);
+    });
     if (form == ReplyForm::Answer && answered_.bytes[0] == '%' && !rules.init_mode) {
       dcon_->answer_to(new_address(answered_.frame()));
     }
     dcon_->may_answer_to(std::nullopt);
-    return form;
   }
 
   /// The second and third of what is a hex digit each; others make no request that is answered.
@@ -317,33 +375,142 @@ class Session final : public Onlooker {
     }
   }
 
-  /// True where the host watchdog has expired since it was asked last.
-  bool has_timed_out() {
-    const Settings& settings = state().settings;
-    const unsigned timeout =
-        std::min(settings.watchdog_timeout, std::exchange(timeout_, settings.watchdog_timeout));
-    const bool was = std::exchange(timed_out_, settings.timeout_status);
-    if (was || !timed_out_) {
-      return false;
+  /// Why a request cannot have been refused, or null. `refuses_outputs`: as outputs are blocked, or where
+  /// Modbus could not store.
+  [[nodiscard]] const char* objection_to_refusal(const Pending& request, bool refuses_outputs) const {
+    const Demand& demand = request.demand;
+    if (request.done) {
+      return "a refused request changes nothing";
     }
-    constexpr Microseconds kUnit = 100 * kMillisecond;
-    require(module_.now() - alive_ >= timeout * kUnit, "the host watchdog never expires too early");
-    require(state().outputs == settings.safe_value, "a timeout puts the outputs to the safe value");
-    return true;
+    const bool may_fail = rtu_ && demand.stores_something;
+    if (demand.drives()) {
+      return refuses_outputs && (values_.timed_out || may_fail)
+                 ? nullptr
+                 : "an output command of the right form is refused behind a timeout only";
+    }
+    return refuses_outputs && !may_fail ? "only an output command is refused for a timeout" : nullptr;
   }
 
-  /// What holds at all times.
-  void look() {
-    if (!module_.held() && std::exchange(heard_host_ok_, false)) {
-      module_.tick();  // a host OK is no news; it is heeded with the next tick
+  /// Why a request cannot have been carried out, or null.
+  [[nodiscard]] const char* objection_to_answer(const Pending& request) const {
+    const Demand& demand = request.demand;
+    const bool since = has_expired_since(request);
+    const bool output_command = rtu_ ? judges::is_rtu_output_command(request.frame())
+                                     : judges::is_dcon_output_command(request.frame());
+    if (output_command && !demand.drives()) {
+      return "an output command of a wrong form is refused";
     }
-    if (std::exchange(turns_, module_.turns()) != module_.turns()) {
-      has_timed_out();
-      require(!timed_out_ || outputs_ == state().settings.safe_value,
-              "outputs are the safe value while the timeout status is set");
-      require((outputs_ & ~model_.output_mask()) == 0, "only outputs that the model has are driven");
-      require(!dcon_ || pending_count_ != 0 || in_force().address == dcon_->own_address(),
-              "the address changes by a command only");
+    if (demand.drives() && values_.timed_out && !since) {
+      return "an output command is refused while the timeout status is set";
+    }
+    return demand.is_met_by(values_, outputs_before_, since) ? nullptr
+                                                             : "what is answered is done, to the bit";
+  }
+
+  [[nodiscard]] bool has_expired_since(const Pending& request) const { return expired_ >= request.last; }
+
+  [[nodiscard]] Values values() const {
+    const Settings& settings = state().settings;
+    return {outputs_,
+            settings.power_on_value,
+            settings.safe_value,
+            settings.watchdog_timeout,
+            settings.watchdog_enabled,
+            settings.timeout_status};
+  }
+
+  /// The main loop has turned, or is about to tell why.
+  void follow() {
+    const Values now = values();
+    if (now == values_) {
+      return;
+    }
+    note_silence();
+    mark_fresh();
+    if (!one_leads_to(now)) {
+      const bool expires = now.timed_out && !values_.timed_out;
+      require(!expires || may_expire(values_), "the host watchdog never expires too early");
+      require(some_lead(values_, now, 0, kMostInATurn),
+              "values change by what a command demands, a timeout or a reset only");
+    }
+    values_ = now;
+    require(!now.timed_out || now.outputs == now.safe,
+            "outputs are the safe value while the timeout status is set");
+    require((now.outputs & ~model_.output_mask()) == 0, "only outputs that the model has are driven");
+  }
+
+  /// One broadcast that was being stored, another one behind it, and what the silence behind that has ended.
+  static constexpr unsigned kMostInATurn = 3;
+
+  [[nodiscard]] bool leads(const Pending& request, const Values& from, const Values& to) const {
+    const Demand& demand = request.demand;
+    return request.fresh && !request.done && demand.changes_values() &&
+           (demand.made_of(from) == to || (from.timed_out && has_expired_since(request) &&
+                                           demand.made_behind_a_timeout(from, outputs_before_) == to));
+  }
+
+  /// Whether one command has made `to` of the values, as nearly always.
+  bool one_leads_to(const Values& to) {
+    Pending* only = nullptr;
+    unsigned count = 0;
+    for (std::size_t i = 0; i < pending_count_; ++i) {
+      if (leads(pending(i), values_, to)) {
+        only = &pending(i);
+        ++count;
+      }
+    }
+    if (count == 1) {
+      only->done = true;
+      if (only->demand.restarts) {
+        alive_ = module_.now();
+      }
+    }
+    return count != 0;
+  }
+
+  [[nodiscard]] bool may_expire(const Values& values) const {
+    constexpr Microseconds kUnit = 100 * kMillisecond;
+    return values.enabled && module_.now() - alive_ >= values.timeout * kUnit;
+  }
+
+  /// Whether a timeout, or some commands from the one at `next` on, or both, have made `to` of `from`.
+  bool some_lead(const Values& from, const Values& to, std::size_t next, unsigned most) {
+    if (from == to) {
+      return true;
+    }
+    if (may_expire(from)) {
+      const auto outputs = std::exchange(outputs_before_, from.outputs);
+      const auto expired = std::exchange(expired_, module_.now());
+      if (some_lead(from.expired(), to, next, most)) {
+        return true;
+      }
+      outputs_before_ = outputs;
+      expired_ = expired;
+    }
+    for (std::size_t i = next; most != 0 && i < pending_count_; ++i) {
+      const Pending& each = pending(i);
+      if (leads(each, from, to)) {
+        return true;
+      }
+      if (each.fresh && !each.done && each.demand.changes_values()) {
+        if (some_lead(each.demand.made_of(from), to, i + 1, most - 1)) {
+          return true;
+        }
+        if (from.timed_out && has_expired_since(each) &&
+            some_lead(each.demand.made_behind_a_timeout(from, outputs_before_), to, i + 1, most - 1)) {
+          return true;
+        }
+      }
+    }
+    return false;
+  }
+
+  /// What is to be seen when time has passed.
+  void look() {
+    if (broadcast_ && !module_.held()) {
+      broadcast_ = false;
+      require(values_.timed_out || pending(0).demand.is_met_by(values_, outputs_before_, false),
+              "a broadcast to a module with nothing else to do is carried out");
     }
   }
 
@@ -361,15 +528,15 @@ class Session final : public Onlooker {
   std::array<std::uint8_t, 256> reply_{};
   std::size_t reply_size_ = 0;
   std::uint16_t outputs_ = 0;
+  Values values_;                     ///< as commands and timeouts have made them
+  std::uint16_t outputs_before_ = 0;  ///< before the latest timeout
+  Microseconds expired_ = 0;          ///< when that was; 0: not since the last reset
   bool booting_ = false;
-  bool timed_out_ = false;
-  bool heard_host_ok_ = false;
-  std::uint8_t timeout_ = 0;  ///< as it was when that was looked at
-  std::uint64_t turns_ = 0;
-  Microseconds alive_ = 0;  ///< the last host OK, or the last reset
-  Microseconds reply_ended_ = 0;
+  bool broadcast_ = false;  ///< one has come in, alone, and nobody has looked for what it has done
+  Microseconds alive_ = 0;  ///< no restart of the host watchdog was earlier than this
+  Microseconds free_ = 0;   ///< from then on nothing but requests can keep the module from the next one
+  Microseconds busy_ = 0;   ///< the last byte that found it so came then
   Microseconds held_until_ = kNever;
-  Microseconds released_ = 0;
 };
 
 }  // namespace ex9000::fuzz
