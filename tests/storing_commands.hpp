@@ -1,5 +1,5 @@
 // Every way to make a module store something - wire.md section 8 - and what it is to become of the settings.
-// Written from wire.md, without a look at the core.
+// None of the core's code takes part in that but its types.
 #pragma once
 
 #include <cstdint>

@@ -86,7 +86,6 @@ class EepromChip {
   unsigned bytes_ = 0;
   std::uint16_t address_ = 0;
   std::array<std::uint8_t, kPage> page_{};
-  std::array<bool, kPage> touched_{};
   std::vector<std::uint16_t> order_;
   Instant began_{0};
   Alarm programmed_;

@@ -36,6 +36,15 @@ class ModuleBench {
   BusRecorder& recorder() { return recorder_; }
   [[nodiscard]] VirtualTime now() { return line_.clock().virtual_now(); }
   void run(VirtualTime time) { line_.bus().run_for(time); }
+  /// Until that is so, looked at every millisecond, and for a second at most: whether it is.
+  template <class Condition>
+  bool runs_until(Condition condition) {
+    const VirtualTime gives_up = now() + std::chrono::seconds(1);
+    while (!condition() && now() < gives_up) {
+      run(std::chrono::milliseconds(1));
+    }
+    return condition();
+  }
 
   void send(const Bytes& bytes) {
     line_.master().send(bytes.data(), bytes.size());

@@ -40,9 +40,8 @@ TEST(HostWatchdog, ATimeoutBehindAClearingThatIsBeingStoredIsNotClearedByIt) {
   ASSERT_EQ(bench.ask("~013101"), "!01");  // has expired by now
   bench.send("~013101\r");                 // armed again
   bench.run(milliseconds(15));
-  while (bench.module().module().state().settings.watchdog_enabled == false) {
-    bench.run(milliseconds(1));
-  }
+  ASSERT_TRUE(
+      bench.runs_until([&bench] { return bench.module().module().state().settings.watchdog_enabled; }));
   bench.run(milliseconds(86));
   bench.forget_heard();
   bench.send("~011\r");
@@ -144,9 +143,7 @@ TEST(HostWatchdog, ATimeoutThatCannotBeStoredHoldsAllTheSameAndIsStoredLater) {
 TEST(HostWatchdog, ClearingTheStatusWhileItsStoreIsUnderWayIsStoredBehindIt) {
   ModuleBench bench("EX9043D,baud=115200");
   ASSERT_EQ(bench.ask("~013103"), "!01");
-  while (!bench.module().module().state().settings.timeout_status) {
-    bench.run(milliseconds(1));
-  }
+  ASSERT_TRUE(bench.runs_until([&bench] { return bench.module().module().state().settings.timeout_status; }));
   EXPECT_EQ(bench.ask("~011"), "!01");
   bench.power_cycle();
   EXPECT_EQ(bench.ask("~010"), "!0100");
