@@ -1,4 +1,4 @@
-// Numbers that a long run is given through its environment.
+// What a long run is told through its environment.
 #pragma once
 
 #include <cstdint>
@@ -20,6 +20,17 @@ inline std::uint64_t number_in_environment(const char* variable, std::uint64_t o
     throw std::runtime_error(std::string(variable) + "=" + digits + " is no number of up to 18 digits");
   }
   return std::stoull(digits);
+}
+
+/// Whether EX9000_CUTS=all asks for all there is to try instead of some of it; not set, it does not. Throws
+/// std::runtime_error where it says anything else, for the reason above.
+inline bool all_of_them() {
+  const char* const which = std::getenv("EX9000_CUTS");  // NOLINT(concurrency-mt-unsafe): tests set none
+  if (which != nullptr && std::string(which) != "all") {
+    throw std::runtime_error("EX9000_CUTS=" + std::string(which) +
+                             ": write EX9000_CUTS=all, or leave it out for the short form");
+  }
+  return which != nullptr;
 }
 
 }  // namespace ex9000

@@ -3,15 +3,14 @@
 
 #include <algorithm>
 #include <cstdio>
-#include <cstdlib>
 #include <string>
-#include <string_view>
 #include <tuple>
 #include <utility>
 #include <vector>
 
 #include "sim/module.hpp"
-#include "tests/modbus_frame.hpp"
+#include "tests/either_protocol.hpp"
+#include "tests/environment.hpp"
 #include "tests/registers/board_bench.hpp"
 #include "tests/registers/images_under_test.hpp"
 
@@ -40,12 +39,6 @@ std::string hex(unsigned value) {
   return digits;
 }
 
-/// As with power cuts.
-bool all_of_them() {
-  const char* which = std::getenv("EX9000_CUTS");  // NOLINT(concurrency-mt-unsafe): nobody sets it
-  return which != nullptr && std::string_view(which) == "all";
-}
-
 /// A module that has been set up: all outputs values differ, and so does what is driven.
 Settings set_up(const Model& model, Protocol protocol) {
   Settings settings = Settings::factory(model);
@@ -60,7 +53,7 @@ Settings set_up(const Model& model, Protocol protocol) {
 }
 
 /// A module on its board with a master that speaks its protocol.
-class WatchedModule {
+class WatchedModule : public EitherProtocol {
  public:
   struct Change {
     Instant at;
@@ -68,9 +61,9 @@ class WatchedModule {
   };
 
   WatchedModule(const ImageName& name, const Settings& settings)
-      : model(*find_model(name.model)),
-        bench(image_of(name.board, name.model)),
-        protocol_(settings.protocol) {
+      : EitherProtocol(settings.protocol, [this](const Bytes& frame) { return bench.exchange(frame); }),
+        model(*find_model(name.model)),
+        bench(image_of(name.board, name.model)) {
     bench.memory = sim::SimulatedModule::memory_image(model, settings);
     for (unsigned channel = 0; channel < bench.image.outputs; ++channel) {
       bench.net(bench.image.output_pins.at(channel)).on_change([this] {
@@ -91,21 +84,8 @@ class WatchedModule {
     power_up();
   }
 
-  [[nodiscard]] bool ascii() const { return protocol_ == Protocol::Ascii; }
   UartPort& uart() { return bench.image.uart == 0 ? bench.mcu->uart0 : bench.mcu->uart1; }
 
-  /// ASCII with its CR, or a Modbus frame, whichever the module speaks.
-  [[nodiscard]] Bytes framed(const std::string& ascii_text, const Bytes& modbus) const {
-    if (!ascii()) {
-      return with_crc(modbus);
-    }
-    Bytes bytes(ascii_text.begin(), ascii_text.end());
-    bytes.push_back('\r');
-    return bytes;
-  }
-  Bytes ask(const std::string& ascii_text, const Bytes& modbus) {
-    return bench.exchange(framed(ascii_text, modbus));
-  }
   Bytes text(const std::string& reply) { return framed(reply, {}); }
 
   /// Drives `value` on all outputs; whether it was accepted.
@@ -117,19 +97,6 @@ class WatchedModule {
     return framed("@01" + hex(value / 256U) + hex(value),
                   {1, 0x0F, 0, 0, 0, 16, 2, static_cast<std::uint8_t>(value & 0xFFU),
                    static_cast<std::uint8_t>(value >> 8U)});
-  }
-  bool timeout_status() {
-    const Bytes reply = ask("~010", {1, 0x01, 0x01, 0x0D, 0, 1});
-    return ascii() ? reply.at(4) == '4' : reply.at(3) == 1;
-  }
-  bool enabled() {
-    const Bytes reply = ask("~012", {1, 0x01, 0x01, 0x04, 0, 1});
-    return ascii() ? reply.at(3) == '1' : reply.at(3) == 1;
-  }
-  /// That there was a reset: `$AA5`, or in Modbus counters that begin with the request that asks for them.
-  bool was_reset() {
-    const Bytes reply = ask("$015", {1, 0x08, 0, 0x0B, 0, 0});
-    return ascii() ? reply.at(3) == '1' : (reply.at(4) << 8U | reply.at(5)) == 1;
   }
   bool stores_a_timeout(std::uint8_t timeout) {
     const Bytes reply = ask("~0131" + hex(timeout), {1, 0x06, 0x01, 0xE8, 0, timeout});
@@ -149,10 +116,17 @@ class WatchedModule {
   const Model& model;
   std::vector<Change> changes;  ///< of the outputs; outlives the board
   BoardBench bench;
-
- private:
-  Protocol protocol_;
 };
+
+/// Lets it run until that is so, and looks every `step`. False: it never is.
+template <class Condition>
+bool runs_until(BoardBench& bench, Condition condition, Instant step) {
+  const Instant gives_up = bench.timeline.now() + seconds(1);
+  while (!condition() && bench.timeline.now() < gives_up) {
+    bench.run_for(step);
+  }
+  return condition();
+}
 
 // --- module watchdog ---
 
@@ -196,25 +170,22 @@ class FaultOnBoard : public testing::TestWithParam<std::tuple<ImageName, Protoco
         break;
       case Doing::Answering:
         bench.line.send(harmless);
-        while (bench.line.drives.empty()) {
-          bench.run_for(microseconds(100));
-        }
+        ASSERT_TRUE(runs_until(
+            bench, [&] { return !bench.line.drives.empty(); }, microseconds(100)));
         bench.run_for(kBitsACharacter * 3 / 2 * bench.line.bit_time());
         ASSERT_TRUE(bench.line.driven());
         break;
       case Doing::OnTheEepromsBus:
         bench.eeprom.on_event([&events] { ++events; });
         bench.line.send(storing);
-        while (events < 12) {
-          bench.run_for(microseconds(10));
-        }
+        ASSERT_TRUE(runs_until(
+            bench, [&] { return events >= 12; }, microseconds(10)));
         bench.eeprom.on_event(nullptr);
         break;
       case Doing::Programming:
         bench.line.send(storing);
-        while (!bench.eeprom.programming()) {
-          bench.run_for(microseconds(100));
-        }
+        ASSERT_TRUE(runs_until(
+            bench, [&] { return bench.eeprom.programming(); }, microseconds(100)));
         break;
     }
   }
@@ -286,7 +257,6 @@ TEST_P(FaultOnBoard, ATickThatStopsIsReset) {
 }
 
 TEST_P(FaultOnBoard, AnInterruptThatStormsIsReset) {
-  const BoardBench bench(image_of(image().board, image().model));
   WatchedModule module(image(), set_up(*find_model(image().model), protocol()));
   const std::uint32_t enabled = module.bench.mcu->core.enabled();
   ASSERT_NE(enabled, 0U);

@@ -8,7 +8,6 @@
 
 #include <algorithm>
 #include <cstdio>
-#include <cstdlib>
 #include <random>
 #include <set>
 #include <string>
@@ -17,6 +16,7 @@
 
 #include "firmware/settings/record.hpp"
 #include "firmware/settings/store.hpp"
+#include "tests/environment.hpp"
 #include "tests/registers/cut_bench.hpp"
 #include "tests/registers/images_under_test.hpp"
 
@@ -24,11 +24,6 @@ namespace ex9000::registers {
 namespace {
 
 constexpr unsigned kSeed = 1;
-
-bool all_of_them() {
-  const char* which = std::getenv("EX9000_CUTS");  // NOLINT(concurrency-mt-unsafe): nobody sets it
-  return which != nullptr && std::string_view(which) == "all";
-}
 
 /// What the core's store finds.
 Settings settings_in(const Model& model, const Contents& contents) {

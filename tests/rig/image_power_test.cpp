@@ -7,14 +7,13 @@
 
 #include <chrono>
 #include <cstdio>
-#include <cstdlib>
 #include <map>
 #include <optional>
 #include <string>
-#include <string_view>
 #include <vector>
 
 #include "sim/module.hpp"
+#include "tests/environment.hpp"
 #include "tests/rig/master.hpp"
 #include "tests/rig/timed_module.hpp"
 #include "tests/settings_reader.hpp"
@@ -24,11 +23,6 @@ namespace ex9000::rig {
 namespace {
 
 using std::chrono::milliseconds;
-
-bool all_of_them() {
-  const char* which = std::getenv("EX9000_CUTS");  // NOLINT(concurrency-mt-unsafe): nobody sets it
-  return which != nullptr && std::string_view(which) == "all";
-}
 
 TEST(ImageWithoutPower, KeepsItsSettings) {
   const Model& model = *find_model("EX9042D-M");

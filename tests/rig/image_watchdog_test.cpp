@@ -3,13 +3,12 @@
 // back.
 #include <gtest/gtest.h>
 
-#include <cstdlib>
 #include <stdexcept>
 #include <string>
-#include <string_view>
 #include <vector>
 
-#include "tests/modbus_frame.hpp"
+#include "tests/either_protocol.hpp"
+#include "tests/environment.hpp"
 #include "tests/rig/master.hpp"
 #include "tests/rig/signals.hpp"
 #include "tests/rig/timed_module.hpp"
@@ -31,51 +30,29 @@ constexpr std::uint32_t kI2c0Vector = 16 + kI2c0;
 constexpr std::uint32_t kCode = 0x2000'C000;
 constexpr std::uint32_t kThumb = 1;
 
-bool all_of_them() {
-  const char* which = std::getenv("EX9000_CUTS");  // NOLINT(concurrency-mt-unsafe): nobody sets it
-  return which != nullptr && std::string_view(which) == "all";
-}
-
 /// What an image is doing when it is made to hang.
 enum class Doing : std::uint8_t { Nothing, Receiving, Answering, Storing };
 constexpr Doing kEverything[] = {Doing::Nothing, Doing::Receiving, Doing::Answering, Doing::Storing};
 
-class FaultyImage : public testing::TestWithParam<Protocol> {
+class FaultyImage : public testing::TestWithParam<Protocol>, protected EitherProtocol {
  protected:
-  using Bytes = TimedModule::Bytes;
+  FaultyImage() : EitherProtocol(GetParam(), [this](const Bytes& frame) { return exchange(frame); }) {}
+
   using Fault = void (FaultyImage::*)();
 
   static constexpr std::uint16_t kPowerOnValue = 0x5A5A;
   static constexpr std::uint16_t kSafeValue = 0xA5A4;
   static constexpr milliseconds kComesUpWithin{100};
 
-  static bool ascii() { return GetParam() == Protocol::Ascii; }
   QtestClient& bus() { return module_.emulator().bus(); }
 
-  static Bytes framed(const std::string& text, const Bytes& modbus) {
-    if (!ascii()) {
-      return with_crc(modbus);
-    }
-    Bytes bytes(text.begin(), text.end());
-    bytes.push_back('\r');
-    return bytes;
-  }
-  Bytes ask(const std::string& text, const Bytes& modbus) {
+  Bytes exchange(const Bytes& frame) {
     constexpr milliseconds kSilence{5};
     module_.run_for(kSilence);
     module_.hear(module_.baud());
-    module_.send(framed(text, modbus), module_.baud());
+    module_.send(frame, module_.baud());
     module_.run_for(3 * kSilence);
     return module_.hear(module_.baud());
-  }
-  /// `$AA5`, or in Modbus counters that begin with the request that asks for them.
-  bool was_reset() {
-    const Bytes reply = ask("$015", {1, 0x08, 0, 0x0B, 0, 0});
-    return ascii() ? reply.at(3) == '1' : reply.at(5) == 1;
-  }
-  bool timeout_status() {
-    const Bytes reply = ask("~010", {1, 0x01, 0x01, 0x0D, 0, 1});
-    return ascii() ? reply.at(4) == '4' : reply.at(3) == 1;
   }
   bool stores() {
     const Bytes reply = ask("~01OVALVE", {1, 0x06, 0x01, 0xE8, 0, 0x40});
@@ -202,7 +179,7 @@ class FaultyImage : public testing::TestWithParam<Protocol> {
   }
 
   /// Each of the two statuses with half of what it may be doing. A storm takes the emulator seconds.
-  static bool belongs_to_short_form(Doing doing, bool status, Fault fault) {
+  [[nodiscard]] bool belongs_to_short_form(Doing doing, bool status, Fault fault) const {
     const bool first_half = doing == Doing::Nothing || doing == Doing::Storing;
     if (fault == &FaultyImage::storm) {
       return ascii() && status && doing == Doing::Receiving;

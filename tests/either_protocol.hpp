@@ -1,0 +1,59 @@
+// A master that asks the same thing of a module in whichever protocol that speaks, at address 01 and without
+// a checksum.
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "firmware/settings/settings.hpp"
+#include "tests/modbus_frame.hpp"
+
+namespace ex9000 {
+
+class EitherProtocol {
+ public:
+  using Bytes = std::vector<std::uint8_t>;
+  /// Puts a frame on the line and returns what comes back; nothing where nothing does.
+  using Exchange = std::function<Bytes(const Bytes& frame)>;
+
+  EitherProtocol(Protocol protocol, Exchange exchange)
+      : protocol_(protocol), exchange_(std::move(exchange)) {}
+
+  [[nodiscard]] bool ascii() const { return protocol_ == Protocol::Ascii; }
+
+  /// ASCII with its CR, or Modbus with its CRC, whichever the module speaks.
+  [[nodiscard]] Bytes framed(const std::string& text, const Bytes& modbus) const {
+    if (!ascii()) {
+      return with_crc(modbus);
+    }
+    Bytes bytes(text.begin(), text.end());
+    bytes.push_back('\r');
+    return bytes;
+  }
+  Bytes ask(const std::string& text, const Bytes& modbus) { return exchange_(framed(text, modbus)); }
+
+  // Throw std::out_of_range where the reply is too short.
+  bool timeout_status() {
+    const Bytes reply = ask("~010", {1, 0x01, 0x01, 0x0D, 0, 1});
+    return ascii() ? reply.at(4) == '4' : reply.at(3) == 1;
+  }
+  bool enabled() {
+    const Bytes reply = ask("~012", {1, 0x01, 0x01, 0x04, 0, 1});
+    return ascii() ? reply.at(3) == '1' : reply.at(3) == 1;
+  }
+  /// That there was a reset since this was asked last: `$AA5`, or in Modbus counters that begin with the
+  /// request that asks for them.
+  bool was_reset() {
+    const Bytes reply = ask("$015", {1, 0x08, 0, 0x0B, 0, 0});
+    return ascii() ? reply.at(3) == '1' : (reply.at(4) << 8U | reply.at(5)) == 1;
+  }
+
+ private:
+  Protocol protocol_;
+  Exchange exchange_;
+};
+
+}  // namespace ex9000
