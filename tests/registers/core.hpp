@@ -66,6 +66,8 @@ class Core final : public Peripheral {
   /// Of a priority the part by which one interrupt interrupts another.
   [[nodiscard]] unsigned group(unsigned priority) const { return priority >> (group_shift_ + 1U); }
   [[nodiscard]] std::uint32_t tick_reload() const { return reload_; }
+  /// When the tick last came, served or not.
+  [[nodiscard]] Instant ticked() const { return tick_began_; }
 
  private:
   [[nodiscard]] std::uint32_t current() const;
