@@ -2,10 +2,10 @@
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
-#include <set>
 #include <stdexcept>
 #include <utility>
 
+#include "sim/bus_file/bus_file.hpp"
 #include "sim/control/control.hpp"
 #include "sim/reference.hpp"
 
@@ -14,8 +14,7 @@ namespace ex9000::sim {
 namespace {
 
 constexpr const char* kDescription =
-    "Simulated EX9000 modules on one RS-485 line, for Modbus and DCON masters: on a pseudo-terminal, over "
-    "TCP, "
+    "Simulated EX9000 modules on RS-485 lines, for Modbus and DCON masters: on a pseudo-terminal, over TCP, "
     "or on a real serial port.";
 
 constexpr const char* kDefaultPty = "ex9000.tty";
@@ -31,17 +30,38 @@ ADDR in hex as in `$AA2` (01 if left out); the keys:
   init=on|off              INIT* tied to GND: ASCII at address 00, 9600 baud
   eeprom=FILE              keeps its settings there, made if missing; what it holds wins over those given here
 
+BUS.json in place of modules describes any number of lines; --example prints one. What it says of ports, rates
+and modules cannot be said on the command line as well.
+
 Commands on the control socket, a line each, answered with `ok ...` or `error: ...`; N is a module's position
-on the command line, from 1:
+on the command line, or in the bus file through all lines, from 1:
+)";
+
+constexpr const char* kFaultHelp = R"(
+A fault is TROUBLE [VALUE] [WHEN], for --fault (with N before it where it befalls one module alone), bus files
+and the control socket. The troubles:
+)";
+
+constexpr const char* kScheduleHelp = R"(
+  WHEN is one of: at 12.5s | every 5s | every 10th reply | with probability 0.01 (of each reply) |
+  after 3 writes (to the EEPROM); nothing: always. `for 2s` says how long it lasts then. Times are the log's,
+  in us, ms, s, min or h.
+
+An input that moves by itself, for --input (with N before it) and bus files, is C square PERIOD [for TIME] or
+C key at TIME|every TIME for TIME [bounce TIME].
 )";
 
 constexpr const char* kExamples = R"(
 Examples:
   ex9000-sim EX9042D-M@01 EX9052D-M@02,edge=rising 9068d-m@0A,protocol=ascii --log
   ex9000-sim EX9042D-M@01,eeprom=pump.bin --tcp 5020 --control pump.ctl
+  ex9000-sim EX9052D@01 --input '1 0 square 100ms' --fault '1 lost-reply every 10th reply' --log
+  ex9000-sim --example > bus.json && ex9000-sim bus.json
 The rate that a master sets on the pseudo-terminal is the line's rate.)";
 
-std::string footer() { return kModuleHelp + control_commands() + kExamples; }
+std::string footer() {
+  return kModuleHelp + control_commands() + kFaultHelp + fault_help() + kScheduleHelp + kExamples;
+}
 
 std::string list_models() {
   std::string text;
@@ -54,24 +74,6 @@ std::string list_models() {
   return text;
 }
 
-std::uint32_t parse_line_baud(const std::string& text) {
-  for (const std::uint32_t rate : kBaudRates) {
-    if (text == std::to_string(rate)) {
-      return rate;
-    }
-  }
-  throw std::invalid_argument("--baud " + text +
-                              ": wants 1200, 2400, 4800, 9600, 19200, 38400, 57600 or 115200");
-}
-
-/// Whether it is instant.
-bool parse_line_kind(const std::string& text) {
-  if (text != "paced" && text != "instant") {
-    throw std::invalid_argument("--line " + text + ": wants paced or instant");
-  }
-  return text == "instant";
-}
-
 Parsed wrong(const std::string& what) {
   Parsed parsed;
   parsed.error = "ex9000-sim: " + one_line(what) + "\n";
@@ -79,66 +81,152 @@ Parsed wrong(const std::string& what) {
   return parsed;
 }
 
-/// What is not understood by CLI11 itself.
+/// As they were written, those of a line alone first.
 struct Texts {
   std::vector<std::string> modules;
+  std::vector<std::string> inputs;
+  std::vector<std::string> faults;
+  std::optional<std::string> pty;
   std::optional<std::string> tcp;
+  std::optional<std::string> serial;
   std::optional<std::string> baud;
   std::optional<std::string> line;
+  bool echo = false;
+  bool strict_gaps = false;
+
+  std::optional<std::string> control;
+  std::optional<std::string> seed;
+  bool log = false;
 };
 
-void check_paths(const Arguments& arguments) {
-  for (const auto& [option, path] :
-       {std::pair("--pty", arguments.pty), std::pair("--serial", arguments.serial),
-        std::pair("--control", arguments.control)}) {
-    if (path && path->empty()) {
-      throw std::invalid_argument(std::string(option) + ": wants a path");
+/// What `parse` says of `text` is told of the option.
+template <class Parse>
+auto of_option(const char* option, const std::string& text, Parse parse) {
+  try {
+    return parse(text);
+  } catch (const std::invalid_argument& error) {
+    throw std::invalid_argument(std::string(option) + ": " + error.what());
+  }
+}
+
+/// The position that `text` begins with, from 0, where there is one; it is taken away.
+std::optional<std::size_t> take_position(std::string& text, std::size_t modules) {
+  const auto end = text.find(' ');
+  if (text.empty() || text.find_first_not_of("0123456789") < end) {
+    return std::nullopt;
+  }
+  constexpr std::size_t kMostDigits = 6;
+  const std::size_t position = end > kMostDigits ? 0 : std::stoul(text.substr(0, end));
+  if (position == 0 || position > modules) {
+    throw std::invalid_argument(text + ": no module " + text.substr(0, end) + "; there are 1 to " +
+                                std::to_string(modules));
+  }
+  text = end == std::string::npos ? "" : text.substr(end + 1);
+  return position - 1;
+}
+
+Fault parse_fault_of_line(std::string text, std::size_t modules) {
+  const std::string whole = text;
+  const auto module = take_position(text, modules);
+  Fault fault = parse_fault(text);
+  if (module && !befalls_a_module(fault.trouble)) {
+    throw std::invalid_argument(whole + ": befalls the line, not a module; leave out the module's number");
+  }
+  fault.module = module;
+  return fault;
+}
+
+void add_input(std::string text, std::vector<ModuleSpec>& modules) {
+  const std::string whole = text;
+  const auto module = take_position(text, modules.size());
+  if (!module) {
+    throw std::invalid_argument("'" + whole +
+                                "' wants a module's position before it, such as 1 0 square 100ms");
+  }
+  modules[*module].inputs.push_back(parse_input_program(text, *modules[*module].model));
+}
+
+LineSetup line_of(const Texts& texts) {
+  LineSetup line;
+  for (const std::string& module : texts.modules) {
+    line.modules.push_back(parse_module_spec(module));
+  }
+  for (const std::string& input : texts.inputs) {
+    of_option("--input", input, [&](const std::string& text) {
+      add_input(text, line.modules);
+      return 0;
+    });
+  }
+  for (const std::string& fault : texts.faults) {
+    line.faults.push_back(of_option("--fault", fault, [&](const std::string& text) {
+      return parse_fault_of_line(text, line.modules.size());
+    }));
+  }
+  line.pty = texts.pty;
+  line.serial = texts.serial;
+  line.echo = texts.echo;
+  line.strict_gaps = texts.strict_gaps;
+  if (texts.baud) {
+    line.baud = of_option("--baud", *texts.baud, parse_line_rate);
+  }
+  if (texts.line) {
+    line.instant = of_option("--line", *texts.line, parse_line_kind);
+  }
+  if (texts.tcp) {
+    line.tcp = parse_tcp_address(*texts.tcp);
+  }
+  if (!line.pty && !line.tcp && !line.serial) {
+    line.pty = kDefaultPty;
+  }
+  return line;
+}
+
+/// What belongs to a line stands in the file.
+void want_no_line_besides(const Texts& texts) {
+  const std::pair<const char*, bool> given[] = {
+      {"--input", !texts.inputs.empty()},     {"--fault", !texts.faults.empty()},
+      {"--pty", texts.pty.has_value()},       {"--tcp", texts.tcp.has_value()},
+      {"--serial", texts.serial.has_value()}, {"--baud", texts.baud.has_value()},
+      {"--line", texts.line.has_value()},     {"--echo", texts.echo},
+      {"--strict-gaps", texts.strict_gaps}};
+  for (const auto& [option, is_given] : given) {
+    if (is_given) {
+      throw std::invalid_argument(std::string(option) +
+                                  ": a bus file says that of its lines itself; write it there");
     }
   }
-  std::set<std::string> files;
-  for (const ModuleSpec& module : arguments.modules) {
-    if (!module.eeprom.empty() && !files.insert(module.eeprom).second) {
-      throw std::invalid_argument("eeprom=" + module.eeprom +
-                                  ": two modules cannot share one; name a file for each");
-    }
+  if (texts.modules.size() != 1) {
+    throw std::invalid_argument(texts.modules[0] +
+                                ": a bus file has all modules; leave out the other arguments");
   }
 }
 
 /// Throws std::invalid_argument, one line.
-void take(const Texts& texts, Arguments& arguments) {
-  if (texts.baud) {
-    arguments.baud = parse_line_baud(*texts.baud);
-  }
-  if (texts.line) {
-    arguments.instant = parse_line_kind(*texts.line);
-  }
-  if (texts.tcp) {
-    arguments.tcp = parse_tcp_address(*texts.tcp);
-  }
-  for (const std::string& module : texts.modules) {
-    arguments.modules.push_back(parse_module_spec(module));
-  }
-  if (arguments.modules.empty()) {
+Setup setup_of(const Texts& texts) {
+  if (texts.modules.empty()) {
     throw std::invalid_argument("no module given; try 'ex9000-sim EX9042D-M' or --help");
   }
-  if (arguments.serial && (arguments.pty || arguments.tcp)) {
-    throw std::invalid_argument("--serial: the master is on that line; leave out --pty and --tcp");
+  Setup setup;
+  if (std::any_of(texts.modules.begin(), texts.modules.end(), is_bus_file)) {
+    want_no_line_besides(texts);
+    setup = read_bus_file(texts.modules[0]);
+  } else {
+    setup.lines.push_back(line_of(texts));
   }
-  if (arguments.echo && !arguments.serial) {
-    throw std::invalid_argument("--echo: only a serial port may have one; --serial names it");
+  if (texts.control) {
+    setup.control = texts.control;
   }
-  if (arguments.instant && arguments.serial) {
-    throw std::invalid_argument(
-        "--line instant: on a real line bytes take their time; leave it out with --serial");
+  if (texts.seed) {
+    setup.seed = of_option("--seed", *texts.seed, parse_seed);
   }
-  if (arguments.instant && arguments.strict_gaps) {
-    throw std::invalid_argument(
-        "--strict-gaps: gaps mean nothing with --line instant; leave one of them out");
+  setup.log = setup.log || texts.log;
+  try {
+    check(setup);
+  } catch (const WrongSetup& wrong_setup) {
+    const std::string option = wrong_setup.key == "eeprom" ? "eeprom=" : "--" + wrong_setup.key + ": ";
+    throw std::invalid_argument(option + wrong_setup.what());
   }
-  if (!arguments.pty && !arguments.tcp && !arguments.serial) {
-    arguments.pty = kDefaultPty;
-  }
-  check_paths(arguments);
+  return setup;
 }
 
 /// Of all models where none is named.
@@ -165,32 +253,43 @@ std::string one_line(std::string text) {
 Parsed parse_arguments(int argc, const char* const* argv) {
   CLI::App app(kDescription, "ex9000-sim");
   app.footer(footer());
-  Arguments arguments;
   Texts texts;
   bool models = false;
+  bool example = false;
   std::string reference_of;
-  app.add_option("MODULE", texts.modules, "modules on the line, one after the other");
-  app.add_option("--pty", arguments.pty,
+  app.add_option("MODULE", texts.modules, "modules on the line, one after the other; or BUS.json");
+  app.add_option("--pty", texts.pty,
                  std::string("make a pseudo-terminal and link it at this path (default: ") + kDefaultPty +
                      ", where neither --tcp nor --serial is given)")
       ->type_name("LINK");
   app.add_option("--tcp", texts.tcp, "serve the line's bytes over TCP; HOST is 127.0.0.1 if left out")
       ->type_name("HOST:PORT");
-  app.add_option("--serial", arguments.serial, "put the modules on this serial port, behind a real line")
+  app.add_option("--serial", texts.serial, "put the modules on this serial port, behind a real line")
       ->type_name("DEVICE");
-  app.add_flag("--echo", arguments.echo, "the serial port's adapter hears what it sends");
+  app.add_flag("--echo", texts.echo, "the serial port's adapter hears what it sends");
   app.add_option("--baud", texts.baud,
                  "the line's rate until a master sets one (default: the first module's)")
       ->type_name("RATE");
   app.add_option("--line", texts.line,
                  "paced (default): bytes take their time; instant: they cost none, for tests and load")
       ->type_name("paced|instant");
-  app.add_option("--control", arguments.control, "make a UNIX socket at this path that takes commands")
+  app.add_option("--control", texts.control, "make a UNIX socket at this path that takes commands")
       ->type_name("PATH");
-  app.add_flag("--log", arguments.log, "print the bus, a line a frame: time, direction, bytes, meaning");
-  app.add_flag("--strict-gaps", arguments.strict_gaps,
+  app.add_option("--input", texts.inputs,
+                 "an input that moves by itself, such as '2 0 square 100ms'; see below")
+      ->type_name("'N INPUT'")
+      ->allow_extra_args(false);
+  app.add_option("--fault", texts.faults,
+                 "what goes wrong, such as 'bit-errors 1e-4' or '2 lost-reply every 10th reply'; see below")
+      ->type_name("'[N] FAULT'")
+      ->allow_extra_args(false);
+  app.add_option("--seed", texts.seed, "of all chance: the same seed, the same faults (default: 1)")
+      ->type_name("NUMBER");
+  app.add_flag("--log", texts.log, "print the bus, a line a frame: time, direction, bytes, meaning");
+  app.add_flag("--strict-gaps", texts.strict_gaps,
                "Modbus to the letter: a gap of more than 1.5 characters spoils a frame, and a master that "
                "does not wait 3.5 characters between frames is on its own");
+  app.add_flag("--example", example, "print a bus file that shows all that one may hold, and exit");
   app.add_flag("--models", models, "list the models and exit");
   app.add_option("--reference", reference_of,
                  "print the commands and registers of this model, or of all models, and exit")
@@ -210,22 +309,21 @@ Parsed parse_arguments(int argc, const char* const* argv) {
   } catch (const CLI::ParseError& error) {
     return wrong(std::string(error.what()) + "; --help tells more");
   }
-  if (models) {
+  if (models || example) {
     Parsed parsed;
-    parsed.output = list_models();
+    parsed.output = models ? list_models() : kExampleBusFile;
     return parsed;
   }
   if (app.count("--reference") != 0) {
     return print_reference(reference_of);
   }
   try {
-    take(texts, arguments);
+    Parsed parsed;
+    parsed.setup = setup_of(texts);
+    return parsed;
   } catch (const std::invalid_argument& error) {
     return wrong(error.what());
   }
-  Parsed parsed;
-  parsed.arguments = arguments;
-  return parsed;
 }
 
 }  // namespace ex9000::sim

@@ -58,9 +58,6 @@ std::string ports(const LineIntroduced& line) {
   if (!line.serial.empty()) {
     text += "  serial port " + line.serial + "\n";
   }
-  if (!line.control.empty()) {
-    text += "  control socket " + quoted(line.control) + "\n";
-  }
   return text;
 }
 
@@ -79,12 +76,9 @@ std::string shared_addresses(const std::vector<ModuleIntroduced>& modules) {
   return text;
 }
 
-}  // namespace
-
-std::string greeting(const LineIntroduced& line) {
-  std::string text = "ex9000-sim " + std::string(kFirmwareVersion) + ", line at " +
-                     std::to_string(line.baud) + " baud" + (line.instant ? ", bytes cost no time" : "") +
-                     ":\n" + ports(line);
+std::string introduction(const LineIntroduced& line) {
+  std::string text = (line.name.empty() ? "line" : line.name) + " at " + std::to_string(line.baud) + " baud" +
+                     (line.instant ? ", bytes cost no time" : "") + ":\n" + ports(line);
   for (const ModuleIntroduced& module : line.modules) {
     text += "  " + module.designation + " at " + hex_byte_text(module.address) + ", " +
             (module.speaks_ascii ? "ASCII" : "Modbus RTU") + ", " + std::to_string(module.baud) + " baud" +
@@ -94,7 +88,21 @@ std::string greeting(const LineIntroduced& line) {
       text += module.speaks_ascii ? terminal(module, link) : mbpoll(module, link);
     }
   }
-  return text + shared_addresses(line.modules) + "Ctrl-C ends it";
+  return text + shared_addresses(line.modules);
+}
+
+}  // namespace
+
+std::string greeting(const Introduced& all) {
+  std::string text = "ex9000-sim " + std::string(kFirmwareVersion);
+  text += all.lines.size() == 1 ? ", " : ":\n";
+  for (const LineIntroduced& line : all.lines) {
+    text += introduction(line);
+  }
+  if (!all.control.empty()) {
+    text += "  control socket " + quoted(all.control) + "\n";
+  }
+  return text + "Ctrl-C ends it";
 }
 
 }  // namespace ex9000::sim

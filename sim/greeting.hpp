@@ -19,6 +19,7 @@ struct ModuleIntroduced {
 };
 
 struct LineIntroduced {
+  std::string name;  ///< empty where there is but one
   std::uint32_t baud = 0;
   bool instant = false;
   std::vector<ModuleIntroduced> modules;
@@ -26,10 +27,15 @@ struct LineIntroduced {
   std::string pty_device;  ///< where it leads
   std::string tcp;         ///< HOST:PORT; likewise
   std::string serial;      ///< the port taken; likewise
-  std::string control;     ///< the control socket; likewise
 };
 
-/// The line, its ports, its modules, and commands to paste that poll each of them; several lines.
-std::string greeting(const LineIntroduced& line);
+struct Introduced {
+  std::vector<LineIntroduced> lines;
+  std::string control;  ///< the control socket; empty: there is none
+};
+
+/// The lines, their ports, their modules, and commands to paste that poll each of them; several lines of
+/// text.
+std::string greeting(const Introduced& all);
 
 }  // namespace ex9000::sim

@@ -42,15 +42,20 @@ void Line::come_up() {
   bus_.run_for(kComingUp);
 }
 
+void Line::expect_trouble(std::uint64_t seed, Faults::Notice notice) {
+  chance_ = Chance(seed);
+  notice_ = std::move(notice);
+}
+
 Faults& Line::faults() {
   if (!faults_) {
-    faults_ = std::make_unique<Faults>(bus_, master_, modules_);
+    faults_ = std::make_unique<Faults>(bus_, master_, modules_, chance_.number(), notice_);
   }
   return *faults_;
 }
 
-void Line::move_input(std::size_t index, const InputProgram& program, std::uint64_t seed) {
-  moved_inputs_.push_back(std::make_unique<MovedInput>(bus_, *modules_[index], program, seed));
+void Line::move_input(std::size_t index, const InputProgram& program) {
+  moved_inputs_.push_back(std::make_unique<MovedInput>(bus_, *modules_[index], program, chance_.number()));
 }
 
 VirtualTime Line::rtu_silence() const {

@@ -42,10 +42,12 @@ class Line {
   Master& master() { return master_; }
   [[nodiscard]] std::size_t size() const { return modules_.size(); }
   SimulatedModule& module(std::size_t index) { return *modules_[index]; }
+  /// All chance here comes of `seed`; `notice` is told what faults do. Before there are any.
+  void expect_trouble(std::uint64_t seed, Faults::Notice notice);
   /// What goes wrong here; on the line from the first call on.
   Faults& faults();
-  /// From now on the input of the module at `index` moves by itself. The same `seed` chatters alike.
-  void move_input(std::size_t index, const InputProgram& program, std::uint64_t seed);
+  /// From now on an input of the module at `index` moves by itself.
+  void move_input(std::size_t index, const InputProgram& program);
   /// T3.5 on this line at the master's rate.
   [[nodiscard]] VirtualTime rtu_silence() const;
   /// After how long whatever was sent before is no part of a frame any more, even if its CRC is wrong.
@@ -57,6 +59,8 @@ class Line {
   Bus bus_;
   Master master_;
   std::vector<std::unique_ptr<SimulatedModule>> modules_;
+  Chance chance_{1};
+  Faults::Notice notice_;
   std::unique_ptr<Faults> faults_;
   std::vector<std::unique_ptr<MovedInput>> moved_inputs_;
 };

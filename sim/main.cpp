@@ -41,7 +41,7 @@ bool print(const std::string& text) {
   return static_cast<bool>(std::cout);
 }
 
-void run(const Arguments& arguments) {
+void run(const Setup& setup) {
   boost::asio::io_context io;
   // Who closes the pipe behind the log ends the program.
   const auto print_line = [&io](const std::string& line) {
@@ -52,7 +52,7 @@ void run(const Arguments& arguments) {
   boost::asio::signal_set signals(io);
   add_signals(signals);  // before anything is made that is to be removed again
   signals.async_wait([&io](const boost::system::error_code& /*error*/, int /*signal*/) { io.stop(); });
-  Session session(io, arguments, print_line);
+  Session session(io, setup, print_line);
   session.start();
   io.run();
 }
@@ -82,10 +82,10 @@ int main(int argc, char** argv) {
     const Parsed parsed = parse_arguments(argc, argv);
     print(parsed.output);
     std::cerr << parsed.error;
-    if (!parsed.arguments) {
+    if (!parsed.setup) {
       return parsed.exit_status;
     }
-    run(*parsed.arguments);
+    run(*parsed.setup);
   } catch (const std::invalid_argument& error) {
     return fail(error, kWrongArguments);
   } catch (const std::exception& error) {

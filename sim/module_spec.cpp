@@ -63,10 +63,41 @@ void set_format(Settings& settings, std::uint8_t bit, bool on) {
   settings.format = static_cast<std::uint8_t>(on ? settings.format | bit : settings.format & ~bit);
 }
 
-void apply_setting(ModuleSpec& spec, const std::string& option) {
-  const auto equals = option.find('=');
-  const std::string key = option.substr(0, equals);
-  const std::string value = equals == std::string::npos ? "" : option.substr(equals + 1);
+}  // namespace
+
+const Model& model_called(const std::string& name) {
+  const std::string wanted = upper(name);
+  const Model* model = find_model(wanted);
+  if (model == nullptr) {
+    model = find_model("EX" + wanted);
+  }
+  if (model == nullptr) {
+    fail("'" + name + "' is no model; --models lists them");
+  }
+  return *model;
+}
+
+std::string hex_byte_text(unsigned value) {
+  return {static_cast<char>(hex_digit(value >> 4U)), static_cast<char>(hex_digit(value))};
+}
+
+std::string hex_word_text(unsigned value) {
+  return hex_byte_text(value >> 8U & 0xFFU) + hex_byte_text(value & 0xFFU);
+}
+
+ModuleSpec factory_fresh(const Model& model) {
+  ModuleSpec spec;
+  spec.model = &model;
+  spec.settings = Settings::factory(model);
+  return spec;
+}
+
+void set_address(ModuleSpec& spec, const std::string& text) {
+  spec.settings.address = parse_address(text);
+  spec.settings_given = true;
+}
+
+void apply_setting(ModuleSpec& spec, const std::string& key, const std::string& value) {
   Settings& settings = spec.settings;
   if (key == "eeprom") {
     if (value.empty()) {
@@ -95,31 +126,16 @@ void apply_setting(ModuleSpec& spec, const std::string& option) {
   } else if (key == "name") {
     settings.name = parse_name(*spec.model, value);
   } else {
-    fail("'" + option +
-         "' is no setting; there are protocol=, baud=, checksum=, edge=, name=, init= and eeprom=");
+    fail("'" + key +
+         "=' is no setting; there are protocol=, baud=, checksum=, edge=, name=, init= and eeprom=");
   }
 }
 
-}  // namespace
-
-const Model& model_called(const std::string& name) {
-  const std::string wanted = upper(name);
-  const Model* model = find_model(wanted);
-  if (model == nullptr) {
-    model = find_model("EX" + wanted);
+void check(const ModuleSpec& spec) {
+  if (spec.settings.protocol == Protocol::ModbusRtu && !is_modbus_address(spec.settings.address)) {
+    fail("address " + hex_byte_text(spec.settings.address) +
+         " is none of Modbus, which has 01 to F7; or add protocol=ascii");
   }
-  if (model == nullptr) {
-    fail("'" + name + "' is no model; --models lists them");
-  }
-  return *model;
-}
-
-std::string hex_byte_text(unsigned value) {
-  return {static_cast<char>(hex_digit(value >> 4U)), static_cast<char>(hex_digit(value))};
-}
-
-std::string hex_word_text(unsigned value) {
-  return hex_byte_text(value >> 8U & 0xFFU) + hex_byte_text(value & 0xFFU);
 }
 
 ModuleSpec parse_module_spec(const std::string& text) {
@@ -128,28 +144,23 @@ ModuleSpec parse_module_spec(const std::string& text) {
     std::string name;
     std::getline(parts, name, ',');
     const auto at = name.find('@');
-    ModuleSpec spec;
-    spec.model = &model_called(name.substr(0, at));
-    spec.settings = Settings::factory(*spec.model);
+    ModuleSpec spec = factory_fresh(model_called(name.substr(0, at)));
     if (at != std::string::npos) {
-      spec.settings.address = parse_address(name.substr(at + 1));
-      spec.settings_given = true;
+      set_address(spec, name.substr(at + 1));
     }
     std::set<std::string> keys;
     for (std::string option; std::getline(parts, option, ',');) {
-      const std::string key = option.substr(0, option.find('='));
+      const auto equals = option.find('=');
+      const std::string key = option.substr(0, equals);
       if (!keys.insert(key).second) {
         fail("'" + key + "=' is given twice");
       }
-      apply_setting(spec, option);
+      apply_setting(spec, key, equals == std::string::npos ? "" : option.substr(equals + 1));
     }
     if (text.back() == ',') {
       fail("nothing behind the last comma");
     }
-    if (spec.settings.protocol == Protocol::ModbusRtu && !is_modbus_address(spec.settings.address)) {
-      fail("address " + hex_byte_text(spec.settings.address) +
-           " is none of Modbus, which has 01 to F7; or add protocol=ascii");
-    }
+    check(spec);
     return spec;
   } catch (const std::invalid_argument& error) {
     fail((text.empty() ? "an empty argument" : text) + ": " + error.what());

@@ -167,6 +167,23 @@ constexpr std::array<Verb, 10> kVerbs{{
     {"status", "", 0, 0, "address, protocol, rate, mode and watchdogs", status},
 }};
 
+/// What may have `line NAME` in front of it.
+struct LineVerb {
+  std::string_view name;
+  std::string_view args;
+  std::string_view does;
+
+  [[nodiscard]] std::string shape() const {
+    return std::string(name) + (args.empty() ? "" : " ") + std::string(args);
+  }
+};
+
+constexpr std::array<LineVerb, 3> kLineVerbs{{
+    {"fault", "FAULT", "from now on, see below; answers its number. Behind N: of that module"},
+    {"fault off", "K|all", "the fault of this number is over"},
+    {"faults", "", "number, how often it has struck, and text of each; * those that strike now"},
+}};
+
 std::string shape(const Verb& verb) {
   return "N " + std::string(verb.name) + (verb.args.empty() ? "" : " ") + std::string(verb.args);
 }
@@ -175,6 +192,9 @@ std::string all_shapes() {
   std::string text;
   for (const Verb& verb : kVerbs) {
     text += shape(verb) + ", ";
+  }
+  for (const LineVerb& verb : kLineVerbs) {
+    text += verb.shape() + ", ";
   }
   return text + "list, help, quit";
 }
@@ -187,12 +207,27 @@ std::string where(const SimulatedModule& module) {
                                      : " starting";
 }
 
-std::string list(Line& line) {
-  std::string text = std::to_string(line.size()) + (line.size() == 1 ? " module:" : " modules:");
-  for (std::size_t i = 0; i < line.size(); ++i) {
-    const SimulatedModule& module = line.module(i);
-    text += std::string(i == 0 ? " " : ", ") + std::to_string(i + 1) + " " +
-            std::string(module.model().designation) + where(module);
+using Lines = std::vector<Control::ControlledLine>;
+
+std::size_t modules_of(const Lines& lines) {
+  std::size_t modules = 0;
+  for (const Control::ControlledLine& controlled : lines) {
+    modules += controlled.line.size();
+  }
+  return modules;
+}
+
+std::string list(const Lines& lines) {
+  const std::size_t modules = modules_of(lines);
+  std::string text = std::to_string(modules) + (modules == 1 ? " module:" : " modules:");
+  std::size_t position = 0;
+  for (const auto& [name, line] : lines) {
+    for (std::size_t i = 0; i < line.size(); ++i) {
+      const SimulatedModule& module = line.module(i);
+      text += std::string(position == 0 ? " " : ", ") + std::to_string(position + 1) + " " +
+              std::string(module.model().designation) + where(module) + (name.empty() ? "" : " on " + name);
+      ++position;
+    }
   }
   return text;
 }
@@ -206,20 +241,109 @@ const Verb& verb_called(const std::string& name) {
   throw Refused{"no command '" + name + "'; there are " + all_shapes()};
 }
 
-std::string on_module(Line& line, const Words& words) {
-  const auto position = number(words[0], line.size());
+std::string joined(Words::const_iterator first, Words::const_iterator last) {
+  std::string text;
+  for (; first != last; ++first) {
+    text += (text.empty() ? "" : " ") + *first;
+  }
+  return text;
+}
+
+std::string add_fault(Line& line, std::optional<std::size_t> module, const std::string& text) {
+  try {
+    Fault fault = parse_fault(text);
+    if (module && !befalls_a_module(fault.trouble)) {
+      throw Refused{text + ": befalls the line, not a module; leave out the module's number"};
+    }
+    fault.module = module;
+    return std::to_string(line.faults().add(fault));
+  } catch (const std::invalid_argument& error) {
+    throw Refused{error.what()};
+  }
+}
+
+std::string end_fault(Line& line, const Words& words) {
+  constexpr unsigned long kMostFaults = 999'999'999;
+  const std::string which = words.size() == 3 ? words[2] : "";
+  const auto fault = number(which, kMostFaults);
+  if (which == "all") {
+    line.faults().remove_all();
+  } else if (!fault) {
+    throw Refused{"the command is fault off K|all"};
+  } else if (!line.faults().remove(*fault)) {
+    throw Refused{"no fault " + which + " on this line; 'faults' lists them"};
+  }
+  return "";
+}
+
+std::string list_faults(Line& line) {
+  const std::vector<Faults::Told> told = line.faults().told();
+  std::string text = std::to_string(told.size()) + (told.size() == 1 ? " fault:" : " faults:");
+  for (const Faults::Told& fault : told) {
+    text += (&fault == told.data() ? " " : "; ") + std::to_string(fault.number) + (fault.strikes ? "*" : "") +
+            " x" + std::to_string(fault.strikes_so_far) + " " +
+            (fault.module ? std::to_string(*fault.module + 1) + " " : "") + fault.text;
+  }
+  return text;
+}
+
+std::string on_line(Line& line, const Words& words) {
+  if (words[0] == "faults" && words.size() == 1) {
+    return list_faults(line);
+  }
+  if (words[0] == "fault" && words.size() >= 2) {
+    return words[1] == "off" ? end_fault(line, words)
+                             : add_fault(line, std::nullopt, joined(words.begin() + 1, words.end()));
+  }
+  throw Refused{"no command '" + joined(words.begin(), words.end()) + "'; there are " + all_shapes()};
+}
+
+Line& line_called(const Lines& lines, const std::string& name) {
+  std::string names;
+  for (const Control::ControlledLine& controlled : lines) {
+    if (controlled.name == name) {
+      return controlled.line;
+    }
+    names += " " + controlled.name;
+  }
+  throw Refused{"no line '" + name + "'; there are" + names};
+}
+
+std::string on_some_line(const Lines& lines, const Words& words) {
+  if (words[0] != "line") {
+    if (lines.size() != 1) {
+      throw Refused{"there are several lines; put 'line NAME' in front"};
+    }
+    return on_line(lines[0].line, words);
+  }
+  if (words.size() < 3) {
+    throw Refused{"the command is line NAME fault FAULT, or another of a line's"};
+  }
+  return on_line(line_called(lines, words[1]), Words(words.begin() + 2, words.end()));
+}
+
+std::string on_module(const Lines& lines, const Words& words) {
+  const auto position = number(words[0], modules_of(lines));
   if (!position || *position == 0) {
-    throw Refused{"no module " + words[0] + "; this line has 1 to " + std::to_string(line.size())};
+    throw Refused{"no module " + words[0] + "; there are 1 to " + std::to_string(modules_of(lines))};
   }
   if (words.size() == 1) {
     throw Refused{"'" + words[0] + "' alone is no command; there are " + all_shapes()};
+  }
+  std::size_t index = *position - 1;
+  auto controlled = lines.begin();
+  for (; index >= controlled->line.size(); ++controlled) {
+    index -= controlled->line.size();
+  }
+  if (words[1] == "fault") {
+    return add_fault(controlled->line, index, joined(words.begin() + 2, words.end()));
   }
   const Verb& verb = verb_called(words[1]);
   const Words args(words.begin() + 2, words.end());
   if (args.size() < verb.fewest || args.size() > verb.most) {
     throw Refused{"the command is " + shape(verb)};
   }
-  return verb.handler(line.module(*position - 1), args);
+  return verb.handler(controlled->line.module(index), args);
 }
 
 }  // namespace
@@ -234,11 +358,13 @@ Control::Reply Control::carry_out(const std::string& command) {
       if (words.size() != 1) {
         throw Refused{"nothing goes behind '" + first + "'"};
       }
-      result = quit ? "" : first == "list" ? list(line_) : all_shapes();
+      result = quit ? "" : first == "list" ? list(lines_) : all_shapes();
+    } else if (first == "line" || first == "fault" || first == "faults") {
+      result = on_some_line(lines_, words);
     } else if (first.empty() || first.find_first_not_of("0123456789") != std::string::npos) {
       throw Refused{"no command '" + first + "'; there are " + all_shapes()};
     } else {
-      result = on_module(line_, words);
+      result = on_module(lines_, words);
     }
     return {"ok" + (result.empty() ? "" : " " + result), quit};
   } catch (const Refused& refused) {
@@ -255,6 +381,10 @@ std::string control_commands() {
   for (const Verb& verb : kVerbs) {
     row(shape(verb), verb.does);
   }
+  for (const LineVerb& verb : kLineVerbs) {
+    row(verb.shape(), verb.does);
+  }
+  row("line NAME ...", "one of the three above, of that line; needed where there are several");
   row("list", "the modules");
   row("help", "the commands");
   row("quit", "ends the simulator");

@@ -1,7 +1,8 @@
-// What can be done to a line's modules from outside, as commands of a line of text.
+// What can be done to lines and their modules from outside, as commands of a line of text.
 #pragma once
 
 #include <string>
+#include <vector>
 
 #include "sim/line.hpp"
 
@@ -10,7 +11,13 @@ namespace ex9000::sim {
 /// The commands of `--control`, without the socket.
 class Control {
  public:
-  explicit Control(Line& line) : line_(line) {}
+  struct ControlledLine {
+    std::string name;  ///< may be empty where there is but one
+    Line& line;
+  };
+
+  /// Modules are numbered from 1, through all `lines`.
+  explicit Control(std::vector<ControlledLine> lines) : lines_(std::move(lines)) {}
 
   struct Reply {
     std::string text;  ///< `ok`, `ok ...` or `error: ...`, without newline
@@ -21,7 +28,7 @@ class Control {
   Reply carry_out(const std::string& command);
 
  private:
-  Line& line_;
+  std::vector<ControlledLine> lines_;
 };
 
 /// The commands and what they do, a line each, for --help and the manual.

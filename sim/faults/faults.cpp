@@ -21,8 +21,13 @@ bool is_a_moment(Trouble trouble) { return trouble == Trouble::ForeignTraffic ||
 
 }  // namespace
 
-Faults::Faults(Bus& bus, const Master& master, Modules& modules)
-    : bus_(bus), master_(master), modules_(modules), off_(modules.size()) {
+Faults::Faults(Bus& bus, const Master& master, Modules& modules, std::uint64_t seed, Notice notice)
+    : bus_(bus),
+      master_(master),
+      modules_(modules),
+      notice_(std::move(notice)),
+      chance_(seed),
+      off_(modules.size()) {
   bus_.attach(*this);
   for (std::size_t i = 0; i < modules_.size(); ++i) {
     modules_[i]->watch_replies([this, i] { return reply_begins(i); }, [this, i] { reply_ends(i); });
@@ -182,7 +187,7 @@ void Faults::relent(Armed& armed) {
 }
 
 void Faults::say(const Armed& armed, const std::string& what) const {
-  if (notice_ && !armed.fault.schedule.of_replies()) {
+  if (notice_ && !armed.fault.schedule.of_replies() && armed.fault.schedule.when != When::Always) {
     notice_("fault " + std::to_string(armed.number) + " " + what + ": " + armed.fault.text);
   }
 }

@@ -23,17 +23,15 @@ namespace ex9000::sim {
 class Faults final : public Station {
  public:
   using Modules = std::vector<std::unique_ptr<SimulatedModule>>;
-  /// A line for people on what strikes and what is over, as it does.
+  /// A line for people on what strikes and what is over, as it does: not of each reply, nor of what is
+  /// always so.
   using Notice = std::function<void(const std::string&)>;
 
-  /// Attaches itself to `bus`. `master` has the line's rate. All live as long as the bus is used.
-  Faults(Bus& bus, const Master& master, Modules& modules);
+  /// Attaches itself to `bus`. `master` has the line's rate; `notice` may be empty. All live as long as the
+  /// bus is used.
+  Faults(Bus& bus, const Master& master, Modules& modules, std::uint64_t seed, Notice notice);
   Faults(const Faults&) = delete;
   Faults& operator=(const Faults&) = delete;
-
-  /// Before anything is added.
-  void seed(std::uint64_t seed) { chance_ = Chance(seed); }
-  void tell(Notice notice) { notice_ = std::move(notice); }
 
   /// From now on; returns its number, from 1. Between two runs of the bus, like the rest. Throws
   /// std::invalid_argument where the line lacks the module, or the moment is over.
@@ -94,7 +92,7 @@ class Faults final : public Station {
   const Master& master_;
   Modules& modules_;
   Notice notice_;
-  Chance chance_{1};
+  Chance chance_;
   std::vector<Armed> armed_;
   std::size_t numbers_ = 0;
   bool changed_ = false;   ///< effects are to be set anew, as soon as no module is in the middle of something

@@ -143,7 +143,7 @@ void carry_out(Line& line, sim::Control& control, const std::string& command) {
 void live(const std::string& text) {
   Line line(specs(), sim::kPaced, [](std::uint8_t /*byte*/, ByteStatus /*status*/) {});
   line.come_up();
-  sim::Control control(line);
+  sim::Control control({{"", line}});
   std::istringstream lines(text);
   unsigned pulses = 0;
   for (std::string command; std::getline(lines, command);) {

@@ -18,19 +18,26 @@ Parsed parse(const std::vector<const char*>& words) {
   return parse_arguments(static_cast<int>(argv.size()), argv.data());
 }
 
-Arguments accepted(const std::vector<const char*>& words) {
+Setup all_accepted(const std::vector<const char*>& words) {
   const Parsed parsed = parse(words);
-  EXPECT_TRUE(parsed.arguments) << parsed.error;
+  EXPECT_TRUE(parsed.setup) << parsed.error;
   EXPECT_EQ(parsed.exit_status, 0);
   EXPECT_EQ(parsed.output, "");
   EXPECT_EQ(parsed.error, "");
-  return parsed.arguments.value_or(Arguments());
+  return parsed.setup.value_or(Setup{{LineSetup()}, std::nullopt, false, 1});
+}
+
+/// The one line of a command line.
+LineSetup accepted(const std::vector<const char*>& words) {
+  const Setup setup = all_accepted(words);
+  EXPECT_EQ(setup.lines.size(), 1U);
+  return setup.lines[0];
 }
 
 /// Refused in one line that names what is wrong and what would be right.
 void expect_error(const std::vector<const char*>& words, const std::string& wrong, const std::string& mend) {
   const Parsed parsed = parse(words);
-  EXPECT_FALSE(parsed.arguments);
+  EXPECT_FALSE(parsed.setup);
   EXPECT_EQ(parsed.output, "");
   EXPECT_NE(parsed.exit_status, 0);
   EXPECT_EQ(parsed.error.find("ex9000-sim: "), 0U) << parsed.error;
@@ -43,7 +50,7 @@ void expect_error(const std::vector<const char*>& words, const std::string& wron
 /// Text for standard output, and nothing to do.
 std::string printed(const std::vector<const char*>& words) {
   const Parsed parsed = parse(words);
-  EXPECT_FALSE(parsed.arguments);
+  EXPECT_FALSE(parsed.setup);
   EXPECT_EQ(parsed.exit_status, 0);
   EXPECT_EQ(parsed.error, "");
   EXPECT_EQ(parsed.output.empty() ? ' ' : parsed.output.back(), '\n');
@@ -51,21 +58,21 @@ std::string printed(const std::vector<const char*>& words) {
 }
 
 TEST(Arguments, OneModuleIsEnough) {
-  const Arguments arguments = accepted({"EX9042D-M"});
+  const LineSetup arguments = accepted({"EX9042D-M"});
   ASSERT_EQ(arguments.modules.size(), 1U);
   EXPECT_EQ(arguments.modules[0].model->designation, "EX9042D-M");
   EXPECT_FALSE(arguments.baud);
-  EXPECT_FALSE(arguments.log);
+  EXPECT_FALSE(all_accepted({"EX9042D-M"}).log);
   EXPECT_FALSE(arguments.strict_gaps);
   EXPECT_FALSE(arguments.instant);
   EXPECT_EQ(arguments.pty, "ex9000.tty");
   EXPECT_FALSE(arguments.tcp);
   EXPECT_FALSE(arguments.serial);
-  EXPECT_FALSE(arguments.control);
+  EXPECT_FALSE(all_accepted({"EX9042D-M"}).control);
 }
 
 TEST(Arguments, ModulesKeepTheirOrder) {
-  const Arguments arguments =
+  const LineSetup arguments =
       accepted({"EX9042D-M@01", "EX9052D-M@02,edge=rising", "9068d-m@0A,protocol=ascii"});
   ASSERT_EQ(arguments.modules.size(), 3U);
   EXPECT_EQ(arguments.modules[0].settings.address, 0x01);
@@ -76,9 +83,9 @@ TEST(Arguments, ModulesKeepTheirOrder) {
 }
 
 TEST(Arguments, OptionsMayStandBeforeBehindAndBetweenModules) {
-  const Arguments arguments = accepted({"--log", "EX9042D", "--baud", "1200", "EX9052D@02", "--strict-gaps"});
+  const LineSetup arguments = accepted({"--log", "EX9042D", "--baud", "1200", "EX9052D@02", "--strict-gaps"});
   EXPECT_EQ(arguments.modules.size(), 2U);
-  EXPECT_TRUE(arguments.log);
+  EXPECT_TRUE(all_accepted({"--log", "EX9042D"}).log);
   EXPECT_TRUE(arguments.strict_gaps);
   EXPECT_EQ(arguments.baud, 1200U);
 }
@@ -113,7 +120,7 @@ TEST(Arguments, TcpTakesHostAndPortOrAPortAlone) {
 TEST(Arguments, TheLineIsPacedOrInstant) {
   EXPECT_FALSE(accepted({"EX9042D", "--line", "paced"}).instant);
   EXPECT_TRUE(accepted({"EX9042D", "--line", "instant"}).instant);
-  expect_error({"EX9042D", "--line", "fast"}, "--line fast", "paced or instant");
+  expect_error({"EX9042D", "--line", "fast"}, "--line: 'fast'", "paced or instant");
   expect_error({"EX9042D", "--line", "instant", "--strict-gaps"}, "--strict-gaps", "leave one of them out");
 }
 
@@ -125,8 +132,8 @@ TEST(Arguments, ARealLineStandsAlone) {
 TEST(Arguments, OnlyARealLineHasAnEchoAndItIsNotInstant) {
   EXPECT_FALSE(accepted({"EX9042D", "--serial", "/dev/ttyUSB0"}).echo);
   EXPECT_TRUE(accepted({"EX9042D", "--serial", "/dev/ttyUSB0", "--echo"}).echo);
-  expect_error({"EX9042D", "--echo"}, "--echo", "--serial");
-  expect_error({"EX9042D", "--serial", "/dev/ttyUSB0", "--line", "instant"}, "--line instant",
+  expect_error({"EX9042D", "--echo"}, "--echo", "serial names it");
+  expect_error({"EX9042D", "--serial", "/dev/ttyUSB0", "--line", "instant"}, "--line: instant",
                "leave it out");
 }
 
@@ -204,9 +211,9 @@ TEST(Arguments, AReferenceOfNoModelIsRefused) {
 
 TEST(Arguments, HelpTellsOfEveryOptionAndKey) {
   const std::string text = printed({"--help"});
-  for (const char* word :
-       {"MODULE", "--pty", "--baud", "--log", "--strict-gaps", "--models", "--reference", "--version",
-        "protocol=", "baud=", "checksum=", "edge=", "name=", "init=", "@ADDR"}) {
+  for (const char* word : {"MODULE", "--pty", "--baud", "--log", "--strict-gaps", "--input", "--fault",
+                           "--seed", "--example", "--models", "--reference", "--version",
+                           "protocol=", "baud=", "checksum=", "edge=", "name=", "init=", "@ADDR"}) {
     EXPECT_NE(text.find(word), std::string::npos) << word;
   }
 }

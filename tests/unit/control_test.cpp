@@ -29,7 +29,7 @@ std::string checked(const Control::Reply& reply) {
 /// A module, a master and somebody with his hands on the module.
 class ControlBench : public ModuleBench {
  public:
-  explicit ControlBench(const std::string& spec) : ModuleBench(spec), control_(line()) {}
+  explicit ControlBench(const std::string& spec) : ModuleBench(spec), control_({{"", line()}}) {}
 
   std::string tell(const std::string& command) {
     const Control::Reply reply = control_.carry_out(command);
@@ -96,7 +96,7 @@ class ThreeModules {
 
       kPaced,
       [](std::uint8_t, ByteStatus) {}};
-  Control control_{line_};
+  Control control_{{{"", line_}}};
 };
 
 // --- power ---
@@ -542,7 +542,7 @@ TEST(ControlLine, HelpNamesEveryCommand) {
 
 TEST(ControlLine, QuitIsAcknowledgedAndOnlyTheWholeWordQuits) {
   ModuleBench bench("EX9052D");
-  Control control(bench.line());
+  Control control({{"", bench.line()}});
   const Control::Reply reply = control.carry_out("quit");
   EXPECT_EQ(reply.text, "ok");
   EXPECT_TRUE(reply.quit);

@@ -1,0 +1,151 @@
+#include "sim/bus_file/located_json.hpp"
+
+#include <stdexcept>
+#include <utility>
+#include <vector>
+
+namespace ex9000::sim {
+
+namespace {
+
+using nlohmann::json;
+
+/// Goes through characters and counts the lines that have begun.
+class CountingIterator {
+ public:
+  using difference_type = std::ptrdiff_t;
+  using value_type = char;
+  using pointer = const char*;
+  using reference = const char&;
+  using iterator_category = std::input_iterator_tag;
+
+  CountingIterator(const char* at, unsigned* line) : at_(at), line_(line) {}
+
+  reference operator*() const { return *at_; }
+  CountingIterator& operator++() {
+    *line_ += *at_ == '\n' ? 1U : 0U;
+    ++at_;
+    return *this;
+  }
+  bool operator==(const CountingIterator& other) const { return at_ == other.at_; }
+  bool operator!=(const CountingIterator& other) const { return at_ != other.at_; }
+
+ private:
+  const char* at_;
+  unsigned* line_;
+};
+
+/// What is parsed, by place. A number is over only with the character behind it, which may begin a line, so a
+/// scalar has the line of its key, or of what was before it in an array.
+class Locator final : public nlohmann::json_sax<json> {
+ public:
+  explicit Locator(const unsigned& line) : line_(line) {}
+
+  std::map<std::string, unsigned> lines;
+
+  bool null() override { return scalar(); }
+  bool boolean(bool /*value*/) override { return scalar(); }
+  bool number_integer(number_integer_t /*value*/) override { return scalar(); }
+  bool number_unsigned(number_unsigned_t /*value*/) override { return scalar(); }
+  bool number_float(number_float_t /*value*/, const string_t& /*text*/) override { return scalar(); }
+  bool string(string_t& /*value*/) override {
+    seen_ = line_;
+    return scalar();
+  }
+  bool binary(binary_t& /*value*/) override { return scalar(); }
+  bool start_object(std::size_t /*elements*/) override { return open(false); }
+  bool end_object() override { return close(); }
+  bool start_array(std::size_t /*elements*/) override { return open(true); }
+  bool end_array() override { return close(); }
+  bool key(string_t& name) override {
+    seen_ = line_;
+    open_.back().key = name;
+    if (!lines.emplace(member_of(open_.back().path, name), line_).second) {
+      throw std::invalid_argument(std::to_string(line_) + ": '" + name + "' is given twice");
+    }
+    return true;
+  }
+  bool parse_error(std::size_t /*position*/, const std::string& /*token*/,
+                   const nlohmann::detail::exception& /*error*/) override {
+    return false;  // has been told already
+  }
+
+ private:
+  struct Open {
+    std::string path;
+    bool is_array;
+    std::size_t next = 0;
+    std::string key;
+  };
+
+  std::string place() {
+    if (open_.empty()) {
+      return "";
+    }
+    Open& around = open_.back();
+    return around.is_array ? element_of(around.path, around.next++) : member_of(around.path, around.key);
+  }
+
+  bool scalar() {
+    lines.emplace(place(), seen_);
+    return true;
+  }
+
+  bool open(bool is_array) {
+    seen_ = line_;
+    const std::string path = place();
+    lines.emplace(path, line_);
+    open_.push_back({path, is_array, 0, ""});
+    return true;
+  }
+
+  bool close() {
+    seen_ = line_;
+    open_.pop_back();
+    return true;
+  }
+
+  const unsigned& line_;
+  unsigned seen_ = 1;
+  std::vector<Open> open_;
+};
+
+/// `[json.exception.parse_error.101] parse error at line 3, column 5: syntax error while ...`
+std::string told(const json::parse_error& error) {
+  const std::string text = error.what();
+  const std::string lead = "at line ";
+  const auto line = text.find(lead);
+  const auto colon = text.find(": ", line);
+  if (line == std::string::npos || colon == std::string::npos) {
+    return "1: " + text;
+  }
+  const auto first = line + lead.size();
+  return text.substr(first, text.find(',', first) - first) + text.substr(colon);
+}
+
+}  // namespace
+
+std::string member_of(const std::string& path, const std::string& key) {
+  return path.empty() ? key : path + "." + key;
+}
+
+std::string element_of(const std::string& path, std::size_t index) {
+  return path + "[" + std::to_string(index) + "]";
+}
+
+LocatedJson parse_located(const std::string& text) {
+  LocatedJson located;
+  try {
+    located.value = json::parse(text);
+  } catch (const json::parse_error& error) {
+    throw std::invalid_argument(told(error));
+  }
+  unsigned line = 1;
+  Locator locator(line);
+  json::sax_parse(CountingIterator(text.data(), &line), CountingIterator(text.data() + text.size(), &line),
+                  &locator);
+  located.lines = std::move(locator.lines);
+  return located;
+}
+
+}  // namespace ex9000::sim

@@ -1,0 +1,33 @@
+#include "sim/line_of_setup.hpp"
+
+#include <utility>
+
+namespace ex9000::sim {
+
+namespace {
+
+LineKind kind_of(const LineSetup& setup) {
+  if (setup.instant) {
+    return kInstant;
+  }
+  return setup.strict_gaps ? kStrictlyPaced : kPaced;
+}
+
+}  // namespace
+
+std::unique_ptr<Line> make_line(const LineSetup& setup, Master::Receive receive) {
+  return std::make_unique<Line>(setup.modules, kind_of(setup), std::move(receive));
+}
+
+void begin_programs(Line& line, const LineSetup& setup) {
+  for (std::size_t i = 0; i < setup.modules.size(); ++i) {
+    for (const InputProgram& program : setup.modules[i].inputs) {
+      line.move_input(i, program);
+    }
+  }
+  for (const Fault& fault : setup.faults) {
+    line.faults().add(fault);
+  }
+}
+
+}  // namespace ex9000::sim

@@ -1,0 +1,143 @@
+#include "sim/running_line.hpp"
+
+#include <stdexcept>
+#include <utility>
+
+#include "sim/line_of_setup.hpp"
+#include "sim/ports/pty_port.hpp"
+#include "sim/ports/serial_port.hpp"
+#include "sim/ports/tcp_port.hpp"
+
+namespace ex9000::sim {
+
+namespace {
+
+Pace pace_of(const LineSetup& setup) {
+  if (setup.instant) {
+    return kInstantPace;
+  }
+  return setup.strict_gaps ? kStrictWallPace : kWallPace;
+}
+
+}  // namespace
+
+RunningLine::RunningLine(boost::asio::io_context& io, const LineSetup& setup, std::uint64_t seed, Print print)
+    : setup_(setup), print_(std::move(print)) {
+  for (const ModuleSpec& module : setup.modules) {
+    memories_.push_back(module.eeprom.empty() ? nullptr : std::make_unique<EepromFile>(module.eeprom));
+  }
+  line_ = make_line(setup, [this](std::uint8_t byte, ByteStatus /*status*/) { pacer_->hear(byte); });
+  use_memories();
+  line_->come_up();
+  line_->master().set_baud(setup.baud.value_or(line_->module(0).baud()));
+  introduce();
+  open_ports(io);
+  log_.emplace(speakers(), print_);
+  line_->expect_trouble(seed,
+                        [this](const std::string& text) { log_->note(line_->clock().virtual_now(), text); });
+  begin_programs(*line_, setup);
+}
+
+void RunningLine::use_memories() {
+  for (std::size_t i = 0; i < line_->size(); ++i) {
+    if (memories_[i] != nullptr && memories_[i]->found()) {
+      line_->module(i).memory().contents() = *memories_[i]->found();
+    }
+  }
+}
+
+void RunningLine::open_ports(boost::asio::io_context& io) {
+  const std::uint32_t baud = line_->master().baud();
+  if (setup_.pty) {
+    auto port = std::make_unique<PtyPort>(io, *setup_.pty, baud);
+    introduced_.pty = port->pty().link();
+    introduced_.pty_device = port->pty().device();
+    ports_.push_back(std::move(port));
+  }
+  if (setup_.tcp) {
+    auto port = std::make_unique<TcpPort>(io, *setup_.tcp);
+    introduced_.tcp = port->address();
+    ports_.push_back(std::move(port));
+  }
+  if (setup_.serial) {
+    ports_.push_back(std::make_unique<SerialPort>(io, *setup_.serial, baud, setup_.echo));
+    introduced_.serial = *setup_.serial;
+  }
+}
+
+void RunningLine::renew_memories() {
+  for (std::size_t i = 0; i < line_->size(); ++i) {
+    const EepromFile* file = memories_[i].get();
+    const std::vector<std::uint8_t>& contents = line_->module(i).memory().contents();
+    if (file != nullptr && file->found() && contents != *file->found() &&
+        !file->write(0, {contents.data(), contents.size()})) {
+      throw std::runtime_error("eeprom=" + file->path() + ": cannot be written");
+    }
+  }
+}
+
+void RunningLine::make_missing_memories(std::vector<const EepromFile*>& made) {
+  for (std::size_t i = 0; i < line_->size(); ++i) {
+    EepromFile* file = memories_[i].get();
+    if (file != nullptr && !file->found()) {
+      file->create(line_->module(i).memory().contents());
+      made.push_back(file);
+    }
+  }
+}
+
+std::vector<std::string> RunningLine::speakers() const {
+  std::vector<std::string> names{"master"};
+  for (const ModuleIntroduced& module : introduced_.modules) {
+    names.push_back(hex_byte_text(module.address) + " " + module.designation);
+  }
+  return names;
+}
+
+std::string RunningLine::remark(std::size_t index) const {
+  const EepromFile* file = memories_[index].get();
+  if (file == nullptr) {
+    return "";
+  }
+  const ModuleSpec& spec = setup_.modules[index];
+  if (!file->found()) {
+    return file->path() + " is new";
+  }
+  const Module& module = line_->module(index).module();
+  if (module.settings_unreadable()) {
+    return file->path() + " holds no settings of this model: factory settings until some are stored";
+  }
+  const bool overruled = spec.settings_given && module.state().settings != spec.settings;
+  return "settings from " + file->path() + (overruled ? ", not from the command line" : "");
+}
+
+void RunningLine::introduce() {
+  introduced_.name = setup_.name;
+  for (std::size_t i = 0; i < line_->size(); ++i) {
+    SimulatedModule& module = line_->module(i);
+    const InForce& in_force = module.module().state().in_force;
+    introduced_.modules.push_back({std::string(module.model().designation), module.model().inputs,
+                                   module.model().outputs, in_force.address,
+                                   in_force.protocol == Protocol::Ascii, module.baud(), remark(i)});
+  }
+  introduced_.baud = line_->master().baud();
+  introduced_.instant = setup_.instant;
+}
+
+void RunningLine::start(boost::asio::io_context& io, bool log) {
+  for (std::size_t i = 0; i < line_->size(); ++i) {
+    if (const EepromFile* file = memories_[i].get()) {
+      line_->module(i).memory().keep(
+          [file](std::uint16_t address, Bytes bytes) { return file->write(address, bytes); });
+    }
+  }
+  if (log) {
+    line_->bus().observe(*log_);
+  }
+  pacer_ = std::make_unique<Pacer>(
+      io, *line_, ports_, log ? &*log_ : nullptr, pace_of(setup_),
+      [this](const std::string& text) { log_->note(line_->clock().virtual_now(), text); });
+  pacer_->start();
+}
+
+}  // namespace ex9000::sim

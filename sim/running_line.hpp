@@ -1,0 +1,60 @@
+// One line of a run: its modules' memories, its ports, its faults and its log.
+#pragma once
+
+#include <boost/asio/io_context.hpp>
+#include <functional>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "sim/bus_log.hpp"
+#include "sim/eeprom_file.hpp"
+#include "sim/greeting.hpp"
+#include "sim/line.hpp"
+#include "sim/pacer.hpp"
+#include "sim/setup.hpp"
+
+namespace ex9000::sim {
+
+class RunningLine {
+ public:
+  using Print = std::function<void(const std::string& line)>;
+
+  /// Opens all that `setup` names. Throws std::invalid_argument or std::runtime_error, one line; what was
+  /// opened is given back then, and no file has been made or changed. All arguments live as long as this.
+  RunningLine(boost::asio::io_context& io, const LineSetup& setup, std::uint64_t seed, Print print);
+  RunningLine(const RunningLine&) = delete;
+  RunningLine& operator=(const RunningLine&) = delete;
+
+  /// Memories that were there follow what their modules have stored while they came up. Throws likewise.
+  void renew_memories();
+  /// Those that were not are made, and put behind `made`. Throws likewise.
+  void make_missing_memories(std::vector<const EepromFile*>& made);
+
+  /// Puts the line to work as soon as `io` runs; `log` says whether the bus is printed.
+  void start(boost::asio::io_context& io, bool log);
+
+  [[nodiscard]] const std::string& name() const { return setup_.name; }
+  Line& line() { return *line_; }
+  Pacer& pacer() { return *pacer_; }
+  [[nodiscard]] const LineIntroduced& introduced() const { return introduced_; }
+
+ private:
+  void use_memories();
+  void open_ports(boost::asio::io_context& io);
+  [[nodiscard]] std::vector<std::string> speakers() const;
+  [[nodiscard]] std::string remark(std::size_t index) const;
+  void introduce();
+
+  const LineSetup& setup_;
+  Print print_;
+  std::vector<std::unique_ptr<EepromFile>> memories_;  ///< one a module; null: none
+  std::unique_ptr<Line> line_;
+  LineIntroduced introduced_;
+  Pacer::Ports ports_;
+  std::optional<BusLog> log_;
+  std::unique_ptr<Pacer> pacer_;
+};
+
+}  // namespace ex9000::sim

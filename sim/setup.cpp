@@ -1,0 +1,103 @@
+#include "sim/setup.hpp"
+
+#include <algorithm>
+#include <charconv>
+#include <set>
+#include <utility>
+
+#include "firmware/model/baud.hpp"
+
+namespace ex9000::sim {
+
+namespace {
+
+void check(const LineSetup& line, std::size_t position) {
+  const auto wrong = [position](const std::string& key, const std::string& what) {
+    throw WrongSetup(position, key, what);
+  };
+  for (const auto& [key, path] : {std::pair("pty", line.pty), std::pair("serial", line.serial)}) {
+    if (path && path->empty()) {
+      wrong(key, "wants a path");
+    }
+  }
+  if (line.serial && (line.pty || line.tcp)) {
+    wrong("serial", "the master is on that line; leave out pty and tcp");
+  }
+  if (line.echo && !line.serial) {
+    wrong("echo", "only a serial port may have one; serial names it");
+  }
+  if (line.instant && line.serial) {
+    wrong("line", "instant: on a real line bytes take their time; leave it out with serial");
+  }
+  if (line.instant && line.strict_gaps) {
+    wrong("strict-gaps", "gaps mean nothing on an instant line; leave one of them out");
+  }
+}
+
+/// Of paths and names that must not be given twice.
+class Once {
+ public:
+  explicit Once(std::string mend) : mend_(std::move(mend)) {}
+
+  void add(std::size_t line, const std::string& key, const std::optional<std::string>& name) {
+    if (name && !name->empty() && !seen_.insert(*name).second) {
+      throw WrongSetup(line, key, *name + mend_);
+    }
+  }
+
+ private:
+  std::string mend_;
+  std::set<std::string> seen_;
+};
+
+}  // namespace
+
+void check(const Setup& setup) {
+  if (setup.control && setup.control->empty()) {
+    throw WrongSetup(std::nullopt, "control", "wants a path");
+  }
+  Once files(": two modules cannot share one; name a file for each");
+  Once ports(": two lines cannot share one; name one for each");
+  Once names(": two lines have this name; name each differently");
+  for (std::size_t i = 0; i < setup.lines.size(); ++i) {
+    const LineSetup& line = setup.lines[i];
+    check(line, i);
+    for (const ModuleSpec& module : line.modules) {
+      files.add(i, "eeprom", module.eeprom);
+    }
+    ports.add(i, "pty", line.pty);
+    ports.add(i, "serial", line.serial);
+    if (line.tcp && line.tcp->port != 0) {
+      ports.add(i, "tcp", line.tcp->host + ":" + std::to_string(line.tcp->port));
+    }
+    names.add(i, "name", line.name);
+  }
+}
+
+std::uint32_t parse_line_rate(const std::string& text) {
+  for (const std::uint32_t rate : kBaudRates) {
+    if (text == std::to_string(rate)) {
+      return rate;
+    }
+  }
+  throw std::invalid_argument("'" + text + "' wants 1200, 2400, 4800, 9600, 19200, 38400, 57600 or 115200");
+}
+
+bool parse_line_kind(const std::string& text) {
+  if (text != "paced" && text != "instant") {
+    throw std::invalid_argument("'" + text + "' wants paced or instant");
+  }
+  return text == "instant";
+}
+
+std::uint64_t parse_seed(const std::string& text) {
+  std::uint64_t seed = 0;
+  const char* const end = text.data() + text.size();
+  const auto [rest, error] = std::from_chars(text.data(), end, seed);
+  if (error != std::errc() || rest != end) {
+    throw std::invalid_argument("'" + text + "' wants a whole number from 0 on");
+  }
+  return seed;
+}
+
+}  // namespace ex9000::sim

@@ -1,0 +1,56 @@
+// What a run of the program consists of, be it from a command line or from a bus file.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+#include "sim/faults/fault.hpp"
+#include "sim/module_spec.hpp"
+#include "sim/ports/tcp_address.hpp"
+
+namespace ex9000::sim {
+
+struct LineSetup {
+  std::string name;                   ///< what logs call it; empty where there is but one
+  std::vector<ModuleSpec> modules;    ///< at least one
+  std::optional<std::string> pty;     ///< where to link a pseudo-terminal
+  std::optional<TcpAddress> tcp;      ///< where to listen
+  std::optional<std::string> serial;  ///< the port to take; then there is no other
+  std::optional<std::uint32_t> baud;  ///< of the line, until a master sets one
+  bool echo = false;                  ///< the serial port hears what it sends
+  bool instant = false;               ///< bytes cost no time
+  bool strict_gaps = false;
+  std::vector<Fault> faults;
+};
+
+struct Setup {
+  std::vector<LineSetup> lines;        ///< at least one
+  std::optional<std::string> control;  ///< where to make the control socket
+  bool log = false;
+  std::uint64_t seed = 1;  ///< of all chance: noise, faults that are probable, contacts that chatter
+};
+
+/// Wrong by the key that it is written under: an option of the command line, or a member of a bus file.
+struct WrongSetup : std::invalid_argument {
+  WrongSetup(std::optional<std::size_t> its_line, std::string its_key, const std::string& what)
+      : std::invalid_argument(what), line(its_line), key(std::move(its_key)) {}
+
+  std::optional<std::size_t> line;  ///< the position of its line; nothing: it is none of a line
+  std::string key;
+};
+
+/// What each is right of, and all together are not: throws WrongSetup.
+void check(const Setup& setup);
+
+// Values that a command line and a bus file write alike. They throw std::invalid_argument, one line.
+
+std::uint32_t parse_line_rate(const std::string& text);
+/// Whether bytes cost no time.
+bool parse_line_kind(const std::string& text);
+std::uint64_t parse_seed(const std::string& text);
+
+}  // namespace ex9000::sim
