@@ -8,6 +8,7 @@
 #include "sim/bus_file/bus_file.hpp"
 #include "sim/control/control.hpp"
 #include "sim/reference.hpp"
+#include "sim/time_text.hpp"
 
 namespace ex9000::sim {
 
@@ -35,6 +36,15 @@ and modules cannot be said on the command line as well.
 
 Commands on the control socket, a line each, answered with `ok ...` or `error: ...`; N is a module's position
 on the command line, or in the bus file through all lines, from 1:
+)";
+
+constexpr const char* kPlayHelp = R"(
+A file is a list of steps: `> $01M` and `< !019042` for DCON, `=> 01 01 0000 000D` and `<= ...` for Modbus
+without its CRC, `silence`, `wait 1.5s`, `bytes HEX`, `checksum on|off`, `baud N`, and of a module `power on|off`,
+`power-cycle`, `reset`, `init on|off`, `input C on|off`, `pulse C [xCOUNT]`, `outputs HHHH`, `led on|off|flashing`.
+With `source:` and `model:` lines before them it is a transcript, played on each model; without, a scenario for the
+modules or the bus file behind it, whose steps may also be `module N`, `line NAME`, and `fault ...` as on the control
+socket. tests/conformance/README.md has it all.
 )";
 
 constexpr const char* kFaultHelp = R"(
@@ -95,6 +105,8 @@ struct Texts {
   bool strict_gaps = false;
 
   std::optional<std::string> control;
+  std::optional<std::string> speed;
+  std::optional<std::string> lasts;
   std::optional<std::string> seed;
   bool log = false;
 };
@@ -175,9 +187,6 @@ LineSetup line_of(const Texts& texts) {
   if (texts.tcp) {
     line.tcp = parse_tcp_address(*texts.tcp);
   }
-  if (!line.pty && !line.tcp && !line.serial) {
-    line.pty = kDefaultPty;
-  }
   return line;
 }
 
@@ -216,6 +225,17 @@ Setup setup_of(const Texts& texts) {
   if (texts.control) {
     setup.control = texts.control;
   }
+  if (texts.speed) {
+    setup.speed = of_option("--speed", *texts.speed, parse_speed);
+  }
+  if (texts.lasts) {
+    setup.lasts = of_option("--for", *texts.lasts, parse_time);
+  }
+  for (LineSetup& line : setup.lines) {
+    if (!line.pty && !line.tcp && !line.serial && setup.speed) {
+      line.pty = line.name.empty() ? kDefaultPty : line.name + ".tty";
+    }
+  }
   if (texts.seed) {
     setup.seed = of_option("--seed", *texts.seed, parse_seed);
   }
@@ -227,6 +247,34 @@ Setup setup_of(const Texts& texts) {
     throw std::invalid_argument(option + wrong_setup.what());
   }
   return setup;
+}
+
+struct PlayTexts {
+  std::string file;
+  std::vector<std::string> modules;
+  std::optional<std::string> seed;
+};
+
+const CLI::App* add_play(CLI::App& app, PlayTexts& texts) {
+  CLI::App* const play = app.add_subcommand(
+      "play",
+      "play a transcript or a scenario in virtual time, and exit with 0 where all passes, else with 1");
+  play->footer(kPlayHelp);
+  play->add_option("FILE", texts.file, "the file, or a folder of them")->required();
+  play->add_option("MODULE", texts.modules, "of a scenario: the modules that it is played on, or BUS.json");
+  play->add_option("--seed", texts.seed, "of all chance (default: 1)")->type_name("NUMBER");
+  return play;
+}
+
+play::Task task_of(const PlayTexts& play_texts) {
+  play::Task task{play_texts.file, std::nullopt};
+  if (!play_texts.modules.empty()) {
+    Texts texts;
+    texts.modules = play_texts.modules;
+    texts.seed = play_texts.seed;
+    task.bus = setup_of(texts);
+  }
+  return task;
 }
 
 /// Of all models where none is named.
@@ -283,6 +331,13 @@ Parsed parse_arguments(int argc, const char* const* argv) {
                  "what goes wrong, such as 'bit-errors 1e-4' or '2 lost-reply every 10th reply'; see below")
       ->type_name("'[N] FAULT'")
       ->allow_extra_args(false);
+  app.add_option(
+         "--speed", texts.speed,
+         "so many times faster than the wall clock (default: 1); max: as fast as it can be reckoned, with no "
+         "port, and --for")
+      ->type_name("N|max");
+  app.add_option("--for", texts.lasts, "end after so much of the lines' time, such as 10s or 24h")
+      ->type_name("TIME");
   app.add_option("--seed", texts.seed, "of all chance: the same seed, the same faults (default: 1)")
       ->type_name("NUMBER");
   app.add_flag("--log", texts.log, "print the bus, a line a frame: time, direction, bytes, meaning");
@@ -295,6 +350,8 @@ Parsed parse_arguments(int argc, const char* const* argv) {
                  "print the commands and registers of this model, or of all models, and exit")
       ->type_name("[MODEL]")
       ->expected(0, 1);
+  PlayTexts play_texts;
+  const CLI::App* const playing = add_play(app, play_texts);
   app.set_version_flag("--version", "ex9000-sim " + std::string(kFirmwareVersion));
   try {
     app.parse(argc, argv);
@@ -319,7 +376,11 @@ Parsed parse_arguments(int argc, const char* const* argv) {
   }
   try {
     Parsed parsed;
-    parsed.setup = setup_of(texts);
+    if (playing->parsed()) {
+      parsed.task = task_of(play_texts);
+    } else {
+      parsed.setup = setup_of(texts);
+    }
     return parsed;
   } catch (const std::invalid_argument& error) {
     return wrong(error.what());

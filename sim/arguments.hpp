@@ -4,6 +4,7 @@
 #include <optional>
 #include <string>
 
+#include "sim/play/play.hpp"
 #include "sim/setup.hpp"
 
 namespace ex9000::sim {
@@ -13,9 +14,10 @@ constexpr int kWrongArguments = 2;
 
 /// What the command line comes to: either something to do, or text to print and a status to exit with.
 struct Parsed {
-  std::optional<Setup> setup;
-  std::string output;  ///< for standard output
-  std::string error;   ///< one line for standard error
+  std::optional<Setup> setup;      ///< to run
+  std::optional<play::Task> task;  ///< to play
+  std::string output;              ///< for standard output
+  std::string error;               ///< one line for standard error
   int exit_status = 0;
 };
 

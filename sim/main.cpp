@@ -12,13 +12,16 @@
 #include <string>
 
 #include "sim/arguments.hpp"
+#include "sim/play/play.hpp"
 #include "sim/session.hpp"
 
 namespace {
 
 using namespace ex9000::sim;
+namespace play = ex9000::play;
 
 constexpr int kCannotStart = 1;
+constexpr int kFailed = 1;
 
 /// Those that whoever started this has not told it to ignore, as nohup does and shells for background jobs.
 void add_signals(boost::asio::signal_set& signals) {
@@ -54,7 +57,11 @@ void run(const Setup& setup) {
   signals.async_wait([&io](const boost::system::error_code& /*error*/, int /*signal*/) { io.stop(); });
   Session session(io, setup, print_line);
   session.start();
-  io.run();
+  if (setup.speed) {
+    io.run();
+  } else {
+    session.run_as_fast_as_it_can();
+  }
 }
 
 int fail(const std::exception& error, int status) {
@@ -82,6 +89,9 @@ int main(int argc, char** argv) {
     const Parsed parsed = parse_arguments(argc, argv);
     print(parsed.output);
     std::cerr << parsed.error;
+    if (parsed.task) {
+      return play::play(*parsed.task, [](const std::string& line) { print(line + "\n"); }) ? 0 : kFailed;
+    }
     if (!parsed.setup) {
       return parsed.exit_status;
     }

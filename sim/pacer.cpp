@@ -36,7 +36,8 @@ Pacer::Pacer(boost::asio::io_context& io, Line& line, const Ports& ports, BusLog
 
 void Pacer::start() {
   prctl(PR_SET_TIMERSLACK, kTimerSlackNanoseconds);
-  began_ = std::chrono::steady_clock::now() - line_.clock().virtual_now();
+  began_ = std::chrono::steady_clock::now();
+  first_ = line_.clock().virtual_now();
   tell_mismatches();
   for (const auto& port : ports_) {
     port->start([this, &port = *port](const std::uint8_t* bytes, std::size_t size) {
@@ -46,7 +47,16 @@ void Pacer::start() {
   follow();
 }
 
-VirtualTime Pacer::wall() const { return std::chrono::steady_clock::now() - began_; }
+VirtualTime Pacer::wall() const {
+  const VirtualTime real = std::chrono::steady_clock::now() - began_;
+  return first_ + (pace_.speed == 1 ? real : std::chrono::duration_cast<VirtualTime>(real * pace_.speed));
+}
+
+/// When the wall clock gets there.
+std::chrono::steady_clock::time_point Pacer::when(VirtualTime time) const {
+  const VirtualTime ahead = time - first_;
+  return began_ + (pace_.speed == 1 ? ahead : std::chrono::duration_cast<VirtualTime>(ahead / pace_.speed));
+}
 
 /// Runs what is due, and leaves the clock at the last event rather than at `until`: see Pace::host_latency.
 void Pacer::catch_up(VirtualTime until) {
@@ -88,7 +98,7 @@ void Pacer::arm_timer() {
   if (next == kNever) {
     return;
   }
-  timer_.expires_at(began_ + next);
+  timer_.expires_at(when(next));
   timer_.async_wait([this](const boost::system::error_code& error) {
     if (!error) {
       follow();
@@ -106,7 +116,8 @@ void Pacer::now(const std::function<void()>& action) {
 
 bool Pacer::receive(const Port& port, const std::uint8_t* bytes, std::size_t size) {
   const VirtualTime travelled = port.is_a_line() ? line_.master().takes(size) : VirtualTime(0);
-  const VirtualTime written = wall() - pace_.host_latency - travelled;
+  const auto latency = std::chrono::duration_cast<VirtualTime>(pace_.host_latency * pace_.speed);
+  const VirtualTime written = wall() - latency - travelled;
   catch_up(written);
   line_.bus().run_until(std::max(written, line_.clock().virtual_now()));
   take_rate(port);

@@ -33,6 +33,8 @@ struct Pace {
   /// reply, and by no other: for those the two frames are one. Many masters do so, libmodbus among them, and
   /// get away with it behind adapters that take their time.
   bool keep_frames_apart = true;
+  /// Virtual time's to the wall clock's.
+  double speed = 1;
 };
 
 /// Where bytes take their time.
@@ -61,6 +63,7 @@ class Pacer final : private BusObserver {
 
  private:
   [[nodiscard]] VirtualTime wall() const;
+  [[nodiscard]] std::chrono::steady_clock::time_point when(VirtualTime time) const;
   void follow();
   void catch_up(VirtualTime until);
   [[nodiscard]] bool leads(VirtualTime next) const;
@@ -86,6 +89,7 @@ class Pacer final : private BusObserver {
   using Mismatch = std::pair<std::uint32_t, std::uint32_t>;  ///< rate of the line, rate of a module
   std::vector<Mismatch> told_;                               ///< a module each; zeros: none
   std::chrono::steady_clock::time_point began_;
+  VirtualTime first_{0};  ///< what the line's clock showed then
   std::vector<std::uint8_t> heard_;
   bool stopped_sending_ = false;  ///< a module, since `heard_` was handed out
   bool paused_ = false;           ///< a port has been told to wait

@@ -26,7 +26,11 @@ RunningLine::RunningLine(boost::asio::io_context& io, const LineSetup& setup, st
   for (const ModuleSpec& module : setup.modules) {
     memories_.push_back(module.eeprom.empty() ? nullptr : std::make_unique<EepromFile>(module.eeprom));
   }
-  line_ = make_line(setup, [this](std::uint8_t byte, ByteStatus /*status*/) { pacer_->hear(byte); });
+  line_ = make_line(setup, [this](std::uint8_t byte, ByteStatus /*status*/) {
+    if (pacer_) {
+      pacer_->hear(byte);
+    }
+  });
   use_memories();
   line_->come_up();
   line_->master().set_baud(setup.baud.value_or(line_->module(0).baud()));
@@ -124,20 +128,33 @@ void RunningLine::introduce() {
   introduced_.instant = setup_.instant;
 }
 
-void RunningLine::start(boost::asio::io_context& io, bool log) {
+void RunningLine::start(bool log) {
   for (std::size_t i = 0; i < line_->size(); ++i) {
     if (const EepromFile* file = memories_[i].get()) {
       line_->module(i).memory().keep(
           [file](std::uint16_t address, Bytes bytes) { return file->write(address, bytes); });
     }
   }
+  logs_ = log;
   if (log) {
     line_->bus().observe(*log_);
   }
+}
+
+void RunningLine::follow_the_clock(boost::asio::io_context& io, double speed) {
+  Pace pace = pace_of(setup_);
+  pace.speed = speed;
   pacer_ = std::make_unique<Pacer>(
-      io, *line_, ports_, log ? &*log_ : nullptr, pace_of(setup_),
+      io, *line_, ports_, logs_ ? &*log_ : nullptr, pace,
       [this](const std::string& text) { log_->note(line_->clock().virtual_now(), text); });
   pacer_->start();
+}
+
+void RunningLine::run_until(VirtualTime until) {
+  line_->bus().run_until(until);
+  if (logs_) {
+    log_->run(until);
+  }
 }
 
 }  // namespace ex9000::sim

@@ -32,8 +32,12 @@ class RunningLine {
   /// Those that were not are made, and put behind `made`. Throws likewise.
   void make_missing_memories(std::vector<const EepromFile*>& made);
 
-  /// Puts the line to work as soon as `io` runs; `log` says whether the bus is printed.
-  void start(boost::asio::io_context& io, bool log);
+  /// Makes ready for work; `log` says whether the bus is printed.
+  void start(bool log);
+  /// Puts the line to work as soon as `io` runs, so many times faster than the wall clock.
+  void follow_the_clock(boost::asio::io_context& io, double speed);
+  /// All that happens until then, at once, where it follows no clock.
+  void run_until(VirtualTime until);
 
   [[nodiscard]] const std::string& name() const { return setup_.name; }
   Line& line() { return *line_; }
@@ -54,6 +58,7 @@ class RunningLine {
   LineIntroduced introduced_;
   Pacer::Ports ports_;
   std::optional<BusLog> log_;
+  bool logs_ = false;
   std::unique_ptr<Pacer> pacer_;
 };
 

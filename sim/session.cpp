@@ -1,11 +1,12 @@
 #include "sim/session.hpp"
 
+#include <algorithm>
 #include <utility>
 
 namespace ex9000::sim {
 
 Session::Session(boost::asio::io_context& io, Setup setup, Print print)
-    : io_(io), setup_(std::move(setup)), print_(std::move(print)) {
+    : io_(io), setup_(std::move(setup)), print_(std::move(print)), end_(io) {
   for (const LineSetup& line : setup_.lines) {
     // Of several, each says which it is.
     const Print printed = line.name.empty() ? print_ : [this, &line](const std::string& text) {
@@ -70,10 +71,28 @@ void Session::start() {
   }
   print_(greeting(introduced));
   for (const auto& running : lines_) {
-    running->start(io_, setup_.log);
+    running->start(setup_.log);
+    if (setup_.speed) {
+      running->follow_the_clock(io_, *setup_.speed);
+    }
   }
   if (control_socket_) {
     control_socket_->start();
+  }
+  if (setup_.speed && setup_.lasts) {
+    end_.expires_after(std::chrono::duration_cast<VirtualTime>(*setup_.lasts / *setup_.speed));
+    end_.async_wait([this](const boost::system::error_code& /*error*/) { io_.stop(); });
+  }
+}
+
+void Session::run_as_fast_as_it_can() {
+  constexpr VirtualTime kStep = std::chrono::milliseconds(100);
+  for (VirtualTime now{0}; now < *setup_.lasts && !io_.stopped();) {
+    now = std::min(now + kStep, *setup_.lasts);
+    for (const auto& running : lines_) {
+      running->run_until(now);
+    }
+    io_.poll();
   }
 }
 

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <boost/asio/io_context.hpp>
+#include <boost/asio/steady_timer.hpp>
 #include <functional>
 #include <memory>
 #include <optional>
@@ -29,8 +30,10 @@ class Session {
   Session& operator=(const Session&) = delete;
 
   /// Makes the EEPROM files that are missing, prints the greeting, and puts the lines to work as soon as `io`
-  /// runs. Throws likewise.
+  /// runs, which is stopped when the time of `setup` is over. Throws likewise.
   void start();
+  /// Where the lines follow no clock: all that happens in the time of `setup`, unless `io` is stopped.
+  void run_as_fast_as_it_can();
 
  private:
   void open_control();
@@ -41,6 +44,7 @@ class Session {
   const Setup setup_;
   Print print_;
   std::vector<std::unique_ptr<RunningLine>> lines_;
+  boost::asio::steady_timer end_;
   std::optional<Control> control_;
   std::unique_ptr<ControlSocket> control_socket_;
 };

@@ -50,9 +50,29 @@ class Once {
   std::set<std::string> seen_;
 };
 
+/// What is real keeps the wall clock's time.
+void check_speed(const Setup& setup) {
+  const auto wrong = [](const std::string& what) { throw WrongSetup(std::nullopt, "speed", what); };
+  for (const LineSetup& line : setup.lines) {
+    if (line.serial && setup.speed != 1.0) {
+      wrong("a real line has its own time; leave it out with serial");
+    }
+    if (!setup.speed && (line.pty || line.tcp)) {
+      wrong("max: masters keep the wall clock's time; leave out pty and tcp, or give a number");
+    }
+  }
+  if (!setup.speed && setup.control) {
+    wrong("max: there is no time to listen to the control socket; leave it out, or give a number");
+  }
+  if (!setup.speed && !setup.lasts) {
+    wrong("max: would never end; say how long it is to last with 'for'");
+  }
+}
+
 }  // namespace
 
 void check(const Setup& setup) {
+  check_speed(setup);
   if (setup.control && setup.control->empty()) {
     throw WrongSetup(std::nullopt, "control", "wants a path");
   }
@@ -98,6 +118,20 @@ std::uint64_t parse_seed(const std::string& text) {
     throw std::invalid_argument("'" + text + "' wants a whole number from 0 on");
   }
   return seed;
+}
+
+std::optional<double> parse_speed(const std::string& text) {
+  if (text == "max") {
+    return std::nullopt;
+  }
+  constexpr double kFastest = 1000;
+  double speed = 0;
+  const char* const end = text.data() + text.size();
+  const auto [rest, error] = std::from_chars(text.data(), end, speed);
+  if (error != std::errc() || rest != end || !(speed > 0 && speed <= kFastest)) {
+    throw std::invalid_argument("'" + text + "' wants a number up to 1000, or max");
+  }
+  return speed;
 }
 
 }  // namespace ex9000::sim

@@ -31,6 +31,9 @@ struct Setup {
   std::vector<LineSetup> lines;        ///< at least one
   std::optional<std::string> control;  ///< where to make the control socket
   bool log = false;
+  /// Of the line's time to the wall clock's; nothing: as fast as it can be reckoned.
+  std::optional<double> speed = 1;
+  std::optional<VirtualTime> lasts;  ///< of the lines' time, then it ends; nothing: until it is told to
   std::uint64_t seed = 1;  ///< of all chance: noise, faults that are probable, contacts that chatter
 };
 
@@ -52,5 +55,7 @@ std::uint32_t parse_line_rate(const std::string& text);
 /// Whether bytes cost no time.
 bool parse_line_kind(const std::string& text);
 std::uint64_t parse_seed(const std::string& text);
+/// Nothing: `max`.
+std::optional<double> parse_speed(const std::string& text);
 
 }  // namespace ex9000::sim

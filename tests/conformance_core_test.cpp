@@ -7,23 +7,23 @@
 
 #include "tests/runner/core_target.hpp"
 #include "tests/runner/coverage.hpp"
-#include "tests/runner/player.hpp"
-#include "tests/runner/transcript.hpp"
+#include "sim/play/player.hpp"
+#include "sim/play/transcript.hpp"
 
 namespace ex9000 {
 namespace {
 
 TEST(Conformance, TheCorePassesEveryTranscriptOnEveryModelItNames) {
-  const std::vector<std::string> files = runner::transcript_files(EX9000_CONFORMANCE_DIR);
+  const std::vector<std::string> files = play::transcript_files(EX9000_CONFORMANCE_DIR);
   ASSERT_FALSE(files.empty());
   std::size_t runs = 0;
   std::size_t steps = 0;
   std::set<std::string_view> models;
   runner::Coverage coverage;
   for (const std::string& file : files) {
-    for (const runner::Transcript& transcript : runner::load_transcripts(file)) {
+    for (const play::Transcript& transcript : play::load_transcripts(file)) {
       runner::CoreTarget target(&coverage);
-      const runner::Result result = runner::play(transcript, target);
+      const play::Result result = play::play(transcript, target);
       EXPECT_TRUE(result.passed()) << result.failure;
       ++runs;
       steps += result.steps;
@@ -41,8 +41,8 @@ TEST(Conformance, TheCorePassesEveryTranscriptOnEveryModelItNames) {
 }
 
 TEST(Conformance, WaitsStayUnderTwoSecondsUnlessTheFileSaysSlow) {
-  for (const std::string& file : runner::transcript_files(EX9000_CONFORMANCE_DIR)) {
-    for (const runner::Transcript& transcript : runner::load_transcripts(file)) {
+  for (const std::string& file : play::transcript_files(EX9000_CONFORMANCE_DIR)) {
+    for (const play::Transcript& transcript : play::load_transcripts(file)) {
       EXPECT_TRUE(transcript.slow || transcript.waits() < std::chrono::seconds(2)) << file;
     }
   }

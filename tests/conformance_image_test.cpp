@@ -14,8 +14,8 @@
 #include "tests/rig/emulated_module.hpp"
 #include "tests/rig/image_target.hpp"
 #include "tests/runner/core_target.hpp"
-#include "tests/runner/player.hpp"
-#include "tests/runner/transcript.hpp"
+#include "sim/play/player.hpp"
+#include "sim/play/transcript.hpp"
 #include "tests/system/child_process.hpp"
 
 namespace ex9000 {
@@ -25,21 +25,21 @@ constexpr std::array<std::string_view, 8> kModelsOfTheManuals{
     "EX9042D", "EX9042D-M", "EX9043D", "EX9043D-M", "EX9052D", "EX9052D-M", "EX9068D-M", "EX9068AD-M"};
 
 struct Played {
-  runner::Transcript transcript;
-  runner::Result result;
+  play::Transcript transcript;
+  play::Result result;
 };
 
-std::uint64_t pulses_of(const runner::Transcript& transcript) {
+std::uint64_t pulses_of(const play::Transcript& transcript) {
   std::uint64_t pulses = 0;
-  for (const runner::Step& step : transcript.steps) {
-    const auto* pulse = std::get_if<runner::step::Pulse>(&step.action);
+  for (const play::Step& step : transcript.steps) {
+    const auto* pulse = std::get_if<play::step::Pulse>(&step.action);
     pulses += pulse != nullptr ? pulse->count : 0;
   }
   return pulses;
 }
 
 /// How long it takes, roughly.
-std::chrono::microseconds duration_of(const runner::Transcript& transcript) {
+std::chrono::microseconds duration_of(const play::Transcript& transcript) {
   constexpr std::chrono::microseconds kPulse{100};
   return transcript.waits() + kPulse * static_cast<std::int64_t>(pulses_of(transcript));
 }
@@ -47,8 +47,8 @@ std::chrono::microseconds duration_of(const runner::Transcript& transcript) {
 /// Those that take longest first, so that no few are left waiting for at the end.
 std::vector<Played> all_runs() {
   std::vector<Played> runs;
-  for (const std::string& file : runner::transcript_files(EX9000_CONFORMANCE_DIR)) {
-    for (runner::Transcript& transcript : runner::load_transcripts(file)) {
+  for (const std::string& file : play::transcript_files(EX9000_CONFORMANCE_DIR)) {
+    for (play::Transcript& transcript : play::load_transcripts(file)) {
       if (std::count(kModelsOfTheManuals.begin(), kModelsOfTheManuals.end(), transcript.model->designation) !=
           0) {
         runs.push_back({std::move(transcript), {}});
@@ -86,7 +86,7 @@ void stay_on(int processor) {
 
 void play_on_the_image(Played& run, rig::ImageTarget& target) {
   try {
-    run.result = runner::play(run.transcript, target);
+    run.result = play::play(run.transcript, target);
   } catch (const std::exception& error) {
     run.result.failure = run.transcript.file + ": " + error.what() + " (" +
                          std::string(run.transcript.model->designation) + ")";
@@ -120,7 +120,7 @@ TEST(Conformance, TheImagesOfTheManualsModelsPassEveryTranscriptThatNamesThem) {
     EXPECT_TRUE(run.result.passed()) << run.result.failure;
     steps += run.result.steps;
     runner::CoreTarget core;
-    core_steps += runner::play(run.transcript, core).steps;
+    core_steps += play::play(run.transcript, core).steps;
   }
   EXPECT_EQ(steps, core_steps);
   std::printf("images: %zu runs, %zu steps, as the core\n", runs.size(), steps);

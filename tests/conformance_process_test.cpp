@@ -9,8 +9,8 @@
 #include <vector>
 
 #include "tests/runner/core_target.hpp"
-#include "tests/runner/player.hpp"
-#include "tests/runner/transcript.hpp"
+#include "sim/play/player.hpp"
+#include "sim/play/transcript.hpp"
 #include "tests/system/process_target.hpp"
 
 namespace ex9000 {
@@ -20,15 +20,15 @@ namespace {
 constexpr unsigned kAtOnce = 40;
 
 struct Played {
-  runner::Transcript transcript;
-  runner::Result result;
+  play::Transcript transcript;
+  play::Result result;
 };
 
 /// Those that take longest first, so that no few are left waiting for at the end.
 std::vector<Played> all_runs() {
   std::vector<Played> runs;
-  for (const std::string& file : runner::transcript_files(EX9000_CONFORMANCE_DIR)) {
-    for (runner::Transcript& transcript : runner::load_transcripts(file)) {
+  for (const std::string& file : play::transcript_files(EX9000_CONFORMANCE_DIR)) {
+    for (play::Transcript& transcript : play::load_transcripts(file)) {
       runs.push_back({std::move(transcript), {}});
     }
   }
@@ -41,7 +41,7 @@ std::vector<Played> all_runs() {
 void play_on_a_simulator(Played& run) {
   try {
     system::ProcessTarget target;
-    run.result = runner::play(run.transcript, target);
+    run.result = play::play(run.transcript, target);
   } catch (const std::exception& error) {
     run.result.failure = run.transcript.file + ": " + error.what();
   }
@@ -77,7 +77,7 @@ TEST(Conformance, TheSimulatorPassesEveryTranscriptOnEveryModelItNames) {
     EXPECT_TRUE(run.result.passed()) << run.result.failure;
     steps += run.result.steps;
     runner::CoreTarget core;
-    core_steps += runner::play(run.transcript, core).steps;
+    core_steps += play::play(run.transcript, core).steps;
   }
   EXPECT_EQ(steps, core_steps);
   std::printf("process: %zu runs, %zu steps, as the core; %zu of them alone once more\n", runs.size(), steps,

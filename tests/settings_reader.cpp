@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-#include "tests/modbus_frame.hpp"
+#include "sim/play/modbus_frame.hpp"
 #include "tests/storing_commands.hpp"
 
 namespace ex9000 {

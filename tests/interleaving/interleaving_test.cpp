@@ -25,7 +25,7 @@
 
 #include "firmware/line/event_tally.hpp"
 #include "tests/interleaving/scenario.hpp"
-#include "tests/modbus_frame.hpp"
+#include "sim/play/modbus_frame.hpp"
 
 namespace ex9000::interleaving {
 namespace {

@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <array>
 
-#include "tests/modbus_frame.hpp"
+#include "sim/play/modbus_frame.hpp"
 #include "tests/reference/dcon_check.hpp"
 #include "tests/reference/hexadecimal.hpp"
 

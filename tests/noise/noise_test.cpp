@@ -10,7 +10,7 @@
 
 #include "sim/faults/echo.hpp"
 #include "tests/environment.hpp"
-#include "tests/modbus_frame.hpp"
+#include "sim/play/modbus_frame.hpp"
 #include "tests/noise/noisy_line.hpp"
 #include "tests/noise/theory.hpp"
 

@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <map>
 
-#include "tests/modbus_frame.hpp"
+#include "sim/play/modbus_frame.hpp"
 #include "tests/noise/theory.hpp"
 #include "tests/reference/dcon_check.hpp"
 

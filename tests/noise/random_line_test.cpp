@@ -13,7 +13,7 @@
 #include "sim/bus.hpp"
 #include "sim/module.hpp"
 #include "sim/module_spec.hpp"
-#include "tests/modbus_frame.hpp"
+#include "sim/play/modbus_frame.hpp"
 #include "tests/noise/judges.hpp"
 #include "tests/reference/dcon_check.hpp"
 

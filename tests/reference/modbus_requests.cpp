@@ -1,7 +1,7 @@
 // Modbus requests with arguments in and out of range, and frames that are none: wire.md 7.
 #include <algorithm>
 
-#include "tests/modbus_frame.hpp"
+#include "sim/play/modbus_frame.hpp"
 #include "tests/reference/generator.hpp"
 
 namespace ex9000::reference {

@@ -12,7 +12,7 @@
 #include "tests/reference/generator.hpp"
 #include "tests/reference/rules.hpp"
 #include "tests/reference/session.hpp"
-#include "tests/runner/player.hpp"
+#include "sim/play/player.hpp"
 
 namespace ex9000::reference {
 namespace {
@@ -83,9 +83,9 @@ TEST(RandomSessions, AreWrittenDownAsTheRunnerPlaysThem) {
     ASSERT_TRUE(played.alike) << played.session.transcript();
     const std::string path = testing::TempDir() + "random-session.txt";
     std::ofstream(path) << played.session.transcript();
-    for (const runner::Transcript& transcript : runner::load_transcripts(path)) {
+    for (const play::Transcript& transcript : play::load_transcripts(path)) {
       runner::CoreTarget target;
-      const runner::Result result = runner::play(transcript, target);
+      const play::Result result = play::play(transcript, target);
       EXPECT_TRUE(result.passed()) << "seed " << seed << ": " << result.failure << "\n"
                                    << played.session.transcript();
       EXPECT_GT(result.steps, kSteps / 3);

@@ -109,7 +109,7 @@ bool Session::follow() {
 
 /// Time that no line of the transcript tells.
 bool Session::nothing_more() {
-  const runner::Bytes heard = target_.listen(kBetween);
+  const play::Bytes heard = target_.listen(kBetween);
   return heard.empty() || differs("; nothing more", reply_line(heard));
 }
 
@@ -131,7 +131,7 @@ bool Session::listen(milliseconds time) {
     }
   }
   lines_.push_back("wait " + std::to_string(time.count()) + "ms");
-  const runner::Bytes heard = target_.listen(time);
+  const play::Bytes heard = target_.listen(time);
   reference_.pass(target_.now());
   return heard.empty() || differs("; silence", reply_line(heard));
 }
@@ -151,7 +151,7 @@ bool Session::compare() {
   if (outputs != reference_.outputs()) {
     return differs("outputs " + hex(reference_.outputs(), 4), "outputs " + hex(outputs, 4));
   }
-  using Shows = runner::step::Led::Shows;
+  using Shows = play::step::Led::Shows;
   const Shows expected = !reference_.powered()      ? Shows::Off
                          : reference_.led_flashes() ? Shows::Flashing
                                                     : Shows::On;
@@ -208,7 +208,7 @@ bool Session::play_step(const Send& send) {
     }
     return listen(answer.stores || behind_another ? kStored : kNoAnswer);
   }
-  const runner::Bytes heard = target_.receive(answer.reply.size(), behind_another ? 2 * kStored : kStored);
+  const play::Bytes heard = target_.receive(answer.reply.size(), behind_another ? 2 * kStored : kStored);
   if (heard != answer.reply) {
     return differs(reply_line(answer.reply), reply_line(heard));
   }

@@ -11,8 +11,8 @@
 
 #include "tests/registers/images_under_test.hpp"
 #include "tests/registers/register_target.hpp"
-#include "tests/runner/player.hpp"
-#include "tests/runner/transcript.hpp"
+#include "sim/play/player.hpp"
+#include "sim/play/transcript.hpp"
 
 namespace ex9000::registers {
 namespace {
@@ -37,17 +37,17 @@ TEST_P(ConformanceOnRegisters, PassesTheTranscriptsOfItsModel) {
   const Image& image = image_of(GetParam().board, GetParam().model);
   std::size_t runs = 0;
   std::size_t steps = 0;
-  for (const std::string& file : runner::transcript_files(EX9000_CONFORMANCE_DIR)) {
+  for (const std::string& file : play::transcript_files(EX9000_CONFORMANCE_DIR)) {
     if (!plays(image, file)) {
       continue;
     }
-    for (const runner::Transcript& transcript : runner::load_transcripts(file)) {
+    for (const play::Transcript& transcript : play::load_transcripts(file)) {
       if (transcript.model->designation != image.model) {
         continue;
       }
       SCOPED_TRACE(file);
       RegisterTarget target(image);
-      const runner::Result result = runner::play(transcript, target);
+      const play::Result result = play::play(transcript, target);
       EXPECT_TRUE(result.passed()) << result.failure;
       EXPECT_EQ(result.steps, transcript.steps.size());
       BoardBench& bench = target.bench();

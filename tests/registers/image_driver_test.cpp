@@ -6,7 +6,7 @@
 #include "firmware/model/model.hpp"
 #include "firmware/settings/settings.hpp"
 #include "sim/module.hpp"
-#include "tests/modbus_frame.hpp"
+#include "sim/play/modbus_frame.hpp"
 #include "tests/registers/board_bench.hpp"
 #include "tests/registers/images_under_test.hpp"
 

@@ -22,14 +22,14 @@ void RegisterTarget::start(const Model& model, const Settings* preset) {
   power(true);
 }
 
-void RegisterTarget::send(const runner::Bytes& bytes) {
+void RegisterTarget::send(const play::Bytes& bytes) {
   const auto characters = static_cast<std::int64_t>(bytes.size());
   const Instant ends = bench_.timeline.now() + characters * kBitsACharacter * bench_.line.bit_time();
   bench_.line.send(bytes);
   bench_.run_until(ends);
 }
 
-runner::Bytes RegisterTarget::receive(std::size_t count, milliseconds patience) {
+play::Bytes RegisterTarget::receive(std::size_t count, milliseconds patience) {
   std::size_t had = bench_.line.heard.size();
   Instant gives_up = bench_.timeline.now() + patience;
   while (bench_.line.heard.size() < count && bench_.timeline.now() < gives_up) {
@@ -42,13 +42,13 @@ runner::Bytes RegisterTarget::receive(std::size_t count, milliseconds patience) 
   return take_heard();
 }
 
-runner::Bytes RegisterTarget::listen(milliseconds time) {
+play::Bytes RegisterTarget::listen(milliseconds time) {
   bench_.run_for(time);
   return take_heard();
 }
 
-runner::Bytes RegisterTarget::take_heard() {
-  runner::Bytes bytes;
+play::Bytes RegisterTarget::take_heard() {
+  play::Bytes bytes;
   for (const LineBench::Heard& each : bench_.line.heard) {
     bytes.push_back(each.byte);
   }
@@ -95,8 +95,8 @@ void RegisterTarget::pulse_input(unsigned channel, std::uint32_t count) {
   }
 }
 
-runner::step::Led::Shows RegisterTarget::led(runner::step::Led::Shows expected) {
-  using Shows = runner::step::Led::Shows;
+play::step::Led::Shows RegisterTarget::led(play::step::Led::Shows expected) {
+  using Shows = play::step::Led::Shows;
   const bool lit = bench_.led();
   const Instant gives_up = bench_.timeline.now() + kFlashes;
   while (expected == Shows::Flashing && bench_.timeline.now() < gives_up) {

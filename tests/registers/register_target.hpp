@@ -4,19 +4,19 @@
 #include <optional>
 
 #include "tests/registers/board_bench.hpp"
-#include "tests/runner/target.hpp"
+#include "sim/play/target.hpp"
 
 namespace ex9000::registers {
 
-class RegisterTarget final : public runner::Target {
+class RegisterTarget final : public play::Target {
  public:
   /// `image` is for the model that `start` is called with.
   explicit RegisterTarget(const Image& image) : bench_(image) {}
 
   void start(const Model& model, const Settings* preset) override;
-  void send(const runner::Bytes& bytes) override;
-  runner::Bytes receive(std::size_t count, std::chrono::milliseconds patience) override;
-  runner::Bytes listen(std::chrono::milliseconds time) override;
+  void send(const play::Bytes& bytes) override;
+  play::Bytes receive(std::size_t count, std::chrono::milliseconds patience) override;
+  play::Bytes listen(std::chrono::milliseconds time) override;
   void set_baud(std::uint32_t rate) override { bench_.line.set_baud(rate); }
   void power(bool on) override;
   void reset() override;
@@ -24,12 +24,12 @@ class RegisterTarget final : public runner::Target {
   void set_input(unsigned channel, bool level) override;
   void pulse_input(unsigned channel, std::uint32_t count) override;
   std::uint16_t outputs() override { return bench_.outputs(); }
-  runner::step::Led::Shows led(runner::step::Led::Shows expected) override;
+  play::step::Led::Shows led(play::step::Led::Shows expected) override;
 
   BoardBench& bench() { return bench_; }
 
  private:
-  runner::Bytes take_heard();
+  play::Bytes take_heard();
 
   BoardBench bench_;
 };

@@ -7,8 +7,8 @@ namespace ex9000::rig {
 
 namespace {
 
-using runner::Bytes;
-using runner::step::Led;
+using play::Bytes;
+using play::step::Led;
 using std::chrono::milliseconds;
 using std::chrono::nanoseconds;
 

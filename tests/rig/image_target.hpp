@@ -5,18 +5,18 @@
 #include <map>
 
 #include "tests/rig/timed_module.hpp"
-#include "tests/runner/target.hpp"
+#include "sim/play/target.hpp"
 
 namespace ex9000::rig {
 
 /// May play one transcript after the other; each model has its own emulator. Time is the emulated machine's,
 /// so the host has no part in what happens.
-class ImageTarget final : public runner::Target {
+class ImageTarget final : public play::Target {
  public:
   void start(const Model& model, const Settings* preset) override;
-  void send(const runner::Bytes& bytes) override;
-  runner::Bytes receive(std::size_t count, std::chrono::milliseconds patience) override;
-  runner::Bytes listen(std::chrono::milliseconds time) override;
+  void send(const play::Bytes& bytes) override;
+  play::Bytes receive(std::size_t count, std::chrono::milliseconds patience) override;
+  play::Bytes listen(std::chrono::milliseconds time) override;
   void set_baud(std::uint32_t rate) override { baud_ = rate; }
   void power(bool on) override;
   void reset() override;
@@ -24,7 +24,7 @@ class ImageTarget final : public runner::Target {
   void set_input(unsigned channel, bool level) override;
   void pulse_input(unsigned channel, std::uint32_t count) override;
   std::uint16_t outputs() override;
-  runner::step::Led::Shows led(runner::step::Led::Shows expected) override;
+  play::step::Led::Shows led(play::step::Led::Shows expected) override;
   void end() override { module_->make_sure(); }
 
  private:
@@ -36,7 +36,7 @@ class ImageTarget final : public runner::Target {
   TimedModule* module_ = nullptr;
   std::uint32_t baud_ = 9600;
   std::chrono::nanoseconds settled_{0};  ///< when the image has had the time for what was sent
-  runner::Bytes heard_;
+  play::Bytes heard_;
 };
 
 }  // namespace ex9000::rig

@@ -77,7 +77,7 @@ std::vector<unsigned> functions_of(modbus::Functions functions) {
 }
 
 template <class Feed>
-Verdict verdict_of(const Bytes& sent, Feed feed) {
+Verdict verdict_of(const play::Bytes& sent, Feed feed) {
   Verdict verdict = Verdict::Open;
   for (const std::uint8_t byte : sent) {
     const Verdict latest = feed(byte);
@@ -88,7 +88,7 @@ Verdict verdict_of(const Bytes& sent, Feed feed) {
 
 }  // namespace
 
-void Coverage::note(const Module& module, const Bytes& sent, const Bytes& heard) {
+void Coverage::note(const Module& module, const play::Bytes& sent, const play::Bytes& heard) {
   // The same assemblers once more, beside the module, to learn what it made of the bytes.
   const InForce& in_force = module.state().in_force;
   FrameQueue queue;

@@ -5,7 +5,7 @@
 #include <string>
 
 #include "firmware/module.hpp"
-#include "tests/runner/transcript.hpp"
+#include "sim/play/transcript.hpp"
 
 namespace ex9000::runner {
 
@@ -15,7 +15,7 @@ class Coverage {
  public:
   /// `sent` was put on the line at the module's rate, `module` has dealt with it, and `heard` is its answer.
   /// What is not answered counts only where silence is the answer.
-  void note(const Module& module, const Bytes& sent, const Bytes& heard);
+  void note(const Module& module, const play::Bytes& sent, const play::Bytes& heard);
 
   /// Ids that can be reached by what a master may send, and were not.
   [[nodiscard]] std::set<std::string> missing() const;

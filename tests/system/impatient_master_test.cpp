@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "tests/modbus_frame.hpp"
+#include "sim/play/modbus_frame.hpp"
 #include "tests/system/simulator_process.hpp"
 #include "tests/system/socket_client.hpp"
 

@@ -10,7 +10,7 @@ namespace ex9000::system {
 
 namespace {
 
-using runner::Bytes;
+using play::Bytes;
 
 constexpr std::chrono::milliseconds kComingUp{100};
 /// A simulator on a busy machine hears a byte this much later than it was written.
@@ -118,12 +118,12 @@ std::uint16_t ProcessTarget::outputs() {
   return static_cast<std::uint16_t>(std::stoul(control("outputs"), nullptr, 16));
 }
 
-runner::step::Led::Shows ProcessTarget::led(runner::step::Led::Shows /*expected*/) {
+play::step::Led::Shows ProcessTarget::led(play::step::Led::Shows /*expected*/) {
   const std::string shows = control("led");
   if (shows == "flashing") {
-    return runner::step::Led::Shows::Flashing;
+    return play::step::Led::Shows::Flashing;
   }
-  return shows == "on" ? runner::step::Led::Shows::On : runner::step::Led::Shows::Off;
+  return shows == "on" ? play::step::Led::Shows::On : play::step::Led::Shows::Off;
 }
 
 }  // namespace ex9000::system

@@ -4,19 +4,19 @@
 #include <chrono>
 #include <optional>
 
-#include "tests/runner/target.hpp"
+#include "sim/play/target.hpp"
 #include "tests/system/control_client.hpp"
 #include "tests/system/simulator_process.hpp"
 #include "tests/system/terminal.hpp"
 
 namespace ex9000::system {
 
-class ProcessTarget final : public runner::Target {
+class ProcessTarget final : public play::Target {
  public:
   void start(const Model& model, const Settings* preset) override;
-  void send(const runner::Bytes& bytes) override;
-  runner::Bytes receive(std::size_t count, std::chrono::milliseconds patience) override;
-  runner::Bytes listen(std::chrono::milliseconds time) override;
+  void send(const play::Bytes& bytes) override;
+  play::Bytes receive(std::size_t count, std::chrono::milliseconds patience) override;
+  play::Bytes listen(std::chrono::milliseconds time) override;
   void set_baud(std::uint32_t rate) override;
   void power(bool on) override;
   void reset() override;
@@ -24,7 +24,7 @@ class ProcessTarget final : public runner::Target {
   void set_input(unsigned channel, bool level) override;
   void pulse_input(unsigned channel, std::uint32_t count) override;
   std::uint16_t outputs() override;
-  runner::step::Led::Shows led(runner::step::Led::Shows expected) override;
+  play::step::Led::Shows led(play::step::Led::Shows expected) override;
 
  private:
   using Clock = std::chrono::steady_clock;
@@ -32,14 +32,14 @@ class ProcessTarget final : public runner::Target {
   /// A command for the module, once the line has carried what was sent before.
   std::string control(const std::string& command);
   void hear_until(Clock::time_point when);
-  runner::Bytes take_heard();
+  play::Bytes take_heard();
 
   std::optional<SimulatorProcess> simulator_;
   std::optional<Terminal> terminal_;
   std::optional<ControlClient> control_;
   std::uint32_t baud_ = 0;
   Clock::time_point line_free_;  ///< when all that was sent has been on the line
-  runner::Bytes heard_;
+  play::Bytes heard_;
 };
 
 }  // namespace ex9000::system

@@ -24,7 +24,9 @@ Setup all_accepted(const std::vector<const char*>& words) {
   EXPECT_EQ(parsed.exit_status, 0);
   EXPECT_EQ(parsed.output, "");
   EXPECT_EQ(parsed.error, "");
-  return parsed.setup.value_or(Setup{{LineSetup()}, std::nullopt, false, 1});
+  Setup none;
+  none.lines.emplace_back();
+  return parsed.setup.value_or(none);
 }
 
 /// The one line of a command line.

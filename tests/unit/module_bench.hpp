@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "sim/line.hpp"
-#include "tests/modbus_frame.hpp"
+#include "sim/play/modbus_frame.hpp"
 #include "tests/unit/bus_recorder.hpp"
 
 namespace ex9000::sim {

@@ -1,5 +1,5 @@
 // The runner fails what it should: an answer that no step asks for, wherever it comes.
-#include "tests/runner/player.hpp"
+#include "sim/play/player.hpp"
 
 #include <gtest/gtest.h>
 
@@ -36,13 +36,13 @@ const std::string kModbusHeader = "source: wire.md 7\nmodel: EX9042D-M\n\n";
 bool passes(const std::string& text) {
   const TranscriptFile file(text);
   CoreTarget target;
-  return play(load_transcripts(file.path()).front(), target).passed();
+  return play::play(play::load_transcripts(file.path()).front(), target).passed();
 }
 
 bool loads(const std::string& text) {
   const TranscriptFile file(text);
   try {
-    return !load_transcripts(file.path()).empty();
+    return !play::load_transcripts(file.path()).empty();
   } catch (const std::runtime_error&) {
     return false;
   }

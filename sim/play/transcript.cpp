@@ -1,15 +1,16 @@
-#include "tests/runner/transcript.hpp"
+#include "sim/play/transcript.hpp"
 
 #include <algorithm>
 #include <cctype>
-#include <cmath>
 #include <filesystem>
 #include <fstream>
 #include <optional>
 #include <sstream>
 #include <stdexcept>
 
-namespace ex9000::runner {
+#include "sim/time_text.hpp"
+
+namespace ex9000::play {
 
 namespace {
 
@@ -77,13 +78,7 @@ bool on_off(const std::string& text) {
 }
 
 std::chrono::milliseconds duration(const std::string& text) {
-  std::size_t used = 0;
-  const double value = std::stod(text, &used);
-  const std::string unit = text.substr(used);
-  if (unit != "ms" && unit != "s") {
-    fail("'" + text + "' wants 'ms' or 's'");
-  }
-  return std::chrono::milliseconds(std::lround(unit == "s" ? value * 1000 : value));
+  return std::chrono::duration_cast<std::chrono::milliseconds>(sim::parse_time(text));
 }
 
 const Model& model_named(const std::string& name) {
@@ -206,7 +201,25 @@ Action parse_action(const std::string& text) {
     }
     return step::Led{on_off(word[1]) ? step::Led::Shows::On : step::Led::Shows::Off};
   }
+  if (verb == "module" && takes(1)) {
+    const unsigned long position = number(word[1]);
+    if (position == 0) {
+      fail("modules count from 1");
+    }
+    return step::OnModule{position - 1};
+  }
+  if (verb == "line" && takes(1)) {
+    return step::OnLine{word[1]};
+  }
+  if (verb == "fault" || verb == "faults") {
+    return step::Trouble{text};
+  }
   fail("no step '" + text + "'");
+}
+
+bool is_of_a_bus(const Action& action) {
+  return std::holds_alternative<step::OnModule>(action) || std::holds_alternative<step::OnLine>(action) ||
+         std::holds_alternative<step::Trouble>(action);
 }
 
 /// A channel that the model lacks would be driven in vain.
@@ -270,6 +283,21 @@ void read_line(const std::string& raw, unsigned number, Source& source) {
   source.steps.push_back({number, text});
 }
 
+Transcript scenario(const std::string& path, const Source& source, unsigned& line) {
+  if (!source.presets.empty() || source.slow) {
+    fail(
+        "'preset:' and 'tags:' are for files with 'model:'; a scenario's modules have their settings from "
+        "its bus");
+  }
+  Transcript transcript;
+  transcript.file = path;
+  for (const Line& raw : source.steps) {
+    line = raw.number;
+    transcript.steps.push_back({raw.number, raw.text, parse_action(raw.text)});
+  }
+  return transcript;
+}
+
 Transcript bind(const std::string& path, const Source& source, const ModelRun& run, unsigned& line) {
   Transcript transcript;
   transcript.file = path;
@@ -285,6 +313,9 @@ Transcript bind(const std::string& path, const Source& source, const ModelRun& r
     const std::string text = substitute(raw.text, run.variables);
     transcript.steps.push_back({raw.number, text, parse_action(text)});
     check_channel(*run.model, transcript.steps.back().action);
+    if (is_of_a_bus(transcript.steps.back().action)) {
+      fail("'" + text + "' is for scenarios, which have a bus and no 'model:'");
+    }
   }
   return transcript;
 }
@@ -314,7 +345,7 @@ std::vector<std::string> transcript_files(const std::string& directory) {
   return files;
 }
 
-std::vector<Transcript> load_transcripts(const std::string& path) {
+std::vector<Transcript> load(const std::string& path) {
   std::ifstream file(path);
   if (!file) {
     fail(path + ": cannot be read");
@@ -329,8 +360,14 @@ std::vector<Transcript> load_transcripts(const std::string& path) {
       }
     }
     line = 1;
-    if (!source.names_its_source || source.models.empty() || source.steps.empty()) {
-      fail("wants 'source:', at least one 'model:' and a step");
+    if (source.steps.empty()) {
+      fail("wants a step");
+    }
+    if (source.models.empty()) {
+      return {scenario(path, source, line)};
+    }
+    if (!source.names_its_source) {
+      fail("wants 'source:'");
     }
     std::vector<Transcript> transcripts;
     for (const ModelRun& run : source.models) {
@@ -342,4 +379,12 @@ std::vector<Transcript> load_transcripts(const std::string& path) {
   }
 }
 
-}  // namespace ex9000::runner
+std::vector<Transcript> load_transcripts(const std::string& path) {
+  std::vector<Transcript> transcripts = load(path);
+  if (transcripts[0].model == nullptr) {
+    fail(path + ":1: wants at least one 'model:'");
+  }
+  return transcripts;
+}
+
+}  // namespace ex9000::play

@@ -1,7 +1,8 @@
-// A conformance transcript as data; tests/conformance/README.md is its format.
+// A conformance transcript, or a scenario, as data; tests/conformance/README.md is their format.
 #pragma once
 
 #include <chrono>
+#include <cstddef>
 #include <cstdint>
 #include <map>
 #include <string>
@@ -11,7 +12,7 @@
 #include "firmware/model/model.hpp"
 #include "firmware/settings/settings.hpp"
 
-namespace ex9000::runner {
+namespace ex9000::play {
 
 using Bytes = std::vector<std::uint8_t>;
 
@@ -64,13 +65,23 @@ struct Outputs {
 struct Led {
   enum class Shows { On, Off, Flashing } shows;
 };
+// Of scenarios, which have a bus.
+struct OnModule {
+  std::size_t position;
+};  ///< from 0, through all lines
+struct OnLine {
+  std::string name;
+};
+struct Trouble {
+  std::string command;
+};  ///< of the control socket, about faults
 
 }  // namespace step
 
-using Action =
-    std::variant<step::SendDcon, step::ExpectDcon, step::SendModbus, step::ExpectModbus, step::SendBytes,
-                 step::Silence, step::Wait, step::Checksum, step::Baud, step::Power, step::PowerCycle,
-                 step::Reset, step::Init, step::Input, step::Pulse, step::Outputs, step::Led>;
+using Action = std::variant<step::SendDcon, step::ExpectDcon, step::SendModbus, step::ExpectModbus,
+                            step::SendBytes, step::Silence, step::Wait, step::Checksum, step::Baud,
+                            step::Power, step::PowerCycle, step::Reset, step::Init, step::Input, step::Pulse,
+                            step::Outputs, step::Led, step::OnModule, step::OnLine, step::Trouble>;
 
 struct Step {
   unsigned line;     ///< in the file, from 1
@@ -78,11 +89,11 @@ struct Step {
   Action action;
 };
 
-/// One run of a file on one model.
+/// One run of a file on one model; a scenario has none, but a bus to play on.
 struct Transcript {
   std::string file;
-  const Model* model = nullptr;
-  Settings preset;  ///< factory settings with what the header changes
+  const Model* model = nullptr;  ///< null: a scenario
+  Settings preset;               ///< factory settings with what the header changes
   bool preset_given = false;
   bool slow = false;
   std::vector<Step> steps;
@@ -97,8 +108,10 @@ constexpr std::chrono::milliseconds kSilence{250};
 /// The transcripts below `directory`, in the order of their paths.
 std::vector<std::string> transcript_files(const std::string& directory);
 
-/// All runs of a file, one a `model:` line. Throws std::runtime_error that names file, line and what is
-/// wrong.
+/// All runs of a file, one a `model:` line, or the one scenario that it is. Throws std::runtime_error that
+/// names file, line and what is wrong.
+std::vector<Transcript> load(const std::string& path);
+/// The same of files that are no scenarios.
 std::vector<Transcript> load_transcripts(const std::string& path);
 
-}  // namespace ex9000::runner
+}  // namespace ex9000::play

@@ -4,10 +4,10 @@
 #include <cstddef>
 #include <string>
 
-#include "tests/runner/target.hpp"
-#include "tests/runner/transcript.hpp"
+#include "sim/play/target.hpp"
+#include "sim/play/transcript.hpp"
 
-namespace ex9000::runner {
+namespace ex9000::play {
 
 struct Result {
   std::size_t steps = 0;  ///< played, the failed one included
@@ -16,7 +16,7 @@ struct Result {
   [[nodiscard]] bool passed() const { return failure.empty(); }
 };
 
-/// Plays all steps, up to the first that fails.
+/// Plays all steps, up to the first that fails. A scenario's target has been started.
 Result play(const Transcript& transcript, Target& target);
 
-}  // namespace ex9000::runner
+}  // namespace ex9000::play

@@ -1,11 +1,11 @@
-#include "tests/runner/player.hpp"
+#include "sim/play/player.hpp"
 
 #include <array>
 #include <stdexcept>
 
-#include "tests/modbus_frame.hpp"
+#include "sim/play/modbus_frame.hpp"
 
-namespace ex9000::runner {
+namespace ex9000::play {
 
 namespace {
 
@@ -128,6 +128,16 @@ class Playing {
     }
   }
 
+  void operator()(const step::OnModule& step) {
+    nothing_more();
+    target_.choose_module(step.position);
+  }
+  void operator()(const step::OnLine& step) {
+    nothing_more();
+    target_.choose_line(step.name);
+  }
+  void operator()(const step::Trouble& step) { target_.trouble(step.command); }
+
   /// Nothing that no step has asked for is on its way.
   void nothing_more() { nothing_for(open_question_ ? kReplyBegins : kAfterReply); }
 
@@ -163,10 +173,16 @@ class Playing {
 
 Result play(const Transcript& transcript, Target& target) {
   Result result;
-  target.start(*transcript.model, transcript.preset_given ? &transcript.preset : nullptr);
-  target.set_baud(baud_rate(transcript.preset.baud_code));
-  Playing playing(target, (transcript.preset.format & kFormatChecksum) != 0);
-  std::string where;
+  std::string where = transcript.file;
+  std::string who;
+  bool checksum = false;
+  if (transcript.model != nullptr) {
+    target.start(*transcript.model, transcript.preset_given ? &transcript.preset : nullptr);
+    target.set_baud(baud_rate(transcript.preset.baud_code));
+    checksum = (transcript.preset.format & kFormatChecksum) != 0;
+    who = " (" + std::string(transcript.model->designation) + ")";
+  }
+  Playing playing(target, checksum);
   try {
     for (const Step& step : transcript.steps) {
       ++result.steps;
@@ -177,9 +193,9 @@ Result play(const Transcript& transcript, Target& target) {
     playing.nothing_more();
     target.end();
   } catch (const std::runtime_error& error) {
-    result.failure = where + ": " + error.what() + " (" + std::string(transcript.model->designation) + ")";
+    result.failure = where + ": " + error.what() + who;
   }
   return result;
 }
 
-}  // namespace ex9000::runner
+}  // namespace ex9000::play

@@ -4,15 +4,17 @@
 #include <chrono>
 #include <cstddef>
 #include <cstdint>
+#include <stdexcept>
+#include <string>
 
 #include "firmware/model/model.hpp"
 #include "firmware/settings/settings.hpp"
-#include "tests/runner/transcript.hpp"
+#include "sim/play/transcript.hpp"
 
-namespace ex9000::runner {
+namespace ex9000::play {
 
-/// One module and the master's end of its line. Every call returns when it is done; where that takes time,
-/// the target lets it pass.
+/// A module and the master's end of its line; where there are several, one of them at a time. Every call
+/// returns when it is done; where that takes time, the target lets it pass.
 class Target {
  public:
   Target() = default;
@@ -45,8 +47,21 @@ class Target {
   /// than it takes to tell this from everything else.
   virtual step::Led::Shows led(step::Led::Shows expected) = 0;
 
+  // Of a bus; what has but one module has no other, and no faults. They throw std::runtime_error, likewise.
+
+  /// Which module the calls above are about from here on, from 0 through all lines, or the first of a line;
+  /// the master talks on its line.
+  virtual void choose_module(std::size_t /*position*/) {
+    throw std::runtime_error("there is but one module");
+  }
+  virtual void choose_line(const std::string& /*name*/) { throw std::runtime_error("there is but one line"); }
+  /// A command of the control socket.
+  virtual void trouble(const std::string& /*command*/) {
+    throw std::runtime_error("nothing can go wrong here");
+  }
+
   /// The transcript is over. Throws std::runtime_error where an answer given before turns out to be wrong.
   virtual void end() {}
 };
 
-}  // namespace ex9000::runner
+}  // namespace ex9000::play

@@ -1,0 +1,61 @@
+// Lines in virtual time as what is played against.
+#pragma once
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "sim/line.hpp"
+#include "sim/play/target.hpp"
+#include "sim/setup.hpp"
+
+namespace ex9000::play {
+
+/// All its lines have the same time.
+class BusTarget : public Target {
+ public:
+  /// For a transcript, which says what module there is.
+  BusTarget() = default;
+  /// For a scenario: the modules of `setup` have come up, with what their EEPROM files hold, which are left
+  /// as they are. Ports are not opened. Throws std::invalid_argument, one line.
+  explicit BusTarget(const sim::Setup& setup);
+
+  [[nodiscard]] std::size_t size() const { return lines_.size(); }
+  sim::Line& line(std::size_t index) { return *lines_[index]; }
+  [[nodiscard]] sim::VirtualTime now() { return chosen().clock().virtual_now(); }
+  /// All that happens until then.
+  void run_until(sim::VirtualTime until);
+
+  // --- Target ---
+  void start(const Model& model, const Settings* preset) override;
+  void send(const Bytes& bytes) override;
+  Bytes receive(std::size_t count, std::chrono::milliseconds patience) override;
+  Bytes listen(std::chrono::milliseconds time) override;
+  void set_baud(std::uint32_t rate) override { chosen().master().set_baud(rate); }
+  void power(bool on) override;
+  void reset() override;
+  void set_init(bool asserted) override { module().set_init(asserted); }
+  void set_input(unsigned channel, bool level) override;
+  void pulse_input(unsigned channel, std::uint32_t count) override;
+  std::uint16_t outputs() override { return module().outputs(); }
+  step::Led::Shows led(step::Led::Shows expected) override;
+  void choose_module(std::size_t position) override;
+  void choose_line(const std::string& name) override;
+  void trouble(const std::string& command) override;
+
+ protected:
+  sim::Line& chosen() { return *lines_[line_]; }
+  sim::SimulatedModule& module() { return chosen().module(module_); }
+
+ private:
+  void add_line(const sim::LineSetup& setup, std::uint64_t seed);
+  void want_input(unsigned channel);
+
+  std::vector<std::string> names_;
+  std::vector<std::unique_ptr<sim::Line>> lines_;
+  std::vector<Bytes> heard_;  ///< by the master of each line
+  std::size_t line_ = 0;
+  std::size_t module_ = 0;  ///< on that line
+};
+
+}  // namespace ex9000::play

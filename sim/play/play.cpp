@@ -1,0 +1,69 @@
+#include "sim/play/play.hpp"
+
+#include <filesystem>
+#include <stdexcept>
+#include <vector>
+
+#include "sim/play/bus_target.hpp"
+#include "sim/play/player.hpp"
+#include "sim/play/transcript.hpp"
+
+namespace ex9000::play {
+
+namespace {
+
+[[noreturn]] void fail(const std::string& what) { throw std::invalid_argument(what); }
+
+std::vector<Transcript> load_all(const std::string& path) {
+  std::vector<Transcript> all;
+  try {
+    const bool is_folder = std::filesystem::is_directory(path);
+    for (const std::string& file : is_folder ? transcript_files(path) : std::vector<std::string>{path}) {
+      for (Transcript& transcript : load(file)) {
+        all.push_back(std::move(transcript));
+      }
+    }
+  } catch (const std::runtime_error& error) {
+    fail(error.what());
+  }
+  if (all.empty()) {
+    fail(path + ": no file that ends with .txt; name a transcript, a scenario or a folder of them");
+  }
+  return all;
+}
+
+void check(const Transcript& transcript, const std::optional<sim::Setup>& bus) {
+  if (transcript.model == nullptr && !bus) {
+    fail(transcript.file + ": names no 'model:', so it wants modules or a bus file behind it to play on");
+  }
+  if (transcript.model != nullptr && bus) {
+    fail(transcript.file + ": names its models itself; leave out modules and bus file");
+  }
+}
+
+}  // namespace
+
+bool play(const Task& task, const std::function<void(const std::string& line)>& print) {
+  const std::vector<Transcript> all = load_all(task.path);
+  for (const Transcript& transcript : all) {
+    check(transcript, task.bus);
+  }
+  std::size_t steps = 0;
+  std::size_t failed = 0;
+  for (const Transcript& transcript : all) {
+    BusTarget target = task.bus ? BusTarget(*task.bus) : BusTarget();
+    const Result result = play(transcript, target);
+    steps += result.steps;
+    failed += result.passed() ? 0U : 1U;
+    const std::string who =
+        transcript.model == nullptr ? "" : " (" + std::string(transcript.model->designation) + ")";
+    print(result.passed()
+              ? "passed  " + transcript.file + who + ": " + std::to_string(result.steps) + " steps"
+              : "FAILED  " + result.failure);
+  }
+  print(std::to_string(all.size()) + (all.size() == 1 ? " run, " : " runs, ") + std::to_string(steps) +
+        " steps, " + std::to_string(failed) + " failed");
+  return failed == 0;
+}
+
+}  // namespace ex9000::play

@@ -1,0 +1,22 @@
+// Plays files against modules in virtual time, and reports.
+#pragma once
+
+#include <functional>
+#include <optional>
+#include <string>
+
+#include "sim/setup.hpp"
+
+namespace ex9000::play {
+
+/// What is to be played: a transcript, which names its models, a directory of them, or a scenario on `bus`.
+struct Task {
+  std::string path;
+  std::optional<sim::Setup> bus;
+};
+
+/// Prints a line for each run, and one for all. Whether all have passed. Throws std::invalid_argument, one
+/// line, where the path or what stands there is wrong, or the bus is missing or of no use.
+bool play(const Task& task, const std::function<void(const std::string& line)>& print);
+
+}  // namespace ex9000::play
