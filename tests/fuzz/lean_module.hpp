@@ -6,7 +6,6 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
-#include <limits>
 #include <optional>
 
 #include "firmware/bytes.hpp"
@@ -14,13 +13,13 @@
 #include "firmware/model/model.hpp"
 #include "hal/device.hpp"
 #include "tests/fuzz/require.hpp"
+#include "tests/judges/time.hpp"
 
 namespace ex9000::fuzz {
 
-/// Since the first power-on.
-using Microseconds = std::uint64_t;
-constexpr Microseconds kNever = std::numeric_limits<Microseconds>::max();
-constexpr Microseconds kMillisecond = 1000;
+using judges::kMillisecond;
+using judges::kNever;
+using judges::Microseconds;
 
 /// Sees what a module does to its surroundings, while it does it.
 class Onlooker {

@@ -104,7 +104,7 @@ constexpr Demand dcon_demand(Bytes command, unsigned outputs) {
     case '~':
       return detail::demand_of_tilde(text, outputs);
     case '%':
-      demand.stores_something = true;
+      demand.stores_something = text.size == 8;
       return demand;
     default:
       demand.stores_something = text[0] == 'P' && text.size == 2;

@@ -5,9 +5,9 @@
 
 #include "sim/bus.hpp"
 #include "sim/faults/echo.hpp"
+#include "sim/faults/noise.hpp"
 #include "sim/line.hpp"
 #include "sim/master.hpp"
-#include "sim/faults/noise.hpp"
 #include "tests/unit/bus_recorder.hpp"
 
 namespace ex9000::sim {

@@ -33,7 +33,7 @@ TEST_P(Checks, LetThroughWhatTheoryExpectsAndTheModuleDoesWhatItHeard) {
     Tally tally;
     while (tally.sent < frames()) {
       noisy.exchange(noisy.a_request(), rate, tally);
-      if (HasFatalFailure()) {
+      if (HasFailure()) {
         return;
       }
       if (tally.sent % 500 == 0) {
@@ -47,6 +47,10 @@ TEST_P(Checks, LetThroughWhatTheoryExpectsAndTheModuleDoesWhatItHeard) {
         static_cast<unsigned long long>(tally.in_data), static_cast<unsigned long long>(tally.taken_in_data),
         seen.low, seen.high, tally.expected, static_cast<unsigned long long>(tally.taken_otherwise));
     std::fflush(stdout);
+    // They are carried out, and the module is set up anew behind them: theory knows nothing of a module that
+    // has another address. So many do not come about by chance.
+    std::printf("  %llu stored something\n", static_cast<unsigned long long>(tally.storing));
+    EXPECT_LE(tally.storing, 1 + tally.sent / 10'000);
     // Twice as wide as the interval of 95 %: of twelve rows one would fail otherwise in every second run.
     const double centre = static_cast<double>(tally.taken_in_data);
     EXPECT_GE(tally.expected, centre - 2 * (centre - seen.low));
@@ -155,14 +159,13 @@ TEST_P(ALineWith, DoesNothingWithoutAFrameThatIsRightAndAnswersTheFirstCleanOne)
   const auto& [trouble, check] = GetParam();
   const std::uint64_t exchanges = frames() / 20;
   NoisyLine noisy(check, seed());
-  noisy.watch();
   trouble.happens(noisy, exchanges);
-  const std::uint64_t reasons = noisy.reasons();
+  const std::uint64_t deeds = noisy.deeds();
   noisy.expect_the_first_clean_frame_is_answered();
   std::printf("%s, %s: %llu exchanges, %llu replies and changes of outputs, each with its reason\n",
               trouble.name, name_of(check), static_cast<unsigned long long>(exchanges),
-              static_cast<unsigned long long>(reasons));
-  EXPECT_GT(reasons, exchanges / 20);
+              static_cast<unsigned long long>(deeds));
+  EXPECT_GT(deeds, exchanges / 20);
 }
 
 INSTANTIATE_TEST_SUITE_P(Noise, ALineWith,

@@ -2,17 +2,15 @@
 #pragma once
 
 #include <cstdint>
-#include <deque>
 #include <memory>
-#include <optional>
 #include <random>
 #include <string>
 #include <utility>
 #include <vector>
 
-#include "sim/line.hpp"
 #include "sim/faults/noise.hpp"
-#include "tests/noise/judges.hpp"
+#include "sim/line.hpp"
+#include "tests/noise/onlooker.hpp"
 
 namespace ex9000::noise {
 
@@ -29,10 +27,10 @@ struct Tally {
   std::uint64_t taken_in_data = 0;    ///< of those, taken for frames all the same
   double expected = 0;                ///< how many that should have been
   std::uint64_t taken_otherwise = 0;  ///< likewise, start or stop bits being damaged
-  std::uint64_t surprises = 0;        ///< taken, and of effect on the module
+  std::uint64_t storing = 0;          ///< taken, and commands to store something
 };
 
-class NoisyLine final : public sim::Disturbance, public sim::Station, public sim::BusObserver {
+class NoisyLine final : public sim::Disturbance, public sim::Station {
  public:
   static constexpr std::uint32_t kBaud = 115200;
   /// A line of more than bit errors has one master that keeps silent before a request, or others.
@@ -60,10 +58,9 @@ class NoisyLine final : public sim::Disturbance, public sim::Station, public sim
   /// answered, and rightly.
   void expect_the_first_clean_frame_is_answered();
 
-  /// From now on whatever the module does is held against what it could have heard, whoever sent that.
-  void watch() { watching_ = true; }
-  /// Replies and changes of outputs that were found to have a reason, since `watch`.
-  [[nodiscard]] std::uint64_t reasons() const { return reasons_; }
+  /// Replies and changes of outputs, all of them with their reason: whatever the module does is held against
+  /// what it has heard, whoever sent that.
+  [[nodiscard]] std::uint64_t deeds() const { return onlooker_.deeds(); }
 
   // --- sim::Disturbance: counts what noise does ---
   sim::Levels disturbed(const Sent& sent) override;
@@ -74,25 +71,9 @@ class NoisyLine final : public sim::Disturbance, public sim::Station, public sim
   [[nodiscard]] std::uint32_t baud() const override { return kBaud; }
   void receive(std::uint8_t byte, ByteStatus status) override;
 
-  // --- sim::BusObserver ---
-  void driver(std::size_t station, bool on, sim::VirtualTime now) override;
-  void byte(std::size_t /*station*/, std::uint8_t /*byte*/, std::uint32_t /*baud*/, bool /*collided*/,
-            sim::VirtualTime /*start*/, sim::VirtualTime /*end*/) override {}
-
  private:
-  struct Heard {
-    Finding finding = Finding::Nothing;
-    FrameBytes frame;
-  };
-
-  void clear_witness();
-  Heard what_was_heard();
   void come_up();
   void send(const FrameBytes& bytes, sim::VirtualTime then);
-  void note_right_frame();
-  void expect_reason(const char* what);
-  /// The outputs that a right frame demands, where it is one of those that the master sends.
-  std::optional<std::uint16_t> demanded(const FrameBytes& frame) const;
   [[nodiscard]] std::uint16_t outputs() { return line_.module(0).outputs(); }
 
   Check check_;
@@ -103,20 +84,9 @@ class NoisyLine final : public sim::Disturbance, public sim::Station, public sim
   std::mt19937_64 random_;
   FrameBytes to_master_;
 
-  FrameBytes bytes_;
-  std::vector<bool> good_;
-  DconJudge dcon_;
-  Heard dcon_heard_;
-  bool module_drives_ = false;
-  unsigned replies_ = 0;
-  std::uint16_t expected_outputs_ = 0;
+  Onlooker onlooker_;
   unsigned flips_in_data_ = 0;
   unsigned flips_in_framing_ = 0;
-
-  bool watching_ = false;
-  std::deque<sim::VirtualTime> right_frames_;
-  sim::VirtualTime latest_right_frame_{-1'000'000'000};
-  std::uint64_t reasons_ = 0;
 };
 
 }  // namespace ex9000::noise

@@ -6,10 +6,10 @@
 #include <cstdint>
 #include <optional>
 
-#include "tests/fuzz/checks.hpp"
-#include "tests/fuzz/finding.hpp"
+#include "tests/judges/checks.hpp"
+#include "tests/judges/finding.hpp"
 
-namespace ex9000::fuzz {
+namespace ex9000::judges {
 
 class DconJudge {
  public:
@@ -84,13 +84,13 @@ class DconJudge {
     if (size == kDelimiterAndAddress && frame[1] == '*' && frame[2] == '*') {
       const auto kind = frame[0] == '~'   ? Finding::Kind::HostOk
                         : frame[0] == '#' ? Finding::Kind::Broadcast
-                                          : Finding::Kind::Nothing;
+                                          : Finding::Kind::Foreign;
       return {kind, frame, first_, now};
     }
     if (are_digits_of(frame.data + 1, own_) || (next_ && are_digits_of(frame.data + 1, *next_))) {
       return {Finding::Kind::Request, frame, first_, now};
     }
-    return {};
+    return {Finding::Kind::Foreign, frame, first_, now};
   }
 
   std::uint8_t own_;
@@ -104,4 +104,4 @@ class DconJudge {
   Microseconds first_ = 0;
 };
 
-}  // namespace ex9000::fuzz
+}  // namespace ex9000::judges

@@ -2,13 +2,14 @@
 #pragma once
 
 #include "firmware/bytes.hpp"
-#include "tests/fuzz/lean_module.hpp"
+#include "tests/judges/time.hpp"
 
-namespace ex9000::fuzz {
+namespace ex9000::judges {
 
 struct Finding {
   enum class Kind {
-    Nothing,
+    Nothing,    ///< no frame, or one whose check fails
+    Foreign,    ///< for another module
     Request,    ///< for the module: it may answer once
     Broadcast,  ///< for every module: none answers
     HostOk,     ///< likewise, and it restarts the host watchdog
@@ -18,6 +19,7 @@ struct Finding {
   Bytes frame{};           ///< without its check; lives until the judge is told of the next byte
   Microseconds first = 0;  ///< when its first byte was over
   Microseconds last = 0;   ///< when its last byte was over
+  bool doubtful = false;   ///< the module may have seen other frames in these bytes
 };
 
-}  // namespace ex9000::fuzz
+}  // namespace ex9000::judges

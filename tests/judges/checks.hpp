@@ -7,7 +7,7 @@
 #include <cstdint>
 #include <string_view>
 
-namespace ex9000::fuzz {
+namespace ex9000::judges {
 
 namespace detail {
 
@@ -71,4 +71,4 @@ constexpr bool are_digits_of(const std::uint8_t* text, unsigned value) {
   return text[0] == upper_hex(value / 16) && text[1] == upper_hex(value);
 }
 
-}  // namespace ex9000::fuzz
+}  // namespace ex9000::judges

@@ -1,7 +1,7 @@
 // How a reply has to look.
 #pragma once
 
-namespace ex9000::fuzz {
+namespace ex9000::judges {
 
 /// What a reply is to a request.
 enum class ReplyForm {
@@ -10,4 +10,4 @@ enum class ReplyForm {
   Refusal,  ///< an exception, `?`, or `!` alone: nothing is changed
 };
 
-}  // namespace ex9000::fuzz
+}  // namespace ex9000::judges

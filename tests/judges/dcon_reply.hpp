@@ -7,10 +7,10 @@
 #include <string_view>
 
 #include "firmware/bytes.hpp"
-#include "tests/fuzz/checks.hpp"
-#include "tests/fuzz/reply_form.hpp"
+#include "tests/judges/checks.hpp"
+#include "tests/judges/reply_form.hpp"
 
-namespace ex9000::fuzz {
+namespace ex9000::judges {
 
 /// What replies depend on beside the request.
 struct DconRules {
@@ -130,4 +130,4 @@ inline ReplyForm dcon_reply_form(Bytes request, Bytes reply, const DconRules& ru
   return ReplyForm::Wrong;
 }
 
-}  // namespace ex9000::fuzz
+}  // namespace ex9000::judges

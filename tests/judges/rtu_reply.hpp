@@ -6,9 +6,9 @@
 #include <cstdint>
 
 #include "firmware/bytes.hpp"
-#include "tests/fuzz/reply_form.hpp"
+#include "tests/judges/reply_form.hpp"
 
-namespace ex9000::fuzz {
+namespace ex9000::judges {
 
 namespace detail {
 
@@ -113,4 +113,4 @@ inline ReplyForm rtu_reply_form(Bytes request, Bytes reply) {
   return reply[1] == request[1] && detail::is_answer(request, reply) ? ReplyForm::Answer : ReplyForm::Wrong;
 }
 
-}  // namespace ex9000::fuzz
+}  // namespace ex9000::judges

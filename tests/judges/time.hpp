@@ -1,0 +1,14 @@
+// The time that judges go by.
+#pragma once
+
+#include <cstdint>
+#include <limits>
+
+namespace ex9000::judges {
+
+/// Since the first power-on.
+using Microseconds = std::uint64_t;
+constexpr Microseconds kNever = std::numeric_limits<Microseconds>::max();
+constexpr Microseconds kMillisecond = 1000;
+
+}  // namespace ex9000::judges
