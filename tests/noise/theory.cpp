@@ -109,17 +109,25 @@ double sum_fits(const std::string& text, double flipped_bit) {
   return passes;
 }
 
-}  // namespace
-
-double crc_misses(std::size_t bytes, double flipped_bit) {
+/// Of a frame of so many bytes.
+const Words& known_words(std::size_t bytes) {
   static std::map<std::size_t, Words> known;
   const auto [place, fresh] = known.try_emplace(bytes);
   if (fresh) {
     place->second = words_of(static_cast<unsigned>(8 * bytes));
   }
+  return place->second;
+}
+
+}  // namespace
+
+double crc_misses_of(std::size_t bytes, unsigned flips) { return known_words(bytes)[flips]; }
+
+double crc_misses(std::size_t bytes, double flipped_bit) {
+  const Words& words = known_words(bytes);
   double missed = 0;
-  for (unsigned weight = 1; weight < place->second.size(); ++weight) {
-    missed += place->second[weight] * std::pow(flipped_bit, weight) *
+  for (unsigned weight = 1; weight < words.size(); ++weight) {
+    missed += words[weight] * std::pow(flipped_bit, weight) *
               std::pow(1 - flipped_bit, static_cast<double>(8 * bytes - weight));
   }
   return missed;

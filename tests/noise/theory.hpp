@@ -8,9 +8,13 @@
 
 namespace ex9000::noise {
 
+/// How many of the ways to flip so many bits of a Modbus RTU frame of so many bytes, its CRC among them,
+/// leave its CRC right. From the weights of the words of the code's dual, by MacWilliams' identity. `flips`:
+/// 0 to 12.
+double crc_misses_of(std::size_t bytes, unsigned flips);
+
 /// The probability that a Modbus RTU frame of so many bytes, its CRC among them, arrives damaged and its CRC
-/// is right all the same. From the weights of the code's words, which MacWilliams' identity gives from those
-/// of its dual; words of more than 12 bits are left out, which for a probability of 0.01 and 20 bytes or
+/// is right all the same. More than 12 flips are left out, which for a probability of 0.01 and 20 bytes or
 /// fewer is less than a millionth of the sum.
 double crc_misses(std::size_t bytes, double flipped_bit);
 
