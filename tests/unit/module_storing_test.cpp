@@ -53,27 +53,100 @@ TEST(Storing, ABroadcastThatCannotBeStoredStaysSilent) {
   EXPECT_EQ(bench.module().outputs(), 0);
 }
 
-TEST(Storing, ACommandThatChangesNothingWritesNothing) {
-  ModuleBench ascii("EX9042D");
-  const std::vector<std::string> commands{"%0101400680", "~01OABC", "~013105", "~01OABC",
-                                          "~013005",     "~011",    "~015P",   "~015S"};
-  for (const std::string& command : commands) {
-    ascii.ask(command);
-    const auto writes = ascii.module().memory().writes();
-    EXPECT_NE(ascii.ask(command), "?01") << command;
-    EXPECT_EQ(ascii.module().memory().writes(), writes) << command;
-    ascii.ask("~013005");
+/// The first of each twice stores something, unless that is so already; the second never does. `ask` says
+/// whether it was done.
+template <class Command, class Ask>
+void expect_nothing_written_the_second_time(ModuleBench& bench, const std::vector<Command>& commands,
+                                            Ask ask) {
+  unsigned stored = 0;
+  for (const Command& command : commands) {
+    SCOPED_TRACE(testing::PrintToString(command));
+    const auto before = bench.module().memory().writes();
+    EXPECT_TRUE(ask(command));
+    const auto writes = bench.module().memory().writes();
+    EXPECT_TRUE(ask(command));
+    EXPECT_EQ(bench.module().memory().writes(), writes);
+    stored += writes != before ? 1U : 0U;
   }
+  EXPECT_GT(stored, commands.size() / 2) << "this shows nothing";
+}
+
+TEST(Storing, ACommandThatChangesNothingWritesNothing) {
+  // Outputs that are not what is stored, for `~AA5V`.
+  ModuleBench ascii("EX9042D-M,protocol=ascii");
+  ascii.ask("@010005");
+  const std::vector<std::string> commands{"%0101400680", "~01OABC", "~0131FE", "~01OABCD",
+                                          "~0130FE",     "~011",    "~015P",   "~015S"};
+  const auto done = [](ModuleBench& bench) {
+    return [&bench](const std::string& command) { return bench.ask(command).at(0) == '!'; };
+  };
+  expect_nothing_written_the_second_time(ascii, commands, done(ascii));
+  ascii.module().set_init(true);
+  ascii.run(milliseconds(15));
+  expect_nothing_written_the_second_time<std::string>(ascii, {"$01P1", "%01014007C0", "$01P0"}, done(ascii));
+}
+
+TEST(Storing, ACommandThatChangesNothingWritesNothingInInitModeEither) {
+  ModuleBench bench("EX9042D-M,init=on");
+  bench.ask("@000005");
+  expect_nothing_written_the_second_time<std::string>(
+      bench, {"%00224007C0", "$00P0", "$00P1", "~00OABC", "~0031FE", "~0030FE", "~001", "~005P", "~005S"},
+      [&bench](const std::string& command) { return bench.ask(command).at(0) == '!'; });
+}
+
+TEST(Storing, ARequestThatChangesNothingWritesNothing) {
+  ModuleBench bench("EX9042D-M");
+  const std::vector<Bytes> requests{
+      {1, 0x06, 0x01, 0xE4, 0x00, 0x07},
+      {1, 0x06, 0x01, 0xE5, 0x00, 0x0A},
+      {1, 0x06, 0x01, 0xE8, 0x00, 0x64},
+      {1, 0x10, 0x01, 0xE8, 0x00, 0x01, 0x02, 0x00, 0x65},
+      {1, 0x10, 0x01, 0xE4, 0x00, 0x02, 0x04, 0x00, 0x08, 0x00, 0x09},
+      {1, 0x05, 0x01, 0x04, 0xFF, 0x00},
+      {1, 0x05, 0x01, 0x04, 0x00, 0x00},
+      {1, 0x05, 0x00, 0x80, 0xFF, 0x00},
+      {1, 0x05, 0x00, 0xA3, 0xFF, 0x00},
+      {1, 0x0F, 0x00, 0x80, 0x00, 0x0D, 0x02, 0x5A, 0x0A},
+      {1, 0x0F, 0x00, 0xA0, 0x00, 0x0D, 0x02, 0xA5, 0x05},
+      {1, 0x0F, 0x00, 0xA4, 0x00, 0x04, 0x01, 0x05},
+      {1, 0x05, 0x01, 0x00, 0x00, 0x00},
+      {1, 0x05, 0x01, 0x0D, 0xFF, 0x00},
+      {1, 0x46, 0x04, 0x09, 0x00, 0x00, 0x00},
+  };
+  expect_nothing_written_the_second_time(
+      bench, requests, [&bench](const Bytes& request) { return bench.ask(request).at(1) == request[1]; });
+}
+
+TEST(Storing, ABroadcastThatChangesNothingWritesNothing) {
+  ModuleBench bench("EX9042D-M");
+  const std::vector<Bytes> broadcasts{
+      {0, 0x06, 0x01, 0xE8, 0x00, 0x64},
+      {0, 0x10, 0x01, 0xE8, 0x00, 0x01, 0x02, 0x00, 0x65},
+      {0, 0x05, 0x01, 0x04, 0xFF, 0x00},
+      {0, 0x05, 0x01, 0x04, 0x00, 0x00},
+      {0, 0x05, 0x00, 0x80, 0xFF, 0x00},
+      {0, 0x05, 0x00, 0xA3, 0xFF, 0x00},
+      {0, 0x0F, 0x00, 0x80, 0x00, 0x0D, 0x02, 0x5A, 0x0A},
+      {0, 0x0F, 0x00, 0xA0, 0x00, 0x0D, 0x02, 0xA5, 0x05},
+      {0, 0x05, 0x01, 0x0D, 0xFF, 0x00},
+  };
+  expect_nothing_written_the_second_time(
+      bench, broadcasts, [&bench](const Bytes& broadcast) { return bench.ask(broadcast).empty(); });
+}
+
+TEST(Storing, ATimeoutStatusIsClearedOnceAndNotAgain) {
+  ModuleBench ascii("EX9042D");
+  ASSERT_EQ(ascii.ask("~013101"), "!01");  // has expired by now
+  expect_nothing_written_the_second_time<std::string>(
+      ascii, {"~011"}, [&ascii](const std::string& command) { return ascii.ask(command) == "!01"; });
   ModuleBench modbus("EX9042D-M");
-  const std::vector<Bytes> frames{{1, 0x06, 0x01, 0xE4, 0x00, 0x07}, {1, 0x06, 0x01, 0xE5, 0x00, 0x0A},
-                                  {1, 0x06, 0x01, 0xE8, 0x00, 0x64}, {1, 0x05, 0x00, 0x80, 0xFF, 0x00},
-                                  {1, 0x05, 0x00, 0xA3, 0xFF, 0x00}, {1, 0x05, 0x01, 0x00, 0x00, 0x00},
-                                  {1, 0x05, 0x01, 0x0D, 0xFF, 0x00}, {1, 0x46, 0x04, 0x09, 0x00, 0x00, 0x00}};
-  for (const Bytes& frame : frames) {
-    modbus.ask(frame);
-    const auto writes = modbus.module().memory().writes();
-    EXPECT_EQ(modbus.ask(frame).at(1), frame[1]);
-    EXPECT_EQ(modbus.module().memory().writes(), writes);
+  for (const std::uint8_t address : {std::uint8_t{1}, std::uint8_t{0}}) {
+    modbus.ask(Bytes{1, 0x06, 0x01, 0xE8, 0x00, 0x01});
+    modbus.ask(Bytes{1, 0x05, 0x01, 0x04, 0xFF, 0x00});
+    ASSERT_TRUE(modbus.module().module().state().settings.timeout_status);
+    expect_nothing_written_the_second_time<Bytes>(
+        modbus, {{address, 0x05, 0x01, 0x0D, 0xFF, 0x00}},
+        [&modbus](const Bytes& request) { return modbus.ask(request).empty() == (request[0] == 0); });
   }
 }
 

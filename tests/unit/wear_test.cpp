@@ -4,6 +4,7 @@
 #include <array>
 #include <cstdio>
 #include <functional>
+#include <utility>
 
 #include "tests/unit/module_bench.hpp"
 
@@ -87,6 +88,46 @@ TEST(Wear, OfPollingAndSwitchingIsNone) {
     ASSERT_EQ(bench.ask(Bytes{1, 0x01, 0, 0, 0, 8}).size(), 4U);
   }
   EXPECT_EQ(bench.module().memory().writes(), 0U);
+}
+
+TEST(Wear, OfCountingIsNone) {
+  ModuleBench ascii("EX9052D,edge=rising");
+  ModuleBench modbus("EX9052D-M");
+  for (ModuleBench* bench : {&ascii, &modbus}) {
+    for (unsigned channel = 0; channel < 8; ++channel) {
+      bench->module().pulse_input(channel, 100'001);  // and wraps
+    }
+    bench->run(std::chrono::seconds(2));
+  }
+  for (const char* command : {"#010", "$01C", "$01C0", "$01L1", "#**", "$014"}) {
+    ascii.ask(command);
+  }
+  for (const Bytes& request : {Bytes{1, 0x04, 0, 0, 0, 8},
+                               {1, 0x05, 0x01, 0x07, 0xFF, 0},
+                               {1, 0x05, 0x02, 0, 0xFF, 0},
+                               {1, 0x0F, 0x02, 0, 0, 8, 1, 0xFF}}) {
+    ASSERT_EQ(modbus.ask(request).at(1), request[1]);
+  }
+  ASSERT_EQ(ascii.ask("#010"), "!0100000");  // there was something to clear
+  ASSERT_EQ(ascii.ask("#011"), "!0100001");
+  EXPECT_EQ(ascii.module().memory().writes(), 0U);
+  EXPECT_EQ(modbus.module().memory().writes(), 0U);
+}
+
+TEST(Wear, OfHostOksIsNoneHoweverManyKeepTheWatchdogFromExpiring) {
+  ModuleBench ascii("EX9042D");
+  ASSERT_EQ(ascii.ask("~013105"), "!01");
+  ModuleBench modbus("EX9042D-M");
+  modbus.ask(Bytes{1, 0x06, 0x01, 0xE8, 0x00, 0x05});
+  modbus.ask(Bytes{1, 0x05, 0x01, 0x04, 0xFF, 0x00});
+  const auto before = std::pair(ascii.module().memory().writes(), modbus.module().memory().writes());
+  for (unsigned i = 0; i < 100; ++i) {
+    EXPECT_EQ(ascii.ask("~**"), "");
+    EXPECT_EQ(modbus.ask(Bytes{static_cast<std::uint8_t>(i % 2), 0x03, 0x30, 0x38, 0x00, 0x00}), Bytes());
+  }
+  EXPECT_TRUE(ascii.module().module().state().settings.watchdog_enabled);
+  EXPECT_TRUE(modbus.module().module().state().settings.watchdog_enabled);
+  EXPECT_EQ(std::pair(ascii.module().memory().writes(), modbus.module().memory().writes()), before);
 }
 
 }  // namespace
