@@ -12,75 +12,12 @@
 #include <string>
 
 #include "tests/fuzz/session.hpp"
+#include "tests/stored_settings.hpp"
 
 namespace ex9000::fuzz {
 namespace {
 
 constexpr std::size_t kHeader = 2;
-constexpr std::size_t kCopyDistance = 32;
-
-/// A copy as firmware/settings/record.hpp lays it out, read once more.
-class Copy {
- public:
-  Copy(const Model& model, const std::uint8_t* bytes) : model_(model), bytes_(bytes) {}
-
-  static void seal(const Model& model, std::uint8_t* bytes) {
-    bytes[22] = 2;
-    bytes[23] = 0;
-    const std::uint32_t check = crc32(model.designation, bytes, 24);
-    for (unsigned i = 0; i < 4; ++i) {
-      bytes[24 + i] = static_cast<std::uint8_t>(check >> 8 * i);
-    }
-  }
-
-  [[nodiscard]] bool is_blank() const {
-    return std::all_of(bytes_, bytes_ + 28, [](std::uint8_t byte) { return byte == 0xFF; });
-  }
-  [[nodiscard]] bool is_good() const {
-    const std::uint32_t check = crc32(model_.designation, bytes_, 24);
-    return word(24) == check % 65536 && word(26) == check / 65536 && word(22) == 2 && is_possible();
-  }
-  /// Of two good ones.
-  [[nodiscard]] bool is_later_than(const Copy& other) const {
-    const unsigned ahead = (word(20) - other.word(20)) & 0xFFFFU;
-    return ahead != 0 && ahead < 0x8000;
-  }
-
-  [[nodiscard]] Settings settings() const {
-    Settings settings;
-    settings.address = bytes_[0];
-    settings.baud_code = bytes_[1];
-    settings.format = bytes_[2];
-    settings.protocol = static_cast<Protocol>(bytes_[3]);
-    settings.watchdog_timeout = bytes_[4];
-    settings.watchdog_enabled = bytes_[5] != 0;
-    settings.timeout_status = bytes_[6] != 0;
-    settings.name = Name(Bytes{bytes_ + 8, bytes_[15]});
-    settings.power_on_value = static_cast<std::uint16_t>(word(16));
-    settings.safe_value = static_cast<std::uint16_t>(word(18));
-    return settings;
-  }
-
- private:
-  [[nodiscard]] unsigned word(std::size_t at) const { return bytes_[at] + bytes_[at + 1] * 256U; }
-
-  /// wire.md 4 and 8: what commands could have stored.
-  [[nodiscard]] bool is_possible() const {
-    const std::uint8_t length = bytes_[15];
-    const bool name =
-        length >= 1 && length <= model_.longest_name &&
-        std::all_of(bytes_ + 8, bytes_ + 8 + length, [](std::uint8_t c) { return c >= 0x20 && c <= 0x7E; });
-    const bool protocol =
-        bytes_[3] == 0 || (bytes_[3] == 1 && model_.speaks_modbus() && bytes_[0] >= 1 && bytes_[0] <= 247);
-    const bool watchdog = bytes_[5] == 0 || (bytes_[5] == 1 && bytes_[4] != 0);
-    const unsigned beyond = ~((1U << model_.outputs) - 1U);
-    return name && protocol && watchdog && bytes_[6] <= 1 && bytes_[1] >= 0x03 && bytes_[1] <= 0x0A &&
-           (bytes_[2] & 0x3FU) == 0 && ((word(16) | word(18)) & beyond) == 0;
-  }
-
-  const Model& model_;
-  const std::uint8_t* bytes_;
-};
 
 /// What the module has to come up with.
 struct Expected {
@@ -89,13 +26,13 @@ struct Expected {
 };
 
 Expected expected_of(const Model& model, const std::uint8_t* memory, bool answers) {
-  const Copy first(model, memory);
-  const Copy second(model, memory + kCopyDistance);
-  if (!answers || (!first.is_good() && !second.is_good())) {
-    return {Settings::factory(model), !answers || !first.is_blank() || !second.is_blank()};
+  const StoringModel storing = storing_model(model);
+  if (!answers || later_good_copy(storing, memory) == nullptr) {
+    const bool blank = StoredCopy(storing, memory).is_blank() &&
+                       StoredCopy(storing, memory + StoredCopy::kDistance).is_blank();
+    return {Settings::factory(model), !answers || !blank};
   }
-  const bool second_counts = !first.is_good() || (second.is_good() && second.is_later_than(first));
-  return {(second_counts ? second : first).settings(), false};
+  return {settings_from(model, memory), false};
 }
 
 bool same_name(const Name& a, const Name& b) {
@@ -118,7 +55,7 @@ class Trial {
     std::copy_n(contents, std::min(size, memory.size()), memory.begin());
     for (const unsigned copy : {0U, 1U}) {
       if ((flags >> copy & 1U) != 0) {
-        Copy::seal(model, memory.data() + copy * kCopyDistance);
+        StoredCopy::seal(storing_model(model), memory.data() + copy * StoredCopy::kDistance);
       }
     }
     session_.around().init_asserted = (flags & 4U) != 0;

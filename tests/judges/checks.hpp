@@ -1,11 +1,10 @@
-// The checks that frames, commands and settings carry, computed from their definitions, so that what is
+// The checks that frames and commands carry, computed from their definitions, so that what is
 // fuzzed is not judged by itself.
 #pragma once
 
 #include <array>
 #include <cstddef>
 #include <cstdint>
-#include <string_view>
 
 namespace ex9000::judges {
 
@@ -26,7 +25,6 @@ constexpr std::array<Crc, 1U << bits> crc_table(Crc polynomial) {
 }
 
 inline constexpr auto kCrc16 = crc_table<std::uint16_t, 8>(0xA001);
-inline constexpr auto kCrc32 = crc_table<std::uint32_t, 8>(0xEDB88320);
 
 }  // namespace detail
 
@@ -37,19 +35,6 @@ inline std::uint16_t crc16(const std::uint8_t* bytes, std::size_t size) {
     crc = crc / 256 ^ detail::kCrc16[(crc ^ bytes[i]) % 256];
   }
   return static_cast<std::uint16_t>(crc);
-}
-
-/// CRC-32 of IEEE 802.3 over a text and the bytes behind it.
-inline std::uint32_t crc32(std::string_view text, const std::uint8_t* bytes, std::size_t size) {
-  std::uint32_t crc = 0xFFFFFFFF;
-  const auto add = [&crc](std::uint8_t byte) { crc = crc / 256 ^ detail::kCrc32[(crc ^ byte) % 256]; };
-  for (const char character : text) {
-    add(static_cast<std::uint8_t>(character));
-  }
-  for (std::size_t i = 0; i < size; ++i) {
-    add(bytes[i]);
-  }
-  return ~crc;
 }
 
 /// The sum of all characters, modulo 256.

@@ -25,6 +25,21 @@ std::uint8_t left(unsigned way, std::uint8_t old_byte, std::uint8_t new_byte) {
 
 }  // namespace
 
+CutBench::CutBench(const Image& image, const Model& model) : model_(model), bench_(image) {
+  for (unsigned channel = 0; channel < image.outputs; ++channel) {
+    bench_.net(image.output_pins.at(channel)).on_change([this] {
+      ++shown_.changes;
+      shown_.ever_on |= bench_.outputs();
+    });
+  }
+}
+
+Outputs CutBench::outputs() {
+  Outputs outputs = shown_;
+  outputs.now = bench_.outputs();
+  return outputs;
+}
+
 Contents CutBench::contents() const {
   Contents contents{};
   std::copy_n(bench_.memory.begin(), contents.size(), contents.begin());
@@ -39,6 +54,7 @@ void CutBench::power_up(const Contents& contents, bool init) {
   std::copy(contents.begin(), contents.end(), bench_.memory.begin());
   bench_.line.heard.clear();
   bench_.line.drives.clear();
+  shown_ = Outputs();
   bench_.power_on();
   while (!uart().enabled() && bench_.timeline.now() < bench_.began + kComesUpWithin) {
     bench_.run_for(milliseconds(1));
@@ -93,14 +109,14 @@ Found CutBench::come_up(const Contents& contents, const std::vector<Settings>& g
     format = hex_byte(reply, 7);
   }
   power_up(contents, false);
-  found.outputs = bench_.outputs();
+  found.outputs = outputs();
   for (const Settings& guess : guesses) {
     found.settings = master(speak_as(guess, false)).read(format.value_or(guess.format));
     if (found.settings) {
       break;
     }
   }
-  EXPECT_EQ(bench_.outputs(), found.outputs) << "reading has changed them";
+  EXPECT_EQ(shown_.changes, found.outputs.changes) << "reading has changed outputs";
   EXPECT_EQ(CutBench::contents(), contents) << "coming up has written";
   return found;
 }
@@ -216,20 +232,26 @@ Cuts CutBench::cut_everywhere(const Contents& contents, const Settings& before,
   return cuts;
 }
 
-Contents CutBench::reset_after(Instant time, const Contents& contents, const Settings& before,
-                               const StoringCommand& command, bool& certainly_done) {
+AfterReset CutBench::reset_after(Instant time, const Contents& contents, const Settings& before,
+                                 const StoringCommand& command) {
   const Manner manner = get_ready(contents, before, command);
   const Instant when = bench_.timeline.now() + time;
   if (!command.is_timeout()) {
     send(manner.framed(command.frame(before)));
   }
   bench_.run_until(when);
-  certainly_done = !bench_.line.drives.empty();
+  const bool certainly_done = !bench_.line.drives.empty();
   bench_.set_init(false);
+  const std::uint16_t outputs_before_it = bench_.outputs();
+  shown_ = Outputs();
   bench_.reset();
+  // All of them go off with it, and nothing runs yet.
+  EXPECT_EQ(shown_.ever_on & ~outputs_before_it, 0);
+  EXPECT_EQ(bench_.outputs(), 0);
+  shown_ = Outputs();
   bench_.run_for(kComesUpWithin);
   EXPECT_TRUE(uart().enabled()) << "it does not come up";
-  return CutBench::contents();
+  return {CutBench::contents(), certainly_done, outputs()};
 }
 
 }  // namespace ex9000::registers

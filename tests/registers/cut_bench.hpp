@@ -32,25 +32,38 @@ struct Cuts {
   std::vector<Instant> events;  ///< on the EEPROM's bus, behind the begin of the command
 };
 
+/// What has been seen at the pins of the outputs since a reset.
+struct Outputs {
+  std::uint16_t now = 0;
+  std::uint16_t ever_on = 0;
+  unsigned changes = 0;  ///< of any of them
+};
+
 /// As a master finds a module that has come up.
 struct Found {
   std::optional<Settings> settings;  ///< none: it does not answer
-  std::uint16_t outputs = 0;         ///< before the first request
+  Outputs outputs;                   ///< before the first request
+};
+
+/// A module whose microcontroller alone began anew in the middle of a command.
+struct AfterReset {
+  Contents contents;
+  bool certainly_done;  ///< as in Cuts::left
+  Outputs outputs;
 };
 
 class CutBench {
  public:
-  CutBench(const Image& image, const Model& model) : model_(model), bench_(image) {}
+  CutBench(const Image& image, const Model& model);
 
   /// The command carried out on a module that comes up with `contents`, which are `before`. That it is
   /// answered as it should be, and drives what it should when it should, is expected by the way.
   Cuts cut_everywhere(const Contents& contents, const Settings& before, const StoringCommand& command);
 
   /// The same, but for a reset of the microcontroller so long behind the begin of the command, while the
-  /// EEPROM keeps its supply. What the EEPROM holds once the module is up again; `certainly_done` as in
-  /// Cuts::left.
-  Contents reset_after(Instant time, const Contents& contents, const Settings& before,
-                       const StoringCommand& command, bool& certainly_done);
+  /// EEPROM keeps its supply. As it is once the module is up again.
+  AfterReset reset_after(Instant time, const Contents& contents, const Settings& before,
+                         const StoringCommand& command);
 
   /// The outputs from which such a command begins.
   [[nodiscard]] std::uint16_t outputs_before(const Settings& settings) const;
@@ -66,6 +79,7 @@ class CutBench {
   void power_up(const Contents& contents, bool init);
   UartPort& uart() { return bench_.image.uart == 0 ? bench_.mcu->uart0 : bench_.mcu->uart1; }
   [[nodiscard]] Contents contents() const;
+  Outputs outputs();
   void note_cuts(Cuts& cuts);
   Manner speak_as(const Settings& settings, bool init_mode);
   void send(const Bytes& frame);
@@ -76,6 +90,7 @@ class CutBench {
   void carry_out(const Manner& manner, const StoringCommand& command, const Settings& before);
 
   const Model& model_;
+  Outputs shown_;  ///< but for what is so now; outlives the board
   BoardBench bench_;
 };
 

@@ -1,41 +1,34 @@
 // Power cuts at every point of every command that stores, and of a timeout: wire.md section 8. "At the next
 // reset each command is either wholly done or not done at all", and what was answered is done.
 //
-// The image stores, with its own drivers; what a cut at each point may leave in the EEPROM is judged by the
-// core's store, all of it, and by the image, which comes up from it and is asked for everything: some of it,
-// chosen by a seed, or with EX9000_CUTS=all in the environment all of it.
+// The image stores, with its own drivers; what a cut at each point may leave in the EEPROM is judged by a
+// reader that has no code of the firmware (StoredCopy), all of it, and by the image, which comes up from it
+// and is asked for everything: some of it, chosen by a seed, or with EX9000_CUTS=all in the environment all
+// of it.
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <bitset>
 #include <cstdio>
 #include <random>
-#include <set>
 #include <string>
 #include <string_view>
 #include <vector>
 
 #include "firmware/settings/record.hpp"
-#include "firmware/settings/store.hpp"
 #include "tests/environment.hpp"
 #include "tests/registers/cut_bench.hpp"
 #include "tests/registers/images_under_test.hpp"
+#include "tests/stored_settings.hpp"
 
 namespace ex9000::registers {
 namespace {
 
 constexpr unsigned kSeed = 1;
 
-/// What the core's store finds.
+/// What a module has to come up with, read by other code than its own.
 Settings settings_in(const Model& model, const Contents& contents) {
-  SettingsStore store(model);
-  store.begin_loading();
-  while (store.loading()) {
-    const MemoryJob job = store.job();
-    store.started();
-    std::copy_n(contents.begin() + job.address, job.bytes.size, job.bytes.data);
-    store.done(true);
-  }
-  return store.stored();
+  return settings_from(model, contents.data());
 }
 
 void put(const Model& model, const Settings& settings, std::uint16_t sequence, std::size_t page,
@@ -103,12 +96,19 @@ class PowerCutsOf : public testing::TestWithParam<ImageName> {
     return settings.timeout_status ? settings.safe_value : settings.power_on_value;
   }
 
-  /// The core's store has judged `contents` already: they are `settings`.
+  /// From the first moment on no output is ever on that is not to be, and none goes off again.
+  void expect_outputs(const Outputs& outputs, const Settings& settings) {
+    ASSERT_EQ(outputs.now, outputs_from_reset(settings));
+    ASSERT_EQ(outputs.ever_on, outputs.now);
+    ASSERT_EQ(outputs.changes, std::bitset<16>(outputs.now).count());
+  }
+
+  /// `contents` have been judged already: they are `settings`.
   void come_up(const Contents& contents, const Settings& settings, const Settings& otherwise) {
     const Found found = bench_.come_up(contents, {settings, otherwise}, all_of_them());
     ASSERT_TRUE(found.settings) << "it does not answer";
     ASSERT_TRUE(*found.settings == settings);
-    ASSERT_EQ(found.outputs, outputs_from_reset(settings));
+    expect_outputs(found.outputs, settings);
     ++booted_;
   }
 
@@ -236,11 +236,10 @@ TEST_P(PowerCutsOf, ThatTheEepromDoesNotNoticeLeaveEachCommandWhollyDoneOrNotAtA
     const Settings done = command.done_to(state.settings, cuts.outputs);
     for (std::size_t i = random_() % one_in; i < cuts.events.size(); i += one_in) {
       Cuts one;
-      bool certainly_done = false;
-      const Contents left =
-          bench_.reset_after(cuts.events[i], state.contents, state.settings, command, certainly_done);
+      const AfterReset after = bench_.reset_after(cuts.events[i], state.contents, state.settings, command);
+      expect_outputs(after.outputs, settings_in(model_, after.contents));
       one.points = one.cuts = 1;
-      one.left[left] = certainly_done;
+      one.left[after.contents] = after.certainly_done;
       judge(one, state.settings, done, 1);
       if (HasFailure()) {
         return;
