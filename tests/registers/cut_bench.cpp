@@ -4,6 +4,8 @@
 
 #include <algorithm>
 
+#include "tests/stored_copy.hpp"
+
 namespace ex9000::registers {
 
 namespace {
@@ -230,6 +232,38 @@ Cuts CutBench::cut_everywhere(const Contents& contents, const Settings& before,
   cuts.left[CutBench::contents()] = true;
   EXPECT_EQ(bench_.outputs(), outputs_done);
   return cuts;
+}
+
+Attempt CutBench::attempt(const Contents& contents, const Settings& before, const StoringCommand& command,
+                          std::uint16_t place, std::uint8_t bits, std::uint8_t stuck) {
+  constexpr milliseconds kTriedAgain{1300};  // wire.md D15: every second
+  Attempt attempt;
+  const Manner manner = get_ready(contents, before, command);
+  EepromChip& eeprom = bench_.eeprom;
+  eeprom.wear_out(place, bits, stuck);
+  attempt.outputs_before = bench_.outputs();
+  const unsigned had_spoiled = eeprom.spoiled();
+  const std::size_t had_programmed = eeprom.programmed().size();
+  eeprom.on_event([&] {
+    (bench_.line.drives.empty() ? attempt.meanwhile : attempt.behind).push_back(CutBench::contents());
+  });
+  if (!command.is_timeout()) {
+    send(manner.framed(command.frame(before)));
+  }
+  bench_.run_for(kStoresWithin);
+  attempt.tries = static_cast<unsigned>(std::count_if(
+      eeprom.programmed().begin() + static_cast<std::ptrdiff_t>(had_programmed), eeprom.programmed().end(),
+      [](const EepromChip::Programmed& page) { return page.size >= StoredCopy::kSize; }));
+  attempt.spoiled = eeprom.spoiled() - had_spoiled;
+  if (command.answered) {
+    attempt.reply = hear();
+  }
+  bench_.run_for(kTriedAgain);
+  eeprom.on_event(nullptr);
+  eeprom.renew();
+  attempt.behind.push_back(CutBench::contents());
+  attempt.outputs = bench_.outputs();
+  return attempt;
 }
 
 AfterReset CutBench::reset_after(Instant time, const Contents& contents, const Settings& before,

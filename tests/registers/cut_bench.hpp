@@ -52,6 +52,17 @@ struct AfterReset {
   Outputs outputs;
 };
 
+/// What a worn-out memory makes of a command.
+struct Attempt {
+  std::vector<std::uint8_t> reply;
+  unsigned spoiled = 0;             ///< bytes that the memory has kept otherwise than it was told
+  unsigned tries = 0;               ///< whole copies that were programmed
+  std::vector<Contents> meanwhile;  ///< until the reply began, or the last page that was programmed was
+  std::vector<Contents> behind;     ///< from then on, for more than a second
+  std::uint16_t outputs_before = 0;
+  std::uint16_t outputs = 0;  ///< in the end
+};
+
 class CutBench {
  public:
   CutBench(const Image& image, const Model& model);
@@ -64,6 +75,11 @@ class CutBench {
   /// EEPROM keeps its supply. As it is once the module is up again.
   AfterReset reset_after(Instant time, const Contents& contents, const Settings& before,
                          const StoringCommand& command);
+
+  /// The command sent to a module that comes up with `contents`, which are `before`, and whose memory is worn
+  /// out then: from the place on, with these bits stuck.
+  Attempt attempt(const Contents& contents, const Settings& before, const StoringCommand& command,
+                  std::uint16_t place, std::uint8_t bits, std::uint8_t stuck);
 
   /// The outputs from which such a command begins.
   [[nodiscard]] std::uint16_t outputs_before(const Settings& settings) const;

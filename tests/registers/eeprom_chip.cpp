@@ -60,8 +60,18 @@ std::vector<EepromChip::Cell> EepromChip::being_programmed() const {
 
 void EepromChip::commit(std::size_t size) {
   for (std::size_t i = 0; i < size; ++i) {
-    contents_.at(order_[i]) = page_.at(order_[i] % kPage);
+    program(order_[i], page_.at(order_[i] % kPage));
   }
+}
+
+void EepromChip::program(std::uint16_t place, std::uint8_t value) {
+  std::uint8_t kept = value;
+  if (const auto worn = worn_.find(place); worn != worn_.end()) {
+    const auto [bits, stuck] = worn->second;
+    kept = static_cast<std::uint8_t>((value & ~bits) | (stuck & bits));
+  }
+  spoiled_ += kept != value ? 1U : 0U;
+  contents_.at(place) = kept;
 }
 
 /// START and STOP are changes of the data line while the clock is high.

@@ -5,6 +5,7 @@
 #include <array>
 #include <cstdint>
 #include <functional>
+#include <map>
 #include <utility>
 #include <vector>
 
@@ -30,6 +31,13 @@ class EepromChip {
   void lose_power();
   /// From now on it takes no more than this many bytes of a transfer, the address among them.
   void refuse_after(unsigned bytes) { patience_ = bytes; }
+
+  /// A byte that is worn out: from the next time that it is programmed on these bits stay at `stuck`, though
+  /// the chip acknowledges all that it is sent.
+  void wear_out(std::uint16_t place, std::uint8_t bits, std::uint8_t stuck) { worn_[place] = {bits, stuck}; }
+  void renew() { worn_.clear(); }
+  /// Bytes that were programmed and have become something else.
+  [[nodiscard]] unsigned spoiled() const { return spoiled_; }
 
   /// Told behind each START, byte and STOP on the bus, and when a page is programmed. One, or null.
   void on_event(std::function<void()> act) { on_event_ = std::move(act); }
@@ -69,6 +77,7 @@ class EepromChip {
   }
   /// The first `size` bytes of what was written go to the array.
   void commit(std::size_t size);
+  void program(std::uint16_t place, std::uint8_t value);
 
   Timeline& timeline_;
   Net& clock_;
@@ -91,6 +100,12 @@ class EepromChip {
   Alarm programmed_;
   std::vector<Programmed> programmed_pages_;
   unsigned polls_refused_ = 0;
+  struct Worn {
+    std::uint8_t bits;
+    std::uint8_t stuck;
+  };
+  std::map<std::uint16_t, Worn> worn_;
+  unsigned spoiled_ = 0;
   std::function<void()> on_event_;
 };
 

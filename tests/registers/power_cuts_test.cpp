@@ -15,75 +15,15 @@
 #include <string_view>
 #include <vector>
 
-#include "firmware/settings/record.hpp"
 #include "tests/environment.hpp"
 #include "tests/registers/cut_bench.hpp"
 #include "tests/registers/images_under_test.hpp"
-#include "tests/stored_settings.hpp"
+#include "tests/registers/stored_state.hpp"
 
 namespace ex9000::registers {
 namespace {
 
 constexpr unsigned kSeed = 1;
-
-/// What a module has to come up with, read by other code than its own.
-Settings settings_in(const Model& model, const Contents& contents) {
-  return settings_from(model, contents.data());
-}
-
-void put(const Model& model, const Settings& settings, std::uint16_t sequence, std::size_t page,
-         Contents& contents) {
-  constexpr std::size_t kPage = 32;
-  Record record;
-  make_record(model, settings, sequence, record);
-  std::copy(record.bytes.begin(), record.bytes.end(),
-            contents.begin() + static_cast<std::ptrdiff_t>(page * kPage));
-}
-
-enum class Beginning : std::uint8_t { Factory, Full };
-
-struct State {
-  Settings settings;
-  Contents contents;
-};
-
-/// A state from which `command` stores something. A module from the factory has a blank EEPROM, unless the
-/// command wants something else; one that is set up has both copies, the later with the last number before
-/// they begin anew, and nothing in it is as it comes from the factory.
-State begin_at(Beginning beginning, const Model& model, const StoringCommand& command) {
-  State state;
-  state.contents.fill(0xFF);
-  Settings& settings = state.settings;
-  settings = Settings::factory(model);
-  if (command.init != Init::SinceReset) {
-    settings.protocol = command.protocol;
-  }
-  if (beginning == Beginning::Factory) {
-    command.prepare(settings);
-    if (settings != Settings::factory(model)) {
-      put(model, settings, 1, 0, state.contents);
-    }
-    return state;
-  }
-  if (command.init == Init::SinceReset) {
-    settings.protocol = Protocol::Ascii;
-  }
-  settings.address = 0x37;
-  settings.baud_code = 0x0A;
-  settings.format = kFormatMask;
-  settings.name = Name(std::string_view("Pump 3"));
-  settings.watchdog_enabled = true;
-  settings.watchdog_timeout = 0xC8;
-  settings.timeout_status = true;
-  if (model.outputs != 0) {
-    settings.power_on_value = 0x5A5A;
-    settings.safe_value = 0xA5A4;
-  }
-  command.prepare(settings);
-  put(model, Settings::factory(model), 0xFFFE, 0, state.contents);
-  put(model, settings, 0xFFFF, 1, state.contents);
-  return state;
-}
 
 class PowerCutsOf : public testing::TestWithParam<ImageName> {
  protected:
@@ -91,10 +31,6 @@ class PowerCutsOf : public testing::TestWithParam<ImageName> {
       : model_(*find_model(GetParam().model)),
         commands_(storing_commands(model_)),
         bench_(image_of(GetParam().board, GetParam().model), model_) {}
-
-  [[nodiscard]] std::uint16_t outputs_from_reset(const Settings& settings) const {
-    return settings.timeout_status ? settings.safe_value : settings.power_on_value;
-  }
 
   /// From the first moment on no output is ever on that is not to be, and none goes off again.
   void expect_outputs(const Outputs& outputs, const Settings& settings) {
