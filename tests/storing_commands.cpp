@@ -85,23 +85,26 @@ std::vector<StoringCommand> ascii_commands(const Model& model) {
           settings.protocol = settings.protocol == Protocol::Ascii ? Protocol::ModbusRtu : Protocol::Ascii;
         });
   }
-  add("~AAO", Init::Released, needs_nothing, always("OValve7"),
-      [](Settings& settings, std::uint16_t) { settings.name = Name(std::string_view("Valve7")); });
-  add("~AA31VV", Init::Released, needs_nothing, always("3164"), [](Settings& settings, std::uint16_t) {
-    settings.watchdog_enabled = true;
-    settings.watchdog_timeout = kNewTimeout;
-  });
-  add("~AA30VV", Init::Released, needs_nothing, always("3033"), [](Settings& settings, std::uint16_t) {
-    settings.watchdog_enabled = false;
-    settings.watchdog_timeout = 0x33;
-  });
-  add("~AA1", Init::Released, needs_status, always("1"),
-      [](Settings& settings, std::uint16_t) { settings.timeout_status = false; });
-  if (model.outputs != 0) {
-    add("~AA5P", Init::Released, needs_nothing, always("5P"),
-        [](Settings& settings, std::uint16_t outputs) { settings.power_on_value = outputs; });
-    add("~AA5S", Init::Released, needs_clear_status, always("5S"),
-        [](Settings& settings, std::uint16_t outputs) { settings.safe_value = outputs; });
+  for (const Init init : {Init::Released, Init::SinceReset}) {
+    const std::string where = init == Init::Released ? "" : " in INIT mode";
+    add("~AAO" + where, init, needs_nothing, always("OValve7"),
+        [](Settings& settings, std::uint16_t) { settings.name = Name(std::string_view("Valve7")); });
+    add("~AA31VV" + where, init, needs_nothing, always("3164"), [](Settings& settings, std::uint16_t) {
+      settings.watchdog_enabled = true;
+      settings.watchdog_timeout = kNewTimeout;
+    });
+    add("~AA30VV" + where, init, needs_nothing, always("3033"), [](Settings& settings, std::uint16_t) {
+      settings.watchdog_enabled = false;
+      settings.watchdog_timeout = 0x33;
+    });
+    add("~AA1" + where, init, needs_status, always("1"),
+        [](Settings& settings, std::uint16_t) { settings.timeout_status = false; });
+    if (model.outputs != 0) {
+      add("~AA5P" + where, init, needs_nothing, always("5P"),
+          [](Settings& settings, std::uint16_t outputs) { settings.power_on_value = outputs; });
+      add("~AA5S" + where, init, needs_clear_status, always("5S"),
+          [](Settings& settings, std::uint16_t outputs) { settings.safe_value = outputs; });
+    }
   }
   return commands;
 }
@@ -119,24 +122,26 @@ std::vector<StoringCommand> modbus_commands(const Model& model) {
                         },
                         std::move(change), nullptr, !broadcast});
   };
-  const Change enable = [](Settings& settings, std::uint16_t) { settings.watchdog_enabled = true; };
   const Change take_address = [](Settings& settings, std::uint16_t) { settings.address = kNewAddress; };
   add("05 protocol", needs_nothing, {0x05, 0x01, 0x00, 0x00, 0x00},
       [](Settings& settings, std::uint16_t) { settings.protocol = Protocol::Ascii; });
-  add("05 watchdog on", needs_disabled, {0x05, 0x01, 0x04, 0xFF, 0x00}, enable);
-  add("broadcast 05 watchdog on", needs_disabled, {0x05, 0x01, 0x04, 0xFF, 0x00}, enable);
-  add("05 watchdog off", needs_enabled, {0x05, 0x01, 0x04, 0x00, 0x00},
-      [](Settings& settings, std::uint16_t) { settings.watchdog_enabled = false; });
-  add("05 timeout status", needs_status, {0x05, 0x01, 0x0D, 0xFF, 0x00},
-      [](Settings& settings, std::uint16_t) { settings.timeout_status = false; });
+  // wire.md 7: what an address 0 may carry, "configuration is never broadcast".
+  for (const std::string to : {"", "broadcast "}) {
+    add(to + "05 watchdog on", needs_disabled, {0x05, 0x01, 0x04, 0xFF, 0x00},
+        [](Settings& settings, std::uint16_t) { settings.watchdog_enabled = true; });
+    add(to + "05 watchdog off", needs_enabled, {0x05, 0x01, 0x04, 0x00, 0x00},
+        [](Settings& settings, std::uint16_t) { settings.watchdog_enabled = false; });
+    add(to + "05 timeout status", needs_status, {0x05, 0x01, 0x0D, 0xFF, 0x00},
+        [](Settings& settings, std::uint16_t) { settings.timeout_status = false; });
+    add(to + "06 timeout", needs_nothing, {0x06, 0x01, 0xE8, 0x00, kNewTimeout},
+        [](Settings& settings, std::uint16_t) { settings.watchdog_timeout = kNewTimeout; });
+    add(to + "10 timeout", needs_nothing, {0x10, 0x01, 0xE8, 0x00, 0x01, 0x02, 0x00, kNewTimeout},
+        [](Settings& settings, std::uint16_t) { settings.watchdog_timeout = kNewTimeout; });
+  }
   add("06 address", needs_nothing, {0x06, 0x01, 0xE4, 0x00, kNewAddress}, take_address);
   add("46 address", needs_nothing, {0x46, 0x04, kNewAddress, 0x00, 0x00, 0x00}, take_address);
   add("06 rate", needs_nothing, {0x06, 0x01, 0xE5, 0x00, 0x08},
       [](Settings& settings, std::uint16_t) { settings.baud_code = 0x08; });
-  add("06 timeout", needs_nothing, {0x06, 0x01, 0xE8, 0x00, kNewTimeout},
-      [](Settings& settings, std::uint16_t) { settings.watchdog_timeout = kNewTimeout; });
-  add("10 timeout", needs_nothing, {0x10, 0x01, 0xE8, 0x00, 0x01, 0x02, 0x00, kNewTimeout},
-      [](Settings& settings, std::uint16_t) { settings.watchdog_timeout = kNewTimeout; });
   add("10 address and rate", needs_nothing,
       {0x10, 0x01, 0xE4, 0x00, 0x02, 0x04, 0x00, kNewAddress, 0x00, 0x08},
       [](Settings& settings, std::uint16_t) {
@@ -156,17 +161,17 @@ std::vector<StoringCommand> modbus_commands(const Model& model) {
     const Change all = [value_of](Settings& settings, std::uint16_t) { value_of(settings) = kNewValue; };
     const auto drive_all = [](const Settings&, std::uint16_t) { return kNewValue; };
     const Bytes write_all{0x0F, 0x00, row, 0x00, 0x10, 0x02, kNewValue & 0xFFU, kNewValue >> 8U};
-    add("05 one bit of the " + what, needs_clear_status, {0x05, 0x00, row, 0xFF, 0x00},
-        [value_of](Settings& settings, std::uint16_t) {
-          value_of(settings) = static_cast<std::uint16_t>(value_of(settings) | kOneBit);
-        });
-    commands.back().drive = [](const Settings&, std::uint16_t outputs) {
-      return static_cast<std::uint16_t>(outputs | kOneBit);
-    };
-    add("0F " + what, needs_clear_status, write_all, all);
-    commands.back().drive = drive_all;
-    add("broadcast 0F " + what, needs_clear_status, write_all, all);
-    commands.back().drive = drive_all;
+    for (const std::string to : {"", "broadcast "}) {
+      add(to + "05 one bit of the " + what, needs_clear_status, {0x05, 0x00, row, 0xFF, 0x00},
+          [value_of](Settings& settings, std::uint16_t) {
+            value_of(settings) = static_cast<std::uint16_t>(value_of(settings) | kOneBit);
+          });
+      commands.back().drive = [](const Settings&, std::uint16_t outputs) {
+        return static_cast<std::uint16_t>(outputs | kOneBit);
+      };
+      add(to + "0F " + what, needs_clear_status, write_all, all);
+      commands.back().drive = drive_all;
+    }
   }
   return commands;
 }
