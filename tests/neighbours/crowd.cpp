@@ -20,8 +20,9 @@ using std::chrono::milliseconds;
 
 constexpr std::size_t kMaster = 0;
 /// The first at an address is the one that is pulsed.
-constexpr std::array<const char*, 8> kCrowd{"EX9052D-M", "EX9042D-M,ascii", "EX9043D-M", "EX9052D",
-                                            "EX9068D-M", "EX9055D",         "EX9042D-M", "EX9052D-M,ascii"};
+constexpr std::array<const char*, 9> kCrowd{"EX9052D-M", "EX9042D-M,ascii", "EX9043D-M",
+                                            "EX9052D",   "EX9068D-M",       "EX9055D",
+                                            "EX9042D-M", "EX9052D-M,ascii", "EX9068AD-M"};
 /// wire.md 3 and 7.
 constexpr milliseconds kAnswers{25};
 constexpr milliseconds kAnswersStoring{210};
@@ -126,6 +127,8 @@ Bytes Crowd::modbus_request(std::size_t module) {
 std::string Crowd::dcon_request(std::size_t module) {
   const std::string address = reference::hex(static_cast<unsigned>(module + 1), 2);
   const reference::ModelRow& row = described_[module].row();
+  // A model that has both is asked for either.
+  const bool inputs = row.inputs != 0 && (row.outputs == 0 || random_.once_in(2));
   switch (random_.below(9)) {
     case 0:
       return "$" + address + "M";
@@ -136,12 +139,13 @@ std::string Crowd::dcon_request(std::size_t module) {
     case 3:
       return "@" + address;
     case 4:
-      return row.inputs != 0 ? "#" + address + std::to_string(random_.below(row.inputs))
-                             : "@" + address + reference::hex(random_.below(1U << row.outputs), 4);
+      return inputs
+                 ? "#" + address + std::to_string(random_.below(row.inputs))
+                 : "@" + address + reference::hex(random_.below(1U << row.outputs), row.outputs > 8 ? 4 : 2);
     case 5:
-      return row.inputs != 0 ? "$" + address + "L1" : "~" + address + "5S";  // stores the safe value
+      return inputs ? "$" + address + "L1" : "~" + address + "5S";  // stores the safe value
     case 6:
-      return row.outputs != 0 ? "~" + address + "5P" : "$" + address + "C";
+      return inputs ? "$" + address + "C" : "~" + address + "5P";
     case 7:
       return "~" + address + "30" +
              reference::hex(random_.between(1, 255), 2);  // the host watchdog's timeout
@@ -169,6 +173,7 @@ Bytes Crowd::a_request(std::size_t module) {
 /// While a request for them is under way, which edges it has seen depends on microseconds.
 void Crowd::account_for_pulses() {
   const std::uint32_t pulses = pulser_.take();
+  pulses_ += pulses;
   for (unsigned channel = 0; pulses != 0 && channel < 8; ++channel) {
     described_[0].pulse_input(channel, pulses);
   }
@@ -230,7 +235,9 @@ void Crowd::exchange() {
 
 void Crowd::expect_outputs_as_described() {
   for (std::size_t i = 0; i < kModules; ++i) {
-    ASSERT_EQ(line_.module(i).outputs(), described_[i].outputs()) << "module " << i + 1;
+    const unsigned outputs = line_.module(i).outputs();
+    ASSERT_EQ(outputs, described_[i].outputs()) << "module " << i + 1;
+    ever_on_[i] |= outputs;
   }
 }
 

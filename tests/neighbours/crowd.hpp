@@ -62,6 +62,11 @@ class Crowd final : public sim::BusObserver {
   [[nodiscard]] std::uint64_t broadcasts() const { return broadcasts_; }
   /// Replies of commands that stored something.
   [[nodiscard]] std::uint64_t stores() const { return stores_; }
+  /// Pulses on each input of the one that is pulsed.
+  [[nodiscard]] std::uint64_t pulses() const { return pulses_; }
+  /// Which outputs of each module have been on.
+  [[nodiscard]] const std::vector<unsigned>& ever_on() const { return ever_on_; }
+  [[nodiscard]] unsigned outputs_of(std::size_t module) const { return described_[module].row().outputs; }
   /// Replies of each module.
   [[nodiscard]] const std::vector<std::uint64_t>& of_each() const { return of_each_; }
 
@@ -90,6 +95,8 @@ class Crowd final : public sim::BusObserver {
   std::uint64_t replies_ = 0;
   std::uint64_t broadcasts_ = 0;
   std::uint64_t stores_ = 0;
+  std::uint64_t pulses_ = 0;
+  std::vector<unsigned> ever_on_ = std::vector<unsigned>(kModules);
   std::vector<std::uint64_t> of_each_ = std::vector<std::uint64_t>(kModules);
 };
 
