@@ -21,7 +21,6 @@ namespace ex9000::fuzz {
 
 using judges::are_digits_of;
 using judges::crc16;
-using judges::crc32;
 using judges::dcon_sum;
 using judges::upper_hex;
 
