@@ -180,6 +180,7 @@ class Witness {
     std::array<std::uint8_t, 256> bytes;
     std::size_t size;
     Microseconds last;
+    Microseconds over;  ///< it was known to be a frame: the silence behind it was over, or the module spoke
     Demand demand;
     bool broadcast;
     bool alone;  ///< the module had nothing else to do
@@ -220,6 +221,7 @@ class Witness {
     std::copy(finding.frame.begin(), finding.frame.end(), latest.bytes.begin());
     latest.size = finding.frame.size;
     latest.last = finding.last;
+    latest.over = rtu_ ? std::min(finding.last + silence_, now_) : finding.last + character_;
     latest.demand =
         rtu_ ? rtu_demand(finding.frame, model_.outputs) : dcon_demand(finding.frame, model_.outputs);
     latest.broadcast = finding.kind == Finding::Kind::Broadcast;
@@ -308,7 +310,7 @@ class Witness {
         objects_("a reply keeps its distance");
       }
       if (form == ReplyForm::Answer && request.demand.restarts) {
-        alive_ = std::max(alive_, request.last + distance());
+        alive_ = std::max(alive_, request.over);
       }
       answered_ = request;
       drop_oldest(i + 1);
