@@ -67,7 +67,7 @@ std::optional<std::string> Module::dcon_frame(std::string frame) {
       take_sample();
     } else if (frame == "~**") {
       rule(expiry_ ? "~** restarts the host watchdog" : "~**");
-      restart_host_watchdog();
+      restart_host_watchdog_by_host_ok();
     } else {
       rule("no broadcast");
     }

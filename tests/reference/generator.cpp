@@ -11,6 +11,9 @@ namespace {
 
 Step wait(const Module& module, Random& random) {
   // Beyond the host watchdog's timeout, now and then; a step that comes too near to it waits by itself.
+  if (module.expiry() && random.once_in(2)) {
+    return WaitForExpiry{std::chrono::milliseconds(random.between(5, 120))};
+  }
   if (module.stored().enabled && random.once_in(3)) {
     return Wait{std::chrono::milliseconds(100 * module.stored().timeout + 500)};
   }

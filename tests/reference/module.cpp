@@ -12,6 +12,8 @@ constexpr std::chrono::milliseconds kComingUp{100};
 /// wire.md 3: a reply starts at most 200 ms after the request where a setting is stored; and a Modbus frame
 /// ends up to 32 ms behind its last byte.
 constexpr std::chrono::milliseconds kLongestStore{232};
+/// wire.md 7: at 1200 baud. A host OK stores nothing.
+constexpr std::chrono::milliseconds kLongestSilence{33};
 
 auto members(const Stored& s) {
   return std::tie(s.address, s.baud_code, s.format, s.modbus, s.name, s.power_on, s.safe, s.enabled,
@@ -121,13 +123,17 @@ void Module::clear_latches() {
 
 // --- wire.md 6 ---
 
-void Module::restart_host_watchdog() {
+void Module::restart_host_watchdog() { restart_host_watchdog(kLongestStore); }
+
+void Module::restart_host_watchdog_by_host_ok() { restart_host_watchdog(kLongestSilence); }
+
+void Module::restart_host_watchdog(Time at_most_later) {
   if (!stored_.enabled) {
     return;
   }
   restarted_ = true;
   expiry_ =
-      Expiry{now_ + stored_.timeout * kTimeoutUnit, now_ + kLongestStore + stored_.timeout * kTimeoutUnit};
+      Expiry{now_ + stored_.timeout * kTimeoutUnit, now_ + at_most_later + stored_.timeout * kTimeoutUnit};
 }
 
 void Module::replied(Time now) {

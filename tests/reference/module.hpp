@@ -109,6 +109,8 @@ class Module {
   [[nodiscard]] std::uint32_t counter_modulus() const { return runs_modbus_ ? 65536 : 100000; }
   // wire.md 6
   void restart_host_watchdog();
+  void restart_host_watchdog_by_host_ok();
+  void restart_host_watchdog(Time at_most_later);
   void clear_timeout_status() { stored_.timed_out = false; }
   [[nodiscard]] unsigned all_outputs() const { return (1U << row_.outputs) - 1; }
 

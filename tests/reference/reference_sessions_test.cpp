@@ -53,6 +53,8 @@ TEST(RandomSessions, TheFirmwareDoesWhatTheReferenceSays) {
   std::uint64_t seed = number_in_environment("EX9000_SEED", 9042);
   std::uint64_t transactions = 0;
   std::uint64_t left_open = 0;
+  std::uint64_t before_expiry = 0;
+  std::uint64_t behind_expiry = 0;
   std::uint64_t sessions = 0;
   Rules rules;
   for (; transactions < wanted; ++seed, ++sessions) {
@@ -61,6 +63,8 @@ TEST(RandomSessions, TheFirmwareDoesWhatTheReferenceSays) {
                               << transcript_of(played.row, shrink(played.row, played.steps));
     transactions += played.session.transactions();
     left_open += played.session.left_open();
+    before_expiry += played.session.before_expiry();
+    behind_expiry += played.session.behind_expiry();
     for (const std::string& rule : played.session.rules()) {
       rules.reached(rule);
     }
@@ -72,9 +76,13 @@ TEST(RandomSessions, TheFirmwareDoesWhatTheReferenceSays) {
     ADD_FAILURE() << rule << " was never reached";
   }
   std::printf(
-      "reference: %llu transactions in %llu sessions, %zu of %zu rules reached; %llu requests left out\n",
+      "reference: %llu transactions in %llu sessions, %zu of %zu rules reached; %llu requests right before "
+      "an expiry, %llu right behind one; %llu requests left out\n",
       static_cast<unsigned long long>(transactions), static_cast<unsigned long long>(sessions),
-      rules.size() - rules.missing().size(), rules.size(), static_cast<unsigned long long>(left_open));
+      rules.size() - rules.missing().size(), rules.size(), static_cast<unsigned long long>(before_expiry),
+      static_cast<unsigned long long>(behind_expiry), static_cast<unsigned long long>(left_open));
+  EXPECT_GT(before_expiry, wanted / 1000);
+  EXPECT_GT(behind_expiry, wanted / 1000);
 }
 
 TEST(RandomSessions, AreWrittenDownAsTheRunnerPlaysThem) {

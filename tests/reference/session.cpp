@@ -14,8 +14,9 @@ namespace {
 
 using std::chrono::milliseconds;
 
-/// How near to the host watchdog's expiry nothing is decided, asked or compared.
-constexpr milliseconds kExpiryMargin{20};
+/// How near to the host watchdog's expiry nothing is decided, asked or compared: its tick, and what it takes
+/// until a request is acted upon that has just come in.
+constexpr milliseconds kExpiryMargin{3};
 /// wire.md 6: storing status and enable follows the expiry.
 constexpr milliseconds kStored{250};
 /// wire.md 3: a reply that stores nothing starts within 20 ms.
@@ -88,7 +89,10 @@ bool Session::play(const Step& step) {
 }
 
 /// Nothing is being stored any more.
-bool Session::stored() { return !std::exchange(storing_, false) || listen(kStored); }
+bool Session::stored() {
+  const bool storing = std::exchange(storing_, false);
+  return !(storing || storing_timeout_) || listen(kStored);
+}
 
 /// The master goes where the reference says that the module is.
 bool Session::follow() {
@@ -123,9 +127,11 @@ bool Session::settle(Time needed) {
 
 /// As long, or until the host watchdog has expired, where it might be about to.
 bool Session::listen(milliseconds time) {
-  if (reference_.expiry()) {
+  const bool might_expire = reference_.expiry().has_value();
+  Time over{0};
+  if (might_expire) {
     const Time now = target_.now();
-    const Time over = reference_.expiry()->latest + kExpiryMargin + kStored;
+    over = reference_.expiry()->latest + kExpiryMargin;
     if (now + time > reference_.expiry()->earliest - kExpiryMargin && now + time < over) {
       time = std::chrono::duration_cast<milliseconds>(over - now) + milliseconds(1);
     }
@@ -133,6 +139,8 @@ bool Session::listen(milliseconds time) {
   lines_.push_back("wait " + std::to_string(time.count()) + "ms");
   const play::Bytes heard = target_.listen(time);
   reference_.pass(target_.now());
+  // Outputs and status are there at once, and what is asked now is asked while they are being stored.
+  storing_timeout_ = might_expire && !reference_.expiry() && target_.now() < over + kStored;
   return heard.empty() || differs("; silence", reply_line(heard));
 }
 
@@ -182,14 +190,17 @@ bool Session::play_step(const Send& send) {
       return true;
     }
     // Twice: what is answered depends on whether the host watchdog has expired.
-    const Time needed = takes(send.bytes.size() + answer.reply.size()) + answers + kStored + kBetween;
+    const Time done = answer.stores ? answers + kStored : answer.reply.empty() ? Time(kNoAnswer) : answers;
+    const Time needed = takes(send.bytes.size() + answer.reply.size()) + done + kBetween;
     if (!settle(needed)) {
       return false;
     }
   }
 
   // The runner sends bytes at once, and frames only when no answer can come any more.
-  const bool behind_another = std::exchange(storing_, false);
+  behind_expiry_ += storing_timeout_ ? 1U : 0U;
+  const bool behind_another = std::exchange(storing_, false) || storing_timeout_;
+  storing_timeout_ = false;
   const std::string line = behind_another ? "bytes " + hex_of(send.bytes) : sent_line(send.bytes);
   const bool at_once = line.rfind("bytes", 0) == 0;
   if (!behind_another && !(at_once ? listen(kBetween) : nothing_more())) {
@@ -198,6 +209,7 @@ bool Session::play_step(const Send& send) {
   lines_.push_back(line);
   target_.send(send.bytes);
   const Time sent = target_.now();
+  before_expiry_ += reference_.expiry() && reference_.expiry()->earliest - sent < milliseconds(100) ? 1U : 0U;
   answer = reference_.on_request(send.bytes, sent);
   ++transactions_;
   if (answer.reply.empty()) {
@@ -230,8 +242,16 @@ bool Session::play_step(const Send& send) {
 
 bool Session::play_step(const Wait& wait) { return listen(wait.time); }
 
+bool Session::play_step(const WaitForExpiry& wait) {
+  if (!reference_.expiry()) {
+    return true;
+  }
+  const Time time = reference_.expiry()->earliest - wait.before - target_.now();
+  return time < milliseconds(1) || listen(std::chrono::duration_cast<milliseconds>(time));
+}
+
 bool Session::play_step(const Reset& /*reset*/) {
-  if (!settle(kComingUp + 2 * kBetween)) {
+  if (!settle(kComingUp + 2 * kBetween) || !stored()) {
     return false;
   }
   if (!nothing_more()) {
@@ -245,7 +265,7 @@ bool Session::play_step(const Reset& /*reset*/) {
 }
 
 bool Session::play_step(const Power& power) {
-  if (!settle(kComingUp + 2 * kBetween)) {
+  if (!settle(kComingUp + 2 * kBetween) || !stored()) {
     return false;
   }
   if (power.on == reference_.powered()) {

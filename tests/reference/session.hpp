@@ -24,6 +24,10 @@ struct Send {
 struct Wait {
   std::chrono::milliseconds time;
 };
+/// Until so long before the host watchdog expires, where it runs.
+struct WaitForExpiry {
+  std::chrono::milliseconds before;
+};
 struct Reset {};
 struct Power {
   bool on;
@@ -40,7 +44,7 @@ struct Pulse {
   std::uint32_t count;
 };
 
-using Step = std::variant<Send, Wait, Reset, Power, Init, Input, Pulse>;
+using Step = std::variant<Send, Wait, WaitForExpiry, Reset, Power, Init, Input, Pulse>;
 
 /// A module by either description, from factory settings. Waits where they could differ in nothing but the
 /// moment that the host watchdog expires, which is settled to a tick and not to the nanosecond.
@@ -59,12 +63,17 @@ class Session {
   [[nodiscard]] std::vector<std::string> rules() const;
   /// Requests that were sent.
   [[nodiscard]] std::uint64_t transactions() const { return transactions_; }
+  /// Of these, those that were over less than 0.1 s before the host watchdog expired, and those that came
+  /// while its expiry was being stored.
+  [[nodiscard]] std::uint64_t before_expiry() const { return before_expiry_; }
+  [[nodiscard]] std::uint64_t behind_expiry() const { return behind_expiry_; }
   /// Requests that were not sent, as the specification leaves them open.
   [[nodiscard]] std::uint64_t left_open() const { return left_open_; }
 
  private:
   bool play_step(const Send& send);
   bool play_step(const Wait& wait);
+  bool play_step(const WaitForExpiry& wait);
   bool play_step(const Reset& reset);
   bool play_step(const Power& power);
   bool play_step(const Init& init);
@@ -87,11 +96,15 @@ class Session {
   runner::CoreTarget target_;
   /// The module may be storing what it was sent last.
   bool storing_ = false;
+  /// Likewise, that the host watchdog has expired.
+  bool storing_timeout_ = false;
   unsigned rate_ = 9600;
   bool checksum_ = false;
   std::vector<std::string> lines_;
   std::vector<std::string> rules_;
   std::uint64_t transactions_ = 0;
+  std::uint64_t before_expiry_ = 0;
+  std::uint64_t behind_expiry_ = 0;
   std::uint64_t left_open_ = 0;
 };
 
