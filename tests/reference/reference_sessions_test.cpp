@@ -8,11 +8,11 @@
 #include <string>
 #include <vector>
 
+#include "sim/play/player.hpp"
 #include "tests/environment.hpp"
 #include "tests/reference/generator.hpp"
 #include "tests/reference/rules.hpp"
 #include "tests/reference/session.hpp"
-#include "sim/play/player.hpp"
 
 namespace ex9000::reference {
 namespace {
