@@ -294,7 +294,7 @@ std::string Session::lacking(unsigned channel) const { return channel < referenc
 bool Session::play_step(const Input& input) {
   lines_.push_back(lacking(input.channel) + "input " + std::to_string(input.channel) +
                    (input.level ? " on" : " off"));
-  target_.set_input(input.channel, input.level);
+  target_.module().set_input(input.channel, input.level);
   reference_.set_input(input.channel, input.level);
   return true;
 }
@@ -302,7 +302,7 @@ bool Session::play_step(const Input& input) {
 bool Session::play_step(const Pulse& pulse) {
   lines_.push_back(lacking(pulse.channel) + "pulse " + std::to_string(pulse.channel) + " x" +
                    std::to_string(pulse.count));
-  target_.pulse_input(pulse.channel, pulse.count);
+  target_.module().pulse_input(pulse.channel, pulse.count);
   reference_.pulse_input(pulse.channel, pulse.count);
   return true;
 }

@@ -14,6 +14,9 @@ class CoreTarget final : public play::BusTarget {
   /// What the transcripts reach is noted in `coverage`, where there is one.
   explicit CoreTarget(Coverage* coverage = nullptr) : coverage_(coverage) {}
 
+  /// Its terminals: inputs that the model lacks can be wired up too, which a transcript has no words for.
+  using play::BusTarget::module;
+
   void send(const Bytes& bytes) override;
   Bytes receive(std::size_t count, std::chrono::milliseconds patience) override;
   Bytes listen(std::chrono::milliseconds time) override;
