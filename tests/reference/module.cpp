@@ -167,8 +167,10 @@ Answer Module::on_request(const Bytes& bytes, Time now) {
     answer.reply = modbus_frame(bytes);
   } else {
     // wire.md 3: the first of these decides. A CR ends whatever it was.
-    for (const std::uint8_t byte : bytes) {
-      const char character = static_cast<char>(byte);
+    for (std::size_t i = 0; i < bytes.size(); ++i) {
+      const char character = static_cast<char>(bytes[i]);
+      // What one frame of several restarts, it restarts at its own end.
+      now_ = now - Time((bytes.size() - 1 - i) * 10 * 1'000'000'000ULL / rate());
       if (!answer.reply.empty()) {
         left_open_ = "what comes while the module answers depends on how fast it is";
       }
