@@ -7,7 +7,7 @@
 
 #include "sim/bus_file/bus_file.hpp"
 #include "sim/control/control.hpp"
-#include "sim/reference.hpp"
+#include "sim/describe/describe.hpp"
 #include "sim/time_text.hpp"
 
 namespace ex9000::sim {
@@ -60,6 +60,11 @@ constexpr const char* kScheduleHelp = R"(
 An input that moves by itself, for --input (with N before it) and bus files, is C square PERIOD [for TIME] or
 C key at TIME|every TIME for TIME [bounce TIME].
 )";
+
+constexpr const char* kDescribeExamples = R"(
+Examples:
+  ex9000-sim describe EX9042D-M
+  ex9000-sim describe EX9042D-M --format home-assistant --address 0A > modbus.yaml)";
 
 constexpr const char* kExamples = R"(
 Examples:
@@ -277,14 +282,42 @@ play::Task task_of(const PlayTexts& play_texts) {
   return task;
 }
 
-/// Of all models where none is named.
-Parsed print_reference(const std::string& model) {
+CLI::App* add_describe(CLI::App& app, DescribeTexts& texts) {
+  CLI::App* const describe =
+      app.add_subcommand("describe", "print the commands and registers of a model, or of all, and exit");
+  describe->footer(kDescribeExamples);
+  describe->add_option("MODEL", texts.model, "as --models lists it, upper or lower case, with or without EX");
+  describe
+      ->add_option(
+          "--format", texts.format,
+          "markdown (default), json and csv are of any model, or of all where none is named; the others "
+          "are what these tools read, of one that speaks Modbus")
+      ->type_name(describe_formats());
+  describe
+      ->add_option("--address", texts.address,
+                   "the module's in hex, for home-assistant and node-red (default: 01)")
+      ->type_name("HH");
+  describe
+      ->add_option("--tcp", texts.tcp,
+                   "where the simulator serves it, for home-assistant and node-red (default: 127.0.0.1:5020)")
+      ->type_name("HOST:PORT");
+  return describe;
+}
+
+Parsed printed(const std::string& text) {
+  Parsed parsed;
+  parsed.output = text;
+  return parsed;
+}
+
+Parsed print_description(const DescribeTexts& texts, bool has_modules) {
   try {
-    Parsed parsed;
-    parsed.output = model.empty() ? reference() : reference(model_called(model));
-    return parsed;
+    if (has_modules) {
+      throw std::invalid_argument("it runs no modules; leave out those in front of it");
+    }
+    return printed(describe(texts));
   } catch (const std::invalid_argument& error) {
-    return wrong(std::string("--reference: ") + error.what());
+    return wrong(std::string("describe: ") + error.what());
   }
 }
 
@@ -304,7 +337,6 @@ Parsed parse_arguments(int argc, const char* const* argv) {
   Texts texts;
   bool models = false;
   bool example = false;
-  std::string reference_of;
   app.add_option("MODULE", texts.modules, "modules on the line, one after the other; or BUS.json");
   app.add_option("--pty", texts.pty,
                  std::string("make a pseudo-terminal and link it at this path (default: ") + kDefaultPty +
@@ -346,33 +378,25 @@ Parsed parse_arguments(int argc, const char* const* argv) {
                "does not wait 3.5 characters between frames is on its own");
   app.add_flag("--example", example, "print a bus file that shows all that one may hold, and exit");
   app.add_flag("--models", models, "list the models and exit");
-  app.add_option("--reference", reference_of,
-                 "print the commands and registers of this model, or of all models, and exit")
-      ->type_name("[MODEL]")
-      ->expected(0, 1);
   PlayTexts play_texts;
   const CLI::App* const playing = add_play(app, play_texts);
+  DescribeTexts describe_texts;
+  const CLI::App* const describing = add_describe(app, describe_texts);
   app.set_version_flag("--version", "ex9000-sim " + std::string(kFirmwareVersion));
   try {
     app.parse(argc, argv);
   } catch (const CLI::CallForHelp&) {
-    Parsed parsed;
-    parsed.output = app.help();
-    return parsed;
+    return printed(app.help("", CLI::AppFormatMode::All));
   } catch (const CLI::CallForVersion& version) {
-    Parsed parsed;
-    parsed.output = std::string(version.what()) + "\n";
-    return parsed;
+    return printed(std::string(version.what()) + "\n");
   } catch (const CLI::ParseError& error) {
     return wrong(std::string(error.what()) + "; --help tells more");
   }
   if (models || example) {
-    Parsed parsed;
-    parsed.output = models ? list_models() : kExampleBusFile;
-    return parsed;
+    return printed(models ? list_models() : kExampleBusFile);
   }
-  if (app.count("--reference") != 0) {
-    return print_reference(reference_of);
+  if (describing->parsed()) {
+    return print_description(describe_texts, !texts.modules.empty());
   }
   try {
     Parsed parsed;

@@ -22,14 +22,11 @@ std::string upper(std::string text) {
 }
 
 std::uint8_t parse_address(const std::string& text) {
-  const std::string digits = upper(text.size() == 1 ? "0" + text : text);
-  const int address = digits.size() == 2 ? hex_byte(static_cast<std::uint8_t>(digits[0]),
-                                                    static_cast<std::uint8_t>(digits[1]))
-                                         : -1;
-  if (address < 0) {
+  const std::optional<std::uint8_t> address = hex_byte_of(text);
+  if (!address) {
     fail("address '" + text + "' is not one or two hex digits, 00 to FF");
   }
-  return static_cast<std::uint8_t>(address);
+  return *address;
 }
 
 bool parse_choice(const std::string& key, const std::string& value, const char* yes, const char* no) {
@@ -75,6 +72,14 @@ const Model& model_called(const std::string& name) {
     fail("'" + name + "' is no model; --models lists them");
   }
   return *model;
+}
+
+std::optional<std::uint8_t> hex_byte_of(const std::string& text) {
+  const std::string digits = upper(text.size() == 1 ? "0" + text : text);
+  const int value = digits.size() == 2
+                        ? hex_byte(static_cast<std::uint8_t>(digits[0]), static_cast<std::uint8_t>(digits[1]))
+                        : -1;
+  return value < 0 ? std::nullopt : std::optional(static_cast<std::uint8_t>(value));
 }
 
 std::string hex_byte_text(unsigned value) {

@@ -1,6 +1,8 @@
 // What the command line says of one module: MODEL[@ADDR][,KEY=VALUE]...
 #pragma once
 
+#include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -35,6 +37,9 @@ void check(const ModuleSpec& spec);
 
 /// The model of this designation, in any case, with or without EX. Throws like parse_module_spec.
 const Model& model_called(const std::string& name);
+
+/// Of one or two hex digits, in any case; nothing where it is something else.
+std::optional<std::uint8_t> hex_byte_of(const std::string& text);
 
 /// Two upper-case digits.
 std::string hex_byte_text(unsigned value);

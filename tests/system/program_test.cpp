@@ -74,7 +74,7 @@ TEST(Program, StandardStreamsMayBeClosed) {
 
 TEST(Program, AFullDiskBehindItsOutputIsSaid) {
   const Directory directory;
-  for (const char* arguments : {" EX9042D", " --help", " --reference"}) {
+  for (const char* arguments : {" EX9042D", " --help", " describe"}) {
     const Finished finished =
         run({"sh", "-c", simulator_path() + arguments + " > /dev/full"}, directory.path());
     EXPECT_EQ(finished.status, 1) << arguments;
@@ -130,7 +130,19 @@ TEST(Program, WrongArgumentsGiveOneLineThatNamesThemExitStatus2AndLeaveNothingBe
       {{"EX9042D", "--line", "fast"}, "--line fast", "paced or instant"},
       {{"EX9042D", "--control", "/no/such/place/ctl"}, "--control /no/such/place/ctl", "path"},
       {{"EX9042D,eeprom=/no/such/place/bin"}, "eeprom=/no/such/place/bin", "path"},
-      {{"EX9042D", "--reference", "EX1"}, "--reference", "--models"},
+      {{"describe", "EX1"}, "'EX1'", "--models"},
+      {{"describe", "--format", "yaml"}, "--format yaml", "home-assistant"},
+      {{"describe", "--format", "home-assistant"}, "--format home-assistant", "MODEL"},
+      {{"describe", "--format", "node-red"}, "--format node-red", "MODEL"},
+      {{"describe", "--format", "wb-mqtt-serial"}, "--format wb-mqtt-serial", "MODEL"},
+      {{"describe", "EX9042D", "--format", "home-assistant"},
+       "EX9042D --format home-assistant",
+       "Modbus RTU"},
+      {{"describe", "EX9055D", "--format", "node-red"}, "speaks no Modbus", "--models"},
+      {{"describe", "EX9042D-M", "--format", "node-red", "--address", "00"}, "--address 00", "01 to F7"},
+      {{"describe", "EX9042D-M", "--format", "node-red", "--tcp", "host"}, "--tcp host", "HOST:PORT"},
+      {{"describe", "EX9042D-M", "--address", "02"}, "--address", "leave it out"},
+      {{"EX9042D", "describe"}, "describe", "leave out"},
   };
   for (const Case& wrong : cases) {
     Directory directory;
@@ -141,6 +153,17 @@ TEST(Program, WrongArgumentsGiveOneLineThatNamesThemExitStatus2AndLeaveNothingBe
     EXPECT_NE(finished.error.find(wrong.names), std::string::npos) << finished.error;
     EXPECT_NE(finished.error.find(wrong.mend), std::string::npos) << finished.error;
     EXPECT_TRUE(fs::is_empty(directory.path())) << finished.error;
+  }
+}
+
+TEST(Program, DescribesAModelAndEnds) {
+  const Directory directory;
+  for (const char* format : {"markdown", "json", "csv", "home-assistant", "node-red", "wb-mqtt-serial"}) {
+    const Finished finished = simulator({"describe", "9052d-m", "--format", format}, directory.path());
+    EXPECT_EQ(finished.status, 0) << format;
+    EXPECT_EQ(finished.error, "");
+    EXPECT_NE(finished.output.find("EX9052D-M"), std::string::npos) << format;
+    EXPECT_TRUE(fs::is_empty(directory.path()));
   }
 }
 
@@ -195,7 +218,7 @@ TEST(Program, TellsItsVersionModelsAndHelp) {
   const Finished help = simulator({"--help"}, directory.path());
   EXPECT_EQ(help.status, 0);
   for (const char* option : {"--pty", "--baud", "--log", "--models", "--version", "--strict-gaps", "--tcp",
-                             "--serial", "--line", "--control", "--reference", "eeprom=", "N pulse C",
+                             "--serial", "--line", "--control", "describe", "eeprom=", "N pulse C",
                              "protocol=", "edge=", "checksum=", "name=", "init=", "baud="}) {
     EXPECT_NE(help.output.find(option), std::string::npos) << option;
   }

@@ -55,7 +55,10 @@ void replace_port(std::string& text, const std::string& port) {
   }
 }
 
-bool starts_the_simulator(const Block& block) { return block.text.rfind("ex9000-sim ", 0) == 0; }
+/// `ex9000-sim describe` prints and ends.
+bool starts_the_simulator(const Block& block) {
+  return block.text.rfind("ex9000-sim ", 0) == 0 && block.text.rfind("ex9000-sim describe", 0) != 0;
+}
 
 /// The second terminal: one shell for all blocks of a section, as functions and jobs stay.
 class Shell {

@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "sim/reference.hpp"
+#include "sim/describe/markdown.hpp"
 
 namespace ex9000::sim {
 namespace {
@@ -195,37 +195,60 @@ TEST(Arguments, ModelsListsEveryModelAndWhatItSpeaks) {
   EXPECT_NE(text.find("Modbus RTU"), std::string::npos);
 }
 
-TEST(Arguments, ReferenceIsOfAllModels) { EXPECT_EQ(printed({"--reference"}), reference()); }
-
-TEST(Arguments, ReferenceIsOfOneModelInAnyCaseWithOrWithoutEx) {
-  const std::string text = reference(*find_model("EX9052D-M"));
-  for (const char* name : {"EX9052D-M", "ex9052d-m", "9052D-M", "9052d-m"}) {
-    EXPECT_EQ(printed({"--reference", name}), text) << name;
-  }
-  EXPECT_EQ(printed({"--reference=EX9042D"}), reference(*find_model("EX9042D")));
+TEST(Arguments, DescribeIsOfAllModelsWhereNoneIsNamed) {
+  EXPECT_EQ(printed({"describe"}), markdown_of_all());
+  EXPECT_EQ(printed({"describe", "--format", "markdown"}), markdown_of_all());
 }
 
-TEST(Arguments, AReferenceOfNoModelIsRefused) {
-  expect_error({"--reference", "EX9999"}, "--reference: 'EX9999'", "--models");
-  expect_error({"--reference=EX9042D@01"}, "EX9042D@01", "--models");
-  EXPECT_EQ(parse({"--reference", "EX9999"}).exit_status, kWrongArguments);
+TEST(Arguments, DescribeIsOfOneModelInAnyCaseWithOrWithoutEx) {
+  const std::string text = markdown_of(*find_model("EX9052D-M"));
+  for (const char* name : {"EX9052D-M", "ex9052d-m", "9052D-M", "9052d-m"}) {
+    EXPECT_EQ(printed({"describe", name}), text) << name;
+  }
+}
+
+TEST(Arguments, DescribesOptionsMayStandBeforeAndBehindTheModel) {
+  EXPECT_EQ(printed({"describe", "--format=json", "EX9042D"}),
+            printed({"describe", "EX9042D", "--format", "json"}));
+  EXPECT_EQ(printed({"describe", "EX9042D-M", "--tcp", "4001", "--address=2", "--format", "home-assistant"}),
+            printed({"describe", "--format", "home-assistant", "--address", "02", "--tcp", "127.0.0.1:4001",
+                     "EX9042D-M"}));
+}
+
+TEST(Arguments, AWrongDescriptionIsRefused) {
+  expect_error({"describe", "EX9999"}, "describe: 'EX9999'", "--models");
+  expect_error({"describe", "EX9042D@01"}, "EX9042D@01", "--models");
+  expect_error({"describe", "EX9042D", "EX9060D"}, "EX9060D", "--help");
+  expect_error({"describe", "EX9042D", "--pty", "x"}, "--pty", "--help");
+  expect_error({"describe", "EX9042D", "--format"}, "--format", "--help");
+  expect_error({"EX9042D", "describe"}, "describe: it runs no modules", "leave out");
+  EXPECT_EQ(parse({"describe", "EX9999"}).exit_status, kWrongArguments);
 }
 
 TEST(Arguments, HelpTellsOfEveryOptionAndKey) {
   const std::string text = printed({"--help"});
-  for (const char* word : {"MODULE", "--pty", "--baud", "--log", "--strict-gaps", "--input", "--fault",
-                           "--seed", "--example", "--models", "--reference", "--version",
-                           "protocol=", "baud=", "checksum=", "edge=", "name=", "init=", "@ADDR"}) {
+  for (const char* word :
+       {"MODULE",    "--pty",          "--baud",    "--log",          "--strict-gaps", "--input",
+        "--fault",   "--seed",         "--example", "--models",       "describe",      "--format",
+        "--address", "home-assistant", "node-red",  "wb-mqtt-serial", "--version",     "protocol=",
+        "baud=",     "checksum=",      "edge=",     "name=",          "init=",         "@ADDR"}) {
     EXPECT_NE(text.find(word), std::string::npos) << word;
   }
+}
+
+TEST(Arguments, DescribeHasHelpOfItsOwn) {
+  const std::string text = printed({"describe", "--help"});
+  for (const char* word : {"MODEL", "--format", "markdown|json|csv|home-assistant|node-red|wb-mqtt-serial",
+                           "--address", "--tcp", "127.0.0.1:5020"}) {
+    EXPECT_NE(text.find(word), std::string::npos) << word;
+  }
+  EXPECT_EQ(text.find("--pty"), std::string::npos);
 }
 
 TEST(Arguments, VersionIsTheFirmwares) { EXPECT_EQ(printed({"--version"}), "ex9000-sim D01.00\n"); }
 
 TEST(Arguments, WhatIsPrintedNeedsNoModuleAndTakesOne) {
   EXPECT_EQ(printed({"--models", "EX9042D"}), printed({"--models"}));
-  EXPECT_EQ(printed({"EX9042D", "--reference"}), printed({"--reference"}));
-  EXPECT_EQ(printed({"--reference", "EX9060D", "EX9042D"}), printed({"--reference", "EX9060D"}));
   EXPECT_EQ(printed({"EX9042D", "--version"}), printed({"--version"}));
 }
 

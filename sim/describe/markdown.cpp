@@ -1,4 +1,4 @@
-#include "sim/reference.hpp"
+#include "sim/describe/markdown.hpp"
 
 #include <algorithm>
 #include <array>
@@ -6,17 +6,17 @@
 #include <vector>
 
 #include "firmware/dcon/commands.hpp"
-#include "firmware/dcon/writing.hpp"
 #include "firmware/modbus/functions.hpp"
-#include "firmware/modbus/registers.hpp"
 #include "firmware/model/baud.hpp"
+#include "sim/describe/access.hpp"
+#include "sim/describe/data_bytes.hpp"
+#include "sim/describe/models.hpp"
+#include "sim/describe/register_map.hpp"
 #include "sim/module_spec.hpp"
 
 namespace ex9000::sim {
 
 namespace {
-
-using Models = std::vector<const Model*>;
 
 // --- Markdown ---
 
@@ -59,21 +59,13 @@ std::string join(const std::vector<std::string>& parts) {
   return text;
 }
 
-std::string hex_word(unsigned value) { return "0x" + hex_byte_text(value >> 8U) + hex_byte_text(value); }
+std::string hex_word(unsigned value) { return "0x" + hex_word_text(value); }
 
 std::string range_text(const std::string& first, const std::string& last) {
   return first == last ? first : first + "-" + last;
 }
 
 // --- which models ---
-
-Models all_models() {
-  Models models;
-  for (const Model& model : kModels) {
-    models.push_back(&model);
-  }
-  return models;
-}
 
 struct Kind {
   const char* name;
@@ -112,41 +104,9 @@ void add_who(const Models& models, Cells& cells, const std::string& text) {
   }
 }
 
-template <class Has>
-bool any_has(const Models& models, Has has) {
-  return std::any_of(models.begin(), models.end(), [&](const Model* model) { return has(*model); });
-}
-
 // --- models ---
 
 std::string channels(unsigned number) { return number == 0 ? kNone : std::to_string(number); }
-
-/// Where a reply has the one channel that is on: the position of its byte among the data.
-std::size_t data_byte_of(const Model& model, bool is_output, unsigned channel) {
-  const auto on = static_cast<std::uint16_t>(1U << channel);
-  Reply reply;
-  reply.clear();
-  dcon::put_data(model, is_output ? on : std::uint16_t{0}, is_output ? std::uint16_t{0} : on, reply);
-  const auto digit =
-      std::find_if(reply.bytes().begin(), reply.bytes().end(), [](std::uint8_t c) { return c != '0'; });
-  return static_cast<std::size_t>(digit - reply.bytes().begin()) / 2;
-}
-
-/// What (First) or (Second) holds: DO8-12, say.
-std::string data_byte(const Model& model, std::size_t byte) {
-  for (const bool is_output : {true, false}) {
-    std::vector<std::string> held;
-    for (unsigned channel = 0; channel < (is_output ? model.outputs : model.inputs); ++channel) {
-      if (data_byte_of(model, is_output, channel) == byte) {
-        held.push_back(std::to_string(channel));
-      }
-    }
-    if (!held.empty()) {
-      return (is_output ? "DO" : "DI") + range_text(held.front(), held.back());
-    }
-  }
-  return "00";
-}
 
 std::string models_table(const Models& models) {
   std::string text = table_head({"model", "what it is", "inputs", "outputs", "protocols", "factory name",
@@ -156,8 +116,7 @@ std::string models_table(const Models& models) {
         table_line({std::string(model->designation), std::string(model->description), channels(model->inputs),
                     channels(model->outputs), model->speaks_modbus() ? "ASCII, Modbus RTU" : "ASCII",
                     code(model->factory_name), model->speaks_modbus() ? hex_word(model->modbus_code) : kNone,
-                    data_byte(*model, 0), data_byte(*model, 1),
-                    model->status_style == StatusStyle::TimeoutOnly ? "00, 04" : "00, 80, 84"});
+                    data_byte(*model, 0), data_byte(*model, 1), status_readings(*model)});
   }
   return text;
 }
@@ -210,18 +169,6 @@ std::string reply_code(std::string_view reply) {
              : code(reply.substr(0, at)) + std::string(kOr) + reply_code(reply.substr(at + kOr.size()));
 }
 
-const char* access_text(dcon::Access access) {
-  switch (access) {
-    case dcon::Access::Read:
-      return "read";
-    case dcon::Access::Write:
-      return "write";
-    case dcon::Access::Store:
-      break;
-  }
-  return "stored";
-}
-
 std::string commands_table(const Models& models) {
   Cells titles{"command", "valid reply", "what it does", "arguments", "access", "(I)"};
   add_who(models, titles, "models");
@@ -260,78 +207,27 @@ std::string functions_table(const Models& models) {
   return text;
 }
 
-/// One of the four tables of Modbus.
-struct Area {
-  const char* name;
-  char digit;  ///< in front of its numbers
-  modbus::Functions reads;
-  modbus::Functions writes;
-};
-
-constexpr std::array<Area, 4> kAreas{{
-    {"coil", '0', modbus::kReadCoils, modbus::kWriteSingleCoil | modbus::kWriteMultipleCoils},
-    {"discrete input", '1', modbus::kReadDiscreteInputs, 0},
-    {"input register", '3', modbus::kReadInputRegisters, 0},
-    {"holding register", '4', modbus::kReadHoldingRegisters, modbus::kWriteRegisters},
-}};
-
-modbus::Functions functions_of(const modbus::BitRow& row) { return row.functions; }
-
-/// A row without functions is host OK, which is read and never looked up.
-modbus::Functions functions_of(const modbus::WordRow& row) {
-  return row.functions != 0 ? row.functions : modbus::kReadHoldingRegisters | modbus::kReadInputRegisters;
-}
-
-std::string function_codes(modbus::Functions functions) {
+std::string function_codes(const std::vector<unsigned>& functions) {
   std::vector<std::string> codes;
-  for (unsigned function = 0; function < 16; ++function) {
-    if ((functions >> function & 1U) != 0) {
-      codes.push_back(hex_byte_text(function));
-    }
-  }
-  if ((functions & modbus::kWriteRegisters) != 0) {
-    codes.push_back(hex_byte_text(0x10));
+  codes.reserve(functions.size());
+  for (const unsigned function : functions) {
+    codes.push_back(hex_byte_text(function));
   }
   return join(codes);
 }
 
-std::string access_text(bool reads, bool writes) {
-  return reads && writes ? "read, write" : reads ? "read" : "write";
-}
-
-/// As PLCs count: from 1, in at least four digits behind that of the table.
-std::string plc_number(const Area& area, unsigned address) {
-  constexpr std::size_t kDigits = 4;
-  const std::string number = std::to_string(address + 1);
-  return area.digit + std::string(number.size() < kDigits ? kDigits - number.size() : 0, '0') + number;
-}
-
-template <class Register>
-std::string register_line(const Model& model, const Area& area, const Register& entry) {
-  const auto& row = entry.row;
-  const modbus::Functions functions = functions_of(row);
-  const bool reads = (functions & area.reads) != 0;
-  const bool writes = (functions & area.writes) != 0;
-  if (!meets(model, row.needs) || (!reads && !writes)) {
-    return "";
-  }
-  const unsigned last = row.first + modbus::width_of(row.width, model) - 1;
-  return table_line({area.name, range_text(hex_word(row.first), hex_word(last)),
-                     range_text(plc_number(area, row.first), plc_number(area, last)),
-                     function_codes(functions & (area.reads | area.writes)), access_text(reads, writes),
-                     writes ? std::string(entry.range) : kNone, std::string(entry.meaning)});
+std::string map_line(const MapRow& row) {
+  return table_line({row.area->name, range_text(hex_word(row.first), hex_word(row.last)),
+                     range_text(plc_number(*row.area, row.first), plc_number(*row.area, row.last)),
+                     function_codes(row.functions), access_text(row.reads, row.writes),
+                     std::string(row.range), std::string(row.meaning)});
 }
 
 std::string map_table(const Model& model) {
   std::string text =
       table_head({"table", "address", "PLC number", "functions", "access", "may be written", "what it is"});
-  for (const Area& area : kAreas) {
-    for (const modbus::BitRegister& entry : modbus::kBitRegisters) {
-      text += register_line(model, area, entry);
-    }
-    for (const modbus::WordRegister& entry : modbus::kWordRegisters) {
-      text += register_line(model, area, entry);
-    }
+  for (const MapRow& row : register_map(model)) {
+    text += map_line(row);
   }
   return text;
 }
@@ -386,12 +282,12 @@ std::string commands_and_registers(const Models& models) {
 
 }  // namespace
 
-std::string reference() {
+std::string markdown_of_all() {
   const Models models = all_models();
   return "### Models\n\n" + models_table(models) + commands_and_registers(models);
 }
 
-std::string reference(const Model& model) {
+std::string markdown_of(const Model& model) {
   const Models models{&model};
   return "## " + std::string(model.designation) + ": " + std::string(model.description) + "\n\n" +
          models_table(models) + commands_and_registers(models);

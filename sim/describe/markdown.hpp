@@ -7,10 +7,10 @@
 
 namespace ex9000::sim {
 
-/// Of all models, in Markdown, for a section of README.md.
-std::string reference();
+/// Of all models, for a section of README.md.
+std::string markdown_of_all();
 
 /// Of what this model has, and of nothing else.
-std::string reference(const Model& model);
+std::string markdown_of(const Model& model);
 
 }  // namespace ex9000::sim

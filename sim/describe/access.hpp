@@ -1,0 +1,26 @@
+// How descriptions call what may be done with a command or a register.
+#pragma once
+
+#include "firmware/dcon/commands.hpp"
+
+namespace ex9000::sim {
+
+/// `read`, `write` or `stored`.
+constexpr const char* access_text(dcon::Access access) {
+  switch (access) {
+    case dcon::Access::Read:
+      return "read";
+    case dcon::Access::Write:
+      return "write";
+    case dcon::Access::Store:
+      break;
+  }
+  return "stored";
+}
+
+/// One of the two at least.
+constexpr const char* access_text(bool reads, bool writes) {
+  return reads && writes ? "read, write" : reads ? "read" : "write";
+}
+
+}  // namespace ex9000::sim

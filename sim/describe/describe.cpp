@@ -1,0 +1,129 @@
+#include "sim/describe/describe.hpp"
+
+#include <optional>
+#include <stdexcept>
+#include <utility>
+
+#include "firmware/settings/settings.hpp"
+#include "firmware/table.hpp"
+#include "sim/describe/csv.hpp"
+#include "sim/describe/home_assistant.hpp"
+#include "sim/describe/json.hpp"
+#include "sim/describe/markdown.hpp"
+#include "sim/describe/node_red.hpp"
+#include "sim/describe/wb_mqtt_serial.hpp"
+#include "sim/module_spec.hpp"
+
+namespace ex9000::sim {
+
+namespace {
+
+/// One of the three makes it.
+struct Format {
+  const char* name = "";
+  std::string (*of_models)(const Models& models) = nullptr;
+  // These want Modbus.
+  std::string (*of_model)(const Model& model) = nullptr;
+  std::string (*of_module)(const Model& model, const Place& place) = nullptr;
+};
+
+std::string markdown(const Models& models) {
+  return models.size() == 1 ? markdown_of(*models.front()) : markdown_of_all();
+}
+
+constexpr auto kFormats = table<Format>({
+    {"markdown", markdown, nullptr, nullptr},
+    {"json", json_of, nullptr, nullptr},
+    {"csv", csv_of, nullptr, nullptr},
+    {"home-assistant", nullptr, nullptr, home_assistant_hub},
+    {"node-red", nullptr, nullptr, node_red_flow},
+    {"wb-mqtt-serial", nullptr, wb_mqtt_serial_template, nullptr},
+});
+
+[[noreturn]] void fail(const std::string& argument, const std::string& what) {
+  throw std::invalid_argument(argument + ": " + what);
+}
+
+const Format& format_called(const std::string& name) {
+  for (const Format& format : kFormats) {
+    if (name == format.name) {
+      return format;
+    }
+  }
+  fail("--format " + name, "wants " + describe_formats());
+}
+
+std::uint8_t parse_modbus_address(const std::string& text) {
+  const std::optional<std::uint8_t> address = hex_byte_of(text);
+  if (!address || !is_modbus_address(*address)) {
+    fail("--address " + text, "wants a Modbus address, hex 01 to F7");
+  }
+  return *address;
+}
+
+TcpAddress parse_master_address(const std::string& text) {
+  TcpAddress tcp = parse_tcp_address(text);
+  const std::string of_hosts = "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789.-_:%";
+  if (tcp.port == 0 || tcp.host.find_first_not_of(of_hosts) != std::string::npos) {
+    fail("--tcp " + text, "wants HOST:PORT where a simulator serves, such as 127.0.0.1:5020");
+  }
+  return tcp;
+}
+
+Place parse_place(const DescribeTexts& texts) {
+  Place place;
+  if (texts.address) {
+    place.address = parse_modbus_address(*texts.address);
+  }
+  if (texts.tcp) {
+    place.tcp = parse_master_address(*texts.tcp);
+  }
+  return place;
+}
+
+/// The formats that are of no module in particular.
+void refuse_place(const DescribeTexts& texts) {
+  for (const auto& [option, given] :
+       {std::pair("--address", texts.address.has_value()), std::pair("--tcp", texts.tcp.has_value())}) {
+    if (given) {
+      fail(option, "--format " + texts.format + " has none; leave it out");
+    }
+  }
+}
+
+const Model& modbus_model(const DescribeTexts& texts) {
+  if (texts.model.empty()) {
+    fail("--format " + texts.format, "wants a MODEL, such as 'describe EX9042D-M'");
+  }
+  const Model& model = model_called(texts.model);
+  if (!model.speaks_modbus()) {
+    fail(std::string(model.designation) + " --format " + texts.format,
+         "the model speaks no Modbus; take one that --models lists with Modbus RTU, or --format json");
+  }
+  return model;
+}
+
+}  // namespace
+
+std::string describe_formats() {
+  std::string names;
+  for (const Format& format : kFormats) {
+    names += (names.empty() ? "" : "|") + std::string(format.name);
+  }
+  return names;
+}
+
+std::string describe(const DescribeTexts& texts) {
+  const Format& format = format_called(texts.format);
+  if (format.of_module != nullptr) {
+    const Place place = parse_place(texts);
+    return format.of_module(modbus_model(texts), place);
+  }
+  refuse_place(texts);
+  if (format.of_model != nullptr) {
+    return format.of_model(modbus_model(texts));
+  }
+  return format.of_models(texts.model.empty() ? all_models() : Models{&model_called(texts.model)});
+}
+
+}  // namespace ex9000::sim

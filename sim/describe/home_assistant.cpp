@@ -1,0 +1,169 @@
+#include "sim/describe/home_assistant.hpp"
+
+#include "firmware/model/baud.hpp"
+#include "sim/describe/identity.hpp"
+#include "sim/describe/shown.hpp"
+#include "sim/describe/yaml.hpp"
+#include "sim/module_spec.hpp"
+
+namespace ex9000::sim {
+
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+// Home Assistant warns of intervals below 5 s, and shortens a timeout that is not below all of them.
+constexpr unsigned kOftenSeconds = 5;
+constexpr unsigned kSeldomSeconds = 30;
+constexpr unsigned kTimeoutSeconds = 2;
+/// The silence between two frames, 3.5 characters, is 29.2 ms at 1200 baud.
+constexpr unsigned kWaitMilliseconds = 30;
+
+const char* input_type(Table table) {
+  switch (table) {
+    case Table::Coils:
+      return "coil";
+    case Table::DiscreteInputs:
+      return "discrete_input";
+    case Table::InputRegisters:
+      return "input";
+    case Table::HoldingRegisters:
+      break;
+  }
+  return "holding";
+}
+
+class Hub {
+ public:
+  Hub(const Model& model, const Place& place)
+      : model_(model), place_(place), key_(model_key(model) + "_" + hex_byte_text(place.address)) {}
+
+  [[nodiscard]] Json hub() const {
+    Json hub{{"name", key_},
+             {"type", "rtuovertcp"},
+             {"host", place_.tcp.host},
+             {"port", place_.tcp.port},
+             {"timeout", kTimeoutSeconds},
+             {"message_wait_milliseconds", kWaitMilliseconds}};
+    for (const Shown& shown : shown_by(model_)) {
+      for (unsigned index = 0; index < shown.width; ++index) {
+        add(shown, index, hub);
+      }
+    }
+    return hub;
+  }
+
+  /// What has no entity, as actions that automations and buttons may call.
+  [[nodiscard]] std::string actions() const {
+    std::string text;
+    for (const Shown& shown : shown_by(model_)) {
+      for (unsigned index = 0; shown.role == Role::Button && index < shown.width; ++index) {
+        text += "#   " + shown.name_of(index) + ": modbus.write_coil with hub: " + key_ +
+                ", slave: " + std::to_string(place_.address) +
+                ", address: " + std::to_string(shown.first + index) + ", state: true\n";
+      }
+    }
+    return text;
+  }
+
+ private:
+  [[nodiscard]] Json entity(const Shown& shown, unsigned index, unsigned seconds) const {
+    return {{"name", std::string(model_.designation) + " " + hex_byte_text(place_.address) + " " +
+                         shown.name_of(index)},
+            {"unique_id", key_ + "_" + shown.key_of(index)},
+            {"slave", place_.address},
+            {"address", shown.first + index},
+            {"scan_interval", seconds}};
+  }
+
+  [[nodiscard]] Json toggle(const Shown& shown, unsigned index) const {
+    Json entity = this->entity(shown, index, kOftenSeconds);
+    entity["write_type"] = "coil";
+    // Otherwise it would show what was sent to it, and never what a timeout or another master has made of it.
+    entity["verify"] = {{"input_type", "coil"}, {"address", shown.first + index}};
+    return entity;
+  }
+
+  [[nodiscard]] Json binary_sensor(const Shown& shown, unsigned index) const {
+    Json entity = this->entity(shown, index, shown.role == Role::Input ? kOftenSeconds : kSeldomSeconds);
+    entity["input_type"] = input_type(shown.table);
+    if (shown.role == Role::Problem) {
+      entity["device_class"] = "problem";
+    }
+    return entity;
+  }
+
+  [[nodiscard]] Json counter(const Shown& shown, unsigned index) const {
+    Json entity = this->entity(shown, index, kOftenSeconds);
+    entity["input_type"] = input_type(shown.table);
+    entity["data_type"] = "uint16";
+    entity["state_class"] = "total_increasing";
+    return entity;
+  }
+
+  [[nodiscard]] Json duration(const Shown& shown, unsigned index) const {
+    Json entity = this->entity(shown, index, kSeldomSeconds);
+    entity["input_type"] = input_type(shown.table);
+    entity["data_type"] = "uint16";
+    entity["scale"] = 0.1;
+    entity["precision"] = 1;
+    entity["device_class"] = "duration";
+    entity["unit_of_measurement"] = "s";
+    return entity;
+  }
+
+  void add(const Shown& shown, unsigned index, Json& hub) const {
+    switch (shown.role) {
+      case Role::Output:
+        hub["switches"].push_back(toggle(shown, index));
+        break;
+      case Role::Input:
+      case Role::State:
+      case Role::Problem:
+        hub["binary_sensors"].push_back(binary_sensor(shown, index));
+        break;
+      case Role::Counter:
+        hub["sensors"].push_back(counter(shown, index));
+        break;
+      case Role::Tenths:
+        hub["sensors"].push_back(duration(shown, index));
+        break;
+      case Role::Preset:  // settings, made once and not by a dashboard
+      case Role::Button:  // the integration has none
+        break;
+    }
+  }
+
+  const Model& model_;
+  const Place& place_;
+  std::string key_;
+};
+
+std::string head(const Model& model, const Place& place) {
+  const std::string who = std::string(model.designation) + " at address " + hex_byte_text(place.address);
+  return "# " + who +
+         ", for Home Assistant's modbus integration. In configuration.yaml:\n"
+         "#   modbus: !include modbus.yaml\n"
+         "# Further modules on the same line go under this hub: one with the same host and port is not "
+         "loaded.\n"
+         "# A module on a serial port has, in place of type, host and port:\n"
+         "#   type: serial\n"
+         "#   port: /dev/ttyUSB0\n"
+         "#   baudrate: " +
+         std::to_string(baud_rate(kFactoryBaudCode)) +
+         "\n"
+         "#   bytesize: 8\n"
+         "#   method: rtu\n"
+         "#   parity: N\n"
+         "#   stopbits: 1\n";
+}
+
+}  // namespace
+
+std::string home_assistant_hub(const Model& model, const Place& place) {
+  const Hub hub(model, place);
+  return head(model, place) + yaml_of(Json::array({hub.hub()})) + "# Actions for what has no entity:\n" +
+         hub.actions();
+}
+
+}  // namespace ex9000::sim

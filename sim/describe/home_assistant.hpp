@@ -1,0 +1,15 @@
+// A module for Home Assistant's modbus integration.
+#pragma once
+
+#include <string>
+
+#include "firmware/model/model.hpp"
+#include "sim/describe/place.hpp"
+
+namespace ex9000::sim {
+
+/// YAML for `modbus: !include FILE` in configuration.yaml: a hub with switches, binary sensors and sensors.
+/// `model` must speak Modbus.
+std::string home_assistant_hub(const Model& model, const Place& place);
+
+}  // namespace ex9000::sim

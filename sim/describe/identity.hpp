@@ -1,0 +1,20 @@
+// The words by which tools tell one module from another.
+#pragma once
+
+#include <string>
+
+#include "firmware/model/model.hpp"
+
+namespace ex9000::sim {
+
+/// `ex9042d_m`: what every tool takes for an id.
+inline std::string model_key(const Model& model) {
+  std::string key;
+  for (const char character : model.designation) {
+    const bool upper = character >= 'A' && character <= 'Z';
+    key += character == '-' ? '_' : static_cast<char>(upper ? character - 'A' + 'a' : character);
+  }
+  return key;
+}
+
+}  // namespace ex9000::sim

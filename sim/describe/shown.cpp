@@ -1,0 +1,118 @@
+#include "sim/describe/shown.hpp"
+
+#include <algorithm>
+#include <optional>
+
+#include "firmware/table.hpp"
+
+namespace ex9000::sim {
+
+namespace {
+
+/// How what a row reads is presented; all else is in the firmware's tables.
+struct Reading {
+  std::string_view id;
+  std::optional<Role> role;  ///< none: it is left out
+  std::string_view name;
+};
+
+constexpr auto kReadings = table<Reading>({
+    {"outputs", Role::Output, "Output"},
+    {"inputs", Role::Input, "Input"},
+    {"input-coils", std::nullopt, ""},  // the inputs once more
+    {"latch-high", Role::Input, "Latch high"},
+    {"latch-low", Role::Input, "Latch low"},
+    {"safe-value", Role::Preset, "Safe value"},
+    {"power-on-value", Role::Preset, "Power-on value"},
+    {"protocol", std::nullopt, ""},
+    {"watchdog-enable", Role::State, "Host watchdog enabled"},
+    {"clear-latches", std::nullopt, ""},
+    {"timeout-status", Role::Problem, "Host watchdog timeout status"},
+    {"clear-counters", std::nullopt, ""},
+    {"counters", Role::Counter, "Counter"},
+    {"module-code", std::nullopt, ""},
+    {"address", std::nullopt, ""},
+    {"baud-code", std::nullopt, ""},
+    {"watchdog-timeout", Role::Tenths, "Host watchdog timeout"},
+    {"host-ok", std::nullopt, ""},
+});
+
+/// What writing 1 to a coil does that takes nothing but 1.
+struct Button {
+  std::string_view row;
+  std::string_view id;
+  std::string_view name;
+};
+
+constexpr auto kButtons = table<Button>({
+    {"clear-latches", "clear-latches", "Clear latches"},
+    {"timeout-status", "clear-timeout-status", "Clear timeout status"},
+    {"clear-counters", "clear-counters", "Clear counter"},
+});
+
+constexpr const Reading* reading_of(std::string_view id) {
+  for (const Reading& each : kReadings) {
+    if (each.id == id) {
+      return &each;
+    }
+  }
+  return nullptr;
+}
+
+constexpr const Button* button_of(std::string_view id) {
+  for (const Button& each : kButtons) {
+    if (each.row == id) {
+      return &each;
+    }
+  }
+  return nullptr;
+}
+
+/// A row that is new in the firmware's tables has to be decided on here.
+constexpr bool every_row_is_decided_on() {
+  for (const modbus::BitRegister& row : modbus::kBitRegisters) {
+    if (reading_of(row.id) == nullptr || (button_of(row.id) != nullptr) != row.row.only_on) {
+      return false;
+    }
+  }
+  for (const modbus::WordRegister& row : modbus::kWordRegisters) {
+    if (reading_of(row.id) == nullptr) {
+      return false;
+    }
+  }
+  return kReadings.size() == modbus::kBitRegisters.size() + modbus::kWordRegisters.size();
+}
+static_assert(every_row_is_decided_on());
+
+Shown shown(const MapRow& row, std::string_view id, Role role, std::string_view name) {
+  return {id, role, name, row.area->table, row.first, row.last - row.first + 1, row.per_channel};
+}
+
+}  // namespace
+
+std::string Shown::name_of(unsigned index) const {
+  return std::string(name) + (per_channel ? " " + std::to_string(index) : "");
+}
+
+std::string Shown::key_of(unsigned index) const {
+  std::string key = std::string(id) + (per_channel ? "_" + std::to_string(index) : "");
+  std::replace(key.begin(), key.end(), '-', '_');
+  return key;
+}
+
+std::vector<Shown> shown_by(const Model& model) {
+  std::vector<Shown> all;
+  for (const MapRow& row : register_map(model)) {
+    const Reading& reading = *reading_of(row.id);
+    const auto same = [&row](const Shown& each) { return each.id == row.id; };
+    if (reading.role && row.reads && std::none_of(all.begin(), all.end(), same)) {
+      all.push_back(shown(row, row.id, *reading.role, reading.name));
+    }
+    if (const Button* button = button_of(row.id)) {
+      all.push_back(shown(row, button->id, Role::Button, button->name));
+    }
+  }
+  return all;
+}
+
+}  // namespace ex9000::sim

@@ -1,0 +1,20 @@
+"""What `ex9000-sim describe` prints, and of which models."""
+
+import os
+import pathlib
+import subprocess
+
+ROOT = pathlib.Path(__file__).resolve().parent.parent.parent
+PROGRAM = os.environ.get("EX9000_SIMULATOR", str(ROOT / "build/host-debug/sim/ex9000-sim"))
+
+
+def run(*arguments):
+    return subprocess.run([PROGRAM, *arguments], check=True, capture_output=True, encoding="utf-8").stdout
+
+
+def describe(*arguments):
+    return run("describe", *arguments)
+
+
+def models_with_modbus():
+    return [line.split()[0] for line in run("--models").splitlines() if "Modbus RTU" in line]
