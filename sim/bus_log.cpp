@@ -27,7 +27,7 @@ BusLog::BusLog(std::vector<std::string> speakers, Print print)
 
 void BusLog::byte(std::size_t station, std::uint8_t byte, std::uint32_t baud, bool collided,
                   VirtualTime start, VirtualTime end) {
-  Frame& frame = frames_[station];
+  Frame& frame = frame_of(station);
   if (frame.bytes.empty()) {
     frame.began = start;
   }
@@ -42,6 +42,14 @@ void BusLog::byte(std::size_t station, std::uint8_t byte, std::uint32_t baud, bo
     constexpr VirtualTime kFourCharacters{40'000'000'000};  // bits in nanoseconds, at 1 baud
     frame.prints = end + (dcon ? kPatienceForTyping : std::max(kPatienceForRest, kFourCharacters / baud));
   }
+}
+
+/// What faults put on a line is attached to it behind the modules, and has no name.
+BusLog::Frame& BusLog::frame_of(std::size_t station) {
+  if (station >= frames_.size()) {
+    frames_.resize(station + 1);
+  }
+  return frames_[station];
 }
 
 void BusLog::driver(std::size_t station, bool on, VirtualTime /*now*/) {
@@ -70,8 +78,12 @@ void BusLog::run(VirtualTime now) {
 }
 
 void BusLog::print(std::size_t station) {
-  const Frame frame = std::exchange(frames_[station], Frame());
+  const Frame frame = std::exchange(frame_of(station), Frame());
   if (frame.bytes.empty()) {
+    return;
+  }
+  if (station >= speakers_.size()) {
+    print_(stamp(frame.began) + "  ? somebody else  " + shown(frame.bytes));
     return;
   }
   const Speaker speaker = station == 0 ? Speaker::Master : Speaker::Module;

@@ -15,7 +15,7 @@ class BusLog final : public BusObserver {
  public:
   using Print = std::function<void(const std::string& line)>;
 
-  /// `speakers`: what each station is called, the master first.
+  /// `speakers`: what each station is called, the master first. Others may speak too, as somebody else.
   BusLog(std::vector<std::string> speakers, Print print);
 
   void driver(std::size_t station, bool on, VirtualTime now) override;
@@ -38,6 +38,7 @@ class BusLog final : public BusObserver {
     VirtualTime prints = kNever;
   };
 
+  Frame& frame_of(std::size_t station);
   void print(std::size_t station);
 
   std::vector<std::string> speakers_;

@@ -163,6 +163,9 @@ VirtualTime Pacer::silence_before(std::uint8_t address) {
   if (last_speaker_ == 0) {
     return pace_.lead == VirtualTime(0) ? VirtualTime(0) : last_byte_ + line_.rtu_silence();
   }
+  if (last_speaker_ > line_.size()) {  // somebody else, whom all modules have heard
+    return is_for_modbus(address) ? last_byte_ + line_.rtu_separate() : VirtualTime(0);
+  }
   const SimulatedModule& speaker = line_.module(last_speaker_ - 1);
   if (!speaker.powered()) {
     return VirtualTime(0);
