@@ -30,6 +30,17 @@ SimulatedModule::SimulatedModule(Bus& bus, const Model& model, TimingAt timing_a
       memory_(clock_) {}
 
 void SimulatedModule::power(bool on) {
+  switched_on_ = on;
+  follow_supply();
+}
+
+void SimulatedModule::interrupt_supply(bool interrupted) {
+  supply_interrupted_ = interrupted;
+  follow_supply();
+}
+
+void SimulatedModule::follow_supply() {
+  const bool on = switched_on_ && !supply_interrupted_;
   if (on == powered()) {
     return;
   }

@@ -37,8 +37,10 @@ class SimulatedModule final : public Station {
 
   // --- from outside, between two runs of the bus ---
 
-  /// The supply. Off cuts a write that is under way and takes everything but the memory.
+  /// The supply's switch. Off cuts a write that is under way and takes everything but the memory.
   void power(bool on);
+  /// The supply fails behind its switch, or is back; what that takes is the same.
+  void interrupt_supply(bool interrupted);
   [[nodiscard]] bool powered() const { return mcu_.has_value(); }
   /// A reset without loss of power; none without power.
   void reset();
@@ -97,6 +99,7 @@ class SimulatedModule final : public Station {
     hal::Device<hal::Board> device;
   };
 
+  void follow_supply();
   void start();
   void stop();
   void turn();
@@ -114,6 +117,8 @@ class SimulatedModule final : public Station {
   std::optional<Mcu> mcu_;
   VirtualTime wakes_ = kNever;  ///< when the main loop has something to do by itself
   VirtualTime driver_late_by_{0};
+  bool switched_on_ = false;
+  bool supply_interrupted_ = false;
   bool hung_ = false;
   std::uint64_t watchdog_resets_ = 0;
 };

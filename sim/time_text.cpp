@@ -3,6 +3,7 @@
 #include <array>
 #include <charconv>
 #include <cmath>
+#include <iomanip>
 #include <sstream>
 #include <stdexcept>
 #include <string_view>
@@ -38,10 +39,17 @@ VirtualTime parse_time(const std::string& text) {
 }
 
 std::string time_text(VirtualTime time) {
+  const auto unit = time < std::chrono::milliseconds(1) ? kUnits[0]
+                    : time < std::chrono::seconds(1)    ? kUnits[1]
+                                                        : kUnits[2];
   std::ostringstream text;
-  text.precision(12);
-  text << std::chrono::duration<double>(time).count() << 's';
-  return text.str();
+  text << std::fixed << std::setprecision(9) << static_cast<double>(time.count()) / unit.nanoseconds;
+  std::string digits = text.str();
+  digits.resize(digits.find_last_not_of('0') + 1);
+  if (digits.back() == '.') {
+    digits.pop_back();
+  }
+  return digits + std::string(unit.name);
 }
 
 }  // namespace ex9000::sim

@@ -10,7 +10,7 @@ namespace ex9000::sim {
 /// Throws std::invalid_argument, one line, where `text` is no number with a unit, negative, or beyond a year.
 hal::doubles::VirtualTime parse_time(const std::string& text);
 
-/// In seconds, as parse_time reads it.
+/// In us, ms or s, as parse_time reads it.
 std::string time_text(hal::doubles::VirtualTime time);
 
 }  // namespace ex9000::sim

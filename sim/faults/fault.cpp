@@ -80,6 +80,13 @@ struct Row {
 void take_nothing(Fault& /*fault*/, const std::string& /*word*/) {}
 void take_probability(Fault& fault, const std::string& word) { fault.probability = parse_probability(word); }
 void take_time(Fault& fault, const std::string& word) { fault.time = parse_time(word); }
+/// One that answers faster than anybody can go off would keep a line without time busy for good.
+void take_silence(Fault& fault, const std::string& word) {
+  fault.time = parse_time(word);
+  if (fault.time < std::chrono::milliseconds(1)) {
+    fail("'" + word + "' is too short a silence; 1ms is the shortest");
+  }
+}
 void take_rate(Fault& fault, const std::string& word) { fault.baud = parse_rate(word); }
 void take_bytes(Fault& fault, const std::string& word) { fault.bytes = parse_bytes(word); }
 
@@ -90,7 +97,7 @@ constexpr std::array<Row, 13> kRows{{
      "behind each byte: one that nobody sent"},
     {"stray-zeros", "P", Trouble::StrayZeros, false, take_probability,
      "likewise, 00, as a line's turn-around makes them"},
-    {"echo", "TIME", Trouble::Echo, false, take_time, "what was said is said again, after this silence"},
+    {"echo", "TIME", Trouble::Echo, false, take_silence, "what was said is said again, after this silence"},
     {"foreign-traffic", "HEX", Trouble::ForeignTraffic, false, take_bytes,
      "a stranger says this, once each time"},
     {"lost-reply", "", Trouble::LostReply, true, take_nothing, "nobody hears it"},
@@ -111,6 +118,15 @@ Words words_of(const std::string& text) {
     words.push_back(word);
   }
   return words;
+}
+
+/// In one line, whatever it was written in.
+std::string text_of(const Words& words) {
+  std::string text;
+  for (const std::string& word : words) {
+    text += (text.empty() ? "" : " ") + word;
+  }
+  return text;
 }
 
 std::string all_names() {
@@ -199,8 +215,8 @@ class ScheduleReader {
     } else {
       schedule_.when = Schedule::When::EveryTime;
       schedule_.time = parse_time(word);
-      if (schedule_.time == VirtualTime(0)) {
-        fail("'every " + word + "' would never end");
+      if (schedule_.time < std::chrono::milliseconds(1)) {
+        fail("'every " + word + "' is too often; every 1ms is the most");
       }
     }
   }
@@ -261,7 +277,7 @@ Fault parse_fault(const std::string& text) {
   const Row& row = row_called(words[0]);
   try {
     Fault fault;
-    fault.text = text;
+    fault.text = text_of(words);
     fault.trouble = row.trouble;
     std::size_t used = 1;
     if (!row.value.empty()) {
@@ -275,7 +291,7 @@ Fault parse_fault(const std::string& text) {
     check(fault);
     return fault;
   } catch (const std::invalid_argument& error) {
-    fail(text + ": " + error.what());
+    fail(text_of(words) + ": " + error.what());
   }
 }
 

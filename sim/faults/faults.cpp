@@ -13,6 +13,8 @@ namespace {
 using When = Schedule::When;
 
 constexpr VirtualTime kPowerCutLasts = std::chrono::seconds(1);
+/// Beyond so many bytes that a stranger has still to say, it says no more: a line carries what it can.
+constexpr std::size_t kMostForeign = 1024;
 
 bool is_of(const Fault& fault, std::size_t module) { return !fault.module || *fault.module == module; }
 
@@ -22,12 +24,7 @@ bool is_a_moment(Trouble trouble) { return trouble == Trouble::ForeignTraffic ||
 }  // namespace
 
 Faults::Faults(Bus& bus, const Master& master, Modules& modules, std::uint64_t seed, Notice notice)
-    : bus_(bus),
-      master_(master),
-      modules_(modules),
-      notice_(std::move(notice)),
-      chance_(seed),
-      off_(modules.size()) {
+    : bus_(bus), master_(master), modules_(modules), notice_(std::move(notice)), chance_(seed) {
   bus_.attach(*this);
   for (std::size_t i = 0; i < modules_.size(); ++i) {
     modules_[i]->watch_replies([this, i] { return reply_begins(i); }, [this, i] { reply_ends(i); });
@@ -110,7 +107,8 @@ void Faults::remove_all() {
 std::vector<Faults::Told> Faults::told() const {
   std::vector<Told> all;
   for (const Armed& armed : armed_) {
-    all.push_back({armed.number, armed.fault.text, armed.fault.module, armed.strikes, armed.strikes_so_far});
+    all.push_back(
+        {armed.number, armed.fault.text, armed.fault.module, !armed.strikes.empty(), armed.strikes_so_far});
   }
   return all;
 }
@@ -121,7 +119,10 @@ VirtualTime Faults::next() const {
   }
   VirtualTime next = kNever;
   for (const Armed& armed : armed_) {
-    next = std::min({next, armed.begins, armed.ends});
+    next = std::min(next, armed.begins);
+    for (const Strike& strike : armed.strikes) {
+      next = std::min(next, strike.ends);
+    }
   }
   return next;
 }
@@ -132,9 +133,7 @@ void Faults::run() { act(); }
 void Faults::act() {
   const VirtualTime now = bus_.clock().virtual_now();
   for (Armed& armed : armed_) {
-    if (armed.ends <= now) {
-      relent(armed);
-    }
+    relent(armed, [now](const Strike& strike) { return strike.ends <= now; });
   }
   for (Armed& armed : armed_) {
     if (armed.begins <= now) {
@@ -169,21 +168,36 @@ void Faults::strike(Armed& armed, std::optional<std::size_t> reply_of) {
   if (is_a_moment(fault.trouble)) {
     return;
   }
-  armed.strikes = true;
-  armed.reply_of = reply_of;
   auto lasts = fault.schedule.lasts;
   if (!lasts && fault.trouble == Trouble::PowerCut) {
     lasts = kPowerCutLasts;
   }
-  armed.ends = lasts ? bus_.clock().virtual_now() + *lasts : kNever;
+  const VirtualTime ends = lasts ? bus_.clock().virtual_now() + *lasts : kNever;
+  for (Strike& known : armed.strikes) {
+    if (known.reply_of == reply_of) {
+      known.ends = ends;
+      return;
+    }
+  }
+  armed.strikes.push_back({reply_of, ends});
 }
 
-void Faults::relent(Armed& armed) {
-  armed.strikes = false;
-  armed.reply_of.reset();
-  armed.ends = kNever;
-  changed_ = true;
-  say(armed, "is over");
+/// Those of its strikes that `over` is true of.
+template <class Over>
+void Faults::relent(Armed& armed, Over over) {
+  auto& strikes = armed.strikes;
+  const auto rest = std::remove_if(strikes.begin(), strikes.end(), over);
+  if (rest != strikes.end()) {
+    strikes.erase(rest, strikes.end());
+    changed_ = true;
+    say(armed, "is over");
+  }
+}
+
+bool Faults::Armed::befalls(std::size_t module) const {
+  return is_of(fault, module) && std::any_of(strikes.begin(), strikes.end(), [module](const Strike& strike) {
+           return strike.reply_of.value_or(module) == module;
+         });
 }
 
 void Faults::say(const Armed& armed, const std::string& what) const {
@@ -218,9 +232,8 @@ ReplyFate Faults::reply_begins(std::size_t module) {
 
 void Faults::reply_ends(std::size_t module) {
   for (Armed& armed : armed_) {
-    if (armed.reply_of == module && armed.ends == kNever) {
-      relent(armed);
-    }
+    relent(armed,
+           [module](const Strike& strike) { return strike.reply_of == module && strike.ends == kNever; });
   }
 }
 
@@ -237,8 +250,7 @@ void Faults::written(std::size_t module) {
 /// A fault of one module's reply befalls that one alone.
 const Fault* Faults::striking(Trouble trouble, std::size_t module) const {
   for (const Armed& armed : armed_) {
-    if (armed.strikes && armed.fault.trouble == trouble && is_of(armed.fault, module) &&
-        armed.reply_of.value_or(module) == module) {
+    if (armed.fault.trouble == trouble && armed.befalls(module)) {
       return &armed.fault;
     }
   }
@@ -247,7 +259,7 @@ const Fault* Faults::striking(Trouble trouble, std::size_t module) const {
 
 const Fault* Faults::striking_the_line(Trouble trouble) const {
   for (const Armed& armed : armed_) {
-    if (armed.strikes && armed.fault.trouble == trouble) {
+    if (!armed.strikes.empty() && armed.fault.trouble == trouble) {
       return &armed.fault;
     }
   }
@@ -271,17 +283,9 @@ void Faults::take_effect() {
   }
 }
 
-/// A module that somebody else has switched off stays off.
 void Faults::set_powers() {
   for (std::size_t i = 0; i < modules_.size(); ++i) {
-    const bool off = struck_by(Trouble::Gone, i) || struck_by(Trouble::PowerCut, i);
-    if (off && !off_[i] && modules_[i]->powered()) {
-      modules_[i]->power(false);
-      off_[i] = true;
-    } else if (!off && off_[i]) {
-      modules_[i]->power(true);
-      off_[i] = false;
-    }
+    modules_[i]->interrupt_supply(struck_by(Trouble::Gone, i) || struck_by(Trouble::PowerCut, i));
   }
 }
 
@@ -296,7 +300,7 @@ void Faults::set_late_drivers() {
 double Faults::rate_of(Trouble trouble) const {
   double rate = 0;
   for (const Armed& armed : armed_) {
-    if (armed.strikes && armed.fault.trouble == trouble) {
+    if (!armed.strikes.empty() && armed.fault.trouble == trouble) {
       rate = std::max(rate, armed.fault.probability);
     }
   }
@@ -328,7 +332,9 @@ void Faults::set_echo() {
 
 void Faults::say_foreign(const std::vector<std::uint8_t>& bytes) {
   stranger_->set_baud(master_.baud());
-  stranger_->send(bytes.data(), bytes.size());
+  if (stranger_->waiting() < kMostForeign) {
+    stranger_->send(bytes.data(), bytes.size());
+  }
 }
 
 }  // namespace ex9000::sim

@@ -56,22 +56,28 @@ class Faults final : public Station {
   void receive(std::uint8_t /*byte*/, ByteStatus /*status*/) override {}
 
  private:
+  /// While it lasts.
+  struct Strike {
+    std::optional<std::size_t> reply_of;  ///< it is of this module's reply, and befalls no other
+    VirtualTime ends = kNever;            ///< by the clock; never, of a reply: with that
+  };
   struct Armed {
     std::size_t number;
     Fault fault;
     VirtualTime begins = kNever;  ///< by the clock
-    VirtualTime ends = kNever;    ///< likewise, while it strikes
-    bool strikes = false;
-    std::optional<std::size_t> reply_of;  ///< over with this module's reply
-    std::uint64_t counted = 0;            ///< replies, or writes
+    std::vector<Strike> strikes;  ///< at this moment: one, or of replies one a module
+    std::uint64_t counted = 0;    ///< replies, or writes
     std::uint64_t strikes_so_far = 0;
+
+    [[nodiscard]] bool befalls(std::size_t module) const;
   };
 
   ReplyFate reply_begins(std::size_t module);
   void reply_ends(std::size_t module);
   void written(std::size_t module);
   void strike(Armed& armed, std::optional<std::size_t> reply_of);
-  void relent(Armed& armed);
+  template <class Over>
+  void relent(Armed& armed, Over over);
   void say(const Armed& armed, const std::string& what) const;
   void act();
   void take_effect();
@@ -95,8 +101,7 @@ class Faults final : public Station {
   Chance chance_;
   std::vector<Armed> armed_;
   std::size_t numbers_ = 0;
-  bool changed_ = false;   ///< effects are to be set anew, as soon as no module is in the middle of something
-  std::vector<bool> off_;  ///< modules whose power a fault has taken
+  bool changed_ = false;  ///< effects are to be set anew, as soon as no module is in the middle of something
   std::vector<std::size_t> hanging_;
   std::vector<std::vector<std::uint8_t>> to_say_;
   // On the line only where they are needed.

@@ -1,5 +1,6 @@
 #include "sim/faults/module_wire.hpp"
 
+#include <algorithm>
 #include <utility>
 
 namespace ex9000::sim {
@@ -12,6 +13,9 @@ void ModuleWire::watch(Begins begins, Ends ends) {
 void ModuleWire::drive(bool on) {
   if (on) {
     fate_ = begins_ ? begins_() : ReplyFate();
+    if (!late_.empty()) {  // one reply after the other: behind one that is late, the next is late too
+      fate_.late_by = std::max(fate_.late_by, late_.back().when - clock_.virtual_now());
+    }
   }
   hand_on(on ? What::On : What::Off, 0, 0);
   if (!on && ends_) {
@@ -21,7 +25,6 @@ void ModuleWire::drive(bool on) {
 
 void ModuleWire::put(std::uint8_t byte, std::uint32_t baud) { hand_on(What::Byte, byte, rate(baud)); }
 
-/// Behind what is late already, or it would come before it.
 void ModuleWire::hand_on(What what, std::uint8_t byte, std::uint32_t baud) {
   if (fate_.lost) {
     return;
