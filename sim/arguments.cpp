@@ -133,9 +133,10 @@ std::optional<std::size_t> take_position(std::string& text, std::size_t modules)
     return std::nullopt;
   }
   constexpr std::size_t kMostDigits = 6;
-  const std::size_t position = end > kMostDigits ? 0 : std::stoul(text.substr(0, end));
+  const std::string number = text.substr(0, end);
+  const std::size_t position = number.size() > kMostDigits ? 0 : std::stoul(number);
   if (position == 0 || position > modules) {
-    throw std::invalid_argument(text + ": no module " + text.substr(0, end) + "; there are 1 to " +
+    throw std::invalid_argument(text + ": no module " + number + "; there are 1 to " +
                                 std::to_string(modules));
   }
   text = end == std::string::npos ? "" : text.substr(end + 1);

@@ -1,6 +1,7 @@
 #include "sim/setup.hpp"
 
 #include <algorithm>
+#include <cctype>
 #include <charconv>
 #include <set>
 #include <utility>
@@ -19,6 +20,11 @@ void check(const LineSetup& line, std::size_t position) {
     if (path && path->empty()) {
       wrong(key, "wants a path");
     }
+  }
+  const auto is_of_a_word = [](unsigned char character) { return std::isgraph(character) != 0; };
+  if (!std::all_of(line.name.begin(), line.name.end(), is_of_a_word)) {
+    wrong("name",
+          "'" + line.name + "' is not one word of ASCII, which 'line NAME' of the control socket wants");
   }
   if (line.serial && (line.pty || line.tcp)) {
     wrong("serial", "the master is on that line; leave out pty and tcp");

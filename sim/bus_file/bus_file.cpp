@@ -1,7 +1,7 @@
 #include "sim/bus_file/bus_file.hpp"
 
+#include <filesystem>
 #include <fstream>
-#include <iterator>
 #include <sstream>
 #include <utility>
 
@@ -11,7 +11,7 @@ namespace ex9000::sim {
 
 namespace {
 
-using nlohmann::json;
+using json = nlohmann::ordered_json;
 
 [[noreturn]] void fail(const std::string& what) { throw std::invalid_argument(what); }
 
@@ -55,9 +55,17 @@ class Node {
     }
   }
 
-  [[nodiscard]] const json* member(const std::string& key) const {
+  /// Calls `take` with the member of this key, if there is one.
+  template <class Take>
+  void member(const std::string& key, Take take) const {
     const auto found = value_->find(key);
-    return found == value_->end() ? nullptr : &*found;
+    if (found != value_->end()) {
+      const Node member(*file_, *name_, *found, member_of(path_, key));
+      member.guarded([&] {
+        take(member);
+        return true;
+      });
+    }
   }
 
   [[nodiscard]] std::string text() const {
@@ -87,6 +95,9 @@ class Node {
 
   /// Likewise, and true and false as on and off.
   [[nodiscard]] std::string setting() const {
+    if (!value_->is_boolean() && !value_->is_number_unsigned() && !value_->is_string()) {
+      refuse("wants a text in quotes, a whole number, or true or false");
+    }
     return value_->is_boolean() ? (value_->get<bool>() ? "on" : "off") : number_or_text();
   }
 
@@ -125,11 +136,12 @@ class Node {
 };
 
 void read_module(const Node& node, LineSetup& line) {
-  const json* const model = node.member("model");
-  if (model == nullptr || !model->is_string()) {
+  const Model* model = nullptr;
+  node.member("model", [&](const Node& name) { model = &model_called(name.text()); });
+  if (model == nullptr) {
     node.refuse("model", "wants the model's name in quotes");
   }
-  ModuleSpec spec = factory_fresh(model_called(model->get<std::string>()));
+  ModuleSpec spec = factory_fresh(*model);
   const std::size_t position = line.modules.size();
   node.members("model, address, protocol, baud, checksum, edge, name, init, eeprom, inputs and faults",
                [&](const std::string& key, const Node& value) {
@@ -196,6 +208,9 @@ void read_line(const Node& node, Setup& setup) {
   if (line.name.empty()) {
     line.name = "line" + std::to_string(setup.lines.size() + 1);
   }
+  if (!line.pty && !line.tcp && !line.serial) {
+    line.pty = line.name + ".tty";
+  }
   setup.lines.push_back(std::move(line));
 }
 
@@ -248,12 +263,13 @@ Setup parse_bus_file(const std::string& path, const std::string& text) {
 }
 
 Setup read_bus_file(const std::string& path) {
-  std::ifstream file(path, std::ios::binary);
-  const std::string text{std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>()};
-  if (!file) {
+  const std::ifstream file(path, std::ios::binary);
+  std::ostringstream text;
+  text << file.rdbuf();
+  if (!file || std::filesystem::is_directory(path)) {  // which can be opened
     fail(path + ": cannot be read; --example prints a bus file");
   }
-  return parse_bus_file(path, text);
+  return parse_bus_file(path, text.str());
 }
 
 }  // namespace ex9000::sim

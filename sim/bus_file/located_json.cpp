@@ -8,7 +8,7 @@ namespace ex9000::sim {
 
 namespace {
 
-using nlohmann::json;
+using json = nlohmann::ordered_json;
 
 /// Goes through characters and counts the lines that have begun.
 class CountingIterator {
@@ -48,8 +48,9 @@ class Locator final : public nlohmann::json_sax<json> {
   bool number_integer(number_integer_t /*value*/) override { return scalar(); }
   bool number_unsigned(number_unsigned_t /*value*/) override { return scalar(); }
   bool number_float(number_float_t /*value*/, const string_t& /*text*/) override { return scalar(); }
-  bool string(string_t& /*value*/) override {
+  bool string(string_t& value) override {
     seen_ = line_;
+    want_no_nul(value);
     return scalar();
   }
   bool binary(binary_t& /*value*/) override { return scalar(); }
@@ -59,6 +60,7 @@ class Locator final : public nlohmann::json_sax<json> {
   bool end_array() override { return close(); }
   bool key(string_t& name) override {
     seen_ = line_;
+    want_no_nul(name);
     open_.back().key = name;
     if (!lines.emplace(member_of(open_.back().path, name), line_).second) {
       throw std::invalid_argument(std::to_string(line_) + ": '" + name + "' is given twice");
@@ -66,8 +68,8 @@ class Locator final : public nlohmann::json_sax<json> {
     return true;
   }
   bool parse_error(std::size_t /*position*/, const std::string& /*token*/,
-                   const nlohmann::detail::exception& /*error*/) override {
-    return false;  // has been told already
+                   const nlohmann::detail::exception& error) override {
+    throw std::invalid_argument(told(error.what(), line_));
   }
 
  private:
@@ -77,6 +79,25 @@ class Locator final : public nlohmann::json_sax<json> {
     std::size_t next = 0;
     std::string key;
   };
+
+  /// `[json.exception.parse_error.101] parse error at line 3, column 5: syntax error while ...`, or, where it
+  /// is no matter of syntax, `[json.exception.out_of_range.406] number overflow ...`
+  static std::string told(const std::string& text, unsigned line) {
+    const std::string lead = "] parse error at line ";
+    const auto at = text.find(lead);
+    if (at == std::string::npos) {
+      return std::to_string(line) + ": " + text.substr(text.find("] ") + 2);
+    }
+    const auto first = at + lead.size();
+    return text.substr(first, text.find(',', first) - first) + text.substr(text.find(": ", first));
+  }
+
+  /// It would end a path.
+  void want_no_nul(const std::string& text) const {
+    if (text.find('\0') != std::string::npos) {
+      throw std::invalid_argument(std::to_string(line_) + ": no text has a NUL in it; leave out \\u0000");
+    }
+  }
 
   std::string place() {
     if (open_.empty()) {
@@ -92,6 +113,10 @@ class Locator final : public nlohmann::json_sax<json> {
   }
 
   bool open(bool is_array) {
+    constexpr std::size_t kDeepest = 16;  // far beyond a bus file; each place holds the whole way to it
+    if (open_.size() == kDeepest) {
+      throw std::invalid_argument(std::to_string(line_) + ": nested deeper than anything in a bus file");
+    }
     seen_ = line_;
     const std::string path = place();
     lines.emplace(path, line_);
@@ -110,19 +135,6 @@ class Locator final : public nlohmann::json_sax<json> {
   std::vector<Open> open_;
 };
 
-/// `[json.exception.parse_error.101] parse error at line 3, column 5: syntax error while ...`
-std::string told(const json::parse_error& error) {
-  const std::string text = error.what();
-  const std::string lead = "at line ";
-  const auto line = text.find(lead);
-  const auto colon = text.find(": ", line);
-  if (line == std::string::npos || colon == std::string::npos) {
-    return "1: " + text;
-  }
-  const auto first = line + lead.size();
-  return text.substr(first, text.find(',', first) - first) + text.substr(colon);
-}
-
 }  // namespace
 
 std::string member_of(const std::string& path, const std::string& key) {
@@ -134,18 +146,11 @@ std::string element_of(const std::string& path, std::size_t index) {
 }
 
 LocatedJson parse_located(const std::string& text) {
-  LocatedJson located;
-  try {
-    located.value = json::parse(text);
-  } catch (const json::parse_error& error) {
-    throw std::invalid_argument(told(error));
-  }
   unsigned line = 1;
   Locator locator(line);
   json::sax_parse(CountingIterator(text.data(), &line), CountingIterator(text.data() + text.size(), &line),
                   &locator);
-  located.lines = std::move(locator.lines);
-  return located;
+  return {json::parse(text), std::move(locator.lines)};
 }
 
 }  // namespace ex9000::sim

@@ -8,7 +8,7 @@
 namespace ex9000::sim {
 
 struct LocatedJson {
-  nlohmann::json value;
+  nlohmann::ordered_json value;  ///< as it was written, so that faults are numbered in their order
   /// By the path of a value, such as `lines[0].modules[1].baud`; the whole is "".
   std::map<std::string, unsigned> lines;
 };

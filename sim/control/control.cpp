@@ -276,20 +276,21 @@ std::string end_fault(Line& line, const Words& words) {
   return "";
 }
 
-std::string list_faults(Line& line) {
+/// The line's first module is at `position`, from 0.
+std::string list_faults(Line& line, std::size_t position) {
   const std::vector<Faults::Told> told = line.faults().told();
   std::string text = std::to_string(told.size()) + (told.size() == 1 ? " fault:" : " faults:");
   for (const Faults::Told& fault : told) {
     text += (&fault == told.data() ? " " : "; ") + std::to_string(fault.number) + (fault.strikes ? "*" : "") +
             " x" + std::to_string(fault.strikes_so_far) + " " +
-            (fault.module ? std::to_string(*fault.module + 1) + " " : "") + fault.text;
+            (fault.module ? std::to_string(position + *fault.module + 1) + " " : "") + fault.text;
   }
   return text;
 }
 
-std::string on_line(Line& line, const Words& words) {
+std::string on_line(Line& line, std::size_t position, const Words& words) {
   if (words[0] == "faults" && words.size() == 1) {
-    return list_faults(line);
+    return list_faults(line, position);
   }
   if (words[0] == "fault" && words.size() >= 2) {
     return words[1] == "off" ? end_fault(line, words)
@@ -298,28 +299,27 @@ std::string on_line(Line& line, const Words& words) {
   throw Refused{"no command '" + joined(words.begin(), words.end()) + "'; there are " + all_shapes()};
 }
 
-Line& line_called(const Lines& lines, const std::string& name) {
-  std::string names;
-  for (const Control::ControlledLine& controlled : lines) {
-    if (controlled.name == name) {
-      return controlled.line;
-    }
-    names += " " + controlled.name;
-  }
-  throw Refused{"no line '" + name + "'; there are" + names};
-}
-
 std::string on_some_line(const Lines& lines, const Words& words) {
   if (words[0] != "line") {
     if (lines.size() != 1) {
       throw Refused{"there are several lines; put 'line NAME' in front"};
     }
-    return on_line(lines[0].line, words);
+    return on_line(lines[0].line, 0, words);
   }
   if (words.size() < 3) {
     throw Refused{"the command is line NAME fault FAULT, or another of a line's"};
   }
-  return on_line(line_called(lines, words[1]), Words(words.begin() + 2, words.end()));
+  std::string names;
+  std::size_t position = 0;
+  for (const auto& [name, line] : lines) {
+    if (name == words[1]) {
+      return on_line(line, position, Words(words.begin() + 2, words.end()));
+    }
+    names += (names.empty() ? "" : ", ") + name;
+    position += line.size();
+  }
+  throw Refused{"no line '" + words[1] + "'; " +
+                (names.empty() ? "the only one has no name, leave out 'line NAME'" : "there are " + names)};
 }
 
 std::string on_module(const Lines& lines, const Words& words) {
