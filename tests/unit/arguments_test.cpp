@@ -4,9 +4,12 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <string>
 #include <vector>
 
+#include "sim/bus_file/bus_file.hpp"
+#include "sim/control/control.hpp"
 #include "sim/describe/markdown.hpp"
 
 namespace ex9000::sim {
@@ -183,6 +186,83 @@ TEST(Arguments, AnEmptyPathIsRefused) {
     expect_error({"EX9042D", option, ""}, option, "path");
   }
   expect_error({"EX9042D,eeprom="}, "eeprom=", "path");
+}
+
+// --- what moves and what goes wrong ---
+
+TEST(Arguments, AnInputIsOfTheModuleAtItsPosition) {
+  const LineSetup arguments = accepted({"EX9042D", "EX9052D@02", "--input", "2 0 square 100ms", "--input",
+                                        "2 7 key at 2s for 300ms", "--log"});
+  EXPECT_TRUE(arguments.modules[0].inputs.empty());
+  ASSERT_EQ(arguments.modules[1].inputs.size(), 2U);
+  EXPECT_EQ(arguments.modules[1].inputs[0].kind, InputProgram::Kind::Square);
+  EXPECT_EQ(arguments.modules[1].inputs[1].channel, 7U);
+}
+
+TEST(Arguments, AWrongInputIsRefused) {
+  for (const auto& [text, wrong, mend] : std::vector<std::array<const char*, 3>>{
+           {"", "--input", "a module's position before it"},
+           {"square 100ms", "'square 100ms'", "such as 1 0 square 100ms"},
+           {"1", "--input: ", "0 to 7"},
+           {"0 0 square 1s", "no module 0", "there are 1 to 1"},
+           {"2 0 square 1s", "no module 2", "there are 1 to 1"},
+           {"99999999999 0 square 1s", "no module 99999999999", "there are 1 to 1"},
+           {"1 8 square 1s", "no input '8'", "0 to 7"},
+           {"1 0 sine 1s", "'sine'", "square PERIOD"},
+       }) {
+    expect_error({"EX9052D", "--input", text}, wrong, mend);
+  }
+  expect_error({"EX9052D", "--input"}, "--input", "--help");
+}
+
+TEST(Arguments, AFaultIsOfTheLineOrOfTheModuleAtItsPosition) {
+  const std::vector<Fault> faults =
+      accepted({"EX9042D", "EX9052D@02", "--fault", "bit-errors 1e-4", "--fault",
+                "2 lost-reply every 10th reply", "--fault", "gone at 12.5s"})
+          .faults;
+  ASSERT_EQ(faults.size(), 3U);
+  EXPECT_EQ(faults[0].trouble, Trouble::BitErrors);
+  EXPECT_FALSE(faults[0].module);
+  EXPECT_EQ(faults[1].trouble, Trouble::LostReply);
+  EXPECT_EQ(faults[1].module, 1U);
+  EXPECT_EQ(faults[1].text, "lost-reply every 10th reply");
+  EXPECT_FALSE(faults[2].module);
+}
+
+TEST(Arguments, AWrongFaultIsRefused) {
+  for (const auto& [text, wrong, mend] : std::vector<std::array<const char*, 3>>{
+           {"", "--fault: an empty fault", "there are bit-errors"},
+           {"1", "--fault: an empty fault", "there are bit-errors"},
+           {"bogus", "--fault: 'bogus'", "there are bit-errors"},
+           {"0 gone", "no module 0", "there are 1 to 1"},
+           {"2 gone", "no module 2", "there are 1 to 1"},
+           {"1 bit-errors 0.1", "1 bit-errors 0.1: befalls the line", "leave out the module's number"},
+           {"gone at noon", "gone at noon: 'noon'", "12.5s"},
+           {"gone\nat\nnoon", "gone at noon: 'noon'", "12.5s"},
+       }) {
+    expect_error({"EX9052D", "--fault", text}, wrong, mend);
+  }
+  expect_error({"EX9052D", "--fault"}, "--fault", "--help");
+}
+
+TEST(Arguments, ASeedIsAWholeNumber) {
+  EXPECT_EQ(all_accepted({"EX9042D"}).seed, 1U);
+  EXPECT_EQ(all_accepted({"EX9042D", "--seed", "0"}).seed, 0U);
+  EXPECT_EQ(all_accepted({"EX9042D", "--seed", "18446744073709551615"}).seed, 18446744073709551615U);
+  for (const char* seed : {"", "x", "1.5", "18446744073709551616", "0x10", " 1"}) {
+    expect_error({"EX9042D", "--seed", seed}, "--seed: '", "a whole number from 0 on");
+  }
+}
+
+TEST(Arguments, TheExampleIsPrintedAndIsABusFile) {
+  EXPECT_EQ(printed({"--example"}), kExampleBusFile);
+  EXPECT_EQ(parse_bus_file("example", printed({"--example"})).lines.size(), 2U);
+}
+
+TEST(Arguments, HelpTellsOfFaultsInputsAndControlCommandsAsTheyAreTold) {
+  const std::string text = printed({"--help"});
+  EXPECT_NE(text.find(fault_help()), std::string::npos);
+  EXPECT_NE(text.find(control_commands()), std::string::npos);
 }
 
 TEST(Arguments, ModelsListsEveryModelAndWhatItSpeaks) {

@@ -534,7 +534,7 @@ TEST(ControlLine, HelpNamesEveryCommand) {
   ControlBench bench("EX9052D");
   const std::string text = bench.tell("help");
   for (const char* command : {"power", "reset", "init", "input", "pulse", "inputs", "outputs", "led", "hang",
-                              "status", "list", "help", "quit"}) {
+                              "status", "fault FAULT", "fault off K|all", "faults", "list", "help", "quit"}) {
     EXPECT_TRUE(has(text, command)) << command;
     EXPECT_TRUE(has(control_commands(), command)) << command;
   }
@@ -551,6 +551,155 @@ TEST(ControlLine, QuitIsAcknowledgedAndOnlyTheWholeWordQuits) {
     EXPECT_EQ(checked(refused).rfind("error: ", 0), 0U) << command;
     EXPECT_FALSE(refused.quit) << command;
   }
+}
+
+// --- faults ---
+
+TEST(ControlFault, StrikesFromNowOnAndItsNumberEndsIt) {
+  ControlBench bench("EX9042D");
+  EXPECT_EQ(bench.tell("1 fault lost-reply"), "ok 1");
+  EXPECT_EQ(bench.ask("$01M"), "");
+  EXPECT_EQ(bench.tell("fault bit-errors 1e-9"), "ok 2");
+  EXPECT_EQ(bench.tell("fault off 1"), "ok");
+  EXPECT_EQ(bench.ask("$01M"), "!019042D");
+  EXPECT_EQ(bench.tell("faults"), "ok 1 fault: 2* x1 bit-errors 1e-9");
+  EXPECT_EQ(bench.tell("fault off all"), "ok");
+  EXPECT_EQ(bench.tell("faults"), "ok 0 faults:");
+  EXPECT_EQ(bench.tell("fault off all"), "ok");
+}
+
+TEST(ControlFault, TheListTellsWhatStrikesHowOftenAndWhom) {
+  ThreeModules modules;
+  EXPECT_EQ(modules.tell("2 fault gone"), "ok 1");
+  EXPECT_EQ(modules.tell("3 fault   power-cut \t after 3 writes"), "ok 2");
+  EXPECT_EQ(modules.tell("fault lost-reply every 10th reply"), "ok 3");
+  EXPECT_EQ(modules.tell("faults"),
+            "ok 3 faults: 1* x1 2 gone; 2 x0 3 power-cut after 3 writes; 3 x0 lost-reply every 10th reply");
+  EXPECT_FALSE(modules.at(2).powered());
+  EXPECT_TRUE(modules.at(1).powered());
+}
+
+TEST(ControlFault, WhoeverIsGoneHasNoPowerUntilItIsBackAndTheSwitchIsAnotherMatter) {
+  ControlBench bench("EX9042D");
+  bench.tell("1 fault gone");
+  EXPECT_TRUE(bench.status_has("power=off"));
+  bench.tell("1 power on");
+  EXPECT_TRUE(bench.status_has("power=off"));
+  bench.tell("fault off all");
+  EXPECT_TRUE(bench.status_has("power=on"));
+  bench.tell("1 fault gone");
+  bench.tell("1 power off");
+  bench.tell("fault off all");
+  EXPECT_TRUE(bench.status_has("power=off"));
+}
+
+TEST(ControlFault, AWrongOneIsRefusedAndNothingIsChanged) {
+  ControlBench bench("EX9055D");
+  for (const char* command : {"fault",
+                              "1 fault",
+                              "fault off",
+                              "fault off 1",
+                              "fault off 0",
+                              "fault off -1",
+                              "fault off 1 2",
+                              "fault off all all",
+                              "fault off ALL",
+                              "fault off 99999999999999999999",
+                              "faults 1",
+                              "1 faults",
+                              "1 fault off 1",
+                              "2 fault gone",
+                              "0 fault gone",
+                              "fault bogus",
+                              "fault gone at noon",
+                              "fault gone every 1s",
+                              "1 fault bit-errors 0.1",
+                              "1 fault echo 2ms",
+                              "1 fault foreign-traffic 00",
+                              "fault gone at 1ms",
+                              "1 fault wrong-rate 300",
+                              "faultgone",
+                              "line",
+                              "line x",
+                              "line x fault",
+                              "line x fault gone"}) {
+    bench.expect_refused(command);
+    EXPECT_EQ(bench.tell("faults"), "ok 0 faults:") << command;
+  }
+}
+
+TEST(ControlFault, ARefusalNamesWhatIsWrongAndTheMend) {
+  ControlBench bench("EX9055D");
+  EXPECT_TRUE(has(bench.tell("fault lost"), "'lost' is no fault; there are bit-errors, lost-bytes"));
+  EXPECT_TRUE(
+      has(bench.tell("1 fault bit-errors 1"), "befalls the line, not a module; leave out the module's"));
+  EXPECT_TRUE(has(bench.tell("fault off 7"), "no fault 7 on this line; 'faults' lists them"));
+  EXPECT_TRUE(has(bench.tell("fault off"), "the command is fault off K|all"));
+  EXPECT_TRUE(has(bench.tell("fault gone at 1ms"), "that is over, it is 100ms now"));
+  EXPECT_TRUE(has(bench.tell("line hall faults"), "no line 'hall'; the only one has no name"));
+}
+
+// --- several lines ---
+
+/// Two modules on the one, one on the other.
+class TwoLines {
+ public:
+  TwoLines() {
+    hall_.come_up();
+    yard_.come_up();
+  }
+
+  std::string tell(const std::string& command) { return checked(control_.carry_out(command)); }
+  Line& hall() { return hall_; }
+  Line& yard() { return yard_; }
+
+ private:
+  Line hall_{{parse_module_spec("EX9042D@01"), parse_module_spec("EX9052D@02")},
+             kPaced,
+             [](std::uint8_t, ByteStatus) {}};
+  Line yard_{{parse_module_spec("EX9055D@01")}, kPaced, [](std::uint8_t, ByteStatus) {}};
+  Control control_{{{"hall", hall_}, {"yard", yard_}}};
+};
+
+TEST(ControlLines, ModulesAreNumberedThroughAllOfThem) {
+  TwoLines lines;
+  EXPECT_EQ(lines.tell("list"),
+            "ok 3 modules: 1 EX9042D at 01 on hall, 2 EX9052D at 02 on hall, 3 EX9055D at 01 on yard");
+  EXPECT_EQ(lines.tell("3 input 0 on"), "ok");
+  EXPECT_EQ(lines.yard().module(0).input_levels(), 1);
+  EXPECT_EQ(lines.hall().module(1).input_levels(), 0);
+  EXPECT_TRUE(has(lines.tell("4 power off"), "no module 4; there are 1 to 3"));
+}
+
+TEST(ControlLines, AFaultIsOfTheLineThatIsNamedOrWhoseModuleIs) {
+  TwoLines lines;
+  EXPECT_EQ(lines.tell("3 fault gone"), "ok 1");
+  EXPECT_FALSE(lines.yard().module(0).powered());
+  EXPECT_TRUE(lines.hall().module(0).powered());
+  EXPECT_EQ(lines.tell("line hall fault gone"), "ok 1");
+  EXPECT_FALSE(lines.hall().module(0).powered());
+  EXPECT_FALSE(lines.hall().module(1).powered());
+  EXPECT_EQ(lines.tell("line yard faults"), "ok 1 fault: 1* x1 3 gone");
+  EXPECT_EQ(lines.tell("line hall faults"), "ok 1 fault: 1* x1 gone");
+  EXPECT_EQ(lines.tell("line hall fault off 1"), "ok");
+  EXPECT_TRUE(lines.hall().module(0).powered());
+  EXPECT_FALSE(lines.yard().module(0).powered());
+  EXPECT_EQ(lines.tell("line yard fault off all"), "ok");
+  EXPECT_TRUE(lines.yard().module(0).powered());
+}
+
+TEST(ControlLines, WhatIsOfALineWantsItsName) {
+  TwoLines lines;
+  for (const char* command : {"fault gone", "faults", "fault off all"}) {
+    EXPECT_EQ(lines.tell(command), "error: there are several lines; put 'line NAME' in front") << command;
+  }
+  EXPECT_EQ(lines.tell("line shed faults"), "error: no line 'shed'; there are hall, yard");
+  EXPECT_TRUE(has(lines.tell("line hall"), "the command is line NAME fault FAULT"));
+  for (const char* command : {"line hall list", "line hall 1 power off", "line hall quit",
+                              "line hall line hall faults", "line hall fault", "line hall fault off 1"}) {
+    EXPECT_EQ(lines.tell(command).rfind("error: ", 0), 0U) << command;
+  }
+  EXPECT_TRUE(lines.hall().module(0).powered());
 }
 
 // --- what is no command ---
