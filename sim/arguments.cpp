@@ -394,7 +394,7 @@ Parsed parse_arguments(int argc, const char* const* argv) {
     return wrong(std::string(error.what()) + "; --help tells more");
   }
   if (models || example) {
-    return printed(models ? list_models() : kExampleBusFile);
+    return printed(models ? list_models() : example_bus_file());
   }
   if (describing->parsed()) {
     return print_description(describe_texts, !texts.modules.empty());

@@ -236,6 +236,14 @@ Setup read_setup(const Node& root) {
   return setup;
 }
 
+LocatedJson json_of(const std::string& path, const std::string& text) {
+  try {
+    return parse_located(text);
+  } catch (const std::invalid_argument& error) {
+    fail(path + ":" + error.what());
+  }
+}
+
 }  // namespace
 
 bool is_bus_file(const std::string& argument) {
@@ -245,12 +253,7 @@ bool is_bus_file(const std::string& argument) {
 }
 
 Setup parse_bus_file(const std::string& path, const std::string& text) {
-  LocatedJson file;
-  try {
-    file = parse_located(text);
-  } catch (const std::invalid_argument& error) {
-    fail(path + ":" + error.what());
-  }
+  const LocatedJson file = json_of(path, text);
   const Node root(file, path, file.value, "");
   const Setup setup = read_setup(root);
   try {

@@ -16,6 +16,6 @@ Setup read_bus_file(const std::string& path);
 Setup parse_bus_file(const std::string& path, const std::string& text);
 
 /// A bus file that shows all that one may hold.
-extern const char* const kExampleBusFile;
+std::string example_bus_file();
 
 }  // namespace ex9000::sim

@@ -2,7 +2,8 @@
 
 namespace ex9000::sim {
 
-const char* const kExampleBusFile = R"({
+std::string example_bus_file() {
+  return R"({
   "control": "ex9000.ctl",
   "seed": 1,
   "lines": [
@@ -31,5 +32,6 @@ const char* const kExampleBusFile = R"({
   ]
 }
 )";
+}
 
 }  // namespace ex9000::sim

@@ -62,7 +62,7 @@ class Faults final : public Station {
     VirtualTime ends = kNever;            ///< by the clock; never, of a reply: with that
   };
   struct Armed {
-    std::size_t number;
+    std::size_t number = 0;
     Fault fault;
     VirtualTime begins = kNever;  ///< by the clock
     std::vector<Strike> strikes;  ///< at this moment: one, or of replies one a module

@@ -255,7 +255,7 @@ TEST(Arguments, ASeedIsAWholeNumber) {
 }
 
 TEST(Arguments, TheExampleIsPrintedAndIsABusFile) {
-  EXPECT_EQ(printed({"--example"}), kExampleBusFile);
+  EXPECT_EQ(printed({"--example"}), example_bus_file());
   EXPECT_EQ(parse_bus_file("example", printed({"--example"})).lines.size(), 2U);
 }
 

@@ -40,7 +40,7 @@ ModuleSpec module_of(const std::string& members) {
 // --- what it may say ---
 
 TEST(BusFile, TheExampleIsWhatItSays) {
-  const auto setup = parsed(kExampleBusFile);
+  const auto setup = parsed(example_bus_file());
   EXPECT_EQ(setup.control, "ex9000.ctl");
   EXPECT_EQ(setup.seed, 1U);
   EXPECT_FALSE(setup.log);
@@ -323,7 +323,7 @@ TEST(BusFile, ThatCannotBeReadIsRefusedWithItsName) {
 TEST(BusFile, StandsAloneOnTheCommandLineButForWhatIsOfNoLine) {
   const system::Directory directory;
   const std::string path = directory / "bus.json";
-  system::write_file(path, kExampleBusFile);
+  system::write_file(path, example_bus_file());
   const auto parse = [](std::vector<std::string> words) {
     std::vector<const char*> argv{"ex9000-sim"};
     for (const std::string& word : words) {
