@@ -1,12 +1,15 @@
 // README's examples, pasted. In each section a `sh` block that starts the simulator is one terminal, all
 // other `sh` and `python` blocks are another, and what they print is the `text` block behind them. Both are
-// in an empty directory but for `boards` and `build`: images are built before.
+// in an empty directory but for `boards` and `build`: images are built before; and for `bus.json`, where
+// there is a `json` block.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
 #include <memory>
+#include <set>
 #include <sstream>
 #include <string>
 #include <vector>
@@ -86,6 +89,8 @@ void paste(const Section& section) {
   for (const Block& block : section.blocks) {
     if (block.language == "text") {
       expected += block.text;
+    } else if (block.language == "json") {
+      write_file(directory / "bus.json", block.text);
     } else if (block.language == "sh" && starts_the_simulator(block)) {
       simulator = std::make_unique<ChildProcess>(std::vector<std::string>{"sh", "-c", "exec " + block.text},
                                                  directory.path());
@@ -116,6 +121,66 @@ TEST(Readme, ItsExamplesDoWhatItSays) {
     }
   }
   EXPECT_GE(pasted, 8);
+}
+
+/// What a row of a table begins with, in code: `N power on|off`, say, as it is without the table's own
+/// escapes.
+std::set<std::string> rows() {
+  std::set<std::string> rows;
+  std::ifstream file(EX9000_README);
+  for (std::string line; std::getline(file, line);) {
+    if (line.rfind("| `", 0) != 0) {
+      continue;
+    }
+    const std::string cell = line.substr(0, line.find(" | "));
+    for (auto open = cell.find('`'); open != std::string::npos;
+         open = cell.find('`', cell.find('`', open + 1) + 1)) {
+      std::string code = cell.substr(open + 1, cell.find('`', open + 1) - open - 1);
+      code.erase(std::remove(code.begin(), code.end(), '\\'), code.end());
+      rows.insert(code);
+    }
+  }
+  return rows;
+}
+
+/// The first column, so many characters wide, of what stands in the help between the line that ends with
+/// `heading` and the blank line behind it.
+std::vector<std::string> column_of(const std::string& help, const std::string& heading, std::size_t width) {
+  std::vector<std::string> cells;
+  std::istringstream lines(help.substr(help.find(heading) + heading.size()));
+  for (std::string line; std::getline(lines, line) && !line.empty();) {
+    const std::string cell = line.substr(2, width);
+    cells.push_back(cell.substr(0, cell.find_last_not_of(" .") + 1));
+  }
+  return cells;
+}
+
+TEST(Readme, EveryOptionCommandAndFaultHasItsRow) {
+  const std::set<std::string> rows_there = rows();
+  const auto has_row = [&rows_there](const std::string& beginning) {
+    return std::any_of(rows_there.begin(), rows_there.end(), [&](const std::string& row) {
+      return row == beginning || row.rfind(beginning + " ", 0) == 0;
+    });
+  };
+  const std::string help = run({simulator_path(), "--help"}).output;
+  std::set<std::string> options;
+  for (auto at = help.find("\n  --"); at != std::string::npos; at = help.find("\n  --", at + 1)) {
+    options.insert(help.substr(at + 3, help.find_first_of(" ,\n", at + 3) - at - 3));
+  }
+  EXPECT_GE(options.size(), 15U);
+  for (const std::string& option : options) {
+    EXPECT_TRUE(has_row(option)) << option;
+  }
+  const std::vector<std::string> commands = column_of(help, "through all lines, from 1:\n", 20);
+  const std::vector<std::string> troubles = column_of(help, "The troubles:\n", 22);
+  EXPECT_GE(commands.size(), 15U);
+  EXPECT_GE(troubles.size(), 13U);
+  for (const std::string& command : commands) {
+    EXPECT_TRUE(has_row(command)) << command;
+  }
+  for (const std::string& trouble : troubles) {
+    EXPECT_TRUE(has_row(trouble)) << trouble;
+  }
 }
 
 }  // namespace
