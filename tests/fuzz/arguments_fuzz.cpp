@@ -1,10 +1,14 @@
 // The command line: `|` in the input is where one argument ends and the next begins. Whatever it is, it comes
-// to something to do, to text, or to one line that says what is wrong, and only to that.
+// to something to do, to text, or to one line that says what is wrong, and only to that. An input that begins
+// with
+// `{` is a bus file; no file is read.
 #include <algorithm>
+#include <stdexcept>
 #include <string>
 #include <vector>
 
 #include "sim/arguments.hpp"
+#include "sim/bus_file/bus_file.hpp"
 #include "tests/fuzz/require.hpp"
 
 namespace ex9000::fuzz {
@@ -28,6 +32,10 @@ void check_module(const ModuleSpec& module) {
   require(module.model != nullptr && module.settings.possible_for(*module.model),
           "a module starts with settings it could have stored");
   require(module.eeprom.find('\0') == std::string::npos, "a path is a path");
+  for (const sim::InputProgram& input : module.inputs) {
+    require(input.channel < module.model->inputs, "an input that moves is one of the model's");
+    require(input.high.count() > 0 && input.bounce <= input.high, "an input has time to move");
+  }
 }
 
 void check_line(const LineSetup& line) {
@@ -45,7 +53,7 @@ void check_line(const LineSetup& line) {
   require(!line.echo || line.serial, "only a serial port has an echo");
   require(!line.instant || !line.strict_gaps, "gaps mean nothing where bytes cost no time");
   for (const auto& path : {line.pty, line.serial}) {
-    require(!path || !path->empty(), "a path is not empty");
+    require(!path || (!path->empty() && path->find('\0') == std::string::npos), "a path is a path");
   }
   const auto is_rate = [&](std::uint32_t rate) { return rate == *line.baud; };
   require(!line.baud || std::any_of(kBaudRates.begin(), kBaudRates.end(), is_rate),
@@ -54,13 +62,44 @@ void check_line(const LineSetup& line) {
   for (const sim::Fault& fault : line.faults) {
     require(!fault.module || *fault.module < line.modules.size(), "a fault is of a module that there is");
     require(!fault.module || sim::befalls_a_module(fault.trouble), "what befalls the line is of no module");
+    require(fault.text.find('\n') == std::string::npos, "a fault is told in one line");
   }
 }
 
 void check_setup(const Setup& setup) {
-  require(setup.lines.size() == 1, "a command line has one line");
-  check_line(setup.lines[0]);
+  for (const LineSetup& line : setup.lines) {
+    check_line(line);
+  }
   require(!setup.control || !setup.control->empty(), "a path is not empty");
+}
+
+/// Each has a name, and where two shared one, or a pseudo-terminal, nobody could tell them apart.
+void check_several(const std::vector<LineSetup>& lines) {
+  require(!lines.empty(), "a bus has a line");
+  for (const LineSetup& line : lines) {
+    require(!line.name.empty(), "a line of several has a name");
+    const auto is_like = [&line](const LineSetup& other) {
+      return other.name == line.name || (other.pty && other.pty == line.pty);
+    };
+    require(std::count_if(lines.begin(), lines.end(), is_like) == 1, "each line is another");
+  }
+}
+
+void parse_file(const std::string& text) {
+  try {
+    const Setup setup = sim::parse_bus_file("bus.json", text);
+    check_setup(setup);
+    check_several(setup.lines);
+  } catch (const std::invalid_argument& error) {
+    const std::string what = error.what();
+    const std::string place = "bus.json:";
+    const auto end = what.find_first_not_of("0123456789", place.size());
+    require(what.rfind(place, 0) == 0 && end > place.size() && what.compare(end, 2, ": ") == 0,
+            "what is wrong in a file is told with its line");
+    const auto lines = std::count(text.begin(), text.end(), '\n') + 1;
+    const auto line = std::stol(what.substr(place.size(), end - place.size()));
+    require(line >= 1 && line <= lines, "and that is a line of it");
+  }
 }
 
 void parse(const std::string& text) {
@@ -73,6 +112,7 @@ void parse(const std::string& text) {
     }
     words.push_back(text.substr(at));
   }
+  words.erase(std::remove_if(words.begin(), words.end(), sim::is_bus_file), words.end());
   std::vector<const char*> argv;
   for (const std::string& word : words) {
     argv.push_back(word.c_str());
@@ -82,6 +122,7 @@ void parse(const std::string& text) {
   if (parsed.setup) {
     require(parsed.output.empty() && parsed.error.empty() && parsed.exit_status == 0,
             "something to do is all there is");
+    require(parsed.setup->lines.size() == 1, "a command line has one line");
     check_setup(*parsed.setup);
   } else if (!parsed.output.empty()) {
     require(parsed.error.empty() && parsed.exit_status == 0, "text is all there is");
@@ -94,6 +135,11 @@ void parse(const std::string& text) {
 }  // namespace ex9000::fuzz
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
-  ex9000::fuzz::parse(std::string(reinterpret_cast<const char*>(data), size));
+  const std::string text(reinterpret_cast<const char*>(data), size);
+  if (size != 0 && text[0] == '{') {
+    ex9000::fuzz::parse_file(text);
+  } else {
+    ex9000::fuzz::parse(text);
+  }
   return 0;
 }

@@ -1,12 +1,16 @@
 // Commands of the control socket, a line each, at three modules; `+N` in between is N times 10 ms. What is a
 // command is judged here once more; what is none is refused in one line and changes nothing.
+#include <algorithm>
 #include <chrono>
+#include <set>
 #include <sstream>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "sim/control/control.hpp"
 #include "sim/line.hpp"
+#include "tests/fuzz/fault_judge.hpp"
 #include "tests/fuzz/require.hpp"
 
 namespace ex9000::fuzz {
@@ -70,13 +74,49 @@ bool is_number(const std::string& text, unsigned long least, unsigned long most)
 
 bool is_switch(const std::string& text) { return text == "on" || text == "off"; }
 
+/// The line, and what is known of its faults.
+struct Watched {
+  Line line{specs(), sim::kPaced, [](std::uint8_t /*byte*/, ByteStatus /*status*/) {}};
+  std::set<unsigned long> faults;
+  unsigned long numbers = 0;
+};
+
+/// What may have `line NAME` before it.
+bool is_of_the_line(const Watched& watched, Words words, sim::VirtualTime now) {
+  if (words.size() == 1) {
+    return words[0] == "faults";
+  }
+  if (words.empty() || words[0] != "fault") {
+    return false;
+  }
+  if (words[1] == "off") {
+    return words.size() == 3 && (words[2] == "all" || (is_number(words[2], 1, 999'999'999) &&
+                                                       watched.faults.count(std::stoul(words[2])) != 0));
+  }
+  words.erase(words.begin());
+  return is_fault(words, Whose::AnyModules, now);
+}
+
+/// Without its `line NAME`; with another's, nothing.
+Words of_the_line(const Words& words) {
+  if (words[0] != "line") {
+    return words;
+  }
+  return words.size() >= 3 && words[1] == "hall" ? Words(words.begin() + 2, words.end()) : Words();
+}
+
 /// README's table of commands.
-bool is_command(Line& line, const std::vector<std::string>& words) {
+bool is_command(Watched& watched, const Words& words) {
+  Line& line = watched.line;
+  const sim::VirtualTime now = line.clock().virtual_now();
   if (words.empty()) {
     return false;
   }
   if (words[0] == "list" || words[0] == "help" || words[0] == "quit") {
     return words.size() == 1;
+  }
+  if (words[0] == "line" || words[0] == "fault" || words[0] == "faults") {
+    return is_of_the_line(watched, of_the_line(words), now);
   }
   if (words.size() < 2 || !is_number(words[0], 1, line.size())) {
     return false;
@@ -84,6 +124,9 @@ bool is_command(Line& line, const std::vector<std::string>& words) {
   const SimulatedModule& module = line.module(std::stoul(words[0]) - 1);
   const std::string& verb = words[1];
   const std::size_t args = words.size() - 2;
+  if (verb == "fault") {
+    return is_fault(Words(words.begin() + 2, words.end()), Whose::ThisModules, now);
+  }
   const bool has_channel =
       args >= 1 && module.model().has_inputs() && is_number(words[2], 0, module.model().inputs - 1U);
   if (verb == "power" || verb == "init") {
@@ -101,13 +144,38 @@ bool is_command(Line& line, const std::vector<std::string>& words) {
   return args == 0 && (verb == "inputs" || verb == "outputs" || verb == "led" || verb == "status");
 }
 
-void check_effect(Line& line, const std::vector<std::string>& words, const std::string& reply) {
+/// Of a fault that was added, one that was taken away, and the list of them.
+void check_faults(Watched& watched, const Words& words, const std::string& reply) {
+  if (words[0] == "faults") {
+    const std::size_t number = watched.faults.size();
+    require(reply.rfind("ok " + std::to_string(number) + (number == 1 ? " fault:" : " faults:"), 0) == 0,
+            "all faults are listed");
+  } else if (words[1] != "off") {
+    require(reply == "ok " + std::to_string(++watched.numbers), "faults are numbered one after the other");
+    watched.faults.insert(watched.numbers);
+  } else if (words[2] == "all") {
+    watched.faults.clear();
+  } else {
+    watched.faults.erase(std::stoul(words[2]));
+  }
+}
+
+void check_effect(Watched& watched, const Words& words, const std::string& reply) {
+  const Words on_line = of_the_line(words);
+  if (on_line[0] == "fault" || on_line[0] == "faults") {
+    check_faults(watched, on_line, reply);
+    return;
+  }
   if (words.size() < 2) {
     return;
   }
-  const SimulatedModule& module = line.module(std::stoul(words[0]) - 1);
-  if (words[1] == "power") {
-    require(module.powered() == (words[2] == "on"), "power is on or off as told");
+  const SimulatedModule& module = watched.line.module(std::stoul(words[0]) - 1);
+  if (words[1] == "fault") {
+    check_faults(watched, Words(words.begin() + 1, words.end()), reply);
+  } else if (words[1] == "power") {
+    // A fault may have taken the supply behind its switch.
+    require(module.powered() ? words[2] == "on" : words[2] == "off" || !watched.faults.empty(),
+            "power is on or off as told");
   } else if (words[1] == "input") {
     require((module.input_levels() >> std::stoul(words[2]) & 1U) == (words[3] == "on" ? 1U : 0U),
             "an input has the level it was told");
@@ -120,47 +188,60 @@ void check_effect(Line& line, const std::vector<std::string>& words, const std::
   }
 }
 
-void carry_out(Line& line, sim::Control& control, const std::string& command) {
+Words words_of(const std::string& command) {
   std::istringstream stream(command);
-  std::vector<std::string> words;
+  Words words;
   for (std::string word; stream >> word;) {
     words.push_back(word);
   }
-  const bool valid = is_command(line, words);
+  return words;
+}
+
+void carry_out(Watched& watched, sim::Control& control, const std::string& command, const Words& words) {
+  Line& line = watched.line;
+  const bool valid = is_command(watched, words);
   const std::vector<Seen> before = seen(line);
   const sim::Control::Reply reply = control.carry_out(command);
   require(reply.text.find('\n') == std::string::npos, "an answer is one line");
   require(reply.quit == (valid && words[0] == "quit"), "nothing else ends the program");
   if (valid) {
     require(reply.text == "ok" || reply.text.rfind("ok ", 0) == 0, "a command is carried out");
-    check_effect(line, words, reply.text);
+    check_effect(watched, words, reply.text);
   } else {
     require(reply.text.rfind("error: ", 0) == 0, "what is no command is refused");
     require(before == seen(line), "what is refused changes nothing");
   }
 }
 
+/// Pulses take their time, and inputs that take long find little: up to 99,999 once an input, else 99.
+class Patience {
+ public:
+  bool has_for(const Words& words) {
+    const bool pulses = words.size() == 4 && words[1] == "pulse" && is_number(words[3], 100, 1'000'000);
+    return !pulses || (std::stoul(words[3]) <= 99'999 && !std::exchange(used_, true));
+  }
+
+ private:
+  bool used_ = false;
+};
+
 void live(const std::string& text) {
-  Line line(specs(), sim::kPaced, [](std::uint8_t /*byte*/, ByteStatus /*status*/) {});
-  line.come_up();
-  sim::Control control({{"", line}});
+  Watched watched;
+  watched.line.come_up();
+  sim::Control control({{"hall", watched.line}});
   std::istringstream lines(text);
-  unsigned pulses = 0;
+  Patience patience;
   for (std::string command; std::getline(lines, command);) {
     if (!command.empty() && command[0] == '+') {
       const std::string number = command.substr(1);
       const unsigned long times = is_number(number, 0, 99) ? std::stoul(number) : 1;
-      line.bus().run_for(std::chrono::milliseconds(10) * static_cast<long>(times));
+      watched.line.bus().run_for(std::chrono::milliseconds(10) * static_cast<long>(times));
       continue;
     }
-    // A million pulses are some milliseconds of work; one such command is enough.
-    constexpr unsigned kMostLong = 1;
-    if (command.find("pulse") != std::string::npos &&
-        command.find_first_of("0123456789", command.find("pulse")) != std::string::npos &&
-        command.size() > command.find("pulse") + 12 && ++pulses > kMostLong) {
-      continue;
+    const Words words = words_of(command);
+    if (patience.has_for(words)) {
+      carry_out(watched, control, command, words);
     }
-    carry_out(line, control, command);
   }
 }
 
