@@ -1,7 +1,6 @@
 #include "tests/storing_commands.hpp"
 
-#include <array>
-#include <cstdio>
+#include "tests/reference/hexadecimal.hpp"
 
 namespace ex9000 {
 
@@ -9,11 +8,8 @@ namespace {
 
 using Bytes = std::vector<std::uint8_t>;
 
-std::string hex(unsigned value) {
-  std::array<char, 3> text{};
-  (void)std::snprintf(text.data(), text.size(), "%02X", value & 0xFFU);
-  return text.data();
-}
+/// Two digits.
+std::string hex(unsigned value) { return reference::hex(value, 2); }
 
 Bytes text(const std::string& characters) { return {characters.begin(), characters.end()}; }
 

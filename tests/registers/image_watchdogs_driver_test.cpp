@@ -11,6 +11,7 @@
 #include "sim/module.hpp"
 #include "tests/either_protocol.hpp"
 #include "tests/environment.hpp"
+#include "tests/reference/hexadecimal.hpp"
 #include "tests/registers/board_bench.hpp"
 #include "tests/registers/images_under_test.hpp"
 
@@ -38,11 +39,8 @@ constexpr std::uint16_t kSafeValue = 0xA5A4;
 constexpr std::uint16_t kDriven = 0xC35A;
 constexpr std::uint8_t kTimeout = 0x64;
 
-std::string hex(unsigned value) {
-  char digits[3];
-  (void)std::snprintf(digits, sizeof digits, "%02X", value & 0xFFU);
-  return digits;
-}
+/// Two digits.
+std::string hex(unsigned value) { return reference::hex(value, 2); }
 
 /// A module that has been set up: all outputs values differ, and so does what is driven.
 Settings set_up(const Model& model, Protocol protocol) {

@@ -12,7 +12,7 @@
 #include <string>
 #include <vector>
 
-#include "firmware/hex.hpp"
+#include "tests/reference/hexadecimal.hpp"
 #include "tests/system/control_client.hpp"
 #include "tests/system/directory.hpp"
 #include "tests/system/simulator_process.hpp"
@@ -310,20 +310,12 @@ class Stores {
   /// An enabled one has 20 s or more, so that it never expires here.
   Store host_watchdog() {
     const bool on = below(2) == 0;
-    const std::string value = (on ? "1" : "0") + hex(on ? 200 + below(56) : 1 + below(255), 2);
+    const std::string value = (on ? "1" : "0") + reference::hex(on ? 200 + below(56) : 1 + below(255), 2);
     return {"", "~013" + value, "~012", "!01" + value};
   }
   Store outputs(char kind) {
-    const std::string value = hex(below(0x2000), 4);
+    const std::string value = reference::hex(below(0x2000), 4);
     return {"@01" + value, std::string("~015") + kind, std::string("~014") + kind, "!01" + value};
-  }
-
-  static std::string hex(unsigned value, unsigned digits) {
-    std::string text;
-    for (unsigned i = digits; i-- > 0;) {
-      text += static_cast<char>(hex_digit(value >> 4U * i & 0xFU));
-    }
-    return text;
   }
 
   std::mt19937 random_;
