@@ -58,9 +58,10 @@ void replace_port(std::string& text, const std::string& port) {
   }
 }
 
-/// `ex9000-sim describe` prints and ends.
+/// `ex9000-sim describe` and `play` print and end.
 bool starts_the_simulator(const Block& block) {
-  return block.text.rfind("ex9000-sim ", 0) == 0 && block.text.rfind("ex9000-sim describe", 0) != 0;
+  const auto begins_with = [&](const char* text) { return block.text.rfind(text, 0) == 0; };
+  return begins_with("ex9000-sim ") && !begins_with("ex9000-sim describe") && !begins_with("ex9000-sim play");
 }
 
 /// The second terminal: one shell for all blocks of a section, as functions and jobs stay.

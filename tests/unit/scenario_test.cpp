@@ -1,0 +1,142 @@
+// Scenarios: steps against a bus of several modules and lines, and what `play` makes of files and folders.
+#include <gtest/gtest.h>
+
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+#include "sim/bus_file/bus_file.hpp"
+#include "sim/play/bus_target.hpp"
+#include "sim/play/play.hpp"
+#include "sim/play/player.hpp"
+#include "sim/play/transcript.hpp"
+#include "tests/system/directory.hpp"
+
+namespace ex9000::play {
+namespace {
+
+using system::Directory;
+using system::write_file;
+
+const sim::Setup& two_lines() {
+  static const sim::Setup kSetup = sim::parse_bus_file("bus.json", R"({"lines": [
+    {"name": "hall", "modules": [{"model": "EX9042D"}, {"model": "EX9052D", "address": "02"}]},
+    {"name": "yard", "baud": 19200, "modules": [{"model": "EX9068D-M", "address": "0A", "baud": 19200}]}]})");
+  return kSetup;
+}
+
+/// Empty: it passes.
+std::string failure_of(const std::string& steps, const sim::Setup& setup = two_lines()) {
+  const Directory directory;
+  write_file(directory / "steps.txt", steps);
+  BusTarget target(setup);
+  return play(load(directory / "steps.txt").front(), target).failure;
+}
+
+TEST(Scenario, TalksToTheModulesOfALine) {
+  EXPECT_EQ(failure_of("> $01M\n< !019042\n> $02M\n< !029052\n> $0AM\nsilence\n"), "");
+}
+
+TEST(Scenario, ModuleChoosesWhoseInputsAndOutputsAreMeant) {
+  EXPECT_EQ(failure_of("> @010005\n< >\noutputs 0005\nmodule 2\noutputs 0000\ninput 3 on\n> @02\n< >0800\n"),
+            "");
+  EXPECT_EQ(failure_of(
+                "module 3\n=> 0A 05 00 01 FF 00\n<= 0A 05 00 01 FF 00\noutputs 0002\nmodule 1\noutputs 0000\n"
+                "> $01M\n< !019042\n"),
+            "");
+}
+
+TEST(Scenario, LineChoosesTheMastersLineAndItsFirstModule) {
+  EXPECT_EQ(
+      failure_of("line yard\n=> 0A 05 00 00 FF 00\n<= 0A 05 00 00 FF 00\noutputs 0001\n> $01M\nsilence\n"
+                 "line hall\noutputs 0000\n> $01M\n< !019042\n"),
+      "");
+}
+
+TEST(Scenario, AllLinesHaveTheSameTime) {
+  EXPECT_EQ(failure_of("> ~013105\n< !01\nline yard\nwait 0.6s\nline hall\nled flashing\n> ~010\n< !0184\n"),
+            "");
+}
+
+TEST(Scenario, FaultsStrikeTheLineThatIsChosen) {
+  EXPECT_EQ(failure_of("fault lost-reply\n> $01M\nsilence\nfault off 1\n> $01M\n< !019042\n"), "");
+  EXPECT_EQ(
+      failure_of(
+          "line yard\nfault gone for 1s\n=> 0A 01 00 00 00 08\nsilence\nline hall\n> $01M\n< !019042\n"),
+      "");
+}
+
+TEST(Scenario, FailsWhereABusHasNoSuchThing) {
+  EXPECT_NE(failure_of("module 4\n").find("no module 4; there are 1 to 3"), std::string::npos);
+  EXPECT_NE(failure_of("line shed\n").find("no line of this name"), std::string::npos);
+  EXPECT_NE(failure_of("input 0 on\n").find("has no such input"), std::string::npos);
+  EXPECT_NE(failure_of("fault lost\n").find("'lost' is no fault"), std::string::npos);
+}
+
+TEST(Scenario, NamesFileLineStepAndWhatWasHeard) {
+  const std::string failure = failure_of("; a comment\n> $01M\n< !019043\n");
+  EXPECT_NE(failure.find("steps.txt:3: < !019043: expected '!019043\\r', heard '!019042\\r'"),
+            std::string::npos)
+      << failure;
+}
+
+TEST(Scenario, FailsAtTheSameStepEachTime) {
+  std::string steps = "fault lost-reply with probability 0.2\n";
+  for (int i = 0; i < 50; ++i) {
+    steps += "> $01M\n< !019042\n";
+  }
+  const auto step_of = [](const std::string& failure) { return failure.substr(failure.find("steps.txt")); };
+  const std::string failure = failure_of(steps);
+  ASSERT_NE(failure, "");
+  EXPECT_EQ(step_of(failure_of(steps)), step_of(failure));
+}
+
+/// What is wrong, or what was printed and whether all has passed.
+std::string played(const std::string& path, bool on_a_bus) {
+  std::string text;
+  try {
+    const bool passed = play({path, on_a_bus ? std::optional(two_lines()) : std::nullopt},
+                             [&](const std::string& line) { text += line + "\n"; });
+    return text + (passed ? "passed" : "failed");
+  } catch (const std::invalid_argument& error) {
+    return error.what();
+  }
+}
+
+TEST(Play, ReportsEachRunAndAllTogether) {
+  const Directory directory;
+  write_file(directory / "a.txt", "source: manual\nmodel: EX9042D\nmodel: EX9043D\n\n> $01F\n< !01D01.00\n");
+  write_file(directory / "b.txt", "source: manual\nmodel: EX9042D\n\n> $01M\n< !019043\n");
+  const std::string text = played(directory.path(), false);
+  EXPECT_NE(text.find("passed  " + (directory / "a.txt") + " (EX9042D): 2 steps\n"), std::string::npos)
+      << text;
+  EXPECT_NE(text.find("passed  " + (directory / "a.txt") + " (EX9043D): 2 steps\n"), std::string::npos)
+      << text;
+  EXPECT_NE(text.find("FAILED  " + (directory / "b.txt") + ":4: < !019043"), std::string::npos) << text;
+  EXPECT_NE(text.find("3 runs, 6 steps, 1 failed\nfailed"), std::string::npos) << text;
+}
+
+TEST(Play, WantsABusForAScenarioAndNoneForATranscript) {
+  const Directory directory;
+  write_file(directory / "scenario.txt", "> $01M\n< !019042\n");
+  write_file(directory / "transcript.txt", "source: manual\nmodel: EX9042D\n\n> $01M\n< !019042\n");
+  EXPECT_NE(played(directory / "scenario.txt", true).find("1 run, 2 steps, 0 failed\npassed"),
+            std::string::npos);
+  EXPECT_NE(played(directory / "scenario.txt", false).find("wants modules or a bus file"), std::string::npos);
+  EXPECT_NE(played(directory / "transcript.txt", true).find("names its models itself"), std::string::npos);
+}
+
+TEST(Play, RefusesWhatIsNoFileOfSteps) {
+  const Directory directory;
+  EXPECT_NE(played(directory / "none.txt", true).find("none.txt: cannot be read"), std::string::npos);
+  EXPECT_NE(played(directory.path(), true).find("no file that ends with .txt"), std::string::npos);
+  write_file(directory / "empty.txt", "; nothing\n");
+  EXPECT_NE(played(directory / "empty.txt", true).find("wants a step"), std::string::npos);
+  write_file(directory / "wrong.txt", "> $01M\nwiat 1s\n");
+  EXPECT_NE(played(directory / "wrong.txt", true).find("wrong.txt:2: no step 'wiat 1s'"), std::string::npos);
+  write_file(directory / "preset.txt", "preset: protocol=ascii\n> $01M\n");
+  EXPECT_NE(played(directory / "preset.txt", true).find("'preset:'"), std::string::npos);
+}
+
+}  // namespace
+}  // namespace ex9000::play
