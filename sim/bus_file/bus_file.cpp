@@ -35,7 +35,7 @@ class Node {
     }
     for (const auto& [key, value] : value_->items()) {
       const Node member(*file_, *name_, value, member_of(path_, key));
-      if (!member.guarded([&] { return take(key, member); })) {
+      if (!member.guarded([&, &name = key] { return take(name, member); })) {
         member.refuse("no such key; there are " + there_are);
       }
     }
