@@ -34,7 +34,7 @@ std::string failure_of(const std::string& steps, const sim::Setup& setup = two_l
 }
 
 TEST(Scenario, TalksToTheModulesOfALine) {
-  EXPECT_EQ(failure_of("> $01M\n< !019042\n> $02M\n< !029052\n> $0AM\nsilence\n"), "");
+  EXPECT_EQ(failure_of("> $01M\n< !019042D\n> $02M\n< !029052\n> $0AM\nsilence\n"), "");
 }
 
 TEST(Scenario, ModuleChoosesWhoseInputsAndOutputsAreMeant) {
@@ -42,14 +42,14 @@ TEST(Scenario, ModuleChoosesWhoseInputsAndOutputsAreMeant) {
             "");
   EXPECT_EQ(failure_of(
                 "module 3\n=> 0A 05 00 01 FF 00\n<= 0A 05 00 01 FF 00\noutputs 0002\nmodule 1\noutputs 0000\n"
-                "> $01M\n< !019042\n"),
+                "> $01M\n< !019042D\n"),
             "");
 }
 
 TEST(Scenario, LineChoosesTheMastersLineAndItsFirstModule) {
   EXPECT_EQ(
       failure_of("line yard\n=> 0A 05 00 00 FF 00\n<= 0A 05 00 00 FF 00\noutputs 0001\n> $01M\nsilence\n"
-                 "line hall\noutputs 0000\n> $01M\n< !019042\n"),
+                 "line hall\noutputs 0000\n> $01M\n< !019042D\n"),
       "");
 }
 
@@ -59,10 +59,10 @@ TEST(Scenario, AllLinesHaveTheSameTime) {
 }
 
 TEST(Scenario, FaultsStrikeTheLineThatIsChosen) {
-  EXPECT_EQ(failure_of("fault lost-reply\n> $01M\nsilence\nfault off 1\n> $01M\n< !019042\n"), "");
+  EXPECT_EQ(failure_of("fault lost-reply\n> $01M\nsilence\nfault off 1\n> $01M\n< !019042D\n"), "");
   EXPECT_EQ(
       failure_of(
-          "line yard\nfault gone for 1s\n=> 0A 01 00 00 00 08\nsilence\nline hall\n> $01M\n< !019042\n"),
+          "line yard\nfault gone for 1s\n=> 0A 01 00 00 00 08\nsilence\nline hall\n> $01M\n< !019042D\n"),
       "");
 }
 
@@ -74,8 +74,8 @@ TEST(Scenario, FailsWhereABusHasNoSuchThing) {
 }
 
 TEST(Scenario, NamesFileLineStepAndWhatWasHeard) {
-  const std::string failure = failure_of("; a comment\n> $01M\n< !019043\n");
-  EXPECT_NE(failure.find("steps.txt:3: < !019043: expected '!019043\\r', heard '!019042\\r'"),
+  const std::string failure = failure_of("; a comment\n> $01M\n< !019043D\n");
+  EXPECT_NE(failure.find("steps.txt:3: < !019043D: expected '!019043D\\r', heard '!019042D\\r'"),
             std::string::npos)
       << failure;
 }
@@ -83,7 +83,7 @@ TEST(Scenario, NamesFileLineStepAndWhatWasHeard) {
 TEST(Scenario, FailsAtTheSameStepEachTime) {
   std::string steps = "fault lost-reply with probability 0.2\n";
   for (int i = 0; i < 50; ++i) {
-    steps += "> $01M\n< !019042\n";
+    steps += "> $01M\n< !019042D\n";
   }
   const auto step_of = [](const std::string& failure) { return failure.substr(failure.find("steps.txt")); };
   const std::string failure = failure_of(steps);
@@ -106,20 +106,20 @@ std::string played(const std::string& path, bool on_a_bus) {
 TEST(Play, ReportsEachRunAndAllTogether) {
   const Directory directory;
   write_file(directory / "a.txt", "source: manual\nmodel: EX9042D\nmodel: EX9043D\n\n> $01F\n< !01D01.00\n");
-  write_file(directory / "b.txt", "source: manual\nmodel: EX9042D\n\n> $01M\n< !019043\n");
+  write_file(directory / "b.txt", "source: manual\nmodel: EX9042D\n\n> $01M\n< !019043D\n");
   const std::string text = played(directory.path(), false);
   EXPECT_NE(text.find("passed  " + (directory / "a.txt") + " (EX9042D): 2 steps\n"), std::string::npos)
       << text;
   EXPECT_NE(text.find("passed  " + (directory / "a.txt") + " (EX9043D): 2 steps\n"), std::string::npos)
       << text;
-  EXPECT_NE(text.find("FAILED  " + (directory / "b.txt") + ":4: < !019043"), std::string::npos) << text;
+  EXPECT_NE(text.find("FAILED  " + (directory / "b.txt") + ":5: < !019043D"), std::string::npos) << text;
   EXPECT_NE(text.find("3 runs, 6 steps, 1 failed\nfailed"), std::string::npos) << text;
 }
 
 TEST(Play, WantsABusForAScenarioAndNoneForATranscript) {
   const Directory directory;
-  write_file(directory / "scenario.txt", "> $01M\n< !019042\n");
-  write_file(directory / "transcript.txt", "source: manual\nmodel: EX9042D\n\n> $01M\n< !019042\n");
+  write_file(directory / "scenario.txt", "> $01M\n< !019042D\n");
+  write_file(directory / "transcript.txt", "source: manual\nmodel: EX9042D\n\n> $01M\n< !019042D\n");
   EXPECT_NE(played(directory / "scenario.txt", true).find("1 run, 2 steps, 0 failed\npassed"),
             std::string::npos);
   EXPECT_NE(played(directory / "scenario.txt", false).find("wants modules or a bus file"), std::string::npos);
