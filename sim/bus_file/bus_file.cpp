@@ -33,9 +33,11 @@ class Node {
     if (!value_->is_object()) {
       refuse("wants an object, { }");
     }
-    for (const auto& [key, value] : value_->items()) {
-      const Node member(*file_, *name_, value, member_of(path_, key));
-      if (!member.guarded([&, &name = key] { return take(name, member); })) {
+    for (const auto& item : value_->items()) {
+      const Node member(*file_, *name_, item.value(), member_of(path_, item.key()));
+      bool known = false;
+      member.guarded([&] { known = take(item.key(), member); });
+      if (!known) {
         member.refuse("no such key; there are " + there_are);
       }
     }
@@ -48,10 +50,7 @@ class Node {
     }
     for (std::size_t i = 0; i < value_->size(); ++i) {
       const Node element(*file_, *name_, (*value_)[i], element_of(path_, i));
-      element.guarded([&] {
-        take(element);
-        return true;
-      });
+      element.guarded([&] { take(element); });
     }
   }
 
@@ -61,10 +60,7 @@ class Node {
     const auto found = value_->find(key);
     if (found != value_->end()) {
       const Node member(*file_, *name_, *found, member_of(path_, key));
-      member.guarded([&] {
-        take(member);
-        return true;
-      });
+      member.guarded([&] { take(member); });
     }
   }
 
@@ -108,9 +104,9 @@ class Node {
 
   /// Whatever else is thrown below gets this place.
   template <class Action>
-  bool guarded(Action action) const {
+  void guarded(Action action) const {
     try {
-      return action();
+      action();
     } catch (const Located&) {
       throw;
     } catch (const std::invalid_argument& error) {
@@ -203,13 +199,10 @@ void read_line(const Node& node, Setup& setup) {
         return true;
       });
   if (line.modules.empty()) {
-    node.refuse("modules", "a line wants at least one module, {\"model\": \"EX9042D-M\"}");
+    node.refuse("modules", R"(a line wants at least one module, {"model": "EX9042D-M"})");
   }
   if (line.name.empty()) {
     line.name = "line" + std::to_string(setup.lines.size() + 1);
-  }
-  if (!line.pty && !line.tcp && !line.serial) {
-    line.pty = line.name + ".tty";
   }
   setup.lines.push_back(std::move(line));
 }
@@ -255,7 +248,7 @@ bool is_bus_file(const std::string& argument) {
 Setup parse_bus_file(const std::string& path, const std::string& text) {
   const LocatedJson file = json_of(path, text);
   const Node root(file, path, file.value, "");
-  const Setup setup = read_setup(root);
+  Setup setup = read_setup(root);
   try {
     check(setup);
   } catch (const WrongSetup& wrong) {

@@ -48,7 +48,6 @@ void check_line(const LineSetup& line) {
     require(std::count_if(line.modules.begin(), line.modules.end(), same_file) <= 1,
             "each EEPROM has a file of its own");
   }
-  require(line.pty || line.tcp || line.serial, "there is a way to the line");
   require(!line.serial || (!line.pty && !line.tcp && !line.instant), "a real line is the only one");
   require(!line.echo || line.serial, "only a serial port has an echo");
   require(!line.instant || !line.strict_gaps, "gaps mean nothing where bytes cost no time");
@@ -69,7 +68,10 @@ void check_line(const LineSetup& line) {
 void check_setup(const Setup& setup) {
   for (const LineSetup& line : setup.lines) {
     check_line(line);
+    require(setup.speed || (!line.pty && !line.tcp && !line.serial), "no master keeps up with all speeds");
   }
+  require(setup.speed || setup.lasts, "what goes as fast as it can has an end");
+  require(!setup.speed || *setup.speed > 0, "time passes");
   require(!setup.control || !setup.control->empty(), "a path is not empty");
 }
 
@@ -123,7 +125,13 @@ void parse(const std::string& text) {
     require(parsed.output.empty() && parsed.error.empty() && parsed.exit_status == 0,
             "something to do is all there is");
     require(parsed.setup->lines.size() == 1, "a command line has one line");
+    const LineSetup& line = parsed.setup->lines[0];
+    require(!parsed.setup->speed || line.pty || line.tcp || line.serial, "there is a way to the line");
     check_setup(*parsed.setup);
+  } else if (parsed.task) {
+    require(parsed.output.empty() && parsed.error.empty() && parsed.exit_status == 0,
+            "to play is all there is");
+    require(!parsed.task->bus || parsed.task->bus->lines.size() == 1, "modules behind it are on one line");
   } else if (!parsed.output.empty()) {
     require(parsed.error.empty() && parsed.exit_status == 0, "text is all there is");
   } else {

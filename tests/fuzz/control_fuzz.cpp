@@ -213,9 +213,16 @@ void carry_out(Watched& watched, sim::Control& control, const std::string& comma
   }
 }
 
-/// Pulses take their time, and inputs that take long find little: up to 99,999 once an input, else 99.
+/// Inputs that take long find little.
 class Patience {
  public:
+  /// As many steps of 10 ms as are left of 2 s, up to `steps`; a watchdog needs 1.6 s to bite.
+  long steps(unsigned long steps) {
+    const unsigned long granted = std::min(steps, steps_left_);
+    steps_left_ -= granted;
+    return static_cast<long>(granted);
+  }
+  /// Of pulses up to 99,999 once an input, else 99.
   bool has_for(const Words& words) {
     const bool pulses = words.size() == 4 && words[1] == "pulse" && is_number(words[3], 100, 1'000'000);
     return !pulses || (std::stoul(words[3]) <= 99'999 && !std::exchange(used_, true));
@@ -223,6 +230,7 @@ class Patience {
 
  private:
   bool used_ = false;
+  unsigned long steps_left_ = 200;
 };
 
 void live(const std::string& text) {
@@ -235,7 +243,7 @@ void live(const std::string& text) {
     if (!command.empty() && command[0] == '+') {
       const std::string number = command.substr(1);
       const unsigned long times = is_number(number, 0, 99) ? std::stoul(number) : 1;
-      watched.line.bus().run_for(std::chrono::milliseconds(10) * static_cast<long>(times));
+      watched.line.bus().run_for(std::chrono::milliseconds(10) * patience.steps(times));
       continue;
     }
     const Words words = words_of(command);

@@ -122,12 +122,6 @@ TEST(BusFile, ALineMayHaveAllThatACommandLineMay) {
   EXPECT_TRUE(line_of("\"pty\": \"a\", \"strict-gaps\": true").strict_gaps);
 }
 
-TEST(BusFile, ALineWithoutAPortHasAPseudoTerminalOfItsName) {
-  EXPECT_EQ(parsed(R"({"lines": [{"modules": [{"model": "EX9042D"}]}]})").lines[0].pty, "line1.tty");
-  EXPECT_EQ(parsed(R"({"lines": [{"name": "hall", "modules": [{"model": "EX9042D"}]}]})").lines[0].pty,
-            "hall.tty");
-}
-
 TEST(BusFile, AModuleMayHaveAllThatACommandLineMay) {
   EXPECT_EQ(module_of("\"address\": \"F\"").settings.address, 0x0F);
   EXPECT_EQ(module_of("\"protocol\": \"ascii\"").settings.protocol, Protocol::Ascii);
@@ -320,17 +314,30 @@ TEST(BusFile, ThatCannotBeReadIsRefusedWithItsName) {
   }
 }
 
+Parsed parse(const std::vector<std::string>& words) {
+  std::vector<const char*> argv{"ex9000-sim"};
+  for (const std::string& word : words) {
+    argv.push_back(word.c_str());
+  }
+  return parse_arguments(static_cast<int>(argv.size()), argv.data());
+}
+
+TEST(BusFile, ALineWithoutAPortHasAPseudoTerminalOfItsName) {
+  const system::Directory directory;
+  const std::string path = directory / "bus.json";
+  system::write_file(path, R"({"lines": [{"modules": [{"model": "EX9042D"}]},
+    {"modules": [{"model": "EX9042D"}], "name": "hall"}, {"modules": [{"model": "EX9042D"}], "tcp": 0}]})");
+  const Parsed with = parse({path});
+  ASSERT_TRUE(with.setup) << with.error;
+  EXPECT_EQ(with.setup->lines[0].pty, "line1.tty");
+  EXPECT_EQ(with.setup->lines[1].pty, "hall.tty");
+  EXPECT_FALSE(with.setup->lines[2].pty);
+}
+
 TEST(BusFile, StandsAloneOnTheCommandLineButForWhatIsOfNoLine) {
   const system::Directory directory;
   const std::string path = directory / "bus.json";
   system::write_file(path, example_bus_file());
-  const auto parse = [](std::vector<std::string> words) {
-    std::vector<const char*> argv{"ex9000-sim"};
-    for (const std::string& word : words) {
-      argv.push_back(word.c_str());
-    }
-    return parse_arguments(static_cast<int>(argv.size()), argv.data());
-  };
   const Parsed with = parse({path, "--control", "other.ctl", "--seed", "9", "--log"});
   ASSERT_TRUE(with.setup) << with.error;
   EXPECT_EQ(with.setup->control, "other.ctl");
