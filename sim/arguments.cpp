@@ -70,6 +70,7 @@ constexpr const char* kExamples = R"(
 Examples:
   ex9000-sim EX9042D-M@01 EX9052D-M@02,edge=rising 9068d-m@0A,protocol=ascii --log
   ex9000-sim EX9042D-M@01,eeprom=pump.bin --tcp 5020 --control pump.ctl
+  ex9000-sim EX9042D-M@01 --capture line.pcapng --log json > line.json
   ex9000-sim EX9052D@01 --input '1 0 square 100ms' --fault '1 lost-reply every 10th reply' --log
   ex9000-sim --example > bus.json && ex9000-sim bus.json
 The rate that a master sets on the pseudo-terminal is the line's rate.)";
@@ -113,7 +114,8 @@ struct Texts {
   std::optional<std::string> speed;
   std::optional<std::string> lasts;
   std::optional<std::string> seed;
-  bool log = false;
+  std::optional<std::string> log;
+  std::optional<std::string> capture;
 };
 
 /// What `parse` says of `text` is told of the option.
@@ -245,7 +247,12 @@ Setup setup_of(const Texts& texts) {
   if (texts.seed) {
     setup.seed = of_option("--seed", *texts.seed, parse_seed);
   }
-  setup.log = setup.log || texts.log;
+  if (texts.log) {
+    setup.log = of_option("--log", *texts.log, parse_log_format);
+  }
+  if (texts.capture) {
+    setup.capture = texts.capture;
+  }
   try {
     check(setup);
   } catch (const WrongSetup& wrong_setup) {
@@ -253,6 +260,22 @@ Setup setup_of(const Texts& texts) {
     throw std::invalid_argument(option + wrong_setup.what());
   }
   return setup;
+}
+
+/// The format behind --log may be left out, and what follows be a module: it is attached here, as CLI11 would
+/// take whatever follows.
+std::vector<std::string> with_log_format(int argc, const char* const* argv) {
+  std::vector<std::string> words;
+  for (int i = 1; i < argc; ++i) {
+    words.emplace_back(argv[i]);
+    if (words.back() == "--log") {
+      const std::string next = i + 1 < argc ? argv[i + 1] : "";
+      const bool named = next == "text" || next == "json";
+      words.back() += named ? "=" + next : "=text";
+      i += named ? 1 : 0;
+    }
+  }
+  return words;
 }
 
 struct PlayTexts {
@@ -373,7 +396,14 @@ Parsed parse_arguments(int argc, const char* const* argv) {
       ->type_name("TIME");
   app.add_option("--seed", texts.seed, "of all chance: the same seed, the same faults (default: 1)")
       ->type_name("NUMBER");
-  app.add_flag("--log", texts.log, "print the bus, a line a frame: time, direction, bytes, meaning");
+  app.add_option(
+         "--log", texts.log,
+         "print the bus, a line a frame: time, direction, bytes, meaning; json: an object a line, for "
+         "machines, and nothing else on standard output")
+      ->type_name("[text|json]");
+  app.add_option("--capture", texts.capture,
+                 "keep what was on the lines in this pcapng file, for Wireshark; what it held is gone")
+      ->type_name("FILE");
   app.add_flag("--strict-gaps", texts.strict_gaps,
                "Modbus to the letter: a gap of more than 1.5 characters spoils a frame, and a master that "
                "does not wait 3.5 characters between frames is on its own");
@@ -385,7 +415,9 @@ Parsed parse_arguments(int argc, const char* const* argv) {
   const CLI::App* const describing = add_describe(app, describe_texts);
   app.set_version_flag("--version", "ex9000-sim " + std::string(kFirmwareVersion));
   try {
-    app.parse(argc, argv);
+    std::vector<std::string> words = with_log_format(argc, argv);
+    std::reverse(words.begin(), words.end());  // as CLI11 wants them
+    app.parse(words);
   } catch (const CLI::CallForHelp&) {
     return printed(app.help("", CLI::AppFormatMode::All));
   } catch (const CLI::CallForVersion& version) {

@@ -97,6 +97,11 @@ void Bus::put(End& end, std::uint8_t byte, std::uint32_t baud) {
   Wave wave{clock_.virtual_now(), bit_rate(baud), levels_of(byte)};
   if (disturbance_ != nullptr) {
     wave.levels = disturbance_->disturbed({wave.levels, baud, wave.end(), drivers_on_ > 1});
+    for (BusObserver* observer : observers_) {
+      if (wave.levels != levels_of(byte)) {
+        observer->changed(end.index, wave.levels);
+      }
+    }
   }
   const bool collided = drivers_on_ > 1 || !on_the_wire_.empty();
   for (Byte& other : on_the_wire_) {

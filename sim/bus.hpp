@@ -39,8 +39,10 @@ class BusObserver {
  public:
   /// `station` counts from 0 in the order of attaching.
   virtual void driver(std::size_t station, bool on, VirtualTime now) = 0;
-  /// A byte began at `start` and is over now, unless its driver went off before. `collided`: another was on
-  /// meanwhile.
+  /// The byte that `station` begins now is changed by the disturbance: receivers see `arrives` in its place.
+  virtual void changed(std::size_t /*station*/, Levels /*arrives*/) {}
+  /// A byte began at `start` and is over now, unless its driver went off before. `byte` is what was sent.
+  /// `collided`: another was on meanwhile.
   virtual void byte(std::size_t station, std::uint8_t byte, std::uint32_t baud, bool collided,
                     VirtualTime start, VirtualTime end) = 0;
 
@@ -83,7 +85,6 @@ class Bus {
   Wire& attach(Station& station);
   void observe(BusObserver& observer) { observers_.push_back(&observer); }
   /// From now on all that is sent goes through `disturbance`, which lives as long as the bus is used.
-  /// Observers see what was sent.
   void disturb(Disturbance& disturbance) { disturbance_ = &disturbance; }
 
   /// The next event of bus or stations.

@@ -1,49 +1,41 @@
-// Prints the bus, a line a frame: time, direction, bytes, meaning.
+// Writes down the bus, a line a frame.
 #pragma once
 
 #include <functional>
 #include <string>
+#include <utility>
 #include <vector>
 
-#include "sim/bus.hpp"
-#include "sim/meaning.hpp"
+#include "sim/frame_watch.hpp"
 
 namespace ex9000::sim {
 
-/// Groups bytes to frames: what one driver sends until it goes off, and where a person types, until CR.
-class BusLog final : public BusObserver {
+/// What each station is called, the master first. What faults put on a line is attached to it behind the
+/// modules, and has no name.
+class StationNames {
+ public:
+  explicit StationNames(std::vector<std::string> names) : names_(std::move(names)) {}
+  [[nodiscard]] bool know(std::size_t station) const { return station < names_.size(); }
+  [[nodiscard]] std::string of(std::size_t station) const {
+    return know(station) ? names_[station] : "somebody else";
+  }
+
+ private:
+  std::vector<std::string> names_;
+};
+
+class BusLog {
  public:
   using Print = std::function<void(const std::string& line)>;
 
-  /// `speakers`: what each station is called, the master first. Others may speak too, as somebody else.
-  BusLog(std::vector<std::string> speakers, Print print);
+  BusLog() = default;
+  BusLog(const BusLog&) = delete;
+  BusLog& operator=(const BusLog&) = delete;
+  virtual ~BusLog() = default;
 
-  void driver(std::size_t station, bool on, VirtualTime now) override;
-  void byte(std::size_t station, std::uint8_t byte, std::uint32_t baud, bool collided, VirtualTime start,
-            VirtualTime end) override;
-
-  /// When an unfinished frame is to be printed all the same; kNever: there is none.
-  [[nodiscard]] VirtualTime next() const;
-  /// Prints what is due at `now`.
-  void run(VirtualTime now);
-  /// A line of its own with the time before it.
-  void note(VirtualTime now, const std::string& text);
-
- private:
-  /// What a station has sent since the last line.
-  struct Frame {
-    FrameBytes bytes;
-    bool collided = false;
-    VirtualTime began{0};
-    VirtualTime prints = kNever;
-  };
-
-  Frame& frame_of(std::size_t station);
-  void print(std::size_t station);
-
-  std::vector<std::string> speakers_;
-  Print print_;
-  std::vector<Frame> frames_;
+  virtual void frame(const Frame& frame) = 0;
+  /// Something that is said about the line at `now`.
+  virtual void note(VirtualTime now, const std::string& text) = 0;
 };
 
 }  // namespace ex9000::sim

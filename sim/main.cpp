@@ -36,6 +36,9 @@ void add_signals(boost::asio::signal_set& signals) {
 /// Flushed, since a log is read while it grows. False where nobody reads it any more; throws where it cannot
 /// be written otherwise.
 bool print(const std::string& text) {
+  if (!std::cout) {
+    return false;  // as before, and nothing says why any more
+  }
   errno = 0;
   std::cout << text << std::flush;
   if (!std::cout && errno != EPIPE) {
@@ -55,13 +58,15 @@ void run(const Setup& setup) {
   boost::asio::signal_set signals(io);
   add_signals(signals);  // before anything is made that is to be removed again
   signals.async_wait([&io](const boost::system::error_code& /*error*/, int /*signal*/) { io.stop(); });
-  Session session(io, setup, print_line);
+  const auto greet = [](const std::string& text) { std::cerr << text << std::endl; };
+  Session session(io, setup, print_line, greet);
   session.start();
   if (setup.speed) {
     io.run();
   } else {
     session.run_as_fast_as_it_can();
   }
+  session.finish();
 }
 
 int fail(const std::exception& error, int status) {

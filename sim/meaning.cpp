@@ -19,14 +19,17 @@ constexpr std::string_view kLeads = "!>?";
 
 bool printable(std::uint8_t byte) { return byte >= 0x20 && byte <= 0x7E; }
 
-std::string dcon_request(const FrameBytes& bytes) {
-  const std::string text(bytes.begin(), bytes.end() - (bytes.back() == '\r' ? 1 : 0));
-  if (text.size() < 3) {
-    return "";
-  }
+constexpr std::size_t kChecksumDigits = 2;
+
+struct DconRequest {
+  const dcon::Command* command = nullptr;  ///< null: none
+  bool checksum = false;                   ///< its last two characters are one, or meant to be
+};
+
+DconRequest dcon_request_of(const std::string& text) {
   const bool broadcast = text.compare(1, 2, "**") == 0;
   // A checksum may or may not be there, so the command without two more characters counts as well.
-  for (const std::size_t checksum : {0U, 2U}) {
+  for (const std::size_t checksum : {std::size_t{0}, kChecksumDigits}) {
     for (const dcon::Command& command : dcon::kCommands) {
       const dcon::Dispatch& row = command.dispatch;
       const bool keyed = row.key != dcon::kNoKey && row.key != dcon::kBroadcastKey;
@@ -37,11 +40,37 @@ std::string dcon_request(const FrameBytes& bytes) {
       }
       const std::size_t args = text.size() - lead - checksum;
       if (args >= row.fewest_args && args <= row.most_args) {
-        return std::string(command.syntax) + ": " + std::string(command.meaning);
+        return {&command, checksum != 0};
       }
     }
   }
-  return "no command";
+  return {};
+}
+
+bool checksum_is_right(const std::string& text) {
+  unsigned sum = 0;
+  for (const char character : text.substr(0, text.size() - kChecksumDigits)) {
+    sum += static_cast<unsigned char>(character);
+  }
+  return text.substr(text.size() - kChecksumDigits) == hex_byte_text(sum & 0xFFU);
+}
+
+std::string without_cr(const FrameBytes& bytes) {
+  return {bytes.begin(), bytes.end() - (bytes.back() == '\r' ? 1 : 0)};
+}
+
+std::string dcon_request(const FrameBytes& bytes) {
+  const std::string text = without_cr(bytes);
+  if (text.size() < 3) {
+    return "";
+  }
+  const dcon::Command* command = dcon_request_of(text).command;
+  if (command == nullptr) {
+    return "no command";
+  }
+  const std::string error = check_error(bytes, Speaker::Master);
+  return std::string(command->syntax) + ": " + std::string(command->meaning) +
+         (error.empty() ? "" : ", " + error);
 }
 
 std::string dcon_reply(const FrameBytes& bytes) {
@@ -86,13 +115,20 @@ std::string row_meaning(unsigned function, unsigned address, unsigned value) {
   return ", no such address";
 }
 
-std::string modbus_meaning(const FrameBytes& bytes, Speaker speaker) {
-  if (bytes.size() < 4) {
+constexpr std::size_t kShortestModbus = 4;
+
+std::string modbus_check_error(const FrameBytes& bytes) {
+  if (bytes.size() < kShortestModbus) {
     const bool noise = bytes.size() == 1 && bytes[0] < 0x20;  // the LF behind a CR, a turn-around 00
     return noise ? "" : "too short for a frame";
   }
-  if (crc16({bytes.data(), bytes.size()}).value() != 0) {
-    return "wrong CRC";
+  return crc16({bytes.data(), bytes.size()}).value() == 0 ? "" : "wrong CRC";
+}
+
+std::string modbus_meaning(const FrameBytes& bytes, Speaker speaker) {
+  std::string error = modbus_check_error(bytes);
+  if (bytes.size() < kShortestModbus || !error.empty()) {
+    return error;
   }
   const std::string who = bytes[0] == 0 ? "all modules: " : hex_byte_text(bytes[0]) + ": ";
   const unsigned function = bytes[1];
@@ -126,6 +162,11 @@ bool looks_like_dcon(const FrameBytes& bytes) {
   return std::all_of(bytes.begin(), text_end, printable);
 }
 
+bool was_dcon(const FrameBytes& bytes) {
+  return looks_like_dcon(bytes) || (!bytes.empty() && looks_like_dcon({bytes.front()}) &&
+                                    bytes.back() == '\r' && !modbus_check_error(bytes).empty());
+}
+
 std::string shown(const FrameBytes& bytes) {
   std::string text;
   if (looks_like_dcon(bytes)) {
@@ -140,9 +181,27 @@ std::string shown(const FrameBytes& bytes) {
   return text;
 }
 
-std::string meaning(const FrameBytes& bytes, Speaker speaker) {
+std::string check_error(const FrameBytes& bytes, Speaker speaker) {
+  if (!was_dcon(bytes)) {
+    return modbus_check_error(bytes);
+  }
   if (!looks_like_dcon(bytes)) {
+    return "not only printable characters";
+  }
+  if (speaker == Speaker::Module) {
+    return "";  // whether its last two characters are a checksum is the module's setting
+  }
+  const std::string text = without_cr(bytes);
+  const DconRequest request = text.size() < 3 ? DconRequest() : dcon_request_of(text);
+  return request.checksum && !checksum_is_right(text) ? "wrong checksum" : "";
+}
+
+std::string meaning(const FrameBytes& bytes, Speaker speaker) {
+  if (!was_dcon(bytes)) {
     return modbus_meaning(bytes, speaker);
+  }
+  if (!looks_like_dcon(bytes)) {
+    return check_error(bytes, speaker);
   }
   return speaker == Speaker::Master ? dcon_request(bytes) : dcon_reply(bytes);
 }

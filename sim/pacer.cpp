@@ -22,12 +22,12 @@ constexpr unsigned long kTimerSlackNanoseconds = 1;
 
 }  // namespace
 
-Pacer::Pacer(boost::asio::io_context& io, Line& line, const Ports& ports, BusLog* log, Pace pace,
+Pacer::Pacer(boost::asio::io_context& io, Line& line, const Ports& ports, FrameWatch* frames, Pace pace,
              Notice notice)
     : timer_(io),
       line_(line),
       ports_(ports),
-      log_(log),
+      frames_(frames),
       pace_(pace),
       notice_(std::move(notice)),
       told_(line.size()) {
@@ -78,8 +78,8 @@ bool Pacer::is_full() const {
 void Pacer::follow() {
   catch_up(wall());
   hand_out();
-  if (log_ != nullptr) {
-    log_->run(wall());
+  if (frames_ != nullptr) {
+    frames_->run(wall());
   }
   if (paused_ && !is_full()) {
     paused_ = false;
@@ -91,7 +91,7 @@ void Pacer::follow() {
 }
 
 void Pacer::arm_timer() {
-  VirtualTime next = std::min(line_.bus().next(), log_ == nullptr ? kNever : log_->next());
+  VirtualTime next = std::min(line_.bus().next(), frames_ == nullptr ? kNever : frames_->next());
   if (paused_ && line_.clock().virtual_now() > wall()) {
     next = std::min(next, line_.clock().virtual_now() - kFarthestAhead);
   }

@@ -11,7 +11,7 @@
 #include <utility>
 #include <vector>
 
-#include "sim/bus_log.hpp"
+#include "sim/frame_watch.hpp"
 #include "sim/line.hpp"
 #include "sim/ports/port.hpp"
 
@@ -50,10 +50,11 @@ class Pacer final : private BusObserver {
   using Ports = std::vector<std::unique_ptr<Port>>;
   using Notice = std::function<void(const std::string&)>;
 
-  /// Puts what `line`'s master hears on all `ports`, and what comes from them on the line. `log` may be null.
-  /// All live as long as `io` runs. `notice` gets a line for people for every module that listens at another
-  /// rate than the line's, at the start and when something is sent after that has changed.
-  Pacer(boost::asio::io_context& io, Line& line, const Ports& ports, BusLog* log, Pace pace, Notice notice);
+  /// Puts what `line`'s master hears on all `ports`, and what comes from them on the line. `frames` may be
+  /// null. All live as long as `io` runs. `notice` gets a line for people for every module that listens at
+  /// another rate than the line's, at the start and when something is sent after that has changed.
+  Pacer(boost::asio::io_context& io, Line& line, const Ports& ports, FrameWatch* frames, Pace pace,
+        Notice notice);
 
   void start();
   /// From the master's end of the line to the ports; for Line's constructor.
@@ -83,7 +84,7 @@ class Pacer final : private BusObserver {
   boost::asio::steady_timer timer_;
   Line& line_;
   const Ports& ports_;
-  BusLog* log_;
+  FrameWatch* frames_;
   Pace pace_;
   Notice notice_;
   using Mismatch = std::pair<std::uint32_t, std::uint32_t>;  ///< rate of the line, rate of a module

@@ -3,10 +3,12 @@
 #include <stdexcept>
 #include <utility>
 
+#include "sim/json_log.hpp"
 #include "sim/line_of_setup.hpp"
 #include "sim/ports/pty_port.hpp"
 #include "sim/ports/serial_port.hpp"
 #include "sim/ports/tcp_port.hpp"
+#include "sim/text_log.hpp"
 
 namespace ex9000::sim {
 
@@ -21,7 +23,8 @@ Pace pace_of(const LineSetup& setup) {
 
 }  // namespace
 
-RunningLine::RunningLine(boost::asio::io_context& io, const LineSetup& setup, std::uint64_t seed, Print print)
+RunningLine::RunningLine(boost::asio::io_context& io, const LineSetup& setup, std::uint64_t seed,
+                         LogFormat format, Print print)
     : setup_(setup), print_(std::move(print)) {
   for (const ModuleSpec& module : setup.modules) {
     memories_.push_back(module.eeprom.empty() ? nullptr : std::make_unique<EepromFile>(module.eeprom));
@@ -36,7 +39,7 @@ RunningLine::RunningLine(boost::asio::io_context& io, const LineSetup& setup, st
   line_->master().set_baud(setup.baud.value_or(line_->module(0).baud()));
   introduce();
   open_ports(io);
-  log_.emplace(speakers(), print_);
+  log_ = make_log(format);
   line_->expect_trouble(seed,
                         [this](const std::string& text) { log_->note(line_->clock().virtual_now(), text); });
   begin_programs(*line_, setup);
@@ -90,12 +93,25 @@ void RunningLine::make_missing_memories(std::vector<const EepromFile*>& made) {
   }
 }
 
-std::vector<std::string> RunningLine::speakers() const {
+/// After its port, where it has no name.
+std::string RunningLine::log_name() const {
+  for (const std::string& name : {setup_.name, introduced_.pty, introduced_.tcp, introduced_.serial}) {
+    if (!name.empty()) {
+      return name;
+    }
+  }
+  return "line";
+}
+
+std::unique_ptr<BusLog> RunningLine::make_log(LogFormat format) const {
   std::vector<std::string> names{"master"};
   for (const ModuleIntroduced& module : introduced_.modules) {
     names.push_back(hex_byte_text(module.address) + " " + module.designation);
   }
-  return names;
+  if (format == LogFormat::Json) {
+    return std::make_unique<JsonLog>(log_name(), StationNames(names), print_);
+  }
+  return std::make_unique<TextLog>(StationNames(names), print_);
 }
 
 std::string RunningLine::remark(std::size_t index) const {
@@ -128,6 +144,12 @@ void RunningLine::introduce() {
   introduced_.instant = setup_.instant;
 }
 
+void RunningLine::keep_in(Capture& capture, VirtualTime began) {
+  const std::size_t line = capture.add_line(log_name(), line_->size(), began);
+  frames_.tell([&capture, line](const Frame& frame) { capture.write(line, frame); });
+  watched_ = true;
+}
+
 void RunningLine::start(bool log) {
   for (std::size_t i = 0; i < line_->size(); ++i) {
     if (const EepromFile* file = memories_[i].get()) {
@@ -135,9 +157,12 @@ void RunningLine::start(bool log) {
           [file](std::uint16_t address, Bytes bytes) { return file->write(address, bytes); });
     }
   }
-  logs_ = log;
   if (log) {
-    line_->bus().observe(*log_);
+    frames_.tell([this](const Frame& frame) { log_->frame(frame); });
+    watched_ = true;
+  }
+  if (watched_) {
+    line_->bus().observe(frames_);
   }
 }
 
@@ -145,16 +170,14 @@ void RunningLine::follow_the_clock(boost::asio::io_context& io, double speed) {
   Pace pace = pace_of(setup_);
   pace.speed = speed;
   pacer_ = std::make_unique<Pacer>(
-      io, *line_, ports_, logs_ ? &*log_ : nullptr, pace,
+      io, *line_, ports_, watched_ ? &frames_ : nullptr, pace,
       [this](const std::string& text) { log_->note(line_->clock().virtual_now(), text); });
   pacer_->start();
 }
 
 void RunningLine::run_until(VirtualTime until) {
   line_->bus().run_until(until);
-  if (logs_) {
-    log_->run(until);
-  }
+  frames_.run(until);
 }
 
 }  // namespace ex9000::sim

@@ -1,20 +1,25 @@
 #include "sim/session.hpp"
 
 #include <algorithm>
+#include <chrono>
 #include <utility>
 
 namespace ex9000::sim {
 
-Session::Session(boost::asio::io_context& io, Setup setup, Print print)
-    : io_(io), setup_(std::move(setup)), print_(std::move(print)), end_(io) {
+Session::Session(boost::asio::io_context& io, Setup setup, Print print, Print greet)
+    : io_(io), setup_(std::move(setup)), print_(std::move(print)), greet_(std::move(greet)), end_(io) {
   for (const LineSetup& line : setup_.lines) {
-    // Of several, each says which it is.
-    const Print printed = line.name.empty() ? print_ : [this, &line](const std::string& text) {
-      print_(line.name + ": " + text);
-    };
-    lines_.push_back(std::make_unique<RunningLine>(io_, line, setup_.seed + lines_.size(), printed));
+    // Of several, each says which it is; to machines it does so by itself.
+    const bool as_it_is = line.name.empty() || for_machines();
+    const Print printed =
+        as_it_is ? print_ : [this, &line](const std::string& text) { print_(line.name + ": " + text); };
+    lines_.push_back(std::make_unique<RunningLine>(io_, line, setup_.seed + lines_.size(),
+                                                   setup_.log.value_or(LogFormat::Text), printed));
   }
   open_control();
+  if (setup_.capture) {
+    capture_ = std::make_unique<Capture>(*setup_.capture);
+  }
 }
 
 Session::~Session() = default;
@@ -59,6 +64,16 @@ void Session::make_missing_memories() {
   }
 }
 
+/// Where no clock is followed nothing depends on when it runs, the capture neither.
+void Session::keep_a_capture() {
+  capture_->begin();
+  const auto now = std::chrono::system_clock::now().time_since_epoch();
+  for (const auto& running : lines_) {
+    const VirtualTime began = setup_.speed ? now - running->line().clock().virtual_now() : VirtualTime(0);
+    running->keep_in(*capture_, began);
+  }
+}
+
 void Session::start() {
   for (const auto& running : lines_) {
     running->renew_memories();
@@ -69,9 +84,12 @@ void Session::start() {
   for (const auto& running : lines_) {
     introduced.lines.push_back(running->introduced());
   }
-  print_(greeting(introduced));
+  if (capture_) {
+    keep_a_capture();
+  }
+  (for_machines() ? greet_ : print_)(greeting(introduced));
   for (const auto& running : lines_) {
-    running->start(setup_.log);
+    running->start(setup_.log.has_value());
     if (setup_.speed) {
       running->follow_the_clock(io_, *setup_.speed);
     }
@@ -93,6 +111,12 @@ void Session::run_as_fast_as_it_can() {
       running->run_until(now);
     }
     io_.poll();
+  }
+}
+
+void Session::finish() {
+  for (const auto& running : lines_) {
+    running->finish();
   }
 }
 

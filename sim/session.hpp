@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "sim/capture/capture.hpp"
 #include "sim/control/control.hpp"
 #include "sim/control/control_socket.hpp"
 #include "sim/greeting.hpp"
@@ -22,9 +23,9 @@ class Session {
   using Print = RunningLine::Print;
 
   /// Opens all that `setup` names. Throws std::invalid_argument or std::runtime_error, one line; what was
-  /// opened is given back then, and no file has been made or changed. `print` and `io` live as long as this
-  /// object.
-  Session(boost::asio::io_context& io, Setup setup, Print print);
+  /// opened is given back then, and no file has been made or changed. `print` takes the log and, unless
+  /// machines read that, the greeting; `greet` takes it then. `io` lives as long as this object.
+  Session(boost::asio::io_context& io, Setup setup, Print print, Print greet);
   ~Session();
   Session(const Session&) = delete;
   Session& operator=(const Session&) = delete;
@@ -34,8 +35,12 @@ class Session {
   void start();
   /// Where the lines follow no clock: all that happens in the time of `setup`, unless `io` is stopped.
   void run_as_fast_as_it_can();
+  /// Behind either: writes down what was still under way. Throws likewise.
+  void finish();
 
  private:
+  [[nodiscard]] bool for_machines() const { return setup_.log == LogFormat::Json; }
+  void keep_a_capture();
   void open_control();
   void make_missing_memories();
   Control::Reply carry_out(const std::string& command);
@@ -43,10 +48,12 @@ class Session {
   boost::asio::io_context& io_;
   const Setup setup_;
   Print print_;
+  Print greet_;
   std::vector<std::unique_ptr<RunningLine>> lines_;
   boost::asio::steady_timer end_;
   std::optional<Control> control_;
   std::unique_ptr<ControlSocket> control_socket_;
+  std::unique_ptr<Capture> capture_;
 };
 
 }  // namespace ex9000::sim

@@ -82,6 +82,9 @@ void check(const Setup& setup) {
   if (setup.control && setup.control->empty()) {
     throw WrongSetup(std::nullopt, "control", "wants a path");
   }
+  if (setup.capture && setup.capture->empty()) {
+    throw WrongSetup(std::nullopt, "capture", "wants a path");
+  }
   Once files(": two modules cannot share one; name a file for each");
   Once ports(": two lines cannot share one; name one for each");
   Once names(": two lines have this name; name each differently");
@@ -114,6 +117,13 @@ bool parse_line_kind(const std::string& text) {
     throw std::invalid_argument("'" + text + "' wants paced or instant");
   }
   return text == "instant";
+}
+
+LogFormat parse_log_format(const std::string& text) {
+  if (text != "text" && text != "json") {
+    throw std::invalid_argument("'" + text + "' wants text or json");
+  }
+  return text == "json" ? LogFormat::Json : LogFormat::Text;
 }
 
 std::uint64_t parse_seed(const std::string& text) {

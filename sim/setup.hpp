@@ -27,10 +27,13 @@ struct LineSetup {
   std::vector<Fault> faults;
 };
 
+enum class LogFormat { Text, Json };
+
 struct Setup {
   std::vector<LineSetup> lines;        ///< at least one
   std::optional<std::string> control;  ///< where to make the control socket
-  bool log = false;
+  std::optional<LogFormat> log;        ///< of the bus; none: it is not printed
+  std::optional<std::string> capture;  ///< where to keep what was on the lines
   /// Of the line's time to the wall clock's; nothing: as fast as it can be reckoned.
   std::optional<double> speed = 1;
   std::optional<VirtualTime> lasts;  ///< of the lines' time, then it ends; nothing: until it is told to
@@ -55,6 +58,7 @@ std::uint32_t parse_line_rate(const std::string& text);
 /// Whether bytes cost no time.
 bool parse_line_kind(const std::string& text);
 std::uint64_t parse_seed(const std::string& text);
+LogFormat parse_log_format(const std::string& text);
 /// Nothing: `max`.
 std::optional<double> parse_speed(const std::string& text);
 

@@ -209,13 +209,16 @@ void read_line(const Node& node, Setup& setup) {
 
 Setup read_setup(const Node& root) {
   Setup setup;
-  root.members("lines, control, log and seed", [&](const std::string& key, const Node& value) {
+  root.members("lines, control, log, capture and seed", [&](const std::string& key, const Node& value) {
     if (key == "lines") {
       value.elements([&](const Node& line) { read_line(line, setup); });
     } else if (key == "control") {
       setup.control = value.text();
     } else if (key == "log") {
-      setup.log = value.flag();
+      const std::string log = value.setting();
+      setup.log = log == "off" ? std::nullopt : std::optional(parse_log_format(log == "on" ? "text" : log));
+    } else if (key == "capture") {
+      setup.capture = value.text();
     } else if (key == "seed") {
       setup.seed = parse_seed(value.number_or_text());
     } else {

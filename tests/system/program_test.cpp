@@ -129,6 +129,11 @@ TEST(Program, WrongArgumentsGiveOneLineThatNamesThemExitStatus2AndLeaveNothingBe
       {{"EX9042D", "--serial", "/no/such/port"}, "--serial /no/such/port", "name"},
       {{"EX9042D", "--line", "fast"}, "--line: 'fast'", "paced or instant"},
       {{"EX9042D", "--control", "/no/such/place/ctl"}, "--control /no/such/place/ctl", "path"},
+      {{"EX9042D", "--capture", "/no/such/place/pcapng"}, "--capture /no/such/place/pcapng", "path"},
+      {{"EX9042D", "--capture", "."}, "--capture .", "path"},
+      {{"EX9042D", "--capture", "a", "--control", "/no/such/place/ctl"}, "--control", "path"},
+      {{"EX9042D,eeprom=/no/such/place/bin", "--capture", "a"}, "eeprom=/no/such/place/bin", "path"},
+      {{"EX9042D", "--log=xml"}, "--log: 'xml'", "text or json"},
       {{"EX9042D,eeprom=/no/such/place/bin"}, "eeprom=/no/such/place/bin", "path"},
       {{"describe", "EX1"}, "'EX1'", "--models"},
       {{"describe", "--format", "yaml"}, "--format yaml", "home-assistant"},
@@ -217,9 +222,10 @@ TEST(Program, TellsItsVersionModelsAndHelp) {
   EXPECT_NE(models.output.find("EX9068AD-M"), std::string::npos);
   const Finished help = simulator({"--help"}, directory.path());
   EXPECT_EQ(help.status, 0);
-  for (const char* option : {"--pty", "--baud", "--log", "--models", "--version", "--strict-gaps", "--tcp",
-                             "--serial", "--line", "--control", "describe", "eeprom=", "N pulse C",
-                             "protocol=", "edge=", "checksum=", "name=", "init=", "baud="}) {
+  for (const char* option :
+       {"--pty",     "--baud", "--log",     "--models",  "--version", "--strict-gaps", "--tcp",
+        "--serial",  "--line", "--control", "--capture", "describe",  "eeprom=",       "N pulse C",
+        "protocol=", "edge=",  "checksum=", "name=",     "init=",     "baud="}) {
     EXPECT_NE(help.output.find(option), std::string::npos) << option;
   }
   EXPECT_TRUE(fs::is_empty(directory.path()));

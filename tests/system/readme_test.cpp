@@ -94,7 +94,7 @@ void paste(const Section& section) {
       write_file(directory / "bus.json", block.text);
     } else if (block.language == "sh" && starts_the_simulator(block)) {
       simulator = std::make_unique<ChildProcess>(std::vector<std::string>{"sh", "-c", "exec " + block.text},
-                                                 directory.path());
+                                                 directory.path(), ChildProcess::Errors::WithOutput);
       ASSERT_TRUE(simulator->wait_for("Ctrl-C ends it")) << block.text;
     } else if (block.language == "sh" || block.language == "python") {
       shell.paste(block);

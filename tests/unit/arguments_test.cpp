@@ -95,6 +95,26 @@ TEST(Arguments, OptionsMayStandBeforeBehindAndBetweenModules) {
   EXPECT_EQ(arguments.baud, 1200U);
 }
 
+TEST(Arguments, TheLogIsForPeopleOrForMachines) {
+  EXPECT_EQ(all_accepted({"EX9042D", "--log"}).log, LogFormat::Text);
+  EXPECT_EQ(all_accepted({"EX9042D", "--log", "text"}).log, LogFormat::Text);
+  EXPECT_EQ(all_accepted({"EX9042D", "--log", "json"}).log, LogFormat::Json);
+  EXPECT_EQ(all_accepted({"EX9042D", "--log=json"}).log, LogFormat::Json);
+  EXPECT_EQ(all_accepted({"EX9042D", "--log", "--strict-gaps"}).log, LogFormat::Text);
+  expect_error({"EX9042D", "--log=xml"}, "--log: 'xml'", "text or json");
+  expect_error({"EX9042D", "--log="}, "--log", "--help");
+}
+
+TEST(Arguments, BehindTheLogsFormatAndInItsPlaceThereMayBeAModule) {
+  EXPECT_EQ(accepted({"--log", "json", "EX9042D"}).modules.size(), 1U);
+  EXPECT_EQ(accepted({"--log", "EX9042D", "EX9052D@02"}).modules.size(), 2U);
+}
+
+TEST(Arguments, ACaptureIsKeptWhereItIsWanted) {
+  EXPECT_FALSE(all_accepted({"EX9042D"}).capture);
+  EXPECT_EQ(all_accepted({"EX9042D", "--capture", "line.pcapng"}).capture, "line.pcapng");
+}
+
 TEST(Arguments, ThePseudoTerminalsLinkCanBeChosen) {
   EXPECT_EQ(accepted({"EX9042D", "--pty", "line.tty"}).pty, "line.tty");
   EXPECT_EQ(accepted({"EX9042D", "--pty=line.tty"}).pty, "line.tty");
@@ -176,13 +196,13 @@ TEST(Arguments, AnUnknownOptionIsRefused) { expect_error({"EX9042D", "--verbose"
 
 TEST(Arguments, AnOptionWithoutItsValueIsRefused) {
   expect_error({"EX9042D", "--baud"}, "--baud", "--help");
-  for (const char* option : {"--pty", "--tcp", "--serial", "--line", "--control"}) {
+  for (const char* option : {"--pty", "--tcp", "--serial", "--line", "--control", "--capture"}) {
     expect_error({"EX9042D", option}, option, "--help");
   }
 }
 
 TEST(Arguments, AnEmptyPathIsRefused) {
-  for (const char* option : {"--pty", "--serial", "--control"}) {
+  for (const char* option : {"--pty", "--serial", "--control", "--capture"}) {
     expect_error({"EX9042D", option, ""}, option, "path");
   }
   expect_error({"EX9042D,eeprom="}, "eeprom=", "path");
@@ -308,10 +328,11 @@ TEST(Arguments, AWrongDescriptionIsRefused) {
 TEST(Arguments, HelpTellsOfEveryOptionAndKey) {
   const std::string text = printed({"--help"});
   for (const char* word :
-       {"MODULE",    "--pty",          "--baud",    "--log",          "--strict-gaps", "--input",
-        "--fault",   "--seed",         "--example", "--models",       "describe",      "--format",
-        "--address", "home-assistant", "node-red",  "wb-mqtt-serial", "--version",     "protocol=",
-        "baud=",     "checksum=",      "edge=",     "name=",          "init=",         "@ADDR"}) {
+       {"MODULE",        "[text|json]", "--capture", "--pty",          "--baud",    "--log",
+        "--strict-gaps", "--input",     "--fault",   "--seed",         "--example", "--models",
+        "describe",      "--format",    "--address", "home-assistant", "node-red",  "wb-mqtt-serial",
+        "--version",     "protocol=",   "baud=",     "checksum=",      "edge=",     "name=",
+        "init=",         "@ADDR"}) {
     EXPECT_NE(text.find(word), std::string::npos) << word;
   }
 }

@@ -181,12 +181,15 @@ INSTANTIATE_TEST_SUITE_P(
         Wrong{"{\n\n}", "bus.json:1: lines: a bus wants at least one line; --example"},
         Wrong{"{\n\"lines\": []}", "bus.json:2: lines: a bus wants at least one line; --example"},
         Wrong{"{\n\"lines\": {}}", "bus.json:2: lines: wants a list, [ ]"},
-        Wrong{"{\n\"line\": []}", "bus.json:2: line: no such key; there are lines, control, log and seed"},
-        Wrong{"{\n\"log\": 1}", "bus.json:2: log: wants true or false"},
+        Wrong{"{\n\"line\": []}",
+              "bus.json:2: line: no such key; there are lines, control, log, capture and seed"},
+        Wrong{"{\n\"log\": 1}", "bus.json:2: log: '1' wants text or json"},
         Wrong{"{\n\"seed\": -1}", "bus.json:2: seed: wants a whole number"},
         Wrong{"{\n\"seed\": 1.5}", "bus.json:2: seed: wants a whole number"},
         Wrong{"{\n\"seed\": \"x\"}", "bus.json:2: seed: 'x' wants a whole number"},
         Wrong{"{\n\"control\": 1}", "bus.json:2: control: wants a text in quotes"},
+        Wrong{"{\n\"capture\": \"\", \"lines\": [{\"pty\": \"a\", \"modules\": [{\"model\": \"EX9042D\"}]}]}",
+              "bus.json:2: capture: wants a path"},
         Wrong{"{\n\"control\": \"\", \"lines\": [{\"pty\": \"a\", \"modules\": [{\"model\": \"EX9042D\"}]}]}",
               "bus.json:2: control: wants a path"}));
 

@@ -36,6 +36,23 @@ TEST(LooksLikeDcon, AFrameThatIsNotCompleteYetDoes) {
   EXPECT_TRUE(looks_like_dcon(dcon("$01")));
 }
 
+TEST(WasDcon, WhatBeginsAndEndsAsDconWasOneBeforeItWasDamaged) {
+  EXPECT_TRUE(was_dcon(dcon("$01M\r")));
+  EXPECT_TRUE(was_dcon(dcon("$01")));
+  EXPECT_TRUE(was_dcon(dcon("$0\xB1M\r")));
+  EXPECT_TRUE(was_dcon(dcon("!01\x05\r")));
+  EXPECT_EQ(meaning(dcon("$0\xB1M\r"), Speaker::Master), "not only printable characters");
+}
+
+TEST(WasDcon, NothingElseWas) {
+  EXPECT_FALSE(was_dcon({}));
+  EXPECT_FALSE(was_dcon(dcon("$0\xB1M")));
+  EXPECT_FALSE(was_dcon(dcon("\x01\x05\r")));
+  const FrameBytes modbus = rtu({0x24, 0x06, 0x01, 0xE8, 0x00, 0x59});
+  EXPECT_EQ(modbus.back(), '\r');
+  EXPECT_FALSE(was_dcon(modbus));
+}
+
 TEST(LooksLikeDcon, NothingElseDoes) {
   EXPECT_FALSE(looks_like_dcon({}));
   EXPECT_FALSE(looks_like_dcon(dcon("01M\r")));
@@ -83,6 +100,20 @@ TEST(DconMeaning, ACommandWithAChecksumIsNamedToo) {
   EXPECT_EQ(of_request("$012B7\r").find("$AA2: "), 0U);
   EXPECT_EQ(of_request("~**D2\r").find("~**: "), 0U);
   EXPECT_EQ(of_request("#**77\r").find("#**: "), 0U);
+}
+
+TEST(DconMeaning, AWrongChecksumIsSaid) {
+  EXPECT_TRUE(has(of_request("$012B8\r"), ", wrong checksum"));
+  EXPECT_EQ(check_error(dcon("$012B8\r"), Speaker::Master), "wrong checksum");
+  EXPECT_EQ(check_error(dcon("$012B7\r"), Speaker::Master), "");
+  EXPECT_EQ(check_error(dcon("~**D3\r"), Speaker::Master), "wrong checksum");
+}
+
+TEST(DconMeaning, WhatMayBeWithoutAChecksumIsNotSaidToHaveAWrongOne) {
+  EXPECT_EQ(check_error(dcon("@01FF\r"), Speaker::Master), "");
+  EXPECT_EQ(check_error(dcon("$01Z\r"), Speaker::Master), "");
+  EXPECT_EQ(check_error(dcon("$\r"), Speaker::Master), "");
+  EXPECT_EQ(check_error(dcon("!01400600\r"), Speaker::Module), "");
 }
 
 TEST(DconMeaning, WhatIsNoCommandIsSaidToBeNone) {

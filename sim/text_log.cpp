@@ -1,0 +1,41 @@
+#include "sim/text_log.hpp"
+
+#include <iomanip>
+#include <sstream>
+
+#include "sim/line_error.hpp"
+
+namespace ex9000::sim {
+
+namespace {
+
+/// Seconds with six decimals, right-aligned.
+std::string stamp(VirtualTime time) {
+  std::ostringstream text;
+  text << std::fixed << std::setprecision(6) << std::setw(12) << std::chrono::duration<double>(time).count();
+  return text.str();
+}
+
+/// A collision leaves no meaning, and nobody knows what somebody else means.
+std::string remarks(const Frame& frame, bool known) {
+  const std::string error = line_error(frame);
+  const std::string means = frame.collided || !known ? "" : meaning(frame.bytes, frame.speaker());
+  return error + (error.empty() || means.empty() ? "" : "; ") + means;
+}
+
+}  // namespace
+
+void TextLog::frame(const Frame& frame) {
+  const bool known = names_.know(frame.station);
+  const std::string mark = frame.speaker() == Speaker::Master ? "  > " : known ? "  < " : "  ? ";
+  std::string line = stamp(frame.began) + mark + names_.of(frame.station) + "  " + shown(frame.bytes);
+  const std::string remark = remarks(frame, known);
+  if (!remark.empty()) {
+    line += "  ; " + remark;
+  }
+  print_(line);
+}
+
+void TextLog::note(VirtualTime now, const std::string& text) { print_(stamp(now) + "  - " + text); }
+
+}  // namespace ex9000::sim
