@@ -11,7 +11,7 @@
 
 #include "sim/capture/capture.hpp"
 #include "sim/line.hpp"
-#include "tests/modbus_frame.hpp"
+#include "sim/play/modbus_frame.hpp"
 #include "tests/system/directory.hpp"
 #include "tests/system/simulator_process.hpp"
 #include "tests/system/socket_client.hpp"
@@ -243,8 +243,8 @@ TEST(Capture, TheLinesOfABusFileAreInterfaces) {
 }
 
 TEST(Capture, WhatAStrangerSaysIsNotTakenForAnAnswer) {
-  Captured line({"EX9042D-M@01", "--fault", "foreign-traffic 0501000000083C48 at 1s"});
-  line.wait_for("foreign-traffic");
+  Captured line({"EX9042D-M@01", "--fault", "foreign-traffic 0501000000083C48 at 1s", "--log"});
+  line.wait_for("05 01 00 00 00 08 3C 48");  // or it would collide with that
   line.ask(with_crc({1, 1, 0, 0, 0, 1}), 6);
   const std::vector<Packet> packets = line.decoded({"frame.p2p_dir", "_ws.col.Info"});
   ASSERT_EQ(packets.size(), 3U);

@@ -6,8 +6,8 @@
 
 #include "sim/json_log.hpp"
 #include "sim/line_error.hpp"
+#include "sim/play/modbus_frame.hpp"
 #include "sim/text_log.hpp"
-#include "tests/modbus_frame.hpp"
 
 namespace ex9000::sim {
 namespace {

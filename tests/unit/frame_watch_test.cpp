@@ -5,7 +5,7 @@
 
 #include <string_view>
 
-#include "tests/modbus_frame.hpp"
+#include "sim/play/modbus_frame.hpp"
 
 namespace ex9000::sim {
 namespace {
