@@ -5,10 +5,10 @@
 #include <string>
 #include <vector>
 
-#include "tests/runner/core_target.hpp"
-#include "tests/runner/coverage.hpp"
 #include "sim/play/player.hpp"
 #include "sim/play/transcript.hpp"
+#include "tests/runner/core_target.hpp"
+#include "tests/runner/coverage.hpp"
 
 namespace ex9000 {
 namespace {

@@ -11,11 +11,11 @@
 #include <thread>
 #include <vector>
 
+#include "sim/play/player.hpp"
+#include "sim/play/transcript.hpp"
 #include "tests/rig/emulated_module.hpp"
 #include "tests/rig/image_target.hpp"
 #include "tests/runner/core_target.hpp"
-#include "sim/play/player.hpp"
-#include "sim/play/transcript.hpp"
 #include "tests/system/child_process.hpp"
 
 namespace ex9000 {

@@ -8,9 +8,9 @@
 #include <thread>
 #include <vector>
 
-#include "tests/runner/core_target.hpp"
 #include "sim/play/player.hpp"
 #include "sim/play/transcript.hpp"
+#include "tests/runner/core_target.hpp"
 #include "tests/system/process_target.hpp"
 
 namespace ex9000 {

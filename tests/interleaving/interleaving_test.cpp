@@ -24,8 +24,8 @@
 #include <set>
 
 #include "firmware/line/event_tally.hpp"
-#include "tests/interleaving/scenario.hpp"
 #include "sim/play/modbus_frame.hpp"
+#include "tests/interleaving/scenario.hpp"
 
 namespace ex9000::interleaving {
 namespace {

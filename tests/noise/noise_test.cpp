@@ -9,8 +9,8 @@
 #include <functional>
 
 #include "sim/faults/echo.hpp"
-#include "tests/environment.hpp"
 #include "sim/play/modbus_frame.hpp"
+#include "tests/environment.hpp"
 #include "tests/noise/noisy_line.hpp"
 #include "tests/noise/theory.hpp"
 

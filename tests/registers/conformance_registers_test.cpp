@@ -9,10 +9,10 @@
 #include <filesystem>
 #include <string>
 
-#include "tests/registers/images_under_test.hpp"
-#include "tests/registers/register_target.hpp"
 #include "sim/play/player.hpp"
 #include "sim/play/transcript.hpp"
+#include "tests/registers/images_under_test.hpp"
+#include "tests/registers/register_target.hpp"
 
 namespace ex9000::registers {
 namespace {

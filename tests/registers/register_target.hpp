@@ -3,8 +3,8 @@
 
 #include <optional>
 
-#include "tests/registers/board_bench.hpp"
 #include "sim/play/target.hpp"
+#include "tests/registers/board_bench.hpp"
 
 namespace ex9000::registers {
 

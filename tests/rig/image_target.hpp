@@ -4,8 +4,8 @@
 #include <chrono>
 #include <map>
 
-#include "tests/rig/timed_module.hpp"
 #include "sim/play/target.hpp"
+#include "tests/rig/timed_module.hpp"
 
 namespace ex9000::rig {
 
