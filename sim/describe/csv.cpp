@@ -29,7 +29,7 @@ struct Row {
 };
 
 /// A cell is quoted where it must be.
-std::string cell(const std::string& text) {
+std::string quoted_cell(const std::string& text) {
   if (text.find_first_of(",\"\r\n") == std::string::npos) {
     return text;
   }
@@ -45,9 +45,9 @@ std::string line(const Row& row) {
   for (const std::string* each :
        {&row.model, &row.table, &row.address, &row.plc_number, &row.channel, &row.functions, &row.command,
         &row.reply, &row.access, &row.range, &row.needs_init, &row.id}) {
-    text += cell(*each) + ",";
+    text += quoted_cell(*each) + ",";
   }
-  return text + cell(row.meaning) + "\r\n";
+  return text + quoted_cell(row.meaning) + "\r\n";
 }
 
 std::string command_line(const Model& model, const dcon::Command& command) {
@@ -64,14 +64,6 @@ std::string command_line(const Model& model, const dcon::Command& command) {
   return line(row);
 }
 
-std::string function_codes(const std::vector<unsigned>& functions) {
-  std::string text;
-  for (const unsigned function : functions) {
-    text += (text.empty() ? "" : " ") + hex_byte_text(function);
-  }
-  return text;
-}
-
 std::string register_line(const Model& model, const MapRow& of, unsigned address) {
   Row row;
   row.model = model.designation;
@@ -79,7 +71,7 @@ std::string register_line(const Model& model, const MapRow& of, unsigned address
   row.address = std::to_string(address);
   row.plc_number = plc_number(*of.area, address);
   row.channel = of.per_channel ? std::to_string(address - of.first) : "";
-  row.functions = function_codes(of.functions);
+  row.functions = hex_codes(of.functions, " ");
   row.access = access_text(of.reads, of.writes);
   row.range = of.range;
   row.id = of.id;

@@ -27,7 +27,7 @@ constexpr const char* kNone = "-";
 std::string code(std::string_view text) { return "`" + std::string(text) + "`"; }
 
 /// A pipe would end the cell, even inside backticks.
-std::string cell(std::string_view text) {
+std::string escaped_cell(std::string_view text) {
   std::string escaped;
   for (const char character : text) {
     escaped += character == '|' ? std::string("\\|") : std::string(1, character);
@@ -38,7 +38,7 @@ std::string cell(std::string_view text) {
 std::string table_line(const Cells& cells) {
   std::string line = "|";
   for (const std::string& text : cells) {
-    line += " " + cell(text) + " |";
+    line += " " + escaped_cell(text) + " |";
   }
   return line + "\n";
 }
@@ -207,19 +207,10 @@ std::string functions_table(const Models& models) {
   return text;
 }
 
-std::string function_codes(const std::vector<unsigned>& functions) {
-  std::vector<std::string> codes;
-  codes.reserve(functions.size());
-  for (const unsigned function : functions) {
-    codes.push_back(hex_byte_text(function));
-  }
-  return join(codes);
-}
-
 std::string map_line(const MapRow& row) {
   return table_line({row.area->name, range_text(hex_word(row.first), hex_word(row.last)),
                      range_text(plc_number(*row.area, row.first), plc_number(*row.area, row.last)),
-                     function_codes(row.functions), access_text(row.reads, row.writes),
+                     hex_codes(row.functions, ", "), access_text(row.reads, row.writes),
                      std::string(row.range), std::string(row.meaning)});
 }
 

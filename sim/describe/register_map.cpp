@@ -64,4 +64,12 @@ std::string plc_number(const Area& area, unsigned address) {
   return area.digit + std::string(number.size() < kDigits ? kDigits - number.size() : 0, '0') + number;
 }
 
+std::string hex_codes(const std::vector<unsigned>& functions, const char* separator) {
+  std::string text;
+  for (const unsigned function : functions) {
+    text += (text.empty() ? "" : separator) + hex_byte_text(function);
+  }
+  return text;
+}
+
 }  // namespace ex9000::sim

@@ -52,4 +52,7 @@ std::vector<MapRow> register_map(const Model& model);
 /// As PLCs count: from 1, in at least four digits behind that of the table.
 std::string plc_number(const Area& area, unsigned address);
 
+/// Function codes as two hex digits each.
+std::string hex_codes(const std::vector<unsigned>& functions, const char* separator);
+
 }  // namespace ex9000::sim

@@ -1,0 +1,112 @@
+#include "sim/program.hpp"
+
+#include <fcntl.h>
+#include <unistd.h>
+
+#include <boost/asio/io_context.hpp>
+#include <boost/asio/signal_set.hpp>
+#include <cerrno>
+#include <csignal>
+#include <cstring>
+#include <iostream>
+#include <stdexcept>
+#include <string>
+
+#include "sim/arguments.hpp"
+#include "sim/play/play.hpp"
+#include "sim/session.hpp"
+
+namespace ex9000::sim {
+
+namespace {
+
+constexpr int kCannotStart = 1;
+constexpr int kFailed = 1;
+
+/// Those that whoever started this has not told it to ignore, as nohup does and shells for background jobs.
+void add_signals(boost::asio::signal_set& signals) {
+  for (const int signal : {SIGINT, SIGTERM, SIGHUP}) {
+    struct sigaction action {};
+    if (sigaction(signal, nullptr, &action) == 0 && action.sa_handler != SIG_IGN) {
+      signals.add(signal);
+    }
+  }
+}
+
+/// Flushed, since a log is read while it grows. False where nobody reads it any more; throws where it cannot
+/// be written otherwise.
+bool print(const std::string& text) {
+  if (!std::cout) {
+    return false;  // as before, and nothing says why any more
+  }
+  errno = 0;
+  std::cout << text << std::flush;
+  if (!std::cout && errno != EPIPE) {
+    throw std::runtime_error(std::string("standard output: ") + std::strerror(errno));
+  }
+  return static_cast<bool>(std::cout);
+}
+
+void run(const Setup& setup) {
+  boost::asio::io_context io;
+  // Who closes the pipe behind the log ends the program.
+  const auto print_line = [&io](const std::string& line) {
+    if (!print(line + "\n")) {
+      io.stop();
+    }
+  };
+  boost::asio::signal_set signals(io);
+  add_signals(signals);  // before anything is made that is to be removed again
+  signals.async_wait([&io](const boost::system::error_code& /*error*/, int /*signal*/) { io.stop(); });
+  const auto greet = [](const std::string& text) { std::cerr << text << std::endl; };
+  Session session(io, setup, print_line, greet);
+  session.start();
+  if (setup.speed) {
+    io.run();
+  } else {
+    session.run_as_fast_as_it_can();
+  }
+  session.finish();
+}
+
+int fail(const std::exception& error, int status) {
+  std::cerr << one_line(std::string("ex9000-sim: ") + error.what()) << '\n';
+  return status;
+}
+
+/// Where one of the three is closed, the next file would take its number, and a log be written into the line.
+void occupy_standard_streams() {
+  int fd = open("/dev/null", O_RDWR);
+  while (fd >= 0 && fd <= STDERR_FILENO) {
+    fd = open("/dev/null", O_RDWR);
+  }
+  if (fd >= 0) {
+    close(fd);
+  }
+}
+
+}  // namespace
+
+int run_program(int argc, const char* const* argv) {
+  occupy_standard_streams();
+  static_cast<void>(std::signal(SIGPIPE, SIG_IGN));  // a write to a closed pipe fails, and that is looked at
+  try {
+    const Parsed parsed = parse_arguments(argc, argv);
+    print(parsed.output);
+    std::cerr << parsed.error;
+    if (parsed.task) {
+      return play::play(*parsed.task, [](const std::string& line) { print(line + "\n"); }) ? 0 : kFailed;
+    }
+    if (!parsed.setup) {
+      return parsed.exit_status;
+    }
+    run(*parsed.setup);
+  } catch (const std::invalid_argument& error) {
+    return fail(error, kWrongArguments);
+  } catch (const std::exception& error) {
+    return fail(error, kCannotStart);
+  }
+  return 0;
+}
+
+}  // namespace ex9000::sim
