@@ -1,5 +1,7 @@
 #include "sim/describe/register_map.hpp"
 
+#include "sim/module_spec.hpp"
+
 namespace ex9000::sim {
 
 namespace {
