@@ -6,6 +6,7 @@
 #include <utility>
 #include <vector>
 
+#include "sim/fail.hpp"
 #include "sim/time_text.hpp"
 
 namespace ex9000::sim {
@@ -15,8 +16,6 @@ namespace {
 constexpr VirtualTime kShortest = std::chrono::microseconds(10);
 /// What contacts do in the time that they chatter.
 constexpr unsigned kChatters = 4;
-
-[[noreturn]] void fail(const std::string& what) { throw std::invalid_argument(what); }
 
 unsigned parse_channel(const std::string& word, const Model& model) {
   unsigned channel = 0;

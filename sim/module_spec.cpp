@@ -8,12 +8,11 @@
 
 #include "firmware/hex.hpp"
 #include "firmware/model/baud.hpp"
+#include "sim/fail.hpp"
 
 namespace ex9000::sim {
 
 namespace {
-
-[[noreturn]] void fail(const std::string& what) { throw std::invalid_argument(what); }
 
 std::string upper(std::string text) {
   std::transform(text.begin(), text.end(), text.begin(),

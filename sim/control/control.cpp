@@ -1,4 +1,5 @@
 #include "sim/control/control.hpp"
+#include "sim/words.hpp"
 
 #include <array>
 #include <iomanip>
@@ -11,23 +12,12 @@ namespace ex9000::sim {
 
 namespace {
 
-using Words = std::vector<std::string>;
-
 /// Becomes an `error: ` reply.
 struct Refused {
   std::string why;  ///< may hold any byte that a command may
 };
 
 constexpr unsigned long kMostPulses = 1'000'000;  // some milliseconds of work
-
-Words words_of(const std::string& line) {
-  std::istringstream stream(line);
-  Words words;
-  for (std::string word; stream >> word;) {
-    words.push_back(word);
-  }
-  return words;
-}
 
 /// Decimal digits and nothing else, up to `most`.
 std::optional<unsigned long> number(const std::string& text, unsigned long most) {

@@ -9,15 +9,13 @@
 
 #include "firmware/hex.hpp"
 #include "firmware/model/baud.hpp"
+#include "sim/fail.hpp"
 #include "sim/time_text.hpp"
+#include "sim/words.hpp"
 
 namespace ex9000::sim {
 
 namespace {
-
-using Words = std::vector<std::string>;
-
-[[noreturn]] void fail(const std::string& what) { throw std::invalid_argument(what); }
 
 /// A whole word that is a number, as `Number` has it.
 template <class Number>
@@ -110,15 +108,6 @@ constexpr std::array<Row, 13> kRows{{
     {"hang", "", Trouble::Hang, true, take_nothing,
      "its main loop stops, until the module watchdog resets it"},
 }};
-
-Words words_of(const std::string& text) {
-  std::istringstream stream(text);
-  Words words;
-  for (std::string word; stream >> word;) {
-    words.push_back(word);
-  }
-  return words;
-}
 
 /// In one line, whatever it was written in.
 std::string text_of(const Words& words) {
