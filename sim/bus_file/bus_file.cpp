@@ -6,14 +6,13 @@
 #include <utility>
 
 #include "sim/bus_file/located_json.hpp"
+#include "sim/fail.hpp"
 
 namespace ex9000::sim {
 
 namespace {
 
 using json = nlohmann::ordered_json;
-
-[[noreturn]] void fail(const std::string& what) { throw std::invalid_argument(what); }
 
 /// A value of the file, and where it stands.
 class Node {
