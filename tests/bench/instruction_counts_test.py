@@ -10,6 +10,7 @@ from instruction_counts import capacity, counter, execution, requests  # noqa: E
 
 SLEEP = 0x100  # WFI; behind it the main loop goes on at 0x102
 TICKS_OWN = 0x300
+LATE = 0x2800  # a byte's interrupt ends the frame before it
 HANDLERS = {execution.TICK: 0x1000, execution.LINE: 0x2000, execution.SILENCE: 0x3000}
 
 
@@ -42,7 +43,7 @@ TURN = list(range(0x400, 0x440, 2))  # 32 instructions, so more than it takes to
 
 
 def count(log, frame, until, ends_with_cr, turn_around=True):
-    its = counter.Counter(HANDLERS, {SLEEP}, {TICKS_OWN}, ends_with_cr)
+    its = counter.Counter(HANDLERS, {SLEEP}, {TICKS_OWN}, {LATE}, ends_with_cr)
     request = requests.Request("it", [frame], until=until, turn_around=turn_around)
     its.expect(request)
     execution.follow(log, {SLEEP}, its)
@@ -69,6 +70,12 @@ class Passes(unittest.TestCase):
         its, found = count(log, b"\x01", requests.REPLY, False)
         self.assertEqual((found.passes, found.count), (1, 2 + 32))
         self.assertEqual(its.received_byte.count, 2)
+
+    def test_a_byte_that_ends_the_frame_before_it_is_told_apart(self):
+        log = self.RTU + interrupt(execution.LINE, 0x2000, received(1), LATE, 0x2802)
+        its, _ = count(log, b"\x01", requests.REPLY, False)
+        self.assertEqual((its.received_byte.passes, its.received_byte.count), (1, 2))
+        self.assertEqual((its.late_byte.passes, its.late_byte.count), (1, 3))
 
     def test_what_was_not_executed_after_all_does_not_count(self):
         log = self.RTU + interrupt(execution.SILENCE, 0x3000, BEGUN_ANEW, 0x3000, 0x3002)

@@ -40,13 +40,17 @@ class Counter:
     no reply: what such a request changes may wait for the tick, which is left out, and so is what the main loop
     does for it.
 
+    A byte behind a silence that nobody has told of ends the frame before it, which is else the work of the
+    silence's interrupt: `late_byte` has those. A busy host makes some, where the emulator's clock runs ahead.
+
     What was done before, while the silence lasted, is told apart: CR's interrupt, and the turn that judges.
     """
 
-    def __init__(self, handlers, sleeps, of_the_tick, ends_with_cr):
+    def __init__(self, handlers, sleeps, of_the_tick, behind_a_gap, ends_with_cr):
         self._first = {number: execution.as_logged(address) for number, address in handlers.items()}
         self._awake = {execution.as_logged(address + 2) for address in sleeps}
         self._of_the_tick = {execution.as_logged(address) for address in of_the_tick}
+        self._behind_a_gap = {execution.as_logged(address) for address in behind_a_gap}
         self._ends_with_cr = ends_with_cr
         self._frame = bytearray()
         self._request = None  # whose pass is under way
@@ -64,6 +68,7 @@ class Counter:
     def forget(self):
         """Begins to count what is not a request."""
         self.received_byte = Highest()
+        self.late_byte = Highest()  # which ends the frame before it
         self.sent_byte = Highest()
         self.interrupts = {}  # others, by the number of the exception
         self.edges = {}  # by how many were served at once
@@ -136,11 +141,16 @@ class Counter:
     def _note_interrupt(self, span):
         if span.exception == execution.LINE:
             if len(span.received) + span.sent == 1:
-                (self.sent_byte if span.sent else self.received_byte).note(span.addresses)
+                self._served_by(span).note(span.addresses)
         elif span.exception in execution.EDGES:
             self.edges.setdefault(self.edges_at_once, Highest()).note(span.addresses)
         else:
             self.interrupts.setdefault(span.exception, Highest()).note(span.addresses)
+
+    def _served_by(self, span):
+        if span.sent:
+            return self.sent_byte
+        return self.received_byte if self._behind_a_gap.isdisjoint(span.addresses) else self.late_byte
 
     # --- a pass ---
 

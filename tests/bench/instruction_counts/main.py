@@ -27,6 +27,7 @@ SESSIONS = [
 ]
 
 BYTE_LIMIT = 100
+LATE_BYTE_LIMIT = 200  # two interrupts' work in one: a byte's and a silence's
 EDGE_LIMIT = 100
 EDGE_PASSES = 20  # for each of eight inputs
 
@@ -44,6 +45,8 @@ def rows_of(counter):
         rows.append(Row(name, highest, served, limit, ""))
 
     add("received byte", counter.received_byte, limit=BYTE_LIMIT)
+    if counter.late_byte.passes:
+        add("received byte that ends the frame before it", counter.late_byte, limit=LATE_BYTE_LIMIT)
     for edges, highest in sorted(counter.edges.items()):
         add("input edge" if edges == 1 else f"input edge, {edges} at once", highest, edges, EDGE_LIMIT)
     add("sent byte", counter.sent_byte)

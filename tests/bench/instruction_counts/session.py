@@ -36,8 +36,11 @@ class Session:
         of_the_tick = self.image.addresses_of("look_around")
         if not of_the_tick:
             raise RuntimeError(f"{image}: no code of `look_around`, which the main loop does for the tick")
+        behind_a_gap = self.image.addresses_of("behind_a_gap")
+        if not behind_a_gap and not ascii:
+            raise RuntimeError(f"{image}: no code of `behind_a_gap`, where a byte ends the frame before it")
         sleeps = self.image.sleeps()
-        self.counter = Counter(self.image.handlers(), sleeps, of_the_tick, ascii)
+        self.counter = Counter(self.image.handlers(), sleeps, of_the_tick, behind_a_gap, ascii)
         self._emulator = Emulator(image)
         threading.Thread(
             target=execution.follow, args=(self._emulator.log, sleeps, self.counter), daemon=True
