@@ -12,12 +12,14 @@
 #include "sim/play/transcript.hpp"
 #include "tests/runner/core_target.hpp"
 #include "tests/system/process_target.hpp"
+#include "tests/system/transcript_lines.hpp"
 
 namespace ex9000 {
 namespace {
 
 /// They wait nearly all the time: a paced line takes as long as a real one.
-constexpr unsigned kAtOnce = 40;
+constexpr std::size_t kLines = 25;
+constexpr unsigned kProcesses = 4;  ///< at a time
 
 struct Played {
   play::Transcript transcript;
@@ -38,28 +40,46 @@ std::vector<Played> all_runs() {
   return runs;
 }
 
-void play_on_a_simulator(Played& run) {
+void play_on(system::TranscriptLines& lines, std::size_t position, Played& run) {
   try {
-    system::ProcessTarget target;
+    system::ProcessTarget target = lines.target(position);
     run.result = play::play(run.transcript, target);
   } catch (const std::exception& error) {
     run.result.failure = run.transcript.file + ": " + error.what();
   }
 }
 
-TEST(Conformance, TheSimulatorPassesEveryTranscriptOnEveryModelItNames) {
-  std::vector<Played> runs = all_runs();
-  std::atomic<std::size_t> next{0};
+/// Each on a line of its own, in one simulator, all at the same time.
+void play_on_a_simulator(Played* runs, std::size_t count) try {
+  std::vector<const play::Transcript*> transcripts;
+  for (std::size_t each = 0; each < count; ++each) {
+    transcripts.push_back(&runs[each].transcript);
+  }
+  system::TranscriptLines lines(transcripts);
   std::vector<std::thread> players;
-  for (unsigned i = 0; i < kAtOnce; ++i) {
-    players.emplace_back([&] {
-      for (std::size_t mine = next++; mine < runs.size(); mine = next++) {
-        play_on_a_simulator(runs[mine]);
-      }
-    });
+  for (std::size_t each = 0; each < count; ++each) {
+    players.emplace_back([&lines, each, &run = runs[each]] { play_on(lines, each, run); });
   }
   for (std::thread& player : players) {
     player.join();
+  }
+} catch (const std::exception& error) {
+  std::for_each_n(runs, count, [&error](Played& run) { run.result.failure = error.what(); });
+}
+
+TEST(Conformance, TheSimulatorPassesEveryTranscriptOnEveryModelItNames) {
+  std::vector<Played> runs = all_runs();
+  std::atomic<std::size_t> next{0};
+  std::vector<std::thread> processes;
+  for (unsigned i = 0; i < kProcesses; ++i) {
+    processes.emplace_back([&] {
+      for (std::size_t first = next.fetch_add(kLines); first < runs.size(); first = next.fetch_add(kLines)) {
+        play_on_a_simulator(&runs[first], std::min(kLines, runs.size() - first));
+      }
+    });
+  }
+  for (std::thread& process : processes) {
+    process.join();
   }
   // On a machine that is busy with other things a wait may last longer than the transcript says, and a
   // watchdog be over before it is looked at. Alone, a transcript gets all the time there is.
@@ -68,7 +88,7 @@ TEST(Conformance, TheSimulatorPassesEveryTranscriptOnEveryModelItNames) {
     if (!run.result.passed()) {
       std::printf("alone once more: %s\n", run.result.failure.c_str());
       ++again;
-      play_on_a_simulator(run);
+      play_on_a_simulator(&run, 1);
     }
   }
   std::size_t steps = 0;

@@ -1,9 +1,9 @@
 #include "sim/play/play.hpp"
 
 #include <filesystem>
-#include <stdexcept>
 #include <vector>
 
+#include "sim/fail.hpp"
 #include "sim/play/bus_target.hpp"
 #include "sim/play/player.hpp"
 #include "sim/play/transcript.hpp"
@@ -12,7 +12,7 @@ namespace ex9000::play {
 
 namespace {
 
-[[noreturn]] void fail(const std::string& what) { throw std::invalid_argument(what); }
+using sim::fail;
 
 std::vector<Transcript> load_all(const std::string& path) {
   std::vector<Transcript> all;
@@ -23,7 +23,7 @@ std::vector<Transcript> load_all(const std::string& path) {
         all.push_back(std::move(transcript));
       }
     }
-  } catch (const std::runtime_error& error) {
+  } catch (const std::filesystem::filesystem_error& error) {
     fail(error.what());
   }
   if (all.empty()) {

@@ -5,15 +5,16 @@
 #include <filesystem>
 #include <fstream>
 #include <optional>
-#include <sstream>
-#include <stdexcept>
 
+#include "sim/fail.hpp"
 #include "sim/time_text.hpp"
+#include "sim/words.hpp"
 
 namespace ex9000::play {
 
 namespace {
 
+using sim::fail;
 using Variables = std::map<std::string, std::string>;
 
 struct Line {
@@ -26,21 +27,10 @@ struct ModelRun {
   Variables variables;
 };
 
-[[noreturn]] void fail(const std::string& what) { throw std::runtime_error(what); }
-
 std::string trimmed(const std::string& text) {
   const auto first = text.find_first_not_of(" \t\r");
   const auto last = text.find_last_not_of(" \t\r");
   return first == std::string::npos ? "" : text.substr(first, last - first + 1);
-}
-
-std::vector<std::string> words(const std::string& text) {
-  std::istringstream stream(text);
-  std::vector<std::string> result;
-  for (std::string word; stream >> word;) {
-    result.push_back(word);
-  }
-  return result;
 }
 
 unsigned long number(const std::string& text, int base = 10) {
@@ -147,7 +137,7 @@ Action parse_action(const std::string& text) {
   if (text.rfind("=>", 0) == 0) {
     return step::SendModbus{hex_bytes(rest_after(2))};
   }
-  const std::vector<std::string> word = words(text);
+  const sim::Words word = sim::words_of(text);
   const std::string& verb = word[0];
   const auto takes = [&](std::size_t count) {
     if (word.size() != count + 1) {
@@ -241,7 +231,7 @@ struct Source {
   bool names_its_source = false;
   bool slow = false;
   std::vector<ModelRun> models;
-  std::vector<std::string> presets;
+  sim::Words presets;
   std::vector<Line> steps;
 };
 
@@ -249,7 +239,7 @@ bool read_header(const std::string& text, Source& source) {
   if (const auto from = header_value(text, "source")) {
     source.names_its_source = !from->empty();
   } else if (const auto model = header_value(text, "model")) {
-    const std::vector<std::string> word = words(*model);
+    const sim::Words word = sim::words_of(*model);
     if (word.empty()) {
       fail("'model:' wants a name");
     }
@@ -259,7 +249,7 @@ bool read_header(const std::string& text, Source& source) {
     }
     source.models.push_back(run);
   } else if (const auto preset = header_value(text, "preset")) {
-    source.presets = words(*preset);
+    source.presets = sim::words_of(*preset);
   } else if (const auto tags = header_value(text, "tags")) {
     if (*tags != "slow") {
       fail("no tag '" + *tags + "'");
@@ -298,7 +288,7 @@ Transcript scenario(const std::string& path, const Source& source, unsigned& lin
   return transcript;
 }
 
-Transcript bind(const std::string& path, const Source& source, const ModelRun& run, unsigned& line) {
+Transcript transcript_of(const std::string& path, const Source& source, const ModelRun& run, unsigned& line) {
   Transcript transcript;
   transcript.file = path;
   transcript.model = run.model;
@@ -371,7 +361,7 @@ std::vector<Transcript> load(const std::string& path) {
     }
     std::vector<Transcript> transcripts;
     for (const ModelRun& run : source.models) {
-      transcripts.push_back(bind(path, source, run, line));
+      transcripts.push_back(transcript_of(path, source, run, line));
     }
     return transcripts;
   } catch (const std::exception& error) {

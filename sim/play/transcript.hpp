@@ -108,7 +108,7 @@ constexpr std::chrono::milliseconds kSilence{250};
 /// The transcripts below `directory`, in the order of their paths.
 std::vector<std::string> transcript_files(const std::string& directory);
 
-/// All runs of a file, one a `model:` line, or the one scenario that it is. Throws std::runtime_error that
+/// All runs of a file, one a `model:` line, or the one scenario that it is. Throws std::invalid_argument that
 /// names file, line and what is wrong.
 std::vector<Transcript> load(const std::string& path);
 /// The same of files that are no scenarios.

@@ -100,7 +100,11 @@ void Pty::make(std::uint32_t baud) {
     throw std::runtime_error(device_ + ": " + reason());
   }
   visits_ = inotify_init1(IN_NONBLOCK | IN_CLOEXEC);
-  if (visits_ < 0 || inotify_add_watch(visits_, device_.c_str(), IN_OPEN | IN_CLOSE) < 0) {
+  if (visits_ < 0) {
+    throw std::runtime_error("no notice of who opens " + device_ + ": " + reason() +
+                             "; have fewer pseudo-terminals or raise fs.inotify.max_user_instances");
+  }
+  if (inotify_add_watch(visits_, device_.c_str(), IN_OPEN | IN_CLOSE) < 0) {
     throw std::runtime_error(device_ + ": " + reason());
   }
   if (symlink(device_.c_str(), link_.c_str()) != 0) {

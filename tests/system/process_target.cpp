@@ -1,10 +1,7 @@
 #include "tests/system/process_target.hpp"
 
 #include <algorithm>
-#include <stdexcept>
 #include <utility>
-
-#include "sim/module_spec.hpp"
 
 namespace ex9000::system {
 
@@ -18,31 +15,17 @@ constexpr std::chrono::milliseconds kHostLatency{20};
 /// And may keep an answer waiting this much longer than a module would: only a missing one costs it.
 constexpr std::chrono::seconds kPatience{3};
 
-/// As on the command line.
-std::string spec_of(const Model& model, const Settings* preset) {
-  std::string spec(model.designation);
-  if (preset != nullptr) {
-    spec += "@" + sim::hex_byte_text(preset->address);
-    spec += preset->protocol == Protocol::Ascii ? ",protocol=ascii" : ",protocol=modbus";
-    spec += ",baud=" + std::to_string(baud_rate(preset->baud_code));
-    spec += (preset->format & kFormatChecksum) != 0 ? ",checksum=on" : ",checksum=off";
-    spec += (preset->format & kFormatRisingEdge) != 0 ? ",edge=rising" : ",edge=falling";
-  }
-  return spec;
-}
-
 std::string on_off(bool on) { return on ? " on" : " off"; }
 
 }  // namespace
 
-void ProcessTarget::start(const Model& model, const Settings* preset) {
-  simulator_.emplace(std::vector<std::string>{spec_of(model, preset), "--control", "control"});
-  terminal_.emplace(simulator_->tty(), 9600);
-  control_.emplace(simulator_->directory() + "/control");
-}
+ProcessTarget::ProcessTarget(const std::string& tty, const std::string& control, std::size_t number)
+    : number_(std::to_string(number)), terminal_(tty, 9600), control_(control) {}
+
+void ProcessTarget::start(const Model& /*model*/, const Settings* /*preset*/) {}
 
 void ProcessTarget::send(const Bytes& bytes) {
-  terminal_->write(bytes);
+  terminal_.write(bytes);
   constexpr std::chrono::nanoseconds kCharacterBits{10'000'000'000};
   line_free_ = std::max(line_free_, Clock::now()) +
                kCharacterBits * static_cast<std::int64_t>(bytes.size()) / std::int64_t{baud_};
@@ -50,7 +33,7 @@ void ProcessTarget::send(const Bytes& bytes) {
 
 void ProcessTarget::hear_until(Clock::time_point when) {
   for (auto now = Clock::now(); now < when; now = Clock::now()) {
-    const Bytes bytes = terminal_->read(when - now);
+    const Bytes bytes = terminal_.read(when - now);
     heard_.insert(heard_.end(), bytes.begin(), bytes.end());
   }
 }
@@ -60,7 +43,7 @@ Bytes ProcessTarget::take_heard() { return std::exchange(heard_, {}); }
 Bytes ProcessTarget::receive(std::size_t count, std::chrono::milliseconds patience) {
   Clock::time_point gives_up = std::max(line_free_, Clock::now()) + patience + kPatience;
   while (heard_.size() < count && Clock::now() < gives_up) {
-    const Bytes bytes = terminal_->read(gives_up - Clock::now());
+    const Bytes bytes = terminal_.read(gives_up - Clock::now());
     if (bytes.empty()) {
       break;
     }
@@ -82,14 +65,14 @@ Bytes ProcessTarget::listen(std::chrono::milliseconds time) {
 
 void ProcessTarget::set_baud(std::uint32_t rate) {
   baud_ = rate;
-  terminal_->set_baud(rate);
+  terminal_.set_baud(rate);
 }
 
 std::string ProcessTarget::control(const std::string& command) {
   if (Clock::now() < line_free_ + kHostLatency) {
     hear_until(line_free_ + kHostLatency);
   }
-  return control_->ok("1 " + command);
+  return control_.ok(number_ + " " + command);
 }
 
 void ProcessTarget::power(bool on) {

@@ -1,18 +1,22 @@
-// A running ex9000-sim as a transcript's target: its pseudo-terminal and its control socket, in real time.
+// A module of a running ex9000-sim as a transcript's target: its pseudo-terminal and its control socket, in
+// real time.
 #pragma once
 
 #include <chrono>
-#include <optional>
+#include <string>
 
 #include "sim/play/target.hpp"
 #include "tests/system/control_client.hpp"
-#include "tests/system/simulator_process.hpp"
 #include "tests/system/terminal.hpp"
 
 namespace ex9000::system {
 
 class ProcessTarget final : public play::Target {
  public:
+  /// The module with `number` on the control socket, alone on the line whose pseudo-terminal `tty` is. It is
+  /// as `start` wants it.
+  ProcessTarget(const std::string& tty, const std::string& control, std::size_t number);
+
   void start(const Model& model, const Settings* preset) override;
   void send(const play::Bytes& bytes) override;
   play::Bytes receive(std::size_t count, std::chrono::milliseconds patience) override;
@@ -34,9 +38,9 @@ class ProcessTarget final : public play::Target {
   void hear_until(Clock::time_point when);
   play::Bytes take_heard();
 
-  std::optional<SimulatorProcess> simulator_;
-  std::optional<Terminal> terminal_;
-  std::optional<ControlClient> control_;
+  std::string number_;
+  Terminal terminal_;
+  ControlClient control_;
   std::uint32_t baud_ = 0;
   Clock::time_point line_free_;  ///< when all that was sent has been on the line
   play::Bytes heard_;

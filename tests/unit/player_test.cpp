@@ -43,7 +43,7 @@ bool loads(const std::string& text) {
   const TranscriptFile file(text);
   try {
     return !play::load_transcripts(file.path()).empty();
-  } catch (const std::runtime_error&) {
+  } catch (const std::invalid_argument&) {
     return false;
   }
 }
