@@ -1,7 +1,7 @@
 // What the simulator carries: one line beside servers that people write with libmodbus and pymodbus, and
 // eight lines of 32 modules in one process.
 //
-//     load [MILLISECONDS]    for each measurement; 1000 if left out
+//     load [--without pymodbus] [MILLISECONDS]    for each measurement; 1000 if left out
 #include <unistd.h>
 
 #include <algorithm>
@@ -10,7 +10,7 @@
 #include <cstdio>
 #include <cstdlib>
 #include <fstream>
-#include <functional>
+#include <optional>
 #include <sstream>
 #include <string>
 #include <thread>
@@ -58,15 +58,25 @@ double rate_of(PollingMaster& master, std::chrono::milliseconds time) {
   return transactions / std::chrono::duration<double>(Clock::now() - began).count();
 }
 
-void compare(std::chrono::milliseconds time) {
+void compare(std::chrono::milliseconds time, bool with_pymodbus) {
   SimulatorProcess simulator({"EX9042D-M@01", "--tcp", "0", "--line", "instant"});
+  SimulatorProcess other_simulator({"EX9042D-M@01", "--line", "instant"});
   ChildProcess libmodbus({EX9000_LIBMODBUS_SERVER}, "/");
-  ChildProcess pymodbus({"/usr/bin/python3", EX9000_PYMODBUS_SERVER}, "/");
+  std::optional<ChildProcess> pymodbus;
+  std::optional<ChildProcess> pymodbus_tcp;
   std::vector<Peer> peers;
   peers.push_back({"ex9000-sim, TCP", PollingMaster::over_tcp(simulator.tcp_port())});
+  peers.push_back({"ex9000-sim, pseudo-terminal", PollingMaster::over_tty(other_simulator.tty())});
   peers.push_back({"libmodbus, pseudo-terminal", PollingMaster::over_tty(announced(libmodbus))});
-  peers.push_back({"pymodbus, TCP",
-                   PollingMaster::over_tcp(static_cast<std::uint16_t>(std::stoul(announced(pymodbus))))});
+  if (with_pymodbus) {
+    std::string tty;
+    peers.push_back({"pymodbus, pseudo-terminal", PollingMaster::over_new_tty(tty)});
+    announced(
+        pymodbus.emplace(std::vector<std::string>{"/usr/bin/python3", EX9000_PYMODBUS_SERVER, tty}, "/"));
+    pymodbus_tcp.emplace(std::vector<std::string>{"/usr/bin/python3", EX9000_PYMODBUS_SERVER}, "/");
+    const auto port = static_cast<std::uint16_t>(std::stoul(announced(*pymodbus_tcp)));
+    peers.push_back({"pymodbus, TCP", PollingMaster::over_tcp(port)});
+  }
   for (std::size_t round = 0; round < kRounds; ++round) {
     for (Peer& peer : peers) {
       peer.rates[round] = rate_of(peer.master, time);
@@ -74,8 +84,8 @@ void compare(std::chrono::milliseconds time) {
   }
   std::printf("one line, FC01 x 13 back to back, median of %zu rounds in turn:\n", kRounds);
   for (const Peer& peer : peers) {
-    std::printf("  %-28s %8.0f transactions/s, ex9000-sim has %.2f times as many\n", peer.name, peer.median(),
-                peers[0].median() / peer.median());
+    std::printf("  %-28s %8.0f transactions/s, of which ex9000-sim's TCP has %5.2f times as many\n",
+                peer.name, peer.median(), peers[0].median() / peer.median());
   }
 }
 
@@ -168,13 +178,16 @@ void load(std::chrono::milliseconds time) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  const long milliseconds = argc > 1 ? std::atol(argv[1]) : 1000;
-  if (argc > 2 || milliseconds < 1) {
+  std::vector<std::string> arguments(argv + 1, argv + argc);
+  const bool alone = arguments.size() > 1 && arguments[0] == "--without" && arguments[1] == "pymodbus";
+  arguments.erase(arguments.begin(), arguments.begin() + (alone ? 2 : 0));
+  const long milliseconds = arguments.empty() ? 1000 : std::atol(arguments[0].c_str());
+  if (arguments.size() > 1 || milliseconds < 1) {
     std::fprintf(stderr, "load: wants a number of milliseconds, or nothing for 1000\n");
     return 2;
   }
   try {
-    compare(std::chrono::milliseconds(milliseconds));
+    compare(std::chrono::milliseconds(milliseconds), !alone);
     load(std::chrono::milliseconds(milliseconds * static_cast<long>(kRounds)));
   } catch (const std::exception& error) {
     std::fprintf(stderr, "load: %s\n", error.what());

@@ -11,6 +11,7 @@
 
 #include <array>
 #include <cerrno>
+#include <cstdlib>
 #include <cstring>
 #include <stdexcept>
 #include <utility>
@@ -55,6 +56,16 @@ PollingMaster PollingMaster::over_tty(const std::string& path) {
   if (tcsetattr(fd, TCSANOW, &settings) != 0) {
     fail(path);
   }
+  return PollingMaster(fd);
+}
+
+PollingMaster PollingMaster::over_new_tty(std::string& path) {
+  const int fd = posix_openpt(O_RDWR | O_NOCTTY | O_CLOEXEC);
+  std::array<char, 64> name{};
+  if (fd < 0 || grantpt(fd) != 0 || unlockpt(fd) != 0 || ptsname_r(fd, name.data(), name.size()) != 0) {
+    fail("a pseudo-terminal");
+  }
+  path = name.data();
   return PollingMaster(fd);
 }
 

@@ -14,6 +14,8 @@ class PollingMaster {
   /// Throw std::runtime_error where there is nobody.
   static PollingMaster over_tcp(std::uint16_t port);
   static PollingMaster over_tty(const std::string& path);
+  /// Makes a pseudo-terminal and has its master end; `path` becomes that of the other, for a server.
+  static PollingMaster over_new_tty(std::string& path);
   PollingMaster(PollingMaster&& other) noexcept;
   PollingMaster(const PollingMaster&) = delete;
   PollingMaster& operator=(const PollingMaster&) = delete;

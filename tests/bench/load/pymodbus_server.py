@@ -1,21 +1,36 @@
 #!/usr/bin/python3
-"""pymodbus' own server: unit 1, coils, RTU frames over TCP. Prints its port, and serves until it is ended."""
+"""pymodbus' own server: unit 1, coils, RTU frames.
+
+    pymodbus_server.py          over TCP; prints its port
+    pymodbus_server.py DEVICE   on a serial port; prints its path
+
+It serves until it is ended.
+"""
 
 import asyncio
+import logging
+import sys
 
 from pymodbus.datastore import ModbusSequentialDataBlock, ModbusServerContext, ModbusSlaveContext
-from pymodbus.server.async_io import ModbusTcpServer
+from pymodbus.server.async_io import ModbusSerialServer, ModbusTcpServer
 from pymodbus.transaction import ModbusRtuFramer
 
 
-async def serve():
+async def serve(device):
     unit = ModbusSlaveContext(co=ModbusSequentialDataBlock(0, [False] * 16), zero_mode=True)
     context = ModbusServerContext(slaves={1: unit}, single=False)
-    server = ModbusTcpServer(context, framer=ModbusRtuFramer, address=("127.0.0.1", 0))
-    serving = asyncio.ensure_future(server.serve_forever())
-    await server.serving
-    print(server.server.sockets[0].getsockname()[1], flush=True)
-    await serving
+    if device:
+        server = ModbusSerialServer(context, framer=ModbusRtuFramer, port=device, baudrate=115200)
+        await server.start()
+        print(device, flush=True)
+        await server.serve_forever()
+    else:
+        server = ModbusTcpServer(context, framer=ModbusRtuFramer, address=("127.0.0.1", 0))
+        serving = asyncio.ensure_future(server.serve_forever())
+        await server.serving
+        print(server.server.sockets[0].getsockname()[1], flush=True)
+        await serving
 
 
-asyncio.run(serve())
+logging.disable()  # that it is ended is no error
+asyncio.run(serve(*(sys.argv[1:] or [None])))
