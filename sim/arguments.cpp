@@ -97,6 +97,11 @@ Parsed wrong(const std::string& what) {
   return parsed;
 }
 
+struct WritingTexts {
+  std::optional<std::string> log;
+  std::optional<std::string> capture;
+};
+
 /// As they were written, those of a line alone first.
 struct Texts {
   std::vector<std::string> modules;
@@ -114,8 +119,7 @@ struct Texts {
   std::optional<std::string> speed;
   std::optional<std::string> lasts;
   std::optional<std::string> seed;
-  std::optional<std::string> log;
-  std::optional<std::string> capture;
+  WritingTexts writing;
 };
 
 /// What `parse` says of `text` is told of the option.
@@ -125,6 +129,15 @@ auto of_option(const char* option, const std::string& text, Parse parse) {
     return parse(text);
   } catch (const std::invalid_argument& error) {
     throw std::invalid_argument(std::string(option) + ": " + error.what());
+  }
+}
+
+void write_as_told(const WritingTexts& texts, Writing& writing) {
+  if (texts.log) {
+    writing.log = of_option("--log", *texts.log, parse_log_format);
+  }
+  if (texts.capture) {
+    writing.capture = texts.capture;
   }
 }
 
@@ -247,12 +260,7 @@ Setup setup_of(const Texts& texts) {
   if (texts.seed) {
     setup.seed = of_option("--seed", *texts.seed, parse_seed);
   }
-  if (texts.log) {
-    setup.log = of_option("--log", *texts.log, parse_log_format);
-  }
-  if (texts.capture) {
-    setup.capture = texts.capture;
-  }
+  write_as_told(texts.writing, setup);
   try {
     check(setup);
   } catch (const WrongSetup& wrong_setup) {
@@ -260,6 +268,17 @@ Setup setup_of(const Texts& texts) {
     throw std::invalid_argument(option + wrong_setup.what());
   }
   return setup;
+}
+
+void add_writing(CLI::App& app, WritingTexts& texts) {
+  app.add_option(
+         "--log", texts.log,
+         "print the bus, a line a frame: time, direction, bytes, meaning; json: an object a line, for "
+         "machines, and nothing else on standard output")
+      ->type_name("[text|json]");
+  app.add_option("--capture", texts.capture,
+                 "keep what was on the lines in this pcapng file, for Wireshark; what it held is gone")
+      ->type_name("FILE");
 }
 
 /// The format behind --log may be left out, and what follows be a module: it is attached here, as CLI11 would
@@ -282,6 +301,7 @@ struct PlayTexts {
   std::string file;
   std::vector<std::string> modules;
   std::optional<std::string> seed;
+  WritingTexts writing;
 };
 
 const CLI::App* add_play(CLI::App& app, PlayTexts& texts) {
@@ -292,11 +312,14 @@ const CLI::App* add_play(CLI::App& app, PlayTexts& texts) {
   play->add_option("FILE", texts.file, "the file, or a folder of them")->required();
   play->add_option("MODULE", texts.modules, "of a scenario: the modules that it is played on, or BUS.json");
   play->add_option("--seed", texts.seed, "of all chance (default: 1)")->type_name("NUMBER");
+  add_writing(*play, texts.writing);
   return play;
 }
 
 play::Task task_of(const PlayTexts& play_texts) {
-  play::Task task{play_texts.file, std::nullopt};
+  play::Task task;
+  task.path = play_texts.file;
+  write_as_told(play_texts.writing, task.writing);
   if (!play_texts.modules.empty()) {
     Texts texts;
     texts.modules = play_texts.modules;
@@ -396,14 +419,7 @@ Parsed parse_arguments(int argc, const char* const* argv) {
       ->type_name("TIME");
   app.add_option("--seed", texts.seed, "of all chance: the same seed, the same faults (default: 1)")
       ->type_name("NUMBER");
-  app.add_option(
-         "--log", texts.log,
-         "print the bus, a line a frame: time, direction, bytes, meaning; json: an object a line, for "
-         "machines, and nothing else on standard output")
-      ->type_name("[text|json]");
-  app.add_option("--capture", texts.capture,
-                 "keep what was on the lines in this pcapng file, for Wireshark; what it held is gone")
-      ->type_name("FILE");
+  add_writing(app, texts.writing);
   app.add_flag("--strict-gaps", texts.strict_gaps,
                "Modbus to the letter: a gap of more than 1.5 characters spoils a frame, and a master that "
                "does not wait 3.5 characters between frames is on its own");

@@ -14,6 +14,7 @@
 
 #include "sim/arguments.hpp"
 #include "sim/play/play.hpp"
+#include "sim/play_record.hpp"
 #include "sim/session.hpp"
 
 namespace ex9000::sim {
@@ -69,6 +70,16 @@ void run(const Setup& setup) {
   session.finish();
 }
 
+bool play_task(const play::Task& task) {
+  const auto print_line = [](const std::string& line) { print(line + "\n"); };
+  const auto report = [](const std::string& line) { std::cerr << line << std::endl; };
+  PlayRecord record(task.writing, print_line);
+  if (task.writing.log == LogFormat::Json) {
+    return play::play(task, report, record);  // machines read the log, and nothing else
+  }
+  return play::play(task, print_line, record);
+}
+
 int fail(const std::exception& error, int status) {
   std::cerr << one_line(std::string("ex9000-sim: ") + error.what()) << '\n';
   return status;
@@ -95,7 +106,7 @@ int run_program(int argc, const char* const* argv) {
     print(parsed.output);
     std::cerr << parsed.error;
     if (parsed.task) {
-      return play::play(*parsed.task, [](const std::string& line) { print(line + "\n"); }) ? 0 : kFailed;
+      return play_task(*parsed.task) ? 0 : kFailed;
     }
     if (!parsed.setup) {
       return parsed.exit_status;

@@ -3,12 +3,10 @@
 #include <stdexcept>
 #include <utility>
 
-#include "sim/json_log.hpp"
 #include "sim/line_of_setup.hpp"
 #include "sim/ports/pty_port.hpp"
 #include "sim/ports/serial_port.hpp"
 #include "sim/ports/tcp_port.hpp"
-#include "sim/text_log.hpp"
 
 namespace ex9000::sim {
 
@@ -39,9 +37,8 @@ RunningLine::RunningLine(boost::asio::io_context& io, const LineSetup& setup, st
   line_->master().set_baud(setup.baud.value_or(line_->module(0).baud()));
   introduce();
   open_ports(io);
-  log_ = make_log(format);
-  line_->expect_trouble(seed,
-                        [this](const std::string& text) { log_->note(line_->clock().virtual_now(), text); });
+  record_ = std::make_unique<LineRecord>(*line_, log_name(), format, print_);
+  line_->expect_trouble(seed, [this](const std::string& text) { record_->note(text); });
   begin_programs(*line_, setup);
 }
 
@@ -103,17 +100,6 @@ std::string RunningLine::log_name() const {
   return "line";
 }
 
-std::unique_ptr<BusLog> RunningLine::make_log(LogFormat format) const {
-  std::vector<std::string> names{"master"};
-  for (const ModuleIntroduced& module : introduced_.modules) {
-    names.push_back(hex_byte_text(module.address) + " " + module.designation);
-  }
-  if (format == LogFormat::Json) {
-    return std::make_unique<JsonLog>(log_name(), StationNames(names), print_);
-  }
-  return std::make_unique<TextLog>(StationNames(names), print_);
-}
-
 std::string RunningLine::remark(std::size_t index) const {
   const EepromFile* file = memories_[index].get();
   if (file == nullptr) {
@@ -144,40 +130,29 @@ void RunningLine::introduce() {
   introduced_.instant = setup_.instant;
 }
 
-void RunningLine::keep_in(Capture& capture, VirtualTime began) {
-  const std::size_t line = capture.add_line(log_name(), line_->size(), began);
-  frames_.tell([&capture, line](const Frame& frame) { capture.write(line, frame); });
-  watched_ = true;
-}
-
-void RunningLine::start(bool log) {
+void RunningLine::start() {
   for (std::size_t i = 0; i < line_->size(); ++i) {
     if (const EepromFile* file = memories_[i].get()) {
       line_->module(i).memory().keep(
           [file](std::uint16_t address, Bytes bytes) { return file->write(address, bytes); });
     }
   }
-  if (log) {
-    frames_.tell([this](const Frame& frame) { log_->frame(frame); });
-    watched_ = true;
-  }
-  if (watched_) {
-    line_->bus().observe(frames_);
-  }
+  record_->begin();
 }
 
 void RunningLine::follow_the_clock(boost::asio::io_context& io, double speed) {
   Pace pace = pace_of(setup_);
   pace.speed = speed;
-  pacer_ = std::make_unique<Pacer>(
-      io, *line_, ports_, watched_ ? &frames_ : nullptr, pace,
-      [this](const std::string& text) { log_->note(line_->clock().virtual_now(), text); });
+  pacer_ = std::make_unique<Pacer>(io, *line_, ports_, record_->frames(), pace,
+                                   [this](const std::string& text) { record_->note(text); });
   pacer_->start();
 }
 
 void RunningLine::run_until(VirtualTime until) {
   line_->bus().run_until(until);
-  frames_.run(until);
+  if (FrameWatch* frames = record_->frames()) {
+    frames->run(until);
+  }
 }
 
 }  // namespace ex9000::sim

@@ -8,12 +8,11 @@
 #include <string>
 #include <vector>
 
-#include "sim/bus_log.hpp"
 #include "sim/capture/capture.hpp"
 #include "sim/eeprom_file.hpp"
-#include "sim/frame_watch.hpp"
 #include "sim/greeting.hpp"
 #include "sim/line.hpp"
+#include "sim/line_record.hpp"
 #include "sim/pacer.hpp"
 #include "sim/setup.hpp"
 
@@ -35,17 +34,16 @@ class RunningLine {
   /// Those that were not are made, and put behind `made`. Throws likewise.
   void make_missing_memories(std::vector<const EepromFile*>& made);
 
-  /// Before `start`: what is on the line is kept in `capture`, which lives as long as this. `began`: what the
-  /// wall clock, since 1970-01-01 00:00:00 UTC, is taken to have shown at the line's time 0.
-  void keep_in(Capture& capture, VirtualTime began);
-  /// Makes ready for work; `log` says whether the bus is printed.
-  void start(bool log);
+  /// What is written down of it, `start` being its begin.
+  LineRecord& record() { return *record_; }
+  /// Makes ready for work.
+  void start();
   /// Puts the line to work as soon as `io` runs, so many times faster than the wall clock.
   void follow_the_clock(boost::asio::io_context& io, double speed);
   /// All that happens until then, at once, where it follows no clock.
   void run_until(VirtualTime until);
   /// Writes down what was still under way.
-  void finish() { frames_.finish(); }
+  void finish() { record_->finish(); }
 
   [[nodiscard]] const std::string& name() const { return setup_.name; }
   Line& line() { return *line_; }
@@ -55,7 +53,6 @@ class RunningLine {
  private:
   void use_memories();
   void open_ports(boost::asio::io_context& io);
-  [[nodiscard]] std::unique_ptr<BusLog> make_log(LogFormat format) const;
   [[nodiscard]] std::string log_name() const;
   [[nodiscard]] std::string remark(std::size_t index) const;
   void introduce();
@@ -66,9 +63,7 @@ class RunningLine {
   std::unique_ptr<Line> line_;
   LineIntroduced introduced_;
   Pacer::Ports ports_;
-  FrameWatch frames_;
-  bool watched_ = false;  ///< somebody wants the frames
-  std::unique_ptr<BusLog> log_;
+  std::unique_ptr<LineRecord> record_;
   std::unique_ptr<Pacer> pacer_;
 };
 

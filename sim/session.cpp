@@ -70,7 +70,7 @@ void Session::keep_a_capture() {
   const auto now = std::chrono::system_clock::now().time_since_epoch();
   for (const auto& running : lines_) {
     const VirtualTime began = setup_.speed ? now - running->line().clock().virtual_now() : VirtualTime(0);
-    running->keep_in(*capture_, began);
+    running->record().keep_in(*capture_, began);
   }
 }
 
@@ -89,7 +89,10 @@ void Session::start() {
   }
   (for_machines() ? greet_ : print_)(greeting(introduced));
   for (const auto& running : lines_) {
-    running->start(setup_.log.has_value());
+    if (setup_.log) {
+      running->record().print_frames();
+    }
+    running->start();
     if (setup_.speed) {
       running->follow_the_clock(io_, *setup_.speed);
     }

@@ -29,11 +29,15 @@ struct LineSetup {
 
 enum class LogFormat { Text, Json };
 
-struct Setup {
-  std::vector<LineSetup> lines;        ///< at least one
-  std::optional<std::string> control;  ///< where to make the control socket
+/// What is written down.
+struct Writing {
   std::optional<LogFormat> log;        ///< of the bus; none: it is not printed
   std::optional<std::string> capture;  ///< where to keep what was on the lines
+};
+
+struct Setup : Writing {
+  std::vector<LineSetup> lines;        ///< at least one
+  std::optional<std::string> control;  ///< where to make the control socket
   /// Of the line's time to the wall clock's; nothing: as fast as it can be reckoned.
   std::optional<double> speed = 1;
   std::optional<VirtualTime> lasts;  ///< of the lines' time, then it ends; nothing: until it is told to

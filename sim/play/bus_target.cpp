@@ -15,7 +15,7 @@ constexpr std::chrono::milliseconds kComingUp{100};
 
 }  // namespace
 
-BusTarget::BusTarget(const sim::Setup& setup) {
+BusTarget::BusTarget(const sim::Setup& setup, Onlooker* onlooker) : onlooker_(onlooker) {
   for (const sim::LineSetup& line : setup.lines) {
     add_line(line, setup.seed + lines_.size());
   }
@@ -47,13 +47,16 @@ void BusTarget::add_line(const sim::LineSetup& setup, std::uint64_t seed) {
   }
   line.come_up();
   line.master().set_baud(setup.baud.value_or(line.module(0).baud()));
-  line.expect_trouble(seed, nullptr);
+  line.expect_trouble(seed, onlooker_ == nullptr ? nullptr : onlooker_->joins(line, setup.name));
   sim::begin_programs(line, setup);
 }
 
 void BusTarget::run_until(sim::VirtualTime until) {
   for (const auto& line : lines_) {
     line->bus().run_until(until);
+  }
+  if (onlooker_ != nullptr) {
+    onlooker_->reached(until);
   }
 }
 

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "sim/line.hpp"
+#include "sim/play/onlooker.hpp"
 #include "sim/play/target.hpp"
 #include "sim/setup.hpp"
 
@@ -15,10 +16,11 @@ namespace ex9000::play {
 class BusTarget : public Target {
  public:
   /// For a transcript, which says what module there is.
-  BusTarget() = default;
+  /// `onlooker` may be null, and lives as long as this.
+  explicit BusTarget(Onlooker* onlooker = nullptr) : onlooker_(onlooker) {}
   /// For a scenario: the modules of `setup` have come up, with what their EEPROM files hold, which are left
   /// as they are. Ports are not opened. Throws std::invalid_argument, one line.
-  explicit BusTarget(const sim::Setup& setup);
+  explicit BusTarget(const sim::Setup& setup, Onlooker* onlooker = nullptr);
 
   [[nodiscard]] std::size_t size() const { return lines_.size(); }
   sim::Line& line(std::size_t index) { return *lines_[index]; }
@@ -51,6 +53,7 @@ class BusTarget : public Target {
   void add_line(const sim::LineSetup& setup, std::uint64_t seed);
   void want_input(unsigned channel);
 
+  Onlooker* onlooker_;
   std::vector<std::string> names_;
   std::vector<std::unique_ptr<sim::Line>> lines_;
   std::vector<Bytes> heard_;  ///< by the master of each line

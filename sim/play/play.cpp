@@ -43,7 +43,7 @@ void check(const Transcript& transcript, const std::optional<sim::Setup>& bus) {
 
 }  // namespace
 
-bool play(const Task& task, const std::function<void(const std::string& line)>& print) {
+bool play(const Task& task, const std::function<void(const std::string& line)>& print, Onlooker& onlooker) {
   const std::vector<Transcript> all = load_all(task.path);
   for (const Transcript& transcript : all) {
     check(transcript, task.bus);
@@ -51,12 +51,14 @@ bool play(const Task& task, const std::function<void(const std::string& line)>& 
   std::size_t steps = 0;
   std::size_t failed = 0;
   for (const Transcript& transcript : all) {
-    BusTarget target = task.bus ? BusTarget(*task.bus) : BusTarget();
-    const Result result = play(transcript, target);
-    steps += result.steps;
-    failed += result.passed() ? 0U : 1U;
     const std::string who =
         transcript.model == nullptr ? "" : " (" + std::string(transcript.model->designation) + ")";
+    onlooker.begins(transcript.file + who);
+    BusTarget target = task.bus ? BusTarget(*task.bus, &onlooker) : BusTarget(&onlooker);
+    const Result result = play(transcript, target);
+    onlooker.ends();
+    steps += result.steps;
+    failed += result.passed() ? 0U : 1U;
     print(result.passed()
               ? "passed  " + transcript.file + who + ": " + std::to_string(result.steps) + " steps"
               : "FAILED  " + result.failure);

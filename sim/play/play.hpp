@@ -5,6 +5,7 @@
 #include <optional>
 #include <string>
 
+#include "sim/play/onlooker.hpp"
 #include "sim/setup.hpp"
 
 namespace ex9000::play {
@@ -13,10 +14,11 @@ namespace ex9000::play {
 struct Task {
   std::string path;
   std::optional<sim::Setup> bus;
+  sim::Writing writing;
 };
 
 /// Prints a line for each run, and one for all. Whether all have passed. Throws std::invalid_argument, one
 /// line, where the path or what stands there is wrong, or the bus is missing or of no use.
-bool play(const Task& task, const std::function<void(const std::string& line)>& print);
+bool play(const Task& task, const std::function<void(const std::string& line)>& print, Onlooker& onlooker);
 
 }  // namespace ex9000::play

@@ -267,6 +267,33 @@ TEST(Capture, OfARunInVirtualTimeIsTheSameEveryTime) {
   EXPECT_EQ(packets[0].at("frame.time_epoch").substr(0, 4), "1.10");
 }
 
+TEST(Capture, OfWhatIsPlayedHasEachRunAsAnInterface) {
+  const Directory directory;
+  write_file(directory / "a.txt",
+             "source: manual\nmodel: EX9042D-M\nmodel: EX9043D-M\npreset: protocol=modbus\n\n"
+             "=> 01 05 0002 FF00\n<= 01 05 0002 FF00\n");
+  const Finished finished =
+      run({simulator_path(), "play", "a.txt", "--capture", "line.pcapng", "--log", "json"}, directory.path());
+  EXPECT_EQ(finished.status, 0) << finished.error;
+  EXPECT_NE(finished.error.find("2 runs, 4 steps, 0 failed"), std::string::npos) << finished.error;
+  std::istringstream lines(finished.output);
+  std::size_t frames = 0;
+  for (std::string line; std::getline(lines, line); ++frames) {
+    EXPECT_TRUE(nlohmann::json::accept(line)) << line;
+  }
+  EXPECT_EQ(frames, 4U);
+  const std::vector<Packet> packets =
+      decoded(directory / "line.pcapng",
+              {"frame.interface_name", "modbus.func_code", "modbus.reference_num", "frame.p2p_dir"});
+  ASSERT_EQ(packets.size(), 4U);
+  for (std::size_t i = 0; i < packets.size(); ++i) {
+    expect_shown(packets[i], {{"frame.interface_name", i < 2 ? "a.txt (EX9042D-M)" : "a.txt (EX9043D-M)"},
+                              {"modbus.func_code", "5"},
+                              {"modbus.reference_num", "2"},
+                              {"frame.p2p_dir", i % 2 == 0 ? kSent : kReceived}});
+  }
+}
+
 TEST(Capture, WhatWiresharkDoesNotDecodeIsAsReadmeSays) {
   Captured line({"EX9042D-M@01"});
   line.tell(with_crc({1, 0x46, 0}));

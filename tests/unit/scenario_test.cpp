@@ -1,6 +1,7 @@
 // Scenarios: steps against a bus of several modules and lines, and what `play` makes of files and folders.
 #include <gtest/gtest.h>
 
+#include <filesystem>
 #include <stdexcept>
 #include <string>
 #include <vector>
@@ -10,6 +11,7 @@
 #include "sim/play/play.hpp"
 #include "sim/play/player.hpp"
 #include "sim/play/transcript.hpp"
+#include "sim/play_record.hpp"
 #include "tests/system/directory.hpp"
 
 namespace ex9000::play {
@@ -92,11 +94,13 @@ TEST(Scenario, FailsAtTheSameStepEachTime) {
 }
 
 /// What is wrong, or what was printed and whether all has passed.
-std::string played(const std::string& path, bool on_a_bus) {
+std::string played(const std::string& path, bool on_a_bus, const sim::Writing& writing = {}) {
   std::string text;
+  const auto print = [&](const std::string& line) { text += line + "\n"; };
   try {
-    const bool passed = play({path, on_a_bus ? std::optional(two_lines()) : std::nullopt},
-                             [&](const std::string& line) { text += line + "\n"; });
+    sim::PlayRecord record(writing, print);
+    const bool passed =
+        play({path, on_a_bus ? std::optional(two_lines()) : std::nullopt, writing}, print, record);
     return text + (passed ? "passed" : "failed");
   } catch (const std::invalid_argument& error) {
     return error.what();
@@ -114,6 +118,37 @@ TEST(Play, ReportsEachRunAndAllTogether) {
       << text;
   EXPECT_NE(text.find("FAILED  " + (directory / "b.txt") + ":5: < !019043D"), std::string::npos) << text;
   EXPECT_NE(text.find("3 runs, 6 steps, 1 failed\nfailed"), std::string::npos) << text;
+}
+
+TEST(Play, PrintsTheBusWhereItIsTold) {
+  const Directory directory;
+  write_file(directory / "a.txt", "source: manual\nmodel: EX9042D\n\n> $01M\n< !019042D\n");
+  const std::string text = played(directory / "a.txt", false, {sim::LogFormat::Text, std::nullopt});
+  const auto begins = text.find("plays   " + (directory / "a.txt") + " (EX9042D)\n");
+  const auto asks = text.find("$01M");
+  const auto answers = text.find("!019042D");
+  const auto passes = text.find("passed  ");
+  EXPECT_TRUE(begins < asks && asks < answers && answers < passes && passes != std::string::npos) << text;
+}
+
+TEST(Play, SaysOfWhichLineTheLogIsAndWhatGoesWrongWithIt) {
+  const Directory directory;
+  write_file(
+      directory / "a.txt",
+      "fault gone every 5s for 1s\nwait 5s\n> $01M\nsilence\nline yard\nbaud 19200\n=> 0A 01 0000 0008\n"
+      "<= 0A 01 01 00\n");
+  const std::string text = played(directory / "a.txt", true, {sim::LogFormat::Text, std::nullopt});
+  EXPECT_NE(text.find("hall:     5."), std::string::npos) << text;
+  EXPECT_NE(text.find("fault 1 "), std::string::npos) << text;
+  EXPECT_NE(text.find("yard:     5."), std::string::npos) << text;
+}
+
+TEST(Play, LeavesNoCaptureWhereNothingCanBePlayed) {
+  const Directory directory;
+  const std::string capture = directory / "line.pcapng";
+  EXPECT_NE(played(directory / "none.txt", false, {std::nullopt, capture}).find("none.txt"),
+            std::string::npos);
+  EXPECT_FALSE(std::filesystem::exists(capture));
 }
 
 TEST(Play, WantsABusForAScenarioAndNoneForATranscript) {

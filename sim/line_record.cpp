@@ -1,0 +1,52 @@
+#include "sim/line_record.hpp"
+
+#include <utility>
+#include <vector>
+
+#include "sim/json_log.hpp"
+#include "sim/module_spec.hpp"
+#include "sim/text_log.hpp"
+
+namespace ex9000::sim {
+
+namespace {
+
+StationNames stations_of(Line& line) {
+  std::vector<std::string> names{"master"};
+  for (std::size_t i = 0; i < line.size(); ++i) {
+    SimulatedModule& module = line.module(i);
+    names.push_back(hex_byte_text(module.module().state().in_force.address) + " " +
+                    std::string(module.model().designation));
+  }
+  return StationNames(std::move(names));
+}
+
+}  // namespace
+
+LineRecord::LineRecord(Line& line, std::string name, LogFormat format, const Print& print)
+    : line_(line), name_(std::move(name)) {
+  if (format == LogFormat::Json) {
+    log_ = std::make_unique<JsonLog>(name_, stations_of(line), print);
+  } else {
+    log_ = std::make_unique<TextLog>(stations_of(line), print);
+  }
+}
+
+void LineRecord::print_frames() {
+  frames_.tell([this](const Frame& frame) { log_->frame(frame); });
+  wanted_ = true;
+}
+
+void LineRecord::keep_in(Capture& capture, VirtualTime began) {
+  const std::size_t line = capture.add_line(name_, line_.size(), began);
+  frames_.tell([&capture, line](const Frame& frame) { capture.write(line, frame); });
+  wanted_ = true;
+}
+
+void LineRecord::begin() {
+  if (wanted_) {
+    line_.bus().observe(frames_);
+  }
+}
+
+}  // namespace ex9000::sim

@@ -1,0 +1,48 @@
+// What is written down of a line: its log and its capture.
+#pragma once
+
+#include <functional>
+#include <memory>
+#include <string>
+
+#include "sim/bus_log.hpp"
+#include "sim/capture/capture.hpp"
+#include "sim/frame_watch.hpp"
+#include "sim/line.hpp"
+#include "sim/setup.hpp"
+
+namespace ex9000::sim {
+
+/// Nothing, until it is told what. Not behind `begin`.
+class LineRecord {
+ public:
+  using Print = BusLog::Print;
+
+  /// Of a line that has come up and lives as long as this, and is called `name`. `print` gets the lines of
+  /// its log.
+  LineRecord(Line& line, std::string name, LogFormat format, const Print& print);
+
+  /// Something that is said about the line now; it is printed whether frames are or not.
+  void note(const std::string& text) { log_->note(line_.clock().virtual_now(), text); }
+  /// Frames are printed.
+  void print_frames();
+  /// And kept in `capture`, which lives as long as this. `began`: what the wall clock, since 1970-01-01
+  /// 00:00:00 UTC, is taken to have shown at the line's time 0.
+  void keep_in(Capture& capture, VirtualTime began);
+  /// From now on the line is listened to, if anybody wants that.
+  void begin();
+
+  /// What is to be told when a frame is due; null: nobody wants any. Behind `begin`.
+  FrameWatch* frames() { return wanted_ ? &frames_ : nullptr; }
+  /// Writes down what was still under way.
+  void finish() { frames_.finish(); }
+
+ private:
+  Line& line_;
+  std::string name_;
+  std::unique_ptr<BusLog> log_;
+  FrameWatch frames_;
+  bool wanted_ = false;
+};
+
+}  // namespace ex9000::sim

@@ -1,0 +1,59 @@
+#include "sim/play_record.hpp"
+
+#include <utility>
+
+namespace ex9000::sim {
+
+PlayRecord::PlayRecord(const Writing& writing, Print print) : writing_(writing), print_(std::move(print)) {
+  if (writing_.capture) {
+    capture_ = std::make_unique<Capture>(*writing_.capture);
+  }
+}
+
+void PlayRecord::begins(const std::string& what) {
+  if (capture_ && !begun_) {
+    capture_->begin();
+  }
+  begun_ = true;
+  what_ = what;
+  if (writing_.log == LogFormat::Text) {
+    print_("plays   " + what);
+  }
+}
+
+Faults::Notice PlayRecord::joins(Line& line, const std::string& name) {
+  const bool says_which = !name.empty() && writing_.log == LogFormat::Text;
+  const Print printed =
+      says_which ? [this, name](const std::string& text) { print_(name + ": " + text); } : print_;
+  lines_.push_back(std::make_unique<LineRecord>(line, name.empty() ? what_ : what_ + " " + name,
+                                                writing_.log.value_or(LogFormat::Text), printed));
+  LineRecord& record = *lines_.back();
+  if (writing_.log) {
+    record.print_frames();
+  }
+  if (capture_) {
+    record.keep_in(*capture_, VirtualTime(0));  // nothing depends on when it is played
+  }
+  record.begin();
+  if (!writing_.log) {
+    return nullptr;
+  }
+  return [&record](const std::string& text) { record.note(text); };
+}
+
+void PlayRecord::reached(VirtualTime now) {
+  for (const auto& line : lines_) {
+    if (FrameWatch* frames = line->frames()) {
+      frames->run(now);
+    }
+  }
+}
+
+void PlayRecord::ends() {
+  for (const auto& line : lines_) {
+    line->finish();
+  }
+  lines_.clear();
+}
+
+}  // namespace ex9000::sim

@@ -1,0 +1,38 @@
+// What is written down of what is played.
+#pragma once
+
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "sim/capture/capture.hpp"
+#include "sim/line_record.hpp"
+#include "sim/play/onlooker.hpp"
+#include "sim/setup.hpp"
+
+namespace ex9000::sim {
+
+class PlayRecord final : public play::Onlooker {
+ public:
+  using Print = LineRecord::Print;
+
+  /// Log and capture of `writing`. Opens the capture's file; see Capture for what it throws, here and later.
+  PlayRecord(const Writing& writing, Print print);
+
+  // --- play::Onlooker ---
+  void begins(const std::string& what) override;
+  Faults::Notice joins(Line& line, const std::string& name) override;
+  void reached(VirtualTime now) override;
+  void ends() override;
+
+ private:
+  Writing writing_;
+  Print print_;
+  std::unique_ptr<Capture> capture_;
+  bool begun_ = false;  ///< and the capture's file with it: nothing was wrong with what is played
+  std::string what_;    ///< is played
+  std::vector<std::unique_ptr<LineRecord>> lines_;
+};
+
+}  // namespace ex9000::sim
