@@ -57,8 +57,8 @@ class SimulatedModule final : public Station {
   /// It listens and sends at this rate, whatever its settings say; 0: as they say.
   void force_rate(std::uint32_t baud) { wire_.force_rate(baud); }
   /// See ModuleWire::watch.
-  void watch_replies(ModuleWire::Begins begins, ModuleWire::Ends ends) {
-    wire_.watch(std::move(begins), std::move(ends));
+  void watch_replies(ModuleWire::Begins begins, ModuleWire::Ends ends, ModuleWire::OnTheWires on_the_wires) {
+    wire_.watch(std::move(begins), std::move(ends), std::move(on_the_wires));
   }
   /// What the memory holds at the next reset.
   void store(const Settings& settings);

@@ -13,6 +13,7 @@ void Echo::run() {
   if (!driving_) {
     driving_ = true;
     began_ = clock_.virtual_now();
+    sends_at_ = rate_();
     wire_.drive(true);
   }
   if (sent_ == heard_.size()) {
@@ -23,9 +24,9 @@ void Echo::run() {
     wire_.drive(false);
     return;
   }
-  wire_.put(heard_[sent_], rate_);
+  wire_.put(heard_[sent_], sends_at_);
   // From the first byte on, so that rounding does not add up.
-  next_ = began_ + wire_.takes(++sent_, rate_);
+  next_ = began_ + wire_.takes(++sent_, sends_at_);
 }
 
 }  // namespace ex9000::sim

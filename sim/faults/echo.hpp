@@ -2,6 +2,8 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
+#include <utility>
 #include <vector>
 
 #include "sim/bus.hpp"
@@ -10,30 +12,34 @@ namespace ex9000::sim {
 
 class Echo final : public Station {
  public:
+  /// Asked for the rate, in baud, that the line has now.
+  using Rate = std::function<std::uint32_t()>;
+
   /// Attaches itself to `bus`; it is off.
-  explicit Echo(Bus& bus) : clock_(bus.clock()), wire_(bus.attach(*this)) {}
+  Echo(Bus& bus, Rate rate) : clock_(bus.clock()), wire_(bus.attach(*this)), rate_(std::move(rate)) {}
   Echo(const Echo&) = delete;
   Echo& operator=(const Echo&) = delete;
 
-  /// It listens and sends at `baud`, and sends when nothing has come for `delay`.
-  void switch_on(std::uint32_t baud, VirtualTime delay) {
-    baud_ = rate_ = baud;
+  /// It listens and sends at the line's rate, and sends when nothing has come for `delay`.
+  void switch_on(VirtualTime delay) {
+    on_ = true;
     delay_ = delay;
   }
   /// It listens no more; what it has heard it still sends.
-  void switch_off() { baud_ = 0; }
+  void switch_off() { on_ = false; }
 
   // --- Station ---
   [[nodiscard]] VirtualTime next() const override { return next_; }
   void run() override;
-  [[nodiscard]] std::uint32_t baud() const override { return baud_; }
+  [[nodiscard]] std::uint32_t baud() const override { return on_ ? rate_() : 0; }
   void receive(std::uint8_t byte, ByteStatus status) override;
 
  private:
   VirtualClock& clock_;
   Wire& wire_;
-  std::uint32_t baud_ = 0;  ///< 0: it does not listen
-  std::uint32_t rate_ = 0;
+  Rate rate_;
+  bool on_ = false;
+  std::uint32_t sends_at_ = 0;  ///< what it sends now, from its first byte to its last
   VirtualTime delay_{0};
   std::vector<std::uint8_t> heard_;
   std::size_t sent_ = 0;

@@ -18,16 +18,28 @@ constexpr std::size_t kMostForeign = 1024;
 
 bool is_of(const Fault& fault, std::size_t module) { return !fault.module || *fault.module == module; }
 
+/// Of the wires, whoever is on them.
+bool is_noise(Trouble trouble) {
+  return trouble == Trouble::BitErrors || trouble == Trouble::LostBytes ||
+         trouble == Trouble::InsertedBytes || trouble == Trouble::StrayZeros;
+}
+
 /// Over as soon as it has struck.
 bool is_a_moment(Trouble trouble) { return trouble == Trouble::ForeignTraffic || trouble == Trouble::Hang; }
 
 }  // namespace
 
 Faults::Faults(Bus& bus, const Master& master, Modules& modules, std::uint64_t seed, Notice notice)
-    : bus_(bus), master_(master), modules_(modules), notice_(std::move(notice)), chance_(seed) {
+    : bus_(bus),
+      master_(master),
+      modules_(modules),
+      notice_(std::move(notice)),
+      chance_(seed),
+      replies_(modules.size()) {
   bus_.attach(*this);
   for (std::size_t i = 0; i < modules_.size(); ++i) {
-    modules_[i]->watch_replies([this, i] { return reply_begins(i); }, [this, i] { reply_ends(i); });
+    modules_[i]->watch_replies([this, i] { return reply_begins(i); }, [this, i] { reply_ends(i); },
+                               [this, i](std::uint64_t reply, bool on) { reply_on_the_wires(i, reply, on); });
     modules_[i]->memory().on_write([this, i] { written(i); });
   }
 }
@@ -72,7 +84,7 @@ void Faults::prepare(Trouble trouble) {
       break;
     case Trouble::Echo:
       if (!echo_) {
-        echo_ = std::make_unique<Echo>(bus_);
+        echo_ = std::make_unique<Echo>(bus_, [this] { return master_.baud(); });
       }
       break;
     case Trouble::ForeignTraffic:
@@ -108,7 +120,7 @@ std::vector<Faults::Told> Faults::told() const {
   std::vector<Told> all;
   for (const Armed& armed : armed_) {
     all.push_back(
-        {armed.number, armed.fault.text, armed.fault.module, !armed.strikes.empty(), armed.strikes_so_far});
+        {armed.number, armed.fault.text, armed.fault.module, armed.strikes_now(), armed.strikes_so_far});
   }
   return all;
 }
@@ -172,6 +184,10 @@ void Faults::strike(Armed& armed, std::optional<std::size_t> reply_of) {
   if (!lasts && fault.trouble == Trouble::PowerCut) {
     lasts = kPowerCutLasts;
   }
+  if (reply_of && is_noise(fault.trouble)) {
+    armed.strikes.push_back({reply_of, kNever, replies_[*reply_of], true});
+    return;
+  }
   const VirtualTime ends = lasts ? bus_.clock().virtual_now() + *lasts : kNever;
   for (Strike& known : armed.strikes) {
     if (known.reply_of == reply_of) {
@@ -194,6 +210,10 @@ void Faults::relent(Armed& armed, Over over) {
   }
 }
 
+bool Faults::Armed::strikes_now() const {
+  return std::any_of(strikes.begin(), strikes.end(), [](const Strike& strike) { return !strike.waits; });
+}
+
 bool Faults::Armed::befalls(std::size_t module) const {
   return is_of(fault, module) && std::any_of(strikes.begin(), strikes.end(), [module](const Strike& strike) {
            return strike.reply_of.value_or(module) == module;
@@ -207,6 +227,7 @@ void Faults::say(const Armed& armed, const std::string& what) const {
 }
 
 ReplyFate Faults::reply_begins(std::size_t module) {
+  ++replies_[module];
   for (Armed& armed : armed_) {
     const Schedule& schedule = armed.fault.schedule;
     if (!schedule.of_replies() || !is_of(armed.fault, module)) {
@@ -219,11 +240,13 @@ ReplyFate Faults::reply_begins(std::size_t module) {
     }
   }
   if (changed_) {
-    set_noise();  // it is to hit this reply from its first bit on
     set_late_drivers();
   }
   ReplyFate fate;
   fate.lost = struck_by(Trouble::LostReply, module);
+  if (fate.lost) {
+    reply_on_the_wires(module, replies_[module], false);
+  }
   if (const Fault* late = striking(Trouble::LateReply, module)) {
     fate.late_by = late->time;
   }
@@ -232,8 +255,35 @@ ReplyFate Faults::reply_begins(std::size_t module) {
 
 void Faults::reply_ends(std::size_t module) {
   for (Armed& armed : armed_) {
-    relent(armed,
-           [module](const Strike& strike) { return strike.reply_of == module && strike.ends == kNever; });
+    if (!is_noise(armed.fault.trouble)) {
+      relent(armed,
+             [module](const Strike& strike) { return strike.reply_of == module && strike.ends == kNever; });
+    }
+  }
+}
+
+/// Noise is to hit a reply from its first bit on, and it alone, however late it is.
+void Faults::reply_on_the_wires(std::size_t module, std::uint64_t reply, bool on) {
+  for (Armed& armed : armed_) {
+    if (!is_noise(armed.fault.trouble)) {
+      continue;
+    }
+    const auto of_it = [=](const Strike& strike) {
+      return strike.reply_of == module && strike.reply == reply && strike.ends == kNever;
+    };
+    if (!on) {
+      relent(armed, of_it);
+      continue;
+    }
+    const auto strike = std::find_if(armed.strikes.begin(), armed.strikes.end(), of_it);
+    if (strike != armed.strikes.end()) {
+      strike->waits = false;
+      const auto lasts = armed.fault.schedule.lasts;
+      strike->ends = lasts ? bus_.clock().virtual_now() + *lasts : kNever;
+    }
+  }
+  if (on) {
+    set_noise();
   }
 }
 
@@ -259,7 +309,7 @@ const Fault* Faults::striking(Trouble trouble, std::size_t module) const {
 
 const Fault* Faults::striking_the_line(Trouble trouble) const {
   for (const Armed& armed : armed_) {
-    if (!armed.strikes.empty() && armed.fault.trouble == trouble) {
+    if (armed.strikes_now() && armed.fault.trouble == trouble) {
       return &armed.fault;
     }
   }
@@ -300,7 +350,7 @@ void Faults::set_late_drivers() {
 double Faults::rate_of(Trouble trouble) const {
   double rate = 0;
   for (const Armed& armed : armed_) {
-    if (!armed.strikes.empty() && armed.fault.trouble == trouble) {
+    if (armed.strikes_now() && armed.fault.trouble == trouble) {
       rate = std::max(rate, armed.fault.probability);
     }
   }
@@ -326,7 +376,7 @@ void Faults::set_echo() {
   if (fault == nullptr) {
     echo_->switch_off();
   } else {
-    echo_->switch_on(master_.baud(), fault->time);
+    echo_->switch_on(fault->time);
   }
 }
 

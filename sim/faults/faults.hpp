@@ -60,6 +60,8 @@ class Faults final : public Station {
   struct Strike {
     std::optional<std::size_t> reply_of;  ///< it is of this module's reply, and befalls no other
     VirtualTime ends = kNever;            ///< by the clock; never, of a reply: with that
+    std::uint64_t reply = 0;              ///< that one, in the module's count, where it befalls the wires
+    bool waits = false;                   ///< until that is on them
   };
   struct Armed {
     std::size_t number = 0;
@@ -69,11 +71,13 @@ class Faults final : public Station {
     std::uint64_t counted = 0;    ///< replies, or writes
     std::uint64_t strikes_so_far = 0;
 
+    [[nodiscard]] bool strikes_now() const;
     [[nodiscard]] bool befalls(std::size_t module) const;
   };
 
   ReplyFate reply_begins(std::size_t module);
   void reply_ends(std::size_t module);
+  void reply_on_the_wires(std::size_t module, std::uint64_t reply, bool on);
   void written(std::size_t module);
   void strike(Armed& armed, std::optional<std::size_t> reply_of);
   template <class Over>
@@ -100,6 +104,7 @@ class Faults final : public Station {
   Notice notice_;
   Chance chance_;
   std::vector<Armed> armed_;
+  std::vector<std::uint64_t> replies_;  ///< that each module has begun
   std::size_t numbers_ = 0;
   bool changed_ = false;  ///< effects are to be set anew, as soon as no module is in the middle of something
   std::vector<std::size_t> hanging_;

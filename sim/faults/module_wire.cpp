@@ -5,13 +5,15 @@
 
 namespace ex9000::sim {
 
-void ModuleWire::watch(Begins begins, Ends ends) {
+void ModuleWire::watch(Begins begins, Ends ends, OnTheWires on_the_wires) {
   begins_ = std::move(begins);
   ends_ = std::move(ends);
+  on_the_wires_ = std::move(on_the_wires);
 }
 
 void ModuleWire::drive(bool on) {
   if (on) {
+    ++reply_;
     fate_ = begins_ ? begins_() : ReplyFate();
     if (!late_.empty()) {  // one reply after the other: behind one that is late, the next is late too
       fate_.late_by = std::max(fate_.late_by, late_.back().when - clock_.virtual_now());
@@ -29,18 +31,33 @@ void ModuleWire::hand_on(What what, std::uint8_t byte, std::uint32_t baud) {
   if (fate_.lost) {
     return;
   }
+  const Late what_it_is{clock_.virtual_now() + fate_.late_by, what, byte, baud, reply_};
   if (fate_.late_by == VirtualTime(0) && late_.empty()) {
-    carry_out(what, byte, baud);
+    carry_out(what_it_is);
   } else {
-    late_.push_back({clock_.virtual_now() + fate_.late_by, what, byte, baud});
+    late_.push_back(what_it_is);
   }
 }
 
-void ModuleWire::carry_out(What what, std::uint8_t byte, std::uint32_t baud) {
-  if (what == What::Byte) {
-    wire_.put(byte, baud);
-  } else {
-    wire_.drive(what == What::On);
+void ModuleWire::tell(std::uint64_t reply, bool on) const {
+  if (on_the_wires_) {
+    on_the_wires_(reply, on);
+  }
+}
+
+void ModuleWire::carry_out(const Late& due) {
+  switch (due.what) {
+    case What::On:
+      tell(due.reply, true);
+      wire_.drive(true);
+      break;
+    case What::Byte:
+      wire_.put(due.byte, due.baud);
+      break;
+    case What::Off:
+      wire_.drive(false);
+      tell(due.reply, false);
+      break;
   }
 }
 
@@ -49,14 +66,18 @@ void ModuleWire::run() {
     const Late due = late_.front();
     late_.pop_front();
     driving_late_ = due.what != What::Off;
-    carry_out(due.what, due.byte, due.baud);
+    carry_out(due);
   }
 }
 
 void ModuleWire::abort() {
-  late_.clear();
   if (std::exchange(driving_late_, false)) {
     wire_.drive(false);
+  }
+  for (const Late& never : std::exchange(late_, {})) {
+    if (never.what == What::Off) {
+      tell(never.reply, false);
+    }
   }
 }
 

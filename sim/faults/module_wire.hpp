@@ -30,7 +30,10 @@ class ModuleWire final : public Wire {
   using Begins = std::function<ReplyFate()>;
   /// Called as it goes off, wherever the reply is then.
   using Ends = std::function<void()>;
-  void watch(Begins begins, Ends ends);
+  /// Called before the reply goes on the wires and behind its end there, or where it never gets there: which,
+  /// counted from 1 as they begin, the lost ones too, of which it is not called.
+  using OnTheWires = std::function<void(std::uint64_t reply, bool on)>;
+  void watch(Begins begins, Ends ends, OnTheWires on_the_wires);
   /// The UART runs at `baud` whatever it was told; 0: as it was told.
   void force_rate(std::uint32_t baud) { forced_ = baud; }
   [[nodiscard]] std::uint32_t rate(std::uint32_t baud) const {
@@ -58,16 +61,20 @@ class ModuleWire final : public Wire {
     What what;
     std::uint8_t byte;
     std::uint32_t baud;
+    std::uint64_t reply;
   };
 
   void hand_on(What what, std::uint8_t byte, std::uint32_t baud);
-  void carry_out(What what, std::uint8_t byte, std::uint32_t baud);
+  void carry_out(const Late& due);
+  void tell(std::uint64_t reply, bool on) const;
 
   const VirtualClock& clock_;
   Wire& wire_;
   Begins begins_;
   Ends ends_;
+  OnTheWires on_the_wires_;
   ReplyFate fate_;
+  std::uint64_t reply_ = 0;  ///< which the UART sends, or has sent last
   std::uint32_t forced_ = 0;
   std::deque<Late> late_;
   bool driving_late_ = false;

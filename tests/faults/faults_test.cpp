@@ -138,6 +138,13 @@ TEST(EchoFault, SaysAgainWhatWasSaidAfterItsSilence) {
   EXPECT_EQ(of_others(bench)[0].first, request_over + 5ms);
 }
 
+TEST(EchoFault, FollowsTheLinesRate) {
+  FaultBench bench;
+  bench.add("echo 5ms");
+  bench.line().master().set_baud(19200);
+  EXPECT_EQ(bench.ask("$05M"), "$05M");
+}
+
 TEST(EchoFault, LeavesOffWhenItIsRemoved) {
   FaultBench bench;
   const std::size_t fault = bench.add("echo 5ms");
@@ -223,6 +230,28 @@ TEST(LateReply, IsNeverSentOnceTheSupplyHasFailed) {
   bench.forget();
   bench.run(1s);
   EXPECT_EQ(bench.heard(), "");
+}
+
+TEST(LateReply, IsHitByTheNoiseThatIsOfItAndNothingElseIs) {
+  FaultBench bench;
+  bench.add("late-reply 50ms every 2nd reply");
+  bench.add("bit-errors 1 every 2nd reply");
+  EXPECT_EQ(bench.ask("$01M"), kName);
+  EXPECT_EQ(bench.ask("$01M", 20ms), "");  // gives up too early, and asks on:
+  bench.send("@010001\r");                 // that is not hit
+  bench.run(200ms);
+  EXPECT_EQ(bench.at(1).outputs(), 1);
+  EXPECT_EQ(bench.heard().find(kName), std::string::npos);
+  EXPECT_TRUE(bench.garbled());
+}
+
+TEST(LateReply, ThatIsLostTakesItsNoiseWithIt) {
+  FaultBench bench;
+  bench.add("lost-reply every 2nd reply");
+  bench.add("bit-errors 1 every 2nd reply");
+  bench.ask("$01M");
+  EXPECT_EQ(bench.ask("$01M"), "");
+  EXPECT_EQ(bench.ask("$01M"), kName);
 }
 
 TEST(LateDriver, HoldsTheLineAndWhatIsSaidThenIsLost) {

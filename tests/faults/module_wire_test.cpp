@@ -49,7 +49,10 @@ class ModuleWireTest : public testing::Test {
     wire.drive(false);
   }
   void watch() {
-    wire.watch([this] { return fate; }, [this] { ++ended; });
+    wire.watch([this] { return fate; }, [this] { ++ended; },
+               [this](std::uint64_t reply, bool on) {
+                 on_the_wires.push_back(std::to_string(reply) + (on ? " on" : " off"));
+               });
   }
 
   VirtualClock clock;
@@ -57,7 +60,24 @@ class ModuleWireTest : public testing::Test {
   ModuleWire wire{clock, wires};
   ReplyFate fate;
   int ended = 0;
+  std::vector<std::string> on_the_wires;
 };
+
+TEST_F(ModuleWireTest, SaysWhichReplyIsOnTheWiresOrNeverWillBe) {
+  watch();
+  fate.late_by = 20ms;
+  reply(5ms, 'a');
+  reply(10ms, 'b');
+  EXPECT_TRUE(on_the_wires.empty());
+  run_until(28ms);
+  EXPECT_EQ(on_the_wires, (std::vector<std::string>{"1 on", "1 off"}));
+  wire.abort();
+  fate = {true, 0ms};
+  reply(40ms, 'c');
+  fate.lost = false;
+  reply(50ms, 'd');
+  EXPECT_EQ(on_the_wires, (std::vector<std::string>{"1 on", "1 off", "2 off", "4 on", "4 off"}));
+}
 
 TEST_F(ModuleWireTest, HandsOnAtOnceWhatNobodyWatches) {
   reply(5ms, 'a');

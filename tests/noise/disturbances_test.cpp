@@ -120,8 +120,9 @@ TEST(Noise, OfTheSameSeedIsTheSame) {
 
 TEST(Echo, SendsAgainWhatItHasHeardOnceItIsQuiet) {
   TwoOnALine line;
-  Echo echo(line.bus);
-  echo.switch_on(9600, milliseconds(5));
+  std::uint32_t rate = 9600;
+  Echo echo(line.bus, [&rate] { return rate; });
+  echo.switch_on(milliseconds(5));
   line.send({1, 2, 3});
   EXPECT_EQ(line.heard, (Heard{{1, ByteStatus::Good},
                                {2, ByteStatus::Good},

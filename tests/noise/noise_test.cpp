@@ -98,8 +98,8 @@ void late_driver(NoisyLine& noisy, std::uint64_t exchanges) {
 }
 
 void echo(NoisyLine& noisy, std::uint64_t exchanges) {
-  auto& repeater = noisy.attach<sim::Echo>();
-  repeater.switch_on(NoisyLine::kBaud, milliseconds(3));
+  auto& repeater = noisy.attach<sim::Echo>([] { return NoisyLine::kBaud; });
+  repeater.switch_on(milliseconds(3));
   for (std::uint64_t i = 0; i < exchanges; ++i) {
     ask(noisy);
     noisy.line().bus().run_for(microseconds(noisy.below(6000)));
