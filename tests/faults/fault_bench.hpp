@@ -83,4 +83,40 @@ class FaultBench {
   std::vector<std::string> notices_;
 };
 
+inline const std::string kName = "!019042D";
+
+inline std::vector<std::string> two() { return {"EX9042D@01", "EX9052D@02"}; }
+
+/// When each byte that is none of the master's or of the only module's began, and its value.
+inline std::vector<std::pair<VirtualTime, int>> of_others(FaultBench& bench) {
+  std::vector<std::pair<VirtualTime, int>> bytes;
+  for (const BusRecorder::Byte& byte : bench.recorder().bytes) {
+    if (byte.station > bench.line().size()) {
+      bytes.emplace_back(byte.start, byte.byte);
+    }
+  }
+  return bytes;
+}
+
+/// When the module at `position` has begun to answer.
+inline std::vector<VirtualTime> answers_of(FaultBench& bench, std::size_t position) {
+  std::vector<VirtualTime> begun;
+  for (const BusRecorder::Driver& driver : bench.recorder().drivers) {
+    if (driver.on && driver.station == position) {
+      begun.push_back(driver.at);
+    }
+  }
+  return begun;
+}
+
+/// Which of so many requests are answered: `.` those that are not.
+inline std::string answered(FaultBench& bench, unsigned requests, const std::string& address = "01") {
+  std::string which;
+  for (unsigned i = 0; i < requests; ++i) {
+    const std::string reply = bench.ask("$" + address + "M");
+    which += reply.empty() ? '.' : reply.rfind("!" + address, 0) == 0 && !bench.garbled() ? 'x' : '?';
+  }
+  return which;
+}
+
 }  // namespace ex9000::sim

@@ -84,12 +84,12 @@ TEST(InputProgram, AKeyIsPressedOnceOrAgainAndAgain) {
 }
 
 TEST(InputProgram, AWrongOneIsRefusedWithWhatIsWrongAndTheMend) {
-  struct Wrong {
+  struct Refused {
     const char* text;
     const char* names;
     const char* mend;
   };
-  for (const Wrong& wrong : std::vector<Wrong>{
+  for (const Refused& wrong : std::vector<Refused>{
            {"", "no input ''", "0 to 7"},
            {"8 square 1s", "no input '8'", "0 to 7"},
            {"-1 square 1s", "no input '-1'", "0 to 7"},
