@@ -93,8 +93,8 @@ class Bus {
   void run_until(VirtualTime until);
   void run_for(VirtualTime duration) { run_until(clock_.virtual_now() + duration); }
 
-  /// A byte or more is under way, or a driver is on.
-  [[nodiscard]] bool busy() const { return !on_the_wire_.empty() || drivers_on_ != 0; }
+  /// A byte or more is under way.
+  [[nodiscard]] bool busy() const { return !on_the_wire_.empty(); }
   VirtualClock& clock() { return clock_; }
 
  private:

@@ -33,7 +33,7 @@ std::string line_error(const Frame& frame) {
   for (const Frame::Change& change : frame.changes) {
     append(changes, told(change));
   }
-  std::string text = frame.collided ? "collision: two drivers were on" : "";
+  std::string text = frame.collided ? "collision: something else was on the wires" : "";
   append(text, changes.empty() ? "" : "noise: " + changes);
   return text;
 }

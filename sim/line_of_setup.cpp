@@ -1,5 +1,6 @@
 #include "sim/line_of_setup.hpp"
 
+#include <algorithm>
 #include <utility>
 
 namespace ex9000::sim {
@@ -25,7 +26,12 @@ void begin_programs(Line& line, const LineSetup& setup) {
       line.move_input(i, program);
     }
   }
-  for (const Fault& fault : setup.faults) {
+  const VirtualTime now = line.clock().virtual_now();
+  for (Fault fault : setup.faults) {
+    // While modules come up nothing can go wrong.
+    if (fault.schedule.when == Schedule::When::At) {
+      fault.schedule.time = std::max(fault.schedule.time, now);
+    }
     line.faults().add(fault);
   }
 }

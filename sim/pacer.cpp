@@ -76,10 +76,11 @@ bool Pacer::is_full() const {
 }
 
 void Pacer::follow() {
-  catch_up(wall());
+  const VirtualTime present = wall();
+  catch_up(present);
   hand_out();
   if (frames_ != nullptr) {
-    frames_->run(wall());
+    frames_->run(present);  // not later: what is due by now may go on with a frame
   }
   if (paused_ && !is_full()) {
     paused_ = false;

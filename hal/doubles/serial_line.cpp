@@ -1,5 +1,7 @@
 #include "hal/doubles/serial_line.hpp"
 
+#include <algorithm>
+
 namespace ex9000::hal::doubles {
 
 void SerialLine::send(Bytes bytes) {
@@ -16,7 +18,7 @@ void SerialLine::run() {
   }
   if (sent_ == bytes_.size) {
     driving_ = false;
-    next_ = kNever;
+    next_ = over_ = kNever;
     wire_.drive(false);
     return;
   }
@@ -24,7 +26,15 @@ void SerialLine::run() {
   // From the first start bit on, so that rounding does not add up.
   next_ = first_start_bit_ + wire_.takes(sent_, baud_);
   if (sent_ == bytes_.size) {
-    next_ += kDriverTail + late_by_;
+    over_ = next_ + kDriverTail;
+    next_ = over_ + late_by_;
+  }
+}
+
+void SerialLine::release_late(VirtualTime by) {
+  late_by_ = by;
+  if (over_ != kNever) {
+    next_ = std::max(over_ + by, clock_.virtual_now());
   }
 }
 
@@ -34,7 +44,7 @@ void SerialLine::abort() {
     wire_.drive(false);
   }
   baud_ = 0;
-  next_ = kNever;
+  next_ = over_ = kNever;
 }
 
 }  // namespace ex9000::hal::doubles

@@ -38,8 +38,8 @@ class SerialLine final : public hal::SerialLine {
 
   /// 0 until it is opened.
   [[nodiscard]] std::uint32_t baud() const { return baud_; }
-  /// By how much later its driver goes off than it should, from the next reply on.
-  void release_late(VirtualTime by) { late_by_ = by; }
+  /// By how much later its driver goes off than it should, this one's too.
+  void release_late(VirtualTime by);
   /// When `run` has something to do.
   [[nodiscard]] VirtualTime next() const { return next_; }
   void run();
@@ -55,6 +55,7 @@ class SerialLine final : public hal::SerialLine {
   std::size_t sent_ = 0;
   VirtualTime first_start_bit_{0};
   VirtualTime next_ = kNever;
+  VirtualTime over_ = kNever;  ///< when the driver should go off, once the last byte is under way
   VirtualTime late_by_{0};
 };
 

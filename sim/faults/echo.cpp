@@ -3,13 +3,18 @@
 namespace ex9000::sim {
 
 void Echo::receive(std::uint8_t byte, ByteStatus /*status*/) {
-  if (!driving_) {
+  if (!driving_ && heard_.size() < kMostHeard) {
     heard_.push_back(byte);
     next_ = clock_.virtual_now() + delay_;
   }
 }
 
 void Echo::run() {
+  if (!driving_ && bus_.busy()) {
+    // The silence may have begun to end, or never have been one: the next byte is heard only when it is over.
+    next_ = clock_.virtual_now() + wire_.takes(1, rate_());
+    return;
+  }
   if (!driving_) {
     driving_ = true;
     began_ = clock_.virtual_now();

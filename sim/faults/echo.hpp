@@ -1,6 +1,7 @@
 // A repeater out of order: it sends again whatever it has heard.
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <functional>
 #include <utility>
@@ -16,7 +17,8 @@ class Echo final : public Station {
   using Rate = std::function<std::uint32_t()>;
 
   /// Attaches itself to `bus`; it is off.
-  Echo(Bus& bus, Rate rate) : clock_(bus.clock()), wire_(bus.attach(*this)), rate_(std::move(rate)) {}
+  Echo(Bus& bus, Rate rate)
+      : bus_(bus), clock_(bus.clock()), wire_(bus.attach(*this)), rate_(std::move(rate)) {}
   Echo(const Echo&) = delete;
   Echo& operator=(const Echo&) = delete;
 
@@ -35,6 +37,9 @@ class Echo final : public Station {
   void receive(std::uint8_t byte, ByteStatus status) override;
 
  private:
+  static constexpr std::size_t kMostHeard = 1024;  ///< beyond that it forgets: a line carries what it can
+
+  const Bus& bus_;
   VirtualClock& clock_;
   Wire& wire_;
   Rate rate_;

@@ -104,7 +104,11 @@ bool Faults::remove(std::size_t number) {
   if (found == armed_.end()) {
     return false;
   }
+  const bool was_late = found->fault.trouble == Trouble::LateReply;
   armed_.erase(found);
+  if (was_late) {
+    let_late_replies_go();
+  }
   changed_ = true;
   act();
   return true;
@@ -112,8 +116,15 @@ bool Faults::remove(std::size_t number) {
 
 void Faults::remove_all() {
   armed_.clear();
+  let_late_replies_go();
   changed_ = true;
   act();
+}
+
+void Faults::let_late_replies_go() {
+  for (const auto& module : modules_) {
+    module->let_late_replies_go();
+  }
 }
 
 std::vector<Faults::Told> Faults::told() const {
@@ -226,6 +237,18 @@ void Faults::say(const Armed& armed, const std::string& what) const {
   }
 }
 
+/// Those that lasted since replies before: this one lasts longer.
+void Faults::forget_others_of(Armed& armed, const Strike& latest) {
+  const Strike kept = latest;
+  auto& strikes = armed.strikes;
+  strikes.erase(std::remove_if(strikes.begin(), strikes.end(),
+                               [&kept](const Strike& strike) {
+                                 return strike.reply_of == kept.reply_of && !strike.waits &&
+                                        strike.reply != kept.reply;
+                               }),
+                strikes.end());
+}
+
 ReplyFate Faults::reply_begins(std::size_t module) {
   ++replies_[module];
   for (Armed& armed : armed_) {
@@ -278,8 +301,10 @@ void Faults::reply_on_the_wires(std::size_t module, std::uint64_t reply, bool on
     const auto strike = std::find_if(armed.strikes.begin(), armed.strikes.end(), of_it);
     if (strike != armed.strikes.end()) {
       strike->waits = false;
-      const auto lasts = armed.fault.schedule.lasts;
-      strike->ends = lasts ? bus_.clock().virtual_now() + *lasts : kNever;
+      if (const auto lasts = armed.fault.schedule.lasts) {
+        strike->ends = bus_.clock().virtual_now() + *lasts;
+        forget_others_of(armed, *strike);
+      }
     }
   }
   if (on) {

@@ -80,6 +80,8 @@ class Faults final : public Station {
   void reply_on_the_wires(std::size_t module, std::uint64_t reply, bool on);
   void written(std::size_t module);
   void strike(Armed& armed, std::optional<std::size_t> reply_of);
+  static void forget_others_of(Armed& armed, const Strike& latest);
+  void let_late_replies_go();
   template <class Over>
   void relent(Armed& armed, Over over);
   void say(const Armed& armed, const std::string& what) const;

@@ -12,9 +12,12 @@ void ModuleWire::watch(Begins begins, Ends ends, OnTheWires on_the_wires) {
 }
 
 void ModuleWire::drive(bool on) {
+  drives_ = on;
   if (on) {
     ++reply_;
     fate_ = begins_ ? begins_() : ReplyFate();
+    fate_.lost = fate_.lost || late_.size() > kMostLate;
+    forced_for_reply_ = forced_;
     if (!late_.empty()) {  // one reply after the other: behind one that is late, the next is late too
       fate_.late_by = std::max(fate_.late_by, late_.back().when - clock_.virtual_now());
     }
@@ -25,7 +28,7 @@ void ModuleWire::drive(bool on) {
   }
 }
 
-void ModuleWire::put(std::uint8_t byte, std::uint32_t baud) { hand_on(What::Byte, byte, rate(baud)); }
+void ModuleWire::put(std::uint8_t byte, std::uint32_t baud) { hand_on(What::Byte, byte, reply_rate(baud)); }
 
 void ModuleWire::hand_on(What what, std::uint8_t byte, std::uint32_t baud) {
   if (fate_.lost) {
@@ -67,6 +70,16 @@ void ModuleWire::run() {
     late_.pop_front();
     driving_late_ = due.what != What::Off;
     carry_out(due);
+  }
+}
+
+void ModuleWire::hurry() {
+  if (late_.empty() || late_.front().what != What::On) {
+    return;
+  }
+  const VirtualTime earlier_by = late_.front().when - clock_.virtual_now();
+  for (Late& late : late_) {
+    late.when -= earlier_by;
   }
 }
 

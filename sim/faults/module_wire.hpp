@@ -1,6 +1,7 @@
 // A module's way to the wires, and what may be wrong with it.
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <deque>
 #include <functional>
@@ -44,6 +45,8 @@ class ModuleWire final : public Wire {
   [[nodiscard]] bool sends_late() const { return driving_late_; }
   [[nodiscard]] VirtualTime next() const { return late_.empty() ? kNever : late_.front().when; }
   void run();
+  /// The first reply that waits to be late need not wait any more; those behind it follow as they would have.
+  void hurry();
   /// The supply is off: what has not been sent never will be.
   void abort();
 
@@ -51,7 +54,7 @@ class ModuleWire final : public Wire {
   void drive(bool on) override;
   void put(std::uint8_t byte, std::uint32_t baud) override;
   [[nodiscard]] VirtualTime takes(std::size_t bytes, std::uint32_t baud) const override {
-    return wire_.takes(bytes, rate(baud));
+    return wire_.takes(bytes, reply_rate(baud));
   }
 
  private:
@@ -64,9 +67,18 @@ class ModuleWire final : public Wire {
     std::uint64_t reply;
   };
 
+  /// Beyond that replies get lost: whoever asks on and on is not to be remembered for good.
+  static constexpr std::size_t kMostLate = 65'536;
+
   void hand_on(What what, std::uint8_t byte, std::uint32_t baud);
   void carry_out(const Late& due);
   void tell(std::uint64_t reply, bool on) const;
+  [[nodiscard]] std::uint32_t reply_rate(std::uint32_t baud) const {
+    if (!drives_) {
+      return rate(baud);
+    }
+    return forced_for_reply_ != 0 ? forced_for_reply_ : baud;
+  }
 
   const VirtualClock& clock_;
   Wire& wire_;
@@ -76,6 +88,8 @@ class ModuleWire final : public Wire {
   ReplyFate fate_;
   std::uint64_t reply_ = 0;  ///< which the UART sends, or has sent last
   std::uint32_t forced_ = 0;
+  std::uint32_t forced_for_reply_ = 0;  ///< for the whole of it
+  bool drives_ = false;                 ///< the UART does
   std::deque<Late> late_;
   bool driving_late_ = false;
 };

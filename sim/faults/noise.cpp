@@ -1,5 +1,7 @@
 #include "sim/faults/noise.hpp"
 
+#include <algorithm>
+
 namespace ex9000::sim {
 
 Noise::Noise(Bus& bus, NoiseRates rates, std::uint64_t seed)
@@ -26,9 +28,10 @@ Levels Noise::disturbed(const Sent& sent) {
   }
   const bool zero = chance_.happens(rates_.stray_zero);
   if (zero || chance_.happens(rates_.stray_character)) {
-    stray_ = zero ? 0 : static_cast<std::uint8_t>(chance_.number());
-    stray_baud_ = sent.baud;
-    stray_at_ = sent.ends;
+    const std::uint8_t byte = zero ? 0 : static_cast<std::uint8_t>(chance_.number());
+    const auto later = std::find_if(strays_.begin(), strays_.end(),
+                                    [&sent](const Stray& stray) { return sent.ends < stray.at; });
+    strays_.insert(later, {sent.ends, byte, sent.baud});
   }
   strikes_ += levels != sent.levels ? 1U : 0U;
   return levels;
@@ -36,10 +39,11 @@ Levels Noise::disturbed(const Sent& sent) {
 
 /// No driver goes on: what it fights is the termination, not the sender.
 void Noise::run() {
-  stray_at_ = kNever;
+  const Stray stray = strays_.front();
+  strays_.pop_front();
   ++strikes_;
   straying_ = true;
-  wire_.put(stray_, stray_baud_);
+  wire_.put(stray.byte, stray.baud);
   straying_ = false;
 }
 

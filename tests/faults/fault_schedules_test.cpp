@@ -93,6 +93,19 @@ TEST(FaultsSchedule, OfTheRepliesOfAllModulesCountsThemTogether) {
   EXPECT_EQ(answered(bench, 2, "01"), "x.");
 }
 
+TEST(FaultsSchedule, NoiseOfRepliesThatLastsIsOneStrikeHoweverManyThereAre) {
+  FaultBench bench;
+  bench.add("bit-errors 1e-12 every reply for 1h");
+  bench.add("lost-bytes 1e-12 every reply for 1s");
+  for (int i = 0; i < 20; ++i) {
+    EXPECT_EQ(bench.ask("$01M"), kName);
+  }
+  bench.run(990ms);
+  EXPECT_TRUE(bench.faults().told()[0].strikes);
+  EXPECT_FALSE(bench.faults().told()[1].strikes);
+  EXPECT_EQ(bench.faults().told()[0].strikes_so_far, 20U);
+}
+
 TEST(FaultsSchedule, OfRepliesMayLastBeyondTheReply) {
   FaultBench bench;
   bench.add("lost-reply every 3rd reply for 100ms");

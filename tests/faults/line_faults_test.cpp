@@ -80,6 +80,14 @@ TEST(StrayZeros, ComeRightBehindEachByte) {
   EXPECT_EQ(bench.heard(), "\0"s);
 }
 
+TEST(InsertedBytes, BehindEveryByteAreAsManyAsThereAreBytes) {
+  FaultBench bench;
+  bench.add("inserted-bytes 1");
+  bench.send("0123456789ABCDE\r");
+  bench.run(100ms);
+  EXPECT_EQ(of_others(bench).size(), 16U);
+}
+
 TEST(StrayZeros, BehindSomeBytesLeaveTheOthersAlone) {
   FaultBench bench;
   bench.add("stray-zeros 0.01");
@@ -94,6 +102,13 @@ TEST(EchoFault, SaysAgainWhatWasSaidAfterItsSilence) {
   EXPECT_EQ(bench.ask("$05M"), "$05M");  // for a module that is not here
   const VirtualTime request_over = bench.recorder().bytes[4].end;
   EXPECT_EQ(of_others(bench)[0].first, request_over + 5ms);
+}
+
+TEST(EchoFault, WaitsForTheEndOfWhatIsSaidHoweverShortItsSilence) {
+  FaultBench bench;
+  bench.add("echo 1ms");  // of which a character at 9600 baud takes 1.04
+  EXPECT_EQ(bench.ask("$05M"), "$05M");
+  EXPECT_GT(of_others(bench)[0].first, bench.recorder().bytes[4].end);
 }
 
 TEST(EchoFault, FollowsTheLinesRate) {

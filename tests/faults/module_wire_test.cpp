@@ -63,6 +63,46 @@ class ModuleWireTest : public testing::Test {
   std::vector<std::string> on_the_wires;
 };
 
+TEST_F(ModuleWireTest, KeepsARatesReplyAtItToTheEnd) {
+  wire.force_rate(1200);
+  run_until(5ms);
+  wire.drive(true);
+  wire.put('a', 9600);
+  wire.force_rate(0);
+  wire.put('b', 9600);
+  EXPECT_EQ(wire.takes(2, 9600), wires.takes(2, 1200));
+  wire.drive(false);
+  wire.drive(true);
+  wire.put('c', 9600);
+  EXPECT_EQ(wires.happened, (Happened{"5 on", "5 a 1200", "5 b 1200", "5 off", "5 on", "5 c 9600"}));
+}
+
+TEST_F(ModuleWireTest, LetsWhatIsLateGoAtOnce) {
+  watch();
+  fate.late_by = 1h;
+  reply(5ms, 'a');
+  reply(10ms, 'b');
+  run_until(20ms);
+  wire.hurry();
+  fate.late_by = 0ms;
+  run_until(30ms);
+  EXPECT_EQ(wires.happened, (Happened{"20 on", "20 a 9600", "21 off", "25 on", "25 b 9600", "26 off"}));
+  reply(40ms, 'c');
+  EXPECT_EQ(wires.happened.size(), 9U);
+}
+
+TEST_F(ModuleWireTest, RemembersNoMoreLateRepliesThanABoundAndGoesOnBehindThem) {
+  watch();
+  fate.late_by = 1h;
+  for (int i = 0; i < 30'000; ++i) {
+    reply(5ms, 'a');
+  }
+  wire.hurry();
+  run_until(2h);
+  EXPECT_LT(wires.happened.size(), 66'000U);
+  EXPECT_GT(wires.happened.size(), 65'000U);
+}
+
 TEST_F(ModuleWireTest, SaysWhichReplyIsOnTheWiresOrNeverWillBe) {
   watch();
   fate.late_by = 20ms;

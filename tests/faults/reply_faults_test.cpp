@@ -50,6 +50,16 @@ TEST(LateReply, OfEveryReplyKeepsTheirOrder) {
   EXPECT_EQ(bench.heard(), kName + "\r!01400600\r>0000\r!01D01.00\r");
 }
 
+TEST(LateReply, ComesAtOnceWhenItsFaultIsRemovedAndTheNextIsOnTime) {
+  FaultBench bench;
+  const std::size_t fault = bench.add("late-reply 1h");
+  EXPECT_EQ(bench.ask("$01M"), "");
+  EXPECT_TRUE(bench.faults().remove(fault));
+  bench.run(50ms);
+  EXPECT_EQ(bench.heard(), kName + "\r");
+  EXPECT_EQ(bench.ask("$01M"), kName);
+}
+
 TEST(LateReply, IsNeverSentOnceTheSupplyHasFailed) {
   FaultBench bench;
   bench.add("late-reply 200ms");
@@ -81,6 +91,16 @@ TEST(LateReply, ThatIsLostTakesItsNoiseWithIt) {
   bench.ask("$01M");
   EXPECT_EQ(bench.ask("$01M"), "");
   EXPECT_EQ(bench.ask("$01M"), kName);
+}
+
+TEST(LateDriver, GoesOffAtOnceWhenItsFaultIsRemoved) {
+  FaultBench bench;
+  bench.add("late-driver 1h");
+  EXPECT_EQ(bench.ask("$01M"), kName);
+  bench.faults().remove_all();
+  bench.run(1ms);
+  EXPECT_EQ(bench.ask("$01M"), kName);
+  EXPECT_FALSE(bench.garbled());
 }
 
 TEST(LateDriver, HoldsTheLineAndWhatIsSaidThenIsLost) {

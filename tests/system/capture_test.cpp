@@ -204,7 +204,7 @@ TEST(Capture, AWrongCrcOrChecksumAndACollisionAreComments) {
   EXPECT_EQ(packets[2].at("frame.comment"), "");
   for (const std::size_t reply : {3U, 4U}) {
     EXPECT_EQ(packets[reply].at("frame.p2p_dir"), kReceived);
-    EXPECT_EQ(packets[reply].at("frame.comment"), "collision: two drivers were on");
+    EXPECT_EQ(packets[reply].at("frame.comment"), "collision: something else was on the wires");
   }
 }
 

@@ -49,7 +49,7 @@ TEST(TextLog, AFrameIsALine) {
 TEST(TextLog, ACollisionLeavesNoMeaning) {
   Frame frame = frame_of(1, {1, 2, 3});
   frame.collided = true;
-  EXPECT_EQ(text_of(frame), "   12.345679  < 01 EX9042D-M  01 02 03  ; collision: two drivers were on|");
+  EXPECT_EQ(text_of(frame), "   12.345679  < 01 EX9042D-M  01 02 03  ; collision: something else was on the wires|");
 }
 
 TEST(TextLog, WhatNoiseHasChangedIsSaidWithWhatItMeans) {
@@ -87,7 +87,7 @@ TEST(JsonLog, WhatWentWrongIsTold) {
   EXPECT_EQ(json_of(frame)["error"], "noise: byte 3: 03 instead of 07; wrong CRC");
   frame.collided = true;
   EXPECT_EQ(json_of(frame)["collided"], true);
-  EXPECT_EQ(json_of(frame)["error"], "collision: two drivers were on; noise: byte 3: 03 instead of 07");
+  EXPECT_EQ(json_of(frame)["error"], "collision: something else was on the wires; noise: byte 3: 03 instead of 07");
   EXPECT_FALSE(json_of(frame).contains("meaning"));
 }
 
