@@ -94,7 +94,9 @@ class Bus {
   void run_for(VirtualTime duration) { run_until(clock_.virtual_now() + duration); }
 
   /// A byte or more is under way.
-  [[nodiscard]] bool busy() const { return !on_the_wire_.empty(); }
+  [[nodiscard]] bool carries() const { return !on_the_wire_.empty(); }
+  /// Or a driver is on.
+  [[nodiscard]] bool busy() const { return carries() || drivers_on_ != 0; }
   VirtualClock& clock() { return clock_; }
 
  private:

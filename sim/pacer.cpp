@@ -67,7 +67,7 @@ void Pacer::catch_up(VirtualTime until) {
 
 /// Whether the event at `next` need not wait for the wall clock.
 bool Pacer::leads(VirtualTime next) const {
-  return pace_.lead != VirtualTime(0) && (line_.bus().busy() || next <= last_byte_ + pace_.lead);
+  return pace_.lead != VirtualTime(0) && (line_.bus().carries() || next <= last_byte_ + pace_.lead);
 }
 
 /// Masters have to wait: the line has enough to carry, or virtual time has run too far ahead.

@@ -10,7 +10,7 @@ void Echo::receive(std::uint8_t byte, ByteStatus /*status*/) {
 }
 
 void Echo::run() {
-  if (!driving_ && bus_.busy()) {
+  if (!driving_ && bus_.carries()) {
     // The silence may have begun to end, or never have been one: the next byte is heard only when it is over.
     next_ = clock_.virtual_now() + wire_.takes(1, rate_());
     return;
