@@ -62,6 +62,8 @@ void FrameWatch::byte(std::size_t station, std::uint8_t byte, std::uint32_t baud
   Frame& frame = sending.frame;
   if (sending.sent == 0) {
     frame.began = start;
+    frame.sent_at = baud;
+    frame.line_at = line_rate_();
   }
   std::optional<std::uint8_t> arrives = byte;
   if (const auto levels = std::exchange(sending.change, std::nullopt)) {

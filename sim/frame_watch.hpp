@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <functional>
 #include <optional>
+#include <utility>
 #include <vector>
 
 #include "sim/bus.hpp"
@@ -31,8 +32,11 @@ struct Frame {
   FrameBytes bytes;
   std::vector<Change> changes;
   bool collided = false;  ///< another was on meanwhile
-  VirtualTime began{0};   ///< first start bit
-  VirtualTime ended{0};   ///< last stop bit
+  /// In baud; of the line, whose receivers get these bytes only where it is that of the sender.
+  std::uint32_t sent_at = 0;
+  std::uint32_t line_at = 0;
+  VirtualTime began{0};  ///< first start bit
+  VirtualTime ended{0};  ///< last stop bit
 
   [[nodiscard]] Speaker speaker() const { return station == 0 ? Speaker::Master : Speaker::Module; }
 };
@@ -43,6 +47,10 @@ struct Frame {
 class FrameWatch final : public BusObserver {
  public:
   using Take = std::function<void(const Frame&)>;
+  /// The line's rate at this moment, in baud.
+  using Rate = std::function<std::uint32_t()>;
+
+  explicit FrameWatch(Rate line_rate) : line_rate_(std::move(line_rate)) {}
 
   /// From now on `take` gets every frame when it is over.
   void tell(Take take) { takers_.push_back(std::move(take)); }
@@ -72,6 +80,7 @@ class FrameWatch final : public BusObserver {
   [[nodiscard]] bool begins_another(VirtualTime start, VirtualTime end);
   void hand_out(std::size_t station);
 
+  Rate line_rate_;
   std::vector<Take> takers_;
   std::vector<Sender> senders_;
 };

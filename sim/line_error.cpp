@@ -34,6 +34,10 @@ std::string line_error(const Frame& frame) {
     append(changes, told(change));
   }
   std::string text = frame.collided ? "collision: something else was on the wires" : "";
+  if (frame.sent_at != frame.line_at) {
+    append(text, "sent at " + std::to_string(frame.sent_at) + " baud on a line at " +
+                     std::to_string(frame.line_at));
+  }
   append(text, changes.empty() ? "" : "noise: " + changes);
   return text;
 }

@@ -41,7 +41,7 @@ class LineRecord {
   Line& line_;
   std::string name_;
   std::unique_ptr<BusLog> log_;
-  FrameWatch frames_;
+  FrameWatch frames_{[this] { return line_.master().baud(); }};
   bool wanted_ = false;
 };
 

@@ -21,6 +21,19 @@ bool printable(std::uint8_t byte) { return byte >= 0x20 && byte <= 0x7E; }
 
 constexpr std::size_t kChecksumDigits = 2;
 
+std::string escaped(std::uint8_t byte) {
+  switch (byte) {
+    case '\r':
+      return "\\r";
+    case '\n':
+      return "\\n";
+    case 0x00:
+      return "\\0";
+    default:
+      return std::string(1, static_cast<char>(byte));
+  }
+}
+
 struct DconRequest {
   const dcon::Command* command = nullptr;  ///< null: none
   bool checksum = false;                   ///< its last two characters are one, or meant to be
@@ -55,8 +68,21 @@ bool checksum_is_right(const std::string& text) {
   return text.substr(text.size() - kChecksumDigits) == hex_byte_text(sum & 0xFFU);
 }
 
+/// What a line's turn-around makes of idle, and what terminals send behind a CR: before a delimiter modules
+/// take no notice of it (wire.md 3).
+bool is_skipped(std::uint8_t byte) { return byte == 0x00 || byte == '\n'; }
+
+/// Where the delimiter stands, if that is all there is before it; else the beginning.
+FrameBytes::const_iterator dcon_begin(const FrameBytes& bytes) {
+  const auto first = std::find_if_not(bytes.begin(), bytes.end(), is_skipped);
+  const bool delimits =
+      first != bytes.end() && kDelimiters.find(static_cast<char>(*first)) != std::string_view::npos;
+  return delimits ? first : bytes.begin();
+}
+
+/// From its delimiter on.
 std::string without_cr(const FrameBytes& bytes) {
-  return {bytes.begin(), bytes.end() - (bytes.back() == '\r' ? 1 : 0)};
+  return {dcon_begin(bytes), bytes.end() - (bytes.back() == '\r' ? 1 : 0)};
 }
 
 std::string dcon_request(const FrameBytes& bytes) {
@@ -154,12 +180,16 @@ std::string modbus_meaning(const FrameBytes& bytes, Speaker speaker) {
 }  // namespace
 
 bool looks_like_dcon(const FrameBytes& bytes) {
-  if (bytes.empty() || (kDelimiters.find(static_cast<char>(bytes[0])) == std::string_view::npos &&
-                        kLeads.find(static_cast<char>(bytes[0])) == std::string_view::npos)) {
+  if (bytes.empty()) {
+    return false;
+  }
+  const auto begin = dcon_begin(bytes);
+  const char first = static_cast<char>(*begin);
+  if (kDelimiters.find(first) == std::string_view::npos && kLeads.find(first) == std::string_view::npos) {
     return false;
   }
   const auto text_end = bytes.back() == '\r' ? bytes.end() - 1 : bytes.end();
-  return std::all_of(bytes.begin(), text_end, printable);
+  return std::all_of(begin, text_end, printable);
 }
 
 bool was_dcon(const FrameBytes& bytes) {
@@ -171,7 +201,7 @@ std::string shown(const FrameBytes& bytes) {
   std::string text;
   if (looks_like_dcon(bytes)) {
     for (const std::uint8_t byte : bytes) {
-      text += byte == '\r' ? std::string("\\r") : std::string(1, static_cast<char>(byte));
+      text += escaped(byte);
     }
     return text;
   }

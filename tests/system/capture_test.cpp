@@ -414,7 +414,7 @@ Packet of_a_spoiled(const Bytes& request, OneHit hit) {
   sim::Line line({sim::parse_module_spec("EX9042D-M@01")}, sim::kPaced, [](std::uint8_t, ByteStatus) {});
   line.come_up();
   sim::Capture capture(directory / "line.pcapng");
-  sim::FrameWatch frames;
+  sim::FrameWatch frames([&line] { return line.master().baud(); });
   line.bus().observe(frames);
   line.bus().disturb(hit);
   capture.begin();

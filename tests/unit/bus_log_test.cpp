@@ -40,6 +40,15 @@ std::string json_line_of(const Frame& frame) {
 }
 nlohmann::json json_of(const Frame& frame) { return nlohmann::json::parse(json_line_of(frame)); }
 
+TEST(BusLog, SaysAtWhichRateAFrameWasSentWhereThatIsNotTheLines) {
+  Frame frame = frame_of(1, {1, 2, 3});
+  frame.sent_at = 115200;
+  frame.line_at = 9600;
+  EXPECT_NE(text_of(frame).find("sent at 115200 baud on a line at 9600"), std::string::npos);
+  frame.line_at = 115200;
+  EXPECT_EQ(text_of(frame).find("sent at"), std::string::npos);
+}
+
 TEST(TextLog, AFrameIsALine) {
   EXPECT_EQ(text_of(frame_of(0, with_crc({1, 5, 0, 2, 0xFF, 0}))),
             "   12.345679  > master  01 05 00 02 FF 00 2D FA  ; 01: Write Single Coil 0002 = FF00, outputs|");
@@ -49,7 +58,8 @@ TEST(TextLog, AFrameIsALine) {
 TEST(TextLog, ACollisionLeavesNoMeaning) {
   Frame frame = frame_of(1, {1, 2, 3});
   frame.collided = true;
-  EXPECT_EQ(text_of(frame), "   12.345679  < 01 EX9042D-M  01 02 03  ; collision: something else was on the wires|");
+  EXPECT_EQ(text_of(frame),
+            "   12.345679  < 01 EX9042D-M  01 02 03  ; collision: something else was on the wires|");
 }
 
 TEST(TextLog, WhatNoiseHasChangedIsSaidWithWhatItMeans) {
@@ -87,7 +97,8 @@ TEST(JsonLog, WhatWentWrongIsTold) {
   EXPECT_EQ(json_of(frame)["error"], "noise: byte 3: 03 instead of 07; wrong CRC");
   frame.collided = true;
   EXPECT_EQ(json_of(frame)["collided"], true);
-  EXPECT_EQ(json_of(frame)["error"], "collision: something else was on the wires; noise: byte 3: 03 instead of 07");
+  EXPECT_EQ(json_of(frame)["error"],
+            "collision: something else was on the wires; noise: byte 3: 03 instead of 07");
   EXPECT_FALSE(json_of(frame).contains("meaning"));
 }
 

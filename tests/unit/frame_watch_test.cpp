@@ -42,10 +42,21 @@ class FrameWatchTest : public testing::Test {
     watch.run(now);
   }
 
-  FrameWatch watch;
+  std::uint32_t line_rate = kBaud;
+  FrameWatch watch{[this] { return line_rate; }};
   std::vector<Frame> frames;
   VirtualTime now{0};
 };
+
+TEST_F(FrameWatchTest, ItIsKeptAtWhichRateAFrameWasSentAndAtWhichTheLineWas) {
+  line_rate = 1200;
+  watch.driver(kModule, true, now);
+  send(kModule, {1});
+  watch.driver(kModule, false, now);
+  ASSERT_EQ(frames.size(), 1U);
+  EXPECT_EQ(frames[0].sent_at, kBaud);
+  EXPECT_EQ(frames[0].line_at, 1200U);
+}
 
 TEST_F(FrameWatchTest, WhatADriverSendsUntilItGoesOffIsAFrame) {
   watch.driver(kModule, true, now);

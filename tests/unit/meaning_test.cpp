@@ -31,6 +31,21 @@ TEST(LooksLikeDcon, ADelimiterOrALeadAndPrintableCharactersDo) {
   }
 }
 
+TEST(LooksLikeDcon, WhatModulesSkipBeforeADelimiterMakesNoDifference) {
+  const FrameBytes behind_line_feed = dcon("\n$01M\r");
+  EXPECT_TRUE(looks_like_dcon(behind_line_feed));
+  EXPECT_EQ(shown(behind_line_feed), "\\n$01M\\r");
+  EXPECT_EQ(meaning(behind_line_feed, Speaker::Master), meaning(dcon("$01M\r"), Speaker::Master));
+  FrameBytes behind_turn_around = dcon("$01M\r");
+  behind_turn_around.insert(behind_turn_around.begin(), 2, 0x00);
+  EXPECT_TRUE(looks_like_dcon(behind_turn_around));
+  EXPECT_EQ(shown(behind_turn_around), "\\0\\0$01M\\r");
+  EXPECT_EQ(check_error(behind_turn_around, Speaker::Master), "");
+  EXPECT_FALSE(looks_like_dcon(dcon("\n")));
+  EXPECT_FALSE(looks_like_dcon(dcon("\n!01\r")));
+  EXPECT_FALSE(looks_like_dcon(rtu({0x0A, 0x24, 0x00, 0x00})));
+}
+
 TEST(LooksLikeDcon, AFrameThatIsNotCompleteYetDoes) {
   EXPECT_TRUE(looks_like_dcon(dcon("$")));
   EXPECT_TRUE(looks_like_dcon(dcon("$01")));
