@@ -40,7 +40,7 @@ on the command line, or in the bus file through all lines, from 1:
 
 constexpr const char* kPlayHelp = R"(
 A file is a list of steps: `> $01M` and `< !019042` for DCON, `=> 01 01 0000 000D` and `<= ...` for Modbus
-without its CRC, `silence`, `wait 1.5s`, `bytes HEX`, `checksum on|off`, `baud N`, and of a module `power on|off`,
+without its CRC, `silence`, `wait 1.5s`, `bytes HEX`, `checksum on|off`, `baud RATE`, and of a module `power on|off`,
 `power-cycle`, `reset`, `init on|off`, `input C on|off`, `pulse C [xCOUNT]`, `outputs HHHH`, `led on|off|flashing`.
 With `source:` and `model:` lines before them it is a transcript, played on each model; without, a scenario for the
 modules or the bus file behind it, whose steps may also be `module N`, `line NAME`, and `fault ...` as on the control

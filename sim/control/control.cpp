@@ -17,8 +17,6 @@ struct Refused {
   std::string why;  ///< may hold any byte that a command may
 };
 
-constexpr unsigned long kMostPulses = 1'000'000;  // some milliseconds of work
-
 /// Decimal digits and nothing else, up to `most`.
 std::optional<unsigned long> number(const std::string& text, unsigned long most) {
   constexpr std::size_t kMostDigits = 9;

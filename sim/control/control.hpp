@@ -8,6 +8,9 @@
 
 namespace ex9000::sim {
 
+/// On an input at once: some milliseconds of work.
+constexpr unsigned long kMostPulses = 1'000'000;
+
 /// The commands of `--control`, without the socket.
 class Control {
  public:

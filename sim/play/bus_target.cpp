@@ -82,7 +82,7 @@ Bytes BusTarget::receive(std::size_t count, std::chrono::milliseconds patience) 
   return std::exchange(heard, {});
 }
 
-Bytes BusTarget::listen(std::chrono::milliseconds time) {
+Bytes BusTarget::listen(std::chrono::nanoseconds time) {
   run_until(now() + time);
   return std::exchange(heard_[line_], {});
 }

@@ -32,7 +32,7 @@ class BusTarget : public Target {
   void start(const Model& model, const Settings* preset) override;
   void send(const Bytes& bytes) override;
   Bytes receive(std::size_t count, std::chrono::milliseconds patience) override;
-  Bytes listen(std::chrono::milliseconds time) override;
+  Bytes listen(std::chrono::nanoseconds time) override;
   void set_baud(std::uint32_t rate) override { chosen().master().set_baud(rate); }
   void power(bool on) override;
   void reset() override;

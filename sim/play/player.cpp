@@ -156,7 +156,7 @@ class Playing {
     }
   }
 
-  void nothing_for(std::chrono::milliseconds time) {
+  void nothing_for(std::chrono::nanoseconds time) {
     const Bytes heard = target_.listen(time);
     open_question_ = open_question_ && time < kReplyBegins;
     if (!heard.empty()) {

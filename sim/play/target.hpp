@@ -31,7 +31,7 @@ class Target {
   /// What is heard until `count` bytes are there or nothing came for `patience`.
   virtual Bytes receive(std::size_t count, std::chrono::milliseconds patience) = 0;
   /// What is heard while `time` passes.
-  virtual Bytes listen(std::chrono::milliseconds time) = 0;
+  virtual Bytes listen(std::chrono::nanoseconds time) = 0;
   /// The master's rate.
   virtual void set_baud(std::uint32_t rate) = 0;
 

@@ -1,12 +1,16 @@
 #include "sim/play/transcript.hpp"
 
 #include <algorithm>
-#include <cctype>
+#include <array>
+#include <charconv>
 #include <filesystem>
 #include <fstream>
 #include <optional>
+#include <string_view>
 
+#include "sim/control/control.hpp"
 #include "sim/fail.hpp"
+#include "sim/setup.hpp"
 #include "sim/time_text.hpp"
 #include "sim/words.hpp"
 
@@ -27,35 +31,45 @@ struct ModelRun {
   Variables variables;
 };
 
+bool is_blank(char character) { return character == ' ' || character == '\t'; }
+
+bool are_hex_digits(const std::string& text) {
+  return text.find_first_not_of("0123456789ABCDEFabcdef") == std::string::npos;
+}
+
 std::string trimmed(const std::string& text) {
   const auto first = text.find_first_not_of(" \t\r");
   const auto last = text.find_last_not_of(" \t\r");
   return first == std::string::npos ? "" : text.substr(first, last - first + 1);
 }
 
-unsigned long number(const std::string& text, int base = 10) {
-  std::size_t used = 0;
+constexpr int kHex = 16;
+
+/// Digits and nothing else, and not too many of them.
+std::optional<unsigned long> digits(const std::string& text, int base) {
   unsigned long value = 0;
-  try {
-    value = std::stoul(text, &used, base);
-  } catch (const std::exception&) {
-    used = 0;
+  const char* const end = text.data() + text.size();
+  const auto [rest, error] = std::from_chars(text.data(), end, value, base);
+  return error != std::errc() || rest != end ? std::nullopt : std::optional(value);
+}
+
+unsigned long number(const std::string& text, unsigned long least, unsigned long most) {
+  const auto value = digits(text, 10);
+  if (!value || *value < least || *value > most) {
+    fail("'" + text + "' wants a whole number from " + std::to_string(least) + " to " + std::to_string(most));
   }
-  if (text.empty() || used != text.size()) {
-    fail("'" + text + "' is no number");
-  }
-  return value;
+  return *value;
 }
 
 Bytes hex_bytes(const std::string& text) {
-  std::string digits;
-  std::copy_if(text.begin(), text.end(), std::back_inserter(digits), [](char c) { return c != ' '; });
-  if (digits.empty() || digits.size() % 2 != 0) {
-    fail("hex wants pairs of digits");
+  std::string all;
+  std::copy_if(text.begin(), text.end(), std::back_inserter(all), [](char c) { return !is_blank(c); });
+  if (all.empty() || all.size() % 2 != 0 || !are_hex_digits(all)) {
+    fail("'" + text + "' wants pairs of hex digits, such as 01 05 00FF");
   }
   Bytes bytes;
-  for (std::size_t i = 0; i < digits.size(); i += 2) {
-    bytes.push_back(static_cast<std::uint8_t>(number(digits.substr(i, 2), 16)));
+  for (std::size_t i = 0; i < all.size(); i += 2) {
+    bytes.push_back(static_cast<std::uint8_t>(*digits(all.substr(i, 2), kHex)));
   }
   return bytes;
 }
@@ -67,14 +81,24 @@ bool on_off(const std::string& text) {
   return text == "on";
 }
 
-std::chrono::milliseconds duration(const std::string& text) {
-  return std::chrono::duration_cast<std::chrono::milliseconds>(sim::parse_time(text));
+std::string joined(const sim::Words& words) {
+  std::string text;
+  for (const std::string& word : words) {
+    text += (text.empty() ? "" : " ") + word;
+  }
+  return text;
+}
+
+/// Which of them a model has is seen where that is known.
+unsigned channel(const std::string& text) {
+  constexpr unsigned long kMostChannels = 16;
+  return static_cast<unsigned>(number(text, 0, kMostChannels - 1));
 }
 
 const Model& model_named(const std::string& name) {
   const Model* model = find_model(name);
   if (model == nullptr) {
-    fail("no model '" + name + "'");
+    fail("no model '" + name + "'; --models lists them");
   }
   return *model;
 }
@@ -87,6 +111,13 @@ std::pair<std::string, std::string> key_and_value(const std::string& word) {
   return {word.substr(0, equals), word.substr(equals + 1)};
 }
 
+std::uint8_t preset_address(const std::string& text) {
+  if (text.empty() || text.size() > 2 || !are_hex_digits(text)) {
+    fail("'address=" + text + "' wants one or two hex digits");
+  }
+  return static_cast<std::uint8_t>(*digits(text, kHex));
+}
+
 void apply_preset(const std::string& word, Settings& settings) {
   const auto [key, value] = key_and_value(word);
   const auto format_bit = [&settings](std::uint8_t bit, bool on) {
@@ -95,16 +126,13 @@ void apply_preset(const std::string& word, Settings& settings) {
   if (key == "protocol" && (value == "ascii" || value == "modbus")) {
     settings.protocol = value == "modbus" ? Protocol::ModbusRtu : Protocol::Ascii;
   } else if (key == "address") {
-    settings.address = static_cast<std::uint8_t>(number(value, 16));
+    settings.address = preset_address(value);
   } else if (key == "checksum") {
     format_bit(kFormatChecksum, on_off(value));
   } else if (key == "edge" && (value == "rising" || value == "falling")) {
     format_bit(kFormatRisingEdge, value == "rising");
   } else if (key == "baud") {
-    const auto* found = std::find(kBaudRates.begin(), kBaudRates.end(), number(value));
-    if (found == kBaudRates.end()) {
-      fail("no baud rate '" + value + "'");
-    }
+    const auto* found = std::find(kBaudRates.begin(), kBaudRates.end(), sim::parse_line_rate(value));
     settings.baud_code = static_cast<std::uint8_t>(kFirstBaudCode + (found - kBaudRates.begin()));
   } else {
     fail("no preset '" + word + "'");
@@ -121,90 +149,120 @@ std::string substitute(std::string text, const Variables& variables) {
   return text;
 }
 
+Action outputs(const sim::Words& words) {
+  constexpr std::size_t kMostDigits = 4;
+  if (words[0].size() > kMostDigits || !are_hex_digits(words[0])) {
+    fail("'" + words[0] + "' wants 1 to 4 hex digits, bit n is output n");
+  }
+  return step::Outputs{static_cast<std::uint16_t>(*digits(words[0], kHex))};
+}
+
+Action pulse(const sim::Words& words) {
+  std::uint32_t count = 1;
+  if (words.size() == 2) {
+    if (words[1][0] != 'x') {
+      fail("'" + words[1] + "' wants an x before the count, such as x5");
+    }
+    count = static_cast<std::uint32_t>(number(words[1].substr(1), 1, sim::kMostPulses));
+  }
+  return step::Pulse{channel(words[0]), count};
+}
+
+Action led(const sim::Words& words) {
+  if (words[0] == "flashing") {
+    return step::Led{step::Led::Shows::Flashing};
+  }
+  return step::Led{on_off(words[0]) ? step::Led::Shows::On : step::Led::Shows::Off};
+}
+
+/// A step that begins with a word.
+struct Verb {
+  std::string_view name;
+  std::string_view args;
+  std::size_t fewest;
+  std::size_t most;
+  Action (*action)(const sim::Words& words);  ///< of what stands behind it
+
+  [[nodiscard]] std::string shape() const {
+    return std::string(name) + (args.empty() ? "" : " ") + std::string(args);
+  }
+};
+
+using sim::Words;
+
+constexpr std::size_t kAnyNumber = 1000;
+constexpr unsigned long kMostModules = 999'999;
+
+constexpr std::array<Verb, 17> kVerbs{{
+    {"bytes", "HEX", 1, kAnyNumber,
+     [](const Words& words) -> Action { return step::SendBytes{hex_bytes(joined(words))}; }},
+    {"silence", "", 0, 0, [](const Words& /*words*/) -> Action { return step::Silence{}; }},
+    {"wait", "TIME", 1, 1,
+     [](const Words& words) -> Action { return step::Wait{sim::parse_time(words[0])}; }},
+    {"checksum", "on|off", 1, 1,
+     [](const Words& words) -> Action { return step::Checksum{on_off(words[0])}; }},
+    {"baud", "RATE", 1, 1,
+     [](const Words& words) -> Action { return step::Baud{sim::parse_line_rate(words[0])}; }},
+    {"power", "on|off", 1, 1, [](const Words& words) -> Action { return step::Power{on_off(words[0])}; }},
+    {"power-cycle", "", 0, 0, [](const Words& /*words*/) -> Action { return step::PowerCycle{}; }},
+    {"reset", "", 0, 0, [](const Words& /*words*/) -> Action { return step::Reset{}; }},
+    {"init", "on|off", 1, 1, [](const Words& words) -> Action { return step::Init{on_off(words[0])}; }},
+    {"input", "C on|off", 2, 2,
+     [](const Words& words) -> Action {
+       return step::Input{channel(words[0]), on_off(words[1])};
+     }},
+    {"pulse", "C [xCOUNT]", 1, 2, pulse},
+    {"outputs", "HHHH", 1, 1, outputs},
+    {"led", "on|off|flashing", 1, 1, led},
+    {"module", "N", 1, 1,
+     [](const Words& words) -> Action { return step::OnModule{number(words[0], 1, kMostModules) - 1}; }},
+    {"line", "NAME", 1, 1, [](const Words& words) -> Action { return step::OnLine{words[0]}; }},
+    {"fault", "[N] FAULT, or fault off K|all", 1, kAnyNumber,
+     [](const Words& words) -> Action { return step::Trouble{"fault " + joined(words)}; }},
+    {"faults", "", 0, 0, [](const Words& /*words*/) -> Action { return step::Trouble{"faults"}; }},
+}};
+
+std::string all_shapes() {
+  std::string text = "> TEXT, < TEXT, => HEX, <= HEX";
+  for (const Verb& verb : kVerbs) {
+    text += ", " + verb.shape();
+  }
+  return text;
+}
+
+Action parse_verb(const std::string& text) {
+  Words words = sim::words_of(text);
+  const std::string name = words[0];
+  words.erase(words.begin());
+  for (const Verb& verb : kVerbs) {
+    if (verb.name == name && (words.size() < verb.fewest || words.size() > verb.most)) {
+      fail("'" + text + "': the step is " + verb.shape());
+    }
+    if (verb.name == name) {
+      return verb.action(words);
+    }
+  }
+  fail("no step '" + text + "'; there are " + all_shapes());
+}
+
 Action parse_action(const std::string& text) {
-  const auto rest_after = [&text](std::size_t lead) {
-    return text.size() > lead ? text.substr(lead + 1) : std::string();
-  };
-  if (text[0] == '>') {
-    return step::SendDcon{rest_after(1)};
-  }
-  if (text.rfind("<=", 0) == 0) {
-    return step::ExpectModbus{hex_bytes(rest_after(2))};
-  }
-  if (text[0] == '<') {
-    return step::ExpectDcon{rest_after(1)};
-  }
-  if (text.rfind("=>", 0) == 0) {
-    return step::SendModbus{hex_bytes(rest_after(2))};
-  }
-  const sim::Words word = sim::words_of(text);
-  const std::string& verb = word[0];
-  const auto takes = [&](std::size_t count) {
-    if (word.size() != count + 1) {
-      fail("'" + verb + "' has the wrong number of words behind it");
+  for (const std::string lead : {"<=", "=>", "<", ">"}) {
+    if (text.rfind(lead, 0) != 0) {
+      continue;
     }
-    return true;
-  };
-  if (verb == "bytes") {
-    return step::SendBytes{hex_bytes(rest_after(5))};
-  }
-  if (verb == "silence" && takes(0)) {
-    return step::Silence{};
-  }
-  if (verb == "wait" && takes(1)) {
-    return step::Wait{duration(word[1])};
-  }
-  if (verb == "checksum" && takes(1)) {
-    return step::Checksum{on_off(word[1])};
-  }
-  if (verb == "baud" && takes(1)) {
-    return step::Baud{static_cast<std::uint32_t>(number(word[1]))};
-  }
-  if (verb == "power" && takes(1)) {
-    return step::Power{on_off(word[1])};
-  }
-  if (verb == "power-cycle" && takes(0)) {
-    return step::PowerCycle{};
-  }
-  if (verb == "reset" && takes(0)) {
-    return step::Reset{};
-  }
-  if (verb == "init" && takes(1)) {
-    return step::Init{on_off(word[1])};
-  }
-  if (verb == "input" && takes(2)) {
-    return step::Input{static_cast<unsigned>(number(word[1])), on_off(word[2])};
-  }
-  if (verb == "pulse" && (word.size() == 2 || (takes(2) && word[2][0] == 'x'))) {
-    return step::Pulse{static_cast<unsigned>(number(word[1])),
-                       word.size() == 2 ? 1U : static_cast<std::uint32_t>(number(word[2].substr(1)))};
-  }
-  if (verb == "outputs" && takes(1)) {
-    if (word[1].size() > 4) {
-      fail("'" + word[1] + "' has more than 16 outputs");
+    if (text.size() > lead.size() && !is_blank(text[lead.size()])) {
+      fail("'" + text + "' wants a blank behind " + lead);
     }
-    return step::Outputs{static_cast<std::uint16_t>(number(word[1], 16))};
-  }
-  if (verb == "led" && takes(1)) {
-    if (word[1] == "flashing") {
-      return step::Led{step::Led::Shows::Flashing};
+    const std::string rest = text.size() > lead.size() ? text.substr(lead.size() + 1) : "";
+    if (lead == "<=") {
+      return step::ExpectModbus{hex_bytes(rest)};
     }
-    return step::Led{on_off(word[1]) ? step::Led::Shows::On : step::Led::Shows::Off};
-  }
-  if (verb == "module" && takes(1)) {
-    const unsigned long position = number(word[1]);
-    if (position == 0) {
-      fail("modules count from 1");
+    if (lead == "=>") {
+      return step::SendModbus{hex_bytes(rest)};
     }
-    return step::OnModule{position - 1};
+    return lead == "<" ? Action(step::ExpectDcon{rest}) : Action(step::SendDcon{rest});
   }
-  if (verb == "line" && takes(1)) {
-    return step::OnLine{word[1]};
-  }
-  if (verb == "fault" || verb == "faults") {
-    return step::Trouble{text};
-  }
-  fail("no step '" + text + "'");
+  return parse_verb(text);
 }
 
 bool is_of_a_bus(const Action& action) {
@@ -313,7 +371,7 @@ Transcript transcript_of(const std::string& path, const Source& source, const Mo
 }  // namespace
 
 std::chrono::milliseconds Transcript::waits() const {
-  std::chrono::milliseconds total{0};
+  std::chrono::nanoseconds total{0};
   for (const Step& step : steps) {
     if (const auto* wait = std::get_if<step::Wait>(&step.action)) {
       total += wait->time;
@@ -321,7 +379,7 @@ std::chrono::milliseconds Transcript::waits() const {
       total += kSilence;
     }
   }
-  return total;
+  return std::chrono::ceil<std::chrono::milliseconds>(total);
 }
 
 std::vector<std::string> transcript_files(const std::string& directory) {

@@ -35,7 +35,7 @@ struct SendBytes {
 };
 struct Silence {};
 struct Wait {
-  std::chrono::milliseconds time;
+  std::chrono::nanoseconds time;
 };
 struct Checksum {
   bool on;
@@ -98,7 +98,7 @@ struct Transcript {
   bool slow = false;
   std::vector<Step> steps;
 
-  /// `wait` and `silence` together.
+  /// `wait` and `silence` together, rounded up.
   [[nodiscard]] std::chrono::milliseconds waits() const;
 };
 

@@ -42,7 +42,7 @@ play::Bytes RegisterTarget::receive(std::size_t count, milliseconds patience) {
   return take_heard();
 }
 
-play::Bytes RegisterTarget::listen(milliseconds time) {
+play::Bytes RegisterTarget::listen(std::chrono::nanoseconds time) {
   bench_.run_for(time);
   return take_heard();
 }

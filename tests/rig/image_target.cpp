@@ -62,7 +62,7 @@ Bytes ImageTarget::receive(std::size_t count, milliseconds patience) {
   return bytes;
 }
 
-Bytes ImageTarget::listen(milliseconds time) {
+Bytes ImageTarget::listen(std::chrono::nanoseconds time) {
   module_->run_for(time);
   hear();
   return std::exchange(heard_, {});

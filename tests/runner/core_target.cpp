@@ -13,7 +13,7 @@ play::Bytes CoreTarget::receive(std::size_t count, std::chrono::milliseconds pat
   return heard;
 }
 
-play::Bytes CoreTarget::listen(std::chrono::milliseconds time) {
+play::Bytes CoreTarget::listen(std::chrono::nanoseconds time) {
   play::Bytes heard = BusTarget::listen(time);
   note_coverage(heard);
   return heard;

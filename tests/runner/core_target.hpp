@@ -19,7 +19,7 @@ class CoreTarget final : public play::BusTarget {
 
   void send(const Bytes& bytes) override;
   Bytes receive(std::size_t count, std::chrono::milliseconds patience) override;
-  Bytes listen(std::chrono::milliseconds time) override;
+  Bytes listen(std::chrono::nanoseconds time) override;
 
  private:
   void note_coverage(const Bytes& heard);

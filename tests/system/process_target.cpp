@@ -58,7 +58,7 @@ Bytes ProcessTarget::receive(std::size_t count, std::chrono::milliseconds patien
   return bytes;
 }
 
-Bytes ProcessTarget::listen(std::chrono::milliseconds time) {
+Bytes ProcessTarget::listen(std::chrono::nanoseconds time) {
   hear_until(std::max(line_free_, Clock::now()) + time);
   return take_heard();
 }

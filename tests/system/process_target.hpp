@@ -20,7 +20,7 @@ class ProcessTarget final : public play::Target {
   void start(const Model& model, const Settings* preset) override;
   void send(const play::Bytes& bytes) override;
   play::Bytes receive(std::size_t count, std::chrono::milliseconds patience) override;
-  play::Bytes listen(std::chrono::milliseconds time) override;
+  play::Bytes listen(std::chrono::nanoseconds time) override;
   void set_baud(std::uint32_t rate) override;
   void power(bool on) override;
   void reset() override;

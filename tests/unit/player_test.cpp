@@ -81,6 +81,9 @@ TEST(Player, RefusesAFileThatSaysWhatCannotBe) {
   EXPECT_FALSE(loads(kHeader + "sleep 1s\n"));
   EXPECT_FALSE(loads(kHeader + "wait 1\n"));
   EXPECT_FALSE(loads(kHeader + "=> 01 0\n"));
+  EXPECT_FALSE(loads(kHeader + "baud 0\n"));
+  EXPECT_FALSE(loads("source: x\nmodel: EX9042D\npreset: address=-1\n\n> $01M\n"));
+  EXPECT_FALSE(loads("source: x\nmodel: EX9042D\npreset: baud=0\n\n> $01M\n"));
   EXPECT_FALSE(loads("model: EX9042D\n\n> $01M\n"));
   EXPECT_FALSE(loads("source: x\nmodel: EX1\n\n> $01M\n"));
 }

@@ -173,5 +173,74 @@ TEST(Play, RefusesWhatIsNoFileOfSteps) {
   EXPECT_NE(played(directory / "preset.txt", true).find("'preset:'"), std::string::npos);
 }
 
+// --- what a step may be ---
+
+/// What is wrong with a file of this one step; empty: nothing.
+std::string refusal_of(const std::string& step) {
+  const Directory directory;
+  write_file(directory / "steps.txt", step + "\n");
+  try {
+    load(directory / "steps.txt");
+    return "";
+  } catch (const std::invalid_argument& error) {
+    const std::string place = (directory / "steps.txt") + ":1: ";
+    EXPECT_EQ(std::string(error.what()).rfind(place, 0), 0U) << error.what();
+    return std::string(error.what()).substr(place.size());
+  }
+}
+
+TEST(Step, TakesWhatItSaysAndNothingElse) {
+  for (const char* step : {"> $01M", ">", "< >", "<\t!01", "=> 01 05 0000 FF00", "bytes 01 02", "input 15 on",
+                           "pulse 0", "pulse 0 x1000000", "outputs 5", "outputs FFFF", "module 1",
+                           "baud 1200", "wait 0s", "wait 1.5ms", "fault 2 gone", "fault off all", "faults"}) {
+    EXPECT_EQ(refusal_of(step), "") << step;
+  }
+  struct Wrong {
+    const char* step;
+    const char* what;
+    const char* mend;
+  };
+  for (const Wrong& wrong : {Wrong{">$01M", "'>$01M'", "a blank behind >"},
+                             Wrong{"<!01", "'<!01'", "a blank behind <"},
+                             Wrong{"=>01", "'=>01'", "a blank behind =>"},
+                             Wrong{"<=01", "'<=01'", "a blank behind <="},
+                             Wrong{"=>", "''", "pairs of hex digits"},
+                             Wrong{"=> 01 0", "'01 0'", "pairs of hex digits"},
+                             Wrong{"bytes -1 +1", "'-1 +1'", "pairs of hex digits"},
+                             Wrong{"bytes 0x01", "'0x01'", "pairs of hex digits"},
+                             Wrong{"bytes", "'bytes'", "bytes HEX"},
+                             Wrong{"input 4294967296 on", "'4294967296'", "0 to 15"},
+                             Wrong{"input -1 on", "'-1'", "0 to 15"},
+                             Wrong{"input 0 up", "'up'", "'on' nor 'off'"},
+                             Wrong{"input 0", "'input 0'", "input C on|off"},
+                             Wrong{"pulse 0 x4294967297", "'4294967297'", "1 to 1000000"},
+                             Wrong{"pulse 0 x0", "'0'", "1 to 1000000"},
+                             Wrong{"pulse 0 x+1", "'+1'", "1 to 1000000"},
+                             Wrong{"pulse 0 5", "'5'", "such as x5"},
+                             Wrong{"outputs 0x0", "'0x0'", "hex digits"},
+                             Wrong{"outputs -1", "'-1'", "hex digits"},
+                             Wrong{"outputs 10000", "'10000'", "hex digits"},
+                             Wrong{"module -1", "'-1'", "from 1 to"},
+                             Wrong{"module 0", "'0'", "from 1 to"},
+                             Wrong{"baud 0", "'0'", "1200, 2400, 4800, 9600"},
+                             Wrong{"baud 9601", "'9601'", "1200, 2400, 4800, 9600"},
+                             Wrong{"wait -1s", "'-1s'", "12.5s"},
+                             Wrong{"fault", "'fault'", "[N] FAULT"},
+                             Wrong{"wiat 1s", "no step 'wiat 1s'", "wait TIME"},
+                             Wrong{"OUTPUTS 0001", "no step", "outputs HHHH"}}) {
+    const std::string refusal = refusal_of(wrong.step);
+    EXPECT_NE(refusal.find(wrong.what), std::string::npos) << wrong.step << ": " << refusal;
+    EXPECT_NE(refusal.find(wrong.mend), std::string::npos) << wrong.step << ": " << refusal;
+  }
+}
+
+TEST(Step, ATimeIsKeptToTheNanosecond) {
+  const Directory directory;
+  write_file(directory / "steps.txt", "wait 0.5ms\nwait 12.3456us\n");
+  const std::vector<Step> steps = load(directory / "steps.txt").front().steps;
+  EXPECT_EQ(std::get<step::Wait>(steps[0].action).time, std::chrono::microseconds(500));
+  EXPECT_EQ(std::get<step::Wait>(steps[1].action).time, std::chrono::nanoseconds(12346));
+}
+
 }  // namespace
 }  // namespace ex9000::play
