@@ -43,8 +43,8 @@ A file is a list of steps: `> $01M` and `< !019042` for DCON, `=> 01 01 0000 000
 without its CRC, `silence`, `wait 1.5s`, `bytes HEX`, `checksum on|off`, `baud RATE`, and of a module `power on|off`,
 `power-cycle`, `reset`, `init on|off`, `input C on|off`, `pulse C [xCOUNT]`, `outputs HHHH`, `led on|off|flashing`.
 With `source:` and `model:` lines before them it is a transcript, played on each model; without, a scenario for the
-modules or the bus file behind it, whose steps may also be `module N`, `line NAME`, and `fault ...` as on the control
-socket. tests/conformance/README.md has it all.
+modules or the bus file behind it, whose steps may also be `module N`, `line NAME`, `fault [N] FAULT` as for --fault,
+and `fault off K|all`. tests/conformance/README.md has it all.
 )";
 
 constexpr const char* kFaultHelp = R"(
@@ -240,6 +240,7 @@ Setup setup_of(const Texts& texts) {
   if (std::any_of(texts.modules.begin(), texts.modules.end(), is_bus_file)) {
     want_no_line_besides(texts);
     setup = read_bus_file(texts.modules[0]);
+    setup.file = texts.modules[0];
   } else {
     setup.lines.push_back(line_of(texts));
   }

@@ -26,7 +26,53 @@ mode_t file_mask() {
   return mask;
 }
 
+/// Why what is open there is no image; empty: it may be one.
+std::string flaw_of(const struct stat& status) {
+  if (!S_ISREG(status.st_mode)) {
+    return "is no regular file; name another path";
+  }
+  if (status.st_size != static_cast<off_t>(kSize)) {
+    return "has " + std::to_string(status.st_size) + " bytes, an image of the EEPROM has " +
+           std::to_string(kSize) + "; remove it or name another path";
+  }
+  return "";
+}
+
+/// Throws std::runtime_error, one line, where the system refuses.
+std::vector<std::uint8_t> image_in(int fd) {
+  std::vector<std::uint8_t> image(kSize);
+  if (pread(fd, image.data(), kSize, 0) != static_cast<ssize_t>(kSize)) {
+    throw std::runtime_error("cannot be read: " + reason() + "; name another path");
+  }
+  return image;
+}
+
 }  // namespace
+
+std::optional<std::vector<std::uint8_t>> read_eeprom_file(const std::string& path) {
+  const int fd = open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK);
+  if (fd < 0 && errno == ENOENT) {
+    return std::nullopt;
+  }
+  std::string why;
+  std::optional<std::vector<std::uint8_t>> image;
+  struct stat status {};
+  try {
+    why = fd < 0 || fstat(fd, &status) != 0 ? reason() + "; name a file that can be read" : flaw_of(status);
+    if (why.empty()) {
+      image = image_in(fd);
+    }
+  } catch (const std::runtime_error& error) {
+    why = error.what();
+  }
+  if (fd >= 0) {
+    close(fd);
+  }
+  if (!why.empty()) {
+    throw std::invalid_argument("eeprom=" + path + ": " + why);
+  }
+  return image;
+}
 
 EepromFile::EepromFile(std::string path) : path_(std::move(path)) {
   fd_ = open(path_.c_str(), O_RDWR | O_CLOEXEC | O_NONBLOCK);
@@ -37,23 +83,19 @@ EepromFile::EepromFile(std::string path) : path_(std::move(path)) {
   if (fd_ < 0 || fstat(fd_, &status) != 0) {
     refuse(reason() + "; name a file that can be read and written");
   }
-  if (!S_ISREG(status.st_mode)) {
-    refuse("is no regular file; name another path");
+  if (const std::string why = flaw_of(status); !why.empty()) {
+    refuse(why);
   }
   // Nobody's write permission means hands off, also to root, whom open() lets through.
   if ((status.st_mode & (S_IWUSR | S_IWGRP | S_IWOTH)) == 0) {
     refuse("is read-only; chmod u+w, or name another path");
   }
-  if (status.st_size != static_cast<off_t>(kSize)) {
-    refuse("has " + std::to_string(status.st_size) + " bytes, an image of the EEPROM has " +
-           std::to_string(kSize) + "; remove it or name another path");
-  }
   lock();
-  std::vector<std::uint8_t> image(kSize);
-  if (pread(fd_, image.data(), kSize, 0) != static_cast<ssize_t>(kSize)) {
-    refuse("cannot be read: " + reason() + "; name another path");
+  try {
+    found_ = image_in(fd_);
+  } catch (const std::runtime_error& error) {
+    refuse(error.what());
   }
-  found_ = std::move(image);
 }
 
 EepromFile::~EepromFile() {

@@ -10,6 +10,11 @@
 
 namespace ex9000::sim {
 
+/// What an image holds, for who but reads it: it may be read-only, and a running simulator may have it; what
+/// that is just writing is there in part then, as after a power cut. Nothing where there is no file. Throws
+/// std::invalid_argument, one line, where that is no image or cannot be read.
+std::optional<std::vector<std::uint8_t>> read_eeprom_file(const std::string& path);
+
 /// An image of the whole memory, byte for byte as the chip holds it: 8192 bytes, erased ones FF. Locked
 /// against other processes while this object lives.
 ///

@@ -4,17 +4,13 @@
 
 namespace ex9000::sim {
 
-PlayRecord::PlayRecord(const Writing& writing, Print print) : writing_(writing), print_(std::move(print)) {
-  if (writing_.capture) {
-    capture_ = std::make_unique<Capture>(*writing_.capture);
-  }
-}
+PlayRecord::PlayRecord(const Writing& writing, Print print) : writing_(writing), print_(std::move(print)) {}
 
 void PlayRecord::begins(const std::string& what) {
-  if (capture_ && !begun_) {
+  if (writing_.capture && !capture_) {
+    capture_ = std::make_unique<Capture>(*writing_.capture);
     capture_->begin();
   }
-  begun_ = true;
   what_ = what;
   if (writing_.log == LogFormat::Text) {
     print_("plays   " + what);

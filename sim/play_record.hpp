@@ -17,7 +17,8 @@ class PlayRecord final : public play::Onlooker {
  public:
   using Print = LineRecord::Print;
 
-  /// Log and capture of `writing`. Opens the capture's file; see Capture for what it throws, here and later.
+  /// Log and capture of `writing`. The capture's file is opened when the first run begins; see Capture for
+  /// what it throws from then on.
   PlayRecord(const Writing& writing, Print print);
 
   // --- play::Onlooker ---
@@ -30,8 +31,7 @@ class PlayRecord final : public play::Onlooker {
   Writing writing_;
   Print print_;
   std::unique_ptr<Capture> capture_;
-  bool begun_ = false;  ///< and the capture's file with it: nothing was wrong with what is played
-  std::string what_;    ///< is played
+  std::string what_;  ///< is played
   std::vector<std::unique_ptr<LineRecord>> lines_;
 };
 

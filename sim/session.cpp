@@ -4,6 +4,8 @@
 #include <chrono>
 #include <utility>
 
+#include "sim/overwriting.hpp"
+
 namespace ex9000::sim {
 
 Session::Session(boost::asio::io_context& io, Setup setup, Print print, Print greet)
@@ -18,6 +20,7 @@ Session::Session(boost::asio::io_context& io, Setup setup, Print print, Print gr
   }
   open_control();
   if (setup_.capture) {
+    refuse_overwriting(*setup_.capture, in_use_by(setup_));  // all of which is there by now
     capture_ = std::make_unique<Capture>(*setup_.capture);
   }
 }

@@ -36,6 +36,7 @@ struct Writing {
 };
 
 struct Setup : Writing {
+  std::string file;                    ///< the bus file that it is from; empty: a command line
   std::vector<LineSetup> lines;        ///< at least one
   std::optional<std::string> control;  ///< where to make the control socket
   /// Of the line's time to the wall clock's; nothing: as fast as it can be reckoned.

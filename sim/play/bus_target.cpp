@@ -6,6 +6,7 @@
 #include "sim/control/control.hpp"
 #include "sim/eeprom_file.hpp"
 #include "sim/line_of_setup.hpp"
+#include "sim/words.hpp"
 
 namespace ex9000::play {
 
@@ -15,9 +16,22 @@ constexpr std::chrono::milliseconds kComingUp{100};
 
 }  // namespace
 
-BusTarget::BusTarget(const sim::Setup& setup, Onlooker* onlooker) : onlooker_(onlooker) {
+Memories read_memories(const sim::Setup& setup) {
+  Memories memories;
   for (const sim::LineSetup& line : setup.lines) {
-    add_line(line, setup.seed + lines_.size());
+    for (const sim::ModuleSpec& module : line.modules) {
+      memories.push_back(module.eeprom.empty() ? std::nullopt : sim::read_eeprom_file(module.eeprom));
+    }
+  }
+  return memories;
+}
+
+BusTarget::BusTarget(const sim::Setup& setup, const Memories& memories, Onlooker* onlooker)
+    : onlooker_(onlooker) {
+  auto next = memories.begin();
+  for (const sim::LineSetup& line : setup.lines) {
+    add_line(line, next, setup.seed + lines_.size());
+    next += static_cast<std::ptrdiff_t>(line.modules.size());
   }
 }
 
@@ -27,22 +41,20 @@ void BusTarget::start(const Model& model, const Settings* preset) {
   if (preset != nullptr) {
     setup.modules[0].settings = *preset;
   }
-  add_line(setup, 1);
+  const Memories none(1);
+  add_line(setup, none.begin(), 1);
 }
 
-void BusTarget::add_line(const sim::LineSetup& setup, std::uint64_t seed) {
+void BusTarget::add_line(const sim::LineSetup& setup, Memories::const_iterator memories, std::uint64_t seed) {
   const std::size_t index = lines_.size();
   names_.push_back(setup.name);
   heard_.emplace_back();
   lines_.push_back(sim::make_line(
       setup, [this, index](std::uint8_t byte, ByteStatus /*status*/) { heard_[index].push_back(byte); }));
   sim::Line& line = *lines_.back();
-  for (std::size_t i = 0; i < line.size(); ++i) {
-    if (!setup.modules[i].eeprom.empty()) {
-      const sim::EepromFile file(setup.modules[i].eeprom);
-      if (file.found()) {
-        line.module(i).memory().contents() = *file.found();
-      }
+  for (std::size_t i = 0; i < line.size(); ++i, ++memories) {
+    if (*memories) {
+      line.module(i).memory().contents() = **memories;
     }
   }
   line.come_up();
@@ -100,8 +112,9 @@ void BusTarget::reset() {
 }
 
 void BusTarget::want_input(unsigned channel) {
-  if (channel >= module().model().inputs) {
-    throw std::runtime_error("the " + std::string(module().model().designation) + " has no such input");
+  const std::string flaw = missing_input(module().model(), channel);
+  if (!flaw.empty()) {
+    throw std::runtime_error(flaw);
   }
 }
 
@@ -128,8 +141,7 @@ void BusTarget::choose_module(std::size_t position) {
   std::size_t index = position;
   for (std::size_t line = 0; line < lines_.size(); ++line) {
     if (index < lines_[line]->size()) {
-      line_ = line;
-      module_ = index;
+      turn_to(line, index);
       return;
     }
     index -= lines_[line]->size();
@@ -140,18 +152,47 @@ void BusTarget::choose_module(std::size_t position) {
 
 void BusTarget::choose_line(const std::string& name) {
   const auto found = std::find(names_.begin(), names_.end(), name);
-  if (found == names_.end()) {
-    throw std::runtime_error("no line of this name");
+  if (found != names_.end()) {
+    turn_to(static_cast<std::size_t>(found - names_.begin()), 0);
+    return;
   }
-  line_ = static_cast<std::size_t>(found - names_.begin());
-  module_ = 0;
+  std::string names;
+  for (const std::string& known : names_) {
+    names += (names.empty() ? "" : ", ") + known;
+  }
+  throw std::runtime_error(
+      "no line '" + name + "'; " +
+      (names.empty() ? "the only one has no name, leave the step out" : "there are " + names));
+}
+
+/// Nobody has listened there meanwhile.
+void BusTarget::turn_to(std::size_t line, std::size_t module) {
+  if (line != line_) {
+    heard_[line].clear();
+  }
+  line_ = line;
+  module_ = module;
 }
 
 void BusTarget::trouble(const std::string& command) {
-  sim::Control control({{"", chosen()}});
-  const sim::Control::Reply reply = control.carry_out(command);
-  if (reply.text.rfind("ok", 0) != 0) {
-    throw std::runtime_error(reply.text);
+  sim::Words words = sim::words_of(command);
+  std::vector<sim::Control::ControlledLine> lines{{"", chosen()}};
+  std::string told = command;
+  if (words.size() > 1 && words[1].find_first_not_of("0123456789") == std::string::npos) {
+    lines.clear();
+    for (std::size_t i = 0; i < lines_.size(); ++i) {
+      lines.push_back({names_[i], *lines_[i]});
+    }
+    // The control socket has the module's position in front.
+    std::swap(words[0], words[1]);
+    told.clear();
+    for (const std::string& word : words) {
+      told += (told.empty() ? "" : " ") + word;
+    }
+  }
+  const std::string reply = sim::Control(std::move(lines)).carry_out(told).text;
+  if (reply.rfind("ok", 0) != 0) {
+    throw std::runtime_error(reply.substr(reply.find(' ') + 1));
   }
 }
 

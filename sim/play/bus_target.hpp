@@ -2,6 +2,7 @@
 #pragma once
 
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -12,15 +13,24 @@
 
 namespace ex9000::play {
 
+/// What modules find in their EEPROMs, in the order of lines and modules; nothing: what their settings say.
+using Memories = std::vector<std::optional<std::vector<std::uint8_t>>>;
+/// Of the files that `setup` names, which are left as they are, whoever else has them. Throws
+/// std::invalid_argument, one line.
+Memories read_memories(const sim::Setup& setup);
+
 /// All its lines have the same time.
 class BusTarget : public Target {
  public:
   /// For a transcript, which says what module there is.
   /// `onlooker` may be null, and lives as long as this.
   explicit BusTarget(Onlooker* onlooker = nullptr) : onlooker_(onlooker) {}
-  /// For a scenario: the modules of `setup` have come up, with what their EEPROM files hold, which are left
-  /// as they are. Ports are not opened. Throws std::invalid_argument, one line.
-  explicit BusTarget(const sim::Setup& setup, Onlooker* onlooker = nullptr);
+  /// For a scenario: the modules of `setup` have come up, with `memories`. Neither files nor ports are
+  /// opened. Throws std::invalid_argument, one line.
+  BusTarget(const sim::Setup& setup, const Memories& memories, Onlooker* onlooker = nullptr);
+
+  /// Throws std::runtime_error, as Target does, where the module lacks it.
+  void want_input(unsigned channel);
 
   [[nodiscard]] std::size_t size() const { return lines_.size(); }
   sim::Line& line(std::size_t index) { return *lines_[index]; }
@@ -50,13 +60,13 @@ class BusTarget : public Target {
   sim::SimulatedModule& module() { return chosen().module(module_); }
 
  private:
-  void add_line(const sim::LineSetup& setup, std::uint64_t seed);
-  void want_input(unsigned channel);
+  void add_line(const sim::LineSetup& setup, Memories::const_iterator memories, std::uint64_t seed);
+  void turn_to(std::size_t line, std::size_t module);
 
   Onlooker* onlooker_;
   std::vector<std::string> names_;
   std::vector<std::unique_ptr<sim::Line>> lines_;
-  std::vector<Bytes> heard_;  ///< by the master of each line
+  std::vector<Bytes> heard_;  ///< by the master of each line, since the steps were last about another
   std::size_t line_ = 0;
   std::size_t module_ = 0;  ///< on that line
 };

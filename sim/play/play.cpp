@@ -4,8 +4,10 @@
 #include <vector>
 
 #include "sim/fail.hpp"
+#include "sim/overwriting.hpp"
 #include "sim/play/bus_target.hpp"
 #include "sim/play/player.hpp"
+#include "sim/play/rehearsal.hpp"
 #include "sim/play/transcript.hpp"
 
 namespace ex9000::play {
@@ -41,20 +43,38 @@ void check(const Transcript& transcript, const std::optional<sim::Setup>& bus) {
   }
 }
 
+/// The capture is not begun yet.
+void spare_what_is_read(const Task& task, const std::vector<Transcript>& all) {
+  if (!task.writing.capture) {
+    return;
+  }
+  std::vector<sim::InUse> read = task.bus ? sim::in_use_by(*task.bus) : std::vector<sim::InUse>();
+  for (const Transcript& transcript : all) {
+    read.push_back({"the file of steps", transcript.file});
+  }
+  sim::refuse_overwriting(*task.writing.capture, read);
+}
+
 }  // namespace
 
 bool play(const Task& task, const std::function<void(const std::string& line)>& print, Onlooker& onlooker) {
   const std::vector<Transcript> all = load_all(task.path);
+  const Memories memories = task.bus ? read_memories(*task.bus) : Memories();
   for (const Transcript& transcript : all) {
     check(transcript, task.bus);
+    if (task.bus) {
+      BusTarget bus(*task.bus, memories);
+      rehearse(transcript, bus);
+    }
   }
+  spare_what_is_read(task, all);
   std::size_t steps = 0;
   std::size_t failed = 0;
   for (const Transcript& transcript : all) {
     const std::string who =
         transcript.model == nullptr ? "" : " (" + std::string(transcript.model->designation) + ")";
     onlooker.begins(transcript.file + who);
-    BusTarget target = task.bus ? BusTarget(*task.bus, &onlooker) : BusTarget(&onlooker);
+    BusTarget target = task.bus ? BusTarget(*task.bus, memories, &onlooker) : BusTarget(&onlooker);
     const Result result = play(transcript, target);
     onlooker.ends();
     steps += result.steps;

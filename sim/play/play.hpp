@@ -18,7 +18,8 @@ struct Task {
 };
 
 /// Prints a line for each run, and one for all. Whether all have passed. Throws std::invalid_argument, one
-/// line, where the path or what stands there is wrong, or the bus is missing or of no use.
+/// line, where the path or what stands there is wrong, the bus is missing, lacks something or is of no use,
+/// or the capture is one of the files that are read: `onlooker` has been told nothing then.
 bool play(const Task& task, const std::function<void(const std::string& line)>& print, Onlooker& onlooker);
 
 }  // namespace ex9000::play

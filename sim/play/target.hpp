@@ -55,7 +55,8 @@ class Target {
     throw std::runtime_error("there is but one module");
   }
   virtual void choose_line(const std::string& /*name*/) { throw std::runtime_error("there is but one line"); }
-  /// A command of the control socket.
+  /// `fault FAULT`, `fault off K|all` or `faults` of that line, or `fault N FAULT` of a module, from 1
+  /// through all lines.
   virtual void trouble(const std::string& /*command*/) {
     throw std::runtime_error("nothing can go wrong here");
   }

@@ -274,9 +274,11 @@ bool is_of_a_bus(const Action& action) {
 void check_channel(const Model& model, const Action& action) {
   const auto* input = std::get_if<step::Input>(&action);
   const auto* pulse = std::get_if<step::Pulse>(&action);
-  if ((input != nullptr && input->channel >= model.inputs) ||
-      (pulse != nullptr && pulse->channel >= model.inputs)) {
-    fail("the " + std::string(model.designation) + " has no such input");
+  if (input != nullptr || pulse != nullptr) {
+    const std::string flaw = missing_input(model, input != nullptr ? input->channel : pulse->channel);
+    if (!flaw.empty()) {
+      fail(flaw);
+    }
   }
 }
 
@@ -369,6 +371,17 @@ Transcript transcript_of(const std::string& path, const Source& source, const Mo
 }
 
 }  // namespace
+
+std::string missing_input(const Model& model, unsigned channel) {
+  if (channel < model.inputs) {
+    return "";
+  }
+  const std::string name(model.designation);
+  return "the " + name +
+         (model.inputs == 0 ? " has no inputs; name a module that has, or leave the step out"
+                            : " has no input " + std::to_string(channel) + "; it has 0 to " +
+                                  std::to_string(model.inputs - 1));
+}
 
 std::chrono::milliseconds Transcript::waits() const {
   std::chrono::nanoseconds total{0};

@@ -74,7 +74,7 @@ struct OnLine {
 };
 struct Trouble {
   std::string command;
-};  ///< of the control socket, about faults
+};  ///< see Target::trouble
 
 }  // namespace step
 
@@ -104,6 +104,9 @@ struct Transcript {
 
 /// Nothing may be heard in this time where `silence` is expected; longer than any reply may take.
 constexpr std::chrono::milliseconds kSilence{250};
+
+/// What is wrong with an input of this number on `model`; empty: it has it.
+std::string missing_input(const Model& model, unsigned channel);
 
 /// The transcripts below `directory`, in the order of their paths.
 std::vector<std::string> transcript_files(const std::string& directory);

@@ -7,6 +7,8 @@
 #include <vector>
 
 #include "sim/bus_file/bus_file.hpp"
+#include "sim/eeprom_file.hpp"
+#include "sim/module.hpp"
 #include "sim/play/bus_target.hpp"
 #include "sim/play/play.hpp"
 #include "sim/play/player.hpp"
@@ -17,6 +19,7 @@
 namespace ex9000::play {
 namespace {
 
+using system::bytes_of_file;
 using system::Directory;
 using system::write_file;
 
@@ -31,7 +34,7 @@ const sim::Setup& two_lines() {
 std::string failure_of(const std::string& steps, const sim::Setup& setup = two_lines()) {
   const Directory directory;
   write_file(directory / "steps.txt", steps);
-  BusTarget target(setup);
+  BusTarget target(setup, read_memories(setup));
   return play(load(directory / "steps.txt").front(), target).failure;
 }
 
@@ -68,11 +71,21 @@ TEST(Scenario, FaultsStrikeTheLineThatIsChosen) {
       "");
 }
 
-TEST(Scenario, FailsWhereABusHasNoSuchThing) {
-  EXPECT_NE(failure_of("module 4\n").find("no module 4; there are 1 to 3"), std::string::npos);
-  EXPECT_NE(failure_of("line shed\n").find("no line of this name"), std::string::npos);
-  EXPECT_NE(failure_of("input 0 on\n").find("has no such input"), std::string::npos);
-  EXPECT_NE(failure_of("fault lost\n").find("'lost' is no fault"), std::string::npos);
+TEST(Scenario, AFaultMayBeOfOneModuleWhicheverLineIsChosen) {
+  EXPECT_EQ(failure_of("fault 2 gone\n> $02M\nsilence\n> $01M\n< !019042D\n"), "");
+  EXPECT_EQ(failure_of("fault 3 lost-reply\nline yard\n=> 0A 01 0000 0008\nsilence\nfault off 1\n"
+                       "=> 0A 01 0000 0008\n<= 0A 01 01 00\n"),
+            "");
+}
+
+TEST(Scenario, WhatWasHeardOnALineWhileTheStepsWereAboutAnotherIsForgotten) {
+  const std::string talk = "fault foreign-traffic 3130 every 10s\n";
+  EXPECT_EQ(failure_of(talk + "line yard\nwait 31s\nline hall\nmodule 2\n> $02M\n< !029052\n"), "");
+  EXPECT_EQ(failure_of(talk + "module 3\nwait 31s\nmodule 1\n> $01M\n< !019042D\n"), "");
+  EXPECT_NE(failure_of(talk + "wait 31s\n").find("expected nothing, heard '10"), std::string::npos);
+  // To choose another module of the same line is no reason to forget.
+  EXPECT_NE(failure_of("fault late-reply 100ms\n> $01M\nmodule 2\nwait 1s\n").find("heard '!019042D"),
+            std::string::npos);
 }
 
 TEST(Scenario, NamesFileLineStepAndWhatWasHeard) {
@@ -141,6 +154,130 @@ TEST(Play, SaysOfWhichLineTheLogIsAndWhatGoesWrongWithIt) {
   EXPECT_NE(text.find("hall:     5."), std::string::npos) << text;
   EXPECT_NE(text.find("fault 1 "), std::string::npos) << text;
   EXPECT_NE(text.find("yard:     5."), std::string::npos) << text;
+}
+
+TEST(Play, RefusesWhatTheBusLacksBeforeAnythingIsPlayed) {
+  struct Wrong {
+    const char* step;
+    const char* what;
+    const char* mend;
+  };
+  for (const Wrong& wrong :
+       {Wrong{"module 4", "no module 4", "there are 1 to 3"},
+        Wrong{"line shed", "no line 'shed'", "there are hall, yard"},
+        Wrong{"input 0 on", "the EX9042D has no inputs", "name a module that has"},
+        Wrong{"module 2\npulse 8", "the EX9052D has no input 8", "it has 0 to 7"},
+        Wrong{"fault lost", "'lost' is no fault", "there are bit-errors"},
+        Wrong{"fault 4 gone", "no module 4", "there are 1 to 3"},
+        Wrong{"fault 0 gone", "no module 0", "there are 1 to 3"},
+        Wrong{"fault 2", "an empty fault", "there are bit-errors"},
+        Wrong{"fault 1 bit-errors 0.1", "befalls the line", "leave out the module's number"},
+        Wrong{"fault gone\nfault off 2", "no fault 2", "'faults' lists them"},
+        Wrong{"fault off", "fault off", "K|all"}}) {
+    const Directory directory;
+    const std::string file = directory / "a.txt";
+    write_file(file, std::string("> $01M\n< !019042D\n") + wrong.step + "\n");
+    write_file(directory / "capture", "precious");
+    const std::string text = played(file, true, {sim::LogFormat::Text, directory / "capture"});
+    const bool second = std::string(wrong.step).find('\n') != std::string::npos;
+    const std::string step =
+        std::string(wrong.step).substr(second ? std::string(wrong.step).find('\n') + 1 : 0);
+    EXPECT_EQ(text.rfind(file + (second ? ":4: " : ":3: ") + step + ": ", 0), 0U) << text;
+    EXPECT_NE(text.find(wrong.what), std::string::npos) << text;
+    EXPECT_NE(text.find(wrong.mend), std::string::npos) << text;
+    EXPECT_EQ(text.find('\n'), std::string::npos) << text;
+    EXPECT_EQ(bytes_of_file(directory / "capture"), "precious");
+  }
+}
+
+TEST(Play, AFaultThatComesTooLateFailsItsStep) {
+  const Directory directory;
+  write_file(directory / "a.txt", "wait 2s\nfault gone at 1s\n");
+  EXPECT_NE(played(directory / "a.txt", true).find("FAILED  " + (directory / "a.txt") + ":2: "),
+            std::string::npos);
+}
+
+sim::Setup with_eeprom(const std::string& path) {
+  sim::Setup setup;
+  setup.lines.emplace_back();
+  setup.lines[0].modules.push_back(sim::parse_module_spec("EX9042D,eeprom=" + path));
+  return setup;
+}
+
+/// An image of a module at address 07.
+std::string image_at_07() {
+  const auto image = sim::SimulatedModule::memory_image(*find_model("EX9042D"),
+                                                        sim::parse_module_spec("EX9042D@07").settings);
+  return {image.begin(), image.end()};
+}
+
+TEST(Play, ReadsAnEepromThatIsReadOnlyOrThatARunningSimulatorHas) {
+  const Directory directory;
+  write_file(directory / "eeprom", image_at_07());
+  const sim::EepromFile held(directory / "eeprom");
+  EXPECT_EQ(failure_of("> $07M\n< !079042D\n> ~07OPUMP\n< !07\n", with_eeprom(directory / "eeprom")), "");
+  std::filesystem::permissions(directory / "eeprom", std::filesystem::perms::owner_read);
+  EXPECT_EQ(failure_of("> $07M\n< !079042D\n", with_eeprom(directory / "eeprom")), "");
+  EXPECT_EQ(bytes_of_file(directory / "eeprom"), image_at_07());
+  EXPECT_EQ(failure_of("> $01M\n< !019042D\n", with_eeprom(directory / "none")), "");
+  EXPECT_FALSE(std::filesystem::exists(directory / "none"));
+}
+
+TEST(Play, RefusesAnEepromThatIsNoImageBeforeTheCaptureIsTouched) {
+  const Directory directory;
+  write_file(directory / "a.txt", "> $01M\n< !019042D\n");
+  write_file(directory / "eeprom", "short");
+  write_file(directory / "capture", "precious");
+  const sim::Writing writing{std::nullopt, directory / "capture"};
+  sim::PlayRecord record(writing, nullptr);
+  for (const std::string& path : {directory / "eeprom", directory.path()}) {
+    try {
+      play({directory / "a.txt", with_eeprom(path), writing}, nullptr, record);
+      FAIL() << "it was played";
+    } catch (const std::invalid_argument& error) {
+      EXPECT_EQ(std::string(error.what()).rfind("eeprom=" + path + ": ", 0), 0U) << error.what();
+    }
+  }
+  EXPECT_EQ(bytes_of_file(directory / "capture"), "precious");
+}
+
+TEST(Play, NeverWritesItsCaptureOverWhatItReads) {
+  const Directory directory;
+  write_file(directory / "a.txt", "> $07M\n< !079042D\n");
+  write_file(directory / "eeprom", image_at_07());
+  write_file(directory / "bus.json", "not read here");
+  std::filesystem::create_symlink(directory / "a.txt", directory / "link");
+  std::filesystem::create_hard_link(directory / "eeprom", directory / "other");
+  std::filesystem::create_symlink("/dev/null", directory / "tty");
+  sim::Setup setup = with_eeprom(directory / "eeprom");
+  setup.file = directory / "bus.json";
+  setup.control = directory / "ctl";
+  setup.lines[0].pty = directory / "tty";
+  for (const auto& [capture, what] : std::vector<std::pair<std::string, std::string>>{
+           {directory / "a.txt", "the file of steps " + (directory / "a.txt")},
+           {directory / "link", "the file of steps " + (directory / "a.txt")},
+           {directory / "eeprom", "eeprom=" + (directory / "eeprom")},
+           {directory / "other", "eeprom=" + (directory / "eeprom")},
+           {directory / "bus.json", "the bus file " + (directory / "bus.json")},
+           {directory / "../" + std::filesystem::path(directory.path()).filename().string() + "/ctl",
+            "the control socket " + (directory / "ctl")},
+           {"/dev/null", "the pseudo-terminal " + (directory / "tty")}}) {
+    const sim::Writing writing{std::nullopt, capture};
+    sim::PlayRecord record(writing, nullptr);
+    try {
+      play({directory / "a.txt", setup, writing}, nullptr, record);
+      FAIL() << capture;
+    } catch (const std::invalid_argument& error) {
+      const std::string text = error.what();
+      EXPECT_EQ(text.rfind("--capture " + capture + ": is ", 0), 0U) << text;
+      EXPECT_NE(text.find(what), std::string::npos) << text;
+      EXPECT_NE(text.find("name another path"), std::string::npos) << text;
+    }
+  }
+  EXPECT_EQ(bytes_of_file(directory / "a.txt"), "> $07M\n< !079042D\n");
+  EXPECT_EQ(bytes_of_file(directory / "eeprom"), image_at_07());
+  EXPECT_EQ(bytes_of_file(directory / "bus.json"), "not read here");
+  EXPECT_FALSE(std::filesystem::exists(directory / "ctl"));
 }
 
 TEST(Play, LeavesNoCaptureWhereNothingCanBePlayed) {
