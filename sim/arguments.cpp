@@ -321,6 +321,12 @@ play::Task task_of(const PlayTexts& play_texts) {
   play::Task task;
   task.path = play_texts.file;
   write_as_told(play_texts.writing, task.writing);
+  if (play_texts.seed) {
+    of_option("--seed", *play_texts.seed, parse_seed);  // also where no chance is taken
+  }
+  if (task.writing.capture && task.writing.capture->empty()) {
+    throw std::invalid_argument("--capture: wants a path");
+  }
   if (!play_texts.modules.empty()) {
     Texts texts;
     texts.modules = play_texts.modules;
@@ -358,14 +364,57 @@ Parsed printed(const std::string& text) {
   return parsed;
 }
 
-Parsed print_description(const DescribeTexts& texts, bool has_modules) {
+Parsed print_description(const DescribeTexts& texts) {
   try {
-    if (has_modules) {
-      throw std::invalid_argument("it runs no modules; leave out those in front of it");
-    }
     return printed(describe(texts));
   } catch (const std::invalid_argument& error) {
     return wrong(std::string("describe: ") + error.what());
+  }
+}
+
+/// What was given of `app` itself, in the order of --help.
+std::vector<const CLI::Option*> given_of(const CLI::App& app) {
+  std::vector<const CLI::Option*> given;
+  for (const CLI::Option* option : app.get_options()) {
+    if (option->count() != 0) {
+      given.push_back(option);
+    }
+  }
+  return given;
+}
+
+/// As it was written: modules are told by what they are.
+std::string name_of(const CLI::Option& option) {
+  return option.get_positional() ? option.results().front() : option.get_name();
+}
+
+/// What stands in front of a subcommand would be said in vain. Throws std::invalid_argument, one line.
+void want_nothing_in_front_of(const CLI::App& subcommand, const CLI::App& app) {
+  const std::vector<const CLI::Option*> given = given_of(app);
+  if (given.empty()) {
+    return;
+  }
+  const CLI::Option& option = *given.front();
+  const std::string name = subcommand.get_name();
+  const bool may_stand_behind =
+      option.get_positional() ? name == "play" : subcommand.get_option_no_throw(option.get_name()) != nullptr;
+  throw std::invalid_argument(
+      name + ": " + name_of(option) + " stands in front of it" +
+      (may_stand_behind ? "; put it behind"
+                        : std::string(", and has no meaning there; leave it out, or put behind it what '") +
+                              name + " --help' tells of"));
+}
+
+/// Likewise, of what is printed while nothing is run.
+void want_nothing_beside(const std::string& printing, const CLI::App& app) {
+  for (const CLI::Option* option : given_of(app)) {
+    if (option->get_name() != printing) {
+      throw std::invalid_argument(printing + ": prints and runs nothing; leave out " + name_of(*option));
+    }
+  }
+  if (!app.get_subcommands().empty()) {
+    throw std::invalid_argument(printing + ": prints and runs nothing; leave out " +
+                                app.get_subcommands().front()->get_name());
   }
 }
 
@@ -413,10 +462,11 @@ Parsed parse_arguments(int argc, const char* const* argv) {
       ->allow_extra_args(false);
   app.add_option(
          "--speed", texts.speed,
-         "so many times faster than the wall clock (default: 1); max: as fast as it can be reckoned, with no "
-         "port, and --for")
+         "so many times faster than the wall clock, 0.001 to 1000 (default: 1); max: as fast as it can be "
+         "reckoned, with no port, and --for")
       ->type_name("N|max");
-  app.add_option("--for", texts.lasts, "end after so much of the lines' time, such as 10s or 24h")
+  app.add_option("--for", texts.lasts,
+                 "end when the modules have been up for so much of the lines' time, such as 10s or 24h")
       ->type_name("TIME");
   app.add_option("--seed", texts.seed, "of all chance: the same seed, the same faults (default: 1)")
       ->type_name("NUMBER");
@@ -426,6 +476,7 @@ Parsed parse_arguments(int argc, const char* const* argv) {
                "does not wait 3.5 characters between frames is on its own");
   app.add_flag("--example", example, "print a bus file that shows all that one may hold, and exit");
   app.add_flag("--models", models, "list the models and exit");
+  app.require_subcommand(0, 1);  // a file may have a subcommand's name
   PlayTexts play_texts;
   const CLI::App* const playing = add_play(app, play_texts);
   DescribeTexts describe_texts;
@@ -442,13 +493,17 @@ Parsed parse_arguments(int argc, const char* const* argv) {
   } catch (const CLI::ParseError& error) {
     return wrong(std::string(error.what()) + "; --help tells more");
   }
-  if (models || example) {
-    return printed(models ? list_models() : example_bus_file());
-  }
-  if (describing->parsed()) {
-    return print_description(describe_texts, !texts.modules.empty());
-  }
   try {
+    if (models || example) {
+      want_nothing_beside(models ? "--models" : "--example", app);
+      return printed(models ? list_models() : example_bus_file());
+    }
+    for (const CLI::App* subcommand : app.get_subcommands()) {
+      want_nothing_in_front_of(*subcommand, app);
+    }
+    if (describing->parsed()) {
+      return print_description(describe_texts);
+    }
     Parsed parsed;
     if (playing->parsed()) {
       parsed.task = task_of(play_texts);

@@ -140,12 +140,15 @@ std::optional<double> parse_speed(const std::string& text) {
   if (text == "max") {
     return std::nullopt;
   }
+  // Slower would be standing still, and a year of it more than a clock can count; faster than the wall clock
+  // wakes anybody it goes in leaps, and max is there.
+  constexpr double kSlowest = 0.001;
   constexpr double kFastest = 1000;
   double speed = 0;
   const char* const end = text.data() + text.size();
   const auto [rest, error] = std::from_chars(text.data(), end, speed);
-  if (error != std::errc() || rest != end || !(speed > 0 && speed <= kFastest)) {
-    throw std::invalid_argument("'" + text + "' wants a number up to 1000, or max");
+  if (error != std::errc() || rest != end || !(speed >= kSlowest && speed <= kFastest)) {
+    throw std::invalid_argument("'" + text + "' wants a number from 0.001 to 1000, or max");
   }
   return speed;
 }

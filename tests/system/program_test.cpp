@@ -147,7 +147,16 @@ TEST(Program, WrongArgumentsGiveOneLineThatNamesThemExitStatus2AndLeaveNothingBe
       {{"describe", "EX9042D-M", "--format", "node-red", "--address", "00"}, "--address 00", "01 to F7"},
       {{"describe", "EX9042D-M", "--format", "node-red", "--tcp", "host"}, "--tcp host", "HOST:PORT"},
       {{"describe", "EX9042D-M", "--address", "02"}, "--address", "leave it out"},
-      {{"EX9042D", "describe"}, "describe", "leave out"},
+      {{"EX9042D", "describe"}, "describe", "leave it out"},
+      {{"--capture", "a", "play", "b"}, "--capture", "put it behind"},
+      {{"--example", "EX9042D"}, "--example", "leave out EX9042D"},
+      {{"EX9042D", "--speed", "1e-12"}, "--speed: '1e-12'", "from 0.001 to 1000"},
+      {{"play", "none.txt", "EX9042D", "--capture", "a"}, "none.txt: cannot be read", ""},
+      {{"EX9042D", "--pty", "a", "--capture", "a"}, "--capture a: is the pseudo-terminal a", "another path"},
+      {{"EX9042D", "--control", "a", "--capture", "./a"},
+       "--capture ./a: is the control socket a",
+       "another path"},
+      {{"EX9042D,eeprom=a", "--capture", "a"}, "--capture a: is a module's EEPROM, eeprom=a", "another path"},
   };
   for (const Case& wrong : cases) {
     Directory directory;

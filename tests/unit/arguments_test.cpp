@@ -274,6 +274,62 @@ TEST(Arguments, ASeedIsAWholeNumber) {
   }
 }
 
+TEST(Arguments, ASpeedIsANumberThatAClockCanFollow) {
+  EXPECT_EQ(all_accepted({"EX9042D"}).speed, 1.0);
+  for (const auto& [text, speed] :
+       {std::pair("0.001", 0.001), std::pair("10", 10.0), std::pair("1e3", 1000.0)}) {
+    EXPECT_EQ(all_accepted({"EX9042D", "--speed", text}).speed, speed);
+  }
+  EXPECT_FALSE(all_accepted({"EX9042D", "--speed", "max", "--for", "1s"}).speed);
+  for (const char* speed :
+       {"", "0", "-1", "1e-12", "0.00099", "1000.1", "1e300", "nan", "inf", "fast", "1x"}) {
+    expect_error({"EX9042D", "--speed", speed}, "--speed: '" + std::string(speed) + "'",
+                 "from 0.001 to 1000, or max");
+  }
+}
+
+/// What is played; that nothing else is to be done is looked at too.
+play::Task task_of(const std::vector<const char*>& words) {
+  const Parsed parsed = parse(words);
+  EXPECT_FALSE(parsed.setup);
+  EXPECT_TRUE(parsed.task) << parsed.error;
+  return parsed.task.value_or(play::Task());
+}
+
+TEST(Arguments, WhatPlayIsToldStandsBehindIt) {
+  const play::Task task =
+      task_of({"play", "s.txt", "EX9042D", "--capture", "c", "--log", "json", "--seed", "7"});
+  EXPECT_EQ(task.path, "s.txt");
+  EXPECT_EQ(task.writing.capture, "c");
+  EXPECT_EQ(task.writing.log, LogFormat::Json);
+  ASSERT_TRUE(task.bus);
+  EXPECT_EQ(task.bus->seed, 7U);
+  EXPECT_EQ(task_of({"play", "play"}).path, "play");
+  EXPECT_EQ(task_of({"play", "describe"}).path, "describe");
+  expect_error({"--capture", "x", "play", "s.txt"}, "play: --capture stands in front", "put it behind");
+  expect_error({"--log", "play", "s.txt"}, "play: --log stands in front", "put it behind");
+  expect_error({"--seed", "1", "play", "s.txt"}, "play: --seed stands in front", "put it behind");
+  expect_error({"EX9042D@02", "play", "s.txt"}, "play: EX9042D@02 stands in front", "put it behind");
+  for (const char* option : {"--pty", "--tcp", "--fault", "--control", "--speed", "--for"}) {
+    expect_error({option, "1", "play", "s.txt"}, std::string("play: ") + option + " stands in front",
+                 "leave it out");
+  }
+  expect_error({"--echo", "play", "s.txt"}, "play: --echo stands in front", "leave it out");
+}
+
+TEST(Arguments, WhatDescribeIsToldStandsBehindIt) {
+  expect_error({"--tcp", "5020", "describe", "EX9042D-M"}, "describe: --tcp stands in front",
+               "put it behind");
+  expect_error({"--log", "describe"}, "describe: --log stands in front", "leave it out");
+  expect_error({"EX9042D", "describe"}, "describe: EX9042D stands in front", "leave it out");
+}
+
+TEST(Arguments, PlaysSeedAndCaptureAreAlwaysLookedAt) {
+  expect_error({"play", "s.txt", "--seed", "abc"}, "--seed: 'abc'", "a whole number from 0 on");
+  expect_error({"play", "s.txt", "EX9042D", "--seed", "abc"}, "--seed: 'abc'", "a whole number from 0 on");
+  expect_error({"play", "s.txt", "--capture", ""}, "--capture", "path");
+}
+
 TEST(Arguments, TheExampleIsPrintedAndIsABusFile) {
   EXPECT_EQ(printed({"--example"}), example_bus_file());
   EXPECT_EQ(parse_bus_file("example", printed({"--example"})).lines.size(), 2U);
@@ -321,7 +377,6 @@ TEST(Arguments, AWrongDescriptionIsRefused) {
   expect_error({"describe", "EX9042D", "EX9060D"}, "EX9060D", "--help");
   expect_error({"describe", "EX9042D", "--pty", "x"}, "--pty", "--help");
   expect_error({"describe", "EX9042D", "--format"}, "--format", "--help");
-  expect_error({"EX9042D", "describe"}, "describe: it runs no modules", "leave out");
   EXPECT_EQ(parse({"describe", "EX9999"}).exit_status, kWrongArguments);
 }
 
@@ -348,9 +403,14 @@ TEST(Arguments, DescribeHasHelpOfItsOwn) {
 
 TEST(Arguments, VersionIsTheFirmwares) { EXPECT_EQ(printed({"--version"}), "ex9000-sim D01.00\n"); }
 
-TEST(Arguments, WhatIsPrintedNeedsNoModuleAndTakesOne) {
-  EXPECT_EQ(printed({"--models", "EX9042D"}), printed({"--models"}));
+TEST(Arguments, BesideWhatIsPrintedThereIsNothingElse) {
   EXPECT_EQ(printed({"EX9042D", "--version"}), printed({"--version"}));
+  expect_error({"--models", "EX9042D"}, "--models: prints and runs nothing", "leave out EX9042D");
+  expect_error({"--example", "--log"}, "--example: prints and runs nothing", "leave out --log");
+  expect_error({"--example", "--seed", "abc"}, "--example: prints and runs nothing", "leave out --seed");
+  expect_error({"--models", "--example"}, "--models: prints and runs nothing", "leave out --example");
+  expect_error({"--models", "play", "s.txt"}, "--models: prints and runs nothing", "leave out play");
+  expect_error({"--example", "describe"}, "--example: prints and runs nothing", "leave out describe");
 }
 
 }  // namespace
