@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <stdexcept>
 #include <utility>
 
 #include "sim/overwriting.hpp"
@@ -15,8 +16,7 @@ Session::Session(boost::asio::io_context& io, Setup setup, Print print, Print gr
     const bool as_it_is = line.name.empty() || for_machines();
     const Print printed =
         as_it_is ? print_ : [this, &line](const std::string& text) { print_(line.name + ": " + text); };
-    lines_.push_back(std::make_unique<RunningLine>(io_, line, setup_.seed + lines_.size(),
-                                                   setup_.log.value_or(LogFormat::Text), printed));
+    open_line(line, printed);
   }
   open_control();
   if (setup_.capture) {
@@ -26,6 +26,19 @@ Session::Session(boost::asio::io_context& io, Setup setup, Print print, Print gr
 }
 
 Session::~Session() = default;
+
+/// What cannot be opened is told of with where it is asked for.
+void Session::open_line(const LineSetup& line, const Print& print) {
+  const std::string where = line.place.empty() ? "" : line.place + ": ";
+  try {
+    lines_.push_back(std::make_unique<RunningLine>(io_, line, setup_.seed + lines_.size(),
+                                                   setup_.log.value_or(LogFormat::Text), print));
+  } catch (const std::invalid_argument& error) {
+    throw std::invalid_argument(where + error.what());
+  } catch (const std::runtime_error& error) {
+    throw std::runtime_error(where + error.what());
+  }
+}
 
 void Session::open_control() {
   if (!setup_.control) {

@@ -41,6 +41,7 @@ class Session {
  private:
   [[nodiscard]] bool for_machines() const { return setup_.log == LogFormat::Json; }
   void keep_a_capture();
+  void open_line(const LineSetup& line, const Print& print);
   void open_control();
   void make_missing_memories();
   Control::Reply carry_out(const std::string& command);

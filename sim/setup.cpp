@@ -45,9 +45,10 @@ class Once {
  public:
   explicit Once(std::string mend) : mend_(std::move(mend)) {}
 
-  void add(std::size_t line, const std::string& key, const std::optional<std::string>& name) {
+  void add(std::size_t line, const std::string& key, const std::optional<std::string>& name,
+           std::optional<std::size_t> module = std::nullopt) {
     if (name && !name->empty() && !seen_.insert(*name).second) {
-      throw WrongSetup(line, key, *name + mend_);
+      throw WrongSetup(line, key, *name + mend_, module);
     }
   }
 
@@ -91,8 +92,8 @@ void check(const Setup& setup) {
   for (std::size_t i = 0; i < setup.lines.size(); ++i) {
     const LineSetup& line = setup.lines[i];
     check(line, i);
-    for (const ModuleSpec& module : line.modules) {
-      files.add(i, "eeprom", module.eeprom);
+    for (std::size_t module = 0; module < line.modules.size(); ++module) {
+      files.add(i, "eeprom", line.modules[module].eeprom, module);
     }
     ports.add(i, "pty", line.pty);
     ports.add(i, "serial", line.serial);

@@ -15,6 +15,7 @@
 namespace ex9000::sim {
 
 struct LineSetup {
+  std::string place;                  ///< where a bus file describes it; empty: the command line does
   std::string name;                   ///< what logs call it; empty where there is but one
   std::vector<ModuleSpec> modules;    ///< at least one
   std::optional<std::string> pty;     ///< where to link a pseudo-terminal
@@ -47,10 +48,12 @@ struct Setup : Writing {
 
 /// Wrong by the key that it is written under: an option of the command line, or a member of a bus file.
 struct WrongSetup : std::invalid_argument {
-  WrongSetup(std::optional<std::size_t> its_line, std::string its_key, const std::string& what)
-      : std::invalid_argument(what), line(its_line), key(std::move(its_key)) {}
+  WrongSetup(std::optional<std::size_t> its_line, std::string its_key, const std::string& what,
+             std::optional<std::size_t> its_module = std::nullopt)
+      : std::invalid_argument(what), line(its_line), module(its_module), key(std::move(its_key)) {}
 
-  std::optional<std::size_t> line;  ///< the position of its line; nothing: it is none of a line
+  std::optional<std::size_t> line;    ///< the position of its line; nothing: it is none of a line
+  std::optional<std::size_t> module;  ///< on that line; nothing: it is none of a module
   std::string key;
 };
 

@@ -26,6 +26,9 @@ class Node {
     refuse_at(member_of(path_, key), what);
   }
 
+  /// For people: the file, its line, and what is described there.
+  [[nodiscard]] std::string place() const { return place_of(path_) + path_; }
+
   /// Calls `take` with each member's key and value; it returns false for a key that it does not know.
   template <class Take>
   void members(const std::string& there_are, Take take) const {
@@ -115,13 +118,16 @@ class Node {
 
   /// What is not in the file is told of what it should stand in.
   [[noreturn]] void refuse_at(const std::string& path, const std::string& what) const {
+    throw Located(place_of(path) + (path.empty() ? "" : path + ": ") + what);
+  }
+
+  [[nodiscard]] std::string place_of(const std::string& path) const {
     std::string place = path;
     while (file_->lines.find(place) == file_->lines.end()) {
       const auto end = place.find_last_of(".[");
       place.resize(end == std::string::npos ? 0 : end);
     }
-    throw Located(*name_ + ":" + std::to_string(file_->lines.at(place)) + ": " +
-                  (path.empty() ? "" : path + ": ") + what);
+    return *name_ + ":" + std::to_string(file_->lines.at(place)) + ": ";
   }
 
   const LocatedJson* file_;
@@ -169,6 +175,7 @@ void read_module(const Node& node, LineSetup& line) {
 
 void read_line(const Node& node, Setup& setup) {
   LineSetup line;
+  line.place = node.place();
   node.members(
       "name, pty, tcp, serial, echo, baud, line, strict-gaps, modules and faults",
       [&](const std::string& key, const Node& value) {
@@ -254,8 +261,14 @@ Setup parse_bus_file(const std::string& path, const std::string& text) {
   try {
     check(setup);
   } catch (const WrongSetup& wrong) {
-    root.refuse(wrong.line ? member_of(element_of("lines", *wrong.line), wrong.key) : wrong.key,
-                wrong.what());
+    std::string object;
+    if (wrong.line) {
+      object = element_of("lines", *wrong.line);
+    }
+    if (wrong.module) {
+      object = element_of(member_of(object, "modules"), *wrong.module);
+    }
+    root.refuse(member_of(object, wrong.key), wrong.what());
   }
   return setup;
 }

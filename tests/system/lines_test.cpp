@@ -189,6 +189,17 @@ TEST(Lines, FilesAreMadeForAllModulesOrForNone) {
   }
 }
 
+TEST(Lines, WhatCannotBeOpenedIsToldOfWithWhereItIsAskedFor) {
+  const BusFile file(
+      "{\"lines\": [\n"
+      "{\"tcp\": 0, \"modules\": [{\"model\": \"EX9042D\"}]},\n"
+      "{\"pty\": \"no/such/folder\", \"modules\": [{\"model\": \"EX9042D\"}]}]}");
+  const Finished finished = run({simulator_path(), file.path()});
+  EXPECT_EQ(finished.status, 2);
+  EXPECT_TRUE(has(finished.error, "bus.json:3: lines[1]: ")) << finished.error;
+  EXPECT_TRUE(has(finished.error, "no/such/folder")) << finished.error;
+}
+
 TEST(Lines, AWrongFileIsRefusedInOneLineThatNamesItItsLineAndTheKey) {
   const Directory directory;
   const BusFile file("{\"lines\": [{\"modules\": [{\"model\": \"EX9042D\",\n\"colour\": 1}]}]}");
