@@ -8,6 +8,7 @@ PlayRecord::PlayRecord(const Writing& writing, Print print) : writing_(writing),
 
 void PlayRecord::begins(const std::string& what) {
   if (writing_.capture && !capture_) {
+    capture_file_.emplace(*writing_.capture);
     capture_ = std::make_unique<Capture>(*writing_.capture);
     capture_->begin();
   }
@@ -29,6 +30,7 @@ Faults::Notice PlayRecord::joins(Line& line, const std::string& name) {
   }
   if (capture_) {
     record.keep_in(*capture_, VirtualTime(0));  // nothing depends on when it is played
+    capture_file_->keep();
   }
   record.begin();
   if (!writing_.log) {

@@ -8,6 +8,7 @@
 
 #include "sim/capture/capture.hpp"
 #include "sim/line_record.hpp"
+#include "sim/made_file.hpp"
 #include "sim/play/onlooker.hpp"
 #include "sim/setup.hpp"
 
@@ -30,6 +31,7 @@ class PlayRecord final : public play::Onlooker {
  private:
   Writing writing_;
   Print print_;
+  std::optional<MadeFile> capture_file_;  ///< kept as soon as a line is in it
   std::unique_ptr<Capture> capture_;
   std::string what_;  ///< is played
   std::vector<std::unique_ptr<LineRecord>> lines_;

@@ -21,6 +21,7 @@ Session::Session(boost::asio::io_context& io, Setup setup, Print print, Print gr
   open_control();
   if (setup_.capture) {
     refuse_overwriting(*setup_.capture, in_use_by(setup_));  // all of which is there by now
+    capture_file_.emplace(*setup_.capture);
     capture_ = std::make_unique<Capture>(*setup_.capture);
   }
 }
@@ -65,21 +66,6 @@ Control::Reply Session::carry_out(const std::string& command) {
   return reply;
 }
 
-/// All or none.
-void Session::make_missing_memories() {
-  std::vector<const EepromFile*> made;
-  try {
-    for (const auto& running : lines_) {
-      running->make_missing_memories(made);
-    }
-  } catch (...) {
-    for (const EepromFile* file : made) {
-      file->discard();
-    }
-    throw;
-  }
-}
-
 /// Where no clock is followed nothing depends on when it runs, the capture neither.
 void Session::keep_a_capture() {
   capture_->begin();
@@ -90,20 +76,35 @@ void Session::keep_a_capture() {
   }
 }
 
-void Session::start() {
-  for (const auto& running : lines_) {
-    running->renew_memories();
-  }
-  make_missing_memories();
+void Session::make_files_and_greet(std::vector<const EepromFile*>& made) {
   Introduced introduced;
   introduced.control = setup_.control.value_or("");
   for (const auto& running : lines_) {
+    running->make_missing_memories(made);
     introduced.lines.push_back(running->introduced());
   }
   if (capture_) {
     keep_a_capture();
   }
   (for_machines() ? greet_ : print_)(greeting(introduced));
+  if (capture_file_) {
+    capture_file_->keep();
+  }
+}
+
+void Session::start() {
+  for (const auto& running : lines_) {
+    running->renew_memories();
+  }
+  std::vector<const EepromFile*> made;
+  try {
+    make_files_and_greet(made);
+  } catch (...) {
+    for (const EepromFile* file : made) {
+      file->discard();
+    }
+    throw;
+  }
   for (const auto& running : lines_) {
     if (setup_.log) {
       running->record().print_frames();

@@ -13,6 +13,7 @@
 #include "sim/control/control.hpp"
 #include "sim/control/control_socket.hpp"
 #include "sim/greeting.hpp"
+#include "sim/made_file.hpp"
 #include "sim/running_line.hpp"
 #include "sim/setup.hpp"
 
@@ -30,8 +31,8 @@ class Session {
   Session(const Session&) = delete;
   Session& operator=(const Session&) = delete;
 
-  /// Makes the EEPROM files that are missing, prints the greeting, and puts the lines to work as soon as `io`
-  /// runs, which is stopped when the time of `setup` is over. Throws likewise.
+  /// Makes the files that are missing, prints the greeting, and puts the lines to work as soon as `io` runs,
+  /// which is stopped when the time of `setup` is over. Throws likewise, and leaves no file that it has made.
   void start();
   /// Where the lines follow no clock: all that happens in the time of `setup`, unless `io` is stopped.
   void run_as_fast_as_it_can();
@@ -43,7 +44,7 @@ class Session {
   void keep_a_capture();
   void open_line(const LineSetup& line, const Print& print);
   void open_control();
-  void make_missing_memories();
+  void make_files_and_greet(std::vector<const EepromFile*>& made);
   Control::Reply carry_out(const std::string& command);
 
   boost::asio::io_context& io_;
@@ -54,6 +55,7 @@ class Session {
   boost::asio::steady_timer end_;
   std::optional<Control> control_;
   std::unique_ptr<ControlSocket> control_socket_;
+  std::optional<MadeFile> capture_file_;
   std::unique_ptr<Capture> capture_;
 };
 

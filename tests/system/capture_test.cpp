@@ -1,8 +1,10 @@
 // What is kept of a line, as Wireshark shows it, and the log for machines.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <chrono>
 #include <csignal>
+#include <filesystem>
 #include <nlohmann/json.hpp>
 #include <sstream>
 #include <string>
@@ -357,6 +359,53 @@ TEST(Capture, OfARunThatCannotWriteItEndsWithOneLineAndStatus1) {
   const Finished finished = run({simulator_path(), "EX9042D", "--capture", "/dev/full"}, directory.path());
   EXPECT_EQ(finished.status, 1);
   EXPECT_EQ(finished.error, "ex9000-sim: --capture /dev/full: cannot be written: No space left on device\n");
+}
+
+TEST(Capture, ThatCannotBeWrittenLeavesNothingThatWasMadeForTheRun) {
+  const Directory directory;
+  const Finished finished =
+      run({simulator_path(), "EX9042D@01,eeprom=n.bin", "--capture", "/dev/full"}, directory.path());
+  EXPECT_EQ(finished.status, 1);
+  EXPECT_TRUE(std::filesystem::is_empty(directory.path()));
+  write_file(directory / "a.txt", "> $01M\n< !019042D\n");
+  for (const char* arguments : {" EX9042D@01", " EX9042D@01,eeprom=n.bin", " play a.txt EX9042D"}) {
+    const std::string command =
+        "trap '' XFSZ; ulimit -f 0; exec " + simulator_path() + arguments + " --capture line.pcapng";
+    const Finished limited = run({"sh", "-c", command}, directory.path());
+    EXPECT_EQ(limited.status, std::string(arguments).find("n.bin") == std::string::npos ? 1 : 2)
+        << limited.error;
+    EXPECT_EQ(std::count(limited.error.begin(), limited.error.end(), '\n'), 1) << limited.error;
+    EXPECT_FALSE(std::filesystem::exists(directory / "line.pcapng"));
+    EXPECT_FALSE(std::filesystem::exists(directory / "n.bin"));
+  }
+}
+
+TEST(Capture, NeverGoesOverWhatARunReadsOrServes) {
+  const Directory directory;
+  const std::string bus = R"({"capture": "link", "control": "ctl", "lines": [
+    {"pty": "tty", "modules": [{"model": "EX9042D", "eeprom": "n.bin"}]}]})";
+  write_file(directory / "bus.json", bus);
+  const std::vector<std::pair<std::string, std::string>> cases{{"bus.json", "the bus file bus.json"},
+                                                               {"ctl", "the control socket ctl"},
+                                                               {"tty", "the pseudo-terminal tty"},
+                                                               {"n.bin", "a module's EEPROM, eeprom=n.bin"}};
+  for (const auto& [path, what] : cases) {
+    std::filesystem::create_symlink(path, directory / "link");
+    for (const std::vector<std::string>& named : {std::vector<std::string>{}, {"--capture", path}}) {
+      std::vector<std::string> command{simulator_path(), "bus.json"};
+      command.insert(command.end(), named.begin(), named.end());
+      const Finished finished = run(command, directory.path());
+      EXPECT_EQ(finished.status, 2) << finished.error;
+      // A link to what is not there yet is none to a file at all.
+      if (path != "n.bin" || !named.empty()) {
+        EXPECT_NE(finished.error.find(": is " + what + ", "), std::string::npos) << finished.error;
+      }
+      EXPECT_EQ(std::count(finished.error.begin(), finished.error.end(), '\n'), 1) << finished.error;
+    }
+    std::filesystem::remove(directory / "link");
+  }
+  EXPECT_EQ(bytes_of_file(directory / "bus.json"), bus);
+  EXPECT_FALSE(std::filesystem::exists(directory / "n.bin"));
 }
 
 // --- without the program ---
