@@ -32,15 +32,40 @@ LineRecord::LineRecord(Line& line, std::string name, LogFormat format, const Pri
   }
 }
 
+void LineRecord::note(const std::string& text) {
+  if (!over_) {
+    log_->note(line_.clock().virtual_now(), text);
+  }
+}
+
 void LineRecord::print_frames() {
-  frames_.tell([this](const Frame& frame) { log_->frame(frame); });
+  frames_.tell([this](const Frame& frame) {
+    if (!over_) {
+      log_->frame(frame);
+    }
+  });
   wanted_ = true;
 }
 
 void LineRecord::keep_in(Capture& capture, VirtualTime began) {
   const std::size_t line = capture.add_line(name_, line_.size(), began);
-  frames_.tell([&capture, line](const Frame& frame) { capture.write(line, frame); });
+  frames_.tell([this, &capture, line](const Frame& frame) {
+    if (!over_) {
+      capture.write(line, frame);
+    }
+  });
   wanted_ = true;
+}
+
+void LineRecord::end_at(VirtualTime end) {
+  end_ = end;
+  line_.bus().attach(*this);
+}
+
+void LineRecord::run() {
+  end_ = kNever;
+  frames_.finish();
+  over_ = true;
 }
 
 void LineRecord::begin() {

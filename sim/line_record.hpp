@@ -14,7 +14,7 @@
 namespace ex9000::sim {
 
 /// Nothing, until it is told what. Not behind `begin`.
-class LineRecord {
+class LineRecord final : private Station {
  public:
   using Print = BusLog::Print;
 
@@ -23,12 +23,15 @@ class LineRecord {
   LineRecord(Line& line, std::string name, LogFormat format, const Print& print);
 
   /// Something that is said about the line now; it is printed whether frames are or not.
-  void note(const std::string& text) { log_->note(line_.clock().virtual_now(), text); }
+  void note(const std::string& text);
   /// Frames are printed.
   void print_frames();
   /// And kept in `capture`, which lives as long as this. `began`: what the wall clock, since 1970-01-01
   /// 00:00:00 UTC, is taken to have shown at the line's time 0.
   void keep_in(Capture& capture, VirtualTime began);
+  /// What happens later than `end`, by the line's time, is not written down, however far the line runs: that
+  /// is up to when the host's clock is looked at.
+  void end_at(VirtualTime end);
   /// From now on the line is listened to, if anybody wants that.
   void begin();
 
@@ -38,11 +41,19 @@ class LineRecord {
   void finish() { frames_.finish(); }
 
  private:
+  // --- Station: one that but looks at the clock ---
+  [[nodiscard]] VirtualTime next() const override { return end_; }
+  void run() override;
+  [[nodiscard]] std::uint32_t baud() const override { return 0; }
+  void receive(std::uint8_t /*byte*/, ByteStatus /*status*/) override {}
+
   Line& line_;
   std::string name_;
   std::unique_ptr<BusLog> log_;
   FrameWatch frames_{[this] { return line_.master().baud(); }};
   bool wanted_ = false;
+  VirtualTime end_ = kNever;  ///< as long as it is to come
+  bool over_ = false;
 };
 
 }  // namespace ex9000::sim

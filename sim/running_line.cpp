@@ -1,5 +1,6 @@
 #include "sim/running_line.hpp"
 
+#include <algorithm>
 #include <stdexcept>
 #include <utility>
 
@@ -34,6 +35,7 @@ RunningLine::RunningLine(boost::asio::io_context& io, const LineSetup& setup, st
   });
   use_memories();
   line_->come_up();
+  came_up_ = line_->clock().virtual_now();
   line_->master().set_baud(setup.baud.value_or(line_->module(0).baud()));
   introduce();
   open_ports(io);
@@ -148,7 +150,8 @@ void RunningLine::follow_the_clock(boost::asio::io_context& io, double speed) {
   pacer_->start();
 }
 
-void RunningLine::run_until(VirtualTime until) {
+void RunningLine::run_until(VirtualTime up) {
+  const VirtualTime until = std::max(came_up_ + up, line_->clock().virtual_now());
   line_->bus().run_until(until);
   if (FrameWatch* frames = record_->frames()) {
     frames->run(until);

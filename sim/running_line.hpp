@@ -40,8 +40,10 @@ class RunningLine {
   void start();
   /// Puts the line to work as soon as `io` runs, so many times faster than the wall clock.
   void follow_the_clock(boost::asio::io_context& io, double speed);
-  /// All that happens until then, at once, where it follows no clock.
-  void run_until(VirtualTime until);
+  /// Nothing is written down of what happens when its modules have been up for longer. Before `start`.
+  void end_at(VirtualTime up) { record_->end_at(came_up_ + up); }
+  /// All that happens until its modules have been up for so long, at once.
+  void run_until(VirtualTime up);
   /// Writes down what was still under way.
   void finish() { record_->finish(); }
 
@@ -61,6 +63,7 @@ class RunningLine {
   Print print_;
   std::vector<std::unique_ptr<EepromFile>> memories_;  ///< one a module; null: none
   std::unique_ptr<Line> line_;
+  VirtualTime came_up_{0};  ///< its modules, by its time
   LineIntroduced introduced_;
   Pacer::Ports ports_;
   std::unique_ptr<LineRecord> record_;

@@ -109,6 +109,9 @@ void Session::start() {
     if (setup_.log) {
       running->record().print_frames();
     }
+    if (ends()) {
+      running->end_at(*setup_.lasts);
+    }
     running->start();
     if (setup_.speed) {
       running->follow_the_clock(io_, *setup_.speed);
@@ -117,10 +120,29 @@ void Session::start() {
   if (control_socket_) {
     control_socket_->start();
   }
-  if (setup_.speed && setup_.lasts) {
-    end_.expires_after(std::chrono::duration_cast<VirtualTime>(*setup_.lasts / *setup_.speed));
-    end_.async_wait([this](const boost::system::error_code& /*error*/) { io_.stop(); });
+  if (setup_.speed && ends()) {
+    end_by_the_clock();
   }
+}
+
+/// Not in a time that clocks cannot count, and nobody waits for.
+bool Session::ends() const {
+  constexpr auto kNobodyWaits = std::chrono::hours(24 * 365 * 100);
+  return setup_.lasts && (!setup_.speed || *setup_.lasts / *setup_.speed < kNobodyWaits);
+}
+
+/// The clock is not exactly there when it is looked at; the lines' records are.
+void Session::end_by_the_clock() {
+  end_.expires_after(std::chrono::duration_cast<VirtualTime>(*setup_.lasts / *setup_.speed));
+  end_.async_wait([this](const boost::system::error_code& error) {
+    if (error) {
+      return;
+    }
+    for (const auto& running : lines_) {
+      running->run_until(*setup_.lasts);
+    }
+    io_.stop();
+  });
 }
 
 void Session::run_as_fast_as_it_can() {

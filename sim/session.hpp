@@ -44,6 +44,8 @@ class Session {
   void keep_a_capture();
   void open_line(const LineSetup& line, const Print& print);
   void open_control();
+  [[nodiscard]] bool ends() const;
+  void end_by_the_clock();
   void make_files_and_greet(std::vector<const EepromFile*>& made);
   Control::Reply carry_out(const std::string& command);
 

@@ -42,7 +42,8 @@ struct Setup : Writing {
   std::optional<std::string> control;  ///< where to make the control socket
   /// Of the line's time to the wall clock's; nothing: as fast as it can be reckoned.
   std::optional<double> speed = 1;
-  std::optional<VirtualTime> lasts;  ///< of the lines' time, then it ends; nothing: until it is told to
+  /// For so long are the modules up, by the lines' time, then it ends; nothing: until it is told to.
+  std::optional<VirtualTime> lasts;
   std::uint64_t seed = 1;  ///< of all chance: noise, faults that are probable, contacts that chatter
 };
 

@@ -269,6 +269,31 @@ TEST(Capture, OfARunInVirtualTimeIsTheSameEveryTime) {
   EXPECT_EQ(packets[0].at("frame.time_epoch").substr(0, 4), "1.10");
 }
 
+TEST(Capture, EndsAtTheSameTimeOfTheLineWhateverItsSpeed) {
+  const Directory directory;
+  // A stranger every second, one of them shortly before the end and one at it, cut off.
+  write_file(directory / "bus.json", R"({"log": "json", "lines": [{"name": "hall",
+    "faults": ["foreign-traffic 0101000000083DCC every 1s", "gone at 5.2s for 1s"],
+    "modules": [{"model": "EX9042D-M"}]}]})");
+  std::vector<std::string> logs;
+  std::vector<std::vector<Packet>> captures;
+  for (const char* speed : {"max", "100", "10"}) {
+    const Finished finished = run({simulator_path(), "bus.json", "--speed", speed, "--for", "6.005s",
+                                   "--capture", std::string("of-") + speed},
+                                  directory.path());
+    EXPECT_EQ(finished.status, 0) << finished.error;
+    logs.push_back(finished.output);
+    captures.push_back(
+        decoded(directory / (std::string("of-") + speed), {"exported_pdu.exported_pdu", "frame.len"}));
+  }
+  EXPECT_NE(logs[0].find("\n{\"time\":6.1"), std::string::npos) << logs[0];
+  EXPECT_GE(captures[0].size(), 6U);
+  for (std::size_t i = 1; i < logs.size(); ++i) {
+    EXPECT_EQ(logs[i], logs[0]);
+    EXPECT_EQ(captures[i], captures[0]);
+  }
+}
+
 TEST(Capture, OfWhatIsPlayedHasEachRunAsAnInterface) {
   const Directory directory;
   write_file(directory / "a.txt",
