@@ -52,10 +52,15 @@ VirtualTime Pacer::wall() const {
   return first_ + (pace_.speed == 1 ? real : std::chrono::duration_cast<VirtualTime>(real * pace_.speed));
 }
 
-/// When the wall clock gets there.
+/// When the wall clock gets there; what is centuries ahead, which it cannot count, in one.
 std::chrono::steady_clock::time_point Pacer::when(VirtualTime time) const {
+  constexpr VirtualTime kCentury = std::chrono::hours(24 * 365 * 100);
   const VirtualTime ahead = time - first_;
-  return began_ + (pace_.speed == 1 ? ahead : std::chrono::duration_cast<VirtualTime>(ahead / pace_.speed));
+  if (pace_.speed == 1) {
+    return began_ + ahead;
+  }
+  const auto real = ahead / pace_.speed;
+  return began_ + (real < kCentury ? std::chrono::duration_cast<VirtualTime>(real) : kCentury);
 }
 
 /// Runs what is due, and leaves the clock at the last event rather than at `until`: see Pace::host_latency.

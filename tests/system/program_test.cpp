@@ -3,11 +3,13 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <chrono>
 #include <csignal>
 #include <filesystem>
 #include <fstream>
 #include <sstream>
 #include <string>
+#include <thread>
 #include <vector>
 
 #include "firmware/model/model.hpp"
@@ -167,6 +169,29 @@ TEST(Program, WrongArgumentsGiveOneLineThatNamesThemExitStatus2AndLeaveNothingBe
     EXPECT_NE(finished.error.find(wrong.names), std::string::npos) << finished.error;
     EXPECT_NE(finished.error.find(wrong.mend), std::string::npos) << finished.error;
     EXPECT_TRUE(fs::is_empty(directory.path())) << finished.error;
+  }
+}
+
+TEST(Program, WhatIsCenturiesAheadIsSleptFor) {
+  // A year at the least speed takes a thousand, more than a clock can count.
+  for (const std::vector<std::string>& far :
+       {std::vector<std::string>{"--fault", "gone at 8760h"}, {"--for", "8760h"}}) {
+    std::vector<std::string> arguments{"EX9042D", "--speed", "0.001"};
+    arguments.insert(arguments.end(), far.begin(), far.end());
+    SimulatorProcess process(arguments);
+    const auto ticks = [&process] {
+      std::ifstream status("/proc/" + std::to_string(process.pid()) + "/stat");
+      std::string word;
+      unsigned long used = 0;
+      for (int field = 1; status >> word; ++field) {
+        used += field == 14 || field == 15 ? std::stoul(word) : 0;
+      }
+      return used;
+    };
+    const unsigned long before = ticks();
+    std::this_thread::sleep_for(std::chrono::milliseconds(500));
+    EXPECT_LT(ticks() - before, 25U) << "of 50";  // hundredths of a second, of a processor that it shares
+    EXPECT_EQ(process.end(SIGTERM), 0);
   }
 }
 
