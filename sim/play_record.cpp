@@ -4,7 +4,8 @@
 
 namespace ex9000::sim {
 
-PlayRecord::PlayRecord(const Writing& writing, Print print) : writing_(writing), print_(std::move(print)) {}
+PlayRecord::PlayRecord(Writing writing, Print print)
+    : writing_(std::move(writing)), print_(std::move(print)) {}
 
 void PlayRecord::begins(const std::string& what) {
   if (writing_.capture && !capture_) {

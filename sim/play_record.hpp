@@ -20,7 +20,7 @@ class PlayRecord final : public play::Onlooker {
 
   /// Log and capture of `writing`. The capture's file is opened when the first run begins; see Capture for
   /// what it throws from then on.
-  PlayRecord(const Writing& writing, Print print);
+  PlayRecord(Writing writing, Print print);
 
   // --- play::Onlooker ---
   void begins(const std::string& what) override;

@@ -251,7 +251,9 @@ Action parse_action(const std::string& text) {
       continue;
     }
     if (text.size() > lead.size() && !is_blank(text[lead.size()])) {
-      fail("'" + text + "' wants a blank behind " + lead);
+      std::string what = "'" + text + "' wants a blank behind ";
+      what += lead;
+      fail(what);
     }
     const std::string rest = text.size() > lead.size() ? text.substr(lead.size() + 1) : "";
     if (lead == "<=") {

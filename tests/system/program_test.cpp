@@ -173,9 +173,10 @@ TEST(Program, WrongArgumentsGiveOneLineThatNamesThemExitStatus2AndLeaveNothingBe
 }
 
 TEST(Program, WhatIsCenturiesAheadIsSleptFor) {
-  // A year at the least speed takes a thousand, more than a clock can count.
+  // A year at the least speed takes a thousand, more than a clock can count; without power nothing comes
+  // before.
   for (const std::vector<std::string>& far :
-       {std::vector<std::string>{"--fault", "gone at 8760h"}, {"--for", "8760h"}}) {
+       {std::vector<std::string>{"--fault", "gone", "--fault", "gone at 8760h"}, {"--for", "8760h"}}) {
     std::vector<std::string> arguments{"EX9042D", "--speed", "0.001"};
     arguments.insert(arguments.end(), far.begin(), far.end());
     SimulatorProcess process(arguments);
@@ -190,7 +191,7 @@ TEST(Program, WhatIsCenturiesAheadIsSleptFor) {
     };
     const unsigned long before = ticks();
     std::this_thread::sleep_for(std::chrono::milliseconds(500));
-    EXPECT_LT(ticks() - before, 25U) << "of 50";  // hundredths of a second, of a processor that it shares
+    EXPECT_LT(ticks() - before, 5U) << "hundredths of a second, of 50";
     EXPECT_EQ(process.end(SIGTERM), 0);
   }
 }
