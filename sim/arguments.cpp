@@ -395,7 +395,7 @@ void want_nothing_in_front_of(const CLI::App& subcommand, const CLI::App& app) {
     return;
   }
   const CLI::Option& option = *given.front();
-  const std::string name = subcommand.get_name();
+  const std::string& name = subcommand.get_name();
   const bool may_stand_behind =
       option.get_positional() ? name == "play" : subcommand.get_option_no_throw(option.get_name()) != nullptr;
   throw std::invalid_argument(
