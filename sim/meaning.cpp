@@ -30,7 +30,7 @@ std::string escaped(std::uint8_t byte) {
     case 0x00:
       return "\\0";
     default:
-      return std::string(1, static_cast<char>(byte));
+      return {static_cast<char>(byte)};
   }
 }
 

@@ -429,7 +429,11 @@ class Witness {
         ++count;
       }
     }
-    if (count == 1) {
+    if (count != 0 && may_expire(values_) && to == values_.expired()) {
+      // Or the host watchdog did: behind a timeout it disables itself, and does no more.
+      outputs_before_ = values_.outputs;
+      expired_ = now_;
+    } else if (count == 1) {
       only->done = true;
       if (only->demand.restarts) {
         alive_ = now_;

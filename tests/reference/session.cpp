@@ -91,7 +91,7 @@ bool Session::play(const Step& step) {
 /// Nothing is being stored any more.
 bool Session::stored() {
   const bool storing = std::exchange(storing_, false);
-  return !(storing || storing_timeout_) || listen(kStored);
+  return !(storing || target_.now() < timeout_stored_) || listen(kStored);
 }
 
 /// The master goes where the reference says that the module is.
@@ -140,7 +140,11 @@ bool Session::listen(milliseconds time) {
   const play::Bytes heard = target_.listen(time);
   reference_.pass(target_.now());
   // Outputs and status are there at once, and what is asked now is asked while they are being stored.
-  storing_timeout_ = might_expire && !reference_.expiry() && target_.now() < over + kStored;
+  storing_timeout_ = false;
+  if (might_expire && !reference_.expiry()) {
+    timeout_stored_ = over + kStored;
+    storing_timeout_ = target_.now() < timeout_stored_;
+  }
   return heard.empty() || differs("; silence", reply_line(heard));
 }
 

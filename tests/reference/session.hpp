@@ -98,6 +98,7 @@ class Session {
   bool storing_ = false;
   /// Likewise, that the host watchdog has expired.
   bool storing_timeout_ = false;
+  Time timeout_stored_{0};  ///< by then the latest one's status is, whatever was asked meanwhile
   unsigned rate_ = 9600;
   bool checksum_ = false;
   std::vector<std::string> lines_;
