@@ -80,13 +80,13 @@ FrameBytes::const_iterator dcon_begin(const FrameBytes& bytes) {
   return delimits ? first : bytes.begin();
 }
 
-/// From its delimiter on.
-std::string without_cr(const FrameBytes& bytes) {
+/// From its delimiter to what stands before its CR.
+std::string dcon_text(const FrameBytes& bytes) {
   return {dcon_begin(bytes), bytes.end() - (bytes.back() == '\r' ? 1 : 0)};
 }
 
 std::string dcon_request(const FrameBytes& bytes) {
-  const std::string text = without_cr(bytes);
+  const std::string text = dcon_text(bytes);
   if (text.size() < 3) {
     return "";
   }
@@ -221,7 +221,7 @@ std::string check_error(const FrameBytes& bytes, Speaker speaker) {
   if (speaker == Speaker::Module) {
     return "";  // whether its last two characters are a checksum is the module's setting
   }
-  const std::string text = without_cr(bytes);
+  const std::string text = dcon_text(bytes);
   const DconRequest request = text.size() < 3 ? DconRequest() : dcon_request_of(text);
   return request.checksum && !checksum_is_right(text) ? "wrong checksum" : "";
 }

@@ -269,8 +269,8 @@ std::string list_faults(Line& line, std::size_t position) {
   const std::vector<Faults::Told> told = line.faults().told();
   std::string text = std::to_string(told.size()) + (told.size() == 1 ? " fault:" : " faults:");
   for (const Faults::Told& fault : told) {
-    text += (&fault == told.data() ? " " : "; ") + std::to_string(fault.number) + (fault.strikes ? "*" : "") +
-            " x" + std::to_string(fault.strikes_so_far) + " " +
+    text += (&fault == told.data() ? " " : "; ") + std::to_string(fault.number) +
+            (fault.strikes != 0 ? "*" : "") + " x" + std::to_string(fault.strikes_so_far) + " " +
             (fault.module ? std::to_string(position + *fault.module + 1) + " " : "") + fault.text;
   }
   return text;

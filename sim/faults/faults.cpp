@@ -221,8 +221,9 @@ void Faults::relent(Armed& armed, Over over) {
   }
 }
 
-bool Faults::Armed::strikes_now() const {
-  return std::any_of(strikes.begin(), strikes.end(), [](const Strike& strike) { return !strike.waits; });
+std::size_t Faults::Armed::strikes_now() const {
+  return static_cast<std::size_t>(
+      std::count_if(strikes.begin(), strikes.end(), [](const Strike& strike) { return !strike.waits; }));
 }
 
 bool Faults::Armed::befalls(std::size_t module) const {
@@ -334,7 +335,7 @@ const Fault* Faults::striking(Trouble trouble, std::size_t module) const {
 
 const Fault* Faults::striking_the_line(Trouble trouble) const {
   for (const Armed& armed : armed_) {
-    if (armed.strikes_now() && armed.fault.trouble == trouble) {
+    if (armed.strikes_now() != 0 && armed.fault.trouble == trouble) {
       return &armed.fault;
     }
   }
@@ -375,7 +376,7 @@ void Faults::set_late_drivers() {
 double Faults::rate_of(Trouble trouble) const {
   double rate = 0;
   for (const Armed& armed : armed_) {
-    if (armed.strikes_now() && armed.fault.trouble == trouble) {
+    if (armed.strikes_now() != 0 && armed.fault.trouble == trouble) {
       rate = std::max(rate, armed.fault.probability);
     }
   }

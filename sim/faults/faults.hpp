@@ -44,7 +44,7 @@ class Faults final : public Station {
     std::size_t number;
     std::string text;
     std::optional<std::size_t> module;
-    bool strikes;  ///< at this moment
+    std::size_t strikes;  ///< that last at this moment: one, or of replies one a module
     std::uint64_t strikes_so_far;
   };
   [[nodiscard]] std::vector<Told> told() const;
@@ -71,7 +71,8 @@ class Faults final : public Station {
     std::uint64_t counted = 0;    ///< replies, or writes
     std::uint64_t strikes_so_far = 0;
 
-    [[nodiscard]] bool strikes_now() const;
+    /// Not those that wait.
+    [[nodiscard]] std::size_t strikes_now() const;
     [[nodiscard]] bool befalls(std::size_t module) const;
   };
 

@@ -56,12 +56,12 @@ TEST(FaultsList, TellsWhatStrikesNowAndHowOftenItHas) {
   EXPECT_EQ(told[0].number, 1U);
   EXPECT_EQ(told[0].text, "gone at 1s for 1s");
   EXPECT_EQ(told[0].module, 1U);
-  EXPECT_TRUE(told[0].strikes);
+  EXPECT_EQ(told[0].strikes, 1U);
   EXPECT_EQ(told[0].strikes_so_far, 1U);
-  EXPECT_FALSE(told[1].strikes);
+  EXPECT_EQ(told[1].strikes, 0U);
   EXPECT_EQ(told[1].strikes_so_far, 1U);
   bench.run_until(2s);
-  EXPECT_FALSE(bench.faults().told()[0].strikes);
+  EXPECT_EQ(bench.faults().told()[0].strikes, 0U);
 }
 
 TEST(FaultsNotice, IsGivenOfWhatComesAndGoesByItself) {

@@ -101,8 +101,8 @@ TEST(FaultsSchedule, NoiseOfRepliesThatLastsIsOneStrikeHoweverManyThereAre) {
     EXPECT_EQ(bench.ask("$01M"), kName);
   }
   bench.run(990ms);
-  EXPECT_TRUE(bench.faults().told()[0].strikes);
-  EXPECT_FALSE(bench.faults().told()[1].strikes);
+  EXPECT_EQ(bench.faults().told()[0].strikes, 1U);
+  EXPECT_EQ(bench.faults().told()[1].strikes, 0U);
   EXPECT_EQ(bench.faults().told()[0].strikes_so_far, 20U);
 }
 
