@@ -97,6 +97,8 @@ class Module {
 
   [[nodiscard]] const State& state() const { return exchange_.state(); }
   [[nodiscard]] StatusLed::Pattern led_pattern() const { return led_.pattern(); }
+  /// When the host watchdog expires if nobody restarts it; disarmed where it does not run.
+  [[nodiscard]] Deadline host_watchdog_expiry() const { return host_watchdog_.expiry(state().settings); }
   /// What the last request came to.
   [[nodiscard]] const Outcome& outcome() const { return exchange_.outcome; }
   /// Whether the settings in the memory could not be read at reset, and none have been stored since.

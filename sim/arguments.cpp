@@ -19,6 +19,8 @@ constexpr const char* kDescription =
     "or on a real serial port.";
 
 constexpr const char* kDefaultPty = "ex9000.tty";
+/// Where no port is named.
+constexpr const char* kUsualPort = "usual";
 
 constexpr const char* kModuleHelp = R"(
 A module is MODEL[@ADDR][,KEY=VALUE]...: MODEL as --models lists it, upper or lower case, with or without EX;
@@ -70,6 +72,7 @@ constexpr const char* kExamples = R"(
 Examples:
   ex9000-sim EX9042D-M@01 EX9052D-M@02,edge=rising 9068d-m@0A,protocol=ascii --log
   ex9000-sim EX9042D-M@01,eeprom=pump.bin --tcp 5020 --control pump.ctl
+  ex9000-sim EX9042D-M@01 EX9052D-M@02 --panel
   ex9000-sim EX9042D-M@01 --capture line.pcapng --log json > line.json
   ex9000-sim EX9052D@01 --input '1 0 square 100ms' --fault '1 lost-reply every 10th reply' --log
   ex9000-sim --example > bus.json && ex9000-sim bus.json
@@ -119,6 +122,7 @@ struct Texts {
   std::optional<std::string> speed;
   std::optional<std::string> lasts;
   std::optional<std::string> seed;
+  std::optional<std::string> panel;
   WritingTexts writing;
 };
 
@@ -261,6 +265,9 @@ Setup setup_of(const Texts& texts) {
   if (texts.seed) {
     setup.seed = of_option("--seed", *texts.seed, parse_seed);
   }
+  if (texts.panel) {
+    setup.panel = of_option("--panel", *texts.panel == kUsualPort ? "" : *texts.panel, parse_panel);
+  }
   write_as_told(texts.writing, setup);
   try {
     check(setup);
@@ -282,16 +289,22 @@ void add_writing(CLI::App& app, WritingTexts& texts) {
       ->type_name("FILE");
 }
 
-/// The format behind --log may be left out, and what follows be a module: it is attached here, as CLI11 would
-/// take whatever follows.
-std::vector<std::string> with_log_format(int argc, const char* const* argv) {
+bool is_number(const std::string& text) {
+  return !text.empty() && text.find_first_not_of("0123456789") == std::string::npos;
+}
+
+/// The format behind --log and the port behind --panel may be left out, and what follows be a module: they
+/// are attached here, as CLI11 would take whatever follows.
+std::vector<std::string> with_optional_values(int argc, const char* const* argv) {
   std::vector<std::string> words;
   for (int i = 1; i < argc; ++i) {
     words.emplace_back(argv[i]);
-    if (words.back() == "--log") {
-      const std::string next = i + 1 < argc ? argv[i + 1] : "";
-      const bool named = next == "text" || next == "json";
-      words.back() += named ? "=" + next : "=text";
+    const std::string next = i + 1 < argc ? argv[i + 1] : "";
+    const bool log = words.back() == "--log";
+    const bool panel = words.back() == "--panel";
+    if (log || panel) {
+      const bool named = log ? next == "text" || next == "json" : is_number(next);
+      words.back() += named ? "=" + next : log ? "=text" : std::string("=") + kUsualPort;
       i += named ? 1 : 0;
     }
   }
@@ -452,6 +465,10 @@ Parsed parse_arguments(int argc, const char* const* argv) {
       ->type_name("paced|instant");
   app.add_option("--control", texts.control, "make a UNIX socket at this path that takes commands")
       ->type_name("PATH");
+  app.add_option("--panel", texts.panel,
+                 "serve a page that shows the modules and the bus, for a browser on this machine (default: "
+                 "9042, or any free port where that is taken)")
+      ->type_name("[PORT]");
   app.add_option("--input", texts.inputs,
                  "an input that moves by itself, such as '2 0 square 100ms'; see below")
       ->type_name("'N INPUT'")
@@ -483,7 +500,7 @@ Parsed parse_arguments(int argc, const char* const* argv) {
   const CLI::App* const describing = add_describe(app, describe_texts);
   app.set_version_flag("--version", "ex9000-sim " + std::string(kFirmwareVersion));
   try {
-    std::vector<std::string> words = with_log_format(argc, argv);
+    std::vector<std::string> words = with_optional_values(argc, argv);
     std::reverse(words.begin(), words.end());  // as CLI11 wants them
     app.parse(words);
   } catch (const CLI::CallForHelp&) {

@@ -27,6 +27,7 @@ class StationNames {
 class BusLog {
  public:
   using Print = std::function<void(const std::string& line)>;
+  using Note = std::function<void(VirtualTime now, const std::string& text)>;
 
   BusLog() = default;
   BusLog(const BusLog&) = delete;

@@ -94,7 +94,8 @@ std::string introduction(const LineIntroduced& line) {
 }  // namespace
 
 std::string greeting(const Introduced& all) {
-  std::string text = "ex9000-sim " + std::string(kFirmwareVersion);
+  std::string text = all.panel.empty() ? "" : "panel: " + all.panel + "\n";
+  text += "ex9000-sim " + std::string(kFirmwareVersion);
   text += all.lines.size() == 1 ? ", " : ":\n";
   for (const LineIntroduced& line : all.lines) {
     text += introduction(line);

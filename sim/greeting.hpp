@@ -31,7 +31,8 @@ struct LineIntroduced {
 
 struct Introduced {
   std::vector<LineIntroduced> lines;
-  std::string control;  ///< the control socket; empty: there is none
+  std::string panel;    ///< where a browser finds it; empty: there is none
+  std::string control;  ///< the control socket; likewise
 };
 
 /// The lines, their ports, their modules, and commands to paste that poll each of them; several lines of

@@ -38,14 +38,19 @@ class Line {
   void come_up();
 
   VirtualClock& clock() { return clock_; }
+  [[nodiscard]] const VirtualClock& clock() const { return clock_; }
   Bus& bus() { return bus_; }
   Master& master() { return master_; }
+  [[nodiscard]] const Master& master() const { return master_; }
   [[nodiscard]] std::size_t size() const { return modules_.size(); }
   SimulatedModule& module(std::size_t index) { return *modules_[index]; }
+  [[nodiscard]] const SimulatedModule& module(std::size_t index) const { return *modules_[index]; }
   /// All chance here comes of `seed`; `notice` is told what faults do. Before there are any.
   void expect_trouble(std::uint64_t seed, Faults::Notice notice);
   /// What goes wrong here; on the line from the first call on.
   Faults& faults();
+  /// For those who only look: null where nobody has asked for any so far.
+  [[nodiscard]] const Faults* faults_so_far() const { return faults_.get(); }
   /// From now on an input of the module at `index` moves by itself.
   void move_input(std::size_t index, const InputProgram& program);
   /// T3.5 on this line at the master's rate.

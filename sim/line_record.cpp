@@ -33,9 +33,20 @@ LineRecord::LineRecord(Line& line, std::string name, LogFormat format, const Pri
 }
 
 void LineRecord::note(const std::string& text) {
-  if (!over_) {
-    log_->note(line_.clock().virtual_now(), text);
+  if (over_) {
+    return;
   }
+  const VirtualTime now = line_.clock().virtual_now();
+  log_->note(now, text);
+  if (also_note_) {
+    also_note_(now, text);
+  }
+}
+
+void LineRecord::tell(FrameWatch::Take take, BusLog::Note note) {
+  frames_.tell(std::move(take));
+  also_note_ = std::move(note);
+  wanted_ = true;
 }
 
 void LineRecord::print_frames() {

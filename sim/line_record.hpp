@@ -29,6 +29,8 @@ class LineRecord final : private Station {
   /// And kept in `capture`, which lives as long as this. `began`: what the wall clock, since 1970-01-01
   /// 00:00:00 UTC, is taken to have shown at the line's time 0.
   void keep_in(Capture& capture, VirtualTime began);
+  /// And whoever looks on gets every frame when it is over, and what is said about the line.
+  void tell(FrameWatch::Take take, BusLog::Note note);
   /// What happens later than `end`, by the line's time, is not written down, however far the line runs: that
   /// is up to when the host's clock is looked at.
   void end_at(VirtualTime end);
@@ -51,6 +53,7 @@ class LineRecord final : private Station {
   std::string name_;
   std::unique_ptr<BusLog> log_;
   FrameWatch frames_{[this] { return line_.master().baud(); }};
+  BusLog::Note also_note_;
   bool wanted_ = false;
   VirtualTime end_ = kNever;  ///< as long as it is to come
   bool over_ = false;

@@ -42,10 +42,13 @@ class SimulatedModule final : public Station {
   /// The supply fails behind its switch, or is back; what that takes is the same.
   void interrupt_supply(bool interrupted);
   [[nodiscard]] bool powered() const { return mcu_.has_value(); }
+  /// Its supply's switch; a supply that fails behind it leaves it where it is.
+  [[nodiscard]] bool switched_on() const { return switched_on_; }
   /// A reset without loss of power; none without power.
   void reset();
   /// INIT* tied to GND, or released.
   void set_init(bool asserted);
+  [[nodiscard]] bool init_asserted() const { return init_switch_.asserted(); }
   /// Level of an input channel, from 0; channels the model lacks may be set and do nothing.
   void set_input(unsigned channel, bool level);
   /// `count` full pulses from the present level and back, all at this instant.
@@ -75,6 +78,7 @@ class SimulatedModule final : public Station {
   [[nodiscard]] std::uint16_t input_levels() const { return inputs_.levels(); }
   [[nodiscard]] bool led_lit() const { return led_.lit(); }
   hal::doubles::Memory& memory() { return memory_; }
+  [[nodiscard]] const hal::doubles::Memory& memory() const { return memory_; }
   hal::doubles::Outputs& output_pins() { return outputs_; }
   hal::doubles::StatusLed& led() { return led_; }
   /// Resets by the hardware watchdog since the object exists.

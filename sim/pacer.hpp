@@ -1,6 +1,7 @@
 // Lets a virtual line run along with the wall clock, and connects its master's end to the ports.
 #pragma once
 
+#include <algorithm>
 #include <boost/asio/io_context.hpp>
 #include <boost/asio/steady_timer.hpp>
 #include <chrono>
@@ -59,6 +60,8 @@ class Pacer final : private BusObserver {
   void start();
   /// From the master's end of the line to the ports; for Line's constructor.
   void hear(std::uint8_t byte) { heard_.push_back(byte); }
+  /// What the line's time is at this moment; its clock shows that of the last event.
+  [[nodiscard]] VirtualTime present() const { return std::max(wall(), line_.clock().virtual_now()); }
   /// Does something to the line from outside, at this moment.
   void now(const std::function<void()>& action);
 

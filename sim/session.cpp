@@ -19,6 +19,7 @@ Session::Session(boost::asio::io_context& io, Setup setup, Print print, Print gr
     open_line(line, printed);
   }
   open_control();
+  open_panel();
   if (setup_.capture) {
     refuse_overwriting(*setup_.capture, in_use_by(setup_));  // all of which is there by now
     capture_file_.emplace(*setup_.capture);
@@ -42,7 +43,7 @@ void Session::open_line(const LineSetup& line, const Print& print) {
 }
 
 void Session::open_control() {
-  if (!setup_.control) {
+  if (!setup_.control && !setup_.panel) {
     return;
   }
   std::vector<Control::ControlledLine> lines;
@@ -50,9 +51,28 @@ void Session::open_control() {
     lines.push_back({running->name(), running->line()});
   }
   control_.emplace(std::move(lines));
+  if (!setup_.control) {
+    return;
+  }
   control_socket_ = std::make_unique<ControlSocket>(
       io_, *setup_.control, [this](const std::string& command) { return carry_out(command); },
       [this] { io_.stop(); });
+}
+
+void Session::open_panel() {
+  if (!setup_.panel) {
+    return;
+  }
+  panel_ = std::make_unique<Panel>([this](const std::string& command) { return carry_out(command); },
+                                   setup_.speed.value_or(1));
+  for (std::size_t i = 0; i < lines_.size(); ++i) {
+    RunningLine& running = *lines_[i];
+    panel_->add_line(running.introduced(), running.line(), [&running] { return running.pacer().present(); });
+    running.record().tell(
+        [this, i](const Frame& frame) { panel_->hear(i, frame); },
+        [this, i](VirtualTime now, const std::string& text) { panel_->note(i, now, text); });
+  }
+  panel_server_ = std::make_unique<PanelServer>(io_, setup_.panel->port, *panel_);
 }
 
 /// All lines show the same time to whoever looks at one.
@@ -78,6 +98,7 @@ void Session::keep_a_capture() {
 
 void Session::make_files_and_greet(std::vector<const EepromFile*>& made) {
   Introduced introduced;
+  introduced.panel = panel_server_ ? panel_server_->address() : "";
   introduced.control = setup_.control.value_or("");
   for (const auto& running : lines_) {
     running->make_missing_memories(made);
@@ -119,6 +140,9 @@ void Session::start() {
   }
   if (control_socket_) {
     control_socket_->start();
+  }
+  if (panel_server_) {
+    panel_server_->start();
   }
   if (setup_.speed && ends()) {
     end_by_the_clock();

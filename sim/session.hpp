@@ -1,4 +1,4 @@
-// A run of the program: its lines and its control socket.
+// A run of the program: its lines, its control socket and its panel.
 #pragma once
 
 #include <boost/asio/io_context.hpp>
@@ -14,6 +14,8 @@
 #include "sim/control/control_socket.hpp"
 #include "sim/greeting.hpp"
 #include "sim/made_file.hpp"
+#include "sim/panel/panel.hpp"
+#include "sim/panel/panel_server.hpp"
 #include "sim/running_line.hpp"
 #include "sim/setup.hpp"
 
@@ -47,6 +49,7 @@ class Session {
   [[nodiscard]] bool ends() const;
   void end_by_the_clock();
   void make_files_and_greet(std::vector<const EepromFile*>& made);
+  void open_panel();
   Control::Reply carry_out(const std::string& command);
 
   boost::asio::io_context& io_;
@@ -59,6 +62,8 @@ class Session {
   std::unique_ptr<ControlSocket> control_socket_;
   std::optional<MadeFile> capture_file_;
   std::unique_ptr<Capture> capture_;
+  std::unique_ptr<Panel> panel_;
+  std::unique_ptr<PanelServer> panel_server_;
 };
 
 }  // namespace ex9000::sim

@@ -71,6 +71,9 @@ void check_speed(const Setup& setup) {
   if (!setup.speed && setup.control) {
     wrong("max: there is no time to listen to the control socket; leave it out, or give a number");
   }
+  if (!setup.speed && setup.panel) {
+    wrong("max: there is no time to look at the panel; leave it out, or give a number");
+  }
   if (!setup.speed && !setup.lasts) {
     wrong("max: would never end; say how long it is to last with 'for'");
   }
@@ -135,6 +138,20 @@ std::uint64_t parse_seed(const std::string& text) {
     throw std::invalid_argument("'" + text + "' wants a whole number from 0 on");
   }
   return seed;
+}
+
+PanelSetup parse_panel(const std::string& text) {
+  PanelSetup panel;
+  if (!text.empty()) {
+    std::uint16_t port = 0;
+    const char* const end = text.data() + text.size();
+    const auto [rest, error] = std::from_chars(text.data(), end, port);
+    if (error != std::errc() || rest != end) {
+      throw std::invalid_argument("'" + text + "' wants a port from 0 to 65535, 0 being any that is free");
+    }
+    panel.port = port;
+  }
+  return panel;
 }
 
 std::optional<double> parse_speed(const std::string& text) {

@@ -28,6 +28,10 @@ struct LineSetup {
   std::vector<Fault> faults;
 };
 
+struct PanelSetup {
+  std::optional<std::uint16_t> port;  ///< 0: any that is free; nothing: the usual one, or any
+};
+
 enum class LogFormat { Text, Json };
 
 /// What is written down.
@@ -40,6 +44,7 @@ struct Setup : Writing {
   std::string file;                    ///< the bus file that it is from; empty: a command line
   std::vector<LineSetup> lines;        ///< at least one
   std::optional<std::string> control;  ///< where to make the control socket
+  std::optional<PanelSetup> panel;     ///< the page for a browser; none: nobody serves it
   /// Of the line's time to the wall clock's; nothing: as fast as it can be reckoned.
   std::optional<double> speed = 1;
   /// For so long are the modules up, by the lines' time, then it ends; nothing: until it is told to.
@@ -68,6 +73,8 @@ std::uint32_t parse_line_rate(const std::string& text);
 bool parse_line_kind(const std::string& text);
 std::uint64_t parse_seed(const std::string& text);
 LogFormat parse_log_format(const std::string& text);
+/// Empty: the usual one.
+PanelSetup parse_panel(const std::string& text);
 /// Nothing: `max`.
 std::optional<double> parse_speed(const std::string& text);
 

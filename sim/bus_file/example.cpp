@@ -5,6 +5,7 @@ namespace ex9000::sim {
 std::string example_bus_file() {
   return R"({
   "control": "ex9000.ctl",
+  "panel": true,
   "seed": 1,
   "lines": [
     {

@@ -1,0 +1,188 @@
+#include "sim/panel/messages.hpp"
+
+#include <chrono>
+
+#include "sim/line_error.hpp"
+#include "sim/meaning.hpp"
+#include "sim/module_spec.hpp"
+#include "sim/panel/terminals.hpp"
+
+namespace ex9000::sim {
+
+namespace {
+
+std::int64_t microseconds(VirtualTime time) {
+  return std::chrono::duration_cast<std::chrono::microseconds>(time).count();
+}
+
+template <class Bytes>
+std::string hex(const Bytes& bytes) {
+  constexpr char kDigits[] = "0123456789ABCDEF";
+  std::string text;
+  text.reserve(bytes.size() * 2);
+  for (const std::uint8_t byte : bytes) {
+    text += kDigits[byte >> 4U];
+    text += kDigits[byte & 0xFU];
+  }
+  return text;
+}
+
+std::string_view protocol_text(Protocol protocol) { return protocol == Protocol::Ascii ? "ascii" : "modbus"; }
+
+Message message_of(const Settings& settings) {
+  Message message;
+  message["address"] = settings.address;
+  message["baud"] = baud_rate(settings.baud_code);
+  message["protocol"] = protocol_text(settings.protocol);
+  message["checksum"] = (settings.format & kFormatChecksum) != 0;
+  message["edge"] = (settings.format & kFormatRisingEdge) != 0 ? "rising" : "falling";
+  message["name"] = name_text(settings);
+  message["powerOn"] = settings.power_on_value;
+  message["safe"] = settings.safe_value;
+  message["watchdog"] = settings.watchdog_enabled;
+  message["timeout"] = settings.watchdog_timeout;
+  message["timedOut"] = settings.timeout_status;
+  return message;
+}
+
+}  // namespace
+
+Message plate_layout(const Model& model) {
+  Message layout;
+  layout["model"] = model.designation;
+  layout["description"] = model.description;
+  layout["modbus"] = model.speaks_modbus();
+  layout["inputs"] = Message::array();
+  for (unsigned channel = 0; channel < model.inputs; ++channel) {
+    layout["inputs"].push_back(input_terminal(channel));
+  }
+  layout["outputs"] = Message::array();
+  for (unsigned channel = 0; channel < model.outputs; ++channel) {
+    layout["outputs"].push_back(output_terminal(model, channel));
+  }
+  return layout;
+}
+
+Message message_of(const Plate& plate) {
+  Message message;
+  message["switch"] = plate.switched_on;
+  message["powered"] = plate.powered;
+  message["init"] = plate.init;
+  message["listening"] = plate.listening;
+  if (plate.listening) {
+    message["initMode"] = plate.init_mode;
+    message["address"] = plate.address;
+    message["baud"] = plate.baud;
+    message["protocol"] = protocol_text(plate.protocol);
+    message["checksum"] = plate.checksum;
+  }
+  message["led"] = led_text(plate.led);
+  message["outputs"] = plate.outputs;
+  message["inputs"] = plate.inputs;
+  message["resets"] = plate.watchdog_resets;
+  return message;
+}
+
+Message message_of(const Gathered& gathered, unsigned inputs) {
+  Message message;
+  message["high"] = gathered.latched_high;
+  message["low"] = gathered.latched_low;
+  message["counters"] = Message::array();
+  for (unsigned channel = 0; channel < inputs; ++channel) {
+    message["counters"].push_back(gathered.counters[channel]);
+  }
+  return message;
+}
+
+Message message_of(const Guard& guard) {
+  Message message;
+  message["enabled"] = guard.enabled;
+  message["timedOut"] = guard.timed_out;
+  message["timeout"] = guard.timeout;
+  message["expires"] = guard.expires ? Message(microseconds(*guard.expires)) : Message();
+  message["resetStatus"] = guard.reset_status;
+  return message;
+}
+
+Message message_of(const Stored& stored) {
+  Message message;
+  message["copies"] = Message::array();
+  for (std::size_t copy = 0; copy < Stored::kCopies; ++copy) {
+    Message each;
+    each["bytes"] = hex(stored.copies[copy].bytes);
+    each["good"] = stored.good[copy];
+    if (stored.good[copy]) {
+      each["sequence"] = sequence_in(stored.copies[copy]);
+    }
+    message["copies"].push_back(std::move(each));
+  }
+  message["current"] = stored.current ? Message(*stored.current) : Message();
+  message["blank"] = stored.blank;
+  message["settings"] = message_of(stored.settings);
+  return message;
+}
+
+Message message_of(const std::vector<Faults::Told>& faults, std::size_t first) {
+  Message message = Message::array();
+  for (const Faults::Told& fault : faults) {
+    Message each;
+    each["number"] = fault.number;
+    each["text"] = fault.text;
+    each["module"] = fault.module ? Message(first + *fault.module) : Message();
+    each["strikes"] = fault.strikes;
+    each["soFar"] = fault.strikes_so_far;
+    message.push_back(std::move(each));
+  }
+  return message;
+}
+
+Message message_of(const Heard::Entry& entry, std::uint64_t number, std::size_t modules) {
+  const Frame& frame = entry.frame;
+  Message message;
+  message["number"] = number;
+  message["began"] = microseconds(frame.began);
+  if (entry.note) {
+    message["note"] = *entry.note;
+    return message;
+  }
+  const bool known = frame.station <= modules;
+  message["ended"] = microseconds(frame.ended);
+  message["station"] = known ? Message(frame.station) : Message();
+  message["bytes"] = hex(frame.bytes);
+  if (looks_like_dcon(frame.bytes)) {
+    message["text"] = shown(frame.bytes);
+  }
+  const std::string means = frame.collided || !known ? "" : meaning(frame.bytes, frame.speaker());
+  const std::string error = known ? errors(frame) : line_error(frame);
+  if (!means.empty()) {
+    message["meaning"] = means;
+  }
+  if (!error.empty()) {
+    message["error"] = error;
+  }
+  return message;
+}
+
+std::optional<Asked> asked_in(const std::string& text) {
+  constexpr std::size_t kLongest = 1000;
+  const Message message = Message::parse(text, nullptr, false);
+  if (!message.is_object() || message.size() != 2) {
+    return std::nullopt;
+  }
+  const auto id = message.find("id");
+  const auto command = message.find("do");
+  if (id == message.end() || !id->is_number_unsigned() || command == message.end() || !command->is_string()) {
+    return std::nullopt;
+  }
+  Asked asked{id->get<std::uint64_t>(), command->get<std::string>()};
+  if (asked.command.size() > kLongest) {
+    return std::nullopt;
+  }
+  return asked;
+}
+
+std::string text_of(const Message& message) {
+  return message.dump(-1, ' ', false, Message::error_handler_t::replace);
+}
+
+}  // namespace ex9000::sim

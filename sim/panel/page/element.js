@@ -1,0 +1,38 @@
+// Makes an element with its attributes and children, and sets only what has changed.
+
+export function make(tag, attributes = {}, ...children) {
+  const element = document.createElement(tag);
+  for (const [name, value] of Object.entries(attributes)) {
+    if (name.startsWith("on")) {
+      element.addEventListener(name.slice(2), value);
+    } else if (value !== null && value !== false) {
+      element.setAttribute(name, value === true ? "" : value);
+    }
+  }
+  element.append(...children);
+  return element;
+}
+
+export function setText(element, text) {
+  if (element.textContent !== text) {
+    element.textContent = text;
+  }
+}
+
+export function setAttribute(element, name, value) {
+  const text = String(value);
+  if (element.getAttribute(name) !== text) {
+    element.setAttribute(name, text);
+  }
+}
+
+/// What is on or off, as people and screen readers are told.
+export function makeSwitch(name, className, flip) {
+  const knob = make("button", {type: "button", role: "switch", class: className, "aria-checked": "false",
+    "aria-label": name}, make("span", {class: "knob", "aria-hidden": "true"}));
+  knob.addEventListener("click", () => flip(knob.getAttribute("aria-checked") !== "true"));
+  return knob;
+}
+
+export const bit = (word, channel) => (word >> channel & 1) !== 0;
+export const hexByte = (value) => value.toString(16).toUpperCase().padStart(2, "0");

@@ -1,0 +1,88 @@
+// What goes wrong on a line, as switches.
+
+import {make, makeSwitch, setAttribute, setText} from "/element.js";
+
+/// One of each kind, to begin with.
+const usual = [
+  "bit-errors 1e-4", "lost-bytes 0.01", "inserted-bytes 0.01", "stray-zeros 0.01", "echo 5ms",
+  "foreign-traffic 0501000000083C48 every 1s", "lost-reply every 3rd reply", "late-reply 50ms", "late-driver 2ms",
+  "wrong-rate 19200", "gone at 12h for 2s", "power-cut every 10s", "hang every 10s",
+].filter((text) => !text.startsWith("gone at")).concat("gone");
+
+export class Faults {
+  /// `modules`: {position, model} of the line; `tell(command)` carries one out.
+  constructor(line, several, modules, tell) {
+    this.prefix = several ? `line ${line.name} ` : "";
+    this.tell = tell;
+    this.known = new Map();
+    this.list = make("ul", {class: "faultlist"});
+    this.said = make("p", {class: "said", role: "status"});
+    for (const text of usual) {
+      this.learn(text, null);
+    }
+    this.element = make("section", {class: "faultline", "aria-label": `Faults of ${line.name || "the line"}`},
+      several ? make("h3", {}, line.name) : "", this.list, this.form(modules), this.said);
+  }
+
+  form(modules) {
+    const text = make("input", {type: "text", placeholder: "late-reply 50ms every 5th reply", autocomplete: "off",
+      spellcheck: "false", size: "30", "aria-label": "Another fault"});
+    const whose = make("select", {"aria-label": "Whose"}, make("option", {value: ""}, "the line, all its modules"),
+      ...modules.map(({position, model}) => make("option", {value: position}, `${position + 1} ${model}`)));
+    return make("form", {class: "bar", onsubmit: async (event) => {
+      event.preventDefault();
+      if (text.value.trim()) {
+        const module = whose.value === "" ? null : Number(whose.value);
+        if (await this.turn(text.value.trim(), module, true)) {
+          text.value = "";
+        }
+      }
+    }}, text, whose, make("button", {type: "submit"}, "Add"));
+  }
+
+  key(text, module) { return `${module ?? ""} ${text}`; }
+
+  /// Once seen, it can be switched on again.
+  learn(text, module) {
+    const key = this.key(text, module);
+    if (!this.known.has(key)) {
+      const shown = module === null ? text : `module ${module + 1}: ${text}`;
+      const knob = makeSwitch(`Fault ${shown}`, "slide", (on) => this.turn(text, module, on));
+      const count = make("span", {class: "quiet"});
+      const item = make("li", {}, knob, make("span", {"aria-hidden": "true"}, shown), count);
+      this.known.set(key, {knob, count, item, numbers: []});
+      this.list.append(item);
+    }
+    return this.known.get(key);
+  }
+
+  async turn(text, module, on) {
+    let reply = {ok: true};
+    if (on) {
+      reply = await this.tell(module === null ? `${this.prefix}fault ${text}` : `${module + 1} fault ${text}`);
+    } else {
+      for (const number of this.learn(text, module).numbers) {
+        reply = await this.tell(`${this.prefix}fault off ${number}`);
+      }
+    }
+    setText(this.said, reply.ok ? "" : reply.text);
+    return reply.ok;
+  }
+
+  show(faults) {
+    const on = new Map();
+    for (const fault of faults) {
+      this.learn(fault.text, fault.module);
+      const key = this.key(fault.text, fault.module);
+      on.set(key, [...on.get(key) ?? [], fault]);
+    }
+    for (const [key, {knob, count, item}] of this.known) {
+      const these = on.get(key) ?? [];
+      this.known.get(key).numbers = these.map((fault) => fault.number);
+      setAttribute(knob, "aria-checked", these.length > 0);
+      setAttribute(item, "data-strikes", these.some((fault) => fault.strikes));
+      const struck = these.reduce((sum, fault) => sum + fault.soFar, 0);
+      setText(count, these.length ? `struck ${struck}×` : "");
+    }
+  }
+}

@@ -1,0 +1,114 @@
+// The panel: one page that shows what the simulator tells, as it comes.
+
+import {make, setText} from "/element.js";
+import {Faults} from "/faults.js";
+import {Live} from "/live.js";
+import {Plate} from "/plate.js";
+import {Timeline} from "/timeline.js";
+
+const at = (id) => document.getElementById(id);
+const timeline = new Timeline();
+let run = null;
+let version = null;
+let speed = 1;
+let plates = [];
+let lines = [];
+/// Of each line, what its clock showed, and when.
+let clocks = [];
+let fresh = [];
+let due = false;
+
+const now = (line) => {
+  const clock = clocks[line];
+  return clock ? clock.showed + (performance.now() - clock.when) * 1000 * speed : 0;
+};
+
+function begin(hello) {
+  if (version !== null && hello.version !== version) {
+    location.reload();  // the page may have changed as well
+    return;
+  }
+  version = hello.version;
+  speed = hello.speed;
+  clocks = [];
+  if (hello.run === run) {
+    return;
+  }
+  run = hello.run;
+  const several = hello.lines.length > 1;
+  setText(at("about"), [hello.version, hello.modules.length > 1 ? `${hello.modules.length} modules` : null,
+    ...hello.lines.slice(0, 3).map((line) => [line.name, line.ports.join(", ")].filter(Boolean).join(": "))]
+    .filter(Boolean).join(" · "));
+  plates = hello.modules.map((layout, position) =>
+    new Plate(layout, position, (command) => live.tell(`${position + 1} ${command}`)));
+  lines = hello.lines.map((line, index) => {
+    const modules = hello.modules.map((layout, position) => ({position, model: layout.model, line: layout.line}))
+      .filter((module) => module.line === index);
+    return {...line, modules, faults: new Faults(line, several, modules, (command) => live.tell(command))};
+  });
+  at("plates").dataset.count = plates.length === 1 ? "one" : plates.length > 8 ? "many" : "some";
+  at("plates").replaceChildren(...(several ? lines.flatMap((line) =>
+    [make("h3", {class: "linename"}, line.name), ...line.modules.map(({position}) => plates[position].element)])
+    : plates.map((plate) => plate.element)));
+  at("faultlines").replaceChildren(...lines.map((line) => line.faults.element));
+  timeline.clear();
+  timeline.begin(lines, (line, station) => {
+    const module = station ? lines[line].modules[station - 1] : null;
+    const who = station === 0 ? "master" : module ? `${module.position + 1} ${module.model}` : "somebody else";
+    return several ? `${lines[line].name}: ${who}` : who;
+  }, now);
+}
+
+function show(message) {
+  for (const news of message.state?.modules ?? []) {
+    plates[news.module].show(news);
+  }
+  for (const [index, news] of (message.state?.lines ?? []).entries()) {
+    if (news.faults) {
+      lines[index].faults.show(news.faults);
+    }
+  }
+  if (message.frames) {
+    timeline.add(message.frames);
+  }
+}
+
+function take(message) {
+  if (message.hello) {
+    fresh = [];
+    begin(message.hello);
+  }
+  const when = performance.now();
+  for (const [index, news] of (message.state?.lines ?? []).entries()) {
+    clocks[index] = {showed: news.now, when};
+  }
+  fresh.push(message);
+  // A page that nobody sees is not repainted, and must not gather what it is told.
+  if (document.hidden && !due) {
+    due = true;
+    setTimeout(() => { due = false; fresh.splice(0).forEach(show); }, 200);
+  }
+}
+
+/// All there is to draw, once a repaint.
+function repaint() {
+  fresh.splice(0).forEach(show);
+  for (const [position, plate] of plates.entries()) {
+    plate.tick(now(lineOf(position)));
+  }
+  timeline.draw();
+  requestAnimationFrame(repaint);
+}
+
+function lineOf(position) {
+  return lines.findIndex((line) => line.modules.some((module) => module.position === position));
+}
+
+function lost(isLost) {
+  document.body.classList.toggle("islost", isLost);
+  setText(at("link"), isLost ? "not connected" : "connected");
+  setText(at("lost"), isLost ? "No simulator – trying again. What you see is how it was." : "");
+}
+
+const live = new Live(take, lost);
+requestAnimationFrame(repaint);

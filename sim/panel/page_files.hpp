@@ -1,0 +1,17 @@
+// The page's files, as they are in sim/panel/page.
+#pragma once
+
+#include <string_view>
+
+namespace ex9000::sim {
+
+struct PageFile {
+  std::string_view target;  ///< `/panel.js`
+  std::string_view type;    ///< `text/javascript; charset=utf-8`
+  std::string_view content;
+};
+
+/// Null: there is none.
+const PageFile* page_file(std::string_view target);
+
+}  // namespace ex9000::sim

@@ -1,0 +1,293 @@
+#include "sim/panel/panel.hpp"
+
+#include <algorithm>
+#include <array>
+#include <chrono>
+#include <cstdio>
+#include <optional>
+#include <random>
+#include <utility>
+
+#include "firmware/model/model.hpp"
+#include "sim/panel/face.hpp"
+#include "sim/panel/heard.hpp"
+#include "sim/panel/messages.hpp"
+#include "sim/words.hpp"
+
+namespace ex9000::sim {
+
+namespace {
+
+/// What one message tells of frames, on all lines together: more than two lines at 115200 baud can carry
+/// between two messages, and little enough to be written before a master notices.
+constexpr std::size_t kMostFrames = 250;
+constexpr std::size_t kFewestFrames = 20;
+
+/// So that a page can tell a simulator that says nothing from one that has gone.
+constexpr std::chrono::seconds kHeartbeat{1};
+
+/// Tells one run of the program from the next.
+std::string random_id() {
+  std::random_device device;
+  std::array<char, 17> text{};
+  std::snprintf(text.data(), text.size(), "%08x%08x", device(), device());
+  return text.data();
+}
+
+/// Something that is told when it has changed.
+template <class Value>
+class Changing {
+ public:
+  /// `look`: the number of the present one.
+  void set(Value value, std::uint64_t look) {
+    if (!value_ || !(*value_ == value)) {
+      value_ = std::move(value);
+      changed_ = look;
+    }
+  }
+  /// Whether somebody who was told of look number `told` knows an older value.
+  [[nodiscard]] bool is_news_since(std::uint64_t told) const { return changed_ > told; }
+  [[nodiscard]] const Value& value() const { return *value_; }
+
+ private:
+  std::optional<Value> value_;
+  std::uint64_t changed_ = 0;
+};
+
+}  // namespace
+
+bool operator==(const Faults::Told& a, const Faults::Told& b) {
+  return a.number == b.number && a.text == b.text && a.module == b.module && a.strikes == b.strikes &&
+         a.strikes_so_far == b.strikes_so_far;
+}
+
+struct Panel::Module {
+  const SimulatedModule* module = nullptr;
+  Changing<Plate> plate;
+  Changing<Gathered> gathered;
+  Changing<Guard> guard;
+  Changing<Stored> stored;
+};
+
+struct Panel::Watched {
+  LineIntroduced introduced;
+  const Line* line = nullptr;
+  std::function<VirtualTime()> present;
+  std::size_t first_module = 0;  ///< its position through all lines
+  std::vector<Module> modules;
+  Heard heard;
+  Changing<std::uint32_t> baud;
+  Changing<std::vector<Faults::Told>> faults;
+};
+
+struct Panel::State {
+  std::string run = random_id();
+  double speed = 1;
+  std::vector<Watched> lines;
+  std::uint64_t looks = 0;
+};
+
+class Panel::Viewer final : public PanelViewer {
+ public:
+  explicit Viewer(Panel& panel) : panel_(panel) {
+    for (const Watched& watched : state().lines) {
+      told_frames_.push_back(watched.heard.first_of(0, most_frames()));
+    }
+  }
+
+  bool ask(const std::string& text) override {
+    const std::optional<Asked> asked = asked_in(text);
+    if (!asked) {
+      return false;
+    }
+    const Words words = words_of(asked->command);
+    const bool quits = !words.empty() && words[0] == "quit";
+    reply_ = Message();
+    (*reply_)["id"] = asked->id;
+    const std::string answer = quits ? "error: no page ends the simulator; Ctrl-C where it runs does"
+                                     : panel_.carry_out_(asked->command).text;
+    const bool ok = answer.rfind("ok", 0) == 0;
+    (*reply_)["ok"] = ok;
+    (*reply_)["text"] = answer;
+    return true;
+  }
+
+  std::string next() override {
+    Message message;
+    if (told_look_ == 0) {
+      message["hello"] = hello();
+    }
+    if (reply_) {
+      message["reply"] = *std::exchange(reply_, std::nullopt);
+    }
+    Message modules = Message::array();
+    Message lines = Message::array();
+    Message frames = Message::array();
+    bool news = false;
+    for (std::size_t i = 0; i < state().lines.size(); ++i) {
+      const Watched& watched = state().lines[i];
+      for (std::size_t at = 0; at < watched.modules.size(); ++at) {
+        Message module = news_of(watched.modules[at]);
+        if (!module.is_null()) {
+          module["module"] = watched.first_module + at;
+          modules.push_back(std::move(module));
+        }
+      }
+      lines.push_back(news_of(watched));
+      news = news || lines.back().size() > 1;
+      if (told_frames_[i] < watched.heard.end()) {
+        frames.push_back(frames_of(i));
+      }
+    }
+    const auto now = std::chrono::steady_clock::now();
+    news = news || !modules.empty() || !frames.empty() || now - told_at_ >= kHeartbeat;
+    if (news) {
+      message["state"]["lines"] = std::move(lines);
+      message["state"]["modules"] = std::move(modules);
+    }
+    if (!frames.empty()) {
+      message["frames"] = std::move(frames);
+    }
+    told_look_ = state().looks;
+    if (message.is_null()) {
+      return "";
+    }
+    told_at_ = now;
+    return text_of(message);
+  }
+
+ private:
+  [[nodiscard]] State& state() const { return *panel_.state_; }
+  [[nodiscard]] std::size_t most_frames() const {
+    return std::max(kFewestFrames, kMostFrames / std::max<std::size_t>(1, state().lines.size()));
+  }
+
+  [[nodiscard]] Message hello() const {
+    Message hello;
+    hello["version"] = kFirmwareVersion;
+    hello["run"] = state().run;
+    hello["speed"] = state().speed;
+    hello["lines"] = Message::array();
+    hello["modules"] = Message::array();
+    for (const Watched& watched : state().lines) {
+      Message line;
+      line["name"] = watched.introduced.name;
+      line["instant"] = watched.introduced.instant;
+      line["ports"] = Message::array();
+      for (const std::string& port :
+           {watched.introduced.pty, watched.introduced.tcp, watched.introduced.serial}) {
+        if (!port.empty()) {
+          line["ports"].push_back(port);
+        }
+      }
+      for (const Module& module : watched.modules) {
+        Message layout = plate_layout(module.module->model());
+        layout["line"] = hello["lines"].size();
+        hello["modules"].push_back(std::move(layout));
+      }
+      hello["lines"].push_back(std::move(line));
+    }
+    return hello;
+  }
+
+  [[nodiscard]] Message news_of(const Module& module) const {
+    Message message;
+    if (module.plate.is_news_since(told_look_)) {
+      message["plate"] = message_of(module.plate.value());
+    }
+    if (module.gathered.is_news_since(told_look_)) {
+      message["gathered"] = message_of(module.gathered.value(), module.module->model().inputs);
+    }
+    if (module.guard.is_news_since(told_look_)) {
+      message["guard"] = message_of(module.guard.value());
+    }
+    if (module.stored.is_news_since(told_look_)) {
+      message["stored"] = message_of(module.stored.value());
+    }
+    return message;
+  }
+
+  [[nodiscard]] Message news_of(const Watched& watched) const {
+    Message message;
+    message["now"] = std::chrono::duration_cast<std::chrono::microseconds>(watched.present()).count();
+    if (watched.baud.is_news_since(told_look_)) {
+      message["baud"] = watched.baud.value();
+    }
+    if (watched.faults.is_news_since(told_look_)) {
+      message["faults"] = message_of(watched.faults.value(), watched.first_module);
+    }
+    return message;
+  }
+
+  Message frames_of(std::size_t line) {
+    const Watched& watched = state().lines[line];
+    const std::uint64_t first = watched.heard.first_of(told_frames_[line], most_frames());
+    Message message;
+    message["line"] = line;
+    message["missed"] = first - told_frames_[line];
+    message["entries"] = Message::array();
+    for (std::uint64_t number = first; number < watched.heard.end(); ++number) {
+      message["entries"].push_back(message_of(watched.heard.entry(number), number, watched.modules.size()));
+    }
+    told_frames_[line] = watched.heard.end();
+    return message;
+  }
+
+  Panel& panel_;
+  std::uint64_t told_look_ = 0;
+  std::vector<std::uint64_t> told_frames_;  ///< the next one's number, a line each
+  std::optional<Message> reply_;
+  std::chrono::steady_clock::time_point told_at_;
+};
+
+Panel::Panel(CarryOut carry_out, double speed)
+    : carry_out_(std::move(carry_out)), state_(std::make_unique<State>()) {
+  state_->speed = speed;
+}
+
+Panel::~Panel() = default;
+
+void Panel::add_line(const LineIntroduced& introduced, const Line& line,
+                     std::function<VirtualTime()> present) {
+  Watched watched;
+  watched.introduced = introduced;
+  watched.line = &line;
+  watched.present = std::move(present);
+  for (const Watched& before : state_->lines) {
+    watched.first_module += before.modules.size();
+  }
+  watched.modules.resize(line.size());
+  for (std::size_t i = 0; i < line.size(); ++i) {
+    watched.modules[i].module = &line.module(i);
+  }
+  state_->lines.push_back(std::move(watched));
+}
+
+void Panel::hear(std::size_t line, const Frame& frame) { state_->lines[line].heard.add({frame, {}}); }
+
+void Panel::note(std::size_t line, VirtualTime now, const std::string& text) {
+  Frame frame;
+  frame.began = frame.ended = now;
+  state_->lines[line].heard.add({frame, text});
+}
+
+void Panel::look() {
+  const std::uint64_t look = ++state_->looks;
+  for (Watched& watched : state_->lines) {
+    const VirtualTime now = watched.line->clock().virtual_now();
+    for (Module& module : watched.modules) {
+      Face face = face_of(*module.module, now);
+      module.plate.set(face.plate, look);
+      module.gathered.set(face.gathered, look);
+      module.guard.set(face.guard, look);
+      module.stored.set(face.stored, look);
+    }
+    watched.baud.set(watched.line->master().baud(), look);
+    const Faults* faults = watched.line->faults_so_far();
+    watched.faults.set(faults == nullptr ? std::vector<Faults::Told>() : faults->told(), look);
+  }
+}
+
+std::unique_ptr<PanelViewer> Panel::viewer() { return std::make_unique<Viewer>(*this); }
+
+}  // namespace ex9000::sim

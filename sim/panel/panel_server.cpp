@@ -1,0 +1,433 @@
+#include "sim/panel/panel_server.hpp"
+
+#include <algorithm>
+#include <boost/asio/io_context.hpp>
+#include <boost/asio/ip/tcp.hpp>
+#include <boost/asio/steady_timer.hpp>
+#include <boost/beast/core.hpp>
+#include <boost/beast/http.hpp>
+#include <boost/beast/websocket.hpp>
+#include <chrono>
+#include <list>
+#include <stdexcept>
+#include <string_view>
+#include <utility>
+
+#include "sim/panel/page_files.hpp"
+
+namespace ex9000::sim {
+
+namespace {
+
+namespace beast = boost::beast;
+namespace http = beast::http;
+namespace websocket = beast::websocket;
+using boost::asio::ip::tcp;
+using boost::system::error_code;
+
+constexpr std::uint16_t kDefaultPort = 9042;
+/// Far more than pages that somebody looks at; beyond it somebody connects and never goes.
+constexpr std::size_t kMostClients = 16;
+constexpr std::uint32_t kLongestHeader = 8192;
+constexpr std::size_t kLongestAsked = 4096;
+/// Until a request has come, and until its answer has gone.
+constexpr std::chrono::seconds kPatience{5};
+/// A page that answers no ping for so long has gone.
+constexpr std::chrono::seconds kIdle{20};
+/// Between two looks: half of what is to be on the screen within 100 ms, less what goes into drawing it.
+constexpr std::chrono::milliseconds kLookEvery{30};
+
+[[noreturn]] void refuse(std::uint16_t port, const error_code& error) {
+  throw std::invalid_argument("--panel " + std::to_string(port) + ": " +
+                              (error == boost::asio::error::address_in_use
+                                   ? std::string("another program listens there; end it or name another port")
+                                   : error.message() + "; name another port"));
+}
+
+error_code try_to_listen(tcp::acceptor& acceptor, std::uint16_t port) {
+  const tcp::endpoint endpoint(boost::asio::ip::address_v4::loopback(), port);
+  error_code error;
+  acceptor.open(endpoint.protocol(), error);
+  // What connections of a dead process still linger must not keep this one from listening.
+  if (!error) {
+    acceptor.set_option(tcp::acceptor::reuse_address(true), error);
+  }
+  if (!error) {
+    acceptor.bind(endpoint, error);
+  }
+  if (!error) {
+    acceptor.listen(tcp::acceptor::max_listen_connections, error);
+  }
+  if (error) {
+    error_code ignored;
+    acceptor.close(ignored);
+  }
+  return error;
+}
+
+/// As it stands, for whoever is one too many: nothing of it is kept.
+constexpr std::string_view kTurnedAway =
+    "HTTP/1.1 503 Service Unavailable\r\nContent-Type: text/plain\r\nContent-Length: 32\r\n"
+    "Connection: close\r\n\r\ntoo many pages are open already\n";
+
+std::string_view view_of(beast::string_view text) { return {text.data(), text.size()}; }
+
+using Request = http::request<http::empty_body>;
+using Response = http::response<http::string_body>;
+
+/// Names that a browser on this machine may know this server by. Another one, though it leads here, is a
+/// foreign site's.
+class Loopback {
+ public:
+  explicit Loopback(std::uint16_t port) : port_(std::to_string(port)) {}
+
+  [[nodiscard]] bool is_host(std::string_view host) const {
+    return std::any_of(std::begin(kNames), std::end(kNames),
+                       [&](std::string_view name) { return host == std::string(name) + ":" + port_; });
+  }
+  [[nodiscard]] bool is_origin(std::string_view origin) const {
+    constexpr std::string_view kScheme = "http://";
+    return origin.substr(0, kScheme.size()) == kScheme && is_host(origin.substr(kScheme.size()));
+  }
+
+ private:
+  static constexpr std::string_view kNames[] = {"127.0.0.1", "localhost"};
+
+  std::string port_;
+};
+
+}  // namespace
+
+class PanelServer::Listener : public std::enable_shared_from_this<PanelServer::Listener> {
+ public:
+  Listener(boost::asio::io_context& io, PanelSource& source)
+      : acceptor_(io), next_try_(io), next_look_(io), source_(source) {}
+
+  void listen(std::optional<std::uint16_t> port) {
+    error_code error = try_to_listen(acceptor_, port.value_or(kDefaultPort));
+    if (error && !port) {
+      error = try_to_listen(acceptor_, 0);
+    }
+    if (error) {
+      refuse(port.value_or(kDefaultPort), error);
+    }
+    port_ = acceptor_.local_endpoint().port();
+  }
+
+  [[nodiscard]] std::uint16_t port() const { return port_; }
+  void accept();
+  /// The source is no more.
+  void stop();
+
+ private:
+  class Client;
+
+  void accept_later();
+  void watch();
+  void look_later();
+  void look();
+
+  tcp::acceptor acceptor_;
+  boost::asio::steady_timer next_try_;
+  boost::asio::steady_timer next_look_;
+  PanelSource& source_;
+  std::uint16_t port_ = 0;
+  std::list<std::weak_ptr<Client>> clients_;
+  bool looking_ = false;
+  bool stopped_ = false;
+};
+
+/// A connection: one request, or a page that is told how things are until it goes.
+class PanelServer::Listener::Client : public std::enable_shared_from_this<Client> {
+ public:
+  Client(std::shared_ptr<Listener> listener, tcp::socket socket)
+      : listener_(std::move(listener)), socket_(beast::tcp_stream(std::move(socket))) {}
+
+  void read_request() {
+    parser_.header_limit(kLongestHeader);
+    parser_.body_limit(0);
+    stream().expires_after(kPatience);
+    http::async_read(stream(), buffer_, parser_,
+                     [self = shared_from_this()](const error_code& error, std::size_t /*size*/) {
+                       self->have_request(error);
+                     });
+  }
+
+  [[nodiscard]] bool is_page() const { return viewer_ != nullptr; }
+
+  /// Whatever there is to tell, unless it still reads what it was told before.
+  void tell() {
+    if (!viewer_ || writing_) {
+      return;
+    }
+    told_ = viewer_->next();
+    if (told_.empty()) {
+      return;
+    }
+    writing_ = true;
+    socket_.text(true);
+    socket_.async_write(boost::asio::buffer(told_),
+                        [self = shared_from_this()](const error_code& error, std::size_t /*size*/) {
+                          self->writing_ = false;
+                          if (error) {
+                            self->part();
+                          } else if (self->answering_) {
+                            self->answer_asked();
+                          }
+                        });
+  }
+
+  void part() {
+    viewer_.reset();
+    error_code ignored;
+    stream().socket().close(ignored);
+  }
+
+ private:
+  beast::tcp_stream& stream() { return socket_.next_layer(); }
+
+  void have_request(const error_code& error) {
+    if (listener_->stopped_ || error == http::error::end_of_stream ||
+        error == boost::asio::error::operation_aborted || error == beast::error::timeout) {
+      return;
+    }
+    if (error == http::error::header_limit) {
+      answer(http::status::request_header_fields_too_large, "text/plain", "too long a header\n");
+    } else if (error == http::error::body_limit) {
+      answer(http::status::payload_too_large, "text/plain", "no request has a body here\n");
+    } else if (error) {
+      answer(http::status::bad_request, "text/plain", "no HTTP request\n");
+    } else {
+      attend(parser_.get());
+    }
+  }
+
+  void attend(const Request& request) {
+    const Loopback here(listener_->port());
+    const auto origin = request.find(http::field::origin);
+    const bool has_origin = origin != request.end();
+    const bool live = request.target() == "/live";
+    if (request.count(http::field::host) != 1 || !here.is_host(view_of(request[http::field::host]))) {
+      answer(http::status::forbidden, "text/plain", "asked for under a name that is not this machine's\n");
+    } else if (request.count(http::field::origin) > 1 ||
+               (has_origin && !here.is_origin(view_of(origin->value()))) || (live && !has_origin)) {
+      answer(http::status::forbidden, "text/plain", "another site's page\n");
+    } else if (request.method() != http::verb::get) {
+      answer(http::status::method_not_allowed, "text/plain", "GET is all there is\n");
+    } else if (live && !websocket::is_upgrade(request)) {
+      answer(http::status::upgrade_required, "text/plain", "a WebSocket is all there is\n");
+    } else if (live) {
+      accept_page(request);
+    } else if (const PageFile* file = page_file(view_of(request.target()))) {
+      answer(http::status::ok, file->type, file->content);
+    } else {
+      answer(http::status::not_found, "text/plain", "no such page\n");
+    }
+  }
+
+  void answer(http::status status, std::string_view type, std::string_view text) {
+    response_.result(status);
+    response_.version(11);
+    response_.keep_alive(false);
+    response_.set(http::field::content_type, beast::string_view(type.data(), type.size()));
+    response_.set(http::field::cache_control, "no-store");
+    response_.set("X-Content-Type-Options", "nosniff");
+    response_.set("Content-Security-Policy",
+                  "default-src 'self'; img-src 'self' data:; frame-ancestors 'none'; base-uri 'none'; "
+                  "form-action 'none'");
+    response_.set("Cross-Origin-Resource-Policy", "same-origin");
+    response_.set("Referrer-Policy", "no-referrer");
+    if (status == http::status::method_not_allowed) {
+      response_.set(http::field::allow, "GET");
+    }
+    response_.body() = text;
+    response_.prepare_payload();
+    stream().expires_after(kPatience);
+    http::async_write(
+        stream(), response_,
+        [self = shared_from_this()](const error_code& /*error*/, std::size_t /*size*/) { self->leave(); });
+  }
+
+  /// What it may still be sending is read first: where that is left, the answer does not arrive.
+  void leave() {
+    error_code ignored;
+    stream().socket().shutdown(tcp::socket::shutdown_send, ignored);
+    drain();
+  }
+
+  void drain() {
+    constexpr std::size_t kMostDrained = 1 << 20;
+    if (drained_ > kMostDrained) {
+      return;
+    }
+    buffer_.clear();
+    stream().async_read_some(buffer_.prepare(kLongestAsked),
+                             [self = shared_from_this()](const error_code& error, std::size_t size) {
+                               self->drained_ += size;
+                               if (!error) {
+                                 self->drain();
+                               }
+                             });
+  }
+
+  void accept_page(const Request& request) {
+    stream().expires_never();
+    websocket::stream_base::timeout timeout{};
+    timeout.handshake_timeout = kPatience;
+    timeout.idle_timeout = kIdle;
+    timeout.keep_alive_pings = true;
+    socket_.set_option(timeout);
+    socket_.read_message_max(kLongestAsked);
+    socket_.async_accept(request, [self = shared_from_this()](const error_code& error) {
+      if (!error && !self->listener_->stopped_) {
+        self->buffer_.clear();
+        self->viewer_ = self->listener_->source_.viewer();
+        self->listener_->watch();
+        self->read_asked();
+      }
+    });
+  }
+
+  void read_asked() {
+    socket_.async_read(buffer_, [self = shared_from_this()](const error_code& error, std::size_t /*size*/) {
+      if (error || !self->viewer_) {
+        self->viewer_.reset();
+        return;
+      }
+      self->answering_ = true;
+      if (!self->writing_) {
+        self->answer_asked();
+      }
+    });
+  }
+
+  /// The next request is read when this one's answer is on its way: nobody is asked faster than he answers.
+  void answer_asked() {
+    answering_ = false;
+    const std::string asked = beast::buffers_to_string(buffer_.data());
+    buffer_.clear();
+    if (!viewer_ || !socket_.got_text() || !viewer_->ask(asked)) {
+      viewer_.reset();
+      socket_.async_close({websocket::close_code::policy_error, "no request"},
+                          [self = shared_from_this()](const error_code& /*error*/) {});
+      return;
+    }
+    listener_->look();
+    read_asked();
+  }
+
+  std::shared_ptr<Listener> listener_;
+  websocket::stream<beast::tcp_stream> socket_;
+  beast::flat_buffer buffer_{kLongestHeader + kLongestAsked};
+  http::request_parser<http::empty_body> parser_;
+  Response response_;
+  std::size_t drained_ = 0;
+  std::unique_ptr<PanelViewer> viewer_;
+  std::string told_;
+  bool writing_ = false;
+  bool answering_ = false;  ///< a request waits for what is being written
+};
+
+void PanelServer::Listener::accept() {
+  acceptor_.async_accept([self = shared_from_this()](const error_code& error, tcp::socket socket) {
+    if (error == boost::asio::error::operation_aborted || self->stopped_) {
+      return;
+    }
+    if (error) {
+      self->accept_later();
+      return;
+    }
+    error_code ignored;
+    socket.set_option(tcp::no_delay(true), ignored);
+    self->clients_.remove_if([](const auto& client) { return client.expired(); });
+    if (self->clients_.size() < kMostClients) {
+      const auto client = std::make_shared<Client>(self, std::move(socket));
+      self->clients_.push_back(client);
+      client->read_request();
+    } else {
+      socket.non_blocking(true, ignored);
+      socket.write_some(boost::asio::buffer(kTurnedAway), ignored);
+    }
+    self->accept();
+  });
+}
+
+/// The process has as many files open as it may: trying again at once would take all of the processor.
+void PanelServer::Listener::accept_later() {
+  constexpr std::chrono::milliseconds kWhile{100};
+  next_try_.expires_after(kWhile);
+  next_try_.async_wait([self = shared_from_this()](const error_code& error) {
+    if (!error && !self->stopped_) {
+      self->accept();
+    }
+  });
+}
+
+/// Somebody has come to look.
+void PanelServer::Listener::watch() {
+  if (looking_) {
+    look();
+  } else {
+    looking_ = true;
+    look();
+    look_later();
+  }
+}
+
+void PanelServer::Listener::look_later() {
+  next_look_.expires_after(kLookEvery);
+  next_look_.async_wait([self = shared_from_this()](const error_code& error) {
+    if (error || self->stopped_) {
+      return;
+    }
+    self->look();
+    if (self->looking_) {
+      self->look_later();
+    }
+  });
+}
+
+void PanelServer::Listener::look() {
+  looking_ = false;
+  for (const auto& weak : clients_) {
+    const auto client = weak.lock();
+    looking_ = looking_ || (client && client->is_page());
+  }
+  if (!looking_) {
+    return;
+  }
+  source_.look();
+  for (const auto& weak : clients_) {
+    if (const auto client = weak.lock()) {
+      client->tell();
+    }
+  }
+}
+
+void PanelServer::Listener::stop() {
+  stopped_ = true;
+  error_code ignored;
+  acceptor_.close(ignored);
+  next_look_.cancel(ignored);
+  next_try_.cancel(ignored);
+  for (const auto& weak : clients_) {
+    if (const auto client = weak.lock()) {
+      client->part();
+    }
+  }
+}
+
+PanelServer::PanelServer(boost::asio::io_context& io, std::optional<std::uint16_t> port, PanelSource& source)
+    : listener_(std::make_shared<Listener>(io, source)) {
+  listener_->listen(port);
+}
+
+PanelServer::~PanelServer() { listener_->stop(); }
+
+std::string PanelServer::address() const {
+  return "http://127.0.0.1:" + std::to_string(listener_->port()) + "/";
+}
+
+void PanelServer::start() { listener_->accept(); }
+
+}  // namespace ex9000::sim
