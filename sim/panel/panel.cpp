@@ -224,7 +224,6 @@ class Panel::Viewer final : public PanelViewer {
     const std::uint64_t first = watched.heard.first_of(told_frames_[line], most_frames());
     Message message;
     message["line"] = line;
-    message["missed"] = first - told_frames_[line];
     message["entries"] = Message::array();
     for (std::uint64_t number = first; number < watched.heard.end(); ++number) {
       message["entries"].push_back(message_of(watched.heard.entry(number), number, watched.modules.size()));

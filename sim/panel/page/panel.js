@@ -40,7 +40,8 @@ function begin(hello) {
     ...hello.lines.slice(0, 3).map((line) => [line.name, line.ports.join(", ")].filter(Boolean).join(": "))]
     .filter(Boolean).join(" · "));
   plates = hello.modules.map((layout, position) =>
-    new Plate(layout, position, (command) => live.tell(`${position + 1} ${command}`)));
+    new Plate(layout, position, (command) => live.tell(`${position + 1} ${command}`),
+      () => document.querySelector("input[name=way]:checked").value));
   lines = hello.lines.map((line, index) => {
     const modules = hello.modules.map((layout, position) => ({position, model: layout.model, line: layout.line}))
       .filter((module) => module.line === index);
@@ -91,17 +92,13 @@ function take(message) {
 }
 
 /// All there is to draw, once a repaint.
-function repaint() {
+function repaint(when) {
   fresh.splice(0).forEach(show);
-  for (const [position, plate] of plates.entries()) {
-    plate.tick(now(lineOf(position)));
+  for (const plate of plates) {
+    plate.tick(now(plate.layout.line));
   }
-  timeline.draw();
+  timeline.draw(when);
   requestAnimationFrame(repaint);
-}
-
-function lineOf(position) {
-  return lines.findIndex((line) => line.modules.some((module) => module.position === position));
 }
 
 function lost(isLost) {

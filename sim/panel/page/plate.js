@@ -3,16 +3,16 @@
 import {bit, hexByte, make, makeSwitch, setAttribute, setText} from "/element.js";
 
 const edgeTerminals = ["INIT*", "DATA+", "DATA−", "+VS", "GND"];
-const ways = [["toggle", "switch"], ["hold", "hold"], ["pulse", "pulse"]];
 
 export class Plate {
-  /// `position` counts from 0; `tell(command)` carries out what follows the module's number.
-  constructor(layout, position, tell) {
+  /// `position` counts from 0; `tell(command)` carries out what follows the module's number; `way()` is what a
+  /// click on an input does: toggle, hold or pulse.
+  constructor(layout, position, tell, way) {
     this.layout = layout;
     this.position = position;
     this.tell = tell;
     this.title = `${position + 1} ${layout.model}`;
-    this.way = "toggle";
+    this.way = way;
     this.outputs = layout.outputs.map((label) => this.makeOutput(label));
     this.inputs = layout.inputs.map((label, channel) => this.makeInput(label, channel));
     this.element = this.build();
@@ -39,13 +39,18 @@ export class Plate {
       this.drawer);
     this.details.addEventListener("toggle", () => this.drawDrawer());
     const channels = [];
+    const columns = (list) => String(list.length > 8 ? Math.ceil(list.length / 2) : Math.max(list.length, 4));
     if (this.outputs.length) {
-      channels.push(make("ul", {class: "channels outputs", "aria-label": "Outputs"},
-        ...this.outputs.map((output) => output.item)));
+      const list = make("ul", {class: "channels outputs", "aria-label": "Outputs"},
+        ...this.outputs.map((output) => output.item));
+      list.style.setProperty("--columns", columns(this.outputs));
+      channels.push(list);
     }
     if (this.inputs.length) {
-      channels.push(make("ul", {class: "channels inputs", "aria-label": "Inputs"},
-        ...this.inputs.map((input) => input.item)), this.makeWays());
+      const list = make("ul", {class: "channels inputs", "aria-label": "Inputs"},
+        ...this.inputs.map((input) => input.item));
+      list.style.setProperty("--columns", columns(this.inputs));
+      channels.push(list);
     }
     return make("article", {class: "plate", "aria-label": this.title},
       make("div", {class: "head"},
@@ -106,7 +111,7 @@ export class Plate {
     };
     button.addEventListener("pointerdown", (event) => {
       wasHeld = false;
-      if (event.button === 0 && (this.way === "hold" || event.shiftKey)) {
+      if (event.button === 0 && (this.way() === "hold" || event.shiftKey)) {
         button.setPointerCapture(event.pointerId);
         press();
       }
@@ -119,7 +124,7 @@ export class Plate {
       if (!isKey(event)) {
         return;
       }
-      if (this.way === "hold" || event.shiftKey || held !== null) {
+      if (this.way() === "hold" || event.shiftKey || held !== null) {
         event.preventDefault();
         if (!event.repeat) {
           press();
@@ -135,22 +140,15 @@ export class Plate {
       }
     });
     button.addEventListener("click", (event) => {
-      if (wasHeld || this.way === "hold") {
+      if (wasHeld || this.way() === "hold") {
         wasHeld = false;
-      } else if (this.way === "pulse" || event.altKey) {
+      } else if (this.way() === "pulse" || event.altKey) {
         this.tell(`pulse ${channel}`);
       } else {
         set(!level());
       }
     });
     button.addEventListener("contextmenu", (event) => event.preventDefault());
-  }
-
-  makeWays() {
-    const group = `way${this.position}`;
-    return make("fieldset", {class: "ways"}, make("legend", {}, "A click"),
-      ...ways.map(([way, text]) => make("label", {}, make("input", {type: "radio", name: group, value: way,
-        checked: way === this.way, onchange: () => { this.way = way; }}), make("span", {}, text))));
   }
 
   /// What has changed of it.

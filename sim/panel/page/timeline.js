@@ -6,6 +6,8 @@ import {make, setAttribute, setText} from "/element.js";
 const mostRows = 2000;
 const trimmedFrom = 2300;
 const spareRows = 8;
+/// Between two times that it is drawn, in ms: a busy line would have every repaint taken up by it.
+const slowest = 30;
 
 const seconds = (microseconds) => (microseconds / 1e6).toFixed(6);
 
@@ -37,7 +39,7 @@ export class Timeline {
     this.entries = [];
     this.shown = [];
     this.pending = [];
-    this.numbers = 0;
+    this.next = new Map();
     this.follows = true;
     this.moved = 0;
     this.stale = true;
@@ -73,13 +75,19 @@ export class Timeline {
   /// `frames` as they come in a message.
   add(frames) {
     const fresh = [];
-    for (const {line, missed, entries} of frames) {
-      if (missed) {
-        fresh.push(this.prepared({line, missed, began: entries[0]?.began ?? 0}));
+    for (const {line, entries} of frames) {
+      // After a lost connection some may come again, and others never.
+      const next = this.next.get(line) ?? entries[0].number;
+      const missed = entries[0].number - next;
+      if (missed > 0) {
+        fresh.push(this.prepared({line, missed, began: entries[0].began}));
       }
       for (const entry of entries) {
-        fresh.push(this.prepared({...entry, line}));
+        if (entry.number >= next) {
+          fresh.push(this.prepared({...entry, line}));
+        }
       }
+      this.next.set(line, entries[entries.length - 1].number + 1);
     }
     fresh.sort((a, b) => a.began - b.began);
     if (this.paused) {
@@ -154,16 +162,18 @@ export class Timeline {
   }
 
   /// Once a repaint.
-  draw() {
-    if (this.rowsStale) {
+  draw(when) {
+    if (this.rowsStale && !(when - this.rowsDrawn < slowest)) {
       this.rowsStale = false;
+      this.rowsDrawn = when;
       this.drawRows();
       const waiting = this.pending.length ? `, ${this.pending.length} more` : "";
       setText(this.tally, this.sought ? `${this.shown.length} of ${this.entries.length}${waiting}`
         : `${this.entries.length} frames${waiting}`);
     }
-    if (this.lines.length && (this.stale || !this.paused)) {
+    if (this.lines.length && !(when - this.stripDrawn < slowest) && (this.stale || (!this.paused && !this.empty))) {
       this.stale = false;
+      this.stripDrawn = when;
       this.drawStrip();
     }
   }
@@ -179,9 +189,10 @@ export class Timeline {
     const first = Math.max(0, Math.floor(top / height) - spareRows);
     const last = Math.min(this.shown.length, Math.ceil((top + this.rows.clientHeight) / height) + spareRows);
     const seen = new Set(this.shown.slice(first, last));
+    const spare = [];
     for (const [entry, row] of this.shownRows) {
       if (!seen.has(entry)) {
-        row.remove();
+        spare.push(row);
         this.shownRows.delete(entry);
       }
     }
@@ -189,22 +200,30 @@ export class Timeline {
       const entry = this.shown[index];
       let row = this.shownRows.get(entry);
       if (!row) {
-        row = this.makeRow(entry);
+        row = spare.pop() ?? this.makeRow();
+        this.fillRow(row, entry);
         this.shownRows.set(entry, row);
-        this.filler.append(row);
       }
       row.style.transform = `translateY(${index * height}px)`;
       setAttribute(row, "aria-rowindex", index + 2);
     }
+    for (const row of spare) {
+      row.remove();
+    }
     setAttribute(this.rows, "aria-rowcount", this.shown.length + 1);
   }
 
-  makeRow(entry) {
-    const kind = entry.error ? "error" : entry.note ? "note" : entry.missed ? "missed" : "frame";
-    const cell = (text, className) => make("span", {role: "cell", class: className, title: text}, text);
-    return make("div", {class: "row", role: "row", "data-kind": kind},
-      cell(entry.missed ? "…" : seconds(entry.began), "time"), cell(entry.from, "from"), cell(entry.said, "bytes"),
-      cell(entry.means, "meaning"));
+  makeRow() {
+    const row = make("div", {class: "row", role: "row"},
+      ...["time", "from", "bytes", "meaning"].map((each) => make("span", {role: "cell", class: each})));
+    this.filler.append(row);
+    return row;
+  }
+
+  fillRow(row, entry) {
+    setAttribute(row, "data-kind", entry.error ? "error" : entry.note ? "note" : entry.missed ? "missed" : "frame");
+    const texts = [entry.missed ? "…" : seconds(entry.began), entry.from, entry.said, entry.means];
+    texts.forEach((text, column) => setText(row.children[column], text));
   }
 
   // --- the strip ---
@@ -246,6 +265,7 @@ export class Timeline {
     const span = Number(this.span.value);
     canvas.clearRect(0, 0, width, height);
     canvas.font = "11px system-ui, sans-serif";
+    this.empty = true;
     const lanes = Math.min(this.lines.length, 6);
     const lane = (height - 20) / lanes;
     this.drawScale(width, height, span);
@@ -314,6 +334,7 @@ export class Timeline {
     canvas.fillStyle = this.colour(entry.error ? "bad" : up ? "master" : "module");
     canvas.fillRect(left, up ? top + half - 20 : top + half, Math.max(1.5, right - left), 20);
     const text = entry.said;
+    this.empty = false;
     if (right - left > 30) {
       canvas.save();
       canvas.beginPath();

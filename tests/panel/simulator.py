@@ -1,0 +1,103 @@
+"""A running ex9000-sim with its panel, and a Modbus master on its line."""
+
+import os
+import pathlib
+import re
+import signal
+import socket
+import subprocess
+import tempfile
+import urllib.parse
+
+PROGRAM = os.environ.get(
+    "EX9000_SIMULATOR", str(pathlib.Path(__file__).resolve().parents[2] / "build/host-debug/sim/ex9000-sim")
+)
+
+
+class Simulator:
+    def __init__(self, *arguments, panel=0):
+        self._directory = tempfile.TemporaryDirectory()
+        self._arguments = arguments
+        self._start(panel)
+
+    def _start(self, panel):
+        self.process = subprocess.Popen(
+            [PROGRAM, *self._arguments, "--panel", str(panel)],
+            stdout=subprocess.PIPE, text=True, cwd=self._directory.name,
+        )
+        greeting = ""
+        for line in self.process.stdout:
+            greeting += line
+            if line.startswith("Ctrl-C"):
+                break
+        self.address = re.match(r"panel: (\S+)\n", greeting).group(1)
+        self.port = urllib.parse.urlsplit(self.address).port
+        self.lines = [int(port) for port in re.findall(r"TCP 127\.0\.0\.1:(\d+)", greeting)]
+
+    def kill(self):
+        self.process.kill()
+        self.process.wait()
+        self.process.stdout.close()
+
+    def start_again(self):
+        self._start(self.port)
+
+    def stop(self):
+        self.process.send_signal(signal.SIGSTOP)
+
+    def go_on(self):
+        self.process.send_signal(signal.SIGCONT)
+
+    def close(self):
+        self.kill()
+        self._directory.cleanup()
+
+
+def crc(data):
+    value = 0xFFFF
+    for byte in data:
+        value ^= byte
+        for _ in range(8):
+            value = value >> 1 ^ (0xA001 if value & 1 else 0)
+    return value.to_bytes(2, "little")
+
+
+class Master:
+    """Modbus RTU and DCON, over TCP."""
+
+    def __init__(self, port):
+        self._socket = socket.create_connection(("127.0.0.1", port), timeout=5)
+        self._socket.setsockopt(socket.IPPROTO_TCP, socket.TCP_NODELAY, 1)
+
+    def close(self):
+        self._socket.close()
+
+    def ask(self, request, size):
+        """The PDU of an answer of `size` bytes, CRC included."""
+        data = bytes.fromhex(request)
+        self._socket.sendall(data + crc(data))
+        answer = self._read(size)
+        assert crc(answer[:-2]) == answer[-2:], answer.hex()
+        return answer[1:-2]
+
+    def _read(self, size):
+        answer = b""
+        while len(answer) < size:
+            piece = self._socket.recv(size - len(answer))
+            assert piece, "the simulator has closed"
+            answer += piece
+        return answer
+
+    def say(self, command):
+        """DCON: the answer without its CR."""
+        self._socket.sendall(command.encode() + b"\r")
+        answer = b""
+        while not answer.endswith(b"\r"):
+            answer += self._read(1)
+        return answer[:-1].decode()
+
+    def counter(self, address, channel):
+        return int.from_bytes(self.ask(f"{address:02X}04{channel:04X}0001", 7)[2:], "big")
+
+    def coil(self, address, coil, on):
+        self.ask(f"{address:02X}05{coil:04X}{'FF00' if on else '0000'}", 8)

@@ -1,0 +1,146 @@
+"""A browser, driven over the WebDriver protocol."""
+
+import base64
+import json
+import re
+import subprocess
+import tempfile
+import urllib.error
+import urllib.request
+
+ELEMENT = "element-6066-11e4-a52e-4f735466cecf"
+KEYS = {"Tab": "\ue004", "Enter": "\ue007", "Space": " ", "Shift": "\ue008", "Alt": "\ue00a"}
+
+
+class Browser:
+    """Chromium without a screen. One object at a time may be in use by a thread."""
+
+    def __init__(self, driver="chromedriver", browser="/usr/bin/chromium"):
+        self._profile = tempfile.TemporaryDirectory(ignore_cleanup_errors=True)
+        self._driver = subprocess.Popen(
+            [driver, "--port=0"], stdout=subprocess.PIPE, stderr=subprocess.DEVNULL, text=True
+        )
+        for line in self._driver.stdout:
+            started = re.search(r"started successfully on port (\d+)", line)
+            if started:
+                break
+        self._base = f"http://127.0.0.1:{started.group(1)}/session"
+        arguments = [
+            "--headless=new", "--no-sandbox", "--disable-gpu", "--disable-dev-shm-usage", "--no-first-run",
+            "--disable-extensions", "--disable-background-networking", "--disable-component-update",
+            "--disable-sync", "--hide-scrollbars", "--force-device-scale-factor=1",
+            f"--user-data-dir={self._profile.name}",
+        ]
+        options = {
+            "goog:chromeOptions": {"args": arguments, "binary": browser},
+            "goog:loggingPrefs": {"browser": "ALL"},
+        }
+        session = self._post("", {"capabilities": {"alwaysMatch": options}})
+        self._base += "/" + session["sessionId"]
+        self._post("/timeouts", {"script": 15000})
+
+    def close(self):
+        try:
+            self._send("DELETE", "")
+        finally:
+            self._driver.terminate()
+            self._driver.wait()
+            self._driver.stdout.close()
+            self._profile.cleanup()
+
+    def _send(self, method, path, body=None):
+        data = None if body is None else json.dumps(body).encode()
+        request = urllib.request.Request(
+            self._base + path, data, {"Content-Type": "application/json"}, method=method
+        )
+        try:
+            with urllib.request.urlopen(request, timeout=60) as answer:
+                return json.load(answer)["value"]
+        except urllib.error.HTTPError as error:
+            raise AssertionError(json.load(error)["value"]["message"]) from None
+
+    def _post(self, path, body):
+        return self._send("POST", path, body)
+
+    def open(self, address):
+        self._post("/url", {"url": address})
+
+    def run(self, script, *arguments):
+        """What `script`, the body of a function, returns."""
+        return self._post("/execute/sync", {"script": script, "args": list(arguments)})
+
+    def promised(self, script, *arguments):
+        """Likewise, of an async function's."""
+        text = (
+            "const done = arguments[arguments.length - 1];"
+            f"(async () => {{ {script} }})().then(done, (error) => done('error: ' + error));"
+        )
+        value = self._post("/execute/async", {"script": text, "args": list(arguments)})
+        assert not str(value).startswith("error: "), value
+        return value
+
+    def until(self, condition, *arguments):
+        """Looks at every repaint until the expression `condition` is true, and fails after 10 s."""
+        script = f"""
+            const given = arguments;
+            const holds = () => {{ try {{ return ({condition}); }} catch (error) {{ return false; }} }};
+            const gives_up = performance.now() + 10000;
+            while (!holds()) {{
+              if (performance.now() > gives_up) {{ return false; }}
+              await new Promise((go_on) => setTimeout(go_on, 10));
+            }}
+            return true;"""
+        assert self.promised(script, *arguments), f"never: {condition} {arguments}"
+
+    def find(self, selector):
+        return self._post("/element", {"using": "css selector", "value": selector})[ELEMENT]
+
+    def click(self, selector):
+        self._post(f"/element/{self.find(selector)}/click", {})
+
+    def type(self, selector, text):
+        self._post(f"/element/{self.find(selector)}/value", {"text": text})
+
+    def pointer(self, *actions):
+        """Each is down, up, or a selector to move to."""
+        moves = [
+            {"type": f"pointer{action.capitalize()}", "button": 0}
+            if action in ("down", "up")
+            else {"type": "pointerMove", "x": 0, "y": 0, "origin": {ELEMENT: self.find(action)}}
+            for action in actions
+        ]
+        self._post("/actions", {"actions": [{"type": "pointer", "id": "mouse", "actions": moves}]})
+
+    def key(self, *actions):
+        """Each is a name of KEYS, pressed and let go, or one behind + or -."""
+        moves = []
+        for action in actions:
+            if action[0] != "-":
+                moves.append({"type": "keyDown", "value": KEYS[action.lstrip("+")]})
+            if action[0] != "+":
+                moves.append({"type": "keyUp", "value": KEYS[action.lstrip("-")]})
+        self._post("/actions", {"actions": [{"type": "key", "id": "keyboard", "actions": moves}]})
+
+    def devtools(self, command, **parameters):
+        return self._post("/goog/cdp/execute", {"cmd": command, "params": parameters})
+
+    def size(self, width, height, phone=False):
+        self.devtools(
+            "Emulation.setDeviceMetricsOverride", width=width, height=height, deviceScaleFactor=1, mobile=phone
+        )
+
+    def prefers(self, **features):
+        """Such as color_scheme="dark"; all others are as usual."""
+        media = [{"name": "prefers-" + name.replace("_", "-"), "value": value} for name, value in features.items()]
+        self.devtools("Emulation.setEmulatedMedia", features=media)
+
+    def complaints(self):
+        """What the page has complained of since the last time, refused connections apart."""
+        said = self._post("/se/log", {"type": "browser"})
+        return [each["message"] for each in said if "ERR_CONNECTION_REFUSED" not in each["message"]
+                and "WebSocket connection to" not in each["message"]]
+
+    def screenshot(self, path, whole=False):
+        picture = self.devtools("Page.captureScreenshot", format="png", captureBeyondViewport=whole)
+        path.parent.mkdir(parents=True, exist_ok=True)
+        path.write_bytes(base64.b64decode(picture["data"]))
