@@ -278,6 +278,7 @@ class PanelServer::Listener::Client : public std::enable_shared_from_this<Client
     timeout.keep_alive_pings = true;
     socket_.set_option(timeout);
     socket_.read_message_max(kLongestAsked);
+    socket_.auto_fragment(false);
     socket_.async_accept(request, [self = shared_from_this()](const error_code& error) {
       if (!error && !self->listener_->stopped_) {
         self->buffer_.clear();

@@ -2,9 +2,9 @@
 
 import {make, setAttribute, setText} from "/element.js";
 
-/// Older ones go. Trimmed in pieces, since moving all of them for each would take longer.
-const mostRows = 2000;
-const trimmedFrom = 2300;
+/// Older ones go, in pieces, since moving all of them for each would take longer: there are up to `trimmedFrom`.
+const mostRows = 1700;
+const trimmedFrom = 2000;
 const spareRows = 8;
 /// Between two times that it is drawn, in ms: a busy line would have every repaint taken up by it.
 const slowest = 30;

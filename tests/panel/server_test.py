@@ -1,0 +1,183 @@
+"""What the panel's server lets in and what it refuses, while a master polls the line and notices nothing."""
+
+import json
+import os
+import threading
+import time
+import unittest
+
+from simulator import Master, Simulator
+from web_socket import Page, all_of, ask, open_socket, request, status, upgrade
+
+MOST_CLIENTS = 16
+PATIENCE = 5  # seconds, until a request has come
+
+
+class Polling:
+    """A master that asks all the while, and how that went."""
+
+    def __init__(self, port):
+        self._master = Master(port)
+        self.answers = 0
+        self.longest = 0
+        self.wrong = None
+        self._over = False
+        self._thread = threading.Thread(target=self._poll)
+        self._thread.start()
+
+    def _poll(self):
+        try:
+            while not self._over:
+                began = time.monotonic()
+                if self._master.ask("020200000008", 6)[:2] != b"\x02\x01":
+                    raise AssertionError("no answer to what was asked")
+                self.longest = max(self.longest, time.monotonic() - began)
+                self.answers += 1
+        except Exception as wrong:
+            self.wrong = wrong
+
+    def end(self):
+        self._over = True
+        self._thread.join()
+        self._master.close()
+
+
+class Server(unittest.TestCase):
+    @classmethod
+    def setUpClass(cls):
+        cls.simulator = Simulator("EX9042D-M@01,baud=115200", "EX9052D-M@02,baud=115200", "--tcp", "0")
+        cls.port = cls.simulator.port
+
+    @classmethod
+    def tearDownClass(cls):
+        cls.simulator.close()
+
+    def setUp(self):
+        self.polling = Polling(self.simulator.lines[0])
+
+    def tearDown(self):
+        before = self.polling.answers
+        while self.polling.answers < before + 5 and not self.polling.wrong:
+            time.sleep(0.001)
+        self.polling.end()
+        self.assertIsNone(self.polling.wrong)
+        # A request takes 4 ms; the rest is what this machine has to do besides.
+        self.assertLess(self.polling.longest, 0.5)
+
+    def page(self):
+        page = Page(self.port)
+        self.addCleanup(page.close)
+        self.assertEqual(page.status, 101)
+        return page
+
+    def expect(self, wanted, data):
+        answer = ask(self.port, data)
+        self.assertEqual(status(answer), wanted, (data[:200], answer[:200]))
+        return answer
+
+    def test_the_page_comes_with_what_keeps_others_out(self):
+        for target, kind in ("/", b"text/html"), ("/panel.css", b"text/css"), ("/panel.js", b"text/javascript"):
+            answer = self.expect(200, request(self.port, target))
+            for part in (kind, b"Content-Security-Policy: default-src 'self'", b"Cache-Control: no-store",
+                         b"X-Content-Type-Options: nosniff"):
+                self.assertIn(part, answer)
+        self.expect(200, request(self.port, host=f"localhost:{self.port}"))
+
+    def test_another_host_name_is_refused(self):
+        for host in ("example.org", f"example.org:{self.port}", "127.0.0.1", f"127.0.0.1:{self.port + 1}", False,
+                     f"127.0.0.1:{self.port}.example.org"):
+            self.expect(403, request(self.port, host=host))
+            self.expect(403, upgrade(self.port, host=host))
+        self.expect(403, request(self.port, headers=["Host: example.org"]))
+
+    def test_another_origin_is_refused_and_a_web_socket_without_one(self):
+        for origin in ("http://example.org", "null", f"https://127.0.0.1:{self.port}",
+                       f"http://127.0.0.1:{self.port}.example.org", "http://127.0.0.1"):
+            self.expect(403, request(self.port, headers=[f"Origin: {origin}"]))
+            self.expect(403, upgrade(self.port, origin=origin))
+        self.expect(403, upgrade(self.port, origin=None))
+        self.expect(403, request(self.port, "/live"))
+
+    def test_nothing_else_is_served(self):
+        for target in ("/nothing", "/../etc/passwd", "/panel.js?x", "//", "http://example.org/"):
+            self.expect(404, request(self.port, target))
+        for method in "POST", "PUT", "DELETE", "OPTIONS", "HEAD", "FOO":
+            self.expect(405, request(self.port, method=method))
+        self.expect(426, request(self.port, "/live", headers=[f"Origin: http://127.0.0.1:{self.port}"]))
+        self.expect(413, request(self.port, method="POST", headers=["Content-Length: 10"]) + b"0123456789")
+
+    def test_what_is_malformed_is_refused(self):
+        self.expect(431, request(self.port, headers=["X: " + "x" * 10000]))
+        self.expect(431, request(self.port, "/" + "x" * 20000))
+        for garbage in (b"\0\1\2\3\r\n\r\n", b"GET\r\n\r\n", b"GET / HTTP/9.9\r\n\r\n", os.urandom(3000) + b"\r\n\r\n",
+                        b"GET / HTTP/1.1\r\nHost : x\r\n\r\n", b"\x16\x03\x01\x02\x00\x01\x00\x01\xfc\x03\x03\r\n\r\n"):
+            self.assertIn(status(ask(self.port, garbage)), (400, 431, None))
+
+    def test_who_never_ends_his_request_is_let_go(self):
+        began = time.monotonic()
+        with open_socket(self.port) as silent, open_socket(self.port) as slow:
+            slow.sendall(b"GET / HTTP/1.1\r\nHost:")
+            for connection in silent, slow:
+                self.assertEqual(all_of(connection), b"")
+        self.assertLess(time.monotonic() - began, PATIENCE + 3)
+
+    def test_one_client_too_many_is_turned_away_until_another_leaves(self):
+        pages = [self.page() for _ in range(MOST_CLIENTS)]
+        self.assertIn(status(ask(self.port, request(self.port))), (503, None))
+        pages[0].close()
+        gives_up = time.monotonic() + 5
+        while status(ask(self.port, request(self.port))) != 200:
+            self.assertLess(time.monotonic(), gives_up)
+            time.sleep(0.01)
+        self.assertTrue(pages[1].tell("1 status")["ok"])
+        for page in pages:
+            page.close()
+
+    def test_a_page_that_talks_garbage_is_let_go(self):
+        for text in ("garbage", "[]", "{}", '{"id":1}', '{"do":"list"}', '{"id":-1,"do":"list"}', '{"id":1,"do":2}',
+                     '{"id":1,"do":"list","more":1}', "x" * 5000, json.dumps({"id": 1, "do": "x" * 2000}), b"\xff\xfe",
+                     "[" * 4000):
+            page = self.page()
+            page.send(text)
+            while page.next() is not None:
+                pass
+        page = self.page()
+        page.connection.sendall(os.urandom(500))
+        all_of(page.connection)
+        binary = self.page()
+        binary.send(b'{"id":1,"do":"list"}', opcode=2)
+        while binary.next() is not None:
+            pass
+
+    def test_a_page_does_what_the_control_socket_does_but_end_the_simulator(self):
+        page = self.page()
+        hello = page.next()["hello"]
+        self.assertEqual([module["model"] for module in hello["modules"]], ["EX9042D-M", "EX9052D-M"])
+        self.assertEqual(page.tell("2 input 3 on"), {"id": 1, "ok": True, "text": "ok"})
+        self.assertEqual(page.tell("2 inputs", 7), {"id": 7, "ok": True, "text": "ok 0008"})
+        self.assertEqual(page.tell("2 input 3 off")["ok"], True)
+        self.assertFalse(page.tell("9 reset")["ok"])
+        for command in "quit", "  quit", "quit now":
+            self.assertFalse(page.tell(command)["ok"])
+        self.assertTrue(page.tell("list")["ok"])
+
+    def test_a_page_that_reads_nothing_keeps_nobody_waiting(self):
+        self.page()
+        page = self.page()
+        for number in range(30):
+            self.assertTrue(page.tell("2 pulse 0", number + 1)["ok"])
+        seen = page.until(lambda message: message.get("frames"))["frames"][0]["entries"]
+        self.assertTrue(seen)
+
+    def test_who_goes_in_the_middle_of_anything_is_forgotten(self):
+        for data in (b"GET", upgrade(self.port)[:-1], upgrade(self.port), request(self.port)):
+            for _ in range(10):
+                with open_socket(self.port) as connection:
+                    connection.sendall(data)
+        gives_up = time.monotonic() + 5
+        while status(ask(self.port, request(self.port))) != 200:
+            self.assertLess(time.monotonic(), gives_up)
+
+
+if __name__ == "__main__":
+    unittest.main()

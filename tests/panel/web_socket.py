@@ -1,0 +1,96 @@
+"""A WebSocket as a page opens it, and as no page would: bytes can be sent as they are."""
+
+import base64
+import json
+import os
+import socket
+import struct
+
+
+def open_socket(port):
+    return socket.create_connection(("127.0.0.1", port), timeout=15)
+
+
+def request(port, target="/", method="GET", host=None, headers=()):
+    lines = [f"{method} {target} HTTP/1.1"]
+    if host is not False:
+        lines.append(f"Host: {host or f'127.0.0.1:{port}'}")
+    return ("\r\n".join([*lines, *headers]) + "\r\n\r\n").encode()
+
+
+def upgrade(port, origin="ours", **others):
+    key = base64.b64encode(os.urandom(16)).decode()
+    headers = ["Connection: Upgrade", "Upgrade: websocket", "Sec-WebSocket-Version: 13", f"Sec-WebSocket-Key: {key}"]
+    if origin:
+        headers.append(f"Origin: {f'http://127.0.0.1:{port}' if origin == 'ours' else origin}")
+    return request(port, "/live", headers=headers, **others)
+
+
+def all_of(connection):
+    """What comes until the other side closes."""
+    answer = b""
+    try:
+        while piece := connection.recv(65536):
+            answer += piece
+    except ConnectionResetError:
+        pass
+    return answer
+
+
+def ask(port, data):
+    with open_socket(port) as connection:
+        connection.sendall(data)
+        return all_of(connection)
+
+
+def status(answer):
+    return int(answer.split()[1]) if answer else None
+
+
+class Page:
+    """The other end of /live."""
+
+    def __init__(self, port):
+        self.connection = open_socket(port)
+        self.connection.sendall(upgrade(port))
+        self._stream = self.connection.makefile("rb")
+        self.status = status(self._stream.readline())
+        while self._stream.readline().strip():
+            pass
+
+    def close(self):
+        self._stream.close()
+        self.connection.close()
+
+    def send(self, text, opcode=1):
+        data = text if isinstance(text, bytes) else text.encode()
+        size = struct.pack("!B", 0x80 | len(data)) if len(data) < 126 else struct.pack("!BH", 0xFE, len(data))
+        self.connection.sendall(bytes([0x80 | opcode]) + size + bytes(4) + data)
+
+    def next(self):
+        """The next message; None: it was closed."""
+        while True:
+            head = self._stream.read(2)
+            if len(head) < 2:
+                return None
+            size = head[1]
+            if size == 126:
+                size = struct.unpack("!H", self._stream.read(2))[0]
+            elif size == 127:
+                size = struct.unpack("!Q", self._stream.read(8))[0]
+            data = self._stream.read(size)
+            if head[0] & 0xF == 8:
+                return None
+            if head[0] & 0xF == 1:
+                return json.loads(data)
+
+    def until(self, holds):
+        """The first message of which that is true."""
+        while (message := self.next()) is not None:
+            if holds(message):
+                return message
+        raise AssertionError("it was closed")
+
+    def tell(self, command, number=1):
+        self.send(json.dumps({"id": number, "do": command}))
+        return self.until(lambda message: message.get("reply", {}).get("id") == number)["reply"]
