@@ -1,0 +1,340 @@
+"""The panel in a real browser: what people do there, what modules do, and what is on the screen. Leaves a picture of
+each state in build/panel."""
+
+import json
+import pathlib
+import threading
+import unittest
+
+from simulator import Master, Simulator
+from webdriver import Browser
+
+PICTURES = pathlib.Path(__file__).resolve().parents[2] / "build/panel"
+
+OUTPUTS = "[aria-label='1 EX9042D-M']"
+INPUTS = "[aria-label='2 EX9052D-M']"
+DI3 = "[aria-label='2 EX9052D-M: input DI3']"
+POWER = "[aria-label='1 EX9042D-M: power']"
+INIT = "[aria-label='1 EX9042D-M: INIT* to GND']"
+WIDE = (1280, 900)
+PHONE = (360, 740)
+
+
+def pressed(selector):
+    return f"""document.querySelector("{selector}").getAttribute('aria-checked') === 'true'"""
+
+
+def lit(outputs):
+    """What the lamps of the first module say, bit n for output n."""
+    lamps = f"""[...document.querySelectorAll("{OUTPUTS} .output")]"""
+    return f"{lamps}.reduce((sum, led, n) => sum + (led.dataset.on === 'true' ? 1 << n : 0), 0) === {outputs}"
+
+
+def text(plate, selector, wanted):
+    return f"""document.querySelector("{plate} {selector}").textContent.includes("{wanted}")"""
+
+
+class Panel(unittest.TestCase):
+    @classmethod
+    def setUpClass(cls):
+        cls.browser = Browser()
+
+    @classmethod
+    def tearDownClass(cls):
+        cls.browser.close()
+
+    def setUp(self):
+        self.browser.size(*WIDE)
+        self.browser.prefers()
+
+    def tearDown(self):
+        self.assertEqual(self.browser.complaints(), [])
+
+    def show(self, *arguments):
+        simulator = Simulator(*arguments, "--tcp", "0")
+        self.addCleanup(simulator.close)
+        self.look_at(simulator)
+        return simulator
+
+    def look_at(self, simulator):
+        self.browser.open(simulator.address)
+        self.browser.until("document.querySelector('.plate .readout .value').textContent !== ''")
+
+    def show_two(self):
+        simulator = self.show("EX9042D-M@01", "EX9052D-M@02")
+        master = Master(simulator.lines[0])
+        self.addCleanup(master.close)
+        return simulator, master
+
+    def picture(self, name, whole=False):
+        self.browser.screenshot(PICTURES / f"{name}.png", whole)
+
+    def expect_no_scrolling_sideways(self):
+        self.assertLessEqual(*self.browser.run("return [document.documentElement.scrollWidth, innerWidth]"))
+
+    def test_an_input_that_is_clicked_counts_over_modbus(self):
+        _, master = self.show_two()
+        counted = text(INPUTS, "[aria-label='counter of DI3']", "1")
+        self.assertEqual(master.counter(2, 3), 0)
+        self.browser.click(DI3)
+        self.browser.until(pressed(DI3))
+        self.assertEqual(master.counter(2, 3), 0)
+        self.browser.click(DI3)
+        self.browser.until(counted)
+        self.assertEqual(master.counter(2, 3), 1)
+        self.picture("counted")
+
+    def test_an_input_is_held_while_pressed_and_pulsed(self):
+        _, master = self.show_two()
+        self.browser.click("input[value=hold]")
+        self.browser.pointer(DI3, "down")
+        self.browser.until(pressed(DI3))
+        self.browser.pointer("up")
+        self.browser.until(f"!({pressed(DI3)})")
+        self.assertEqual(master.counter(2, 3), 1)
+        self.browser.click("input[value=pulse]")
+        self.browser.click(DI3)
+        self.browser.until(text(INPUTS, "[aria-label='counter of DI3']", "2"))
+        self.assertEqual(master.counter(2, 3), 2)
+
+    def test_a_host_watchdog_that_expires_is_seen(self):
+        _, master = self.show_two()
+        master.coil(1, 0x0081, True)  # the safe value: output 1
+        master.ask("010F0000000D020500", 8)
+        self.browser.until(lit(5))
+        self.browser.click("summary")
+        self.browser.until(text(OUTPUTS, ".values", "Safe0100"))
+        master.ask("010601E80014", 8)
+        master.coil(1, 0x0104, True)
+        self.browser.until(text(OUTPUTS, ".readout.wide .value", "of 2.0 s"))
+        self.picture("counting-down")
+        self.browser.until("document.querySelector('.status').dataset.led === 'flashing'")
+        self.browser.until(lit(2))
+        self.browser.until(text(OUTPUTS, ".ledtext", "flashing"))
+        self.browser.until(text(OUTPUTS, ".readout.wide .value", "timed out"))
+        running = "getComputedStyle(document.querySelector('.status')).animationName"
+        self.assertEqual(self.browser.run(f"return {running}"), "flash")
+        self.picture("timed-out", whole=True)
+        self.browser.prefers(reduced_motion="reduce")
+        self.assertEqual(self.browser.run(f"return {running}"), "none")
+        self.browser.until(text(OUTPUTS, ".ledtext", "flashing"))
+        self.picture("timed-out-without-motion")
+
+    def test_init_and_a_power_cycle_find_a_lost_address(self):
+        simulator = self.show("EX9042D-M@5A,baud=19200,protocol=modbus", "--baud", "9600")
+        master = Master(simulator.lines[0])
+        self.addCleanup(master.close)
+        self.browser.until(text(OUTPUTS, ".readouts", "5A"))
+        self.browser.click(INIT)
+        self.browser.until(pressed(INIT))
+        self.browser.click(POWER)
+        self.browser.until(text(OUTPUTS, ".ledtext", "off"))
+        self.picture("without-power")
+        self.browser.click(POWER)
+        self.browser.until(text(OUTPUTS, ".ledtext", "INIT mode"))
+        self.browser.until(text(OUTPUTS, ".readouts", "9600"))
+        self.assertEqual(master.say("$002"), "!5A400700")
+        self.picture("init-mode")
+
+    def test_a_simulator_that_is_killed_and_comes_back_is_noticed(self):
+        simulator, _ = self.show_two()
+        self.browser.click(DI3)
+        self.browser.until(pressed(DI3))
+        lost = "document.getElementById('lost').textContent.includes('trying again')"
+        simulator.kill()
+        self.browser.until(lost)
+        self.assertTrue(self.browser.run(f"return {pressed(DI3)}"))  # as it was
+        self.picture("lost")
+        simulator.start_again()
+        self.browser.until(f"!({lost})")
+        self.browser.until(f"!({pressed(DI3)})")  # another run
+        self.browser.click(DI3)
+        self.browser.until(pressed(DI3))
+
+    def test_a_simulator_that_hangs_is_noticed_and_goes_on(self):
+        simulator, _ = self.show_two()
+        self.browser.click(DI3)
+        self.browser.until(pressed(DI3))
+        lost = "document.getElementById('lost').textContent.includes('trying again')"
+        simulator.stop()
+        self.browser.until(lost)
+        simulator.go_on()
+        self.browser.until(f"!({lost})")
+        self.assertTrue(self.browser.run(f"return {pressed(DI3)}"))  # the same run
+
+    def test_everything_can_be_done_by_keyboard(self):
+        self.show_two()
+        focused = "return document.activeElement.getAttribute('aria-label')"
+        seen = []
+        while len(seen) < 60 and "2 EX9052D-M: reset" not in seen:
+            self.browser.key("Tab")
+            seen.append(self.browser.run(focused))
+            if seen[-1] == "2 EX9052D-M: input DI3":
+                outline = "return getComputedStyle(document.activeElement).outlineStyle"
+                self.assertEqual(self.browser.run(outline), "solid")
+                self.picture("by-keyboard")
+                self.browser.key("Space")
+                self.browser.until(pressed(DI3))
+                self.browser.key("Enter")
+                self.browser.until(f"!({pressed(DI3)})")
+                self.browser.key("+Shift", "+Space")
+                self.browser.until(pressed(DI3))
+                self.browser.key("-Space", "-Shift")
+                self.browser.until(f"!({pressed(DI3)})")
+        for name in "1 EX9042D-M: power", "1 EX9042D-M: INIT* to GND", "1 EX9042D-M: reset", "2 EX9052D-M: input DI0":
+            self.assertIn(name, seen)
+        nameless = """return [...document.querySelectorAll('button, input, select, [role=img], [role=switch]')]
+            .filter((each) => !(each.getAttribute('aria-label') || each.labels?.length || each.textContent.trim()))
+            .map((each) => each.outerHTML)"""
+        self.assertEqual(self.browser.run(nameless), [])
+
+    def test_faults_are_switched_on_and_off_and_seen_on_the_bus(self):
+        _, master = self.show_two()
+        noise = "[aria-label='Fault inserted-bytes 0.01']"
+        self.browser.type("[aria-label='Another fault']", "nonsense\ue007")
+        self.browser.until("document.querySelector('.said').textContent.includes('no fault')")
+        self.browser.click(noise)
+        self.browser.until(pressed(noise))
+        self.browser.run("document.getElementById('bus').scrollIntoView()")
+        for _ in range(200):
+            try:
+                master.ask("020200000008", 6)
+            except (AssertionError, TimeoutError):
+                break
+            if self.browser.run("return document.querySelectorAll('.row[data-kind=error]').length"):
+                break
+        self.browser.until("document.querySelectorAll('.row[data-kind=error]').length > 0")
+        self.picture("noise")
+        self.browser.run(f'document.querySelector("{noise}").click()')
+        self.browser.until(f"!({pressed(noise)})")
+
+    def test_the_bus_is_searched_and_paused(self):
+        _, master = self.show_two()
+        for channel in range(3):
+            master.coil(1, channel, True)
+            master.counter(2, channel)
+        count = "document.querySelectorAll('#filler .row').length"
+        self.browser.until(f"{count} === 12")
+        self.browser.type("#search", "coil 0002")
+        self.browser.until(f"{count} === 1")
+        self.assertIn("01 05 00 02 FF 00", self.browser.run("return document.querySelector('#filler .row').textContent"))
+        self.browser.run("const s = document.getElementById('search'); s.value = ''; s.dispatchEvent(new Event('input'))")
+        self.browser.until(f"{count} === 12")
+        self.browser.run("document.getElementById('bus').scrollIntoView()")
+        self.picture("bus")
+        self.browser.click("#pause")
+        master.coil(1, 0, False)
+        self.browser.until(lit(6))
+        self.assertEqual(self.browser.run(f"return {count}"), 12)
+        self.browser.click("#pause")
+        self.browser.until(f"{count} === 14")
+
+    def test_a_phone_shows_one_module_and_many_without_scrolling_sideways(self):
+        self.browser.size(*PHONE, phone=True)
+        self.show("EX9043D-M@01,baud=115200")
+        self.browser.run("document.querySelector('details').open = true")
+        self.browser.until("document.querySelector('.values') !== null")
+        self.expect_no_scrolling_sideways()
+        self.picture("phone", whole=True)
+        self.browser.prefers(color_scheme="dark")
+        self.picture("phone-dark", whole=True)
+        self.look_at(self.many())
+        self.expect_no_scrolling_sideways()
+        self.picture("phone-64")
+
+    def test_one_module_is_large_in_light_and_dark(self):
+        self.show("EX9055D@01,name=PUMPS")
+        for channel in 1, 4:
+            self.browser.click(f"[aria-label='1 EX9055D: input DI{channel}']")
+        self.browser.until(pressed("[aria-label='1 EX9055D: input DI4']"))
+        self.picture("one")
+        self.browser.prefers(color_scheme="dark")
+        self.picture("one-dark")
+
+    def many(self):
+        models = ["EX9042D-M", "EX9052D-M", "EX9055D", "EX9068D-M"]
+        modules = [{"model": models[i % 4], "address": f"{i + 1:02X}", "baud": 115200} for i in range(32)]
+        bus = {"lines": [{"name": name, "tcp": 0, "modules": modules} for name in ("hall", "yard")]}
+        path = PICTURES / "bus.json"
+        path.parent.mkdir(parents=True, exist_ok=True)
+        path.write_text(json.dumps(bus))
+        simulator = Simulator(str(path))
+        self.addCleanup(simulator.close)
+        return simulator
+
+    def test_64_modules_on_full_lines_are_on_the_screen_in_time_and_without_stutter(self):
+        simulator = self.many()
+        self.look_at(simulator)
+        self.assertEqual(self.browser.run("return document.querySelectorAll('.plate').length"), 64)
+        over = threading.Event()
+        loads = [threading.Thread(target=keep_busy, args=(port, over)) for port in simulator.lines]
+        for load in loads:
+            load.start()
+        try:
+            self.browser.until("document.querySelectorAll('#filler .row').length > 10")
+            measured = self.browser.promised(MEASURE)
+            self.picture("64")
+            self.browser.prefers(color_scheme="dark")
+            self.browser.run("document.getElementById('bus').scrollIntoView()")
+            self.picture("64-bus-dark")
+        finally:
+            over.set()
+            for load in loads:
+                load.join()
+        print(
+            "64 modules, both lines at full load: a click is on the screen within {click:.0f} ms (median; longest "
+            "{longestClick:.0f}), repaints are {repaint:.0f} ms apart (median; 99th {repaint99:.0f}), {frames} frames "
+            "a second".format(**measured), flush=True,
+        )
+        self.assertLess(measured["click"], 100)
+        self.assertLess(measured["repaint"], 50)
+        self.assertGreater(measured["frames"], 100)
+
+
+# How long from a click on an input to the repaint that shows it, command, bus and all; and how far repaints are apart.
+MEASURE = """
+  const gaps = [], clicks = [];
+  const repaint = () => new Promise((shown) => requestAnimationFrame(shown));
+  let over = false;
+  const watching = (async () => {
+    for (let last = await repaint(); !over;) { const now = await repaint(); gaps.push(now - last); last = now; }
+  })();
+  const input = document.querySelector("[aria-label='2 EX9052D-M: input DI3']");
+  const began = performance.now();
+  let frames = 0;
+  const another = new WebSocket(`ws://${location.host}/live`);
+  another.onmessage = (event) => {
+    for (const line of JSON.parse(event.data).frames ?? []) { frames += line.entries.length; }
+  };
+  for (let turn = 0; turn < 25; ++turn) {
+    const was = input.getAttribute('aria-checked');
+    const clicked = performance.now();
+    input.click();
+    while (input.getAttribute('aria-checked') === was) { await repaint(); }
+    clicks.push(await repaint() - clicked);
+    while (performance.now() < began + 100 * (turn + 1)) { await repaint(); }
+  }
+  over = true;
+  await watching;
+  another.close();
+  const sorted = (list) => list.sort((a, b) => a - b);
+  sorted(gaps); sorted(clicks);
+  return {click: clicks[clicks.length >> 1], longestClick: clicks[clicks.length - 1], repaint: gaps[gaps.length >> 1],
+          repaint99: gaps[Math.floor(gaps.length * 0.99)], frames: Math.round(frames * 1000 / (performance.now() - began))};
+"""
+
+
+def keep_busy(port, over):
+    """Of every four modules one is told to switch an output, and one to read its inputs."""
+    master = Master(port)
+    turn = 0
+    while not over.is_set():
+        group = turn % 8 * 4
+        master.coil(1 + group, turn // 8 % 13, turn // 104 % 2 == 0)
+        master.ask(f"{2 + group:02X}0200000008", 6)
+        turn += 1
+    master.close()
+
+
+if __name__ == "__main__":
+    unittest.main()
