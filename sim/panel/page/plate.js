@@ -44,6 +44,9 @@ export class Plate {
       const list = make("ul", {class: "channels outputs", "aria-label": "Outputs"},
         ...this.outputs.map((output) => output.item));
       list.style.setProperty("--columns", columns(this.outputs));
+      if (this.outputs.length > 8 && this.outputs.length % 2) {
+        list.append(make("li", {"aria-hidden": "true"}));
+      }
       channels.push(list);
     }
     if (this.inputs.length) {
@@ -82,10 +85,10 @@ export class Plate {
     const button = make("button", {type: "button", role: "switch", class: "led input", "aria-checked": "false",
       "aria-label": `${this.title}: input ${label}`});
     const counter = make("span", {class: "counter", "aria-label": `counter of ${label}`});
-    const high = make("abbr", {class: "latch", title: `${label}: a rising edge is latched`}, "H");
-    const low = make("abbr", {class: "latch", title: `${label}: a falling edge is latched`}, "L");
+    const high = make("span", {class: "latch", role: "img"}, "H");
+    const low = make("span", {class: "latch", role: "img"}, "L");
     this.makeTouchable(button, channel);
-    return {button, counter, high, low, item: make("li", {}, make("span", {class: "screw", "aria-hidden": "true"}),
+    return {label, button, counter, high, low, item: make("li", {}, make("span", {class: "screw", "aria-hidden": "true"}),
       make("span", {class: "label", "aria-hidden": "true"}, label), button, counter,
       make("span", {class: "latches"}, high, low))};
   }
@@ -195,10 +198,15 @@ export class Plate {
   }
 
   showGathered(gathered) {
-    this.inputs.forEach(({counter, high, low}, channel) => {
+    const latch = (mark, text, on) => {
+      setAttribute(mark, "data-on", on);
+      setAttribute(mark, "aria-label", `${text} edge ${on ? "latched" : "not latched"}`);
+      setAttribute(mark, "title", mark.getAttribute("aria-label"));
+    };
+    this.inputs.forEach(({label, counter, high, low}, channel) => {
       setText(counter, String(gathered.counters[channel]));
-      setAttribute(high, "data-on", bit(gathered.high, channel));
-      setAttribute(low, "data-on", bit(gathered.low, channel));
+      latch(high, `${label}: rising`, bit(gathered.high, channel));
+      latch(low, `${label}: falling`, bit(gathered.low, channel));
     });
   }
 
