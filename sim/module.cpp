@@ -87,6 +87,7 @@ void SimulatedModule::set_init(bool asserted) {
 void SimulatedModule::set_input(unsigned channel, bool level) {
   if (inputs_.set(channel, level)) {
     edge(channel, level);
+    take_edges();
   }
 }
 
@@ -95,9 +96,17 @@ void SimulatedModule::pulse_input(unsigned channel, std::uint32_t count) {
   for (std::uint32_t i = 0; i < count; ++i) {
     edge(channel, !level);
     edge(channel, level);
-    if (i % 1024 == 0 && powered()) {
-      turn();  // as the main loop of a board does all the while
+    if (i % 1024 == 0) {
+      take_edges();
     }
+  }
+  take_edges();
+}
+
+/// As the main loop of a board does all the while.
+void SimulatedModule::take_edges() {
+  if (powered()) {
+    turn();
   }
 }
 

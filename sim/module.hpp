@@ -110,6 +110,7 @@ class SimulatedModule final : public Station {
   void stop();
   void turn();
   void edge(unsigned channel, bool level);
+  void take_edges();
 
   VirtualClock& clock_;
   const Model& model_;

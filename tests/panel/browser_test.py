@@ -242,6 +242,24 @@ class Panel(unittest.TestCase):
         self.expect_no_scrolling_sideways()
         self.picture("phone-64")
 
+    def test_the_picture_in_the_readme(self):
+        self.browser.size(1100, 960)
+        _, master = self.show_two()
+        master.ask("010601E800C8", 8)
+        master.coil(1, 0x0104, True)
+        self.browser.click("[aria-label='2 EX9052D-M: input DI1']")
+        self.browser.click("input[value=pulse]")
+        for _ in range(3):
+            self.browser.click("[aria-label='2 EX9052D-M: input DI6']")
+        self.browser.click("input[value=toggle]")
+        self.browser.run("document.activeElement.blur()")
+        for turn in range(6):
+            master.coil(1, turn * 2, True)
+            master.ask("020200000008", 6)
+            master.counter(2, 6)
+        self.browser.until(lit(0x0555))
+        self.picture("readme")
+
     def test_one_module_is_large_in_light_and_dark(self):
         self.show("EX9055D@01,name=PUMPS")
         for channel in 1, 4:

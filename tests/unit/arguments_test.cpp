@@ -105,6 +105,25 @@ TEST(Arguments, TheLogIsForPeopleOrForMachines) {
   expect_error({"EX9042D", "--log="}, "--log", "--help");
 }
 
+TEST(Arguments, ThePanelHasAPortOfItsOwnOrTheUsualOne) {
+  EXPECT_FALSE(all_accepted({"EX9042D"}).panel);
+  for (const std::vector<const char*>& words : {std::vector<const char*>{"EX9042D", "--panel"},
+                                                {"--panel", "EX9042D"},
+                                                {"--panel", "--log", "EX9042D"}}) {
+    const auto setup = all_accepted(words);
+    ASSERT_TRUE(setup.panel);
+    EXPECT_FALSE(setup.panel->port);
+    EXPECT_EQ(setup.lines[0].modules.size(), 1U);
+  }
+  EXPECT_EQ(all_accepted({"--panel", "8080", "EX9042D"}).panel->port, 8080);
+  EXPECT_EQ(all_accepted({"EX9042D", "--panel=0"}).panel->port, 0);
+  EXPECT_EQ(accepted({"--panel", "9042D"}).modules.size(), 1U);
+  expect_error({"EX9042D", "--panel", "65536"}, "--panel: '65536'", "0 to 65535");
+  expect_error({"EX9042D", "--panel=web"}, "--panel: 'web'", "0 to 65535");
+  expect_error({"EX9042D", "--panel="}, "--panel", "--help");
+  expect_error({"EX9042D", "--panel", "--speed", "max", "--for", "1s"}, "--speed: max", "panel");
+}
+
 TEST(Arguments, BehindTheLogsFormatAndInItsPlaceThereMayBeAModule) {
   EXPECT_EQ(accepted({"--log", "json", "EX9042D"}).modules.size(), 1U);
   EXPECT_EQ(accepted({"--log", "EX9042D", "EX9052D@02"}).modules.size(), 2U);

@@ -91,6 +91,17 @@ TEST(BusFile, TheExampleIsWhatItSays) {
   EXPECT_EQ(yard.faults[1].text, "gone at 1h for 2min");
 }
 
+TEST(BusFile, ThePanelIsOnOffOrOnAPort) {
+  const auto panel = [](const std::string& value) {
+    return parsed(R"({"panel": )" + value + R"(, "lines": [{"modules": [{"model": "EX9042D"}]}]})").panel;
+  };
+  EXPECT_FALSE(panel("false"));
+  ASSERT_TRUE(panel("true"));
+  EXPECT_FALSE(panel("true")->port);
+  EXPECT_EQ(panel("8080")->port, 8080);
+  EXPECT_EQ(panel("\"0\"")->port, 0);
+}
+
 TEST(BusFile, OneLineWithOneModuleIsEnough) {
   const auto setup = parsed(R"({"lines": [{"modules": [{"model": "ex9042d-m"}]}]})");
   ASSERT_EQ(setup.lines.size(), 1U);
@@ -182,8 +193,10 @@ INSTANTIATE_TEST_SUITE_P(
         Wrong{"{\n\"lines\": []}", "bus.json:2: lines: a bus wants at least one line; --example"},
         Wrong{"{\n\"lines\": {}}", "bus.json:2: lines: wants a list, [ ]"},
         Wrong{"{\n\"line\": []}",
-              "bus.json:2: line: no such key; there are lines, control, log, capture and seed"},
+              "bus.json:2: line: no such key; there are lines, control, panel, log, capture and seed"},
         Wrong{"{\n\"log\": 1}", "bus.json:2: log: '1' wants text or json"},
+        Wrong{"{\n\"panel\": 70000}", "bus.json:2: panel: '70000' wants a port from 0 to 65535"},
+        Wrong{"{\n\"panel\": []}", "bus.json:2: panel: wants a text in quotes, a whole number"},
         Wrong{"{\n\"seed\": -1}", "bus.json:2: seed: wants a whole number"},
         Wrong{"{\n\"seed\": 1.5}", "bus.json:2: seed: wants a whole number"},
         Wrong{"{\n\"seed\": \"x\"}", "bus.json:2: seed: 'x' wants a whole number"},

@@ -83,6 +83,19 @@ TEST(HostWatchdog, ExpiresAfterEveryTimeoutNeverEarlyAndAtMostAMillisecondLate) 
   }
 }
 
+TEST(HostWatchdog, TellsWhenItExpires) {
+  ModuleBench bench("EX9043D");
+  const auto expiry = [&bench] { return bench.module().module().host_watchdog_expiry(); };
+  EXPECT_FALSE(expiry().armed());
+  ASSERT_EQ(bench.ask("~013110"), "!01");
+  ASSERT_TRUE(expiry().armed());
+  const Duration left = expiry().remaining(bench.line().clock().now());
+  bench.run(microseconds(left.microseconds() - 1));
+  EXPECT_FALSE(bench.module().module().state().settings.timeout_status);
+  bench.run(milliseconds(1));
+  EXPECT_TRUE(bench.module().module().state().settings.timeout_status);
+}
+
 TEST(HostWatchdog, EnablingStartsItWhenItIsStored) {
   ModuleBench bench("EX9043D");
   ASSERT_EQ(bench.ask("@010001"), ">");
