@@ -1,11 +1,10 @@
 #include "sim/panel/panel.hpp"
 
 #include <algorithm>
-#include <array>
 #include <chrono>
-#include <cstdio>
 #include <optional>
 #include <random>
+#include <string_view>
 #include <utility>
 
 #include "firmware/model/model.hpp"
@@ -28,10 +27,14 @@ constexpr std::chrono::seconds kHeartbeat{1};
 
 /// Tells one run of the program from the next.
 std::string random_id() {
+  constexpr std::string_view kDigits = "0123456789abcdef";
+  constexpr std::size_t kLength = 16;
   std::random_device device;
-  std::array<char, 17> text{};
-  std::snprintf(text.data(), text.size(), "%08x%08x", device(), device());
-  return text.data();
+  std::string id;
+  while (id.size() < kLength) {
+    id += kDigits[device() % kDigits.size()];
+  }
+  return id;
 }
 
 /// Something that is told when it has changed.

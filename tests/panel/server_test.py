@@ -2,11 +2,14 @@
 
 import json
 import os
+import pathlib
+import socket
+import subprocess
 import threading
 import time
 import unittest
 
-from simulator import Master, Simulator
+from simulator import PROGRAM, Master, Simulator
 from web_socket import Page, all_of, ask, open_socket, request, status, upgrade
 
 MOST_CLIENTS = 16
@@ -177,6 +180,49 @@ class Server(unittest.TestCase):
         gives_up = time.monotonic() + 5
         while status(ask(self.port, request(self.port))) != 200:
             self.assertLess(time.monotonic(), gives_up)
+
+
+class Start(unittest.TestCase):
+    def test_it_ends_properly_with_pages_open(self):
+        simulator = Simulator("EX9042D", "--tcp", "0")
+        self.addCleanup(simulator.close)
+        pages = [Page(simulator.port) for _ in range(3)]
+        waiting = open_socket(simulator.port)
+        for page in pages:
+            self.assertTrue(page.tell("list")["ok"])
+        simulator.process.terminate()
+        self.assertEqual(simulator.process.wait(10), 0)
+        for each in [*pages, waiting]:
+            each.close()
+
+    def test_a_port_that_is_named_and_taken_is_refused_and_the_usual_one_is_replaced(self):
+        first = Simulator("EX9042D", "--tcp", "0")
+        self.addCleanup(first.close)
+        second = run("EX9042D", "--tcp", "0", "--panel", str(first.port))
+        self.assertEqual(second.returncode, 2)
+        self.assertEqual(
+            second.stderr,
+            f"ex9000-sim: --panel {first.port}: another program listens there; end it or name another port\n",
+        )
+        usual = [Simulator("EX9042D", "--tcp", "0", panel=None) for _ in range(2)]
+        for each in usual:
+            self.addCleanup(each.close)
+            self.assertEqual(status(ask(each.port, request(each.port))), 200)
+        self.assertNotEqual(usual[0].port, usual[1].port)
+
+    def test_it_listens_on_the_loopback_alone(self):
+        simulator = Simulator("EX9042D", "--tcp", "0")
+        self.addCleanup(simulator.close)
+        listening = [line.split()[1] for line in pathlib.Path("/proc/net/tcp").read_text().splitlines()[1:]
+                     if line.split()[3] == "0A"]
+        self.assertIn(f"0100007F:{simulator.port:04X}", listening)
+        self.assertNotIn(f"00000000:{simulator.port:04X}", listening)
+        with self.assertRaises(OSError):
+            socket.create_connection(("::1", simulator.port), 1)
+
+
+def run(*arguments):
+    return subprocess.run([PROGRAM, *arguments], capture_output=True, text=True, timeout=20)
 
 
 if __name__ == "__main__":

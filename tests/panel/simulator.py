@@ -15,6 +15,8 @@ PROGRAM = os.environ.get(
 
 
 class Simulator:
+    """`panel`: the port asked for; 0: any; None: the usual one."""
+
     def __init__(self, *arguments, panel=0):
         self._directory = tempfile.TemporaryDirectory()
         self._arguments = arguments
@@ -22,7 +24,7 @@ class Simulator:
 
     def _start(self, panel):
         self.process = subprocess.Popen(
-            [PROGRAM, *self._arguments, "--panel", str(panel)],
+            [PROGRAM, *self._arguments, "--panel", *([] if panel is None else [str(panel)])],
             stdout=subprocess.PIPE, text=True, cwd=self._directory.name,
         )
         greeting = ""

@@ -8,6 +8,9 @@ const trimmedFrom = 2000;
 const spareRows = 8;
 /// Between two times that it is drawn, in ms: a busy line would have every repaint taken up by it.
 const slowest = 30;
+/// Likewise the strip's, which moves by itself, for those whom that disturbs.
+const unmoving = matchMedia("(prefers-reduced-motion: reduce)");
+const slowestUnmoving = 1000;
 
 const seconds = (microseconds) => (microseconds / 1e6).toFixed(6);
 
@@ -169,9 +172,9 @@ export class Timeline {
       this.drawRows();
       const waiting = this.pending.length ? `, ${this.pending.length} more` : "";
       setText(this.tally, this.sought ? `${this.shown.length} of ${this.entries.length}${waiting}`
-        : `${this.entries.length} frames${waiting}`);
+        : `${this.entries.length} ${this.entries.length === 1 ? "frame" : "frames"}${waiting}`);
     }
-    if (this.lines.length && !(when - this.stripDrawn < slowest) && (this.stale || (!this.paused && !this.empty))) {
+    if (this.lines.length && !(when - this.stripDrawn < (unmoving.matches ? slowestUnmoving : slowest)) && (this.stale || (!this.paused && !this.empty))) {
       this.stale = false;
       this.stripDrawn = when;
       this.drawStrip();
