@@ -45,7 +45,7 @@ class PanelBench : public ModuleBench {
  private:
   Control control_;
   Panel panel_;
-  FrameWatch frames_;
+  FrameWatch frames_{[this] { return line().master().baud(); }};
   std::unique_ptr<PanelViewer> viewer_;
 };
 
