@@ -1,4 +1,4 @@
-// The words in which a panel's page and the program talk: JSON. wire: sim/panel/page/live.js reads them.
+// The words in which the program and the page in sim/panel/page talk: JSON.
 #pragma once
 
 #include <cstdint>
