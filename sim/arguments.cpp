@@ -73,6 +73,7 @@ Examples:
   ex9000-sim EX9042D-M@01 EX9052D-M@02,edge=rising 9068d-m@0A,protocol=ascii --log
   ex9000-sim EX9042D-M@01,eeprom=pump.bin --tcp 5020 --control pump.ctl
   ex9000-sim EX9042D-M@01 EX9052D-M@02 --panel
+  ex9000-sim EX9052D@01 --watch --input '1 3 square 2s'
   ex9000-sim EX9042D-M@01 --capture line.pcapng --log json > line.json
   ex9000-sim EX9052D@01 --input '1 0 square 100ms' --fault '1 lost-reply every 10th reply' --log
   ex9000-sim --example > bus.json && ex9000-sim bus.json
@@ -123,6 +124,7 @@ struct Texts {
   std::optional<std::string> lasts;
   std::optional<std::string> seed;
   std::optional<std::string> panel;
+  bool watch = false;
   WritingTexts writing;
 };
 
@@ -265,6 +267,7 @@ Setup setup_of(const Texts& texts) {
   if (texts.seed) {
     setup.seed = of_option("--seed", *texts.seed, parse_seed);
   }
+  setup.watch = setup.watch || texts.watch;
   if (texts.panel) {
     setup.panel = of_option("--panel", *texts.panel == kUsualPort ? "" : *texts.panel, parse_panel);
   }
@@ -283,6 +286,7 @@ void add_writing(CLI::App& app, WritingTexts& texts) {
          "--log", texts.log,
          "print the bus, a line a frame: time, direction, bytes, meaning; json: an object a line, for "
          "machines, and nothing else on standard output")
+      ->multi_option_policy(CLI::MultiOptionPolicy::TakeLast)  // behind those that a script has
       ->type_name("[text|json]");
   app.add_option("--capture", texts.capture,
                  "keep what was on the lines in this pcapng file, for Wireshark; what it held is gone")
@@ -468,7 +472,11 @@ Parsed parse_arguments(int argc, const char* const* argv) {
   app.add_option("--panel", texts.panel,
                  "serve a page that shows the modules and the bus, for a browser on this machine (default: "
                  "9042, or any free port where that is taken)")
+      ->multi_option_policy(CLI::MultiOptionPolicy::TakeLast)
       ->type_name("[PORT]");
+  app.add_flag("--watch", texts.watch,
+               "show the modules on the terminal, each with its LEDs; where standard output is none, a line "
+               "for each change");
   app.add_option("--input", texts.inputs,
                  "an input that moves by itself, such as '2 0 square 100ms'; see below")
       ->type_name("'N INPUT'")

@@ -60,7 +60,7 @@ void run(const Setup& setup) {
   add_signals(signals);  // before anything is made that is to be removed again
   signals.async_wait([&io](const boost::system::error_code& /*error*/, int /*signal*/) { io.stop(); });
   const auto greet = [](const std::string& text) { std::cerr << text << std::endl; };
-  Session session(io, setup, print_line, greet);
+  Session session(io, setup, print_line, greet, screen_of_standard_output);
   session.start();
   if (setup.speed) {
     io.run();

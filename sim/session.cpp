@@ -9,8 +9,17 @@
 
 namespace ex9000::sim {
 
-Session::Session(boost::asio::io_context& io, Setup setup, Print print, Print greet)
-    : io_(io), setup_(std::move(setup)), print_(std::move(print)), greet_(std::move(greet)), end_(io) {
+Session::Session(boost::asio::io_context& io, Setup setup, Print print, Print greet, ScreenOf screen)
+    : io_(io),
+      setup_(std::move(setup)),
+      print_(std::move(print)),
+      greet_(std::move(greet)),
+      end_(io),
+      next_look_(io) {
+  if (setup_.watch) {
+    watch_ = std::make_unique<Watch>(std::move(screen), print_);
+    print_ = [this](const std::string& line) { watch_->print(line); };
+  }
   for (const LineSetup& line : setup_.lines) {
     // Of several, each says which it is; to machines it does so by itself.
     const bool as_it_is = line.name.empty() || for_machines();
@@ -20,6 +29,7 @@ Session::Session(boost::asio::io_context& io, Setup setup, Print print, Print gr
   }
   open_control();
   open_panel();
+  watch_lines();
   if (setup_.capture) {
     refuse_overwriting(*setup_.capture, in_use_by(setup_));  // all of which is there by now
     capture_file_.emplace(*setup_.capture);
@@ -73,6 +83,33 @@ void Session::open_panel() {
         [this, i](VirtualTime now, const std::string& text) { panel_->note(i, now, text); });
   }
   panel_server_ = std::make_unique<PanelServer>(io_, setup_.panel->port, *panel_);
+}
+
+void Session::watch_lines() {
+  if (!watch_) {
+    return;
+  }
+  for (const auto& line : lines_) {
+    RunningLine& running = *line;
+    watch_->add_line(running.introduced().name, running.line(), [this, &running] {
+      return setup_.speed ? running.pacer().present() : running.line().clock().virtual_now();
+    });
+  }
+}
+
+/// Where no clock is followed, whoever lets time pass looks.
+void Session::keep_watching() {
+  constexpr auto kBetweenLooks = std::chrono::milliseconds(50);
+  watch_->look();
+  if (!setup_.speed) {
+    return;
+  }
+  next_look_.expires_after(kBetweenLooks);
+  next_look_.async_wait([this](const boost::system::error_code& error) {
+    if (!error) {
+      keep_watching();
+    }
+  });
 }
 
 /// All lines show the same time to whoever looks at one.
@@ -144,6 +181,9 @@ void Session::start() {
   if (panel_server_) {
     panel_server_->start();
   }
+  if (watch_) {
+    keep_watching();
+  }
   if (setup_.speed && ends()) {
     end_by_the_clock();
   }
@@ -176,6 +216,9 @@ void Session::run_as_fast_as_it_can() {
     for (const auto& running : lines_) {
       running->run_until(now);
     }
+    if (watch_) {
+      watch_->look();
+    }
     io_.poll();
   }
 }
@@ -183,6 +226,9 @@ void Session::run_as_fast_as_it_can() {
 void Session::finish() {
   for (const auto& running : lines_) {
     running->finish();
+  }
+  if (watch_) {
+    watch_->look();
   }
 }
 

@@ -18,6 +18,7 @@
 #include "sim/panel/panel_server.hpp"
 #include "sim/running_line.hpp"
 #include "sim/setup.hpp"
+#include "sim/watch/watch.hpp"
 
 namespace ex9000::sim {
 
@@ -27,8 +28,9 @@ class Session {
 
   /// Opens all that `setup` names. Throws std::invalid_argument or std::runtime_error, one line; what was
   /// opened is given back then, and no file has been made or changed. `print` takes the log and, unless
-  /// machines read that, the greeting; `greet` takes it then. `io` lives as long as this object.
-  Session(boost::asio::io_context& io, Setup setup, Print print, Print greet);
+  /// machines read that, the greeting; `greet` takes it then. `screen` tells of the terminal behind `print`.
+  /// `io` lives as long as this object.
+  Session(boost::asio::io_context& io, Setup setup, Print print, Print greet, ScreenOf screen);
   ~Session();
   Session(const Session&) = delete;
   Session& operator=(const Session&) = delete;
@@ -50,14 +52,18 @@ class Session {
   void end_by_the_clock();
   void make_files_and_greet(std::vector<const EepromFile*>& made);
   void open_panel();
+  void watch_lines();
+  void keep_watching();
   Control::Reply carry_out(const std::string& command);
 
   boost::asio::io_context& io_;
   const Setup setup_;
   Print print_;
   Print greet_;
+  std::unique_ptr<Watch> watch_;
   std::vector<std::unique_ptr<RunningLine>> lines_;
   boost::asio::steady_timer end_;
+  boost::asio::steady_timer next_look_;
   std::optional<Control> control_;
   std::unique_ptr<ControlSocket> control_socket_;
   std::optional<MadeFile> capture_file_;

@@ -82,6 +82,10 @@ void check_speed(const Setup& setup) {
 }  // namespace
 
 void check(const Setup& setup) {
+  if (setup.watch && setup.log == LogFormat::Json) {
+    throw WrongSetup(std::nullopt, "watch",
+                     "standard output is for machines, with the log in JSON; leave out one of them");
+  }
   check_speed(setup);
   if (setup.control && setup.control->empty()) {
     throw WrongSetup(std::nullopt, "control", "wants a path");

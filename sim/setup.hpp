@@ -45,6 +45,7 @@ struct Setup : Writing {
   std::vector<LineSetup> lines;        ///< at least one
   std::optional<std::string> control;  ///< where to make the control socket
   std::optional<PanelSetup> panel;     ///< the page for a browser; none: nobody serves it
+  bool watch = false;                  ///< the modules are shown on standard output
   /// Of the line's time to the wall clock's; nothing: as fast as it can be reckoned.
   std::optional<double> speed = 1;
   /// For so long are the modules up, by the lines' time, then it ends; nothing: until it is told to.

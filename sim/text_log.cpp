@@ -1,20 +1,11 @@
 #include "sim/text_log.hpp"
 
-#include <iomanip>
-#include <sstream>
-
 #include "sim/line_error.hpp"
+#include "sim/time_text.hpp"
 
 namespace ex9000::sim {
 
 namespace {
-
-/// Seconds with six decimals, right-aligned.
-std::string stamp(VirtualTime time) {
-  std::ostringstream text;
-  text << std::fixed << std::setprecision(6) << std::setw(12) << std::chrono::duration<double>(time).count();
-  return text.str();
-}
 
 /// A collision leaves no meaning, and nobody knows what somebody else means.
 std::string remarks(const Frame& frame, bool known) {
@@ -28,7 +19,7 @@ std::string remarks(const Frame& frame, bool known) {
 void TextLog::frame(const Frame& frame) {
   const bool known = names_.know(frame.station);
   const std::string mark = frame.speaker() == Speaker::Master ? "  > " : known ? "  < " : "  ? ";
-  std::string line = stamp(frame.began) + mark + names_.of(frame.station) + "  " + shown(frame.bytes);
+  std::string line = stamp_text(frame.began) + mark + names_.of(frame.station) + "  " + shown(frame.bytes);
   const std::string remark = remarks(frame, known);
   if (!remark.empty()) {
     line += "  ; " + remark;
@@ -36,6 +27,6 @@ void TextLog::frame(const Frame& frame) {
   print_(line);
 }
 
-void TextLog::note(VirtualTime now, const std::string& text) { print_(stamp(now) + "  - " + text); }
+void TextLog::note(VirtualTime now, const std::string& text) { print_(stamp_text(now) + "  - " + text); }
 
 }  // namespace ex9000::sim

@@ -52,4 +52,10 @@ std::string time_text(VirtualTime time) {
   return digits + std::string(unit.name);
 }
 
+std::string stamp_text(VirtualTime time) {
+  std::ostringstream text;
+  text << std::fixed << std::setprecision(6) << std::setw(12) << std::chrono::duration<double>(time).count();
+  return text.str();
+}
+
 }  // namespace ex9000::sim

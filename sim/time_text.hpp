@@ -13,4 +13,7 @@ hal::doubles::VirtualTime parse_time(const std::string& text);
 /// In us, ms or s, as parse_time reads it.
 std::string time_text(hal::doubles::VirtualTime time);
 
+/// As logs begin their lines: seconds with six decimals, right-aligned in 12 columns.
+std::string stamp_text(hal::doubles::VirtualTime time);
+
 }  // namespace ex9000::sim

@@ -215,12 +215,14 @@ void read_line(const Node& node, Setup& setup) {
 
 Setup read_setup(const Node& root) {
   Setup setup;
-  root.members("lines, control, panel, log, capture and seed", [&](const std::string& key,
-                                                                   const Node& value) {
+  root.members("lines, control, panel, watch, log, capture and seed", [&](const std::string& key,
+                                                                          const Node& value) {
     if (key == "lines") {
       value.elements([&](const Node& line) { read_line(line, setup); });
     } else if (key == "control") {
       setup.control = value.text();
+    } else if (key == "watch") {
+      setup.watch = value.flag();
     } else if (key == "panel") {
       const std::string panel = value.setting();
       setup.panel = panel == "off" ? std::nullopt : std::optional(parse_panel(panel == "on" ? "" : panel));

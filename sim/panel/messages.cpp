@@ -5,7 +5,7 @@
 #include "sim/line_error.hpp"
 #include "sim/meaning.hpp"
 #include "sim/module_spec.hpp"
-#include "sim/panel/terminals.hpp"
+#include "sim/face/terminals.hpp"
 
 namespace ex9000::sim {
 

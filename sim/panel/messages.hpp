@@ -9,7 +9,7 @@
 
 #include "sim/faults/faults.hpp"
 #include "sim/frame_watch.hpp"
-#include "sim/panel/face.hpp"
+#include "sim/face/face.hpp"
 #include "sim/panel/heard.hpp"
 
 namespace ex9000::sim {

@@ -8,7 +8,7 @@
 #include <utility>
 
 #include "firmware/model/model.hpp"
-#include "sim/panel/face.hpp"
+#include "sim/face/face.hpp"
 #include "sim/panel/heard.hpp"
 #include "sim/panel/messages.hpp"
 #include "sim/words.hpp"

@@ -124,6 +124,20 @@ TEST(Arguments, ThePanelHasAPortOfItsOwnOrTheUsualOne) {
   expect_error({"EX9042D", "--panel", "--speed", "max", "--for", "1s"}, "--speed: max", "panel");
 }
 
+TEST(Arguments, TheModulesMayBeWatched) {
+  EXPECT_FALSE(all_accepted({"EX9042D"}).watch);
+  EXPECT_TRUE(all_accepted({"EX9042D", "--watch", "--log"}).watch);
+  EXPECT_TRUE(all_accepted({"--watch", "EX9042D", "--speed", "max", "--for", "1s"}).watch);
+  expect_error({"EX9042D", "--watch", "--log", "json"}, "--watch: ", "leave out one of them");
+}
+
+/// Whoever starts `sim/run`, which has both, may add them once more.
+TEST(Arguments, OfSeveralPanelsAndLogsTheLastCounts) {
+  EXPECT_EQ(all_accepted({"EX9042D", "--panel", "--log", "--panel", "8080"}).panel->port, 8080);
+  EXPECT_EQ(all_accepted({"EX9042D", "--panel", "--log", "--log", "json"}).log, LogFormat::Json);
+  expect_error({"EX9042D", "--tcp", "0", "--tcp", "0"}, "--tcp", "--help");
+}
+
 TEST(Arguments, BehindTheLogsFormatAndInItsPlaceThereMayBeAModule) {
   EXPECT_EQ(accepted({"--log", "json", "EX9042D"}).modules.size(), 1U);
   EXPECT_EQ(accepted({"--log", "EX9042D", "EX9052D@02"}).modules.size(), 2U);

@@ -102,6 +102,14 @@ TEST(BusFile, ThePanelIsOnOffOrOnAPort) {
   EXPECT_EQ(panel("\"0\"")->port, 0);
 }
 
+TEST(BusFile, ItsModulesMayBeWatched) {
+  const auto watch = [](const std::string& value) {
+    return parsed(R"({"watch": )" + value + R"(, "lines": [{"modules": [{"model": "EX9042D"}]}]})").watch;
+  };
+  EXPECT_FALSE(watch("false"));
+  EXPECT_TRUE(watch("true"));
+}
+
 TEST(BusFile, OneLineWithOneModuleIsEnough) {
   const auto setup = parsed(R"({"lines": [{"modules": [{"model": "ex9042d-m"}]}]})");
   ASSERT_EQ(setup.lines.size(), 1U);
@@ -193,10 +201,13 @@ INSTANTIATE_TEST_SUITE_P(
         Wrong{"{\n\"lines\": []}", "bus.json:2: lines: a bus wants at least one line; --example"},
         Wrong{"{\n\"lines\": {}}", "bus.json:2: lines: wants a list, [ ]"},
         Wrong{"{\n\"line\": []}",
-              "bus.json:2: line: no such key; there are lines, control, panel, log, capture and seed"},
+              "bus.json:2: line: no such key; there are lines, control, panel, watch, log, capture and seed"},
         Wrong{"{\n\"log\": 1}", "bus.json:2: log: '1' wants text or json"},
         Wrong{"{\n\"panel\": 70000}", "bus.json:2: panel: '70000' wants a port from 0 to 65535"},
         Wrong{"{\n\"panel\": []}", "bus.json:2: panel: wants a text in quotes, a whole number"},
+        Wrong{"{\n\"watch\": \"yes\"}", "bus.json:2: watch: wants true or false"},
+        Wrong{"{\"log\": \"json\",\n\"watch\": true, \"lines\": [{\"modules\": [{\"model\": \"EX9042D\"}]}]}",
+              "bus.json:2: watch: standard output is for machines"},
         Wrong{"{\n\"seed\": -1}", "bus.json:2: seed: wants a whole number"},
         Wrong{"{\n\"seed\": 1.5}", "bus.json:2: seed: wants a whole number"},
         Wrong{"{\n\"seed\": \"x\"}", "bus.json:2: seed: 'x' wants a whole number"},

@@ -1,4 +1,4 @@
-#include "sim/panel/face.hpp"
+#include "sim/face/face.hpp"
 
 #include <algorithm>
 #include <chrono>

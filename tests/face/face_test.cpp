@@ -1,12 +1,12 @@
 // What can be seen of a module: that its face shows it, and that looking changes nothing.
-#include "sim/panel/face.hpp"
+#include "sim/face/face.hpp"
 
 #include <gtest/gtest.h>
 
 #include <set>
 #include <string>
 
-#include "sim/panel/terminals.hpp"
+#include "sim/face/terminals.hpp"
 #include "tests/unit/module_bench.hpp"
 
 namespace ex9000::sim {

@@ -1,0 +1,141 @@
+// The faces in a terminal: repainted in place where there is one, told by lines where there is none.
+#include "sim/watch/watch.hpp"
+
+#include <gtest/gtest.h>
+
+#include <memory>
+#include <string>
+#include <vector>
+
+namespace ex9000::sim {
+namespace {
+
+using Prints = std::vector<std::string>;
+
+constexpr const char* kRelays = "1  EX9067D     9067    01 DCON 9600            LED * on       power on";
+constexpr const char* kLabels = "   RL      1  2  3  4  5  6  7";
+constexpr const char* kAllOff = "           -  -  -  -  -  -  -";
+constexpr const char* kRest = "   power-on 0000, safe 0000\n   host watchdog off";
+
+class WatchTest : public ::testing::Test {
+ protected:
+  void watch(const std::vector<std::string>& modules, const std::string& name = "") {
+    std::vector<ModuleSpec> specs;
+    for (const std::string& module : modules) {
+      specs.push_back(parse_module_spec(module));
+    }
+    lines_.push_back(
+        std::make_unique<Line>(specs, kPaced, [](std::uint8_t /*byte*/, ByteStatus /*status*/) {}));
+    Line& line = *lines_.back();
+    line.come_up();
+    watch_.add_line(name, line, [&line] { return line.clock().virtual_now(); });
+  }
+  SimulatedModule& module(std::size_t index = 0) { return lines_[0]->module(index); }
+  Prints looked() {
+    prints_.clear();
+    watch_.look();
+    return prints_;
+  }
+
+  std::optional<Screen> screen_ = Screen();
+  Prints prints_;
+  Watch watch_{[this] { return screen_; }, [this](const std::string& text) { prints_.push_back(text); }};
+  std::vector<std::unique_ptr<Line>> lines_;
+};
+
+std::string relays(const std::string& lamps) {
+  return std::string(kRelays) + "\n" + kLabels + "\n" + lamps + "\n" + kRest;
+}
+
+TEST_F(WatchTest, PaintsAndRepaintsInPlaceWhatHasChanged) {
+  watch({"EX9067D"});
+  EXPECT_EQ(looked(), Prints{relays(kAllOff)});
+  EXPECT_EQ(looked(), Prints{});
+  module().power(false);
+  // Five lines up, to the first column, and away with what is below.
+  EXPECT_EQ(looked(),
+            (Prints{"\x1b[5F\x1b[J1  EX9067D     9067                            LED - off      power off\n" +
+                    std::string(kLabels) + "\n" + kAllOff + "\n   power-on 0000, safe 0000"}));
+  module().power(true);
+  EXPECT_EQ(looked()[0].substr(0, 7), "\x1b[4F\x1b[J");
+}
+
+TEST_F(WatchTest, PrintsWhatElseThereIsAboveTheFaces) {
+  watch({"EX9067D"});
+  watch_.print("a greeting");
+  EXPECT_EQ(prints_, Prints{"a greeting"});
+  looked();
+  prints_.clear();
+  watch_.print("a line of the log");
+  EXPECT_EQ(prints_, Prints{"\x1b[5F\x1b[Ja line of the log\n" + relays(kAllOff)});
+}
+
+TEST_F(WatchTest, HasRoundLampsWhereTheTerminalHas) {
+  screen_->utf8 = true;
+  watch({"EX9067D"});
+  EXPECT_NE(looked()[0].find("●"), std::string::npos);
+  EXPECT_NE(prints_[0].find("○  ○  ○  ○  ○  ○  ○"), std::string::npos);
+}
+
+TEST_F(WatchTest, LeavesOutModulesThatTheTerminalHasNoRoomFor) {
+  const std::string left_out = " more, for which this terminal has no room";
+  watch({"EX9067D", "EX9067D@02", "EX9067D@03", "EX9067D@04"});
+  screen_->rows = 21;  // five lines each, and the cursor
+  EXPECT_EQ(looked()[0].find(left_out), std::string::npos);
+  screen_->rows = 20;
+  EXPECT_NE(looked()[0].find("\n1" + left_out), std::string::npos);
+  screen_->rows = 12;  // two of them, the line that says so, the cursor
+  const std::string two = looked()[0];
+  EXPECT_NE(two.find("\n2  EX9067D"), std::string::npos);
+  EXPECT_EQ(two.find("\n3  EX9067D"), std::string::npos);
+  EXPECT_NE(two.find("\n2" + left_out), std::string::npos);
+  screen_->rows = 11;
+  EXPECT_NE(looked()[0].find("\n3" + left_out), std::string::npos);
+  screen_->rows = 1;
+  EXPECT_EQ(looked()[0], "\x1b[H\x1b[J4" + left_out);
+}
+
+TEST_F(WatchTest, ShortensLinesToTheTerminal) {
+  screen_->columns = 9;
+  screen_->utf8 = true;
+  watch({"EX9067D"});
+  module().power(false);
+  EXPECT_EQ(looked()[0], "1  EX9067\n   RL    \n         \n   power-");
+  screen_->columns = 12;
+  EXPECT_NE(looked()[0].find("\n           ○\n"), std::string::npos);
+}
+
+TEST_F(WatchTest, BeginsAnewWhereTheTerminalHasAnotherSize) {
+  watch({"EX9067D"});
+  looked();
+  screen_->columns = 100;
+  EXPECT_EQ(looked(), Prints{"\x1b[H\x1b[J" + relays(kAllOff)});
+}
+
+TEST_F(WatchTest, SeveralLinesHaveTheirNames) {
+  watch({"EX9067D", "EX9067D@02"}, "hall");
+  watch({"EX9067D@03"}, "yard");
+  const std::string text = looked()[0];
+  EXPECT_EQ(text.rfind("--- hall\n1  EX9067D", 0), 0U);
+  EXPECT_NE(text.find("\n2  EX9067D"), std::string::npos);
+  EXPECT_NE(text.find("\n--- yard\n3  EX9067D"), std::string::npos);
+}
+
+TEST_F(WatchTest, TellsChangesWhereThereIsNoTerminal) {
+  screen_.reset();
+  watch({"EX9067D", "EX9052D@02"});
+  looked();
+  ASSERT_GT(prints_.size(), 2U);
+  EXPECT_EQ(prints_[0], "    0.100000  - 1 EX9067D: power on");
+  EXPECT_EQ(looked(), Prints{});
+  lines_[0]->bus().run_for(std::chrono::milliseconds(400));
+  module(1).set_input(3, true);
+  EXPECT_EQ(looked(), (Prints{"    0.500000  - 2 EX9052D: inputs 08",
+                              "    0.500000  - 2 EX9052D: latched high 08, low 00"}));
+  prints_.clear();
+  watch_.print("a line of the log");
+  EXPECT_EQ(prints_, Prints{"a line of the log"});
+}
+
+}  // namespace
+}  // namespace ex9000::sim
