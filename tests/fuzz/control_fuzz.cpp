@@ -1,6 +1,5 @@
 // Commands of the control socket, a line each, at three modules; `+N` in between is N times 10 ms. What is a
 // command is judged here once more; what is none is refused in one line and changes nothing.
-#include <algorithm>
 #include <chrono>
 #include <set>
 #include <sstream>
@@ -76,7 +75,8 @@ bool is_switch(const std::string& text) { return text == "on" || text == "off"; 
 
 /// The line, and what is known of its faults.
 struct Watched {
-  Line line{specs(), sim::kPaced, [](std::uint8_t /*byte*/, ByteStatus /*status*/) {}};
+  Line line{specs(), sim::kPaced, [this](std::uint8_t /*byte*/, ByteStatus /*status*/) { ++heard; }};
+  unsigned long heard = 0;  ///< bytes at the master's end
   std::set<unsigned long> faults;
   unsigned long numbers = 0;
 };
@@ -216,11 +216,13 @@ void carry_out(Watched& watched, sim::Control& control, const std::string& comma
 /// Inputs that take long find little.
 class Patience {
  public:
-  /// As many steps of 10 ms as are left of 2 s, up to `steps`; a watchdog needs 1.6 s to bite.
-  long steps(unsigned long steps) {
-    const unsigned long granted = std::min(steps, steps_left_);
-    steps_left_ -= granted;
-    return static_cast<long>(granted);
+  /// As many steps of 10 ms as are left of 2 s, up to `steps`; a watchdog needs 1.6 s to bite. None on a line
+  /// on which much has been said.
+  void pass(Watched& watched, unsigned long steps) {
+    constexpr unsigned long kMostHeard = 200;
+    for (; steps != 0 && steps_left_ != 0 && watched.heard < kMostHeard; --steps, --steps_left_) {
+      watched.line.bus().run_for(std::chrono::milliseconds(10));
+    }
   }
   /// Of pulses up to 99,999 once an input, else 99.
   bool has_for(const Words& words) {
@@ -242,8 +244,7 @@ void live(const std::string& text) {
   for (std::string command; std::getline(lines, command);) {
     if (!command.empty() && command[0] == '+') {
       const std::string number = command.substr(1);
-      const unsigned long times = is_number(number, 0, 99) ? std::stoul(number) : 1;
-      watched.line.bus().run_for(std::chrono::milliseconds(10) * patience.steps(times));
+      patience.pass(watched, is_number(number, 0, 99) ? std::stoul(number) : 1);
       continue;
     }
     const Words words = words_of(command);
