@@ -3,14 +3,17 @@
 #include <fcntl.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <boost/asio/io_context.hpp>
 #include <boost/asio/signal_set.hpp>
 #include <cerrno>
+#include <chrono>
 #include <csignal>
 #include <cstring>
 #include <iostream>
 #include <stdexcept>
 #include <string>
+#include <thread>
 
 #include "sim/arguments.hpp"
 #include "sim/play/play.hpp"
@@ -48,6 +51,27 @@ bool print(const std::string& text) {
   return static_cast<bool>(std::cout);
 }
 
+bool has_instant_line(const Setup& setup) {
+  return std::any_of(setup.lines.begin(), setup.lines.end(),
+                     [](const LineSetup& line) { return line.instant; });
+}
+
+/// Being woken up takes longer than an instant line's answer does. So for a while after something has
+/// happened the next thing is looked for; whoever wants this processor meanwhile gets it.
+void run_wakefully(boost::asio::io_context& io) {
+  using Clock = std::chrono::steady_clock;
+  constexpr std::chrono::microseconds kWhile{50};
+  while (io.run_one() != 0) {
+    for (Clock::time_point until = Clock::now() + kWhile; Clock::now() < until;) {
+      if (io.poll_one() != 0) {
+        until = Clock::now() + kWhile;
+      } else {
+        std::this_thread::yield();
+      }
+    }
+  }
+}
+
 void run(const Setup& setup) {
   boost::asio::io_context io;
   // Who closes the pipe behind the log ends the program.
@@ -62,7 +86,9 @@ void run(const Setup& setup) {
   const auto greet = [](const std::string& text) { std::cerr << text << std::endl; };
   Session session(io, setup, print_line, greet, screen_of_standard_output);
   session.start();
-  if (setup.speed) {
+  if (setup.speed && has_instant_line(setup)) {
+    run_wakefully(io);
+  } else if (setup.speed) {
     io.run();
   } else {
     session.run_as_fast_as_it_can();
