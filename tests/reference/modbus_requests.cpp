@@ -3,15 +3,11 @@
 
 #include "sim/play/modbus_frame.hpp"
 #include "tests/reference/generator.hpp"
+#include "tests/reference/modbus_refusal.hpp"
 
 namespace ex9000::reference {
 
 namespace {
-
-void append_word(Bytes& frame, unsigned value) {
-  frame.push_back(static_cast<std::uint8_t>(value >> 8 & 0xFFU));
-  frame.push_back(static_cast<std::uint8_t>(value & 0xFFU));
-}
 
 std::uint8_t any_byte(Random& random) { return static_cast<std::uint8_t>(random.below(256)); }
 

@@ -8,7 +8,6 @@ namespace ex9000::reference {
 namespace {
 
 constexpr std::chrono::milliseconds kTimeoutUnit{100};  // wire.md 6: VV x 0.1 s
-constexpr std::chrono::milliseconds kComingUp{100};
 /// wire.md 3: a reply starts at most 200 ms after the request where a setting is stored; and a Modbus frame
 /// ends up to 32 ms behind its last byte.
 constexpr std::chrono::milliseconds kLongestStore{232};

@@ -19,6 +19,8 @@ namespace ex9000::reference {
 using Bytes = std::vector<std::uint8_t>;
 /// Since any beginning, the same for all that one module is told.
 using Time = std::chrono::nanoseconds;
+/// wire.md 2: from power-on or reset until it listens, at most.
+inline constexpr std::chrono::milliseconds kComingUp{100};
 
 /// wire.md 8: what a power failure leaves.
 struct Stored {

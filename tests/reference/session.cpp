@@ -29,7 +29,6 @@ constexpr milliseconds kNoAnswer{65};
 constexpr milliseconds kBetween{2};
 /// Longer than any switch takes to settle; wire.md 2: INIT* is debounced.
 constexpr milliseconds kDebounced{100};
-constexpr milliseconds kComingUp{100};
 
 std::string text_of(const Bytes& bytes) { return std::string(bytes.begin(), bytes.end()); }
 

@@ -2,16 +2,11 @@
 
 #include "sim/module.hpp"
 #include "tests/rig/signals.hpp"
+#include "tests/rig/uart_registers.hpp"
 
 namespace ex9000::rig {
 
 namespace {
-
-constexpr std::uint32_t kUart0 = 0x4000'C000;
-constexpr std::uint32_t kUartIntegerDivisor = 0x24;
-constexpr std::uint32_t kUartFractionalDivisor = 0x28;
-constexpr std::uint32_t kUartControl = 0x30;
-constexpr std::uint32_t kUartEnabled = 1;
 
 std::string text_of(const std::vector<std::uint8_t>& bytes) { return {bytes.begin(), bytes.end()}; }
 

@@ -1,15 +1,10 @@
 #include "tests/rig/emulator.hpp"
 
+#include "tests/rig/uart_registers.hpp"
+
 namespace ex9000::rig {
 
 namespace {
-
-constexpr std::uint32_t kUart0 = 0x4000'C000;
-constexpr std::uint32_t kLineControl = 0x2C;
-constexpr std::uint32_t kFifosOn = 0x10;
-constexpr std::uint32_t kControl = 0x30;
-constexpr std::uint32_t kControlAtReset = 0x300;
-constexpr std::uint32_t kInterruptMask = 0x38;
 
 std::vector<std::string> command_of(const std::string& image, const std::string& memory) {
   return {"setpriv",  // whatever ends the test ends the emulator
@@ -80,10 +75,10 @@ void Emulator::reset() {
   qmp_->execute("set-action", "return", R"({"reboot": "reset"})");
   qmp_->execute("system_reset", "RESET");
   qmp_->execute("set-action", "return", R"({"reboot": "shutdown"})");
-  bus_->write(kUart0 + kInterruptMask, 0);
-  bus_->write(kUart0 + kControl, kControlAtReset);
-  bus_->write(kUart0 + kLineControl, kFifosOn);  // a change of it empties them
-  bus_->write(kUart0 + kLineControl, 0);
+  bus_->write(kUart0 + kUartInterruptMask, 0);
+  bus_->write(kUart0 + kUartControl, kUartControlAtReset);
+  bus_->write(kUart0 + kUartLineControl, kUartFifosOn);  // a change of it empties them
+  bus_->write(kUart0 + kUartLineControl, 0);
   bus_->read(kUart0);  // a byte that nobody has taken would leave its flag and its interrupt
 }
 

@@ -43,11 +43,11 @@ std::vector<Cells> rows_of(const std::string& text) {
   return rows;
 }
 
-std::vector<Cells> of(const char* designation) { return rows_of(csv_of({find_model(designation)})); }
+std::vector<Cells> table_of(const char* designation) { return rows_of(csv_of({find_model(designation)})); }
 
 /// The row with this table and this address or command.
 Cells row(const char* designation, const std::string& table, const std::string& which) {
-  for (const Cells& cells : of(designation)) {
+  for (const Cells& cells : table_of(designation)) {
     if (cells[1] == table && (cells[2] == which || cells[6] == which)) {
       return cells;
     }
@@ -66,9 +66,9 @@ TEST(DescribeCsv, HasAHeadAndEveryRowItsCells) {
 
 TEST(DescribeCsv, HasARowACommandACoilAndARegister) {
   // 21 commands, 3 x 13 coils of outputs, 3 of the general part, 5 holding registers, host OK in two tables
-  EXPECT_EQ(of("EX9042D-M").size(), 1U + 21 + 39 + 3 + 5 + 2);
+  EXPECT_EQ(table_of("EX9042D-M").size(), 1U + 21 + 39 + 3 + 5 + 2);
   // 23 commands of a model with both, and no Modbus
-  EXPECT_EQ(of("EX9055D").size(), 1U + 23);
+  EXPECT_EQ(table_of("EX9055D").size(), 1U + 23);
 }
 
 TEST(DescribeCsv, ACommandHasWhatIsAskedForAndAnswered) {

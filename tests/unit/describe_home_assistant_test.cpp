@@ -9,7 +9,7 @@
 namespace ex9000::sim {
 namespace {
 
-std::string of(const char* designation, const Place& place = {}) {
+std::string configuration_of(const char* designation, const Place& place = {}) {
   return home_assistant_hub(*find_model(designation), place);
 }
 
@@ -21,104 +21,105 @@ std::ptrdiff_t times(const std::string& text, const std::string& part) {
   return count;
 }
 
-bool has(const std::string& text, const std::string& part) { return times(text, part) == 1; }
+bool has_once(const std::string& text, const std::string& part) { return times(text, part) == 1; }
 
 TEST(DescribeHomeAssistant, IsReachedOverTheSimulatorsPort) {
-  EXPECT_TRUE(has(of("EX9042D-M"),
-                  "- name: ex9042d_m_01\n"
-                  "  type: rtuovertcp\n"
-                  "  host: \"127.0.0.1\"\n"
-                  "  port: 5020\n"));
-  EXPECT_TRUE(has(of("EX9042D-M", {{"gateway", 4001}, 0xF7}),
-                  "- name: ex9042d_m_F7\n"
-                  "  type: rtuovertcp\n"
-                  "  host: gateway\n"
-                  "  port: 4001\n"));
+  EXPECT_TRUE(has_once(configuration_of("EX9042D-M"),
+                       "- name: ex9042d_m_01\n"
+                       "  type: rtuovertcp\n"
+                       "  host: \"127.0.0.1\"\n"
+                       "  port: 5020\n"));
+  EXPECT_TRUE(has_once(configuration_of("EX9042D-M", {{"gateway", 4001}, 0xF7}),
+                       "- name: ex9042d_m_F7\n"
+                       "  type: rtuovertcp\n"
+                       "  host: gateway\n"
+                       "  port: 4001\n"));
 }
 
 TEST(DescribeHomeAssistant, OutputsAreSwitchesThatAreReadBack) {
-  const std::string text = of("EX9042D-M", {{}, 0x0A});
+  const std::string text = configuration_of("EX9042D-M", {{}, 0x0A});
   EXPECT_EQ(times(text, "      write_type: coil\n"), 13);
-  EXPECT_TRUE(has(text,
-                  "    - name: EX9042D-M 0A Output 12\n"
-                  "      unique_id: ex9042d_m_0A_outputs_12\n"
-                  "      slave: 10\n"
-                  "      address: 12\n"
-                  "      scan_interval: 5\n"
-                  "      write_type: coil\n"
-                  "      verify:\n"
-                  "        input_type: coil\n"
-                  "        address: 12\n"));
-  EXPECT_EQ(times(of("EX9052D-M"), "switches:"), 0);
+  EXPECT_TRUE(has_once(text,
+                       "    - name: EX9042D-M 0A Output 12\n"
+                       "      unique_id: ex9042d_m_0A_outputs_12\n"
+                       "      slave: 10\n"
+                       "      address: 12\n"
+                       "      scan_interval: 5\n"
+                       "      write_type: coil\n"
+                       "      verify:\n"
+                       "        input_type: coil\n"
+                       "        address: 12\n"));
+  EXPECT_EQ(times(configuration_of("EX9052D-M"), "switches:"), 0);
 }
 
 TEST(DescribeHomeAssistant, InputsAndLatchesAreBinarySensors) {
-  const std::string text = of("EX9052D-M");
-  EXPECT_TRUE(has(text,
-                  "    - name: EX9052D-M 01 Input 7\n"
-                  "      unique_id: ex9052d_m_01_inputs_7\n"
-                  "      slave: 1\n"
-                  "      address: 7\n"
-                  "      scan_interval: 5\n"
-                  "      input_type: discrete_input\n"));
-  EXPECT_TRUE(has(text,
-                  "      unique_id: ex9052d_m_01_latch_low_0\n"
-                  "      slave: 1\n"
-                  "      address: 96\n"  // 0x60
-                  "      scan_interval: 5\n"
-                  "      input_type: coil\n"));
+  const std::string text = configuration_of("EX9052D-M");
+  EXPECT_TRUE(has_once(text,
+                       "    - name: EX9052D-M 01 Input 7\n"
+                       "      unique_id: ex9052d_m_01_inputs_7\n"
+                       "      slave: 1\n"
+                       "      address: 7\n"
+                       "      scan_interval: 5\n"
+                       "      input_type: discrete_input\n"));
+  EXPECT_TRUE(has_once(text,
+                       "      unique_id: ex9052d_m_01_latch_low_0\n"
+                       "      slave: 1\n"
+                       "      address: 96\n"  // 0x60
+                       "      scan_interval: 5\n"
+                       "      input_type: coil\n"));
 }
 
 TEST(DescribeHomeAssistant, CountersAreSensorsThatWrap) {
-  EXPECT_TRUE(has(of("EX9052D-M"),
-                  "    - name: EX9052D-M 01 Counter 7\n"
-                  "      unique_id: ex9052d_m_01_counters_7\n"
-                  "      slave: 1\n"
-                  "      address: 7\n"
-                  "      scan_interval: 5\n"
-                  "      input_type: input\n"
-                  "      data_type: uint16\n"
-                  "      state_class: total_increasing\n"));
+  EXPECT_TRUE(has_once(configuration_of("EX9052D-M"),
+                       "    - name: EX9052D-M 01 Counter 7\n"
+                       "      unique_id: ex9052d_m_01_counters_7\n"
+                       "      slave: 1\n"
+                       "      address: 7\n"
+                       "      scan_interval: 5\n"
+                       "      input_type: input\n"
+                       "      data_type: uint16\n"
+                       "      state_class: total_increasing\n"));
 }
 
 TEST(DescribeHomeAssistant, TheHostWatchdogIsShown) {
-  const std::string text = of("EX9068D-M");
-  EXPECT_TRUE(has(text,
-                  "      unique_id: ex9068d_m_01_timeout_status\n"
-                  "      slave: 1\n"
-                  "      address: 269\n"  // 0x010D
-                  "      scan_interval: 30\n"
-                  "      input_type: coil\n"
-                  "      device_class: problem\n"));
+  const std::string text = configuration_of("EX9068D-M");
+  EXPECT_TRUE(has_once(text,
+                       "      unique_id: ex9068d_m_01_timeout_status\n"
+                       "      slave: 1\n"
+                       "      address: 269\n"  // 0x010D
+                       "      scan_interval: 30\n"
+                       "      input_type: coil\n"
+                       "      device_class: problem\n"));
   EXPECT_TRUE(
-      has(text, "      unique_id: ex9068d_m_01_watchdog_enable\n      slave: 1\n      address: 260\n"));
-  EXPECT_TRUE(has(text,
-                  "      address: 488\n"  // 0x01E8
-                  "      scan_interval: 30\n"
-                  "      input_type: holding\n"
-                  "      data_type: uint16\n"
-                  "      scale: 0.1\n"
-                  "      precision: 1\n"
-                  "      device_class: duration\n"
-                  "      unit_of_measurement: s\n"));
+      has_once(text, "      unique_id: ex9068d_m_01_watchdog_enable\n      slave: 1\n      address: 260\n"));
+  EXPECT_TRUE(has_once(text,
+                       "      address: 488\n"  // 0x01E8
+                       "      scan_interval: 30\n"
+                       "      input_type: holding\n"
+                       "      data_type: uint16\n"
+                       "      scale: 0.1\n"
+                       "      precision: 1\n"
+                       "      device_class: duration\n"
+                       "      unit_of_measurement: s\n"));
 }
 
 TEST(DescribeHomeAssistant, WhatCanBeClearedIsAnAction) {
-  const std::string text = of("EX9052D-M", {{}, 0x02});
+  const std::string text = configuration_of("EX9052D-M", {{}, 0x02});
+  EXPECT_TRUE(has_once(
+      text,
+      "#   Clear counter 7: modbus.write_coil with hub: ex9052d_m_02, slave: 2, address: 519, state: "
+      "true\n"));  // 0x0207
   EXPECT_TRUE(
-      has(text,
-          "#   Clear counter 7: modbus.write_coil with hub: ex9052d_m_02, slave: 2, address: 519, state: "
-          "true\n"));  // 0x0207
-  EXPECT_TRUE(
-      has(text, "#   Clear latches: modbus.write_coil with hub: ex9052d_m_02, slave: 2, address: 263,"));
-  EXPECT_EQ(times(of("EX9042D-M"), "modbus.write_coil"), 1);
+      has_once(text, "#   Clear latches: modbus.write_coil with hub: ex9052d_m_02, slave: 2, address: 263,"));
+  EXPECT_EQ(times(configuration_of("EX9042D-M"), "modbus.write_coil"), 1);
 }
 
 TEST(DescribeHomeAssistant, NothingIsPolledThatDoesNotAnswerOrTakesTheModuleAway) {
   for (const char* model : {"EX9043D-M", "EX9052D-M"}) {
     for (const char* address :
          {"12344", "256", "484", "485", "512"}) {  // host OK, protocol, address, rate, clear
-      EXPECT_EQ(times(of(model), "address: " + std::string(address) + "\n"), 0) << model << " " << address;
+      EXPECT_EQ(times(configuration_of(model), "address: " + std::string(address) + "\n"), 0)
+          << model << " " << address;
     }
   }
 }

@@ -12,7 +12,7 @@ using Json = nlohmann::json;
 
 Json all() { return Json::parse(json_of(all_models())); }
 
-Json of(const char* designation) {
+Json json_of_model(const char* designation) {
   return Json::parse(json_of({find_model(designation)})).at("models").at(0);
 }
 
@@ -39,11 +39,11 @@ Json in_table(const Json& registers, const char* id, const char* table) {
 TEST(DescribeJson, HasEveryModelAndTheFirmwaresVersion) {
   EXPECT_EQ(all().at("firmware"), "D01.00");
   EXPECT_EQ(all().at("models").size(), 17U);
-  EXPECT_EQ(of("EX9060D").at("model"), "EX9060D");
+  EXPECT_EQ(json_of_model("EX9060D").at("model"), "EX9060D");
 }
 
 TEST(DescribeJson, HasAModelsFacts) {
-  const Json relays = of("EX9068D-M");
+  const Json relays = json_of_model("EX9068D-M");
   EXPECT_EQ(relays.at("inputs"), 0);
   EXPECT_EQ(relays.at("outputs"), 8);
   EXPECT_EQ(relays.at("protocols"), Json({"ascii", "modbus-rtu"}));
@@ -53,7 +53,7 @@ TEST(DescribeJson, HasAModelsFacts) {
   EXPECT_EQ(relays.at("first_data_byte"), "DO0-7");
   EXPECT_EQ(relays.at("second_data_byte"), "00");
   EXPECT_EQ(relays.at("status_readings"), "00, 04");
-  const Json mixed = of("EX9063D");
+  const Json mixed = json_of_model("EX9063D");
   EXPECT_EQ(mixed.at("protocols"), Json::array({"ascii"}));
   EXPECT_TRUE(mixed.at("modbus_code").is_null());
   EXPECT_EQ(mixed.at("first_data_byte"), "DO0-2");
@@ -61,7 +61,7 @@ TEST(DescribeJson, HasAModelsFacts) {
 }
 
 TEST(DescribeJson, HasAModelsCommands) {
-  const Json commands = of("EX9052D-M").at("dcon_commands");
+  const Json commands = json_of_model("EX9052D-M").at("dcon_commands");
   EXPECT_EQ(commands.size(), 21U);
   const Json protocol = with(commands, "command", "$AAPN");
   EXPECT_EQ(protocol.at("reply"), "!AA");
@@ -73,21 +73,22 @@ TEST(DescribeJson, HasAModelsCommands) {
   EXPECT_EQ(sample.at("needs_init"), false);
   EXPECT_EQ(with(commands, "command", "$AALS").at("access"), "read");
   EXPECT_TRUE(with(commands, "command", "@AA(Data)").is_null());
-  EXPECT_TRUE(with(of("EX9052D").at("dcon_commands"), "command", "$AAP").is_null());
+  EXPECT_TRUE(with(json_of_model("EX9052D").at("dcon_commands"), "command", "$AAP").is_null());
 }
 
 TEST(DescribeJson, HasAModelsFunctions) {
-  const Json functions = of("EX9043D-M").at("modbus_functions");
+  const Json functions = json_of_model("EX9043D-M").at("modbus_functions");
   EXPECT_EQ(functions.size(), 11U);
   EXPECT_TRUE(with(functions, "code", 2).is_null());
   EXPECT_EQ(with(functions, "code", 0x0F).at("by_broadcast"), true);
   EXPECT_EQ(with(functions, "code", 0x46).at("by_broadcast"), false);
-  EXPECT_EQ(with(of("EX9052D-M").at("modbus_functions"), "code", 2).at("name"), "Read Discrete Inputs");
-  EXPECT_EQ(of("EX9043D").at("modbus_functions"), Json::array());
+  EXPECT_EQ(with(json_of_model("EX9052D-M").at("modbus_functions"), "code", 2).at("name"),
+            "Read Discrete Inputs");
+  EXPECT_EQ(json_of_model("EX9043D").at("modbus_functions"), Json::array());
 }
 
 TEST(DescribeJson, HasAModelsRegisters) {
-  const Json registers = of("EX9043D-M").at("modbus_registers");
+  const Json registers = json_of_model("EX9043D-M").at("modbus_registers");
   const Json outputs = in_table(registers, "outputs", "coil");
   EXPECT_EQ(outputs.at("first"), 0);
   EXPECT_EQ(outputs.at("last"), 0x0F);
@@ -99,11 +100,11 @@ TEST(DescribeJson, HasAModelsRegisters) {
   const Json timeout = in_table(registers, "watchdog-timeout", "holding register");
   EXPECT_EQ(timeout.at("first"), 0x01E8);
   EXPECT_EQ(timeout.at("functions"), Json({3, 6, 16}));
-  EXPECT_EQ(of("EX9043D").at("modbus_registers"), Json::array());
+  EXPECT_EQ(json_of_model("EX9043D").at("modbus_registers"), Json::array());
 }
 
 TEST(DescribeJson, WhatIsOnlyReadOrOnlyWrittenIsSaidToBe) {
-  const Json registers = of("EX9052D-M").at("modbus_registers");
+  const Json registers = json_of_model("EX9052D-M").at("modbus_registers");
   const Json counters = in_table(registers, "counters", "input register");
   EXPECT_EQ(counters.at("last"), 7);
   EXPECT_EQ(counters.at("functions"), Json::array({4}));

@@ -27,7 +27,7 @@ Lines lines_of(const std::string& text) {
   return lines;
 }
 
-std::string of(const char* designation) { return markdown_of(*find_model(designation)); }
+std::string text_of(const char* designation) { return markdown_of(*find_model(designation)); }
 
 bool has(const std::string& text, const std::string& part) { return text.find(part) != std::string::npos; }
 
@@ -60,19 +60,19 @@ Lines first_cells(const std::string& text, const std::string& title) {
   return cells;
 }
 
-Lines functions(const char* designation) { return first_cells(of(designation), "function"); }
+Lines functions(const char* designation) { return first_cells(text_of(designation), "function"); }
 
 /// Without the backticks around them.
 Lines commands(const char* designation) {
   Lines syntaxes;
-  for (const std::string& cell : first_cells(of(designation), "command")) {
+  for (const std::string& cell : first_cells(text_of(designation), "command")) {
     syntaxes.push_back(cell.substr(1, cell.size() - 2));
   }
   return syntaxes;
 }
 
 /// Table, address, PLC number, functions, access.
-std::vector<Lines> map_of(const char* designation) { return rows(of(designation), "table", 5); }
+std::vector<Lines> map_of(const char* designation) { return rows(text_of(designation), "table", 5); }
 
 /// The row of all models' table that begins with this cell.
 std::string row_beginning(const std::string& first) {
@@ -342,12 +342,12 @@ TEST(DescribeMarkdown, AModelWithoutModbusHasNoMap) {
   for (const char* model : {"EX9055D", "EX9060D", "EX9042D"}) {
     EXPECT_EQ(map_of(model), std::vector<Lines>());
     EXPECT_EQ(functions(model), Lines());
-    EXPECT_FALSE(has(of(model), "### Modbus")) << model;
+    EXPECT_FALSE(has(text_of(model), "### Modbus")) << model;
   }
 }
 
 TEST(DescribeMarkdown, SaysWhatARegisterIsAndWhatMayBeWritten) {
-  const std::string text = of("EX9052D-M");
+  const std::string text = text_of("EX9052D-M");
   for (const modbus::WordRegister& row : modbus::kWordRegisters) {
     EXPECT_TRUE(has(text, " | " + std::string(row.meaning) + " |\n")) << row.id;
   }

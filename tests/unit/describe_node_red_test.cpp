@@ -13,7 +13,7 @@ namespace {
 
 using Json = nlohmann::json;
 
-Json of(const char* designation, const Place& place = {}) {
+Json flow_of(const char* designation, const Place& place = {}) {
   return Json::parse(node_red_flow(*find_model(designation), place));
 }
 
@@ -37,7 +37,7 @@ Json first(const Json& flow, const char* key, const char* value) {
 }
 
 TEST(DescribeNodeRed, IsReachedOverTheSimulatorsPortWithTheBytesOfTheLine) {
-  const Json client = first(of("EX9042D-M", {{"gateway", 4001}, 0x0A}), "type", "modbus-client");
+  const Json client = first(flow_of("EX9042D-M", {{"gateway", 4001}, 0x0A}), "type", "modbus-client");
   EXPECT_EQ(client.at("tcpHost"), "gateway");
   EXPECT_EQ(client.at("tcpPort"), "4001");
   EXPECT_EQ(client.at("unit_id"), "10");
@@ -46,19 +46,19 @@ TEST(DescribeNodeRed, IsReachedOverTheSimulatorsPortWithTheBytesOfTheLine) {
 }
 
 TEST(DescribeNodeRed, ReadsWhatAModelWithOutputsHas) {
-  EXPECT_EQ(asked(of("EX9042D-M"), "modbus-read"),
+  EXPECT_EQ(asked(flow_of("EX9042D-M"), "modbus-read"),
             (std::vector<std::string>{"Coil 0 13", "Coil 128 13", "Coil 160 13", "Coil 260 1", "Coil 269 1",
                                       "HoldingRegister 488 1"}));
 }
 
 TEST(DescribeNodeRed, ReadsWhatAModelWithInputsHas) {
-  EXPECT_EQ(asked(of("EX9052D-M"), "modbus-read"),
+  EXPECT_EQ(asked(flow_of("EX9052D-M"), "modbus-read"),
             (std::vector<std::string>{"Coil 64 8", "Coil 96 8", "Coil 260 1", "Coil 269 1", "Input 0 8",
                                       "InputRegister 0 8", "HoldingRegister 488 1"}));
 }
 
 TEST(DescribeNodeRed, SwitchesEachOutputOnAndOff) {
-  const Json flow = of("EX9068AD-M");
+  const Json flow = flow_of("EX9068AD-M");
   const std::vector<std::string> writes = asked(flow, "modbus-write");
   ASSERT_EQ(writes.size(), 9U);  // 8 outputs, and the timeout status to clear
   EXPECT_EQ(writes[7], "Coil 7 1");
@@ -74,7 +74,7 @@ TEST(DescribeNodeRed, SwitchesEachOutputOnAndOff) {
 }
 
 TEST(DescribeNodeRed, ClearsWhatCanBeCleared) {
-  const std::vector<std::string> writes = asked(of("EX9052D-M"), "modbus-write");
+  const std::vector<std::string> writes = asked(flow_of("EX9052D-M"), "modbus-write");
   EXPECT_EQ(writes,
             (std::vector<std::string>{"Coil 263 1", "Coil 269 1", "Coil 512 1", "Coil 513 1", "Coil 514 1",
                                       "Coil 515 1", "Coil 516 1", "Coil 517 1", "Coil 518 1", "Coil 519 1"}));

@@ -10,10 +10,12 @@ namespace {
 
 using Json = nlohmann::json;
 
-Json of(const char* designation) { return Json::parse(wb_mqtt_serial_template(*find_model(designation))); }
+Json template_of(const char* designation) {
+  return Json::parse(wb_mqtt_serial_template(*find_model(designation)));
+}
 
 Json channel(const char* designation, const char* name) {
-  const Json device = of(designation).at("device");
+  const Json device = template_of(designation).at("device");
   for (const Json& each : device.at("channels")) {
     if (each.at("name") == name) {
       return each;
@@ -23,7 +25,7 @@ Json channel(const char* designation, const char* name) {
 }
 
 TEST(DescribeWbMqttSerial, IsCalledAfterItsModel) {
-  const Json all = of("EX9068AD-M");
+  const Json all = template_of("EX9068AD-M");
   EXPECT_EQ(all.at("title"), "EX9068AD-M, 8 PhotoMOS outputs");
   EXPECT_EQ(all.at("device_type"), "EX9068AD-M");
   EXPECT_EQ(all.at("device").at("name"), "EX9068AD-M");
@@ -31,9 +33,9 @@ TEST(DescribeWbMqttSerial, IsCalledAfterItsModel) {
 }
 
 TEST(DescribeWbMqttSerial, ARequestTakesAllChannelsAtOnceAndWaitsForTheSilence) {
-  EXPECT_EQ(of("EX9043D-M").at("device").at("max_read_registers"), 16);
-  EXPECT_EQ(of("EX9052D-M").at("device").at("max_read_registers"), 8);
-  EXPECT_EQ(of("EX9052D-M").at("device").at("guard_interval_us"), 3645);  // 35 bits at 9600 baud
+  EXPECT_EQ(template_of("EX9043D-M").at("device").at("max_read_registers"), 16);
+  EXPECT_EQ(template_of("EX9052D-M").at("device").at("max_read_registers"), 8);
+  EXPECT_EQ(template_of("EX9052D-M").at("device").at("guard_interval_us"), 3645);  // 35 bits at 9600 baud
 }
 
 TEST(DescribeWbMqttSerial, OutputsAreSwitches) {

@@ -6,12 +6,13 @@
 namespace ex9000::sim {
 namespace {
 
-using Json = nlohmann::ordered_json;
+using Ordered = nlohmann::ordered_json;
 
 TEST(Yaml, KeysKeepTheirOrderAndItemsAreIndented) {
-  const Json hub{{"name", "hub"},
-                 {"items", Json::array({Json{{"b", 1}, {"a", Json{{"c", true}}}}, Json{{"d", 0.1}}})}};
-  EXPECT_EQ(yaml_of(Json::array({hub})),
+  const Ordered hub{
+      {"name", "hub"},
+      {"items", Ordered::array({Ordered{{"b", 1}, {"a", Ordered{{"c", true}}}}, Ordered{{"d", 0.1}}})}};
+  EXPECT_EQ(yaml_of(Ordered::array({hub})),
             "- name: hub\n"
             "  items:\n"
             "    - b: 1\n"
@@ -21,7 +22,7 @@ TEST(Yaml, KeysKeepTheirOrderAndItemsAreIndented) {
 }
 
 TEST(Yaml, ScalarsMayBeItems) {
-  EXPECT_EQ(yaml_of(Json::array({1, "two words", nullptr, Json::array({false})})),
+  EXPECT_EQ(yaml_of(Ordered::array({1, "two words", nullptr, Ordered::array({false})})),
             "- 1\n"
             "- two words\n"
             "- null\n"
@@ -29,12 +30,13 @@ TEST(Yaml, ScalarsMayBeItems) {
 }
 
 TEST(Yaml, WhatIsEmptyIsSaidToBe) {
-  EXPECT_EQ(yaml_of(Json{{"a", Json::object()}, {"b", Json::array()}, {"c", ""}}), "a: {}\nb: []\nc: \"\"\n");
-  EXPECT_EQ(yaml_of(Json::object()), "{}\n");
+  EXPECT_EQ(yaml_of(Ordered{{"a", Ordered::object()}, {"b", Ordered::array()}, {"c", ""}}),
+            "a: {}\nb: []\nc: \"\"\n");
+  EXPECT_EQ(yaml_of(Ordered::object()), "{}\n");
 }
 
 TEST(Yaml, WhatCouldBeTakenForSomethingElseIsQuoted) {
-  const auto scalar = [](const char* text) { return yaml_of(Json(text)); };
+  const auto scalar = [](const char* text) { return yaml_of(Ordered(text)); };
   for (const char* word : {"on",   "Off", "YES", "no",  "y",    "N",    "true",      "null", "~",  "12",
                            "0x10", "1e3", "-",   "- a", "a: b", "a #b", "127.0.0.1", "a ",   " a", "*a",
                            "&a",   "!a",  "[a]", "{a}", "%a",   "@a",   "`a`",       "'a'"}) {
