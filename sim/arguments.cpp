@@ -252,6 +252,7 @@ Setup setup_of(const Texts& texts) {
   }
   if (texts.control) {
     setup.control = texts.control;
+    setup.places.erase("control");
   }
   if (texts.speed) {
     setup.speed = of_option("--speed", *texts.speed, parse_speed);
@@ -270,8 +271,12 @@ Setup setup_of(const Texts& texts) {
   setup.watch = setup.watch || texts.watch;
   if (texts.panel) {
     setup.panel = of_option("--panel", *texts.panel == kUsualPort ? "" : *texts.panel, parse_panel);
+    setup.places.erase("panel");
   }
   write_as_told(texts.writing, setup);
+  if (texts.writing.capture) {
+    setup.places.erase("capture");
+  }
   try {
     check(setup);
   } catch (const WrongSetup& wrong_setup) {

@@ -9,6 +9,29 @@
 
 namespace ex9000::sim {
 
+namespace {
+
+/// What cannot be opened is told of with where it is asked for; `place` is empty where the command line does.
+template <class Open>
+void open_for(const std::string& place, const Open& open) {
+  const std::string where = place.empty() ? "" : place + ": ";
+  try {
+    open();
+  } catch (const std::invalid_argument& error) {
+    throw std::invalid_argument(where + error.what());
+  } catch (const std::runtime_error& error) {
+    throw std::runtime_error(where + error.what());
+  }
+}
+
+/// Of what the bus file says itself.
+std::string place_of(const Setup& setup, const std::string& key) {
+  const auto place = setup.places.find(key);
+  return place == setup.places.end() ? "" : place->second;
+}
+
+}  // namespace
+
 Session::Session(boost::asio::io_context& io, Setup setup, Print print, Print greet, ScreenOf screen)
     : io_(io),
       setup_(std::move(setup)),
@@ -30,26 +53,16 @@ Session::Session(boost::asio::io_context& io, Setup setup, Print print, Print gr
   open_control();
   open_panel();
   watch_lines();
-  if (setup_.capture) {
-    refuse_overwriting(*setup_.capture, in_use_by(setup_));  // all of which is there by now
-    capture_file_.emplace(*setup_.capture);
-    capture_ = std::make_unique<Capture>(*setup_.capture);
-  }
+  open_capture();
 }
 
 Session::~Session() = default;
 
-/// What cannot be opened is told of with where it is asked for.
 void Session::open_line(const LineSetup& line, const Print& print) {
-  const std::string where = line.place.empty() ? "" : line.place + ": ";
-  try {
+  open_for(line.place, [&] {
     lines_.push_back(std::make_unique<RunningLine>(io_, line, setup_.seed + lines_.size(),
                                                    setup_.log.value_or(LogFormat::Text), print));
-  } catch (const std::invalid_argument& error) {
-    throw std::invalid_argument(where + error.what());
-  } catch (const std::runtime_error& error) {
-    throw std::runtime_error(where + error.what());
-  }
+  });
 }
 
 void Session::open_control() {
@@ -64,9 +77,11 @@ void Session::open_control() {
   if (!setup_.control) {
     return;
   }
-  control_socket_ = std::make_unique<ControlSocket>(
-      io_, *setup_.control, [this](const std::string& command) { return carry_out(command); },
-      [this] { io_.stop(); });
+  open_for(place_of(setup_, "control"), [this] {
+    control_socket_ = std::make_unique<ControlSocket>(
+        io_, *setup_.control, [this](const std::string& command) { return carry_out(command); },
+        [this] { io_.stop(); });
+  });
 }
 
 void Session::open_panel() {
@@ -82,7 +97,8 @@ void Session::open_panel() {
         [this, i](const Frame& frame) { panel_->hear(i, frame); },
         [this, i](VirtualTime now, const std::string& text) { panel_->note(i, now, text); });
   }
-  panel_server_ = std::make_unique<PanelServer>(io_, setup_.panel->port, *panel_);
+  open_for(place_of(setup_, "panel"),
+           [this] { panel_server_ = std::make_unique<PanelServer>(io_, setup_.panel->port, *panel_); });
 }
 
 void Session::watch_lines() {
@@ -109,6 +125,17 @@ void Session::keep_watching() {
     if (!error) {
       keep_watching();
     }
+  });
+}
+
+void Session::open_capture() {
+  if (!setup_.capture) {
+    return;
+  }
+  open_for(place_of(setup_, "capture"), [this] {
+    refuse_overwriting(*setup_.capture, in_use_by(setup_));  // all of which is there by now
+    capture_file_.emplace(*setup_.capture);
+    capture_ = std::make_unique<Capture>(*setup_.capture);
   });
 }
 

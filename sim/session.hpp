@@ -52,6 +52,7 @@ class Session {
   void end_by_the_clock();
   void make_files_and_greet(std::vector<const EepromFile*>& made);
   void open_panel();
+  void open_capture();
   void watch_lines();
   void keep_watching();
   Control::Reply carry_out(const std::string& command);

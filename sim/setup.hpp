@@ -3,6 +3,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <map>
 #include <optional>
 #include <stdexcept>
 #include <string>
@@ -42,6 +43,8 @@ struct Writing {
 
 struct Setup : Writing {
   std::string file;                    ///< the bus file that it is from; empty: a command line
+  /// By key, where that file says so, `bus.json:2: control`; none: it does not.
+  std::map<std::string, std::string> places;
   std::vector<LineSetup> lines;        ///< at least one
   std::optional<std::string> control;  ///< where to make the control socket
   std::optional<PanelSetup> panel;     ///< the page for a browser; none: nobody serves it

@@ -217,6 +217,7 @@ Setup read_setup(const Node& root) {
   Setup setup;
   root.members("lines, control, panel, watch, log, capture and seed", [&](const std::string& key,
                                                                           const Node& value) {
+    setup.places[key] = value.place();
     if (key == "lines") {
       value.elements([&](const Node& line) { read_line(line, setup); });
     } else if (key == "control") {

@@ -200,6 +200,27 @@ TEST(Lines, WhatCannotBeOpenedIsToldOfWithWhereItIsAskedFor) {
   EXPECT_TRUE(has(finished.error, "no/such/folder")) << finished.error;
 }
 
+TEST(Lines, SoIsWhatBelongsToAllLinesUnlessTheCommandLineAsksForIt) {
+  const SimulatorProcess other({"EX9042D", "--panel", "0"});
+  const std::string address = other.output().substr(0, other.output().find("/\n"));
+  const std::string port = address.substr(address.rfind(':') + 1);
+  const std::pair<std::string, std::string> cases[] = {
+      {"control", "no/such/folder"}, {"capture", "no/such/folder"}, {"panel", port}};
+  for (const auto& [key, wrong] : cases) {
+    const Directory directory;
+    const BusFile file("{\n\"" + key + "\": \"" + wrong +
+                       "\", \"lines\": [{\"tcp\": 0, \"modules\": [{\"model\": \"EX9042D\"}]}]}");
+    const Finished finished = run({simulator_path(), file.path()}, directory.path());
+    EXPECT_EQ(finished.status, 2);
+    EXPECT_EQ(
+        finished.error.rfind("ex9000-sim: " + file.path() + ":2: " + key + ": --" + key + " " + wrong, 0), 0U)
+        << finished.error;
+    const Finished asked = run({simulator_path(), file.path(), "--" + key, wrong}, directory.path());
+    EXPECT_EQ(asked.error.rfind("ex9000-sim: --" + key + " " + wrong, 0), 0U) << asked.error;
+    EXPECT_TRUE(fs::is_empty(directory.path()));
+  }
+}
+
 TEST(Lines, AWrongFileIsRefusedInOneLineThatNamesItItsLineAndTheKey) {
   const Directory directory;
   const BusFile file("{\"lines\": [{\"modules\": [{\"model\": \"EX9042D\",\n\"colour\": 1}]}]}");
