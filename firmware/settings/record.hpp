@@ -51,6 +51,10 @@ bool is_good(const Model& model, const Record& record);
 /// Of a good one.
 const Settings& settings_in(const Record& record);
 std::uint16_t sequence_in(const Record& record);
+/// Sequence numbers wrap; the later one is less than half the range ahead.
+constexpr bool is_later(std::uint16_t a, std::uint16_t b) {
+  return static_cast<std::uint16_t>(a - b) - 1U < 0x7FFFU;
+}
 
 /// Whether the memory was never written here: an erased EEPROM reads all FF.
 bool is_blank(const Record& record);

@@ -15,11 +15,6 @@ constexpr std::uint16_t address_of(std::uint8_t copy) {
   return static_cast<std::uint16_t>(copy * kCopyDistance);
 }
 
-/// Sequence numbers wrap; the later one is less than half the range ahead.
-constexpr bool is_later(std::uint16_t a, std::uint16_t b) {
-  return static_cast<std::uint16_t>(a - b) - 1U < 0x7FFFU;
-}
-
 }  // namespace
 
 void SettingsStore::begin_loading() {

@@ -89,13 +89,10 @@ Stored stored_of(const SimulatedModule& module) {
                 record.bytes.begin());
     stored.blank = stored.blank && is_blank(record);
     stored.good[copy] = is_good(module.model(), record);
-    if (stored.good[copy]) {
-      const auto ahead =
-          !stored.current
-              ? std::uint16_t{1}
-              : static_cast<std::uint16_t>(sequence_in(record) - sequence_in(stored.copies[*stored.current]));
-      constexpr std::uint16_t kHalfRange = 0x8000;
-      stored.current = ahead < kHalfRange ? copy : *stored.current;
+    const bool later =
+        !stored.current || is_later(sequence_in(record), sequence_in(stored.copies[*stored.current]));
+    if (stored.good[copy] && later) {
+      stored.current = copy;
     }
   }
   stored.settings =

@@ -14,6 +14,7 @@
 #include <utility>
 
 #include "sim/panel/page_files.hpp"
+#include "sim/ports/listening.hpp"
 
 namespace ex9000::sim {
 
@@ -37,33 +38,7 @@ constexpr std::chrono::seconds kIdle{20};
 /// Between two looks: half of what is to be on the screen within 100 ms, less what goes into drawing it.
 constexpr std::chrono::milliseconds kLookEvery{30};
 
-[[noreturn]] void refuse(std::uint16_t port, const error_code& error) {
-  throw std::invalid_argument("--panel " + std::to_string(port) + ": " +
-                              (error == boost::asio::error::address_in_use
-                                   ? std::string("another program listens there; end it or name another port")
-                                   : error.message() + "; name another port"));
-}
-
-error_code try_to_listen(tcp::acceptor& acceptor, std::uint16_t port) {
-  const tcp::endpoint endpoint(boost::asio::ip::address_v4::loopback(), port);
-  error_code error;
-  acceptor.open(endpoint.protocol(), error);
-  // What connections of a dead process still linger must not keep this one from listening.
-  if (!error) {
-    acceptor.set_option(tcp::acceptor::reuse_address(true), error);
-  }
-  if (!error) {
-    acceptor.bind(endpoint, error);
-  }
-  if (!error) {
-    acceptor.listen(tcp::acceptor::max_listen_connections, error);
-  }
-  if (error) {
-    error_code ignored;
-    acceptor.close(ignored);
-  }
-  return error;
-}
+tcp::endpoint here(std::uint16_t port) { return {boost::asio::ip::address_v4::loopback(), port}; }
 
 /// As it stands, for whoever is one too many: nothing of it is kept.
 constexpr std::string_view kTurnedAway =
@@ -104,12 +79,13 @@ class PanelServer::Listener : public std::enable_shared_from_this<PanelServer::L
       : acceptor_(io), next_try_(io), next_look_(io), source_(source) {}
 
   void listen(std::optional<std::uint16_t> port) {
-    error_code error = try_to_listen(acceptor_, port.value_or(kDefaultPort));
+    error_code error = listen_at(acceptor_, here(port.value_or(kDefaultPort)));
     if (error && !port) {
-      error = try_to_listen(acceptor_, 0);
+      error = listen_at(acceptor_, here(0));
     }
     if (error) {
-      refuse(port.value_or(kDefaultPort), error);
+      throw std::invalid_argument("--panel " + std::to_string(port.value_or(kDefaultPort)) + ": " +
+                                  why_not_listening(error, "name another port"));
     }
     port_ = acceptor_.local_endpoint().port();
   }

@@ -7,6 +7,8 @@
 #include <stdexcept>
 #include <utility>
 
+#include "sim/ports/listening.hpp"
+
 namespace ex9000::sim {
 
 namespace {
@@ -49,23 +51,8 @@ struct TcpPort::Client {
 
 TcpPort::TcpPort(boost::asio::io_context& io, const TcpAddress& address)
     : io_(io), acceptor_(io), next_try_(io) {
-  const tcp::endpoint endpoint = endpoint_of(io, address);
-  boost::system::error_code error;
-  acceptor_.open(endpoint.protocol(), error);
-  // What connections of a dead process still linger must not keep this one from listening.
-  if (!error) {
-    acceptor_.set_option(tcp::acceptor::reuse_address(true), error);
-  }
-  if (!error) {
-    acceptor_.bind(endpoint, error);
-  }
-  if (!error) {
-    acceptor_.listen(tcp::acceptor::max_listen_connections, error);
-  }
-  if (error) {
-    refuse(address, error == boost::asio::error::address_in_use
-                        ? "another program listens there; end it or name another port"
-                        : error.message() + "; name an address of this machine and a port that may be had");
+  if (const boost::system::error_code error = listen_at(acceptor_, endpoint_of(io, address))) {
+    refuse(address, why_not_listening(error, "name an address of this machine and a port that may be had"));
   }
 }
 
