@@ -140,7 +140,7 @@ auto of_option(const char* option, const std::string& text, Parse parse) {
 
 void write_as_told(const WritingTexts& texts, Writing& writing) {
   if (texts.log) {
-    writing.log = of_option("--log", *texts.log, parse_log_format);
+    writing.log = of_option("--log", *texts.log, parse_log);
   }
   if (texts.capture) {
     writing.capture = texts.capture;
@@ -292,7 +292,7 @@ void add_writing(CLI::App& app, WritingTexts& texts) {
          "print the bus, a line a frame: time, direction, bytes, meaning; json: an object a line, for "
          "machines, and nothing else on standard output")
       ->multi_option_policy(CLI::MultiOptionPolicy::TakeLast)  // behind those that a script has
-      ->type_name("[text|json]");
+      ->type_name("[text|json|off]");
   app.add_option("--capture", texts.capture,
                  "keep what was on the lines in this pcapng file, for Wireshark; what it held is gone")
       ->type_name("FILE");
@@ -312,7 +312,7 @@ std::vector<std::string> with_optional_values(int argc, const char* const* argv)
     const bool log = words.back() == "--log";
     const bool panel = words.back() == "--panel";
     if (log || panel) {
-      const bool named = log ? next == "text" || next == "json" : is_number(next);
+      const bool named = next == "off" || (log ? next == "text" || next == "json" : is_number(next));
       words.back() += named ? "=" + next : log ? "=text" : std::string("=") + kUsualPort;
       i += named ? 1 : 0;
     }
@@ -478,7 +478,7 @@ Parsed parse_arguments(int argc, const char* const* argv) {
                  "serve a page that shows the modules and the bus, for a browser on this machine (default: "
                  "9042, or any free port where that is taken)")
       ->multi_option_policy(CLI::MultiOptionPolicy::TakeLast)
-      ->type_name("[PORT]");
+      ->type_name("[PORT|off]");
   app.add_flag("--watch", texts.watch,
                "show the modules on the terminal, each with its LEDs; where standard output is none, a line "
                "for each change");

@@ -11,6 +11,7 @@
 #include <csignal>
 #include <cstring>
 #include <iostream>
+#include <optional>
 #include <stdexcept>
 #include <string>
 #include <thread>
@@ -19,6 +20,7 @@
 #include "sim/play/play.hpp"
 #include "sim/play_record.hpp"
 #include "sim/session.hpp"
+#include "sim/watch/terminal_output.hpp"
 
 namespace ex9000::sim {
 
@@ -84,7 +86,11 @@ void run(const Setup& setup) {
   add_signals(signals);  // before anything is made that is to be removed again
   signals.async_wait([&io](const boost::system::error_code& /*error*/, int /*signal*/) { io.stop(); });
   const auto greet = [](const std::string& text) { std::cerr << text << std::endl; };
-  Session session(io, setup, print_line, greet, screen_of_standard_output);
+  std::optional<TerminalOutput> terminal;
+  if (setup.watch) {
+    terminal.emplace();
+  }
+  Session session(io, setup, print_line, greet, terminal && terminal->is_open() ? &*terminal : nullptr);
   session.start();
   if (setup.speed && has_instant_line(setup)) {
     run_wakefully(io);

@@ -32,7 +32,7 @@ std::string place_of(const Setup& setup, const std::string& key) {
 
 }  // namespace
 
-Session::Session(boost::asio::io_context& io, Setup setup, Print print, Print greet, ScreenOf screen)
+Session::Session(boost::asio::io_context& io, Setup setup, Print print, Print greet, Terminal* terminal)
     : io_(io),
       setup_(std::move(setup)),
       print_(std::move(print)),
@@ -40,7 +40,7 @@ Session::Session(boost::asio::io_context& io, Setup setup, Print print, Print gr
       end_(io),
       next_look_(io) {
   if (setup_.watch) {
-    watch_ = std::make_unique<Watch>(std::move(screen), print_);
+    watch_ = std::make_unique<Watch>(terminal, print_);
     print_ = [this](const std::string& line) { watch_->print(line); };
   }
   for (const LineSetup& line : setup_.lines) {

@@ -28,9 +28,9 @@ class Session {
 
   /// Opens all that `setup` names. Throws std::invalid_argument or std::runtime_error, one line; what was
   /// opened is given back then, and no file has been made or changed. `print` takes the log and, unless
-  /// machines read that, the greeting; `greet` takes it then. `screen` tells of the terminal behind `print`.
-  /// `io` lives as long as this object.
-  Session(boost::asio::io_context& io, Setup setup, Print print, Print greet, ScreenOf screen);
+  /// machines read that, the greeting; `greet` takes it then. `terminal` is where `print` prints, null where
+  /// that is none. It and `io` live as long as this object.
+  Session(boost::asio::io_context& io, Setup setup, Print print, Print greet, Terminal* terminal);
   ~Session();
   Session(const Session&) = delete;
   Session& operator=(const Session&) = delete;

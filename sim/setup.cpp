@@ -72,7 +72,7 @@ void check_speed(const Setup& setup) {
     wrong("max: there is no time to listen to the control socket; leave it out, or give a number");
   }
   if (!setup.speed && setup.panel) {
-    wrong("max: there is no time to look at the panel; leave it out, or give a number");
+    wrong("max: there is no time to look at the panel; leave it out, as panel off does, or give a number");
   }
   if (!setup.speed && !setup.lasts) {
     wrong("max: would never end; say how long it is to last with 'for'");
@@ -127,9 +127,12 @@ bool parse_line_kind(const std::string& text) {
   return text == "instant";
 }
 
-LogFormat parse_log_format(const std::string& text) {
+std::optional<LogFormat> parse_log(const std::string& text) {
+  if (text == "off") {
+    return std::nullopt;
+  }
   if (text != "text" && text != "json") {
-    throw std::invalid_argument("'" + text + "' wants text or json");
+    throw std::invalid_argument("'" + text + "' wants text, json or off");
   }
   return text == "json" ? LogFormat::Json : LogFormat::Text;
 }
@@ -144,14 +147,18 @@ std::uint64_t parse_seed(const std::string& text) {
   return seed;
 }
 
-PanelSetup parse_panel(const std::string& text) {
+std::optional<PanelSetup> parse_panel(const std::string& text) {
+  if (text == "off") {
+    return std::nullopt;
+  }
   PanelSetup panel;
   if (!text.empty()) {
     std::uint16_t port = 0;
     const char* const end = text.data() + text.size();
     const auto [rest, error] = std::from_chars(text.data(), end, port);
     if (error != std::errc() || rest != end) {
-      throw std::invalid_argument("'" + text + "' wants a port from 0 to 65535, 0 being any that is free");
+      throw std::invalid_argument("'" + text +
+                                  "' wants a port from 0 to 65535, 0 being any that is free, or off");
     }
     panel.port = port;
   }

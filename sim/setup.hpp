@@ -76,9 +76,10 @@ std::uint32_t parse_line_rate(const std::string& text);
 /// Whether bytes cost no time.
 bool parse_line_kind(const std::string& text);
 std::uint64_t parse_seed(const std::string& text);
-LogFormat parse_log_format(const std::string& text);
-/// Empty: the usual one.
-PanelSetup parse_panel(const std::string& text);
+/// Nothing: `off`.
+std::optional<LogFormat> parse_log(const std::string& text);
+/// Empty: at the usual port; nothing: `off`.
+std::optional<PanelSetup> parse_panel(const std::string& text);
 /// Nothing: `max`.
 std::optional<double> parse_speed(const std::string& text);
 

@@ -215,30 +215,30 @@ void read_line(const Node& node, Setup& setup) {
 
 Setup read_setup(const Node& root) {
   Setup setup;
-  root.members("lines, control, panel, watch, log, capture and seed", [&](const std::string& key,
-                                                                          const Node& value) {
-    setup.places[key] = value.place();
-    if (key == "lines") {
-      value.elements([&](const Node& line) { read_line(line, setup); });
-    } else if (key == "control") {
-      setup.control = value.text();
-    } else if (key == "watch") {
-      setup.watch = value.flag();
-    } else if (key == "panel") {
-      const std::string panel = value.setting();
-      setup.panel = panel == "off" ? std::nullopt : std::optional(parse_panel(panel == "on" ? "" : panel));
-    } else if (key == "log") {
-      const std::string log = value.setting();
-      setup.log = log == "off" ? std::nullopt : std::optional(parse_log_format(log == "on" ? "text" : log));
-    } else if (key == "capture") {
-      setup.capture = value.text();
-    } else if (key == "seed") {
-      setup.seed = parse_seed(value.number_or_text());
-    } else {
-      return false;
-    }
-    return true;
-  });
+  root.members("lines, control, panel, watch, log, capture and seed",
+               [&](const std::string& key, const Node& value) {
+                 setup.places[key] = value.place();
+                 if (key == "lines") {
+                   value.elements([&](const Node& line) { read_line(line, setup); });
+                 } else if (key == "control") {
+                   setup.control = value.text();
+                 } else if (key == "watch") {
+                   setup.watch = value.flag();
+                 } else if (key == "panel") {
+                   const std::string panel = value.setting();
+                   setup.panel = parse_panel(panel == "on" ? "" : panel);
+                 } else if (key == "log") {
+                   const std::string log = value.setting();
+                   setup.log = parse_log(log == "on" ? "text" : log);
+                 } else if (key == "capture") {
+                   setup.capture = value.text();
+                 } else if (key == "seed") {
+                   setup.seed = parse_seed(value.number_or_text());
+                 } else {
+                   return false;
+                 }
+                 return true;
+               });
   if (setup.lines.empty()) {
     root.refuse("lines", "a bus wants at least one line; --example prints one");
   }

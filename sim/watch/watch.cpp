@@ -40,28 +40,38 @@ void Watch::add_line(std::string name, const Line& line, std::function<VirtualTi
 }
 
 void Watch::look() {
-  const std::optional<Screen> screen = screen_of_();
-  if (!screen) {
-    painted_.clear();
+  if (terminal_ == nullptr) {
     tell_changes();
     return;
   }
+  if (!terminal_->keeps_up()) {
+    return;
+  }
+  const Screen screen = terminal_->screen();
   // Of another size it has moved what stood there, nobody knows where to.
-  const bool moved = !painted_.empty() && !(*screen == screen_);
-  screen_ = *screen;
+  const bool moved = !painted_.empty() && !(screen == screen_);
+  screen_ = screen;
   const std::vector<std::string> faces = painting();
   if (moved || faces != painted_) {
-    // In one write, so that nobody sees it half done.
-    print_((moved              ? std::string(kEraseAll)
-            : painted_.empty() ? std::string()
-                               : back_over(painted_.size())) +
-           joined(faces));
+    put((moved              ? std::string(kEraseAll)
+         : painted_.empty() ? std::string()
+                            : back_over(painted_.size())) +
+        joined(faces));
     painted_ = faces;
   }
 }
 
 void Watch::print(const std::string& lines) {
-  print_(painted_.empty() ? lines : back_over(painted_.size()) + lines + "\n" + joined(painted_));
+  put(painted_.empty() ? lines : back_over(painted_.size()) + lines + "\n" + joined(painted_));
+}
+
+/// On a terminal in one write, so that nobody sees it half done.
+void Watch::put(const std::string& lines) {
+  if (terminal_ == nullptr) {
+    print_(lines);
+  } else {
+    terminal_->write(lines + "\n");
+  }
 }
 
 /// As many modules as there is room for, with a row for the cursor, and one to tell that there are more.

@@ -10,7 +10,7 @@
 
 #include "sim/face/face.hpp"
 #include "sim/line.hpp"
-#include "sim/watch/screen.hpp"
+#include "sim/watch/terminal.hpp"
 
 namespace ex9000::sim {
 
@@ -20,12 +20,12 @@ class Watch {
   /// Takes lines, without the last one's end.
   using Print = std::function<void(const std::string& lines)>;
 
-  /// `screen` tells of the terminal that `print` prints on, each time it is asked.
-  Watch(ScreenOf screen, Print print) : screen_of_(std::move(screen)), print_(std::move(print)) {}
+  /// Null: there is no terminal, and `print` takes lines. It lives as long as this.
+  Watch(Terminal* terminal, Print print) : terminal_(terminal), print_(std::move(print)) {}
 
   /// Before `look`. `line` lives as long as this, and `present` tells its time; an empty name is not shown.
   void add_line(std::string name, const Line& line, std::function<VirtualTime()> present);
-  /// Shows what has changed since the last look.
+  /// Shows what has changed since the last look; not on a terminal that does not keep up.
   void look();
   /// Prints lines of something else: above the faces, which stay below all.
   void print(const std::string& lines);
@@ -41,8 +41,9 @@ class Watch {
   [[nodiscard]] std::vector<std::string> painting() const;
   [[nodiscard]] std::vector<std::vector<std::string>> all_faces() const;
   void tell_changes();
+  void put(const std::string& lines);
 
-  ScreenOf screen_of_;
+  Terminal* terminal_;
   Print print_;
   std::vector<Watched> lines_;
   Screen screen_;                     ///< as it was when it was painted

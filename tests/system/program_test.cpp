@@ -135,7 +135,7 @@ TEST(Program, WrongArgumentsGiveOneLineThatNamesThemExitStatus2AndLeaveNothingBe
       {{"EX9042D", "--capture", "."}, "--capture .", "path"},
       {{"EX9042D", "--capture", "a", "--control", "/no/such/place/ctl"}, "--control", "path"},
       {{"EX9042D,eeprom=/no/such/place/bin", "--capture", "a"}, "eeprom=/no/such/place/bin", "path"},
-      {{"EX9042D", "--log=xml"}, "--log: 'xml'", "text or json"},
+      {{"EX9042D", "--log=xml"}, "--log: 'xml'", "text, json or off"},
       {{"EX9042D,eeprom=/no/such/place/bin"}, "eeprom=/no/such/place/bin", "path"},
       {{"describe", "EX1"}, "'EX1'", "--models"},
       {{"describe", "--format", "yaml"}, "--format yaml", "home-assistant"},
@@ -245,52 +245,6 @@ TEST(Program, AnInstalledProgramRunsFromWhereItIsPut) {
   const Finished installed = run({"cmake", "--install", EX9000_BUILD, "--prefix", directory.path()});
   EXPECT_EQ(installed.status, 0) << installed.error;
   EXPECT_EQ(run({directory.path() + "/bin/ex9000-sim", "--version"}, "/").output, "ex9000-sim D01.00\n");
-}
-
-/// In a terminal that takes UTF-8, of so many rows and columns, by `script`.
-std::string in_a_terminal(const std::string& settings, const std::string& arguments) {
-  const Finished finished = run(
-      {"script", "-qec",
-       "stty -opost " + settings + "; TERM=xterm LC_ALL=C.UTF-8 exec " + simulator_path() + " " + arguments,
-       "/dev/null"});
-  EXPECT_EQ(finished.status, 0) << finished.output;
-  return finished.output;
-}
-
-TEST(Program, ShowsModulesInATerminalAndRepaintsThem) {
-  const std::string shown =
-      in_a_terminal("rows 7 cols 30", "EX9052D --watch --speed max --for 200ms --input '1 3 square 200ms'");
-  const std::string head = "1  EX9052D     9052    01 DCON\n   DI      0  1  2  3  4  5  6\n";
-  EXPECT_EQ(shown.substr(shown.find("Ctrl-C")), "Ctrl-C ends it\n" + head +
-                                                    "           ○  ○  ○  ○  ○  ○  ○\n"
-                                                    "   counters 0 0 0 0 0 0 0 0\n"
-                                                    "   latched high 00, low 00\n"
-                                                    "   host watchdog off\n"
-                                                    "\x1b[6F\x1b[J" +
-                                                    head +
-                                                    "           ○  ○  ○  ○  ○  ○  ○\n"
-                                                    "   counters 0 0 0 1 0 0 0 0\n"
-                                                    "   latched high 08, low 08\n"
-                                                    "   host watchdog off\n"
-                                                    "\x1b[6F\x1b[J" +
-                                                    head +
-                                                    "           ○  ○  ○  ●  ○  ○  ○\n"
-                                                    "   counters 0 0 0 1 0 0 0 0\n"
-                                                    "   latched high 08, low 08\n"
-                                                    "   host watchdog off\n");
-}
-
-TEST(Program, TellsChangesWhereTheOutputIsNoTerminal) {
-  const Finished finished = run({simulator_path(), "EX9052D", "--watch", "--speed", "max", "--for", "250ms",
-                                 "--input", "1 3 square 200ms"});
-  EXPECT_EQ(finished.status, 0) << finished.error;
-  EXPECT_EQ(finished.output.find('\x1b'), std::string::npos);
-  EXPECT_NE(finished.output.find("    0.100000  - 1 EX9052D: inputs 00\n"), std::string::npos);
-  EXPECT_NE(finished.output.find("\n    0.200000  - 1 EX9052D: counters 0 0 0 1 0 0 0 0\n"
-                                 "    0.200000  - 1 EX9052D: latched high 08, low 08\n"
-                                 "    0.300000  - 1 EX9052D: inputs 08\n"),
-            std::string::npos)
-      << finished.output;
 }
 
 TEST(Program, TellsItsVersionModelsAndHelp) {

@@ -101,7 +101,7 @@ TEST(Arguments, TheLogIsForPeopleOrForMachines) {
   EXPECT_EQ(all_accepted({"EX9042D", "--log", "json"}).log, LogFormat::Json);
   EXPECT_EQ(all_accepted({"EX9042D", "--log=json"}).log, LogFormat::Json);
   EXPECT_EQ(all_accepted({"EX9042D", "--log", "--strict-gaps"}).log, LogFormat::Text);
-  expect_error({"EX9042D", "--log=xml"}, "--log: 'xml'", "text or json");
+  expect_error({"EX9042D", "--log=xml"}, "--log: 'xml'", "text, json or off");
   expect_error({"EX9042D", "--log="}, "--log", "--help");
 }
 
@@ -135,6 +135,9 @@ TEST(Arguments, TheModulesMayBeWatched) {
 TEST(Arguments, OfSeveralPanelsAndLogsTheLastCounts) {
   EXPECT_EQ(all_accepted({"EX9042D", "--panel", "--log", "--panel", "8080"}).panel->port, 8080);
   EXPECT_EQ(all_accepted({"EX9042D", "--panel", "--log", "--log", "json"}).log, LogFormat::Json);
+  const auto without = all_accepted({"EX9042D", "--panel", "--log", "--panel", "off", "--log", "off"});
+  EXPECT_FALSE(without.panel);
+  EXPECT_FALSE(without.log);
   expect_error({"EX9042D", "--tcp", "0", "--tcp", "0"}, "--tcp", "--help");
 }
 
@@ -416,11 +419,11 @@ TEST(Arguments, AWrongDescriptionIsRefused) {
 TEST(Arguments, HelpTellsOfEveryOptionAndKey) {
   const std::string text = printed({"--help"});
   for (const char* word :
-       {"MODULE",        "[text|json]", "--capture", "--pty",          "--baud",    "--log",
-        "--strict-gaps", "--input",     "--fault",   "--seed",         "--example", "--models",
-        "describe",      "--format",    "--address", "home-assistant", "node-red",  "wb-mqtt-serial",
-        "--version",     "protocol=",   "baud=",     "checksum=",      "edge=",     "name=",
-        "init=",         "@ADDR"}) {
+       {"MODULE",        "[text|json|off]", "--capture", "--pty",          "--baud",    "--log",
+        "--strict-gaps", "--input",         "--fault",   "--seed",         "--example", "--models",
+        "describe",      "--format",        "--address", "home-assistant", "node-red",  "wb-mqtt-serial",
+        "--panel",       "--watch",         "--version", "protocol=",      "baud=",     "checksum=",
+        "edge=",         "name=",           "init=",     "@ADDR"}) {
     EXPECT_NE(text.find(word), std::string::npos) << word;
   }
 }

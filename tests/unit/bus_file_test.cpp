@@ -202,7 +202,7 @@ INSTANTIATE_TEST_SUITE_P(
         Wrong{"{\n\"lines\": {}}", "bus.json:2: lines: wants a list, [ ]"},
         Wrong{"{\n\"line\": []}",
               "bus.json:2: line: no such key; there are lines, control, panel, watch, log, capture and seed"},
-        Wrong{"{\n\"log\": 1}", "bus.json:2: log: '1' wants text or json"},
+        Wrong{"{\n\"log\": 1}", "bus.json:2: log: '1' wants text, json or off"},
         Wrong{"{\n\"panel\": 70000}", "bus.json:2: panel: '70000' wants a port from 0 to 65535"},
         Wrong{"{\n\"panel\": []}", "bus.json:2: panel: wants a text in quotes, a whole number"},
         Wrong{"{\n\"watch\": \"yes\"}", "bus.json:2: watch: wants true or false"},

@@ -4,8 +4,12 @@
 #include <gtest/gtest.h>
 
 #include <memory>
+#include <optional>
 #include <string>
+#include <utility>
 #include <vector>
+
+#include "sim/watch/terminal_output.hpp"
 
 namespace ex9000::sim {
 namespace {
@@ -16,6 +20,17 @@ constexpr const char* kRelays = "1  EX9067D     9067    01 DCON 9600            
 constexpr const char* kLabels = "   RL      1  2  3  4  5  6  7";
 constexpr const char* kAllOff = "           -  -  -  -  -  -  -";
 constexpr const char* kRest = "   power-on 0000, safe 0000\n   host watchdog off";
+
+class FakeTerminal final : public Terminal {
+ public:
+  [[nodiscard]] Screen screen() const override { return shape; }
+  void write(const std::string& text) override { written.push_back(text); }
+  bool keeps_up() override { return takes; }
+
+  Screen shape;
+  bool takes = true;
+  Prints written;
+};
 
 class WatchTest : public ::testing::Test {
  protected:
@@ -28,23 +43,30 @@ class WatchTest : public ::testing::Test {
         std::make_unique<Line>(specs, kPaced, [](std::uint8_t /*byte*/, ByteStatus /*status*/) {}));
     Line& line = *lines_.back();
     line.come_up();
-    watch_.add_line(name, line, [&line] { return line.clock().virtual_now(); });
+    watch_->add_line(name, line, [&line] { return line.clock().virtual_now(); });
+  }
+  void without_a_terminal() {
+    watch_.emplace(nullptr, [this](const std::string& text) { terminal_.written.push_back(text); });
   }
   SimulatedModule& module(std::size_t index = 0) { return lines_[0]->module(index); }
   Prints looked() {
-    prints_.clear();
-    watch_.look();
-    return prints_;
+    terminal_.written.clear();
+    watch_->look();
+    return terminal_.written;
+  }
+  Prints printed(const std::string& line) {
+    terminal_.written.clear();
+    watch_->print(line);
+    return terminal_.written;
   }
 
-  std::optional<Screen> screen_ = Screen();
-  Prints prints_;
-  Watch watch_{[this] { return screen_; }, [this](const std::string& text) { prints_.push_back(text); }};
+  FakeTerminal terminal_;
+  std::optional<Watch> watch_{std::in_place, &terminal_, [](const std::string& /*text*/) { FAIL(); }};
   std::vector<std::unique_ptr<Line>> lines_;
 };
 
 std::string relays(const std::string& lamps) {
-  return std::string(kRelays) + "\n" + kLabels + "\n" + lamps + "\n" + kRest;
+  return std::string(kRelays) + "\n" + kLabels + "\n" + lamps + "\n" + kRest + "\n";
 }
 
 TEST_F(WatchTest, PaintsAndRepaintsInPlaceWhatHasChanged) {
@@ -55,61 +77,79 @@ TEST_F(WatchTest, PaintsAndRepaintsInPlaceWhatHasChanged) {
   // Five lines up, to the first column, and away with what is below.
   EXPECT_EQ(looked(),
             (Prints{"\x1b[5F\x1b[J1  EX9067D     9067                            LED - off      power off\n" +
-                    std::string(kLabels) + "\n" + kAllOff + "\n   power-on 0000, safe 0000"}));
+                    std::string(kLabels) + "\n" + kAllOff + "\n   power-on 0000, safe 0000\n"}));
   module().power(true);
   EXPECT_EQ(looked()[0].substr(0, 7), "\x1b[4F\x1b[J");
 }
 
 TEST_F(WatchTest, PrintsWhatElseThereIsAboveTheFaces) {
   watch({"EX9067D"});
-  watch_.print("a greeting");
-  EXPECT_EQ(prints_, Prints{"a greeting"});
+  EXPECT_EQ(printed("a greeting"), Prints{"a greeting\n"});
   looked();
-  prints_.clear();
-  watch_.print("a line of the log");
-  EXPECT_EQ(prints_, Prints{"\x1b[5F\x1b[Ja line of the log\n" + relays(kAllOff)});
+  EXPECT_EQ(printed("a line of the log"), Prints{"\x1b[5F\x1b[Ja line of the log\n" + relays(kAllOff)});
 }
 
 TEST_F(WatchTest, HasRoundLampsWhereTheTerminalHas) {
-  screen_->utf8 = true;
+  terminal_.shape.utf8 = true;
   watch({"EX9067D"});
   EXPECT_NE(looked()[0].find("●"), std::string::npos);
-  EXPECT_NE(prints_[0].find("○  ○  ○  ○  ○  ○  ○"), std::string::npos);
+  EXPECT_NE(terminal_.written[0].find("○  ○  ○  ○  ○  ○  ○"), std::string::npos);
 }
 
 TEST_F(WatchTest, LeavesOutModulesThatTheTerminalHasNoRoomFor) {
   const std::string left_out = " more, for which this terminal has no room";
   watch({"EX9067D", "EX9067D@02", "EX9067D@03", "EX9067D@04"});
-  screen_->rows = 21;  // five lines each, and the cursor
+  terminal_.shape.rows = 21;  // five lines each, and the cursor
   EXPECT_EQ(looked()[0].find(left_out), std::string::npos);
-  screen_->rows = 20;
+  terminal_.shape.rows = 20;
   EXPECT_NE(looked()[0].find("\n1" + left_out), std::string::npos);
-  screen_->rows = 12;  // two of them, the line that says so, the cursor
+  terminal_.shape.rows = 12;  // two of them, the line that says so, the cursor
   const std::string two = looked()[0];
   EXPECT_NE(two.find("\n2  EX9067D"), std::string::npos);
   EXPECT_EQ(two.find("\n3  EX9067D"), std::string::npos);
   EXPECT_NE(two.find("\n2" + left_out), std::string::npos);
-  screen_->rows = 11;
+  terminal_.shape.rows = 11;
   EXPECT_NE(looked()[0].find("\n3" + left_out), std::string::npos);
-  screen_->rows = 1;
-  EXPECT_EQ(looked()[0], "\x1b[H\x1b[J4" + left_out);
+  terminal_.shape.rows = 1;
+  EXPECT_EQ(looked()[0], "\x1b[H\x1b[J4" + left_out + "\n");
 }
 
 TEST_F(WatchTest, ShortensLinesToTheTerminal) {
-  screen_->columns = 9;
-  screen_->utf8 = true;
+  terminal_.shape.columns = 9;
+  terminal_.shape.utf8 = true;
   watch({"EX9067D"});
   module().power(false);
-  EXPECT_EQ(looked()[0], "1  EX9067\n   RL    \n         \n   power-");
-  screen_->columns = 12;
+  EXPECT_EQ(looked()[0], "1  EX9067\n   RL    \n         \n   power-\n");
+  terminal_.shape.columns = 12;
   EXPECT_NE(looked()[0].find("\n           ○\n"), std::string::npos);
 }
 
 TEST_F(WatchTest, BeginsAnewWhereTheTerminalHasAnotherSize) {
   watch({"EX9067D"});
   looked();
-  screen_->columns = 100;
+  terminal_.shape.columns = 100;
   EXPECT_EQ(looked(), Prints{"\x1b[H\x1b[J" + relays(kAllOff)});
+}
+
+TEST_F(WatchTest, LeavesATerminalAloneThatDoesNotKeepUp) {
+  watch({"EX9067D"});
+  looked();
+  terminal_.takes = false;
+  module().power(false);
+  EXPECT_EQ(looked(), Prints{});
+  module().power(true);
+  module().set_init(true);
+  terminal_.takes = true;
+  EXPECT_NE(looked()[0].find("power on, INIT*"), std::string::npos);  // how things are by then
+}
+
+TEST(TerminalOutput, KnowsUtf8HoweverItIsSpelt) {
+  for (const char* name : {"C.UTF-8", "en_US.utf8", "de_DE.UTF8", "en_GB.utf-8", "nl_NL.UTF-8@euro"}) {
+    EXPECT_TRUE(names_utf8(name)) << name;
+  }
+  for (const char* name : {"", "C", "POSIX", "en_US.ISO-8859-1"}) {
+    EXPECT_FALSE(names_utf8(name)) << name;
+  }
 }
 
 TEST_F(WatchTest, SeveralLinesHaveTheirNames) {
@@ -122,19 +162,17 @@ TEST_F(WatchTest, SeveralLinesHaveTheirNames) {
 }
 
 TEST_F(WatchTest, TellsChangesWhereThereIsNoTerminal) {
-  screen_.reset();
+  without_a_terminal();
   watch({"EX9067D", "EX9052D@02"});
   looked();
-  ASSERT_GT(prints_.size(), 2U);
-  EXPECT_EQ(prints_[0], "    0.100000  - 1 EX9067D: power on");
+  ASSERT_GT(terminal_.written.size(), 2U);
+  EXPECT_EQ(terminal_.written[0], "    0.100000  - 1 EX9067D: power on");
   EXPECT_EQ(looked(), Prints{});
   lines_[0]->bus().run_for(std::chrono::milliseconds(400));
   module(1).set_input(3, true);
   EXPECT_EQ(looked(), (Prints{"    0.500000  - 2 EX9052D: inputs 08",
                               "    0.500000  - 2 EX9052D: latched high 08, low 00"}));
-  prints_.clear();
-  watch_.print("a line of the log");
-  EXPECT_EQ(prints_, Prints{"a line of the log"});
+  EXPECT_EQ(printed("a line of the log"), Prints{"a line of the log"});
 }
 
 }  // namespace

@@ -1,0 +1,102 @@
+#include "sim/watch/terminal_output.hpp"
+
+#include <fcntl.h>
+#include <poll.h>
+#include <sys/ioctl.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cctype>
+#include <cerrno>
+#include <cstdlib>
+
+namespace ex9000::sim {
+
+namespace {
+
+constexpr std::size_t kMostWaiting = 1 << 20;
+
+std::string environment(const char* name) {
+  const char* const value = std::getenv(name);
+  return value == nullptr ? "" : value;
+}
+
+/// The first of these that says something is the one that counts (POSIX.1-2017, XBD 8.2).
+std::string locale() {
+  for (const char* variable : {"LC_ALL", "LC_CTYPE", "LANG"}) {
+    if (std::string value = environment(variable); !value.empty()) {
+      return value;
+    }
+  }
+  return "";
+}
+
+}  // namespace
+
+bool names_utf8(const std::string& locale) {
+  std::string plain;
+  for (const char character : locale) {
+    if (character != '-') {
+      plain += static_cast<char>(std::tolower(static_cast<unsigned char>(character)));
+    }
+  }
+  return plain.find("utf8") != std::string::npos;
+}
+
+TerminalOutput::TerminalOutput() {
+  if (isatty(STDOUT_FILENO) != 0 && environment("TERM") != "dumb") {
+    fd_ = open("/proc/self/fd/1", O_WRONLY | O_NONBLOCK | O_NOCTTY | O_CLOEXEC);
+  }
+}
+
+TerminalOutput::~TerminalOutput() {
+  if (is_open()) {
+    flush();
+    close(fd_);
+  }
+}
+
+Screen TerminalOutput::screen() const {
+  Screen screen;
+  winsize size{};
+  if (ioctl(fd_, TIOCGWINSZ, &size) == 0 && size.ws_row != 0 && size.ws_col != 0) {
+    screen.rows = size.ws_row;
+    screen.columns = size.ws_col;
+  }
+  screen.utf8 = names_utf8(locale());
+  return screen;
+}
+
+void TerminalOutput::write(const std::string& text) {
+  waiting_ += text;
+  flush();
+  while (waiting_.size() > kMostWaiting) {
+    pollfd ready{fd_, POLLOUT, 0};
+    poll(&ready, 1, -1);
+    flush();
+  }
+}
+
+bool TerminalOutput::keeps_up() {
+  flush();
+  return waiting_.empty();
+}
+
+/// One that is gone takes nothing any more, and a signal tells of that.
+void TerminalOutput::flush() {
+  while (!waiting_.empty()) {
+    const ssize_t taken = ::write(fd_, waiting_.data(), waiting_.size());
+    if (taken < 0 && errno == EINTR) {
+      continue;
+    }
+    if (taken < 0 && errno != EAGAIN) {
+      waiting_.clear();
+    }
+    if (taken <= 0) {
+      return;
+    }
+    waiting_.erase(0, static_cast<std::size_t>(taken));
+  }
+}
+
+}  // namespace ex9000::sim
