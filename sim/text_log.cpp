@@ -27,6 +27,6 @@ void TextLog::frame(const Frame& frame) {
   print_(line);
 }
 
-void TextLog::note(VirtualTime now, const std::string& text) { print_(stamp_text(now) + "  - " + text); }
+void TextLog::note(VirtualTime now, const std::string& text) { print_(note_text(now, text)); }
 
 }  // namespace ex9000::sim

@@ -58,4 +58,6 @@ std::string stamp_text(VirtualTime time) {
   return text.str();
 }
 
+std::string note_text(VirtualTime time, const std::string& text) { return stamp_text(time) + "  - " + text; }
+
 }  // namespace ex9000::sim

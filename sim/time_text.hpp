@@ -15,5 +15,7 @@ std::string time_text(hal::doubles::VirtualTime time);
 
 /// As logs begin their lines: seconds with six decimals, right-aligned in 12 columns.
 std::string stamp_text(hal::doubles::VirtualTime time);
+/// A line of a log that is no frame.
+std::string note_text(hal::doubles::VirtualTime time, const std::string& text);
 
 }  // namespace ex9000::sim

@@ -124,7 +124,7 @@ void Watch::tell_changes() {
       std::optional<Face>& known = watched.faces[i];
       const Face face = face_of(watched.line.module(i), now);
       for (const std::string& change : changes_text(model, known ? &*known : nullptr, face)) {
-        print_(stamp_text(now) + "  - " + who + change);
+        print_(note_text(now, who + change));
       }
       known = face;
     }
