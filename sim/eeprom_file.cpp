@@ -121,8 +121,6 @@ void EepromFile::create(const std::vector<std::uint8_t>& image) {
   }
 }
 
-void EepromFile::discard() const { unlink(path_.c_str()); }
-
 bool EepromFile::write(std::uint16_t address, Bytes bytes) const {
   const ssize_t written = pwrite(fd_, bytes.data, bytes.size, address);
   if (written >= 0 && static_cast<std::size_t>(written) < bytes.size) {

@@ -33,8 +33,6 @@ class EepromFile {
   [[nodiscard]] const std::optional<std::vector<std::uint8_t>>& found() const { return found_; }
   /// Makes the file, with all of `image` or not at all. Throws as the constructor does.
   void create(const std::vector<std::uint8_t>& image);
-  /// Takes back what `create` has made.
-  void discard() const;
   /// False where the system refuses.
   [[nodiscard]] bool write(std::uint16_t address, Bytes bytes) const;
 

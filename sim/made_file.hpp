@@ -9,13 +9,15 @@
 
 namespace ex9000::sim {
 
-/// What was not there before this object is removed with it, unless it is kept.
+inline bool is_there(const std::string& path) {
+  struct stat status {};
+  return lstat(path.c_str(), &status) == 0;
+}
+
+/// What was not there before is removed with this object, unless it is kept.
 class MadeFile {
  public:
-  explicit MadeFile(std::string path) : path_(std::move(path)) {
-    struct stat status {};
-    kept_ = lstat(path_.c_str(), &status) == 0;
-  }
+  MadeFile(std::string path, bool was_there) : path_(std::move(path)), kept_(was_there) {}
   ~MadeFile() {
     if (!kept_) {
       unlink(path_.c_str());

@@ -9,7 +9,7 @@ PlayRecord::PlayRecord(Writing writing, Print print)
 
 void PlayRecord::begins(const std::string& what) {
   if (writing_.capture && !capture_) {
-    capture_file_.emplace(*writing_.capture);
+    capture_file_.emplace(*writing_.capture, is_there(*writing_.capture));
     capture_ = std::make_unique<Capture>(*writing_.capture);
     capture_->begin();
   }

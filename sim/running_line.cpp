@@ -82,12 +82,12 @@ void RunningLine::renew_memories() {
   }
 }
 
-void RunningLine::make_missing_memories(std::vector<const EepromFile*>& made) {
+void RunningLine::make_missing_memories(std::list<MadeFile>& made) {
   for (std::size_t i = 0; i < line_->size(); ++i) {
     EepromFile* file = memories_[i].get();
     if (file != nullptr && !file->found()) {
       file->create(line_->module(i).memory().contents());
-      made.push_back(file);
+      made.emplace_back(file->path(), false);
     }
   }
 }

@@ -3,6 +3,7 @@
 
 #include <boost/asio/io_context.hpp>
 #include <functional>
+#include <list>
 #include <memory>
 #include <optional>
 #include <string>
@@ -13,6 +14,7 @@
 #include "sim/greeting.hpp"
 #include "sim/line.hpp"
 #include "sim/line_record.hpp"
+#include "sim/made_file.hpp"
 #include "sim/pacer.hpp"
 #include "sim/setup.hpp"
 
@@ -32,7 +34,7 @@ class RunningLine {
   /// Memories that were there follow what their modules have stored while they came up. Throws likewise.
   void renew_memories();
   /// Those that were not are made, and put behind `made`. Throws likewise.
-  void make_missing_memories(std::vector<const EepromFile*>& made);
+  void make_missing_memories(std::list<MadeFile>& made);
 
   /// What is written down of it, `start` being its begin.
   LineRecord& record() { return *record_; }

@@ -134,7 +134,7 @@ void Session::open_capture() {
   }
   open_for(place_of(setup_, "capture"), [this] {
     refuse_overwriting(*setup_.capture, in_use_by(setup_));  // all of which is there by now
-    capture_file_.emplace(*setup_.capture);
+    made_.emplace_back(*setup_.capture, is_there(*setup_.capture));
     capture_ = std::make_unique<Capture>(*setup_.capture);
   });
 }
@@ -160,20 +160,20 @@ void Session::keep_a_capture() {
   }
 }
 
-void Session::make_files_and_greet(std::vector<const EepromFile*>& made) {
+void Session::make_files_and_greet() {
   Introduced introduced;
   introduced.panel = panel_server_ ? panel_server_->address() : "";
   introduced.control = setup_.control.value_or("");
   for (const auto& running : lines_) {
-    running->make_missing_memories(made);
+    running->make_missing_memories(made_);
     introduced.lines.push_back(running->introduced());
   }
   if (capture_) {
     keep_a_capture();
   }
   (for_machines() ? greet_ : print_)(greeting(introduced));
-  if (capture_file_) {
-    capture_file_->keep();
+  for (MadeFile& file : made_) {
+    file.keep();
   }
 }
 
@@ -181,15 +181,7 @@ void Session::start() {
   for (const auto& running : lines_) {
     running->renew_memories();
   }
-  std::vector<const EepromFile*> made;
-  try {
-    make_files_and_greet(made);
-  } catch (...) {
-    for (const EepromFile* file : made) {
-      file->discard();
-    }
-    throw;
-  }
+  make_files_and_greet();
   for (const auto& running : lines_) {
     if (setup_.log) {
       running->record().print_frames();

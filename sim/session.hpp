@@ -4,6 +4,7 @@
 #include <boost/asio/io_context.hpp>
 #include <boost/asio/steady_timer.hpp>
 #include <functional>
+#include <list>
 #include <memory>
 #include <optional>
 #include <string>
@@ -36,7 +37,7 @@ class Session {
   Session& operator=(const Session&) = delete;
 
   /// Makes the files that are missing, prints the greeting, and puts the lines to work as soon as `io` runs,
-  /// which is stopped when the time of `setup` is over. Throws likewise, and leaves no file that it has made.
+  /// which is stopped when the time of `setup` is over. Throws likewise; files that it has made go with it then.
   void start();
   /// Where the lines follow no clock: all that happens in the time of `setup`, unless `io` is stopped.
   void run_as_fast_as_it_can();
@@ -50,7 +51,7 @@ class Session {
   void open_control();
   [[nodiscard]] bool ends() const;
   void end_by_the_clock();
-  void make_files_and_greet(std::vector<const EepromFile*>& made);
+  void make_files_and_greet();
   void open_panel();
   void open_capture();
   void watch_lines();
@@ -67,7 +68,7 @@ class Session {
   boost::asio::steady_timer next_look_;
   std::optional<Control> control_;
   std::unique_ptr<ControlSocket> control_socket_;
-  std::optional<MadeFile> capture_file_;
+  std::list<MadeFile> made_;  ///< until it has greeted, they go with it
   std::unique_ptr<Capture> capture_;
   std::unique_ptr<Panel> panel_;
   std::unique_ptr<PanelServer> panel_server_;
