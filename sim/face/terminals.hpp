@@ -38,6 +38,12 @@ inline std::string output_terminal(const Model& model, unsigned channel) {
   return std::string(label.prefix) + std::to_string(label.first + channel);
 }
 
+/// Whether the power's terminals have INIT* among them. All modules had once; newer ones have a slide switch
+/// at the rear instead (section 1.4 of the manuals), and of these two the manuals' first pages say so.
+inline bool has_init_terminal(const Model& model) {
+  return model.designation != "EX9043D-M" && model.designation != "EX9052D-M";
+}
+
 /// Of an input channel, from 0.
 inline std::string input_terminal(unsigned channel) { return "DI" + std::to_string(channel); }
 

@@ -2,10 +2,10 @@
 
 #include <chrono>
 
+#include "sim/face/terminals.hpp"
 #include "sim/line_error.hpp"
 #include "sim/meaning.hpp"
 #include "sim/module_spec.hpp"
-#include "sim/face/terminals.hpp"
 
 namespace ex9000::sim {
 
@@ -60,6 +60,7 @@ Message plate_layout(const Model& model) {
   for (unsigned channel = 0; channel < model.outputs; ++channel) {
     layout["outputs"].push_back(output_terminal(model, channel));
   }
+  layout["initTerminal"] = has_init_terminal(model);
   return layout;
 }
 
@@ -166,16 +167,22 @@ Message message_of(const Heard::Entry& entry, std::uint64_t number, std::size_t 
 std::optional<Asked> asked_in(const std::string& text) {
   constexpr std::size_t kLongest = 1000;
   const Message message = Message::parse(text, nullptr, false);
-  if (!message.is_object() || message.size() != 2) {
+  if (!message.is_object()) {
     return std::nullopt;
   }
   const auto id = message.find("id");
   const auto command = message.find("do");
-  if (id == message.end() || !id->is_number_unsigned() || command == message.end() || !command->is_string()) {
+  const auto undo = message.find("undo");
+  const bool undone = undo != message.end();
+  if (message.size() != (undone ? 3 : 2) || id == message.end() || !id->is_number_unsigned() ||
+      command == message.end() || !command->is_string() || (undone && !undo->is_string())) {
     return std::nullopt;
   }
-  Asked asked{id->get<std::uint64_t>(), command->get<std::string>()};
-  if (asked.command.size() > kLongest) {
+  Asked asked{id->get<std::uint64_t>(), command->get<std::string>(), std::nullopt};
+  if (undone) {
+    asked.undo = undo->get<std::string>();
+  }
+  if (asked.command.size() > kLongest || (asked.undo && asked.undo->size() > kLongest)) {
     return std::nullopt;
   }
   return asked;

@@ -7,9 +7,9 @@
 #include <string>
 #include <vector>
 
+#include "sim/face/face.hpp"
 #include "sim/faults/faults.hpp"
 #include "sim/frame_watch.hpp"
-#include "sim/face/face.hpp"
 #include "sim/panel/heard.hpp"
 
 namespace ex9000::sim {
@@ -34,8 +34,9 @@ Message message_of(const Heard::Entry& entry, std::uint64_t number, std::size_t 
 
 /// What the page asks for.
 struct Asked {
-  std::uint64_t id = 0;  ///< its own, for the reply
-  std::string command;   ///< of the control socket
+  std::uint64_t id = 0;             ///< its own, for the reply
+  std::string command;              ///< of the control socket
+  std::optional<std::string> undo;  ///< likewise: carried out when the page goes without asking for it
 };
 
 /// Nothing: `text` is no such message.

@@ -4,6 +4,7 @@
 #include <chrono>
 #include <optional>
 #include <random>
+#include <set>
 #include <string_view>
 #include <utility>
 
@@ -21,6 +22,9 @@ namespace {
 /// between two messages, and little enough to be written before a master notices.
 constexpr std::size_t kMostFrames = 250;
 constexpr std::size_t kFewestFrames = 20;
+
+/// More than anybody holds down; beyond it a page never lets go.
+constexpr std::size_t kMostHeld = 256;
 
 /// So that a page can tell a simulator that says nothing from one that has gone.
 constexpr std::chrono::seconds kHeartbeat{1};
@@ -98,18 +102,26 @@ class Panel::Viewer final : public PanelViewer {
     }
   }
 
+  /// What somebody held down when his page went is let go.
+  ~Viewer() override {
+    for (const std::string& undo : held_) {
+      static_cast<void>(carry_out(undo));
+    }
+  }
+
   bool ask(const std::string& text) override {
     const std::optional<Asked> asked = asked_in(text);
-    if (!asked) {
+    if (!asked || (asked->undo && held_.size() >= kMostHeld)) {
       return false;
     }
-    const Words words = words_of(asked->command);
-    const bool quits = !words.empty() && words[0] == "quit";
+    const std::string answer = carry_out(asked->command);
+    const bool ok = answer.rfind("ok", 0) == 0;
+    held_.erase(asked->command);
+    if (ok && asked->undo) {
+      held_.insert(*asked->undo);
+    }
     reply_ = Message();
     (*reply_)["id"] = asked->id;
-    const std::string answer = quits ? "error: no page ends the simulator; Ctrl-C where it runs does"
-                                     : panel_.carry_out_(asked->command).text;
-    const bool ok = answer.rfind("ok", 0) == 0;
     (*reply_)["ok"] = ok;
     (*reply_)["text"] = answer;
     return true;
@@ -160,6 +172,13 @@ class Panel::Viewer final : public PanelViewer {
   }
 
  private:
+  [[nodiscard]] std::string carry_out(const std::string& command) const {
+    const Words words = words_of(command);
+    return !words.empty() && words[0] == "quit"
+               ? "error: no page ends the simulator; Ctrl-C where it runs does"
+               : panel_.carry_out_(command).text;
+  }
+
   [[nodiscard]] State& state() const { return *panel_.state_; }
   [[nodiscard]] std::size_t most_frames() const {
     return std::max(kFewestFrames, kMostFrames / std::max<std::size_t>(1, state().lines.size()));
@@ -239,6 +258,7 @@ class Panel::Viewer final : public PanelViewer {
   std::uint64_t told_look_ = 0;
   std::vector<std::uint64_t> told_frames_;  ///< the next one's number, a line each
   std::optional<Message> reply_;
+  std::set<std::string> held_;  ///< what undoes what the page has asked for until further notice
   std::chrono::steady_clock::time_point told_at_;
 };
 

@@ -13,6 +13,7 @@
 #include <string_view>
 #include <utility>
 
+#include "sim/panel/loopback.hpp"
 #include "sim/panel/page_files.hpp"
 #include "sim/ports/listening.hpp"
 
@@ -27,8 +28,10 @@ using boost::asio::ip::tcp;
 using boost::system::error_code;
 
 constexpr std::uint16_t kDefaultPort = 9042;
-/// Far more than pages that somebody looks at; beyond it somebody connects and never goes.
-constexpr std::size_t kMostClients = 16;
+/// Far more than somebody looks at; beyond it somebody connects and never goes.
+constexpr std::size_t kMostPages = 16;
+/// Under way at a time besides: a browser has six, of all its pages together.
+constexpr std::size_t kMostRequests = 64;
 constexpr std::uint32_t kLongestHeader = 8192;
 constexpr std::size_t kLongestAsked = 4096;
 /// Until a request has come, and until its answer has gone.
@@ -42,34 +45,13 @@ tcp::endpoint here(std::uint16_t port) { return {boost::asio::ip::address_v4::lo
 
 /// As it stands, for whoever is one too many: nothing of it is kept.
 constexpr std::string_view kTurnedAway =
-    "HTTP/1.1 503 Service Unavailable\r\nContent-Type: text/plain\r\nContent-Length: 32\r\n"
-    "Connection: close\r\n\r\ntoo many pages are open already\n";
+    "HTTP/1.1 503 Service Unavailable\r\nContent-Type: text/plain\r\nContent-Length: 36\r\n"
+    "Connection: close\r\n\r\ntoo many requests are under way yet\n";
 
 std::string_view view_of(beast::string_view text) { return {text.data(), text.size()}; }
 
 using Request = http::request<http::empty_body>;
 using Response = http::response<http::string_body>;
-
-/// Names that a browser on this machine may know this server by. Another one, though it leads here, is a
-/// foreign site's.
-class Loopback {
- public:
-  explicit Loopback(std::uint16_t port) : port_(std::to_string(port)) {}
-
-  [[nodiscard]] bool is_host(std::string_view host) const {
-    return std::any_of(std::begin(kNames), std::end(kNames),
-                       [&](std::string_view name) { return host == std::string(name) + ":" + port_; });
-  }
-  [[nodiscard]] bool is_origin(std::string_view origin) const {
-    constexpr std::string_view kScheme = "http://";
-    return origin.substr(0, kScheme.size()) == kScheme && is_host(origin.substr(kScheme.size()));
-  }
-
- private:
-  static constexpr std::string_view kNames[] = {"127.0.0.1", "localhost"};
-
-  std::string port_;
-};
 
 }  // namespace
 
@@ -99,6 +81,7 @@ class PanelServer::Listener : public std::enable_shared_from_this<PanelServer::L
   class Client;
 
   void accept_later();
+  [[nodiscard]] std::size_t pages() const;
   void watch();
   void look_later();
   void look();
@@ -130,6 +113,8 @@ class PanelServer::Listener::Client : public std::enable_shared_from_this<Client
   }
 
   [[nodiscard]] bool is_page() const { return viewer_ != nullptr; }
+  /// One, or about to be.
+  [[nodiscard]] bool takes_a_page() const { return takes_a_page_; }
 
   /// Whatever there is to tell, unless it still reads what it was told before.
   void tell() {
@@ -188,6 +173,8 @@ class PanelServer::Listener::Client : public std::enable_shared_from_this<Client
     } else if (request.count(http::field::origin) > 1 ||
                (has_origin && !here.is_origin(view_of(origin->value()))) || (live && !has_origin)) {
       answer(http::status::forbidden, "text/plain", "another site's page\n");
+    } else if (!is_fetched_by_us(request)) {
+      answer(http::status::forbidden, "text/plain", "on another site's behalf\n");
     } else if (request.method() != http::verb::get) {
       answer(http::status::method_not_allowed, "text/plain", "GET is all there is\n");
     } else if (live && !websocket::is_upgrade(request)) {
@@ -199,6 +186,14 @@ class PanelServer::Listener::Client : public std::enable_shared_from_this<Client
     } else {
       answer(http::status::not_found, "text/plain", "no such page\n");
     }
+  }
+
+  /// Origin is not sent with everything; this is, by browsers that know it.
+  [[nodiscard]] static bool is_fetched_by_us(const Request& request) {
+    const auto fetched = request.equal_range("Sec-Fetch-Site");
+    return std::all_of(fetched.first, fetched.second, [](const auto& field) {
+      return field.value() == "same-origin" || field.value() == "none";
+    });
   }
 
   void answer(http::status status, std::string_view type, std::string_view text) {
@@ -247,6 +242,7 @@ class PanelServer::Listener::Client : public std::enable_shared_from_this<Client
   }
 
   void accept_page(const Request& request) {
+    takes_a_page_ = listener_->pages() < kMostPages;
     stream().expires_never();
     websocket::stream_base::timeout timeout{};
     timeout.handshake_timeout = kPatience;
@@ -256,13 +252,24 @@ class PanelServer::Listener::Client : public std::enable_shared_from_this<Client
     socket_.read_message_max(kLongestAsked);
     socket_.auto_fragment(false);
     socket_.async_accept(request, [self = shared_from_this()](const error_code& error) {
-      if (!error && !self->listener_->stopped_) {
+      if (error || self->listener_->stopped_) {
+        return;
+      }
+      if (!self->takes_a_page_) {
+        self->turn_away();
+      } else {
         self->buffer_.clear();
         self->viewer_ = self->listener_->source_.viewer();
         self->listener_->watch();
         self->read_asked();
       }
     });
+  }
+
+  /// A page is told of a refused WebSocket nothing but that it is refused; of a closed one, why.
+  void turn_away() {
+    socket_.async_close({websocket::close_code::try_again_later, "too many pages are open already"},
+                        [self = shared_from_this()](const error_code& /*error*/) {});
   }
 
   void read_asked() {
@@ -299,6 +306,7 @@ class PanelServer::Listener::Client : public std::enable_shared_from_this<Client
   http::request_parser<http::empty_body> parser_;
   Response response_;
   std::size_t drained_ = 0;
+  bool takes_a_page_ = false;
   std::unique_ptr<PanelViewer> viewer_;
   std::string told_;
   bool writing_ = false;
@@ -317,7 +325,7 @@ void PanelServer::Listener::accept() {
     error_code ignored;
     socket.set_option(tcp::no_delay(true), ignored);
     self->clients_.remove_if([](const auto& client) { return client.expired(); });
-    if (self->clients_.size() < kMostClients) {
+    if (self->clients_.size() - self->pages() < kMostRequests) {
       const auto client = std::make_shared<Client>(self, std::move(socket));
       self->clients_.push_back(client);
       client->read_request();
@@ -338,6 +346,13 @@ void PanelServer::Listener::accept_later() {
       self->accept();
     }
   });
+}
+
+std::size_t PanelServer::Listener::pages() const {
+  return static_cast<std::size_t>(std::count_if(clients_.begin(), clients_.end(), [](const auto& weak) {
+    const auto client = weak.lock();
+    return client && client->takes_a_page();
+  }));
 }
 
 /// Somebody has come to look.

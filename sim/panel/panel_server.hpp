@@ -21,6 +21,7 @@ class PanelViewer {
   virtual ~PanelViewer() = default;
 
   /// Takes what the page asks for; the answer is part of what is told next. False: that is no request.
+  /// What it holds down meanwhile is let go when this goes.
   virtual bool ask(const std::string& text) = 0;
   /// What it has not been told yet, as of the last look; empty: nothing.
   virtual std::string next() = 0;

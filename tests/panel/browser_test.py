@@ -74,7 +74,7 @@ class Panel(unittest.TestCase):
 
     def test_an_input_that_is_clicked_counts_over_modbus(self):
         _, master = self.show_two()
-        counted = text(INPUTS, "[aria-label='counter of DI3']", "1")
+        counted = text(INPUTS, "li:nth-child(4) .count", "1")
         self.assertEqual(master.counter(2, 3), 0)
         self.browser.click(DI3)
         self.browser.until(pressed(DI3))
@@ -94,7 +94,7 @@ class Panel(unittest.TestCase):
         self.assertEqual(master.counter(2, 3), 1)
         self.browser.click("input[value=pulse]")
         self.browser.click(DI3)
-        self.browser.until(text(INPUTS, "[aria-label='counter of DI3']", "2"))
+        self.browser.until(text(INPUTS, "li:nth-child(4) .count", "2"))
         self.assertEqual(master.counter(2, 3), 2)
 
     def test_a_host_watchdog_that_expires_is_seen(self):
@@ -318,7 +318,7 @@ MEASURE = """
     for (let last = await repaint(); !over;) { const now = await repaint(); gaps.push(now - last); last = now; }
   })();
   // What the module counts takes the longest way; it counts falling edges, one of every two clicks.
-  const counter = document.querySelector("[aria-label='2 EX9052D-M'] [aria-label='counter of DI3']");
+  const counter = document.querySelector("[aria-label='2 EX9052D-M'] li:nth-child(4) .count");
   const latch = document.querySelector("[aria-label='2 EX9052D-M'] li:nth-child(4) .latch");
   const input = document.querySelector("[aria-label='2 EX9052D-M: input DI3']");
   const began = performance.now();

@@ -5,6 +5,7 @@
 #include <string>
 
 #include "sim/control/control.hpp"
+#include "sim/panel/loopback.hpp"
 #include "sim/panel/messages.hpp"
 #include "sim/panel/panel.hpp"
 #include "tests/unit/module_bench.hpp"
@@ -168,13 +169,88 @@ TEST(PanelMessages, ARefusedCommandSaysWhyAndQuitIsOne) {
   }
 }
 
+TEST(PanelMessages, WhatAPageHoldsIsLetGoWhenItGoes) {
+  PanelBench bench("EX9055D");
+  auto page = bench.panel().viewer();
+  ASSERT_TRUE(page->ask(R"({"id": 1, "do": "1 input 3 on", "undo": "1 input 3 off"})"));
+  ASSERT_TRUE(page->ask(R"({"id": 2, "do": "1 input 4 on"})"));
+  EXPECT_EQ(bench.module().input_levels(), 0x18U);
+  page.reset();
+  EXPECT_EQ(bench.module().input_levels(), 0x10U);
+}
+
+TEST(PanelMessages, WhatAPageHasLetGoItselfIsNotLetGoAgain) {
+  PanelBench bench("EX9055D");
+  auto page = bench.panel().viewer();
+  ASSERT_TRUE(page->ask(R"({"id": 1, "do": "1 input 3 on", "undo": "1 input 3 off"})"));
+  ASSERT_TRUE(page->ask(R"({"id": 2, "do": "1 input 3 off"})"));
+  bench.module().set_input(3, true);
+  page.reset();
+  EXPECT_EQ(bench.module().input_levels(), 0x08U);
+}
+
+TEST(PanelMessages, WhatWasRefusedIsNotUndone) {
+  PanelBench bench("EX9055D");
+  auto page = bench.panel().viewer();
+  ASSERT_TRUE(page->ask(R"({"id": 1, "do": "nonsense", "undo": "1 input 3 on"})"));
+  page.reset();
+  EXPECT_EQ(bench.module().input_levels(), 0U);
+}
+
+TEST(PanelMessages, APageThatNeverLetsGoIsNoPage) {
+  PanelBench bench("EX9055D");
+  auto page = bench.panel().viewer();
+  bool taken = true;
+  for (int i = 0; taken && i < 1000; ++i) {
+    taken = page->ask(R"({"id": 1, "do": "1 input 3 on", "undo": ")" + std::to_string(i) + "\"}");
+  }
+  EXPECT_FALSE(taken);
+}
+
+TEST(PanelMessages, InitIsATerminalWhereItIsNoSwitchAtTheRear) {
+  for (const char* with : {"EX9042D-M", "EX9043D", "EX9052D", "EX9068D-M"}) {
+    EXPECT_EQ(plate_layout(*find_model(with))["initTerminal"], true) << with;
+  }
+  for (const char* without : {"EX9043D-M", "EX9052D-M"}) {
+    EXPECT_EQ(plate_layout(*find_model(without))["initTerminal"], false) << without;
+  }
+}
+
+TEST(Loopback, KnowsItsNamesWithTheirPort) {
+  const Loopback here(9042);
+  for (const std::string name : {"127.0.0.1", "localhost"}) {
+    EXPECT_TRUE(here.is_host(name + ":9042"));
+    EXPECT_TRUE(here.is_origin("http://" + name + ":9042"));
+    EXPECT_FALSE(here.is_host(name));
+    EXPECT_FALSE(here.is_host(name + ":80"));
+    EXPECT_FALSE(here.is_origin("https://" + name + ":9042"));
+  }
+  EXPECT_FALSE(here.is_host("example.org:9042"));
+}
+
+TEST(Loopback, AtTheUsualPortItMayBeLeftOut) {
+  const Loopback here(80);
+  for (const std::string name : {"127.0.0.1", "localhost"}) {
+    for (const std::string port : {"", ":80"}) {
+      EXPECT_TRUE(here.is_host(name + port));
+      EXPECT_TRUE(here.is_origin("http://" + name + port));
+    }
+    EXPECT_FALSE(here.is_host(name + ":8080"));
+    EXPECT_FALSE(here.is_origin(name));
+  }
+  EXPECT_FALSE(here.is_host("example.org"));
+}
+
 TEST(PanelMessages, WhatIsNoRequestIsTakenForNone) {
   for (const std::string text :
        {"", "x", "[]", "{}", R"({"id":1})", R"({"id":1,"do":2})", R"({"id":-1,"do":"list"})",
-        R"({"id":"1","do":"list"})", R"({"id":1,"do":"list","x":1})", R"({"id":1,"do":"list"} x)"}) {
+        R"({"id":"1","do":"list"})", R"({"id":1,"do":"list","x":1})", R"({"id":1,"do":"list"} x)",
+        R"({"id":1,"do":"list","undo":2})", R"({"id":1,"undo":"list"})", R"({"do":"list","undo":"list"})",
+        R"({"id":1,"do":"list","undo":"list","x":1})"}) {
     EXPECT_FALSE(asked_in(text)) << text;
   }
   EXPECT_FALSE(asked_in(R"({"id":1,"do":")" + std::string(1001, 'x') + "\"}"));
+  EXPECT_FALSE(asked_in(R"({"id":1,"do":"list","undo":")" + std::string(1001, 'x') + "\"}"));
   const auto asked = asked_in(R"({"id":1,"do":"list"})");
   ASSERT_TRUE(asked);
   EXPECT_EQ(asked->command, "list");

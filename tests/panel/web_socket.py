@@ -7,8 +7,14 @@ import socket
 import struct
 
 
-def open_socket(port):
-    return socket.create_connection(("127.0.0.1", port), timeout=15)
+def open_socket(port, receives=None):
+    """`receives`: bytes that it has room for, less than it usually has."""
+    connection = socket.socket()
+    connection.settimeout(15)
+    if receives:
+        connection.setsockopt(socket.SOL_SOCKET, socket.SO_RCVBUF, receives)
+    connection.connect(("127.0.0.1", port))
+    return connection
 
 
 def request(port, target="/", method="GET", host=None, headers=()):
@@ -18,9 +24,10 @@ def request(port, target="/", method="GET", host=None, headers=()):
     return ("\r\n".join([*lines, *headers]) + "\r\n\r\n").encode()
 
 
-def upgrade(port, origin="ours", **others):
+def upgrade(port, origin="ours", headers=(), **others):
     key = base64.b64encode(os.urandom(16)).decode()
-    headers = ["Connection: Upgrade", "Upgrade: websocket", "Sec-WebSocket-Version: 13", f"Sec-WebSocket-Key: {key}"]
+    headers = ["Connection: Upgrade", "Upgrade: websocket", "Sec-WebSocket-Version: 13", f"Sec-WebSocket-Key: {key}",
+               *headers]
     if origin:
         headers.append(f"Origin: {f'http://127.0.0.1:{port}' if origin == 'ours' else origin}")
     return request(port, "/live", headers=headers, **others)
@@ -50,8 +57,9 @@ def status(answer):
 class Page:
     """The other end of /live."""
 
-    def __init__(self, port):
-        self.connection = open_socket(port)
+    def __init__(self, port, receives=None):
+        self.closed_with = None
+        self.connection = open_socket(port, receives)
         self.connection.sendall(upgrade(port))
         self._stream = self.connection.makefile("rb")
         self.status = status(self._stream.readline())
@@ -80,6 +88,7 @@ class Page:
                 size = struct.unpack("!Q", self._stream.read(8))[0]
             data = self._stream.read(size)
             if head[0] & 0xF == 8:
+                self.closed_with = struct.unpack("!H", data[:2])[0] if data else None
                 return None
             if head[0] & 0xF == 1:
                 return json.loads(data)

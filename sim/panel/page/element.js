@@ -26,13 +26,5 @@ export function setAttribute(element, name, value) {
   }
 }
 
-/// What is on or off, as people and screen readers are told.
-export function makeSwitch(name, className, flip) {
-  const knob = make("button", {type: "button", role: "switch", class: className, "aria-checked": "false",
-    "aria-label": name}, make("span", {class: "knob", "aria-hidden": "true"}));
-  knob.addEventListener("click", () => flip(knob.getAttribute("aria-checked") !== "true"));
-  return knob;
-}
-
 export const bit = (word, channel) => (word >> channel & 1) !== 0;
 export const hexByte = (value) => value.toString(16).toUpperCase().padStart(2, "0");

@@ -1,6 +1,7 @@
 // What goes wrong on a line, as switches.
 
-import {make, makeSwitch, setAttribute, setText} from "/element.js";
+import {make, setAttribute, setText} from "/element.js";
+import {Switch} from "/switch.js";
 
 /// One of each kind, to begin with.
 const usual = [
@@ -15,6 +16,7 @@ export class Faults {
     this.prefix = several ? `line ${line.name} ` : "";
     this.tell = tell;
     this.known = new Map();
+    this.turned = Promise.resolve();
     this.list = make("ul", {class: "faultlist"});
     this.said = make("p", {class: "said", role: "status"});
     for (const text of usual) {
@@ -47,24 +49,34 @@ export class Faults {
     const key = this.key(text, module);
     if (!this.known.has(key)) {
       const shown = module === null ? text : `module ${module + 1}: ${text}`;
-      const knob = makeSwitch(`Fault ${shown}`, "slide", (on) => this.turn(text, module, on));
+      const knob = Switch.withKnob(`Fault ${shown}`, "slide", (on) => this.turn(text, module, on));
       const count = make("span", {class: "quiet"});
-      const item = make("li", {}, knob, make("span", {"aria-hidden": "true"}, shown), count);
+      const item = make("li", {}, knob.element, make("span", {"aria-hidden": "true"}, shown), count);
       this.known.set(key, {knob, count, item, numbers: []});
       this.list.append(item);
     }
     return this.known.get(key);
   }
 
-  async turn(text, module, on) {
-    let reply = {ok: true};
-    if (on) {
-      reply = await this.tell(module === null ? `${this.prefix}fault ${text}` : `${module + 1} fault ${text}`);
-    } else {
-      for (const number of this.learn(text, module).numbers) {
-        reply = await this.tell(`${this.prefix}fault off ${number}`);
-      }
+  /// One behind the other: what is to be switched off has its number only once it is on.
+  turn(text, module, on) {
+    this.turned = this.turned.then(() => on ? this.begin(text, module) : this.end(this.learn(text, module).numbers));
+    return this.turned;
+  }
+
+  async begin(text, module) {
+    return this.say(await this.tell(module === null ? `${this.prefix}fault ${text}` : `${module + 1} fault ${text}`));
+  }
+
+  async end(numbers) {
+    let ended = true;
+    for (const number of numbers) {
+      ended = this.say(await this.tell(`${this.prefix}fault off ${number}`)) && ended;
     }
+    return ended;
+  }
+
+  say(reply) {
     setText(this.said, reply.ok ? "" : reply.text);
     return reply.ok;
   }
@@ -79,7 +91,7 @@ export class Faults {
     for (const [key, {knob, count, item}] of this.known) {
       const these = on.get(key) ?? [];
       this.known.get(key).numbers = these.map((fault) => fault.number);
-      setAttribute(knob, "aria-checked", these.length > 0);
+      knob.show(these.length > 0);
       setAttribute(item, "data-strikes", these.some((fault) => fault.strikes));
       const struck = these.reduce((sum, fault) => sum + fault.soFar, 0);
       setText(count, these.length ? `struck ${struck}×` : "");

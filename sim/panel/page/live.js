@@ -4,9 +4,12 @@ const firstWait = 100;
 const longestWait = 1000;
 /// The simulator says something every second.
 const patience = 3500;
+/// The code that it closes with where too many pages are open.
+const tooMany = 1013;
 
 export class Live {
-  /// `take(message)` gets what comes; `lost(isLost)` hears when nobody is there any more, and is again.
+  /// `take(message)` gets what comes, and calls `answer` with its reply once it is shown; `lost(why)` hears when
+  /// nobody is there any more, and with "" that somebody is again.
   constructor(take, lost) {
     this.take = take;
     this.lost = lost;
@@ -25,15 +28,11 @@ export class Live {
       this.wait = firstWait;
       const message = JSON.parse(event.data);
       if (message.hello) {
-        this.lost(false);
-      }
-      if (message.reply) {
-        this.waiting.get(message.reply.id)?.(message.reply);
-        this.waiting.delete(message.reply.id);
+        this.lost("");
       }
       this.take(message);
     };
-    socket.onclose = () => this.gone(socket);
+    socket.onclose = (event) => this.gone(socket, event.code === tooMany ? "tooMany" : "gone");
   }
 
   /// A simulator that is stopped, or a connection that hangs, closes nothing.
@@ -41,11 +40,16 @@ export class Live {
     clearTimeout(this.silence);
     this.silence = setTimeout(() => {
       socket.close();
-      this.gone(socket);
+      this.gone(socket, "gone");
     }, patience);
   }
 
-  gone(socket) {
+  answer(reply) {
+    this.waiting.get(reply.id)?.(reply);
+    this.waiting.delete(reply.id);
+  }
+
+  gone(socket, why) {
     if (socket !== this.socket) {
       return;
     }
@@ -55,20 +59,21 @@ export class Live {
       answer({ok: false, text: "error: the simulator has gone"});
     }
     this.waiting.clear();
-    this.lost(true);
+    this.lost(why);
     setTimeout(() => this.open(), this.wait);
     this.wait = Math.min(2 * this.wait, longestWait);
   }
 
-  /// A command of the control socket; resolves to {ok, text}.
-  tell(command) {
+  /// A command of the control socket; resolves to {ok, text}. `undo` is another, which the simulator carries out
+  /// when this page goes without having told it.
+  tell(command, undo) {
     if (this.socket?.readyState !== WebSocket.OPEN) {
       return Promise.resolve({ok: false, text: "error: there is no simulator"});
     }
     const id = ++this.asked;
     return new Promise((resolve) => {
       this.waiting.set(id, resolve);
-      this.socket.send(JSON.stringify({id, do: command}));
+      this.socket.send(JSON.stringify({id, do: command, undo}));
     });
   }
 }

@@ -37,11 +37,11 @@ function begin(hello) {
   run = hello.run;
   const several = hello.lines.length > 1;
   setText(at("about"), [hello.version, hello.modules.length > 1 ? `${hello.modules.length} modules` : null,
-    ...hello.lines.slice(0, 3).map((line) => [line.name, line.ports.join(", ")].filter(Boolean).join(": "))]
+    several ? `${hello.lines.length} lines` : [hello.lines[0].name, hello.lines[0].ports.join(", ")].filter(Boolean).join(": ")]
     .filter(Boolean).join(" · "));
   plates = hello.modules.map((layout, position) =>
-    new Plate(layout, position, (command) => live.tell(`${position + 1} ${command}`),
-      () => document.querySelector("input[name=way]:checked").value));
+    new Plate(layout, position,
+      (command, undo) => live.tell(`${position + 1} ${command}`, undo && `${position + 1} ${undo}`), () => document.querySelector("input[name=way]:checked").value));
   lines = hello.lines.map((line, index) => {
     const modules = hello.modules.map((layout, position) => ({position, model: layout.model, line: layout.line}))
       .filter((module) => module.line === index);
@@ -49,11 +49,14 @@ function begin(hello) {
   });
   at("plates").dataset.count = plates.length === 1 ? "one" : plates.length > 8 ? "many" : "some";
   at("plates").replaceChildren(...(several ? lines.flatMap((line) =>
-    [make("h3", {class: "linename"}, line.name), ...line.modules.map(({position}) => plates[position].element)])
+    [make("h3", {class: "linename"}, line.name, " ", make("span", {class: "quiet"}, line.ports.join(", "))),
+      ...line.modules.map(({position}) => plates[position].element)])
     : plates.map((plate) => plate.element)));
   at("faultlines").replaceChildren(...lines.map((line) => line.faults.element));
-  timeline.clear();
   timeline.begin(lines, (line, station) => {
+    if (station === undefined) {
+      return several ? lines[line].name : "line";
+    }
     const module = station ? lines[line].modules[station - 1] : null;
     const who = station === 0 ? "master" : module ? `${module.position + 1} ${module.model}` : "somebody else";
     return several ? `${lines[line].name}: ${who}` : who;
@@ -71,6 +74,9 @@ function show(message) {
   }
   if (message.frames) {
     timeline.add(message.frames);
+  }
+  if (message.reply) {
+    live.answer(message.reply);
   }
 }
 
@@ -101,11 +107,24 @@ function repaint(when) {
   requestAnimationFrame(repaint);
 }
 
-function lost(isLost) {
-  document.body.classList.toggle("islost", isLost);
-  setText(at("link"), isLost ? "not connected" : "connected");
-  setText(at("lost"), isLost ? "No simulator – trying again. What you see is how it was." : "");
+/// `why`: a key of these, or "" where it is there again.
+const reasons = {
+  gone: "No simulator – trying again. What you see is how it was.",
+  tooMany: "Too many pages are open already – waiting until another is closed.",
+};
+
+function lost(why) {
+  document.body.dataset.link = why ? "lost" : "there";
+  setText(at("link"), why ? "not connected" : "connected");
+  setText(at("lost"), why ? reasons[why] : "");
+  if (why) {
+    plates.forEach((plate) => plate.lost());
+  }
 }
+
+/// What hangs below the header, and what is scrolled to, must know how high it is.
+const header = document.querySelector(".top");
+new ResizeObserver(() => document.documentElement.style.setProperty("--top", `${header.offsetHeight}px`)).observe(header);
 
 const live = new Live(take, lost);
 requestAnimationFrame(repaint);

@@ -1,20 +1,22 @@
 // A module's face plate: its terminals, lamps and switches, and a drawer with what it keeps.
 
-import {bit, hexByte, make, makeSwitch, setAttribute, setText} from "/element.js";
+import {Drawer} from "/drawer.js";
+import {bit, hexByte, make, setAttribute, setText} from "/element.js";
+import {Input} from "/input.js";
+import {Switch} from "/switch.js";
 
-const edgeTerminals = ["INIT*", "DATA+", "DATA−", "+VS", "GND"];
+const edgeTerminals = ["DATA+", "DATA−", "+VS", "GND"];
 
 export class Plate {
-  /// `position` counts from 0; `tell(command)` carries out what follows the module's number; `way()` is what a
+  /// `position` counts from 0; `tell(command, undo)` carries out what follows the module's number; `way()` is what a
   /// click on an input does: toggle, hold or pulse.
   constructor(layout, position, tell, way) {
     this.layout = layout;
     this.position = position;
     this.tell = tell;
     this.title = `${position + 1} ${layout.model}`;
-    this.way = way;
     this.outputs = layout.outputs.map((label) => this.makeOutput(label));
-    this.inputs = layout.inputs.map((label, channel) => this.makeInput(label, channel));
+    this.inputs = layout.inputs.map((label, channel) => new Input(this.title, label, channel, tell, way));
     this.element = this.build();
   }
 
@@ -23,8 +25,8 @@ export class Plate {
     this.name = make("span", {class: "name"});
     this.led = make("span", {class: "led status", role: "img", "aria-label": "Status LED"});
     this.ledText = make("span", {class: "ledtext"});
-    this.power = makeSwitch(name("power"), "rocker", (on) => this.tell(`power ${on ? "on" : "off"}`));
-    this.init = makeSwitch(name("INIT* to GND"), "slide", (on) => this.tell(`init ${on ? "on" : "off"}`));
+    this.power = Switch.withKnob(name("power"), "rocker", (on) => this.tell(`power ${on ? "on" : "off"}`));
+    this.init = Switch.withKnob(name("INIT* to GND"), "slide", (on) => this.tell(`init ${on ? "on" : "off"}`));
     this.reset = make("button", {type: "button", class: "reset", "aria-label": name("reset"),
       onclick: () => this.tell("reset")}, "Reset");
     this.address = this.readout("Address");
@@ -33,41 +35,34 @@ export class Plate {
     this.guard = this.readout("Host watchdog", "wide");
     this.bar = make("span", {class: "countdown", "aria-hidden": "true"}, make("span"));
     this.guard.box.append(this.bar);
-    this.drawer = make("div", {class: "drawerbody"});
-    this.details = make("details", {class: "drawer"},
-      make("summary", {}, "Settings and values", make("span", {class: "hidden"}, ` of ${this.title}`)),
-      this.drawer);
-    this.details.addEventListener("toggle", () => this.drawDrawer());
-    const channels = [];
-    const columns = (list) => String(list.length > 8 ? Math.ceil(list.length / 2) : Math.max(list.length, 4));
-    if (this.outputs.length) {
-      const list = make("ul", {class: "channels outputs", "aria-label": "Outputs"},
-        ...this.outputs.map((output) => output.item));
-      list.style.setProperty("--columns", columns(this.outputs));
-      if (this.outputs.length > 8 && this.outputs.length % 2) {
-        list.append(make("li", {"aria-hidden": "true"}));
-      }
-      channels.push(list);
-    }
-    if (this.inputs.length) {
-      const list = make("ul", {class: "channels inputs", "aria-label": "Inputs"},
-        ...this.inputs.map((input) => input.item));
-      list.style.setProperty("--columns", columns(this.inputs));
-      channels.push(list);
-    }
+    this.drawer = new Drawer(this.layout, this.title);
+    const edge = this.layout.initTerminal ? ["INIT*", ...edgeTerminals] : edgeTerminals;
     return make("article", {class: "plate", "aria-label": this.title},
       make("div", {class: "head"},
         make("div", {class: "title"}, make("h3", {}, this.layout.model), this.name),
         make("div", {class: "lamp"}, this.led, this.ledText)),
       make("div", {class: "readouts"}, this.address.box, this.baud.box, this.protocol.box, this.guard.box),
-      ...channels,
+      this.strip("outputs", "Outputs", this.outputs), this.strip("inputs", "Inputs", this.inputs),
       make("div", {class: "controls"},
-        make("span", {class: "control"}, make("span", {"aria-hidden": "true"}, "Power"), this.power),
-        make("span", {class: "control"}, make("span", {"aria-hidden": "true"}, "INIT*"), this.init),
+        make("span", {class: "control"}, make("span", {"aria-hidden": "true"}, "Power"), this.power.element),
+        make("span", {class: "control"}, make("span", {"aria-hidden": "true"}, "INIT*"), this.init.element),
         this.reset),
-      this.details,
+      this.drawer.element,
       make("ul", {class: "edge", "aria-hidden": "true"},
-        ...edgeTerminals.map((label) => make("li", {}, make("span", {class: "screw"}), label))));
+        ...edge.map((label) => make("li", {}, make("span", {class: "screw"}), label))));
+  }
+
+  /// Terminals in rows of as many as there is room for; the last one goes on to the edge.
+  strip(className, name, channels) {
+    if (!channels.length) {
+      return "";
+    }
+    const columns = channels.length > 8 ? Math.ceil(channels.length / 2) : Math.max(channels.length, 4);
+    const blank = Math.ceil(channels.length / columns) * columns - channels.length;
+    const list = make("ul", {class: `channels ${className}`, "aria-label": name}, ...channels.map(({item}) => item),
+      ...Array.from({length: blank}, () => make("li", {"aria-hidden": "true"})));
+    list.style.setProperty("--columns", columns);
+    return list;
   }
 
   readout(label, extra = "") {
@@ -81,78 +76,8 @@ export class Plate {
       make("span", {class: "label", "aria-hidden": "true"}, label), led)};
   }
 
-  makeInput(label, channel) {
-    const button = make("button", {type: "button", role: "switch", class: "led input", "aria-checked": "false",
-      "aria-label": `${this.title}: input ${label}`});
-    const counter = make("span", {class: "counter", "aria-label": `counter of ${label}`});
-    const high = make("span", {class: "latch", role: "img"}, "H");
-    const low = make("span", {class: "latch", role: "img"}, "L");
-    this.makeTouchable(button, channel);
-    return {label, button, counter, high, low, item: make("li", {}, make("span", {class: "screw", "aria-hidden": "true"}),
-      make("span", {class: "label", "aria-hidden": "true"}, label), button, counter,
-      make("span", {class: "latches"}, high, low))};
-  }
-
-  /// Held: the other level, for as long as button or key is down.
-  makeTouchable(button, channel) {
-    const level = () => button.getAttribute("aria-checked") === "true";
-    const set = (on) => this.tell(`input ${channel} ${on ? "on" : "off"}`);
-    let held = null;
-    let wasHeld = false;
-    const press = () => {
-      if (held === null) {
-        held = level();
-        set(!held);
-      }
-    };
-    const release = () => {
-      if (held !== null) {
-        set(held);
-        held = null;
-        wasHeld = true;
-      }
-    };
-    button.addEventListener("pointerdown", (event) => {
-      wasHeld = false;
-      if (event.button === 0 && (this.way() === "hold" || event.shiftKey)) {
-        button.setPointerCapture(event.pointerId);
-        press();
-      }
-    });
-    for (const over of ["pointerup", "pointercancel", "lostpointercapture", "blur"]) {
-      button.addEventListener(over, release);
-    }
-    const isKey = (event) => event.key === " " || event.key === "Enter";
-    button.addEventListener("keydown", (event) => {
-      if (!isKey(event)) {
-        return;
-      }
-      if (this.way() === "hold" || event.shiftKey || held !== null) {
-        event.preventDefault();
-        if (!event.repeat) {
-          press();
-        }
-      } else if (!event.repeat) {
-        wasHeld = false;
-      }
-    });
-    button.addEventListener("keyup", (event) => {
-      if (isKey(event) && held !== null) {
-        event.preventDefault();
-        release();
-      }
-    });
-    button.addEventListener("click", (event) => {
-      if (wasHeld || this.way() === "hold") {
-        wasHeld = false;
-      } else if (this.way() === "pulse" || event.altKey) {
-        this.tell(`pulse ${channel}`);
-      } else {
-        set(!level());
-      }
-    });
-    button.addEventListener("contextmenu", (event) => event.preventDefault());
-  }
+  /// Nobody is there any more.
+  lost() { this.inputs.forEach((input) => input.lost()); }
 
   /// What has changed of it.
   show(news) {
@@ -170,13 +95,13 @@ export class Plate {
       this.stored = news.stored;
       setText(this.name, news.stored.settings.name);
     }
-    this.drawDrawer();
+    this.drawer.show(this.plate, this.stored, this.guardState);
   }
 
   showPlate(plate) {
     setAttribute(this.element, "data-powered", plate.powered);
-    setAttribute(this.power, "aria-checked", plate.switch);
-    setAttribute(this.init, "aria-checked", plate.init);
+    this.power.show(plate.switch);
+    this.init.show(plate.init);
     this.reset.disabled = !plate.powered;
     const flashing = plate.led.startsWith("flashing");
     setAttribute(this.led, "data-led", plate.led === "flashing" ? "flashing" : flashing ? "unreadable" : plate.led);
@@ -192,22 +117,12 @@ export class Plate {
       setAttribute(led, "data-on", lit);
       setAttribute(led, "aria-label", `${label} ${lit ? "on" : "off"}`);
     });
-    this.inputs.forEach(({button}, channel) => {
-      setAttribute(button, "aria-checked", bit(plate.inputs, channel));
-    });
+    this.inputs.forEach((input, channel) => input.show(bit(plate.inputs, channel)));
   }
 
   showGathered(gathered) {
-    const latch = (mark, text, on) => {
-      setAttribute(mark, "data-on", on);
-      setAttribute(mark, "aria-label", `${text} edge ${on ? "latched" : "not latched"}`);
-      setAttribute(mark, "title", mark.getAttribute("aria-label"));
-    };
-    this.inputs.forEach(({label, counter, high, low}, channel) => {
-      setText(counter, String(gathered.counters[channel]));
-      latch(high, `${label}: rising`, bit(gathered.high, channel));
-      latch(low, `${label}: falling`, bit(gathered.low, channel));
-    });
+    this.inputs.forEach((input, channel) => input.showGathered(gathered.counters[channel], bit(gathered.high, channel),
+      bit(gathered.low, channel)));
   }
 
   /// `now`: what the line's clock shows, in us. What runs by itself.
@@ -233,53 +148,5 @@ export class Plate {
       this.share = share;
       this.bar.firstChild.style.inlineSize = `${share}%`;
     }
-  }
-
-  /// Only while it is open.
-  drawDrawer() {
-    if (!this.details.open || !this.stored || !this.plate) {
-      return;
-    }
-    const {settings} = this.stored;
-    const guard = this.guardState;
-    const rows = [
-      ["Name", settings.name],
-      ["Address", hexByte(settings.address)],
-      ["Baud", settings.baud],
-      ["Protocol", settings.protocol === "modbus" ? "Modbus RTU" : "ASCII"],
-      ["Checksum", settings.checksum ? "on" : "off"],
-    ];
-    if (this.inputs.length) {
-      rows.push(["Counts", `${settings.edge} edges`]);
-    }
-    rows.push(["Host watchdog", `${settings.watchdog ? "enabled" : "disabled"}, ${(settings.timeout / 10).toFixed(1)} s`],
-      ["Timeout status", settings.timedOut ? "set" : "clear"],
-      ["Reset status", this.plate.listening && guard?.resetStatus ? "reset since last asked" : "–"],
-      ["Module watchdog", `${this.plate.resets} resets`]);
-    const list = make("dl", {}, ...rows.flatMap(([key, value]) => [make("dt", {}, key), make("dd", {}, String(value))]));
-    this.drawer.replaceChildren(...this.outputs.length ? [this.valueTable(settings)] : [],
-      make("h4", {}, this.stored.blank ? "EEPROM: blank, factory settings" : "Settings in EEPROM"), list,
-      ...this.stored.copies.map((copy, index) => this.copyText(copy, index)));
-  }
-
-  valueTable(settings) {
-    const row = (label, word) => make("tr", {}, make("th", {scope: "row"}, label),
-      ...this.outputs.map((output, channel) => {
-        const on = bit(word, channel);
-        return make("td", {"data-on": String(on)}, on ? "1" : "0");
-      }));
-    return make("div", {class: "wideable", tabindex: "0", role: "region", "aria-label": `${this.title}: output values`},
-      make("table", {class: "values"},
-        make("thead", {}, make("tr", {}, make("td"), ...this.outputs.map(({label}) =>
-          make("th", {scope: "col", title: label}, label.replace(/^[A-Z]+/, ""))))),
-        make("tbody", {}, row("Present", this.plate.outputs), row("Power-on", settings.powerOn),
-          row("Safe", settings.safe))));
-  }
-
-  copyText(copy, index) {
-    const state = !copy.good ? (/^F*$/.test(copy.bytes) ? "blank" : "not valid")
-      : `sequence ${copy.sequence}${index === this.stored.current ? ", in use" : ""}`;
-    return make("div", {class: "copy"}, make("h4", {}, `Copy ${index + 1}: ${state}`),
-      make("code", {}, copy.bytes.match(/../g).join(" ")));
   }
 }

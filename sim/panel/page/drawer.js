@@ -1,0 +1,85 @@
+// What a module keeps: present, power-on and safe value, its settings, and the bytes of both copies. It is built
+// once, and only texts change, so that whoever reads or selects in it goes on doing so.
+
+import {bit, hexByte, make, setAttribute, setText} from "/element.js";
+
+export class Drawer {
+  constructor(layout, title) {
+    this.values = layout.outputs.length ? this.valueTable(layout.outputs, title) : null;
+    this.kept = make("h4", {});
+    this.settings = {};
+    this.copies = [0, 1].map(() => ({state: make("h4", {}), bytes: make("code", {})}));
+    const names = ["Name", "Address", "Baud", "Protocol", "Checksum", layout.inputs.length ? "Counts" : null,
+      "Host watchdog", "Timeout status", "Reset status", "Module watchdog"].filter(Boolean);
+    for (const name of names) {
+      this.settings[name] = make("dd", {});
+    }
+    this.element = make("details", {class: "drawer"},
+      make("summary", {}, "Settings and values", make("span", {class: "hidden"}, ` of ${title}`)),
+      make("div", {class: "drawerbody"}, ...(this.values ? [this.values.element] : []), this.kept,
+        make("dl", {}, ...names.flatMap((name) => [make("dt", {}, name), this.settings[name]])),
+        ...this.copies.map(({state, bytes}) => make("div", {class: "copy"}, state, bytes))));
+    this.element.addEventListener("toggle", () => this.draw());
+  }
+
+  /// What is there so far of each.
+  show(plate, stored, guard) {
+    Object.assign(this, {plate, stored, guard});
+    this.draw();
+  }
+
+  /// Only while it is open.
+  draw() {
+    if (!this.element.open || !this.stored || !this.plate) {
+      return;
+    }
+    const {plate, stored, guard} = this;
+    const {settings} = stored;
+    this.values?.show(plate.outputs, settings.powerOn, settings.safe);
+    setText(this.kept, stored.blank ? "EEPROM: blank, factory settings" : "Settings in EEPROM");
+    const texts = {
+      "Name": settings.name,
+      "Address": hexByte(settings.address),
+      "Baud": String(settings.baud),
+      "Protocol": settings.protocol === "modbus" ? "Modbus RTU" : "ASCII",
+      "Checksum": settings.checksum ? "on" : "off",
+      "Counts": `${settings.edge} edges`,
+      "Host watchdog": `${settings.watchdog ? "enabled" : "disabled"}, ${(settings.timeout / 10).toFixed(1)} s`,
+      "Timeout status": settings.timedOut ? "set" : "clear",
+      "Reset status": plate.listening && guard?.resetStatus ? "reset since last asked" : "–",
+      "Module watchdog": `${plate.resets} resets`,
+    };
+    for (const [name, element] of Object.entries(this.settings)) {
+      setText(element, texts[name]);
+    }
+    this.copies.forEach(({state, bytes}, index) => {
+      const copy = stored.copies[index];
+      setText(state, `Copy ${index + 1}: ${copyState(copy, index === stored.current)}`);
+      setText(bytes, copy.bytes.match(/../g).join(" "));
+    });
+  }
+
+  valueTable(outputs, title) {
+    const rows = ["Present", "Power-on", "Safe"].map((name) => ({name, cells: outputs.map(() => make("td", {}))}));
+    const element = make("div", {class: "wideable", tabindex: "0", role: "region",
+      "aria-label": `${title}: output values`},
+      make("table", {class: "values"},
+        make("thead", {}, make("tr", {}, make("td"), ...outputs.map((label) =>
+          make("th", {scope: "col", title: label}, label.replace(/^[A-Z]+/, ""))))),
+        make("tbody", {}, ...rows.map(({name, cells}) =>
+          make("tr", {}, make("th", {scope: "row"}, name), ...cells)))));
+    const show = (...words) => rows.forEach(({cells}, row) => cells.forEach((cell, channel) => {
+      const on = bit(words[row], channel);
+      setAttribute(cell, "data-on", on);
+      setText(cell, on ? "1" : "0");
+    }));
+    return {element, show};
+  }
+}
+
+function copyState(copy, inUse) {
+  if (!copy.good) {
+    return /^F*$/.test(copy.bytes) ? "blank" : "not valid";
+  }
+  return `sequence ${copy.sequence}${inUse ? ", in use" : ""}`;
+}

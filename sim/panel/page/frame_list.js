@@ -1,0 +1,94 @@
+// The list of frames. Of thousands only those have a row that can be seen.
+
+import {make, setAttribute, setText} from "/element.js";
+
+const spareRows = 8;
+
+const seconds = (microseconds) => (microseconds / 1e6).toFixed(6);
+
+export class FrameList {
+  /// `rows` scrolls, and `filler` in it is as high as all of them.
+  constructor(rows, filler) {
+    this.rows = rows;
+    this.filler = filler;
+    this.entries = [];
+    this.made = new Map();
+    this.follows = true;
+    this.rows.addEventListener("scroll", () => {
+      this.follows = this.rows.scrollTop + this.rows.clientHeight >= this.rows.scrollHeight - 4;
+      this.draw(this.entries);
+    }, {passive: true});
+    new ResizeObserver(() => this.measure()).observe(this.rows);
+    this.measure();
+  }
+
+  clear() {
+    this.follows = true;
+    for (const row of this.made.values()) {
+      row.remove();
+    }
+    this.made.clear();
+    this.stale = true;
+  }
+
+  measure() {
+    this.height = parseFloat(getComputedStyle(this.rows).getPropertyValue("--row")) || 24;
+    this.stale = true;
+  }
+
+  /// `count` of them at the top are no more: whoever reads further down goes on reading the same.
+  dropped(count) {
+    if (!this.follows && count) {
+      this.rows.scrollTop -= count * this.height;
+    }
+  }
+
+  /// Those that can be seen, and a few around.
+  draw(entries) {
+    this.entries = entries;
+    this.stale = false;
+    this.filler.style.blockSize = `${entries.length * this.height}px`;
+    if (this.follows && !this.paused) {
+      this.rows.scrollTop = this.rows.scrollHeight;
+    }
+    const top = this.rows.scrollTop;
+    const first = Math.max(0, Math.floor(top / this.height) - spareRows);
+    const last = Math.min(entries.length, Math.ceil((top + this.rows.clientHeight) / this.height) + spareRows);
+    const seen = new Set(entries.slice(first, last));
+    const spare = [];
+    for (const [entry, row] of this.made) {
+      if (!seen.has(entry)) {
+        spare.push(row);
+        this.made.delete(entry);
+      }
+    }
+    for (let index = first; index < last; ++index) {
+      const entry = entries[index];
+      let row = this.made.get(entry);
+      if (!row) {
+        row = spare.pop() ?? this.makeRow();
+        this.fillRow(row, entry);
+        this.made.set(entry, row);
+      }
+      row.style.transform = `translateY(${index * this.height}px)`;
+      setAttribute(row, "aria-rowindex", index + 2);
+    }
+    for (const row of spare) {
+      row.remove();
+    }
+    setAttribute(this.rows, "aria-rowcount", entries.length + 1);
+  }
+
+  makeRow() {
+    const row = make("div", {class: "row", role: "row"},
+      ...["time", "from", "bytes", "meaning"].map((each) => make("span", {role: "cell", class: each})));
+    this.filler.append(row);
+    return row;
+  }
+
+  fillRow(row, entry) {
+    setAttribute(row, "data-kind", entry.error ? "error" : entry.note ? "note" : entry.missed ? "missed" : "frame");
+    const texts = [entry.missed ? "…" : seconds(entry.began), entry.from, entry.said, entry.means];
+    texts.forEach((text, column) => setText(row.children[column], text));
+  }
+}

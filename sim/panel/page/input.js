@@ -1,0 +1,108 @@
+// An input of a module: its lamp, that is clicked, held and pulsed, its counter and its latches.
+
+import {make, setAttribute, setText} from "/element.js";
+import {Switch} from "/switch.js";
+
+export class Input {
+  /// `tell(command, undo)` carries out what follows the module's number; `way()` is what a click does: toggle, hold
+  /// or pulse.
+  constructor(title, label, channel, tell, way) {
+    this.label = label;
+    this.channel = channel;
+    this.tell = tell;
+    this.way = way;
+    /// The level to go back to, while it is held.
+    this.held = null;
+    this.level = new Switch(`${title}: input ${label}`, "led input", (on) =>
+      tell(this.command(on), this.held === null ? undefined : this.command(this.held)));
+    this.count = make("span", {class: "count"}, "0");
+    this.high = make("span", {class: "latch", role: "img"}, "H");
+    this.low = make("span", {class: "latch", role: "img"}, "L");
+    this.item = make("li", {}, make("span", {class: "screw", "aria-hidden": "true"}),
+      make("span", {class: "label", "aria-hidden": "true"}, label), this.level.element,
+      make("span", {class: "counter"}, make("span", {class: "hidden"}, `counter of ${label}: `), this.count),
+      make("span", {class: "latches"}, this.high, this.low));
+    this.listenToPointer(this.level.element);
+    this.listenToKeys(this.level.element);
+  }
+
+  command(on) { return `input ${this.channel} ${on ? "on" : "off"}`; }
+
+  /// The other level, for as long as button or key is down. The simulator undoes it where this page goes meanwhile.
+  press() {
+    if (this.held === null) {
+      this.held = this.level.on;
+      this.level.set(!this.held);
+    }
+  }
+
+  release() {
+    if (this.held !== null) {
+      const level = this.held;
+      this.held = null;
+      this.level.set(level);
+    }
+  }
+
+  /// With the connection the hold has ended as well.
+  lost() { this.held = null; }
+
+  listenToPointer(button) {
+    let heldByPointer = false;
+    button.addEventListener("pointerdown", (event) => {
+      heldByPointer = event.button === 0 && (this.way() === "hold" || event.shiftKey);
+      if (heldByPointer) {
+        button.setPointerCapture(event.pointerId);
+        this.press();
+      }
+    });
+    for (const over of ["pointerup", "pointercancel", "lostpointercapture", "blur"]) {
+      button.addEventListener(over, () => this.release());
+    }
+    // One that neither pointer nor key has made, but a screen reader, holds nothing and counts none.
+    const isPointers = (event) => event.detail > 0;
+    button.addEventListener("click", (event) => {
+      if (isPointers(event) && heldByPointer) {
+        heldByPointer = false;
+      } else if (this.way() === "pulse" || event.altKey) {
+        this.tell(`pulse ${this.channel}`);
+      } else {
+        this.level.set(!this.level.on);
+      }
+    });
+    button.addEventListener("contextmenu", (event) => event.preventDefault());
+  }
+
+  listenToKeys(button) {
+    const isKey = (event) => event.key === " " || event.key === "Enter";
+    button.addEventListener("keydown", (event) => {
+      if (isKey(event) && (this.way() === "hold" || event.shiftKey || this.held !== null)) {
+        event.preventDefault();
+        if (!event.repeat) {
+          this.press();
+        }
+      }
+    });
+    button.addEventListener("keyup", (event) => {
+      if (isKey(event) && this.held !== null) {
+        event.preventDefault();
+        this.release();
+      }
+    });
+  }
+
+  show(on) { this.level.show(on); }
+
+  showGathered(counter, high, low) {
+    setText(this.count, String(counter));
+    this.showLatch(this.high, "rising", high);
+    this.showLatch(this.low, "falling", low);
+  }
+
+  showLatch(mark, edge, on) {
+    const text = `${this.label}: ${edge} edge ${on ? "latched" : "not latched"}`;
+    setAttribute(mark, "data-on", on);
+    setAttribute(mark, "aria-label", text);
+    setAttribute(mark, "title", text);
+  }
+}
