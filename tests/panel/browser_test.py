@@ -1,77 +1,14 @@
 """The panel in a real browser: what people do there, what modules do, and what is on the screen. Leaves a picture of
 each state in build/panel."""
 
-import json
-import pathlib
 import threading
 import unittest
 
-from simulator import Master, Simulator
-from webdriver import Browser
-
-PICTURES = pathlib.Path(__file__).resolve().parents[2] / "build/panel"
-
-OUTPUTS = "[aria-label='1 EX9042D-M']"
-INPUTS = "[aria-label='2 EX9052D-M']"
-DI3 = "[aria-label='2 EX9052D-M: input DI3']"
-POWER = "[aria-label='1 EX9042D-M: power']"
-INIT = "[aria-label='1 EX9042D-M: INIT* to GND']"
-WIDE = (1280, 900)
-PHONE = (360, 740)
+from panel_page import DI3, INIT, INPUTS, OUTPUTS, PHONE, POWER, Panel, lit, pressed, text
+from simulator import Master
 
 
-def pressed(selector):
-    return f"""document.querySelector("{selector}").getAttribute('aria-checked') === 'true'"""
-
-
-def lit(outputs):
-    """What the lamps of the first module say, bit n for output n."""
-    lamps = f"""[...document.querySelectorAll("{OUTPUTS} .output")]"""
-    return f"{lamps}.reduce((sum, led, n) => sum + (led.dataset.on === 'true' ? 1 << n : 0), 0) === {outputs}"
-
-
-def text(plate, selector, wanted):
-    return f"""document.querySelector("{plate} {selector}").textContent.includes("{wanted}")"""
-
-
-class Panel(unittest.TestCase):
-    @classmethod
-    def setUpClass(cls):
-        cls.browser = Browser()
-
-    @classmethod
-    def tearDownClass(cls):
-        cls.browser.close()
-
-    def setUp(self):
-        self.browser.size(*WIDE)
-        self.browser.prefers()
-
-    def tearDown(self):
-        self.assertEqual(self.browser.complaints(), [])
-
-    def show(self, *arguments):
-        simulator = Simulator(*arguments, "--tcp", "0")
-        self.addCleanup(simulator.close)
-        self.look_at(simulator)
-        return simulator
-
-    def look_at(self, simulator):
-        self.browser.open(simulator.address)
-        self.browser.until("document.querySelector('.plate .readout .value').textContent !== ''")
-
-    def show_two(self):
-        simulator = self.show("EX9042D-M@01", "EX9052D-M@02")
-        master = Master(simulator.lines[0])
-        self.addCleanup(master.close)
-        return simulator, master
-
-    def picture(self, name, whole=False):
-        self.browser.screenshot(PICTURES / f"{name}.png", whole)
-
-    def expect_no_scrolling_sideways(self):
-        self.assertLessEqual(*self.browser.run("return [document.documentElement.scrollWidth, innerWidth]"))
-
+class Modules(Panel):
     def test_an_input_that_is_clicked_counts_over_modbus(self):
         _, master = self.show_two()
         counted = text(INPUTS, "li:nth-child(4) .count", "1")
@@ -150,17 +87,6 @@ class Panel(unittest.TestCase):
         self.browser.until(f"!({pressed(DI3)})")  # another run
         self.browser.click(DI3)
         self.browser.until(pressed(DI3))
-
-    def test_a_simulator_that_hangs_is_noticed_and_goes_on(self):
-        simulator, _ = self.show_two()
-        self.browser.click(DI3)
-        self.browser.until(pressed(DI3))
-        lost = "document.getElementById('lost').textContent.includes('trying again')"
-        simulator.stop()
-        self.browser.until(lost)
-        simulator.go_on()
-        self.browser.until(f"!({lost})")
-        self.assertTrue(self.browser.run(f"return {pressed(DI3)}"))  # the same run
 
     def test_everything_can_be_done_by_keyboard(self):
         self.show_two()
@@ -269,17 +195,6 @@ class Panel(unittest.TestCase):
         self.browser.prefers(color_scheme="dark")
         self.picture("one-dark")
 
-    def many(self):
-        models = ["EX9042D-M", "EX9052D-M", "EX9055D", "EX9068D-M"]
-        modules = [{"model": models[i % 4], "address": f"{i + 1:02X}", "baud": 115200} for i in range(32)]
-        bus = {"lines": [{"name": name, "tcp": 0, "modules": modules} for name in ("hall", "yard")]}
-        path = PICTURES / "bus.json"
-        path.parent.mkdir(parents=True, exist_ok=True)
-        path.write_text(json.dumps(bus))
-        simulator = Simulator(str(path))
-        self.addCleanup(simulator.close)
-        return simulator
-
     def test_64_modules_on_full_lines_are_on_the_screen_in_time_and_without_stutter(self):
         simulator = self.many()
         self.look_at(simulator)
@@ -305,7 +220,9 @@ class Panel(unittest.TestCase):
             "a second".format(**measured), flush=True,
         )
         self.assertLess(measured["click"], 100)
+        self.assertLess(measured["longestClick"], 400)
         self.assertLess(measured["repaint"], 50)
+        self.assertLess(measured["repaint99"], 250)
         self.assertGreater(measured["frames"], 100)
 
 

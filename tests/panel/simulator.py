@@ -41,7 +41,9 @@ class Simulator:
         self.process.wait()
         self.process.stdout.close()
 
-    def start_again(self):
+    def start_again(self, *others):
+        """With what it was started with before, or with others."""
+        self._arguments = others or self._arguments
         self._start(self.port)
 
     def stop(self):
@@ -73,6 +75,9 @@ class Master:
 
     def close(self):
         self._socket.close()
+
+    def send(self, data):
+        self._socket.sendall(data)
 
     def ask(self, request, size):
         """The PDU of an answer of `size` bytes, CRC included."""

@@ -10,7 +10,8 @@ import urllib.error
 import urllib.request
 
 ELEMENT = "element-6066-11e4-a52e-4f735466cecf"
-KEYS = {"Tab": "\ue004", "Enter": "\ue007", "Space": " ", "Shift": "\ue008", "Alt": "\ue00a"}
+KEYS = {"Tab": "\ue004", "Enter": "\ue007", "Space": " ", "Shift": "\ue008", "Alt": "\ue00a", "Left": "\ue012",
+        "Right": "\ue014"}
 
 
 class Browser:
@@ -114,6 +115,21 @@ class Browser:
         ]
         self._post("/actions", {"actions": [{"type": "pointer", "id": "mouse", "actions": moves}]})
 
+    def drag(self, selector, pixels):
+        """From the middle of it to the right."""
+        origin = {ELEMENT: self.find(selector)}
+        self._post("/actions", {"actions": [{"type": "pointer", "id": "mouse", "actions": [
+            {"type": "pointerMove", "x": 0, "y": 0, "origin": origin},
+            {"type": "pointerDown", "button": 0},
+            {"type": "pointerMove", "x": pixels, "y": 0, "origin": origin},
+            {"type": "pointerUp", "button": 0},
+        ]}]})
+
+    def touch(self, kind, *at):
+        """`kind`: start, move, end or cancel; `at`: x and y in the window, of the first two."""
+        points = [{"x": at[0], "y": at[1]}] if at else []
+        self.devtools("Input.dispatchTouchEvent", type=f"touch{kind.capitalize()}", touchPoints=points)
+
     def key(self, *actions):
         """Each is a name of KEYS, pressed and let go, or one behind + or -."""
         moves = []
@@ -138,10 +154,10 @@ class Browser:
         self.devtools("Emulation.setEmulatedMedia", features=media)
 
     def complaints(self):
-        """What the page has complained of since the last time, refused connections apart."""
+        """What the page has complained of since the last time, but that nobody was there."""
+        nobody = ("ERR_CONNECTION_REFUSED", "ERR_CONNECTION_RESET", "closed before the connection is established")
         said = self._post("/se/log", {"type": "browser"})
-        return [each["message"] for each in said if "ERR_CONNECTION_REFUSED" not in each["message"]
-                and "WebSocket connection to" not in each["message"]]
+        return [each["message"] for each in said if not any(text in each["message"] for text in nobody)]
 
     def screenshot(self, path, whole=False):
         picture = self.devtools("Page.captureScreenshot", format="png", captureBeyondViewport=whole)

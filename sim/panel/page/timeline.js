@@ -7,6 +7,9 @@ import {Strip} from "/strip.js";
 /// Older ones go, in pieces, since moving all of them for each would take longer: there are up to `trimmedFrom`.
 const mostKept = 1700;
 const trimmedFrom = 2000;
+/// Likewise of those that wait: fewer, so that when they come there is still something before them.
+const mostWaiting = 1000;
+const waitingTrimmedFrom = 1200;
 /// Between two times that the list is drawn, in ms: a busy line would have every repaint taken up by it.
 const slowest = 30;
 
@@ -86,8 +89,8 @@ export class Timeline {
   /// Of those that wait, the oldest become one for each line that says how many there were.
   keepBack(fresh) {
     this.pending.push(...fresh);
-    if (this.pending.length > trimmedFrom) {
-      const gone = this.pending.splice(0, this.pending.length - mostKept);
+    if (this.pending.length > waitingTrimmedFrom) {
+      const gone = this.pending.splice(0, this.pending.length - mostWaiting);
       const left = [...new Set(gone.map(({line}) => line))].map((line) => gone.filter((entry) => entry.line === line));
       this.pending.unshift(...left.map((entries) =>
         this.prepared({line: entries[0].line, missed: sum(entries), began: entries.at(-1).began})));

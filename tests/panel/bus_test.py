@@ -1,0 +1,201 @@
+"""The bus in the browser: what is kept, paused, searched and seen on the strip, and its faults."""
+
+import time
+import unittest
+
+from panel_page import Panel, pressed
+from simulator import Master
+from web_socket import Page
+
+ROWS = "document.querySelectorAll('#filler .row').length"
+TALLY = "document.getElementById('tally').textContent"
+PAUSED = "document.getElementById('pause').getAttribute('aria-pressed') === 'true'"
+LOST = "document.getElementById('lost').textContent.includes('trying again')"
+PICTURE = "document.getElementById('canvas').toDataURL()"
+# Whether the strip has some of the colour named so at this height of it.
+PAINTED = """((name, y) => {
+  const strip = document.getElementById('canvas');
+  const copy = document.createElement('canvas');
+  copy.width = strip.width;
+  const pen = copy.getContext('2d', {willReadFrequently: true});
+  pen.fillStyle = getComputedStyle(document.documentElement).getPropertyValue('--' + name);
+  pen.fillRect(0, 0, 1, 1);
+  const wanted = pen.getImageData(0, 0, 1, 1).data.join();
+  pen.clearRect(0, 0, copy.width, 1);
+  pen.drawImage(strip, 0, y, strip.width, 1, 0, 0, strip.width, 1);
+  const row = pen.getImageData(0, 0, copy.width, 1).data;
+  for (let at = 0; at < row.length; at += 4) {
+    if (row.slice(at, at + 4).join() === wanted) { return true; }
+  }
+  return false;
+})"""
+
+
+class Bus(Panel):
+    def ask_inputs(self, master, times):
+        for _ in range(times):
+            master.ask("020200000008", 6)
+
+    def faults_of(self, simulator):
+        page = Page(simulator.port)
+        state = page.until(lambda message: "hello" in message)["state"]
+        page.close()
+        return state["lines"][0]["faults"]
+
+    def type(self, selector, words):
+        self.browser.run(f"""const field = document.querySelector("{selector}"); field.value = "{words}";
+            field.dispatchEvent(new Event('input'))""")
+
+    def test_who_pauses_is_told_what_waits_and_gets_it_later(self):
+        _, master = self.show_two()
+        self.ask_inputs(master, 2)
+        self.browser.until(f"{TALLY} === '4 frames'")
+        self.browser.click("#pause")
+        self.ask_inputs(master, 3)
+        self.browser.until(f"{TALLY} === '4 frames, 6 more'")
+        self.assertEqual(self.browser.run(f"return {ROWS}"), 4)
+        self.browser.click("#pause")
+        self.browser.until(f"{TALLY} === '10 frames' && {ROWS} === 10")
+
+    def test_a_search_goes_on_while_paused(self):
+        _, master = self.show_two()
+        master.coil(1, 2, True)
+        master.counter(2, 0)
+        self.browser.until(f"{ROWS} === 4")
+        self.browser.click("#pause")
+        self.type("#search", "coil 0002")
+        self.browser.until(f"{ROWS} === 1 && {TALLY} === '1 of 4'")
+        master.coil(1, 2, False)
+        self.browser.until(f"{TALLY} === '1 of 4, 2 more'")
+        self.browser.click("#pause")
+        self.browser.until(f"{ROWS} === 2 && {TALLY} === '2 of 6'")
+        self.type("#search", "")
+        self.browser.until(f"{ROWS} === 6")
+
+    def test_of_what_there_is_no_room_for_while_paused_each_line_says_how_much(self):
+        modules = [{"model": "EX9052D-M", "address": "02"}]
+        simulator = self.bus([{"name": name, "tcp": 0, "line": "instant", "modules": modules} for name in ("hall", "yard")])
+        self.look_at(simulator)
+        masters = [Master(port) for port in simulator.lines]
+        for master in masters:
+            self.addCleanup(master.close)
+            self.ask_inputs(master, 1)
+        self.browser.until(f"{ROWS} === 4")
+        self.browser.click("#pause")
+        for _ in range(1500):
+            for master in masters:
+                self.ask_inputs(master, 1)
+        self.browser.until(f"{TALLY} === '4 frames, 6000 more'")
+        self.browser.click("#pause")
+        self.browser.until(f"!{TALLY}.includes('more')")
+        self.type("#search", "left out")
+        left_out = """[...document.querySelectorAll('.row[data-kind=missed]')].map((row) =>
+            row.querySelector('.from').textContent + ': ' + row.querySelector('.meaning').textContent)"""
+        for name in "hall", "yard":
+            self.browser.until(f"{left_out}.some((said) => /^{name}: [0-9]+ frames were left out here$/.test(said))")
+        self.picture("left-out")
+
+    def test_a_page_that_is_paused_begins_anew_with_another_run_and_other_modules(self):
+        simulator, master = self.show_two()
+        self.ask_inputs(master, 1)
+        self.browser.until(f"{TALLY} === '2 frames'")
+        self.browser.click("#pause")
+        self.ask_inputs(master, 1)
+        self.browser.until(f"{TALLY} === '2 frames, 2 more'")
+        simulator.kill()
+        self.browser.until(LOST)
+        simulator.start_again("EX9055D@02", "EX9063D@03", "EX9042D@04", "--tcp", "0")
+        self.browser.until(f"!({LOST})")
+        self.browser.until(f"!({PAUSED}) && {TALLY} === '0 frames' && {ROWS} === 0")
+        models = "return [...document.querySelectorAll('.plate h3')].map((each) => each.textContent)"
+        self.assertEqual(self.browser.run(models), ["EX9055D", "EX9063D", "EX9042D"])
+        again = Master(simulator.lines[0])
+        self.addCleanup(again.close)
+        self.assertEqual(again.say("$02M"), "!029055")
+        self.browser.until(f"{TALLY} === '2 frames' && {ROWS} === 2")
+        self.browser.until(f"{PAINTED}('master', 20) && {PAINTED}('module', 30)")
+
+    def test_the_strip_moves_while_there_are_only_remarks_on_it(self):
+        simulator = self.show("EX9042D")
+        page = Page(simulator.port)
+        self.addCleanup(page.close)
+        self.assertTrue(page.tell("1 fault hang every 100ms")["ok"])
+        self.browser.until(f"{ROWS} > 0 && {PAINTED}('note', 26)")
+        self.assertTrue(page.tell("fault off 1")["ok"])
+        self.browser.until(f"!{PAINTED}('note', 26)")  # it has moved out
+
+    def test_what_is_handed_out_late_stands_where_it_belongs(self):
+        simulator = self.show("EX9042D@01,baud=1200", "--baud", "1200")
+        page = Page(simulator.port)
+        self.addCleanup(page.close)
+        master = Master(simulator.lines[0])
+        self.addCleanup(master.close)
+        master.send(bytes([7] * 40))  # for 0.3 s, and all the while a remark is made on it
+        self.assertTrue(page.tell("1 fault hang every 50ms")["ok"])
+        self.browser.until(f"{ROWS} > 2 && {PAINTED}('note', 26)")
+        self.assertFalse(self.browser.run("return document.querySelector('.row[data-kind=error]') !== null"))
+        self.browser.until("document.querySelector('.row[data-kind=error]') !== null")
+        in_turn = """const rows = [...document.querySelectorAll('#filler .row')];
+            rows.sort((a, b) => a.ariaRowIndex - b.ariaRowIndex);
+            return rows.map((row) => Number(row.querySelector('.time').textContent))"""
+        times = self.browser.run(in_turn)
+        self.assertEqual(times, sorted(times))
+        self.assertEqual(self.browser.run("return document.querySelector('.row[data-kind=error]').ariaRowIndex"), "2")
+        self.browser.until(f"{PAINTED}('bad', 20) && {PAINTED}('note', 46)")
+
+    def test_every_line_has_a_lane(self):
+        lines = [{"name": f"line{n}", "tcp": 0, "modules": [{"model": "EX9052D-M", "address": "02"}]} for n in range(9)]
+        simulator = self.bus(lines)
+        self.look_at(simulator)
+        self.assertIn("9 lines", self.browser.run("return document.getElementById('about').textContent"))
+        names = self.browser.run("return [...document.querySelectorAll('.linename')].map((each) => each.textContent)")
+        self.assertEqual(names, [f"line{n} 127.0.0.1:{port}" for n, port in enumerate(simulator.lines)])
+        master = Master(simulator.lines[8])
+        self.addCleanup(master.close)
+        self.browser.run("document.getElementById('lanes').scrollTop = 10000")
+        self.ask_inputs(master, 1)
+        self.browser.until(f"{PAINTED}('master', 8 * 52 + 20) && {PAINTED}('module', 8 * 52 + 30)")
+        self.browser.run("document.getElementById('bus').scrollIntoView()")
+        self.picture("nine-lines")
+        self.browser.run("document.getElementById('lanes').scrollTop = 0")
+        self.browser.until(f"!{PAINTED}('master', 8 * 52 + 20)")
+
+    def test_the_strip_is_moved_by_keys_and_by_dragging_while_paused(self):
+        _, master = self.show_two()
+        self.ask_inputs(master, 1)
+        self.browser.until(f"{ROWS} === 2 && {PAINTED}('master', 20)")
+        self.browser.click("#pause")
+        self.browser.run("document.getElementById('canvas').focus()")
+        for move in (lambda: self.browser.key("Left"), lambda: self.browser.drag("#canvas", 200),
+                     lambda: self.browser.drag("#canvas", -100), lambda: self.browser.key("Right")):
+            self.browser.run(f"window.before = {PICTURE}")
+            move()
+            self.browser.until(f"{PICTURE} !== before")
+
+    def test_clicks_on_a_fault_sooner_than_it_is_seen_all_count(self):
+        simulator, _ = self.show_two()
+        noise = "[aria-label='Fault inserted-bytes 0.01']"
+        click = f"""document.querySelector("{noise}").click();"""
+        self.browser.run(click * 3)
+        gives_up = time.monotonic() + 5
+        while [fault["number"] for fault in self.faults_of(simulator)] != [2]:  # on, off, and on again
+            self.assertLess(time.monotonic(), gives_up)
+        self.browser.until(f"{pressed(noise)}")
+        self.browser.run(click)
+        self.browser.until(f"!({pressed(noise)})")
+        self.assertEqual(self.faults_of(simulator), [])
+
+    def test_a_fault_of_one_module_is_switched_on_and_off(self):
+        simulator, _ = self.show_two()
+        self.browser.type("[aria-label='Whose']", "2")
+        self.browser.type("[aria-label='Another fault']", "late-reply 50ms\ue007")
+        fault = "[aria-label='Fault module 2: late-reply 50ms']"
+        self.browser.until(pressed(fault))
+        self.assertEqual([(each["module"], each["text"]) for each in self.faults_of(simulator)], [(1, "late-reply 50ms")])
+        self.browser.run(f"""document.querySelector("{fault}").click()""")
+        self.browser.until(f"!({pressed(fault)})")
+        self.assertEqual(self.faults_of(simulator), [])
+
+
+if __name__ == "__main__":
+    unittest.main()

@@ -1,0 +1,157 @@
+"""How the panel looks, and what a screen reader finds: contrast, narrow windows, what stands in a drawer, and what it
+says where there is nothing to see."""
+
+import time
+import unittest
+
+from panel_page import DI3, INPUTS, OUTPUTS, Panel, text
+from web_socket import Page
+
+MOST_PAGES = 16
+LEGIBLE = 4.5
+VISIBLE = 3  # what is no text
+# The contrast of a colour (a property of what is there, or of what is generated before or behind it) on a ground,
+# with all its ancestors' opacities.
+CONTRAST = """
+  const [selector, generated, property, ground] = arguments;
+  const channels = (colour) => colour.match(/[0-9.]+/g).slice(0, 3).map((each) => Number(each) / 255);
+  const light = (colour) => {
+    const [r, g, b] = colour.map((each) => each <= 0.04045 ? each / 12.92 : ((each + 0.055) / 1.055) ** 2.4);
+    return 0.2126 * r + 0.7152 * g + 0.0722 * b;
+  };
+  const element = document.querySelector(selector);
+  const under = channels(getComputedStyle(document.querySelector(ground)).backgroundColor);
+  let opacity = 1;
+  for (let each = element; each; each = each.parentElement) { opacity *= Number(getComputedStyle(each).opacity); }
+  const over = channels(getComputedStyle(element, generated)[property]);
+  const [a, b] = [light(under), light(over.map((each, i) => each * opacity + under[i] * (1 - opacity)))];
+  return (Math.max(a, b) + 0.05) / (Math.min(a, b) + 0.05);
+"""
+
+
+class Looks(Panel):
+    def test_what_there_is_to_read_and_to_click_stands_out_in_light_and_dark(self):
+        simulator, _ = self.show_two()
+        self.browser.run("document.querySelector('.said').textContent = 'error'")
+        for scheme in "light", "dark":
+            self.browser.prefers(color_scheme=scheme)
+            for selector, generated, property_, ground, wanted in (
+                (f"{INPUTS} .latch", None, "color", ".plate", LEGIBLE),
+                (f"{INPUTS} .counter", None, "color", ".plate", LEGIBLE),
+                (DI3, None, "borderTopColor", ".plate", VISIBLE),
+                (f"{OUTPUTS} .output", None, "borderTopColor", ".plate", VISIBLE),
+                (f"{OUTPUTS} .rocker .knob", "::after", "color", f"{OUTPUTS} .rocker .knob", LEGIBLE),
+                (f"{OUTPUTS} .readout .label", None, "color", ".readout", LEGIBLE),
+                (f"{INPUTS} .channels .label", None, "color", ".edge", LEGIBLE),
+                ("#link", None, "color", ".top", LEGIBLE),
+                ("#about", None, "color", ".top", LEGIBLE),
+                (".hint", None, "color", "body", LEGIBLE),
+                (".lost", None, "color", ".lost", LEGIBLE),
+                (".said", None, "color", ".faultline", LEGIBLE),
+            ):
+                with self.subTest(scheme=scheme, what=selector):
+                    self.assertGreaterEqual(self.browser.run(CONTRAST, selector, generated, property_, ground), wanted)
+        self.browser.click("[aria-label='1 EX9042D-M: power']")
+        self.browser.until(text(OUTPUTS, ".ledtext", "off"))
+        knob = f"{OUTPUTS} .rocker .knob"
+        for scheme in "light", "dark":
+            self.browser.prefers(color_scheme=scheme)
+            self.assertGreaterEqual(self.browser.run(CONTRAST, knob, "::after", "color", knob), LEGIBLE)
+
+    def test_a_screen_reader_finds_roles_and_names(self):
+        self.show_two()
+        nodes = self.browser.devtools("Accessibility.getFullAXTree")["nodes"]
+        found = {(each["role"]["value"], each.get("name", {}).get("value", "")) for each in nodes
+                 if not each["ignored"] and "role" in each}
+        for wanted in (
+            ("article", "1 EX9042D-M"), ("heading", "EX9042D-M"), ("image", "Status LED on"), ("image", "DO0 off"),
+            ("switch", "1 EX9042D-M: power"), ("switch", "1 EX9042D-M: INIT* to GND"), ("button", "1 EX9042D-M: reset"),
+            ("list", "Outputs"), ("list", "Inputs"), ("switch", "2 EX9052D-M: input DI3"),
+            ("StaticText", "counter of DI3:"), ("image", "DI3: rising edge not latched"),
+            ("region", "Modules"), ("region", "Bus"), ("region", "Faults of the bus"), ("table", "Frames"),
+            ("button", "Pause"), ("searchbox", "Search"), ("image", "The last 1000 ms of 1 line"),
+            ("switch", "Fault gone"), ("textbox", "Another fault"), ("combobox", "Whose"), ("status", ""),
+        ):
+            self.assertIn(wanted, found)
+
+    def test_what_is_read_in_a_drawer_stays_while_things_change(self):
+        simulator, master = self.show_two()
+        self.browser.size(320, 700)
+        self.browser.click(f"{OUTPUTS} summary")
+        self.browser.until(text(OUTPUTS, ".values", "Present0000"))
+        self.browser.run(f"""
+            const table = document.querySelector("{OUTPUTS} .wideable");
+            table.focus();
+            table.scrollLeft = 30;
+            const kept = document.querySelector("{OUTPUTS} .drawer dd");
+            getSelection().selectAllChildren(kept);
+            window.before = [table, table.scrollLeft, kept, String(getSelection())];""")
+        master.coil(1, 0, True)
+        master.coil(1, 0x0081, True)
+        master.ask("010601E80014", 8)
+        self.browser.until(text(OUTPUTS, ".values", "Present1100"))
+        self.browser.until(text(OUTPUTS, ".drawer dl", "2.0 s"))
+        scrolled, same, focused, selected = self.browser.run(f"""
+            const [table, left, kept, selected] = before;
+            return [left > 0 && table.scrollLeft === left, document.querySelector("{OUTPUTS} .drawer dd") === kept,
+                    document.activeElement === table, selected !== '' && String(getSelection()) === selected];""")
+        self.assertTrue(scrolled and same and focused and selected, (scrolled, same, focused, selected))
+
+    def test_one_page_too_many_says_so_and_comes_as_soon_as_another_goes(self):
+        simulator, _ = self.show_two()
+        pages = []
+        while len(pages) < MOST_PAGES - 1:
+            pages.append(Page(simulator.port))
+            self.addCleanup(pages[-1].close)
+        self.browser.open("about:blank")
+        gives_up = time.monotonic() + 5
+        while (page := Page(simulator.port)).next() is None:  # the browser's own has gone
+            self.assertLess(time.monotonic(), gives_up)
+        self.addCleanup(page.close)
+        self.browser.open(simulator.address)
+        self.browser.until("document.getElementById('lost').textContent.includes('Too many pages')")
+        dot = "getComputedStyle(document.getElementById('link'), '::before').content.includes('○')"
+        self.browser.until(dot)
+        self.picture("too-many")
+        page.close()
+        self.browser.until("document.querySelectorAll('.plate').length === 2")
+        self.browser.until(f"document.getElementById('lost').textContent === '' && !{dot}")
+        self.assertTrue(self.browser.run(f"document.body.removeAttribute('data-link'); return {dot}"))  # at first
+
+    def test_320_pixels_are_enough_for_long_names(self):
+        self.browser.size(320, 640, phone=True)
+        modules = [{"model": model, "address": f"{n + 1:02X}"} for n, model in enumerate(("EX9043D-M", "EX9055D", "EX9052D"))]
+        self.look_at(self.bus([{"name": "n" * 60, "tcp": 0, "modules": modules}, {"name": "m", "tcp": 0, "modules": modules}]))
+        self.browser.run("document.querySelectorAll('details').forEach((each) => { each.open = true; })")
+        self.browser.until("document.querySelector('.drawer dd').textContent !== ''")
+        self.expect_no_scrolling_sideways()
+        self.picture("320", whole=True)
+
+    def test_the_header_hides_nothing_that_has_the_focus(self):
+        self.browser.size(660, 700)
+        modules = [{"model": "EX9052D-M", "address": f"{n + 1:02X}"} for n in range(30)]
+        self.look_at(self.bus([{"name": "n" * 60, "tcp": 0, "modules": modules}]))
+        self.browser.run("""document.querySelector("[aria-label='30 EX9052D-M: input DI3']").focus()""")
+        hidden = """const header = document.querySelector('.top').getBoundingClientRect();
+            return document.activeElement.getBoundingClientRect().top < header.bottom && header.height > 64"""
+        self.browser.key("+Shift")
+        for _ in range(20):
+            self.browser.key("Tab")
+            self.assertFalse(self.browser.run(hidden))
+        self.browser.key("-Shift")
+        self.assertGreater(self.browser.run("return document.querySelector('.top').offsetHeight"), 64)
+
+    def test_terminals_are_as_in_the_manual_from_edge_to_edge(self):
+        self.show("EX9042D-M@01", "EX9052D-M@02", "EX9063D@03")
+        edge = "return [...document.querySelectorAll(`[aria-label='${arguments[0]}'] .edge li`)].map((each) => each.textContent)"
+        power = ["DATA+", "DATA−", "+VS", "GND"]
+        self.assertEqual(self.browser.run(edge, "1 EX9042D-M"), ["INIT*", *power])
+        self.assertEqual(self.browser.run(edge, "2 EX9052D-M"), power)
+        short = """return [...document.querySelectorAll('.channels')].filter((list) =>
+            Math.abs(list.lastElementChild.getBoundingClientRect().right - list.getBoundingClientRect().right) > 1).length"""
+        self.assertEqual(self.browser.run(short), 0)
+        self.picture("terminals", whole=True)
+
+
+if __name__ == "__main__":
+    unittest.main()
