@@ -36,8 +36,9 @@ function begin(hello) {
   }
   run = hello.run;
   const several = hello.lines.length > 1;
-  setText(at("about"), [hello.version, hello.modules.length > 1 ? `${hello.modules.length} modules` : null,
-    several ? `${hello.lines.length} lines` : [hello.lines[0].name, hello.lines[0].ports.join(", ")].filter(Boolean).join(": ")]
+  const [first] = hello.lines;
+  setText(at("about"), [hello.version, hello.modules.length > 1 ? `${hello.modules.length} modules` : "",
+    several ? `${hello.lines.length} lines` : [first.name, first.ports.join(", ")].filter(Boolean).join(": ")]
     .filter(Boolean).join(" · "));
   plates = hello.modules.map((layout, position) =>
     new Plate(layout, position,
@@ -124,7 +125,8 @@ function lost(why) {
 
 /// What hangs below the header, and what is scrolled to, must know how high it is.
 const header = document.querySelector(".top");
-new ResizeObserver(() => document.documentElement.style.setProperty("--top", `${header.offsetHeight}px`)).observe(header);
+const measure = () => document.documentElement.style.setProperty("--top", `${header.offsetHeight}px`);
+new ResizeObserver(measure).observe(header);
 
 const live = new Live(take, lost);
 requestAnimationFrame(repaint);

@@ -149,7 +149,7 @@ export class Strip {
     this.pen.fillStyle = this.colour("quiet");
     for (const tenth of this.tenths(width)) {
       this.pen.textAlign = tenth === 0 ? "left" : tenth === 10 ? "right" : "center";
-      this.pen.fillText(`${-(10 - tenth) * span / 1e4} ms`.replace("-0 ms", "0").replace("-", "−"), width * tenth / 10,
+      this.pen.fillText(`${-(10 - tenth) * span / 1e4} ms`.replace("-", "−"), width * tenth / 10,
         top + scaleHeight - 4);
     }
   }
