@@ -37,7 +37,8 @@ class Session {
   Session& operator=(const Session&) = delete;
 
   /// Makes the files that are missing, prints the greeting, and puts the lines to work as soon as `io` runs,
-  /// which is stopped when the time of `setup` is over. Throws likewise; files that it has made go with it then.
+  /// which is stopped when the time of `setup` is over. Throws likewise; files that it has made go with it
+  /// then.
   void start();
   /// Where the lines follow no clock: all that happens in the time of `setup`, unless `io` is stopped.
   void run_as_fast_as_it_can();

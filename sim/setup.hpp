@@ -43,8 +43,6 @@ struct Writing {
 
 struct Setup : Writing {
   std::string file;                    ///< the bus file that it is from; empty: a command line
-  /// By key, where that file says so, `bus.json:2: control`; none: it does not.
-  std::map<std::string, std::string> places;
   std::vector<LineSetup> lines;        ///< at least one
   std::optional<std::string> control;  ///< where to make the control socket
   std::optional<PanelSetup> panel;     ///< the page for a browser; none: nobody serves it
@@ -54,6 +52,8 @@ struct Setup : Writing {
   /// For so long are the modules up, by the lines' time, then it ends; nothing: until it is told to.
   std::optional<VirtualTime> lasts;
   std::uint64_t seed = 1;  ///< of all chance: noise, faults that are probable, contacts that chatter
+  /// By key, where that file says so, `bus.json:2: control`; none: it does not.
+  std::map<std::string, std::string> places;
 };
 
 /// Wrong by the key that it is written under: an option of the command line, or a member of a bus file.
