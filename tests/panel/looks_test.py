@@ -135,7 +135,7 @@ class Looks(Panel):
         hidden = """const header = document.querySelector('.top').getBoundingClientRect();
             return document.activeElement.getBoundingClientRect().top < header.bottom && header.height > 64"""
         self.browser.key("+Shift")
-        for _ in range(20):
+        for _ in range(80):
             self.browser.key("Tab")
             self.assertFalse(self.browser.run(hidden))
         self.browser.key("-Shift")

@@ -72,7 +72,7 @@ class Panel(unittest.TestCase):
         self.browser.screenshot(PICTURES / f"{name}.png", whole)
 
     def expect_no_scrolling_sideways(self):
-        self.assertLessEqual(*self.browser.run("return [document.documentElement.scrollWidth, innerWidth]"))
+        self.assertLessEqual(*self.browser.run("return [document.documentElement.scrollWidth, document.documentElement.clientWidth]"))
 
     def many(self):
         models = ["EX9042D-M", "EX9052D-M", "EX9055D", "EX9068D-M"]
