@@ -162,8 +162,8 @@ class Bus(Panel):
 
     def test_the_strip_is_moved_by_keys_and_by_dragging_while_paused(self):
         _, master = self.show_two()
-        self.ask_inputs(master, 1)
-        self.browser.until(f"{ROWS} === 2 && {PAINTED}('master', 20)")
+        self.ask_inputs(master, 20)  # half a second of them: where it is moved there are others in sight
+        self.browser.until(f"{ROWS} > 20 && {PAINTED}('master', 20)")
         self.browser.click("#pause")
         self.browser.run("document.getElementById('canvas').focus()")
         for move in (lambda: self.browser.key("Left"), lambda: self.browser.drag("#canvas", 200),
