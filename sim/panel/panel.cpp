@@ -10,6 +10,7 @@
 
 #include "firmware/model/model.hpp"
 #include "sim/face/face.hpp"
+#include "sim/panel/changing.hpp"
 #include "sim/panel/heard.hpp"
 #include "sim/panel/messages.hpp"
 #include "sim/words.hpp"
@@ -40,26 +41,6 @@ std::string random_id() {
   }
   return id;
 }
-
-/// Something that is told when it has changed.
-template <class Value>
-class Changing {
- public:
-  /// `look`: the number of the present one.
-  void set(Value value, std::uint64_t look) {
-    if (!value_ || !(*value_ == value)) {
-      value_ = std::move(value);
-      changed_ = look;
-    }
-  }
-  /// Whether somebody who was told of look number `told` knows an older value.
-  [[nodiscard]] bool is_news_since(std::uint64_t told) const { return changed_ > told; }
-  [[nodiscard]] const Value& value() const { return *value_; }
-
- private:
-  std::optional<Value> value_;
-  std::uint64_t changed_ = 0;
-};
 
 }  // namespace
 
