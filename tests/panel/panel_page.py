@@ -72,7 +72,8 @@ class Panel(unittest.TestCase):
         self.browser.screenshot(PICTURES / f"{name}.png", whole)
 
     def expect_no_scrolling_sideways(self):
-        self.assertLessEqual(*self.browser.run("return [document.documentElement.scrollWidth, document.documentElement.clientWidth]"))
+        self.assertLessEqual(*self.browser.run(
+            "const {scrollWidth, clientWidth} = document.documentElement; return [scrollWidth, clientWidth]"))
 
     def many(self):
         models = ["EX9042D-M", "EX9052D-M", "EX9055D", "EX9068D-M"]

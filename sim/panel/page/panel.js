@@ -40,9 +40,11 @@ function begin(hello) {
   setText(at("about"), [hello.version, hello.modules.length > 1 ? `${hello.modules.length} modules` : "",
     several ? `${hello.lines.length} lines` : [first.name, first.ports.join(", ")].filter(Boolean).join(": ")]
     .filter(Boolean).join(" · "));
-  plates = hello.modules.map((layout, position) =>
-    new Plate(layout, position,
-      (command, undo) => live.tell(`${position + 1} ${command}`, undo && `${position + 1} ${undo}`), () => document.querySelector("input[name=way]:checked").value));
+  const wayOfClicks = () => document.querySelector("input[name=way]:checked").value;
+  plates = hello.modules.map((layout, position) => {
+    const its = (command) => command && `${position + 1} ${command}`;
+    return new Plate(layout, position, (command, undo) => live.tell(its(command), its(undo)), wayOfClicks);
+  });
   lines = hello.lines.map((line, index) => {
     const modules = hello.modules.map((layout, position) => ({position, model: layout.model, line: layout.line}))
       .filter((module) => module.line === index);

@@ -111,7 +111,8 @@ export class Plate {
     const on = plate.listening;
     setText(this.address.value, on ? hexByte(plate.address) : "––");
     setText(this.baud.value, on ? String(plate.baud) : "––");
-    setText(this.protocol.value, !on ? "––" : plate.protocol === "modbus" ? "RTU" : plate.checksum ? "ASCII+Σ" : "ASCII");
+    const ascii = plate.checksum ? "ASCII+Σ" : "ASCII";
+    setText(this.protocol.value, !on ? "––" : plate.protocol === "modbus" ? "RTU" : ascii);
     this.outputs.forEach(({label, led}, channel) => {
       const lit = bit(plate.outputs, channel);
       setAttribute(led, "data-on", lit);

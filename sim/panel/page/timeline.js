@@ -108,7 +108,8 @@ export class Timeline {
       entry.said = "";
       entry.means = entry.note;
     } else {
-      entry.from = `${entry.station === 0 ? "▶" : entry.station === null ? "?" : "◀"} ${this.who(entry.line, entry.station)}`;
+      const sign = entry.station === 0 ? "▶" : entry.station === null ? "?" : "◀";
+      entry.from = `${sign} ${this.who(entry.line, entry.station)}`;
       const hex = entry.bytes.match(/../g)?.join(" ") ?? "";
       entry.said = entry.text ?? hex;
       entry.means = [entry.error, entry.error === entry.meaning ? null : entry.meaning].filter(Boolean).join("; ");
