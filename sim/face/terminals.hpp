@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cstddef>
 #include <string>
 #include <string_view>
 
@@ -10,39 +11,26 @@
 
 namespace ex9000::sim {
 
-/// Relays and PhotoMOS switches are counted from 1 on the label, and from 0 on the wire.
-struct OutputLabel {
-  std::string_view designation;
-  std::string_view prefix;
-  unsigned first;
-};
+/// Their outputs are relays or PhotoMOS switches, which are counted from 1 on the label, RL1, and from 0 on
+/// the wire. All others have open collectors, DO0 and so on.
+inline constexpr std::array<std::string_view, 8> kWithRelays{"EX9060D", "EX9063D", "EX9065D",   "EX9066D",
+                                                             "EX9067D", "EX9068D", "EX9068D-M", "EX9068AD-M"};
 
-inline constexpr OutputLabel kOpenCollectorLabel{"", "DO", 0};
-inline constexpr std::array<OutputLabel, 8> kOutputLabels{{
-    {"EX9060D", "RL", 1},
-    {"EX9063D", "RL", 1},
-    {"EX9065D", "RL", 1},
-    {"EX9066D", "RL", 1},
-    {"EX9067D", "RL", 1},
-    {"EX9068D", "RL", 1},
-    {"EX9068D-M", "RL", 1},
-    {"EX9068AD-M", "RL", 1},
-}};
+/// All modules had INIT* among the power's terminals once; newer ones have a slide switch at the rear instead
+/// (section 1.4 of the manuals), and of these the manuals' first pages say so.
+inline constexpr std::array<std::string_view, 2> kWithInitSwitch{"EX9043D-M", "EX9052D-M"};
+
+template <std::size_t size>
+bool is_among(const std::array<std::string_view, size>& designations, const Model& model) {
+  return std::find(designations.begin(), designations.end(), model.designation) != designations.end();
+}
 
 /// Of an output channel, from 0.
 inline std::string output_terminal(const Model& model, unsigned channel) {
-  const auto* const row =
-      std::find_if(kOutputLabels.begin(), kOutputLabels.end(),
-                   [&model](const OutputLabel& label) { return label.designation == model.designation; });
-  const OutputLabel& label = row == kOutputLabels.end() ? kOpenCollectorLabel : *row;
-  return std::string(label.prefix) + std::to_string(label.first + channel);
+  return is_among(kWithRelays, model) ? "RL" + std::to_string(channel + 1) : "DO" + std::to_string(channel);
 }
 
-/// Whether the power's terminals have INIT* among them. All modules had once; newer ones have a slide switch
-/// at the rear instead (section 1.4 of the manuals), and of these two the manuals' first pages say so.
-inline bool has_init_terminal(const Model& model) {
-  return model.designation != "EX9043D-M" && model.designation != "EX9052D-M";
-}
+inline bool has_init_terminal(const Model& model) { return !is_among(kWithInitSwitch, model); }
 
 /// Of an input channel, from 0.
 inline std::string input_terminal(unsigned channel) { return "DI" + std::to_string(channel); }
