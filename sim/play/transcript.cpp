@@ -293,7 +293,7 @@ struct Source {
   bool names_its_source = false;
   bool slow = false;
   std::vector<ModelRun> models;
-  sim::Words presets;
+  std::size_t preset_ends = 0;  ///< the first of `models` that no preset line has been read for
   std::vector<Line> steps;
 };
 
@@ -305,13 +305,18 @@ bool read_header(const std::string& text, Source& source) {
     if (word.empty()) {
       fail("'model:' wants a name");
     }
-    ModelRun run{&model_named(word[0]), {}};
+    ModelRun run{&model_named(word[0]), {}, {}};
     for (std::size_t i = 1; i < word.size(); ++i) {
       run.variables.insert(key_and_value(word[i]));
     }
     source.models.push_back(run);
   } else if (const auto preset = header_value(text, "preset")) {
-    source.presets = sim::words_of(*preset);
+    if (source.preset_ends == source.models.size()) {
+      fail("'preset:' requires a 'model:' line above it, which has no preset yet");
+    }
+    for (; source.preset_ends < source.models.size(); ++source.preset_ends) {
+      source.models[source.preset_ends].presets = sim::words_of(*preset);
+    }
   } else if (const auto tags = header_value(text, "tags")) {
     if (*tags != "slow") {
       fail("no tag '" + *tags + "'");
@@ -336,10 +341,8 @@ void read_line(const std::string& raw, unsigned number, Source& source) {
 }
 
 Transcript scenario(const std::string& path, const Source& source, unsigned& line) {
-  if (!source.presets.empty() || source.slow) {
-    fail(
-        "'preset:' and 'tags:' are for files with 'model:'; a scenario's modules have their settings from "
-        "its bus");
+  if (source.slow) {
+    fail("'tags:' is for files with 'model:'");
   }
   Transcript transcript;
   transcript.file = path;
@@ -355,8 +358,8 @@ Transcript transcript_of(const std::string& path, const Source& source, const Mo
   transcript.file = path;
   transcript.model = run.model;
   transcript.preset = Settings::factory(*run.model);
-  transcript.preset_given = !source.presets.empty();
-  for (const std::string& preset : source.presets) {
+  transcript.preset_given = !run.presets.empty();
+  for (const std::string& preset : run.presets) {
     apply_preset(preset, transcript.preset);
   }
   transcript.slow = source.slow;

@@ -7,7 +7,7 @@
 #include <chrono>
 #include <memory>
 
-#include "tests/system/simulator_process.hpp"
+#include "tests/support/simulator_process.hpp"
 
 namespace ex9000::bench {
 namespace {

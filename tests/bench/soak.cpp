@@ -11,9 +11,9 @@
 #include <thread>
 #include <vector>
 
-#include "tests/system/control_client.hpp"
-#include "tests/system/libmodbus_master.hpp"
-#include "tests/system/simulator_process.hpp"
+#include "tests/support/control_client.hpp"
+#include "tests/masters/libmodbus_master.hpp"
+#include "tests/support/simulator_process.hpp"
 
 namespace {
 

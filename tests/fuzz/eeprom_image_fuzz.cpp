@@ -12,7 +12,7 @@
 #include <string>
 
 #include "tests/fuzz/session.hpp"
-#include "tests/stored_settings.hpp"
+#include "tests/support/stored_settings.hpp"
 
 namespace ex9000::fuzz {
 namespace {

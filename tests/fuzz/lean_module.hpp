@@ -13,7 +13,7 @@
 #include "firmware/model/model.hpp"
 #include "hal/device.hpp"
 #include "tests/fuzz/require.hpp"
-#include "tests/judges/time.hpp"
+#include "tests/oracles/judges/time.hpp"
 
 namespace ex9000::fuzz {
 

@@ -13,9 +13,9 @@
 #include "firmware/model/model.hpp"
 #include "tests/fuzz/lean_module.hpp"
 #include "tests/fuzz/require.hpp"
-#include "tests/judges/checks.hpp"
-#include "tests/judges/module_state.hpp"
-#include "tests/judges/witness.hpp"
+#include "tests/oracles/judges/checks.hpp"
+#include "tests/oracles/judges/module_state.hpp"
+#include "tests/oracles/judges/witness.hpp"
 
 namespace ex9000::fuzz {
 

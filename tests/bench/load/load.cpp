@@ -17,7 +17,7 @@
 #include <vector>
 
 #include "tests/bench/load/polling_master.hpp"
-#include "tests/system/simulator_process.hpp"
+#include "tests/support/simulator_process.hpp"
 
 namespace {
 

@@ -1,0 +1,322 @@
+// What can be wrong around a board, and what its image makes of it.
+#include <gtest/gtest.h>
+
+#include <string>
+
+#include "firmware/model/model.hpp"
+#include "firmware/settings/settings.hpp"
+#include "sim/module.hpp"
+#include "sim/play/modbus_frame.hpp"
+#include "tests/mcu_model/board_bench.hpp"
+#include "tests/boards/images_under_test.hpp"
+
+namespace ex9000::registers {
+namespace {
+
+using std::chrono::microseconds;
+using std::chrono::milliseconds;
+using std::chrono::seconds;
+
+constexpr milliseconds kComesUpWithin{100};
+
+class OnBoard : public testing::TestWithParam<ImageName> {
+ protected:
+  explicit OnBoard(I2cManners manners = {}) : bench(image_of(GetParam().board, GetParam().model), manners) {}
+
+  void power_up() {
+    bench.power_on();
+    bench.run_for(kComesUpWithin);
+  }
+  UartPort& uart() { return bench.image.uart == 0 ? bench.mcu->uart0 : bench.mcu->uart1; }
+  bool listens() { return uart().enabled(); }
+  /// Comes up from reset, with the bus as it is.
+  void expect_comes_up() {
+    power_up();
+    EXPECT_TRUE(listens());
+    EXPECT_EQ(bench.resets, 0U);
+    EXPECT_EQ(bench.ask("$01M"), "!019055");
+  }
+  /// Sends the command that stores a name, and takes the supply away so much later, for 50 ms. Whether the
+  /// module had begun to answer.
+  bool cut_while_it_stores(const std::string& name, Instant after) {
+    const std::string command = "~01O" + name + "\r";
+    bench.line.heard.clear();
+    bench.line.send({command.begin(), command.end()});
+    bench.run_for(after);
+    cut_a_page_ = bench.eeprom.programming();
+    bench.power_off();
+    const bool answered = !bench.line.heard.empty();
+    bench.run_for(milliseconds(50));
+    power_up();
+    return answered;
+  }
+  /// Of cuts.
+  struct Outcomes {
+    unsigned old = 0;
+    unsigned stored_only = 0;  ///< and not answered
+    unsigned answered = 0;
+  };
+  Net& clock() { return bench.pins.at('B', I2cBlock::kClockPin); }
+  Net& data() { return bench.pins.at('B', I2cBlock::kDataPin); }
+
+  void expect_lives_with_stuck_lines() {
+    for (Net* line : {&clock(), &data()}) {
+      bench.power_off();
+      line->drive(End::Fault, Drive::Low);
+      expect_comes_up();
+      EXPECT_EQ(bench.ask("~01OPUMP"), "?01");
+      line->drive(End::Fault, Drive::Nothing);
+      bench.run_for(seconds(3));  // what could not be stored is tried again meanwhile
+      EXPECT_EQ(bench.ask("~01O9055"), "!01");
+      line->drive(End::Fault, Drive::Low);
+      EXPECT_EQ(bench.ask("~01OPUMP"), "?01");
+      line->drive(End::Fault, Drive::Nothing);
+      bench.run_for(seconds(3));
+      EXPECT_EQ(bench.ask("~01O9055"), "!01");
+      EXPECT_EQ(bench.ask("$01M"), "!019055");
+    }
+  }
+
+  BoardBench bench;
+  bool cut_a_page_ = false;
+};
+
+/// Its controller never tells that a START did not come about; the data sheets leave that open.
+class OnBoardWhoseI2cWaits : public OnBoard {
+ protected:
+  OnBoardWhoseI2cWaits() : OnBoard({true, false, true}) {}
+};
+
+TEST_P(OnBoard, ComesUpWithin100msWithoutAnEepromAndRefusesToStore) {
+  bench.eeprom.remove(true);
+  expect_comes_up();
+  EXPECT_EQ(bench.ask("~01OPUMP"), "?01");
+  EXPECT_EQ(bench.ask("$01M"), "!019055");
+}
+
+TEST_P(OnBoard, ComesUpWithin100msWhileTheEepromStillPrograms) {
+  power_up();
+  bench.eeprom.set_programming_time(milliseconds(10));
+  bench.line.send({'~', '0', '1', 'O', 'P', 'U', 'M', 'P', '\r'});
+  while (!bench.eeprom.programming()) {
+    bench.run_for(microseconds(500));
+  }
+  bench.reset();
+  bench.run_for(kComesUpWithin);
+  EXPECT_TRUE(listens());
+  EXPECT_EQ(bench.ask("$01M"), "!01PUMP");
+}
+
+TEST_P(OnBoard, ComesUpWithin100msWithALineStuckForEverAndStoresOnceItIsFree) {
+  expect_lives_with_stuck_lines();
+}
+
+TEST_P(OnBoardWhoseI2cWaits, ComesUpWithin100msWithALineStuckForEverAndStoresOnceItIsFree) {
+  expect_lives_with_stuck_lines();
+}
+
+TEST_P(OnBoard, ComesUpWithin100msAfterAResetAtAnyMomentOfReadingItsSettings) {
+  bench.power_on();
+  for (int i = 0; i < 120; ++i) {
+    bench.run_for(milliseconds(2) + microseconds(97 * i));
+    bench.reset();
+    bench.run_for(kComesUpWithin);
+    ASSERT_TRUE(listens()) << i;
+    bench.reset();
+  }
+  bench.run_for(kComesUpWithin);
+  EXPECT_EQ(bench.ask("$01M"), "!019055");
+}
+
+TEST_P(OnBoard, HasOldOrNewSettingsAfterAPowerCutAtAnyMomentOfAStoreAndNewOnesOnceItHasAnswered) {
+  // The command takes 9.4 ms and its turn-around 1 ms, and then 10 ms until it is stored; twice that where a
+  // cut before has left a copy that must be settled first.
+  constexpr microseconds kCommandIsSent{10'300};
+  constexpr microseconds kInBetween{5000};
+  power_up();
+  for (const bool torn_before : {false, true}) {
+    Outcomes outcomes;
+    for (int i = 0; i < 60; ++i) {
+      ASSERT_EQ(bench.ask("~01OOLD"), "!01");
+      if (torn_before) {
+        cut_while_it_stores("TORN", kCommandIsSent + kInBetween);
+        ASSERT_TRUE(cut_a_page_);
+        ASSERT_EQ(bench.ask("$01M"), "!01OLD");
+      }
+      const bool answered =
+          cut_while_it_stores("NEW", kCommandIsSent + microseconds(torn_before ? 480 : 270) * i);
+      const std::string name = bench.ask("$01M");
+      ASSERT_TRUE(name == "!01NEW" || (name == "!01OLD" && !answered)) << i << ": " << name;
+      outcomes.old += name == "!01OLD" ? 1U : 0U;
+      outcomes.answered += answered ? 1U : 0U;
+      outcomes.stored_only += name == "!01NEW" && !answered ? 1U : 0U;
+    }
+    EXPECT_GT(outcomes.old, 10U);
+    EXPECT_GT(outcomes.stored_only, 1U);
+    EXPECT_GT(outcomes.answered, 10U);
+  }
+}
+
+TEST_P(OnBoard, TheDriverIsOffUnlessItReplies) {
+  power_up();
+  EXPECT_TRUE(bench.line.drives.empty());
+  bench.ask("$01M");
+  bench.ask("$02M");
+  ASSERT_EQ(bench.line.drives.size(), 1U);
+  EXPECT_EQ(bench.line.bits_lost, 0U);
+}
+
+TEST_P(OnBoard, RepliesAtOnceWhenTheTurnAroundIsOver) {
+  constexpr microseconds kAtOnce{100};  // not with the next tick
+  power_up();
+  for (int i = 0; i < 20; ++i) {
+    bench.run_for(milliseconds(20) + microseconds(51 * i));
+    bench.line.drives.clear();
+    EXPECT_EQ(bench.ask("$01M"), "!019055");
+    ASSERT_EQ(bench.line.drives.size(), 1U);
+    const Instant silence = bench.line.drives[0].from - bench.line.sent();
+    EXPECT_GE(silence, kBitsACharacter * bench.line.bit_time());
+    EXPECT_LE(silence, kBitsACharacter * bench.line.bit_time() + kAtOnce);
+  }
+}
+
+class ModbusOnBoard : public OnBoard {};
+
+TEST_P(ModbusOnBoard, RepliesAtOnceWhenT35IsOver) {
+  constexpr microseconds kAtOnce{100};
+  const Instant t35 = 77 * bench.line.bit_time() / 2;  // 3.5 characters of 11 bits
+  power_up();
+  for (int i = 0; i < 20; ++i) {
+    bench.run_for(milliseconds(20) + microseconds(51 * i));
+    bench.line.drives.clear();
+    EXPECT_EQ(bench.exchange(with_crc({1, 1, 0, 0, 0, 16})), with_crc({1, 1, 2, 0, 0}));
+    ASSERT_EQ(bench.line.drives.size(), 1U);
+    const Instant silence = bench.line.drives[0].from - bench.line.sent();
+    EXPECT_GE(silence, t35);
+    EXPECT_LE(silence, t35 + kAtOnce);
+  }
+}
+
+TEST_P(OnBoard, TakesABreakBetweenRequestsForNoiseAndDropsTheRequestThatHasOneInside) {
+  constexpr Character kBreak{0, true, 30};
+  power_up();
+  bench.line.send_one(kBreak);
+  EXPECT_EQ(bench.ask("$01M"), "!019055");
+  bench.line.send({'$', '0', '1', 'M'});
+  bench.line.send_one(kBreak);
+  EXPECT_EQ(bench.ask(""), "");
+  EXPECT_EQ(bench.ask("$01M"), "!019055");
+}
+
+TEST_P(OnBoard, DropsTheRequestThatHasACharacterWithoutAStopBit) {
+  power_up();
+  bench.line.send({'$', '0', '1'});
+  bench.line.send_one({'M', false, 0});
+  bench.run_for(milliseconds(5));
+  EXPECT_EQ(bench.ask(""), "");
+  bench.line.send({'$', '0', '1', 'M'});
+  bench.line.send_one({'\r', false, 0});  // which may have been anything
+  bench.run_for(milliseconds(100));
+  EXPECT_TRUE(bench.line.heard.empty());
+  EXPECT_EQ(bench.ask(""), "") << "still the same request";
+  EXPECT_EQ(bench.ask("$01M"), "!019055");
+}
+
+TEST_P(OnBoard, DropsTheRequestOfWhichACharacterIsLostToAnOverrun) {
+  power_up();
+  bench.line.send({'~', '0', '1', 'O', 'P', 'U'});
+  bench.run_for(milliseconds(8));
+  bench.mcu->core.set_latency(milliseconds(3));
+  bench.line.send({'M', 'M', 'M', 'M'});
+  bench.run_for(milliseconds(8));
+  ASSERT_GT(uart().overruns(), 0U);
+  bench.mcu->core.set_latency(Instant(0));
+  EXPECT_EQ(bench.ask("P"), "");
+  EXPECT_EQ(bench.ask("$01M"), "!019055");
+}
+
+TEST_P(OnBoard, HeedsAHostOkThatAnotherFollowsAtOnceBeforeTheTickCouldTellOfEither) {
+  const Model& model = *find_model(bench.image.model);
+  Settings settings = Settings::factory(model);
+  settings.baud_code = 0x0A;  // 115200 baud: a host OK takes 0.35 ms
+  bench.memory = sim::SimulatedModule::memory_image(model, settings);
+  power_up();
+  bench.line.set_baud(115200);
+  const std::vector<std::uint8_t> host_ok{'~', '*', '*', '\r'};
+  const Instant takes = 40 * bench.line.bit_time();
+  ASSERT_EQ(bench.ask("~013101"), "!01");
+  for (int phase = 0; phase < 20; ++phase) {
+    bench.line.send(host_ok);
+    bench.run_for(takes);
+    // The first is over before the time is, the second behind it.
+    bench.run_for(milliseconds(100) - 2 * takes + takes / 2);
+    bench.line.send(host_ok);
+    bench.line.send(host_ok);
+    bench.run_for(milliseconds(20) + microseconds(50) * phase);
+    ASSERT_EQ(bench.ask("~010"), "!0100") << phase;
+  }
+}
+
+TEST_P(OnBoard, CountsPulsesOnEveryInputHoweverLateTheInterruptIs) {
+  power_up();
+  bench.mcu->core.set_latency(microseconds(10));
+  for (unsigned channel = 0; channel < bench.image.inputs; ++channel) {
+    for (int i = 0; i < 7; ++i) {
+      // So short that both edges are one flag, with the level that was before.
+      bench.set_input(channel, true);
+      bench.run_for(microseconds(i));
+      bench.set_input(channel, false);
+      bench.run_for(microseconds(100));
+    }
+    EXPECT_EQ(bench.ask("#01" + std::to_string(channel)), "!0100007") << channel;
+  }
+}
+
+TEST_P(OnBoard, CountsNoEdgeAtStartWhateverTheLevels) {
+  for (unsigned channel = 0; channel < bench.image.inputs; ++channel) {
+    bench.set_input(channel, channel % 3 != 0);
+  }
+  power_up();
+  for (unsigned channel = 0; channel < bench.image.inputs; ++channel) {
+    EXPECT_EQ(bench.ask("#01" + std::to_string(channel)), "!0100000") << channel;
+  }
+  EXPECT_EQ(bench.ask("$01L1"), bench.ask("$01L0")) << "no latch, high or low";
+}
+
+TEST_P(OnBoard, IsResetByTheWatchdogWithin1600msWhereTheTickStops) {
+  power_up();
+  ASSERT_EQ(bench.ask("$015"), "!011");
+  ASSERT_EQ(bench.ask("$015"), "!010");
+  bench.mcu->core.write(Core::kTickControl, 4);
+  bench.run_for(milliseconds(1590));
+  EXPECT_EQ(bench.watchdog_resets, 1U);
+  bench.run_for(kComesUpWithin);
+  EXPECT_EQ(bench.ask("$015"), "!011");
+}
+
+TEST_P(OnBoard, RunsForAMinuteWithoutAReset) {
+  bench.power_on();
+  bench.run_for(seconds(60));
+  EXPECT_EQ(bench.resets, 0U);
+  EXPECT_FALSE(bench.mcu->watchdog.flagged());
+  EXPECT_GT(bench.mcu->watchdog.feeds(), 100U);
+  EXPECT_EQ(bench.ask("$01M"), "!019055");
+}
+
+TEST_P(OnBoard, TouchesNothingWhileInterruptsAreHeld) {
+  power_up();
+  bench.ask("~01OPUMP");
+  EXPECT_EQ(bench.mcu->most_accesses_held(), 0U);
+}
+
+const auto kImages =
+    testing::Values(ImageName{"lm3s6965evb", "EX9055D"}, ImageName{"ek-tm4c123gxl", "EX9055D"});
+INSTANTIATE_TEST_SUITE_P(Images, OnBoard, kImages, name_of);
+INSTANTIATE_TEST_SUITE_P(Images, ModbusOnBoard,
+                         testing::Values(ImageName{"lm3s6965evb", "EX9043D-M"},
+                                         ImageName{"ek-tm4c123gxl", "EX9043D-M"}),
+                         name_of);
+INSTANTIATE_TEST_SUITE_P(Images, OnBoardWhoseI2cWaits, kImages, name_of);
+
+}  // namespace
+}  // namespace ex9000::registers

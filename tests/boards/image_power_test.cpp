@@ -1,0 +1,195 @@
+// Power cuts: each power-on is a new emulator, and nothing but the EEPROM's file is left of the one before.
+//
+// The emulated EEPROM stores a page at once, when STOP comes. So what is shown here is in which order the
+// image has it written, reads it back and answers, and that it comes up: what a cut leaves of a page is for
+// power_cuts_test.
+#include <gtest/gtest.h>
+
+#include <chrono>
+#include <cstdio>
+#include <map>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "sim/module.hpp"
+#include "tests/support/environment.hpp"
+#include "tests/qemu/master.hpp"
+#include "tests/qemu/timed_module.hpp"
+#include "tests/support/settings_reader.hpp"
+#include "tests/support/storing_commands.hpp"
+
+namespace ex9000::rig {
+namespace {
+
+using std::chrono::milliseconds;
+
+TEST(ImageWithoutPower, KeepsItsSettings) {
+  const Model& model = *find_model("EX9042D-M");
+  const Settings settings = ascii(model);
+  EmulatedModule module(model, &settings);
+  module.power(true);
+  wait_until_up(module);
+  EXPECT_EQ(ask(module, "~01OPUMP 7"), "!01");
+  EXPECT_EQ(ask(module, "%0102400600"), "!02");
+  EXPECT_EQ(ask(module, "@021234"), ">");
+  EXPECT_EQ(ask(module, "~025P"), "!02");
+  module.power(false);
+  EXPECT_EQ(module.outputs(), 0);
+  module.power(true);
+  wait_until_up(module);
+  EXPECT_EQ(ask(module, "$02M"), "!02PUMP 7");
+  EXPECT_EQ(ask(module, "@02"), ">1234");
+  EXPECT_EQ(module.outputs(), 0x1234);
+  EXPECT_EQ(ask(module, "$025"), "!021");
+}
+
+/// Settings from which `command` changes something.
+Settings settings_before(const Model& model, const StoringCommand& command) {
+  Settings settings = Settings::factory(model);
+  if (command.init != Init::SinceReset) {
+    settings.protocol = command.protocol;
+  }
+  settings.power_on_value = 0x5A5A;
+  settings.safe_value = 0xA5A4;
+  command.prepare(settings);
+  return settings;
+}
+
+/// A module that is killed behind so many stores to the registers of its I2C master.
+class CutModule {
+ public:
+  CutModule(const Model& model, const StoringCommand& command)
+      : command_(command), before_(settings_before(model, command)), module_(model) {}
+
+  /// Carries the command out until the power fails, and is made anew. False where it came to its end before.
+  bool cut_behind(unsigned stores) {
+    constexpr std::uint32_t kI2c = 0x4002'0000;
+    constexpr std::uint32_t kRegisters = 0x24;
+    const bool init_mode = command_.init == Init::SinceReset;
+    module_.power(false);
+    store(before_);
+    power_up(init_mode);
+    SettingsReader master = spoken_to(init_mode ? Manner::init_mode() : Manner::of(before_));
+    if (!before_.timeout_status) {
+      const bool driven = before_.protocol == Protocol::Ascii || init_mode
+                              ? master.ask(std::string("@C35A")) == ">"
+                              : master.ask(Bytes{0x0F, 0, 0, 0, 16, 2, 0x5A, 0xC3}).size() == 6;
+      EXPECT_TRUE(driven);
+    }
+    if (command_.init == Init::Tied) {
+      module_.set_init(true);
+      module_.run_for(milliseconds(15));
+    }
+    done_ = command_.done_to(before_, module_.outputs());
+    module_.hear(module_.baud());
+    if (!command_.is_timeout()) {
+      const Manner manner = init_mode ? Manner::init_mode() : Manner::of(before_);
+      module_.send(manner.framed(command_.frame(before_)), module_.baud());
+    }
+    module_.watch_stores(kI2c, kRegisters);
+    bool stopped = true;
+    for (unsigned i = 0; i < stores && stopped; ++i) {
+      stopped = module_.run_to_store(milliseconds(700));
+    }
+    answered_ = !module_.hear(module_.baud()).empty();
+    module_.kill();
+    return stopped;
+  }
+
+  /// Comes up with old settings or new ones, and new ones if `must_be_done` or it had begun to answer; and
+  /// with the outputs that belong to them.
+  void expect_wholly_done_or_not_at_all(bool must_be_done) {
+    module_.set_init(false);
+    power_up(false);
+    const std::uint16_t outputs = module_.outputs();
+    // What it answers depends on nothing but what the EEPROM holds, so that is asked for once.
+    std::optional<Settings>& found = known_[module_.memory()];
+    for (const Settings* guess : {&done_, &before_}) {
+      if (!found && baud_rate(guess->baud_code) == nearest_rate(module_.baud())) {
+        found = spoken_to(Manner::of(*guess)).read(guess->format);
+      }
+    }
+    ASSERT_TRUE(found) << "it does not answer";
+    ASSERT_TRUE(*found == done_ || (!must_be_done && !answered_ && *found == before_));
+    ASSERT_EQ(outputs, found->timeout_status ? found->safe_value : found->power_on_value);
+    (*found == done_ ? news_ : olds_) += 1;
+  }
+
+  [[nodiscard]] bool answered() const { return answered_; }
+  [[nodiscard]] unsigned olds() const { return olds_; }
+  [[nodiscard]] unsigned news() const { return news_; }
+
+ private:
+  using Bytes = std::vector<std::uint8_t>;
+
+  void store(const Settings& settings) {
+    const Bytes image = sim::SimulatedModule::memory_image(module_.model(), settings);
+    module_.set_memory({image.begin(), image.end()});
+  }
+  void power_up(bool init) {
+    module_.set_init(init);
+    module_.power(true);
+    module_.run_for(milliseconds(60));
+    ASSERT_NE(module_.baud(), 0U) << "it does not come up";
+  }
+  /// The rate whose divisors give this one.
+  static std::uint32_t nearest_rate(std::uint32_t rate) {
+    for (const std::uint32_t each : kBaudRates) {
+      if (rate > each - each / 20 && rate < each + each / 20) {
+        return each;
+      }
+    }
+    return 0;
+  }
+  SettingsReader spoken_to(const Manner& manner) {
+    return {module_.model(), manner, [this](const Bytes& frame) {
+              constexpr milliseconds kSilence{5};
+              module_.run_for(kSilence);
+              module_.hear(module_.baud());
+              module_.send(frame, module_.baud());
+              module_.run_for(kSilence);
+              return module_.hear(module_.baud());
+            }};
+  }
+
+  const StoringCommand& command_;
+  Settings before_;
+  Settings done_;
+  TimedModule module_;
+  std::map<std::string, std::optional<Settings>> known_;  ///< by what the EEPROM holds
+  bool answered_ = false;
+  unsigned olds_ = 0;
+  unsigned news_ = 0;
+};
+
+TEST(ImageWithoutPower, HasOldOrNewSettingsWhereverBetweenTwoStoresToItsI2cMasterThePowerFails) {
+  const Model& model = *find_model("EX9043D-M");
+  unsigned cuts = 0;
+  unsigned commands = 0;
+  for (const StoringCommand& command : storing_commands(model)) {
+    if (!all_of_them() && command.name != "~AAO") {
+      continue;
+    }
+    SCOPED_TRACE(command.name);
+    CutModule module(model, command);
+    ++commands;
+    for (unsigned stores = 0;; ++stores) {
+      SCOPED_TRACE(std::to_string(stores) + " stores");
+      const bool stopped = module.cut_behind(stores);
+      module.expect_wholly_done_or_not_at_all(!stopped);
+      ASSERT_FALSE(HasFatalFailure());
+      ++cuts;
+      if (!stopped) {
+        EXPECT_EQ(module.answered(), command.answered);
+        break;
+      }
+    }
+    EXPECT_GT(module.olds(), 20U);
+    EXPECT_GT(module.news(), 20U);
+  }
+  std::printf("%u cuts in %u commands\n", cuts, commands);
+}
+
+}  // namespace
+}  // namespace ex9000::rig

@@ -1,0 +1,345 @@
+// An image that has been made to hang: its hardware watchdog brings it back. Nothing of the image is changed:
+// what makes it hang lies in RAM it does not use, and is entered by the vector table, which a reset puts
+// back.
+#include <gtest/gtest.h>
+
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+#include "tests/support/either_protocol.hpp"
+#include "tests/support/environment.hpp"
+#include "tests/qemu/master.hpp"
+#include "tests/qemu/signals.hpp"
+#include "tests/qemu/timed_module.hpp"
+
+namespace ex9000::rig {
+namespace {
+
+using std::chrono::milliseconds;
+
+constexpr std::uint32_t kSysTickControl = 0xE000'E010;
+constexpr std::uint32_t kVectorTableOffset = 0xE000'ED08;
+constexpr std::uint32_t kSetEnable = 0xE000'E100;
+constexpr std::uint32_t kClearEnable = 0xE000'E180;
+constexpr std::uint32_t kSetPending = 0xE000'E200;
+constexpr std::uint32_t kSysTickVector = 15;
+constexpr std::uint32_t kI2c0 = 8;
+constexpr std::uint32_t kI2c0Vector = 16 + kI2c0;
+/// Between what the image and the rig keep in RAM and the image's stack, at its top.
+constexpr std::uint32_t kCode = 0x2000'C000;
+constexpr std::uint32_t kThumb = 1;
+
+/// What an image is doing when it is made to hang.
+enum class Doing : std::uint8_t { Nothing, Receiving, Answering, Storing };
+constexpr Doing kEverything[] = {Doing::Nothing, Doing::Receiving, Doing::Answering, Doing::Storing};
+
+class FaultyImage : public testing::TestWithParam<Protocol>, protected EitherProtocol {
+ protected:
+  FaultyImage() : EitherProtocol(GetParam(), [this](const Bytes& frame) { return exchange(frame); }) {}
+
+  using Fault = void (FaultyImage::*)();
+
+  static constexpr std::uint16_t kPowerOnValue = 0x5A5A;
+  static constexpr std::uint16_t kSafeValue = 0xA5A4;
+  static constexpr milliseconds kComesUpWithin{100};
+
+  QtestClient& bus() { return module_.emulator().bus(); }
+
+  Bytes exchange(const Bytes& frame) {
+    constexpr milliseconds kSilence{5};
+    module_.run_for(kSilence);
+    module_.hear(module_.baud());
+    module_.send(frame, module_.baud());
+    module_.run_for(3 * kSilence);
+    return module_.hear(module_.baud());
+  }
+  bool stores() {
+    const Bytes reply = ask("~01OVALVE", {1, 0x06, 0x01, 0xE8, 0, 0x40});
+    return ascii() ? reply.at(0) == '!' : reply.at(1) == 0x06;
+  }
+
+  void begin(bool status) {
+    Settings settings = Settings::factory(model_);
+    settings.protocol = GetParam();
+    settings.power_on_value = kPowerOnValue;
+    settings.safe_value = kSafeValue;
+    settings.timeout_status = status;
+    module_.begin_anew(&settings);
+    module_.run_for(kComesUpWithin);
+    ASSERT_TRUE(was_reset());
+    ASSERT_FALSE(was_reset());
+    if (!status) {
+      ask("@01C35A", {1, 0x0F, 0, 0, 0, 16, 2, 0x5A, 0xC3});
+      ASSERT_EQ(module_.outputs(), 0xC35A);
+    }
+  }
+
+  void make_it(Doing doing) {
+    const Bytes harmless = framed("$01M", {1, 0x11});
+    constexpr int kLooks = 1000;
+    switch (doing) {
+      case Doing::Nothing:
+        break;
+      case Doing::Receiving:
+        module_.send({harmless.begin(), harmless.begin() + 2}, module_.baud());
+        break;
+      case Doing::Answering:
+        module_.send(harmless, module_.baud());
+        for (int i = 0; i < kLooks && !level_of(bus(), board::kDriverEnable); ++i) {
+          module_.run_for(std::chrono::microseconds(13));
+        }
+        ASSERT_TRUE(level_of(bus(), board::kDriverEnable));
+        break;
+      case Doing::Storing:
+        // The emulated EEPROM takes no time: the image waits for a byte that it is not told of.
+        module_.send(framed("~01OPUMP", {1, 0x06, 0x01, 0xE8, 0, 0x41}), module_.baud());
+        bus().write(kClearEnable, 1U << kI2c0);
+        module_.run_for(std::chrono::microseconds(ascii() ? 2500 : 5500));
+        bus().write(kSetEnable, 1U << kI2c0);
+        break;
+    }
+  }
+
+ public:
+  // --- faults ---
+
+  /// From now on this code is an interrupt's. Where it has to know its own entry in the table, or the image's
+  /// own code, that is said by kEntry and kOwn.
+  static constexpr std::uint32_t kEntry = 0xE1E1'E1E1;
+  static constexpr std::uint32_t kOwn = 0xE2E2'E2E2;
+  void make_interrupt_run(std::uint32_t vector, const std::vector<std::uint32_t>& code) {
+    const std::uint32_t entry = bus().read(kVectorTableOffset) + 4 * vector;
+    const std::uint32_t own = bus().read(entry);
+    std::uint32_t at = kCode;
+    for (const std::uint32_t word : code) {
+      bus().write(at, word == kEntry ? entry : word == kOwn ? own : word);
+      at += 4;
+    }
+    bus().write(entry, kCode | kThumb);
+  }
+
+  void hang_main_loop() {
+    // What the tick returns to becomes a jump to itself; then the image's own interrupt follows, and from the
+    // next one on it is that alone.
+    make_interrupt_run(kSysTickVector, {
+                                           0x4A044803,  // ldr r0, =entry; ldr r2, =own
+                                           0xA0016002,  // str r2, [r0]; adr r0, loop
+                                           0x47109006,  // str r0, [sp, #24]; bx r2
+                                           0x46C0E7FE,  // loop: b loop; nop
+                                           kEntry,
+                                           kOwn,
+                                       });
+  }
+  void hang_interrupt() { make_interrupt_run(kSysTickVector, {0xE7FEE7FE}); }  // b .
+  void stop_tick() { bus().write(kSysTickControl, 0); }
+  /// It asks for itself again each time, and does what it does.
+  void storm() {
+    make_interrupt_run(kI2c0Vector, {
+                                        0x21014803,  // ldr r0, =kSetPending; movs r1, #1
+                                        0x60010209,  // lsls r1, r1, #8; str r1, [r0]
+                                        0x47004802,  // ldr r0, =own; bx r0
+                                        0x46C046C0,  // nop; nop
+                                        kSetPending,
+                                        kOwn,
+                                    });
+    bus().write(kSetPending, 1U << kI2c0);
+  }
+  /// No byte on the bus of the EEPROM is told to have come to its end.
+  void wedge_bus() {
+    constexpr std::uint32_t kInterruptClear = 0x4002'001C;
+    make_interrupt_run(kI2c0Vector, {
+                                        0x21014801,  // ldr r0, =kInterruptClear; movs r1, #1
+                                        0x47706001,  // str r1, [r0]; bx lr
+                                        kInterruptClear,
+                                    });
+  }
+
+ protected:
+  /// Until its watchdog resets it; where nothing but that is left to be seen of the time, only by its
+  /// registers.
+  void expect_reset_in_time() {
+    constexpr std::uint32_t kWatchdogLoad = 0x4000'0000;
+    constexpr std::uint32_t kCountdowns = 2;
+    constexpr std::uint64_t kMilliseconds = 1600;
+    EXPECT_LE(std::uint64_t{bus().read(kWatchdogLoad)} * kCountdowns,
+              kMilliseconds * board::kClock.frequency() / 1000);
+    const auto latest = module_.now() + milliseconds(kMilliseconds);
+    bool runs = true;
+    try {
+      while (module_.now() < latest) {
+        module_.run_for(milliseconds(50));
+      }
+    } catch (const std::runtime_error&) {
+      runs = false;
+    }
+    // It halts the machine; where that was about to stop by itself, it is told all the same.
+    ASSERT_TRUE(module_.emulator().qmp().hears("WATCHDOG", std::chrono::seconds(1)))
+        << (runs ? "no reset" : "");
+  }
+
+  /// Each of the two statuses with half of what it may be doing. A storm takes the emulator seconds.
+  [[nodiscard]] bool belongs_to_short_form(Doing doing, bool status, Fault fault) const {
+    const bool first_half = doing == Doing::Nothing || doing == Doing::Storing;
+    if (fault == &FaultyImage::storm) {
+      return ascii() && status && doing == Doing::Receiving;
+    }
+    return status != first_half && (ascii() || doing == Doing::Storing);
+  }
+
+  void expect_resets(const char* what, Fault fault) {
+    for (const Doing doing : kEverything) {
+      for (const bool status : {false, true}) {
+        if (!all_of_them() && !belongs_to_short_form(doing, status, fault)) {
+          continue;
+        }
+        SCOPED_TRACE(std::string(what) + " while it does " + std::to_string(static_cast<int>(doing)) +
+                     (status ? ", timeout status set" : ""));
+        begin(status);
+        make_it(doing);
+        ASSERT_FALSE(HasFailure());
+        (this->*fault)();
+        expect_reset_in_time();
+        ASSERT_FALSE(HasFailure());
+        module_.reset();
+        module_.run_for(kComesUpWithin);
+        EXPECT_EQ(module_.outputs(), status ? kSafeValue : kPowerOnValue);
+        EXPECT_TRUE(was_reset());
+        EXPECT_FALSE(was_reset());
+        EXPECT_EQ(timeout_status(), status);
+        EXPECT_TRUE(stores());
+        ASSERT_FALSE(HasFailure());
+      }
+    }
+  }
+
+  const Model& model_ = *find_model("EX9043D-M");
+  TimedModule module_{model_};
+};
+
+TEST_P(FaultyImage, IsResetWhereTheMainLoopHangsAndInterruptsGoOn) {
+  expect_resets("the main loop hangs", &FaultyImage::hang_main_loop);
+}
+
+TEST_P(FaultyImage, IsResetWhereItHangsInAnInterrupt) {
+  expect_resets("an interrupt hangs", &FaultyImage::hang_interrupt);
+}
+
+TEST_P(FaultyImage, IsResetWhereTheTickStops) { expect_resets("the tick stops", &FaultyImage::stop_tick); }
+
+TEST_P(FaultyImage, IsResetWhereAnInterruptStorms) {
+  expect_resets("an interrupt storms", &FaultyImage::storm);
+}
+
+TEST_P(FaultyImage, GoesOnWhereItsEepromsBusIsWedgedAndStoresOnceItIsNot) {
+  for (const Doing doing : kEverything) {
+    SCOPED_TRACE(static_cast<int>(doing));
+    begin(false);
+    make_it(doing);
+    const std::uint32_t entry = bus().read(kVectorTableOffset) + 4 * kI2c0Vector;
+    const std::uint32_t own = bus().read(entry);
+    wedge_bus();
+    module_.run_for(std::chrono::seconds(3));
+    EXPECT_EQ(module_.outputs(), 0xC35A);
+    if (doing == Doing::Receiving) {
+      ask("", {});
+    }
+    module_.hear(module_.baud());
+    module_.send(framed("~01OVALVE", {1, 0x06, 0x01, 0xE8, 0, 0x42}), module_.baud());
+    module_.run_for(milliseconds(200));
+    const Bytes reply = module_.hear(module_.baud());
+    ASSERT_GE(reply.size(), 3U);
+    EXPECT_TRUE(ascii() ? reply[0] == '?' : reply[1] == 0x86U);
+    EXPECT_FALSE(timeout_status());
+    EXPECT_FALSE(was_reset());
+    bus().write(entry, own);
+    module_.run_for(std::chrono::seconds(2));  // what had to be settled is
+    EXPECT_TRUE(stores());
+    ASSERT_FALSE(HasFailure());
+  }
+}
+
+std::string name_of(const testing::TestParamInfo<Protocol>& protocol) {
+  return protocol.param == Protocol::Ascii ? "ASCII" : "Modbus";
+}
+INSTANTIATE_TEST_SUITE_P(Speaking, FaultyImage, testing::Values(Protocol::Ascii, Protocol::ModbusRtu),
+                         name_of);
+
+class HungImage : public testing::Test {
+ protected:
+  HungImage() {
+    module_.power(true);
+    wait_until_up(module_);
+    EXPECT_EQ(ask(module_, "@010A05"), ">");
+    EXPECT_EQ(ask(module_, "~015P"), "!01");
+    EXPECT_EQ(ask(module_, "@011FFF"), ">");
+    EXPECT_EQ(ask(module_, "$015"), "!011");
+    EXPECT_EQ(ask(module_, "$015"), "!010");
+    EXPECT_EQ(module_.outputs(), 0x1FFF);
+  }
+
+  QtestClient& bus() { return module_.emulator().bus(); }
+
+  void expect_reset_because(const std::string& event) {
+    ASSERT_TRUE(module_.halts_because(event));
+    module_.come_up_again();
+    wait_until_up(module_);
+    EXPECT_EQ(ask(module_, "$015"), "!011");
+    EXPECT_EQ(module_.outputs(), 0x0A05);
+    EXPECT_EQ(ask(module_, "@01"), ">0A05");
+    EXPECT_EQ(ask(module_, "$015"), "!010");
+  }
+
+  const Model& model_ = *find_model("EX9042D-M");
+  Settings settings_ = ascii(model_);
+  EmulatedModule module_{model_, &settings_};
+};
+
+TEST_F(HungImage, ResetsItselfAtAnInterruptThatNobodyHasAskedFor) {
+  constexpr std::uint32_t kPend = 0xE000'E200;
+  constexpr std::uint32_t kEnable = 0xE000'E100;
+  constexpr std::uint32_t kSsi0 = 1U << 7U;
+  bus().write(kEnable, kSsi0);
+  bus().write(kPend, kSsi0);
+  expect_reset_because("SHUTDOWN");
+}
+
+TEST_F(HungImage, AnswersAfterAFloodOfBytes) {
+  const std::vector<std::uint8_t> noise(4096, 'U');
+  for (unsigned i = 0; i < 16; ++i) {
+    module_.send(noise);
+  }
+  // Whatever is still in the socket comes before.
+  EXPECT_EQ(ask(module_, "\r$015", std::chrono::seconds(20)).substr(0, 3), "!01");
+  EXPECT_EQ(ask(module_, "@01"), module_.outputs() == 0x1FFF ? ">1FFF" : ">0A05");
+}
+
+TEST(ImageInAnInterruptStorm, IsResetAndComesBackWhenItIsOver) {
+  // Input 0 is PB0. That its level interrupts, and not its edges, is what makes the storm: no handler can end
+  // it.
+  const std::string kPortB = "/machine/unattached/device[9]";
+  constexpr std::uint32_t kSense = 0x4000'5404;
+  constexpr std::uint32_t kBothEdges = 0x4000'5408;
+  constexpr std::uint32_t kHighLevel = 0x4000'540C;
+  constexpr std::uint32_t kInput0 = 1;
+  const Model& model = *find_model("EX9052D");
+  EmulatedModule module(model, nullptr);
+  module.power(true);
+  wait_until_up(module);
+  EXPECT_EQ(ask(module, "$015"), "!011");
+  EXPECT_EQ(ask(module, "$015"), "!010");
+  QtestClient& bus = module.emulator().bus();
+  bus.write(kBothEdges, 0);
+  bus.write(kHighLevel, kInput0);
+  bus.write(kSense, kInput0);
+  bus.set_input(kPortB, 0, true);
+  ASSERT_TRUE(module.halts_because("WATCHDOG"));
+  module.come_up_again();
+  wait_until_up(module);
+  EXPECT_EQ(ask(module, "$015"), "!011");
+  module.set_input(0, true);
+  EXPECT_EQ(ask(module, "@01"), ">0100");
+}
+
+}  // namespace
+}  // namespace ex9000::rig

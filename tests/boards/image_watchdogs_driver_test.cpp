@@ -1,0 +1,630 @@
+// Both watchdogs of an image, whatever it is doing: wire.md section 6.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cstdio>
+#include <string>
+#include <tuple>
+#include <utility>
+#include <vector>
+
+#include "sim/module.hpp"
+#include "tests/support/either_protocol.hpp"
+#include "tests/support/environment.hpp"
+#include "tests/oracles/reference/hexadecimal.hpp"
+#include "tests/mcu_model/board_bench.hpp"
+#include "tests/boards/images_under_test.hpp"
+
+namespace ex9000::registers {
+namespace {
+
+using Bytes = std::vector<std::uint8_t>;
+using std::chrono::microseconds;
+using std::chrono::milliseconds;
+using std::chrono::seconds;
+
+constexpr milliseconds kComesUpWithin{100};
+constexpr milliseconds kResetsWithin{1600};
+constexpr milliseconds kTick{1};
+/// So much later than it was the module may take its restart to be: its clock has microseconds, and the end
+/// of a byte and the silence behind it are rounded up, lest it expire too early.
+constexpr microseconds kRounding{3};
+/// Of the main loop behind the tick in which the time is over, until the last of sixteen pins, which go one
+/// after the other, has its level: 2.5 us are seen.
+constexpr microseconds kTurn{5};
+constexpr Instant kExpiresWithin = kTick + kRounding + kTurn;
+
+constexpr std::uint16_t kPowerOnValue = 0x5A5A;
+constexpr std::uint16_t kSafeValue = 0xA5A4;
+constexpr std::uint16_t kDriven = 0xC35A;
+constexpr std::uint8_t kTimeout = 0x64;
+
+/// Two digits.
+std::string hex(unsigned value) { return reference::hex(value, 2); }
+
+/// A module that has been set up: all outputs values differ, and so does what is driven.
+Settings set_up(const Model& model, Protocol protocol) {
+  Settings settings = Settings::factory(model);
+  settings.protocol = protocol;
+  settings.watchdog_enabled = true;
+  settings.watchdog_timeout = kTimeout;
+  if (model.outputs != 0) {
+    settings.power_on_value = kPowerOnValue;
+    settings.safe_value = kSafeValue;
+  }
+  return settings;
+}
+
+/// A module on its board with a master that speaks its protocol.
+class WatchedModule : public EitherProtocol {
+ public:
+  struct Change {
+    Instant at;
+    Instant tick;  ///< the last one before
+    std::uint16_t outputs;
+  };
+
+  WatchedModule(const ImageName& name, const Settings& settings)
+      : EitherProtocol(settings.protocol, [this](const Bytes& frame) { return bench.exchange(frame); }),
+        model(*find_model(name.model)),
+        bench(image_of(name.board, name.model)) {
+    bench.memory = sim::SimulatedModule::memory_image(model, settings);
+    for (unsigned channel = 0; channel < bench.image.outputs; ++channel) {
+      bench.net(bench.image.output_pins.at(channel)).on_change([this] {
+        const Instant tick = bench.powered() ? bench.mcu->core.ticked() : bench.timeline.now();
+        changes.push_back({bench.timeline.now(), tick, bench.outputs()});
+      });
+    }
+    power_up();
+  }
+
+  void power_up() {
+    bench.power_on();
+    bench.run_for(kComesUpWithin);
+    ASSERT_TRUE(uart().enabled());
+  }
+  void power_cycle() {
+    bench.power_off();
+    bench.run_for(milliseconds(20));
+    power_up();
+  }
+
+  UartPort& uart() { return bench.image.uart == 0 ? bench.mcu->uart0 : bench.mcu->uart1; }
+
+  Bytes text(const std::string& reply) { return framed(reply, {}); }
+
+  /// Drives `value` on all outputs; whether it was accepted.
+  bool drive(std::uint16_t value) {
+    const Bytes reply = bench.exchange(drive_frame(value));
+    return ascii() ? reply == text(">") : reply.size() == 8 && reply[1] == 0x0F;
+  }
+  [[nodiscard]] Bytes drive_frame(std::uint16_t value) const {
+    return framed("@01" + hex(value / 256U) + hex(value),
+                  {1, 0x0F, 0, 0, 0, 16, 2, static_cast<std::uint8_t>(value & 0xFFU),
+                   static_cast<std::uint8_t>(value >> 8U)});
+  }
+  bool stores_a_timeout(std::uint8_t timeout) {
+    const Bytes reply = ask("~0131" + hex(timeout), {1, 0x06, 0x01, 0xE8, 0, timeout});
+    return ascii() ? reply == text("!01") : reply.size() == 8 && reply[1] == 0x06;
+  }
+  /// Sends it, and returns when it was over: a Modbus frame with its silence, and a character with the middle
+  /// of its stop bit, for the UART tells of it then.
+  Instant host_ok() {
+    bench.line.send(framed("~**", {1, 0x03, 0x30, 0x38, 0, 0}));
+    while (bench.line.sending()) {
+      bench.run_for(microseconds(10));
+    }
+    return bench.line.sent() + over_behind_its_last_bit();
+  }
+  /// Waits until one that is sent now is over so long behind a tick.
+  void wait_until_a_host_ok_is_over_behind_a_tick(Instant phase) {
+    constexpr unsigned kAscii = 4;
+    constexpr unsigned kModbus = 8;
+    const Instant takes =
+        (ascii() ? kAscii : kModbus) * kBitsACharacter * bench.line.bit_time() + over_behind_its_last_bit();
+    const Instant tick = bench.mcu->core.ticked();
+    Instant wait = (tick + phase - bench.timeline.now() - takes) % kTick;
+    wait += wait < Instant(0) ? kTick : Instant(0);
+    bench.run_for(wait);
+  }
+
+  const Model& model;
+  std::vector<Change> changes;  ///< of the outputs; outlives the board
+  BoardBench bench;
+
+ private:
+  Instant over_behind_its_last_bit() {
+    const Instant bit = bench.line.bit_time();
+    return ascii() ? -bit / 2 : 77 * bit / 2;
+  }
+};
+
+/// Lets it run until that is so, and looks every `step`. False: it never is.
+template <class Condition>
+bool runs_until(BoardBench& bench, Condition condition, Instant step) {
+  const Instant gives_up = bench.timeline.now() + seconds(1);
+  while (!condition() && bench.timeline.now() < gives_up) {
+    bench.run_for(step);
+  }
+  return condition();
+}
+
+// --- module watchdog ---
+
+enum class Doing : std::uint8_t { Nothing, Receiving, Answering, OnTheEepromsBus, Programming };
+constexpr Doing kEverything[] = {Doing::Nothing, Doing::Receiving, Doing::Answering, Doing::OnTheEepromsBus,
+                                 Doing::Programming};
+const char* name_of(Doing doing) {
+  switch (doing) {
+    case Doing::Nothing:
+      return "idle";
+    case Doing::Receiving:
+      return "receiving";
+    case Doing::Answering:
+      return "answering";
+    case Doing::OnTheEepromsBus:
+      return "writing to the EEPROM";
+    case Doing::Programming:
+      return "waiting for the EEPROM";
+  }
+  return "";
+}
+
+class FaultOnBoard : public testing::TestWithParam<std::tuple<ImageName, Protocol>> {
+ protected:
+  [[nodiscard]] ImageName image() const { return std::get<0>(GetParam()); }
+  [[nodiscard]] Protocol protocol() const { return std::get<1>(GetParam()); }
+
+  /// Until it is doing that. What it stores is the name, in Modbus the host watchdog's timeout.
+  static void make_it(WatchedModule& module, Doing doing) {
+    BoardBench& bench = module.bench;
+    const Bytes harmless = module.framed("$01M", {1, 0x11});
+    const Bytes storing = module.framed("~01OPUMP", {1, 0x06, 0x01, 0xE8, 0, 0x65});
+    unsigned events = 0;
+    bench.line.drives.clear();
+    switch (doing) {
+      case Doing::Nothing:
+        break;
+      case Doing::Receiving:
+        bench.line.send({harmless.begin(), harmless.begin() + 2});
+        bench.run_for(kBitsACharacter * 3 / 2 * bench.line.bit_time());
+        break;
+      case Doing::Answering:
+        bench.line.send(harmless);
+        ASSERT_TRUE(runs_until(
+            bench, [&] { return !bench.line.drives.empty(); }, microseconds(100)));
+        bench.run_for(kBitsACharacter * 3 / 2 * bench.line.bit_time());
+        ASSERT_TRUE(bench.line.driven());
+        break;
+      case Doing::OnTheEepromsBus:
+        bench.eeprom.on_event([&events] { ++events; });
+        bench.line.send(storing);
+        ASSERT_TRUE(runs_until(
+            bench, [&] { return events >= 12; }, microseconds(10)));
+        bench.eeprom.on_event(nullptr);
+        break;
+      case Doing::Programming:
+        bench.line.send(storing);
+        ASSERT_TRUE(runs_until(
+            bench, [&] { return bench.eeprom.programming(); }, microseconds(100)));
+        break;
+    }
+  }
+
+  template <class Fault>
+  void expect_reset(const std::string& what, Fault fault) {
+    for (const bool timeout_status : {false, true}) {
+      for (const Doing doing : kEverything) {
+        SCOPED_TRACE(what + " while " + name_of(doing) + (timeout_status ? ", timeout status set" : ""));
+        Settings settings = set_up(*find_model(image().model), protocol());
+        settings.timeout_status = timeout_status;
+        WatchedModule module(image(), settings);
+        BoardBench& bench = module.bench;
+        ASSERT_TRUE(module.was_reset());
+        ASSERT_FALSE(module.was_reset());
+        if (bench.image.outputs != 0) {
+          ASSERT_EQ(module.drive(kDriven), !timeout_status);
+        }
+        const std::uint16_t before = bench.outputs();
+        make_it(module, doing);
+        fault(bench);
+        module.changes.clear();
+        bench.run_for(kResetsWithin);
+        ASSERT_EQ(bench.watchdog_resets, 1U);
+        ASSERT_EQ(bench.resets, 1U);
+        bench.run_for(kComesUpWithin);
+        const std::uint16_t after = bench.image.outputs == 0 ? 0
+                                    : timeout_status         ? kSafeValue
+                                                             : kPowerOnValue;
+        EXPECT_EQ(bench.outputs(), after);
+        for (const WatchedModule::Change& change : module.changes) {
+          // Off from the reset on, and then the value from reset, pin by pin.
+          EXPECT_EQ(change.at <= bench.began ? change.outputs & ~before : change.outputs & ~after, 0);
+        }
+        EXPECT_TRUE(module.was_reset());
+        EXPECT_FALSE(module.was_reset());
+        EXPECT_EQ(module.timeout_status(), timeout_status);
+        EXPECT_TRUE(module.enabled());
+        EXPECT_TRUE(module.stores_a_timeout(0x40));
+        ASSERT_FALSE(HasFailure());
+        ++resets_;
+      }
+    }
+  }
+
+  void TearDown() override {
+    if (resets_ != 0) {
+      std::printf("%s: %u resets\n", testing::UnitTest::GetInstance()->current_test_info()->name(), resets_);
+    }
+  }
+
+  unsigned resets_ = 0;
+};
+
+TEST_P(FaultOnBoard, AMainLoopThatHangsIsReset) {
+  expect_reset("the main loop hangs", [](BoardBench& bench) { bench.mcu->hang(Hangs::MainLoop); });
+}
+
+TEST_P(FaultOnBoard, AnInterruptThatDoesNotEndIsReset) {
+  expect_reset("an interrupt hangs", [](BoardBench& bench) {
+    bench.mcu->hang(Hangs::Handler);
+    // Not every one of them looks at a register; this one does.
+    bench.mcu->core.stick(8);
+  });
+}
+
+TEST_P(FaultOnBoard, ATickThatStopsIsReset) {
+  expect_reset("the tick stops", [](BoardBench& bench) { bench.mcu->core.write(Core::kTickControl, 4); });
+}
+
+TEST_P(FaultOnBoard, AnInterruptThatStormsIsReset) {
+  WatchedModule module(image(), set_up(*find_model(image().model), protocol()));
+  const std::uint32_t enabled = module.bench.mcu->core.enabled();
+  ASSERT_NE(enabled, 0U);
+  for (unsigned interrupt = 0; interrupt < 32; ++interrupt) {
+    if ((enabled >> interrupt & 1U) != 0) {
+      expect_reset("interrupt " + std::to_string(interrupt) + " storms", [interrupt](BoardBench& stormy) {
+        stormy.mcu->core.stick(interrupt);
+        stormy.mcu->set_clocks_an_access(1000);  // not millions of them
+      });
+    }
+  }
+}
+
+TEST_P(FaultOnBoard, AWedgedEepromBusIsNoHangButRefusesToStoreUntilItIsFree) {
+  for (const unsigned line : {I2cBlock::kClockPin, I2cBlock::kDataPin}) {
+    for (const Doing doing : kEverything) {
+      SCOPED_TRACE(std::string(line == I2cBlock::kClockPin ? "the clock" : "the data line") +
+                   " stuck while " + name_of(doing));
+      WatchedModule module(image(), set_up(*find_model(image().model), protocol()));
+      BoardBench& bench = module.bench;
+      if (bench.image.outputs != 0) {
+        ASSERT_TRUE(module.drive(kDriven));
+      }
+      const std::uint16_t outputs = bench.outputs();
+      ASSERT_TRUE(module.stores_a_timeout(0xC8));
+      bench.line.heard.clear();
+      make_it(module, doing);
+      Net& wire = bench.pins.at('B', line);
+      wire.drive(End::Fault, Drive::Low);
+      module.changes.clear();
+      bench.run_for(seconds(2));
+      if (doing == Doing::OnTheEepromsBus || doing == Doing::Programming) {
+        // Answered, and refused: what cannot be read back is not stored.
+        ASSERT_GE(bench.line.heard.size(), 3U);
+        EXPECT_TRUE(module.ascii() ? bench.line.heard[0].byte == '?' : bench.line.heard[1].byte == 0x86U);
+      }
+      if (doing == Doing::Receiving) {
+        module.ask("", {});  // whatever it makes of the half request
+      }
+      EXPECT_FALSE(module.stores_a_timeout(0x40));
+      if (bench.image.outputs != 0) {
+        EXPECT_TRUE(module.drive(outputs));
+      }
+      EXPECT_FALSE(module.timeout_status());
+      EXPECT_EQ(bench.resets, 0U);
+      EXPECT_TRUE(module.changes.empty());
+      wire.drive(End::Fault, Drive::Nothing);
+      bench.run_for(seconds(3));
+      EXPECT_TRUE(module.stores_a_timeout(0x40));
+      module.power_cycle();
+      const Bytes reply = module.ask("~012", {1, 0x03, 0x01, 0xE8, 0, 1});
+      EXPECT_EQ(reply, module.framed("!01140", {1, 0x03, 2, 0, 0x40}));
+      ASSERT_FALSE(HasFailure());
+    }
+  }
+}
+
+// --- host watchdog ---
+
+class HostWatchdogOnBoard : public FaultOnBoard {
+ protected:
+  /// With outputs that only a command can have given it.
+  static void arm(WatchedModule& module, unsigned timeout) {
+    module.ask("~013001", {1, 0x05, 0x01, 0x04, 0, 0});
+    module.ask("~011", {1, 0x05, 0x01, 0x0D, 0xFF, 0});
+    module.ask("", {1, 0x06, 0x01, 0xE8, 0, static_cast<std::uint8_t>(timeout)});
+    ASSERT_TRUE(module.drive(kDriven));
+    module.ask("~0131" + hex(timeout), {1, 0x05, 0x01, 0x04, 0xFF, 0});
+  }
+  /// What commands may have stored.
+  static void restore(WatchedModule& module) {
+    module.ask("~011", {1, 0x05, 0x01, 0x0D, 0xFF, 0});
+    module.drive(kPowerOnValue);
+    module.ask("~015P", {1, 0x0F, 0, 0xA0, 0, 16, 2, kPowerOnValue & 0xFFU, kPowerOnValue >> 8U});
+    module.ask("~01O9043M", {1, 0x11});
+  }
+};
+
+/// What takes effect is the first tick behind the end of the time: less than one tick late, and the outputs
+/// change in the very turn of the main loop that this tick brings about.
+TEST_P(HostWatchdogOnBoard, ExpiresWithinATickOfEveryTimeoutAndNeverEarlier) {
+  WatchedModule module(image(), set_up(*find_model(image().model), protocol()));
+  BoardBench& bench = module.bench;
+  Instant earliest = kNever;
+  Instant latest{0};
+  Instant longest_turn{0};
+  const unsigned step = all_of_them() ? 1 : module.ascii() ? 5 : 11;
+  unsigned timeouts = 0;
+  for (unsigned timeout = 1; timeout <= 0xFF; timeout += step, ++timeouts) {
+    SCOPED_TRACE(timeout);
+    arm(module, timeout);
+    // Right before a tick, right behind one, and anywhere.
+    module.wait_until_a_host_ok_is_over_behind_a_tick(timeouts % 3 == 0   ? -kRounding
+                                                      : timeouts % 3 == 1 ? kRounding
+                                                                          : timeout * microseconds(3));
+    const Instant over = module.host_ok() + timeout * milliseconds(100);
+    module.changes.clear();
+    bench.run_until(over + milliseconds(20));
+    ASSERT_FALSE(module.changes.empty());
+    for (const WatchedModule::Change& change : module.changes) {
+      earliest = std::min(earliest, change.tick - over);
+      latest = std::max(latest, change.tick - over);
+      longest_turn = std::max(longest_turn, change.at - change.tick);
+    }
+    ASSERT_EQ(bench.outputs(), kSafeValue);
+  }
+  EXPECT_GE(earliest, Instant(0));
+  EXPECT_LE(latest, kTick + kRounding);
+  EXPECT_LE(earliest, kRounding) << "this shows nothing";
+  EXPECT_GE(latest, kTick - kRounding) << "this shows nothing";
+  EXPECT_LE(longest_turn, kTurn);
+  std::printf(
+      "%u timeouts: by ticks %.3f to %.3f ms after they were over, the outputs %.1f us behind those\n",
+      timeouts, static_cast<double>(earliest.count()) / 1e9, static_cast<double>(latest.count()) / 1e9,
+      static_cast<double>(longest_turn.count()) / 1e6);
+}
+
+/// Commands that end at any moment about the expiry: one that drives alone, one that drives what it stores,
+/// and one that drives behind one that is being stored.
+TEST_P(HostWatchdogOnBoard, NoCommandDrivesAnythingOnceItHasExpired) {
+  constexpr unsigned kVv = 5;
+  constexpr std::uint16_t kCommanded = 0x3C96;
+  const Instant step = all_of_them() ? microseconds(100) : microseconds(2300);
+  WatchedModule module(image(), set_up(*find_model(image().model), protocol()));
+  BoardBench& bench = module.bench;
+  const Bytes drives = module.drive_frame(kCommanded);
+  const Bytes stores = module.framed("~01OPUMP", {1, 0x05, 0, 0xA1, 0, 0});
+  const Bytes stores_and_drives =
+      module.framed("~015P", {1, 0x0F, 0, 0xA0, 0, 16, 2, kCommanded & 0xFFU, kCommanded >> 8U});
+  unsigned moments = 0;
+  unsigned too_late = 0;
+  for (const auto& [first, second] :
+       {std::pair<Bytes, Bytes>(drives, {}), {stores_and_drives, {}}, {stores, drives}}) {
+    for (Instant early{0}; early < milliseconds(60); early += step, ++moments) {
+      SCOPED_TRACE(std::to_string(early.count() / 1'000'000) + " us before");
+      arm(module, kVv);
+      const Instant over = module.host_ok() + kVv * milliseconds(100);
+      bench.run_until(over - early);
+      bench.line.send(first);
+      while (bench.line.sending()) {
+        bench.run_for(microseconds(50));
+      }
+      if (!second.empty()) {
+        bench.run_for(milliseconds(6));  // it is being stored
+        bench.line.send(second);
+      }
+      bench.run_until(std::max(bench.timeline.now(), over + kExpiresWithin));
+      const bool in_time = bench.timeline.now() == over + kExpiresWithin;
+      EXPECT_EQ(bench.outputs(), kSafeValue);
+      module.changes.clear();
+      bench.run_for(milliseconds(100));
+      EXPECT_TRUE(module.changes.empty());
+      EXPECT_TRUE(module.timeout_status());
+      too_late += in_time ? 0U : 1U;
+      ASSERT_FALSE(HasFailure());
+      restore(module);
+    }
+  }
+  EXPECT_GT(moments, 2 * too_late);
+  std::printf("%u moments, %u of them beyond the expiry\n", moments, too_late);
+}
+
+/// wire.md D6. The outputs are the old safe value from the expiry on, and the new one from the moment on at
+/// which it is stored, and never what a command demands that comes behind.
+TEST_P(HostWatchdogOnBoard, ACommandThatChangesTheSafeValueAsItExpiresGivesTheNewOneOnceThatIsStored) {
+  constexpr unsigned kVv = 5;
+  constexpr std::uint16_t kCommanded = 0x3C96;
+  // `~AA5S` takes what is driven.
+  const std::uint16_t new_value = protocol() == Protocol::Ascii ? kDriven : 0x0FF0;
+  const Instant step = all_of_them() ? microseconds(100) : microseconds(1100);
+  WatchedModule module(image(), set_up(*find_model(image().model), protocol()));
+  BoardBench& bench = module.bench;
+  const auto store_safe_value = [&module](std::uint16_t value) {
+    return module.framed("~015S", {1, 0x0F, 0, 0x80, 0, 16, 2, static_cast<std::uint8_t>(value & 0xFFU),
+                                   static_cast<std::uint8_t>(value >> 8U)});
+  };
+  unsigned stored_before = 0;
+  unsigned stored_behind = 0;
+  unsigned too_late = 0;
+  for (Instant early{0}; early < milliseconds(40); early += step) {
+    SCOPED_TRACE(std::to_string(early.count() / 1'000'000) + " us before");
+    arm(module, kVv);
+    const Instant over = module.host_ok() + kVv * milliseconds(100);
+    bench.run_until(over - early);
+    const std::size_t had_programmed = bench.eeprom.programmed().size();
+    bench.line.drives.clear();
+    module.changes.clear();
+    bench.line.send(store_safe_value(new_value));
+    bool sent_behind = false;
+    Instant stored = kNever;
+    while (bench.timeline.now() < over + milliseconds(100)) {
+      bench.run_for(microseconds(50));
+      if (!sent_behind && !bench.line.sending() &&
+          bench.line.sent() + milliseconds(6) < bench.timeline.now()) {
+        bench.line.send(module.drive_frame(kCommanded));
+        sent_behind = true;
+      }
+      if (stored == kNever && bench.eeprom.programmed().size() > had_programmed) {
+        stored = bench.timeline.now();
+      }
+      if (bench.timeline.now() > over + kExpiresWithin) {
+        const std::uint16_t outputs = bench.outputs();
+        ASSERT_TRUE(outputs == kSafeValue || outputs == new_value) << outputs;
+      }
+    }
+    bool expired = false;
+    bool was_new = false;
+    unsigned switched = 0;
+    for (const WatchedModule::Change& change : module.changes) {
+      if (change.at < over) {
+        continue;
+      }
+      // Pin by pin: what both have in common stays as it is.
+      const bool is_new = change.outputs == new_value;
+      expired = expired || change.outputs == kSafeValue;
+      ASSERT_TRUE(!expired || ((change.outputs ^ kSafeValue) & ~(kSafeValue ^ new_value)) == 0);
+      ASSERT_FALSE(was_new) << "and behind it something else";
+      if (expired && is_new) {
+        ++switched;
+        EXPECT_GE(change.at, stored - microseconds(50));
+        ASSERT_FALSE(bench.line.drives.empty());
+        EXPECT_LE(change.at, bench.line.drives.front().from + microseconds(50));
+      }
+      was_new = is_new;
+    }
+    EXPECT_TRUE(module.timeout_status());
+    const std::uint16_t safe_value = bench.outputs();
+    if (safe_value == kSafeValue) {
+      ++too_late;
+    } else {
+      (switched != 0 ? stored_behind : stored_before) += 1;
+    }
+    module.power_cycle();
+    EXPECT_EQ(bench.outputs(), safe_value);
+    ASSERT_FALSE(HasFailure());
+    module.ask("~011", {1, 0x05, 0x01, 0x0D, 0xFF, 0});
+    module.drive(kSafeValue);
+    bench.exchange(store_safe_value(kSafeValue));
+  }
+  EXPECT_GT(stored_before, 0U);
+  EXPECT_GT(stored_behind, 0U);
+  EXPECT_GT(too_late, 0U);
+  std::printf("a new safe value stored %u times before the expiry, %u times behind it; too late %u times\n",
+              stored_before, stored_behind, too_late);
+}
+
+/// What a command that is being stored as it expires has come to.
+enum class Storing : std::uint8_t { Nothing, OnTheBus, Programming };
+
+TEST_P(HostWatchdogOnBoard, APowerCutAtAnyMomentAfterItHasExpiredGivesNoCommandedValueBack) {
+  constexpr unsigned kVv = 9;
+  constexpr std::uint16_t kOtherPowerOnValue = 0x3CC3;
+  const Instant step = all_of_them() ? microseconds(50) : microseconds(700);
+  WatchedModule module(image(), set_up(*find_model(image().model), protocol()));
+  BoardBench& bench = module.bench;
+  unsigned events = 0;
+  unsigned unstored = 0;
+  unsigned cuts = 0;
+  unsigned done = 0;
+  // A name in ASCII, a power-on value in Modbus; as each was found last.
+  Bytes name = module.ask("$01M", {1, 0x11});
+  std::uint16_t power_on_value = kPowerOnValue;
+  for (const Storing storing : {Storing::Nothing, Storing::OnTheBus, Storing::Programming}) {
+    for (Instant late{0}; late < milliseconds(30); late += step, ++cuts) {
+      SCOPED_TRACE(std::to_string(late.count() / 1'000'000) + " us after, storing " +
+                   std::to_string(static_cast<int>(storing)));
+      const std::string new_name = name == module.text("!01PUMP") ? "VALVE" : "PUMP";
+      const std::uint16_t new_value = power_on_value == kPowerOnValue ? kOtherPowerOnValue : kPowerOnValue;
+      arm(module, kVv);
+      const Instant over = module.host_ok() + kVv * milliseconds(100);
+      if (storing != Storing::Nothing) {
+        const Bytes command = module.framed(
+            "~01O" + new_name, {1, 0x0F, 0, 0xA0, 0, 16, 2, static_cast<std::uint8_t>(new_value & 0xFFU),
+                                static_cast<std::uint8_t>(new_value >> 8U)});
+        const Instant bit = bench.line.bit_time();
+        const Instant takes = static_cast<std::int64_t>(command.size()) * kBitsACharacter * bit +
+                              (module.ascii() ? kBitsACharacter * bit : 77 * bit / 2);
+        bench.run_until(over - takes -
+                        (storing == Storing::OnTheBus ? microseconds(400) : microseconds(4000)));
+        const std::size_t had_programmed = bench.eeprom.programmed().size();
+        events = 0;
+        bench.eeprom.on_event([&events] { ++events; });
+        bench.line.drives.clear();
+        bench.line.send(command);
+        bench.run_until(over);
+        // Else this shows nothing.
+        ASSERT_GT(events, 3U) << "nothing is being stored";
+        ASSERT_EQ(bench.eeprom.programmed().size(), had_programmed) << "it is stored";
+        ASSERT_EQ(bench.eeprom.programming(), storing == Storing::Programming);
+        bench.eeprom.on_event(nullptr);
+      }
+      bench.run_until(over + kExpiresWithin + late);
+      ASSERT_EQ(bench.outputs(), kSafeValue);
+      const bool answered = storing != Storing::Nothing && !bench.line.drives.empty();
+      module.changes.clear();
+      module.power_cycle();
+      const bool stored = module.timeout_status();
+      const std::uint16_t outputs = bench.outputs();
+      if (storing != Storing::Nothing) {
+        const Bytes now = module.ask("$01M", {1, 0x01, 0, 0xA0, 0, 16});
+        const Bytes wanted =
+            module.framed("!01" + new_name, {1, 0x01, 2, static_cast<std::uint8_t>(new_value & 0xFFU),
+                                             static_cast<std::uint8_t>(new_value >> 8U)});
+        const Bytes old =
+            module.ascii() ? name
+                           : module.framed("", {1, 0x01, 2, static_cast<std::uint8_t>(power_on_value & 0xFFU),
+                                                static_cast<std::uint8_t>(power_on_value >> 8U)});
+        ASSERT_TRUE(now == wanted || (now == old && !answered));
+        name = now;
+        power_on_value = now == wanted && !module.ascii() ? new_value : power_on_value;
+        done += now == wanted ? 1U : 0U;
+      }
+      const std::uint16_t from_reset = stored ? kSafeValue : power_on_value;
+      EXPECT_EQ(outputs, from_reset);
+      for (const WatchedModule::Change& change : module.changes) {
+        // Off with the supply, on with the new one; nothing else is ever on.
+        EXPECT_EQ(change.at < bench.began ? change.outputs & ~kSafeValue : change.outputs & ~from_reset, 0);
+      }
+      unstored += stored ? 0U : 1U;
+      EXPECT_EQ(module.enabled(), !stored);
+      EXPECT_EQ(module.drive(kDriven), !stored);
+      EXPECT_EQ(bench.outputs(), stored ? kSafeValue : kDriven);
+      ASSERT_FALSE(HasFailure());
+      module.ask("~011", {1, 0x05, 0x01, 0x0D, 0xFF, 0});
+    }
+  }
+  EXPECT_GT(unstored, 0U);
+  EXPECT_LT(unstored, cuts / 2);
+  EXPECT_GT(done, 0U);
+  std::printf("%u cuts, %u of them before it was stored; %u commands that were being stored are done\n", cuts,
+              unstored, done);
+}
+
+const auto kProtocols = testing::Values(Protocol::Ascii, Protocol::ModbusRtu);
+std::string name_of_case(const testing::TestParamInfo<std::tuple<ImageName, Protocol>>& info) {
+  return name_of(testing::TestParamInfo<ImageName>(std::get<0>(info.param), info.index)) +
+         (std::get<1>(info.param) == Protocol::Ascii ? "_ASCII" : "_Modbus");
+}
+INSTANTIATE_TEST_SUITE_P(Images, FaultOnBoard,
+                         testing::Combine(testing::Values(ImageName{"ek-tm4c123gxl", "EX9043D-M"},
+                                                          ImageName{"ek-tm4c123gxl", "EX9052D-M"}),
+                                          kProtocols),
+                         name_of_case);
+INSTANTIATE_TEST_SUITE_P(Images, HostWatchdogOnBoard,
+                         testing::Combine(testing::Values(ImageName{"ek-tm4c123gxl", "EX9043D-M"}),
+                                          kProtocols),
+                         name_of_case);
+
+}  // namespace
+}  // namespace ex9000::registers

@@ -1,0 +1,291 @@
+#include "tests/boards/power_cuts/cut_bench.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+
+#include "tests/oracles/stored_copy.hpp"
+
+namespace ex9000::registers {
+
+namespace {
+
+using std::chrono::microseconds;
+using std::chrono::milliseconds;
+
+constexpr milliseconds kComesUpWithin{100};
+constexpr milliseconds kStoresWithin{600};  // a timeout that is waited for
+constexpr std::uint16_t kDriven = 0xC35A;   // by a command, before the one that stores
+
+constexpr unsigned kWaysAByteIsLeft = 5;
+/// A byte that was about to change when the power failed.
+std::uint8_t left(unsigned way, std::uint8_t old_byte, std::uint8_t new_byte) {
+  const std::array<std::uint8_t, kWaysAByteIsLeft> ways{old_byte, new_byte, 0x00, 0xFF,
+                                                        static_cast<std::uint8_t>(new_byte ^ 0x5AU)};
+  return ways.at(way);
+}
+
+}  // namespace
+
+CutBench::CutBench(const Image& image, const Model& model) : model_(model), bench_(image) {
+  for (unsigned channel = 0; channel < image.outputs; ++channel) {
+    bench_.net(image.output_pins.at(channel)).on_change([this] {
+      ++shown_.changes;
+      shown_.ever_on |= bench_.outputs();
+    });
+  }
+}
+
+Outputs CutBench::outputs() {
+  Outputs outputs = shown_;
+  outputs.now = bench_.outputs();
+  return outputs;
+}
+
+Contents CutBench::contents() const {
+  Contents contents{};
+  std::copy_n(bench_.memory.begin(), contents.size(), contents.begin());
+  return contents;
+}
+
+void CutBench::power_up(const Contents& contents, bool init) {
+  if (bench_.powered()) {
+    bench_.power_off();
+  }
+  bench_.set_init(init);
+  std::copy(contents.begin(), contents.end(), bench_.memory.begin());
+  bench_.line.heard.clear();
+  bench_.line.drives.clear();
+  shown_ = Outputs();
+  bench_.power_on();
+  while (!uart().enabled() && bench_.timeline.now() < bench_.began + kComesUpWithin) {
+    bench_.run_for(milliseconds(1));
+  }
+  ASSERT_TRUE(uart().enabled()) << "it does not come up";
+}
+
+Manner CutBench::speak_as(const Settings& settings, bool init_mode) {
+  bench_.line.set_baud(baud_rate(init_mode ? kFactoryBaudCode : settings.baud_code));
+  return init_mode ? Manner::init_mode() : Manner::of(settings);
+}
+
+/// The line is quiet for long enough before.
+void CutBench::send(const Bytes& frame) {
+  bench_.run_for(40 * bench_.line.bit_time() + microseconds(1800));
+  bench_.line.heard.clear();
+  bench_.line.drives.clear();
+  bench_.line.send(frame);
+}
+
+/// Nothing where none begins within 25 ms.
+CutBench::Bytes CutBench::hear() {
+  while (bench_.line.sending()) {
+    bench_.run_for(microseconds(500));
+  }
+  const Instant gives_up = bench_.timeline.now() + milliseconds(25);
+  const auto& drives = bench_.line.drives;
+  while (drives.empty() ? bench_.timeline.now() < gives_up : drives.back().to == kNever) {
+    bench_.run_for(microseconds(500));
+  }
+  Bytes reply;
+  for (const LineBench::Heard& each : bench_.line.heard) {
+    reply.push_back(each.byte);
+  }
+  return reply;
+}
+
+SettingsReader CutBench::master(const Manner& manner) {
+  return {model_, manner, [this](const Bytes& frame) {
+            send(frame);
+            return hear();
+          }};
+}
+
+Found CutBench::come_up(const Contents& contents, const std::vector<Settings>& guesses, bool thoroughly) {
+  Found found;
+  std::optional<std::uint8_t> format;
+  if (thoroughly) {
+    power_up(contents, true);
+    const std::string reply = master(speak_as(Settings(), true)).ask(std::string("$2"));
+    EXPECT_EQ(reply.size(), 9U) << reply;
+    format = hex_byte(reply, 7);
+  }
+  power_up(contents, false);
+  found.outputs = outputs();
+  for (const Settings& guess : guesses) {
+    found.settings = master(speak_as(guess, false)).read(format.value_or(guess.format));
+    if (found.settings) {
+      break;
+    }
+  }
+  EXPECT_EQ(shown_.changes, found.outputs.changes) << "reading has changed outputs";
+  EXPECT_EQ(CutBench::contents(), contents) << "coming up has written";
+  return found;
+}
+
+/// What a cut now may leave. While a page is programmed, byte by byte from either end, each byte is another
+/// point.
+void CutBench::note_cuts(Cuts& cuts) {
+  const bool done = !bench_.line.drives.empty();
+  const auto note = [&](const Contents& contents) {
+    bool& certainly = cuts.left[contents];
+    certainly = certainly || done;
+    ++cuts.cuts;
+  };
+  ++cuts.points;
+  const std::vector<EepromChip::Cell> cells = bench_.eeprom.being_programmed();
+  if (cells.empty()) {
+    note(contents());
+    return;
+  }
+  for (const bool ascending : {true, false}) {
+    Contents contents = CutBench::contents();
+    for (std::size_t i = 0; i < cells.size(); ++i) {
+      const EepromChip::Cell cell = cells[ascending ? i : cells.size() - 1 - i];
+      std::uint8_t& byte = contents.at(cell.place);
+      const std::uint8_t old_byte = byte;
+      for (unsigned way = 0; way < kWaysAByteIsLeft; ++way) {
+        byte = left(way, old_byte, cell.value);
+        note(contents);
+      }
+      byte = cell.value;
+    }
+  }
+  cuts.points += cells.size() - 1;
+}
+
+void CutBench::set_outputs(const Manner& manner) {
+  if (manner.protocol == Protocol::Ascii) {
+    ASSERT_EQ(master(manner).ask(std::string("@C35A")), ">");
+  } else {
+    const Bytes reply = master(manner).ask(Bytes{0x0F, 0, 0, 0, 16, 2, kDriven & 0xFFU, kDriven >> 8U});
+    ASSERT_EQ(reply, (Bytes{manner.address, 0x0F, 0, 0, 0, 16}));
+  }
+  ASSERT_EQ(bench_.outputs(), kDriven);
+}
+
+/// Until it is stored and answered, and everything is quiet again.
+void CutBench::carry_out(const Manner& manner, const StoringCommand& command, const Settings& before) {
+  const std::size_t had_programmed = bench_.eeprom.programmed().size();
+  if (!command.is_timeout()) {
+    send(manner.framed(command.frame(before)));
+    while (bench_.line.sending()) {
+      bench_.run_for(microseconds(500));
+    }
+  }
+  const Instant gives_up = bench_.timeline.now() + kStoresWithin;
+  while (bench_.timeline.now() < gives_up && bench_.eeprom.programmed().size() == had_programmed) {
+    bench_.run_for(milliseconds(1));
+  }
+  ASSERT_EQ(bench_.eeprom.programmed().size(), had_programmed + 1) << "it stores nothing";
+  if (command.answered) {
+    const Bytes reply = hear();
+    ASSERT_GE(reply.size(), 3U) << "no answer";
+    EXPECT_TRUE(manner.protocol == Protocol::Ascii ? reply[0] == '!' : reply[1] < 0x80U) << "refused";
+  }
+  bench_.run_for(milliseconds(10));  // what is stored is read back
+}
+
+std::uint16_t CutBench::outputs_before(const Settings& settings) const {
+  if (model_.outputs == 0) {
+    return 0;
+  }
+  return settings.timeout_status ? settings.safe_value : kDriven;
+}
+
+Manner CutBench::get_ready(const Contents& contents, const Settings& before, const StoringCommand& command) {
+  const bool init_mode = command.init == Init::SinceReset;
+  power_up(contents, init_mode);
+  const Manner manner = speak_as(before, init_mode);
+  if (model_.outputs != 0 && !before.timeout_status) {
+    set_outputs(manner);
+  }
+  if (command.init == Init::Tied) {
+    bench_.set_init(true);
+    bench_.run_for(milliseconds(15));
+  }
+  EXPECT_EQ(bench_.outputs(), outputs_before(before));
+  bench_.line.drives.clear();
+  return manner;
+}
+
+Cuts CutBench::cut_everywhere(const Contents& contents, const Settings& before,
+                              const StoringCommand& command) {
+  Cuts cuts;
+  const Manner manner = get_ready(contents, before, command);
+  const Instant began = bench_.timeline.now();
+  cuts.outputs = bench_.outputs();
+  const Settings done = command.done_to(before, cuts.outputs);
+  const std::uint16_t outputs_done = command.drive ? command.drive(done, cuts.outputs) : cuts.outputs;
+  bench_.eeprom.on_event([&] {
+    note_cuts(cuts);
+    cuts.events.push_back(bench_.timeline.now() - began);
+    if (bench_.eeprom.programming()) {
+      // A timeout drives at once, a command when it is stored.
+      EXPECT_EQ(bench_.outputs(), command.is_timeout() ? outputs_done : cuts.outputs);
+    }
+  });
+  carry_out(manner, command, before);
+  bench_.eeprom.on_event(nullptr);
+  ++cuts.points;
+  ++cuts.cuts;
+  cuts.left[CutBench::contents()] = true;
+  EXPECT_EQ(bench_.outputs(), outputs_done);
+  return cuts;
+}
+
+Attempt CutBench::attempt(const Contents& contents, const Settings& before, const StoringCommand& command,
+                          std::uint16_t place, std::uint8_t bits, std::uint8_t stuck) {
+  constexpr milliseconds kTriedAgain{1300};  // wire.md D15: every second
+  Attempt attempt;
+  const Manner manner = get_ready(contents, before, command);
+  EepromChip& eeprom = bench_.eeprom;
+  eeprom.wear_out(place, bits, stuck);
+  attempt.outputs_before = bench_.outputs();
+  const unsigned had_spoiled = eeprom.spoiled();
+  const std::size_t had_programmed = eeprom.programmed().size();
+  eeprom.on_event([&] {
+    (bench_.line.drives.empty() ? attempt.meanwhile : attempt.behind).push_back(CutBench::contents());
+  });
+  if (!command.is_timeout()) {
+    send(manner.framed(command.frame(before)));
+  }
+  bench_.run_for(kStoresWithin);
+  attempt.tries = static_cast<unsigned>(std::count_if(
+      eeprom.programmed().begin() + static_cast<std::ptrdiff_t>(had_programmed), eeprom.programmed().end(),
+      [](const EepromChip::Programmed& page) { return page.size >= StoredCopy::kSize; }));
+  attempt.spoiled = eeprom.spoiled() - had_spoiled;
+  if (command.answered) {
+    attempt.reply = hear();
+  }
+  bench_.run_for(kTriedAgain);
+  eeprom.on_event(nullptr);
+  eeprom.renew();
+  attempt.behind.push_back(CutBench::contents());
+  attempt.outputs = bench_.outputs();
+  return attempt;
+}
+
+AfterReset CutBench::reset_after(Instant time, const Contents& contents, const Settings& before,
+                                 const StoringCommand& command) {
+  const Manner manner = get_ready(contents, before, command);
+  const Instant when = bench_.timeline.now() + time;
+  if (!command.is_timeout()) {
+    send(manner.framed(command.frame(before)));
+  }
+  bench_.run_until(when);
+  const bool certainly_done = !bench_.line.drives.empty();
+  bench_.set_init(false);
+  const std::uint16_t outputs_before_it = bench_.outputs();
+  shown_ = Outputs();
+  bench_.reset();
+  // All of them go off with it, and nothing runs yet.
+  EXPECT_EQ(shown_.ever_on & ~outputs_before_it, 0);
+  EXPECT_EQ(bench_.outputs(), 0);
+  shown_ = Outputs();
+  bench_.run_for(kComesUpWithin);
+  EXPECT_TRUE(uart().enabled()) << "it does not come up";
+  return {CutBench::contents(), certainly_done, outputs()};
+}
+
+}  // namespace ex9000::registers

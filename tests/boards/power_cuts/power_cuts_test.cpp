@@ -1,0 +1,193 @@
+// Power cuts at every point of every command that stores, and of a timeout: wire.md section 8. "At the next
+// reset each command is either wholly done or not done at all", and what was answered is done.
+//
+// The image stores, with its own drivers; what a cut at each point may leave in the EEPROM is judged by a
+// reader that has no code of the firmware (StoredCopy), all of it, and by the image, which comes up from it
+// and is asked for everything: some of it, chosen by a seed, or with EX9000_CUTS=all in the environment all
+// of it.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <bitset>
+#include <cstdio>
+#include <random>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "tests/support/environment.hpp"
+#include "tests/boards/power_cuts/cut_bench.hpp"
+#include "tests/boards/images_under_test.hpp"
+#include "tests/boards/power_cuts/stored_state.hpp"
+
+namespace ex9000::registers {
+namespace {
+
+constexpr unsigned kSeed = 1;
+
+class PowerCutsOf : public testing::TestWithParam<ImageName> {
+ protected:
+  PowerCutsOf()
+      : model_(*find_model(GetParam().model)),
+        commands_(storing_commands(model_)),
+        bench_(image_of(GetParam().board, GetParam().model), model_) {}
+
+  /// From the first moment on no output is ever on that is not to be, and none goes off again.
+  void expect_outputs(const Outputs& outputs, const Settings& settings) {
+    ASSERT_EQ(outputs.now, outputs_from_reset(settings));
+    ASSERT_EQ(outputs.ever_on, outputs.now);
+    ASSERT_EQ(outputs.changes, std::bitset<16>(outputs.now).count());
+  }
+
+  /// `contents` have been judged already: they are `settings`.
+  void come_up(const Contents& contents, const Settings& settings, const Settings& otherwise) {
+    const Found found = bench_.come_up(contents, {settings, otherwise}, all_of_them());
+    ASSERT_TRUE(found.settings) << "it does not answer";
+    ASSERT_TRUE(*found.settings == settings);
+    expect_outputs(found.outputs, settings);
+    ++booted_;
+  }
+
+  /// Of what the cuts have left, so many by the image as well. `unfinished` is what a command that was cut
+  /// before would have made of the settings: see TwiceInARow.
+  void judge(const Cuts& cuts, const Settings& before, const Settings& done, std::size_t by_the_image,
+             const Settings* unfinished = nullptr) {
+    points_ += cuts.points;
+    cuts_ += cuts.cuts;
+    distinct_ += cuts.left.size();
+    for (const auto& [contents, certainly_done] : cuts.left) {
+      const Settings found = settings_in(model_, contents);
+      const bool finished_late =
+          unfinished != nullptr && found == *unfinished && found != before && found != done;
+      ASSERT_TRUE(found == done || (!certainly_done && (found == before || finished_late)));
+      olds_ += found == before ? 1U : 0U;
+      finished_late_ += finished_late ? 1U : 0U;
+    }
+    for (const Contents& contents : in_any_order(cuts)) {
+      if (by_the_image-- == 0 || HasFatalFailure()) {
+        return;
+      }
+      const Settings found = settings_in(model_, contents);
+      come_up(contents, found, found == done ? before : done);
+    }
+  }
+
+  template <class Do>
+  void for_each_command(Do what) {
+    for (const Beginning beginning : {Beginning::Factory, Beginning::Full}) {
+      for (const StoringCommand& command : commands_) {
+        SCOPED_TRACE(command.name + (beginning == Beginning::Factory ? ", factory state" : ", set up"));
+        what(begin_at(beginning, model_, command), command);
+        ASSERT_FALSE(HasFailure());
+      }
+    }
+  }
+
+  std::vector<Contents> in_any_order(const Cuts& cuts) {
+    std::vector<Contents> contents;
+    for (const auto& each : cuts.left) {
+      contents.push_back(each.first);
+    }
+    std::shuffle(contents.begin(), contents.end(), random_);
+    return contents;
+  }
+
+  /// All commands that can be sent to a module with these settings and change them.
+  std::vector<const StoringCommand*> storing_from(const Settings& settings) {
+    std::vector<const StoringCommand*> commands;
+    for (const StoringCommand& command : commands_) {
+      if ((command.init == Init::SinceReset || command.protocol == settings.protocol) &&
+          command.stores_from(settings, bench_.outputs_before(settings))) {
+        commands.push_back(&command);
+      }
+    }
+    std::shuffle(commands.begin(), commands.end(), random_);
+    return commands;
+  }
+
+  void TearDown() override {
+    std::printf(
+        "%s: %zu cuts at %zu points left %zu different contents; of these %zu are the old settings and %zu "
+        "those of "
+        "an earlier command that was cut; the image came up from %zu (seed %u)\n",
+        bench_name().c_str(), cuts_, points_, distinct_, olds_, finished_late_, booted_, kSeed);
+  }
+  static std::string bench_name() {
+    return std::string(testing::UnitTest::GetInstance()->current_test_info()->name());
+  }
+
+  const Model& model_;
+  std::vector<StoringCommand> commands_;
+  CutBench bench_;
+  std::mt19937 random_{kSeed};
+  std::size_t points_ = 0;
+  std::size_t cuts_ = 0;
+  std::size_t distinct_ = 0;
+  std::size_t olds_ = 0;
+  std::size_t finished_late_ = 0;
+  std::size_t booted_ = 0;
+};
+
+TEST_P(PowerCutsOf, LeaveEachCommandWhollyDoneOrNotAtAll) {
+  for_each_command([this](const State& state, const StoringCommand& command) {
+    const Cuts cuts = bench_.cut_everywhere(state.contents, state.settings, command);
+    judge(cuts, state.settings, command.done_to(state.settings, cuts.outputs), all_of_them() ? SIZE_MAX : 18);
+  });
+}
+
+/// From all that a first cut may leave, or from some of it, all that a second may.
+///
+/// There may be the settings of the first command after the second cut that were not there after the first: a
+/// page of which only one byte is wrong is a good one as soon as the next store has come to that byte, where
+/// it is to be the same. Wholly done it is all the same, and nothing that was answered is lost.
+TEST_P(PowerCutsOf, TwiceInARowLeaveEachCommandWhollyDoneOrNotAtAll) {
+  for_each_command([this](const State& state, const StoringCommand& first) {
+    std::size_t left = all_of_them() ? SIZE_MAX : 2;
+    const Cuts cuts = bench_.cut_everywhere(state.contents, state.settings, first);
+    const Settings unfinished = first.done_to(state.settings, cuts.outputs);
+    for (const Contents& contents : in_any_order(cuts)) {
+      const Settings settings = settings_in(model_, contents);
+      for (const StoringCommand* second : storing_from(settings)) {
+        if (HasFailure() || left == 0) {
+          return;
+        }
+        left -= all_of_them() ? 0 : 1;
+        SCOPED_TRACE("then " + second->name);
+        const Cuts again = bench_.cut_everywhere(contents, settings, *second);
+        judge(again, settings, second->done_to(settings, again.outputs), 1, &unfinished);
+        if (!all_of_them()) {
+          break;
+        }
+      }
+    }
+  });
+}
+
+/// The microcontroller alone begins anew, in the middle of the bus's traffic, and finds the EEPROM
+/// programming.
+TEST_P(PowerCutsOf, ThatTheEepromDoesNotNoticeLeaveEachCommandWhollyDoneOrNotAtAll) {
+  const std::size_t one_in = all_of_them() ? 1 : 28;
+  for_each_command([this, one_in](const State& state, const StoringCommand& command) {
+    const Cuts cuts = bench_.cut_everywhere(state.contents, state.settings, command);
+    const Settings done = command.done_to(state.settings, cuts.outputs);
+    for (std::size_t i = random_() % one_in; i < cuts.events.size(); i += one_in) {
+      Cuts one;
+      const AfterReset after = bench_.reset_after(cuts.events[i], state.contents, state.settings, command);
+      expect_outputs(after.outputs, settings_in(model_, after.contents));
+      one.points = one.cuts = 1;
+      one.left[after.contents] = after.certainly_done;
+      judge(one, state.settings, done, 1);
+      if (HasFailure()) {
+        return;
+      }
+    }
+  });
+}
+
+INSTANTIATE_TEST_SUITE_P(Images, PowerCutsOf,
+                         testing::Values(ImageName{"ek-tm4c123gxl", "EX9043D-M"},
+                                         ImageName{"ek-tm4c123gxl", "EX9052D-M"}),
+                         name_of);
+
+}  // namespace
+}  // namespace ex9000::registers

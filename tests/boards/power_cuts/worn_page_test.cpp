@@ -1,0 +1,105 @@
+// An EEPROM that is worn out: it acknowledges everything, and one byte of a page keeps something else. Every
+// write is read back, so wire.md 8 holds all the same: "A write that fails: ?AA or exception 04, and
+// everything stays as it was", and D15: it is tried three times.
+#include <gtest/gtest.h>
+
+#include <cstdio>
+#include <string>
+#include <vector>
+
+#include "tests/boards/power_cuts/cut_bench.hpp"
+#include "tests/boards/images_under_test.hpp"
+#include "tests/boards/power_cuts/stored_state.hpp"
+#include "tests/support/stored_settings.hpp"
+
+namespace ex9000::registers {
+namespace {
+
+constexpr unsigned kTries = 3;
+
+struct Stuck {
+  std::uint16_t place;  ///< in the page
+  std::uint8_t bits;
+  std::uint8_t at;
+};
+/// Of an address, a timeout, a name, a sequence number, a check; one bit and all of them.
+constexpr Stuck kStuck[] = {{24, 0xFF, 0x00}, {0, 0x80, 0x80},  {26, 0xFF, 0xFF},
+                            {20, 0x03, 0x03}, {25, 0x55, 0xAA}, {14, 0xFF, 0x00}};
+
+class WornPageOf : public testing::TestWithParam<ImageName> {
+ protected:
+  WornPageOf() : bench_(image_of(GetParam().board, GetParam().model), model_) {}
+
+  /// Whether it was done: it is answered as it was, and drives what it should.
+  void judge(const State& state, const StoringCommand& command, const Attempt& attempt, bool done) {
+    const Settings wanted = command.done_to(state.settings, attempt.outputs_before);
+    const Settings found = done ? wanted : state.settings;
+    for (const Contents& contents : attempt.meanwhile) {
+      const Settings now = settings_in(model_, contents);
+      ASSERT_TRUE(now == state.settings || now == wanted);
+    }
+    const bool answers = command.answered;
+    for (const Contents& contents : attempt.behind) {
+      const Settings now = settings_in(model_, contents);
+      ASSERT_TRUE(answers ? now == found : now == state.settings || now == wanted);
+    }
+    ASSERT_TRUE(settings_in(model_, attempt.behind.back()) == found);
+    if (answers) {
+      ASSERT_GE(attempt.reply.size(), 3U) << "no answer";
+      const bool ascii = command.protocol == Protocol::Ascii;
+      ASSERT_EQ(ascii ? attempt.reply[0] == '!' : attempt.reply[1] < 0x80U, done);
+      if (!done) {
+        ASSERT_TRUE(ascii ? attempt.reply[0] == '?' : attempt.reply[2] == 4U);
+      }
+    }
+    // A timeout holds whether it is stored or not.
+    const bool drives = command.drive && (done || command.is_timeout());
+    ASSERT_EQ(attempt.outputs,
+              drives ? command.drive(wanted, attempt.outputs_before) : attempt.outputs_before);
+    const Found up = bench_.come_up(attempt.behind.back(), {found}, false);
+    ASSERT_TRUE(up.settings) << "it does not answer";
+    ASSERT_TRUE(*up.settings == found);
+    ASSERT_EQ(up.outputs.now, outputs_from_reset(found));
+    ASSERT_EQ(up.outputs.ever_on, up.outputs.now);
+  }
+
+  const Model& model_ = *find_model(GetParam().model);
+  CutBench bench_;
+};
+
+TEST_P(WornPageOf, MakesACommandRefusedAndLeavesWhatWasStoredBeforeWhole) {
+  const StoringModel storing = storing_model(model_);
+  unsigned refused = 0;
+  unsigned accepted = 0;
+  unsigned number = 0;
+  for (const Beginning beginning : {Beginning::Factory, Beginning::Full}) {
+    for (const StoringCommand& command : storing_commands(model_)) {
+      const State state = begin_at(beginning, model_, command);
+      const bool second_counts = later_good_copy(storing, state.contents.data()) != state.contents.data();
+      // The copy that counts is not written over; but a bit may be stuck at what it is to be.
+      for (const bool of_the_one_that_counts : {false, true}) {
+        const Stuck& stuck = kStuck[number++ % std::size(kStuck)];
+        const std::size_t page = second_counts == of_the_one_that_counts ? StoredCopy::kDistance : 0;
+        SCOPED_TRACE(command.name + (beginning == Beginning::Factory ? ", factory state" : ", set up") +
+                     ", byte " + std::to_string(page + stuck.place) + " worn out");
+        const Attempt attempt =
+            bench_.attempt(state.contents, state.settings, command,
+                           static_cast<std::uint16_t>(page + stuck.place), stuck.bits, stuck.at);
+        const bool done = attempt.spoiled == 0;
+        ASSERT_EQ(attempt.tries, done ? 1U : kTries);
+        judge(state, command, attempt, done);
+        ASSERT_FALSE(HasFailure());
+        (done ? accepted : refused) += 1;
+      }
+    }
+  }
+  std::printf("a worn page: %u commands refused, %u done\n", refused, accepted);
+  EXPECT_GT(refused, number / 3);
+  EXPECT_GT(accepted, number / 3);
+}
+
+INSTANTIATE_TEST_SUITE_P(Images, WornPageOf, testing::Values(ImageName{"ek-tm4c123gxl", "EX9043D-M"}),
+                         name_of);
+
+}  // namespace
+}  // namespace ex9000::registers

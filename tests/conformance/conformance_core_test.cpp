@@ -1,0 +1,52 @@
+// All transcripts against the core in virtual time.
+#include <gtest/gtest.h>
+
+#include <cstdio>
+#include <string>
+#include <vector>
+
+#include "sim/play/player.hpp"
+#include "sim/play/transcript.hpp"
+#include "tests/support/core_target.hpp"
+#include "tests/support/coverage.hpp"
+
+namespace ex9000 {
+namespace {
+
+TEST(Conformance, TheCorePassesEveryTranscriptOnEveryModelItNames) {
+  const std::vector<std::string> files = play::transcript_files(EX9000_CONFORMANCE_DIR);
+  ASSERT_FALSE(files.empty());
+  std::size_t runs = 0;
+  std::size_t steps = 0;
+  std::set<std::string_view> models;
+  runner::Coverage coverage;
+  for (const std::string& file : files) {
+    for (const play::Transcript& transcript : play::load_transcripts(file)) {
+      runner::CoreTarget target(&coverage);
+      const play::Result result = play::play(transcript, target);
+      EXPECT_TRUE(result.passed()) << result.failure;
+      ++runs;
+      steps += result.steps;
+      models.insert(transcript.model->designation);
+    }
+  }
+  for (const Model& model : kModels) {
+    EXPECT_EQ(models.count(model.designation), 1U) << model.designation << " is in no transcript";
+  }
+  for (const std::string& id : coverage.missing()) {
+    ADD_FAILURE() << id << " is reached by no transcript";
+  }
+  std::printf("core: %zu files, %zu runs, %zu steps, %zu rows and refusals reached\n", files.size(), runs,
+              steps, coverage.reached());
+}
+
+TEST(Conformance, WaitsStayUnderTwoSecondsUnlessTheFileSaysSlow) {
+  for (const std::string& file : play::transcript_files(EX9000_CONFORMANCE_DIR)) {
+    for (const play::Transcript& transcript : play::load_transcripts(file)) {
+      EXPECT_TRUE(transcript.slow || transcript.waits() < std::chrono::seconds(2)) << file;
+    }
+  }
+}
+
+}  // namespace
+}  // namespace ex9000

@@ -1,0 +1,75 @@
+// Transcripts against images on microcontrollers made of registers: the drivers as they are, from the bits on
+// the line to those on the EEPROM's wires.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <array>
+#include <cstdio>
+#include <cstdlib>
+#include <filesystem>
+#include <string>
+
+#include "sim/play/player.hpp"
+#include "sim/play/transcript.hpp"
+#include "tests/boards/images_under_test.hpp"
+#include "tests/mcu_model/register_target.hpp"
+
+namespace ex9000::registers {
+namespace {
+
+/// Where it matters who drives the line and the pins: when bytes come, at which rate, what a reset finds,
+/// edges and levels, and a store that takes its time. Everywhere else is told what the module says.
+constexpr std::array<const char*, 6> kFoldersOfDrivers{
+    "framing", "init", "inputs", "modbus-framing", "modbus-persistence", "persistence"};
+
+/// All of them on the LaunchPad, which no emulator has. On the other board, whose images are made of the same
+/// drivers, those that are about drivers, unless the environment has EX9000_TRANSCRIPTS=all.
+bool plays(const Image& image, const std::string& file) {
+  const char* wanted = std::getenv("EX9000_TRANSCRIPTS");
+  const std::string folder = std::filesystem::path(file).parent_path().filename();
+  return image.tm4c || (wanted != nullptr && std::string(wanted) == "all") ||
+         std::count(kFoldersOfDrivers.begin(), kFoldersOfDrivers.end(), folder) != 0;
+}
+
+class ConformanceOnRegisters : public testing::TestWithParam<ImageName> {};
+
+TEST_P(ConformanceOnRegisters, PassesTheTranscriptsOfItsModel) {
+  const Image& image = image_of(GetParam().board, GetParam().model);
+  std::size_t runs = 0;
+  std::size_t steps = 0;
+  for (const std::string& file : play::transcript_files(EX9000_CONFORMANCE_DIR)) {
+    if (!plays(image, file)) {
+      continue;
+    }
+    for (const play::Transcript& transcript : play::load_transcripts(file)) {
+      if (transcript.model->designation != image.model) {
+        continue;
+      }
+      SCOPED_TRACE(file);
+      RegisterTarget target(image);
+      const play::Result result = play::play(transcript, target);
+      EXPECT_TRUE(result.passed()) << result.failure;
+      EXPECT_EQ(result.steps, transcript.steps.size());
+      BoardBench& bench = target.bench();
+      EXPECT_EQ(bench.line.bits_lost, 0U) << "bits sent before the driver was on";
+      EXPECT_EQ(bench.line.let_go_early, 0U);
+      EXPECT_EQ(bench.line.let_go_late, 0U);
+      EXPECT_FALSE(bench.pins.any_was_shorted());
+      EXPECT_EQ(bench.watchdog_resets, 0U);
+      ++runs;
+      steps += result.steps;
+    }
+  }
+  EXPECT_GT(runs, 0U);
+  std::printf("%s: %zu runs, %zu steps\n", image.name().c_str(), runs, steps);
+}
+
+INSTANTIATE_TEST_SUITE_P(Images, ConformanceOnRegisters,
+                         testing::Values(ImageName{"lm3s6965evb", "EX9055D"},
+                                         ImageName{"lm3s6965evb", "EX9043D-M"},
+                                         ImageName{"ek-tm4c123gxl", "EX9055D"},
+                                         ImageName{"ek-tm4c123gxl", "EX9043D-M"}),
+                         name_of);
+
+}  // namespace
+}  // namespace ex9000::registers

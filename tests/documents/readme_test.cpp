@@ -1,0 +1,213 @@
+// README's examples, pasted. In each section a `sh` block that starts the simulator is one terminal, all
+// other `sh` and `python` blocks are another, and what they print is the `text` block behind them. Both are
+// in an empty directory but for `boards` and `build`: images are built before; and for `bus.json`, where
+// there is a `json` block.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+#include <memory>
+#include <set>
+#include <sstream>
+#include <string>
+#include <thread>
+#include <vector>
+
+#include "tests/support/child_process.hpp"
+#include "tests/support/directory.hpp"
+#include "tests/support/simulator_process.hpp"
+
+namespace ex9000::system {
+namespace {
+
+struct Block {
+  std::string language;
+  std::string text;
+};
+
+struct Section {
+  std::string heading;
+  std::vector<Block> blocks;
+};
+
+std::vector<Section> sections() {
+  std::vector<Section> result(1);
+  std::ifstream file(EX9000_README);
+  bool inside = false;
+  for (std::string line; std::getline(file, line);) {
+    if (line.rfind("```", 0) == 0) {
+      inside = !inside;
+      if (inside) {
+        result.back().blocks.push_back({line.substr(3), ""});
+      }
+    } else if (inside) {
+      result.back().blocks.back().text += line + "\n";
+    } else if (line.rfind("##", 0) == 0) {
+      result.push_back({line.substr(line.find(' ') + 1), {}});
+    }
+  }
+  return result;
+}
+
+/// README's port may be in use here.
+void replace_port(std::string& text, const std::string& port) {
+  const std::string written = "5020";
+  for (auto at = text.find(written); at != std::string::npos; at = text.find(written, at + port.size())) {
+    text.replace(at, written.size(), port);
+  }
+}
+
+/// `ex9000-sim describe` and `play` print and end.
+bool starts_the_simulator(const Block& block) {
+  const auto begins_with = [&](const char* text) { return block.text.rfind(text, 0) == 0; };
+  return begins_with("ex9000-sim ") && !begins_with("ex9000-sim describe") && !begins_with("ex9000-sim play");
+}
+
+/// The second terminal: one shell for all blocks of a section, as functions and jobs stay.
+class Shell {
+ public:
+  void paste(const Block& block) {
+    script_ +=
+        block.language == "python" ? "/usr/bin/python3 - <<'PYTHON'\n" + block.text + "PYTHON\n" : block.text;
+  }
+  [[nodiscard]] Finished run_in(const std::string& directory) const {
+    return run({"bash", "-c", "trap 'kill $(jobs -p) 2>/dev/null' EXIT\n" + script_}, directory);
+  }
+
+ private:
+  std::string script_;
+};
+
+void paste(const Section& section) {
+  const Directory directory;
+  for (const std::string folder : {"boards", "build"}) {
+    std::filesystem::create_symlink(EX9000_PROJECT "/" + folder, directory / folder);
+  }
+  std::unique_ptr<ChildProcess> simulator;
+  Shell shell;
+  std::string expected;
+  for (const Block& block : section.blocks) {
+    if (block.language == "text") {
+      expected += block.text;
+    } else if (block.language == "json") {
+      write_file(directory / "bus.json", block.text);
+    } else if (block.language == "sh" && starts_the_simulator(block)) {
+      simulator = std::make_unique<ChildProcess>(std::vector<std::string>{"sh", "-c", "exec " + block.text},
+                                                 directory.path(), ChildProcess::Errors::WithOutput);
+      ASSERT_TRUE(simulator->wait_for("Ctrl-C ends it")) << block.text;
+    } else if (block.language == "sh" || block.language == "python") {
+      shell.paste(block);
+    }
+  }
+  const Finished finished = shell.run_in(directory.path());
+  EXPECT_EQ(finished.output, expected) << finished.error;
+}
+
+/// As many as that, none of them in use.
+std::vector<std::string> free_ports(std::size_t count) {
+  std::vector<std::unique_ptr<SimulatorProcess>> processes;
+  std::vector<std::string> ports;
+  for (std::size_t i = 0; i < count; ++i) {
+    processes.push_back(
+        std::make_unique<SimulatorProcess>(std::vector<std::string>{"EX9042D", "--tcp", "0"}));
+    ports.push_back(std::to_string(processes.back()->tcp_port()));
+  }
+  return ports;
+}
+
+std::vector<Section> sections_with_output() {
+  std::vector<Section> all = sections();
+  const auto has_none = [](const Section& section) {
+    return std::none_of(section.blocks.begin(), section.blocks.end(),
+                        [](const Block& block) { return block.language == "text"; });
+  };
+  all.erase(std::remove_if(all.begin(), all.end(), has_none), all.end());
+  return all;
+}
+
+/// All sections at once, for they mostly wait.
+TEST(Readme, ItsExamplesDoWhatItSays) {
+  std::vector<Section> pasted = sections_with_output();
+  EXPECT_GE(pasted.size(), 8U);
+  const std::vector<std::string> ports = free_ports(pasted.size());
+  const std::string programs = simulator_path().substr(0, simulator_path().rfind('/'));
+  setenv("PATH", (programs + ":" + getenv("PATH")).c_str(), 1);
+  std::vector<std::thread> readers;
+  for (std::size_t i = 0; i < pasted.size(); ++i) {
+    readers.emplace_back([&section = pasted[i], &port = ports[i]] {
+      SCOPED_TRACE(section.heading);
+      for (Block& block : section.blocks) {
+        replace_port(block.text, port);
+      }
+      paste(section);
+    });
+  }
+  for (std::thread& reader : readers) {
+    reader.join();
+  }
+}
+
+/// What a row of a table begins with, in code: `N power on|off`, say, as it is without the table's own
+/// escapes.
+std::set<std::string> rows() {
+  std::set<std::string> rows;
+  std::ifstream file(EX9000_README);
+  for (std::string line; std::getline(file, line);) {
+    if (line.rfind("| `", 0) != 0) {
+      continue;
+    }
+    const std::string cell = line.substr(0, line.find(" | "));
+    for (auto open = cell.find('`'); open != std::string::npos;
+         open = cell.find('`', cell.find('`', open + 1) + 1)) {
+      std::string code = cell.substr(open + 1, cell.find('`', open + 1) - open - 1);
+      code.erase(std::remove(code.begin(), code.end(), '\\'), code.end());
+      rows.insert(code);
+    }
+  }
+  return rows;
+}
+
+/// The first column, so many characters wide, of what stands in the help between the line that ends with
+/// `heading` and the blank line behind it.
+std::vector<std::string> column_of(const std::string& help, const std::string& heading, std::size_t width) {
+  std::vector<std::string> cells;
+  std::istringstream lines(help.substr(help.find(heading) + heading.size()));
+  for (std::string line; std::getline(lines, line) && !line.empty();) {
+    const std::string cell = line.substr(2, width);
+    cells.push_back(cell.substr(0, cell.find_last_not_of(" .") + 1));
+  }
+  return cells;
+}
+
+TEST(Readme, EveryOptionCommandAndFaultHasItsRow) {
+  const std::set<std::string> rows_there = rows();
+  const auto has_row = [&rows_there](const std::string& beginning) {
+    return std::any_of(rows_there.begin(), rows_there.end(), [&](const std::string& row) {
+      return row == beginning || row.rfind(beginning + " ", 0) == 0;
+    });
+  };
+  const std::string help = run({simulator_path(), "--help"}).output;
+  std::set<std::string> options;
+  for (auto at = help.find("\n  --"); at != std::string::npos; at = help.find("\n  --", at + 1)) {
+    options.insert(help.substr(at + 3, help.find_first_of(" ,\n", at + 3) - at - 3));
+  }
+  EXPECT_GE(options.size(), 15U);
+  for (const std::string& option : options) {
+    EXPECT_TRUE(has_row(option)) << option;
+  }
+  const std::vector<std::string> commands = column_of(help, "through all lines, from 1:\n", 20);
+  const std::vector<std::string> troubles = column_of(help, "The troubles:\n", 22);
+  EXPECT_GE(commands.size(), 15U);
+  EXPECT_GE(troubles.size(), 13U);
+  for (const std::string& command : commands) {
+    EXPECT_TRUE(has_row(command)) << command;
+  }
+  for (const std::string& trouble : troubles) {
+    EXPECT_TRUE(has_row(trouble)) << trouble;
+  }
+}
+
+}  // namespace
+}  // namespace ex9000::system

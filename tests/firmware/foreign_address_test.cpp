@@ -1,0 +1,102 @@
+// A module never answers for its neighbour: every other address with every command and every function code.
+#include <gtest/gtest.h>
+
+#include <string>
+#include <vector>
+
+#include "firmware/dcon/commands.hpp"
+#include "tests/firmware/module_bench.hpp"
+
+namespace ex9000::sim {
+namespace {
+
+using Bytes = ModuleBench::Bytes;
+
+constexpr unsigned kOwnAddress = 0x35;
+
+/// Valid arguments for each command, so that nothing but the address is wrong.
+std::string arguments(const dcon::Command& command) {
+  if (command.id == "set-configuration") {
+    return "02400600";
+  }
+  if (command.id == "set-output-group") {
+    return "00FF";
+  }
+  if (command.id == "set-outputs") {
+    return "FF";
+  }
+  if (command.id == "set-watchdog") {
+    return "105";
+  }
+  if (command.id == "set-name") {
+    return "NAME";
+  }
+  if (command.id == "read-preset-value" || command.id == "store-preset-value") {
+    return "P";
+  }
+  return command.dispatch.most_args == 0 ? "" : "0";
+}
+
+void expect_untouched(ModuleBench& bench, const Settings& settings, std::uint64_t writes) {
+  EXPECT_TRUE(bench.recorder().sent_by(1).empty());
+  EXPECT_EQ(bench.module().outputs(), 0);
+  EXPECT_EQ(bench.module().memory().writes(), writes);
+  EXPECT_TRUE(bench.module().module().state().settings == settings);
+}
+
+void every_command_to_every_other_address(const char* model) {
+  ModuleBench bench(std::string(model) + "@35,protocol=ascii,baud=115200");
+  const Settings settings = bench.module().module().state().settings;
+  for (unsigned address = 0; address <= 0xFF; ++address) {
+    for (const dcon::Command& command : dcon::kCommands) {
+      if (address == kOwnAddress || command.dispatch.key == dcon::kBroadcastKey) {
+        continue;
+      }
+      const std::string key =
+          command.dispatch.key == dcon::kNoKey ? "" : std::string(1, command.dispatch.key);
+      bench.send(command.dispatch.delimiter + hex_byte_text(address) + key + arguments(command) + "\r");
+      bench.run(std::chrono::milliseconds(5));
+    }
+  }
+  bench.run(std::chrono::milliseconds(300));
+  expect_untouched(bench, settings, 0);
+  EXPECT_NE(bench.ask("$352"), "") << "it must not have gone deaf";
+}
+
+TEST(ForeignAddress, EveryCommandToEveryOtherAddressIsLeftAlone) {
+  every_command_to_every_other_address("EX9055D");
+  every_command_to_every_other_address("EX9042D-M");
+}
+
+void every_function_to_every_other_address(const char* model) {
+  ModuleBench bench(std::string(model) + "@35,baud=115200");
+  const Settings settings = bench.module().module().state().settings;
+  for (unsigned address = 1; address <= 0xFF; ++address) {
+    for (unsigned function = 0; function <= 0xFF; ++function) {
+      if (address == kOwnAddress) {
+        continue;
+      }
+      // Coil 0000 on, or register 0000, or quantity 0xFF00: right or wrong, it is none of this module's
+      // business.
+      Bytes frame{static_cast<std::uint8_t>(address), static_cast<std::uint8_t>(function), 0, 0, 0xFF, 0};
+      if (function == 0x0F) {
+        frame = {frame[0], frame[1], 0, 0, 0, 8, 1, 0xFF};
+      } else if (function == 0x46) {
+        frame = {frame[0], frame[1], 4, 9, 0, 0, 0};
+      }
+      bench.send(with_crc(frame));
+      bench.run(std::chrono::milliseconds(3));
+    }
+  }
+  bench.run(std::chrono::milliseconds(300));
+  expect_untouched(bench, settings, 0);
+  EXPECT_FALSE(bench.ask(Bytes{kOwnAddress, 0x11}).empty()) << "it must not have gone deaf";
+}
+
+TEST(ForeignAddress, EveryFunctionCodeToEveryOtherAddressIsLeftAlone) {
+  every_function_to_every_other_address("EX9042D-M");
+  every_function_to_every_other_address("EX9052D-M");
+}
+
+}  // namespace
+}  // namespace ex9000::sim

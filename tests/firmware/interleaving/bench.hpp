@@ -1,0 +1,218 @@
+// A module on its chip, a script of what happens to it, and its main loop turned by hand.
+#pragma once
+
+#include <functional>
+#include <map>
+#include <string>
+#include <vector>
+
+#include "firmware/settings/record.hpp"
+#include "hal/device.hpp"
+#include "hal/stellaris/uart.hpp"
+#include "tests/support/interleaving/chip.hpp"
+
+namespace ex9000::interleaving {
+
+struct Board {
+  Clock clock;
+  hal::stellaris::Uart<0, 50'000'000, kDriverEnable, LineEndTimer> line;
+  SilenceTimer silence_timer;
+  Inputs inputs;
+  Outputs outputs;
+  Memory memory;
+  InitSwitch init_switch;
+  StatusLed status_led;
+  Watchdog watchdog;
+};
+
+class Bench {
+ public:
+  /// Has come up and is idle.
+  Bench(const char* model, const std::function<void(Settings&)>& change) : device_(*find_model(model)) {
+    chip = &chip_;
+    hal::stellaris::bus::peripherals = &chip_;
+    Settings settings = Settings::factory(*find_model(model));
+    settings.baud_code = kFastest;
+    change(settings);
+    Record record;
+    make_record(*find_model(model), settings, 1, record);
+    std::copy(record.bytes.begin(), record.bytes.end(), device_.board().memory.contents.begin());
+    device_.start();
+    rest(milliseconds(15));
+    chip_.sent.clear();
+  }
+  ~Bench() {
+    chip = nullptr;
+    hal::stellaris::bus::peripherals = nullptr;
+  }
+  Bench(const Bench&) = delete;
+  Bench& operator=(const Bench&) = delete;
+
+  Chip& hardware() { return chip_; }
+  [[nodiscard]] const Module& module() const { return device_.module(); }
+
+  [[nodiscard]] bool takes_bytes_for_its_echo() const { return !chip_.hears(); }
+
+  /// What the main loop of an image does between two sleeps.
+  void turn() {
+    if (chip_.ticks != ticks_seen_) {
+      ticks_seen_ = chip_.ticks;
+      device_.look_around();
+    }
+    if (device_.news()) {
+      device_.turn();
+    }
+  }
+  /// All of it, whether something has woken it or not.
+  void whole_turn() {
+    ticks_seen_ = chip_.ticks;
+    device_.look_around();
+    device_.turn();
+  }
+
+  /// Time goes on with the main loop doing its work.
+  void rest(Duration length) {
+    const std::uint32_t until = chip_.now + length.microseconds();
+    turn_until_idle();
+    while (chip_.next() <= until) {
+      pass_time_until(chip_.next());
+      turn_until_idle();
+    }
+    pass_time_until(until);
+  }
+
+  // --- what happens from outside; also while the main loop is in the middle of something ---
+
+  /// The next byte on the line is complete, a character later.
+  void byte(std::uint8_t value) {
+    pass_time_until(chip_.now + Chip::kCharacter);
+    interrupt([&] {
+      chip_.receive(value);
+      serve_uart();
+    });
+  }
+  /// The line stays silent for as long as the timer was told.
+  void silence() {
+    if (chip_.silence_due != Chip::kNever) {
+      pass_time_until(chip_.silence_due);
+    }
+  }
+  void edge(unsigned channel, bool level) {
+    pass_time_until(chip_.now + 5);
+    interrupt([&] { device_.on_edge(channel, level); });
+  }
+  void tick() { pass_time_until(chip_.tick_due); }
+  void memory_done() {
+    if (chip_.memory_due != Chip::kNever) {
+      pass_time_until(chip_.memory_due);
+    }
+  }
+  /// Everything of the reply that is under way, the driver off behind it; nothing where there is none.
+  void reply_leaves() {
+    for (int i = 0; i < 1000 && chip_.driving() &&
+                    (chip_.sent_due != Chip::kNever || chip_.line_end_due != Chip::kNever);
+         ++i) {
+      pass_time_until(std::min(chip_.sent_due, chip_.line_end_due));
+    }
+  }
+  /// The byte of a reply that is being sent.
+  void reply_byte_leaves() {
+    if (chip_.sent_due != Chip::kNever) {
+      pass_time_until(chip_.sent_due);
+    }
+  }
+  void bytes(const std::string& values) {
+    for (const char value : values) {
+      byte(static_cast<std::uint8_t>(value));
+    }
+  }
+
+  /// When the last byte of each request was complete, by the reply that it gets.
+  std::map<std::string, std::uint32_t> asked;
+  /// A whole frame, whose reply is known.
+  void asks(const std::string& frame, const std::string& reply) {
+    bytes(frame);
+    asked[reply] = chip_.now;
+  }
+  void is_asked(const std::string& reply) { asked[reply] = chip_.now; }
+
+  /// As `rest`, but something wakes the main loop all the time.
+  void rest_restlessly(Duration length) {
+    constexpr std::uint32_t kStep = 10;
+    for (std::uint32_t passed = 0; passed < length.microseconds(); passed += kStep) {
+      pass_time_until(chip_.now + kStep);
+      whole_turn();
+    }
+  }
+  void pass_time_until(std::uint32_t time) {
+    serve_pending();
+    while (chip_.next() <= time) {
+      chip_.now = std::max(chip_.now, chip_.next());
+      interrupt([&] { serve_what_is_due(); });
+    }
+    chip_.now = std::max(chip_.now, time);
+  }
+
+ private:
+  static constexpr std::uint8_t kFastest = 0x0A;
+
+  template <class Code>
+  void interrupt(Code code) {
+    Points::interrupt(code);
+  }
+
+  void serve_uart() {
+    while (chip_.interrupts()) {
+      device_.board().line.on_interrupt(
+          [&](std::uint8_t byte, ByteStatus status) { device_.on_receive(byte, status); });
+    }
+  }
+
+  void serve_what_is_due() {
+    const auto is_due = [&](std::uint32_t& due) {
+      const bool is = due <= chip_.now;
+      due = is ? Chip::kNever : due;
+      return is;
+    };
+    if (is_due(chip_.tick_due)) {
+      chip_.tick_due = chip_.now + 1000;
+      ++chip_.ticks;
+      device_.on_tick();
+    }
+    if (chip_.sent_due <= chip_.now) {
+      chip_.shift();
+      serve_uart();
+    }
+    if (is_due(chip_.silence_due)) {
+      device_.on_silence();
+    }
+    if (is_due(chip_.line_end_due)) {
+      if (device_.board().line.on_end_timer()) {
+        device_.on_sent();
+      }
+    }
+    if (is_due(chip_.memory_due)) {
+      device_.wake();
+    }
+  }
+
+  void turn_until_idle() {
+    serve_pending();
+    turn();
+    serve_pending();
+    while (device_.news()) {
+      turn();
+      serve_pending();
+    }
+  }
+  /// The first byte of a reply leaves the holding register while the main loop is still at it.
+  void serve_pending() {
+    interrupt([&] { serve_uart(); });
+  }
+
+  Chip chip_;
+  hal::Device<Board> device_;
+  unsigned ticks_seen_ = 0;
+};
+
+}  // namespace ex9000::interleaving

@@ -1,0 +1,122 @@
+// What happens to a module during one turn of its main loop, and what it comes to.
+#pragma once
+
+#include <functional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "tests/firmware/interleaving/bench.hpp"
+
+namespace ex9000::interleaving {
+
+using Step = std::function<void(Bench&)>;
+
+struct Scenario {
+  const char* name;
+  const char* model;
+  std::function<void(Settings&)> settings;
+  Step before;               ///< leads to the turn
+  std::vector<Step> script;  ///< in this order, each while or beside the turn
+  /// All that may be sent, until everything is at rest.
+  std::vector<std::vector<std::string>> replies;
+  std::function<std::vector<std::string>(Bench&)> comes_to;
+  std::string probe;          ///< a request behind it all
+  std::string probe_reply;    ///< is answered with this
+  std::uint32_t turn_around;  ///< microseconds before each reply
+  bool restless = false;      ///< the main loop is woken all the time
+};
+
+/// At which point of the turn each step of a script comes; one that is not reached: behind the turn.
+using Places = std::vector<int>;
+inline constexpr int kBeforeTheTurn = -1;
+inline constexpr int kBehindTheTurn = 1'000'000;
+
+struct Run {
+  std::vector<std::string> outcome;  ///< in parts that have nothing to do with each other
+  unsigned points = 0;
+};
+
+inline std::string all_of(const std::vector<std::string>& texts) {
+  std::string all;
+  for (const std::string& text : texts) {
+    all += "[";
+    for (const char character : text) {
+      constexpr const char* kDigits = "0123456789ABCDEF";
+      const auto byte = static_cast<unsigned char>(character);
+      if (byte >= 0x20 && byte < 0x7F) {
+        all.push_back(character);
+      } else {
+        all += std::string("\\") + kDigits[byte >> 4U] + kDigits[byte & 0xFU];
+      }
+    }
+    all += "]";
+  }
+  return all;
+}
+
+inline void require(bool holds, const std::string& what) {
+  if (!holds) {
+    throw std::logic_error(what);
+  }
+}
+
+/// Replies keep their distance from each other; those to the requests that `asked` tells of, from them.
+inline void require_distances(const Bench& bench, const Chip& hardware, const Scenario& scenario) {
+  const std::vector<Sent>& sent = hardware.sent;
+  for (std::size_t i = 0; i < sent.size(); ++i) {
+    if (i != 0) {
+      require(sent[i].started - sent[i - 1].ended >= scenario.turn_around, "two replies are too close");
+    }
+    const auto asked = bench.asked.find(sent[i].bytes);
+    if (asked != bench.asked.end()) {
+      require(sent[i].started - asked->second >= scenario.turn_around, "a reply is too early");
+    }
+  }
+}
+
+/// Throws where something does not hold that must hold anyhow.
+inline Run play(const Scenario& scenario, const Places& places) {
+  Bench bench(scenario.model, scenario.settings);
+  Chip& hardware = bench.hardware();
+  scenario.before(bench);
+  const unsigned feeds_before = hardware.feeds;
+  std::size_t next = 0;
+  const auto deliver_until = [&](int point) {
+    while (next < scenario.script.size() && places[next] <= point) {
+      scenario.script[next++](bench);
+    }
+  };
+  deliver_until(kBeforeTheTurn);
+  Run run;
+  run.points = Points::watch([&](unsigned point) { deliver_until(static_cast<int>(point)); },
+                             [&] { bench.whole_turn(); });
+  deliver_until(kBehindTheTurn);
+  if (scenario.restless) {
+    bench.rest_restlessly(milliseconds(5));
+  }
+  bench.rest(milliseconds(25));
+
+  std::vector<std::string> replies;
+  for (const Sent& sent : hardware.sent) {
+    replies.push_back(sent.bytes);
+  }
+  bool foreseen = false;
+  for (const auto& foreseen_replies : scenario.replies) {
+    foreseen |= replies == foreseen_replies;
+  }
+  require(foreseen, "replies " + all_of(replies));
+  require(!hardware.driving(), "the driver is on for ever");
+  require(hardware.feeds > feeds_before, "the watchdog is hungry");
+  run.outcome = scenario.comes_to(bench);
+  require_distances(bench, hardware, scenario);
+
+  bench.bytes(scenario.probe);
+  bench.rest(milliseconds(10));
+  require(hardware.sent.size() == replies.size() + 1, "it has gone deaf, or says too much");
+  require(hardware.sent.back().bytes == scenario.probe_reply,
+          "probed: " + all_of({hardware.sent.back().bytes}));
+  return run;
+}
+
+}  // namespace ex9000::interleaving

@@ -1,0 +1,463 @@
+// Assembling Modbus RTU frames, and the verdicts on them: wire.md section 7, "Framing", and D11; Modbus over
+// Serial Line V1.02, 2.5.1.
+#include "firmware/line/rtu_assembler.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cstdint>
+#include <vector>
+
+#include "tests/firmware/line/rtu_bench.hpp"
+
+namespace ex9000 {
+namespace {
+
+class RtuAssemblerTest : public testing::Test {
+ protected:
+  /// What one frame comes to, with silence before and behind it.
+  Verdict verdict_of(const FrameBytes& bytes) {
+    wire_.verdicts.clear();
+    wire_.frame(bytes);
+    EXPECT_EQ(wire_.verdicts.size(), 1U);
+    return wire_.verdicts.empty() ? Verdict::Open : wire_.verdicts.front();
+  }
+  /// Likewise with a line error in byte `errored`.
+  Verdict verdict_of(const FrameBytes& bytes, std::size_t errored, ByteStatus status) {
+    wire_.verdicts.clear();
+    for (std::size_t i = 0; i < bytes.size(); ++i) {
+      wire_.byte(bytes[i], i == errored ? status : ByteStatus::Good);
+    }
+    wire_.rest();
+    EXPECT_EQ(wire_.verdicts.size(), 1U);
+    return wire_.verdicts.empty() ? Verdict::Open : wire_.verdicts.front();
+  }
+  void expect_next_frame_accepted() {
+    EXPECT_EQ(verdict_of(kChannel0On), Verdict::Accepted);
+    ASSERT_FALSE(wire_.frames.empty());
+    EXPECT_EQ(wire_.frames.back(), without_crc(kChannel0On));
+  }
+
+  FrameQueue queue_;
+  RtuAssembler assembler_;
+  Wire wire_{assembler_, queue_, 9600};
+};
+
+// --- verdicts ---
+
+TEST_F(RtuAssemblerTest, AFrameWithARightCrcIsAcceptedWithoutItsCrc) {
+  EXPECT_EQ(verdict_of(kChannel0On), Verdict::Accepted);
+  EXPECT_EQ(wire_.frames, std::vector<FrameBytes>{without_crc(kChannel0On)});
+}
+
+TEST_F(RtuAssemblerTest, AFrameIsReceivedWhenItsLastByteIsComplete) {
+  wire_.bytes(kChannel0On);
+  const Time end = wire_.time();
+  wire_.rest();
+  EXPECT_EQ(wire_.received.microseconds(), end.microseconds());
+}
+
+TEST_F(RtuAssemblerTest, NothingIsAcceptedBeforeTheSilence) {
+  wire_.bytes(kChannel0On);
+  EXPECT_TRUE(wire_.verdicts.empty());
+}
+
+TEST_F(RtuAssemblerTest, SilenceWithoutAFrameIsNothing) {
+  EXPECT_EQ(assembler_.silence(queue_), Verdict::Open);
+  EXPECT_FALSE(assembler_.wants_more_silence());
+  EXPECT_EQ(assembler_.silence(queue_), Verdict::Open);
+}
+
+TEST_F(RtuAssemblerTest, AWrongCrcIsDropped) {
+  EXPECT_EQ(verdict_of({0x01, 0x05, 0x00, 0x00, 0xFF, 0x00, 0x8C, 0x3B}), Verdict::BadCheck);
+  EXPECT_EQ(verdict_of({0x01, 0x05, 0x00, 0x00, 0xFF, 0x00, 0x3A, 0x8C}), Verdict::BadCheck);
+  EXPECT_TRUE(wire_.frames.empty());
+  expect_next_frame_accepted();
+}
+
+TEST_F(RtuAssemblerTest, NoSingleBitFlipIsAccepted) {
+  for (std::size_t bit = 0; bit < kChannel0On.size() * 8; ++bit) {
+    FrameBytes flipped = kChannel0On;
+    flipped[bit / 8] = static_cast<std::uint8_t>(flipped[bit / 8] ^ (1U << (bit % 8)));
+    EXPECT_EQ(verdict_of(flipped), Verdict::BadCheck) << "bit " << bit;
+  }
+  EXPECT_TRUE(wire_.frames.empty());
+}
+
+TEST_F(RtuAssemblerTest, AFrameOfLessThan4BytesIsTooShort) {
+  EXPECT_EQ(verdict_of({0x01}), Verdict::TooShort);
+  EXPECT_EQ(verdict_of({0x01, 0x11}), Verdict::TooShort);
+  EXPECT_EQ(verdict_of(with_crc({0x01})), Verdict::TooShort);
+  EXPECT_TRUE(wire_.frames.empty());
+  expect_next_frame_accepted();
+}
+
+TEST_F(RtuAssemblerTest, AFrameOf4BytesIsAccepted) {
+  EXPECT_EQ(verdict_of({0x01, 0x11, 0xC0, 0x2C}), Verdict::Accepted);
+  EXPECT_EQ(wire_.frames.back(), (FrameBytes{0x01, 0x11}));
+}
+
+TEST_F(RtuAssemblerTest, AFrameOf256BytesIsAccepted) {
+  EXPECT_EQ(verdict_of(frame_of(256)), Verdict::Accepted);
+  EXPECT_EQ(wire_.frames.back(), without_crc(frame_of(256)));
+}
+
+TEST_F(RtuAssemblerTest, AFrameOfMoreThan256BytesIsTooLongAndTheNextOneAccepted) {
+  for (const std::size_t size : {257U, 258U, 259U, 300U, 513U, 1000U}) {
+    EXPECT_EQ(verdict_of(frame_of(size)), Verdict::TooLong) << size;
+    EXPECT_TRUE(wire_.frames.empty());
+    expect_next_frame_accepted();
+    wire_.frames.clear();
+  }
+}
+
+TEST_F(RtuAssemblerTest, AFrameTooLongForAnyCounterIsTooLong) {
+  wire_.bytes(FrameBytes(65'540, 0x01));
+  EXPECT_EQ(verdict_of(kChannel0On), Verdict::TooLong);
+  expect_next_frame_accepted();
+}
+
+TEST_F(RtuAssemblerTest, OnlyTheOwnAddressAndBroadcastsAreAccepted) {
+  for (unsigned address = 0; address < 256; ++address) {
+    const FrameBytes frame = frame_of(12, static_cast<std::uint8_t>(address));
+    EXPECT_EQ(verdict_of(frame), address == kOwn || address == 0 ? Verdict::Accepted : Verdict::Foreign)
+        << address;
+  }
+  EXPECT_EQ(wire_.frames.size(), 2U);
+}
+
+TEST_F(RtuAssemblerTest, EveryModbusAddressCanBeTheOwnOne) {
+  for (unsigned address = 1; address <= 247; ++address) {
+    wire_.own = static_cast<std::uint8_t>(address);
+    EXPECT_EQ(verdict_of(frame_of(8, wire_.own)), Verdict::Accepted) << address;
+  }
+}
+
+TEST_F(RtuAssemblerTest, ABroadcastKeepsItsAddress) {
+  const FrameBytes broadcast = with_crc({0x00, 0x05, 0x00, 0x00, 0xFF, 0x00});
+  EXPECT_EQ(verdict_of(broadcast), Verdict::Accepted);
+  EXPECT_EQ(wire_.frames.back(), without_crc(broadcast));
+}
+
+// --- line errors ---
+
+TEST_F(RtuAssemblerTest, AFramingErrorOrBreakAtAnyPositionSpoilsTheFrame) {
+  for (const ByteStatus status : {ByteStatus::FramingError, ByteStatus::Break}) {
+    for (std::size_t errored = 0; errored < kChannel0On.size(); ++errored) {
+      EXPECT_EQ(verdict_of(kChannel0On, errored, status), Verdict::LineError) << "byte " << errored;
+    }
+  }
+  EXPECT_TRUE(wire_.frames.empty());
+  expect_next_frame_accepted();
+}
+
+TEST_F(RtuAssemblerTest, AnOverrunAtAnyPositionLosesTheFrame) {
+  for (std::size_t errored = 0; errored < kChannel0On.size(); ++errored) {
+    EXPECT_EQ(verdict_of(kChannel0On, errored, ByteStatus::Overrun), Verdict::Overrun) << "byte " << errored;
+  }
+  EXPECT_TRUE(wire_.frames.empty());
+  expect_next_frame_accepted();
+}
+
+TEST_F(RtuAssemblerTest, ALineErrorSpoilsAForeignAndAShortFrameToo) {
+  EXPECT_EQ(verdict_of(frame_of(8, 0x02), 3, ByteStatus::FramingError), Verdict::LineError);
+  EXPECT_EQ(verdict_of({0x01, 0x11}, 1, ByteStatus::FramingError), Verdict::LineError);
+}
+
+TEST_F(RtuAssemblerTest, ALineErrorFarBehindTheLongestFrameLosesItAllTheSame) {
+  const FrameBytes frame = frame_of(300);
+  EXPECT_NE(verdict_of(frame, 299, ByteStatus::FramingError), Verdict::Accepted);
+  EXPECT_TRUE(wire_.frames.empty());
+  expect_next_frame_accepted();
+}
+
+// --- a 00 from a line turn-around ---
+
+TEST_F(RtuAssemblerTest, ATurnAround00BeforeAFrameIsTakenOff) {
+  EXPECT_EQ(verdict_of(behind(0x00, kChannel0On)), Verdict::Accepted);
+  EXPECT_EQ(wire_.frames.back(), without_crc(kChannel0On));
+}
+
+TEST_F(RtuAssemblerTest, ATurnAround00WithALineErrorIsTakenOffToo) {
+  for (const ByteStatus status : {ByteStatus::FramingError, ByteStatus::Break}) {
+    EXPECT_EQ(verdict_of(behind(0x00, kChannel0On), 0, status), Verdict::Accepted);
+    EXPECT_EQ(wire_.frames.back(), without_crc(kChannel0On));
+  }
+}
+
+TEST_F(RtuAssemblerTest, ATurnAround00BeforeTheLongestFrameIsTakenOff) {
+  const FrameBytes longest = frame_of(256);
+  EXPECT_EQ(verdict_of(behind(0x00, longest)), Verdict::Accepted);
+  EXPECT_EQ(wire_.frames.back(), without_crc(longest));
+  EXPECT_EQ(verdict_of(behind(0x00, longest), 0, ByteStatus::Break), Verdict::Accepted);
+  EXPECT_EQ(wire_.frames.back(), without_crc(longest));
+}
+
+TEST_F(RtuAssemblerTest, ATurnAround00BeforeAFrameOf257BytesDoesNotMakeItShorter) {
+  EXPECT_EQ(verdict_of(behind(0x00, frame_of(257))), Verdict::TooLong);
+  EXPECT_TRUE(wire_.frames.empty());
+}
+
+TEST_F(RtuAssemblerTest, ABroadcastOf257BytesIsTooLong) {
+  EXPECT_EQ(verdict_of(frame_of(257, 0x00)), Verdict::TooLong);
+}
+
+TEST_F(RtuAssemblerTest, ATurnAround00BeforeTheShortestFrameIsTakenOff) {
+  EXPECT_EQ(verdict_of({0x00, 0x01, 0x11, 0xC0, 0x2C}), Verdict::Accepted);
+  EXPECT_EQ(wire_.frames.back(), (FrameBytes{0x01, 0x11}));
+}
+
+TEST_F(RtuAssemblerTest, WhatIsTooShortWithoutTheTurnAround00IsDropped) {
+  EXPECT_EQ(verdict_of(behind(0x00, with_crc({0x01}))), Verdict::BadCheck);
+  EXPECT_TRUE(wire_.frames.empty());
+}
+
+TEST_F(RtuAssemblerTest, ATurnAround00BeforeABroadcastIsTakenOff) {
+  const FrameBytes broadcast = with_crc({0x00, 0x05, 0x00, 0x00, 0xFF, 0x00});
+  EXPECT_EQ(verdict_of(behind(0x00, broadcast)), Verdict::Accepted);
+  EXPECT_EQ(wire_.frames.back(), without_crc(broadcast));
+}
+
+TEST_F(RtuAssemblerTest, TheFirst00OfABroadcastIsItsAddressAndNoTurnAround) {
+  const FrameBytes broadcast = with_crc({0x00, 0x05, 0x00, 0x00, 0xFF, 0x00});
+  EXPECT_EQ(verdict_of(broadcast, 0, ByteStatus::FramingError), Verdict::LineError);
+  EXPECT_TRUE(wire_.frames.empty());
+}
+
+TEST_F(RtuAssemblerTest, ATurnAround00BeforeAForeignFrameLeavesItForeign) {
+  EXPECT_EQ(verdict_of(behind(0x00, frame_of(8, 0x02))), Verdict::Foreign);
+}
+
+TEST_F(RtuAssemblerTest, ATurnAround00BeforeAHostOkLeavesItAHostOk) {
+  EXPECT_EQ(verdict_of(behind(0x00, with_crc({0x01, 0x03, 0x30, 0x38, 0x00, 0x00}))), Verdict::HostOk);
+}
+
+TEST_F(RtuAssemblerTest, OnlyOneTurnAround00IsTakenOff) {
+  EXPECT_EQ(verdict_of(behind(0x00, behind(0x00, kChannel0On))), Verdict::BadCheck);
+  EXPECT_TRUE(wire_.frames.empty());
+}
+
+TEST_F(RtuAssemblerTest, NoOtherByteIsTakenOff) {
+  for (unsigned first = 1; first < 256; ++first) {
+    EXPECT_EQ(verdict_of(behind(static_cast<std::uint8_t>(first), kChannel0On)), Verdict::BadCheck) << first;
+  }
+  EXPECT_EQ(verdict_of(behind(0xFF, kChannel0On), 0, ByteStatus::FramingError), Verdict::LineError);
+  EXPECT_TRUE(wire_.frames.empty());
+}
+
+TEST_F(RtuAssemblerTest, ALineErrorBehindTheTurnAround00SpoilsTheFrame) {
+  for (std::size_t errored = 1; errored <= kChannel0On.size(); ++errored) {
+    EXPECT_EQ(verdict_of(behind(0x00, kChannel0On), errored, ByteStatus::FramingError), Verdict::LineError);
+  }
+  EXPECT_TRUE(wire_.frames.empty());
+}
+
+TEST_F(RtuAssemblerTest, ATurnAround00WithSilenceBehindItIsAFrameOfItsOwn) {
+  wire_.byte(0x00);
+  wire_.silence(t35(9600) + kClock);
+  wire_.frame(kChannel0On);
+  EXPECT_EQ(wire_.verdicts, (Verdicts{Verdict::TooShort, Verdict::Accepted}));
+}
+
+// --- host OK ---
+
+TEST_F(RtuAssemblerTest, HostOkIsFunction03Or04OfRegister3038WithQuantity0Or1AtTheOwnAddressOr0) {
+  for (const std::uint8_t address : {kOwn, std::uint8_t{0}}) {
+    for (const std::uint8_t function : {std::uint8_t{0x03}, std::uint8_t{0x04}}) {
+      for (const std::uint8_t quantity : {std::uint8_t{0}, std::uint8_t{1}}) {
+        EXPECT_EQ(verdict_of(with_crc({address, function, 0x30, 0x38, 0x00, quantity})), Verdict::HostOk);
+      }
+    }
+  }
+  EXPECT_TRUE(wire_.frames.empty());
+  EXPECT_EQ(verdict_of({0x01, 0x03, 0x30, 0x38, 0x00, 0x00, 0xCB, 0x07}),
+            Verdict::HostOk);  // wire.md, worked out
+}
+
+TEST_F(RtuAssemblerTest, NothingElseIsAHostOk) {
+  const std::vector<FrameBytes> others{
+      {0x01, 0x03, 0x30, 0x38, 0x00, 0x02},                    // quantity
+      {0x01, 0x03, 0x30, 0x38, 0x01, 0x00},                    // quantity 256
+      {0x01, 0x03, 0x30, 0x38, 0x01, 0x01},                    // quantity 257
+      {0x01, 0x04, 0x30, 0x38, 0xFF, 0xFF},                    // quantity
+      {0x01, 0x03, 0x30, 0x37, 0x00, 0x01},                    // register
+      {0x01, 0x03, 0x30, 0x39, 0x00, 0x01},                    // register
+      {0x01, 0x03, 0x38, 0x30, 0x00, 0x01},                    // register
+      {0x01, 0x01, 0x30, 0x38, 0x00, 0x01},                    // function
+      {0x01, 0x02, 0x30, 0x38, 0x00, 0x00},                    // function
+      {0x01, 0x05, 0x30, 0x38, 0x00, 0x00},                    // function
+      {0x01, 0x06, 0x30, 0x38, 0x00, 0x01},                    // function
+      {0x01, 0x83, 0x30, 0x38, 0x00, 0x01},                    // function
+      {0x01, 0x03, 0x30, 0x38},                                // too short
+      {0x01, 0x03, 0x30, 0x38, 0x00},                          // too short
+      {0x01, 0x03, 0x30, 0x38, 0x00, 0x01, 0x00},              // too long
+      {0x01, 0x03, 0x30, 0x38, 0x00, 0x00, 0x00, 0x00, 0x00},  // too long
+  };
+  for (const FrameBytes& other : others) {
+    EXPECT_EQ(verdict_of(with_crc(other)), Verdict::Accepted);
+    EXPECT_EQ(wire_.frames.back(), other);
+  }
+}
+
+TEST_F(RtuAssemblerTest, AHostOkForAnotherModuleIsForeign) {
+  EXPECT_EQ(verdict_of(with_crc({0x02, 0x03, 0x30, 0x38, 0x00, 0x00})), Verdict::Foreign);
+}
+
+TEST_F(RtuAssemblerTest, AHostOkWithAWrongCrcIsNone) {
+  EXPECT_EQ(verdict_of({0x01, 0x03, 0x30, 0x38, 0x00, 0x00, 0xCB, 0x06}), Verdict::BadCheck);
+}
+
+// --- room ---
+
+TEST_F(RtuAssemblerTest, AFrameIsAssembledWhileOneWaits) {
+  wire_.collect = false;
+  EXPECT_EQ(verdict_of(kChannel0On), Verdict::Accepted);
+  wire_.bytes(frame_of(20));
+  ASSERT_TRUE(queue_.has_frame());
+  EXPECT_EQ(queue_.completed().bytes().size, kChannel0On.size() - 2);
+  queue_.drop_in_main_loop();
+  wire_.verdicts.clear();
+  wire_.collect = true;
+  wire_.rest();
+  EXPECT_EQ(wire_.verdicts, Verdicts{Verdict::Accepted});
+  EXPECT_EQ(wire_.frames.back(), without_crc(frame_of(20)));
+}
+
+TEST_F(RtuAssemblerTest, AFrameThatEndsWhileOneWaitsHasNoRoomAndLeavesTheOtherAlone) {
+  wire_.collect = false;
+  EXPECT_EQ(verdict_of(kChannel0On), Verdict::Accepted);
+  EXPECT_EQ(verdict_of(frame_of(256)), Verdict::NoRoom);
+  EXPECT_EQ(verdict_of(behind(0x00, frame_of(20))), Verdict::NoRoom);
+  ASSERT_TRUE(queue_.has_frame());
+  const Bytes waiting = queue_.completed().bytes();
+  EXPECT_EQ(FrameBytes(waiting.begin(), waiting.end()), without_crc(kChannel0On));
+  queue_.drop_in_main_loop();
+  wire_.collect = true;
+  expect_next_frame_accepted();
+}
+
+TEST_F(RtuAssemblerTest, AHostOkAndAForeignFrameNeedNoRoom) {
+  wire_.collect = false;
+  EXPECT_EQ(verdict_of(kChannel0On), Verdict::Accepted);
+  EXPECT_EQ(verdict_of(with_crc({0x01, 0x03, 0x30, 0x38, 0x00, 0x00})), Verdict::HostOk);
+  EXPECT_EQ(verdict_of(frame_of(8, 0x02)), Verdict::Foreign);
+}
+
+// --- announced ---
+
+TEST_F(RtuAssemblerTest, AFrameIsAnnouncedWithItsLastByteAndCompleteWithTheSilence) {
+  const std::uint32_t before = queue_.announced();
+  wire_.bytes(without_crc(kChannel0On));
+  wire_.byte(0x8C);
+  EXPECT_EQ(queue_.announced(), before);
+  wire_.byte(0x3A);
+  EXPECT_EQ(queue_.announced(), before + 1);
+  const Bytes coming = queue_.coming().bytes();
+  EXPECT_EQ(FrameBytes(coming.begin(), coming.end()), without_crc(kChannel0On));
+  EXPECT_FALSE(queue_.has_frame());
+  wire_.collect = false;
+  wire_.rest();
+  ASSERT_TRUE(queue_.has_frame());
+  EXPECT_EQ(queue_.waiting_number(), before + 1);
+}
+
+TEST_F(RtuAssemblerTest, AFrameForAnotherModuleIsNeverAnnounced) {
+  const std::uint32_t before = queue_.announced();
+  EXPECT_EQ(verdict_of(frame_of(8, 0x02)), Verdict::Foreign);
+  EXPECT_EQ(queue_.announced(), before);
+}
+
+TEST_F(RtuAssemblerTest, WhatIsAnnouncedLateHasANumberOfItsOwnToo) {
+  // A broadcast, and a frame behind a turn-around 00, which begins like one.
+  wire_.collect = false;
+  for (const FrameBytes& bytes : {frame_of(8, 0x00), behind(0x00, kChannel0On)}) {
+    const std::uint32_t before = queue_.announced();
+    wire_.frame(bytes);
+    ASSERT_TRUE(queue_.has_frame());
+    EXPECT_EQ(queue_.waiting_number(), before + 1);
+    queue_.drop_in_main_loop();
+  }
+}
+
+TEST_F(RtuAssemblerTest, AFrameThatGoesOnBehindARightCrcHasAnotherNumber) {
+  wire_.bytes(kChannel0On);
+  const std::uint32_t beginning = queue_.announced();
+  FrameBytes whole = kChannel0On;
+  whole.push_back(0x00);
+  whole = with_crc(whole);
+  wire_.bytes({whole.begin() + static_cast<std::ptrdiff_t>(kChannel0On.size()), whole.end()});
+  wire_.collect = false;
+  wire_.rest();
+  ASSERT_TRUE(queue_.has_frame());
+  EXPECT_NE(queue_.waiting_number(), beginning);
+  EXPECT_EQ(queue_.completed().size, whole.size() - 2);
+}
+
+TEST_F(RtuAssemblerTest, ANewAddressHoldsForAFrameThatHasNotBeenAnnouncedForIt) {
+  wire_.bytes(frame_of(8, 0x02));
+  const std::uint32_t before = queue_.announced();
+  wire_.own = 0x02;
+  assembler_.answer_to(0x02);
+  wire_.collect = false;
+  wire_.rest();
+  ASSERT_TRUE(queue_.has_frame());
+  EXPECT_EQ(queue_.waiting_number(), before + 1);
+  EXPECT_EQ(queue_.completed().size, 6U);
+}
+
+// --- the own driver was on ---
+
+TEST_F(RtuAssemblerTest, AnOpenFrameCanBeForgotten) {
+  wire_.bytes({0x01, 0x05, 0x00});
+  EXPECT_EQ(assembler_.cut_off(queue_), Verdict::Open);
+  wire_.rest();
+  EXPECT_TRUE(wire_.verdicts.empty());
+  expect_next_frame_accepted();
+}
+
+TEST_F(RtuAssemblerTest, AFrameThatIsWholeButForItsSilenceIsJudgedAllTheSame) {
+  wire_.bytes(kChannel0On);
+  EXPECT_EQ(assembler_.cut_off(queue_), Verdict::Accepted);
+  ASSERT_TRUE(queue_.has_frame());
+  EXPECT_EQ(queue_.completed().size, kChannel0On.size() - 2);
+  queue_.drop_in_main_loop();
+  wire_.rest();
+  EXPECT_TRUE(wire_.verdicts.empty());
+  expect_next_frame_accepted();
+}
+
+TEST_F(RtuAssemblerTest, WhatCannotBeAFrameIsSeenByItsSizeWhateverItsCrcSays) {
+  wire_.collect = false;
+  for (const FrameBytes& bytes : {with_crc({kOwn}), frame_of(257)}) {
+    wire_.bytes(bytes);
+    EXPECT_FALSE(Frame::is_size(queue_.coming().size)) << bytes.size();
+    wire_.rest();
+    EXPECT_FALSE(queue_.has_frame());
+  }
+  for (const FrameBytes& bytes : {frame_of(4), frame_of(256)}) {
+    wire_.bytes(bytes);
+    EXPECT_TRUE(Frame::is_size(queue_.coming().size)) << bytes.size();
+    wire_.rest();
+    EXPECT_TRUE(queue_.has_frame());
+    queue_.drop_in_main_loop();
+  }
+}
+
+TEST_F(RtuAssemblerTest, TheNextFrameMayFollowAForgottenOneAtOnce) {
+  wire_.byte(0x01, ByteStatus::FramingError);
+  wire_.byte(0x05, ByteStatus::Overrun);
+  EXPECT_EQ(assembler_.cut_off(queue_), Verdict::Open);
+  expect_next_frame_accepted();
+}
+
+TEST_F(RtuAssemblerTest, ALapsedFrameCanBeForgotten) {
+  wire_.bytes({0x01, 0x05, 0x00});
+  EXPECT_EQ(assembler_.silence(queue_), Verdict::Open);
+  ASSERT_TRUE(assembler_.wants_more_silence());
+  EXPECT_EQ(assembler_.cut_off(queue_), Verdict::Open);
+  EXPECT_FALSE(assembler_.wants_more_silence());
+  EXPECT_EQ(assembler_.silence(queue_), Verdict::Open);
+  expect_next_frame_accepted();
+}
+
+}  // namespace
+}  // namespace ex9000

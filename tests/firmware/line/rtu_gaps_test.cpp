@@ -1,0 +1,268 @@
+// The silences between RTU frames and the gaps within them, as T3.5 and T1.5 count them, from a stop bit to
+// the next start bit: wire.md section 7, "Framing", and D11; Modbus over Serial Line V1.02, 2.5.1.
+#include <gtest/gtest.h>
+
+#include <cstddef>
+#include <cstdint>
+#include <string>
+
+#include "firmware/line/rtu_assembler.hpp"
+#include "firmware/model/baud.hpp"
+#include "tests/firmware/line/rtu_bench.hpp"
+
+namespace ex9000 {
+namespace {
+
+class RtuGaps : public testing::TestWithParam<std::uint32_t> {
+ protected:
+  /// The first `split` bytes, a gap, the others.
+  void with_gap(const FrameBytes& frame, std::size_t split, Nanoseconds gap) {
+    const auto middle = frame.begin() + static_cast<std::ptrdiff_t>(split);
+    wire_.bytes({frame.begin(), middle});
+    wire_.silence(gap);
+    wire_.frame({middle, frame.end()});
+  }
+  std::uint32_t baud_ = GetParam();
+  FrameQueue queue_;
+  RtuAssembler assembler_;
+  Wire wire_{assembler_, queue_, baud_};
+};
+
+INSTANTIATE_TEST_SUITE_P(AllRates, RtuGaps, testing::ValuesIn(kBaudRates),
+                         [](const auto& rate) { return "Baud" + std::to_string(rate.param); });
+
+TEST_P(RtuGaps, AGapShorterThanT35StaysWithinTheFrame) {
+  for (std::size_t split = 1; split < kChannel0On.size(); ++split) {
+    wire_.verdicts.clear();
+    with_gap(kChannel0On, split, t35(baud_) - kClock);
+    EXPECT_EQ(wire_.verdicts, Verdicts{Verdict::Accepted}) << "behind byte " << split;
+  }
+}
+
+TEST_P(RtuGaps, AGapShorterThanT35StaysWithinTheFrameWhenTheTimerIsLate) {
+  wire_.timer_works = false;
+  wire_.bytes({0x01, 0x05, 0x00});
+  wire_.silence(t35(baud_) - kClock);
+  wire_.bytes({0x00, 0xFF, 0x00, 0x8C, 0x3A});
+  wire_.timer_works = true;
+  wire_.rest();
+  EXPECT_EQ(wire_.verdicts, Verdicts{Verdict::Accepted});
+}
+
+TEST_P(RtuGaps, SeveralGapsWithinAFrameAreTolerated) {
+  for (const std::uint8_t byte : kChannel0On) {
+    wire_.silence(t35(baud_) - kClock);
+    wire_.byte(byte);
+  }
+  wire_.rest();
+  EXPECT_EQ(wire_.verdicts, Verdicts{Verdict::Accepted});
+}
+
+TEST_P(RtuGaps, AGapOfT35EndsTheFrame) {
+  with_gap(kChannel0On, 4, t35(baud_));
+  EXPECT_EQ(wire_.verdicts, (Verdicts{Verdict::BadCheck, Verdict::BadCheck}));
+}
+
+TEST_P(RtuGaps, AGapLongerThanT35EndsTheFrame) {
+  with_gap(kChannel0On, 2, t35(baud_) + kClock);
+  with_gap(kChannel0On, 2, t35(baud_) + wire_.character());
+  with_gap(kChannel0On, 2, 20 * t35(baud_));
+  EXPECT_EQ(wire_.verdicts, (Verdicts{Verdict::TooShort, Verdict::BadCheck, Verdict::TooShort,
+                                      Verdict::BadCheck, Verdict::TooShort, Verdict::BadCheck}));
+}
+
+TEST_P(RtuGaps, AFrameT35BehindAnotherIsOneOfItsOwn) {
+  for (const Nanoseconds gap : {t35(baud_), t35(baud_) + kClock, 2 * t35(baud_)}) {
+    wire_.verdicts.clear();
+    wire_.bytes(kChannel0On);
+    wire_.silence(gap);
+    wire_.frame(frame_of(12));
+    EXPECT_EQ(wire_.verdicts, (Verdicts{Verdict::Accepted, Verdict::Accepted})) << gap;
+    EXPECT_EQ(wire_.frames.back(), without_crc(frame_of(12)));
+  }
+}
+
+TEST_P(RtuGaps, AFrameT35BehindABrokenOneIsOneOfItsOwn) {
+  wire_.bytes({0x01, 0x05, 0x00, 0x00, 0xFF, 0x00, 0x8C, 0x3B});
+  wire_.silence(t35(baud_));
+  wire_.frame(kChannel0On);
+  EXPECT_EQ(wire_.verdicts, (Verdicts{Verdict::BadCheck, Verdict::Accepted}));
+}
+
+TEST_P(RtuGaps, AFrameT35BehindAnotherIsOneOfItsOwnWhenTheTimerIsLate) {
+  wire_.timer_works = false;
+  wire_.bytes(kChannel0On);
+  const Time end = wire_.time();
+  wire_.silence(t35(baud_));
+  wire_.byte(0x01);
+  EXPECT_EQ(wire_.verdicts, Verdicts{Verdict::Accepted});
+  EXPECT_EQ(wire_.received.microseconds(), end.microseconds());
+  wire_.timer_works = true;
+  wire_.frame({0x11, 0xC0, 0x2C});
+  EXPECT_EQ(wire_.verdicts, (Verdicts{Verdict::Accepted, Verdict::Accepted}));
+}
+
+TEST_P(RtuGaps, AFrameT35BehindABrokenOneIsOneOfItsOwnWhenTheTimerIsLate) {
+  wire_.timer_works = false;
+  wire_.bytes({0x01, 0x05, 0x00, 0x00});
+  wire_.silence(t35(baud_));
+  wire_.bytes(kChannel0On);
+  EXPECT_EQ(wire_.verdicts, Verdicts{Verdict::BadCheck});
+  wire_.timer_works = true;
+  wire_.rest();
+  EXPECT_EQ(wire_.verdicts, (Verdicts{Verdict::BadCheck, Verdict::Accepted}));
+}
+
+TEST_P(RtuGaps, AByteThatIsCompleteWithinT35BelongsToTheFrameWhateverItsCrc) {
+  wire_.bytes(kChannel0On);
+  wire_.silence(t35(baud_) - wire_.character() - kClock);
+  wire_.byte(0x55);
+  wire_.rest();
+  EXPECT_EQ(wire_.verdicts, Verdicts{Verdict::BadCheck});
+}
+
+TEST_P(RtuGaps, AFrameWithARightCrcIsOverAtT35ThoughAByteIsComingIn) {
+  wire_.bytes(kChannel0On);
+  wire_.silence(t35(baud_) - wire_.character() / 2);
+  wire_.byte(0x55);
+  wire_.rest();
+  EXPECT_EQ(wire_.verdicts, (Verdicts{Verdict::Accepted, Verdict::TooShort}));
+}
+
+// D11 knows one exception to "over after 3.5 characters", and a right CRC is not it; who serves which
+// interrupt first must not matter.
+TEST_P(RtuGaps, AFrameWithARightCrcIsOverAtT35ThoughAByteIsComingInAndTheTimerIsLate) {
+  wire_.timer_works = false;
+  wire_.bytes(kChannel0On);
+  wire_.silence(t35(baud_) - wire_.character() / 2);
+  wire_.byte(0x55);
+  EXPECT_EQ(wire_.verdicts, Verdicts{Verdict::Accepted});
+  wire_.timer_works = true;
+  wire_.rest();
+  EXPECT_EQ(wire_.verdicts, (Verdicts{Verdict::Accepted, Verdict::TooShort}));
+}
+
+TEST_P(RtuGaps, AWrongCrcAtT35WaitsForAByteThatMayBeComingIn) {
+  wire_.bytes({0x01, 0x05, 0x00});
+  EXPECT_EQ(assembler_.silence(queue_), Verdict::Open);
+  EXPECT_TRUE(assembler_.wants_more_silence());
+  EXPECT_EQ(assembler_.silence(queue_), Verdict::TooShort);
+  EXPECT_FALSE(assembler_.wants_more_silence());
+  EXPECT_EQ(assembler_.silence(queue_), Verdict::Open);
+}
+
+TEST_P(RtuGaps, AByteThatStartedBeforeT35ContinuesALapsedFrame) {
+  wire_.bytes({0x01, 0x05, 0x00});
+  wire_.silence(t35(baud_) - wire_.character() / 2);
+  wire_.byte(0x00);
+  EXPECT_TRUE(wire_.verdicts.empty());
+  EXPECT_FALSE(assembler_.wants_more_silence());
+  wire_.frame({0xFF, 0x00, 0x8C, 0x3A});
+  EXPECT_EQ(wire_.verdicts, Verdicts{Verdict::Accepted});
+}
+
+TEST_P(RtuGaps, AFrameMayLapseMoreThanOnce) {
+  wire_.bytes({0x01, 0x05, 0x00});
+  wire_.silence(t35(baud_) - wire_.character() / 2);
+  wire_.bytes({0x00, 0xFF});
+  wire_.silence(t35(baud_) - wire_.character() / 2);
+  wire_.frame({0x00, 0x8C, 0x3A});
+  EXPECT_EQ(wire_.verdicts, Verdicts{Verdict::Accepted});
+}
+
+// The number of bytes that it counts by stands still by then.
+TEST_P(RtuGaps, AByteComingInAtT35BelongsToAFrameThatIsTooLongTimeAndAgain) {
+  wire_.bytes(FrameBytes(258, 0x02));
+  for (int i = 0; i < 3; ++i) {
+    wire_.silence(t35(baud_) - wire_.character() / 2);
+    wire_.byte(0x02);
+  }
+  EXPECT_EQ(wire_.verdicts, Verdicts{});
+  wire_.silence(t35(baud_) - wire_.character() / 2);
+  wire_.frame(kChannel0On);
+  EXPECT_EQ(wire_.verdicts, Verdicts{Verdict::TooLong});
+}
+
+TEST_P(RtuGaps, ARightCrcAtT35IsAcceptedAtOnce) {
+  wire_.bytes(kChannel0On);
+  EXPECT_EQ(assembler_.silence(queue_), Verdict::Accepted);
+  EXPECT_FALSE(assembler_.wants_more_silence());
+}
+
+TEST_P(RtuGaps, TheSilenceWasOverT35BehindTheLastByteAndNeverBefore) {
+  for (const std::uint8_t byte : kChannel0On) {
+    wire_.byte(byte);
+    const Nanoseconds over = Nanoseconds{assembler_.silent_since().since(wire_.time()).microseconds()} * 1000;
+    EXPECT_GE(over, t35(baud_));
+    EXPECT_LE(over, t35(baud_) + kClock);
+  }
+}
+
+// It tells of a byte half a bit before its end, so silences that begin there are half a bit longer.
+TEST_P(RtuGaps, SilencesCountFromTheEndOfTheStopBitThoughTheUartTellsOfItInTheMiddle) {
+  const LineTiming end = LineTiming::at(baud_);
+  const LineTiming middle = LineTiming::told_in_the_stop_bit(baud_);
+  const std::uint32_t half_bit = 500'000 / baud_;
+  for (const auto silence : {&LineTiming::rtu_silence, &LineTiming::dcon_turn_around}) {
+    const std::uint32_t longer = (middle.*silence).microseconds() - (end.*silence).microseconds();
+    EXPECT_GT(longer, half_bit);
+    EXPECT_LE(longer, half_bit + 1);
+  }
+  EXPECT_TRUE(middle.rtu_grace == end.rtu_grace);
+  EXPECT_TRUE(middle.rtu_separate == end.rtu_separate);
+  EXPECT_TRUE(middle.rtu_slack == end.rtu_slack);
+}
+
+TEST_P(RtuGaps, AFrameAcrossTheWrapOfTheClockIsOneFrame) {
+  for (const std::uint32_t before : {1U, 100U, 3000U, 9000U, 40'000U}) {
+    wire_.verdicts.clear();
+    wire_.start_at(Time(0U - before));
+    with_gap(kChannel0On, 4, t35(baud_) - kClock);
+    EXPECT_EQ(wire_.verdicts, Verdicts{Verdict::Accepted}) << before;
+  }
+}
+
+TEST_P(RtuGaps, StrictlyAGapLongerThanT15SpoilsTheFrame) {
+  assembler_.use(LineTiming::strictly_at(baud_));
+  for (std::size_t split = 1; split < kChannel0On.size(); ++split) {
+    wire_.verdicts.clear();
+    with_gap(kChannel0On, split, t15(baud_) + kClock);
+    ASSERT_EQ(wire_.verdicts.size(), 1U) << "behind byte " << split;
+    EXPECT_NE(wire_.verdicts.front(), Verdict::Accepted) << "behind byte " << split;
+  }
+  EXPECT_TRUE(wire_.frames.empty());
+}
+
+TEST_P(RtuGaps, StrictlyAGapOfT15IsAllowed) {
+  assembler_.use(LineTiming::strictly_at(baud_));
+  for (std::size_t split = 1; split < kChannel0On.size(); ++split) {
+    wire_.verdicts.clear();
+    with_gap(kChannel0On, split, t15(baud_));
+    EXPECT_EQ(wire_.verdicts, Verdicts{Verdict::Accepted}) << "behind byte " << split;
+  }
+}
+
+TEST_P(RtuGaps, StrictlyAFrameWithoutGapsBehindASpoiledOneIsAccepted) {
+  assembler_.use(LineTiming::strictly_at(baud_));
+  with_gap(kChannel0On, 4, t15(baud_) + kClock);
+  wire_.verdicts.clear();
+  wire_.frame(kChannel0On);
+  EXPECT_EQ(wire_.verdicts, Verdicts{Verdict::Accepted});
+}
+
+TEST_P(RtuGaps, StrictlyAGapShorterThanT35StillDoesNotEndAFrame) {
+  assembler_.use(LineTiming::strictly_at(baud_));
+  with_gap(frame_of(20), 12, t35(baud_) - kClock);
+  EXPECT_EQ(wire_.verdicts.size(), 1U);
+  EXPECT_TRUE(wire_.frames.empty());
+}
+
+// The gap is refused inside a frame, and the frame is judged without the 00.
+TEST_P(RtuGaps, StrictlyAGapBehindATurnAround00DoesNotSpoilTheFrame) {
+  assembler_.use(LineTiming::strictly_at(baud_));
+  with_gap(behind(0x00, kChannel0On), 1, t15(baud_) + kClock);
+  EXPECT_EQ(wire_.verdicts, Verdicts{Verdict::Accepted});
+}
+
+}  // namespace
+}  // namespace ex9000

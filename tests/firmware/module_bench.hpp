@@ -1,0 +1,105 @@
+// One module and a master on a virtual line, for tests that talk to it.
+#pragma once
+
+#include <chrono>
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "sim/line.hpp"
+#include "sim/play/modbus_frame.hpp"
+#include "tests/sim/bus_recorder.hpp"
+
+namespace ex9000::sim {
+
+struct OutputChange {
+  VirtualTime at;
+  std::uint16_t channels;
+};
+
+class ModuleBench {
+ public:
+  using Bytes = std::vector<std::uint8_t>;
+
+  /// `module` as on the simulator's command line. 100 ms have passed since power-on.
+  explicit ModuleBench(const std::string& module)
+      : spec_(parse_module_spec(module)),
+        line_({spec_}, kPaced, [this](std::uint8_t byte, ByteStatus /*status*/) { heard_.push_back(byte); }) {
+    line_.bus().observe(recorder_);
+    line_.come_up();
+    line_.master().set_baud(line_.module(0).baud());
+    recorder_.clear();
+  }
+
+  SimulatedModule& module() { return line_.module(0); }
+  Line& line() { return line_; }
+  BusRecorder& recorder() { return recorder_; }
+  [[nodiscard]] VirtualTime now() { return line_.clock().virtual_now(); }
+  void run(VirtualTime time) { line_.bus().run_for(time); }
+  /// Until that is so, looked at every millisecond, and for a second at most: whether it is.
+  template <class Condition>
+  bool runs_until(Condition condition) {
+    const VirtualTime gives_up = now() + std::chrono::seconds(1);
+    while (!condition() && now() < gives_up) {
+      run(std::chrono::milliseconds(1));
+    }
+    return condition();
+  }
+
+  void send(const Bytes& bytes) {
+    line_.master().send(bytes.data(), bytes.size());
+    while (line_.master().sending()) {
+      line_.bus().run_until(line_.bus().next());
+    }
+  }
+  void send(const std::string& text) { send(Bytes(text.begin(), text.end())); }
+
+  /// A command without CR, and its reply without CR, empty where none comes within 250 ms.
+  std::string ask(const std::string& command) {
+    heard_.clear();
+    send(command + "\r");
+    run(std::chrono::milliseconds(250));
+    std::string reply(heard_.begin(), heard_.end());
+    if (!reply.empty() && reply.back() == '\r') {
+      reply.pop_back();
+    }
+    return reply;
+  }
+
+  /// A frame without CRC, and its reply without CRC, empty where none comes within 250 ms.
+  Bytes ask(const Bytes& frame) {
+    heard_.clear();
+    send(with_crc(frame));
+    run(std::chrono::milliseconds(250));
+    Bytes reply = heard_;
+    if (reply.size() > 2) {
+      reply.resize(reply.size() - 2);
+    }
+    return reply;
+  }
+
+  /// All that was heard since the last `ask`.
+  [[nodiscard]] std::string heard_text() const { return {heard_.begin(), heard_.end()}; }
+  void forget_heard() { heard_.clear(); }
+
+  /// From now on every change of the outputs is appended to `changes`, which lives as long as this.
+  void watch_outputs(std::vector<OutputChange>& changes) {
+    module().output_pins().on_change([this, &changes](std::uint16_t channels) {
+      changes.push_back({now(), channels});
+    });
+  }
+
+  void power_cycle() {
+    module().power(false);
+    module().power(true);
+    run(std::chrono::milliseconds(100));
+  }
+
+ private:
+  ModuleSpec spec_;
+  Line line_;
+  BusRecorder recorder_;
+  Bytes heard_;
+};
+
+}  // namespace ex9000::sim

@@ -1,0 +1,154 @@
+// A module's reset, its replies and its driver in time.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cstdio>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "tests/firmware/module_bench.hpp"
+
+namespace ex9000::sim {
+namespace {
+
+using Bytes = ModuleBench::Bytes;
+using std::chrono::microseconds;
+using std::chrono::milliseconds;
+using std::chrono::seconds;
+
+// --- wire.md 2: reset and INIT* ---
+
+TEST(Reset, OutputsGoFromDeEnergisedToThePowerOnValueWithoutAGlitch) {
+  ModuleBench bench("EX9043D");
+  ASSERT_EQ(bench.ask("@01A55A"), ">");
+  ASSERT_EQ(bench.ask("~015P"), "!01");
+  ASSERT_EQ(bench.ask("@01FFFF"), ">");
+  std::vector<OutputChange> changes;
+  bench.watch_outputs(changes);
+  bench.module().reset();
+  bench.run(milliseconds(100));
+  ASSERT_EQ(changes.size(), 2U);
+  EXPECT_EQ(changes[0].channels, 0);
+  EXPECT_EQ(changes[1].channels, 0xA55A);
+  EXPECT_LT(changes[1].at - changes[0].at, milliseconds(100));
+}
+
+TEST(Reset, ABouncingInitSwitchCountsOnlyOnceItStandsStill) {
+  ModuleBench bench("EX9042D");
+  for (int i = 0; i < 20; ++i) {
+    bench.module().set_init(i % 2 == 0);
+    bench.run(milliseconds(5));
+  }
+  bench.module().set_init(false);
+  EXPECT_EQ(bench.ask("%0101400700"), "?01");
+  bench.module().power(false);
+  bench.module().power(true);
+  for (int i = 0; i < 10; ++i) {
+    bench.module().set_init(i % 2 == 0);
+    bench.run(milliseconds(3));
+  }
+  bench.module().set_init(true);
+  bench.run(milliseconds(50));
+  EXPECT_EQ(bench.ask("$002"), "!01400600");
+}
+
+// --- wire.md 3 and 7: when a reply starts; 9: the driver ---
+
+TEST(Timing, AnAsciiReplyStartsOneCharacterAfterCrAtTheEarliestAndWithin20msOr200WhereSomethingIsStored) {
+  for (const std::uint32_t baud : kBaudRates) {
+    ModuleBench bench("EX9055D,baud=" + std::to_string(baud));
+    for (const auto& [command, most] :
+         std::vector<std::pair<std::string, VirtualTime>>{{"$012", milliseconds(20)},
+                                                          {"@01FF", milliseconds(20)},
+                                                          {"#010", milliseconds(20)},
+                                                          {"$01Z", milliseconds(20)},
+                                                          {"~01ONEW", milliseconds(200)},
+                                                          {"~0131FF", milliseconds(200)}}) {
+      bench.recorder().clear();
+      ASSERT_NE(bench.ask(command), "") << command;
+      const std::size_t request = command.size() + 1;
+      const VirtualTime gap = bench.recorder().bytes[request].start - bench.recorder().bytes[request - 1].end;
+      EXPECT_GE(gap, VirtualTime(10'000'000'000 / baud)) << command << " at " << baud;
+      EXPECT_LE(gap, most) << command << " at " << baud;
+    }
+  }
+}
+
+TEST(Timing, AModbusReplyStartsAfterThreeAndAHalfCharactersAtTheEarliestAndSoon) {
+  for (const std::uint32_t baud : kBaudRates) {
+    ModuleBench bench("EX9042D-M,baud=" + std::to_string(baud));
+    const VirtualTime silence = baud > 19200 ? VirtualTime(1'750'000) : VirtualTime(38'500'000'000 / baud);
+    for (const auto& [frame, most] :
+         std::vector<std::pair<Bytes, VirtualTime>>{{{1, 0x01, 0, 0, 0, 13}, milliseconds(20)},
+                                                    {{1, 0x05, 0, 0, 0xFF, 0}, milliseconds(20)},
+                                                    {{1, 0x41}, milliseconds(20)},
+                                                    {{1, 0x06, 0x01, 0xE8, 0, 50}, milliseconds(200)}}) {
+      bench.recorder().clear();
+      ASSERT_FALSE(bench.ask(frame).empty());
+      const std::size_t request = frame.size() + 2;
+      const VirtualTime gap = bench.recorder().bytes[request].start - bench.recorder().bytes[request - 1].end;
+      EXPECT_GE(gap, silence) << baud;
+      EXPECT_LE(gap, silence + most) << baud;
+    }
+  }
+}
+
+TEST(Driver, IsOnBeforeTheFirstStartBitAndOffWithinACharacterAfterTheLastStopBit) {
+  for (const std::uint32_t baud : kBaudRates) {
+    ModuleBench bench("EX9042D,baud=" + std::to_string(baud));
+    bench.ask("$01M");
+    const auto& drivers = bench.recorder().drivers;
+    const auto& bytes = bench.recorder().bytes;
+    ASSERT_EQ(drivers.size(), 4U);  // the master's, the module's
+    ASSERT_EQ(drivers[2].station, 1U);
+    EXPECT_LT(drivers[2].at, bytes[5].start);
+    EXPECT_GE(drivers[3].at, bytes.back().end);
+    EXPECT_LE(drivers[3].at, bytes.back().end + VirtualTime(10'000'000'000 / baud));
+  }
+}
+
+TEST(Driver, ItsOwnEchoIsNeverTakenForARequest) {
+  // The name is a command for this very module; on two wires it comes back while it is sent.
+  ModuleBench bench("EX9042D,name=$01M");
+  EXPECT_EQ(bench.ask("$01M"), "!01$01M");
+  bench.run(seconds(1));
+  EXPECT_EQ(bench.recorder().sent_by(1).size(), 8U);
+}
+
+// --- time ---
+
+TEST(Time, NothingHappensWhenTheMicrosecondsWrap) {
+  constexpr microseconds kWrap{std::int64_t{1} << 32};
+  ModuleBench bench("EX9043D-M");
+  ASSERT_EQ(bench.ask(Bytes{1, 0x0F, 0x00, 0x00, 0x00, 0x10, 0x02, 0x0F, 0x00}).at(1), 0x0F);
+  ASSERT_EQ(bench.ask(Bytes{1, 0x06, 0x01, 0xE8, 0x00, 0x14}).at(1), 0x06);
+  bench.line().bus().run_until(kWrap - milliseconds(1000));
+  ASSERT_EQ(bench.ask(Bytes{1, 0x05, 0x01, 0x04, 0xFF, 0x00}).at(1), 0x05);
+  const Bytes host_ok = with_crc({1, 0x03, 0x30, 0x38, 0x00, 0x00});
+  // A frame across the wrap.
+  bench.line().bus().run_until(kWrap - milliseconds(4));
+  bench.send(host_ok);
+  const VirtualTime restarted = bench.now() + microseconds(4010);  // T3.5
+  ASSERT_GT(restarted, kWrap);
+  std::vector<OutputChange> changes;
+  bench.watch_outputs(changes);
+  bench.run(seconds(3));
+  ASSERT_EQ(changes.size(), 1U);
+  EXPECT_GE(changes[0].at, restarted + seconds(2));
+  EXPECT_LE(changes[0].at, restarted + seconds(2) + milliseconds(1));
+  EXPECT_EQ(bench.module().watchdog_resets(), 0U);
+}
+
+TEST(Time, AMasterThatPollsOnceAWrapIsAnsweredEveryTime) {
+  constexpr microseconds kWrap{std::int64_t{1} << 32};
+  ModuleBench bench("EX9042D-M");
+  for (int i = 0; i < 5; ++i) {
+    const VirtualTime began = bench.now();
+    ASSERT_EQ(bench.ask(Bytes{1, 0x01, 0, 0, 0, 13}), (Bytes{1, 0x01, 2, 0, 0}));
+    bench.line().bus().run_until(began + kWrap);
+  }
+}
+
+}  // namespace
+}  // namespace ex9000::sim

@@ -1,0 +1,103 @@
+// 32 modules on one line, and beside each its description, which hears all that it hears.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "sim/line.hpp"
+#include "tests/oracles/reference/module.hpp"
+#include "tests/oracles/reference/random.hpp"
+
+namespace ex9000::neighbours {
+
+/// Pulses on all inputs of one module, evenly, all at the same instant.
+class Pulser final : public sim::Station {
+ public:
+  Pulser(sim::Bus& bus, sim::SimulatedModule& module) : clock_(bus.clock()), module_(module) {
+    bus.attach(*this);
+  }
+  Pulser(const Pulser&) = delete;
+  Pulser& operator=(const Pulser&) = delete;
+
+  void start(std::uint32_t per_second);
+  void stop() {
+    period_ = sim::VirtualTime(0);
+    next_ = sim::kNever;
+  }
+  void pause() { next_ = sim::kNever; }
+  void resume();
+  /// Pulses on each input since this was asked last.
+  std::uint32_t take() { return std::exchange(pulses_, 0); }
+
+  // --- sim::Station ---
+  [[nodiscard]] sim::VirtualTime next() const override { return next_; }
+  void run() override;
+  [[nodiscard]] std::uint32_t baud() const override { return 0; }
+  void receive(std::uint8_t /*byte*/, ByteStatus /*status*/) override {}
+
+ private:
+  sim::VirtualClock& clock_;
+  sim::SimulatedModule& module_;
+  sim::VirtualTime period_{0};
+  sim::VirtualTime next_ = sim::kNever;
+  std::uint32_t pulses_ = 0;
+};
+
+class Crowd final : public sim::BusObserver {
+ public:
+  static constexpr std::size_t kModules = 32;
+
+  /// Of the models that have Modbus, most, some of them in ASCII, and some that have ASCII alone, at
+  /// addresses 01 to 20 (hex). Those in ASCII have their checksum on, for without one the bytes of a Modbus
+  /// frame might be a command.
+  Crowd(std::uint32_t baud, std::uint64_t seed);
+
+  [[nodiscard]] sim::VirtualTime now() { return line_.clock().virtual_now(); }
+  Pulser& pulser() { return pulser_; }
+  /// One request to any module, or to all; the next may follow at once. Failures are GoogleTest's.
+  void exchange();
+
+  [[nodiscard]] std::uint64_t replies() const { return replies_; }
+  [[nodiscard]] std::uint64_t broadcasts() const { return broadcasts_; }
+  /// Replies of commands that stored something.
+  [[nodiscard]] std::uint64_t stores() const { return stores_; }
+  /// Pulses on each input of the one that is pulsed.
+  [[nodiscard]] std::uint64_t pulses() const { return pulses_; }
+  /// Which outputs of each module have been on.
+  [[nodiscard]] const std::vector<unsigned>& ever_on() const { return ever_on_; }
+  [[nodiscard]] unsigned outputs_of(std::size_t module) const { return described_[module].row().outputs; }
+  /// Replies of each module.
+  [[nodiscard]] const std::vector<std::uint64_t>& of_each() const { return of_each_; }
+
+  // --- sim::BusObserver ---
+  void driver(std::size_t station, bool on, sim::VirtualTime now) override;
+  void byte(std::size_t /*station*/, std::uint8_t /*byte*/, std::uint32_t /*baud*/, bool collided,
+            sim::VirtualTime /*start*/, sim::VirtualTime /*end*/) override {
+    collided_ = collided_ || collided;
+  }
+
+ private:
+  reference::Bytes a_request(std::size_t module);
+  reference::Bytes modbus_request(std::size_t module);
+  std::string dcon_request(std::size_t module);
+  void account_for_pulses();
+  void expect_outputs_as_described();
+
+  std::uint32_t baud_;
+  reference::Random random_;
+  sim::Line line_;
+  Pulser pulser_;
+  std::vector<reference::Module> described_;
+  reference::Bytes heard_;
+  bool collided_ = false;
+  std::vector<std::size_t> spoke_;
+  std::uint64_t replies_ = 0;
+  std::uint64_t broadcasts_ = 0;
+  std::uint64_t stores_ = 0;
+  std::uint64_t pulses_ = 0;
+  std::vector<unsigned> ever_on_ = std::vector<unsigned>(kModules);
+  std::vector<std::uint64_t> of_each_ = std::vector<std::uint64_t>(kModules);
+};
+
+}  // namespace ex9000::neighbours

@@ -1,0 +1,58 @@
+// A line that is full: 32 modules of both protocols, asked one after the other without a pause. Nobody
+// answers for anybody else, nobody takes another's reply for a request, nobody goes deaf, and counters count.
+//
+//     EX9000_VIRTUAL_SECONDS=N    60 where it is not given; 86400 is a day
+//     EX9000_SEED=N               1 likewise
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cstdio>
+
+#include "tests/support/environment.hpp"
+#include "tests/firmware/neighbours/crowd.hpp"
+
+namespace ex9000::neighbours {
+namespace {
+
+void run(Crowd& crowd, std::chrono::seconds time) {
+  const sim::VirtualTime end = crowd.now() + sim::VirtualTime(time);
+  while (crowd.now() < end && !testing::Test::HasFatalFailure()) {
+    crowd.exchange();
+  }
+}
+
+void report(const char* what, const Crowd& crowd) {
+  const auto [fewest, most] = std::minmax_element(crowd.of_each().begin(), crowd.of_each().end());
+  std::printf(
+      "%s: %llu replies, %llu of them with a store, %llu broadcasts; %llu to %llu of each module; %llu "
+      "pulses\n",
+      what, static_cast<unsigned long long>(crowd.replies()), static_cast<unsigned long long>(crowd.stores()),
+      static_cast<unsigned long long>(crowd.broadcasts()), static_cast<unsigned long long>(*fewest),
+      static_cast<unsigned long long>(*most), static_cast<unsigned long long>(crowd.pulses()));
+  EXPECT_GT(*fewest, 0U);
+  EXPECT_GT(crowd.stores(), crowd.replies() / 20);
+  EXPECT_GT(crowd.pulses(), 0U);
+}
+
+TEST(Neighbours, AnswerForThemselvesAloneAt9600BaudWhileOneOfThemCounts250PulsesASecondOnEachInput) {
+  Crowd crowd(9600, number_in_environment("EX9000_SEED", 1));
+  crowd.pulser().start(250);
+  run(crowd, std::chrono::seconds(number_in_environment("EX9000_VIRTUAL_SECONDS", 60)));
+  crowd.pulser().stop();
+  report("9600 baud", crowd);
+  for (std::size_t i = 0; i < Crowd::kModules; ++i) {
+    EXPECT_EQ(crowd.ever_on()[i] != 0, crowd.outputs_of(i) != 0) << "module " << i + 1;
+  }
+}
+
+TEST(Neighbours, AnswerForThemselvesAloneAt115200BaudWhileOneOfThemCounts34500PulsesASecondOnEachInput) {
+  Crowd crowd(115200, number_in_environment("EX9000_SEED", 1));
+  crowd.pulser().start(34'500);
+  run(crowd, std::chrono::seconds(
+                 std::min<std::uint64_t>(number_in_environment("EX9000_VIRTUAL_SECONDS", 60) / 15, 600)));
+  crowd.pulser().stop();
+  report("115200 baud", crowd);
+}
+
+}  // namespace
+}  // namespace ex9000::neighbours

@@ -1,0 +1,112 @@
+// A witness beside a simulated module: what the module does on the wires and with its outputs, at the moment
+// that it does it.
+#pragma once
+
+#include <gtest/gtest.h>
+
+#include <chrono>
+#include <cstdint>
+#include <vector>
+
+#include "sim/bus.hpp"
+#include "sim/module.hpp"
+#include "tests/oracles/judges/module_state.hpp"
+#include "tests/oracles/judges/witness.hpp"
+
+namespace ex9000::noise {
+
+/// Failures are GoogleTest's.
+class Onlooker final : public sim::BusObserver {
+ public:
+  /// All live as long as the bus is used; nobody else looks at the module's outputs. `station`: the module's
+  /// on the bus.
+  Onlooker(sim::Bus& bus, sim::SimulatedModule& module, std::size_t station)
+      : clock_(bus.clock()),
+        module_(module),
+        station_(station),
+        witness_(module.model(), [](const char* claim) { ADD_FAILURE() << "does not hold: " << claim; }) {
+    bus.observe(*this);
+    module.output_pins().on_change([this](std::uint16_t /*channels*/) {
+      if (looking_) {
+        ++deeds_;
+        witness_.follow(values(), now());
+      }
+    });
+  }
+  Onlooker(const Onlooker&) = delete;
+  Onlooker& operator=(const Onlooker&) = delete;
+
+  /// From here on the module may do whatever it likes; it is about to be switched off.
+  void look_away() { looking_ = false; }
+  /// It has come up, nothing was sent since. Whatever it does from now on is held against what it hears.
+  void look_again() {
+    judges::Listening listening = judges::listening_of(module_.module().state());
+    // Of what the module's clock and the witness' make of the same time.
+    constexpr judges::Microseconds kDoubt = 8;
+    listening.doubt = kDoubt;
+    witness_.comes_up(listening, values(), now());
+    looking_ = true;
+  }
+
+  /// The module is told of this byte, or was; it may not have acted upon it yet.
+  void hears(std::uint8_t byte, ByteStatus status) {
+    if (!driving_) {
+      witness_.hears(byte, status == ByteStatus::Good, module_.module().state().in_force.address, now());
+    }
+  }
+
+  /// What was heard until now.
+  const judges::Witness::Counts& counts() {
+    witness_.pass(now());
+    return witness_.counts();
+  }
+  [[nodiscard]] std::uint64_t replies() const { return replies_; }
+  /// Replies, and changes of outputs.
+  [[nodiscard]] std::uint64_t deeds() const { return deeds_; }
+
+  // --- sim::BusObserver ---
+  void driver(std::size_t station, bool on, sim::VirtualTime /*now*/) override {
+    if (station != station_ || !looking_) {
+      return;
+    }
+    driving_ = on;
+    if (on) {
+      ++replies_;
+      ++deeds_;
+      began_ = now();
+      reply_.clear();
+      witness_.follow(values(), began_);
+    } else {
+      witness_.reply_begins({reply_.data(), reply_.size()}, began_);
+      witness_.reply_ends(now());
+    }
+  }
+  void byte(std::size_t station, std::uint8_t byte, std::uint32_t /*baud*/, bool /*collided*/,
+            sim::VirtualTime /*start*/, sim::VirtualTime /*end*/) override {
+    if (station == station_) {
+      reply_.push_back(byte);
+    }
+  }
+
+ private:
+  [[nodiscard]] judges::Microseconds now() const {
+    return static_cast<judges::Microseconds>(
+        std::chrono::duration_cast<std::chrono::microseconds>(clock_.virtual_now()).count());
+  }
+  [[nodiscard]] judges::Values values() const {
+    return judges::values_of(module_.module().state(), module_.outputs());
+  }
+
+  sim::VirtualClock& clock_;
+  sim::SimulatedModule& module_;
+  std::size_t station_;
+  judges::Witness witness_;
+  bool looking_ = false;
+  bool driving_ = false;
+  judges::Microseconds began_ = 0;
+  std::vector<std::uint8_t> reply_;
+  std::uint64_t replies_ = 0;
+  std::uint64_t deeds_ = 0;
+};
+
+}  // namespace ex9000::noise

@@ -1,0 +1,194 @@
+#include "tests/firmware/noise/theory.hpp"
+
+#include <array>
+#include <cmath>
+#include <map>
+#include <vector>
+
+namespace ex9000::noise {
+
+namespace {
+
+/// One number for each sum of characters, modulo 256.
+using Sums = std::array<double, 256>;
+
+unsigned ones(unsigned value) {
+  unsigned count = 0;
+  for (; value != 0; value &= value - 1) {
+    ++count;
+  }
+  return count;
+}
+
+double choose(unsigned from, unsigned count) {
+  double ways = 1;
+  for (unsigned i = 0; i < count; ++i) {
+    ways = ways * (from - i) / (i + 1);
+  }
+  return ways;
+}
+
+/// In how many ways `weight` of `bits` places can be taken with an even number of them among the `marked`
+/// ones, less those with an odd number.
+double krawtchouk(unsigned bits, unsigned weight, unsigned marked) {
+  double sum = 0;
+  for (unsigned j = 0; j <= weight && j <= marked; ++j) {
+    sum += (j % 2 == 0 ? 1 : -1) * choose(marked, j) * choose(bits - marked, weight - j);
+  }
+  return sum;
+}
+
+/// What flipping bit `place` of `bits` does to the CRC; a CRC is linear but for its start value.
+std::vector<unsigned> syndromes(unsigned bits) {
+  std::vector<unsigned> all;
+  for (unsigned place = 0; place < bits; ++place) {
+    unsigned crc = 0;
+    for (unsigned bit = 0; bit < bits; ++bit) {
+      crc ^= bit == place ? 1U : 0U;
+      crc = crc % 2 != 0 ? crc / 2 ^ 0xA001U : crc / 2;
+    }
+    all.push_back(crc);
+  }
+  return all;
+}
+
+/// How many words of so many bits the CRC takes for right, by their weight up to 12.
+using Words = std::array<double, 13>;
+Words words_of(unsigned bits) {
+  const std::vector<unsigned> columns = syndromes(bits);
+  std::vector<double> words_of_dual(bits + 1);
+  for (unsigned row = 0; row < 65536; ++row) {
+    unsigned weight = 0;
+    for (const unsigned column : columns) {
+      weight += ones(row & column) % 2;
+    }
+    words_of_dual[weight] += 1;
+  }
+  Words words{};
+  for (unsigned weight = 0; weight < words.size(); ++weight) {
+    for (unsigned marked = 0; marked <= bits; ++marked) {
+      words[weight] += words_of_dual[marked] * krawtchouk(bits, weight, marked);
+    }
+    words[weight] = std::round(words[weight] / 65536);
+  }
+  return words;
+}
+
+/// How probable it is that flips make `to` of `from`.
+double becomes(unsigned from, unsigned to, double flipped_bit) {
+  const unsigned flips = ones(from ^ to);
+  return std::pow(flipped_bit, flips) * std::pow(1 - flipped_bit, 8 - flips);
+}
+
+bool in(char character, const char* set) { return std::string(set).find(character) != std::string::npos; }
+
+/// That `text`, a CR behind it, passes: its last two characters are the sum of the others.
+double sum_fits(const std::string& text, double flipped_bit) {
+  Sums sums{};
+  sums[0] = 1;
+  for (std::size_t i = 0; i + 2 < text.size(); ++i) {
+    Sums next{};
+    for (unsigned to = 0; to < 256; ++to) {
+      const bool fits = i == 0 ? in(static_cast<char>(to), "#$%@~") : to != '\r';
+      const double probability = fits ? becomes(static_cast<unsigned char>(text[i]), to, flipped_bit) : 0;
+      for (unsigned sum = 0; probability > 0 && sum < 256; ++sum) {
+        next[(sum + to) % 256] += sums[sum] * probability;
+      }
+    }
+    sums = next;
+  }
+  constexpr char kDigits[] = "0123456789ABCDEF";
+  double passes = 0;
+  for (unsigned sum = 0; sum < 256; ++sum) {
+    passes += sums[sum] *
+              becomes(static_cast<unsigned char>(text[text.size() - 2]),
+                      static_cast<unsigned char>(kDigits[sum / 16]), flipped_bit) *
+              becomes(static_cast<unsigned char>(text.back()), static_cast<unsigned char>(kDigits[sum % 16]),
+                      flipped_bit);
+  }
+  return passes;
+}
+
+/// Of a frame of so many bytes.
+const Words& known_words(std::size_t bytes) {
+  static std::map<std::size_t, Words> known;
+  const auto [place, fresh] = known.try_emplace(bytes);
+  if (fresh) {
+    place->second = words_of(static_cast<unsigned>(8 * bytes));
+  }
+  return place->second;
+}
+
+}  // namespace
+
+double crc_misses_of(std::size_t bytes, unsigned flips) { return known_words(bytes)[flips]; }
+
+double crc_misses(std::size_t bytes, double flipped_bit) {
+  const Words& words = known_words(bytes);
+  double missed = 0;
+  for (unsigned weight = 1; weight < words.size(); ++weight) {
+    missed += words[weight] * std::pow(flipped_bit, weight) *
+              std::pow(1 - flipped_bit, static_cast<double>(8 * bytes - weight));
+  }
+  return missed;
+}
+
+double dcon_misses(const std::string& frame, bool checksum, double flipped_bit) {
+  const double untouched = std::pow(1 - flipped_bit, 8 * (frame.size() + 1));
+  const double cr_stays = becomes('\r', '\r', flipped_bit);
+  double taken = 0;
+  double hunting = 1;  // that no character so far was a delimiter or the lead of a reply
+  for (std::size_t begin = 0; begin + (checksum ? 5 : 3) <= frame.size() + 1; ++begin) {
+    const std::string rest = frame.substr(begin);
+    double opens = 0;
+    double leads = 0;
+    for (unsigned to = 0; to < 256; ++to) {
+      const double probability = becomes(static_cast<unsigned char>(frame[begin]), to, flipped_bit);
+      opens += in(static_cast<char>(to), "#$%@~") ? probability : 0;
+      leads += in(static_cast<char>(to), "!>?") ? probability : 0;
+    }
+    if (checksum) {
+      taken += hunting * (rest.size() >= 5 ? sum_fits(rest, flipped_bit) * cr_stays : 0);
+    } else {
+      // As it is, or one longer where the CR became something else.
+      double others = 1;
+      for (std::size_t i = 1; i < rest.size(); ++i) {
+        others *= 1 - becomes(static_cast<unsigned char>(rest[i]), '\r', flipped_bit);
+      }
+      taken += hunting * opens * others * (rest.size() >= 3 ? 1 : 1 - cr_stays);
+    }
+    hunting *= 1 - opens - leads;
+  }
+  return taken - untouched;
+}
+
+Interval interval_of(std::uint64_t count) {
+  // Where the tail of the distribution beyond what was seen has 2.5 %, found by halving.
+  const auto at_most = [](std::uint64_t events, double mean) {
+    double term = std::exp(-mean);
+    double sum = term;
+    for (std::uint64_t i = 1; i <= events; ++i) {
+      term *= mean / static_cast<double>(i);
+      sum += term;
+    }
+    return sum;
+  };
+  constexpr std::uint64_t kMany = 400;
+  if (count > kMany) {
+    const double half_width = 1.96 * std::sqrt(static_cast<double>(count));
+    return {static_cast<double>(count) - half_width, static_cast<double>(count) + half_width};
+  }
+  const auto find = [](auto too_high) {
+    double low = 0;
+    double high = 2.0 * kMany;
+    for (int i = 0; i < 60; ++i) {
+      const double middle = (low + high) / 2;
+      (too_high(middle) ? high : low) = middle;
+    }
+    return low;
+  };
+  return {count == 0 ? 0 : find([&](double mean) { return 1 - at_most(count - 1, mean) > 0.025; }),
+          find([&](double mean) { return at_most(count, mean) < 0.025; })};
+}
+
+}  // namespace ex9000::noise

@@ -1,0 +1,76 @@
+// What theory says of the CRC, counted.
+#include "tests/firmware/noise/theory.hpp"
+
+#include <gtest/gtest.h>
+
+#include <array>
+#include <cstdint>
+#include <vector>
+
+#include "tests/oracles/judges/checks.hpp"
+
+namespace ex9000::noise {
+namespace {
+
+/// What flipping each bit of a frame does to its CRC, as it is taken of the frame with that bit flipped.
+std::vector<unsigned> syndromes_of(std::size_t bytes) {
+  std::vector<std::uint8_t> frame(bytes, 0xA5);
+  const unsigned untouched = judges::crc16(frame.data(), bytes);
+  std::vector<unsigned> all;
+  for (std::uint8_t& byte : frame) {
+    for (unsigned bit = 0; bit < 8; ++bit) {
+      byte = static_cast<std::uint8_t>(byte ^ (1U << bit));
+      all.push_back(judges::crc16(frame.data(), bytes) ^ untouched);
+      byte = static_cast<std::uint8_t>(byte ^ (1U << bit));
+    }
+  }
+  return all;
+}
+
+/// In how many ways 1, 2, 3 and 4 flips leave the CRC as it was, one after the other tried out.
+struct Misses {
+  std::array<std::uint64_t, 5> of{};
+  std::uint64_t tried_with_four = 0;
+};
+
+Misses count_misses(std::size_t bytes) {
+  const std::vector<unsigned> all = syndromes_of(bytes);
+  const unsigned* syndromes = all.data();
+  const std::size_t bits = all.size();
+  Misses misses;
+  for (std::size_t a = 0; a < bits; ++a) {
+    const unsigned one = syndromes[a];
+    misses.of[1] += one == 0 ? 1U : 0U;
+    for (std::size_t b = a + 1; b < bits; ++b) {
+      const unsigned two = one ^ syndromes[b];
+      misses.of[2] += two == 0 ? 1U : 0U;
+      for (std::size_t c = b + 1; c < bits; ++c) {
+        const unsigned three = two ^ syndromes[c];
+        misses.of[3] += three == 0 ? 1U : 0U;
+        for (std::size_t d = c + 1; d < bits; ++d) {
+          misses.of[4] += three == syndromes[d] ? 1U : 0U;
+        }
+        misses.tried_with_four += bits - c - 1;
+      }
+    }
+  }
+  return misses;
+}
+
+TEST(Theory, OfFourFlipsMissedByTheCrcIsWhatTryingAllOfThemCounts) {
+  const Misses misses = count_misses(8);  // a frame of function 01 or 05
+  EXPECT_EQ(misses.tried_with_four, 635'376U);
+  EXPECT_GT(misses.of[4], 0U);
+  for (unsigned flips = 1; flips <= 4; ++flips) {
+    EXPECT_EQ(crc_misses_of(8, flips), static_cast<double>(misses.of[flips])) << flips << " flips";
+  }
+}
+
+TEST(Theory, HasNoMissOfOneToThreeFlipsInTheLongestFrameThatIsSentHere) {
+  for (unsigned flips = 1; flips <= 3; ++flips) {
+    EXPECT_EQ(crc_misses_of(11, flips), 0) << flips << " flips";
+  }
+}
+
+}  // namespace
+}  // namespace ex9000::noise

@@ -1,0 +1,106 @@
+// Random sessions on the firmware and on the reference.
+//   EX9000_TRANSACTIONS  how many requests, 200000 where it is not set; 10000000 is the long form
+//   EX9000_SEED          of the first session; each has its predecessor's and 1
+#include <gtest/gtest.h>
+
+#include <cstdio>
+#include <fstream>
+#include <string>
+#include <vector>
+
+#include "sim/play/player.hpp"
+#include "tests/support/environment.hpp"
+#include "tests/oracles/reference/generator.hpp"
+#include "tests/oracles/reference/rules.hpp"
+#include "tests/oracles/reference/session.hpp"
+
+namespace ex9000::reference {
+namespace {
+
+/// Steps of a session; enough for what one of them leaves behind to matter to many others.
+constexpr unsigned kSteps = 300;
+
+/// The models in turn, those with two protocols three times as often.
+const ModelRow& row_of(std::uint64_t seed) {
+  std::vector<const ModelRow*> rows;
+  for (const ModelRow& row : kModelRows) {
+    rows.insert(rows.end(), row.both_protocols ? 3 : 1, &row);
+  }
+  return *rows[seed % rows.size()];
+}
+
+/// A session and its steps, up to the first at which firmware and reference differ.
+struct Played {
+  Played(std::uint64_t seed, unsigned length) : row(row_of(seed)), session(row) {
+    Random random(seed);
+    steps = first_steps(row, random);
+    for (std::size_t at = 0; alike && at < length; ++at) {
+      if (at == steps.size()) {
+        steps.push_back(next_step(session.reference(), random));
+      }
+      alike = session.play(steps[at]);
+    }
+  }
+
+  const ModelRow& row;
+  Session session;
+  std::vector<Step> steps;
+  bool alike = true;
+};
+
+TEST(RandomSessions, TheFirmwareDoesWhatTheReferenceSays) {
+  const std::uint64_t wanted = number_in_environment("EX9000_TRANSACTIONS", 200'000);
+  std::uint64_t seed = number_in_environment("EX9000_SEED", 9042);
+  std::uint64_t transactions = 0;
+  std::uint64_t left_open = 0;
+  std::uint64_t before_expiry = 0;
+  std::uint64_t behind_expiry = 0;
+  std::uint64_t sessions = 0;
+  Rules rules;
+  for (; transactions < wanted; ++seed, ++sessions) {
+    const Played played(seed, kSteps);
+    ASSERT_TRUE(played.alike) << "seed " << seed << "\n"
+                              << transcript_of(played.row, shrink(played.row, played.steps));
+    transactions += played.session.transactions();
+    left_open += played.session.left_open();
+    before_expiry += played.session.before_expiry();
+    behind_expiry += played.session.behind_expiry();
+    for (const std::string& rule : played.session.rules()) {
+      rules.reached(rule);
+    }
+  }
+  if (std::getenv("EX9000_TRANSACTIONS") != nullptr) {
+    std::printf("%s", rules.table().c_str());
+  }
+  for (const std::string& rule : rules.missing()) {
+    ADD_FAILURE() << rule << " was never reached";
+  }
+  std::printf(
+      "reference: %llu transactions in %llu sessions, %zu of %zu rules reached; %llu requests right before "
+      "an expiry, %llu right behind one; %llu requests left out\n",
+      static_cast<unsigned long long>(transactions), static_cast<unsigned long long>(sessions),
+      rules.size() - rules.missing().size(), rules.size(), static_cast<unsigned long long>(before_expiry),
+      static_cast<unsigned long long>(behind_expiry), static_cast<unsigned long long>(left_open));
+  EXPECT_GT(before_expiry, wanted / 1000);
+  EXPECT_GT(behind_expiry, wanted / 1000);
+}
+
+TEST(RandomSessions, AreWrittenDownAsTheRunnerPlaysThem) {
+  for (std::uint64_t seed = 0; seed < 27; ++seed) {
+    const Played played(seed, kSteps / 3);
+    ASSERT_TRUE(played.alike) << played.session.transcript();
+    const std::string path = testing::TempDir() + "random-session.txt";
+    std::ofstream(path) << played.session.transcript();
+    for (const play::Transcript& transcript : play::load_transcripts(path)) {
+      runner::CoreTarget target;
+      const play::Result result = play::play(transcript, target);
+      EXPECT_TRUE(result.passed()) << "seed " << seed << ": " << result.failure << "\n"
+                                   << played.session.transcript();
+      EXPECT_GT(result.steps, kSteps / 3);
+    }
+    std::remove(path.c_str());
+  }
+}
+
+}  // namespace
+}  // namespace ex9000::reference

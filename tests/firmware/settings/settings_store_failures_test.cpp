@@ -1,0 +1,143 @@
+// Saves that the memory does not take: wire.md section 8. "A reply means that it is stored."
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cstddef>
+#include <cstdint>
+
+#include "firmware/settings/store.hpp"
+#include "tests/firmware/settings/settings_store_bench.hpp"
+
+namespace ex9000 {
+namespace {
+
+TEST(SettingsStore, AWriteThatReadsBackDifferentlyIsTriedUpToThreeTimes) {
+  for (std::size_t noisy = 1; noisy < kAttempts; ++noisy) {
+    FakeMemory memory;
+    Boot run(memory);
+    memory.noisy_reads = noisy;
+    EXPECT_TRUE(run.save(numbered(1)));
+    EXPECT_EQ(memory.writes.size(), noisy + 1);
+    EXPECT_TRUE(Boot(memory).stored() == numbered(1));
+  }
+}
+
+TEST(SettingsStore, AWriteThatIsNotAnsweredIsTriedUpToThreeTimes) {
+  for (std::size_t unanswered = 1; unanswered < kAttempts; ++unanswered) {
+    FakeMemory memory;
+    Boot run(memory);
+    memory.unanswered_writes = unanswered;
+    EXPECT_TRUE(run.save(numbered(1)));
+    EXPECT_EQ(memory.writes.size(), unanswered + 1);
+    EXPECT_TRUE(Boot(memory).stored() == numbered(1));
+  }
+}
+
+TEST(SettingsStore, AReadBackThatIsNotAnsweredIsAFailedAttemptToo) {
+  FakeMemory memory;
+  Boot run(memory);
+  memory.failing_reads = kAttempts - 1;
+  EXPECT_TRUE(run.save(numbered(1)));
+  EXPECT_EQ(memory.writes.size(), kAttempts);
+}
+
+TEST(SettingsStore, AfterThreeFailedAttemptsTheOldSettingsStayAndAreFoundAtTheNextLoad) {
+  for (std::size_t failure = 0; failure < kFailures.size(); ++failure) {
+    FakeMemory memory;
+    Boot first(memory);
+    ASSERT_TRUE(first.save(numbered(1)));
+    ASSERT_TRUE(first.save(numbered(2)));
+    Boot run(memory);
+    memory.writes.clear();
+    kFailures[failure](memory);
+    EXPECT_FALSE(run.save(numbered(3))) << failure;
+    EXPECT_TRUE(run.stored() == numbered(2)) << failure;
+    EXPECT_TRUE(Boot(memory).stored() == numbered(2)) << failure;
+  }
+}
+
+TEST(SettingsStore, AFailedSaveIsTriedThreeTimesAndThenMadeInvalid) {
+  FakeMemory memory;
+  Boot run(memory);
+  memory.noisy_reads = kAttempts;
+  EXPECT_FALSE(run.save(numbered(1)));
+  EXPECT_EQ(memory.writes.size(), kAttempts + 1);
+  EXPECT_TRUE(run.stored() == factory());
+  EXPECT_TRUE(Boot(memory).stored() == factory());
+}
+
+TEST(SettingsStore, AFailedSaveDoesNotEndUnreadable) {
+  FakeMemory memory;
+  put(memory, 0, numbered(5), 7);
+  corrupt(memory, 0);
+  Boot run(memory);
+  memory.unanswered_writes = kAttempts + 1;
+  EXPECT_FALSE(run.save(numbered(1)));
+  EXPECT_EQ(run.found(), Found::Unreadable);
+}
+
+TEST(SettingsStore, ASaveBehindAFailedOneSucceeds) {
+  for (const auto fail : kFailures) {
+    FakeMemory memory;
+    Boot run(memory);
+    ASSERT_TRUE(run.save(numbered(1)));
+    fail(memory);
+    EXPECT_FALSE(run.save(numbered(2)));
+    memory.stuck = false;
+    EXPECT_TRUE(run.save(numbered(3)));
+    EXPECT_TRUE(run.stored() == numbered(3));
+    EXPECT_TRUE(Boot(memory).stored() == numbered(3));
+  }
+}
+
+TEST(SettingsStore, AFailedSaveDoesNotTouchTheCopyThatHoldsTheOldSettings) {
+  FakeMemory memory;
+  put(memory, 0, numbered(5), 7);
+  Boot run(memory);
+  memory.noisy_reads = kAttempts;
+  EXPECT_FALSE(run.save(numbered(1)));
+  for (const std::uint16_t address : memory.writes) {
+    EXPECT_NE(address / kPage, copies()[0] / kPage);
+  }
+}
+
+/// Ends the store's jobs one after the other, `count` of them, read or written or not answered.
+void end_jobs(SettingsStore& store, bool answered, int count) {
+  for (int i = 0; i < count; ++i) {
+    const MemoryJob job = store.job();
+    store.started();
+    if (job.kind == MemoryJob::Kind::Read && answered) {
+      std::fill_n(job.bytes.data, job.bytes.size, std::uint8_t{0x5A});
+    }
+    store.done(answered);
+  }
+}
+
+TEST(SettingsStore, WhatIsSettledIsTheDoubtfulCopyAndNotTheOneThatWasLastLookedAt) {
+  SettingsStore store(the_model());
+  store.begin_loading();
+  end_jobs(store, false, 6);
+  ASSERT_EQ(store.found(), SettingsStore::Found::Unreadable);
+  store.begin_saving(numbered(1));
+  end_jobs(store, true, 6);  // both copies are garbage
+  const std::uint16_t doubtful = store.job().address;
+  for (std::size_t attempt = 0; attempt < kAttempts; ++attempt) {
+    end_jobs(store, true, 1);   // written,
+    end_jobs(store, false, 1);  // and then silent
+  }
+  end_jobs(store, false, 1);  // not made invalid either
+  ASSERT_TRUE(store.doubtful());
+
+  store.begin_saving(numbered(2));
+  end_jobs(store, true, 3);
+  end_jobs(store, false, 3);  // the second copy does not answer
+  ASSERT_FALSE(store.busy());
+  ASSERT_TRUE(store.doubtful());
+  store.begin_settling();
+  EXPECT_EQ(store.job().address / kPage, doubtful / kPage);
+  end_jobs(store, true, 1);
+  EXPECT_FALSE(store.doubtful());
+}
+
+}  // namespace
+}  // namespace ex9000

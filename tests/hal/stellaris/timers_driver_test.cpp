@@ -1,0 +1,222 @@
+// Time: SysTick as the clock, the one-shot timers, the watchdog.
+#include <gtest/gtest.h>
+
+#include <random>
+
+#include "hal/stellaris/one_shot_timer.hpp"
+#include "hal/stellaris/system_timer.hpp"
+#include "hal/stellaris/watchdog.hpp"
+#include "tests/mcu_model/driver_bench.hpp"
+
+namespace ex9000::registers {
+namespace {
+
+using hal::stellaris::HardwareWatchdog;
+using hal::stellaris::OneShotTimer;
+using hal::stellaris::SystemTimer;
+using std::chrono::microseconds;
+using std::chrono::milliseconds;
+using std::chrono::nanoseconds;
+
+constexpr std::uint32_t kMegahertz = 50;
+
+// --- SysTick ---
+
+class Clock : public testing::Test {
+ protected:
+  Clock() {
+    bench.serve_tick([this] {
+      // Whatever the handler does, it may ask for the time as well.
+      timer.count_in_interrupt();
+      look();
+    });
+    timer.start(ex9000::milliseconds(1));
+    began_ = bench.now();
+  }
+
+  /// Asks for the time and holds the answer to the true one, and to the answer before.
+  void look() {
+    const Instant before = bench.now();
+    const std::uint32_t shown = timer.now().microseconds();
+    const Instant after = bench.now();
+    // What it shows is a moment between the call and the return, in whole microseconds.
+    const auto least =
+        static_cast<std::uint32_t>(std::chrono::duration_cast<microseconds>(before - began_).count());
+    const auto most =
+        static_cast<std::uint32_t>(std::chrono::duration_cast<microseconds>(after - began_).count());
+    EXPECT_LE(shown - offset_ - (least - 1), most - least + 2)
+        << shown - offset_ << " at " << least << " to " << most;
+    EXPECT_LT(shown - last_, 0x8000'0000U) << "went back from " << last_ << " to " << shown;
+    last_ = shown;
+  }
+
+  DriverBench bench;
+  SystemTimer<kMegahertz> timer;
+  Instant began_{0};
+  std::uint32_t offset_ = 0;
+  std::uint32_t last_ = 0;
+};
+
+TEST_F(Clock, IsExactToTheMicrosecondInEveryPhaseAroundATick) {
+  // The accesses of one question are two clocks apart: every phase of theirs against the counter's zero.
+  for (int clocks = -40; clocks <= 40; ++clocks) {
+    bench.mcu.run_until(began_ + milliseconds(2 * (clocks + 50)) + clocks * nanoseconds(20));
+    for (int i = 0; i < 10; ++i) {
+      look();
+    }
+  }
+}
+
+TEST_F(Clock, IsExactInEveryPhaseWhileTheTickMustWait) {
+  for (int clocks = -40; clocks <= 40; ++clocks) {
+    bench.mcu.run_until(began_ + milliseconds(2 * (clocks + 50)) + clocks * nanoseconds(20) -
+                        microseconds(1));
+    bench.mcu.core.hold(true);  // as in an interrupt
+    for (int i = 0; i < 20; ++i) {
+      look();
+    }
+    bench.timeline.advance(bench.now() + microseconds(900));
+    look();
+    bench.mcu.core.hold(false);
+    look();
+  }
+}
+
+TEST_F(Clock, NeverGoesBackHoweverItIsAsked) {
+  std::mt19937 random(1);
+  for (int i = 0; i < 20'000; ++i) {
+    const bool hold = random() % 4 == 0;
+    bench.mcu.core.hold(hold);
+    look();
+    const auto wait = nanoseconds(20 * (random() % (i % 3 == 0 ? 30'000 : 40)));
+    if (hold) {
+      bench.timeline.advance(bench.now() + wait);
+      look();
+      bench.mcu.core.hold(false);
+    } else {
+      bench.mcu.run_for(wait);
+    }
+    look();
+  }
+}
+
+TEST_F(Clock, WrapsWithoutAJump) {
+  constexpr std::uint32_t kTicksBefore = 4'294'960;  // 2^32 us are 4,294,967.296 ms
+  for (std::uint32_t i = 0; i < kTicksBefore; ++i) {
+    timer.count_in_interrupt();
+  }
+  offset_ = last_ = kTicksBefore * 1000;
+  for (int i = 0; i < 200; ++i) {
+    look();
+    bench.mcu.run_for(microseconds(97));
+  }
+  EXPECT_LT(last_, 100'000U) << "it has wrapped";
+}
+
+// --- one-shot timers ---
+
+template <class Timer>
+class OneShot : public testing::Test {};
+using Timers = testing::Types<OneShotTimer<0, kMegahertz>, OneShotTimer<1, kMegahertz>>;
+TYPED_TEST_SUITE(OneShot, Timers);
+
+template <class Timer>
+constexpr unsigned kInterruptOf = kTimer0Interrupt;
+template <>
+constexpr unsigned kInterruptOf<OneShotTimer<1, kMegahertz>> = kTimer1Interrupt;
+
+template <class Timer>
+class OneShotBench : public DriverBench {
+ public:
+  OneShotBench() {
+    Timer::start();
+    serve(kInterruptOf<Timer>, [this] {
+      ++interrupts;
+      if (Timer::ran_out()) {
+        fired.push_back(now());
+      }
+    });
+  }
+  std::vector<Instant> fired;
+  unsigned interrupts = 0;
+};
+
+TYPED_TEST(OneShot, FiresOnceNeverEarlyAndSoonAfter) {
+  for (const unsigned after : {80U, 87U, 100U, 1000U, 1750U, 4011U, 9999U, 34'000U}) {
+    OneShotBench<TypeParam> bench;
+    const Instant begun = bench.now();
+    TypeParam::restart(Duration(after));
+    bench.mcu.run_for(milliseconds(100));
+    ASSERT_EQ(bench.fired.size(), 1U);
+    EXPECT_GE(bench.fired[0], begun + microseconds(after));
+    EXPECT_LE(bench.fired[0], begun + microseconds(after) + microseconds(5));
+    EXPECT_EQ(bench.interrupts, 1U);
+  }
+}
+
+TYPED_TEST(OneShot, ARestartForgetsTheStartBefore) {
+  OneShotBench<TypeParam> bench;
+  for (int i = 0; i < 50; ++i) {
+    TypeParam::restart(Duration(200));
+    bench.mcu.run_for(microseconds(150));
+  }
+  EXPECT_TRUE(bench.fired.empty());
+  const Instant begun = bench.now();
+  TypeParam::restart(Duration(80));
+  bench.mcu.run_for(milliseconds(10));
+  ASSERT_EQ(bench.fired.size(), 1U);
+  EXPECT_GE(bench.fired[0], begun + microseconds(80));
+}
+
+TYPED_TEST(OneShot, ARestartForgetsAnInterruptThatIsPending) {
+  // In every phase of the restart's own accesses against the timer's end.
+  for (int clocks = -12; clocks <= 12; ++clocks) {
+    OneShotBench<TypeParam> bench;
+    TypeParam::restart(Duration(100));
+    bench.mcu.core.hold(true);  // as in the interrupt that restarts it
+    bench.timeline.advance(bench.now() + microseconds(100) + clocks * nanoseconds(20));
+    const Instant begun = bench.now();
+    TypeParam::restart(Duration(300));
+    bench.mcu.core.hold(false);
+    bench.mcu.run_for(milliseconds(5));
+    ASSERT_EQ(bench.fired.size(), 1U) << clocks;
+    EXPECT_GE(bench.fired[0], begun + microseconds(300)) << clocks;
+  }
+}
+
+// --- watchdog ---
+
+using Watchdog = HardwareWatchdog<kMegahertz>;
+
+TEST(Watchdog, BitesBehindTwoCountdownsAndWithin1600ms) {
+  DriverBench bench;
+  Watchdog::start();
+  const Instant begun = bench.now();
+  EXPECT_THROW(bench.mcu.run_for(milliseconds(1700)), ResetRequest);
+  EXPECT_GE(bench.now(), begun + milliseconds(1400));
+  EXPECT_LE(bench.now(), begun + milliseconds(1600));
+}
+
+TEST(Watchdog, LivesOnEveryFeedWhetherTheFirstCountdownIsOverOrNot) {
+  DriverBench bench;
+  Watchdog::start();
+  for (const int pause : {1, 700, 749, 751, 1400, 1490}) {
+    bench.mcu.run_for(milliseconds(pause));
+    Watchdog::feed();
+    EXPECT_TRUE(bench.mcu.watchdog.locked());
+    EXPECT_FALSE(bench.mcu.watchdog.flagged());
+  }
+  const Instant fed = bench.now();
+  EXPECT_THROW(bench.mcu.run_for(milliseconds(1700)), ResetRequest);
+  EXPECT_GE(bench.now(), fed + milliseconds(1400));
+}
+
+TEST(Watchdog, IsLockedSoThatARunawayStoreDoesNotFeedIt) {
+  DriverBench bench;
+  Watchdog::start();
+  EXPECT_THROW(bench.mcu.write(WatchdogTimer::kBase + WatchdogTimer::kClear, 1), Fault);
+  EXPECT_THROW(bench.mcu.write(WatchdogTimer::kBase + WatchdogTimer::kControl, 0), Fault);
+}
+
+}  // namespace
+}  // namespace ex9000::registers

@@ -1,0 +1,254 @@
+// The UART's driver and its RS-485 driver, on wires with a master that listens.
+#include <gtest/gtest.h>
+
+#include <tuple>
+#include <vector>
+
+#include "firmware/model/baud.hpp"
+#include "hal/stellaris/one_shot_timer.hpp"
+#include "hal/stellaris/uart.hpp"
+#include "tests/mcu_model/driver_bench.hpp"
+#include "tests/mcu_model/line_bench.hpp"
+
+namespace ex9000::registers {
+namespace {
+
+using hal::stellaris::Family;
+using hal::stellaris::Gpio;
+using hal::stellaris::OneShotTimer;
+using hal::stellaris::Pin;
+using hal::stellaris::Port;
+using hal::stellaris::Uart;
+using std::chrono::microseconds;
+using std::chrono::milliseconds;
+
+constexpr std::uint32_t kHertz = 50'000'000;
+constexpr Pin kEnable{Port::A, 6};
+using EndTimer = OneShotTimer<1, kHertz / 1'000'000>;
+
+class UartBench : public DriverBench {
+ public:
+  struct Received {
+    std::uint8_t byte;
+    ByteStatus status;
+    bool while_sending;
+  };
+
+  explicit UartBench(const Chip& chip, std::uint32_t baud)
+      : DriverBench(chip), line(timeline, pins.at('A', 1), pins.at('A', 6), pins.at('A', 0)) {
+    uart.start();
+    if (chip.port_control) {
+      Gpio(Port::A).make_peripheral<Family::Tm4c, 0x03, 1>();
+    } else {
+      Gpio(Port::A).make_peripheral<Family::Lm3s, 0x03, 1>();
+    }
+    EndTimer::start();
+    serve(kUart0Interrupt, [this] {
+      uart.on_interrupt([this](std::uint8_t byte, ByteStatus status) {
+        received.push_back({byte, status, uart.sending()});
+      });
+    });
+    serve(kTimer1Interrupt, [this] {
+      if (EndTimer::ran_out()) {
+        uart.on_end_timer();
+      }
+    });
+    line.set_baud(baud);
+    uart.open(baud);
+  }
+
+  /// Sends, and waits until the driver is off.
+  void send(const std::vector<std::uint8_t>& bytes) {
+    uart.send({bytes.data(), bytes.size()});
+    EXPECT_TRUE(uart.sending());
+    const Instant patience =
+        now() + 4 * kBitsACharacter * static_cast<int>(bytes.size() + 2) * line.bit_time();
+    while (uart.sending() && now() < patience) {
+      mcu.run_for(line.bit_time() / 4);
+    }
+    EXPECT_FALSE(uart.sending());
+  }
+
+  LineBench line;
+  Uart<0, kHertz, kEnable, EndTimer> uart;
+  std::vector<Received> received;
+};
+
+std::vector<std::uint8_t> some_bytes(std::size_t count) {
+  std::vector<std::uint8_t> bytes;
+  for (std::size_t i = 0; i < count; ++i) {
+    bytes.push_back(static_cast<std::uint8_t>(i * 37 + 11));
+  }
+  return bytes;
+}
+
+class Sending : public testing::TestWithParam<std::tuple<bool, std::uint32_t>> {
+ protected:
+  [[nodiscard]] const Chip& chip() const { return std::get<0>(GetParam()) ? kTm4c123 : kLm3s6965; }
+  [[nodiscard]] std::uint32_t baud() const { return std::get<1>(GetParam()); }
+  [[nodiscard]] Instant character() const { return Instant(10'000'000'000'000 / baud()); }
+
+  /// What must hold whatever comes in between: all bytes on the line, and the driver on around them.
+  void expect_whole(const UartBench& bench, const std::vector<std::uint8_t>& bytes) {
+    ASSERT_EQ(bench.line.heard.size(), bytes.size());
+    for (std::size_t i = 0; i < bytes.size(); ++i) {
+      EXPECT_EQ(bench.line.heard[i].byte, bytes[i]);
+      EXPECT_TRUE(bench.line.heard[i].good);
+    }
+    ASSERT_EQ(bench.line.drives.size(), 1U) << "it is switched on and off once";
+    EXPECT_LT(bench.line.drives[0].from, bench.line.heard.front().started);
+    EXPECT_EQ(bench.line.bits_lost, 0U);
+    // The last stop bit ends as the microcontroller's clock makes it.
+    const Instant bit = bench.mcu.uart0.bit_time();
+    EXPECT_GE(bench.line.drives[0].to, bench.line.heard.back().started + kBitsACharacter * bit);
+  }
+};
+
+TEST_P(Sending, TheDriverIsOnAroundAllBytesAndOffWithinACharacter) {
+  for (const std::size_t size : {1, 2, 3, 9, 60, 256}) {
+    for (const Instant latency :
+         {Instant(0), Instant(microseconds(2)), Instant(microseconds(10)), 3 * character() / 10}) {
+      for (const Instant phase : {Instant(0), Instant(1'230'000)}) {
+        SCOPED_TRACE(std::to_string(size) + " bytes, latency " + std::to_string(latency.count()));
+        UartBench bench(chip(), baud());
+        bench.mcu.core.set_latency(latency);
+        bench.mcu.run_for(character() + phase);
+        const std::vector<std::uint8_t> bytes = some_bytes(size);
+        bench.send(bytes);
+        expect_whole(bench, bytes);
+        EXPECT_LE(bench.line.drives[0].to, bench.line.heard.back().started + 2 * character());
+        // Without a gap.
+        const Instant bit = bench.mcu.uart0.bit_time();
+        EXPECT_NEAR(
+            static_cast<double>((bench.line.heard.back().started - bench.line.heard.front().started).count()),
+            static_cast<double>((static_cast<int>(size - 1) * 10 * bit).count()), 1e6);
+      }
+    }
+    if (size > 9 && baud() < 9600) {
+      break;  // minutes of virtual time, and nothing new
+    }
+  }
+}
+
+TEST_P(Sending, TheDriverIsNeverOffEarlyHoweverLateInterruptsAre) {
+  for (const int tenths : {8, 11, 15, 24}) {
+    UartBench bench(chip(), baud());
+    bench.mcu.core.set_latency(tenths * character() / 10);
+    const std::vector<std::uint8_t> bytes = some_bytes(5);
+    bench.send(bytes);
+    expect_whole(bench, bytes);
+  }
+}
+
+TEST_P(Sending, NothingOfItsEchoIsReceived) {
+  for (const Instant latency : {Instant(0), Instant(microseconds(30))}) {
+    UartBench bench(chip(), baud());
+    bench.mcu.core.set_latency(latency);
+    const std::vector<std::uint8_t> bytes = some_bytes(20);
+    bench.send(bytes);
+    bench.mcu.run_for(3 * character());
+    EXPECT_TRUE(bench.received.empty());
+    bench.line.send({0x5A});
+    bench.mcu.run_for(3 * character());
+    ASSERT_EQ(bench.received.size(), 1U) << "and what comes behind it is";
+    EXPECT_EQ(bench.received[0].byte, 0x5A);
+    EXPECT_EQ(bench.received[0].status, ByteStatus::Good);
+  }
+}
+
+TEST_P(Sending, OneReplyComesBehindTheOther) {
+  UartBench bench(chip(), baud());
+  for (int i = 0; i < 300; ++i) {  // past the point where counts of 8 bits wrap
+    bench.line.heard.clear();
+    bench.line.drives.clear();
+    const std::vector<std::uint8_t> bytes = some_bytes(1 + static_cast<std::size_t>(i) % 3);
+    bench.send(bytes);
+    expect_whole(bench, bytes);
+  }
+}
+
+TEST_P(Sending, WhatItReceivesIsWhatTheMasterSent) {
+  UartBench bench(chip(), baud());
+  const std::vector<std::uint8_t> bytes = some_bytes(256);
+  bench.line.send(bytes);
+  bench.mcu.run_for(258 * character());
+  ASSERT_EQ(bench.received.size(), bytes.size());
+  for (std::size_t i = 0; i < bytes.size(); ++i) {
+    EXPECT_EQ(bench.received[i].byte, bytes[i]);
+    EXPECT_EQ(bench.received[i].status, ByteStatus::Good);
+  }
+  EXPECT_TRUE(bench.line.drives.empty());
+}
+
+INSTANTIATE_TEST_SUITE_P(AtAllRates, Sending,
+                         testing::Combine(testing::Bool(), testing::ValuesIn(kBaudRates)),
+                         [](const auto& each) {
+                           return std::string(std::get<0>(each.param) ? "Tm4c" : "Lm3s") +
+                                  std::to_string(std::get<1>(each.param));
+                         });
+
+class Receiving : public testing::Test {
+ protected:
+  static constexpr std::uint32_t kBaud = 9600;
+  static constexpr Instant kCharacter{10'000'000'000'000 / kBaud};
+
+  std::vector<ByteStatus> statuses() {
+    std::vector<ByteStatus> result;
+    for (const UartBench::Received& each : bench.received) {
+      result.push_back(each.status);
+    }
+    return result;
+  }
+
+  UartBench bench{kLm3s6965, kBaud};
+};
+
+TEST_F(Receiving, ALowStopBitIsAFramingError) {
+  bench.line.send_one(Character{0x55, false, 0});
+  bench.mcu.run_for(4 * kCharacter);
+  bench.line.send({0x41});
+  bench.mcu.run_for(2 * kCharacter);
+  EXPECT_EQ(statuses(), (std::vector<ByteStatus>{ByteStatus::FramingError, ByteStatus::Good}));
+  EXPECT_EQ(bench.received[1].byte, 0x41);
+}
+
+TEST_F(Receiving, ABreakIsToldOnceHoweverLong) {
+  bench.line.send_one(Character{0, true, 50});
+  bench.line.send({0x42});
+  bench.mcu.run_for(8 * kCharacter);
+  EXPECT_EQ(statuses(), (std::vector<ByteStatus>{ByteStatus::Break, ByteStatus::Good}));
+  EXPECT_EQ(bench.received[1].byte, 0x42);
+}
+
+TEST_F(Receiving, AByteThatNobodyTookInTimeIsTold) {
+  bench.mcu.core.hold(true);
+  bench.line.send({1, 2, 3});
+  bench.mcu.run_for(4 * kCharacter);
+  bench.mcu.core.hold(false);
+  bench.mcu.run_for(kCharacter);
+  bench.line.send({4, 5});
+  bench.mcu.run_for(3 * kCharacter);
+  EXPECT_EQ(bench.mcu.uart0.overruns(), 2U);
+  EXPECT_EQ(statuses(), (std::vector<ByteStatus>{ByteStatus::Good, ByteStatus::Overrun, ByteStatus::Good}));
+}
+
+TEST_F(Receiving, AByteIsTakenAsLongAsTheInterruptWaitsForLessThanACharacter) {
+  bench.mcu.core.set_latency(95 * kCharacter / 100);
+  const std::vector<std::uint8_t> bytes = some_bytes(100);
+  bench.line.send(bytes);
+  bench.mcu.run_for(102 * kCharacter);
+  EXPECT_EQ(bench.mcu.uart0.overruns(), 0U);
+  EXPECT_EQ(bench.received.size(), bytes.size());
+}
+
+TEST_F(Receiving, ASpikeIsNoByte) {
+  bench.mcu.run_for(kCharacter);
+  bench.pins.at('A', 0).drive(End::Board, Drive::Low);
+  bench.mcu.run_for(microseconds(20));
+  bench.pins.at('A', 0).drive(End::Board, Drive::High);
+  bench.mcu.run_for(2 * kCharacter);
+  EXPECT_TRUE(bench.received.empty());
+}
+
+}  // namespace
+}  // namespace ex9000::registers

@@ -1,0 +1,94 @@
+// libmodbus, unmodified, on one line with two modules: raw requests, and so functions it has no call for.
+// They are those of tests/masters/conversation.txt.
+#include <gtest/gtest.h>
+#include <modbus/modbus.h>
+#include <poll.h>
+#include <unistd.h>
+
+#include <chrono>
+#include <fstream>
+#include <sstream>
+#include <stdexcept>
+#include <string>
+#include <thread>
+#include <vector>
+
+#include "firmware/line/crc16.hpp"
+#include "tests/masters/libmodbus_master.hpp"
+#include "tests/support/two_modules.hpp"
+
+namespace ex9000::system {
+namespace {
+
+using Frame = std::vector<std::uint8_t>;  // without CRC
+
+Frame frame_of(std::istringstream& hex) {
+  Frame frame;
+  for (std::string byte; hex >> byte && byte[0] != ';';) {
+    frame.push_back(static_cast<std::uint8_t>(std::stoul(byte, nullptr, 16)));
+  }
+  return frame;
+}
+
+void send(LibmodbusMaster& master, const Frame& frame) {
+  ASSERT_GT(modbus_send_raw_request(master.at(frame[0]), frame.data(), static_cast<int>(frame.size())), 0);
+}
+
+/// What is heard until `size` bytes and a CRC are there, or nothing more comes for `patience`. libmodbus
+/// cannot tell how long the replies are that it has no call for, so they are read past it.
+Frame heard(LibmodbusMaster& master, std::size_t size, std::chrono::milliseconds patience) {
+  Frame frame;
+  pollfd ready{modbus_get_socket(master.at(1)), POLLIN, 0};
+  while (frame.size() < size + 2 && poll(&ready, 1, static_cast<int>(patience.count())) == 1) {
+    std::uint8_t byte = 0;
+    if (read(ready.fd, &byte, 1) != 1) {
+      break;
+    }
+    frame.push_back(byte);
+  }
+  if (frame.size() >= 2 && crc16({frame.data(), frame.size()}).value() == 0) {
+    frame.resize(frame.size() - 2);
+  }
+  return frame;
+}
+
+class LibmodbusRaw : public testing::TestWithParam<Way> {};
+
+TEST_P(LibmodbusRaw, HoldsTheWholeConversation) {
+  using std::chrono::milliseconds;
+  TwoModules modules(GetParam());
+  LibmodbusMaster master(modules.tty(), GetParam().baud);
+  const std::string rate_code = GetParam().baud == 9600 ? "06" : "0A";
+  std::ifstream conversation(EX9000_CONVERSATION);
+  int answers = 0;
+  for (std::string line; std::getline(conversation, line);) {
+    if (const auto at = line.find("{BAUD}"); at != std::string::npos) {
+      line.replace(at, std::string("{BAUD}").size(), rate_code);
+    }
+    std::istringstream words(line);
+    std::string what;
+    words >> what;
+    if (what == "=>") {
+      send(master, frame_of(words));
+    } else if (what == "<=") {
+      const Frame expected = frame_of(words);
+      EXPECT_EQ(heard(master, expected.size(), milliseconds(1000)), expected) << line;
+      ++answers;
+    } else if (what == "silence") {
+      EXPECT_EQ(heard(master, 1, milliseconds(200)), Frame{}) << line;
+    } else if (what == "wait") {
+      int time = 0;
+      words >> time;
+      std::this_thread::sleep_for(milliseconds(time));
+    } else {
+      EXPECT_TRUE(what.empty() || what[0] == ';') << line;
+    }
+  }
+  EXPECT_GT(answers, 100);
+}
+
+INSTANTIATE_TEST_SUITE_P(Ways, LibmodbusRaw,
+                         testing::Values(Way{false, 9600}, Way{false, 115200}, Way{true, 115200}));
+
+}  // namespace
+}  // namespace ex9000::system

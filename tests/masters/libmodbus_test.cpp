@@ -1,0 +1,213 @@
+// libmodbus, unmodified, on one line with two modules: every function it has a call for. Expected values
+// are those of firmware/wire.md 7.
+#include <gtest/gtest.h>
+#include <modbus/modbus.h>
+
+#include <array>
+#include <cerrno>
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "tests/masters/libmodbus_master.hpp"
+#include "tests/support/two_modules.hpp"
+
+namespace ex9000::system {
+namespace {
+
+using Bits = std::vector<std::uint8_t>;
+using Words = std::vector<std::uint16_t>;
+
+constexpr int kOutputs = 1;  // the address of an EX9042D-M
+constexpr int kInputs = 2;   // that of an EX9052D-M
+constexpr int kBroadcast = 0;
+
+constexpr int kSafe = 0x0080;
+constexpr int kPowerOn = 0x00A0;
+constexpr int kWatchdogEnable = 0x0104;
+constexpr int kTimeoutStatus = 0x010D;
+constexpr int kCode = 0x01E2;
+constexpr int kAddress = 0x01E4;
+constexpr int kTimeout = 0x01E8;
+constexpr int kHostOk = 0x3038;
+
+class Libmodbus : public testing::TestWithParam<Way> {
+ protected:
+  Bits coils(int address, int first, int count) {
+    return read<Bits>(modbus_read_bits, address, first, count);
+  }
+  Bits inputs(int address, int first, int count) {
+    return read<Bits>(modbus_read_input_bits, address, first, count);
+  }
+  Words registers(int address, int first, int count) {
+    return read<Words>(modbus_read_registers, address, first, count);
+  }
+  Words input_registers(int address, int first, int count) {
+    return read<Words>(modbus_read_input_registers, address, first, count);
+  }
+  int write_coils(int address, int first, const Bits& values) {
+    return modbus_write_bits(master_.at(address), first, static_cast<int>(values.size()), values.data());
+  }
+  int write_registers(int address, int first, const Words& values) {
+    return modbus_write_registers(master_.at(address), first, static_cast<int>(values.size()), values.data());
+  }
+
+  TwoModules modules_{GetParam()};
+  LibmodbusMaster master_{modules_.tty(), GetParam().baud};
+
+ private:
+  template <typename Values, typename Function>
+  Values read(Function function, int address, int first, int count) {
+    Values values(static_cast<std::size_t>(count));
+    const int got = function(master_.at(address), first, count, values.data());
+    EXPECT_EQ(got, count) << modbus_strerror(errno);
+    return values;
+  }
+};
+
+TEST_P(Libmodbus, PollsBothModulesAlternately) {
+  for (int i = 0; i < 50; ++i) {
+    const int channel = i % 13;
+    ASSERT_EQ(modbus_write_bit(master_.at(kOutputs), channel, 1), 1) << modbus_strerror(errno);
+    EXPECT_EQ(inputs(kInputs, 0, 8), Bits(8, 0));
+    EXPECT_EQ(coils(kOutputs, channel, 1), Bits{1});
+    EXPECT_EQ(registers(kInputs, kCode, 2), (Words{0x0090, 0x5200}));
+  }
+}
+
+TEST_P(Libmodbus, GetsWhatItAsksFor) {
+  const Bits pattern{1, 0, 1, 1, 0, 0, 1, 0, 1, 1, 1, 0, 1};
+  EXPECT_EQ(write_coils(kOutputs, 0, pattern), 13);
+  EXPECT_EQ(input_registers(kInputs, 0, 8), Words(8, 0));
+  EXPECT_EQ(coils(kOutputs, 0, 13), pattern);
+  EXPECT_EQ(registers(kInputs, 6, 2), Words(2, 0));
+  EXPECT_EQ(modbus_write_bit(master_.at(kOutputs), 12, 0), 1);
+  EXPECT_EQ(coils(kInputs, 0x0020, 8), Bits(8, 0));
+  EXPECT_EQ(coils(kOutputs, 11, 2), Bits(2, 0));
+  EXPECT_EQ(write_coils(kInputs, 0x0200, Bits(8, 1)), 8);
+  EXPECT_EQ(modbus_write_bit(master_.at(kOutputs), kSafe + 1, 1), 1);
+  EXPECT_EQ(modbus_write_bit(master_.at(kInputs), 0x0107, 1), 1);
+  EXPECT_EQ(write_coils(kOutputs, kPowerOn + 4, {1, 1}), 2);
+  EXPECT_EQ(coils(kOutputs, 0, 8), (Bits{1, 1, 1, 1, 1, 1, 1, 0})) << "the outputs follow";
+
+  EXPECT_EQ(modbus_write_register(master_.at(kInputs), kTimeout, 100), 1);
+  EXPECT_EQ(write_registers(kOutputs, kAddress, {9, 7}), 2);
+  EXPECT_EQ(registers(kInputs, kTimeout, 1), Words{100});
+  EXPECT_EQ(registers(kOutputs, kCode, 4), (Words{0x0090, 0x4200, 9, 7}));
+
+  std::array<std::uint8_t, 64> id{};
+  const auto size = static_cast<int>(id.size());
+  EXPECT_EQ(modbus_report_slave_id(master_.at(kOutputs), size, id.data()), 8);
+  EXPECT_EQ(std::string(id.begin(), id.begin() + 8),
+            "\x90\x42\xFF"
+            "9042M");
+  EXPECT_EQ(modbus_report_slave_id(master_.at(kInputs), size, id.data()), 8);
+  EXPECT_EQ(std::string(id.begin(), id.begin() + 8),
+            "\x90\x52\xFF"
+            "9052M");
+}
+
+TEST_P(Libmodbus, BroadcastsAndHostOkHaveNoReply) {
+  const auto unanswered = [](int result) { return result == -1 && errno == ETIMEDOUT; };
+  master_.wait_for_replies(200);
+  EXPECT_TRUE(unanswered(write_coils(kBroadcast, 0, {1, 1, 1})));
+  EXPECT_TRUE(unanswered(modbus_write_bit(master_.at(kBroadcast), 1, 0)));
+  EXPECT_TRUE(unanswered(modbus_write_register(master_.at(kBroadcast), kTimeout, 50)));
+  EXPECT_TRUE(unanswered(write_registers(kBroadcast, kAddress, {9, 7})));
+  std::uint16_t word = 0;
+  EXPECT_TRUE(unanswered(modbus_read_registers(master_.at(kOutputs), kHostOk, 1, &word)));
+  EXPECT_TRUE(unanswered(modbus_read_input_registers(master_.at(kInputs), kHostOk, 0, &word)));
+  master_.wait_for_replies(1000);
+  EXPECT_EQ(coils(kOutputs, 0, 3), (Bits{1, 0, 1}));
+  for (const int address : {kOutputs, kInputs}) {
+    EXPECT_EQ(registers(address, kTimeout, 1), Words{50});
+    EXPECT_EQ(registers(address, kAddress, 1)[0], address) << "configuration is never broadcast";
+  }
+}
+
+TEST_P(Libmodbus, GetsTheExceptionsItDeserves) {
+  Bits bits(2000);
+  Words words(125);
+  struct Refused {
+    int exception;
+    std::string request;
+    std::function<int(modbus_t*)> send;
+    int address = kOutputs;
+  };
+  const std::vector<Refused> table{
+      {EMBXILFUN, "02 without inputs",
+       [&](modbus_t* m) { return modbus_read_input_bits(m, 0, 8, bits.data()); }},
+      {EMBXILFUN, "16", [&](modbus_t* m) { return modbus_mask_write_register(m, kTimeout, 0xFF, 0); }},
+      {EMBXILFUN, "17",
+       [&](modbus_t* m) {
+         return modbus_write_and_read_registers(m, kTimeout, 1, words.data(), kTimeout, 1, words.data());
+       },
+       kInputs},
+      {EMBXILADD, "01 beyond the row", [&](modbus_t* m) { return modbus_read_bits(m, 0, 14, bits.data()); }},
+      {EMBXILADD, "01 without outputs", [&](modbus_t* m) { return modbus_read_bits(m, 0, 8, bits.data()); },
+       kInputs},
+      {EMBXILADD, "02 beyond the row",
+       [&](modbus_t* m) { return modbus_read_input_bits(m, 7, 2, bits.data()); }, kInputs},
+      {EMBXILADD, "03 in a hole",
+       [&](modbus_t* m) { return modbus_read_registers(m, kAddress, 3, words.data()); }},
+      {EMBXILADD, "04 where only 03 reads",
+       [&](modbus_t* m) { return modbus_read_input_registers(m, kAddress, 1, words.data()); }},
+      {EMBXILADD, "05 beyond the row", [](modbus_t* m) { return modbus_write_bit(m, 13, 1); }},
+      {EMBXILADD, "05 on an input", [](modbus_t* m) { return modbus_write_bit(m, 0x0020, 1); }, kInputs},
+      {EMBXILADD, "06 on the code", [](modbus_t* m) { return modbus_write_register(m, kCode, 0x0090); }},
+      {EMBXILADD, "06 on a counter", [](modbus_t* m) { return modbus_write_register(m, 0, 0); }, kInputs},
+      {EMBXILADD, "0F beyond the row", [&](modbus_t* m) { return modbus_write_bits(m, 12, 2, bits.data()); }},
+      {EMBXILADD, "10 on the code",
+       [&](modbus_t* m) { return modbus_write_registers(m, kCode + 1, 2, words.data()); }},
+      {EMBXILVAL, "01 of none", [&](modbus_t* m) { return modbus_read_bits(m, 0, 0, bits.data()); }},
+      {EMBXILVAL, "02 of none", [&](modbus_t* m) { return modbus_read_input_bits(m, 0, 0, bits.data()); },
+       kInputs},
+      {EMBXILVAL, "03 of none",
+       [&](modbus_t* m) { return modbus_read_registers(m, kCode, 0, words.data()); }},
+      {EMBXILVAL, "04 of none",
+       [&](modbus_t* m) { return modbus_read_input_registers(m, 0, 0, words.data()); }, kInputs},
+      {EMBXILVAL, "05 off on the timeout status",
+       [](modbus_t* m) { return modbus_write_bit(m, kTimeoutStatus, 0); }},
+      {EMBXILVAL, "06 address 248", [](modbus_t* m) { return modbus_write_register(m, kAddress, 248); }},
+      {EMBXILVAL, "06 timeout 256", [](modbus_t* m) { return modbus_write_register(m, kTimeout, 256); },
+       kInputs},
+      {EMBXILVAL, "0F of none", [&](modbus_t* m) { return modbus_write_bits(m, 0, 0, bits.data()); }},
+      {EMBXILVAL, "10 address 0, rate code 0",
+       [&](modbus_t* m) { return modbus_write_registers(m, kAddress, 2, words.data()); }},
+  };
+  for (const Refused& refused : table) {
+    errno = 0;
+    EXPECT_EQ(refused.send(master_.at(refused.address)), -1) << refused.request;
+    EXPECT_EQ(errno, refused.exception) << refused.request << ": " << modbus_strerror(errno);
+  }
+  EXPECT_EQ(registers(kOutputs, kTimeout, 1), Words{0xFF}) << "nothing was done";
+}
+
+TEST_P(Libmodbus, ATimeoutOfTheHostWatchdogBlocksTheOutputs) {
+  EXPECT_EQ(modbus_write_bit(master_.at(kOutputs), 0, 1), 1);
+  EXPECT_EQ(modbus_write_register(master_.at(kOutputs), kTimeout, 1), 1);
+  EXPECT_EQ(modbus_write_bit(master_.at(kOutputs), kWatchdogEnable, 1), 1);
+  while (coils(kOutputs, kTimeoutStatus, 1) == Bits{0} && !HasFailure()) {
+  }
+  EXPECT_EQ(coils(kOutputs, kWatchdogEnable, 1), Bits{0});
+  EXPECT_EQ(coils(kOutputs, 0, 13), Bits(13, 0));
+  const std::vector<std::function<int()>> output_commands{
+      [&] { return modbus_write_bit(master_.at(kOutputs), 0, 1); },
+      [&] { return modbus_write_bit(master_.at(kOutputs), kSafe, 1); },
+      [&] { return write_coils(kOutputs, 0, Bits(13, 1)); },
+      [&] { return write_coils(kOutputs, kPowerOn, Bits(13, 1)); },
+  };
+  for (const auto& command : output_commands) {
+    EXPECT_EQ(command(), -1);
+    EXPECT_EQ(errno, EMBXSFAIL) << modbus_strerror(errno);
+  }
+  EXPECT_EQ(modbus_write_bit(master_.at(kOutputs), kTimeoutStatus, 1), 1);
+  EXPECT_EQ(modbus_write_bit(master_.at(kOutputs), 0, 1), 1);
+  EXPECT_EQ(coils(kOutputs, 0, 1), Bits{1});
+}
+
+INSTANTIATE_TEST_SUITE_P(Ways, Libmodbus,
+                         testing::Values(Way{false, 9600}, Way{false, 115200}, Way{true, 115200}));
+
+}  // namespace
+}  // namespace ex9000::system

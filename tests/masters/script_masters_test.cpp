@@ -1,0 +1,77 @@
+// Masters in Python and JavaScript on foreign libraries, unmodified, over the pseudo-terminal and as RTU
+// frames over TCP: tests/masters/.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cstdio>
+#include <ostream>
+#include <string>
+#include <vector>
+
+#include "tests/support/simulator_process.hpp"
+
+namespace ex9000::system {
+namespace {
+
+struct Master {
+  const char* library;
+  std::vector<std::string> command;
+
+  friend std::ostream& operator<<(std::ostream& out, const Master& master) { return out << master.library; }
+};
+
+const std::string kScripts = EX9000_MASTERS;
+/// Debian's, whatever else is in PATH: the library is Debian's too.
+const Master kPymodbus{"pymodbus", {"/usr/bin/python3", kScripts + "/pymodbus_master.py"}};
+const std::string kModules = std::string("NODE_PATH=") + EX9000_NODE_MODULES;
+const Master kModbusSerial{"modbus-serial", {"env", kModules, "node", kScripts + "/modbus_serial_master.js"}};
+const Master kJsmodbus{"jsmodbus", {"env", kModules, "node", kScripts + "/jsmodbus_master.js"}};
+
+class ScriptMaster : public testing::TestWithParam<Master> {
+ protected:
+  static void expect_to_pass(std::vector<std::string> arguments) {
+    std::vector<std::string> command{"timeout", "120"};
+    command.insert(command.end(), GetParam().command.begin(), GetParam().command.end());
+    command.insert(command.end(), arguments.begin(), arguments.end());
+    const Finished finished = run(command);
+    EXPECT_EQ(finished.status, 0) << finished.output << finished.error;
+    const std::string summary = std::string(GetParam().library) + " ";
+    EXPECT_EQ(finished.output.find(summary), 0U) << finished.output;
+    EXPECT_NE(finished.output.find(" checks passed\n"), std::string::npos) << finished.output;
+    std::printf("%s: %s", arguments[0].c_str() + 2, finished.output.c_str());
+  }
+  static std::vector<std::string> modules(const std::string& baud) {
+    return {"EX9042D-M@01,baud=" + baud, "EX9052D-M@02,baud=" + baud};
+  }
+};
+
+TEST_P(ScriptMaster, HoldsItsConversationOnThePseudoTerminal) {
+  SimulatorProcess simulator(modules("9600"));
+  expect_to_pass({"--tty", simulator.tty(), "--baud", "9600"});
+}
+
+TEST_P(ScriptMaster, HoldsItsConversationOverTcp) {
+  std::vector<std::string> arguments = modules("115200");
+  arguments.insert(arguments.end(), {"--tcp", "0"});
+  SimulatorProcess simulator(arguments);
+  expect_to_pass({"--tcp", "127.0.0.1:" + std::to_string(simulator.tcp_port()), "--baud", "115200"});
+}
+
+TEST_P(ScriptMaster, HoldsItsConversationWhereBytesCostNoTime) {
+  std::vector<std::string> arguments = modules("9600");
+  arguments.insert(arguments.end(), {"--line", "instant"});
+  SimulatorProcess simulator(arguments);
+  expect_to_pass({"--tty", simulator.tty(), "--baud", "9600"});
+}
+
+std::string library_of(const testing::TestParamInfo<Master>& info) {
+  std::string name = info.param.library;
+  name.erase(std::remove(name.begin(), name.end(), '-'), name.end());
+  return name;
+}
+
+INSTANTIATE_TEST_SUITE_P(Libraries, ScriptMaster, testing::Values(kPymodbus, kModbusSerial, kJsmodbus),
+                         library_of);
+
+}  // namespace
+}  // namespace ex9000::system

@@ -1,0 +1,165 @@
+#include "tests/mcu_model/core.hpp"
+
+#include <algorithm>
+
+namespace ex9000::registers {
+
+namespace {
+
+constexpr std::uint32_t kTickPending = 1U << 26U;
+constexpr std::uint32_t kKey = 0x05FA;
+
+}  // namespace
+
+Core::Core(const SystemControl& clock, Timeline& timeline)
+    : Peripheral(kBase), clock_(clock), timeline_(timeline), tick_(timeline, [this] { count_tick(); }) {}
+
+/// Zero when it is written; the next clock loads it, and each clock takes one away. The exception is pended
+/// as it comes to zero.
+std::uint32_t Core::current() const {
+  if ((tick_control_ & 1U) == 0) {
+    return 0;
+  }
+  const std::int64_t clocks = (timeline_.now() - tick_began_) / clock_.cycle();
+  return clocks == 0 ? 0 : static_cast<std::uint32_t>(reload_ + 1 - clocks);
+}
+
+void Core::count_tick() {
+  tick_began_ = timeline_.now();
+  tick_.set_after((reload_ + std::int64_t{1}) * clock_.cycle());
+  if ((tick_control_ & 2U) != 0) {
+    pend(kTick);
+  }
+}
+
+std::uint32_t Core::read(std::uint32_t offset) {
+  switch (offset) {
+    case kTickControl:
+      return tick_control_;
+    case kTickReload:
+      return reload_;
+    case kTickCurrent:
+      return current();
+    case kInterruptControl:
+      return (pending_ >> kTick & 1U) != 0 ? kTickPending : 0;
+    case kSetEnable:
+      return enabled_;
+    default:
+      fault(offset, "no such register of the processor is known here");
+  }
+}
+
+void Core::write(std::uint32_t offset, std::uint32_t value) {
+  if (offset >= kPriority && offset < kPriority + 32) {
+    for (unsigned i = 0; i < 4; ++i) {
+      // Three bits of each byte exist.
+      priorities_.at(offset - kPriority + i) = static_cast<std::uint8_t>(value >> (8 * i) & 0xE0U);
+    }
+    return;
+  }
+  switch (offset) {
+    case kTickControl:
+      if ((value & 4U) == 0) {
+        fault(offset, "the tick would run on something else than the system clock");
+      }
+      if ((value & 1U) != 0 && (tick_control_ & 1U) == 0) {
+        tick_began_ = timeline_.now();
+        tick_.set_after((reload_ + std::int64_t{1}) * clock_.cycle());
+      } else if ((value & 1U) == 0) {
+        tick_.cancel();
+      }
+      tick_control_ = value;
+      break;
+    case kTickReload:
+      if (value > 0xFF'FFFFU) {
+        fault(offset, "24 bits");
+      }
+      reload_ = value;
+      break;
+    case kTickCurrent:
+      if ((tick_control_ & 1U) != 0) {
+        fault(offset, "time would go back");
+      }
+      break;
+    case kSetEnable:
+      enabled_ |= value;
+      break;
+    case kApplicationInterrupt:
+      if (value >> 16U != kKey) {
+        fault(offset, "without the key nothing is written");
+      }
+      group_shift_ = value >> 8U & 7U;
+      if ((value & 4U) != 0 && on_reset_) {
+        on_reset_();
+      }
+      break;
+    default:
+      fault(offset, "no such register of the processor may be written");
+  }
+}
+
+unsigned Core::priority_of(unsigned exception) const {
+  return exception < kFirstInterrupt ? 0 : priorities_.at(exception - kFirstInterrupt);
+}
+
+void Core::pend(unsigned exception) {
+  const std::uint64_t bit = 1ULL << exception;
+  if ((pending_ & bit) == 0) {
+    pending_ |= bit;
+    since_.at(exception) = timeline_.now();
+  }
+}
+
+/// What has been pended stays so when the line falls.
+void Core::interrupt_line_of(unsigned interrupt, bool asserted) {
+  lines_.at(interrupt) = asserted || (stuck_ >> interrupt & 1U) != 0;
+  if (lines_.at(interrupt)) {
+    pend(kFirstInterrupt + interrupt);
+  }
+}
+
+/// 0: none. It takes no notice of whether interrupts are held.
+unsigned Core::next_to_serve() const {
+  const std::uint64_t candidates = waiting();
+  unsigned best = 0;
+  for (unsigned exception = kTick; candidates >> exception != 0; ++exception) {
+    if ((candidates >> exception & 1U) != 0 && since_.at(exception) + latency_ <= timeline_.now() &&
+        (best == 0 || priority_of(exception) < priority_of(best))) {
+      best = exception;
+    }
+  }
+  if (best != 0 && !active_.empty() && group(priority_of(best)) >= group(priority_of(active_.back()))) {
+    return 0;
+  }
+  return best;
+}
+
+Instant Core::next_wake() const {
+  const std::uint64_t candidates = waiting();
+  Instant next = kNever;
+  for (unsigned exception = kTick; candidates >> exception != 0; ++exception) {
+    if ((candidates >> exception & 1U) != 0) {
+      next = std::min(next, since_.at(exception) + latency_);
+    }
+  }
+  return next;
+}
+
+void Core::serve_pending() {
+  while (!held_) {
+    const unsigned exception = next_to_serve();
+    if (exception == 0) {
+      return;
+    }
+    pending_ &= ~(1ULL << exception);
+    active_.push_back(exception);
+    deepest_ = std::max(deepest_, active_.size());
+    serve_(exception);
+    active_.pop_back();
+    if (exception >= kFirstInterrupt && lines_.at(exception - kFirstInterrupt)) {
+      pend(exception);
+    }
+  }
+}
+
+}  // namespace ex9000::registers

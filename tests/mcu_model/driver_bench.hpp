@@ -1,0 +1,52 @@
+// A microcontroller for one driver at a time: its clock runs at 50 MHz, everything has been given a clock,
+// and whoever tests points the interrupts where he wants them.
+#pragma once
+
+#include <functional>
+#include <map>
+#include <utility>
+
+#include "hal/stellaris/system_control.hpp"
+#include "tests/mcu_model/microcontroller.hpp"
+
+namespace ex9000::registers {
+
+class DriverBench {
+ public:
+  explicit DriverBench(const Chip& chip = kLm3s6965, I2cManners manners = {})
+      : mcu(chip, timeline, pins, manners) {
+    using hal::stellaris::SystemControl;
+    SystemControl::open({1U << 3U, 1U << 0U | 1U << 12U | 3U << 16U, (1U << chip.ports) - 1U});
+    SystemControl::use({chip.crystal_code, 4});
+    mcu.on_exception([this](unsigned exception) {
+      const auto handler = handlers_.find(exception);
+      if (handler == handlers_.end()) {
+        throw Fault(exception, "an exception that nobody serves");
+      }
+      handler->second();
+    });
+  }
+
+  /// Interrupt `number` is enabled and served by this.
+  void serve(unsigned number, std::function<void()> handler) {
+    handlers_[Core::kFirstInterrupt + number] = std::move(handler);
+    mcu.write(Core::kBase + Core::kSetEnable, 1U << number);
+  }
+  void serve_tick(std::function<void()> handler) { handlers_[Core::kTick] = std::move(handler); }
+
+  [[nodiscard]] Instant now() const { return timeline.now(); }
+
+  Timeline timeline;
+  Pins pins;
+  Microcontroller mcu;
+
+ private:
+  std::map<unsigned, std::function<void()>> handlers_;
+};
+
+constexpr unsigned kUart0Interrupt = 5;
+constexpr unsigned kI2cInterrupt = 8;
+constexpr unsigned kTimer0Interrupt = 19;
+constexpr unsigned kTimer1Interrupt = 21;
+
+}  // namespace ex9000::registers

@@ -1,0 +1,98 @@
+// I2C master 0, bit by bit on its wires. Data sheets: LM3S6965 14.3 to 14.5, TM4C123GH6PM 16.3 to 16.5.
+#pragma once
+
+#include <cstdint>
+#include <deque>
+
+#include "tests/mcu_model/chip.hpp"
+#include "tests/mcu_model/gpio_port.hpp"
+#include "tests/mcu_model/peripheral.hpp"
+#include "tests/mcu_model/system_control.hpp"
+#include "tests/mcu_model/timeline.hpp"
+
+namespace ex9000::registers {
+
+/// Where the data sheets leave it open.
+struct I2cManners {
+  bool stop_interrupts = false;     ///< a STOP by itself is told like a byte
+  bool stops_after_error = false;   ///< a STOP that was asked for with a byte comes although the byte failed
+  bool waits_for_free_bus = false;  ///< a START on a bus that is not free waits; else arbitration is lost
+};
+
+class I2cBlock final : public Peripheral {
+ public:
+  static constexpr std::uint32_t kBase = 0x4002'0000;
+  static constexpr std::uint32_t kTarget = 0x000;
+  static constexpr std::uint32_t kControl = 0x004;
+  static constexpr std::uint32_t kData = 0x008;
+  static constexpr std::uint32_t kPeriod = 0x00C;
+  static constexpr std::uint32_t kMask = 0x010;
+  static constexpr std::uint32_t kRaw = 0x014;
+  static constexpr std::uint32_t kMasked = 0x018;
+  static constexpr std::uint32_t kClear = 0x01C;
+  static constexpr std::uint32_t kConfiguration = 0x020;
+
+  static constexpr unsigned kClockPin = 2;  ///< of port B
+  static constexpr unsigned kDataPin = 3;
+  static constexpr std::uint32_t kFunction = 3;
+
+  I2cBlock(const Chip& chip, const SystemControl& clock, Timeline& timeline, GpioPort& port_b, PortNets& nets,
+           I2cManners manners);
+
+  std::uint32_t read(std::uint32_t offset) override;
+  void write(std::uint32_t offset, std::uint32_t value) override;
+  void software_reset();
+  /// The clock line has changed.
+  void look_at_clock();
+
+  /// Length of a bit, as its registers have it.
+  [[nodiscard]] Instant bit_time() const { return 20 * (period_ + 1) * clock_.cycle(); }
+
+ private:
+  enum class Move : std::uint8_t { Start, Zero, One, Take, TakeAcknowledge, Stop };
+
+  void command(std::uint32_t bits);
+  void check_pins() const;
+  void queue_byte(std::uint8_t byte);
+  void begin_move();
+  void go_on();
+  void clock_is_high();
+  void end_bit();
+  void move_is_over();
+  void fail(std::uint32_t bits);
+  void finish();
+  void clock(bool high);
+  void data(bool high);
+  [[nodiscard]] bool clock_high() const { return nets_.at(kClockPin).level(); }
+  [[nodiscard]] bool data_high() const { return nets_.at(kDataPin).level(); }
+  void tell_interrupt() { interrupt_line((raw_ & mask_) != 0); }
+
+  const Chip& chip_;
+  const SystemControl& clock_;
+  Timeline& timeline_;
+  GpioPort& port_;
+  PortNets& nets_;
+  I2cManners manners_;
+
+  std::uint32_t target_ = 0;
+  std::uint32_t data_ = 0;
+  std::uint32_t period_ = 1;
+  std::uint32_t mask_ = 0;
+  std::uint32_t raw_ = 0;
+  std::uint32_t configuration_ = 0;
+  std::uint32_t status_ = 0;  ///< error bits
+  bool busy_ = false;
+  bool owns_bus_ = false;
+  bool receiving_ = false;
+  bool addressing_ = false;
+  bool stop_asked_ = false;
+  bool only_stopping_ = false;
+  std::deque<Move> moves_;
+  unsigned phase_ = 0;
+  bool waits_for_clock_ = false;
+  std::uint8_t taken_ = 0;
+  unsigned taken_bits_ = 0;
+  Alarm next_;
+};
+
+}  // namespace ex9000::registers

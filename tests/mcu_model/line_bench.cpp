@@ -1,0 +1,92 @@
+#include "tests/mcu_model/line_bench.hpp"
+
+namespace ex9000::registers {
+
+LineBench::LineBench(Timeline& timeline, Net& transmit, Net& enable, Net& receive, bool echo)
+    : timeline_(timeline),
+      transmit_(transmit),
+      enable_(enable),
+      receive_(receive),
+      echo_(echo),
+      sender_(
+          timeline,
+          [this](bool high) {
+            master_level_ = high;
+            update();
+          },
+          [this] {
+            sent_ = timeline_.now();
+            go_on();
+          }),
+      ear_(timeline, [this](SerialReceiver::Received received) {
+        const Instant started = timeline_.now() - bit_time_ / 2 - (kBitsACharacter - 1) * bit_time_;
+        last_ended_ = started + kBitsACharacter * bit_time_;
+        heard.push_back({started, last_ended_, received.byte, !received.framing_error});
+      }) {
+  // The resistors that every board has: idle while its pins float, and the driver off.
+  transmit_.drive(End::Resistor, Drive::WeakHigh);
+  enable_.drive(End::Resistor, Drive::WeakLow);
+  transmit_.on_change([this] { board_speaks(); });
+  enable_.on_change([this] { driver_switched(); });
+  set_baud(9600);
+  update();
+}
+
+void LineBench::set_baud(std::uint32_t baud) {
+  bit_time_ = std::chrono::duration_cast<Instant>(std::chrono::seconds(1)) / baud;
+  ear_.set_bit_time(bit_time_);
+}
+
+void LineBench::send(const std::vector<std::uint8_t>& bytes) {
+  for (const std::uint8_t byte : bytes) {
+    waiting_.push_back({byte, true, 0});
+  }
+  if (!sender_.busy()) {
+    go_on();
+  }
+}
+
+void LineBench::send_one(Character character) {
+  waiting_.push_back(character);
+  if (!sender_.busy()) {
+    go_on();
+  }
+}
+
+void LineBench::go_on() {
+  if (waiting_.empty()) {
+    master_level_ = true;  // the line is idle, whatever the stop bit was
+    update();
+    return;
+  }
+  const Character next = waiting_.front();
+  waiting_.pop_front();
+  sender_.begin(next, bit_time_, timeline_.now());
+}
+
+void LineBench::board_speaks() {
+  if (!enable_.level() && !transmit_.level()) {
+    ++bits_lost;
+  }
+  update();
+}
+
+void LineBench::driver_switched() {
+  if (enable_.level()) {
+    drives.push_back({timeline_.now(), kNever});
+  } else {
+    drives.back().to = timeline_.now();
+    let_go_early += ear_.busy() || drives.back().to < last_ended_ - bit_time_ / 10 ? 1U : 0U;
+    let_go_late += drives.back().to > last_ended_ + kBitsACharacter * bit_time_ ? 1U : 0U;
+  }
+  update();
+}
+
+void LineBench::update() {
+  const bool board_level = !enable_.level() || transmit_.level();
+  ear_.level(board_level);
+  const bool line = board_level && master_level_;
+  receive_.drive(End::Board, enable_.level() && !echo_ ? Drive::High : line ? Drive::High : Drive::Low);
+}
+
+}  // namespace ex9000::registers

@@ -1,0 +1,70 @@
+// Clock tree, clock gates and software resets. Data sheets: LM3S6965 6.3 to 6.5, TM4C123GH6PM 5.2 to 5.6.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <functional>
+#include <vector>
+
+#include "tests/mcu_model/chip.hpp"
+#include "tests/mcu_model/peripheral.hpp"
+#include "tests/mcu_model/timeline.hpp"
+
+namespace ex9000::registers {
+
+class SystemControl final : public Peripheral {
+ public:
+  static constexpr std::uint32_t kBase = 0x400F'E000;
+  static constexpr std::uint32_t kRis = 0x050;
+  static constexpr std::uint32_t kRcc = 0x060;
+  static constexpr std::uint32_t kRcgc = 0x100;  ///< three words
+  static constexpr std::uint32_t kSrcr = 0x040;  ///< likewise
+
+  SystemControl(const Chip& chip, Timeline& timeline);
+
+  std::uint32_t read(std::uint32_t offset) override;
+  void write(std::uint32_t offset, std::uint32_t value) override;
+
+  /// One period of the system clock.
+  [[nodiscard]] Instant cycle() const { return cycle_; }
+  /// Told before the period changes to what it is told.
+  void on_clock_change(std::function<void(Instant cycle)> act) { on_clock_change_.push_back(std::move(act)); }
+  /// The processor waits until then; told when it must.
+  void on_standstill(std::function<void(Instant until)> act) { on_standstill_ = std::move(act); }
+  /// Told which bits of SRCR`index` were set.
+  void on_software_reset(std::function<void(unsigned index, std::uint32_t bits)> act) {
+    on_software_reset_ = std::move(act);
+  }
+
+  /// Whether bit `bit` of RCGC`index` is set, and has been for long enough.
+  enum class Gate : std::uint8_t { Shut, TooFresh, Open };
+  [[nodiscard]] Gate gate(unsigned index, unsigned bit) const;
+
+  /// How long the crystal takes to swing, from 2 ms or so to 18 ms.
+  void set_crystal_start(Instant time) { crystal_start_ = time; }
+  /// How long the PLL takes to lock; kNever: it does not.
+  void set_lock_time(Instant time) { lock_time_ = time; }
+
+ private:
+  void write_rcc(std::uint32_t value);
+  void use_clock();
+  [[nodiscard]] bool rcc_has(unsigned bit) const { return (rcc_ >> bit & 1U) != 0; }
+
+  const Chip& chip_;
+  Timeline& timeline_;
+  std::uint32_t rcc_;
+  std::array<std::uint32_t, 3> gates_{};
+  std::array<std::array<Instant, 32>, 3> opened_{};
+  std::array<std::uint32_t, 3> resets_{};
+  Instant cycle_;
+  Instant crystal_start_ = std::chrono::milliseconds(2);
+  Instant lock_time_ = std::chrono::microseconds(500);
+  Instant crystal_swings_ = kNever;
+  Alarm lock_;
+  bool locked_ = false;
+  std::vector<std::function<void(Instant)>> on_clock_change_;
+  std::function<void(Instant)> on_standstill_;
+  std::function<void(unsigned, std::uint32_t)> on_software_reset_;
+};
+
+}  // namespace ex9000::registers

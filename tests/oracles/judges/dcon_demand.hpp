@@ -1,0 +1,120 @@
+// What a DCON command demands: wire.md 4, written down once more.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+
+#include "firmware/bytes.hpp"
+#include "tests/oracles/judges/demand.hpp"
+
+namespace ex9000::judges {
+
+namespace detail {
+
+/// A number of upper-case hex digits.
+constexpr std::optional<unsigned> hex_number(Bytes digits) {
+  unsigned number = 0;
+  for (const std::uint8_t digit : digits) {
+    const bool decimal = digit >= '0' && digit <= '9';
+    if (!decimal && (digit < 'A' || digit > 'F')) {
+      return std::nullopt;
+    }
+    number = number * 16 + (decimal ? digit - '0' : digit - 'A' + 10U);
+  }
+  return number;
+}
+
+/// `#AABBDD` from BB on.
+constexpr Demand demand_of_group_or_single(Bytes text, unsigned outputs) {
+  const auto data = hex_number(text.from(2));
+  if (!data) {
+    return {};
+  }
+  const std::uint8_t kind = text[0];
+  const std::uint8_t second = text[1];
+  unsigned first = 0;
+  unsigned count = 1;
+  if ((kind == '0' && (second == '0' || second == 'A'))) {
+    count = outputs < 8 ? outputs : 8;
+  } else if (kind == '0' && second == 'B' && outputs > 8) {
+    first = 8;
+    count = outputs - 8;
+  } else if ((kind == '1' || kind == 'A' || kind == 'B') && second >= '0' && second <= '7') {
+    first = second - '0' + (kind == 'B' ? 8U : 0U);
+  } else {
+    return {};
+  }
+  if (first + count > outputs || *data >= 1U << count) {
+    return {};
+  }
+  Demand demand;
+  demand.channels = static_cast<std::uint16_t>(((1U << count) - 1U) << first);
+  demand.levels = static_cast<std::uint16_t>(*data << first);
+  return demand;
+}
+
+/// `@AA(Data)` from the data on.
+constexpr Demand demand_of_all(Bytes digits, unsigned outputs) {
+  const std::size_t most = outputs > 8 ? 4 : outputs > 4 ? 2 : 1;
+  const auto data = hex_number(digits);
+  if (outputs == 0 || !data || (digits.size != most && digits.size * 2 != most) || *data >= 1UL << outputs) {
+    return {};
+  }
+  Demand demand;
+  demand.channels = static_cast<std::uint16_t>((1UL << outputs) - 1UL);
+  demand.levels = static_cast<std::uint16_t>(*data);
+  return demand;
+}
+
+/// `~AA` and more, from that on.
+constexpr Demand demand_of_tilde(Bytes text, unsigned outputs) {
+  Demand demand;
+  demand.stores_something = text[0] == 'O' || text[0] == '1' || text[0] == '3' || text[0] == '5';
+  if (text[0] == '1' && text.size == 1) {
+    demand.clears_timeout = true;
+  } else if (text[0] == '3' && text.size == 4 && (text[1] == '0' || text[1] == '1')) {
+    const auto timeout = hex_number(text.from(2));
+    if (timeout && *timeout != 0) {
+      demand.enabled = text[1] == '1';
+      demand.restarts = text[1] == '1';
+      demand.timeout = static_cast<std::uint8_t>(*timeout);
+    }
+  } else if (text[0] == '5' && text.size == 2 && outputs != 0) {
+    demand.keeps_power_on = text[1] == 'P';
+    demand.keeps_safe = text[1] == 'S';
+  }
+  return demand;
+}
+
+}  // namespace detail
+
+/// Of a command with delimiter and address, without checksum and CR, at a module of so many outputs.
+constexpr Demand dcon_demand(Bytes command, unsigned outputs) {
+  const Bytes text = command.from(3);
+  Demand demand;
+  if (text.size == 0) {
+    return demand;
+  }
+  switch (command[0]) {
+    case '#':
+      return text.size == 4 ? detail::demand_of_group_or_single(text, outputs) : demand;
+    case '@':
+      return detail::demand_of_all(text, outputs);
+    case '~':
+      return detail::demand_of_tilde(text, outputs);
+    case '%':
+      demand.stores_something = text.size == 8;
+      return demand;
+    default:
+      demand.stores_something = text[0] == 'P' && text.size == 2;
+      return demand;
+  }
+}
+
+/// Whether a command that is not refused drives outputs.
+constexpr bool is_dcon_output_command(Bytes command) {
+  return (command[0] == '#' && command.size == 7) || (command[0] == '@' && command.size > 3);
+}
+
+}  // namespace ex9000::judges

@@ -1,0 +1,115 @@
+// What a Modbus request demands: wire.md 7, written down once more.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+
+#include "firmware/bytes.hpp"
+#include "tests/oracles/judges/demand.hpp"
+
+namespace ex9000::judges {
+
+namespace detail {
+
+/// Coils from `first` on; levels: bit n is the nth of them. Nothing where they are no outputs, or not all.
+constexpr Demand demand_of_coils(unsigned first, unsigned count, std::uint32_t levels, unsigned outputs) {
+  const unsigned row = first & 0xFFE0U;
+  const unsigned channel = first % 0x20;
+  Demand demand;
+  if ((row != 0x0000 && row != 0x0080 && row != 0x00A0) || channel + count > outputs) {
+    return demand;
+  }
+  const std::uint32_t mask = (std::uint32_t{1} << count) - 1;
+  demand.channels = static_cast<std::uint16_t>(mask << channel);
+  demand.levels = static_cast<std::uint16_t>((levels & mask) << channel);
+  demand.of_safe = row == 0x0080;
+  demand.of_power_on = row == 0x00A0;
+  demand.stores_something = row != 0x0000;
+  return demand;
+}
+
+constexpr Demand demand_of_one_coil(Bytes request, unsigned outputs) {
+  if (request.size != 6) {
+    return {};
+  }
+  const unsigned coil = request.word(2);
+  const unsigned value = request.word(4);
+  if (value != 0xFF00 && value != 0x0000) {
+    return {};
+  }
+  const bool on = value != 0;
+  Demand demand;
+  switch (coil) {
+    case 0x0100:
+      demand.stores_something = true;
+      return demand;
+    case 0x0104:
+      demand.stores_something = true;
+      demand.enabled = on;
+      demand.restarts = on;
+      return demand;
+    case 0x010D:
+      demand.stores_something = true;
+      demand.clears_timeout = on;
+      return demand;
+    default:
+      return demand_of_coils(coil, 1, on ? 1 : 0, outputs);
+  }
+}
+
+constexpr Demand demand_of_more_coils(Bytes request, unsigned outputs) {
+  if (request.size < 8) {
+    return {};
+  }
+  const unsigned count = request.word(4);
+  const unsigned bytes = (count + 7) / 8;
+  constexpr unsigned kMost = 16;
+  if (count < 1 || count > kMost || request[6] != bytes || request.size != 7 + bytes) {
+    return {};
+  }
+  return demand_of_coils(request.word(2), count, request[7] | (bytes == 2 ? request[8] * 256U : 0U), outputs);
+}
+
+constexpr Demand demand_of_register(unsigned address, unsigned value) {
+  Demand demand;
+  demand.stores_something = true;
+  if (address == 0x01E8 && value <= 0xFF) {
+    demand.timeout = static_cast<std::uint8_t>(value);
+    demand.restarts = true;
+  }
+  return demand;
+}
+
+}  // namespace detail
+
+/// Of a request with address and function, without CRC, at a module of so many outputs.
+constexpr Demand rtu_demand(Bytes request, unsigned outputs) {
+  constexpr std::size_t kOneRegister = 9;
+  switch (request[1]) {
+    case 0x05:
+      return detail::demand_of_one_coil(request, outputs);
+    case 0x0F:
+      return detail::demand_of_more_coils(request, outputs);
+    case 0x06:
+      return request.size == 6 ? detail::demand_of_register(request.word(2), request.word(4)) : Demand{};
+    case 0x10:
+      // The timeout has no neighbour that can be written.
+      return request.size == kOneRegister && request.word(4) == 1 && request[6] == 2
+                 ? detail::demand_of_register(request.word(2), request.word(7))
+                 : detail::demand_of_register(0, 0);
+    case 0x46:
+      return detail::demand_of_register(0, 0);
+    default:
+      return {};
+  }
+}
+
+/// Whether a request that is not refused drives outputs.
+constexpr bool is_rtu_output_command(Bytes request) {
+  if (request.size < 4 || (request[1] != 0x05 && request[1] != 0x0F)) {
+    return false;
+  }
+  return request.word(2) < 0x0100;
+}
+
+}  // namespace ex9000::judges

@@ -1,0 +1,144 @@
+// Which bytes are a Modbus frame for the module: wire.md 7, D9 and D11, written down once more.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <utility>
+
+#include "tests/oracles/judges/checks.hpp"
+#include "tests/oracles/judges/finding.hpp"
+
+namespace ex9000::judges {
+
+class RtuJudge {
+ public:
+  /// `strict`: a gap of more than 1.5 characters spoils a frame. `doubt`: so much more or less than what ends
+  /// a frame may be taken for either by the module, whose clock is another; then both are looked for.
+  RtuJudge(std::uint8_t own_address, std::uint32_t baud, bool strict, Microseconds doubt = 0)
+      : own_(own_address),
+        character_(10'000'000ULL / baud),
+        silence_(baud <= 19200 ? 38'500'000ULL / baud : 1750),
+        apart_(strict ? character_ + (baud <= 19200 ? 16'500'000ULL / baud : 750) : kNever),
+        doubt_(doubt) {}
+
+  [[nodiscard]] Microseconds character() const { return character_; }
+  /// T3.5.
+  [[nodiscard]] Microseconds silence() const { return silence_; }
+
+  /// The end of the byte that is to be over at `end`, so that no rounding to whole microseconds, the clock's
+  /// or the module's, makes it doubtful what the gap before it is.
+  [[nodiscard]] Microseconds beyond_doubt(Microseconds end) const {
+    if (size_ == 0) {
+      return end;
+    }
+    constexpr Microseconds kDoubt = 6;
+    for (const Microseconds border : {silence_, silence_ + character_, apart_}) {
+      const Microseconds gap = end - last_;
+      if (border != kNever && gap + kDoubt > border && gap < border + kDoubt) {
+        end = last_ + border + kDoubt;
+      }
+    }
+    return end;
+  }
+
+  /// So much time has passed without a byte.
+  Finding pass(Microseconds now) {
+    if (size_ == 0 || now - last_ + doubt_ < silence_) {
+      return {};
+    }
+    const Microseconds gap = now - last_;
+    Finding finding = judge();
+    const bool known = std::exchange(judged_, size_) == size_;
+    const Microseconds border = finding.kind != Finding::Kind::Nothing ? silence_ : silence_ + character_;
+    if (gap >= border + doubt_) {
+      size_ = 0;
+    } else if (gap + doubt_ >= border) {
+      another_ = size_;
+      finding.doubtful = true;
+    }
+    return known ? Finding{} : finding;
+  }
+
+  /// A byte is over, `pass` was called of the time before it.
+  void byte(std::uint8_t byte, bool good, Microseconds now) {
+    if (size_ == 0) {
+      first_ = now;
+      judged_ = another_ = 0;
+    }
+    if (size_ < bytes_.size()) {
+      bad_[size_] = !good;
+      apart_before_[size_] = now - last_ > apart_;
+      bytes_[size_++] = byte;
+    }
+    last_ = now;
+  }
+
+  /// The module has spoken. A frame that was whole but for its silence is judged, any other forgotten.
+  Finding spoken() {
+    const Finding finding = size_ == 0 || judged_ == size_ ? Finding{} : judge();
+    size_ = 0;
+    return finding;
+  }
+
+ private:
+  static constexpr std::size_t kShortest = 4;
+  static constexpr std::size_t kLongest = 256;
+
+  [[nodiscard]] bool is_whole_from(std::size_t start) const {
+    for (std::size_t i = start; i < size_; ++i) {
+      if (bad_[i] || (i != start && apart_before_[i])) {
+        return false;
+      }
+    }
+    return crc16(bytes_.data() + start, size_ - start) == 0;
+  }
+
+  [[nodiscard]] Finding judge() const {
+    Finding finding = judge_from(0);
+    if (finding.kind == Finding::Kind::Nothing && another_ != 0 && another_ < size_) {
+      finding = judge_from(another_);
+    }
+    finding.doubtful = another_ != 0;
+    return finding;
+  }
+
+  [[nodiscard]] Finding judge_from(std::size_t start) const {
+    if (!is_whole_from(start)) {
+      // Behind a turn-around 00?
+      if (bytes_[start] != 0 || !is_whole_from(start + 1)) {
+        return {};
+      }
+      ++start;
+    }
+    const std::size_t size = size_ - start;
+    if (size < kShortest || size > kLongest) {
+      return {};
+    }
+    const Bytes frame{bytes_.data() + start, size - 2};
+    const bool host_ok =
+        frame.size == 6 && (frame[1] == 3 || frame[1] == 4) && frame.word(2) == 0x3038 && frame.word(4) <= 1;
+    const auto kind = frame[0] != own_ && frame[0] != 0 ? Finding::Kind::Foreign
+                      : host_ok                         ? Finding::Kind::HostOk
+                      : frame[0] == 0                   ? Finding::Kind::Broadcast
+                                                        : Finding::Kind::Request;
+    return {kind, frame, first_, last_};
+  }
+
+  std::uint8_t own_;
+  Microseconds character_;
+  Microseconds silence_;
+  Microseconds apart_;  ///< between the ends of two bytes, from which on they are too far apart
+  Microseconds doubt_;
+  static constexpr std::size_t kMost = kLongest + 2;  ///< two more than a frame may have, and then it is none
+  std::array<std::uint8_t, kMost> bytes_{};
+  std::array<bool, kMost> bad_{};
+  std::array<bool, kMost> apart_before_{};
+  std::size_t size_ = 0;
+  std::size_t judged_ = 0;   ///< its size when it was
+  std::size_t another_ = 0;  ///< where another may have begun; 0: nowhere
+  Microseconds first_ = 0;
+  Microseconds last_ = 0;
+};
+
+}  // namespace ex9000::judges

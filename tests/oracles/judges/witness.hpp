@@ -1,0 +1,516 @@
+// Hears what a module hears, and holds what the module does against it.
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <utility>
+
+#include "firmware/bytes.hpp"
+#include "firmware/model/model.hpp"
+#include "tests/oracles/judges/dcon_demand.hpp"
+#include "tests/oracles/judges/dcon_judge.hpp"
+#include "tests/oracles/judges/dcon_reply.hpp"
+#include "tests/oracles/judges/demand.hpp"
+#include "tests/oracles/judges/finding.hpp"
+#include "tests/oracles/judges/rtu_demand.hpp"
+#include "tests/oracles/judges/rtu_judge.hpp"
+#include "tests/oracles/judges/rtu_reply.hpp"
+#include "tests/oracles/judges/time.hpp"
+
+namespace ex9000::judges {
+
+/// How a module listens, from one reset to the next.
+struct Listening {
+  bool modbus = false;
+  std::uint8_t address = 0;
+  std::uint32_t baud = 0;
+  bool checksum = false;
+  bool init_mode = false;
+  bool strict_gaps = false;
+  Microseconds doubt = 0;  ///< see RtuJudge
+};
+
+/// Objects where
+///  - a reply begins that no frame has asked for, or too early or too late, or that is not of the form that
+///    the request demands;
+///  - outputs, power-on and safe value, the host watchdog's timeout and enable, or the timeout status change
+///    to anything but what a command demands that was heard, to the bit, or a timeout of the host watchdog;
+///  - a command is answered, or heard by a module with nothing else to do, and these are not what it demands;
+///  - a command is refused, and one of them has changed all the same; or an output command is refused that is
+///    right;
+///  - a frame for a module with nothing else to do gets no answer;
+///  - the host watchdog expires too early;
+///  - outputs are not the safe value while the timeout status is set, or a model drives one that it lacks.
+///
+/// `now` never decreases, from one call to the next.
+class Witness {
+ public:
+  /// Told which claim does not hold.
+  using Objects = void (*)(const char* claim);
+  /// Frames that were heard.
+  struct Counts {
+    std::uint64_t requests = 0;
+    std::uint64_t silent = 0;  ///< carried out without an answer
+    std::uint64_t foreign = 0;
+    std::uint64_t storing = 0;  ///< those of the first two that store something
+  };
+
+  Witness(const Model& model, Objects objects) : model_(model), objects_(objects) {}
+
+  /// The module has come up with `values`; it was reset at `reset`. What of a command that the reset cut
+  /// short is stored is a matter of power cuts (registers/power_cuts_test.cpp); all that values become from
+  /// now on follows from frames.
+  void comes_up(const Listening& listening, const Values& values, Microseconds reset) {
+    rtu_.reset();
+    dcon_.reset();
+    if (listening.modbus) {
+      rtu_.emplace(listening.address, listening.baud, listening.strict_gaps, listening.doubt);
+    } else {
+      dcon_.emplace(listening.address, listening.baud, listening.checksum);
+    }
+    listening_ = listening;
+    character_ = 10'000'000ULL / listening.baud;
+    silence_ = listening.baud <= 19200 ? 38'500'000ULL / listening.baud : 1750;
+    values_ = values;
+    pending_count_ = 0;
+    now_ = free_ = alive_ = busy_ = reset;
+    expired_ = 0;
+    held_ = sending_ = broadcast_ = false;
+  }
+
+  [[nodiscard]] bool hears_modbus() const { return rtu_.has_value(); }
+  [[nodiscard]] bool wants_checksum() const { return dcon_ && dcon_->checksum(); }
+  [[nodiscard]] Microseconds character() const { return character_; }
+  /// T3.5; in DCON too, where it means nothing.
+  [[nodiscard]] Microseconds silence() const { return silence_; }
+  /// See RtuJudge.
+  [[nodiscard]] Microseconds beyond_doubt(Microseconds end) const {
+    return rtu_ ? rtu_->beyond_doubt(end) : end;
+  }
+  [[nodiscard]] const Counts& counts() const { return counts_; }
+
+  /// The module's main loop does nothing from now on, or goes on.
+  void is_held(bool held, Microseconds now) {
+    pass(now);
+    held_ = held;
+    if (!held) {
+      free_ = std::max(free_, now);
+    }
+  }
+
+  /// Nothing was heard until now.
+  void pass(Microseconds now) {
+    now_ = now;
+    note_silence();
+    look();
+  }
+
+  /// A byte is over, and the module's own driver was off; it is told of it behind this. `address`: the one it
+  /// answers to.
+  void hears(std::uint8_t byte, bool good, std::uint8_t address, Microseconds now) {
+    pass(now);
+    if (rtu_) {
+      rtu_->byte(byte, good, now);
+    } else {
+      may_have_taken(address);
+      note(dcon_->byte(byte, good, now));
+    }
+    drop_stale();
+    if (pending_count_ != 0 || held_) {
+      busy_ = now;
+    }
+  }
+
+  /// What a turn of the main loop has made of the values, if it has.
+  void follow(const Values& values, Microseconds now) {
+    if (values == values_) {
+      return;
+    }
+    now_ = now;
+    note_silence();
+    mark_fresh();
+    if (!one_leads_to(values)) {
+      if (values.timed_out && !values_.timed_out && !may_expire(values_)) {
+        objects_("the host watchdog never expires too early");
+      } else if (!some_lead(values_, values, 0, kMostInATurn)) {
+        objects_("values change by what a command demands, a timeout or a reset only");
+      }
+    }
+    values_ = values;
+    if (values.timed_out && values.outputs != values.safe) {
+      objects_("outputs are the safe value while the timeout status is set");
+    }
+    if ((values.outputs & ~model_.output_mask()) != 0) {
+      objects_("only outputs that the model has are driven");
+    }
+  }
+
+  /// Likewise.
+  void follow_address(std::uint8_t address) {
+    if (dcon_ && pending_count_ == 0 && address != dcon_->own_address()) {
+      objects_("the address changes by a command only");
+    }
+  }
+
+  /// The module's driver has gone on, `follow` was called before it. `reply`: all of it.
+  void reply_begins(Bytes reply, Microseconds now) {
+    now_ = now;
+    sending_ = true;
+    note_silence();
+    rtu_ ? take_rtu_reply(reply) : take_dcon_reply(reply);
+  }
+
+  /// The driver is off again.
+  void reply_ends(Microseconds now) {
+    now_ = now;
+    sending_ = false;
+    free_ = now + distance();
+    if (rtu_) {
+      note(rtu_->spoken());
+    } else {
+      dcon_->spoken();
+    }
+  }
+
+ private:
+  struct Pending {
+    std::array<std::uint8_t, 256> bytes;
+    std::size_t size;
+    Microseconds last;
+    Microseconds over;  ///< it was known to be a frame: the silence behind it was over, or the module spoke
+    Demand demand;
+    bool broadcast;
+    bool alone;  ///< the module had nothing else to do
+    bool fresh;  ///< see mark_fresh
+    bool done;   ///< values have changed, and by no other
+
+    [[nodiscard]] Bytes frame() const { return {bytes.data(), size}; }
+  };
+  /// The module keeps one and executes one; others may have been lost, which only it knows. As many as may
+  /// come in while the main loop is held.
+  static constexpr std::size_t kMostPending = 32;
+
+  void note(const Finding& finding) {
+    switch (finding.kind) {
+      case Finding::Kind::Nothing:
+        return;
+      case Finding::Kind::Foreign:
+        ++counts_.foreign;
+        return;
+      case Finding::Kind::HostOk:
+        ++counts_.silent;
+        if (!held_) {  // of several, the module knows the last one then
+          alive_ = std::max(alive_, finding.last);
+        }
+        return;
+      case Finding::Kind::Request:
+        ++counts_.requests;
+        break;
+      case Finding::Kind::Broadcast:
+        ++counts_.silent;
+        break;
+    }
+    if (pending_count_ == kMostPending) {
+      drop_oldest(1);
+      broadcast_ = false;
+    }
+    Pending& latest = pending(pending_count_++);
+    std::copy(finding.frame.begin(), finding.frame.end(), latest.bytes.begin());
+    latest.size = finding.frame.size;
+    latest.last = finding.last;
+    latest.over = rtu_ ? std::min(finding.last + silence_, now_) : finding.last + character_;
+    latest.demand =
+        rtu_ ? rtu_demand(finding.frame, model_.outputs) : dcon_demand(finding.frame, model_.outputs);
+    latest.broadcast = finding.kind == Finding::Kind::Broadcast;
+    latest.alone = finding.first > busy_ && !finding.doubtful;
+    latest.done = false;
+    counts_.storing += latest.demand.stores_something ? 1U : 0U;
+    broadcast_ =
+        latest.alone && latest.broadcast && latest.demand.drives() && !latest.demand.stores_something;
+  }
+  void note_silence() {
+    if (rtu_) {
+      Finding finding = rtu_->pass(now_);
+      finding.last += finding.kind == Finding::Kind::HostOk ? silence_ : 0;  // D11
+      note(finding);
+    }
+  }
+  Pending& pending(std::size_t index) { return pending_[(oldest_ + index) % kMostPending]; }
+  void drop_oldest(std::size_t count) {
+    oldest_ = (oldest_ + count) % kMostPending;
+    pending_count_ -= count;
+  }
+
+  /// From a request's last byte, or from the module's own, to a reply.
+  [[nodiscard]] Microseconds distance() const { return rtu_ ? silence_ : character_; }
+
+  /// wire.md 3 and 7: until when a request is acted upon, where the module was free from then on.
+  [[nodiscard]] Microseconds latest_of(const Pending& request, Microseconds free) const {
+    constexpr Microseconds kPlain = 20 * kMillisecond;
+    constexpr Microseconds kStoring = 200 * kMillisecond;
+    const Microseconds over = request.last + (rtu_ ? silence_ : 0);
+    return std::max(over, free) + (request.demand.stores_something ? kStoring : kPlain);
+  }
+  /// What has no answer may be under way for all of its time.
+  static bool is_silent_store(const Pending& request) {
+    return request.broadcast && request.demand.stores_something;
+  }
+
+  /// Which requests may still be acted upon.
+  void mark_fresh() {
+    Microseconds free = free_;
+    for (std::size_t i = 0; i < pending_count_; ++i) {
+      Pending& each = pending(i);
+      const Microseconds latest = latest_of(each, free);
+      each.fresh = now_ <= latest;
+      free = is_silent_store(each) ? latest : free;
+    }
+  }
+
+  /// Requests that cannot be acted upon any more.
+  void drop_stale() {
+    while (pending_count_ != 0 && !held_ && !sending_) {
+      const Pending& oldest = pending(0);
+      const Microseconds latest = latest_of(oldest, free_);
+      if (now_ <= latest) {
+        return;
+      }
+      if (!oldest.broadcast && oldest.alone) {
+        objects_("a module with nothing else to do answers in time");
+      }
+      if (is_silent_store(oldest)) {
+        free_ = latest;
+      }
+      drop_oldest(1);
+    }
+  }
+
+  /// The request that `form_of` finds the reply to be one to, and that has come to that; it and all before it
+  /// are done with.
+  template <class FormOf>
+  ReplyForm answered(bool refuses_outputs, FormOf form_of) {
+    mark_fresh();
+    const char* objection = "only a frame for the module is answered";
+    for (std::size_t i = 0; i < pending_count_; ++i) {
+      const Pending& request = pending(i);
+      if (request.broadcast || !request.fresh) {
+        continue;
+      }
+      const ReplyForm form = form_of(request.frame());
+      objection = form == ReplyForm::Wrong     ? "a reply has the form that its request demands"
+                  : form == ReplyForm::Refusal ? objection_to_refusal(request, refuses_outputs)
+                                               : objection_to_answer(request);
+      if (objection != nullptr) {
+        continue;  // it may have been lost
+      }
+      if (now_ < request.last + distance()) {
+        objects_("a reply keeps its distance");
+      }
+      if (form == ReplyForm::Answer && request.demand.restarts) {
+        alive_ = std::max(alive_, request.over);
+      }
+      answered_ = request;
+      drop_oldest(i + 1);
+      return form;
+    }
+    objects_(objection);
+    return ReplyForm::Wrong;
+  }
+
+  void take_rtu_reply(Bytes reply) {
+    if (reply.size < 5 || reply.size > 256) {
+      return objects_("a Modbus reply has 5 to 256 bytes");
+    }
+    if (crc16(reply.data, reply.size) != 0) {
+      return objects_("a Modbus reply carries its CRC");
+    }
+    constexpr std::uint8_t kFailure = 0x04;
+    answered(reply[2] == kFailure,
+             [=](Bytes request) { return rtu_reply_form(request, reply.first(reply.size - 2)); });
+  }
+
+  void take_dcon_reply(Bytes reply) {
+    if (reply.size < 2 || reply[reply.size - 1] != '\r') {
+      return objects_("a DCON reply ends with CR");
+    }
+    std::size_t size = reply.size - 1;
+    for (const std::uint8_t c : reply.first(size)) {
+      if (c < 0x20 || c > 0x7E) {
+        return objects_("a DCON reply is printable");
+      }
+    }
+    if (dcon_->checksum()) {
+      if (size <= 2 || !are_digits_of(reply.data + size - 2, dcon_sum(reply.data, size - 2))) {
+        return objects_("a DCON reply carries its checksum");
+      }
+      size -= 2;
+    }
+    const DconRules rules{dcon_->own_address(), listening_.init_mode, model_.has_inputs(),
+                          model_.has_outputs()};
+    const ReplyForm form = answered(size == 1 && reply[0] == '!', [&](Bytes request) {
+      return dcon_reply_form(request, reply.first(size), rules);
+    });
+    if (form == ReplyForm::Answer && answered_.bytes[0] == '%' && !rules.init_mode) {
+      dcon_->answer_to(new_address(answered_.frame()));
+    }
+    dcon_->may_answer_to(std::nullopt);
+  }
+
+  /// The second and third of what is a hex digit each; others make no request that is answered.
+  static std::uint8_t new_address(Bytes request) {
+    const auto value = [](unsigned digit) { return digit > '9' ? digit - 'A' + 10 : digit - '0'; };
+    return static_cast<std::uint8_t>(value(request[3]) * 16 + value(request[4]));
+  }
+
+  /// Between the end of the store and the reply to `%`, the new address is in force already.
+  void may_have_taken(std::uint8_t address) {
+    for (std::size_t i = 0; i < pending_count_; ++i) {
+      const Pending& each = pending(i);
+      if (each.bytes[0] == '%' && each.size == 11 && new_address(each.frame()) == address) {
+        dcon_->may_answer_to(address);
+      }
+    }
+  }
+
+  /// Why a request cannot have been refused, or null. `refuses_outputs`: as outputs are blocked, or where
+  /// Modbus could not store.
+  [[nodiscard]] const char* objection_to_refusal(const Pending& request, bool refuses_outputs) const {
+    const Demand& demand = request.demand;
+    if (request.done) {
+      return "a refused request changes nothing";
+    }
+    const bool may_fail = rtu_ && demand.stores_something;
+    if (demand.drives()) {
+      return refuses_outputs && (values_.timed_out || may_fail)
+                 ? nullptr
+                 : "an output command of the right form is refused behind a timeout only";
+    }
+    return refuses_outputs && !may_fail ? "only an output command is refused for a timeout" : nullptr;
+  }
+
+  /// Why a request cannot have been carried out, or null.
+  [[nodiscard]] const char* objection_to_answer(const Pending& request) const {
+    const Demand& demand = request.demand;
+    const bool since = has_expired_since(request);
+    const bool output_command = rtu_ ? judges::is_rtu_output_command(request.frame())
+                                     : judges::is_dcon_output_command(request.frame());
+    if (output_command && !demand.drives()) {
+      return "an output command of a wrong form is refused";
+    }
+    if (demand.drives() && values_.timed_out && !since) {
+      return "an output command is refused while the timeout status is set";
+    }
+    return demand.is_met_by(values_, outputs_before_, since) ? nullptr
+                                                             : "what is answered is done, to the bit";
+  }
+
+  [[nodiscard]] bool has_expired_since(const Pending& request) const { return expired_ >= request.last; }
+
+  /// One broadcast that was being stored, another one behind it, and what the silence behind that has ended.
+  static constexpr unsigned kMostInATurn = 3;
+
+  [[nodiscard]] bool leads(const Pending& request, const Values& from, const Values& to) const {
+    const Demand& demand = request.demand;
+    return request.fresh && !request.done && demand.changes_values() &&
+           (demand.made_of(from) == to || (from.timed_out && has_expired_since(request) &&
+                                           demand.made_behind_a_timeout(from, outputs_before_) == to));
+  }
+
+  /// Whether one command has made `to` of the values, as nearly always.
+  bool one_leads_to(const Values& to) {
+    Pending* only = nullptr;
+    unsigned count = 0;
+    for (std::size_t i = 0; i < pending_count_; ++i) {
+      if (leads(pending(i), values_, to)) {
+        only = &pending(i);
+        ++count;
+      }
+    }
+    if (count != 0 && may_expire(values_) && to == values_.expired()) {
+      // Or the host watchdog did: behind a timeout it disables itself, and does no more.
+      outputs_before_ = values_.outputs;
+      expired_ = now_;
+    } else if (count == 1) {
+      only->done = true;
+      if (only->demand.restarts) {
+        alive_ = now_;
+      }
+    }
+    return count != 0;
+  }
+
+  [[nodiscard]] bool may_expire(const Values& values) const {
+    constexpr Microseconds kUnit = 100 * kMillisecond;
+    return values.enabled && now_ - alive_ >= values.timeout * kUnit;
+  }
+
+  /// Whether a timeout, or some commands from the one at `next` on, or both, have made `to` of `from`.
+  bool some_lead(const Values& from, const Values& to, std::size_t next, unsigned most) {
+    if (from == to) {
+      return true;
+    }
+    if (may_expire(from)) {
+      const auto outputs = std::exchange(outputs_before_, from.outputs);
+      const auto expired = std::exchange(expired_, now_);
+      if (some_lead(from.expired(), to, next, most)) {
+        return true;
+      }
+      outputs_before_ = outputs;
+      expired_ = expired;
+    }
+    for (std::size_t i = next; most != 0 && i < pending_count_; ++i) {
+      const Pending& each = pending(i);
+      if (leads(each, from, to)) {
+        return true;
+      }
+      if (each.fresh && !each.done && each.demand.changes_values()) {
+        if (some_lead(each.demand.made_of(from), to, i + 1, most - 1)) {
+          return true;
+        }
+        if (from.timed_out && has_expired_since(each) &&
+            some_lead(each.demand.made_behind_a_timeout(from, outputs_before_), to, i + 1, most - 1)) {
+          return true;
+        }
+      }
+    }
+    return false;
+  }
+
+  /// What is to be seen when time has passed.
+  void look() {
+    if (broadcast_ && !held_) {
+      broadcast_ = false;
+      if (!values_.timed_out && !pending(0).demand.is_met_by(values_, outputs_before_, false)) {
+        objects_("a broadcast to a module with nothing else to do is carried out");
+      }
+    }
+  }
+
+  const Model& model_;
+  Objects objects_;
+  Listening listening_;
+  std::optional<RtuJudge> rtu_;
+  std::optional<DconJudge> dcon_;
+  Counts counts_;
+  Microseconds now_ = 0;
+  Microseconds character_ = 0;
+  Microseconds silence_ = 0;
+  std::array<Pending, kMostPending> pending_;
+  std::size_t oldest_ = 0;
+  std::size_t pending_count_ = 0;
+  Pending answered_;
+  Values values_;                     ///< as commands and timeouts have made them
+  std::uint16_t outputs_before_ = 0;  ///< before the latest timeout
+  Microseconds expired_ = 0;          ///< when that was; 0: not since the last reset
+  bool held_ = false;
+  bool sending_ = false;
+  bool broadcast_ = false;  ///< one has come in, alone, and nobody has looked for what it has done
+  Microseconds alive_ = 0;  ///< no restart of the host watchdog was earlier than this
+  Microseconds free_ = 0;   ///< from then on nothing but requests can keep the module from the next one
+  Microseconds busy_ = 0;   ///< the last byte that found it so came then
+};
+
+}  // namespace ex9000::judges

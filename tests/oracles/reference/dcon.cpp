@@ -1,0 +1,399 @@
+// ASCII frames and commands of the reference: wire.md 3 and 4.
+#include <algorithm>
+
+#include "tests/oracles/reference/dcon_check.hpp"
+#include "tests/oracles/reference/hexadecimal.hpp"
+#include "tests/oracles/reference/module.hpp"
+
+namespace ex9000::reference {
+
+namespace {
+
+/// Not a command of this model, or its arguments are out of form or range: nothing is changed, and the answer
+/// is
+/// `?AA` or, where `bare`, `?`.
+struct Refused {
+  std::string rule;
+  bool bare = false;
+};
+
+unsigned with_bit(unsigned value, unsigned channel, bool on) {
+  return on ? value | 1U << channel : value & ~(1U << channel);
+}
+
+}  // namespace
+
+/// AA of replies. wire.md 2: in INIT mode every reply carries 00.
+std::string Module::aa() const { return hex(address_, 2); }
+
+/// wire.md 1: First and Second of a model.
+std::string Module::first_second(unsigned outputs, unsigned inputs) const {
+  if (row_.outputs > 8) {
+    return hex(outputs >> 8, 2) + hex(outputs, 2);
+  }
+  return row_.outputs != 0 ? hex(outputs, 2) + hex(inputs, 2) : hex(inputs, 2) + "00";
+}
+
+/// From the delimiter to before CR. Nothing: silence.
+std::optional<std::string> Module::dcon_frame(std::string frame) {
+  // wire.md 3: up to 32 characters are judged.
+  if (frame.size() > 32) {
+    rule("ASCII frame too long");
+    return std::nullopt;
+  }
+  // CHK stands behind all other characters; wrong or missing: silence.
+  if (checksum_) {
+    if (frame.size() < 3) {
+      rule("ASCII frame too short");
+      return std::nullopt;
+    }
+    const std::string check = frame.substr(frame.size() - 2);
+    frame.resize(frame.size() - 2);
+    if (check != check_of(frame)) {
+      rule("CHK wrong or missing");
+      return std::nullopt;
+    }
+    rule("CHK right");
+  }
+  if (frame.size() < 3) {
+    rule("ASCII frame too short");
+    return std::nullopt;
+  }
+  const std::string address = frame.substr(1, 2);
+  if (address == "**") {
+    // Broadcasts never answer.
+    if (frame == "#**") {
+      rule("#**");
+      take_sample();
+    } else if (frame == "~**") {
+      rule(expiry_ ? "~** restarts the host watchdog" : "~**");
+      restart_host_watchdog_by_host_ok();
+    } else {
+      rule("no broadcast");
+    }
+    return std::nullopt;
+  }
+  if (address != aa()) {
+    rule("ASCII frame for another address");
+    return std::nullopt;
+  }
+  std::string reply;
+  try {
+    reply = dcon_command(frame[0], frame.substr(3));
+  } catch (const Refused& refused) {
+    rule(refused.rule);
+    reply = refused.bare ? "?" : "?" + aa();
+  }
+  return reply + (checksum_ ? check_of(reply) : "") + "\r";
+}
+
+std::string Module::dcon_command(char delimiter, const std::string& body) {
+  switch (delimiter) {
+    case '%':
+      return set_configuration(body);
+    case '#':
+      return hash_command(body);
+    case '$':
+      return dollar_command(body);
+    case '@':
+      return at_command(body);
+    default:
+      return tilde_command(body);
+  }
+}
+
+/// `%AANNTTCCFF`
+std::string Module::set_configuration(const std::string& body) {
+  const std::optional<unsigned> all = number(body);
+  if (body.size() != 8 || !all) {
+    throw Refused{"%AANNTTCCFF out of form"};
+  }
+  const unsigned address = *all >> 24 & 0xFFU;
+  const unsigned type = *all >> 16 & 0xFFU;
+  const unsigned baud_code = *all >> 8 & 0xFFU;
+  const unsigned format = *all & 0xFFU;
+  if (type != 0x40 && type != 0x24) {  // E1
+    throw Refused{"%AANNTTCCFF TT out of range"};
+  }
+  if (baud_code < 0x03 || baud_code > 0x0A) {
+    throw Refused{"%AANNTTCCFF CC out of range"};
+  }
+  if ((format & 0x3FU) != 0) {
+    throw Refused{"%AANNTTCCFF FF out of range"};
+  }
+  // For a module whose stored protocol is Modbus, NN must be 01-F7.
+  if (stored_.modbus && (address < 0x01 || address > 0xF7)) {
+    throw Refused{"%AANNTTCCFF NN out of range"};
+  }
+  const bool checksum_differs = ((format ^ stored_.format) & 0x40U) != 0;
+  if ((baud_code != stored_.baud_code || checksum_differs) && !permission()) {
+    throw Refused{"%AANNTTCCFF without permission"};
+  }
+  rule(type == 0x24 ? "%AANNTTCCFF with TT 24" : "%AANNTTCCFF");
+  stored_.address = address;
+  stored_.baud_code = baud_code;
+  stored_.format = format;
+  // At once; in INIT mode the module goes on answering as 00.
+  if (!init_mode_) {
+    address_ = address;
+  }
+  return "!" + hex(address, 2);
+}
+
+void Module::take_sample() { sample_ = Sample{first_second(outputs_, levels_), false}; }
+
+std::string Module::hash_command(const std::string& body) {
+  const bool one_character = body.size() == 1;
+  // wire.md 3: on a model with both, `#AA` and one character is `#AAN`.
+  if (row_.outputs != 0 && !(row_.inputs != 0 && one_character)) {
+    return set_group_or_single(body);
+  }
+  const std::optional<unsigned> channel = number(body);
+  if (!one_character || !channel || *channel >= row_.inputs) {
+    throw Refused{"#AAN refused"};
+  }
+  rule("#AAN");
+  std::string digits = std::to_string(counters_[*channel]);
+  digits.insert(0, 5 - digits.size(), '0');
+  return "!" + aa() + digits;
+}
+
+/// `#AABBDD`
+std::string Module::set_group_or_single(const std::string& body) {
+  const std::optional<unsigned> all = number(body);
+  if (body.size() != 4 || !all) {
+    throw Refused{"#AABBDD out of form", true};
+  }
+  const unsigned group = *all >> 8;
+  const unsigned data = *all & 0xFFU;
+  unsigned wanted = 0;
+  std::string reached;
+  if (group == 0x00 || group == 0x0A || group == 0x0B) {
+    const unsigned shift = group == 0x0B ? 8 : 0;
+    const unsigned mask = (0xFFU << shift) & all_outputs();
+    if (mask == 0) {
+      throw Refused{"#AABBDD group lacking", true};
+    }
+    if ((data << shift & ~mask) != 0) {
+      throw Refused{"#AABBDD group's data beyond its channels", true};  // E2
+    }
+    wanted = (outputs_ & ~mask) | data << shift;
+    reached = "#AABBDD group " + hex(group, 2);
+  } else {
+    const unsigned lead = group >> 4;
+    const unsigned digit = group & 0xFU;
+    if (lead != 0x1 && lead != 0xA && lead != 0xB) {
+      throw Refused{"#AABBDD BB out of range", true};
+    }
+    const unsigned channel = digit + (lead == 0xB ? 8 : 0);
+    if (digit > 7 || channel >= row_.outputs) {
+      throw Refused{"#AABBDD channel lacking", true};
+    }
+    if (data > 0x01) {
+      throw Refused{"#AABBDD single DD out of range", true};
+    }
+    wanted = with_bit(outputs_, channel, data == 0x01);
+    reached = "#AABBDD single " + hex(lead, 1) + "c";
+  }
+  // wire.md 6: form and range are judged first, then the status.
+  if (stored_.timed_out) {
+    rule("#AABBDD ignored");
+    return "!";
+  }
+  rule(reached);
+  outputs_ = wanted;
+  return ">";
+}
+
+std::string Module::dollar_command(const std::string& body) {
+  if (body == "2") {
+    rule(init_mode_ ? "$002 in INIT mode" : "$AA2");
+    return "!" + hex(stored_.address, 2) + "40" + hex(stored_.baud_code, 2) + hex(stored_.format, 2);
+  }
+  if (body == "4") {
+    if (!sample_) {
+      throw Refused{"$AA4 without a sample"};
+    }
+    rule(sample_->read ? "$AA4 again" : "$AA4");
+    const std::string first_time = sample_->read ? "0" : "1";
+    sample_->read = true;
+    return "!" + first_time + sample_->first_second + "00";
+  }
+  if (body == "5") {
+    rule(reset_status_ ? "$AA5" : "$AA5 again");
+    const std::string status = reset_status_ ? "1" : "0";
+    reset_status_ = false;
+    return "!" + aa() + status;
+  }
+  if (body == "6") {
+    rule("$AA6");
+    return "!" + first_second(outputs_, levels_) + "00";
+  }
+  if (body == "F") {
+    rule("$AAF");
+    return "!" + aa() + "D01.00";
+  }
+  if (body == "M") {
+    rule("$AAM");
+    return "!" + aa() + stored_.name;
+  }
+  if (!body.empty() && body[0] == 'C') {
+    if (row_.inputs == 0) {
+      throw Refused{"$AAC lacking"};
+    }
+    if (body == "C") {
+      rule("$AAC");
+      clear_latches();
+      return "!" + aa();
+    }
+    const std::optional<unsigned> channel = number(body.substr(1));
+    if (body.size() != 2 || !channel || *channel >= row_.inputs) {
+      throw Refused{"$AACN refused"};
+    }
+    rule("$AACN");
+    counters_[*channel] = 0;
+    return "!" + aa();
+  }
+  if (!body.empty() && body[0] == 'L') {
+    if (row_.inputs == 0) {
+      throw Refused{"$AALS lacking"};
+    }
+    if (body != "L0" && body != "L1") {
+      throw Refused{"$AALS refused"};
+    }
+    rule("$AALS " + body.substr(1));
+    return "!" + first_second(0, body == "L1" ? latch_high_ : latch_low_) + "00";
+  }
+  if (!body.empty() && body[0] == 'P') {
+    if (!row_.both_protocols) {
+      throw Refused{"$AAP lacking"};
+    }
+    if (body == "P") {
+      rule(stored_.modbus ? "$AAP Modbus" : "$AAP ASCII");
+      return "!" + aa() + (stored_.modbus ? "11" : "10");
+    }
+    return set_protocol(body.substr(1));
+  }
+  throw Refused{"$ no command"};
+}
+
+/// `$AAPN`
+std::string Module::set_protocol(const std::string& body) {
+  if (body != "0" && body != "1") {
+    throw Refused{"$AAPN out of range"};
+  }
+  if (!permission()) {
+    throw Refused{"$AAPN without permission"};
+  }
+  if (body == "1" && (stored_.address < 0x01 || stored_.address > 0xF7)) {
+    throw Refused{"$AAPN at an address that Modbus lacks"};
+  }
+  rule("$AAPN " + body);
+  stored_.modbus = body == "1";
+  return "!" + aa();
+}
+
+std::string Module::at_command(const std::string& body) {
+  if (body.empty()) {
+    rule("@AA");
+    return ">" + first_second(outputs_, levels_);
+  }
+  if (row_.outputs == 0) {
+    throw Refused{"@AA(Data) lacking"};
+  }
+  const std::size_t longest = row_.outputs <= 4 ? 1 : row_.outputs <= 8 ? 2 : 4;
+  const std::size_t shorter = longest == 1 ? 1 : longest / 2;  // E4
+  const std::optional<unsigned> data = number(body);
+  if ((body.size() != longest && body.size() != shorter) || !data) {
+    throw Refused{"@AA(Data) out of form", true};
+  }
+  if ((*data & ~all_outputs()) != 0) {
+    throw Refused{"@AA(Data) beyond the last channel", true};
+  }
+  if (stored_.timed_out) {
+    rule("@AA(Data) ignored");
+    return "!";
+  }
+  rule("@AA(Data) of " + std::to_string(body.size()));
+  outputs_ = *data;
+  return ">";
+}
+
+std::string Module::tilde_command(const std::string& body) {
+  if (body == "0") {
+    // E7
+    const bool on = row_.status_80_84;
+    const std::string status = stored_.timed_out ? (on ? "84" : "04") : (on && stored_.enabled ? "80" : "00");
+    rule("~AA0 " + status);
+    return "!" + aa() + status;
+  }
+  if (body == "1") {
+    rule(stored_.timed_out ? "~AA1 clears" : "~AA1");
+    clear_timeout_status();
+    return "!" + aa();
+  }
+  if (body == "2") {
+    rule("~AA2");
+    return "!" + aa() + (stored_.enabled ? "1" : "0") + hex(stored_.timeout, 2);
+  }
+  const char command = body.empty() ? ' ' : body[0];
+  const std::string argument = body.empty() ? "" : body.substr(1);
+  if (command == '3') {
+    return set_host_watchdog(argument);
+  }
+  if (command == '4' || command == '5') {
+    const std::string name = std::string("~AA") + command + "V";
+    if (row_.outputs == 0) {
+      throw Refused{name + " lacking"};
+    }
+    if (argument != "P" && argument != "S") {
+      throw Refused{name + " refused"};
+    }
+    rule(name + " " + argument);
+    unsigned& value = argument == "P" ? stored_.power_on : stored_.safe;
+    if (command == '5') {
+      // wire.md 6: works while the timeout status is set, since it drives nothing.
+      value = outputs_;
+      return "!" + aa();
+    }
+    // E6: as on an output-only model, so nothing of inputs.
+    return "!" + aa() + first_second(value, 0);
+  }
+  if (command == 'O') {
+    const bool characters = std::all_of(argument.begin(), argument.end(), [](char character) {
+      return character >= 0x20 && character <= 0x7E;
+    });
+    if (argument.empty() || argument.size() > row_.longest_name) {
+      throw Refused{"~AAO(Data) out of length"};
+    }
+    if (!characters) {
+      throw Refused{"~AAO(Data) with other characters"};
+    }
+    rule("~AAO(Data) of " + std::to_string(argument.size()));
+    stored_.name = argument;
+    return "!" + aa();
+  }
+  throw Refused{"~ no command"};
+}
+
+/// `~AA3EVV`
+std::string Module::set_host_watchdog(const std::string& body) {
+  const std::optional<unsigned> timeout = number(body.size() == 3 ? body.substr(1) : "");
+  if (!timeout || (body[0] != '0' && body[0] != '1')) {
+    throw Refused{"~AA3EVV out of form"};
+  }
+  if (*timeout == 0) {
+    throw Refused{"~AA3EVV VV out of range"};
+  }
+  const bool enable = body[0] == '1';
+  rule(!enable             ? "~AA3EVV disables"
+       : stored_.timed_out ? "~AA3EVV enables while the status is set"
+       : stored_.enabled   ? "~AA3EVV restarts"
+                           : "~AA3EVV enables");
+  stored_.enabled = enable;
+  stored_.timeout = *timeout;
+  restart_host_watchdog();
+  return "!" + aa();
+}
+
+}  // namespace ex9000::reference

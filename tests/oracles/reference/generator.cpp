@@ -1,0 +1,84 @@
+#include "tests/oracles/reference/generator.hpp"
+
+#include <string>
+#include <utility>
+
+#include "tests/oracles/reference/hexadecimal.hpp"
+
+namespace ex9000::reference {
+
+namespace {
+
+Step wait(const Module& module, Random& random) {
+  // Beyond the host watchdog's timeout, now and then; a step that comes too near to it waits by itself.
+  if (module.expiry() && random.once_in(2)) {
+    return WaitForExpiry{std::chrono::milliseconds(random.between(5, 120))};
+  }
+  if (module.stored().enabled && random.once_in(3)) {
+    return Wait{std::chrono::milliseconds(100 * module.stored().timeout + 500)};
+  }
+  return Wait{std::chrono::milliseconds(random.between(1, 300))};
+}
+
+/// Mostly few; now and then so many that a counter is about to wrap, or does.
+std::uint32_t pulses(const Module& module, Random& random) {
+  const std::uint32_t wraps = module.runs_modbus() ? 65536 : 100000;
+  return random.once_in(60) ? wraps - 2 + random.below(5) : random.between(1, 5);
+}
+
+}  // namespace
+
+std::vector<Step> first_steps(const ModelRow& row, Random& random) {
+  if (random.once_in(2)) {
+    return {};
+  }
+  const auto send = [](const std::string& text) {
+    const std::string line = text + "\r";
+    return Send{Bytes(line.begin(), line.end())};
+  };
+  std::vector<Step> steps = {Init{true}, Reset{}};
+  steps.emplace_back(send("%00" + hex(random.between(0x01, 0xF7), 2) + "40" +
+                          hex(random.between(0x03, 0x0A), 2) +
+                          random.one_of<std::string>({"00", "40", "80", "C0"})));
+  if (row.both_protocols) {
+    steps.emplace_back(send(std::string("$00P") + random.one_of({'0', '1'})));
+  }
+  steps.emplace_back(Init{false});
+  steps.emplace_back(Reset{});
+  return steps;
+}
+
+Step next_step(const Module& module, Random& random) {
+  if (!module.powered() && !random.once_in(3)) {
+    return Power{true};
+  }
+  if (module.waits_for_reset() && random.once_in(30)) {
+    return Reset{};
+  }
+  const unsigned what = random.below(200);
+  if (what < 4) {
+    return Reset{};
+  }
+  if (what < 6) {
+    return Power{!module.powered()};
+  }
+  if (what < 10) {
+    return Init{!module.init_asserted()};
+  }
+  if (what < 14) {
+    return wait(module, random);
+  }
+  // Inputs that a model lacks may be wired up as well: nothing comes of it.
+  if (what < (module.row().inputs != 0 ? 40U : 15U)) {
+    const unsigned channel = random.below(8);
+    return random.once_in(2) ? Step(Input{channel, random.once_in(2)})
+                             : Step(Pulse{channel, pulses(module, random)});
+  }
+  // A master that takes the module for one of the other protocol.
+  const bool mistaken = module.row().both_protocols && random.once_in(100);
+  Bytes bytes =
+      module.runs_modbus() != mistaken ? modbus_request(module, random) : dcon_request(module, random);
+  return Send{std::move(bytes), random.once_in(2)};
+}
+
+}  // namespace ex9000::reference

@@ -1,0 +1,129 @@
+// Modbus RTU of the reference, wire.md 7: whole frames, and which function they are for.
+#include <algorithm>
+
+#include "tests/oracles/reference/hexadecimal.hpp"
+#include "tests/oracles/reference/modbus_check.hpp"
+#include "tests/oracles/reference/modbus_refusal.hpp"
+#include "tests/oracles/reference/module.hpp"
+
+namespace ex9000::reference {
+
+namespace {
+
+constexpr unsigned kHostOk = 0x3038;
+
+bool known_function(const ModelRow& model, unsigned function) {
+  const Bytes known = {0x01, 0x03, 0x04, 0x05, 0x06, 0x08, 0x0F, 0x10, 0x11, 0x2B, 0x46};
+  return std::find(known.begin(), known.end(), function) != known.end() ||
+         (function == 0x02 && model.inputs != 0);
+}
+
+}  // namespace
+
+/// A whole frame, whatever it is; the reply with its CRC, or nothing. What function 08 counts is as in Modbus
+/// Application Protocol V1.1b3, 6.8, and, where that leaves it open, Modbus over Serial Line V1.02: a frame
+/// too short to have a CRC is a CRC error, and a broadcast is a message without response.
+Bytes Module::modbus_frame(Bytes frame) {
+  // A turn-around 00 before a frame does not spoil it.
+  if (frame.size() > 4 && !crc_is_right(frame) && frame[0] == 0x00) {
+    if (frame.size() > 256) {
+      left_open_ = "whether a frame of 256 bytes may have a turn-around 00 before it";
+    }
+    frame.erase(frame.begin());
+    if (crc_is_right(frame)) {
+      rule("turn-around 00 before a Modbus frame");
+    }
+  }
+  // 4 to 256 bytes.
+  if (frame.size() < 4) {
+    rule("Modbus frame too short");
+    counts_.crc_errors += 1;
+    return {};
+  }
+  if (frame.size() > 256) {
+    rule("Modbus frame too long");
+    counts_.crc_errors += 1;
+    return {};
+  }
+  if (!crc_is_right(frame)) {
+    rule("CRC wrong");
+    counts_.crc_errors += 1;
+    return {};
+  }
+  frame.resize(frame.size() - 2);
+  counts_.bus_messages += 1;
+  const unsigned address = frame[0];
+  const unsigned function = frame[1];
+  if (address != 0 && address != address_) {
+    rule("Modbus frame for another address");
+    return {};
+  }
+  counts_.server_messages += 1;
+  // Host OK is decided first, and never answered.
+  if ((function == 0x03 || function == 0x04) && frame.size() == 6 && word(frame, 2) == kHostOk &&
+      word(frame, 4) <= 1) {
+    rule(std::string(address == 0 ? "broadcast " : "") + "host OK by " + function_name(function));
+    counts_.no_response += 1;
+    restart_host_watchdog_by_host_ok();
+    return {};
+  }
+  if (address == 0) {
+    counts_.no_response += 1;
+    const bool executed = function == 0x05 || function == 0x0F || function == 0x06 || function == 0x10;
+    if (!executed) {
+      rule("broadcast ignored: not a write");
+      return {};
+    }
+  }
+  Bytes reply;
+  try {
+    reply = modbus_function(frame);
+    if (address == 0 && !reply.empty()) {
+      rule("broadcast " + function_name(function));
+    }
+  } catch (const Exception& exception) {
+    if (address == 0) {
+      rule("broadcast refused");
+    } else {
+      rule(exception.rule);
+      // V1.1b3, 6.8: the exception responses that were returned, so not those that a broadcast would have
+      // got.
+      counts_.exceptions += 1;
+    }
+    reply = {frame[0], static_cast<std::uint8_t>(function | 0x80U), exception.code};
+  }
+  return address == 0 ? Bytes{} : with_crc(reply);
+}
+
+Bytes Module::modbus_function(const Bytes& frame) {
+  const unsigned function = frame[1];
+  if (!known_function(row_, function)) {
+    throw Exception{0x01, function == 0x02 ? "FC02 lacking" : "unknown function"};
+  }
+  switch (function) {
+    case 0x01:
+    case 0x02:
+      return read_bits(frame);
+    case 0x03:
+    case 0x04:
+      return read_registers(frame);
+    case 0x05:
+      return write_coil(frame);
+    case 0x06:
+      return write_register(frame);
+    case 0x08:
+      return diagnostics(frame);
+    case 0x0F:
+      return write_coils(frame);
+    case 0x10:
+      return write_registers(frame);
+    case 0x11:
+      return server_id(frame);
+    case 0x2B:
+      return device_identification(frame);
+    default:
+      return function_46(frame);
+  }
+}
+
+}  // namespace ex9000::reference

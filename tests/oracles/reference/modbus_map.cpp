@@ -1,0 +1,391 @@
+// Coils and registers of the reference: wire.md 7, map.
+#include <algorithm>
+
+#include "tests/oracles/reference/hexadecimal.hpp"
+#include "tests/oracles/reference/modbus_refusal.hpp"
+#include "tests/oracles/reference/module.hpp"
+
+namespace ex9000::reference {
+
+namespace {
+
+/// What lies behind a coil's or register's address: a row of the table.
+enum class Row {
+  Outputs,
+  Safe,
+  PowerOn,
+  Inputs,
+  LatchHigh,
+  LatchLow,
+  Protocol,
+  Enable,
+  ClearLatches,
+  TimeoutStatus,
+  ClearCounters,
+  None
+};
+
+struct CoilRow {
+  Row row;
+  const char* name;
+  unsigned first;
+  unsigned count;
+  bool by_01, by_05, by_0f;
+};
+
+/// The table of coils for this model; rows of a length of 0 it lacks.
+CoilRow coil_row(const ModelRow& model, unsigned address) {
+  const unsigned outputs = model.outputs;
+  const unsigned inputs = model.inputs;
+  const CoilRow rows[] = {
+      {Row::Outputs, "coil 0x0000", 0x0000, outputs, true, true, true},
+      {Row::Safe, "coil 0x0080", 0x0080, outputs, true, true, true},
+      {Row::PowerOn, "coil 0x00A0", 0x00A0, outputs, true, true, true},
+      {Row::Inputs, "coil 0x0020", 0x0020, inputs, true, false, false},
+      {Row::LatchHigh, "coil 0x0040", 0x0040, inputs, true, false, false},
+      {Row::LatchLow, "coil 0x0060", 0x0060, inputs, true, false, false},
+      {Row::Protocol, "coil 0x0100", 0x0100, 1, true, true, false},
+      {Row::Enable, "coil 0x0104", 0x0104, 1, true, true, false},
+      {Row::ClearLatches, "coil 0x0107", 0x0107, inputs != 0 ? 1U : 0U, false, true, false},
+      {Row::TimeoutStatus, "coil 0x010D", 0x010D, 1, true, true, false},
+      {Row::ClearCounters, "coil 0x0200", 0x0200, inputs, false, true, true},
+  };
+  for (const CoilRow& row : rows) {
+    if (address >= row.first && address < row.first + row.count) {
+      return row;
+    }
+  }
+  return {Row::None, "", 0, 0, false, false, false};
+}
+
+bool coil_listed(const CoilRow& row, unsigned function) {
+  return function == 0x01 ? row.by_01 : function == 0x05 ? row.by_05 : row.by_0f;
+}
+
+/// A coil range runs within one row; holes, what the model lacks and what is not listed for the function: 02.
+CoilRow listed_coils(const ModelRow& model, unsigned first, unsigned quantity, unsigned function) {
+  const CoilRow row = coil_row(model, first);
+  if (!coil_listed(row, function) || first + quantity > row.first + row.count) {
+    throw Exception{0x02, function_name(function) + " 02"};
+  }
+  return row;
+}
+
+/// The table of registers.
+bool register_listed(const ModelRow& model, unsigned address, unsigned function) {
+  const bool counter = address < model.inputs;
+  const bool code = address == 0x01E2 || address == 0x01E3;
+  const bool setting = address == 0x01E4 || address == 0x01E5 || address == 0x01E8;
+  switch (function) {
+    case 0x03:
+      return counter || code || setting;
+    case 0x04:
+      return counter;
+    default:
+      return setting;
+  }
+}
+
+void all_registers_listed(const ModelRow& model, unsigned first, unsigned quantity, unsigned function) {
+  for (unsigned i = 0; i < quantity; ++i) {
+    if (!register_listed(model, first + i, function)) {
+      throw Exception{0x02, function_name(function) + " 02"};
+    }
+  }
+}
+
+}  // namespace
+
+bool Module::coil(unsigned address) const {
+  const CoilRow row = coil_row(row_, address);
+  const unsigned channel = address - row.first;
+  const auto bit = [channel](unsigned value) { return (value >> channel & 1U) != 0; };
+  switch (row.row) {
+    case Row::Outputs:
+      return bit(outputs_);
+    case Row::Safe:
+      return bit(stored_.safe);
+    case Row::PowerOn:
+      return bit(stored_.power_on);
+    case Row::Inputs:
+      return bit(levels_);
+    case Row::LatchHigh:
+      return bit(latch_high_);
+    case Row::LatchLow:
+      return bit(latch_low_);
+    case Row::Protocol:
+      return stored_.modbus;
+    case Row::Enable:
+      return stored_.enabled;
+    case Row::TimeoutStatus:
+      return stored_.timed_out;
+    default:
+      return false;  // not to be read
+  }
+}
+
+/// 01 and 02.
+Bytes Module::read_bits(const Bytes& frame) {
+  const unsigned function = frame[1];
+  length_must_be(frame, 6);
+  const unsigned first = word(frame, 2);
+  const unsigned quantity = word(frame, 4);
+  quantity_must_be(quantity, 2000, function);
+  if (function == 0x01) {
+    rule(std::string("FC01 ") + listed_coils(row_, first, quantity, function).name);
+  } else if (first + quantity > row_.inputs) {
+    throw Exception{0x02, "FC02 02"};
+  } else {
+    rule("FC02");
+  }
+  Bytes reply = {frame[0], frame[1], static_cast<std::uint8_t>((quantity + 7) / 8)};
+  reply.resize(3 + (quantity + 7) / 8);
+  for (unsigned i = 0; i < quantity; ++i) {
+    const bool on = function == 0x01 ? coil(first + i) : (levels_ >> (first + i) & 1U) != 0;
+    if (on) {
+      reply[3 + i / 8] = static_cast<std::uint8_t>(reply[3 + i / 8] | 1U << i % 8);
+    }
+  }
+  return reply;
+}
+
+unsigned Module::register_value(unsigned address) const {
+  switch (address) {
+    case 0x01E2:
+      return row_.code >> 8;
+    case 0x01E3:
+      return row_.code << 8 & 0xFF00U;
+    case 0x01E4:
+      return stored_.address;
+    case 0x01E5:
+      return stored_.baud_code;
+    case 0x01E8:
+      return stored_.timeout;
+    default:
+      return counters_[address];
+  }
+}
+
+/// 03 and 04.
+Bytes Module::read_registers(const Bytes& frame) {
+  const unsigned function = frame[1];
+  length_must_be(frame, 6);
+  const unsigned first = word(frame, 2);
+  const unsigned quantity = word(frame, 4);
+  quantity_must_be(quantity, 125, function);
+  all_registers_listed(row_, first, quantity, function);
+  Bytes reply = {frame[0], frame[1], static_cast<std::uint8_t>(2 * quantity)};
+  for (unsigned i = 0; i < quantity; ++i) {
+    rule(function_name(function) + (first + i < 8 ? " counter" : " 0x" + hex(first + i, 4)));
+    append_word(reply, register_value(first + i));
+  }
+  return reply;
+}
+
+/// Values, then the timeout status. Form and range have been judged.
+void Module::judge_coils(unsigned first, const std::vector<bool>& values, unsigned function) {
+  const CoilRow row = coil_row(row_, first);
+  const std::string value_refused = function_name(function) + " 03 " + row.name;
+  switch (row.row) {
+    case Row::Enable:
+      if (values[0] && stored_.timeout == 0) {
+        throw Exception{0x03, value_refused};
+      }
+      break;
+    case Row::ClearLatches:
+    case Row::TimeoutStatus:
+      if (!values[0]) {
+        throw Exception{0x03, value_refused};
+      }
+      break;
+    case Row::ClearCounters:
+      // E8: a 0 bit in 0F leaves the counter, 05 with 0000 is refused.
+      if (function == 0x05 && !values[0]) {
+        throw Exception{0x03, value_refused};
+      }
+      break;
+    case Row::Outputs:
+    case Row::Safe:
+    case Row::PowerOn:
+      // wire.md 6: what drives outputs is refused while the status is set.
+      if (stored_.timed_out) {
+        throw Exception{0x04, function_name(function) + " 04 " + row.name};
+      }
+      break;
+    default:
+      break;
+  }
+}
+
+void Module::set_coils(unsigned first, const std::vector<bool>& values) {
+  const CoilRow row = coil_row(row_, first);
+  for (unsigned i = 0; i < values.size(); ++i) {
+    const unsigned channel = first + i - row.first;
+    const auto put = [&](unsigned& value) {
+      value = values[i] ? value | 1U << channel : value & ~(1U << channel);
+    };
+    switch (row.row) {
+      case Row::Outputs:
+        put(outputs_);
+        break;
+      case Row::Safe:
+        // The outputs follow.
+        put(stored_.safe);
+        put(outputs_);
+        break;
+      case Row::PowerOn:
+        put(stored_.power_on);
+        put(outputs_);
+        break;
+      case Row::Protocol:
+        stored_.modbus = values[i];
+        break;
+      case Row::Enable:
+        stored_.enabled = values[i];
+        restart_host_watchdog();
+        break;
+      case Row::ClearLatches:
+        clear_latches();
+        break;
+      case Row::TimeoutStatus:
+        clear_timeout_status();
+        break;
+      case Row::ClearCounters:
+        if (values[i]) {
+          counters_[channel] = 0;
+        }
+        break;
+      default:
+        break;
+    }
+  }
+}
+
+Bytes Module::write_coil(const Bytes& frame) {
+  length_must_be(frame, 6);
+  const unsigned address = word(frame, 2);
+  const unsigned value = word(frame, 4);
+  if (value != 0xFF00 && value != 0x0000) {
+    throw Exception{0x03, "FC05 03 neither FF00 nor 0000"};
+  }
+  const CoilRow row = listed_coils(row_, address, 1, 0x05);
+  const std::vector<bool> values = {value == 0xFF00};
+  judge_coils(address, values, 0x05);
+  // Configuration is never broadcast.
+  if (frame[0] == 0 && row.row == Row::Protocol) {
+    rule("broadcast ignored: configuration");
+    return {};
+  }
+  rule(std::string("FC05 ") + row.name);
+  set_coils(address, values);
+  return frame;
+}
+
+Bytes Module::write_coils(const Bytes& frame) {
+  if (frame.size() < 7) {
+    throw Exception{0x03, "FC0F 03 length"};
+  }
+  const unsigned first = word(frame, 2);
+  const unsigned quantity = word(frame, 4);
+  quantity_must_be(quantity, 1968, 0x0F);
+  const unsigned bytes = (quantity + 7) / 8;
+  if (frame[6] != bytes) {
+    throw Exception{0x03, "FC0F 03 byte count"};
+  }
+  length_must_be(frame, 7 + bytes);
+  const CoilRow row = listed_coils(row_, first, quantity, 0x0F);
+  std::vector<bool> values;
+  for (unsigned i = 0; i < quantity; ++i) {
+    values.push_back((frame[7 + i / 8] >> i % 8 & 1U) != 0);
+  }
+  judge_coils(first, values, 0x0F);
+  rule(std::string("FC0F ") + row.name);
+  set_coils(first, values);
+  return Bytes(frame.begin(), frame.begin() + 6);
+}
+
+void Module::judge_registers(unsigned first, const std::vector<unsigned>& values) {
+  for (unsigned i = 0; i < values.size(); ++i) {
+    const unsigned value = values[i];
+    switch (first + i) {
+      case 0x01E4:
+        if (value < 1 || value > 247) {
+          throw Exception{0x03, "register 0x01E4 03"};
+        }
+        break;
+      case 0x01E5:
+        if (value < 0x03 || value > 0x0A) {
+          throw Exception{0x03, "register 0x01E5 03"};
+        }
+        break;
+      default:
+        if (value > 255) {
+          throw Exception{0x03, "register 0x01E8 03"};
+        }
+        if (value == 0 && stored_.enabled) {
+          throw Exception{0x03, "register 0x01E8 03 0 while enabled"};
+        }
+        break;
+    }
+  }
+}
+
+void Module::set_registers(unsigned first, const std::vector<unsigned>& values) {
+  for (unsigned i = 0; i < values.size(); ++i) {
+    switch (first + i) {
+      case 0x01E4:
+        stored_.address = values[i];  // after reset
+        break;
+      case 0x01E5:
+        stored_.baud_code = values[i];  // likewise
+        break;
+      default:
+        stored_.timeout = values[i];
+        restart_host_watchdog();
+        break;
+    }
+  }
+}
+
+Bytes Module::write_register(const Bytes& frame) {
+  length_must_be(frame, 6);
+  const unsigned address = word(frame, 2);
+  all_registers_listed(row_, address, 1, 0x06);
+  judge_registers(address, {word(frame, 4)});
+  if (frame[0] == 0 && address != 0x01E8) {
+    rule("broadcast ignored: configuration");
+    return {};
+  }
+  rule("FC06 0x" + hex(address, 4) + (address == 0x01E8 && stored_.enabled ? " restarts" : ""));
+  set_registers(address, {word(frame, 4)});
+  return frame;
+}
+
+Bytes Module::write_registers(const Bytes& frame) {
+  if (frame.size() < 7) {
+    throw Exception{0x03, "FC10 03 length"};
+  }
+  const unsigned first = word(frame, 2);
+  const unsigned quantity = word(frame, 4);
+  quantity_must_be(quantity, 123, 0x10);
+  if (frame[6] != 2 * quantity) {
+    throw Exception{0x03, "FC10 03 byte count"};
+  }
+  length_must_be(frame, 7 + 2 * quantity);
+  all_registers_listed(row_, first, quantity, 0x10);
+  std::vector<unsigned> values;
+  for (unsigned i = 0; i < quantity; ++i) {
+    values.push_back(word(frame, 7 + 2 * i));
+  }
+  judge_registers(first, values);
+  if (frame[0] == 0 && first != 0x01E8) {
+    rule("broadcast ignored: configuration");
+    return {};
+  }
+  rule("FC10 0x" + hex(first, 4) + (quantity == 2 ? " and 0x01E5" : "") +
+       (first == 0x01E8 && stored_.enabled ? " restarts" : ""));
+  set_registers(first, values);
+  return Bytes(frame.begin(), frame.begin() + 6);
+}
+
+}  // namespace ex9000::reference

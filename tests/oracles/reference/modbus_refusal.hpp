@@ -1,0 +1,45 @@
+// What a Modbus request of the reference is made of, and why it is refused: wire.md 7.
+#pragma once
+
+#include <cstdint>
+#include <string>
+
+#include "tests/oracles/reference/hexadecimal.hpp"
+#include "tests/oracles/reference/module.hpp"
+
+namespace ex9000::reference {
+
+/// An exception: nothing is changed, and the answer is the function with bit 7 and the code.
+struct Exception {
+  std::uint8_t code;
+  std::string rule;
+};
+
+inline unsigned word(const Bytes& frame, std::size_t at) { return frame[at] * 256U + frame[at + 1]; }
+
+inline void append_word(Bytes& frame, unsigned value) {
+  frame.push_back(static_cast<std::uint8_t>(value >> 8 & 0xFFU));
+  frame.push_back(static_cast<std::uint8_t>(value & 0xFFU));
+}
+
+inline void append_text(Bytes& frame, const std::string& text) {
+  frame.insert(frame.end(), text.begin(), text.end());
+}
+
+/// As the rules have it.
+inline std::string function_name(unsigned function) { return "FC" + hex(function, 2); }
+
+/// The length of all of a frame but its CRC.
+inline void length_must_be(const Bytes& frame, std::size_t length) {
+  if (frame.size() != length) {
+    throw Exception{0x03, function_name(frame[1]) + " 03 length"};
+  }
+}
+
+inline void quantity_must_be(unsigned quantity, unsigned highest, unsigned function) {
+  if (quantity == 0 || quantity > highest) {
+    throw Exception{0x03, function_name(function) + " 03 quantity"};
+  }
+}
+
+}  // namespace ex9000::reference

@@ -1,0 +1,198 @@
+// A second description of a module, made from the specification alone and as plainly as it can be: whole
+// frames in, whole frames out, no interrupts, no storing that takes time. It shares no code with the
+// firmware, so where the two agree on a random session, two readings of the same sentence agree. Sections, E
+// and D numbers are wire.md's.
+#pragma once
+
+#include <array>
+#include <chrono>
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "tests/oracles/reference/models.hpp"
+
+namespace ex9000::reference {
+
+using Bytes = std::vector<std::uint8_t>;
+/// Since any beginning, the same for all that one module is told.
+using Time = std::chrono::nanoseconds;
+/// wire.md 2: from power-on or reset until it listens, at most.
+inline constexpr std::chrono::milliseconds kComingUp{100};
+
+/// wire.md 8: what a power failure leaves.
+struct Stored {
+  unsigned address = 0x01;
+  unsigned baud_code = 0x06;
+  unsigned format = 0x00;  ///< bit 7: rising edges are counted; bit 6: checksum
+  bool modbus = false;
+  std::string name;
+  unsigned power_on = 0;    ///< bit n is channel n
+  unsigned safe = 0;        ///< likewise
+  bool enabled = false;     ///< the host watchdog
+  unsigned timeout = 0xFF;  ///< in 0.1 s
+  bool timed_out = false;   ///< the timeout status
+};
+
+bool operator==(const Stored& a, const Stored& b);
+
+/// What a module does with what was sent.
+struct Answer {
+  Bytes reply;          ///< empty: silence
+  bool stores = false;  ///< settings change, which may take up to 200 ms
+  /// Not null: the specification does not say what happens, and why. Nothing else here counts then.
+  const char* left_open = nullptr;
+};
+
+/// One module. It is off at first.
+class Module {
+ public:
+  explicit Module(const ModelRow& row);
+
+  // --- events ---
+
+  /// What it remembers at the next reset.
+  void store(const Stored& stored) { stored_ = stored; }
+  /// The supply. What is on is given 100 ms to come up; the reset lies somewhere in them.
+  void power(bool on, Time now);
+  /// Likewise.
+  void reset(Time now);
+  void set_init(bool asserted) { init_asserted_ = asserted; }
+  void set_input(unsigned channel, bool level);
+  void pulse_input(unsigned channel, std::uint32_t count);
+  /// The complete bytes that the master sent, the last of which was over at `now`, with silence behind them.
+  Answer on_request(const Bytes& bytes, Time now);
+  /// The first byte of the reply to that began at `now`, so whatever it did has been done by then.
+  void replied(Time now);
+  /// Time has passed. Not to be called while `uncertain`.
+  void pass(Time now);
+
+  // --- what can be seen ---
+
+  /// The rules that have decided since this was called last, in the words of rules.cpp.
+  [[nodiscard]] const std::vector<std::string>& rules() const { return rules_; }
+  std::vector<std::string> take_rules() { return std::exchange(rules_, {}); }
+
+  [[nodiscard]] bool powered() const { return powered_; }
+  [[nodiscard]] unsigned outputs() const { return outputs_; }
+  /// wire.md 6: the LED flashes while the timeout status is set.
+  [[nodiscard]] bool led_flashes() const { return stored_.timed_out; }
+  [[nodiscard]] unsigned rate() const;
+  [[nodiscard]] bool runs_modbus() const { return runs_modbus_; }
+  [[nodiscard]] bool checksum() const { return checksum_; }
+  [[nodiscard]] unsigned address() const { return address_; }
+  [[nodiscard]] bool init_mode() const { return init_mode_; }
+  [[nodiscard]] bool init_asserted() const { return init_asserted_; }
+  /// A reset would change how the master has to speak.
+  [[nodiscard]] bool waits_for_reset() const;
+  [[nodiscard]] const Stored& stored() const { return stored_; }
+  [[nodiscard]] const ModelRow& row() const { return row_; }
+  /// Whether a frame of the master's was begun and not ended.
+  [[nodiscard]] bool frame_open() const { return framing_ != Framing::Nothing; }
+
+  /// When the host watchdog expires: between these two, as nobody outside knows the moment that it was
+  /// restarted.
+  struct Expiry {
+    Time earliest;
+    Time latest;
+  };
+  [[nodiscard]] const std::optional<Expiry>& expiry() const { return expiry_; }
+
+ private:
+  void rule(const std::string& rule) { rules_.push_back(rule); }
+
+  // wire.md 2
+  void come_up(Time now);
+  // wire.md 5
+  void edge(unsigned channel, bool rising, std::uint32_t count);
+  void clear_latches();
+  [[nodiscard]] std::uint32_t counter_modulus() const { return runs_modbus_ ? 65536 : 100000; }
+  // wire.md 6
+  void restart_host_watchdog();
+  void restart_host_watchdog_by_host_ok();
+  void restart_host_watchdog(Time at_most_later);
+  void clear_timeout_status() { stored_.timed_out = false; }
+  [[nodiscard]] unsigned all_outputs() const { return (1U << row_.outputs) - 1; }
+
+  // wire.md 3 and 4, dcon.cpp
+  enum class Framing { Nothing, Open, ToTheCr };
+  std::optional<std::string> dcon_frame(std::string frame);
+  std::string dcon_command(char delimiter, const std::string& body);
+  std::string set_configuration(const std::string& body);
+  std::string hash_command(const std::string& body);
+  std::string set_group_or_single(const std::string& body);
+  std::string dollar_command(const std::string& body);
+  std::string at_command(const std::string& body);
+  std::string tilde_command(const std::string& body);
+  std::string set_host_watchdog(const std::string& body);
+  std::string set_protocol(const std::string& body);
+  void take_sample();
+  [[nodiscard]] std::string aa() const;
+  [[nodiscard]] std::string first_second(unsigned outputs, unsigned inputs) const;
+  [[nodiscard]] bool permission() const { return init_mode_ || init_asserted_; }
+
+  // wire.md 7, modbus.cpp
+  Bytes modbus_frame(Bytes frame);
+  Bytes modbus_function(const Bytes& frame);
+  Bytes read_bits(const Bytes& frame);
+  Bytes read_registers(const Bytes& frame);
+  Bytes write_coil(const Bytes& frame);
+  Bytes write_coils(const Bytes& frame);
+  Bytes write_register(const Bytes& frame);
+  Bytes write_registers(const Bytes& frame);
+  Bytes diagnostics(const Bytes& frame);
+  Bytes server_id(const Bytes& frame);
+  Bytes device_identification(const Bytes& frame);
+  Bytes function_46(const Bytes& frame);
+  [[nodiscard]] bool coil(unsigned address) const;
+  void judge_coils(unsigned first, const std::vector<bool>& values, unsigned function);
+  void set_coils(unsigned first, const std::vector<bool>& values);
+  [[nodiscard]] unsigned register_value(unsigned address) const;
+  void judge_registers(unsigned first, const std::vector<unsigned>& values);
+  void set_registers(unsigned first, const std::vector<unsigned>& values);
+
+  const ModelRow& row_;
+  std::vector<std::string> rules_;
+  Stored stored_;
+
+  // From reset to reset.
+  bool powered_ = false;
+  bool init_asserted_ = false;
+  bool init_mode_ = false;
+  bool runs_modbus_ = false;
+  unsigned address_ = 0;
+  unsigned baud_code_ = 0x06;
+  bool checksum_ = false;
+  bool counts_rising_ = false;
+  unsigned outputs_ = 0;
+  bool reset_status_ = false;
+  unsigned levels_ = 0;  ///< of the inputs; whoever drives them does not mind resets
+  unsigned latch_high_ = 0;
+  unsigned latch_low_ = 0;
+  std::array<std::uint32_t, 8> counters_{};
+  struct Sample {
+    std::string first_second;
+    bool read = false;
+  };
+  std::optional<Sample> sample_;
+  Framing framing_ = Framing::Nothing;
+  std::string frame_;
+  /// Function 08's, by sub-function.
+  struct Counts {
+    unsigned bus_messages = 0;
+    unsigned crc_errors = 0;
+    unsigned exceptions = 0;
+    unsigned server_messages = 0;
+    unsigned no_response = 0;
+  } counts_;
+  std::optional<Expiry> expiry_;
+
+  // Of one call of `on_request`.
+  Time now_{0};
+  bool restarted_ = false;
+  const char* left_open_ = nullptr;
+};
+
+}  // namespace ex9000::reference

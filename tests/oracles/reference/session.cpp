@@ -1,0 +1,378 @@
+#include "tests/oracles/reference/session.hpp"
+
+#include <algorithm>
+#include <utility>
+
+#include "sim/module_spec.hpp"
+#include "tests/oracles/reference/dcon_check.hpp"
+#include "tests/oracles/reference/hexadecimal.hpp"
+#include "tests/oracles/reference/modbus_check.hpp"
+
+namespace ex9000::reference {
+
+namespace {
+
+using std::chrono::milliseconds;
+
+/// How near to the host watchdog's expiry nothing is decided, asked or compared: its tick, and what it takes
+/// until a request is acted upon that has just come in.
+constexpr milliseconds kExpiryMargin{3};
+/// wire.md 6: storing status and enable follows the expiry.
+constexpr milliseconds kStored{250};
+/// wire.md 3: a reply that stores nothing starts within 20 ms.
+constexpr milliseconds kAnswers{20};
+constexpr milliseconds kAnswersStoring{200};
+/// Longer than it takes until a reply begins that stores nothing, at any rate. The runner waits as long, so
+/// what is written down here happens there at the same times.
+constexpr milliseconds kNoAnswer{65};
+/// Likewise, before whatever is done next. Whatever comes behind a reply comes in this.
+constexpr milliseconds kBetween{2};
+/// Longer than any switch takes to settle; wire.md 2: INIT* is debounced.
+constexpr milliseconds kDebounced{100};
+
+std::string text_of(const Bytes& bytes) { return std::string(bytes.begin(), bytes.end()); }
+
+bool printable(const std::string& text) {
+  return std::all_of(text.begin(), text.end(),
+                     [](char character) { return character >= 0x20 && character <= 0x7E; });
+}
+
+/// In a transcript, where `  ;` begins a comment and braces a variable.
+bool can_be_written(const std::string& text) {
+  return printable(text) && text.find("  ;") == std::string::npos && text.find('{') == std::string::npos;
+}
+
+std::string hex_of(const Bytes& bytes) {
+  std::string text;
+  for (const std::uint8_t byte : bytes) {
+    text += (text.empty() ? "" : " ") + hex(byte, 2);
+  }
+  return text;
+}
+
+}  // namespace
+
+Session::Session(const ModelRow& row) : reference_(row) {
+  target_.start(sim::model_called(row.designation), nullptr);
+  reference_.power(true, target_.now() - kComingUp);
+  lines_.emplace_back("source: a random session");
+  lines_.push_back(std::string("model: ") + row.designation);
+  lines_.emplace_back();
+}
+
+std::vector<std::string> Session::rules() const {
+  std::vector<std::string> rules = rules_;
+  for (const std::string& rule : reference_.rules()) {
+    rules.push_back(rule);
+  }
+  return rules;
+}
+
+std::string Session::transcript() const {
+  std::string text;
+  for (const std::string& line : lines_) {
+    text += line + "\n";
+  }
+  return text;
+}
+
+bool Session::play(const Step& step) {
+  // Before each step, as a look ahead copies what there is.
+  for (std::string& rule : reference_.take_rules()) {
+    rules_.push_back(std::move(rule));
+  }
+  if (!std::holds_alternative<Send>(step) && !stored()) {
+    return false;
+  }
+  return std::visit([this](const auto& one) { return play_step(one); }, step) && settle(Time(0)) && compare();
+}
+
+/// Nothing is being stored any more.
+bool Session::stored() {
+  const bool storing = std::exchange(storing_, false);
+  return !(storing || target_.now() < timeout_stored_) || listen(kStored);
+}
+
+/// The master goes where the reference says that the module is.
+bool Session::follow() {
+  if (reference_.rate() != rate_) {
+    if (!nothing_more()) {
+      return false;
+    }
+    rate_ = reference_.rate();
+    lines_.push_back("baud " + std::to_string(rate_));
+    target_.set_baud(rate_);
+  }
+  if (reference_.checksum() != checksum_) {
+    checksum_ = reference_.checksum();
+    lines_.emplace_back(checksum_ ? "checksum on" : "checksum off");
+  }
+  return true;
+}
+
+/// Time that no line of the transcript tells.
+bool Session::nothing_more() {
+  const play::Bytes heard = target_.listen(kBetween);
+  return heard.empty() || differs("; nothing more", reply_line(heard));
+}
+
+/// Lets the host watchdog expire now, where it might in the time that a step needs.
+bool Session::settle(Time needed) {
+  if (reference_.expiry() && target_.now() + needed > reference_.expiry()->earliest - kExpiryMargin) {
+    return listen(std::chrono::duration_cast<milliseconds>(needed) + milliseconds(1));
+  }
+  return true;
+}
+
+/// As long, or until the host watchdog has expired, where it might be about to.
+bool Session::listen(milliseconds time) {
+  const bool might_expire = reference_.expiry().has_value();
+  Time over{0};
+  if (might_expire) {
+    const Time now = target_.now();
+    over = reference_.expiry()->latest + kExpiryMargin;
+    if (now + time > reference_.expiry()->earliest - kExpiryMargin && now + time < over) {
+      time = std::chrono::duration_cast<milliseconds>(over - now) + milliseconds(1);
+    }
+  }
+  lines_.push_back("wait " + std::to_string(time.count()) + "ms");
+  const play::Bytes heard = target_.listen(time);
+  reference_.pass(target_.now());
+  // Outputs and status are there at once, and what is asked now is asked while they are being stored.
+  storing_timeout_ = false;
+  if (might_expire && !reference_.expiry()) {
+    timeout_stored_ = over + kStored;
+    storing_timeout_ = target_.now() < timeout_stored_;
+  }
+  return heard.empty() || differs("; silence", reply_line(heard));
+}
+
+/// `expected` is the transcript's next step, or a comment where no step says it.
+bool Session::differs(const std::string& expected, const std::string& got) {
+  lines_.push_back(expected);
+  lines_.push_back("; but the firmware: " + got);
+  return false;
+}
+
+bool Session::compare() {
+  if (storing_) {
+    return true;  // wire.md 8: effects come when it is stored
+  }
+  const unsigned outputs = target_.outputs();
+  if (outputs != reference_.outputs()) {
+    return differs("outputs " + hex(reference_.outputs(), 4), "outputs " + hex(outputs, 4));
+  }
+  using Shows = play::step::Led::Shows;
+  const Shows expected = !reference_.powered()      ? Shows::Off
+                         : reference_.led_flashes() ? Shows::Flashing
+                                                    : Shows::On;
+  const Shows led = target_.led(expected);
+  const char* const names[] = {"led on", "led off", "led flashing"};
+  return led == expected ||
+         differs(names[static_cast<unsigned>(expected)], names[static_cast<unsigned>(led)]);
+}
+
+/// How long bytes take on the line, ten bits each.
+Time Session::takes(std::size_t bytes) const { return Time(bytes * 10 * 1'000'000'000ULL / rate_); }
+
+bool Session::play_step(const Send& send) {
+  // wire.md 7: a Modbus frame ends, and a reply starts, behind 3.5 characters of 11 bits, above 19200
+  // baud 1.75 ms.
+  const Time modbus_silence = rate_ <= 19200 ? Time(77ULL * 1'000'000'000ULL / (2ULL * rate_))
+                                             : Time(std::chrono::microseconds(1750));
+  const Time earliest = reference_.runs_modbus() ? modbus_silence : takes(1);
+  // wire.md 3 has 20 ms for Modbus too, but at 1200 baud the silence alone takes 32 and at 2400 baud 16.
+  const Time answers = std::max<Time>(kAnswers, earliest + milliseconds(5));
+
+  Answer answer;
+  for (int look = 0; look < 2; ++look) {
+    Module trial = reference_;
+    answer = trial.on_request(send.bytes, target_.now() + takes(send.bytes.size()));
+    if (answer.left_open != nullptr) {
+      ++left_open_;
+      return true;
+    }
+    // Twice: what is answered depends on whether the host watchdog has expired.
+    const Time done = answer.stores ? answers + kStored : answer.reply.empty() ? Time(kNoAnswer) : answers;
+    const Time needed = takes(send.bytes.size() + answer.reply.size()) + done + kBetween;
+    if (!settle(needed)) {
+      return false;
+    }
+  }
+
+  // The runner sends bytes at once, and frames only when no answer can come any more.
+  behind_expiry_ += storing_timeout_ ? 1U : 0U;
+  const bool behind_another = std::exchange(storing_, false) || storing_timeout_;
+  storing_timeout_ = false;
+  const std::string line = behind_another ? "bytes " + hex_of(send.bytes) : sent_line(send.bytes);
+  const bool at_once = line.rfind("bytes", 0) == 0;
+  if (!behind_another && !(at_once ? listen(kBetween) : nothing_more())) {
+    return false;
+  }
+  lines_.push_back(line);
+  target_.send(send.bytes);
+  const Time sent = target_.now();
+  before_expiry_ += reference_.expiry() && reference_.expiry()->earliest - sent < milliseconds(100) ? 1U : 0U;
+  answer = reference_.on_request(send.bytes, sent);
+  ++transactions_;
+  if (answer.reply.empty()) {
+    // wire.md 8: while one command is being stored, one more frame is kept.
+    storing_ = send.hurried && answer.stores && reference_.runs_modbus() && !behind_another;
+    if (storing_) {
+      return listen(std::chrono::duration_cast<milliseconds>(modbus_silence) + milliseconds(2));
+    }
+    return listen(answer.stores || behind_another ? kStored : kNoAnswer);
+  }
+  const play::Bytes heard = target_.receive(answer.reply.size(), behind_another ? 2 * kStored : kStored);
+  if (heard != answer.reply) {
+    return differs(reply_line(answer.reply), reply_line(heard));
+  }
+  lines_.push_back(reply_line(answer.reply));
+  const Time began = target_.now() - takes(heard.size());
+  reference_.replied(began);
+  const auto microseconds = [](Time time) {
+    return std::to_string(std::chrono::duration_cast<std::chrono::microseconds>(time).count()) + " us";
+  };
+  const Time latest = (answer.stores ? std::max<Time>(kAnswersStoring, answers) : answers) +
+                      (behind_another ? kAnswersStoring : milliseconds(0));
+  const Time after = began - sent;
+  if (after < earliest - std::chrono::microseconds(2) || after > latest) {
+    return differs("; an answer after " + microseconds(earliest) + " to " + microseconds(latest),
+                   "after " + microseconds(after));
+  }
+  return true;
+}
+
+bool Session::play_step(const Wait& wait) { return listen(wait.time); }
+
+bool Session::play_step(const WaitForExpiry& wait) {
+  if (!reference_.expiry()) {
+    return true;
+  }
+  const Time time = reference_.expiry()->earliest - wait.before - target_.now();
+  return time < milliseconds(1) || listen(std::chrono::duration_cast<milliseconds>(time));
+}
+
+bool Session::play_step(const Reset& /*reset*/) {
+  if (!settle(kComingUp + 2 * kBetween) || !stored()) {
+    return false;
+  }
+  if (!nothing_more()) {
+    return false;
+  }
+  lines_.emplace_back("reset");
+  const Time began = target_.now();
+  target_.reset();
+  reference_.reset(began);
+  return follow();
+}
+
+bool Session::play_step(const Power& power) {
+  if (!settle(kComingUp + 2 * kBetween) || !stored()) {
+    return false;
+  }
+  if (power.on == reference_.powered()) {
+    return true;
+  }
+  if (!nothing_more()) {
+    return false;
+  }
+  lines_.emplace_back(power.on ? "power on" : "power off");
+  const Time began = target_.now();
+  target_.power(power.on);
+  reference_.power(power.on, began);
+  return follow();
+}
+
+bool Session::play_step(const Init& init) {
+  lines_.emplace_back(init.asserted ? "init on" : "init off");
+  target_.set_init(init.asserted);
+  reference_.set_init(init.asserted);
+  return listen(kDebounced);
+}
+
+/// A transcript has no inputs that its model lacks, so there they are comments.
+std::string Session::lacking(unsigned channel) const { return channel < reference_.row().inputs ? "" : "; "; }
+
+bool Session::play_step(const Input& input) {
+  lines_.push_back(lacking(input.channel) + "input " + std::to_string(input.channel) +
+                   (input.level ? " on" : " off"));
+  target_.module().set_input(input.channel, input.level);
+  reference_.set_input(input.channel, input.level);
+  return true;
+}
+
+bool Session::play_step(const Pulse& pulse) {
+  lines_.push_back(lacking(pulse.channel) + "pulse " + std::to_string(pulse.channel) + " x" +
+                   std::to_string(pulse.count));
+  target_.module().pulse_input(pulse.channel, pulse.count);
+  reference_.pulse_input(pulse.channel, pulse.count);
+  return true;
+}
+
+std::string Session::sent_line(const Bytes& bytes) const {
+  if (reference_.runs_modbus()) {
+    return crc_is_right(bytes) ? "=> " + hex_of(Bytes(bytes.begin(), bytes.end() - 2))
+                               : "bytes " + hex_of(bytes);
+  }
+  const std::string text = text_of(bytes);
+  const std::size_t behind = checksum_ ? 3 : 1;  // CHK and CR
+  if (text.size() > behind && text.back() == '\r') {
+    const std::string frame = text.substr(0, text.size() - behind);
+    if (can_be_written(frame) && frame.front() != ' ' && frame.back() != ' ' &&
+        (!checksum_ || text.substr(frame.size(), 2) == check_of(frame))) {
+      return "> " + frame;
+    }
+  }
+  return "bytes " + hex_of(bytes);
+}
+
+std::string Session::reply_line(const Bytes& bytes) const {
+  if (bytes.empty()) {
+    return "silence";
+  }
+  if (bytes.back() == '\r') {
+    std::string text = text_of(bytes);
+    text.pop_back();
+    if (printable(text)) {
+      return "< " + (checksum_ && text.size() > 2 ? text.substr(0, text.size() - 2) : text);
+    }
+  }
+  return crc_is_right(bytes) ? "<= " + hex_of(Bytes(bytes.begin(), bytes.end() - 2))
+                             : "bytes " + hex_of(bytes);
+}
+
+// --- shrinking ---
+
+namespace {
+
+bool makes_a_difference(const ModelRow& row, const std::vector<Step>& steps) {
+  Session session(row);
+  return !std::all_of(steps.begin(), steps.end(), [&](const Step& step) { return session.play(step); });
+}
+
+}  // namespace
+
+std::vector<Step> shrink(const ModelRow& row, std::vector<Step> steps) {
+  for (std::size_t size = steps.size() / 2; size != 0; size /= 2) {
+    for (std::size_t at = 0; at + size <= steps.size();) {
+      std::vector<Step> fewer = steps;
+      const auto from = fewer.begin() + static_cast<std::ptrdiff_t>(at);
+      fewer.erase(from, from + static_cast<std::ptrdiff_t>(size));
+      if (makes_a_difference(row, fewer)) {
+        steps = std::move(fewer);
+      } else {
+        at += size;
+      }
+    }
+  }
+  return steps;
+}
+
+std::string transcript_of(const ModelRow& row, const std::vector<Step>& steps) {
+  Session session(row);
+  std::all_of(steps.begin(), steps.end(), [&](const Step& step) { return session.play(step); });
+  return session.transcript();
+}
+
+}  // namespace ex9000::reference

@@ -1,0 +1,61 @@
+// The emulated machine's time: it runs for as long as it is told to, and then stands still.
+#pragma once
+
+#include <chrono>
+#include <cstdint>
+#include <string>
+
+#include "tests/qemu/emulator.hpp"
+#include "tests/qemu/signals.hpp"
+
+namespace ex9000::rig {
+
+/// Of a machine that has a time of its own (Emulator::Time::Own). What happens in it depends on nothing but
+/// what is done to it while it stands still. Only where the emulator lets time pass for a processor that has
+/// just fallen asleep, it may at times, by the host's doing, forget the last instructions: of a hundred
+/// transcripts one ends up to 2 us apart from the run before, where inputs are pulsed up to 7 us.
+///
+/// GPTM2, which no image uses, interrupts when the time is over, and the interrupt's code, in RAM that no
+/// image uses, makes the emulator stop. The image itself and its vectors stay as they are; a copy of these,
+/// with one more entry, takes their place. Its interrupt waits for others and holds them up, as the image's
+/// own do, for 10 us each time the machine stands still; on the stack it takes as much as they.
+///
+/// Whatever is not as it should be throws std::runtime_error, also where the image resets itself.
+class AlarmClock {
+ public:
+  explicit AlarmClock(Emulator& machine) : machine_(machine) {}
+
+  /// Behind every reset, before the first instruction.
+  void set_up();
+  /// Runs the machine. Less than 13 us takes 13 us.
+  void run_for(std::chrono::nanoseconds time);
+  /// Gives an input `edges` edges, one about each 4 us, and runs the machine meanwhile. Returns how long.
+  std::chrono::nanoseconds make_edges(Pin pin, std::uint32_t edges);
+
+  /// From now on the machine stops in front of every store to these bytes of the bus as well: then only
+  /// `run_to_store` is left.
+  void watch_stores(std::uint32_t address, std::uint32_t size);
+  /// Runs the machine until there is one, for as long as the first call says at most. Whether there was.
+  bool run_to_store(std::chrono::nanoseconds time);
+
+  // --- how it was when it came to a stop ---
+
+  [[nodiscard]] bool receiver_empty() const;
+  [[nodiscard]] bool driver_on() const;
+  [[nodiscard]] bool led_lit() const;
+
+ private:
+  void run(std::uint32_t clocks, const std::string& more = {});
+  void begin_to_run(std::uint32_t clocks, const std::string& more);
+  std::uint32_t clocks(std::chrono::nanoseconds time);
+  bool wait_for_alarm();
+
+  Emulator& machine_;
+  bool at_first_ = true;     ///< no alarm has gone off yet
+  const char* go_on_ = "c";  ///< what it waits for
+  bool at_store_ = false;    ///< it has stopped in front of one, and the alarm is still to come
+  std::string watched_;      ///< as the debugger names it
+  std::uint32_t seen_ = 0;   ///< what the interrupt's code has told
+};
+
+}  // namespace ex9000::rig

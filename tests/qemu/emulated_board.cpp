@@ -1,0 +1,123 @@
+#include "tests/qemu/emulated_board.hpp"
+
+#include "sim/module.hpp"
+#include "tests/qemu/signals.hpp"
+#include "tests/qemu/uart_registers.hpp"
+
+namespace ex9000::rig {
+
+namespace {
+
+std::string text_of(const std::vector<std::uint8_t>& bytes) { return {bytes.begin(), bytes.end()}; }
+
+}  // namespace
+
+std::string image_of(const Model& model) {
+  return std::string(EX9000_IMAGES) + "/" + std::string(model.designation) + ".elf";
+}
+
+EmulatedBoard::EmulatedBoard(const Model& model, const Settings* settings, Emulator::Time time)
+    : model_(model), time_(time) {
+  store(settings);
+}
+
+void EmulatedBoard::store(const Settings* settings) {
+  set_memory(text_of(sim::SimulatedModule::memory_image(
+      model_, settings != nullptr ? *settings : Settings::factory(model_))));
+}
+
+void EmulatedBoard::renew(const Settings* settings) {
+  levels_ = {};
+  init_asserted_ = false;
+  store(settings);
+  supply(true);
+}
+
+void EmulatedBoard::supply(bool on) {
+  powered_ = on;
+  if (!on) {
+    if (time_ == Emulator::Time::Host) {
+      emulator_.reset();
+    }
+    return;
+  }
+  if (!emulator_) {
+    emulator_.emplace(image_of(model_), directory_ / "memory", time_);
+    give_levels();
+  } else {
+    pull_reset();
+  }
+  fill_ram();
+}
+
+void EmulatedBoard::kill() {
+  powered_ = false;
+  emulator_.reset();
+}
+
+/// What comes up in a real one is nothing an image may count on.
+void EmulatedBoard::fill_ram() {
+  constexpr std::uint32_t kRam = 0x2000'0000;
+  constexpr std::uint32_t kRamSize = 0x1'0000;
+  constexpr std::uint8_t kNoise = 0xA5;
+  emulator_->bus().fill(kRam, kRamSize, kNoise);
+}
+
+void EmulatedBoard::pull_reset() {
+  emulator_->reset();
+  give_levels();
+  while (!emulator_->uart().receive(std::chrono::nanoseconds(0)).empty()) {
+  }
+}
+
+void EmulatedBoard::give_levels() {
+  give_level(emulator_->bus(), board::kInitSwitch, !init_asserted_);
+  for (unsigned channel = 0; channel < model_.inputs; ++channel) {
+    give_level(emulator_->bus(), input_pin(channel), levels_[channel]);
+  }
+}
+
+void EmulatedBoard::set_init(bool asserted) {
+  init_asserted_ = asserted;
+  if (powered()) {
+    give_level(emulator_->bus(), board::kInitSwitch, !asserted);
+  }
+}
+
+void EmulatedBoard::set_level(unsigned channel, bool level) {
+  levels_.at(channel) = level;
+  if (powered()) {
+    give_level(emulator_->bus(), input_pin(channel), level);
+  }
+}
+
+std::uint16_t EmulatedBoard::outputs() {
+  if (!powered()) {
+    return 0;
+  }
+  std::vector<std::uint32_t> pins;
+  for (unsigned channel = 0; channel < model_.outputs; ++channel) {
+    pins.push_back(data_address(output_pin(channel)));
+  }
+  unsigned channels = 0;
+  unsigned channel = 0;
+  for (const std::uint32_t level : emulator_->bus().read(pins)) {
+    channels |= level != 0 ? 1U << channel : 0U;
+    ++channel;
+  }
+  return static_cast<std::uint16_t>(channels);
+}
+
+bool EmulatedBoard::led_lit() { return powered() && level_of(emulator_->bus(), board::kStatusLed); }
+
+std::uint32_t EmulatedBoard::baud() {
+  if (!powered()) {
+    return 0;
+  }
+  const std::vector<std::uint32_t> uart = emulator_->bus().read(
+      {kUart0 + kUartControl, kUart0 + kUartIntegerDivisor, kUart0 + kUartFractionalDivisor});
+  const std::uint32_t divisor = uart[1] * 64 + uart[2];
+  return (uart[0] & kUartEnabled) == 0 || divisor == 0 ? 0 : board::kClock.frequency() / 16 * 64 / divisor;
+}
+
+}  // namespace ex9000::rig

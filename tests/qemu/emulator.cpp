@@ -1,0 +1,85 @@
+#include "tests/qemu/emulator.hpp"
+
+#include "tests/qemu/uart_registers.hpp"
+
+namespace ex9000::rig {
+
+namespace {
+
+std::vector<std::string> command_of(const std::string& image, const std::string& memory) {
+  return {"setpriv",  // whatever ends the test ends the emulator
+          "--pdeathsig",
+          "KILL",
+          "qemu-system-arm",
+          "-machine",
+          "lm3s6965evb",
+          "-display",
+          "none",
+          "-nodefaults",
+          "-nic",
+          "none",
+          "-kernel",
+          image,
+          "-S",
+          "-action",
+          "reboot=shutdown,shutdown=pause,watchdog=pause",
+          "-chardev",
+          "socket,id=uart,path=uart",
+          "-serial",
+          "chardev:uart",
+          "-qmp",
+          "unix:qmp",
+          "-qtest",
+          "unix:qtest",
+          "-qtest-log",
+          "none",
+          "-drive",
+          "if=none,id=memory,format=raw,cache=unsafe,file=" + memory,
+          "-device",
+          "at24c-eeprom,bus=i2c,address=0x50,rom-size=8192,drive=memory"};
+}
+
+/// What AlarmClock needs: semihosting is how its interrupt asks the debugger for a stop.
+const std::vector<std::string> kTimeOfItsOwn{"-icount",
+                                             "shift=4,sleep=off",
+                                             "-semihosting-config",
+                                             "enable=on,target=gdb",
+                                             "-chardev",
+                                             "socket,id=gdb,path=gdb",
+                                             "-gdb",
+                                             "chardev:gdb"};
+
+}  // namespace
+
+Emulator::Emulator(const std::string& image, const std::string& memory, Time time) {
+  std::vector<std::string> command = command_of(image, memory);
+  if (time == Time::Own) {
+    command.insert(command.end(), kTimeOfItsOwn.begin(), kTimeOfItsOwn.end());
+  }
+  UnixListener uart(directory_ / "uart");
+  UnixListener qmp(directory_ / "qmp");
+  UnixListener qtest(directory_ / "qtest");
+  UnixListener gdb(directory_ / "gdb");
+  process_.emplace(command, directory_.path(), system::ChildProcess::Errors::WithOutput);
+  uart_.emplace(uart.accept());
+  qmp_.emplace(qmp.accept());
+  bus_.emplace(qtest.accept());
+  if (time == Time::Own) {
+    gdb_.emplace(gdb.accept());
+  }
+}
+
+/// Told to halt where there would be a reset, the emulator does so even if it is asked for one. And its UARTs
+/// have no reset: what matters of it is made up for.
+void Emulator::reset() {
+  qmp_->execute("set-action", "return", R"({"reboot": "reset"})");
+  qmp_->execute("system_reset", "RESET");
+  qmp_->execute("set-action", "return", R"({"reboot": "shutdown"})");
+  bus_->write(kUart0 + kUartInterruptMask, 0);
+  bus_->write(kUart0 + kUartControl, kUartControlAtReset);
+  bus_->write(kUart0 + kUartLineControl, kUartFifosOn);  // a change of it empties them
+  bus_->write(kUart0 + kUartLineControl, 0);
+  bus_->read(kUart0);  // a byte that nobody has taken would leave its flag and its interrupt
+}
+
+}  // namespace ex9000::rig

@@ -1,0 +1,56 @@
+// The reference board in QEMU.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "tests/qemu/gdb_client.hpp"
+#include "tests/qemu/qmp_client.hpp"
+#include "tests/qemu/qtest_client.hpp"
+#include "tests/qemu/unix_socket.hpp"
+#include "tests/support/child_process.hpp"
+#include "tests/support/directory.hpp"
+
+namespace ex9000::rig {
+
+/// One microcontroller from power-on to power-off, with an EEPROM behind it. Made halted before its first
+/// instruction, so that its pins can be given their levels. Destroyed as by a power cut.
+///
+/// Where the image resets itself, or the watchdog does, the machine halts instead, for the same reason.
+class Emulator {
+ public:
+  enum class Time {
+    Host,  ///< passes as the host's does: for whoever keeps no other
+    Own,   ///< 16 ns an instruction, and none between what it waits for and that; run by AlarmClock
+  };
+
+  /// Runs the ELF file `image`; `memory` is the file that holds the EEPROM's 8192 bytes. Throws
+  /// std::runtime_error where it does not come up.
+  Emulator(const std::string& image, const std::string& memory, Time time);
+
+  /// Not with a time of its own.
+  void run() { qmp_->execute("cont", "RESUME"); }
+  void halt() { qmp_->execute("stop", "STOP"); }
+  /// As the reset pin does, while halted; it stays halted. Inputs read 0 after it.
+  void reset();
+
+  QmpClient& qmp() { return *qmp_; }
+  QtestClient& bus() { return *bus_; }
+  /// Only with a time of its own.
+  GdbClient& gdb() { return *gdb_; }
+  /// UART0, without regard to rates; what it sends has to be taken now and then, for a full socket (278
+  /// bytes) halts the machine.
+  UnixSocket& uart() { return *uart_; }
+  [[nodiscard]] int pid() const { return process_->pid(); }
+
+ private:
+  system::Directory directory_;
+  std::optional<system::ChildProcess> process_;
+  std::optional<UnixSocket> uart_;
+  std::optional<QmpClient> qmp_;
+  std::optional<QtestClient> bus_;
+  std::optional<GdbClient> gdb_;
+};
+
+}  // namespace ex9000::rig

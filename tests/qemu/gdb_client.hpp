@@ -1,0 +1,29 @@
+// The emulator's debug port.
+#pragma once
+
+#include <string>
+#include <utility>
+
+#include "tests/qemu/unix_socket.hpp"
+
+namespace ex9000::rig {
+
+/// GDB's remote protocol, as far as a test bench needs it. Nothing is acknowledged, which QEMU takes for
+/// that. Nothing may be sent while the machine runs: it would stop wherever it is.
+class GdbClient {
+ public:
+  explicit GdbClient(UnixSocket socket) : socket_(std::move(socket)) {}
+
+  /// `packet` in its frame.
+  static std::string framed(const std::string& packet);
+  /// What `framed` has made, one behind the other in one piece: the last of them may set the machine going.
+  void send(const std::string& packets) { socket_.send(packets); }
+  /// The next packet, without its frame. Waits 20 s; throws std::runtime_error where none comes.
+  std::string receive();
+
+ private:
+  UnixSocket socket_;
+  std::string received_;  ///< behind the last packet
+};
+
+}  // namespace ex9000::rig

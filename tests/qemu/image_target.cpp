@@ -1,0 +1,120 @@
+#include "tests/qemu/image_target.hpp"
+
+#include <tuple>
+#include <utility>
+
+namespace ex9000::rig {
+
+namespace {
+
+using play::Bytes;
+using play::step::Led;
+using std::chrono::milliseconds;
+using std::chrono::nanoseconds;
+
+constexpr milliseconds kComingUp{100};
+/// The image has dealt with a byte, and shown it at its pins, in less.
+constexpr milliseconds kSettling{1};
+constexpr milliseconds kSlice{2};
+/// The longest phase of a flashing LED, and a bit.
+constexpr milliseconds kFlashing{300};
+constexpr milliseconds kLook{10};
+
+}  // namespace
+
+void ImageTarget::start(const Model& model, const Settings* preset) {
+  module_ =
+      &modules_.emplace(std::piecewise_construct, std::forward_as_tuple(&model), std::forward_as_tuple(model))
+           .first->second;
+  heard_.clear();
+  settled_ = nanoseconds(0);
+  module_->begin_anew(preset);
+  module_->run_for(kComingUp);
+}
+
+void ImageTarget::send(const Bytes& bytes) {
+  module_->send(bytes, baud_);
+  settled_ = module_->now() + kSettling;
+}
+
+void ImageTarget::hear() {
+  const Bytes bytes = module_->hear(baud_);
+  heard_.insert(heard_.end(), bytes.begin(), bytes.end());
+}
+
+Bytes ImageTarget::receive(std::size_t count, milliseconds patience) {
+  hear();
+  nanoseconds gives_up = module_->now() + patience;
+  while (heard_.size() < count && module_->now() < gives_up) {
+    const std::size_t had = heard_.size();
+    module_->run_for(kSlice);
+    hear();
+    if (heard_.size() != had) {
+      gives_up = module_->now() + patience;
+    }
+  }
+  settled_ = module_->now() + kSettling;
+  Bytes bytes = std::exchange(heard_, {});
+  if (bytes.size() > count) {
+    heard_.assign(bytes.begin() + static_cast<std::ptrdiff_t>(count), bytes.end());
+    bytes.resize(count);
+  }
+  return bytes;
+}
+
+Bytes ImageTarget::listen(std::chrono::nanoseconds time) {
+  module_->run_for(time);
+  hear();
+  return std::exchange(heard_, {});
+}
+
+TimedModule& ImageTarget::settled() {
+  if (module_->now() < settled_) {
+    module_->run_for(settled_ - module_->now());
+  }
+  hear();
+  return *module_;
+}
+
+void ImageTarget::power(bool on) {
+  settled().power(on);
+  if (on) {
+    module_->run_for(kComingUp);
+  }
+}
+
+void ImageTarget::reset() {
+  settled().reset();
+  module_->run_for(kComingUp);
+}
+
+void ImageTarget::set_init(bool asserted) { settled().set_init(asserted); }
+
+void ImageTarget::set_input(unsigned channel, bool level) { settled().set_input(channel, level); }
+
+void ImageTarget::pulse_input(unsigned channel, std::uint32_t count) {
+  settled().pulse_input(channel, count);
+}
+
+std::uint16_t ImageTarget::outputs() { return settled().outputs(); }
+
+Led::Shows ImageTarget::led(Led::Shows expected) {
+  const bool lit = settled().led_lit();
+  if (!module_->powered()) {
+    return Led::Shows::Off;
+  }
+  if (lit && expected == Led::Shows::On) {
+    module_->believe_led_on();
+    return Led::Shows::On;
+  }
+  const nanoseconds gives_up = module_->now() + kFlashing;
+  while (module_->now() < gives_up) {
+    module_->run_for(kLook);
+    if (module_->led_lit() != lit) {
+      return Led::Shows::Flashing;
+    }
+  }
+  return lit ? Led::Shows::On : Led::Shows::Off;
+}
+
+}  // namespace ex9000::rig

@@ -1,0 +1,42 @@
+// The firmware image on the emulated board as a transcript's target.
+#pragma once
+
+#include <chrono>
+#include <map>
+
+#include "sim/play/target.hpp"
+#include "tests/qemu/timed_module.hpp"
+
+namespace ex9000::rig {
+
+/// May play one transcript after the other; each model has its own emulator. Time is the emulated machine's,
+/// so the host has no part in what happens.
+class ImageTarget final : public play::Target {
+ public:
+  void start(const Model& model, const Settings* preset) override;
+  void send(const play::Bytes& bytes) override;
+  play::Bytes receive(std::size_t count, std::chrono::milliseconds patience) override;
+  play::Bytes listen(std::chrono::nanoseconds time) override;
+  void set_baud(std::uint32_t rate) override { baud_ = rate; }
+  void power(bool on) override;
+  void reset() override;
+  void set_init(bool asserted) override;
+  void set_input(unsigned channel, bool level) override;
+  void pulse_input(unsigned channel, std::uint32_t count) override;
+  std::uint16_t outputs() override;
+  play::step::Led::Shows led(play::step::Led::Shows expected) override;
+  void end() override { module_->make_sure(); }
+
+ private:
+  /// The module, once it has done what was sent to it.
+  TimedModule& settled();
+  void hear();
+
+  std::map<const Model*, TimedModule> modules_;
+  TimedModule* module_ = nullptr;
+  std::uint32_t baud_ = 9600;
+  std::chrono::nanoseconds settled_{0};  ///< when the image has had the time for what was sent
+  play::Bytes heard_;
+};
+
+}  // namespace ex9000::rig

@@ -1,0 +1,161 @@
+#include "tests/qemu/timed_module.hpp"
+
+#include <algorithm>
+#include <stdexcept>
+
+#include "tests/qemu/wrong_rate.hpp"
+
+namespace ex9000::rig {
+
+using std::chrono::microseconds;
+using std::chrono::milliseconds;
+using std::chrono::nanoseconds;
+
+void TimedModule::begin_anew(const Settings* settings) {
+  renew(settings);
+  now_ = nanoseconds(0);
+  come_up();
+}
+
+void TimedModule::power(bool on) {
+  if (on == powered()) {
+    return;
+  }
+  lamp_.forget();
+  supply(on);
+  if (on) {
+    come_up();
+  }
+}
+
+void TimedModule::kill() {
+  lamp_.forget();
+  clock_.reset();
+  EmulatedBoard::kill();
+}
+
+void TimedModule::reset() {
+  if (powered()) {
+    pull_reset();
+    come_up();
+  }
+}
+
+void TimedModule::come_up() {
+  lamp_.forget();
+  if (!clock_) {
+    clock_.emplace(emulator());
+  }
+  clock_->set_up();
+}
+
+void TimedModule::set_input(unsigned channel, bool level) {
+  if (channel < model().inputs) {
+    set_level(channel, level);
+    run_for(microseconds(100));
+  }
+}
+
+void TimedModule::pulse_input(unsigned channel, std::uint32_t count) {
+  if (channel < model().inputs && powered()) {
+    now_ += clock_->make_edges(input_pin(channel), 2 * count);
+    lamp_.look(now_, clock_->led_lit());
+  }
+}
+
+void TimedModule::run_for(nanoseconds time) { run_until(now_ + time); }
+
+void TimedModule::run_until(nanoseconds when) {
+  // Short enough that no phase of the LED is missed, and that what the module says finds room.
+  constexpr milliseconds kAtOnce{50};
+  while (powered() && now_ < when) {
+    const nanoseconds time = std::min<nanoseconds>(when - now_, kAtOnce);
+    clock_->run_for(time);
+    now_ += time;
+    lamp_.look(now_, clock_->led_lit());
+  }
+  now_ = std::max(now_, when);
+}
+
+void TimedModule::make_sure() {
+  if (lamp_.until()) {
+    run_until(*lamp_.until());
+  }
+}
+
+/// An EEPROM may stretch the clock of its bus, and a real one takes milliseconds to store. The emulated one
+/// takes no time, so no image would ever be found storing. The driver waits 3 ms for a byte.
+void TimedModule::hold_memory(bool hold) {
+  constexpr std::uint32_t kSetEnable = 0xE000'E100;
+  constexpr std::uint32_t kClearEnable = 0xE000'E180;
+  constexpr std::uint32_t kI2c0 = 1U << 8U;
+  emulator().bus().write(hold ? kClearEnable : kSetEnable, kI2c0);
+}
+
+void TimedModule::send(const Bytes& bytes, std::uint32_t baud) {
+  constexpr milliseconds kLongestHold{2};
+  constexpr microseconds kSlice{200};
+  // On a line that speaks a byte takes its time, and the driver is off soon after the last one has been
+  // heard; here it has been heard at once.
+  constexpr milliseconds kLongestWait{100};
+  const nanoseconds gives_up = now_ + kLongestWait;
+  while (powered() && clock_->driver_on() && now_ < gives_up) {
+    run_for(kSlice);
+  }
+  const nanoseconds begin = now_;
+  const nanoseconds end = begin + duration_at(baud, bytes.size());
+  if (powered()) {
+    hold_memory(true);
+    bool held = true;
+    const auto go_to = [&](nanoseconds when) {
+      if (held && when >= begin + kLongestHold) {
+        run_until(begin + kLongestHold);
+        hold_memory(false);
+        held = false;
+      }
+      run_until(when);
+    };
+    for (const Arrival& arrival : heard_at_rate(bytes, baud, this->baud())) {
+      go_to(begin + arrival.at);
+      put(arrival.byte);
+    }
+    go_to(std::max(now_, end));
+    if (held) {
+      hold_memory(false);
+    }
+  }
+  run_until(end);
+}
+
+void TimedModule::put(std::uint8_t byte) {
+  if (clock_->driver_on()) {
+    return;
+  }
+  if (!clock_->receiver_empty()) {
+    throw std::runtime_error("the image has not taken the byte before");
+  }
+  emulator().uart().send(&byte, 1);
+  constexpr std::uint32_t kUartFlags = 0x4000'C018;
+  constexpr std::uint32_t kReceiverEmpty = 1U << 4U;
+  while ((emulator().bus().read(kUartFlags) & kReceiverEmpty) != 0) {
+  }
+}
+
+TimedModule::Bytes TimedModule::hear(std::uint32_t baud) {
+  Bytes sent;
+  if (powered()) {
+    for (Bytes more = emulator().uart().receive(nanoseconds(0)); !more.empty();
+         more = emulator().uart().receive(nanoseconds(0))) {
+      sent.insert(sent.end(), more.begin(), more.end());
+    }
+  }
+  Bytes heard;
+  if (!sent.empty()) {
+    for (const Arrival& arrival : heard_at_rate(sent, this->baud(), baud)) {
+      heard.push_back(arrival.byte);
+    }
+  }
+  return heard;
+}
+
+}  // namespace ex9000::rig

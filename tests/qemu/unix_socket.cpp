@@ -1,0 +1,109 @@
+#include "tests/qemu/unix_socket.hpp"
+
+#include <poll.h>
+#include <sys/socket.h>
+#include <sys/un.h>
+#include <unistd.h>
+
+#include <array>
+#include <ctime>
+#include <stdexcept>
+#include <utility>
+
+namespace ex9000::rig {
+
+namespace {
+
+constexpr std::chrono::seconds kPatience{20};
+
+bool readable(int fd, std::chrono::nanoseconds patience) {
+  constexpr std::int64_t kSecond = 1'000'000'000;
+  const std::int64_t left = patience.count() > 0 ? patience.count() : 0;
+  const timespec time{left / kSecond, left % kSecond};
+  pollfd ready{fd, POLLIN, 0};
+  return ppoll(&ready, 1, &time, nullptr) == 1;
+}
+
+}  // namespace
+
+UnixSocket::~UnixSocket() {
+  if (fd_ >= 0) {
+    close(fd_);
+  }
+}
+
+UnixSocket::UnixSocket(UnixSocket&& other) noexcept
+    : fd_(std::exchange(other.fd_, -1)), received_(std::move(other.received_)) {}
+
+void UnixSocket::send(const std::uint8_t* bytes, std::size_t size) {
+  while (size != 0) {
+    const ssize_t taken = ::send(fd_, bytes, size, MSG_NOSIGNAL);
+    if (taken <= 0) {
+      throw std::runtime_error("the emulator does not listen any more");
+    }
+    bytes += taken;
+    size -= static_cast<std::size_t>(taken);
+  }
+}
+
+void UnixSocket::send(const std::string& text) {
+  send(reinterpret_cast<const std::uint8_t*>(text.data()), text.size());
+}
+
+std::vector<std::uint8_t> UnixSocket::receive(std::chrono::nanoseconds patience) {
+  std::array<std::uint8_t, 4096> buffer{};
+  if (!readable(fd_, patience)) {
+    return {};
+  }
+  const ssize_t size = recv(fd_, buffer.data(), buffer.size(), 0);
+  if (size <= 0) {
+    throw std::runtime_error("the emulator has hung up");
+  }
+  return {buffer.begin(), buffer.begin() + size};
+}
+
+std::string UnixSocket::receive_line() {
+  std::string line = receive_line(kPatience);
+  if (line.empty()) {
+    throw std::runtime_error("the emulator does not answer");
+  }
+  return line;
+}
+
+std::string UnixSocket::receive_line(std::chrono::nanoseconds patience) {
+  for (std::size_t end = received_.find('\n'); end == std::string::npos; end = received_.find('\n')) {
+    const std::vector<std::uint8_t> bytes = receive(patience);
+    if (bytes.empty()) {
+      return {};
+    }
+    received_.append(bytes.begin(), bytes.end());
+  }
+  const std::size_t end = received_.find('\n');
+  std::string line = received_.substr(0, end);
+  received_.erase(0, end + 1);
+  return line;
+}
+
+UnixListener::UnixListener(const std::string& path) : fd_(socket(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0)) {
+  sockaddr_un address{};
+  address.sun_family = AF_UNIX;
+  if (path.size() >= sizeof address.sun_path) {
+    throw std::runtime_error(path + ": too long for a socket");
+  }
+  path.copy(static_cast<char*>(address.sun_path), path.size());
+  if (bind(fd_, reinterpret_cast<const sockaddr*>(&address), sizeof address) != 0 || listen(fd_, 1) != 0) {
+    close(fd_);
+    throw std::runtime_error(path + ": cannot listen there");
+  }
+}
+
+UnixListener::~UnixListener() { close(fd_); }
+
+UnixSocket UnixListener::accept() {
+  if (!readable(fd_, kPatience)) {
+    throw std::runtime_error("the emulator does not come up");
+  }
+  return UnixSocket(accept4(fd_, nullptr, nullptr, SOCK_CLOEXEC));
+}
+
+}  // namespace ex9000::rig

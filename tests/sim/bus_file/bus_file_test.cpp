@@ -1,0 +1,402 @@
+// Files that describe lines and their modules.
+#include "sim/bus_file/bus_file.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cstdlib>
+#include <filesystem>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+#include "sim/arguments.hpp"
+#include "tests/support/refusal.hpp"
+#include "tests/support/directory.hpp"
+
+namespace ex9000::sim {
+namespace {
+
+using namespace std::chrono_literals;
+
+Setup parsed(const std::string& text) { return parse_bus_file("bus.json", text); }
+
+std::string why_not(const std::string& text) {
+  return refusal([&] { parsed(text); });
+}
+
+/// A file with one line, of one module, with these members besides.
+std::string line_with(const std::string& members) {
+  return "{\"lines\": [{\"modules\": [{\"model\": \"EX9052D-M\"}],\n" + members + "}]}";
+}
+std::string module_with(const std::string& members) {
+  return "{\"lines\": [{\"modules\": [{\"model\": \"EX9052D-M\",\n" + members + "}]}]}";
+}
+
+LineSetup line_of(const std::string& members) { return parsed(line_with(members)).lines.at(0); }
+ModuleSpec module_of(const std::string& members) {
+  return parsed(module_with(members)).lines.at(0).modules.at(0);
+}
+
+// --- what it may say ---
+
+TEST(BusFile, TheExampleIsWhatItSays) {
+  const auto setup = parsed(example_bus_file());
+  EXPECT_EQ(setup.control, "ex9000.ctl");
+  EXPECT_EQ(setup.seed, 1U);
+  EXPECT_FALSE(setup.log);
+  ASSERT_EQ(setup.lines.size(), 2U);
+
+  const LineSetup& hall = setup.lines[0];
+  EXPECT_EQ(hall.name, "hall");
+  EXPECT_EQ(hall.pty, "hall.tty");
+  EXPECT_FALSE(hall.tcp);
+  EXPECT_EQ(hall.baud, 9600U);
+  EXPECT_FALSE(hall.instant);
+  ASSERT_EQ(hall.modules.size(), 2U);
+  EXPECT_EQ(hall.modules[0].model->designation, "EX9042D-M");
+  EXPECT_EQ(hall.modules[0].settings.address, 1);
+  EXPECT_EQ(hall.modules[0].eeprom, "hall-01.bin");
+  EXPECT_EQ(hall.modules[1].model->designation, "EX9052D-M");
+  EXPECT_EQ(hall.modules[1].settings.address, 2);
+  EXPECT_EQ(hall.modules[1].settings.format, 0x80);
+  ASSERT_EQ(hall.modules[1].inputs.size(), 2U);
+  EXPECT_EQ(hall.modules[1].inputs[0].kind, InputProgram::Kind::Square);
+  EXPECT_EQ(hall.modules[1].inputs[0].time, 100ms);
+  EXPECT_EQ(hall.modules[1].inputs[1].channel, 3U);
+  EXPECT_EQ(hall.modules[1].inputs[1].bounce, 5ms);
+  ASSERT_EQ(hall.faults.size(), 4U);
+  EXPECT_EQ(hall.faults[0].text, "lost-reply every 10th reply");
+  EXPECT_EQ(hall.faults[0].module, 0U);
+  EXPECT_EQ(hall.faults[1].text, "power-cut after 3 writes");
+  EXPECT_EQ(hall.faults[1].module, 0U);
+  EXPECT_EQ(hall.faults[2].text, "bit-errors 1e-5");
+  EXPECT_FALSE(hall.faults[2].module);
+  EXPECT_EQ(hall.faults[3].text, "foreign-traffic 0501000000083C48 every 30s");
+
+  const LineSetup& yard = setup.lines[1];
+  EXPECT_EQ(yard.name, "yard");
+  EXPECT_FALSE(yard.pty);
+  EXPECT_EQ(yard.tcp.value_or(TcpAddress()).port, 5020);
+  EXPECT_TRUE(yard.instant);
+  EXPECT_FALSE(yard.baud);
+  ASSERT_EQ(yard.modules.size(), 2U);
+  EXPECT_EQ(yard.modules[0].settings.protocol, Protocol::Ascii);
+  EXPECT_EQ(yard.modules[0].settings.format, 0x40);
+  EXPECT_EQ(yard.modules[0].settings.name, Name("PUMPS"));
+  EXPECT_EQ(yard.modules[1].model->designation, "EX9055D");
+  EXPECT_EQ(yard.modules[1].settings.address, 0x0B);
+  EXPECT_FALSE(yard.modules[1].init_asserted);
+  ASSERT_EQ(yard.faults.size(), 2U);
+  EXPECT_EQ(yard.faults[0].module, 0U);
+  EXPECT_EQ(yard.faults[1].text, "gone at 1h for 2min");
+}
+
+TEST(BusFile, ThePanelIsOnOffOrOnAPort) {
+  const auto panel = [](const std::string& value) {
+    return parsed(R"({"panel": )" + value + R"(, "lines": [{"modules": [{"model": "EX9042D"}]}]})").panel;
+  };
+  EXPECT_FALSE(panel("false"));
+  ASSERT_TRUE(panel("true"));
+  EXPECT_FALSE(panel("true")->port);
+  EXPECT_EQ(panel("8080")->port, 8080);
+  EXPECT_EQ(panel("\"0\"")->port, 0);
+}
+
+TEST(BusFile, ItsModulesMayBeWatched) {
+  const auto watch = [](const std::string& value) {
+    return parsed(R"({"watch": )" + value + R"(, "lines": [{"modules": [{"model": "EX9042D"}]}]})").watch;
+  };
+  EXPECT_FALSE(watch("false"));
+  EXPECT_TRUE(watch("true"));
+}
+
+TEST(BusFile, OneLineWithOneModuleIsEnough) {
+  const auto setup = parsed(R"({"lines": [{"modules": [{"model": "ex9042d-m"}]}]})");
+  ASSERT_EQ(setup.lines.size(), 1U);
+  EXPECT_EQ(setup.lines[0].modules[0].model->designation, "EX9042D-M");
+  EXPECT_FALSE(setup.control);
+  EXPECT_FALSE(setup.log);
+  EXPECT_EQ(setup.seed, 1U);
+}
+
+TEST(BusFile, LinesWithoutANameAreNumbered) {
+  const auto setup = parsed(R"({"lines": [{"modules": [{"model": "EX9042D"}], "tcp": 0},
+    {"modules": [{"model": "EX9042D"}], "tcp": 0, "name": "yard"},
+    {"modules": [{"model": "EX9042D"}], "tcp": 0}]})");
+  EXPECT_EQ(setup.lines[0].name, "line1");
+  EXPECT_EQ(setup.lines[1].name, "yard");
+  EXPECT_EQ(setup.lines[2].name, "line3");
+}
+
+TEST(BusFile, ALineMayHaveAllThatACommandLineMay) {
+  EXPECT_EQ(line_of("\"tcp\": 5020").tcp.value_or(TcpAddress()).host, "127.0.0.1");
+  EXPECT_EQ(line_of("\"tcp\": \"[::1]:5020\"").tcp.value_or(TcpAddress()).host, "::1");
+  EXPECT_EQ(line_of("\"pty\": \"a\"").pty, "a");
+  EXPECT_EQ(line_of("\"serial\": \"/dev/ttyUSB0\", \"echo\": true").serial, "/dev/ttyUSB0");
+  EXPECT_TRUE(line_of("\"serial\": \"/dev/ttyUSB0\", \"echo\": true").echo);
+  EXPECT_EQ(line_of("\"pty\": \"a\", \"baud\": 19200").baud, 19200U);
+  EXPECT_EQ(line_of("\"pty\": \"a\", \"baud\": \"19200\"").baud, 19200U);
+  EXPECT_FALSE(line_of("\"pty\": \"a\", \"line\": \"paced\"").instant);
+  EXPECT_TRUE(line_of("\"pty\": \"a\", \"line\": \"instant\"").instant);
+  EXPECT_TRUE(line_of("\"pty\": \"a\", \"strict-gaps\": true").strict_gaps);
+}
+
+TEST(BusFile, AModuleMayHaveAllThatACommandLineMay) {
+  EXPECT_EQ(module_of("\"address\": \"F\"").settings.address, 0x0F);
+  EXPECT_EQ(module_of("\"protocol\": \"ascii\"").settings.protocol, Protocol::Ascii);
+  EXPECT_EQ(module_of("\"baud\": 115200").settings.baud_code, 0x0A);
+  EXPECT_EQ(module_of("\"checksum\": true").settings.format, 0x40);
+  EXPECT_EQ(module_of("\"checksum\": \"on\"").settings.format, 0x40);
+  EXPECT_EQ(module_of("\"checksum\": false").settings.format, 0x00);
+  EXPECT_EQ(module_of("\"edge\": \"rising\"").settings.format, 0x80);
+  EXPECT_EQ(module_of("\"name\": \"a b,c\"").settings.name, Name("a b,c"));  // more than a command line may
+  EXPECT_TRUE(module_of("\"init\": true").init_asserted);
+  EXPECT_EQ(module_of("\"eeprom\": \"a,b.bin\"").eeprom, "a,b.bin");
+}
+
+TEST(BusFile, KeysMayStandInAnyOrder) {
+  const auto setup = parsed(R"({"seed": 7, "log": true, "lines": [{"faults": ["echo 2ms"], "modules": [
+    {"faults": ["gone"], "inputs": ["7 square 1s"], "address": "02", "model": "EX9052D"}], "pty": "a"}]})");
+  EXPECT_EQ(setup.seed, 7U);
+  EXPECT_TRUE(setup.log);
+  EXPECT_EQ(setup.lines[0].modules[0].settings.address, 2);
+  ASSERT_EQ(setup.lines[0].faults.size(), 2U);
+  EXPECT_EQ(setup.lines[0].faults[0].trouble, Trouble::Echo);
+  EXPECT_FALSE(setup.lines[0].faults[0].module);
+  EXPECT_EQ(setup.lines[0].faults[1].module, 0U);
+}
+
+// --- what is refused ---
+
+struct Wrong {
+  const char* file;
+  const char* why;
+};
+
+class WrongBusFile : public testing::TestWithParam<Wrong> {};
+
+TEST_P(WrongBusFile, IsRefusedWithFileLineKeyAndMend) {
+  const std::string why = why_not(GetParam().file);
+  EXPECT_EQ(why.rfind(GetParam().why, 0), 0U) << why;
+  EXPECT_EQ(why.find('\n'), std::string::npos) << why;
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    Json, WrongBusFile,
+    testing::Values(Wrong{"", "bus.json:1: syntax error"},
+                    Wrong{"{\n\"lines\": [\n}\n", "bus.json:3: syntax error"},
+                    Wrong{"{\n\"seed\" 1}", "bus.json:2: syntax error"},
+                    Wrong{"{\"log\": true}\n{}", "bus.json:2: syntax error"},
+                    Wrong{"{\n\n\"seed\": 1e999}", "bus.json:3: number overflow"},
+                    Wrong{"{\n\"log\": true,\n\"log\": false}", "bus.json:3: 'log' is given twice"},
+                    Wrong{"{\"control\":\n\"a\\u0000b\"}",
+                          "bus.json:2: no text has a NUL in it; leave out \\u0000"},
+                    Wrong{"[[[[[[[[[[[[[[[[[\n]]]]]]]]]]]]]]]]]", "bus.json:1: nested deeper"}));
+
+INSTANTIATE_TEST_SUITE_P(
+    Whole, WrongBusFile,
+    testing::Values(
+        Wrong{"[]", "bus.json:1: wants an object, { }"}, Wrong{"5", "bus.json:1: wants an object"},
+        Wrong{"{\n\n}", "bus.json:1: lines: a bus wants at least one line; --example"},
+        Wrong{"{\n\"lines\": []}", "bus.json:2: lines: a bus wants at least one line; --example"},
+        Wrong{"{\n\"lines\": {}}", "bus.json:2: lines: wants a list, [ ]"},
+        Wrong{"{\n\"line\": []}",
+              "bus.json:2: line: no such key; there are lines, control, panel, watch, log, capture and seed"},
+        Wrong{"{\n\"log\": 1}", "bus.json:2: log: '1' wants text, json or off"},
+        Wrong{"{\n\"panel\": 70000}", "bus.json:2: panel: '70000' wants a port from 0 to 65535"},
+        Wrong{"{\n\"panel\": []}", "bus.json:2: panel: wants a text in quotes, a whole number"},
+        Wrong{"{\n\"watch\": \"yes\"}", "bus.json:2: watch: wants true or false"},
+        Wrong{"{\"log\": \"json\",\n\"watch\": true, \"lines\": [{\"modules\": [{\"model\": \"EX9042D\"}]}]}",
+              "bus.json:2: watch: standard output is for machines"},
+        Wrong{"{\n\"seed\": -1}", "bus.json:2: seed: wants a whole number"},
+        Wrong{"{\n\"seed\": 1.5}", "bus.json:2: seed: wants a whole number"},
+        Wrong{"{\n\"seed\": \"x\"}", "bus.json:2: seed: 'x' wants a whole number"},
+        Wrong{"{\n\"control\": 1}", "bus.json:2: control: wants a text in quotes"},
+        Wrong{"{\n\"capture\": \"\", \"lines\": [{\"pty\": \"a\", \"modules\": [{\"model\": \"EX9042D\"}]}]}",
+              "bus.json:2: capture: wants a path"},
+        Wrong{"{\n\"control\": \"\", \"lines\": [{\"pty\": \"a\", \"modules\": [{\"model\": \"EX9042D\"}]}]}",
+              "bus.json:2: control: wants a path"}));
+
+INSTANTIATE_TEST_SUITE_P(
+    Lines, WrongBusFile,
+    testing::Values(
+        Wrong{"{\"lines\": [\n5]}", "bus.json:1: lines[0]: wants an object"},
+        Wrong{"{\"lines\": [\n{\"pty\": \"a\"}]}",
+              "bus.json:2: lines[0].modules: a line wants at least one module, {"},
+        Wrong{"{\"lines\": [\n{\"pty\": \"a\",\n\"modules\": []}]}",
+              "bus.json:3: lines[0].modules: a line wants"},
+        Wrong{"{\"lines\": [{\n\"speed\": 1}]}",
+              "bus.json:2: lines[0].speed: no such key; there are name, pty"},
+        Wrong{"{\"lines\": [{\n\"baud\": 300}]}", "bus.json:2: lines[0].baud: '300' wants 1200"},
+        Wrong{"{\"lines\": [{\n\"baud\": true}]}", "bus.json:2: lines[0].baud: wants a whole number"},
+        Wrong{"{\"lines\": [{\n\"line\": \"fast\"}]}",
+              "bus.json:2: lines[0].line: 'fast' wants paced or instant"},
+        Wrong{"{\"lines\": [{\n\"tcp\": \"here\"}]}", "bus.json:2: lines[0].tcp: "},
+        Wrong{"{\"lines\": [{\n\"tcp\": 70000}]}", "bus.json:2: lines[0].tcp: "},
+        Wrong{"{\"lines\": [{\n\"echo\": \"yes\"}]}", "bus.json:2: lines[0].echo: wants true or false"},
+        Wrong{"{\"lines\": [{\n\"faults\": \"gone\"}]}", "bus.json:2: lines[0].faults: wants a list"},
+        Wrong{"{\"lines\": [{\"faults\": [\"gone\",\n\"gone at\"]}]}",
+              "bus.json:2: lines[0].faults[1]: gone at: wants a"},
+        Wrong{"{\"lines\": [{\"faults\": [\n{}]}]}",
+              "bus.json:2: lines[0].faults[0]: wants a text in quotes"}));
+
+INSTANTIATE_TEST_SUITE_P(
+    Modules, WrongBusFile,
+    testing::Values(Wrong{"{\"lines\": [{\"modules\": [\n{}]}]}",
+                          "bus.json:2: lines[0].modules[0].model: wants the model's name"},
+                    Wrong{"{\"lines\": [{\"modules\": [{\n\"model\": 9042}]}]}",
+                          "bus.json:2: lines[0].modules[0].model: wants"},
+                    Wrong{"{\"lines\": [{\"modules\": [{\n\"model\": \"EX1\"}]}]}",
+                          "bus.json:2: lines[0].modules[0].model: 'EX1' is no model; --models lists them"}));
+
+TEST(WrongModuleOfABusFile, IsRefusedWithFileLineKeyAndMend) {
+  for (const auto& [members, why] : std::vector<std::pair<std::string, std::string>>{
+           {"\"colour\": \"red\"", "colour: no such key; there are model, address"},
+           {"\"address\": 1", "address: wants a text in quotes"},
+           {"\"address\": \"100\"", "address: address '100' is not one or two hex digits, 00 to FF"},
+           {"\"protocol\": \"rtu\"", "protocol: 'protocol=rtu' wants modbus or ascii"},
+           {"\"baud\": 9601", "baud: 'baud=9601' wants 1200"},
+           {"\"checksum\": 2", "checksum: 'checksum=2' wants on or off"},
+           {"\"edge\": null", "edge: wants "},
+           {"\"name\": \"TOOLONG\"", "name: 'name=TOOLONG' wants 1 to 6"},
+           {"\"init\": \"yes\"", "init: 'init=yes' wants on or off"},
+           {"\"eeprom\": \"\"", "eeprom: 'eeprom=' wants a path"},
+           {"\"inputs\": \"0 square 1s\"", "inputs: wants a list"},
+           {"\"inputs\": [\"8 square 1s\"]",
+            "inputs[0]: 8 square 1s: the EX9052D-M has no input '8'; it has 0 to 7"},
+           {"\"faults\": [\"hang\", \"lost\"]", "faults[1]: 'lost' is no fault; there are bit-errors"},
+           {"\"faults\": [\"echo 2ms\"]", "faults[0]: befalls the line; put it into the line's faults"},
+       }) {
+    const std::string refused = why_not(module_with(members));
+    EXPECT_EQ(refused.rfind("bus.json:2: lines[0].modules[0]." + why, 0), 0U) << refused;
+  }
+}
+
+TEST(WrongModuleOfABusFile, AnAddressThatItsProtocolLacksIsRefused) {
+  EXPECT_EQ(why_not(module_with("\"address\": \"00\""))
+                .rfind("bus.json:1: lines[0].modules[0]: address 00 is none of", 0),
+            0U)
+      << why_not(module_with("\"address\": \"00\""));
+}
+
+TEST(WrongLineOfABusFile, WhatDoesNotGoTogetherIsRefusedWhereItStands) {
+  for (const auto& [members, why] : std::vector<std::pair<std::string, std::string>>{
+           {"\"pty\": \"\"", "pty: wants a path"},
+           {"\"serial\": \"a\", \"pty\": \"b\"", "serial: the master is on that line; leave out pty and tcp"},
+           {"\"pty\": \"a\", \"echo\": true", "echo: only a serial port may have one"},
+           {"\"serial\": \"a\", \"line\": \"instant\"", "line: instant: on a real line"},
+           {"\"pty\": \"a\", \"line\": \"instant\", \"strict-gaps\": true", "strict-gaps: gaps mean nothing"},
+           {"\"pty\": \"a\", \"name\": \"the hall\"", "name: 'the hall' is not one word"},
+       }) {
+    const std::string refused = why_not(line_with(members));
+    EXPECT_EQ(refused.rfind("bus.json:2: lines[0]." + why, 0), 0U) << refused;
+  }
+}
+
+std::string two_lines(const std::string& first, const std::string& second) {
+  return "{\"lines\": [\n{\"modules\": [{\"model\": \"EX9042D\"}],\n" + first +
+         "},\n{\"modules\": [{\"model\": \"EX9042D\"}],\n" + second + "}]}";
+}
+
+TEST(WrongLinesOfABusFile, TwoCannotShareAPortOrAName) {
+  EXPECT_EQ(why_not(two_lines("\"pty\": \"a\"", "\"pty\": \"a\"")),
+            "bus.json:5: lines[1].pty: a: two lines cannot share one; name one for each");
+  EXPECT_EQ(why_not(two_lines("\"serial\": \"a\"", "\"serial\": \"a\"")),
+            "bus.json:5: lines[1].serial: a: two lines cannot share one; name one for each");
+  EXPECT_EQ(why_not(two_lines("\"tcp\": 5020", "\"tcp\": \"127.0.0.1:5020\"")),
+            "bus.json:5: lines[1].tcp: 127.0.0.1:5020: two lines cannot share one; name one for each");
+  EXPECT_EQ(why_not(two_lines("\"tcp\": 0, \"name\": \"a\"", "\"tcp\": 0, \"name\": \"a\"")),
+            "bus.json:5: lines[1].name: a: two lines have this name; name each differently");
+  EXPECT_EQ(parsed(two_lines("\"tcp\": 0", "\"tcp\": 0")).lines.size(), 2U);
+}
+
+TEST(WrongLinesOfABusFile, TwoModulesCannotShareAnEeprom) {
+  const auto with = [](const std::string& eeprom) {
+    return "{\"lines\": [{\"pty\": \"a\", \"modules\": [{\"model\": \"EX9042D\", \"eeprom\": \"x\"}]},\n"
+           "{\"pty\": \"b\", \"modules\": [{\"model\": \"EX9042D\", \"eeprom\": \"" +
+           eeprom + "\"}]}]}";
+  };
+  EXPECT_EQ(why_not(with("x")).rfind("bus.json:2: lines[1].modules[0].eeprom: x: ", 0), 0U)
+      << why_not(with("x"));
+  EXPECT_NE(why_not(with("x")).find("eeprom: x: two modules cannot share one; name a file for each"),
+            std::string::npos)
+      << why_not(with("x"));
+  EXPECT_EQ(parsed(with("y")).lines.size(), 2U);
+}
+
+// --- as a file ---
+
+TEST(BusFile, IsWhatEndsWithJson) {
+  EXPECT_TRUE(is_bus_file("bus.json"));
+  EXPECT_TRUE(is_bus_file("a/b.json"));
+  EXPECT_FALSE(is_bus_file(".json"));
+  EXPECT_FALSE(is_bus_file("bus.json.bak"));
+  EXPECT_FALSE(is_bus_file("EX9042D"));
+}
+
+TEST(BusFile, ThatCannotBeReadIsRefusedWithItsName) {
+  const system::Directory directory;
+  std::filesystem::create_directory(directory / "folder.json");
+  for (const std::string& path : {directory / "missing.json", directory / "folder.json"}) {
+    EXPECT_EQ(refusal([&] { read_bus_file(path); }), path + ": cannot be read; --example prints a bus file");
+  }
+}
+
+Parsed parse(const std::vector<std::string>& words) {
+  std::vector<const char*> argv{"ex9000-sim"};
+  for (const std::string& word : words) {
+    argv.push_back(word.c_str());
+  }
+  return parse_arguments(static_cast<int>(argv.size()), argv.data());
+}
+
+TEST(BusFile, ALineWithoutAPortHasAPseudoTerminalOfItsName) {
+  const system::Directory directory;
+  const std::string path = directory / "bus.json";
+  system::write_file(path, R"({"lines": [{"modules": [{"model": "EX9042D"}]},
+    {"modules": [{"model": "EX9042D"}], "name": "hall"}, {"modules": [{"model": "EX9042D"}], "tcp": 0}]})");
+  const Parsed with = parse({path});
+  ASSERT_TRUE(with.setup) << with.error;
+  EXPECT_EQ(with.setup->lines[0].pty, "line1.tty");
+  EXPECT_EQ(with.setup->lines[1].pty, "hall.tty");
+  EXPECT_FALSE(with.setup->lines[2].pty);
+}
+
+TEST(BusFile, StandsAloneOnTheCommandLineButForWhatIsOfNoLine) {
+  const system::Directory directory;
+  const std::string path = directory / "bus.json";
+  system::write_file(path, example_bus_file());
+  const Parsed with = parse({path, "--control", "other.ctl", "--seed", "9", "--log"});
+  ASSERT_TRUE(with.setup) << with.error;
+  EXPECT_EQ(with.setup->control, "other.ctl");
+  EXPECT_EQ(with.setup->seed, 9U);
+  EXPECT_TRUE(with.setup->log);
+  EXPECT_EQ(with.setup->lines.size(), 2U);
+  for (const std::vector<std::string>& more :
+       std::vector<std::vector<std::string>>{{"--pty", "a"},
+                                             {"--tcp", "1"},
+                                             {"--serial", "a"},
+                                             {"--baud", "9600"},
+                                             {"--line", "paced"},
+                                             {"--echo"},
+                                             {"--strict-gaps"},
+                                             {"--input", "1 0 square 1s"},
+                                             {"--fault", "echo 2ms"}}) {
+    std::vector<std::string> words{path};
+    words.insert(words.end(), more.begin(), more.end());
+    const Parsed refused = parse(words);
+    EXPECT_FALSE(refused.setup);
+    EXPECT_EQ(refused.error,
+              "ex9000-sim: " + more[0] + ": a bus file says that of its lines itself; write it there\n");
+  }
+  for (const std::vector<std::string>& words :
+       std::vector<std::vector<std::string>>{{path, "EX9042D"}, {"EX9042D", path}, {path, path}}) {
+    const Parsed refused = parse(words);
+    EXPECT_FALSE(refused.setup);
+    EXPECT_NE(refused.error.find("a bus file has all modules; leave out the other arguments"),
+              std::string::npos);
+  }
+}
+
+}  // namespace
+}  // namespace ex9000::sim

@@ -1,0 +1,117 @@
+// The file a capture is kept in: what is made, what is overwritten, what is left alone.
+#include "sim/capture/capture_file.hpp"
+
+#include <fcntl.h>
+#include <gtest/gtest.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <filesystem>
+#include <optional>
+#include <stdexcept>
+#include <string_view>
+
+#include "tests/support/directory.hpp"
+
+namespace ex9000::sim {
+namespace {
+
+namespace fs = std::filesystem;
+using system::bytes_of_file;
+using system::Directory;
+using system::write_file;
+
+std::vector<std::uint8_t> block(std::string_view text) { return {text.begin(), text.end()}; }
+
+std::string refusal(const std::string& path) {
+  try {
+    const CaptureFile file(path);
+  } catch (const std::invalid_argument& error) {
+    return error.what();
+  }
+  return "";
+}
+
+TEST(CaptureFile, IsMadeAndGrows) {
+  const Directory directory;
+  CaptureFile file(directory / "a");
+  file.begin();
+  file.append(block("one"));
+  EXPECT_EQ(bytes_of_file(directory / "a"), "one");
+  file.append(block("two"));
+  EXPECT_EQ(bytes_of_file(directory / "a"), "onetwo");
+}
+
+TEST(CaptureFile, ThatHoldsSomethingIsOverwrittenNotBeforeItBegins) {
+  const Directory directory;
+  write_file(directory / "a", "precious");
+  { const CaptureFile file(directory / "a"); }
+  EXPECT_EQ(bytes_of_file(directory / "a"), "precious");
+  CaptureFile file(directory / "a");
+  file.begin();
+  EXPECT_EQ(bytes_of_file(directory / "a"), "");
+  file.append(block("one"));
+  EXPECT_EQ(bytes_of_file(directory / "a"), "one");
+}
+
+TEST(CaptureFile, ThatNeverBeganIsNotThere) {
+  const Directory directory;
+  {
+    const CaptureFile file(directory / "a");
+    EXPECT_TRUE(fs::exists(directory / "a"));
+  }
+  EXPECT_TRUE(fs::is_empty(directory.path()));
+}
+
+TEST(CaptureFile, ThatBeganStays) {
+  const Directory directory;
+  { CaptureFile(directory / "a").begin(); }
+  EXPECT_TRUE(fs::exists(directory / "a"));
+}
+
+TEST(CaptureFile, IsOfOneSimulatorAtATime) {
+  const Directory directory;
+  std::optional<CaptureFile> first(directory / "a");
+  EXPECT_NE(refusal(directory / "a").find("in use by another simulator"), std::string::npos);
+  first->begin();
+  first.reset();
+  EXPECT_EQ(refusal(directory / "a"), "");
+}
+
+TEST(CaptureFile, WhereNothingCanBeWrittenIsRefusedWithThePath) {
+  const Directory directory;
+  for (const std::string& path : {directory / "none/a", directory.path()}) {
+    const std::string why = refusal(path);
+    EXPECT_EQ(why.find("--capture " + path + ": "), 0U) << why;
+    EXPECT_NE(why.find("name a path that can be written"), std::string::npos) << why;
+  }
+  EXPECT_TRUE(fs::is_empty(directory.path()));
+}
+
+TEST(CaptureFile, AFullDiskIsSaid) {
+  CaptureFile file("/dev/full");
+  file.begin();
+  try {
+    file.append(block("one"));
+    FAIL() << "it was written";
+  } catch (const std::runtime_error& error) {
+    EXPECT_EQ(std::string(error.what()), "--capture /dev/full: cannot be written: No space left on device");
+  }
+}
+
+TEST(CaptureFile, APipeMayBeRead) {
+  const Directory directory;
+  ASSERT_EQ(mkfifo((directory / "a").c_str(), 0600), 0);
+  EXPECT_NE(refusal(directory / "a").find("start who reads it first"), std::string::npos);
+  const int reader = open((directory / "a").c_str(), O_RDONLY | O_NONBLOCK);
+  CaptureFile file(directory / "a");
+  file.begin();
+  file.append(block("one"));
+  char text[4] = {};
+  EXPECT_EQ(read(reader, text, sizeof text), 3);
+  EXPECT_STREQ(text, "one");
+  close(reader);
+}
+
+}  // namespace
+}  // namespace ex9000::sim

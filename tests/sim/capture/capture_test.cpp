@@ -1,0 +1,555 @@
+// What is kept of a line, as Wireshark shows it, and the log for machines.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <chrono>
+#include <csignal>
+#include <filesystem>
+#include <nlohmann/json.hpp>
+#include <sstream>
+#include <string>
+#include <thread>
+#include <vector>
+
+#include "sim/capture/capture.hpp"
+#include "sim/line.hpp"
+#include "sim/play/modbus_frame.hpp"
+#include "tests/support/directory.hpp"
+#include "tests/support/simulator_process.hpp"
+#include "tests/support/socket_client.hpp"
+#include "tests/support/terminal.hpp"
+#include "tests/sim/capture/tshark.hpp"
+
+namespace ex9000::system {
+namespace {
+
+using Bytes = std::vector<std::uint8_t>;
+
+const std::string kSent = "0";  // frame.p2p_dir
+const std::string kReceived = "1";
+
+/// A simulator that is killed before anybody looks at what it has kept.
+class Captured {
+ public:
+  explicit Captured(std::vector<std::string> arguments) : simulator_(with_capture(std::move(arguments))) {}
+
+  /// Sends a request; waits for so many bytes of an answer.
+  void ask(const Bytes& request, std::size_t answer) {
+    client_.send(request);
+    EXPECT_EQ(client_.receive(answer).size(), answer);
+  }
+  void ask(const std::string& request, std::size_t answer) {
+    ask(Bytes(request.begin(), request.end()), answer);
+  }
+  /// Sends a request, and waits until whatever comes of it is over and written down.
+  void tell(const Bytes& request) {
+    client_.send(request);
+    while (!client_.hears_nothing_for(std::chrono::milliseconds(100))) {
+      client_.receive(1);
+    }
+  }
+
+  void wait_for(const std::string& text) { EXPECT_TRUE(simulator_.wait_for(text)); }
+
+  std::vector<Packet> decoded(const std::vector<std::string>& fields) {
+    if (!killed_) {
+      simulator_.end(SIGKILL);
+      killed_ = true;
+    }
+    return system::decoded(simulator_.directory() + "/line.pcapng", fields);
+  }
+
+ private:
+  static std::vector<std::string> with_capture(std::vector<std::string> arguments) {
+    arguments.insert(arguments.end(), {"--tcp", "0", "--capture", "line.pcapng"});
+    return arguments;
+  }
+
+  SimulatorProcess simulator_;
+  SocketClient client_{simulator_.tcp_port()};
+  bool killed_ = false;
+};
+
+/// A request, how long its answer is, and the fields that Wireshark shows of each, beside those that all
+/// have.
+struct Exchange {
+  Bytes request;
+  std::size_t answer;
+  std::string unit;
+  std::string function;
+  Packet asked;
+  Packet answered;
+};
+
+void expect_shown(const Packet& packet, Packet wanted) {
+  for (const auto& [field, value] : wanted) {
+    EXPECT_EQ(packet.at(field), value) << field;
+  }
+}
+
+TEST(Capture, FunctionAddressDirectionRegistersAndValuesAreDecoded) {
+  Captured line({"EX9042D-M@01", "EX9052D-M@02"});
+  const std::string reference = "modbus.reference_num";
+  const std::string bit_count = "modbus.bit_cnt";
+  const std::string word_count = "modbus.word_cnt";
+  const std::string data = "modbus.data";
+  const std::string bits = "modbus.bitval";
+  const std::string register_number = "modbus.regnum16";
+  const std::string word = "modbus.regval_uint16";
+  const std::string exception = "modbus.exception_code";
+  const std::vector<Exchange> exchanges{
+      {{1, 0x05, 0, 2, 0xFF, 0},
+       8,
+       "1",
+       "5",
+       {{reference, "2"}, {data, "ff00"}},
+       {{reference, "2"}, {data, "ff00"}}},
+      {{1, 0x01, 0, 0, 0, 13},
+       7,
+       "1",
+       "1",
+       {{reference, "0"}, {bit_count, "13"}},
+       {{bits, "0,0,1,0,0,0,0,0,0,0,0,0,0"}}},
+      {{1, 0x01, 0, 2, 0, 1}, 6, "1", "1", {{reference, "2"}, {bit_count, "1"}}, {{bits, "1"}}},
+      {{1, 0x0F, 0, 0, 0, 13, 2, 5, 0x10},
+       8,
+       "1",
+       "15",
+       {{reference, "0"}, {bit_count, "13"}, {data, "0510"}},
+       {{reference, "0"}, {bit_count, "13"}}},
+      {{2, 0x02, 0, 0, 0, 8}, 6, "2", "2", {{reference, "0"}, {bit_count, "8"}}, {{bits, "0,0,0,0,0,0,0,0"}}},
+      {{2, 0x04, 0, 1, 0, 2},
+       9,
+       "2",
+       "4",
+       {{reference, "1"}, {word_count, "2"}},
+       {{register_number, "1,2"}, {word, "0,0"}}},
+      {{1, 0x06, 1, 0xE8, 0, 10},
+       8,
+       "1",
+       "6",
+       {{reference, "488"}, {data, "000a"}},
+       {{reference, "488"}, {data, "000a"}}},
+      {{1, 0x03, 1, 0xE8, 0, 1},
+       7,
+       "1",
+       "3",
+       {{reference, "488"}, {word_count, "1"}},
+       {{register_number, "488"}, {word, "10"}}},
+      {{1, 0x10, 1, 0xE8, 0, 1, 2, 0, 20},
+       8,
+       "1",
+       "16",
+       {{reference, "488"}, {word_count, "1"}, {register_number, "488"}, {word, "20"}},
+       {{reference, "488"}, {word_count, "1"}}},
+      {{1, 0x01, 3, 0, 0, 1}, 5, "1", "1", {{reference, "768"}, {bit_count, "1"}}, {{exception, "2"}}},
+  };
+  for (const Exchange& each : exchanges) {
+    line.ask(with_crc(each.request), each.answer);
+  }
+  const std::vector<Packet> packets =
+      line.decoded({"frame.p2p_dir", "_ws.col.Protocol", "_ws.col.Info", "frame.comment", "mbrtu.unit_id",
+                    "mbrtu.crc16.status", "modbus.func_code", "modbus.request_frame", reference, bit_count,
+                    word_count, data, bits, register_number, word, exception});
+  ASSERT_EQ(packets.size(), 2 * exchanges.size());
+  for (std::size_t i = 0; i < packets.size(); ++i) {
+    const Exchange& exchange = exchanges[i / 2];
+    const bool asks = i % 2 == 0;
+    SCOPED_TRACE("function " + exchange.function + (asks ? ", request" : ", reply"));
+    const Packet& packet = packets[i];
+    EXPECT_EQ(packet.at("frame.p2p_dir"), asks ? kSent : kReceived);
+    EXPECT_EQ(packet.at("_ws.col.Info").find(asks ? "   Query: " : "Response: "), 0U)
+        << packet.at("_ws.col.Info");
+    const bool answers = !asks && exchange.answered.count(exception) == 0;
+    EXPECT_EQ(packet.at("modbus.request_frame"), answers ? std::to_string(i) : "");
+    expect_shown(packet, {{"_ws.col.Protocol", "Modbus RTU"},
+                          {"frame.comment", ""},
+                          {"mbrtu.unit_id", exchange.unit},
+                          {"mbrtu.crc16.status", "1"},
+                          {"modbus.func_code", exchange.function}});
+    expect_shown(packet, asks ? exchange.asked : exchange.answered);
+  }
+}
+
+TEST(Capture, DconIsShownAsText) {
+  Captured line({"EX9052D@02", "EX9042D@01"});
+  line.ask("$02M\r", 8);
+  line.ask("@010005\r", 2);
+  const std::vector<Packet> packets =
+      line.decoded({"frame.p2p_dir", "_ws.col.Protocol", "text", "frame.comment"});
+  const std::vector<std::pair<std::string, std::string>> wanted{
+      {kSent, "$02M\\r"}, {kReceived, "!029052\\r"}, {kSent, "@010005\\r"}, {kReceived, ">\\r"}};
+  ASSERT_EQ(packets.size(), wanted.size());
+  for (std::size_t i = 0; i < packets.size(); ++i) {
+    EXPECT_EQ(packets[i].at("frame.p2p_dir"), wanted[i].first);
+    EXPECT_EQ(packets[i].at("_ws.col.Protocol"), "DCON");
+    EXPECT_EQ(packets[i].at("text").find(wanted[i].second), 0U) << packets[i].at("text");
+    EXPECT_EQ(packets[i].at("frame.comment"), "");
+  }
+}
+
+TEST(Capture, AWrongCrcOrChecksumAndACollisionAreComments) {
+  Captured line({"EX9042D-M@01", "EX9042D-M@01", "EX9052D@02,checksum=on"});
+  Bytes wrong = with_crc({1, 5, 0, 2, 0xFF, 0});
+  wrong.back() ^= 1U;
+  line.tell(wrong);
+  line.tell({'$', '0', '2', '2', 'B', '9', '\r'});
+  line.tell(with_crc({1, 1, 0, 0, 0, 1}));  // two answer
+  const std::vector<Packet> packets = line.decoded(
+      {"frame.p2p_dir", "frame.comment", "mbrtu.unit_id", "modbus.func_code", "mbrtu.crc16.status"});
+  ASSERT_EQ(packets.size(), 5U);
+  expect_shown(packets[0], {{"frame.comment", "wrong CRC"},
+                            {"mbrtu.unit_id", "1"},
+                            {"modbus.func_code", "5"},
+                            {"mbrtu.crc16.status", "0"}});
+  EXPECT_EQ(packets[1].at("frame.comment"), "wrong checksum");
+  EXPECT_EQ(packets[2].at("frame.comment"), "");
+  for (const std::size_t reply : {3U, 4U}) {
+    EXPECT_EQ(packets[reply].at("frame.p2p_dir"), kReceived);
+    EXPECT_EQ(packets[reply].at("frame.comment"), "collision: something else was on the wires");
+  }
+}
+
+TEST(Capture, FaultsAreCommentsToo) {
+  Captured line({"EX9042D-M@01", "--fault", "bit-errors 0.02"});
+  for (int i = 0; i < 10; ++i) {
+    line.tell(with_crc({1, 1, 0, 0, 0, 1}));
+  }
+  std::size_t damaged = 0;
+  for (const Packet& packet : line.decoded({"frame.comment"})) {
+    damaged += packet.at("frame.comment").find("noise: byte ") == 0 ? 1U : 0U;
+  }
+  EXPECT_GE(damaged, 5U);  // of ten requests with 80 bits each
+}
+
+TEST(Capture, TheLinesOfABusFileAreInterfaces) {
+  const Directory directory;
+  write_file(directory / "bus.json", R"({"capture": "bus.pcapng", "log": "json", "lines": [
+    {"name": "hall", "pty": "hall.tty", "modules": [{"model": "EX9042D", "address": "01"}]},
+    {"name": "yard", "pty": "yard.tty", "modules": [{"model": "EX9052D", "address": "02"}]}]})");
+  ChildProcess simulator({simulator_path(), "bus.json"}, directory.path(), ChildProcess::Errors::WithOutput);
+  ASSERT_TRUE(simulator.wait_for("Ctrl-C ends it"));
+  Terminal yard(directory / "yard.tty", 9600);
+  yard.type("$02M\r");
+  EXPECT_EQ(yard.read_line(), "!029052\r");
+  Terminal hall(directory / "hall.tty", 9600);
+  hall.type("$01M\r");
+  EXPECT_EQ(hall.read_line(), "!019042D\r");
+  EXPECT_EQ(simulator.end(SIGTERM), 0);
+  const std::vector<Packet> packets = decoded(directory / "bus.pcapng", {"frame.interface_name", "text"});
+  ASSERT_EQ(packets.size(), 4U);
+  EXPECT_EQ(packets[1].at("frame.interface_name"), "yard");
+  EXPECT_EQ(packets[3].at("frame.interface_name"), "hall");
+  EXPECT_NE(simulator.output().find("\n{\"time\":"), std::string::npos) << simulator.output();
+  EXPECT_NE(simulator.output().find(R"("line":"yard","from":"02 EX9052D")"), std::string::npos);
+}
+
+TEST(Capture, WhatAStrangerSaysIsNotTakenForAnAnswer) {
+  Captured line({"EX9042D-M@01", "--fault", "foreign-traffic 0501000000083C48 at 1s", "--log"});
+  line.wait_for("05 01 00 00 00 08 3C 48");  // or the request would collide with that
+  line.tell(with_crc({1, 1, 0, 0, 0, 1}));
+  const std::vector<Packet> packets = line.decoded({"frame.p2p_dir", "_ws.col.Info"});
+  ASSERT_EQ(packets.size(), 3U);
+  EXPECT_EQ(packets[0].at("frame.p2p_dir"), kReceived);
+  EXPECT_EQ(packets[0].at("_ws.col.Info"), "   Query: Unit:   5, Func:   1: Read Coils");
+}
+
+TEST(Capture, OfARunInVirtualTimeIsTheSameEveryTime) {
+  const Directory directory;
+  for (const char* name : {"a", "b"}) {
+    const Finished finished =
+        run({simulator_path(), "EX9042D-M@01", "--fault", "foreign-traffic 0101000000083DCC every 1s",
+             "--speed", "max", "--for", "10s", "--capture", name},
+            directory.path());
+    EXPECT_EQ(finished.status, 0) << finished.error;
+  }
+  EXPECT_EQ(bytes_of_file(directory / "a"), bytes_of_file(directory / "b"));
+  const std::vector<Packet> packets = decoded(directory / "a", {"frame.time_epoch", "modbus.func_code"});
+  ASSERT_GE(packets.size(), 18U);
+  EXPECT_EQ(packets[0].at("frame.time_epoch").substr(0, 4), "1.10");
+}
+
+TEST(Capture, EndsAtTheSameTimeOfTheLineWhateverItsSpeed) {
+  const Directory directory;
+  // A stranger every second, one of them shortly before the end and one at it, cut off.
+  write_file(directory / "bus.json", R"({"log": "json", "lines": [{"name": "hall",
+    "faults": ["foreign-traffic 0101000000083DCC every 1s", "gone at 5.2s for 1s"],
+    "modules": [{"model": "EX9042D-M"}]}]})");
+  std::vector<std::string> logs;
+  std::vector<std::vector<Packet>> captures;
+  for (const char* speed : {"max", "100", "10"}) {
+    const Finished finished = run({simulator_path(), "bus.json", "--speed", speed, "--for", "6.005s",
+                                   "--capture", std::string("of-") + speed},
+                                  directory.path());
+    EXPECT_EQ(finished.status, 0) << finished.error;
+    logs.push_back(finished.output);
+    captures.push_back(
+        decoded(directory / (std::string("of-") + speed), {"exported_pdu.exported_pdu", "frame.len"}));
+  }
+  EXPECT_NE(logs[0].find("\n{\"time\":6.1"), std::string::npos) << logs[0];
+  EXPECT_GE(captures[0].size(), 6U);
+  for (std::size_t i = 1; i < logs.size(); ++i) {
+    EXPECT_EQ(logs[i], logs[0]);
+    EXPECT_EQ(captures[i], captures[0]);
+  }
+}
+
+TEST(Capture, OfWhatIsPlayedHasEachRunAsAnInterface) {
+  const Directory directory;
+  write_file(directory / "a.txt",
+             "source: manual\nmodel: EX9042D-M\nmodel: EX9043D-M\npreset: protocol=modbus\n\n"
+             "=> 01 05 0002 FF00\n<= 01 05 0002 FF00\n");
+  const Finished finished =
+      run({simulator_path(), "play", "a.txt", "--capture", "line.pcapng", "--log", "json"}, directory.path());
+  EXPECT_EQ(finished.status, 0) << finished.error;
+  EXPECT_NE(finished.error.find("2 runs, 4 steps, 0 failed"), std::string::npos) << finished.error;
+  std::istringstream lines(finished.output);
+  std::size_t frames = 0;
+  for (std::string line; std::getline(lines, line); ++frames) {
+    EXPECT_TRUE(nlohmann::json::accept(line)) << line;
+  }
+  EXPECT_EQ(frames, 4U);
+  const std::vector<Packet> packets =
+      decoded(directory / "line.pcapng",
+              {"frame.interface_name", "modbus.func_code", "modbus.reference_num", "frame.p2p_dir"});
+  ASSERT_EQ(packets.size(), 4U);
+  for (std::size_t i = 0; i < packets.size(); ++i) {
+    expect_shown(packets[i], {{"frame.interface_name", i < 2 ? "a.txt (EX9042D-M)" : "a.txt (EX9043D-M)"},
+                              {"modbus.func_code", "5"},
+                              {"modbus.reference_num", "2"},
+                              {"frame.p2p_dir", i % 2 == 0 ? kSent : kReceived}});
+  }
+}
+
+TEST(Capture, WhatWiresharkDoesNotDecodeIsAsReadmeSays) {
+  Captured line({"EX9042D-M@01"});
+  line.tell(with_crc({1, 0x46, 0}));
+  line.tell(with_crc({1, 0x11}));
+  line.tell(with_crc({1, 0x08, 0, 0, 0x12, 0x34}));
+  line.tell(with_crc({0, 0x05, 0, 1, 0xFF, 0}));
+  const std::vector<Packet> packets =
+      line.decoded({"_ws.col.Info", "_ws.col.Protocol", "exported_pdu.exported_pdu", "mbrtu.unit_id",
+                    "modbus.func_code", "modbus.data", "modbus.diagnostic_code", "data.data"});
+  ASSERT_EQ(packets.size(), 7U);
+  // Function 46 has no name there.
+  EXPECT_NE(packets[0].at("_ws.col.Info").find("Query"), std::string::npos);
+  EXPECT_NE(packets[0].at("_ws.col.Info").find("Unknown function (70)"), std::string::npos);
+  EXPECT_EQ(packets[0].at("modbus.func_code"), "70");
+  EXPECT_EQ(packets[1].at("modbus.data").substr(0, 2), "00");
+  // Four bytes are too few.
+  expect_shown(packets[2], {{"mbrtu.unit_id", ""}, {"modbus.func_code", ""}, {"data.data", "0111c02c"}});
+  EXPECT_EQ(packets[3].at("modbus.func_code"), "17");
+  EXPECT_EQ(packets[4].at("modbus.diagnostic_code"), "0");
+  // Nor does it take broadcasts.
+  expect_shown(packets[6], {{"mbrtu.unit_id", ""}, {"exported_pdu.exported_pdu", "00050001ff00dc2b"}});
+  for (const Packet& packet : packets) {
+    EXPECT_EQ(packet.at("_ws.col.Protocol"), "Modbus RTU");
+  }
+}
+
+TEST(Capture, TimesAreTheLinesOwnBehindTheWallClockOfTheStart) {
+  const auto wall = [] {
+    return std::chrono::duration<double>(std::chrono::system_clock::now().time_since_epoch()).count();
+  };
+  const double before = wall();
+  Captured line({"EX9042D-M@01"});
+  line.ask(with_crc({1, 1, 0, 0, 0, 1}), 6);
+  const double after = wall();
+  const std::vector<Packet> packets = line.decoded({"frame.time_epoch", "frame.interface_name"});
+  ASSERT_EQ(packets.size(), 2U);
+  const double asked = std::stod(packets[0].at("frame.time_epoch"));
+  const double answered = std::stod(packets[1].at("frame.time_epoch"));
+  EXPECT_GT(asked, before);
+  EXPECT_LT(answered, after);
+  // Eight characters, 3.5 of silence, and what the module takes.
+  EXPECT_NEAR(answered - asked, (8 + 3.5) * 10 / 9600, 0.001);
+  EXPECT_EQ(packets[0].at("frame.interface_name").find("127.0.0.1:"), 0U);
+}
+
+TEST(Capture, WhatTheLineHadNotFinishedIsKeptWhereTheProgramEndsInPeace) {
+  SimulatorProcess simulator({"EX9042D@01", "--capture", "line.pcapng", "--log"});
+  Terminal terminal(simulator.tty(), 9600);
+  terminal.type("$01M\r");
+  EXPECT_EQ(terminal.read_line(), "!019042D\r");
+  terminal.type("$01");
+  std::this_thread::sleep_for(std::chrono::milliseconds(100));
+  EXPECT_EQ(simulator.end(SIGTERM), 0);
+  const std::vector<Packet> packets = decoded(simulator.directory() + "/line.pcapng", {"text"});
+  ASSERT_EQ(packets.size(), 3U);
+  EXPECT_EQ(packets[2].at("text").find("$01"), 0U) << packets[2].at("text");
+}
+
+TEST(Capture, OfARunThatCannotWriteItEndsWithOneLineAndStatus1) {
+  const Directory directory;
+  const Finished finished = run({simulator_path(), "EX9042D", "--capture", "/dev/full"}, directory.path());
+  EXPECT_EQ(finished.status, 1);
+  EXPECT_EQ(finished.error, "ex9000-sim: --capture /dev/full: cannot be written: No space left on device\n");
+}
+
+TEST(Capture, ThatCannotBeWrittenLeavesNothingThatWasMadeForTheRun) {
+  const Directory directory;
+  const Finished finished =
+      run({simulator_path(), "EX9042D@01,eeprom=n.bin", "--capture", "/dev/full"}, directory.path());
+  EXPECT_EQ(finished.status, 1);
+  EXPECT_TRUE(std::filesystem::is_empty(directory.path()));
+  write_file(directory / "a.txt", "> $01M\n< !019042D\n");
+  for (const char* arguments : {" EX9042D@01", " EX9042D@01,eeprom=n.bin", " play a.txt EX9042D"}) {
+    const std::string command =
+        "trap '' XFSZ; ulimit -f 0; exec " + simulator_path() + arguments + " --capture line.pcapng";
+    const Finished limited = run({"sh", "-c", command}, directory.path());
+    EXPECT_EQ(limited.status, std::string(arguments).find("n.bin") == std::string::npos ? 1 : 2)
+        << limited.error;
+    EXPECT_EQ(std::count(limited.error.begin(), limited.error.end(), '\n'), 1) << limited.error;
+    EXPECT_FALSE(std::filesystem::exists(directory / "line.pcapng"));
+    EXPECT_FALSE(std::filesystem::exists(directory / "n.bin"));
+  }
+}
+
+TEST(Capture, NeverGoesOverWhatARunReadsOrServes) {
+  const Directory directory;
+  const std::string bus = R"({"capture": "link", "control": "ctl", "lines": [
+    {"pty": "tty", "modules": [{"model": "EX9042D", "eeprom": "n.bin"}]}]})";
+  write_file(directory / "bus.json", bus);
+  const std::vector<std::pair<std::string, std::string>> cases{{"bus.json", "the bus file bus.json"},
+                                                               {"ctl", "the control socket ctl"},
+                                                               {"tty", "the pseudo-terminal tty"},
+                                                               {"n.bin", "a module's EEPROM, eeprom=n.bin"}};
+  for (const auto& [path, what] : cases) {
+    std::filesystem::create_symlink(path, directory / "link");
+    for (const std::vector<std::string>& named : {std::vector<std::string>{}, {"--capture", path}}) {
+      std::vector<std::string> command{simulator_path(), "bus.json"};
+      command.insert(command.end(), named.begin(), named.end());
+      const Finished finished = run(command, directory.path());
+      EXPECT_EQ(finished.status, 2) << finished.error;
+      // A link to what is not there yet is none to a file at all.
+      if (path != "n.bin" || !named.empty()) {
+        EXPECT_NE(finished.error.find(": is " + what + ", "), std::string::npos) << finished.error;
+      }
+      EXPECT_EQ(std::count(finished.error.begin(), finished.error.end(), '\n'), 1) << finished.error;
+    }
+    std::filesystem::remove(directory / "link");
+  }
+  EXPECT_EQ(bytes_of_file(directory / "bus.json"), bus);
+  EXPECT_FALSE(std::filesystem::exists(directory / "n.bin"));
+}
+
+// --- without the program ---
+
+sim::Frame frame_of(std::size_t station, const Bytes& bytes) {
+  sim::Frame frame;
+  frame.station = station;
+  frame.bytes = bytes;
+  return frame;
+}
+
+TEST(Capture, EveryLineIsAnInterfaceAndHasItsOwnRequests) {
+  const Directory directory;
+  sim::Capture capture(directory / "lines.pcapng");
+  capture.begin();
+  const std::size_t pumps = capture.add_line("pumps", 1, std::chrono::seconds(1));
+  const std::size_t doors = capture.add_line("doors", 1, std::chrono::seconds(2));
+  const Bytes of_coil_0 = with_crc({1, 1, 0, 0, 0, 1});
+  const Bytes of_coil_8 = with_crc({1, 1, 0, 8, 0, 1});
+  const Bytes reply = with_crc({1, 1, 1, 1});
+  capture.write(pumps, frame_of(0, of_coil_0));
+  capture.write(doors, frame_of(0, of_coil_8));
+  capture.write(pumps, frame_of(1, reply));
+  capture.write(doors, frame_of(1, reply));
+  const std::vector<Packet> packets =
+      decoded(directory / "lines.pcapng",
+              {"frame.interface_name", "frame.time_epoch", "modbus.request_frame", "modbus.bitnum"});
+  ASSERT_EQ(packets.size(), 4U);
+  expect_shown(packets[2], {{"frame.interface_name", "pumps"},
+                            {"frame.time_epoch", "1.000000000"},
+                            {"modbus.request_frame", "1"},
+                            {"modbus.bitnum", "0"}});
+  expect_shown(packets[3], {{"frame.interface_name", "doors"},
+                            {"frame.time_epoch", "2.000000000"},
+                            {"modbus.request_frame", "2"},
+                            {"modbus.bitnum", "8"}});
+}
+
+/// Spoils one byte of what is sent.
+class OneHit final : public sim::Disturbance {
+ public:
+  OneHit(unsigned byte, sim::Levels mask) : byte_(byte), mask_(mask) {}
+  sim::Levels disturbed(const Sent& sent) override {
+    return static_cast<sim::Levels>(byte_-- == 0 ? sent.levels ^ mask_ : sent.levels);
+  }
+
+ private:
+  unsigned byte_;
+  sim::Levels mask_;
+};
+
+/// What is kept of a request of which `hit` spoils a byte.
+Packet of_a_spoiled(const Bytes& request, OneHit hit) {
+  const Directory directory;
+  sim::Line line({sim::parse_module_spec("EX9042D-M@01")}, sim::kPaced, [](std::uint8_t, ByteStatus) {});
+  line.come_up();
+  sim::Capture capture(directory / "line.pcapng");
+  sim::FrameWatch frames([&line] { return line.master().baud(); });
+  line.bus().observe(frames);
+  line.bus().disturb(hit);
+  capture.begin();
+  const std::size_t number = capture.add_line("line", 1, std::chrono::seconds(0));
+  frames.tell([&](const sim::Frame& frame) { capture.write(number, frame); });
+  line.master().send(request.data(), request.size());
+  line.bus().run_for(std::chrono::milliseconds(100));
+  frames.finish();
+  const std::vector<Packet> packets = decoded(
+      directory / "line.pcapng", {"frame.comment", "mbrtu.crc16.status", "modbus.reference_num", "text"});
+  EXPECT_EQ(packets.size(), 1U);
+  return packets.empty() ? Packet() : packets[0];
+}
+
+TEST(Capture, WhatNoiseHasChangedIsShownAsItArrivesAndWhatWasSentIsAComment) {
+  const Bytes request = with_crc({1, 5, 0, 2, 0xFF, 0});
+  expect_shown(of_a_spoiled(request, OneHit(3, 1U << 3U)),
+               {{"frame.comment", "noise: byte 4: 06 instead of 02; wrong CRC"},
+                {"mbrtu.crc16.status", "0"},
+                {"modbus.reference_num", "6"}});
+  EXPECT_EQ(of_a_spoiled(request, OneHit(3, 1U << 9U)).at("frame.comment"),
+            "noise: byte 4: framing error, 02 instead of 02");
+  EXPECT_EQ(of_a_spoiled(request, OneHit(2, 1U << 9U)).at("frame.comment"),
+            "noise: byte 3: break instead of 00");
+  EXPECT_EQ(of_a_spoiled(request, OneHit(0, 1U)).at("frame.comment"),
+            "noise: byte 1: 01 is lost, it has no start bit; wrong CRC");
+}
+
+TEST(Capture, DconIsTextAlsoWhereAByteIsDamaged) {
+  const std::string request = "$01M\r";
+  const Packet packet = of_a_spoiled(Bytes(request.begin(), request.end()), OneHit(2, 1U << 8U));
+  EXPECT_EQ(packet.at("frame.comment"), "noise: byte 3: B1 instead of 31; not only printable characters");
+  EXPECT_EQ(packet.at("text").find("$0"), 0U) << packet.at("text");
+}
+
+// --- the log for machines ---
+
+TEST(JsonLog, IsAllThatIsOnStandardOutput) {
+  const Directory directory;
+  ChildProcess simulator(
+      {"sh", "-c", "exec " + simulator_path() + " EX9042D@01 EX9052D@02,baud=19200 --log json > log"},
+      directory.path(), ChildProcess::Errors::WithOutput);
+  ASSERT_TRUE(simulator.wait_for("Ctrl-C ends it"));
+  Terminal terminal(directory / "ex9000.tty", 9600);
+  terminal.type("$01M\r");
+  EXPECT_EQ(terminal.read_line(), "!019042D\r");
+  EXPECT_EQ(simulator.end(SIGTERM), 0);
+  std::vector<nlohmann::json> objects;
+  std::string line;
+  for (std::istringstream lines(bytes_of_file(directory / "log")); std::getline(lines, line);) {
+    objects.push_back(nlohmann::json::parse(line));
+    EXPECT_EQ(objects.back()["line"], "ex9000.tty");
+    EXPECT_TRUE(objects.back()["time"].is_number());
+  }
+  ASSERT_EQ(objects.size(), 3U);
+  EXPECT_EQ(objects[0]["note"], "the line is at 9600 baud, EX9052D at 02 listens at 19200");
+  EXPECT_EQ(objects[1]["from"], "master");
+  EXPECT_EQ(objects[1]["text"], "$01M\r");
+  EXPECT_EQ(objects[2]["from"], "01 EX9042D");
+  EXPECT_EQ(objects[2]["bytes"], "21303139303432440D");
+}
+
+}  // namespace
+}  // namespace ex9000::system

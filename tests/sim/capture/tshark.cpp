@@ -1,0 +1,52 @@
+#include "tests/sim/capture/tshark.hpp"
+
+#include <gtest/gtest.h>
+
+#include <sstream>
+
+#include "tests/support/child_process.hpp"
+
+namespace ex9000::system {
+
+namespace {
+
+/// Also an empty one behind the last separator.
+std::vector<std::string> split(const std::string& line, char separator) {
+  std::vector<std::string> parts(1);
+  for (const char character : line) {
+    if (character == separator) {
+      parts.emplace_back();
+    } else {
+      parts.back() += character;
+    }
+  }
+  return parts;
+}
+
+}  // namespace
+
+std::vector<Packet> decoded(const std::string& path, const std::vector<std::string>& fields) {
+  std::vector<std::string> command{
+      "tshark", "-r",     path, "-o",         "mbrtu.tcp.port:9000", "-o", "mbrtu.crc_verification:TRUE",
+      "-T",     "fields", "-E", "separator=|"};
+  for (const std::string& field : fields) {
+    command.insert(command.end(), {"-e", field});
+  }
+  const Finished finished = run(command);
+  EXPECT_EQ(finished.status, 0) << finished.error;
+  EXPECT_EQ(finished.error.find("appears to"), std::string::npos)
+      << finished.error;  // be cut short, be damaged
+  std::vector<Packet> packets;
+  std::string line;
+  for (std::istringstream lines(finished.output); std::getline(lines, line);) {
+    const std::vector<std::string> values = split(line, '|');
+    Packet packet;
+    for (std::size_t i = 0; i < fields.size() && i < values.size(); ++i) {
+      packet[fields[i]] = values[i];
+    }
+    packets.push_back(packet);
+  }
+  return packets;
+}
+
+}  // namespace ex9000::system

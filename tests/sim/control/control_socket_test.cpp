@@ -1,0 +1,412 @@
+// The control socket of the running program, and all that clients may do to it.
+#include <gtest/gtest.h>
+#include <sys/socket.h>
+#include <sys/stat.h>
+#include <sys/un.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <csignal>
+#include <filesystem>
+#include <memory>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+#include "tests/support/control_client.hpp"
+#include "tests/support/directory.hpp"
+#include "tests/support/simulator_process.hpp"
+#include "tests/support/terminal.hpp"
+
+namespace ex9000::system {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr std::size_t kMostClients = 64;
+/// Nobody who has to wait for one of these would be waiting for long.
+constexpr std::chrono::seconds kPatience{10};
+
+/// The program with a control socket.
+class Simulator : public SimulatorProcess {
+ public:
+  explicit Simulator(const std::vector<std::string>& modules) : SimulatorProcess(arguments(modules)) {}
+
+  [[nodiscard]] std::string socket() const { return directory() + "/control"; }
+
+ private:
+  static std::vector<std::string> arguments(std::vector<std::string> words) {
+    words.insert(words.end(), {"--control", "control", "--line", "instant"});
+    return words;
+  }
+};
+
+bool starts_with(const std::string& text, const std::string& start) { return text.rfind(start, 0) == 0; }
+
+/// A program that starts after all is ended, with a status of its own.
+Finished finish(std::vector<std::string> arguments, const std::string& directory) {
+  arguments.insert(arguments.begin(), {"timeout", "10", simulator_path()});
+  return run(arguments, directory);
+}
+
+/// Nothing starts: exit status 2, one line that names the path, and `directory` is as it was.
+void expect_refused(const std::string& path, const Directory& directory) {
+  const auto before = directory.contents();
+  const Finished finished = finish({"EX9042D,eeprom=image", "--control", path}, directory.path());
+  EXPECT_EQ(finished.status, 2) << path;
+  EXPECT_EQ(finished.output, "");
+  EXPECT_NE(finished.error.find("--control " + path), std::string::npos) << finished.error;
+  EXPECT_EQ(std::count(finished.error.begin(), finished.error.end(), '\n'), 1) << finished.error;
+  EXPECT_EQ(directory.contents(), before) << path;
+}
+
+std::string lines(const std::string& line, std::size_t count) {
+  std::string text;
+  for (std::size_t i = 0; i < count; ++i) {
+    text += line + "\n";
+  }
+  return text;
+}
+
+bool is_answered(ControlClient& client) {
+  try {
+    return client.ask("1 led") == "ok on";
+  } catch (const std::runtime_error&) {
+    return false;
+  }
+}
+
+std::size_t answered(const std::vector<std::unique_ptr<ControlClient>>& clients) {
+  return static_cast<std::size_t>(
+      std::count_if(clients.begin(), clients.end(), [](const auto& client) { return is_answered(*client); }));
+}
+
+std::vector<std::unique_ptr<ControlClient>> connect(const std::string& path, std::size_t count) {
+  std::vector<std::unique_ptr<ControlClient>> clients;
+  for (std::size_t i = 0; i < count; ++i) {
+    clients.push_back(std::make_unique<ControlClient>(path));
+  }
+  return clients;
+}
+
+/// The line answers, and so does the socket.
+void expect_undisturbed(const Simulator& simulator) {
+  Terminal terminal(simulator.tty(), 9600);
+  terminal.type("$01M\r");
+  EXPECT_EQ(terminal.read_line(kPatience), "!019055\r");
+  EXPECT_EQ(ControlClient(simulator.socket()).ask("1 led"), "ok on");
+}
+
+// --- commands and replies ---
+
+TEST(ControlSocket, EveryCommandTakesEffectOnTheLine) {
+  Simulator simulator({"EX9055D"});
+  ControlClient client(simulator.socket());
+  Terminal terminal(simulator.tty(), 9600);
+  EXPECT_EQ(client.ask("1 input 5 on"), "ok");
+  EXPECT_EQ(client.ask("1 pulse 0 1234"), "ok");
+  terminal.type("@01\r");
+  EXPECT_EQ(terminal.read_line(kPatience), ">0020\r");
+  terminal.type("#010\r");
+  EXPECT_EQ(terminal.read_line(kPatience), "!0101234\r");
+  terminal.type("@0181\r");
+  EXPECT_EQ(terminal.read_line(kPatience), ">\r");
+  EXPECT_EQ(std::stoul(client.ok("1 outputs"), nullptr, 16), 0x81U);
+}
+
+TEST(ControlSocket, TheModuleWatchdogEndsAHangWithoutAnybodysHelp) {
+  Simulator simulator({"EX9055D"});
+  ControlClient client(simulator.socket());
+  Terminal terminal(simulator.tty(), 9600);
+  client.ok("1 hang");
+  std::string reply;
+  for (int attempt = 0; reply.empty() && attempt < 100; ++attempt) {
+    terminal.type("$01M\r");
+    reply = terminal.read_line(std::chrono::milliseconds(100));
+  }
+  EXPECT_EQ(reply, "!019055\r");
+  EXPECT_NE(client.ok("1 status").find("watchdog-resets=1"), std::string::npos);
+}
+
+TEST(ControlSocket, CommandsInOneWriteAreAnsweredInTheirOrder) {
+  Simulator simulator({"EX9055D"});
+  ControlClient client(simulator.socket());
+  client.send("1 input 0 on\n1 inputs\nbogus\n1 input 1 on\r\n1 inputs\n\nlist\n1 input 0 off\n1 inputs\n");
+  EXPECT_EQ(client.line(), "ok");
+  EXPECT_EQ(client.line(), "ok 0001");
+  EXPECT_TRUE(starts_with(client.line(), "error: "));
+  EXPECT_EQ(client.line(), "ok");
+  EXPECT_EQ(client.line(), "ok 0003");
+  EXPECT_TRUE(starts_with(client.line(), "error: "));
+  EXPECT_TRUE(starts_with(client.line(), "ok 1 module"));
+  EXPECT_EQ(client.line(), "ok");
+  EXPECT_EQ(client.line(), "ok 0002");
+}
+
+TEST(ControlSocket, MoreInOneWriteThanALineMayHaveIsNoLongLine) {
+  Simulator simulator({"EX9055D"});
+  ControlClient client(simulator.socket());
+  client.send(lines("1 pulse 3", 200) + lines("1 inputs", 1));
+  for (int i = 0; i < 200; ++i) {
+    ASSERT_EQ(client.line(), "ok") << i;
+  }
+  EXPECT_EQ(client.line(), "ok 0000");
+  Terminal terminal(simulator.tty(), 9600);
+  terminal.type("#013\r");
+  EXPECT_EQ(terminal.read_line(kPatience), "!0100200\r");
+}
+
+TEST(ControlSocket, ACommandMayComeInPieces) {
+  Simulator simulator({"EX9055D"});
+  ControlClient other(simulator.socket());
+  ControlClient client(simulator.socket());
+  for (const char character : std::string("1 input 4 on")) {
+    client.send(std::string(1, character));
+    EXPECT_EQ(other.ask("1 inputs"), "ok 0000");  // the piece has arrived before this
+  }
+  client.send("\n");
+  EXPECT_EQ(client.line(), "ok");
+  EXPECT_EQ(other.ask("1 inputs"), "ok 0010");
+}
+
+TEST(ControlSocket, SeveralClientsInterleaveAndEachGetsItsOwnReplies) {
+  Simulator simulator({"EX9055D", "EX9052D@02"});
+  const auto clients = connect(simulator.socket(), 8);
+  for (int round = 0; round < 20; ++round) {
+    for (std::size_t i = 0; i < clients.size(); ++i) {
+      const std::string channel = std::to_string(i);
+      clients[i]->send("1 input " + channel + " on\n2 pulse " + channel + " 3\n9 bogus" + channel + "\n");
+    }
+    for (std::size_t i = clients.size(); i-- > 0;) {
+      ASSERT_EQ(clients[i]->line(), "ok");
+      ASSERT_EQ(clients[i]->line(), "ok");
+      ASSERT_TRUE(starts_with(clients[i]->line(), "error: "));
+    }
+  }
+  EXPECT_EQ(clients[0]->ask("1 inputs"), "ok 00FF");
+  EXPECT_EQ(clients[1]->ask("2 inputs"), "ok 0000");
+  Terminal terminal(simulator.tty(), 9600);
+  for (const char channel : std::string("01234567")) {
+    terminal.type(std::string("#02") + channel + "\r");
+    EXPECT_EQ(terminal.read_line(kPatience), "!0200060\r");
+  }
+}
+
+// --- clients that misbehave ---
+
+TEST(ControlSocket, ALineOfTheGreatestLengthIsACommand) {
+  Simulator simulator({"EX9055D"});
+  ControlClient client(simulator.socket());
+  const std::string command = "1 led" + std::string(995, ' ');
+  EXPECT_EQ(client.ask(command), "ok on");
+}
+
+TEST(ControlSocket, ATooLongLineIsAnErrorAndTheEndOfItsClientOnly) {
+  Simulator simulator({"EX9055D"});
+  ControlClient other(simulator.socket());
+  for (const std::size_t size : {1001U, 1002U, 5000U, 20'000U}) {
+    ControlClient client(simulator.socket());
+    client.send("1 led\n" + std::string(size, 'x') + "\n1 power off\n");
+    EXPECT_EQ(client.line(), "ok on") << size;
+    EXPECT_TRUE(starts_with(client.line(), "error: ")) << size;
+    EXPECT_TRUE(client.at_end()) << size;
+    EXPECT_EQ(other.ask("1 led"), "ok on") << size;
+  }
+  expect_undisturbed(simulator);
+}
+
+TEST(ControlSocket, AClientThatGoesInTheMiddleOfALineHasSaidNothing) {
+  Simulator simulator({"EX9055D"});
+  for (const char* piece : {"1 power off", "1 power o", "quit", "1"}) {
+    ControlClient(simulator.socket()).send(piece);
+    expect_undisturbed(simulator);
+  }
+}
+
+TEST(ControlSocket, AClientThatEndsWithoutANewlineIsToldSo) {
+  Simulator simulator({"EX9055D"});
+  ControlClient client(simulator.socket());
+  client.send("1 led\n1 power off");
+  client.close_writing();
+  EXPECT_EQ(client.line(), "ok on");
+  EXPECT_TRUE(starts_with(client.line(), "error: "));
+  EXPECT_TRUE(client.at_end());
+  expect_undisturbed(simulator);
+}
+
+TEST(ControlSocket, AClientThatSendsAndGoesHasItsCommandsCarriedOut) {
+  Simulator simulator({"EX9055D"});
+  ControlClient(simulator.socket()).send("1 input 0 on\n1 input 7 on\n");
+  ControlClient other(simulator.socket());
+  std::string inputs;
+  for (int turn = 0; inputs != "ok 0081" && turn < 100; ++turn) {  // the two take turns
+    inputs = other.ask("1 inputs");
+  }
+  EXPECT_EQ(inputs, "ok 0081");
+}
+
+TEST(ControlSocket, AClientThatNeverReadsIsNotReadFromAndDisturbsNobody) {
+  Simulator simulator({"EX9055D"});
+  ControlClient other(simulator.socket());
+  const std::string command = "1 status\n";
+  std::size_t sent = 0;
+  {
+    ControlClient deaf(simulator.socket());
+    std::size_t refusals = 0;
+    // A reply of another client comes after the program has read all that it ever will.
+    while (refusals < 100) {
+      const std::size_t taken = deaf.offer(command);
+      sent += taken / command.size();
+      refusals += taken == 0 ? 1 : 0;
+      ASSERT_EQ(other.ask("1 led"), "ok on");
+      ASSERT_LT(sent, 100'000U);
+    }
+    EXPECT_GT(sent, 100U);
+    expect_undisturbed(simulator);
+    for (std::size_t i = 0; i < sent; ++i) {
+      ASSERT_TRUE(starts_with(deaf.line(), "ok EX9055D")) << i;  // all of them, once it reads
+    }
+    while (deaf.offer(command) != 0) {
+    }
+  }
+  expect_undisturbed(simulator);
+}
+
+TEST(ControlSocket, OfAHundredConnectionsSixtyFourAreServedAndTheOthersHungUp) {
+  Simulator simulator({"EX9055D"});
+  auto clients = connect(simulator.socket(), 100);
+  EXPECT_EQ(answered(clients), kMostClients);
+  EXPECT_EQ(answered(clients), kMostClients);  // for good
+  clients.resize(1);
+  ASSERT_TRUE(is_answered(*clients[0]));  // behind the others' going
+  const auto heirs = connect(simulator.socket(), 100);
+  EXPECT_EQ(answered(heirs), kMostClients - 1);
+  EXPECT_TRUE(is_answered(*clients[0]));
+}
+
+TEST(ControlSocket, ConnectionsThatComeAndGoUseNothingUp) {
+  Simulator simulator({"EX9055D"});
+  for (int i = 0; i < 1500; ++i) {  // more than a process may have files open
+    ControlClient client(simulator.socket());
+    if (i % 2 == 0) {
+      client.send("1 led");
+    } else {
+      ASSERT_EQ(client.ask("1 led"), "ok on") << i;
+    }
+  }
+  expect_undisturbed(simulator);
+}
+
+// --- the end ---
+
+TEST(ControlSocket, QuitEndsTheProgramWithStatus0AndRemovesLinkAndSocket) {
+  Simulator simulator({"EX9055D"});
+  ControlClient onlooker(simulator.socket());
+  ControlClient client(simulator.socket());
+  EXPECT_EQ(client.ask("quit"), "ok");
+  EXPECT_EQ(simulator.wait(), 0);
+  EXPECT_TRUE(client.at_end());
+  EXPECT_TRUE(onlooker.at_end());
+  EXPECT_TRUE(fs::is_empty(simulator.directory()));
+}
+
+TEST(ControlSocket, QuitWorksForOneWhoDoesNotWaitForItsReplyAndBesideOneWhoDoesNotRead) {
+  Simulator simulator({"EX9055D"});
+  ControlClient deaf(simulator.socket());
+  const std::string flood = lines("1 status", 1000);
+  while (deaf.offer(flood) != 0) {
+  }
+  ControlClient(simulator.socket()).send("quit\n");
+  EXPECT_EQ(simulator.wait(), 0);
+  EXPECT_TRUE(fs::is_empty(simulator.directory()));
+}
+
+TEST(ControlSocket, ASignalRemovesItToo) {
+  for (const int signal : {SIGINT, SIGTERM, SIGHUP}) {
+    Simulator simulator({"EX9055D"});
+    ControlClient client(simulator.socket());
+    EXPECT_EQ(simulator.end(signal), 0);
+    EXPECT_TRUE(client.at_end());
+    EXPECT_TRUE(fs::is_empty(simulator.directory()));
+  }
+}
+
+TEST(ControlSocket, ASocketThatIsAnothersByNowIsNotRemoved) {
+  Simulator simulator({"EX9055D"});
+  fs::remove(simulator.socket());
+  write_file(simulator.socket(), "precious");
+  EXPECT_EQ(simulator.end(SIGTERM), 0);
+  EXPECT_EQ(bytes_of_file(simulator.socket()), "precious");
+}
+
+// --- the path ---
+
+TEST(ControlSocket, TheGreetingNamesIt) {
+  Simulator simulator({"EX9055D"});
+  EXPECT_NE(simulator.output().find("control socket control\n"), std::string::npos) << simulator.output();
+}
+
+TEST(ControlSocket, OneLeftByADeadProcessIsTakenOver) {
+  Simulator dead({"EX9055D"});
+  EXPECT_EQ(dead.end(SIGKILL), 128 + SIGKILL);
+  ASSERT_TRUE(fs::is_socket(dead.socket()));
+  SimulatorProcess heir({"EX9055D", "--pty", dead.tty(), "--control", dead.socket()});
+  EXPECT_EQ(ControlClient(dead.socket()).ask("1 led"), "ok on");
+  EXPECT_EQ(heir.end(SIGTERM), 0);
+  EXPECT_TRUE(fs::is_empty(dead.directory()));
+}
+
+TEST(ControlSocket, OneInUseIsRefusedAndGoesOnWorking) {
+  Simulator simulator({"EX9055D"});
+  const Directory directory;
+  expect_refused(simulator.socket(), directory);
+  expect_undisturbed(simulator);
+  const auto clients = connect(simulator.socket(), kMostClients);  // a full house is in use as well
+  expect_refused(simulator.socket(), directory);
+  EXPECT_TRUE(is_answered(*clients[0]));
+}
+
+TEST(ControlSocket, SomethingElseAtThePathIsRefusedAndLeftAlone) {
+  const Directory directory;
+  write_file(directory / "file", "precious");
+  write_file(directory / "empty", "");
+  fs::create_directory(directory / "directory");
+  fs::create_symlink(directory / "file", directory / "symlink");
+  fs::create_symlink(directory / "nowhere", directory / "dangling");
+  ASSERT_EQ(mkfifo((directory / "fifo").c_str(), 0644), 0);
+  for (const char* name : {"file", "empty", "directory", "symlink", "dangling", "fifo"}) {
+    expect_refused(name, directory);
+  }
+  expect_refused("/dev/null", directory);
+}
+
+TEST(ControlSocket, ASocketOfAnotherKindIsRefusedAndLeftAlone) {
+  const Directory directory;
+  const int datagrams = socket(AF_UNIX, SOCK_DGRAM | SOCK_CLOEXEC, 0);
+  sockaddr_un address{};
+  address.sun_family = AF_UNIX;
+  (directory / "datagrams").copy(address.sun_path, sizeof address.sun_path - 1);
+  ASSERT_EQ(bind(datagrams, reinterpret_cast<const sockaddr*>(&address), sizeof address), 0);
+  expect_refused("datagrams", directory);
+  close(datagrams);
+}
+
+TEST(ControlSocket, APathThatCannotBeMadeIsRefusedAndLeavesNothing) {
+  const Directory directory;
+  for (const std::string& path : {std::string("missing/control"), std::string("/proc/control"),
+                                  std::string(108, 'x'), std::string(300, 'x')}) {
+    expect_refused(path, directory);
+  }
+}
+
+TEST(ControlSocket, ThePathMayBeAsLongAsTheSystemTakesIt) {
+  const std::string name(107, 'x');
+  SimulatorProcess simulator({"EX9055D", "--control", name});
+  fs::create_symlink(name, simulator.directory() + "/short");
+  EXPECT_EQ(ControlClient(simulator.directory() + "/short").ask("1 led"), "ok on");
+  EXPECT_EQ(simulator.end(SIGTERM), 0);
+  EXPECT_FALSE(fs::exists(simulator.directory() + "/" + name));
+}
+
+}  // namespace
+}  // namespace ex9000::system

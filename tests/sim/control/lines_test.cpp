@@ -1,0 +1,128 @@
+// Commands for a line, for one of several, and for modules by their positions.
+#include <gtest/gtest.h>
+
+#include <string>
+
+#include "tests/sim/control/control_bench.hpp"
+
+namespace ex9000::sim {
+namespace {
+
+TEST(ControlLine, ListNamesEveryModuleByItsPosition) {
+  ThreeModules modules;
+  const std::string text = modules.tell("list");
+  EXPECT_TRUE(has(text, "1 EX9042D-M at 01")) << text;
+  EXPECT_TRUE(has(text, "2 EX9052D at 02")) << text;
+  EXPECT_TRUE(has(text, "3 EX9055D at 0A")) << text;
+  modules.tell("2 power off");
+  EXPECT_TRUE(has(modules.tell("list"), "2 EX9052D"));
+}
+
+TEST(ControlLine, APositionIsThatModuleAndNoOther) {
+  ThreeModules modules;
+  EXPECT_EQ(modules.tell("3 input 0 on"), "ok");
+  EXPECT_EQ(modules.at(2).input_levels(), 0);
+  EXPECT_EQ(modules.at(3).input_levels(), 1);
+  EXPECT_EQ(modules.tell("2 power off"), "ok");
+  EXPECT_TRUE(modules.at(1).powered());
+  EXPECT_FALSE(modules.at(2).powered());
+  EXPECT_TRUE(modules.at(3).powered());
+}
+
+TEST(ControlLine, APositionWithoutAModuleIsRefused) {
+  ThreeModules modules;
+  for (const char* position : {"0", "00", "4", "10", "256", "4294967297", "18446744073709551617", "-1", "+1",
+                               "1.", "0x1", "1st", "A", "#1", "**"}) {
+    EXPECT_EQ(modules.tell(std::string(position) + " power off").rfind("error: ", 0), 0U) << position;
+    for (const std::size_t module : {1U, 2U, 3U}) {
+      EXPECT_TRUE(modules.at(module).powered()) << position;
+    }
+  }
+}
+
+TEST(ControlLine, HelpNamesEveryCommand) {
+  ControlBench bench("EX9052D");
+  const std::string text = bench.tell("help");
+  for (const char* command : {"power", "reset", "init", "input", "pulse", "inputs", "outputs", "led", "hang",
+                              "status", "fault FAULT", "fault off K|all", "faults", "list", "help", "quit"}) {
+    EXPECT_TRUE(has(text, command)) << command;
+    EXPECT_TRUE(has(control_commands(), command)) << command;
+  }
+}
+
+TEST(ControlLine, QuitIsAcknowledgedAndOnlyTheWholeWordQuits) {
+  ModuleBench bench("EX9052D");
+  Control control({{"", bench.line()}});
+  const Control::Reply reply = control.carry_out("quit");
+  EXPECT_EQ(reply.text, "ok");
+  EXPECT_TRUE(reply.quit);
+  for (const char* command : {"quit now", "1 quit", "Quit", "quitt", "qui", "quit quit"}) {
+    const Control::Reply refused = control.carry_out(command);
+    EXPECT_EQ(checked(refused).rfind("error: ", 0), 0U) << command;
+    EXPECT_FALSE(refused.quit) << command;
+  }
+}
+
+/// Two modules on the one, one on the other.
+class TwoLines {
+ public:
+  TwoLines() {
+    hall_.come_up();
+    yard_.come_up();
+  }
+
+  std::string tell(const std::string& command) { return checked(control_.carry_out(command)); }
+  Line& hall() { return hall_; }
+  Line& yard() { return yard_; }
+
+ private:
+  Line hall_{{parse_module_spec("EX9042D@01"), parse_module_spec("EX9052D@02")},
+             kPaced,
+             [](std::uint8_t, ByteStatus) {}};
+  Line yard_{{parse_module_spec("EX9055D@01")}, kPaced, [](std::uint8_t, ByteStatus) {}};
+  Control control_{{{"hall", hall_}, {"yard", yard_}}};
+};
+
+TEST(ControlLines, ModulesAreNumberedThroughAllOfThem) {
+  TwoLines lines;
+  EXPECT_EQ(lines.tell("list"),
+            "ok 3 modules: 1 EX9042D at 01 on hall, 2 EX9052D at 02 on hall, 3 EX9055D at 01 on yard");
+  EXPECT_EQ(lines.tell("3 input 0 on"), "ok");
+  EXPECT_EQ(lines.yard().module(0).input_levels(), 1);
+  EXPECT_EQ(lines.hall().module(1).input_levels(), 0);
+  EXPECT_TRUE(has(lines.tell("4 power off"), "no module 4; there are 1 to 3"));
+}
+
+TEST(ControlLines, AFaultIsOfTheLineThatIsNamedOrWhoseModuleIs) {
+  TwoLines lines;
+  EXPECT_EQ(lines.tell("3 fault gone"), "ok 1");
+  EXPECT_FALSE(lines.yard().module(0).powered());
+  EXPECT_TRUE(lines.hall().module(0).powered());
+  EXPECT_EQ(lines.tell("line hall fault gone"), "ok 1");
+  EXPECT_FALSE(lines.hall().module(0).powered());
+  EXPECT_FALSE(lines.hall().module(1).powered());
+  EXPECT_EQ(lines.tell("line yard faults"), "ok 1 fault: 1* x1 3 gone");
+  EXPECT_EQ(lines.tell("line hall faults"), "ok 1 fault: 1* x1 gone");
+  EXPECT_EQ(lines.tell("line hall fault off 1"), "ok");
+  EXPECT_TRUE(lines.hall().module(0).powered());
+  EXPECT_FALSE(lines.yard().module(0).powered());
+  EXPECT_EQ(lines.tell("line yard fault off all"), "ok");
+  EXPECT_TRUE(lines.yard().module(0).powered());
+}
+
+TEST(ControlLines, WhatIsOfALineWantsItsName) {
+  TwoLines lines;
+  for (const char* command : {"fault gone", "faults", "fault off all"}) {
+    EXPECT_EQ(lines.tell(command), "error: there are several lines; put 'line NAME' in front") << command;
+  }
+  EXPECT_EQ(lines.tell("line shed faults"), "error: no line 'shed'; there are hall, yard");
+  EXPECT_TRUE(has(lines.tell("line hall"), "the command is line NAME fault FAULT"));
+  for (const char* command : {"line hall list", "line hall 1 power off", "line hall quit",
+                              "line hall line hall faults", "line hall fault", "line hall fault off 1"}) {
+    EXPECT_EQ(lines.tell(command).rfind("error: ", 0), 0U) << command;
+  }
+  EXPECT_TRUE(lines.hall().module(0).powered());
+}
+
+}  // namespace
+}  // namespace ex9000::sim

@@ -1,0 +1,158 @@
+// When a fault strikes.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+
+#include "tests/sim/faults/fault_bench.hpp"
+#include "tests/support/refusal.hpp"
+
+namespace ex9000::sim {
+namespace {
+
+using namespace std::chrono_literals;
+
+TEST(FaultsSchedule, AlwaysBeginsAtOnceAndEndsWhenItIsTold) {
+  FaultBench bench;
+  bench.run_until(1s);
+  bench.add("gone for 250ms");
+  EXPECT_FALSE(bench.at(1).powered());
+  bench.run_until(1250ms - 1ns);
+  EXPECT_FALSE(bench.at(1).powered());
+  bench.run_until(1250ms);
+  EXPECT_TRUE(bench.at(1).powered());
+  bench.run(10s);
+  EXPECT_TRUE(bench.at(1).powered());
+}
+
+TEST(FaultsSchedule, AMomentIsExactAndCountsFromTheLinesBegin) {
+  FaultBench bench;
+  bench.add("gone at 12.5s for 2s");
+  bench.run_until(12'500ms - 1ns);
+  EXPECT_TRUE(bench.at(1).powered());
+  bench.run_until(12'500ms);
+  EXPECT_FALSE(bench.at(1).powered());
+  bench.run_until(14'500ms - 1ns);
+  EXPECT_FALSE(bench.at(1).powered());
+  bench.run_until(14'500ms);
+  EXPECT_TRUE(bench.at(1).powered());
+}
+
+TEST(FaultsSchedule, AMomentThatIsOverIsRefused) {
+  FaultBench bench;
+  bench.run_until(2s);
+  EXPECT_EQ(refusal([&] { bench.add("gone at 1.5s"); }), "gone at 1.5s: that is over, it is 2s now");
+  EXPECT_TRUE(bench.faults().told().empty());
+  EXPECT_EQ(bench.add("gone at 2s"), 1U);
+  EXPECT_FALSE(bench.at(1).powered());
+}
+
+TEST(FaultsSchedule, APeriodIsExactFromWhenItIsAdded) {
+  FaultBench bench;
+  bench.run_until(700ms);
+  bench.add("foreign-traffic 55 every 5s");
+  bench.run_until(26s);
+  const auto said = of_others(bench);
+  ASSERT_EQ(said.size(), 5U);
+  for (std::size_t i = 0; i < said.size(); ++i) {
+    EXPECT_EQ(said[i].first, 700ms + 5s * (i + 1));
+  }
+}
+
+TEST(FaultsSchedule, WhatLastsIsOverBeforeItsPeriodIs) {
+  FaultBench bench;
+  bench.run_until(1s);
+  bench.add("gone every 5s for 1s");
+  for (int i = 1; i <= 4; ++i) {
+    bench.run_until(1s + 5s * i - 1ns);
+    EXPECT_TRUE(bench.at(1).powered()) << i;
+    bench.run_until(1s + 5s * i + 1s - 1ns);
+    EXPECT_FALSE(bench.at(1).powered()) << i;
+    bench.run_until(1s + 5s * i + 1s);
+    EXPECT_TRUE(bench.at(1).powered()) << i;
+  }
+  EXPECT_EQ(bench.faults().told()[0].strikes_so_far, 4U);
+}
+
+TEST(FaultsSchedule, OfRepliesStrikesEveryReplyOrEverySoManieth) {
+  FaultBench every;
+  every.add("lost-reply every reply");
+  EXPECT_EQ(answered(every, 5), ".....");
+  FaultBench tenth;
+  tenth.add("lost-reply every 10th reply");
+  EXPECT_EQ(answered(tenth, 35), "xxxxxxxxx.xxxxxxxxx.xxxxxxxxx.xxxxx");
+  EXPECT_EQ(tenth.faults().told()[0].strikes_so_far, 3U);
+}
+
+TEST(FaultsSchedule, OfTheRepliesOfAllModulesCountsThemTogether) {
+  FaultBench bench(two());
+  bench.add("lost-reply every 3rd reply");
+  EXPECT_EQ(answered(bench, 2, "01"), "xx");
+  EXPECT_EQ(answered(bench, 2, "02"), ".x");
+  EXPECT_EQ(answered(bench, 2, "01"), "x.");
+}
+
+TEST(FaultsSchedule, NoiseOfRepliesThatLastsIsOneStrikeHoweverManyThereAre) {
+  FaultBench bench;
+  bench.add("bit-errors 1e-12 every reply for 1h");
+  bench.add("lost-bytes 1e-12 every reply for 1s");
+  for (int i = 0; i < 20; ++i) {
+    EXPECT_EQ(bench.ask("$01M"), kName);
+  }
+  bench.run(990ms);
+  EXPECT_EQ(bench.faults().told()[0].strikes, 1U);
+  EXPECT_EQ(bench.faults().told()[1].strikes, 0U);
+  EXPECT_EQ(bench.faults().told()[0].strikes_so_far, 20U);
+}
+
+TEST(FaultsSchedule, OfRepliesMayLastBeyondTheReply) {
+  FaultBench bench;
+  bench.add("lost-reply every 3rd reply for 100ms");
+  const std::string which = answered(bench, 6);  // one takes 55 ms
+  EXPECT_EQ(which.substr(0, 4), "xx..");
+  EXPECT_EQ(which[5], '.');  // the sixth
+}
+
+TEST(FaultsSchedule, AProbabilityIsKeptAndASeedRepeatsIt) {
+  const auto which = [](std::uint64_t seed) {
+    FaultBench bench({"EX9042D@01"}, seed);
+    bench.add("lost-reply with probability 0.25");
+    return answered(bench, 2000);
+  };
+  const std::string first = which(1);
+  EXPECT_EQ(which(1), first);
+  EXPECT_NE(which(2), first);
+  const double lost = static_cast<double>(std::count(first.begin(), first.end(), '.')) / 2000;
+  EXPECT_NEAR(lost, 0.25, 4 * std::sqrt(0.25 * 0.75 / 2000));
+}
+
+TEST(FaultsSchedule, OfWritesCutsBehindTheWriteAndBeforeItsReply) {
+  FaultBench bench;
+  bench.add("power-cut after 3 writes");
+  EXPECT_EQ(bench.ask("~01OFIRST"), "!01");
+  EXPECT_EQ(bench.ask("~01OSECOND"), "!01");
+  bench.ask("$01M");  // stores nothing
+  EXPECT_EQ(bench.ask("~01OTHIRD"), "");
+  EXPECT_FALSE(bench.at(1).powered());
+  bench.run(1200ms);
+  EXPECT_EQ(bench.ask("$01M"), "!01THIRD");
+  EXPECT_EQ(bench.ask("~01OFOURTH"), "!01");  // once
+  EXPECT_EQ(bench.ask("~01OFIFTH"), "!01");
+  EXPECT_EQ(bench.ask("~01OSIXTH"), "!01");
+  EXPECT_EQ(bench.faults().told()[0].strikes_so_far, 1U);
+}
+
+TEST(FaultsSchedule, OfWritesCountsThoseOfItsOwnModule) {
+  FaultBench bench(two());
+  bench.add("gone after 1 write for 1s", 2);
+  EXPECT_EQ(bench.ask("~01OOTHER"), "!01");
+  EXPECT_TRUE(bench.at(2).powered());
+  EXPECT_EQ(bench.ask("~02OMINE"), "");
+  EXPECT_TRUE(bench.at(1).powered());
+  bench.run(1200ms);
+  EXPECT_EQ(bench.ask("$02M"), "!02MINE");
+}
+
+}  // namespace
+}  // namespace ex9000::sim

@@ -1,0 +1,113 @@
+// Faults of modules, in virtual time: what each is to a master, and when it is over.
+#include <gtest/gtest.h>
+
+#include "tests/sim/faults/fault_bench.hpp"
+
+namespace ex9000::sim {
+namespace {
+
+using namespace std::chrono_literals;
+
+TEST(WrongRate, IsThatAtWhichItListensAndSends) {
+  FaultBench bench(two());
+  const std::size_t fault = bench.add("wrong-rate 19200", 1);
+  EXPECT_NE(bench.ask("$01M"), kName);
+  EXPECT_EQ(bench.ask("$02M"), "!029052");
+  bench.line().master().set_baud(19200);
+  EXPECT_EQ(bench.ask("$01M"), kName);
+  bench.line().master().set_baud(9600);
+  EXPECT_TRUE(bench.faults().remove(fault));
+  EXPECT_EQ(bench.ask("$01M"), kName);
+}
+
+TEST(Gone, TakesTheSupplyAndGivesItBack) {
+  FaultBench bench;
+  bench.ask("@010A05");
+  bench.ask("$015");
+  const std::size_t fault = bench.add("gone");
+  EXPECT_FALSE(bench.at(1).powered());
+  EXPECT_EQ(bench.at(1).outputs(), 0);
+  EXPECT_EQ(bench.ask("$01M"), "");
+  EXPECT_TRUE(bench.faults().remove(fault));
+  bench.run(100ms);
+  EXPECT_EQ(bench.ask("$015"), "!011");
+}
+
+TEST(Gone, InTheMiddleOfAReplyCutsIt) {
+  FaultBench bench;
+  bench.forget();
+  bench.send("$01M\r");
+  bench.run(5ms);
+  bench.add("gone");
+  bench.run(100ms);
+  EXPECT_LT(bench.heard().size(), 6U);
+  EXPECT_FALSE(bench.recorder().drivers.back().on);
+}
+
+TEST(Gone, DoesNotSwitchAModuleOnThatSomebodyElseHasSwitchedOff) {
+  for (const bool before : {true, false}) {
+    FaultBench bench;
+    if (before) {
+      bench.at(1).power(false);
+    }
+    bench.add("gone for 2s");
+    bench.run(1s);
+    bench.at(1).power(false);
+    bench.run(2s);
+    EXPECT_FALSE(bench.at(1).powered()) << before;
+    bench.at(1).power(true);
+    EXPECT_TRUE(bench.at(1).powered());
+  }
+}
+
+TEST(Gone, LastsAlsoWhereSomebodySwitchesTheModuleOn) {
+  FaultBench bench;
+  bench.add("gone for 2s");
+  bench.run(1s);
+  bench.at(1).power(true);
+  EXPECT_FALSE(bench.at(1).powered());
+  bench.run(1s);
+  EXPECT_TRUE(bench.at(1).powered());
+}
+
+TEST(PowerCut, LastsASecondUnlessTold) {
+  for (const auto& [text, lasts] : {std::pair("power-cut", 1000ms), std::pair("power-cut for 30ms", 30ms)}) {
+    FaultBench bench;
+    bench.add(text);
+    const VirtualTime cut = bench.now();
+    bench.run_until(cut + lasts - 1ns);
+    EXPECT_FALSE(bench.at(1).powered()) << text;
+    bench.run_until(cut + lasts);
+    EXPECT_TRUE(bench.at(1).powered()) << text;
+    bench.run(100ms);
+    EXPECT_EQ(bench.ask("$015"), "!011");
+  }
+}
+
+TEST(Hang, SilencesAModuleUntilItsWatchdogResetsIt) {
+  FaultBench bench;
+  bench.add("hang at 1s");
+  bench.run_until(1s - 1ns);
+  EXPECT_EQ(bench.at(1).watchdog_resets(), 0U);
+  bench.run_until(1s);
+  EXPECT_EQ(bench.ask("$01M"), "");
+  bench.run_until(1s + 1600ms);
+  EXPECT_EQ(bench.at(1).watchdog_resets(), 1U);
+  bench.run(100ms);
+  EXPECT_EQ(bench.ask("$01M"), kName);
+  bench.run(10s);
+  EXPECT_EQ(bench.at(1).watchdog_resets(), 1U);
+}
+
+TEST(Hang, OfEveryReplyLetsThatReplyOut) {
+  FaultBench bench;
+  bench.add("hang every 2nd reply");
+  EXPECT_EQ(bench.ask("$01M"), kName);
+  EXPECT_EQ(bench.ask("$01M"), kName);
+  EXPECT_EQ(bench.ask("$01M"), "");
+  bench.run(2s);
+  EXPECT_EQ(bench.at(1).watchdog_resets(), 1U);
+}
+
+}  // namespace
+}  // namespace ex9000::sim

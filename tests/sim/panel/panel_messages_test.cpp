@@ -1,0 +1,260 @@
+// What a page is told: all at first, then what has changed, and of frames no more than it can read.
+#include <gtest/gtest.h>
+
+#include <memory>
+#include <string>
+
+#include "sim/control/control.hpp"
+#include "sim/panel/loopback.hpp"
+#include "sim/panel/messages.hpp"
+#include "sim/panel/panel.hpp"
+#include "tests/firmware/module_bench.hpp"
+
+namespace ex9000::sim {
+namespace {
+
+using std::chrono::milliseconds;
+
+/// A line with two outputs' worth of interest, and somebody who looks.
+class PanelBench : public ModuleBench {
+ public:
+  explicit PanelBench(const std::string& spec)
+      : ModuleBench(spec),
+        control_({{"hall", line()}}),
+        panel_([this](const std::string& command) { return control_.carry_out(command); }, 1) {
+    LineIntroduced introduced;
+    introduced.name = "hall";
+    introduced.tcp = "127.0.0.1:5020";
+    panel_.add_line(introduced, line(), [this] { return now(); });
+    frames_.tell([this](const Frame& frame) { panel_.hear(0, frame); });
+    line().bus().observe(frames_);
+    viewer_ = panel_.viewer();
+  }
+
+  /// What is told at the next look; null: nothing.
+  Message look() { return look(*viewer_); }
+  Message look(PanelViewer& viewer) {
+    panel_.look();
+    const std::string text = viewer.next();
+    return text.empty() ? Message() : Message::parse(text);
+  }
+  /// Nothing more of what has begun will come.
+  void end_frames() { frames_.finish(); }
+  PanelViewer& viewer() { return *viewer_; }
+  Panel& panel() { return panel_; }
+
+ private:
+  Control control_;
+  Panel panel_;
+  FrameWatch frames_{[this] { return line().master().baud(); }};
+  std::unique_ptr<PanelViewer> viewer_;
+};
+
+TEST(PanelMessages, TheFirstHasAllThatAPageNeeds) {
+  PanelBench bench("EX9055D@07,name=PUMPS");
+  const Message message = bench.look();
+  const Message& hello = message["hello"];
+  EXPECT_EQ(hello["version"], kFirmwareVersion);
+  EXPECT_EQ(hello["run"].get<std::string>().size(), 16U);
+  EXPECT_EQ(hello["lines"][0]["name"], "hall");
+  EXPECT_EQ(hello["lines"][0]["ports"][0], "127.0.0.1:5020");
+  EXPECT_EQ(hello["modules"][0]["model"], "EX9055D");
+  EXPECT_EQ(hello["modules"][0]["outputs"][7], "DO7");
+  EXPECT_EQ(hello["modules"][0]["inputs"].size(), 8U);
+  const Message& module = message["state"]["modules"][0];
+  for (const char* part : {"plate", "gathered", "guard", "stored"}) {
+    EXPECT_TRUE(module.contains(part)) << part;
+  }
+  EXPECT_EQ(module["plate"]["address"], 7);
+  EXPECT_EQ(module["stored"]["settings"]["name"], "PUMPS");
+  EXPECT_EQ(message["state"]["lines"][0]["baud"], 9600);
+}
+
+TEST(PanelMessages, TheNextHasOnlyWhatHasChanged) {
+  PanelBench bench("EX9055D");
+  static_cast<void>(bench.look());
+  EXPECT_TRUE(bench.look().is_null());
+  bench.module().set_input(2, true);
+  const Message message = bench.look();
+  EXPECT_FALSE(message.contains("hello"));
+  const Message& module = message["state"]["modules"][0];
+  EXPECT_EQ(module["plate"]["inputs"], 4);
+  EXPECT_FALSE(module.contains("stored"));
+  EXPECT_FALSE(module.contains("guard"));
+  EXPECT_TRUE(bench.look().is_null());
+}
+
+TEST(PanelMessages, WhoHasNotReadForLongIsToldHowThingsAreNow) {
+  PanelBench bench("EX9055D");
+  const auto slow = bench.panel().viewer();
+  static_cast<void>(bench.look(*slow));
+  for (int i = 1; i <= 5; ++i) {
+    bench.module().set_input(0, i % 2 == 1);
+    static_cast<void>(bench.look());
+  }
+  const Message message = bench.look(*slow);
+  EXPECT_EQ(message["state"]["modules"].size(), 1U);
+  EXPECT_EQ(message["state"]["modules"][0]["plate"]["inputs"], 1);
+  EXPECT_TRUE(bench.look(*slow).is_null());
+}
+
+TEST(PanelMessages, FramesComeWithTimeDirectionBytesAndMeaning) {
+  PanelBench bench("EX9055D");
+  static_cast<void>(bench.look());
+  ASSERT_EQ(bench.ask("$01M"), "!019055");
+  const Message message = bench.look();
+  const Message& entries = message["frames"][0]["entries"];
+  ASSERT_EQ(entries.size(), 2U);
+  EXPECT_EQ(entries[0]["station"], 0);
+  EXPECT_EQ(entries[0]["bytes"], "2430314D0D");
+  EXPECT_EQ(entries[0]["text"], "$01M\\r");
+  EXPECT_NE(entries[0]["meaning"].get<std::string>().find("$AAM"), std::string::npos);
+  EXPECT_EQ(entries[0]["ended"].get<std::int64_t>() - entries[0]["began"].get<std::int64_t>(), 5208);
+  EXPECT_EQ(entries[1]["station"], 1);
+  EXPECT_FALSE(entries[1].contains("error"));
+  EXPECT_EQ(entries[1]["number"], 1);
+}
+
+TEST(PanelMessages, DamagedFramesAndRemarksAreTold) {
+  PanelBench bench("EX9042D-M");
+  static_cast<void>(bench.look());
+  bench.send(ModuleBench::Bytes{1, 1, 0, 0, 0, 13, 0, 0});
+  bench.end_frames();
+  bench.panel().note(0, bench.now(), "gone begins");
+  const Message message = bench.look();
+  const Message& entries = message["frames"][0]["entries"];
+  EXPECT_EQ(entries[0]["error"], "wrong CRC");
+  EXPECT_EQ(entries.back()["note"], "gone begins");
+}
+
+TEST(PanelMessages, OfMoreFramesThanItCanReadThePageGetsTheLast) {
+  PanelBench bench("EX9042D");
+  static_cast<void>(bench.look());
+  constexpr std::size_t kMany = 2000;
+  for (std::size_t i = 0; i < kMany; ++i) {
+    bench.panel().note(0, bench.now(), std::to_string(i));
+  }
+  const Message message = bench.look();
+  const Message& entries = message["frames"][0]["entries"];
+  EXPECT_EQ(entries.size(), 250U);
+  EXPECT_EQ(entries.back()["number"], kMany - 1);
+  EXPECT_EQ(entries.back()["note"], std::to_string(kMany - 1));
+  EXPECT_EQ(entries.front()["number"], kMany - 250);
+  EXPECT_TRUE(bench.look().is_null());
+}
+
+TEST(PanelMessages, FaultsAreToldAsTheyComeAndGo) {
+  PanelBench bench("EX9042D");
+  EXPECT_EQ(bench.look()["state"]["lines"][0]["faults"], Message::array());
+  ASSERT_TRUE(bench.viewer().ask(R"({"id": 5, "do": "1 fault late-reply 50ms"})"));
+  const Message message = bench.look();
+  EXPECT_EQ(message["reply"]["id"], 5);
+  EXPECT_EQ(message["reply"]["ok"], true);
+  EXPECT_EQ(message["reply"]["text"], "ok 1");
+  const Message& fault = message["state"]["lines"][0]["faults"][0];
+  EXPECT_EQ(fault["text"], "late-reply 50ms");
+  EXPECT_EQ(fault["number"], 1);
+  EXPECT_EQ(fault["module"], 0);
+  ASSERT_TRUE(bench.viewer().ask(R"({"id": 6, "do": "line hall fault off 1"})"));
+  EXPECT_EQ(bench.look()["state"]["lines"][0]["faults"], Message::array());
+}
+
+TEST(PanelMessages, ARefusedCommandSaysWhyAndQuitIsOne) {
+  PanelBench bench("EX9042D");
+  for (const std::string command : {"quit", " quit", "quit now", "1 input 0 on", "nonsense"}) {
+    ASSERT_TRUE(bench.viewer().ask(R"({"id": 1, "do": ")" + command + "\"}")) << command;
+    const Message reply = bench.look()["reply"];
+    EXPECT_EQ(reply["ok"], false) << command;
+    EXPECT_EQ(reply["text"].get<std::string>().rfind("error: ", 0), 0U) << command;
+  }
+}
+
+TEST(PanelMessages, WhatAPageHoldsIsLetGoWhenItGoes) {
+  PanelBench bench("EX9055D");
+  auto page = bench.panel().viewer();
+  ASSERT_TRUE(page->ask(R"({"id": 1, "do": "1 input 3 on", "undo": "1 input 3 off"})"));
+  ASSERT_TRUE(page->ask(R"({"id": 2, "do": "1 input 4 on"})"));
+  EXPECT_EQ(bench.module().input_levels(), 0x18U);
+  page.reset();
+  EXPECT_EQ(bench.module().input_levels(), 0x10U);
+}
+
+TEST(PanelMessages, WhatAPageHasLetGoItselfIsNotLetGoAgain) {
+  PanelBench bench("EX9055D");
+  auto page = bench.panel().viewer();
+  ASSERT_TRUE(page->ask(R"({"id": 1, "do": "1 input 3 on", "undo": "1 input 3 off"})"));
+  ASSERT_TRUE(page->ask(R"({"id": 2, "do": "1 input 3 off"})"));
+  bench.module().set_input(3, true);
+  page.reset();
+  EXPECT_EQ(bench.module().input_levels(), 0x08U);
+}
+
+TEST(PanelMessages, WhatWasRefusedIsNotUndone) {
+  PanelBench bench("EX9055D");
+  auto page = bench.panel().viewer();
+  ASSERT_TRUE(page->ask(R"({"id": 1, "do": "nonsense", "undo": "1 input 3 on"})"));
+  page.reset();
+  EXPECT_EQ(bench.module().input_levels(), 0U);
+}
+
+TEST(PanelMessages, APageThatNeverLetsGoIsNoPage) {
+  PanelBench bench("EX9055D");
+  auto page = bench.panel().viewer();
+  bool taken = true;
+  for (int i = 0; taken && i < 1000; ++i) {
+    taken = page->ask(R"({"id": 1, "do": "1 input 3 on", "undo": ")" + std::to_string(i) + "\"}");
+  }
+  EXPECT_FALSE(taken);
+}
+
+TEST(PanelMessages, InitIsATerminalWhereItIsNoSwitchAtTheRear) {
+  for (const char* with : {"EX9042D-M", "EX9043D", "EX9052D", "EX9068D-M"}) {
+    EXPECT_EQ(plate_layout(*find_model(with))["initTerminal"], true) << with;
+  }
+  for (const char* without : {"EX9043D-M", "EX9052D-M"}) {
+    EXPECT_EQ(plate_layout(*find_model(without))["initTerminal"], false) << without;
+  }
+}
+
+TEST(Loopback, KnowsItsNamesWithTheirPort) {
+  const Loopback here(9042);
+  for (const std::string name : {"127.0.0.1", "localhost"}) {
+    EXPECT_TRUE(here.is_host(name + ":9042"));
+    EXPECT_TRUE(here.is_origin("http://" + name + ":9042"));
+    EXPECT_FALSE(here.is_host(name));
+    EXPECT_FALSE(here.is_host(name + ":80"));
+    EXPECT_FALSE(here.is_origin("https://" + name + ":9042"));
+  }
+  EXPECT_FALSE(here.is_host("example.org:9042"));
+}
+
+TEST(Loopback, AtTheUsualPortItMayBeLeftOut) {
+  const Loopback here(80);
+  for (const std::string name : {"127.0.0.1", "localhost"}) {
+    for (const std::string port : {"", ":80"}) {
+      EXPECT_TRUE(here.is_host(name + port));
+      EXPECT_TRUE(here.is_origin("http://" + name + port));
+    }
+    EXPECT_FALSE(here.is_host(name + ":8080"));
+    EXPECT_FALSE(here.is_origin(name));
+  }
+  EXPECT_FALSE(here.is_host("example.org"));
+}
+
+TEST(PanelMessages, WhatIsNoRequestIsTakenForNone) {
+  for (const std::string text :
+       {"", "x", "[]", "{}", R"({"id":1})", R"({"id":1,"do":2})", R"({"id":-1,"do":"list"})",
+        R"({"id":"1","do":"list"})", R"({"id":1,"do":"list","x":1})", R"({"id":1,"do":"list"} x)",
+        R"({"id":1,"do":"list","undo":2})", R"({"id":1,"undo":"list"})", R"({"do":"list","undo":"list"})",
+        R"({"id":1,"do":"list","undo":"list","x":1})"}) {
+    EXPECT_FALSE(asked_in(text)) << text;
+  }
+  EXPECT_FALSE(asked_in(R"({"id":1,"do":")" + std::string(1001, 'x') + "\"}"));
+  EXPECT_FALSE(asked_in(R"({"id":1,"do":"list","undo":")" + std::string(1001, 'x') + "\"}"));
+  const auto asked = asked_in(R"({"id":1,"do":"list"})");
+  ASSERT_TRUE(asked);
+  EXPECT_EQ(asked->command, "list");
+}
+
+}  // namespace
+}  // namespace ex9000::sim

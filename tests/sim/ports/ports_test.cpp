@@ -1,0 +1,321 @@
+// The program's ways to the line besides the pseudo-terminal: TCP, and a real serial port.
+#include <fcntl.h>
+#include <gtest/gtest.h>
+#include <poll.h>
+#include <sys/file.h>
+#include <termios.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <array>
+#include <csignal>
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+#include <memory>
+#include <string>
+
+#include "firmware/line/crc16.hpp"
+#include "tests/support/simulator_process.hpp"
+#include "tests/support/socket_client.hpp"
+#include "tests/support/terminal.hpp"
+
+namespace ex9000::system {
+namespace {
+
+namespace fs = std::filesystem;
+
+void expect_refused(const Finished& finished, const std::string& names, const std::string& mend) {
+  EXPECT_EQ(finished.status, 2) << finished.error;
+  EXPECT_EQ(finished.output, "");
+  EXPECT_EQ(std::count(finished.error.begin(), finished.error.end(), '\n'), 1) << finished.error;
+  EXPECT_NE(finished.error.find(names), std::string::npos) << finished.error;
+  EXPECT_NE(finished.error.find(mend), std::string::npos) << finished.error;
+}
+
+class Tcp : public testing::TestWithParam<const char*> {};
+
+TEST_P(Tcp, AloneThereIsNoPseudoTerminal) {
+  SimulatorProcess simulator({"EX9042D@05", "--tcp", "0", "--line", GetParam()});
+  SocketClient client(simulator.tcp_port());
+  client.send("$05M\r");
+  EXPECT_EQ(client.receive_text(9), "!059042D\r");
+  EXPECT_FALSE(fs::is_symlink(simulator.tty()));
+}
+
+TEST_P(Tcp, BesideThePseudoTerminalBothReachTheSameLine) {
+  SimulatorProcess simulator({"EX9042D@05", "--tcp", ":0", "--pty", "ex9000.tty", "--line", GetParam()});
+  SocketClient client(simulator.tcp_port());
+  client.send("$05M\r");
+  EXPECT_EQ(client.receive_text(9), "!059042D\r");
+  Terminal terminal(simulator.tty(), 9600);
+  terminal.type("@050001\r");
+  EXPECT_EQ(terminal.read_line(), ">\r");
+  EXPECT_EQ(client.receive_text(2), ">\r");
+  client.send("@05\r");
+  EXPECT_EQ(client.receive_text(6), ">0001\r");
+  EXPECT_EQ(terminal.read_line(), ">0001\r");
+}
+
+TEST_P(Tcp, SeveralClientsShareTheLine) {
+  SimulatorProcess simulator({"EX9042D@05", "--tcp", "0", "--line", GetParam()});
+  SocketClient first(simulator.tcp_port());
+  auto second = std::make_unique<SocketClient>(simulator.tcp_port());
+  second->send("$05M\r");  // the first was let in before it
+  EXPECT_EQ(second->receive_text(9), "!059042D\r");
+  EXPECT_EQ(first.receive_text(9), "!059042D\r");
+  first.send("$052\r");
+  EXPECT_EQ(second->receive_text(10), "!05400600\r");
+  EXPECT_EQ(first.receive_text(10), "!05400600\r");
+  second.reset();
+  first.send("@05\r");
+  EXPECT_EQ(first.receive_text(6), ">0000\r");
+}
+
+TEST_P(Tcp, WhoHasNoMoreToSayIsStillAnsweredAndThenLetGo) {
+  SimulatorProcess simulator({"EX9042D@05", "--tcp", "0", "--line", GetParam()});
+  SocketClient client(simulator.tcp_port());
+  client.send("$05M\r");
+  client.close_writing();
+  EXPECT_EQ(client.receive_text(9), "!059042D\r");
+  EXPECT_TRUE(client.closed());
+}
+
+// Until the flood has run off, the client's command and the answer to it collide with it.
+TEST_P(Tcp, AFloodOfGarbageIsHeldBackAndTheLineGoesOn) {
+  SimulatorProcess simulator({"EX9042D@05,baud=115200", "--tcp", "0", "--line", GetParam()});
+  {
+    SocketClient flooder(simulator.tcp_port());
+    flooder.send(std::vector<std::uint8_t>(20'000, 'x'));
+  }
+  SocketClient client(simulator.tcp_port());
+  std::string heard;
+  for (int tries = 0; tries < 20 && heard.find("!059042D\r") == std::string::npos; ++tries) {
+    client.send("\r$05M\r");
+    heard += client.receive_text(9);
+  }
+  EXPECT_NE(heard.find("!059042D\r"), std::string::npos);
+}
+
+INSTANTIATE_TEST_SUITE_P(Lines, Tcp, testing::Values("paced", "instant"));
+
+TEST(TcpPort, ManyOneAfterTheOtherAreAllServed) {
+  SimulatorProcess simulator({"EX9042D@05", "--tcp", "0", "--line", "instant"});
+  for (int visit = 0; visit < 300; ++visit) {
+    SocketClient client(simulator.tcp_port());
+    client.send("$05M\r");
+    ASSERT_EQ(client.receive_text(9), "!059042D\r") << visit;
+  }
+}
+
+TEST(TcpPort, SixtyFourAreServedAtOnceAndAPlaceThatIsFreeIsGivenAgain) {
+  SimulatorProcess simulator({"EX9042D@05", "--tcp", "0", "--line", "instant"});
+  std::vector<std::unique_ptr<SocketClient>> clients;
+  for (int i = 0; i < 64; ++i) {
+    clients.push_back(std::make_unique<SocketClient>(simulator.tcp_port()));
+  }
+  SocketClient too_many(simulator.tcp_port());
+  EXPECT_TRUE(too_many.closed());
+  clients.back()->send("$05M\r");
+  for (const auto& client : clients) {
+    EXPECT_EQ(client->receive_text(9), "!059042D\r");
+  }
+  clients.pop_back();
+  SocketClient next(simulator.tcp_port());
+  next.send("$052\r");
+  EXPECT_EQ(next.receive_text(10), "!05400600\r");
+}
+
+TEST(TcpPort, ListensWhereItIsTold) {
+  std::vector<std::string> hosts{"127.0.0.1"};
+  if (fs::exists("/proc/net/if_inet6")) {  // where there is no IPv6, there is no such address to listen at
+    hosts.emplace_back("[::1]");
+  }
+  for (const std::string& host : hosts) {
+    SimulatorProcess simulator({"EX9042D", "--tcp", host + ":0"});
+    EXPECT_NE(simulator.output().find("  TCP " + host + ":"), std::string::npos) << simulator.output();
+  }
+}
+
+// A line that is full must not cost the processor: held back is not looked after.
+TEST(TcpPort, WhoIsHeldBackCostsNoTime) {
+  SimulatorProcess simulator({"EX9042D@05,baud=1200", "--tcp", "0"});
+  SocketClient flooder(simulator.tcp_port());
+  flooder.send(std::vector<std::uint8_t>(20'000, 'x'));  // some minutes at 1200 baud
+  const auto ticks = [&simulator] {
+    std::ifstream stat("/proc/" + std::to_string(simulator.pid()) + "/stat");
+    std::string word;
+    for (int i = 0; i < 13; ++i) {
+      stat >> word;
+    }
+    long user = 0;
+    long system = 0;
+    stat >> user >> system;
+    return user + system;
+  };
+  EXPECT_TRUE(flooder.hears_nothing_for(std::chrono::milliseconds(200)));
+  const long before = ticks();
+  EXPECT_TRUE(flooder.hears_nothing_for(std::chrono::milliseconds(1000)));
+  EXPECT_LT(ticks() - before, sysconf(_SC_CLK_TCK) / 2);
+}
+
+TEST(TcpPort, InUseIsRefusedAndOneOfADeadProcessIsTakenOver) {
+  SimulatorProcess first({"EX9042D@05", "--tcp", "0"});
+  const std::string address = "127.0.0.1:" + std::to_string(first.tcp_port());
+  expect_refused(run({simulator_path(), "EX9042D", "--tcp", address}, first.directory()), "--tcp " + address,
+                 "another program listens there");
+  SocketClient client(first.tcp_port());
+  client.send("$05M\r");
+  EXPECT_EQ(client.receive_text(9), "!059042D\r");
+  first.end(SIGKILL);
+  SimulatorProcess second({"EX9042D@05", "--tcp", address});
+  SocketClient heir(second.tcp_port());
+  heir.send("$05M\r");
+  EXPECT_EQ(heir.receive_text(9), "!059042D\r");
+}
+
+TEST(TcpPort, AnAddressThatIsNotOursIsRefused) {
+  expect_refused(run({simulator_path(), "EX9042D", "--tcp", "192.0.2.1:5020"}), "--tcp 192.0.2.1:5020",
+                 "name");
+  expect_refused(run({simulator_path(), "EX9042D", "--tcp", "no.such.host.invalid:5020"}),
+                 "--tcp no.such.host.invalid:5020", "name");
+}
+
+/// The far end of a serial cable whose near end is a device.
+class Cable {
+ public:
+  Cable() : far_(posix_openpt(O_RDWR | O_NOCTTY | O_CLOEXEC)) {
+    std::array<char, 64> name{};
+    grantpt(far_);
+    unlockpt(far_);
+    ptsname_r(far_, name.data(), name.size());
+    device_ = name.data();
+  }
+  ~Cable() { pull(); }
+  Cable(const Cable&) = delete;
+  Cable& operator=(const Cable&) = delete;
+
+  [[nodiscard]] const std::string& device() const { return device_; }
+  void write(const std::string& text) const {
+    ASSERT_EQ(::write(far_, text.data(), text.size()), static_cast<ssize_t>(text.size()));
+  }
+  /// So many bytes, or what came before none came for 10 s.
+  [[nodiscard]] std::string read(std::size_t count) const {
+    std::string bytes;
+    while (bytes.size() < count && read_one(bytes)) {
+    }
+    return bytes;
+  }
+  /// Up to CR, likewise.
+  [[nodiscard]] std::string read_line() const {
+    std::string line;
+    while ((line.empty() || line.back() != '\r') && read_one(line)) {
+    }
+    return line;
+  }
+  [[nodiscard]] termios settings() const {
+    termios settings{};
+    tcgetattr(far_, &settings);
+    return settings;
+  }
+  void pull() {
+    if (far_ >= 0) {
+      close(far_);
+      far_ = -1;
+    }
+  }
+
+ private:
+  bool read_one(std::string& bytes) const {
+    constexpr int kPatienceMilliseconds = 10'000;
+    pollfd ready{far_, POLLIN, 0};
+    char byte = 0;
+    if (poll(&ready, 1, kPatienceMilliseconds) != 1 || ::read(far_, &byte, 1) != 1) {
+      return false;
+    }
+    bytes += byte;
+    return true;
+  }
+
+  int far_;
+  std::string device_;
+};
+
+TEST(SerialPort, TheModulesHangOnTheLineBehindIt) {
+  const Cable cable;
+  SimulatorProcess simulator({"EX9042D@05", "EX9052D@06", "--serial", cable.device()});
+  EXPECT_FALSE(fs::is_symlink(simulator.tty()));
+  for (int round = 0; round < 3; ++round) {
+    cable.write("$05M\r");
+    EXPECT_EQ(cable.read_line(), "!059042D\r");
+    cable.write("$06M\r");
+    EXPECT_EQ(cable.read_line(), "!069052\r");
+  }
+  EXPECT_EQ(simulator.end(SIGTERM), 0);
+}
+
+TEST(SerialPort, ItIsSetToTheLinesRateRaw) {
+  const Cable cable;
+  SimulatorProcess simulator({"EX9042D@05", "--serial", cable.device(), "--baud", "19200"});
+  const termios settings = cable.settings();
+  EXPECT_EQ(cfgetospeed(&settings), static_cast<speed_t>(B19200));
+  EXPECT_EQ(settings.c_iflag, 0U);
+  EXPECT_EQ(settings.c_lflag & static_cast<tcflag_t>(ICANON | ECHO | ISIG), 0U);
+  EXPECT_EQ(settings.c_cflag & static_cast<tcflag_t>(CSIZE | CSTOPB | PARENB), static_cast<tcflag_t>(CS8));
+}
+
+// 248 characters take a quarter of a second, so a reply to them is handed out in pieces.
+TEST(SerialPort, AReplyOfAnyLengthComesWhole) {
+  const Cable cable;
+  SimulatorProcess simulator({"EX9042D-M@05", "--serial", cable.device()});
+  std::string echo = std::string("\x05\x08\x00\x00", 4) + std::string(244, 'x');
+  const Crc16 crc = crc16({reinterpret_cast<const std::uint8_t*>(echo.data()), echo.size()});
+  echo += static_cast<char>(crc.low_byte());
+  echo += static_cast<char>(crc.high_byte());
+  cable.write(echo);
+  EXPECT_EQ(cable.read(echo.size()), echo);
+}
+
+// To a module its reply would be the request once more.
+TEST(SerialPort, AnAdapterThatHearsItselfIsToldOf) {
+  const Cable cable;
+  SimulatorProcess simulator({"EX9042D-M@01", "--serial", cable.device(), "--echo"});
+  const std::string switch_on("\x01\x05\x00\x00\xFF\x00\x8C\x3A", 8);
+  for (int round = 0; round < 5; ++round) {
+    cable.write(switch_on);
+    EXPECT_EQ(cable.read(switch_on.size()), switch_on);
+    cable.write(switch_on.substr(0, 3));  // the echo
+    cable.write(switch_on.substr(3));
+  }
+  const std::string read_outputs("\x01\x01\x00\x00\x00\x0D\xFD\xCF", 8);
+  cable.write(read_outputs);
+  EXPECT_EQ(cable.read(7).substr(0, 5), std::string("\x01\x01\x02\x01\x00", 5));
+}
+
+TEST(SerialPort, WhenItGoesTheProgramEndsAndSaysSo) {
+  Cable cable;
+  const Directory directory;
+  ChildProcess simulator({simulator_path(), "EX9042D", "--serial", cable.device()}, directory.path(),
+                         ChildProcess::Errors::WithOutput);
+  ASSERT_TRUE(simulator.wait_for("Ctrl-C ends it"));
+  cable.pull();
+  EXPECT_EQ(simulator.wait(), 1);
+  EXPECT_NE(simulator.output().find("--serial " + cable.device()), std::string::npos) << simulator.output();
+  EXPECT_NE(simulator.output().find("the port has gone"), std::string::npos) << simulator.output();
+}
+
+TEST(SerialPort, WhatCannotBeHadIsRefused) {
+  expect_refused(run({simulator_path(), "EX9042D", "--serial", "/no/such/port"}), "--serial /no/such/port",
+                 "name");
+  expect_refused(run({simulator_path(), "EX9042D", "--serial", "/dev/null"}), "--serial /dev/null",
+                 "no serial port");
+  const Cable cable;
+  const int holder = open(cable.device().c_str(), O_RDWR | O_NOCTTY | O_CLOEXEC);
+  ASSERT_EQ(flock(holder, LOCK_EX | LOCK_NB), 0);
+  expect_refused(run({simulator_path(), "EX9042D", "--serial", cable.device()}), "--serial " + cable.device(),
+                 "another program has it");
+  close(holder);
+}
+
+}  // namespace
+}  // namespace ex9000::system

@@ -1,0 +1,69 @@
+// A terminal program, and so DCON by hand, on the program's pseudo-terminal.
+#include <gtest/gtest.h>
+
+#include <string>
+
+#include "tests/support/control_client.hpp"
+#include "tests/support/simulator_process.hpp"
+#include "tests/support/terminal.hpp"
+
+namespace ex9000::system {
+namespace {
+
+TEST(Dcon, ATypedSessionIsAnswered) {
+  SimulatorProcess simulator({"9068d-m@0A,protocol=ascii,name=PUMP", "--log"});
+  Terminal terminal(simulator.tty(), 9600);
+  terminal.type("$0AM\r");
+  EXPECT_EQ(terminal.read_line(), "!0APUMP\r");
+  for (const char key : std::string("@0A81\r")) {
+    terminal.type(std::string(1, key));
+  }
+  EXPECT_EQ(terminal.read_line(), ">\r");
+  terminal.type("@0A\r");
+  EXPECT_EQ(terminal.read_line(), ">8100\r");
+  EXPECT_TRUE(simulator.wait_for("> master  @0A81\\r  ; @AA(Data): set all outputs")) << simulator.output();
+  EXPECT_TRUE(simulator.wait_for("< 0A EX9068D-M  !0APUMP\\r  ; answer")) << simulator.output();
+}
+
+TEST(Dcon, AReplyThatNobodyHasWaitedForIsNotTheNextMastersFirst) {
+  SimulatorProcess simulator({"EX9042D@05,name=FIRST", "--log", "--control", "control"});
+  {
+    Terminal impatient(simulator.tty(), 9600);
+    impatient.type("$05M\r");
+  }
+  ASSERT_TRUE(simulator.wait_for("!05FIRST")) << simulator.output();
+  ControlClient(simulator.directory() + "/control")
+      .ok("list");  // by then its last byte has been handed out, too
+  Terminal terminal(simulator.tty(), 9600);
+  terminal.type("$052\r");
+  EXPECT_EQ(terminal.read_line(), "!05400600\r");
+}
+
+TEST(Dcon, WhoGoesLeavesTheOthersAtTheLine) {
+  SimulatorProcess simulator({"EX9042D@05"});
+  for (int round = 0; round < 5; ++round) {
+    Terminal stays(simulator.tty(), 9600);
+    { const Terminal goes(simulator.tty(), 9600); }
+    stays.type("$05M\r");
+    EXPECT_EQ(stays.read_line(), "!059042D\r");
+  }
+}
+
+TEST(Dcon, TheRateThatAMasterSetsIsTheLinesAndAMismatchIsSaid) {
+  SimulatorProcess simulator({"EX9042D@05,baud=19200", "--baud", "9600"});
+  EXPECT_TRUE(simulator.wait_for("the line is at 9600 baud, EX9042D at 05 listens at 19200"))
+      << simulator.output();
+  {
+    Terminal terminal(simulator.tty(), 19200);
+    terminal.type("$052\r");
+    EXPECT_EQ(terminal.read_line(), "!05400700\r");
+  }
+  Terminal terminal(simulator.tty(), 1200);
+  terminal.type("$052\r");
+  EXPECT_EQ(terminal.read_line(std::chrono::milliseconds(500)), "");
+  EXPECT_TRUE(simulator.wait_for("the line is at 1200 baud, EX9042D at 05 listens at 19200"))
+      << simulator.output();
+}
+
+}  // namespace
+}  // namespace ex9000::system

@@ -1,0 +1,89 @@
+// In the place of firmware/line/crossing.hpp, which it copies: before and behind every access of the main
+// loop there is a point at which an interrupt may come. It also holds each side to what the types say.
+#pragma once
+
+#include <cstdint>
+#include <stdexcept>
+#include <type_traits>
+
+#include "tests/support/interleaving/points.hpp"
+
+namespace ex9000 {
+
+namespace detail {
+
+inline void hold_to_side(bool interrupt) {
+  if (interleaving::Points::in_interrupt() != interrupt) {
+    throw std::logic_error("a crossing was written by the side that must not");
+  }
+}
+
+template <class T>
+class Crossing {
+  static_assert(std::is_trivially_copyable<T>::value && sizeof(T) <= sizeof(void*),
+                "must be read and written by one instruction");
+
+ public:
+  [[nodiscard]] T load() const {
+    interleaving::Points::pass();
+    const T value = value_;
+    interleaving::Points::pass();
+    return value;
+  }
+
+ protected:
+  void store(T value) {
+    interleaving::Points::pass();
+    value_ = value;
+    interleaving::Points::pass();
+  }
+
+ private:
+  T value_{};
+};
+
+}  // namespace detail
+
+template <class T>
+class WrittenByInterrupt : public detail::Crossing<T> {
+ public:
+  void store_in_interrupt(T value) {
+    detail::hold_to_side(true);
+    this->store(value);
+  }
+};
+
+template <class T>
+class WrittenByMainLoop : public detail::Crossing<T> {
+ public:
+  void store_in_main_loop(T value) {
+    detail::hold_to_side(false);
+    this->store(value);
+  }
+};
+
+template <class T>
+class HandedToInterrupt {
+ public:
+  void set_in_main_loop(const T& value) {
+    detail::hold_to_side(false);
+    torn_ = true;
+    interleaving::Points::pass();
+    value_ = value;
+    interleaving::Points::pass();
+    torn_ = false;
+  }
+  T& in_interrupt() {
+    detail::hold_to_side(true);
+    if (torn_) {
+      throw std::logic_error("an interrupt uses what the main loop is just writing");
+    }
+    return value_;
+  }
+
+ private:
+  bool torn_ = false;
+  T value_{};
+};
+
+}  // namespace ex9000

@@ -1,0 +1,35 @@
+// In the place of hal/stellaris/bus.hpp: registers that a test makes, and a point before and behind every
+// access of the main loop.
+#pragma once
+
+#include <cstdint>
+
+#include "tests/support/interleaving/points.hpp"
+
+namespace ex9000::hal::stellaris::bus {
+
+/// What answers at all addresses; made by the test.
+class Peripherals {
+ public:
+  virtual std::uint32_t read(std::uint32_t address) = 0;
+  virtual void write(std::uint32_t address, std::uint32_t value) = 0;
+
+ protected:
+  ~Peripherals() = default;
+};
+
+inline Peripherals* peripherals = nullptr;
+
+inline std::uint32_t read(std::uint32_t address) {
+  interleaving::Points::pass();
+  const std::uint32_t value = peripherals->read(address);
+  interleaving::Points::pass();
+  return value;
+}
+inline void write(std::uint32_t address, std::uint32_t value) {
+  interleaving::Points::pass();
+  peripherals->write(address, value);
+  interleaving::Points::pass();
+}
+
+}  // namespace ex9000::hal::stellaris::bus

@@ -1,0 +1,113 @@
+#include "tests/support/settings_reader.hpp"
+
+#include <gtest/gtest.h>
+
+#include "sim/play/modbus_frame.hpp"
+#include "tests/support/storing_commands.hpp"
+
+namespace ex9000 {
+
+namespace {
+
+std::uint16_t word(const std::vector<std::uint8_t>& reply, std::size_t at) {
+  return static_cast<std::uint16_t>(reply.at(at) << 8U | reply.at(at + 1));
+}
+
+}  // namespace
+
+std::uint8_t hex_byte(const std::string& text, std::size_t at) {
+  return static_cast<std::uint8_t>(std::stoul(text.substr(at, 2), nullptr, 16));
+}
+
+std::vector<std::uint8_t> Manner::framed(const std::vector<std::uint8_t>& request) const {
+  return protocol == Protocol::Ascii ? ascii_frame({request.begin(), request.end()}, checksum)
+                                     : with_crc(request);
+}
+
+std::optional<Settings> SettingsReader::read(std::uint8_t format) {
+  return manner_.protocol == Protocol::Ascii ? read_ascii() : read_modbus(format);
+}
+
+SettingsReader::Bytes SettingsReader::ask(const Bytes& request) {
+  Bytes frame = request;
+  frame.insert(frame.begin(), manner_.address);
+  const Bytes reply = exchange_(manner_.framed(frame));
+  if (reply.size() < 4) {
+    return {};
+  }
+  const Bytes body(reply.begin(), reply.end() - 2);
+  EXPECT_EQ(with_crc(body), reply);
+  return body;
+}
+
+std::string SettingsReader::ask(const std::string& command) {
+  constexpr const char* kDigits = "0123456789ABCDEF";
+  const std::string text = command.substr(0, 1) + kDigits[manner_.address / 16] +
+                           kDigits[manner_.address % 16] + command.substr(1);
+  const Bytes reply = exchange_(manner_.framed({text.begin(), text.end()}));
+  const std::size_t frame = manner_.checksum ? 3 : 1;
+  if (reply.size() <= frame) {
+    return {};
+  }
+  const std::string body(reply.begin(), reply.end() - static_cast<std::ptrdiff_t>(frame));
+  EXPECT_EQ(ascii_frame(body, manner_.checksum), reply);
+  return body;
+}
+
+std::optional<Settings> SettingsReader::read_ascii() {
+  const std::string configuration = ask(std::string("$2"));
+  if (configuration.size() != 9) {
+    return std::nullopt;
+  }
+  Settings settings;
+  settings.address = hex_byte(configuration, 1);
+  settings.baud_code = hex_byte(configuration, 5);
+  settings.format = hex_byte(configuration, 7);
+  settings.protocol = ask(std::string("$P")).at(4) == '1' ? Protocol::ModbusRtu : Protocol::Ascii;
+  settings.name = Name(std::string_view(ask(std::string("$M")).substr(3)));
+  settings.timeout_status = (hex_byte(ask(std::string("~0")), 3) & 0x04U) != 0;
+  const std::string watchdog = ask(std::string("~2"));
+  settings.watchdog_enabled = watchdog.at(3) == '1';
+  settings.watchdog_timeout = hex_byte(watchdog, 4);
+  if (model_.outputs != 0) {
+    const auto value = [&](const char* command) {
+      const std::string reply = ask(std::string(command));
+      return static_cast<std::uint16_t>(hex_byte(reply, 3) << 8U | hex_byte(reply, 5));
+    };
+    settings.power_on_value = value("~4P");
+    settings.safe_value = value("~4S");
+  }
+  return settings;
+}
+
+std::optional<Settings> SettingsReader::read_modbus(std::uint8_t format) {
+  const auto registers = [&](std::uint8_t low, std::uint8_t count) {
+    return ask(Bytes{0x03, 0x01, low, 0x00, count});
+  };
+  const auto coil = [&](std::uint8_t low) { return ask(Bytes{0x01, 0x01, low, 0x00, 0x01}).at(3) == 1; };
+  const Bytes address_and_rate = registers(0xE4, 2);
+  if (address_and_rate.size() != 7) {
+    return std::nullopt;
+  }
+  Settings settings;
+  settings.address = static_cast<std::uint8_t>(word(address_and_rate, 3));
+  settings.baud_code = static_cast<std::uint8_t>(word(address_and_rate, 5));
+  settings.format = format;
+  settings.protocol = coil(0x00) ? Protocol::ModbusRtu : Protocol::Ascii;
+  settings.watchdog_timeout = static_cast<std::uint8_t>(word(registers(0xE8, 1), 3));
+  settings.watchdog_enabled = coil(0x04);
+  settings.timeout_status = coil(0x0D);
+  const Bytes identification = ask(Bytes{0x11});
+  settings.name = Name(std::string_view(std::string(identification.begin() + 6, identification.end())));
+  if (model_.outputs != 0) {
+    const auto value = [&](std::uint8_t row) {
+      const Bytes reply = ask(Bytes{0x01, 0x00, row, 0x00, 0x10});
+      return static_cast<std::uint16_t>(reply.at(3) | reply.at(4) << 8U);
+    };
+    settings.safe_value = value(0x80);
+    settings.power_on_value = value(0xA0);
+  }
+  return settings;
+}
+
+}  // namespace ex9000

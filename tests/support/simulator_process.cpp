@@ -1,0 +1,31 @@
+#include "tests/support/simulator_process.hpp"
+
+#include <stdexcept>
+
+namespace ex9000::system {
+
+namespace {
+
+std::vector<std::string> command_of(const std::vector<std::string>& arguments) {
+  std::vector<std::string> command{simulator_path()};
+  command.insert(command.end(), arguments.begin(), arguments.end());
+  return command;
+}
+
+}  // namespace
+
+std::string simulator_path() { return EX9000_SIMULATOR; }
+
+SimulatorProcess::SimulatorProcess(const std::vector<std::string>& arguments)
+    : process_(command_of(arguments), directory_.path()) {
+  if (!wait_for("Ctrl-C ends it")) {
+    throw std::runtime_error("the simulator did not come up: " + output());
+  }
+}
+
+std::uint16_t SimulatorProcess::tcp_port() const {
+  const std::string lead = "TCP 127.0.0.1:";
+  return static_cast<std::uint16_t>(std::stoul(output().substr(output().find(lead) + lead.size())));
+}
+
+}  // namespace ex9000::system

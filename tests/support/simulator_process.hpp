@@ -1,0 +1,40 @@
+// A running ex9000-sim, as a user would start it.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "tests/support/child_process.hpp"
+#include "tests/support/directory.hpp"
+
+namespace ex9000::system {
+
+class SimulatorProcess {
+ public:
+  /// Starts the program with `arguments` in a fresh directory of its own and returns when it has greeted.
+  /// Throws std::runtime_error where it ends before.
+  explicit SimulatorProcess(const std::vector<std::string>& arguments);
+
+  /// Where it runs; the link `ex9000.tty` is there unless the arguments say otherwise.
+  [[nodiscard]] const std::string& directory() const { return directory_.path(); }
+  [[nodiscard]] std::string tty() const { return directory() + "/ex9000.tty"; }
+  /// Where it listens if started with `--tcp`.
+  [[nodiscard]] std::uint16_t tcp_port() const;
+  [[nodiscard]] int pid() const { return process_.pid(); }
+
+  /// See ChildProcess.
+  bool wait_for(const std::string& text) { return process_.wait_for(text); }
+  [[nodiscard]] const std::string& output() const { return process_.output(); }
+  int end(int signal) { return process_.end(signal); }
+  int wait() { return process_.wait(); }
+
+ private:
+  Directory directory_;
+  ChildProcess process_;
+};
+
+/// The program under test.
+std::string simulator_path();
+
+}  // namespace ex9000::system

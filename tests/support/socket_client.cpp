@@ -1,0 +1,70 @@
+#include "tests/support/socket_client.hpp"
+
+#include <arpa/inet.h>
+#include <netinet/in.h>
+#include <netinet/tcp.h>
+#include <poll.h>
+#include <sys/socket.h>
+#include <unistd.h>
+
+#include <array>
+#include <stdexcept>
+
+namespace ex9000::system {
+
+SocketClient::SocketClient(std::uint16_t port) : fd_(socket(AF_INET, SOCK_STREAM | SOCK_CLOEXEC, 0)) {
+  sockaddr_in address{};
+  address.sin_family = AF_INET;
+  address.sin_port = htons(port);
+  address.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
+  const int on = 1;
+  setsockopt(fd_, IPPROTO_TCP, TCP_NODELAY, &on, sizeof on);
+  if (connect(fd_, reinterpret_cast<const sockaddr*>(&address), sizeof address) != 0) {
+    close(fd_);
+    throw std::runtime_error("nobody listens at port " + std::to_string(port));
+  }
+}
+
+SocketClient::~SocketClient() { close(fd_); }
+
+void SocketClient::send(const std::vector<std::uint8_t>& bytes) {
+  if (::send(fd_, bytes.data(), bytes.size(), MSG_NOSIGNAL) != static_cast<ssize_t>(bytes.size())) {
+    throw std::runtime_error("send");
+  }
+}
+
+void SocketClient::close_writing() { shutdown(fd_, SHUT_WR); }
+
+std::vector<std::uint8_t> SocketClient::receive(std::size_t count) {
+  constexpr int kPatienceMilliseconds = 10'000;
+  std::vector<std::uint8_t> bytes;
+  pollfd ready{fd_, POLLIN, 0};
+  while (bytes.size() < count && poll(&ready, 1, kPatienceMilliseconds) == 1) {
+    std::array<std::uint8_t, 4096> buffer{};
+    const ssize_t size = recv(fd_, buffer.data(), buffer.size(), 0);
+    if (size <= 0) {
+      break;
+    }
+    bytes.insert(bytes.end(), buffer.begin(), buffer.begin() + size);
+  }
+  return bytes;
+}
+
+std::string SocketClient::receive_text(std::size_t count) {
+  const std::vector<std::uint8_t> bytes = receive(count);
+  return {bytes.begin(), bytes.end()};
+}
+
+bool SocketClient::hears_nothing_for(std::chrono::milliseconds time) {
+  pollfd ready{fd_, POLLIN, 0};
+  return poll(&ready, 1, static_cast<int>(time.count())) == 0;
+}
+
+bool SocketClient::closed() {
+  constexpr int kPatienceMilliseconds = 10'000;
+  pollfd ready{fd_, POLLIN, 0};
+  char byte = 0;
+  return poll(&ready, 1, kPatienceMilliseconds) == 1 && recv(fd_, &byte, 1, 0) <= 0;
+}
+
+}  // namespace ex9000::system
