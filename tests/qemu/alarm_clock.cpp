@@ -269,7 +269,7 @@ bool AlarmClock::wait_for_alarm() {
     const std::size_t address = packet.find(',', packet.find(',') + 1) + 1;
     if (packet.rfind("Fwrite,", 0) != 0 || address == 0) {
       go_on_ = "c";
-      throw std::runtime_error("the image has stopped running (" + packet + ")");
+      throw Halted("the image has stopped running (" + packet + ")");
     }
     go_on_ = "F0";
     constexpr int kHex = 16;

@@ -3,6 +3,7 @@
 
 #include <chrono>
 #include <cstdint>
+#include <stdexcept>
 #include <string>
 
 #include "tests/qemu/emulator.hpp"
@@ -10,17 +11,23 @@
 
 namespace ex9000::rig {
 
-/// Of a machine that has a time of its own (Emulator::Time::Own). What happens in it depends on nothing but
-/// what is done to it while it stands still. Only where the emulator lets time pass for a processor that has
-/// just fallen asleep, it may at times, by the host's doing, forget the last instructions: of a hundred
-/// transcripts one ends up to 2 us apart from the run before, where inputs are pulsed up to 7 us.
+/// The machine has halted by itself: the image is about to be reset, by itself or by its watchdog.
+class Halted : public std::runtime_error {
+ public:
+  using std::runtime_error::runtime_error;
+};
+
+/// What happens in the machine depends on nothing but what is done to it while it stands still. Only where
+/// the emulator lets time pass for a processor that has just fallen asleep, it may at times, by the host's
+/// doing, forget the last instructions: of a hundred transcripts one ends up to 2 us apart from the run
+/// before, where inputs are pulsed up to 7 us.
 ///
 /// GPTM2, which no image uses, interrupts when the time is over, and the interrupt's code, in RAM that no
 /// image uses, makes the emulator stop. The image itself and its vectors stay as they are; a copy of these,
 /// with one more entry, takes their place. Its interrupt waits for others and holds them up, as the image's
 /// own do, for 10 us each time the machine stands still; on the stack it takes as much as they.
 ///
-/// Whatever is not as it should be throws std::runtime_error, also where the image resets itself.
+/// Whatever is not as it should be throws std::runtime_error, and Halted if the image is about to be reset.
 class AlarmClock {
  public:
   explicit AlarmClock(Emulator& machine) : machine_(machine) {}

@@ -15,7 +15,6 @@ std::string GdbClient::framed(const std::string& packet) {
 }
 
 std::string GdbClient::receive() {
-  constexpr std::chrono::seconds kPatience{20};
   constexpr std::size_t kChecksum = 2;
   for (;;) {
     const std::size_t begin = received_.find('$');
@@ -25,7 +24,7 @@ std::string GdbClient::receive() {
       received_.erase(0, end + kChecksum + 1);
       return packet;
     }
-    const std::vector<std::uint8_t> bytes = socket_.receive(kPatience);
+    const std::vector<std::uint8_t> bytes = socket_.receive(kHang);
     if (bytes.empty()) {
       throw std::runtime_error("gdb: the machine neither stops nor answers");
     }

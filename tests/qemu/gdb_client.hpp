@@ -18,7 +18,7 @@ class GdbClient {
   static std::string framed(const std::string& packet);
   /// What `framed` has made, one behind the other in one piece: the last of them may set the machine going.
   void send(const std::string& packets) { socket_.send(packets); }
-  /// The next packet, without its frame. Waits 20 s; throws std::runtime_error where none comes.
+  /// The next packet, without its frame. Throws std::runtime_error if none comes for `kHang`.
   std::string receive();
 
  private:

@@ -77,6 +77,16 @@ void TimedModule::run_until(nanoseconds when) {
   now_ = std::max(now_, when);
 }
 
+/// The halt may come behind the alarm, because the emulator carries it out in a thread of its own; the event
+/// tells of it in any case.
+void TimedModule::run_to_reset(const std::string& event, nanoseconds time) {
+  try {
+    run_for(time);
+  } catch (const Halted&) {
+  }
+  emulator().qmp().wait_for(event);
+}
+
 void TimedModule::make_sure() {
   if (lamp_.until()) {
     run_until(*lamp_.until());
@@ -99,7 +109,7 @@ void TimedModule::send(const Bytes& bytes, std::uint32_t baud) {
   // heard; here it has been heard at once.
   constexpr milliseconds kLongestWait{100};
   const nanoseconds gives_up = now_ + kLongestWait;
-  while (powered() && clock_->driver_on() && now_ < gives_up) {
+  while (speaks() && now_ < gives_up) {
     run_for(kSlice);
   }
   const nanoseconds begin = now_;

@@ -14,8 +14,6 @@ namespace ex9000::rig {
 
 namespace {
 
-constexpr std::chrono::seconds kPatience{20};
-
 bool readable(int fd, std::chrono::nanoseconds patience) {
   constexpr std::int64_t kSecond = 1'000'000'000;
   const std::int64_t left = patience.count() > 0 ? patience.count() : 0;
@@ -63,18 +61,10 @@ std::vector<std::uint8_t> UnixSocket::receive(std::chrono::nanoseconds patience)
 }
 
 std::string UnixSocket::receive_line() {
-  std::string line = receive_line(kPatience);
-  if (line.empty()) {
-    throw std::runtime_error("the emulator does not answer");
-  }
-  return line;
-}
-
-std::string UnixSocket::receive_line(std::chrono::nanoseconds patience) {
   for (std::size_t end = received_.find('\n'); end == std::string::npos; end = received_.find('\n')) {
-    const std::vector<std::uint8_t> bytes = receive(patience);
+    const std::vector<std::uint8_t> bytes = receive(kHang);
     if (bytes.empty()) {
-      return {};
+      throw std::runtime_error("the emulator does not answer");
     }
     received_.append(bytes.begin(), bytes.end());
   }
@@ -100,7 +90,7 @@ UnixListener::UnixListener(const std::string& path) : fd_(socket(AF_UNIX, SOCK_S
 UnixListener::~UnixListener() { close(fd_); }
 
 UnixSocket UnixListener::accept() {
-  if (!readable(fd_, kPatience)) {
+  if (!readable(fd_, kHang)) {
     throw std::runtime_error("the emulator does not come up");
   }
   return UnixSocket(accept4(fd_, nullptr, nullptr, SOCK_CLOEXEC));

@@ -8,6 +8,11 @@
 
 namespace ex9000::rig {
 
+/// How long the host waits for an emulator that owes it a reply. It only detects a hang: the slowest reply,
+/// of an interrupt storm up to the watchdog's reset, takes seconds on an idle machine and less than a minute
+/// on a busy one.
+inline constexpr std::chrono::seconds kHang{60};
+
 /// A connection. Whatever goes wrong throws std::runtime_error.
 class UnixSocket {
  public:
@@ -22,10 +27,8 @@ class UnixSocket {
   void send(const std::string& text);
   /// What is there, once there is something; nothing where nothing came for `patience`.
   std::vector<std::uint8_t> receive(std::chrono::nanoseconds patience);
-  /// Up to LF, which is left out. Waits 20 s, for a machine under load.
+  /// Up to LF, which is left out. Throws if nothing comes for `kHang`.
   std::string receive_line();
-  /// The same, or nothing where nothing came for `patience`.
-  std::string receive_line(std::chrono::nanoseconds patience);
 
  private:
   int fd_;
@@ -40,7 +43,7 @@ class UnixListener {
   UnixListener(const UnixListener&) = delete;
   UnixListener& operator=(const UnixListener&) = delete;
 
-  /// Waits 20 s.
+  /// Throws std::runtime_error if nobody connects for `kHang`.
   UnixSocket accept();
 
  private:
