@@ -22,7 +22,7 @@ std::vector<std::string> command_of(const std::string& image, const std::string&
           image,
           "-S",
           "-action",
-          "reboot=shutdown,shutdown=pause,watchdog=pause",
+          "reboot=shutdown,shutdown=pause,watchdog=reset",
           "-chardev",
           "socket,id=uart,path=uart",
           "-serial",
@@ -41,6 +41,8 @@ std::vector<std::string> command_of(const std::string& image, const std::string&
           "shift=4,sleep=off",
           "-semihosting-config",  // how AlarmClock's interrupt asks the debugger for a stop
           "enable=on,target=gdb",
+          "-plugin",
+          EX9000_GATE ",socket=gate,address=" + std::to_string(Emulator::kGate),
           "-chardev",
           "socket,id=gdb,path=gdb",
           "-gdb",
@@ -54,11 +56,13 @@ Emulator::Emulator(const std::string& image, const std::string& memory) {
   UnixListener qmp(directory_ / "qmp");
   UnixListener qtest(directory_ / "qtest");
   UnixListener gdb(directory_ / "gdb");
+  UnixListener gate(directory_ / "gate");
   process_.emplace(command_of(image, memory), directory_.path(), system::ChildProcess::Errors::WithOutput);
   uart_.emplace(uart.accept());
   qmp_.emplace(qmp.accept());
   bus_.emplace(qtest.accept());
   gdb_.emplace(gdb.accept());
+  gate_.emplace(gate.accept());
 }
 
 /// Told to halt where there would be a reset, the emulator does so even if it is asked for one. And its UARTs

@@ -23,6 +23,9 @@ namespace ex9000::rig {
 /// the machine.
 class Emulator {
  public:
+  /// The address of the instruction at which it waits to be let go on.
+  static constexpr std::uint32_t kGate = 0x2000'9044;
+
   /// Runs the ELF file `image`; `memory` is the file that holds the EEPROM's 8192 bytes. Throws
   /// std::runtime_error where it does not come up.
   Emulator(const std::string& image, const std::string& memory);
@@ -33,6 +36,8 @@ class Emulator {
   QmpClient& qmp() { return *qmp_; }
   QtestClient& bus() { return *bus_; }
   GdbClient& gdb() { return *gdb_; }
+  /// Where its processor waits at `kGate`: see gate.cpp.
+  UnixSocket& gate() { return *gate_; }
   /// UART0, without regard to rates; what it sends has to be taken now and then, for a full socket (278
   /// bytes) halts the machine.
   UnixSocket& uart() { return *uart_; }
@@ -45,6 +50,7 @@ class Emulator {
   std::optional<QmpClient> qmp_;
   std::optional<QtestClient> bus_;
   std::optional<GdbClient> gdb_;
+  std::optional<UnixSocket> gate_;
 };
 
 }  // namespace ex9000::rig

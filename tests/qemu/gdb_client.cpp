@@ -14,6 +14,14 @@ std::string GdbClient::framed(const std::string& packet) {
   return "$" + packet + "#" + kDigits[sum / 16 % 16] + kDigits[sum % 16];
 }
 
+bool GdbClient::has_packet() {
+  const std::vector<std::uint8_t> bytes = socket_.receive(std::chrono::nanoseconds(0));
+  received_.append(bytes.begin(), bytes.end());
+  const std::size_t begin = received_.find('$');
+  constexpr std::size_t kChecksum = 2;
+  return begin != std::string::npos && received_.find('#', begin) + kChecksum < received_.size();
+}
+
 std::string GdbClient::receive() {
   constexpr std::size_t kChecksum = 2;
   for (;;) {

@@ -20,6 +20,9 @@ class GdbClient {
   void send(const std::string& packets) { socket_.send(packets); }
   /// The next packet, without its frame. Throws std::runtime_error if none comes for `kHang`.
   std::string receive();
+  /// Takes what has come; whether a packet is there.
+  bool has_packet();
+  [[nodiscard]] const UnixSocket& socket() const { return socket_; }
 
  private:
   UnixSocket socket_;

@@ -63,6 +63,7 @@ class TimedModule : public EmulatedBoard {
 
  private:
   void come_up();
+  void halt();
   void run_until(std::chrono::nanoseconds when);
   void put(std::uint8_t byte);
   void hold_memory(bool hold);

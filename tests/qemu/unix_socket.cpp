@@ -60,6 +60,30 @@ std::vector<std::uint8_t> UnixSocket::receive(std::chrono::nanoseconds patience)
   return {buffer.begin(), buffer.begin() + size};
 }
 
+void UnixSocket::receive_all(std::uint8_t* bytes, std::size_t size) {
+  while (size != 0) {
+    const ssize_t received = readable(fd_, kHang) ? recv(fd_, bytes, size, 0) : 0;
+    if (received <= 0) {
+      throw std::runtime_error("the emulator has hung up");
+    }
+    bytes += received;
+    size -= static_cast<std::size_t>(received);
+  }
+}
+
+bool UnixSocket::has_bytes() const { return readable(fd_, std::chrono::nanoseconds(0)); }
+
+void wait_for_any(const std::vector<const UnixSocket*>& sockets) {
+  std::vector<pollfd> ready;
+  for (const UnixSocket* socket : sockets) {
+    ready.push_back({socket->fd(), POLLIN, 0});
+  }
+  if (poll(ready.data(), ready.size(),
+           std::chrono::duration_cast<std::chrono::milliseconds>(kHang).count()) <= 0) {
+    throw std::runtime_error("the machine neither stops nor answers");
+  }
+}
+
 std::string UnixSocket::receive_line() {
   for (std::size_t end = received_.find('\n'); end == std::string::npos; end = received_.find('\n')) {
     const std::vector<std::uint8_t> bytes = receive(kHang);

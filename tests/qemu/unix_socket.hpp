@@ -27,6 +27,10 @@ class UnixSocket {
   void send(const std::string& text);
   /// What is there, once there is something; nothing where nothing came for `patience`.
   std::vector<std::uint8_t> receive(std::chrono::nanoseconds patience);
+  /// So many bytes. Throws if nothing comes for `kHang`.
+  void receive_all(std::uint8_t* bytes, std::size_t size);
+  /// Whether something is there.
+  [[nodiscard]] bool has_bytes() const;
   /// Up to LF, which is left out. Throws if nothing comes for `kHang`.
   std::string receive_line();
 
@@ -34,6 +38,9 @@ class UnixSocket {
   int fd_;
   std::string received_;  ///< behind the last line
 };
+
+/// Waits until one of them has bytes. Throws std::runtime_error if none has for `kHang`.
+void wait_for_any(const std::vector<const UnixSocket*>& sockets);
 
 /// Where one program will connect to.
 class UnixListener {
