@@ -27,8 +27,10 @@ std::vector<std::string> command_of(const std::string& image, const std::string&
           "socket,id=uart,path=uart",
           "-serial",
           "chardev:uart",
-          "-qmp",
-          "unix:qmp",
+          "-chardev",
+          "socket,id=qmp,path=qmp,mux=on",  // or a thread of its own would be woken at each tick
+          "-mon",
+          "chardev=qmp,mode=control",
           "-qtest",
           "unix:qtest",
           "-qtest-log",
