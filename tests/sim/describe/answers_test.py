@@ -8,7 +8,7 @@ import unittest
 import yaml
 
 from line import Line
-from simulator import describe, models_with_modbus
+from program import describe, models_with_modbus
 
 # The words of the tools for what Line calls coil, discrete_input, holding and input.
 NODE_RED = {"Coil": "coil", "Input": "discrete_input", "HoldingRegister": "holding", "InputRegister": "input"}
