@@ -29,6 +29,7 @@ struct Line {
 struct ModelRun {
   const Model* model;
   Variables variables;
+  sim::Words presets;
 };
 
 bool is_blank(char character) { return character == ' ' || character == '\t'; }

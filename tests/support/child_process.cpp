@@ -82,10 +82,9 @@ ChildProcess::~ChildProcess() {
 }
 
 bool ChildProcess::read_more() {
-  constexpr int kPatienceMilliseconds =
-      20'000;  // for a machine under load; what waits for an event needs none of it
+  constexpr int kHangMilliseconds = 60'000;  // it waits for an event; only a program that hangs takes this long
   pollfd ready{out_, POLLIN, 0};
-  return poll(&ready, 1, kPatienceMilliseconds) == 1 && append_from(out_, output_);
+  return poll(&ready, 1, kHangMilliseconds) == 1 && append_from(out_, output_);
 }
 
 bool ChildProcess::wait_for(const std::string& text) {
