@@ -19,7 +19,7 @@ namespace {
 
 using Over = system::TranscriptLines::Over;
 
-constexpr std::size_t kLines = 50;  ///< in one process
+constexpr std::size_t kLines = 12;  ///< in one process
 
 struct Played {
   play::Transcript transcript;
