@@ -13,9 +13,9 @@
 #include <vector>
 
 #include "sim/module.hpp"
-#include "tests/support/environment.hpp"
 #include "tests/qemu/master.hpp"
 #include "tests/qemu/timed_module.hpp"
+#include "tests/support/environment.hpp"
 #include "tests/support/settings_reader.hpp"
 #include "tests/support/storing_commands.hpp"
 
@@ -27,17 +27,17 @@ using std::chrono::milliseconds;
 TEST(ImageWithoutPower, KeepsItsSettings) {
   const Model& model = *find_model("EX9042D-M");
   const Settings settings = ascii(model);
-  EmulatedModule module(model, &settings);
-  module.power(true);
-  wait_until_up(module);
+  TimedModule module(model);
+  module.begin_anew(&settings);
+  module.run_for(kComesUpWithin);
   EXPECT_EQ(ask(module, "~01OPUMP 7"), "!01");
   EXPECT_EQ(ask(module, "%0102400600"), "!02");
   EXPECT_EQ(ask(module, "@021234"), ">");
   EXPECT_EQ(ask(module, "~025P"), "!02");
-  module.power(false);
+  module.kill();
   EXPECT_EQ(module.outputs(), 0);
   module.power(true);
-  wait_until_up(module);
+  module.run_for(kComesUpWithin);
   EXPECT_EQ(ask(module, "$02M"), "!02PUMP 7");
   EXPECT_EQ(ask(module, "@02"), ">1234");
   EXPECT_EQ(module.outputs(), 0x1234);

@@ -3,20 +3,22 @@
 // back.
 #include <gtest/gtest.h>
 
-#include <stdexcept>
 #include <string>
 #include <vector>
 
-#include "tests/support/either_protocol.hpp"
-#include "tests/support/environment.hpp"
 #include "tests/qemu/master.hpp"
 #include "tests/qemu/signals.hpp"
 #include "tests/qemu/timed_module.hpp"
+#include "tests/support/either_protocol.hpp"
+#include "tests/support/environment.hpp"
 
 namespace ex9000::rig {
 namespace {
 
 using std::chrono::milliseconds;
+
+/// The longest that the module's watchdog may take: wire.md 6.
+constexpr milliseconds kWatchdogPeriod{1600};
 
 constexpr std::uint32_t kSysTickControl = 0xE000'E010;
 constexpr std::uint32_t kVectorTableOffset = 0xE000'ED08;
@@ -42,7 +44,6 @@ class FaultyImage : public testing::TestWithParam<Protocol>, protected EitherPro
 
   static constexpr std::uint16_t kPowerOnValue = 0x5A5A;
   static constexpr std::uint16_t kSafeValue = 0xA5A4;
-  static constexpr milliseconds kComesUpWithin{100};
 
   QtestClient& bus() { return module_.emulator().bus(); }
 
@@ -161,21 +162,9 @@ class FaultyImage : public testing::TestWithParam<Protocol>, protected EitherPro
   void expect_reset_in_time() {
     constexpr std::uint32_t kWatchdogLoad = 0x4000'0000;
     constexpr std::uint32_t kCountdowns = 2;
-    constexpr std::uint64_t kMilliseconds = 1600;
     EXPECT_LE(std::uint64_t{bus().read(kWatchdogLoad)} * kCountdowns,
-              kMilliseconds * board::kClock.frequency() / 1000);
-    const auto latest = module_.now() + milliseconds(kMilliseconds);
-    bool runs = true;
-    try {
-      while (module_.now() < latest) {
-        module_.run_for(milliseconds(50));
-      }
-    } catch (const std::runtime_error&) {
-      runs = false;
-    }
-    // It halts the machine; where that was about to stop by itself, it is told all the same.
-    ASSERT_TRUE(module_.emulator().qmp().hears("WATCHDOG", std::chrono::seconds(1)))
-        << (runs ? "no reset" : "");
+              std::uint64_t{kWatchdogPeriod.count()} * board::kClock.frequency() / 1000);
+    module_.run_to_reset("WATCHDOG", kWatchdogPeriod);
   }
 
   /// Each of the two statuses with half of what it may be doing. A storm takes the emulator seconds.
@@ -268,8 +257,8 @@ INSTANTIATE_TEST_SUITE_P(Speaking, FaultyImage, testing::Values(Protocol::Ascii,
 class HungImage : public testing::Test {
  protected:
   HungImage() {
-    module_.power(true);
-    wait_until_up(module_);
+    module_.begin_anew(&settings_);
+    module_.run_for(kComesUpWithin);
     EXPECT_EQ(ask(module_, "@010A05"), ">");
     EXPECT_EQ(ask(module_, "~015P"), "!01");
     EXPECT_EQ(ask(module_, "@011FFF"), ">");
@@ -281,9 +270,9 @@ class HungImage : public testing::Test {
   QtestClient& bus() { return module_.emulator().bus(); }
 
   void expect_reset_because(const std::string& event) {
-    ASSERT_TRUE(module_.halts_because(event));
-    module_.come_up_again();
-    wait_until_up(module_);
+    module_.run_to_reset(event, kWatchdogPeriod);
+    module_.reset();
+    module_.run_for(kComesUpWithin);
     EXPECT_EQ(ask(module_, "$015"), "!011");
     EXPECT_EQ(module_.outputs(), 0x0A05);
     EXPECT_EQ(ask(module_, "@01"), ">0A05");
@@ -292,7 +281,7 @@ class HungImage : public testing::Test {
 
   const Model& model_ = *find_model("EX9042D-M");
   Settings settings_ = ascii(model_);
-  EmulatedModule module_{model_, &settings_};
+  TimedModule module_{model_};
 };
 
 TEST_F(HungImage, ResetsItselfAtAnInterruptThatNobodyHasAskedFor) {
@@ -304,14 +293,18 @@ TEST_F(HungImage, ResetsItselfAtAnInterruptThatNobodyHasAskedFor) {
   expect_reset_because("SHUTDOWN");
 }
 
+/// The highest rate there is; so many bytes without a gap take it more than three periods of its watchdog.
 TEST_F(HungImage, AnswersAfterAFloodOfBytes) {
-  const std::vector<std::uint8_t> noise(4096, 'U');
-  for (unsigned i = 0; i < 16; ++i) {
-    module_.send(noise);
-  }
-  // Whatever is still in the socket comes before.
-  EXPECT_EQ(ask(module_, "\r$015", std::chrono::seconds(20)).substr(0, 3), "!01");
-  EXPECT_EQ(ask(module_, "@01"), module_.outputs() == 0x1FFF ? ">1FFF" : ">0A05");
+  constexpr std::uint8_t kFastest = 0x0A;  // 115200 baud
+  settings_.baud_code = kFastest;
+  module_.begin_anew(&settings_);
+  module_.run_for(kComesUpWithin);
+  EXPECT_EQ(ask(module_, "@011FFF"), ">");
+  EXPECT_EQ(ask(module_, "$015"), "!011");
+  module_.send(TimedModule::Bytes(65536, 'U'), module_.baud());
+  EXPECT_EQ(ask(module_, "$015"), "!010");
+  EXPECT_EQ(ask(module_, "@01"), ">1FFF");
+  EXPECT_EQ(module_.outputs(), 0x1FFF);
 }
 
 TEST(ImageInAnInterruptStorm, IsResetAndComesBackWhenItIsOver) {
@@ -323,9 +316,9 @@ TEST(ImageInAnInterruptStorm, IsResetAndComesBackWhenItIsOver) {
   constexpr std::uint32_t kHighLevel = 0x4000'540C;
   constexpr std::uint32_t kInput0 = 1;
   const Model& model = *find_model("EX9052D");
-  EmulatedModule module(model, nullptr);
+  TimedModule module(model);
   module.power(true);
-  wait_until_up(module);
+  module.run_for(kComesUpWithin);
   EXPECT_EQ(ask(module, "$015"), "!011");
   EXPECT_EQ(ask(module, "$015"), "!010");
   QtestClient& bus = module.emulator().bus();
@@ -333,9 +326,9 @@ TEST(ImageInAnInterruptStorm, IsResetAndComesBackWhenItIsOver) {
   bus.write(kHighLevel, kInput0);
   bus.write(kSense, kInput0);
   bus.set_input(kPortB, 0, true);
-  ASSERT_TRUE(module.halts_because("WATCHDOG"));
-  module.come_up_again();
-  wait_until_up(module);
+  module.run_to_reset("WATCHDOG", kWatchdogPeriod);
+  module.reset();
+  module.run_for(kComesUpWithin);
   EXPECT_EQ(ask(module, "$015"), "!011");
   module.set_input(0, true);
   EXPECT_EQ(ask(module, "@01"), ">0100");

@@ -13,10 +13,10 @@
 
 #include "sim/play/player.hpp"
 #include "sim/play/transcript.hpp"
-#include "tests/qemu/emulated_module.hpp"
+#include "tests/qemu/emulated_board.hpp"
 #include "tests/qemu/image_target.hpp"
-#include "tests/support/core_target.hpp"
 #include "tests/support/child_process.hpp"
+#include "tests/support/core_target.hpp"
 
 namespace ex9000 {
 namespace {

@@ -1,11 +1,13 @@
 """The panel in a real browser: what people do there, what modules do, and what is on the screen. Leaves a picture of
 each state in build/panel."""
 
-import threading
 import unittest
 
-from panel_page import DI3, INIT, INPUTS, OUTPUTS, PHONE, POWER, Panel, lit, pressed, text
-from simulator import Master
+from panel_page import DI3, INIT, INPUTS, OUTPUTS, PHONE, POWER, Panel, both_lines_busy, lit, pressed, text
+from simulator import Master, all_the_while, crc
+
+CLICKS = 24
+READ_INPUTS = bytes.fromhex("020200000008") + crc(bytes.fromhex("020200000008"))
 
 
 class Modules(Panel):
@@ -41,10 +43,12 @@ class Modules(Panel):
         self.browser.until(lit(5))
         self.browser.click("summary")
         self.browser.until(text(OUTPUTS, ".values", "Safe0100"))
-        master.ask("010601E80014", 8)
+        master.ask("010601E800FF", 8)
         master.coil(1, 0x0104, True)
-        self.browser.until(text(OUTPUTS, ".readout.wide .value", "of 2.0 s"))
-        self.picture("counting-down")
+        with all_the_while(lambda: master.ask("010601E800FF", 8)):  # which starts it again
+            self.browser.until(text(OUTPUTS, ".readout.wide .value", "of 25.5 s"))
+            self.picture("counting-down")
+        master.ask("010601E80014", 8)
         self.browser.until("document.querySelector('.status').dataset.led === 'flashing'")
         self.browser.until(lit(2))
         self.browser.until(text(OUTPUTS, ".ledtext", "flashing"))
@@ -122,14 +126,14 @@ class Modules(Panel):
         self.browser.click(noise)
         self.browser.until(pressed(noise))
         self.browser.run("document.getElementById('bus').scrollIntoView()")
+        error = "document.querySelector('.row[data-kind=error]') !== null"
         for _ in range(200):
-            try:
-                master.ask("020200000008", 6)
-            except (AssertionError, TimeoutError):
+            before = self.browser.run("return document.getElementById('tally').textContent")
+            master.send(READ_INPUTS)  # there may be no answer, which takes for ever
+            self.browser.until("document.getElementById('tally').textContent !== given[0]", before)
+            if self.browser.run(f"return {error}"):
                 break
-            if self.browser.run("return document.querySelectorAll('.row[data-kind=error]').length"):
-                break
-        self.browser.until("document.querySelectorAll('.row[data-kind=error]').length > 0")
+        self.browser.until(error)
         self.picture("noise")
         self.browser.run(f'document.querySelector("{noise}").click()')
         self.browser.until(f"!({pressed(noise)})")
@@ -200,86 +204,25 @@ class Modules(Panel):
         self.browser.prefers(color_scheme="dark")
         self.picture("one-dark")
 
-    def test_64_modules_on_full_lines_are_on_the_screen_in_time_and_without_stutter(self):
+    def test_64_modules_on_full_lines_are_on_the_screen_and_show_every_click(self):
         simulator = self.many()
         self.look_at(simulator)
         self.assertEqual(self.browser.run("return document.querySelectorAll('.plate').length"), 64)
-        over = threading.Event()
-        loads = [threading.Thread(target=keep_busy, args=(port, over)) for port in simulator.lines]
-        for load in loads:
-            load.start()
-        try:
+        input_, plate = "[aria-label='2 EX9052D-M: input DI3']", "[aria-label='2 EX9052D-M']"
+        count = f"""Number(document.querySelector("{plate} li:nth-child(4) .count").textContent)"""
+        latched = f"""document.querySelector("{plate} li:nth-child(4) .latch").dataset.on === 'true'"""
+        with both_lines_busy(simulator):
             self.browser.until("document.querySelectorAll('#filler .row').length > 10")
-            measured = self.browser.promised(MEASURE)
+            # What the module counts takes the longest way; it counts falling edges, one of every two clicks.
+            for turn in range(CLICKS):
+                self.browser.run(f"""document.querySelector("{input_}").click()""")
+                switched = pressed(input_) if turn % 2 == 0 else f"!({pressed(input_)})"
+                self.browser.until(f"{switched} && {latched} && {count} === {(turn + 1) // 2}")
             self.picture("64")
             self.browser.prefers(color_scheme="dark")
             self.browser.run("document.getElementById('bus').scrollIntoView()")
             self.picture("64-bus-dark")
-        finally:
-            over.set()
-            for load in loads:
-                load.join()
-        print(
-            f"64 modules, both lines at full load: a click is on the screen within {measured['click']:.0f} ms (median; "
-            f"longest {measured['longestClick']:.0f}), repaints are {measured['repaint']:.0f} ms apart (median; 99th "
-            f"{measured['repaint99']:.0f}), {measured['frames']} frames a second", flush=True,
-        )
-        self.assertLess(measured["click"], 100)
-        self.assertLess(measured["longestClick"], 400)
-        self.assertLess(measured["repaint"], 50)
-        self.assertLess(measured["repaint99"], 250)
-        self.assertGreater(measured["frames"], 100)
-
-
-# How long from a click on an input to the repaint that shows it, command, bus and all; and how far repaints are apart.
-MEASURE = """
-  const gaps = [], clicks = [];
-  const repaint = () => new Promise((shown) => requestAnimationFrame(shown));
-  let over = false;
-  const watching = (async () => {
-    for (let last = await repaint(); !over;) { const now = await repaint(); gaps.push(now - last); last = now; }
-  })();
-  // What the module counts takes the longest way; it counts falling edges, one of every two clicks.
-  const counter = document.querySelector("[aria-label='2 EX9052D-M'] li:nth-child(4) .count");
-  const latch = document.querySelector("[aria-label='2 EX9052D-M'] li:nth-child(4) .latch");
-  const input = document.querySelector("[aria-label='2 EX9052D-M: input DI3']");
-  const began = performance.now();
-  let frames = 0;
-  const another = new WebSocket(`ws://${location.host}/live`);
-  another.onmessage = (event) => {
-    for (const line of JSON.parse(event.data).frames ?? []) { frames += line.entries.length; }
-  };
-  for (let turn = 0; turn < 25; ++turn) {
-    const [was, counted] = [input.getAttribute('aria-checked'), Number(counter.textContent)];
-    const falls = was === 'true';
-    const clicked = performance.now();
-    input.click();
-    while (input.getAttribute('aria-checked') === was || latch.dataset.on !== 'true'
-           || Number(counter.textContent) !== counted + (falls ? 1 : 0)) { await repaint(); }
-    clicks.push(await repaint() - clicked);
-    while (performance.now() < began + 100 * (turn + 1)) { await repaint(); }
-  }
-  over = true;
-  await watching;
-  another.close();
-  const sorted = (list) => list.sort((a, b) => a - b);
-  sorted(gaps); sorted(clicks);
-  return {click: clicks[clicks.length >> 1], longestClick: clicks[clicks.length - 1], repaint: gaps[gaps.length >> 1],
-          repaint99: gaps[Math.floor(gaps.length * 0.99)],
-          frames: Math.round(frames * 1000 / (performance.now() - began))};
-"""
-
-
-def keep_busy(port, over):
-    """Of every four modules one is told to switch an output, and one to read its inputs."""
-    master = Master(port)
-    turn = 0
-    while not over.is_set():
-        group = turn % 8 * 4
-        master.coil(1 + group, turn // 8 % 13, turn // 104 % 2 == 0)
-        master.ask(f"{2 + group:02X}0200000008", 6)
-        turn += 1
-    master.close()
+        print(f"64 modules, both lines at full load: {CLICKS} clicks, each seen on the screen", flush=True)
 
 
 if __name__ == "__main__":

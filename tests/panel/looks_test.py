@@ -1,10 +1,10 @@
 """How the panel looks, and what a screen reader finds: contrast, narrow windows, what stands in a drawer, and what it
 says where there is nothing to see."""
 
-import time
 import unittest
 
 from panel_page import DI3, INPUTS, OUTPUTS, Panel, text
+from simulator import wait_until
 from web_socket import Page
 
 MOST_PAGES = 16
@@ -97,6 +97,12 @@ class Looks(Panel):
                     document.activeElement === table, selected !== '' && String(getSelection()) === selected];""")
         self.assertTrue(scrolled and same and focused and selected, (scrolled, same, focused, selected))
 
+    def let_in(self, simulator):
+        """Another page, or None if there is no room for it."""
+        page = Page(simulator.port)
+        self.addCleanup(page.close)
+        return page if page.next() is not None else None
+
     def test_one_page_too_many_says_so_and_comes_as_soon_as_another_goes(self):
         simulator, _ = self.show_two()
         pages = []
@@ -104,10 +110,7 @@ class Looks(Panel):
             pages.append(Page(simulator.port))
             self.addCleanup(pages[-1].close)
         self.browser.open("about:blank")
-        gives_up = time.monotonic() + 5
-        while (page := Page(simulator.port)).next() is None:  # the browser's own has gone
-            self.assertLess(time.monotonic(), gives_up)
-        self.addCleanup(page.close)
+        page = wait_until(lambda: self.let_in(simulator))  # the browser's own has gone
         self.browser.open(simulator.address)
         self.browser.until("document.getElementById('lost').textContent.includes('Too many pages')")
         dot = "getComputedStyle(document.getElementById('link'), '::before').content.includes('○')"

@@ -2,9 +2,11 @@
 build/panel."""
 
 import atexit
+import contextlib
 import functools
 import json
 import pathlib
+import threading
 import unittest
 
 from simulator import Master, Simulator
@@ -43,6 +45,49 @@ def the_browser():
     return browser
 
 
+def bus(lines):
+    path = PICTURES / "bus.json"
+    path.parent.mkdir(parents=True, exist_ok=True)
+    path.write_text(json.dumps({"lines": lines}))
+    return Simulator(str(path))
+
+
+# Two lines of 32 modules each: every four an output module, an input module and two with both.
+MANY = [
+    {"name": name, "tcp": 0, "modules": [
+        {"model": ("EX9042D-M", "EX9052D-M", "EX9055D", "EX9068D-M")[i % 4], "address": f"{i + 1:02X}", "baud": 115200}
+        for i in range(32)]}
+    for name in ("hall", "yard")
+]
+
+
+@contextlib.contextmanager
+def both_lines_busy(simulator):
+    """A master on each line as long as the block lasts, without a pause."""
+    over = threading.Event()
+    loads = [threading.Thread(target=keep_busy, args=(port, over)) for port in simulator.lines]
+    for load in loads:
+        load.start()
+    try:
+        yield
+    finally:
+        over.set()
+        for load in loads:
+            load.join()
+
+
+def keep_busy(port, over):
+    """Of every four modules one is told to switch an output, and one to read its inputs."""
+    master = Master(port)
+    turn = 0
+    while not over.is_set():
+        group = turn % 8 * 4
+        master.coil(1 + group, turn // 8 % 13, turn // 104 % 2 == 0)
+        master.ask(f"{2 + group:02X}0200000008", 6)
+        turn += 1
+    master.close()
+
+
 class Panel(unittest.TestCase):
     def setUp(self):
         self.browser = the_browser()
@@ -76,14 +121,9 @@ class Panel(unittest.TestCase):
             "const {scrollWidth, clientWidth} = document.documentElement; return [scrollWidth, clientWidth]"))
 
     def many(self):
-        models = ["EX9042D-M", "EX9052D-M", "EX9055D", "EX9068D-M"]
-        modules = [{"model": models[i % 4], "address": f"{i + 1:02X}", "baud": 115200} for i in range(32)]
-        return self.bus([{"name": name, "tcp": 0, "modules": modules} for name in ("hall", "yard")])
+        return self.bus(MANY)
 
     def bus(self, lines):
-        path = PICTURES / "bus.json"
-        path.parent.mkdir(parents=True, exist_ok=True)
-        path.write_text(json.dumps({"lines": lines}))
-        simulator = Simulator(str(path))
+        simulator = bus(lines)
         self.addCleanup(simulator.close)
         return simulator

@@ -4,44 +4,42 @@ import json
 import pathlib
 import random
 import socket
-import statistics
 import subprocess
 import threading
-import time
 import unittest
 
-from simulator import PROGRAM, Master, Simulator
+from simulator import HANG, PROGRAM, Master, Simulator, wait_until
 from web_socket import Page, all_of, ask, open_socket, request, status, upgrade
 
 MOST_PAGES = 16
 MOST_REQUESTS = 64  # under way at a time besides
 TRY_AGAIN_LATER = 1013
-PATIENCE = 5  # seconds, until a request has come
+LOOKS = 20  # of a page, enough to tell that another is told nothing any more
 
 
 class Polling:
-    """A master that asks all the while, and how that went."""
+    """A master that asks all the while, and whether it was answered."""
 
     def __init__(self, port):
         self._master = Master(port)
-        self.took = []
         self.wrong = None
-        self._over = False
+        self._left = None  # polls, since somebody has said that it is to end
         self._thread = threading.Thread(target=self._poll)
         self._thread.start()
 
     def _poll(self):
         try:
-            while not self._over:
-                began = time.monotonic()
+            while self._left != 0:
                 if self._master.ask("020200000008", 6)[:2] != b"\x02\x01":
                     raise AssertionError("no answer to what was asked")
-                self.took.append(time.monotonic() - began)
+                if self._left is not None:
+                    self._left -= 1
         except Exception as wrong:  # pylint: disable=broad-exception-caught # the test reads it
             self.wrong = wrong
 
     def end(self):
-        self._over = True
+        """After five more."""
+        self._left = 5
         self._thread.join()
         self._master.close()
 
@@ -60,14 +58,8 @@ class Server(unittest.TestCase):
         self.polling = Polling(self.simulator.lines[0])
 
     def tearDown(self):
-        before = len(self.polling.took)
-        while len(self.polling.took) < before + 5 and not self.polling.wrong:
-            time.sleep(0.001)
         self.polling.end()
         self.assertIsNone(self.polling.wrong)
-        # A request takes 4 ms; the rest is what this machine has to do besides.
-        self.assertLess(statistics.median(self.polling.took), 0.02)
-        self.assertLess(max(self.polling.took), 0.2)
 
     def page(self):
         page = Page(self.port)
@@ -129,13 +121,19 @@ class Server(unittest.TestCase):
             self.expect(400, garbage)
 
     def test_who_never_ends_his_request_is_let_go(self):
-        began = time.monotonic()
         with open_socket(self.port) as silent, open_socket(self.port) as slow:
             slow.sendall(b"GET / HTTP/1.1\r\nHost:")
             for connection in silent, slow:
                 self.assertEqual(all_of(connection), b"")
-                self.assertGreater(time.monotonic() - began, PATIENCE - 0.5)
-        self.assertLess(time.monotonic() - began, PATIENCE + 3)
+
+    def test_a_request_may_come_in_pieces(self):
+        whole = request(self.port)
+        with open_socket(self.port) as connection:
+            for byte in whole[:-1]:
+                connection.sendall(bytes([byte]))
+                self.expect(200, request(self.port, "/panel.css"))  # so that it has come by itself
+            connection.sendall(whole[-1:])
+            self.assertEqual(status(all_of(connection)), 200)
 
     def test_one_page_too_many_is_told_so_until_another_leaves(self):
         pages = [self.page() for _ in range(MOST_PAGES)]
@@ -145,29 +143,32 @@ class Server(unittest.TestCase):
         another.close()
         self.expect(200, request(self.port, "/panel.js"))  # requests have room of their own
         pages[0].close()
-        gives_up = time.monotonic() + 5
-        while not (another := self.page()).next():
-            self.assertLess(time.monotonic(), gives_up)
-            another.close()
-            time.sleep(0.01)
+        wait_until(lambda: self.page().next())
         self.assertTrue(pages[1].tell("1 status")["ok"])
-        for page in [*pages, another]:
+        for page in pages:
             page.close()
 
     def test_one_request_too_many_is_turned_away_and_disturbs_no_page(self):
         page = self.page()
-        waiting = [open_socket(self.port) for _ in range(MOST_REQUESTS)]
-        for connection in waiting:
-            self.addCleanup(connection.close)
-            connection.sendall(b"GET")
-        self.expect(503, b"")
-        self.assertTrue(page.tell("1 status")["ok"])
-        for connection in waiting:
-            connection.close()
-        gives_up = time.monotonic() + 2  # sooner than any of them would be let go
-        while status(ask(self.port, request(self.port))) != 200:
-            self.assertLess(time.monotonic(), gives_up)
-            time.sleep(0.01)
+        rounds = 0
+
+        def again():
+            """Of requests that go their places are free at once. If they were let go first, which takes 5 s, so many
+            rounds would be a hang."""
+            nonlocal rounds
+            if status(ask(self.port, request(self.port))) == 200:
+                waiting = [open_socket(self.port) for _ in range(MOST_REQUESTS)]
+                for connection in waiting:
+                    self.addCleanup(connection.close)
+                    connection.sendall(b"GET")
+                self.expect(503, b"")
+                self.assertTrue(page.tell("1 status")["ok"])
+                for connection in waiting:
+                    connection.close()
+                rounds += 1
+            return rounds == 20
+
+        wait_until(again)
 
     def test_a_page_that_talks_garbage_is_let_go(self):
         for text in ("garbage", "[]", "{}", '{"id":1}', '{"do":"list"}', '{"id":-1,"do":"list"}', '{"id":1,"do":2}',
@@ -199,22 +200,18 @@ class Server(unittest.TestCase):
 
     def test_what_a_page_holds_is_let_go_when_its_connection_ends(self):
         page, another = self.page(), self.page()
-        page.send(json.dumps({"id": 1, "do": "2 input 5 on", "undo": "2 input 5 off"}))
+        page.say("2 input 5 on", undo="2 input 5 off")
         self.assertTrue(page.until(lambda message: message.get("reply"))["reply"]["ok"])
         self.assertEqual(another.tell("2 inputs")["text"], "ok 0020")
         page.close()
-        gives_up = time.monotonic() + 5
-        while another.tell("2 inputs")["text"] != "ok 0000":
-            self.assertLess(time.monotonic(), gives_up)
+        wait_until(lambda: another.tell("2 inputs")["text"] == "ok 0000")
 
     def test_who_goes_in_the_middle_of_anything_is_forgotten(self):
         for data in (b"GET", upgrade(self.port)[:-1], upgrade(self.port), request(self.port)):
             for _ in range(10):
                 with open_socket(self.port) as connection:
                     connection.sendall(data)
-        gives_up = time.monotonic() + 5
-        while status(ask(self.port, request(self.port))) != 200:
-            self.assertLess(time.monotonic(), gives_up)
+        wait_until(lambda: status(ask(self.port, request(self.port))) == 200)
 
 
 class Start(unittest.TestCase):
@@ -226,7 +223,7 @@ class Start(unittest.TestCase):
         for page in pages:
             self.assertTrue(page.tell("list")["ok"])
         simulator.process.terminate()
-        self.assertEqual(simulator.process.wait(10), 0)
+        self.assertEqual(simulator.process.wait(HANG), 0)
         for each in [*pages, waiting]:
             each.close()
 
@@ -268,7 +265,7 @@ class Start(unittest.TestCase):
         self.assertIn(f"0100007F:{simulator.port:04X}", listening)
         self.assertNotIn(f"00000000:{simulator.port:04X}", listening)
         with self.assertRaises(OSError):
-            socket.create_connection(("::1", simulator.port), 1)
+            socket.create_connection(("::1", simulator.port), HANG)
 
 
 class Slow(unittest.TestCase):
@@ -281,32 +278,29 @@ class Slow(unittest.TestCase):
         for each in slow, page:
             self.addCleanup(each.close)
             self.assertEqual(each.status, 101)
-        reads = threading.Thread(target=page.until, args=(lambda message: message.get("reply"),))
+        told = []  # when the page was, in the simulator's time
+        reads = threading.Thread(target=page.until, args=(lambda message: told.extend(times_of(message))
+                                                          or message.get("reply"),))
         reads.start()
-        longest = 0
-        full, seen = 0, time.monotonic()  # what has piled up, and since when that much
-        gives_up = seen + 30
-        while time.monotonic() < seen + 0.7:
+        full, seen = 0, 0  # what has piled up, and how often the page had been told when it was that much
+        while len(told) < seen + LOOKS:
             for _ in range(200):
-                began = time.monotonic()
                 master.ask("020200000008", 6)
-                longest = max(longest, time.monotonic() - began)
-            self.assertLess(time.monotonic(), gives_up)
             if (piled_up := unsent(simulator.port, slow.connection)) != full:
-                full, seen = piled_up, time.monotonic()
+                full, seen = piled_up, len(told)
         self.assertGreater(full, 100000)
-        self.assertLess(longest, 0.2)
-        page.send(json.dumps({"id": 1, "do": "2 input 0 on"}))
-        reads.join(5)
+        page.say("2 input 0 on")
+        reads.join(HANG)
         self.assertFalse(reads.is_alive())
         times, inputs = [], None
         while inputs != 1:
             state = slow.until(lambda message: message.get("state"))["state"]
-            times.append(state["lines"][0]["now"])
+            times += times_of({"state": state})
             inputs = next((each["plate"]["inputs"] for each in state["modules"]
                            if each["module"] == 1 and "plate" in each), inputs)
         # It was told nothing while it could not take it.
-        self.assertGreater(max(after - before for before, after in zip(times, times[1:])), 500000)
+        most = max(sum(before < each < after for each in told) for before, after in zip(times, times[1:]))
+        self.assertGreaterEqual(most, LOOKS - 1)
 
 
 def tcp_sockets():
@@ -324,8 +318,12 @@ def unsent(port, connection):
     raise AssertionError("it was closed")
 
 
+def times_of(message):
+    return [message["state"]["lines"][0]["now"]] if message.get("state") else []
+
+
 def run(*arguments):
-    return subprocess.run([PROGRAM, *arguments], capture_output=True, text=True, timeout=20, check=False)
+    return subprocess.run([PROGRAM, *arguments], capture_output=True, text=True, timeout=HANG, check=False)
 
 
 if __name__ == "__main__":

@@ -1,5 +1,6 @@
 """A running ex9000-sim with its panel, and a Modbus master on its line."""
 
+import contextlib
 import os
 import pathlib
 import re
@@ -7,11 +8,24 @@ import signal
 import socket
 import subprocess
 import tempfile
+import threading
+import time
 import urllib.parse
 
 PROGRAM = os.environ.get(
     "EX9000_SIMULATOR", str(pathlib.Path(__file__).resolve().parents[2] / "build/host-debug/sim/ex9000-sim")
 )
+
+HANG = 60  # seconds; only what hangs takes so long: the slowest answer takes a second or two on a busy machine
+
+
+def wait_until(holds):
+    """For what nobody tells of: asks again and again, and fails if it never holds."""
+    gives_up = time.monotonic() + HANG
+    while not (it := holds()):
+        assert time.monotonic() < gives_up, "never"
+        time.sleep(0.01)
+    return it
 
 
 class Simulator:
@@ -70,7 +84,7 @@ class Master:
     """Modbus RTU and DCON, over TCP."""
 
     def __init__(self, port):
-        self._socket = socket.create_connection(("127.0.0.1", port), timeout=5)
+        self._socket = socket.create_connection(("127.0.0.1", port), timeout=HANG)
         self._socket.setsockopt(socket.IPPROTO_TCP, socket.TCP_NODELAY, 1)
 
     def close(self):
@@ -108,3 +122,21 @@ class Master:
 
     def coil(self, address, coil, on):
         self.ask(f"{address:02X}05{coil:04X}{'FF00' if on else '0000'}", 8)
+
+
+@contextlib.contextmanager
+def all_the_while(do):
+    """Does it again and again as long as the block lasts."""
+    over = threading.Event()
+
+    def repeat():
+        while not over.is_set():
+            do()
+
+    thread = threading.Thread(target=repeat)
+    thread.start()
+    try:
+        yield
+    finally:
+        over.set()
+        thread.join()

@@ -6,11 +6,13 @@ import os
 import socket
 import struct
 
+from simulator import HANG
+
 
 def open_socket(port, receives=None):
     """`receives`: bytes that it has room for, less than it usually has."""
     connection = socket.socket()
-    connection.settimeout(15)
+    connection.settimeout(HANG)
     if receives:
         connection.setsockopt(socket.SOL_SOCKET, socket.SO_RCVBUF, receives)
     connection.connect(("127.0.0.1", port))
@@ -70,6 +72,10 @@ class Page:
         self._stream.close()
         self.connection.close()
 
+    def say(self, command, number=1, **more):
+        """Without waiting for the reply."""
+        self.send(json.dumps({"id": number, "do": command, **more}))
+
     def send(self, text, opcode=1):
         data = text if isinstance(text, bytes) else text.encode()
         size = struct.pack("!B", 0x80 | len(data)) if len(data) < 126 else struct.pack("!BH", 0xFE, len(data))
@@ -101,5 +107,5 @@ class Page:
         raise AssertionError("it was closed")
 
     def tell(self, command, number=1):
-        self.send(json.dumps({"id": number, "do": command}))
+        self.say(command, number)
         return self.until(lambda message: message.get("reply", {}).get("id") == number)["reply"]

@@ -9,6 +9,8 @@ import tempfile
 import urllib.error
 import urllib.request
 
+from simulator import HANG
+
 ELEMENT = "element-6066-11e4-a52e-4f735466cecf"
 KEYS = {"Tab": "\ue004", "Enter": "\ue007", "Space": " ", "Shift": "\ue008", "Alt": "\ue00a", "Left": "\ue012",
         "Right": "\ue014"}
@@ -41,7 +43,7 @@ class Browser:
         }
         session = self._post("", {"capabilities": {"alwaysMatch": options}})
         self._base += "/" + session["sessionId"]
-        self._post("/timeouts", {"script": 15000})
+        self._post("/timeouts", {"script": 1000 * (HANG + 10)})  # `until` gives up by itself
 
     def close(self):
         try:
@@ -58,7 +60,7 @@ class Browser:
             self._base + path, data, {"Content-Type": "application/json"}, method=method
         )
         try:
-            with urllib.request.urlopen(request, timeout=60) as answer:
+            with urllib.request.urlopen(request, timeout=HANG + 20) as answer:
                 return json.load(answer)["value"]
         except urllib.error.HTTPError as error:
             raise AssertionError(json.load(error)["value"]["message"]) from None
@@ -84,11 +86,11 @@ class Browser:
         return value
 
     def until(self, condition, *arguments):
-        """Looks at every repaint until the expression `condition` is true, and fails after 10 s."""
+        """Looks at the page again and again until the expression `condition` is true, and fails if it never is."""
         script = f"""
             const given = arguments;
             const holds = () => {{ try {{ return ({condition}); }} catch (error) {{ return false; }} }};
-            const gives_up = performance.now() + 10000;
+            const gives_up = performance.now() + {1000 * HANG};
             while (!holds()) {{
               if (performance.now() > gives_up) {{ return false; }}
               await new Promise((go_on) => setTimeout(go_on, 10));

@@ -16,8 +16,7 @@ std::string image_of(const Model& model) {
   return std::string(EX9000_IMAGES) + "/" + std::string(model.designation) + ".elf";
 }
 
-EmulatedBoard::EmulatedBoard(const Model& model, const Settings* settings, Emulator::Time time)
-    : model_(model), time_(time) {
+EmulatedBoard::EmulatedBoard(const Model& model, const Settings* settings) : model_(model) {
   store(settings);
 }
 
@@ -36,13 +35,10 @@ void EmulatedBoard::renew(const Settings* settings) {
 void EmulatedBoard::supply(bool on) {
   powered_ = on;
   if (!on) {
-    if (time_ == Emulator::Time::Host) {
-      emulator_.reset();
-    }
     return;
   }
   if (!emulator_) {
-    emulator_.emplace(image_of(model_), directory_ / "memory", time_);
+    emulator_.emplace(image_of(model_), directory_ / "memory");
     give_levels();
   } else {
     pull_reset();

@@ -1,4 +1,4 @@
-// A module's board: microcontroller with its image, EEPROM and pins, whatever time they live in.
+// A module's board: microcontroller with its image, EEPROM and pins.
 #pragma once
 
 #include <array>
@@ -38,20 +38,18 @@ class EmulatedBoard {
 
  protected:
   /// The EEPROM holds `settings`, or nothing where they are null.
-  EmulatedBoard(const Model& model, const Settings* settings, Emulator::Time time);
+  EmulatedBoard(const Model& model, const Settings* settings);
   ~EmulatedBoard() = default;
 
   /// When it comes on the machine is halted before its first instruction, and nothing but the EEPROM is left
-  /// of what was. Off is as sudden as SIGKILL, and is that in the host's time. With a time of its own, where
-  /// making an emulator would take most of it, the same one comes on again: halted and reset, by which it
-  /// reads the EEPROM's file again, with noise in RAM.
+  /// of what was. Making an emulator takes most of the time of a short test, so the same one comes on again:
+  /// halted and reset, by which it reads the EEPROM's file again, with noise in RAM.
   void supply(bool on);
-  /// Off as by SIGKILL whatever time it has: the next `supply` makes another one.
+  /// Off as by SIGKILL: the next `supply` makes another emulator.
   void kill();
   /// By the reset pin, while halted; it stays halted.
   void pull_reset();
-  /// Another board with supply just on: INIT* released, inputs off, the EEPROM as the constructor has it. Not
-  /// in the host's time.
+  /// Another board with supply just on: INIT* released, inputs off, the EEPROM as the constructor has it.
   void renew(const Settings* settings);
   /// Level of an input channel that the model has.
   void set_level(unsigned channel, bool level);
@@ -63,7 +61,6 @@ class EmulatedBoard {
   void give_levels();
 
   const Model& model_;
-  Emulator::Time time_;
   system::Directory directory_;
   std::optional<Emulator> emulator_;
   bool powered_ = false;

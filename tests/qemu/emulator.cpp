@@ -22,7 +22,7 @@ std::vector<std::string> command_of(const std::string& image, const std::string&
           image,
           "-S",
           "-action",
-          "reboot=shutdown,shutdown=pause,watchdog=pause",
+          "reboot=shutdown,shutdown=pause,watchdog=reset",
           "-chardev",
           "socket,id=uart,path=uart",
           "-serial",
@@ -36,37 +36,33 @@ std::vector<std::string> command_of(const std::string& image, const std::string&
           "-drive",
           "if=none,id=memory,format=raw,cache=unsafe,file=" + memory,
           "-device",
-          "at24c-eeprom,bus=i2c,address=0x50,rom-size=8192,drive=memory"};
+          "at24c-eeprom,bus=i2c,address=0x50,rom-size=8192,drive=memory",
+          "-icount",
+          "shift=4,sleep=off",
+          "-semihosting-config",  // how AlarmClock's interrupt asks the debugger for a stop
+          "enable=on,target=gdb",
+          "-plugin",
+          EX9000_GATE ",socket=gate,address=" + std::to_string(Emulator::kGate),
+          "-chardev",
+          "socket,id=gdb,path=gdb",
+          "-gdb",
+          "chardev:gdb"};
 }
-
-/// What AlarmClock needs: semihosting is how its interrupt asks the debugger for a stop.
-const std::vector<std::string> kTimeOfItsOwn{"-icount",
-                                             "shift=4,sleep=off",
-                                             "-semihosting-config",
-                                             "enable=on,target=gdb",
-                                             "-chardev",
-                                             "socket,id=gdb,path=gdb",
-                                             "-gdb",
-                                             "chardev:gdb"};
 
 }  // namespace
 
-Emulator::Emulator(const std::string& image, const std::string& memory, Time time) {
-  std::vector<std::string> command = command_of(image, memory);
-  if (time == Time::Own) {
-    command.insert(command.end(), kTimeOfItsOwn.begin(), kTimeOfItsOwn.end());
-  }
+Emulator::Emulator(const std::string& image, const std::string& memory) {
   UnixListener uart(directory_ / "uart");
   UnixListener qmp(directory_ / "qmp");
   UnixListener qtest(directory_ / "qtest");
   UnixListener gdb(directory_ / "gdb");
-  process_.emplace(command, directory_.path(), system::ChildProcess::Errors::WithOutput);
+  UnixListener gate(directory_ / "gate");
+  process_.emplace(command_of(image, memory), directory_.path(), system::ChildProcess::Errors::WithOutput);
   uart_.emplace(uart.accept());
   qmp_.emplace(qmp.accept());
   bus_.emplace(qtest.accept());
-  if (time == Time::Own) {
-    gdb_.emplace(gdb.accept());
-  }
+  gdb_.emplace(gdb.accept());
+  gate_.emplace(gate.accept());
 }
 
 /// Told to halt where there would be a reset, the emulator does so even if it is asked for one. And its UARTs

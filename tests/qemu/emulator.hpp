@@ -1,4 +1,4 @@
-// The reference board in QEMU.
+// The reference board in QEMU, in a time of its own.
 #pragma once
 
 #include <optional>
@@ -18,27 +18,26 @@ namespace ex9000::rig {
 /// instruction, so that its pins can be given their levels. Destroyed as by a power cut.
 ///
 /// Where the image resets itself, or the watchdog does, the machine halts instead, for the same reason.
+///
+/// An instruction takes 16 ns. While the processor sleeps, time jumps to what it waits for. AlarmClock runs
+/// the machine.
 class Emulator {
  public:
-  enum class Time {
-    Host,  ///< passes as the host's does: for whoever keeps no other
-    Own,   ///< 16 ns an instruction, and none between what it waits for and that; run by AlarmClock
-  };
+  /// The address of the instruction at which it waits to be let go on.
+  static constexpr std::uint32_t kGate = 0x2000'9044;
 
   /// Runs the ELF file `image`; `memory` is the file that holds the EEPROM's 8192 bytes. Throws
   /// std::runtime_error where it does not come up.
-  Emulator(const std::string& image, const std::string& memory, Time time);
+  Emulator(const std::string& image, const std::string& memory);
 
-  /// Not with a time of its own.
-  void run() { qmp_->execute("cont", "RESUME"); }
-  void halt() { qmp_->execute("stop", "STOP"); }
   /// As the reset pin does, while halted; it stays halted. Inputs read 0 after it.
   void reset();
 
   QmpClient& qmp() { return *qmp_; }
   QtestClient& bus() { return *bus_; }
-  /// Only with a time of its own.
   GdbClient& gdb() { return *gdb_; }
+  /// Where its processor waits at `kGate`: see gate.cpp.
+  UnixSocket& gate() { return *gate_; }
   /// UART0, without regard to rates; what it sends has to be taken now and then, for a full socket (278
   /// bytes) halts the machine.
   UnixSocket& uart() { return *uart_; }
@@ -51,6 +50,7 @@ class Emulator {
   std::optional<QmpClient> qmp_;
   std::optional<QtestClient> bus_;
   std::optional<GdbClient> gdb_;
+  std::optional<UnixSocket> gate_;
 };
 
 }  // namespace ex9000::rig

@@ -14,8 +14,15 @@ std::string GdbClient::framed(const std::string& packet) {
   return "$" + packet + "#" + kDigits[sum / 16 % 16] + kDigits[sum % 16];
 }
 
+bool GdbClient::has_packet() {
+  const std::vector<std::uint8_t> bytes = socket_.receive(std::chrono::nanoseconds(0));
+  received_.append(bytes.begin(), bytes.end());
+  const std::size_t begin = received_.find('$');
+  constexpr std::size_t kChecksum = 2;
+  return begin != std::string::npos && received_.find('#', begin) + kChecksum < received_.size();
+}
+
 std::string GdbClient::receive() {
-  constexpr std::chrono::seconds kPatience{20};
   constexpr std::size_t kChecksum = 2;
   for (;;) {
     const std::size_t begin = received_.find('$');
@@ -25,7 +32,7 @@ std::string GdbClient::receive() {
       received_.erase(0, end + kChecksum + 1);
       return packet;
     }
-    const std::vector<std::uint8_t> bytes = socket_.receive(kPatience);
+    const std::vector<std::uint8_t> bytes = socket_.receive(kHang);
     if (bytes.empty()) {
       throw std::runtime_error("gdb: the machine neither stops nor answers");
     }

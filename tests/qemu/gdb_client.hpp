@@ -18,8 +18,11 @@ class GdbClient {
   static std::string framed(const std::string& packet);
   /// What `framed` has made, one behind the other in one piece: the last of them may set the machine going.
   void send(const std::string& packets) { socket_.send(packets); }
-  /// The next packet, without its frame. Waits 20 s; throws std::runtime_error where none comes.
+  /// The next packet, without its frame. Throws std::runtime_error if none comes for `kHang`.
   std::string receive();
+  /// Takes what has come; whether a packet is there.
+  bool has_packet();
+  [[nodiscard]] const UnixSocket& socket() const { return socket_; }
 
  private:
   UnixSocket socket_;

@@ -1,10 +1,10 @@
-// A DCON master at a module's own rate.
+// A master at a module's own rate, in the module's time.
 #pragma once
 
 #include <chrono>
 #include <string>
 
-#include "tests/qemu/emulated_module.hpp"
+#include "tests/qemu/timed_module.hpp"
 
 namespace ex9000::rig {
 
@@ -15,26 +15,34 @@ inline Settings ascii(const Model& model) {
   return settings;
 }
 
-/// The reply without its CR; whatever has come where none is complete within `patience`.
-inline std::string ask(EmulatedModule& module, const std::string& command,
-                       std::chrono::milliseconds patience = std::chrono::seconds(3)) {
-  const std::string frame = command + "\r";
-  module.send({frame.begin(), frame.end()});
-  std::string reply;
-  const auto gives_up = std::chrono::steady_clock::now() + patience;
-  while (reply.find('\r') == std::string::npos && std::chrono::steady_clock::now() < gives_up) {
-    const auto bytes = module.hear(gives_up - std::chrono::steady_clock::now());
-    reply.append(bytes.begin(), bytes.end());
+/// The reply, whole: up to where the module's driver goes off. Nothing if there is none within 250 ms, which
+/// is longer than a reply may take.
+inline TimedModule::Bytes reply_of(TimedModule& module, const TimedModule::Bytes& request) {
+  constexpr std::chrono::milliseconds kSilence{5};  // longer than T3.5 at 9600 baud
+  constexpr std::chrono::milliseconds kLongestReply{250};
+  constexpr std::chrono::milliseconds kSlice{1};
+  module.run_for(kSilence);
+  module.hear(module.baud());
+  module.send(request, module.baud());
+  TimedModule::Bytes reply;
+  const std::chrono::nanoseconds gives_up = module.now() + kLongestReply;
+  while ((reply.empty() || module.speaks()) && module.now() < gives_up) {
+    module.run_for(kSlice);
+    const TimedModule::Bytes more = module.hear(module.baud());
+    reply.insert(reply.end(), more.begin(), more.end());
   }
-  return reply.substr(0, reply.find('\r'));
+  return reply;
 }
 
-/// Waits until the module listens, 3 s at most.
-inline void wait_until_up(EmulatedModule& module) {
-  const auto gives_up = std::chrono::steady_clock::now() + std::chrono::seconds(3);
-  while (module.baud() == 0 && std::chrono::steady_clock::now() < gives_up) {
-    module.hear(std::chrono::milliseconds(5));
-  }
+/// DCON: the reply without its CR.
+inline std::string ask(TimedModule& module, const std::string& command) {
+  const std::string frame = command + "\r";
+  const TimedModule::Bytes reply = reply_of(module, {frame.begin(), frame.end()});
+  const std::string text(reply.begin(), reply.end());
+  return text.substr(0, text.find('\r'));
 }
+
+/// The time in which a module comes up.
+inline constexpr std::chrono::milliseconds kComesUpWithin{100};
 
 }  // namespace ex9000::rig

@@ -3,18 +3,36 @@
 #include <fcntl.h>
 #include <poll.h>
 #include <stdlib.h>
+#include <sys/eventfd.h>
 #include <termios.h>
 #include <unistd.h>
 
 #include <array>
 #include <stdexcept>
+#include <utility>
+
+#include "sim/play/modbus_frame.hpp"
+#include "tests/qemu/master.hpp"
 
 namespace ex9000::rig {
 
-PtyBridge::PtyBridge(EmulatedModule& module)
-    : module_(module), fd_(posix_openpt(O_RDWR | O_NOCTTY | O_CLOEXEC)) {
+namespace {
+
+/// The shortest frame is address, function and CRC.
+bool is_whole(const std::vector<std::uint8_t>& request) {
+  constexpr std::size_t kCrc = 2;
+  constexpr std::size_t kShortest = 4;
+  return request.size() >= kShortest &&
+         with_crc(std::vector<std::uint8_t>(request.begin(), request.end() - kCrc)) == request;
+}
+
+}  // namespace
+
+PtyBridge::PtyBridge(TimedModule& module)
+    : module_(module), fd_(posix_openpt(O_RDWR | O_NOCTTY | O_CLOEXEC)), over_(eventfd(0, EFD_CLOEXEC)) {
   std::array<char, 64> name{};
-  if (fd_ < 0 || grantpt(fd_) != 0 || unlockpt(fd_) != 0 || ptsname_r(fd_, name.data(), name.size()) != 0) {
+  if (over_ < 0 || fd_ < 0 || grantpt(fd_) != 0 || unlockpt(fd_) != 0 ||
+      ptsname_r(fd_, name.data(), name.size()) != 0) {
     throw std::runtime_error("no pseudo-terminal");
   }
   tty_ = name.data();
@@ -23,35 +41,56 @@ PtyBridge::PtyBridge(EmulatedModule& module)
   tcgetattr(held_open_, &settings);
   cfmakeraw(&settings);
   tcsetattr(held_open_, TCSANOW, &settings);
-  carrier_ = std::thread([this] { carry(); });
+  carrier_ = std::thread([this] {
+    try {
+      carry();
+    } catch (const std::exception&) {
+      failure_ = std::current_exception();
+    }
+  });
 }
 
 PtyBridge::~PtyBridge() {
-  over_ = true;
-  carrier_.join();
+  try {
+    end();
+  } catch (const std::exception&) {  // who wants to know calls `end`
+  }
   close(held_open_);
   close(fd_);
+  close(over_);
+}
+
+void PtyBridge::end() {
+  if (carrier_.joinable()) {
+    eventfd_write(over_, 1);
+    carrier_.join();
+  }
+  if (failure_) {
+    std::rethrow_exception(std::exchange(failure_, nullptr));
+  }
 }
 
 void PtyBridge::carry() {
-  constexpr int kTurnMilliseconds = 20;
-  while (!over_) {
-    std::array<pollfd, 2> ready{{{fd_, POLLIN, 0}, {module_.emulator().uart().fd(), POLLIN, 0}}};
-    if (poll(ready.data(), ready.size(), kTurnMilliseconds) <= 0) {
-      continue;
+  constexpr int kUntilThereIsSomething = -1;
+  for (;;) {
+    std::array<pollfd, 2> ready{{{fd_, POLLIN, 0}, {over_, POLLIN, 0}}};
+    if (poll(ready.data(), ready.size(), kUntilThereIsSomething) < 0 || ready[1].revents != 0) {
+      return;
     }
-    if (ready[0].revents != 0) {
-      std::array<std::uint8_t, 512> buffer{};
-      const ssize_t size = read(fd_, buffer.data(), buffer.size());
-      if (size > 0) {
-        module_.send({buffer.begin(), buffer.begin() + size});
-      }
+    std::array<std::uint8_t, 512> buffer{};
+    const ssize_t size = read(fd_, buffer.data(), buffer.size());
+    for (ssize_t i = 0; i < size; ++i) {
+      take(buffer.at(static_cast<std::size_t>(i)));
     }
-    if (ready[1].revents != 0) {
-      const auto bytes = module_.hear(std::chrono::nanoseconds(0));
-      if (write(fd_, bytes.data(), bytes.size()) != static_cast<ssize_t>(bytes.size())) {
-        return;
-      }
+  }
+}
+
+void PtyBridge::take(std::uint8_t byte) {
+  request_.push_back(byte);
+  if (is_whole(request_)) {
+    const std::vector<std::uint8_t> reply = reply_of(module_, std::exchange(request_, {}));
+    if (write(fd_, reply.data(), reply.size()) != static_cast<ssize_t>(reply.size())) {
+      throw std::runtime_error("the pseudo-terminal takes no reply");
     }
   }
 }

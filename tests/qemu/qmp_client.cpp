@@ -32,14 +32,9 @@ void QmpClient::execute(const std::string& command, const std::string& event, co
   }
 }
 
-bool QmpClient::hears(const std::string& event, std::chrono::nanoseconds patience) {
-  for (std::string line = socket_.receive_line(patience); !line.empty();
-       line = socket_.receive_line(patience)) {
-    if (has(line, event)) {
-      return true;
-    }
+void QmpClient::wait_for(const std::string& event) {
+  while (!has(socket_.receive_line(), event)) {
   }
-  return false;
 }
 
 }  // namespace ex9000::rig

@@ -1,7 +1,6 @@
 // The emulator's monitor.
 #pragma once
 
-#include <chrono>
 #include <string>
 
 #include "tests/qemu/unix_socket.hpp"
@@ -18,8 +17,8 @@ class QmpClient {
   /// Throws std::runtime_error where it refuses.
   /// `arguments` are a JSON object.
   void execute(const std::string& command, const std::string& event, const std::string& arguments = "{}");
-  /// Whether this event comes before nothing has come for `patience`.
-  bool hears(const std::string& event, std::chrono::nanoseconds patience);
+  /// Waits for this event. Throws std::runtime_error if nothing comes for `kHang`.
+  void wait_for(const std::string& event);
 
  private:
   UnixSocket socket_;

@@ -12,6 +12,7 @@ using std::chrono::milliseconds;
 using std::chrono::nanoseconds;
 
 void TimedModule::begin_anew(const Settings* settings) {
+  halt();
   renew(settings);
   now_ = nanoseconds(0);
   come_up();
@@ -22,6 +23,7 @@ void TimedModule::power(bool on) {
     return;
   }
   lamp_.forget();
+  halt();
   supply(on);
   if (on) {
     come_up();
@@ -36,6 +38,7 @@ void TimedModule::kill() {
 
 void TimedModule::reset() {
   if (powered()) {
+    halt();
     pull_reset();
     come_up();
   }
@@ -47,6 +50,12 @@ void TimedModule::come_up() {
     clock_.emplace(emulator());
   }
   clock_->set_up();
+}
+
+void TimedModule::halt() {
+  if (clock_) {
+    clock_->halt();
+  }
 }
 
 void TimedModule::set_input(unsigned channel, bool level) {
@@ -77,6 +86,14 @@ void TimedModule::run_until(nanoseconds when) {
   now_ = std::max(now_, when);
 }
 
+void TimedModule::run_to_reset(const std::string& event, nanoseconds time) {
+  try {
+    run_for(time);
+  } catch (const Halted&) {
+  }
+  emulator().qmp().wait_for(event);
+}
+
 void TimedModule::make_sure() {
   if (lamp_.until()) {
     run_until(*lamp_.until());
@@ -99,7 +116,7 @@ void TimedModule::send(const Bytes& bytes, std::uint32_t baud) {
   // heard; here it has been heard at once.
   constexpr milliseconds kLongestWait{100};
   const nanoseconds gives_up = now_ + kLongestWait;
-  while (powered() && clock_->driver_on() && now_ < gives_up) {
+  while (speaks() && now_ < gives_up) {
     run_for(kSlice);
   }
   const nanoseconds begin = now_;

@@ -5,6 +5,7 @@
 #include <chrono>
 #include <cstdint>
 #include <optional>
+#include <string>
 #include <vector>
 
 #include "tests/qemu/alarm_clock.hpp"
@@ -18,7 +19,7 @@ class TimedModule : public EmulatedBoard {
  public:
   using Bytes = std::vector<std::uint8_t>;
 
-  explicit TimedModule(const Model& model) : EmulatedBoard(model, nullptr, Emulator::Time::Own) {}
+  explicit TimedModule(const Model& model) : EmulatedBoard(model, nullptr) {}
 
   /// Another one, see EmulatedBoard::renew, in no time.
   void begin_anew(const Settings* settings);
@@ -44,10 +45,16 @@ class TimedModule : public EmulatedBoard {
   /// Until there is one, for as long as the first call says at most. Whether there was.
   bool run_to_store(std::chrono::nanoseconds time) { return clock_->run_to_store(time); }
 
+  /// Runs it until it is about to be reset by its watchdog (`WATCHDOG`) or by itself (`SHUTDOWN`); then only
+  /// `reset` is left. Throws std::runtime_error if it is not within `time`.
+  void run_to_reset(const std::string& event, std::chrono::nanoseconds time);
+
   /// Bytes on the line, at `baud` bits per second. What reaches a module that is speaking itself is lost.
   void send(const Bytes& bytes, std::uint32_t baud);
   /// What the module has sent so far and nobody has taken, as a receiver at `baud` hears it. Takes no time.
   Bytes hear(std::uint32_t baud);
+  /// Its driver was on when it came to a stop.
+  [[nodiscard]] bool speaks() const { return powered() && clock_->driver_on(); }
 
   /// Throws, from here or when time passes, where it flashes.
   void believe_led_on() { lamp_.believe(now_); }
@@ -56,6 +63,7 @@ class TimedModule : public EmulatedBoard {
 
  private:
   void come_up();
+  void halt();
   void run_until(std::chrono::nanoseconds when);
   void put(std::uint8_t byte);
   void hold_memory(bool hold);

@@ -14,8 +14,6 @@ namespace ex9000::rig {
 
 namespace {
 
-constexpr std::chrono::seconds kPatience{20};
-
 bool readable(int fd, std::chrono::nanoseconds patience) {
   constexpr std::int64_t kSecond = 1'000'000'000;
   const std::int64_t left = patience.count() > 0 ? patience.count() : 0;
@@ -62,19 +60,35 @@ std::vector<std::uint8_t> UnixSocket::receive(std::chrono::nanoseconds patience)
   return {buffer.begin(), buffer.begin() + size};
 }
 
-std::string UnixSocket::receive_line() {
-  std::string line = receive_line(kPatience);
-  if (line.empty()) {
-    throw std::runtime_error("the emulator does not answer");
+void UnixSocket::receive_all(std::uint8_t* bytes, std::size_t size) {
+  while (size != 0) {
+    const ssize_t received = readable(fd_, kHang) ? recv(fd_, bytes, size, 0) : 0;
+    if (received <= 0) {
+      throw std::runtime_error("the emulator has hung up");
+    }
+    bytes += received;
+    size -= static_cast<std::size_t>(received);
   }
-  return line;
 }
 
-std::string UnixSocket::receive_line(std::chrono::nanoseconds patience) {
+bool UnixSocket::has_bytes() const { return readable(fd_, std::chrono::nanoseconds(0)); }
+
+void wait_for_any(const std::vector<const UnixSocket*>& sockets) {
+  std::vector<pollfd> ready;
+  for (const UnixSocket* socket : sockets) {
+    ready.push_back({socket->fd(), POLLIN, 0});
+  }
+  if (poll(ready.data(), ready.size(),
+           std::chrono::duration_cast<std::chrono::milliseconds>(kHang).count()) <= 0) {
+    throw std::runtime_error("the machine neither stops nor answers");
+  }
+}
+
+std::string UnixSocket::receive_line() {
   for (std::size_t end = received_.find('\n'); end == std::string::npos; end = received_.find('\n')) {
-    const std::vector<std::uint8_t> bytes = receive(patience);
+    const std::vector<std::uint8_t> bytes = receive(kHang);
     if (bytes.empty()) {
-      return {};
+      throw std::runtime_error("the emulator does not answer");
     }
     received_.append(bytes.begin(), bytes.end());
   }
@@ -100,7 +114,7 @@ UnixListener::UnixListener(const std::string& path) : fd_(socket(AF_UNIX, SOCK_S
 UnixListener::~UnixListener() { close(fd_); }
 
 UnixSocket UnixListener::accept() {
-  if (!readable(fd_, kPatience)) {
+  if (!readable(fd_, kHang)) {
     throw std::runtime_error("the emulator does not come up");
   }
   return UnixSocket(accept4(fd_, nullptr, nullptr, SOCK_CLOEXEC));

@@ -8,6 +8,11 @@
 
 namespace ex9000::rig {
 
+/// How long the host waits for an emulator that owes it a reply. It only detects a hang: the slowest reply,
+/// of an interrupt storm up to the watchdog's reset, takes seconds on an idle machine and less than a minute
+/// on a busy one.
+inline constexpr std::chrono::seconds kHang{60};
+
 /// A connection. Whatever goes wrong throws std::runtime_error.
 class UnixSocket {
  public:
@@ -22,15 +27,20 @@ class UnixSocket {
   void send(const std::string& text);
   /// What is there, once there is something; nothing where nothing came for `patience`.
   std::vector<std::uint8_t> receive(std::chrono::nanoseconds patience);
-  /// Up to LF, which is left out. Waits 20 s, for a machine under load.
+  /// So many bytes. Throws if nothing comes for `kHang`.
+  void receive_all(std::uint8_t* bytes, std::size_t size);
+  /// Whether something is there.
+  [[nodiscard]] bool has_bytes() const;
+  /// Up to LF, which is left out. Throws if nothing comes for `kHang`.
   std::string receive_line();
-  /// The same, or nothing where nothing came for `patience`.
-  std::string receive_line(std::chrono::nanoseconds patience);
 
  private:
   int fd_;
   std::string received_;  ///< behind the last line
 };
+
+/// Waits until one of them has bytes. Throws std::runtime_error if none has for `kHang`.
+void wait_for_any(const std::vector<const UnixSocket*>& sockets);
 
 /// Where one program will connect to.
 class UnixListener {
@@ -40,7 +50,7 @@ class UnixListener {
   UnixListener(const UnixListener&) = delete;
   UnixListener& operator=(const UnixListener&) = delete;
 
-  /// Waits 20 s.
+  /// Throws std::runtime_error if nobody connects for `kHang`.
   UnixSocket accept();
 
  private:
