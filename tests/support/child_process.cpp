@@ -87,9 +87,14 @@ bool ChildProcess::read_more() {
   return poll(&ready, 1, kHangMilliseconds) == 1 && append_from(out_, output_);
 }
 
-bool ChildProcess::wait_for(const std::string& text) {
-  while (output_.find(text) == std::string::npos) {
-    if (!read_more()) {
+bool ChildProcess::wait_for(const std::string& text, unsigned times) {
+  std::size_t searched = 0;
+  while (times != 0) {
+    const std::size_t found = output_.find(text, searched);
+    if (found != std::string::npos) {
+      searched = found + text.size();
+      --times;
+    } else if (!read_more()) {
       return false;
     }
   }

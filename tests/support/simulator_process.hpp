@@ -24,7 +24,7 @@ class SimulatorProcess {
   [[nodiscard]] int pid() const { return process_.pid(); }
 
   /// See ChildProcess.
-  bool wait_for(const std::string& text) { return process_.wait_for(text); }
+  bool wait_for(const std::string& text, unsigned times = 1) { return process_.wait_for(text, times); }
   [[nodiscard]] const std::string& output() const { return process_.output(); }
   int end(int signal) { return process_.end(signal); }
   int wait() { return process_.wait(); }
