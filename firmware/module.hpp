@@ -99,6 +99,8 @@ class Module {
   [[nodiscard]] StatusLed::Pattern led_pattern() const { return led_.pattern(); }
   /// When the host watchdog expires if nobody restarts it; disarmed where it does not run.
   [[nodiscard]] Deadline host_watchdog_expiry() const { return host_watchdog_.expiry(state().settings); }
+  /// It listens, and no request is waiting, being stored or being answered.
+  [[nodiscard]] bool at_rest() const { return phase_ == Phase::Idle && !receiver_.queue().has_frame(); }
   /// What the last request came to.
   [[nodiscard]] const Outcome& outcome() const { return exchange_.outcome; }
   /// Whether the settings in the memory could not be read at reset, and none have been stored since.

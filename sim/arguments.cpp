@@ -261,7 +261,7 @@ Setup setup_of(const Texts& texts) {
     setup.lasts = of_option("--for", *texts.lasts, parse_time);
   }
   for (LineSetup& line : setup.lines) {
-    if (!line.pty && !line.tcp && !line.serial && setup.speed) {
+    if (!line.pty && !line.tcp && !line.serial && !setup.speed.max()) {
       line.pty = line.name.empty() ? kDefaultPty : line.name + ".tty";
     }
   }
@@ -492,9 +492,9 @@ Parsed parse_arguments(int argc, const char* const* argv) {
       ->allow_extra_args(false);
   app.add_option(
          "--speed", texts.speed,
-         "so many times faster than the wall clock, 0.001 to 1000 (default: 1); max: as fast as it can be "
-         "reckoned, with no port, and --for")
-      ->type_name("N|max");
+         "N times as fast as the wall clock, 0.001 to 1000 (default: 1); max: as fast as it can be computed, "
+         "with no port, and --for; step: time stands still until the control socket's 'advance' moves it")
+      ->type_name("N|max|step");
   app.add_option("--for", texts.lasts,
                  "end when the modules have been up for so much of the lines' time, such as 10s or 24h")
       ->type_name("TIME");

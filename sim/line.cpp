@@ -1,5 +1,6 @@
 #include "sim/line.hpp"
 
+#include <algorithm>
 #include <utility>
 
 namespace ex9000::sim {
@@ -56,6 +57,11 @@ Faults& Line::faults() {
 
 void Line::move_input(std::size_t index, const InputProgram& program) {
   moved_inputs_.push_back(std::make_unique<MovedInput>(bus_, *modules_[index], program, chance_.number()));
+}
+
+bool Line::pending() const {
+  return bus_.busy() || master_.sending() || (faults_ && faults_->pending()) ||
+         std::any_of(modules_.begin(), modules_.end(), [](const auto& module) { return module->pending(); });
 }
 
 VirtualTime Line::rtu_silence() const {

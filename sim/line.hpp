@@ -53,6 +53,10 @@ class Line {
   [[nodiscard]] const Faults* faults_so_far() const { return faults_.get(); }
   /// From now on an input of the module at `index` moves by itself.
   void move_input(std::size_t index, const InputProgram& program);
+  /// Something is under way that ends by itself within milliseconds: bytes on the wires or on their way to
+  /// them, the silence behind a Modbus frame, a reply that waits for its moment, a store, a module that comes
+  /// up. Not what is due later by the clock alone: a host watchdog, a scheduled fault, an input that moves.
+  [[nodiscard]] bool pending() const;
   /// T3.5 on this line at the master's rate.
   [[nodiscard]] VirtualTime rtu_silence() const;
   /// After how long whatever was sent before is no part of a frame any more, even if its CRC is wrong.

@@ -81,6 +81,8 @@ class SimulatedModule final : public Station {
   [[nodiscard]] const hal::doubles::Memory& memory() const { return memory_; }
   hal::doubles::Outputs& output_pins() { return outputs_; }
   hal::doubles::StatusLed& led() { return led_; }
+  /// It receives, waits for a silence, has a request to answer, sends, stores or comes up.
+  [[nodiscard]] bool pending() const;
   /// Resets by the hardware watchdog since the object exists.
   [[nodiscard]] std::uint64_t watchdog_resets() const { return watchdog_resets_; }
   /// The tick stops, until the next reset.

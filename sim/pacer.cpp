@@ -22,15 +22,13 @@ constexpr unsigned long kTimerSlackNanoseconds = 1;
 
 }  // namespace
 
-Pacer::Pacer(boost::asio::io_context& io, Line& line, const Ports& ports, FrameWatch* frames, Pace pace,
-             Notice notice)
+Pacer::Pacer(boost::asio::io_context& io, Line& line, const LinePorts::All& ports, FrameWatch* frames, Pace pace,
+             LinePorts::Notice notice)
     : timer_(io),
       line_(line),
-      ports_(ports),
+      ports_(line, ports, std::move(notice)),
       frames_(frames),
-      pace_(pace),
-      notice_(std::move(notice)),
-      told_(line.size()) {
+      pace_(pace) {
   line.bus().observe(*this);
 }
 
@@ -38,8 +36,8 @@ void Pacer::start() {
   prctl(PR_SET_TIMERSLACK, kTimerSlackNanoseconds);
   began_ = std::chrono::steady_clock::now();
   first_ = line_.clock().virtual_now();
-  tell_mismatches();
-  for (const auto& port : ports_) {
+  ports_.report_mismatches();
+  for (const auto& port : ports_.all()) {
     port->start([this, &port = *port](const std::uint8_t* bytes, std::size_t size) {
       return receive(port, bytes, size);
     });
@@ -83,13 +81,13 @@ bool Pacer::is_full() const {
 void Pacer::follow() {
   const VirtualTime present = wall();
   catch_up(present);
-  hand_out();
+  ports_.hand_out();
   if (frames_ != nullptr) {
     frames_->run(present);  // not later: what is due by now may go on with a frame
   }
   if (paused_ && !is_full()) {
     paused_ = false;
-    for (const auto& port : ports_) {
+    for (const auto& port : ports_.all()) {
       port->resume();
     }
   }
@@ -126,7 +124,7 @@ bool Pacer::receive(const Port& port, const std::uint8_t* bytes, std::size_t siz
   const VirtualTime written = wall() - latency - travelled;
   catch_up(written);
   line_.bus().run_until(std::max(written, line_.clock().virtual_now()));
-  take_rate(port);
+  ports_.take_rate(port);
   Bytes rest{bytes, size};
   while (rest.size != 0) {
     const Bytes piece = rest.first(pace_.lead == VirtualTime(0) ? rest.size : first_frame_size(rest));
@@ -197,53 +195,10 @@ bool Pacer::is_for_modbus(std::uint8_t address) {
   return false;
 }
 
-void Pacer::driver(std::size_t station, bool on, VirtualTime /*now*/) {
-  stopped_sending_ |= station != 0 && !on;
-}
-
 void Pacer::byte(std::size_t station, std::uint8_t /*byte*/, std::uint32_t /*baud*/, bool /*collided*/,
                  VirtualTime /*start*/, VirtualTime end) {
   last_speaker_ = station;
   last_byte_ = end;
-}
-
-void Pacer::hand_out() {
-  const std::vector<std::uint8_t> heard = std::exchange(heard_, {});
-  const bool stopped = std::exchange(stopped_sending_, false);
-  for (const auto& port : ports_) {
-    if (!heard.empty()) {
-      port->send(heard);
-    }
-    if (stopped) {
-      port->sent();
-    }
-  }
-}
-
-/// A port where nobody has set a rate leaves the line's alone.
-void Pacer::take_rate(const Port& port) {
-  if (const auto rate = port.baud()) {
-    line_.master().set_baud(*rate);
-  }
-  tell_mismatches();
-}
-
-/// Each mismatch once, until it is over.
-void Pacer::tell_mismatches() {
-  const std::uint32_t rate = line_.master().baud();
-  for (std::size_t i = 0; i < line_.size(); ++i) {
-    const SimulatedModule& module = line_.module(i);
-    const bool listens = module.powered() && module.module().listening();
-    const Mismatch mismatch = listens && module.baud() != rate ? Mismatch{rate, module.baud()} : Mismatch{};
-    if (mismatch != told_[i] && mismatch != Mismatch{}) {
-      notice_("the line is at " + std::to_string(rate) + " baud, " + std::string(module.model().designation) +
-              " at " + hex_byte_text(module.module().state().in_force.address) + " listens at " +
-              std::to_string(module.baud()));
-    }
-    if (listens) {
-      told_[i] = mismatch;
-    }
-  }
 }
 
 }  // namespace ex9000::sim

@@ -7,14 +7,10 @@
 #include <chrono>
 #include <cstdint>
 #include <functional>
-#include <memory>
-#include <string>
-#include <utility>
-#include <vector>
 
 #include "sim/frame_watch.hpp"
 #include "sim/line.hpp"
-#include "sim/ports/port.hpp"
+#include "sim/runtime/line_ports.hpp"
 
 namespace ex9000::sim {
 
@@ -48,18 +44,16 @@ constexpr Pace kInstantPace{VirtualTime(0), std::chrono::microseconds(200), true
 /// Virtual time follows the wall clock from `start` on.
 class Pacer final : private BusObserver {
  public:
-  using Ports = std::vector<std::unique_ptr<Port>>;
-  using Notice = std::function<void(const std::string&)>;
-
   /// Puts what `line`'s master hears on all `ports`, and what comes from them on the line. `frames` may be
-  /// null. All live as long as `io` runs. `notice` gets a line for people for every module that listens at
-  /// another rate than the line's, at the start and when something is sent after that has changed.
-  Pacer(boost::asio::io_context& io, Line& line, const Ports& ports, FrameWatch* frames, Pace pace,
-        Notice notice);
+  /// null. All live as long as `io` runs. `notice`: see LinePorts.
+  Pacer(boost::asio::io_context& io, Line& line, const LinePorts::All& ports, FrameWatch* frames, Pace pace,
+        LinePorts::Notice notice);
 
   void start();
   /// From the master's end of the line to the ports; for Line's constructor.
-  void hear(std::uint8_t byte) { heard_.push_back(byte); }
+  void hear(std::uint8_t byte) { ports_.hear(byte); }
+  /// See LinePorts::sent.
+  [[nodiscard]] std::uint64_t sent() const { return ports_.sent(); }
   /// What the line's time is at this moment; its clock shows that of the last event.
   [[nodiscard]] VirtualTime present() const { return std::max(wall(), line_.clock().virtual_now()); }
   /// Does something to the line from outside, at this moment.
@@ -74,28 +68,20 @@ class Pacer final : private BusObserver {
   [[nodiscard]] bool is_full() const;
   void arm_timer();
   bool receive(const Port& port, const std::uint8_t* bytes, std::size_t size);
-  void hand_out();
-  void take_rate(const Port& port);
-  void tell_mismatches();
   static std::size_t first_frame_size(Bytes bytes);
   [[nodiscard]] VirtualTime silence_before(std::uint8_t address);
   [[nodiscard]] bool is_for_modbus(std::uint8_t address);
-  void driver(std::size_t station, bool on, VirtualTime now) override;
+  void driver(std::size_t /*station*/, bool /*on*/, VirtualTime /*now*/) override {}
   void byte(std::size_t station, std::uint8_t byte, std::uint32_t baud, bool collided, VirtualTime start,
             VirtualTime end) override;
 
   boost::asio::steady_timer timer_;
   Line& line_;
-  const Ports& ports_;
+  LinePorts ports_;
   FrameWatch* frames_;
   Pace pace_;
-  Notice notice_;
-  using Mismatch = std::pair<std::uint32_t, std::uint32_t>;  ///< rate of the line, rate of a module
-  std::vector<Mismatch> told_;                               ///< a module each; zeros: none
   std::chrono::steady_clock::time_point began_;
   VirtualTime first_{0};  ///< what the line's clock showed then
-  std::vector<std::uint8_t> heard_;
-  bool stopped_sending_ = false;  ///< a module, since `heard_` was handed out
   bool paused_ = false;           ///< a port has been told to wait
   std::size_t last_speaker_ = 0;  ///< station; 0: the master
   VirtualTime last_byte_{0};      ///< when its last byte was over

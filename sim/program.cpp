@@ -92,9 +92,9 @@ void run(const Setup& setup) {
   }
   Session session(io, setup, print_line, greet, terminal && terminal->is_open() ? &*terminal : nullptr);
   session.start();
-  if (setup.speed && has_instant_line(setup)) {
+  if (setup.speed.paced() && has_instant_line(setup)) {
     run_wakefully(io);
-  } else if (setup.speed) {
+  } else if (!setup.speed.max()) {
     io.run();
   } else {
     session.run_as_fast_as_it_can();

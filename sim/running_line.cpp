@@ -23,7 +23,7 @@ Pace pace_of(const LineSetup& setup) {
 }  // namespace
 
 RunningLine::RunningLine(boost::asio::io_context& io, const LineSetup& setup, std::uint64_t seed,
-                         LogFormat format, Print print)
+                         LogFormat format, bool stepped, Print print)
     : setup_(setup), print_(std::move(print)) {
   for (const ModuleSpec& module : setup.modules) {
     memories_.push_back(module.eeprom.empty() ? nullptr : std::make_unique<EepromFile>(module.eeprom));
@@ -31,6 +31,8 @@ RunningLine::RunningLine(boost::asio::io_context& io, const LineSetup& setup, st
   line_ = make_line(setup, [this](std::uint8_t byte, ByteStatus /*status*/) {
     if (pacer_) {
       pacer_->hear(byte);
+    } else if (stepped_) {
+      stepped_->hear(byte);
     }
   });
   use_memories();
@@ -38,7 +40,7 @@ RunningLine::RunningLine(boost::asio::io_context& io, const LineSetup& setup, st
   came_up_ = line_->clock().virtual_now();
   line_->master().set_baud(setup.baud.value_or(line_->module(0).baud()));
   introduce();
-  open_ports(io);
+  open_ports(io, stepped);
   record_ = std::make_unique<LineRecord>(*line_, log_name(), format, print_);
   line_->expect_trouble(seed, [this](const std::string& text) { record_->note(text); });
   begin_programs(*line_, setup);
@@ -52,7 +54,7 @@ void RunningLine::use_memories() {
   }
 }
 
-void RunningLine::open_ports(boost::asio::io_context& io) {
+void RunningLine::open_ports(boost::asio::io_context& io, bool stepped) {
   const std::uint32_t baud = line_->master().baud();
   if (setup_.pty) {
     auto port = std::make_unique<PtyPort>(io, *setup_.pty, baud);
@@ -61,7 +63,8 @@ void RunningLine::open_ports(boost::asio::io_context& io) {
     ports_.push_back(std::move(port));
   }
   if (setup_.tcp) {
-    auto port = std::make_unique<TcpPort>(io, *setup_.tcp);
+    auto port = std::make_unique<TcpPort>(io, *setup_.tcp,
+                                          stepped ? TcpPort::Linger() : TcpPort::kUsualLinger);
     introduced_.tcp = port->address();
     ports_.push_back(std::move(port));
   }
@@ -148,6 +151,13 @@ void RunningLine::follow_the_clock(boost::asio::io_context& io, double speed) {
   pacer_ = std::make_unique<Pacer>(io, *line_, ports_, record_->frames(), pace,
                                    [this](const std::string& text) { record_->note(text); });
   pacer_->start();
+}
+
+SteppedLine& RunningLine::stand_still(SteppedLine::Arrived arrived) {
+  stepped_ = std::make_unique<SteppedLine>(*line_, ports_, record_->frames(),
+                                           [this](const std::string& text) { record_->note(text); });
+  stepped_->start(std::move(arrived));
+  return *stepped_;
 }
 
 void RunningLine::run_until(VirtualTime up) {

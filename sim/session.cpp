@@ -61,7 +61,8 @@ Session::~Session() = default;
 void Session::open_line(const LineSetup& line, const Print& print) {
   open_for(line.place, [&] {
     lines_.push_back(std::make_unique<RunningLine>(io_, line, setup_.seed + lines_.size(),
-                                                   setup_.log.value_or(LogFormat::Text), print));
+                                                   setup_.log.value_or(LogFormat::Text),
+                                                   setup_.speed.stepped(), print));
   });
 }
 
@@ -71,7 +72,7 @@ void Session::open_control() {
   }
   std::vector<Control::ControlledLine> lines;
   for (const auto& running : lines_) {
-    lines.push_back({running->name(), running->line()});
+    lines.push_back({running->name(), running->line(), [&line = *running] { return line.sent(); }});
   }
   control_.emplace(std::move(lines));
   if (!setup_.control) {
@@ -79,7 +80,8 @@ void Session::open_control() {
   }
   open_for(place_of(setup_, "control"), [this] {
     control_socket_ = std::make_unique<ControlSocket>(
-        io_, *setup_.control, [this](const std::string& command) { return carry_out(command); },
+        io_, *setup_.control,
+        [this](const std::string& command, const ControlSocket::Answer& to) { answer(command, to); },
         [this] { io_.stop(); });
   });
 }
@@ -89,7 +91,7 @@ void Session::open_panel() {
     return;
   }
   panel_ = std::make_unique<Panel>([this](const std::string& command) { return carry_out(command); },
-                                   setup_.speed.value_or(1));
+                                   setup_.speed.factor);
   for (std::size_t i = 0; i < lines_.size(); ++i) {
     RunningLine& running = *lines_[i];
     panel_->add_line(running.introduced(), running.line(), [&running] { return running.pacer().present(); });
@@ -108,16 +110,16 @@ void Session::watch_lines() {
   for (const auto& line : lines_) {
     RunningLine& running = *line;
     watch_->add_line(running.introduced().name, running.line(), [this, &running] {
-      return setup_.speed ? running.pacer().present() : running.line().clock().virtual_now();
+      return setup_.speed.paced() ? running.pacer().present() : running.line().clock().virtual_now();
     });
   }
 }
 
-/// Where no clock is followed, whoever lets time pass looks.
+/// If no clock is followed, whatever moves the time looks.
 void Session::keep_watching() {
   constexpr auto kBetweenLooks = std::chrono::milliseconds(50);
   watch_->look();
-  if (!setup_.speed) {
+  if (!setup_.speed.paced()) {
     return;
   }
   next_look_.expires_after(kBetweenLooks);
@@ -141,6 +143,9 @@ void Session::open_capture() {
 
 /// All lines show the same time to whoever looks at one.
 Control::Reply Session::carry_out(const std::string& command) {
+  if (stepper_) {
+    return control_->carry_out(command);
+  }
   Control::Reply reply;
   std::function<void()> action = [&] { reply = control_->carry_out(command); };
   for (const auto& running : lines_) {
@@ -150,12 +155,25 @@ Control::Reply Session::carry_out(const std::string& command) {
   return reply;
 }
 
+void Session::answer(const std::string& command, const ControlSocket::Answer& answer) {
+  if (stepper_ && Stepper::is_advance(command)) {
+    stepper_->advance(command, [this, answer](const Control::Reply& reply) {
+      if (watch_) {
+        watch_->look();
+      }
+      answer(reply);
+    });
+  } else {
+    answer(carry_out(command));
+  }
+}
+
 /// Where no clock is followed nothing depends on when it runs, the capture neither.
 void Session::keep_a_capture() {
   capture_->begin();
   const auto now = std::chrono::system_clock::now().time_since_epoch();
   for (const auto& running : lines_) {
-    const VirtualTime began = setup_.speed ? now - running->line().clock().virtual_now() : VirtualTime(0);
+    const VirtualTime began = setup_.speed.paced() ? now - running->line().clock().virtual_now() : VirtualTime(0);
     running->record().keep_in(*capture_, began);
   }
 }
@@ -190,9 +208,12 @@ void Session::start() {
       running->end_at(*setup_.lasts);
     }
     running->start();
-    if (setup_.speed) {
-      running->follow_the_clock(io_, *setup_.speed);
+    if (setup_.speed.paced()) {
+      running->follow_the_clock(io_, setup_.speed.factor);
     }
+  }
+  if (setup_.speed.stepped()) {
+    stand_still();
   }
   if (control_socket_) {
     control_socket_->start();
@@ -203,7 +224,7 @@ void Session::start() {
   if (watch_) {
     keep_watching();
   }
-  if (setup_.speed && ends()) {
+  if (setup_.speed.paced() && ends()) {
     end_by_the_clock();
   }
 }
@@ -211,12 +232,13 @@ void Session::start() {
 /// Not in a time that clocks cannot count, and nobody waits for.
 bool Session::ends() const {
   constexpr auto kNobodyWaits = std::chrono::hours(24 * 365 * 100);
-  return setup_.lasts && (!setup_.speed || *setup_.lasts / *setup_.speed < kNobodyWaits);
+  return setup_.lasts &&
+         (!setup_.speed.paced() || *setup_.lasts / setup_.speed.factor < kNobodyWaits);
 }
 
 /// The clock is not exactly there when it is looked at; the lines' records are.
 void Session::end_by_the_clock() {
-  end_.expires_after(std::chrono::duration_cast<VirtualTime>(*setup_.lasts / *setup_.speed));
+  end_.expires_after(std::chrono::duration_cast<VirtualTime>(*setup_.lasts / setup_.speed.factor));
   end_.async_wait([this](const boost::system::error_code& error) {
     if (error) {
       return;
@@ -226,6 +248,19 @@ void Session::end_by_the_clock() {
     }
     io_.stop();
   });
+}
+
+void Session::stand_still() {
+  std::vector<SteppedLine*> lines;
+  for (const auto& running : lines_) {
+    lines.push_back(&running->stand_still([this] {
+      if (stepper_) {
+        stepper_->arrived();
+      }
+    }));
+  }
+  stepper_ = std::make_unique<Stepper>(
+      std::move(lines), setup_.lasts ? lines_.front()->when_up_for(*setup_.lasts) : kNever);
 }
 
 void Session::run_as_fast_as_it_can() {

@@ -18,6 +18,7 @@
 #include "sim/panel/panel.hpp"
 #include "sim/panel/panel_server.hpp"
 #include "sim/running_line.hpp"
+#include "sim/runtime/stepper.hpp"
 #include "sim/setup.hpp"
 #include "sim/watch/watch.hpp"
 
@@ -58,6 +59,8 @@ class Session {
   void watch_lines();
   void keep_watching();
   Control::Reply carry_out(const std::string& command);
+  void answer(const std::string& command, const ControlSocket::Answer& answer);
+  void stand_still();
 
   boost::asio::io_context& io_;
   const Setup setup_;
@@ -68,6 +71,7 @@ class Session {
   boost::asio::steady_timer end_;
   boost::asio::steady_timer next_look_;
   std::optional<Control> control_;
+  std::unique_ptr<Stepper> stepper_;  ///< if the lines' time stands still
   std::unique_ptr<ControlSocket> control_socket_;
   std::list<MadeFile> made_;  ///< until it has greeted, they go with it
   std::unique_ptr<Capture> capture_;

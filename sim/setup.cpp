@@ -61,20 +61,26 @@ class Once {
 void check_speed(const Setup& setup) {
   const auto wrong = [](const std::string& what) { throw WrongSetup(std::nullopt, "speed", what); };
   for (const LineSetup& line : setup.lines) {
-    if (line.serial && setup.speed != 1.0) {
+    if (line.serial && !(setup.speed.paced() && setup.speed.factor == 1)) {
       wrong("a real line has its own time; leave it out with serial");
     }
-    if (!setup.speed && (line.pty || line.tcp)) {
+    if (setup.speed.max() && (line.pty || line.tcp)) {
       wrong("max: masters keep the wall clock's time; leave out pty and tcp, or give a number");
     }
   }
-  if (!setup.speed && setup.control) {
+  if (setup.speed.stepped() && !setup.control) {
+    wrong("step: only the control socket moves the time; name one with 'control'");
+  }
+  if (setup.speed.stepped() && setup.panel) {
+    wrong("step: the panel shows time that passes by itself; leave it out, as panel off does");
+  }
+  if (setup.speed.max() && setup.control) {
     wrong("max: there is no time to listen to the control socket; leave it out, or give a number");
   }
-  if (!setup.speed && setup.panel) {
+  if (setup.speed.max() && setup.panel) {
     wrong("max: there is no time to look at the panel; leave it out, as panel off does, or give a number");
   }
-  if (!setup.speed && !setup.lasts) {
+  if (setup.speed.max() && !setup.lasts) {
     wrong("max: would never end; say how long it is to last with 'for'");
   }
 }
@@ -165,9 +171,12 @@ std::optional<PanelSetup> parse_panel(const std::string& text) {
   return panel;
 }
 
-std::optional<double> parse_speed(const std::string& text) {
+Speed parse_speed(const std::string& text) {
   if (text == "max") {
-    return std::nullopt;
+    return {Speed::Kind::Max};
+  }
+  if (text == "step") {
+    return {Speed::Kind::Stepped};
   }
   // Slower would be standing still, and a year of it more than a clock can count; faster than the wall clock
   // wakes anybody it goes in leaps, and max is there.
@@ -177,9 +186,9 @@ std::optional<double> parse_speed(const std::string& text) {
   const char* const end = text.data() + text.size();
   const auto [rest, error] = std::from_chars(text.data(), end, speed);
   if (error != std::errc() || rest != end || !(speed >= kSlowest && speed <= kFastest)) {
-    throw std::invalid_argument("'" + text + "' wants a number from 0.001 to 1000, or max");
+    throw std::invalid_argument("'" + text + "' is not a number from 0.001 to 1000, max or step");
   }
-  return speed;
+  return {Speed::Kind::Paced, speed};
 }
 
 }  // namespace ex9000::sim

@@ -41,14 +41,28 @@ struct Writing {
   std::optional<std::string> capture;  ///< where to keep what was on the lines
 };
 
+/// What moves the lines' time.
+struct Speed {
+  enum class Kind {
+    Paced,    ///< the wall clock
+    Max,      ///< nothing: events follow each other as fast as they can be computed
+    Stepped,  ///< the control socket's command `advance`, and nothing else
+  };
+  Kind kind = Kind::Paced;
+  double factor = 1;  ///< Paced: the lines' time to the wall clock's
+
+  [[nodiscard]] bool paced() const { return kind == Kind::Paced; }
+  [[nodiscard]] bool max() const { return kind == Kind::Max; }
+  [[nodiscard]] bool stepped() const { return kind == Kind::Stepped; }
+};
+
 struct Setup : Writing {
   std::string file;                    ///< the bus file that it is from; empty: a command line
   std::vector<LineSetup> lines;        ///< at least one
   std::optional<std::string> control;  ///< where to make the control socket
   std::optional<PanelSetup> panel;     ///< the page for a browser; none: nobody serves it
   bool watch = false;                  ///< the modules are shown on standard output
-  /// Of the line's time to the wall clock's; nothing: as fast as it can be reckoned.
-  std::optional<double> speed = 1;
+  Speed speed;
   /// For so long are the modules up, by the lines' time, then it ends; nothing: until it is told to.
   std::optional<VirtualTime> lasts;
   std::uint64_t seed = 1;  ///< of all chance: noise, faults that are probable, contacts that chatter
@@ -80,7 +94,7 @@ std::uint64_t parse_seed(const std::string& text);
 std::optional<LogFormat> parse_log(const std::string& text);
 /// Empty: at the usual port; nothing: `off`.
 std::optional<PanelSetup> parse_panel(const std::string& text);
-/// Nothing: `max`.
-std::optional<double> parse_speed(const std::string& text);
+/// A number from 0.001 to 1000, `max` or `step`.
+Speed parse_speed(const std::string& text);
 
 }  // namespace ex9000::sim

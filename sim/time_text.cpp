@@ -52,6 +52,13 @@ std::string time_text(VirtualTime time) {
   return digits + std::string(unit.name);
 }
 
+std::string seconds_text(VirtualTime time) {
+  constexpr std::int64_t kSecond = 1'000'000'000;
+  std::string fraction = std::to_string(kSecond + time.count() % kSecond).substr(1);
+  fraction.resize(fraction.find_last_not_of('0') + 1);
+  return std::to_string(time.count() / kSecond) + (fraction.empty() ? "" : "." + fraction);
+}
+
 std::string stamp_text(VirtualTime time) {
   std::ostringstream text;
   text << std::fixed << std::setprecision(6) << std::setw(12) << std::chrono::duration<double>(time).count();

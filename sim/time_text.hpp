@@ -13,6 +13,9 @@ hal::doubles::VirtualTime parse_time(const std::string& text);
 /// In us, ms or s, as parse_time reads it.
 std::string time_text(hal::doubles::VirtualTime time);
 
+/// Whole nanoseconds in seconds, without a unit: 1.25, 0.000104166.
+std::string seconds_text(hal::doubles::VirtualTime time);
+
 /// As logs begin their lines: seconds with six decimals, right-aligned in 12 columns.
 std::string stamp_text(hal::doubles::VirtualTime time);
 /// A line of a log that is no frame.

@@ -1,4 +1,5 @@
 #include "sim/control/control.hpp"
+#include "sim/setup.hpp"
 #include "sim/words.hpp"
 
 #include <array>
@@ -166,7 +167,9 @@ struct LineVerb {
   }
 };
 
-constexpr std::array<LineVerb, 3> kLineVerbs{{
+constexpr std::array<LineVerb, 5> kLineVerbs{{
+    {"baud", "RATE", "the line's rate from now on, for a port that carries none; a pseudo-terminal's wins"},
+    {"sent", "", "how many bytes the line has written to its ports so far"},
     {"fault", "FAULT", "from now on, see below; answers its number. Behind N: of that module"},
     {"fault off", "K|all", "the fault of this number is over"},
     {"faults", "", "number, how often it has struck, and text of each; * those that strike now"},
@@ -184,7 +187,7 @@ std::string all_shapes() {
   for (const LineVerb& verb : kLineVerbs) {
     text += verb.shape() + ", ";
   }
-  return text + "list, help, quit";
+  return text + "advance TIME [after N] [quiet], list, help, quit";
 }
 
 std::string where(const SimulatedModule& module) {
@@ -209,7 +212,7 @@ std::string list(const Lines& lines) {
   const std::size_t modules = modules_of(lines);
   std::string text = std::to_string(modules) + (modules == 1 ? " module:" : " modules:");
   std::size_t position = 0;
-  for (const auto& [name, line] : lines) {
+  for (const auto& [name, line, sent] : lines) {
     for (std::size_t i = 0; i < line.size(); ++i) {
       const SimulatedModule& module = line.module(i);
       text += std::string(position == 0 ? " " : ", ") + std::to_string(position + 1) + " " +
@@ -276,9 +279,28 @@ std::string list_faults(Line& line, std::size_t position) {
   return text;
 }
 
-std::string on_line(Line& line, std::size_t position, const Words& words) {
+std::string set_rate(Line& line, const Words& words) {
+  if (words.size() != 2) {
+    throw Refused{"the command is baud RATE"};
+  }
+  try {
+    line.master().set_baud(parse_line_rate(words[1]));
+  } catch (const std::invalid_argument& error) {
+    throw Refused{error.what()};
+  }
+  return "";
+}
+
+std::string on_line(const Control::ControlledLine& controlled, std::size_t position, const Words& words) {
+  Line& line = controlled.line;
+  if (words[0] == "sent" && words.size() == 1) {
+    return std::to_string(controlled.sent ? controlled.sent() : 0);
+  }
   if (words[0] == "faults" && words.size() == 1) {
     return list_faults(line, position);
+  }
+  if (words[0] == "baud") {
+    return set_rate(line, words);
   }
   if (words[0] == "fault" && words.size() >= 2) {
     return words[1] == "off" ? end_fault(line, words)
@@ -292,19 +314,19 @@ std::string on_some_line(const Lines& lines, const Words& words) {
     if (lines.size() != 1) {
       throw Refused{"there are several lines; put 'line NAME' in front"};
     }
-    return on_line(lines[0].line, 0, words);
+    return on_line(lines[0], 0, words);
   }
   if (words.size() < 3) {
     throw Refused{"the command is line NAME fault FAULT, or another of a line's"};
   }
   std::string names;
   std::size_t position = 0;
-  for (const auto& [name, line] : lines) {
-    if (name == words[1]) {
-      return on_line(line, position, Words(words.begin() + 2, words.end()));
+  for (const Control::ControlledLine& controlled : lines) {
+    if (controlled.name == words[1]) {
+      return on_line(controlled, position, Words(words.begin() + 2, words.end()));
     }
-    names += (names.empty() ? "" : ", ") + name;
-    position += line.size();
+    names += (names.empty() ? "" : ", ") + controlled.name;
+    position += controlled.line.size();
   }
   throw Refused{"no line '" + words[1] + "'; " +
                 (names.empty() ? "the only one has no name, leave out 'line NAME'" : "there are " + names)};
@@ -347,7 +369,10 @@ Control::Reply Control::carry_out(const std::string& command) {
         throw Refused{"nothing goes behind '" + first + "'"};
       }
       result = quit ? "" : first == "list" ? list(lines_) : all_shapes();
-    } else if (first == "line" || first == "fault" || first == "faults") {
+    } else if (first == "advance") {
+      throw Refused{"the lines' time moves by itself; 'advance' requires --speed step"};
+    } else if (first == "line" || first == "fault" || first == "faults" || first == "baud" ||
+               first == "sent") {
       result = on_some_line(lines_, words);
     } else if (first.empty() || first.find_first_not_of("0123456789") != std::string::npos) {
       throw Refused{"no command '" + first + "'; there are " + all_shapes()};
@@ -372,7 +397,10 @@ std::string control_commands() {
   for (const LineVerb& verb : kLineVerbs) {
     row(verb.shape(), verb.does);
   }
-  row("line NAME ...", "one of the three above, of that line; needed where there are several");
+  row("line NAME ...", "one of the five above, of that line; required if there are several");
+  row("advance TIME [after N] [quiet]",
+      "with --speed step: waits until N bytes have come from the ports, puts all that came on the lines, and");
+  row("", "lets TIME pass, with 'quiet' only until nothing is pending; answers ok and the time in seconds");
   row("list", "the modules");
   row("help", "the commands");
   row("quit", "ends the simulator");

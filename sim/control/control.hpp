@@ -1,6 +1,8 @@
 // What can be done to lines and their modules from outside, as commands of a line of text.
 #pragma once
 
+#include <cstdint>
+#include <functional>
 #include <string>
 #include <vector>
 
@@ -17,6 +19,7 @@ class Control {
   struct ControlledLine {
     std::string name;  ///< may be empty where there is but one
     Line& line;
+    std::function<std::uint64_t()> sent = nullptr;  ///< bytes written to its ports so far; null: it has none
   };
 
   /// Modules are numbered from 1, through all `lines`.

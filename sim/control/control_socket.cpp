@@ -113,7 +113,7 @@ void ControlSocket::accept() {
       clients_.push_back(client);
       read(client);
     } else {
-      answer(client, "error: " + std::to_string(kMostClients) + " clients are here already", Then::Part);
+      send(client, "error: " + std::to_string(kMostClients) + " clients are here already", Then::Part);
     }
     accept();
   });
@@ -135,20 +135,21 @@ void ControlSocket::read(const std::shared_ptr<Client>& client) {
       client->socket, boost::asio::dynamic_buffer(client->input, kLongestLine + 1), '\n',
       [this, client](const boost::system::error_code& error, std::size_t size) {
         if (error == boost::asio::error::not_found) {
-          answer(client, "error: a line has up to " + std::to_string(kLongestLine) + " characters",
+          send(client, "error: a line has up to " + std::to_string(kLongestLine) + " characters",
                  Then::Part);
         } else if (error == boost::asio::error::eof && !client->input.empty()) {
-          answer(client, "error: a command ends with a newline; this one did not and was left", Then::Part);
+          send(client, "error: a command ends with a newline; this one did not and was left", Then::Part);
         } else if (!error) {
           const std::string line = client->input.substr(0, size - 1);
           client->input.erase(0, size);
-          const Control::Reply reply = carry_out_(line);
-          answer(client, reply.text, reply.quit ? Then::Quit : Then::ReadOn);
+          carry_out_(line, [this, client](const Control::Reply& reply) {
+            send(client, reply.text, reply.quit ? Then::Quit : Then::ReadOn);
+          });
         }
       });
 }
 
-void ControlSocket::answer(const std::shared_ptr<Client>& client, const std::string& text, Then then) {
+void ControlSocket::send(const std::shared_ptr<Client>& client, const std::string& text, Then then) {
   client->output = text + "\n";
   boost::asio::async_write(
       client->socket, boost::asio::buffer(client->output),

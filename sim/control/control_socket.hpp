@@ -20,7 +20,9 @@ namespace ex9000::sim {
 /// that does not read its replies is not read from.
 class ControlSocket {
  public:
-  using CarryOut = std::function<Control::Reply(const std::string& command)>;
+  using Answer = std::function<void(const Control::Reply&)>;
+  /// Calls `answer` once, at once or later. Until then nothing more is read from that client.
+  using CarryOut = std::function<void(const std::string& command, const Answer& answer)>;
 
   /// Listens at `path` from now on; what a dead process has left there is taken over. Throws
   /// std::invalid_argument, one line, where the path is in use or cannot be made. What `quit` answers is sent
@@ -44,7 +46,7 @@ class ControlSocket {
   void read(const std::shared_ptr<Client>& client);
   /// What happens when the answer is on its way.
   enum class Then { ReadOn, Part, Quit };
-  void answer(const std::shared_ptr<Client>& client, const std::string& text, Then then);
+  void send(const std::shared_ptr<Client>& client, const std::string& text, Then then);
 
   std::string path_;
   Claim claim_;

@@ -136,6 +136,10 @@ std::vector<Faults::Told> Faults::told() const {
   return all;
 }
 
+bool Faults::pending() const {
+  return changed_ || (echo_ && echo_->next() != kNever) || (stranger_ && stranger_->sending());
+}
+
 VirtualTime Faults::next() const {
   if (changed_) {
     return bus_.clock().virtual_now();

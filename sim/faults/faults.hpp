@@ -49,6 +49,9 @@ class Faults final : public Station {
   };
   [[nodiscard]] std::vector<Told> told() const;
 
+  /// An echo or a stranger has bytes to send, or an effect is to be set.
+  [[nodiscard]] bool pending() const;
+
   // --- Station ---
   [[nodiscard]] VirtualTime next() const override;
   void run() override;

@@ -135,7 +135,7 @@ class Panel::Viewer final : public PanelViewer {
         frames.push_back(frames_of(i));
       }
     }
-    const auto now = std::chrono::steady_clock::now();
+    const auto now = panel_.wall_clock_();
     news = news || !modules.empty() || !frames.empty() || now - told_at_ >= kHeartbeat;
     if (news) {
       message["state"]["lines"] = std::move(lines);
@@ -243,8 +243,10 @@ class Panel::Viewer final : public PanelViewer {
   std::chrono::steady_clock::time_point told_at_;
 };
 
-Panel::Panel(CarryOut carry_out, double speed)
-    : carry_out_(std::move(carry_out)), state_(std::make_unique<State>()) {
+Panel::Panel(CarryOut carry_out, double speed, WallClock wall_clock)
+    : carry_out_(std::move(carry_out)),
+      wall_clock_(std::move(wall_clock)),
+      state_(std::make_unique<State>()) {
   state_->speed = speed;
 }
 

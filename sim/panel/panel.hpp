@@ -1,6 +1,7 @@
 // Every module's face, and what is said on the lines, for any number of people who look on.
 #pragma once
 
+#include <chrono>
 #include <cstddef>
 #include <cstdint>
 #include <functional>
@@ -21,8 +22,11 @@ class Panel final : public PanelSource {
  public:
   using CarryOut = std::function<Control::Reply(const std::string& command)>;
 
-  /// `speed`: of the lines' time to the wall clock's.
-  Panel(CarryOut carry_out, double speed);
+  using WallClock = std::function<std::chrono::steady_clock::time_point()>;
+
+  /// `speed`: of the lines' time to the wall clock's. `wall_clock` says when a page that has heard nothing
+  /// needs a sign of life.
+  Panel(CarryOut carry_out, double speed, WallClock wall_clock = std::chrono::steady_clock::now);
   ~Panel() override;
   Panel(const Panel&) = delete;
   Panel& operator=(const Panel&) = delete;
@@ -44,6 +48,7 @@ class Panel final : public PanelSource {
   class Viewer;
 
   CarryOut carry_out_;
+  WallClock wall_clock_;
   std::unique_ptr<State> state_;
 };
 

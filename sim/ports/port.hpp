@@ -24,9 +24,13 @@ class Port {
   /// Once. `received` is called while the io_context runs.
   virtual void start(Received received) = 0;
   virtual void resume() = 0;
+  /// Calls `received` for everything that has arrived by now, as if the io_context had run. Only if it may
+  /// take more.
+  virtual void read_waiting() {}
 
-  /// What modules have sent. Whatever nobody takes is lost, as on wires.
-  virtual void send(const std::vector<std::uint8_t>& bytes) = 0;
+  /// What modules have sent. If nobody has the port open it is lost, as on wires. Returns how many bytes were
+  /// dropped because somebody has it open and does not read.
+  virtual std::size_t send(const std::vector<std::uint8_t>& bytes) = 0;
   /// The module that was sending has stopped.
   virtual void sent() {}
 

@@ -1,8 +1,10 @@
 #include "sim/ports/pty_port.hpp"
 
+#include <poll.h>
 #include <unistd.h>
 
-#include <boost/asio/buffer.hpp>
+#include <array>
+#include <cerrno>
 #include <utility>
 
 namespace ex9000::sim {
@@ -32,16 +34,13 @@ void PtyPort::read() {
     return;
   }
   reading_ = true;
-  descriptor_.async_read_some(boost::asio::buffer(buffer_),
-                              [this](const boost::system::error_code& error, std::size_t size) {
-                                reading_ = false;
-                                if (error) {
-                                  return;  // nobody is there any more
-                                }
-                                pty_.take_visits();  // who writes must be there when it is answered
-                                paused_ = !received_(buffer_.data(), size);
-                                read();
-                              });
+  descriptor_.async_wait(boost::asio::posix::stream_descriptor::wait_read,
+                         [this](const boost::system::error_code& error) {
+                           reading_ = false;
+                           if (!error && take()) {
+                             read();
+                           }
+                         });
 }
 
 void PtyPort::watch_visits() {
@@ -55,11 +54,36 @@ void PtyPort::watch_visits() {
                      });
 }
 
-/// The pseudo-terminal holds some 4 KiB before anything is lost.
-void PtyPort::send(const std::vector<std::uint8_t>& bytes) {
-  if (pty_.visited()) {
-    [[maybe_unused]] const ssize_t written = write(pty_.master_fd(), bytes.data(), bytes.size());
+/// Most often nothing is there, and one system call tells.
+void PtyPort::read_waiting() {
+  std::array<pollfd, 2> ready{{{pty_.visits_fd(), POLLIN, 0}, {pty_.master_fd(), POLLIN, 0}}};
+  const bool any = poll(ready.data(), ready.size(), 0) > 0;
+  if (any && ((ready[0].revents | ready[1].revents) & POLLIN) != 0) {
+    take();
   }
+}
+
+/// False if nobody has the pseudo-terminal open.
+bool PtyPort::take() {
+  pty_.take_visits();  // a master that writes must be known when it is answered
+  std::array<std::uint8_t, 4096> bytes{};
+  while (!paused_) {
+    const ssize_t size = ::read(pty_.master_fd(), bytes.data(), bytes.size());
+    if (size <= 0) {
+      return size < 0 && errno == EAGAIN;
+    }
+    paused_ = !received_(bytes.data(), static_cast<std::size_t>(size));
+  }
+  return true;
+}
+
+/// The pseudo-terminal holds some 4 KiB before anything is lost.
+std::size_t PtyPort::send(const std::vector<std::uint8_t>& bytes) {
+  if (!pty_.visited()) {
+    return 0;
+  }
+  const ssize_t written = write(pty_.master_fd(), bytes.data(), bytes.size());
+  return bytes.size() - (written < 0 ? 0 : static_cast<std::size_t>(written));
 }
 
 }  // namespace ex9000::sim

@@ -1,7 +1,6 @@
 // A pseudo-terminal that masters open as they would a serial port.
 #pragma once
 
-#include <array>
 #include <boost/asio/io_context.hpp>
 #include <boost/asio/posix/stream_descriptor.hpp>
 #include <string>
@@ -19,7 +18,8 @@ class PtyPort final : public Port {
 
   void start(Received received) override;
   void resume() override;
-  void send(const std::vector<std::uint8_t>& bytes) override;
+  void read_waiting() override;
+  std::size_t send(const std::vector<std::uint8_t>& bytes) override;
   [[nodiscard]] std::optional<std::uint32_t> baud() const override { return pty_.baud(); }
 
   [[nodiscard]] const Pty& pty() const { return pty_; }
@@ -27,13 +27,13 @@ class PtyPort final : public Port {
  private:
   /// Goes on by itself; stops while nobody is there, and when it is told to wait.
   void read();
+  bool take();
   void watch_visits();
 
   Pty pty_;
   boost::asio::posix::stream_descriptor visits_;
   boost::asio::posix::stream_descriptor descriptor_;
   Received received_;
-  std::array<std::uint8_t, 4096> buffer_{};
   bool reading_ = false;
   bool paused_ = false;
 };

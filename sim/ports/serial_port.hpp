@@ -21,7 +21,7 @@ class SerialPort final : public Port {
   /// Ends the io_context's run with a std::runtime_error when the port goes away.
   void start(Received received) override;
   void resume() override;
-  void send(const std::vector<std::uint8_t>& bytes) override;
+  std::size_t send(const std::vector<std::uint8_t>& bytes) override;
   void sent() override;
   [[nodiscard]] bool is_a_line() const override { return true; }
 

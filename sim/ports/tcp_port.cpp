@@ -17,8 +17,6 @@ using boost::asio::ip::tcp;
 
 /// Far more than masters that share a line; beyond it somebody connects and never goes.
 constexpr std::size_t kMostMasters = 64;
-/// Who has said all there is to say may still wait for the answer to it.
-constexpr std::chrono::seconds kLinger{1};
 
 [[noreturn]] void refuse(const TcpAddress& address, const std::string& why) {
   const std::string host =
@@ -44,13 +42,13 @@ struct TcpPort::Client {
 
   tcp::socket socket;
   boost::asio::steady_timer linger;
-  std::array<std::uint8_t, 4096> buffer{};
+  bool reading = false;  ///< waits for more bytes
   bool paused = false;
   bool lingers = false;  ///< says nothing any more
 };
 
-TcpPort::TcpPort(boost::asio::io_context& io, const TcpAddress& address)
-    : io_(io), acceptor_(io), next_try_(io) {
+TcpPort::TcpPort(boost::asio::io_context& io, const TcpAddress& address, Linger linger)
+    : io_(io), acceptor_(io), next_try_(io), linger_(linger) {
   if (const boost::system::error_code error = listen_at(acceptor_, endpoint_of(io, address))) {
     refuse(address, why_not_listening(error, "name an address of this machine and a port that may be had"));
   }
@@ -78,17 +76,46 @@ void TcpPort::accept() {
       accept_later();
       return;
     }
-    make_room();
-    if (clients_.size() < kMostMasters) {
-      boost::system::error_code ignored;
-      socket.set_option(tcp::no_delay(true), ignored);
-      socket.set_option(tcp::socket::keep_alive(true), ignored);
-      socket.non_blocking(true, ignored);
-      clients_.push_back(std::make_unique<Client>(io_, std::move(socket)));
-      read(*clients_.back());
-    }
+    admit(std::move(socket));
     accept();
   });
+}
+
+void TcpPort::admit(tcp::socket socket) {
+  make_room();
+  if (clients_.size() < kMostMasters) {
+    boost::system::error_code ignored;
+    socket.set_option(tcp::no_delay(true), ignored);
+    socket.set_option(tcp::socket::keep_alive(true), ignored);
+    socket.non_blocking(true, ignored);
+    clients_.push_back(std::make_unique<Client>(io_, std::move(socket)));
+    read(*clients_.back());
+  }
+}
+
+/// What goes wrong with a client shows when the io_context runs.
+void TcpPort::read_waiting() {
+  boost::system::error_code error;
+  acceptor_.non_blocking(true, error);
+  for (tcp::socket socket = acceptor_.accept(error); !error; socket = acceptor_.accept(error)) {
+    admit(std::move(socket));
+  }
+  for (const auto& client : clients_) {
+    take(*client);
+  }
+}
+
+/// Why there is no more to read; no error if the client is to wait.
+boost::system::error_code TcpPort::take(Client& client) {
+  std::array<std::uint8_t, 4096> bytes{};
+  boost::system::error_code ended;
+  while (!client.paused && !ended) {
+    const std::size_t size = client.socket.read_some(boost::asio::buffer(bytes), ended);
+    if (!ended) {
+      client.paused = !received_(bytes.data(), size);
+    }
+  }
+  return ended;
 }
 
 /// Who lingers longest goes first.
@@ -114,26 +141,28 @@ void TcpPort::accept_later() {
 }
 
 void TcpPort::read(Client& client) {
-  client.paused = false;
-  client.socket.async_read_some(boost::asio::buffer(client.buffer),
-                                [this, &client](const boost::system::error_code& error, std::size_t size) {
-                                  if (error == boost::asio::error::operation_aborted) {
-                                    return;
-                                  }
-                                  if (error) {
-                                    part_with(client, error == boost::asio::error::eof);
-                                    return;
-                                  }
-                                  client.paused = !received_(client.buffer.data(), size);
-                                  if (!client.paused) {
-                                    read(client);
-                                  }
-                                });
+  if (client.reading || client.paused) {
+    return;
+  }
+  client.reading = true;
+  client.socket.async_wait(tcp::socket::wait_read, [this, &client](const boost::system::error_code& error) {
+    if (error == boost::asio::error::operation_aborted) {
+      return;
+    }
+    client.reading = false;
+    const boost::system::error_code ended = error ? error : take(client);
+    if (ended && ended != boost::asio::error::would_block) {
+      part_with(client, ended == boost::asio::error::eof);
+    } else {
+      read(client);
+    }
+  });
 }
 
 void TcpPort::resume() {
   for (const auto& client : clients_) {
-    if (client->paused) {
+    client->paused = false;
+    if (!client->lingers) {
       read(*client);
     }
   }
@@ -146,7 +175,10 @@ void TcpPort::part_with(Client& client, bool listens) {
     return;
   }
   client.lingers = true;
-  client.linger.expires_after(kLinger);
+  if (!linger_) {
+    return;
+  }
+  client.linger.expires_after(*linger_);
   client.linger.async_wait([this, &client](const boost::system::error_code& error) {
     if (error != boost::asio::error::operation_aborted) {
       forget(client);
@@ -158,12 +190,16 @@ void TcpPort::forget(Client& client) {
   clients_.remove_if([&client](const auto& other) { return other.get() == &client; });
 }
 
-void TcpPort::send(const std::vector<std::uint8_t>& bytes) {
-  clients_.remove_if([&bytes](const auto& client) {
+std::size_t TcpPort::send(const std::vector<std::uint8_t>& bytes) {
+  std::size_t dropped = 0;
+  clients_.remove_if([&](const auto& client) {
     boost::system::error_code error;
-    client->socket.write_some(boost::asio::buffer(bytes), error);
-    return error && error != boost::asio::error::would_block;
+    const std::size_t written = client->socket.write_some(boost::asio::buffer(bytes), error);
+    const bool gone = error && error != boost::asio::error::would_block;
+    dropped = std::max(dropped, gone ? 0 : bytes.size() - written);
+    return gone;
   });
+  return dropped;
 }
 
 }  // namespace ex9000::sim

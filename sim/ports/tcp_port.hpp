@@ -4,8 +4,10 @@
 #include <boost/asio/io_context.hpp>
 #include <boost/asio/ip/tcp.hpp>
 #include <boost/asio/steady_timer.hpp>
+#include <chrono>
 #include <list>
 #include <memory>
+#include <optional>
 #include <string>
 
 #include "sim/ports/port.hpp"
@@ -17,13 +19,18 @@ namespace ex9000::sim {
 /// modules send, and what each sends goes on the line.
 class TcpPort final : public Port {
  public:
+  /// Who has nothing more to send may wait so long for the rest of the replies; none: as long as it likes.
+  using Linger = std::optional<std::chrono::milliseconds>;
+  static constexpr std::chrono::milliseconds kUsualLinger{1000};
+
   /// Listens from now on. Throws std::invalid_argument, one line, where that cannot be had.
-  TcpPort(boost::asio::io_context& io, const TcpAddress& address);
+  TcpPort(boost::asio::io_context& io, const TcpAddress& address, Linger linger);
   ~TcpPort() override;
 
   void start(Received received) override;
   void resume() override;
-  void send(const std::vector<std::uint8_t>& bytes) override;
+  void read_waiting() override;
+  std::size_t send(const std::vector<std::uint8_t>& bytes) override;
   /// HOST:PORT where it listens.
   [[nodiscard]] std::string address() const;
 
@@ -31,8 +38,10 @@ class TcpPort final : public Port {
   struct Client;
 
   void accept();
+  void admit(boost::asio::ip::tcp::socket socket);
   void accept_later();
   void read(Client& client);
+  boost::system::error_code take(Client& client);
   void make_room();
   void part_with(Client& client, bool listens);
   void forget(Client& client);
@@ -40,6 +49,7 @@ class TcpPort final : public Port {
   boost::asio::io_context& io_;
   boost::asio::ip::tcp::acceptor acceptor_;
   boost::asio::steady_timer next_try_;
+  Linger linger_;
   Received received_;
   std::list<std::unique_ptr<Client>> clients_;
 };

@@ -162,7 +162,7 @@ class Capacity(unittest.TestCase):
             found.received_byte = 100
             found.edges = {1: edge, 5: 5 * edge}
             found.interrupts = {execution.TICK: 20}
-            return int(capacity.capacity(found).split(" pulses a second")[0].split()[-1])
+            return int(capacity.capacity(found).split(" pulses a second", maxsplit=1)[0].split()[-1])
 
         self.assertGreater(pulses(50), pulses(100))
 

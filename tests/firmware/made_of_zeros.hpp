@@ -5,6 +5,13 @@
 #include <cstdint>
 #include <cstring>
 
+/// C++20's constinit: the compiler refuses an object that it cannot initialise by itself.
+#ifdef __clang__
+#define EX9000_CONSTINIT [[clang::require_constant_initialization]]
+#else
+#define EX9000_CONSTINIT __constinit
+#endif
+
 namespace ex9000 {
 
 /// How many words of `object`, which nobody has touched since the program was loaded, are not 0.

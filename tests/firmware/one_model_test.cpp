@@ -17,8 +17,7 @@ struct NoBoard {
   std::uint32_t unused;
 };
 
-/// See untouched_module_test.cpp.
-__constinit hal::Device<NoBoard> untouched_device(kOnlyModel);
+EX9000_CONSTINIT hal::Device<NoBoard> untouched_device(kOnlyModel);
 
 TEST(OneModel, AnUntouchedDeviceIsNothingButZeros) { EXPECT_EQ(words_other_than_0(untouched_device), 0U); }
 

@@ -4,15 +4,15 @@
 #include <gtest/gtest.h>
 
 #include <cstdio>
-#include <fstream>
 #include <string>
 #include <vector>
 
 #include "sim/play/player.hpp"
-#include "tests/support/environment.hpp"
 #include "tests/oracles/reference/generator.hpp"
 #include "tests/oracles/reference/rules.hpp"
 #include "tests/oracles/reference/session.hpp"
+#include "tests/support/directory.hpp"
+#include "tests/support/environment.hpp"
 
 namespace ex9000::reference {
 namespace {
@@ -86,11 +86,12 @@ TEST(RandomSessions, TheFirmwareDoesWhatTheReferenceSays) {
 }
 
 TEST(RandomSessions, AreWrittenDownAsTheRunnerPlaysThem) {
+  const system::Directory directory;
+  const std::string path = directory / "session.txt";
   for (std::uint64_t seed = 0; seed < 27; ++seed) {
     const Played played(seed, kSteps / 3);
     ASSERT_TRUE(played.alike) << played.session.transcript();
-    const std::string path = testing::TempDir() + "random-session.txt";
-    std::ofstream(path) << played.session.transcript();
+    system::write_file(path, played.session.transcript());
     for (const play::Transcript& transcript : play::load_transcripts(path)) {
       runner::CoreTarget target;
       const play::Result result = play::play(transcript, target);
@@ -98,7 +99,6 @@ TEST(RandomSessions, AreWrittenDownAsTheRunnerPlaysThem) {
                                    << played.session.transcript();
       EXPECT_GT(result.steps, kSteps / 3);
     }
-    std::remove(path.c_str());
   }
 }
 

@@ -16,10 +16,8 @@ struct NoBoard {
   std::uint32_t unused;
 };
 
-// __constinit (GCC's and Clang's name for C++20's constinit): the compiler refuses what it cannot make by
-// itself.
-__constinit Module untouched_module(kModel);
-__constinit hal::Device<NoBoard> untouched_device(kModel);
+EX9000_CONSTINIT Module untouched_module(kModel);
+EX9000_CONSTINIT hal::Device<NoBoard> untouched_device(kModel);
 
 /// The store and the state each refer to the model, where one of many may be chosen.
 constexpr std::size_t kReferencesToTheModel = 2;

@@ -68,10 +68,11 @@ void check_line(const LineSetup& line) {
 void check_setup(const Setup& setup) {
   for (const LineSetup& line : setup.lines) {
     check_line(line);
-    require(setup.speed || (!line.pty && !line.tcp && !line.serial), "no master keeps up with all speeds");
+    require(!setup.speed.max() || (!line.pty && !line.tcp && !line.serial), "no master keeps up with all speeds");
   }
-  require(setup.speed || setup.lasts, "what goes as fast as it can has an end");
-  require(!setup.speed || *setup.speed > 0, "time passes");
+  require(!setup.speed.max() || setup.lasts, "what goes as fast as it can has an end");
+  require(setup.speed.factor > 0, "time passes");
+  require(!setup.speed.stepped() || setup.control, "something moves time that stands still");
   require(!setup.control || !setup.control->empty(), "a path is not empty");
 }
 
@@ -126,7 +127,7 @@ void parse(const std::string& text) {
             "something to do is all there is");
     require(parsed.setup->lines.size() == 1, "a command line has one line");
     const LineSetup& line = parsed.setup->lines[0];
-    require(!parsed.setup->speed || line.pty || line.tcp || line.serial, "there is a way to the line");
+    require(parsed.setup->speed.max() || line.pty || line.tcp || line.serial, "there is a way to the line");
     check_setup(*parsed.setup);
   } else if (parsed.task) {
     require(parsed.output.empty() && parsed.error.empty() && parsed.exit_status == 0,

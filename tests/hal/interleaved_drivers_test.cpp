@@ -1,11 +1,16 @@
-// Interrupts at every point of the drivers that share a counter with theirs.
+// Interrupts at every point of the drivers that share a counter with theirs, and edges at every point of the
+// driver that takes them.
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <array>
 #include <cstdio>
+#include <map>
+#include <vector>
 
+#include "firmware/channels/inputs.hpp"
 #include "hal/stellaris/i2c.hpp"
+#include "hal/stellaris/inputs.hpp"
 #include "hal/stellaris/system_timer.hpp"
 
 namespace ex9000::interleaving {
@@ -166,6 +171,228 @@ TEST(I2c, AByteThatIsToldToBeOverAndIsNotIsGivenUpInTheEnd) {
   i2c.go_on(now + milliseconds(4));
   EXPECT_FALSE(i2c.busy());
   EXPECT_EQ(i2c.result(), hal::I2cResult::Failed);
+}
+
+// --- inputs ---
+
+using hal::stellaris::PinGroup;
+using hal::stellaris::Port;
+
+/// Ports of input pins. LM3S6965 data sheet, 8.3.2 and 8.5: a change that the pin is sensitive to sets its
+/// raw flag, which stays until it is cleared; both edges where GPIOIBE says so, else the falling one; the
+/// masked flags interrupt.
+class InputPorts final : public bus::Peripherals {
+ public:
+  InputPorts() { bus::peripherals = this; }
+
+  void set(Port port, unsigned pin, bool level) {
+    PortState& state = states_[base_of(port)];
+    state.wires = level ? state.wires | 1U << pin : state.wires & ~(1U << pin);
+    state.look();
+  }
+  [[nodiscard]] bool level(Port port, unsigned pin) {
+    return (states_[base_of(port)].wires >> pin & 1U) != 0;
+  }
+  [[nodiscard]] bool interrupts(Port port) {
+    PortState& state = states_[base_of(port)];
+    return (state.raw & state.registers[kMask]) != 0;
+  }
+
+  std::uint32_t read(std::uint32_t address) override {
+    PortState& state = states_[address & ~kOffset];
+    const std::uint32_t offset = address & kOffset;
+    if (offset < kFirstControl) {
+      return state.shown & offset >> 2U;
+    }
+    return offset == kMaskedStatus ? state.raw & state.registers[kMask] : state.registers[offset];
+  }
+  void write(std::uint32_t address, std::uint32_t value) override {
+    PortState& state = states_[address & ~kOffset];
+    const std::uint32_t offset = address & kOffset;
+    if (offset == kClear) {
+      state.raw &= ~value;
+    } else {
+      state.registers[offset] = value;
+      state.look();
+    }
+  }
+
+ private:
+  static constexpr std::uint32_t kOffset = 0xFFF;
+  static constexpr std::uint32_t kFirstControl = 0x400;
+  static constexpr std::uint32_t kBothEdges = 0x408;
+  static constexpr std::uint32_t kMask = 0x410;
+  static constexpr std::uint32_t kMaskedStatus = 0x418;
+  static constexpr std::uint32_t kClear = 0x41C;
+  static constexpr std::uint32_t kDigitalEnable = 0x51C;
+
+  struct PortState {
+    std::uint32_t wires = 0;
+    std::uint32_t shown = 0;  ///< what the enabled pins read
+    std::uint32_t raw = 0;
+    std::map<std::uint32_t, std::uint32_t> registers;
+
+    void look() {
+      const std::uint32_t before = shown;
+      shown = wires & registers[kDigitalEnable];
+      raw |= (before ^ shown) & (registers[kBothEdges] | before);
+    }
+  };
+
+  static std::uint32_t base_of(Port port) { return port == Port::B ? 0x4000'5000U : 0x4000'6000U; }
+
+  std::map<std::uint32_t, PortState> states_;
+};
+
+constexpr std::array<PinGroup, 2> kInputGroups{PinGroup{Port::B, 4, 2}, PinGroup{Port::C, 5, 2}};
+constexpr unsigned kChannels = 4;
+
+/// Channels 0 and 1 are on one port, 2 and 3 on the other.
+template <bool active_high>
+class InputBench {
+ public:
+  using Pins = hal::stellaris::InputPins<kInputGroups, kChannels, active_high>;
+
+  /// Bit n of `levels` is channel n.
+  explicit InputBench(unsigned levels) {
+    for (unsigned channel = 0; channel < kChannels; ++channel) {
+      set(channel, (levels >> channel & 1U) != 0);
+    }
+  }
+
+  void start() {
+    baseline_ = Pins::start();
+    edges_.begin(baseline_);
+  }
+  void toggle(unsigned channel) { set(channel, !level(channel)); }
+  [[nodiscard]] bool level(unsigned channel) {
+    return ports_.level(port_of(channel), pin_of(channel)) == active_high;
+  }
+
+  /// Serves the port of `channel` once.
+  void serve(unsigned channel) {
+    const auto deliver = [this](unsigned of, bool level) {
+      Points::interrupt([&] { edges_.on_edge(of, level); });
+    };
+    if (port_of(channel) == Port::B) {
+      Pins::template take_edges<Port::B>(deliver);
+    } else {
+      Pins::template take_edges<Port::C>(deliver);
+    }
+  }
+  void serve_what_waits() {
+    for (const unsigned channel : {0U, 2U}) {
+      for (int i = 0; i < 10 && ports_.interrupts(port_of(channel)); ++i) {
+        serve(channel);
+      }
+      EXPECT_FALSE(ports_.interrupts(port_of(channel))) << "an edge interrupts for ever";
+    }
+  }
+
+  /// Edges that were counted on `channel`; the level that follows from them has to be that of the wire.
+  unsigned counted(unsigned channel) {
+    const unsigned count = edges_.collect(channel);
+    const bool told = ((baseline_ >> channel ^ count) & 1U) != 0;
+    EXPECT_EQ(told, level(channel)) << "channel " << channel << " has another level than is told of it";
+    return count;
+  }
+
+ private:
+  static Port port_of(unsigned channel) { return channel < 2 ? Port::B : Port::C; }
+  static unsigned pin_of(unsigned channel) { return channel < 2 ? 4 + channel : 5 + channel - 2; }
+  void set(unsigned channel, bool level) {
+    ports_.set(port_of(channel), pin_of(channel), level == active_high);
+  }
+
+  InputPorts ports_;
+  InputEdges edges_;
+  std::uint16_t baseline_ = 0;
+};
+
+template <class Bench>
+class Inputs : public testing::Test {};
+using Polarities = testing::Types<InputBench<true>, InputBench<false>>;
+TYPED_TEST_SUITE(Inputs, Polarities);
+
+/// Channel 0 has seen an edge; the channels of `later` see one each at these points of the interrupt that
+/// serves it. How many points that has.
+template <class Bench>
+unsigned serve_an_edge(Bench& bench, const std::vector<std::pair<unsigned, unsigned>>& later) {
+  bench.start();
+  bench.toggle(0);
+  const unsigned points = Points::watch(
+      [&](unsigned point) {
+        for (const auto& [at, channel] : later) {
+          if (at == point) {
+            bench.toggle(channel);
+          }
+        }
+      },
+      [&] { bench.serve(0); });
+  bench.serve_what_waits();
+  return points;
+}
+
+TYPED_TEST(Inputs, AnEdgeAtAnyAccessOfTheInterruptIsCountedBesideTheOneThatIsServed) {
+  for (unsigned levels = 0; levels < 1U << kChannels; ++levels) {
+    for (unsigned second = 0; second < kChannels; ++second) {
+      TypeParam undisturbed(levels);
+      const unsigned points = serve_an_edge(undisturbed, {});
+      ASSERT_GE(points, 8U) << "four accesses have a point before and behind each";
+      for (unsigned point = 0; point < points; ++point) {
+        SCOPED_TRACE("levels " + std::to_string(levels) + ", channel " + std::to_string(second) + ", point " +
+                     std::to_string(point));
+        TypeParam bench(levels);
+        serve_an_edge(bench, {{point, second}});
+        for (unsigned channel = 0; channel < kChannels; ++channel) {
+          const unsigned edges = (channel == 0 ? 1U : 0U) + (channel == second ? 1U : 0U);
+          ASSERT_EQ(bench.counted(channel), edges) << "channel " << channel;
+        }
+      }
+    }
+  }
+}
+
+TYPED_TEST(Inputs, TheLevelThatIsToldIsTheLastOneWhereverTwoMoreEdgesCome) {
+  for (const unsigned levels : {0U, 1U}) {
+    unsigned points = 1;
+    for (unsigned first = 0; first < points; ++first) {
+      for (unsigned second = first + 1; second <= points; ++second) {
+        SCOPED_TRACE(std::to_string(first) + " and " + std::to_string(second));
+        TypeParam bench(levels);
+        points = std::max(points, serve_an_edge(bench, {{first, 0}, {second, 0}}));
+        const unsigned counted = bench.counted(0);
+        EXPECT_GE(counted, 1U);
+        EXPECT_LE(counted, 3U);
+      }
+    }
+  }
+}
+
+TYPED_TEST(Inputs, AnEdgeWhileTheyStartIsPartOfTheLevelsTheyStartFromOrIsCounted) {
+  for (unsigned levels = 0; levels < 1U << kChannels; ++levels) {
+    for (unsigned moving = 0; moving < kChannels; ++moving) {
+      unsigned points = 1;
+      for (unsigned at = 0; at < points; ++at) {
+        SCOPED_TRACE("levels " + std::to_string(levels) + ", channel " + std::to_string(moving) + ", point " +
+                     std::to_string(at));
+        TypeParam bench(levels);
+        const unsigned passed = Points::watch(
+            [&](unsigned point) {
+              if (point == at) {
+                bench.toggle(moving);
+              }
+            },
+            [&] { bench.start(); });
+        points = std::max(points, passed);
+        bench.serve_what_waits();
+        for (unsigned channel = 0; channel < kChannels; ++channel) {
+          ASSERT_LE(bench.counted(channel), channel == moving ? 1U : 0U) << "channel " << channel;
+        }
+      }
+      EXPECT_GT(points, 20U);
+    }
+  }
 }
 
 }  // namespace

@@ -49,7 +49,7 @@ function steps(baud) {
     if (line.startsWith("=> ")) {
       result.push({ asked: line, frame: Buffer.from(line.slice(3).replaceAll(" ", ""), "hex") });
     } else if (line.startsWith("wait ")) {
-      result.push({ wait: parseInt(line.slice(5)) });
+      result.push({ wait: parseInt(line.slice(5), 10) });
     } else {
       result[result.length - 1].expected = line.replace("<= ", "");
     }
@@ -65,8 +65,8 @@ class Checks {
    * `ask` promises what the library is told: the text of a frame, "silence", or what went wrong. A step without
    * `expected` is carried out and not checked.
    */
-  async play(steps, ask) {
-    for (const { asked, frame, expected, wait } of steps) {
+  async play(conversation, ask) {
+    for (const { asked, frame, expected, wait } of conversation) {
       if (wait) {
         await timers.setTimeout(wait);
         continue;

@@ -207,7 +207,7 @@ def text_of(frame):
 
 def steps(baud):
     """The lines of the conversation, without its comments."""
-    text = pathlib.Path(__file__).with_name("conversation.txt").read_text()
+    text = pathlib.Path(__file__).with_name("conversation.txt").read_text(encoding="utf-8")
     text = text.replace("{BAUD}", f"{3 + RATES.index(baud):02X}")
     lines = (line.split(";")[0].strip() for line in text.splitlines())
     return [line for line in lines if line]

@@ -130,7 +130,7 @@ void EepromChip::clock_changed() {
       }
     }
     if (step_ != Step::Reading) {
-      byte_ = static_cast<std::uint8_t>(byte_ << 1U | (data_level_ ? 1U : 0U));
+      byte_ = static_cast<std::uint8_t>(unsigned{byte_} << 1U | (data_level_ ? 1U : 0U));
     }
     ++bit_;
     return;
@@ -186,7 +186,7 @@ void EepromChip::byte_taken() {
       order_.clear();
       break;
     case Step::AddressHigh:
-      address_ = static_cast<std::uint16_t>((byte_ << 8U | (address_ & 0xFFU)) % kSize);
+      address_ = static_cast<std::uint16_t>((unsigned{byte_} << 8U | (address_ & 0xFFU)) % kSize);
       step_ = Step::AddressLow;
       break;
     case Step::AddressLow:

@@ -30,7 +30,6 @@ I2cBlock::I2cBlock(const Chip& chip, const SystemControl& clock, Timeline& timel
     : Peripheral(kBase),
       chip_(chip),
       clock_(clock),
-      timeline_(timeline),
       port_(port_b),
       nets_(nets),
       manners_(manners),
@@ -254,7 +253,7 @@ void I2cBlock::end_bit() {
   }
   clock(false);
   if (move == Move::Take) {
-    taken_ = static_cast<std::uint8_t>(taken_ << 1U | (level ? 1U : 0U));
+    taken_ = static_cast<std::uint8_t>(unsigned{taken_} << 1U | (level ? 1U : 0U));
     if (++taken_bits_ == 8) {
       data_ = taken_;
     }

@@ -69,7 +69,6 @@ class I2cBlock final : public Peripheral {
 
   const Chip& chip_;
   const SystemControl& clock_;
-  Timeline& timeline_;
   GpioPort& port_;
   PortNets& nets_;
   I2cManners manners_;

@@ -26,8 +26,7 @@ class SerialSender {
   SerialSender(Timeline& timeline, std::function<void(bool)> level, std::function<void()> done)
       : level_(std::move(level)),
         done_(std::move(done)),
-        next_bit_(timeline, [this] { go_on(); }),
-        timeline_(timeline) {}
+        next_bit_(timeline, [this] { go_on(); }) {}
 
   void begin(Character character, Instant bit_time, Instant start) {
     character_ = character;
@@ -57,7 +56,6 @@ class SerialSender {
   std::function<void(bool)> level_;
   std::function<void()> done_;
   Alarm next_bit_;
-  Timeline& timeline_;
   Character character_;
   Instant bit_time_{0};
   Instant start_{0};

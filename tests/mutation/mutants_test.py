@@ -1,3 +1,5 @@
+"""The places that are changed, and what they are changed to."""
+
 import unittest
 
 import mutants

@@ -147,8 +147,13 @@ class Modules(Panel):
         self.browser.until(f"{count} === 12")
         self.browser.type("#search", "coil 0002")
         self.browser.until(f"{count} === 1")
-        self.assertIn("01 05 00 02 FF 00", self.browser.run("return document.querySelector('#filler .row').textContent"))
-        self.browser.run("const s = document.getElementById('search'); s.value = ''; s.dispatchEvent(new Event('input'))")
+        row = self.browser.run("return document.querySelector('#filler .row').textContent")
+        self.assertIn("01 05 00 02 FF 00", row)
+        self.browser.run("""
+            const search = document.getElementById('search');
+            search.value = '';
+            search.dispatchEvent(new Event('input'));
+        """)
         self.browser.until(f"{count} === 12")
         self.browser.run("document.getElementById('bus').scrollIntoView()")
         self.picture("bus")

@@ -81,7 +81,8 @@ class Bus(Panel):
 
     def test_of_what_there_is_no_room_for_while_paused_each_line_says_how_much(self):
         modules = [{"model": "EX9052D-M", "address": "02"}]
-        simulator = self.bus([{"name": name, "tcp": 0, "line": "instant", "modules": modules} for name in ("hall", "yard")])
+        simulator = self.bus([{"name": name, "tcp": 0, "line": "instant", "modules": modules}
+                              for name in ("hall", "yard")])
         self.look_at(simulator)
         masters = [Master(port) for port in simulator.lines]
         for master in masters:
@@ -201,7 +202,8 @@ class Bus(Panel):
         self.browser.type("[aria-label='Another fault']", "late-reply 50ms\ue007")
         fault = "[aria-label='Fault module 2: late-reply 50ms']"
         self.browser.until(pressed(fault))
-        self.assertEqual([(each["module"], each["text"]) for each in self.faults_of(simulator)], [(1, "late-reply 50ms")])
+        faults = [(each["module"], each["text"]) for each in self.faults_of(simulator)]
+        self.assertEqual(faults, [(1, "late-reply 50ms")])
         self.browser.run(f"""document.querySelector("{fault}").click()""")
         self.browser.until(f"!({pressed(fault)})")
         self.assertEqual(self.faults_of(simulator), [])

@@ -86,7 +86,9 @@ class Inputs(Panel):
             for step in 1, 2:
                 self.browser.touch("move", x, y - 60 * step)
             self.assertEqual(self.browser.run("return scrollY"), 0)
-            self.browser.run("window.seen = new Promise((shown) => requestAnimationFrame(() => requestAnimationFrame(shown)))")
+            self.browser.run("""
+                window.seen = new Promise((shown) => requestAnimationFrame(() => requestAnimationFrame(shown)));
+            """)
             self.browser.promised("await seen")
             self.assertTrue(self.browser.run(f"return {pressed(DI3)}"))
             self.browser.touch(over)

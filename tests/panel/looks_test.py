@@ -31,7 +31,7 @@ CONTRAST = """
 
 class Looks(Panel):
     def test_what_there_is_to_read_and_to_click_stands_out_in_light_and_dark(self):
-        simulator, _ = self.show_two()
+        self.show_two()
         self.browser.run("document.querySelector('.said').textContent = 'error'")
         for scheme in "light", "dark":
             self.browser.prefers(color_scheme=scheme)
@@ -75,7 +75,7 @@ class Looks(Panel):
             self.assertIn(wanted, found)
 
     def test_what_is_read_in_a_drawer_stays_while_things_change(self):
-        simulator, master = self.show_two()
+        _, master = self.show_two()
         self.browser.size(320, 700)
         self.browser.click(f"{OUTPUTS} summary")
         self.browser.until(text(OUTPUTS, ".values", "Present0000"))
@@ -123,8 +123,9 @@ class Looks(Panel):
 
     def test_320_pixels_are_enough_for_long_names(self):
         self.browser.size(320, 640, phone=True)
-        modules = [{"model": model, "address": f"{n + 1:02X}"} for n, model in enumerate(("EX9043D-M", "EX9055D", "EX9052D"))]
-        self.look_at(self.bus([{"name": "n" * 60, "tcp": 0, "modules": modules}, {"name": "m", "tcp": 0, "modules": modules}]))
+        modules = [{"model": model, "address": f"{n + 1:02X}"}
+                   for n, model in enumerate(("EX9043D-M", "EX9055D", "EX9052D"))]
+        self.look_at(self.bus([{"name": name, "tcp": 0, "modules": modules} for name in ("n" * 60, "m")]))
         self.browser.run("document.querySelectorAll('details').forEach((each) => { each.open = true; })")
         self.browser.until("document.querySelector('.drawer dd').textContent !== ''")
         self.expect_no_scrolling_sideways()
@@ -146,12 +147,14 @@ class Looks(Panel):
 
     def test_terminals_are_as_in_the_manual_from_edge_to_edge(self):
         self.show("EX9042D-M@01", "EX9052D-M@02", "EX9063D@03")
-        edge = "return [...document.querySelectorAll(`[aria-label='${arguments[0]}'] .edge li`)].map((each) => each.textContent)"
+        edge = """const terminals = document.querySelectorAll(`[aria-label='${arguments[0]}'] .edge li`);
+            return [...terminals].map((each) => each.textContent)"""
         power = ["DATA+", "DATA−", "+VS", "GND"]
         self.assertEqual(self.browser.run(edge, "1 EX9042D-M"), ["INIT*", *power])
         self.assertEqual(self.browser.run(edge, "2 EX9052D-M"), power)
         short = """return [...document.querySelectorAll('.channels')].filter((list) =>
-            Math.abs(list.lastElementChild.getBoundingClientRect().right - list.getBoundingClientRect().right) > 1).length"""
+            Math.abs(list.lastElementChild.getBoundingClientRect().right
+                     - list.getBoundingClientRect().right) > 1).length"""
         self.assertEqual(self.browser.run(short), 0)
         self.picture("terminals", whole=True)
 

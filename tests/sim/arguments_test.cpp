@@ -311,12 +311,13 @@ TEST(Arguments, ASeedIsAWholeNumber) {
 }
 
 TEST(Arguments, ASpeedIsANumberThatAClockCanFollow) {
-  EXPECT_EQ(all_accepted({"EX9042D"}).speed, 1.0);
+  EXPECT_TRUE(all_accepted({"EX9042D"}).speed.paced());
+  EXPECT_EQ(all_accepted({"EX9042D"}).speed.factor, 1.0);
   for (const auto& [text, speed] :
        {std::pair("0.001", 0.001), std::pair("10", 10.0), std::pair("1e3", 1000.0)}) {
-    EXPECT_EQ(all_accepted({"EX9042D", "--speed", text}).speed, speed);
+    EXPECT_EQ(all_accepted({"EX9042D", "--speed", text}).speed.factor, speed);
   }
-  EXPECT_FALSE(all_accepted({"EX9042D", "--speed", "max", "--for", "1s"}).speed);
+  EXPECT_TRUE(all_accepted({"EX9042D", "--speed", "max", "--for", "1s"}).speed.max());
   for (const char* speed :
        {"", "0", "-1", "1e-12", "0.00099", "1000.1", "1e300", "nan", "inf", "fast", "1x"}) {
     expect_error({"EX9042D", "--speed", speed}, "--speed: '" + std::string(speed) + "'",

@@ -88,8 +88,7 @@ TEST(Program, AFullDiskBehindItsOutputIsSaid) {
 
 TEST(Program, ALinkThatAnotherUsersSimulatorHasIsNotTakenOver) {
   if (geteuid() != 0) {
-    std::printf("left to a run as root: another user's simulator\n");
-    return;
+    GTEST_SKIP() << "another user's simulator can be started by root only";
   }
   SimulatorProcess process({"EX9042D"});
   fs::permissions(process.directory(), fs::perms::all);
@@ -194,6 +193,25 @@ TEST(Program, WhatIsCenturiesAheadIsSleptFor) {
     EXPECT_LT(ticks() - before, 5U) << "hundredths of a second, of 50";
     EXPECT_EQ(process.end(SIGTERM), 0);
   }
+}
+
+/// Seconds from the start to the end of a run of the program. One that hangs is ended after a minute, and its
+/// status is not 0.
+double seconds_of_a_run(const std::string& speed, const std::string& lasts) {
+  const Directory directory;
+  const auto began = std::chrono::steady_clock::now();
+  const Finished finished =
+      run({"timeout", "60", simulator_path(), "EX9042D", "--speed", speed, "--for", lasts}, directory.path());
+  EXPECT_EQ(finished.status, 0) << "--speed " << speed << " --for " << lasts << " " << finished.error;
+  return std::chrono::duration<double>(std::chrono::steady_clock::now() - began).count();
+}
+
+TEST(Program, EndsWhenTheTimeOfTheLineIsOverAndNotThatOfTheWall) {
+  // A slow line: a machine under load makes it longer, and none makes it shorter.
+  EXPECT_GE(seconds_of_a_run("0.01", "5ms"), 0.5);
+  EXPECT_GE(seconds_of_a_run("1", "400ms"), 0.4);
+  // A fast one: what is waited for is over in less than two seconds, and would take half an hour by the wall.
+  EXPECT_GE(seconds_of_a_run("1000", "30min"), 1.8);
 }
 
 TEST(Program, DescribesAModelAndEnds) {

@@ -82,15 +82,19 @@ ChildProcess::~ChildProcess() {
 }
 
 bool ChildProcess::read_more() {
-  constexpr int kPatienceMilliseconds =
-      20'000;  // for a machine under load; what waits for an event needs none of it
+  constexpr int kHangMilliseconds = 60'000;  // it waits for an event; only a program that hangs takes this long
   pollfd ready{out_, POLLIN, 0};
-  return poll(&ready, 1, kPatienceMilliseconds) == 1 && append_from(out_, output_);
+  return poll(&ready, 1, kHangMilliseconds) == 1 && append_from(out_, output_);
 }
 
-bool ChildProcess::wait_for(const std::string& text) {
-  while (output_.find(text) == std::string::npos) {
-    if (!read_more()) {
+bool ChildProcess::wait_for(const std::string& text, unsigned times) {
+  std::size_t searched = 0;
+  while (times != 0) {
+    const std::size_t found = output_.find(text, searched);
+    if (found != std::string::npos) {
+      searched = found + text.size();
+      --times;
+    } else if (!read_more()) {
       return false;
     }
   }

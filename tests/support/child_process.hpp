@@ -20,8 +20,8 @@ class ChildProcess {
   ChildProcess& operator=(const ChildProcess&) = delete;
 
   [[nodiscard]] int pid() const { return pid_; }
-  /// Reads what it prints until `text` has come; false where it ends before.
-  bool wait_for(const std::string& text);
+  /// Reads what it prints until `text` has come, as often as `times` says; false where it ends before.
+  bool wait_for(const std::string& text, unsigned times = 1);
   /// All it has printed so far, as far as it was read.
   [[nodiscard]] const std::string& output() const { return output_; }
 

@@ -1,7 +1,8 @@
 #include "tests/support/process_target.hpp"
 
-#include <algorithm>
 #include <utility>
+
+#include "sim/time_text.hpp"
 
 namespace ex9000::system {
 
@@ -10,45 +11,51 @@ namespace {
 using play::Bytes;
 
 constexpr std::chrono::milliseconds kComingUp{100};
-/// A simulator on a busy machine hears a byte this much later than it was written.
-constexpr std::chrono::milliseconds kHostLatency{20};
-/// And may keep an answer waiting this much longer than a module would: only a missing one costs it.
-constexpr std::chrono::seconds kPatience{3};
 
 std::string on_off(bool on) { return on ? " on" : " off"; }
 
 }  // namespace
 
-ProcessTarget::ProcessTarget(const std::string& tty, const std::string& control, std::size_t number)
-    : number_(std::to_string(number)), terminal_(tty, 9600), control_(control) {}
+ProcessTarget::ProcessTarget(std::unique_ptr<MasterPort> port, ControlClient& control, std::string line,
+                             std::size_t number)
+    : port_(std::move(port)),
+      control_(control),
+      line_(std::move(line)),
+      number_(std::to_string(number)) {}
 
-void ProcessTarget::start(const Model& /*model*/, const Settings* /*preset*/) {}
+void ProcessTarget::start(const Model& /*model*/, const Settings* /*preset*/) { power(true); }
 
-void ProcessTarget::send(const Bytes& bytes) {
-  terminal_.write(bytes);
-  constexpr std::chrono::nanoseconds kCharacterBits{10'000'000'000};
-  line_free_ = std::max(line_free_, Clock::now()) +
-               kCharacterBits * static_cast<std::int64_t>(bytes.size()) / std::int64_t{baud_};
-}
-
-void ProcessTarget::hear_until(Clock::time_point when) {
-  for (auto now = Clock::now(); now < when; now = Clock::now()) {
-    const Bytes bytes = terminal_.read(when - now);
+/// Returns when everything that the simulator has written to the port has been read from it.
+void ProcessTarget::advance(std::chrono::nanoseconds time, const std::string& how) {
+  // Both at once: two answers cost one change of processes.
+  control_.send("advance " + sim::seconds_text(time) + "s" + how + "\nline " + line_ + " sent\n");
+  const std::string now = control_.line();
+  const std::string sent = control_.line();
+  if (now.rfind("ok ", 0) != 0 || sent.rfind("ok ", 0) != 0) {
+    throw std::runtime_error(now + "; " + sent);
+  }
+  for (const std::size_t all = std::stoul(sent.substr(3)); read_ < all;) {
+    const Bytes bytes = port_->read();
+    read_ += bytes.size();
     heard_.insert(heard_.end(), bytes.begin(), bytes.end());
   }
+}
+
+void ProcessTarget::send(const Bytes& bytes) {
+  port_->write(bytes);
+  constexpr std::chrono::nanoseconds kCharacterBits{10'000'000'000};
+  advance(kCharacterBits * static_cast<std::int64_t>(bytes.size()) / std::int64_t{baud_},
+          " after " + std::to_string(bytes.size()));
 }
 
 Bytes ProcessTarget::take_heard() { return std::exchange(heard_, {}); }
 
 Bytes ProcessTarget::receive(std::size_t count, std::chrono::milliseconds patience) {
-  Clock::time_point gives_up = std::max(line_free_, Clock::now()) + patience + kPatience;
-  while (heard_.size() < count && Clock::now() < gives_up) {
-    const Bytes bytes = terminal_.read(gives_up - Clock::now());
-    if (bytes.empty()) {
+  for (std::size_t had = heard_.size(); heard_.size() < count; had = heard_.size()) {
+    advance(patience, " quiet");
+    if (heard_.size() == had) {
       break;
     }
-    heard_.insert(heard_.end(), bytes.begin(), bytes.end());
-    gives_up = Clock::now() + patience + kPatience;
   }
   Bytes bytes = take_heard();
   if (bytes.size() > count) {
@@ -59,32 +66,31 @@ Bytes ProcessTarget::receive(std::size_t count, std::chrono::milliseconds patien
 }
 
 Bytes ProcessTarget::listen(std::chrono::nanoseconds time) {
-  hear_until(std::max(line_free_, Clock::now()) + time);
+  advance(time);
   return take_heard();
 }
 
 void ProcessTarget::set_baud(std::uint32_t rate) {
   baud_ = rate;
-  terminal_.set_baud(rate);
+  if (!port_->set_baud(rate)) {
+    control_.ok("line " + line_ + " baud " + std::to_string(rate));
+  }
 }
 
 std::string ProcessTarget::control(const std::string& command) {
-  if (Clock::now() < line_free_ + kHostLatency) {
-    hear_until(line_free_ + kHostLatency);
-  }
   return control_.ok(number_ + " " + command);
 }
 
 void ProcessTarget::power(bool on) {
   control("power" + on_off(on));
   if (on) {
-    hear_until(Clock::now() + kComingUp);
+    advance(kComingUp);
   }
 }
 
 void ProcessTarget::reset() {
   control("reset");
-  hear_until(Clock::now() + kComingUp);
+  advance(kComingUp);
 }
 
 void ProcessTarget::set_init(bool asserted) { control("init" + on_off(asserted)); }
@@ -108,5 +114,8 @@ play::step::Led::Shows ProcessTarget::led(play::step::Led::Shows /*expected*/) {
   }
   return shows == "on" ? play::step::Led::Shows::On : play::step::Led::Shows::Off;
 }
+
+/// Off, it costs the simulator nothing while the next one is played.
+void ProcessTarget::end() { power(false); }
 
 }  // namespace ex9000::system

@@ -1,21 +1,26 @@
-// A module of a running ex9000-sim as a transcript's target: its pseudo-terminal and its control socket, in
-// real time.
+// A module of a running ex9000-sim as a transcript's target: one of its line's ports and its control socket,
+// in stepped time.
 #pragma once
 
 #include <chrono>
+#include <cstddef>
+#include <memory>
 #include <string>
 
 #include "sim/play/target.hpp"
 #include "tests/support/control_client.hpp"
-#include "tests/support/terminal.hpp"
+#include "tests/support/master_port.hpp"
 
 namespace ex9000::system {
 
+/// Nothing here depends on the wall clock: the simulator's time moves only while a call lasts.
 class ProcessTarget final : public play::Target {
  public:
-  /// The module with `number` on the control socket, alone on the line whose pseudo-terminal `tty` is. It is
-  /// as `start` wants it.
-  ProcessTarget(const std::string& tty, const std::string& control, std::size_t number);
+  /// The module with `number` on the control socket, alone on the line called `line`, which `port` is
+  /// connected to. It is as `start` requires, but for its supply, which is off. `control` lives as long as this
+  /// object; the simulator runs with --speed step.
+  ProcessTarget(std::unique_ptr<MasterPort> port, ControlClient& control, std::string line,
+                std::size_t number);
 
   void start(const Model& model, const Settings* preset) override;
   void send(const play::Bytes& bytes) override;
@@ -29,20 +34,19 @@ class ProcessTarget final : public play::Target {
   void pulse_input(unsigned channel, std::uint32_t count) override;
   std::uint16_t outputs() override;
   play::step::Led::Shows led(play::step::Led::Shows expected) override;
+  void end() override;
 
  private:
-  using Clock = std::chrono::steady_clock;
-
-  /// A command for the module, once the line has carried what was sent before.
   std::string control(const std::string& command);
-  void hear_until(Clock::time_point when);
+  void advance(std::chrono::nanoseconds time, const std::string& how = "");
   play::Bytes take_heard();
 
+  std::unique_ptr<MasterPort> port_;
+  ControlClient& control_;
+  std::string line_;
   std::string number_;
-  Terminal terminal_;
-  ControlClient control_;
   std::uint32_t baud_ = 0;
-  Clock::time_point line_free_;  ///< when all that was sent has been on the line
+  std::size_t read_ = 0;  ///< bytes from the port so far
   play::Bytes heard_;
 };
 

@@ -23,9 +23,13 @@ SimulatorProcess::SimulatorProcess(const std::vector<std::string>& arguments)
   }
 }
 
-std::uint16_t SimulatorProcess::tcp_port() const {
+std::uint16_t SimulatorProcess::tcp_port(std::size_t position) const {
   const std::string lead = "TCP 127.0.0.1:";
-  return static_cast<std::uint16_t>(std::stoul(output().substr(output().find(lead) + lead.size())));
+  std::size_t found = output().find(lead);
+  for (std::size_t i = 0; i < position; ++i) {
+    found = output().find(lead, found + lead.size());
+  }
+  return static_cast<std::uint16_t>(std::stoul(output().substr(found + lead.size(), 5)));
 }
 
 }  // namespace ex9000::system

@@ -19,12 +19,12 @@ class SimulatorProcess {
   /// Where it runs; the link `ex9000.tty` is there unless the arguments say otherwise.
   [[nodiscard]] const std::string& directory() const { return directory_.path(); }
   [[nodiscard]] std::string tty() const { return directory() + "/ex9000.tty"; }
-  /// Where it listens if started with `--tcp`.
-  [[nodiscard]] std::uint16_t tcp_port() const;
+  /// Where it listens; `position`: of the lines that have a TCP port, from 0.
+  [[nodiscard]] std::uint16_t tcp_port(std::size_t position = 0) const;
   [[nodiscard]] int pid() const { return process_.pid(); }
 
   /// See ChildProcess.
-  bool wait_for(const std::string& text) { return process_.wait_for(text); }
+  bool wait_for(const std::string& text, unsigned times = 1) { return process_.wait_for(text, times); }
   [[nodiscard]] const std::string& output() const { return process_.output(); }
   int end(int signal) { return process_.end(signal); }
   int wait() { return process_.wait(); }

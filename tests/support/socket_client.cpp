@@ -12,6 +12,13 @@
 
 namespace ex9000::system {
 
+namespace {
+
+/// It waits for an event; only a program that hangs takes this long.
+constexpr std::chrono::milliseconds kHang{60'000};
+
+}  // namespace
+
 SocketClient::SocketClient(std::uint16_t port) : fd_(socket(AF_INET, SOCK_STREAM | SOCK_CLOEXEC, 0)) {
   sockaddr_in address{};
   address.sin_family = AF_INET;
@@ -36,18 +43,25 @@ void SocketClient::send(const std::vector<std::uint8_t>& bytes) {
 void SocketClient::close_writing() { shutdown(fd_, SHUT_WR); }
 
 std::vector<std::uint8_t> SocketClient::receive(std::size_t count) {
-  constexpr int kPatienceMilliseconds = 10'000;
   std::vector<std::uint8_t> bytes;
-  pollfd ready{fd_, POLLIN, 0};
-  while (bytes.size() < count && poll(&ready, 1, kPatienceMilliseconds) == 1) {
-    std::array<std::uint8_t, 4096> buffer{};
-    const ssize_t size = recv(fd_, buffer.data(), buffer.size(), 0);
-    if (size <= 0) {
+  while (bytes.size() < count) {
+    const std::vector<std::uint8_t> more = receive_some(kHang);
+    if (more.empty()) {
       break;
     }
-    bytes.insert(bytes.end(), buffer.begin(), buffer.begin() + size);
+    bytes.insert(bytes.end(), more.begin(), more.end());
   }
   return bytes;
+}
+
+std::vector<std::uint8_t> SocketClient::receive_some(std::chrono::milliseconds patience) {
+  pollfd ready{fd_, POLLIN, 0};
+  std::array<std::uint8_t, 4096> buffer{};
+  if (poll(&ready, 1, static_cast<int>(patience.count())) != 1) {
+    return {};
+  }
+  const ssize_t size = recv(fd_, buffer.data(), buffer.size(), 0);
+  return {buffer.begin(), buffer.begin() + (size < 0 ? 0 : size)};
 }
 
 std::string SocketClient::receive_text(std::size_t count) {
@@ -61,10 +75,9 @@ bool SocketClient::hears_nothing_for(std::chrono::milliseconds time) {
 }
 
 bool SocketClient::closed() {
-  constexpr int kPatienceMilliseconds = 10'000;
   pollfd ready{fd_, POLLIN, 0};
   char byte = 0;
-  return poll(&ready, 1, kPatienceMilliseconds) == 1 && recv(fd_, &byte, 1, 0) <= 0;
+  return poll(&ready, 1, static_cast<int>(kHang.count())) == 1 && recv(fd_, &byte, 1, 0) <= 0;
 }
 
 }  // namespace ex9000::system

@@ -20,11 +20,14 @@ class SocketClient {
   void send(const std::string& text) { send(std::vector<std::uint8_t>(text.begin(), text.end())); }
   /// Says that nothing more will come, and listens on.
   void close_writing();
-  /// What comes until `count` bytes are there, nothing came for 10 s, or the other side has closed.
+  /// What comes until `count` bytes are there, nothing came for 60 s, which only a program that hangs takes,
+  /// or the other side has closed.
   std::vector<std::uint8_t> receive(std::size_t count);
   std::string receive_text(std::size_t count);
+  /// What is there as soon as there is something; empty: nothing came for `patience`.
+  std::vector<std::uint8_t> receive_some(std::chrono::milliseconds patience);
   bool hears_nothing_for(std::chrono::milliseconds time);
-  /// Whether the other side has closed; waits 10 s for it.
+  /// Whether the other side has closed; waits 60 s for it.
   bool closed();
 
  private:

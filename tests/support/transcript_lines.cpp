@@ -1,15 +1,20 @@
 #include "tests/support/transcript_lines.hpp"
 
+#include <memory>
+#include <utility>
+
 #include "sim/module_spec.hpp"
 
 namespace ex9000::system {
 
 namespace {
 
-std::string pty(std::size_t position) { return std::to_string(position) + ".tty"; }
+std::string name(std::size_t position) { return "line-" + std::to_string(position); }
 
-std::string line_of(const play::Transcript& transcript, std::size_t position) {
-  std::string line = R"({"pty": ")" + pty(position) + R"(", "modules": [{"model": ")";
+std::string line_of(const play::Transcript& transcript, std::size_t position, TranscriptLines::Over over) {
+  std::string line = R"({"name": ")" + name(position) + R"(", )";
+  line += over == TranscriptLines::Over::Tcp ? R"("tcp": "127.0.0.1:0")" : R"("pty": ")" + name(position) + "\"";
+  line += R"(, "modules": [{"model": ")";
   line += std::string(transcript.model->designation) + "\"";
   if (transcript.preset_given) {
     const Settings& preset = transcript.preset;
@@ -24,10 +29,11 @@ std::string line_of(const play::Transcript& transcript, std::size_t position) {
   return line + "}]}";
 }
 
-std::string bus_file(const Directory& directory, const std::vector<const play::Transcript*>& transcripts) {
+std::string bus_file(const Directory& directory, const std::vector<const play::Transcript*>& transcripts,
+                     TranscriptLines::Over over) {
   std::string lines;
   for (std::size_t position = 0; position < transcripts.size(); ++position) {
-    lines += (position == 0 ? "" : ",\n") + line_of(*transcripts[position], position);
+    lines += (position == 0 ? "" : ",\n") + line_of(*transcripts[position], position, over);
   }
   const std::string path = directory / "bus.json";
   write_file(path, R"({"control": "control", "lines": [)" + lines + "]}");
@@ -36,12 +42,23 @@ std::string bus_file(const Directory& directory, const std::vector<const play::T
 
 }  // namespace
 
-TranscriptLines::TranscriptLines(const std::vector<const play::Transcript*>& transcripts)
-    : simulator_({bus_file(directory_, transcripts)}) {}
+TranscriptLines::TranscriptLines(const std::vector<const play::Transcript*>& transcripts, Over over)
+    : over_(over),
+      simulator_({bus_file(directory_, transcripts, over), "--speed", "step"}),
+      control_(simulator_.directory() + "/control") {
+  for (std::size_t module = 1; module <= transcripts.size(); ++module) {
+    control_.ok(std::to_string(module) + " power off");
+  }
+}
 
-ProcessTarget TranscriptLines::target(std::size_t position) const {
-  const std::string& directory = simulator_.directory();
-  return {directory + "/" + pty(position), directory + "/control", position + 1};
+ProcessTarget TranscriptLines::target(std::size_t position) {
+  std::unique_ptr<MasterPort> port;
+  if (over_ == Over::Tcp) {
+    port = std::make_unique<TcpPort>(simulator_.tcp_port(position));
+  } else {
+    port = std::make_unique<TerminalPort>(simulator_.directory() + "/" + name(position));
+  }
+  return {std::move(port), control_, name(position), position + 1};
 }
 
 }  // namespace ex9000::system

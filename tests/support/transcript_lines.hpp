@@ -1,4 +1,4 @@
-// A running ex9000-sim with a line for each of several transcripts.
+// A running ex9000-sim in stepped time, with a line for each of several transcripts.
 #pragma once
 
 #include <cstddef>
@@ -6,24 +6,30 @@
 #include <vector>
 
 #include "sim/play/transcript.hpp"
+#include "tests/support/control_client.hpp"
 #include "tests/support/directory.hpp"
 #include "tests/support/process_target.hpp"
 #include "tests/support/simulator_process.hpp"
 
 namespace ex9000::system {
 
-/// One process, as starting one for each takes longer than what most of them say.
+/// One process, because starting one for each takes longer than what most of them say. Its lines share their
+/// time, so transcripts are played one after the other.
 class TranscriptLines {
  public:
-  /// On each line the module that the transcript at its position begins with.
-  explicit TranscriptLines(const std::vector<const play::Transcript*>& transcripts);
+  enum class Over { PseudoTerminal, Tcp };
+
+  /// On each line the module that the transcript at its position begins with, without power.
+  TranscriptLines(const std::vector<const play::Transcript*>& transcripts, Over over);
 
   /// That module.
-  [[nodiscard]] ProcessTarget target(std::size_t position) const;
+  ProcessTarget target(std::size_t position);
 
  private:
   Directory directory_;
+  Over over_;
   SimulatorProcess simulator_;
+  ControlClient control_;
 };
 
 }  // namespace ex9000::system

@@ -65,7 +65,7 @@ def check(
         objects = []
         for number, text in enumerate((source + vectors, *more_sources)):
             cpp = Path(folder, f"unit{number}.cpp")
-            cpp.write_text(PRELUDE + text)
+            cpp.write_text(PRELUDE + text, encoding="utf-8")
             objects.append(str(cpp.with_suffix(".cpp.o")))
             _run([*_COMPILE, *compile_options.split(), "-c", str(cpp), "-o", objects[-1]])
         image = str(Path(folder, "image.elf"))
@@ -74,11 +74,12 @@ def check(
             [str(_TOOL), image, *objects, "--flash", str(flash), "--ram", str(ram), *options.split()],
             capture_output=True,
             text=True,
+            check=False,
         )
     return Verdict(done.returncode == 0, done.stdout, done.stderr)
 
 
 def _run(command: list[str]) -> None:
-    done = subprocess.run(command, capture_output=True, text=True)
+    done = subprocess.run(command, capture_output=True, text=True, check=False)
     if done.returncode != 0:
         raise AssertionError(f"{' '.join(command)}:\n{done.stderr}")

@@ -61,13 +61,12 @@ export class Drawer {
 
   valueTable(outputs, title) {
     const rows = ["Present", "Power-on", "Safe"].map((name) => ({name, cells: outputs.map(() => make("td", {}))}));
-    const element = make("div", {class: "wideable", tabindex: "0", role: "region",
-      "aria-label": `${title}: output values`},
-      make("table", {class: "values"},
-        make("thead", {}, make("tr", {}, make("td"), ...outputs.map((label) =>
-          make("th", {scope: "col", title: label}, label.replace(/^[A-Z]+/, ""))))),
-        make("tbody", {}, ...rows.map(({name, cells}) =>
-          make("tr", {}, make("th", {scope: "row"}, name), ...cells)))));
+    const names = outputs.map((label) => make("th", {scope: "col", title: label}, label.replace(/^[A-Z]+/, "")));
+    const table = make("table", {class: "values"},
+      make("thead", {}, make("tr", {}, make("td"), ...names)),
+      make("tbody", {}, ...rows.map(({name, cells}) => make("tr", {}, make("th", {scope: "row"}, name), ...cells))));
+    const attributes = {class: "wideable", tabindex: "0", role: "region", "aria-label": `${title}: output values`};
+    const element = make("div", attributes, table);
     const show = (...words) => rows.forEach(({cells}, row) => cells.forEach((cell, channel) => {
       const on = bit(words[row], channel);
       setAttribute(cell, "data-on", on);

@@ -67,13 +67,15 @@ def capacity(found):
     pulses = min(left * HERTZ / sum(ports) / 2, 1 / wait)
     return "\n".join(
         [
-            f"computed, not measured, for a TM4C123 at {HERTZ // 1_000_000} MHz with {CYCLES_AN_INSTRUCTION} cycles an "
-            f"instruction and {CYCLES_AROUND_AN_INTERRUPT} around an interrupt:",
-            f"  eight edges at once take {sum(ports) / HERTZ * 1e6:.1f} us, a received byte {byte / HERTZ * 1e6:.1f} us of "
-            f"the {BITS_A_CHARACTER / BAUD * 1e6:.1f} us that it takes on the line at {BAUD} baud",
-            f"  all eight inputs at once, both edges counted, the line saturated at {BAUD} baud, {LEFT_TO_THE_MAIN_LOOP:.0%} "
-            f"left to the main loop: {math.floor(pulses / 100) * 100} pulses a second on each input",
-            f"  an edge is served within {math.ceil(wait * 1e6)} us whatever other interrupts wait: a pulse as long as that "
-            "is seen edge by edge; one that is shorter is still counted, if it and the gap behind it last so long together",
+            f"computed, not measured, for a TM4C123 at {HERTZ // 1_000_000} MHz with {CYCLES_AN_INSTRUCTION} cycles "
+            f"an instruction and {CYCLES_AROUND_AN_INTERRUPT} around an interrupt:",
+            f"  eight edges at once take {sum(ports) / HERTZ * 1e6:.1f} us, a received byte {byte / HERTZ * 1e6:.1f} "
+            f"us of the {BITS_A_CHARACTER / BAUD * 1e6:.1f} us that it takes on the line at {BAUD} baud",
+            f"  all eight inputs at once, both edges counted, the line saturated at {BAUD} baud, "
+            f"{LEFT_TO_THE_MAIN_LOOP:.0%} left to the main loop: {math.floor(pulses / 100) * 100} pulses a second "
+            "on each input",
+            f"  an edge is served within {math.ceil(wait * 1e6)} us whatever other interrupts wait: a pulse as long as "
+            "that is seen edge by edge; one that is shorter is still counted, if it and the gap behind it last so long "
+            "together",
         ]
     )

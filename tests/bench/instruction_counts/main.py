@@ -71,11 +71,11 @@ def is_over(row):
     return row.limit is not None and (count_of(row) > row.limit or row.highest.passes < row.highest.wanted)
 
 
-def run_session(options, model, ascii, general):
+def run_session(options, model, is_ascii, general):
     """Returns the text to print, the names of what is over its limit, and what `capacity` wants."""
-    label = f"{model.name} {'ASCII' if ascii else 'RTU'}"
+    label = f"{model.name} {'ASCII' if is_ascii else 'RTU'}"
     everything = not options.only
-    with Session(os.path.join(options.folder, f"{model.name}.elf"), model, ascii) as session:
+    with Session(os.path.join(options.folder, f"{model.name}.elf"), model, is_ascii) as session:
         session.set_up()
         session.count_requests(
             general or options.all, lambda request: options.only in f"{label} {request.name}", options.passes
@@ -124,8 +124,8 @@ def main(arguments):
     parser = argparse.ArgumentParser(
         prog="instructions",
         description="Counts the instructions that firmware images execute in QEMU, the highest of 100 passes each, and "
-        "holds them to limits: for a request from the interrupt that ends the silence behind it to the first byte of the "
-        "reply, or to the begin of the write to the EEPROM; what was done ahead, while the silence lasted, is told "
+        "holds them to limits: for a request from the interrupt that ends the silence behind it to the first byte of "
+        "the reply, or to the begin of the write to the EEPROM; what was done ahead, while the silence lasted, is told "
         "apart. Exit status 1 where a limit is passed.",
     )
     parser.add_argument("folder", help="with the images for lm3s6965evb, as ELF files")

@@ -29,18 +29,18 @@ BYTE_BY_BYTE = 10  # one pass in so many has the interrupts of all its bytes cou
 class Session:
     """ASCII is spoken with checksums, which cost more."""
 
-    def __init__(self, image, model, ascii):
+    def __init__(self, image, model, is_ascii):
         self.image = Image(image)
         self._model = model
-        self._ascii = ascii
+        self._ascii = is_ascii
         of_the_tick = self.image.addresses_of("look_around")
         if not of_the_tick:
             raise RuntimeError(f"{image}: no code of `look_around`, which the main loop does for the tick")
         behind_a_gap = self.image.addresses_of("behind_a_gap")
-        if not behind_a_gap and not ascii:
+        if not behind_a_gap and not is_ascii:
             raise RuntimeError(f"{image}: no code of `behind_a_gap`, where a byte ends the frame before it")
         sleeps = self.image.sleeps()
-        self.counter = Counter(self.image.handlers(), sleeps, of_the_tick, behind_a_gap, ascii)
+        self.counter = Counter(self.image.handlers(), sleeps, of_the_tick, behind_a_gap, is_ascii)
         self._emulator = Emulator(image)
         threading.Thread(
             target=execution.follow, args=(self._emulator.log, sleeps, self.counter), daemon=True

@@ -33,4 +33,4 @@ async def serve(device):
 
 
 logging.disable()  # that it is ended is no error
-asyncio.run(serve(*(sys.argv[1:] or [None])))
+asyncio.run(serve(sys.argv[1] if len(sys.argv) > 1 else None))

@@ -84,8 +84,7 @@ void Pulser::run() {
 }
 
 Crowd::Crowd(std::uint32_t baud, std::uint64_t seed)
-    : baud_(baud),
-      random_(seed),
+    : random_(seed),
       line_(specs(baud), sim::kPaced, [this](std::uint8_t byte, ByteStatus) { heard_.push_back(byte); }),
       pulser_(line_.bus(), line_.module(0)) {
   for (std::size_t i = 0; i < kModules; ++i) {

@@ -84,7 +84,6 @@ class Crowd final : public sim::BusObserver {
   void account_for_pulses();
   void expect_outputs_as_described();
 
-  std::uint32_t baud_;
   reference::Random random_;
   sim::Line line_;
   Pulser pulser_;

@@ -62,7 +62,7 @@ class UartBench : public DriverBench {
     uart.send({bytes.data(), bytes.size()});
     EXPECT_TRUE(uart.sending());
     const Instant patience =
-        now() + 4 * kBitsACharacter * static_cast<int>(bytes.size() + 2) * line.bit_time();
+        now() + 4 * kBitsACharacter * static_cast<unsigned>(bytes.size() + 2) * line.bit_time();
     while (uart.sending() && now() < patience) {
       mcu.run_for(line.bit_time() / 4);
     }
@@ -105,7 +105,7 @@ class Sending : public testing::TestWithParam<std::tuple<bool, std::uint32_t>> {
 };
 
 TEST_P(Sending, TheDriverIsOnAroundAllBytesAndOffWithinACharacter) {
-  for (const std::size_t size : {1, 2, 3, 9, 60, 256}) {
+  for (const std::size_t size : {1U, 2U, 3U, 9U, 60U, 256U}) {
     for (const Instant latency :
          {Instant(0), Instant(microseconds(2)), Instant(microseconds(10)), 3 * character() / 10}) {
       for (const Instant phase : {Instant(0), Instant(1'230'000)}) {

@@ -154,7 +154,7 @@ unsigned Module::register_value(unsigned address) const {
     case 0x01E2:
       return row_.code >> 8;
     case 0x01E3:
-      return row_.code << 8 & 0xFF00U;
+      return unsigned{row_.code} << 8U & 0xFF00U;
     case 0x01E4:
       return stored_.address;
     case 0x01E5:

@@ -8,11 +8,39 @@ import unittest
 import yaml
 
 from line import Line
-from simulator import describe, models_with_modbus
+from program import describe, models_with_modbus
 
 # The words of the tools for what Line calls coil, discrete_input, holding and input.
 NODE_RED = {"Coil": "coil", "Input": "discrete_input", "HoldingRegister": "holding", "InputRegister": "input"}
 WIREN_BOARD = {"coil": "coil", "discrete": "discrete_input", "holding": "holding", "input": "input"}
+
+# wire.md section 1: outputs and inputs.
+CHANNELS = {
+    "EX9042D-M": (13, 0),
+    "EX9043D-M": (16, 0),
+    "EX9044D-M": (8, 4),
+    "EX9052D-M": (0, 8),
+    "EX9053D-M": (0, 16),
+    "EX9060D-M": (4, 4),
+    "EX9068D-M": (8, 0),
+    "EX9068AD-M": (8, 0),
+}
+
+
+def coils_to_write(model):
+    """Address and value of each coil that a master has to be able to write: wire.md section 7."""
+    outputs, inputs = CHANNELS[model]
+    switched = {(address, on) for address in range(outputs) for on in [True, False]}
+    cleared = {0x010D} | ({0x0107} | {0x0200 + counter for counter in range(inputs)} if inputs else set())
+    return switched | {(address, True) for address in cleared}
+
+
+def ranges_to_read(model):
+    """First address and number of what a master has to be able to read: wire.md section 7."""
+    outputs, inputs = CHANNELS[model]
+    of_outputs = {(0x0000, outputs), (0x0080, outputs), (0x00A0, outputs)} if outputs else set()
+    of_inputs = {(0x0000, inputs), (0x0040, inputs), (0x0060, inputs)} if inputs else set()
+    return of_outputs | of_inputs | {(0x0104, 1), (0x010D, 1), (0x01E8, 1)}
 
 
 class EveryMap(unittest.TestCase):
@@ -30,13 +58,16 @@ class EveryMap(unittest.TestCase):
         def play(line, model):
             text = describe(model, "--format", "home-assistant")
             hub = yaml.safe_load(text)[0]
-            for switch in hub.get("switches", []):
+            switches, sensors = hub.get("switches", []), hub.get("binary_sensors", []) + hub.get("sensors", [])
+            self.assertEqual({switch["address"] for switch in switches}, set(range(CHANNELS[model][0])))
+            for switch in switches:
                 verify = switch["verify"]
                 self.expect_switch(line, (verify["input_type"], verify["address"]), switch["address"])
-            for sensor in hub.get("binary_sensors", []) + hub.get("sensors", []):
-                line.read(sensor["input_type"], sensor["address"])
+            for sensor in sensors:
+                self.assertEqual(len(line.read(sensor["input_type"], sensor["address"])), 1)
             actions = re.findall(r"modbus\.write_coil .* address: (\d+), state: true", text)
-            self.assertTrue(actions)
+            cleared = {address for address, _ in coils_to_write(model)} - set(range(CHANNELS[model][0]))
+            self.assertEqual({int(address) for address in actions}, cleared)
             for address in actions:
                 line.write_coil(int(address), True)
 
@@ -45,25 +76,40 @@ class EveryMap(unittest.TestCase):
     def test_node_reds_nodes(self):
         def play(line, model):
             nodes = {node["id"]: node for node in json.loads(describe(model, "--format", "node-red"))}
+            read, written = set(), set()
             for node in nodes.values():
                 if node["type"] == "modbus-read":
-                    line.read(NODE_RED[node["dataType"]], int(node["adr"]), int(node["quantity"]))
+                    first, count = int(node["adr"]), int(node["quantity"])
+                    self.assertEqual(len(line.read(NODE_RED[node["dataType"]], first, count)), count)
+                    read.add((first, count))
                 elif node["type"] == "inject":
+                    self.assertIn(node["payload"], ["true", "false"])
+                    on = node["payload"] == "true"
                     for target in node["wires"][0]:
-                        line.write_coil(int(nodes[target]["adr"]), node["payload"] == "true")
+                        address = int(nodes[target]["adr"])
+                        line.write_coil(address, on)
+                        written.add((address, on))
+                        if address < CHANNELS[model][0]:
+                            self.assertEqual(line.read("coil", address), [int(on)])
+            self.assertEqual(ranges_to_read(model) - read, set())
+            self.assertEqual(written, coils_to_write(model))
 
         self.of_each_model(play)
 
     def test_wiren_boards_channels(self):
         def play(line, model):
             device = json.loads(describe(model, "--format", "wb-mqtt-serial"))["device"]
+            written = set()
             for channel in device["channels"]:
                 if "address" in channel:
-                    line.read(WIREN_BOARD[channel["reg_type"]], channel["address"])
+                    self.assertEqual(len(line.read(WIREN_BOARD[channel["reg_type"]], channel["address"])), 1)
                 if "write_address" in channel:
                     line.write_coil(channel["write_address"], True)
+                    written.add((channel["write_address"], True))
                 elif not channel.get("readonly"):
                     self.expect_switch(line, ("coil", channel["address"]), channel["address"])
+                    written |= {(channel["address"], True), (channel["address"], False)}
+            self.assertEqual(written, coils_to_write(model))
 
         self.of_each_model(play)
 

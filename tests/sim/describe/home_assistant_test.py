@@ -9,9 +9,9 @@ import unittest
 import jsonschema
 import yaml
 
-from simulator import describe, models_with_modbus
+from program import describe, models_with_modbus
 
-SCHEMA = json.loads(pathlib.Path(__file__).with_name("home_assistant_modbus.schema.json").read_text())
+SCHEMA = json.loads(pathlib.Path(__file__).with_name("home_assistant_modbus.schema.json").read_text(encoding="utf-8"))
 LISTS = ["switches", "binary_sensors", "sensors"]
 
 

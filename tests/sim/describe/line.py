@@ -5,7 +5,7 @@ import socket
 import struct
 import subprocess
 
-from simulator import PROGRAM
+from program import PROGRAM
 
 FUNCTION_OF_READING = {"coil": 1, "discrete_input": 2, "holding": 3, "input": 4}
 

@@ -6,9 +6,9 @@ import json
 import pathlib
 import unittest
 
-from simulator import describe, models_with_modbus
+from program import describe, models_with_modbus
 
-KNOWN = json.loads(pathlib.Path(__file__).with_name("node_red_contrib_modbus.json").read_text())
+KNOWN = json.loads(pathlib.Path(__file__).with_name("node_red_contrib_modbus.json").read_text(encoding="utf-8"))
 
 
 def flow(model, *arguments):

@@ -8,9 +8,9 @@ import unittest
 
 import jsonschema
 
-from simulator import describe, models_with_modbus
+from program import describe, models_with_modbus
 
-SCHEMA = json.loads(pathlib.Path(__file__).with_name("wb_mqtt_serial_template.schema.json").read_text())
+SCHEMA = json.loads(pathlib.Path(__file__).with_name("wb_mqtt_serial_template.schema.json").read_text(encoding="utf-8"))
 
 
 def template(model):
@@ -49,11 +49,11 @@ class WbMqttSerial(unittest.TestCase):
         def device_with(**keys):
             return lambda template: template["device"].update(keys)
 
-        def channel_with(id, **keys):
-            return lambda template: template["device"]["channels"][of[id]].update(keys)
+        def channel_with(channel_id, **keys):
+            return lambda template: template["device"]["channels"][of[channel_id]].update(keys)
 
-        def channel_without(id, key):
-            return lambda template: template["device"]["channels"][of[id]].pop(key)
+        def channel_without(channel_id, key):
+            return lambda template: template["device"]["channels"][of[channel_id]].pop(key)
 
         wrong = [
             with_keys(group="relays"),

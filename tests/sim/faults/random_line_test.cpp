@@ -106,7 +106,7 @@ std::string dcon_noise(Noise& noise, bool checksum) {
       }
       if (noise.once_in(4)) {
         const unsigned at = noise.below(static_cast<unsigned>(text.size()));
-        text[at] = static_cast<char>(text[at] ^ (1U << noise.below(8)));
+        text[at] = static_cast<char>(static_cast<unsigned char>(text[at]) ^ (1U << noise.below(8)));
       }
       return text + (noise.once_in(8) ? "" : "\r");
   }

@@ -1,8 +1,11 @@
 // What a page is told: all at first, then what has changed, and of frames no more than it can read.
 #include <gtest/gtest.h>
 
+#include <chrono>
 #include <memory>
 #include <string>
+#include <utility>
+#include <vector>
 
 #include "sim/control/control.hpp"
 #include "sim/panel/loopback.hpp"
@@ -21,7 +24,8 @@ class PanelBench : public ModuleBench {
   explicit PanelBench(const std::string& spec)
       : ModuleBench(spec),
         control_({{"hall", line()}}),
-        panel_([this](const std::string& command) { return control_.carry_out(command); }, 1) {
+        panel_([this](const std::string& command) { return control_.carry_out(command); }, 1,
+               [this] { return wall_clock_; }) {
     LineIntroduced introduced;
     introduced.name = "hall";
     introduced.tcp = "127.0.0.1:5020";
@@ -42,9 +46,12 @@ class PanelBench : public ModuleBench {
   void end_frames() { frames_.finish(); }
   PanelViewer& viewer() { return *viewer_; }
   Panel& panel() { return panel_; }
+  /// Only this lets the wall clock go on.
+  void pass_wall_time(std::chrono::nanoseconds time) { wall_clock_ += time; }
 
  private:
   Control control_;
+  std::chrono::steady_clock::time_point wall_clock_{std::chrono::hours(1)};
   Panel panel_;
   FrameWatch frames_{[this] { return line().master().baud(); }};
   std::unique_ptr<PanelViewer> viewer_;
@@ -96,6 +103,146 @@ TEST(PanelMessages, WhoHasNotReadForLongIsToldHowThingsAreNow) {
   EXPECT_EQ(message["state"]["modules"].size(), 1U);
   EXPECT_EQ(message["state"]["modules"][0]["plate"]["inputs"], 1);
   EXPECT_TRUE(bench.look(*slow).is_null());
+}
+
+TEST(PanelMessages, APageThatHasHeardNothingForASecondIsToldTheTime) {
+  PanelBench bench("EX9055D");
+  static_cast<void>(bench.look());
+  bench.pass_wall_time(milliseconds(999));
+  EXPECT_TRUE(bench.look().is_null());
+  bench.run(milliseconds(7));
+  bench.pass_wall_time(milliseconds(1));
+  const Message message = bench.look();
+  const auto now = std::chrono::duration_cast<std::chrono::microseconds>(bench.now()).count();
+  EXPECT_EQ(message, (Message{{"state", {{"lines", {{{"now", now}}}}, {"modules", Message::array()}}}}));
+  EXPECT_TRUE(bench.look().is_null());
+  bench.pass_wall_time(milliseconds(500));
+  bench.module().set_input(0, true);
+  EXPECT_FALSE(bench.look().is_null());
+  bench.pass_wall_time(milliseconds(999));
+  EXPECT_TRUE(bench.look().is_null()) << "the second counts from what was told last";
+}
+
+/// Two lines of two modules each; modules are numbered through both.
+class TwoLines {
+ public:
+  TwoLines() {
+    for (std::size_t i = 0; i < lines_.size(); ++i) {
+      lines_[i]->come_up();
+      LineIntroduced introduced;
+      introduced.name = i == 0 ? "hall" : "yard";
+      panel_.add_line(introduced, *lines_[i], [this, i] { return lines_[i]->clock().virtual_now(); });
+    }
+    viewer_ = panel_.viewer();
+    hello_ = look()["hello"];
+  }
+
+  Line& line(std::size_t index) { return *lines_[index]; }
+  Panel& panel() { return panel_; }
+  [[nodiscard]] const Message& hello() const { return hello_; }
+  Message look() {
+    panel_.look();
+    const std::string text = viewer_->next();
+    return text.empty() ? Message() : Message::parse(text);
+  }
+  void tell(const std::string& command) {
+    const std::string reply = control_.carry_out(command).text;
+    EXPECT_EQ(reply.rfind("ok", 0), 0U) << command << ": " << reply;
+  }
+
+ private:
+  static std::unique_ptr<Line> make_line(const char* first, const char* second) {
+    const std::vector<ModuleSpec> modules{parse_module_spec(first), parse_module_spec(second)};
+    return std::make_unique<Line>(modules, kPaced, [](std::uint8_t /*byte*/, ByteStatus /*status*/) {});
+  }
+
+  std::vector<std::unique_ptr<Line>> make_lines() {
+    std::vector<std::unique_ptr<Line>> lines;
+    lines.push_back(make_line("EX9042D@01", "EX9052D@02"));
+    lines.push_back(make_line("EX9043D@01", "EX9055D@02"));
+    return lines;
+  }
+
+  std::vector<std::unique_ptr<Line>> lines_ = make_lines();
+  Control control_{{{"hall", *lines_[0]}, {"yard", *lines_[1]}}};
+  Panel panel_{[this](const std::string& command) { return control_.carry_out(command); }, 1,
+               [] { return std::chrono::steady_clock::time_point(); }};
+  std::unique_ptr<PanelViewer> viewer_;
+  Message hello_;
+};
+
+TEST(PanelOfTwoLines, EachModuleIsOnItsLine) {
+  const TwoLines bench;
+  const Message& modules = bench.hello()["modules"];
+  ASSERT_EQ(modules.size(), 4U);
+  const std::vector<std::pair<std::string, int>> expected{
+      {"EX9042D", 0}, {"EX9052D", 0}, {"EX9043D", 1}, {"EX9055D", 1}};
+  for (std::size_t i = 0; i < expected.size(); ++i) {
+    EXPECT_EQ(modules[i]["model"], expected[i].first) << i;
+    EXPECT_EQ(modules[i]["line"], expected[i].second) << i;
+  }
+  EXPECT_EQ(bench.hello()["lines"][0]["name"], "hall");
+  EXPECT_EQ(bench.hello()["lines"][1]["name"], "yard");
+}
+
+TEST(PanelOfTwoLines, AFaultIsItsModulesAndItsLines) {
+  const std::vector<std::pair<std::string, Message>> faults{{"1 fault late-reply 50ms", 0},
+                                                            {"2 fault late-reply 50ms", 1},
+                                                            {"3 fault late-reply 50ms", 2},
+                                                            {"4 fault late-reply 50ms", 3},
+                                                            {"line yard fault bit-errors 0.001", Message()},
+                                                            {"line hall fault bit-errors 0.001", Message()}};
+  for (const auto& [command, module] : faults) {
+    SCOPED_TRACE(command);
+    TwoLines bench;
+    bench.tell(command);
+    const std::size_t line = command[0] == '3' || command[0] == '4' || command[5] == 'y' ? 1 : 0;
+    const Message lines = bench.look()["state"]["lines"];
+    ASSERT_EQ(lines[line]["faults"].size(), 1U);
+    EXPECT_EQ(lines[line]["faults"][0]["module"], module);
+    EXPECT_FALSE(lines[1 - line].contains("faults"));
+  }
+}
+
+TEST(PanelOfTwoLines, AChangeIsItsModules) {
+  TwoLines bench;
+  bench.line(1).module(1).set_input(5, true);
+  const Message modules = bench.look()["state"]["modules"];
+  ASSERT_EQ(modules.size(), 1U);
+  EXPECT_EQ(modules[0]["module"], 3);
+  EXPECT_EQ(modules[0]["plate"]["inputs"], 1U << 5U);
+  bench.line(0).module(1).set_input(0, true);
+  EXPECT_EQ(bench.look()["state"]["modules"][0]["module"], 1);
+}
+
+TEST(PanelOfTwoLines, ARateIsItsLines) {
+  TwoLines bench;
+  bench.line(1).master().set_baud(19200);
+  const Message lines = bench.look()["state"]["lines"];
+  EXPECT_FALSE(lines[0].contains("baud"));
+  EXPECT_EQ(lines[1]["baud"], 19200);
+}
+
+TEST(PanelOfTwoLines, EachLineHasItsOwnTime) {
+  TwoLines bench;
+  bench.line(1).bus().run_for(milliseconds(250));
+  bench.line(1).master().set_baud(19200);  // so that there is something to tell
+  const Message lines = bench.look()["state"]["lines"];
+  EXPECT_EQ(lines[1]["now"].get<std::int64_t>() - lines[0]["now"].get<std::int64_t>(), 250'000);
+}
+
+TEST(PanelOfTwoLines, WhatIsSaidIsItsLines) {
+  TwoLines bench;
+  bench.panel().note(1, milliseconds(5), "gone begins");
+  Message frames = bench.look()["frames"];
+  ASSERT_EQ(frames.size(), 1U);
+  EXPECT_EQ(frames[0]["line"], 1);
+  EXPECT_EQ(frames[0]["entries"][0]["note"], "gone begins");
+  bench.panel().note(0, milliseconds(5), "gone ends");
+  frames = bench.look()["frames"];
+  ASSERT_EQ(frames.size(), 1U);
+  EXPECT_EQ(frames[0]["line"], 0);
+  EXPECT_EQ(frames[0]["entries"][0]["note"], "gone ends");
 }
 
 TEST(PanelMessages, FramesComeWithTimeDirectionBytesAndMeaning) {

@@ -1,0 +1,54 @@
+#include "sim/runtime/line_ports.hpp"
+
+namespace ex9000::sim {
+
+LinePorts::LinePorts(Line& line, const All& ports, Notice notice)
+    : line_(line), ports_(ports), notice_(std::move(notice)), reported_(line.size()) {
+  line.bus().observe(*this);
+}
+
+void LinePorts::driver(std::size_t station, bool on, VirtualTime /*now*/) {
+  stopped_sending_ |= station != 0 && !on;
+}
+
+void LinePorts::hand_out() {
+  const std::vector<std::uint8_t> heard = std::exchange(heard_, {});
+  const bool stopped = std::exchange(stopped_sending_, false);
+  sent_ += heard.size();
+  for (const auto& port : ports_) {
+    const std::size_t dropped = heard.empty() ? 0 : port->send(heard);
+    if (dropped != 0) {
+      notice_("a port is full: " + std::to_string(dropped) + " of " + std::to_string(heard.size()) +
+              " bytes dropped; the master must read them");
+    }
+    if (stopped) {
+      port->sent();
+    }
+  }
+}
+
+void LinePorts::take_rate(const Port& port) {
+  if (const auto rate = port.baud()) {
+    line_.master().set_baud(*rate);
+  }
+  report_mismatches();
+}
+
+void LinePorts::report_mismatches() {
+  const std::uint32_t rate = line_.master().baud();
+  for (std::size_t i = 0; i < line_.size(); ++i) {
+    const SimulatedModule& module = line_.module(i);
+    const bool listens = module.powered() && module.module().listening();
+    const Mismatch mismatch = listens && module.baud() != rate ? Mismatch{rate, module.baud()} : Mismatch{};
+    if (mismatch != reported_[i] && mismatch != Mismatch{}) {
+      notice_("the line is at " + std::to_string(rate) + " baud, " + std::string(module.model().designation) +
+              " at " + hex_byte_text(module.module().state().in_force.address) + " listens at " +
+              std::to_string(module.baud()));
+    }
+    if (listens) {
+      reported_[i] = mismatch;
+    }
+  }
+}
+
+}  // namespace ex9000::sim

@@ -1,0 +1,58 @@
+#include "sim/runtime/stepped_line.hpp"
+
+#include <utility>
+
+namespace ex9000::sim {
+
+SteppedLine::SteppedLine(Line& line, const LinePorts::All& ports, FrameWatch* frames,
+                         LinePorts::Notice notice)
+    : line_(line), ports_(line, ports, std::move(notice)), frames_(frames) {}
+
+void SteppedLine::start(Arrived arrived) {
+  arrived_ = std::move(arrived);
+  ports_.report_mismatches();
+  for (const auto& port : ports_.all()) {
+    port->start([this, &port = *port](const std::uint8_t* bytes, std::size_t size) {
+      return receive(port, bytes, size);
+    });
+  }
+}
+
+bool SteppedLine::receive(const Port& port, const std::uint8_t* bytes, std::size_t size) {
+  chunks_.push_back({&port, {bytes, bytes + size}});
+  waiting_ += size;
+  paused_ = waiting_ >= kMostBytes;
+  arrived_();
+  return !paused_;
+}
+
+void SteppedLine::read_ports() {
+  for (const auto& port : ports_.all()) {
+    port->read_waiting();
+  }
+}
+
+void SteppedLine::put_on_line() {
+  for (const Chunk& chunk : std::exchange(chunks_, {})) {
+    ports_.take_rate(*chunk.port);
+    line_.master().send(chunk.bytes.data(), chunk.bytes.size());
+  }
+  waiting_ = 0;
+  if (std::exchange(paused_, false)) {
+    for (const auto& port : ports_.all()) {
+      port->resume();
+    }
+  }
+}
+
+void SteppedLine::run_until(VirtualTime until) {
+  line_.bus().run_until(until);
+  if (ports_.reply_is_complete()) {
+    ports_.hand_out();  // whole, not byte by byte
+  }
+  if (frames_ != nullptr) {
+    frames_->run(until);
+  }
+}
+
+}  // namespace ex9000::sim

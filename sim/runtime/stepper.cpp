@@ -1,0 +1,147 @@
+#include "sim/runtime/stepper.hpp"
+
+#include <algorithm>
+#include <charconv>
+#include <stdexcept>
+#include <utility>
+
+#include "sim/time_text.hpp"
+#include "sim/words.hpp"
+
+namespace ex9000::sim {
+
+namespace {
+
+constexpr const char* kCommand = "advance";
+constexpr const char* kShape = "'advance' requires TIME [after N] [quiet], for example advance 250ms after 8";
+
+std::size_t parse_count(const std::string& text) {
+  std::size_t count = 0;
+  const char* const end = text.data() + text.size();
+  const auto [rest, error] = std::from_chars(text.data(), end, count);
+  if (error != std::errc() || rest != end || count > SteppedLine::kMostBytes) {
+    throw std::invalid_argument("advance: '" + text + "' is no number of bytes from 0 to " +
+                                std::to_string(SteppedLine::kMostBytes));
+  }
+  return count;
+}
+
+}  // namespace
+
+Stepper::Stepper(std::vector<SteppedLine*> lines, VirtualTime end) : lines_(std::move(lines)), end_(end) {}
+
+bool Stepper::is_advance(const std::string& command) {
+  const Words words = words_of(command);
+  return !words.empty() && words[0] == kCommand;
+}
+
+/// Throws std::invalid_argument, one line.
+Stepper::Request Stepper::parse(const std::string& command) {
+  const Words words = words_of(command);
+  if (words.size() < 2) {
+    throw std::invalid_argument(kShape);
+  }
+  Request request;
+  request.time = parse_time(words[1]);
+  std::size_t next = 2;
+  if (next + 1 < words.size() && words[next] == "after") {
+    request.after = parse_count(words[next + 1]);
+    next += 2;
+  }
+  if (next < words.size() && words[next] == "quiet") {
+    request.quiet = true;
+    ++next;
+  }
+  if (next != words.size()) {
+    throw std::invalid_argument(kShape);
+  }
+  return request;
+}
+
+void Stepper::advance(const std::string& command, Answer answer) {
+  Request request;
+  try {
+    request = parse(command);
+  } catch (const std::invalid_argument& error) {
+    answer({std::string("error: ") + error.what(), false});
+    return;
+  }
+  if (waiting_) {
+    const Waiting replaced = *std::exchange(waiting_, std::nullopt);
+    replaced.answer({"error: another 'advance' has replaced this one, which still waited for bytes", false});
+  }
+  read_ports();
+  if (bytes_waiting() >= request.after) {
+    carry_out(request, answer);
+  } else {
+    waiting_ = Waiting{request, std::move(answer)};
+  }
+}
+
+void Stepper::arrived() {
+  if (waiting_ && bytes_waiting() >= waiting_->request.after) {
+    const Waiting ready = *std::exchange(waiting_, std::nullopt);
+    read_ports();
+    carry_out(ready.request, ready.answer);
+  }
+}
+
+void Stepper::read_ports() {
+  for (SteppedLine* line : lines_) {
+    line->read_ports();
+  }
+}
+
+std::size_t Stepper::bytes_waiting() const {
+  std::size_t bytes = 0;
+  for (const SteppedLine* line : lines_) {
+    bytes += line->waiting();
+  }
+  return bytes;
+}
+
+void Stepper::carry_out(const Request& request, const Answer& answer) {
+  for (SteppedLine* line : lines_) {
+    line->put_on_line();
+  }
+  pass(request);
+  for (SteppedLine* line : lines_) {
+    line->hand_out();
+  }
+  const VirtualTime now = lines_.front()->now();
+  answer({"ok " + seconds_text(now), now >= end_});
+}
+
+/// From event to event, in the order of time, so that the log of several lines is in order too. Only the line
+/// on which something happens is looked at.
+void Stepper::pass(const Request& request) {
+  struct State {
+    SteppedLine* line;
+    VirtualTime next;
+    bool pending;
+  };
+  std::vector<State> states;
+  for (SteppedLine* line : lines_) {
+    states.push_back({line, line->next(), line->pending()});
+  }
+  const auto is_earlier = [](const State& a, const State& b) { return a.next < b.next; };
+  const auto is_pending = [](const State& state) { return state.pending; };
+  VirtualTime now = lines_.front()->now();
+  const VirtualTime until = std::min(end_, now + request.time);
+  while (!request.quiet || std::any_of(states.begin(), states.end(), is_pending)) {
+    const auto earliest = std::min_element(states.begin(), states.end(), is_earlier);
+    if (earliest->next > until) {
+      now = until;
+      break;
+    }
+    now = std::max(now, earliest->next);
+    earliest->line->run_until(now);
+    earliest->next = earliest->line->next();
+    earliest->pending = earliest->line->pending();
+  }
+  for (SteppedLine* line : lines_) {
+    line->run_until(now);
+  }
+}
+
+}  // namespace ex9000::sim

@@ -1,0 +1,59 @@
+// The command `advance`: moves the time of lines that stand still.
+#pragma once
+
+#include <cstddef>
+#include <functional>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "sim/control/control.hpp"
+#include "sim/runtime/stepped_line.hpp"
+
+namespace ex9000::sim {
+
+/// All lines have the same time. What happens depends on the commands and on the bytes that arrive, and on
+/// nothing else: the same commands produce the same bytes at the same virtual times.
+class Stepper {
+ public:
+  using Answer = std::function<void(const Control::Reply&)>;
+
+  /// `lines` live as long as this object. When their time reaches `end`, the program ends: kNever for never.
+  Stepper(std::vector<SteppedLine*> lines, VirtualTime end);
+
+  /// Whether `command` is for this class.
+  static bool is_advance(const std::string& command);
+  /// `advance TIME [after N] [quiet]`. Does not block: `answer` is called, perhaps later, once
+  /// - N bytes have arrived at the ports that no earlier `advance` has put on a line, and everything that is
+  ///   there has been read and put on its line,
+  /// - TIME has passed, or with `quiet` less, as soon as nothing is pending on any line,
+  /// - and every reply has been written to its port.
+  /// It gets `ok NOW`, the lines' time in seconds; or `error: ...`, and nothing has changed. A later call
+  /// replaces one that still waits for bytes, which gets an error.
+  void advance(const std::string& command, Answer answer);
+  /// Bytes have arrived at a port.
+  void arrived();
+
+ private:
+  struct Request {
+    VirtualTime time{0};
+    std::size_t after = 0;
+    bool quiet = false;
+  };
+  struct Waiting {
+    Request request;
+    Answer answer;
+  };
+
+  static Request parse(const std::string& command);
+  void read_ports();
+  void carry_out(const Request& request, const Answer& answer);
+  [[nodiscard]] std::size_t bytes_waiting() const;
+  void pass(const Request& request);
+
+  std::vector<SteppedLine*> lines_;
+  VirtualTime end_;
+  std::optional<Waiting> waiting_;
+};
+
+}  // namespace ex9000::sim

@@ -1,0 +1,223 @@
+// Outputs, inputs and switches on pins, in both polarities, also those that no board uses.
+#include <gtest/gtest.h>
+
+#include <array>
+#include <utility>
+#include <vector>
+
+#include "hal/stellaris/inputs.hpp"
+#include "hal/stellaris/outputs.hpp"
+#include "hal/stellaris/switches.hpp"
+#include "tests/mcu_model/driver_bench.hpp"
+
+namespace ex9000::registers {
+namespace {
+
+using hal::stellaris::Gpio;
+using hal::stellaris::PinGroup;
+using hal::stellaris::Port;
+
+// Groups whose channels lie above and below their pins' numbers; one channel fewer than pins.
+constexpr std::array<PinGroup, 3> kGroups{PinGroup{Port::D, 2, 3}, PinGroup{Port::B, 0, 2},
+                                          PinGroup{Port::D, 5, 2}};
+constexpr unsigned kChannels = 6;
+struct Place {
+  char port;
+  unsigned pin;
+};
+constexpr std::array<Place, kChannels> kPlaces{{{'D', 2}, {'D', 3}, {'D', 4}, {'B', 0}, {'B', 1}, {'D', 5}}};
+constexpr Place kBeyond{'D', 6};  ///< in the last group, and no channel's
+
+// --- outputs ---
+
+template <bool is_active_high>
+struct OutputKind {
+  static constexpr bool kActiveHigh = is_active_high;
+  using Pins = hal::stellaris::OutputPins<kGroups, kChannels, is_active_high>;
+};
+
+/// A resistor holds each pin at its inactive side, as boards have it.
+template <class Kind>
+class Outputs : public testing::Test {
+ protected:
+  Outputs() {
+    for (const Place place : kPlaces) {
+      net(place).drive(End::Resistor, Kind::kActiveHigh ? Drive::WeakLow : Drive::WeakHigh);
+    }
+  }
+  Net& net(Place place) { return bench.pins.at(place.port, place.pin); }
+  /// Bit n: channel n is energised.
+  unsigned energised() {
+    unsigned channels = 0;
+    for (unsigned channel = 0; channel < kChannels; ++channel) {
+      channels |= (net(kPlaces.at(channel)).level() == Kind::kActiveHigh ? 1U : 0U) << channel;
+    }
+    return channels;
+  }
+
+  unsigned changes = 0;  ///< outlives the nets, which count here
+  DriverBench bench;
+};
+using OutputKinds = testing::Types<OutputKind<true>, OutputKind<false>>;
+TYPED_TEST_SUITE(Outputs, OutputKinds);
+
+TYPED_TEST(Outputs, StartDeenergisedAndWithoutAGlitch) {
+  for (const Place place : kPlaces) {
+    this->net(place).on_change([this] { ++this->changes; });
+  }
+  EXPECT_EQ(this->energised(), 0U);
+  TypeParam::Pins::start();
+  EXPECT_EQ(this->energised(), 0U);
+  EXPECT_EQ(this->changes, 0U);
+  for (const Place place : kPlaces) {
+    const Drive inactive = TypeParam::kActiveHigh ? Drive::Low : Drive::High;
+    EXPECT_EQ(this->net(place).driven_by(End::Microcontroller), inactive) << place.port << place.pin;
+  }
+}
+
+TYPED_TEST(Outputs, EachChannelIsAtItsOwnPin) {
+  TypeParam::Pins::start();
+  for (unsigned channels = 0; channels < 1U << kChannels; ++channels) {
+    TypeParam::Pins::drive(static_cast<std::uint16_t>(channels));
+    ASSERT_EQ(this->energised(), channels);
+  }
+}
+
+TYPED_TEST(Outputs, PinsOfNoChannelAreLeftAlone) {
+  // One that is another's, between two groups of the same port.
+  Gpio(Port::D).make_output(1U << 7U, 1U << 7U);
+  TypeParam::Pins::start();
+  for (const unsigned channels : {0x00U, 0x3FU, 0xFFFFU, 0x00U}) {
+    TypeParam::Pins::drive(static_cast<std::uint16_t>(channels));
+    EXPECT_EQ(this->net(kBeyond).driven_by(End::Microcontroller), Drive::Nothing);
+    EXPECT_EQ(this->net({'D', 7}).driven_by(End::Microcontroller), Drive::High);
+    EXPECT_EQ(this->net({'B', 2}).driven_by(End::Microcontroller), Drive::Nothing);
+  }
+}
+
+// --- inputs ---
+
+template <bool is_active_high>
+struct InputKind {
+  static constexpr bool kActiveHigh = is_active_high;
+  using Pins = hal::stellaris::InputPins<kGroups, kChannels, is_active_high>;
+};
+
+template <class Kind>
+class Inputs : public testing::Test {
+ protected:
+  void wire(unsigned channel, bool level) {
+    const Place place = kPlaces.at(channel);
+    bench.pins.at(place.port, place.pin)
+        .drive(End::Board, level == Kind::kActiveHigh ? Drive::High : Drive::Low);
+  }
+
+  using Edges = std::vector<std::pair<unsigned, bool>>;
+  /// Edges that the interrupts of both ports tell.
+  Edges told() {
+    Edges edges;
+    const auto deliver = [&edges](unsigned channel, bool level) { edges.emplace_back(channel, level); };
+    Kind::Pins::template take_edges<Port::B>(deliver);
+    Kind::Pins::template take_edges<Port::D>(deliver);
+    return edges;
+  }
+
+  DriverBench bench;
+};
+using InputKinds = testing::Types<InputKind<true>, InputKind<false>>;
+TYPED_TEST_SUITE(Inputs, InputKinds);
+
+TYPED_TEST(Inputs, AnOpenPinIsInactive) {
+  EXPECT_EQ(TypeParam::Pins::start(), 0U);
+  EXPECT_TRUE(this->told().empty());
+}
+
+TYPED_TEST(Inputs, StartFromTheLevelsThatAreThere) {
+  for (unsigned levels = 0; levels < 1U << kChannels; ++levels) {
+    for (unsigned channel = 0; channel < kChannels; ++channel) {
+      this->wire(channel, (levels >> channel & 1U) != 0);
+    }
+    ASSERT_EQ(TypeParam::Pins::start(), levels);
+    EXPECT_TRUE(this->told().empty());
+  }
+}
+
+TYPED_TEST(Inputs, ALevelBeyondTheChannelsIsNotTold) {
+  this->bench.pins.at(kBeyond.port, kBeyond.pin)
+      .drive(End::Board, TypeParam::kActiveHigh ? Drive::High : Drive::Low);
+  EXPECT_EQ(TypeParam::Pins::start(), 0U);
+}
+
+TYPED_TEST(Inputs, EachEdgeIsToldOnceWithItsChannelAndItsLevel) {
+  this->bench.mcu.core.hold(true);  // the test asks instead of the interrupts
+  TypeParam::Pins::start();
+  for (unsigned channel = 0; channel < kChannels; ++channel) {
+    for (const bool level : {true, false}) {
+      this->wire(channel, level);
+      const typename TestFixture::Edges expected{{channel, level}};
+      EXPECT_EQ(this->told(), expected);
+      EXPECT_TRUE(this->told().empty());
+    }
+  }
+}
+
+TYPED_TEST(Inputs, BothEdgesInterruptAndNothingElseDoes) {
+  unsigned served = 0;
+  const auto count = [&] { served += static_cast<unsigned>(this->told().size()); };
+  this->bench.serve(1, count);  // port B
+  this->bench.serve(3, count);  // port D
+  TypeParam::Pins::start();
+  unsigned edges = 0;
+  for (unsigned channel = 0; channel < kChannels; ++channel) {
+    for (const bool level : {true, false, true}) {
+      this->wire(channel, level);
+      this->bench.mcu.run_for(std::chrono::microseconds(10));
+      EXPECT_EQ(served, ++edges) << channel;
+    }
+  }
+  this->bench.mcu.run_for(std::chrono::milliseconds(1));
+  EXPECT_EQ(served, edges);
+}
+
+TEST(InputPorts, AreThoseOfTheChannelsAndNoOthers) {
+  using AllOfThem = hal::stellaris::InputPins<kGroups, kChannels, true>;
+  EXPECT_TRUE(AllOfThem::on(Port::B));
+  EXPECT_TRUE(AllOfThem::on(Port::D));
+  EXPECT_FALSE(AllOfThem::on(Port::A));
+  EXPECT_FALSE(AllOfThem::on(Port::C));
+  using OnlyTheFirst = hal::stellaris::InputPins<kGroups, 3, true>;
+  EXPECT_FALSE(OnlyTheFirst::on(Port::B));
+  EXPECT_TRUE(OnlyTheFirst::on(Port::D));
+}
+
+// --- switches ---
+
+constexpr hal::stellaris::Pin kInit{Port::A, 7};
+constexpr hal::stellaris::Pin kLed{Port::F, 0};
+
+TEST(Switches, InitIsAssertedByALowPinAndReleasedByAnOpenOne) {
+  DriverBench bench;
+  using Init = hal::stellaris::InitPin<kInit>;
+  bench.pins.at('A', 6).drive(End::Board, Drive::High);
+  Init::start();
+  EXPECT_FALSE(Init::asserted());
+  bench.pins.at('A', 7).drive(End::Board, Drive::Low);
+  EXPECT_TRUE(Init::asserted());
+  bench.pins.at('A', 7).drive(End::Board, Drive::Nothing);
+  EXPECT_FALSE(Init::asserted());
+}
+
+TEST(Switches, TheLedIsDarkUntilItIsLit) {
+  DriverBench bench;
+  using Led = hal::stellaris::LedPin<kLed>;
+  Led::start();
+  const Net& net = bench.pins.at('F', 0);
+  EXPECT_EQ(net.driven_by(End::Microcontroller), Drive::Low);
+  Led::light(true);
+  EXPECT_EQ(net.driven_by(End::Microcontroller), Drive::High);
+  Led::light(false);
+  EXPECT_EQ(net.driven_by(End::Microcontroller), Drive::Low);
+}
+
+}  // namespace
+}  // namespace ex9000::registers

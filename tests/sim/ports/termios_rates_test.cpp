@@ -1,0 +1,64 @@
+// Rates as termios has them. The C library judges: its cfsetspeed takes a rate in bits per second as well.
+#include <gtest/gtest.h>
+#include <termios.h>
+
+#include <array>
+#include <cstdint>
+#include <set>
+
+#include "sim/ports/termios_rates.hpp"
+
+namespace ex9000::sim {
+namespace {
+
+/// All that Linux has a constant for (asm-generic/termbits.h).
+constexpr std::array<std::uint32_t, 30> kRates{
+    50,     75,     110,     134,     150,     200,     300,     600,     1200,    1800,
+    2400,   4800,   9600,    19200,   38400,   57600,   115200,  230400,  460800,  500000,
+    576000, 921600, 1000000, 1152000, 1500000, 2000000, 2500000, 3000000, 3500000, 4000000};
+
+/// What the C library sets for `rate`.
+termios settings_at(std::uint32_t rate) {
+  termios settings{};
+  EXPECT_EQ(cfsetspeed(&settings, rate), 0) << rate;
+  return settings;
+}
+
+TEST(TermiosRates, EachRateHasTheNumberThatTheCLibraryGivesIt) {
+  for (const std::uint32_t rate : kRates) {
+    const termios settings = settings_at(rate);
+    EXPECT_EQ(termios_speed(rate), cfgetospeed(&settings)) << rate;
+  }
+}
+
+TEST(TermiosRates, WhatIsSetIsReadAsItsRate) {
+  for (const std::uint32_t rate : kRates) {
+    EXPECT_EQ(termios_rate(settings_at(rate)), rate);
+  }
+}
+
+TEST(TermiosRates, NoTwoRatesShareANumber) {
+  std::set<speed_t> speeds;
+  for (const std::uint32_t rate : kRates) {
+    EXPECT_TRUE(speeds.insert(termios_speed(rate).value()).second) << rate;
+  }
+}
+
+TEST(TermiosRates, EveryRateOfAModuleIsOne) {
+  // wire.md section 4: CC 03 to 0A.
+  for (const std::uint32_t rate : {1200U, 2400U, 4800U, 9600U, 19200U, 38400U, 57600U, 115200U}) {
+    EXPECT_TRUE(termios_speed(rate)) << rate;
+  }
+}
+
+TEST(TermiosRates, WhatTermiosHasNoNumberForIsNone) {
+  for (const std::uint32_t rate : {0U, 1U, 49U, 9601U, 57601U, 14400U, 250000U, 4000001U, 0xFFFF'FFFFU}) {
+    EXPECT_FALSE(termios_speed(rate)) << rate;
+  }
+  termios hung_up{};
+  cfsetspeed(&hung_up, B0);
+  EXPECT_FALSE(termios_rate(hung_up));
+}
+
+}  // namespace
+}  // namespace ex9000::sim

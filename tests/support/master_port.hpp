@@ -1,0 +1,66 @@
+// A master's end of one of the simulator's ports, whatever kind that is.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "tests/support/socket_client.hpp"
+#include "tests/support/terminal.hpp"
+
+namespace ex9000::system {
+
+class MasterPort {
+ public:
+  MasterPort() = default;
+  MasterPort(const MasterPort&) = delete;
+  MasterPort& operator=(const MasterPort&) = delete;
+  virtual ~MasterPort() = default;
+
+  /// Blocks until the kernel has all of `bytes`.
+  virtual void write(const std::vector<std::uint8_t>& bytes) = 0;
+  /// Blocks until there is something. Throws std::runtime_error if nothing comes for 60 s, which only a
+  /// simulator that hangs takes.
+  virtual std::vector<std::uint8_t> read() = 0;
+  /// False if the port carries no rate.
+  virtual bool set_baud(std::uint32_t rate) = 0;
+};
+
+class TerminalPort final : public MasterPort {
+ public:
+  explicit TerminalPort(const std::string& tty) : terminal_(tty, 9600) {}
+
+  void write(const std::vector<std::uint8_t>& bytes) override { terminal_.write(bytes); }
+  std::vector<std::uint8_t> read() override { return not_empty(terminal_.read(kHang)); }
+  bool set_baud(std::uint32_t rate) override {
+    terminal_.set_baud(rate);
+    return true;
+  }
+
+  static constexpr std::chrono::seconds kHang{60};
+  static std::vector<std::uint8_t> not_empty(std::vector<std::uint8_t> bytes) {
+    if (bytes.empty()) {
+      throw std::runtime_error("the simulator has written bytes, and none came within 60 s");
+    }
+    return bytes;
+  }
+
+ private:
+  Terminal terminal_;
+};
+
+class TcpPort final : public MasterPort {
+ public:
+  explicit TcpPort(std::uint16_t port) : client_(port) {}
+
+  void write(const std::vector<std::uint8_t>& bytes) override { client_.send(bytes); }
+  std::vector<std::uint8_t> read() override {
+    return TerminalPort::not_empty(client_.receive_some(TerminalPort::kHang));
+  }
+  bool set_baud(std::uint32_t /*rate*/) override { return false; }
+
+ private:
+  SocketClient client_;
+};
+
+}  // namespace ex9000::system
