@@ -64,12 +64,13 @@ class AlarmClock {
   bool wait_for_alarm();
 
   Emulator& machine_;
-  bool at_first_ = true;     ///< no alarm has gone off yet
-  bool at_gate_ = false;     ///< it waits there
-  const char* go_on_ = "c";  ///< what it waits for else
-  bool at_store_ = false;    ///< it has stopped in front of one, and the alarm is still to come
-  std::string watched_;      ///< as the debugger names it
-  std::uint32_t told_ = 0;   ///< by the interrupt's code
+  bool at_first_ = true;       ///< no alarm has gone off yet
+  bool at_gate_ = false;       ///< it waits there
+  const char* go_on_ = "c";    ///< what it waits for else
+  bool at_store_ = false;      ///< it has stopped in front of one, and the alarm is still to come
+  std::string watched_;        ///< as the debugger names it
+  std::uint32_t ordered_ = 0;  ///< the time until the next alarm, in clocks
+  std::uint32_t told_ = 0;     ///< by the interrupt's code
 };
 
 }  // namespace ex9000::rig

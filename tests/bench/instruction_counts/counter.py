@@ -41,7 +41,7 @@ class Counter:
     does for it.
 
     A byte behind a silence that nobody has told of ends the frame before it, which is else the work of the
-    silence's interrupt: `late_byte` has those. A busy host makes some, where the emulator's clock runs ahead.
+    silence's interrupt: `late_byte` has those.
 
     What was done before, while the silence lasted, is told apart: CR's interrupt, and the turn that judges.
     """
@@ -56,8 +56,8 @@ class Counter:
         self._request = None  # whose pass is under way
         self._awaited = {}
         self._judging = []  # turns since the last byte
-        self.over = threading.Event()  # a pass, good or not
-        self.ticked = threading.Event()
+        self.over = False  # a pass, good or not
+        self._seen = threading.Event()
         self.requests = {}
         self.spoiled = 0
         self.edges_at_once = 0
@@ -76,11 +76,20 @@ class Counter:
         self.idle_turn = Highest()
 
     def expect(self, request):
-        self.over.clear()
+        self.over = False
         self.requests.setdefault(request, Highest())
         self._awaited = {frame: request for frame in request.frames}
 
+    def wait_until_seen(self, patience):
+        """What Emulator.ask_for_sight, called before, asked for."""
+        if not self._seen.wait(patience):
+            raise RuntimeError("the emulator's log has ended")
+        self._seen.clear()
+
     # --- what execution.follow tells ---
+
+    def seen(self):
+        self._seen.set()
 
     def entered(self, span, main):
         if span.exception == execution.SILENCE:
@@ -100,10 +109,8 @@ class Counter:
             if self._ends_with_cr and span.received[-1:] == [0x0D]:
                 self._begin(span, main)
                 self._frame.clear()
-        elif span.exception == execution.TICK:
-            self.ticked.set()
         elif span.exception in execution.EDGES:
-            self.over.set()
+            self.over = True
         if self._request is not None and span is not self._began:
             if span.exception != execution.TICK or self._request.until != DONE or not self._turns:
                 self._spoil()
@@ -187,7 +194,7 @@ class Counter:
     def _spoil(self):
         self.spoiled += 1
         self._request = None
-        self.over.set()
+        self.over = True
 
     def _end(self, last):
         """The longest of the turns before the last is the one that judged the request, the others are idle;
@@ -198,4 +205,4 @@ class Counter:
         highest.note(sum(turns, began))
         highest.ahead = max(highest.ahead, self._ahead)
         self._request = None
-        self.over.set()
+        self.over = True

@@ -1,10 +1,13 @@
-"""An image in QEMU: its line, its pins, and the log of what it executes."""
+"""An image in QEMU, in a time of its own: its line, its pins, and the log of what it executes."""
 
 import ctypes
 import json
 import os
+import pathlib
+import re
 import signal
 import socket
+import struct
 import subprocess
 import tempfile
 
@@ -12,7 +15,41 @@ import tempfile
 EVENTS = ["pl011_read", "pl011_write", "i2c_event", "nvic_acknowledge_irq", "nvic_complete_irq"]
 
 PORT_A = 8  # /machine/unattached/device[8] is GPIO port A, and the others follow
+UART_FLAGS = 0x4000C018
+RECEIVER_EMPTY = 1 << 4
 UART_IDENTIFICATION = 0x4000CFE0  # a register that no firmware reads
+UART_IDENTIFICATION_2 = 0x4000CFE4  # likewise
+
+# tests/qemu/alarm_clock.cpp says why each of these is as it is.
+TIMERS = range(0x40030000, 0x40034000, 0x1000)
+ALARM = TIMERS[2]
+GUARD = TIMERS[3]
+TIMER_MODE, TIMER_CONTROL, TIMER_MASK, TIMER_CLEAR, TIMER_INTERVAL = 0x04, 0x0C, 0x18, 0x24, 0x28
+ALARM_INTERRUPT = 23
+VECTORS = 16 + 22
+SET_ENABLE = 0xE000E100
+VECTOR_TABLE_OFFSET = 0xE000ED08
+TICK_COUNTER = 0xE000E018
+DRIVER_ENABLE = 0x40004100
+STATUS_LED = 0x40025004
+TABLE, TOLD, CODE, ORDERS = 0x20008000, 0x20008000, 0x20009000, 0x2000A000
+NEXT_ALARM, EDGES, HALT = ORDERS, ORDERS + 4, ORDERS + 20
+GATE = CODE + 0x44
+HERTZ = 50_000_000
+AT_RESET = 4  # times as slow
+INTERRUPT_TAKES = 0.7e-6
+ROOT = pathlib.Path(__file__).resolve().parents[3]
+HANG = 60  # seconds; only an emulator that hangs takes so long, also on a busy machine
+
+
+def alarm_code():
+    """What AlarmClock in tests/qemu has for an interrupt, with its literals."""
+    text = (ROOT / "tests/qemu/alarm_interrupt.inc").read_text()
+    halfwords = [int(word, 16) for word in re.findall(r"^ *(0x[0-9A-F]{4},(?: 0x[0-9A-F]{4},)?)", text, re.M)
+                 for word in re.findall("0x[0-9A-F]{4}", word)]
+    halfwords += [0] * (-len(halfwords) % 64)
+    literals = (ORDERS, ALARM, GUARD, UART_FLAGS, DRIVER_ENABLE, STATUS_LED, TICK_COUNTER, TOLD)
+    return struct.pack(f"<{len(halfwords)}H{len(literals)}I", *halfwords, *literals)
 
 
 def die_with_parent():
@@ -22,86 +59,125 @@ def die_with_parent():
 
 
 class Emulator:
-    """Halted until `run`. `log` is a stream of lines that somebody has to read all the time.
+    """Stands still but in `run_for`. `log` is a stream of lines that somebody has to read all the time.
 
-    -icount: while the image executes, its clock advances by 8 ns an instruction, however long logging takes.
+    Its time is its own: 8 ns an instruction, however long logging takes, and none while it stands still. In between an
+    interrupt of this tool stops it at a gate (tests/qemu/gate.cpp); execution.follow leaves that out.
     -singlestep: one instruction at a time, so that each one is logged.
     """
 
-    def __init__(self, image):
+    def __init__(self, image, gate):
+        self._image = os.path.abspath(image)
+        self._gate = os.path.abspath(gate)
         self._directory = tempfile.TemporaryDirectory(prefix="ex9000-counts-")
         folder = self._directory.name
         with open(f"{folder}/memory", "wb") as file:
             file.write(b"\xff" * 8192)
         os.mkfifo(f"{folder}/log")
-        listeners = [self._listen(f"{folder}/{name}") for name in ("uart", "qmp", "qtest")]
-        command = [
-            "qemu-system-arm",
-            "-machine",
-            "lm3s6965evb",
-            "-display",
-            "none",
-            "-nodefaults",
-            "-nic",
-            "none",
-            "-kernel",
-            os.path.abspath(image),
-            "-S",
-            "-icount",
-            "shift=3",
-            "-singlestep",
-            "-chardev",
-            "socket,id=uart,path=uart",
-            "-serial",
-            "chardev:uart",
-            "-qmp",
-            "unix:qmp",
-            "-qtest",
-            "unix:qtest",
-            "-qtest-log",
-            "none",
-            "-drive",
-            "if=none,id=memory,format=raw,file=memory",
-            "-device",
-            "at24c-eeprom,bus=i2c,address=0x50,rom-size=8192,drive=memory",
-            "-D",
-            "log",
-        ]
+        self.log = None
+
+    def power_up(self, pins):
+        """With these levels outside its pins, and what the EEPROM holds. Before the first instruction."""
+        folder = self._directory.name
+        names = ("uart", "qmp", "qtest", "gate")
+        listeners = [self._listen(f"{folder}/{name}") for name in names]
+        command = ["qemu-system-arm", "-machine", "lm3s6965evb", "-display", "none", "-nodefaults", "-nic", "none"]
+        command += ["-kernel", self._image, "-S", "-icount", "shift=3,sleep=off", "-singlestep"]
+        command += ["-plugin", f"{self._gate},socket=gate,address={GATE}"]
+        command += ["-chardev", "socket,id=uart,path=uart", "-serial", "chardev:uart"]
+        command += ["-chardev", "socket,id=qmp,path=qmp,mux=on", "-mon", "chardev=qmp,mode=control"]
+        command += ["-qtest", "unix:qtest", "-qtest-log", "none"]
+        command += ["-drive", "if=none,id=memory,format=raw,file=memory"]
+        command += ["-device", "at24c-eeprom,bus=i2c,address=0x50,rom-size=8192,drive=memory", "-D", "log"]
         for event in EVENTS:
             command += ["-trace", event]
         self._process = subprocess.Popen(
             command, cwd=folder, stderr=subprocess.DEVNULL, preexec_fn=die_with_parent
         )
         self.log = open(f"{folder}/log", "rb", buffering=1 << 20)
-        self.line, self._monitor, self._bus = (listener.accept()[0] for listener in listeners)
-        for listener in listeners:
+        self.line, self._monitor, self._bus, self._at_gate = (listener.accept()[0] for listener in listeners)
+        for listener, name in zip(listeners, names):
             listener.close()
+            os.unlink(f"{folder}/{name}")
+        for connection in (self._monitor, self._bus, self._at_gate):
+            connection.settimeout(HANG)
+        self.line.setblocking(False)
         self._answers = self._monitor.makefile("rb")
         self._bus_answers = self._bus.makefile("rb")
         self._answers.readline()
         self._execute("qmp_capabilities")
+        for pin, level in pins.items():
+            self.set_pin(pin, level)
+        self._set_alarm_up()
 
     @staticmethod
     def _listen(path):
         listener = socket.socket(socket.AF_UNIX)
         listener.bind(path)
         listener.listen(1)
-        listener.settimeout(20)
+        listener.settimeout(HANG)
         return listener
 
-    def run(self):
-        self._execute("cont")
+    def _set_alarm_up(self):
+        vectors = bytearray.fromhex(self._ask_bus(f"read 0 {VECTORS * 4}").split()[1][2:])
+        vectors += bytes(4 * (16 + ALARM_INTERRUPT + 1) - len(vectors))
+        struct.pack_into("<I", vectors, 4 * (16 + ALARM_INTERRUPT), CODE | 1)
+        self._ask_bus(f"write {TABLE} {len(vectors)} 0x{vectors.hex()}")
+        code = alarm_code()
+        self._ask_bus(f"write {CODE} {len(code)} 0x{code.hex()}")
+        self._write(VECTOR_TABLE_OFFSET, TABLE)
+        self._write(ALARM + TIMER_MODE, 1)
+        self._write(ALARM + TIMER_MASK, 1)
+        self._write(SET_ENABLE, 1 << ALARM_INTERRUPT)
+        self._write(EDGES, 0)
+        self._write(HALT, 0)
+        self._started = False
 
-    def halt(self):
-        self._execute("stop")
+    def run_for(self, seconds):
+        """Seconds of its own; at least 3 us."""
+        clocks = max(100, round((seconds - INTERRUPT_TAKES) * HERTZ))
+        if self._started:
+            self._write(NEXT_ALARM, clocks)
+            self._at_gate.sendall(b"g")
+        else:
+            clocks //= AT_RESET
+            self._write(ALARM + TIMER_INTERVAL, clocks)
+            self._write(ALARM + TIMER_CONTROL, 1)
+            self._started = True
+            self._execute("cont")
+        told = b""
+        while len(told) < 4:
+            piece = self._at_gate.recv(4 - len(told))
+            if not piece:
+                raise RuntimeError("the emulator has ended")
+            told += piece
 
-    def reset(self):
-        """The EEPROM keeps what it holds."""
-        self._execute("system_reset")
+    def run_behind_a_tick(self, seconds):
+        """Up to so long behind the next one."""
+        self.run_for((self._read(TICK_COUNTER) & 0xFFFFFF) / HERTZ + seconds)
+
+    def put(self, byte):
+        """A byte on the line: it has come when the emulator goes on."""
+        if not self._read(UART_FLAGS) & RECEIVER_EMPTY:
+            raise RuntimeError("the image has not taken the byte before")
+        self.line.sendall(bytes([byte]))
+        while self._read(UART_FLAGS) & RECEIVER_EMPTY:
+            pass
+
+    def said(self):
+        """What it has put on the line since it was asked last."""
+        try:
+            return self.line.recv(4096)
+        except BlockingIOError:
+            return b""
 
     def mark(self):
         """Leaves a line in the log that is nothing of the image's: see execution.py."""
         self._ask_bus(f"readl {UART_IDENTIFICATION:#x}")
+
+    def ask_for_sight(self):
+        """Another line, by which execution.follow tells that it has come so far."""
+        self._ask_bus(f"readl {UART_IDENTIFICATION_2:#x}")
 
     def log_instructions(self, on):
         self._execute("human-monitor-command", **{"command-line": "log exec" if on else "log none"})
@@ -111,11 +187,14 @@ class Emulator:
         device = PORT_A + ord(pin[0]) - ord("A")
         self._ask_bus(f"set_irq_in /machine/unattached/device[{device}] unnamed-gpio-in {pin[1]} {level:d}")
 
-    def close(self):
+    def power_down(self):
         self._process.kill()
         self._process.wait()
-        for connection in (self.line, self._monitor, self._bus):
+        for connection in (self.line, self._monitor, self._bus, self._at_gate):
             connection.close()
+
+    def close(self):
+        self.power_down()
         self._directory.cleanup()
 
     def _execute(self, command, **arguments):
@@ -127,8 +206,15 @@ class Emulator:
             if "return" in answer:
                 return
 
+    def _write(self, address, word):
+        self._ask_bus(f"writel {address:#x} {word:#x}")
+
+    def _read(self, address):
+        return int(self._ask_bus(f"readl {address:#x}").split()[1], 16)
+
     def _ask_bus(self, command):
         self._bus.sendall(command.encode() + b"\n")
         answer = self._bus_answers.readline()
         if not answer.startswith(b"OK"):
             raise RuntimeError(f"{command}: {answer}")
+        return answer.decode()

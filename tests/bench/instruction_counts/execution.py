@@ -12,6 +12,7 @@ LINE = 21
 I2C = 24
 SILENCE = 35
 LINE_END = 37
+ALARM = 39  # of the tool itself: see emulator.py
 
 
 class Span:
@@ -31,6 +32,7 @@ def follow(log, sleeps, listener):
 
     - entered(span, main), left(span, main): an interrupt begins, or has returned
     - slept(main): a turn is over
+    - seen(): all that was executed before Emulator.ask_for_sight was called has been told
     - sent(span), stored(span): a byte is given to the UART, or a transfer to the EEPROM begins; `span` goes up
       to there, the instruction that does it included
     """
@@ -54,11 +56,14 @@ def follow(log, sleeps, listener):
         elif lead == interrupt:
             if line.startswith(b"nvic_acknowledge_irq"):
                 span = Span(int(line.split(b"IRQ: ")[1].split()[0]))
-                main.interrupts.append(span.exception)
-                listener.entered(span, main)
+                if span.exception != ALARM:
+                    main.interrupts.append(span.exception)
+                    listener.entered(span, main)
                 stack[1:] = [span]  # none interrupts another; a reset leaves none
             elif len(stack) > 1:
-                listener.left(stack.pop(), main)
+                span = stack.pop()
+                if span.exception != ALARM:
+                    listener.left(span, main)
             here = stack[-1].addresses
         elif lead == uart:
             if b" addr 0x00000000 " in line:
@@ -70,6 +75,8 @@ def follow(log, sleeps, listener):
             elif b" addr 0x00000fe0 " in line:  # Emulator.mark: instructions are logged from here on
                 main = stack[0] = Span(MAIN)
                 here = stack[-1].addresses
+            elif b" addr 0x00000fe4 " in line:  # Emulator.ask_for_sight
+                listener.seen()
         elif lead == i2c and b"start" in line:
             listener.stored(stack[-1])
 

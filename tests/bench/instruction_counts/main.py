@@ -8,7 +8,7 @@ import sys
 
 from instruction_counts import execution
 from instruction_counts.capacity import Found, capacity
-from instruction_counts.emulator import die_with_parent
+from instruction_counts.emulator import ROOT, die_with_parent
 from instruction_counts.requests import Model
 from instruction_counts.session import Session
 
@@ -75,7 +75,7 @@ def run_session(options, model, is_ascii, general):
     """Returns the text to print, the names of what is over its limit, and what `capacity` wants."""
     label = f"{model.name} {'ASCII' if is_ascii else 'RTU'}"
     everything = not options.only
-    with Session(os.path.join(options.folder, f"{model.name}.elf"), model, is_ascii) as session:
+    with Session(os.path.join(options.folder, f"{model.name}.elf"), options.gate, model, is_ascii) as session:
         session.set_up()
         session.count_requests(
             general or options.all, lambda request: options.only in f"{label} {request.name}", options.passes
@@ -136,9 +136,15 @@ def main(arguments):
         "--profile", default="", metavar="TEXT", help="by function, what the highest pass has executed"
     )
     parser.add_argument("--passes", type=int, default=100)
+    parser.add_argument(
+        "--gate",
+        default=os.path.join(ROOT, "build/host-debug/tests/qemu/libex9000_gate.so"),
+        metavar="FILE",
+        help="tests/qemu/gate.cpp, as a preset for the host builds it; of host-debug if left out",
+    )
     parser.add_argument("--all", action="store_true", help="every request on every model that has it")
     parser.add_argument(
-        "--jobs", type=int, default=(os.cpu_count() or 1) + 1, help="sessions at a time; they mostly wait"
+        "--jobs", type=int, default=os.cpu_count() or 1, help="sessions at a time"
     )
     parser.add_argument("--verbose", action="store_true", help="say how many passes did not count")
     options = parser.parse_args(arguments)
