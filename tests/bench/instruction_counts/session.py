@@ -142,11 +142,11 @@ class Session:
         if byte_by_byte:
             self._log(True)
         self._say(frame[:-1])
+        if not byte_by_byte:
+            self._log(True)
         if self._ascii:  # a pass begins with the last byte, so it comes where the next tick is far
             self._emulator.run_behind_a_tick(BEHIND_A_TICK)
         self._emulator.put(frame[-1])
-        if not byte_by_byte:
-            self._log(True)
         self._run_until_over()
         self._log(False)
         if request.until not in (DONE, IGNORED):
