@@ -10,6 +10,7 @@ from pathlib import Path
 
 ROOT = Path(__file__).resolve().parents[2]
 IMAGE = "/some where/EX9042D-M.elf"
+HANG = 60  # seconds; OpenOCD takes less than one, on a busy machine a few
 
 MOVES_A_BOARD = ("init", "reset", "flash", "verify_image", "poll")
 SAY_INSTEAD = "; ".join([f'proc {name} {{args}} {{ echo "> {name} $args" }}' for name in MOVES_A_BOARD])
@@ -27,7 +28,7 @@ def openocd_scripts() -> dict[str, str]:
 
 def flash(script: str, *, path: str) -> subprocess.CompletedProcess[str]:
     words = ["/bin/sh", str(ROOT / "toolchain/flash"), script, IMAGE]
-    return subprocess.run(words, env={"PATH": path}, capture_output=True, text=True, timeout=20, check=False)
+    return subprocess.run(words, env={"PATH": path}, capture_output=True, text=True, timeout=HANG, check=False)
 
 
 def openocd_words(script: str) -> list[str]:
@@ -42,7 +43,7 @@ def openocd_words(script: str) -> list[str]:
 
 
 def openocd(words: list[str]) -> subprocess.CompletedProcess[str]:
-    return subprocess.run(["openocd", *words], capture_output=True, text=True, timeout=20, check=False)
+    return subprocess.run(["openocd", *words], capture_output=True, text=True, timeout=HANG, check=False)
 
 
 class Flash(unittest.TestCase):

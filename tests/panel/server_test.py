@@ -284,6 +284,8 @@ class Slow(unittest.TestCase):
         reads.start()
         full, seen = 0, 0  # what has piled up, and how often the page had been told when it was that much
         while len(told) < seen + LOOKS:
+            self.assertTrue(reads.is_alive())
+            slow.show_life()
             for _ in range(200):
                 master.ask("020200000008", 6)
             if (piled_up := unsent(simulator.port, slow.connection)) != full:

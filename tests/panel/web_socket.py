@@ -81,6 +81,10 @@ class Page:
         size = struct.pack("!B", 0x80 | len(data)) if len(data) < 126 else struct.pack("!BH", 0xFE, len(data))
         self.connection.sendall(bytes([0x80 | opcode]) + size + bytes(4) + data)
 
+    def show_life(self, data=b""):
+        """As a browser does when it is asked, or without that: who does neither for 20 s is let go."""
+        self.send(data, opcode=10)
+
     def next(self):
         """The next message; None: it was closed."""
         while True:
@@ -93,6 +97,8 @@ class Page:
             elif size == 127:
                 size = struct.unpack("!Q", self._stream.read(8))[0]
             data = self._stream.read(size)
+            if head[0] & 0xF == 9:
+                self.show_life(data)
             if head[0] & 0xF == 8:
                 self.closed_with = struct.unpack("!H", data[:2])[0] if data else None
                 return None

@@ -8,9 +8,8 @@
 
 namespace ex9000::rig {
 
-/// How long the host waits for an emulator that owes it a reply. It only detects a hang: the slowest reply,
-/// of an interrupt storm up to the watchdog's reset, takes seconds on an idle machine and less than a minute
-/// on a busy one.
+/// How long the host waits for an emulator that owes it a reply. It only detects a hang: a reply takes
+/// milliseconds, on a busy machine seconds.
 inline constexpr std::chrono::seconds kHang{60};
 
 /// A connection. Whatever goes wrong throws std::runtime_error.
@@ -39,8 +38,8 @@ class UnixSocket {
   std::string received_;  ///< behind the last line
 };
 
-/// Waits until one of them has bytes. Throws std::runtime_error if none has for `kHang`.
-void wait_for_any(const std::vector<const UnixSocket*>& sockets);
+/// Waits until one of them has bytes; false if none has for `kHang`.
+bool wait_for_any(const std::vector<const UnixSocket*>& sockets);
 
 /// Where one program will connect to.
 class UnixListener {

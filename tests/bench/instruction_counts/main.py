@@ -82,6 +82,8 @@ def run_session(options, model, is_ascii, general):
         )
         if everything:
             session.count_ticks()
+            if not is_ascii:
+                session.count_late_bytes()
             if model.inputs:
                 session.count_edges(EDGE_PASSES)
     rows = [

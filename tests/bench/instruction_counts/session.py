@@ -24,6 +24,10 @@ PASS = 0.05  # is over within that
 TICKS = 0.2
 BEHIND_A_TICK = 0.0002  # its turn is over
 
+SILENCE = 0.00175  # behind a byte, ends a frame
+LATE_STEP = 1e-6
+LATE_STEPS = 20
+
 TRIES = 10  # of a pass
 DEAF = 30  # passes in a row that have not even begun
 BYTE_BY_BYTE = 10  # one pass in so many has the interrupts of all its bytes counted
@@ -87,6 +91,16 @@ class Session:
         self._log(False)
         self.counter.nothing_to_do = False
 
+    def count_late_bytes(self):
+        """Bytes at moments around the end of a silence: some come right before its interrupt, and do its work."""
+        self._log(True)
+        for step in range(-LATE_STEPS, LATE_STEPS):
+            self._emulator.put(0)
+            self._run(BYTE + SILENCE + step * LATE_STEP)
+            self._emulator.put(0)
+            self._run(3 * SILENCE)
+        self._log(False)
+
     def set_up(self):
         """Once, before all else. Address 01, 115200 baud, the checksum where it is ASCII; by INIT*, as people do it."""
         self._power_up(False)
@@ -142,11 +156,11 @@ class Session:
         if byte_by_byte:
             self._log(True)
         self._say(frame[:-1])
+        if not byte_by_byte:
+            self._log(True)
         if self._ascii:  # a pass begins with the last byte, so it comes where the next tick is far
             self._emulator.run_behind_a_tick(BEHIND_A_TICK)
         self._emulator.put(frame[-1])
-        if not byte_by_byte:
-            self._log(True)
         self._run_until_over()
         self._log(False)
         if request.until not in (DONE, IGNORED):
