@@ -81,10 +81,18 @@ struct Watched {
   unsigned long numbers = 0;
 };
 
+bool is_rate(const std::string& text) {
+  const std::set<std::string> rates{"1200", "2400", "4800", "9600", "19200", "38400", "57600", "115200"};
+  return rates.count(text) != 0;
+}
+
 /// What may have `line NAME` before it.
 bool is_of_the_line(const Watched& watched, Words words, sim::VirtualTime now) {
   if (words.size() == 1) {
-    return words[0] == "faults";
+    return words[0] == "faults" || words[0] == "sent";
+  }
+  if (words.size() == 2 && words[0] == "baud") {
+    return is_rate(words[1]);
   }
   if (words.empty() || words[0] != "fault") {
     return false;
@@ -115,7 +123,8 @@ bool is_command(Watched& watched, const Words& words) {
   if (words[0] == "list" || words[0] == "help" || words[0] == "quit") {
     return words.size() == 1;
   }
-  if (words[0] == "line" || words[0] == "fault" || words[0] == "faults") {
+  if (words[0] == "line" || words[0] == "fault" || words[0] == "faults" || words[0] == "baud" ||
+      words[0] == "sent") {
     return is_of_the_line(watched, of_the_line(words), now);
   }
   if (words.size() < 2 || !is_number(words[0], 1, line.size())) {
@@ -162,6 +171,14 @@ void check_faults(Watched& watched, const Words& words, const std::string& reply
 
 void check_effect(Watched& watched, const Words& words, const std::string& reply) {
   const Words on_line = of_the_line(words);
+  if (on_line[0] == "baud") {
+    require(std::to_string(watched.line.master().baud()) == on_line[1], "the line has the rate it was told");
+    return;
+  }
+  if (on_line[0] == "sent") {
+    require(reply == "ok 0", "a line without ports has written nothing");
+    return;
+  }
   if (on_line[0] == "fault" || on_line[0] == "faults") {
     check_faults(watched, on_line, reply);
     return;

@@ -321,8 +321,19 @@ TEST(Arguments, ASpeedIsANumberThatAClockCanFollow) {
   for (const char* speed :
        {"", "0", "-1", "1e-12", "0.00099", "1000.1", "1e300", "nan", "inf", "fast", "1x"}) {
     expect_error({"EX9042D", "--speed", speed}, "--speed: '" + std::string(speed) + "'",
-                 "from 0.001 to 1000, or max");
+                 "from 0.001 to 1000, max or step");
   }
+}
+
+TEST(Arguments, SteppedTimeRequiresTheControlSocketAndNothingThatHasATimeOfItsOwn) {
+  const struct Setup setup = all_accepted({"EX9042D", "--speed", "step", "--control", "c"});
+  EXPECT_TRUE(setup.speed.stepped());
+  EXPECT_EQ(setup.lines[0].pty, "ex9000.tty");
+  EXPECT_TRUE(all_accepted({"EX9042D", "--speed", "step", "--control", "c", "--watch"}).watch);
+  expect_error({"EX9042D", "--speed", "step"}, "--speed: step", "control");
+  expect_error({"EX9042D", "--speed", "step", "--control", "c", "--panel"}, "--speed: step", "panel");
+  expect_error({"EX9042D", "--speed", "step", "--control", "c", "--serial", "/dev/ttyUSB0"},
+               "--speed: ", "serial");
 }
 
 /// What is played; that nothing else is to be done is looked at too.

@@ -44,7 +44,8 @@ TEST(ControlLine, HelpNamesEveryCommand) {
   ControlBench bench("EX9052D");
   const std::string text = bench.tell("help");
   for (const char* command : {"power", "reset", "init", "input", "pulse", "inputs", "outputs", "led", "hang",
-                              "status", "fault FAULT", "fault off K|all", "faults", "list", "help", "quit"}) {
+                              "status", "fault FAULT", "fault off K|all", "faults", "baud RATE", "sent",
+                              "list", "help", "quit", "advance TIME [after N] [quiet]"}) {
     EXPECT_TRUE(has(text, command)) << command;
     EXPECT_TRUE(has(control_commands(), command)) << command;
   }
@@ -110,9 +111,41 @@ TEST(ControlLines, AFaultIsOfTheLineThatIsNamedOrWhoseModuleIs) {
   EXPECT_TRUE(lines.yard().module(0).powered());
 }
 
+TEST(ControlLine, ARateIsTheMastersFromNowOn) {
+  ControlBench bench("EX9052D");
+  EXPECT_EQ(bench.tell("baud 19200"), "ok");
+  EXPECT_EQ(bench.line().master().baud(), 19200U);
+  for (const char* wrong : {"baud", "baud 0", "baud 9601", "baud fast", "baud 9600 now"}) {
+    EXPECT_EQ(bench.tell(wrong).rfind("error: ", 0), 0U) << wrong;
+    EXPECT_EQ(bench.line().master().baud(), 19200U) << wrong;
+  }
+}
+
+TEST(ControlLine, SentIsTheCountOfBytesThatItsPortsGot) {
+  ModuleBench bench("EX9052D");
+  Control control({{"", bench.line(), [] { return 42U; }}});
+  EXPECT_EQ(control.carry_out("sent").text, "ok 42");
+  EXPECT_EQ(control.carry_out("sent now").text.rfind("error: ", 0), 0U);
+}
+
+TEST(ControlLine, TimeThatMovesByItselfIsNotAdvanced) {
+  ControlBench bench("EX9052D");
+  const VirtualTime now = bench.now();
+  EXPECT_EQ(bench.tell("advance 1s"),
+            "error: the lines' time moves by itself; 'advance' requires --speed step");
+  EXPECT_EQ(bench.now(), now);
+}
+
+TEST(ControlLines, ARateIsOfTheLineThatIsNamed) {
+  TwoLines lines;
+  EXPECT_EQ(lines.tell("line yard baud 115200"), "ok");
+  EXPECT_EQ(lines.yard().master().baud(), 115200U);
+  EXPECT_EQ(lines.hall().master().baud(), 9600U);
+}
+
 TEST(ControlLines, WhatIsOfALineWantsItsName) {
   TwoLines lines;
-  for (const char* command : {"fault gone", "faults", "fault off all"}) {
+  for (const char* command : {"fault gone", "faults", "fault off all", "baud 9600", "sent"}) {
     EXPECT_EQ(lines.tell(command), "error: there are several lines; put 'line NAME' in front") << command;
   }
   EXPECT_EQ(lines.tell("line shed faults"), "error: no line 'shed'; there are hall, yard");

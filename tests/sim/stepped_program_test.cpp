@@ -1,0 +1,119 @@
+// The program in stepped time, as a user's test of a master has it.
+#include <gtest/gtest.h>
+
+#include <csignal>
+#include <string>
+
+#include "tests/support/control_client.hpp"
+#include "tests/support/directory.hpp"
+#include "tests/support/simulator_process.hpp"
+#include "tests/support/socket_client.hpp"
+#include "tests/support/terminal.hpp"
+
+namespace ex9000::system {
+namespace {
+
+/// A simulator whose time stands still, with its control socket.
+class Stepped {
+ public:
+  explicit Stepped(std::vector<std::string> arguments)
+      : simulator(with_time_that_stands_still(std::move(arguments))),
+        control(simulator.directory() + "/ctl") {}
+
+  SimulatorProcess simulator;
+  ControlClient control;
+
+ private:
+  static std::vector<std::string> with_time_that_stands_still(std::vector<std::string> arguments) {
+    for (const char* word : {"--speed", "step", "--control", "ctl"}) {
+      arguments.emplace_back(word);
+    }
+    return arguments;
+  }
+};
+
+TEST(SteppedProgram, ADayOfTheHostWatchdogPassesInOneCommand) {
+  Stepped stepped({"EX9042D"});
+  Terminal master(stepped.simulator.tty(), 9600);
+  master.type("~0131FF\r");  // enabled, 25.5 s
+  EXPECT_EQ(stepped.control.ok("advance 1s after 8 quiet").rfind("0.1", 0), 0U);
+  EXPECT_EQ(master.read_line(), "!01\r");
+  stepped.control.ok("advance 24h");
+  master.type("~010\r");
+  stepped.control.ok("advance 1s after 5 quiet");
+  EXPECT_EQ(master.read_line(), "!0184\r");
+}
+
+TEST(SteppedProgram, ItWaitsForAMasterThatWritesLater) {
+  Stepped stepped({"EX9042D", "--tcp", "0"});
+  SocketClient master(stepped.simulator.tcp_port());
+  stepped.control.send("advance 1s after 5 quiet\n");
+  master.send("$01");
+  master.send("M\r");
+  EXPECT_EQ(stepped.control.line().rfind("ok 0.1", 0), 0U);
+  EXPECT_EQ(master.receive_text(9), "!019042D\r");
+}
+
+TEST(SteppedProgram, AMasterThatHasClosedItsSideStillGetsItsReply) {
+  Stepped stepped({"EX9042D", "--tcp", "0"});
+  SocketClient master(stepped.simulator.tcp_port());
+  master.send("$01M\r");
+  master.close_writing();
+  stepped.control.ok("advance 10s after 5");
+  EXPECT_EQ(master.receive_text(9), "!019042D\r");
+}
+
+TEST(SteppedProgram, TheSameCommandsProduceTheSameBytesAtTheSameTimes) {
+  const auto run_once = [](const std::string& capture) {
+    Stepped stepped({"EX9042D@01", "EX9052D-M@02", "--capture", capture, "--log", "--seed", "7", "--fault",
+                     "bit-errors 1e-3", "--for", "1h"});
+    Terminal master(stepped.simulator.tty(), 9600);
+    std::string text;
+    for (int i = 0; i < 20; ++i) {
+      master.type("@01\r");
+      text += stepped.control.ok("advance 1s after 4 quiet") + " " + stepped.control.ok("sent") + "\n";
+    }
+    EXPECT_EQ(stepped.control.ok("advance 2h"), "3600.1");  // and ends it
+    EXPECT_EQ(stepped.simulator.wait(), 0);
+    const std::string& output = stepped.simulator.output();
+    return text + output.substr(output.find("Ctrl-C ends it")) +
+           bytes_of_file(stepped.simulator.directory() + "/" + capture);
+  };
+  const std::string first = run_once("line.pcapng");
+  EXPECT_EQ(first, run_once("line.pcapng"));
+  EXPECT_NE(first.find("> master  @01"), std::string::npos) << first;
+}
+
+TEST(SteppedProgram, APortThatNobodyReadsIsReported) {
+  Stepped stepped({"EX9042D"});
+  const Terminal silent(stepped.simulator.tty(), 9600);
+  // Foreign traffic reaches the port like a reply; a pseudo-terminal holds some kilobytes.
+  stepped.control.ok("fault foreign-traffic 2430314D0D every 10ms");
+  stepped.control.ok("advance 60s");
+  EXPECT_TRUE(stepped.simulator.wait_for("a port is full: ")) << stepped.simulator.output();
+}
+
+TEST(SteppedProgram, TheRateOfATcpPortIsToldOnTheControlSocket) {
+  Stepped stepped({"EX9042D@01,baud=19200", "--baud", "9600", "--tcp", "0"});
+  SocketClient master(stepped.simulator.tcp_port());
+  master.send("$01M\r");
+  stepped.control.ok("advance 1s after 5");
+  EXPECT_EQ(stepped.control.ok("sent"), "0");
+  EXPECT_EQ(stepped.control.ask("baud 19200"), "ok");
+  master.send("\r$01M\r");
+  stepped.control.ok("advance 1s after 6");
+  EXPECT_EQ(master.receive_text(9), "!019042D\r");
+}
+
+TEST(SteppedProgram, AnAdvanceThatWaitsIsReplacedByALaterOne) {
+  Stepped stepped({"EX9042D"});
+  stepped.control.send("advance 1s after 5\n");
+  ControlClient other(stepped.simulator.directory() + "/ctl");
+  other.ok("list");  // the first command was there before this client
+  EXPECT_EQ(other.ok("advance 1s"), "1.1");
+  EXPECT_EQ(stepped.control.line().rfind("error: ", 0), 0U);
+  EXPECT_EQ(stepped.control.ok("advance 1s"), "2.1");
+}
+
+}  // namespace
+}  // namespace ex9000::system
