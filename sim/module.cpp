@@ -138,8 +138,8 @@ std::vector<std::uint8_t> SimulatedModule::memory_image(const Model& model, cons
 
 bool SimulatedModule::pending() const {
   return wire_.next() != kNever || memory_.next() != kNever ||
-         (mcu_ && (mcu_->silence_timer.next() != kNever || mcu_->line.sending() ||
-                   !mcu_->device.module().at_rest()));
+         (mcu_ &&
+          (mcu_->silence_timer.next() != kNever || mcu_->line.sending() || !mcu_->device.module().at_rest()));
 }
 
 VirtualTime SimulatedModule::next() const {

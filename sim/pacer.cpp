@@ -22,13 +22,9 @@ constexpr unsigned long kTimerSlackNanoseconds = 1;
 
 }  // namespace
 
-Pacer::Pacer(boost::asio::io_context& io, Line& line, const LinePorts::All& ports, FrameWatch* frames, Pace pace,
-             LinePorts::Notice notice)
-    : timer_(io),
-      line_(line),
-      ports_(line, ports, std::move(notice)),
-      frames_(frames),
-      pace_(pace) {
+Pacer::Pacer(boost::asio::io_context& io, Line& line, const LinePorts::All& ports, FrameWatch* frames,
+             Pace pace, LinePorts::Notice notice)
+    : timer_(io), line_(line), ports_(line, ports, std::move(notice)), frames_(frames), pace_(pace) {
   line.bus().observe(*this);
 }
 

@@ -81,7 +81,7 @@ class Pacer final : private BusObserver {
   FrameWatch* frames_;
   Pace pace_;
   std::chrono::steady_clock::time_point began_;
-  VirtualTime first_{0};  ///< what the line's clock showed then
+  VirtualTime first_{0};          ///< what the line's clock showed then
   bool paused_ = false;           ///< a port has been told to wait
   std::size_t last_speaker_ = 0;  ///< station; 0: the master
   VirtualTime last_byte_{0};      ///< when its last byte was over

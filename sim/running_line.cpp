@@ -63,8 +63,8 @@ void RunningLine::open_ports(boost::asio::io_context& io, bool stepped) {
     ports_.push_back(std::move(port));
   }
   if (setup_.tcp) {
-    auto port = std::make_unique<TcpPort>(io, *setup_.tcp,
-                                          stepped ? TcpPort::Linger() : TcpPort::kUsualLinger);
+    auto port =
+        std::make_unique<TcpPort>(io, *setup_.tcp, stepped ? TcpPort::Linger() : TcpPort::kUsualLinger);
     introduced_.tcp = port->address();
     ports_.push_back(std::move(port));
   }

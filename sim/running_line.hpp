@@ -58,7 +58,9 @@ class RunningLine {
   /// Only if it follows the clock.
   Pacer& pacer() { return *pacer_; }
   /// See LinePorts::sent.
-  [[nodiscard]] std::uint64_t sent() const { return pacer_ ? pacer_->sent() : stepped_ ? stepped_->sent() : 0; }
+  [[nodiscard]] std::uint64_t sent() const {
+    return pacer_ ? pacer_->sent() : stepped_ ? stepped_->sent() : 0;
+  }
   /// When its modules have been up for so long.
   [[nodiscard]] VirtualTime when_up_for(VirtualTime up) const { return came_up_ + up; }
   [[nodiscard]] const LineIntroduced& introduced() const { return introduced_; }
@@ -78,7 +80,7 @@ class RunningLine {
   LineIntroduced introduced_;
   LinePorts::All ports_;
   std::unique_ptr<LineRecord> record_;
-  std::unique_ptr<Pacer> pacer_;           ///< if it follows the clock
+  std::unique_ptr<Pacer> pacer_;          ///< if it follows the clock
   std::unique_ptr<SteppedLine> stepped_;  ///< if its time stands still
 };
 

@@ -173,7 +173,8 @@ void Session::keep_a_capture() {
   capture_->begin();
   const auto now = std::chrono::system_clock::now().time_since_epoch();
   for (const auto& running : lines_) {
-    const VirtualTime began = setup_.speed.paced() ? now - running->line().clock().virtual_now() : VirtualTime(0);
+    const VirtualTime began =
+        setup_.speed.paced() ? now - running->line().clock().virtual_now() : VirtualTime(0);
     running->record().keep_in(*capture_, began);
   }
 }
@@ -232,8 +233,7 @@ void Session::start() {
 /// Not in a time that clocks cannot count, and nobody waits for.
 bool Session::ends() const {
   constexpr auto kNobodyWaits = std::chrono::hours(24 * 365 * 100);
-  return setup_.lasts &&
-         (!setup_.speed.paced() || *setup_.lasts / setup_.speed.factor < kNobodyWaits);
+  return setup_.lasts && (!setup_.speed.paced() || *setup_.lasts / setup_.speed.factor < kNobodyWaits);
 }
 
 /// The clock is not exactly there when it is looked at; the lines' records are.
@@ -259,8 +259,8 @@ void Session::stand_still() {
       }
     }));
   }
-  stepper_ = std::make_unique<Stepper>(
-      std::move(lines), setup_.lasts ? lines_.front()->when_up_for(*setup_.lasts) : kNever);
+  stepper_ = std::make_unique<Stepper>(std::move(lines),
+                                       setup_.lasts ? lines_.front()->when_up_for(*setup_.lasts) : kNever);
 }
 
 void Session::run_as_fast_as_it_can() {

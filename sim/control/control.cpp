@@ -399,7 +399,8 @@ std::string control_commands() {
   }
   row("line NAME ...", "one of the five above, of that line; required if there are several");
   row("advance TIME [after N] [quiet]",
-      "with --speed step: waits until N bytes have come from the ports, puts all that came on the lines, and");
+      "with --speed step: waits until N bytes have come from the ports, puts all that came on the lines, "
+      "and");
   row("", "lets TIME pass, with 'quiet' only until nothing is pending; answers ok and the time in seconds");
   row("list", "the modules");
   row("help", "the commands");

@@ -135,8 +135,7 @@ void ControlSocket::read(const std::shared_ptr<Client>& client) {
       client->socket, boost::asio::dynamic_buffer(client->input, kLongestLine + 1), '\n',
       [this, client](const boost::system::error_code& error, std::size_t size) {
         if (error == boost::asio::error::not_found) {
-          send(client, "error: a line has up to " + std::to_string(kLongestLine) + " characters",
-                 Then::Part);
+          send(client, "error: a line has up to " + std::to_string(kLongestLine) + " characters", Then::Part);
         } else if (error == boost::asio::error::eof && !client->input.empty()) {
           send(client, "error: a command ends with a newline; this one did not and was left", Then::Part);
         } else if (!error) {

@@ -11,8 +11,8 @@
 #include <thread>
 #include <vector>
 
-#include "tests/support/control_client.hpp"
 #include "tests/masters/libmodbus_master.hpp"
+#include "tests/support/control_client.hpp"
 #include "tests/support/simulator_process.hpp"
 
 namespace {

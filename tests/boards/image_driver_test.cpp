@@ -7,8 +7,8 @@
 #include "firmware/settings/settings.hpp"
 #include "sim/module.hpp"
 #include "sim/play/modbus_frame.hpp"
-#include "tests/mcu_model/board_bench.hpp"
 #include "tests/boards/images_under_test.hpp"
+#include "tests/mcu_model/board_bench.hpp"
 
 namespace ex9000::registers {
 namespace {

@@ -9,11 +9,11 @@
 #include <vector>
 
 #include "sim/module.hpp"
+#include "tests/boards/images_under_test.hpp"
+#include "tests/mcu_model/board_bench.hpp"
+#include "tests/oracles/reference/hexadecimal.hpp"
 #include "tests/support/either_protocol.hpp"
 #include "tests/support/environment.hpp"
-#include "tests/oracles/reference/hexadecimal.hpp"
-#include "tests/mcu_model/board_bench.hpp"
-#include "tests/boards/images_under_test.hpp"
 
 namespace ex9000::registers {
 namespace {

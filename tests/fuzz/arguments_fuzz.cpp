@@ -68,7 +68,8 @@ void check_line(const LineSetup& line) {
 void check_setup(const Setup& setup) {
   for (const LineSetup& line : setup.lines) {
     check_line(line);
-    require(!setup.speed.max() || (!line.pty && !line.tcp && !line.serial), "no master keeps up with all speeds");
+    require(!setup.speed.max() || (!line.pty && !line.tcp && !line.serial),
+            "no master keeps up with all speeds");
   }
   require(!setup.speed.max() || setup.lasts, "what goes as fast as it can has an end");
   require(setup.speed.factor > 0, "time passes");

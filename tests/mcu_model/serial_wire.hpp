@@ -24,9 +24,7 @@ class SerialSender {
  public:
   /// `level` is told each bit as it begins; `done` that the last stop bit is over.
   SerialSender(Timeline& timeline, std::function<void(bool)> level, std::function<void()> done)
-      : level_(std::move(level)),
-        done_(std::move(done)),
-        next_bit_(timeline, [this] { go_on(); }) {}
+      : level_(std::move(level)), done_(std::move(done)), next_bit_(timeline, [this] { go_on(); }) {}
 
   void begin(Character character, Instant bit_time, Instant start) {
     character_ = character;

@@ -16,8 +16,8 @@
 #include <string>
 #include <vector>
 
-#include "tests/support/directory.hpp"
 #include "tests/firmware/module_bench.hpp"
+#include "tests/support/directory.hpp"
 
 namespace ex9000::sim {
 namespace {

@@ -82,7 +82,8 @@ ChildProcess::~ChildProcess() {
 }
 
 bool ChildProcess::read_more() {
-  constexpr int kHangMilliseconds = 60'000;  // it waits for an event; only a program that hangs takes this long
+  constexpr int kHangMilliseconds =
+      60'000;  // it waits for an event; only a program that hangs takes this long
   pollfd ready{out_, POLLIN, 0};
   return poll(&ready, 1, kHangMilliseconds) == 1 && append_from(out_, output_);
 }

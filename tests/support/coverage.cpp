@@ -39,7 +39,8 @@ constexpr std::array<std::pair<Verdict, const char*>, 6> kVerdicts{{
     {Verdict::BadCheck, "BadCheck"},
     {Verdict::TooShort, "TooShort"},
     {Verdict::TooLong, "TooLong"},
-    // LineError, Overrun and NoRoom need a line or a master out of order: tests/firmware/line/*_assembler_test.cpp.
+    // LineError, Overrun and NoRoom need a line or a master out of order:
+    // tests/firmware/line/*_assembler_test.cpp.
 }};
 
 std::string hex_code(unsigned code) {

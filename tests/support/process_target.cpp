@@ -18,10 +18,7 @@ std::string on_off(bool on) { return on ? " on" : " off"; }
 
 ProcessTarget::ProcessTarget(std::unique_ptr<MasterPort> port, ControlClient& control, std::string line,
                              std::size_t number)
-    : port_(std::move(port)),
-      control_(control),
-      line_(std::move(line)),
-      number_(std::to_string(number)) {}
+    : port_(std::move(port)), control_(control), line_(std::move(line)), number_(std::to_string(number)) {}
 
 void ProcessTarget::start(const Model& /*model*/, const Settings* /*preset*/) { power(true); }
 

@@ -17,8 +17,8 @@ namespace ex9000::system {
 class ProcessTarget final : public play::Target {
  public:
   /// The module with `number` on the control socket, alone on the line called `line`, which `port` is
-  /// connected to. It is as `start` requires, but for its supply, which is off. `control` lives as long as this
-  /// object; the simulator runs with --speed step.
+  /// connected to. It is as `start` requires, but for its supply, which is off. `control` lives as long as
+  /// this object; the simulator runs with --speed step.
   ProcessTarget(std::unique_ptr<MasterPort> port, ControlClient& control, std::string line,
                 std::size_t number);
 

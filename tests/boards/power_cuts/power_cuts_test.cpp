@@ -15,10 +15,10 @@
 #include <string_view>
 #include <vector>
 
-#include "tests/support/environment.hpp"
-#include "tests/boards/power_cuts/cut_bench.hpp"
 #include "tests/boards/images_under_test.hpp"
+#include "tests/boards/power_cuts/cut_bench.hpp"
 #include "tests/boards/power_cuts/stored_state.hpp"
+#include "tests/support/environment.hpp"
 
 namespace ex9000::registers {
 namespace {

@@ -7,8 +7,8 @@
 #include <string>
 #include <vector>
 
-#include "tests/boards/power_cuts/cut_bench.hpp"
 #include "tests/boards/images_under_test.hpp"
+#include "tests/boards/power_cuts/cut_bench.hpp"
 #include "tests/boards/power_cuts/stored_state.hpp"
 #include "tests/support/stored_settings.hpp"
 

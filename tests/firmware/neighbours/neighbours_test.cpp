@@ -8,8 +8,8 @@
 #include <algorithm>
 #include <cstdio>
 
-#include "tests/support/environment.hpp"
 #include "tests/firmware/neighbours/crowd.hpp"
+#include "tests/support/environment.hpp"
 
 namespace ex9000::neighbours {
 namespace {

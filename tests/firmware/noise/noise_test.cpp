@@ -10,9 +10,9 @@
 
 #include "sim/faults/echo.hpp"
 #include "sim/play/modbus_frame.hpp"
-#include "tests/support/environment.hpp"
 #include "tests/firmware/noise/noisy_line.hpp"
 #include "tests/firmware/noise/theory.hpp"
+#include "tests/support/environment.hpp"
 
 namespace ex9000::noise {
 namespace {

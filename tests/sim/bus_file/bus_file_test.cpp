@@ -10,8 +10,8 @@
 #include <vector>
 
 #include "sim/arguments.hpp"
-#include "tests/support/refusal.hpp"
 #include "tests/support/directory.hpp"
+#include "tests/support/refusal.hpp"
 
 namespace ex9000::sim {
 namespace {

@@ -14,11 +14,11 @@
 #include "sim/capture/capture.hpp"
 #include "sim/line.hpp"
 #include "sim/play/modbus_frame.hpp"
+#include "tests/sim/capture/tshark.hpp"
 #include "tests/support/directory.hpp"
 #include "tests/support/simulator_process.hpp"
 #include "tests/support/socket_client.hpp"
 #include "tests/support/terminal.hpp"
-#include "tests/sim/capture/tshark.hpp"
 
 namespace ex9000::system {
 namespace {
