@@ -216,7 +216,7 @@ class Modules(Panel):
             self.browser.until("document.querySelectorAll('#filler .row').length > 10")
             # What the module counts takes the longest way; it counts falling edges, one of every two clicks.
             clicks = 0
-            for _ in range(3 * CLICKS):  # a page that says it has lost the simulator, on a busy machine, tells it nothing
+            for _ in range(3 * CLICKS):  # a page that says, on a busy machine, that it has lost it tells it nothing
                 self.browser.until(f"""{there} && (window.was = [{pressed(input_)}, {count}],
                     document.querySelector("{input_}").click(), true)""")
                 self.browser.until(f"""!({there}) || ({pressed(input_)} !== was[0] && {latched} &&
