@@ -143,7 +143,8 @@ class Bus(Panel):
         # A frame of 0.3 s; all the while remarks are made on it, which are handed out before it.
         page.say("1 fault hang every 50ms")
         master.send(bytes([7] * 40))
-        self.browser.until(f"{error} !== null && {PAINTED}('bad', 20) && {PAINTED}('note', 46)")
+        pause = "(document.getElementById('pause').click(), true)"  # or more remarks would move it out of sight
+        self.browser.until(f"{error} !== null && {PAINTED}('bad', 20) && {PAINTED}('note', 46) && {pause}")
         in_turn = """const rows = [...document.querySelectorAll('#filler .row')];
             rows.sort((a, b) => a.ariaRowIndex - b.ariaRowIndex);
             return rows.map((row) => Number(row.querySelector('.time').textContent))"""

@@ -123,7 +123,7 @@ class Counter:
         if len(main.addresses) <= FALLING_ASLEEP:
             self.idle_turn.note(main.addresses)
         if self._request is None:
-            self._judging.append(len(main.addresses))
+            self._judging.append(sum(address not in self._of_the_tick for address in main.addresses))
             return
         self._turns.append(self._without_the_ticks(main))
         worked = len(main.addresses) > FALLING_ASLEEP
