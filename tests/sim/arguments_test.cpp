@@ -321,7 +321,7 @@ TEST(Arguments, ASpeedIsANumberThatAClockCanFollow) {
   for (const char* speed :
        {"", "0", "-1", "1e-12", "0.00099", "1000.1", "1e300", "nan", "inf", "fast", "1x"}) {
     expect_error({"EX9042D", "--speed", speed}, "--speed: '" + std::string(speed) + "'",
-                 "from 0.001 to 1000, or max");
+                 "from 0.001 to 1000, max or step");
   }
 }
 
