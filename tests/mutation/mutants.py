@@ -11,7 +11,7 @@ import re
 
 TOKEN = re.compile(
     r"""
-    (?P<skip>\s+|//[^\n]*|/\*.*?\*/|^[ \t]*\#[^\n]*|"(?:\\.|[^"\\\n])*"|'(?:\\.|[^'\\\n])+')
+    (?P<skip>\s+|//[^\n]*|/\*.*?\*/|^[ \t]*\#[^\n]*|R"\(.*?\)"|"(?:\\.|[^"\\\n])*"|'(?:\\.|[^'\\\n])+')
     |(?P<number>0[xX][0-9a-fA-F']+[uUlL]*|0b[01']+[uU]*|\d[\d']*[uUlL]*)
     |(?P<word>[A-Za-z_]\w*)
     |(?P<operator>->\*?|<<=|>>=|\+\+|--|&&|\|\||[-+*/%&|^=!<>]=|<<|>>|::|[-+*/%&|^=!<>~?:;,.(){}\[\]])
@@ -116,7 +116,8 @@ def of_constants(file, source):
             continue
         digits = re.match(r"0[xX][0-9a-fA-F']+|0b[01']+|[\d']+", text).group()
         suffix = text[len(digits) :]
-        value = int(digits.replace("'", ""), 0)
+        plain = digits.replace("'", "")
+        value = int(plain, 8 if re.fullmatch(r"0\d+", plain) else 0)
         yield Mutant(file, token.start(), token.end(), f"{value + 1}{suffix}", "constant")
         if value > 0:
             yield Mutant(file, token.start(), token.end(), f"{value - 1}{suffix}", "constant")

@@ -16,6 +16,7 @@ int sum(const int& a, int b) {
   c += 0x10U;
   return true ? c : -1;
 }
+const char* raw = R"({"lines": 3 + 4})";
 """
 
 
@@ -36,6 +37,7 @@ class Mutants(unittest.TestCase):
         for line in changed(mutants.of_operators) | changed(mutants.of_constants):
             self.assertNotIn("|", line.replace("||", ""))
             self.assertFalse(line.startswith("#"))
+            self.assertFalse(line.startswith("const char* raw"))
         self.assertNotIn('store(a, "x != y");', changed(mutants.of_operators))
 
     def test_constants_are_one_more_or_one_less(self):
@@ -44,6 +46,11 @@ class Mutants(unittest.TestCase):
         self.assertIn("c += 15U;", lines)
         self.assertIn("int c = 1;", lines)
         self.assertIn("return false ? c : -1;", lines)
+
+    def test_octal_and_binary_constants_are_read_as_such(self):
+        mode = "const int mode = 0644;\nconst int bits = 0b101;\n"
+        changed_to = {each.text for each in mutants.of_constants("f", mode)}
+        self.assertEqual(changed_to, {str(0o645), str(0o643), "6", "4"})
 
     def test_calls_and_assignments_are_left_out_and_declarations_stay(self):
         left_out = [SOURCE[each.begin : each.end] for each in mutants.of_statements("f", SOURCE)]

@@ -1,0 +1,257 @@
+"""Which tests judge which sources, and what those tests are built of.
+
+A unit is one object file: several sources that are compiled in one piece. A program is a test; it names the units
+that it may need, and the linker takes from them what it does need. Tests are found where CMake has them.
+"""
+
+import dataclasses
+import functools
+import pathlib
+import re
+import subprocess
+
+ROOT = pathlib.Path(__file__).resolve().parents[2]
+
+SHADOW = "-Itests/mcu_model/shadow"
+OBSERVED = "-Itests/support/interleaving/observed"
+
+
+def files(*patterns):
+    listed = subprocess.run(["git", "ls-files", *patterns], cwd=ROOT, check=True, capture_output=True, text=True)
+    return listed.stdout.split()
+
+
+def stem_of(file):
+    return pathlib.Path(file).stem
+
+
+def standing_before(file, options):
+    """What the compiler finds in the place of `file`."""
+    for option in options:
+        place = f"{option[2:]}/{file}"
+        if option.startswith("-I") and (ROOT / place).exists():
+            return place
+    return file
+
+
+@functools.lru_cache(None)
+def included(file):
+    """The files of the tree that a file names: from the root on, as all of them do."""
+    return tuple(re.findall(r'^#include "([\w./-]+)"', (ROOT / file).read_text(), re.MULTILINE))
+
+
+@dataclasses.dataclass(frozen=True)
+class Unit:
+    name: str
+    sources: tuple
+    options: tuple = ("-O0",)
+    more: tuple = ()  # sources that a macro includes
+
+    @functools.cached_property
+    def files(self):
+        """All of the tree that it is compiled of."""
+        found = set()
+        waiting = [*self.sources, *self.more]
+        while waiting:
+            file = standing_before(waiting.pop(), self.options)
+            if file not in found and (ROOT / file).exists():
+                found.add(file)
+                waiting += included(file)
+        return frozenset(found)
+
+    @functools.cached_property
+    def headers(self):
+        """Of libraries, those that take long to compile: GoogleTest's brings most of the standard one's with it."""
+        has_json = any("#include <nlohmann/json.hpp>" in (ROOT / file).read_text() for file in self.files)
+        return ("gtest/gtest.h", "nlohmann/json.hpp") if has_json else ("gtest/gtest.h",)
+
+
+@dataclasses.dataclass(frozen=True)
+class Image:
+    """A shared object: the composition of a board and a model on the register model's bus."""
+
+    board: str
+    model: str
+
+    @property
+    def name(self):
+        return f"image_{self.board}_{self.model}"
+
+    @property
+    def unit(self):
+        options = ("-O1", "-fPIC", "-fvisibility=hidden", "-fvisibility-inlines-hidden", SHADOW)
+        header = f"boards/{self.board}/board.hpp"
+        defined = (f'-DEX9000_MODEL="{self.model}"', f'-DEX9000_BOARD_HEADER="{header}"')
+        sources = ("tests/mcu_model/image_object.cpp", *files("firmware/*.cpp"))
+        return Unit(self.name, sources, options + defined, more=(header,))
+
+
+@dataclasses.dataclass(frozen=True)
+class Program:
+    name: str
+    tests: tuple  # units
+    libraries: tuple  # units' names
+    environment: tuple = ()
+    images: tuple = ()
+    options: tuple = ()
+    processor_seconds: int = 8  # a multiple of what it takes: what does not end has been noticed
+
+    @property
+    def sources(self):
+        return [source for unit in self.tests for source in unit.sources]
+
+    @functools.cached_property
+    def units(self):
+        """The tests' and, of the libraries', those that these can reach: whose header one of them includes."""
+        known = [LIBRARY_UNITS[name] for name in self.libraries]
+        reached = list(self.tests) + [image.unit for image in self.images]
+        for unit in reached:
+            headers = {file.removesuffix(".hpp") for file in unit.files}
+            for each in known:
+                if each not in reached and any(file.removesuffix(".cpp") in headers for file in each.sources):
+                    reached.append(each)
+        return reached
+
+
+# Of the program, what runs on Asio or has files, ports and signals of the operating system: tests of the program as a
+# process have that, and they are no part of this. Names without folder and extension.
+PROCESS = set(
+    "claim control_socket line_ports listening made_file main pacer panel_server port program pty pty_port "
+    "running_line serial_port session stepped_line stepper tcp_port".split()
+)
+# Each takes long to compile, for the sake of a library's headers, or is all that one needs of a unit that does.
+ALONE = ["arguments", "json_log", "line_record", "play_record", "tcp_address"]
+
+
+def sources_of_library(library):
+    """As sim/CMakeLists.txt has them."""
+    text = (ROOT / "sim/CMakeLists.txt").read_text()
+    listed = re.search(rf"add_library\({library} \w+ ([^)]*)\)", text)[1]
+    sources = [f"sim/{source}" for source in listed.split() if source.endswith(".cpp")]
+    return tuple(source for source in sources if stem_of(source) not in PROCESS.union(ALONE))
+
+
+def library_units():
+    core = tuple(files("firmware/*.cpp"))
+    others = {"image_object", "register_target"}
+    mcu = [file for file in files("tests/mcu_model/*.cpp") if stem_of(file) not in others]
+    return [
+        Unit("core", (*core, *files("hal/doubles/*.cpp")), ("-O1",)),
+        Unit("bus", sources_of_library("ex9000_bus"), ("-O1",)),
+        Unit("play", sources_of_library("ex9000_play")),
+        Unit("runner", ("tests/support/core_target.cpp", "tests/support/coverage.cpp"), ("-O1",)),
+        Unit("description", sources_of_library("ex9000_description")),
+        Unit("bus_file", sources_of_library("ex9000_bus_file")),
+        Unit("program", sources_of_library("ex9000_program")),
+        *(Unit(stem_of(file), (file,)) for file in files("sim/*.cpp") if stem_of(file) in ALONE),
+        Unit("panel", sources_of_library("ex9000_panel")),
+        Unit("mcu_model", tuple(mcu), ("-O1", SHADOW)),
+        Unit("observed_core", core, ("-O1", OBSERVED)),
+    ]
+
+
+LIBRARIES = {
+    "ex9000_core": ("core",),
+    "ex9000_bus": ("core", "bus"),
+    "ex9000_runner": ("core", "bus", "play", "runner", "tcp_address"),
+    "ex9000_description": ("core", "bus", "description", "tcp_address"),
+    "ex9000_program": ("core", "bus", "play", "description", "bus_file", "program", "panel", *ALONE),
+    "ex9000_mcu_model": ("mcu_model",),
+    "ex9000_observed_core": ("observed_core",),
+}
+OPTIONS = {"ex9000_mcu_model": (SHADOW,), "ex9000_observed_core": (OBSERVED,)}
+LIBRARY_UNITS = {unit.name: unit for unit in library_units()}
+README = f'-DEX9000_README="{ROOT}/README.md"'
+
+
+def test_program(name, folder, sources, libraries):
+    options = ("-O0", README, *(option for library in libraries for option in OPTIONS.get(library, ())))
+    unit = Unit(name, tuple(f"{folder}/{source}" for source in sources), options)
+    return Program(name, (unit,), tuple(dict.fromkeys(unit for library in libraries for unit in LIBRARIES[library])))
+
+
+def listed_programs(folder):
+    """Tests of CMakeLists.txt in `folder` that need no other library than these, and no process."""
+    text = (ROOT / folder / "CMakeLists.txt").read_text()
+    found = []
+    of_one_file = r"ex9000_test\(\$\{\w+\}_test SOURCES \$\{name\}_test\.cpp LIBRARIES (\w+)\)"
+    for loop in re.finditer(r"foreach\(name ([\w/\s]*)\)(.*?)endforeach", text, re.DOTALL):
+        if listed := re.search(of_one_file, loop[2]):
+            found += [(f"{stem_of(name)}_test", [f"{name}_test.cpp"], listed[1]) for name in loop[1].split()]
+    for test in re.finditer(r"ex9000_test\((\w+)\s+SOURCES\s+([\w/.\s]+?)\s+LIBRARIES\s+([\w\s]+?)\)", text):
+        found.append((test[1], test[2].split(), test[3]))
+    programs = []
+    for name, sources, libraries in found:
+        of_process = any(stem_of(source).removesuffix("_test") in PROCESS for source in sources)
+        if set(libraries.split()) <= set(LIBRARIES) and not of_process:
+            programs.append(test_program(name, folder, sources, libraries.split()))
+    return programs
+
+
+def players():
+    """Plays the transcripts and random sessions against the second description."""
+    options = ("-O1", f'-DEX9000_CONFORMANCE_DIR="{ROOT}/tests/conformance"')
+    units = (
+        Unit("players-transcripts", ("tests/conformance/conformance_core_test.cpp",), options),
+        Unit("players-sessions", ("tests/firmware/reference_sessions_test.cpp",), options),
+        Unit("players-reference", tuple(files("tests/oracles/reference/*.cpp")), options),
+    )
+    # Of all random transactions, enough to reach every rule.
+    enough = (("EX9000_TRANSACTIONS", "100000"),)
+    return Program("transcripts and random sessions", units, LIBRARIES["ex9000_runner"], enough)
+
+
+def image_programs():
+    """Images with inputs and outputs, one a board."""
+    images = tuple(Image(board, "EX9055D") for board in ("lm3s6965evb", "ek-tm4c123gxl"))
+    programs = []
+    for name in ("start_up_driver_test", "image_driver_test"):
+        test = Unit(name, (f"tests/boards/{name}.cpp",), ("-O0", SHADOW, '-DEX9000_IMAGES="images"'))
+        chosen = (("GTEST_FILTER", "*_EX9055D"),)
+        programs.append(Program(name, (test,), ("core", "bus", "mcu_model"), chosen, images, ("-rdynamic", "-ldl"), 40))
+    return programs
+
+
+@dataclasses.dataclass(frozen=True)
+class Area:
+    """Sources that are changed, and the tests that have to notice: first those that are called like the changed file or
+    name its header, then each group in turn."""
+
+    name: str
+    sources: list
+    groups: list
+
+    def nearest_first(self, file):
+        stem = stem_of(file)
+        header = f"{file.removesuffix('.cpp').removesuffix('.hpp')}.hpp"
+
+        def distance(program):
+            if any(stem_of(source).startswith(stem) for source in program.sources):
+                return 0
+            if any(header in included(source) for source in program.sources):
+                return 1
+            return 2
+
+        def reaches(program):
+            return any(file in unit.files for unit in program.units)
+
+        return sorted((program for group in self.groups for program in group if reaches(program)), key=distance)
+
+
+# They play for long, whatever the mutant.
+LONG = {"noise_test", "theory_test"}
+
+
+def areas():
+    firmware = listed_programs("tests/firmware")
+    others = {"play", "observed_core"}
+    of_core = [each for each in firmware if not others & set(each.libraries) and each.name not in LONG]
+    interleaved = [each for each in firmware if each.name == "interleaving_test"]
+    hal = listed_programs("tests/hal")
+    sim = listed_programs("tests/sim")
+    without_process = [file for file in files("sim/*.cpp", "sim/*.hpp") if stem_of(file) not in PROCESS]
+    return [
+        Area("firmware", files("firmware/*.cpp", "firmware/*.hpp"), [[players()], of_core]),
+        Area("hal", files("hal/*.cpp", "hal/*.hpp"), [hal, interleaved, sim, [players()], image_programs()]),
+        Area("sim", without_process, [sim, [players()]]),
+    ]

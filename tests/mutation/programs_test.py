@@ -1,0 +1,43 @@
+"""Which tests judge a changed file, and in what order."""
+
+import unittest
+
+import programs
+
+# Replaced in every test by a bus and a processor of its own, and a list of files that the build generates.
+REACHED_BY_NONE = {"hal/stellaris/bus.hpp", "hal/stellaris/processor.hpp", "sim/panel/page_files.hpp"}
+
+
+class Programs(unittest.TestCase):
+    def setUp(self):
+        self.areas = {area.name: area for area in programs.areas()}
+
+    def nearest(self, area, file):
+        return [program.name for program in self.areas[area].nearest_first(file)]
+
+    def test_every_file_is_compiled_into_a_test(self):
+        for area in self.areas.values():
+            unreached = {file for file in area.sources if not area.nearest_first(file)}
+            self.assertEqual(unreached - REACHED_BY_NONE, set(), area.name)
+
+    def test_tests_come_first_that_are_called_like_the_file(self):
+        self.assertEqual(self.nearest("firmware", "firmware/line/crc16.hpp")[0], "crc16_test")
+        self.assertEqual(self.nearest("hal", "hal/stellaris/uart.hpp")[0], "uart_driver_test")
+        self.assertEqual(self.nearest("sim", "sim/bus.cpp")[0], "bus_test")
+
+    def test_then_those_that_name_its_header(self):
+        self.assertEqual(self.nearest("hal", "hal/stellaris/outputs.hpp")[0], "pins_driver_test")
+        self.assertEqual(self.nearest("hal", "hal/at24c/at24c.hpp")[0], "eeprom_driver_test")
+
+    def test_whole_images_judge_what_no_driver_test_compiles(self):
+        images = ["start_up_driver_test", "image_driver_test"]
+        self.assertEqual(self.nearest("hal", "hal/stellaris/interrupts.hpp"), images)
+
+    def test_a_shadowed_header_is_not_compiled_into_a_unit(self):
+        unit = programs.LIBRARY_UNITS["mcu_model"]
+        self.assertIn("tests/mcu_model/shadow/hal/stellaris/bus.hpp", unit.files)
+        self.assertNotIn("hal/stellaris/bus.hpp", unit.files)
+
+
+if __name__ == "__main__":
+    unittest.main()

@@ -1,0 +1,193 @@
+"""Builds tests with a changed source, and runs them. The tree is not touched: the changed file stands in a folder of
+its own, which the compiler looks into first."""
+
+import hashlib
+import os
+import re
+import shutil
+import subprocess
+import threading
+
+from programs import ROOT
+
+BUILD = ROOT / "build/mutation"
+COMPILE = ["g++", "-std=c++17", "-w", "-fno-ident"]
+MOST_MEMORY = 4 << 30  # what takes more has been noticed
+
+
+def run(command, folder=ROOT, **environment):
+    silent = {"stdout": subprocess.DEVNULL, "stderr": subprocess.DEVNULL}
+    variables = {**os.environ, **environment}
+    return subprocess.run([*map(str, command)], cwd=folder, env=variables, check=False, **silent).returncode == 0
+
+
+def digest(path):
+    return hashlib.sha256(path.read_bytes()).hexdigest()
+
+
+def digest_of_text(text):
+    return hashlib.sha256(text.encode()).hexdigest()[:8]
+
+
+def header_of(unit):
+    """What it begins with; compiled, it takes the compiler a fraction of the time."""
+    return BUILD / f"{unit.options[0]}-{'-'.join(map(digest_of_text, unit.headers))}.hpp"
+
+
+def compiled(unit, folder, overlay=None):
+    """The object of `unit` in `folder`; None: it does not compile."""
+    source = folder / f"{unit.name}.cpp"
+    source.write_text("".join(f'#include "{each}"\n' for each in unit.sources))
+    target = folder / f"{unit.name}.o"
+    first = [f"-I{overlay}"] if overlay else []
+    header = ["-include", header_of(unit)]
+    if not run([*COMPILE, *first, *unit.options, "-I.", *header, "-c", source, "-o", target]):
+        return None
+    # Names of files and functions' places in them are no change of the code.
+    run(["objcopy", "--strip-debug", "--remove-section=.comment", f"--strip-symbol={source.name}", target])
+    return target
+
+
+class Workshop:
+    """What is built of the tree as it is: once, when it is first needed."""
+
+    def __init__(self):
+        shutil.rmtree(BUILD, ignore_errors=True)
+        BUILD.mkdir(parents=True)
+        self.lock = threading.Lock()
+        self.locks = {}
+        self.built = {}
+
+    def once(self, key, build):
+        with self.lock:
+            lock = self.locks.setdefault(key, threading.Lock())
+        with lock:
+            if key not in self.built:
+                self.built[key] = build()
+            return self.built[key]
+
+    # --- units ---
+
+    def header(self, unit):
+        def build():
+            header = header_of(unit)
+            header.write_text("".join(f"#include <{each}>\n" for each in unit.headers))
+            options = [option for option in unit.options if not option.startswith(("-I", "-D"))]
+            return run([*COMPILE, *options, "-xc++-header", header, "-o", f"{header}.gch"])
+
+        return self.once(("header", header_of(unit)), build)
+
+    def unit(self, unit):
+        """Its object, and what tells it from another."""
+
+        def build():
+            self.header(unit)
+            target = compiled(unit, BUILD)
+            if target is None:
+                raise SystemExit(f"mutate: {unit.name} does not compile; build the preset host-debug to see why")
+            return target, digest(target)
+
+        return self.once(("unit", unit.name), build)
+
+    # --- programs ---
+
+    def program(self, program):
+        """The units that the linker takes, once it passes on the tree as it is."""
+
+        def build():
+            libraries = [unit for unit in program.units if unit.name in program.libraries]
+            archives = [self.archive(unit) for unit in libraries]
+            tests = [self.unit(unit)[0] for unit in program.tests]
+            place = BUILD / program.name.replace(" ", "-")
+            command = ["g++", *tests, "-Wl,--trace", "-Wl,--start-group", *archives, "-Wl,--end-group"]
+            linked = subprocess.run(
+                [*map(str, command), "-o", str(place), "-lgtest", "-lgtest_main", "-pthread", *program.options],
+                cwd=ROOT,
+                capture_output=True,
+                check=False,
+                text=True,
+            )
+            for image in program.images:
+                self.image(image)
+            if linked.returncode != 0 or not self.passes(program, place, BUILD):
+                raise SystemExit(f"mutate: {program.name} fails on the tree as it is\n{linked.stderr[-2000:]}")
+            taken = set(re.findall(r"\((\w+)\.o\)", linked.stdout))
+            return [*program.tests, *(unit for unit in libraries if unit.name in taken)]
+
+        return self.once(("program", program.name), build)
+
+    def archive(self, unit):
+        def build():
+            archive = BUILD / f"{unit.name}.a"
+            run(["ar", "rcs", archive, self.unit(unit)[0]])
+            return archive
+
+        return self.once(("archive", unit.name), build)
+
+    def image(self, image):
+        def build():
+            (BUILD / "images").mkdir(exist_ok=True)
+            place = BUILD / "images" / f"{image.name}.so"
+            run(["g++", "-shared", self.unit(image.unit)[0], "-o", place])
+            return place
+
+        return self.once(("image", image.name), build)
+
+    @staticmethod
+    def passes(program, place, folder):
+        limits = ["prlimit", f"--cpu={program.processor_seconds}", f"--as={MOST_MEMORY}"]
+        return run(
+            [*limits, place, "--gtest_brief=1", "--gtest_fail_fast"],
+            folder if program.images else ROOT,
+            TMPDIR=str(folder),
+            **dict(program.environment),
+        )
+
+
+class Bench:
+    """A mutant and what has been built of it, in a folder that the caller removes."""
+
+    def __init__(self, workshop, folder, file, changed):
+        self.workshop = workshop
+        self.folder = folder
+        self.file = file
+        self.objects = {}
+        place = folder / file
+        place.parent.mkdir(parents=True)
+        place.write_text(changed)
+
+    def is_in(self, unit):
+        return self.file in unit.files
+
+    def object_of(self, unit):
+        """None: it does not compile."""
+        if not self.is_in(unit):
+            return self.workshop.unit(unit)[0]
+        if unit.name not in self.objects:
+            self.objects[unit.name] = compiled(unit, self.folder, self.folder)
+        return self.objects[unit.name]
+
+    def units_of(self, program):
+        return [*self.workshop.program(program), *(image.unit for image in program.images)]
+
+    def compiles(self, program):
+        return all(self.object_of(unit) is not None for unit in self.units_of(program))
+
+    def differs(self, program):
+        """Whether any of its code is other than that of the tree as it is."""
+        changed = filter(self.is_in, self.units_of(program))
+        return any(digest(self.object_of(unit)) != self.workshop.unit(unit)[1] for unit in changed)
+
+    def passes(self, program):
+        place = self.folder / "program"
+        objects = [self.object_of(unit) for unit in self.workshop.program(program)]
+        for image in program.images:
+            self.make(image)
+        command = ["g++", *objects, "-o", place, "-lgtest", "-lgtest_main", "-pthread", *program.options]
+        return run(command) and self.workshop.passes(program, place, self.folder)
+
+    def make(self, image):
+        (self.folder / "images").mkdir(exist_ok=True)
+        place = self.folder / "images" / f"{image.name}.so"
+        if not place.exists():
+            run(["g++", "-shared", self.object_of(image.unit), "-o", place])
