@@ -1,5 +1,7 @@
 #include "sim/runtime/line_ports.hpp"
 
+#include <algorithm>
+
 namespace ex9000::sim {
 
 LinePorts::LinePorts(Line& line, const All& ports, Notice notice)
@@ -16,14 +18,23 @@ void LinePorts::hand_out() {
   const bool stopped = std::exchange(stopped_sending_, false);
   sent_ += heard.size();
   for (const auto& port : ports_) {
-    const std::size_t dropped = heard.empty() ? 0 : port->send(heard);
-    if (dropped != 0) {
-      notice_("a port is full: " + std::to_string(dropped) + " of " + std::to_string(heard.size()) +
-              " bytes dropped; the master must read them");
+    if (!heard.empty()) {
+      report_dropped(*port, port->send(heard));
     }
     if (stopped) {
       port->sent();
     }
+  }
+}
+
+void LinePorts::report_dropped(const Port& port, std::size_t bytes) {
+  const auto known = std::find(full_.begin(), full_.end(), &port);
+  if (bytes == 0 && known != full_.end()) {
+    full_.erase(known);
+  } else if (bytes != 0 && known == full_.end()) {
+    full_.push_back(&port);
+    notice_("a port is full: " + std::to_string(bytes) +
+            " bytes are dropped, and all that follow until its master reads");
   }
 }
 

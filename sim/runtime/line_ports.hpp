@@ -30,7 +30,7 @@ class LinePorts final : private BusObserver {
   /// A module has stopped sending since the last `hand_out`.
   [[nodiscard]] bool reply_is_complete() const { return stopped_sending_; }
   /// Writes to all ports what was heard since the last call. Does not block: bytes that find no room are
-  /// dropped, with a notice.
+  /// dropped, with a notice for the first of them.
   void hand_out();
   /// A port at which nobody has set a rate leaves the line's rate alone.
   void take_rate(const Port& port);
@@ -42,6 +42,7 @@ class LinePorts final : private BusObserver {
   [[nodiscard]] const All& all() const { return ports_; }
 
  private:
+  void report_dropped(const Port& port, std::size_t bytes);
   void driver(std::size_t station, bool on, VirtualTime now) override;
   void byte(std::size_t /*station*/, std::uint8_t /*byte*/, std::uint32_t /*baud*/, bool /*collided*/,
             VirtualTime /*start*/, VirtualTime /*end*/) override {}
@@ -53,6 +54,7 @@ class LinePorts final : private BusObserver {
   std::vector<Mismatch> reported_;                           ///< one for each module; zeros: none
   std::vector<std::uint8_t> heard_;
   std::uint64_t sent_ = 0;
+  std::vector<const Port*> full_;  ///< those that dropped bytes last, which has been reported
   bool stopped_sending_ = false;  ///< a module, since `heard_` was handed out
 };
 

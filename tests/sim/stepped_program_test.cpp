@@ -89,7 +89,7 @@ TEST(SteppedProgram, APortThatNobodyReadsIsReported) {
   const Terminal silent(stepped.simulator.tty(), 9600);
   // Foreign traffic reaches the port like a reply; a pseudo-terminal holds some kilobytes.
   stepped.control.ok("fault foreign-traffic 2430314D0D every 10ms");
-  stepped.control.ok("advance 60s");
+  stepped.control.send("advance 60s\n");  // the log has to be read meanwhile, each strike is a line of it
   EXPECT_TRUE(stepped.simulator.wait_for("a port is full: ")) << stepped.simulator.output();
 }
 

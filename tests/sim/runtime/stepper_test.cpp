@@ -287,8 +287,25 @@ TEST_F(StepperTest, BytesThatFindNoRoomAreDroppedAndReported) {
   EXPECT_EQ(advance("50ms"), "ok 0.15");
   EXPECT_EQ(line_.port->take_read(), "!019");
   ASSERT_EQ(line_.notices.size(), 1U);
-  EXPECT_EQ(line_.notices[0].rfind("a port is full: 5 of 9 bytes dropped", 0), 0U) << line_.notices[0];
+  EXPECT_EQ(line_.notices[0].rfind("a port is full: 5 bytes are dropped", 0), 0U) << line_.notices[0];
   EXPECT_EQ(line_.stepped->sent(), 9U);
+}
+
+TEST_F(StepperTest, AFullPortIsReportedOnceUntilItHasRoomAgain) {
+  const auto ask = [this] {
+    line_.port->write("$01M\r");
+    advance("50ms");
+  };
+  line_.port->room_ = 9;
+  ask();
+  ask();
+  ask();
+  EXPECT_EQ(line_.notices.size(), 1U);
+  line_.port->take_read();
+  ask();
+  EXPECT_EQ(line_.notices.size(), 1U);
+  ask();
+  EXPECT_EQ(line_.notices.size(), 2U);
 }
 
 TEST_F(StepperTest, ALaterOneReplacesOneThatStillWaits) {
