@@ -55,7 +55,7 @@ class LinePorts final : private BusObserver {
   std::vector<std::uint8_t> heard_;
   std::uint64_t sent_ = 0;
   std::vector<const Port*> full_;  ///< those that dropped bytes last, which has been reported
-  bool stopped_sending_ = false;  ///< a module, since `heard_` was handed out
+  bool stopped_sending_ = false;   ///< a module, since `heard_` was handed out
 };
 
 }  // namespace ex9000::sim

@@ -12,9 +12,12 @@ namespace ex9000::system {
 
 class LibmodbusMaster {
  public:
+  /// Milliseconds: long enough for a busy machine.
+  static constexpr unsigned kReplies = 10'000;
+
   LibmodbusMaster(const std::string& tty, int baud)
       : context_(modbus_new_rtu(tty.c_str(), baud, 'N', 8, 1), modbus_free) {
-    wait_for_replies(1000);
+    wait_for_replies(kReplies);
     if (modbus_connect(context_.get()) != 0) {
       throw std::runtime_error(modbus_strerror(errno));
     }

@@ -16,7 +16,8 @@ class Mbpoll : public testing::TestWithParam<Way> {
  protected:
   /// `options` and `values` are mbpoll's words; references count from 0, as on the line.
   Finished mbpoll(const Arguments& options, const Arguments& values = {}) {
-    Arguments command{"mbpoll", "-m", "rtu", "-b", std::to_string(GetParam().baud), "-P", "none", "-0", "-1"};
+    Arguments command{"mbpoll", "-m", "rtu", "-b", std::to_string(GetParam().baud), "-P", "none",
+                      "-0",     "-1", "-o",  "10"};  // seconds that a reply may take on a busy machine
     command.insert(command.end(), options.begin(), options.end());
     command.push_back(modules_.tty());
     command.insert(command.end(), values.begin(), values.end());

@@ -37,7 +37,7 @@ from pymodbus.transaction import ModbusRtuFramer
 from pymodbus.utilities import pack_bitstring, unpack_bitstring
 
 RATES = [1200, 2400, 4800, 9600, 19200, 38400, 57600, 115200]
-TIMEOUT = 1
+TIMEOUT = 10  # seconds; long enough for a busy machine
 
 
 def words(data):
@@ -49,8 +49,8 @@ def packed(*values):
 
 
 def turnaround(baud):
-    """How long a master waits after a broadcast, which nobody answers: the longest one here on the line, and 0.1 s."""
-    return 0.1 + 150 / baud
+    """How long a master waits after a broadcast, which nobody answers: the longest one here on the line, and 0.3 s."""
+    return 0.3 + 150 / baud
 
 
 class IdentificationRequest(ReadDeviceInformationRequest):

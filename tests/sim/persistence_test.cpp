@@ -28,7 +28,8 @@ using std::chrono::microseconds;
 
 constexpr std::size_t kImageSize = 8192;
 /// Nobody who has to wait for one of these would be waiting for long.
-constexpr std::chrono::seconds kPatience{10};
+constexpr std::chrono::seconds kPatience{
+    60};  // it waits for an event; only a program that hangs takes this long
 
 bool has(const std::string& text, const std::string& part) { return text.find(part) != std::string::npos; }
 

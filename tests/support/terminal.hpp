@@ -22,8 +22,8 @@ class Terminal {
   void type(const std::string& text);
   /// What is there, or comes within `patience`; empty: nothing.
   std::vector<std::uint8_t> read(std::chrono::nanoseconds patience);
-  /// Up to CR, or what has come before nothing came for `patience`.
-  std::string read_line(std::chrono::milliseconds patience = std::chrono::seconds(10));
+  /// Up to CR, or what has come before nothing came for `patience`: only a program that hangs takes 60 s.
+  std::string read_line(std::chrono::milliseconds patience = std::chrono::seconds(60));
 
  private:
   int fd_;

@@ -8,13 +8,13 @@
 #include <nlohmann/json.hpp>
 #include <sstream>
 #include <string>
-#include <thread>
 #include <vector>
 
 #include "sim/capture/capture.hpp"
 #include "sim/line.hpp"
 #include "sim/play/modbus_frame.hpp"
 #include "tests/sim/capture/tshark.hpp"
+#include "tests/support/control_client.hpp"
 #include "tests/support/directory.hpp"
 #include "tests/support/simulator_process.hpp"
 #include "tests/support/socket_client.hpp"
@@ -28,14 +28,14 @@ using Bytes = std::vector<std::uint8_t>;
 const std::string kSent = "0";  // frame.p2p_dir
 const std::string kReceived = "1";
 
-/// A simulator that is killed before anybody looks at what it has kept.
+/// A simulator in stepped time that is killed before anybody looks at what it has kept.
 class Captured {
  public:
   explicit Captured(std::vector<std::string> arguments) : simulator_(with_capture(std::move(arguments))) {}
 
   /// Sends a request; waits for so many bytes of an answer.
   void ask(const Bytes& request, std::size_t answer) {
-    client_.send(request);
+    tell(request);
     EXPECT_EQ(client_.receive(answer).size(), answer);
   }
   void ask(const std::string& request, std::size_t answer) {
@@ -44,10 +44,10 @@ class Captured {
   /// Sends a request, and waits until whatever comes of it is over and written down.
   void tell(const Bytes& request) {
     client_.send(request);
-    while (!client_.hears_nothing_for(std::chrono::milliseconds(100))) {
-      client_.receive(1);
-    }
+    control_.ok("advance 1s after " + std::to_string(request.size()) + " quiet");
   }
+  /// Lets so much time pass.
+  void pass(const std::string& time) { control_.ok("advance " + time); }
 
   void wait_for(const std::string& text) { EXPECT_TRUE(simulator_.wait_for(text)); }
 
@@ -61,12 +61,14 @@ class Captured {
 
  private:
   static std::vector<std::string> with_capture(std::vector<std::string> arguments) {
-    arguments.insert(arguments.end(), {"--tcp", "0", "--capture", "line.pcapng"});
+    arguments.insert(arguments.end(),
+                     {"--tcp", "0", "--capture", "line.pcapng", "--speed", "step", "--control", "control"});
     return arguments;
   }
 
   SimulatorProcess simulator_;
   SocketClient client_{simulator_.tcp_port()};
+  ControlClient control_{simulator_.directory() + "/control"};
   bool killed_ = false;
 };
 
@@ -246,7 +248,8 @@ TEST(Capture, TheLinesOfABusFileAreInterfaces) {
 
 TEST(Capture, WhatAStrangerSaysIsNotTakenForAnAnswer) {
   Captured line({"EX9042D-M@01", "--fault", "foreign-traffic 0501000000083C48 at 1s", "--log"});
-  line.wait_for("05 01 00 00 00 08 3C 48");  // or the request would collide with that
+  line.pass("1s");
+  line.wait_for("05 01 00 00 00 08 3C 48");
   line.tell(with_crc({1, 1, 0, 0, 0, 1}));
   const std::vector<Packet> packets = line.decoded({"frame.p2p_dir", "_ws.col.Info"});
   ASSERT_EQ(packets.size(), 3U);
@@ -352,10 +355,14 @@ TEST(Capture, TimesAreTheLinesOwnBehindTheWallClockOfTheStart) {
     return std::chrono::duration<double>(std::chrono::system_clock::now().time_since_epoch()).count();
   };
   const double before = wall();
-  Captured line({"EX9042D-M@01"});
-  line.ask(with_crc({1, 1, 0, 0, 0, 1}), 6);
+  SimulatorProcess simulator({"EX9042D-M@01", "--tcp", "0", "--capture", "line.pcapng"});
+  SocketClient client(simulator.tcp_port());
+  client.send(with_crc({1, 1, 0, 0, 0, 1}));
+  EXPECT_EQ(client.receive(6).size(), 6U);
   const double after = wall();
-  const std::vector<Packet> packets = line.decoded({"frame.time_epoch", "frame.interface_name"});
+  simulator.end(SIGTERM);
+  const std::vector<Packet> packets =
+      decoded(simulator.directory() + "/line.pcapng", {"frame.time_epoch", "frame.interface_name"});
   ASSERT_EQ(packets.size(), 2U);
   const double asked = std::stod(packets[0].at("frame.time_epoch"));
   const double answered = std::stod(packets[1].at("frame.time_epoch"));
@@ -367,12 +374,15 @@ TEST(Capture, TimesAreTheLinesOwnBehindTheWallClockOfTheStart) {
 }
 
 TEST(Capture, WhatTheLineHadNotFinishedIsKeptWhereTheProgramEndsInPeace) {
-  SimulatorProcess simulator({"EX9042D@01", "--capture", "line.pcapng", "--log"});
+  SimulatorProcess simulator(
+      {"EX9042D@01", "--capture", "line.pcapng", "--log", "--speed", "step", "--control", "control"});
+  ControlClient control(simulator.directory() + "/control");
   Terminal terminal(simulator.tty(), 9600);
   terminal.type("$01M\r");
+  control.ok("advance 1s after 5 quiet");
   EXPECT_EQ(terminal.read_line(), "!019042D\r");
   terminal.type("$01");
-  std::this_thread::sleep_for(std::chrono::milliseconds(100));
+  control.ok("advance 20ms after 3");
   EXPECT_EQ(simulator.end(SIGTERM), 0);
   const std::vector<Packet> packets = decoded(simulator.directory() + "/line.pcapng", {"text"});
   ASSERT_EQ(packets.size(), 3U);

@@ -227,10 +227,11 @@ class Cable {
 
  private:
   bool read_one(std::string& bytes) const {
-    constexpr int kPatienceMilliseconds = 10'000;
+    constexpr int kHangMilliseconds =
+        60'000;  // it waits for an event; only a program that hangs takes this long
     pollfd ready{far_, POLLIN, 0};
     char byte = 0;
-    if (poll(&ready, 1, kPatienceMilliseconds) != 1 || ::read(far_, &byte, 1) != 1) {
+    if (poll(&ready, 1, kHangMilliseconds) != 1 || ::read(far_, &byte, 1) != 1) {
       return false;
     }
     bytes += byte;
