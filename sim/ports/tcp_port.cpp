@@ -42,6 +42,13 @@ struct TcpPort::Client {
 
   tcp::socket socket;
   boost::asio::steady_timer linger;
+  /// What waits for it is told, and does nothing any more.
+  void close() {
+    boost::system::error_code ignored;
+    linger.cancel(ignored);
+    socket.close(ignored);
+  }
+
   bool reading = false;  ///< waits for more bytes
   bool paused = false;
   bool lingers = false;  ///< says nothing any more
@@ -54,7 +61,11 @@ TcpPort::TcpPort(boost::asio::io_context& io, const TcpAddress& address, Linger 
   }
 }
 
-TcpPort::~TcpPort() = default;
+TcpPort::~TcpPort() {
+  for (const ClientPointer& client : clients_) {
+    client->close();
+  }
+}
 
 std::string TcpPort::address() const {
   const tcp::endpoint endpoint = acceptor_.local_endpoint();
@@ -88,8 +99,8 @@ void TcpPort::admit(tcp::socket socket) {
     socket.set_option(tcp::no_delay(true), ignored);
     socket.set_option(tcp::socket::keep_alive(true), ignored);
     socket.non_blocking(true, ignored);
-    clients_.push_back(std::make_unique<Client>(io_, std::move(socket)));
-    read(*clients_.back());
+    clients_.push_back(std::make_shared<Client>(io_, std::move(socket)));
+    read(clients_.back());
   }
 }
 
@@ -100,7 +111,8 @@ void TcpPort::read_waiting() {
   for (tcp::socket socket = acceptor_.accept(error); !error; socket = acceptor_.accept(error)) {
     admit(std::move(socket));
   }
-  for (const auto& client : clients_) {
+  const std::list<ClientPointer> clients = clients_;
+  for (const ClientPointer& client : clients) {
     take(*client);
   }
 }
@@ -109,7 +121,7 @@ void TcpPort::read_waiting() {
 boost::system::error_code TcpPort::take(Client& client) {
   std::array<std::uint8_t, 4096> bytes{};
   boost::system::error_code ended;
-  while (!client.paused && !ended) {
+  while (!client.paused && !ended && client.socket.is_open()) {
     const std::size_t size = client.socket.read_some(boost::asio::buffer(bytes), ended);
     if (!ended) {
       client.paused = !received_(bytes.data(), size);
@@ -124,7 +136,7 @@ void TcpPort::make_room() {
     const auto oldest =
         std::find_if(clients_.begin(), clients_.end(), [](const auto& client) { return client->lingers; });
     if (oldest != clients_.end()) {
-      clients_.erase(oldest);
+      forget(ClientPointer(*oldest));
     }
   }
 }
@@ -140,17 +152,17 @@ void TcpPort::accept_later() {
   });
 }
 
-void TcpPort::read(Client& client) {
-  if (client.reading || client.paused) {
+void TcpPort::read(const ClientPointer& client) {
+  if (client->reading || client->paused) {
     return;
   }
-  client.reading = true;
-  client.socket.async_wait(tcp::socket::wait_read, [this, &client](const boost::system::error_code& error) {
-    if (error == boost::asio::error::operation_aborted) {
-      return;
+  client->reading = true;
+  client->socket.async_wait(tcp::socket::wait_read, [this, client](const boost::system::error_code& error) {
+    if (!client->socket.is_open()) {
+      return;  // forgotten, or the port is no more
     }
-    client.reading = false;
-    const boost::system::error_code ended = error ? error : take(client);
+    client->reading = false;
+    const boost::system::error_code ended = error ? error : take(*client);
     if (ended && ended != boost::asio::error::would_block) {
       part_with(client, ended == boost::asio::error::eof);
     } else {
@@ -160,34 +172,35 @@ void TcpPort::read(Client& client) {
 }
 
 void TcpPort::resume() {
-  for (const auto& client : clients_) {
+  for (const ClientPointer& client : clients_) {
     client->paused = false;
     if (!client->lingers) {
-      read(*client);
+      read(client);
     }
   }
 }
 
 /// Who has only said all there is to say is let go later.
-void TcpPort::part_with(Client& client, bool listens) {
+void TcpPort::part_with(const ClientPointer& client, bool listens) {
   if (!listens) {
     forget(client);
     return;
   }
-  client.lingers = true;
+  client->lingers = true;
   if (!linger_) {
     return;
   }
-  client.linger.expires_after(*linger_);
-  client.linger.async_wait([this, &client](const boost::system::error_code& error) {
+  client->linger.expires_after(*linger_);
+  client->linger.async_wait([this, client](const boost::system::error_code& error) {
     if (error != boost::asio::error::operation_aborted) {
       forget(client);
     }
   });
 }
 
-void TcpPort::forget(Client& client) {
-  clients_.remove_if([&client](const auto& other) { return other.get() == &client; });
+void TcpPort::forget(const ClientPointer& client) {
+  client->close();
+  clients_.remove(client);
 }
 
 std::size_t TcpPort::send(const std::vector<std::uint8_t>& bytes) {
@@ -197,6 +210,9 @@ std::size_t TcpPort::send(const std::vector<std::uint8_t>& bytes) {
     const std::size_t written = client->socket.write_some(boost::asio::buffer(bytes), error);
     const bool gone = error && error != boost::asio::error::would_block;
     dropped = std::max(dropped, gone ? 0 : bytes.size() - written);
+    if (gone) {
+      client->close();
+    }
     return gone;
   });
   return dropped;

@@ -40,18 +40,22 @@ class TcpPort final : public Port {
   void accept();
   void admit(boost::asio::ip::tcp::socket socket);
   void accept_later();
-  void read(Client& client);
+  /// Shared with what waits for its bytes: a client may be forgotten while it is being read from, because a
+  /// reply to it fails.
+  using ClientPointer = std::shared_ptr<Client>;
+
+  void read(const ClientPointer& client);
   boost::system::error_code take(Client& client);
   void make_room();
-  void part_with(Client& client, bool listens);
-  void forget(Client& client);
+  void part_with(const ClientPointer& client, bool listens);
+  void forget(const ClientPointer& client);
 
   boost::asio::io_context& io_;
   boost::asio::ip::tcp::acceptor acceptor_;
   boost::asio::steady_timer next_try_;
   Linger linger_;
   Received received_;
-  std::list<std::unique_ptr<Client>> clients_;
+  std::list<ClientPointer> clients_;
 };
 
 }  // namespace ex9000::sim

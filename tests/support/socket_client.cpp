@@ -32,7 +32,18 @@ SocketClient::SocketClient(std::uint16_t port) : fd_(socket(AF_INET, SOCK_STREAM
   }
 }
 
-SocketClient::~SocketClient() { close(fd_); }
+SocketClient::~SocketClient() {
+  if (fd_ >= 0) {
+    close(fd_);
+  }
+}
+
+void SocketClient::abort() {
+  const linger at_once{1, 0};
+  setsockopt(fd_, SOL_SOCKET, SO_LINGER, &at_once, sizeof at_once);
+  close(fd_);
+  fd_ = -1;
+}
 
 void SocketClient::send(const std::vector<std::uint8_t>& bytes) {
   if (::send(fd_, bytes.data(), bytes.size(), MSG_NOSIGNAL) != static_cast<ssize_t>(bytes.size())) {

@@ -20,6 +20,8 @@ class SocketClient {
   void send(const std::string& text) { send(std::vector<std::uint8_t>(text.begin(), text.end())); }
   /// Says that nothing more will come, and listens on.
   void close_writing();
+  /// Goes at once, with a reset, as a program that crashes; nothing can be done with it any more.
+  void abort();
   /// What comes until `count` bytes are there, nothing came for 60 s, which only a program that hangs takes,
   /// or the other side has closed.
   std::vector<std::uint8_t> receive(std::size_t count);
