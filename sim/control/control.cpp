@@ -398,10 +398,9 @@ std::string control_commands() {
     row(verb.shape(), verb.does);
   }
   row("line NAME ...", "one of the five above, of that line; required if there are several");
-  row("advance TIME [after N] [quiet]",
-      "with --speed step: waits until N bytes have come from the ports, puts all that came on the lines, "
-      "and");
-  row("", "lets TIME pass, with 'quiet' only until nothing is pending; answers ok and the time in seconds");
+  text << "  advance TIME [after N] [quiet]\n";
+  row("", "with --speed step: waits until N bytes have arrived from the ports, puts all that arrived on");
+  row("", "the lines, and lets TIME pass, with 'quiet' only until nothing is pending; answers the time");
   row("list", "the modules");
   row("help", "the commands");
   row("quit", "ends the simulator");

@@ -59,6 +59,14 @@ void replace_port(std::string& text, const std::string& port) {
   }
 }
 
+/// People do not wait longer than they have to; a busy machine may take more than 0.3 s to answer.
+void be_patient(std::string& text) {
+  const std::string written = "socat -t 0.3 ";
+  for (auto at = text.find(written); at != std::string::npos; at = text.find(written, at + 1)) {
+    text.replace(at, written.size(), "socat -t 2 ");
+  }
+}
+
 /// `ex9000-sim describe` and `play` print and end.
 bool starts_the_simulator(const Block& block) {
   const auto begins_with = [&](const char* text) { return block.text.rfind(text, 0) == 0; };
@@ -140,6 +148,7 @@ TEST(Readme, ItsExamplesDoWhatItSays) {
       SCOPED_TRACE(section.heading);
       for (Block& block : section.blocks) {
         replace_port(block.text, port);
+        be_patient(block.text);
       }
       paste(section);
     });
