@@ -71,6 +71,22 @@ class ModuleTurns : public testing::Test {
   bool written_ = false;
 };
 
+TEST_F(ModuleTurns, ItIsAtRestUnlessARequestWaitsIsStoredOrIsAnswered) {
+  EXPECT_TRUE(module_.at_rest());
+  put("$01M");
+  EXPECT_FALSE(module_.at_rest());  // it waits
+  module_.step(now_);
+  EXPECT_FALSE(module_.at_rest());  // its reply is ready
+  take_reply();
+  EXPECT_FALSE(module_.at_rest());  // and is being sent
+  module_.reply_sent(now_);
+  EXPECT_TRUE(module_.at_rest());
+  put("~01OPUMP");
+  module_.step(now_);
+  EXPECT_FALSE(module_.at_rest());                         // it is being stored
+  EXPECT_FALSE(Module(*find_model("EX9043D")).at_rest());  // one that has not come up
+}
+
 TEST_F(ModuleTurns, AReplyThatIsReadyWantsToBeTaken) {
   put("$01M");
   module_.step(now_);
