@@ -66,11 +66,11 @@ void Stepper::advance(const std::string& command, Answer answer) {
     answer({std::string("error: ") + error.what(), false});
     return;
   }
+  read_ports();  // which may be what one that waits is waiting for
   if (waiting_) {
     const Waiting replaced = *std::exchange(waiting_, std::nullopt);
     replaced.answer({"error: another 'advance' has replaced this one, which still waited for bytes", false});
   }
-  read_ports();
   if (bytes_waiting() >= request.after) {
     carry_out(request, answer);
   } else {
@@ -127,7 +127,7 @@ void Stepper::pass(const Request& request) {
   const auto is_earlier = [](const State& a, const State& b) { return a.next < b.next; };
   const auto is_pending = [](const State& state) { return state.pending; };
   VirtualTime now = lines_.front()->now();
-  const VirtualTime until = std::min(end_, now + request.time);
+  const VirtualTime until = request.time < end_ - now ? now + request.time : end_;
   while (!request.quiet || std::any_of(states.begin(), states.end(), is_pending)) {
     const auto earliest = std::min_element(states.begin(), states.end(), is_earlier);
     if (earliest->next > until) {

@@ -1,4 +1,5 @@
-// Runs the benchmarks; fails where a `figure` is below its `at_least` or above its `at_most`.
+// Runs the benchmarks; fails if one of them gives a wrong answer. Durations judge nothing: a `figure` that is
+// below its `at_least` or above its `at_most` is reported.
 #include <benchmark/benchmark.h>
 
 #include <iostream>
@@ -7,14 +8,15 @@
 
 namespace {
 
-class DemandingReporter final : public benchmark::ConsoleReporter {
+class Reporter final : public benchmark::ConsoleReporter {
  public:
-  DemandingReporter() : ConsoleReporter(OO_Tabular) {}
+  Reporter() : ConsoleReporter(OO_Tabular) {}
 
   void ReportRuns(const std::vector<Run>& runs) override {
     ConsoleReporter::ReportRuns(runs);
     for (const Run& run : runs) {
-      failed_ = failed_ || run.error_occurred || !meets_its_demand(run);
+      failed_ = failed_ || run.error_occurred;
+      report_demand(run);
     }
   }
   [[nodiscard]] bool failed() const { return failed_; }
@@ -24,14 +26,14 @@ class DemandingReporter final : public benchmark::ConsoleReporter {
     const auto found = run.counters.find(name);
     return found == run.counters.end() ? otherwise : found->second.value;
   }
-  static bool meets_its_demand(const Run& run) {
+  static void report_demand(const Run& run) {
     constexpr double kNoLimit = std::numeric_limits<double>::infinity();
     const double figure = counter(run, "figure", 0);
-    if (figure >= counter(run, "at_least", -kNoLimit) && figure <= counter(run, "at_most", kNoLimit)) {
-      return true;
+    const bool meets =
+        figure >= counter(run, "at_least", -kNoLimit) && figure <= counter(run, "at_most", kNoLimit);
+    if (!meets) {
+      std::cerr << run.benchmark_name() << ": " << figure << " is not what is demanded of a quiet machine\n";
     }
-    std::cerr << run.benchmark_name() << ": " << figure << " is not what is demanded\n";
-    return false;
   }
 
   bool failed_ = false;
@@ -44,7 +46,7 @@ int main(int argc, char** argv) {
   if (benchmark::ReportUnrecognizedArguments(argc, argv)) {
     return 2;
   }
-  DemandingReporter reporter;
+  Reporter reporter;
   benchmark::RunSpecifiedBenchmarks(&reporter);
   return reporter.failed() ? 1 : 0;
 }

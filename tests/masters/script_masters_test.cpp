@@ -30,7 +30,7 @@ const Master kJsmodbus{"jsmodbus", {"env", kModules, "node", kScripts + "/jsmodb
 class ScriptMaster : public testing::TestWithParam<Master> {
  protected:
   static void expect_to_pass(std::vector<std::string> arguments) {
-    std::vector<std::string> command{"timeout", "120"};
+    std::vector<std::string> command{"timeout", "1200"};
     command.insert(command.end(), GetParam().command.begin(), GetParam().command.end());
     command.insert(command.end(), arguments.begin(), arguments.end());
     const Finished finished = run(command);

@@ -185,7 +185,7 @@ TEST(Lines, FilesAreMadeForAllModulesOrForNone) {
       {)" + std::string(wrong) +
                        R"(, "modules": [{"model": "EX9042D", "eeprom": "second"}]}]})");
     const auto before = directory.contents();
-    const Finished finished = run({"timeout", "10", simulator_path(), file.path()}, directory.path());
+    const Finished finished = run({"timeout", "60", simulator_path(), file.path()}, directory.path());
     EXPECT_EQ(finished.status, 2) << finished.error;
     EXPECT_EQ(std::count(finished.error.begin(), finished.error.end(), '\n'), 1) << finished.error;
     EXPECT_EQ(directory.contents(), before) << wrong;

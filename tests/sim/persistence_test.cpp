@@ -452,7 +452,7 @@ TEST(Persistence, APowerCutAndAKillUponItLeaveNoMoreThanEither) {
 /// Nothing starts: exit status 2, one line that names the file, and `directory` is as it was.
 void expect_refused(const Arguments& modules, const std::string& file, const Directory& directory) {
   const auto before = directory.contents();
-  Arguments command{"timeout", "10", simulator_path(), "--control", "control"};
+  Arguments command{"timeout", "60", simulator_path(), "--control", "control"};
   command.insert(command.end(), modules.begin(), modules.end());
   const Finished finished = run(command, directory.path());
   EXPECT_EQ(finished.status, 2) << finished.error;
@@ -542,7 +542,7 @@ TEST(BadFile, NoFileIsMadeWhereSomethingElseIsRefused) {
   for (const Arguments& wrong :
        {Arguments{"--control", "taken"}, Arguments{"--pty", "taken"}, Arguments{"--pty", "missing/tty"},
         Arguments{"--tcp", "256.0.0.1:5020"}, Arguments{"--serial", "missing"}}) {
-    Arguments command{"timeout", "10", simulator_path(), "EX9042D,eeprom=image"};
+    Arguments command{"timeout", "60", simulator_path(), "EX9042D,eeprom=image"};
     command.insert(command.end(), wrong.begin(), wrong.end());
     EXPECT_EQ(run(command, directory.path()).status, 2) << wrong[0];
     EXPECT_EQ(directory.contents(), before) << wrong[0];

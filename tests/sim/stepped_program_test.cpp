@@ -63,6 +63,22 @@ TEST(SteppedProgram, AMasterThatHasClosedItsSideStillGetsItsReply) {
   EXPECT_EQ(master.receive_text(9), "!019042D\r");
 }
 
+TEST(SteppedProgram, AMasterThatCrashesWhileItIsAnsweredDoesNoHarm) {
+  for (int round = 0; round < 5; ++round) {
+    Stepped stepped({"EX9042D", "--tcp", "0"});
+    SocketClient crashing(stepped.simulator.tcp_port());
+    SocketClient other(stepped.simulator.tcp_port());
+    stepped.control.send("advance 60s after 5\n");
+    for (int request = 0; request < 100; ++request) {
+      crashing.send("$01M\r");
+    }
+    crashing.abort();
+    other.send("\r$01M\r");  // what the other sent may have gone with it
+    EXPECT_EQ(stepped.control.line().rfind("ok ", 0), 0U);
+    EXPECT_EQ(stepped.simulator.end(SIGTERM), 0);
+  }
+}
+
 TEST(SteppedProgram, TheSameCommandsProduceTheSameBytesAtTheSameTimes) {
   const auto run_once = [](const std::string& capture) {
     Stepped stepped({"EX9042D@01", "EX9052D-M@02", "--capture", capture, "--log", "--seed", "7", "--fault",

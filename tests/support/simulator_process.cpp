@@ -6,8 +6,8 @@ namespace ex9000::system {
 
 namespace {
 
-std::vector<std::string> command_of(const std::vector<std::string>& arguments) {
-  std::vector<std::string> command{simulator_path()};
+std::vector<std::string> command_of(const std::vector<std::string>& arguments, const std::string& program) {
+  std::vector<std::string> command{program};
   command.insert(command.end(), arguments.begin(), arguments.end());
   return command;
 }
@@ -15,9 +15,10 @@ std::vector<std::string> command_of(const std::vector<std::string>& arguments) {
 }  // namespace
 
 std::string simulator_path() { return EX9000_SIMULATOR; }
+std::string shipped_simulator_path() { return EX9000_SHIPPED_SIMULATOR; }
 
-SimulatorProcess::SimulatorProcess(const std::vector<std::string>& arguments)
-    : process_(command_of(arguments), directory_.path()) {
+SimulatorProcess::SimulatorProcess(const std::vector<std::string>& arguments, const std::string& program)
+    : process_(command_of(arguments, program), directory_.path()) {
   if (!wait_for("Ctrl-C ends it")) {
     throw std::runtime_error("the simulator did not come up: " + output());
   }

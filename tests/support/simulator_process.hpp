@@ -10,11 +10,17 @@
 
 namespace ex9000::system {
 
+/// The program under test, with sanitizers in the build that has them.
+std::string simulator_path();
+/// The program as it is shipped, optimised, which another preset builds.
+std::string shipped_simulator_path();
+
 class SimulatorProcess {
  public:
   /// Starts the program with `arguments` in a fresh directory of its own and returns when it has greeted.
   /// Throws std::runtime_error where it ends before.
-  explicit SimulatorProcess(const std::vector<std::string>& arguments);
+  explicit SimulatorProcess(const std::vector<std::string>& arguments,
+                            const std::string& program = simulator_path());
 
   /// Where it runs; the link `ex9000.tty` is there unless the arguments say otherwise.
   [[nodiscard]] const std::string& directory() const { return directory_.path(); }
@@ -33,8 +39,5 @@ class SimulatorProcess {
   Directory directory_;
   ChildProcess process_;
 };
-
-/// The program under test.
-std::string simulator_path();
 
 }  // namespace ex9000::system

@@ -45,7 +45,8 @@ std::string bus_file(const Directory& directory, const std::vector<const play::T
 
 TranscriptLines::TranscriptLines(const std::vector<const play::Transcript*>& transcripts, Over over)
     : over_(over),
-      simulator_({bus_file(directory_, transcripts, over), "--speed", "step"}),
+      simulator_({bus_file(directory_, transcripts, over), "--speed", "step"},
+                 over == Over::Tcp ? shipped_simulator_path() : simulator_path()),
       control_(simulator_.directory() + "/control") {
   for (std::size_t module = 1; module <= transcripts.size(); ++module) {
     control_.ok(std::to_string(module) + " power off");

@@ -19,6 +19,7 @@ class TranscriptLines {
  public:
   enum class Over { PseudoTerminal, Tcp };
 
+  /// Over TCP it is the program as it is shipped; over the pseudo-terminal, with sanitizers.
   /// On each line the module that the transcript at its position begins with, without power.
   TranscriptLines(const std::vector<const play::Transcript*>& transcripts, Over over);
 

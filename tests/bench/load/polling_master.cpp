@@ -83,10 +83,11 @@ void PollingMaster::ask(const std::vector<std::uint8_t>& request, std::uint8_t u
   }
   std::array<std::uint8_t, kReply> reply{};
   for (std::size_t size = 0; size < reply.size();) {
-    constexpr int kPatience = 2000;  // ms
+    constexpr int kHangMilliseconds =
+        60'000;  // it waits for an event; only a server that hangs takes this long
     pollfd waits{fd_, POLLIN, 0};
-    if (poll(&waits, 1, kPatience) != 1) {
-      throw std::runtime_error("no answer within 2 s");
+    if (poll(&waits, 1, kHangMilliseconds) != 1) {
+      throw std::runtime_error("no answer within 60 s");
     }
     const ssize_t count = read(fd_, reply.data() + size, reply.size() - size);
     if (count <= 0) {

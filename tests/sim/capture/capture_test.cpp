@@ -45,6 +45,7 @@ class Captured {
   void tell(const Bytes& request) {
     client_.send(request);
     control_.ok("advance 1s after " + std::to_string(request.size()) + " quiet");
+    pass("100ms");  // longer than it is left open whether a frame goes on
   }
   /// Lets so much time pass.
   void pass(const std::string& time) { control_.ok("advance " + time); }

@@ -27,7 +27,7 @@ class Line:
         self._program = subprocess.Popen(command, stdout=subprocess.PIPE, encoding="utf-8")
         greeting = "".join(iter(self._program.stdout.readline, "Ctrl-C ends it\n"))
         port = int(re.search(r"TCP 127\.0\.0\.1:(\d+)", greeting).group(1))
-        self._socket = socket.create_connection(("127.0.0.1", port), timeout=10)
+        self._socket = socket.create_connection(("127.0.0.1", port), timeout=60)
 
     def __enter__(self):
         return self
