@@ -185,7 +185,9 @@ std::vector<std::string> column_of(const std::string& help, const std::string& h
   std::istringstream lines(help.substr(help.find(heading) + heading.size()));
   for (std::string line; std::getline(lines, line) && !line.empty();) {
     const std::string cell = line.substr(2, width);
-    cells.push_back(cell.substr(0, cell.find_last_not_of(" .") + 1));
+    if (cell.find_first_not_of(' ') != std::string::npos) {  // else the line before goes on
+      cells.push_back(cell.substr(0, cell.find_last_not_of(" .") + 1));
+    }
   }
   return cells;
 }
