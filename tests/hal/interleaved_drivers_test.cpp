@@ -293,7 +293,8 @@ class InputBench {
   unsigned counted(unsigned channel) {
     const unsigned count = edges_.collect(channel);
     const bool told = ((baseline_ >> channel ^ count) & 1U) != 0;
-    EXPECT_EQ(told, level(channel)) << "channel " << channel << " has another level than is told of it";
+    EXPECT_EQ(told, level(channel)) << "channel " << channel
+                                    << ": the level in the registers differs from the level reported";
     return count;
   }
 

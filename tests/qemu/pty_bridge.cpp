@@ -53,7 +53,7 @@ PtyBridge::PtyBridge(TimedModule& module)
 PtyBridge::~PtyBridge() {
   try {
     end();
-  } catch (const std::exception&) {  // who wants to know calls `end`
+  } catch (const std::exception&) {  // `end` reports it
   }
   close(held_open_);
   close(fd_);

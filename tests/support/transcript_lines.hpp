@@ -19,8 +19,8 @@ class TranscriptLines {
  public:
   enum class Over { PseudoTerminal, Tcp };
 
-  /// Over TCP it is the program as it is shipped; over the pseudo-terminal, with sanitizers.
-  /// On each line the module that the transcript at its position begins with, without power.
+  /// Each line has the module that the transcript at its position begins with, without power. Over TCP this
+  /// is the program as it is shipped; over the pseudo-terminal, with sanitizers.
   TranscriptLines(const std::vector<const play::Transcript*>& transcripts, Over over);
 
   /// That module.
