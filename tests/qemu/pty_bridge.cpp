@@ -53,7 +53,7 @@ PtyBridge::PtyBridge(TimedModule& module)
 PtyBridge::~PtyBridge() {
   try {
     end();
-  } catch (const std::exception&) {  // `end` reports it
+  } catch (const std::exception&) {  // a destructor must not throw; a test that needs the error calls `end`
   }
   close(held_open_);
   close(fd_);
