@@ -5,26 +5,26 @@
 namespace ex9000::registers {
 
 ImageRun::ImageRun(const Image& image, Microcontroller& microcontroller, Timeline& timeline)
-    : image_(image), microcontroller_(microcontroller), timeline_(timeline) {
+    : image_(image), microcontroller_(microcontroller), timeline_(timeline), fiber_([this] { run(); }) {
   microcontroller.on_exception(image.serve);
   microcontroller.pass_time_by([this](Instant to) { pass(to); });
   image.clear();
-  thread_ = std::thread([this] { run(); });
 }
 
+/// What its stack holds is given back, as where a function throws.
 ImageRun::~ImageRun() {
   ending_ = true;
-  if (!over_) {
-    hand_over(true);
+  if (begun_ && !over_) {
+    fiber_.resume();
   }
-  thread_.join();
   microcontroller_.pass_time_by(nullptr);
 }
 
 void ImageRun::run_until(Instant when) {
   limit_ = when;
   if (!over_ && timeline_.now() < when) {
-    hand_over(true);
+    begun_ = true;
+    fiber_.resume();
   }
   if (failure_) {
     std::rethrow_exception(std::exchange(failure_, nullptr));
@@ -32,41 +32,25 @@ void ImageRun::run_until(Instant when) {
 }
 
 void ImageRun::run() {
-  {
-    std::unique_lock<std::mutex> lock(mutex_);
-    turned_.wait(lock, [this] { return images_turn_; });
-  }
-  if (!ending_) {
-    try {
-      image_.run();
-    } catch (const Ended&) {
-    } catch (...) {
-      failure_ = std::current_exception();
-    }
+  try {
+    image_.run();
+  } catch (const Ended&) {
+  } catch (...) {
+    failure_ = std::current_exception();
   }
   over_ = true;
-  const std::lock_guard<std::mutex> lock(mutex_);
-  images_turn_ = false;
-  turned_.notify_all();
 }
 
 void ImageRun::pass(Instant to) {
   if (limit_ < to) {
     timeline_.advance(limit_);
-    hand_over(false);
+    fiber_.suspend();
     if (ending_) {
       throw Ended();
     }
     return;  // whoever had the turn may have set alarms
   }
   timeline_.advance(to);
-}
-
-void ImageRun::hand_over(bool to_image) {
-  std::unique_lock<std::mutex> lock(mutex_);
-  images_turn_ = to_image;
-  turned_.notify_all();
-  turned_.wait(lock, [this, to_image] { return images_turn_ != to_image; });
 }
 
 }  // namespace ex9000::registers

@@ -1,11 +1,9 @@
-// An image at work. It runs in a thread of its own, never beside the test's: whoever has the turn runs.
+// An image at work. It has a stack of its own: whoever has the turn runs, the image or the test.
 #pragma once
 
-#include <condition_variable>
 #include <exception>
-#include <mutex>
-#include <thread>
 
+#include "tests/mcu_model/fiber.hpp"
 #include "tests/mcu_model/image.hpp"
 #include "tests/mcu_model/microcontroller.hpp"
 #include "tests/mcu_model/timeline.hpp"
@@ -28,19 +26,16 @@ class ImageRun {
 
   void run();
   void pass(Instant to);
-  void hand_over(bool to_image);
 
   const Image& image_;
   Microcontroller& microcontroller_;
   Timeline& timeline_;
   Instant limit_{0};
-  std::mutex mutex_;
-  std::condition_variable turned_;
-  bool images_turn_ = false;
+  bool begun_ = false;
   bool ending_ = false;
   bool over_ = false;
   std::exception_ptr failure_;
-  std::thread thread_;
+  Fiber fiber_;
 };
 
 }  // namespace ex9000::registers
