@@ -201,24 +201,27 @@ def players():
     return Program("transcripts and random sessions", units, LIBRARIES["ex9000_runner"], enough)
 
 
+# With inputs and outputs, one a board.
+IMAGES = tuple(Image(board, "EX9055D") for board in ("lm3s6965evb", "ek-tm4c123gxl"))
+
+
 def image_programs():
-    """Images with inputs and outputs, one a board."""
-    images = tuple(Image(board, "EX9055D") for board in ("lm3s6965evb", "ek-tm4c123gxl"))
     programs = []
     for name in ("start_up_driver_test", "image_driver_test"):
         test = Unit(name, (f"tests/boards/{name}.cpp",), ("-O0", SHADOW, '-DEX9000_IMAGES="images"'))
         chosen = (("GTEST_FILTER", "*_EX9055D"),)
-        programs.append(Program(name, (test,), ("core", "bus", "mcu_model"), chosen, images, ("-rdynamic", "-ldl"), 40))
+        programs.append(Program(name, (test,), ("core", "bus", "mcu_model"), chosen, IMAGES, ("-rdynamic", "-ldl"), 40))
     return programs
 
 
 @dataclasses.dataclass(frozen=True)
 class Area:
-    """Sources that are changed, and the tests that have to notice: first those that are called like the changed file or
-    name its header, then each group in turn."""
+    """Sources that are changed, what is shipped of them, and the tests that have to notice: first those that are called
+    like the changed file or name its header, then each group in turn."""
 
     name: str
     sources: list
+    product: list  # units
     groups: list
 
     def nearest_first(self, file):
@@ -250,8 +253,11 @@ def areas():
     hal = listed_programs("tests/hal")
     sim = listed_programs("tests/sim")
     without_process = [file for file in files("sim/*.cpp", "sim/*.hpp") if stem_of(file) not in PROCESS]
+    core = [LIBRARY_UNITS["core"]]
+    images = [image.unit for image in IMAGES]
+    of_simulator = [LIBRARY_UNITS[name] for name in LIBRARIES["ex9000_program"] if name != "core"]
     return [
-        Area("firmware", files("firmware/*.cpp", "firmware/*.hpp"), [[players()], of_core]),
-        Area("hal", files("hal/*.cpp", "hal/*.hpp"), [hal, interleaved, sim, [players()], image_programs()]),
-        Area("sim", without_process, [sim, [players()]]),
+        Area("firmware", files("firmware/*.cpp", "firmware/*.hpp"), core + images, [[players()], of_core]),
+        Area("hal", files("hal/*.cpp", "hal/*.hpp"), core + images, [hal, interleaved, sim, [players()], image_programs()]),
+        Area("sim", without_process, of_simulator, [sim, [players()]]),
     ]

@@ -1,6 +1,7 @@
 """Builds tests with a changed source, and runs them. The tree is not touched: the changed file stands in a folder of
 its own, which the compiler looks into first."""
 
+import concurrent.futures
 import hashlib
 import os
 import re
@@ -11,7 +12,7 @@ import threading
 from programs import ROOT
 
 BUILD = ROOT / "build/mutation"
-COMPILE = ["g++", "-std=c++17", "-w", "-fno-ident"]
+COMPILE = ["clang++", "-std=c++17", "-w", "-fno-ident"]
 MOST_MEMORY = 4 << 30  # what takes more has been noticed
 
 
@@ -29,9 +30,14 @@ def digest_of_text(text):
     return hashlib.sha256(text.encode()).hexdigest()[:8]
 
 
+def options_of_header(unit):
+    """A compiled header is of use only to what is compiled with the same options."""
+    return [option for option in unit.options if not option.startswith(("-I", "-D"))]
+
+
 def header_of(unit):
     """What it begins with; compiled, it takes the compiler a fraction of the time."""
-    return BUILD / f"{unit.options[0]}-{'-'.join(map(digest_of_text, unit.headers))}.hpp"
+    return BUILD / f"{digest_of_text(' '.join([*options_of_header(unit), *unit.headers]))}.hpp"
 
 
 def compiled(unit, folder, overlay=None):
@@ -72,8 +78,7 @@ class Workshop:
         def build():
             header = header_of(unit)
             header.write_text("".join(f"#include <{each}>\n" for each in unit.headers))
-            options = [option for option in unit.options if not option.startswith(("-I", "-D"))]
-            return run([*COMPILE, *options, "-xc++-header", header, "-o", f"{header}.gch"])
+            return run([*COMPILE, *options_of_header(unit), "-xc++-header", header, "-o", f"{header}.gch"])
 
         return self.once(("header", header_of(unit)), build)
 
@@ -96,10 +101,13 @@ class Workshop:
 
         def build():
             libraries = [unit for unit in program.units if unit.name in program.libraries]
+            with concurrent.futures.ThreadPoolExecutor(os.cpu_count()) as pool:
+                list(pool.map(self.unit, program.units))
             archives = [self.archive(unit) for unit in libraries]
             tests = [self.unit(unit)[0] for unit in program.tests]
             place = BUILD / program.name.replace(" ", "-")
-            command = ["g++", *tests, "-Wl,--trace", "-Wl,--start-group", *archives, "-Wl,--end-group"]
+            members = place.with_suffix(".map")
+            command = ["clang++", *tests, f"-Wl,-Map={members}", "-Wl,--start-group", *archives, "-Wl,--end-group"]
             linked = subprocess.run(
                 [*map(str, command), "-o", str(place), "-lgtest", "-lgtest_main", "-pthread", *program.options],
                 cwd=ROOT,
@@ -111,7 +119,7 @@ class Workshop:
                 self.image(image)
             if linked.returncode != 0 or not self.passes(program, place, BUILD):
                 raise SystemExit(f"mutate: {program.name} fails on the tree as it is\n{linked.stderr[-2000:]}")
-            taken = set(re.findall(r"\((\w+)\.o\)", linked.stdout))
+            taken = set(re.findall(r"\.a\((\w+)\.o\)", members.read_text()))
             return [*program.tests, *(unit for unit in libraries if unit.name in taken)]
 
         return self.once(("program", program.name), build)
@@ -128,7 +136,7 @@ class Workshop:
         def build():
             (BUILD / "images").mkdir(exist_ok=True)
             place = BUILD / "images" / f"{image.name}.so"
-            run(["g++", "-shared", self.unit(image.unit)[0], "-o", place])
+            run(["clang++", "-shared", self.unit(image.unit)[0], "-o", place])
             return place
 
         return self.once(("image", image.name), build)
@@ -167,6 +175,17 @@ class Bench:
             self.objects[unit.name] = compiled(unit, self.folder, self.folder)
         return self.objects[unit.name]
 
+    def changes(self, units):
+        """Whether it compiles, and the object code of one of these units is other than that of the tree as it is."""
+        for unit in filter(self.is_in, units):
+            _, as_it_is = self.workshop.unit(unit)
+            changed = self.object_of(unit)
+            if changed is None:
+                return False
+            if digest(changed) != as_it_is:
+                return True
+        return False
+
     def units_of(self, program):
         return [*self.workshop.program(program), *(image.unit for image in program.images)]
 
@@ -183,11 +202,11 @@ class Bench:
         objects = [self.object_of(unit) for unit in self.workshop.program(program)]
         for image in program.images:
             self.make(image)
-        command = ["g++", *objects, "-o", place, "-lgtest", "-lgtest_main", "-pthread", *program.options]
+        command = ["clang++", *objects, "-o", place, "-lgtest", "-lgtest_main", "-pthread", *program.options]
         return run(command) and self.workshop.passes(program, place, self.folder)
 
     def make(self, image):
         (self.folder / "images").mkdir(exist_ok=True)
         place = self.folder / "images" / f"{image.name}.so"
         if not place.exists():
-            run(["g++", "-shared", self.object_of(image.unit), "-o", place])
+            run(["clang++", "-shared", self.object_of(image.unit), "-o", place])
