@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "firmware/line/crc16.hpp"
+#include "sim/time_text.hpp"
 
 namespace ex9000::sim {
 
@@ -20,11 +21,19 @@ constexpr std::chrono::milliseconds kFarthestAhead{5};
 /// The kernel may put timers off by 50 us to save power; on a line at 115200 baud that is half a character.
 constexpr unsigned long kTimerSlackNanoseconds = 1;
 
+/// A master may notice that a reply is later by this, and a person who looks for the reason must find it.
+constexpr VirtualTime kReportedDelay = std::chrono::milliseconds(20);
+
 }  // namespace
 
 Pacer::Pacer(boost::asio::io_context& io, Line& line, const LinePorts::All& ports, FrameWatch* frames,
              Pace pace, LinePorts::Notice notice)
-    : timer_(io), line_(line), ports_(line, ports, std::move(notice)), frames_(frames), pace_(pace) {
+    : timer_(io),
+      line_(line),
+      notice_(std::move(notice)),
+      ports_(line, ports, notice_),
+      frames_(frames),
+      pace_(pace) {
   line.bus().observe(*this);
 }
 
@@ -99,11 +108,29 @@ void Pacer::arm_timer() {
     return;
   }
   timer_.expires_at(when(next));
-  timer_.async_wait([this](const boost::system::error_code& error) {
+  timer_.async_wait([this, due = std::max(next, wall())](const boost::system::error_code& error) {
     if (!error) {
+      report_delay(wall() - due);
       follow();
     }
   });
+}
+
+/// The first, and then what is at least twice as long: a busy host is late all the time.
+void Pacer::report_delay(VirtualTime delay) {
+  if (delay >= kReportedDelay && delay >= 2 * longest_delay_) {
+    longest_delay_ = delay;
+    notice_("the host was late by " + time_text(std::chrono::duration_cast<std::chrono::milliseconds>(delay)) +
+            ": modules reply later, and frames that a master sent apart may reach them as one");
+  }
+}
+
+void Pacer::report_joined(Bytes bytes) {
+  const Bytes rest = bytes.from(first_frame_size(bytes));
+  if (rest.size != 0 && crc16(rest).value() == 0) {
+    notice_("two Modbus frames were read in one piece, and modules take them for one: the master left no silence"
+            " between them, or the host was late");
+  }
 }
 
 void Pacer::now(const std::function<void()>& action) {
@@ -122,8 +149,12 @@ bool Pacer::receive(const Port& port, const std::uint8_t* bytes, std::size_t siz
   line_.bus().run_until(std::max(written, line_.clock().virtual_now()));
   ports_.take_rate(port);
   Bytes rest{bytes, size};
+  const bool splits = pace_.lead != VirtualTime(0);
+  if (!splits) {
+    report_joined(rest);
+  }
   while (rest.size != 0) {
-    const Bytes piece = rest.first(pace_.lead == VirtualTime(0) ? rest.size : first_frame_size(rest));
+    const Bytes piece = rest.first(splits ? first_frame_size(rest) : rest.size);
     line_.master().send(piece.data, piece.size, silence_before(piece[0]));
     rest = rest.from(piece.size);
     if (rest.size != 0) {

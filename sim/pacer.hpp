@@ -45,7 +45,7 @@ constexpr Pace kInstantPace{VirtualTime(0), std::chrono::microseconds(200), true
 class Pacer final : private BusObserver {
  public:
   /// Puts what `line`'s master hears on all `ports`, and what comes from them on the line. `frames` may be
-  /// null. All live as long as `io` runs. `notice`: see LinePorts.
+  /// null. All live as long as `io` runs. `notice`: see LinePorts; it also gets what a late host has changed.
   Pacer(boost::asio::io_context& io, Line& line, const LinePorts::All& ports, FrameWatch* frames, Pace pace,
         LinePorts::Notice notice);
 
@@ -67,6 +67,8 @@ class Pacer final : private BusObserver {
   [[nodiscard]] bool leads(VirtualTime next) const;
   [[nodiscard]] bool is_full() const;
   void arm_timer();
+  void report_delay(VirtualTime delay);
+  void report_joined(Bytes bytes);
   bool receive(const Port& port, const std::uint8_t* bytes, std::size_t size);
   static std::size_t first_frame_size(Bytes bytes);
   [[nodiscard]] VirtualTime silence_before(std::uint8_t address);
@@ -77,12 +79,14 @@ class Pacer final : private BusObserver {
 
   boost::asio::steady_timer timer_;
   Line& line_;
+  LinePorts::Notice notice_;
   LinePorts ports_;
   FrameWatch* frames_;
   Pace pace_;
   std::chrono::steady_clock::time_point began_;
   VirtualTime first_{0};          ///< what the line's clock showed then
   bool paused_ = false;           ///< a port has been told to wait
+  VirtualTime longest_delay_{0};  ///< of the host's, that was reported
   std::size_t last_speaker_ = 0;  ///< station; 0: the master
   VirtualTime last_byte_{0};      ///< when its last byte was over
 };
