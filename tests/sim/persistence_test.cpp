@@ -24,6 +24,9 @@ namespace {
 namespace fs = std::filesystem;
 
 using Arguments = std::vector<std::string>;
+/// It waits for an event; only a program that hangs takes this long.
+constexpr std::chrono::seconds kHang{60};
+
 using std::chrono::microseconds;
 
 constexpr std::size_t kImageSize = 8192;
@@ -68,7 +71,8 @@ class Simulator {
     tell("1 power on");
     while (has(tell("1 status"), "mode=starting")) {
     }
-    while (!terminal_.read(microseconds(0)).empty()) {  // what it had to say before
+    // What it had to say before.
+    while (terminal_.received() < std::stoull(tell("sent")) && !terminal_.read(kHang).empty()) {
     }
   }
 

@@ -189,6 +189,7 @@ TEST(Program, WhatIsCenturiesAheadIsSleptFor) {
       return used;
     };
     const unsigned long before = ticks();
+    // The time over which its use is measured: one that looks all the time would take most of it.
     std::this_thread::sleep_for(std::chrono::milliseconds(500));
     EXPECT_LT(ticks() - before, 5U) << "hundredths of a second, of 50";
     EXPECT_EQ(process.end(SIGTERM), 0);

@@ -1,5 +1,6 @@
 #include "tests/support/control_client.hpp"
 
+#include <poll.h>
 #include <sys/socket.h>
 #include <sys/un.h>
 #include <unistd.h>
@@ -35,7 +36,13 @@ std::size_t ControlClient::offer(const std::string& bytes) {
 
 void ControlClient::close_writing() { shutdown(fd_, SHUT_WR); }
 
+/// Only a program that hangs takes longer.
 bool ControlClient::read_more() {
+  constexpr int kHangMilliseconds = 60'000;
+  pollfd ready{fd_, POLLIN, 0};
+  if (poll(&ready, 1, kHangMilliseconds) != 1) {
+    throw std::runtime_error("the simulator has not answered for a minute");
+  }
   std::array<char, 4096> buffer{};
   const ssize_t size = recv(fd_, buffer.data(), buffer.size(), 0);
   if (size > 0) {

@@ -63,6 +63,7 @@ std::vector<std::uint8_t> Terminal::read(std::chrono::nanoseconds patience) {
   if (size < 0) {
     fail("read");
   }
+  received_ += static_cast<std::uint64_t>(size);
   return {buffer.begin(), buffer.begin() + size};
 }
 

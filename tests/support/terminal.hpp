@@ -24,9 +24,12 @@ class Terminal {
   std::vector<std::uint8_t> read(std::chrono::nanoseconds patience);
   /// Up to CR, or what has come before nothing came for `patience`: only a program that hangs takes 60 s.
   std::string read_line(std::chrono::milliseconds patience = std::chrono::seconds(60));
+  /// Bytes that were read so far.
+  [[nodiscard]] std::uint64_t received() const { return received_; }
 
  private:
   int fd_;
+  std::uint64_t received_ = 0;
 };
 
 }  // namespace ex9000::system
