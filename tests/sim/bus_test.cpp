@@ -187,6 +187,7 @@ TEST_F(BusTest, WhatIsSentToAModuleWithoutPowerIsNotCarriedOutWhenItComesBack) {
   send(*sender, {0x00});
   bus_.run_for(microseconds(300));
   module.power(false);
+  EXPECT_EQ(module.baud(), 0U);
   bus_.run_for(milliseconds(10));
   send(*sender, {'@', '0', '1', 'F', 'F', 'F', 'F', '\r'});
   bus_.run_for(milliseconds(100));
