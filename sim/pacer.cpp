@@ -120,7 +120,8 @@ void Pacer::arm_timer() {
 void Pacer::report_delay(VirtualTime delay) {
   if (delay >= kReportedDelay && delay >= 2 * longest_delay_) {
     longest_delay_ = delay;
-    notice_("the host was late by " + time_text(std::chrono::duration_cast<std::chrono::milliseconds>(delay)) +
+    notice_("the host was late by " +
+            time_text(std::chrono::duration_cast<std::chrono::milliseconds>(delay)) +
             ": modules reply later, and frames that a master sent apart may reach them as one");
   }
 }
@@ -128,8 +129,9 @@ void Pacer::report_delay(VirtualTime delay) {
 void Pacer::report_joined(Bytes bytes) {
   const Bytes rest = bytes.from(first_frame_size(bytes));
   if (rest.size != 0 && crc16(rest).value() == 0) {
-    notice_("two Modbus frames were read in one piece, and modules take them for one: the master left no silence"
-            " between them, or the host was late");
+    notice_(
+        "two Modbus frames were read in one piece, and modules take them for one: the master left no silence"
+        " between them, or the host was late");
   }
 }
 

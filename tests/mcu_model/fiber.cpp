@@ -44,7 +44,8 @@ void enter_stack([[maybe_unused]] void* fake_stack, [[maybe_unused]] const void*
 }  // namespace
 
 Fiber::Fiber(std::function<void()> body) : body_(std::move(body)) {
-  void* const stack = mmap(nullptr, kStackSize, PROT_READ | PROT_WRITE, MAP_PRIVATE | MAP_ANONYMOUS | MAP_STACK, -1, 0);
+  void* const stack =
+      mmap(nullptr, kStackSize, PROT_READ | PROT_WRITE, MAP_PRIVATE | MAP_ANONYMOUS | MAP_STACK, -1, 0);
   if (stack == MAP_FAILED) {
     throw std::system_error(errno, std::generic_category(), "a fiber's stack");
   }
@@ -72,7 +73,8 @@ void Fiber::begin() {
   go(self.inside_, self.outside_, true);
 }
 
-/// swapcontext(3) in two halves: AddressSanitizer warns of that one, and forgets the stack that it switches to.
+/// swapcontext(3) in two halves: AddressSanitizer warns of that one, and forgets the stack that it switches
+/// to.
 void Fiber::go(Side& from, Side& to, bool for_good) {
   leave_stack(for_good ? nullptr : &from.fake_stack, to.stack, to.stack_size);
   volatile bool left = false;  // in memory: getcontext returns once more when somebody comes back

@@ -1,5 +1,5 @@
-// A function with a stack of its own in the caller's thread. It is switched to and back where the two sides choose, in a
-// fraction of what the operating system takes to switch between threads.
+// A function with a stack of its own in the caller's thread. It is switched to and back where the two sides
+// choose, in a fraction of what the operating system takes to switch between threads.
 #pragma once
 
 #include <ucontext.h>

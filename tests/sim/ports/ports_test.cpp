@@ -179,7 +179,8 @@ TEST(TcpPort, WhoIsHeldBackCostsNoTime) {
     return user + system;
   };
   EXPECT_TRUE(flooder.hears_nothing_for(std::chrono::milliseconds(200)));
-  // Processor time and the wall clock are compared: a program that looks all the time takes all that it is given.
+  // Processor time and the wall clock are compared: a program that looks all the time takes all that it is
+  // given.
   const auto began = std::chrono::steady_clock::now();
   const long before = ticks();
   EXPECT_TRUE(flooder.hears_nothing_for(std::chrono::milliseconds(1000)));
