@@ -75,8 +75,7 @@ std::vector<int> processors() {
   return result;
 }
 
-/// The calling thread, and the emulators that it starts. They and it take turns, and so do an emulator's own
-/// threads; to wake one another across processors would take longer than all the rest.
+/// The calling thread, and the emulators that it starts: see rig::Emulator.
 void stay_on(int processor) {
   cpu_set_t only;
   CPU_ZERO(&only);
