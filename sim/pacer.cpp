@@ -68,7 +68,9 @@ std::chrono::steady_clock::time_point Pacer::when(VirtualTime time) const {
 
 /// Runs what is due, and leaves the clock at the last event rather than at `until`: see Pace::host_latency.
 void Pacer::catch_up(VirtualTime until) {
-  for (VirtualTime next = line_.bus().next(); next <= until || leads(next); next = line_.bus().next()) {
+  VirtualTime next = line_.bus().next();
+  report_delay(next);
+  for (; next <= until || leads(next); next = line_.bus().next()) {
     line_.bus().run_until(next);
   }
 }
@@ -108,16 +110,20 @@ void Pacer::arm_timer() {
     return;
   }
   timer_.expires_at(when(next));
-  timer_.async_wait([this, due = std::max(next, wall())](const boost::system::error_code& error) {
+  timer_.async_wait([this](const boost::system::error_code& error) {
     if (!error) {
-      report_delay(wall() - due);
       follow();
     }
   });
 }
 
-/// The first, and then what is at least twice as long: a busy host is late all the time.
-void Pacer::report_delay(VirtualTime delay) {
+/// Of an event that is due at `next`, if the wall clock has passed that. The first delay is reported, and
+/// then one that is at least twice as long: a busy host is late all the time.
+void Pacer::report_delay(VirtualTime next) {
+  if (next > wall()) {
+    return;
+  }
+  const auto delay = std::chrono::duration_cast<VirtualTime>((wall() - next) / pace_.speed);
   if (delay >= kReportedDelay && delay >= 2 * longest_delay_) {
     longest_delay_ = delay;
     notice_("the host was late by " +

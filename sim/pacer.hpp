@@ -67,7 +67,7 @@ class Pacer final : private BusObserver {
   [[nodiscard]] bool leads(VirtualTime next) const;
   [[nodiscard]] bool is_full() const;
   void arm_timer();
-  void report_delay(VirtualTime delay);
+  void report_delay(VirtualTime next);
   void report_joined(Bytes bytes);
   bool receive(const Port& port, const std::uint8_t* bytes, std::size_t size);
   static std::size_t first_frame_size(Bytes bytes);
@@ -86,7 +86,7 @@ class Pacer final : private BusObserver {
   std::chrono::steady_clock::time_point began_;
   VirtualTime first_{0};          ///< what the line's clock showed then
   bool paused_ = false;           ///< a port has been told to wait
-  VirtualTime longest_delay_{0};  ///< of the host's, that was reported
+  VirtualTime longest_delay_{0};  ///< of the host, by the wall clock, that was reported
   std::size_t last_speaker_ = 0;  ///< station; 0: the master
   VirtualTime last_byte_{0};      ///< when its last byte was over
 };
