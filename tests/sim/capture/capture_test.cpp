@@ -273,6 +273,16 @@ TEST(Capture, OfARunInVirtualTimeIsTheSameEveryTime) {
   EXPECT_EQ(packets[0].at("frame.time_epoch").substr(0, 4), "1.10");
 }
 
+/// A busy host may be late, and the log says so; on the line nothing changes by it.
+std::string without_delays_of_the_host(const std::string& log) {
+  std::string kept;
+  std::istringstream lines(log);
+  for (std::string line; std::getline(lines, line);) {
+    kept += line.find("\"note\":\"the host was late by ") == std::string::npos ? line + "\n" : "";
+  }
+  return kept;
+}
+
 TEST(Capture, EndsAtTheSameTimeOfTheLineWhateverItsSpeed) {
   const Directory directory;
   // A stranger every second, one of them shortly before the end and one at it, cut off.
@@ -286,7 +296,7 @@ TEST(Capture, EndsAtTheSameTimeOfTheLineWhateverItsSpeed) {
                                    "--capture", std::string("of-") + speed},
                                   directory.path());
     EXPECT_EQ(finished.status, 0) << finished.error;
-    logs.push_back(finished.output);
+    logs.push_back(without_delays_of_the_host(finished.output));
     captures.push_back(
         decoded(directory / (std::string("of-") + speed), {"exported_pdu.exported_pdu", "frame.len"}));
   }
