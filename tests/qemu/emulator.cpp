@@ -55,7 +55,10 @@ std::vector<std::string> command_of(const std::string& image, const std::string&
 
 /// The test and the emulator take turns, and so do the emulator's own threads: to wake one another across
 /// processors would take longer than all the rest. What is started from here on stays there, too.
+/// Whoever wakes another goes on until it waits itself.
 void stay_on_this_processor() {
+  const sched_param none{};
+  sched_setscheduler(0, SCHED_BATCH, &none);
   cpu_set_t allowed;
   CPU_ZERO(&allowed);
   sched_getaffinity(0, sizeof allowed, &allowed);
