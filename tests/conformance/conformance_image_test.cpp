@@ -15,6 +15,7 @@
 #include "sim/play/transcript.hpp"
 #include "tests/qemu/emulated_board.hpp"
 #include "tests/qemu/image_target.hpp"
+#include "tests/qemu/processor.hpp"
 #include "tests/support/child_process.hpp"
 #include "tests/support/core_target.hpp"
 
@@ -75,14 +76,6 @@ std::vector<int> processors() {
   return result;
 }
 
-/// The calling thread, and the emulators that it starts: see rig::Emulator.
-void stay_on(int processor) {
-  cpu_set_t only;
-  CPU_ZERO(&only);
-  CPU_SET(processor, &only);
-  sched_setaffinity(0, sizeof only, &only);
-}
-
 void play_on_the_image(Played& run, rig::ImageTarget& target) {
   try {
     run.result = play::play(run.transcript, target);
@@ -103,7 +96,7 @@ TEST(Conformance, TheImagesOfTheManualsModelsPassEveryTranscriptThatNamesThem) {
   std::vector<std::thread> players;
   for (const int processor : processors()) {
     players.emplace_back([&, processor] {
-      stay_on(processor);
+      rig::stay_on_processor(processor);
       rig::ImageTarget target;
       for (std::size_t mine = next++; mine < runs.size(); mine = next++) {
         play_on_the_image(runs[mine], target);

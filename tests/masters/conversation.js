@@ -68,6 +68,7 @@ class Checks {
   async play(conversation, ask) {
     for (const { asked, frame, expected, wait } of conversation) {
       if (wait) {
+        // The line follows the wall clock, and the conversation says how long the module needs.
         await timers.setTimeout(wait);
         continue;
       }

@@ -83,6 +83,7 @@ TEST_P(LibmodbusRaw, HoldsTheWholeConversation) {
     } else if (what == "wait") {
       int time = 0;
       words >> time;
+      // The line follows the wall clock, and the conversation says how long the module needs.
       std::this_thread::sleep_for(milliseconds(time));
     } else {
       EXPECT_TRUE(what.empty() || what[0] == ';') << line;

@@ -221,11 +221,13 @@ def converse(client, baud):
         if step.startswith("=> "):
             asked = step
         elif step.startswith("wait "):
+            # The line follows the wall clock, and the conversation says how long the module needs.
             time.sleep(int(step[5:-2]) / 1000)
         else:
             expected = step.removeprefix("<= ")
             got = ask(client, request_of(bytes_of(asked), bytes_of(step)))
             if expected == "silence":
+                # What a master leaves behind a broadcast (V1.02, 2.4.1); a busy machine only looks too early.
                 time.sleep(turnaround(baud))
                 if select.select([client.socket], [], [], 0)[0]:
                     got = "an answer"

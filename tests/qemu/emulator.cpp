@@ -1,7 +1,6 @@
 #include "tests/qemu/emulator.hpp"
 
-#include <sched.h>
-
+#include "tests/qemu/processor.hpp"
 #include "tests/qemu/uart_registers.hpp"
 
 namespace ex9000::rig {
@@ -53,28 +52,10 @@ std::vector<std::string> command_of(const std::string& image, const std::string&
           "chardev:gdb"};
 }
 
-/// The test and the emulator take turns, and so do the emulator's own threads: to wake one another across
-/// processors would take longer than all the rest. What is started from here on stays there, too.
-/// Whoever wakes another goes on until it waits itself.
-void stay_on_this_processor() {
-  const sched_param none{};
-  sched_setscheduler(0, SCHED_BATCH, &none);
-  cpu_set_t allowed;
-  CPU_ZERO(&allowed);
-  sched_getaffinity(0, sizeof allowed, &allowed);
-  if (CPU_COUNT(&allowed) == 1) {
-    return;  // somebody has chosen one
-  }
-  cpu_set_t only;
-  CPU_ZERO(&only);
-  CPU_SET(static_cast<unsigned>(sched_getcpu()), &only);
-  sched_setaffinity(0, sizeof only, &only);
-}
-
 }  // namespace
 
 Emulator::Emulator(const std::string& image, const std::string& memory) {
-  stay_on_this_processor();
+  stay_on_one_processor();
   UnixListener uart(directory_ / "uart");
   UnixListener qmp(directory_ / "qmp");
   UnixListener qtest(directory_ / "qtest");

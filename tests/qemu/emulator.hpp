@@ -19,6 +19,8 @@ namespace ex9000::rig {
 ///
 /// Where the image resets itself, or the watchdog does, the machine halts instead, for the same reason.
 ///
+/// The thread that makes one stays on one processor of the host from then on: see processor.hpp.
+///
 /// An instruction takes 16 ns. While the processor sleeps, time jumps to what it waits for. AlarmClock runs
 /// the machine.
 class Emulator {

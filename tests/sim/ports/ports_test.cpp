@@ -81,7 +81,6 @@ TEST_P(Tcp, WhoHasNoMoreToSayIsStillAnsweredAndThenLetGo) {
   EXPECT_TRUE(client.closed());
 }
 
-// Until the flood has run off, the client's command and the answer to it collide with it.
 /// What comes until `reply` is heard. The request is sent again whenever nothing has come for a second; there
 /// are enough tries for a minute.
 std::string heard_by_asking_again(SocketClient& client, const std::string& request,
@@ -111,6 +110,7 @@ TEST_P(Tcp, WhoGoesWithAResetBehindARequestDoesNoHarm) {
   EXPECT_EQ(simulator.end(SIGTERM), 0);
 }
 
+// Until the flood has run off, the client's command and the answer to it collide with it.
 TEST_P(Tcp, AFloodOfGarbageIsHeldBackAndTheLineGoesOn) {
   SimulatorProcess simulator({"EX9042D@05,baud=115200", "--tcp", "0", "--line", GetParam()});
   {
