@@ -13,8 +13,9 @@ const waitingTrimmedFrom = 1200;
 /// Between two times that the list is drawn, in ms: a busy line would have every repaint taken up by it.
 const slowest = 30;
 
-/// As many entries as there are, and those that an entry stands for.
-const sum = (entries) => entries.reduce((count, entry) => count + (entry.missed ?? 1), 0);
+/// How many frames there are, and those that an entry stands for. A remark on the line is none.
+const sum = (entries) => entries.reduce((count, entry) => count + (entry.missed ?? (entry.note ? 0 : 1)), 0);
+const rowsOfFrames = (entries) => entries.filter(({note}) => !note).length;
 
 /// What is handed out late stands where it belongs all the same.
 function insert(list, entry) {
@@ -145,10 +146,11 @@ export class Timeline {
   }
 
   tell() {
-    const of = this.sought ? `${this.shown.length} of ` : "";
-    const frames = this.sought ? "" : this.entries.length === 1 ? " frame" : " frames";
-    const waiting = this.pending.length ? `, ${sum(this.pending)} more` : "";
-    setText(this.tally, `${of}${this.entries.length}${frames}${waiting}`);
+    const kept = rowsOfFrames(this.entries);
+    const waiting = sum(this.pending) ? `, ${sum(this.pending)} more` : "";
+    const of = this.sought ? `${rowsOfFrames(this.shown)} of ` : "";
+    const frames = this.sought ? "" : kept === 1 ? " frame" : " frames";
+    setText(this.tally, `${of}${kept}${frames}${waiting}`);
   }
 
   /// Once a repaint.
