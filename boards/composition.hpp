@@ -29,6 +29,23 @@ using namespace hal::stellaris;
 constexpr std::uint32_t kHertz = kClock.frequency();
 constexpr std::uint32_t kMegahertz = kHertz / 1'000'000;
 
+#ifdef EX9000_IMAGES
+static_assert(kModels.size() == EX9000_IMAGES,
+              "a row of the model table gets no image: boards/CMakeLists.txt reads rows that begin with "
+              "{\"EX9..., inputs, outputs");
+#endif
+
+template <class Groups>
+constexpr unsigned pins_in(const Groups& groups) {
+  unsigned pins = 0;
+  for (const PinGroup& group : groups) {
+    pins += group.count;
+  }
+  return pins;
+}
+static_assert(kOnlyModel.outputs <= pins_in(kOutputs), "this board has too few output pins for the model");
+static_assert(kOnlyModel.inputs <= pins_in(kInputs), "this board has too few input pins for the model");
+
 using Clock = SystemTimer<kMegahertz>;
 using SilenceTimer = OneShotTimer<0, kMegahertz>;
 using LineEndTimer = OneShotTimer<1, kMegahertz>;
@@ -49,7 +66,13 @@ struct Board {
   Watchdog watchdog;
 };
 
-hal::Device<Board> device(kOnlyModel);
+#ifdef EX9000_STRICT_GAPS
+constexpr TimingAt kTimingAt = LineTiming::strictly_told_in_the_stop_bit;
+#else
+constexpr TimingAt kTimingAt = LineTiming::told_in_the_stop_bit;
+#endif
+
+hal::Device<Board> device(kOnlyModel, kTimingAt);
 Board& board = device.board();
 
 // --- interrupts: none interrupts another ---
@@ -198,7 +221,7 @@ void start() {
   SilenceTimer::start();
   LineEndTimer::start();
   board.clock.start(milliseconds(1));
-  device.start(LineTiming::told_in_the_stop_bit);
+  device.start();
   Interrupts::enable(served_numbers(), kLineInterrupt);
 }
 
@@ -213,7 +236,7 @@ int main() {
     Interrupts::sleep_until([] { return device.news(); });
     if (board.clock.ticks() != ticks_seen) {
       ticks_seen = board.clock.ticks();
-      device.look_around();
+      device.poll_panel();
     }
     device.turn();
   }

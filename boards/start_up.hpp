@@ -30,7 +30,7 @@ struct VectorTable {
 /// The linker's; only its address counts.
 extern "C" std::uint32_t stack_top;
 
-/// Clears the memory, for an image holds nothing that begins as anything else, and calls `main`.
+/// Copies what is initialised to RAM, clears the rest of what the linker placed there, and calls `main`.
 extern "C" [[noreturn]] __attribute__((externally_visible)) void reset_handler();
 
 /// Faults, and interrupts that nobody has asked for: resets the microcontroller at once, which lets go of all

@@ -18,6 +18,10 @@ class Duration {
   friend constexpr Duration operator+(Duration a, Duration b) {
     return Duration(a.microseconds_ + b.microseconds_);
   }
+  /// `b` is not the longer one.
+  friend constexpr Duration operator-(Duration a, Duration b) {
+    return Duration(a.microseconds_ - b.microseconds_);
+  }
 
  private:
   std::uint32_t microseconds_ = 0;

@@ -9,21 +9,22 @@
 namespace ex9000::hal {
 
 /// Lives from one reset to the next. A composition file makes one, calls `start`, points the interrupts at
-/// the `on_...` functions and then, for ever, `look_around` after every tick and `turn` whenever there is
+/// the `on_...` functions and then, for ever, `poll_panel` after every tick and `turn` whenever there is
 /// `news`; it may sleep while there is none.
 ///
 /// `Board` has the members of hal::Board, which say what each of them does.
 template <class Board>
 class Device {
  public:
-  /// With a board of its own.
-  explicit constexpr Device(const Model& model) : board_(), module_(model) {}
+  /// With a board of its own. `timing_at`: see Module.
+  constexpr Device(const Model& model, TimingAt timing_at) : board_(), module_(model, timing_at) {}
   /// On one that refers to somebody else's peripherals.
-  constexpr Device(const Model& model, const Board& board) : board_(board), module_(model) {}
+  constexpr Device(const Model& model, TimingAt timing_at, const Board& board)
+      : board_(board), module_(model, timing_at) {}
 
-  /// Once, before interrupts are enabled; the tick runs already. `timing_at` is what Module::begin wants.
-  void start(TimingAt timing_at = LineTiming::at) {
-    module_.begin(board_.inputs.start(), board_.clock.now(), timing_at);
+  /// Once, before interrupts are enabled; the tick runs already.
+  void start() {
+    module_.start(board_.inputs.start(), board_.clock.now());
     board_.watchdog.feed();
   }
 
@@ -65,8 +66,8 @@ class Device {
 
   /// INIT*, the status LED and the hardware watchdog: every tick. The outputs too, whatever may have happened
   /// to their registers.
-  void look_around() {
-    module_.look_around(board_.init_switch.asserted(), board_.clock.now());
+  void poll_panel() {
+    module_.poll_panel(board_.init_switch.asserted(), board_.clock.now());
     board_.status_led.light(module_.led_lit());
     drive_outputs();
     if (module_.feed_watchdog()) {
@@ -141,7 +142,7 @@ class Device {
   }
 
   void begin_memory_job(Time now) {
-    if (memory_job_under_way_ || !module_.wants_memory()) {
+    if (memory_job_under_way_ || !module_.needs_memory()) {
       return;
     }
     const MemoryJob job = module_.memory_job();

@@ -19,7 +19,6 @@ LineTiming instantly(std::uint32_t /*baud*/) {
   timing.dcon_turn_around = Duration();
   timing.rtu_silence = kSilence;
   timing.rtu_grace = kQuiet;
-  timing.rtu_separate = kSilence + kQuiet;
   timing.rtu_slack = LineTiming::kAnyGap;
   return timing;
 }
@@ -69,7 +68,8 @@ VirtualTime Line::rtu_silence() const {
 }
 
 VirtualTime Line::rtu_separate() const {
-  return std::chrono::microseconds(kind_.timing_at(master_.baud()).rtu_separate.microseconds());
+  const LineTiming timing = kind_.timing_at(master_.baud());
+  return std::chrono::microseconds((timing.rtu_silence + timing.rtu_grace).microseconds());
 }
 
 }  // namespace ex9000::sim

@@ -20,7 +20,7 @@ SimulatedModule::Mcu::Mcu(SimulatedModule& module)
       watchdog(module.clock_),
       board{module.clock_,       line,        silence_timer, module.inputs_, module.outputs_, module.memory_,
             module.init_switch_, module.led_, watchdog},
-      device(module.model_, board) {}
+      device(module.model_, module.timing_at_, board) {}
 
 SimulatedModule::SimulatedModule(Bus& bus, const Model& model, TimingAt timing_at)
     : clock_(bus.clock()),
@@ -64,7 +64,7 @@ void SimulatedModule::start() {
   mcu_.emplace(*this);
   mcu_->line.release_late(driver_late_by_);
   mcu_->tick.start(kTick);
-  mcu_->device.start(timing_at_);
+  mcu_->device.start();
   turn();
 }
 
@@ -176,6 +176,9 @@ void SimulatedModule::receive(std::uint8_t byte, ByteStatus status) {
   if (mcu_->line.sending() || wire_.sends_late()) {
     return;
   }
+  if (mcu_->silence_timer.fire()) {
+    mcu_->device.on_silence();  // see hal::SilenceTimer
+  }
   mcu_->device.on_receive(byte, status);
   if (mcu_->device.module().idle_for(clock_.now()) == Duration()) {
     turn();
@@ -190,7 +193,7 @@ void SimulatedModule::turn() {
   }
   std::optional<Duration> idle;
   do {
-    mcu_->device.look_around();
+    mcu_->device.poll_panel();
     mcu_->device.turn();
     idle = mcu_->device.module().idle_for(clock_.now());
   } while (idle == Duration());

@@ -17,6 +17,11 @@ void InputEdges::on_edge(unsigned channel, bool level) {
 }
 
 void Inputs::collect(InputEdges& edges, unsigned channels) {
+  const std::uint32_t all = edges.edges();
+  if (all == edges_seen_) {
+    return;
+  }
+  edges_seen_ = all;
   const std::uint32_t modulus = range_ == CounterRange::FiveDigits ? 100'000U : 65'536U;
   for (unsigned channel = 0; channel < channels; ++channel) {
     const std::uint32_t fresh = edges.collect(channel);

@@ -61,6 +61,7 @@ class Inputs {
   void clear_counters(std::uint16_t channels);
 
  private:
+  std::uint32_t edges_seen_ = 0;  ///< of all channels
   CounterRange range_ = CounterRange::FiveDigits;
   bool count_rising_edges_ = false;
   std::uint16_t levels_ = 0;

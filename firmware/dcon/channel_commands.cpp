@@ -16,7 +16,7 @@ Refusal take_sample(Exchange& exchange) {
 }
 
 Refusal read_sample(Exchange& exchange) {
-  const Sample& sample = exchange.state().sample;
+  const Sample& sample = exchange.state.sample;
   if (!sample.taken) {
     return Refusal::NoSample;
   }
@@ -30,14 +30,14 @@ Refusal read_sample(Exchange& exchange) {
 
 Refusal read_channels(Exchange& exchange) {
   exchange.reply.put('!');
-  put_data(exchange, exchange.state().outputs, exchange.state().inputs.levels());
+  put_data(exchange, exchange.state.outputs, exchange.state.inputs.levels());
   exchange.reply.put(kEndOfData);
   return Refusal::None;
 }
 
 Refusal read_channels_short(Exchange& exchange) {
   exchange.reply.put('>');
-  put_data(exchange, exchange.state().outputs, exchange.state().inputs.levels());
+  put_data(exchange, exchange.state.outputs, exchange.state.inputs.levels());
   return Refusal::None;
 }
 

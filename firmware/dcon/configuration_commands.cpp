@@ -20,7 +20,7 @@ Refusal set_configuration(Exchange& exchange) {
   if (address < 0 || baud_code < 0 || format < 0 || (type != kDioType && type != kDioTypeOfTheExample)) {
     return Refusal::OutOfRange;
   }
-  const Settings& settings = exchange.state().settings;
+  const Settings& settings = exchange.state.settings;
   const auto new_address = static_cast<std::uint8_t>(address);
   const auto new_baud_code = static_cast<std::uint8_t>(baud_code);
   const auto new_format = static_cast<std::uint8_t>(format);
@@ -30,14 +30,14 @@ Refusal set_configuration(Exchange& exchange) {
   }
   const bool changes_line =
       new_baud_code != settings.baud_code || ((new_format ^ settings.format) & kFormatChecksum) != 0;
-  if (changes_line && !exchange.state().configuration_permitted()) {
+  if (changes_line && !exchange.state.configuration_permitted()) {
     return Refusal::NotPermitted;
   }
   SettingsChange& change = exchange.outcome.change();
   change.address(new_address);
   change.baud_code(new_baud_code);
   change.format(new_format);
-  if (!exchange.state().in_force.init_mode) {
+  if (!exchange.state.in_force.init_mode) {
     exchange.outcome.request(Effect::TakeAddress);
   }
   exchange.reply.put('!');
@@ -48,17 +48,17 @@ Refusal set_configuration(Exchange& exchange) {
 Refusal read_configuration(Exchange& exchange) {
   // The stored address, in INIT mode too: this is how a lost one is found.
   exchange.reply.put('!');
-  exchange.reply.put_hex(exchange.state().settings.address);
+  exchange.reply.put_hex(exchange.state.settings.address);
   exchange.reply.put_hex(kDioType);
-  exchange.reply.put_hex(exchange.state().settings.baud_code);
-  exchange.reply.put_hex(exchange.state().settings.format);
+  exchange.reply.put_hex(exchange.state.settings.baud_code);
+  exchange.reply.put_hex(exchange.state.settings.format);
   return Refusal::None;
 }
 
 Refusal read_reset_status(Exchange& exchange) {
   exchange.outcome.request(Effect::ClearResetStatus);
   put_valid(exchange);
-  exchange.reply.put(exchange.state().reset_status ? '1' : '0');
+  exchange.reply.put(exchange.state.reset_status ? '1' : '0');
   return Refusal::None;
 }
 
@@ -70,7 +70,7 @@ Refusal read_version(Exchange& exchange) {
 
 Refusal read_name(Exchange& exchange) {
   put_valid(exchange);
-  exchange.reply.put(exchange.state().settings.name.bytes());
+  exchange.reply.put(exchange.state.settings.name.bytes());
   return Refusal::None;
 }
 
@@ -91,17 +91,17 @@ Refusal set_name(Exchange& exchange) {
 Refusal read_protocol(Exchange& exchange) {
   put_valid(exchange);
   exchange.reply.put('1');
-  exchange.reply.put(exchange.state().settings.protocol == Protocol::ModbusRtu ? '1' : '0');
+  exchange.reply.put(exchange.state.settings.protocol == Protocol::ModbusRtu ? '1' : '0');
   return Refusal::None;
 }
 
 Refusal set_protocol(Exchange& exchange) {
   const bool modbus = exchange.args[0] == '1';
   if ((!modbus && exchange.args[0] != '0') ||
-      (modbus && !is_modbus_address(exchange.state().settings.address))) {
+      (modbus && !is_modbus_address(exchange.state.settings.address))) {
     return Refusal::OutOfRange;
   }
-  if (!exchange.state().configuration_permitted()) {
+  if (!exchange.state.configuration_permitted()) {
     return Refusal::NotPermitted;
   }
   exchange.outcome.change().protocol(modbus ? Protocol::ModbusRtu : Protocol::Ascii);

@@ -57,7 +57,7 @@ void refuse(Exchange& exchange, Refusal refusal) {
   }
   reply.put('?');
   if (refusal == Refusal::StoreFailed || !refused_without_address(exchange.model(), exchange.frame)) {
-    reply.put_hex(exchange.state().in_force.address);
+    reply.put_hex(exchange.state.in_force.address);
   }
 }
 
@@ -67,7 +67,7 @@ void finish(Exchange& exchange) {
   if (reply.empty()) {
     return;
   }
-  if (exchange.state().in_force.checksum) {
+  if (exchange.state.in_force.checksum) {
     unsigned sum = 0;
     for (const std::uint8_t byte : reply.bytes()) {
       sum += byte;
@@ -90,7 +90,7 @@ std::size_t find_command(const Model& model, Bytes frame) {
 
 void answer(Exchange& exchange) {
   const Bytes frame = exchange.frame;
-  if (!is_broadcast(frame) && hex_byte(frame[1], frame[2]) != exchange.state().in_force.address) {
+  if (!is_broadcast(frame) && hex_byte(frame[1], frame[2]) != exchange.state.in_force.address) {
     return;  // `%` has changed the address since the frame came in (D16)
   }
   Refusal refusal = Refusal::UnknownCommand;

@@ -22,7 +22,7 @@ Refusal read_counter(Exchange& exchange) {
     return Refusal::OutOfRange;
   }
   put_valid(exchange);
-  const std::uint32_t count = exchange.state().inputs.counter(channel);
+  const std::uint32_t count = exchange.state.inputs.counter(channel);
   for (std::uint32_t unit = 10'000; unit != 0; unit /= 10) {
     exchange.reply.put(hex_digit(count / unit % 10));
   }
@@ -51,7 +51,7 @@ Refusal read_latches(Exchange& exchange) {
     return Refusal::OutOfRange;
   }
   // On a module with both, First is where the outputs stand elsewhere; here it is 00.
-  const Inputs& inputs = exchange.state().inputs;
+  const Inputs& inputs = exchange.state.inputs;
   exchange.reply.put('!');
   put_data(exchange, 0, exchange.args[0] == '1' ? inputs.latched_high() : inputs.latched_low());
   exchange.reply.put_hex(0);

@@ -12,7 +12,7 @@ constexpr unsigned kHighGroupShift = 8;
 
 /// Form and range are right; now the timeout status decides.
 Refusal drive(Exchange& exchange, Drive drive) {
-  if (exchange.state().outputs_blocked()) {
+  if (exchange.state.outputs_blocked()) {
     return Refusal::OutputsBlocked;
   }
   exchange.outcome.drive(drive);
@@ -96,18 +96,18 @@ Refusal read_preset_value(Exchange& exchange) {
     return Refusal::OutOfRange;
   }
   put_valid(exchange);
-  put_data(exchange,
-           exchange.args[0] == 'P' ? exchange.state().settings.power_on_value
-                                   : exchange.state().settings.safe_value,
-           0);
+  put_data(
+      exchange,
+      exchange.args[0] == 'P' ? exchange.state.settings.power_on_value : exchange.state.settings.safe_value,
+      0);
   return Refusal::None;
 }
 
 Refusal store_preset_value(Exchange& exchange) {
   if (exchange.args[0] == 'P') {
-    exchange.outcome.change().power_on_value(exchange.state().outputs);
+    exchange.outcome.change().power_on_value(exchange.state.outputs);
   } else if (exchange.args[0] == 'S') {
-    exchange.outcome.change().safe_value(exchange.state().outputs);
+    exchange.outcome.change().safe_value(exchange.state.outputs);
   } else {
     return Refusal::OutOfRange;
   }

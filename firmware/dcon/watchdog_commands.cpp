@@ -29,7 +29,7 @@ Refusal host_ok(Exchange& exchange) {
 
 Refusal read_status(Exchange& exchange) {
   put_valid(exchange);
-  exchange.reply.put_hex(status_of(exchange.state()));
+  exchange.reply.put_hex(status_of(exchange.state));
   return Refusal::None;
 }
 
@@ -41,8 +41,8 @@ Refusal clear_status(Exchange& exchange) {
 
 Refusal read_watchdog(Exchange& exchange) {
   put_valid(exchange);
-  exchange.reply.put(exchange.state().settings.watchdog_enabled ? '1' : '0');
-  exchange.reply.put_hex(exchange.state().settings.watchdog_timeout);
+  exchange.reply.put(exchange.state.settings.watchdog_enabled ? '1' : '0');
+  exchange.reply.put_hex(exchange.state.settings.watchdog_timeout);
   return Refusal::None;
 }
 

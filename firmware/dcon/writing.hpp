@@ -29,7 +29,7 @@ inline void put_data(Exchange& exchange, std::uint16_t outputs, std::uint16_t in
 /// `!AA`, the beginning of most replies; AA is the address in force, 00 in INIT mode.
 inline void put_valid(Exchange& exchange) {
   exchange.reply.put('!');
-  exchange.reply.put_hex(exchange.state().in_force.address);
+  exchange.reply.put_hex(exchange.state.in_force.address);
 }
 
 }  // namespace ex9000::dcon

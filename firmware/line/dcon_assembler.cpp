@@ -105,10 +105,10 @@ Verdict DconAssembler::judge(FrameQueue& queue, Time now) {
       return Verdict::Foreign;
     }
   }
-  frame.size = static_cast<std::uint8_t>(size);
+  frame.offset = 0;
+  frame.size = static_cast<std::uint16_t>(size);
   frame.received = now;
-  queue.announce_in_interrupt(frame);
-  return queue.complete_in_interrupt(frame) ? Verdict::Accepted : Verdict::NoRoom;
+  return queue.complete_in_interrupt() ? Verdict::Accepted : Verdict::NoRoom;
 }
 
 }  // namespace ex9000

@@ -1,4 +1,4 @@
-// The interrupt side of the line: bytes in, whole frames for this module out.
+// The interrupt side of the line: bytes in, complete frames for this module out.
 #pragma once
 
 #include <cstdint>
@@ -31,36 +31,35 @@ class Receiver {
   // --- interrupts, which must not interrupt each other ---
 
   /// A byte was received; `now` is the end of its stop bit, or earlier by what the timing allows for. Returns
-  /// after how long a silence `on_silence` is to be called, counted from now and restarted by every byte;
-  /// zero: as it was. Behind a DCON frame that is the turn-around.
+  /// the time after which `on_silence` must be called, counted from now and restarted by every byte; zero:
+  /// the timer is left as it is. After a DCON frame it is the turn-around.
   Duration on_byte(std::uint8_t byte, ByteStatus status, Time now);
 
-  /// The silence has come. Returns as `on_byte` does.
+  /// That time has passed. Returns as `on_byte` does.
   Duration on_silence();
 
   /// This module's own driver was on, and no byte was passed on meanwhile: a frame that is open and not whole
-  /// is forgotten (D9).
+  /// is forgotten (wire.md D9).
   void on_spoken();
 
   // --- main loop ---
 
-  /// The address to answer to, behind `listen`; takes effect with the next frame that ends.
+  /// The address to answer to, after `listen`; takes effect with the next frame that ends.
   void answer_to(std::uint8_t address);
   /// As given to `listen`.
   [[nodiscard]] const LineTiming& timing() const { return rtu_.timing(); }
   FrameQueue& queue() { return queue_; }
-  constexpr LineTallies& tallies() { return tallies_; }
   [[nodiscard]] const FrameQueue& queue() const { return queue_; }
-  /// Counts host OKs, so that a new one is one that differs from the last look.
+  constexpr LineTallies& tallies() { return tallies_; }
+  [[nodiscard]] constexpr const LineTallies& tallies() const { return tallies_; }
+  /// Interrupts too. How many host OKs were received; wraps.
   [[nodiscard]] std::uint32_t host_oks() const { return host_oks_.load(); }
-  /// When the latest of them was over: its CR, or the silence behind it.
+  /// When the latest of them was over: its CR, or the silence after it.
   [[nodiscard]] Time host_ok_time() const { return Time(host_ok_time_.load()); }
 
  private:
-  [[nodiscard]] bool ascii() const { return !kBuiltModbus || protocol_ == Protocol::Ascii; }
-  Duration lapse();
-  void note(Verdict verdict);
-  void host_ok(Time now);
+  [[nodiscard]] bool modbus() const { return kBuiltModbus && protocol_ == Protocol::ModbusRtu; }
+  void note(Verdict verdict, Time over);
 
   DconAssembler dcon_;
   RtuAssembler rtu_;
@@ -68,7 +67,7 @@ class Receiver {
   LineTallies tallies_;
   WrittenByInterrupt<std::uint32_t> host_oks_;
   WrittenByInterrupt<std::uint32_t> host_ok_time_;
-  FrameQueue queue_;  // last, being large: what lies before is reached by short instructions
+  FrameQueue queue_;
 };
 
 }  // namespace ex9000

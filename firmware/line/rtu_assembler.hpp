@@ -1,4 +1,4 @@
-// Assembles Modbus RTU frames from received bytes and silences; runs in the receive and timer interrupts.
+// Assembles Modbus RTU frames from received bytes and silences. Runs in the receive and timer interrupts.
 #pragma once
 
 #include <cstdint>
@@ -8,78 +8,67 @@
 #include "firmware/line/frame_queue.hpp"
 #include "firmware/line/timing.hpp"
 #include "firmware/line/verdict.hpp"
-#include "firmware/model/built.hpp"
 #include "firmware/time.hpp"
 
 namespace ex9000 {
 
-/// address, function, data, CRC, then T3.5 of silence - wire.md section 7. The CRC is taken along byte by
-/// byte: a frame for this module is announced as soon as it comes out right, and at the silence the verdict
-/// is there at once.
+/// address, function, data, CRC, then T3.5 of silence - wire.md section 7.
+///
+/// A timer marks the gaps. Its interrupt is served before that of a byte that comes later
+/// (hal::SilenceTimer), so no byte needs to be compared with the time of the one before.
 class RtuAssembler {
  public:
   void use(const LineTiming& timing) { timing_ = timing; }
   [[nodiscard]] const LineTiming& timing() const { return timing_; }
-  /// Main loop, also while bytes come in: the module's address, from the next frame on that ends.
+  /// Main loop, also while bytes come in: the module's address, for every frame that ends from now on.
   void answer_to(std::uint8_t address) { own_address_.store_in_main_loop(address); }
 
-  /// Receive interrupt; `now` is when the byte was complete. Tells what became of the frame before it where
-  /// it came so late that it opens the next one. Restart the silence timer with `silence()` after it.
-  Verdict byte(FrameQueue& queue, std::uint8_t byte, ByteStatus status, Time now);
-
-  /// Timer interrupt: no byte was complete since T3.5. Where the CRC is not right yet, a byte may be under
-  /// way that started in time: then `wants_more_silence()`, and the second call without a byte between ends
-  /// the frame. An accepted frame holds address, function and data, without CRC and without a turn-around 00
-  /// before it.
-  Verdict silence(FrameQueue& queue) {
-    const Verdict verdict = conclude(queue);
-    return verdict != Verdict::Open ? verdict : lapse();
+  /// Receive interrupt: a byte was complete at `now`. Restart the timer with `first_wait()` after it.
+  void byte(FrameQueue& queue, std::uint8_t byte, ByteStatus status, Time now);
+  [[nodiscard]] Duration first_wait() const {
+    return strict() ? timing_.rtu_slack + Duration(1) : timing_.rtu_silence;
   }
-  /// The two parts of it: where the CRC is right, and where the first has found nothing.
-  Verdict conclude(FrameQueue& queue);
-  Verdict lapse();
-  /// When the silence was over that `silence` tells of, at the earliest.
-  [[nodiscard]] Time silent_since() const { return last_ + timing_.rtu_silence; }
 
-  [[nodiscard]] bool wants_more_silence() const { return lapsed_ != 0 && lapsed_ == received_; }
+  /// Timer interrupt: the time has passed since the last byte, or since the last call. Restart the timer with
+  /// `next_wait()` after it. An accepted frame holds address, function and data: neither the CRC nor a
+  /// turn-around 00 before it.
+  Verdict silence(FrameQueue& queue);
+  /// Zero if nothing is waited for.
+  [[nodiscard]] Duration next_wait() const;
 
-  /// Interrupt. The own driver was on: a frame whose CRC is right was whole and is judged, any other is
-  /// forgotten.
+  /// Interrupt: the own driver was on. A frame whose CRC is right was whole and is judged, any other is
+  /// forgotten (wire.md D9).
   Verdict cut_off(FrameQueue& queue);
 
- private:
-  void close() {
-    received_ = 0;
-    lapsed_ = 0;
-  }
-  [[nodiscard]] bool strict() const { return kBuiltStrictGaps && timing_.rtu_slack < timing_.rtu_silence; }
-  void spoil(ByteStatus status);
-  Verdict behind_a_gap(FrameQueue& queue, Duration since_last);
-  Verdict late(FrameQueue& queue, Duration since_last);
-  /// Ends the open frame, which is nothing; why is known.
-  Verdict lose() {
-    close();
-    return loss_;
-  }
-  [[nodiscard]] Verdict why_lost() const;
+  /// When the silence was over that ended the last frame.
+  [[nodiscard]] Time silent_since() const { return last_ + timing_.rtu_silence; }
 
-  static constexpr std::uint8_t kFirst =
-      1;  ///< the first byte came with an error, or stood apart from the rest
-  static constexpr std::uint8_t kRest = 2;     ///< any other did
-  static constexpr std::uint8_t kOverrun = 4;  ///< and it was an overrun
+ private:
+  /// Between two frames, or within one: what its last byte and the time since then say.
+  enum class State : std::uint8_t {
+    Idle,       ///< no frame is open
+    Receiving,  ///< the last byte is less than T1.5 (strict) or T3.5 old
+    Gap,        ///< strict only: T1.5 have passed, so a byte that comes now spoils the frame
+    Doubtful,   ///< T3.5 have passed and the CRC is wrong: a byte that began in time may still come in
+  };
+
+  [[nodiscard]] bool strict() const { return timing_.rtu_slack < timing_.rtu_silence; }
+  void open();
+  void spoil();
+  void append(Frame& frame, std::uint8_t byte);
+  Verdict conclude(FrameQueue& queue);
+  [[nodiscard]] Verdict why_lost() const;
 
   WrittenByMainLoop<std::uint32_t> own_address_;
   LineTiming timing_{};
-  Duration gap_;                  ///< between two bytes of the open frame, from which on it means something
-  std::uint8_t spoiled_ = 0;      ///< what kinds of bytes have: kFirst and so on
-  std::uint8_t first_ = 0;        ///< the first byte
-  Verdict loss_ = Verdict::Open;  ///< what the frame is if nothing comes any more, from when T3.5 had passed
-  std::uint32_t received_ = 0;  ///< bytes of the open frame, also those there is no room for; 0: none is open
-  std::uint32_t lapsed_ = 0;    ///< how many they were when T3.5 had passed once; 0: it has not
-  std::uint32_t announced_ = 0;         ///< likewise when it was announced
-  Time last_;                           ///< when the last byte was complete
-  Crc16 whole_ = Crc16::none();         ///< over all bytes
-  Crc16 behind_first_ = Crc16::none();  ///< over all but the first, where that is 00
+  State state_ = State::Idle;
+  std::uint32_t received_ = 0;  ///< bytes of the open frame, also those there is no room for
+  bool first_spoiled_ = false;  ///< the first byte had a line error, or a strict gap behind it
+  bool rest_spoiled_ = false;   ///< any other byte had
+  bool overrun_ = false;        ///< and one of these errors was an overrun
+  Crc16 whole_;                 ///< over all bytes
+  Crc16 behind_first_;          ///< over all but the first, if that is 00
+  Time last_;                   ///< when the last byte was complete
 };
 
 }  // namespace ex9000

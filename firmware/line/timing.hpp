@@ -8,15 +8,16 @@
 namespace ex9000 {
 
 struct LineTiming {
-  Duration dcon_turn_around;  ///< between CR and the reply: one character, 10 bits; rounded up
-  Duration rtu_silence;       ///< T3.5, the silence that ends a Modbus RTU frame, and comes before a reply;
-                              ///< rounded up, so a reply is never early
-  Duration rtu_grace;         ///< how long behind it a byte that began before may still be coming in: one
-                              ///< character; rounded up
-  Duration rtu_separate;      ///< two bytes whose ends lie at least this far apart belong to two frames: T3.5
-                              ///< and the second byte itself; rounded down, so a frame after exactly T3.5 is
-                              ///< one of its own
-  Duration rtu_slack;         ///< bytes whose ends lie further apart than this spoil a frame
+  /// Between CR and the reply: one character, 10 bits; rounded up.
+  Duration dcon_turn_around;
+  /// T3.5, the silence that ends a Modbus RTU frame, and that comes before a reply; rounded up, so that a
+  /// reply is never early.
+  Duration rtu_silence;
+  /// After `rtu_silence`, how long a byte that began before T3.5 may take until it is complete: one
+  /// character; rounded down, so that a frame after exactly T3.5 is one of its own.
+  Duration rtu_grace;
+  /// Bytes whose ends lie further apart than this spoil a frame.
+  Duration rtu_slack;
 
   /// For rtu_slack: no gap spoils a frame.
   static constexpr Duration kAnyGap{0xFFFF'FFFFU};
@@ -30,8 +31,7 @@ struct LineTiming {
     LineTiming timing;
     timing.dcon_turn_around = Duration(character + kRoundUp);
     timing.rtu_silence = Duration(t35 + kRoundUp);
-    timing.rtu_grace = Duration(character + kRoundUp);
-    timing.rtu_separate = Duration(t35 + character - 1);
+    timing.rtu_grace = Duration(character > kRoundDown ? character - kRoundDown : 1);
     timing.rtu_slack = kAnyGap;
     return timing;
   }
@@ -43,19 +43,26 @@ struct LineTiming {
     const Duration half_bit(microseconds(1, baud) + 1U);
     timing.dcon_turn_around = timing.dcon_turn_around + half_bit;
     timing.rtu_silence = timing.rtu_silence + half_bit;
+    timing.rtu_grace = timing.rtu_grace - half_bit;  // the byte is told as early
     return timing;
   }
 
   /// As `at`, but a gap of more than T1.5 spoils a frame, as the same clause has it.
-  static constexpr LineTiming strictly_at(std::uint32_t baud) {
-    LineTiming timing = at(baud);
+  static constexpr LineTiming strictly_at(std::uint32_t baud) { return strictly(at(baud), baud); }
+  static constexpr LineTiming strictly_told_in_the_stop_bit(std::uint32_t baud) {
+    return strictly(told_in_the_stop_bit(baud), baud);
+  }
+
+ private:
+  static constexpr LineTiming strictly(LineTiming timing, std::uint32_t baud) {
     timing.rtu_slack = Duration(silence(3, baud, 750) + microseconds(2 * 10, baud) + kRoundUp);
     return timing;
   }
 
- private:
   /// One for the division, one for a clock that shows whole microseconds.
   static constexpr std::uint32_t kRoundUp = 2;
+  /// What rtu_silence was rounded up by, and one.
+  static constexpr std::uint32_t kRoundDown = kRoundUp + 1;
 
   static constexpr std::uint32_t microseconds(std::uint32_t half_bits, std::uint32_t baud) {
     constexpr std::uint32_t kHalfSecond = 500'000;

@@ -72,7 +72,7 @@ Refusal write_clear_timeout_status(const State& /*state*/, BitWrite /*bits*/, Ou
 }
 
 Refusal write_clear_counters(const State& /*state*/, BitWrite bits, Outcome& outcome) {
-  outcome.counters_to_clear = static_cast<std::uint8_t>(bits.value & bits.mask);
+  outcome.counters_to_clear = static_cast<std::uint16_t>(bits.value & bits.mask);
   outcome.request(Effect::ClearCounters);
   return Refusal::None;
 }

@@ -23,20 +23,19 @@ enum Subfunction : std::uint16_t {
 constexpr int kNoCounter = -1;
 
 int counter_of(const Exchange& exchange, std::uint16_t subfunction) {
-  const LineTallies& line = exchange.tallies();
-  const Diagnostics& own = exchange.state().diagnostics;
-  const unsigned itself = exchange.tallied ? 0 : 1;
+  const LineTallies& line = exchange.tallies;
+  const Diagnostics& own = exchange.state.diagnostics;
   switch (subfunction) {
     case kClearCounters:
       return 0;  // the reply is the request
     case kBusMessages:
-      return static_cast<std::uint16_t>(line.bus_messages() + itself);
+      return static_cast<std::uint16_t>(line.bus_messages());
     case kBusErrors:
       return static_cast<std::uint16_t>(line.bus_errors());
     case kExceptions:
       return own.exceptions;
     case kServerMessages:
-      return static_cast<std::uint16_t>(line.server_messages() + itself);
+      return static_cast<std::uint16_t>(line.server_messages());
     case kNoResponses:
       return static_cast<std::uint16_t>(line.no_responses() + own.no_responses);
     case kOverruns:

@@ -58,7 +58,7 @@ Refusal report_server_id(Exchange& exchange) {
   if (exchange.frame.size != 2) {
     return Refusal::WrongLength;
   }
-  const Bytes name = exchange.state().settings.name.bytes();
+  const Bytes name = exchange.state.settings.name.bytes();
   exchange.reply.put(static_cast<std::uint8_t>(name.size + 3));
   exchange.reply.put_word(exchange.model().modbus_code);
   exchange.reply.put(kRunning);
@@ -103,7 +103,7 @@ Refusal read_device_identification(Exchange& exchange) {
   std::size_t count = 0;
   for (; object <= last; ++object) {
     if (exists(object, last)) {
-      put_object(exchange.state(), object, exchange.reply);
+      put_object(exchange.state, object, exchange.reply);
       ++count;
     }
   }

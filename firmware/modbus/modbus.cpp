@@ -55,7 +55,8 @@ std::uint8_t exception_of(Refusal refusal, std::uint8_t function) {
 
 void append_crc(Reply& reply) {
   const Crc16 crc = crc16(reply.bytes());
-  reply.put(crc.low_byte(), crc.high_byte());
+  reply.put(crc.low_byte());
+  reply.put(crc.high_byte());
 }
 
 void write_exception(std::uint8_t address, std::uint8_t function, Refusal refusal, Reply& reply) {
@@ -76,7 +77,8 @@ void answer(Exchange& exchange) {
   if (exchange.broadcast && (row == nullptr || !row->by_broadcast)) {
     return;
   }
-  reply.put(frame[0], function);
+  reply.put(frame[0]);
+  reply.put(function);
   const Refusal refusal = row == nullptr ? Refusal::UnknownFunction : row->handler(exchange);
   exchange.outcome.refusal = refusal;
   if (exchange.broadcast) {

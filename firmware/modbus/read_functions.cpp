@@ -29,11 +29,11 @@ Refusal read_bits(Exchange& exchange) {
     return Refusal::WrongAddress;
   }
   const unsigned index = unsigned{start} - row->first;
-  const unsigned bits = (unsigned{row->read(exchange.state())} >> index) & ((1U << quantity) - 1U);
-  if (quantity > 8) {
-    exchange.reply.put(2, static_cast<std::uint8_t>(bits), static_cast<std::uint8_t>(bits >> 8U));
-  } else {
-    exchange.reply.put(1, static_cast<std::uint8_t>(bits));
+  const unsigned bits = (unsigned{row->read(exchange.state)} >> index) & ((1U << quantity) - 1U);
+  const unsigned bytes = quantity > 8 ? 2 : 1;
+  exchange.reply.put(static_cast<std::uint8_t>(bytes));
+  for (unsigned byte = 0; byte < bytes; ++byte) {
+    exchange.reply.put(static_cast<std::uint8_t>(bits >> (8 * byte)));
   }
   return Refusal::None;
 }
@@ -55,7 +55,7 @@ Refusal read_words(Exchange& exchange) {
     if (row == nullptr) {
       return Refusal::WrongAddress;
     }
-    exchange.reply.put_word(row->read(exchange.state(), address - row->first));
+    exchange.reply.put_word(row->read(exchange.state, address - row->first));
   }
   return Refusal::None;
 }

@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <string_view>
 
+#include "firmware/modbus/host_ok.hpp"
 #include "firmware/model/model.hpp"
 #include "firmware/request/outcome.hpp"
 #include "firmware/request/state.hpp"
@@ -206,7 +207,7 @@ inline constexpr auto kWordRegisters = table<WordRegister>({
                  "host OK: a request for 0 or 1 registers from here restarts the host watchdog and gets no "
                  "reply; address 0 reaches all modules",
                  "",
-                 {0x3038, Width::One, Needs::Nothing, 0, false, 0, 0, nullptr, nullptr}},
+                 {kHostOkRegister, Width::One, Needs::Nothing, 0, false, 0, 0, nullptr, nullptr}},
 });
 
 /// The row of coils or discrete inputs that holds `quantity` of them (1 to 2000) from `address` on and that

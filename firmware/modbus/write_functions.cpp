@@ -22,11 +22,11 @@ Refusal write_bits(Exchange& exchange, const BitRow& row, BitWrite bits) {
   if (exchange.broadcast && row.configuration) {
     return Refusal::None;  // ignored: one frame must not reconfigure every module
   }
-  const Refusal refusal = row.write(exchange.state(), bits, exchange.outcome);
+  const Refusal refusal = row.write(exchange.state, bits, exchange.outcome);
   if (refusal != Refusal::None) {
     return refusal;
   }
-  if (row.drives_outputs && exchange.state().outputs_blocked()) {
+  if (row.drives_outputs && exchange.state.outputs_blocked()) {
     return Refusal::OutputsBlocked;
   }
   put_echo(exchange);
@@ -37,7 +37,7 @@ Refusal check_value(Exchange& exchange, const WordRow& row, std::uint16_t value)
   if (value < row.lowest || value > row.highest) {
     return Refusal::WrongValue;
   }
-  return row.write(exchange.state(), value, exchange.outcome);
+  return row.write(exchange.state, value, exchange.outcome);
 }
 
 /// Length, quantity and byte count of 0F and 10, which carry `bits` a value.

@@ -10,8 +10,7 @@
 
 namespace ex9000 {
 
-// kBuiltInputs: the most inputs that one of them has. kBuiltStrictGaps: whether gaps may spoil a frame at all
-// (LineTiming::strictly_at).
+// kBuiltInputs: the most inputs that one of them has.
 
 #ifdef EX9000_MODEL
 
@@ -27,7 +26,6 @@ class ChosenModel {
 
 constexpr bool some_model_meets(Needs needs) { return meets(kOnlyModel, needs); }
 constexpr unsigned kBuiltInputs = kOnlyModel.inputs;
-constexpr bool kBuiltStrictGaps = false;
 
 #else
 
@@ -43,7 +41,6 @@ class ChosenModel {
 
 constexpr bool some_model_meets(Needs /*needs*/) { return true; }
 constexpr unsigned kBuiltInputs = kMaxInputs;
-constexpr bool kBuiltStrictGaps = true;
 
 #endif
 

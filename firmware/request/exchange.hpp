@@ -9,34 +9,32 @@
 
 namespace ex9000 {
 
-/// What a handler is given: it reads the request and the module's state, writes the reply, and says in the
-/// outcome what is to be done. It changes nothing else; the state is the module's alone.
-class Exchange {
- public:
-  explicit constexpr Exchange(const Model& model) : state_(model) {}
+/// What a handler gets. It reads the request and the module's state, writes the reply, and says in the
+/// outcome what must be done. It changes nothing else.
+struct Exchange {
+  constexpr Exchange(const State& state_of_module, const LineTallies& tallies_of_line)
+      : state(state_of_module), tallies(tallies_of_line) {}
 
-  [[nodiscard]] const State& state() const { return state_; }
-  [[nodiscard]] const LineTallies& tallies() const { return *tallies_; }
-  [[nodiscard]] constexpr const Model& model() const { return state_.model(); }
+  const State& state;
+  const LineTallies& tallies;  ///< this request is counted already
 
-  /// The request as its assembler has accepted it.
-  Bytes frame;
-  /// Of a DCON request, what stands behind address and key.
-  Bytes args;
-  /// A Modbus request to address 0.
-  bool broadcast = false;
-  /// The line's tallies have this request already: it is judged behind its silence, not within.
-  bool tallied = false;
+  Bytes frame;             ///< the request as its assembler accepted it
+  Bytes args;              ///< of a DCON request, what stands after address and key
+  bool broadcast = false;  ///< a Modbus request to address 0
 
   Outcome outcome;
+  Reply reply;
 
- private:
-  friend class Module;
-  const LineTallies* tallies_ = nullptr;  ///< from Module::begin on
-  State state_;
-
- public:
-  Reply reply;  // last, being large
+  [[nodiscard]] constexpr const Model& model() const { return state.model(); }
+  /// Before the next request is judged.
+  void begin(Bytes request) {
+    frame = request;
+    args = {};
+    broadcast = false;
+    outcome.clear();
+    outcome.refusal = Refusal::None;
+    reply.clear();
+  }
 };
 
 }  // namespace ex9000

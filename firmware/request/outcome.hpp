@@ -37,59 +37,55 @@ struct Drive {
 
 /// What a request does beside settings and outputs, when all else is done.
 enum class Effect : std::uint8_t {
-  RestartHostWatchdog = 1U << 0U,
-  TakeAddress = 1U << 1U,  ///< answer to the stored address from now on
-  TakeSample = 1U << 2U,
-  MarkSampleRead = 1U << 3U,
-  ClearResetStatus = 1U << 4U,
-  ClearLatches = 1U << 5U,
-  ClearDiagnostics = 1U << 6U,
-  ClearCounters = 1U << 7U,
+  RestartHostWatchdog,
+  TakeAddress,  ///< answer to the stored address from now on
+  TakeSample,
+  MarkSampleRead,
+  ClearResetStatus,
+  ClearLatches,
+  ClearDiagnostics,
+  ClearCounters,
 };
 
-/// What is to be done, in one go, before the reply leaves. A change of settings is stored first; all else
-/// happens when it is.
+/// What must be done, in one go, before the reply leaves. A change of settings is stored first; all else
+/// happens when it is stored.
 class Outcome {
  public:
-  [[gnu::noinline]] void request(Effect effect) {
-    asked_ = static_cast<std::uint16_t>(asked_ | static_cast<std::uint8_t>(effect));
-  }
-  [[nodiscard]] bool asks_for(Effect effect) const {
-    return (asked_ & static_cast<std::uint8_t>(effect)) != 0;
-  }
-  [[nodiscard]] bool has_effects() const { return (asked_ & kEffects) != 0; }
+  void request(Effect effect) { effects_ = static_cast<std::uint16_t>(effects_ | bit(effect)); }
+  [[nodiscard]] bool asks_for(Effect effect) const { return (effects_ & bit(effect)) != 0; }
+  [[nodiscard]] bool has_effects() const { return effects_ != 0; }
 
-  void drive(Drive outputs) {
-    drive_ = outputs;
-    asked_ |= kDrive;
-  }
-  [[nodiscard]] Drive outputs_to_drive() const { return (asked_ & kDrive) != 0 ? drive_ : Drive(); }
+  void drive(Drive outputs) { drive_ = outputs; }
+  /// An empty mask if none is to be driven.
+  [[nodiscard]] Drive outputs_to_drive() const { return drive_; }
 
   /// The change of settings, to be added to.
-  [[gnu::noinline]] SettingsChange& change() {
-    asked_ |= kChange;
+  SettingsChange& change() {
+    changes_settings_ = true;
     return change_;
   }
   [[nodiscard]] const SettingsChange& change() const { return change_; }
-  [[nodiscard]] bool changes_settings() const { return (asked_ & kChange) != 0; }
+  [[nodiscard]] bool changes_settings() const { return changes_settings_; }
 
-  /// Nothing is to be done but to answer.
-  [[nodiscard]] bool empty() const { return asked_ == 0; }
-  /// Nothing is to be done any more; why a request was refused, stays.
+  /// Nothing must be done any more. The reason of a refusal stays.
   void clear() {
-    asked_ = 0;
-    change_.clear();
+    effects_ = 0;
+    drive_ = {};
+    counters_to_clear = 0;
+    if (changes_settings_) {
+      changes_settings_ = false;
+      change_.clear();
+    }
   }
 
   Refusal refusal = Refusal::None;
-  std::uint8_t counters_to_clear = 0;  ///< bit n: counter n; for Effect::ClearCounters
+  std::uint16_t counters_to_clear = 0;  ///< bit n: counter n; for Effect::ClearCounters
 
  private:
-  static constexpr std::uint16_t kEffects = 0xFF;
-  static constexpr std::uint16_t kDrive = 0x100;
-  static constexpr std::uint16_t kChange = 0x200;
+  static constexpr unsigned bit(Effect effect) { return 1U << static_cast<unsigned>(effect); }
 
-  std::uint16_t asked_ = 0;
+  std::uint16_t effects_ = 0;
+  bool changes_settings_ = false;
   Drive drive_;
   SettingsChange change_;
 };

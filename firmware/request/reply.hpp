@@ -12,48 +12,52 @@
 
 namespace ex9000 {
 
-/// Room for the longest frame. No handler exceeds it: the longest reply is an echo of the longest request,
-/// and all others are a fraction of that.
+/// Room for the longest frame. The longest reply is an echo of the longest request, so no handler needs more;
+/// whatever a handler puts beyond that is dropped.
 class Reply {
  public:
-  void clear() { end_ = bytes_.data(); }
+  void clear() { size_ = 0; }
 
-  [[gnu::noinline]] void put(std::uint8_t byte) { *end_++ = byte; }
-  /// Several at once, where time counts.
-  template <class... More>
-  [[gnu::always_inline]] void put(std::uint8_t first, std::uint8_t second, More... more) {
-    std::uint8_t* end = end_;
-    *end++ = first;
-    *end++ = second;
-    ((*end++ = static_cast<std::uint8_t>(more)), ...);
-    end_ = end;
+  void put(std::uint8_t byte) {
+    if (size_ < bytes_.size()) {
+      bytes_[size_] = byte;
+      ++size_;
+    }
   }
   void put(char character) { put(static_cast<std::uint8_t>(character)); }
-  [[gnu::noinline]] void put(Bytes bytes) {
+  void put(Bytes bytes) {
     for (const std::uint8_t byte : bytes) {
       put(byte);
     }
   }
-  [[gnu::noinline]] void put(std::string_view text) {
+  void put(std::string_view text) {
     for (const char character : text) {
       put(character);
     }
   }
-  /// Two upper-case hex digits.
-  [[gnu::noinline]] void put_hex(unsigned value) { put(hex_digit(value >> 4U), hex_digit(value)); }
-  /// High byte first.
-  [[gnu::noinline]] void put_word(unsigned value) {
-    put(static_cast<std::uint8_t>(value >> 8U), static_cast<std::uint8_t>(value));
+  /// The low byte of `value` as two upper-case hex digits.
+  void put_hex(unsigned value) {
+    put(hex_digit(value >> 4U));
+    put(hex_digit(value));
+  }
+  /// The low 16 bits of `value`, high byte first.
+  void put_word(unsigned value) {
+    put(static_cast<std::uint8_t>(value >> 8U));
+    put(static_cast<std::uint8_t>(value));
   }
   /// Overwrites a byte that was put before.
-  void patch(std::size_t at, std::size_t value) { bytes_[at] = static_cast<std::uint8_t>(value); }
+  void patch(std::size_t at, std::size_t value) {
+    if (at < size_) {
+      bytes_[at] = static_cast<std::uint8_t>(value);
+    }
+  }
 
-  [[nodiscard]] bool empty() const { return end_ == bytes_.data(); }
-  [[nodiscard]] std::size_t size() const { return static_cast<std::size_t>(end_ - bytes_.data()); }
-  [[nodiscard]] Bytes bytes() const { return {bytes_.data(), size()}; }
+  [[nodiscard]] bool empty() const { return size_ == 0; }
+  [[nodiscard]] std::size_t size() const { return size_; }
+  [[nodiscard]] Bytes bytes() const { return {bytes_.data(), size_}; }
 
  private:
-  std::uint8_t* end_ = nullptr;  ///< behind what was put; from the first `clear` on
+  std::size_t size_ = 0;
   std::array<std::uint8_t, kLongestFrame> bytes_{};
 };
 

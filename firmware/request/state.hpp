@@ -13,7 +13,7 @@ namespace ex9000 {
 /// What was taken from the settings, or from INIT mode, at reset and holds until the next one.
 struct InForce {
   std::uint8_t address = 0;  ///< the exception: `%` changes it at once
-  std::uint8_t baud_code = 0;
+  std::uint8_t baud_code = kFactoryBaudCode;
   Protocol protocol = Protocol::Ascii;
   bool checksum = false;
   bool init_mode = false;
@@ -43,10 +43,13 @@ struct State {
   std::uint16_t outputs = 0;   ///< bit n is channel n, 1 = energised
   Inputs inputs;
   Sample sample;
-  bool reset_status = false;
+  bool reset_status = true;  ///< `$AA5`: nobody has read it since reset
   Diagnostics diagnostics;
 
   [[nodiscard]] constexpr const Model& model() const { return chosen.get(); }
+  [[nodiscard]] bool speaks_modbus() const {
+    return kBuiltModbus && in_force.protocol == Protocol::ModbusRtu;
+  }
   /// Section 2: what commands marked (I) need.
   [[nodiscard]] bool configuration_permitted() const { return in_force.init_mode || init_asserted; }
   /// Section 6: output commands are ignored.

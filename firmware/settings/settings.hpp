@@ -117,6 +117,8 @@ class SettingsChange {
   void watchdog_enabled(bool value) { set(offsetof(Settings, watchdog_enabled), value ? 1 : 0); }
   void watchdog_timeout(std::uint8_t value) { set(offsetof(Settings, watchdog_timeout), value); }
   void timeout_status(bool value) { set(offsetof(Settings, timeout_status), value ? 1 : 0); }
+  /// It does not name the timeout status any more.
+  void keep_timeout_status() { named_.bytes[offsetof(Settings, timeout_status)] = 0; }
 
   /// It names nothing.
   void clear();

@@ -17,12 +17,6 @@ constexpr std::uint16_t address_of(std::uint8_t copy) {
 
 }  // namespace
 
-void SettingsStore::begin_loading() {
-  found_ = Found::Unreadable;
-  doubtful_copy_ = kNoCopy;
-  begin_reading(Step::Load);
-}
-
 void SettingsStore::begin_reading(Step step) {
   step_ = step;
   copy_ = 0;

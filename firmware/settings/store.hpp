@@ -35,10 +35,8 @@ class SettingsStore {
     Unreadable,  ///< something else; factory settings are used, and not written
   };
 
+  /// Begins to load: reads both copies, each up to three times. Afterwards `found()` and `stored()` hold.
   explicit constexpr SettingsStore(const Model& model) : model_(model) {}
-
-  /// Reads both copies, each up to three times. Afterwards `found()` and `stored()` hold.
-  void begin_loading();
   [[nodiscard]] bool loading() const { return step_ == Step::Load; }
   [[nodiscard]] Found found() const { return found_; }
 
@@ -83,18 +81,18 @@ class SettingsStore {
   static constexpr std::uint8_t kAttempts = 3;
 
   ChosenModel model_;
-  Step step_ = Step::Idle;
-  Found found_ = {};
+  Step step_ = Step::Load;
+  Found found_ = Found::Unreadable;
   bool saved_ = false;
   std::uint8_t copy_ = 0;
   std::uint8_t attempt_ = 0;
   std::uint8_t blank_copies_ = 0;
-  std::uint8_t current_copy_ = 0;   ///< the one that counts
-  std::uint8_t doubtful_copy_ = 0;  ///< the one that must not
-  std::uint16_t sequence_ = 0;      ///< its
-  Settings stored_;                 ///< what it holds
-  Record record_;                   ///< what is written
-  Record read_back_;                ///< what is read
+  std::uint8_t current_copy_ = kNoCopy;   ///< the one that counts
+  std::uint8_t doubtful_copy_ = kNoCopy;  ///< the one that must not
+  std::uint16_t sequence_ = 0;            ///< its
+  Settings stored_;                       ///< what it holds
+  Record record_;                         ///< what is written
+  Record read_back_;                      ///< what is read
 };
 
 }  // namespace ex9000

@@ -22,7 +22,7 @@ class BareModule {
       make_record(model, settings, 1, record);
       std::copy(record.bytes.begin(), record.bytes.end(), memory_.begin());
     }
-    module_.begin(0, now_);
+    module_.start(0, now_);
     while (!module_.listening()) {
       pass(1000);
     }
@@ -36,7 +36,7 @@ class BareModule {
     }
     now_ = now_ + Duration(4013);
     module_.on_silence();
-    module_.look_around(false, now_);
+    module_.poll_panel(false, now_);
     module_.step(now_);
     const Bytes reply = module_.take_reply(now_);
     module_.on_spoken();
@@ -47,13 +47,13 @@ class BareModule {
 
  private:
   void pass(std::uint32_t microseconds) {
-    if (module_.wants_memory()) {
+    if (module_.needs_memory()) {
       const MemoryJob job = module_.memory_job();
       std::copy_n(memory_.begin() + job.address, job.bytes.size, job.bytes.data);
       module_.memory_done(true);
     }
     now_ = now_ + Duration(microseconds);
-    module_.look_around(false, now_);
+    module_.poll_panel(false, now_);
     module_.step(now_);
   }
 

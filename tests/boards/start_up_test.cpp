@@ -1,5 +1,5 @@
-// The code that an image runs before its main, as it is shipped, on a piece of memory with a word before and
-// behind what the linker marks.
+// The code that an image runs before its main, as it is shipped, on a piece of memory with words around
+// what the linker marks.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -15,17 +15,22 @@
 
 namespace {
 
-constexpr std::size_t kMarked = 16;
-constexpr std::size_t kWords = kMarked + 2;
+constexpr std::size_t kCopied = 3;
+constexpr std::size_t kCleared = 16;
+/// A word before, between and after what is marked.
+constexpr std::size_t kWords = 1 + kCopied + 1 + kCleared + 1;
 
 }  // namespace
 
 // What the linker script does on a board. An array in C++ would be an object of its own, whose bounds a
 // sanitizer knows.
-asm(".pushsection .bss\n"
+asm(".pushsection .data\n"
     ".balign 4\n"
-    ".globl memory_of_the_image, zero_begin, zero_end\n"
+    ".globl memory_of_the_image, data_image, data_begin, data_end, zero_begin, zero_end\n"
+    "data_image: .long 0x11111111, 0x22222222, 0x33333333, 0x44444444\n"
     "memory_of_the_image: .zero 4\n"
+    "data_begin: .zero 12\n"
+    "data_end: .zero 4\n"
     "zero_begin: .zero 64\n"
     "zero_end: .zero 4\n"
     ".popsection\n");
@@ -82,13 +87,13 @@ class StartUpCode : public testing::Test {
   std::array<std::uint32_t, kWords> before{};
 };
 
-TEST_F(StartUpCode, ClearsEveryWordThatTheLinkerMarksAndNoOtherBeforeMain) {
+TEST_F(StartUpCode, CopiesAndClearsEveryWordThatTheLinkerMarksAndNoOtherBeforeMain) {
+  std::array<std::uint32_t, kWords> expected = before;
+  std::copy_n(std::array<std::uint32_t, kCopied>{0x1111'1111, 0x2222'2222, 0x3333'3333}.begin(), kCopied,
+              expected.begin() + 1);
+  std::fill_n(expected.begin() + 1 + kCopied + 1, kCleared, 0U);
   EXPECT_THROW(ex9000::start_up::reset_handler(), Entered);
-  EXPECT_EQ(found_by_main.front(), before.front()) << "the word before what is marked";
-  EXPECT_EQ(found_by_main.back(), before.back()) << "the word behind what is marked";
-  for (std::size_t word = 1; word <= kMarked; ++word) {
-    EXPECT_EQ(found_by_main.at(word), 0U) << word;
-  }
+  EXPECT_EQ(found_by_main, expected);
   EXPECT_TRUE(writes.empty());
 }
 

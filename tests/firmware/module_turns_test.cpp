@@ -19,14 +19,14 @@ class ModuleTurns : public testing::Test {
  protected:
   /// Comes up on an erased memory.
   ModuleTurns() {
-    module_.begin(0, now_);
-    while (module_.wants_memory()) {
+    module_.start(0, now_);
+    while (module_.needs_memory()) {
       do_memory_job();
       module_.step(now_);
     }
     while (!module_.listening()) {
       pass(milliseconds(1));
-      module_.look_around(false, now_);
+      module_.poll_panel(false, now_);
       module_.step(now_);
     }
   }
@@ -115,7 +115,7 @@ TEST_F(ModuleTurns, TheNextReplyLeavesASilenceBehindThisOneThoughNobodyLooksArou
 TEST_F(ModuleTurns, WhatTheMemoryHasDoneWantsToBeGoneOnWith) {
   put("~01Opump");
   module_.step(now_);
-  while (module_.wants_memory()) {
+  while (module_.needs_memory()) {
     EXPECT_FALSE(wants_to_go_on());
     do_memory_job();
   }
@@ -127,7 +127,7 @@ TEST_F(ModuleTurns, WhatTheMemoryHasDoneWantsToBeGoneOnWith) {
 TEST_F(ModuleTurns, ATimeoutWantsItsLightAtOnceAndToBeGoneOnWithOnceItIsStored) {
   put("~013101");
   module_.step(now_);
-  while (module_.wants_memory()) {
+  while (module_.needs_memory()) {
     do_memory_job();
   }
   module_.step(now_);
@@ -138,10 +138,10 @@ TEST_F(ModuleTurns, ATimeoutWantsItsLightAtOnceAndToBeGoneOnWithOnceItIsStored) 
   module_.step(now_);
   ASSERT_TRUE(module_.state().settings.timeout_status);
   EXPECT_TRUE(wants_to_go_on());
-  module_.look_around(false, now_);
+  module_.poll_panel(false, now_);
   EXPECT_FALSE(wants_to_go_on());
-  ASSERT_TRUE(module_.wants_memory());
-  while (module_.wants_memory()) {
+  ASSERT_TRUE(module_.needs_memory());
+  while (module_.needs_memory()) {
     do_memory_job();
   }
   EXPECT_TRUE(wants_to_go_on());
@@ -151,9 +151,9 @@ TEST_F(ModuleTurns, ATimeoutWantsItsLightAtOnceAndToBeGoneOnWithOnceItIsStored) 
 
 TEST(ModuleComesUp, OnceItsMemoryIsRead) {
   Module module(*find_model("EX9043D"));
-  module.begin(0, Time());
-  module.look_around(false, Time());
-  while (module.wants_memory()) {
+  module.start(0, Time());
+  module.poll_panel(false, Time());
+  while (module.needs_memory()) {
     EXPECT_FALSE(module.idle_for(Time()) == Duration());
     const MemoryJob job = module.memory_job();
     module.memory_started();
@@ -166,17 +166,17 @@ TEST(ModuleComesUp, OnceItsMemoryIsRead) {
 // The receiver keeps `~**` from the queue, so that it is never lost; whoever asks `answer` hears the same.
 TEST(HostOkCommand, RestartsTheHostWatchdogAndIsNotAnswered) {
   const std::string command = "~**";
-  Exchange exchange(*find_model("EX9043D"));
-  exchange.outcome.clear();
-  exchange.reply.clear();
-  exchange.frame = {reinterpret_cast<const std::uint8_t*>(command.data()), command.size()};
+  const State state(*find_model("EX9043D"));
+  const LineTallies tallies;
+  Exchange exchange(state, tallies);
+  exchange.begin({reinterpret_cast<const std::uint8_t*>(command.data()), command.size()});
   dcon::answer(exchange);
   EXPECT_TRUE(exchange.outcome.asks_for(Effect::RestartHostWatchdog));
   EXPECT_EQ(exchange.outcome.refusal, Refusal::None);
   EXPECT_TRUE(exchange.reply.empty());
 }
 
-TEST_F(ModuleTurns, WhatTheLineHasBroughtCountsUpWithEveryFrameAndEveryHostOk) {
+TEST_F(ModuleTurns, EveryCompleteFrameAndEveryHostOkCountsAsALineEvent) {
   const std::uint32_t before = module_.line_events();
   put("$01M");
   put("~**");

@@ -1,10 +1,10 @@
-// A module before `begin`: the compiler has made it, of zeros, so that no code has to.
+// A module before `start`: the compiler makes it, valid from its first moment on, and no code has to.
 #include <gtest/gtest.h>
 
 #include "firmware/module.hpp"
 #include "hal/board.hpp"
 #include "hal/device.hpp"
-#include "tests/firmware/made_of_zeros.hpp"
+#include "tests/firmware/constinit.hpp"
 
 namespace ex9000 {
 namespace {
@@ -17,25 +17,23 @@ struct NoBoard {
 };
 
 EX9000_CONSTINIT Module untouched_module(kModel);
-EX9000_CONSTINIT hal::Device<NoBoard> untouched_device(kModel);
+EX9000_CONSTINIT hal::Device<NoBoard> untouched_device(kModel, LineTiming::at);
 
-/// The store and the state each refer to the model, where one of many may be chosen.
-constexpr std::size_t kReferencesToTheModel = 2;
-
-TEST(UntouchedModule, IsZerosButForItsModel) {
-  EXPECT_EQ(words_other_than_0(untouched_module), kReferencesToTheModel);
+TEST(UntouchedModule, IsItsModel) {
   EXPECT_EQ(&untouched_module.state().model(), &kModel);
-}
-
-TEST(UntouchedModule, SoIsADevice) {
-  EXPECT_EQ(words_other_than_0(untouched_device), kReferencesToTheModel);
   EXPECT_EQ(&untouched_device.module().state().model(), &kModel);
 }
 
-TEST(UntouchedModule, DrivesNothingAndWantsNothing) {
+TEST(UntouchedModule, DrivesNothingAndDoesNotListen) {
   EXPECT_EQ(untouched_module.outputs(), 0);
-  EXPECT_FALSE(untouched_module.wants_memory());
+  EXPECT_FALSE(untouched_module.listening());
   EXPECT_FALSE(untouched_module.request_waits());
+  EXPECT_TRUE(untouched_module.led_lit());
+}
+
+TEST(UntouchedModule, HasItsSettingsToReadAndNobodyHasReadItsResetStatus) {
+  EXPECT_TRUE(untouched_module.needs_memory());
+  EXPECT_TRUE(untouched_module.state().reset_status);
 }
 
 }  // namespace

@@ -197,8 +197,8 @@ class LeanModule {
     }
     held_ = false;
     const Microseconds began = around_.now;
-    device_.emplace(model_, LeanBoard(around_));
-    device_->start(timing_at_);
+    device_.emplace(model_, timing_at_, LeanBoard(around_));
+    device_->start();
     main_loop();
     constexpr Microseconds kLongest = 100 * kMillisecond;  // D13
     while (!module().listening()) {
@@ -291,7 +291,7 @@ class LeanModule {
     do {
       constexpr unsigned kMostTurns = 50;
       require(++turns < kMostTurns, "the main loop comes to rest");
-      device_->look_around();
+      device_->poll_panel();
       device_->turn();
       around_.onlooker.turned();
       idle = module().idle_for(board().clock.now());

@@ -75,10 +75,10 @@ class Session final : public Onlooker {
     if (module_.sending()) {
       return;  // the echo's place: nobody hears it
     }
-    const std::uint64_t silent = witness_.counts().silent;
+    const std::uint64_t host_oks = witness_.counts().host_oks;
     witness_.hears(byte, status == ByteStatus::Good, in_force().address, end);
     // In Modbus it is the silence that ends a frame, and that wakes the main loop here whatever it has ended.
-    const bool ends_host_ok = !speaks_modbus() && witness_.counts().silent != silent;
+    const bool ends_host_ok = !speaks_modbus() && witness_.counts().host_oks != host_oks;
     turned_ = false;
     module_.receive(byte, status);
     require(!ends_host_ok || turned_ || module_.held(), "a host OK wakes the main loop");

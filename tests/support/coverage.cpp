@@ -77,16 +77,6 @@ std::vector<unsigned> functions_of(modbus::Functions functions) {
   return codes;
 }
 
-template <class Feed>
-Verdict verdict_of(const play::Bytes& sent, Feed feed) {
-  Verdict verdict = Verdict::Open;
-  for (const std::uint8_t byte : sent) {
-    const Verdict latest = feed(byte);
-    verdict = latest == Verdict::Open ? verdict : latest;
-  }
-  return verdict;
-}
-
 }  // namespace
 
 void Coverage::note(const Module& module, const play::Bytes& sent, const play::Bytes& heard) {
@@ -98,14 +88,17 @@ void Coverage::note(const Module& module, const play::Bytes& sent, const play::B
     DconAssembler assembler;
     assembler.use_checksum(in_force.checksum);
     assembler.answer_to(in_force.address);
-    verdict = verdict_of(
-        sent, [&](std::uint8_t byte) { return assembler.byte(queue, byte, ByteStatus::Good, Time()); });
+    for (const std::uint8_t byte : sent) {
+      const Verdict latest = assembler.byte(queue, byte, ByteStatus::Good, Time());
+      verdict = latest == Verdict::Open ? verdict : latest;
+    }
   } else {
     RtuAssembler assembler;
     assembler.use(LineTiming::at(module.baud()));
     assembler.answer_to(in_force.address);
-    verdict_of(sent,
-               [&](std::uint8_t byte) { return assembler.byte(queue, byte, ByteStatus::Good, Time()); });
+    for (const std::uint8_t byte : sent) {
+      assembler.byte(queue, byte, ByteStatus::Good, Time());
+    }
     verdict = assembler.silence(queue);
     if (verdict == Verdict::Open) {
       verdict = assembler.silence(queue);
@@ -121,7 +114,7 @@ void Coverage::note(const Module& module, const play::Bytes& sent, const play::B
   if (!queue.has_frame()) {
     return;
   }
-  const ex9000::Bytes frame = queue.completed().bytes();
+  const ex9000::Bytes frame = queue.waiting().bytes();
   const bool ascii = in_force.protocol == Protocol::Ascii;
   if (ascii && frame[1] == '*') {
     reached_.insert("dcon/sample");

@@ -2,10 +2,17 @@
 
 from __future__ import annotations
 
+import pathlib
 import re
+import sys
+import tempfile
 import unittest
 
 from sample import Verdict, check
+
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[2] / "toolchain"))
+
+from check_image import records  # noqa: E402
 
 EXCEPTION = 36
 
@@ -174,7 +181,7 @@ class Accepts(unittest.TestCase):
             """
         )
         self.assertIn("(600 static,", verdict.figures)
-        self.assertRegex(verdict.figures, r"^image: flash 196 of 65536 bytes, RAM 708 of 20480 bytes")
+        self.assertRegex(verdict.figures, r"^image: flash 196 bytes, RAM 708 bytes")
 
     def test_interrupts_that_are_held_are_counted_along_the_longest_way(self) -> None:
         verdict = check(
@@ -480,18 +487,38 @@ class Refuses(unittest.TestCase):
             """,
         )
 
-    # --- budgets ---
+    # --- memory, and what was recorded ---
 
-    def test_more_than_the_budgets(self) -> None:
+    def test_more_than_the_ram_holds(self) -> None:
+        source = 'volatile char a[20372]; extern "C" void reset() { for (;;) a[0] = 1; }'
+        self.assertTrue(check(source).accepted)  # and three exceptions
+        verdict = check(source.replace("20372", "20376"))
+        self.assertFalse(verdict.accepted)
+        self.assertEqual(verdict.problems, "image: RAM does not hold it: 20484 of 20480 bytes\n")
+
+    def test_what_has_changed_since_it_was_recorded(self) -> None:
         source = 'volatile char a[100]; extern "C" void reset() { for (;;) a[0] = 1; }'
-        flash = check(source, flash=64)
-        self.assertFalse(flash.accepted)
-        self.assertRegex(flash.problems, r"^image: flash is over its budget: \d+ of 64 bytes\n$")
-        # 100 bytes and three exceptions.
-        self.assertTrue(check(source, ram=208).accepted)
-        ram = check(source, ram=207)
-        self.assertFalse(ram.accepted)
-        self.assertEqual(ram.problems, "image: RAM is over its budget: 208 of 207 bytes\n")
+        with tempfile.NamedTemporaryFile("w", suffix=".txt") as record:
+            record.write("a-board image 1 96 108\nanother image 1 1 1\n")
+            record.flush()
+            figures = check(source, options=f"--record {record.name} --board a-board").figures
+        self.assertRegex(figures, r"^image: flash \d+ \(\+\d+\) bytes, RAM 208 bytes \(100 \(\+4\) static, 108 stack")
+
+
+class Growth(unittest.TestCase):
+    RECORDED = records.Figures(1000, 400, 600)
+
+    def test_five_percent_may_come_without_a_new_record(self) -> None:
+        self.assertFalse(records.Figures(1050, 420, 630).exceeds(self.RECORDED))
+        self.assertTrue(records.Figures(1051, 400, 600).exceeds(self.RECORDED))
+        self.assertTrue(records.Figures(1000, 451, 600).exceeds(self.RECORDED))
+
+    def test_a_record_is_read_as_it_was_written(self) -> None:
+        rows = {("a-board", "EX9042D"): self.RECORDED, ("another", "EX9055D"): records.Figures(1, 2, 3)}
+        with tempfile.TemporaryDirectory() as folder:
+            path = pathlib.Path(folder, "record")
+            records.write(path, rows)
+            self.assertEqual(records.read(path), rows)
 
 
 if __name__ == "__main__":

@@ -56,8 +56,6 @@ def check(
     options: str = "",
     compile_options: str = "",
     link_options: str = "",
-    flash: int = 65536,
-    ram: int = 20480,
 ) -> Verdict:
     """Makes an image of the sources, each a translation unit; the first gets the vectors. Checks it."""
     vectors = VECTORS if "interrupt" in source else NO_INTERRUPT + VECTORS
@@ -71,7 +69,7 @@ def check(
         image = str(Path(folder, "image.elf"))
         _run([*_LINK, "-T", str(_HERE / "image.ld"), *objects, *link_options.split(), "-o", image])
         done = subprocess.run(
-            [str(_TOOL), image, *objects, "--flash", str(flash), "--ram", str(ram), *options.split()],
+            [str(_TOOL), image, *objects, *options.split()],
             capture_output=True,
             text=True,
             check=False,

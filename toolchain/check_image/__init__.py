@@ -1,1 +1,1 @@
-"""Size, worst-case stack and symbols of a firmware image, held to budgets."""
+"""Size, worst-case stack and symbols of a firmware image."""

@@ -7,12 +7,13 @@ import sys
 from dataclasses import dataclass
 from pathlib import Path
 
-from check_image import call_graph, call_sites, forbidden, sizes
+from check_image import call_graph, call_sites, forbidden, records, sizes
 from check_image.disassembly import Disassembly
 from check_image.elf import Elf, NotAnImage
 from check_image.functions import Functions
 from check_image.held import HeldInterrupts
 from check_image.linked_graph import LinkedGraph
+from check_image.records import Figures
 from check_image.stack import EXCEPTION_FRAME, Unbounded, WorstCase, worst_case
 from check_image.vectors import BadVectors, Vectors
 
@@ -39,7 +40,7 @@ def main(arguments: list[str]) -> int:
 def _parse(arguments: list[str]) -> argparse.Namespace:
     parser = argparse.ArgumentParser(
         prog="check-image",
-        description="Size, worst-case stack and symbols of a firmware image, held to budgets.",
+        description="Size, worst-case stack and symbols of a firmware image, and what has changed since they were recorded.",
     )
     parser.add_argument(
         "image", type=Path, help="the linked ELF file, with a vector table in its section .vectors"
@@ -54,15 +55,12 @@ def _parse(arguments: list[str]) -> argparse.Namespace:
         ),
     )
     parser.add_argument(
-        "--flash", type=lambda text: int(text, 0), required=True, metavar="BYTES", help="budget"
+        "--record",
+        type=Path,
+        metavar="FILE",
+        help="lines of BOARD IMAGE FLASH STATIC STACK, to say what has changed since",
     )
-    parser.add_argument(
-        "--ram",
-        type=lambda text: int(text, 0),
-        required=True,
-        metavar="BYTES",
-        help="budget, the stack included",
-    )
+    parser.add_argument("--board", default="", help="whose lines of the record count")
     parser.add_argument(
         "--level",
         action="append",
@@ -98,7 +96,7 @@ def _check(options: argparse.Namespace) -> int:
                 " them"
             )
     else:
-        problems += _report(options, elf, stack, held)
+        problems += _report(options, Figures(sizes.flash(elf), sizes.static_ram(elf), stack.size), vectors, held)
         if options.verbose:
             _report_stack(stack)
             _report_pointer_calls(linked)
@@ -121,19 +119,21 @@ def _read_units(paths: list[Path]) -> Units:
     return units
 
 
-def _report(options: argparse.Namespace, elf: Elf, stack: WorstCase, held: HeldInterrupts) -> list[str]:
-    """Prints the line of figures; says which are over their budgets."""
-    flash, static = sizes.flash(elf), sizes.static_ram(elf)
-    ram = static + stack.size
+def _report(
+    options: argparse.Namespace, figures: Figures, vectors: Vectors, held: HeldInterrupts
+) -> list[str]:
+    """Prints the line of figures and writes them beside the image; says if RAM does not hold them. (If flash does
+    not, the image cannot be linked.)"""
+    before = records.read(options.record).get((options.board, options.image.stem))
+    flash, static, stack = figures.since(before)
     print(
-        f"{options.image.stem}: flash {flash} of {options.flash} bytes, RAM {ram} of {options.ram} bytes "
-        f"({static} static, {stack.size} stack at worst), interrupts held for {held.longest} instructions"
+        f"{options.image.stem}: flash {flash} bytes, RAM {figures.static + figures.stack} bytes "
+        f"({static} static, {stack} stack at worst), interrupts held for {held.longest} instructions"
     )
-    return [
-        f"{what} is over its budget: {used} of {budget} bytes"
-        for what, used, budget in (("flash", flash, options.flash), ("RAM", ram, options.ram))
-        if used > budget
-    ]
+    records.write(options.image.with_suffix(".size"), {(options.board, options.image.stem): figures})
+    ram = vectors.stack_top - sizes.RAM.start
+    used = figures.static + figures.stack
+    return [f"RAM does not hold it: {used} of {ram} bytes"] if used > ram else []
 
 
 def _report_stack(stack: WorstCase) -> None:

@@ -11,7 +11,7 @@ from check_image.elf import Elf, Section, Symbol
 from check_image.functions import demangle, without_parameters
 
 # Armv7-M ARM B3.1, the system address map: SRAM, whatever the chip.
-_RAM = range(0x20000000, 0x40000000)
+RAM = range(0x20000000, 0x40000000)
 
 
 def flash(elf: Elf) -> int:
@@ -21,7 +21,7 @@ def flash(elf: Elf) -> int:
 
 def static_ram(elf: Elf) -> int:
     """Bytes of variables, with or without first values; a section that keeps room for the stack is not."""
-    return sum(s.size for s in elf.sections if s.address in _RAM and not s.name.startswith(".stack"))
+    return sum(s.size for s in elf.sections if s.address in RAM and not s.name.startswith(".stack"))
 
 
 def by_symbol(elf: Elf) -> list[tuple[int, str]]:

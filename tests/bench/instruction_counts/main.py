@@ -4,6 +4,7 @@ import argparse
 import collections
 import concurrent.futures
 import os
+import pathlib
 import sys
 
 from instruction_counts import execution
@@ -26,29 +27,23 @@ SESSIONS = [
     (INPUTS, True, False),
 ]
 
-BYTE_LIMIT = 100
-LATE_BYTE_LIMIT = 200  # two interrupts' work in one: a byte's and a silence's
-EDGE_LIMIT = 100
+RECORD = pathlib.Path(__file__).resolve().parent.parent / "recorded_instructions"
 EDGE_PASSES = 20  # for each of eight inputs
+GROWTH = 1.05  # of the record, without a new one
 
-# The highest pass has served so many, and its count is shared among them.
-Row = collections.namedtuple("Row", "name highest served limit until")
+# A pass has served so many, and its count is shared among them.
+Row = collections.namedtuple("Row", "name passes served until")
 
 
 def rows_of(counter):
-    rows = [
-        Row(request.name, highest, 1, request.limit, request.until)
-        for request, highest in counter.requests.items()
-    ]
+    rows = [Row(request.name, passes, 1, request.until) for request, passes in counter.requests.items()]
 
-    def add(name, highest, served=1, limit=None):
-        rows.append(Row(name, highest, served, limit, ""))
+    def add(name, passes, served=1):
+        rows.append(Row(name, passes, served, ""))
 
-    add("received byte", counter.received_byte, limit=BYTE_LIMIT)
-    if counter.late_byte.passes:
-        add("received byte that ends the frame before it", counter.late_byte, limit=LATE_BYTE_LIMIT)
+    add("received byte", counter.received_byte)
     for edges, highest in sorted(counter.edges.items()):
-        add("input edge" if edges == 1 else f"input edge, {edges} at once", highest, edges, EDGE_LIMIT)
+        add("input edge" if edges == 1 else f"input edge, {edges} at once", highest, edges)
     add("sent byte", counter.sent_byte)
     names = {
         execution.TICK: "tick's interrupt",
@@ -59,20 +54,15 @@ def rows_of(counter):
     for exception, highest in sorted(counter.interrupts.items()):
         add(names.get(exception, f"exception {exception}"), highest)
     add("tick's turn of the main loop", counter.ticks_turn)
-    add("idle turn of the main loop", counter.idle_turn)
     return rows
 
 
 def count_of(row):
-    return -(-row.highest.count // row.served)
-
-
-def is_over(row):
-    return row.limit is not None and (count_of(row) > row.limit or row.highest.passes < row.highest.wanted)
+    return -(-row.passes.count // row.served)
 
 
 def run_session(options, model, is_ascii, general):
-    """Returns the text to print, the names of what is over its limit, and what `capacity` wants."""
+    """Returns the rows to print, profiles, and what `capacity` needs."""
     label = f"{model.name} {'ASCII' if is_ascii else 'RTU'}"
     everything = not options.only
     with Session(os.path.join(options.folder, f"{model.name}.elf"), options.gate, model, is_ascii) as session:
@@ -82,35 +72,31 @@ def run_session(options, model, is_ascii, general):
         )
         if everything:
             session.count_ticks()
-            if not is_ascii:
-                session.count_late_bytes()
             if model.inputs:
                 session.count_edges(EDGE_PASSES)
     rows = [
         row._replace(name=f"{label} {row.name}")
         for row in rows_of(session.counter)
-        if everything or row.highest.passes
+        if everything or row.until and row.passes.passes
     ]
-    lines = [text_of(row) for row in rows]
-    if options.profile:
-        lines += [profile(session.image, row) for row in rows if options.profile in row.name]
-    if options.verbose:
-        lines.append(f"{label}: {session.counter.spoiled} passes into which something else came")
+    profiles = [profile(session.image, row) for row in rows if options.profile and options.profile in row.name]
     found = Found()
     found.add(session.counter)
-    return lines, [row.name for row in rows if is_over(row)], found
+    return [(row.name, count_of(row), row.until) for row in rows], profiles, found
 
 
-def text_of(row):
-    limit = "" if row.limit is None else f"of {row.limit}"
-    mark = "OVER" if is_over(row) else ""
-    ahead = f", {row.highest.ahead} ahead" if row.highest.ahead else ""
-    passes = f"{row.highest.passes:6} passes {row.until}{ahead}"
-    return f"{row.name:58} {count_of(row):5} {limit:7} {mark:4} {passes}".rstrip()
+def recorded():
+    lines = RECORD.read_text().splitlines() if RECORD.exists() else []
+    return {name: int(count) for name, count in (line.rsplit(" ", 1) for line in lines)}
+
+
+def text_of(name, count, until, before):
+    since = "new" if before is None else f"{count - before:+}" if count != before else ""
+    return f"{name:58} {count:6} {since:6} {until}".rstrip()
 
 
 def profile(image, row):
-    addresses = [int(address, 16) for address in row.highest.addresses]
+    addresses = [int(address, 16) for address in row.passes.addresses]
     chains = image.inlined(addresses)
     text = [f"\n{row.name}: {len(addresses)} instructions"]
     for title, names in (
@@ -125,17 +111,17 @@ def profile(image, row):
 def main(arguments):
     parser = argparse.ArgumentParser(
         prog="instructions",
-        description="Counts the instructions that firmware images execute in QEMU, the highest of 100 passes each, and "
-        "holds them to limits: for a request from the interrupt that ends the silence behind it to the first byte of "
-        "the reply, or to the begin of the write to the EEPROM; what was done ahead, while the silence lasted, is told "
-        "apart. Exit status 1 where a limit is passed.",
+        description="Counts the instructions that firmware images execute in QEMU for whole transactions, from the "
+        "first received byte to the last sent one: all interrupts and the main loop, the tick subtracted, the median "
+        "of 100 passes; of single interrupts, the highest; and what each is more or less than the record. Exit "
+        "status 1 if one has grown by more than 5 % since it was recorded.",
     )
     parser.add_argument("folder", help="with the images for lm3s6965evb, as ELF files")
     parser.add_argument(
         "--only", default="", metavar="TEXT", help="requests whose names hold it, and nothing else"
     )
     parser.add_argument(
-        "--profile", default="", metavar="TEXT", help="by function, what the highest pass has executed"
+        "--profile", default="", metavar="TEXT", help="by function, what the pass has executed that counts"
     )
     parser.add_argument("--passes", type=int, default=100)
     parser.add_argument(
@@ -148,19 +134,27 @@ def main(arguments):
     parser.add_argument(
         "--jobs", type=int, default=os.cpu_count() or 1, help="sessions at a time"
     )
-    parser.add_argument("--verbose", action="store_true", help="say how many passes did not count")
+    parser.add_argument("--record", action="store_true", help="write the counts to the record")
     options = parser.parse_args(arguments)
-    over = []
+    if options.record and (options.only or options.all):
+        parser.error("--record: needs all counts; leave out --only and --all")
+    before = recorded()
+    counts = {}
     found = Found()
     with concurrent.futures.ProcessPoolExecutor(options.jobs, initializer=die_with_parent) as pool:
         for session in [pool.submit(run_session, options, *session) for session in SESSIONS]:
-            lines, names, its = session.result()
-            over += names
+            rows, profiles, its = session.result()
+            counts |= {name: count for name, count, _ in rows}
             found.merge(its)
-            if lines:
-                print("\n".join(lines), flush=True)
+            for name, count, until in rows:
+                print(text_of(name, count, until, before.get(name)))
+            print("\n".join(profiles), end="", flush=True)
     if not options.only:
         print(capacity(found))
-    if over:
-        print("over the limit, or not counted often enough: " + "; ".join(over), file=sys.stderr)
-    return 1 if over else 0
+    if options.record:
+        RECORD.write_text("".join(f"{name} {count}\n" for name, count in counts.items()))
+        return 0
+    grown = [name for name, count in counts.items() if name in before and count > GROWTH * before[name]]
+    if grown:
+        print(f"grown by more than 5 %: {'; '.join(grown)}; if that is right, run it with --record", file=sys.stderr)
+    return 1 if grown else 0

@@ -2,20 +2,17 @@
 
 import collections
 
-# What ends the count.
-REPLY = "reply"  # its first byte is given to the UART
-STORE = "store"  # the transfer to the EEPROM begins
-DONE = "done"  # there is no reply: the main loop sleeps again
-IGNORED = "ignored"  # it is for somebody else: the main loop sleeps, and what the bytes cost does not count
-
-ANSWER_LIMIT = 400
-IGNORED_LIMIT = 60
+# What comes of it.
+REPLY = "reply"
+STORE = "store"  # a reply, once it is stored
+DONE = "done"  # no reply
+IGNORED = "ignored"  # it is for somebody else
 
 Model = collections.namedtuple("Model", "name inputs outputs modbus")
 
 
 class Request:
-    """Something to ask a hundred times. `frames` take turns, so that a setting changes each time. Those of
+    """Something to ask several times. `frames` take turns, so that a setting changes each time. Those of
     `before` go first and are not counted: in turn as well, where there are as many, else all; `settles`: seconds
     until what they do is done."""
 
@@ -24,22 +21,18 @@ class Request:
         name,
         frames,
         until=REPLY,
-        limit=ANSWER_LIMIT,
         before=(),
         settles=0.0,
         init=False,
         passes=100,
-        turn_around=True,
     ):
         self.name = name
         self.frames = frames
         self.until = until
-        self.limit = limit
         self.before = before
         self.settles = settles
         self.init = init  # INIT* is asserted
         self.passes = passes
-        self.turn_around = turn_around  # in ASCII: there is a silence behind it
 
 
 def crc16(data):
@@ -73,7 +66,7 @@ def modbus_requests(model, general):
     requests = []
     if model.outputs:
         requests += [
-            request("01 read 13 outputs", "01 01 0000 000D", limit=250),
+            request("01 read 13 outputs", "01 01 0000 000D"),
             request("01 read 13 safe values", "01 01 0080 000D"),
             request("01 read 13 power-on values", "01 01 00A0 000D"),
             request("05 output 0", "01 05 0000 FF00", "01 05 0000 0000"),
@@ -102,7 +95,7 @@ def modbus_requests(model, general):
     last = []
     if model.outputs:
         last.append(
-            request("01 read 13 outputs, host watchdog running", "01 01 0000 000D", limit=250, before=running)
+            request("01 read 13 outputs, host watchdog running", "01 01 0000 000D", before=running)
         )
     if model.inputs:
         last.append(request("02 read 8 inputs, host watchdog running", "01 02 0000 0008", before=running))
@@ -145,7 +138,7 @@ def modbus_requests(model, general):
             request("exception 03", "01 03 01E4 0000"),
             request("03 host OK", "01 03 3038 0000", until=DONE),
             request("broadcast host OK", "00 03 3038 0000", until=DONE),
-            request("for another address", "05 01 0000 000D", until=IGNORED, limit=IGNORED_LIMIT),
+            request("for another address", "05 01 0000 000D", until=IGNORED),
             request(
                 "05 clear timeout status",
                 "01 05 010D FF00",
@@ -200,13 +193,13 @@ def ascii_requests(model, general, checksum):
             request("$AAM", "$01M"),
             request("@AA", "@01"),
             request("~AAO(Name)", "~01Oabcdef", "~01Oghijkl", until=STORE),
-            request("~**", "~**", until=DONE, turn_around=False),
+            request("~**", "~**", until=DONE),
             request("~AA0", "~010"),
             request("~AA1 clear already", "~011"),
             request("~AA2", "~012"),
             request("~AA3EVV", "~0130FE", "~0130FF", until=STORE),
             request("refused", "$01Z"),
-            request("for another address", "$052", until=IGNORED, limit=IGNORED_LIMIT),
+            request("for another address", "$052", until=IGNORED),
             request("~AA1", "~011", until=STORE, before=["~013101"], settles=0.25, passes=10),
         ]
     if model.outputs:

@@ -20,17 +20,10 @@ DRIVER_OFF_AT_9600 = 0.01
 BYTE = 10 / 115200
 BYTE_AT_9600 = 10 / 9600
 SLICE = 0.001
-PASS = 0.05  # is over within that
+PASS = 0.3  # is over within that
 TICKS = 0.2
-BEHIND_A_TICK = 0.0002  # its turn is over
 
-SILENCE = 0.00175  # behind a byte, ends a frame
-LATE_STEP = 1e-6
-LATE_STEPS = 20
-
-TRIES = 10  # of a pass
-DEAF = 30  # passes in a row that have not even begun
-BYTE_BY_BYTE = 10  # one pass in so many has the interrupts of all its bytes counted
+QUIET = 0.004  # behind a byte: every frame is over, and what it asks for is done
 
 
 class Session:
@@ -40,14 +33,11 @@ class Session:
         self.image = Image(image)
         self._model = model
         self._ascii = is_ascii
-        of_the_tick = self.image.addresses_of("look_around")
+        of_the_tick = self.image.addresses_of("poll_panel")
         if not of_the_tick:
-            raise RuntimeError(f"{image}: no code of `look_around`, which the main loop does for the tick")
-        behind_a_gap = self.image.addresses_of("behind_a_gap")
-        if not behind_a_gap and not is_ascii:
-            raise RuntimeError(f"{image}: no code of `behind_a_gap`, where a byte ends the frame before it")
+            raise RuntimeError(f"{image}: no code of `poll_panel`, which the main loop does for the tick")
         self._sleeps = self.image.sleeps()
-        self.counter = Counter(self.image.handlers(), self._sleeps, of_the_tick, behind_a_gap, is_ascii)
+        self.counter = Counter(self.image.handlers(), self._sleeps, of_the_tick)
         self._emulator = Emulator(image, gate)
 
     def __enter__(self):
@@ -81,25 +71,15 @@ class Session:
                 for pin in pins:
                     self._emulator.set_pin(pin, attempt % 2 == 0)
                 self.counter.edges_at_once = len(pins)
-                self._run_until_over()
+                self._run(SLICE)
                 self._log(False)
 
     def count_ticks(self):
-        self.counter.nothing_to_do = True
+        self.counter.nothing_happens = True
         self._log(True)
         self._run(TICKS)
         self._log(False)
-        self.counter.nothing_to_do = False
-
-    def count_late_bytes(self):
-        """Bytes at moments around the end of a silence: some come right before its interrupt, and do its work."""
-        self._log(True)
-        for step in range(-LATE_STEPS, LATE_STEPS):
-            self._emulator.put(0)
-            self._run(BYTE + SILENCE + step * LATE_STEP)
-            self._emulator.put(0)
-            self._run(3 * SILENCE)
-        self._log(False)
+        self.counter.nothing_happens = False
 
     def set_up(self):
         """Once, before all else. Address 01, 115200 baud, the checksum where it is ASCII; by INIT*, as people do it."""
@@ -129,51 +109,40 @@ class Session:
 
     def _count(self, request, passes):
         """As the last of its frames leaves the module, so it was before."""
-        self.counter.expect(request)
-        highest = self.counter.requests[request]
-        highest.wanted = passes
-        begun, lost = None, 0
-        for attempt in range(TRIES * passes):
-            begun_before, begun = begun, highest.passes + self.counter.spoiled
-            lost = lost + 1 if begun == begun_before else 0
-            if highest.passes >= passes or lost > DEAF:
-                break
+        for attempt in range(passes):
             in_turn = len(request.before) == len(request.frames) > 1
             for frame in [request.before[attempt % len(request.before)]] if in_turn else request.before:
                 self._converse(frame)
             if request.settles:
                 self._run(request.settles)
-            self._pass(
-                request, request.frames[attempt % len(request.frames)], attempt < passes / BYTE_BY_BYTE
-            )
+            self._pass(request, request.frames[attempt % len(request.frames)])
         if len(request.frames) > 1:
             self._converse(request.frames[-1])
             if not self._is_there():
                 raise RuntimeError(f"{self._model.name} is deaf behind {request.name}")
 
-    def _pass(self, request, frame, byte_by_byte):
-        self.counter.over = False
-        if byte_by_byte:
-            self._log(True)
-        self._say(frame[:-1])
-        if not byte_by_byte:
-            self._log(True)
-        if self._ascii:  # a pass begins with the last byte, so it comes where the next tick is far
-            self._emulator.run_behind_a_tick(BEHIND_A_TICK)
-        self._emulator.put(frame[-1])
-        self._run_until_over()
+    def _pass(self, request, frame):
+        self._log(True)
+        self.counter.begin()
+        self._say(frame)
+        is_answered = request.until not in (DONE, IGNORED)
+        if not is_answered:
+            self._run(QUIET)
+        self._run_until(lambda: self.counter.at_rest and self.counter.answered == is_answered, request.name)
+        self.counter.end(request)
         self._log(False)
-        if request.until not in (DONE, IGNORED):
+        if is_answered:
             self._hear()
         self._run(DRIVER_OFF)
 
-    def _run_until_over(self):
+    def _run_until(self, is_over, name):
         for _ in range(round(PASS / SLICE)):
             self._run(SLICE)
             self._emulator.ask_for_sight()
             self.counter.wait_until_seen(HANG)
-            if self.counter.over:
-                break
+            if is_over():
+                return
+        raise RuntimeError(f"{self._model.name}: {name} does not come to an end")
 
     def _run(self, seconds):
         self._emulator.run_for(seconds)

@@ -28,7 +28,8 @@ struct Board {
 class Bench {
  public:
   /// Has come up and is idle.
-  Bench(const char* model, const std::function<void(Settings&)>& change) : device_(*find_model(model)) {
+  Bench(const char* model, const std::function<void(Settings&)>& change)
+      : device_(*find_model(model), LineTiming::at) {
     chip = &chip_;
     hal::stellaris::bus::peripherals = &chip_;
     Settings settings = Settings::factory(*find_model(model));
@@ -57,7 +58,7 @@ class Bench {
   void turn() {
     if (chip_.ticks != ticks_seen_) {
       ticks_seen_ = chip_.ticks;
-      device_.look_around();
+      device_.poll_panel();
     }
     if (device_.news()) {
       device_.turn();
@@ -66,7 +67,7 @@ class Bench {
   /// All of it, whether something has woken it or not.
   void whole_turn() {
     ticks_seen_ = chip_.ticks;
-    device_.look_around();
+    device_.poll_panel();
     device_.turn();
   }
 

@@ -5,9 +5,7 @@
 // what it comes to before the turn, behind it, or between two of a script's steps.
 //
 // What both sides touch beside the crossings themselves, and what hands it over:
-//  - FrameQueue::frames_: the one that waits is the main loop's from `completed_` to `dropped_`; what it
-//  reads of
-//    the one that was announced counts only if that is complete with the same number;
+//  - FrameQueue::frames_: the one that waits is the main loop's from `completed_` to `dropped_`;
 //  - Uart::rest_, a HandedToInterrupt: the main loop's until `begun_`, the interrupts' until `ended_`;
 //  - Uart::bit_ and character_: written by `open`, before the UART may interrupt;
 //  - Receiver::protocol_, DconAssembler::checksum_, RtuAssembler::timing_: by `listen`, before `open`;

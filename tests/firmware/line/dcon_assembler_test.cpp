@@ -30,7 +30,7 @@ TEST_F(DconAssemblerTest, AFrameIsCompleteWhenItsCarriageReturnIs) {
   EXPECT_FALSE(queue_.has_frame());
   put('\r');
   ASSERT_TRUE(queue_.has_frame());
-  EXPECT_EQ(queue_.completed().received.microseconds(), now_.microseconds());
+  EXPECT_EQ(queue_.waiting().received.microseconds(), now_.microseconds());
 }
 
 TEST_F(DconAssemblerTest, ACarriageReturnBetweenFramesChangesNothing) {

@@ -34,7 +34,7 @@ class DconAssemblerTest : public testing::Test {
 
   /// The frame that waits, as text; it is dropped.
   std::string taken() {
-    const Frame* frame = queue_.has_frame() ? &queue_.completed() : nullptr;
+    const Frame* frame = queue_.has_frame() ? &queue_.waiting() : nullptr;
     if (frame == nullptr) {
       return "nothing";
     }

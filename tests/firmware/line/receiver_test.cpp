@@ -182,14 +182,6 @@ TEST_F(ReceiverTest, CountsEveryFrameOnce) {
   EXPECT_EQ(counts(), (Counts{600, 300, 300, 0, 0}));
 }
 
-TEST_F(ReceiverTest, AFrameThatALateByteEndsIsCountedToo) {
-  listen(Protocol::ModbusRtu);
-  bytes(kChannel0On);
-  now_ = now_ + milliseconds(10);
-  byte(0x01);
-  EXPECT_EQ(counts(), (Counts{1, 0, 1, 0, 0}));
-}
-
 TEST_F(ReceiverTest, AnOpenFrameIsNotCounted) {
   listen(Protocol::ModbusRtu);
   bytes(kChannel0On);
@@ -206,16 +198,6 @@ TEST_F(ReceiverTest, AHostOkOfModbusIsReceivedWithTheSilenceBehindIt) {
   EXPECT_EQ(receiver_.host_oks(), before);
   silence();
   EXPECT_EQ(receiver_.host_oks(), before + 1);
-  expect_host_ok_between(end, now_);
-}
-
-TEST_F(ReceiverTest, AHostOkThatALateByteEndsIsReceivedByThen) {
-  listen(Protocol::ModbusRtu);
-  bytes(kHostOk);
-  const Time end = now_;
-  now_ = now_ + milliseconds(10);
-  byte(0x01);
-  EXPECT_EQ(receiver_.host_oks(), 1);
   expect_host_ok_between(end, now_);
 }
 
@@ -374,11 +356,12 @@ TEST_F(ReceiverTest, ModbusWantsNoMoreSilenceBehindARightCrc) {
 TEST_F(ReceiverTest, ModbusWantsOneMoreCharacterBehindAWrongCrc) {
   listen(Protocol::ModbusRtu);
   bytes({0x01, 0x05, 0x00});
+  // From T3.5, of which the timer has rounded up, until a byte that began at T3.5 is complete.
   constexpr double kTenBits = 10 * 1e6 / kBaud;
-  constexpr double kRounding = 3;
+  constexpr double kRounding = 5;
   const std::uint32_t wanted = receiver_.on_silence().microseconds();
-  EXPECT_GE(wanted, kTenBits);
-  EXPECT_LE(wanted, kTenBits + kRounding);
+  EXPECT_GE(wanted, kTenBits - kRounding);
+  EXPECT_LT(wanted, kTenBits);
   EXPECT_EQ(receiver_.on_silence().microseconds(), 0U);
 }
 

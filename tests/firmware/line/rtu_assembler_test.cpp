@@ -63,7 +63,7 @@ TEST_F(RtuAssemblerTest, NothingIsAcceptedBeforeTheSilence) {
 
 TEST_F(RtuAssemblerTest, SilenceWithoutAFrameIsNothing) {
   EXPECT_EQ(assembler_.silence(queue_), Verdict::Open);
-  EXPECT_FALSE(assembler_.wants_more_silence());
+  EXPECT_TRUE(assembler_.next_wait() == Duration());
   EXPECT_EQ(assembler_.silence(queue_), Verdict::Open);
 }
 
@@ -313,7 +313,7 @@ TEST_F(RtuAssemblerTest, AFrameIsAssembledWhileOneWaits) {
   EXPECT_EQ(verdict_of(kChannel0On), Verdict::Accepted);
   wire_.bytes(frame_of(20));
   ASSERT_TRUE(queue_.has_frame());
-  EXPECT_EQ(queue_.completed().bytes().size, kChannel0On.size() - 2);
+  EXPECT_EQ(queue_.waiting().bytes().size, kChannel0On.size() - 2);
   queue_.drop_in_main_loop();
   wire_.verdicts.clear();
   wire_.collect = true;
@@ -328,7 +328,7 @@ TEST_F(RtuAssemblerTest, AFrameThatEndsWhileOneWaitsHasNoRoomAndLeavesTheOtherAl
   EXPECT_EQ(verdict_of(frame_of(256)), Verdict::NoRoom);
   EXPECT_EQ(verdict_of(behind(0x00, frame_of(20))), Verdict::NoRoom);
   ASSERT_TRUE(queue_.has_frame());
-  const Bytes waiting = queue_.completed().bytes();
+  const Bytes waiting = queue_.waiting().bytes();
   EXPECT_EQ(FrameBytes(waiting.begin(), waiting.end()), without_crc(kChannel0On));
   queue_.drop_in_main_loop();
   wire_.collect = true;
@@ -342,66 +342,14 @@ TEST_F(RtuAssemblerTest, AHostOkAndAForeignFrameNeedNoRoom) {
   EXPECT_EQ(verdict_of(frame_of(8, 0x02)), Verdict::Foreign);
 }
 
-// --- announced ---
-
-TEST_F(RtuAssemblerTest, AFrameIsAnnouncedWithItsLastByteAndCompleteWithTheSilence) {
-  const std::uint32_t before = queue_.announced();
-  wire_.bytes(without_crc(kChannel0On));
-  wire_.byte(0x8C);
-  EXPECT_EQ(queue_.announced(), before);
-  wire_.byte(0x3A);
-  EXPECT_EQ(queue_.announced(), before + 1);
-  const Bytes coming = queue_.coming().bytes();
-  EXPECT_EQ(FrameBytes(coming.begin(), coming.end()), without_crc(kChannel0On));
-  EXPECT_FALSE(queue_.has_frame());
-  wire_.collect = false;
-  wire_.rest();
-  ASSERT_TRUE(queue_.has_frame());
-  EXPECT_EQ(queue_.waiting_number(), before + 1);
-}
-
-TEST_F(RtuAssemblerTest, AFrameForAnotherModuleIsNeverAnnounced) {
-  const std::uint32_t before = queue_.announced();
-  EXPECT_EQ(verdict_of(frame_of(8, 0x02)), Verdict::Foreign);
-  EXPECT_EQ(queue_.announced(), before);
-}
-
-TEST_F(RtuAssemblerTest, WhatIsAnnouncedLateHasANumberOfItsOwnToo) {
-  // A broadcast, and a frame behind a turn-around 00, which begins like one.
-  wire_.collect = false;
-  for (const FrameBytes& bytes : {frame_of(8, 0x00), behind(0x00, kChannel0On)}) {
-    const std::uint32_t before = queue_.announced();
-    wire_.frame(bytes);
-    ASSERT_TRUE(queue_.has_frame());
-    EXPECT_EQ(queue_.waiting_number(), before + 1);
-    queue_.drop_in_main_loop();
-  }
-}
-
-TEST_F(RtuAssemblerTest, AFrameThatGoesOnBehindARightCrcHasAnotherNumber) {
-  wire_.bytes(kChannel0On);
-  const std::uint32_t beginning = queue_.announced();
-  FrameBytes whole = kChannel0On;
-  whole.push_back(0x00);
-  whole = with_crc(whole);
-  wire_.bytes({whole.begin() + static_cast<std::ptrdiff_t>(kChannel0On.size()), whole.end()});
-  wire_.collect = false;
-  wire_.rest();
-  ASSERT_TRUE(queue_.has_frame());
-  EXPECT_NE(queue_.waiting_number(), beginning);
-  EXPECT_EQ(queue_.completed().size, whole.size() - 2);
-}
-
-TEST_F(RtuAssemblerTest, ANewAddressHoldsForAFrameThatHasNotBeenAnnouncedForIt) {
+TEST_F(RtuAssemblerTest, ANewAddressHoldsForAFrameThatIsOpen) {
   wire_.bytes(frame_of(8, 0x02));
-  const std::uint32_t before = queue_.announced();
   wire_.own = 0x02;
   assembler_.answer_to(0x02);
   wire_.collect = false;
   wire_.rest();
   ASSERT_TRUE(queue_.has_frame());
-  EXPECT_EQ(queue_.waiting_number(), before + 1);
-  EXPECT_EQ(queue_.completed().size, 6U);
+  EXPECT_EQ(queue_.waiting().size, 6U);
 }
 
 // --- the own driver was on ---
@@ -418,28 +366,11 @@ TEST_F(RtuAssemblerTest, AFrameThatIsWholeButForItsSilenceIsJudgedAllTheSame) {
   wire_.bytes(kChannel0On);
   EXPECT_EQ(assembler_.cut_off(queue_), Verdict::Accepted);
   ASSERT_TRUE(queue_.has_frame());
-  EXPECT_EQ(queue_.completed().size, kChannel0On.size() - 2);
+  EXPECT_EQ(queue_.waiting().size, kChannel0On.size() - 2);
   queue_.drop_in_main_loop();
   wire_.rest();
   EXPECT_TRUE(wire_.verdicts.empty());
   expect_next_frame_accepted();
-}
-
-TEST_F(RtuAssemblerTest, WhatCannotBeAFrameIsSeenByItsSizeWhateverItsCrcSays) {
-  wire_.collect = false;
-  for (const FrameBytes& bytes : {with_crc({kOwn}), frame_of(257)}) {
-    wire_.bytes(bytes);
-    EXPECT_FALSE(Frame::is_size(queue_.coming().size)) << bytes.size();
-    wire_.rest();
-    EXPECT_FALSE(queue_.has_frame());
-  }
-  for (const FrameBytes& bytes : {frame_of(4), frame_of(256)}) {
-    wire_.bytes(bytes);
-    EXPECT_TRUE(Frame::is_size(queue_.coming().size)) << bytes.size();
-    wire_.rest();
-    EXPECT_TRUE(queue_.has_frame());
-    queue_.drop_in_main_loop();
-  }
 }
 
 TEST_F(RtuAssemblerTest, TheNextFrameMayFollowAForgottenOneAtOnce) {
@@ -449,12 +380,12 @@ TEST_F(RtuAssemblerTest, TheNextFrameMayFollowAForgottenOneAtOnce) {
   expect_next_frame_accepted();
 }
 
-TEST_F(RtuAssemblerTest, ALapsedFrameCanBeForgotten) {
+TEST_F(RtuAssemblerTest, AFrameThatIsInDoubtCanBeForgotten) {
   wire_.bytes({0x01, 0x05, 0x00});
   EXPECT_EQ(assembler_.silence(queue_), Verdict::Open);
-  ASSERT_TRUE(assembler_.wants_more_silence());
+  ASSERT_FALSE(assembler_.next_wait() == Duration());
   EXPECT_EQ(assembler_.cut_off(queue_), Verdict::Open);
-  EXPECT_FALSE(assembler_.wants_more_silence());
+  EXPECT_TRUE(assembler_.next_wait() == Duration());
   EXPECT_EQ(assembler_.silence(queue_), Verdict::Open);
   expect_next_frame_accepted();
 }

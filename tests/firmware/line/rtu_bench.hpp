@@ -50,8 +50,8 @@ inline constexpr Nanoseconds kClock = 5'000;
 class Wire {
  public:
   Wire(RtuAssembler& assembler, FrameQueue& queue, std::uint32_t baud)
-      : assembler_(assembler), queue_(queue), baud_(baud), timing_(LineTiming::at(baud)) {
-    assembler_.use(timing_);
+      : assembler_(assembler), queue_(queue), baud_(baud) {
+    assembler_.use(LineTiming::at(baud));
   }
 
   [[nodiscard]] Nanoseconds character() const { return Nanoseconds{10} * 1'000'000'000 / baud_; }
@@ -60,8 +60,8 @@ class Wire {
     now_ += character();
     run_timer();
     assembler_.answer_to(own);
-    note(assembler_.byte(queue_, value, status, time()));
-    due_ = now_ / 1000 + timing_.rtu_silence.microseconds();
+    assembler_.byte(queue_, value, status, time());
+    due_ = now_ / 1000 + assembler_.first_wait().microseconds();
   }
   void bytes(const FrameBytes& values) {
     for (const std::uint8_t value : values) {
@@ -84,7 +84,6 @@ class Wire {
   void start_at(Time time) { now_ = Nanoseconds{time.microseconds()} * 1000; }
 
   std::uint8_t own = kOwn;
-  bool timer_works = true;
   bool collect = true;  ///< frames are taken as they come
   Verdicts verdicts;
   std::vector<FrameBytes> frames;
@@ -92,12 +91,13 @@ class Wire {
 
  private:
   void run_timer() {
-    while (timer_works && due_ && *due_ < now_ / 1000) {
+    while (due_ && *due_ < now_ / 1000) {
       note(assembler_.silence(queue_));
-      if (assembler_.wants_more_silence()) {
-        *due_ += timing_.rtu_grace.microseconds();
-      } else {
+      const Duration more = assembler_.next_wait();
+      if (more == Duration()) {
         due_.reset();
+      } else {
+        *due_ += more.microseconds();
       }
     }
   }
@@ -106,7 +106,7 @@ class Wire {
       return;
     }
     verdicts.push_back(verdict);
-    const Frame* frame = queue_.has_frame() ? &queue_.completed() : nullptr;
+    const Frame* frame = queue_.has_frame() ? &queue_.waiting() : nullptr;
     if (collect && frame != nullptr) {
       frames.emplace_back(frame->bytes().begin(), frame->bytes().end());
       received = frame->received;
@@ -117,7 +117,6 @@ class Wire {
   RtuAssembler& assembler_;
   FrameQueue& queue_;
   Nanoseconds baud_;
-  LineTiming timing_;
   Nanoseconds now_ = 1'000'000'000;
   std::optional<Nanoseconds> due_;  // microseconds
 };

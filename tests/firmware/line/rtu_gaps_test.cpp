@@ -28,6 +28,11 @@ class RtuGaps : public testing::TestWithParam<std::uint32_t> {
   Wire wire_{assembler_, queue_, baud_};
 };
 
+// A simulated line may be as fast as its owner likes.
+TEST(LineTimingAt, FourMegabaudStillWaitsForAByteThatBeganInTime) {
+  EXPECT_EQ(LineTiming::at(4'000'000).rtu_grace.microseconds(), 1U);
+}
+
 INSTANTIATE_TEST_SUITE_P(AllRates, RtuGaps, testing::ValuesIn(kBaudRates),
                          [](const auto& rate) { return "Baud" + std::to_string(rate.param); });
 
@@ -37,16 +42,6 @@ TEST_P(RtuGaps, AGapShorterThanT35StaysWithinTheFrame) {
     with_gap(kChannel0On, split, t35(baud_) - kClock);
     EXPECT_EQ(wire_.verdicts, Verdicts{Verdict::Accepted}) << "behind byte " << split;
   }
-}
-
-TEST_P(RtuGaps, AGapShorterThanT35StaysWithinTheFrameWhenTheTimerIsLate) {
-  wire_.timer_works = false;
-  wire_.bytes({0x01, 0x05, 0x00});
-  wire_.silence(t35(baud_) - kClock);
-  wire_.bytes({0x00, 0xFF, 0x00, 0x8C, 0x3A});
-  wire_.timer_works = true;
-  wire_.rest();
-  EXPECT_EQ(wire_.verdicts, Verdicts{Verdict::Accepted});
 }
 
 TEST_P(RtuGaps, SeveralGapsWithinAFrameAreTolerated) {
@@ -89,30 +84,6 @@ TEST_P(RtuGaps, AFrameT35BehindABrokenOneIsOneOfItsOwn) {
   EXPECT_EQ(wire_.verdicts, (Verdicts{Verdict::BadCheck, Verdict::Accepted}));
 }
 
-TEST_P(RtuGaps, AFrameT35BehindAnotherIsOneOfItsOwnWhenTheTimerIsLate) {
-  wire_.timer_works = false;
-  wire_.bytes(kChannel0On);
-  const Time end = wire_.time();
-  wire_.silence(t35(baud_));
-  wire_.byte(0x01);
-  EXPECT_EQ(wire_.verdicts, Verdicts{Verdict::Accepted});
-  EXPECT_EQ(wire_.received.microseconds(), end.microseconds());
-  wire_.timer_works = true;
-  wire_.frame({0x11, 0xC0, 0x2C});
-  EXPECT_EQ(wire_.verdicts, (Verdicts{Verdict::Accepted, Verdict::Accepted}));
-}
-
-TEST_P(RtuGaps, AFrameT35BehindABrokenOneIsOneOfItsOwnWhenTheTimerIsLate) {
-  wire_.timer_works = false;
-  wire_.bytes({0x01, 0x05, 0x00, 0x00});
-  wire_.silence(t35(baud_));
-  wire_.bytes(kChannel0On);
-  EXPECT_EQ(wire_.verdicts, Verdicts{Verdict::BadCheck});
-  wire_.timer_works = true;
-  wire_.rest();
-  EXPECT_EQ(wire_.verdicts, (Verdicts{Verdict::BadCheck, Verdict::Accepted}));
-}
-
 TEST_P(RtuGaps, AByteThatIsCompleteWithinT35BelongsToTheFrameWhateverItsCrc) {
   wire_.bytes(kChannel0On);
   wire_.silence(t35(baud_) - wire_.character() - kClock);
@@ -129,39 +100,26 @@ TEST_P(RtuGaps, AFrameWithARightCrcIsOverAtT35ThoughAByteIsComingIn) {
   EXPECT_EQ(wire_.verdicts, (Verdicts{Verdict::Accepted, Verdict::TooShort}));
 }
 
-// D11 knows one exception to "over after 3.5 characters", and a right CRC is not it; who serves which
-// interrupt first must not matter.
-TEST_P(RtuGaps, AFrameWithARightCrcIsOverAtT35ThoughAByteIsComingInAndTheTimerIsLate) {
-  wire_.timer_works = false;
-  wire_.bytes(kChannel0On);
-  wire_.silence(t35(baud_) - wire_.character() / 2);
-  wire_.byte(0x55);
-  EXPECT_EQ(wire_.verdicts, Verdicts{Verdict::Accepted});
-  wire_.timer_works = true;
-  wire_.rest();
-  EXPECT_EQ(wire_.verdicts, (Verdicts{Verdict::Accepted, Verdict::TooShort}));
-}
-
 TEST_P(RtuGaps, AWrongCrcAtT35WaitsForAByteThatMayBeComingIn) {
   wire_.bytes({0x01, 0x05, 0x00});
   EXPECT_EQ(assembler_.silence(queue_), Verdict::Open);
-  EXPECT_TRUE(assembler_.wants_more_silence());
+  EXPECT_FALSE(assembler_.next_wait() == Duration());
   EXPECT_EQ(assembler_.silence(queue_), Verdict::TooShort);
-  EXPECT_FALSE(assembler_.wants_more_silence());
+  EXPECT_TRUE(assembler_.next_wait() == Duration());
   EXPECT_EQ(assembler_.silence(queue_), Verdict::Open);
 }
 
-TEST_P(RtuGaps, AByteThatStartedBeforeT35ContinuesALapsedFrame) {
+TEST_P(RtuGaps, AByteThatStartedBeforeT35ContinuesABrokenFrame) {
   wire_.bytes({0x01, 0x05, 0x00});
   wire_.silence(t35(baud_) - wire_.character() / 2);
   wire_.byte(0x00);
   EXPECT_TRUE(wire_.verdicts.empty());
-  EXPECT_FALSE(assembler_.wants_more_silence());
+  EXPECT_TRUE(assembler_.next_wait() == Duration());
   wire_.frame({0xFF, 0x00, 0x8C, 0x3A});
   EXPECT_EQ(wire_.verdicts, Verdicts{Verdict::Accepted});
 }
 
-TEST_P(RtuGaps, AFrameMayLapseMoreThanOnce) {
+TEST_P(RtuGaps, AFrameMayBeInDoubtMoreThanOnce) {
   wire_.bytes({0x01, 0x05, 0x00});
   wire_.silence(t35(baud_) - wire_.character() / 2);
   wire_.bytes({0x00, 0xFF});
@@ -170,7 +128,6 @@ TEST_P(RtuGaps, AFrameMayLapseMoreThanOnce) {
   EXPECT_EQ(wire_.verdicts, Verdicts{Verdict::Accepted});
 }
 
-// The number of bytes that it counts by stands still by then.
 TEST_P(RtuGaps, AByteComingInAtT35BelongsToAFrameThatIsTooLongTimeAndAgain) {
   wire_.bytes(FrameBytes(258, 0x02));
   for (int i = 0; i < 3; ++i) {
@@ -186,7 +143,7 @@ TEST_P(RtuGaps, AByteComingInAtT35BelongsToAFrameThatIsTooLongTimeAndAgain) {
 TEST_P(RtuGaps, ARightCrcAtT35IsAcceptedAtOnce) {
   wire_.bytes(kChannel0On);
   EXPECT_EQ(assembler_.silence(queue_), Verdict::Accepted);
-  EXPECT_FALSE(assembler_.wants_more_silence());
+  EXPECT_TRUE(assembler_.next_wait() == Duration());
 }
 
 TEST_P(RtuGaps, TheSilenceWasOverT35BehindTheLastByteAndNeverBefore) {
@@ -208,9 +165,16 @@ TEST_P(RtuGaps, SilencesCountFromTheEndOfTheStopBitThoughTheUartTellsOfItInTheMi
     EXPECT_GT(longer, half_bit);
     EXPECT_LE(longer, half_bit + 1);
   }
-  EXPECT_TRUE(middle.rtu_grace == end.rtu_grace);
-  EXPECT_TRUE(middle.rtu_separate == end.rtu_separate);
+  // From the last byte to the end of the next one it is as long.
+  EXPECT_TRUE(middle.rtu_silence + middle.rtu_grace == end.rtu_silence + end.rtu_grace);
   EXPECT_TRUE(middle.rtu_slack == end.rtu_slack);
+}
+
+TEST_P(RtuGaps, StrictlyThoughTheUartTellsOfAByteInItsStopBitGapsAreAsLongAndSilencesLonger) {
+  const LineTiming end = LineTiming::strictly_at(baud_);
+  const LineTiming middle = LineTiming::strictly_told_in_the_stop_bit(baud_);
+  EXPECT_TRUE(middle.rtu_slack == end.rtu_slack);
+  EXPECT_TRUE(middle.rtu_silence == LineTiming::told_in_the_stop_bit(baud_).rtu_silence);
 }
 
 TEST_P(RtuGaps, AFrameAcrossTheWrapOfTheClockIsOneFrame) {

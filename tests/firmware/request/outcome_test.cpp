@@ -28,7 +28,6 @@ Outcome of_everything() {
 }
 
 void expect_nothing(const Outcome& outcome) {
-  EXPECT_TRUE(outcome.empty());
   EXPECT_FALSE(outcome.has_effects());
   for (const Effect effect : kEveryEffect) {
     EXPECT_FALSE(outcome.asks_for(effect));
@@ -51,7 +50,6 @@ TEST(Outcome, AsksForTheEffectsThatWereRequestedAndNoOthers) {
       Outcome outcome;
       outcome.request(one);
       outcome.request(other);
-      EXPECT_FALSE(outcome.empty());
       EXPECT_TRUE(outcome.has_effects());
       for (const Effect each : kEveryEffect) {
         EXPECT_EQ(outcome.asks_for(each), each == one || each == other);
@@ -65,7 +63,6 @@ TEST(Outcome, AsksForTheEffectsThatWereRequestedAndNoOthers) {
 TEST(Outcome, ToDriveOutputsIsNeitherAnEffectNorAChange) {
   Outcome outcome;
   outcome.drive({0x0003, 0x0002});
-  EXPECT_FALSE(outcome.empty());
   EXPECT_FALSE(outcome.has_effects());
   EXPECT_FALSE(outcome.changes_settings());
   EXPECT_EQ(outcome.outputs_to_drive().mask, 0x0003);
@@ -76,7 +73,6 @@ TEST(Outcome, ToChangeSettingsIsNeitherAnEffectNorOutputsToDrive) {
   Outcome outcome;
   outcome.change().address(0x2A);
   outcome.change().watchdog_timeout(0x64);
-  EXPECT_FALSE(outcome.empty());
   EXPECT_FALSE(outcome.has_effects());
   EXPECT_TRUE(outcome.changes_settings());
   EXPECT_EQ(outcome.outputs_to_drive().mask, 0);
@@ -88,7 +84,6 @@ TEST(Outcome, ToChangeSettingsIsNeitherAnEffectNorOutputsToDrive) {
 
 TEST(Outcome, ThatIsClearedIsNothing) {
   Outcome outcome = of_everything();
-  ASSERT_FALSE(outcome.empty());
   outcome.clear();
   expect_nothing(outcome);
 }

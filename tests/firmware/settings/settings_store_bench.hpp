@@ -151,7 +151,6 @@ inline bool drive(SettingsStore& store, FakeMemory& memory) {
 class Boot {
  public:
   explicit Boot(FakeMemory& memory, const Model& which = the_model()) : memory_(memory), store_(which) {
-    store_.begin_loading();
     drive(store_, memory_);
   }
   /// Whether the save was reported as done.

@@ -115,7 +115,6 @@ void end_jobs(SettingsStore& store, bool answered, int count) {
 
 TEST(SettingsStore, WhatIsSettledIsTheDoubtfulCopyAndNotTheOneThatWasLastLookedAt) {
   SettingsStore store(the_model());
-  store.begin_loading();
   end_jobs(store, false, 6);
   ASSERT_EQ(store.found(), SettingsStore::Found::Unreadable);
   store.begin_saving(numbered(1));

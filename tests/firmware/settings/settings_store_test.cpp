@@ -18,16 +18,9 @@ TEST(SettingsStore, KeepsTwoCopiesInPagesOfTheirOwn) {
   EXPECT_NE(copies()[0] / kPage, copies()[1] / kPage);
 }
 
-TEST(SettingsStore, DoesNothingBeforeItIsTold) {
-  SettingsStore store(the_model());
-  EXPECT_FALSE(store.busy());
-  EXPECT_FALSE(store.loading());
-}
-
-TEST(SettingsStore, LoadsUntilBothCopiesAreRead) {
+TEST(SettingsStore, LoadsFromTheBeginningUntilBothCopiesAreRead) {
   FakeMemory memory;
   SettingsStore store(the_model());
-  store.begin_loading();
   EXPECT_TRUE(store.loading());
   EXPECT_TRUE(store.busy());
   EXPECT_EQ(store.job().kind, MemoryJob::Kind::Read);
@@ -38,7 +31,6 @@ TEST(SettingsStore, LoadsUntilBothCopiesAreRead) {
 
 TEST(SettingsStore, WantsTheSameJobUntilItIsDone) {
   SettingsStore store(the_model());
-  store.begin_loading();
   const MemoryJob first = store.job();
   const MemoryJob second = store.job();
   EXPECT_EQ(first.kind, second.kind);
@@ -169,7 +161,6 @@ TEST(SettingsStore, EachCopyHasThreeReadsOfItsOwn) {
   corrupt(memory, 0);
   put(memory, 1, numbered(6), 7);
   SettingsStore store(the_model());
-  store.begin_loading();
   for (std::size_t i = 0; i < kAttempts; ++i) {
     const MemoryJob job = store.job();
     store.started();

@@ -53,7 +53,8 @@ class Witness {
   /// Frames that were heard.
   struct Counts {
     std::uint64_t requests = 0;
-    std::uint64_t silent = 0;  ///< carried out without an answer
+    std::uint64_t silent = 0;    ///< carried out without an answer
+    std::uint64_t host_oks = 0;  ///< of these
     std::uint64_t foreign = 0;
     std::uint64_t storing = 0;  ///< those of the first two that store something
   };
@@ -202,6 +203,7 @@ class Witness {
         return;
       case Finding::Kind::HostOk:
         ++counts_.silent;
+        ++counts_.host_oks;
         if (!held_) {  // of several, the module knows the last one then
           alive_ = std::max(alive_, finding.last);
         }

@@ -1,5 +1,5 @@
-// A request is judged within the silence behind it. What happens in that silence still counts: wire.md
-// sections 3 and 7 have the reply, and what the request does, behind it.
+// A request is judged, and what it asks for is done, when the silence after it is over. What happens in that
+// silence counts: wire.md sections 3, 7 and 8.
 #include <gtest/gtest.h>
 
 #include <chrono>
@@ -24,7 +24,7 @@ const Bytes kReadOutputs{0x01, 0x01, 0x00, 0x00, 0x00, 0x08};
 const Bytes kOutput0On{0x01, 0x05, 0x00, 0x00, 0xFF, 0x00};
 const Bytes kBusMessages{0x01, 0x08, 0x00, 0x0B, 0x00, 0x00};
 
-/// What comes of a request behind whose last byte something happens.
+/// The reply to a request after whose last byte something happens.
 template <class Event>
 std::string answer(ModuleBench& bench, const std::string& command, Event event) {
   bench.forget_heard();
@@ -47,7 +47,7 @@ Bytes answer(ModuleBench& bench, const Bytes& frame, Event event) {
   return {heard.begin(), heard.end()};
 }
 
-TEST(JudgedAhead, AnInputThatChangesWithinTheSilenceIsReadAsItIsThen) {
+TEST(SilenceAfterRequest, AnInputThatChangesWithinTheSilenceIsReadAsItIsThen) {
   ModuleBench bench("EX9052D-M");
   EXPECT_EQ(answer(bench, kReadInputs, [&] { bench.module().set_input(3, true); }),
             with_crc({0x01, 0x02, 0x01, 0x08}));
@@ -55,13 +55,13 @@ TEST(JudgedAhead, AnInputThatChangesWithinTheSilenceIsReadAsItIsThen) {
             with_crc({0x01, 0x03, 0x02, 0x00, 0x05}));
 }
 
-TEST(JudgedAhead, LikewiseInAscii) {
+TEST(SilenceAfterRequest, LikewiseInAscii) {
   ModuleBench bench("EX9052D");
   EXPECT_EQ(answer(bench, "$016", [&] { bench.module().set_input(0, true); }), "!010000\r");
   EXPECT_EQ(answer(bench, "#012", [&] { bench.module().pulse_input(2, 7); }), "!0100007\r");
 }
 
-TEST(JudgedAhead, AnOutputCommandIsRefusedWhereTheHostWatchdogExpiresWithinItsSilence) {
+TEST(SilenceAfterRequest, AnOutputCommandIsRefusedWhereTheHostWatchdogExpiresWithinItsSilence) {
   constexpr milliseconds kTimeout{100};
   constexpr microseconds kCommand{8 * 10'000'000 / 9600};
   constexpr microseconds kBeforeTheTimeout{500};
@@ -82,7 +82,7 @@ TEST(JudgedAhead, AnOutputCommandIsRefusedWhereTheHostWatchdogExpiresWithinItsSi
   EXPECT_EQ(bench.module().outputs(), 0U);
 }
 
-TEST(JudgedAhead, NothingIsDoneWithinTheSilence) {
+TEST(SilenceAfterRequest, NothingIsDoneWithinTheSilence) {
   for (const char* model : {"EX9042D", "EX9042D-M"}) {
     ModuleBench bench(model);
     std::vector<OutputChange> changes;
@@ -102,7 +102,7 @@ TEST(JudgedAhead, NothingIsDoneWithinTheSilence) {
   }
 }
 
-TEST(JudgedAhead, AFrameWhoseBeginningIsAFrameIsTakenAsAWhole) {
+TEST(SilenceAfterRequest, AFrameWhoseBeginningIsAFrameIsTakenAsAWhole) {
   ModuleBench bench("EX9042D-M");
   const Bytes beginning = with_crc(kOutput0On);
   Bytes longer = beginning;
@@ -112,7 +112,7 @@ TEST(JudgedAhead, AFrameWhoseBeginningIsAFrameIsTakenAsAWhole) {
   EXPECT_EQ(bench.module().outputs(), 0U);
 }
 
-TEST(JudgedAhead, AFrameThatIsSpoiledBehindItsCrcIsNotActedUpon) {
+TEST(SilenceAfterRequest, AFrameThatIsSpoiledBehindItsCrcIsNotActedUpon) {
   ModuleBench bench("EX9042D-M");
   Bytes spoiled = with_crc(kOutput0On);
   spoiled.push_back(0x55);
@@ -125,7 +125,7 @@ TEST(JudgedAhead, AFrameThatIsSpoiledBehindItsCrcIsNotActedUpon) {
   EXPECT_EQ(bench.module().outputs(), 0U) << "nor is it with the next one";
 }
 
-TEST(JudgedAhead, TheInitSwitchCountsAsItStandsWhereTheSilenceEnds) {
+TEST(SilenceAfterRequest, TheInitSwitchCountsAsItStandsWhereTheSilenceEnds) {
   // At 1200 baud the turn-around takes 8.3 ms. The switch is moved so that it has settled, after 10 ms, in
   // its middle.
   constexpr microseconds kCharacter{10'000'000 / 1200};
@@ -145,16 +145,16 @@ TEST(JudgedAhead, TheInitSwitchCountsAsItStandsWhereTheSilenceEnds) {
   }
 }
 
-TEST(JudgedAhead, ARequestCountsItselfAmongTheBusMessages) {
+TEST(SilenceAfterRequest, ARequestCountsItselfAmongTheBusMessages) {
   ModuleBench bench("EX9052D-M");
   EXPECT_EQ(bench.ask(kBusMessages), (Bytes{0x01, 0x08, 0x00, 0x0B, 0x00, 0x01}));
-  // Also where it is judged anew behind its silence.
+  // Also if an input changes in the silence after it.
   EXPECT_EQ(answer(bench, kBusMessages, [&] { bench.module().pulse_input(0, 1); }),
             with_crc({0x01, 0x08, 0x00, 0x0B, 0x00, 0x02}));
   EXPECT_EQ(bench.ask(kBusMessages), (Bytes{0x01, 0x08, 0x00, 0x0B, 0x00, 0x03}));
 }
 
-TEST(JudgedAhead, AChangeIsStoredOnceAlthoughItIsJudgedTwice) {
+TEST(SilenceAfterRequest, AChangeIsStoredOnceAlthoughAnInputChangesInTheSilence) {
   ModuleBench bench("EX9052D");
   EXPECT_EQ(answer(bench, "~01ONEW", [&] { bench.module().pulse_input(0, 1); }), "!01\r");
   EXPECT_EQ(bench.module().memory().writes(), 1U);

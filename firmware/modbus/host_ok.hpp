@@ -1,0 +1,20 @@
+// The request "Send Host OK" of Modbus (manuals, mapping tables; wire.md section 7).
+#pragma once
+
+#include <cstdint>
+
+#include "firmware/bytes.hpp"
+
+namespace ex9000::modbus {
+
+constexpr std::uint16_t kHostOkRegister = 0x3038;
+
+/// Whether `frame`, without its CRC, is a host OK: function 03 or 04, register 0x3038, quantity 0 or 1. The
+/// receive interrupt asks, so that a host OK is never lost while a request waits.
+constexpr bool is_host_ok(Bytes frame) {
+  constexpr unsigned kSize = 6;
+  return frame.size == kSize && (frame[1] == 0x03 || frame[1] == 0x04) && frame.word(2) == kHostOkRegister &&
+         frame.word(4) <= 1;
+}
+
+}  // namespace ex9000::modbus

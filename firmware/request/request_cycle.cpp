@@ -1,0 +1,72 @@
+#include "firmware/request/request_cycle.hpp"
+
+#include "firmware/dcon/dcon.hpp"
+#include "firmware/modbus/modbus.hpp"
+
+namespace ex9000 {
+
+const Outcome& RequestCycle::judge(Bytes frame) {
+  exchange_.begin(frame);
+  if (exchange_.state.speaks_modbus()) {
+    modbus::answer(exchange_);
+  } else {
+    dcon::answer(exchange_);
+  }
+  exchange_.frame = {};
+  exchange_.args = {};
+  Outcome& outcome = exchange_.outcome;
+  if (outcome.refusal != Refusal::None) {
+    outcome.clear();  // a refused request changes nothing
+  }
+  if (outcome.changes_settings()) {
+    phase_ = Phase::AwaitingStore;
+  }
+  return outcome;
+}
+
+void RequestCycle::keep_timeout_status() {
+  if (phase_ == Phase::AwaitingStore || phase_ == Phase::Storing) {
+    exchange_.outcome.change().keep_timeout_status();
+  }
+}
+
+void RequestCycle::refuse_store() {
+  exchange_.outcome.clear();
+  exchange_.outcome.refusal = Refusal::StoreFailed;
+  if (exchange_.state.speaks_modbus()) {
+    modbus::refuse_store(exchange_);
+  } else {
+    dcon::refuse_store(exchange_);
+  }
+}
+
+bool RequestCycle::finish() {
+  exchange_.outcome.clear();
+  phase_ = exchange_.reply.empty() ? Phase::Idle : Phase::ReplyReady;
+  return phase_ == Phase::ReplyReady;
+}
+
+Bytes RequestCycle::take_reply(Time now) {
+  if (phase_ != Phase::ReplyReady || !(until_reply(now) == Duration())) {
+    return {};
+  }
+  phase_ = Phase::Replying;
+  return exchange_.reply.bytes();
+}
+
+Duration RequestCycle::until_reply(Time now) const {
+  return line_quiet_.armed() ? line_quiet_.remaining(now) : Duration();
+}
+
+void RequestCycle::reply_sent(Time now, Duration silence) {
+  phase_ = Phase::Idle;
+  line_quiet_.set(now + silence);
+}
+
+void RequestCycle::forget_old_reply(Time now) {
+  if (line_quiet_.reached(now)) {
+    line_quiet_.disarm();
+  }
+}
+
+}  // namespace ex9000

@@ -1,0 +1,50 @@
+#include "firmware/settings/settings_keeper.hpp"
+
+namespace ex9000 {
+
+namespace {
+
+constexpr Duration kRetry = milliseconds(1000);  // wire.md D15
+
+}  // namespace
+
+void SettingsKeeper::save(const Settings& settings, Time now) {
+  end_own_save(now);
+  store_.begin_saving(settings);
+  may_differ_ = true;  // even if it succeeds: the host watchdog may expire meanwhile
+}
+
+void SettingsKeeper::poll(const Settings& in_force, Time now) {
+  if (busy()) {
+    return;
+  }
+  end_own_save(now);
+  if (!may_differ_) {
+    return;
+  }
+  const bool unsaved = in_force != stored();
+  if (!unsaved && !store_.doubtful()) {
+    may_differ_ = false;
+    retry_.disarm();
+    return;
+  }
+  if (retry_.armed() && !retry_.reached(now)) {
+    return;
+  }
+  retry_.disarm();
+  own_save_ = true;
+  if (unsaved) {
+    store_.begin_saving(in_force);
+  } else {
+    store_.begin_settling();
+  }
+}
+
+void SettingsKeeper::end_own_save(Time now) {
+  if (own_save_ && !saved()) {
+    retry_.set(now + kRetry);
+  }
+  own_save_ = false;
+}
+
+}  // namespace ex9000

@@ -1,0 +1,55 @@
+// A reply while it is being written: it never exceeds its room, whatever a handler puts.
+#include "firmware/request/reply.hpp"
+
+#include <gtest/gtest.h>
+
+#include <string>
+
+namespace ex9000 {
+namespace {
+
+std::string text_of(const Reply& reply) { return {reply.bytes().begin(), reply.bytes().end()}; }
+
+TEST(Reply, IsEmptyAtFirstAndOnceItIsCleared) {
+  Reply reply;
+  EXPECT_TRUE(reply.empty());
+  reply.put('!');
+  EXPECT_FALSE(reply.empty());
+  reply.clear();
+  EXPECT_TRUE(reply.empty());
+  EXPECT_EQ(reply.bytes().size, 0U);
+}
+
+TEST(Reply, HasWhatWasPutInItsOrder) {
+  Reply reply;
+  reply.put('!');
+  reply.put_hex(0x1A5);  // its low byte
+  reply.put_word(0x4243);
+  reply.put(std::string_view("D01"));
+  EXPECT_EQ(text_of(reply), "!A5BCD01");
+}
+
+TEST(Reply, AByteCanBeOverwrittenButNoneAdded) {
+  Reply reply;
+  reply.put(std::string_view("0123"));
+  reply.patch(2, 'x');
+  reply.patch(4, 'y');
+  EXPECT_EQ(text_of(reply), "01x3");
+}
+
+TEST(Reply, DropsWhatExceedsTheLongestFrame) {
+  Reply reply;
+  for (unsigned i = 0; i < kLongestFrame; ++i) {
+    reply.put(static_cast<std::uint8_t>(i));
+  }
+  reply.put('!');
+  reply.put_hex(0x55);
+  reply.put_word(0x5555);
+  reply.put(std::string_view("55"));
+  reply.patch(kLongestFrame, '5');
+  ASSERT_EQ(reply.size(), kLongestFrame);
+  EXPECT_EQ(reply.bytes()[kLongestFrame - 1], static_cast<std::uint8_t>(kLongestFrame - 1));
+}
+
+}  // namespace
+}  // namespace ex9000

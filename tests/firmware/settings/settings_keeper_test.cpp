@@ -1,0 +1,140 @@
+// What is stored, what is not yet, and when it is tried again: wire.md section 8, D6 and D15.
+#include "firmware/settings/settings_keeper.hpp"
+
+#include <gtest/gtest.h>
+
+#include "tests/firmware/settings/settings_store_bench.hpp"
+
+namespace ex9000 {
+namespace {
+
+class SettingsKeeperTest : public testing::Test {
+ protected:
+  SettingsKeeperTest() { drive_memory(); }
+
+  /// Until the memory has nothing more to do.
+  void drive_memory() {
+    for (int jobs = 0; keeper_.busy(); ++jobs) {
+      ASSERT_LT(jobs, 100) << "the store never finishes";
+      const MemoryJob job = keeper_.job();
+      keeper_.started();
+      keeper_.done(memory_.run(job).value_or(false));
+    }
+  }
+  void store(const Settings& settings) {
+    keeper_.save(settings, now_);
+    drive_memory();
+  }
+  void pass(Duration time) { now_ = now_ + time; }
+  /// How often the memory has been written to.
+  [[nodiscard]] std::size_t writes() const { return memory_.writes.size(); }
+
+  FakeMemory memory_;
+  SettingsKeeper keeper_{the_model()};
+  Time now_{1000};
+};
+
+TEST(SettingsKeeperAtReset, LoadsUntilTheMemoryIsRead) {
+  FakeMemory memory;
+  SettingsKeeper keeper(the_model());
+  EXPECT_TRUE(keeper.loading());
+  EXPECT_TRUE(keeper.busy());
+}
+
+TEST_F(SettingsKeeperTest, ABlankMemoryHasFactorySettingsAndIsNotUnreadable) {
+  EXPECT_FALSE(keeper_.loading());
+  EXPECT_FALSE(keeper_.unreadable());
+  EXPECT_TRUE(keeper_.stored() == factory());
+}
+
+TEST_F(SettingsKeeperTest, WritesNothingAsLongAsNothingHasChanged) {
+  keeper_.poll(keeper_.stored(), now_);
+  EXPECT_FALSE(keeper_.busy());
+  keeper_.settings_changed();  // and back
+  keeper_.poll(keeper_.stored(), now_);
+  EXPECT_FALSE(keeper_.busy());
+  EXPECT_EQ(writes(), 0U);
+}
+
+TEST_F(SettingsKeeperTest, StoresWhatACommandAsksFor) {
+  store(numbered(5));
+  EXPECT_TRUE(keeper_.saved());
+  EXPECT_TRUE(keeper_.stored() == numbered(5));
+  keeper_.poll(numbered(5), now_);
+  EXPECT_FALSE(keeper_.busy());
+  EXPECT_EQ(writes(), 1U);
+}
+
+TEST_F(SettingsKeeperTest, StoresByItselfWhatChangedWithoutACommand) {
+  keeper_.settings_changed();
+  keeper_.poll(numbered(5), now_);
+  EXPECT_TRUE(keeper_.busy());
+  EXPECT_FALSE(keeper_.has_work());
+  drive_memory();
+  EXPECT_TRUE(keeper_.has_work());
+  keeper_.poll(numbered(5), now_);
+  EXPECT_FALSE(keeper_.has_work());
+  EXPECT_TRUE(keeper_.stored() == numbered(5));
+  EXPECT_FALSE(keeper_.retry().armed());
+}
+
+// wire.md D6: the host watchdog expires while a command is stored.
+TEST_F(SettingsKeeperTest, StoresWhatChangedWhileACommandWasStored) {
+  store(numbered(5));
+  keeper_.poll(numbered(6), now_);
+  drive_memory();
+  EXPECT_TRUE(keeper_.stored() == numbered(6));
+}
+
+// wire.md D15.
+TEST_F(SettingsKeeperTest, TriesAgainEverySecondUntilItIsStored) {
+  keeper_.settings_changed();
+  for (int failures = 0; failures < 3; ++failures) {
+    memory_.unanswered_writes = 4;  // three attempts, and the copy cannot be made invalid
+    keeper_.poll(numbered(5), now_);
+    ASSERT_TRUE(keeper_.busy()) << failures;
+    drive_memory();
+    keeper_.poll(numbered(5), now_);
+    ASSERT_FALSE(keeper_.busy());
+    ASSERT_TRUE(keeper_.retry().armed());
+    pass(milliseconds(999));
+    keeper_.poll(numbered(5), now_);
+    EXPECT_FALSE(keeper_.busy()) << "too early";
+    pass(milliseconds(1));
+  }
+  keeper_.poll(numbered(5), now_);
+  drive_memory();
+  keeper_.poll(numbered(5), now_);
+  EXPECT_TRUE(keeper_.stored() == numbered(5));
+  EXPECT_FALSE(keeper_.retry().armed());
+}
+
+TEST_F(SettingsKeeperTest, ACopyThatMayHoldRefusedSettingsIsMadeInvalid) {
+  store(numbered(5));
+  memory_.unanswered_writes = 4;
+  memory_.unanswered_but_done = true;
+  store(numbered(6));
+  EXPECT_FALSE(keeper_.saved());
+  EXPECT_TRUE(keeper_.stored() == numbered(5));
+  keeper_.poll(numbered(5), now_);
+  ASSERT_TRUE(keeper_.busy());
+  drive_memory();
+  keeper_.poll(numbered(5), now_);
+  EXPECT_FALSE(keeper_.busy());
+  EXPECT_TRUE(Boot(memory_).stored() == numbered(5));
+}
+
+TEST_F(SettingsKeeperTest, ACommandNeedNotWaitForTheNextTry) {
+  keeper_.settings_changed();
+  memory_.unanswered_writes = 4;
+  keeper_.poll(numbered(5), now_);
+  drive_memory();
+  store(numbered(6));  // before its own failure has been polled
+  EXPECT_TRUE(keeper_.saved());
+  keeper_.poll(numbered(6), now_);
+  EXPECT_FALSE(keeper_.busy());
+  EXPECT_FALSE(keeper_.retry().armed());
+}
+
+}  // namespace
+}  // namespace ex9000
