@@ -79,12 +79,12 @@ class Device {
   void turn() {
     seen_ = happened();
     const Time now = board_.clock.now();
-    look_after_memory(now);
+    poll_memory(now);
     module_.step(now);
     if (module_.outputs() != driven_) {
       drive_outputs();
     }
-    look_after_line(now);
+    poll_line(now);
     begin_memory_job(now);
   }
 
@@ -92,7 +92,7 @@ class Device {
   [[nodiscard]] const Module& module() const { return module_; }
 
  private:
-  void look_after_line(Time now) {
+  void poll_line(Time now) {
     if (!line_open_) {
       if (!module_.listening()) {
         return;
@@ -128,12 +128,12 @@ class Device {
     board_.outputs.drive(driven_);
   }
 
-  void look_after_memory(Time now) {
+  void poll_memory(Time now) {
     if (!memory_job_under_way_) {
       return;
     }
     if (board_.memory.go_on(now)) {
-      --seen_;  // no interrupt will tell when it wants to be looked after again
+      --seen_;  // no interrupt tells when it can go on
     }
     if (!board_.memory.busy()) {
       memory_job_under_way_ = false;

@@ -20,7 +20,7 @@ class Memory {
   /// starts the job may still complete it. Likewise.
   virtual void start_write(std::uint16_t address, Bytes source, Time now) = 0;
 
-  /// Goes on with the job. Main loop, every turn; does not block. True: wants to be called again at once, no
+  /// Goes on with the job. Main loop, every turn; does not block. True: must be called again at once, no
   /// interrupt will tell when.
   virtual bool go_on(Time now) = 0;
 

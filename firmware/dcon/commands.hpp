@@ -52,13 +52,16 @@ constexpr char kBroadcastKey = '*';
 struct Dispatch {
   char delimiter = 0;
   char key = kNoKey;  ///< the character behind the address; kBroadcastKey: the address is `**`
-  std::uint8_t fewest_args : 4;
-  std::uint8_t most_args : 4;
+  std::uint8_t fewest_args = 0;
+  std::uint8_t most_args = 0;
   Needs needs = Needs::Nothing;
   Handler handler = nullptr;
 };
 
 enum class Access : std::uint8_t { Read, Write, Store };
+
+/// Whether a command is marked (I): only with INIT* asserted, or in INIT mode.
+enum class Init : std::uint8_t { NotRequired, Required };
 
 /// A row: what people read, and what the module needs. The texts are not referred to by the module, so an
 /// image does not carry them.
@@ -69,7 +72,7 @@ struct Command {
   std::string_view meaning;
   std::string_view range;  ///< of the arguments
   Access access;           ///< Store: the reply leaves when the EEPROM holds it
-  bool needs_init;         ///< marked (I); `%` only where baud rate or checksum change
+  Init init;               ///< `%`: only where baud rate or checksum change
   Dispatch dispatch;
 };
 
@@ -81,7 +84,7 @@ inline constexpr auto kCommands = table<Command>({
      "NN: the new address 00-FF (01-F7 while Modbus is stored); TT: 40, or 24; CC: 03-0A, FF: 00, 40, 80 or "
      "C0, both from the next reset on; (I) only to change CC or the checksum",
      Access::Store,
-     true,
+     Init::Required,
      {'%', kNoKey, 8, 8, Needs::Nothing, set_configuration}},
     {"sample",
      "#**",
@@ -89,7 +92,7 @@ inline constexpr auto kCommands = table<Command>({
      "all modules: take a synchronized sample",
      "",
      Access::Write,
-     false,
+     Init::NotRequired,
      {'#', kBroadcastKey, 0, 0, Needs::Nothing, take_sample}},
     {"set-output-group",
      "#AABBDD",
@@ -98,7 +101,7 @@ inline constexpr auto kCommands = table<Command>({
      "BB: 00 or 0A outputs 0-7, 0B outputs 8 and up, DD: their bits; BB: 1c or Ac output c, Bc output 8+c, "
      "DD: 00 off, 01 on",
      Access::Write,
-     false,
+     Init::NotRequired,
      {'#', kNoKey, 4, 4, Needs::Outputs, set_output_group}},
     {"read-counter",
      "#AAN",
@@ -106,7 +109,7 @@ inline constexpr auto kCommands = table<Command>({
      "read a counter",
      "N: channel, from 0",
      Access::Read,
-     false,
+     Init::NotRequired,
      {'#', kNoKey, 1, 1, Needs::Inputs, read_counter}},
     {"read-configuration",
      "$AA2",
@@ -114,7 +117,7 @@ inline constexpr auto kCommands = table<Command>({
      "read the stored configuration",
      "",
      Access::Read,
-     false,
+     Init::NotRequired,
      {'$', '2', 0, 0, Needs::Nothing, read_configuration}},
     {"read-sample",
      "$AA4",
@@ -122,7 +125,7 @@ inline constexpr auto kCommands = table<Command>({
      "read the synchronized sample; S is 1 the first time",
      "",
      Access::Read,
-     false,
+     Init::NotRequired,
      {'$', '4', 0, 0, Needs::Nothing, read_sample}},
     {"read-reset-status",
      "$AA5",
@@ -130,7 +133,7 @@ inline constexpr auto kCommands = table<Command>({
      "read and clear the reset status",
      "",
      Access::Read,
-     false,
+     Init::NotRequired,
      {'$', '5', 0, 0, Needs::Nothing, read_reset_status}},
     {"read-channels",
      "$AA6",
@@ -138,7 +141,7 @@ inline constexpr auto kCommands = table<Command>({
      "read inputs and outputs",
      "",
      Access::Read,
-     false,
+     Init::NotRequired,
      {'$', '6', 0, 0, Needs::Nothing, read_channels}},
     {"read-version",
      "$AAF",
@@ -146,7 +149,7 @@ inline constexpr auto kCommands = table<Command>({
      "read the firmware version",
      "",
      Access::Read,
-     false,
+     Init::NotRequired,
      {'$', 'F', 0, 0, Needs::Nothing, read_version}},
     {"read-name",
      "$AAM",
@@ -154,7 +157,7 @@ inline constexpr auto kCommands = table<Command>({
      "read the module's name",
      "",
      Access::Read,
-     false,
+     Init::NotRequired,
      {'$', 'M', 0, 0, Needs::Nothing, read_name}},
     {"clear-latches",
      "$AAC",
@@ -162,7 +165,7 @@ inline constexpr auto kCommands = table<Command>({
      "clear both latches of all channels",
      "",
      Access::Write,
-     false,
+     Init::NotRequired,
      {'$', 'C', 0, 0, Needs::Inputs, clear_latches}},
     {"clear-counter",
      "$AACN",
@@ -170,7 +173,7 @@ inline constexpr auto kCommands = table<Command>({
      "clear a counter",
      "N: channel, from 0",
      Access::Write,
-     false,
+     Init::NotRequired,
      {'$', 'C', 1, 1, Needs::Inputs, clear_counter}},
     {"read-latches",
      "$AALS",
@@ -178,7 +181,7 @@ inline constexpr auto kCommands = table<Command>({
      "read the latches",
      "S: 1 latch high, 0 latch low",
      Access::Read,
-     false,
+     Init::NotRequired,
      {'$', 'L', 1, 1, Needs::Inputs, read_latches}},
     {"read-protocol",
      "$AAP",
@@ -186,7 +189,7 @@ inline constexpr auto kCommands = table<Command>({
      "read the stored protocol: 10 ASCII, 11 Modbus RTU",
      "",
      Access::Read,
-     false,
+     Init::NotRequired,
      {'$', 'P', 0, 0, Needs::Modbus, read_protocol}},
     {"set-protocol",
      "$AAPN",
@@ -194,7 +197,7 @@ inline constexpr auto kCommands = table<Command>({
      "set the protocol, from the next reset on",
      "N: 0 ASCII, 1 Modbus RTU (wants a stored address of 01-F7)",
      Access::Store,
-     true,
+     Init::Required,
      {'$', 'P', 1, 1, Needs::Modbus, set_protocol}},
     {"read-channels-short",
      "@AA",
@@ -202,7 +205,7 @@ inline constexpr auto kCommands = table<Command>({
      "read inputs and outputs",
      "",
      Access::Read,
-     false,
+     Init::NotRequired,
      {'@', kNoKey, 0, 0, Needs::Nothing, read_channels_short}},
     {"set-outputs",
      "@AA(Data)",
@@ -210,7 +213,7 @@ inline constexpr auto kCommands = table<Command>({
      "set all outputs",
      "Data: a hex number, bit 0 is output 0; 1 digit for up to 4 outputs, 2 or 1 for up to 8, 4 or 2 above",
      Access::Write,
-     false,
+     Init::NotRequired,
      {'@', kNoKey, 1, 4, Needs::Outputs, set_outputs}},
     {"set-name",
      "~AAO(Name)",
@@ -218,7 +221,7 @@ inline constexpr auto kCommands = table<Command>({
      "set the module's name",
      "Name: 1-6 characters 0x20-0x7E, 1-7 on the EX9068D-M and EX9068AD-M",
      Access::Store,
-     false,
+     Init::NotRequired,
      {'~', 'O', 1, kMaxNameLength, Needs::Nothing, set_name}},
     {"host-ok",
      "~**",
@@ -226,7 +229,7 @@ inline constexpr auto kCommands = table<Command>({
      "all modules: the host is alive; restarts the host watchdog",
      "",
      Access::Write,
-     false,
+     Init::NotRequired,
      {'~', kBroadcastKey, 0, 0, Needs::Nothing, host_ok}},
     {"read-status",
      "~AA0",
@@ -234,7 +237,7 @@ inline constexpr auto kCommands = table<Command>({
      "read the host watchdog's status",
      "",
      Access::Read,
-     false,
+     Init::NotRequired,
      {'~', '0', 0, 0, Needs::Nothing, read_status}},
     {"clear-status",
      "~AA1",
@@ -242,7 +245,7 @@ inline constexpr auto kCommands = table<Command>({
      "clear the timeout status",
      "",
      Access::Store,
-     false,
+     Init::NotRequired,
      {'~', '1', 0, 0, Needs::Nothing, clear_status}},
     {"read-watchdog",
      "~AA2",
@@ -250,7 +253,7 @@ inline constexpr auto kCommands = table<Command>({
      "read the host watchdog's enable and timeout",
      "",
      Access::Read,
-     false,
+     Init::NotRequired,
      {'~', '2', 0, 0, Needs::Nothing, read_watchdog}},
     {"set-watchdog",
      "~AA3EVV",
@@ -258,7 +261,7 @@ inline constexpr auto kCommands = table<Command>({
      "set the host watchdog",
      "E: 0 off, 1 on; VV: timeout 01-FF in units of 0.1 s",
      Access::Store,
-     false,
+     Init::NotRequired,
      {'~', '3', 3, 3, Needs::Nothing, set_watchdog}},
     {"read-preset-value",
      "~AA4V",
@@ -266,7 +269,7 @@ inline constexpr auto kCommands = table<Command>({
      "read the power-on or safe value",
      "V: P power-on value, S safe value",
      Access::Read,
-     false,
+     Init::NotRequired,
      {'~', '4', 1, 1, Needs::Outputs, read_preset_value}},
     {"store-preset-value",
      "~AA5V",
@@ -274,7 +277,7 @@ inline constexpr auto kCommands = table<Command>({
      "store the outputs as power-on or safe value",
      "V: P power-on value, S safe value",
      Access::Store,
-     false,
+     Init::NotRequired,
      {'~', '5', 1, 1, Needs::Outputs, store_preset_value}},
 });
 

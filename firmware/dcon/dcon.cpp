@@ -91,7 +91,7 @@ std::size_t find_command(const Model& model, Bytes frame) {
 void answer(Exchange& exchange) {
   const Bytes frame = exchange.frame;
   if (!is_broadcast(frame) && hex_byte(frame[1], frame[2]) != exchange.state.in_force.address) {
-    return;  // `%` has changed the address since the frame came in (D16)
+    return;  // `%` has changed the address since the frame came in (wire.md D16)
   }
   Refusal refusal = Refusal::UnknownCommand;
   const std::size_t command = find_command(exchange.model(), frame);

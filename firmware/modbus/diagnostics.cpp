@@ -1,5 +1,5 @@
 // Function 08: Modbus Application Protocol V1.1b3, 6.8; what the counters count: Modbus over Serial Line
-// V1.02, appendix A, and D1.
+// V1.02, appendix A, and wire.md D1.
 #include "firmware/modbus/functions.hpp"
 
 namespace ex9000::modbus {

@@ -29,10 +29,15 @@ Refusal report_server_id(Exchange& exchange);
 Refusal read_device_identification(Exchange& exchange);
 Refusal vendor_function(Exchange& exchange);
 
+enum class AtBroadcast : std::uint8_t {
+  Ignored,
+  CarriedOut,  ///< without a reply
+};
+
 struct FunctionRow {
   std::uint8_t code = 0;
   Needs needs = Needs::Nothing;
-  bool by_broadcast = false;  ///< carried out, without answer, when sent to address 0; else ignored there
+  AtBroadcast at_broadcast = AtBroadcast::Ignored;  ///< a request to address 0
   Handler handler = nullptr;
 };
 
@@ -43,21 +48,32 @@ struct Function {
 };
 
 inline constexpr auto kFunctions = table<Function>({
-    {"Read Coils", "manuals; V1.1b3 6.1", {0x01, Needs::Nothing, false, read_bits}},
-    {"Read Discrete Inputs", "EX9052D manual; V1.1b3 6.2", {0x02, Needs::Inputs, false, read_bits}},
-    {"Read Holding Registers", "manuals; V1.1b3 6.3", {0x03, Needs::Nothing, false, read_words}},
-    {"Read Input Registers", "manuals; V1.1b3 6.4", {0x04, Needs::Nothing, false, read_words}},
-    {"Write Single Coil", "manuals; V1.1b3 6.5", {0x05, Needs::Nothing, true, write_single_coil}},
-    Function{
-        "Write Single Register", "manuals; V1.1b3 6.6", {0x06, Needs::Nothing, true, write_single_register}},
-    {"Diagnostics", "V1.1b3 6.8", {0x08, Needs::Nothing, false, diagnose}},
-    Function{
-        "Write Multiple Coils", "manuals; V1.1b3 6.11", {0x0F, Needs::Nothing, true, write_multiple_coils}},
-    Function{
-        "Write Multiple Registers", "V1.1b3 6.12", {0x10, Needs::Nothing, true, write_multiple_registers}},
-    {"Report Server ID", "V1.1b3 6.13", {0x11, Needs::Nothing, false, report_server_id}},
-    {"Read Device Identification", "V1.1b3 6.21", {0x2B, Needs::Nothing, false, read_device_identification}},
-    {"Module code and address", "manuals", {0x46, Needs::Nothing, false, vendor_function}},
+    {"Read Coils", "manuals; V1.1b3 6.1", {0x01, Needs::Nothing, AtBroadcast::Ignored, read_bits}},
+    {"Read Discrete Inputs",
+     "EX9052D manual; V1.1b3 6.2",
+     {0x02, Needs::Inputs, AtBroadcast::Ignored, read_bits}},
+    {"Read Holding Registers",
+     "manuals; V1.1b3 6.3",
+     {0x03, Needs::Nothing, AtBroadcast::Ignored, read_words}},
+    {"Read Input Registers", "manuals; V1.1b3 6.4", {0x04, Needs::Nothing, AtBroadcast::Ignored, read_words}},
+    {"Write Single Coil",
+     "manuals; V1.1b3 6.5",
+     {0x05, Needs::Nothing, AtBroadcast::CarriedOut, write_single_coil}},
+    Function{"Write Single Register",
+             "manuals; V1.1b3 6.6",
+             {0x06, Needs::Nothing, AtBroadcast::CarriedOut, write_single_register}},
+    {"Diagnostics", "V1.1b3 6.8", {0x08, Needs::Nothing, AtBroadcast::Ignored, diagnose}},
+    Function{"Write Multiple Coils",
+             "manuals; V1.1b3 6.11",
+             {0x0F, Needs::Nothing, AtBroadcast::CarriedOut, write_multiple_coils}},
+    Function{"Write Multiple Registers",
+             "V1.1b3 6.12",
+             {0x10, Needs::Nothing, AtBroadcast::CarriedOut, write_multiple_registers}},
+    {"Report Server ID", "V1.1b3 6.13", {0x11, Needs::Nothing, AtBroadcast::Ignored, report_server_id}},
+    {"Read Device Identification",
+     "V1.1b3 6.21",
+     {0x2B, Needs::Nothing, AtBroadcast::Ignored, read_device_identification}},
+    {"Module code and address", "manuals", {0x46, Needs::Nothing, AtBroadcast::Ignored, vendor_function}},
 });
 
 }  // namespace ex9000::modbus

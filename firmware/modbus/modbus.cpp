@@ -74,7 +74,7 @@ void answer(Exchange& exchange) {
   const std::uint8_t function = frame[1];
   exchange.broadcast = frame[0] == kBroadcast;
   const FunctionRow* row = find(exchange.model(), function);
-  if (exchange.broadcast && (row == nullptr || !row->by_broadcast)) {
+  if (exchange.broadcast && (row == nullptr || row->at_broadcast == AtBroadcast::Ignored)) {
     return;
   }
   reply.put(frame[0]);

@@ -40,17 +40,24 @@ struct BitWrite {
   std::uint16_t value = 0;
 };
 
+/// What else holds for a row that can be written.
+using Rules = std::uint8_t;
+constexpr Rules kPlain = 0;
+constexpr Rules kDrivesOutputs = 1U << 0U;  ///< refused with 04 while the timeout status is set
+constexpr Rules kOnlyOn = 1U << 1U;         ///< function 05 with 0000 is refused with 03
+constexpr Rules kConfiguration = 1U << 2U;  ///< never by broadcast
+
 /// What the module itself needs of a row of coils or discrete inputs.
 struct BitRow {
   std::uint16_t first = 0;
   Width width = Width::One;
   Needs needs = Needs::Nothing;
   Functions functions = 0;
-  bool drives_outputs : 1;                              ///< refused with 04 while the timeout status is set
-  bool only_on : 1;                                     ///< function 05 with 0000 is refused with 03
-  bool configuration : 1;                               ///< never by broadcast
+  Rules rules = kPlain;
   std::uint16_t (*read)(const State& state) = nullptr;  ///< the whole row; bit 0 is the first
   Refusal (*write)(const State& state, BitWrite bits, Outcome& outcome) = nullptr;
+
+  [[nodiscard]] constexpr bool has(Rules rule) const { return (rules & rule) != 0; }
 };
 
 /// Likewise of registers.
@@ -58,12 +65,14 @@ struct WordRow {
   std::uint16_t first = 0;
   Width width = Width::One;
   Needs needs = Needs::Nothing;
-  Functions functions : 15;
-  bool configuration : 1;
+  Functions functions = 0;
+  Rules rules = kPlain;
   std::uint8_t lowest = 0;  ///< of the values that may be written
   std::uint8_t highest = 0;
   std::uint16_t (*read)(const State& state, unsigned index) = nullptr;
   Refusal (*write)(const State& state, std::uint16_t value, Outcome& outcome) = nullptr;
+
+  [[nodiscard]] constexpr bool has(Rules rule) const { return (rules & rule) != 0; }
 };
 
 // bit_rows.cpp
@@ -115,91 +124,87 @@ inline constexpr auto kBitRegisters = table<BitRegister>({
         "outputs",
         "outputs",
         "0 off, 1 on",
-        {0x0000, Width::PerOutput, Needs::Outputs, kReadCoils | kWriteSingleCoil | kWriteMultipleCoils, true,
-         false, false, read_outputs, write_outputs}},
+        {0x0000, Width::PerOutput, Needs::Outputs, kReadCoils | kWriteSingleCoil | kWriteMultipleCoils,
+         kDrivesOutputs, read_outputs, write_outputs}},
     {"inputs",
      "inputs",
      "",
-     {0x0000, Width::PerInput, Needs::Inputs, kReadDiscreteInputs, false, false, false, read_inputs,
-      nullptr}},
-    BitRegister{
-        "input-coils",
-        "inputs",
-        "",
-        {0x0020, Width::PerInput, Needs::Inputs, kReadCoils, false, false, false, read_inputs, nullptr}},
-    BitRegister{
-        "latch-high",
-        "latch high: a rising edge was seen",
-        "",
-        {0x0040, Width::PerInput, Needs::Inputs, kReadCoils, false, false, false, read_latch_high, nullptr}},
-    BitRegister{
-        "latch-low",
-        "latch low: a falling edge was seen",
-        "",
-        {0x0060, Width::PerInput, Needs::Inputs, kReadCoils, false, false, false, read_latch_low, nullptr}},
+     {0x0000, Width::PerInput, Needs::Inputs, kReadDiscreteInputs, kPlain, read_inputs, nullptr}},
+    BitRegister{"input-coils",
+                "inputs",
+                "",
+                {0x0020, Width::PerInput, Needs::Inputs, kReadCoils, kPlain, read_inputs, nullptr}},
+    BitRegister{"latch-high",
+                "latch high: a rising edge was seen",
+                "",
+                {0x0040, Width::PerInput, Needs::Inputs, kReadCoils, kPlain, read_latch_high, nullptr}},
+    BitRegister{"latch-low",
+                "latch low: a falling edge was seen",
+                "",
+                {0x0060, Width::PerInput, Needs::Inputs, kReadCoils, kPlain, read_latch_low, nullptr}},
     BitRegister{
         "safe-value",
         "safe value; the outputs follow",
         "0 off, 1 on",
-        {0x0080, Width::PerOutput, Needs::Outputs, kReadCoils | kWriteSingleCoil | kWriteMultipleCoils, true,
-         false, false, read_safe_value, write_safe_value}},
+        {0x0080, Width::PerOutput, Needs::Outputs, kReadCoils | kWriteSingleCoil | kWriteMultipleCoils,
+         kDrivesOutputs, read_safe_value, write_safe_value}},
     BitRegister{
         "power-on-value",
         "power-on value; the outputs follow",
         "0 off, 1 on",
-        {0x00A0, Width::PerOutput, Needs::Outputs, kReadCoils | kWriteSingleCoil | kWriteMultipleCoils, true,
-         false, false, read_power_on_value, write_power_on_value}},
+        {0x00A0, Width::PerOutput, Needs::Outputs, kReadCoils | kWriteSingleCoil | kWriteMultipleCoils,
+         kDrivesOutputs, read_power_on_value, write_power_on_value}},
     {"protocol",
      "stored protocol, from the next reset on",
      "0 ASCII, 1 Modbus RTU; not by broadcast",
-     {0x0100, Width::One, Needs::Nothing, kReadCoils | kWriteSingleCoil, false, false, true, read_protocol,
+     {0x0100, Width::One, Needs::Nothing, kReadCoils | kWriteSingleCoil, kConfiguration, read_protocol,
       write_protocol}},
     {"watchdog-enable",
      "host watchdog enable",
      "0 off, 1 on and restart; on wants a timeout other than 0",
-     {0x0104, Width::One, Needs::Nothing, kReadCoils | kWriteSingleCoil, false, false, false,
-      read_watchdog_enable, write_watchdog_enable}},
+     {0x0104, Width::One, Needs::Nothing, kReadCoils | kWriteSingleCoil, kPlain, read_watchdog_enable,
+      write_watchdog_enable}},
     {"clear-latches",
      "clear both latches of all channels",
      "1 only",
-     {0x0107, Width::One, Needs::Inputs, kWriteSingleCoil, false, true, false, nullptr, write_clear_latches}},
+     {0x0107, Width::One, Needs::Inputs, kWriteSingleCoil, kOnlyOn, nullptr, write_clear_latches}},
     {"timeout-status",
      "host watchdog timeout status",
      "1 only: clears it",
-     {0x010D, Width::One, Needs::Nothing, kReadCoils | kWriteSingleCoil, false, true, false,
-      read_timeout_status, write_clear_timeout_status}},
+     {0x010D, Width::One, Needs::Nothing, kReadCoils | kWriteSingleCoil, kOnlyOn, read_timeout_status,
+      write_clear_timeout_status}},
     {"clear-counters",
      "clear the channel's counter",
      "1 clears; 0, by function 0F only, leaves it as it is",
-     {0x0200, Width::PerInput, Needs::Inputs, kWriteSingleCoil | kWriteMultipleCoils, false, true, false,
-      nullptr, write_clear_counters}},
+     {0x0200, Width::PerInput, Needs::Inputs, kWriteSingleCoil | kWriteMultipleCoils, kOnlyOn, nullptr,
+      write_clear_counters}},
 });
 
 inline constexpr auto kWordRegisters = table<WordRegister>({
     {"counters",
      "input counters",
      "",
-     {0x0000, Width::PerInput, Needs::Inputs, kReadHoldingRegisters | kReadInputRegisters, false, 0, 0,
+     {0x0000, Width::PerInput, Needs::Inputs, kReadHoldingRegisters | kReadInputRegisters, kPlain, 0, 0,
       read_counter, nullptr}},
     WordRegister{
         "module-code",
         "module code, its digits spread out: 0x0090, then the last two and 00",
         "",
-        {0x01E2, Width::Two, Needs::Nothing, kReadHoldingRegisters, false, 0, 0, read_module_code, nullptr}},
+        {0x01E2, Width::Two, Needs::Nothing, kReadHoldingRegisters, kPlain, 0, 0, read_module_code, nullptr}},
     {"address",
      "stored address, from the next reset on",
      "1 to 247; not by broadcast",
-     {0x01E4, Width::One, Needs::Nothing, kReadHoldingRegisters | kWriteRegisters, true, kFirstModbusAddress,
-      kLastModbusAddress, read_address, write_address}},
+     {0x01E4, Width::One, Needs::Nothing, kReadHoldingRegisters | kWriteRegisters, kConfiguration,
+      kFirstModbusAddress, kLastModbusAddress, read_address, write_address}},
     {"baud-code",
      "stored baud code, from the next reset on",
      "0x03 to 0x0A; not by broadcast",
-     {0x01E5, Width::One, Needs::Nothing, kReadHoldingRegisters | kWriteRegisters, true, kFirstBaudCode,
-      kLastBaudCode, read_baud_code, write_baud_code}},
+     {0x01E5, Width::One, Needs::Nothing, kReadHoldingRegisters | kWriteRegisters, kConfiguration,
+      kFirstBaudCode, kLastBaudCode, read_baud_code, write_baud_code}},
     {"watchdog-timeout",
      "host watchdog timeout in units of 0.1 s",
      "0 to 255; not 0 while the host watchdog is enabled",
-     {0x01E8, Width::One, Needs::Nothing, kReadHoldingRegisters | kWriteRegisters, false, 0, 255,
+     {0x01E8, Width::One, Needs::Nothing, kReadHoldingRegisters | kWriteRegisters, kPlain, 0, 255,
       read_watchdog_timeout, write_watchdog_timeout}},
     // For people only: host OK is decided where the frame is received and never looked up, so no function is
     // listed.
@@ -207,7 +212,7 @@ inline constexpr auto kWordRegisters = table<WordRegister>({
                  "host OK: a request for 0 or 1 registers from here restarts the host watchdog and gets no "
                  "reply; address 0 reaches all modules",
                  "",
-                 {kHostOkRegister, Width::One, Needs::Nothing, 0, false, 0, 0, nullptr, nullptr}},
+                 {kHostOkRegister, Width::One, Needs::Nothing, 0, kPlain, 0, 0, nullptr, nullptr}},
 });
 
 /// The row of coils or discrete inputs that holds `quantity` of them (1 to 2000) from `address` on and that

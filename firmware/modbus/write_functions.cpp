@@ -19,14 +19,14 @@ constexpr std::uint16_t kCoilOff = 0x0000;
 void put_echo(Exchange& exchange) { exchange.reply.put(exchange.frame.first(kSingleSize).from(2)); }
 
 Refusal write_bits(Exchange& exchange, const BitRow& row, BitWrite bits) {
-  if (exchange.broadcast && row.configuration) {
+  if (exchange.broadcast && row.has(kConfiguration)) {
     return Refusal::None;  // ignored: one frame must not reconfigure every module
   }
   const Refusal refusal = row.write(exchange.state, bits, exchange.outcome);
   if (refusal != Refusal::None) {
     return refusal;
   }
-  if (row.drives_outputs && exchange.state.outputs_blocked()) {
+  if (row.has(kDrivesOutputs) && exchange.state.outputs_blocked()) {
     return Refusal::OutputsBlocked;
   }
   put_echo(exchange);
@@ -69,7 +69,7 @@ Refusal write_single_coil(Exchange& exchange) {
   if (row == nullptr) {
     return Refusal::WrongAddress;
   }
-  if (row->only_on && value != kCoilOn) {
+  if (row->has(kOnlyOn) && value != kCoilOn) {
     return Refusal::WrongValue;
   }
   const auto bit = static_cast<std::uint16_t>(1U << (unsigned{address} - row->first));
@@ -106,7 +106,7 @@ Refusal write_single_register(Exchange& exchange) {
   if (row == nullptr) {
     return Refusal::WrongAddress;
   }
-  if (exchange.broadcast && row->configuration) {
+  if (exchange.broadcast && row->has(kConfiguration)) {
     return Refusal::None;
   }
   put_echo(exchange);
@@ -127,7 +127,7 @@ Refusal write_multiple_registers(Exchange& exchange) {
     if (row == nullptr) {
       return Refusal::WrongAddress;
     }
-    configuration |= row->configuration;
+    configuration |= row->has(kConfiguration);
   }
   if (exchange.broadcast && configuration) {
     return Refusal::None;

@@ -5,7 +5,7 @@
 
 namespace ex9000 {
 
-/// A level counts once it has stood for 10 ms (D13).
+/// A level counts once it has stood for 10 ms (wire.md D13).
 class Debounce {
  public:
   /// Main loop, once a turn, with the switch as it is.

@@ -13,7 +13,7 @@ class StatusLed {
   enum class Pattern : std::uint8_t {
     Steady,              ///< on
     HostTimeout,         ///< 2 Hz, until the timeout status is cleared (manuals 1.8, 2.19)
-    SettingsUnreadable,  ///< two short flashes every 2 s (D8)
+    SettingsUnreadable,  ///< two short flashes every 2 s (wire.md D8)
   };
 
   /// Main loop, once a turn.

@@ -27,7 +27,7 @@ struct Sample {
   std::uint16_t inputs = 0;
 };
 
-/// What the main loop adds to LineTallies for Modbus function 08, sub-functions 0B to 0F and 12 (D1).
+/// What the main loop adds to LineTallies for Modbus function 08, sub-functions 0B to 0F and 12 (wire.md D1).
 struct Diagnostics {
   std::uint16_t exceptions = 0;
   std::uint16_t no_responses = 0;

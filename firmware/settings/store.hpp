@@ -12,7 +12,7 @@
 
 namespace ex9000 {
 
-/// What the store wants done with the memory. The buffers live until `SettingsStore::done`.
+/// What the store needs done with the memory. The buffers live until `SettingsStore::done`.
 struct MemoryJob {
   enum class Kind : std::uint8_t { Read, Write };
 

@@ -23,7 +23,7 @@ Json command(const dcon::Command& command) {
           {"meaning", command.meaning},
           {"arguments", text_or_null(command.range)},
           {"access", access_text(command.access)},
-          {"needs_init", command.needs_init}};
+          {"needs_init", command.init == dcon::Init::Required}};
 }
 
 Json commands(const Model& model) {
@@ -42,7 +42,7 @@ Json functions(const Model& model) {
     if (model.speaks_modbus() && meets(model, function.row.needs)) {
       all.push_back({{"code", function.row.code},
                      {"name", function.name},
-                     {"by_broadcast", function.row.by_broadcast}});
+                     {"by_broadcast", function.row.at_broadcast == modbus::AtBroadcast::CarriedOut}});
     }
   }
   return all;

@@ -178,8 +178,9 @@ std::string commands_table(const Models& models) {
     if (!any_has(models, has)) {
       continue;
     }
-    Cells cells{code(command.syntax),       reply_code(command.reply),   std::string(command.meaning),
-                std::string(command.range), access_text(command.access), command.needs_init ? "(I)" : kNone};
+    Cells cells{code(command.syntax),         reply_code(command.reply),
+                std::string(command.meaning), std::string(command.range),
+                access_text(command.access),  command.init == dcon::Init::Required ? "(I)" : kNone};
     add_who(models, cells, who(models, has));
     text += table_line(cells);
   }
@@ -200,7 +201,9 @@ std::string functions_table(const Models& models) {
       continue;
     }
     Cells cells{hex_byte_text(function.row.code), std::string(function.name),
-                function.row.by_broadcast ? "done by all modules, without answer" : "ignored"};
+                function.row.at_broadcast == modbus::AtBroadcast::CarriedOut
+                    ? "done by all modules, without answer"
+                    : "ignored"};
     add_who(models, cells, who(models, has));
     text += table_line(cells);
   }

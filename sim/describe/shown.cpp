@@ -71,7 +71,7 @@ constexpr const Button* button_of(std::string_view id) {
 /// A row that is new in the firmware's tables has to be decided on here.
 constexpr bool every_row_is_decided_on() {
   for (const modbus::BitRegister& row : modbus::kBitRegisters) {
-    if (reading_of(row.id) == nullptr || (button_of(row.id) != nullptr) != row.row.only_on) {
+    if (reading_of(row.id) == nullptr || (button_of(row.id) != nullptr) != row.row.has(modbus::kOnlyOn)) {
       return false;
     }
   }

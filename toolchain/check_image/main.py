@@ -40,7 +40,7 @@ def main(arguments: list[str]) -> int:
 def _parse(arguments: list[str]) -> argparse.Namespace:
     parser = argparse.ArgumentParser(
         prog="check-image",
-        description="Size, worst-case stack and symbols of a firmware image, and what has changed since they were recorded.",
+        description="Size, worst-case stack and symbols of a firmware image, and what has changed since the record.",
     )
     parser.add_argument(
         "image", type=Path, help="the linked ELF file, with a vector table in its section .vectors"
