@@ -9,7 +9,7 @@ namespace ex9000::hal {
 /// not be taken for one before it.
 class SilenceTimer {
  public:
-  /// Fires once, `after` from now, 80 us to 34 ms, at most 5 us late and never early; an earlier start is
+  /// Fires once, `after` from now, 60 us to 34 ms, at most 5 us late and never early; an earlier start is
   /// forgotten, its interrupt too where that is pending. Interrupts; does not block.
   virtual void restart(Duration after) = 0;
 

@@ -15,8 +15,8 @@ void Receiver::answer_to(std::uint8_t address) {
 
 Duration Receiver::on_byte(std::uint8_t byte, ByteStatus status, Time now) {
   if (modbus()) {
-    rtu_.byte(queue_, byte, status, now);
-    return rtu_.first_wait();
+    note(rtu_.byte(queue_, byte, status, now), now);
+    return timing().rtu_silence;
   }
   const Verdict verdict = dcon_.byte(queue_, byte, status, now);
   note(verdict, now);

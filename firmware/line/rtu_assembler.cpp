@@ -13,22 +13,18 @@ constexpr std::uint8_t kBroadcast = 0;
 
 }  // namespace
 
-void RtuAssembler::byte(FrameQueue& queue, std::uint8_t byte, ByteStatus status, Time now) {
+Verdict RtuAssembler::byte(FrameQueue& queue, std::uint8_t byte, ByteStatus status, Time now) {
+  Verdict before = Verdict::Open;
+  const Duration gap = now.since(last_);
   last_ = now;
-  switch (state_) {  // not covered: every value has its case
-    case State::Idle:
-      open();
-      break;
-    case State::Gap:
-      spoil();
-      break;
-    case State::Doubtful:
-      if (strict()) {
-        spoil();
-      }
-      break;
-    case State::Receiving:
-      break;
+  if (state_ == State::Doubtful && !(gap < timing_.rtu_silence + timing_.rtu_grace)) {
+    before = why_lost();  // the byte began after T3.5, and the timer is late
+    state_ = State::Idle;
+  }
+  if (state_ == State::Idle) {
+    open();
+  } else if (timing_.rtu_slack < gap) {
+    spoil();
   }
   state_ = State::Receiving;
   append(queue.assembling(), byte);
@@ -36,6 +32,7 @@ void RtuAssembler::byte(FrameQueue& queue, std::uint8_t byte, ByteStatus status,
     spoil();
     overrun_ = overrun_ || status == ByteStatus::Overrun;
   }
+  return before;
 }
 
 void RtuAssembler::open() {
@@ -68,37 +65,24 @@ void RtuAssembler::append(Frame& frame, std::uint8_t byte) {
 }
 
 Verdict RtuAssembler::silence(FrameQueue& queue) {
+  Verdict verdict = Verdict::Open;
   switch (state_) {  // not covered: every value has its case
     case State::Idle:
-      return Verdict::Open;
-    case State::Receiving:
-      if (strict()) {
-        state_ = State::Gap;
-        return Verdict::Open;
-      }
       break;
-    case State::Gap:
+    case State::Receiving:
+      verdict = conclude(queue);
+      state_ = verdict == Verdict::Open ? State::Doubtful : State::Idle;
       break;
     case State::Doubtful:
+      verdict = why_lost();
       state_ = State::Idle;
-      return why_lost();
+      break;
   }
-  const Verdict verdict = conclude(queue);
-  state_ = verdict == Verdict::Open ? State::Doubtful : State::Idle;
   return verdict;
 }
 
 Duration RtuAssembler::next_wait() const {
-  switch (state_) {  // not covered: every value has its case
-    case State::Gap:
-      return timing_.rtu_silence - first_wait();
-    case State::Doubtful:
-      return timing_.rtu_grace;
-    case State::Idle:
-    case State::Receiving:
-      break;
-  }
-  return {};
+  return state_ == State::Doubtful ? timing_.rtu_grace : Duration();
 }
 
 Verdict RtuAssembler::cut_off(FrameQueue& queue) {

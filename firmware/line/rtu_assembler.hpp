@@ -14,8 +14,7 @@ namespace ex9000 {
 
 /// address, function, data, CRC, then T3.5 of silence - wire.md section 7.
 ///
-/// A timer marks the gaps. Its interrupt is served before that of a byte that comes later
-/// (hal::SilenceTimer), so no byte needs to be compared with the time of the one before.
+/// A timer ends frames. Its interrupt is served before that of a byte that comes later (hal::SilenceTimer).
 class RtuAssembler {
  public:
   void use(const LineTiming& timing) { timing_ = timing; }
@@ -23,11 +22,9 @@ class RtuAssembler {
   /// Main loop, also while bytes come in: the module's address, for every frame that ends from now on.
   void answer_to(std::uint8_t address) { own_address_.store_in_main_loop(address); }
 
-  /// Receive interrupt: a byte was complete at `now`. Restart the timer with `first_wait()` after it.
-  void byte(FrameQueue& queue, std::uint8_t byte, ByteStatus status, Time now);
-  [[nodiscard]] Duration first_wait() const {
-    return strict() ? timing_.rtu_slack + Duration(1) : timing_.rtu_silence;
-  }
+  /// Receive interrupt: a byte was complete at `now`. Restart the timer with T3.5 after it. Says what became
+  /// of the frame before, if the byte shows that it is over.
+  Verdict byte(FrameQueue& queue, std::uint8_t byte, ByteStatus status, Time now);
 
   /// Timer interrupt: the time has passed since the last byte, or since the last call. Restart the timer with
   /// `next_wait()` after it. An accepted frame holds address, function and data: neither the CRC nor a
@@ -44,15 +41,12 @@ class RtuAssembler {
   [[nodiscard]] Time silent_since() const { return last_ + timing_.rtu_silence; }
 
  private:
-  /// Between two frames, or within one: what its last byte and the time since then say.
   enum class State : std::uint8_t {
     Idle,       ///< no frame is open
-    Receiving,  ///< the last byte is less than T1.5 (strict) or T3.5 old
-    Gap,        ///< strict only: T1.5 have passed, so a byte that comes now spoils the frame
-    Doubtful,   ///< T3.5 have passed and the CRC is wrong: a byte that began in time may still come in
+    Receiving,  ///< the last byte is less than T3.5 old
+    Doubtful,   ///< T3.5 have passed and this is no frame: a byte that began in time may still come in
   };
 
-  [[nodiscard]] bool strict() const { return timing_.rtu_slack < timing_.rtu_silence; }
   void open();
   void spoil();
   void append(Frame& frame, std::uint8_t byte);

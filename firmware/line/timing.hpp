@@ -36,8 +36,8 @@ struct LineTiming {
     return timing;
   }
 
-  /// Likewise, for a UART that tells of a byte when it has seen the middle of its stop bit, half a bit before
-  /// that is over.
+  /// Likewise, for standard rates and a UART that tells of a byte when it has seen the middle of its stop
+  /// bit, half a bit before that is over.
   static constexpr LineTiming told_in_the_stop_bit(std::uint32_t baud) {
     LineTiming timing = at(baud);
     const Duration half_bit(microseconds(1, baud) + 1U);

@@ -68,8 +68,7 @@ class Name {
 constexpr std::uint8_t kFactoryAddress = 1;
 constexpr std::uint8_t kFactoryWatchdogTimeout = 0xFF;
 
-/// In the order of the record that keeps them (record.hpp), and without gaps. Nothing but zeros at first, as
-/// all that a module is made of: an image then needs no code to make it.
+/// In the order of the record that keeps them (record.hpp), and without gaps.
 struct alignas(4) Settings {
   std::uint8_t address = 0;
   std::uint8_t baud_code = 0;

@@ -60,8 +60,8 @@ class Wire {
     now_ += character();
     run_timer();
     assembler_.answer_to(own);
-    assembler_.byte(queue_, value, status, time());
-    due_ = now_ / 1000 + assembler_.first_wait().microseconds();
+    note(assembler_.byte(queue_, value, status, time()));
+    due_ = now_ / 1000 + assembler_.timing().rtu_silence.microseconds();
   }
   void bytes(const FrameBytes& values) {
     for (const std::uint8_t value : values) {

@@ -84,6 +84,23 @@ TEST_P(RtuGaps, AFrameT35BehindABrokenOneIsOneOfItsOwn) {
   EXPECT_EQ(wire_.verdicts, (Verdicts{Verdict::BadCheck, Verdict::Accepted}));
 }
 
+// A timer that is late by some microseconds must not join a frame to the broken one before it.
+TEST_P(RtuGaps, AFrameT35BehindABrokenOneIsOneOfItsOwnThoughTheTimerIsLate) {
+  Time now(1'000'000);
+  const auto byte = [&](std::uint8_t value) { return assembler_.byte(queue_, value, ByteStatus::Good, now); };
+  const auto character = static_cast<std::uint32_t>(wire_.character() / 1000);
+  assembler_.answer_to(kOwn);
+  byte(0x01);
+  EXPECT_EQ(assembler_.silence(queue_), Verdict::Open);
+  now = now + Duration(static_cast<std::uint32_t>(t35(baud_) / 1000) + character);
+  EXPECT_EQ(byte(0x01), Verdict::TooShort);
+  for (const std::uint8_t value : FrameBytes{0x11, 0xC0, 0x2C}) {
+    now = now + Duration(character);
+    EXPECT_EQ(byte(value), Verdict::Open);
+  }
+  EXPECT_EQ(assembler_.silence(queue_), Verdict::Accepted);
+}
+
 TEST_P(RtuGaps, AByteThatIsCompleteWithinT35BelongsToTheFrameWhateverItsCrc) {
   wire_.bytes(kChannel0On);
   wire_.silence(t35(baud_) - wire_.character() - kClock);
