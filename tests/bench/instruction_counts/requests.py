@@ -2,7 +2,7 @@
 
 import collections
 
-# What comes of it.
+# How it ends.
 REPLY = "reply"
 STORE = "store"  # a reply, once it is stored
 DONE = "done"  # no reply
