@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <array>
 #include <string>
 
 namespace ex9000 {
@@ -38,7 +39,11 @@ TEST(Reply, AByteCanBeOverwrittenButNoneAdded) {
 }
 
 TEST(Reply, DropsWhatExceedsTheLongestFrame) {
-  Reply reply;
+  struct {
+    Reply reply;
+    std::array<std::uint8_t, 8> after_it{};
+  } memory;
+  Reply& reply = memory.reply;
   for (unsigned i = 0; i < kLongestFrame; ++i) {
     reply.put(static_cast<std::uint8_t>(i));
   }
@@ -49,6 +54,7 @@ TEST(Reply, DropsWhatExceedsTheLongestFrame) {
   reply.patch(kLongestFrame, '5');
   ASSERT_EQ(reply.size(), kLongestFrame);
   EXPECT_EQ(reply.bytes()[kLongestFrame - 1], static_cast<std::uint8_t>(kLongestFrame - 1));
+  EXPECT_EQ(memory.after_it, (std::array<std::uint8_t, 8>{}));
 }
 
 }  // namespace
