@@ -49,6 +49,7 @@ static_assert(kOnlyModel.inputs <= pins_in(kInputs), "this board has too few inp
 using Clock = SystemTimer<kMegahertz>;
 using SilenceTimer = OneShotTimer<0, kMegahertz>;
 using LineEndTimer = OneShotTimer<1, kMegahertz>;
+using WakeTimer = OneShotTimer<2, kMegahertz>;
 using Line = Uart<kUart, kHertz, kDriverEnable, LineEndTimer>;
 using Eeprom = hal::At24c<I2c<kFamily, kHertz>>;
 using Watchdog = HardwareWatchdog<kMegahertz>;
@@ -58,6 +59,7 @@ struct Board {
   Clock clock;
   Line line;
   SilenceTimer silence_timer;
+  WakeTimer wake_timer;
   InputPins<kInputs, kOnlyModel.inputs, kInputsActiveHigh> inputs;
   OutputPins<kOutputs, kOnlyModel.outputs, kOutputsActiveHigh> outputs;
   Eeprom memory;
@@ -100,9 +102,15 @@ void on_line_end_timer() {
   }
 }
 
+void on_wake_timer() {
+  if (WakeTimer::ran_out()) {
+    device.on_wake_timer();
+  }
+}
+
 void on_i2c() {
   board.memory.master().on_interrupt();
-  device.wake();
+  device.on_memory();
 }
 
 struct DeliverEdge {
@@ -133,6 +141,7 @@ constexpr auto kServed = table<Served>({
     {kLineInterrupt, on_line},
     {Interrupt::Timer0A, on_silence_timer},
     {Interrupt::Timer1A, on_line_end_timer},
+    {Interrupt::Timer2A, on_wake_timer},
     {Interrupt::GpioA, handler_of_edges<Port::A>()},
     {Interrupt::GpioB, handler_of_edges<Port::B>()},
     {Interrupt::GpioC, handler_of_edges<Port::C>()},
@@ -151,7 +160,7 @@ constexpr std::uint32_t served_numbers() {
   return numbers;
 }
 
-constexpr unsigned kInterrupts = 22;
+constexpr unsigned kInterrupts = 24;
 using Vectors = start_up::VectorTable<kInterrupts>;
 
 constexpr Vectors make_vectors() {
@@ -203,7 +212,7 @@ constexpr std::uint32_t ports_of_the_module() {
 constexpr ClockGates kClockGates{
     clock_gate::kWatchdog,
     (kUart == 0 ? clock_gate::kUart0 : clock_gate::kUart1) | clock_gate::kI2c0 | clock_gate::kTimer0 |
-        clock_gate::kTimer1,
+        clock_gate::kTimer1 | clock_gate::kTimer2,
     ports_of_the_module(),
 };
 
@@ -220,7 +229,8 @@ void start() {
   board.memory.master().start();
   SilenceTimer::start();
   LineEndTimer::start();
-  board.clock.start(milliseconds(1));
+  WakeTimer::start();
+  board.clock.start();
   device.start();
   Interrupts::enable(served_numbers(), kLineInterrupt);
 }
@@ -231,14 +241,10 @@ void start() {
 int main() {
   using namespace ex9000::board;
   start();
-  std::uint32_t ticks_seen = 0;
   for (;;) {
-    Interrupts::sleep_until([] { return device.news(); });
-    if (board.clock.ticks() != ticks_seen) {
-      ticks_seen = board.clock.ticks();
-      device.poll_panel();
+    while (device.turn()) {
     }
-    device.turn();
+    Interrupts::sleep_until([] { return device.news(); });
   }
 }
 // NOLINTEND(cert-dcl59-cpp,google-build-namespaces,misc-definitions-in-headers)

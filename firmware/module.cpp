@@ -7,6 +7,14 @@ namespace {
 constexpr Duration kInitGivesUp = milliseconds(50);  // wire.md D13
 constexpr std::uint8_t kInitModeAddress = 0x00;
 
+constexpr Duration sooner(Duration a, Duration b) { return b < a ? b : a; }
+/// Not inlined, because it is small and asked about many deadlines.
+[[gnu::noinline]] Duration sooner_of(Duration idle, Time when, Time now) {
+  Deadline deadline;
+  deadline.set(when);
+  return sooner(idle, deadline.remaining(now));
+}
+
 }  // namespace
 
 void Module::start(std::uint16_t input_levels, Time now) {
@@ -246,22 +254,17 @@ bool Module::step_is_due() const {
   return memory_is_done || receiver_.host_oks() != host_oks_seen_ || led_.pattern() != led_pattern_due();
 }
 
-std::optional<Duration> Module::idle_for(Time now) const {
+Duration Module::idle_for(Time now, Duration at_most) const {
   if (step_is_due()) {
-    return Duration();
+    return {};
   }
-  std::optional<Duration> idle;
-  const auto wait_at_most = [&idle](Duration duration) {
-    if (!idle || duration < *idle) {
-      idle = duration;
-    }
-  };
-  const auto consider = [&wait_at_most, now](const Deadline& deadline) {
+  Duration idle = at_most;
+  const auto consider = [&idle, now](const Deadline& deadline) {
     if (deadline.armed()) {
-      wait_at_most(deadline.remaining(now));
+      idle = sooner_of(idle, deadline.when(), now);
     }
   };
-  consider(init_switch_.settles());
+  consider(init_switch_.next_sample());
   consider(led_.next_change());
   if (start_ == Start::Loading) {
     return idle;
@@ -272,10 +275,10 @@ std::optional<Duration> Module::idle_for(Time now) const {
     consider(keeper_.retry());
   }
   if (cycle_.phase() == RequestCycle::Phase::Idle && receiver_.queue().has_frame()) {
-    wait_at_most(until_request(now));
+    idle = sooner(idle, until_request(now));
   }
   if (cycle_.phase() == RequestCycle::Phase::ReplyReady) {
-    wait_at_most(cycle_.until_reply(now));
+    idle = sooner(idle, cycle_.until_reply(now));
   }
   return idle;
 }

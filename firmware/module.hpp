@@ -2,7 +2,6 @@
 #pragma once
 
 #include <cstdint>
-#include <optional>
 
 #include "firmware/bytes.hpp"
 #include "firmware/channels/inputs.hpp"
@@ -63,14 +62,14 @@ class Module {
 
   // --- main loop ---
 
-  /// What people see and touch, every few milliseconds. `init_switch`: INIT* is asserted (tied to GND), not
-  /// debounced.
+  /// What people see and touch: at every tick, and when `idle_for` is over. `init_switch`: INIT* is asserted
+  /// (tied to GND), not debounced.
   void poll_panel(bool init_switch, Time now);
   /// One turn: dispatches what the interrupts have collected, and does what is due.
   void step(Time now);
-  /// How long nothing will happen by itself; zero: call `step` again at once; nothing: until an interrupt or
-  /// a finished memory job.
-  [[nodiscard]] std::optional<Duration> idle_for(Time now) const;
+  /// How long nothing will happen by itself, that is, without an interrupt or a finished memory job; at most
+  /// `at_most`. Zero: call `poll_panel` and `step` again at once.
+  [[nodiscard]] Duration idle_for(Time now, Duration at_most) const;
 
   /// Levels to drive: bit n is channel n, 1 = energised. All 0 until the settings are read.
   [[nodiscard]] std::uint16_t outputs() const { return state_.outputs; }

@@ -9,6 +9,7 @@
 #include "hal/serial_line.hpp"
 #include "hal/silence_timer.hpp"
 #include "hal/status_led.hpp"
+#include "hal/wake_timer.hpp"
 #include "hal/watchdog.hpp"
 
 namespace ex9000::hal {
@@ -19,6 +20,7 @@ struct Board {
   Clock& clock;
   SerialLine& line;
   SilenceTimer& silence_timer;
+  WakeTimer& wake_timer;
   Inputs& inputs;
   Outputs& outputs;
   Memory& memory;

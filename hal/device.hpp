@@ -5,12 +5,14 @@
 
 #include "firmware/line/crossing.hpp"
 #include "firmware/module.hpp"
+#include "hal/memory.hpp"
+#include "hal/tick.hpp"
 
 namespace ex9000::hal {
 
 /// Lives from one reset to the next. A composition file makes one, calls `start`, points the interrupts at
-/// the `on_...` functions and then, for ever, `poll_panel` after every tick and `turn` whenever there is
-/// `news`; it may sleep while there is none.
+/// the `on_...` functions and then, for ever, calls `turn` until that returns false, and sleeps until there
+/// is `news`.
 ///
 /// `Board` has the members of hal::Board, which say what each of them does.
 template <class Board>
@@ -55,17 +57,24 @@ class Device {
   void on_edge(unsigned channel, bool level) { module_.on_edge(channel, level); }
   void on_tick() {
     module_.on_tick();
+    on_wake_timer();
+  }
+  void on_wake_timer() {
+    wakes_by_time_.store_in_interrupt(wakes_by_time_.load() + 1U);
     wake();
   }
-  /// The main loop has something to go on with: the memory, the line.
-  void wake() { wakes_.store_in_interrupt(wakes_.load() + 1U); }
+  /// The memory can go on.
+  void on_memory() {
+    wakes_by_memory_.store_in_interrupt(wakes_by_memory_.load() + 1U);
+    wake();
+  }
 
   // --- main loop; none of it blocks ---
 
   [[nodiscard]] bool news() const { return happened() != seen_; }
 
-  /// INIT*, the status LED and the hardware watchdog: every tick. The outputs too, whatever may have happened
-  /// to their registers.
+  /// INIT*, the status LED and the hardware watchdog: `turn` does it at every tick, and when the wake timer
+  /// has fired. The outputs too, whatever may have happened to their registers.
   void poll_panel() {
     module_.poll_panel(board_.init_switch.asserted(), board_.clock.now());
     board_.status_led.light(module_.led_lit());
@@ -75,17 +84,25 @@ class Device {
     }
   }
 
-  /// Requests, settings and outputs.
-  void turn() {
-    seen_ = happened();
+  /// Requests, settings, outputs and the panel. True: call it again at once, because no interrupt will tell
+  /// when.
+  bool turn() {
+    const bool only_the_memory = look_at_what_has_happened();
     const Time now = board_.clock.now();
-    poll_memory(now);
+    const bool memory_polls = poll_memory(now);
+    if (only_the_memory && memory_job_under_way_ && !panel_is_due_) {
+      return memory_polls;  // for all else the wake timer is set
+    }
+    if (panel_is_due_) {
+      poll_panel();
+    }
     module_.step(now);
     if (module_.outputs() != driven_) {
       drive_outputs();
     }
     poll_line(now);
     begin_memory_job(now);
+    return set_wake_timer(now) || memory_polls;
   }
 
   constexpr Board& board() { return board_; }
@@ -118,6 +135,23 @@ class Device {
     board_.line.send(reply);
   }
 
+  /// True: nothing but the memory's interrupt. One that comes in between is seen now, or with the next turn
+  /// as well: of all that happens the memory's part is read first and the time's last.
+  bool look_at_what_has_happened() {
+    const std::uint32_t by_memory = wakes_by_memory_.load();
+    const std::uint32_t by_all = happened();
+    const std::uint32_t by_time = wakes_by_time_.load();
+    const bool only_the_memory = by_all - seen_ == by_memory - seen_by_memory_;
+    panel_is_due_ = panel_is_due_ || by_time != seen_by_time_;
+    seen_ = by_all;
+    seen_by_memory_ = by_memory;
+    seen_by_time_ = by_time;
+    return only_the_memory;
+  }
+
+  /// The main loop has something to go on with.
+  void wake() { wakes_.store_in_interrupt(wakes_.load() + 1U); }
+
   /// Both only count up.
   [[nodiscard, gnu::always_inline]] std::uint32_t happened() const {
     return wakes_.load() + module_.line_events();
@@ -128,17 +162,17 @@ class Device {
     board_.outputs.drive(driven_);
   }
 
-  void poll_memory(Time now) {
+  /// True: again at once.
+  bool poll_memory(Time now) {
     if (!memory_job_under_way_) {
-      return;
+      return false;
     }
-    if (board_.memory.go_on(now)) {
-      --seen_;  // no interrupt tells when it can go on
-    }
+    const bool polls_again = board_.memory.go_on(now);
     if (!board_.memory.busy()) {
       memory_job_under_way_ = false;
       module_.memory_done(board_.memory.succeeded());
     }
+    return polls_again;
   }
 
   void begin_memory_job(Time now) {
@@ -155,13 +189,29 @@ class Device {
     module_.memory_started();
   }
 
+  /// For what is due before the next tick. A turn that takes some time makes it late by that, and no more.
+  /// True: it is due already.
+  bool set_wake_timer(Time now) {
+    const Duration idle = module_.idle_for(now, memory_job_under_way_ ? kMemoryPollPeriod : kTickPeriod);
+    panel_is_due_ = idle == Duration();
+    if (!panel_is_due_ && idle < kTickPeriod) {
+      board_.wake_timer.restart(idle);
+    }
+    return panel_is_due_;
+  }
+
   Board board_;
+  bool panel_is_due_ = true;
   bool line_open_ = false;
   bool reply_under_way_ = false;
   bool memory_job_under_way_ = false;
   std::uint16_t driven_ = 0;
   std::uint32_t seen_ = 0;
-  WrittenByInterrupt<std::uint32_t> wakes_;
+  std::uint32_t seen_by_memory_ = 0;
+  std::uint32_t seen_by_time_ = 0;
+  WrittenByInterrupt<std::uint32_t> wakes_;            ///< all
+  WrittenByInterrupt<std::uint32_t> wakes_by_memory_;  ///< those of them
+  WrittenByInterrupt<std::uint32_t> wakes_by_time_;
   Module module_;
 };
 

@@ -6,20 +6,14 @@
 
 namespace ex9000::sim {
 
-namespace {
-
-/// The tick only feeds the watchdog here, all deadlines being kept to the microsecond, so a slow one does.
-constexpr Duration kTick = milliseconds(400);
-
-}  // namespace
-
 SimulatedModule::Mcu::Mcu(SimulatedModule& module)
     : line(module.clock_, module.wire_),
       silence_timer(module.clock_),
+      wake_timer(module.clock_),
       tick(module.clock_),
       watchdog(module.clock_),
-      board{module.clock_,       line,        silence_timer, module.inputs_, module.outputs_, module.memory_,
-            module.init_switch_, module.led_, watchdog},
+      board{module.clock_,   line,           silence_timer,       wake_timer,  module.inputs_,
+            module.outputs_, module.memory_, module.init_switch_, module.led_, watchdog},
       device(module.model_, module.timing_at_, board) {}
 
 SimulatedModule::SimulatedModule(Bus& bus, const Model& model, TimingAt timing_at)
@@ -63,7 +57,7 @@ void SimulatedModule::start() {
   hung_ = false;
   mcu_.emplace(*this);
   mcu_->line.release_late(driver_late_by_);
-  mcu_->tick.start(kTick);
+  mcu_->tick.start();
   mcu_->device.start();
   turn();
 }
@@ -74,7 +68,6 @@ void SimulatedModule::stop() {
   memory_.cut();  // before the buffers go that it was writing from
   mcu_.reset();
   outputs_.drive(0);
-  wakes_ = kNever;
 }
 
 void SimulatedModule::set_init(bool asserted) {
@@ -146,8 +139,8 @@ VirtualTime SimulatedModule::next() const {
   if (!mcu_) {
     return kNever;
   }
-  return std::min({wakes_, wire_.next(), mcu_->line.next(), mcu_->silence_timer.next(), mcu_->tick.next(),
-                   mcu_->watchdog.next(), memory_.next()});
+  return std::min({wire_.next(), mcu_->line.next(), mcu_->silence_timer.next(), mcu_->wake_timer.next(),
+                   mcu_->tick.next(), mcu_->watchdog.next(), memory_.next()});
 }
 
 void SimulatedModule::run() {
@@ -166,6 +159,9 @@ void SimulatedModule::run() {
   if (mcu_->silence_timer.fire()) {
     mcu_->device.on_silence();
   }
+  if (mcu_->wake_timer.fire()) {
+    mcu_->device.on_wake_timer();
+  }
   if (mcu_->tick.fire()) {
     mcu_->device.on_tick();
   }
@@ -180,24 +176,19 @@ void SimulatedModule::receive(std::uint8_t byte, ByteStatus status) {
     mcu_->device.on_silence();  // see hal::SilenceTimer
   }
   mcu_->device.on_receive(byte, status);
-  if (mcu_->device.module().idle_for(clock_.now()) == Duration()) {
+  if (mcu_->device.news()) {
     turn();
   }
 }
 
 /// A main loop turns until there is nothing left to do; here it takes no time for it.
 void SimulatedModule::turn() {
-  wakes_ = kNever;
   if (hung_) {
     return;
   }
-  std::optional<Duration> idle;
   do {
     mcu_->device.poll_panel();
-    mcu_->device.turn();
-    idle = mcu_->device.module().idle_for(clock_.now());
-  } while (idle == Duration());
-  wakes_ = idle ? clock_.when(*idle) : kNever;
+  } while (mcu_->device.turn() || mcu_->device.news());
 }
 
 }  // namespace ex9000::sim

@@ -20,6 +20,7 @@
 #include "hal/doubles/status_led.hpp"
 #include "hal/doubles/tick.hpp"
 #include "hal/doubles/virtual_clock.hpp"
+#include "hal/doubles/wake_timer.hpp"
 #include "hal/doubles/watchdog.hpp"
 #include "sim/bus.hpp"
 #include "sim/faults/module_wire.hpp"
@@ -101,6 +102,7 @@ class SimulatedModule final : public Station {
 
     hal::doubles::SerialLine line;
     hal::doubles::SilenceTimer silence_timer;
+    hal::doubles::WakeTimer wake_timer;
     hal::doubles::Tick tick;
     hal::doubles::Watchdog watchdog;
     hal::Board board;
@@ -124,7 +126,6 @@ class SimulatedModule final : public Station {
   hal::doubles::StatusLed led_;
   hal::doubles::InitSwitch init_switch_;
   std::optional<Mcu> mcu_;
-  VirtualTime wakes_ = kNever;  ///< when the main loop has something to do by itself
   VirtualTime driver_late_by_{0};
   bool switched_on_ = false;
   bool supply_interrupted_ = false;

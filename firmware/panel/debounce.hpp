@@ -8,7 +8,7 @@ namespace ex9000 {
 /// A level counts once it has stood for 10 ms (wire.md D13).
 class Debounce {
  public:
-  /// Main loop, once a turn, with the switch as it is.
+  /// Main loop, with the switch as it is: now and then, and when `next_sample` has come.
   void sample(bool level, Time now) {
     if (!sampled_ || level != candidate_) {
       sampled_ = true;
@@ -19,6 +19,11 @@ class Debounce {
       known_ = true;
       settles_.disarm();
     }
+    next_sample_.disarm();
+    if (settles_.armed()) {
+      const Duration left = settles_.remaining(now);
+      next_sample_.set(now + (left < kSampleInterval ? left : kSampleInterval));
+    }
   }
 
   /// Whether any level has stood long enough since reset.
@@ -26,15 +31,20 @@ class Debounce {
   [[nodiscard]] bool level() const { return level_; }
   /// When the present level counts; disarmed where it does.
   [[nodiscard]] Deadline settles() const { return settles_; }
+  /// When to look at the switch again, lest a bounce of a level that settles be missed; disarmed where it
+  /// stands still.
+  [[nodiscard]] Deadline next_sample() const { return next_sample_; }
 
  private:
   static constexpr Duration kSettle = milliseconds(10);
+  static constexpr Duration kSampleInterval = milliseconds(1);
 
   bool sampled_ = false;
   bool candidate_ = false;
   bool known_ = false;
   bool level_ = false;
   Deadline settles_;
+  Deadline next_sample_;
 };
 
 }  // namespace ex9000

@@ -14,7 +14,7 @@ class ModuleWatchdog {
   /// Tick interrupt.
   void tick_alive() { ticks_.store_in_interrupt(ticks_.load() + 1U); }
 
-  /// Main loop, once a turn; that it asks is its sign of life. True: feed now.
+  /// Main loop, at every tick; that it asks is its sign of life. True: feed now.
   bool main_loop_alive() {
     const std::uint32_t ticks = ticks_.load();
     const bool both = ticks != ticks_at_feed_;

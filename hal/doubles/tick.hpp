@@ -9,10 +9,7 @@ class Tick final : public hal::Tick {
  public:
   explicit Tick(const VirtualClock& clock) : clock_(clock) {}
 
-  void start(Duration period) override {
-    period_ = std::chrono::microseconds(period.microseconds());
-    next_ = clock_.virtual_now() + period_;
-  }
+  void start() override { next_ = clock_.virtual_now() + kPeriod; }
 
   [[nodiscard]] VirtualTime next() const { return next_; }
   /// Whether it fires now; then call the interrupt.
@@ -20,15 +17,16 @@ class Tick final : public hal::Tick {
     if (next_ > clock_.virtual_now()) {
       return false;
     }
-    next_ += period_;
+    next_ += kPeriod;
     return true;
   }
   /// The tick stops, as if its timer had died.
   void stop() { next_ = kNever; }
 
  private:
+  static constexpr VirtualTime kPeriod = std::chrono::microseconds(kTickPeriod.microseconds());
+
   const VirtualClock& clock_;
-  VirtualTime period_{0};
   VirtualTime next_ = kNever;
 };
 

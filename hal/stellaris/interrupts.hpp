@@ -21,6 +21,7 @@ enum class Interrupt : std::uint8_t {
   I2c0 = 8,
   Timer0A = 19,
   Timer1A = 21,
+  Timer2A = 23,
 };
 
 class Interrupts {

@@ -9,7 +9,7 @@
 
 namespace ex9000::hal::stellaris {
 
-/// `number`: 0 for GPTM0, 1 for GPTM1. `cycles_per_microsecond` of the system clock.
+/// `number`: 0 for GPTM0, and so on to 3. `cycles_per_microsecond` of the system clock.
 template <unsigned number, std::uint32_t cycles_per_microsecond>
 class OneShotTimer {
  public:

@@ -31,6 +31,7 @@ constexpr std::uint32_t kUart1 = 1U << 1U;
 constexpr std::uint32_t kI2c0 = 1U << 12U;
 constexpr std::uint32_t kTimer0 = 1U << 16U;
 constexpr std::uint32_t kTimer1 = 1U << 17U;
+constexpr std::uint32_t kTimer2 = 1U << 18U;
 }  // namespace clock_gate
 
 class SystemControl {

@@ -6,15 +6,15 @@
 #include "firmware/line/crossing.hpp"
 #include "firmware/time.hpp"
 #include "hal/stellaris/register.hpp"
+#include "hal/tick.hpp"
 
 namespace ex9000::hal::stellaris {
 
-/// Counts milliseconds by interrupt and the microseconds in between from its counter.
+/// Counts ticks by interrupt and the microseconds in between from its counter.
 template <std::uint32_t cycles_per_microsecond>
 class SystemTimer {
  public:
-  /// The tick is a millisecond, whatever is asked for: time is made of it.
-  static void start(Duration /*period*/) {
+  static void start() {
     constexpr Bits<Control> kRunWithInterruptOnProcessorClock(0x7);
     kReload.write(Bits<Reload>(kPeriod - 1U));
     kCurrent.write({});
@@ -43,9 +43,6 @@ class SystemTimer {
     return Time(counted + kLastMicrosecond - left / cycles_per_microsecond);
   }
 
-  /// Changes with every tick; any number of ticks may lie between two that look the same.
-  [[nodiscard]] std::uint32_t ticks() const { return counted_.load(); }
-
   /// Its interrupt.
   void count_in_interrupt() { counted_.store_in_interrupt(counted_.load() + kTickMicroseconds); }
 
@@ -58,10 +55,11 @@ class SystemTimer {
   static constexpr Register<Reload> kReload{0xE000'E014};
   static constexpr Register<Current> kCurrent{0xE000'E018};
   static constexpr Register<InterruptControl> kInterruptControl{0xE000'ED04};
-  static constexpr std::uint32_t kTickMicroseconds = 1000;
+  static constexpr std::uint32_t kTickMicroseconds = kTickPeriod.microseconds();
   static constexpr std::uint32_t kLastMicrosecond = kTickMicroseconds - 1U;  // the counter counts down to 0
 
   static constexpr std::uint32_t kPeriod = kTickMicroseconds * cycles_per_microsecond;
+  static_assert(kPeriod <= 1U << 24U, "the counter has 24 bits");
 
   WrittenByInterrupt<std::uint32_t> counted_;  ///< microseconds, in whole ticks
 };

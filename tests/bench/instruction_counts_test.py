@@ -71,6 +71,11 @@ class Passes(unittest.TestCase):
         self.assertEqual(found, 2 * (2 + 2))
         self.assertEqual(its.ticks_turn.count, 2 + 32)
 
+    def test_at_rest_all_interrupts_and_their_turns_count(self):
+        log = ASLEEP + turn(TICK, *TURN) + turn(interrupt(execution.ALARM, 0x5000))
+        log += turn(interrupt(execution.WAKE, 0x6000), 0x500)
+        self.assertEqual(count(log)[0].idling.count, (2 + 2 + 32) + (1 + 2 + 1))
+
     def test_of_a_turn_that_a_byte_and_a_tick_wake_it_has_what_is_not_for_the_tick(self):
         self.assertEqual(count(ASLEEP + turn(self.BYTE + TICK, TICKS_OWN, *TURN))[1], 2 + 2 + 32)
 

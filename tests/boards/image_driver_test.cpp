@@ -1,7 +1,9 @@
 // What can be wrong around a board, and what its image makes of it.
 #include <gtest/gtest.h>
 
+#include <memory>
 #include <string>
+#include <vector>
 
 #include "firmware/model/model.hpp"
 #include "firmware/settings/settings.hpp"
@@ -292,6 +294,55 @@ TEST_P(OnBoard, IsResetByTheWatchdogWithin1600msWhereTheTickStops) {
   EXPECT_EQ(bench.watchdog_resets, 1U);
   bench.run_for(kComesUpWithin);
   EXPECT_EQ(bench.ask("$015"), "!011");
+}
+
+/// wire.md D13. Seen every 10 ms alone, this one would stand still.
+TEST_P(OnBoard, TakesAnInitSwitchForReleasedThatStandsStillForNo10MsAfterReset) {
+  for (const bool most_of_the_time : {true, false}) {
+    for (int phase = 0; phase < 10; ++phase) {
+      bench.power_off();
+      bench.run_for(milliseconds(20));
+      bench.set_init(!most_of_the_time);
+      bench.power_on();
+      bench.run_for(milliseconds(phase));
+      for (int i = 0; i < 8; ++i) {
+        bench.set_init(most_of_the_time);
+        bench.run_for(milliseconds(8));
+        bench.set_init(!most_of_the_time);
+        bench.run_for(milliseconds(2));
+      }
+      EXPECT_EQ(bench.ask("$01M"), "!019055") << phase;
+      EXPECT_EQ(bench.ask("$00M"), "") << phase;
+      bench.set_init(false);
+    }
+  }
+}
+
+TEST_P(OnBoard, ListensWithin30MsOfResetAndInInitModeWhereTheSwitchStandsStill) {
+  for (const bool init : {false, true}) {
+    bench.power_off();
+    bench.run_for(milliseconds(20));
+    bench.set_init(init);
+    bench.power_on();
+    bench.run_for(milliseconds(30));
+    EXPECT_TRUE(listens());
+    EXPECT_EQ(bench.ask(init ? "$00M" : "$01M"), init ? "!009055" : "!019055");
+  }
+}
+
+/// wire.md 6: 2 Hz.
+TEST_P(OnBoard, FlashesItsLedOnTimeWhateverTheTick) {
+  power_up();
+  const auto changes = std::make_shared<std::vector<Instant>>();  // the net tells as long as it is there
+  bench.net(bench.image.status_led).on_change([this, changes] { changes->push_back(bench.timeline.now()); });
+  ASSERT_EQ(bench.ask("~013103"), "!01");
+  bench.run_for(seconds(4));
+  ASSERT_GE(changes->size(), 12U);
+  for (std::size_t i = 1; i < changes->size(); ++i) {
+    const Instant phase = changes->at(i) - changes->at(i - 1);
+    EXPECT_GE(phase, milliseconds(249)) << i;
+    EXPECT_LE(phase, milliseconds(251)) << i;
+  }
 }
 
 TEST_P(OnBoard, RunsForAMinuteWithoutAReset) {

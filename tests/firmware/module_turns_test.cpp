@@ -14,6 +14,7 @@ namespace {
 
 constexpr Duration kCharacter{1042};  // at 9600 baud
 constexpr Duration kUnitOfTimeout = milliseconds(100);
+constexpr Duration kLong = milliseconds(10);
 
 class ModuleTurns : public testing::Test {
  protected:
@@ -61,7 +62,7 @@ class ModuleTurns : public testing::Test {
     const Bytes reply = module_.take_reply(now_);
     return {reply.begin(), reply.end()};
   }
-  bool wants_to_go_on() { return module_.idle_for(now_) == Duration(); }
+  bool wants_to_go_on() { return module_.idle_for(now_, kLong) == Duration(); }
 
   Module module_{*find_model("EX9043D")};
   Time now_;
@@ -154,13 +155,13 @@ TEST(ModuleComesUp, OnceItsMemoryIsRead) {
   module.start(0, Time());
   module.poll_panel(false, Time());
   while (module.needs_memory()) {
-    EXPECT_FALSE(module.idle_for(Time()) == Duration());
+    EXPECT_FALSE(module.idle_for(Time(), kLong) == Duration());
     const MemoryJob job = module.memory_job();
     module.memory_started();
     std::fill_n(job.bytes.data, job.bytes.size, std::uint8_t{0xFF});
     module.memory_done(true);
   }
-  EXPECT_TRUE(module.idle_for(Time()) == Duration());
+  EXPECT_TRUE(module.idle_for(Time(), kLong) == Duration());
 }
 
 // The receiver keeps `~**` from the queue, so that it is never lost; whoever asks `answer` hears the same.

@@ -85,6 +85,11 @@ struct LeanBoard {
     void restart(Duration after) { fires = around.now + after.microseconds(); }
   };
 
+  /// The main loop asks the module itself when to turn again, so that no tick has to come every 10 ms.
+  struct WakeTimer {
+    static void restart(Duration /*after*/) {}
+  };
+
   struct Inputs {
     Surroundings& around;
     [[nodiscard]] std::uint16_t start() const { return around.input_levels; }
@@ -175,6 +180,7 @@ struct LeanBoard {
   Clock clock;
   Line line;
   SilenceTimer silence_timer;
+  WakeTimer wake_timer;
   Inputs inputs;
   Outputs outputs;
   Memory memory;
@@ -286,7 +292,7 @@ class LeanModule {
     if (held_) {
       return;
     }
-    std::optional<Duration> idle;
+    Duration idle;
     unsigned turns = 0;
     do {
       constexpr unsigned kMostTurns = 50;
@@ -294,11 +300,10 @@ class LeanModule {
       device_->poll_panel();
       device_->turn();
       around_.onlooker.turned();
-      idle = module().idle_for(board().clock.now());
+      constexpr Duration kAtMost = milliseconds(60'000);
+      idle = module().idle_for(board().clock.now(), kAtMost);
     } while (idle == Duration());
-    if (idle) {
-      wakes_ = around_.now + idle->microseconds();
-    }
+    wakes_ = around_.now + idle.microseconds();
   }
 
   const Model& model_;

@@ -21,7 +21,7 @@ namespace bus = hal::stellaris::bus;
 // --- SysTick ---
 
 constexpr unsigned kMegahertz = 50;
-constexpr unsigned kPeriod = 1000 * kMegahertz;
+constexpr unsigned kPeriod = 10'000 * kMegahertz;
 
 /// Each access takes a few cycles; the interrupt comes when the counter begins anew, or some accesses later.
 class SysTick final : public bus::Peripherals {

@@ -16,7 +16,7 @@ class DriverBench {
   explicit DriverBench(const Chip& chip = kLm3s6965, I2cManners manners = {})
       : mcu(chip, timeline, pins, manners) {
     using hal::stellaris::SystemControl;
-    SystemControl::open({1U << 3U, 1U << 0U | 1U << 12U | 3U << 16U, (1U << chip.ports) - 1U});
+    SystemControl::open({1U << 3U, 1U << 0U | 1U << 12U | 7U << 16U, (1U << chip.ports) - 1U});
     SystemControl::use({chip.crystal_code, 4});
     mcu.on_exception([this](unsigned exception) {
       const auto handler = handlers_.find(exception);
@@ -48,5 +48,6 @@ constexpr unsigned kUart0Interrupt = 5;
 constexpr unsigned kI2cInterrupt = 8;
 constexpr unsigned kTimer0Interrupt = 19;
 constexpr unsigned kTimer1Interrupt = 21;
+constexpr unsigned kTimer2Interrupt = 23;
 
 }  // namespace ex9000::registers

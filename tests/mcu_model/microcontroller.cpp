@@ -42,6 +42,7 @@ Microcontroller::Microcontroller(const Chip& chip, Timeline& timeline, Pins& pin
       uart1(1, system_control, timeline, pins_of_uart(chip, 1, ports_)),
       timer0(0, system_control, timeline),
       timer1(1, system_control, timeline),
+      timer2(2, system_control, timeline),
       watchdog(system_control, timeline,
                [this] {
                  ++bites_;
@@ -51,9 +52,13 @@ Microcontroller::Microcontroller(const Chip& chip, Timeline& timeline, Pins& pin
   for (unsigned i = 0; i < chip.ports; ++i) {
     places_.push_back({ports_[i].get(), 2, i});
   }
-  places_.insert(
-      places_.end(),
-      {{&uart0, 1, 0}, {&uart1, 1, 1}, {&i2c, 1, 12}, {&timer0, 1, 16}, {&timer1, 1, 17}, {&watchdog, 0, 3}});
+  places_.insert(places_.end(), {{&uart0, 1, 0},
+                                 {&uart1, 1, 1},
+                                 {&i2c, 1, 12},
+                                 {&timer0, 1, 16},
+                                 {&timer1, 1, 17},
+                                 {&timer2, 1, 18},
+                                 {&watchdog, 0, 3}});
   const auto leads_to = [this](Peripheral& peripheral, unsigned interrupt) {
     peripheral.on_interrupt_line([this, interrupt](bool on) { core.interrupt_line_of(interrupt, on); });
   };
@@ -66,6 +71,7 @@ Microcontroller::Microcontroller(const Chip& chip, Timeline& timeline, Pins& pin
   leads_to(watchdog, 18);
   leads_to(timer0, 19);
   leads_to(timer1, 21);
+  leads_to(timer2, 23);
   system_control.on_standstill([this](Instant until) { pass_all(until); });
   system_control.on_software_reset([this](unsigned index, std::uint32_t bits) {
     if (index == 1 && (bits >> 12U & 1U) != 0) {

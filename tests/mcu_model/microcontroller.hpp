@@ -134,6 +134,7 @@ class Microcontroller {
   UartPort uart1;
   TimerBlock timer0;
   TimerBlock timer1;
+  TimerBlock timer2;
   WatchdogTimer watchdog;
   I2cBlock i2c;
 

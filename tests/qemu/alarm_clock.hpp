@@ -22,7 +22,7 @@ class Halted : public std::runtime_error {
 /// doing, forget the last instructions: of a hundred transcripts one ends up to 2 us apart from the run
 /// before, where inputs are pulsed up to 7 us.
 ///
-/// GPTM2, which no image uses, interrupts when the time is over, and the interrupt's code, in RAM that no
+/// GPTM3, which no image uses, interrupts when the time is over, and the interrupt's code, in RAM that no
 /// image uses, comes to the gate (gate.cpp), where its processor waits. The image itself and its vectors stay
 /// as they are; a copy of these, with one more entry, takes their place. Its interrupt waits for others and
 /// holds them up, as the image's own do, for 1 us each time the machine stands still; on the stack it takes

@@ -26,7 +26,7 @@ namespace ex9000::rig {
 class Emulator {
  public:
   /// The address of the instruction at which it waits to be let go on.
-  static constexpr std::uint32_t kGate = 0x2000'9044;
+  static constexpr std::uint32_t kGate = 0x2000'9048;
 
   /// Runs the ELF file `image`; `memory` is the file that holds the EEPROM's 8192 bytes. Throws
   /// std::runtime_error where it does not come up.

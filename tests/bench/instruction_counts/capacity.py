@@ -9,7 +9,7 @@ CYCLES_AN_INSTRUCTION = 1.6
 CYCLES_AROUND_AN_INTERRUPT = 24  # entry and exit
 BAUD = 115200
 BITS_A_CHARACTER = 10
-TICKS_A_SECOND = 1000
+TICKS_A_SECOND = 100
 LEFT_TO_THE_MAIN_LOOP = 0.1
 PORTS = (6, 2)  # how many inputs lie on one port: boards/ek-tm4c123gxl/board.hpp
 

@@ -45,6 +45,22 @@ class Median:
         return len(self.addresses)
 
 
+class Sum:
+    """All of them."""
+
+    def __init__(self):
+        self.passes = 0
+        self.addresses = []
+
+    def note(self, addresses):
+        self.passes += 1
+        self.addresses += addresses
+
+    @property
+    def count(self):
+        return len(self.addresses)
+
+
 class Counter:
     """Listens to execution.follow.
 
@@ -73,6 +89,7 @@ class Counter:
         self.interrupts = {}  # others, by the number of the exception
         self.edges = {}  # by how many were served at once
         self.ticks_turn = Highest()
+        self.idling = Sum()  # all that is executed while nothing happens
 
     def begin(self):
         """The main loop sleeps."""
@@ -105,6 +122,8 @@ class Counter:
             self._note_interrupt(span)
         if self._pass is not None and span.exception != execution.TICK:
             self._pass += span.addresses
+        if self.nothing_happens:
+            self.idling.note(span.addresses)
         if span.exception == execution.LINE_END:
             self.answered = True
 
@@ -112,6 +131,8 @@ class Counter:
         self.at_rest = True
         if main.addresses[0] not in self._awake:
             return  # logging began in between
+        if self.nothing_happens and main.interrupts:
+            self.idling.note(main.addresses)
         if main.interrupts == [execution.TICK]:
             if self.nothing_happens:
                 self.ticks_turn.note(main.addresses)

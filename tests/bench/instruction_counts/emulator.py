@@ -22,19 +22,17 @@ UART_IDENTIFICATION_2 = 0x4000CFE4  # likewise
 
 # tests/qemu/alarm_clock.cpp says why each of these is as it is.
 TIMERS = range(0x40030000, 0x40034000, 0x1000)
-ALARM = TIMERS[2]
-GUARD = TIMERS[3]
+ALARM = TIMERS[3]
 TIMER_MODE, TIMER_CONTROL, TIMER_MASK, TIMER_CLEAR, TIMER_INTERVAL = 0x04, 0x0C, 0x18, 0x24, 0x28
-ALARM_INTERRUPT = 23
-VECTORS = 16 + 22
-SET_ENABLE = 0xE000E100
+ALARM_INTERRUPT = 35
+VECTORS = 16 + 24
+SET_ENABLE = 0xE000E104  # of interrupts from 32 on
 VECTOR_TABLE_OFFSET = 0xE000ED08
-TICK_COUNTER = 0xE000E018
 DRIVER_ENABLE = 0x40004100
 STATUS_LED = 0x40025004
 TABLE, TOLD, CODE, ORDERS = 0x20008000, 0x20008000, 0x20009000, 0x2000A000
-NEXT_ALARM, EDGES, HALT = ORDERS, ORDERS + 4, ORDERS + 20
-GATE = CODE + 0x44
+NEXT_ALARM, EDGES, HALT, LEFT = ORDERS, ORDERS + 4, ORDERS + 20, ORDERS + 24
+GATE = CODE + 0x48
 HERTZ = 50_000_000
 AT_RESET = 4  # times as slow
 INTERRUPT_TAKES = 0.7e-6
@@ -48,7 +46,7 @@ def alarm_code():
     halfwords = [int(word, 16) for word in re.findall(r"^ *(0x[0-9A-F]{4},(?: 0x[0-9A-F]{4},)?)", text, re.M)
                  for word in re.findall("0x[0-9A-F]{4}", word)]
     halfwords += [0] * (-len(halfwords) % 64)
-    literals = (ORDERS, ALARM, GUARD, UART_FLAGS, DRIVER_ENABLE, STATUS_LED, TICK_COUNTER, TOLD)
+    literals = (ORDERS, ALARM, UART_FLAGS, DRIVER_ENABLE, STATUS_LED, TOLD)
     return struct.pack(f"<{len(halfwords)}H{len(literals)}I", *halfwords, *literals)
 
 
@@ -128,9 +126,10 @@ class Emulator:
         self._write(VECTOR_TABLE_OFFSET, TABLE)
         self._write(ALARM + TIMER_MODE, 1)
         self._write(ALARM + TIMER_MASK, 1)
-        self._write(SET_ENABLE, 1 << ALARM_INTERRUPT)
+        self._write(SET_ENABLE, 1 << (ALARM_INTERRUPT - 32))
         self._write(EDGES, 0)
         self._write(HALT, 0)
+        self._write(LEFT, 0)
         self._started = False
 
     def run_for(self, seconds):
@@ -151,10 +150,6 @@ class Emulator:
             if not piece:
                 raise RuntimeError("the emulator has ended")
             told += piece
-
-    def run_behind_a_tick(self, seconds):
-        """Up to so long behind the next one."""
-        self.run_for((self._read(TICK_COUNTER) & 0xFFFFFF) / HERTZ + seconds)
 
     def put(self, byte):
         """A byte on the line: it has come when the emulator goes on."""

@@ -12,7 +12,8 @@ LINE = 21
 I2C = 24
 SILENCE = 35
 LINE_END = 37
-ALARM = 39  # of the tool itself: see emulator.py
+WAKE = 39
+ALARM = 51  # of the tool itself: see emulator.py
 
 
 class Span:

@@ -11,7 +11,7 @@ from instruction_counts import execution
 from instruction_counts.capacity import Found, capacity
 from instruction_counts.emulator import ROOT, die_with_parent
 from instruction_counts.requests import Model
-from instruction_counts.session import Session
+from instruction_counts.session import REST, Session
 
 OUTPUTS = Model("EX9042D-M", 0, 13, True)
 INPUTS = Model("EX9052D-M", 8, 0, True)
@@ -50,10 +50,12 @@ def rows_of(counter):
         execution.SILENCE: "silence's interrupt",
         execution.I2C: "I2C's interrupt",
         execution.LINE_END: "interrupt at the reply's end",
+        execution.WAKE: "wake timer's interrupt",
     }
     for exception, highest in sorted(counter.interrupts.items()):
         add(names.get(exception, f"exception {exception}"), highest)
     add("tick's turn of the main loop", counter.ticks_turn)
+    add("a millisecond at rest", counter.idling, round(REST * 1000))
     return rows
 
 
@@ -71,7 +73,7 @@ def run_session(options, model, is_ascii, general):
             general or options.all, lambda request: options.only in f"{label} {request.name}", options.passes
         )
         if everything:
-            session.count_ticks()
+            session.count_rest()
             if model.inputs:
                 session.count_edges(EDGE_PASSES)
     rows = [

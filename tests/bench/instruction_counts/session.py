@@ -21,7 +21,7 @@ BYTE = 10 / 115200
 BYTE_AT_9600 = 10 / 9600
 SLICE = 0.001
 PASS = 0.3  # is over within that
-TICKS = 0.2
+REST = 0.2
 
 QUIET = 0.004  # behind a byte: every frame is over, and what it asks for is done
 
@@ -74,10 +74,10 @@ class Session:
                 self._run(SLICE)
                 self._log(False)
 
-    def count_ticks(self):
+    def count_rest(self):
         self.counter.nothing_happens = True
         self._log(True)
-        self._run(TICKS)
+        self._run(REST)
         self._log(False)
         self.counter.nothing_happens = False
 

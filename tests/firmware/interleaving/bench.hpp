@@ -17,6 +17,7 @@ struct Board {
   Clock clock;
   hal::stellaris::Uart<0, 50'000'000, kDriverEnable, LineEndTimer> line;
   SilenceTimer silence_timer;
+  WakeTimer wake_timer;
   Inputs inputs;
   Outputs outputs;
   Memory memory;
@@ -56,19 +57,14 @@ class Bench {
 
   /// What the main loop of an image does between two sleeps.
   void turn() {
-    if (chip_.ticks != ticks_seen_) {
-      ticks_seen_ = chip_.ticks;
-      device_.poll_panel();
-    }
-    if (device_.news()) {
-      device_.turn();
+    if (has_to_turn()) {
+      turns_again_ = device_.turn();
     }
   }
   /// All of it, whether something has woken it or not.
   void whole_turn() {
-    ticks_seen_ = chip_.ticks;
     device_.poll_panel();
-    device_.turn();
+    turns_again_ = device_.turn();
   }
 
   /// Time goes on with the main loop doing its work.
@@ -176,7 +172,7 @@ class Bench {
       return is;
     };
     if (is_due(chip_.tick_due)) {
-      chip_.tick_due = chip_.now + 1000;
+      chip_.tick_due = chip_.now + hal::kTickPeriod.microseconds();
       ++chip_.ticks;
       device_.on_tick();
     }
@@ -192,16 +188,18 @@ class Bench {
         device_.on_sent();
       }
     }
+    if (is_due(chip_.wake_due)) {
+      device_.on_wake_timer();
+    }
     if (is_due(chip_.memory_due)) {
-      device_.wake();
+      device_.on_memory();
     }
   }
 
+  [[nodiscard]] bool has_to_turn() const { return turns_again_ || device_.news(); }
   void turn_until_idle() {
     serve_pending();
-    turn();
-    serve_pending();
-    while (device_.news()) {
+    while (has_to_turn()) {
       turn();
       serve_pending();
     }
@@ -213,7 +211,7 @@ class Bench {
 
   Chip chip_;
   hal::Device<Board> device_;
-  unsigned ticks_seen_ = 0;
+  bool turns_again_ = true;
 };
 
 }  // namespace ex9000::interleaving

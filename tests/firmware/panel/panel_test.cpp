@@ -51,6 +51,25 @@ TEST(Debounce, TellsWhenALevelWillCount) {
   }
 }
 
+TEST(Debounce, WantsToBeSampledEachMillisecondWhileALevelSettlesAndAsItCounts) {
+  for (const Time start : kStarts) {
+    Debounce debounce;
+    debounce.sample(true, start);
+    std::uint32_t after = 0;
+    for (unsigned samples = 0; debounce.next_sample().armed(); ++samples) {
+      ASSERT_LT(samples, 20U);
+      const Duration wait = debounce.next_sample().remaining(start + Duration(after));
+      EXPECT_LE(wait.microseconds(), 1'000U);
+      after += wait.microseconds() + (samples == 0 ? 300U : 0U);  // once it was late
+      debounce.sample(true, start + Duration(after));
+    }
+    EXPECT_EQ(after, 10'000U);
+    EXPECT_TRUE(debounce.known());
+    debounce.sample(false, start + Duration(after));
+    EXPECT_EQ(debounce.next_sample().remaining(start + Duration(after)).microseconds(), 1'000U);
+  }
+}
+
 TEST(Debounce, EveryBounceStartsThe10MsAnew) {
   for (const Time start : kStarts) {
     Debounce debounce;

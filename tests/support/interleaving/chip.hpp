@@ -1,4 +1,4 @@
-// The microcontroller around a module: a UART with its RS-485 driver, two timers, a memory, a clock.
+// The microcontroller around a module: a UART with its RS-485 driver, three timers, a memory, a clock.
 #pragma once
 
 #include <algorithm>
@@ -35,6 +35,7 @@ class Chip final : public hal::stellaris::bus::Peripherals {
   std::uint32_t tick_due = 2000;
   std::uint32_t silence_due = kNever;
   std::uint32_t line_end_due = kNever;
+  std::uint32_t wake_due = kNever;
   std::uint32_t memory_due = kNever;
   std::uint32_t sent_due = kNever;  ///< the byte in the shift register has left
 
@@ -44,7 +45,7 @@ class Chip final : public hal::stellaris::bus::Peripherals {
   unsigned feeds = 0;  ///< of the watchdog
 
   [[nodiscard]] std::uint32_t next() const {
-    return std::min({tick_due, silence_due, line_end_due, memory_due, sent_due});
+    return std::min({tick_due, silence_due, line_end_due, wake_due, memory_due, sent_due});
   }
 
   // --- the UART; facts as in hal/stellaris/uart.hpp ---
@@ -161,6 +162,15 @@ struct SilenceTimer {
 };
 struct LineEndTimer {
   static void restart(Duration after) { chip->line_end_due = chip->now + after.microseconds(); }
+};
+
+/// Of the main loop, which interrupts come in between.
+struct WakeTimer {
+  static void restart(Duration after) {
+    Points::pass();
+    chip->wake_due = chip->now + after.microseconds();
+    Points::pass();
+  }
 };
 
 struct Inputs {

@@ -1,0 +1,29 @@
+#pragma once
+
+#include "hal/doubles/virtual_clock.hpp"
+#include "hal/wake_timer.hpp"
+
+namespace ex9000::hal::doubles {
+
+class WakeTimer final : public hal::WakeTimer {
+ public:
+  explicit WakeTimer(const VirtualClock& clock) : clock_(clock) {}
+
+  void restart(Duration after) override { fires_ = clock_.when(after); }
+
+  [[nodiscard]] VirtualTime next() const { return fires_; }
+  /// Whether it fires now; then call the interrupt.
+  bool fire() {
+    if (fires_ > clock_.virtual_now()) {
+      return false;
+    }
+    fires_ = kNever;
+    return true;
+  }
+
+ private:
+  const VirtualClock& clock_;
+  VirtualTime fires_ = kNever;
+};
+
+}  // namespace ex9000::hal::doubles
