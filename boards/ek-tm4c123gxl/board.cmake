@@ -1,3 +1,6 @@
+# Its processor.
+set(start_up cortex_m/start_up.cpp)
+
 # What OpenOCD calls the board, and where a module's line is.
 set(openocd_script board/ti_ek-tm4c123gxl.cfg)
 

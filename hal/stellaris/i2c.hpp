@@ -8,8 +8,8 @@
 #include "firmware/line/crossing.hpp"
 #include "firmware/time.hpp"
 #include "hal/i2c_master.hpp"
+#include "hal/registers/register.hpp"
 #include "hal/stellaris/gpio.hpp"
-#include "hal/stellaris/register.hpp"
 
 namespace ex9000::hal::stellaris {
 

@@ -5,7 +5,7 @@
 #include <cstdint>
 
 #include "firmware/time.hpp"
-#include "hal/stellaris/register.hpp"
+#include "hal/registers/register.hpp"
 
 namespace ex9000::hal::stellaris {
 

@@ -4,7 +4,7 @@
 
 #include <cstdint>
 
-#include "hal/stellaris/register.hpp"
+#include "hal/registers/register.hpp"
 
 namespace ex9000::hal::stellaris {
 

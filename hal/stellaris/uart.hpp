@@ -8,8 +8,8 @@
 #include "firmware/line/crossing.hpp"
 #include "firmware/line/verdict.hpp"
 #include "firmware/time.hpp"
+#include "hal/registers/register.hpp"
 #include "hal/stellaris/gpio.hpp"
-#include "hal/stellaris/register.hpp"
 #include "hal/stellaris/uart_rate.hpp"
 
 namespace ex9000::hal::stellaris {

@@ -3,7 +3,7 @@
 
 #include <cstdint>
 
-#include "hal/stellaris/register.hpp"
+#include "hal/registers/register.hpp"
 #include "hal/watchdog.hpp"
 
 namespace ex9000::hal::stellaris {

@@ -10,7 +10,7 @@
 
 // Its `main` must not be the test program's.
 #define main main_of_the_image
-#include "boards/start_up.cpp"
+#include "boards/cortex_m/start_up.cpp"
 #undef main
 
 namespace {
@@ -49,7 +49,7 @@ bool main_returns = false;
 
 }  // namespace
 
-namespace ex9000::hal::stellaris::bus {
+namespace ex9000::hal::bus {
 
 std::uint32_t read(std::uint32_t /*address*/) { return 0; }
 void write(std::uint32_t address, std::uint32_t value) {
@@ -57,7 +57,7 @@ void write(std::uint32_t address, std::uint32_t value) {
   throw Reset();
 }
 
-}  // namespace ex9000::hal::stellaris::bus
+}  // namespace ex9000::hal::bus
 
 int main_of_the_image() {
   found_by_main = memory_of_the_image;

@@ -9,14 +9,14 @@
 #include <vector>
 
 #include "firmware/channels/inputs.hpp"
+#include "hal/cortex_m/system_timer.hpp"
 #include "hal/stellaris/i2c.hpp"
 #include "hal/stellaris/inputs.hpp"
-#include "hal/stellaris/system_timer.hpp"
 
 namespace ex9000::interleaving {
 namespace {
 
-namespace bus = hal::stellaris::bus;
+namespace bus = hal::bus;
 
 // --- SysTick ---
 
@@ -30,7 +30,7 @@ class SysTick final : public bus::Peripherals {
       : cycles_(cycles), cycles_an_access_(cycles_an_access), accesses_late_(accesses_late) {
     bus::peripherals = this;
   }
-  hal::stellaris::SystemTimer<kMegahertz> timer;
+  hal::cortex_m::SystemTimer<kMegahertz> timer;
 
   [[nodiscard]] unsigned microseconds() const { return cycles_ / kMegahertz; }
   /// Served as soon as it may be; while it is held, it waits.

@@ -2,7 +2,7 @@
 // EX9000_BOARD_HEADER and EX9000_MODEL say which. Its `main` must not be the test program's.
 #define main main_of_the_image
 #include EX9000_BOARD_HEADER
-#include "boards/composition.hpp"
+#include "boards/stellaris/composition.hpp"
 #undef main
 
 #include <new>
@@ -11,11 +11,11 @@
 
 namespace ex9000::start_up {
 
-// What start_up.cpp and the linker script provide on a board.
+// What boards/cortex_m/start_up.cpp and the linker script provide on a board.
 extern "C" {
-std::uint32_t stack_top = 0;  // NOLINT: the name is the linker script's
+std::uint32_t stack_top[1] = {};  // NOLINT: the name is the linker script's
 void reset_handler() { fault_handler(); }
-void fault_handler() { hal::stellaris::Interrupts::reset(); }
+void fault_handler() { hal::cortex_m::Interrupts::reset(); }
 }
 
 }  // namespace ex9000::start_up

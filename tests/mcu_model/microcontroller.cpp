@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <cassert>
 
-#include "hal/stellaris/bus.hpp"
-#include "hal/stellaris/processor.hpp"
+#include "hal/cortex_m/processor.hpp"
+#include "hal/registers/bus.hpp"
 
 namespace ex9000::registers {
 
@@ -228,14 +228,14 @@ void Microcontroller::run_until(Instant when) {
 
 }  // namespace ex9000::registers
 
-namespace ex9000::hal::stellaris {
+namespace ex9000::hal {
 
 std::uint32_t bus::read(std::uint32_t address) { return registers::Microcontroller::current().read(address); }
 void bus::write(std::uint32_t address, std::uint32_t value) {
   registers::Microcontroller::current().write(address, value);
 }
-void processor::hold_interrupts() { registers::Microcontroller::current().hold_interrupts(); }
-void processor::release_interrupts() { registers::Microcontroller::current().release_interrupts(); }
-void processor::wait_for_interrupt() { registers::Microcontroller::current().wait_for_interrupt(); }
+void cortex_m::processor::hold_interrupts() { registers::Microcontroller::current().hold_interrupts(); }
+void cortex_m::processor::release_interrupts() { registers::Microcontroller::current().release_interrupts(); }
+void cortex_m::processor::wait_for_interrupt() { registers::Microcontroller::current().wait_for_interrupt(); }
 
-}  // namespace ex9000::hal::stellaris
+}  // namespace ex9000::hal

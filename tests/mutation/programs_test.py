@@ -5,7 +5,7 @@ import unittest
 import programs
 
 # Replaced in every test by a bus and a processor of its own, and a list of files that the build generates.
-REACHED_BY_NONE = {"hal/stellaris/bus.hpp", "hal/stellaris/processor.hpp", "sim/panel/page_files.hpp"}
+REACHED_BY_NONE = {"hal/registers/bus.hpp", "hal/cortex_m/processor.hpp", "sim/panel/page_files.hpp"}
 
 
 class Programs(unittest.TestCase):
@@ -31,12 +31,12 @@ class Programs(unittest.TestCase):
 
     def test_whole_images_judge_what_no_driver_test_compiles(self):
         images = ["start_up_driver_test", "image_driver_test"]
-        self.assertEqual(self.nearest("hal", "hal/stellaris/interrupts.hpp"), images)
+        self.assertEqual(self.nearest("hal", "hal/cortex_m/interrupts.hpp"), images)
 
     def test_a_shadowed_header_is_not_compiled_into_a_unit(self):
         unit = programs.LIBRARY_UNITS["mcu_model"]
-        self.assertIn("tests/mcu_model/shadow/hal/stellaris/bus.hpp", unit.files)
-        self.assertNotIn("hal/stellaris/bus.hpp", unit.files)
+        self.assertIn("tests/mcu_model/shadow/hal/registers/bus.hpp", unit.files)
+        self.assertNotIn("hal/registers/bus.hpp", unit.files)
 
 
 if __name__ == "__main__":

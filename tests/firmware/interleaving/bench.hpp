@@ -32,7 +32,7 @@ class Bench {
   Bench(const char* model, const std::function<void(Settings&)>& change)
       : device_(*find_model(model), LineTiming::at) {
     chip = &chip_;
-    hal::stellaris::bus::peripherals = &chip_;
+    hal::bus::peripherals = &chip_;
     Settings settings = Settings::factory(*find_model(model));
     settings.baud_code = kFastest;
     change(settings);
@@ -45,7 +45,7 @@ class Bench {
   }
   ~Bench() {
     chip = nullptr;
-    hal::stellaris::bus::peripherals = nullptr;
+    hal::bus::peripherals = nullptr;
   }
   Bench(const Bench&) = delete;
   Bench& operator=(const Bench&) = delete;

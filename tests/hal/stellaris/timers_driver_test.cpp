@@ -3,17 +3,17 @@
 
 #include <random>
 
+#include "hal/cortex_m/system_timer.hpp"
 #include "hal/stellaris/one_shot_timer.hpp"
-#include "hal/stellaris/system_timer.hpp"
 #include "hal/stellaris/watchdog.hpp"
 #include "tests/mcu_model/driver_bench.hpp"
 
 namespace ex9000::registers {
 namespace {
 
+using hal::cortex_m::SystemTimer;
 using hal::stellaris::HardwareWatchdog;
 using hal::stellaris::OneShotTimer;
-using hal::stellaris::SystemTimer;
 using std::chrono::microseconds;
 using std::chrono::milliseconds;
 using std::chrono::nanoseconds;

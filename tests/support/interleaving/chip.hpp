@@ -10,7 +10,7 @@
 
 #include "firmware/bytes.hpp"
 #include "firmware/time.hpp"
-#include "hal/stellaris/bus.hpp"
+#include "hal/registers/bus.hpp"
 #include "hal/stellaris/gpio.hpp"
 
 namespace ex9000::interleaving {
@@ -25,7 +25,7 @@ struct Sent {
 };
 
 /// Hardware only. It knows when it will interrupt; who owns it calls the interrupt when that time has come.
-class Chip final : public hal::stellaris::bus::Peripherals {
+class Chip final : public hal::bus::Peripherals {
  public:
   static constexpr std::uint32_t kNever = 0xFFFF'FFFF;
   static constexpr std::uint32_t kCharacter = 87;  ///< at 115200 baud, microseconds

@@ -3,9 +3,9 @@
 
 #include <cstdint>
 
-#include "hal/stellaris/bus.hpp"
+#include "hal/registers/bus.hpp"
 
-namespace ex9000::hal::stellaris {
+namespace ex9000::hal {
 
 /// What a register holds; `Name` is a type that stands for the register and for nothing else.
 template <class Name>
@@ -40,4 +40,4 @@ class Register {
   std::uint32_t address_;
 };
 
-}  // namespace ex9000::hal::stellaris
+}  // namespace ex9000::hal

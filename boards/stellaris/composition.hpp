@@ -1,13 +1,16 @@
-// An image from reset to the main loop: the drivers on the pins of `board.hpp`, the module on the drivers,
-// and the interrupts. Included once, by the main.cpp of a board.
+// An image from reset to the main loop, on a board of this family: the drivers on the pins of `board.hpp`,
+// the module on the drivers, and the interrupts. Included once, by the main.cpp of a board.
 #pragma once
 
 #include <array>
 #include <cstdint>
 
-#include "boards/start_up.hpp"
+#include "boards/cortex_m/start_up.hpp"
+#include "boards/image.hpp"
 #include "firmware/model/built.hpp"
 #include "hal/at24c/at24c.hpp"
+#include "hal/cortex_m/interrupts.hpp"
+#include "hal/cortex_m/system_timer.hpp"
 #include "hal/device.hpp"
 #include "hal/stellaris/i2c.hpp"
 #include "hal/stellaris/inputs.hpp"
@@ -16,7 +19,6 @@
 #include "hal/stellaris/outputs.hpp"
 #include "hal/stellaris/switches.hpp"
 #include "hal/stellaris/system_control.hpp"
-#include "hal/stellaris/system_timer.hpp"
 #include "hal/stellaris/uart.hpp"
 #include "hal/stellaris/watchdog.hpp"
 
@@ -24,27 +26,11 @@
 namespace ex9000::board {
 namespace {
 
+using namespace hal::cortex_m;
 using namespace hal::stellaris;
 
 constexpr std::uint32_t kHertz = kClock.frequency();
 constexpr std::uint32_t kMegahertz = kHertz / 1'000'000;
-
-#ifdef EX9000_IMAGES
-static_assert(kModels.size() == EX9000_IMAGES,
-              "a row of the model table gets no image: boards/CMakeLists.txt reads rows that begin with "
-              "{\"EX9..., inputs, outputs");
-#endif
-
-template <class Groups>
-constexpr unsigned pins_in(const Groups& groups) {
-  unsigned pins = 0;
-  for (const PinGroup& group : groups) {
-    pins += group.count;
-  }
-  return pins;
-}
-static_assert(kOnlyModel.outputs <= pins_in(kOutputs), "this board has too few output pins for the model");
-static_assert(kOnlyModel.inputs <= pins_in(kInputs), "this board has too few input pins for the model");
 
 using Clock = SystemTimer<kMegahertz>;
 using SilenceTimer = OneShotTimer<0, kMegahertz>;
@@ -67,12 +53,6 @@ struct Board {
   LedPin<kStatusLed> status_led;
   Watchdog watchdog;
 };
-
-#ifdef EX9000_STRICT_GAPS
-constexpr TimingAt kTimingAt = LineTiming::strictly_told_in_the_stop_bit;
-#else
-constexpr TimingAt kTimingAt = LineTiming::told_in_the_stop_bit;
-#endif
 
 hal::Device<Board> device(kOnlyModel, kTimingAt);
 Board& board = device.board();
@@ -133,64 +113,25 @@ constexpr start_up::Handler handler_of_edges() {
 
 constexpr Interrupt kLineInterrupt = kUart == 0 ? Interrupt::Uart0 : Interrupt::Uart1;
 
-struct Served {
-  Interrupt number;
-  start_up::Handler handler;  ///< null: not by this image
-};
-constexpr auto kServed = table<Served>({
-    {kLineInterrupt, on_line},
-    {Interrupt::Timer0A, on_silence_timer},
-    {Interrupt::Timer1A, on_line_end_timer},
-    {Interrupt::Timer2A, on_wake_timer},
-    {Interrupt::GpioA, handler_of_edges<Port::A>()},
-    {Interrupt::GpioB, handler_of_edges<Port::B>()},
-    {Interrupt::GpioC, handler_of_edges<Port::C>()},
-    {Interrupt::GpioD, handler_of_edges<Port::D>()},
-    {Interrupt::GpioE, handler_of_edges<Port::E>()},
-    {Interrupt::I2c0, on_i2c},
+constexpr start_up::Served served(Interrupt number, start_up::Handler handler) {
+  return {static_cast<unsigned>(number), handler};
+}
+constexpr auto kServed = table<start_up::Served>({
+    served(kLineInterrupt, on_line),
+    served(Interrupt::Timer0A, on_silence_timer),
+    served(Interrupt::Timer1A, on_line_end_timer),
+    served(Interrupt::Timer2A, on_wake_timer),
+    served(Interrupt::GpioA, handler_of_edges<Port::A>()),
+    served(Interrupt::GpioB, handler_of_edges<Port::B>()),
+    served(Interrupt::GpioC, handler_of_edges<Port::C>()),
+    served(Interrupt::GpioD, handler_of_edges<Port::D>()),
+    served(Interrupt::GpioE, handler_of_edges<Port::E>()),
+    served(Interrupt::I2c0, on_i2c),
 });
 
-constexpr std::uint32_t served_numbers() {
-  std::uint32_t numbers = 0;
-  for (const Served& served : kServed) {
-    if (served.handler != nullptr) {
-      numbers |= 1U << static_cast<unsigned>(served.number);
-    }
-  }
-  return numbers;
-}
-
 constexpr unsigned kInterrupts = 24;
-using Vectors = start_up::VectorTable<kInterrupts>;
-
-constexpr Vectors make_vectors() {
-  constexpr start_up::Handler kFault = start_up::fault_handler;
-  Vectors vectors{&start_up::stack_top,
-                  start_up::reset_handler,
-                  kFault,
-                  kFault,
-                  kFault,
-                  kFault,
-                  kFault,
-                  {kFault, kFault, kFault, kFault},
-                  kFault,
-                  kFault,
-                  kFault,
-                  kFault,
-                  on_system_tick,
-                  {}};
-  for (start_up::Handler& handler : vectors.interrupt) {
-    handler = kFault;
-  }
-  for (const Served& served : kServed) {
-    if (served.handler != nullptr) {
-      vectors.interrupt[static_cast<unsigned>(served.number)] = served.handler;
-    }
-  }
-  return vectors;
-}
-
-__attribute__((section(".vectors"), used)) constexpr Vectors kVectors = make_vectors();
+__attribute__((section(".vectors"), used)) constexpr auto kVectors =
+    start_up::vectors<kInterrupts>(on_system_tick, kServed);
 
 constexpr std::uint32_t ports_of_the_module() {
   std::uint32_t ports = 0;
@@ -232,7 +173,7 @@ void start() {
   WakeTimer::start();
   board.clock.start();
   device.start();
-  Interrupts::enable(served_numbers(), kLineInterrupt);
+  Interrupts::enable(start_up::numbers_of(kServed), static_cast<std::uint32_t>(kLineInterrupt));
 }
 
 }  // namespace

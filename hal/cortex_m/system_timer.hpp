@@ -5,10 +5,10 @@
 
 #include "firmware/line/crossing.hpp"
 #include "firmware/time.hpp"
-#include "hal/stellaris/register.hpp"
+#include "hal/registers/register.hpp"
 #include "hal/tick.hpp"
 
-namespace ex9000::hal::stellaris {
+namespace ex9000::hal::cortex_m {
 
 /// Counts ticks by interrupt and the microseconds in between from its counter.
 template <std::uint32_t cycles_per_microsecond>
@@ -64,4 +64,4 @@ class SystemTimer {
   WrittenByInterrupt<std::uint32_t> counted_;  ///< microseconds, in whole ticks
 };
 
-}  // namespace ex9000::hal::stellaris
+}  // namespace ex9000::hal::cortex_m

@@ -3,7 +3,7 @@
 
 #include <cstdint>
 
-namespace ex9000::hal::stellaris::bus {
+namespace ex9000::hal::bus {
 
 /// Reads or writes the 32-bit register at `address`, a multiple of 4; each call is one access, never left
 /// out, doubled or moved by the compiler. Interrupts and main loop; does not block.
@@ -16,4 +16,4 @@ inline void write(std::uint32_t address, std::uint32_t value) {
 }
 // NOLINTEND(performance-no-int-to-ptr)
 
-}  // namespace ex9000::hal::stellaris::bus
+}  // namespace ex9000::hal::bus

@@ -1,4 +1,4 @@
-// In the place of hal/stellaris/bus.hpp: registers that a test makes, and a point before and behind every
+// In the place of hal/registers/bus.hpp: registers that a test makes, and a point before and behind every
 // access of the main loop.
 #pragma once
 
@@ -6,7 +6,7 @@
 
 #include "tests/support/interleaving/points.hpp"
 
-namespace ex9000::hal::stellaris::bus {
+namespace ex9000::hal::bus {
 
 /// What answers at all addresses; made by the test.
 class Peripherals {
@@ -32,4 +32,4 @@ inline void write(std::uint32_t address, std::uint32_t value) {
   interleaving::Points::pass();
 }
 
-}  // namespace ex9000::hal::stellaris::bus
+}  // namespace ex9000::hal::bus

@@ -1,0 +1,35 @@
+// What holds of every image, whatever its microcontroller. Included once, behind the `board.hpp` of a board:
+// its kOutputs and kInputs are arrays of groups of pins, each with a `count`.
+#pragma once
+
+#include "firmware/line/timing.hpp"
+#include "firmware/model/built.hpp"
+
+namespace ex9000::board {
+namespace {
+
+#ifdef EX9000_IMAGES
+static_assert(kModels.size() == EX9000_IMAGES,
+              "a row of the model table gets no image: boards/CMakeLists.txt reads rows that begin with "
+              "{\"EX9..., inputs, outputs");
+#endif
+
+template <class Groups>
+constexpr unsigned pins_in(const Groups& groups) {
+  unsigned pins = 0;
+  for (const auto& group : groups) {
+    pins += group.count;
+  }
+  return pins;
+}
+static_assert(kOnlyModel.outputs <= pins_in(kOutputs), "this board has too few output pins for the model");
+static_assert(kOnlyModel.inputs <= pins_in(kInputs), "this board has too few input pins for the model");
+
+#ifdef EX9000_STRICT_GAPS
+constexpr TimingAt kTimingAt = LineTiming::strictly_told_in_the_stop_bit;
+#else
+constexpr TimingAt kTimingAt = LineTiming::told_in_the_stop_bit;
+#endif
+
+}  // namespace
+}  // namespace ex9000::board

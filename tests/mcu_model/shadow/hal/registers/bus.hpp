@@ -1,0 +1,12 @@
+// Stands before hal/registers/bus.hpp in the include path of host tests: the processor's bus leads to
+// registers::Microcontroller.
+#pragma once
+
+#include <cstdint>
+
+namespace ex9000::hal::bus {
+
+std::uint32_t read(std::uint32_t address);
+void write(std::uint32_t address, std::uint32_t value);
+
+}  // namespace ex9000::hal::bus
