@@ -5,18 +5,21 @@
 
 #include "firmware/line/crossing.hpp"
 #include "firmware/module.hpp"
+#include "hal/board.hpp"
 #include "hal/memory.hpp"
 #include "hal/tick.hpp"
 
 namespace ex9000::hal {
 
 /// Lives from one reset to the next. A composition file makes one, calls `start`, points the interrupts at
-/// the `on_...` functions and then, for ever, calls `turn` until that returns false, and sleeps until there
-/// is `news`.
+/// the `on_...` functions and then, for ever, calls `turn` until that returns false, and sleeps until it
+/// `has_work`.
 ///
-/// `Board` has the members of hal::Board, which say what each of them does.
+/// `Board`: see hal/board.hpp.
 template <class Board>
 class Device {
+  static_assert(is_board<Board>());
+
  public:
   /// With a board of its own. `timing_at`: see Module.
   constexpr Device(const Model& model, TimingAt timing_at) : board_(), module_(model, timing_at) {}
@@ -71,7 +74,7 @@ class Device {
 
   // --- main loop; none of it blocks ---
 
-  [[nodiscard]] bool news() const { return happened() != seen_; }
+  [[nodiscard]] bool has_work() const { return happened() != seen_; }
 
   /// INIT*, the status LED and the hardware watchdog: `turn` does it at every tick, and when the wake timer
   /// has fired. The outputs too, whatever may have happened to their registers.
@@ -167,7 +170,7 @@ class Device {
     if (!memory_job_under_way_) {
       return false;
     }
-    const bool polls_again = board_.memory.go_on(now);
+    const bool polls_again = board_.memory.poll(now);
     if (!board_.memory.busy()) {
       memory_job_under_way_ = false;
       module_.memory_done(board_.memory.succeeded());

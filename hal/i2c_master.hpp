@@ -3,8 +3,12 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <type_traits>
+#include <utility>
 
 #include "firmware/bytes.hpp"
+#include "firmware/time.hpp"
+#include "hal/promise.hpp"
 
 namespace ex9000::hal {
 
@@ -12,7 +16,7 @@ namespace ex9000::hal {
 /// loop alone and without blocking:
 ///
 ///     void begin(const I2cTransfer&, Time now)   only while not busy(); the transfer lives until then
-///     bool go_on(Time now)                       every turn; true: again at once, no interrupt will tell
+///     bool poll(Time now)                        every turn; true: again at once, no interrupt will tell
 ///     bool busy() const
 ///     I2cResult result() const                   of the last transfer, while not busy()
 ///
@@ -37,5 +41,16 @@ enum class I2cResult : std::uint8_t {
   NoAcknowledge,  ///< nobody answered to the address, or a byte was not taken
   Failed,         ///< the bus did not move: a line is stuck, or somebody else is on it
 };
+
+/// Whether `T` offers what I2cTransfer says of a master.
+template <class T, class = void>
+constexpr bool kIsI2cMaster = false;
+template <class T>
+constexpr bool
+    kIsI2cMaster<T, std::void_t<Returns<void, decltype(std::declval<T&>().begin(
+                                                  std::declval<const I2cTransfer&>(), Exactly<Time>()))>,
+                                Returns<bool, decltype(std::declval<T&>().poll(Exactly<Time>()))>,
+                                Returns<bool, decltype(std::declval<const T&>().busy())>,
+                                Returns<I2cResult, decltype(std::declval<const T&>().result())>>> = true;
 
 }  // namespace ex9000::hal

@@ -1,8 +1,11 @@
 #pragma once
 
 #include <cstdint>
+#include <type_traits>
+#include <utility>
 
 #include "firmware/bytes.hpp"
+#include "hal/promise.hpp"
 
 namespace ex9000::hal {
 
@@ -11,23 +14,25 @@ namespace ex9000::hal {
 /// What it receives it hands to `Device::on_receive` in its receive interrupt, errors included; but nothing
 /// while the driver is on, for that is the echo. That it has sent it tells `Device::on_sent`, in an interrupt
 /// of the same priority.
-class SerialLine {
- public:
-  /// Starts receiving at `baud` bits per second (1200 to 115200). Before it, the line is neither heard nor
-  /// driven. Main loop, once after reset; does not block.
-  virtual void open(std::uint32_t baud) = 0;
-
-  /// Driver on, then all of `bytes`, then driver off. The driver is on before the first start bit, and off
-  /// after the last stop bit has left the shift register (transmission complete, not "data register empty"),
-  /// within one character time. Main loop, only while not `sending()`; does not block. `bytes` live until
-  /// `sending()` is false again.
-  virtual void send(Bytes bytes) = 0;
-
-  /// Whether the driver is on. Interrupts and main loop.
-  [[nodiscard]] virtual bool sending() const = 0;
-
- protected:
-  ~SerialLine() = default;
-};
+///
+///     void open(std::uint32_t baud)
+///         Starts receiving at `baud` bits per second (1200 to 115200). Before it, the line is neither heard
+///         nor driven. Main loop, once after reset; does not block.
+///     void send(Bytes bytes)
+///         Driver on, then all of `bytes`, then driver off. The driver is on before the first start bit, and
+///         off after the last stop bit has left the shift register (transmission complete, not "data register
+///         empty"), within one character time. Main loop, only while not `sending()`; does not block. `bytes`
+///         live until `sending()` is false again.
+///     bool sending() const
+///         Whether the driver is on. Interrupts and main loop.
+///
+/// Whether `T` offers that.
+template <class T, class = void>
+constexpr bool kIsSerialLine = false;
+template <class T>
+constexpr bool
+    kIsSerialLine<T, std::void_t<Returns<void, decltype(std::declval<T&>().open(Exactly<std::uint32_t>()))>,
+                                 Returns<void, decltype(std::declval<T&>().send(Exactly<Bytes>()))>,
+                                 Returns<bool, decltype(std::declval<const T&>().sending())>>> = true;
 
 }  // namespace ex9000::hal

@@ -1,14 +1,22 @@
 #pragma once
 
+#include <type_traits>
+#include <utility>
+
+#include "hal/promise.hpp"
+
 namespace ex9000::hal {
 
-class StatusLed {
- public:
-  /// Main loop, every turn; does not block.
-  virtual void light(bool on) = 0;
-
- protected:
-  ~StatusLed() = default;
-};
+/// The status LED.
+///
+///     void light(bool on)
+///         Main loop, every turn; does not block.
+///
+/// Whether `T` offers that.
+template <class T, class = void>
+constexpr bool kIsStatusLed = false;
+template <class T>
+constexpr bool
+    kIsStatusLed<T, std::void_t<Returns<void, decltype(std::declval<T&>().light(Exactly<bool>()))>>> = true;
 
 }  // namespace ex9000::hal

@@ -1,6 +1,10 @@
 #pragma once
 
+#include <type_traits>
+#include <utility>
+
 #include "firmware/time.hpp"
+#include "hal/promise.hpp"
 
 namespace ex9000::hal {
 
@@ -11,13 +15,14 @@ constexpr Duration kTickPeriod = milliseconds(10);
 
 /// A periodic interrupt that calls `Device::on_tick`: the sign of life that the hardware watchdog waits for
 /// beside the main loop's.
-class Tick {
- public:
-  /// From now on, every `kTickPeriod`. Main loop, once after reset; does not block.
-  virtual void start() = 0;
-
- protected:
-  ~Tick() = default;
-};
+///
+///     void start()
+///         From now on, every `kTickPeriod`. Main loop, once after reset; does not block.
+///
+/// Whether `T` offers that.
+template <class T, class = void>
+constexpr bool kIsTick = false;
+template <class T>
+constexpr bool kIsTick<T, std::void_t<Returns<void, decltype(std::declval<T&>().start())>>> = true;
 
 }  // namespace ex9000::hal

@@ -1,6 +1,10 @@
 #pragma once
 
+#include <type_traits>
+#include <utility>
+
 #include "firmware/time.hpp"
+#include "hal/promise.hpp"
 
 namespace ex9000::hal {
 
@@ -8,13 +12,14 @@ namespace ex9000::hal {
 constexpr Duration kWatchdogPeriod = milliseconds(1600);
 
 /// The MCU's own watchdog. It runs from the first `feed` on and cannot be stopped.
-class Watchdog {
- public:
-  /// Gives the module another `kWatchdogPeriod` at most. Main loop; does not block.
-  virtual void feed() = 0;
-
- protected:
-  ~Watchdog() = default;
-};
+///
+///     void feed()
+///         Gives the module another `kWatchdogPeriod` at most. Main loop; does not block.
+///
+/// Whether `T` offers that.
+template <class T, class = void>
+constexpr bool kIsWatchdog = false;
+template <class T>
+constexpr bool kIsWatchdog<T, std::void_t<Returns<void, decltype(std::declval<T&>().feed())>>> = true;
 
 }  // namespace ex9000::hal

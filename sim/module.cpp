@@ -12,9 +12,9 @@ SimulatedModule::Mcu::Mcu(SimulatedModule& module)
       wake_timer(module.clock_),
       tick(module.clock_),
       watchdog(module.clock_),
-      board{module.clock_,   line,           silence_timer,       wake_timer,  module.inputs_,
-            module.outputs_, module.memory_, module.init_switch_, module.led_, watchdog},
-      device(module.model_, module.timing_at_, board) {}
+      device(module.model_, module.timing_at_,
+             {module.clock_, line, silence_timer, wake_timer, module.inputs_, module.outputs_, module.memory_,
+              module.init_switch_, module.led_, watchdog}) {}
 
 SimulatedModule::SimulatedModule(Bus& bus, const Model& model, TimingAt timing_at)
     : clock_(bus.clock()),
@@ -176,7 +176,7 @@ void SimulatedModule::receive(std::uint8_t byte, ByteStatus status) {
     mcu_->device.on_silence();  // see hal::SilenceTimer
   }
   mcu_->device.on_receive(byte, status);
-  if (mcu_->device.news()) {
+  if (mcu_->device.has_work()) {
     turn();
   }
 }
@@ -188,7 +188,7 @@ void SimulatedModule::turn() {
   }
   do {
     mcu_->device.poll_panel();
-  } while (mcu_->device.turn() || mcu_->device.news());
+  } while (mcu_->device.turn() || mcu_->device.has_work());
 }
 
 }  // namespace ex9000::sim

@@ -9,7 +9,6 @@
 
 #include "firmware/model/model.hpp"
 #include "firmware/settings/settings.hpp"
-#include "hal/board.hpp"
 #include "hal/device.hpp"
 #include "hal/doubles/init_switch.hpp"
 #include "hal/doubles/inputs.hpp"
@@ -96,6 +95,20 @@ class SimulatedModule final : public Station {
   void receive(std::uint8_t byte, ByteStatus status) override;
 
  private:
+  /// See hal/board.hpp.
+  struct Board {
+    VirtualClock& clock;
+    hal::doubles::SerialLine& line;
+    hal::doubles::SilenceTimer& silence_timer;
+    hal::doubles::WakeTimer& wake_timer;
+    hal::doubles::Inputs& inputs;
+    hal::doubles::Outputs& outputs;
+    hal::doubles::Memory& memory;
+    hal::doubles::InitSwitch& init_switch;
+    hal::doubles::StatusLed& status_led;
+    hal::doubles::Watchdog& watchdog;
+  };
+
   /// What loses its state at a reset.
   struct Mcu {
     explicit Mcu(SimulatedModule& module);
@@ -105,8 +118,7 @@ class SimulatedModule final : public Station {
     hal::doubles::WakeTimer wake_timer;
     hal::doubles::Tick tick;
     hal::doubles::Watchdog watchdog;
-    hal::Board board;
-    hal::Device<hal::Board> device;
+    hal::Device<Board> device;
   };
 
   void follow_supply();

@@ -39,8 +39,10 @@ using WakeTimer = OneShotTimer<2, kMegahertz>;
 using Line = Uart<kUart, kHertz, kDriverEnable, LineEndTimer>;
 using Eeprom = hal::At24c<I2c<kFamily, kHertz>>;
 using Watchdog = HardwareWatchdog<kMegahertz>;
+static_assert(hal::kIsTick<Clock>, "the clock does not offer what hal/tick.hpp says");
+static_assert(hal::kIsSilenceTimer<LineEndTimer>, "no one-shot timer");
 
-/// See hal::Board.
+/// See hal/board.hpp.
 struct Board {
   Clock clock;
   Line line;
@@ -185,7 +187,7 @@ int main() {
   for (;;) {
     while (device.turn()) {
     }
-    Interrupts::sleep_until([] { return device.news(); });
+    Interrupts::sleep_until([] { return device.has_work(); });
   }
 }
 // NOLINTEND(cert-dcl59-cpp,google-build-namespaces,misc-definitions-in-headers)

@@ -12,13 +12,15 @@
 
 namespace ex9000::hal {
 
-/// 8 KiB in pages of 32 bytes; see hal::Memory for what it offers. `Master`: see I2cTransfer.
+/// 8 KiB in pages of 32 bytes; see hal/memory.hpp for what it offers. `Master`: see I2cTransfer.
 ///
 /// While it programs a page it answers to nothing, which is how its end is found. It is read with STOP
 /// between the address and the data: its address counter keeps that, and a START in the middle of a transfer
 /// is nothing that every master can do.
 template <class Master>
 class At24c {
+  static_assert(kIsI2cMaster<Master>, "Master does not offer what hal/i2c_master.hpp says");
+
  public:
   Master& master() { return master_; }
 
@@ -32,8 +34,8 @@ class At24c {
     begin(Step::Writing, address, now);
   }
 
-  bool go_on(Time now) {
-    const bool again = master_.go_on(now);
+  bool poll(Time now) {
+    const bool again = master_.poll(now);
     if (step_ != Step::Idle && !master_.busy()) {
       next(now);
     }

@@ -25,13 +25,13 @@ class Interrupts {
     kSetEnable.write(Bits<SetEnable>(numbers));
   }
 
-  /// Sleeps until `news()`; interrupts that bring none are served meanwhile. Main loop. They are held back
-  /// only between the question and the sleep, so that none comes in between unseen; one that waits ends the
-  /// sleep all the same.
-  template <class News>
-  static void sleep_until(News news) {
+  /// Sleeps until `has_work()`; interrupts that bring none are served meanwhile. Main loop. They are held
+  /// back only between the question and the sleep, so that none comes in between unseen; one that waits ends
+  /// the sleep all the same.
+  template <class HasWork>
+  static void sleep_until(HasWork has_work) {
     processor::hold_interrupts();
-    while (!news()) {
+    while (!has_work()) {
       processor::wait_for_interrupt();
       processor::release_interrupts();
       processor::hold_interrupts();

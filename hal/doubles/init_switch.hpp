@@ -4,13 +4,14 @@
 
 namespace ex9000::hal::doubles {
 
-class InitSwitch final : public hal::InitSwitch {
+class InitSwitch {
  public:
-  [[nodiscard]] bool asserted() const override { return asserted_; }
+  [[nodiscard]] bool asserted() const { return asserted_; }
   void set(bool asserted) { asserted_ = asserted; }
 
  private:
   bool asserted_ = false;
 };
+static_assert(kIsInitSwitch<InitSwitch>);
 
 }  // namespace ex9000::hal::doubles

@@ -4,9 +4,9 @@
 
 namespace ex9000::hal::doubles {
 
-class Inputs final : public hal::Inputs {
+class Inputs {
  public:
-  std::uint16_t start() override { return levels_; }
+  std::uint16_t start() { return levels_; }
   [[nodiscard]] std::uint16_t levels() const { return levels_; }
   [[nodiscard]] bool level(unsigned channel) const { return (levels_ >> channel & 1U) != 0; }
 
@@ -21,5 +21,6 @@ class Inputs final : public hal::Inputs {
  private:
   std::uint16_t levels_ = 0;
 };
+static_assert(kIsInputs<Inputs>);
 
 }  // namespace ex9000::hal::doubles

@@ -13,7 +13,7 @@ namespace ex9000::hal::doubles {
 
 /// An AT24C64 as the core sees it: 8 KiB, erased to FF, on a 100 kHz bus, 5 ms to program a page. Loses power
 /// in the middle of a job if told so.
-class Memory final : public hal::Memory {
+class Memory {
  public:
   static constexpr std::size_t kSize = 8192;
   static constexpr std::size_t kPage = 32;
@@ -22,12 +22,12 @@ class Memory final : public hal::Memory {
 
   explicit Memory(const VirtualClock& clock) : clock_(clock), contents_(kSize, 0xFF) {}
 
-  void start_read(std::uint16_t address, MutableBytes destination, Time now) override;
-  void start_write(std::uint16_t address, Bytes source, Time now) override;
+  void start_read(std::uint16_t address, MutableBytes destination, Time now);
+  void start_write(std::uint16_t address, Bytes source, Time now);
   /// The virtual clock does: `run`.
-  bool go_on(Time /*now*/) override { return false; }
-  [[nodiscard]] bool busy() const override { return ends_ != kNever; }
-  [[nodiscard]] bool succeeded() const override { return succeeded_; }
+  bool poll(Time /*now*/) { return false; }
+  [[nodiscard]] bool busy() const { return ends_ != kNever; }
+  [[nodiscard]] bool succeeded() const { return succeeded_; }
 
   [[nodiscard]] VirtualTime next() const { return ends_; }
   void run();
@@ -70,5 +70,6 @@ class Memory final : public hal::Memory {
   VirtualTime ends_ = kNever;
   std::uint64_t writes_ = 0;
 };
+static_assert(kIsMemory<Memory>);
 
 }  // namespace ex9000::hal::doubles

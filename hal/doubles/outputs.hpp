@@ -7,9 +7,9 @@
 
 namespace ex9000::hal::doubles {
 
-class Outputs final : public hal::Outputs {
+class Outputs {
  public:
-  void drive(std::uint16_t channels) override {
+  void drive(std::uint16_t channels) {
     if (channels != channels_) {
       channels_ = channels;
       if (on_change_) {
@@ -26,5 +26,6 @@ class Outputs final : public hal::Outputs {
   std::uint16_t channels_ = 0;
   std::function<void(std::uint16_t)> on_change_;
 };
+static_assert(kIsOutputs<Outputs>);
 
 }  // namespace ex9000::hal::doubles

@@ -23,7 +23,7 @@ class Wire {
 };
 
 /// A UART that sends at exactly its rate. What it receives is handed to the device by whoever owns the wire.
-class SerialLine final : public hal::SerialLine {
+class SerialLine {
  public:
   /// Driver on before the first start bit, and after the last stop bit: like a register write or two; that
   /// is, where it is not made to go off late.
@@ -32,9 +32,9 @@ class SerialLine final : public hal::SerialLine {
 
   SerialLine(VirtualClock& clock, Wire& wire) : clock_(clock), wire_(wire) {}
 
-  void open(std::uint32_t baud) override { baud_ = baud; }
-  void send(Bytes bytes) override;
-  [[nodiscard]] bool sending() const override { return driving_; }
+  void open(std::uint32_t baud) { baud_ = baud; }
+  void send(Bytes bytes);
+  [[nodiscard]] bool sending() const { return driving_; }
 
   /// 0 until it is opened.
   [[nodiscard]] std::uint32_t baud() const { return baud_; }
@@ -58,5 +58,6 @@ class SerialLine final : public hal::SerialLine {
   VirtualTime over_ = kNever;  ///< when the driver should go off, once the last byte is under way
   VirtualTime late_by_{0};
 };
+static_assert(kIsSerialLine<SerialLine>);
 
 }  // namespace ex9000::hal::doubles

@@ -5,11 +5,11 @@
 
 namespace ex9000::hal::doubles {
 
-class SilenceTimer final : public hal::SilenceTimer {
+class SilenceTimer {
  public:
   explicit SilenceTimer(const VirtualClock& clock) : clock_(clock) {}
 
-  void restart(Duration after) override { fires_ = clock_.when(after); }
+  void restart(Duration after) { fires_ = clock_.when(after); }
 
   [[nodiscard]] VirtualTime next() const { return fires_; }
   /// Whether it fires now; then call the interrupt.
@@ -25,5 +25,6 @@ class SilenceTimer final : public hal::SilenceTimer {
   const VirtualClock& clock_;
   VirtualTime fires_ = kNever;
 };
+static_assert(kIsSilenceTimer<SilenceTimer>);
 
 }  // namespace ex9000::hal::doubles

@@ -7,9 +7,9 @@
 
 namespace ex9000::hal::doubles {
 
-class StatusLed final : public hal::StatusLed {
+class StatusLed {
  public:
-  void light(bool on) override {
+  void light(bool on) {
     if (on != lit_) {
       lit_ = on;
       if (on_change_) {
@@ -26,5 +26,6 @@ class StatusLed final : public hal::StatusLed {
   bool lit_ = false;
   std::function<void(bool)> on_change_;
 };
+static_assert(kIsStatusLed<StatusLed>);
 
 }  // namespace ex9000::hal::doubles

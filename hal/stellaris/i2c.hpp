@@ -30,7 +30,7 @@ class I2c {
     }
   }
 
-  bool go_on(Time now) {
+  bool poll(Time now) {
     switch (step_) {
       case Step::Idle:
         return false;

@@ -30,7 +30,7 @@ class Uart {
   /// The driver off. Once, before `open`.
   static void start() { Gpio(driver_enable.port).make_output(driver_enable.mask(), 0); }
 
-  // --- main loop; see hal::SerialLine ---
+  // --- main loop; see hal/serial_line.hpp ---
 
   void open(std::uint32_t baud) {
     constexpr std::uint32_t kBitsACharacter = 10;
@@ -69,7 +69,7 @@ class Uart {
     } else if (why.has(kWasTransmitted)) {
       kInterruptClear.write(kTransmittedClear);
       take_echo();
-      go_on_sending();
+      send_next();
     }
   }
 
@@ -142,7 +142,7 @@ class Uart {
   }
 
   /// The byte before has left the holding register for the shift register.
-  void go_on_sending() {
+  void send_next() {
     Bytes& rest = rest_.in_interrupt();
     if (rest.size != 0) {
       kData.write(Bits<Data>(rest[0]));

@@ -62,7 +62,7 @@ class ModuleTurns : public testing::Test {
     const Bytes reply = module_.take_reply(now_);
     return {reply.begin(), reply.end()};
   }
-  bool wants_to_go_on() { return module_.idle_for(now_, kLong) == Duration(); }
+  bool wants_to_be_called_again() { return module_.idle_for(now_, kLong) == Duration(); }
 
   Module module_{*find_model("EX9043D")};
   Time now_;
@@ -91,9 +91,9 @@ TEST_F(ModuleTurns, ItIsAtRestUnlessARequestWaitsIsStoredOrIsAnswered) {
 TEST_F(ModuleTurns, AReplyThatIsReadyWantsToBeTaken) {
   put("$01M");
   module_.step(now_);
-  EXPECT_TRUE(wants_to_go_on());
+  EXPECT_TRUE(wants_to_be_called_again());
   EXPECT_EQ(take_reply(), "!019043D\r");
-  EXPECT_FALSE(wants_to_go_on());
+  EXPECT_FALSE(wants_to_be_called_again());
 }
 
 // wire.md D18.
@@ -105,11 +105,11 @@ TEST_F(ModuleTurns, TheNextReplyLeavesASilenceBehindThisOneThoughNobodyLooksArou
   module_.reply_sent(now_);
   module_.step(now_);
   EXPECT_EQ(take_reply(), "");
-  EXPECT_FALSE(wants_to_go_on());
+  EXPECT_FALSE(wants_to_be_called_again());
   pass(kCharacter);
   EXPECT_EQ(take_reply(), "");
   pass(Duration(2));
-  EXPECT_TRUE(wants_to_go_on());
+  EXPECT_TRUE(wants_to_be_called_again());
   EXPECT_EQ(take_reply(), "!01D01.00\r");
 }
 
@@ -117,10 +117,10 @@ TEST_F(ModuleTurns, WhatTheMemoryHasDoneWantsToBeGoneOnWith) {
   put("~01Opump");
   module_.step(now_);
   while (module_.needs_memory()) {
-    EXPECT_FALSE(wants_to_go_on());
+    EXPECT_FALSE(wants_to_be_called_again());
     do_memory_job();
   }
-  EXPECT_TRUE(wants_to_go_on());
+  EXPECT_TRUE(wants_to_be_called_again());
   module_.step(now_);
   EXPECT_EQ(take_reply(), "!01\r");
 }
@@ -138,16 +138,16 @@ TEST_F(ModuleTurns, ATimeoutWantsItsLightAtOnceAndToBeGoneOnWithOnceItIsStored) 
   pass(kUnitOfTimeout + milliseconds(1));
   module_.step(now_);
   ASSERT_TRUE(module_.state().settings.timeout_status);
-  EXPECT_TRUE(wants_to_go_on());
+  EXPECT_TRUE(wants_to_be_called_again());
   module_.poll_panel(false, now_);
-  EXPECT_FALSE(wants_to_go_on());
+  EXPECT_FALSE(wants_to_be_called_again());
   ASSERT_TRUE(module_.needs_memory());
   while (module_.needs_memory()) {
     do_memory_job();
   }
-  EXPECT_TRUE(wants_to_go_on());
+  EXPECT_TRUE(wants_to_be_called_again());
   module_.step(now_);
-  EXPECT_FALSE(wants_to_go_on());
+  EXPECT_FALSE(wants_to_be_called_again());
 }
 
 TEST(ModuleComesUp, OnceItsMemoryIsRead) {

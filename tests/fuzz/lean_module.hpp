@@ -49,7 +49,7 @@ struct Surroundings {
   std::array<std::uint8_t, 64> memory{};
 };
 
-/// The members of hal::Board.
+/// See hal/board.hpp.
 struct LeanBoard {
   explicit LeanBoard(Surroundings& surroundings)
       : clock{surroundings},
@@ -138,7 +138,7 @@ struct LeanBoard {
       began = around.now;
       ends = began + (size + kAddressing) * kByteOnBus + program;
     }
-    static bool go_on(Time /*now*/) { return false; }
+    static bool poll(Time /*now*/) { return false; }
     [[nodiscard]] bool busy() const { return ends != kNever; }
     [[nodiscard]] bool succeeded() const { return ok; }
     void finish() {
@@ -281,7 +281,7 @@ class LeanModule {
 
   /// After an interrupt that most often leaves the main loop nothing to do.
   void look() {
-    if (device_->news()) {
+    if (device_->has_work()) {
       main_loop();
     }
   }

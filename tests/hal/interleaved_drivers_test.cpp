@@ -109,13 +109,13 @@ unsigned give_up_a_byte_that_completes(unsigned completes) {
   I2cController controller;
   hal::stellaris::I2c<hal::stellaris::Family::Lm3s, 50'000'000> i2c;
   Time now(0);
-  const auto go_on_until_free = [&] {
-    for (int i = 0; i < 100 && i2c.go_on(now); ++i) {
+  const auto poll_until_free = [&] {
+    for (int i = 0; i < 100 && i2c.poll(now); ++i) {
       now = now + Duration(50);
     }
   };
   i2c.start();
-  go_on_until_free();
+  poll_until_free();
   const std::array<std::uint8_t, 3> bytes{1, 2, 3};
   hal::I2cTransfer transfer;
   transfer.header = {bytes.data(), bytes.size()};
@@ -127,17 +127,17 @@ unsigned give_up_a_byte_that_completes(unsigned completes) {
           Points::interrupt([&] { i2c.on_interrupt(); });
         }
       },
-      [&] { i2c.go_on(now); });
-  go_on_until_free();
+      [&] { i2c.poll(now); });
+  poll_until_free();
   if (i2c.busy()) {
     return points;  // it was in time, and the next byte is on its way
   }
   controller.bytes_begun = 0;
   i2c.begin(transfer, now);
-  i2c.go_on(now);
+  i2c.poll(now);
   EXPECT_EQ(controller.bytes_begun, 1U) << "at " << completes << ": the byte before was taken for this one";
   Points::interrupt([&] { i2c.on_interrupt(); });
-  i2c.go_on(now);
+  i2c.poll(now);
   EXPECT_EQ(controller.bytes_begun, 2U) << "at " << completes;
   return points;
 }
@@ -156,7 +156,7 @@ TEST(I2c, AByteThatIsToldToBeOverAndIsNotIsGivenUpInTheEnd) {
   hal::stellaris::I2c<hal::stellaris::Family::Lm3s, 50'000'000> i2c;
   Time now(0);
   i2c.start();
-  while (i2c.go_on(now)) {
+  while (i2c.poll(now)) {
     now = now + Duration(50);
   }
   const std::array<std::uint8_t, 3> bytes{1, 2, 3};
@@ -165,10 +165,10 @@ TEST(I2c, AByteThatIsToldToBeOverAndIsNotIsGivenUpInTheEnd) {
   i2c.begin(transfer, now);
   controller.busy = true;
   Points::interrupt([&] { i2c.on_interrupt(); });
-  i2c.go_on(now);
+  i2c.poll(now);
   EXPECT_TRUE(i2c.busy());
   EXPECT_EQ(controller.bytes_begun, 1U);
-  i2c.go_on(now + milliseconds(4));
+  i2c.poll(now + milliseconds(4));
   EXPECT_FALSE(i2c.busy());
   EXPECT_EQ(i2c.result(), hal::I2cResult::Failed);
 }

@@ -196,7 +196,7 @@ class Bench {
     }
   }
 
-  [[nodiscard]] bool has_to_turn() const { return turns_again_ || device_.news(); }
+  [[nodiscard]] bool has_to_turn() const { return turns_again_ || device_.has_work(); }
   void turn_until_idle() {
     serve_pending();
     while (has_to_turn()) {

@@ -116,7 +116,7 @@ class Bench {
   void turn(Instant end = kNever) {
     woken_ = false;
     const std::uint64_t before = mcu->accesses();
-    const bool again = driver->go_on(now());
+    const bool again = driver->poll(now());
     EXPECT_LE(mcu->accesses() - before, kMostAccessesATurn);
     const Instant next_tick =
         std::min(end, wires->timeline.now() + (again ? Instant(microseconds(2)) : Instant(milliseconds(1))));

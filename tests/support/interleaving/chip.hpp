@@ -210,14 +210,14 @@ class Memory {
     source_ = {};
     begin();
   }
-  /// What is to be written is looked at from `go_on` on.
+  /// What is to be written is looked at from `poll` on.
   void start_write(std::uint16_t address, Bytes source, Time /*now*/) {
     Points::pass();
     address_ = address;
     source_ = source;
     begin();
   }
-  bool go_on(Time /*now*/) {
+  bool poll(Time /*now*/) {
     std::copy(source_.begin(), source_.end(), contents.begin() + address_);
     source_ = {};
     return false;

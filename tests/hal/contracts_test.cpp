@@ -1,0 +1,204 @@
+// What hal/ promises is checked by the compiler: a driver that lacks a function, or has another one of that
+// name, is refused.
+#include <gtest/gtest.h>
+
+#include "hal/board.hpp"
+#include "hal/i2c_master.hpp"
+#include "hal/tick.hpp"
+
+namespace ex9000::hal {
+namespace {
+
+/// A member of each kind as it should be, and ways in which each is not.
+struct RightClock {
+  [[nodiscard]] static Time now();
+  [[nodiscard]] static Time now_in_interrupt();
+};
+struct ClockWithoutItsSecond {
+  [[nodiscard]] static Time now();
+};
+struct ClockThatCannotBeConst {
+  Time now();
+  Time now_in_interrupt();
+};
+struct ClockOfPlainNumbers {
+  [[nodiscard]] static std::uint32_t now();
+  [[nodiscard]] static std::uint32_t now_in_interrupt();
+};
+static_assert(kIsClock<RightClock>);
+static_assert(!kIsClock<ClockWithoutItsSecond>);
+static_assert(!kIsClock<ClockThatCannotBeConst>);
+static_assert(!kIsClock<ClockOfPlainNumbers>);
+
+struct RightLine {
+  static void open(std::uint32_t baud);
+  static void send(Bytes bytes);
+  [[nodiscard]] static bool sending();
+};
+struct LineOfNarrowRates {
+  static void open(std::uint16_t baud);
+  static void send(Bytes bytes);
+  [[nodiscard]] static bool sending();
+};
+struct LineThatWritesWhatItSends {
+  static void open(std::uint32_t baud);
+  static void send(MutableBytes bytes);
+  [[nodiscard]] static bool sending();
+};
+static_assert(kIsSerialLine<RightLine>);
+static_assert(!kIsSerialLine<LineOfNarrowRates>);
+static_assert(!kIsSerialLine<LineThatWritesWhatItSends>);
+
+struct RightTimer {
+  static void restart(Duration after);
+};
+struct TimerThatTakesByReference {
+  static void restart(const Duration& after);
+};
+struct TimerOfPlainNumbers {
+  static void restart(std::uint32_t microseconds);
+};
+struct TimerThatReturnsSomething {
+  static bool restart(Duration after);
+};
+static_assert(kIsSilenceTimer<RightTimer> && kIsWakeTimer<RightTimer>);
+static_assert(kIsSilenceTimer<TimerThatTakesByReference>);
+static_assert(!kIsSilenceTimer<TimerOfPlainNumbers> && !kIsWakeTimer<TimerOfPlainNumbers>);
+static_assert(!kIsSilenceTimer<TimerThatReturnsSomething> && !kIsWakeTimer<TimerThatReturnsSomething>);
+
+struct RightTick {
+  static void start();
+};
+struct TickOfAnyPeriod {
+  static void start(Duration period);
+};
+static_assert(kIsTick<RightTick>);
+static_assert(!kIsTick<TickOfAnyPeriod>);
+
+struct RightInputs {
+  static std::uint16_t start();
+};
+struct InputsOfAByte {
+  static std::uint8_t start();
+};
+static_assert(kIsInputs<RightInputs>);
+static_assert(!kIsInputs<InputsOfAByte>);
+
+struct RightOutputs {
+  static void drive(std::uint16_t channels);
+};
+struct OutputsOfAByte {
+  static void drive(std::uint8_t channels);
+};
+struct OutputsOfAWord {
+  static void drive(std::uint32_t channels);
+};
+static_assert(kIsOutputs<RightOutputs>);
+static_assert(!kIsOutputs<OutputsOfAByte>);
+static_assert(!kIsOutputs<OutputsOfAWord>);
+
+struct RightMemory {
+  static void start_read(std::uint16_t address, MutableBytes destination, Time now);
+  static void start_write(std::uint16_t address, Bytes source, Time now);
+  static bool poll(Time now);
+  [[nodiscard]] static bool busy();
+  [[nodiscard]] static bool succeeded();
+};
+struct MemoryThatIsNotPolled : RightMemory {
+  static void poll(Time now);
+};
+struct MemoryWithItsArgumentsTheOtherWayRound : RightMemory {
+  static void start_write(Bytes source, std::uint16_t address, Time now);
+};
+static_assert(kIsMemory<RightMemory>);
+static_assert(!kIsMemory<MemoryThatIsNotPolled>);
+static_assert(!kIsMemory<MemoryWithItsArgumentsTheOtherWayRound>);
+
+struct RightSwitch {
+  [[nodiscard]] static bool asserted();
+};
+struct SwitchOfANumber {
+  [[nodiscard]] static int asserted();
+};
+static_assert(kIsInitSwitch<RightSwitch>);
+static_assert(!kIsInitSwitch<SwitchOfANumber>);
+
+struct RightLed {
+  static void light(bool on);
+};
+struct LedOfBrightness {
+  static void light(int brightness);
+};
+static_assert(kIsStatusLed<RightLed>);
+static_assert(!kIsStatusLed<LedOfBrightness>);
+
+struct RightWatchdog {
+  static void feed();
+};
+struct HiddenWatchdog {
+ private:
+  static void feed();
+};
+static_assert(kIsWatchdog<RightWatchdog>);
+static_assert(!kIsWatchdog<HiddenWatchdog>);
+
+struct RightMaster {
+  static void begin(const I2cTransfer& transfer, Time now);
+  static bool poll(Time now);
+  [[nodiscard]] static bool busy();
+  [[nodiscard]] static I2cResult result();
+};
+struct MasterWithoutAResult : RightMaster {
+  [[nodiscard]] static bool result();
+};
+static_assert(kIsI2cMaster<RightMaster>);
+static_assert(!kIsI2cMaster<MasterWithoutAResult>);
+
+struct RightBoard {
+  RightClock clock;
+  RightLine line;
+  RightTimer silence_timer;
+  RightTimer wake_timer;
+  RightInputs inputs;
+  RightOutputs outputs;
+  RightMemory memory;
+  RightSwitch init_switch;
+  RightLed status_led;
+  RightWatchdog watchdog;
+};
+struct BoardThatRefers {
+  RightClock& clock;
+  RightLine& line;
+  RightTimer& silence_timer;
+  RightTimer& wake_timer;
+  RightInputs& inputs;
+  RightOutputs& outputs;
+  RightMemory& memory;
+  RightSwitch& init_switch;
+  RightLed& status_led;
+  RightWatchdog& watchdog;
+};
+struct BoardOfNarrowOutputs : RightBoard {
+  OutputsOfAByte outputs;
+};
+struct BoardWithoutAWatchdog {
+  RightClock clock;
+  RightLine line;
+  RightTimer silence_timer;
+  RightTimer wake_timer;
+  RightInputs inputs;
+  RightOutputs outputs;
+  RightMemory memory;
+  RightSwitch init_switch;
+  RightLed status_led;
+};
+static_assert(kIsBoard<RightBoard>);
+static_assert(is_board<RightBoard>());
+static_assert(kIsBoard<BoardThatRefers>);
+static_assert(!kIsBoard<BoardOfNarrowOutputs>);
+static_assert(!kIsBoard<BoardWithoutAWatchdog>);
+
+TEST(Contracts, AreCheckedByTheCompiler) { SUCCEED() << "this test has been compiled"; }
+
+}  // namespace
+}  // namespace ex9000::hal
