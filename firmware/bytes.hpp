@@ -26,6 +26,13 @@ struct Bytes {
   [[nodiscard, gnu::always_inline]] constexpr std::uint16_t word(std::size_t offset) const {
     return static_cast<std::uint16_t>((data[offset] << 8U) | data[offset + 1]);
   }
+  /// 16 and 32 bits at `offset`, low byte first, as settings are stored.
+  [[nodiscard]] constexpr std::uint16_t low_byte_first_16(std::size_t offset) const {
+    return static_cast<std::uint16_t>(data[offset] | (data[offset + 1] << 8U));
+  }
+  [[nodiscard]] constexpr std::uint32_t low_byte_first_32(std::size_t offset) const {
+    return low_byte_first_16(offset) | (std::uint32_t{low_byte_first_16(offset + 2)} << 16U);
+  }
 };
 
 /// View of memory that somebody else fills.

@@ -85,7 +85,6 @@ class Module {
   [[nodiscard]] bool needs_memory() const { return keeper_.busy(); }
   /// What to do with the memory, while it is needed; the same until `memory_done`.
   [[nodiscard]] MemoryJob memory_job() { return keeper_.job(); }
-  void memory_started() { keeper_.started(); }
   void memory_done(bool ok) { keeper_.done(ok); }
 
   /// The reply to send now; empty: none, or not yet. It lives until `reply_sent`.

@@ -189,7 +189,6 @@ class Device {
       board_.memory.start_write(job.address, {job.bytes.data, job.bytes.size}, now);
     }
     memory_job_under_way_ = true;
-    module_.memory_started();
   }
 
   /// For what is due before the next tick. A turn that takes some time makes it late by that, and no more.

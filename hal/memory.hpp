@@ -21,8 +21,7 @@ constexpr Duration kMemoryPollPeriod = milliseconds(1);
 ///         does not block. `destination` lives until then.
 ///     void start_write(std::uint16_t address, Bytes source, Time now)
 ///         Begins to write; the job never crosses a 32-byte page. Ends when the memory has programmed the
-///         bytes, not when it has taken them. `source` is read from the next call of `poll` on, not before:
-///         whoever starts the job may still complete it. Likewise.
+///         bytes, not when it has taken them. `source` lives until then. Likewise.
 ///     bool poll(Time now)
 ///         Continues the job. Main loop, behind every interrupt of the memory, and every `kMemoryPollPeriod`;
 ///         does not block. True: must be called again at once, no interrupt will tell when.

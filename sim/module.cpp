@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "firmware/settings/record.hpp"
+#include "firmware/settings/places.hpp"
 
 namespace ex9000::sim {
 
@@ -122,9 +122,10 @@ void SimulatedModule::store(const Settings& settings) { memory_.contents() = mem
 std::vector<std::uint8_t> SimulatedModule::memory_image(const Model& model, const Settings& settings) {
   std::vector<std::uint8_t> image(hal::doubles::Memory::kSize, 0xFF);
   if (settings != Settings::factory(model)) {
-    Record record;
-    make_record(model, settings, 1, record);
-    std::copy(record.bytes.begin(), record.bytes.end(), image.begin());
+    RecordBytes record{};
+    write_record(model, settings, 1, record);
+    std::copy_n(record.begin(), record_size({record.data(), record.size()}),
+                image.begin() + kPlaces[0].address);
   }
   return image;
 }

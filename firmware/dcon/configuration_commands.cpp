@@ -34,9 +34,9 @@ Refusal set_configuration(Exchange& exchange) {
     return Refusal::NotPermitted;
   }
   SettingsChange& change = exchange.outcome.change();
-  change.address(new_address);
-  change.baud_code(new_baud_code);
-  change.format(new_format);
+  change.address = new_address;
+  change.baud_code = new_baud_code;
+  change.format = new_format;
   if (!exchange.state.in_force.init_mode) {
     exchange.outcome.request(Effect::TakeAddress);
   }
@@ -83,7 +83,7 @@ Refusal set_name(Exchange& exchange) {
       return Refusal::OutOfRange;
     }
   }
-  exchange.outcome.change().name(Name(exchange.args));
+  exchange.outcome.change().name = Name(exchange.args);
   put_valid(exchange);
   return Refusal::None;
 }
@@ -104,7 +104,7 @@ Refusal set_protocol(Exchange& exchange) {
   if (!exchange.state.configuration_permitted()) {
     return Refusal::NotPermitted;
   }
-  exchange.outcome.change().protocol(modbus ? Protocol::ModbusRtu : Protocol::Ascii);
+  exchange.outcome.change().protocol = modbus ? Protocol::ModbusRtu : Protocol::Ascii;
   put_valid(exchange);
   return Refusal::None;
 }

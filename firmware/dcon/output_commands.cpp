@@ -105,9 +105,9 @@ Refusal read_preset_value(Exchange& exchange) {
 
 Refusal store_preset_value(Exchange& exchange) {
   if (exchange.args[0] == 'P') {
-    exchange.outcome.change().power_on_value(exchange.state.outputs);
+    exchange.outcome.change().power_on_value = exchange.state.outputs;
   } else if (exchange.args[0] == 'S') {
-    exchange.outcome.change().safe_value(exchange.state.outputs);
+    exchange.outcome.change().safe_value = exchange.state.outputs;
   } else {
     return Refusal::OutOfRange;
   }

@@ -34,7 +34,7 @@ Refusal read_status(Exchange& exchange) {
 }
 
 Refusal clear_status(Exchange& exchange) {
-  exchange.outcome.change().timeout_status(false);
+  exchange.outcome.change().timeout_status = false;
   put_valid(exchange);
   return Refusal::None;
 }
@@ -52,8 +52,8 @@ Refusal set_watchdog(Exchange& exchange) {
     return Refusal::OutOfRange;
   }
   const bool enable = exchange.args[0] == '1';
-  exchange.outcome.change().watchdog_enabled(enable);
-  exchange.outcome.change().watchdog_timeout(static_cast<std::uint8_t>(timeout));
+  exchange.outcome.change().watchdog_enabled = enable;
+  exchange.outcome.change().watchdog_timeout = static_cast<std::uint8_t>(timeout);
   if (enable) {
     exchange.outcome.request(Effect::RestartHostWatchdog);
   }

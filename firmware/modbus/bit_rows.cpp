@@ -21,14 +21,14 @@ Refusal write_outputs(const State& /*state*/, BitWrite bits, Outcome& outcome) {
 std::uint16_t read_safe_value(const State& state) { return state.settings.safe_value; }
 
 Refusal write_safe_value(const State& state, BitWrite bits, Outcome& outcome) {
-  outcome.change().safe_value(merge(state.settings.safe_value, bits));
+  outcome.change().safe_value = merge(state.settings.safe_value, bits);
   return write_outputs(state, bits, outcome);
 }
 
 std::uint16_t read_power_on_value(const State& state) { return state.settings.power_on_value; }
 
 Refusal write_power_on_value(const State& state, BitWrite bits, Outcome& outcome) {
-  outcome.change().power_on_value(merge(state.settings.power_on_value, bits));
+  outcome.change().power_on_value = merge(state.settings.power_on_value, bits);
   return write_outputs(state, bits, outcome);
 }
 
@@ -41,7 +41,7 @@ std::uint16_t read_protocol(const State& state) {
 }
 
 Refusal write_protocol(const State& /*state*/, BitWrite bits, Outcome& outcome) {
-  outcome.change().protocol(bits.value != 0 ? Protocol::ModbusRtu : Protocol::Ascii);
+  outcome.change().protocol = bits.value != 0 ? Protocol::ModbusRtu : Protocol::Ascii;
   return Refusal::None;
 }
 
@@ -52,7 +52,7 @@ Refusal write_watchdog_enable(const State& state, BitWrite bits, Outcome& outcom
   if (enable && state.settings.watchdog_timeout == 0) {
     return Refusal::WrongValue;
   }
-  outcome.change().watchdog_enabled(enable);
+  outcome.change().watchdog_enabled = enable;
   if (enable) {
     outcome.request(Effect::RestartHostWatchdog);
   }
@@ -67,7 +67,7 @@ Refusal write_clear_latches(const State& /*state*/, BitWrite /*bits*/, Outcome& 
 std::uint16_t read_timeout_status(const State& state) { return state.settings.timeout_status ? 1 : 0; }
 
 Refusal write_clear_timeout_status(const State& /*state*/, BitWrite /*bits*/, Outcome& outcome) {
-  outcome.change().timeout_status(false);
+  outcome.change().timeout_status = false;
   return Refusal::None;
 }
 

@@ -146,7 +146,7 @@ Refusal vendor_function(Exchange& exchange) {
   if (!is_modbus_address(frame[kAddressAt])) {
     return Refusal::WrongValue;
   }
-  exchange.outcome.change().address(frame[kAddressAt]);
+  exchange.outcome.change().address = frame[kAddressAt];
   exchange.reply.put(kSetAddress);
   exchange.reply.put_word(0);
   exchange.reply.put_word(0);

@@ -16,14 +16,14 @@ std::uint16_t read_module_code(const State& state, unsigned index) {
 std::uint16_t read_address(const State& state, unsigned /*index*/) { return state.settings.address; }
 
 Refusal write_address(const State& /*state*/, std::uint16_t value, Outcome& outcome) {
-  outcome.change().address(static_cast<std::uint8_t>(value));
+  outcome.change().address = static_cast<std::uint8_t>(value);
   return Refusal::None;
 }
 
 std::uint16_t read_baud_code(const State& state, unsigned /*index*/) { return state.settings.baud_code; }
 
 Refusal write_baud_code(const State& /*state*/, std::uint16_t value, Outcome& outcome) {
-  outcome.change().baud_code(static_cast<std::uint8_t>(value));
+  outcome.change().baud_code = static_cast<std::uint8_t>(value);
   return Refusal::None;
 }
 
@@ -35,7 +35,7 @@ Refusal write_watchdog_timeout(const State& state, std::uint16_t value, Outcome&
   if (value == 0 && state.settings.watchdog_enabled) {
     return Refusal::WrongValue;
   }
-  outcome.change().watchdog_timeout(static_cast<std::uint8_t>(value));
+  outcome.change().watchdog_timeout = static_cast<std::uint8_t>(value);
   if (state.settings.watchdog_enabled) {
     outcome.request(Effect::RestartHostWatchdog);
   }

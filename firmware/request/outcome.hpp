@@ -74,7 +74,7 @@ class Outcome {
     counters_to_clear = 0;
     if (changes_settings_) {
       changes_settings_ = false;
-      change_.clear();
+      change_ = SettingsChange();
     }
   }
 

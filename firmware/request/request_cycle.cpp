@@ -26,7 +26,7 @@ const Outcome& RequestCycle::judge(Bytes frame) {
 
 void RequestCycle::keep_timeout_status() {
   if (phase_ == Phase::AwaitingStore || phase_ == Phase::Storing) {
-    exchange_.outcome.change().keep_timeout_status();
+    exchange_.outcome.change().timeout_status.reset();
   }
 }
 

@@ -1,104 +1,144 @@
 #include "firmware/settings/record.hpp"
 
-#include <cstddef>
-
-#include "firmware/model/built.hpp"
-#include "firmware/words.hpp"
+#include "firmware/settings/crc32.hpp"
 
 namespace ex9000 {
 
 namespace {
 
-static_assert(__BYTE_ORDER__ == __ORDER_LITTLE_ENDIAN__, "settings are stored as they lie");
+constexpr std::size_t kLayoutAt = 0;
+constexpr std::size_t kLengthAt = 1;
+constexpr std::size_t kSequenceAt = 2;
+constexpr std::size_t kSettingsAt = 4;
+constexpr std::size_t kCheckSize = 4;
+constexpr std::size_t kRoomForSettings = kRecordRoom - kSettingsAt - kCheckSize;
 
-constexpr std::size_t kSettingsWords = kWordsOf<Settings>;
-constexpr std::size_t kSequenceAt = sizeof(Settings);
-constexpr std::size_t kCheckedWords = kRecordCheckAt / 4;
-static_assert(kSequenceAt == 20 && kRecordCheckAt == 24, "as the header says");
+#define EX9000_ADD_SIZE(type, name, factory_value, possible) +sizeof(type)
+constexpr std::size_t kKnownSettings = 0 EX9000_SETTINGS(EX9000_ADD_SIZE);
+#undef EX9000_ADD_SIZE
+static_assert(sizeof(bool) == 1 && sizeof(Protocol) == 1 && sizeof(Name) == kMaxNameLength + 1,
+              "a setting takes as many bytes in a record as in the microcontroller");
+static_assert(kKnownSettings <= kRoomForSettings, "the settings do not fit in a record");
 
-constexpr std::uint32_t kLayout = 2;
+/// Puts settings into a record, one behind the other.
+class Encoder {
+ public:
+  explicit Encoder(std::uint8_t* to) : to_(to) {}
 
-/// Bit by bit: it is taken where settings are loaded or stored, which takes milliseconds.
-constexpr std::uint32_t crc32(std::uint32_t crc, std::uint32_t data, unsigned bits) {
-  constexpr std::uint32_t kReflectedPolynomial = 0xEDB8'8320;
-  crc ^= data;
-  for (; bits != 0; --bits) {
-    crc = (crc & 1U) != 0 ? (crc >> 1U) ^ kReflectedPolynomial : crc >> 1U;
+  void put(std::uint8_t value) { *to_++ = value; }
+  void put(bool value) { put(static_cast<std::uint8_t>(value ? 1 : 0)); }
+  void put(Protocol value) { put(static_cast<std::uint8_t>(value)); }
+  void put(std::uint16_t value) {
+    constexpr unsigned kBitsAByte = 8;
+    put(static_cast<std::uint8_t>(value));
+    put(static_cast<std::uint8_t>(value >> kBitsAByte));
   }
-  return crc;
-}
-
-constexpr std::uint32_t seed(const Model& model) {
-  std::uint32_t crc = 0xFFFF'FFFF;
-  for (const char character : model.designation) {
-    crc = crc32(crc, static_cast<std::uint8_t>(character), 8);
+  void put(std::uint32_t value) {
+    constexpr unsigned kBitsAHalf = 16;
+    put(static_cast<std::uint16_t>(value));
+    put(static_cast<std::uint16_t>(value >> kBitsAHalf));
   }
-  return crc;
-}
-
-std::uint32_t seed_of(const Model& model) {
-#ifdef EX9000_MODEL
-  static_cast<void>(model);
-  constexpr std::uint32_t kSeed = seed(kOnlyModel);
-  return kSeed;
-#else
-  return seed(model);
-#endif
-}
-
-std::uint32_t check_of(const Model& model, const Record& record) {
-  std::uint32_t crc = seed_of(model);
-  const Word* word = words_of(record);
-  for (std::size_t i = 0; i < kCheckedWords; ++i) {
-    crc = crc32(crc, *word++, 32);
+  void put(const Name& name) {
+    const Bytes characters = name.bytes();
+    for (std::size_t i = 0; i < kMaxNameLength; ++i) {
+      put(i < characters.size ? characters.data[i] : std::uint8_t{0});
+    }
+    put(static_cast<std::uint8_t>(characters.size));
   }
-  return ~crc;
-}
+
+ private:
+  std::uint8_t* to_;
+};
+
+/// Takes settings out of a record, in the same order. A setting that the record does not reach is left as it
+/// is.
+class Decoder {
+ public:
+  explicit Decoder(Bytes from) : from_(from) {}
+
+  template <class Value>
+  void take(Value& value) {
+    if (from_.size < sizeof value) {
+      from_.size = 0;
+      return;
+    }
+    decode(value);
+    from_.data += sizeof value;
+    from_.size -= sizeof value;
+  }
+  /// No byte had a value that its type does not have.
+  [[nodiscard]] bool valid() const { return valid_; }
+
+ private:
+  void decode(std::uint8_t& value) { value = from_.data[0]; }
+  void decode(bool& value) {
+    value = from_.data[0] != 0;
+    valid_ = valid_ && from_.data[0] <= 1;
+  }
+  void decode(Protocol& value) {
+    value = static_cast<Protocol>(from_.data[0]);
+    valid_ = valid_ && value <= Protocol::ModbusRtu;
+  }
+  void decode(std::uint16_t& value) { value = from_.low_byte_first_16(0); }
+  void decode(Name& value) {
+    const std::size_t length = from_.data[kMaxNameLength];
+    valid_ = valid_ && length <= kMaxNameLength;
+    value = Name(Bytes{from_.data, valid_ ? length : 0});
+  }
+
+  Bytes from_;
+  bool valid_ = true;
+};
 
 }  // namespace
 
-bool operator==(const Record& a, const Record& b) {
-  return same_words(words_of(a), words_of(b), kWordsOf<Record>);
-}
-
-void make_record(const Model& model, const Settings& settings, std::uint16_t sequence, Record& record) {
-  fill_record(settings, sequence, record);
-  seal_record(model, record);
-}
-
-void fill_record(const Settings& settings, std::uint16_t sequence, Record& record) {
-  reinterpret_cast<Settings&>(record) = settings;
-  words_of(record)[kSettingsWords] = sequence | (kLayout << 16U);
-}
-
-void seal_record(const Model& model, Record& record) {
-  words_of(record)[kCheckedWords] = check_of(model, record);
-}
-
-bool is_good(const Model& model, const Record& record) {
-  const Word* words = words_of(record);
-  if (words[kCheckedWords] != check_of(model, record) || words[kSettingsWords] >> 16U != kLayout ||
-      (record.bytes[offsetof(Settings, watchdog_enabled)] |
-       record.bytes[offsetof(Settings, timeout_status)]) > 1) {
-    return false;
+std::uint32_t settings_check(const Model& model, Bytes bytes) {
+  Crc32 crc;
+  for (const char character : model.designation) {
+    crc.add(static_cast<std::uint8_t>(character));
   }
-  return settings_in(record).possible_for(model);
-}
-
-const Settings& settings_in(const Record& record) { return *reinterpret_cast<const Settings*>(&record); }
-
-std::uint16_t sequence_in(const Record& record) {
-  return static_cast<std::uint16_t>(words_of(record)[kSettingsWords]);
-}
-
-bool is_blank(const Record& record) {
-  const Word* word = words_of(record);
-  for (std::size_t i = 0; i < kWordsOf<Record>; ++i) {
-    if (*word++ != 0xFFFF'FFFFU) {
-      return false;
-    }
+  for (const std::uint8_t byte : bytes) {
+    crc.add(byte);
   }
-  return true;
+  return crc.value();
+}
+
+void write_record(const Model& model, const Settings& settings, std::uint16_t sequence, RecordBytes& record) {
+  if (record[kLengthAt] < kKnownSettings) {
+    record[kLayoutAt] = kLayout;
+    record[kLengthAt] = kKnownSettings;
+  }
+  Encoder(&record[kSequenceAt]).put(sequence);
+  Encoder encoder(&record[kSettingsAt]);
+#define EX9000_ENCODE(type, name, factory_value, possible) encoder.put(settings.name);
+  EX9000_SETTINGS(EX9000_ENCODE)
+#undef EX9000_ENCODE
+  const std::size_t check_at = kSettingsAt + record[kLengthAt];
+  Encoder(&record[check_at]).put(settings_check(model, {record.data(), check_at}));
+}
+
+std::size_t record_size(Bytes beginning) {
+  const std::size_t length = beginning[kLengthAt];
+  const bool begins = beginning[kLayoutAt] == kLayout && length <= kRoomForSettings;
+  return begins ? kSettingsAt + length + kCheckSize : 0;
+}
+
+std::optional<StoredSettings> read_record(const Model& model, Bytes record) {
+  const std::size_t size = record_size(record);
+  if (size == 0 || size > record.size) {
+    return std::nullopt;
+  }
+  const Bytes checked = record.first(size - kCheckSize);
+  if (record.low_byte_first_32(checked.size) != settings_check(model, checked)) {
+    return std::nullopt;
+  }
+  StoredSettings stored{Settings::factory(model), {kLayout, record.low_byte_first_16(kSequenceAt)}};
+  Decoder decoder(checked.from(kSettingsAt));
+#define EX9000_DECODE(type, name, factory_value, possible) decoder.take(stored.settings.name);
+  EX9000_SETTINGS(EX9000_DECODE)
+#undef EX9000_DECODE
+  const bool good = decoder.valid() && stored.settings.possible_for(model);
+  return good ? std::optional(stored) : std::nullopt;
 }
 
 }  // namespace ex9000

@@ -1,62 +1,72 @@
-// Settings as they lie in the memory.
+// The settings as they lie in the memory.
 #pragma once
 
 #include <array>
+#include <cstddef>
 #include <cstdint>
+#include <optional>
 
+#include "firmware/bytes.hpp"
 #include "firmware/model/model.hpp"
 #include "firmware/settings/settings.hpp"
 
 namespace ex9000 {
 
-/// One copy of the settings. It fits one page of the EEPROM (32 bytes on an AT24C64), so that one page write
-/// stores it.
-///
-///     0      address
-///     1      baud code
-///     2      format
-///     3      protocol
-///     4      host watchdog timeout
-///     5      host watchdog enabled, 0 or 1
-///     6      timeout status, 0 or 1
-///     7      0
-///     8-14   name, filled up with 0
-///     15     length of the name
-///     16-17  power-on value, low byte first
-///     18-19  safe value
-///     20-21  sequence: the copy with the later one counts
-///     22-23  layout, 2
-///     24-27  CRC-32 (IEEE 802.3) over the model's designation and bytes 0 to 23, low byte first
-///
-/// The CRC begins with the designation, so that what another model has written never counts: its power-on
-/// value was meant for other outputs. It sees every difference within one word, and every one of two or three
-/// bits wherever they are; others slip through once in 2^32 times. A torn page is one of those; the sixteen
-/// bits of a CRC-16 would be too few.
-constexpr std::size_t kRecordSize = 28;
-constexpr std::size_t kRecordCheckAt = 24;
+/// What says which of several good copies counts.
+struct Edition {
+  std::uint8_t layout = 0;
+  std::uint16_t sequence = 0;
 
-struct alignas(4) Record {
-  std::array<std::uint8_t, kRecordSize> bytes{};
-
-  friend bool operator==(const Record& a, const Record& b);
+  /// A newer layout always counts over an older one. In one layout the later sequence number counts. The
+  /// numbers wrap: the later one is less than half the range ahead.
+  [[nodiscard]] constexpr bool counts_over(const Edition& other) const {
+    constexpr std::uint16_t kHalfRange = 0x8000;
+    const auto ahead = static_cast<std::uint16_t>(sequence - other.sequence);
+    return layout == other.layout ? ahead != 0 && ahead < kHalfRange : layout > other.layout;
+  }
 };
 
-void make_record(const Model& model, const Settings& settings, std::uint16_t sequence, Record& record);
-/// The same in two parts: all but the check, and the check.
-void fill_record(const Settings& settings, std::uint16_t sequence, Record& record);
-void seal_record(const Model& model, Record& record);
+/// What a good copy holds.
+struct StoredSettings {
+  Settings settings;
+  Edition edition;
+};
 
-/// False where layout or check is wrong, or where the model could not have stored this.
-bool is_good(const Model& model, const Record& record);
-/// Of a good one.
-const Settings& settings_in(const Record& record);
-std::uint16_t sequence_in(const Record& record);
-/// Sequence numbers wrap; the later one is less than half the range ahead.
-constexpr bool is_later(std::uint16_t a, std::uint16_t b) {
-  return static_cast<std::uint16_t>(a - b) - 1U < 0x7FFFU;
-}
+/// The check of stored settings: CRC-32 over the model's designation and `bytes`.
+std::uint32_t settings_check(const Model& model, Bytes bytes);
 
-/// Whether the memory was never written here: an erased EEPROM reads all FF.
-bool is_blank(const Record& record);
+/// The bytes that one copy of the settings may take; four pages of an AT24C64.
+constexpr std::size_t kRecordRoom = 128;
+
+/// One copy of the settings, layout 3:
+///
+///     0           layout, 3
+///     1           length n of the settings in bytes, 0 to 120
+///     2-3         sequence, low byte first
+///     4 to 3 + n  the settings in the order of EX9000_SETTINGS, without gaps: numbers with the low byte
+///     first, flags
+///                 and the protocol as 0 or 1, the name as seven characters, filled up with 0, and its length
+///     then        CRC-32 over the model's designation and all bytes before, low byte first
+///
+/// Settings are only appended. A record of older firmware is shorter: the settings that it lacks have their
+/// factory values. A record of newer firmware is longer: `write_record` keeps the bytes that this firmware
+/// does not know.
+///
+/// The CRC begins with the designation, so that settings of another model never count: their power-on value
+/// is meant for other outputs. It detects every difference within 32 bits, and every difference of two or
+/// three bits; another one, such as a record of which only some pages are new, passes once in 2^32 times.
+constexpr std::uint8_t kLayout = 3;
+using RecordBytes = std::array<std::uint8_t, kRecordRoom>;
+
+/// Makes `record` a good one. If it is a good one already, and longer, the bytes behind the known settings
+/// stay; otherwise it has to be all zeros.
+void write_record(const Model& model, const Settings& settings, std::uint16_t sequence, RecordBytes& record);
+
+/// The size of the record that begins with these four bytes or more; 0 if none begins there.
+std::size_t record_size(Bytes beginning);
+
+/// Nothing unless `record` begins with a whole and good record: layout, length and check are right, and the
+/// model could have stored these settings.
+std::optional<StoredSettings> read_record(const Model& model, Bytes record);
 
 }  // namespace ex9000

@@ -1,11 +1,10 @@
-// What a module remembers without power, and how a command changes it - wire.md section 8.
+// The settings: what a module remembers without power, and how a command changes it - wire.md section 8.
 #pragma once
 
 #include <array>
-#include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <string_view>
-#include <type_traits>
 
 #include "firmware/bytes.hpp"
 #include "firmware/model/baud.hpp"
@@ -44,6 +43,8 @@ class Name {
   static constexpr bool is_name_character(std::uint8_t byte) { return byte >= 0x20 && byte <= 0x7E; }
 
   [[nodiscard]] constexpr Bytes bytes() const { return {characters_.data(), length_}; }
+  /// 1 to `longest` characters, all of them allowed.
+  [[nodiscard]] bool is_possible(unsigned longest) const;
 
   friend constexpr bool operator==(const Name& a, const Name& b) {
     for (unsigned i = 0; i < kMaxNameLength; ++i) {
@@ -68,72 +69,58 @@ class Name {
 constexpr std::uint8_t kFactoryAddress = 1;
 constexpr std::uint8_t kFactoryWatchdogTimeout = 0xFF;
 
-/// In the order of the record that keeps them (record.hpp), and without gaps.
-struct alignas(4) Settings {
-  std::uint8_t address = 0;
-  std::uint8_t baud_code = 0;
-  std::uint8_t format = 0;  ///< FF: kFormatRisingEdge, kFormatChecksum
-  Protocol protocol = Protocol::Ascii;
-  std::uint8_t watchdog_timeout = 0;  ///< VV, in 0.1 s
-  bool watchdog_enabled = false;
-  bool timeout_status = false;  ///< the host watchdog has expired and nobody has cleared it
-  std::uint8_t unused = 0;
-  Name name;
-  std::uint16_t power_on_value = 0;  ///< bit n is output channel n
-  std::uint16_t safe_value = 0;
+/// Every setting, declared once: SETTING(type, name, factory value, whether a value is possible). The last
+/// two may use `model`, and the last one `value`. What members Settings and SettingsChange have, what is
+/// stored, and how, follows from this list. It is in the order in which a record holds the settings
+/// (record.hpp). A new setting is appended. None is ever removed, moved or given another type, because
+/// memories in the field hold them.
+///
+///     address           the module's own
+///     baud_code         CC (model/baud.hpp)
+///     format            FF: kFormatRisingEdge, kFormatChecksum
+///     protocol          spoken from the next reset on
+///     watchdog_timeout  of the host watchdog, VV, in 0.1 s
+///     watchdog_enabled  the host watchdog runs
+///     timeout_status    the host watchdog has expired and nobody has cleared that
+///     name              the module's name
+///     power_on_value    outputs from reset on; bit n is output channel n
+///     safe_value        outputs while the timeout status is set
+#define EX9000_SETTINGS(SETTING)                                                               \
+  SETTING(std::uint8_t, address, kFactoryAddress, true)                                        \
+  SETTING(std::uint8_t, baud_code, kFactoryBaudCode, is_baud_code(value))                      \
+  SETTING(std::uint8_t, format, 0, (value & ~kFormatMask) == 0)                                \
+  SETTING(Protocol, protocol, model.speaks_modbus() ? Protocol::ModbusRtu : Protocol::Ascii,   \
+          value == Protocol::Ascii || (value == Protocol::ModbusRtu && model.speaks_modbus())) \
+  SETTING(std::uint8_t, watchdog_timeout, kFactoryWatchdogTimeout, true)                       \
+  SETTING(bool, watchdog_enabled, false, true)                                                 \
+  SETTING(bool, timeout_status, false, true)                                                   \
+  SETTING(Name, name, Name(model.factory_name), value.is_possible(model.longest_name))         \
+  SETTING(std::uint16_t, power_on_value, 0, (value & ~model.output_mask()) == 0)               \
+  SETTING(std::uint16_t, safe_value, 0, (value & ~model.output_mask()) == 0)
 
-  /// Section 2: what a module comes with.
-  static constexpr Settings factory(const Model& model) {
-    Settings settings;
-    settings.address = kFactoryAddress;
-    settings.baud_code = kFactoryBaudCode;
-    settings.watchdog_timeout = kFactoryWatchdogTimeout;
-    settings.protocol = model.speaks_modbus() ? Protocol::ModbusRtu : Protocol::Ascii;
-    settings.name = Name(model.factory_name);
-    return settings;
-  }
+struct Settings {
+#define EX9000_MEMBER(type, name, factory_value, possible) type name{};
+  EX9000_SETTINGS(EX9000_MEMBER)
+#undef EX9000_MEMBER
 
-  /// Whether this model could ever have stored these.
+  /// wire.md section 2: the settings of a new module.
+  static Settings factory(const Model& model);
+
+  /// Whether this model could ever have stored these: each value is possible, and they fit each other.
   [[nodiscard]] bool possible_for(const Model& model) const;
 
   friend bool operator==(const Settings& a, const Settings& b);
   friend bool operator!=(const Settings& a, const Settings& b) { return !(a == b); }
 };
 
-static_assert(sizeof(Settings) == 20 && std::is_trivially_copyable<Settings>::value,
-              "they are compared, merged and stored as they lie");
+/// New values for some of the settings: what one command changes, all or nothing.
+struct SettingsChange {
+#define EX9000_MEMBER(type, name, factory_value, possible) std::optional<type> name{};
+  EX9000_SETTINGS(EX9000_MEMBER)
+#undef EX9000_MEMBER
 
-/// Some fields of the settings and their new values: what one command changes, all or nothing.
-class SettingsChange {
- public:
-  void address(std::uint8_t value) { set(offsetof(Settings, address), value); }
-  void baud_code(std::uint8_t value) { set(offsetof(Settings, baud_code), value); }
-  void format(std::uint8_t value) { set(offsetof(Settings, format), value); }
-  void protocol(Protocol value) { set(offsetof(Settings, protocol), static_cast<std::uint8_t>(value)); }
-  void name(const Name& value);
-  void power_on_value(std::uint16_t value) { set_word(offsetof(Settings, power_on_value), value); }
-  void safe_value(std::uint16_t value) { set_word(offsetof(Settings, safe_value), value); }
-  void watchdog_enabled(bool value) { set(offsetof(Settings, watchdog_enabled), value ? 1 : 0); }
-  void watchdog_timeout(std::uint8_t value) { set(offsetof(Settings, watchdog_timeout), value); }
-  void timeout_status(bool value) { set(offsetof(Settings, timeout_status), value ? 1 : 0); }
-  /// It does not name the timeout status any more.
-  void keep_timeout_status() { named_.bytes[offsetof(Settings, timeout_status)] = 0; }
-
-  /// It names nothing.
-  void clear();
-  /// `settings` with this change made; what it does not name stays.
+  /// `settings` with this change made; a setting without a new value stays as it is.
   [[nodiscard]] Settings applied_to(const Settings& settings) const;
-
- private:
-  void set(std::size_t at, std::uint8_t value);
-  void set_word(std::size_t at, std::uint16_t value);
-
-  // Byte by byte as the settings lie: FF where one is named, and its new value.
-  struct alignas(4) Image {
-    std::array<std::uint8_t, sizeof(Settings)> bytes{};
-  };
-  Image named_;
-  Image values_;
 };
 
 }  // namespace ex9000

@@ -19,7 +19,7 @@ void SettingsKeeper::poll(const Settings& in_force, Time now) {
     return;
   }
   end_own_save(now);
-  if (!may_differ_) {
+  if (!may_differ_ && !store_.doubtful()) {
     return;
   }
   const bool unsaved = in_force != stored();
@@ -41,7 +41,7 @@ void SettingsKeeper::poll(const Settings& in_force, Time now) {
 }
 
 void SettingsKeeper::end_own_save(Time now) {
-  if (own_save_ && !saved()) {
+  if (own_save_ && (!saved() || store_.doubtful())) {
     retry_.set(now + kRetry);
   }
   own_save_ = false;

@@ -9,8 +9,9 @@
 namespace ex9000 {
 
 /// Loads the settings at reset, and stores those of a command when it is asked to. What nobody asked for it
-/// stores by itself: a watchdog timeout, which changes settings at once, and a copy that may hold refused
-/// settings. That is retried every second until it succeeds (wire.md D15). Main loop only; nothing blocks.
+/// does by itself: it stores a watchdog timeout, which changes settings at once, and invalidates a copy that
+/// must not count. That is retried every second until it succeeds (wire.md D15). Main loop only; nothing
+/// blocks.
 class SettingsKeeper {
  public:
   explicit constexpr SettingsKeeper(const Model& model) : store_(model) {}
@@ -40,14 +41,13 @@ class SettingsKeeper {
   // --- the memory's side; see SettingsStore ---
 
   [[nodiscard]] MemoryJob job() { return store_.job(); }
-  void started() { store_.started(); }
   void done(bool ok) { store_.done(ok); }
 
  private:
   void end_own_save(Time now);
 
   SettingsStore store_;
-  bool may_differ_ = false;  ///< the settings in force may not be stored, or a copy is doubtful
+  bool may_differ_ = false;  ///< the settings in force may not be stored
   bool own_save_ = false;    ///< the store that is under way was not asked for by a command
   Deadline retry_;
 };

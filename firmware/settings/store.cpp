@@ -2,70 +2,33 @@
 
 namespace ex9000 {
 
-namespace {
+// --- jobs ---
 
-/// Apart by a page of the smallest pages that any supported EEPROM has, so that a torn page harms one copy
-/// only.
-constexpr std::uint16_t kCopyDistance = 32;
-static_assert(kRecordSize <= kCopyDistance, "a copy must fit one page");
-
-constexpr std::size_t kCheckBytes = kRecordSize - kRecordCheckAt;
-
-constexpr std::uint16_t address_of(std::uint8_t copy) {
-  return static_cast<std::uint16_t>(copy * kCopyDistance);
-}
-
-}  // namespace
-
-void SettingsStore::begin_reading(Step step) {
-  step_ = step;
-  copy_ = 0;
-  attempt_ = 0;
-  blank_copies_ = 0;
-  current_copy_ = kNoCopy;
-}
-
-void SettingsStore::begin_saving(const Settings& settings) {
-  fill_record(settings, static_cast<std::uint16_t>(sequence_ + 1U), record_);
-  if (found_ == Found::Unreadable) {
-    begin_reading(Step::LookAgain);
-  } else {
-    begin_writing();
-  }
-}
-
-void SettingsStore::begin_writing() {
-  copy_ = current_copy_ == 0 ? 1 : 0;
-  attempt_ = 0;
-  step_ = Step::Write;
+/// The bytes that one job reads or writes: up to the end of the page, or of the copy.
+std::size_t SettingsStore::page_size() const {
+  const std::size_t left = copy_size_ - done_;
+  return left < kMemoryPage ? left : kMemoryPage;
 }
 
 MemoryJob SettingsStore::job() {
   using Kind = MemoryJob::Kind;
-  const std::uint16_t address = address_of(copy_);
-  if (step_ == Step::Write) {
-    return {Kind::Write, address, {record_.bytes.data(), kRecordSize}};
-  }
+  const Place& place = kPlaces[place_];
   if (step_ == Step::Invalidate) {
-    return {Kind::Write,
-            static_cast<std::uint16_t>(address + kRecordCheckAt),
-            {record_.bytes.data() + kRecordCheckAt, kCheckBytes}};
+    const std::size_t from = place.old ? kOldInvalidatedFrom : 0;
+    const auto address = static_cast<std::uint16_t>(place.address + from);
+    return {Kind::Write, address, {read_back_.data(), kOldInvalidatedSize}};
   }
-  return {Kind::Read, address, {read_back_.bytes.data(), kRecordSize}};
-}
-
-/// The check takes its time; the bytes before it take longer on their way.
-void SettingsStore::started() {
-  if (step_ == Step::Write) {
-    seal_record(model_.get(), record_);
-  }
+  const bool writing = step_ == Step::Write;
+  RecordBytes& bytes = writing ? record_ : read_back_;
+  const auto address = static_cast<std::uint16_t>(place.address + done_);
+  return {writing ? Kind::Write : Kind::Read, address, {bytes.data() + done_, page_size()}};
 }
 
 void SettingsStore::done(bool ok) {
   switch (step_) {  // not covered: every value has its case
     case Step::Load:
     case Step::LookAgain:
-      read_copy(ok);
+      read_page(ok);
       break;
     case Step::Write:
       if (ok) {
@@ -75,97 +38,178 @@ void SettingsStore::done(bool ok) {
       }
       break;
     case Step::Verify:
-      if (ok && read_back_ == record_) {
-        finish_saving(true);
-      } else {
-        retry_or_give_up();
-      }
+      verify_page(ok);
       break;
     case Step::Invalidate:
-      doubtful_copy_ = ok ? kNoCopy : copy_;
-      finish_saving(false);
+      if (ok) {
+        must_not_count_ &= ~bit(place_);
+      }
+      invalidate_from(place_ + 1);
       break;
-    case Step::Idle:  // not covered: nothing ends where nothing was begun
+    case Step::Idle:  // not covered: nothing ends that was not begun
       break;
   }
 }
 
-void SettingsStore::read_copy(bool ok) {
-  const bool good = ok && is_good(model_.get(), read_back_);
-  const bool blank = ok && is_blank(read_back_);
-  if (!good && !blank && ++attempt_ < kAttempts) {
+void SettingsStore::begin_copy(std::size_t place) {
+  place_ = place;
+  done_ = 0;
+  copy_size_ = kMemoryPage;  // until the first page says more
+  attempt_ = 0;
+}
+
+// --- reading ---
+
+void SettingsStore::begin_reading(Step step) {
+  step_ = step;
+  blank_places_ = 0;
+  current_place_ = kNoPlace;
+  old_copies_ = 0;
+  begin_copy(0);
+}
+
+void SettingsStore::read_page(bool ok) {
+  const Place& place = kPlaces[place_];
+  const Bytes page{read_back_.data(), kMemoryPage};
+  if (ok) {
+    done_ += page_size();
+    copy_size_ = copy_size(place, page);
+    if (done_ < copy_size_) {
+      return;
+    }
+  }
+  const bool blank = ok && is_blank(page);
+  const auto stored = ok ? read_copy(model_.get(), place, {read_back_.data(), done_}) : std::nullopt;
+  if (!stored && !blank && ++attempt_ < kAttempts) {
+    done_ = 0;
+    copy_size_ = kMemoryPage;
     return;
   }
   if (!ok && step_ == Step::LookAgain) {
-    finish_saving(false);  // what does not answer is not written to either
+    saved_ = false;  // a memory that does not answer is not written to
+    step_ = Step::Idle;
     return;
   }
-  blank_copies_ = static_cast<std::uint8_t>(blank_copies_ + (blank ? 1U : 0U));
-  if (good) {
-    const std::uint16_t sequence = sequence_in(read_back_);
-    if (current_copy_ == kNoCopy || is_later(sequence, sequence_)) {
-      sequence_ = sequence;
-      current_copy_ = copy_;
+  if (blank) {
+    ++blank_places_;
+  }
+  if (stored) {
+    if (place.old) {
+      old_copies_ |= bit(place_);
+    }
+    if (current_place_ == kNoPlace || stored->edition.counts_over(edition_)) {
+      current_place_ = place_;
+      edition_ = stored->edition;
+      record_ = place.old ? RecordBytes{} : read_back_;
       if (step_ == Step::Load) {
-        stored_ = settings_in(read_back_);
+        stored_ = stored->settings;
       }
     }
   }
-  attempt_ = 0;
-  if (++copy_ == kCopies) {
+  next_place();
+}
+
+void SettingsStore::next_place() {
+  if (place_ + 1 < kPlaces.size()) {
+    begin_copy(place_ + 1);
+  } else {
     finish_reading();
   }
 }
 
 void SettingsStore::finish_reading() {
   if (step_ == Step::LookAgain) {
-    // What was found may be later than what was known.
-    fill_record(settings_in(record_), static_cast<std::uint16_t>(sequence_ + 1U), record_);
     begin_writing();
     return;
   }
   step_ = Step::Idle;
-  if (current_copy_ != kNoCopy) {
-    found_ = Found::Settings;
+  if (current_place_ == kNoPlace) {
+    found_ = blank_places_ == kPlaces.size() ? Found::Blank : Found::Unreadable;
+    stored_ = Settings::factory(model_.get());
     return;
   }
-  found_ = blank_copies_ == kCopies ? Found::Blank : Found::Unreadable;
-  stored_ = Settings::factory(model_.get());
+  found_ = Found::Settings;
+  if (!kPlaces[current_place_].old) {
+    must_not_count_ =
+        old_copies_;  // the power failed before the first save after an update had invalidated them
+    old_copies_ = 0;
+  }
+}
+
+// --- writing ---
+
+void SettingsStore::begin_saving(const Settings& settings) {
+  saving_ = settings;
+  if (found_ == Found::Unreadable) {
+    begin_reading(Step::LookAgain);
+  } else {
+    begin_writing();
+  }
+}
+
+void SettingsStore::begin_writing() {
+  write_record(model_.get(), saving_, static_cast<std::uint16_t>(edition_.sequence + 1U), record_);
+  begin_copy(current_place_ == 0 ? 1 : 0);
+  copy_size_ = record_size({record_.data(), record_.size()});
+  step_ = Step::Write;
+}
+
+void SettingsStore::verify_page(bool ok) {
+  bool same = ok;
+  for (std::size_t i = done_; i < done_ + page_size(); ++i) {
+    same = same && read_back_[i] == record_[i];
+  }
+  if (!same) {
+    retry_or_give_up();
+    return;
+  }
+  done_ += page_size();
+  if (done_ < copy_size_) {
+    step_ = Step::Write;
+  } else {
+    finish_writing();
+  }
 }
 
 void SettingsStore::retry_or_give_up() {
   if (++attempt_ < kAttempts) {
     step_ = Step::Write;
-  } else {
-    // The copy may hold the new settings all the same and only not have said so. It must not count after a
-    // reset.
-    begin_invalidating();
+    return;
   }
+  // The copy may be whole all the same, and only its answer be lost.
+  must_not_count_ |= bit(place_);
+  saved_ = false;
+  invalidate_from(0);
 }
 
-void SettingsStore::begin_settling() {
-  copy_ = doubtful_copy_;
-  begin_invalidating();
+void SettingsStore::finish_writing() {
+  found_ = Found::Settings;
+  current_place_ = place_;
+  ++edition_.sequence;
+  edition_.layout = kLayout;
+  stored_ = saving_;
+  must_not_count_ = (must_not_count_ & ~bit(place_)) | old_copies_;
+  old_copies_ = 0;
+  saved_ = true;
+  invalidate_from(0);
 }
 
-/// A check of zeros: the odds of it being right are those of any other.
-void SettingsStore::begin_invalidating() {
-  for (std::size_t i = kRecordCheckAt; i < kRecordSize; ++i) {
-    record_.bytes[i] = 0;
+// --- invalidating ---
+
+void SettingsStore::begin_settling() { invalidate_from(0); }
+
+/// The first copy that must not count, at this place or a later one; idle if there is none.
+void SettingsStore::invalidate_from(std::size_t place) {
+  while (place < kPlaces.size() && (must_not_count_ & bit(place)) == 0) {
+    ++place;
   }
+  if (place == kPlaces.size()) {
+    step_ = Step::Idle;
+    return;
+  }
+  begin_copy(place);
+  read_back_.fill(0);
   step_ = Step::Invalidate;
-}
-
-void SettingsStore::finish_saving(bool saved) {
-  saved_ = saved;
-  step_ = Step::Idle;
-  if (saved) {
-    stored_ = settings_in(record_);
-    ++sequence_;
-    doubtful_copy_ = kNoCopy;
-    current_copy_ = copy_;
-    found_ = Found::Settings;
-  }
 }
 
 }  // namespace ex9000

@@ -2,11 +2,13 @@
 #pragma once
 
 #include <array>
+#include <cstddef>
 #include <cstdint>
 
 #include "firmware/bytes.hpp"
 #include "firmware/model/built.hpp"
 #include "firmware/model/model.hpp"
+#include "firmware/settings/places.hpp"
 #include "firmware/settings/record.hpp"
 #include "firmware/settings/settings.hpp"
 
@@ -17,16 +19,19 @@ struct MemoryJob {
   enum class Kind : std::uint8_t { Read, Write };
 
   Kind kind = Kind::Read;
-  std::uint16_t address = 0;  ///< of the first byte; a job never crosses a page
+  std::uint16_t address = 0;  ///< of the first byte; a job never crosses the end of a page (kMemoryPage)
   MutableBytes bytes;         ///< to be filled, or to be written
 };
 
-/// Two copies, each in a page of its own. A save overwrites the older or broken one, reads it back, and only
-/// then does it count; the other copy stays as it is, so a power cut leaves either the old settings or the
-/// new ones.
+/// Two copies of the settings, each in a place of its own (places.hpp). A save overwrites the older or broken
+/// one, page by page, and reads back each page. Only the check at the end of the whole copy makes it count,
+/// and the other copy stays as it is. So a power cut leaves either the old settings or the new ones.
 ///
-/// The store does nothing by itself: whoever owns the memory starts `job()`, reports that it has `started()`,
-/// and reports `done()` when it has ended.
+/// The first save after an update leaves the copies of older layouts in the same way. When it is verified, it
+/// invalidates them: they must not count again, even if both newer copies fail later.
+///
+/// The store does nothing by itself: whoever owns the memory starts `job()` and reports `done()` when it has
+/// ended.
 class SettingsStore {
  public:
   enum class Found : std::uint8_t {
@@ -35,33 +40,32 @@ class SettingsStore {
     Unreadable,  ///< something else; factory settings are used, and not written
   };
 
-  /// Begins to load: reads both copies, each up to three times. Afterwards `found()` and `stored()` hold.
+  /// Begins to load: reads all places, each up to three times. Afterwards `found()` and `stored()` hold.
   explicit constexpr SettingsStore(const Model& model) : model_(model) {}
   [[nodiscard]] bool loading() const { return step_ == Step::Load; }
   [[nodiscard]] Found found() const { return found_; }
 
-  /// Writes and verifies, up to three times. Only while not `busy()`. Afterwards `saved()` and `stored()`
-  /// hold.
+  /// Writes and verifies; the third failure of any page ends it. Only while not `busy()`. Afterwards
+  /// `saved()` and `stored()` hold.
   ///
-  /// Where no copy could be read at reset, both are read once more first: one that answers now must not count
-  /// as the later one after the next reset.
+  /// If no copy could be read at reset, all are read once more first: one that answers now must not count as
+  /// the later one after the next reset.
   void begin_saving(const Settings& settings);
   [[nodiscard]] bool busy() const { return step_ != Step::Idle; }
   /// Whether the last save succeeded.
   [[nodiscard]] bool saved() const { return saved_; }
 
-  /// A save has failed, and its copy may hold the refused settings all the same.
-  [[nodiscard]] bool doubtful() const { return doubtful_copy_ != kNoCopy; }
-  /// Makes sure that it does not count. Only while not `busy()`; `doubtful()` stays where this fails too.
+  /// A copy may count after a reset that must not: one of refused settings, or one of an older layout.
+  [[nodiscard]] bool doubtful() const { return must_not_count_ != 0; }
+  /// Invalidates it. Only while not `busy()`; `doubtful()` stays true if the memory does not take this
+  /// either.
   void begin_settling();
 
-  /// What a reset now would find.
+  /// The settings that a reset now would find.
   [[nodiscard]] const Settings& stored() const { return stored_; }
 
-  /// What is to be done, while `busy()`; the same until `done`.
+  /// What has to be done, while `busy()`; the same until `done`.
   [[nodiscard]] MemoryJob job();
-  /// The memory was given the job. Of what is to be written the last bytes are there only from here on.
-  void started();
   /// The job has ended: `ok` unless the memory did not answer.
   void done(bool ok);
 
@@ -69,30 +73,40 @@ class SettingsStore {
   enum class Step : std::uint8_t { Idle, Load, LookAgain, Write, Verify, Invalidate };
 
   void begin_reading(Step step);
-  void read_copy(bool ok);
+  void read_page(bool ok);
+  void next_place();
   void finish_reading();
   void begin_writing();
-  void begin_invalidating();
+  void verify_page(bool ok);
   void retry_or_give_up();
-  void finish_saving(bool saved);
+  void begin_copy(std::size_t place);
+  [[nodiscard]] std::size_t page_size() const;
+  void finish_writing();
+  void invalidate_from(std::size_t place);
 
-  static constexpr std::uint8_t kCopies = 2;
-  static constexpr std::uint8_t kNoCopy = 0xFF;
+  static constexpr std::size_t kNoPlace = kPlaces.size();
   static constexpr std::uint8_t kAttempts = 3;
+  static constexpr unsigned bit(std::size_t place) { return 1U << place; }
 
   ChosenModel model_;
   Step step_ = Step::Load;
   Found found_ = Found::Unreadable;
   bool saved_ = false;
-  std::uint8_t copy_ = 0;
-  std::uint8_t attempt_ = 0;
-  std::uint8_t blank_copies_ = 0;
-  std::uint8_t current_copy_ = kNoCopy;   ///< the one that counts
-  std::uint8_t doubtful_copy_ = kNoCopy;  ///< the one that must not
-  std::uint16_t sequence_ = 0;            ///< its
-  Settings stored_;                       ///< what it holds
-  Record record_;                         ///< what is written
-  Record read_back_;                      ///< what is read
+
+  std::size_t place_ = 0;                ///< of the copy that is read or written
+  std::size_t done_ = 0;                 ///< so many of its bytes are
+  std::size_t copy_size_ = kMemoryPage;  ///< and so many it takes
+  std::uint8_t attempt_ = 0;             ///< failures so far
+  std::uint8_t blank_places_ = 0;
+  std::size_t current_place_ = kNoPlace;  ///< of the copy that counts
+  unsigned old_copies_ = 0;               ///< bit n: place n holds a good copy of an older layout
+  unsigned must_not_count_ = 0;           ///< bit n: the copy at place n has to be invalidated
+
+  Edition edition_;          ///< of the copy that counts
+  Settings stored_;          ///< what it holds
+  Settings saving_;          ///< what is being saved
+  RecordBytes record_{};     ///< the record that counts, then the one that is written; zeros if there is none
+  RecordBytes read_back_{};  ///< what is read
 };
 
 }  // namespace ex9000

@@ -77,26 +77,35 @@ Guard guard_of(const SimulatedModule& module, VirtualTime now) {
   return guard;
 }
 
-/// wire.md section 8: two copies, a page each, the later one counts.
+Stored::Copy copy_of(const std::vector<std::uint8_t>& memory, const Place& place,
+                     std::optional<StoredSettings>& stored, const Model& model) {
+  const Bytes rest{memory.data() + place.address, kRecordRoom};
+  stored = read_copy(model, place, rest);
+  const Bytes copy = rest.first(stored ? copy_size(place, rest) : kMemoryPage);
+  Stored::Copy read{{copy.begin(), copy.end()}, std::nullopt};
+  if (stored) {
+    read.sequence = stored->edition.sequence;
+  }
+  return read;
+}
+
+/// wire.md section 8: of several good copies one counts.
 Stored stored_of(const SimulatedModule& module) {
-  constexpr std::size_t kDistance = hal::doubles::Memory::kPage;
   Stored stored;
-  const std::vector<std::uint8_t>& contents = module.memory().contents();
+  stored.settings = Settings::factory(module.model());
   stored.blank = true;
-  for (std::size_t copy = 0; copy < Stored::kCopies; ++copy) {
-    Record& record = stored.copies[copy];
-    std::copy_n(contents.begin() + static_cast<std::ptrdiff_t>(copy * kDistance), kRecordSize,
-                record.bytes.begin());
-    stored.blank = stored.blank && is_blank(record);
-    stored.good[copy] = is_good(module.model(), record);
-    const bool later =
-        !stored.current || is_later(sequence_in(record), sequence_in(stored.copies[*stored.current]));
-    if (stored.good[copy] && later) {
-      stored.current = copy;
+  Edition counts;
+  for (std::size_t place = 0; place < kPlaces.size(); ++place) {
+    std::optional<StoredSettings> read;
+    stored.copies.push_back(copy_of(module.memory().contents(), kPlaces[place], read, module.model()));
+    const std::vector<std::uint8_t>& bytes = stored.copies.back().bytes;
+    stored.blank = stored.blank && is_blank({bytes.data(), bytes.size()});
+    if (read && (!stored.current || read->edition.counts_over(counts))) {
+      stored.current = place;
+      stored.settings = read->settings;
+      counts = read->edition;
     }
   }
-  stored.settings =
-      stored.current ? settings_in(stored.copies[*stored.current]) : Settings::factory(module.model());
   return stored;
 }
 

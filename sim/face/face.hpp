@@ -9,7 +9,7 @@
 #include <string_view>
 
 #include "firmware/model/model.hpp"
-#include "firmware/settings/record.hpp"
+#include "firmware/settings/places.hpp"
 #include "firmware/settings/settings.hpp"
 #include "sim/module.hpp"
 
@@ -63,11 +63,15 @@ struct Guard {
 
 /// What its memory holds, powered or not.
 struct Stored {
-  static constexpr std::size_t kCopies = 2;
+  struct Copy {
+    std::vector<std::uint8_t> bytes;        ///< as many as it takes, or its first page if it is not good
+    std::optional<std::uint16_t> sequence;  ///< nothing: it is not good
 
-  std::array<Record, kCopies> copies;
-  std::array<bool, kCopies> good{};
-  std::optional<std::size_t> current;  ///< the copy that counts; nothing: neither is good
+    friend bool operator==(const Copy& a, const Copy& b) { return a.bytes == b.bytes; }
+  };
+
+  std::vector<Copy> copies;            ///< in the order of kPlaces
+  std::optional<std::size_t> current;  ///< the copy that counts; nothing: none is good
   bool blank = false;                  ///< nothing has ever been stored: factory settings are in force
   Settings settings;                   ///< those of `current`, or the factory's
 

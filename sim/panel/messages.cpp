@@ -108,13 +108,11 @@ Message message_of(const Guard& guard) {
 Message message_of(const Stored& stored) {
   Message message;
   message["copies"] = Message::array();
-  for (std::size_t copy = 0; copy < Stored::kCopies; ++copy) {
+  for (std::size_t copy = 0; copy < stored.copies.size(); ++copy) {
     Message each;
     each["bytes"] = hex(stored.copies[copy].bytes);
-    each["good"] = stored.good[copy];
-    if (stored.good[copy]) {
-      each["sequence"] = sequence_in(stored.copies[copy]);
-    }
+    each["sequence"] = stored.copies[copy].sequence ? Message(*stored.copies[copy].sequence) : Message();
+    each["old"] = kPlaces[copy].old;
     message["copies"].push_back(std::move(each));
   }
   message["current"] = stored.current ? Message(*stored.current) : Message();

@@ -37,7 +37,6 @@ class ModuleTurns : public testing::Test {
   /// Without a step behind it.
   void do_memory_job() {
     const MemoryJob job = module_.memory_job();
-    module_.memory_started();
     for (std::size_t i = 0; i < job.bytes.size; ++i) {
       if (job.kind == MemoryJob::Kind::Read) {
         job.bytes.data[i] = written_ ? page_[i] : 0xFF;
@@ -157,7 +156,6 @@ TEST(ModuleComesUp, OnceItsMemoryIsRead) {
   while (module.needs_memory()) {
     EXPECT_FALSE(module.idle_for(Time(), kLong) == Duration());
     const MemoryJob job = module.memory_job();
-    module.memory_started();
     std::fill_n(job.bytes.data, job.bytes.size, std::uint8_t{0xFF});
     module.memory_done(true);
   }

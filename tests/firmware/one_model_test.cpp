@@ -1,8 +1,9 @@
 // What is compiled for one model, as an image is: EX9000_MODEL is "EX9042D-M" here.
 #include <gtest/gtest.h>
 
-#include <array>
+#include <algorithm>
 #include <cstdint>
+#include <vector>
 
 #include "firmware/module.hpp"
 #include "firmware/settings/record.hpp"
@@ -25,19 +26,19 @@ TEST(OneModel, ADeviceIsMadeByTheCompiler) {
 
 // What an image stores, a program of all models reads, and the other way round.
 TEST(OneModel, ItsRecordIsThatOfAllModels) {
-  const std::array<std::uint8_t, kRecordSize> from_the_factory{
-      1,    6,    0,    1,    0xFF, 0, 0, 0,  // address to timeout status
+  const std::vector<std::uint8_t> from_the_factory{
+      3,    19,   1,    0,                    // layout, length, sequence
+      1,    6,    0,    1,    0xFF, 0, 0,     // address to timeout status
       '9',  '0',  '4',  '2',  'M',  0, 0, 5,  // name
       0,    0,    0,    0,                    // power-on value, safe value
-      1,    0,    2,    0,                    // sequence, layout
-      0xD2, 0xC5, 0x25, 0x88,                 // check
+      0x4C, 0x60, 0x29, 0x33,                 // check
   };
-  Record record;
-  make_record(kOnlyModel, Settings::factory(kOnlyModel), 1, record);
-  EXPECT_EQ(record.bytes, from_the_factory);
-  EXPECT_TRUE(is_good(kOnlyModel, record));
-  record.bytes[kRecordCheckAt] ^= 0x01U;
-  EXPECT_FALSE(is_good(kOnlyModel, record));
+  RecordBytes record{};
+  write_record(kOnlyModel, Settings::factory(kOnlyModel), 1, record);
+  EXPECT_TRUE(std::equal(from_the_factory.begin(), from_the_factory.end(), record.begin()));
+  EXPECT_TRUE(read_record(kOnlyModel, {record.data(), record.size()}));
+  record[from_the_factory.size() - 1] ^= 0x01U;
+  EXPECT_FALSE(read_record(kOnlyModel, {record.data(), record.size()}));
 }
 
 }  // namespace

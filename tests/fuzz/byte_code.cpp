@@ -4,7 +4,7 @@
 #include <array>
 #include <cstring>
 
-#include "firmware/settings/record.hpp"
+#include "firmware/settings/places.hpp"
 
 extern "C" std::size_t LLVMFuzzerMutate(std::uint8_t* data, std::size_t size, std::size_t most);
 
@@ -38,9 +38,9 @@ class Life {
       : session_(model, model.speaks_modbus() && (flags & 0x10U) != 0) {
     const Settings settings = settings_of(model, usual, flags);
     if (settings != Settings::factory(model)) {
-      Record record;
-      make_record(model, settings, 1, record);
-      std::copy(record.bytes.begin(), record.bytes.end(), session_.around().memory.begin());
+      RecordBytes record{};
+      write_record(model, settings, 1, record);
+      std::copy(record.begin(), record.end(), session_.around().memory.begin() + kPlaces[0].address);
     }
     session_.around().init_asserted = (flags & 0x80U) != 0;
     session_.reset();

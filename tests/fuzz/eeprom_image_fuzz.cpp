@@ -2,11 +2,14 @@
 //
 // Byte 0 of the input is the model, byte 1:
 //
-//     bit 0, 1   layout and check of the first, the second copy are made right
+//     bit 0, 1   layout and check of the first, the second copy of layout 2 are made right
 //     bit 2      INIT* tied to GND
 //     bit 3      the memory does not answer until the module has come up
+//     bit 4, 5   layout, length and check of the first, the second copy of layout 3 are made right
 //
 // The rest is what the memory holds from address 0 on; behind it it is erased.
+#include <algorithm>
+#include <array>
 #include <cstring>
 #include <initializer_list>
 #include <string>
@@ -27,9 +30,10 @@ struct Expected {
 
 Expected expected_of(const Model& model, const std::uint8_t* memory, bool answers) {
   const StoringModel storing = storing_model(model);
-  if (!answers || later_good_copy(storing, memory) == nullptr) {
-    const bool blank = StoredCopy(storing, memory).is_blank() &&
-                       StoredCopy(storing, memory + StoredCopy::kDistance).is_blank();
+  if (!answers || place_that_counts(storing, memory) == kStoredMemory) {
+    const bool blank = std::all_of(kStoredPlaces.begin(), kStoredPlaces.end(), [&](std::size_t place) {
+      return StoredCopy(storing, memory, place).is_blank();
+    });
     return {Settings::factory(model), !answers || !blank};
   }
   return {settings_from(model, memory), false};
@@ -53,9 +57,10 @@ class Trial {
       : model_(model), session_(model, false) {
     auto& memory = session_.around().memory;
     std::copy_n(contents, std::min(size, memory.size()), memory.begin());
-    for (const unsigned copy : {0U, 1U}) {
-      if ((flags >> copy & 1U) != 0) {
-        StoredCopy::seal(storing_model(model), memory.data() + copy * StoredCopy::kDistance);
+    constexpr std::array<std::uint8_t, kStoredPlaces.size()> kSealed{0x10, 0x20, 0x01, 0x02};
+    for (std::size_t place = 0; place < kStoredPlaces.size(); ++place) {
+      if ((flags & kSealed[place]) != 0) {
+        StoredCopy::seal(storing_model(model), memory.data(), kStoredPlaces[place]);
       }
     }
     session_.around().init_asserted = (flags & 4U) != 0;

@@ -45,8 +45,8 @@ struct Surroundings {
   std::uint16_t input_levels = 0;
   bool init_asserted = false;
   bool memory_answers = true;
-  /// The settings' two copies; the core wants no more of an EEPROM.
-  std::array<std::uint8_t, 64> memory{};
+  /// All that the core uses of an EEPROM.
+  std::array<std::uint8_t, 0x180> memory{};
 };
 
 /// See hal/board.hpp.

@@ -1,12 +1,13 @@
-// One copy of the settings as it lies in the EEPROM, read without the firmware's code: the layout of
-// firmware/settings/record.hpp once more, the check from its definition, and wire.md 4 and 8 for what
-// commands can have stored.
+// One copy of the settings as it lies in the EEPROM, read without the firmware's code: the layouts of
+// firmware/settings/record.hpp and old_layouts.hpp once more, the check from its definition, and wire.md
+// sections 4 and 8 for what commands can have stored.
 #pragma once
 
 #include <algorithm>
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <string>
 #include <string_view>
 
 namespace ex9000 {
@@ -17,10 +18,11 @@ struct StoringModel {
   unsigned outputs;
   bool speaks_modbus;
   unsigned longest_name;
+  std::string_view factory_name;
 };
 
 /// What a copy says, as the bytes say it.
-struct StoredSettings {
+struct CopiedSettings {
   std::uint8_t address;
   std::uint8_t baud_code;
   std::uint8_t format;
@@ -28,71 +30,131 @@ struct StoredSettings {
   std::uint8_t watchdog_timeout;
   bool watchdog_enabled;
   bool timeout_status;
-  std::string_view name;  ///< within the copy
+  std::string name;
   std::uint16_t power_on_value;
   std::uint16_t safe_value;
 };
 
-/// Refers to the bytes and to the model.
+/// Where copies lie: two places for layout 3, two for the older layouts.
+constexpr std::array<std::size_t, 4> kStoredPlaces{0x080, 0x100, 0x000, 0x020};
+constexpr std::size_t kStoredMemory = 0x180;  ///< bytes of the memory that settings may take
+constexpr std::size_t kStoredPage = 32;
+
+/// Refers to the memory and to the model.
 class StoredCopy {
  public:
-  static constexpr std::size_t kDistance = 32;  ///< from the first copy to the second
-  static constexpr std::size_t kSize = 28;
+  /// `place`: one of kStoredPlaces.
+  StoredCopy(const StoringModel& model, const std::uint8_t* memory, std::size_t place)
+      : model_(model), bytes_(memory + place), layout_(place >= 0x080 ? 3 : layout_of_old(bytes_)) {}
 
-  StoredCopy(const StoringModel& model, const std::uint8_t* bytes) : model_(model), bytes_(bytes) {}
-
-  /// Makes layout and check right.
-  static void seal(const StoringModel& model, std::uint8_t* bytes) {
-    bytes[22] = kLayout;
-    bytes[23] = 0;
-    const std::uint32_t check = check_of(model, bytes);
+  /// Makes layout and check right, those of layout 2 in an old place; in a new one the length too, if it does
+  /// not fit.
+  static void seal(const StoringModel& model, std::uint8_t* memory, std::size_t place) {
+    std::uint8_t* bytes = memory + place;
+    if (place >= 0x080) {
+      bytes[0] = 3;
+      bytes[1] = std::min<std::uint8_t>(bytes[1], kLongest);
+    } else {
+      bytes[22] = 2;
+      bytes[23] = 0;
+    }
+    const StoredCopy copy(model, memory, place);
+    const std::uint32_t check = copy.check();
     for (unsigned i = 0; i < 4; ++i) {
-      bytes[kCheckAt + i] = static_cast<std::uint8_t>(check >> 8 * i);
+      bytes[copy.check_at() + i] = static_cast<std::uint8_t>(check >> 8 * i);
     }
   }
 
   [[nodiscard]] bool is_blank() const {
-    return std::all_of(bytes_, bytes_ + kSize, [](std::uint8_t byte) { return byte == 0xFF; });
+    return std::all_of(bytes_, bytes_ + kStoredPage, [](std::uint8_t byte) { return byte == 0xFF; });
   }
   [[nodiscard]] bool is_good() const {
-    const std::uint32_t check = check_of(model_, bytes_);
-    return word(24) == check % 65536 && word(26) == check / 65536 && word(22) == kLayout && is_possible();
+    if (layout_ == 0 || (layout_ == 3 && (bytes_[0] != 3 || bytes_[1] > kLongest))) {
+      return false;
+    }
+    const std::uint32_t right = check();
+    return word(check_at()) == right % 65536 && word(check_at() + 2) == right / 65536 && is_possible();
   }
   /// Of two good ones.
-  [[nodiscard]] bool is_later_than(const StoredCopy& other) const {
-    const unsigned ahead = (word(20) - other.word(20)) & 0xFFFFU;
-    return ahead != 0 && ahead < 0x8000;
+  [[nodiscard]] bool counts_over(const StoredCopy& other) const {
+    const unsigned ahead = (sequence() - other.sequence()) & 0xFFFFU;
+    return layout_ == other.layout_ ? ahead != 0 && ahead < 0x8000 : layout_ > other.layout_;
   }
   /// Of a good one.
-  [[nodiscard]] StoredSettings settings() const {
-    return {bytes_[0],
-            bytes_[1],
-            bytes_[2],
-            bytes_[3] != 0,
-            bytes_[4],
-            bytes_[5] != 0,
-            bytes_[6] != 0,
-            {reinterpret_cast<const char*>(bytes_ + 8), bytes_[15]},
-            static_cast<std::uint16_t>(word(16)),
-            static_cast<std::uint16_t>(word(18))};
+  [[nodiscard]] CopiedSettings settings() const {
+    const Fields at = fields();
+    const bool flags_are_bits = layout_ == 1;
+    CopiedSettings settings{byte(at.address, 0x01),
+                            byte(at.baud_code, 0x06),
+                            byte(at.format, 0x00),
+                            byte(at.protocol, model_.speaks_modbus ? 1 : 0) != 0,
+                            byte(at.timeout, 0xFF),
+                            flags_are_bits ? bytes_[7] % 2 != 0 : byte(at.enabled, 0) != 0,
+                            flags_are_bits ? bytes_[7] / 2 % 2 != 0 : byte(at.status, 0) != 0,
+                            std::string(model_.factory_name),
+                            0,
+                            0};
+    if (reaches(at.name, 8)) {
+      settings.name.assign(reinterpret_cast<const char*>(bytes_ + at.name), bytes_[at.name_length]);
+    }
+    settings.power_on_value = static_cast<std::uint16_t>(reaches(at.power_on, 2) ? word(at.power_on) : 0);
+    settings.safe_value = static_cast<std::uint16_t>(reaches(at.safe, 2) ? word(at.safe) : 0);
+    return settings;
   }
+  /// How many bytes it takes, if it is good.
+  [[nodiscard]] std::size_t size() const { return check_at() + 4; }
 
  private:
-  static constexpr std::size_t kCheckAt = 24;
-  static constexpr std::uint8_t kLayout = 2;
+  static constexpr std::uint8_t kLongest = 120;  // bytes of settings
+
+  /// Where each setting is.
+  struct Fields {
+    std::size_t sequence, address, baud_code, format, protocol, timeout, enabled, status, name, name_length,
+        power_on, safe;
+  };
+  [[nodiscard]] Fields fields() const {
+    switch (layout_) {
+      case 1:
+        return {1, 3, 4, 5, 6, 8, 7, 7, 14, 13, 9, 11};
+      case 2:
+        return {20, 0, 1, 2, 3, 4, 5, 6, 8, 15, 16, 18};
+      default:
+        return {2, 4, 5, 6, 7, 8, 9, 10, 11, 18, 19, 21};
+    }
+  }
+
+  static unsigned layout_of_old(const std::uint8_t* bytes) {
+    if (bytes[22] == 2 && bytes[23] == 0) {
+      return 2;
+    }
+    return bytes[0] == 1 ? 1 : 0;
+  }
+
+  [[nodiscard]] std::size_t check_at() const {
+    return layout_ == 3 ? std::size_t{4} + bytes_[1] : layout_ == 2 ? 24 : 21;
+  }
+  /// A record of layout 3 may end before.
+  [[nodiscard]] bool reaches(std::size_t at, std::size_t size) const {
+    return layout_ != 3 || at + size <= check_at();
+  }
+  [[nodiscard]] std::uint8_t byte(std::size_t at, std::uint8_t otherwise) const {
+    return reaches(at, 1) ? bytes_[at] : otherwise;
+  }
+  [[nodiscard]] unsigned sequence() const { return word(fields().sequence); }
+  [[nodiscard]] unsigned word(std::size_t at) const { return bytes_[at] + bytes_[at + 1] * 256U; }
 
   /// CRC-32 of IEEE 802.3 over the designation and all that is in front of the check.
-  static std::uint32_t check_of(const StoringModel& model, const std::uint8_t* bytes) {
+  [[nodiscard]] std::uint32_t check() const {
     std::uint32_t crc = 0xFFFFFFFF;
     const auto add = [&crc](unsigned byte) {
       crc ^= byte;
       crc = crc / 16 ^ kOfDigit[crc % 16];
       crc = crc / 16 ^ kOfDigit[crc % 16];
     };
-    for (const char character : model.designation) {
+    for (const char character : model_.designation) {
       add(static_cast<unsigned char>(character));
     }
-    std::for_each(bytes, bytes + kCheckAt, add);
+    std::for_each(bytes_, bytes_ + check_at(), add);
     return ~crc;
   }
   /// Four shifts of each value of four bits.
@@ -108,34 +170,41 @@ class StoredCopy {
     return table;
   }();
 
-  [[nodiscard]] unsigned word(std::size_t at) const { return bytes_[at] + bytes_[at + 1] * 256U; }
-
   [[nodiscard]] bool is_possible() const {
-    const std::uint8_t length = bytes_[15];
-    const bool name =
-        length >= 1 && length <= model_.longest_name &&
-        std::all_of(bytes_ + 8, bytes_ + 8 + length, [](std::uint8_t c) { return c >= 0x20 && c <= 0x7E; });
+    const Fields at = fields();
+    if (byte(at.protocol, 0) > 1 || (layout_ != 1 && (byte(at.enabled, 0) | byte(at.status, 0)) > 1)) {
+      return false;
+    }
+    if (reaches(at.name, 8) && bytes_[at.name_length] > 7) {
+      return false;
+    }
+    const CopiedSettings found = settings();
+    const auto printable = [](char c) { return c >= 0x20 && c <= 0x7E; };
+    const bool name = !found.name.empty() && found.name.size() <= model_.longest_name &&
+                      std::all_of(found.name.begin(), found.name.end(), printable);
     const bool protocol =
-        bytes_[3] == 0 || (bytes_[3] == 1 && model_.speaks_modbus && bytes_[0] >= 1 && bytes_[0] <= 247);
-    const bool watchdog = bytes_[5] == 0 || (bytes_[5] == 1 && bytes_[4] != 0);
+        !found.modbus || (model_.speaks_modbus && found.address >= 1 && found.address <= 247);
+    const bool watchdog = !found.watchdog_enabled || found.watchdog_timeout != 0;
     const unsigned beyond = ~((1U << model_.outputs) - 1U);
-    return name && protocol && watchdog && bytes_[6] <= 1 && bytes_[1] >= 0x03 && bytes_[1] <= 0x0A &&
-           (bytes_[2] & 0x3FU) == 0 && ((word(16) | word(18)) & beyond) == 0;
+    return name && protocol && watchdog && found.baud_code >= 0x03 && found.baud_code <= 0x0A &&
+           (found.format & 0x3FU) == 0 && ((found.power_on_value | found.safe_value) & beyond) == 0;
   }
 
   const StoringModel& model_;
   const std::uint8_t* bytes_;
+  unsigned layout_;  ///< 0: none
 };
 
-/// Which of the two copies that begin at `memory` counts; null: neither is good.
-inline const std::uint8_t* later_good_copy(const StoringModel& model, const std::uint8_t* memory) {
-  const StoredCopy first(model, memory);
-  const StoredCopy second(model, memory + StoredCopy::kDistance);
-  if (!first.is_good() && !second.is_good()) {
-    return nullptr;
+/// The place of the copy that counts, of those in `memory`; kStoredMemory if none is good.
+inline std::size_t place_that_counts(const StoringModel& model, const std::uint8_t* memory) {
+  std::size_t counts = kStoredMemory;
+  for (const std::size_t place : kStoredPlaces) {
+    const StoredCopy copy(model, memory, place);
+    if (copy.is_good() && (counts == kStoredMemory || copy.counts_over(StoredCopy(model, memory, counts)))) {
+      counts = place;
+    }
   }
-  const bool second_counts = !first.is_good() || (second.is_good() && second.is_later_than(first));
-  return second_counts ? memory + StoredCopy::kDistance : memory;
+  return counts;
 }
 
 }  // namespace ex9000

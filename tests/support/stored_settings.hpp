@@ -1,7 +1,10 @@
 // What an EEPROM holds, as StoredCopy reads it, in the core's types, so that the two can be compared.
 #pragma once
 
+#include <algorithm>
+#include <cstddef>
 #include <cstdint>
+#include <string_view>
 
 #include "firmware/model/model.hpp"
 #include "firmware/settings/settings.hpp"
@@ -10,10 +13,10 @@
 namespace ex9000 {
 
 inline StoringModel storing_model(const Model& model) {
-  return {model.designation, model.outputs, model.speaks_modbus(), model.longest_name};
+  return {model.designation, model.outputs, model.speaks_modbus(), model.longest_name, model.factory_name};
 }
 
-inline Settings settings_of(const StoredSettings& stored) {
+inline Settings settings_of(const CopiedSettings& stored) {
   Settings settings;
   settings.address = stored.address;
   settings.baud_code = stored.baud_code;
@@ -22,17 +25,57 @@ inline Settings settings_of(const StoredSettings& stored) {
   settings.watchdog_timeout = stored.watchdog_timeout;
   settings.watchdog_enabled = stored.watchdog_enabled;
   settings.timeout_status = stored.timeout_status;
-  settings.name = Name(stored.name);
+  settings.name = Name(std::string_view(stored.name));
   settings.power_on_value = stored.power_on_value;
   settings.safe_value = stored.safe_value;
   return settings;
 }
 
-/// wire.md 2: what a module comes up with whose EEPROM holds that, both copies from `memory` on.
+/// wire.md section 2: what a module comes up with whose EEPROM holds `memory`, kStoredMemory bytes.
 inline Settings settings_from(const Model& model, const std::uint8_t* memory) {
   const StoringModel storing = storing_model(model);
-  const std::uint8_t* const copy = later_good_copy(storing, memory);
-  return copy == nullptr ? Settings::factory(model) : settings_of(StoredCopy(storing, copy).settings());
+  const std::size_t place = place_that_counts(storing, memory);
+  return place == kStoredMemory ? Settings::factory(model)
+                                : settings_of(StoredCopy(storing, memory, place).settings());
+}
+
+/// A copy as firmware of layout 2 stored it at `place`.
+inline void put_layout_2(const Model& model, const Settings& settings, std::uint16_t sequence,
+                         std::uint8_t* memory, std::size_t place) {
+  std::uint8_t* bytes = memory + place;
+  std::fill_n(bytes, 28, std::uint8_t{0});
+  bytes[0] = settings.address;
+  bytes[1] = settings.baud_code;
+  bytes[2] = settings.format;
+  bytes[3] = settings.protocol == Protocol::ModbusRtu ? 1 : 0;
+  bytes[4] = settings.watchdog_timeout;
+  bytes[5] = settings.watchdog_enabled ? 1 : 0;
+  bytes[6] = settings.timeout_status ? 1 : 0;
+  std::copy(settings.name.bytes().begin(), settings.name.bytes().end(), bytes + 8);
+  bytes[15] = static_cast<std::uint8_t>(settings.name.bytes().size);
+  const auto put_word = [bytes](std::size_t at, unsigned value) {
+    bytes[at] = static_cast<std::uint8_t>(value % 256);
+    bytes[at + 1] = static_cast<std::uint8_t>(value / 256);
+  };
+  put_word(16, settings.power_on_value);
+  put_word(18, settings.safe_value);
+  put_word(20, sequence);
+  const StoringModel storing = storing_model(model);
+  StoredCopy::seal(storing, memory, place);
+}
+
+/// The byte that newer firmware has stored behind the settings that this one knows.
+inline std::uint8_t unknown_byte(std::size_t index) { return static_cast<std::uint8_t>(0xC1U ^ index); }
+
+/// Makes of a good record of layout 3 at `place` one with `length` bytes of settings.
+inline void lengthen(const Model& model, std::uint8_t* memory, std::size_t place, std::uint8_t length) {
+  std::uint8_t* bytes = memory + place;
+  for (std::size_t index = bytes[1]; index < length; ++index) {
+    bytes[4 + index] = unknown_byte(index);
+  }
+  bytes[1] = length;
+  const StoringModel storing = storing_model(model);
+  StoredCopy::seal(storing, memory, place);
 }
 
 }  // namespace ex9000

@@ -1,4 +1,4 @@
-// What a module keeps: present, power-on and safe value, its settings, and the bytes of both copies. It is built
+// What a module keeps: present, power-on and safe value, its settings, and the bytes of all copies. It is built
 // once, and only texts change, so that whoever reads or selects in it goes on doing so.
 
 import {bit, hexByte, make, setAttribute, setText} from "/element.js";
@@ -8,7 +8,7 @@ export class Drawer {
     this.values = layout.outputs.length ? this.valueTable(layout.outputs, title) : null;
     this.kept = make("h4", {});
     this.settings = {};
-    this.copies = [0, 1].map(() => ({state: make("h4", {}), bytes: make("code", {})}));
+    this.copies = [1, 2, 3, 4].map(() => ({state: make("h4", {}), bytes: make("code", {})}));
     const names = ["Name", "Address", "Baud", "Protocol", "Checksum", layout.inputs.length ? "Counts" : null,
       "Host watchdog", "Timeout status", "Reset status", "Module watchdog"].filter(Boolean);
     for (const name of names) {
@@ -54,7 +54,9 @@ export class Drawer {
     }
     this.copies.forEach(({state, bytes}, index) => {
       const copy = stored.copies[index];
-      setText(state, `Copy ${index + 1}: ${copyState(copy, index === stored.current)}`);
+      state.parentElement.hidden = copy.old && copyState(copy) === "blank";
+      const name = copy.old ? "Copy of earlier firmware" : `Copy ${index + 1}`;
+      setText(state, `${name}: ${copyState(copy, index === stored.current)}`);
       setText(bytes, copy.bytes.match(/../g).join(" "));
     });
   }
@@ -77,7 +79,7 @@ export class Drawer {
 }
 
 function copyState(copy, inUse) {
-  if (!copy.good) {
+  if (copy.sequence === null) {
     return /^F*$/.test(copy.bytes) ? "blank" : "not valid";
   }
   return `sequence ${copy.sequence}${inUse ? ", in use" : ""}`;

@@ -4,7 +4,7 @@
 
 #include <algorithm>
 
-#include "tests/oracles/stored_copy.hpp"
+#include "tests/support/stored_settings.hpp"
 
 namespace ex9000::registers {
 
@@ -17,6 +17,8 @@ constexpr milliseconds kComesUpWithin{100};
 constexpr milliseconds kStoresWithin{600};  // a timeout that is waited for
 constexpr std::uint16_t kDriven = 0xC35A;   // by a command, before the one that stores
 
+constexpr unsigned kWholeCopy = 20;  // bytes; what invalidates one is shorter
+
 constexpr unsigned kWaysAByteIsLeft = 5;
 /// A byte that was about to change when the power failed.
 std::uint8_t left(unsigned way, std::uint8_t old_byte, std::uint8_t new_byte) {
@@ -26,6 +28,14 @@ std::uint8_t left(unsigned way, std::uint8_t old_byte, std::uint8_t new_byte) {
 }
 
 }  // namespace
+
+/// A good new copy beside a good old one: the power has failed before the old one was invalidated.
+bool CutBench::holds_what_must_not_count(const Contents& contents) const {
+  const StoringModel storing = storing_model(model_);
+  const auto good = [&](std::size_t place) { return StoredCopy(storing, contents.data(), place).is_good(); };
+  return (good(kStoredPlaces[0]) || good(kStoredPlaces[1])) &&
+         (good(kStoredPlaces[2]) || good(kStoredPlaces[3]));
+}
 
 CutBench::CutBench(const Image& image, const Model& model) : model_(model), bench_(image) {
   for (unsigned channel = 0; channel < image.outputs; ++channel) {
@@ -119,7 +129,9 @@ Found CutBench::come_up(const Contents& contents, const std::vector<Settings>& g
     }
   }
   EXPECT_EQ(shown_.changes, found.outputs.changes) << "reading has changed outputs";
-  EXPECT_EQ(CutBench::contents(), contents) << "coming up has written";
+  if (!holds_what_must_not_count(contents)) {
+    EXPECT_EQ(CutBench::contents(), contents) << "coming up has written";
+  }
   return found;
 }
 
@@ -165,7 +177,8 @@ void CutBench::set_outputs(const Manner& manner) {
 }
 
 /// Until it is stored and answered, and everything is quiet again.
-void CutBench::carry_out(const Manner& manner, const StoringCommand& command, const Settings& before) {
+void CutBench::carry_out(const Manner& manner, const StoringCommand& command, const Settings& before,
+                         std::size_t pages) {
   const std::size_t had_programmed = bench_.eeprom.programmed().size();
   if (!command.is_timeout()) {
     send(manner.framed(command.frame(before)));
@@ -174,10 +187,10 @@ void CutBench::carry_out(const Manner& manner, const StoringCommand& command, co
     }
   }
   const Instant gives_up = bench_.timeline.now() + kStoresWithin;
-  while (bench_.timeline.now() < gives_up && bench_.eeprom.programmed().size() == had_programmed) {
+  while (bench_.timeline.now() < gives_up && bench_.eeprom.programmed().size() < had_programmed + pages) {
     bench_.run_for(milliseconds(1));
   }
-  ASSERT_EQ(bench_.eeprom.programmed().size(), had_programmed + 1) << "it stores nothing";
+  ASSERT_EQ(bench_.eeprom.programmed().size(), had_programmed + pages) << "it does not store what it should";
   if (command.answered) {
     const Bytes reply = hear();
     ASSERT_GE(reply.size(), 3U) << "no answer";
@@ -209,8 +222,8 @@ Manner CutBench::get_ready(const Contents& contents, const Settings& before, con
   return manner;
 }
 
-Cuts CutBench::cut_everywhere(const Contents& contents, const Settings& before,
-                              const StoringCommand& command) {
+Cuts CutBench::cut_everywhere(const Contents& contents, const Settings& before, const StoringCommand& command,
+                              std::size_t pages) {
   Cuts cuts;
   const Manner manner = get_ready(contents, before, command);
   const Instant began = bench_.timeline.now();
@@ -225,7 +238,7 @@ Cuts CutBench::cut_everywhere(const Contents& contents, const Settings& before,
       EXPECT_EQ(bench_.outputs(), command.is_timeout() ? outputs_done : cuts.outputs);
     }
   });
-  carry_out(manner, command, before);
+  carry_out(manner, command, before, pages);
   bench_.eeprom.on_event(nullptr);
   ++cuts.points;
   ++cuts.cuts;
@@ -249,14 +262,19 @@ Attempt CutBench::attempt(const Contents& contents, const Settings& before, cons
   });
   if (!command.is_timeout()) {
     send(manner.framed(command.frame(before)));
+    while (bench_.line.sending()) {
+      bench_.run_for(microseconds(100));
+    }
   }
+  const Instant asked = bench_.timeline.now();
   bench_.run_for(kStoresWithin);
   attempt.tries = static_cast<unsigned>(std::count_if(
       eeprom.programmed().begin() + static_cast<std::ptrdiff_t>(had_programmed), eeprom.programmed().end(),
-      [](const EepromChip::Programmed& page) { return page.size >= StoredCopy::kSize; }));
+      [](const EepromChip::Programmed& page) { return page.size >= kWholeCopy; }));
   attempt.spoiled = eeprom.spoiled() - had_spoiled;
   if (command.answered) {
     attempt.reply = hear();
+    attempt.reply_after = bench_.line.drives.empty() ? kNever : bench_.line.drives.front().from - asked;
   }
   bench_.run_for(kTriedAgain);
   eeprom.on_event(nullptr);

@@ -13,13 +13,14 @@
 #include "firmware/model/model.hpp"
 #include "firmware/settings/settings.hpp"
 #include "tests/mcu_model/board_bench.hpp"
+#include "tests/oracles/stored_copy.hpp"
 #include "tests/support/settings_reader.hpp"
 #include "tests/support/storing_commands.hpp"
 
 namespace ex9000::registers {
 
 /// What the EEPROM holds where settings may lie; the rest of it is blank.
-using Contents = std::array<std::uint8_t, 64>;
+using Contents = std::array<std::uint8_t, kStoredMemory>;
 
 /// What power cuts in the course of one command leave.
 struct Cuts {
@@ -55,8 +56,9 @@ struct AfterReset {
 /// What a worn-out memory makes of a command.
 struct Attempt {
   std::vector<std::uint8_t> reply;
-  unsigned spoiled = 0;             ///< bytes that the memory has kept otherwise than it was told
-  unsigned tries = 0;               ///< whole copies that were programmed
+  Instant reply_after{0};  ///< from the end of the request to the driver; up to 0.1 ms less than it was
+  unsigned spoiled = 0;    ///< bytes that the memory has kept otherwise than it was told
+  unsigned tries = 0;      ///< whole copies that were programmed
   std::vector<Contents> meanwhile;  ///< until the reply began, or the last page that was programmed was
   std::vector<Contents> behind;     ///< from then on, for more than a second
   std::uint16_t outputs_before = 0;
@@ -69,7 +71,9 @@ class CutBench {
 
   /// The command carried out on a module that comes up with `contents`, which are `before`. That it is
   /// answered as it should be, and drives what it should when it should, is expected by the way.
-  Cuts cut_everywhere(const Contents& contents, const Settings& before, const StoringCommand& command);
+  /// It programs so many pages.
+  Cuts cut_everywhere(const Contents& contents, const Settings& before, const StoringCommand& command,
+                      std::size_t pages = 1);
 
   /// The same, but for a reset of the microcontroller so long behind the begin of the command, while the
   /// EEPROM keeps its supply. As it is once the module is up again.
@@ -80,6 +84,9 @@ class CutBench {
   /// out then: from the place on, with these bits stuck.
   Attempt attempt(const Contents& contents, const Settings& before, const StoringCommand& command,
                   std::uint16_t place, std::uint8_t bits, std::uint8_t stuck);
+
+  /// Of a page, from now on: 10 ms at most, as the AT24C64's data sheet says.
+  void set_programming_time(Instant time) { bench_.eeprom.set_programming_time(time); }
 
   /// The outputs from which such a command begins.
   [[nodiscard]] std::uint16_t outputs_before(const Settings& settings) const;
@@ -95,6 +102,7 @@ class CutBench {
   void power_up(const Contents& contents, bool init);
   UartPort& uart() { return bench_.image.uart == 0 ? bench_.mcu->uart0 : bench_.mcu->uart1; }
   [[nodiscard]] Contents contents() const;
+  [[nodiscard]] bool holds_what_must_not_count(const Contents& contents) const;
   Outputs outputs();
   void note_cuts(Cuts& cuts);
   Manner speak_as(const Settings& settings, bool init_mode);
@@ -103,7 +111,8 @@ class CutBench {
   SettingsReader master(const Manner& manner);
   void set_outputs(const Manner& manner);
   Manner get_ready(const Contents& contents, const Settings& before, const StoringCommand& command);
-  void carry_out(const Manner& manner, const StoringCommand& command, const Settings& before);
+  void carry_out(const Manner& manner, const StoringCommand& command, const Settings& before,
+                 std::size_t pages);
 
   const Model& model_;
   Outputs shown_;  ///< but for what is so now; outlives the board

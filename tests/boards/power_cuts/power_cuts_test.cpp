@@ -135,6 +135,27 @@ TEST_P(PowerCutsOf, LeaveEachCommandWhollyDoneOrNotAtAll) {
   });
 }
 
+/// The first store after an update, and one of a record of four pages: some commands, or all of them.
+TEST_P(PowerCutsOf, InAStoreOfSeveralPagesLeaveEachCommandWhollyDoneOrNotAtAll) {
+  constexpr std::size_t kSome = 3;
+  for (const Beginning beginning : {Beginning::Updated, Beginning::Longer}) {
+    std::vector<const StoringCommand*> commands;
+    for (const StoringCommand& command : commands_) {
+      commands.push_back(&command);
+    }
+    std::shuffle(commands.begin(), commands.end(), random_);
+    commands.resize(all_of_them() ? commands.size() : kSome);
+    for (const StoringCommand* command : commands) {
+      SCOPED_TRACE(command->name + (beginning == Beginning::Updated ? ", updated" : ", longer record"));
+      const State state = begin_at(beginning, model_, *command);
+      const Cuts cuts = bench_.cut_everywhere(state.contents, state.settings, *command, state.pages);
+      judge(cuts, state.settings, command->done_to(state.settings, cuts.outputs),
+            all_of_them() ? SIZE_MAX : 6);
+      ASSERT_FALSE(HasFailure());
+    }
+  }
+}
+
 /// From all that a first cut may leave, or from some of it, all that a second may.
 ///
 /// There may be the settings of the first command after the second cut that were not there after the first: a

@@ -3,41 +3,25 @@
 #include <algorithm>
 #include <string_view>
 
-#include "firmware/settings/record.hpp"
+#include "firmware/settings/places.hpp"
 #include "tests/support/stored_settings.hpp"
 
 namespace ex9000::registers {
 
 namespace {
 
-void put(const Model& model, const Settings& settings, std::uint16_t sequence, std::size_t page,
+void put(const Model& model, const Settings& settings, std::uint16_t sequence, std::size_t copy,
          Contents& contents) {
-  Record record;
-  make_record(model, settings, sequence, record);
-  std::copy(record.bytes.begin(), record.bytes.end(),
-            contents.begin() + static_cast<std::ptrdiff_t>(page * StoredCopy::kDistance));
+  RecordBytes record{};
+  write_record(model, settings, sequence, record);
+  std::copy_n(record.begin(), record_size({record.data(), record.size()}),
+              contents.begin() + kPlaces[copy].address);
 }
 
-}  // namespace
-
-State begin_at(Beginning beginning, const Model& model, const StoringCommand& command) {
-  State state;
-  state.contents.fill(0xFF);
-  Settings& settings = state.settings;
-  settings = Settings::factory(model);
-  if (command.init != Init::SinceReset) {
-    settings.protocol = command.protocol;
-  }
-  if (beginning == Beginning::Factory) {
-    command.prepare(settings);
-    if (settings != Settings::factory(model)) {
-      put(model, settings, 1, 0, state.contents);
-    }
-    return state;
-  }
-  if (command.init == Init::SinceReset) {
-    settings.protocol = Protocol::Ascii;
-  }
+/// Settings of which none is as it comes from the factory.
+Settings full_settings(const Model& model, const StoringCommand& command) {
+  Settings settings = Settings::factory(model);
+  settings.protocol = command.init == Init::SinceReset ? Protocol::Ascii : command.protocol;
   settings.address = 0x37;
   settings.baud_code = 0x0A;
   settings.format = kFormatMask;
@@ -50,8 +34,47 @@ State begin_at(Beginning beginning, const Model& model, const StoringCommand& co
     settings.safe_value = 0xA5A4;
   }
   command.prepare(settings);
+  return settings;
+}
+
+/// From the factory, unless the command requires something else.
+State factory_state(const Model& model, const StoringCommand& command) {
+  State state;
+  state.contents.fill(0xFF);
+  state.settings = Settings::factory(model);
+  if (command.init != Init::SinceReset) {
+    state.settings.protocol = command.protocol;
+  }
+  command.prepare(state.settings);
+  if (state.settings != Settings::factory(model)) {
+    put(model, state.settings, 1, 0, state.contents);
+  }
+  return state;
+}
+
+}  // namespace
+
+State begin_at(Beginning beginning, const Model& model, const StoringCommand& command) {
+  if (beginning == Beginning::Factory) {
+    return factory_state(model, command);
+  }
+  State state;
+  state.contents.fill(0xFF);
+  state.settings = full_settings(model, command);
+  std::uint8_t* const memory = state.contents.data();
+  if (beginning == Beginning::Updated) {
+    put_layout_2(model, Settings::factory(model), 0xFFFE, memory, kPlaces[2].address);
+    put_layout_2(model, state.settings, 0xFFFF, memory, kPlaces[3].address);
+    state.pages = 3;  // a record, and what invalidates two old copies
+    return state;
+  }
   put(model, Settings::factory(model), 0xFFFE, 0, state.contents);
-  put(model, settings, 0xFFFF, 1, state.contents);
+  put(model, state.settings, 0xFFFF, 1, state.contents);
+  if (beginning == Beginning::Longer) {
+    constexpr std::uint8_t kLength = 96;
+    lengthen(model, memory, kPlaces[1].address, kLength);
+    state.pages = 4;  // 104 bytes
+  }
   return state;
 }
 

@@ -10,16 +10,22 @@
 
 namespace ex9000::registers {
 
-enum class Beginning : std::uint8_t { Factory, Full };
+enum class Beginning : std::uint8_t {
+  Factory,  ///< blank
+  Full,     ///< both copies
+  Updated,  ///< two copies of layout 2, as firmware before layout 3 leaves them
+  Longer,   ///< the record that counts is one of newer firmware, with 96 bytes of settings
+};
 
 struct State {
   Settings settings;
   Contents contents;
+  std::size_t pages = 1;  ///< that the next store programs
 };
 
 /// A state from which `command` stores something. A module from the factory has a blank EEPROM, unless the
-/// command wants something else; one that is set up has both copies, the later with the last number before
-/// they begin anew, and nothing in it is as it comes from the factory.
+/// command requires something else. In all other states the later copy has the last number before they begin
+/// anew, and none of its settings is as it comes from the factory.
 State begin_at(Beginning beginning, const Model& model, const StoringCommand& command);
 
 /// What a module has to come up with, read by other code than its own.

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "firmware/settings/record.hpp"
+#include "firmware/settings/places.hpp"
 #include "hal/device.hpp"
 #include "hal/stellaris/uart.hpp"
 #include "tests/support/interleaving/chip.hpp"
@@ -36,9 +36,9 @@ class Bench {
     Settings settings = Settings::factory(*find_model(model));
     settings.baud_code = kFastest;
     change(settings);
-    Record record;
-    make_record(*find_model(model), settings, 1, record);
-    std::copy(record.bytes.begin(), record.bytes.end(), device_.board().memory.contents.begin());
+    RecordBytes record{};
+    write_record(*find_model(model), settings, 1, record);
+    std::copy(record.begin(), record.end(), device_.board().memory.contents.begin() + kPlaces[0].address);
     device_.start();
     rest(milliseconds(15));
     chip_.sent.clear();

@@ -22,8 +22,8 @@ Outcome of_everything() {
   }
   outcome.counters_to_clear = 0xFF;
   outcome.drive({0x1FFF, 0x0AAA});
-  outcome.change().address(0x2A);
-  outcome.change().safe_value(0x1234);
+  outcome.change().address = 0x2A;
+  outcome.change().safe_value = 0x1234;
   return outcome;
 }
 
@@ -71,8 +71,8 @@ TEST(Outcome, ToDriveOutputsIsNeitherAnEffectNorAChange) {
 
 TEST(Outcome, ToChangeSettingsIsNeitherAnEffectNorOutputsToDrive) {
   Outcome outcome;
-  outcome.change().address(0x2A);
-  outcome.change().watchdog_timeout(0x64);
+  outcome.change().address = 0x2A;
+  outcome.change().watchdog_timeout = 0x64;
   EXPECT_FALSE(outcome.has_effects());
   EXPECT_TRUE(outcome.changes_settings());
   EXPECT_EQ(outcome.outputs_to_drive().mask, 0);
@@ -100,7 +100,7 @@ TEST(Outcome, ThatIsClearedStillTellsWhyItWasRefused) {
 TEST(Outcome, ThatWasClearedHoldsOnlyWhatCameAfter) {
   Outcome outcome = of_everything();
   outcome.clear();
-  outcome.change().watchdog_timeout(0x64);
+  outcome.change().watchdog_timeout = 0x64;
   outcome.request(Effect::TakeSample);
   Settings expected = Settings::factory(the_model());
   expected.watchdog_timeout = 0x64;

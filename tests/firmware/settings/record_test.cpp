@@ -1,11 +1,13 @@
 // Settings as they lie in the memory: what is written is read back, and nothing else is taken for settings
-// (D8).
+// (wire.md D8).
 #include "firmware/settings/record.hpp"
 
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <array>
+#include <cstddef>
+#include <optional>
 #include <random>
 #include <string>
 #include <string_view>
@@ -43,60 +45,60 @@ const Model& the_model() { return model("EX9042D-M"); }
 
 Stored factory() { return {Settings::factory(the_model()), 1}; }
 
+using Record = std::vector<std::uint8_t>;
+
 Record record_of(const Stored& stored, const Model& which = the_model()) {
-  Record record;
-  make_record(which, stored.settings, stored.sequence, record);
-  return record;
+  RecordBytes bytes{};
+  write_record(which, stored.settings, stored.sequence, bytes);
+  return {bytes.begin(), bytes.begin() + static_cast<std::ptrdiff_t>(record_size({bytes.data(), 4}))};
 }
+
+std::optional<StoredSettings> read(const Model& which, const Record& record) {
+  return read_record(which, {record.data(), record.size()});
+}
+bool is_good(const Model& which, const Record& record) { return read(which, record).has_value(); }
 
 void expect_round_trip(const Model& which, const Stored& stored) {
-  const Record record = record_of(stored, which);
-  ASSERT_TRUE(is_good(which, record)) << which.designation;
-  EXPECT_TRUE(settings_in(record) == stored.settings) << which.designation;
-  EXPECT_EQ(sequence_in(record), stored.sequence) << which.designation;
+  const std::optional<StoredSettings> found = read(which, record_of(stored, which));
+  ASSERT_TRUE(found) << which.designation;
+  EXPECT_TRUE(found->settings == stored.settings) << which.designation;
+  EXPECT_EQ(found->edition.sequence, stored.sequence) << which.designation;
+  EXPECT_EQ(found->edition.layout, 3) << which.designation;
 }
 
-Record filled_with(std::uint8_t byte) {
-  Record record;
-  record.bytes.fill(byte);
-  return record;
-}
+// firmware/settings/record.hpp
+constexpr std::size_t kLengthAt = 1;
+constexpr std::size_t kSettingsAt = 4;
+constexpr std::size_t kSettingsSize = 19;
+constexpr std::size_t kCheckAt = kSettingsAt + kSettingsSize;
+constexpr std::size_t kRecordSize = kCheckAt + 4;
+
+Record filled_with(std::uint8_t byte) { return Record(kRecordSize, byte); }
 
 /// The first `written` bytes of `newer`, and behind them `older`.
 Record torn_record(const Record& newer, std::size_t written, Record older) {
-  std::copy_n(newer.bytes.begin(), written, older.bytes.begin());
+  std::copy_n(newer.begin(), written, older.begin());
   return older;
 }
 
 constexpr std::size_t kRecordBits = kRecordSize * 8;
 
 Record with_flipped(Record record, std::size_t bit) {
-  record.bytes[bit / 8] = static_cast<std::uint8_t>(record.bytes[bit / 8] ^ (1U << (bit % 8)));
+  record[bit / 8] = static_cast<std::uint8_t>(record[bit / 8] ^ (1U << (bit % 8)));
   return record;
 }
 
 // --- the check: CRC-32 as IEEE 802.3 has it, a bit at a time, and back ---
 
-constexpr std::size_t kWords = kRecordCheckAt / 4;
-using Words = std::array<std::uint32_t, kWords>;
-
 std::uint32_t word_at(const Record& record, std::size_t at) {
   std::uint32_t word = 0;
   for (std::size_t i = 0; i < 4; ++i) {
-    word += std::uint32_t{record.bytes[at + i]} << (8 * i);
+    word += std::uint32_t{record[at + i]} << (8 * i);
   }
   return word;
 }
 
-Words words_in(const Record& record) {
-  Words words{};
-  for (std::size_t i = 0; i < kWords; ++i) {
-    words[i] = word_at(record, 4 * i);
-  }
-  return words;
-}
-
-std::uint32_t check_in(const Record& record) { return word_at(record, kRecordCheckAt); }
+std::uint32_t check_in(const Record& record) { return word_at(record, record.size() - 4); }
 
 constexpr std::uint32_t kReflectedPolynomial = 0xEDB8'8320U;
 
@@ -108,10 +110,10 @@ std::uint32_t taken_in(std::uint32_t crc, std::uint32_t data, int bits) {
   return crc;
 }
 
-/// The exclusive or of CRC and word that `taken_in` has made `result` of: the polynomial's highest bit tells
+/// The exclusive or of CRC and data that `taken_in` has made `result` of: the polynomial's highest bit tells
 /// whether it was divided by.
-std::uint32_t undone(std::uint32_t result) {
-  for (int bit = 0; bit < 32; ++bit) {
+std::uint32_t undone(std::uint32_t result, int bits) {
+  for (int bit = 0; bit < bits; ++bit) {
     const bool divided = result >> 31U != 0;
     result = divided ? (result ^ kReflectedPolynomial) << 1U | 1U : result << 1U;
   }
@@ -128,28 +130,28 @@ std::uint32_t seed(const Model& which) {
 
 /// So that a test can put in what no module would.
 Record with_check(const Model& which, Record record) {
+  const std::size_t check_at = record.size() - 4;
   std::uint32_t crc = seed(which);
-  for (const std::uint32_t word : words_in(record)) {
-    crc = taken_in(crc, word, 32);
+  for (std::size_t i = 0; i < check_at; ++i) {
+    crc = taken_in(crc, record[i], 8);
   }
   for (std::size_t i = 0; i < 4; ++i) {
-    record.bytes[kRecordCheckAt + i] = static_cast<std::uint8_t>(~crc >> (8 * i));
+    record[check_at + i] = static_cast<std::uint8_t>(~crc >> (8 * i));
   }
   return record;
 }
 
-/// The only word that can stand at `missing` where a record has this check and these other words.
-std::uint32_t word_that_must_be_at(std::size_t missing, const Words& others, std::uint32_t check,
-                                   const Model& which) {
-  std::uint32_t behind = ~check;
-  for (std::size_t i = kWords - 1; i > missing; --i) {
-    behind = undone(behind) ^ others[i];
+/// The only four bytes that can stand from `missing` on in a record with this check and these other bytes.
+std::uint32_t word_that_must_be_at(std::size_t missing, const Record& record, const Model& which) {
+  std::uint32_t behind = ~check_in(record);
+  for (std::size_t i = record.size() - 5; i > missing + 3; --i) {
+    behind = undone(behind, 8) ^ record[i];
   }
   std::uint32_t before = seed(which);
   for (std::size_t i = 0; i < missing; ++i) {
-    before = taken_in(before, others[i], 32);
+    before = taken_in(before, record[i], 8);
   }
-  return undone(behind) ^ before;
+  return undone(behind, 32) ^ before;
 }
 
 /// Any that `which` may have.
@@ -173,38 +175,37 @@ Stored random_settings(const Model& which, std::mt19937& random) {
   return {settings, static_cast<std::uint16_t>(random())};
 }
 
-/// Records that differ in one word only, whose checks are held to differ too.
+/// Records that differ in up to four neighbouring bytes only, whose checks are held to differ too.
 class OfOneKind {
  public:
-  OfOneKind(const char* what, std::size_t word) : what_(what), word_(word) {}
+  OfOneKind(const char* what, std::size_t at) : what_(what), at_(at) {}
   ~OfOneKind() { EXPECT_GT(checks_.size(), 1000U) << what_; }
   OfOneKind(const OfOneKind&) = delete;
   OfOneKind& operator=(const OfOneKind&) = delete;
 
   void add(const Stored& stored) {
     const Record record = record_of(stored, model("EX9043D-M"));
-    Words words = words_in(record);
-    words[word_] = 0;
+    Record others(record.begin(), record.begin() + kCheckAt);
+    std::fill_n(others.begin() + static_cast<std::ptrdiff_t>(at_), 4, std::uint8_t{0});
     if (checks_.empty()) {
-      others_ = words;
+      others_ = others;
     }
-    ASSERT_EQ(words, others_) << what_ << ": another word differs";
+    ASSERT_EQ(others, others_) << what_ << ": another byte differs";
     ASSERT_TRUE(checks_.insert(check_in(record)).second) << what_ << ": two have the same check";
   }
 
  private:
   const char* what_;
-  std::size_t word_;
-  Words others_{};
+  std::size_t at_;
+  Record others_;
   std::unordered_set<std::uint32_t> checks_;
 };
 
 // --- what is written comes back ---
 
 TEST(Record, FitsAPageOfTheMemory) {
-  EXPECT_EQ(kRecordSize, 28U);
-  EXPECT_EQ(sizeof(Record), kRecordSize);
-  EXPECT_LE(sizeof(Record), 32U);
+  EXPECT_EQ(record_of(factory()).size(), kRecordSize);
+  EXPECT_LE(kRecordSize, 32U);
 }
 
 TEST(Record, FactorySettingsOfEveryModelComeBack) {
@@ -250,22 +251,22 @@ TEST(Record, TheLongestNameComesBack) {
 // --- the layout ---
 
 TEST(Record, IsLaidOutAsItsHeaderSays) {
-  const std::array<std::uint8_t, kRecordSize> changed{
-      0xF7, 0x0A, 0xC0, 1,    0x64, 1,   1, 0,  // address to timeout status
+  const Record changed{
+      3,    19,   0xEF, 0xBE,                   // layout, length, sequence
+      0xF7, 0x0A, 0xC0, 1,    0x64, 1,   1,     // address to timeout status
       'p',  'u',  'm',  'p',  '~',  '1', 0, 6,  // name
       0x5C, 0x1A, 0xFF, 0x03,                   // power-on value, safe value
-      0xEF, 0xBE, 2,    0,                      // sequence, layout
-      0x69, 0xAF, 0x7B, 0xA0,                   // check
+      0x9A, 0x39, 0xF6, 0x4E,                   // check
   };
-  EXPECT_EQ(record_of(changed_settings()).bytes, changed);
-  const std::array<std::uint8_t, kRecordSize> from_the_factory{
-      1,    6,    0,    1,    0xFF, 0, 0, 0,  //
+  EXPECT_EQ(record_of(changed_settings()), changed);
+  const Record from_the_factory{
+      3,    19,   1,    0,                    //
+      1,    6,    0,    1,    0xFF, 0, 0,     //
       '9',  '0',  '4',  '2',  'M',  0, 0, 5,  //
       0,    0,    0,    0,                    //
-      1,    0,    2,    0,                    //
-      0xD2, 0xC5, 0x25, 0x88,
+      0x4C, 0x60, 0x29, 0x33,
   };
-  EXPECT_EQ(record_of(factory()).bytes, from_the_factory);
+  EXPECT_EQ(record_of(factory()), from_the_factory);
 }
 
 TEST(Record, HasTheCheckThatItsHeaderSays) {
@@ -287,30 +288,29 @@ TEST(Record, TwoThatDifferInAnyByteAreNotEqual) {
 
 // --- what is not a record ---
 
-// The promise of the check, as a proof: whatever the check and the other words are, there is one word only.
-TEST(Record, AnyWordFollowsFromTheCheckAndTheOtherWords) {
+// The promise of the check, as a proof: whatever the check and the other bytes are, only these four fit.
+TEST(Record, AnyFourBytesFollowFromTheCheckAndTheOtherBytes) {
   std::mt19937 random(3);
   for (const Model& each : kModels) {
     for (int i = 0; i < 1000; ++i) {
       const Record record = record_of(random_settings(each, random), each);
-      const Words words = words_in(record);
-      for (std::size_t missing = 0; missing < kWords; ++missing) {
-        Words others = words;
-        others[missing] = 0;
-        ASSERT_EQ(word_that_must_be_at(missing, others, check_in(record), each), words[missing]);
+      for (std::size_t missing = 0; missing + 4 <= kCheckAt; ++missing) {
+        Record others = record;
+        std::fill_n(others.begin() + static_cast<std::ptrdiff_t>(missing), 4, std::uint8_t{0});
+        ASSERT_EQ(word_that_must_be_at(missing, others, each), word_at(record, missing));
       }
     }
   }
 }
 
-// And by trial, with tens of thousands of records for each word.
-TEST(Record, TwoThatDifferInOneWordOnlyNeverHaveTheSameCheck) {
-  OfOneKind lines("address, baud code, format and protocol", 0);
-  OfOneKind watchdogs("watchdog and timeout status", 1);
-  OfOneKind beginnings("the name's first characters", 2);
-  OfOneKind ends("the name's last characters", 3);
-  OfOneKind values("power-on value and safe value", 4);
-  OfOneKind sequences("sequence", 5);
+// And by trial, with tens of thousands of records for each place.
+TEST(Record, TwoThatDifferInFourBytesOnlyNeverHaveTheSameCheck) {
+  OfOneKind lines("address, baud code, format and protocol", 4);
+  OfOneKind watchdogs("watchdog and timeout status", 8);
+  OfOneKind beginnings("the name's first characters", 11);
+  OfOneKind ends("the name's last characters", 15);
+  OfOneKind values("power-on value and safe value", 19);
+  OfOneKind sequences("sequence", 0);
   const Stored from = changed_settings();
   for (unsigned i = 0; i < 0x10000; ++i) {
     const auto value = static_cast<std::uint16_t>(i);
@@ -359,7 +359,7 @@ TEST(Record, EverySingleCorruptedByteIsSeen) {
     for (std::size_t at = 0; at < kRecordSize; ++at) {
       for (unsigned value = 0; value < 256; ++value) {
         Record bad = good;
-        bad.bytes[at] = static_cast<std::uint8_t>(value);
+        bad[at] = static_cast<std::uint8_t>(value);
         EXPECT_EQ(is_good(the_model(), bad), bad == good) << "byte " << at << ", value " << value;
       }
     }
@@ -423,7 +423,7 @@ TEST(Record, OneWhoseCheckWasMadeZerosIsNone) {
   std::mt19937 random(4);
   for (int i = 0; i < 1000; ++i) {
     Record record = record_of(random_settings(the_model(), random));
-    std::fill(record.bytes.begin() + kRecordCheckAt, record.bytes.end(), std::uint8_t{0});
+    std::fill(record.end() - 4, record.end(), std::uint8_t{0});
     EXPECT_FALSE(is_good(the_model(), record));
   }
 }
@@ -436,17 +436,6 @@ TEST(Record, AnotherModelsRecordIsNone) {
           << writer.designation << " read by " << reader.designation;
     }
   }
-}
-
-// 25 bytes with a CRC-32: layout, sequence, address to flags, timeout, values, length and name.
-TEST(Record, WhatLayout1StoredIsNone) {
-  constexpr std::array<std::uint8_t, 25> kLayout1{1,    0xEF, 0xBE, 0xF7, 0x0A, 0xC0, 1,   3,   0x64,
-                                                  0x5C, 0x1A, 0xFF, 0x03, 6,    'p',  'u', 'm', 'p',
-                                                  '~',  '1',  0,    0x20, 0xAD, 0x68, 0xCE};
-  Record record = filled_with(0xFF);
-  std::copy(kLayout1.begin(), kLayout1.end(), record.bytes.begin());
-  EXPECT_FALSE(is_good(the_model(), record));
-  EXPECT_FALSE(is_blank(record));
 }
 
 TEST(Record, BlankZeroedAndUniformMemoryIsNoRecord) {
@@ -464,31 +453,31 @@ TEST(Record, WithARightCheckButWhatTheModelCannotHaveIsNone) {
     std::uint8_t value;
   };
   const Record good = record_of(factory());
-  for (const Bad& bad : {Bad{"Modbus address", 0, 0},
-                         Bad{"Modbus address", 0, 248},
-                         Bad{"baud code", 1, 2},
-                         Bad{"baud code", 1, 0x0B},
-                         Bad{"format", 2, 0x20},
-                         Bad{"protocol", 3, 2},
-                         Bad{"protocol", 3, 0xFF},
-                         Bad{"watchdog enabled", 5, 2},
-                         Bad{"watchdog enabled", 5, 0xFF},
-                         Bad{"timeout status", 6, 2},
-                         Bad{"timeout status", 6, 0x80},
-                         Bad{"name", 8, 0x0D},
-                         Bad{"name", 12, 0x7F},
-                         Bad{"no name", 15, 0},
-                         Bad{"long name", 15, 7},
-                         Bad{"longer name", 15, 8},
-                         Bad{"longest name", 15, 255},
-                         Bad{"power-on value", 17, 0x20},
-                         Bad{"safe value", 19, 0x80},
-                         Bad{"layout", 22, 1},
-                         Bad{"layout", 22, 0},
-                         Bad{"layout", 22, 3},
-                         Bad{"layout", 23, 1}}) {
+  for (const Bad& bad : {Bad{"Modbus address", 4, 0},
+                         Bad{"Modbus address", 4, 248},
+                         Bad{"baud code", 5, 2},
+                         Bad{"baud code", 5, 0x0B},
+                         Bad{"format", 6, 0x20},
+                         Bad{"protocol", 7, 2},
+                         Bad{"protocol", 7, 0xFF},
+                         Bad{"watchdog enabled", 9, 2},
+                         Bad{"watchdog enabled", 9, 0xFF},
+                         Bad{"timeout status", 10, 2},
+                         Bad{"timeout status", 10, 0x80},
+                         Bad{"name", 11, 0x0D},
+                         Bad{"name", 15, 0x7F},
+                         Bad{"no name", 18, 0},
+                         Bad{"long name", 18, 7},
+                         Bad{"longer name", 18, 8},
+                         Bad{"longest name", 18, 255},
+                         Bad{"power-on value", 20, 0x20},
+                         Bad{"safe value", 22, 0x80},
+                         Bad{"layout", 0, 1},
+                         Bad{"layout", 0, 2},
+                         Bad{"layout", 0, 0},
+                         Bad{"layout", 0, 4}}) {
     Record record = good;
-    record.bytes[bad.at] = bad.value;
+    record[bad.at] = bad.value;
     EXPECT_FALSE(is_good(the_model(), with_check(the_model(), record))) << bad.what;
   }
   EXPECT_TRUE(is_good(the_model(), with_check(the_model(), good)));
@@ -496,17 +485,112 @@ TEST(Record, WithARightCheckButWhatTheModelCannotHaveIsNone) {
 
 TEST(Record, WithARightCheckButAnArmedWatchdogWithoutTimeoutIsNone) {
   Record record = record_of(changed_settings());
-  record.bytes[4] = 0;
+  record[8] = 0;
   EXPECT_FALSE(is_good(the_model(), with_check(the_model(), record)));
 }
 
-TEST(Record, IsBlankWhereAllBytesAreFF) { EXPECT_TRUE(is_blank(filled_with(0xFF))); }
+// --- longer and shorter records ---
 
-TEST(Record, IsNotBlankWhereAnyByteIsNotFF) {
-  for (std::size_t bit = 0; bit < kRecordBits; ++bit) {
-    EXPECT_FALSE(is_blank(with_flipped(filled_with(0xFF), bit))) << bit;
+/// Of a firmware that knows more settings, or fewer.
+Record with_length(const Stored& stored, std::size_t length) {
+  Record record = record_of(stored);
+  Record settings(record.begin() + kSettingsAt, record.begin() + kCheckAt);
+  for (std::size_t more = settings.size(); more < length; ++more) {
+    settings.push_back(static_cast<std::uint8_t>(0xC1U ^ more));
   }
-  EXPECT_FALSE(is_blank(record_of(factory())));
+  settings.resize(length);
+  record.resize(kSettingsAt);
+  record[kLengthAt] = static_cast<std::uint8_t>(length);
+  record.insert(record.end(), settings.begin(), settings.end());
+  record.resize(record.size() + 4);
+  return with_check(the_model(), record);
+}
+
+TEST(Record, HasRoomFor96BytesOfSettingsAndMore) {
+  for (std::size_t length = kSettingsSize; length <= 120; ++length) {
+    const std::optional<StoredSettings> found = read(the_model(), with_length(changed_settings(), length));
+    ASSERT_TRUE(found) << length;
+    EXPECT_TRUE(found->settings == changed_settings().settings) << length;
+  }
+}
+
+TEST(Record, ThatIsLongerThanItsPlaceIsNone) {
+  for (std::size_t length = 121; length <= 255; ++length) {
+    const Record record = with_length(changed_settings(), length);
+    EXPECT_EQ(record_size({record.data(), record.size()}), 0U) << length;
+    EXPECT_FALSE(is_good(the_model(), record)) << length;
+  }
+}
+
+TEST(Record, OfWhichNotAllIsThereIsNone) {
+  const Record record = with_length(changed_settings(), 60);
+  for (std::size_t size = kSettingsAt; size < record.size(); ++size) {
+    EXPECT_FALSE(read_record(the_model(), {record.data(), size})) << size;
+  }
+}
+
+TEST(Record, ThatLacksTheLastSettingsHasTheirFactoryValues) {
+  Settings expected = changed_settings().settings;
+  const auto found = [](std::size_t length) {
+    return read(the_model(), with_length(changed_settings(), length)).value().settings;
+  };
+  expected.safe_value = 0;
+  EXPECT_TRUE(found(18) == expected);
+  EXPECT_TRUE(found(17) == expected);
+  expected.power_on_value = 0;
+  EXPECT_TRUE(found(16) == expected);
+  EXPECT_TRUE(found(15) == expected);
+  expected.name = Name(std::string_view("9042M"));
+  EXPECT_TRUE(found(14) == expected);
+  EXPECT_TRUE(found(7) == expected);
+  expected.timeout_status = false;
+  EXPECT_TRUE(found(6) == expected);
+  EXPECT_TRUE(found(0) == Settings::factory(the_model()));
+}
+
+TEST(Record, ThatIsWrittenOverALongerOneKeepsWhatThisFirmwareDoesNotKnow) {
+  for (std::size_t length = kSettingsSize; length <= 120; ++length) {
+    const Record longer = with_length(factory(), length);
+    RecordBytes bytes{};
+    std::copy(longer.begin(), longer.end(), bytes.begin());
+    write_record(the_model(), changed_settings().settings, changed_settings().sequence, bytes);
+    const Record written(bytes.begin(), bytes.begin() + static_cast<std::ptrdiff_t>(longer.size()));
+    EXPECT_EQ(written, with_length(changed_settings(), length)) << length;
+  }
+}
+
+TEST(Record, ThatIsWrittenOverAShorterOneIsAWholeOne) {
+  const Record shorter = with_length(changed_settings(), 7);
+  RecordBytes bytes{};
+  std::copy(shorter.begin(), shorter.end(), bytes.begin());
+  write_record(the_model(), changed_settings().settings, changed_settings().sequence, bytes);
+  EXPECT_TRUE(std::equal(bytes.begin(), bytes.begin() + kRecordSize, record_of(changed_settings()).begin()));
+}
+
+// --- which of several counts ---
+
+TEST(Edition, OfANewerLayoutCountsOverAnyOfAnOlderOne) {
+  constexpr std::uint16_t kSequences[] = {0, 1, 0x7FFF, 0x8000, 0xFFFF};
+  for (const std::uint16_t a : kSequences) {
+    for (const std::uint16_t b : kSequences) {
+      EXPECT_TRUE((Edition{3, a}.counts_over({2, b})));
+      EXPECT_FALSE((Edition{2, a}.counts_over({3, b})));
+      EXPECT_TRUE((Edition{2, a}.counts_over({1, b})));
+      EXPECT_FALSE((Edition{1, a}.counts_over({2, b})));
+    }
+  }
+}
+
+TEST(Edition, OfALaterSequenceCountsAlsoBehindTheWrap) {
+  for (unsigned from = 0; from < 0x10000; from += 0x1FF) {
+    const Edition older{3, static_cast<std::uint16_t>(from)};
+    for (const unsigned ahead : {1U, 2U, 0x7FFFU}) {
+      const Edition newer{3, static_cast<std::uint16_t>(from + ahead)};
+      EXPECT_TRUE(newer.counts_over(older));
+      EXPECT_FALSE(older.counts_over(newer));
+    }
+    EXPECT_FALSE(older.counts_over(older));
+  }
 }
 
 }  // namespace

@@ -17,7 +17,6 @@ class SettingsKeeperTest : public testing::Test {
     for (int jobs = 0; keeper_.busy(); ++jobs) {
       ASSERT_LT(jobs, 100) << "the store never finishes";
       const MemoryJob job = keeper_.job();
-      keeper_.started();
       keeper_.done(memory_.run(job).value_or(false));
     }
   }

@@ -6,11 +6,11 @@
 #include <algorithm>
 #include <cstdint>
 #include <optional>
-#include <set>
 #include <string_view>
 #include <vector>
 
 #include "firmware/settings/store.hpp"
+#include "tests/support/stored_settings.hpp"
 
 namespace ex9000 {
 
@@ -18,7 +18,7 @@ using Found = SettingsStore::Found;
 
 inline constexpr std::size_t kPage = 32;
 inline constexpr std::size_t kAttempts = 3;
-inline constexpr std::size_t kStuckCell = 0;  // of a page: where a record has the address
+inline constexpr std::size_t kStuckCell = 4;  // of a page: where a record has the address
 
 inline const Model& model(std::string_view designation) { return *find_model(designation); }
 
@@ -56,7 +56,7 @@ class FakeMemory {
     return writing ? write(job) : read(job);
   }
 
-  std::vector<std::uint8_t> cells = std::vector<std::uint8_t>(4 * kPage, 0xFF);
+  std::vector<std::uint8_t> cells = std::vector<std::uint8_t>(kStoredMemory, 0xFF);
   std::size_t failing_reads = 0;      ///< so many next reads are not answered
   std::size_t noisy_reads = 0;        ///< so many next reads read nonsense
   std::size_t unanswered_writes = 0;  ///< so many next writes are not answered, and not done
@@ -137,7 +137,6 @@ inline bool drive(SettingsStore& store, FakeMemory& memory) {
       return false;
     }
     const MemoryJob job = store.job();
-    store.started();
     const std::optional<bool> ok = memory.run(job);
     if (!ok) {
       return false;
@@ -166,22 +165,32 @@ class Boot {
   SettingsStore store_;
 };
 
-/// Where the two copies lie.
-inline std::vector<std::uint16_t> copies() {
-  FakeMemory memory;
-  const Boot run(memory);
-  const std::set<std::uint16_t> addresses(memory.reads.begin(), memory.reads.end());
-  return {addresses.begin(), addresses.end()};
-}
+/// Where the two copies lie, and those of older layouts.
+inline constexpr std::uint16_t kCopies[] = {0x080, 0x100};
+inline constexpr std::uint16_t kOldCopies[] = {0x000, 0x020};
 
 inline void put(FakeMemory& memory, std::size_t copy, const Settings& settings, std::uint16_t sequence,
                 const Model& which = the_model()) {
-  Record record;
-  make_record(which, settings, sequence, record);
-  std::copy(record.bytes.begin(), record.bytes.end(), memory.cells.begin() + copies().at(copy));
+  RecordBytes record{};
+  write_record(which, settings, sequence, record);
+  std::copy_n(record.begin(), record_size({record.data(), record.size()}),
+              memory.cells.begin() + kCopies[copy]);
 }
 
-inline void corrupt(FakeMemory& memory, std::size_t copy) { memory.cells[copies().at(copy) + 5U] ^= 0x01U; }
+/// A copy as firmware of layout 2 stores it (firmware/settings/old_layouts.hpp), written without the
+/// firmware's code.
+inline void put_old(FakeMemory& memory, std::size_t copy, const Settings& settings, std::uint16_t sequence) {
+  put_layout_2(the_model(), settings, sequence, memory.cells.data(), kOldCopies[copy]);
+}
+
+/// A record of firmware that knows more settings: `length` bytes of them.
+inline void put_longer(FakeMemory& memory, std::size_t copy, const Settings& settings, std::uint16_t sequence,
+                       std::uint8_t length) {
+  put(memory, copy, settings, sequence);
+  lengthen(the_model(), memory.cells.data(), kCopies[copy], length);
+}
+
+inline void corrupt(FakeMemory& memory, std::size_t copy) { memory.cells[kCopies[copy] + 5U] ^= 0x01U; }
 
 /// All ways for a save to fail three times.
 inline const std::vector<void (*)(FakeMemory&)> kFailures{

@@ -12,6 +12,8 @@
 namespace ex9000 {
 namespace {
 
+constexpr std::size_t kBytesOfARecord = 27;
+
 class PowerCuts : public testing::Test {
  protected:
   static std::vector<FakeMemory> beginnings() {
@@ -153,7 +155,7 @@ TEST_F(PowerCuts, TwiceInARowLeaveTheOldSettingsOrTheNew) {
 TEST_F(PowerCuts, ManyTimesInARowLeaveTheOldSettingsOrTheNew) {
   for (FakeMemory memory : beginnings()) {
     for (unsigned i = 0; i < 1000; ++i) {
-      const std::size_t cut = (i * 7) % (kRecordSize + 1);
+      const std::size_t cut = (i * 7) % (kBytesOfARecord + 1);
       const auto garbage = FakeMemory::kEveryGarbage[i % std::size(FakeMemory::kEveryGarbage)];
       cut_and_load(memory, numbered(200 + i), cut, garbage);
     }

@@ -97,7 +97,7 @@ TEST(SettingsStore, AFailedSaveDoesNotTouchTheCopyThatHoldsTheOldSettings) {
   memory.noisy_reads = kAttempts;
   EXPECT_FALSE(run.save(numbered(1)));
   for (const std::uint16_t address : memory.writes) {
-    EXPECT_NE(address / kPage, copies()[0] / kPage);
+    EXPECT_NE(address / kPage, kCopies[0] / kPage);
   }
 }
 
@@ -105,7 +105,6 @@ TEST(SettingsStore, AFailedSaveDoesNotTouchTheCopyThatHoldsTheOldSettings) {
 void end_jobs(SettingsStore& store, bool answered, int count) {
   for (int i = 0; i < count; ++i) {
     const MemoryJob job = store.job();
-    store.started();
     if (job.kind == MemoryJob::Kind::Read && answered) {
       std::fill_n(job.bytes.data, job.bytes.size, std::uint8_t{0x5A});
     }
@@ -114,11 +113,12 @@ void end_jobs(SettingsStore& store, bool answered, int count) {
 }
 
 TEST(SettingsStore, WhatIsSettledIsTheDoubtfulCopyAndNotTheOneThatWasLastLookedAt) {
+  constexpr int kAllReads = 4 * static_cast<int>(kAttempts);
   SettingsStore store(the_model());
-  end_jobs(store, false, 6);
+  end_jobs(store, false, kAllReads);
   ASSERT_EQ(store.found(), SettingsStore::Found::Unreadable);
   store.begin_saving(numbered(1));
-  end_jobs(store, true, 6);  // both copies are garbage
+  end_jobs(store, true, kAllReads);  // all copies are garbage
   const std::uint16_t doubtful = store.job().address;
   for (std::size_t attempt = 0; attempt < kAttempts; ++attempt) {
     end_jobs(store, true, 1);   // written,

@@ -13,12 +13,13 @@ namespace {
 
 // --- loading ---
 
-TEST(SettingsStore, KeepsTwoCopiesInPagesOfTheirOwn) {
-  ASSERT_EQ(copies().size(), 2U);
-  EXPECT_NE(copies()[0] / kPage, copies()[1] / kPage);
+TEST(SettingsStore, ReadsTheFirstPageOfEachPlaceOfABlankMemoryOnce) {
+  FakeMemory memory;
+  const Boot run(memory);
+  EXPECT_EQ(memory.reads, (std::vector<std::uint16_t>{kCopies[0], kCopies[1], kOldCopies[0], kOldCopies[1]}));
 }
 
-TEST(SettingsStore, LoadsFromTheBeginningUntilBothCopiesAreRead) {
+TEST(SettingsStore, LoadsFromTheBeginningUntilAllCopiesAreRead) {
   FakeMemory memory;
   SettingsStore store(the_model());
   EXPECT_TRUE(store.loading());
@@ -131,7 +132,7 @@ TEST(SettingsStore, AReadThatFailsIsTriedUpToThreeTimes) {
     const Boot run(memory);
     EXPECT_EQ(run.found(), Found::Settings);
     EXPECT_TRUE(run.stored() == numbered(5)) << failing;
-    EXPECT_EQ(memory.reads.size(), failing + 2);
+    EXPECT_EQ(memory.reads.size(), failing + 4);
   }
 }
 
@@ -163,7 +164,6 @@ TEST(SettingsStore, EachCopyHasThreeReadsOfItsOwn) {
   SettingsStore store(the_model());
   for (std::size_t i = 0; i < kAttempts; ++i) {
     const MemoryJob job = store.job();
-    store.started();
     store.done(*memory.run(job));
   }
   memory.failing_reads = kAttempts - 1;
@@ -173,11 +173,11 @@ TEST(SettingsStore, EachCopyHasThreeReadsOfItsOwn) {
 
 TEST(SettingsStore, AMemoryThatDoesNotAnswerIsUnreadable) {
   FakeMemory memory;
-  memory.failing_reads = 2 * kAttempts;
+  memory.failing_reads = 4 * kAttempts;
   const Boot run(memory);
   EXPECT_EQ(run.found(), Found::Unreadable);
   EXPECT_TRUE(run.stored() == factory());
-  EXPECT_EQ(memory.reads.size(), 2 * kAttempts);
+  EXPECT_EQ(memory.reads.size(), 4 * kAttempts);
 }
 
 // --- saving ---
@@ -230,7 +230,7 @@ TEST(SettingsStore, ASaveLeavesTheCopyThatHoldsTheOldSettings) {
     put(memory, current, numbered(5), 8);
     put(memory, 1 - current, numbered(6), 7);
     EXPECT_TRUE(Boot(memory).save(numbered(9)));
-    EXPECT_EQ(memory.writes, std::vector<std::uint16_t>{copies()[1 - current]});
+    EXPECT_EQ(memory.writes, std::vector<std::uint16_t>{kCopies[1 - current]});
   }
 }
 
@@ -241,7 +241,7 @@ TEST(SettingsStore, ASaveOverwritesACorruptedCopyAndNotTheGoodOne) {
     put(memory, 1 - good, numbered(6), 9);
     corrupt(memory, 1 - good);
     EXPECT_TRUE(Boot(memory).save(numbered(9)));
-    EXPECT_EQ(memory.writes, std::vector<std::uint16_t>{copies()[1 - good]});
+    EXPECT_EQ(memory.writes, std::vector<std::uint16_t>{kCopies[1 - good]});
     EXPECT_TRUE(Boot(memory).stored() == numbered(9));
   }
 }
@@ -282,7 +282,7 @@ TEST(SettingsStore, WhatIsSavedAfterTheMemoryDidNotAnswerAtResetIsFoundAtTheNext
   FakeMemory memory;
   put(memory, 0, numbered(5), 700);
   put(memory, 1, numbered(6), 701);
-  memory.failing_reads = 2 * kAttempts;
+  memory.failing_reads = 4 * kAttempts;
   Boot run(memory);
   ASSERT_EQ(run.found(), Found::Unreadable);
   EXPECT_TRUE(run.save(numbered(9)));

@@ -9,8 +9,6 @@
 #include <utility>
 #include <vector>
 
-#include "firmware/words.hpp"
-
 namespace ex9000 {
 namespace {
 
@@ -225,28 +223,29 @@ std::vector<FieldChange> changes_of_each_field(const Settings& from) {
   };
   using Change = SettingsChange;
   add(
-      "address", [](Change& c) { c.address(0x2A); }, [](Settings& s) { s.address = 0x2A; });
+      "address", [](Change& c) { c.address = 0x2A; }, [](Settings& s) { s.address = 0x2A; });
   add(
-      "baud code", [](Change& c) { c.baud_code(0x0A); }, [](Settings& s) { s.baud_code = 0x0A; });
+      "baud code", [](Change& c) { c.baud_code = 0x0A; }, [](Settings& s) { s.baud_code = 0x0A; });
   add(
-      "format", [](Change& c) { c.format(0xC0); }, [](Settings& s) { s.format = 0xC0; });
+      "format", [](Change& c) { c.format = 0xC0; }, [](Settings& s) { s.format = 0xC0; });
   add(
-      "protocol", [](Change& c) { c.protocol(Protocol::Ascii); },
+      "protocol", [](Change& c) { c.protocol = Protocol::Ascii; },
       [](Settings& s) { s.protocol = Protocol::Ascii; });
   add(
-      "name", [](Change& c) { c.name(Name("pump")); }, [](Settings& s) { s.name = Name("pump"); });
+      "name", [](Change& c) { c.name = Name("pump"); }, [](Settings& s) { s.name = Name("pump"); });
   add(
-      "power-on value", [](Change& c) { c.power_on_value(0x1234); },
+      "power-on value", [](Change& c) { c.power_on_value = 0x1234; },
       [](Settings& s) { s.power_on_value = 0x1234; });
   add(
-      "safe value", [](Change& c) { c.safe_value(0x0F0F); }, [](Settings& s) { s.safe_value = 0x0F0F; });
+      "safe value", [](Change& c) { c.safe_value = 0x0F0F; }, [](Settings& s) { s.safe_value = 0x0F0F; });
   add(
-      "watchdog enable", [](Change& c) { c.watchdog_enabled(true); },
+      "watchdog enable", [](Change& c) { c.watchdog_enabled = true; },
       [](Settings& s) { s.watchdog_enabled = true; });
   add(
-      "timeout", [](Change& c) { c.watchdog_timeout(0x64); }, [](Settings& s) { s.watchdog_timeout = 0x64; });
+      "timeout", [](Change& c) { c.watchdog_timeout = 0x64; },
+      [](Settings& s) { s.watchdog_timeout = 0x64; });
   add(
-      "timeout status", [](Change& c) { c.timeout_status(true); },
+      "timeout status", [](Change& c) { c.timeout_status = true; },
       [](Settings& s) { s.timeout_status = true; });
   return changes;
 }
@@ -292,8 +291,8 @@ TEST(SettingsChange, OfOneFieldKeepsWhatOthersHaveChanged) {
 TEST(SettingsChange, OfSeveralFieldsChangesThemTogether) {
   const Settings factory = Settings::factory(model("EX9042D-M"));
   const Settings changed = change([](SettingsChange& c) {
-                             c.address(7);
-                             c.baud_code(3);
+                             c.address = 7;
+                             c.baud_code = 3;
                            }).applied_to(factory);
   Settings expected = factory;
   expected.address = 7;
@@ -304,8 +303,8 @@ TEST(SettingsChange, OfSeveralFieldsChangesThemTogether) {
 TEST(SettingsChange, TheLastValueOfAFieldCounts) {
   const Settings factory = Settings::factory(model("EX9042D-M"));
   const SettingsChange twice = change([](SettingsChange& c) {
-    c.address(7);
-    c.address(8);
+    c.address = 7;
+    c.address = 8;
   });
   EXPECT_EQ(twice.applied_to(factory).address, 8);
 }
@@ -315,10 +314,10 @@ TEST(SettingsChange, AShorterNameLeavesNothingOfALongerOne) {
   settings.name = Name("ABCDEFG");
   Settings expected = settings;
   expected.name = Name("x");
-  EXPECT_TRUE(change([](SettingsChange& c) { c.name(Name("x")); }).applied_to(settings) == expected);
+  EXPECT_TRUE(change([](SettingsChange& c) { c.name = Name("x"); }).applied_to(settings) == expected);
   const SettingsChange twice = change([](SettingsChange& c) {
-    c.name(Name("QRSTUVW"));
-    c.name(Name("x"));
+    c.name = Name("QRSTUVW");
+    c.name = Name("x");
   });
   EXPECT_TRUE(twice.applied_to(settings) == expected);
 }
@@ -328,9 +327,9 @@ TEST(SettingsChange, ToFalseOr0IsAChangeToo) {
   settings.watchdog_enabled = settings.timeout_status = true;
   settings.safe_value = 0x1FFF;
   const Settings changed = change([](SettingsChange& c) {
-                             c.watchdog_enabled(false);
-                             c.timeout_status(false);
-                             c.safe_value(0);
+                             c.watchdog_enabled = false;
+                             c.timeout_status = false;
+                             c.safe_value = 0;
                            }).applied_to(settings);
   EXPECT_FALSE(changed.watchdog_enabled);
   EXPECT_FALSE(changed.timeout_status);
@@ -340,7 +339,7 @@ TEST(SettingsChange, ToFalseOr0IsAChangeToo) {
 TEST(SettingsChange, ThatIsClearedNamesNothing) {
   const Settings factory = Settings::factory(model("EX9042D-M"));
   for (FieldChange& each : changes_of_each_field(factory)) {
-    each.change.clear();
+    each.change = SettingsChange();
     EXPECT_TRUE(each.change.applied_to(factory) == factory) << each.field;
   }
 }
@@ -351,8 +350,8 @@ TEST(SettingsChange, ThatWasClearedNamesOnlyWhatIsNamedThen) {
   SettingsChange reused;
   for (const FieldChange& each : changes_of_each_field(factory)) {
     reused = each.change;
-    reused.clear();
-    reused.watchdog_timeout(0x64);
+    reused = SettingsChange();
+    reused.watchdog_timeout = 0x64;
     Settings expected = factory;
     expected.watchdog_timeout = 0x64;
     EXPECT_TRUE(reused.applied_to(factory) == expected) << each.field;
@@ -373,9 +372,16 @@ TEST(Settings, DifferWhereAnyFieldDoes) {
 
 TEST(Settings, AreNothingButZerosAtFirst) {
   const Settings untouched;
-  for (std::size_t i = 0; i < kWordsOf<Settings>; ++i) {
-    EXPECT_EQ(words_of(untouched)[i], 0U);
-  }
+  EXPECT_EQ(untouched.address, 0);
+  EXPECT_EQ(untouched.baud_code, 0);
+  EXPECT_EQ(untouched.format, 0);
+  EXPECT_EQ(untouched.protocol, Protocol::Ascii);
+  EXPECT_EQ(untouched.watchdog_timeout, 0);
+  EXPECT_FALSE(untouched.watchdog_enabled);
+  EXPECT_FALSE(untouched.timeout_status);
+  EXPECT_EQ(untouched.name.bytes().size, 0U);
+  EXPECT_EQ(untouched.power_on_value, 0);
+  EXPECT_EQ(untouched.safe_value, 0);
 }
 
 }  // namespace

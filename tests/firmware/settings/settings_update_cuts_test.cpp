@@ -1,0 +1,149 @@
+// Power cuts while the settings are saved for the first time after an update, and while a long record is
+// saved: wire.md section 8. "Power may fail at any instant."
+#include <gtest/gtest.h>
+
+#include <cstddef>
+#include <cstdio>
+#include <random>
+#include <vector>
+
+#include "tests/firmware/settings/settings_store_bench.hpp"
+#include "tests/firmware/settings/stored_bytes.hpp"
+
+namespace ex9000 {
+namespace {
+
+constexpr unsigned kSeed = 1;
+
+struct Beginning {
+  const char* what;
+  FakeMemory memory;
+  Settings settings;
+};
+
+std::vector<Beginning> beginnings() {
+  FakeMemory both_old;
+  put_old(both_old, 0, numbered(5), 7);
+  put_old(both_old, 1, numbered(6), 8);
+  FakeMemory one_old;
+  put_old(one_old, 0, numbered(6), 8);
+  FakeMemory one_old_one_new = both_old;
+  put(one_old_one_new, 0, numbered(6), 9);
+  FakeMemory longer;
+  put_longer(longer, 0, numbered(6), 8, 96);
+  FakeMemory two_longer = longer;
+  put_longer(two_longer, 1, numbered(5), 7, 120);
+  return {{"both copies old", both_old, numbered(6)},
+          {"one old copy", one_old, numbered(6)},
+          {"old copies beside a new one", one_old_one_new, numbered(6)},
+          {"a longer record", longer, numbered(6)},
+          {"two longer records", two_longer, numbered(6)}};
+}
+
+/// A module comes up: it loads, and invalidates what must not count.
+Settings come_up(FakeMemory& memory) {
+  SettingsStore store(the_model());
+  if (drive(store, memory) && store.doubtful()) {
+    store.begin_settling();
+    drive(store, memory);
+  }
+  return store.stored();
+}
+
+/// How many bytes a module writes that comes up and saves `to`.
+std::size_t bytes_of(FakeMemory memory, const Settings& to) {
+  memory.bytes_written = 0;
+  come_up(memory);
+  EXPECT_TRUE(Boot(memory).save(to));
+  return memory.bytes_written;
+}
+
+/// The power fails behind `bytes`. Whether the save was reported before.
+bool cut(FakeMemory& memory, const Settings& to, std::size_t bytes, FakeMemory::Garbage garbage) {
+  memory.power = bytes;
+  memory.garbage = garbage;
+  come_up(memory);
+  const bool saved = *memory.power != 0 && Boot(memory).save(to);
+  memory.power.reset();
+  return saved;
+}
+
+void expect_old_copies_do_not_count(FakeMemory memory) {
+  std::fill(memory.cells.begin() + kCopies[0], memory.cells.end(), std::uint8_t{0x00});
+  EXPECT_EQ(Boot(memory).found(), Found::Unreadable);
+}
+
+TEST(UpdateCuts, AtEveryPointOfTheFirstStoreLeaveTheOldSettingsOrTheNew) {
+  std::size_t cuts = 0;
+  for (const Beginning& beginning : beginnings()) {
+    const std::size_t bytes = bytes_of(beginning.memory, numbered(200));
+    for (std::size_t at = 0; at <= bytes; ++at) {
+      for (const FakeMemory::Garbage garbage : FakeMemory::kEveryGarbage) {
+        FakeMemory memory = beginning.memory;
+        const bool saved = cut(memory, numbered(200), at, garbage);
+        ++cuts;
+        const Settings found = come_up(memory);
+        ASSERT_TRUE(found == numbered(200) || (!saved && found == beginning.settings))
+            << beginning.what << ", cut behind byte " << at;
+        ASSERT_NE(found.address, 1) << "the address has fallen back";
+        if (found == numbered(200)) {
+          expect_old_copies_do_not_count(memory);
+        }
+        ASSERT_TRUE(Boot(memory).save(numbered(4000)));
+        ASSERT_TRUE(come_up(memory) == numbered(4000));
+        expect_old_copies_do_not_count(memory);
+      }
+    }
+  }
+  std::printf("power cuts: %zu\n", cuts);
+}
+
+// Twice in a row they grow with the square of what is written: a sample of the pairs, by a seed.
+TEST(UpdateCuts, TwiceInARowLeaveTheOldSettingsOrTheNew) {
+  constexpr int kPairs = 4000;
+  std::mt19937 random(kSeed);
+  for (const Beginning& beginning : beginnings()) {
+    const std::size_t bytes = bytes_of(beginning.memory, numbered(200));
+    for (int pair = 0; pair < kPairs; ++pair) {
+      FakeMemory memory = beginning.memory;
+      const auto garbage = [&random] { return FakeMemory::kEveryGarbage[random() % 5]; };
+      const std::size_t first = random() % (bytes + 1);
+      const std::size_t second = random() % (bytes + 1);
+      const bool saved = cut(memory, numbered(200), first, garbage());
+      const Settings between = come_up(memory);
+      ASSERT_TRUE(between == numbered(200) || (!saved && between == beginning.settings));
+      const bool saved_again = cut(memory, numbered(300), second, garbage());
+      const Settings found = come_up(memory);
+      // A page of which one byte was wrong is whole as soon as the next store has come to that byte.
+      ASSERT_TRUE(found == numbered(300) || (!saved_again && (found == between || found == numbered(200))))
+          << beginning.what << ", cut behind byte " << first << ", then " << second << " (seed " << kSeed
+          << ")";
+      ASSERT_TRUE(Boot(memory).save(numbered(4000)));
+      ASSERT_TRUE(come_up(memory) == numbered(4000));
+    }
+  }
+}
+
+/// Of the files of stored bytes, at every point too.
+TEST(UpdateCuts, OfWhatEarlierFirmwareHasStoredLeaveItsSettingsOrTheNew) {
+  for (const StoredBytes& stored : all_stored_bytes()) {
+    Settings changed = stored.settings;
+    changed.watchdog_timeout = 0x77;
+    FakeMemory whole;
+    whole.cells = stored.memory;
+    ASSERT_TRUE(Boot(whole, *stored.model).save(changed));
+    for (std::size_t at = 0; at <= whole.bytes_written; ++at) {
+      FakeMemory memory;
+      memory.cells = stored.memory;
+      memory.power = at;
+      memory.garbage = FakeMemory::Garbage::MixedWithOld;
+      Boot(memory, *stored.model).save(changed);
+      memory.power.reset();
+      const Settings found = Boot(memory, *stored.model).stored();
+      EXPECT_TRUE(found == stored.settings || found == changed) << stored.file << ", cut behind byte " << at;
+    }
+  }
+}
+
+}  // namespace
+}  // namespace ex9000

@@ -1,0 +1,234 @@
+// A module whose firmware was updated: it finds copies of an older layout, or of a newer one that has more
+// settings.
+#include <gtest/gtest.h>
+
+#include <cstdint>
+#include <vector>
+
+#include "tests/firmware/settings/settings_store_bench.hpp"
+
+namespace ex9000 {
+namespace {
+
+/// After an update: copies of layout 2, the second one being the later.
+FakeMemory updated() {
+  FakeMemory memory;
+  put_old(memory, 0, numbered(5), 7);
+  put_old(memory, 1, numbered(6), 8);
+  return memory;
+}
+
+void expect_no_old_copy_counts(const FakeMemory& memory) {
+  FakeMemory old = memory;
+  std::fill(old.cells.begin() + kCopies[0], old.cells.end(), std::uint8_t{0x00});
+  EXPECT_EQ(Boot(old).found(), Found::Unreadable);
+}
+
+TEST(SettingsAfterAnUpdate, AreThoseOfTheLaterOldCopyAndNothingIsWritten) {
+  FakeMemory memory = updated();
+  const Boot run(memory);
+  EXPECT_EQ(run.found(), Found::Settings);
+  EXPECT_TRUE(run.stored() == numbered(6));
+  EXPECT_TRUE(memory.writes.empty());
+}
+
+TEST(SettingsAfterAnUpdate, AreThoseOfTheOnlyGoodOldCopy) {
+  for (const std::size_t bad : {0U, 1U}) {
+    FakeMemory memory = updated();
+    memory.cells[kOldCopies[bad] + 3U] ^= 0x40U;
+    EXPECT_TRUE(Boot(memory).stored() == numbered(bad == 0 ? 6 : 5));
+  }
+}
+
+TEST(SettingsAfterAnUpdate, BothOldCopiesBadAreUnreadable) {
+  FakeMemory memory = updated();
+  memory.cells[kOldCopies[0] + 3U] ^= 0x40U;
+  memory.cells[kOldCopies[1] + 3U] ^= 0x40U;
+  EXPECT_EQ(Boot(memory).found(), Found::Unreadable);
+}
+
+TEST(SettingsAfterAnUpdate, TheFirstStoreMakesANewCopyAndInvalidatesTheOldOnes) {
+  FakeMemory memory = updated();
+  EXPECT_TRUE(Boot(memory).save(numbered(9)));
+  EXPECT_EQ(memory.writes,
+            (std::vector<std::uint16_t>{kCopies[0], static_cast<std::uint16_t>(kOldCopies[0] + 20),
+                                        static_cast<std::uint16_t>(kOldCopies[1] + 20)}));
+  EXPECT_TRUE(Boot(memory).stored() == numbered(9));
+  expect_no_old_copy_counts(memory);
+}
+
+TEST(SettingsAfterAnUpdate, TheSecondStoreIsLikeAnyOther) {
+  FakeMemory memory = updated();
+  EXPECT_TRUE(Boot(memory).save(numbered(9)));
+  memory.writes.clear();
+  EXPECT_TRUE(Boot(memory).save(numbered(10)));
+  EXPECT_EQ(memory.writes, std::vector<std::uint16_t>{kCopies[1]});
+  EXPECT_TRUE(Boot(memory).stored() == numbered(10));
+}
+
+TEST(SettingsAfterAnUpdate, OldCopiesNeverCountAgainEvenIfAllNewOnesFail) {
+  FakeMemory memory = updated();
+  Boot run(memory);
+  EXPECT_TRUE(run.save(numbered(9)));
+  EXPECT_TRUE(run.save(numbered(10)));
+  corrupt(memory, 0);
+  corrupt(memory, 1);
+  const Boot next(memory);
+  EXPECT_EQ(next.found(), Found::Unreadable);
+  EXPECT_TRUE(next.stored() == factory());
+}
+
+TEST(SettingsAfterAnUpdate, AFirstStoreThatFailsLeavesTheOldOnes) {
+  for (std::size_t failure = 0; failure < kFailures.size(); ++failure) {
+    FakeMemory memory = updated();
+    Boot run(memory);
+    kFailures[failure](memory);
+    EXPECT_FALSE(run.save(numbered(9))) << failure;
+    EXPECT_TRUE(run.stored() == numbered(6)) << failure;
+    EXPECT_TRUE(Boot(memory).stored() == numbered(6)) << failure;
+  }
+}
+
+/// The power has failed when the new copy was verified, and before the old ones were invalidated.
+TEST(SettingsAfterAnUpdate, AnOldCopyBesideAGoodNewOneIsInvalidatedWithoutACommand) {
+  FakeMemory memory = updated();
+  put(memory, 0, numbered(9), 9);
+  SettingsStore store(the_model());
+  drive(store, memory);
+  EXPECT_TRUE(store.stored() == numbered(9));
+  EXPECT_TRUE(memory.writes.empty());
+  ASSERT_TRUE(store.doubtful());
+  store.begin_settling();
+  drive(store, memory);
+  EXPECT_FALSE(store.doubtful());
+  expect_no_old_copy_counts(memory);
+  EXPECT_TRUE(Boot(memory).stored() == numbered(9));
+}
+
+TEST(SettingsAfterAnUpdate, AnOldCopyThatCannotBeInvalidatedIsTriedAgain) {
+  FakeMemory memory = updated();
+  SettingsStore store(the_model());
+  drive(store, memory);
+  store.begin_saving(numbered(9));
+  // The new copy is written and verified; from then on no write is answered.
+  for (int jobs = 0; jobs < 2; ++jobs) {
+    store.done(*memory.run(store.job()));
+  }
+  memory.unanswered_writes = 3;
+  drive(store, memory);
+  EXPECT_TRUE(store.saved());
+  ASSERT_TRUE(store.doubtful());
+  store.begin_settling();
+  drive(store, memory);
+  EXPECT_TRUE(store.doubtful());  // one of the two
+  store.begin_settling();
+  drive(store, memory);
+  EXPECT_FALSE(store.doubtful());
+  expect_no_old_copy_counts(memory);
+}
+
+TEST(SettingsAfterAnUpdate, ANewCopyCountsWhateverTheSequenceOfAnOldOne) {
+  for (const unsigned sequence : {0U, 1U, 0x7FFFU, 0x8000U, 0xFFFFU}) {
+    FakeMemory memory = updated();
+    put(memory, 1, numbered(9), static_cast<std::uint16_t>(sequence));
+    EXPECT_TRUE(Boot(memory).stored() == numbered(9)) << sequence;
+  }
+}
+
+TEST(SettingsAfterAnUpdate, AnOldMemoryThatDidNotAnswerAtResetDoesNotCountAfterAStore) {
+  FakeMemory memory = updated();
+  memory.failing_reads = 4 * kAttempts;
+  Boot run(memory);
+  ASSERT_EQ(run.found(), Found::Unreadable);
+  EXPECT_TRUE(run.save(numbered(9)));
+  EXPECT_TRUE(Boot(memory).stored() == numbered(9));
+  expect_no_old_copy_counts(memory);
+}
+
+// --- a record that is longer than this firmware knows ---
+
+TEST(ALongerRecord, IsReadAsFarAsItIsKnown) {
+  for (unsigned length = 20; length <= 120; ++length) {
+    FakeMemory memory;
+    put_longer(memory, 0, numbered(5), 7, static_cast<std::uint8_t>(length));
+    const Boot run(memory);
+    EXPECT_EQ(run.found(), Found::Settings) << length;
+    EXPECT_TRUE(run.stored() == numbered(5)) << length;
+  }
+}
+
+TEST(ALongerRecord, KeepsWhatIsNotKnownThroughStores) {
+  for (unsigned length = 20; length <= 120; ++length) {
+    FakeMemory memory;
+    put_longer(memory, 0, numbered(5), 7, static_cast<std::uint8_t>(length));
+    Boot run(memory);
+    for (unsigned store = 0; store < 3; ++store) {
+      ASSERT_TRUE(run.save(numbered(10 + store))) << length;
+    }
+    FakeMemory expected;
+    put_longer(expected, 1, numbered(12), 10, static_cast<std::uint8_t>(length));
+    const auto copy = [length](const FakeMemory& of) {
+      const auto begin = of.cells.begin() + kCopies[1];
+      return std::vector<std::uint8_t>(begin, begin + 4 + static_cast<std::ptrdiff_t>(length) + 4);
+    };
+    EXPECT_EQ(copy(memory), copy(expected)) << length;
+    EXPECT_TRUE(Boot(memory).stored() == numbered(12)) << length;
+  }
+}
+
+TEST(ALongerRecord, KeepsWhatIsNotKnownAlsoAfterAFailedStore) {
+  FakeMemory memory;
+  put_longer(memory, 0, numbered(5), 7, 96);
+  Boot run(memory);
+  memory.noisy_reads = kAttempts;
+  EXPECT_FALSE(run.save(numbered(6)));
+  EXPECT_TRUE(Boot(memory).stored() == numbered(5));
+  EXPECT_TRUE(run.save(numbered(7)));
+  FakeMemory expected;
+  put_longer(expected, 1, numbered(7), 8, 96);
+  EXPECT_TRUE(std::equal(memory.cells.begin() + kCopies[1], memory.cells.begin() + kCopies[1] + 104,
+                         expected.cells.begin() + kCopies[1]));
+}
+
+TEST(ALongerRecord, IsWrittenPageByPageAndOnlyAsFarAsItGoes) {
+  FakeMemory memory;
+  put_longer(memory, 0, numbered(5), 7, 96);  // 104 bytes
+  EXPECT_TRUE(Boot(memory).save(numbered(6)));
+  EXPECT_EQ(memory.writes, (std::vector<std::uint16_t>{0x100, 0x120, 0x140, 0x160}));
+  memory.writes.clear();
+  FakeMemory shorter;
+  put_longer(shorter, 0, numbered(5), 7, 56);  // 64 bytes
+  EXPECT_TRUE(Boot(shorter).save(numbered(6)));
+  EXPECT_EQ(shorter.writes, (std::vector<std::uint16_t>{0x100, 0x120}));
+}
+
+TEST(ALongerRecord, OfWhichAnyByteIsWrongDoesNotCount) {
+  FakeMemory good;
+  put_longer(good, 0, numbered(5), 7, 96);
+  put(good, 1, numbered(6), 6);
+  for (std::size_t at = 0; at < 104; ++at) {
+    FakeMemory memory = good;
+    memory.cells[kCopies[0] + at] ^= 0x04U;
+    EXPECT_TRUE(Boot(memory).stored() == numbered(6)) << at;
+  }
+}
+
+TEST(ALongerRecord, OfWhichOnePageFailsThreeTimesIsRefusedAndTheOldOneStays) {
+  for (std::size_t page = 0; page < 4; ++page) {
+    FakeMemory memory;
+    put_longer(memory, 0, numbered(5), 7, 96);
+    SettingsStore store(the_model());
+    drive(store, memory);
+    store.begin_saving(numbered(6));
+    for (std::size_t jobs = 0; jobs < 2 * page; ++jobs) {
+      store.done(*memory.run(store.job()));
+    }
+    memory.unanswered_writes = kAttempts;
+    drive(store, memory);
+    EXPECT_FALSE(store.saved()) << page;
+    EXPECT_TRUE(Boot(memory).stored() == numbered(5)) << page;
+  }
+}
+
+}  // namespace
+}  // namespace ex9000

@@ -1,0 +1,96 @@
+// Memory contents that released firmware has stored: the files in stored_bytes/. They are committed once and
+// never made anew, so that they show what is in memories in the field and not what this firmware would make
+// of it.
+//
+//     # comment
+//     model DESIGNATION
+//     at ADDRESS          hex; the bytes that follow lie from there on, all others are FF
+//       BYTES
+//     settings            that a module with this memory has; each value in hex, but the name
+//       NAME VALUE
+#pragma once
+
+#include <gtest/gtest.h>
+
+#include <cstdint>
+#include <filesystem>
+#include <fstream>
+#include <map>
+#include <sstream>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+#include "firmware/model/model.hpp"
+#include "firmware/settings/settings.hpp"
+#include "tests/oracles/stored_copy.hpp"
+
+namespace ex9000 {
+
+struct StoredBytes {
+  std::string file;
+  const Model* model = nullptr;
+  std::vector<std::uint8_t> memory = std::vector<std::uint8_t>(kStoredMemory, 0xFF);
+  Settings settings;
+};
+
+inline StoredBytes read_stored_bytes(const std::filesystem::path& path) {
+  StoredBytes stored;
+  stored.file = path.filename().string();
+  std::map<std::string, std::string> values;
+  std::ifstream lines(path);
+  std::size_t at = 0;
+  bool in_settings = false;
+  for (std::string line; std::getline(lines, line);) {
+    std::istringstream words(line);
+    std::string word;
+    words >> word;
+    if (word == "#") {
+      continue;
+    }
+    if (word == "model") {
+      words >> word;
+      stored.model = find_model(word);
+    } else if (word == "at") {
+      words >> std::hex >> at;
+    } else if (word == "settings") {
+      in_settings = true;
+    } else if (in_settings) {
+      std::getline(words >> std::ws, values[word]);
+    } else {
+      std::istringstream bytes(line);
+      for (unsigned byte = 0; bytes >> std::hex >> byte;) {
+        stored.memory.at(at++) = static_cast<std::uint8_t>(byte);
+      }
+    }
+  }
+  const auto number = [&](const char* name) { return std::stoul(values.at(name), nullptr, 16); };
+  Settings& settings = stored.settings;
+  settings.address = static_cast<std::uint8_t>(number("address"));
+  settings.baud_code = static_cast<std::uint8_t>(number("baud_code"));
+  settings.format = static_cast<std::uint8_t>(number("format"));
+  settings.protocol = number("protocol") != 0 ? Protocol::ModbusRtu : Protocol::Ascii;
+  settings.watchdog_timeout = static_cast<std::uint8_t>(number("watchdog_timeout"));
+  settings.watchdog_enabled = number("watchdog_enabled") != 0;
+  settings.timeout_status = number("timeout_status") != 0;
+  settings.name = Name(std::string_view(values.at("name")));
+  settings.power_on_value = static_cast<std::uint16_t>(number("power_on_value"));
+  settings.safe_value = static_cast<std::uint16_t>(number("safe_value"));
+  return stored;
+}
+
+/// All files, and at least so many, so that none is lost unseen.
+inline std::vector<StoredBytes> all_stored_bytes() {
+  constexpr std::size_t kAtLeast = 10;
+  std::vector<StoredBytes> all;
+  for (const auto& entry : std::filesystem::directory_iterator(EX9000_STORED_BYTES)) {
+    all.push_back(read_stored_bytes(entry.path()));
+    if (all.back().model == nullptr) {
+      throw std::runtime_error(entry.path().string() + ": no model of that name");
+    }
+  }
+  EXPECT_GE(all.size(), kAtLeast);
+  return all;
+}
+
+}  // namespace ex9000
