@@ -8,8 +8,9 @@ const RATES = [1200, 2400, 4800, 9600, 19200, 38400, 57600, 115200];
 const FIRST_RATE_CODE = 3;
 
 const TIMEOUT = 10000; // long enough for a busy machine; in milliseconds, as all times here
-// How long a master waits after a broadcast, which nobody answers: the longest one here on the line, and 100 ms.
-const turnaround = (baud) => 300 + 150000 / baud;
+// How long a master waits after a broadcast, which nobody answers: the longest one here on the line, and 1 s. The line
+// follows the wall clock: on a busy machine the simulator must have read the broadcast by then.
+const turnaround = (baud) => 1000 + 150000 / baud;
 
 const hex = (bytes) => Buffer.from(bytes).toString("hex").toUpperCase().replace(/..(?=.)/g, "$& ");
 const word = (frame, at) => frame.readUInt16BE(at);

@@ -49,8 +49,10 @@ def packed(*values):
 
 
 def turnaround(baud):
-    """How long a master waits after a broadcast, which nobody answers: the longest one here on the line, and 0.3 s."""
-    return 0.3 + 150 / baud
+    """How long a master waits after a broadcast, which nobody answers: the longest one here on the line, and 1 s.
+
+    The line follows the wall clock: on a busy machine the simulator must have read the broadcast by then."""
+    return 1 + 150 / baud
 
 
 class IdentificationRequest(ReadDeviceInformationRequest):
