@@ -65,6 +65,7 @@ void SettingsStore::begin_reading(Step step) {
   blank_places_ = 0;
   current_place_ = kNoPlace;
   old_copies_ = 0;
+  silent_ = false;
   begin_copy(0);
 }
 
@@ -80,11 +81,13 @@ void SettingsStore::read_page(bool ok) {
   }
   const bool blank = ok && is_blank(page);
   const auto stored = ok ? read_copy(model_.get(), place, {read_back_.data(), done_}) : std::nullopt;
-  if (!stored && !blank && ++attempt_ < kAttempts) {
+  const std::uint8_t attempts = silent_ ? 1 : kAttempts;
+  if (!stored && !blank && ++attempt_ < attempts) {
     done_ = 0;
     copy_size_ = kMemoryPage;
     return;
   }
+  silent_ = !ok;
   if (!ok && step_ == Step::LookAgain) {
     saved_ = false;  // a memory that does not answer is not written to
     step_ = Step::Idle;

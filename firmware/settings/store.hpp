@@ -40,7 +40,8 @@ class SettingsStore {
     Unreadable,  ///< something else; factory settings are used, and not written
   };
 
-  /// Begins to load: reads all places, each up to three times. Afterwards `found()` and `stored()` hold.
+  /// Begins to load: reads all places, each up to three times. A memory that did not answer at one place is
+  /// asked once at the next. Afterwards `found()` and `stored()` hold.
   explicit constexpr SettingsStore(const Model& model) : model_(model) {}
   [[nodiscard]] bool loading() const { return step_ == Step::Load; }
   [[nodiscard]] Found found() const { return found_; }
@@ -97,6 +98,7 @@ class SettingsStore {
   std::size_t done_ = 0;                 ///< so many of its bytes are
   std::size_t copy_size_ = kMemoryPage;  ///< and so many it takes
   std::uint8_t attempt_ = 0;             ///< failures so far
+  bool silent_ = false;                  ///< the memory did not answer at the last place
   std::uint8_t blank_places_ = 0;
   std::size_t current_place_ = kNoPlace;  ///< of the copy that counts
   unsigned old_copies_ = 0;               ///< bit n: place n holds a good copy of an older layout

@@ -18,6 +18,8 @@ using Found = SettingsStore::Found;
 
 inline constexpr std::size_t kPage = 32;
 inline constexpr std::size_t kAttempts = 3;
+/// Three at the first place, and one at each of the other three.
+inline constexpr std::size_t kReadsOfASilentMemory = kAttempts + 3;
 inline constexpr std::size_t kStuckCell = 4;  // of a page: where a record has the address
 
 inline const Model& model(std::string_view designation) { return *find_model(designation); }

@@ -115,7 +115,7 @@ void end_jobs(SettingsStore& store, bool answered, int count) {
 TEST(SettingsStore, WhatIsSettledIsTheDoubtfulCopyAndNotTheOneThatWasLastLookedAt) {
   constexpr int kAllReads = 4 * static_cast<int>(kAttempts);
   SettingsStore store(the_model());
-  end_jobs(store, false, kAllReads);
+  end_jobs(store, false, static_cast<int>(kReadsOfASilentMemory));
   ASSERT_EQ(store.found(), SettingsStore::Found::Unreadable);
   store.begin_saving(numbered(1));
   end_jobs(store, true, kAllReads);  // all copies are garbage

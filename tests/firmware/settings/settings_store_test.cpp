@@ -173,11 +173,11 @@ TEST(SettingsStore, EachCopyHasThreeReadsOfItsOwn) {
 
 TEST(SettingsStore, AMemoryThatDoesNotAnswerIsUnreadable) {
   FakeMemory memory;
-  memory.failing_reads = 4 * kAttempts;
+  memory.failing_reads = kReadsOfASilentMemory;
   const Boot run(memory);
   EXPECT_EQ(run.found(), Found::Unreadable);
   EXPECT_TRUE(run.stored() == factory());
-  EXPECT_EQ(memory.reads.size(), 4 * kAttempts);
+  EXPECT_EQ(memory.reads.size(), kReadsOfASilentMemory);
 }
 
 // --- saving ---
@@ -282,7 +282,7 @@ TEST(SettingsStore, WhatIsSavedAfterTheMemoryDidNotAnswerAtResetIsFoundAtTheNext
   FakeMemory memory;
   put(memory, 0, numbered(5), 700);
   put(memory, 1, numbered(6), 701);
-  memory.failing_reads = 4 * kAttempts;
+  memory.failing_reads = kReadsOfASilentMemory;
   Boot run(memory);
   ASSERT_EQ(run.found(), Found::Unreadable);
   EXPECT_TRUE(run.save(numbered(9)));

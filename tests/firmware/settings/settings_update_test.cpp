@@ -137,7 +137,7 @@ TEST(SettingsAfterAnUpdate, ANewCopyCountsWhateverTheSequenceOfAnOldOne) {
 
 TEST(SettingsAfterAnUpdate, AnOldMemoryThatDidNotAnswerAtResetDoesNotCountAfterAStore) {
   FakeMemory memory = updated();
-  memory.failing_reads = 4 * kAttempts;
+  memory.failing_reads = kReadsOfASilentMemory;
   Boot run(memory);
   ASSERT_EQ(run.found(), Found::Unreadable);
   EXPECT_TRUE(run.save(numbered(9)));

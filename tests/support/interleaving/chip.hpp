@@ -202,7 +202,7 @@ struct Watchdog {
 /// What the main loop has begun is done when its time has come; an interrupt tells.
 class Memory {
  public:
-  static constexpr std::size_t kSize = 64;
+  static constexpr std::size_t kSize = 0x180;
 
   void start_read(std::uint16_t address, MutableBytes destination, Time /*now*/) {
     Points::pass();
