@@ -8,12 +8,6 @@ constexpr Duration kInitGivesUp = milliseconds(50);  // wire.md D13
 constexpr std::uint8_t kInitModeAddress = 0x00;
 
 constexpr Duration sooner(Duration a, Duration b) { return b < a ? b : a; }
-/// Not inlined, because it is small and asked about many deadlines.
-[[gnu::noinline]] Duration sooner_of(Duration idle, Time when, Time now) {
-  Deadline deadline;
-  deadline.set(when);
-  return sooner(idle, deadline.remaining(now));
-}
 
 }  // namespace
 
@@ -261,7 +255,7 @@ Duration Module::idle_for(Time now, Duration at_most) const {
   Duration idle = at_most;
   const auto consider = [&idle, now](const Deadline& deadline) {
     if (deadline.armed()) {
-      idle = sooner_of(idle, deadline.when(), now);
+      idle = sooner(idle, deadline.remaining(now));
     }
   };
   consider(init_switch_.next_sample());

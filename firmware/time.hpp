@@ -60,8 +60,6 @@ class Deadline {
   constexpr void disarm() { armed_ = false; }
 
   [[nodiscard]] constexpr bool armed() const { return armed_; }
-  /// Only for one that is armed.
-  [[nodiscard]] constexpr Time when() const { return when_; }
   [[nodiscard, gnu::always_inline]] constexpr bool reached(Time now) const {
     return armed_ && now.since(when_).microseconds() < kHalfRange;
   }

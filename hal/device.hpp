@@ -7,7 +7,7 @@
 #include "firmware/module.hpp"
 #include "hal/board.hpp"
 #include "hal/memory.hpp"
-#include "hal/tick.hpp"
+#include "hal/wake_timer.hpp"
 
 namespace ex9000::hal {
 
@@ -63,14 +63,11 @@ class Device {
     on_wake_timer();
   }
   void on_wake_timer() {
-    wakes_by_time_.store_in_interrupt(wakes_by_time_.load() + 1U);
+    times_due_.store_in_interrupt(times_due_.load() + 1U);
     wake();
   }
-  /// The memory can go on.
-  void on_memory() {
-    wakes_by_memory_.store_in_interrupt(wakes_by_memory_.load() + 1U);
-    wake();
-  }
+  /// The memory can continue.
+  void on_memory() { wake(); }
 
   // --- main loop; none of it blocks ---
 
@@ -90,13 +87,10 @@ class Device {
   /// Requests, settings, outputs and the panel. True: call it again at once, because no interrupt will tell
   /// when.
   bool turn() {
-    const bool only_the_memory = look_at_what_has_happened();
+    seen_ = happened();  // first: what happens from here on gets a turn of its own
     const Time now = board_.clock.now();
     const bool memory_polls = poll_memory(now);
-    if (only_the_memory && memory_job_under_way_ && !panel_is_due_) {
-      return memory_polls;  // for all else the wake timer is set
-    }
-    if (panel_is_due_) {
+    if (panel_is_due()) {
       poll_panel();
     }
     module_.step(now);
@@ -138,18 +132,12 @@ class Device {
     board_.line.send(reply);
   }
 
-  /// True: nothing but the memory's interrupt. One that comes in between is seen now, or with the next turn
-  /// as well: of all that happens the memory's part is read first and the time's last.
-  bool look_at_what_has_happened() {
-    const std::uint32_t by_memory = wakes_by_memory_.load();
-    const std::uint32_t by_all = happened();
-    const std::uint32_t by_time = wakes_by_time_.load();
-    const bool only_the_memory = by_all - seen_ == by_memory - seen_by_memory_;
-    panel_is_due_ = panel_is_due_ || by_time != seen_by_time_;
-    seen_ = by_all;
-    seen_by_memory_ = by_memory;
-    seen_by_time_ = by_time;
-    return only_the_memory;
+  /// The tick or the wake timer has fired, or `idle_for` said that something is due.
+  bool panel_is_due() {
+    const std::uint32_t times_due = times_due_.load();
+    const bool due = due_now_ || times_due != times_seen_;
+    times_seen_ = times_due;
+    return due;
   }
 
   /// The main loop has something to go on with.
@@ -191,29 +179,27 @@ class Device {
     memory_job_under_way_ = true;
   }
 
-  /// For what is due before the next tick. A turn that takes some time makes it late by that, and no more.
-  /// True: it is due already.
+  /// For whatever is due next. A turn that takes some time makes it late by that, and no more. True: it is
+  /// due now.
   bool set_wake_timer(Time now) {
-    const Duration idle = module_.idle_for(now, memory_job_under_way_ ? kMemoryPollPeriod : kTickPeriod);
-    panel_is_due_ = idle == Duration();
-    if (!panel_is_due_ && idle < kTickPeriod) {
+    const Duration idle = module_.idle_for(now, memory_job_under_way_ ? kMemoryPollPeriod : kLongestWake);
+    due_now_ = idle == Duration();
+    if (!due_now_) {
       board_.wake_timer.restart(idle);
     }
-    return panel_is_due_;
+    return due_now_;
   }
 
   Board board_;
-  bool panel_is_due_ = true;
+  bool due_now_ = true;
   bool line_open_ = false;
   bool reply_under_way_ = false;
   bool memory_job_under_way_ = false;
   std::uint16_t driven_ = 0;
-  std::uint32_t seen_ = 0;
-  std::uint32_t seen_by_memory_ = 0;
-  std::uint32_t seen_by_time_ = 0;
-  WrittenByInterrupt<std::uint32_t> wakes_;            ///< all
-  WrittenByInterrupt<std::uint32_t> wakes_by_memory_;  ///< those of them
-  WrittenByInterrupt<std::uint32_t> wakes_by_time_;
+  std::uint32_t seen_ = 0;        ///< of `happened`
+  std::uint32_t times_seen_ = 0;  ///< of `times_due_`
+  WrittenByInterrupt<std::uint32_t> wakes_;
+  WrittenByInterrupt<std::uint32_t> times_due_;  ///< how often the tick or the wake timer has fired
   Module module_;
 };
 

@@ -8,8 +8,8 @@
 
 namespace ex9000::hal {
 
-/// How long what nobody sets a timer for may have to wait: that INIT* has changed, or that a register of the
-/// outputs is to be written anew. What has a time of its own is on time by the wake timer, so a longer period
+/// A board's tick. So long may wait what has no time of its own: that INIT* has changed, or that a register
+/// of the outputs has to be written again. The wake timer serves everything else on time. A longer period
 /// would save little, and a shorter one would wake a module that has nothing to do.
 constexpr Duration kTickPeriod = milliseconds(10);
 
@@ -17,7 +17,8 @@ constexpr Duration kTickPeriod = milliseconds(10);
 /// beside the main loop's.
 ///
 ///     void start()
-///         From now on, every `kTickPeriod`. Main loop, once after reset; does not block.
+///         From now on, every `kTickPeriod`, or in the simulator more rarely. Main loop, once after reset;
+///         does not block.
 ///
 /// Whether `T` offers that.
 template <class T, class = void>

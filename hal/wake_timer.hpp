@@ -8,11 +8,14 @@
 
 namespace ex9000::hal {
 
-/// A one-shot timer that calls `Device::on_wake_timer` in its interrupt, for what is due before the next
-/// tick. If it died, all that would be due at the tick.
+/// The longest time that the wake timer is set to.
+constexpr Duration kLongestWake = milliseconds(1000);
+
+/// A one-shot timer that calls `Device::on_wake_timer` in its interrupt, for whatever is due next. If it
+/// failed, everything would be due at the next tick.
 ///
 ///     void restart(Duration after)
-///         Fires once, `after` from now, 1 us to one tick's period, at most 5 us late and never early; an
+///         Fires once, `after` from now, 1 us to `kLongestWake`, at most 5 us late and never early. An
 ///         earlier start is forgotten. Main loop; does not block.
 ///
 /// Whether `T` offers that.

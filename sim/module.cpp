@@ -6,11 +6,18 @@
 
 namespace ex9000::sim {
 
+namespace {
+
+/// The wake timer serves every deadline here, and the tick only feeds the watchdog, so a slow one will do.
+constexpr Duration kTick = milliseconds(400);
+
+}  // namespace
+
 SimulatedModule::Mcu::Mcu(SimulatedModule& module)
     : line(module.clock_, module.wire_),
       silence_timer(module.clock_),
       wake_timer(module.clock_),
-      tick(module.clock_),
+      tick(module.clock_, kTick),
       watchdog(module.clock_),
       device(module.model_, module.timing_at_,
              {module.clock_, line, silence_timer, wake_timer, module.inputs_, module.outputs_, module.memory_,

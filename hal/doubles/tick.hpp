@@ -7,9 +7,10 @@ namespace ex9000::hal::doubles {
 
 class Tick {
  public:
-  explicit Tick(const VirtualClock& clock) : clock_(clock) {}
+  explicit Tick(const VirtualClock& clock, Duration period = kTickPeriod)
+      : clock_(clock), period_(std::chrono::microseconds(period.microseconds())) {}
 
-  void start() { next_ = clock_.virtual_now() + kPeriod; }
+  void start() { next_ = clock_.virtual_now() + period_; }
 
   [[nodiscard]] VirtualTime next() const { return next_; }
   /// Whether it fires now; then call the interrupt.
@@ -17,16 +18,15 @@ class Tick {
     if (next_ > clock_.virtual_now()) {
       return false;
     }
-    next_ += kPeriod;
+    next_ += period_;
     return true;
   }
   /// The tick stops, as if its timer had died.
   void stop() { next_ = kNever; }
 
  private:
-  static constexpr VirtualTime kPeriod = std::chrono::microseconds(kTickPeriod.microseconds());
-
   const VirtualClock& clock_;
+  VirtualTime period_;
   VirtualTime next_ = kNever;
 };
 static_assert(kIsTick<Tick>);

@@ -9,14 +9,10 @@
 #include "firmware/settings/record.hpp"
 #include "hal/device.hpp"
 #include "tests/firmware/constinit.hpp"
+#include "tests/firmware/no_board.hpp"
 
 namespace ex9000 {
 namespace {
-
-/// Peripherals without anything to remember.
-struct NoBoard {
-  std::uint32_t unused;
-};
 
 EX9000_CONSTINIT hal::Device<NoBoard> untouched_device(kOnlyModel, LineTiming::at);
 

@@ -55,6 +55,7 @@ struct LeanBoard {
       : clock{surroundings},
         line{surroundings},
         silence_timer{surroundings},
+        wake_timer{surroundings},
         inputs{surroundings},
         outputs{surroundings},
         memory{surroundings},
@@ -85,9 +86,10 @@ struct LeanBoard {
     void restart(Duration after) { fires = around.now + after.microseconds(); }
   };
 
-  /// The main loop asks the module itself when to turn again, so that no tick has to come every 10 ms.
   struct WakeTimer {
-    static void restart(Duration /*after*/) {}
+    Surroundings& around;
+    Microseconds fires = kNever;
+    void restart(Duration after) { fires = around.now + after.microseconds(); }
   };
 
   struct Inputs {
@@ -259,7 +261,8 @@ class LeanModule {
 
   Microseconds next_event() {
     const LeanBoard& its = board();
-    return std::min(std::min(its.line.ends, its.memory.ends), std::min(its.silence_timer.fires, wakes_));
+    return std::min(std::min(its.line.ends, its.memory.ends),
+                    std::min(its.silence_timer.fires, its.wake_timer.fires));
   }
 
   void happen() {
@@ -276,6 +279,10 @@ class LeanModule {
       its.silence_timer.fires = kNever;
       device_->on_silence();
     }
+    if (its.wake_timer.fires <= around_.now) {
+      its.wake_timer.fires = kNever;
+      device_->on_wake_timer();
+    }
     main_loop();
   }
 
@@ -288,29 +295,24 @@ class LeanModule {
 
   /// Turns until there is nothing left to do; that takes no time here.
   void main_loop() {
-    wakes_ = kNever;
     if (held_) {
       return;
     }
-    Duration idle;
     unsigned turns = 0;
-    do {
+    bool again = true;
+    while (again) {
       constexpr unsigned kMostTurns = 50;
       require(++turns < kMostTurns, "the main loop comes to rest");
       device_->poll_panel();
-      device_->turn();
+      again = device_->turn() || device_->has_work();
       around_.onlooker.turned();
-      constexpr Duration kAtMost = milliseconds(60'000);
-      idle = module().idle_for(board().clock.now(), kAtMost);
-    } while (idle == Duration());
-    wakes_ = around_.now + idle.microseconds();
+    }
   }
 
   const Model& model_;
   TimingAt timing_at_;
   Surroundings around_;
   std::optional<hal::Device<LeanBoard>> device_;
-  Microseconds wakes_ = kNever;
   bool held_ = false;
 };
 

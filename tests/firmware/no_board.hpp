@@ -1,0 +1,43 @@
+// A board without anything behind it, for a device that never runs.
+#pragma once
+
+#include <cstdint>
+
+#include "firmware/bytes.hpp"
+#include "firmware/time.hpp"
+
+namespace ex9000 {
+
+/// Peripherals without anything to remember; none of their functions is called.
+struct Nothing {
+  [[nodiscard]] static Time now();
+  [[nodiscard]] static Time now_in_interrupt();
+  static void open(std::uint32_t baud);
+  static void send(Bytes bytes);
+  [[nodiscard]] static bool sending();
+  static void restart(Duration after);
+  static void drive(std::uint16_t channels);
+  static void start_read(std::uint16_t address, MutableBytes destination, Time now);
+  static void start_write(std::uint16_t address, Bytes source, Time now);
+  static bool poll(Time now);
+  [[nodiscard]] static bool busy();
+  [[nodiscard]] static bool succeeded();
+  [[nodiscard]] static bool asserted();
+  static void light(bool on);
+  static void feed();
+  static std::uint16_t start();
+};
+struct NoBoard {
+  Nothing clock;
+  Nothing line;
+  Nothing silence_timer;
+  Nothing wake_timer;
+  Nothing inputs;
+  Nothing outputs;
+  Nothing memory;
+  Nothing init_switch;
+  Nothing status_led;
+  Nothing watchdog;
+};
+
+}  // namespace ex9000
