@@ -8,8 +8,8 @@
 
 #include "firmware/settings/places.hpp"
 #include "hal/device.hpp"
-#include "hal/tick.hpp"
 #include "hal/stellaris/uart.hpp"
+#include "hal/tick.hpp"
 #include "tests/support/interleaving/chip.hpp"
 
 namespace ex9000::interleaving {
