@@ -1,6 +1,7 @@
 // Counters and latches: EX9052D manual 2.3, 2.10 to 2.12.
 #include "firmware/dcon/commands.hpp"
 #include "firmware/dcon/writing.hpp"
+#include "firmware/hex.hpp"
 
 namespace ex9000::dcon {
 
@@ -8,10 +9,10 @@ namespace {
 
 constexpr unsigned kNoChannel = kMaxInputs;
 
-/// N as a channel of this model, or kNoChannel.
+/// N, a hex digit, as a channel of this model, or kNoChannel.
 unsigned channel_of(const Model& model, std::uint8_t digit) {
-  const unsigned channel = digit - unsigned{'0'};
-  return channel < model.inputs ? channel : kNoChannel;
+  const int channel = hex_value(digit);
+  return channel >= 0 && channel < model.inputs ? static_cast<unsigned>(channel) : kNoChannel;
 }
 
 }  // namespace
@@ -40,7 +41,7 @@ Refusal clear_counter(Exchange& exchange) {
   if (channel == kNoChannel) {
     return Refusal::OutOfRange;
   }
-  exchange.outcome.counters_to_clear = static_cast<std::uint8_t>(1U << channel);
+  exchange.outcome.counters_to_clear = static_cast<std::uint16_t>(1U << channel);
   exchange.outcome.request(Effect::ClearCounters);
   put_valid(exchange);
   return Refusal::None;

@@ -7,12 +7,14 @@
 
 namespace ex9000::dcon {
 
-/// First and Second data (manuals 1.10): more than 8 outputs fill both, high byte first; else outputs are
-/// First and inputs Second; a module without outputs has its inputs in First.
+/// First and Second data (manuals 1.10): more than 8 outputs or inputs fill both, high byte first. Otherwise outputs
+/// are First and inputs Second; a module without outputs has its inputs in First.
 inline void put_data(const Model& model, std::uint16_t outputs, std::uint16_t inputs, Reply& reply) {
-  if (model.outputs > 8) {
-    reply.put_hex(outputs >> 8U);
-    reply.put_hex(outputs & 0xFFU);
+  constexpr unsigned kChannelsOfAByte = 8;
+  if (model.outputs > kChannelsOfAByte || model.inputs > kChannelsOfAByte) {
+    const std::uint16_t channels = model.has_outputs() ? outputs : inputs;
+    reply.put_hex(channels >> 8U);
+    reply.put_hex(channels & 0xFFU);
   } else if (model.has_outputs()) {
     reply.put_hex(outputs);
     reply.put_hex(inputs);

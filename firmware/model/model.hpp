@@ -19,7 +19,7 @@ enum class StatusStyle : std::uint8_t {
 
 struct Model {
   std::string_view designation;  ///< as on the label, e.g. "EX9042D-M"
-  std::uint8_t inputs;           ///< channels, 0 to 8
+  std::uint8_t inputs;           ///< channels, 0 to 16; more than 8 only without outputs
   std::uint8_t outputs;          ///< channels, 0 to 16
   std::uint16_t modbus_code;     ///< as function 46 tells it, 0x9042; 0: the model speaks ASCII only
   StatusStyle status_style;
@@ -39,7 +39,7 @@ struct Model {
   }
 };
 
-constexpr unsigned kMaxInputs = 8;
+constexpr unsigned kMaxInputs = 16;
 constexpr unsigned kMaxOutputs = 16;
 constexpr unsigned kMaxNameLength = 7;
 

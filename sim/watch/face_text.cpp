@@ -68,9 +68,15 @@ std::string counters_text(const Model& model, const Gathered& gathered) {
   return text;
 }
 
-std::string latches_text(const Gathered& gathered) {
-  return "latched high " + hex_byte_text(gathered.latched_high) + ", low " +
-         hex_byte_text(gathered.latched_low);
+/// One bit for each input, in two digits or, of a model with more than eight inputs, four.
+std::string inputs_text(const Model& model, std::uint16_t inputs) {
+  constexpr unsigned kInputsOfAByte = 8;
+  return model.inputs > kInputsOfAByte ? hex_word_text(inputs) : hex_byte_text(inputs);
+}
+
+std::string latches_text(const Model& model, const Gathered& gathered) {
+  return "latched high " + inputs_text(model, gathered.latched_high) + ", low " +
+         inputs_text(model, gathered.latched_low);
 }
 
 std::string head(std::size_t number, const SimulatedModule& module, const Face& face, const Lamps& lamps) {
@@ -128,7 +134,7 @@ std::vector<std::string> face_text(std::size_t number, const SimulatedModule& mo
   }
   if (model.inputs != 0) {
     lines.push_back(indented(counters_text(model, face.gathered)));
-    lines.push_back(indented(latches_text(face.gathered)));
+    lines.push_back(indented(latches_text(model, face.gathered)));
   }
   lines.push_back(indented(guard_line(face.guard, now)));
   return lines;
@@ -149,9 +155,10 @@ std::vector<std::string> changes_text(const Model& model, const Face* before, co
   add([](const Face& face) { return "LED " + std::string(led_text(face.plate.led)); });
   add([](const Face& face) { return "outputs " + hex_word_text(face.plate.outputs); }, model.outputs != 0);
   add([](const Face& face) { return values_text(face); }, model.outputs != 0);
-  add([](const Face& face) { return "inputs " + hex_byte_text(face.plate.inputs); }, model.inputs != 0);
+  add([&](const Face& face) { return "inputs " + inputs_text(model, face.plate.inputs); },
+      model.inputs != 0);
   add([&](const Face& face) { return counters_text(model, face.gathered); }, gathers);
-  add([](const Face& face) { return latches_text(face.gathered); }, gathers);
+  add([&](const Face& face) { return latches_text(model, face.gathered); }, gathers);
   add([](const Face& face) { return "host watchdog " + guard_text(face.guard); }, now.plate.listening);
   return changes;
 }
