@@ -1,0 +1,100 @@
+// The core without a line: a module of Modbus that hears frames whole, for tests of which each plays
+// thousands.
+#pragma once
+
+#include <algorithm>
+#include <cstdint>
+#include <string_view>
+#include <vector>
+
+#include "firmware/line/crc16.hpp"
+#include "firmware/module.hpp"
+
+namespace ex9000 {
+
+class CoreBench {
+ public:
+  using FrameBytes = std::vector<std::uint8_t>;
+
+  /// Comes up on an erased memory.
+  explicit CoreBench(std::string_view model) : module_(*find_model(model)) {
+    module_.start(0, now_);
+    while (!module_.listening()) {
+      do_memory_jobs();
+      pass(milliseconds(1));
+    }
+  }
+
+  Module& module() { return module_; }
+  [[nodiscard]] Time now() const { return now_; }
+  /// At most until the next thing that is due, with the main loop looking around at the end.
+  void pass(Duration time) {
+    now_ = now_ + time;
+    module_.poll_panel(false, now_);
+    module_.step(now_);
+  }
+
+  void byte(std::uint8_t value, ByteStatus status = ByteStatus::Good) {
+    constexpr Duration kCharacter{1042};  // at 9600 baud
+    now_ = now_ + kCharacter;
+    module_.on_byte(value, status, now_);
+  }
+  /// So long that every frame is over.
+  void silence() {
+    now_ = now_ + milliseconds(50);
+    while (!(module_.on_silence() == Duration())) {
+    }
+  }
+  /// All bytes of a frame and the silence behind it; the main loop has not looked at it yet.
+  void hear(const FrameBytes& bytes) {
+    for (const std::uint8_t each : bytes) {
+      byte(each);
+    }
+    silence();
+  }
+  /// The main loop's turn: the reply to what was heard, with its CRC; empty where there is none.
+  FrameBytes answer() {
+    module_.step(now_);
+    do_memory_jobs();
+    const Bytes reply = module_.take_reply(now_);
+    FrameBytes answer(reply.begin(), reply.end());
+    if (!answer.empty()) {
+      module_.reply_sent(now_);
+      module_.poll_panel(false, now_);
+    }
+    return answer;
+  }
+  /// A frame without its CRC.
+  FrameBytes ask(const FrameBytes& frame) {
+    hear(with_crc(frame));
+    return answer();
+  }
+  static FrameBytes with_crc(FrameBytes frame) {
+    const Crc16 crc = crc16({frame.data(), frame.size()});
+    frame.push_back(crc.low_byte());
+    frame.push_back(crc.high_byte());
+    return frame;
+  }
+
+ private:
+  void do_memory_jobs() {
+    while (module_.needs_memory()) {
+      const MemoryJob job = module_.memory_job();
+      module_.memory_started();
+      std::uint8_t* const place = memory_.data() + job.address;
+      if (job.kind == MemoryJob::Kind::Read) {
+        std::copy(place, place + job.bytes.size, job.bytes.data);
+      } else {
+        std::copy(job.bytes.data, job.bytes.data + job.bytes.size, place);
+      }
+      module_.memory_done(true);
+      module_.step(now_);
+    }
+  }
+
+  std::vector<std::uint8_t> memory_ = std::vector<std::uint8_t>(8192, 0xFF);
+  Module module_;
+  Time now_;
+};
+
+}  // namespace ex9000
