@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <cstdio>
 #include <string>
 #include <utility>
@@ -147,6 +148,46 @@ TEST(Time, AMasterThatPollsOnceAWrapIsAnsweredEveryTime) {
     const VirtualTime began = bench.now();
     ASSERT_EQ(bench.ask(Bytes{1, 0x01, 0, 0, 0, 13}), (Bytes{1, 0x01, 2, 0, 0}));
     bench.line().bus().run_until(began + kWrap);
+  }
+}
+
+// For between 36 and 72 minutes a moment that is over looks like one that lies ahead, to 32 bits.
+constexpr std::array kPauses{std::chrono::minutes(36), std::chrono::minutes(50), std::chrono::minutes(71)};
+
+TEST(Time, ARequestIsAnsweredHoweverLongTheMasterHasPausedBehindAReply) {
+  ModuleBench modbus("EX9042D-M");
+  ModuleBench ascii("EX9042D");
+  for (const auto pause : kPauses) {
+    EXPECT_EQ(modbus.ask(Bytes{1, 0x01, 0, 0, 0, 13}), (Bytes{1, 0x01, 2, 0, 0}));
+    EXPECT_EQ(ascii.ask("$01M"), "!019042D");
+    modbus.run(pause);
+    ascii.run(pause);
+    EXPECT_EQ(modbus.ask(Bytes{1, 0x01, 0, 0, 0, 13}), (Bytes{1, 0x01, 2, 0, 0})) << pause.count();
+    EXPECT_EQ(ascii.ask("$01M"), "!019042D") << pause.count();
+  }
+}
+
+TEST(Time, AStoreTheInitSwitchAndTheHostWatchdogAreOnTimeHoweverLongNothingHasHappened) {
+  ModuleBench bench("EX9042D");
+  unsigned number = 0;
+  for (const auto pause : kPauses) {
+    const std::string name = "PUMP" + std::to_string(++number);
+    bench.run(pause);
+    EXPECT_EQ(bench.ask("~01O" + name), "!01") << pause.count();
+    EXPECT_EQ(bench.ask("$01M"), "!01" + name);
+    bench.run(pause);
+    bench.module().set_init(true);
+    bench.run(milliseconds(20));
+    EXPECT_EQ(bench.ask("%0101400800"), "!01") << pause.count();
+    bench.run(pause);
+    bench.module().set_init(false);
+    bench.run(milliseconds(20));
+    EXPECT_EQ(bench.ask("%0101400700"), "?01") << pause.count();
+    bench.run(pause);
+    EXPECT_EQ(bench.ask("~013104"), "!01") << pause.count();  // 0.4 s, and each question takes 0.25 s
+    EXPECT_EQ(bench.ask("~010"), "!0180");
+    EXPECT_EQ(bench.ask("~010"), "!0184");
+    EXPECT_EQ(bench.ask("~011"), "!01");
   }
 }
 
