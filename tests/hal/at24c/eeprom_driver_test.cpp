@@ -228,6 +228,20 @@ TYPED_TEST(Eeprom, AWriteIsOverWhenTheLastPageIsProgrammed) {
   }
 }
 
+// A page is programmed from its STOP on, behind the 3 ms that its bytes take at 100 kHz, and for 10 ms at
+// most (tWR, doc. 0336, "AC characteristics").
+TYPED_TEST(Eeprom, PagesAreWrittenWholeByAChipThatTakesAsLongAsItsDataSheetAllows) {
+  for (const std::size_t pages : {1U, 2U}) {
+    typename TestFixture::TheBench bench(TypeParam::kManners);
+    bench.eeprom->set_programming_time(milliseconds(10));
+    const auto bytes = some_bytes(pages * EepromChip::kPage);
+    EXPECT_TRUE(bench.write(0x0020, bytes));
+    EXPECT_FALSE(bench.eeprom->programming());
+    EXPECT_EQ(bench.eeprom->programmed().size(), pages);
+    EXPECT_TRUE(std::equal(bytes.begin(), bytes.end(), bench.memory.begin() + 0x0020));
+  }
+}
+
 TYPED_TEST(Eeprom, AWriteThatTakesLongerThanTheDataSheetSaysFails) {
   typename TestFixture::TheBench bench(TypeParam::kManners);
   bench.eeprom->set_programming_time(milliseconds(20));
