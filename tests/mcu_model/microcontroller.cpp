@@ -73,10 +73,12 @@ Microcontroller::Microcontroller(const Chip& chip, Timeline& timeline, Pins& pin
   leads_to(timer1, 21);
   leads_to(timer2, 23);
   system_control.on_standstill([this](Instant until) { pass_all(until); });
-  system_control.on_software_reset([this](unsigned index, std::uint32_t bits) {
-    if (index == 1 && (bits >> 12U & 1U) != 0) {
-      i2c.software_reset();
+  system_control.on_software_reset([this](unsigned index, unsigned bit) {
+    if (index != 1 || bit != 12) {
+      throw Fault(SystemControl::kBase + SystemControl::kSrcr + 4 * index,
+                  "resets what no software reset is known of here");
     }
+    i2c.software_reset();
   });
   core.on_reset_request([this] { reset_requested_ = true; });
   pins.on_change = [this](unsigned changed_port, unsigned pin) { pin_changed(changed_port, pin); };
@@ -124,17 +126,27 @@ Peripheral& Microcontroller::peripheral_at(std::uint32_t address) {
   }
   for (const Place& place : places_) {
     if (place.peripheral->base() == base) {
-      switch (system_control.gate(place.gate_index, place.gate_bit)) {
-        case SystemControl::Gate::Shut:
-          throw Fault(address, "has no clock");
-        case SystemControl::Gate::TooFresh:
-          throw Fault(address, "was given its clock only just now");
-        case SystemControl::Gate::Open:
-          return *place.peripheral;
-      }
+      check_usable(place, address);
+      return *place.peripheral;
     }
   }
   throw Fault(address, "nothing is there");
+}
+
+/// On silicon a peripheral without a clock faults, and one that is held in reset is deaf: a driver wants
+/// neither.
+void Microcontroller::check_usable(const Place& place, std::uint32_t address) const {
+  switch (system_control.gate(place.gate_index, place.gate_bit)) {
+    case SystemControl::Gate::Shut:
+      throw Fault(address, "has no clock");
+    case SystemControl::Gate::TooFresh:
+      throw Fault(address, "was given its clock only just now");
+    case SystemControl::Gate::Open:
+      break;
+  }
+  if (system_control.holds_in_reset(place.gate_index, place.gate_bit)) {
+    throw Fault(address, "is held in reset");
+  }
 }
 
 void Microcontroller::check_reset() const {

@@ -141,11 +141,12 @@ class Microcontroller {
  private:
   struct Place {
     Peripheral* peripheral;
-    unsigned gate_index;  ///< of RCGC
+    unsigned gate_index;  ///< of RCGC, and of SRCR, whose bits are the same
     unsigned gate_bit;
   };
 
   Peripheral& peripheral_at(std::uint32_t address);
+  void check_usable(const Place& place, std::uint32_t address) const;
   void begin_access(std::uint32_t address, bool write, std::uint32_t value);
   void pass(Instant to);
   void pass_all(Instant to);

@@ -54,9 +54,12 @@ void SystemControl::write(std::uint32_t offset, std::uint32_t value) {
     gates_.at(index) = value;
   } else if (offset >= kSrcr && offset < kSrcr + 12) {
     const unsigned index = (offset - kSrcr) / 4;
+    const std::uint32_t begun = value & ~resets_.at(index);
     resets_.at(index) = value;
-    if (on_software_reset_) {
-      on_software_reset_(index, value);
+    for (unsigned bit = 0; bit < 32; ++bit) {
+      if ((begun >> bit & 1U) != 0 && on_software_reset_) {
+        on_software_reset_(index, bit);
+      }
     }
   } else {
     fault(offset, "no such register of system control may be written");

@@ -31,9 +31,12 @@ class SystemControl final : public Peripheral {
   void on_clock_change(std::function<void(Instant cycle)> act) { on_clock_change_.push_back(std::move(act)); }
   /// The processor waits until then; told when it must.
   void on_standstill(std::function<void(Instant until)> act) { on_standstill_ = std::move(act); }
-  /// Told which bits of SRCR`index` were set.
-  void on_software_reset(std::function<void(unsigned index, std::uint32_t bits)> act) {
+  /// Told of each bit of SRCR`index` that is set; it holds its peripheral in reset until it is cleared.
+  void on_software_reset(std::function<void(unsigned index, unsigned bit)> act) {
     on_software_reset_ = std::move(act);
+  }
+  [[nodiscard]] bool holds_in_reset(unsigned index, unsigned bit) const {
+    return (resets_.at(index) >> bit & 1U) != 0;
   }
 
   /// Whether bit `bit` of RCGC`index` is set, and has been for long enough.
@@ -64,7 +67,7 @@ class SystemControl final : public Peripheral {
   bool locked_ = false;
   std::vector<std::function<void(Instant)>> on_clock_change_;
   std::function<void(Instant)> on_standstill_;
-  std::function<void(unsigned, std::uint32_t)> on_software_reset_;
+  std::function<void(unsigned, unsigned)> on_software_reset_;
 };
 
 }  // namespace ex9000::registers
