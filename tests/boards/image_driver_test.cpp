@@ -182,6 +182,31 @@ TEST_P(OnBoard, RepliesAtOnceWhenTheTurnAroundIsOver) {
   }
 }
 
+TEST_P(OnBoard, APinOfAnOutputOrTheLedThatADisturbanceHasChangedIsRightAgainWithTheNextTick) {
+  constexpr microseconds kATick{1050};  // and what the main loop takes behind it
+  power_up();
+  ASSERT_EQ(bench.ask("@01A5"), ">");
+  const auto disturb = [this](PinPlace place) {
+    GpioPort& port = bench.mcu->port(place.port);
+    const std::uint32_t only_this_one = (1U << place.pin) << 2U;  // the data register's address has the mask
+    port.write(only_this_one, ~port.read(only_this_one));
+  };
+  for (unsigned phase = 0; phase < 5; ++phase) {
+    for (unsigned channel = 0; channel < bench.image.outputs; ++channel) {
+      bench.run_for(microseconds(1130));
+      disturb(bench.image.output_pins.at(channel));
+      EXPECT_EQ(bench.outputs(), 0xA5U ^ (1U << channel)) << "the test must meet what it is for";
+      bench.run_for(kATick);
+      EXPECT_EQ(bench.outputs(), 0xA5U) << channel;
+    }
+    disturb(bench.image.status_led);
+    EXPECT_FALSE(bench.led());
+    bench.run_for(kATick);
+    EXPECT_TRUE(bench.led());
+  }
+  EXPECT_EQ(bench.resets, 0U);
+}
+
 class ModbusOnBoard : public OnBoard {};
 
 TEST_P(ModbusOnBoard, RepliesAtOnceWhenT35IsOver) {
