@@ -1,6 +1,9 @@
 // Faults of modules, in virtual time: what each is to a master, and when it is over.
 #include <gtest/gtest.h>
 
+#include <functional>
+#include <utility>
+
 #include "tests/sim/faults/fault_bench.hpp"
 
 namespace ex9000::sim {
@@ -107,6 +110,63 @@ TEST(Hang, OfEveryReplyLetsThatReplyOut) {
   EXPECT_EQ(bench.ask("$01M"), "");
   bench.run(2s);
   EXPECT_EQ(bench.at(1).watchdog_resets(), 1U);
+}
+
+/// How a module begins anew.
+const std::pair<const char*, std::function<void(FaultBench&)>> kResets[] = {
+    {"reset", [](FaultBench& bench) { bench.at(1).reset(); }},
+    {"supply",
+     [](FaultBench& bench) {
+       bench.at(1).power(false);
+       bench.at(1).power(true);
+     }},
+    {"watchdog",
+     [](FaultBench& bench) {
+       bench.at(1).hang();
+       bench.run(1600ms);
+       ASSERT_EQ(bench.at(1).watchdog_resets(), 1U);
+     }},
+};
+
+/// Whether it does what each fault of a reply, or of a rate, that lasts is to a master.
+bool replies_are_lost(FaultBench& bench) { return bench.ask("$01M", 100ms).empty(); }
+bool replies_are_late(FaultBench& bench) {
+  return bench.ask("$01M", 50ms).empty() && bench.ask("", 100ms) == kName;
+}
+bool its_driver_is_late(FaultBench& bench) {
+  const bool answers = bench.ask("$01M", 100ms) == kName;
+  const BusRecorder::Driver off = bench.recorder().drivers.back();
+  return answers && !off.on && off.at - bench.recorder().bytes.back().end >= 20ms;
+}
+bool its_rate_is_wrong(FaultBench& bench) {
+  const bool deaf = bench.ask("$01M") != kName;
+  bench.line().master().set_baud(19200);
+  const bool answers = bench.ask("$01M") == kName;
+  bench.line().master().set_baud(9600);
+  return deaf && answers;
+}
+
+TEST(Faults, OfAModuleOutlastItsReset) {
+  const std::pair<const char*, bool (*)(FaultBench&)> faults[] = {
+      {"lost-reply", replies_are_lost},
+      {"late-reply 60ms", replies_are_late},
+      {"late-driver 20ms", its_driver_is_late},
+      {"wrong-rate 19200", its_rate_is_wrong},
+  };
+  for (const auto& [fault, strikes] : faults) {
+    for (const auto& [how, begin_anew] : kResets) {
+      FaultBench bench;
+      EXPECT_FALSE(strikes(bench)) << fault;
+      const std::size_t number = bench.add(fault);
+      EXPECT_TRUE(strikes(bench)) << fault;
+      begin_anew(bench);
+      bench.run(100ms);
+      EXPECT_TRUE(strikes(bench)) << fault << ", " << how;
+      EXPECT_EQ(bench.faults().told().at(0).strikes, 1U);
+      bench.faults().remove(number);
+      EXPECT_FALSE(strikes(bench)) << fault << ", " << how;
+    }
+  }
 }
 
 }  // namespace
