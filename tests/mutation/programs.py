@@ -14,6 +14,7 @@ ROOT = pathlib.Path(__file__).resolve().parents[2]
 
 SHADOW = "-Itests/mcu_model/shadow"
 OBSERVED = "-Itests/support/interleaving/observed"
+LONG_UPTIME = "-Itests/support/long_uptime"
 
 
 def files(*patterns):
@@ -147,6 +148,7 @@ def library_units():
         Unit("panel", sources_of_library("ex9000_panel")),
         Unit("mcu_model", tuple(mcu), ("-O1", SHADOW)),
         Unit("observed_core", core, ("-O1", OBSERVED)),
+        Unit("long_uptime_core", core, ("-O1", LONG_UPTIME)),
     ]
 
 
@@ -158,8 +160,13 @@ LIBRARIES = {
     "ex9000_program": ("core", "bus", "play", "description", "bus_file", "program", "panel", *ALONE),
     "ex9000_mcu_model": ("mcu_model",),
     "ex9000_observed_core": ("observed_core",),
+    "ex9000_long_uptime_core": ("long_uptime_core",),
 }
-OPTIONS = {"ex9000_mcu_model": (SHADOW,), "ex9000_observed_core": (OBSERVED,)}
+OPTIONS = {
+    "ex9000_mcu_model": (SHADOW,),
+    "ex9000_observed_core": (OBSERVED,),
+    "ex9000_long_uptime_core": (LONG_UPTIME,),
+}
 LIBRARY_UNITS = {unit.name: unit for unit in library_units()}
 README = f'-DEX9000_README="{ROOT}/README.md"'
 

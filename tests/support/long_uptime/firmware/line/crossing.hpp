@@ -1,0 +1,61 @@
+// In the place of firmware/line/crossing.hpp, which it copies: a count of 32 bits begins just before its
+// wrap, where it is after months. It is as good a beginning as 0, as nobody asks but for what has changed.
+#pragma once
+
+#include <cstdint>
+#include <type_traits>
+
+namespace ex9000 {
+
+constexpr std::uint32_t kCountsUntilTheWrap = 100;
+
+namespace detail {
+
+template <class T>
+class Crossing {
+  static_assert(std::is_trivially_copyable<T>::value && sizeof(T) <= sizeof(std::uintptr_t),
+                "must be read and written by one instruction");
+
+ public:
+  [[nodiscard]] T load() const { return value_; }
+
+ protected:
+  void store(T value) { value_ = value; }
+
+ private:
+  static constexpr T beginning() {
+    if constexpr (std::is_same<T, std::uint32_t>::value) {
+      return 0U - kCountsUntilTheWrap;
+    } else {
+      return T();
+    }
+  }
+
+  T value_ = beginning();
+};
+
+}  // namespace detail
+
+template <class T>
+class WrittenByInterrupt : public detail::Crossing<T> {
+ public:
+  void store_in_interrupt(T value) { this->store(value); }
+};
+
+template <class T>
+class WrittenByMainLoop : public detail::Crossing<T> {
+ public:
+  void store_in_main_loop(T value) { this->store(value); }
+};
+
+template <class T>
+class HandedToInterrupt {
+ public:
+  void set_in_main_loop(const T& value) { value_ = value; }
+  T& in_interrupt() { return value_; }
+
+ private:
+  T value_{};
+};
+
+}  // namespace ex9000
