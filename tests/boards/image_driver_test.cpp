@@ -385,6 +385,33 @@ TEST_P(OnBoard, TouchesNothingWhileInterruptsAreHeld) {
   EXPECT_EQ(bench.mcu->most_accesses_held(), 0U);
 }
 
+/// All that interrupts count in 32 bits is about to wrap (tests/support/long_uptime).
+class OnBoardForMonths : public OnBoard {};
+
+TEST_P(OnBoardForMonths, AnswersCountsStoresAndHeedsTheHostAcrossTheWrapOfEveryCount) {
+  power_up();
+  ASSERT_EQ(bench.ask("~013114"), "!01");  // 2 s, and each round is shorter
+  for (unsigned round = 1; round <= 150; ++round) {
+    bench.line.send({'~', '*', '*', '\r'});
+    bench.run_for(milliseconds(10));
+    bench.set_input(3, true);
+    bench.run_for(milliseconds(1));
+    ASSERT_EQ(bench.ask("$016"), "!000800") << round;
+    bench.set_input(3, false);
+    bench.run_for(milliseconds(1));
+    ASSERT_EQ(bench.ask("#013"), (round < 10    ? "!010000"
+                                  : round < 100 ? "!01000"
+                                                : "!0100") +
+                                     std::to_string(round));
+    ASSERT_EQ(bench.ask("~01OPUMP" + std::to_string(round % 2)), "!01");
+    ASSERT_EQ(bench.ask("~010"), "!0100") << round;
+  }
+  EXPECT_EQ(bench.ask("$01M"), "!01PUMP0");
+  bench.run_for(seconds(2));
+  EXPECT_EQ(bench.ask("~010"), "!0104");
+  EXPECT_EQ(bench.resets, 0U);
+}
+
 const auto kImages =
     testing::Values(ImageName{"lm3s6965evb", "EX9055D"}, ImageName{"ek-tm4c123gxl", "EX9055D"});
 INSTANTIATE_TEST_SUITE_P(Images, OnBoard, kImages, name_of);
@@ -393,6 +420,8 @@ INSTANTIATE_TEST_SUITE_P(Images, ModbusOnBoard,
                                          ImageName{"ek-tm4c123gxl", "EX9043D-M"}),
                          name_of);
 INSTANTIATE_TEST_SUITE_P(Images, OnBoardWhoseI2cWaits, kImages, name_of);
+INSTANTIATE_TEST_SUITE_P(Images, OnBoardForMonths,
+                         testing::Values(ImageName{"ek-tm4c123gxl", "EX9055D_after_months"}), name_of);
 
 }  // namespace
 }  // namespace ex9000::registers
