@@ -7,8 +7,8 @@
 
 namespace ex9000::dcon {
 
-/// First and Second data (manuals 1.10): more than 8 outputs or inputs fill both, high byte first. Otherwise outputs
-/// are First and inputs Second; a module without outputs has its inputs in First.
+/// First and Second data (manuals 1.10): more than 8 outputs or inputs fill both, high byte first. Otherwise
+/// outputs are First and inputs Second; a module without outputs has its inputs in First.
 inline void put_data(const Model& model, std::uint16_t outputs, std::uint16_t inputs, Reply& reply) {
   constexpr unsigned kChannelsOfAByte = 8;
   if (model.outputs > kChannelsOfAByte || model.inputs > kChannelsOfAByte) {

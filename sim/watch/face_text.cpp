@@ -155,8 +155,7 @@ std::vector<std::string> changes_text(const Model& model, const Face* before, co
   add([](const Face& face) { return "LED " + std::string(led_text(face.plate.led)); });
   add([](const Face& face) { return "outputs " + hex_word_text(face.plate.outputs); }, model.outputs != 0);
   add([](const Face& face) { return values_text(face); }, model.outputs != 0);
-  add([&](const Face& face) { return "inputs " + inputs_text(model, face.plate.inputs); },
-      model.inputs != 0);
+  add([&](const Face& face) { return "inputs " + inputs_text(model, face.plate.inputs); }, model.inputs != 0);
   add([&](const Face& face) { return counters_text(model, face.gathered); }, gathers);
   add([&](const Face& face) { return latches_text(model, face.gathered); }, gathers);
   add([](const Face& face) { return "host watchdog " + guard_text(face.guard); }, now.plate.listening);

@@ -80,7 +80,6 @@ class CoreBench {
   void do_memory_jobs() {
     while (module_.needs_memory()) {
       const MemoryJob job = module_.memory_job();
-      module_.memory_started();
       std::uint8_t* const place = memory_.data() + job.address;
       if (job.kind == MemoryJob::Kind::Read) {
         std::copy(place, place + job.bytes.size, job.bytes.data);
