@@ -1,6 +1,7 @@
 // What can be wrong around a board, and what its image makes of it.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <memory>
 #include <string>
 #include <vector>
@@ -183,7 +184,7 @@ TEST_P(OnBoard, RepliesAtOnceWhenTheTurnAroundIsOver) {
 }
 
 TEST_P(OnBoard, APinOfAnOutputOrTheLedThatADisturbanceHasChangedIsRightAgainWithTheNextTick) {
-  constexpr microseconds kATick{1050};  // and what the main loop takes behind it
+  constexpr microseconds kATick{10'050};  // and what the main loop takes behind it
   power_up();
   ASSERT_EQ(bench.ask("@01A5"), ">");
   const auto disturb = [this](PinPlace place) {
@@ -193,7 +194,7 @@ TEST_P(OnBoard, APinOfAnOutputOrTheLedThatADisturbanceHasChangedIsRightAgainWith
   };
   for (unsigned phase = 0; phase < 5; ++phase) {
     for (unsigned channel = 0; channel < bench.image.outputs; ++channel) {
-      bench.run_for(microseconds(1130));
+      bench.run_for(microseconds(11'300));
       disturb(bench.image.output_pins.at(channel));
       EXPECT_EQ(bench.outputs(), 0xA5U ^ (1U << channel)) << "the test must meet what it is for";
       bench.run_for(kATick);
@@ -390,7 +391,16 @@ class OnBoardForMonths : public OnBoard {};
 
 TEST_P(OnBoardForMonths, AnswersCountsStoresAndHeedsTheHostAcrossTheWrapOfEveryCount) {
   power_up();
-  ASSERT_EQ(bench.ask("~013114"), "!01");  // 2 s, and each round is shorter
+  Instant shortest = kNever;  // silence before the answer to a store
+  Instant longest{0};
+  const auto store = [&](const std::string& command) {
+    bench.line.drives.clear();
+    ASSERT_EQ(bench.ask(command), "!01");
+    const Instant silence = bench.line.drives.at(0).from - bench.line.sent();
+    shortest = std::min(shortest, silence);
+    longest = std::max(longest, silence);
+  };
+  store("~013114");  // 2 s, and each round is shorter
   for (unsigned round = 1; round <= 150; ++round) {
     bench.line.send({'~', '*', '*', '\r'});
     bench.run_for(milliseconds(10));
@@ -399,14 +409,14 @@ TEST_P(OnBoardForMonths, AnswersCountsStoresAndHeedsTheHostAcrossTheWrapOfEveryC
     ASSERT_EQ(bench.ask("$016"), "!000800") << round;
     bench.set_input(3, false);
     bench.run_for(milliseconds(1));
-    ASSERT_EQ(bench.ask("#013"), (round < 10    ? "!010000"
-                                  : round < 100 ? "!01000"
-                                                : "!0100") +
-                                     std::to_string(round));
-    ASSERT_EQ(bench.ask("~01OPUMP" + std::to_string(round % 2)), "!01");
+    const std::string count = std::to_string(round);
+    ASSERT_EQ(bench.ask("#013"), "!01" + std::string(5 - count.size(), '0') + count);
+    store("~01OPUMP" + std::to_string(round % 2));
     ASSERT_EQ(bench.ask("~010"), "!0100") << round;
   }
   EXPECT_EQ(bench.ask("$01M"), "!01PUMP0");
+  // A byte on the EEPROM's bus that is given up and sent again costs 3 ms.
+  EXPECT_LT(std::chrono::duration<double>(longest - shortest).count(), 0.002);
   bench.run_for(seconds(2));
   EXPECT_EQ(bench.ask("~010"), "!0104");
   EXPECT_EQ(bench.resets, 0U);

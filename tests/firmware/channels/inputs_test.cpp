@@ -309,16 +309,29 @@ TEST_F(InputsTest, AClearedCounterCountsFrom0) {
   EXPECT_EQ(inputs_.counter(0), 2U);
 }
 
-TEST_F(InputsTest, BitsWithoutACounterClearNothing) {
+TEST_F(InputsTest, OnlyTheCountersOfTheMaskAreCleared) {
   pulse(0, 1);
-  collect();
-  inputs_.clear_counters(0xFF00);
+  pulse(8, 2);
+  pulse(15, 3);
+  inputs_.collect(edges_, kMaxInputs);
+  inputs_.clear_counters(0x0100);
   EXPECT_EQ(inputs_.counter(0), 1U);
+  EXPECT_EQ(inputs_.counter(8), 0U);
+  EXPECT_EQ(inputs_.counter(15), 3U);
+}
+
+TEST_F(InputsTest, SixteenChannelsHaveLevelsAndLatches) {
+  for (unsigned channel = 0; channel < 16; ++channel) {
+    edges_.on_edge(channel, true);
+    inputs_.collect(edges_, 16);
+    EXPECT_EQ(inputs_.levels(), (2U << channel) - 1U);
+    EXPECT_EQ(inputs_.latched_high(), (2U << channel) - 1U);
+  }
 }
 
 TEST_F(InputsTest, EdgesOfChannelsThatNoModelHasAreIgnored) {
-  edges_.on_edge(8, true);
-  edges_.on_edge(15, true);
+  edges_.on_edge(16, true);
+  edges_.on_edge(31, true);
   edges_.on_edge(1000, true);
   collect();
   EXPECT_EQ(inputs_.levels(), 0);
