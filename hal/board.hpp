@@ -45,9 +45,9 @@ constexpr bool is_board() {
 
 /// The same as a question; false too where the board lacks a member.
 template <class Board, class = void>
-constexpr bool kIsBoard = false;
+inline constexpr bool kIsBoard = false;
 template <class Board>
-constexpr bool kIsBoard<
+inline constexpr bool kIsBoard<
     Board, std::void_t<decltype(Board::clock), decltype(Board::line), decltype(Board::silence_timer),
                        decltype(Board::wake_timer), decltype(Board::inputs), decltype(Board::outputs),
                        decltype(Board::memory), decltype(Board::init_switch), decltype(Board::status_led),

@@ -17,9 +17,9 @@ namespace ex9000::hal {
 ///
 /// Whether `T` offers that.
 template <class T, class = void>
-constexpr bool kIsClock = false;
+inline constexpr bool kIsClock = false;
 template <class T>
-constexpr bool
+inline constexpr bool
     kIsClock<T, std::void_t<Returns<Time, decltype(std::declval<const T&>().now())>,
                             Returns<Time, decltype(std::declval<const T&>().now_in_interrupt())>>> = true;
 

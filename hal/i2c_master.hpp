@@ -44,9 +44,9 @@ enum class I2cResult : std::uint8_t {
 
 /// Whether `T` offers what I2cTransfer says of a master.
 template <class T, class = void>
-constexpr bool kIsI2cMaster = false;
+inline constexpr bool kIsI2cMaster = false;
 template <class T>
-constexpr bool
+inline constexpr bool
     kIsI2cMaster<T, std::void_t<Returns<void, decltype(std::declval<T&>().begin(
                                                   std::declval<const I2cTransfer&>(), Exactly<Time>()))>,
                                 Returns<bool, decltype(std::declval<T&>().poll(Exactly<Time>()))>,

@@ -14,9 +14,9 @@ namespace ex9000::hal {
 ///
 /// Whether `T` offers that.
 template <class T, class = void>
-constexpr bool kIsInitSwitch = false;
+inline constexpr bool kIsInitSwitch = false;
 template <class T>
-constexpr bool kIsInitSwitch<T, std::void_t<Returns<bool, decltype(std::declval<const T&>().asserted())>>> =
-    true;
+inline constexpr bool
+    kIsInitSwitch<T, std::void_t<Returns<bool, decltype(std::declval<const T&>().asserted())>>> = true;
 
 }  // namespace ex9000::hal

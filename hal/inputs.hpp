@@ -17,8 +17,9 @@ namespace ex9000::hal {
 ///
 /// Whether `T` offers that.
 template <class T, class = void>
-constexpr bool kIsInputs = false;
+inline constexpr bool kIsInputs = false;
 template <class T>
-constexpr bool kIsInputs<T, std::void_t<Returns<std::uint16_t, decltype(std::declval<T&>().start())>>> = true;
+inline constexpr bool
+    kIsInputs<T, std::void_t<Returns<std::uint16_t, decltype(std::declval<T&>().start())>>> = true;
 
 }  // namespace ex9000::hal

@@ -11,7 +11,7 @@
 namespace ex9000::hal {
 
 /// What no interrupt tells of, such as a bus that does not move, is noticed within this time.
-constexpr Duration kMemoryPollPeriod = milliseconds(1);
+inline constexpr Duration kMemoryPollPeriod = milliseconds(1);
 
 /// A nonvolatile memory that takes its time, such as an AT24C64: one job at once, begun here and looked after
 /// while the main loop goes on. Where an interrupt tells that it can go on, that calls `Device::on_memory`.
@@ -33,9 +33,9 @@ constexpr Duration kMemoryPollPeriod = milliseconds(1);
 ///
 /// Whether `T` offers that.
 template <class T, class = void>
-constexpr bool kIsMemory = false;
+inline constexpr bool kIsMemory = false;
 template <class T>
-constexpr bool kIsMemory<
+inline constexpr bool kIsMemory<
     T, std::void_t<Returns<void, decltype(std::declval<T&>().start_read(
                                      Exactly<std::uint16_t>(), Exactly<MutableBytes>(), Exactly<Time>()))>,
                    Returns<void, decltype(std::declval<T&>().start_write(Exactly<std::uint16_t>(),

@@ -18,9 +18,9 @@ namespace ex9000::hal {
 ///
 /// Whether `T` offers that.
 template <class T, class = void>
-constexpr bool kIsOutputs = false;
+inline constexpr bool kIsOutputs = false;
 template <class T>
-constexpr bool
+inline constexpr bool
     kIsOutputs<T, std::void_t<Returns<void, decltype(std::declval<T&>().drive(Exactly<std::uint16_t>()))>>> =
         true;
 

@@ -28,9 +28,9 @@ namespace ex9000::hal {
 ///
 /// Whether `T` offers that.
 template <class T, class = void>
-constexpr bool kIsSerialLine = false;
+inline constexpr bool kIsSerialLine = false;
 template <class T>
-constexpr bool
+inline constexpr bool
     kIsSerialLine<T, std::void_t<Returns<void, decltype(std::declval<T&>().open(Exactly<std::uint32_t>()))>,
                                  Returns<void, decltype(std::declval<T&>().send(Exactly<Bytes>()))>,
                                  Returns<bool, decltype(std::declval<const T&>().sending())>>> = true;

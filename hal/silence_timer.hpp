@@ -18,9 +18,9 @@ namespace ex9000::hal {
 ///
 /// Whether `T` offers that.
 template <class T, class = void>
-constexpr bool kIsSilenceTimer = false;
+inline constexpr bool kIsSilenceTimer = false;
 template <class T>
-constexpr bool kIsSilenceTimer<
+inline constexpr bool kIsSilenceTimer<
     T, std::void_t<Returns<void, decltype(std::declval<T&>().restart(Exactly<Duration>()))>>> = true;
 
 }  // namespace ex9000::hal

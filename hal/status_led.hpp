@@ -14,9 +14,9 @@ namespace ex9000::hal {
 ///
 /// Whether `T` offers that.
 template <class T, class = void>
-constexpr bool kIsStatusLed = false;
+inline constexpr bool kIsStatusLed = false;
 template <class T>
-constexpr bool
+inline constexpr bool
     kIsStatusLed<T, std::void_t<Returns<void, decltype(std::declval<T&>().light(Exactly<bool>()))>>> = true;
 
 }  // namespace ex9000::hal

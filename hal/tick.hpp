@@ -11,7 +11,7 @@ namespace ex9000::hal {
 /// A board's tick. So long may wait what has no time of its own: that INIT* has changed, or that a register
 /// of the outputs has to be written again. The wake timer serves everything else on time. A longer period
 /// would save little, and a shorter one would wake a module that has nothing to do.
-constexpr Duration kTickPeriod = milliseconds(10);
+inline constexpr Duration kTickPeriod = milliseconds(10);
 
 /// A periodic interrupt that calls `Device::on_tick`: the sign of life that the hardware watchdog waits for
 /// beside the main loop's.
@@ -22,8 +22,8 @@ constexpr Duration kTickPeriod = milliseconds(10);
 ///
 /// Whether `T` offers that.
 template <class T, class = void>
-constexpr bool kIsTick = false;
+inline constexpr bool kIsTick = false;
 template <class T>
-constexpr bool kIsTick<T, std::void_t<Returns<void, decltype(std::declval<T&>().start())>>> = true;
+inline constexpr bool kIsTick<T, std::void_t<Returns<void, decltype(std::declval<T&>().start())>>> = true;
 
 }  // namespace ex9000::hal

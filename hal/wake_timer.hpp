@@ -9,7 +9,7 @@
 namespace ex9000::hal {
 
 /// The longest time that the wake timer is set to.
-constexpr Duration kLongestWake = milliseconds(1000);
+inline constexpr Duration kLongestWake = milliseconds(1000);
 
 /// A one-shot timer that calls `Device::on_wake_timer` in its interrupt, for whatever is due next. If it
 /// failed, everything would be due at the next tick.
@@ -20,9 +20,9 @@ constexpr Duration kLongestWake = milliseconds(1000);
 ///
 /// Whether `T` offers that.
 template <class T, class = void>
-constexpr bool kIsWakeTimer = false;
+inline constexpr bool kIsWakeTimer = false;
 template <class T>
-constexpr bool
+inline constexpr bool
     kIsWakeTimer<T, std::void_t<Returns<void, decltype(std::declval<T&>().restart(Exactly<Duration>()))>>> =
         true;
 

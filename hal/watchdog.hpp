@@ -9,7 +9,7 @@
 namespace ex9000::hal {
 
 /// Longest time the hardware watchdog waits for a feed before it resets the MCU (wire.md section 6).
-constexpr Duration kWatchdogPeriod = milliseconds(1600);
+inline constexpr Duration kWatchdogPeriod = milliseconds(1600);
 
 /// The MCU's own watchdog. It runs from the first `feed` on and cannot be stopped.
 ///
@@ -18,8 +18,8 @@ constexpr Duration kWatchdogPeriod = milliseconds(1600);
 ///
 /// Whether `T` offers that.
 template <class T, class = void>
-constexpr bool kIsWatchdog = false;
+inline constexpr bool kIsWatchdog = false;
 template <class T>
-constexpr bool kIsWatchdog<T, std::void_t<Returns<void, decltype(std::declval<T&>().feed())>>> = true;
+inline constexpr bool kIsWatchdog<T, std::void_t<Returns<void, decltype(std::declval<T&>().feed())>>> = true;
 
 }  // namespace ex9000::hal
