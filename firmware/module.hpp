@@ -51,13 +51,7 @@ class Module {
   /// See InputEdges::on_edge.
   void on_edge(unsigned channel, bool level) { edges_.on_edge(channel, level); }
   void on_tick() { module_watchdog_.tick_alive(); }
-  /// Main loop too: counts up with every complete request and every host OK, so that `step` can be called
-  /// for each.
-  [[nodiscard]] std::uint32_t line_events() const {
-    return receiver_.queue().completed() + receiver_.host_oks();
-  }
-
-  /// Likewise: a request is complete. If it is one of ASCII, its turn-around may not be over.
+  /// Main loop too: a request is complete. If it is one of ASCII, its turn-around may not be over.
   [[nodiscard]] bool request_waits() const { return receiver_.queue().has_frame(); }
 
   // --- main loop ---

@@ -40,6 +40,8 @@ class Device {
     const Duration silence = module_.on_byte(byte, status, board_.clock.now_in_interrupt());
     if (!(silence == Duration())) {
       board_.silence_timer.restart(silence);
+    } else if (module_.request_waits()) {
+      wake();  // on a line on which nothing takes time, the turn-around is over already
     }
   }
   void on_silence() {
@@ -71,7 +73,7 @@ class Device {
 
   // --- main loop; none of it blocks ---
 
-  [[nodiscard]] bool has_work() const { return happened() != seen_; }
+  [[nodiscard]] bool has_work() const { return wakes_.load() != wakes_seen_; }
 
   /// INIT*, the status LED and the hardware watchdog: `turn` does it at every tick, and when the wake timer
   /// has fired. The outputs too, whatever may have happened to their registers.
@@ -87,7 +89,7 @@ class Device {
   /// Requests, settings, outputs and the panel. True: call it again at once, because no interrupt will tell
   /// when.
   bool turn() {
-    seen_ = happened();  // first: what happens from here on gets a turn of its own
+    wakes_seen_ = wakes_.load();  // first: what happens from here on gets a turn of its own
     const Time now = board_.clock.now();
     const bool memory_polls = poll_memory(now);
     if (panel_is_due()) {
@@ -143,11 +145,6 @@ class Device {
   /// The main loop has something to go on with.
   void wake() { wakes_.store_in_interrupt(wakes_.load() + 1U); }
 
-  /// Both only count up.
-  [[nodiscard, gnu::always_inline]] std::uint32_t happened() const {
-    return wakes_.load() + module_.line_events();
-  }
-
   void drive_outputs() {
     driven_ = module_.outputs();
     board_.outputs.drive(driven_);
@@ -196,7 +193,7 @@ class Device {
   bool reply_under_way_ = false;
   bool memory_job_under_way_ = false;
   std::uint16_t driven_ = 0;
-  std::uint32_t seen_ = 0;        ///< of `happened`
+  std::uint32_t wakes_seen_ = 0;
   std::uint32_t times_seen_ = 0;  ///< of `times_due_`
   WrittenByInterrupt<std::uint32_t> wakes_;
   WrittenByInterrupt<std::uint32_t> times_due_;  ///< how often the tick or the wake timer has fired

@@ -46,9 +46,6 @@ class FrameQueue {
   /// Interrupts and main loop: whether a frame waits.
   [[nodiscard, gnu::always_inline]] bool has_frame() const { return completed_.load() != dropped_.load(); }
 
-  /// Likewise: how many frames were completed since reset; wraps.
-  [[nodiscard]] std::uint32_t completed() const { return completed_.load(); }
-
   /// Main loop, only if one waits: that frame. It stays as it is until it is dropped.
   [[nodiscard]] const Frame& waiting() const { return frames_[dropped_.load() % kFrames]; }
 

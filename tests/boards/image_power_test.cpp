@@ -79,7 +79,7 @@ class CutModule {
     }
     if (command_.init == Init::Tied) {
       module_.set_init(true);
-      module_.run_for(milliseconds(15));
+      module_.run_for(milliseconds(25));  // wire.md D13
     }
     done_ = command_.done_to(before_, module_.outputs());
     module_.hear(module_.baud());

@@ -64,16 +64,6 @@ TEST(LongUptime, EveryRequestIsAnsweredOnce) {
   }
 }
 
-TEST(LongUptime, EveryLineEventIsNews) {
-  CoreBench bench("EX9052D-M");
-  for (unsigned event = 0; event < kAcrossTheWrap; ++event) {
-    const std::uint32_t before = bench.module().line_events();
-    bench.hear(CoreBench::with_crc(event % 2 == 0 ? kHostOk : kReadInputs));
-    ASSERT_EQ(bench.module().line_events(), before + 1) << event;
-    bench.answer();
-  }
-}
-
 TEST(LongUptime, EveryHostOkRestartsTheHostWatchdogAndNothingElseDoes) {
   CoreBench bench("EX9052D-M");
   bench.ask({0x01, 0x06, 0x01, 0xE8, 0x00, 0x02});  // 0.2 s

@@ -175,12 +175,5 @@ TEST(HostOkCommand, RestartsTheHostWatchdogAndIsNotAnswered) {
   EXPECT_TRUE(exchange.reply.empty());
 }
 
-TEST_F(ModuleTurns, EveryCompleteFrameAndEveryHostOkCountsAsALineEvent) {
-  const std::uint32_t before = module_.line_events();
-  put("$01M");
-  put("~**");
-  EXPECT_EQ(module_.line_events(), before + 2);
-}
-
 }  // namespace
 }  // namespace ex9000

@@ -215,7 +215,7 @@ Manner CutBench::get_ready(const Contents& contents, const Settings& before, con
   }
   if (command.init == Init::Tied) {
     bench_.set_init(true);
-    bench_.run_for(milliseconds(15));
+    bench_.run_for(milliseconds(25));  // wire.md D13
   }
   EXPECT_EQ(bench_.outputs(), outputs_before(before));
   bench_.line.drives.clear();

@@ -18,7 +18,6 @@ bool put(FrameQueue& queue, std::uint8_t byte) {
 TEST(FrameQueue, IsEmptyAtFirst) {
   const FrameQueue queue;
   EXPECT_FALSE(queue.has_frame());
-  EXPECT_EQ(queue.completed(), 0U);
 }
 
 TEST(FrameQueue, AFrameWaitsUntilItIsDropped) {
@@ -50,7 +49,6 @@ TEST(FrameQueue, AFrameBesideAWaitingOneIsLostAndDoesNotCount) {
   ASSERT_TRUE(put(queue, 0x11));
   EXPECT_FALSE(put(queue, 0x22));
   EXPECT_FALSE(put(queue, 0x33));
-  EXPECT_EQ(queue.completed(), 1U);
   EXPECT_EQ(queue.waiting().bytes()[0], 0x11);
   queue.drop_in_main_loop();
   EXPECT_FALSE(queue.has_frame());
@@ -58,11 +56,10 @@ TEST(FrameQueue, AFrameBesideAWaitingOneIsLostAndDoesNotCount) {
   EXPECT_EQ(queue.waiting().bytes()[0], 0x44);
 }
 
-TEST(FrameQueue, CountsEveryFrame) {
+TEST(FrameQueue, HandsOverEveryFrame) {
   FrameQueue queue;
   for (unsigned i = 1; i <= 300; ++i) {
     ASSERT_TRUE(put(queue, static_cast<std::uint8_t>(i)));
-    EXPECT_EQ(queue.completed(), i);
     EXPECT_EQ(queue.waiting().bytes()[0], static_cast<std::uint8_t>(i));
     queue.drop_in_main_loop();
   }
