@@ -6,7 +6,6 @@
 #include "firmware/model/built.hpp"
 
 namespace ex9000::board {
-namespace {
 
 #ifdef EX9000_IMAGES
 static_assert(kModels.size() == EX9000_IMAGES,
@@ -24,12 +23,14 @@ constexpr unsigned pins_in(const Groups& groups) {
 }
 static_assert(kOnlyModel.outputs <= pins_in(kOutputs), "this board has too few output pins for the model");
 static_assert(kOnlyModel.inputs <= pins_in(kInputs), "this board has too few input pins for the model");
+static_assert((kOnlyModel.outputs <= 8 && kOnlyModel.inputs <= 8) || kOnlyModel.outputs == 0 ||
+                  kOnlyModel.inputs == 0,
+              "outputs and inputs of the model need the same pins of this board");
 
 #ifdef EX9000_STRICT_GAPS
-constexpr TimingAt kTimingAt = LineTiming::strictly_told_in_the_stop_bit;
+inline constexpr TimingAt kTimingAt = LineTiming::strictly_told_in_the_stop_bit;
 #else
-constexpr TimingAt kTimingAt = LineTiming::told_in_the_stop_bit;
+inline constexpr TimingAt kTimingAt = LineTiming::told_in_the_stop_bit;
 #endif
 
-}  // namespace
 }  // namespace ex9000::board

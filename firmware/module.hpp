@@ -47,7 +47,7 @@ class Module {
   }
   /// See Receiver.
   Duration on_silence() { return receiver_.on_silence(); }
-  void on_spoken() { receiver_.on_spoken(); }
+  void on_spoken(Time now) { receiver_.on_spoken(now); }
   /// See InputEdges::on_edge.
   void on_edge(unsigned channel, bool level) { edges_.on_edge(channel, level); }
   void on_tick() { module_watchdog_.tick_alive(); }

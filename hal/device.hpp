@@ -56,7 +56,7 @@ class Device {
   }
   /// The last stop bit has left and the driver is off.
   void on_sent() {
-    module_.on_spoken();
+    module_.on_spoken(board_.clock.now_in_interrupt());
     wake();
   }
   void on_edge(unsigned channel, bool level) { module_.on_edge(channel, level); }

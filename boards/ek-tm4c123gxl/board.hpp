@@ -35,12 +35,14 @@ inline constexpr Pin kDriverEnable{Port::C, 6};
 inline constexpr Pin kInitSwitch{Port::F, 4};  ///< SW1
 inline constexpr Pin kStatusLed{Port::F, 3};   ///< green
 
-/// In order of channels. A model has either more than eight outputs or inputs: they share the second eight.
+/// In order of channels: outputs begin with the first eight pins, inputs with the second eight. A model with
+/// more than eight of one kind has none of the other, and uses all pins.
 inline constexpr std::array<PinGroup, 2> kFirstEight{PinGroup{Port::A, 2, 6}, PinGroup{Port::D, 2, 2}};
 inline constexpr std::array<PinGroup, 2> kSecondEight{PinGroup{Port::E, 0, 6}, PinGroup{Port::B, 4, 2}};
 inline constexpr std::array<PinGroup, 4> kOutputs{kFirstEight[0], kFirstEight[1], kSecondEight[0],
                                                   kSecondEight[1]};
-inline constexpr const auto& kInputs = kSecondEight;
+inline constexpr std::array<PinGroup, 4> kInputs{kSecondEight[0], kSecondEight[1], kFirstEight[0],
+                                                 kFirstEight[1]};
 inline constexpr bool kOutputsActiveHigh = true;
 inline constexpr bool kInputsActiveHigh = true;
 

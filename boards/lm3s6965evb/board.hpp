@@ -28,13 +28,15 @@ inline constexpr Pin kDriverEnable{Port::A, 6};
 inline constexpr Pin kInitSwitch{Port::A, 7};
 inline constexpr Pin kStatusLed{Port::F, 0};
 
-/// In order of channels. A model has either more than eight outputs or inputs: they share the second eight.
+/// In order of channels: outputs begin with the first eight pins, inputs with the second eight. A model with
+/// more than eight of one kind has none of the other, and uses all pins.
 inline constexpr std::array<PinGroup, 2> kFirstEight{PinGroup{Port::D, 2, 6}, PinGroup{Port::G, 0, 2}};
 inline constexpr std::array<PinGroup, 3> kSecondEight{PinGroup{Port::B, 0, 2}, PinGroup{Port::B, 4, 3},
                                                       PinGroup{Port::C, 4, 3}};
 inline constexpr std::array<PinGroup, 5> kOutputs{kFirstEight[0], kFirstEight[1], kSecondEight[0],
                                                   kSecondEight[1], kSecondEight[2]};
-inline constexpr const auto& kInputs = kSecondEight;
+inline constexpr std::array<PinGroup, 5> kInputs{kSecondEight[0], kSecondEight[1], kSecondEight[2],
+                                                 kFirstEight[0], kFirstEight[1]};
 inline constexpr bool kOutputsActiveHigh = true;
 inline constexpr bool kInputsActiveHigh = true;
 

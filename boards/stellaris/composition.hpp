@@ -128,10 +128,12 @@ constexpr auto kServed = table<start_up::Served>({
     served(Interrupt::GpioC, handler_of_edges<Port::C>()),
     served(Interrupt::GpioD, handler_of_edges<Port::D>()),
     served(Interrupt::GpioE, handler_of_edges<Port::E>()),
+    served(Interrupt::GpioF, handler_of_edges<Port::F>()),
+    served(Interrupt::GpioG, handler_of_edges<Port::G>()),
     served(Interrupt::I2c0, on_i2c),
 });
 
-constexpr unsigned kInterrupts = 24;
+constexpr unsigned kInterrupts = 32;
 __attribute__((section(".vectors"), used)) constexpr auto kVectors =
     start_up::vectors<kInterrupts>(on_system_tick, kServed);
 

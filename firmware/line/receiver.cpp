@@ -31,9 +31,13 @@ Duration Receiver::on_silence() {
   return rtu_.next_wait();
 }
 
-void Receiver::on_spoken() {
+void Receiver::on_spoken(Time now) {
   if (modbus()) {
-    note(rtu_.cut_off(queue_), rtu_.silent_since());
+    // The frame is over now, even if its silence would have gone on.
+    const Verdict verdict = rtu_.cut_off(queue_);
+    Deadline silence;
+    silence.set(rtu_.silent_since());
+    note(verdict, silence.reached(now) ? rtu_.silent_since() : now);
   } else {
     dcon_.forget();
   }

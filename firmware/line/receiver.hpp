@@ -38,9 +38,9 @@ class Receiver {
   /// That time has passed. Returns as `on_byte` does.
   Duration on_silence();
 
-  /// This module's own driver was on, and no byte was passed on meanwhile: a frame that is open and not whole
-  /// is forgotten (wire.md D9).
-  void on_spoken();
+  /// This module's own driver was on until `now`, and no byte was passed on meanwhile: a frame that is open
+  /// and not whole is forgotten (wire.md D9).
+  void on_spoken(Time now);
 
   // --- main loop ---
 

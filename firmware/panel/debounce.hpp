@@ -8,7 +8,7 @@ namespace ex9000 {
 /// A level counts once it has stood for 10 ms (wire.md D13).
 class Debounce {
  public:
-  /// Main loop, with the switch as it is: now and then, and when `next_sample` has come.
+  /// Main loop, with the switch as it is: at every tick, and when `next_sample` has come.
   void sample(bool level, Time now) {
     if (!sampled_ || level != candidate_) {
       sampled_ = true;
@@ -29,9 +29,7 @@ class Debounce {
   /// Whether any level has stood long enough since reset.
   [[nodiscard]] bool known() const { return known_; }
   [[nodiscard]] bool level() const { return level_; }
-  /// When the present level counts; disarmed where it does.
-  [[nodiscard]] Deadline settles() const { return settles_; }
-  /// When to look at the switch again, lest a bounce of a level that settles be missed; disarmed where it
+  /// When to sample the switch again so that no bounce of a level that settles is missed; disarmed if it
   /// stands still.
   [[nodiscard]] Deadline next_sample() const { return next_sample_; }
 

@@ -13,9 +13,14 @@ constexpr std::size_t kSettingsAt = 4;
 constexpr std::size_t kCheckSize = 4;
 constexpr std::size_t kRoomForSettings = kRecordRoom - kSettingsAt - kCheckSize;
 
-#define EX9000_ADD_SIZE(type, name, factory_value, possible) +sizeof(type)
-constexpr std::size_t kKnownSettings = 0 EX9000_SETTINGS(EX9000_ADD_SIZE);
+constexpr std::size_t known_settings_size() {
+  std::size_t size = 0;
+#define EX9000_ADD_SIZE(type, name, factory_value, possible) size += sizeof(type);
+  EX9000_SETTINGS(EX9000_ADD_SIZE)
 #undef EX9000_ADD_SIZE
+  return size;
+}
+constexpr std::size_t kKnownSettings = known_settings_size();
 static_assert(sizeof(bool) == 1 && sizeof(Protocol) == 1 && sizeof(Name) == kMaxNameLength + 1,
               "a setting takes as many bytes in a record as in the microcontroller");
 static_assert(kKnownSettings <= kRoomForSettings, "the settings do not fit in a record");
@@ -73,17 +78,22 @@ class Decoder {
   void decode(std::uint8_t& value) { value = from_.data[0]; }
   void decode(bool& value) {
     value = from_.data[0] != 0;
-    valid_ = valid_ && from_.data[0] <= 1;
+    require(from_.data[0] <= 1);
   }
   void decode(Protocol& value) {
     value = static_cast<Protocol>(from_.data[0]);
-    valid_ = valid_ && value <= Protocol::ModbusRtu;
+    require(value <= Protocol::ModbusRtu);
   }
   void decode(std::uint16_t& value) { value = from_.low_byte_first_16(0); }
   void decode(Name& value) {
+    // A name that is too long becomes an empty one, which no model could have stored.
     const std::size_t length = from_.data[kMaxNameLength];
-    valid_ = valid_ && length <= kMaxNameLength;
-    value = Name(Bytes{from_.data, valid_ ? length : 0});
+    value = Name(Bytes{from_.data, length <= kMaxNameLength ? length : 0});
+  }
+  void require(bool valid) {
+    if (!valid) {
+      valid_ = false;
+    }
   }
 
   Bytes from_;

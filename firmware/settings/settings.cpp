@@ -1,5 +1,6 @@
 #include "firmware/settings/settings.hpp"
 
+// NOLINTBEGIN(bugprone-macro-parentheses): the arguments are types and names
 namespace ex9000 {
 
 bool Name::is_possible(unsigned longest) const {
@@ -37,9 +38,11 @@ bool Settings::possible_for(const Model& model) const {
 }
 
 bool operator==(const Settings& a, const Settings& b) {
-#define EX9000_SAME(type, name, factory_value, possible) a.name == b.name&&
-  return EX9000_SETTINGS(EX9000_SAME) true;
-#undef EX9000_SAME
+  bool same = true;
+#define EX9000_COMPARE(type, name, factory_value, possible) same = same && a.name == b.name;
+  EX9000_SETTINGS(EX9000_COMPARE)
+#undef EX9000_COMPARE
+  return same;
 }
 
 Settings SettingsChange::applied_to(const Settings& settings) const {
@@ -54,3 +57,4 @@ Settings SettingsChange::applied_to(const Settings& settings) const {
 }
 
 }  // namespace ex9000
+// NOLINTEND(bugprone-macro-parentheses)

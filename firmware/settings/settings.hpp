@@ -98,6 +98,7 @@ constexpr std::uint8_t kFactoryWatchdogTimeout = 0xFF;
   SETTING(std::uint16_t, power_on_value, 0, (value & ~model.output_mask()) == 0)               \
   SETTING(std::uint16_t, safe_value, 0, (value & ~model.output_mask()) == 0)
 
+// NOLINTBEGIN(bugprone-macro-parentheses): the arguments are types and names
 struct Settings {
 #define EX9000_MEMBER(type, name, factory_value, possible) type name{};
   EX9000_SETTINGS(EX9000_MEMBER)
@@ -122,5 +123,6 @@ struct SettingsChange {
   /// `settings` with this change made; a setting without a new value stays as it is.
   [[nodiscard]] Settings applied_to(const Settings& settings) const;
 };
+// NOLINTEND(bugprone-macro-parentheses)
 
 }  // namespace ex9000

@@ -19,10 +19,7 @@ void SettingsKeeper::poll(const Settings& in_force, Time now) {
     return;
   }
   end_own_save(now);
-  if (!may_differ_ && !store_.doubtful()) {
-    return;
-  }
-  const bool unsaved = in_force != stored();
+  const bool unsaved = may_differ_ && in_force != stored();
   if (!unsaved && !store_.doubtful()) {
     may_differ_ = false;
     retry_.disarm();

@@ -18,6 +18,8 @@ enum class Interrupt : std::uint8_t {
   Timer0A = 19,
   Timer1A = 21,
   Timer2A = 23,
+  GpioF = 30,
+  GpioG = 31,
 };
 
 }  // namespace ex9000::hal::stellaris

@@ -7,6 +7,7 @@
 
 #include "firmware/line/crc16.hpp"
 #include "firmware/module.hpp"
+#include "firmware/settings/places.hpp"
 
 namespace ex9000::bench {
 namespace {
@@ -18,9 +19,9 @@ class BareModule {
     if (ascii && model.speaks_modbus()) {
       Settings settings = Settings::factory(model);
       settings.protocol = Protocol::Ascii;
-      Record record;
-      make_record(model, settings, 1, record);
-      std::copy(record.bytes.begin(), record.bytes.end(), memory_.begin());
+      RecordBytes record{};
+      write_record(model, settings, 1, record);
+      std::copy(record.begin(), record.end(), memory_.begin() + kPlaces[0].address);
     }
     module_.start(0, now_);
     while (!module_.listening()) {
@@ -39,7 +40,7 @@ class BareModule {
     module_.poll_panel(false, now_);
     module_.step(now_);
     const Bytes reply = module_.take_reply(now_);
-    module_.on_spoken();
+    module_.on_spoken(now_);
     module_.reply_sent(now_);
     now_ = now_ + Duration(10'000);
     return reply.size;

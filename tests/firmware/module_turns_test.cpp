@@ -162,6 +162,14 @@ TEST(ModuleComesUp, OnceItsMemoryIsRead) {
   EXPECT_TRUE(module.idle_for(Time(), kLong) == Duration());
 }
 
+TEST_F(ModuleTurns, AHostOkThatComesInBehindATurnIsDueAtOnce) {
+  EXPECT_FALSE(wants_to_be_called_again());
+  put("~**");
+  EXPECT_TRUE(wants_to_be_called_again());
+  module_.step(now_);
+  EXPECT_FALSE(wants_to_be_called_again());
+}
+
 // The receiver keeps `~**` from the queue, so that it is never lost; whoever asks `answer` hears the same.
 TEST(HostOkCommand, RestartsTheHostWatchdogAndIsNotAnswered) {
   const std::string command = "~**";

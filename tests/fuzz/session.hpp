@@ -75,13 +75,8 @@ class Session final : public Onlooker {
     if (module_.sending()) {
       return;  // the echo's place: nobody hears it
     }
-    const std::uint64_t host_oks = witness_.counts().host_oks;
     witness_.hears(byte, status == ByteStatus::Good, in_force().address, end);
-    // In Modbus it is the silence that ends a frame, and that wakes the main loop here whatever it has ended.
-    const bool ends_host_ok = !speaks_modbus() && witness_.counts().host_oks != host_oks;
-    turned_ = false;
     module_.receive(byte, status);
-    require(!ends_host_ok || turned_ || module_.held(), "a host OK wakes the main loop");
   }
 
   /// Until the module has been silent for 250 ms.
@@ -134,7 +129,6 @@ class Session final : public Onlooker {
   }
 
   void turned() override {
-    turned_ = true;
     if (!booting_) {
       witness_.follow(values(), module_.now());
       witness_.follow_address(in_force().address);
@@ -162,7 +156,6 @@ class Session final : public Onlooker {
   std::size_t reply_size_ = 0;
   std::uint16_t outputs_ = 0;
   bool booting_ = false;
-  bool turned_ = false;
   Microseconds held_until_ = kNever;
 };
 

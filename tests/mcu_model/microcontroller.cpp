@@ -62,8 +62,8 @@ Microcontroller::Microcontroller(const Chip& chip, Timeline& timeline, Pins& pin
   const auto leads_to = [this](Peripheral& peripheral, unsigned interrupt) {
     peripheral.on_interrupt_line([this, interrupt](bool on) { core.interrupt_line_of(interrupt, on); });
   };
-  for (unsigned i = 0; i < 5; ++i) {
-    leads_to(*ports_[i], i);
+  for (unsigned i = 0; i < ports_.size(); ++i) {
+    leads_to(*ports_[i], i < 5 ? i : i + 25);  // A to E, F and G
   }
   leads_to(uart0, 5);
   leads_to(uart1, 6);

@@ -168,11 +168,12 @@ OPTIONS = {
     "ex9000_long_uptime_core": (LONG_UPTIME,),
 }
 LIBRARY_UNITS = {unit.name: unit for unit in library_units()}
-README = f'-DEX9000_README="{ROOT}/README.md"'
+FILES = (f'-DEX9000_README="{ROOT}/README.md"',
+         f'-DEX9000_STORED_BYTES="{ROOT}/tests/firmware/settings/stored_bytes"')
 
 
 def test_program(name, folder, sources, libraries):
-    options = ("-O0", README, *(option for library in libraries for option in OPTIONS.get(library, ())))
+    options = ("-O0", *FILES, *(option for library in libraries for option in OPTIONS.get(library, ())))
     unit = Unit(name, tuple(f"{folder}/{source}" for source in sources), options)
     return Program(name, (unit,), tuple(dict.fromkeys(unit for library in libraries for unit in LIBRARIES[library])))
 

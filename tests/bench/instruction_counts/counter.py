@@ -139,12 +139,6 @@ class Counter:
         elif main.interrupts and self._pass is not None:
             self._pass += [address for address in main.addresses if address not in self._of_the_tick]
 
-    def sent(self, span):
-        pass
-
-    def stored(self, span):
-        pass
-
     def _note_interrupt(self, span):
         if span.exception == execution.LINE:
             if len(span.received) + span.sent == 1:

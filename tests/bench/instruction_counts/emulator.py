@@ -12,7 +12,7 @@ import subprocess
 import tempfile
 
 # What is logged beside instructions, in the order in which it happens.
-EVENTS = ["pl011_read", "pl011_write", "i2c_event", "nvic_acknowledge_irq", "nvic_complete_irq"]
+EVENTS = ["pl011_read", "pl011_write", "nvic_acknowledge_irq", "nvic_complete_irq"]
 
 PORT_A = 8  # /machine/unattached/device[8] is GPIO port A, and the others follow
 UART_FLAGS = 0x4000C018

@@ -34,14 +34,12 @@ def follow(log, sleeps, listener):
     - entered(span, main), left(span, main): an interrupt begins, or has returned
     - slept(main): a turn is over
     - seen(): all that was executed before Emulator.ask_for_sight was called has been told
-    - sent(span), stored(span): a byte is given to the UART, or a transfer to the EEPROM begins; `span` goes up
-      to there, the instruction that does it included
     """
     main = Span(MAIN)
     stack = [main]
     here = main.addresses
     sleeps = {as_logged(address) for address in sleeps}
-    instruction, begun_anew, stopped, interrupt, uart, i2c = b"TcSnpi"
+    instruction, begun_anew, stopped, interrupt, uart = b"TcSnp"
     for line in log:
         lead = line[0]
         if lead == instruction:
@@ -72,14 +70,11 @@ def follow(log, sleeps, listener):
                     stack[-1].received.append(int(line.rsplit(b"0x", 1)[1], 16) & 0xFF)
                 else:
                     stack[-1].sent += 1
-                    listener.sent(stack[-1])
             elif b" addr 0x00000fe0 " in line:  # Emulator.mark: instructions are logged from here on
                 main = stack[0] = Span(MAIN)
                 here = stack[-1].addresses
             elif b" addr 0x00000fe4 " in line:  # Emulator.ask_for_sight
                 listener.seen()
-        elif lead == i2c and b"start" in line:
-            listener.stored(stack[-1])
 
 
 def as_logged(address):

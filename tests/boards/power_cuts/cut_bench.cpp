@@ -37,6 +37,21 @@ bool CutBench::holds_what_must_not_count(const Contents& contents) const {
          (good(kStoredPlaces[2]) || good(kStoredPlaces[3]));
 }
 
+/// firmware/settings/store.hpp: how many pages the next store programs, those that invalidate old copies too.
+std::size_t CutBench::pages_of_a_store(const Contents& contents) const {
+  const StoringModel storing = storing_model(model_);
+  const std::size_t place = place_that_counts(storing, contents.data());
+  if (place == kStoredPlaces[0] || place == kStoredPlaces[1]) {
+    const std::size_t size = StoredCopy(storing, contents.data(), place).size();
+    return (size + kStoredPage - 1) / kStoredPage;
+  }
+  std::size_t pages = 1;
+  for (const std::size_t old : {kStoredPlaces[2], kStoredPlaces[3]}) {
+    pages += StoredCopy(storing, contents.data(), old).is_good() ? 1U : 0U;
+  }
+  return pages;
+}
+
 CutBench::CutBench(const Image& image, const Model& model) : model_(model), bench_(image) {
   for (unsigned channel = 0; channel < image.outputs; ++channel) {
     bench_.net(image.output_pins.at(channel)).on_change([this] {
@@ -238,7 +253,7 @@ Cuts CutBench::cut_everywhere(const Contents& contents, const Settings& before, 
       EXPECT_EQ(bench_.outputs(), command.is_timeout() ? outputs_done : cuts.outputs);
     }
   });
-  carry_out(manner, command, before, pages);
+  carry_out(manner, command, before, pages_of_a_store(contents));
   bench_.eeprom.on_event(nullptr);
   ++cuts.points;
   ++cuts.cuts;

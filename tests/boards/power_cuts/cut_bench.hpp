@@ -71,9 +71,7 @@ class CutBench {
 
   /// The command carried out on a module that comes up with `contents`, which are `before`. That it is
   /// answered as it should be, and drives what it should when it should, is expected by the way.
-  /// It programs so many pages.
-  Cuts cut_everywhere(const Contents& contents, const Settings& before, const StoringCommand& command,
-                      std::size_t pages = 1);
+  Cuts cut_everywhere(const Contents& contents, const Settings& before, const StoringCommand& command);
 
   /// The same, but for a reset of the microcontroller so long behind the begin of the command, while the
   /// EEPROM keeps its supply. As it is once the module is up again.
@@ -103,6 +101,7 @@ class CutBench {
   UartPort& uart() { return bench_.image.uart == 0 ? bench_.mcu->uart0 : bench_.mcu->uart1; }
   [[nodiscard]] Contents contents() const;
   [[nodiscard]] bool holds_what_must_not_count(const Contents& contents) const;
+  [[nodiscard]] std::size_t pages_of_a_store(const Contents& contents) const;
   Outputs outputs();
   void note_cuts(Cuts& cuts);
   Manner speak_as(const Settings& settings, bool init_mode);

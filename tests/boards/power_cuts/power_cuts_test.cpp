@@ -83,6 +83,48 @@ class PowerCutsOf : public testing::TestWithParam<ImageName> {
     }
   }
 
+  /// From the states in which a store programs several pages; without EX9000_CUTS=all, three commands of
+  /// each.
+  template <class Do>
+  void for_some_commands_of_several_pages(Do what) {
+    constexpr std::size_t kSome = 3;
+    for (const Beginning beginning : {Beginning::Updated, Beginning::Longer}) {
+      std::vector<const StoringCommand*> commands;
+      for (const StoringCommand& command : commands_) {
+        commands.push_back(&command);
+      }
+      std::shuffle(commands.begin(), commands.end(), random_);
+      commands.resize(all_of_them() ? commands.size() : kSome);
+      for (const StoringCommand* command : commands) {
+        SCOPED_TRACE(command->name + (beginning == Beginning::Updated ? ", updated" : ", longer record"));
+        what(begin_at(beginning, model_, *command), *command);
+        ASSERT_FALSE(HasFailure());
+      }
+    }
+  }
+
+  /// So many pairs at most of what `first` may leave, and a second command that is cut everywhere. With
+  /// EX9000_CUTS=all each second command that can store something.
+  void cut_twice(const State& state, const StoringCommand& first, std::size_t pairs) {
+    const Cuts cuts = bench_.cut_everywhere(state.contents, state.settings, first);
+    const Settings unfinished = first.done_to(state.settings, cuts.outputs);
+    for (const Contents& contents : in_any_order(cuts)) {
+      const Settings settings = settings_in(model_, contents);
+      for (const StoringCommand* second : storing_from(settings)) {
+        if (HasFailure() || pairs == 0) {
+          return;
+        }
+        pairs -= pairs == SIZE_MAX ? 0U : 1U;
+        SCOPED_TRACE("then " + second->name);
+        const Cuts again = bench_.cut_everywhere(contents, settings, *second);
+        judge(again, settings, second->done_to(settings, again.outputs), 1, &unfinished);
+        if (pairs != SIZE_MAX) {
+          break;
+        }
+      }
+    }
+  }
+
   std::vector<Contents> in_any_order(const Cuts& cuts) {
     std::vector<Contents> contents;
     for (const auto& each : cuts.left) {
@@ -137,23 +179,10 @@ TEST_P(PowerCutsOf, LeaveEachCommandWhollyDoneOrNotAtAll) {
 
 /// The first store after an update, and one of a record of four pages: some commands, or all of them.
 TEST_P(PowerCutsOf, InAStoreOfSeveralPagesLeaveEachCommandWhollyDoneOrNotAtAll) {
-  constexpr std::size_t kSome = 3;
-  for (const Beginning beginning : {Beginning::Updated, Beginning::Longer}) {
-    std::vector<const StoringCommand*> commands;
-    for (const StoringCommand& command : commands_) {
-      commands.push_back(&command);
-    }
-    std::shuffle(commands.begin(), commands.end(), random_);
-    commands.resize(all_of_them() ? commands.size() : kSome);
-    for (const StoringCommand* command : commands) {
-      SCOPED_TRACE(command->name + (beginning == Beginning::Updated ? ", updated" : ", longer record"));
-      const State state = begin_at(beginning, model_, *command);
-      const Cuts cuts = bench_.cut_everywhere(state.contents, state.settings, *command, state.pages);
-      judge(cuts, state.settings, command->done_to(state.settings, cuts.outputs),
-            all_of_them() ? SIZE_MAX : 6);
-      ASSERT_FALSE(HasFailure());
-    }
-  }
+  for_some_commands_of_several_pages([this](const State& state, const StoringCommand& command) {
+    const Cuts cuts = bench_.cut_everywhere(state.contents, state.settings, command);
+    judge(cuts, state.settings, command.done_to(state.settings, cuts.outputs), all_of_them() ? SIZE_MAX : 6);
+  });
 }
 
 /// From all that a first cut may leave, or from some of it, all that a second may.
@@ -163,24 +192,14 @@ TEST_P(PowerCutsOf, InAStoreOfSeveralPagesLeaveEachCommandWhollyDoneOrNotAtAll) 
 /// it is to be the same. Wholly done it is all the same, and nothing that was answered is lost.
 TEST_P(PowerCutsOf, TwiceInARowLeaveEachCommandWhollyDoneOrNotAtAll) {
   for_each_command([this](const State& state, const StoringCommand& first) {
-    std::size_t left = all_of_them() ? SIZE_MAX : 2;
-    const Cuts cuts = bench_.cut_everywhere(state.contents, state.settings, first);
-    const Settings unfinished = first.done_to(state.settings, cuts.outputs);
-    for (const Contents& contents : in_any_order(cuts)) {
-      const Settings settings = settings_in(model_, contents);
-      for (const StoringCommand* second : storing_from(settings)) {
-        if (HasFailure() || left == 0) {
-          return;
-        }
-        left -= all_of_them() ? 0 : 1;
-        SCOPED_TRACE("then " + second->name);
-        const Cuts again = bench_.cut_everywhere(contents, settings, *second);
-        judge(again, settings, second->done_to(settings, again.outputs), 1, &unfinished);
-        if (!all_of_them()) {
-          break;
-        }
-      }
-    }
+    cut_twice(state, first, all_of_them() ? SIZE_MAX : 2);
+  });
+}
+
+/// Their number grows with the square of what is written, so this is a sample by a seed, in tests/long too.
+TEST_P(PowerCutsOf, TwiceInARowInStoresOfSeveralPagesLeaveEachCommandWhollyDoneOrNotAtAll) {
+  for_some_commands_of_several_pages([this](const State& state, const StoringCommand& first) {
+    cut_twice(state, first, all_of_them() ? 40 : 2);
   });
 }
 

@@ -65,7 +65,6 @@ State begin_at(Beginning beginning, const Model& model, const StoringCommand& co
   if (beginning == Beginning::Updated) {
     put_layout_2(model, Settings::factory(model), 0xFFFE, memory, kPlaces[2].address);
     put_layout_2(model, state.settings, 0xFFFF, memory, kPlaces[3].address);
-    state.pages = 3;  // a record, and what invalidates two old copies
     return state;
   }
   put(model, Settings::factory(model), 0xFFFE, 0, state.contents);
@@ -73,7 +72,6 @@ State begin_at(Beginning beginning, const Model& model, const StoringCommand& co
   if (beginning == Beginning::Longer) {
     constexpr std::uint8_t kLength = 96;
     lengthen(model, memory, kPlaces[1].address, kLength);
-    state.pages = 4;  // 104 bytes
   }
   return state;
 }

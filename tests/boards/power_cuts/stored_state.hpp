@@ -20,7 +20,6 @@ enum class Beginning : std::uint8_t {
 struct State {
   Settings settings;
   Contents contents;
-  std::size_t pages = 1;  ///< that the next store programs
 };
 
 /// A state from which `command` stores something. A module from the factory has a blank EEPROM, unless the

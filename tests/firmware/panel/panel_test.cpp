@@ -40,17 +40,6 @@ TEST(Debounce, AReleasedSwitchIsKnownAfter10MsToo) {
   EXPECT_FALSE(debounce.level());
 }
 
-TEST(Debounce, TellsWhenALevelWillCount) {
-  for (const Time start : kStarts) {
-    Debounce debounce;
-    EXPECT_FALSE(debounce.settles().armed());
-    debounce.sample(true, start);
-    EXPECT_EQ(debounce.settles().remaining(start).microseconds(), 10'000U);
-    debounce.sample(true, ms(start, 10));
-    EXPECT_FALSE(debounce.settles().armed());
-  }
-}
-
 TEST(Debounce, WantsToBeSampledEachMillisecondWhileALevelSettlesAndAsItCounts) {
   for (const Time start : kStarts) {
     Debounce debounce;

@@ -123,6 +123,57 @@ TEST_F(SettingsKeeperTest, ACopyThatMayHoldRefusedSettingsIsMadeInvalid) {
   EXPECT_TRUE(Boot(memory_).stored() == numbered(5));
 }
 
+// wire.md section 8: the power failed before the first store after an update had invalidated the old copies.
+TEST_F(SettingsKeeperTest, AnOldCopyBesideANewOneIsInvalidatedWithoutACommand) {
+  FakeMemory memory;
+  put_old(memory, 0, numbered(5), 7);
+  put(memory, 0, numbered(6), 8);
+  SettingsKeeper keeper(the_model());
+  const auto drive_it = [&] {
+    while (keeper.busy()) {
+      keeper.done(memory.run(keeper.job()).value_or(false));
+    }
+  };
+  drive_it();
+  EXPECT_TRUE(keeper.stored() == numbered(6));
+  memory.unanswered_writes = 1;
+  keeper.poll(numbered(6), now_);
+  ASSERT_TRUE(keeper.busy());
+  drive_it();
+  keeper.poll(numbered(6), now_);
+  EXPECT_FALSE(keeper.busy());
+  EXPECT_TRUE(keeper.retry().armed());
+  keeper.poll(numbered(6), now_ + milliseconds(1000));
+  ASSERT_TRUE(keeper.busy());
+  drive_it();
+  keeper.poll(numbered(6), now_ + milliseconds(1000));
+  EXPECT_FALSE(keeper.busy());
+  EXPECT_FALSE(keeper.retry().armed());
+  EXPECT_EQ(memory.writes.size(), 2U);
+}
+
+TEST_F(SettingsKeeperTest, ACommandWhoseStoreCannotInvalidateAnOldCopyIsStoredAndThatIsTriedAgain) {
+  FakeMemory memory;
+  put_old(memory, 0, numbered(5), 7);
+  SettingsKeeper keeper(the_model());
+  const auto drive_it = [&] {
+    while (keeper.busy()) {
+      memory.unanswered_writes = memory.writes.size() == 1 ? 1 : 0;
+      keeper.done(memory.run(keeper.job()).value_or(false));
+    }
+  };
+  drive_it();
+  keeper.save(numbered(6), now_);
+  drive_it();
+  EXPECT_TRUE(keeper.saved());
+  keeper.poll(numbered(6), now_);
+  EXPECT_TRUE(keeper.busy());
+  drive_it();
+  keeper.poll(numbered(6), now_);
+  EXPECT_FALSE(keeper.busy());
+  EXPECT_EQ(memory.writes.size(), 3U);
+}
+
 TEST_F(SettingsKeeperTest, ACommandNeedNotWaitForTheNextTry) {
   keeper_.settings_changed();
   memory_.unanswered_writes = 4;
