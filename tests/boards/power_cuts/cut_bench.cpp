@@ -237,8 +237,8 @@ Manner CutBench::get_ready(const Contents& contents, const Settings& before, con
   return manner;
 }
 
-Cuts CutBench::cut_everywhere(const Contents& contents, const Settings& before, const StoringCommand& command,
-                              std::size_t pages) {
+Cuts CutBench::cut_everywhere(const Contents& contents, const Settings& before,
+                              const StoringCommand& command) {
   Cuts cuts;
   const Manner manner = get_ready(contents, before, command);
   const Instant began = bench_.timeline.now();
