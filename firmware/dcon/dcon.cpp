@@ -35,8 +35,8 @@ bool matches(const Dispatch& row, const Model& model, Bytes frame) {
   return args >= row.fewest_args && args <= row.most_args && has(model, row.needs);
 }
 
-/// Refused commands that set outputs are answered without the address (manuals 2.3, 2.11); D12 says which
-/// they are.
+/// Refused commands that set outputs are answered without the address (manuals 2.3, 2.11); wire.md D12 says
+/// which they are.
 bool refused_without_address(const Model& model, Bytes frame) {
   const std::size_t body = frame.size - kBodyAt;
   if (!model.has_outputs()) {

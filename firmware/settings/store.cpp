@@ -81,7 +81,7 @@ void SettingsStore::read_page(bool ok) {
   }
   const bool blank = ok && is_blank(page);
   const auto stored = ok ? read_copy(model_.get(), place, {read_back_.data(), done_}) : std::nullopt;
-  const std::uint8_t attempts = silent_ ? 1 : kAttempts;
+  const std::uint8_t attempts = !ok && silent_ ? 1 : kAttempts;
   if (!stored && !blank && ++attempt_ < attempts) {
     done_ = 0;
     copy_size_ = kMemoryPage;
@@ -97,19 +97,26 @@ void SettingsStore::read_page(bool ok) {
     ++blank_places_;
   }
   if (stored) {
-    if (place.old) {
-      old_copies_ |= bit(place_);
-    }
-    if (current_place_ == kNoPlace || stored->edition.counts_over(edition_)) {
-      current_place_ = place_;
-      edition_ = stored->edition;
-      record_ = place.old ? RecordBytes{} : read_back_;
-      if (step_ == Step::Load) {
-        stored_ = stored->settings;
-      }
-    }
+    take_copy(*stored);
   }
   next_place();
+}
+
+/// A good copy at the place that was read.
+void SettingsStore::take_copy(const StoredSettings& stored) {
+  const bool old = kPlaces[place_].old;
+  if (old) {
+    old_copies_ |= bit(place_);
+  }
+  if (current_place_ != kNoPlace && !stored.edition.counts_over(edition_)) {
+    return;
+  }
+  current_place_ = place_;
+  edition_ = stored.edition;
+  record_ = old ? RecordBytes{} : read_back_;
+  if (step_ == Step::Load) {
+    stored_ = stored.settings;
+  }
 }
 
 void SettingsStore::next_place() {

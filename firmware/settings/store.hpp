@@ -75,6 +75,7 @@ class SettingsStore {
 
   void begin_reading(Step step);
   void read_page(bool ok);
+  void take_copy(const StoredSettings& stored);
   void next_place();
   void finish_reading();
   void begin_writing();

@@ -159,11 +159,11 @@ class PanelServer::Listener::Client : public std::enable_shared_from_this<Client
     } else if (error) {
       answer(http::status::bad_request, "text/plain", "no HTTP request\n");
     } else {
-      attend(parser_.get());
+      serve(parser_.get());
     }
   }
 
-  void attend(const Request& request) {
+  void serve(const Request& request) {
     const Loopback here(listener_->port());
     const auto origin = request.find(http::field::origin);
     const bool has_origin = origin != request.end();

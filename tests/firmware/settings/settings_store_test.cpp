@@ -156,6 +156,20 @@ TEST(SettingsStore, ACopyThatCannotBeReadLeavesTheOtherOne) {
   EXPECT_TRUE(run.stored() == numbered(6));
 }
 
+TEST(SettingsStore, BehindACopyThatCannotBeReadANoisyReadOfTheOtherIsTriedAgain) {
+  FakeMemory memory;
+  put(memory, 0, numbered(5), 8);
+  put(memory, 1, numbered(6), 7);
+  SettingsStore store(the_model());
+  memory.failing_reads = kAttempts;
+  for (std::size_t i = 0; i < kAttempts; ++i) {
+    store.done(*memory.run(store.job()));
+  }
+  memory.noisy_reads = kAttempts - 1;
+  drive(store, memory);
+  EXPECT_TRUE(store.stored() == numbered(6));
+}
+
 TEST(SettingsStore, EachCopyHasThreeReadsOfItsOwn) {
   FakeMemory memory;
   put(memory, 0, numbered(5), 8);
