@@ -160,7 +160,7 @@ void Module::continue_store(Time now) {
   }
   if (cycle_.phase() == RequestCycle::Phase::AwaitingStore) {
     const Settings changed = cycle_.outcome().change().applied_to(state_.settings);
-    if (changed == keeper_.stored()) {
+    if (changed == keeper_.stored() && keeper_.certain()) {
       commit(now);  // a command that changes nothing writes nothing
     } else {
       keeper_.save(changed, now);
@@ -245,7 +245,7 @@ void Module::finish_request() {
 bool Module::step_is_due() const {
   const bool memory_is_done = !keeper_.busy() && (start_ == Start::Loading || keeper_.has_work() ||
                                                   cycle_.phase() == RequestCycle::Phase::Storing);
-  return memory_is_done || receiver_.host_oks() != host_oks_seen_ || led_.pattern() != led_pattern_due();
+  return memory_is_done || host_ok_waits() || led_.pattern() != led_pattern_due();
 }
 
 Duration Module::idle_for(Time now, Duration at_most) const {

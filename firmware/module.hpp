@@ -53,6 +53,8 @@ class Module {
   void on_tick() { module_watchdog_.tick_alive(); }
   /// Main loop too: a request is complete. If it is one of ASCII, its turn-around may not be over.
   [[nodiscard]] bool request_waits() const { return receiver_.queue().has_frame(); }
+  /// Main loop: a host OK has come that no turn has counted yet. That may wait: it counts from its own time.
+  [[nodiscard]] bool host_ok_waits() const { return receiver_.host_oks() != host_oks_seen_; }
 
   // --- main loop ---
 

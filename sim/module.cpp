@@ -184,8 +184,8 @@ void SimulatedModule::receive(std::uint8_t byte, ByteStatus status) {
     mcu_->device.on_silence();  // see hal::SilenceTimer
   }
   mcu_->device.on_receive(byte, status);
-  if (mcu_->device.has_work()) {
-    turn();
+  if (mcu_->device.has_work() || mcu_->device.module().host_ok_waits()) {
+    turn();  // a host OK may wait until the next turn, but people see it at once
   }
 }
 

@@ -18,10 +18,14 @@ class SettingsKeeper {
 
   /// Until the memory has been read. Afterwards `stored()` and `unreadable()` hold.
   [[nodiscard]] bool loading() const { return store_.loading(); }
-  /// What a reset now would find.
+  /// What a reset now would find, if `certain()`.
   [[nodiscard]] const Settings& stored() const { return store_.stored(); }
   /// The memory held something at reset that is not this model's settings, and none have been stored since.
   [[nodiscard]] bool unreadable() const { return store_.found() == SettingsStore::Found::Unreadable; }
+
+  /// A reset now would find `stored()` for certain, or a blank memory: not settings that could not be read
+  /// before, and no copy that must not count.
+  [[nodiscard]] bool certain() const { return !unreadable() && !store_.doubtful(); }
 
   /// The memory is at work.
   [[nodiscard]] bool busy() const { return store_.busy(); }

@@ -108,7 +108,8 @@ void SettingsStore::take_copy(const StoredSettings& stored) {
   if (old) {
     old_copies_ |= bit(place_);
   }
-  if (current_place_ != kNoPlace && !stored.edition.counts_over(edition_)) {
+  const bool refused = (must_not_count_ & bit(place_)) != 0;
+  if (refused || (current_place_ != kNoPlace && !stored.edition.counts_over(edition_))) {
     return;
   }
   current_place_ = place_;
@@ -206,7 +207,10 @@ void SettingsStore::finish_writing() {
 
 // --- invalidating ---
 
-void SettingsStore::begin_settling() { invalidate_from(0); }
+void SettingsStore::begin_settling() {
+  saved_ = true;  // nothing is to be saved, so that only what must not count can fail
+  invalidate_from(0);
+}
 
 /// The first copy that must not count, at this place or a later one; idle if there is none.
 void SettingsStore::invalidate_from(std::size_t place) {

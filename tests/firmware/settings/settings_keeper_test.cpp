@@ -180,6 +180,42 @@ TEST_F(SettingsKeeperTest, ACommandWhoseStoreCannotInvalidateAnOldCopyIsStoredAn
   EXPECT_EQ(memory.writes.size(), 4U);
 }
 
+TEST_F(SettingsKeeperTest, WhatChangesWhileARefusedCopyIsInvalidatedIsStoredAtOnce) {
+  store(numbered(5));
+  memory_.unanswered_writes = 4;
+  store(numbered(6));
+  ASSERT_FALSE(keeper_.saved());
+  keeper_.poll(numbered(5), now_);
+  drive_memory();              // the copy is invalidated
+  keeper_.settings_changed();  // meanwhile the host watchdog has expired
+  keeper_.poll(numbered(7), now_);
+  EXPECT_TRUE(keeper_.busy());
+  drive_memory();
+  EXPECT_TRUE(keeper_.stored() == numbered(7));
+}
+
+TEST_F(SettingsKeeperTest, WhatAResetWouldFindIsNotCertainWhileARefusedCopyMayCount) {
+  store(numbered(5));
+  EXPECT_TRUE(keeper_.certain());
+  memory_.unanswered_writes = 4;
+  store(numbered(6));
+  EXPECT_FALSE(keeper_.certain());
+  keeper_.poll(numbered(5), now_);
+  drive_memory();
+  EXPECT_TRUE(keeper_.certain());
+}
+
+TEST(SettingsKeeperAtReset, WhatAResetWouldFindIsNotCertainIfTheMemoryDidNotAnswer) {
+  FakeMemory memory;
+  memory.failing_reads = kReadsOfASilentMemory;
+  SettingsKeeper keeper(the_model());
+  while (keeper.busy()) {
+    keeper.done(memory.run(keeper.job()).value_or(false));
+  }
+  EXPECT_TRUE(keeper.stored() == factory());
+  EXPECT_FALSE(keeper.certain());
+}
+
 TEST_F(SettingsKeeperTest, ACommandNeedNotWaitForTheNextTry) {
   keeper_.settings_changed();
   memory_.unanswered_writes = 4;

@@ -138,5 +138,27 @@ TEST(SettingsStore, WhatIsSettledIsTheDoubtfulCopyAndNotTheOneThatWasLastLookedA
   EXPECT_FALSE(store.doubtful());
 }
 
+// The memory was silent at reset, a save was refused and could not be invalidated, and the next save looks
+// again.
+TEST(SettingsStore, RefusedSettingsDoNotCountWhenAllCopiesAreReadOnceMore) {
+  FakeMemory memory;
+  put(memory, 0, numbered(5), 7);
+  memory.failing_reads = kReadsOfASilentMemory;
+  Boot run(memory);
+  ASSERT_EQ(run.found(), Found::Unreadable);
+  memory.unanswered_writes = kAttempts + 1;
+  memory.unanswered_but_done = true;  // the refused settings are there, and what invalidates them too
+  EXPECT_FALSE(run.save(numbered(6)));
+  put(memory, 1, numbered(6), 8);  // as if that had not been done
+  memory.writes.clear();
+  memory.unanswered_writes = kAttempts;
+  memory.unanswered_but_done = false;
+  EXPECT_FALSE(run.save(numbered(9)));
+  for (const std::uint16_t address : memory.writes) {
+    EXPECT_NE(address, kCopies[0]) << "the only good copy";
+  }
+  EXPECT_TRUE(Boot(memory).stored() == numbered(5));
+}
+
 }  // namespace
 }  // namespace ex9000
