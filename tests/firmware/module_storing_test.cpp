@@ -344,5 +344,18 @@ TEST(Queueing, TwoRepliesAreNeverOneFrameToTheMaster) {
   EXPECT_GE(on[1].at - off[0].at, microseconds(1750));
 }
 
+// "A reply means that it is stored": what could not be read may be there again after the next reset.
+TEST(Storing, ACommandThatSaysWhatTheFactoryDoesIsStoredIfTheSettingsCouldNotBeRead) {
+  ModuleBench bench("EX9042D");
+  ASSERT_EQ(bench.ask("~01OONE"), "!01");
+  bench.module().memory().fail(true);
+  bench.power_cycle();
+  ASSERT_EQ(bench.ask("$01M"), "!019042D");
+  bench.module().memory().fail(false);
+  ASSERT_EQ(bench.ask("~01O9042D"), "!01");
+  bench.power_cycle();
+  EXPECT_EQ(bench.ask("$01M"), "!019042D");
+}
+
 }  // namespace
 }  // namespace ex9000::sim
