@@ -133,8 +133,8 @@ Peripheral& Microcontroller::peripheral_at(std::uint32_t address) {
   throw Fault(address, "nothing is there");
 }
 
-/// On silicon a peripheral without a clock faults, and one that is held in reset is deaf: a driver wants
-/// neither.
+/// On silicon a peripheral without a clock faults, and one that is held in reset ignores every access. Both
+/// are mistakes of a driver.
 void Microcontroller::check_usable(const Place& place, std::uint32_t address) const {
   switch (system_control.gate(place.gate_index, place.gate_bit)) {
     case SystemControl::Gate::Shut:
