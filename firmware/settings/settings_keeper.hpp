@@ -9,9 +9,9 @@
 namespace ex9000 {
 
 /// Loads the settings at reset, and stores those of a command when it is asked to. What nobody asked for it
-/// does by itself: it stores a watchdog timeout, which changes settings at once, and invalidates a copy that
-/// must not count. That is retried every second until it succeeds (wire.md D15). Main loop only; nothing
-/// blocks.
+/// does by itself: it stores a watchdog timeout, which changes settings at once, repeats the first save
+/// after an update if the power failed in it, and invalidates a copy that must not count. That is retried
+/// every second until it succeeds (wire.md D15). Main loop only; nothing blocks.
 class SettingsKeeper {
  public:
   explicit constexpr SettingsKeeper(const Model& model) : store_(model) {}
@@ -25,7 +25,9 @@ class SettingsKeeper {
 
   /// A reset now would find `stored()` for certain, or a blank memory: not settings that could not be read
   /// before, and no copy that must not count.
-  [[nodiscard]] bool certain() const { return !unreadable() && !store_.doubtful(); }
+  [[nodiscard]] bool certain() const {
+    return !unreadable() && !store_.doubtful() && !store_.update_unfinished();
+  }
 
   /// The memory is at work.
   [[nodiscard]] bool busy() const { return store_.busy(); }

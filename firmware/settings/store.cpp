@@ -140,11 +140,6 @@ void SettingsStore::finish_reading() {
     return;
   }
   found_ = Found::Settings;
-  if (!kPlaces[current_place_].old) {
-    must_not_count_ =
-        old_copies_;  // the power failed before the first save after an update had invalidated them
-    old_copies_ = 0;
-  }
 }
 
 // --- writing ---

@@ -56,6 +56,13 @@ class SettingsStore {
   /// Whether the last save succeeded.
   [[nodiscard]] bool saved() const { return saved_; }
 
+  /// The power failed in the first save after an update: the new copy counts, and so may those of an older
+  /// layout. One good reading does not prove that the new one is well written, so they stay until a save has
+  /// been verified.
+  [[nodiscard]] bool update_unfinished() const {
+    return current_place_ != kNoPlace && !kPlaces[current_place_].old && old_copies_ != 0;
+  }
+
   /// A copy may count after a reset that must not: one of refused settings, or one of an older layout.
   [[nodiscard]] bool doubtful() const { return must_not_count_ != 0; }
   /// Invalidates it. Only while not `busy()`; `doubtful()` stays true if the memory does not take this

@@ -40,11 +40,11 @@ std::vector<Beginning> beginnings() {
           {"two longer records", two_longer, numbered(6)}};
 }
 
-/// A module comes up: it loads, and invalidates what must not count.
+/// A module comes up: it loads, and saves once more if an update is unfinished.
 Settings come_up(FakeMemory& memory) {
   SettingsStore store(the_model());
-  if (drive(store, memory) && store.doubtful()) {
-    store.begin_settling();
+  if (drive(store, memory) && store.update_unfinished()) {
+    store.begin_saving(store.stored());
     drive(store, memory);
   }
   return store.stored();

@@ -89,20 +89,40 @@ TEST(SettingsAfterAnUpdate, AFirstStoreThatFailsLeavesTheOldOnes) {
   }
 }
 
-/// The power has failed when the new copy was verified, and before the old ones were invalidated.
-TEST(SettingsAfterAnUpdate, AnOldCopyBesideAGoodNewOneIsInvalidatedWithoutACommand) {
+/// The power has failed when the new copy was written, perhaps verified, and before the old ones were
+/// invalidated.
+TEST(SettingsAfterAnUpdate, AnOldCopyBesideAGoodNewOneStaysUntilTheSettingsAreSavedOnceMore) {
   FakeMemory memory = updated();
   put(memory, 0, numbered(9), 9);
   SettingsStore store(the_model());
   drive(store, memory);
   EXPECT_TRUE(store.stored() == numbered(9));
   EXPECT_TRUE(memory.writes.empty());
-  ASSERT_TRUE(store.doubtful());
-  store.begin_settling();
-  drive(store, memory);
   EXPECT_FALSE(store.doubtful());
+  ASSERT_TRUE(store.update_unfinished());
+  store.begin_saving(store.stored());
+  drive(store, memory);
+  EXPECT_TRUE(store.saved());
+  EXPECT_FALSE(store.doubtful());
+  EXPECT_FALSE(store.update_unfinished());
   expect_no_old_copy_counts(memory);
   EXPECT_TRUE(Boot(memory).stored() == numbered(9));
+}
+
+/// The new copy was badly written: it reads well once, and never again.
+TEST(SettingsAfterAnUpdate, ANewCopyThatFadesBeforeItIsSavedOnceMoreLeavesTheOldOnes) {
+  FakeMemory memory = updated();
+  put(memory, 0, numbered(9), 9);
+  SettingsStore store(the_model());
+  drive(store, memory);
+  ASSERT_TRUE(store.update_unfinished());
+  memory.unanswered_writes = 4;
+  store.begin_saving(store.stored());
+  drive(store, memory);
+  EXPECT_FALSE(store.saved());
+  EXPECT_TRUE(store.update_unfinished());
+  corrupt(memory, 0);
+  EXPECT_TRUE(Boot(memory).stored() == numbered(6));
 }
 
 TEST(SettingsAfterAnUpdate, AnOldCopyThatCannotBeInvalidatedIsTriedAgain) {
