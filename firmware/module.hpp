@@ -25,7 +25,7 @@ namespace ex9000 {
 ///
 /// Functions named `on_...` are for interrupts, which must not interrupt each other within one line:
 /// `on_byte`, `on_silence` and `on_spoken` share a level, in which `on_silence` comes first if it waits too
-/// (hal::SilenceTimer); `on_edge` and `on_tick` may have others. All else is for the main loop. Nothing
+/// (hal/one_shot_timer.hpp); `on_edge` and `on_tick` may have others. All else is for the main loop. Nothing
 /// blocks.
 class Module {
  public:

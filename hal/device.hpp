@@ -7,7 +7,7 @@
 #include "firmware/module.hpp"
 #include "hal/board.hpp"
 #include "hal/memory.hpp"
-#include "hal/wake_timer.hpp"
+#include "hal/one_shot_timer.hpp"
 
 namespace ex9000::hal {
 
@@ -75,17 +75,6 @@ class Device {
 
   [[nodiscard]] bool has_work() const { return wakes_.load() != wakes_seen_; }
 
-  /// INIT*, the status LED and the hardware watchdog: `turn` does it at every tick, and when the wake timer
-  /// has fired. The outputs too, whatever may have happened to their registers.
-  void poll_panel() {
-    module_.poll_panel(board_.init_switch.asserted(), board_.clock.now());
-    board_.status_led.light(module_.led_lit());
-    drive_outputs();
-    if (module_.feed_watchdog()) {
-      board_.watchdog.feed();
-    }
-  }
-
   /// Requests, settings, outputs and the panel. True: call it again at once, because no interrupt will tell
   /// when.
   bool turn() {
@@ -108,6 +97,17 @@ class Device {
   [[nodiscard]] const Module& module() const { return module_; }
 
  private:
+  /// INIT*, the status LED and the hardware watchdog: at every tick, and when the wake timer has fired. The
+  /// outputs too, whatever may have happened to their registers.
+  void poll_panel() {
+    module_.poll_panel(board_.init_switch.asserted(), board_.clock.now());
+    board_.status_led.light(module_.led_lit());
+    drive_outputs();
+    if (module_.feed_watchdog()) {
+      board_.watchdog.feed();
+    }
+  }
+
   void poll_line(Time now) {
     if (!line_open_) {
       if (!module_.listening()) {

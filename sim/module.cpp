@@ -181,7 +181,7 @@ void SimulatedModule::receive(std::uint8_t byte, ByteStatus status) {
     return;
   }
   if (mcu_->silence_timer.fire()) {
-    mcu_->device.on_silence();  // see hal::SilenceTimer
+    mcu_->device.on_silence();  // see hal/one_shot_timer.hpp
   }
   mcu_->device.on_receive(byte, status);
   if (mcu_->device.has_work() || mcu_->device.module().host_ok_waits()) {
@@ -195,7 +195,7 @@ void SimulatedModule::turn() {
     return;
   }
   do {
-    mcu_->device.poll_panel();
+    mcu_->device.on_wake_timer();  // whatever has changed is due at once: the tick is too slow for people
   } while (mcu_->device.turn() || mcu_->device.has_work());
 }
 

@@ -13,13 +13,12 @@
 #include "hal/doubles/init_switch.hpp"
 #include "hal/doubles/inputs.hpp"
 #include "hal/doubles/memory.hpp"
+#include "hal/doubles/one_shot_timer.hpp"
 #include "hal/doubles/outputs.hpp"
 #include "hal/doubles/serial_line.hpp"
-#include "hal/doubles/silence_timer.hpp"
 #include "hal/doubles/status_led.hpp"
 #include "hal/doubles/tick.hpp"
 #include "hal/doubles/virtual_clock.hpp"
-#include "hal/doubles/wake_timer.hpp"
 #include "hal/doubles/watchdog.hpp"
 #include "sim/bus.hpp"
 #include "sim/faults/module_wire.hpp"
@@ -99,8 +98,8 @@ class SimulatedModule final : public Station {
   struct Board {
     VirtualClock& clock;
     hal::doubles::SerialLine& line;
-    hal::doubles::SilenceTimer& silence_timer;
-    hal::doubles::WakeTimer& wake_timer;
+    hal::doubles::OneShotTimer& silence_timer;
+    hal::doubles::OneShotTimer& wake_timer;
     hal::doubles::Inputs& inputs;
     hal::doubles::Outputs& outputs;
     hal::doubles::Memory& memory;
@@ -114,8 +113,8 @@ class SimulatedModule final : public Station {
     explicit Mcu(SimulatedModule& module);
 
     hal::doubles::SerialLine line;
-    hal::doubles::SilenceTimer silence_timer;
-    hal::doubles::WakeTimer wake_timer;
+    hal::doubles::OneShotTimer silence_timer;
+    hal::doubles::OneShotTimer wake_timer;
     hal::doubles::Tick tick;
     hal::doubles::Watchdog watchdog;
     hal::Device<Board> device;

@@ -40,7 +40,8 @@ using Line = Uart<kUart, kHertz, kDriverEnable, LineEndTimer>;
 using Eeprom = hal::At24c<I2c<kFamily, kHertz>>;
 using Watchdog = HardwareWatchdog<kMegahertz>;
 static_assert(hal::kIsTick<Clock>, "the clock does not offer what hal/tick.hpp says");
-static_assert(hal::kIsSilenceTimer<LineEndTimer>, "no one-shot timer");
+static_assert(hal::kIsOneShotTimer<LineEndTimer>,
+              "the timer does not offer what hal/one_shot_timer.hpp says");
 
 /// See hal/board.hpp.
 struct Board {

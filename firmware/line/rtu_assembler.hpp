@@ -14,7 +14,8 @@ namespace ex9000 {
 
 /// address, function, data, CRC, then T3.5 of silence - wire.md section 7.
 ///
-/// A timer ends frames. Its interrupt is served before that of a byte that comes later (hal::SilenceTimer).
+/// A timer ends frames. Its interrupt is served before that of a byte that comes later
+/// (hal/one_shot_timer.hpp).
 class RtuAssembler {
  public:
   void use(const LineTiming& timing) { timing_ = timing; }

@@ -303,7 +303,7 @@ class LeanModule {
     while (again) {
       constexpr unsigned kMostTurns = 50;
       require(++turns < kMostTurns, "the main loop comes to rest");
-      device_->poll_panel();
+      device_->on_wake_timer();
       again = device_->turn() || device_->has_work();
       around_.onlooker.turned();
     }

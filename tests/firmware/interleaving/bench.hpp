@@ -64,7 +64,7 @@ class Bench {
   }
   /// All of it, whether something has woken it or not.
   void whole_turn() {
-    device_.poll_panel();
+    interrupt([&] { device_.on_wake_timer(); });
     turns_again_ = device_.turn();
   }
 

@@ -1,13 +1,13 @@
 #pragma once
 
 #include "hal/doubles/virtual_clock.hpp"
-#include "hal/wake_timer.hpp"
+#include "hal/one_shot_timer.hpp"
 
 namespace ex9000::hal::doubles {
 
-class WakeTimer {
+class OneShotTimer {
  public:
-  explicit WakeTimer(const VirtualClock& clock) : clock_(clock) {}
+  explicit OneShotTimer(const VirtualClock& clock) : clock_(clock) {}
 
   void restart(Duration after) { fires_ = clock_.when(after); }
 
@@ -25,6 +25,6 @@ class WakeTimer {
   const VirtualClock& clock_;
   VirtualTime fires_ = kNever;
 };
-static_assert(kIsWakeTimer<WakeTimer>);
+static_assert(kIsOneShotTimer<OneShotTimer>);
 
 }  // namespace ex9000::hal::doubles

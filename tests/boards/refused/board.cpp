@@ -1,0 +1,15 @@
+// A board with as many pins as the command line says. It does not suit the model that the command line says,
+// or there are fewer images than models.
+#include <array>
+
+namespace ex9000::board {
+
+struct Pins {
+  unsigned count;
+};
+constexpr std::array<Pins, 1> kOutputs{{{OUTPUT_PINS}}};
+constexpr std::array<Pins, 1> kInputs{{{INPUT_PINS}}};
+
+}  // namespace ex9000::board
+
+#include "boards/image.hpp"
