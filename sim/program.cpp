@@ -19,6 +19,7 @@
 #include "sim/arguments.hpp"
 #include "sim/play/play.hpp"
 #include "sim/play_record.hpp"
+#include "sim/runtime/stop_signals.hpp"
 #include "sim/session.hpp"
 #include "sim/watch/terminal_output.hpp"
 
@@ -28,16 +29,6 @@ namespace {
 
 constexpr int kCannotStart = 1;
 constexpr int kFailed = 1;
-
-/// Those that whoever started this has not told it to ignore, as nohup does and shells for background jobs.
-void add_signals(boost::asio::signal_set& signals) {
-  for (const int signal : {SIGINT, SIGTERM, SIGHUP}) {
-    struct sigaction action {};
-    if (sigaction(signal, nullptr, &action) == 0 && action.sa_handler != SIG_IGN) {
-      signals.add(signal);
-    }
-  }
-}
 
 /// Flushed, since a log is read while it grows. False where nobody reads it any more; throws where it cannot
 /// be written otherwise.
@@ -83,7 +74,7 @@ void run(const Setup& setup) {
     }
   };
   boost::asio::signal_set signals(io);
-  add_signals(signals);  // before anything is made that is to be removed again
+  add_stop_signals(signals);  // before anything is made that is to be removed again
   signals.async_wait([&io](const boost::system::error_code& /*error*/, int /*signal*/) { io.stop(); });
   const auto greet = [](const std::string& text) { std::cerr << text << std::endl; };
   std::optional<TerminalOutput> terminal;

@@ -259,8 +259,8 @@ void Session::stand_still() {
       }
     }));
   }
-  stepper_ = std::make_unique<Stepper>(std::move(lines),
-                                       setup_.lasts ? lines_.front()->when_up_for(*setup_.lasts) : kNever);
+  const VirtualTime end = setup_.lasts ? lines_.front()->when_up_for(*setup_.lasts) : kNever;
+  stepper_ = std::make_unique<Stepper>(std::move(lines), end, [this] { return stop_signals_.arrived(); });
 }
 
 void Session::run_as_fast_as_it_can() {

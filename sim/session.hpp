@@ -19,6 +19,7 @@
 #include "sim/panel/panel_server.hpp"
 #include "sim/running_line.hpp"
 #include "sim/runtime/stepper.hpp"
+#include "sim/runtime/stop_signals.hpp"
 #include "sim/setup.hpp"
 #include "sim/watch/watch.hpp"
 
@@ -71,6 +72,7 @@ class Session {
   boost::asio::steady_timer end_;
   boost::asio::steady_timer next_look_;
   std::optional<Control> control_;
+  StopSignals stop_signals_;
   std::unique_ptr<Stepper> stepper_;  ///< if the lines' time stands still
   std::unique_ptr<ControlSocket> control_socket_;
   std::list<MadeFile> made_;  ///< until it has greeted, they go with it

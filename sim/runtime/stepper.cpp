@@ -28,7 +28,8 @@ std::size_t parse_count(const std::string& text) {
 
 }  // namespace
 
-Stepper::Stepper(std::vector<SteppedLine*> lines, VirtualTime end) : lines_(std::move(lines)), end_(end) {}
+Stepper::Stepper(std::vector<SteppedLine*> lines, VirtualTime end, StopRequested stop_requested)
+    : lines_(std::move(lines)), end_(end), stop_requested_(std::move(stop_requested)) {}
 
 bool Stepper::is_advance(const std::string& command) {
   const Words words = words_of(command);
@@ -104,7 +105,10 @@ void Stepper::carry_out(const Request& request, const Answer& answer) {
   for (SteppedLine* line : lines_) {
     line->put_on_line();
   }
-  pass(request);
+  if (!pass(request)) {
+    answer({"error: the program was asked to end while time passed", false});
+    return;
+  }
   for (SteppedLine* line : lines_) {
     line->hand_out();
   }
@@ -113,8 +117,8 @@ void Stepper::carry_out(const Request& request, const Answer& answer) {
 }
 
 /// From event to event, in the order of time, so that the log of several lines is in order too. Only the line
-/// on which something happens is looked at.
-void Stepper::pass(const Request& request) {
+/// on which something happens is looked at. False: the program was asked to end before TIME was over.
+bool Stepper::pass(const Request& request) {
   struct State {
     SteppedLine* line;
     VirtualTime next;
@@ -127,12 +131,17 @@ void Stepper::pass(const Request& request) {
   const auto is_earlier = [](const State& a, const State& b) { return a.next < b.next; };
   const auto is_pending = [](const State& state) { return state.pending; };
   VirtualTime now = lines_.front()->now();
+  constexpr unsigned kEventsBetweenLooks = 4096;
+  unsigned events = 0;
   const VirtualTime until = request.time < end_ - now ? now + request.time : end_;
   while (!request.quiet || std::any_of(states.begin(), states.end(), is_pending)) {
     const auto earliest = std::min_element(states.begin(), states.end(), is_earlier);
     if (earliest->next > until) {
       now = until;
       break;
+    }
+    if (++events % kEventsBetweenLooks == 0 && stop_requested_()) {
+      return false;
     }
     now = std::max(now, earliest->next);
     earliest->line->run_until(now);
@@ -142,6 +151,7 @@ void Stepper::pass(const Request& request) {
   for (SteppedLine* line : lines_) {
     line->run_until(now);
   }
+  return true;
 }
 
 }  // namespace ex9000::sim

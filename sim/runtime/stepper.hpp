@@ -18,8 +18,12 @@ class Stepper {
  public:
   using Answer = std::function<void(const Control::Reply&)>;
 
+  /// Whether the program has been asked to end.
+  using StopRequested = std::function<bool()>;
+
   /// `lines` live as long as this object. When their time reaches `end`, the program ends: kNever for never.
-  Stepper(std::vector<SteppedLine*> lines, VirtualTime end);
+  /// `stop_requested` is called now and then while time passes.
+  Stepper(std::vector<SteppedLine*> lines, VirtualTime end, StopRequested stop_requested);
 
   /// Whether `command` is for this class.
   static bool is_advance(const std::string& command);
@@ -29,7 +33,8 @@ class Stepper {
   /// - TIME has passed, or with `quiet` less, as soon as nothing is pending on any line,
   /// - and every reply has been written to its port.
   /// It gets `ok NOW`, the lines' time in seconds; or `error: ...`, and nothing has changed. A later call
-  /// replaces one that still waits for bytes, which gets an error.
+  /// replaces one that still waits for bytes, which gets an error. If the program is asked to end while time
+  /// passes, time stops there and `answer` gets an error.
   void advance(const std::string& command, Answer answer);
   /// Bytes have arrived at a port.
   void arrived();
@@ -49,10 +54,11 @@ class Stepper {
   void read_ports();
   void carry_out(const Request& request, const Answer& answer);
   [[nodiscard]] std::size_t bytes_waiting() const;
-  void pass(const Request& request);
+  [[nodiscard]] bool pass(const Request& request);
 
   std::vector<SteppedLine*> lines_;
   VirtualTime end_;
+  StopRequested stop_requested_;
   std::optional<Waiting> waiting_;
 };
 

@@ -100,6 +100,14 @@ TEST(SteppedProgram, TheSameCommandsProduceTheSameBytesAtTheSameTimes) {
   EXPECT_NE(first.find("> master  @01"), std::string::npos) << first;
 }
 
+TEST(SteppedProgram, ASignalEndsItWhileALongTimePasses) {
+  Stepped stepped({"EX9042D", "--log"});
+  stepped.control.ok("fault foreign-traffic 2430314D0D at 1min");
+  stepped.control.send("advance 8760h\n");
+  ASSERT_TRUE(stepped.simulator.wait_for("somebody else")) << stepped.simulator.output();
+  EXPECT_EQ(stepped.simulator.end(SIGTERM), 0);
+}
+
 TEST(SteppedProgram, APortThatNobodyReadsIsReported) {
   Stepped stepped({"EX9042D"});
   const Terminal silent(stepped.simulator.tty(), 9600);

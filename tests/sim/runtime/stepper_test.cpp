@@ -92,7 +92,8 @@ class StepperTest : public testing::Test {
     });
   }
   void begin(VirtualTime end = kNever) {
-    stepper_.emplace(std::vector<SteppedLine*>{line_.stepped.get(), other_.stepped.get()}, end);
+    stepper_.emplace(std::vector<SteppedLine*>{line_.stepped.get(), other_.stepped.get()}, end,
+                     [this] { return asked_to_end_; });
   }
   void SetUp() override {
     stand_still(other_);
@@ -113,6 +114,7 @@ class StepperTest : public testing::Test {
   std::optional<Stepper> stepper_;
   std::vector<std::string> answers_;
   bool quits_ = false;
+  bool asked_to_end_ = false;
 };
 
 TEST_F(StepperTest, TimePassesAsToldOnAllLinesAndIsAnsweredInSeconds) {
@@ -122,6 +124,12 @@ TEST_F(StepperTest, TimePassesAsToldOnAllLinesAndIsAnsweredInSeconds) {
   EXPECT_EQ(advance("0s"), "ok 0.35");
   EXPECT_EQ(advance("104.166us"), "ok 0.350104166");
   EXPECT_EQ(advance("24h"), "ok 86400.350104166");
+}
+
+TEST_F(StepperTest, TimeStopsWhenTheProgramIsAskedToEnd) {
+  asked_to_end_ = true;
+  EXPECT_EQ(advance("24h"), "error: the program was asked to end while time passed");
+  EXPECT_LT(line_.stepped->now(), std::chrono::hours(1));
 }
 
 TEST_F(StepperTest, NothingHappensWithoutIt) {
@@ -254,7 +262,7 @@ TEST_F(StepperTest, TheSameCommandsHaveTheSameEffectsAtTheSameTimes) {
   const auto play = [] {
     StillLine line({"EX9042D@01"});
     std::string text;
-    Stepper stepper({line.stepped.get()}, kNever);
+    Stepper stepper({line.stepped.get()}, kNever, [] { return false; });
     line.stepped->start([] {});
     line.line->faults().add(parse_fault("bit-errors 1e-3"));
     for (int i = 0; i < 50; ++i) {

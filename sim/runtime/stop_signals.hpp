@@ -1,0 +1,29 @@
+// The signals that ask the program to end.
+#pragma once
+
+#include <boost/asio/io_context.hpp>
+#include <boost/asio/signal_set.hpp>
+
+namespace ex9000::sim {
+
+/// Adds SIGINT, SIGTERM and SIGHUP, except those that the program was started with ignored: nohup does so,
+/// and shells do so for background jobs.
+void add_stop_signals(boost::asio::signal_set& signals);
+
+/// Notices these signals while a long computation keeps the program's own io_context from running.
+class StopSignals {
+ public:
+  StopSignals();
+  StopSignals(const StopSignals&) = delete;
+  StopSignals& operator=(const StopSignals&) = delete;
+
+  /// Whether one has arrived since construction. Does not block.
+  bool arrived();
+
+ private:
+  boost::asio::io_context io_;
+  boost::asio::signal_set signals_;
+  bool arrived_ = false;
+};
+
+}  // namespace ex9000::sim
