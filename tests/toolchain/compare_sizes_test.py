@@ -1,0 +1,53 @@
+"""compare-sizes: what it accepts, refuses and records."""
+
+from __future__ import annotations
+
+import subprocess
+import tempfile
+import unittest
+from pathlib import Path
+
+PROGRAM = Path(__file__).resolve().parents[2] / "toolchain" / "compare-sizes"
+
+
+class CompareSizes(unittest.TestCase):
+    """One image of 1000 bytes of flash, 200 of static RAM and 100 of stack is in the record."""
+
+    def setUp(self) -> None:
+        folder = tempfile.TemporaryDirectory()
+        self.addCleanup(folder.cleanup)
+        self.built = Path(folder.name)
+        self.record = self.built / "record"
+        self.record.write_text("board IMAGE 1000 200 100\n", encoding="utf-8")
+
+    def compare(self, line: str, *options: str) -> subprocess.CompletedProcess[str]:
+        (self.built / "IMAGE.size").write_text(f"{line}\n", encoding="utf-8")
+        command = [str(PROGRAM), "--file", str(self.record), *options, str(self.built)]
+        return subprocess.run(command, capture_output=True, text=True, check=False)
+
+    def test_five_percent_more_is_accepted(self) -> None:
+        compared = self.compare("board IMAGE 1050 215 100")
+        self.assertEqual((compared.returncode, compared.stderr), (0, ""))
+
+    def test_more_flash_is_refused_with_what_has_grown(self) -> None:
+        compared = self.compare("board IMAGE 1051 200 100")
+        self.assertEqual(compared.returncode, 1)
+        self.assertIn("board IMAGE: has grown by more than 5 %: flash 1051 (+51), static 200, stack 100", compared.stderr)
+
+    def test_static_memory_and_stack_count_together(self) -> None:
+        self.assertEqual(self.compare("board IMAGE 1000 100 215").returncode, 0)
+        self.assertEqual(self.compare("board IMAGE 1000 200 116").returncode, 1)
+
+    def test_an_image_that_is_not_in_the_record_is_refused(self) -> None:
+        compared = self.compare("board OTHER 1 1 1")
+        self.assertEqual(compared.returncode, 1)
+        self.assertIn("board OTHER: is not in the record", compared.stderr)
+
+    def test_a_new_record_is_what_was_built(self) -> None:
+        self.assertEqual(self.compare("board IMAGE 2000 400 300", "--record").returncode, 0)
+        self.assertEqual(self.record.read_text(encoding="utf-8"), "board IMAGE 2000 400 300\n")
+        self.assertEqual(self.compare("board IMAGE 2000 400 300").returncode, 0)
+
+
+if __name__ == "__main__":
+    unittest.main()
