@@ -1,7 +1,6 @@
-// README's examples, pasted. In each section a `sh` block that starts the simulator is one terminal, all
-// other `sh` and `python` blocks are another, and what they print is the `text` block behind them. Both are
-// in an empty directory but for `boards` and `build`: images are built before; and for `bus.json`, where
-// there is a `json` block.
+// The documents' examples, pasted. In each section a `sh` block that starts the simulator is one terminal.
+// All other `sh` and `python` blocks are another one, and the `text` block is what they print. A `json` block
+// is `bus.json`. The directory is empty but for `boards` and `build`, where images have been built.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -32,9 +31,19 @@ struct Section {
   std::vector<Block> blocks;
 };
 
-std::vector<Section> sections() {
-  std::vector<Section> result(1);
-  std::ifstream file(EX9000_README);
+/// Paths from the project's top.
+std::vector<std::string> documents() {
+  std::vector<std::string> paths;
+  std::istringstream list(EX9000_DOCUMENTS);
+  for (std::string path; std::getline(list, path, ' ');) {
+    paths.push_back(path);
+  }
+  return paths;
+}
+
+std::vector<Section> sections_of(const std::string& document) {
+  std::vector<Section> result(1, {document, {}});
+  std::ifstream file(std::string(EX9000_PROJECT "/") + document);
   bool inside = false;
   for (std::string line; std::getline(file, line);) {
     if (line.rfind("```", 0) == 0) {
@@ -45,13 +54,13 @@ std::vector<Section> sections() {
     } else if (inside) {
       result.back().blocks.back().text += line + "\n";
     } else if (line.rfind("##", 0) == 0) {
-      result.push_back({line.substr(line.find(' ') + 1), {}});
+      result.push_back({document + line.substr(line.find(' ')), {}});
     }
   }
   return result;
 }
 
-/// README's port may be in use here.
+/// The documents' port may be in use here.
 void replace_port(std::string& text, const std::string& port) {
   const std::string written = "5020";
   for (auto at = text.find(written); at != std::string::npos; at = text.find(written, at + port.size())) {
@@ -126,7 +135,11 @@ std::vector<std::string> free_ports(std::size_t count) {
 }
 
 std::vector<Section> sections_with_output() {
-  std::vector<Section> all = sections();
+  std::vector<Section> all;
+  for (const std::string& document : documents()) {
+    const std::vector<Section> sections = sections_of(document);
+    all.insert(all.end(), sections.begin(), sections.end());
+  }
   const auto has_none = [](const Section& section) {
     return std::none_of(section.blocks.begin(), section.blocks.end(),
                         [](const Block& block) { return block.language == "text"; });
@@ -136,9 +149,9 @@ std::vector<Section> sections_with_output() {
 }
 
 /// All sections at once, for they mostly wait.
-TEST(Readme, ItsExamplesDoWhatItSays) {
+TEST(Documents, TheirExamplesDoWhatTheySay) {
   std::vector<Section> pasted = sections_with_output();
-  EXPECT_GE(pasted.size(), 8U);
+  EXPECT_GE(pasted.size(), 14U);
   const std::vector<std::string> ports = free_ports(pasted.size());
   const std::string programs = simulator_path().substr(0, simulator_path().rfind('/'));
   setenv("PATH", (programs + ":" + getenv("PATH")).c_str(), 1);
@@ -158,21 +171,26 @@ TEST(Readme, ItsExamplesDoWhatItSays) {
   }
 }
 
+/// What stands in code in a cell, without the table's own escapes.
+void add_codes(const std::string& cell, std::set<std::string>& codes) {
+  for (auto open = cell.find('`'); open != std::string::npos;
+       open = cell.find('`', cell.find('`', open + 1) + 1)) {
+    std::string code = cell.substr(open + 1, cell.find('`', open + 1) - open - 1);
+    code.erase(std::remove(code.begin(), code.end(), '\\'), code.end());
+    codes.insert(code);
+  }
+}
+
 /// What a row of a table begins with, in code: `N power on|off`, say, as it is without the table's own
 /// escapes.
 std::set<std::string> rows() {
   std::set<std::string> rows;
-  std::ifstream file(EX9000_README);
-  for (std::string line; std::getline(file, line);) {
-    if (line.rfind("| `", 0) != 0) {
-      continue;
-    }
-    const std::string cell = line.substr(0, line.find(" | "));
-    for (auto open = cell.find('`'); open != std::string::npos;
-         open = cell.find('`', cell.find('`', open + 1) + 1)) {
-      std::string code = cell.substr(open + 1, cell.find('`', open + 1) - open - 1);
-      code.erase(std::remove(code.begin(), code.end(), '\\'), code.end());
-      rows.insert(code);
+  for (const std::string& document : documents()) {
+    std::ifstream file(std::string(EX9000_PROJECT "/") + document);
+    for (std::string line; std::getline(file, line);) {
+      if (line.rfind("| `", 0) == 0) {
+        add_codes(line.substr(0, line.find(" | ")), rows);
+      }
     }
   }
   return rows;
@@ -192,7 +210,7 @@ std::vector<std::string> column_of(const std::string& help, const std::string& h
   return cells;
 }
 
-TEST(Readme, EveryOptionCommandAndFaultHasItsRow) {
+TEST(Documents, EveryOptionCommandAndFaultHasItsRow) {
   const std::set<std::string> rows_there = rows();
   const auto has_row = [&rows_there](const std::string& beginning) {
     return std::any_of(rows_there.begin(), rows_there.end(), [&](const std::string& row) {

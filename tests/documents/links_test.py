@@ -1,0 +1,85 @@
+"""Every relative link of a document leads to a file that is there, and to a heading that it has."""
+
+from __future__ import annotations
+
+import re
+import subprocess
+import unittest
+from pathlib import Path
+
+ROOT = Path(__file__).resolve().parents[2]
+LINK = re.compile(r"\]\(([^)\s]+)\)")
+HEADING = re.compile(r"^#+ +(.*)$")
+
+
+def documents() -> list[Path]:
+    listed = subprocess.run(
+        ["git", "ls-files", "--cached", "--others", "--exclude-standard", "*.md"],
+        cwd=ROOT,
+        check=True,
+        capture_output=True,
+        text=True,
+    )
+    return [ROOT / name for name in listed.stdout.split() if (ROOT / name).exists()]
+
+
+def prose_of(document: Path) -> list[str]:
+    """The lines that are not in a block of code."""
+    lines = []
+    inside = False
+    for line in document.read_text(encoding="utf-8").splitlines():
+        if line.startswith("```"):
+            inside = not inside
+        elif not inside:
+            lines.append(line)
+    return lines
+
+
+def anchors_of(document: Path) -> set[str]:
+    """As GitHub makes them of headings."""
+    anchors: set[str] = set()
+    for line in prose_of(document):
+        if match := HEADING.match(line):
+            text = re.sub(r"\[([^\]]*)\]\([^)]*\)", r"\1", match[1]).replace("\\", "")
+            anchor = re.sub(r"[^\w\- ]", "", text.lower()).replace(" ", "-")
+            repeated = next(n for n in range(99) if (f"{anchor}-{n}" if n else anchor) not in anchors)
+            anchors.add(f"{anchor}-{repeated}" if repeated else anchor)
+    return anchors
+
+
+class Links(unittest.TestCase):
+    def test_each_leads_somewhere(self) -> None:
+        checked = 0
+        for document in documents():
+            for link in LINK.findall("\n".join(prose_of(document))):
+                if re.match(r"[a-z]+:", link):
+                    continue  # another machine's
+                name, _, anchor = link.partition("#")
+                target = (document.parent / name).resolve() if name else document
+                with self.subTest(document=str(document.relative_to(ROOT)), link=link):
+                    self.assertTrue(target.exists(), "no such file")
+                    if anchor and target.suffix == ".md":
+                        self.assertIn(anchor, anchors_of(target))
+                checked += 1
+        self.assertGreater(checked, 150)
+
+
+class Documents(unittest.TestCase):
+    def test_the_readme_is_one_page(self) -> None:
+        self.assertLessEqual(len((ROOT / "README.md").read_text(encoding="utf-8").splitlines()), 250)
+
+    def test_each_is_reached_from_the_readme(self) -> None:
+        reached = {ROOT / "README.md"}
+        waiting = [ROOT / "README.md"]
+        while waiting:
+            document = waiting.pop()
+            for link in LINK.findall("\n".join(prose_of(document))):
+                target = (document.parent / link.partition("#")[0]).resolve()
+                if target.suffix == ".md" and target.exists() and target not in reached:
+                    reached.add(target)
+                    waiting.append(target)
+        self.assertEqual({str(each.relative_to(ROOT)) for each in set(documents()) - reached}, set())
+
+
+if __name__ == "__main__":
+    unittest.main()
