@@ -122,7 +122,7 @@ class Modules(Panel):
         _, master = self.show_two()
         noise = "[aria-label='Fault inserted-bytes 0.01']"
         self.browser.type("[aria-label='Another fault']", "nonsense\ue007")
-        self.browser.until("document.querySelector('.said').textContent.includes('no fault')")
+        self.browser.until("document.querySelector('.said').textContent.includes('is not a fault')")
         self.browser.click(noise)
         self.browser.until(pressed(noise))
         self.browser.run("document.getElementById('bus').scrollIntoView()")

@@ -96,6 +96,7 @@ class Panel(unittest.TestCase):
 
     def tearDown(self):
         self.assertEqual(self.browser.complaints(), [])
+        self.expect_rows_in_order()
 
     def show(self, *arguments):
         simulator = Simulator(*arguments, "--tcp", "0")
@@ -114,7 +115,19 @@ class Panel(unittest.TestCase):
         return simulator, master
 
     def picture(self, name, whole=False):
+        """Of a state of the page, which has to be accessible too."""
         self.browser.screenshot(PICTURES / f"{name}.png", whole)
+        self.expect_accessible()
+
+    def expect_accessible(self):
+        """axe-core finds nothing against the Web Content Accessibility Guidelines 2.2, level AA."""
+        self.assertEqual(self.browser.violations(), [])
+
+    def expect_rows_in_order(self):
+        """The frame list's rows stand in the document as they are seen."""
+        order = """return [...document.querySelectorAll('#filler .row')].map((row) => Number(row.ariaRowIndex))"""
+        rows = self.browser.run(order)
+        self.assertEqual(rows, sorted(rows))
 
     def expect_no_scrolling_sideways(self):
         self.assertLessEqual(*self.browser.run(

@@ -3,6 +3,7 @@
 import base64
 import json
 import os
+import pathlib
 import re
 import subprocess
 import tempfile
@@ -11,6 +12,7 @@ import urllib.request
 
 from simulator import HANG
 
+AXE = pathlib.Path(__file__).resolve().parents[2] / "build/axe/node_modules/axe-core/axe.min.js"
 ELEMENT = "element-6066-11e4-a52e-4f735466cecf"
 KEYS = {"Tab": "\ue004", "Enter": "\ue007", "Space": " ", "Shift": "\ue008", "Alt": "\ue00a", "Left": "\ue012",
         "Right": "\ue014"}
@@ -160,6 +162,16 @@ class Browser:
         nobody = ("ERR_CONNECTION_REFUSED", "ERR_CONNECTION_RESET", "closed before the connection is established")
         said = self._post("/se/log", {"type": "browser"})
         return [each["message"] for each in said if not any(text in each["message"] for text in nobody)]
+
+    def violations(self):
+        """What axe-core says against the page: the rule, what is wrong, and the first elements concerned."""
+        self.run(AXE.read_text(encoding="utf-8") + "; window.axe = axe;")
+        found = self.promised("""
+            const rules = ["wcag2a", "wcag2aa", "wcag21a", "wcag21aa", "wcag22aa", "best-practice"];
+            const {violations} = await axe.run(document, {runOnly: rules, resultTypes: ["violations"]});
+            return violations.map(({id, help, nodes}) =>
+              `${id}: ${help}: ${nodes.slice(0, 3).map((node) => node.target.join(" ")).join(", ")}`)""")
+        return found
 
     def screenshot(self, path, whole=False):
         picture = self.devtools("Page.captureScreenshot", format="png", captureBeyondViewport=whole)

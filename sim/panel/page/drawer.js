@@ -1,5 +1,5 @@
-// What a module keeps: present, power-on and safe value, its settings, and the bytes of all copies. It is built
-// once, and only texts change, so that whoever reads or selects in it goes on doing so.
+// The values of a module: present, power-on and safe value, its settings, and the bytes of all copies. The elements
+// are created once and only their texts change, so that the reader's position and selection are kept.
 
 import {bit, hexByte, make, setAttribute, setText} from "/element.js";
 
@@ -22,13 +22,13 @@ export class Drawer {
     this.element.addEventListener("toggle", () => this.draw());
   }
 
-  /// What is there so far of each.
+  /// Shows the state; parts that have not arrived yet are undefined.
   show(plate, stored, guard) {
     Object.assign(this, {plate, stored, guard});
     this.draw();
   }
 
-  /// Only while it is open.
+  /// Draws only while the drawer is open.
   draw() {
     if (!this.element.open || !this.stored || !this.plate) {
       return;

@@ -1,4 +1,4 @@
-// Makes an element with its attributes and children, and sets only what has changed.
+// Creates an element with attributes and children, and updates only changed values.
 
 export function make(tag, attributes = {}, ...children) {
   const element = document.createElement(tag);

@@ -1,9 +1,9 @@
-// What goes wrong on a line, as switches.
+// Switches for the faults of a line.
 
 import {make, setAttribute, setText} from "/element.js";
 import {Switch} from "/switch.js";
 
-/// One of each kind, to begin with.
+/// The initial list: one fault of each kind.
 const usual = [
   "bit-errors 1e-4", "lost-bytes 0.01", "inserted-bytes 0.01", "stray-zeros 0.01", "echo 5ms",
   "foreign-traffic 0501000000083C48 every 1s", "lost-reply every 3rd reply", "late-reply 50ms", "late-driver 2ms",
@@ -11,7 +11,7 @@ const usual = [
 ];
 
 export class Faults {
-  /// `modules`: {position, model} of the line; `tell(command)` carries one out.
+  /// `modules`: {position, model} of each module on the line; `tell(command)` carries out a command.
   constructor(line, several, modules, tell) {
     this.prefix = several ? `line ${line.name} ` : "";
     this.tell = tell;
@@ -44,7 +44,7 @@ export class Faults {
 
   key(text, module) { return `${module ?? ""} ${text}`; }
 
-  /// Once seen, it can be switched on again.
+  /// Adds a fault to the list, which keeps it so that it can be switched on again.
   learn(text, module) {
     const key = this.key(text, module);
     if (!this.known.has(key)) {
@@ -58,7 +58,7 @@ export class Faults {
     return this.known.get(key);
   }
 
-  /// One behind the other: what is to be switched off has its number only once it is on.
+  /// Actions run one after the other, because a fault has no number until it has been switched on.
   turn(text, module, on) {
     this.turned = this.turned.then(() => on ? this.begin(text, module) : this.end(this.learn(text, module).numbers));
     return this.turned;

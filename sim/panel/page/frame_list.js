@@ -1,4 +1,4 @@
-// The list of frames. Of thousands only those have a row that can be seen.
+// The list of frames. Only the visible entries have a row, because there may be thousands of them.
 
 import {make, setAttribute, setText} from "/element.js";
 
@@ -7,7 +7,7 @@ const spareRows = 8;
 const seconds = (microseconds) => (microseconds / 1e6).toFixed(6);
 
 export class FrameList {
-  /// `rows` scrolls, and `filler` in it is as high as all of them.
+  /// `rows` is the scrolling element; `filler` inside it is as high as all entries together.
   constructor(rows, filler) {
     this.rows = rows;
     this.filler = filler;
@@ -36,14 +36,14 @@ export class FrameList {
     this.stale = true;
   }
 
-  /// `count` of them at the top are no more: whoever reads further down goes on reading the same.
+  /// `count` entries at the top were removed. Moves the scroll position so that the visible entries stay the same.
   dropped(count) {
     if (!this.follows && count) {
       this.rows.scrollTop -= count * this.height;
     }
   }
 
-  /// Those that can be seen, and a few around.
+  /// Draws the visible rows and some around them.
   draw(entries) {
     this.entries = entries;
     this.stale = false;
@@ -71,6 +71,7 @@ export class FrameList {
         this.made.set(entry, row);
       }
       row.style.transform = `translateY(${index * this.height}px)`;
+      this.place(row, index - first);
       setAttribute(row, "aria-rowindex", index + 2);
     }
     for (const row of spare) {
@@ -84,6 +85,14 @@ export class FrameList {
       ...["time", "from", "bytes", "meaning"].map((each) => make("span", {role: "cell", class: each})));
     this.filler.append(row);
     return row;
+  }
+
+  /// In the order in which they are read: screen readers and searches follow the document, not the picture.
+  place(row, position) {
+    const there = this.filler.children[position];
+    if (there !== row) {
+      this.filler.insertBefore(row, there ?? null);
+    }
   }
 
   fillRow(row, entry) {

@@ -1,17 +1,17 @@
-// An input of a module: its lamp, that is clicked, held and pulsed, its counter and its latches.
+// An input of a module: its LED, which can be clicked, held and pulsed, its counter and its latches.
 
 import {make, setAttribute, setText} from "/element.js";
 import {Switch} from "/switch.js";
 
 export class Input {
-  /// `tell(command, undo)` carries out what follows the module's number; `way()` is what a click does: toggle, hold
-  /// or pulse.
+  /// `tell(command, undo)` carries out a command of this module, given without the module's number. `way()` returns
+  /// the effect of a click: toggle, hold or pulse.
   constructor(title, label, channel, tell, way) {
     this.label = label;
     this.channel = channel;
     this.tell = tell;
     this.way = way;
-    /// The level to go back to, while it is held.
+    /// The level to restore after a hold; null: not held.
     this.held = null;
     this.level = new Switch(`${title}: input ${label}`, "led input", (on) =>
       tell(this.command(on), this.held === null ? undefined : this.command(this.held)));
@@ -28,7 +28,8 @@ export class Input {
 
   command(on) { return `input ${this.channel} ${on ? "on" : "off"}`; }
 
-  /// The other level, for as long as button or key is down. The simulator undoes it where this page goes meanwhile.
+  /// Sets the other level while the button or key is down. The simulator undoes it if the page disconnects in the
+  /// meantime.
   press() {
     if (this.held === null) {
       this.held = this.level.on;
@@ -44,7 +45,7 @@ export class Input {
     }
   }
 
-  /// With the connection the hold has ended as well.
+  /// Losing the connection has ended the hold as well.
   lost() { this.held = null; }
 
   listenToPointer(button) {
@@ -59,7 +60,7 @@ export class Input {
     for (const over of ["pointerup", "pointercancel", "lostpointercapture", "blur"]) {
       button.addEventListener(over, () => this.release());
     }
-    // One that neither pointer nor key has made, but a screen reader, holds nothing and counts none.
+    // Clicks from a screen reader have no pointer: they hold nothing, and their `detail` is 0.
     const isPointers = (event) => event.detail > 0;
     button.addEventListener("click", (event) => {
       if (isPointers(event) && heldByPointer) {

@@ -1,15 +1,15 @@
-// The WebSocket to the simulator. It comes back by itself, and says so while it cannot.
+// The WebSocket to the simulator. It reconnects automatically and reports lost connections.
 
 const firstWait = 100;
 const longestWait = 1000;
-/// The simulator says something every second.
+/// In ms. The simulator sends a message at least every second.
 const patience = 3500;
-/// The code that it closes with where too many pages are open.
+/// The close code if too many pages are open.
 const tooMany = 1013;
 
 export class Live {
-  /// `take(message)` gets what comes, and calls `answer` with its reply once it is shown; `lost(why)` hears when
-  /// nobody is there any more, and with "" that somebody is again.
+  /// `take(message)` gets each message; it calls `answer` with the reply when that is shown. `lost(why)` is called
+  /// when the connection is lost, and with "" when it is restored.
   constructor(take, lost) {
     this.take = take;
     this.lost = lost;
@@ -35,7 +35,7 @@ export class Live {
     socket.onclose = (event) => this.gone(socket, event.code === tooMany ? "tooMany" : "gone");
   }
 
-  /// A simulator that is stopped, or a connection that hangs, closes nothing.
+  /// Detects a stopped simulator or a broken connection, because neither closes the socket.
   listen(socket) {
     clearTimeout(this.silence);
     this.silence = setTimeout(() => {
@@ -64,8 +64,8 @@ export class Live {
     this.wait = Math.min(2 * this.wait, longestWait);
   }
 
-  /// A command of the control socket; resolves to {ok, text}. `undo` is another, which the simulator carries out
-  /// when this page goes without having told it.
+  /// Sends a command of the control socket; resolves to {ok, text}. The simulator carries out the command `undo` if
+  /// the page disconnects without having sent it.
   tell(command, undo) {
     if (this.socket?.readyState !== WebSocket.OPEN) {
       return Promise.resolve({ok: false, text: "error: there is no simulator"});

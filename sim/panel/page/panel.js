@@ -1,4 +1,4 @@
-// The panel: one page that shows what the simulator tells, as it comes.
+// The panel: one page that shows the simulator's messages as they arrive.
 
 import {make, setText} from "/element.js";
 import {Faults} from "/faults.js";
@@ -13,7 +13,7 @@ let version = null;
 let speed = 1;
 let plates = [];
 let lines = [];
-/// Of each line, what its clock showed, and when.
+/// For each line, the time of its clock and when that was received.
 let clocks = [];
 let fresh = [];
 let due = false;
@@ -25,7 +25,7 @@ const now = (line) => {
 
 function begin(hello) {
   if (version !== null && hello.version !== version) {
-    location.reload();  // the page may have changed as well
+    location.reload();  // the page may have changed too
     return;
   }
   version = hello.version;
@@ -93,14 +93,14 @@ function take(message) {
     clocks[index] = {showed: news.now, when};
   }
   fresh.push(message);
-  // A page that nobody sees is not repainted, and must not gather what it is told.
+  // The browser does not repaint a hidden page, so messages would pile up.
   if (document.hidden && !due) {
     due = true;
     setTimeout(() => { due = false; fresh.splice(0).forEach(show); }, 200);
   }
 }
 
-/// All there is to draw, once a repaint.
+/// Draws everything, once per repaint.
 function repaint(when) {
   fresh.splice(0).forEach(show);
   for (const plate of plates) {
@@ -110,7 +110,7 @@ function repaint(when) {
   requestAnimationFrame(repaint);
 }
 
-/// `why`: a key of these, or "" where it is there again.
+/// The texts for the values of `why`, except "" for a restored connection.
 const reasons = {
   gone: "No simulator – trying again. What you see is how it was.",
   tooMany: "Too many pages are open already – waiting until another is closed.",
@@ -125,7 +125,7 @@ function lost(why) {
   }
 }
 
-/// What hangs below the header, and what is scrolled to, must know how high it is.
+/// Sticky elements below the header and scroll targets depend on its height.
 const header = document.querySelector(".top");
 const measure = () => document.documentElement.style.setProperty("--top", `${header.offsetHeight}px`);
 new ResizeObserver(measure).observe(header);

@@ -1,4 +1,4 @@
-// A module's face plate: its terminals, lamps and switches, and a drawer with what it keeps.
+// A module's face plate: its terminals, LEDs and switches, and a drawer with its stored values.
 
 import {Drawer} from "/drawer.js";
 import {bit, hexByte, make, setAttribute, setText} from "/element.js";
@@ -8,8 +8,8 @@ import {Switch} from "/switch.js";
 const edgeTerminals = ["DATA+", "DATA−", "+VS", "GND"];
 
 export class Plate {
-  /// `position` counts from 0; `tell(command, undo)` carries out what follows the module's number; `way()` is what a
-  /// click on an input does: toggle, hold or pulse.
+  /// `position` counts from 0. `tell(command, undo)` carries out a command of this module, given without the module's
+  /// number. `way()` returns the effect of a click on an input: toggle, hold or pulse.
   constructor(layout, position, tell, way) {
     this.layout = layout;
     this.position = position;
@@ -52,7 +52,7 @@ export class Plate {
         ...edge.map((label) => make("li", {}, make("span", {class: "screw"}), label))));
   }
 
-  /// Terminals in rows of as many as there is room for; the last one goes on to the edge.
+  /// Creates the rows of terminals. More than eight terminals use two rows; blank items fill the last row.
   strip(className, name, channels) {
     if (!channels.length) {
       return "";
@@ -76,10 +76,10 @@ export class Plate {
       make("span", {class: "label", "aria-hidden": "true"}, label), led)};
   }
 
-  /// Nobody is there any more.
+  /// The connection is lost.
   lost() { this.inputs.forEach((input) => input.lost()); }
 
-  /// What has changed of it.
+  /// Shows the changes in `news`.
   show(news) {
     if (news.plate) {
       this.plate = news.plate;
@@ -126,7 +126,7 @@ export class Plate {
       bit(gathered.low, channel)));
   }
 
-  /// `now`: what the line's clock shows, in us. What runs by itself.
+  /// Updates the countdown. `now` is the time of the line's clock in us.
   tick(now) {
     const guard = this.guardState;
     if (!guard) {

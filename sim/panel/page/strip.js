@@ -1,8 +1,8 @@
-// The strip: what is said on each line, to scale in time.
+// The strip: the frames of each line on a time scale.
 
 import {setAttribute} from "/element.js";
 
-/// Between two times that it is drawn, in ms; the second for those whom disturbs what moves by itself.
+/// The minimum time between two drawings, in ms; the second value is for users who prefer reduced motion.
 const slowest = 30;
 const slowestUnmoving = 1000;
 const unmoving = matchMedia("(prefers-reduced-motion: reduce)");
@@ -14,8 +14,8 @@ const scaleHeight = 20;
 const inWords = (gap) => gap >= 1e6 ? `${(gap / 1e6).toFixed(2)} s` : `${(gap / 1000).toFixed(1)} ms`;
 
 export class Strip {
-  /// `frame` scrolls where there are more lanes in `canvas` than it has room for; `span` chooses how much time there
-  /// is to see, in us; an entry that does not `match` is pale.
+  /// `frame` scrolls if it is too small for the lanes in `canvas`. `span` selects the visible time in us. Entries for
+  /// which `matches` is false are drawn pale.
   constructor(frame, canvas, span, matches) {
     this.frame = frame;
     this.canvas = canvas;
@@ -32,7 +32,7 @@ export class Strip {
     this.measure();
   }
 
-  /// A lane for each of `lines`; `now(line)` is its time in us.
+  /// Creates a lane for each of `lines`; `now(line)` is its time in us.
   begin(lines, now) {
     this.lines = lines;
     this.now = now;
@@ -86,7 +86,7 @@ export class Strip {
     return this.colours[name];
   }
 
-  /// Once a repaint: by itself only while something moves in it.
+  /// Called once per repaint. Draws after a change, or while a visible entry moves.
   draw(when, entries) {
     const wait = unmoving.matches ? slowestUnmoving : slowest;
     if (this.lines.length && !(when - this.drawn < wait) && (this.stale || (!this.paused && !this.empty))) {
@@ -99,7 +99,7 @@ export class Strip {
   drawAll(entries) {
     const width = this.canvas.clientWidth;
     const span = Number(this.span.value);
-    // What is scrolled away is not drawn, and the scale stands below what can be seen.
+    // Lanes outside the scrolled area are not drawn, and the scale is at the bottom of the visible area.
     const top = this.frame.scrollTop;
     const bottom = Math.min(this.canvas.clientHeight, top + this.frame.clientHeight) - scaleHeight;
     this.pen.clearRect(0, 0, width, this.canvas.clientHeight);
@@ -168,7 +168,7 @@ export class Strip {
     this.pen.fillText(line.name, 4, top + 12);
   }
 
-  /// They come from the last to the first.
+  /// Entries are drawn from the last to the first.
   drawEntry(entry, lane) {
     if (entry.note || entry.missed) {
       this.pen.fillStyle = this.colour("note");
@@ -200,7 +200,7 @@ export class Strip {
     pen.globalAlpha = 1;
   }
 
-  /// The silence up to the next frame, where there is room to say it.
+  /// Writes the length of the gap before the next frame if there is enough room.
   drawGap(entry, next, {x, top}) {
     const gap = next ? next.began - entry.ended : 0;
     if (gap > 0 && x(next.began) - x(entry.ended) > 48) {

@@ -1,9 +1,9 @@
-// What is on or off, as people and screen readers are told.
+// A switch that is on or off, for people and screen readers.
 
 import {make, setAttribute} from "/element.js";
 
 export class Switch {
-  /// `ask(on)` has it carried out, and resolves when what came of it is shown.
+  /// `ask(on)` carries out the change and resolves when the result is shown.
   constructor(name, className, ask, ...children) {
     this.ask = ask;
     this.asked = 0;
@@ -11,14 +11,14 @@ export class Switch {
       "aria-label": name}, ...children);
   }
 
-  /// With a knob to see, that a click moves.
+  /// Creates a switch with a visible knob that a click moves.
   static withKnob(name, className, ask) {
     const knob = new Switch(name, className, ask, make("span", {class: "knob", "aria-hidden": "true"}));
     knob.element.addEventListener("click", () => knob.set(!knob.on));
     return knob;
   }
 
-  /// As shown, or as asked for since: two clicks count as two, however soon.
+  /// The shown state, or the latest requested one: two quick clicks count as two.
   get on() { return this.asked ? this.wanted : this.element.getAttribute("aria-checked") === "true"; }
 
   async set(on) {

@@ -1,23 +1,26 @@
-// What is said on the lines: kept, paused and searched, and shown as a strip to scale in time and a list of frames.
+// The traffic of the lines: stores, pauses and searches it, and shows it as a strip on a time scale and as a list of
+// frames.
 
 import {setAttribute, setText} from "/element.js";
 import {FrameList} from "/frame_list.js";
 import {Strip} from "/strip.js";
 
-/// Older ones go, in pieces, since moving all of them for each would take longer: there are up to `trimmedFrom`.
+/// When there are more than `trimmedFrom` entries, the oldest are removed until `mostKept` remain. Removing them one
+/// by one would be slower.
 const mostKept = 1700;
 const trimmedFrom = 2000;
-/// Likewise of those that wait: fewer, so that when they come there is still something before them.
+/// The same limits for entries that wait during a pause. They are lower, so that older entries remain when these are
+/// added.
 const mostWaiting = 1000;
 const waitingTrimmedFrom = 1200;
-/// Between two times that the list is drawn, in ms: a busy line would have every repaint taken up by it.
+/// The minimum time between two drawings of the list, in ms. Otherwise a busy line would redraw it at every repaint.
 const slowest = 30;
 
-/// How many frames there are, and those that an entry stands for. A remark on the line is none.
+/// Returns the number of frames, including missed ones; notes do not count.
 const sum = (entries) => entries.reduce((count, entry) => count + (entry.missed ?? (entry.note ? 0 : 1)), 0);
 const rowsOfFrames = (entries) => entries.filter(({note}) => !note).length;
 
-/// What is handed out late stands where it belongs all the same.
+/// Inserts an entry by its time, because entries may arrive late.
 function insert(list, entry) {
   let at = list.length;
   while (at > 0 && list[at - 1].began > entry.began) {
@@ -38,8 +41,8 @@ export class Timeline {
     this.begin([], null, null);
   }
 
-  /// Anew. `lines`: {name}; `who(line, station)` names a sender, and the line itself without one; `now(line)` is its
-  /// time in us.
+  /// Starts with an empty list. `lines`: {name}. `who(line, station)` returns the name of a sender, or of the line
+  /// without `station`. `now(line)` is its time in us.
   begin(lines, who, now) {
     this.who = who;
     this.entries = [];
@@ -63,11 +66,11 @@ export class Timeline {
     this.stale = true;
   }
 
-  /// `frames` as they come in a message.
+  /// `frames` is a member of a message.
   add(frames) {
     const fresh = [];
     for (const {line, entries} of frames) {
-      // After a lost connection some may come again, and others never.
+      // After a lost connection, entries may arrive twice or be missing.
       const next = this.next.get(line) ?? entries[0].number;
       const missed = entries[0].number - next;
       if (missed > 0) {
@@ -87,7 +90,8 @@ export class Timeline {
     }
   }
 
-  /// Of those that wait, the oldest become one for each line that says how many there were.
+  /// Adds entries during a pause. If there are too many, replaces the oldest ones by one entry for each line with
+  /// their number.
   keepBack(fresh) {
     this.pending.push(...fresh);
     if (this.pending.length > waitingTrimmedFrom) {
@@ -153,7 +157,7 @@ export class Timeline {
     setText(this.tally, `${of}${kept}${frames}${waiting}`);
   }
 
-  /// Once a repaint.
+  /// Called once per repaint.
   draw(when) {
     if (this.stale) {
       this.strip.stale = true;
