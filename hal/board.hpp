@@ -18,6 +18,7 @@ namespace ex9000::hal {
 /// What a board provides: a struct with a member of each of these names, a driver or a reference to one. If a
 /// member is missing or is not what its header promises, this does not compile, and the message names the
 /// member.
+// NOLINTBEGIN(bugprone-macro-parentheses): the arguments are names
 template <class Board>
 constexpr bool is_board() {
 #define EX9000_REQUIRE(member, promise, header)                            \
@@ -36,5 +37,6 @@ constexpr bool is_board() {
 #undef EX9000_REQUIRE
   return true;
 }
+// NOLINTEND(bugprone-macro-parentheses)
 
 }  // namespace ex9000::hal

@@ -17,6 +17,13 @@ enum class StatusStyle : std::uint8_t {
   EnableAndTimeout,  ///< 00, 80, 84
 };
 
+/// What switches the outputs of a model; for people.
+enum class OutputKind : std::uint8_t { None, OpenCollector, Relay, PhotoMos };
+
+/// Where INIT* is tied to GND; for people. Section 1.4 of the manuals: older modules have a terminal, newer
+/// ones a slide switch at the rear. The first pages of two manuals say which.
+enum class InitInput : std::uint8_t { Terminal, RearSwitch };
+
 struct Model {
   std::string_view designation;  ///< as on the label, e.g. "EX9042D-M"
   std::uint8_t inputs;           ///< channels, 0 to 16; more than 8 only without outputs
@@ -26,6 +33,8 @@ struct Model {
   std::string_view factory_name;  ///< what `$AAM` answers from the factory
   std::uint8_t longest_name;      ///< what `~AAO` accepts, in characters
   std::string_view description;   ///< Modbus object 04, and for people
+  OutputKind output_kind;
+  InitInput init_input = InitInput::Terminal;
 
   [[nodiscard]] constexpr bool speaks_modbus() const { return modbus_code != 0; }
   [[nodiscard]] constexpr bool has_inputs() const { return inputs != 0; }
@@ -45,26 +54,35 @@ constexpr unsigned kMaxNameLength = 7;
 
 inline constexpr auto kModels = table<Model>({
     // The modules of the four manuals.
-    {"EX9042D", 0, 13, 0, StatusStyle::EnableAndTimeout, "9042D", 6, "13 open-collector outputs"},
-    {"EX9042D-M", 0, 13, 0x9042, StatusStyle::EnableAndTimeout, "9042M", 6, "13 open-collector outputs"},
-    {"EX9043D", 0, 16, 0, StatusStyle::TimeoutOnly, "9043D", 6, "16 open-collector outputs"},
-    {"EX9043D-M", 0, 16, 0x9043, StatusStyle::TimeoutOnly, "9043M", 6, "16 open-collector outputs"},
-    {"EX9052D", 8, 0, 0, StatusStyle::EnableAndTimeout, "9052", 6, "8 inputs with latches and counters"},
+    {"EX9042D", 0, 13, 0, StatusStyle::EnableAndTimeout, "9042D", 6, "13 open-collector outputs",
+     OutputKind::OpenCollector},
+    {"EX9042D-M", 0, 13, 0x9042, StatusStyle::EnableAndTimeout, "9042M", 6, "13 open-collector outputs",
+     OutputKind::OpenCollector},
+    {"EX9043D", 0, 16, 0, StatusStyle::TimeoutOnly, "9043D", 6, "16 open-collector outputs",
+     OutputKind::OpenCollector},
+    {"EX9043D-M", 0, 16, 0x9043, StatusStyle::TimeoutOnly, "9043M", 6, "16 open-collector outputs",
+     OutputKind::OpenCollector, InitInput::RearSwitch},
+    {"EX9052D", 8, 0, 0, StatusStyle::EnableAndTimeout, "9052", 6, "8 inputs with latches and counters",
+     OutputKind::None},
     {"EX9052D-M", 8, 0, 0x9052, StatusStyle::EnableAndTimeout, "9052M", 6,
-     "8 inputs with latches and counters"},
-    {"EX9068D-M", 0, 8, 0x9068, StatusStyle::TimeoutOnly, "9068D-M", 7, "8 relay outputs"},
-    {"EX9068AD-M", 0, 8, 0x9068, StatusStyle::TimeoutOnly, "9068D-M", 7, "8 PhotoMOS outputs"},
+     "8 inputs with latches and counters", OutputKind::None, InitInput::RearSwitch},
+    {"EX9068D-M", 0, 8, 0x9068, StatusStyle::TimeoutOnly, "9068D-M", 7, "8 relay outputs", OutputKind::Relay},
+    {"EX9068AD-M", 0, 8, 0x9068, StatusStyle::TimeoutOnly, "9068D-M", 7, "8 PhotoMOS outputs",
+     OutputKind::PhotoMos},
     // Their ASCII-only sisters: outputs from the manuals' tables 2.3 and 2.11, inputs from the ICP DAS
     // I-70xx.
-    {"EX9044D", 4, 8, 0, StatusStyle::TimeoutOnly, "9044", 6, "4 inputs, 8 open-collector outputs"},
-    {"EX9050D", 7, 8, 0, StatusStyle::TimeoutOnly, "9050", 6, "7 inputs, 8 open-collector outputs"},
-    {"EX9055D", 8, 8, 0, StatusStyle::TimeoutOnly, "9055", 6, "8 inputs, 8 open-collector outputs"},
-    {"EX9060D", 4, 4, 0, StatusStyle::TimeoutOnly, "9060", 6, "4 inputs, 4 relay outputs"},
-    {"EX9063D", 8, 3, 0, StatusStyle::TimeoutOnly, "9063", 6, "8 inputs, 3 relay outputs"},
-    {"EX9065D", 4, 5, 0, StatusStyle::TimeoutOnly, "9065", 6, "4 inputs, 5 relay outputs"},
-    {"EX9066D", 0, 7, 0, StatusStyle::TimeoutOnly, "9066", 6, "7 PhotoMOS outputs"},
-    {"EX9067D", 0, 7, 0, StatusStyle::TimeoutOnly, "9067", 6, "7 relay outputs"},
-    {"EX9068D", 0, 8, 0, StatusStyle::TimeoutOnly, "9068", 6, "8 relay outputs"},
+    {"EX9044D", 4, 8, 0, StatusStyle::TimeoutOnly, "9044", 6, "4 inputs, 8 open-collector outputs",
+     OutputKind::OpenCollector},
+    {"EX9050D", 7, 8, 0, StatusStyle::TimeoutOnly, "9050", 6, "7 inputs, 8 open-collector outputs",
+     OutputKind::OpenCollector},
+    {"EX9055D", 8, 8, 0, StatusStyle::TimeoutOnly, "9055", 6, "8 inputs, 8 open-collector outputs",
+     OutputKind::OpenCollector},
+    {"EX9060D", 4, 4, 0, StatusStyle::TimeoutOnly, "9060", 6, "4 inputs, 4 relay outputs", OutputKind::Relay},
+    {"EX9063D", 8, 3, 0, StatusStyle::TimeoutOnly, "9063", 6, "8 inputs, 3 relay outputs", OutputKind::Relay},
+    {"EX9065D", 4, 5, 0, StatusStyle::TimeoutOnly, "9065", 6, "4 inputs, 5 relay outputs", OutputKind::Relay},
+    {"EX9066D", 0, 7, 0, StatusStyle::TimeoutOnly, "9066", 6, "7 PhotoMOS outputs", OutputKind::PhotoMos},
+    {"EX9067D", 0, 7, 0, StatusStyle::TimeoutOnly, "9067", 6, "7 relay outputs", OutputKind::Relay},
+    {"EX9068D", 0, 8, 0, StatusStyle::TimeoutOnly, "9068", 6, "8 relay outputs", OutputKind::Relay},
 });
 
 /// The row with this designation, or null.

@@ -1,21 +1,23 @@
-// A file that describes lines and their modules.
+// A bus file: JSON that describes lines and their modules.
 #pragma once
 
 #include <string>
 
-#include "sim/setup.hpp"
+#include "sim/setup/setup.hpp"
 
 namespace ex9000::sim {
 
-/// Whether an argument names a bus file: it ends with .json.
+/// Whether an argument names a bus file: its name ends with .json.
 bool is_bus_file(const std::string& argument);
 
-/// Throws std::invalid_argument, one line, `PATH:LINE: KEY: what is wrong and the mend`.
+/// Throws std::invalid_argument with a one-line message, `PATH:LINE: KEY: what is wrong and how to fix it`.
 Setup read_bus_file(const std::string& path);
-/// Likewise, of what stands in it.
+/// Parses `text` as the content of `path`. Throws like read_bus_file.
 Setup parse_bus_file(const std::string& path, const std::string& text);
 
-/// A bus file that shows all that one may hold.
+/// Returns a bus file with every kind of port, module, fault and input.
 std::string example_bus_file();
+/// Returns the JSON Schema of bus files.
+std::string bus_file_schema();
 
 }  // namespace ex9000::sim

@@ -10,7 +10,7 @@ namespace {
 
 using json = nlohmann::ordered_json;
 
-/// Goes through characters and counts the lines that have begun.
+/// Iterates over the characters and counts lines.
 class CountingIterator {
  public:
   using difference_type = std::ptrdiff_t;
@@ -35,8 +35,9 @@ class CountingIterator {
   unsigned* line_;
 };
 
-/// What is parsed, by place. A number is over only with the character behind it, which may begin a line, so a
-/// scalar has the line of its key, or of what was before it in an array.
+/// Records the line number of each value. The parser detects the end of a number only at the next character,
+/// which may be on a new line. Therefore a scalar gets the line of its key, or of the previous token in an
+/// array.
 class Locator final : public nlohmann::json_sax<json> {
  public:
   explicit Locator(const unsigned& line) : line_(line) {}
@@ -63,7 +64,8 @@ class Locator final : public nlohmann::json_sax<json> {
     want_no_nul(name);
     open_.back().key = name;
     if (!lines.emplace(member_of(open_.back().path, name), line_).second) {
-      throw std::invalid_argument(std::to_string(line_) + ": '" + name + "' is given twice");
+      throw std::invalid_argument(std::to_string(line_) + ": '" + name +
+                                  "' is given twice; leave out one of them");
     }
     return true;
   }
@@ -80,8 +82,9 @@ class Locator final : public nlohmann::json_sax<json> {
     std::string key;
   };
 
-  /// `[json.exception.parse_error.101] parse error at line 3, column 5: syntax error while ...`, or, where it
-  /// is no matter of syntax, `[json.exception.out_of_range.406] number overflow ...`
+  /// Turns a message of the parser into `LINE: what is wrong`. The message is either
+  /// `[json.exception.parse_error.101] parse error at line 3, column 5: syntax error while ...` or, for other
+  /// errors, `[json.exception.out_of_range.406] number overflow ...`
   static std::string told(const std::string& text, unsigned line) {
     const std::string lead = "] parse error at line ";
     const auto at = text.find(lead);
@@ -92,10 +95,10 @@ class Locator final : public nlohmann::json_sax<json> {
     return text.substr(first, text.find(',', first) - first) + text.substr(text.find(": ", first));
   }
 
-  /// It would end a path.
+  /// Rejects NUL, because it would end a path.
   void want_no_nul(const std::string& text) const {
     if (text.find('\0') != std::string::npos) {
-      throw std::invalid_argument(std::to_string(line_) + ": no text has a NUL in it; leave out \\u0000");
+      throw std::invalid_argument(std::to_string(line_) + ": a text contains NUL; leave out \\u0000");
     }
   }
 
@@ -113,9 +116,11 @@ class Locator final : public nlohmann::json_sax<json> {
   }
 
   bool open(bool is_array) {
-    constexpr std::size_t kDeepest = 16;  // far beyond a bus file; each place holds the whole way to it
+    // More than any bus file requires. The limit saves memory, because each open place stores its whole path.
+    constexpr std::size_t kDeepest = 16;
     if (open_.size() == kDeepest) {
-      throw std::invalid_argument(std::to_string(line_) + ": nested deeper than anything in a bus file");
+      throw std::invalid_argument(std::to_string(line_) +
+                                  ": is nested deeper than any bus file; see 'ex9000-sim --schema'");
     }
     seen_ = line_;
     const std::string path = place();

@@ -1,4 +1,4 @@
-// JSON that knows in which line of its file each value stands.
+// A JSON parser that keeps the line number of each value.
 #pragma once
 
 #include <map>
@@ -8,16 +8,17 @@
 namespace ex9000::sim {
 
 struct LocatedJson {
-  nlohmann::ordered_json value;  ///< as it was written, so that faults are numbered in their order
-  /// By the path of a value, such as `lines[0].modules[1].baud`; the whole is "".
+  nlohmann::ordered_json value;  ///< keeps the order of members, because faults are numbered in that order
+  /// Line numbers by the path of a value, for example `lines[0].modules[1].baud`; the path of the whole file
+  /// is "".
   std::map<std::string, unsigned> lines;
 };
 
-/// Throws std::invalid_argument, `LINE: what is wrong`, where `text` is no JSON, or an object has a key
+/// Throws std::invalid_argument, `LINE: what is wrong`, if `text` is not JSON or an object has the same key
 /// twice.
 LocatedJson parse_located(const std::string& text);
 
-/// How the path of a member, or of an element, goes on from `path`.
+/// Return the path of a member or an element of the value at `path`.
 std::string member_of(const std::string& path, const std::string& key);
 std::string element_of(const std::string& path, std::size_t index);
 

@@ -3,8 +3,8 @@
 #include "firmware/model/model.hpp"
 #include "sim/capture/pcapng.hpp"
 #include "sim/capture/upper_pdu.hpp"
-#include "sim/line_error.hpp"
-#include "sim/meaning.hpp"
+#include "sim/log/frame_errors.hpp"
+#include "sim/log/frame_meaning.hpp"
 
 namespace ex9000::sim {
 
@@ -18,13 +18,13 @@ UpperPdu dissected_by(const Frame& frame) {
     pdu.protocol = "DCON";
   } else {
     pdu.dissector = frame.bytes.size() < kShortestThatMbrtuTakes ? "data" : "mbrtu";
-    pdu.protocol = "Modbus RTU";  // also where the dissector does not know what to do with it
+    pdu.protocol = "Modbus RTU";  // also for frames that the dissector cannot decode
   }
   return pdu;
 }
 
-/// A port for each line's master, for Wireshark finds a reply's request by the ports. Whoever is neither the
-/// master nor a module has none: both may ask.
+/// Each line's master gets its own port, because Wireshark matches replies with requests by their ports. A
+/// station that is neither the master nor a module has no port, because it may send both.
 void set_ports(UpperPdu& pdu, std::size_t line, std::size_t modules, const Frame& frame) {
   constexpr std::size_t kFirstMastersPort = 10000;
   const auto master = static_cast<std::uint16_t>(kFirstMastersPort + line);

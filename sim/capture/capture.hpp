@@ -1,4 +1,4 @@
-// Keeps what was on the lines in a pcapng file, for Wireshark.
+// Writes the traffic of the lines to a pcapng file, for Wireshark.
 #pragma once
 
 #include <chrono>
@@ -7,26 +7,27 @@
 #include <vector>
 
 #include "sim/capture/capture_file.hpp"
-#include "sim/frame_watch.hpp"
+#include "sim/log/frame_watch.hpp"
 
 namespace ex9000::sim {
 
-/// The port that all modules are taken to be at; Wireshark's dissector for Modbus RTU has to know it to tell
-/// requests from replies: mbrtu.tcp.port.
+/// The TCP port that represents all modules. Wireshark's dissector for Modbus RTU uses it to distinguish
+/// requests from replies: set mbrtu.tcp.port to this value.
 constexpr std::uint16_t kCapturedModulesPort = 9000;
 
-/// Every line is an interface, every frame a packet: inbound what a master hears, outbound what it sends.
-/// What looks like DCON is text, all else Modbus RTU or, too short for that, bytes. What went wrong with a
-/// frame is its comment. Of what faults put on a line it is not told whether it asks or answers.
+/// Every line becomes an interface and every frame a packet: inbound if the master receives it, outbound if
+/// the master sends it. Frames that look like DCON are stored as text, all others as Modbus RTU or, if they
+/// are too short for that, as bytes. The errors of a frame become its comment. Frames that faults put on a
+/// line are not marked as request or reply.
 class Capture {
  public:
-  /// Opens the file; see CaptureFile for what it throws, here and later.
-  explicit Capture(std::string path) : file_(std::move(path)) {}
+  /// Opens the file. This function and all others throw what CaptureFile throws.
+  Capture(std::string path, const std::string& place) : file_(std::move(path), place) {}
 
-  /// Before all else: the file holds an empty capture from now on.
+  /// Replaces the content of the file with an empty capture. Call it first.
   void begin();
-  /// With so many modules, which are attached behind the master. `began`: what the wall clock, since
-  /// 1970-01-01 00:00:00 UTC, is taken to have shown at the line's time 0. Returns the line's number for
+  /// Adds a line with `modules` modules, which are attached after the master. `began` is the wall clock time
+  /// (since 1970-01-01 00:00:00 UTC) that corresponds to time 0 of the line. Returns the line's number for
   /// `write`.
   std::size_t add_line(const std::string& name, std::size_t modules, std::chrono::nanoseconds began);
   void write(std::size_t line, const Frame& frame);

@@ -9,12 +9,13 @@
 #include <stdexcept>
 #include <utility>
 
-#include "sim/reason.hpp"
+#include "sim/text/system_error.hpp"
 
 namespace ex9000::sim {
 
-CaptureFile::CaptureFile(std::string path) : path_(std::move(path)) {
-  // A pipe that nobody reads would be waited for, deaf to Ctrl-C.
+CaptureFile::CaptureFile(std::string path, const std::string& place)
+    : path_(std::move(path)), where_(place + path_) {
+  // O_NONBLOCK: otherwise open would wait for the reader of a pipe and ignore Ctrl-C.
   constexpr int kFlags = O_WRONLY | O_CLOEXEC | O_NONBLOCK;
   constexpr mode_t kAsUmaskPermits = 0666;
   fd_ = open(path_.c_str(), kFlags | O_CREAT | O_EXCL, kAsUmaskPermits);
@@ -23,7 +24,7 @@ CaptureFile::CaptureFile(std::string path) : path_(std::move(path)) {
     fd_ = open(path_.c_str(), kFlags);
   }
   if (fd_ < 0 && errno == ENXIO) {
-    refuse("nobody reads there; start who reads it first");
+    refuse("nobody reads this pipe; start its reader first");
   }
   struct stat status {};
   if (fd_ < 0 || fstat(fd_, &status) != 0 || fcntl(fd_, F_SETFL, 0) != 0) {
@@ -44,7 +45,7 @@ CaptureFile::~CaptureFile() {
 
 void CaptureFile::begin() {
   if (regular_ && ftruncate(fd_, 0) != 0) {
-    throw std::runtime_error("--capture " + path_ + ": cannot be overwritten: " + reason());
+    throw std::runtime_error(where_ + ": cannot be overwritten: " + reason());
   }
   begun_ = true;
 }
@@ -56,10 +57,9 @@ void CaptureFile::append(const std::vector<std::uint8_t>& block) {
     if (written < 0 && errno != EINTR) {
       const std::string why = reason();
       if (regular_ && ftruncate(fd_, before) != 0) {
-        throw std::runtime_error("--capture " + path_ +
-                                 ": cannot be written, and ends in half a frame: " + why);
+        throw std::runtime_error(where_ + ": cannot be written, and ends in half a frame: " + why);
       }
-      throw std::runtime_error("--capture " + path_ + ": cannot be written: " + why);
+      throw std::runtime_error(where_ + ": cannot be written: " + why);
     }
     done += written > 0 ? static_cast<std::size_t>(written) : 0;
   }
@@ -69,7 +69,7 @@ void CaptureFile::refuse(const std::string& why) {
   if (fd_ >= 0) {
     close(std::exchange(fd_, -1));
   }
-  throw std::invalid_argument("--capture " + path_ + ": " + why);
+  throw std::invalid_argument(where_ + ": " + why);
 }
 
 }  // namespace ex9000::sim

@@ -1,4 +1,4 @@
-// The file that a capture grows in.
+// The file that a capture is written to.
 #pragma once
 
 #include <cstdint>
@@ -7,28 +7,30 @@
 
 namespace ex9000::sim {
 
-/// A regular file, or a pipe that somebody reads.
+/// A regular file, or a pipe with a reader.
 class CaptureFile {
  public:
-  /// Makes it if it is missing; one that is there keeps what it holds until `begin`. Throws
-  /// std::invalid_argument, one line, where it cannot be written or another simulator has it.
-  explicit CaptureFile(std::string path);
+  /// Creates the file if it is missing. An existing file keeps its content until `begin`. Throws
+  /// std::invalid_argument with a one-line message if the file is not writable or another simulator uses it.
+  /// `place` stands before the path in all messages.
+  CaptureFile(std::string path, const std::string& place);
   /// What was made, and never begun, is removed.
   ~CaptureFile();
   CaptureFile(const CaptureFile&) = delete;
   CaptureFile& operator=(const CaptureFile&) = delete;
 
-  /// What it held is gone.
+  /// Deletes the content of the file.
   void begin();
-  /// All of it or nothing, and handed to the kernel at once, so that whoever reads it, or kills the program,
-  /// finds whole blocks. Blocks where the reader of a pipe does not read. Throws std::runtime_error, one
-  /// line, where the disk is full or the reader has gone.
+  /// Writes the whole block or nothing, directly to the kernel. A reader of the file sees only whole blocks,
+  /// even if the program is killed. Blocks while the reader of a pipe does not read. Throws
+  /// std::runtime_error with a one-line message if the disk is full or the reader has closed the pipe.
   void append(const std::vector<std::uint8_t>& block);
 
  private:
   [[noreturn]] void refuse(const std::string& why);
 
   std::string path_;
+  std::string where_;  ///< for messages
   int fd_ = -1;
   bool regular_ = false;
   bool made_ = false;

@@ -9,7 +9,7 @@ constexpr std::uint32_t kSectionHeaderBlock = 0x0A0D0D0A;
 constexpr std::uint32_t kInterfaceDescriptionBlock = 1;
 constexpr std::uint32_t kEnhancedPacketBlock = 6;
 
-// Options: of all blocks (3.5), and of each.
+// Option codes: those of all blocks (3.5), then those of each block.
 constexpr std::uint16_t kEndOfOptions = 0;
 constexpr std::uint16_t kComment = 1;
 constexpr std::uint16_t kSectionUserApplication = 4;
@@ -24,14 +24,14 @@ void put(Block& block, Number number) {
   }
 }
 
-/// Padded to a multiple of four bytes.
+/// Pads with zeros to a multiple of four bytes.
 template <class Bytes>
 void put_padded(Block& block, const Bytes& bytes) {
   block.insert(block.end(), bytes.begin(), bytes.end());
   block.resize((block.size() + 3) / 4 * 4);
 }
 
-/// 3.5. The length is that without the padding.
+/// 3.5. The length excludes the padding.
 void put_option(Block& block, std::uint16_t code, const std::string& value) {
   constexpr std::size_t kLongest = 0xFFFF;
   const std::string fitting = value.substr(0, kLongest);
@@ -40,8 +40,8 @@ void put_option(Block& block, std::uint16_t code, const std::string& value) {
   put_padded(block, fitting);
 }
 
-/// 3.1: its type and its length stand before it, and the length once more behind it. All that comes before
-/// the end of options is given.
+/// Adds the frame of a block (3.1): type and length before the body, and the length again after it. `body` is
+/// complete except for the end of options.
 Block framed(std::uint32_t type, Block body) {
   put_option(body, kEndOfOptions, "");
   constexpr std::size_t kTypeAndLengths = 12;

@@ -1,5 +1,5 @@
-// Blocks of a pcapng file: draft-ietf-opsawg-pcapng, whose names these are. Little-endian throughout; a
-// reader tells by the Section Header Block's magic.
+// Blocks of a pcapng file: draft-ietf-opsawg-pcapng, which also defines the names used here. All values are
+// little-endian; readers detect this from the magic number of the Section Header Block.
 #pragma once
 
 #include <chrono>
@@ -11,11 +11,11 @@ namespace ex9000::sim::pcapng {
 
 using Block = std::vector<std::uint8_t>;
 
-/// 4.1: what a file begins with. `userappl` is the program that writes it.
+/// 4.1: the first block of a file. `userappl` is the program that writes the file.
 Block section_header(const std::string& userappl);
 
-/// 4.2: where packets come from; interfaces count from 0 in the order of their blocks. Its packets are of any
-/// length, and their times in nanoseconds (if_tsresol 9).
+/// 4.2: a source of packets. Interfaces count from 0 in the order of their blocks. Packets may have any
+/// length; their times are in nanoseconds (if_tsresol 9).
 Block interface_description(std::uint16_t link_type, const std::string& name);
 
 /// 4.3.1: bits 0 and 1 of epb_flags.
@@ -27,7 +27,7 @@ struct EnhancedPacket {
   std::chrono::nanoseconds timestamp{0};  ///< since 1970-01-01 00:00:00 UTC
   Direction direction = Direction::Inbound;
   std::vector<std::uint8_t> data;
-  std::string comment;  ///< opt_comment; empty: none. What is beyond 65535 bytes is left out
+  std::string comment;  ///< opt_comment, cut after 65535 bytes; empty: none
 };
 Block enhanced_packet(const EnhancedPacket& packet);
 

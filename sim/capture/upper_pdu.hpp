@@ -1,6 +1,6 @@
-// How Wireshark stores what it is to dissect without the layers below: LINKTYPE_WIRESHARK_UPPER_PDU, see
-// https://wiki.wireshark.org/Protocols/exported_pdu. A serial line has no link type that carries who is
-// asking and who answers; this one does, and it names the dissector, so that nobody has to set one up.
+// The header that lets Wireshark dissect a frame without the layers below it: LINKTYPE_WIRESHARK_UPPER_PDU,
+// see https://wiki.wireshark.org/Protocols/exported_pdu. No link type for serial lines records which side
+// sends the request. This one does, and it names the dissector, so that users need not configure one.
 #pragma once
 
 #include <cstdint>
@@ -11,11 +11,11 @@ namespace ex9000::sim {
 
 constexpr std::uint16_t kLinkTypeWiresharkUpperPdu = 252;
 
-/// What comes before the bytes of a frame.
+/// The header before the bytes of a frame.
 struct UpperPdu {
-  std::string dissector;  ///< Wireshark's name of it
-  std::string protocol;   ///< what the protocol column shows; empty: what the dissector says
-  /// The dissector for Modbus RTU takes what comes from its port for a response, and what goes there for a
+  std::string dissector;  ///< Wireshark's name of the dissector
+  std::string protocol;   ///< text for the protocol column; empty: the dissector chooses it
+  /// The dissector for Modbus RTU treats a frame from its port as a response and a frame to its port as a
   /// query.
   std::uint16_t source_port = 0;
   std::uint16_t destination_port = 0;

@@ -1,6 +1,7 @@
 #include "sim/control/control.hpp"
-#include "sim/setup.hpp"
-#include "sim/words.hpp"
+#include "sim/text/fail.hpp"
+#include "sim/text/values.hpp"
+#include "sim/text/words.hpp"
 
 #include <array>
 #include <iomanip>
@@ -13,47 +14,14 @@ namespace ex9000::sim {
 
 namespace {
 
-/// Becomes an `error: ` reply.
-struct Refused {
-  std::string why;  ///< may hold any byte that a command may
-};
-
-/// Decimal digits and nothing else, up to `most`.
-std::optional<unsigned long> number(const std::string& text, unsigned long most) {
-  constexpr std::size_t kMostDigits = 9;
-  if (text.empty() || text.size() > kMostDigits ||
-      text.find_first_not_of("0123456789") != std::string::npos) {
-    return std::nullopt;
-  }
-  const unsigned long value = std::stoul(text);
-  return value <= most ? std::optional(value) : std::nullopt;
-}
-
-bool on_off(const std::string& word) {
-  if (word != "on" && word != "off") {
-    throw Refused{"'" + word + "' is neither on nor off"};
-  }
-  return word == "on";
-}
-
-unsigned input_channel(const SimulatedModule& module, const std::string& word) {
-  const unsigned inputs = module.model().inputs;
-  const auto channel = inputs == 0 ? std::nullopt : number(word, inputs - 1);
-  if (!channel) {
-    throw Refused{"the " + std::string(module.model().designation) + " has no input " + word +
-                  (inputs == 0 ? ", it has none at all" : "; it has 0 to " + std::to_string(inputs - 1))};
-  }
-  return static_cast<unsigned>(*channel);
-}
-
 void want_power(const SimulatedModule& module) {
   if (!module.powered()) {
-    throw Refused{"the module has no power; 'power on' comes first"};
+    fail("the module has no power; switch it on with 'power on'");
   }
 }
 
 std::string power(SimulatedModule& module, const Words& args) {
-  module.power(on_off(args[0]));
+  module.power(parse_on_off(args[0]));
   return "";
 }
 
@@ -64,23 +32,20 @@ std::string reset(SimulatedModule& module, const Words& /*args*/) {
 }
 
 std::string init(SimulatedModule& module, const Words& args) {
-  module.set_init(on_off(args[0]));
+  module.set_init(parse_on_off(args[0]));
   return "";
 }
 
 std::string input(SimulatedModule& module, const Words& args) {
-  const unsigned channel = input_channel(module, args[0]);
-  module.set_input(channel, on_off(args[1]));
+  const unsigned channel = parse_input(args[0], module.model());
+  module.set_input(channel, parse_on_off(args[1]));
   return "";
 }
 
 std::string pulse(SimulatedModule& module, const Words& args) {
-  const unsigned channel = input_channel(module, args[0]);
-  const auto count = args.size() == 1 ? std::optional(1UL) : number(args[1], kMostPulses);
-  if (!count || *count == 0) {
-    throw Refused{"'" + args[1] + "' is no count from 1 to " + std::to_string(kMostPulses)};
-  }
-  module.pulse_input(channel, static_cast<std::uint32_t>(*count));
+  const unsigned channel = parse_input(args[0], module.model());
+  const std::uint64_t count = args.size() == 1 ? 1 : parse_whole_number(args[1], 1, kMostPulses);
+  module.pulse_input(channel, static_cast<std::uint32_t>(count));
   return "";
 }
 
@@ -133,7 +98,7 @@ std::string status(SimulatedModule& module, const Words& /*args*/) {
   return text + rest.str();
 }
 
-/// What follows the position of a module.
+/// A command for one module, after the module's position.
 struct Verb {
   std::string_view name;
   std::string_view args;
@@ -156,7 +121,7 @@ constexpr std::array<Verb, 10> kVerbs{{
     {"status", "", 0, 0, "address, protocol, rate, mode and watchdogs", status},
 }};
 
-/// What may have `line NAME` in front of it.
+/// A command for one line; it may follow `line NAME`.
 struct LineVerb {
   std::string_view name;
   std::string_view args;
@@ -229,45 +194,33 @@ const Verb& verb_called(const std::string& name) {
       return verb;
     }
   }
-  throw Refused{"no command '" + name + "'; there are " + all_shapes()};
-}
-
-std::string joined(Words::const_iterator first, Words::const_iterator last) {
-  std::string text;
-  for (; first != last; ++first) {
-    text += (text.empty() ? "" : " ") + *first;
-  }
-  return text;
+  fail("'" + name + "' is not a command; expected one of " + all_shapes());
 }
 
 std::string add_fault(Line& line, std::optional<std::size_t> module, const std::string& text) {
-  try {
-    Fault fault = parse_fault(text);
-    if (module && !befalls_a_module(fault.trouble)) {
-      throw Refused{text + ": befalls the line, not a module; leave out the module's number"};
-    }
-    fault.module = module;
-    return std::to_string(line.faults().add(fault));
-  } catch (const std::invalid_argument& error) {
-    throw Refused{error.what()};
+  Fault fault = parse_fault(text);
+  if (module && !befalls_a_module(fault.trouble)) {
+    fail(text + ": concerns the line, not a module; leave out the module's number");
   }
+  fault.module = module;
+  return std::to_string(line.faults().add(fault));
 }
 
 std::string end_fault(Line& line, const Words& words) {
-  constexpr unsigned long kMostFaults = 999'999'999;
+  constexpr std::uint64_t kMostFaults = 999'999'999;
   const std::string which = words.size() == 3 ? words[2] : "";
-  const auto fault = number(which, kMostFaults);
+  const auto fault = whole_number(which, kMostFaults);
   if (which == "all") {
     line.faults().remove_all();
   } else if (!fault) {
-    throw Refused{"the command is fault off K|all"};
+    fail("expected fault off K|all");
   } else if (!line.faults().remove(*fault)) {
-    throw Refused{"no fault " + which + " on this line; 'faults' lists them"};
+    fail("no fault " + which + " on this line; 'faults' lists them");
   }
   return "";
 }
 
-/// The line's first module is at `position`, from 0.
+/// `position` is the position of the line's first module, from 0.
 std::string list_faults(Line& line, std::size_t position) {
   const std::vector<Faults::Told> told = line.faults().told();
   std::string text = std::to_string(told.size()) + (told.size() == 1 ? " fault:" : " faults:");
@@ -281,13 +234,9 @@ std::string list_faults(Line& line, std::size_t position) {
 
 std::string set_rate(Line& line, const Words& words) {
   if (words.size() != 2) {
-    throw Refused{"the command is baud RATE"};
+    fail("expected baud RATE");
   }
-  try {
-    line.master().set_baud(parse_line_rate(words[1]));
-  } catch (const std::invalid_argument& error) {
-    throw Refused{error.what()};
-  }
+  line.master().set_baud(parse_baud_rate(words[1]));
   return "";
 }
 
@@ -306,18 +255,18 @@ std::string on_line(const Control::ControlledLine& controlled, std::size_t posit
     return words[1] == "off" ? end_fault(line, words)
                              : add_fault(line, std::nullopt, joined(words.begin() + 1, words.end()));
   }
-  throw Refused{"no command '" + joined(words.begin(), words.end()) + "'; there are " + all_shapes()};
+  fail("'" + joined(words) + "' is not a command; expected one of " + all_shapes());
 }
 
 std::string on_some_line(const Lines& lines, const Words& words) {
   if (words[0] != "line") {
     if (lines.size() != 1) {
-      throw Refused{"there are several lines; put 'line NAME' in front"};
+      fail("there are several lines; put 'line NAME' before the command");
     }
     return on_line(lines[0], 0, words);
   }
   if (words.size() < 3) {
-    throw Refused{"the command is line NAME fault FAULT, or another of a line's"};
+    fail("expected line NAME and a command of a line, for example line NAME faults");
   }
   std::string names;
   std::size_t position = 0;
@@ -328,17 +277,17 @@ std::string on_some_line(const Lines& lines, const Words& words) {
     names += (names.empty() ? "" : ", ") + controlled.name;
     position += controlled.line.size();
   }
-  throw Refused{"no line '" + words[1] + "'; " +
-                (names.empty() ? "the only one has no name, leave out 'line NAME'" : "there are " + names)};
+  fail("no line '" + words[1] + "'; " +
+       (names.empty() ? "the only one has no name, leave out 'line NAME'" : "there are " + names));
 }
 
 std::string on_module(const Lines& lines, const Words& words) {
-  const auto position = number(words[0], modules_of(lines));
+  const auto position = whole_number(words[0], modules_of(lines));
   if (!position || *position == 0) {
-    throw Refused{"no module " + words[0] + "; there are 1 to " + std::to_string(modules_of(lines))};
+    fail("no module " + words[0] + "; there are 1 to " + std::to_string(modules_of(lines)));
   }
   if (words.size() == 1) {
-    throw Refused{"'" + words[0] + "' alone is no command; there are " + all_shapes()};
+    fail("'" + words[0] + "' is not a command; expected one of " + all_shapes());
   }
   std::size_t index = *position - 1;
   auto controlled = lines.begin();
@@ -351,7 +300,7 @@ std::string on_module(const Lines& lines, const Words& words) {
   const Verb& verb = verb_called(words[1]);
   const Words args(words.begin() + 2, words.end());
   if (args.size() < verb.fewest || args.size() > verb.most) {
-    throw Refused{"the command is " + shape(verb)};
+    fail("expected " + shape(verb));
   }
   return verb.handler(controlled->line.module(index), args);
 }
@@ -366,22 +315,22 @@ Control::Reply Control::carry_out(const std::string& command) {
     const bool quit = first == "quit";
     if (quit || first == "list" || first == "help") {
       if (words.size() != 1) {
-        throw Refused{"nothing goes behind '" + first + "'"};
+        fail("'" + first + "' has no arguments; leave them out");
       }
       result = quit ? "" : first == "list" ? list(lines_) : all_shapes();
     } else if (first == "advance") {
-      throw Refused{"the lines' time moves by itself; 'advance' requires --speed step"};
+      fail("'advance' requires --speed step; the lines' time moves by itself");
     } else if (first == "line" || first == "fault" || first == "faults" || first == "baud" ||
                first == "sent") {
       result = on_some_line(lines_, words);
     } else if (first.empty() || first.find_first_not_of("0123456789") != std::string::npos) {
-      throw Refused{"no command '" + first + "'; there are " + all_shapes()};
+      fail("'" + first + "' is not a command; expected one of " + all_shapes());
     } else {
       result = on_module(lines_, words);
     }
     return {"ok" + (result.empty() ? "" : " " + result), quit};
-  } catch (const Refused& refused) {
-    return {"error: " + refused.why, false};
+  } catch (const std::invalid_argument& error) {
+    return {std::string("error: ") + error.what(), false};
   }
 }
 

@@ -1,4 +1,4 @@
-// What can be done to lines and their modules from outside, as commands of a line of text.
+// Commands that act on lines and their modules from outside; each command is one line of text.
 #pragma once
 
 #include <cstdint>
@@ -6,23 +6,24 @@
 #include <string>
 #include <vector>
 
-#include "sim/line.hpp"
+#include "sim/line/line.hpp"
 
 namespace ex9000::sim {
 
-/// On an input at once: some milliseconds of work.
+/// The largest number of pulses on an input in one command; they take some milliseconds to compute.
 constexpr unsigned long kMostPulses = 1'000'000;
 
 /// The commands of `--control`, without the socket.
 class Control {
  public:
   struct ControlledLine {
-    std::string name;  ///< may be empty where there is but one
+    std::string name;  ///< may be empty if there is only one line
     Line& line;
-    std::function<std::uint64_t()> sent = nullptr;  ///< bytes written to its ports so far; null: it has none
+    /// Returns the number of bytes written to the line's ports so far; null: the line has no ports.
+    std::function<std::uint64_t()> sent = nullptr;
   };
 
-  /// Modules are numbered from 1, through all `lines`.
+  /// Modules are numbered from 1 across all `lines`.
   explicit Control(std::vector<ControlledLine> lines) : lines_(std::move(lines)) {}
 
   struct Reply {
@@ -30,14 +31,14 @@ class Control {
     bool quit = false;
   };
 
-  /// `command` is a line without its newline. Where it is refused nothing is changed.
+  /// `command` is a line without its newline. A rejected command changes nothing.
   Reply carry_out(const std::string& command);
 
  private:
   std::vector<ControlledLine> lines_;
 };
 
-/// The commands and what they do, a line each, for --help and the manual.
+/// Returns the commands and what they do, one per line, for --help and the manual.
 std::string control_commands();
 
 }  // namespace ex9000::sim

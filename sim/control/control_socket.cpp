@@ -18,14 +18,14 @@ namespace {
 using Local = boost::asio::local::stream_protocol;
 
 constexpr std::size_t kLongestLine = 1000;  // without its newline
-/// Far more than people and scripts that look at one line; beyond it somebody connects and never goes.
+/// The limit for clients. Only clients that never disconnect can exceed it.
 constexpr std::size_t kMostClients = 64;
 
 [[noreturn]] void refuse(const std::string& path, const std::string& why) {
-  throw std::invalid_argument("--control " + path + ": " + why);
+  throw std::invalid_argument(path + ": " + why);
 }
 
-/// Makes room for the socket, or throws.
+/// Removes a dead socket at `path`. Throws if something else is there.
 void clear_the_way(boost::asio::io_context& io, const std::string& path, const Claim& claim) {
   const std::string in_use = "another program listens there; end it or name another path";
   if (!claim.held()) {
@@ -67,7 +67,7 @@ ControlSocket::ControlSocket(boost::asio::io_context& io, std::string path, Carr
       next_try_(io) {
   if (path_.empty() || path_.size() >= sizeof(sockaddr_un::sun_path)) {
     refuse(path_,
-           "wants a path of 1 to " + std::to_string(sizeof(sockaddr_un::sun_path) - 1) + " characters");
+           "expected a path of 1 to " + std::to_string(sizeof(sockaddr_un::sun_path) - 1) + " characters");
   }
   clear_the_way(io, path_, claim_);
   boost::system::error_code error;
@@ -113,13 +113,14 @@ void ControlSocket::accept() {
       clients_.push_back(client);
       read(client);
     } else {
-      send(client, "error: " + std::to_string(kMostClients) + " clients are here already", Then::Part);
+      send(client, "error: there are " + std::to_string(kMostClients) + " clients already; close one of them",
+           Then::Part);
     }
     accept();
   });
 }
 
-/// The process has as many files open as it may: trying again at once would take all of the processor.
+/// The process has no free file descriptor. An immediate retry would use all of the processor's time.
 void ControlSocket::accept_later() {
   constexpr std::chrono::milliseconds kPatience{100};
   next_try_.expires_after(kPatience);
@@ -135,9 +136,12 @@ void ControlSocket::read(const std::shared_ptr<Client>& client) {
       client->socket, boost::asio::dynamic_buffer(client->input, kLongestLine + 1), '\n',
       [this, client](const boost::system::error_code& error, std::size_t size) {
         if (error == boost::asio::error::not_found) {
-          send(client, "error: a line has up to " + std::to_string(kLongestLine) + " characters", Then::Part);
+          send(client,
+               "error: the command is too long; expected up to " + std::to_string(kLongestLine) +
+                   " characters",
+               Then::Part);
         } else if (error == boost::asio::error::eof && !client->input.empty()) {
-          send(client, "error: a command ends with a newline; this one did not and was left", Then::Part);
+          send(client, "error: the last command was ignored; expected a newline after it", Then::Part);
         } else if (!error) {
           const std::string line = client->input.substr(0, size - 1);
           client->input.erase(0, size);
@@ -156,7 +160,7 @@ void ControlSocket::send(const std::shared_ptr<Client>& client, const std::strin
         if (then == Then::Quit) {
           quit_();
         } else if (then == Then::ReadOn) {
-          read(client);  // also where nobody waits for the reply: what was sent is carried out
+          read(client);  // also if the client has disconnected, because commands already sent are carried out
         }
       });
 }

@@ -16,25 +16,26 @@
 
 namespace ex9000::sim {
 
-/// Any number of clients; a line is a command, each gets one line back, in order. Nothing blocks: a client
-/// that does not read its replies is not read from.
+/// Serves any number of clients. Each line from a client is a command and gets one line as reply, in order.
+/// Nothing blocks: the server does not read from a client that does not read its replies.
 class ControlSocket {
  public:
   using Answer = std::function<void(const Control::Reply&)>;
-  /// Calls `answer` once, at once or later. Until then nothing more is read from that client.
+  /// Calls `answer` exactly once, at once or later. Until then the server reads nothing more from that
+  /// client.
   using CarryOut = std::function<void(const std::string& command, const Answer& answer)>;
 
-  /// Listens at `path` from now on; what a dead process has left there is taken over. Throws
-  /// std::invalid_argument, one line, where the path is in use or cannot be made. What `quit` answers is sent
-  /// before `quit` is called.
+  /// Starts to listen on `path`; replaces a socket that a dead process has left there. Throws
+  /// std::invalid_argument with a one-line message if the path is in use or cannot be created. The reply to
+  /// the `quit` command is sent before `quit` is called.
   ControlSocket(boost::asio::io_context& io, std::string path, CarryOut carry_out,
                 std::function<void()> quit);
-  /// Removes the socket, if it is still this one's.
+  /// Removes the socket file, if it still belongs to this object.
   ~ControlSocket();
   ControlSocket(const ControlSocket&) = delete;
   ControlSocket& operator=(const ControlSocket&) = delete;
 
-  /// Once the line is ready for commands.
+  /// Accepts clients. Call it when the line is ready for commands.
   void start() { accept(); }
 
  private:
@@ -44,7 +45,7 @@ class ControlSocket {
   void accept();
   void accept_later();
   void read(const std::shared_ptr<Client>& client);
-  /// What happens when the answer is on its way.
+  /// What to do after the reply has been sent.
   enum class Then { ReadOn, Part, Quit };
   void send(const std::shared_ptr<Client>& client, const std::string& text, Then then);
 
@@ -55,8 +56,8 @@ class ControlSocket {
   boost::asio::local::stream_protocol::acceptor acceptor_;
   boost::asio::steady_timer next_try_;
   std::vector<std::weak_ptr<Client>> clients_;
-  dev_t device_ = 0;  ///< of the socket's file, with
-  ino_t inode_ = 0;   ///< this number
+  dev_t device_ = 0;  ///< device of the socket file
+  ino_t inode_ = 0;   ///< inode of the socket file
 };
 
 }  // namespace ex9000::sim

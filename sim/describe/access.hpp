@@ -1,11 +1,11 @@
-// How descriptions call what may be done with a command or a register.
+// Words of the descriptions for the access to a command or a register.
 #pragma once
 
 #include "firmware/dcon/commands.hpp"
 
 namespace ex9000::sim {
 
-/// `read`, `write` or `stored`.
+/// Returns `read`, `write` or `stored`.
 constexpr const char* access_text(dcon::Access access) {
   switch (access) {
     case dcon::Access::Read:
@@ -18,7 +18,7 @@ constexpr const char* access_text(dcon::Access access) {
   return "stored";
 }
 
-/// One of the two at least.
+/// At least one of the two must be true.
 constexpr const char* access_text(bool reads, bool writes) {
   return reads && writes ? "read, write" : reads ? "read" : "write";
 }

@@ -5,20 +5,20 @@
 #include "firmware/dcon/commands.hpp"
 #include "sim/describe/access.hpp"
 #include "sim/describe/register_map.hpp"
-#include "sim/module_spec.hpp"
+#include "sim/line/module_spec.hpp"
 
 namespace ex9000::sim {
 
 namespace {
 
-/// The cells of one row, under their titles.
+/// The cells of one row, in the order of the titles.
 struct Row {
   std::string model;
-  std::string table;    ///< `DCON command`, or that of a coil or register
-  std::string address;  ///< of a coil or register: decimal, as on the line
+  std::string table;    ///< `DCON command`, or the table of the coil or register
+  std::string address;  ///< of a coil or register: the protocol address in decimal
   std::string plc_number;
   std::string channel;
-  std::string functions;  ///< in hex, as protocols write them
+  std::string functions;  ///< hex codes
   std::string command;
   std::string reply;
   std::string access;
@@ -28,7 +28,7 @@ struct Row {
   std::string meaning;
 };
 
-/// A cell is quoted where it must be.
+/// Returns the cell in quotes if it contains special characters.
 std::string quoted_cell(const std::string& text) {
   if (text.find_first_of(",\"\r\n") == std::string::npos) {
     return text;

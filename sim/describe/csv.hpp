@@ -1,4 +1,4 @@
-// The commands and registers, for spreadsheets and tag lists.
+// The commands and registers as CSV, for spreadsheets and tag lists.
 #pragma once
 
 #include <string>
@@ -7,7 +7,8 @@
 
 namespace ex9000::sim {
 
-/// A head and one row a DCON command, coil, discrete input or register; as in RFC 4180, lines end with CR LF.
+/// Returns a header row and one row for each DCON command, coil, discrete input and register. The format is
+/// RFC 4180; lines end with CR LF.
 std::string csv_of(const Models& models);
 
 }  // namespace ex9000::sim

@@ -9,7 +9,8 @@ namespace ex9000::sim {
 
 namespace {
 
-/// Where a reply has the one channel that is on: the position of its byte among the data.
+/// Returns the position of the data byte that contains a channel. It formats a reply in which only this
+/// channel is on.
 std::size_t data_byte_of(const Model& model, bool is_output, unsigned channel) {
   const auto on = static_cast<std::uint16_t>(1U << channel);
   Reply reply;

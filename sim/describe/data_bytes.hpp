@@ -1,4 +1,4 @@
-// What the two data bytes of DCON replies hold, (First) and (Second).
+// The content of the two data bytes of DCON replies, (First) and (Second).
 #pragma once
 
 #include <cstddef>
@@ -8,10 +8,10 @@
 
 namespace ex9000::sim {
 
-/// Of byte 0 or 1, `DO8-12` say; `00` where it holds no channel.
+/// Describes data byte 0 or 1, for example `DO8-12`; returns `00` if the byte contains no channel.
 std::string data_byte(const Model& model, std::size_t byte);
 
-/// The readings that `~AA0` has on this model.
+/// The values that `~AA0` can return on this model.
 constexpr const char* status_readings(const Model& model) {
   return model.status_style == StatusStyle::TimeoutOnly ? "00, 04" : "00, 80, 84";
 }

@@ -12,17 +12,19 @@
 #include "sim/describe/markdown.hpp"
 #include "sim/describe/node_red.hpp"
 #include "sim/describe/wb_mqtt_serial.hpp"
-#include "sim/module_spec.hpp"
+#include "sim/line/module_spec.hpp"
+#include "sim/text/fail.hpp"
+#include "sim/text/values.hpp"
 
 namespace ex9000::sim {
 
 namespace {
 
-/// One of the three makes it.
+/// Exactly one of the three functions is set.
 struct Format {
   const char* name = "";
   std::string (*of_models)(const Models& models) = nullptr;
-  // These want Modbus.
+  // These two require a model with Modbus.
   std::string (*of_model)(const Model& model) = nullptr;
   std::string (*of_module)(const Model& model, const Place& place) = nullptr;
 };
@@ -50,22 +52,22 @@ const Format& format_called(const std::string& name) {
       return format;
     }
   }
-  fail("--format " + name, "wants " + describe_formats());
+  fail("--format " + name, "expected " + describe_formats());
 }
 
 std::uint8_t parse_modbus_address(const std::string& text) {
-  const std::optional<std::uint8_t> address = hex_byte_of(text);
-  if (!address || !is_modbus_address(*address)) {
-    fail("--address " + text, "wants a Modbus address, hex 01 to F7");
+  const std::uint8_t address = with_place("--address ", [&] { return parse_hex_byte(text); });
+  if (!is_modbus_address(address)) {
+    fail("--address " + text, "expected a Modbus address, hex 01 to F7");
   }
-  return *address;
+  return address;
 }
 
 TcpAddress parse_master_address(const std::string& text) {
-  TcpAddress tcp = parse_tcp_address(text);
+  TcpAddress tcp = with_place("--tcp ", [&] { return parse_tcp_address(text); });
   const std::string of_hosts = "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789.-_:%";
   if (tcp.port == 0 || tcp.host.find_first_not_of(of_hosts) != std::string::npos) {
-    fail("--tcp " + text, "wants HOST:PORT where a simulator serves, such as 127.0.0.1:5020");
+    fail("--tcp " + text, "expected HOST:PORT of a simulator, for example 127.0.0.1:5020");
   }
   return tcp;
 }
@@ -81,19 +83,19 @@ Place parse_place(const DescribeTexts& texts) {
   return place;
 }
 
-/// The formats that are of no module in particular.
+/// Rejects options that only formats for one module have.
 void refuse_place(const DescribeTexts& texts) {
   for (const auto& [option, given] :
        {std::pair("--address", texts.address.has_value()), std::pair("--tcp", texts.tcp.has_value())}) {
     if (given) {
-      fail(option, "--format " + texts.format + " has none; leave it out");
+      fail(option, "--format " + texts.format + " has no such option; leave it out");
     }
   }
 }
 
 const Model& modbus_model(const DescribeTexts& texts) {
   if (texts.model.empty()) {
-    fail("--format " + texts.format, "wants a MODEL, such as 'describe EX9042D-M'");
+    fail("--format " + texts.format, "requires a MODEL, for example 'describe EX9042D-M'");
   }
   const Model& model = model_called(texts.model);
   if (!model.speaks_modbus()) {

@@ -1,4 +1,4 @@
-// `ex9000-sim describe`: what a model has, in a form for people, programs or another tool.
+// `ex9000-sim describe`: describes a model in a form for people, programs or another tool.
 #pragma once
 
 #include <optional>
@@ -6,7 +6,7 @@
 
 namespace ex9000::sim {
 
-/// As on the command line; what is not given there is empty, or nothing.
+/// The arguments of the command line; missing ones are empty or nullopt.
 struct DescribeTexts {
   std::string model;
   std::string format = "markdown";
@@ -14,11 +14,11 @@ struct DescribeTexts {
   std::optional<std::string> tcp;
 };
 
-/// `markdown|json|...`, for help.
+/// Returns `markdown|json|...`, for the help text.
 std::string describe_formats();
 
-/// What is to be printed, of all models where none is named. Throws std::invalid_argument, one line that
-/// names the argument and the mend.
+/// Returns the text to print; describes all models if none is named. Throws std::invalid_argument with a
+/// one-line message that names the argument and how to fix it.
 std::string describe(const DescribeTexts& texts);
 
 }  // namespace ex9000::sim

@@ -4,7 +4,7 @@
 #include "sim/describe/identity.hpp"
 #include "sim/describe/shown.hpp"
 #include "sim/describe/yaml.hpp"
-#include "sim/module_spec.hpp"
+#include "sim/text/values.hpp"
 
 namespace ex9000::sim {
 
@@ -12,11 +12,11 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-// Home Assistant warns of intervals below 5 s, and shortens a timeout that is not below all of them.
+// Home Assistant warns about intervals below 5 s. It shortens a timeout that is not below all intervals.
 constexpr unsigned kOftenSeconds = 5;
 constexpr unsigned kSeldomSeconds = 30;
 constexpr unsigned kTimeoutSeconds = 2;
-/// The silence between two frames, 3.5 characters, is 29.2 ms at 1200 baud.
+/// The silence between two frames, 3.5 characters, takes 29.2 ms at 1200 baud.
 constexpr unsigned kWaitMilliseconds = 30;
 
 const char* input_type(Table table) {
@@ -53,7 +53,7 @@ class Hub {
     return hub;
   }
 
-  /// What has no entity, as actions that automations and buttons may call.
+  /// Returns actions for items without an entity; automations and buttons can call them.
   [[nodiscard]] std::string actions() const {
     std::string text;
     for (const Shown& shown : shown_by(model_)) {
@@ -79,7 +79,8 @@ class Hub {
   [[nodiscard]] Json toggle(const Shown& shown, unsigned index) const {
     Json entity = this->entity(shown, index, kOftenSeconds);
     entity["write_type"] = "coil";
-    // Otherwise it would show what was sent to it, and never what a timeout or another master has made of it.
+    // Without `verify`, the switch would show the last command, even after a timeout or a write by another
+    // master.
     entity["verify"] = {{"input_type", "coil"}, {"address", shown.first + index}};
     return entity;
   }
@@ -128,8 +129,8 @@ class Hub {
       case Role::Tenths:
         hub["sensors"].push_back(duration(shown, index));
         break;
-      case Role::Preset:  // settings, made once and not by a dashboard
-      case Role::Button:  // the integration has none
+      case Role::Preset:  // settings that a dashboard should not change
+      case Role::Button:  // the integration has no buttons
         break;
     }
   }

@@ -1,4 +1,4 @@
-// A module for Home Assistant's modbus integration.
+// A module's configuration for Home Assistant's modbus integration.
 #pragma once
 
 #include <string>
@@ -8,8 +8,8 @@
 
 namespace ex9000::sim {
 
-/// YAML for `modbus: !include FILE` in configuration.yaml: a hub with switches, binary sensors and sensors.
-/// `model` must speak Modbus.
+/// Returns YAML for `modbus: !include FILE` in configuration.yaml: a hub with switches, binary sensors and
+/// sensors. `model` must support Modbus.
 std::string home_assistant_hub(const Model& model, const Place& place);
 
 }  // namespace ex9000::sim

@@ -1,4 +1,4 @@
-// The words by which tools tell one module from another.
+// Identifiers of a model for other tools.
 #pragma once
 
 #include <string>
@@ -7,7 +7,7 @@
 
 namespace ex9000::sim {
 
-/// `ex9042d_m`: what every tool takes for an id.
+/// Returns an id that every tool accepts, for example `ex9042d_m`.
 inline std::string model_key(const Model& model) {
   std::string key;
   for (const char character : model.designation) {

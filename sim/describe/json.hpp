@@ -1,4 +1,4 @@
-// The commands and registers, for programs.
+// The commands and registers as JSON, for programs.
 #pragma once
 
 #include <string>
@@ -7,8 +7,9 @@
 
 namespace ex9000::sim {
 
-/// An object: the firmware's version, and under `models` one object a model with its facts, DCON commands,
-/// Modbus functions and registers. Numbers are numbers, addresses as on the line; what there is not is null.
+/// Returns an object with the firmware's version and, under `models`, one object for each model with its
+/// properties, DCON commands, Modbus functions and registers. Numbers are JSON numbers, addresses are
+/// protocol addresses, and missing items are null.
 std::string json_of(const Models& models);
 
 }  // namespace ex9000::sim

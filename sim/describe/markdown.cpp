@@ -12,7 +12,7 @@
 #include "sim/describe/data_bytes.hpp"
 #include "sim/describe/models.hpp"
 #include "sim/describe/register_map.hpp"
-#include "sim/module_spec.hpp"
+#include "sim/text/values.hpp"
 
 namespace ex9000::sim {
 
@@ -26,7 +26,7 @@ constexpr const char* kNone = "-";
 
 std::string code(std::string_view text) { return "`" + std::string(text) + "`"; }
 
-/// A pipe would end the cell, even inside backticks.
+/// Escapes the pipe, which would end the cell even inside backticks.
 std::string escaped_cell(std::string_view text) {
   std::string escaped;
   for (const char character : text) {
@@ -79,7 +79,7 @@ constexpr std::array<Kind, 4> kKinds{{
     {"-M", [](const Model& model) { return model.speaks_modbus(); }},
 }};
 
-/// The models that `has` is true of: the kind that they are, or their names where they are no kind.
+/// Describes the models for which `has` is true: by their kind if one matches, otherwise by their names.
 template <class Has>
 std::string who(const Models& models, Has has) {
   for (const Kind& kind : kKinds) {
@@ -97,7 +97,7 @@ std::string who(const Models& models, Has has) {
   return join(names);
 }
 
-/// Adds the column of models, which says nothing where there is but one.
+/// Adds the column of models, which is not necessary for a single model.
 void add_who(const Models& models, Cells& cells, const std::string& text) {
   if (models.size() > 1) {
     cells.push_back(text);
@@ -131,7 +131,7 @@ std::string baud_codes() {
   return join(codes);
 }
 
-/// What the letters of the syntax stand for, and what other answers there are.
+/// Explains the letters in the syntax and the other possible replies.
 std::string dcon_notes(const Models& models) {
   const bool outputs = any_has(models, [](const Model& model) { return model.has_outputs(); });
   const bool inputs = any_has(models, [](const Model& model) { return model.has_inputs(); });
@@ -157,7 +157,7 @@ std::string dcon_notes(const Models& models) {
          "to GND.\n";
 }
 
-/// `!AA10 or !AA11` are two pieces of code.
+/// Formats alternatives, for example `!AA10 or !AA11`, as separate pieces of code.
 std::string reply_code(std::string_view reply) {
   constexpr std::string_view kOr = " or ";
   const auto at = reply.find(kOr);
@@ -233,7 +233,7 @@ std::string map_notes() {
          "Baud codes are those of `CC` above.\n";
 }
 
-/// Models whose maps are equal, and their map.
+/// Models with the same map, and their map.
 struct SharedMap {
   std::vector<std::string> models;
   std::string table;

@@ -1,4 +1,5 @@
-// The commands and registers, for people: made from the tables that the module itself works by.
+// The commands and registers as Markdown, for people. The text is made from the tables that the firmware
+// itself uses.
 #pragma once
 
 #include <string>
@@ -7,10 +8,10 @@
 
 namespace ex9000::sim {
 
-/// Of all models, for a section of README.md.
+/// Describes all models, for a section of README.md.
 std::string markdown_of_all();
 
-/// Of what this model has, and of nothing else.
+/// Describes only this model.
 std::string markdown_of(const Model& model);
 
 }  // namespace ex9000::sim

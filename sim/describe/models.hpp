@@ -1,4 +1,4 @@
-// The models that a description is of: one, or all.
+// The models that a description covers: one, or all.
 #pragma once
 
 #include <algorithm>

@@ -4,7 +4,7 @@
 
 #include "sim/describe/identity.hpp"
 #include "sim/describe/shown.hpp"
-#include "sim/module_spec.hpp"
+#include "sim/text/values.hpp"
 
 namespace ex9000::sim {
 
@@ -49,7 +49,7 @@ class Flow {
   [[nodiscard]] std::string text() const { return nodes_.dump(2) + "\n"; }
 
  private:
-  /// Sixteen hex digits, as Node-RED's own: FNV-1a of what the node is.
+  /// Returns sixteen hex digits, like Node-RED's own ids: the FNV-1a hash of the node's name.
   [[nodiscard]] std::string id(const std::string& node) const {
     std::uint64_t hash = 0xCBF29CE484222325;
     for (const char character : key_ + "/" + node) {
@@ -62,7 +62,7 @@ class Flow {
     return digits;
   }
 
-  /// On the tab, in the row that is written now.
+  /// Returns a node on the tab, in the present row.
   [[nodiscard]] Json node(const std::string& name, const char* type, unsigned column) const {
     return {{"id", id(name)},
             {"type", type},
@@ -87,8 +87,8 @@ class Flow {
          {"clienttype", "tcp"},
          {"tcpHost", place_.tcp.host},
          {"tcpPort", std::to_string(place_.tcp.port)},
-         {"tcpType", "TELNET"},  // the bytes as on the line; all others put the header of Modbus TCP in front
-         // One request at a time: it is one line, whichever module is asked.
+         {"tcpType", "TELNET"},  // the bytes as on the line; the other types add the header of Modbus TCP
+         // One request at a time, because all modules share one line.
          {"bufferCommands", true},
          {"parallelUnitIdsAllowed", false},
          {"unit_id", std::to_string(place_.address)},
@@ -111,7 +111,7 @@ class Flow {
     }
   }
 
-  /// All channels at once, and what they are.
+  /// Adds a node that reads all channels at once, and one that shows them.
   void add_reading(const Shown& shown) {
     const std::string name = "read " + std::string(shown.id);
     Json read = node(name, "modbus-read", 1);

@@ -1,4 +1,4 @@
-// A module for Node-RED with node-red-contrib-modbus.
+// A module's flow for Node-RED with node-red-contrib-modbus.
 #pragma once
 
 #include <string>
@@ -8,8 +8,8 @@
 
 namespace ex9000::sim {
 
-/// A flow to import, a JSON array: a tab that reads all, switches outputs, and clears what can be cleared.
-/// Ids are the same each time, and others for another model or address. `model` must speak Modbus.
+/// Returns a flow to import, as a JSON array: a tab that reads all values, switches outputs, and clears what
+/// can be cleared. The ids depend only on the model and the address. `model` must support Modbus.
 std::string node_red_flow(const Model& model, const Place& place);
 
 }  // namespace ex9000::sim

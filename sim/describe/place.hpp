@@ -1,4 +1,4 @@
-// Where a tool finds the module: the simulator's TCP port, and the address on its line.
+// Where a tool finds the module: the simulator's TCP port and the address on its line.
 #pragma once
 
 #include <cstdint>

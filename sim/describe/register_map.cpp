@@ -1,6 +1,6 @@
 #include "sim/describe/register_map.hpp"
 
-#include "sim/module_spec.hpp"
+#include "sim/text/values.hpp"
 
 namespace ex9000::sim {
 
@@ -8,7 +8,7 @@ namespace {
 
 modbus::Functions functions_of(const modbus::BitRow& row) { return row.functions; }
 
-/// A row without functions is host OK, which is read and never looked up.
+/// A row without functions is host OK: masters read it, but the firmware does not look it up in its table.
 modbus::Functions functions_of(const modbus::WordRow& row) {
   return row.functions != 0 ? row.functions : modbus::kReadHoldingRegisters | modbus::kReadInputRegisters;
 }

@@ -1,4 +1,4 @@
-// The Modbus map of a model: what each of the four tables of Modbus holds.
+// The Modbus map of a model: the content of the four tables of Modbus.
 #pragma once
 
 #include <array>
@@ -17,8 +17,8 @@ enum class Table : std::uint8_t { Coils, DiscreteInputs, InputRegisters, Holding
 /// One of the four tables of Modbus.
 struct Area {
   Table table = Table::Coils;
-  const char* name = "";  ///< of one that it holds
-  char digit = '0';       ///< in front of its PLC numbers
+  const char* name = "";  ///< name of one item of the table
+  char digit = '0';       ///< first digit of its PLC numbers
   modbus::Functions reads = 0;
   modbus::Functions writes = 0;
 };
@@ -31,28 +31,28 @@ constexpr std::array<Area, 4> kAreas{{
      modbus::kWriteRegisters},
 }};
 
-/// One row of the firmware's tables, as far as it lies in one area. All texts live as long as the program.
+/// One row of the firmware's tables, limited to one area. All texts live as long as the program.
 struct MapRow {
   std::string_view id;
   const Area* area = nullptr;
-  unsigned first = 0;               ///< address of the first, from 0 as on the line
-  unsigned last = 0;                ///< likewise
-  bool per_channel = false;         ///< one for each input or output
-  std::vector<unsigned> functions;  ///< codes, in rising order; never empty
+  unsigned first = 0;               ///< protocol address of the first item, from 0
+  unsigned last = 0;                ///< protocol address of the last item
+  bool per_channel = false;         ///< one item for each input or output
+  std::vector<unsigned> functions;  ///< codes in ascending order; never empty
   bool reads = false;
   bool writes = false;
-  std::string_view range;  ///< of what may be written; empty where nothing may
+  std::string_view range;  ///< values that may be written; empty: read-only
   std::string_view meaning;
 };
 
-/// Coils first, then discrete inputs, input registers and holding registers. Empty where the model speaks no
-/// Modbus.
+/// Returns coils first, then discrete inputs, input registers and holding registers. Empty if the model does
+/// not support Modbus.
 std::vector<MapRow> register_map(const Model& model);
 
-/// As PLCs count: from 1, in at least four digits behind that of the table.
+/// Returns the number as PLCs count: from 1, with at least four digits after the digit of the table.
 std::string plc_number(const Area& area, unsigned address);
 
-/// Function codes as two hex digits each.
+/// Returns the function codes as two hex digits each.
 std::string hex_codes(const std::vector<unsigned>& functions, const char* separator);
 
 }  // namespace ex9000::sim

@@ -9,17 +9,17 @@ namespace ex9000::sim {
 
 namespace {
 
-/// How what a row reads is presented; all else is in the firmware's tables.
+/// How the value of a row is presented; all other data is in the firmware's tables.
 struct Reading {
   std::string_view id;
-  std::optional<Role> role;  ///< none: it is left out
+  std::optional<Role> role;  ///< nullopt: the row is excluded
   std::string_view name;
 };
 
 constexpr auto kReadings = table<Reading>({
     {"outputs", Role::Output, "Output"},
     {"inputs", Role::Input, "Input"},
-    {"input-coils", std::nullopt, ""},  // the inputs once more
+    {"input-coils", std::nullopt, ""},  // the same values as the inputs
     {"latch-high", Role::Input, "Latch high"},
     {"latch-low", Role::Input, "Latch low"},
     {"safe-value", Role::Preset, "Safe value"},
@@ -37,7 +37,7 @@ constexpr auto kReadings = table<Reading>({
     {"host-ok", std::nullopt, ""},
 });
 
-/// What writing 1 to a coil does that takes nothing but 1.
+/// The action of a coil that accepts only 1.
 struct Button {
   std::string_view row;
   std::string_view id;
@@ -68,7 +68,7 @@ constexpr const Button* button_of(std::string_view id) {
   return nullptr;
 }
 
-/// A row that is new in the firmware's tables has to be decided on here.
+/// If the firmware's tables get a new row, it must be added here.
 constexpr bool every_row_is_decided_on() {
   for (const modbus::BitRegister& row : modbus::kBitRegisters) {
     if (reading_of(row.id) == nullptr || (button_of(row.id) != nullptr) != row.row.has(modbus::kOnlyOn)) {

@@ -1,4 +1,4 @@
-// What a model shows to who polls it over Modbus: a choice from its map, with names.
+// The values that a model offers to Modbus clients: a selection from its map, with names.
 #pragma once
 
 #include <cstdint>
@@ -13,34 +13,36 @@ namespace ex9000::sim {
 
 enum class Role : std::uint8_t {
   Output,   ///< read and written
-  Input,    ///< a level or latch, read
+  Input,    ///< a level or a latch; read-only
   Counter,  ///< counts up, and from its highest value to 0
-  Preset,   ///< a stored value of the outputs; read, since to write it drives them
-  State,    ///< on or off is as it should be
-  Problem,  ///< on is not
-  Tenths,   ///< units of 0.1 s, read
+  Preset,   ///< a stored value of the outputs; read-only, because writing it would drive them
+  State,    ///< on or off, both are normal
+  Problem,  ///< on means a problem
+  Tenths,   ///< units of 0.1 s; read-only
   Button,   ///< a coil that does something when 1 is written to it
 };
 
-/// One row of the map, or what is a button of it.
+/// One row of the map, or a button for it.
 struct Shown {
   std::string_view id;  ///< unique in the model, and stable
   Role role = Role::State;
   std::string_view name;
   Table table = Table::Coils;
-  unsigned first = 0;  ///< address, as on the line
+  unsigned first = 0;  ///< protocol address
   unsigned width = 1;
   bool per_channel = false;
 
-  /// `Output 3`, or the name alone where it is of no channel.
+  /// Returns the name with the channel, for example `Output 3`, or only the name if the row has no channels.
   [[nodiscard]] std::string name_of(unsigned index) const;
-  /// `outputs_3` likewise; unique in the model.
+  /// Returns the id with the channel, for example `outputs_3`, or only the id if the row has no channels;
+  /// unique in the model.
   [[nodiscard]] std::string key_of(unsigned index) const;
 };
 
-/// In the order of the map. A row that two areas hold is there once, as the first of them has it. Left out is
-/// what would take the module away from who polls it (address, rate, protocol), what never answers (host OK),
-/// and what never changes (the module's code). Empty where the model speaks no Modbus.
+/// Returns the rows in the order of the map. A row that is in two areas appears only in the first of them.
+/// Excluded are the rows that would disconnect the client (address, rate, protocol), the one that never gets
+/// a reply (host OK), and the one that never changes (the module's code). Empty if the model does not support
+/// Modbus.
 std::vector<Shown> shown_by(const Model& model);
 
 }  // namespace ex9000::sim

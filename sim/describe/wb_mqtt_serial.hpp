@@ -1,4 +1,4 @@
-// A module for Wiren Board's wb-mqtt-serial.
+// A module's template for Wiren Board's wb-mqtt-serial.
 #pragma once
 
 #include <string>
@@ -7,7 +7,7 @@
 
 namespace ex9000::sim {
 
-/// A device template, for /etc/wb-mqtt-serial.conf.d/templates. `model` must speak Modbus.
+/// Returns a device template for /etc/wb-mqtt-serial.conf.d/templates. `model` must support Modbus.
 std::string wb_mqtt_serial_template(const Model& model);
 
 }  // namespace ex9000::sim

@@ -10,7 +10,7 @@ using Json = nlohmann::ordered_json;
 
 constexpr std::string_view kLetters = "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ";
 
-/// Words that YAML 1.1 takes for true, false or nothing.
+/// Words that YAML 1.1 reads as true, false or null.
 bool is_taken_for_something(const std::string& text) {
   std::string lower = text;
   for (char& character : lower) {
@@ -24,7 +24,7 @@ bool is_taken_for_something(const std::string& text) {
   return false;
 }
 
-/// Anything else YAML reads as JSON does, in quotes.
+/// Other strings are written as in JSON, in quotes, which YAML reads too.
 bool is_plain(const std::string& text) {
   return !text.empty() && kLetters.find(text.front()) != std::string_view::npos && text.back() != ' ' &&
          text.find_first_not_of(std::string(kLetters) + "0123456789_ -") == std::string::npos &&
@@ -39,7 +39,7 @@ bool is_block(const Json& value) { return value.is_structured() && !value.empty(
 
 void write(const Json& value, const std::string& indent, std::string& text);
 
-/// Behind `- `, so the first line is indented already.
+/// Writes an item after `- `, so the first line has its indentation already.
 void write_item(const Json& value, const std::string& indent, std::string& text) {
   std::string block;
   if (is_block(value)) {

@@ -1,4 +1,4 @@
-// A value as YAML in block style.
+// Formats a value as YAML in block style.
 #pragma once
 
 #include <nlohmann/json.hpp>
@@ -6,8 +6,8 @@
 
 namespace ex9000::sim {
 
-/// Objects keep their order. Keys must be plain words. Strings that could be taken for something else are
-/// quoted. Empty objects and arrays are `{}` and `[]`. Ends with a newline.
+/// Objects keep their order. Keys must be plain words. Strings that YAML could read as another type are
+/// quoted. Empty objects and arrays become `{}` and `[]`. The result ends with a newline.
 std::string yaml_of(const nlohmann::ordered_json& value);
 
 }  // namespace ex9000::sim

@@ -1,4 +1,4 @@
-// Seeded chance that is the same everywhere.
+// A seeded random generator with the same results on every platform.
 #pragma once
 
 #include <cstdint>
@@ -11,7 +11,8 @@ class Chance {
   explicit Chance(std::uint64_t seed) : engine_(seed) {}
 
   std::uint64_t number() { return engine_(); }
-  /// The engine's numbers are the same on every machine; what a library's distributions make of them is not.
+  /// Uses the engine's numbers directly, because they are the same on every platform. The results of the
+  /// standard library's distributions differ between platforms.
   bool happens(double probability) {
     constexpr double kOneIn2To64 = 1.0 / 18446744073709551616.0;
     return probability > 0 && static_cast<double>(engine_()) * kOneIn2To64 < probability;

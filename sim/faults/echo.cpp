@@ -11,7 +11,7 @@ void Echo::receive(std::uint8_t byte, ByteStatus /*status*/) {
 
 void Echo::run() {
   if (!driving_ && bus_.carries()) {
-    // The silence may have begun to end, or never have been one: the next byte is heard only when it is over.
+    // A byte on the wires may already have ended the silence; the receiver gets it only after its end.
     next_ = clock_.virtual_now() + wire_.takes(1, rate_());
     return;
   }
@@ -30,7 +30,7 @@ void Echo::run() {
     return;
   }
   wire_.put(heard_[sent_], sends_at_);
-  // From the first byte on, so that rounding does not add up.
+  // Calculated from the first byte, so that rounding errors do not accumulate.
   next_ = began_ + wire_.takes(++sent_, sends_at_);
 }
 

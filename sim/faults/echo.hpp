@@ -1,4 +1,4 @@
-// A repeater out of order: it sends again whatever it has heard.
+// A defective repeater that sends every received byte again.
 #pragma once
 
 #include <cstddef>
@@ -7,27 +7,27 @@
 #include <utility>
 #include <vector>
 
-#include "sim/bus.hpp"
+#include "sim/bus/bus.hpp"
 
 namespace ex9000::sim {
 
 class Echo final : public Station {
  public:
-  /// Asked for the rate, in baud, that the line has now.
+  /// Returns the present rate of the line in baud.
   using Rate = std::function<std::uint32_t()>;
 
-  /// Attaches itself to `bus`; it is off.
+  /// Attaches itself to `bus`; the echo is off at first.
   Echo(Bus& bus, Rate rate)
       : bus_(bus), clock_(bus.clock()), wire_(bus.attach(*this)), rate_(std::move(rate)) {}
   Echo(const Echo&) = delete;
   Echo& operator=(const Echo&) = delete;
 
-  /// It listens and sends at the line's rate, and sends when nothing has come for `delay`.
+  /// Listens and sends at the rate of the line. It sends when no byte has come for `delay`.
   void switch_on(VirtualTime delay) {
     on_ = true;
     delay_ = delay;
   }
-  /// It listens no more; what it has heard it still sends.
+  /// Stops listening; bytes already received are still sent.
   void switch_off() { on_ = false; }
 
   // --- Station ---
@@ -37,14 +37,14 @@ class Echo final : public Station {
   void receive(std::uint8_t byte, ByteStatus status) override;
 
  private:
-  static constexpr std::size_t kMostHeard = 1024;  ///< beyond that it forgets: a line carries what it can
+  static constexpr std::size_t kMostHeard = 1024;  ///< the echo drops bytes beyond this number
 
   const Bus& bus_;
   VirtualClock& clock_;
   Wire& wire_;
   Rate rate_;
   bool on_ = false;
-  std::uint32_t sends_at_ = 0;  ///< what it sends now, from its first byte to its last
+  std::uint32_t sends_at_ = 0;  ///< rate of the present transmission, from its first byte to its last
   VirtualTime delay_{0};
   std::vector<std::uint8_t> heard_;
   std::size_t sent_ = 0;

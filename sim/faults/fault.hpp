@@ -1,6 +1,6 @@
-// A fault as people write it: what goes wrong, and when.
+// A fault as the user writes it: what goes wrong, and when.
 //
-//   bit-errors 1e-4                     of each bit on the line
+//   bit-errors 1e-4                     probability for each bit on the line
 //   lost-reply every 10th reply
 //   late-reply 50ms with probability 0.01
 //   gone at 12.5s for 2s
@@ -14,11 +14,11 @@
 #include <string_view>
 #include <vector>
 
-#include "sim/bus.hpp"
+#include "sim/bus/bus.hpp"
 
 namespace ex9000::sim {
 
-/// What can go wrong.
+/// The kinds of faults.
 enum class Trouble {
   BitErrors,
   LostBytes,
@@ -35,15 +35,16 @@ enum class Trouble {
   Hang,
 };
 
-/// When it does.
+/// When a fault strikes.
 struct Schedule {
   enum class When { Always, At, EveryTime, EveryReply, Probably, AfterWrites };
 
   When when = When::Always;
-  VirtualTime time{0};      ///< At: since the line exists; EveryTime: the period
+  VirtualTime time{0};      ///< At: since the start of the line's time; EveryTime: the period
   std::uint64_t count = 1;  ///< EveryReply, AfterWrites
-  double probability = 0;   ///< Probably: of each reply
-  /// From when it strikes; nothing: for good, or of a reply until that is over.
+  double probability = 0;   ///< Probably: for each reply
+  /// How long the fault lasts after it strikes; nullopt: permanently, or, if it depends on replies, until the
+  /// end of the reply.
   std::optional<VirtualTime> lasts;
 
   [[nodiscard]] bool of_replies() const { return when == When::EveryReply || when == When::Probably; }
@@ -51,23 +52,23 @@ struct Schedule {
 
 struct Fault {
   Trouble trouble = Trouble::BitErrors;
-  double probability = 0;           ///< of each bit or byte
-  VirtualTime time{0};              ///< by which something is late
-  std::uint32_t baud = 0;           ///< the wrong one
-  std::vector<std::uint8_t> bytes;  ///< the foreign ones
+  double probability = 0;           ///< the probability for each bit or byte
+  VirtualTime time{0};              ///< the delay of faults that make something late
+  std::uint32_t baud = 0;           ///< the wrong rate
+  std::vector<std::uint8_t> bytes;  ///< the foreign bytes
   Schedule schedule;
-  std::optional<std::size_t> module;  ///< whose, from 0; nothing: all modules' of the line
-  std::string text;                   ///< as it was written
+  std::optional<std::size_t> module;  ///< the position on the line, from 0; nullopt: all modules
+  std::string text;                   ///< as the user wrote it
 };
 
-/// Whether it befalls a module, and not the line.
+/// Whether the fault affects a module, and not the wires.
 bool befalls_a_module(Trouble trouble);
 
-/// `text` is `TROUBLE [VALUE] [SCHEDULE]`; of all modules of the line where it befalls one. Throws
-/// std::invalid_argument, one line that names what is wrong and what would be right.
+/// Parses `TROUBLE [VALUE] [SCHEDULE]`. A fault of modules applies to all modules of the line. Throws
+/// std::invalid_argument with a one-line message that says what is wrong and what would be right.
 Fault parse_fault(const std::string& text);
 
-/// What can be written, a line each, for --help and the manual.
+/// Returns the syntax of faults, one line each, for --help and the manual.
 std::string fault_help();
 
 }  // namespace ex9000::sim

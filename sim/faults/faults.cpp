@@ -4,7 +4,7 @@
 #include <stdexcept>
 #include <utility>
 
-#include "sim/time_text.hpp"
+#include "sim/text/durations.hpp"
 
 namespace ex9000::sim {
 
@@ -13,18 +13,18 @@ namespace {
 using When = Schedule::When;
 
 constexpr VirtualTime kPowerCutLasts = std::chrono::seconds(1);
-/// Beyond so many bytes that a stranger has still to say, it says no more: a line carries what it can.
+/// The foreign station drops further messages if more bytes than this are waiting.
 constexpr std::size_t kMostForeign = 1024;
 
 bool is_of(const Fault& fault, std::size_t module) { return !fault.module || *fault.module == module; }
 
-/// Of the wires, whoever is on them.
+/// Noise affects the wires, regardless of the sender.
 bool is_noise(Trouble trouble) {
   return trouble == Trouble::BitErrors || trouble == Trouble::LostBytes ||
          trouble == Trouble::InsertedBytes || trouble == Trouble::StrayZeros;
 }
 
-/// Over as soon as it has struck.
+/// Whether the fault has no duration.
 bool is_a_moment(Trouble trouble) { return trouble == Trouble::ForeignTraffic || trouble == Trouble::Hang; }
 
 }  // namespace
@@ -58,7 +58,7 @@ std::size_t Faults::add(const Fault& fault) {
     armed.begins = now;
   } else if (schedule.when == When::At) {
     if (schedule.time < now) {
-      throw std::invalid_argument(fault.text + ": that is over, it is " + time_text(now) + " now");
+      throw std::invalid_argument(fault.text + ": that time is over; it is " + time_text(now) + " now");
     }
     armed.begins = schedule.time;
   } else if (schedule.when == When::EveryTime) {
@@ -71,7 +71,7 @@ std::size_t Faults::add(const Fault& fault) {
   return numbers_;
 }
 
-/// On the line comes only what is needed there.
+/// Attaches only the stations that the fault requires.
 void Faults::prepare(Trouble trouble) {
   switch (trouble) {
     case Trouble::BitErrors:
@@ -156,7 +156,7 @@ VirtualTime Faults::next() const {
 
 void Faults::run() { act(); }
 
-/// What is due: first what ends, then what begins.
+/// Does what is due: ends strikes first, then begins new ones.
 void Faults::act() {
   const VirtualTime now = bus_.clock().virtual_now();
   for (Armed& armed : armed_) {
@@ -175,7 +175,7 @@ void Faults::act() {
   }
 }
 
-/// May be called from within a module: nothing happens to one before `act`.
+/// A module may call this during its work, so modules do not change before `act`.
 void Faults::strike(Armed& armed, std::optional<std::size_t> reply_of) {
   const Fault& fault = armed.fault;
   ++armed.strikes_so_far;
@@ -186,7 +186,7 @@ void Faults::strike(Armed& armed, std::optional<std::size_t> reply_of) {
   }
   if (fault.trouble == Trouble::Hang) {
     for (std::size_t i = 0; i < modules_.size(); ++i) {
-      // Of a reply, whoever sends it; of all else, whoever the fault befalls.
+      // A strike on a reply affects its sender; any other strike affects all modules of the fault.
       if (is_of(fault, i) && reply_of.value_or(i) == i) {
         hanging_.push_back(i);
       }
@@ -213,7 +213,7 @@ void Faults::strike(Armed& armed, std::optional<std::size_t> reply_of) {
   armed.strikes.push_back({reply_of, ends});
 }
 
-/// Those of its strikes that `over` is true of.
+/// Ends the strikes for which `over` is true.
 template <class Over>
 void Faults::relent(Armed& armed, Over over) {
   auto& strikes = armed.strikes;
@@ -242,7 +242,7 @@ void Faults::say(const Armed& armed, const std::string& what) const {
   }
 }
 
-/// Those that lasted since replies before: this one lasts longer.
+/// Removes earlier strikes on replies of the same module, because the latest one lasts longer.
 void Faults::forget_others_of(Armed& armed, const Strike& latest) {
   const Strike kept = latest;
   auto& strikes = armed.strikes;
@@ -290,7 +290,7 @@ void Faults::reply_ends(std::size_t module) {
   }
 }
 
-/// Noise is to hit a reply from its first bit on, and it alone, however late it is.
+/// Noise affects only this reply, from its first bit on, even if the reply is late.
 void Faults::reply_on_the_wires(std::size_t module, std::uint64_t reply, bool on) {
   for (Armed& armed : armed_) {
     if (!is_noise(armed.fault.trouble)) {
@@ -327,7 +327,7 @@ void Faults::written(std::size_t module) {
   }
 }
 
-/// A fault of one module's reply befalls that one alone.
+/// A strike on a module's reply affects only that module.
 const Fault* Faults::striking(Trouble trouble, std::size_t module) const {
   for (const Armed& armed : armed_) {
     if (armed.fault.trouble == trouble && armed.befalls(module)) {
@@ -376,7 +376,7 @@ void Faults::set_late_drivers() {
   }
 }
 
-/// Of several that strike at once, the worst.
+/// Returns the highest probability of the faults in progress.
 double Faults::rate_of(Trouble trouble) const {
   double rate = 0;
   for (const Armed& armed : armed_) {

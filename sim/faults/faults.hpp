@@ -1,4 +1,4 @@
-// What goes wrong on a line, and when: one component for tests and users alike.
+// Schedules the faults of a line and applies them, for tests and for users.
 #pragma once
 
 #include <cstddef>
@@ -9,34 +9,35 @@
 #include <string>
 #include <vector>
 
-#include "sim/bus.hpp"
+#include "sim/bus/bus.hpp"
+#include "sim/bus/master.hpp"
+#include "sim/bus/module.hpp"
 #include "sim/faults/chance.hpp"
 #include "sim/faults/echo.hpp"
 #include "sim/faults/fault.hpp"
 #include "sim/faults/noise.hpp"
-#include "sim/master.hpp"
-#include "sim/module.hpp"
 
 namespace ex9000::sim {
 
-/// The same faults with the same seed on the same line strike at the same moments.
+/// With the same faults, the same seed and the same traffic, faults strike at the same times.
 class Faults final : public Station {
  public:
   using Modules = std::vector<std::unique_ptr<SimulatedModule>>;
-  /// A line for people on what strikes and what is over, as it does: not of each reply, nor of what is
-  /// always so.
+  /// Gets one line of text for people when a fault strikes or ends. Faults that depend on replies and
+  /// permanent faults are not reported.
   using Notice = std::function<void(const std::string&)>;
 
-  /// Attaches itself to `bus`. `master` has the line's rate; `notice` may be empty. All live as long as the
-  /// bus is used.
+  /// Attaches itself to `bus`. `master` has the line's rate; `notice` may be empty. All arguments must live
+  /// as long as the bus is used.
   Faults(Bus& bus, const Master& master, Modules& modules, std::uint64_t seed, Notice notice);
   Faults(const Faults&) = delete;
   Faults& operator=(const Faults&) = delete;
 
-  /// From now on; returns its number, from 1. Between two runs of the bus, like the rest. Throws
-  /// std::invalid_argument where the line lacks the module, or the moment is over.
+  /// Adds a fault, effective immediately, and returns its number, counted from 1. Call this and the other
+  /// functions between two runs of the bus. Throws std::invalid_argument if the line lacks the module or the
+  /// scheduled time has passed.
   std::size_t add(const Fault& fault);
-  /// It strikes no more, and what it did is over. False: there is none of this number.
+  /// Removes a fault and ends its effects. Returns false if no fault has this number.
   bool remove(std::size_t number);
   void remove_all();
 
@@ -44,12 +45,12 @@ class Faults final : public Station {
     std::size_t number;
     std::string text;
     std::optional<std::size_t> module;
-    std::size_t strikes;  ///< that last at this moment: one, or of replies one a module
+    std::size_t strikes;  ///< strikes in progress: one, or one per module if the fault depends on replies
     std::uint64_t strikes_so_far;
   };
   [[nodiscard]] std::vector<Told> told() const;
 
-  /// An echo or a stranger has bytes to send, or an effect is to be set.
+  /// Whether an echo or a foreign station has bytes to send, or an effect has not been applied yet.
   [[nodiscard]] bool pending() const;
 
   // --- Station ---
@@ -59,22 +60,25 @@ class Faults final : public Station {
   void receive(std::uint8_t /*byte*/, ByteStatus /*status*/) override {}
 
  private:
-  /// While it lasts.
+  /// One strike in progress.
   struct Strike {
-    std::optional<std::size_t> reply_of;  ///< it is of this module's reply, and befalls no other
-    VirtualTime ends = kNever;            ///< by the clock; never, of a reply: with that
-    std::uint64_t reply = 0;              ///< that one, in the module's count, where it befalls the wires
-    bool waits = false;                   ///< until that is on them
+    /// The module whose reply it strikes; it does not affect other modules.
+    std::optional<std::size_t> reply_of;
+    /// In the line's time; kNever for a strike on a reply: it ends with the reply.
+    VirtualTime ends = kNever;
+    /// For noise: the number of the reply in the module's count.
+    std::uint64_t reply = 0;
+    bool waits = false;  ///< for noise: true until the reply is on the wires
   };
   struct Armed {
     std::size_t number = 0;
     Fault fault;
-    VirtualTime begins = kNever;  ///< by the clock
-    std::vector<Strike> strikes;  ///< at this moment: one, or of replies one a module
-    std::uint64_t counted = 0;    ///< replies, or writes
+    VirtualTime begins = kNever;  ///< in the line's time
+    std::vector<Strike> strikes;  ///< in progress: one, or one per module if the fault depends on replies
+    std::uint64_t counted = 0;    ///< replies or writes
     std::uint64_t strikes_so_far = 0;
 
-    /// Not those that wait.
+    /// Returns how many strikes are in progress, without those that wait.
     [[nodiscard]] std::size_t strikes_now() const;
     [[nodiscard]] bool befalls(std::size_t module) const;
   };
@@ -110,12 +114,12 @@ class Faults final : public Station {
   Notice notice_;
   Chance chance_;
   std::vector<Armed> armed_;
-  std::vector<std::uint64_t> replies_;  ///< that each module has begun
+  std::vector<std::uint64_t> replies_;  ///< number of replies that each module has begun
   std::size_t numbers_ = 0;
-  bool changed_ = false;  ///< effects are to be set anew, as soon as no module is in the middle of something
+  bool changed_ = false;  ///< effects have to be updated as soon as no module is in the middle of an action
   std::vector<std::size_t> hanging_;
   std::vector<std::vector<std::uint8_t>> to_say_;
-  // On the line only where they are needed.
+  // Created when the first fault needs them.
   std::unique_ptr<Noise> noise_;
   std::unique_ptr<Echo> echo_;
   std::unique_ptr<Master> stranger_;

@@ -37,7 +37,7 @@ Levels Noise::disturbed(const Sent& sent) {
   return levels;
 }
 
-/// No driver goes on: what it fights is the termination, not the sender.
+/// The driver enable stays off, because a stray character overrides the termination, not the sender.
 void Noise::run() {
   const Stray stray = strays_.front();
   strays_.pop_front();

@@ -1,36 +1,37 @@
-// Noise on the wires: bits that arrive as their opposites, characters that are lost, and characters that
-// nobody has sent.
+// Noise on the wires: flipped bits, lost characters, and characters that no station has sent.
 #pragma once
 
 #include <cstdint>
 #include <deque>
 
-#include "sim/bus.hpp"
+#include "sim/bus/bus.hpp"
 #include "sim/faults/chance.hpp"
 
 namespace ex9000::sim {
 
-/// How often it strikes; each is a probability, 0 to 1.
+/// How often noise strikes. Each value is a probability from 0 to 1.
 struct NoiseRates {
-  double flipped_bit = 0;     ///< of each bit, start and stop bits among them
-  double lost_character = 0;  ///< of each character: receivers see an idle line
-  /// Behind each character: one with any byte, right behind it; where the sender goes straight on, the two
-  /// collide.
+  double flipped_bit = 0;     ///< for each bit, including start and stop bits
+  double lost_character = 0;  ///< for each character: receivers see an idle line
+  /// After each character: a character with a random byte follows directly. If the sender continues without a
+  /// gap, the two collide.
   double stray_character = 0;
-  double stray_zero = 0;       ///< likewise, a 00, as the turn-around of a line makes them
-  double lost_in_a_fight = 0;  ///< of each 0 that is sent while another driver is on and holds the idle level
+  /// After each character: a 00 follows, as the turn-around of a line produces it.
+  double stray_zero = 0;
+  /// For each 0 that is sent while another driver is enabled and holds the idle level.
+  double lost_in_a_fight = 0;
 };
 
-/// The same seed and the same line make the same noise.
+/// The same seed and the same traffic produce the same noise.
 class Noise final : public Disturbance, public Station {
  public:
-  /// Attaches itself to `bus`, and disturbs it from now on.
+  /// Attaches itself to `bus` and disturbs it from now on.
   Noise(Bus& bus, NoiseRates rates, std::uint64_t seed);
   Noise(const Noise&) = delete;
   Noise& operator=(const Noise&) = delete;
 
   void set_rates(NoiseRates rates) { rates_ = rates; }
-  /// Characters that it has changed, taken away or made, since it exists.
+  /// Returns the number of characters changed, removed or added so far.
   [[nodiscard]] std::uint64_t strikes() const { return strikes_; }
 
   // --- Disturbance ---
@@ -53,7 +54,7 @@ class Noise final : public Disturbance, public Station {
   NoiseRates rates_;
   Chance chance_;
   std::uint64_t strikes_ = 0;
-  std::deque<Stray> strays_;  ///< that are still to come, the next one first
+  std::deque<Stray> strays_;  ///< strays that are still to come, the next one first
   bool straying_ = false;
 };
 

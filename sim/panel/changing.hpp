@@ -1,4 +1,4 @@
-// What is told of when it has changed.
+// A value that viewers get only after it has changed.
 #pragma once
 
 #include <cstdint>
@@ -7,18 +7,18 @@
 
 namespace ex9000::sim {
 
-/// A value, and when it was last another.
+/// A value, and the number of the look at which it last changed.
 template <class Value>
 class Changing {
  public:
-  /// `look`: the number of the present one.
+  /// `look` is the number of the present look.
   void set(Value value, std::uint64_t look) {
     if (!value_ || !(*value_ == value)) {
       value_ = std::move(value);
       changed_ = look;
     }
   }
-  /// Whether somebody who was told of look number `told` knows an older value.
+  /// Whether the value has changed after look number `told`.
   [[nodiscard]] bool is_news_since(std::uint64_t told) const { return changed_ > told; }
   [[nodiscard]] const Value& value() const { return *value_; }
 

@@ -1,4 +1,4 @@
-// What was last said on a line, for those who look at it now and then.
+// The last frames and notes of a line, for viewers that look at it from time to time.
 #pragma once
 
 #include <algorithm>
@@ -8,16 +8,16 @@
 #include <optional>
 #include <string>
 
-#include "sim/frame_watch.hpp"
+#include "sim/log/frame_watch.hpp"
 
 namespace ex9000::sim {
 
 class Heard {
  public:
-  /// A frame, or where there is a text a remark on the line.
+  /// A frame, or a note about the line if `note` has a value.
   struct Entry {
     Frame frame;
-    std::optional<std::string> note;  ///< said at the frame's beginning
+    std::optional<std::string> note;  ///< its time is the frame's `began`
   };
 
   void add(Entry entry) {
@@ -28,14 +28,14 @@ class Heard {
     entries_.push_back(std::move(entry));
   }
 
-  /// Entries are numbered from 0, as they come; this is the next one's number.
+  /// Entries are numbered from 0 in the order of arrival. Returns the number of the next entry.
   [[nodiscard]] std::uint64_t end() const { return first_ + entries_.size(); }
-  /// The first of the last `most` from number `from` on: those before have been missed.
+  /// Returns the first of the last `most` entries from number `from` on. Entries before it are skipped.
   [[nodiscard]] std::uint64_t first_of(std::uint64_t from, std::size_t most) const {
     const std::uint64_t newest = end() - std::min<std::uint64_t>(most, end());
     return std::max({from, first_, newest});
   }
-  /// One that `first_of` has told, or a later one.
+  /// `number` comes from `first_of` or is a later one.
   [[nodiscard]] const Entry& entry(std::uint64_t number) const {
     return entries_[static_cast<std::size_t>(number - first_)];
   }
@@ -44,7 +44,7 @@ class Heard {
   static constexpr std::size_t kKept = 512;
 
   std::deque<Entry> entries_;
-  std::uint64_t first_ = 0;  ///< the number of the oldest
+  std::uint64_t first_ = 0;  ///< the number of the oldest entry
 };
 
 }  // namespace ex9000::sim

@@ -1,4 +1,4 @@
-// The names of this machine's own loopback, as browsers write them.
+// The names of this machine's loopback interface, as browsers write them.
 #pragma once
 
 #include <algorithm>
@@ -9,19 +9,19 @@
 
 namespace ex9000::sim {
 
-/// Names that a browser on this machine may know a server at a port by. Another one, though it leads here, is
-/// a foreign site's.
+/// The names under which a browser on this machine may reach a server at a port. A request under any other
+/// name, even if that name resolves to this machine, comes from a foreign site.
 class Loopback {
  public:
   explicit Loopback(std::uint16_t port) : port_(":" + std::to_string(port)), is_usual_(port == kUsualPort) {}
 
-  /// `host`: what Host says.
+  /// `host` is the value of the Host header.
   [[nodiscard]] bool is_host(std::string_view host) const {
     return std::any_of(std::begin(kNames), std::end(kNames), [&](std::string_view name) {
       return host == std::string(name) + port_ || (is_usual_ && host == name);
     });
   }
-  /// `origin`: what Origin says.
+  /// `origin` is the value of the Origin header.
   [[nodiscard]] bool is_origin(std::string_view origin) const {
     constexpr std::string_view kScheme = "http://";
     return origin.substr(0, kScheme.size()) == kScheme && is_host(origin.substr(kScheme.size()));
@@ -29,7 +29,7 @@ class Loopback {
 
  private:
   static constexpr std::string_view kNames[] = {"127.0.0.1", "localhost"};
-  static constexpr std::uint16_t kUsualPort = 80;  ///< of HTTP: browsers leave it out
+  static constexpr std::uint16_t kUsualPort = 80;  ///< of HTTP: browsers omit it
 
   std::string port_;
   bool is_usual_;

@@ -2,10 +2,10 @@
 
 #include <chrono>
 
-#include "sim/face/terminals.hpp"
-#include "sim/line_error.hpp"
-#include "sim/meaning.hpp"
-#include "sim/module_spec.hpp"
+#include "sim/line/module_spec.hpp"
+#include "sim/log/frame_errors.hpp"
+#include "sim/log/frame_meaning.hpp"
+#include "sim/module_view/terminals.hpp"
 
 namespace ex9000::sim {
 

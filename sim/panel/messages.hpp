@@ -1,4 +1,4 @@
-// The words in which the program and the page in sim/panel/page talk: JSON.
+// The JSON messages between the program and the page in sim/panel/page.
 #pragma once
 
 #include <cstdint>
@@ -7,42 +7,42 @@
 #include <string>
 #include <vector>
 
-#include "sim/face/face.hpp"
 #include "sim/faults/faults.hpp"
-#include "sim/frame_watch.hpp"
+#include "sim/log/frame_watch.hpp"
+#include "sim/module_view/face.hpp"
 #include "sim/panel/heard.hpp"
 
 namespace ex9000::sim {
 
 using Message = nlohmann::ordered_json;
 
-/// What the page needs to draw a module's plate, and what never changes.
+/// Returns the constant data that the page requires to draw a module's plate.
 Message plate_layout(const Model& model);
 
-// A face in parts, as they change on their own.
+// The parts of a face are separate messages because they change independently.
 Message message_of(const Plate& plate);
-/// Of the first `inputs` counters.
+/// Contains the first `inputs` counters.
 Message message_of(const Gathered& gathered, unsigned inputs);
 Message message_of(const Guard& guard);
 Message message_of(const Stored& stored);
 
-/// `first`: the position of the line's first module, from 0.
+/// `first` is the position of the line's first module, from 0.
 Message message_of(const std::vector<Faults::Told>& faults, std::size_t first);
 
-/// `modules`: how many the line has; who else is on it is a stranger.
+/// `modules` is the number of modules on the line; faults have added any later station.
 Message message_of(const Heard::Entry& entry, std::uint64_t number, std::size_t modules);
 
-/// What the page asks for.
+/// A request of the page.
 struct Asked {
-  std::uint64_t id = 0;             ///< its own, for the reply
-  std::string command;              ///< of the control socket
-  std::optional<std::string> undo;  ///< likewise: carried out when the page goes without asking for it
+  std::uint64_t id = 0;             ///< chosen by the page, for the reply
+  std::string command;              ///< a command of the control socket
+  std::optional<std::string> undo;  ///< carried out if the page disconnects without requesting it
 };
 
-/// Nothing: `text` is no such message.
+/// Returns nullopt if `text` is not a request.
 std::optional<Asked> asked_in(const std::string& text);
 
-/// As it goes over the socket; what is no UTF-8 is replaced.
+/// Returns the text to send over the socket; invalid UTF-8 is replaced.
 std::string text_of(const Message& message);
 
 }  // namespace ex9000::sim

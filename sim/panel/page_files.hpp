@@ -1,4 +1,4 @@
-// The page's files, as they are in sim/panel/page.
+// The page's files, embedded from sim/panel/page.
 #pragma once
 
 #include <string_view>
@@ -11,7 +11,7 @@ struct PageFile {
   std::string_view content;
 };
 
-/// Null: there is none.
+/// Returns null if there is no such file.
 const PageFile* page_file(std::string_view target);
 
 }  // namespace ex9000::sim

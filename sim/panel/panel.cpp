@@ -9,28 +9,28 @@
 #include <utility>
 
 #include "firmware/model/model.hpp"
-#include "sim/face/face.hpp"
+#include "sim/module_view/face.hpp"
 #include "sim/panel/changing.hpp"
 #include "sim/panel/heard.hpp"
 #include "sim/panel/messages.hpp"
-#include "sim/words.hpp"
+#include "sim/text/words.hpp"
 
 namespace ex9000::sim {
 
 namespace {
 
-/// What one message tells of frames, on all lines together: more than two lines at 115200 baud can carry
-/// between two messages, and little enough to be written before a master notices.
+/// The maximum number of frames in one message, for all lines together. It is more than two lines at 115200
+/// baud can carry between two messages, and small enough to be written without a delay that a master notices.
 constexpr std::size_t kMostFrames = 250;
 constexpr std::size_t kFewestFrames = 20;
 
-/// More than anybody holds down; beyond it a page never lets go.
+/// The limit for actions that a page holds active; only a faulty page exceeds it.
 constexpr std::size_t kMostHeld = 256;
 
-/// So that a page can tell a simulator that says nothing from one that has gone.
+/// With this interval a page can detect that the simulator has stopped.
 constexpr std::chrono::seconds kHeartbeat{1};
 
-/// Tells one run of the program from the next.
+/// Returns an id that distinguishes this run of the program from other runs.
 std::string random_id() {
   constexpr std::string_view kDigits = "0123456789abcdef";
   constexpr std::size_t kLength = 16;
@@ -61,7 +61,7 @@ struct Panel::Watched {
   LineIntroduced introduced;
   const Line* line = nullptr;
   std::function<VirtualTime()> present;
-  std::size_t first_module = 0;  ///< its position through all lines
+  std::size_t first_module = 0;  ///< position across all lines
   std::vector<Module> modules;
   Heard heard;
   Changing<std::uint32_t> baud;
@@ -83,7 +83,7 @@ class Panel::Viewer final : public PanelViewer {
     }
   }
 
-  /// What somebody held down when his page went is let go.
+  /// Undoes the actions that the page held active when it disconnected.
   ~Viewer() override {
     for (const std::string& undo : held_) {
       static_cast<void>(carry_out(undo));
@@ -237,9 +237,9 @@ class Panel::Viewer final : public PanelViewer {
 
   Panel& panel_;
   std::uint64_t told_look_ = 0;
-  std::vector<std::uint64_t> told_frames_;  ///< the next one's number, a line each
+  std::vector<std::uint64_t> told_frames_;  ///< number of the next entry, for each line
   std::optional<Message> reply_;
-  std::set<std::string> held_;  ///< what undoes what the page has asked for until further notice
+  std::set<std::string> held_;  ///< commands that undo the actions that the page holds active
   std::chrono::steady_clock::time_point told_at_;
 };
 

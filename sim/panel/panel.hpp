@@ -1,4 +1,4 @@
-// Every module's face, and what is said on the lines, for any number of people who look on.
+// Shows the face of every module and the traffic of the lines to any number of viewers.
 #pragma once
 
 #include <chrono>
@@ -10,30 +10,31 @@
 #include <vector>
 
 #include "sim/control/control.hpp"
-#include "sim/frame_watch.hpp"
-#include "sim/greeting.hpp"
-#include "sim/line.hpp"
+#include "sim/line/line.hpp"
+#include "sim/log/banner.hpp"
+#include "sim/log/frame_watch.hpp"
 #include "sim/panel/panel_server.hpp"
 
 namespace ex9000::sim {
 
-/// Looking changes nothing on a line, and costs nothing where nobody does but the last frames' memory.
+/// Viewing does not affect the lines. Without viewers, the only cost is the memory for the last frames.
 class Panel final : public PanelSource {
  public:
   using CarryOut = std::function<Control::Reply(const std::string& command)>;
 
   using WallClock = std::function<std::chrono::steady_clock::time_point()>;
 
-  /// `speed`: of the lines' time to the wall clock's. `wall_clock` says when a page that has heard nothing
-  /// needs a sign of life.
+  /// `speed` is the ratio of the lines' time to the wall clock. `wall_clock` decides when an idle page gets a
+  /// keep-alive message.
   Panel(CarryOut carry_out, double speed, WallClock wall_clock = std::chrono::steady_clock::now);
   ~Panel() override;
   Panel(const Panel&) = delete;
   Panel& operator=(const Panel&) = delete;
 
-  /// Before anybody looks. `line` lives as long as this; `present` tells its time.
+  /// Adds a line before the first viewer connects. `line` must outlive this object; `present` returns the
+  /// line's time.
   void add_line(const LineIntroduced& introduced, const Line& line, std::function<VirtualTime()> present);
-  /// What is said on the line of this position, from 0.
+  /// Adds a frame of the line at this position, from 0.
   void hear(std::size_t line, const Frame& frame);
   void note(std::size_t line, VirtualTime now, const std::string& text);
 

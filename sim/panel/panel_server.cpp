@@ -28,22 +28,23 @@ using boost::asio::ip::tcp;
 using boost::system::error_code;
 
 constexpr std::uint16_t kDefaultPort = 9042;
-/// Far more than somebody looks at; beyond it somebody connects and never goes.
+/// The limit for open pages. Only clients that never disconnect can exceed it.
 constexpr std::size_t kMostPages = 16;
-/// Under way at a time besides: a browser has six, of all its pages together.
+/// The limit for simultaneous requests besides pages. A browser has up to six, for all its pages together.
 constexpr std::size_t kMostRequests = 64;
 constexpr std::uint32_t kLongestHeader = 8192;
 constexpr std::size_t kLongestAsked = 4096;
-/// Until a request has come, and until its answer has gone.
+/// The timeout for a request to arrive and for its response to be sent.
 constexpr std::chrono::seconds kPatience{5};
-/// A page that answers no ping for so long has gone.
+/// A page that does not answer pings for this time is disconnected.
 constexpr std::chrono::seconds kIdle{20};
-/// Between two looks: half of what is to be on the screen within 100 ms, less what goes into drawing it.
+/// The interval between two looks. Changes must be on the screen within 100 ms; this is half of that time,
+/// minus the time to draw them.
 constexpr std::chrono::milliseconds kLookEvery{30};
 
 tcp::endpoint here(std::uint16_t port) { return {boost::asio::ip::address_v4::loopback(), port}; }
 
-/// As it stands, for whoever is one too many: nothing of it is kept.
+/// The complete response for excess connections. It is constant, so that they require no memory.
 constexpr std::string_view kTurnedAway =
     "HTTP/1.1 503 Service Unavailable\r\nContent-Type: text/plain\r\nContent-Length: 36\r\n"
     "Connection: close\r\n\r\ntoo many requests are under way yet\n";
@@ -66,7 +67,7 @@ class PanelServer::Listener : public std::enable_shared_from_this<PanelServer::L
       error = listen_at(acceptor_, here(0));
     }
     if (error) {
-      throw std::invalid_argument("--panel " + std::to_string(port.value_or(kDefaultPort)) + ": " +
+      throw std::invalid_argument(std::to_string(port.value_or(kDefaultPort)) + ": " +
                                   why_not_listening(error, "name another port"));
     }
     port_ = acceptor_.local_endpoint().port();
@@ -74,7 +75,7 @@ class PanelServer::Listener : public std::enable_shared_from_this<PanelServer::L
 
   [[nodiscard]] std::uint16_t port() const { return port_; }
   void accept();
-  /// The source is no more.
+  /// Closes all connections, because the source is about to be destroyed.
   void stop();
 
  private:
@@ -96,7 +97,7 @@ class PanelServer::Listener : public std::enable_shared_from_this<PanelServer::L
   bool stopped_ = false;
 };
 
-/// A connection: one request, or a page that is told how things are until it goes.
+/// A connection: a single request, or a page that gets messages until it disconnects.
 class PanelServer::Listener::Client : public std::enable_shared_from_this<Client> {
  public:
   Client(std::shared_ptr<Listener> listener, tcp::socket socket)
@@ -113,10 +114,10 @@ class PanelServer::Listener::Client : public std::enable_shared_from_this<Client
   }
 
   [[nodiscard]] bool is_page() const { return viewer_ != nullptr; }
-  /// One, or about to be.
+  /// Whether it is a page or will become one.
   [[nodiscard]] bool takes_a_page() const { return takes_a_page_; }
 
-  /// Whatever there is to tell, unless it still reads what it was told before.
+  /// Sends the changes, unless the previous message is still being sent.
   void tell() {
     if (!viewer_ || writing_) {
       return;
@@ -188,7 +189,7 @@ class PanelServer::Listener::Client : public std::enable_shared_from_this<Client
     }
   }
 
-  /// Origin is not sent with everything; this is, by browsers that know it.
+  /// Browsers do not send Origin with every request, but newer ones always send Sec-Fetch-Site.
   [[nodiscard]] static bool is_fetched_by_us(const Request& request) {
     const auto fetched = request.equal_range("Sec-Fetch-Site");
     return std::all_of(fetched.first, fetched.second, [](const auto& field) {
@@ -219,7 +220,8 @@ class PanelServer::Listener::Client : public std::enable_shared_from_this<Client
         [self = shared_from_this()](const error_code& /*error*/, std::size_t /*size*/) { self->leave(); });
   }
 
-  /// What it may still be sending is read first: where that is left, the answer does not arrive.
+  /// Reads the rest of the request before closing. Otherwise the close resets the connection and the response
+  /// is lost.
   void leave() {
     error_code ignored;
     stream().socket().shutdown(tcp::socket::shutdown_send, ignored);
@@ -266,7 +268,8 @@ class PanelServer::Listener::Client : public std::enable_shared_from_this<Client
     });
   }
 
-  /// A page is told of a refused WebSocket nothing but that it is refused; of a closed one, why.
+  /// Accepts the WebSocket and closes it, because a page gets a reason only for a close and not for a
+  /// rejection.
   void turn_away() {
     socket_.async_close({websocket::close_code::try_again_later, "too many pages are open already"},
                         [self = shared_from_this()](const error_code& /*error*/) {});
@@ -285,7 +288,8 @@ class PanelServer::Listener::Client : public std::enable_shared_from_this<Client
     });
   }
 
-  /// The next request is read when this one's answer is on its way: nobody is asked faster than he answers.
+  /// The next request is read only after the reply to this one has been queued, so a client cannot send
+  /// requests faster than they are answered.
   void answer_asked() {
     answering_ = false;
     const std::string asked = beast::buffers_to_string(buffer_.data());
@@ -310,7 +314,7 @@ class PanelServer::Listener::Client : public std::enable_shared_from_this<Client
   std::unique_ptr<PanelViewer> viewer_;
   std::string told_;
   bool writing_ = false;
-  bool answering_ = false;  ///< a request waits for what is being written
+  bool answering_ = false;  ///< a request waits until the present message has been sent
 };
 
 void PanelServer::Listener::accept() {
@@ -337,7 +341,7 @@ void PanelServer::Listener::accept() {
   });
 }
 
-/// The process has as many files open as it may: trying again at once would take all of the processor.
+/// The process has no free file descriptor. An immediate retry would use all of the processor's time.
 void PanelServer::Listener::accept_later() {
   constexpr std::chrono::milliseconds kWhile{100};
   next_try_.expires_after(kWhile);
@@ -355,7 +359,7 @@ std::size_t PanelServer::Listener::pages() const {
   }));
 }
 
-/// Somebody has come to look.
+/// Starts regular looks when the first page opens.
 void PanelServer::Listener::watch() {
   if (looking_) {
     look();

@@ -1,4 +1,4 @@
-// Serves the panel's page, and talks to it, over HTTP and WebSocket on this machine alone.
+// Serves the panel's page and its messages over HTTP and WebSocket, only to this machine.
 #pragma once
 
 #include <cstdint>
@@ -12,7 +12,7 @@ class io_context;
 
 namespace ex9000::sim {
 
-/// The one behind an open page.
+/// The server's side of one open page.
 class PanelViewer {
  public:
   PanelViewer() = default;
@@ -20,14 +20,14 @@ class PanelViewer {
   PanelViewer& operator=(const PanelViewer&) = delete;
   virtual ~PanelViewer() = default;
 
-  /// Takes what the page asks for; the answer is part of what is told next. False: that is no request.
-  /// What it holds down meanwhile is let go when this goes.
+  /// Carries out a request of the page; `next` returns the reply. Returns false if `text` is not a request.
+  /// Actions that the page holds active are undone when this object is destroyed.
   virtual bool ask(const std::string& text) = 0;
-  /// What it has not been told yet, as of the last look; empty: nothing.
+  /// Returns the changes that the page does not have yet, as of the last look; empty: none.
   virtual std::string next() = 0;
 };
 
-/// Where pages get from what they show.
+/// The source of the data that pages show.
 class PanelSource {
  public:
   PanelSource() = default;
@@ -35,28 +35,29 @@ class PanelSource {
   PanelSource& operator=(const PanelSource&) = delete;
   virtual ~PanelSource() = default;
 
-  /// Takes note of how things are, for all viewers.
+  /// Captures the present state for all viewers.
   virtual void look() = 0;
   virtual std::unique_ptr<PanelViewer> viewer() = 0;
 };
 
-/// One page, its files, and a WebSocket at /live. A page that reads slowly is told less often, and always how
-/// things are by then: nothing queues up, and nobody waits for it.
+/// Serves one page, its files, and a WebSocket at /live. A page that reads slowly gets fewer messages, each
+/// with the state at that time: nothing queues up, and the simulation does not wait for the page.
 ///
-/// Who asks under another name than the loopback's is refused, and so is a WebSocket that another site's page
-/// has opened.
+/// Rejects requests under a name other than that of the loopback, and WebSocket connections from pages of
+/// other sites.
 class PanelServer {
  public:
-  /// Listens. Nothing: on 9042, or on any free port where that is taken; 0: any. Throws
-  /// std::invalid_argument, one line, where a port that was named cannot be had. Both live as long as this.
+  /// Listens on `port`. nullopt: on 9042, or on any free port if 9042 is in use; 0: on any free port. Throws
+  /// std::invalid_argument with a one-line message if a given port is not available. `io` and `source` must
+  /// outlive this object.
   PanelServer(boost::asio::io_context& io, std::optional<std::uint16_t> port, PanelSource& source);
   ~PanelServer();
   PanelServer(const PanelServer&) = delete;
   PanelServer& operator=(const PanelServer&) = delete;
 
-  /// `http://127.0.0.1:9042/`.
+  /// Returns the URL, for example `http://127.0.0.1:9042/`.
   [[nodiscard]] std::string address() const;
-  /// Lets people in as soon as `io` runs.
+  /// Accepts connections as soon as `io` runs.
   void start();
 
  private:

@@ -4,9 +4,10 @@
 #include <utility>
 
 #include "sim/control/control.hpp"
-#include "sim/eeprom_file.hpp"
-#include "sim/line_of_setup.hpp"
-#include "sim/words.hpp"
+#include "sim/files/eeprom_file.hpp"
+#include "sim/setup/line_factory.hpp"
+#include "sim/text/fail.hpp"
+#include "sim/text/words.hpp"
 
 namespace ex9000::play {
 
@@ -20,7 +21,9 @@ Memories read_memories(const sim::Setup& setup) {
   Memories memories;
   for (const sim::LineSetup& line : setup.lines) {
     for (const sim::ModuleSpec& module : line.modules) {
-      memories.push_back(module.eeprom.empty() ? std::nullopt : sim::read_eeprom_file(module.eeprom));
+      memories.push_back(sim::with_place(module.eeprom_place, [&] {
+        return module.eeprom.empty() ? std::nullopt : sim::read_eeprom_file(module.eeprom);
+      }));
     }
   }
   return memories;
@@ -129,8 +132,8 @@ void BusTarget::pulse_input(unsigned channel, std::uint32_t count) {
 }
 
 step::Led::Shows BusTarget::led(step::Led::Shows /*expected*/) {
-  // No time passes: the steps around this one measure it. That the pin flashes as the pattern says is a unit
-  // test.
+  // No virtual time passes; the surrounding steps measure time. A unit test checks that the pin flashes
+  // according to the pattern.
   if (module().powered() && module().module().led_pattern() == StatusLed::Pattern::HostTimeout) {
     return step::Led::Shows::Flashing;
   }
@@ -165,7 +168,7 @@ void BusTarget::choose_line(const std::string& name) {
       (names.empty() ? "the only one has no name, leave the step out" : "there are " + names));
 }
 
-/// Nobody has listened there meanwhile.
+/// Discards the bytes that the master of that line has received in the meantime.
 void BusTarget::turn_to(std::size_t line, std::size_t module) {
   if (line != line_) {
     heard_[line].clear();
@@ -183,7 +186,7 @@ void BusTarget::trouble(const std::string& command) {
     for (std::size_t i = 0; i < lines_.size(); ++i) {
       lines.push_back({names_[i], *lines_[i]});
     }
-    // The control socket has the module's position in front.
+    // The control socket expects the module's position before the command.
     std::swap(words[0], words[1]);
     told.clear();
     for (const std::string& word : words) {

@@ -1,4 +1,4 @@
-// Lines in virtual time as what is played against.
+// Plays against lines in virtual time.
 #pragma once
 
 #include <memory>
@@ -6,36 +6,35 @@
 #include <string>
 #include <vector>
 
-#include "sim/line.hpp"
+#include "sim/line/line.hpp"
 #include "sim/play/onlooker.hpp"
 #include "sim/play/target.hpp"
-#include "sim/setup.hpp"
+#include "sim/setup/setup.hpp"
 
 namespace ex9000::play {
 
-/// What modules find in their EEPROMs, in the order of lines and modules; nothing: what their settings say.
+/// The initial EEPROM contents, in the order of lines and modules; nullopt: the settings of the module apply.
 using Memories = std::vector<std::optional<std::vector<std::uint8_t>>>;
-/// Of the files that `setup` names, which are left as they are, whoever else has them. Throws
-/// std::invalid_argument, one line.
+/// Reads the files that `setup` names and leaves them unchanged, even if another process uses them. Throws
+/// std::invalid_argument with a one-line message.
 Memories read_memories(const sim::Setup& setup);
 
-/// All its lines have the same time.
+/// All lines have the same time.
 class BusTarget : public Target {
  public:
-  /// For a transcript, which says what module there is.
-  /// `onlooker` may be null, and lives as long as this.
+  /// For a transcript, which names its own module. `onlooker` may be null and must outlive this object.
   explicit BusTarget(Onlooker* onlooker = nullptr) : onlooker_(onlooker) {}
-  /// For a scenario: the modules of `setup` have come up, with `memories`. Neither files nor ports are
-  /// opened. Throws std::invalid_argument, one line.
+  /// For a scenario: the modules of `setup` start up with `memories`. Opens neither files nor ports. Throws
+  /// std::invalid_argument with a one-line message.
   BusTarget(const sim::Setup& setup, const Memories& memories, Onlooker* onlooker = nullptr);
 
-  /// Throws std::runtime_error, as Target does, where the module lacks it.
+  /// Throws std::runtime_error, as Target does, if the module lacks the input.
   void want_input(unsigned channel);
 
   [[nodiscard]] std::size_t size() const { return lines_.size(); }
   sim::Line& line(std::size_t index) { return *lines_[index]; }
   [[nodiscard]] sim::VirtualTime now() { return chosen().clock().virtual_now(); }
-  /// All that happens until then.
+  /// Processes all events up to and including `until`.
   void run_until(sim::VirtualTime until);
 
   // --- Target ---
@@ -66,9 +65,9 @@ class BusTarget : public Target {
   Onlooker* onlooker_;
   std::vector<std::string> names_;
   std::vector<std::unique_ptr<sim::Line>> lines_;
-  std::vector<Bytes> heard_;  ///< by the master of each line, since the steps were last about another
+  std::vector<Bytes> heard_;  ///< bytes that each master has received since the line was last chosen
   std::size_t line_ = 0;
-  std::size_t module_ = 0;  ///< on that line
+  std::size_t module_ = 0;  ///< position on that line
 };
 
 }  // namespace ex9000::play

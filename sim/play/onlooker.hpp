@@ -1,9 +1,9 @@
-// Somebody who looks on while something is played.
+// Interface for code that observes a play, for example to log it.
 #pragma once
 
 #include <string>
 
-#include "sim/line.hpp"
+#include "sim/line/line.hpp"
 
 namespace ex9000::play {
 
@@ -14,12 +14,12 @@ class Onlooker {
   Onlooker& operator=(const Onlooker&) = delete;
   virtual ~Onlooker() = default;
 
-  /// A file, or what it says of one model, is to be played.
+  /// A file, or the part of it for one model, is about to be played.
   virtual void begins(const std::string& what) = 0;
-  /// A line of it has come up, which lives until `ends`; `name` may be empty where there is but one. Who is
-  /// to be told what goes wrong with it.
+  /// A line of the play has started up. It lives until `ends`. `name` may be empty if there is only one line.
+  /// Returns the receiver of messages about its faults.
   virtual sim::Faults::Notice joins(sim::Line& line, const std::string& name) = 0;
-  /// All that has happened on its lines until now has been seen.
+  /// All events on its lines up to `now` have been observed.
   virtual void reached(sim::VirtualTime now) = 0;
   virtual void ends() = 0;
 };

@@ -3,12 +3,12 @@
 #include <filesystem>
 #include <vector>
 
-#include "sim/fail.hpp"
-#include "sim/overwriting.hpp"
 #include "sim/play/bus_target.hpp"
 #include "sim/play/player.hpp"
 #include "sim/play/rehearsal.hpp"
 #include "sim/play/transcript.hpp"
+#include "sim/setup/paths_in_use.hpp"
+#include "sim/text/fail.hpp"
 
 namespace ex9000::play {
 
@@ -29,21 +29,21 @@ std::vector<Transcript> load_all(const std::string& path) {
     fail(error.what());
   }
   if (all.empty()) {
-    fail(path + ": no file that ends with .txt; name a transcript, a scenario or a folder of them");
+    fail(path + ": contains no file that ends with .txt; name a transcript, a scenario or a folder of them");
   }
   return all;
 }
 
 void check(const Transcript& transcript, const std::optional<sim::Setup>& bus) {
   if (transcript.model == nullptr && !bus) {
-    fail(transcript.file + ": names no 'model:', so it wants modules or a bus file behind it to play on");
+    fail(transcript.file + ": has no 'model:' line, so it requires modules or a bus file after it");
   }
   if (transcript.model != nullptr && bus) {
-    fail(transcript.file + ": names its models itself; leave out modules and bus file");
+    fail(transcript.file + ": has 'model:' lines; leave out modules and bus file");
   }
 }
 
-/// The capture is not begun yet.
+/// Must run before the capture is started, because that overwrites its file.
 void spare_what_is_read(const Task& task, const std::vector<Transcript>& all) {
   if (!task.writing.capture) {
     return;
@@ -52,7 +52,7 @@ void spare_what_is_read(const Task& task, const std::vector<Transcript>& all) {
   for (const Transcript& transcript : all) {
     read.push_back({"the file of steps", transcript.file});
   }
-  sim::refuse_overwriting(*task.writing.capture, read);
+  sim::with_place("--capture ", [&] { sim::refuse_overwriting(*task.writing.capture, read); });
 }
 
 }  // namespace

@@ -1,4 +1,4 @@
-// Plays files against modules in virtual time, and reports.
+// Plays files against modules in virtual time and reports the results.
 #pragma once
 
 #include <functional>
@@ -6,20 +6,22 @@
 #include <string>
 
 #include "sim/play/onlooker.hpp"
-#include "sim/setup.hpp"
+#include "sim/setup/setup.hpp"
 
 namespace ex9000::play {
 
-/// What is to be played: a transcript, which names its models, a directory of them, or a scenario on `bus`.
+/// The files to play: a transcript, which names its models, a directory of transcripts, or a scenario on
+/// `bus`.
 struct Task {
   std::string path;
   std::optional<sim::Setup> bus;
   sim::Writing writing;
 };
 
-/// Prints a line for each run, and one for all. Whether all have passed. Throws std::invalid_argument, one
-/// line, where the path or what stands there is wrong, the bus is missing, lacks something or is of no use,
-/// or the capture is one of the files that are read: `onlooker` has been told nothing then.
+/// Prints one line of text for each run and a summary. Returns whether all runs have passed. Throws
+/// std::invalid_argument with a one-line message if the path or the content of a file is wrong, if the bus is
+/// missing, incomplete or not used, or if the capture is one of the files to read. In these cases `onlooker`
+/// has not been called.
 bool play(const Task& task, const std::function<void(const std::string& line)>& print, Onlooker& onlooker);
 
 }  // namespace ex9000::play

@@ -10,13 +10,13 @@ namespace ex9000::play {
 namespace {
 
 constexpr std::chrono::milliseconds kLongestReply{250};
-/// The rest of a reply that is longer than it should be shows itself within this.
+/// If a reply is too long, its extra bytes arrive within this time.
 constexpr std::chrono::milliseconds kAfterReply{2};
-/// A reply that no step asks for begins within this, at any rate: T3.5 at 1200 baud, the 20 ms that a reply
-/// may take, and its first character.
+/// An unexpected reply begins within this time: T3.5 at 1200 baud, the 20 ms that a reply may take, and its
+/// first character.
 constexpr std::chrono::milliseconds kReplyBegins{65};
 
-/// DCON's checksum once more, the plain way, so that the tests do not judge the firmware by itself.
+/// Calculates DCON's checksum independently, so that the tests do not check the firmware with its own code.
 std::string checksum_of(const std::string& text) {
   unsigned sum = 0;
   for (const char character : text) {
@@ -28,7 +28,7 @@ std::string checksum_of(const std::string& text) {
 
 Bytes bytes_of(const std::string& text) { return {text.begin(), text.end()}; }
 
-/// As a person reads it: text where it is text, hex otherwise.
+/// Returns the bytes for people: as text if all are printable, otherwise in hex.
 std::string shown(const Bytes& bytes) {
   bool text = !bytes.empty();
   for (std::size_t i = 0; i < bytes.size(); ++i) {
@@ -74,7 +74,7 @@ std::string hex_word(unsigned value) {
   return text;
 }
 
-/// Carries out one step; throws std::runtime_error where what comes is not what is expected.
+/// Carries out one step. Throws std::runtime_error if the result is not the expected one.
 class Playing {
  public:
   Playing(Target& target, bool checksum) : target_(target), checksum_(checksum) {}
@@ -87,7 +87,7 @@ class Playing {
   }
   void operator()(const step::SendModbus& step) { send(with_crc(step.frame)); }
   void operator()(const step::ExpectModbus& step) { expect(with_crc(step.frame)); }
-  /// Nothing is awaited before them: they may be the rest of a frame.
+  /// Does not check for earlier replies, because the bytes may be the rest of a frame.
   void operator()(const step::SendBytes& step) {
     target_.send(step.bytes);
     open_question_ = true;
@@ -138,7 +138,7 @@ class Playing {
   }
   void operator()(const step::Trouble& step) { target_.trouble(step.command); }
 
-  /// Nothing that no step has asked for is on its way.
+  /// Fails if bytes arrive that no step has expected.
   void nothing_more() { nothing_for(open_question_ ? kReplyBegins : kAfterReply); }
 
  private:
@@ -166,7 +166,7 @@ class Playing {
 
   Target& target_;
   bool checksum_;
-  bool open_question_ = false;  ///< something was sent, and an answer may still come
+  bool open_question_ = false;  ///< something was sent, and a reply may still come
 };
 
 }  // namespace

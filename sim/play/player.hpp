@@ -10,13 +10,13 @@
 namespace ex9000::play {
 
 struct Result {
-  std::size_t steps = 0;  ///< played, the failed one included
-  std::string failure;    ///< file, line, what was expected and what came; empty: passed
+  std::size_t steps = 0;  ///< steps played, including the failed one
+  std::string failure;    ///< file, line, expected and actual result; empty: passed
 
   [[nodiscard]] bool passed() const { return failure.empty(); }
 };
 
-/// Plays all steps, up to the first that fails. A scenario's target has been started.
+/// Plays all steps up to the first failure. For a scenario, the target must have been started.
 Result play(const Transcript& transcript, Target& target);
 
 }  // namespace ex9000::play

@@ -3,7 +3,7 @@
 #include <stdexcept>
 #include <string>
 
-#include "sim/fail.hpp"
+#include "sim/text/fail.hpp"
 
 namespace ex9000::play {
 

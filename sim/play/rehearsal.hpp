@@ -1,4 +1,4 @@
-// Finds what a scenario wants of a bus that lacks it, before anything is played.
+// Finds what a scenario requires and the bus lacks, before anything is played.
 #pragma once
 
 #include "sim/play/bus_target.hpp"
@@ -6,9 +6,10 @@
 
 namespace ex9000::play {
 
-/// Chooses modules and lines, looks for inputs and lets faults come and go as `scenario` says, in no time:
-/// what depends on when it is said stays to be seen. `bus` is of no use for anything else then. Throws
-/// std::invalid_argument that names file, line, step and what is wrong.
+/// Carries out the steps of `scenario` that choose modules and lines or add and remove faults, and checks
+/// that the inputs in other steps exist. No virtual time passes, so errors that depend on time are not found.
+/// `bus` must not be used for anything else afterwards. Throws std::invalid_argument that names the file, the
+/// line, the step and what is wrong.
 void rehearse(const Transcript& scenario, BusTarget& bus);
 
 }  // namespace ex9000::play

@@ -1,4 +1,4 @@
-// What a transcript is played against.
+// The interface to the modules that a transcript is played against.
 #pragma once
 
 #include <chrono>
@@ -13,8 +13,8 @@
 
 namespace ex9000::play {
 
-/// A module and the master's end of its line; where there are several, one of them at a time. Every call
-/// returns when it is done; where that takes time, the target lets it pass.
+/// A module and the master's end of its line. A target with several modules acts on one of them at a time.
+/// Each call returns when its action is complete; the target lets the required time pass.
 class Target {
  public:
   Target() = default;
@@ -22,46 +22,49 @@ class Target {
   Target& operator=(const Target&) = delete;
   virtual ~Target() = default;
 
-  /// A module of this model with `preset` stored (nothing stored where it is null), supply on, INIT*
-  /// released, inputs off. Called once, first.
+  /// Provides a module of this model with `preset` stored (nothing is stored if `preset` is null), supply on,
+  /// INIT* released and inputs off. Called once, before the other functions.
   virtual void start(const Model& model, const Settings* preset) = 0;
 
-  /// Puts `bytes` on the line without a gap, at the master's rate.
+  /// Sends `bytes` on the line without a gap, at the master's rate.
   virtual void send(const Bytes& bytes) = 0;
-  /// What is heard until `count` bytes are there or nothing came for `patience`.
+  /// Returns the bytes received until there are `count` of them or none has come for `patience`.
   virtual Bytes receive(std::size_t count, std::chrono::milliseconds patience) = 0;
-  /// What is heard while `time` passes.
+  /// Returns the bytes received while `time` passes.
   virtual Bytes listen(std::chrono::nanoseconds time) = 0;
-  /// The master's rate.
+  /// Sets the master's rate.
   virtual void set_baud(std::uint32_t rate) = 0;
 
-  /// The supply; after it comes on, the module has been given the time to come up.
+  /// Switches the supply. After switching on, returns when the module has had the time to start up.
   virtual void power(bool on) = 0;
-  /// A reset with the supply on; likewise.
+  /// Resets the module with the supply on, and returns when it has had the time to start up.
   virtual void reset() = 0;
   virtual void set_init(bool asserted) = 0;
   virtual void set_input(unsigned channel, bool level) = 0;
   virtual void pulse_input(unsigned channel, std::uint32_t count) = 0;
   virtual std::uint16_t outputs() = 0;
-  /// `expected` is what the transcript says: a target that can but watch the lamp need not watch for longer
-  /// than it takes to tell this from everything else.
+  /// Returns what the LED shows. `expected` is the value in the transcript: a target that can only watch the
+  /// LED need not watch it longer than necessary to distinguish this value from all others.
   virtual step::Led::Shows led(step::Led::Shows expected) = 0;
 
-  // Of a bus; what has but one module has no other, and no faults. They throw std::runtime_error, likewise.
+  // Functions for a bus with several modules and faults. They throw std::runtime_error if the module, the
+  // line or the fault does not exist; other targets always throw.
 
-  /// Which module the calls above are about from here on, from 0 through all lines, or the first of a line;
-  /// the master talks on its line.
+  /// Chooses the module for the following calls, from 0 across all lines, or the first module of a line. The
+  /// master sends on its line.
   virtual void choose_module(std::size_t /*position*/) {
-    throw std::runtime_error("there is but one module");
+    throw std::runtime_error("there is only one module");
   }
-  virtual void choose_line(const std::string& /*name*/) { throw std::runtime_error("there is but one line"); }
-  /// `fault FAULT`, `fault off K|all` or `faults` of that line, or `fault N FAULT` of a module, from 1
-  /// through all lines.
+  virtual void choose_line(const std::string& /*name*/) {
+    throw std::runtime_error("there is only one line");
+  }
+  /// Carries out `fault FAULT`, `fault off K|all` or `faults` for the chosen line, or `fault N FAULT` for a
+  /// module, from 1 across all lines.
   virtual void trouble(const std::string& /*command*/) {
-    throw std::runtime_error("nothing can go wrong here");
+    throw std::runtime_error("this target has no faults");
   }
 
-  /// The transcript is over. Throws std::runtime_error where an answer given before turns out to be wrong.
+  /// Ends the transcript. Throws std::runtime_error if an earlier result turns out to be wrong.
   virtual void end() {}
 };
 

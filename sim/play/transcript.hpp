@@ -1,4 +1,4 @@
-// A conformance transcript, or a scenario, as data; tests/conformance/README.md is their format.
+// A conformance transcript or a scenario as data. tests/conformance/README.md defines the format.
 #pragma once
 
 #include <chrono>
@@ -29,7 +29,7 @@ struct SendModbus {
 };  ///< without CRC
 struct ExpectModbus {
   Bytes frame;
-};  ///< likewise
+};  ///< without CRC
 struct SendBytes {
   Bytes bytes;
 };
@@ -65,10 +65,10 @@ struct Outputs {
 struct Led {
   enum class Shows { On, Off, Flashing } shows;
 };
-// Of scenarios, which have a bus.
+// Only for scenarios, which have a bus.
 struct OnModule {
   std::size_t position;
-};  ///< from 0, through all lines
+};  ///< from 0, across all lines
 struct OnLine {
   std::string name;
 };
@@ -84,37 +84,37 @@ using Action = std::variant<step::SendDcon, step::ExpectDcon, step::SendModbus, 
                             step::Outputs, step::Led, step::OnModule, step::OnLine, step::Trouble>;
 
 struct Step {
-  unsigned line;     ///< in the file, from 1
-  std::string text;  ///< as written, variables replaced
+  unsigned line;     ///< line number in the file, from 1
+  std::string text;  ///< as written, with variables replaced
   Action action;
 };
 
-/// One run of a file on one model; a scenario has none, but a bus to play on.
+/// One run of a file on one model. A scenario has no model; it runs on a bus.
 struct Transcript {
   std::string file;
   const Model* model = nullptr;  ///< null: a scenario
-  Settings preset;               ///< factory settings with what the header changes
+  Settings preset;               ///< factory settings with the changes from the header
   bool preset_given = false;
   bool slow = false;
   std::vector<Step> steps;
 
-  /// `wait` and `silence` together, rounded up.
+  /// Returns the total time of all `wait` and `silence` steps, rounded up.
   [[nodiscard]] std::chrono::milliseconds waits() const;
 };
 
-/// Nothing may be heard in this time where `silence` is expected; longer than any reply may take.
+/// If `silence` is expected, no byte may arrive in this time. It is longer than any reply may take.
 constexpr std::chrono::milliseconds kSilence{250};
 
-/// What is wrong with an input of this number on `model`; empty: it has it.
+/// Describes what is wrong if `model` lacks an input with this number; empty: the input exists.
 std::string missing_input(const Model& model, unsigned channel);
 
-/// The transcripts below `directory`, in the order of their paths.
+/// Returns the transcripts below `directory`, sorted by path.
 std::vector<std::string> transcript_files(const std::string& directory);
 
-/// All runs of a file, one a `model:` line, or the one scenario that it is. Throws std::invalid_argument that
-/// names file, line and what is wrong.
+/// Returns all runs of a transcript, one for each `model:` line, or the single run of a scenario. Throws
+/// std::invalid_argument that names the file, the line and what is wrong.
 std::vector<Transcript> load(const std::string& path);
-/// The same of files that are no scenarios.
+/// The same for files that must not be scenarios.
 std::vector<Transcript> load_transcripts(const std::string& path);
 
 }  // namespace ex9000::play

@@ -12,7 +12,7 @@ namespace ex9000::sim {
 
 namespace {
 
-/// The same for all ways to write a path, and short enough for a socket's name.
+/// Returns the same name for all spellings of a path, short enough for the name of a socket.
 std::string name_of(const std::string& path) {
   namespace fs = std::filesystem;
   std::error_code error;
@@ -23,7 +23,7 @@ std::string name_of(const std::string& path) {
 
 }  // namespace
 
-/// An abstract socket: a name that the kernel gives to one process and takes back by itself.
+/// Uses an abstract socket: the kernel gives the name to only one process and releases it automatically.
 Claim::Claim(const std::string& path) : fd_(socket(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0)) {
   sockaddr_un address{};
   address.sun_family = AF_UNIX;

@@ -1,12 +1,13 @@
-// Who uses a path that a process leaves behind when it dies.
+// A lock for a path that a process leaves behind when it dies.
 #pragma once
 
 #include <string>
 
 namespace ex9000::sim {
 
-/// Held by one process at a time, and given up when it ends, however it ends: what stands at the path without
-/// somebody holding this was left by a dead one. Among processes of one network namespace, whosever they are.
+/// Only one process holds a claim at a time, and the system releases it when the process ends in any way: if
+/// a path exists and no process holds its claim, a dead process has left it. Works between processes of one
+/// network namespace, for all users.
 class Claim {
  public:
   explicit Claim(const std::string& path);
@@ -14,7 +15,7 @@ class Claim {
   Claim(const Claim&) = delete;
   Claim& operator=(const Claim&) = delete;
 
-  /// False: another has it.
+  /// Returns false if another process holds the claim.
   [[nodiscard]] bool held() const { return fd_ >= 0; }
 
  private:

@@ -1,4 +1,4 @@
-// How a port of this machine is listened at, and what is said where it cannot be had.
+// Helpers for listening on a TCP port of this machine.
 #pragma once
 
 #include <boost/asio/ip/tcp.hpp>
@@ -6,13 +6,13 @@
 
 namespace ex9000::sim {
 
-/// Opens `acceptor` there; where that fails it is closed again.
+/// Opens `acceptor` on `endpoint`. If that fails, closes it again and returns the error.
 inline boost::system::error_code listen_at(boost::asio::ip::tcp::acceptor& acceptor,
                                            const boost::asio::ip::tcp::endpoint& endpoint) {
   using boost::asio::ip::tcp;
   boost::system::error_code error;
   acceptor.open(endpoint.protocol(), error);
-  // What connections of a dead process still linger must not keep this one from listening.
+  // Lingering connections of a dead process must not prevent this one from listening.
   if (!error) {
     acceptor.set_option(tcp::acceptor::reuse_address(true), error);
   }
@@ -29,7 +29,7 @@ inline boost::system::error_code listen_at(boost::asio::ip::tcp::acceptor& accep
   return error;
 }
 
-/// What is wrong, and `mend` unless another program is the reason.
+/// Describes the error; adds `mend` unless another program uses the port.
 inline std::string why_not_listening(const boost::system::error_code& error, const std::string& mend) {
   return error == boost::asio::error::address_in_use
              ? "another program listens there; end it or name another port"

@@ -1,4 +1,4 @@
-// Tells an adapter's echo from what others send.
+// Distinguishes an adapter's echo from bytes that other stations send.
 #pragma once
 
 #include <chrono>
@@ -10,8 +10,8 @@
 
 namespace ex9000::sim {
 
-/// Some adapters hear what they send. A module ignores that (wire.md section 9), and would otherwise obey its
-/// own replies: that to a Modbus function 05 is the request once more.
+/// Some adapters receive what they send. A module ignores its own bytes (wire.md section 9). Without this
+/// filter it would carry out its own replies, because the reply to a Modbus function 05 equals the request.
 class OwnEcho {
  public:
   using Clock = std::chrono::steady_clock;
@@ -24,8 +24,8 @@ class OwnEcho {
     until_ = now + kCharacterBits * static_cast<std::int64_t>(awaited_.size()) / baud_ + kLatency;
   }
 
-  /// How many of the bytes that were heard at `now` are the echo: those from the first on that are what was
-  /// sent, in its order. Another byte, or none for too long, and the rest of it is not awaited any more.
+  /// Returns how many of the bytes received at `now` are the echo: the leading bytes that match the sent ones
+  /// in order. After a different byte or a timeout, the rest of the echo is no longer expected.
   [[nodiscard]] std::size_t in(Bytes heard, Clock::time_point now) {
     if (now > until_) {
       awaited_.clear();
@@ -42,7 +42,8 @@ class OwnEcho {
   }
 
  private:
-  /// From the end of a byte on the line until it is here: an adapter may collect for 16 ms.
+  /// Maximum time from the end of a byte on the line until the program reads it: an adapter may collect bytes
+  /// for 16 ms.
   static constexpr std::chrono::milliseconds kLatency{100};
 
   std::int64_t baud_;

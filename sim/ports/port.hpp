@@ -1,4 +1,4 @@
-// A way for a real master's bytes to the line and back.
+// Carries the bytes of a real master to the line and back.
 #pragma once
 
 #include <cstddef>
@@ -9,11 +9,11 @@
 
 namespace ex9000::sim {
 
-/// Nothing here blocks. All calls come from the one thread that runs the program's io_context, and so does
-/// `Received`.
+/// No function blocks. All calls, including those of `Received`, come from the one thread that runs the
+/// program's io_context.
 class Port {
  public:
-  /// What has come in; false: no more until `resume`.
+  /// Gets the bytes that have arrived. Returns false if it takes no more until `resume`.
   using Received = std::function<bool(const std::uint8_t* bytes, std::size_t size)>;
 
   Port() = default;
@@ -21,23 +21,23 @@ class Port {
   Port& operator=(const Port&) = delete;
   virtual ~Port() = default;
 
-  /// Once. `received` is called while the io_context runs.
+  /// Call it once. `received` is called while the io_context runs.
   virtual void start(Received received) = 0;
   virtual void resume() = 0;
-  /// Calls `received` for everything that has arrived by now, as if the io_context had run. Only if it may
-  /// take more.
+  /// Calls `received` for all bytes that have arrived, as if the io_context had run. Call it only if
+  /// `received` can take more bytes.
   virtual void read_waiting() {}
 
-  /// What modules have sent. If nobody has the port open it is lost, as on wires. Returns how many bytes were
-  /// dropped because somebody has it open and does not read.
+  /// Sends bytes from modules. They are lost if no master has the port open, as on real wires. Returns how
+  /// many bytes were dropped because a master has the port open and does not read.
   virtual std::size_t send(const std::vector<std::uint8_t>& bytes) = 0;
-  /// The module that was sending has stopped.
+  /// Called when the module that was sending has stopped.
   virtual void sent() {}
 
-  /// The rate that a master has set here, in bits per second; nothing where it cannot, or to one that no UART
-  /// has.
+  /// Returns the rate that a master has set at this port, in bits per second; nullopt if the port has no rate
+  /// or no UART supports the rate.
   [[nodiscard]] virtual std::optional<std::uint32_t> baud() const { return std::nullopt; }
-  /// What comes in has already taken its time, on a real line.
+  /// Whether the port is a real line, on which the bytes have already taken their time.
   [[nodiscard]] virtual bool is_a_line() const { return false; }
 };
 

@@ -14,7 +14,7 @@
 #include <utility>
 
 #include "sim/ports/termios_rates.hpp"
-#include "sim/reason.hpp"
+#include "sim/text/system_error.hpp"
 
 namespace ex9000::sim {
 
@@ -27,11 +27,10 @@ std::optional<std::string> link_target(const std::string& link) {
                   : std::optional<std::string>(std::string(target.data(), static_cast<std::size_t>(size)));
 }
 
-/// Makes room for the link, or throws.
+/// Removes a dead link at `link`. Throws if something else is there.
 void clear_the_way(const std::string& link, const Claim& claim) {
   if (!claim.held()) {
-    throw std::invalid_argument("--pty " + link +
-                                ": another simulator is running there; end it or name another path");
+    throw std::invalid_argument(link + ": another simulator is running there; end it or name another path");
   }
   struct stat status {};
   if (lstat(link.c_str(), &status) != 0) {
@@ -39,14 +38,13 @@ void clear_the_way(const std::string& link, const Claim& claim) {
   }
   const auto target = link_target(link);
   if (!target || target->rfind("/dev/pts/", 0) != 0) {
-    throw std::invalid_argument("--pty " + link +
-                                ": something else is there; remove it or name another path");
+    throw std::invalid_argument(link + ": something else is there; remove it or name another path");
   }
   unlink(link.c_str());
 }
 
-/// The other end, opened for a moment: what only it can do. A visit like any other, so not while nobody is
-/// there.
+/// The slave, opened for a moment for operations that only work there. This counts as a visit, so do not use
+/// it while no master has the slave open.
 class Slave {
  public:
   explicit Slave(const std::string& device)
@@ -93,22 +91,22 @@ void Pty::make(std::uint32_t baud) {
   std::array<char, 64> name{};
   if (master_ < 0 || grantpt(master_) != 0 || unlockpt(master_) != 0 ||
       ptsname_r(master_, name.data(), name.size()) != 0) {
-    throw std::runtime_error("no pseudo-terminal to be had: " + reason());
+    throw std::runtime_error(link_ + ": cannot make a pseudo-terminal: " + reason());
   }
   device_ = name.data();
   if (!Slave(device_).set_up(baud)) {
-    throw std::runtime_error(device_ + ": " + reason());
+    throw std::runtime_error(link_ + ": cannot set up " + device_ + ": " + reason());
   }
   visits_ = inotify_init1(IN_NONBLOCK | IN_CLOEXEC);
   if (visits_ < 0) {
-    throw std::runtime_error("no notice of who opens " + device_ + ": " + reason() +
-                             "; have fewer pseudo-terminals or raise fs.inotify.max_user_instances");
+    throw std::runtime_error(link_ + ": cannot watch " + device_ + ": " + reason() +
+                             "; use fewer pseudo-terminals or raise fs.inotify.max_user_instances");
   }
   if (inotify_add_watch(visits_, device_.c_str(), IN_OPEN | IN_CLOSE) < 0) {
-    throw std::runtime_error(device_ + ": " + reason());
+    throw std::runtime_error(link_ + ": cannot watch " + device_ + ": " + reason());
   }
   if (symlink(device_.c_str(), link_.c_str()) != 0) {
-    throw std::invalid_argument("--pty " + link_ + ": " + reason() + "; name a path that can be written");
+    throw std::invalid_argument(link_ + ": " + reason() + "; name a path that can be written");
   }
 }
 
@@ -132,8 +130,8 @@ bool Pty::visited() const {
   return poll(&master, 1, 0) == 0 || (master.revents & POLLHUP) == 0;
 }
 
-/// The events only say that something has changed: of two that are alike, one after the other, the kernel
-/// keeps one, so they cannot be counted.
+/// The events only indicate a change. They cannot be counted, because the kernel merges identical consecutive
+/// events.
 void Pty::take_visits() {
   std::array<char, 4096> events{};
   while (::read(visits_, events.data(), events.size()) > 0) {

@@ -9,34 +9,35 @@
 
 namespace ex9000::sim {
 
-/// Owns the end that the simulator has. Masters come and go at the other one; its settings stay. Raw mode.
+/// Owns the simulator's end. Masters open and close the other end (the slave), which keeps its settings. The
+/// terminal is in raw mode.
 class Pty {
  public:
-  /// Makes a pseudo-terminal set to `baud` and a symbolic link to its slave at `link`. A link that a dead
-  /// simulator has left is taken over. Throws std::invalid_argument, one line, where anything else is there
-  /// or the path cannot be made, std::runtime_error where the system has no pseudo-terminal; then nothing is
-  /// left behind.
+  /// Creates a pseudo-terminal set to `baud` and a symbolic link to its slave at `link`. Replaces a link that
+  /// a dead simulator has left. Throws std::invalid_argument with a one-line message if anything else exists
+  /// there or the path cannot be created, and std::runtime_error if the system has no free pseudo-terminal.
+  /// After an exception nothing is left behind.
   Pty(std::string link, std::uint32_t baud);
-  /// Removes the link, if it is still this one's.
+  /// Removes the link, if it still belongs to this object.
   ~Pty();
   Pty(const Pty&) = delete;
   Pty& operator=(const Pty&) = delete;
 
-  /// The end that the simulator reads and writes; non-blocking. Reading fails while nobody has the slave
+  /// The simulator's end for reading and writing; non-blocking. Reading fails while no master has the slave
   /// open.
   [[nodiscard]] int master_fd() const { return master_; }
   [[nodiscard]] const std::string& link() const { return link_; }
-  /// Of the slave, as /dev/pts/5.
+  /// The path of the slave, for example /dev/pts/5.
   [[nodiscard]] const std::string& device() const { return device_; }
-  /// Becomes readable when somebody opens or closes the slave; then call `take_visits`.
+  /// Becomes readable when a master opens or closes the slave; then call `take_visits`.
   [[nodiscard]] int visits_fd() const { return visits_; }
-  /// Where nobody had the slave open and somebody has it now, what was left unread is forgotten, as on a
-  /// serial port: a reply to one master must not be the next one's first.
+  /// If a master has opened the slave after a time without any master, discards unread bytes, as a serial
+  /// port does: a new master must not receive a reply to the previous one.
   void take_visits();
-  /// Somebody has the slave open. What is written while nobody has would wait for the next one, so do not.
+  /// Whether a master has the slave open. Do not write otherwise: the bytes would wait for the next master.
   [[nodiscard]] bool visited() const;
 
-  /// The rate that is set on the slave now, in bits per second; nothing where it has no number.
+  /// Returns the rate set on the slave, in bits per second; nullopt if it is not a known rate.
   [[nodiscard]] std::optional<std::uint32_t> baud() const;
 
  private:
@@ -48,7 +49,7 @@ class Pty {
   std::string device_;
   int master_ = -1;
   int visits_ = -1;
-  bool deserted_ = true;  ///< nobody had the slave open when it was last looked at
+  bool deserted_ = true;  ///< at the last check, no master had the slave open
 };
 
 }  // namespace ex9000::sim

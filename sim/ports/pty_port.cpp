@@ -12,7 +12,7 @@ namespace ex9000::sim {
 PtyPort::PtyPort(boost::asio::io_context& io, const std::string& link, std::uint32_t baud)
     : pty_(link, baud), visits_(io, pty_.visits_fd()), descriptor_(io, pty_.master_fd()) {}
 
-/// They are the pseudo-terminal's.
+/// The pseudo-terminal owns the file descriptors.
 PtyPort::~PtyPort() {
   visits_.release();
   descriptor_.release();
@@ -54,7 +54,7 @@ void PtyPort::watch_visits() {
                      });
 }
 
-/// Most often nothing is there, and one system call tells.
+/// Usually there is nothing to read, and a single system call detects that.
 void PtyPort::read_waiting() {
   std::array<pollfd, 2> ready{{{pty_.visits_fd(), POLLIN, 0}, {pty_.master_fd(), POLLIN, 0}}};
   const bool any = poll(ready.data(), ready.size(), 0) > 0;
@@ -63,9 +63,9 @@ void PtyPort::read_waiting() {
   }
 }
 
-/// False if nobody has the pseudo-terminal open.
+/// Returns false if no master has the pseudo-terminal open.
 bool PtyPort::take() {
-  pty_.take_visits();  // a master that writes must be known when it is answered
+  pty_.take_visits();  // detect a new master before replying to its bytes
   std::array<std::uint8_t, 4096> bytes{};
   while (!paused_) {
     const ssize_t size = ::read(pty_.master_fd(), bytes.data(), bytes.size());
@@ -77,7 +77,7 @@ bool PtyPort::take() {
   return true;
 }
 
-/// The pseudo-terminal holds some 4 KiB before anything is lost.
+/// The pseudo-terminal buffers about 4 KiB before bytes are lost.
 std::size_t PtyPort::send(const std::vector<std::uint8_t>& bytes) {
   if (!pty_.visited()) {
     return 0;

@@ -25,7 +25,7 @@ class PtyPort final : public Port {
   [[nodiscard]] const Pty& pty() const { return pty_; }
 
  private:
-  /// Goes on by itself; stops while nobody is there, and when it is told to wait.
+  /// Continues by itself. Stops while no master has the slave open, and after `received` has returned false.
   void read();
   bool take();
   void watch_visits();

@@ -13,16 +13,18 @@
 #include <utility>
 
 #include "sim/ports/termios_rates.hpp"
-#include "sim/reason.hpp"
+#include "sim/text/fail.hpp"
+#include "sim/text/system_error.hpp"
 
 namespace ex9000::sim {
 
 namespace {
 
-/// A reply goes out behind this much of itself, so that no hesitation of the host makes a gap in it.
+/// Replies are sent with this delay, so that delays of the host do not cause gaps in them.
 constexpr std::chrono::milliseconds kCushion{10};
 
-/// Adapters like to wait up to 16 ms for more bytes, which tears frames apart. Not all can be told not to.
+/// Asks the driver for low latency, because adapters may wait up to 16 ms for more bytes, which splits
+/// frames. Not all drivers support this setting.
 void ask_for_low_latency(int fd) {
   serial_struct settings{};
   if (ioctl(fd, TIOCGSERIAL, &settings) == 0) {
@@ -31,37 +33,36 @@ void ask_for_low_latency(int fd) {
   }
 }
 
-/// Sets the open port up, or throws.
+/// Configures the open port; throws if that fails.
 void set_up(int fd, const std::string& device, std::uint32_t baud) {
-  const auto refuse = [&device](const std::string& why) {
-    throw std::invalid_argument("--serial " + device + ": " + why);
-  };
+  const auto refuse = [&device](const std::string& why) { throw std::invalid_argument(device + ": " + why); };
   termios settings{};
   if (tcgetattr(fd, &settings) != 0) {
-    refuse("is no serial port; name one such as /dev/ttyUSB0");
+    refuse("is not a serial port; name one, for example /dev/ttyUSB0");
   }
   if (flock(fd, LOCK_EX | LOCK_NB) != 0 || ioctl(fd, TIOCEXCL) != 0) {
     refuse("another program has it; end that or name another port");
   }
   cfmakeraw(&settings);
-  settings.c_iflag = 0;  // XOFF would go out on the line, and parity errors count
+  // No XON/XOFF, because XOFF would go out on the line; no parity check, because bytes with errors count too.
+  settings.c_iflag = 0;
   settings.c_cflag &= ~static_cast<tcflag_t>(CSTOPB | CRTSCTS);
   settings.c_cflag |= CLOCAL | CREAD;
   const auto speed = termios_speed(baud);
-  termios taken{};  // tcsetattr is content with a part of what it is told
+  termios taken{};  // tcsetattr succeeds even if it applies only a part of the settings
   if (!speed || cfsetspeed(&settings, *speed) != 0 || tcsetattr(fd, TCSANOW, &settings) != 0 ||
       tcgetattr(fd, &taken) != 0 || termios_rate(taken) != baud) {
-    refuse("cannot be set to " + std::to_string(baud) + " baud; --baud names another rate");
+    refuse("cannot be set to " + std::to_string(baud) + " baud; choose another rate for the line");
   }
   ask_for_low_latency(fd);
   tcflush(fd, TCIOFLUSH);
 }
 
-/// Closed again where it cannot be used.
+/// Opens the port; closes it again if it is not usable.
 int open_port(const std::string& device, std::uint32_t baud) {
   const int fd = open(device.c_str(), O_RDWR | O_NOCTTY | O_NONBLOCK | O_CLOEXEC);
   if (fd < 0) {
-    throw std::invalid_argument("--serial " + device + ": " +
+    throw std::invalid_argument(device + ": " +
                                 (errno == EBUSY
                                      ? "another program has it; end that or name another port"
                                      : reason() + "; name a serial port that can be read and written"));
@@ -77,8 +78,9 @@ int open_port(const std::string& device, std::uint32_t baud) {
 
 }  // namespace
 
-SerialPort::SerialPort(boost::asio::io_context& io, std::string device, std::uint32_t baud, bool echo)
-    : device_(std::move(device)), descriptor_(io, open_port(device_, baud)) {
+SerialPort::SerialPort(boost::asio::io_context& io, const std::string& place, const std::string& device,
+                       std::uint32_t baud, bool echo)
+    : where_(place + device), descriptor_(io, with_place(place, [&] { return open_port(device, baud); })) {
   if (echo) {
     echo_.emplace(baud);
   }
@@ -103,7 +105,7 @@ void SerialPort::read() {
           return;
         }
         if (error) {
-          throw std::runtime_error("--serial " + device_ + ": " + error.message() + "; the port has gone");
+          throw std::runtime_error(where_ + ": " + error.message() + "; the port has gone");
         }
         take(size);
         if (!paused_) {
@@ -126,7 +128,7 @@ std::size_t SerialPort::send(const std::vector<std::uint8_t>& bytes) {
     write_out();
     under_way_ = true;
   }
-  return 0;  // a real line takes them at its rate
+  return 0;  // a real line takes the bytes at its rate
 }
 
 void SerialPort::sent() {

@@ -1,4 +1,5 @@
-// A real serial port, such as a USB RS-485 adapter: the modules hang on the line behind it.
+// A real serial port, for example a USB RS-485 adapter: the simulated modules appear on the line that it is
+// connected to.
 #pragma once
 
 #include <array>
@@ -14,11 +15,13 @@ namespace ex9000::sim {
 
 class SerialPort final : public Port {
  public:
-  /// Opens `device`, 8N1 at `baud`, and keeps others from opening it. `echo`: the adapter hears what it
-  /// sends. Throws std::invalid_argument, one line, where that cannot be had.
-  SerialPort(boost::asio::io_context& io, std::string device, std::uint32_t baud, bool echo);
+  /// Opens `device` with 8N1 at `baud` and prevents others from opening it. `echo`: the adapter receives what
+  /// it sends. Throws std::invalid_argument with a one-line message if the device or the settings are not
+  /// available. `place` stands before the device in all messages.
+  SerialPort(boost::asio::io_context& io, const std::string& place, const std::string& device,
+             std::uint32_t baud, bool echo);
 
-  /// Ends the io_context's run with a std::runtime_error when the port goes away.
+  /// If the port disappears, the io_context's run ends with a std::runtime_error.
   void start(Received received) override;
   void resume() override;
   std::size_t send(const std::vector<std::uint8_t>& bytes) override;
@@ -30,13 +33,13 @@ class SerialPort final : public Port {
   void take(std::size_t size);
   void write_out();
 
-  std::string device_;
+  std::string where_;  ///< for messages
   boost::asio::posix::stream_descriptor descriptor_;
   Received received_;
   std::array<std::uint8_t, 4096> buffer_{};
   bool paused_ = false;
   std::vector<std::uint8_t> held_back_;
-  OwnEcho::Clock::time_point began_;  ///< when the first of them came
+  OwnEcho::Clock::time_point began_;  ///< arrival time of the first byte in held_back_
   bool under_way_ = false;            ///< the beginning of a reply has been written
   std::optional<OwnEcho> echo_;
 };

@@ -1,6 +1,6 @@
 #include "sim/ports/tcp_address.hpp"
 
-#include <stdexcept>
+#include "sim/text/fail.hpp"
 
 namespace ex9000::sim {
 
@@ -22,8 +22,7 @@ TcpAddress parse_tcp_address(const std::string& text) {
     host = host.substr(1, host.size() - 2);
   }
   if (!digits || std::stoul(port) > kLastPort || (!brackets && host.find(':') != std::string::npos)) {
-    throw std::invalid_argument("--tcp " + text +
-                                ": wants HOST:PORT such as 127.0.0.1:5020, or a port alone");
+    fail("'" + text + "': expected HOST:PORT or a port, for example 127.0.0.1:5020");
   }
   return {host.empty() ? kLoopback : host, static_cast<std::uint16_t>(std::stoul(port))};
 }

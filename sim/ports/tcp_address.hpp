@@ -1,4 +1,4 @@
-// What the command line says of a TCP port.
+// The syntax of TCP addresses on the command line.
 #pragma once
 
 #include <cstdint>
@@ -6,13 +6,13 @@
 
 namespace ex9000::sim {
 
-/// Where to listen. An empty host is the loopback.
+/// The address to listen on. An empty host means the loopback.
 struct TcpAddress {
   std::string host;
-  std::uint16_t port = 0;  ///< 0: any that is free
+  std::uint16_t port = 0;  ///< 0: any free port
 };
 
-/// HOST:PORT, :PORT, PORT or [IPV6]:PORT. Throws std::invalid_argument, one line.
+/// Parses HOST:PORT, :PORT, PORT or [IPV6]:PORT. Throws std::invalid_argument with a one-line message.
 TcpAddress parse_tcp_address(const std::string& text);
 
 }  // namespace ex9000::sim

@@ -15,13 +15,13 @@ namespace {
 
 using boost::asio::ip::tcp;
 
-/// Far more than masters that share a line; beyond it somebody connects and never goes.
+/// The limit for masters on one line. Only clients that never disconnect can exceed it.
 constexpr std::size_t kMostMasters = 64;
 
 [[noreturn]] void refuse(const TcpAddress& address, const std::string& why) {
   const std::string host =
       address.host.find(':') == std::string::npos ? address.host : "[" + address.host + "]";
-  throw std::invalid_argument("--tcp " + host + ":" + std::to_string(address.port) + ": " + why);
+  throw std::invalid_argument(host + ":" + std::to_string(address.port) + ": " + why);
 }
 
 tcp::endpoint endpoint_of(boost::asio::io_context& io, const TcpAddress& address) {
@@ -30,7 +30,7 @@ tcp::endpoint endpoint_of(boost::asio::io_context& io, const TcpAddress& address
   const auto found = resolver.resolve(address.host, std::to_string(address.port),
                                       tcp::resolver::passive | tcp::resolver::numeric_service, error);
   if (error || found.empty()) {
-    refuse(address, error.message() + "; name this machine or an address of it");
+    refuse(address, error.message() + "; name an address of this machine");
   }
   return found.begin()->endpoint();
 }
@@ -42,7 +42,7 @@ struct TcpPort::Client {
 
   tcp::socket socket;
   boost::asio::steady_timer linger;
-  /// What waits for it is told, and does nothing any more.
+  /// Cancels pending operations; their handlers do nothing then.
   void close() {
     boost::system::error_code ignored;
     linger.cancel(ignored);
@@ -51,13 +51,13 @@ struct TcpPort::Client {
 
   bool reading = false;  ///< waits for more bytes
   bool paused = false;
-  bool lingers = false;  ///< says nothing any more
+  bool lingers = false;  ///< has closed its sending side
 };
 
 TcpPort::TcpPort(boost::asio::io_context& io, const TcpAddress& address, Linger linger)
     : io_(io), acceptor_(io), next_try_(io), linger_(linger) {
   if (const boost::system::error_code error = listen_at(acceptor_, endpoint_of(io, address))) {
-    refuse(address, why_not_listening(error, "name an address of this machine and a port that may be had"));
+    refuse(address, why_not_listening(error, "name an address and a free port of this machine"));
   }
 }
 
@@ -104,7 +104,7 @@ void TcpPort::admit(tcp::socket socket) {
   }
 }
 
-/// What goes wrong with a client shows when the io_context runs.
+/// Errors of a client are handled later, when the io_context runs.
 void TcpPort::read_waiting() {
   boost::system::error_code error;
   acceptor_.non_blocking(true, error);
@@ -117,7 +117,7 @@ void TcpPort::read_waiting() {
   }
 }
 
-/// Why there is no more to read; no error if the client is to wait.
+/// Returns the reason why there is no more to read; no error if the client has to wait.
 boost::system::error_code TcpPort::take(Client& client) {
   std::array<std::uint8_t, 4096> bytes{};
   boost::system::error_code ended;
@@ -130,7 +130,7 @@ boost::system::error_code TcpPort::take(Client& client) {
   return ended;
 }
 
-/// Who lingers longest goes first.
+/// Removes the client that has lingered longest.
 void TcpPort::make_room() {
   if (clients_.size() >= kMostMasters) {
     const auto oldest =
@@ -141,7 +141,7 @@ void TcpPort::make_room() {
   }
 }
 
-/// The process has as many files open as it may: trying again at once would take all of the processor.
+/// The process has no free file descriptor. An immediate retry would use all of the processor's time.
 void TcpPort::accept_later() {
   constexpr std::chrono::milliseconds kPatience{100};
   next_try_.expires_after(kPatience);
@@ -159,7 +159,7 @@ void TcpPort::read(const ClientPointer& client) {
   client->reading = true;
   client->socket.async_wait(tcp::socket::wait_read, [this, client](const boost::system::error_code& error) {
     if (!client->socket.is_open()) {
-      return;  // forgotten, or the port is no more
+      return;  // the client was removed, or the port was destroyed
     }
     client->reading = false;
     const boost::system::error_code ended = error ? error : take(*client);
@@ -180,7 +180,7 @@ void TcpPort::resume() {
   }
 }
 
-/// Who has only said all there is to say is let go later.
+/// A client that has only closed its sending side stays for the linger time.
 void TcpPort::part_with(const ClientPointer& client, bool listens) {
   if (!listens) {
     forget(client);

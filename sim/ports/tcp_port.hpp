@@ -1,4 +1,4 @@
-// The line's bytes over TCP, as serial device servers hand them out.
+// The line's bytes over TCP, as serial device servers provide them.
 #pragma once
 
 #include <boost/asio/io_context.hpp>
@@ -15,15 +15,16 @@
 
 namespace ex9000::sim {
 
-/// The bytes and nothing else: no MBAP header, no telnet negotiation. All who are connected hear all that
-/// modules send, and what each sends goes on the line.
+/// Transfers only the bytes: no MBAP header, no telnet negotiation. All clients receive everything that
+/// modules send, and everything that a client sends goes on the line.
 class TcpPort final : public Port {
  public:
-  /// Who has nothing more to send may wait so long for the rest of the replies; none: as long as it likes.
+  /// How long a client that has closed its sending side may wait for the rest of the replies; nullopt:
+  /// without limit.
   using Linger = std::optional<std::chrono::milliseconds>;
   static constexpr std::chrono::milliseconds kUsualLinger{1000};
 
-  /// Listens from now on. Throws std::invalid_argument, one line, where that cannot be had.
+  /// Starts to listen. Throws std::invalid_argument with a one-line message if the address is not available.
   TcpPort(boost::asio::io_context& io, const TcpAddress& address, Linger linger);
   ~TcpPort() override;
 
@@ -31,7 +32,7 @@ class TcpPort final : public Port {
   void resume() override;
   void read_waiting() override;
   std::size_t send(const std::vector<std::uint8_t>& bytes) override;
-  /// HOST:PORT where it listens.
+  /// Returns the HOST:PORT on which it listens.
   [[nodiscard]] std::string address() const;
 
  private:
@@ -40,8 +41,8 @@ class TcpPort final : public Port {
   void accept();
   void admit(boost::asio::ip::tcp::socket socket);
   void accept_later();
-  /// Shared with what waits for its bytes: a client may be forgotten while it is being read from, because a
-  /// reply to it fails.
+  /// Shared with pending asynchronous reads: a client may be removed during a read because a reply to it
+  /// fails.
   using ClientPointer = std::shared_ptr<Client>;
 
   void read(const ClientPointer& client);

@@ -1,4 +1,4 @@
-// Rates as termios has them.
+// Conversion between baud rates and termios constants.
 #pragma once
 
 #include <termios.h>
@@ -8,9 +8,9 @@
 
 namespace ex9000::sim {
 
-/// The number that termios has for a rate in bits per second, or nothing.
+/// Returns the termios constant for a rate in bits per second, or nullopt if there is none.
 std::optional<speed_t> termios_speed(std::uint32_t baud);
-/// The rate that is set there.
+/// Returns the rate in `settings`, in bits per second, or nullopt if it is not a known rate.
 std::optional<std::uint32_t> termios_rate(const termios& settings);
 
 }  // namespace ex9000::sim

@@ -1,4 +1,5 @@
 #include "sim/runtime/line_ports.hpp"
+#include "sim/text/values.hpp"
 
 #include <algorithm>
 

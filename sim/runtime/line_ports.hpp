@@ -1,4 +1,4 @@
-// A line's ports, between its master's end and real masters.
+// Connects the ports of a line to its master's end.
 #pragma once
 
 #include <cstddef>
@@ -9,34 +9,34 @@
 #include <utility>
 #include <vector>
 
-#include "sim/line.hpp"
+#include "sim/line/line.hpp"
 #include "sim/ports/port.hpp"
 
 namespace ex9000::sim {
 
-/// What modules send goes to every port; the rate that a master sets at a port becomes the line's.
-/// The same whatever moves the line's time.
+/// Bytes from modules go to every port. The rate that a master sets at a port becomes the line's rate. Works
+/// the same way for paced and for stepped time.
 class LinePorts final : private BusObserver {
  public:
   using All = std::vector<std::unique_ptr<Port>>;
   using Notice = std::function<void(const std::string&)>;
 
-  /// All arguments live as long as the line's bus is used. `notice` gets one line of text, for people, for
-  /// each module that listens at another rate than the line's, and for bytes that a port had no room for.
+  /// All arguments must live as long as the line's bus is used. `notice` gets one line of text for people for
+  /// each module whose rate differs from the line's, and for bytes that a port had no room for.
   LinePorts(Line& line, const All& ports, Notice notice);
 
-  /// From the master's end of the line; for Line's constructor.
+  /// Takes a byte from the master's end of the line; for Line's constructor.
   void hear(std::uint8_t byte) { heard_.push_back(byte); }
-  /// A module has stopped sending since the last `hand_out`.
+  /// Whether a module has stopped sending since the last `hand_out`.
   [[nodiscard]] bool reply_is_complete() const { return stopped_sending_; }
-  /// Writes to all ports what was heard since the last call. Does not block: bytes that find no room are
+  /// Writes the bytes received since the last call to all ports. Does not block: bytes without room are
   /// dropped, with a notice for the first of them.
   void hand_out();
-  /// A port at which nobody has set a rate leaves the line's rate alone.
+  /// Sets the line to the rate of the port. Has no effect if no master has set a rate there.
   void take_rate(const Port& port);
-  /// Bytes that were written to the ports so far, or dropped there.
+  /// Returns the number of bytes written to the ports so far, including dropped bytes.
   [[nodiscard]] std::uint64_t sent() const { return sent_; }
-  /// Reports each mismatch of rates once, until it is over.
+  /// Reports each mismatch of rates once, until it ends.
   void report_mismatches();
 
   [[nodiscard]] const All& all() const { return ports_; }
@@ -54,8 +54,8 @@ class LinePorts final : private BusObserver {
   std::vector<Mismatch> reported_;                           ///< one for each module; zeros: none
   std::vector<std::uint8_t> heard_;
   std::uint64_t sent_ = 0;
-  std::vector<const Port*> full_;  ///< those that dropped bytes last, which has been reported
-  bool stopped_sending_ = false;   ///< a module, since `heard_` was handed out
+  std::vector<const Port*> full_;  ///< ports whose dropped bytes have been reported
+  bool stopped_sending_ = false;   ///< a module has stopped since `heard_` was passed on
 };
 
 }  // namespace ex9000::sim

@@ -1,4 +1,4 @@
-// A line whose time stands still until somebody moves it.
+// A line whose time stands still until a command moves it.
 #pragma once
 
 #include <cstddef>
@@ -6,46 +6,46 @@
 #include <functional>
 #include <vector>
 
-#include "sim/frame_watch.hpp"
-#include "sim/line.hpp"
+#include "sim/line/line.hpp"
+#include "sim/log/frame_watch.hpp"
 #include "sim/runtime/line_ports.hpp"
 
 namespace ex9000::sim {
 
-/// Keeps the bytes that arrive at the line's ports until they are put on the line. Nothing here reads a
-/// clock, and nothing blocks.
+/// Stores the bytes that arrive at the line's ports until they are put on the line. No function reads a clock
+/// or blocks.
 class SteppedLine {
  public:
   using Arrived = std::function<void()>;
 
-  /// The most bytes that are kept; beyond that masters have to wait.
+  /// The limit for stored bytes; beyond it masters have to wait.
   static constexpr std::size_t kMostBytes = 65'536;
 
-  /// `frames` may be null. All arguments live as long as this object.
+  /// `frames` may be null. All arguments must outlive this object.
   SteppedLine(Line& line, const LinePorts::All& ports, FrameWatch* frames, LinePorts::Notice notice);
 
-  /// Lets masters in. `arrived` is called whenever bytes have arrived.
+  /// Accepts masters. `arrived` is called whenever bytes have arrived.
   void start(Arrived arrived);
-  /// From the master's end of the line; for Line's constructor.
+  /// Takes a byte from the master's end of the line; for Line's constructor.
   void hear(std::uint8_t byte) { ports_.hear(byte); }
 
-  /// How many bytes have arrived that are not on the line yet.
+  /// Returns how many bytes have arrived that are not on the line yet.
   [[nodiscard]] std::size_t waiting() const { return waiting_; }
-  /// Reads everything that is there at the ports.
+  /// Reads everything that is available at the ports.
   void read_ports();
-  /// Puts what has arrived on the line, without a gap, behind what the master still has to send.
+  /// Puts the stored bytes on the line, without a gap, after those that the master still has to send.
   void put_on_line();
 
   [[nodiscard]] VirtualTime now() const { return line_.clock().virtual_now(); }
-  /// When something happens next; kNever: only when somebody does something.
+  /// Returns the time of the next event; kNever: events only follow an action from outside.
   [[nodiscard]] VirtualTime next() const { return line_.bus().next(); }
-  /// Lets everything happen up to and including `until`.
+  /// Processes all events up to and including `until`.
   void run_until(VirtualTime until);
-  /// A byte, a silence, a reply or a store is under way: see Line::pending.
+  /// Whether a byte, a silence, a reply or a store is in progress: see Line::pending.
   [[nodiscard]] bool pending() const { return line_.pending(); }
   /// See LinePorts::sent.
   [[nodiscard]] std::uint64_t sent() const { return ports_.sent(); }
-  /// Writes to the ports what was heard and is not there yet.
+  /// Writes the received bytes to the ports.
   void hand_out() { ports_.hand_out(); }
 
  private:
@@ -61,8 +61,8 @@ class SteppedLine {
   FrameWatch* frames_;
   Arrived arrived_;
   std::vector<Chunk> chunks_;  ///< in the order of arrival
-  std::size_t waiting_ = 0;    ///< bytes in them
-  bool paused_ = false;        ///< a port has been told to wait
+  std::size_t waiting_ = 0;    ///< number of bytes in them
+  bool paused_ = false;        ///< a port waits for `resume`
 };
 
 }  // namespace ex9000::sim

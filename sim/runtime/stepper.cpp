@@ -1,12 +1,12 @@
 #include "sim/runtime/stepper.hpp"
 
 #include <algorithm>
-#include <charconv>
 #include <stdexcept>
 #include <utility>
 
-#include "sim/time_text.hpp"
-#include "sim/words.hpp"
+#include "sim/text/durations.hpp"
+#include "sim/text/values.hpp"
+#include "sim/text/words.hpp"
 
 namespace ex9000::sim {
 
@@ -14,17 +14,6 @@ namespace {
 
 constexpr const char* kCommand = "advance";
 constexpr const char* kShape = "'advance' requires TIME [after N] [quiet], for example advance 250ms after 8";
-
-std::size_t parse_count(const std::string& text) {
-  std::size_t count = 0;
-  const char* const end = text.data() + text.size();
-  const auto [rest, error] = std::from_chars(text.data(), end, count);
-  if (error != std::errc() || rest != end || count > SteppedLine::kMostBytes) {
-    throw std::invalid_argument("advance: '" + text + "' is no number of bytes from 0 to " +
-                                std::to_string(SteppedLine::kMostBytes));
-  }
-  return count;
-}
 
 }  // namespace
 
@@ -36,7 +25,7 @@ bool Stepper::is_advance(const std::string& command) {
   return !words.empty() && words[0] == kCommand;
 }
 
-/// Throws std::invalid_argument, one line.
+/// Throws std::invalid_argument with a one-line message.
 Stepper::Request Stepper::parse(const std::string& command) {
   const Words words = words_of(command);
   if (words.size() < 2) {
@@ -46,7 +35,7 @@ Stepper::Request Stepper::parse(const std::string& command) {
   request.time = parse_time(words[1]);
   std::size_t next = 2;
   if (next + 1 < words.size() && words[next] == "after") {
-    request.after = parse_count(words[next + 1]);
+    request.after = parse_whole_number(words[next + 1], 0, SteppedLine::kMostBytes);
     next += 2;
   }
   if (next < words.size() && words[next] == "quiet") {
@@ -67,7 +56,7 @@ void Stepper::advance(const std::string& command, Answer answer) {
     answer({std::string("error: ") + error.what(), false});
     return;
   }
-  read_ports();  // which may be what one that waits is waiting for
+  read_ports();  // a pending `advance` may be waiting for these bytes
   if (waiting_) {
     const Waiting replaced = *std::exchange(waiting_, std::nullopt);
     replaced.answer({"error: another 'advance' has replaced this one, which still waited for bytes", false});
@@ -116,8 +105,9 @@ void Stepper::carry_out(const Request& request, const Answer& answer) {
   answer({"ok " + seconds_text(now), now >= end_});
 }
 
-/// From event to event, in the order of time, so that the log of several lines is in order too. Only the line
-/// on which something happens is looked at. False: the program was asked to end before TIME was over.
+/// Processes events in the order of time across all lines, so that the log of several lines is sorted too.
+/// Only the line with the next event is updated. Returns false if the program was asked to end before TIME
+/// had passed.
 bool Stepper::pass(const Request& request) {
   struct State {
     SteppedLine* line;

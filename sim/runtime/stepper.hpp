@@ -12,8 +12,8 @@
 
 namespace ex9000::sim {
 
-/// All lines have the same time. What happens depends on the commands and on the bytes that arrive, and on
-/// nothing else: the same commands produce the same bytes at the same virtual times.
+/// All lines have the same time. Events depend only on the commands and on the bytes that arrive: the same
+/// commands produce the same bytes at the same virtual times.
 class Stepper {
  public:
   using Answer = std::function<void(const Control::Reply&)>;
@@ -21,22 +21,24 @@ class Stepper {
   /// Whether the program has been asked to end.
   using StopRequested = std::function<bool()>;
 
-  /// `lines` live as long as this object. When their time reaches `end`, the program ends: kNever for never.
-  /// `stop_requested` is called now and then while time passes.
+  /// `lines` must outlive this object. When their time reaches `end`, the program ends; kNever: no end.
+  /// `stop_requested` is called regularly while time passes.
   Stepper(std::vector<SteppedLine*> lines, VirtualTime end, StopRequested stop_requested);
 
-  /// Whether `command` is for this class.
+  /// Whether `command` is an `advance` command.
   static bool is_advance(const std::string& command);
-  /// `advance TIME [after N] [quiet]`. Does not block: `answer` is called, perhaps later, once
-  /// - N bytes have arrived at the ports that no earlier `advance` has put on a line, and everything that is
-  ///   there has been read and put on its line,
-  /// - TIME has passed, or with `quiet` less, as soon as nothing is pending on any line,
-  /// - and every reply has been written to its port.
-  /// It gets `ok NOW`, the lines' time in seconds; or `error: ...`, and nothing has changed. A later call
-  /// replaces one that still waits for bytes, which gets an error. If the program is asked to end while time
-  /// passes, time stops there and `answer` gets an error.
+  /// Carries out `advance TIME [after N] [quiet]`. Does not block: `answer` is called, perhaps later, as soon
+  /// as all of these are true:
+  /// - N bytes have arrived at the ports that no earlier `advance` has put on a line, and everything
+  ///   available has been read and put on its line,
+  /// - TIME has passed, or, with `quiet`, less if nothing is pending on any line,
+  /// - every reply has been written to its port.
+  ///
+  /// `answer` gets `ok NOW`, the lines' time in seconds, or `error: ...`; after an error nothing has changed.
+  /// A later call replaces one that still waits for bytes; the replaced call gets an error. If the program is
+  /// asked to end while time passes, time stops there and `answer` gets an error.
   void advance(const std::string& command, Answer answer);
-  /// Bytes have arrived at a port.
+  /// Call it when bytes have arrived at a port.
   void arrived();
 
  private:

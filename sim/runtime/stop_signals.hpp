@@ -6,18 +6,18 @@
 
 namespace ex9000::sim {
 
-/// Adds SIGINT, SIGTERM and SIGHUP, except those that the program was started with ignored: nohup does so,
-/// and shells do so for background jobs.
+/// Adds SIGINT, SIGTERM and SIGHUP, except those that were ignored when the program started: nohup ignores
+/// SIGHUP, and shells ignore SIGINT for background jobs.
 void add_stop_signals(boost::asio::signal_set& signals);
 
-/// Notices these signals while a long computation keeps the program's own io_context from running.
+/// Detects these signals while a long computation keeps the program's own io_context from running.
 class StopSignals {
  public:
   StopSignals();
   StopSignals(const StopSignals&) = delete;
   StopSignals& operator=(const StopSignals&) = delete;
 
-  /// Whether one has arrived since construction. Does not block.
+  /// Whether a signal has arrived since construction. Does not block.
   bool arrived();
 
  private:

@@ -3,14 +3,14 @@
 #include <chrono>
 #include <cstdint>
 
-#include "sim/face/terminals.hpp"
-#include "sim/module_spec.hpp"
+#include "sim/module_view/terminals.hpp"
+#include "sim/text/values.hpp"
 
 namespace ex9000::sim {
 
 namespace {
 
-// Columns.
+// Widths in columns.
 constexpr std::size_t kMargin = 3;
 constexpr std::size_t kDesignation = 12;
 constexpr std::size_t kName = 8;
@@ -38,7 +38,7 @@ std::string supply_text(const Plate& plate) {
   return plate.switched_on ? "no power" : "power off";
 }
 
-/// How it is to be talked to.
+/// Returns the settings that a master requires to reach the module.
 std::string in_force_text(const Plate& plate) {
   if (!plate.listening) {
     return plate.powered ? "starting" : "";
@@ -68,7 +68,7 @@ std::string counters_text(const Model& model, const Gathered& gathered) {
   return text;
 }
 
-/// One bit for each input, in two digits or, of a model with more than eight inputs, four.
+/// Returns one bit for each input, in two hex digits, or in four if the model has more than eight inputs.
 std::string inputs_text(const Model& model, std::uint16_t inputs) {
   constexpr unsigned kInputsOfAByte = 8;
   return model.inputs > kInputsOfAByte ? hex_word_text(inputs) : hex_byte_text(inputs);
@@ -90,7 +90,7 @@ std::string head(std::size_t number, const SimulatedModule& module, const Face& 
          supply_text(plate) + (plate.init ? ", INIT*" : "");
 }
 
-/// Terminals' numbers, and the LEDs below.
+/// Adds a row with the numbers of the terminals and a row with their LEDs.
 void add_channels(std::vector<std::string>& lines, const std::string& first_terminal, unsigned channels,
                   std::uint16_t states, const Lamps& lamps) {
   const std::size_t number = first_terminal.find_first_of("0123456789");

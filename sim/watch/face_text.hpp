@@ -6,12 +6,12 @@
 #include <vector>
 
 #include "firmware/model/model.hpp"
-#include "sim/face/face.hpp"
-#include "sim/module.hpp"
+#include "sim/bus/module.hpp"
+#include "sim/module_view/face.hpp"
 
 namespace ex9000::sim {
 
-/// What an LED looks like.
+/// The characters that show an LED.
 struct Lamps {
   const char* on;
   const char* off;
@@ -19,12 +19,12 @@ struct Lamps {
 inline constexpr Lamps kRoundLamps{"●", "○"};
 inline constexpr Lamps kPlainLamps{"*", "-"};
 
-/// Its plate, lines of up to 79 columns; `number` is its position through all lines, from 1, and `now` what
-/// its line's clock shows.
+/// Returns the plate as lines of up to 79 columns. `number` is the module's position across all lines, from
+/// 1, and `now` is the time of its line's clock.
 std::vector<std::string> face_text(std::size_t number, const SimulatedModule& module, VirtualTime now,
                                    const Lamps& lamps);
 
-/// What has come between two looks, a few words each; all there is where there was none before.
+/// Returns the changes between two looks, a few words each; the whole state if `before` is null.
 std::vector<std::string> changes_text(const Model& model, const Face* before, const Face& now);
 
 }  // namespace ex9000::sim

@@ -1,4 +1,4 @@
-// What a terminal can do for those who paint on it.
+// The interface to a terminal that shows the modules.
 #pragma once
 
 #include <cstddef>
@@ -16,7 +16,7 @@ struct Screen {
   }
 };
 
-/// Where faces are painted.
+/// The terminal on which faces are drawn.
 class Terminal {
  public:
   Terminal() = default;
@@ -24,11 +24,11 @@ class Terminal {
   Terminal& operator=(const Terminal&) = delete;
   virtual ~Terminal() = default;
 
-  /// As it is now.
+  /// Returns the present properties of the screen.
   [[nodiscard]] virtual Screen screen() const = 0;
-  /// Does not block as long as it keeps up.
+  /// Does not block as long as the terminal keeps up.
   virtual void write(const std::string& text) = 0;
-  /// Whether it has taken all that was written.
+  /// Whether the terminal has taken everything that was written.
   virtual bool keeps_up() = 0;
 };
 

@@ -21,7 +21,7 @@ std::string environment(const char* name) {
   return value == nullptr ? "" : value;
 }
 
-/// The first of these that says something is the one that counts (POSIX.1-2017, XBD 8.2).
+/// The first variable that is not empty applies (POSIX.1-2017, XBD 8.2).
 std::string locale() {
   for (const char* variable : {"LC_ALL", "LC_CTYPE", "LANG"}) {
     if (std::string value = environment(variable); !value.empty()) {
@@ -82,7 +82,7 @@ bool TerminalOutput::keeps_up() {
   return waiting_.empty();
 }
 
-/// One that is gone takes nothing any more, and a signal tells of that.
+/// Drops the output if the terminal has disappeared; a signal ends the program then.
 void TerminalOutput::flush() {
   while (!waiting_.empty()) {
     const ssize_t taken = ::write(fd_, waiting_.data(), waiting_.size());

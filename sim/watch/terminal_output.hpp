@@ -7,26 +7,27 @@
 
 namespace ex9000::sim {
 
-/// Whether the character map that this names, as `UTF-8` or `en_US.utf8`, is UTF-8.
+/// Whether the name of a locale or character map, for example `UTF-8` or `en_US.utf8`, means UTF-8.
 bool names_utf8(const std::string& locale);
 
-/// What it has not taken yet waits here: a terminal that is stopped, as by Ctrl-S, stops nothing else. It is
-/// opened once more for that, since the shell has the same opening of it.
+/// Stores output that the terminal has not taken yet, so that a terminal stopped by Ctrl-S does not stop the
+/// program. Opens the terminal a second time for this, because the shell shares the file description of
+/// standard output.
 class TerminalOutput final : public Terminal {
  public:
   TerminalOutput();
-  /// What has not been taken by now is lost.
+  /// Output that the terminal has not taken is lost.
   ~TerminalOutput() override;
   TerminalOutput(const TerminalOutput&) = delete;
   TerminalOutput& operator=(const TerminalOutput&) = delete;
 
-  /// False: standard output is no terminal, or one without a cursor to place. Nothing else may be called
-  /// then.
+  /// Returns false if standard output is not a terminal, or is one whose cursor cannot be moved. Then no
+  /// other function may be called.
   [[nodiscard]] bool is_open() const { return fd_ >= 0; }
 
   // --- Terminal ---
   [[nodiscard]] Screen screen() const override;
-  /// Blocks where a megabyte waits already.
+  /// Blocks if a megabyte already waits.
   void write(const std::string& text) override;
   bool keeps_up() override;
 

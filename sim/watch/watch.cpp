@@ -1,6 +1,6 @@
 #include "sim/watch/watch.hpp"
 
-#include "sim/time_text.hpp"
+#include "sim/text/durations.hpp"
 #include "sim/watch/face_text.hpp"
 
 namespace ex9000::sim {
@@ -12,7 +12,8 @@ namespace {
 constexpr const char* kEraseAll = "\x1b[H\x1b[J";
 std::string back_over(std::size_t lines) { return "\x1b[" + std::to_string(lines) + "F\x1b[J"; }
 
-/// A line that is broken would put the cursor astray; a character of UTF-8 has one first byte.
+/// Cuts long lines, because a wrapped line would move the cursor to a wrong position. Counts only the first
+/// byte of each UTF-8 character.
 std::string shortened(const std::string& line, std::size_t columns) {
   std::size_t seen = 0;
   for (std::size_t i = 0; i < line.size(); ++i) {
@@ -48,7 +49,7 @@ void Watch::look() {
     return;
   }
   const Screen screen = terminal_->screen();
-  // Of another size it has moved what stood there, nobody knows where to.
+  // After a change of its size, the positions of the old lines are unknown.
   const bool moved = !painted_.empty() && !(screen == screen_);
   screen_ = screen;
   const std::vector<std::string> faces = painting();
@@ -65,7 +66,7 @@ void Watch::print(const std::string& lines) {
   put(painted_.empty() ? lines : back_over(painted_.size()) + lines + "\n" + joined(painted_));
 }
 
-/// On a terminal in one write, so that nobody sees it half done.
+/// Writes to a terminal in one call, so that no partial output is visible.
 void Watch::put(const std::string& lines) {
   if (terminal_ == nullptr) {
     print_(lines);
@@ -74,7 +75,8 @@ void Watch::put(const std::string& lines) {
   }
 }
 
-/// As many modules as there is room for, with a row for the cursor, and one to tell that there are more.
+/// Returns as many modules as fit, with one row for the cursor and, if necessary, one that says how many are
+/// missing.
 std::vector<std::string> Watch::painting() const {
   const std::vector<std::vector<std::string>> faces = all_faces();
   std::size_t rows = 0;
@@ -98,7 +100,7 @@ std::vector<std::string> Watch::painting() const {
   return lines;
 }
 
-/// Of each module; the first of a line has its line's name above.
+/// Returns the face of each module; the first face of a line begins with the line's name.
 std::vector<std::vector<std::string>> Watch::all_faces() const {
   const Lamps& lamps = screen_.utf8 ? kRoundLamps : kPlainLamps;
   std::vector<std::vector<std::string>> faces;

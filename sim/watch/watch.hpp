@@ -1,4 +1,4 @@
-// The modules' faces in a terminal.
+// Shows the modules' faces in a terminal.
 #pragma once
 
 #include <cstddef>
@@ -8,26 +8,27 @@
 #include <utility>
 #include <vector>
 
-#include "sim/face/face.hpp"
-#include "sim/line.hpp"
+#include "sim/line/line.hpp"
+#include "sim/module_view/face.hpp"
 #include "sim/watch/terminal.hpp"
 
 namespace ex9000::sim {
 
-/// Repaints them in place, or prints a line for each change where the output is no terminal.
+/// Redraws the faces in place. If the output is not a terminal, prints a line for each change.
 class Watch {
  public:
-  /// Takes lines, without the last one's end.
+  /// Gets lines of text; the last one has no newline.
   using Print = std::function<void(const std::string& lines)>;
 
-  /// Null: there is no terminal, and `print` takes lines. It lives as long as this.
+  /// `terminal` may be null; then `print` gets the lines. `terminal` must outlive this object.
   Watch(Terminal* terminal, Print print) : terminal_(terminal), print_(std::move(print)) {}
 
-  /// Before `look`. `line` lives as long as this, and `present` tells its time; an empty name is not shown.
+  /// Adds a line; call it before `look`. `line` must outlive this object, and `present` returns its time. An
+  /// empty name is not shown.
   void add_line(std::string name, const Line& line, std::function<VirtualTime()> present);
-  /// Shows what has changed since the last look; not on a terminal that does not keep up.
+  /// Shows the changes since the last look, unless the terminal does not keep up.
   void look();
-  /// Prints lines of something else: above the faces, which stay below all.
+  /// Prints lines of other output above the faces.
   void print(const std::string& lines);
 
  private:
@@ -35,7 +36,7 @@ class Watch {
     std::string name;
     const Line& line;
     std::function<VirtualTime()> present;
-    std::vector<std::optional<Face>> faces;  ///< as last told of; none: not yet
+    std::vector<std::optional<Face>> faces;  ///< as last shown; nullopt: not shown yet
   };
 
   [[nodiscard]] std::vector<std::string> painting() const;
@@ -46,8 +47,8 @@ class Watch {
   Terminal* terminal_;
   Print print_;
   std::vector<Watched> lines_;
-  Screen screen_;                     ///< as it was when it was painted
-  std::vector<std::string> painted_;  ///< what stands above the cursor; nothing: no faces
+  Screen screen_;                     ///< as it was at the last drawing
+  std::vector<std::string> painted_;  ///< the lines above the cursor; empty: no faces
 };
 
 }  // namespace ex9000::sim

@@ -5,8 +5,9 @@
 #include <string>
 #include <vector>
 
-#include "sim/line.hpp"
+#include "sim/line/line.hpp"
 #include "sim/play/modbus_frame.hpp"
+#include "sim/text/values.hpp"
 
 namespace ex9000::bench {
 namespace {

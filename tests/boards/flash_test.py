@@ -1,4 +1,4 @@
-"""toolchain/flash, as far as it goes without a board."""
+"""Tests toolchain/flash, as far as possible without a board."""
 
 from __future__ import annotations
 
@@ -10,14 +10,14 @@ from pathlib import Path
 
 ROOT = Path(__file__).resolve().parents[2]
 IMAGE = "/some where/EX9042D-M.elf"
-HANG = 60  # seconds; OpenOCD takes less than one, on a busy machine a few
+HANG = 60  # seconds; OpenOCD takes less than one, or a few on a busy machine
 
 MOVES_A_BOARD = ("init", "reset", "flash", "verify_image", "poll")
 SAY_INSTEAD = "; ".join([f'proc {name} {{args}} {{ echo "> {name} $args" }}' for name in MOVES_A_BOARD])
 
 
 def openocd_scripts() -> dict[str, str]:
-    """Of each board that can be flashed."""
+    """Return the OpenOCD script of each board that can be flashed."""
     scripts = {}
     for file in sorted(ROOT.glob("boards/*/board.cmake")):
         match = re.search(r"set\(openocd_script (\S+)\)", file.read_text())
@@ -32,7 +32,7 @@ def flash(script: str, *, path: str) -> subprocess.CompletedProcess[str]:
 
 
 def openocd_words(script: str) -> list[str]:
-    """What toolchain/flash calls OpenOCD with."""
+    """Return the arguments with which toolchain/flash calls OpenOCD."""
     with tempfile.TemporaryDirectory() as directory:
         program = Path(directory, "openocd")
         program.write_text("#!/bin/sh\nprintf '%s\\n' \"$@\"\n")

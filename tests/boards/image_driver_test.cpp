@@ -1,4 +1,4 @@
-// What can be wrong around a board, and what its image makes of it.
+// Faults around a board, and the reaction of its image.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -8,7 +8,7 @@
 
 #include "firmware/model/model.hpp"
 #include "firmware/settings/settings.hpp"
-#include "sim/module.hpp"
+#include "sim/bus/module.hpp"
 #include "sim/play/modbus_frame.hpp"
 #include "tests/boards/images_under_test.hpp"
 #include "tests/mcu_model/board_bench.hpp"
@@ -32,15 +32,15 @@ class OnBoard : public testing::TestWithParam<ImageName> {
   }
   UartPort& uart() { return bench.image.uart == 0 ? bench.mcu->uart0 : bench.mcu->uart1; }
   bool listens() { return uart().enabled(); }
-  /// Comes up from reset, with the bus as it is.
+  /// Checks that the module starts from reset with the bus in its present state.
   void expect_comes_up() {
     power_up();
     EXPECT_TRUE(listens());
     EXPECT_EQ(bench.resets, 0U);
     EXPECT_EQ(bench.ask("$01M"), "!019055");
   }
-  /// Sends the command that stores a name, and takes the supply away so much later, for 50 ms. Whether the
-  /// module had begun to answer.
+  /// Sends the command that stores a name, and switches the supply off for 50 ms after the time `after`.
+  /// Returns whether the module had begun to answer.
   bool cut_while_it_stores(const std::string& name, Instant after) {
     const std::string command = "~01O" + name + "\r";
     bench.line.heard.clear();
@@ -53,10 +53,10 @@ class OnBoard : public testing::TestWithParam<ImageName> {
     power_up();
     return answered;
   }
-  /// Of cuts.
+  /// Numbers of cuts.
   struct Outcomes {
     unsigned old = 0;
-    unsigned stored_only = 0;  ///< and not answered
+    unsigned stored_only = 0;  ///< stored but not answered
     unsigned answered = 0;
   };
   Net& clock() { return bench.pins.at('B', I2cBlock::kClockPin); }
@@ -69,7 +69,7 @@ class OnBoard : public testing::TestWithParam<ImageName> {
       expect_comes_up();
       EXPECT_EQ(bench.ask("~01OPUMP"), "?01");
       line->drive(End::Fault, Drive::Nothing);
-      bench.run_for(seconds(3));  // what could not be stored is tried again meanwhile
+      bench.run_for(seconds(3));  // meanwhile the module retries what it could not store
       EXPECT_EQ(bench.ask("~01O9055"), "!01");
       line->drive(End::Fault, Drive::Low);
       EXPECT_EQ(bench.ask("~01OPUMP"), "?01");
@@ -84,7 +84,7 @@ class OnBoard : public testing::TestWithParam<ImageName> {
   bool cut_a_page_ = false;
 };
 
-/// Its controller never tells that a START did not come about; the data sheets leave that open.
+/// Its I2C controller never reports that a START has failed; the data sheets do not define this case.
 class OnBoardWhoseI2cWaits : public OnBoard {
  protected:
   OnBoardWhoseI2cWaits() : OnBoard({true, false, true}) {}
@@ -132,8 +132,8 @@ TEST_P(OnBoard, ComesUpWithin100msAfterAResetAtAnyMomentOfReadingItsSettings) {
 }
 
 TEST_P(OnBoard, HasOldOrNewSettingsAfterAPowerCutAtAnyMomentOfAStoreAndNewOnesOnceItHasAnswered) {
-  // The command takes 9.4 ms and its turn-around 1 ms, and then 10 ms until it is stored; twice that where a
-  // cut before has left a copy that must be settled first.
+  // The command takes 9.4 ms and its turn-around 1 ms; storing takes another 10 ms, or twice that if an
+  // earlier cut has left a copy that must be repaired first.
   constexpr microseconds kCommandIsSent{10'300};
   constexpr microseconds kInBetween{5000};
   power_up();
@@ -170,7 +170,7 @@ TEST_P(OnBoard, TheDriverIsOffUnlessItReplies) {
 }
 
 TEST_P(OnBoard, RepliesAtOnceWhenTheTurnAroundIsOver) {
-  constexpr microseconds kAtOnce{100};  // not with the next tick
+  constexpr microseconds kAtOnce{100};  // not at the next tick
   power_up();
   for (int i = 0; i < 20; ++i) {
     bench.run_for(milliseconds(20) + microseconds(51 * i));
@@ -184,12 +184,13 @@ TEST_P(OnBoard, RepliesAtOnceWhenTheTurnAroundIsOver) {
 }
 
 TEST_P(OnBoard, APinOfAnOutputOrTheLedThatADisturbanceHasChangedIsRightAgainWithTheNextTick) {
-  constexpr microseconds kATick{10'050};  // and what the main loop takes behind it
+  constexpr microseconds kATick{10'050};  // and the time that the main loop needs after it
   power_up();
   ASSERT_EQ(bench.ask("@01A5"), ">");
   const auto disturb = [this](PinPlace place) {
     GpioPort& port = bench.mcu->port(place.port);
-    const std::uint32_t only_this_one = (1U << place.pin) << 2U;  // the data register's address has the mask
+    // The address of the data register contains the mask.
+    const std::uint32_t only_this_one = (1U << place.pin) << 2U;
     port.write(only_this_one, ~port.read(only_this_one));
   };
   for (unsigned phase = 0; phase < 5; ++phase) {
@@ -243,7 +244,7 @@ TEST_P(OnBoard, DropsTheRequestThatHasACharacterWithoutAStopBit) {
   bench.run_for(milliseconds(5));
   EXPECT_EQ(bench.ask(""), "");
   bench.line.send({'$', '0', '1', 'M'});
-  bench.line.send_one({'\r', false, 0});  // which may have been anything
+  bench.line.send_one({'\r', false, 0});  // a character with a wrong stop bit may have been any character
   bench.run_for(milliseconds(100));
   EXPECT_TRUE(bench.line.heard.empty());
   EXPECT_EQ(bench.ask(""), "") << "still the same request";
@@ -266,7 +267,7 @@ TEST_P(OnBoard, DropsTheRequestOfWhichACharacterIsLostToAnOverrun) {
 TEST_P(OnBoard, HeedsAHostOkThatAnotherFollowsAtOnceBeforeTheTickCouldTellOfEither) {
   const Model& model = *find_model(bench.image.model);
   Settings settings = Settings::factory(model);
-  settings.baud_code = 0x0A;  // 115200 baud: a host OK takes 0.35 ms
+  settings.baud_code = 0x0A;  // at 115200 baud a host OK takes 0.35 ms
   bench.memory = sim::SimulatedModule::memory_image(model, settings);
   power_up();
   bench.line.set_baud(115200);
@@ -276,7 +277,7 @@ TEST_P(OnBoard, HeedsAHostOkThatAnotherFollowsAtOnceBeforeTheTickCouldTellOfEith
   for (int phase = 0; phase < 20; ++phase) {
     bench.line.send(host_ok);
     bench.run_for(takes);
-    // The first is over before the time is, the second behind it.
+    // The first host OK ends before the timeout, the second one after it.
     bench.run_for(milliseconds(100) - 2 * takes + takes / 2);
     bench.line.send(host_ok);
     bench.line.send(host_ok);
@@ -290,7 +291,7 @@ TEST_P(OnBoard, CountsPulsesOnEveryInputHoweverLateTheInterruptIs) {
   bench.mcu->core.set_latency(microseconds(10));
   for (unsigned channel = 0; channel < bench.image.inputs; ++channel) {
     for (int i = 0; i < 7; ++i) {
-      // So short that both edges are one flag, with the level that was before.
+      // A pulse so short that both edges set one flag and the level is as before.
       bench.set_input(channel, true);
       bench.run_for(microseconds(i));
       bench.set_input(channel, false);
@@ -322,7 +323,7 @@ TEST_P(OnBoard, IsResetByTheWatchdogWithin1600msWhereTheTickStops) {
   EXPECT_EQ(bench.ask("$015"), "!011");
 }
 
-/// wire.md D13. Seen every 10 ms alone, this one would stand still.
+/// wire.md D13. Sampled only every 10 ms, this switch would seem to be stable.
 TEST_P(OnBoard, TakesAnInitSwitchForReleasedThatStandsStillForNo10MsAfterReset) {
   for (const bool most_of_the_time : {true, false}) {
     for (int phase = 0; phase < 10; ++phase) {
@@ -359,7 +360,8 @@ TEST_P(OnBoard, ListensWithin30MsOfResetAndInInitModeWhereTheSwitchStandsStill) 
 /// wire.md 6: 2 Hz.
 TEST_P(OnBoard, FlashesItsLedOnTimeWhateverTheTick) {
   power_up();
-  const auto changes = std::make_shared<std::vector<Instant>>();  // the net tells as long as it is there
+  // The net calls its function for as long as it exists.
+  const auto changes = std::make_shared<std::vector<Instant>>();
   bench.net(bench.image.status_led).on_change([this, changes] { changes->push_back(bench.timeline.now()); });
   ASSERT_EQ(bench.ask("~013103"), "!01");
   bench.run_for(seconds(4));
@@ -386,7 +388,7 @@ TEST_P(OnBoard, TouchesNothingWhileInterruptsAreHeld) {
   EXPECT_EQ(bench.mcu->most_accesses_held(), 0U);
 }
 
-/// All that interrupts count in 32 bits is about to wrap (tests/support/long_uptime).
+/// All 32-bit counts of the interrupts are about to wrap (tests/support/long_uptime).
 class OnBoardForMonths : public OnBoard {};
 
 TEST_P(OnBoardForMonths, AnswersCountsStoresAndHeedsTheHostAcrossTheWrapOfEveryCount) {
@@ -400,7 +402,7 @@ TEST_P(OnBoardForMonths, AnswersCountsStoresAndHeedsTheHostAcrossTheWrapOfEveryC
     shortest = std::min(shortest, silence);
     longest = std::max(longest, silence);
   };
-  store("~013114");  // 2 s, and each round is shorter
+  store("~013114");  // 2 s; each round is shorter
   for (unsigned round = 1; round <= 150; ++round) {
     bench.line.send({'~', '*', '*', '\r'});
     bench.run_for(milliseconds(10));
@@ -415,7 +417,7 @@ TEST_P(OnBoardForMonths, AnswersCountsStoresAndHeedsTheHostAcrossTheWrapOfEveryC
     ASSERT_EQ(bench.ask("~010"), "!0100") << round;
   }
   EXPECT_EQ(bench.ask("$01M"), "!01PUMP0");
-  // A byte on the EEPROM's bus that is given up and sent again costs 3 ms.
+  // Giving up and repeating a byte on the EEPROM's bus would take 3 ms.
   EXPECT_LT(std::chrono::duration<double>(longest - shortest).count(), 0.002);
   bench.run_for(seconds(2));
   EXPECT_EQ(bench.ask("~010"), "!0104");

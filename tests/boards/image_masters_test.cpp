@@ -1,4 +1,4 @@
-// Foreign masters, unmodified, and the image of a module. Expected values are those of firmware/wire.md 7.
+// Unmodified third-party masters and the image of a module. The expected values come from firmware/wire.md 7.
 #include <gtest/gtest.h>
 #include <modbus/modbus.h>
 
@@ -38,7 +38,8 @@ class ImageAndMaster : public testing::Test {
     return finished.output;
   }
 
-  /// The module answers in its own time; this is what a busy host may take to carry a request and its reply.
+  /// The module answers in simulated time; this is the time that a busy host may need for a request and its
+  /// reply.
   static constexpr std::chrono::seconds kPatience{10};
 
   TimedModule module_{*find_model("EX9042D-M")};

@@ -1,8 +1,8 @@
-// Power cuts: each power-on is a new emulator, and nothing but the EEPROM's file is left of the one before.
+// Power cuts: each power-on starts a new emulator, and only the EEPROM's file remains from the one before.
 //
-// The emulated EEPROM stores a page at once, when STOP comes. So what is shown here is in which order the
-// image has it written, reads it back and answers, and that it comes up: what a cut leaves of a page is for
-// power_cuts_test.
+// The emulated EEPROM stores a page at once when STOP arrives. So this test shows in which order the image
+// writes, reads back and answers, and that it starts afterwards. power_cuts_test checks what a cut leaves of
+// a page.
 #include <gtest/gtest.h>
 
 #include <chrono>
@@ -12,7 +12,7 @@
 #include <string>
 #include <vector>
 
-#include "sim/module.hpp"
+#include "sim/bus/module.hpp"
 #include "tests/qemu/master.hpp"
 #include "tests/qemu/timed_module.hpp"
 #include "tests/support/environment.hpp"
@@ -44,7 +44,7 @@ TEST(ImageWithoutPower, KeepsItsSettings) {
   EXPECT_EQ(ask(module, "$025"), "!021");
 }
 
-/// Settings from which `command` changes something.
+/// Settings that `command` changes.
 Settings settings_before(const Model& model, const StoringCommand& command) {
   Settings settings = Settings::factory(model);
   if (command.init != Init::SinceReset) {
@@ -56,13 +56,14 @@ Settings settings_before(const Model& model, const StoringCommand& command) {
   return settings;
 }
 
-/// A module that is killed behind so many stores to the registers of its I2C master.
+/// A module that is killed after a number of stores to the registers of its I2C master.
 class CutModule {
  public:
   CutModule(const Model& model, const StoringCommand& command)
       : command_(command), before_(settings_before(model, command)), module_(model) {}
 
-  /// Carries the command out until the power fails, and is made anew. False where it came to its end before.
+  /// Executes the command until the power fails, then restarts the module. Returns false if the command was
+  /// complete before.
   bool cut_behind(unsigned stores) {
     constexpr std::uint32_t kI2c = 0x4002'0000;
     constexpr std::uint32_t kRegisters = 0x24;
@@ -79,7 +80,7 @@ class CutModule {
     }
     if (command_.init == Init::Tied) {
       module_.set_init(true);
-      module_.run_for(milliseconds(25));  // wire.md D13
+      module_.run_for(milliseconds(25));  // debounce time of INIT*, wire.md D13
     }
     done_ = command_.done_to(before_, module_.outputs());
     module_.hear(module_.baud());
@@ -97,13 +98,14 @@ class CutModule {
     return stopped;
   }
 
-  /// Comes up with old settings or new ones, and new ones if `must_be_done` or it had begun to answer; and
-  /// with the outputs that belong to them.
+  /// Checks that the module starts with the old or the new settings, and with the matching outputs. They must
+  /// be the new settings if `must_be_done` or if it had begun to answer.
   void expect_wholly_done_or_not_at_all(bool must_be_done) {
     module_.set_init(false);
     power_up(false);
     const std::uint16_t outputs = module_.outputs();
-    // What it answers depends on nothing but what the EEPROM holds, so that is asked for once.
+    // The answers depend only on the contents of the EEPROM, so the test reads the settings once for each
+    // contents.
     std::optional<Settings>& found = known_[module_.memory()];
     for (const Settings* guess : {&done_, &before_}) {
       if (!found && baud_rate(guess->baud_code) == nearest_rate(module_.baud())) {
@@ -133,7 +135,7 @@ class CutModule {
     module_.run_for(milliseconds(60));
     ASSERT_NE(module_.baud(), 0U) << "it does not come up";
   }
-  /// The rate whose divisors give this one.
+  /// The standard baud rate nearest to the rate that the divisors give.
   static std::uint32_t nearest_rate(std::uint32_t rate) {
     for (const std::uint32_t each : kBaudRates) {
       if (rate > each - each / 20 && rate < each + each / 20) {
@@ -157,7 +159,7 @@ class CutModule {
   Settings before_;
   Settings done_;
   TimedModule module_;
-  std::map<std::string, std::optional<Settings>> known_;  ///< by what the EEPROM holds
+  std::map<std::string, std::optional<Settings>> known_;  ///< by contents of the EEPROM
   bool answered_ = false;
   unsigned olds_ = 0;
   unsigned news_ = 0;

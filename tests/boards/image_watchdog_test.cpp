@@ -1,6 +1,6 @@
-// An image that has been made to hang: its hardware watchdog brings it back. Nothing of the image is changed:
-// what makes it hang lies in RAM it does not use, and is entered by the vector table, which a reset puts
-// back.
+// An image that is made to hang: its hardware watchdog resets it. The image itself is not changed. The code
+// that makes it hang is in RAM that the image does not use. The vector table leads to that code, and a
+// reset restores the table.
 #include <gtest/gtest.h>
 
 #include <string>
@@ -17,7 +17,7 @@ namespace {
 
 using std::chrono::milliseconds;
 
-/// The longest that the module's watchdog may take: wire.md 6.
+/// The longest period of the module's watchdog: wire.md 6.
 constexpr milliseconds kWatchdogPeriod{1600};
 
 constexpr std::uint32_t kSysTickControl = 0xE000'E010;
@@ -28,11 +28,11 @@ constexpr std::uint32_t kSetPending = 0xE000'E200;
 constexpr std::uint32_t kSysTickVector = 15;
 constexpr std::uint32_t kI2c0 = 8;
 constexpr std::uint32_t kI2c0Vector = 16 + kI2c0;
-/// Between what the image and the rig keep in RAM and the image's stack, at its top.
+/// Between the RAM that the image and the rig use and the image's stack at the top of RAM.
 constexpr std::uint32_t kCode = 0x2000'C000;
 constexpr std::uint32_t kThumb = 1;
 
-/// What an image is doing when it is made to hang.
+/// The activity of an image when it is made to hang.
 enum class Doing : std::uint8_t { Nothing, Receiving, Answering, Storing };
 constexpr Doing kEverything[] = {Doing::Nothing, Doing::Receiving, Doing::Answering, Doing::Storing};
 
@@ -93,7 +93,8 @@ class FaultyImage : public testing::TestWithParam<Protocol>, protected EitherPro
         ASSERT_TRUE(level_of(bus(), board::kDriverEnable));
         break;
       case Doing::Storing:
-        // The emulated EEPROM takes no time: the image waits for a byte that it is not told of.
+        // The emulated EEPROM takes no time, so the test masks the interrupt for a byte: the image waits for
+        // it.
         module_.send(framed("~01OPUMP", {1, 0x06, 0x01, 0xE8, 0, 0x41}), module_.baud());
         bus().write(kClearEnable, 1U << kI2c0);
         module_.run_for(std::chrono::microseconds(ascii() ? 2500 : 5500));
@@ -105,8 +106,8 @@ class FaultyImage : public testing::TestWithParam<Protocol>, protected EitherPro
  public:
   // --- faults ---
 
-  /// From now on this code is an interrupt's. Where it has to know its own entry in the table, or the image's
-  /// own code, that is said by kEntry and kOwn.
+  /// From now on this code is the handler of an interrupt. In the code, kEntry stands for the address of its
+  /// entry in the table, and kOwn for the image's own handler.
   static constexpr std::uint32_t kEntry = 0xE1E1'E1E1;
   static constexpr std::uint32_t kOwn = 0xE2E2'E2E2;
   void make_interrupt_run(std::uint32_t vector, const std::vector<std::uint32_t>& code) {
@@ -121,8 +122,8 @@ class FaultyImage : public testing::TestWithParam<Protocol>, protected EitherPro
   }
 
   void hang_main_loop() {
-    // What the tick returns to becomes a jump to itself; then the image's own interrupt follows, and from the
-    // next one on it is that alone.
+    // Replaces the return address of the tick by a jump to itself, then calls the image's own handler. From
+    // the next tick on, only that handler runs.
     make_interrupt_run(kSysTickVector, {
                                            0x4A044803,  // ldr r0, =entry; ldr r2, =own
                                            0xA0016002,  // str r2, [r0]; adr r0, loop
@@ -134,7 +135,7 @@ class FaultyImage : public testing::TestWithParam<Protocol>, protected EitherPro
   }
   void hang_interrupt() { make_interrupt_run(kSysTickVector, {0xE7FEE7FE}); }  // b .
   void stop_tick() { bus().write(kSysTickControl, 0); }
-  /// It asks for itself again each time, and does what it does.
+  /// The handler requests the interrupt again each time, then does its normal work.
   void storm() {
     make_interrupt_run(kI2c0Vector, {
                                         0x21014803,  // ldr r0, =kSetPending; movs r1, #1
@@ -146,7 +147,7 @@ class FaultyImage : public testing::TestWithParam<Protocol>, protected EitherPro
                                     });
     bus().write(kSetPending, 1U << kI2c0);
   }
-  /// No byte on the bus of the EEPROM is told to have come to its end.
+  /// Hides the end of every byte on the EEPROM's bus from the image.
   void wedge_bus() {
     constexpr std::uint32_t kInterruptClear = 0x4002'001C;
     make_interrupt_run(kI2c0Vector, {
@@ -157,8 +158,8 @@ class FaultyImage : public testing::TestWithParam<Protocol>, protected EitherPro
   }
 
  protected:
-  /// Until its watchdog resets it; where nothing but that is left to be seen of the time, only by its
-  /// registers.
+  /// Waits until the watchdog resets the module. In cases where the time cannot be observed, the watchdog's
+  /// registers show it.
   void expect_reset_in_time() {
     constexpr std::uint32_t kWatchdogLoad = 0x4000'0000;
     constexpr std::uint32_t kCountdowns = 2;
@@ -167,7 +168,8 @@ class FaultyImage : public testing::TestWithParam<Protocol>, protected EitherPro
     module_.run_to_reset("WATCHDOG", kWatchdogPeriod);
   }
 
-  /// Each of the two statuses with half of what it may be doing. A storm takes the emulator seconds.
+  /// In the short form, each timeout status is tested with half of the activities, because a storm takes the
+  /// emulator seconds.
   [[nodiscard]] bool belongs_to_short_form(Doing doing, bool status, Fault fault) const {
     const bool first_half = doing == Doing::Nothing || doing == Doing::Storing;
     if (fault == &FaultyImage::storm) {
@@ -242,7 +244,7 @@ TEST_P(FaultyImage, GoesOnWhereItsEepromsBusIsWedgedAndStoresOnceItIsNot) {
     EXPECT_FALSE(timeout_status());
     EXPECT_FALSE(was_reset());
     bus().write(entry, own);
-    module_.run_for(std::chrono::seconds(2));  // what had to be settled is
+    module_.run_for(std::chrono::seconds(2));  // pending repairs are complete
     EXPECT_TRUE(stores());
     ASSERT_FALSE(HasFailure());
   }
@@ -293,7 +295,7 @@ TEST_F(HungImage, ResetsItselfAtAnInterruptThatNobodyHasAskedFor) {
   expect_reset_because("SHUTDOWN");
 }
 
-/// The highest rate there is; so many bytes without a gap take it more than three periods of its watchdog.
+/// At the highest baud rate, this many bytes without a gap take more than three periods of the watchdog.
 TEST_F(HungImage, AnswersAfterAFloodOfBytes) {
   constexpr std::uint8_t kFastest = 0x0A;  // 115200 baud
   settings_.baud_code = kFastest;
@@ -308,8 +310,7 @@ TEST_F(HungImage, AnswersAfterAFloodOfBytes) {
 }
 
 TEST(ImageInAnInterruptStorm, IsResetAndComesBackWhenItIsOver) {
-  // Input 0 is PB0. That its level interrupts, and not its edges, is what makes the storm: no handler can end
-  // it.
+  // Input 0 is PB0. The interrupt is set to trigger on its level instead of its edges; no handler can end it.
   const std::string kPortB = "/machine/unattached/device[9]";
   constexpr std::uint32_t kSense = 0x4000'5404;
   constexpr std::uint32_t kBothEdges = 0x4000'5408;

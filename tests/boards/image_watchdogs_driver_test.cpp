@@ -1,4 +1,4 @@
-// Both watchdogs of an image, whatever it is doing: wire.md section 6.
+// Both watchdogs of an image during each of its activities: wire.md section 6.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -27,11 +27,11 @@ using std::chrono::seconds;
 constexpr milliseconds kComesUpWithin{100};
 constexpr milliseconds kResetsWithin{1600};
 constexpr milliseconds kTick{10};
-/// So much later than it was the module may take its restart to be: its clock has microseconds, and the end
-/// of a byte and the silence behind it are rounded up, lest it expire too early.
+/// The module may time its restart this much late: its clock counts microseconds, and it rounds up the end of
+/// a byte and of the silence after it, so that the host watchdog does not expire too early.
 constexpr microseconds kRounding{3};
-/// Of the main loop behind the interrupt in which the time is over, until the last of sixteen pins, which go
-/// one after the other, has its level: 2.5 us are seen.
+/// The time that the main loop needs after the interrupt at the expiry until the last of sixteen pins, which
+/// change one after the other, has its level. Measured: 2.5 us.
 constexpr microseconds kTurn{5};
 constexpr milliseconds kExpiresWithin{1};
 
@@ -40,10 +40,10 @@ constexpr std::uint16_t kSafeValue = 0xA5A4;
 constexpr std::uint16_t kDriven = 0xC35A;
 constexpr std::uint8_t kTimeout = 0x64;
 
-/// Two digits.
+/// Two hex digits.
 std::string hex(unsigned value) { return reference::hex(value, 2); }
 
-/// A module that has been set up: all outputs values differ, and so does what is driven.
+/// Settings in which all output values differ from each other and from the driven value.
 Settings set_up(const Model& model, Protocol protocol) {
   Settings settings = Settings::factory(model);
   settings.protocol = protocol;
@@ -56,7 +56,7 @@ Settings set_up(const Model& model, Protocol protocol) {
   return settings;
 }
 
-/// A module on its board with a master that speaks its protocol.
+/// A module on its board, with a master that uses its protocol.
 class WatchedModule : public EitherProtocol {
  public:
   struct Change {
@@ -92,7 +92,7 @@ class WatchedModule : public EitherProtocol {
 
   Bytes text(const std::string& reply) { return framed(reply, {}); }
 
-  /// Drives `value` on all outputs; whether it was accepted.
+  /// Drives `value` on all outputs. Returns whether the module accepted it.
   bool drive(std::uint16_t value) {
     const Bytes reply = bench.exchange(drive_frame(value));
     return ascii() ? reply == text(">") : reply.size() == 8 && reply[1] == 0x0F;
@@ -106,8 +106,9 @@ class WatchedModule : public EitherProtocol {
     const Bytes reply = ask("~0131" + hex(timeout), {1, 0x06, 0x01, 0xE8, 0, timeout});
     return ascii() ? reply == text("!01") : reply.size() == 8 && reply[1] == 0x06;
   }
-  /// Sends it, and returns when it was over: a Modbus frame with its silence, and a character with the middle
-  /// of its stop bit, for the UART tells of it then.
+  /// Sends a host OK and returns the time at which the module has received it: for Modbus the end of the
+  /// silence after the frame, for ASCII the middle of the last stop bit, at which the UART reports a
+  /// character.
   Instant host_ok() {
     bench.line.send(framed("~**", {1, 0x03, 0x30, 0x38, 0, 0}));
     while (bench.line.sending()) {
@@ -115,7 +116,7 @@ class WatchedModule : public EitherProtocol {
     }
     return bench.line.sent() + over_behind_its_last_bit();
   }
-  /// Waits until one that is sent now is over so long behind a tick.
+  /// Waits so that a host OK sent now ends `phase` after a tick.
   void wait_until_a_host_ok_is_over_behind_a_tick(Instant phase) {
     constexpr unsigned kAscii = 4;
     constexpr unsigned kModbus = 8;
@@ -128,7 +129,7 @@ class WatchedModule : public EitherProtocol {
   }
 
   const Model& model;
-  std::vector<Change> changes;  ///< of the outputs; outlives the board
+  std::vector<Change> changes;  ///< of the outputs; declared before the board because it must outlive it
   BoardBench bench;
 
  private:
@@ -138,7 +139,7 @@ class WatchedModule : public EitherProtocol {
   }
 };
 
-/// Lets it run until that is so, and looks every `step`. False: it never is.
+/// Runs until `condition` is true, checked every `step`. Returns false if it is not true within a second.
 template <class Condition>
 bool runs_until(BoardBench& bench, Condition condition, Instant step) {
   const Instant gives_up = bench.timeline.now() + seconds(1);
@@ -174,7 +175,8 @@ class FaultOnBoard : public testing::TestWithParam<std::tuple<ImageName, Protoco
   [[nodiscard]] ImageName image() const { return std::get<0>(GetParam()); }
   [[nodiscard]] Protocol protocol() const { return std::get<1>(GetParam()); }
 
-  /// Until it is doing that. What it stores is the name, in Modbus the host watchdog's timeout.
+  /// Brings the module to this activity. The command that stores sets the name, or in Modbus the host
+  /// watchdog's timeout.
   static void make_it(WatchedModule& module, Doing doing) {
     BoardBench& bench = module.bench;
     const Bytes harmless = module.framed("$01M", {1, 0x11});
@@ -237,7 +239,7 @@ class FaultOnBoard : public testing::TestWithParam<std::tuple<ImageName, Protoco
                                                              : kPowerOnValue;
         EXPECT_EQ(bench.outputs(), after);
         for (const WatchedModule::Change& change : module.changes) {
-          // Off from the reset on, and then the value from reset, pin by pin.
+          // All outputs are off from the reset on; then they take their reset value, pin by pin.
           EXPECT_EQ(change.at <= bench.began ? change.outputs & ~before : change.outputs & ~after, 0);
         }
         EXPECT_TRUE(module.was_reset());
@@ -267,7 +269,7 @@ TEST_P(FaultOnBoard, AMainLoopThatHangsIsReset) {
 TEST_P(FaultOnBoard, AnInterruptThatDoesNotEndIsReset) {
   expect_reset("an interrupt hangs", [](BoardBench& bench) {
     bench.mcu->hang(Hangs::Handler);
-    // Not every one of them looks at a register; this one does.
+    // Not every handler accesses a register; this one does.
     bench.mcu->core.stick(8);
   });
 }
@@ -275,7 +277,7 @@ TEST_P(FaultOnBoard, AnInterruptThatDoesNotEndIsReset) {
 TEST_P(FaultOnBoard, ATickThatStopsIsReset) {
   expect_reset("the tick stops", [](BoardBench& bench) {
     bench.mcu->core.write(Core::kTickControl, 4);
-    bench.mcu->set_clocks_an_access(1000);  // time stands still: the wake timer fires again and again
+    bench.mcu->set_clocks_an_access(1000);  // time stands still, so the wake timer fires again and again
   });
 }
 
@@ -287,7 +289,7 @@ TEST_P(FaultOnBoard, AnInterruptThatStormsIsReset) {
     if ((enabled >> interrupt & 1U) != 0) {
       expect_reset("interrupt " + std::to_string(interrupt) + " storms", [interrupt](BoardBench& stormy) {
         stormy.mcu->core.stick(interrupt);
-        stormy.mcu->set_clocks_an_access(1000);  // not millions of them
+        stormy.mcu->set_clocks_an_access(1000);  // so that the storm does not take millions of accesses
       });
     }
   }
@@ -312,12 +314,12 @@ TEST_P(FaultOnBoard, AWedgedEepromBusIsNoHangButRefusesToStoreUntilItIsFree) {
       module.changes.clear();
       bench.run_for(seconds(2));
       if (doing == Doing::OnTheEepromsBus || doing == Doing::Programming) {
-        // Answered, and refused: what cannot be read back is not stored.
+        // The module answers with a refusal: a value that cannot be read back is not stored.
         ASSERT_GE(bench.line.heard.size(), 3U);
         EXPECT_TRUE(module.ascii() ? bench.line.heard[0].byte == '?' : bench.line.heard[1].byte == 0x86U);
       }
       if (doing == Doing::Receiving) {
-        module.ask("", {});  // whatever it makes of the half request
+        module.ask("", {});  // ends the incomplete request, whatever the module answers
       }
       EXPECT_FALSE(module.stores_a_timeout(0x40));
       if (bench.image.outputs != 0) {
@@ -341,7 +343,7 @@ TEST_P(FaultOnBoard, AWedgedEepromBusIsNoHangButRefusesToStoreUntilItIsFree) {
 
 class HostWatchdogOnBoard : public FaultOnBoard {
  protected:
-  /// With outputs that only a command can have given it.
+  /// Arms the host watchdog. The outputs have values that only a command can set.
   static void arm(WatchedModule& module, unsigned timeout) {
     module.ask("~013001", {1, 0x05, 0x01, 0x04, 0, 0});
     module.ask("~011", {1, 0x05, 0x01, 0x0D, 0xFF, 0});
@@ -349,7 +351,7 @@ class HostWatchdogOnBoard : public FaultOnBoard {
     ASSERT_TRUE(module.drive(kDriven));
     module.ask("~0131" + hex(timeout), {1, 0x05, 0x01, 0x04, 0xFF, 0});
   }
-  /// What commands may have stored.
+  /// Restores what commands may have stored.
   static void restore(WatchedModule& module) {
     module.ask("~011", {1, 0x05, 0x01, 0x0D, 0xFF, 0});
     module.drive(kPowerOnValue);
@@ -358,7 +360,7 @@ class HostWatchdogOnBoard : public FaultOnBoard {
   }
 };
 
-/// Whether the time is over right before a tick, right behind one, or anywhere.
+/// The expiry falls right before a tick, right after one, or anywhere.
 class ExpiryOnBoard : public HostWatchdogOnBoard {
  protected:
   void expect_expiry_within(Instant most, const std::function<void(BoardBench&)>& prepare);
@@ -403,8 +405,8 @@ TEST_P(ExpiryOnBoard, IsATickLateAtMostWhereTheWakeTimerIsDead) {
                        [](BoardBench& bench) { bench.mcu->timer2.write(TimerBlock::kMask, 0); });
 }
 
-/// Commands that end at any moment about the expiry: one that drives alone, one that drives what it stores,
-/// and one that drives behind one that is being stored.
+/// Commands that end at any time around the expiry: one that only drives, one that drives the value that it
+/// stores, and one that drives and follows another one that is being stored.
 TEST_P(HostWatchdogOnBoard, NoCommandDrivesAnythingOnceItHasExpired) {
   constexpr unsigned kVv = 5;
   constexpr std::uint16_t kCommanded = 0x3C96;
@@ -429,7 +431,7 @@ TEST_P(HostWatchdogOnBoard, NoCommandDrivesAnythingOnceItHasExpired) {
         bench.run_for(microseconds(50));
       }
       if (!second.empty()) {
-        bench.run_for(milliseconds(6));  // it is being stored
+        bench.run_for(milliseconds(6));  // the first one is being stored
         bench.line.send(second);
       }
       bench.run_until(std::max(bench.timeline.now(), over + kExpiresWithin));
@@ -448,12 +450,12 @@ TEST_P(HostWatchdogOnBoard, NoCommandDrivesAnythingOnceItHasExpired) {
   std::printf("%u moments, %u of them beyond the expiry\n", moments, too_late);
 }
 
-/// wire.md D6. The outputs are the old safe value from the expiry on, and the new one from the moment on at
-/// which it is stored, and never what a command demands that comes behind.
+/// wire.md D6. From the expiry on, the outputs have the old safe value. From the end of storing on, they have
+/// the new one. They never take the value of a later command.
 TEST_P(HostWatchdogOnBoard, ACommandThatChangesTheSafeValueAsItExpiresGivesTheNewOneOnceThatIsStored) {
   constexpr unsigned kVv = 5;
   constexpr std::uint16_t kCommanded = 0x3C96;
-  // `~AA5S` takes what is driven.
+  // `~AA5S` stores the driven value.
   const std::uint16_t new_value = protocol() == Protocol::Ascii ? kDriven : 0x0FF0;
   const Instant step = all_of_them() ? microseconds(100) : microseconds(1100);
   WatchedModule module(image(), set_up(*find_model(image().model), protocol()));
@@ -498,7 +500,7 @@ TEST_P(HostWatchdogOnBoard, ACommandThatChangesTheSafeValueAsItExpiresGivesTheNe
       if (change.at < over) {
         continue;
       }
-      // Pin by pin: what both have in common stays as it is.
+      // The pins change one after the other; pins that are equal in both values do not change.
       const bool is_new = change.outputs == new_value;
       expired = expired || change.outputs == kSafeValue;
       ASSERT_TRUE(!expired || ((change.outputs ^ kSafeValue) & ~(kSafeValue ^ new_value)) == 0);
@@ -532,7 +534,7 @@ TEST_P(HostWatchdogOnBoard, ACommandThatChangesTheSafeValueAsItExpiresGivesTheNe
               stored_before, stored_behind, too_late);
 }
 
-/// What a command that is being stored as it expires has come to.
+/// The progress of a command that is being stored when the host watchdog expires.
 enum class Storing : std::uint8_t { Nothing, OnTheBus, Programming };
 
 TEST_P(HostWatchdogOnBoard, APowerCutAtAnyMomentAfterItHasExpiredGivesNoCommandedValueBack) {
@@ -545,7 +547,7 @@ TEST_P(HostWatchdogOnBoard, APowerCutAtAnyMomentAfterItHasExpiredGivesNoCommande
   unsigned unstored = 0;
   unsigned cuts = 0;
   unsigned done = 0;
-  // A name in ASCII, a power-on value in Modbus; as each was found last.
+  // The test stores a name in ASCII and a power-on value in Modbus. These are the last values read.
   Bytes name = module.ask("$01M", {1, 0x11});
   std::uint16_t power_on_value = kPowerOnValue;
   for (const Storing storing : {Storing::Nothing, Storing::OnTheBus, Storing::Programming}) {
@@ -571,7 +573,7 @@ TEST_P(HostWatchdogOnBoard, APowerCutAtAnyMomentAfterItHasExpiredGivesNoCommande
         bench.line.drives.clear();
         bench.line.send(command);
         bench.run_until(over);
-        // Else this shows nothing.
+        // Otherwise the test would show nothing.
         ASSERT_GT(events, 3U) << "nothing is being stored";
         ASSERT_EQ(bench.eeprom.programmed().size(), had_programmed) << "it is stored";
         ASSERT_EQ(bench.eeprom.programming(), storing == Storing::Programming);
@@ -601,7 +603,7 @@ TEST_P(HostWatchdogOnBoard, APowerCutAtAnyMomentAfterItHasExpiredGivesNoCommande
       const std::uint16_t from_reset = stored ? kSafeValue : power_on_value;
       EXPECT_EQ(outputs, from_reset);
       for (const WatchedModule::Change& change : module.changes) {
-        // Off with the supply, on with the new one; nothing else is ever on.
+        // The outputs go off with the supply and on with the new supply; no other output is ever on.
         EXPECT_EQ(change.at < bench.began ? change.outputs & ~kSafeValue : change.outputs & ~from_reset, 0);
       }
       unstored += stored ? 0U : 1U;

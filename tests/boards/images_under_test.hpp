@@ -1,4 +1,4 @@
-// The images that tests run, and names for them.
+// The images that tests run, and their names.
 #pragma once
 
 #include <gtest/gtest.h>
@@ -11,7 +11,7 @@
 
 namespace ex9000::registers {
 
-/// `board` as its folder is called.
+/// `board`: the name of its folder.
 inline const Image& image_of(const std::string& board, const std::string& model) {
   return load_image(std::string(EX9000_IMAGES) + "/image_" + board + "_" + model + ".so");
 }

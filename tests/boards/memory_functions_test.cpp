@@ -1,5 +1,5 @@
-// The functions that the compiler calls in an image, as they are shipped: every byte that they are asked for,
-// and none beside it (C17, 7.24.2.1, 7.24.4.1, 7.24.6.1).
+// The functions that the compiler calls in an image, as shipped. They must change every byte of the requested
+// range and no other byte (C17, 7.24.2.1, 7.24.4.1, 7.24.6.1).
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -7,7 +7,7 @@
 #include <cstddef>
 #include <cstdint>
 
-// Under names of their own, for the test program has the C library's.
+// Renamed, because the test program has those of the C library.
 #define memcpy memcpy_of_the_image
 #define memset memset_of_the_image
 #define memcmp memcmp_of_the_image
@@ -22,7 +22,7 @@ constexpr std::size_t kSpace = 48;
 constexpr std::size_t kMost = 40;
 using Memory = std::array<std::uint8_t, kSpace>;
 
-/// No byte is another's, so that one that went astray is seen.
+/// All bytes differ, so that a misplaced byte is noticed.
 Memory some_bytes(unsigned seed) {
   Memory bytes{};
   for (std::size_t i = 0; i < bytes.size(); ++i) {
@@ -75,7 +75,7 @@ TEST(MemoryFunctions, TheFirstByteThatDiffersDecidesAndHasNoSign) {
       left.at(differs) = 0x7F;
       right.at(differs) = 0x80;
       if (differs + 1 < size) {
-        left.at(differs + 1) = 0xFF;  // which would decide otherwise
+        left.at(differs + 1) = 0xFF;  // the bytes after the first difference must not count
         right.at(differs + 1) = 0x00;
       }
       EXPECT_LT(memcmp_of_the_image(left.data(), right.data(), size), 0) << size << ", " << differs;

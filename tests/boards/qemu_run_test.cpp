@@ -1,4 +1,4 @@
-// boards/lm3s6965evb/run, as a user would start it: the shipped image on a pseudo-terminal.
+// Tests boards/lm3s6965evb/run as a user starts it: the shipped image on a pseudo-terminal.
 #include <fcntl.h>
 #include <gtest/gtest.h>
 #include <modbus/modbus.h>
@@ -33,15 +33,15 @@ using Arguments = std::vector<std::string>;
 const std::string kRun = EX9000_RUN;
 constexpr std::size_t kEepromSize = 8192;
 constexpr int kRepetitions = 10;
-/// For what hangs: the program and QEMU answer within seconds also on a busy machine.
+/// A limit for hangs: the program and QEMU answer within seconds even on a busy machine.
 constexpr std::chrono::seconds kHang{60};
-/// How long a master waits for a reply, on a machine that is busy too.
+/// The time that a master waits for a reply, long enough for a busy machine.
 constexpr std::chrono::seconds kMastersPatience{10};
 
 std::string image_of(const std::string& model) { return EX9000_IMAGES "/" + model + ".elf"; }
 bool has(const std::string& text, const std::string& part) { return text.find(part) != std::string::npos; }
 
-/// The image of a model, running.
+/// A running image of a model.
 class RunningImage {
  public:
   explicit RunningImage(const std::string& model, const Arguments& options = {})
@@ -51,7 +51,7 @@ class RunningImage {
     }
   }
 
-  /// What it prints first.
+  /// Returns the first line of its output, which names the terminal.
   [[nodiscard]] std::string tty() const { return process_.output().substr(0, process_.output().find('\n')); }
   ChildProcess& process() { return process_; }
   [[nodiscard]] int qemu() const {
@@ -62,9 +62,9 @@ class RunningImage {
     return child;
   }
 
-  /// Types a command, its CR included, and reads the answer up to CR.
+  /// Sends a command and its CR, and returns the answer up to CR.
   [[nodiscard]] std::string ask(const std::string& command) const { return ask_behind("", command); }
-  /// The same; answers to what was said before, which are all alike, come first.
+  /// Does the same, but first skips answers to earlier requests, which are all `before`.
   [[nodiscard]] std::string ask_behind(const std::string& before, const std::string& command) const {
     Terminal terminal(tty(), 9600);
     terminal.type(command + "\r");
@@ -75,7 +75,8 @@ class RunningImage {
     return reply.substr(0, reply.find('\r'));
   }
 
-  /// A busy host may hold a frame up for longer than T3.5, which ends it; then a master repeats.
+  /// A busy host may interrupt a frame for longer than T3.5, which ends the frame; then the master repeats
+  /// it.
   [[nodiscard]] Finished mbpoll(Arguments options, const Arguments& values = {}) const {
     options.insert(options.begin(), {"mbpoll", "-m", "rtu", "-b", "9600", "-P", "none", "-1", "-o",
                                      std::to_string(kMastersPatience.count())});
@@ -99,7 +100,7 @@ class RunningImage {
   ChildProcess process_;
 };
 
-/// It is gone, or nothing but an entry that its parent has not looked at.
+/// Whether the process has ended. It may still have an entry that its parent has not read.
 bool has_ended(int pid) {
   std::ifstream status("/proc/" + std::to_string(pid) + "/stat");
   std::string number;
@@ -109,7 +110,7 @@ bool has_ended(int pid) {
   return !status || state == "Z";
 }
 
-/// Waits for it; it need not be a child of this one.
+/// Waits for the end of a process, which need not be a child of this one.
 bool ends(int pid) {
   const int process = static_cast<int>(syscall(SYS_pidfd_open, pid, 0));
   pollfd over{process, POLLIN, 0};
@@ -153,7 +154,8 @@ TEST(QemuRun, LibmodbusReadsAndWrites) {
 }
 
 TEST(QemuRun, APersonMayType) {
-  constexpr std::chrono::milliseconds kBetweenKeys{50};  // a busy machine makes it longer, which is as good
+  // A busy machine makes the pauses longer, which does not matter.
+  constexpr std::chrono::milliseconds kBetweenKeys{50};
   const RunningImage image("EX9042D");
   Terminal terminal(image.tty(), 9600);
   for (const char key : std::string("$01M")) {
@@ -171,7 +173,7 @@ TEST(QemuRun, MastersComeAndGo) {
   }
 }
 
-/// Visits of a terminal, by whomever. The kernel joins equal ones.
+/// Opens and closes of a terminal by any process. The kernel merges equal ones.
 class Visits {
  public:
   explicit Visits(const std::string& tty) : fd_(inotify_init1(IN_CLOEXEC)) {
@@ -181,7 +183,7 @@ class Visits {
   Visits(const Visits&) = delete;
   Visits& operator=(const Visits&) = delete;
 
-  /// Up to the next one of this kind.
+  /// Waits for the next event of this kind.
   void wait_for(std::uint32_t kind) {
     pollfd ready{fd_, POLLIN, 0};
     inotify_event event{};  // of a file, so without a name
@@ -195,7 +197,7 @@ class Visits {
   int fd_;
 };
 
-/// Asks, waits until the whole reply is there, and leaves it unread. Returns when the program has noticed.
+/// Sends a command, waits for the whole reply, and leaves it unread. Returns when the program has noticed.
 void leave_reply_unread(const std::string& tty, const std::string& command, const std::string& reply) {
   Visits visits(tty);
   {
@@ -212,13 +214,13 @@ void leave_reply_unread(const std::string& tty, const std::string& command, cons
     EXPECT_EQ(there, reply.size() + 1);
     close(fd);
   }
-  visits.wait_for(IN_CLOSE);  // this one's; then the program's, which empties it
+  visits.wait_for(IN_CLOSE);  // by this function; then by the program, which empties the terminal
   visits.wait_for(IN_OPEN);
   visits.wait_for(IN_CLOSE);
 }
 
-/// Repeats a request until its reply comes, as a master does, because a module does not hear what is said
-/// while it speaks or hangs.
+/// Repeats a request until its reply arrives, as a master does, because a module receives nothing while it
+/// sends or hangs.
 bool gets(const RunningImage& image, const std::string& command, const std::string& reply) {
   constexpr std::chrono::seconds kRepeats{1};
   Terminal terminal(image.tty(), 9600);
@@ -253,16 +255,16 @@ TEST(QemuRun, AMasterThatNeverReadsDoesNotStopTheModule) {
   const RunningImage image("EX9042D");
   {
     Terminal terminal(image.tty(), 9600);
-    for (int request = 0; request < 1000; ++request) {  // their answers are twice what a terminal holds
+    for (int request = 0; request < 1000; ++request) {  // the answers need twice the buffer of a terminal
       terminal.type("$01M\r");
-      // Time for an answer; what is lost without it changes nothing of what is expected.
+      // Leaves time for an answer. The expectations do not depend on requests that are lost.
       std::this_thread::sleep_for(std::chrono::milliseconds(5));
     }
   }
   EXPECT_TRUE(gets(image, "$012", "!01400600"));
 }
 
-// --- what lasts ---
+// --- persistence ---
 
 TEST(QemuRun, SettingsAreFoundAgainInTheEepromFile) {
   const Directory directory;
@@ -291,11 +293,11 @@ TEST(QemuRun, WithoutAFileEveryRunIsAFactoryFreshModule) {
 
 // --- resets ---
 
-/// A debugger, which stops the processor for as long as it is there.
+/// A debugger, which stops the processor while it is connected.
 class Debugger {
  public:
   explicit Debugger(std::uint16_t port) : client_(port) {
-    ask("qXfer:features:read:target.xml:0,fff");  // or QEMU does not let registers be written one by one
+    ask("qXfer:features:read:target.xml:0,fff");  // QEMU then allows writes to single registers
   }
 
   void write_memory(std::uint32_t address, const std::string& hex) {
@@ -313,7 +315,7 @@ class Debugger {
     return digits.data();
   }
 
-  /// GDB's remote protocol: a command and its reply, without what surrounds them.
+  /// GDB's remote protocol: sends a command and returns the reply without its framing.
   std::string ask(const std::string& command) {
     unsigned sum = 0;
     for (const char character : command) {
@@ -321,7 +323,7 @@ class Debugger {
     }
     client_.send("$" + command + "#" + hex_of(sum & 0xFFU).substr(6));
     std::string reply = packet();
-    while (!reply.empty() && reply[0] == 'T') {  // that it has stopped
+    while (!reply.empty() && reply[0] == 'T') {  // reports that the processor has stopped
       reply = packet();
     }
     return reply;
@@ -360,7 +362,7 @@ class Debugger {
   std::string received_;
 };
 
-/// With INIT* low it would come up in INIT mode and not answer to 01 any more.
+/// If INIT* were low, the module would start in INIT mode and no longer answer to 01.
 TEST(QemuRun, InitStaysReleasedThroughAResetOfTheModulesOwn) {
   constexpr std::uint32_t kNothingThere = 0xF0000000;
   constexpr std::uint32_t kDeafLoop = 0x20008000;
@@ -368,11 +370,13 @@ TEST(QemuRun, InitStaysReleasedThroughAResetOfTheModulesOwn) {
   const std::string port = std::to_string(20000 + getpid() % 10000);
   const RunningImage image("EX9042D", {"--gdb", port});
   EXPECT_EQ(image.ask("$015"), "!011");
-  for (const std::uint32_t address : {kNothingThere, kLoop, kDeafLoop}) {  // a fault; the watchdog's
+  // The first address causes a fault; the others make the program hang until the watchdog resets it.
+  for (const std::uint32_t address : {kNothingThere, kLoop, kDeafLoop}) {
     EXPECT_EQ(image.ask("$015"), "!010");
     EXPECT_EQ(image.ask("@010005"), ">");
     Debugger debugger(static_cast<std::uint16_t>(std::stoi(port)));
-    debugger.write_memory(kDeafLoop, "72b6fee7");  // `cpsid i`, `b .`, where neither data nor stack reach
+    // The code is `cpsid i`, `b .`; neither data nor stack uses its address.
+    debugger.write_memory(kDeafLoop, "72b6fee7");
     debugger.send_processor_to(address);
     debugger.leave();
     ASSERT_TRUE(gets(image, "$01M", "!019042D")) << address;
@@ -381,7 +385,7 @@ TEST(QemuRun, InitStaysReleasedThroughAResetOfTheModulesOwn) {
   }
 }
 
-// --- its end ---
+// --- end of the program ---
 
 TEST(QemuRun, EndsCleanlyAndTakesQemuAlong) {
   for (const int signal : {SIGINT, SIGTERM, SIGHUP}) {
@@ -405,7 +409,7 @@ TEST(QemuRun, LeavesNoQemuBehindWhenItIsKilled) {
     image.process().end(SIGKILL);
     EXPECT_TRUE(ends(qemu));
   }
-  const RunningImage next("EX9042D", options);  // which takes the link over
+  const RunningImage next("EX9042D", options);  // takes over the link
   EXPECT_EQ(fs::read_symlink(directory / "tty"), next.tty());
 }
 
@@ -417,9 +421,9 @@ TEST(QemuRun, EndsWhenQemuDoes) {
   EXPECT_TRUE(directory.contents().empty());
 }
 
-// --- what it refuses ---
+// --- refusals ---
 
-/// One line that holds `words`, and nothing left behind in `directory`.
+/// Expects one line of error output that contains `words`, and no new files in `directory`.
 void expect_refusal(const Directory& directory, const Arguments& arguments, const Arguments& words,
                     int status = 2) {
   const auto before = directory.contents();

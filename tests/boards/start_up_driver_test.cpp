@@ -1,5 +1,5 @@
-// What an image does to its microcontroller from reset until it listens, against what the data sheets demand.
-// That no register is touched without its clock, and the PLL only as it may be, is the doubles' to refuse.
+// The register accesses of an image from reset until it listens, compared with the data sheets. The simulated
+// peripherals themselves reject an access without a clock, and a wrong use of the PLL.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -8,7 +8,7 @@
 #include "firmware/model/baud.hpp"
 #include "firmware/model/model.hpp"
 #include "firmware/settings/settings.hpp"
-#include "sim/module.hpp"
+#include "sim/bus/module.hpp"
 #include "tests/boards/images_under_test.hpp"
 #include "tests/mcu_model/board_bench.hpp"
 
@@ -33,7 +33,7 @@ class StartUp : public testing::TestWithParam<ImageName> {
   }
   void store(const Settings& settings) { bench.memory = sim::SimulatedModule::memory_image(model, settings); }
 
-  /// Values written to a register, in order.
+  /// Returns the values written to a register, in order.
   [[nodiscard]] std::vector<std::uint32_t> written(std::uint32_t address) const {
     std::vector<std::uint32_t> values;
     for (const Access& access : bench.mcu->recorded()) {
@@ -54,7 +54,7 @@ class StartUp : public testing::TestWithParam<ImageName> {
     }
     return writes;
   }
-  /// The first write to `address` that sets a bit of `bits`; where it is among all accesses.
+  /// Returns the index, among all accesses, of the first write to `address` that sets a bit of `bits`.
   [[nodiscard]] std::size_t first_setting(std::uint32_t address, std::uint32_t bits) const {
     const auto& all = bench.mcu->recorded();
     return static_cast<std::size_t>(std::find_if(all.begin(), all.end(),
@@ -76,7 +76,7 @@ class StartUp : public testing::TestWithParam<ImageName> {
 
 TEST_P(StartUp, GoesToThePllInTheOrderOfTheDataSheetsAndRunsAt50MHz) {
   come_up();
-  // Bypass; crystal and power; divider; and, behind the lock, no bypass any more.
+  // Bypass; crystal and power; divider; and, after the lock, end of bypass.
   const std::vector<std::uint32_t> lm3s{0x078E'3AD1, 0x078E'0B80, 0x01CE'0B80, 0x01CE'0380};
   const std::vector<std::uint32_t> tm4c{0x078E'3AD1, 0x078E'0D40, 0x01CE'0D40, 0x01CE'0540};
   EXPECT_EQ(written(0x400F'E060), image.tm4c ? tm4c : lm3s);
@@ -88,7 +88,7 @@ TEST_P(StartUp, IsResetByTheWatchdogWhereThePllNeverLocks) {
   bench.power_on();
   bench.mcu->system_control.set_lock_time(kNever);
   bench.mcu->set_clocks_an_access(1000);
-  // The countdown is made for 50 MHz; on a crystal divided by four it is that much longer.
+  // The countdown is set for 50 MHz; with the crystal divided by four it takes longer in proportion.
   bench.run_for(std::chrono::seconds(40));
   EXPECT_EQ(bench.watchdog_resets, 1U);
   bench.run_for(kComesUpWithin);
@@ -100,7 +100,7 @@ TEST_P(StartUp, OpensTheClockGatesOfWhatItUsesAndNoOthers) {
   const auto gates = [this](unsigned index) { return bench.mcu->system_control.read(0x100 + 4 * index); };
   EXPECT_EQ(gates(0), 1U << 3U);
   EXPECT_EQ(gates(1), (image.tm4c ? 1U << 1U : 1U << 0U) | 1U << 12U | 1U << 16U | 1U << 17U | 1U << 18U);
-  // Ports A, B, C, D, E and F on one; all but E on the other.
+  // Ports A, B, C, D, E and F on the TM4C123; all except E on the LM3S6965.
   EXPECT_EQ(gates(2), image.tm4c ? 0x3FU : 0x6FU);
 }
 
@@ -212,7 +212,7 @@ TEST_P(StartUp, EnergisesNothingAtAllWhereThePowerOnValueIsZero) {
 }
 
 TEST_P(StartUp, SetsUpTheUartForEachRateAsTheDataSheetsComputeIt) {
-  // 50 MHz / (16 * rate): the whole part, and 64ths of the rest, rounded.
+  // 50 MHz / (16 * rate): the integer part, and the rest rounded to 64ths.
   struct Divisors {
     std::uint32_t rate;
     std::uint32_t integer;
@@ -235,7 +235,7 @@ TEST_P(StartUp, SetsUpTheUartForEachRateAsTheDataSheetsComputeIt) {
     settings.baud_code = static_cast<std::uint8_t>(kFirstBaudCode + i);
     store(settings);
     come_up();
-    // Off; divisors; the line control that latches them: 8N1 without FIFOs; interrupts; on.
+    // Off; divisors; the line control write that latches them (8N1 without FIFOs); interrupts; on.
     EXPECT_EQ(writes_to(uart().base()), (Writes{{0x030, 0},
                                                 {0x024, at.integer},
                                                 {0x028, at.fraction},
@@ -253,11 +253,11 @@ TEST_P(StartUp, EnablesTheInterruptsThatItServesAndNoneInterruptsAnother) {
   const Core& core = bench.mcu->core;
   const bool inputs = image.inputs != 0;
   const unsigned uart_interrupt = image.tm4c ? 6 : 5;
-  const unsigned other_port = image.tm4c ? 4 : 2;  // E, C; and both have inputs on B
+  const unsigned other_port = image.tm4c ? 4 : 2;  // port E or C; both boards also have inputs on port B
   EXPECT_EQ(core.enabled(), 1U << uart_interrupt | 1U << 8U | 1U << 19U | 1U << 21U | 1U << 23U |
                                 (inputs ? 1U << 1U | 1U << other_port : 0));
   for (unsigned interrupt = 0; interrupt < 24; ++interrupt) {
-    // Of those that wait the line's is the last, so that a silence is told before the byte behind it.
+    // Of pending interrupts the UART is served last, so that a silence is reported before the byte after it.
     EXPECT_EQ(core.priority(interrupt), interrupt == uart_interrupt ? 0xE0U : 0U) << interrupt;
     EXPECT_EQ(core.group(core.priority(interrupt)), 0U) << interrupt;
   }
@@ -275,7 +275,8 @@ TEST_P(StartUp, StartsTheWatchdogBeforeAnythingThatCouldHang) {
   come_up();
   Writes writes = writes_to(WatchdogTimer::kBase);
   writes.resize(3);
-  // 37,500,000 clocks are 750 ms, and it bites behind two of them. After a reset it is not locked.
+  // 37,500,000 clocks are 750 ms; the watchdog resets after two of these periods. It is not locked after a
+  // reset.
   EXPECT_EQ(writes, (Writes{{0x000, 37'500'000}, {0x008, 3}, {0xC00, 0}}));
   EXPECT_TRUE(bench.mcu->watchdog.locked());
   EXPECT_LT(first_setting(WatchdogTimer::kBase + WatchdogTimer::kControl, 1),

@@ -1,5 +1,5 @@
-// The code that an image runs before its main, as it is shipped, on a piece of memory with words around
-// what the linker marks.
+// The code that an image runs before its main, as shipped, on a piece of memory with extra words around the
+// sections that the linker marks.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -8,7 +8,7 @@
 #include <utility>
 #include <vector>
 
-// Its `main` must not be the test program's.
+// The image's `main` is renamed because the test program has its own.
 #define main main_of_the_image
 #include "boards/cortex_m/start_up.cpp"
 #undef main
@@ -17,13 +17,13 @@ namespace {
 
 constexpr std::size_t kCopied = 3;
 constexpr std::size_t kCleared = 16;
-/// A word before, between and after what is marked.
+/// A word before, between and after the marked sections.
 constexpr std::size_t kWords = 1 + kCopied + 1 + kCleared + 1;
 
 }  // namespace
 
-// What the linker script does on a board. An array in C++ would be an object of its own, whose bounds a
-// sanitizer knows.
+// Does what the linker script does on a board. A C++ array would not work, because it is an object of its
+// own, whose bounds a sanitizer checks.
 asm(".pushsection .data\n"
     ".balign 4\n"
     ".globl memory_of_the_image, data_image, data_begin, data_end, zero_begin, zero_end\n"
@@ -40,7 +40,7 @@ namespace {
 
 using Writes = std::vector<std::pair<std::uint32_t, std::uint32_t>>;
 
-class Reset {};  ///< the microcontroller is told to reset itself
+class Reset {};  ///< thrown when the code resets the microcontroller
 class Entered {};
 
 Writes writes;

@@ -1,4 +1,4 @@
-// A board's README is what people solder from: its tables say what board.hpp says. Built once for each board.
+// Users wire a board according to its README, so its tables must match board.hpp. Built once for each board.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -17,7 +17,7 @@ namespace ex9000::board {
 namespace {
 
 using Row = std::vector<std::string>;
-using Table = std::vector<Row>;  ///< the head is the first row
+using Table = std::vector<Row>;  ///< the first row is the header
 
 std::string trimmed(const std::string& text) {
   const auto first = text.find_first_not_of(' ');
@@ -50,7 +50,7 @@ std::vector<Table> tables() {
   return result;
 }
 
-/// The only table whose first column has this head.
+/// Returns the only table whose first column has this header.
 Table table_of(const std::string& head) {
   Table found;
   for (const Table& table : tables()) {
@@ -63,7 +63,7 @@ Table table_of(const std::string& head) {
   return found;
 }
 
-/// "PA2".
+/// Returns for example "PA2".
 std::string name_of(Pin pin) {
   return {'P', static_cast<char>('A' + static_cast<int>(pin.port)), static_cast<char>('0' + pin.number)};
 }
@@ -79,14 +79,14 @@ std::vector<std::string> names_of(const Groups& groups) {
   return names;
 }
 
-/// What the model's label calls an output: RL1 is channel 0 (wire.md section 1).
+/// The name of an output on the model's label: RL1 is channel 0 (wire.md section 1).
 std::string output_label(const Model& model, unsigned channel) {
   const bool is_relay = model.description.find("relay") != std::string_view::npos ||
                         model.description.find("PhotoMOS") != std::string_view::npos;
   return is_relay ? "RL" + std::to_string(channel + 1) : "DO" + std::to_string(channel);
 }
 
-/// What is at each pin of a model.
+/// The terminal at each pin of a model.
 std::map<std::string, std::string> terminals_of(const Model& model) {
   std::map<std::string, std::string> terminals;
   const std::vector<std::string> outputs = names_of(kOutputs);
@@ -136,14 +136,14 @@ TEST(Wiring, WhatEveryModuleHasIsAtThePinsOfTheBoard) {
     written[row->at(0)] = row->at(1);
   }
 #ifdef EX9000_BOARD_HAS_HEADERS
-  // README's table is that of the transceiver; the image without one is a section of its own.
+  // README's table describes the image with a transceiver; the image without one has its own section.
   static_assert(kUart == 1);
 #endif
   const std::map<std::string, std::string> expected{
       {"receive", name_of({kUartPins.port, kUartPins.first_pin})},
       {"transmit", name_of({kUartPins.port, static_cast<std::uint8_t>(kUartPins.first_pin + 1)})},
       {"driver enable", name_of(kDriverEnable)},
-      {"EEPROM clock", "PB2"},  // I2C0's on both families
+      {"EEPROM clock", "PB2"},  // pins of I2C0 on both families
       {"EEPROM data", "PB3"},
       {"INIT*", name_of(kInitSwitch)},
       {"status LED", name_of(kStatusLed)},
@@ -175,7 +175,7 @@ TEST(Wiring, NoPinIsOneOfTheDebuggers) {
 }
 
 #ifdef EX9000_BOARD_HAS_HEADERS
-/// The LaunchPad's headers, by its user's guide (SPMU296, 2.2), from position 1 on.
+/// The LaunchPad's headers according to its user's guide (SPMU296, 2.2), from position 1 on.
 const std::map<std::string, std::array<std::string, 10>> kHeaders{
     {"J1", {"3.3V", "PB5", "PB0", "PB1", "PE4", "PE5", "PB4", "PA5", "PA6", "PA7"}},
     {"J2", {"GND", "PB2", "PE0", "PF0", "RESET", "PB7", "PB6", "PA4", "PA3", "PA2"}},

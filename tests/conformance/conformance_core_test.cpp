@@ -1,4 +1,4 @@
-// All transcripts against the core in virtual time.
+// Plays all transcripts on the core in virtual time.
 #include <gtest/gtest.h>
 
 #include <cstdio>

@@ -1,4 +1,4 @@
-// All transcripts of the manuals' models against their firmware images, on the emulated reference board.
+// Plays all transcripts of the manuals' models on their firmware images, on the emulated reference board.
 #include <gtest/gtest.h>
 #include <sched.h>
 
@@ -39,13 +39,13 @@ std::uint64_t pulses_of(const play::Transcript& transcript) {
   return pulses;
 }
 
-/// How long it takes, roughly.
+/// Returns roughly how long the transcript takes.
 std::chrono::microseconds duration_of(const play::Transcript& transcript) {
   constexpr std::chrono::microseconds kPulse{100};
   return transcript.waits() + kPulse * static_cast<std::int64_t>(pulses_of(transcript));
 }
 
-/// Those that take longest first, so that no few are left waiting for at the end.
+/// Returns the longest runs first, so that the end does not wait for a few long runs.
 std::vector<Played> all_runs() {
   std::vector<Played> runs;
   for (const std::string& file : play::transcript_files(EX9000_CONFORMANCE_DIR)) {

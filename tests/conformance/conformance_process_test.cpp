@@ -1,4 +1,4 @@
-// All transcripts against the running simulator in stepped time, over its pseudo-terminal and over TCP.
+// Plays all transcripts on the running simulator in stepped time, over its pseudo-terminal and over TCP.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -19,7 +19,7 @@ namespace {
 
 using Over = system::TranscriptLines::Over;
 
-constexpr std::size_t kLines = 12;  ///< in one process
+constexpr std::size_t kLines = 12;  ///< in one simulator process
 
 struct Played {
   play::Transcript transcript;
@@ -45,7 +45,7 @@ void play_on(system::TranscriptLines& lines, std::size_t position, Played& run) 
   }
 }
 
-/// Each on a line of its own, in one simulator, one after the other.
+/// Plays each transcript on its own line, in one simulator, one after the other.
 void play_on_a_simulator(Played* runs, std::size_t count, Over over) try {
   std::vector<const play::Transcript*> transcripts;
   for (std::size_t each = 0; each < count; ++each) {

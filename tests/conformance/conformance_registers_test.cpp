@@ -1,5 +1,5 @@
-// Transcripts against images on microcontrollers made of registers: the drivers as they are, from the bits on
-// the line to those on the EEPROM's wires.
+// Plays transcripts on images that run on simulated microcontrollers, with the unchanged drivers, from the
+// bits on the line to those on the EEPROM's wires.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -17,13 +17,15 @@
 namespace ex9000::registers {
 namespace {
 
-/// Where it matters who drives the line and the pins: when bytes come, at which rate, what a reset finds,
-/// edges and levels, and a store that takes its time. Everywhere else is told what the module says.
+/// Folders with transcripts that depend on the drivers of the line and the pins: timing of bytes, baud rates,
+/// the state after a reset, edges and levels, and the time that a store takes. The other folders test the
+/// contents of replies.
 constexpr std::array<const char*, 6> kFoldersOfDrivers{
     "framing", "init", "inputs", "modbus-framing", "modbus-persistence", "persistence"};
 
-/// All of them on the LaunchPad, which no emulator has. On the other board, whose images are made of the same
-/// drivers, those that are about drivers, unless the environment has EX9000_TRANSCRIPTS=all.
+/// All transcripts run on the LaunchPad's images, because no emulator supports that board. The other board's
+/// images use the same drivers, so only the folders above run there, unless EX9000_TRANSCRIPTS=all is set in
+/// the environment.
 bool plays(const Image& image, const std::string& file) {
   const char* wanted = std::getenv("EX9000_TRANSCRIPTS");
   const std::string folder = std::filesystem::path(file).parent_path().filename();

@@ -1,7 +1,7 @@
-// What an image finds in RAM before any of its own code has run.
+// EX9000_CONSTINIT: a variable that must have its initial value before any code of the image has run.
 #pragma once
 
-/// C++20's constinit: the compiler refuses an object that it cannot initialise by itself.
+/// Like C++20's constinit: the compiler rejects a variable that it cannot initialise at compile time.
 #ifdef __clang__
 #define EX9000_CONSTINIT [[clang::require_constant_initialization]]
 #else

@@ -1,5 +1,5 @@
-// The core without a line: a module of Modbus that hears frames whole, for tests of which each plays
-// thousands.
+// The core without a simulated line: a Modbus module that receives whole frames. Tests that send thousands of
+// frames use it because it is fast.
 #pragma once
 
 #include <algorithm>
@@ -16,7 +16,7 @@ class CoreBench {
  public:
   using FrameBytes = std::vector<std::uint8_t>;
 
-  /// Comes up on an erased memory.
+  /// Starts the module on an erased memory and returns when it listens.
   explicit CoreBench(std::string_view model) : module_(*find_model(model)) {
     module_.start(0, now_);
     while (!module_.listening()) {
@@ -27,7 +27,8 @@ class CoreBench {
 
   Module& module() { return module_; }
   [[nodiscard]] Time now() const { return now_; }
-  /// At most until the next thing that is due, with the main loop looking around at the end.
+  /// Advances the clock by `time`, then runs the main loop once. `time` must not skip a moment at which
+  /// something is due.
   void pass(Duration time) {
     now_ = now_ + time;
     module_.poll_panel(false, now_);
@@ -39,20 +40,22 @@ class CoreBench {
     now_ = now_ + kCharacter;
     module_.on_byte(value, status, now_);
   }
-  /// So long that every frame is over.
+  /// Passes a silence that is long enough to end every frame.
   void silence() {
     now_ = now_ + milliseconds(50);
     while (!(module_.on_silence() == Duration())) {
     }
   }
-  /// All bytes of a frame and the silence behind it; the main loop has not looked at it yet.
+  /// Passes all bytes of a frame and the silence after it to the module. The main loop does not process the
+  /// frame yet.
   void hear(const FrameBytes& bytes) {
     for (const std::uint8_t each : bytes) {
       byte(each);
     }
     silence();
   }
-  /// The main loop's turn: the reply to what was heard, with its CRC; empty where there is none.
+  /// Runs the main loop once. Returns the reply to the received frame, with its CRC; empty if there is no
+  /// reply.
   FrameBytes answer() {
     module_.step(now_);
     do_memory_jobs();
@@ -64,7 +67,7 @@ class CoreBench {
     }
     return answer;
   }
-  /// A frame without its CRC.
+  /// Sends a frame without its CRC (the bench adds it) and returns the reply as `answer` does.
   FrameBytes ask(const FrameBytes& frame) {
     hear(with_crc(frame));
     return answer();

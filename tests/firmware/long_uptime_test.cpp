@@ -1,4 +1,4 @@
-// A module that has run for months: whatever the interrupts count in 32 bits wraps, and nobody notices.
+// A module that has run for months: when the 32-bit counts of the interrupts wrap, nothing changes.
 #include <gtest/gtest.h>
 
 #include "firmware/watchdog/module_watchdog.hpp"
@@ -42,7 +42,7 @@ TEST(LongUptime, InputsLatchesAndCountersFollowEveryEdge) {
   }
 }
 
-// One edge at a time, so that the total stands at every number about the wrap when it is looked at.
+// One edge at a time, so that the main loop reads the total at every value around the wrap.
 TEST(LongUptime, NoSingleEdgeIsMissed) {
   CoreBench bench("EX9052D-M");
   const Inputs& inputs = bench.module().state().inputs;
@@ -69,7 +69,7 @@ TEST(LongUptime, EveryHostOkRestartsTheHostWatchdogAndNothingElseDoes) {
   bench.ask({0x01, 0x06, 0x01, 0xE8, 0x00, 0x02});  // 0.2 s
   bench.ask({0x01, 0x05, 0x01, 0x04, 0xFF, 0x00});
   for (unsigned host_ok = 0; host_ok < kAcrossTheWrap; ++host_ok) {
-    bench.pass(milliseconds(100));  // and the host OK takes 58 ms
+    bench.pass(milliseconds(100));  // the host OK takes another 58 ms
     bench.ask(kHostOk);
     ASSERT_FALSE(bench.module().state().settings.timeout_status) << host_ok;
   }
@@ -91,7 +91,7 @@ TEST(LongUptime, FunctionEightCountsOn) {
   const auto high = static_cast<std::uint8_t>(kAcrossTheWrap >> 8U);
   EXPECT_EQ(bench.ask({0x01, 0x08, 0x00, 0x0C, 0x00, 0x00}),
             CoreBench::with_crc({0x01, 0x08, 0x00, 0x0C, high, low}));
-  // The two that ask are messages too.
+  // The two diagnostic requests are bus messages, too.
   EXPECT_EQ(bench.ask({0x01, 0x08, 0x00, 0x0B, 0x00, 0x00}),
             CoreBench::with_crc({0x01, 0x08, 0x00, 0x0B, high, static_cast<std::uint8_t>(low + 2)}));
 }

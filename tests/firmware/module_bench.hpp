@@ -1,4 +1,4 @@
-// One module and a master on a virtual line, for tests that talk to it.
+// One module and a master on a virtual line, for tests that exchange frames with the module.
 #pragma once
 
 #include <chrono>
@@ -6,9 +6,9 @@
 #include <string>
 #include <vector>
 
-#include "sim/line.hpp"
+#include "sim/line/line.hpp"
 #include "sim/play/modbus_frame.hpp"
-#include "tests/sim/bus_recorder.hpp"
+#include "tests/sim/bus/bus_recorder.hpp"
 
 namespace ex9000::sim {
 
@@ -21,7 +21,7 @@ class ModuleBench {
  public:
   using Bytes = std::vector<std::uint8_t>;
 
-  /// `module` as on the simulator's command line. 100 ms have passed since power-on.
+  /// `module` has the form of the simulator's command line. 100 ms have passed since power-on.
   explicit ModuleBench(const std::string& module)
       : spec_(parse_module_spec(module)),
         line_({spec_}, kPaced, [this](std::uint8_t byte, ByteStatus /*status*/) { heard_.push_back(byte); }) {
@@ -36,7 +36,8 @@ class ModuleBench {
   BusRecorder& recorder() { return recorder_; }
   [[nodiscard]] VirtualTime now() { return line_.clock().virtual_now(); }
   void run(VirtualTime time) { line_.bus().run_for(time); }
-  /// Until that is so, looked at every millisecond, and for a second at most: whether it is.
+  /// Runs until `condition` is true, checked every millisecond, for at most one second. Returns whether it is
+  /// true.
   template <class Condition>
   bool runs_until(Condition condition) {
     const VirtualTime gives_up = now() + std::chrono::seconds(1);
@@ -54,7 +55,8 @@ class ModuleBench {
   }
   void send(const std::string& text) { send(Bytes(text.begin(), text.end())); }
 
-  /// A command without CR, and its reply without CR, empty where none comes within 250 ms.
+  /// Sends a command; the bench adds the CR. Returns the reply without CR; empty if none arrives within 250
+  /// ms.
   std::string ask(const std::string& command) {
     heard_.clear();
     send(command + "\r");
@@ -66,7 +68,8 @@ class ModuleBench {
     return reply;
   }
 
-  /// A frame without CRC, and its reply without CRC, empty where none comes within 250 ms.
+  /// Sends a frame; the bench adds the CRC. Returns the reply without CRC; empty if none arrives within 250
+  /// ms.
   Bytes ask(const Bytes& frame) {
     heard_.clear();
     send(with_crc(frame));
@@ -78,11 +81,11 @@ class ModuleBench {
     return reply;
   }
 
-  /// All that was heard since the last `ask`.
+  /// All characters received since the last `ask`.
   [[nodiscard]] std::string heard_text() const { return {heard_.begin(), heard_.end()}; }
   void forget_heard() { heard_.clear(); }
 
-  /// From now on every change of the outputs is appended to `changes`, which lives as long as this.
+  /// Appends every later change of the outputs to `changes`, which must live as long as this bench.
   void watch_outputs(std::vector<OutputChange>& changes) {
     module().output_pins().on_change([this, &changes](std::uint16_t channels) {
       changes.push_back({now(), channels});

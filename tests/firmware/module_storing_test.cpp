@@ -1,4 +1,4 @@
-// A module and its memory: what is stored when, what a power cut leaves, which frames are kept meanwhile.
+// A module and its memory: stores and their time, power cuts, and the frames that are kept during a store.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -16,7 +16,7 @@ using Bytes = ModuleBench::Bytes;
 using std::chrono::microseconds;
 using std::chrono::milliseconds;
 
-// --- wire.md 8: a reply means it is stored ---
+// --- wire.md 8: a reply means that it is stored ---
 
 TEST(Storing, ACommandThatCannotBeStoredIsRefusedAndChangesNothing) {
   const std::vector<std::string> commands{"%0102400680", "~01OABC", "~013164", "~015P", "~015S"};
@@ -42,7 +42,7 @@ TEST(Storing, AModbusRequestThatCannotBeStoredIsRefusedWithServerDeviceFailure) 
   EXPECT_EQ(bench.ask(Bytes{1, 0x05, 0x00, 0x80, 0xFF, 0x00}), (Bytes{1, 0x85, 4}));
   EXPECT_EQ(bench.ask(Bytes{1, 0x0F, 0x00, 0xA0, 0x00, 0x0D, 0x02, 0xFF, 0x1F}), (Bytes{1, 0x8F, 4}));
   EXPECT_EQ(bench.ask(Bytes{1, 0x46, 0x04, 0x05, 0x00, 0x00, 0x00}), (Bytes{1, 0xC6, 4}));
-  EXPECT_EQ(bench.module().outputs(), 0);  // the outputs follow only what is stored
+  EXPECT_EQ(bench.module().outputs(), 0);  // the outputs follow only stored values
   EXPECT_EQ(bench.ask(Bytes{1, 0x08, 0x00, 0x0D, 0x00, 0x00}), (Bytes{1, 0x08, 0x00, 0x0D, 0x00, 0x04}));
 }
 
@@ -53,8 +53,8 @@ TEST(Storing, ABroadcastThatCannotBeStoredStaysSilent) {
   EXPECT_EQ(bench.module().outputs(), 0);
 }
 
-/// The first of each twice stores something, unless that is so already; the second never does. `ask` says
-/// whether it was done.
+/// Sends each command twice. The first time it may store something; the second time it must not. `ask`
+/// returns whether the command was executed.
 template <class Command, class Ask>
 void expect_nothing_written_the_second_time(ModuleBench& bench, const std::vector<Command>& commands,
                                             Ask ask) {
@@ -72,7 +72,7 @@ void expect_nothing_written_the_second_time(ModuleBench& bench, const std::vecto
 }
 
 TEST(Storing, ACommandThatChangesNothingWritesNothing) {
-  // Outputs that are not what is stored, for `~AA5V`.
+  // The outputs differ from the stored values, for `~AA5V`.
   ModuleBench ascii("EX9042D-M,protocol=ascii");
   ascii.ask("@010005");
   const std::vector<std::string> commands{"%0101400680", "~01OABC", "~0131FE", "~01OABCD",
@@ -136,7 +136,7 @@ TEST(Storing, ABroadcastThatChangesNothingWritesNothing) {
 
 TEST(Storing, ATimeoutStatusIsClearedOnceAndNotAgain) {
   ModuleBench ascii("EX9042D");
-  ASSERT_EQ(ascii.ask("~013101"), "!01");  // has expired by now
+  ASSERT_EQ(ascii.ask("~013101"), "!01");  // has expired when `ask` returns
   expect_nothing_written_the_second_time<std::string>(
       ascii, {"~011"}, [&ascii](const std::string& command) { return ascii.ask(command) == "!01"; });
   ModuleBench modbus("EX9042D-M");
@@ -180,7 +180,7 @@ TEST(Storing, WhereverThePowerFailsACommandIsWhollyDoneOrNotAtAllAndAnAcknowledg
       for (VirtualTime cut = microseconds(0); !acknowledged; cut += microseconds(100)) {
         ModuleBench bench(stored_before ? "EX9042D,name=OLD,edge=rising" : "EX9042D");
         if (stored_before) {
-          ASSERT_EQ(bench.ask("~01OOLDER"), "!01");  // both copies hold something
+          ASSERT_EQ(bench.ask("~01OOLDER"), "!01");  // both copies are in use
         }
         ASSERT_EQ(bench.ask("@011FFF"), ">");
         const Settings before = bench.module().module().state().settings;
@@ -230,7 +230,7 @@ TEST(Storing, SettingsThatCannotBeReadGiveFactorySettingsUnwrittenWithin100msAnd
 }
 
 TEST(Storing, WhatIsStoredAfterAMemoryThatDidNotAnswerAtResetIsThereAtTheNext) {
-  // The later copy in the first page, and in the second.
+  // The newer copy is in the first place, or in the second.
   for (const int stores : {3, 4}) {
     ModuleBench bench("EX9042D,name=OLD");
     for (int i = 0; i < stores; ++i) {
@@ -251,8 +251,8 @@ TEST(Storing, ARefusedStoreIsNotInForceAfterTheNextResetThoughItsWriteHadLanded)
   ModuleBench bench("EX9042D,name=OLD");
   bench.send("~01ONEW\r");
   bench.line().bus().run_until(bench.line().bus().next());       // the turn-around is over
-  ASSERT_EQ(bench.module().memory().writes(), 1U);               // begun
-  bench.line().bus().run_until(bench.module().memory().next());  // written; now it is to be read back
+  ASSERT_EQ(bench.module().memory().writes(), 1U);               // the write has begun
+  bench.line().bus().run_until(bench.module().memory().next());  // written, but not yet read back
   bench.module().memory().fail(true);
   bench.forget_heard();
   bench.run(milliseconds(200));
@@ -264,8 +264,8 @@ TEST(Storing, ARefusedStoreIsNotInForceAfterTheNextResetThoughItsWriteHadLanded)
 }
 
 TEST(Storing, AReplyWaitsForATimeoutThatIsNotStoredYet) {
-  // The timeout has switched the watchdog off, but the memory does not know: "off" is not stored before it
-  // does.
+  // The timeout has disabled the watchdog, but the memory does not have this yet. The "off" of the command
+  // must not be stored before the timeout is.
   ModuleBench bench("EX9042D");
   ASSERT_EQ(bench.ask("~013103"), "!01");
   bench.module().memory().fail(true);
@@ -291,7 +291,7 @@ TEST(Storing, AnotherModelsSettingsDoNotCount) {
   EXPECT_TRUE(bench.module().module().settings_unreadable());
 }
 
-// --- wire.md 8: while one command is executed or stored, one more frame is kept ---
+// --- wire.md 8: while one command is executed or stored, the module keeps one more frame ---
 
 TEST(Queueing, OfTwoFramesBehindAStoringOneTheFirstIsKept) {
   ModuleBench bench("EX9042D,baud=115200");
@@ -304,14 +304,14 @@ TEST(Queueing, OfTwoFramesBehindAStoringOneTheFirstIsKept) {
 TEST(Queueing, AHostOkBehindAFullQueueIsNotLost) {
   ModuleBench bench("EX9042D,baud=115200");
   ASSERT_EQ(bench.ask("~013105"), "!01");
-  bench.run(milliseconds(200));  // 450 ms of the 500 are over with what `ask` waited
+  bench.run(milliseconds(200));  // together with the wait in `ask`, 450 ms of the 500 ms are over
   bench.send("~01ONEW\r$01M\r~**\r");
   bench.run(milliseconds(300));
   EXPECT_FALSE(bench.module().module().state().settings.timeout_status);
 }
 
 TEST(Queueing, AWholeModbusFrameSurvivesTheReplyToTheOneBeforeIt) {
-  // The host OK is over, but for its silence, when the driver comes on.
+  // The host OK is complete, except for its silence, when the driver is switched on.
   ModuleBench bench("EX9068D-M");
   bench.ask(Bytes{1, 0x06, 0x01, 0xE8, 0x00, 0x05});
   bench.ask(Bytes{1, 0x05, 0x01, 0x04, 0xFF, 0x00});
@@ -323,7 +323,8 @@ TEST(Queueing, AWholeModbusFrameSurvivesTheReplyToTheOneBeforeIt) {
   bench.recorder().clear();
   bench.run(milliseconds(400));
   ASSERT_FALSE(bench.recorder().drivers.empty());
-  EXPECT_LT(bench.recorder().drivers[0].at, sent + microseconds(4010));  // else this shows nothing
+  // Otherwise the test would show nothing.
+  EXPECT_LT(bench.recorder().drivers[0].at, sent + microseconds(4010));
   EXPECT_FALSE(bench.module().module().state().settings.timeout_status);
 }
 
@@ -344,7 +345,8 @@ TEST(Queueing, TwoRepliesAreNeverOneFrameToTheMaster) {
   EXPECT_GE(on[1].at - off[0].at, microseconds(1750));
 }
 
-// "A reply means that it is stored": what could not be read may be there again after the next reset.
+// "A reply means that it is stored": settings that could not be read may be readable again after the next
+// reset.
 TEST(Storing, ACommandThatSaysWhatTheFactoryDoesIsStoredIfTheSettingsCouldNotBeRead) {
   ModuleBench bench("EX9042D");
   ASSERT_EQ(bench.ask("~01OONE"), "!01");

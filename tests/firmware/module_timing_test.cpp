@@ -1,4 +1,4 @@
-// A module's reset, its replies and its driver in time.
+// The timing of a module's reset, its replies and its driver.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -54,7 +54,7 @@ TEST(Reset, ABouncingInitSwitchCountsOnlyOnceItStandsStill) {
   EXPECT_EQ(bench.ask("$002"), "!01400600");
 }
 
-// --- wire.md 3 and 7: when a reply starts; 9: the driver ---
+// --- wire.md 3 and 7: start of a reply; 9: the driver ---
 
 TEST(Timing, AnAsciiReplyStartsOneCharacterAfterCrAtTheEarliestAndWithin20msOr200WhereSomethingIsStored) {
   for (const std::uint32_t baud : kBaudRates) {
@@ -101,7 +101,7 @@ TEST(Driver, IsOnBeforeTheFirstStartBitAndOffWithinACharacterAfterTheLastStopBit
     bench.ask("$01M");
     const auto& drivers = bench.recorder().drivers;
     const auto& bytes = bench.recorder().bytes;
-    ASSERT_EQ(drivers.size(), 4U);  // the master's, the module's
+    ASSERT_EQ(drivers.size(), 4U);  // the master's driver on and off, then the module's
     ASSERT_EQ(drivers[2].station, 1U);
     EXPECT_LT(drivers[2].at, bytes[5].start);
     EXPECT_GE(drivers[3].at, bytes.back().end);
@@ -110,14 +110,14 @@ TEST(Driver, IsOnBeforeTheFirstStartBitAndOffWithinACharacterAfterTheLastStopBit
 }
 
 TEST(Driver, ItsOwnEchoIsNeverTakenForARequest) {
-  // The name is a command for this very module; on two wires it comes back while it is sent.
+  // The name is a command for this module; on a two-wire line the module receives it while it sends it.
   ModuleBench bench("EX9042D,name=$01M");
   EXPECT_EQ(bench.ask("$01M"), "!01$01M");
   bench.run(seconds(1));
   EXPECT_EQ(bench.recorder().sent_by(1).size(), 8U);
 }
 
-// --- time ---
+// --- clock ---
 
 TEST(Time, NothingHappensWhenTheMicrosecondsWrap) {
   constexpr microseconds kWrap{std::int64_t{1} << 32};
@@ -151,7 +151,8 @@ TEST(Time, AMasterThatPollsOnceAWrapIsAnsweredEveryTime) {
   }
 }
 
-// For between 36 and 72 minutes a moment that is over looks like one that lies ahead, to 32 bits.
+// On a 32-bit microsecond clock, a moment in the past looks like one in the future for between 36 and 72
+// minutes.
 constexpr std::array kPauses{std::chrono::minutes(36), std::chrono::minutes(50), std::chrono::minutes(71)};
 
 TEST(Time, ARequestIsAnsweredHoweverLongTheMasterHasPausedBehindAReply) {
@@ -184,7 +185,7 @@ TEST(Time, AStoreTheInitSwitchAndTheHostWatchdogAreOnTimeHoweverLongNothingHasHa
     bench.run(milliseconds(20));
     EXPECT_EQ(bench.ask("%0101400700"), "?01") << pause.count();
     bench.run(pause);
-    EXPECT_EQ(bench.ask("~013104"), "!01") << pause.count();  // 0.4 s, and each question takes 0.25 s
+    EXPECT_EQ(bench.ask("~013104"), "!01") << pause.count();  // 0.4 s; each request takes 0.25 s
     EXPECT_EQ(bench.ask("~010"), "!0180");
     EXPECT_EQ(bench.ask("~010"), "!0184");
     EXPECT_EQ(bench.ask("~011"), "!01");

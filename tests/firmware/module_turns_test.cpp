@@ -1,5 +1,5 @@
-// A module whose main loop turns without looking around, as a board's does between two ticks, and what it
-// says of how long it may sleep.
+// A module whose main loop turns without polling the panel, as on a board between two ticks, and the time for
+// which the module allows it to sleep.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -18,7 +18,7 @@ constexpr Duration kLong = milliseconds(10);
 
 class ModuleTurns : public testing::Test {
  protected:
-  /// Comes up on an erased memory.
+  /// Starts on an erased memory.
   ModuleTurns() {
     module_.start(0, now_);
     while (module_.needs_memory()) {
@@ -34,7 +34,7 @@ class ModuleTurns : public testing::Test {
 
   void pass(Duration time) { now_ = now_ + time; }
 
-  /// Without a step behind it.
+  /// Does a memory job, without a step of the module after it.
   void do_memory_job() {
     const MemoryJob job = module_.memory_job();
     for (std::size_t i = 0; i < job.bytes.size; ++i) {
@@ -48,7 +48,7 @@ class ModuleTurns : public testing::Test {
     module_.memory_done(true);
   }
 
-  /// Until the turn-around is over.
+  /// Sends a command and passes time until the turn-around is over.
   void put(const std::string& command) {
     for (const char character : command + "\r") {
       pass(kCharacter);
@@ -74,17 +74,17 @@ class ModuleTurns : public testing::Test {
 TEST_F(ModuleTurns, ItIsAtRestUnlessARequestWaitsIsStoredOrIsAnswered) {
   EXPECT_TRUE(module_.at_rest());
   put("$01M");
-  EXPECT_FALSE(module_.at_rest());  // it waits
+  EXPECT_FALSE(module_.at_rest());  // the request waits
   module_.step(now_);
-  EXPECT_FALSE(module_.at_rest());  // its reply is ready
+  EXPECT_FALSE(module_.at_rest());  // the reply is ready
   take_reply();
-  EXPECT_FALSE(module_.at_rest());  // and is being sent
+  EXPECT_FALSE(module_.at_rest());  // the reply is being sent
   module_.reply_sent(now_);
   EXPECT_TRUE(module_.at_rest());
   put("~01OPUMP");
   module_.step(now_);
-  EXPECT_FALSE(module_.at_rest());                         // it is being stored
-  EXPECT_FALSE(Module(*find_model("EX9043D")).at_rest());  // one that has not come up
+  EXPECT_FALSE(module_.at_rest());                         // the command is being stored
+  EXPECT_FALSE(Module(*find_model("EX9043D")).at_rest());  // a module that has not started
 }
 
 TEST_F(ModuleTurns, AReplyThatIsReadyWantsToBeTaken) {
@@ -170,7 +170,8 @@ TEST_F(ModuleTurns, AHostOkThatComesInBehindATurnIsDueAtOnce) {
   EXPECT_FALSE(wants_to_be_called_again());
 }
 
-// The receiver keeps `~**` from the queue, so that it is never lost; whoever asks `answer` hears the same.
+// The receiver processes `~**` itself instead of queueing it, so that it is never lost. A direct call of
+// `answer` must have the same effect.
 TEST(HostOkCommand, RestartsTheHostWatchdogAndIsNotAnswered) {
   const std::string command = "~**";
   const State state(*find_model("EX9043D"));

@@ -7,6 +7,7 @@
 #include <utility>
 #include <vector>
 
+#include "sim/text/values.hpp"
 #include "tests/firmware/module_bench.hpp"
 
 namespace ex9000::sim {
@@ -37,7 +38,7 @@ TEST(HostWatchdog, HostOksCloserThanTheTimeoutKeepItFromExpiringAtAnyRate) {
 
 TEST(HostWatchdog, ATimeoutBehindAClearingThatIsBeingStoredIsNotClearedByIt) {
   ModuleBench bench("EX9043D,baud=115200");
-  ASSERT_EQ(bench.ask("~013101"), "!01");  // has expired by now
+  ASSERT_EQ(bench.ask("~013101"), "!01");  // has expired when `ask` returns
   bench.send("~013101\r");                 // armed again
   bench.run(milliseconds(15));
   ASSERT_TRUE(
@@ -63,7 +64,7 @@ TEST(HostWatchdog, RunsThoughTheInitSwitchNeverStandsStill) {
     bench.run(milliseconds(3));
   }
   EXPECT_EQ(bench.module().outputs(), 0);
-  EXPECT_EQ(bench.ask("~010"), "!0104");  // and it has come up, with INIT* taken for released
+  EXPECT_EQ(bench.ask("~010"), "!0104");  // the module has started, and treats INIT* as released
 }
 
 TEST(HostWatchdog, ExpiresAfterEveryTimeoutNeverEarlyAndAtMostAMillisecondLate) {
@@ -104,7 +105,7 @@ TEST(HostWatchdog, EnablingStartsItWhenItIsStored) {
   bench.recorder().clear();
   bench.ask("~013101");
   ASSERT_EQ(changes.size(), 1U);
-  // That is between the request's end and the reply's start.
+  // The restart lies between the end of the request and the start of the reply.
   const VirtualTime request_end = bench.recorder().bytes[7].end;
   const VirtualTime reply_start = bench.recorder().bytes[8].start;
   EXPECT_GE(changes[0].at, request_end + milliseconds(100));
@@ -120,7 +121,8 @@ TEST(HostWatchdog, ExpiryDrivesTheSafeValueAtOnceEvenWhileACommandIsBeingStored)
   const VirtualTime restarted = bench.now() + microseconds(1750);  // the silence that ends the frame
   std::vector<OutputChange> changes;
   bench.watch_outputs(changes);
-  // Storing the power-on value takes some 10 ms and would drive all outputs; the timeout falls into it.
+  // Storing the power-on value takes about 10 ms and would then drive all outputs; the timeout occurs
+  // meanwhile.
   bench.run(milliseconds(493));
   bench.forget_heard();
   bench.send(with_crc({1, 0x0F, 0x00, 0xA0, 0x00, 0x10, 0x02, 0xFF, 0xFF}));
@@ -129,7 +131,7 @@ TEST(HostWatchdog, ExpiryDrivesTheSafeValueAtOnceEvenWhileACommandIsBeingStored)
   EXPECT_EQ(changes[0].channels, 0);
   EXPECT_GE(changes[0].at, restarted + milliseconds(500));
   EXPECT_LE(changes[0].at, restarted + milliseconds(501));
-  EXPECT_FALSE(bench.heard_text().empty());  // stored and answered all the same (D6)
+  EXPECT_FALSE(bench.heard_text().empty());  // stored and answered nevertheless (D6)
   EXPECT_EQ(bench.module().module().state().settings.power_on_value, 0xFFFF);
   bench.power_cycle();
   EXPECT_TRUE(bench.module().module().state().settings.timeout_status);

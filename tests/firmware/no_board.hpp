@@ -1,4 +1,4 @@
-// A board without anything behind it, for a device that never runs.
+// A board without hardware, for a device that is compiled but never runs.
 #pragma once
 
 #include <cstdint>
@@ -8,7 +8,7 @@
 
 namespace ex9000 {
 
-/// Peripherals without anything to remember; none of their functions is called.
+/// Peripherals without state; none of their functions is called.
 struct Nothing {
   [[nodiscard]] static Time now();
   [[nodiscard]] static Time now_in_interrupt();

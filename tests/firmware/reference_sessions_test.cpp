@@ -1,6 +1,6 @@
-// Random sessions on the firmware and on the reference.
-//   EX9000_TRANSACTIONS  how many requests, 200000 where it is not set; 10000000 is the long form
-//   EX9000_SEED          of the first session; each has its predecessor's and 1
+// Random sessions, played on the firmware and on the reference.
+//   EX9000_TRANSACTIONS  number of requests; default 200000; the long form is 10000000
+//   EX9000_SEED          seed of the first session; each further session has the next number
 #include <gtest/gtest.h>
 
 #include <cstdio>
@@ -17,10 +17,10 @@
 namespace ex9000::reference {
 namespace {
 
-/// Steps of a session; enough for what one of them leaves behind to matter to many others.
+/// Steps of a session: enough for the effect of one step to influence many others.
 constexpr unsigned kSteps = 300;
 
-/// The models in turn, those with two protocols three times as often.
+/// Returns each model in turn; models with two protocols occur three times as often.
 const ModelRow& row_of(std::uint64_t seed) {
   std::vector<const ModelRow*> rows;
   for (const ModelRow& row : kModelRows) {
@@ -29,7 +29,7 @@ const ModelRow& row_of(std::uint64_t seed) {
   return *rows[seed % rows.size()];
 }
 
-/// A session and its steps, up to the first at which firmware and reference differ.
+/// A session and its steps, up to the first step at which firmware and reference differ.
 struct Played {
   Played(std::uint64_t seed, unsigned length) : row(row_of(seed)), session(row) {
     Random random(seed);

@@ -1,5 +1,5 @@
-// A request is judged, and what it asks for is done, when the silence after it is over. What happens in that
-// silence counts: wire.md sections 3, 7 and 8.
+// The module processes a request when the silence after it is over. Events during that silence still count:
+// wire.md sections 3, 7 and 8.
 #include <gtest/gtest.h>
 
 #include <chrono>
@@ -15,7 +15,8 @@ using std::chrono::microseconds;
 using std::chrono::milliseconds;
 using Bytes = ModuleBench::Bytes;
 
-constexpr microseconds kWithinAnySilence{300};  // at 9600 baud, of which a character is the shortest
+/// Shorter than every silence at 9600 baud; the shortest is one character.
+constexpr microseconds kWithinAnySilence{300};
 constexpr milliseconds kLong{50};
 
 const Bytes kReadInputs{0x01, 0x02, 0x00, 0x00, 0x00, 0x08};
@@ -24,7 +25,7 @@ const Bytes kReadOutputs{0x01, 0x01, 0x00, 0x00, 0x00, 0x08};
 const Bytes kOutput0On{0x01, 0x05, 0x00, 0x00, 0xFF, 0x00};
 const Bytes kBusMessages{0x01, 0x08, 0x00, 0x0B, 0x00, 0x00};
 
-/// The reply to a request after whose last byte something happens.
+/// Returns the reply to a request; `event` happens in the silence after its last byte.
 template <class Event>
 std::string answer(ModuleBench& bench, const std::string& command, Event event) {
   bench.forget_heard();
@@ -96,7 +97,7 @@ TEST(SilenceAfterRequest, NothingIsDoneWithinTheSilence) {
     const VirtualTime ended = bench.now();
     bench.run(kLong);
     ASSERT_EQ(changes.size(), 1U) << model;
-    // A character of ten bits, or 3.5 of eleven.
+    // One character of ten bits, or 3.5 characters of eleven bits.
     EXPECT_GE(changes[0].at - ended, ascii ? microseconds(1041) : microseconds(4010)) << model;
     EXPECT_LE(changes[0].at - ended, ascii ? microseconds(1060) : microseconds(4030)) << model;
   }
@@ -126,11 +127,12 @@ TEST(SilenceAfterRequest, AFrameThatIsSpoiledBehindItsCrcIsNotActedUpon) {
 }
 
 TEST(SilenceAfterRequest, TheInitSwitchCountsAsItStandsWhereTheSilenceEnds) {
-  // At 1200 baud the turn-around takes 8.3 ms. The switch is moved so that it has settled, after 10 ms, in
-  // its middle.
+  // At 1200 baud the turn-around takes 8.3 ms. The switch moves so early that its debounce time of 10 ms ends
+  // in the middle of the turn-around.
   constexpr microseconds kCharacter{10'000'000 / 1200};
   constexpr milliseconds kMovedBeforeTheEnd{6};
-  const std::string command = "%0101400400\r";  // another baud rate: only with INIT* asserted
+  // The command sets another baud rate, which is permitted only while INIT* is asserted.
+  const std::string command = "%0101400400\r";
   for (const bool asserted : {false, true}) {
     ModuleBench bench("EX9042D,baud=1200");
     bench.module().set_init(asserted);
@@ -148,7 +150,7 @@ TEST(SilenceAfterRequest, TheInitSwitchCountsAsItStandsWhereTheSilenceEnds) {
 TEST(SilenceAfterRequest, ARequestCountsItselfAmongTheBusMessages) {
   ModuleBench bench("EX9052D-M");
   EXPECT_EQ(bench.ask(kBusMessages), (Bytes{0x01, 0x08, 0x00, 0x0B, 0x00, 0x01}));
-  // Also if an input changes in the silence after it.
+  // The same if an input changes in the silence after it.
   EXPECT_EQ(answer(bench, kBusMessages, [&] { bench.module().pulse_input(0, 1); }),
             with_crc({0x01, 0x08, 0x00, 0x0B, 0x00, 0x02}));
   EXPECT_EQ(bench.ask(kBusMessages), (Bytes{0x01, 0x08, 0x00, 0x0B, 0x00, 0x03}));

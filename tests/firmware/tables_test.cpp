@@ -1,4 +1,4 @@
-// The tables of models, commands and registers agree with themselves and with each other.
+// The tables of models, commands and registers are consistent in themselves and with each other.
 #include <gtest/gtest.h>
 
 #include <set>
@@ -36,7 +36,7 @@ TEST(Tables, EveryModelFitsTheLimitsAndLeavesTheFactoryWithSettingsOfItsOwn) {
     EXPECT_LE(model.outputs, kMaxOutputs) << model.designation;
     EXPECT_TRUE(model.has_inputs() || model.has_outputs()) << model.designation;
     EXPECT_TRUE(Settings::factory(model).possible_for(model)) << model.designation;
-    // Only -M models have a code, and it is their four digits.
+    // Only -M models have a Modbus code, which consists of their four digits.
     const bool m = model.designation.substr(model.designation.size() - 2) == "-M";
     EXPECT_EQ(model.speaks_modbus(), m) << model.designation;
     if (m) {

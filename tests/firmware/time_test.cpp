@@ -1,4 +1,4 @@
-// Durations, points in time and deadlines, on a count that wraps at 2^32 microseconds.
+// Durations, times and deadlines on a clock that wraps at 2^32 microseconds.
 #include "firmware/time.hpp"
 
 #include <gtest/gtest.h>

@@ -1,4 +1,4 @@
-// A module before `start`: the compiler makes it, valid from its first moment on, and no code has to.
+// A module before `start`: the compiler initialises it, so it is valid before any code runs.
 #include <gtest/gtest.h>
 
 #include "firmware/module.hpp"

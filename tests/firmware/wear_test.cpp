@@ -1,4 +1,4 @@
-// How often an EEPROM is written in use, against what its maker promises.
+// How often an EEPROM is written in use, compared with the manufacturer's guarantee.
 #include <gtest/gtest.h>
 
 #include <array>
@@ -19,7 +19,8 @@ constexpr double kCycles = 1'000'000;
 constexpr double kMinutesAYear = 525'600;
 constexpr double kDaysAYear = 365;
 
-/// What one repetition of `use` writes, on average of a hundred; it shall be the same for all pages in use.
+/// The number of writes of one repetition of `use`, averaged over a hundred. It must be the same for all
+/// pages in use.
 double writes_of(ModuleBench& bench, const std::function<void(unsigned round)>& use, unsigned& pages) {
   constexpr unsigned kRounds = 100;
   PageWrites writes{};
@@ -52,8 +53,8 @@ TEST(Wear, OfAHostWatchdogThatExpiresEveryMinuteTakesThreeWritesEachAndAYearForA
       [&](unsigned /*round*/) {
         ASSERT_EQ(bench.ask("~013101"), "!01");  // enabled
         bench.run(std::chrono::milliseconds(300));
-        ASSERT_EQ(bench.ask("~010"), "!0184");  // expired, status and disabling in one
-        ASSERT_EQ(bench.ask("~011"), "!01");    // cleared
+        ASSERT_EQ(bench.ask("~010"), "!0184");  // expired; one write stores the status and the disabling
+        ASSERT_EQ(bench.ask("~011"), "!01");    // clears the timeout status
       },
       pages);
   EXPECT_EQ(writes, 3);
@@ -95,7 +96,7 @@ TEST(Wear, OfCountingIsNone) {
   ModuleBench modbus("EX9052D-M");
   for (ModuleBench* bench : {&ascii, &modbus}) {
     for (unsigned channel = 0; channel < 8; ++channel) {
-      bench->module().pulse_input(channel, 100'001);  // and wraps
+      bench->module().pulse_input(channel, 100'001);  // enough to wrap the counters
     }
     bench->run(std::chrono::seconds(2));
   }
@@ -108,7 +109,7 @@ TEST(Wear, OfCountingIsNone) {
                                {1, 0x0F, 0x02, 0, 0, 8, 1, 0xFF}}) {
     ASSERT_EQ(modbus.ask(request).at(1), request[1]);
   }
-  ASSERT_EQ(ascii.ask("#010"), "!0100000");  // there was something to clear
+  ASSERT_EQ(ascii.ask("#010"), "!0100000");  // the counter had a value to clear
   ASSERT_EQ(ascii.ask("#011"), "!0100001");
   EXPECT_EQ(ascii.module().memory().writes(), 0U);
   EXPECT_EQ(modbus.module().memory().writes(), 0U);

@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "sim/arguments.hpp"
+#include "sim/app/arguments.hpp"
 #include "sim/bus_file/bus_file.hpp"
 #include "tests/fuzz/require.hpp"
 

@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "sim/control/control.hpp"
-#include "sim/line.hpp"
+#include "sim/line/line.hpp"
 #include "tests/fuzz/fault_judge.hpp"
 #include "tests/fuzz/require.hpp"
 
@@ -64,11 +64,8 @@ std::vector<Seen> seen(Line& line) {
 }
 
 bool is_number(const std::string& text, unsigned long least, unsigned long most) {
-  if (text.empty() || text.size() > 9 || text.find_first_not_of("0123456789") != std::string::npos) {
-    return false;
-  }
-  const unsigned long value = std::stoul(text);
-  return value >= least && value <= most;
+  const auto value = fault::number<unsigned long>(text);
+  return value && *value >= least && *value <= most;
 }
 
 bool is_switch(const std::string& text) { return text == "on" || text == "off"; }
@@ -81,18 +78,13 @@ struct Watched {
   unsigned long numbers = 0;
 };
 
-bool is_rate(const std::string& text) {
-  const std::set<std::string> rates{"1200", "2400", "4800", "9600", "19200", "38400", "57600", "115200"};
-  return rates.count(text) != 0;
-}
-
 /// What may have `line NAME` before it.
 bool is_of_the_line(const Watched& watched, Words words, sim::VirtualTime now) {
   if (words.size() == 1) {
     return words[0] == "faults" || words[0] == "sent";
   }
   if (words.size() == 2 && words[0] == "baud") {
-    return is_rate(words[1]);
+    return fault::is_rate(words[1]);
   }
   if (words.empty() || words[0] != "fault") {
     return false;
@@ -113,7 +105,7 @@ Words of_the_line(const Words& words) {
   return words.size() >= 3 && words[1] == "hall" ? Words(words.begin() + 2, words.end()) : Words();
 }
 
-/// README's table of commands.
+/// The commands of sim/docs/control-socket.md.
 bool is_command(Watched& watched, const Words& words) {
   Line& line = watched.line;
   const sim::VirtualTime now = line.clock().virtual_now();
@@ -172,7 +164,7 @@ void check_faults(Watched& watched, const Words& words, const std::string& reply
 void check_effect(Watched& watched, const Words& words, const std::string& reply) {
   const Words on_line = of_the_line(words);
   if (on_line[0] == "baud") {
-    require(std::to_string(watched.line.master().baud()) == on_line[1], "the line has the rate it was told");
+    require(watched.line.master().baud() == std::stoul(on_line[1]), "the line has the rate it was told");
     return;
   }
   if (on_line[0] == "sent") {

@@ -1,4 +1,4 @@
-// What is a fault, as README has it, by code of its own.
+// What is a fault, as sim/docs/faults.md has it, by code of its own.
 #pragma once
 
 #include <array>

@@ -1,5 +1,5 @@
-// What hal/ promises is checked by the compiler: a driver that lacks a function, or has another one of that
-// name, is refused. What the compiler says of a board is in refused/.
+// The compiler checks the requirements of hal/: it rejects a driver that does not have a function or declares
+// it differently. refused/ tests the messages of the compiler.
 #include <gtest/gtest.h>
 
 #include "hal/board.hpp"
@@ -10,7 +10,7 @@
 namespace ex9000::hal {
 namespace {
 
-/// Ways in which a member of each kind is not as it should be.
+/// One wrong member of each kind.
 struct ClockWithoutItsSecond {
   [[nodiscard]] static Time now();
 };

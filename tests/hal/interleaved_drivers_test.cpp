@@ -1,5 +1,5 @@
-// Interrupts at every point of the drivers that share a counter with theirs, and edges at every point of the
-// driver that takes them.
+// Interrupts at every point of the drivers that share a counter with their interrupt, and edges at every
+// point of the driver that handles them.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -23,7 +23,7 @@ namespace bus = hal::bus;
 constexpr unsigned kMegahertz = 50;
 constexpr unsigned kPeriod = 10'000 * kMegahertz;
 
-/// Each access takes a few cycles; the interrupt comes when the counter begins anew, or some accesses later.
+/// Each access takes some cycles; the interrupt occurs when the counter restarts, or some accesses later.
 class SysTick final : public bus::Peripherals {
  public:
   SysTick(unsigned cycles, unsigned cycles_an_access, unsigned accesses_late)
@@ -33,7 +33,7 @@ class SysTick final : public bus::Peripherals {
   hal::cortex_m::SystemTimer<kMegahertz> timer;
 
   [[nodiscard]] unsigned microseconds() const { return cycles_ / kMegahertz; }
-  /// Served as soon as it may be; while it is held, it waits.
+  /// Interrupts are served as soon as possible; while this is true, they wait.
   bool held = false;
   void pass() {
     if (pending() && !held && late_++ >= accesses_late_) {
@@ -68,7 +68,7 @@ TEST(SystemTimer, TellsTheTimeWhereverItsTickComes) {
         for (const bool in_interrupt : {false, true}) {
           SysTick tick(cycles, an_access, late);
           tick.pass();
-          tick.held = in_interrupt;  // it waits for the interrupt that asks, as it does for all of them
+          tick.held = in_interrupt;  // interrupts wait while another one is being served
           const unsigned before = tick.microseconds();
           unsigned told = 0;
           Points::watch([&](unsigned) { tick.pass(); }, [&] { told = tick.timer.now().microseconds(); });
@@ -85,7 +85,7 @@ TEST(SystemTimer, TellsTheTimeWhereverItsTickComes) {
 
 // --- I2C ---
 
-/// A bus that is free, and a controller that is told when a byte is over.
+/// A free bus, and a controller that the test tells when a byte is complete.
 class I2cController final : public bus::Peripherals {
  public:
   I2cController() { bus::peripherals = this; }
@@ -104,7 +104,8 @@ class I2cController final : public bus::Peripherals {
   static constexpr std::uint32_t kControl = 0x4002'0004;
 };
 
-/// `completes`: at which point of the turn that gives the byte up. How many points that turn has.
+/// `completes`: the point at which the byte completes, in the turn that gives it up. Returns the number of
+/// points of that turn.
 unsigned give_up_a_byte_that_completes(unsigned completes) {
   I2cController controller;
   hal::stellaris::I2c<hal::stellaris::Family::Lm3s, 50'000'000> i2c;
@@ -130,7 +131,7 @@ unsigned give_up_a_byte_that_completes(unsigned completes) {
       [&] { i2c.poll(now); });
   poll_until_free();
   if (i2c.busy()) {
-    return points;  // it was in time, and the next byte is on its way
+    return points;  // the byte completed in time, and the next one has begun
   }
   controller.bytes_begun = 0;
   i2c.begin(transfer, now);
@@ -178,9 +179,9 @@ TEST(I2c, AByteThatIsToldToBeOverAndIsNotIsGivenUpInTheEnd) {
 using hal::stellaris::PinGroup;
 using hal::stellaris::Port;
 
-/// Ports of input pins. LM3S6965 data sheet, 8.3.2 and 8.5: a change that the pin is sensitive to sets its
-/// raw flag, which stays until it is cleared; both edges where GPIOIBE says so, else the falling one; the
-/// masked flags interrupt.
+/// Ports of input pins. LM3S6965 data sheet, 8.3.2 and 8.5: a change to which the pin is sensitive sets its
+/// raw flag, which stays set until it is cleared. The pin is sensitive to both edges if GPIOIBE is set,
+/// otherwise to the falling edge. The masked flags cause interrupts.
 class InputPorts final : public bus::Peripherals {
  public:
   InputPorts() { bus::peripherals = this; }
@@ -228,7 +229,7 @@ class InputPorts final : public bus::Peripherals {
 
   struct PortState {
     std::uint32_t wires = 0;
-    std::uint32_t shown = 0;  ///< what the enabled pins read
+    std::uint32_t shown = 0;  ///< the levels read at the enabled pins
     std::uint32_t raw = 0;
     std::map<std::uint32_t, std::uint32_t> registers;
 
@@ -289,7 +290,8 @@ class InputBench {
     }
   }
 
-  /// Edges that were counted on `channel`; the level that follows from them has to be that of the wire.
+  /// Returns the edges counted on `channel`. Checks that the level that follows from them is that of the
+  /// wire.
   unsigned counted(unsigned channel) {
     const unsigned count = edges_.collect(channel);
     const bool told = ((baseline_ >> channel ^ count) & 1U) != 0;
@@ -315,8 +317,8 @@ class Inputs : public testing::Test {};
 using Polarities = testing::Types<InputBench<true>, InputBench<false>>;
 TYPED_TEST_SUITE(Inputs, Polarities);
 
-/// Channel 0 has seen an edge; the channels of `later` see one each at these points of the interrupt that
-/// serves it. How many points that has.
+/// Channel 0 has seen an edge. The channels of `later` see one edge each at these points of the interrupt
+/// that serves it. Returns the number of points of the interrupt.
 template <class Bench>
 unsigned serve_an_edge(Bench& bench, const std::vector<std::pair<unsigned, unsigned>>& later) {
   bench.start();

@@ -1,4 +1,4 @@
-// A board that offers exactly what hal/ promises, and does nothing.
+// A board that has exactly the members that hal/ requires, and does nothing.
 #pragma once
 
 #include <cstdint>

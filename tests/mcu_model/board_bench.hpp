@@ -1,5 +1,5 @@
-// A board as it stands on a bench: an image on its microcontroller, an EEPROM, a line with a master, and
-// wires to all the rest.
+// A board on a bench: an image on its microcontroller, an EEPROM, an RS-485 line with a master, and wires to
+// all other pins.
 #pragma once
 
 #include <cstdint>
@@ -18,16 +18,16 @@ namespace ex9000::registers {
 
 class BoardBench {
  public:
-  /// The supply is off.
+  /// The supply is off at first.
   explicit BoardBench(const Image& image, I2cManners manners = {});
   ~BoardBench();
 
   void power_on();
   void power_off();
   [[nodiscard]] bool powered() const { return run_.has_value(); }
-  /// As the reset pin does it.
+  /// Resets the board like its reset pin.
   void reset();
-  /// Throws Fault. Resets that the image or its watchdog brings about are counted, and it runs on.
+  /// Runs until `when`. Throws Fault. Counts resets by the image or its watchdog and continues after them.
   void run_until(Instant when);
   void run_for(Instant time) { run_until(timeline.now() + time); }
 
@@ -36,9 +36,10 @@ class BoardBench {
   void set_init(bool asserted);
   [[nodiscard]] bool led() { return net(image.status_led).level(); }
 
-  /// Sends a DCON command with its CR and hears the reply until 250 ms pass without a character; without CR.
+  /// Sends a DCON command and its CR. Receives until 250 ms pass without a character; returns the reply
+  /// without CR.
   std::string ask(const std::string& command);
-  /// Likewise, any bytes.
+  /// Sends any bytes. Receives until 250 ms pass without a character; returns what was received.
   std::vector<std::uint8_t> exchange(const std::vector<std::uint8_t>& bytes);
 
   Net& net(PinPlace place) { return pins.at(place.port, place.pin); }
@@ -52,9 +53,10 @@ class BoardBench {
   std::optional<Microcontroller> mcu;
   unsigned resets = 0;  ///< by the watchdog and the processor
   unsigned watchdog_resets = 0;
-  Instant began{0};                 ///< the last reset of any kind
-  Instant output_came_on = kNever;  ///< the first of any, since the last reset of any kind
-  /// For resets to come.
+  Instant began{0};  ///< the last reset of any kind
+  /// The time at which the first output was switched on since the last reset of any kind.
+  Instant output_came_on = kNever;
+  /// The next resets use these values.
   Instant crystal_start = std::chrono::milliseconds(2);
   bool record = false;
 

@@ -14,8 +14,8 @@ constexpr std::uint32_t kKey = 0x05FA;
 Core::Core(const SystemControl& clock, Timeline& timeline)
     : Peripheral(kBase), clock_(clock), timeline_(timeline), tick_(timeline, [this] { count_tick(); }) {}
 
-/// Zero when it is written; the next clock loads it, and each clock takes one away. The exception is pended
-/// as it comes to zero.
+/// The counter is 0 when it is written. The next clock loads the reload value, and each further clock
+/// decrements it. The exception becomes pending when the counter reaches 0.
 std::uint32_t Core::current() const {
   if ((tick_control_ & 1U) == 0) {
     return 0;
@@ -52,7 +52,7 @@ std::uint32_t Core::read(std::uint32_t offset) {
 void Core::write(std::uint32_t offset, std::uint32_t value) {
   if (offset >= kPriority && offset < kPriority + 32) {
     for (unsigned i = 0; i < 4; ++i) {
-      // Three bits of each byte exist.
+      // Only the upper three bits of each byte exist.
       priorities_.at(offset - kPriority + i) = static_cast<std::uint8_t>(value >> (8 * i) & 0xE0U);
     }
     return;
@@ -110,7 +110,7 @@ void Core::pend(unsigned exception) {
   }
 }
 
-/// What has been pended stays so when the line falls.
+/// A pending exception stays pending when its line goes low.
 void Core::interrupt_line_of(unsigned interrupt, bool asserted) {
   lines_.at(interrupt) = asserted || (stuck_ >> interrupt & 1U) != 0;
   if (lines_.at(interrupt)) {
@@ -118,7 +118,7 @@ void Core::interrupt_line_of(unsigned interrupt, bool asserted) {
   }
 }
 
-/// 0: none. It takes no notice of whether interrupts are held.
+/// Returns the exception to serve next, 0 if there is none. Ignores whether interrupts are held.
 unsigned Core::next_to_serve() const {
   const std::uint64_t candidates = waiting();
   unsigned best = 0;

@@ -1,5 +1,6 @@
-// What belongs to the processor: SysTick, the interrupt controller, and who is served when. ARMv7-M
-// Architecture Reference Manual: B1.5 (exceptions), B3.2 (system control block), B3.3 (SysTick), B3.4 (NVIC).
+// The processor's part: SysTick, the interrupt controller, and the order in which exceptions are served.
+// ARMv7-M Architecture Reference Manual: B1.5 (exceptions), B3.2 (system control block), B3.3 (SysTick), B3.4
+// (NVIC).
 #pragma once
 
 #include <array>
@@ -34,46 +35,44 @@ class Core final : public Peripheral {
   std::uint32_t read(std::uint32_t offset) override;
   void write(std::uint32_t offset, std::uint32_t value) override;
 
-  /// What serves an exception.
+  /// Sets the function that serves each exception.
   void on_exception(std::function<void(unsigned exception)> act) { serve_ = std::move(act); }
-  /// The system control block is told to reset the microcontroller.
+  /// Sets the function to call when software requests a reset through the system control block.
   void on_reset_request(std::function<void()> act) { on_reset_ = std::move(act); }
-  /// An exception has been waiting for this long before it is served, as if instructions that cannot be
-  /// interrupted were in its way.
+  /// Delays each exception by `latency` before it is served, as instructions do that cannot be interrupted.
   void set_latency(Instant latency) { latency_ = latency; }
 
   void interrupt_line_of(unsigned interrupt, bool asserted);
-  /// The line is asserted for ever, whatever its peripheral does.
+  /// Asserts the interrupt line permanently, independently of its peripheral.
   void stick(unsigned interrupt) {
     stuck_ |= 1U << interrupt;
     interrupt_line_of(interrupt, true);
   }
   void hold(bool on) { held_ = on; }
   [[nodiscard]] bool held() const { return held_; }
-  /// Whether a sleeping processor wakes up.
+  /// Whether a sleeping processor wakes up now.
   [[nodiscard]] bool wakes() const { return next_to_serve() != 0; }
-  /// When something that is waiting has waited for long enough; kNever: nothing is.
+  /// The time at which the latency of a pending exception ends; kNever if none is pending.
   [[nodiscard]] Instant next_wake() const;
-  /// Serves what may be served now, one after the other.
+  /// Serves all exceptions that may be served now, one after the other.
   void serve_pending();
-  /// Whether an exception is being served.
   [[nodiscard]] bool in_handler() const { return !active_.empty(); }
   [[nodiscard]] std::size_t deepest_nesting() const { return deepest_; }
   [[nodiscard]] std::uint32_t enabled() const { return enabled_; }
   [[nodiscard]] unsigned priority(unsigned interrupt) const {
     return priority_of(kFirstInterrupt + interrupt);
   }
-  /// Of a priority the part by which one interrupt interrupts another.
+  /// Returns the group priority: the part of a priority that decides whether one interrupt preempts another.
   [[nodiscard]] unsigned group(unsigned priority) const { return priority >> (group_shift_ + 1U); }
   [[nodiscard]] std::uint32_t tick_reload() const { return reload_; }
-  /// When the tick last came, served or not.
+  /// The time of the last tick, served or not.
   [[nodiscard]] Instant ticked() const { return tick_began_; }
 
  private:
   [[nodiscard]] std::uint32_t current() const;
   [[nodiscard]] unsigned priority_of(unsigned exception) const;
   [[nodiscard]] unsigned next_to_serve() const;
-  /// Those that are pending and enabled.
+  /// The exceptions that are pending and enabled.
   [[nodiscard]] std::uint64_t waiting() const {
     return pending_ & (1ULL << kTick | std::uint64_t{enabled_} << kFirstInterrupt);
   }
@@ -88,15 +87,15 @@ class Core final : public Peripheral {
 
   std::uint32_t tick_control_ = 0;
   std::uint32_t reload_ = 0;
-  Instant tick_began_{0};  ///< when the counter last was at zero
+  Instant tick_began_{0};  ///< when the counter was last at zero
   Alarm tick_;
 
   std::uint32_t enabled_ = 0;
   std::array<std::uint8_t, 32> priorities_{};
   unsigned group_shift_ = 0;
   std::array<bool, 32> lines_{};
-  std::uint32_t stuck_ = 0;    ///< of the lines
-  std::uint64_t pending_ = 0;  ///< a bit an exception
+  std::uint32_t stuck_ = 0;    ///< a bit for each line
+  std::uint64_t pending_ = 0;  ///< a bit for each exception
   std::array<Instant, kExceptions> since_{};
   std::vector<unsigned> active_;
   std::size_t deepest_ = 0;

@@ -1,5 +1,5 @@
-// A microcontroller for one driver at a time: its clock runs at 50 MHz, everything has been given a clock,
-// and whoever tests points the interrupts where he wants them.
+// A microcontroller for one driver at a time. Its system clock is 50 MHz and all clock gates are open. The
+// test sets the handlers of the interrupts.
 #pragma once
 
 #include <functional>
@@ -27,7 +27,7 @@ class DriverBench {
     });
   }
 
-  /// Interrupt `number` is enabled and served by this.
+  /// Enables interrupt `number` and sets its handler.
   void serve(unsigned number, std::function<void()> handler) {
     handlers_[Core::kFirstInterrupt + number] = std::move(handler);
     mcu.write(Core::kBase + Core::kSetEnable, 1U << number);

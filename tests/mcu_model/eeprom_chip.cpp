@@ -6,7 +6,7 @@ namespace ex9000::registers {
 
 namespace {
 
-constexpr std::uint8_t kDevice = 0xA0;  // A2, A1 and A0 at GND
+constexpr std::uint8_t kDevice = 0xA0;  // A2, A1 and A0 are connected to GND
 
 }  // namespace
 
@@ -90,7 +90,7 @@ void EepromChip::data_changed() {
     tell();
     return;
   }
-  // Only whole bytes, and the STOP right behind an acknowledge, program a page.
+  // Only a STOP immediately after the acknowledge of a whole byte programs a page.
   if (step_ == Step::Writing && bit_ == 1 && !order_.empty()) {
     begin_programming();
   }
@@ -123,7 +123,7 @@ void EepromChip::clock_changed() {
       return;
     }
     if (step_ == Step::Reading && bit_ == 8) {
-      // The master's turn: not acknowledged was the last byte.
+      // The master did not acknowledge: that was the last byte.
       if (data_level_) {
         step_ = Step::Idle;
         return;
@@ -157,7 +157,7 @@ void EepromChip::clock_changed() {
 
 void EepromChip::put_next_bit() {
   if (bit_ == 8) {
-    pull(false);  // for the master to acknowledge
+    pull(false);  // the master acknowledges
     tell();
     return;
   }
@@ -194,7 +194,7 @@ void EepromChip::byte_taken() {
       step_ = Step::Writing;
       break;
     case Step::Writing:
-      // Beyond the page's end it goes on at its beginning.
+      // After the end of the page the address continues at its beginning.
       if (take) {
         page_.at(address_ % kPage) = byte_;
         order_.push_back(address_);

@@ -1,4 +1,4 @@
-// An AT24C64 on its two wires. Data sheet: Atmel doc. 0336, "device operation", "write operations", "read
+// An AT24C64 on its I2C bus. Data sheet: Atmel doc. 0336, "device operation", "write operations", "read
 // operations".
 #pragma once
 
@@ -19,46 +19,50 @@ class EepromChip {
   static constexpr std::size_t kSize = 8192;
   static constexpr std::size_t kPage = 32;
 
-  /// On these wires, with a pull-up on each. `contents` outlive it: they are what lasts.
+  /// Connects to these wires, with a pull-up on each. `contents` must outlive this object: it holds the
+  /// stored bytes.
   EepromChip(Timeline& timeline, Net& clock, Net& data, std::vector<std::uint8_t>& contents);
 
-  /// How long it programs a page: 10 ms at most, typically half of it.
+  /// Sets how long a page write takes: at most 10 ms, typically half of it.
   void set_programming_time(Instant time) { programming_time_ = time; }
-  /// Takes it off its wires; the pull-ups too, or they stay.
+  /// Removes the chip from its wires, with or without the pull-ups.
   void remove(bool pull_ups_too);
-  /// The supply fails: a page that is being programmed has its first bytes, one that is neither, and the rest
-  /// as it was, by how long it had; what was on the bus is forgotten.
+  /// The supply fails. If a page is being programmed, the time so far decides how many of its first bytes are
+  /// complete; one more byte is spoiled and the rest keep their old values. The chip forgets the state of the
+  /// bus.
   void lose_power();
-  /// From now on it takes no more than this many bytes of a transfer, the address among them.
+  /// From now on the chip acknowledges at most `bytes` bytes of a transfer, including the address bytes.
   void refuse_after(unsigned bytes) { patience_ = bytes; }
 
-  /// A byte that is worn out: from the next time that it is programmed on these bits stay at `stuck`, though
-  /// the chip acknowledges all that it is sent.
+  /// Makes a byte worn out: from its next write on, `bits` keep the value that they have in `stuck`. The chip
+  /// still acknowledges every byte.
   void wear_out(std::uint16_t place, std::uint8_t bits, std::uint8_t stuck) { worn_[place] = {bits, stuck}; }
   void renew() { worn_.clear(); }
-  /// Bytes that were programmed and have become something else.
+  /// The number of bytes whose value differs from what was programmed.
   [[nodiscard]] unsigned spoiled() const { return spoiled_; }
 
-  /// Told behind each START, byte and STOP on the bus, and when a page is programmed. One, or null.
+  /// Sets the function to call after each START, byte and STOP on the bus, and when a page has been
+  /// programmed. Only one function; it may be null.
   void on_event(std::function<void()> act) { on_event_ = std::move(act); }
 
   [[nodiscard]] bool programming() const { return programmed_.is_set(); }
-  /// A byte of the array, and what it becomes.
+  /// A byte of the array, and its new value.
   struct Cell {
     std::uint16_t place;
     std::uint8_t value;
   };
-  /// What is being programmed, in the order in which it was sent; empty: nothing is.
+  /// The bytes of the page write in progress, in the order in which they were sent; empty if none is in
+  /// progress.
   [[nodiscard]] std::vector<Cell> being_programmed() const;
   [[nodiscard]] bool pulls_data() const { return data_.driven_by(End::Device) == Drive::Low; }
-  /// Pages programmed, of how many bytes each; and where they began.
+  /// A page write: its first address, its number of bytes, and its time.
   struct Programmed {
     std::uint16_t address;
     std::size_t size;
     Instant at;
   };
   [[nodiscard]] const std::vector<Programmed>& programmed() const { return programmed_pages_; }
-  /// Times that it was addressed while it programmed.
+  /// The number of times that the chip was addressed during a page write.
   [[nodiscard]] unsigned polls_refused() const { return polls_refused_; }
 
  private:
@@ -75,7 +79,7 @@ class EepromChip {
       on_event_();
     }
   }
-  /// The first `size` bytes of what was written go to the array.
+  /// Programs the first `size` bytes of the received page into the array.
   void commit(std::size_t size);
   void program(std::uint16_t place, std::uint8_t value);
 

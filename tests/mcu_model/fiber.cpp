@@ -6,7 +6,7 @@
 #include <system_error>
 #include <utility>
 
-// AddressSanitizer has to know which stack it is looking at.
+// AddressSanitizer must be told about each switch of stacks.
 #if defined(__has_feature)
 #if __has_feature(address_sanitizer)
 #define EX9000_ADDRESS_SANITIZER
@@ -22,7 +22,7 @@ namespace ex9000::registers {
 
 namespace {
 
-/// Sanitizers make frames several times as large.
+/// Sanitizers make stack frames several times larger.
 constexpr std::size_t kStackSize = std::size_t{1} << 20U;
 
 thread_local Fiber* the_beginning = nullptr;
@@ -73,11 +73,11 @@ void Fiber::begin() {
   go(self.inside_, self.outside_, true);
 }
 
-/// swapcontext(3) in two halves: AddressSanitizer warns of that one, and forgets the stack that it switches
-/// to.
+/// Replaces swapcontext(3): AddressSanitizer warns about that function, and loses track of the stack that it
+/// switches to.
 void Fiber::go(Side& from, Side& to, bool for_good) {
   leave_stack(for_good ? nullptr : &from.fake_stack, to.stack, to.stack_size);
-  volatile bool left = false;  // in memory: getcontext returns once more when somebody comes back
+  volatile bool left = false;  // volatile: getcontext returns a second time when the other side switches back
   getcontext(&from.context);
   if (!left) {
     left = true;

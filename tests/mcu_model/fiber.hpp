@@ -1,5 +1,5 @@
-// A function with a stack of its own in the caller's thread. It is switched to and back where the two sides
-// choose, in a fraction of what the operating system takes to switch between threads.
+// A function with its own stack in the caller's thread. Both sides choose when to switch. A switch takes a
+// fraction of the time of a switch between threads.
 #pragma once
 
 #include <ucontext.h>
@@ -11,16 +11,17 @@ namespace ex9000::registers {
 
 class Fiber {
  public:
-  /// `body` begins with the first `resume`. It throws nothing.
+  /// `body` begins with the first `resume`. It must not throw.
   explicit Fiber(std::function<void()> body);
-  /// `body` has returned, or has never begun: nothing unwinds its stack.
+  /// Requires that `body` has returned or has never begun, because its stack is not unwound.
   ~Fiber();
   Fiber(const Fiber&) = delete;
   Fiber& operator=(const Fiber&) = delete;
 
-  /// Runs `body` until it suspends itself or returns. Not from within it, and not after its return.
+  /// Runs `body` until it suspends itself or returns. Must not be called from `body` or after `body` has
+  /// returned.
   void resume();
-  /// From within `body`: back to the caller of `resume`.
+  /// Called from `body`: returns to the caller of `resume`.
   void suspend();
 
  private:

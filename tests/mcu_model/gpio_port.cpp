@@ -6,7 +6,7 @@ namespace {
 
 std::uint32_t debug_pins(char letter) { return letter == 'C' ? 0x0FU : 0; }
 
-/// Data sheets, "commit control".
+/// Pins that GPIOCR protects; data sheets, "commit control".
 std::uint32_t locked_pins(const Chip& chip, char letter) {
   if (!chip.port_control) {
     return debug_pins(letter) | (letter == 'B' ? 0x80U : 0);
@@ -123,7 +123,7 @@ void GpioPort::write(std::uint32_t offset, std::uint32_t value) {
   std::uint32_t& place = stored(offset);
   check_lock(offset, place ^ value);
   place = value;
-  // Each strength and each pull takes the pin from the others.
+  // Setting a pin in one strength register clears it in the others; the same applies to the pulls.
   for (const std::uint32_t other : {kDrive2, kDrive4, kDrive8}) {
     if (other != offset && (offset == kDrive2 || offset == kDrive4 || offset == kDrive8)) {
       stored(other) &= ~value;

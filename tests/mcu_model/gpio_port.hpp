@@ -34,26 +34,27 @@ class GpioPort final : public Peripheral {
   static constexpr std::uint32_t kAnalog = 0x528;
   static constexpr std::uint32_t kControl = 0x52C;
 
-  /// `letter`: 'A' to 'G'. The nets outlive the port, which lets go of them all when it begins and ends.
+  /// `letter`: 'A' to 'G'. The nets must outlive the port. The constructor and the destructor release all of
+  /// them.
   GpioPort(const Chip& chip, char letter, PortNets& nets);
   ~GpioPort() override;
 
   std::uint32_t read(std::uint32_t offset) override;
   void write(std::uint32_t offset, std::uint32_t value) override;
 
-  /// What a peripheral wants its pin to do, wherever the pin is given to it.
+  /// Sets the level that a peripheral outputs. It takes effect while the pin is assigned to the peripheral.
   void alternate(unsigned pin, Drive drive) {
     alternate_drive_.at(pin) = drive;
     drive_pin(pin);
   }
-  /// Whether the pin is given to the peripheral that has `function` in GPIOPCTL.
+  /// Whether the pin is assigned to the peripheral that has `function` in GPIOPCTL.
   [[nodiscard]] bool given_to(unsigned pin, std::uint32_t function) const;
-  /// A register as it is, without an access.
+  /// Returns the value of a register without a bus access.
   [[nodiscard]] std::uint32_t peek(std::uint32_t offset) const {
     return const_cast<GpioPort*>(this)->read(offset);
   }
 
-  /// Told by the nets.
+  /// Called by the nets when the level of the pin has changed.
   void look_at(unsigned pin);
 
  private:
@@ -67,7 +68,7 @@ class GpioPort final : public Peripheral {
 
   const Chip& chip_;
   PortNets& nets_;
-  std::uint32_t locked_;  ///< pins that keep their function until GPIOCR releases them
+  std::uint32_t locked_;  ///< pins that keep their function until GPIOCR unlocks them
   std::uint32_t data_ = 0;
   std::uint32_t direction_ = 0;
   std::uint32_t sense_ = 0;
@@ -86,7 +87,7 @@ class GpioPort final : public Peripheral {
   std::uint32_t enable_;
   std::uint32_t analog_ = 0;
   std::uint32_t control_ = 0;
-  std::uint32_t input_ = 0;  ///< what the enabled pins show
+  std::uint32_t input_ = 0;  ///< the levels that the enabled pins show
   std::array<Drive, 8> alternate_drive_{};
 };
 

@@ -19,7 +19,7 @@ constexpr std::uint32_t kBusBusy = 1U << 6U;
 
 constexpr std::uint32_t kMaster = 1U << 4U;
 
-// Of ten steps, as the period register counts them.
+// Parts of a bit, in tenths: the period register counts ten steps per bit.
 constexpr int kLowTime = 6;
 constexpr int kHighTime = 4;
 
@@ -54,7 +54,7 @@ std::uint32_t I2cBlock::read(std::uint32_t offset) {
       return target_;
     case kControl:
       if (busy_) {
-        return kBusy | kError | kArbitrationLost;  // nothing but the busy bit means anything now
+        return kBusy | kError | kArbitrationLost;  // the other bits are not valid while busy
       }
       return status_ | (owns_bus_ ? kBusBusy : kIdle);
     case kData:
@@ -129,7 +129,7 @@ void I2cBlock::command(std::uint32_t bits) {
   const bool goes_on = (bits & kRun) != 0 && owns_bus_;
   const bool only_stops = (bits & (kRun | kStart | kStop)) == kStop && owns_bus_;
   if (!starts && !goes_on && !only_stops) {
-    return;  // no command in this state
+    return;  // not a command in this state
   }
   check_pins();
   status_ = 0;
@@ -173,7 +173,7 @@ void I2cBlock::clock(bool high) {
 }
 void I2cBlock::data(bool high) { port_.alternate(kDataPin, high ? Drive::High : Drive::Low); }
 
-/// Each move begins and ends with the clock low; before a START and behind a STOP the bus is free.
+/// Each move begins and ends with the clock low, except that the bus is free before a START and after a STOP.
 void I2cBlock::begin_move() {
   phase_ = 0;
   if (moves_.empty()) {
@@ -184,7 +184,7 @@ void I2cBlock::begin_move() {
   if (move == Move::Start) {
     if (!clock_high() || !data_high()) {
       if (manners_.waits_for_free_bus) {
-        return;  // for ever: whoever holds it has to be made to let go
+        return;  // until a reset: the driver must free the bus
       }
       fail(kArbitrationLost);
       return;

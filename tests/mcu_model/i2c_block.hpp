@@ -1,4 +1,5 @@
-// I2C master 0, bit by bit on its wires. Data sheets: LM3S6965 14.3 to 14.5, TM4C123GH6PM 16.3 to 16.5.
+// I2C master 0, simulated bit by bit on its wires. Data sheets: LM3S6965 14.3 to 14.5, TM4C123GH6PM 16.3 to
+// 16.5.
 #pragma once
 
 #include <cstdint>
@@ -12,11 +13,11 @@
 
 namespace ex9000::registers {
 
-/// Where the data sheets leave it open.
+/// Behaviour that the data sheets leave open.
 struct I2cManners {
-  bool stop_interrupts = false;     ///< a STOP by itself is told like a byte
-  bool stops_after_error = false;   ///< a STOP that was asked for with a byte comes although the byte failed
-  bool waits_for_free_bus = false;  ///< a START on a bus that is not free waits; else arbitration is lost
+  bool stop_interrupts = false;     ///< a STOP without a byte raises an interrupt, like a byte
+  bool stops_after_error = false;   ///< a STOP requested together with a byte is sent even if the byte failed
+  bool waits_for_free_bus = false;  ///< a START waits until the bus is free; if false, arbitration is lost
 };
 
 class I2cBlock final : public Peripheral {
@@ -32,7 +33,7 @@ class I2cBlock final : public Peripheral {
   static constexpr std::uint32_t kClear = 0x01C;
   static constexpr std::uint32_t kConfiguration = 0x020;
 
-  static constexpr unsigned kClockPin = 2;  ///< of port B
+  static constexpr unsigned kClockPin = 2;  ///< on port B
   static constexpr unsigned kDataPin = 3;
   static constexpr std::uint32_t kFunction = 3;
 
@@ -42,10 +43,10 @@ class I2cBlock final : public Peripheral {
   std::uint32_t read(std::uint32_t offset) override;
   void write(std::uint32_t offset, std::uint32_t value) override;
   void software_reset();
-  /// The clock line has changed.
+  /// Called when the level of the clock line has changed.
   void look_at_clock();
 
-  /// Length of a bit, as its registers have it.
+  /// The length of a bit that its registers set.
   [[nodiscard]] Instant bit_time() const { return 20 * (period_ + 1) * clock_.cycle(); }
 
  private:
@@ -79,7 +80,7 @@ class I2cBlock final : public Peripheral {
   std::uint32_t mask_ = 0;
   std::uint32_t raw_ = 0;
   std::uint32_t configuration_ = 0;
-  std::uint32_t status_ = 0;  ///< error bits
+  std::uint32_t status_ = 0;  ///< error bits of the status register
   bool busy_ = false;
   bool owns_bus_ = false;
   bool receiving_ = false;

@@ -1,6 +1,6 @@
-// A firmware image as a host can run it: the composition of a board and a model with all its drivers,
-// compiled as it stands, its bus leading to registers::Microcontroller. Each is a shared object of its own,
-// for what a model lacks is not compiled, so that no two of them agree on what the core is.
+// A firmware image that a host can run: the unchanged composition of a board, a model and all its drivers,
+// whose bus accesses go to registers::Microcontroller. Each image is its own shared object: the code of
+// features that a model does not have is not compiled, so the types of the core differ between images.
 #pragma once
 
 #include <array>
@@ -16,11 +16,11 @@ struct PinPlace {
   std::uint8_t pin;
 };
 
-/// What the shared object tells of itself.
+/// The description that the shared object gives of itself.
 struct Image {
   const char* model;
   bool tm4c;
-  unsigned inputs;  ///< channels that the model has
+  unsigned inputs;  ///< channels of the model
   unsigned outputs;
   std::array<PinPlace, 16> output_pins;
   std::array<PinPlace, 8> input_pins;
@@ -31,18 +31,18 @@ struct Image {
   PinPlace receive;
   PinPlace transmit;
 
-  /// Its RAM as after a reset.
+  /// Sets its RAM to the state after a reset.
   void (*clear)();
-  /// Its `main`, which does not return.
+  /// Calls its `main`, which does not return.
   int (*run)();
-  /// The handler of its vector table for an exception.
+  /// Calls the handler that its vector table has for an exception.
   void (*serve)(unsigned exception);
 
   [[nodiscard]] const Chip& chip() const { return tm4c ? kTm4c123 : kLm3s6965; }
   [[nodiscard]] std::string name() const { return std::string(chip().name) + "/" + model; }
 };
 
-/// Loads one; `path` of its shared object. Throws std::runtime_error. It stays loaded.
+/// Loads the shared object at `path`, which stays loaded. Throws std::runtime_error.
 const Image& load_image(const std::string& path);
 
 }  // namespace ex9000::registers

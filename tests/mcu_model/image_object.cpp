@@ -1,5 +1,6 @@
-// What becomes a shared object for each board and model: the composition as it is, and what tells of it.
-// EX9000_BOARD_HEADER and EX9000_MODEL say which. Its `main` must not be the test program's.
+// Source of the shared object for each board and model: the unchanged composition and its description.
+// EX9000_BOARD_HEADER and EX9000_MODEL select the board and the model. The image's `main` is renamed because
+// the test program has its own.
 #define main main_of_the_image
 #include EX9000_BOARD_HEADER
 #include "boards/stellaris/composition.hpp"
@@ -11,7 +12,7 @@
 
 namespace ex9000::start_up {
 
-// What boards/cortex_m/start_up.cpp and the linker script provide on a board.
+// On a board, boards/cortex_m/start_up.cpp and the linker script provide these.
 extern "C" {
 std::uint32_t stack_top[1] = {};  // NOLINT: the name is the linker script's
 void reset_handler() { fault_handler(); }

@@ -11,7 +11,7 @@ ImageRun::ImageRun(const Image& image, Microcontroller& microcontroller, Timelin
   image.clear();
 }
 
-/// What its stack holds is given back, as where a function throws.
+/// Ends the image with an exception, so that its stack is unwound and its resources are released.
 ImageRun::~ImageRun() {
   ending_ = true;
   if (begun_ && !over_) {
@@ -48,7 +48,7 @@ void ImageRun::pass(Instant to) {
     if (ending_) {
       throw Ended();
     }
-    return;  // whoever had the turn may have set alarms
+    return;  // the test may have set alarms meanwhile
   }
   timeline_.advance(to);
 }

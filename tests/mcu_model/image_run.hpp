@@ -1,4 +1,4 @@
-// An image at work. It has a stack of its own: whoever has the turn runs, the image or the test.
+// Runs an image on its own stack. Either the image or the test runs, never both.
 #pragma once
 
 #include <exception>
@@ -12,13 +12,13 @@ namespace ex9000::registers {
 
 class ImageRun {
  public:
-  /// From reset on; nothing happens before `run_until`.
+  /// Prepares a run from reset; the image does not start before `run_until`.
   ImageRun(const Image& image, Microcontroller& microcontroller, Timeline& timeline);
   ~ImageRun();
   ImageRun(const ImageRun&) = delete;
   ImageRun& operator=(const ImageRun&) = delete;
 
-  /// Until it is that late. Throws what the image has brought about: Fault, ResetRequest.
+  /// Runs the image until `when`. Throws what the image caused: Fault or ResetRequest.
   void run_until(Instant when);
 
  private:

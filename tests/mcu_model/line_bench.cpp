@@ -23,7 +23,7 @@ LineBench::LineBench(Timeline& timeline, Net& transmit, Net& enable, Net& receiv
         last_ended_ = started + kBitsACharacter * bit_time_;
         heard.push_back({started, last_ended_, received.byte, !received.framing_error});
       }) {
-  // The resistors that every board has: idle while its pins float, and the driver off.
+  // The resistors that every board has: the line is idle and the driver off while the pins float.
   transmit_.drive(End::Resistor, Drive::WeakHigh);
   enable_.drive(End::Resistor, Drive::WeakLow);
   transmit_.on_change([this] { board_speaks(); });
@@ -55,7 +55,7 @@ void LineBench::send_one(Character character) {
 
 void LineBench::go_on() {
   if (waiting_.empty()) {
-    master_level_ = true;  // the line is idle, whatever the stop bit was
+    master_level_ = true;  // the line is idle, even after a low stop bit
     update();
     return;
   }

@@ -133,8 +133,8 @@ Peripheral& Microcontroller::peripheral_at(std::uint32_t address) {
   throw Fault(address, "nothing is there");
 }
 
-/// On silicon a peripheral without a clock faults, and one that is held in reset ignores every access. Both
-/// are mistakes of a driver.
+/// On silicon, an access to a peripheral without a clock causes a fault, and a peripheral that is held in
+/// reset ignores every access. Both are errors of a driver.
 void Microcontroller::check_usable(const Place& place, std::uint32_t address) const {
   switch (system_control.gate(place.gate_index, place.gate_bit)) {
     case SystemControl::Gate::Shut:
@@ -170,7 +170,7 @@ void Microcontroller::pass_all(Instant to) {
   }
 }
 
-/// Does not return where it hangs, but by a reset.
+/// If the firmware is to hang here, returns only after a reset.
 void Microcontroller::hang_if_told() {
   if (hangs_ == Hangs::MainLoop && !core.in_handler()) {
     run_until(kNever);

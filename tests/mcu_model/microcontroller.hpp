@@ -1,5 +1,5 @@
-// A microcontroller by its registers: what the drivers' bus accesses lead to on a host. Every access takes
-// its time, and interrupts come between accesses.
+// A microcontroller at register level: the target of the drivers' bus accesses on a host. Every access takes
+// its time, and interrupts occur between accesses.
 #pragma once
 
 #include <algorithm>
@@ -23,7 +23,7 @@
 
 namespace ex9000::registers {
 
-/// The pins of all ports; they outlast a reset.
+/// The pins of all ports; they keep their state during a reset.
 struct Pins {
   Pins() {
     for (unsigned port = 0; port < ports.size(); ++port) {
@@ -40,7 +40,7 @@ struct Pins {
   Pins& operator=(const Pins&) = delete;
 
   Net& at(char letter, unsigned pin) { return ports.at(static_cast<unsigned>(letter - 'A')).at(pin); }
-  /// On any of them two ends have driven hard against each other, ever.
+  /// Whether two ends of any pin have ever driven it hard to opposite levels.
   [[nodiscard]] bool any_was_shorted() const {
     return std::any_of(ports.begin(), ports.end(), [](const PortNets& port) {
       return std::any_of(port.begin(), port.end(), [](const Net& net) { return net.was_shorted(); });
@@ -48,7 +48,7 @@ struct Pins {
   }
 
   std::array<PortNets, 7> ports;
-  std::function<void(unsigned port, unsigned pin)> on_change;  ///< the microcontroller's
+  std::function<void(unsigned port, unsigned pin)> on_change;  ///< set by the microcontroller
 };
 
 struct Access {
@@ -58,17 +58,17 @@ struct Access {
   bool write;
 };
 
-/// How it came to begin anew.
+/// Thrown when the microcontroller is to be reset.
 class ResetRequest {};
 
-/// What does not go on any more.
+/// The part of the firmware that stops.
 enum class Hangs : std::uint8_t {
   Nothing,
-  MainLoop,  ///< from its next access on; interrupts are served
-  Handler,   ///< the next one that is served, from its next access on; none interrupts it
+  MainLoop,  ///< from its next access on; interrupts are still served
+  Handler,   ///< the next handler that is served, from its next access on; nothing preempts it
 };
 
-/// From one reset to the next. The drivers' bus leads to the one that was made last.
+/// Exists from one reset to the next. The drivers' bus accesses go to the latest instance.
 class Microcontroller {
  public:
   Microcontroller(const Chip& chip, Timeline& timeline, Pins& pins, I2cManners manners = {});
@@ -78,7 +78,7 @@ class Microcontroller {
 
   static Microcontroller& current();
 
-  // --- what the drivers do; throws Fault, and ResetRequest ---
+  // --- called by the drivers; throws Fault and ResetRequest ---
 
   std::uint32_t read(std::uint32_t address);
   void write(std::uint32_t address, std::uint32_t value);
@@ -88,30 +88,31 @@ class Microcontroller {
 
   // --- for tests ---
 
-  /// Lets time pass and interrupts be served, as a processor with nothing else to do.
+  /// Lets time pass and serves interrupts, like an idle processor.
   void run_until(Instant when);
   void run_for(Instant time) { run_until(timeline_.now() + time); }
 
-  /// What serves `exception`; see Core.
+  /// Sets the function that serves each exception; see Core.
   void on_exception(std::function<void(unsigned exception)> act) { core.on_exception(std::move(act)); }
-  /// How time passes up to a point, or less far; else Timeline::advance.
+  /// Sets the function that lets time pass up to a point, or less far. Default: Timeline::advance.
   void pass_time_by(std::function<void(Instant to)> pass) { pass_ = std::move(pass); }
 
-  /// The least that an access over the bus takes, in clocks, is 2; what comes between two is not counted, so
-  /// that delays which are made of accesses are judged at their shortest. More makes long waits cheap to run.
+  /// Sets the clocks that each access takes. The default is 2, the minimum of a bus access. The model does
+  /// not count the instructions between two accesses, so it checks delays that consist of accesses at their
+  /// shortest. A greater value makes long waits cheap to simulate.
   void set_clocks_an_access(int clocks) { clocks_an_access_ = clocks; }
   [[nodiscard]] std::uint64_t accesses() const { return accesses_; }
   void record(bool on) { recording_ = on; }
   [[nodiscard]] const std::vector<Access>& recorded() const { return recorded_; }
-  /// Most accesses made between one hold of interrupts and the release.
+  /// The greatest number of accesses while interrupts were held.
   [[nodiscard]] std::uint64_t most_accesses_held() const { return most_held_; }
   [[nodiscard]] unsigned watchdog_bites() const { return bites_; }
-  /// Told before each write has its effect.
+  /// Sets a function to call before each write takes effect.
   void on_write(std::function<void(std::uint32_t address, std::uint32_t value)> act) {
     on_write_ = std::move(act);
   }
 
-  /// Until the next reset.
+  /// Stops a part of the firmware until the next reset.
   void hang(Hangs what) { hangs_ = what; }
 
   GpioPort& port(char letter) { return *ports_.at(static_cast<std::size_t>(letter - 'A')); }
@@ -141,7 +142,7 @@ class Microcontroller {
  private:
   struct Place {
     Peripheral* peripheral;
-    unsigned gate_index;  ///< of RCGC, and of SRCR, whose bits are the same
+    unsigned gate_index;  ///< of RCGC; SRCR has the same bits
     unsigned gate_bit;
   };
 

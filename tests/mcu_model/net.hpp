@@ -1,4 +1,4 @@
-// A wire and all that pulls at it.
+// A wire and everything that drives it.
 #pragma once
 
 #include <array>
@@ -10,17 +10,17 @@
 
 namespace ex9000::registers {
 
-/// What one end does to a wire.
+/// How one end drives a wire.
 enum class Drive : std::uint8_t { Nothing, WeakLow, WeakHigh, Low, High };
 
-/// Who may pull at a wire.
+/// The ends that can drive a wire.
 enum class End : std::uint8_t {
   Microcontroller,  ///< its output stage
   WeakPull,         ///< its own pull-up or pull-down
-  Board,            ///< what is wired to it
+  Board,            ///< the parts that the board connects to the wire
   Resistor,         ///< a pull-up or pull-down on the board; stronger than the microcontroller's own
-  Device,           ///< a chip beside it
-  Fault,            ///< what should not be there: a short, a chip that hangs
+  Device,           ///< another chip on the board
+  Fault,            ///< a defect: a short circuit, a chip that hangs
 };
 
 class Net {
@@ -38,10 +38,11 @@ class Net {
   [[nodiscard]] Drive driven_by(End end) const { return ends_[static_cast<std::size_t>(end)]; }
   [[nodiscard]] bool level() const { return level_; }
 
-  /// Told after each change of the level. Lives as long as the wire, so what it refers to must, too.
+  /// Adds a function to call after each change of the level. The function lives as long as the wire;
+  /// everything it refers to must live as long.
   void on_change(std::function<void()> act) { on_change_.push_back(std::move(act)); }
 
-  /// Two ends have driven it hard against each other, ever.
+  /// Whether two ends have ever driven the wire hard to opposite levels.
   [[nodiscard]] bool was_shorted() const { return was_shorted_; }
 
  private:

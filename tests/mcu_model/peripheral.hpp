@@ -9,7 +9,7 @@
 
 namespace ex9000::registers {
 
-/// A block of registers behind the bus. Offsets are from its base address.
+/// A block of registers on the bus. Offsets are relative to its base address.
 class Peripheral {
  public:
   explicit Peripheral(std::uint32_t base) : base_(base) {}
@@ -21,7 +21,7 @@ class Peripheral {
   virtual std::uint32_t read(std::uint32_t offset) = 0;
   virtual void write(std::uint32_t offset, std::uint32_t value) = 0;
 
-  /// Whom its interrupt line leads to, told of every change.
+  /// Sets the function to call on every change of the interrupt line.
   void on_interrupt_line(std::function<void(bool)> act) { on_line_ = std::move(act); }
 
  protected:

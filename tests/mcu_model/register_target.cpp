@@ -1,6 +1,6 @@
 #include "tests/mcu_model/register_target.hpp"
 
-#include "sim/module.hpp"
+#include "sim/bus/module.hpp"
 
 namespace ex9000::registers {
 
@@ -11,7 +11,7 @@ using std::chrono::milliseconds;
 
 constexpr milliseconds kComingUp{100};
 constexpr microseconds kBetweenEdges{40};
-constexpr milliseconds kFlashes{600};  ///< it changes within this
+constexpr milliseconds kFlashes{600};  ///< a flashing LED changes within this time
 
 }  // namespace
 

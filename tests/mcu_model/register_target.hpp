@@ -1,4 +1,4 @@
-// An image on its registers as a transcript's target.
+// A target of transcripts: an image on a simulated microcontroller and its board.
 #pragma once
 
 #include <optional>
@@ -10,7 +10,7 @@ namespace ex9000::registers {
 
 class RegisterTarget final : public play::Target {
  public:
-  /// `image` is for the model that `start` is called with.
+  /// `image` must be built for the model that is passed to `start`.
   explicit RegisterTarget(const Image& image) : bench_(image) {}
 
   void start(const Model& model, const Settings* preset) override;

@@ -12,7 +12,7 @@ namespace ex9000::registers {
 
 constexpr unsigned kBitsACharacter = 10;
 
-/// One character, and how it is to be spoiled.
+/// One character, and its faults.
 struct Character {
   std::uint8_t byte = 0;
   bool stop = true;       ///< false: the stop bit is low
@@ -22,7 +22,7 @@ struct Character {
 /// Puts characters on a wire, one at a time.
 class SerialSender {
  public:
-  /// `level` is told each bit as it begins; `done` that the last stop bit is over.
+  /// Calls `level` with each bit when the bit begins, and `done` when the last stop bit ends.
   SerialSender(Timeline& timeline, std::function<void(bool)> level, std::function<void()> done)
       : level_(std::move(level)), done_(std::move(done)), next_bit_(timeline, [this] { go_on(); }) {}
 
@@ -60,23 +60,23 @@ class SerialSender {
   unsigned bit_ = 0;
 };
 
-/// Takes characters from a wire: a falling edge, then a look at the middle of each bit.
+/// Receives characters from a wire: after a falling edge it samples the middle of each bit.
 class SerialReceiver {
  public:
   struct Received {
     std::uint8_t byte;
     bool framing_error;  ///< the stop bit was low
-    bool was_break;      ///< and so was everything before it
+    bool was_break;      ///< all other bits were low, too
   };
 
-  /// `deliver` is told in the middle of the stop bit.
+  /// Calls `deliver` in the middle of the stop bit.
   SerialReceiver(Timeline& timeline, std::function<void(Received)> deliver)
       : deliver_(std::move(deliver)), next_look_(timeline, [this] { look(); }), timeline_(timeline) {}
 
   void set_bit_time(Instant time) { bit_time_ = time; }
   [[nodiscard]] bool busy() const { return next_look_.is_set(); }
 
-  /// The wire has changed.
+  /// Must be called when the level of the wire has changed.
   void level(bool high) {
     const bool fell = level_ && !high;
     level_ = high;
@@ -92,7 +92,7 @@ class SerialReceiver {
   void look() {
     if (bit_ == 0) {
       if (level_) {
-        return;  // a spike
+        return;  // a spike, not a start bit
       }
     } else if (bit_ < kBitsACharacter - 1) {
       byte_ = static_cast<std::uint8_t>(byte_ | (level_ ? 1U : 0U) << (bit_ - 1));

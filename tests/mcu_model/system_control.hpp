@@ -18,7 +18,7 @@ class SystemControl final : public Peripheral {
   static constexpr std::uint32_t kRis = 0x050;
   static constexpr std::uint32_t kRcc = 0x060;
   static constexpr std::uint32_t kRcgc = 0x100;  ///< three words
-  static constexpr std::uint32_t kSrcr = 0x040;  ///< likewise
+  static constexpr std::uint32_t kSrcr = 0x040;  ///< three words
 
   SystemControl(const Chip& chip, Timeline& timeline);
 
@@ -27,11 +27,12 @@ class SystemControl final : public Peripheral {
 
   /// One period of the system clock.
   [[nodiscard]] Instant cycle() const { return cycle_; }
-  /// Told before the period changes to what it is told.
+  /// Adds a function that receives the new period before it takes effect.
   void on_clock_change(std::function<void(Instant cycle)> act) { on_clock_change_.push_back(std::move(act)); }
-  /// The processor waits until then; told when it must.
+  /// Sets a function to call when the processor must wait until `until`.
   void on_standstill(std::function<void(Instant until)> act) { on_standstill_ = std::move(act); }
-  /// Told of each bit of SRCR`index` that is set; it holds its peripheral in reset until it is cleared.
+  /// Sets a function to call for each bit of SRCR`index` that is set. The bit holds its peripheral in reset
+  /// until it is cleared.
   void on_software_reset(std::function<void(unsigned index, unsigned bit)> act) {
     on_software_reset_ = std::move(act);
   }
@@ -39,13 +40,13 @@ class SystemControl final : public Peripheral {
     return (resets_.at(index) >> bit & 1U) != 0;
   }
 
-  /// Whether bit `bit` of RCGC`index` is set, and has been for long enough.
+  /// Whether bit `bit` of RCGC`index` is set; TooFresh: it has not been set for long enough.
   enum class Gate : std::uint8_t { Shut, TooFresh, Open };
   [[nodiscard]] Gate gate(unsigned index, unsigned bit) const;
 
-  /// How long the crystal takes to swing, from 2 ms or so to 18 ms.
+  /// Sets how long the crystal takes to start, about 2 to 18 ms.
   void set_crystal_start(Instant time) { crystal_start_ = time; }
-  /// How long the PLL takes to lock; kNever: it does not.
+  /// Sets how long the PLL takes to lock; kNever: it does not lock.
   void set_lock_time(Instant time) { lock_time_ = time; }
 
  private:

@@ -1,4 +1,4 @@
-// Virtual time in picoseconds, fine enough for clock cycles of any crystal, and what happens in it.
+// Virtual time in picoseconds, which resolves the clock cycles of any crystal, and alarms in it.
 #pragma once
 
 #include <chrono>
@@ -8,7 +8,7 @@
 
 namespace ex9000::registers {
 
-/// Since the supply came on for the first time; 64 bits last 106 days.
+/// Time since the supply was switched on for the first time; 64 bits last 106 days.
 using Instant = std::chrono::duration<std::int64_t, std::pico>;
 
 constexpr Instant kNever = Instant::max();
@@ -23,9 +23,10 @@ class Timeline {
   Timeline& operator=(const Timeline&) = delete;
 
   [[nodiscard]] Instant now() const { return now_; }
-  /// When the next alarm is due; kNever: none is set.
+  /// When the next alarm is due; kNever if none is set.
   [[nodiscard]] Instant next();
-  /// Rings what is due up to `to`, each at its instant; then it is `to`, unless it is later already.
+  /// Rings all alarms that are due up to `to`, each at its time. Then the time is `to`, unless it was later
+  /// already.
   void advance(Instant to);
 
  private:
@@ -34,11 +35,11 @@ class Timeline {
   Instant now_{0};
   std::vector<Alarm*> alarms_;
   bool next_known_ = false;
-  Alarm* next_ = nullptr;  ///< null: none is set
+  Alarm* next_ = nullptr;  ///< null if none is set
   Instant next_at_ = kNever;
 };
 
-/// Rings once each time it is set. Belongs to whoever sets it; the timeline must outlive it.
+/// Rings once for each `set`. The timeline must outlive it.
 class Alarm {
  public:
   Alarm(Timeline& timeline, std::function<void()> ring);
@@ -47,7 +48,7 @@ class Alarm {
   Alarm& operator=(const Alarm&) = delete;
 
   void set(Instant when) {
-    // One that was not the next and is not to be either leaves the next what it is.
+    // If this alarm neither was the next one nor becomes the next one, the known next alarm stays valid.
     timeline_.next_known_ = timeline_.next_known_ && timeline_.next_ != this && when > timeline_.next_at_;
     when_ = when;
   }

@@ -128,12 +128,12 @@ void UartPort::transmit(std::uint8_t byte) {
   }
 }
 
-/// The start bit begins with a tick of the baud generator, which runs all the time.
+/// The start bit begins at a tick of the baud rate generator, which runs all the time.
 void UartPort::begin_character(std::uint8_t byte, Instant not_before) {
   const Instant tick = bit_time_ / 16;
   shifting_ = true;
   sender_.begin({byte, true, 0}, bit_time_, (not_before + tick - Instant(1)) / tick * tick);
-  raise(kTransmittedBit);  // through the level at which nothing is held any more
+  raise(kTransmittedBit);  // the holding register is empty
 }
 
 void UartPort::character_is_over() {
@@ -162,7 +162,7 @@ void UartPort::receive(SerialReceiver::Received received) {
     raise(kOverrunBit);
     return;
   }
-  // The bit tells of what was lost before this byte.
+  // The overrun bit reports bytes that were lost before this byte.
   receive_holding_ = received.byte | (received.framing_error ? 1U << 8U : 0) |
                      (received.was_break ? 1U << 10U : 0) | (overrun_ ? 1U << 11U : 0);
   overrun_ = false;

@@ -1,5 +1,5 @@
-// A UART with its FIFOs off. Data sheets: LM3S6965 12.3 to 12.5, TM4C123GH6PM 14.3 to 14.5, and the block
-// they both have, ARM's PL011 (DDI 0183), for when its interrupts come and go.
+// A UART without its FIFOs. Data sheets: LM3S6965 12.3 to 12.5, TM4C123GH6PM 14.3 to 14.5. The manual of
+// their common block, ARM's PL011 (DDI 0183), says when its interrupts are raised and cleared.
 #pragma once
 
 #include <cstdint>
@@ -26,7 +26,7 @@ class UartPort final : public Peripheral {
   static constexpr std::uint32_t kMasked = 0x040;
   static constexpr std::uint32_t kClear = 0x044;
 
-  /// Where its pins are, and their number in GPIOPCTL.
+  /// The pins of the UART, and their function number in GPIOPCTL.
   struct Pins {
     GpioPort* port = nullptr;
     unsigned receive = 0;
@@ -42,12 +42,12 @@ class UartPort final : public Peripheral {
   [[nodiscard]] bool receives_on(const GpioPort& port, unsigned pin) const {
     return pins_.port == &port && pins_.receive == pin;
   }
-  /// The level of its receive pin has changed.
+  /// Must be called when the level of the receive pin has changed.
   void receive_level(bool high);
 
   [[nodiscard]] Instant bit_time() const { return bit_time_; }
   [[nodiscard]] bool enabled() const { return (control_ & 1U) != 0; }
-  /// A receiver that nobody has emptied in time.
+  /// How often the receiver was not read in time.
   [[nodiscard]] unsigned overruns() const { return overruns_; }
 
  private:

@@ -19,7 +19,7 @@ class WatchdogTimer final : public Peripheral {
   static constexpr std::uint32_t kClear = 0x00C;
   static constexpr std::uint32_t kLock = 0xC00;
 
-  /// `bite`: it has counted down twice.
+  /// Calls `bite` when it has counted down twice.
   WatchdogTimer(SystemControl& clock, Timeline& timeline, std::function<void()> bite)
       : Peripheral(kBase), clock_(clock), timeline_(timeline), bite_(std::move(bite)), end_(timeline, [this] {
           counted_down();
@@ -73,7 +73,7 @@ class WatchdogTimer final : public Peripheral {
   [[nodiscard]] bool locked() const { return locked_; }
   [[nodiscard]] bool running() const { return end_.is_set(); }
   [[nodiscard]] unsigned feeds() const { return feeds_; }
-  /// The first of two countdowns is over.
+  /// Whether the first of the two countdowns is over.
   [[nodiscard]] bool flagged() const { return flagged_; }
 
  private:

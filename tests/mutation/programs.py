@@ -114,22 +114,57 @@ class Program:
         return reached
 
 
-# Of the program, what runs on Asio or has files, ports and signals of the operating system: tests of the program as a
+# Of the simulator, what runs on Asio or has files, ports and signals of the operating system: tests of the program as a
 # process have that, and they are no part of this. Names without folder and extension.
 PROCESS = set(
-    "claim control_socket line_ports listening made_file main pacer panel_server port program pty pty_port "
-    "running_line serial_port session stepped_line stepper tcp_port".split()
+    "claim control_socket line_ports listening main new_file pacer panel_server port program pty pty_port "
+    "running_line serial_port session stepped_line stepper stop_signals tcp_port".split()
 )
-# Each takes long to compile, for the sake of a library's headers, or is all that one needs of a unit that does.
-ALONE = ["arguments", "json_log", "line_record", "play_record", "tcp_address"]
+# What takes long to compile and few tests reach, beside what sim/CMakeLists.txt compiles on its own.
+ALONE = {"line_record", "play_record"}
 
 
-def sources_of_library(library):
-    """As sim/CMakeLists.txt has them."""
+@dataclasses.dataclass(frozen=True)
+class Folder:
+    """A library of sim/CMakeLists.txt: the units that are compiled of it, and the libraries that it is linked with."""
+
+    units: tuple
+    libraries: tuple
+
+
+def without_process(sources):
+    return [each for each in sources.split() if stem_of(each) not in PROCESS]
+
+
+def folders():
     text = (ROOT / "sim/CMakeLists.txt").read_text()
-    listed = re.search(rf"add_library\({library} \w+ ([^)]*)\)", text)[1]
-    sources = [f"sim/{source}" for source in listed.split() if source.endswith(".cpp")]
-    return tuple(source for source in sources if stem_of(source) not in PROCESS.union(ALONE))
+    found = {}
+    for name, body in re.findall(r"^ex9000_folder\((\w+)\s+([^)]*)\)", text, re.MULTILINE):
+        parts = dict(re.findall(r"(SOURCES|ON_THEIR_OWN|PUBLIC|PRIVATE)\s+([^A-Z]*(?:[A-Z]\w*::\w+[^A-Z]*)*)", body))
+        sources = without_process(parts.get("SOURCES", ""))
+        together = tuple(f"sim/{name}/{each}" for each in sources if stem_of(each) not in ALONE)
+        alone = [each for each in sources if stem_of(each) in ALONE] + without_process(parts.get("ON_THEIR_OWN", ""))
+        options = ("-O1",) if "ex9000_hot" in parts.get("PRIVATE", "") else ("-O0",)
+        units = [Unit(name, together, options)] if together else []
+        units += [Unit(stem_of(each), (f"sim/{name}/{each}",)) for each in alone]
+        libraries = tuple(re.findall(r"ex9000_(\w+)", parts.get("PUBLIC", "")))
+        found[name] = Folder(tuple(units), libraries)
+    return found
+
+
+FOLDERS = folders()
+
+
+def units_of(folder):
+    """Names of the units of a folder and of all that it is linked with."""
+    names = ["core"]
+    waiting = [folder]
+    while waiting:
+        known = FOLDERS.get(waiting.pop(0))
+        if known:
+            names += [unit.name for unit in known.units]
+            waiting += known.libraries
+    return tuple(dict.fromkeys(names))
 
 
 def library_units():
@@ -138,14 +173,8 @@ def library_units():
     mcu = [file for file in files("tests/mcu_model/*.cpp") if stem_of(file) not in others]
     return [
         Unit("core", (*core, *files("hal/doubles/*.cpp")), ("-O1",)),
-        Unit("bus", sources_of_library("ex9000_bus"), ("-O1",)),
-        Unit("play", sources_of_library("ex9000_play")),
+        *(unit for folder in FOLDERS.values() for unit in folder.units),
         Unit("runner", ("tests/support/core_target.cpp", "tests/support/coverage.cpp"), ("-O1",)),
-        Unit("description", sources_of_library("ex9000_description")),
-        Unit("bus_file", sources_of_library("ex9000_bus_file")),
-        Unit("program", sources_of_library("ex9000_program")),
-        *(Unit(stem_of(file), (file,)) for file in files("sim/*.cpp") if stem_of(file) in ALONE),
-        Unit("panel", sources_of_library("ex9000_panel")),
         Unit("mcu_model", tuple(mcu), ("-O1", SHADOW)),
         Unit("observed_core", core, ("-O1", OBSERVED)),
         Unit("long_uptime_core", core, ("-O1", LONG_UPTIME)),
@@ -154,10 +183,8 @@ def library_units():
 
 LIBRARIES = {
     "ex9000_core": ("core",),
-    "ex9000_bus": ("core", "bus"),
-    "ex9000_runner": ("core", "bus", "play", "runner", "tcp_address"),
-    "ex9000_description": ("core", "bus", "description", "tcp_address"),
-    "ex9000_program": ("core", "bus", "play", "description", "bus_file", "program", "panel", *ALONE),
+    **{f"ex9000_{folder}": units_of(folder) for folder in FOLDERS},
+    "ex9000_runner": (*units_of("play"), "runner"),
     "ex9000_mcu_model": ("mcu_model",),
     "ex9000_observed_core": ("observed_core",),
     "ex9000_long_uptime_core": ("long_uptime_core",),
@@ -168,7 +195,7 @@ OPTIONS = {
     "ex9000_long_uptime_core": (LONG_UPTIME,),
 }
 LIBRARY_UNITS = {unit.name: unit for unit in library_units()}
-FILES = (f'-DEX9000_README="{ROOT}/README.md"',
+FILES = (f'-DEX9000_REGISTERS="{ROOT}/firmware/registers.md"',
          f'-DEX9000_STORED_BYTES="{ROOT}/tests/firmware/settings/stored_bytes"')
 
 
@@ -222,7 +249,8 @@ def image_programs():
     for name in ("start_up_driver_test", "image_driver_test"):
         test = Unit(name, (f"tests/boards/{name}.cpp",), ("-O0", SHADOW, '-DEX9000_IMAGES="images"'))
         chosen = (("GTEST_FILTER", "*_EX9055D"),)
-        programs.append(Program(name, (test,), ("core", "bus", "mcu_model"), chosen, IMAGES, ("-rdynamic", "-ldl"), 40))
+        units = (*units_of("line"), "mcu_model")
+        programs.append(Program(name, (test,), units, chosen, IMAGES, ("-rdynamic", "-ldl"), 40))
     return programs
 
 
@@ -268,7 +296,7 @@ def areas():
     core = [LIBRARY_UNITS["core"]]
     images = [image.unit for image in IMAGES]
     of_drivers = [hal, interleaved, sim, [players()], image_programs()]
-    of_simulator = [LIBRARY_UNITS[name] for name in LIBRARIES["ex9000_program"] if name != "core"]
+    of_simulator = [LIBRARY_UNITS[name] for name in LIBRARIES["ex9000_app"] if name != "core"]
     return [
         Area("firmware", files("firmware/*.cpp", "firmware/*.hpp"), core + images, [[players()], of_core]),
         Area("hal", files("hal/*.cpp", "hal/*.hpp"), core + images, of_drivers),

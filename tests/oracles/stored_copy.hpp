@@ -1,6 +1,6 @@
-// One copy of the settings as it lies in the EEPROM, read without the firmware's code: the layouts of
-// firmware/settings/record.hpp and old_layouts.hpp once more, the check from its definition, and wire.md
-// sections 4 and 8 for what commands can have stored.
+// One copy of the settings in the EEPROM, read without the firmware's code. It implements the layouts of
+// firmware/settings/record.hpp and old_layouts.hpp independently, the check from its definition, and the
+// settings that commands can store from wire.md sections 4 and 8.
 #pragma once
 
 #include <algorithm>
@@ -12,7 +12,7 @@
 
 namespace ex9000 {
 
-/// What of a model decides which settings it can have.
+/// The properties of a model that decide which settings are possible.
 struct StoringModel {
   std::string_view designation;
   unsigned outputs;
@@ -21,7 +21,7 @@ struct StoringModel {
   std::string_view factory_name;
 };
 
-/// What a copy says, as the bytes say it.
+/// The settings in a copy.
 struct CopiedSettings {
   std::uint8_t address;
   std::uint8_t baud_code;
@@ -35,20 +35,20 @@ struct CopiedSettings {
   std::uint16_t safe_value;
 };
 
-/// Where copies lie: two places for layout 3, two for the older layouts.
+/// The addresses of copies: two places for layout 3, two for the older layouts.
 constexpr std::array<std::size_t, 4> kStoredPlaces{0x080, 0x100, 0x000, 0x020};
-constexpr std::size_t kStoredMemory = 0x180;  ///< bytes of the memory that settings may take
+constexpr std::size_t kStoredMemory = 0x180;  ///< bytes of the memory that settings may occupy
 constexpr std::size_t kStoredPage = 32;
 
-/// Refers to the memory and to the model.
+/// Refers to the memory and to the model, which must outlive it.
 class StoredCopy {
  public:
   /// `place`: one of kStoredPlaces.
   StoredCopy(const StoringModel& model, const std::uint8_t* memory, std::size_t place)
       : model_(model), bytes_(memory + place), layout_(place >= 0x080 ? 3 : layout_of_old(bytes_)) {}
 
-  /// Makes layout and check right, those of layout 2 in an old place; in a new one the length too, if it does
-  /// not fit.
+  /// Makes layout and check of the copy at `place` correct: those of layout 2 in an old place; in a new place
+  /// those of layout 3, and the length if it is too great.
   static void seal(const StoringModel& model, std::uint8_t* memory, std::size_t place) {
     std::uint8_t* bytes = memory + place;
     if (place >= 0x080) {
@@ -75,12 +75,12 @@ class StoredCopy {
     const std::uint32_t right = check();
     return word(check_at()) == right % 65536 && word(check_at() + 2) == right / 65536 && is_possible();
   }
-  /// Of two good ones.
+  /// Whether this copy is newer than `other`. Both must be good.
   [[nodiscard]] bool counts_over(const StoredCopy& other) const {
     const unsigned ahead = (sequence() - other.sequence()) & 0xFFFFU;
     return layout_ == other.layout_ ? ahead != 0 && ahead < 0x8000 : layout_ > other.layout_;
   }
-  /// Of a good one.
+  /// Returns the settings of a good copy.
   [[nodiscard]] CopiedSettings settings() const {
     const Fields at = fields();
     const bool flags_are_bits = layout_ == 1;
@@ -101,13 +101,13 @@ class StoredCopy {
     settings.safe_value = static_cast<std::uint16_t>(reaches(at.safe, 2) ? word(at.safe) : 0);
     return settings;
   }
-  /// How many bytes it takes, if it is good.
+  /// The size of a good copy in bytes.
   [[nodiscard]] std::size_t size() const { return check_at() + 4; }
 
  private:
   static constexpr std::uint8_t kLongest = 120;  // bytes of settings
 
-  /// Where each setting is.
+  /// The offset of each setting in the copy.
   struct Fields {
     std::size_t sequence, address, baud_code, format, protocol, timeout, enabled, status, name, name_length,
         power_on, safe;
@@ -133,7 +133,7 @@ class StoredCopy {
   [[nodiscard]] std::size_t check_at() const {
     return layout_ == 3 ? std::size_t{4} + bytes_[1] : layout_ == 2 ? 24 : 21;
   }
-  /// A record of layout 3 may end before.
+  /// A record of layout 3 may end before a setting.
   [[nodiscard]] bool reaches(std::size_t at, std::size_t size) const {
     return layout_ != 3 || at + size <= check_at();
   }
@@ -143,7 +143,7 @@ class StoredCopy {
   [[nodiscard]] unsigned sequence() const { return word(fields().sequence); }
   [[nodiscard]] unsigned word(std::size_t at) const { return bytes_[at] + bytes_[at + 1] * 256U; }
 
-  /// CRC-32 of IEEE 802.3 over the designation and all that is in front of the check.
+  /// CRC-32 of IEEE 802.3 over the designation and all bytes before the check.
   [[nodiscard]] std::uint32_t check() const {
     std::uint32_t crc = 0xFFFFFFFF;
     const auto add = [&crc](unsigned byte) {
@@ -157,7 +157,7 @@ class StoredCopy {
     std::for_each(bytes_, bytes_ + check_at(), add);
     return ~crc;
   }
-  /// Four shifts of each value of four bits.
+  /// For each value of four bits, the result of four shifts.
   static constexpr std::array<std::uint32_t, 16> kOfDigit = [] {
     std::array<std::uint32_t, 16> table{};
     for (std::uint32_t i = 0; i < table.size(); ++i) {
@@ -192,10 +192,10 @@ class StoredCopy {
 
   const StoringModel& model_;
   const std::uint8_t* bytes_;
-  unsigned layout_;  ///< 0: none
+  unsigned layout_;  ///< 0: no known layout
 };
 
-/// The place of the copy that counts, of those in `memory`; kStoredMemory if none is good.
+/// Returns the place of the valid copy that the module uses; kStoredMemory if no copy is good.
 inline std::size_t place_that_counts(const StoringModel& model, const std::uint8_t* memory) {
   std::size_t counts = kStoredMemory;
   for (const std::size_t place : kStoredPlaces) {

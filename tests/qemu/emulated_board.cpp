@@ -1,6 +1,6 @@
 #include "tests/qemu/emulated_board.hpp"
 
-#include "sim/module.hpp"
+#include "sim/bus/module.hpp"
 #include "tests/qemu/signals.hpp"
 #include "tests/qemu/uart_registers.hpp"
 

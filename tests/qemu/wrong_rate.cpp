@@ -1,6 +1,6 @@
 #include "tests/qemu/wrong_rate.hpp"
 
-#include "sim/uart_sampler.hpp"
+#include "sim/bus/uart_sampler.hpp"
 
 namespace ex9000::rig {
 

@@ -2,7 +2,7 @@
 
 #include <utility>
 
-#include "sim/time_text.hpp"
+#include "sim/text/durations.hpp"
 
 namespace ex9000::system {
 

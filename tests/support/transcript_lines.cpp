@@ -3,7 +3,7 @@
 #include <memory>
 #include <utility>
 
-#include "sim/module_spec.hpp"
+#include "sim/text/values.hpp"
 
 namespace ex9000::system {
 

@@ -14,13 +14,13 @@ using std::chrono::microseconds;
 using std::chrono::milliseconds;
 
 constexpr milliseconds kComesUpWithin{100};
-constexpr milliseconds kStoresWithin{600};  // a timeout that is waited for
-constexpr std::uint16_t kDriven = 0xC35A;   // by a command, before the one that stores
+constexpr milliseconds kStoresWithin{600};  // includes the wait for a timeout
+constexpr std::uint16_t kDriven = 0xC35A;   // a command sets it before the command that stores
 
-constexpr unsigned kWholeCopy = 20;  // bytes; what invalidates one is shorter
+constexpr unsigned kWholeCopy = 20;  // in bytes; a write that invalidates a copy is shorter
 
 constexpr unsigned kWaysAByteIsLeft = 5;
-/// A byte that was about to change when the power failed.
+/// Returns one of the values that a byte may have if the power fails while it changes.
 std::uint8_t left(unsigned way, std::uint8_t old_byte, std::uint8_t new_byte) {
   const std::array<std::uint8_t, kWaysAByteIsLeft> ways{old_byte, new_byte, 0x00, 0xFF,
                                                         static_cast<std::uint8_t>(new_byte ^ 0x5AU)};
@@ -29,7 +29,7 @@ std::uint8_t left(unsigned way, std::uint8_t old_byte, std::uint8_t new_byte) {
 
 }  // namespace
 
-/// A good new copy beside a good old one: the power has failed before the old one was invalidated.
+/// Whether a good new copy is next to a good old one: the power failed before the old one was invalidated.
 bool CutBench::holds_what_must_not_count(const Contents& contents) const {
   const StoringModel storing = storing_model(model_);
   const auto good = [&](std::size_t place) { return StoredCopy(storing, contents.data(), place).is_good(); };
@@ -37,7 +37,8 @@ bool CutBench::holds_what_must_not_count(const Contents& contents) const {
          (good(kStoredPlaces[2]) || good(kStoredPlaces[3]));
 }
 
-/// firmware/settings/store.hpp: how many pages the next store programs, those that invalidate old copies too.
+/// firmware/settings/store.hpp: the number of pages that the next store programs, including those that
+/// invalidate old copies.
 std::size_t CutBench::pages_of_a_store(const Contents& contents) const {
   const StoringModel storing = storing_model(model_);
   const std::size_t place = place_that_counts(storing, contents.data());
@@ -94,7 +95,7 @@ Manner CutBench::speak_as(const Settings& settings, bool init_mode) {
   return init_mode ? Manner::init_mode() : Manner::of(settings);
 }
 
-/// The line is quiet for long enough before.
+/// Sends `frame` after a sufficient silence.
 void CutBench::send(const Bytes& frame) {
   bench_.run_for(40 * bench_.line.bit_time() + microseconds(1800));
   bench_.line.heard.clear();
@@ -102,7 +103,7 @@ void CutBench::send(const Bytes& frame) {
   bench_.line.send(frame);
 }
 
-/// Nothing where none begins within 25 ms.
+/// Returns the reply; empty if none begins within 25 ms.
 CutBench::Bytes CutBench::hear() {
   while (bench_.line.sending()) {
     bench_.run_for(microseconds(500));
@@ -150,8 +151,8 @@ Found CutBench::come_up(const Contents& contents, const std::vector<Settings>& g
   return found;
 }
 
-/// What a cut now may leave. While a page is programmed, byte by byte from either end, each byte is another
-/// point.
+/// Adds the contents that a cut at this time may leave. While a page is programmed, byte by byte from either
+/// end, each byte is a separate point.
 void CutBench::note_cuts(Cuts& cuts) {
   const bool done = !bench_.line.drives.empty();
   const auto note = [&](const Contents& contents) {
@@ -191,7 +192,7 @@ void CutBench::set_outputs(const Manner& manner) {
   ASSERT_EQ(bench_.outputs(), kDriven);
 }
 
-/// Until it is stored and answered, and everything is quiet again.
+/// Executes a command until it is stored and answered, and the bus and the line are idle.
 void CutBench::carry_out(const Manner& manner, const StoringCommand& command, const Settings& before,
                          std::size_t pages) {
   const std::size_t had_programmed = bench_.eeprom.programmed().size();
@@ -211,7 +212,7 @@ void CutBench::carry_out(const Manner& manner, const StoringCommand& command, co
     ASSERT_GE(reply.size(), 3U) << "no answer";
     EXPECT_TRUE(manner.protocol == Protocol::Ascii ? reply[0] == '!' : reply[1] < 0x80U) << "refused";
   }
-  bench_.run_for(milliseconds(10));  // what is stored is read back
+  bench_.run_for(milliseconds(10));  // the module reads back what it has stored
 }
 
 std::uint16_t CutBench::outputs_before(const Settings& settings) const {
@@ -230,7 +231,7 @@ Manner CutBench::get_ready(const Contents& contents, const Settings& before, con
   }
   if (command.init == Init::Tied) {
     bench_.set_init(true);
-    bench_.run_for(milliseconds(25));  // wire.md D13
+    bench_.run_for(milliseconds(25));  // debounce time of INIT*, wire.md D13
   }
   EXPECT_EQ(bench_.outputs(), outputs_before(before));
   bench_.line.drives.clear();
@@ -249,7 +250,7 @@ Cuts CutBench::cut_everywhere(const Contents& contents, const Settings& before,
     note_cuts(cuts);
     cuts.events.push_back(bench_.timeline.now() - began);
     if (bench_.eeprom.programming()) {
-      // A timeout drives at once, a command when it is stored.
+      // A timeout drives the outputs at once; a command drives them when it is stored.
       EXPECT_EQ(bench_.outputs(), command.is_timeout() ? outputs_done : cuts.outputs);
     }
   });
@@ -264,7 +265,7 @@ Cuts CutBench::cut_everywhere(const Contents& contents, const Settings& before,
 
 Attempt CutBench::attempt(const Contents& contents, const Settings& before, const StoringCommand& command,
                           std::uint16_t place, std::uint8_t bits, std::uint8_t stuck) {
-  constexpr milliseconds kTriedAgain{1300};  // wire.md D15: every second
+  constexpr milliseconds kTriedAgain{1300};  // the module retries every second, wire.md D15
   Attempt attempt;
   const Manner manner = get_ready(contents, before, command);
   EepromChip& eeprom = bench_.eeprom;
@@ -312,7 +313,7 @@ AfterReset CutBench::reset_after(Instant time, const Contents& contents, const S
   const std::uint16_t outputs_before_it = bench_.outputs();
   shown_ = Outputs();
   bench_.reset();
-  // All of them go off with it, and nothing runs yet.
+  // A reset switches all outputs off, and no code runs yet.
   EXPECT_EQ(shown_.ever_on & ~outputs_before_it, 0);
   EXPECT_EQ(bench_.outputs(), 0);
   shown_ = Outputs();

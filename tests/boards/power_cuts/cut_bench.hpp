@@ -1,5 +1,5 @@
-// An image that stores, the contents of its EEPROM at every point at which the power may fail meanwhile, and
-// what it comes up with from them.
+// An image that stores settings, the contents of its EEPROM at every point at which the power may fail
+// meanwhile, and the settings with which it starts from these contents.
 #pragma once
 
 #include <array>
@@ -19,79 +19,80 @@
 
 namespace ex9000::registers {
 
-/// What the EEPROM holds where settings may lie; the rest of it is blank.
+/// The contents of the EEPROM at the addresses that settings may use; the rest is blank.
 using Contents = std::array<std::uint8_t, kStoredMemory>;
 
-/// What power cuts in the course of one command leave.
+/// The results of power cuts during one command.
 struct Cuts {
   std::size_t points = 0;  ///< on the bus, and within each byte that is programmed
-  std::size_t cuts = 0;    ///< points, by what they may do to the page
-  /// Each of the contents that are left, once. True: of at least one of these cuts it is certain that the
-  /// command is done, for the reply to it had begun, or because it is long over where it has none.
+  std::size_t cuts = 0;    ///< points, multiplied by the effects that a cut may have on the page
+  /// Each of the resulting contents, once. True: at least one of these cuts came after the command was
+  /// certainly done, because the reply had begun, or because enough time had passed if the command has no
+  /// reply.
   std::map<Contents, bool> left;
   std::uint16_t outputs = 0;    ///< before the command
-  std::vector<Instant> events;  ///< on the EEPROM's bus, behind the begin of the command
+  std::vector<Instant> events;  ///< times of events on the EEPROM's bus, from the beginning of the command
 };
 
-/// What has been seen at the pins of the outputs since a reset.
+/// The levels seen at the output pins since a reset.
 struct Outputs {
   std::uint16_t now = 0;
   std::uint16_t ever_on = 0;
-  unsigned changes = 0;  ///< of any of them
+  unsigned changes = 0;  ///< of any output
 };
 
-/// As a master finds a module that has come up.
+/// The state that a master finds when a module has started.
 struct Found {
-  std::optional<Settings> settings;  ///< none: it does not answer
+  std::optional<Settings> settings;  ///< no value: the module does not answer
   Outputs outputs;                   ///< before the first request
 };
 
-/// A module whose microcontroller alone began anew in the middle of a command.
+/// A module whose microcontroller was reset in the middle of a command while the EEPROM kept its supply.
 struct AfterReset {
   Contents contents;
   bool certainly_done;  ///< as in Cuts::left
   Outputs outputs;
 };
 
-/// What a worn-out memory makes of a command.
+/// The results of a command on a worn-out memory.
 struct Attempt {
   std::vector<std::uint8_t> reply;
-  Instant reply_after{0};  ///< from the end of the request to the driver; up to 0.1 ms less than it was
-  unsigned spoiled = 0;    ///< bytes that the memory has kept otherwise than it was told
-  unsigned tries = 0;      ///< whole copies that were programmed
-  std::vector<Contents> meanwhile;  ///< until the reply began, or the last page that was programmed was
-  std::vector<Contents> behind;     ///< from then on, for more than a second
+  Instant reply_after{0};  ///< from the end of the request until the driver is on; up to 0.1 ms too short
+  unsigned spoiled = 0;    ///< bytes that the memory has stored incorrectly
+  unsigned tries = 0;      ///< number of whole copies that were programmed
+  std::vector<Contents> meanwhile;  ///< until the reply began, or the last page was programmed
+  std::vector<Contents> behind;     ///< after that, for more than a second
   std::uint16_t outputs_before = 0;
-  std::uint16_t outputs = 0;  ///< in the end
+  std::uint16_t outputs = 0;  ///< at the end
 };
 
 class CutBench {
  public:
   CutBench(const Image& image, const Model& model);
 
-  /// The command carried out on a module that comes up with `contents`, which are `before`. That it is
-  /// answered as it should be, and drives what it should when it should, is expected by the way.
+  /// Executes the command on a module that starts with `contents`, which store `before`. Also checks that the
+  /// module answers correctly and drives the correct outputs at the correct time.
   Cuts cut_everywhere(const Contents& contents, const Settings& before, const StoringCommand& command);
 
-  /// The same, but for a reset of the microcontroller so long behind the begin of the command, while the
-  /// EEPROM keeps its supply. As it is once the module is up again.
+  /// Executes the command in the same way, but resets the microcontroller at `time` after the beginning of
+  /// the command, while the EEPROM keeps its supply. Returns the state after the restart.
   AfterReset reset_after(Instant time, const Contents& contents, const Settings& before,
                          const StoringCommand& command);
 
-  /// The command sent to a module that comes up with `contents`, which are `before`, and whose memory is worn
-  /// out then: from the place on, with these bits stuck.
+  /// Sends the command to a module that starts with `contents`, which store `before`. Then the memory is worn
+  /// out: the bits `bits` of the byte at `place` keep the value `stuck`.
   Attempt attempt(const Contents& contents, const Settings& before, const StoringCommand& command,
                   std::uint16_t place, std::uint8_t bits, std::uint8_t stuck);
 
-  /// Of a page, from now on: 10 ms at most, as the AT24C64's data sheet says.
+  /// Sets the programming time of a page: at most 10 ms according to the AT24C64's data sheet.
   void set_programming_time(Instant time) { bench_.eeprom.set_programming_time(time); }
 
-  /// The outputs from which such a command begins.
+  /// The outputs before such a command.
   [[nodiscard]] std::uint16_t outputs_before(const Settings& settings) const;
 
-  /// Comes up with `contents`, and is asked for all its settings in the protocol, at the rate and the address
-  /// of the first of `guesses` at which it answers. What Modbus does not tell, the data format, is asked for
-  /// in INIT mode where `thoroughly`, and otherwise is the guess's.
+  /// Starts the module with `contents` and reads all its settings with the protocol, baud rate and address of
+  /// the first of `guesses` for which it answers. Modbus cannot read the data format: if `thoroughly`, it is
+  /// read in INIT mode; otherwise it is taken from the guess.
   Found come_up(const Contents& contents, const std::vector<Settings>& guesses, bool thoroughly);
 
  private:
@@ -114,7 +115,7 @@ class CutBench {
                  std::size_t pages);
 
   const Model& model_;
-  Outputs shown_;  ///< but for what is so now; outlives the board
+  Outputs shown_;  ///< except for the present levels; declared before the board because it must outlive it
   BoardBench bench_;
 };
 

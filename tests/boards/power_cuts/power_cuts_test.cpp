@@ -1,10 +1,9 @@
 // Power cuts at every point of every command that stores, and of a timeout: wire.md section 8. "At the next
-// reset each command is either wholly done or not done at all", and what was answered is done.
+// reset each command is either wholly done or not done at all", and an answered command is done.
 //
-// The image stores, with its own drivers; what a cut at each point may leave in the EEPROM is judged by a
-// reader that has no code of the firmware (StoredCopy), all of it, and by the image, which comes up from it
-// and is asked for everything: some of it, chosen by a seed, or with EX9000_CUTS=all in the environment all
-// of it.
+// The image stores settings with its own drivers. A reader without code of the firmware (StoredCopy) checks
+// all contents that a cut may leave in the EEPROM. The image also starts from some of them, chosen by a seed,
+// and all its settings are read; with EX9000_CUTS=all in the environment it starts from all of them.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -32,14 +31,15 @@ class PowerCutsOf : public testing::TestWithParam<ImageName> {
         commands_(storing_commands(model_)),
         bench_(image_of(GetParam().board, GetParam().model), model_) {}
 
-  /// From the first moment on no output is ever on that is not to be, and none goes off again.
+  /// Checks that since the reset only the expected outputs have been switched on, and that none has been
+  /// switched off again.
   void expect_outputs(const Outputs& outputs, const Settings& settings) {
     ASSERT_EQ(outputs.now, outputs_from_reset(settings));
     ASSERT_EQ(outputs.ever_on, outputs.now);
     ASSERT_EQ(outputs.changes, std::bitset<16>(outputs.now).count());
   }
 
-  /// `contents` have been judged already: they are `settings`.
+  /// Starts the image from `contents`, which StoredCopy has already found to be `settings`.
   void come_up(const Contents& contents, const Settings& settings, const Settings& otherwise) {
     const Found found = bench_.come_up(contents, {settings, otherwise}, all_of_them());
     ASSERT_TRUE(found.settings) << "it does not answer";
@@ -48,8 +48,8 @@ class PowerCutsOf : public testing::TestWithParam<ImageName> {
     ++booted_;
   }
 
-  /// Of what the cuts have left, so many by the image as well. `unfinished` is what a command that was cut
-  /// before would have made of the settings: see TwiceInARow.
+  /// Checks all contents that the cuts have left; the image checks `by_the_image` of them as well.
+  /// `unfinished`: the settings that an earlier, interrupted command would have stored, see TwiceInARow.
   void judge(const Cuts& cuts, const Settings& before, const Settings& done, std::size_t by_the_image,
              const Settings* unfinished = nullptr) {
     points_ += cuts.points;
@@ -83,8 +83,8 @@ class PowerCutsOf : public testing::TestWithParam<ImageName> {
     }
   }
 
-  /// From the states in which a store programs several pages; without EX9000_CUTS=all, three commands of
-  /// each.
+  /// Starts from the states in which a store programs several pages. Without EX9000_CUTS=all, uses three
+  /// commands for each state.
   template <class Do>
   void for_some_commands_of_several_pages(Do what) {
     constexpr std::size_t kSome = 3;
@@ -103,8 +103,8 @@ class PowerCutsOf : public testing::TestWithParam<ImageName> {
     }
   }
 
-  /// So many pairs at most of what `first` may leave, and a second command that is cut everywhere. With
-  /// EX9000_CUTS=all each second command that can store something.
+  /// Checks up to `pairs` pairs of contents that `first` may leave and a second command that is cut
+  /// everywhere. With EX9000_CUTS=all, uses each second command that can store something.
   void cut_twice(const State& state, const StoringCommand& first, std::size_t pairs) {
     const Cuts cuts = bench_.cut_everywhere(state.contents, state.settings, first);
     const Settings unfinished = first.done_to(state.settings, cuts.outputs);
@@ -134,7 +134,7 @@ class PowerCutsOf : public testing::TestWithParam<ImageName> {
     return contents;
   }
 
-  /// All commands that can be sent to a module with these settings and change them.
+  /// Returns all commands that can be sent to a module with these settings and change them.
   std::vector<const StoringCommand*> storing_from(const Settings& settings) {
     std::vector<const StoringCommand*> commands;
     for (const StoringCommand& command : commands_) {
@@ -177,7 +177,8 @@ TEST_P(PowerCutsOf, LeaveEachCommandWhollyDoneOrNotAtAll) {
   });
 }
 
-/// The first store after an update, and one of a record of four pages: some commands, or all of them.
+/// The first store after an update, and the store of a record of four pages, with some commands or all of
+/// them.
 TEST_P(PowerCutsOf, InAStoreOfSeveralPagesLeaveEachCommandWhollyDoneOrNotAtAll) {
   for_some_commands_of_several_pages([this](const State& state, const StoringCommand& command) {
     const Cuts cuts = bench_.cut_everywhere(state.contents, state.settings, command);
@@ -185,26 +186,26 @@ TEST_P(PowerCutsOf, InAStoreOfSeveralPagesLeaveEachCommandWhollyDoneOrNotAtAll) 
   });
 }
 
-/// From all that a first cut may leave, or from some of it, all that a second may.
+/// Cuts a second command everywhere, from all contents that a first cut may leave, or from some of them.
 ///
-/// There may be the settings of the first command after the second cut that were not there after the first: a
-/// page of which only one byte is wrong is a good one as soon as the next store has come to that byte, where
-/// it is to be the same. Wholly done it is all the same, and nothing that was answered is lost.
+/// After the second cut, the settings of the first command may be valid although they were not after the
+/// first cut: a page with a single wrong byte becomes valid as soon as the next store writes that byte with
+/// the same value. The first command is wholly done then, and nothing that was answered is lost.
 TEST_P(PowerCutsOf, TwiceInARowLeaveEachCommandWhollyDoneOrNotAtAll) {
   for_each_command([this](const State& state, const StoringCommand& first) {
     cut_twice(state, first, all_of_them() ? SIZE_MAX : 2);
   });
 }
 
-/// Their number grows with the square of what is written, so this is a sample by a seed, in tests/long too.
+/// The number of pairs grows with the square of the bytes written, so this is a random sample, also in
+/// tests/long.
 TEST_P(PowerCutsOf, TwiceInARowInStoresOfSeveralPagesLeaveEachCommandWhollyDoneOrNotAtAll) {
   for_some_commands_of_several_pages([this](const State& state, const StoringCommand& first) {
     cut_twice(state, first, all_of_them() ? 40 : 2);
   });
 }
 
-/// The microcontroller alone begins anew, in the middle of the bus's traffic, and finds the EEPROM
-/// programming.
+/// Only the microcontroller is reset, during traffic on the bus, and finds the EEPROM busy with programming.
 TEST_P(PowerCutsOf, ThatTheEepromDoesNotNoticeLeaveEachCommandWhollyDoneOrNotAtAll) {
   const std::size_t one_in = all_of_them() ? 1 : 28;
   for_each_command([this, one_in](const State& state, const StoringCommand& command) {

@@ -1,4 +1,4 @@
-// What an EEPROM holds before a command that stores.
+// The contents of an EEPROM before a command that stores.
 #pragma once
 
 #include <cstdint>
@@ -12,9 +12,9 @@ namespace ex9000::registers {
 
 enum class Beginning : std::uint8_t {
   Factory,  ///< blank
-  Full,     ///< both copies
-  Updated,  ///< two copies of layout 2, as firmware before layout 3 leaves them
-  Longer,   ///< the record that counts is one of newer firmware, with 96 bytes of settings
+  Full,     ///< both copies are in use
+  Updated,  ///< two copies of layout 2, written by firmware before layout 3
+  Longer,   ///< the newest record comes from newer firmware, with 96 bytes of settings
 };
 
 struct State {
@@ -22,15 +22,15 @@ struct State {
   Contents contents;
 };
 
-/// A state from which `command` stores something. A module from the factory has a blank EEPROM, unless the
-/// command requires something else. In all other states the later copy has the last number before they begin
-/// anew, and none of its settings is as it comes from the factory.
+/// Returns a state from which `command` stores something. In the factory state the EEPROM is blank, unless
+/// the command requires something else. In all other states the newer copy has the last sequence number
+/// before the wrap, and all settings differ from the factory settings.
 State begin_at(Beginning beginning, const Model& model, const StoringCommand& command);
 
-/// What a module has to come up with, read by other code than its own.
+/// The settings with which a module must start, read by code that is independent of the firmware.
 Settings settings_in(const Model& model, const Contents& contents);
 
-/// wire.md 2: the outputs of a module that has come up.
+/// wire.md 2: the outputs of a module after its start.
 std::uint16_t outputs_from_reset(const Settings& settings);
 
 }  // namespace ex9000::registers

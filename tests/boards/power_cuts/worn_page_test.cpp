@@ -1,6 +1,6 @@
-// An EEPROM that is worn out: it acknowledges everything, and one byte of a page keeps something else. Every
-// write is read back, so wire.md 8 holds all the same: "A write that fails: ?AA or exception 04, and
-// everything stays as it was", and D15: it is tried three times.
+// A worn-out EEPROM: it acknowledges everything, but one byte of a page keeps another value. The firmware
+// reads back every write, so wire.md 8 still holds: "A write that fails: ?AA or exception 04, and everything
+// stays as it was", and D15: it tries three times.
 #include <gtest/gtest.h>
 
 #include <chrono>
@@ -19,11 +19,11 @@ namespace {
 constexpr unsigned kTries = 3;
 
 struct Stuck {
-  std::uint16_t place;  ///< in the page
+  std::uint16_t place;  ///< offset in the page
   std::uint8_t bits;
   std::uint8_t at;
 };
-/// Of an address, a timeout, a name, a sequence number, a check; one bit and all of them.
+/// Bytes of an address, a timeout, a name, a sequence number and a check; one bit and all bits.
 constexpr Stuck kStuck[] = {{23, 0xFF, 0x00}, {4, 0x80, 0x80},  {25, 0xFF, 0xFF},
                             {2, 0x03, 0x03},  {24, 0x55, 0xAA}, {14, 0xFF, 0x00}};
 
@@ -31,7 +31,7 @@ class WornPageOf : public testing::TestWithParam<ImageName> {
  protected:
   WornPageOf() : bench_(image_of(GetParam().board, GetParam().model), model_) {}
 
-  /// Whether it was done: it is answered as it was, and drives what it should.
+  /// Checks that the answer and the outputs match `done`: whether the command was stored.
   void judge(const State& state, const StoringCommand& command, const Attempt& attempt, bool done) {
     const Settings wanted = command.done_to(state.settings, attempt.outputs_before);
     const Settings found = done ? wanted : state.settings;
@@ -53,7 +53,7 @@ class WornPageOf : public testing::TestWithParam<ImageName> {
         ASSERT_TRUE(ascii ? attempt.reply[0] == '?' : attempt.reply[2] == 4U);
       }
     }
-    // A timeout holds whether it is stored or not.
+    // A timeout takes effect whether or not it is stored.
     const bool drives = command.drive && (done || command.is_timeout());
     ASSERT_EQ(attempt.outputs,
               drives ? command.drive(wanted, attempt.outputs_before) : attempt.outputs_before);
@@ -77,7 +77,7 @@ TEST_P(WornPageOf, MakesACommandRefusedAndLeavesWhatWasStoredBeforeWhole) {
     for (const StoringCommand& command : storing_commands(model_)) {
       const State state = begin_at(beginning, model_, command);
       const bool second_counts = place_that_counts(storing, state.contents.data()) == kStoredPlaces[1];
-      // The copy that counts is not written over; but a bit may be stuck at what it is to be.
+      // The newest copy is never overwritten, but a bit may be stuck at the value that it will have.
       for (const bool of_the_one_that_counts : {false, true}) {
         const Stuck& stuck = kStuck[number++ % std::size(kStuck)];
         const std::size_t page = kStoredPlaces[second_counts == of_the_one_that_counts ? 1 : 0];

@@ -1,5 +1,5 @@
-// A board with as many pins as the command line says. It does not suit the model that the command line says,
-// or there are fewer images than models.
+// A board with the number of pins from the command line. It does not suit the model from the command line, or
+// there are fewer images than models.
 #include <array>
 
 namespace ex9000::board {

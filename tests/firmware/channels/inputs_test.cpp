@@ -10,7 +10,7 @@ constexpr unsigned kAll = kMaxInputs;
 
 class InputsTest : public testing::Test {
  protected:
-  /// The levels at reset.
+  /// Begins with these levels at reset.
   void begin(std::uint16_t levels) {
     edges_.begin(levels);
     inputs_.begin(levels);
@@ -154,7 +154,7 @@ TEST_F(InputsTest, AsMuchAs65535EdgesBetweenTwoLooksAreCounted) {
   EXPECT_EQ(inputs_.levels(), 0);
 }
 
-// The interrupt tells of one count, and the main loop knows by the level which edge came first.
+// The interrupt delivers a single count; the main loop uses the level to find out which edge came first.
 TEST_F(InputsTest, RisingAndFallingEdgesAreToldApartWhateverTheLevelWasAndHoweverManyThereWere) {
   for (const bool count_rising : {true, false}) {
     for (const bool high : {true, false}) {
@@ -351,7 +351,7 @@ TEST_F(InputsTest, EdgesOfChannelsThatThisModelLacksSetNoLatchAndNoCounter) {
   EXPECT_EQ(inputs_.counter(7), 0U);
 }
 
-// An edge interrupt may come up on a pin that the board has and the model does not.
+// An edge interrupt may occur on a pin that the board has and the model does not use.
 TEST_F(InputsTest, ALevelOnAChannelThatThisModelLacksReads0) {
   constexpr unsigned kFourInputs = 4;
   rise(7);

@@ -9,7 +9,7 @@ namespace ex9000::dcon {
 namespace {
 
 std::string data_of(std::uint8_t inputs, std::uint8_t outputs) {
-  const Model model{"EX9000D", inputs, outputs, 0, StatusStyle::TimeoutOnly, "9000", 6, ""};
+  const Model model{"EX9000D", inputs, outputs, 0, StatusStyle::TimeoutOnly, "9000", 6, "", OutputKind::None};
   Reply reply;
   put_data(model, 0x1234, 0x5678, reply);
   return {reply.bytes().begin(), reply.bytes().end()};

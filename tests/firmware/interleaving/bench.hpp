@@ -1,4 +1,4 @@
-// A module on its chip, a script of what happens to it, and its main loop turned by hand.
+// A module on its chip, with a clock and a main loop that a script of events controls.
 #pragma once
 
 #include <functional>
@@ -29,7 +29,7 @@ struct Board {
 
 class Bench {
  public:
-  /// Has come up and is idle.
+  /// Starts the module. When the constructor returns, the module is idle.
   Bench(const char* model, const std::function<void(Settings&)>& change)
       : device_(*find_model(model), LineTiming::at) {
     chip = &chip_;
@@ -56,19 +56,19 @@ class Bench {
 
   [[nodiscard]] bool takes_bytes_for_its_echo() const { return !chip_.hears(); }
 
-  /// What the main loop of an image does between two sleeps.
+  /// Does what the main loop of an image does between two sleeps.
   void turn() {
     if (has_to_turn()) {
       turns_again_ = device_.turn();
     }
   }
-  /// All of it, whether something has woken it or not.
+  /// Runs one complete turn of the main loop, whether or not an interrupt has woken it.
   void whole_turn() {
     interrupt([&] { device_.on_wake_timer(); });
     turns_again_ = device_.turn();
   }
 
-  /// Time goes on with the main loop doing its work.
+  /// Lets time pass while the main loop does its work.
   void rest(Duration length) {
     const std::uint32_t until = chip_.now + length.microseconds();
     turn_until_idle();
@@ -79,9 +79,9 @@ class Bench {
     pass_time_until(until);
   }
 
-  // --- what happens from outside; also while the main loop is in the middle of something ---
+  // --- external events; they may also occur in the middle of a turn of the main loop ---
 
-  /// The next byte on the line is complete, a character later.
+  /// The next byte on the line is complete, one character time later.
   void byte(std::uint8_t value) {
     pass_time_until(chip_.now + Chip::kCharacter);
     interrupt([&] {
@@ -89,7 +89,7 @@ class Bench {
       serve_uart();
     });
   }
-  /// The line stays silent for as long as the timer was told.
+  /// The line stays silent until the silence timer expires.
   void silence() {
     if (chip_.silence_due != Chip::kNever) {
       pass_time_until(chip_.silence_due);
@@ -105,7 +105,8 @@ class Bench {
       pass_time_until(chip_.memory_due);
     }
   }
-  /// Everything of the reply that is under way, the driver off behind it; nothing where there is none.
+  /// Lets time pass until the reply in progress has been sent and the driver is off. Does nothing if no reply
+  /// is in progress.
   void reply_leaves() {
     for (int i = 0; i < 1000 && chip_.driving() &&
                     (chip_.sent_due != Chip::kNever || chip_.line_end_due != Chip::kNever);
@@ -113,7 +114,7 @@ class Bench {
       pass_time_until(std::min(chip_.sent_due, chip_.line_end_due));
     }
   }
-  /// The byte of a reply that is being sent.
+  /// Lets time pass until the current byte of a reply has been sent.
   void reply_byte_leaves() {
     if (chip_.sent_due != Chip::kNever) {
       pass_time_until(chip_.sent_due);
@@ -125,16 +126,16 @@ class Bench {
     }
   }
 
-  /// When the last byte of each request was complete, by the reply that it gets.
+  /// For each expected reply, the time at which the last byte of its request was complete.
   std::map<std::string, std::uint32_t> asked;
-  /// A whole frame, whose reply is known.
+  /// Receives a whole frame whose reply is known.
   void asks(const std::string& frame, const std::string& reply) {
     bytes(frame);
     asked[reply] = chip_.now;
   }
   void is_asked(const std::string& reply) { asked[reply] = chip_.now; }
 
-  /// As `rest`, but something wakes the main loop all the time.
+  /// Like `rest`, but the main loop is woken every 10 microseconds.
   void rest_restlessly(Duration length) {
     constexpr std::uint32_t kStep = 10;
     for (std::uint32_t passed = 0; passed < length.microseconds(); passed += kStep) {
@@ -205,7 +206,8 @@ class Bench {
       serve_pending();
     }
   }
-  /// The first byte of a reply leaves the holding register while the main loop is still at it.
+  /// Serves the transmit interrupt: the first byte of a reply leaves the holding register before the main
+  /// loop has finished the turn.
   void serve_pending() {
     interrupt([&] { serve_uart(); });
   }

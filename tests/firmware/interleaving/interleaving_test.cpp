@@ -1,20 +1,22 @@
-// Interrupts at every point where the main loop touches what it shares with them.
+// Interrupts at every point at which the main loop accesses data that it shares with them.
 //
-// The core's own sources and hal/device.hpp run here with crossings, a clock and registers that tell of every
-// access (observed/). An interrupt is then put before and behind each of them, and what it comes to has to be
-// what it comes to before the turn, behind it, or between two of a script's steps.
+// The core's own sources and hal/device.hpp run here with crossings, a clock and registers that report every
+// access (observed/). The test runs an interrupt before and after each access. The outcome must be the same
+// as if the interrupt had come before the turn, after it, or between two steps of a script.
 //
-// What both sides touch beside the crossings themselves, and what hands it over:
-//  - FrameQueue::frames_: the one that waits is the main loop's from `completed_` to `dropped_`;
-//  - Uart::rest_, a HandedToInterrupt: the main loop's until `begun_`, the interrupts' until `ended_`;
-//  - Uart::bit_ and character_: written by `open`, before the UART may interrupt;
-//  - Receiver::protocol_, DconAssembler::checksum_, RtuAssembler::timing_: by `listen`, before `open`;
-//  - InputEdges::levels_: by `begin`, before interrupts are enabled;
-//  - the driver's pin: both write it through the mask in the address, which needs no read.
-// EventTally::collected_ is the main loop's alone; the interrupt only ever writes `total_`.
+// Data that both sides access besides the crossings themselves, and how it is handed over:
+//  - FrameQueue::frames_: the waiting frame belongs to the main loop from `completed_` to `dropped_`;
+//  - Uart::rest_, a HandedToInterrupt: it belongs to the main loop until `begun_`, to the interrupts until
+//    `ended_`;
+//  - Uart::bit_ and character_: `open` writes them before the UART may interrupt;
+//  - Receiver::protocol_, DconAssembler::checksum_, RtuAssembler::timing_: `listen` writes them before
+//    `open`;
+//  - InputEdges::levels_: `begin` writes them before interrupts are enabled;
+//  - the driver's pin: both sides write it through the mask in the address, which needs no read.
+// Only the main loop uses EventTally::collected_; the interrupt only writes `total_`.
 //
-// Time is the line's: a byte takes 87 us also where it comes in the middle of a turn, so a turn may be held
-// up for milliseconds.
+// Time is that of the line: a byte takes 87 us even if it arrives in the middle of a turn, so a turn may be
+// interrupted for milliseconds.
 #include <gtest/gtest.h>
 
 #include <cstdio>
@@ -28,7 +30,7 @@
 namespace ex9000::interleaving {
 namespace {
 
-/// What a test has tried, so that it can say that this was not little.
+/// Counts what a test has tried, so that the test can require a minimum.
 struct Tried {
   unsigned points = 0;
   unsigned interleavings = 0;
@@ -47,7 +49,7 @@ void watched(Settings& settings) {
   settings.watchdog_timeout = 1;
 }
 
-// --- what happens ---
+// --- events ---
 
 void nothing(Bench& /*bench*/) {}
 void silence(Bench& bench) { bench.silence(); }
@@ -58,7 +60,7 @@ void reply_byte_leaves(Bench& bench) { bench.reply_byte_leaves(); }
 Step edge(unsigned channel, bool level) {
   return [=](Bench& bench) { bench.edge(channel, level); };
 }
-/// Byte by byte, and the silence.
+/// A request byte by byte, and the silence after it.
 std::vector<Step> frame(const std::string& request, const std::string& reply) {
   std::vector<Step> steps;
   for (std::size_t i = 0; i < request.size(); ++i) {
@@ -84,7 +86,8 @@ Parts outputs_and_name(Bench& bench) {
   return {"outputs " + std::to_string(bench.hardware().outputs) + " name " +
           std::string(settings.name.bytes().begin(), settings.name.bytes().end())};
 }
-/// Channel by channel: an edge of one may count as before a command, and an earlier one of another as behind.
+/// One part for each channel: an edge on one channel may count as before a command, and an earlier edge on
+/// another channel as after it.
 Parts inputs(Bench& bench) {
   const ex9000::Inputs& inputs = bench.module().state().inputs;
   Parts parts;
@@ -97,7 +100,7 @@ Parts inputs(Bench& bench) {
   return parts;
 }
 Parts no_matter(Bench& /*bench*/) { return {}; }
-/// The watchdog has been restarted by the host OK and by nothing else: to the microsecond.
+/// Checks to the microsecond that the host OK, and nothing else, has restarted the watchdog.
 Parts restarted(Bench& bench) {
   const std::uint32_t expires = bench.asked.at("host OK") + 100'000;
   const auto timed_out = [&] { return bench.module().state().settings.timeout_status; };
@@ -108,23 +111,23 @@ Parts restarted(Bench& bench) {
   bench.pass_time_until(expires + 3);
   bench.whole_turn();
   require(timed_out(), "a host OK was taken twice, or too late");
-  bench.rest(milliseconds(10));  // the timeout is stored
+  bench.rest(milliseconds(10));  // the timeout is being stored
   return {};
 }
 
-/// Likewise; a Modbus one counts from the end of its silence.
+/// Does the same for Modbus, where a host OK counts from the end of its silence.
 Parts modbus_restarted(Bench& bench) {
   bench.asked["host OK"] += LineTiming::at(115200).rtu_silence.microseconds();
   return restarted(bench);
 }
 
-// --- how they are interleaved ---
+// --- orders of events ---
 
 class Interleaver {
  public:
   Interleaver(const Scenario& scenario, Tried& counted)
       : scenario_(scenario), counted_(counted), steps_(scenario.script.size()) {
-    // Whatever the steps come to between two turns, they may come to within one.
+    // An outcome that is possible between two turns is also possible within a turn.
     for (std::size_t before = 0; before <= steps_; ++before) {
       Places places(steps_, kBehindTheTurn);
       std::fill_n(places.begin(), before, kBeforeTheTurn);
@@ -137,7 +140,7 @@ class Interleaver {
     }
   }
 
-  /// All at one point, and one at each point from there on.
+  /// Tries all steps at one point, and one step at each point from there on.
   void at_every_point() {
     for (int point = 0; point < static_cast<int>(points_); ++point) {
       check(Places(steps_, point));
@@ -152,7 +155,7 @@ class Interleaver {
     counted_.points += points_;
   }
 
-  /// Some of the pairs: a few steps at one point, the others at another.
+  /// Tries random pairs of points: some steps at one point, the others at another.
   void at_pairs(std::mt19937& random, unsigned samples) {
     std::uniform_int_distribution<int> any_point(kBeforeTheTurn, static_cast<int>(points_));
     std::uniform_int_distribution<std::size_t> any_step(1, steps_ - 1);
@@ -165,7 +168,7 @@ class Interleaver {
     }
   }
 
-  /// All pairs of points, where a script has two steps.
+  /// Tries all pairs of points. The script must have two steps.
   void at_all_pairs() {
     for (int first = 0; first < static_cast<int>(points_); ++first) {
       for (int second = first; second < static_cast<int>(points_); ++second) {
@@ -211,7 +214,7 @@ class Interleaver {
   std::vector<std::set<std::string>> outcomes_;
 };
 
-// --- what is interleaved ---
+// --- scenarios ---
 
 constexpr std::uint32_t kDconTurnAround = 87;
 constexpr std::uint32_t kRtuTurnAround = 1750;
@@ -266,7 +269,7 @@ Step asked(const std::string& request, const std::string& reply) {
     bench.silence();
   };
 }
-/// The turn finds a store under way.
+/// The turn begins while a store is in progress.
 Step storing(const std::string& request, const std::string& reply) {
   return [=](Bench& bench) {
     bench.asks(request, reply);
@@ -274,10 +277,10 @@ Step storing(const std::string& request, const std::string& reply) {
     bench.whole_turn();
   };
 }
-/// The turn finds a reply being sent.
+/// The turn begins while a reply is being sent.
 Step replying(const std::string& request, const std::string& reply) { return storing(request, reply); }
 
-/// The turn finds a reply being sent, and the next request waiting.
+/// The turn begins while a reply is being sent and the next request waits.
 Step replying_with_one_more(const std::string& request, const std::string& reply, const std::string& next,
                             const std::string& next_reply) {
   return [=](Bench& bench) {
@@ -389,8 +392,8 @@ TEST(Interleaving, AndInTwoPartsAtEveryPairOfPointsThatWasDrawn) {
 }
 
 TEST(Interleaving, ASilenceIsThatOfItsOwnFrame) {
-  // The silence behind a frame without a reply comes while that is judged, and the next frame while that
-  // silence is still news.
+  // The silence after a frame without a reply ends while the frame is processed, and the next frame arrives
+  // while that silence is not yet processed.
   Scenario scenario = dcon(
       "a silence, and one more frame", [](Bench& bench) { bench.bytes("#**\r"); },
       {silence, [](Bench& bench) { bench.asks("$01M\r", "!019055\r"); }}, {{"!019055\r"}, {}}, no_matter);
@@ -400,8 +403,8 @@ TEST(Interleaving, ASilenceIsThatOfItsOwnFrame) {
   EXPECT_GT(all.interleavings, 200U);
 }
 
-/// A whole frame at each point of the turn that answers another: from where that one is judged until the
-/// driver is about to come on, none is lost.
+/// Passes a whole frame at each point of the turn that answers another frame. From the point at which that
+/// one is processed until the driver is switched on, no frame may be lost.
 void expect_one_more_is_kept(Scenario scenario, const std::string& request, const std::string& reply) {
   bool driving = false;
   std::size_t answered = 0;
@@ -464,7 +467,7 @@ TEST(Interleaving, ARequestForTheBusMessagesCountsItselfOnceWhereverItsSilenceEn
   }
 }
 
-// --- whether it would be found ---
+// --- checks that the test finds errors ---
 
 TEST(Points, FindACountThatIsReadTwice) {
   unsigned lost = 0;
@@ -485,7 +488,7 @@ TEST(Points, FindACountThatIsReadTwice) {
         });
     lost += total.load() - seen == 0 && fresh == 0 ? 1U : 0U;
   }
-  EXPECT_EQ(lost, 2U);  // behind the first load, and before the second
+  EXPECT_EQ(lost, 2U);  // after the first load, and before the second
 }
 
 TEST(Points, FindAHandoverThatIsTorn) {

@@ -1,4 +1,4 @@
-// What happens to a module during one turn of its main loop, and what it comes to.
+// Events that happen to a module during one turn of its main loop, and the expected outcome.
 #pragma once
 
 #include <functional>
@@ -16,24 +16,25 @@ struct Scenario {
   const char* name;
   const char* model;
   std::function<void(Settings&)> settings;
-  Step before;               ///< leads to the turn
-  std::vector<Step> script;  ///< in this order, each while or beside the turn
-  /// All that may be sent, until everything is at rest.
+  Step before;               ///< prepares the turn
+  std::vector<Step> script;  ///< the events, in this order, during, before or after the turn
+  /// Each permitted list of replies, from the start of the turn until the module is idle.
   std::vector<std::vector<std::string>> replies;
   std::function<std::vector<std::string>(Bench&)> comes_to;
-  std::string probe;          ///< a request behind it all
-  std::string probe_reply;    ///< is answered with this
-  std::uint32_t turn_around;  ///< microseconds before each reply
+  std::string probe;          ///< a request after everything else
+  std::string probe_reply;    ///< the expected reply to it
+  std::uint32_t turn_around;  ///< the least time before each reply, in microseconds
   bool restless = false;      ///< the main loop is woken all the time
 };
 
-/// At which point of the turn each step of a script comes; one that is not reached: behind the turn.
+/// The point of the turn at which each step of a script happens. A step whose point is not reached happens
+/// after the turn.
 using Places = std::vector<int>;
 inline constexpr int kBeforeTheTurn = -1;
 inline constexpr int kBehindTheTurn = 1'000'000;
 
 struct Run {
-  std::vector<std::string> outcome;  ///< in parts that have nothing to do with each other
+  std::vector<std::string> outcome;  ///< in parts that are independent of each other
   unsigned points = 0;
 };
 
@@ -61,7 +62,7 @@ inline void require(bool holds, const std::string& what) {
   }
 }
 
-/// Replies keep their distance from each other; those to the requests that `asked` tells of, from them.
+/// Checks the least time between two replies, and between a request in `asked` and its reply.
 inline void require_distances(const Bench& bench, const Chip& hardware, const Scenario& scenario) {
   const std::vector<Sent>& sent = hardware.sent;
   for (std::size_t i = 0; i < sent.size(); ++i) {
@@ -75,7 +76,7 @@ inline void require_distances(const Bench& bench, const Chip& hardware, const Sc
   }
 }
 
-/// Throws where something does not hold that must hold anyhow.
+/// Plays `scenario`. Throws std::logic_error if a condition fails that must hold for every order of events.
 inline Run play(const Scenario& scenario, const Places& places) {
   Bench bench(scenario.model, scenario.settings);
   Chip& hardware = bench.hardware();

@@ -1,4 +1,4 @@
-// CRC-16/MODBUS, against the worked frames of wire.md section 7 and of Modbus over Serial Line V1.02.
+// CRC-16/MODBUS, checked with the worked examples of wire.md section 7 and of Modbus over Serial Line V1.02.
 #include "firmware/line/crc16.hpp"
 
 #include <gtest/gtest.h>
@@ -13,7 +13,7 @@ using FrameBytes = std::vector<std::uint8_t>;
 
 Crc16 crc_of(const FrameBytes& bytes) { return crc16({bytes.data(), bytes.size()}); }
 
-/// The frames "worked out" in wire.md section 7, CRC included.
+/// The worked examples of wire.md section 7, CRC included.
 const std::vector<FrameBytes> kWorkedFrames{
     {0x01, 0x05, 0x00, 0x00, 0xFF, 0x00, 0x8C, 0x3A},
     {0x01, 0x85, 0x04, 0x43, 0x53},

@@ -15,7 +15,7 @@ namespace {
 constexpr std::string_view kDelimiters = "#$%@~";
 constexpr std::string_view kLeads = "!>?";
 
-// --- hunting ---
+// --- waiting for a delimiter ---
 
 TEST_F(DconAssemblerTest, EveryDelimiterOpensAFrame) {
   for (const char delimiter : kDelimiters) {
@@ -240,7 +240,7 @@ TEST_F(DconAssemblerTest, ALineErrorInCharacter32SpoilsTheFrameAndOneInCharacter
   }
 }
 
-// --- room ---
+// --- queue space ---
 
 TEST_F(DconAssemblerTest, AFrameIsAssembledWhileOneWaits) {
   EXPECT_EQ(put("$01M\r"), Verdict::Accepted);

@@ -1,4 +1,4 @@
-// A DCON assembler that is sent text, for tests of it.
+// A DCON assembler that receives text, for its tests.
 #pragma once
 
 #include <gtest/gtest.h>
@@ -22,7 +22,7 @@ class DconAssemblerTest : public testing::Test {
     return assembler_.byte(queue_, static_cast<std::uint8_t>(character), status, now_);
   }
 
-  /// All characters; none but the last may end a frame.
+  /// Sends all characters. Only the last one may end a frame.
   Verdict put(std::string_view text) {
     Verdict last = Verdict::Open;
     for (const char character : text) {
@@ -32,7 +32,7 @@ class DconAssemblerTest : public testing::Test {
     return last;
   }
 
-  /// The frame that waits, as text; it is dropped.
+  /// Returns the waiting frame as text and drops it; "nothing" if no frame waits.
   std::string taken() {
     const Frame* frame = queue_.has_frame() ? &queue_.waiting() : nullptr;
     if (frame == nullptr) {
@@ -43,7 +43,7 @@ class DconAssemblerTest : public testing::Test {
     return text;
   }
 
-  /// The receiver hunts, and what was sent before has left nothing behind.
+  /// Checks that the receiver waits for a delimiter and has kept nothing of what was sent before.
   void expect_hunting() {
     EXPECT_EQ(put("$01M\r"), Verdict::Accepted);
     EXPECT_EQ(taken(), "$01M");
@@ -55,7 +55,7 @@ class DconAssemblerTest : public testing::Test {
   Time now_;
 };
 
-/// `$01` and so many characters in all, before CHK and CR.
+/// Returns a frame of `characters` characters that begins with `$01`, without CHK and CR.
 inline std::string frame_of(std::size_t characters) { return "$01" + std::string(characters - 3, 'X'); }
 
 }  // namespace ex9000

@@ -11,7 +11,7 @@
 namespace ex9000 {
 namespace {
 
-/// The checksum of wire.md section 3, computed here on its own.
+/// The checksum of wire.md section 3, computed without the firmware's code.
 std::string with_checksum(std::string text) {
   unsigned sum = 0;
   for (const char character : text) {

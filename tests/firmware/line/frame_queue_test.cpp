@@ -1,4 +1,4 @@
-// Two frames that take turns between the receive interrupt and the main loop.
+// Two frames that the receive interrupt and the main loop use in turn.
 #include "firmware/line/frame_queue.hpp"
 
 #include <gtest/gtest.h>
@@ -6,7 +6,7 @@
 namespace ex9000 {
 namespace {
 
-/// Assembles a frame of one byte. False if there is no room for it.
+/// Assembles a frame of one byte. Returns false if there is no space for it.
 bool put(FrameQueue& queue, std::uint8_t byte) {
   Frame& frame = queue.assembling();
   frame.offset = 0;

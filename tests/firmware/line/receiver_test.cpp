@@ -1,4 +1,4 @@
-// The receiver: which protocol is heard, what is counted for function 08 (wire.md D1), host OK, D9.
+// The receiver: protocol selection, the counters of function 08 (wire.md D1), host OK, D9.
 #include "firmware/line/receiver.hpp"
 
 #include <gtest/gtest.h>
@@ -20,9 +20,9 @@ constexpr Duration kCharacter = Duration(1042);
 
 const FrameBytes kChannel0On{0x01, 0x05, 0x00, 0x00, 0xFF, 0x00, 0x8C, 0x3A};
 const FrameBytes kHostOk{0x01, 0x03, 0x30, 0x38, 0x00, 0x00, 0xCB, 0x07};
-const FrameBytes kGuideExample{0x02, 0x07, 0x41, 0x12};  // for module 02
+const FrameBytes kGuideExample{0x02, 0x07, 0x41, 0x12};  // addressed to module 02
 
-/// What the receiver has counted, in the order of the sub-functions 0B, 0C, 0E, 0F, 12.
+/// The receiver's counters, in the order of sub-functions 0B, 0C, 0E, 0F, 12.
 struct Counts {
   unsigned bus_messages;
   unsigned bus_errors;
@@ -62,7 +62,7 @@ class ReceiverTest : public testing::Test {
       byte(static_cast<std::uint8_t>(character));
     }
   }
-  /// So long that every frame is over.
+  /// Passes a silence that is long enough to end every frame.
   void silence() {
     now_ = now_ + milliseconds(50);
     while (!(receiver_.on_silence() == Duration())) {
@@ -95,7 +95,7 @@ class ReceiverTest : public testing::Test {
   Time now_{1000};
 };
 
-// --- tallies ---
+// --- counters ---
 
 TEST_F(ReceiverTest, CountsNothingBeforeAnythingIsReceived) {
   listen(Protocol::ModbusRtu);
@@ -281,7 +281,7 @@ TEST_F(ReceiverTest, ANewAddressHoldsForModbusToo) {
   EXPECT_TRUE(took_frame());
 }
 
-// --- the durations ---
+// --- durations ---
 
 TEST_F(ReceiverTest, AsciiWantsNoSilenceWithinAFrameNorBehindOneThatIsNotAccepted) {
   listen(Protocol::Ascii, true);
@@ -356,7 +356,7 @@ TEST_F(ReceiverTest, ModbusWantsNoMoreSilenceBehindARightCrc) {
 TEST_F(ReceiverTest, ModbusWantsOneMoreCharacterBehindAWrongCrc) {
   listen(Protocol::ModbusRtu);
   bytes({0x01, 0x05, 0x00});
-  // From T3.5, of which the timer has rounded up, until a byte that began at T3.5 is complete.
+  // From T3.5, which the timer rounds up, to the end of a byte that began at T3.5.
   constexpr double kTenBits = 10 * 1e6 / kBaud;
   constexpr double kRounding = 5;
   const std::uint32_t wanted = receiver_.on_silence().microseconds();
@@ -371,7 +371,7 @@ TEST_F(ReceiverTest, SilenceWithoutAFrameWantsNoMore) {
   EXPECT_EQ(counts(), (Counts{0, 0, 0, 0, 0}));
 }
 
-// --- speaking ---
+// --- replies of the module ---
 
 TEST_F(ReceiverTest, AnOpenAsciiFrameIsForgottenWhenTheModuleSpeaks) {
   listen(Protocol::Ascii);
@@ -401,7 +401,8 @@ TEST_F(ReceiverTest, AModbusFrameWhoseCrcIsRightIsCountedAndTakenWhenTheModuleSp
   EXPECT_TRUE(took_frame());
 }
 
-// wire.md D9: it is judged when the module has spoken, which may be before its silence would have been over.
+// wire.md D9: it is judged after the module's reply, which may end before the silence after the host OK
+// would.
 TEST_F(ReceiverTest, AHostOkThatEndsWithTheModulesReplyCountsNotBeforeItsTime) {
   listen(Protocol::ModbusRtu);
   bytes(kHostOk);

@@ -1,4 +1,4 @@
-// Assembling Modbus RTU frames, and the verdicts on them: wire.md section 7, "Framing", and D11; Modbus over
+// Assembly of Modbus RTU frames and the verdicts on them: wire.md section 7, "Framing", and D11; Modbus over
 // Serial Line V1.02, 2.5.1.
 #include "firmware/line/rtu_assembler.hpp"
 
@@ -14,14 +14,14 @@ namespace {
 
 class RtuAssemblerTest : public testing::Test {
  protected:
-  /// What one frame comes to, with silence before and behind it.
+  /// The verdict on one frame, with silence before and after it.
   Verdict verdict_of(const FrameBytes& bytes) {
     wire_.verdicts.clear();
     wire_.frame(bytes);
     EXPECT_EQ(wire_.verdicts.size(), 1U);
     return wire_.verdicts.empty() ? Verdict::Open : wire_.verdicts.front();
   }
-  /// Likewise with a line error in byte `errored`.
+  /// Does the same with a line error in byte `errored`.
   Verdict verdict_of(const FrameBytes& bytes, std::size_t errored, ByteStatus status) {
     wire_.verdicts.clear();
     for (std::size_t i = 0; i < bytes.size(); ++i) {
@@ -270,7 +270,7 @@ TEST_F(RtuAssemblerTest, HostOkIsFunction03Or04OfRegister3038WithQuantity0Or1AtT
   }
   EXPECT_TRUE(wire_.frames.empty());
   EXPECT_EQ(verdict_of({0x01, 0x03, 0x30, 0x38, 0x00, 0x00, 0xCB, 0x07}),
-            Verdict::HostOk);  // wire.md, worked out
+            Verdict::HostOk);  // wire.md, worked example
 }
 
 TEST_F(RtuAssemblerTest, NothingElseIsAHostOk) {
@@ -306,7 +306,7 @@ TEST_F(RtuAssemblerTest, AHostOkWithAWrongCrcIsNone) {
   EXPECT_EQ(verdict_of({0x01, 0x03, 0x30, 0x38, 0x00, 0x00, 0xCB, 0x06}), Verdict::BadCheck);
 }
 
-// --- room ---
+// --- queue space ---
 
 TEST_F(RtuAssemblerTest, AFrameIsAssembledWhileOneWaits) {
   wire_.collect = false;
@@ -352,7 +352,7 @@ TEST_F(RtuAssemblerTest, ANewAddressHoldsForAFrameThatIsOpen) {
   EXPECT_EQ(queue_.waiting().size, 6U);
 }
 
-// --- the own driver was on ---
+// --- after the module's own driver was on ---
 
 TEST_F(RtuAssemblerTest, AnOpenFrameCanBeForgotten) {
   wire_.bytes({0x01, 0x05, 0x00});

@@ -1,4 +1,4 @@
-// A wire with its silence timer, and the frames on it, for tests of the RTU assembler.
+// A wire with a silence timer, and frames on it, for tests of the RTU assembler.
 #pragma once
 
 #include <cstdint>
@@ -16,9 +16,10 @@ using Nanoseconds = std::int64_t;
 
 inline constexpr std::uint8_t kOwn = 0x01;
 
-inline const FrameBytes kChannel0On{0x01, 0x05, 0x00, 0x00, 0xFF, 0x00, 0x8C, 0x3A};  // wire.md, worked out
+/// The worked example of wire.md.
+inline const FrameBytes kChannel0On{0x01, 0x05, 0x00, 0x00, 0xFF, 0x00, 0x8C, 0x3A};
 
-/// `size` bytes, CRC included.
+/// Returns a frame of `size` bytes, CRC included.
 inline FrameBytes frame_of(std::size_t size, std::uint8_t address = kOwn) {
   FrameBytes bytes{address, 0x10};
   while (bytes.size() < size - 2) {
@@ -35,18 +36,20 @@ inline FrameBytes behind(std::uint8_t first, const FrameBytes& frame) {
   return bytes;
 }
 
-/// T1.5 and T3.5 as the guide has them: 11-bit characters up to 19200 baud, 750 and 1750 microseconds above.
+/// T1.5 and T3.5 of the Modbus serial line guide: 11-bit characters up to 19200 baud; 750 and 1750
+/// microseconds above.
 inline Nanoseconds silence_of_half_characters(int halves, std::uint32_t baud, Nanoseconds fixed) {
   return baud <= 19200 ? Nanoseconds{halves} * 11 * 500'000'000 / baud : fixed;
 }
 inline Nanoseconds t15(std::uint32_t baud) { return silence_of_half_characters(3, baud, 750'000); }
 inline Nanoseconds t35(std::uint32_t baud) { return silence_of_half_characters(7, baud, 1'750'000); }
 
-/// The assembler's clock shows whole microseconds, and the times it compares with are rounded to them.
+/// The assembler's clock counts whole microseconds, and the times that it compares are rounded to them. Tests
+/// keep this distance from a limit.
 inline constexpr Nanoseconds kClock = 5'000;
 
-/// A wire at one rate, with the silence timer beside it. A byte takes ten bits; the assembler is told at its
-/// end.
+/// A wire at one baud rate, with its silence timer. A byte takes ten bits; the assembler receives it when the
+/// last bit ends.
 class Wire {
  public:
   Wire(RtuAssembler& assembler, FrameQueue& queue, std::uint32_t baud)
@@ -68,9 +71,9 @@ class Wire {
       byte(value);
     }
   }
-  /// Between a stop bit and the next start bit.
+  /// Passes time between a stop bit and the next start bit.
   void silence(Nanoseconds length) { now_ += length; }
-  /// Until no timer runs.
+  /// Passes time until no timer runs.
   void rest() {
     silence(1'000'000'000);
     run_timer();
@@ -84,10 +87,10 @@ class Wire {
   void start_at(Time time) { now_ = Nanoseconds{time.microseconds()} * 1000; }
 
   std::uint8_t own = kOwn;
-  bool collect = true;  ///< frames are taken as they come
+  bool collect = true;  ///< take each frame from the queue when it is complete
   Verdicts verdicts;
   std::vector<FrameBytes> frames;
-  Time received;  ///< the latest frame's
+  Time received;  ///< of the latest frame
 
  private:
   void run_timer() {

@@ -1,5 +1,5 @@
-// The silences between RTU frames and the gaps within them, as T3.5 and T1.5 count them, from a stop bit to
-// the next start bit: wire.md section 7, "Framing", and D11; Modbus over Serial Line V1.02, 2.5.1.
+// The silences between RTU frames and the gaps within them. T3.5 and T1.5 are measured from a stop bit to the
+// next start bit: wire.md section 7, "Framing", and D11; Modbus over Serial Line V1.02, 2.5.1.
 #include <gtest/gtest.h>
 
 #include <cstddef>
@@ -15,7 +15,7 @@ namespace {
 
 class RtuGaps : public testing::TestWithParam<std::uint32_t> {
  protected:
-  /// The first `split` bytes, a gap, the others.
+  /// Sends the first `split` bytes, a gap, and the other bytes.
   void with_gap(const FrameBytes& frame, std::size_t split, Nanoseconds gap) {
     const auto middle = frame.begin() + static_cast<std::ptrdiff_t>(split);
     wire_.bytes({frame.begin(), middle});
@@ -28,7 +28,7 @@ class RtuGaps : public testing::TestWithParam<std::uint32_t> {
   Wire wire_{assembler_, queue_, baud_};
 };
 
-// A simulated line may be as fast as its owner likes.
+// A simulated line can have any baud rate.
 TEST(LineTimingAt, FourMegabaudStillWaitsForAByteThatBeganInTime) {
   EXPECT_EQ(LineTiming::at(4'000'000).rtu_grace.microseconds(), 1U);
 }
@@ -84,7 +84,7 @@ TEST_P(RtuGaps, AFrameT35BehindABrokenOneIsOneOfItsOwn) {
   EXPECT_EQ(wire_.verdicts, (Verdicts{Verdict::BadCheck, Verdict::Accepted}));
 }
 
-// A timer that is late by some microseconds must not join a frame to the broken one before it.
+// A timer that is some microseconds late must not join a frame to the invalid frame before it.
 TEST_P(RtuGaps, AFrameT35BehindABrokenOneIsOneOfItsOwnThoughTheTimerIsLate) {
   Time now(1'000'000);
   const auto byte = [&](std::uint8_t value) { return assembler_.byte(queue_, value, ByteStatus::Good, now); };
@@ -172,7 +172,7 @@ TEST_P(RtuGaps, TheSilenceWasOverT35BehindTheLastByteAndNeverBefore) {
   }
 }
 
-// It tells of a byte half a bit before its end, so silences that begin there are half a bit longer.
+// The UART reports a byte half a bit before its end, so silences that begin there are half a bit longer.
 TEST_P(RtuGaps, SilencesCountFromTheEndOfTheStopBitThoughTheUartTellsOfItInTheMiddle) {
   const LineTiming end = LineTiming::at(baud_);
   const LineTiming middle = LineTiming::told_in_the_stop_bit(baud_);
@@ -182,7 +182,7 @@ TEST_P(RtuGaps, SilencesCountFromTheEndOfTheStopBitThoughTheUartTellsOfItInTheMi
     EXPECT_GT(longer, half_bit);
     EXPECT_LE(longer, half_bit + 1);
   }
-  // From the last byte to the end of the next one it is as long.
+  // The time from the last byte to the end of the next one is the same.
   EXPECT_TRUE(middle.rtu_silence + middle.rtu_grace == end.rtu_silence + end.rtu_grace);
   EXPECT_TRUE(middle.rtu_slack == end.rtu_slack);
 }
@@ -238,7 +238,7 @@ TEST_P(RtuGaps, StrictlyAGapShorterThanT35StillDoesNotEndAFrame) {
   EXPECT_TRUE(wire_.frames.empty());
 }
 
-// The gap is refused inside a frame, and the frame is judged without the 00.
+// A gap inside a frame is rejected, but the frame without the 00 is valid.
 TEST_P(RtuGaps, StrictlyAGapBehindATurnAround00DoesNotSpoilTheFrame) {
   assembler_.use(LineTiming::strictly_at(baud_));
   with_gap(behind(0x00, kChannel0On), 1, t15(baud_) + kClock);

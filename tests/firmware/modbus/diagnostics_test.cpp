@@ -18,7 +18,7 @@ const FrameBytes kAllOutput0On{0x00, 0x05, 0x00, 0x00, 0xFF, 0x00};
 const FrameBytes kHostOk{0x01, 0x03, 0x30, 0x38, 0x00, 0x00};
 const FrameBytes kUnknownFunction{0x01, 0x41};
 
-/// What sub-functions 0B to 0F and 12 tell, without the requests that ask for it.
+/// The counters of sub-functions 0B to 0F and 12, without the requests that read them.
 struct Counts {
   unsigned bus_messages = 0;
   unsigned bus_errors = 0;
@@ -46,7 +46,7 @@ class Diagnosed : public testing::Test, protected CoreBench {
     EXPECT_EQ(reply.size(), 8U);
     return reply.size() == 8 ? reply[4] * 256U + reply[5] : 0;
   }
-  /// Each request that asks counts itself as a bus message and as a server message.
+  /// Reads all counters. Each reading request counts itself as a bus message and a server message.
   Counts counts() {
     Counts told;
     told.bus_messages = (counter(0x0B) - 1U) % 65'536U;
@@ -126,7 +126,7 @@ TEST_F(Diagnosed, EveryCounterHas16BitsAndWraps) {
       silence();
     }
     const auto wrapped = [](unsigned count) { return count % 65'536U; };
-    const unsigned messages = wrapped(2 * rounds + asked);  // those that asked before are messages too
+    const unsigned messages = wrapped(2 * rounds + asked);  // the earlier reading requests count, too
     EXPECT_EQ(counts(), (Counts{messages, wrapped(rounds), wrapped(rounds), messages, wrapped(rounds),
                                 wrapped(rounds)}))
         << rounds;

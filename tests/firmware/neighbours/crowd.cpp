@@ -19,11 +19,11 @@ using std::chrono::microseconds;
 using std::chrono::milliseconds;
 
 constexpr std::size_t kMaster = 0;
-/// The first at an address is the one that is pulsed.
+/// The first module receives the pulses.
 constexpr std::array<const char*, 9> kCrowd{"EX9052D-M", "EX9042D-M,ascii", "EX9043D-M",
                                             "EX9052D",   "EX9068D-M",       "EX9055D",
                                             "EX9042D-M", "EX9052D-M,ascii", "EX9068AD-M"};
-/// wire.md 3 and 7.
+/// The longest times to a reply, wire.md 3 and 7.
 constexpr milliseconds kAnswers{25};
 constexpr milliseconds kAnswersStoring{210};
 
@@ -126,7 +126,7 @@ Bytes Crowd::modbus_request(std::size_t module) {
 std::string Crowd::dcon_request(std::size_t module) {
   const std::string address = reference::hex(static_cast<unsigned>(module + 1), 2);
   const reference::ModelRow& row = described_[module].row();
-  // A model that has both is asked for either.
+  // A model with inputs and outputs gets requests for both.
   const bool inputs = row.inputs != 0 && (row.outputs == 0 || random_.once_in(2));
   switch (random_.below(9)) {
     case 0:
@@ -155,7 +155,7 @@ std::string Crowd::dcon_request(std::size_t module) {
 
 Bytes Crowd::a_request(std::size_t module) {
   if (random_.once_in(40)) {
-    return with_crc({0, 3, 0x30, 0x38, 0, 0});  // the host is OK
+    return with_crc({0, 3, 0x30, 0x38, 0, 0});  // host OK
   }
   std::string text;
   if (random_.once_in(40)) {
@@ -169,7 +169,8 @@ Bytes Crowd::a_request(std::size_t module) {
   return {text.begin(), text.end()};
 }
 
-/// While a request for them is under way, which edges it has seen depends on microseconds.
+/// Passes the pulses to the reference. They are counted between requests only, because during a request the
+/// timing decides which edges a reply includes.
 void Crowd::account_for_pulses() {
   const std::uint32_t pulses = pulser_.take();
   pulses_ += pulses;
@@ -182,7 +183,7 @@ void Crowd::exchange() {
   const std::size_t module = random_.below(kModules);
   const Bytes request = a_request(module);
   const VirtualTime takes = line_.master().takes(request.size());
-  // What reads counters and latches is asked while nothing moves.
+  // Requests that read counters and latches are sent while no input changes.
   if (module == 0 && request[1] != 6) {
     pulser_.pause();
   }
@@ -218,7 +219,7 @@ void Crowd::exchange() {
     ++replies_;
     ++of_each_[module];
     stores_ += expected.stores ? 1U : 0U;
-    // The others hear that too.
+    // The other modules receive the reply, too.
     for (std::size_t i = 0; i < kModules; ++i) {
       if (i != module) {
         ASSERT_TRUE(described_[i].on_request(heard_, now()).reply.empty());
@@ -226,7 +227,7 @@ void Crowd::exchange() {
       }
     }
   }
-  // A master that loses no time. A broadcast's silence has passed.
+  // The next request follows as early as possible. The silence after a broadcast is over.
   line_.bus().run_for(line_.rtu_silence() + microseconds(10));
   expect_outputs_as_described();
   pulser_.resume();

@@ -1,17 +1,17 @@
-// 32 modules on one line, and beside each its description, which hears all that it hears.
+// 32 modules on one line. Beside each of them runs its reference model, which receives the same bytes.
 #pragma once
 
 #include <cstdint>
 #include <string>
 #include <vector>
 
-#include "sim/line.hpp"
+#include "sim/line/line.hpp"
 #include "tests/oracles/reference/module.hpp"
 #include "tests/oracles/reference/random.hpp"
 
 namespace ex9000::neighbours {
 
-/// Pulses on all inputs of one module, evenly, all at the same instant.
+/// Sends pulses to all inputs of one module at a constant rate, at the same instant on every input.
 class Pulser final : public sim::Station {
  public:
   Pulser(sim::Bus& bus, sim::SimulatedModule& module) : clock_(bus.clock()), module_(module) {
@@ -27,7 +27,7 @@ class Pulser final : public sim::Station {
   }
   void pause() { next_ = sim::kNever; }
   void resume();
-  /// Pulses on each input since this was asked last.
+  /// Returns the pulses on each input since the last call.
   std::uint32_t take() { return std::exchange(pulses_, 0); }
 
   // --- sim::Station ---
@@ -48,26 +48,27 @@ class Crowd final : public sim::BusObserver {
  public:
   static constexpr std::size_t kModules = 32;
 
-  /// Of the models that have Modbus, most, some of them in ASCII, and some that have ASCII alone, at
-  /// addresses 01 to 20 (hex). Those in ASCII have their checksum on, for without one the bytes of a Modbus
-  /// frame might be a command.
+  /// Creates 32 modules at the addresses 01 to 20 (hex): the models that support Modbus, most of them in
+  /// Modbus RTU and some in ASCII, and some ASCII-only models. The modules in ASCII use their checksum,
+  /// because without one the bytes of a Modbus frame could form a command.
   Crowd(std::uint32_t baud, std::uint64_t seed);
 
   [[nodiscard]] sim::VirtualTime now() { return line_.clock().virtual_now(); }
   Pulser& pulser() { return pulser_; }
-  /// One request to any module, or to all; the next may follow at once. Failures are GoogleTest's.
+  /// Sends one request to a random module, or a broadcast, and checks the replies. The next request may
+  /// follow at once. Reports failures through GoogleTest.
   void exchange();
 
   [[nodiscard]] std::uint64_t replies() const { return replies_; }
   [[nodiscard]] std::uint64_t broadcasts() const { return broadcasts_; }
-  /// Replies of commands that stored something.
+  /// The number of replies to commands that stored something.
   [[nodiscard]] std::uint64_t stores() const { return stores_; }
-  /// Pulses on each input of the one that is pulsed.
+  /// The number of pulses on each input of the pulsed module.
   [[nodiscard]] std::uint64_t pulses() const { return pulses_; }
-  /// Which outputs of each module have been on.
+  /// For each module, the outputs that have been on.
   [[nodiscard]] const std::vector<unsigned>& ever_on() const { return ever_on_; }
   [[nodiscard]] unsigned outputs_of(std::size_t module) const { return described_[module].row().outputs; }
-  /// Replies of each module.
+  /// The number of replies of each module.
   [[nodiscard]] const std::vector<std::uint64_t>& of_each() const { return of_each_; }
 
   // --- sim::BusObserver ---

@@ -1,8 +1,9 @@
-// A line that is full: 32 modules of both protocols, asked one after the other without a pause. Nobody
-// answers for anybody else, nobody takes another's reply for a request, nobody goes deaf, and counters count.
+// A full line: 32 modules of both protocols, which get one request after the other without a pause. Each
+// module answers only its own requests, does not treat another module's reply as a request, keeps receiving,
+// and counts its pulses.
 //
-//     EX9000_VIRTUAL_SECONDS=N    60 where it is not given; 86400 is a day
-//     EX9000_SEED=N               1 likewise
+//     EX9000_VIRTUAL_SECONDS=N    default 60; 86400 is a day
+//     EX9000_SEED=N               default 1
 #include <gtest/gtest.h>
 
 #include <algorithm>

@@ -1,8 +1,8 @@
-// Noise on the line: no output changes, and nothing is answered, but by a frame whose bytes, as they were
-// received, pass the check; and how many damaged ones do.
+// Noise on the line: the module answers and changes outputs only for frames whose received bytes pass the
+// check. The test also counts the damaged frames that pass it.
 //
-//     EX9000_FRAMES=N    frames for each check and error rate; 10,000 where it is not given
-//     EX9000_SEED=N      1 likewise
+//     EX9000_FRAMES=N    frames for each check and error rate; default 10,000
+//     EX9000_SEED=N      default 1
 #include <gtest/gtest.h>
 
 #include <cstdio>
@@ -47,11 +47,11 @@ TEST_P(Checks, LetThroughWhatTheoryExpectsAndTheModuleDoesWhatItHeard) {
         static_cast<unsigned long long>(tally.in_data), static_cast<unsigned long long>(tally.taken_in_data),
         seen.low, seen.high, tally.expected, static_cast<unsigned long long>(tally.taken_otherwise));
     std::fflush(stdout);
-    // They are carried out, and the module is set up anew behind them: theory knows nothing of a module that
-    // has another address. So many do not come about by chance.
+    // These commands are executed, and the module is set up again after them, because the theory does not
+    // consider a module with another address. More of them than this would not be chance.
     std::printf("  %llu stored something\n", static_cast<unsigned long long>(tally.storing));
     EXPECT_LE(tally.storing, 1 + tally.sent / 10'000);
-    // Twice as wide as the interval of 95 %: of twelve rows one would fail otherwise in every second run.
+    // Twice as wide as the 95 % interval; otherwise one of the twelve rows would fail in every second run.
     const double centre = static_cast<double>(tally.taken_in_data);
     EXPECT_GE(tally.expected, centre - 2 * (centre - seen.low));
     EXPECT_LE(tally.expected, centre + 2 * (seen.high - centre));
@@ -61,7 +61,7 @@ TEST_P(Checks, LetThroughWhatTheoryExpectsAndTheModuleDoesWhatItHeard) {
 
 INSTANTIATE_TEST_SUITE_P(Noise, Checks, testing::Values(Check::Crc, Check::Sum, Check::None));
 
-/// What else a line may have, and a module on it that must not mind.
+/// Other faults of a line, which a module must tolerate.
 struct Trouble {
   const char* name;
   std::function<void(NoisyLine&, std::uint64_t exchanges)> happens;
@@ -107,7 +107,7 @@ void echo(NoisyLine& noisy, std::uint64_t exchanges) {
   repeater.switch_off();
 }
 
-/// Of the same requests, at any time.
+/// Another master sends the same kinds of requests at random times.
 void another_master(NoisyLine& noisy, std::uint64_t exchanges, std::uint32_t baud) {
   auto& other = noisy.attach<sim::Master>(baud, [](std::uint8_t, ByteStatus) {});
   for (std::uint64_t i = 0; i < exchanges; ++i) {

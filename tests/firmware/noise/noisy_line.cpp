@@ -19,9 +19,10 @@ using std::chrono::milliseconds;
 
 constexpr std::size_t kModule = 1;
 constexpr unsigned kOutputs = 13;
-/// From a request's last byte to where its reply, of 9 characters or fewer, is over and another may come.
+/// The time from the last byte of a request until the next one may follow: a reply of at most 9 characters is
+/// over.
 constexpr VirtualTime kReplies = milliseconds(6);
-/// Longer than storing takes, or whatever else a frame may bring about.
+/// Longer than storing or any other effect of a frame takes.
 constexpr VirtualTime kLongest = milliseconds(300);
 std::string spec_of(Check check) {
   const std::string spec = "EX9042D-M@01,baud=115200";
@@ -38,7 +39,7 @@ std::string spec_of(Check check) {
 
 double misses(Check check, const FrameBytes& request, double flipped_bit) {
   static std::map<std::pair<FrameBytes, double>, double> known;
-  // A CRC cares for the frame's length alone.
+  // For the CRC only the length of the frame matters.
   const FrameBytes key = check == Check::Crc ? FrameBytes(request.size()) : request;
   const auto [place, fresh] = known.try_emplace({key, flipped_bit});
   if (fresh) {
@@ -79,7 +80,7 @@ void NoisyLine::come_up() {
 
 FrameBytes NoisyLine::a_request() {
   const unsigned kind = below(3);
-  // A few, for what theory expects is reckoned for each.
+  // Only a few values, because the theory is computed for each request.
   constexpr std::uint16_t kOutputValues[] = {0x0000, 0x1FFF, 0x0A5A, 0x15A5};
   const std::uint16_t data = kOutputValues[below(4)];
   if (check_ == Check::Crc) {
@@ -140,7 +141,7 @@ void NoisyLine::exchange(const FrameBytes& request, double flipped_bit, Tally& t
   ASSERT_TRUE(damaged || requests == 1) << "the witness heard something else";
   ASSERT_EQ(onlooker_.replies() - replies_before, requests) << "frames as received, and replies";
   if (after.storing != before.storing) {
-    // Whatever it was told, it was told; nobody counts on what it has stored.
+    // The command was executed correctly, but later requests must not depend on what it has stored.
     ++tally.storing;
     line_.bus().run_for(kLongest);
     come_up();

@@ -1,4 +1,4 @@
-// A master and a module on a line with noise, and a witness that hears what the module hears.
+// A master and a module on a line with noise, and a witness that receives the same bytes as the module.
 #pragma once
 
 #include <cstdint>
@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "sim/faults/noise.hpp"
-#include "sim/line.hpp"
+#include "sim/line/line.hpp"
 #include "tests/firmware/noise/onlooker.hpp"
 
 namespace ex9000::noise {
@@ -23,17 +23,17 @@ const char* name_of(Check check);
 struct Tally {
   std::uint64_t sent = 0;
   std::uint64_t damaged = 0;
-  std::uint64_t in_data = 0;          ///< damaged in data bits alone
-  std::uint64_t taken_in_data = 0;    ///< of those, taken for frames all the same
-  double expected = 0;                ///< how many that should have been
-  std::uint64_t taken_otherwise = 0;  ///< likewise, start or stop bits being damaged
-  std::uint64_t storing = 0;          ///< taken, and commands to store something
+  std::uint64_t in_data = 0;          ///< only data bits were damaged
+  std::uint64_t taken_in_data = 0;    ///< of those, accepted as valid frames
+  double expected = 0;                ///< expected value of `taken_in_data`
+  std::uint64_t taken_otherwise = 0;  ///< accepted although start or stop bits were damaged
+  std::uint64_t storing = 0;          ///< accepted commands that store something
 };
 
 class NoisyLine final : public sim::Disturbance, public sim::Station {
  public:
   static constexpr std::uint32_t kBaud = 115200;
-  /// A line of more than bit errors has one master that keeps silent before a request, or others.
+  /// Starts a line with a master and a module. The same `seed` reproduces the same noise and requests.
   NoisyLine(Check check, std::uint64_t seed);
 
   sim::Line& line() { return line_; }
@@ -41,7 +41,7 @@ class NoisyLine final : public sim::Disturbance, public sim::Station {
   std::mt19937_64& random() { return random_; }
   unsigned below(unsigned limit) { return static_cast<unsigned>(random_() % limit); }
 
-  /// One more on the line, which lives as long as that.
+  /// Attaches another station, which lives as long as this line.
   template <class AStation, class... Arguments>
   AStation& attach(Arguments&&... arguments) {
     const auto station = std::make_shared<AStation>(line_.bus(), std::forward<Arguments>(arguments)...);
@@ -49,20 +49,20 @@ class NoisyLine final : public sim::Disturbance, public sim::Station {
     return *station;
   }
 
-  /// One that the master may send: it reads or writes outputs.
+  /// Returns a request that the master may send: it reads or writes outputs.
   FrameBytes a_request();
-  /// Sends `request` where bits are flipped with this probability, and judges all that follows. Failures are
-  /// GoogleTest's.
+  /// Sends `request` while noise flips each bit with the probability `flipped_bit`, and checks all that
+  /// follows. Reports failures through GoogleTest.
   void exchange(const FrameBytes& request, double flipped_bit, Tally& tally);
-  /// Nobody disturbs any more: after a silence, and a CR where frames end with one, the first frame is
-  /// answered, and rightly.
+  /// Checks the module when the line has no more disturbance: after a silence, and a CR if frames end with
+  /// one, the module answers the first frame correctly.
   void expect_the_first_clean_frame_is_answered();
 
-  /// Replies and changes of outputs, all of them with their reason: whatever the module does is held against
-  /// what it has heard, whoever sent that.
+  /// The number of replies and changes of outputs. The witness has found a reason for each of them in the
+  /// bytes that the module received from any sender.
   [[nodiscard]] std::uint64_t deeds() const { return onlooker_.deeds(); }
 
-  // --- sim::Disturbance: counts what noise does ---
+  // --- sim::Disturbance: counts the effects of the noise ---
   sim::Levels disturbed(const Sent& sent) override;
 
   // --- sim::Station: the witness ---

@@ -1,5 +1,5 @@
-// A witness beside a simulated module: what the module does on the wires and with its outputs, at the moment
-// that it does it.
+// Connects a witness to a simulated module: it checks each reply and each change of the outputs when it
+// happens.
 #pragma once
 
 #include <gtest/gtest.h>
@@ -8,18 +8,18 @@
 #include <cstdint>
 #include <vector>
 
-#include "sim/bus.hpp"
-#include "sim/module.hpp"
+#include "sim/bus/bus.hpp"
+#include "sim/bus/module.hpp"
 #include "tests/oracles/judges/module_state.hpp"
 #include "tests/oracles/judges/witness.hpp"
 
 namespace ex9000::noise {
 
-/// Failures are GoogleTest's.
+/// Reports failures through GoogleTest.
 class Onlooker final : public sim::BusObserver {
  public:
-  /// All live as long as the bus is used; nobody else looks at the module's outputs. `station`: the module's
-  /// on the bus.
+  /// All arguments must live as long as the bus is used. Nothing else may observe the module's outputs.
+  /// `station`: the module's number on the bus.
   Onlooker(sim::Bus& bus, sim::SimulatedModule& module, std::size_t station)
       : clock_(bus.clock()),
         module_(module),
@@ -36,32 +36,33 @@ class Onlooker final : public sim::BusObserver {
   Onlooker(const Onlooker&) = delete;
   Onlooker& operator=(const Onlooker&) = delete;
 
-  /// From here on the module may do whatever it likes; it is about to be switched off.
+  /// Stops checking: the module is about to be switched off and may do anything.
   void look_away() { looking_ = false; }
-  /// It has come up, nothing was sent since. Whatever it does from now on is held against what it hears.
+  /// Begins to check. Call it when the module has started and nothing has been sent to it since.
   void look_again() {
     judges::Listening listening = judges::listening_of(module_.module().state());
-    // Of what the module's clock and the witness' make of the same time.
+    // The greatest difference between the module's clock and the clock of the witness.
     constexpr judges::Microseconds kDoubt = 8;
     listening.doubt = kDoubt;
     witness_.comes_up(listening, values(), now());
     looking_ = true;
   }
 
-  /// The module is told of this byte, or was; it may not have acted upon it yet.
+  /// Passes a byte to the witness that the module receives or has received; the module may not have processed
+  /// it yet.
   void hears(std::uint8_t byte, ByteStatus status) {
     if (!driving_) {
       witness_.hears(byte, status == ByteStatus::Good, module_.module().state().in_force.address, now());
     }
   }
 
-  /// What was heard until now.
+  /// The counts of what the module has received until now.
   const judges::Witness::Counts& counts() {
     witness_.pass(now());
     return witness_.counts();
   }
   [[nodiscard]] std::uint64_t replies() const { return replies_; }
-  /// Replies, and changes of outputs.
+  /// The number of replies and changes of outputs.
   [[nodiscard]] std::uint64_t deeds() const { return deeds_; }
 
   // --- sim::BusObserver ---

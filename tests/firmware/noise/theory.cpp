@@ -9,7 +9,7 @@ namespace ex9000::noise {
 
 namespace {
 
-/// One number for each sum of characters, modulo 256.
+/// A probability for each sum of characters, modulo 256.
 using Sums = std::array<double, 256>;
 
 unsigned ones(unsigned value) {
@@ -28,8 +28,8 @@ double choose(unsigned from, unsigned count) {
   return ways;
 }
 
-/// In how many ways `weight` of `bits` places can be taken with an even number of them among the `marked`
-/// ones, less those with an odd number.
+/// The number of ways to choose `weight` of `bits` places with an even number of `marked` ones among them,
+/// minus those with an odd number.
 double krawtchouk(unsigned bits, unsigned weight, unsigned marked) {
   double sum = 0;
   for (unsigned j = 0; j <= weight && j <= marked; ++j) {
@@ -38,7 +38,7 @@ double krawtchouk(unsigned bits, unsigned weight, unsigned marked) {
   return sum;
 }
 
-/// What flipping bit `place` of `bits` does to the CRC; a CRC is linear but for its start value.
+/// For each place, the change of the CRC if that bit is flipped. Apart from its start value, a CRC is linear.
 std::vector<unsigned> syndromes(unsigned bits) {
   std::vector<unsigned> all;
   for (unsigned place = 0; place < bits; ++place) {
@@ -52,7 +52,7 @@ std::vector<unsigned> syndromes(unsigned bits) {
   return all;
 }
 
-/// How many words of so many bits the CRC takes for right, by their weight up to 12.
+/// The number of words of `bits` bits that the CRC accepts, for each weight up to 12.
 using Words = std::array<double, 13>;
 Words words_of(unsigned bits) {
   const std::vector<unsigned> columns = syndromes(bits);
@@ -74,7 +74,7 @@ Words words_of(unsigned bits) {
   return words;
 }
 
-/// How probable it is that flips make `to` of `from`.
+/// The probability that flips change `from` to `to`.
 double becomes(unsigned from, unsigned to, double flipped_bit) {
   const unsigned flips = ones(from ^ to);
   return std::pow(flipped_bit, flips) * std::pow(1 - flipped_bit, 8 - flips);
@@ -82,7 +82,7 @@ double becomes(unsigned from, unsigned to, double flipped_bit) {
 
 bool in(char character, const char* set) { return std::string(set).find(character) != std::string::npos; }
 
-/// That `text`, a CR behind it, passes: its last two characters are the sum of the others.
+/// The probability that `text` with a CR after it passes: its last two characters are the sum of the others.
 double sum_fits(const std::string& text, double flipped_bit) {
   Sums sums{};
   sums[0] = 1;
@@ -109,7 +109,7 @@ double sum_fits(const std::string& text, double flipped_bit) {
   return passes;
 }
 
-/// Of a frame of so many bytes.
+/// The words of a frame of `bytes` bytes, computed once.
 const Words& known_words(std::size_t bytes) {
   static std::map<std::size_t, Words> known;
   const auto [place, fresh] = known.try_emplace(bytes);
@@ -137,7 +137,7 @@ double dcon_misses(const std::string& frame, bool checksum, double flipped_bit) 
   const double untouched = std::pow(1 - flipped_bit, 8 * (frame.size() + 1));
   const double cr_stays = becomes('\r', '\r', flipped_bit);
   double taken = 0;
-  double hunting = 1;  // that no character so far was a delimiter or the lead of a reply
+  double hunting = 1;  // the probability that no character so far was a delimiter or the lead of a reply
   for (std::size_t begin = 0; begin + (checksum ? 5 : 3) <= frame.size() + 1; ++begin) {
     const std::string rest = frame.substr(begin);
     double opens = 0;
@@ -150,7 +150,7 @@ double dcon_misses(const std::string& frame, bool checksum, double flipped_bit) 
     if (checksum) {
       taken += hunting * (rest.size() >= 5 ? sum_fits(rest, flipped_bit) * cr_stays : 0);
     } else {
-      // As it is, or one longer where the CR became something else.
+      // The frame has its own length, or is longer because its CR became another character.
       double others = 1;
       for (std::size_t i = 1; i < rest.size(); ++i) {
         others *= 1 - becomes(static_cast<unsigned char>(rest[i]), '\r', flipped_bit);
@@ -163,7 +163,7 @@ double dcon_misses(const std::string& frame, bool checksum, double flipped_bit) 
 }
 
 Interval interval_of(std::uint64_t count) {
-  // Where the tail of the distribution beyond what was seen has 2.5 %, found by halving.
+  // Finds, by bisection, the means at which the tail of the distribution beyond `count` is 2.5 %.
   const auto at_most = [](std::uint64_t events, double mean) {
     double term = std::exp(-mean);
     double sum = term;

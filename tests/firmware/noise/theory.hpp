@@ -1,5 +1,5 @@
-// How many damaged frames a check lets through, by reckoning: every bit of every byte is flipped with the
-// same probability, by itself.
+// Calculates how many damaged frames a check accepts if every bit of every byte is flipped with the same
+// probability, independently of all others.
 #pragma once
 
 #include <cstddef>
@@ -8,23 +8,23 @@
 
 namespace ex9000::noise {
 
-/// How many of the ways to flip so many bits of a Modbus RTU frame of so many bytes, its CRC among them,
-/// leave its CRC right. From the weights of the words of the code's dual, by MacWilliams' identity. `flips`:
-/// 0 to 12.
+/// Returns how many of the ways to flip `flips` bits of a Modbus RTU frame leave its CRC correct. `bytes`:
+/// length of the frame with its CRC. `flips`: 0 to 12. Uses the weights of the words of the dual code and the
+/// MacWilliams identity.
 double crc_misses_of(std::size_t bytes, unsigned flips);
 
-/// The probability that a Modbus RTU frame of so many bytes, its CRC among them, arrives damaged and its CRC
-/// is right all the same. More than 12 flips are left out, which for a probability of 0.01 and 20 bytes or
-/// fewer is less than a millionth of the sum.
+/// Returns the probability that a Modbus RTU frame arrives damaged with a correct CRC. `bytes`: length of the
+/// frame with its CRC. Ignores more than 12 flips; at a probability of 0.01 and 20 bytes or fewer they
+/// contribute less than a millionth of the sum.
 double crc_misses(std::size_t bytes, double flipped_bit);
 
-/// That a DCON frame arrives damaged and is taken for a frame all the same. `frame` begins with its delimiter
-/// and ends before CR, its checksum included where there is one; a CR that nothing hits follows later.
-/// Left out are frames that end early, at a character that has become a CR, for which all characters used
-/// here want four flips at least; and with a checksum, those whose own CR has become another character.
+/// Returns the probability that a DCON frame arrives damaged and is accepted. `frame` begins with its
+/// delimiter and ends before CR; it includes the checksum if there is one. An undamaged CR follows later.
+/// Ignores frames that end early because a character has become a CR: all characters used here need at least
+/// four flips for that. With a checksum, also ignores frames whose own CR has become another character.
 double dcon_misses(const std::string& frame, bool checksum, double flipped_bit);
 
-/// The 95 % interval of a Poisson variable's mean of which `count` events were seen.
+/// The 95 % confidence interval of the mean of a Poisson variable that has produced `count` events.
 struct Interval {
   double low;
   double high;

@@ -1,4 +1,4 @@
-// What theory says of the CRC, counted.
+// Compares the theory of the CRC with exhaustive counts.
 #include "tests/firmware/noise/theory.hpp"
 
 #include <gtest/gtest.h>
@@ -12,7 +12,7 @@
 namespace ex9000::noise {
 namespace {
 
-/// What flipping each bit of a frame does to its CRC, as it is taken of the frame with that bit flipped.
+/// For each bit of a frame, the change of the CRC when that bit is flipped, computed from the frame itself.
 std::vector<unsigned> syndromes_of(std::size_t bytes) {
   std::vector<std::uint8_t> frame(bytes, 0xA5);
   const unsigned untouched = judges::crc16(frame.data(), bytes);
@@ -27,7 +27,7 @@ std::vector<unsigned> syndromes_of(std::size_t bytes) {
   return all;
 }
 
-/// In how many ways 1, 2, 3 and 4 flips leave the CRC as it was, one after the other tried out.
+/// The number of ways in which 1, 2, 3 and 4 flips leave the CRC unchanged, found by trying all of them.
 struct Misses {
   std::array<std::uint64_t, 5> of{};
   std::uint64_t tried_with_four = 0;

@@ -11,7 +11,7 @@ namespace {
 
 using Pattern = StatusLed::Pattern;
 
-/// The last is so near the wrap that all that is timed here crosses it.
+/// The last start is so near the wrap that every timed interval crosses it.
 constexpr Time kStarts[] = {Time(0), Time(123'456'789), Time(0xFFFF'FFFFU - 4'000)};
 
 Time ms(Time start, std::uint32_t after) { return start + milliseconds(after); }
@@ -49,7 +49,7 @@ TEST(Debounce, WantsToBeSampledEachMillisecondWhileALevelSettlesAndAsItCounts) {
       ASSERT_LT(samples, 20U);
       const Duration wait = debounce.next_sample().remaining(start + Duration(after));
       EXPECT_LE(wait.microseconds(), 1'000U);
-      after += wait.microseconds() + (samples == 0 ? 300U : 0U);  // once it was late
+      after += wait.microseconds() + (samples == 0 ? 300U : 0U);  // one late sample
       debounce.sample(true, start + Duration(after));
     }
     EXPECT_EQ(after, 10'000U);
@@ -104,7 +104,7 @@ TEST(Debounce, AChangeThatStandsChangesTheLevelBothWays) {
 
 // --- the status LED ---
 
-/// Whether the LED is lit `after` so many milliseconds, where the main loop turns every millisecond.
+/// Whether the LED is lit after `after` milliseconds, if the main loop turns every millisecond.
 class LedOverTime {
  public:
   LedOverTime(Pattern pattern, Time start) : pattern_(pattern), start_(start) { led.show(pattern, start); }

@@ -1,5 +1,4 @@
-// What a request comes to: what is asked for is all that is asked for, and nothing is left once it is
-// cleared.
+// The outcome of a request: it holds exactly the requested effects, and nothing after it is cleared.
 #include "firmware/request/outcome.hpp"
 
 #include <gtest/gtest.h>
@@ -96,7 +95,7 @@ TEST(Outcome, ThatIsClearedStillTellsWhyItWasRefused) {
   EXPECT_EQ(outcome.refusal, Refusal::OutOfRange);
 }
 
-// A module has one outcome, for one request after the other.
+// A module uses one outcome object for all requests.
 TEST(Outcome, ThatWasClearedHoldsOnlyWhatCameAfter) {
   Outcome outcome = of_everything();
   outcome.clear();

@@ -1,4 +1,4 @@
-// A reply while it is being written: it never exceeds its room, whatever a handler puts.
+// A reply while it is being written: it never exceeds its buffer, even if a handler appends too much.
 #include "firmware/request/reply.hpp"
 
 #include <gtest/gtest.h>
@@ -24,7 +24,7 @@ TEST(Reply, IsEmptyAtFirstAndOnceItIsCleared) {
 TEST(Reply, HasWhatWasPutInItsOrder) {
   Reply reply;
   reply.put('!');
-  reply.put_hex(0x1A5);  // its low byte
+  reply.put_hex(0x1A5);  // only the low byte
   reply.put_word(0x4243);
   reply.put(std::string_view("D01"));
   EXPECT_EQ(text_of(reply), "!A5BCD01");

@@ -1,4 +1,4 @@
-// A request from the moment it is judged to the end of its reply: wire.md sections 3, 7 and 8, D17 and D18.
+// A request from its evaluation to the end of its reply: wire.md sections 3, 7 and 8, D17 and D18.
 #include "firmware/request/request_cycle.hpp"
 
 #include <gtest/gtest.h>
@@ -26,7 +26,7 @@ class RequestCycleTest : public testing::Test {
     request_.assign(request.begin(), request.end());
     return cycle_.judge({request_.data(), request_.size()});
   }
-  /// Without its CRC.
+  /// The request has no CRC.
   const Outcome& judge_modbus(std::vector<std::uint8_t> request) {
     state_.in_force.protocol = Protocol::ModbusRtu;
     request_ = std::move(request);
@@ -119,7 +119,7 @@ TEST_F(RequestCycleTest, OneJudgementLeavesNothingBehindForTheNext) {
   judge_modbus({0x00, 0x06, 0x01, 0xE8, 0x00, 0x05});
   cycle_.finish();
   EXPECT_FALSE(judge_modbus({0x01, 0x01, 0x00, 0x00, 0x00, 0x01}).changes_settings());
-  EXPECT_TRUE(cycle_.finish());  // no broadcast any more
+  EXPECT_TRUE(cycle_.finish());  // the broadcast state is cleared
 }
 
 // wire.md D17.

@@ -1,4 +1,4 @@
-// Settings that earlier firmware has stored: contract of an update, wire.md section 8.
+// Settings that earlier firmware has stored, after an update: wire.md section 8.
 #include "firmware/settings/old_layouts.hpp"
 
 #include <gtest/gtest.h>
@@ -19,7 +19,7 @@ std::optional<StoredSettings> read(const Model& model, const std::vector<std::ui
   return read_old_layout(model, {memory.data() + place, kOldCopySize});
 }
 
-/// What a module comes up with, read by itself and by a reader that has no code of the firmware.
+/// Compares the settings with which a module starts, read by the firmware and by an independent reader.
 TEST(StoredBytes, AreTheSettingsThatWereStored) {
   for (const StoredBytes& stored : all_stored_bytes()) {
     FakeMemory memory;
@@ -55,7 +55,7 @@ TEST(StoredBytes, OfAnotherModelAreNotRead) {
   }
 }
 
-/// Both layouts from the files, by the layout that the file's name begins with.
+/// Corrupts every byte of the files' copies, in both older layouts.
 TEST(OldLayouts, EverySingleCorruptedByteIsSeen) {
   for (const StoredBytes& stored : all_stored_bytes()) {
     for (const std::size_t place : {0x00U, 0x20U}) {

@@ -1,4 +1,4 @@
-// Where copies of the settings lie.
+// The places of the copies of the settings.
 #include "firmware/settings/places.hpp"
 
 #include <gtest/gtest.h>

@@ -1,4 +1,4 @@
-// Settings as they lie in the memory: what is written is read back, and nothing else is taken for settings
+// The stored form of settings: what is written is read back, and nothing else is accepted as settings
 // (wire.md D8).
 #include "firmware/settings/record.hpp"
 
@@ -19,13 +19,13 @@ namespace {
 
 const Model& model(std::string_view designation) { return *find_model(designation); }
 
-/// What a record is made of.
+/// The contents of a record.
 struct Stored {
   Settings settings;
   std::uint16_t sequence;
 };
 
-/// Every field differs from the factory's.
+/// Every field differs from its factory value.
 Stored changed_settings() {
   Settings settings;
   settings.address = 0xF7;
@@ -75,7 +75,7 @@ constexpr std::size_t kRecordSize = kCheckAt + 4;
 
 Record filled_with(std::uint8_t byte) { return Record(kRecordSize, byte); }
 
-/// The first `written` bytes of `newer`, and behind them `older`.
+/// Returns the first `written` bytes of `newer`, followed by the rest of `older`.
 Record torn_record(const Record& newer, std::size_t written, Record older) {
   std::copy_n(newer.begin(), written, older.begin());
   return older;
@@ -88,7 +88,7 @@ Record with_flipped(Record record, std::size_t bit) {
   return record;
 }
 
-// --- the check: CRC-32 as IEEE 802.3 has it, a bit at a time, and back ---
+// --- the check: CRC-32 of IEEE 802.3, bit by bit, forwards and backwards ---
 
 std::uint32_t word_at(const Record& record, std::size_t at) {
   std::uint32_t word = 0;
@@ -110,8 +110,8 @@ std::uint32_t taken_in(std::uint32_t crc, std::uint32_t data, int bits) {
   return crc;
 }
 
-/// The exclusive or of CRC and data that `taken_in` has made `result` of: the polynomial's highest bit tells
-/// whether it was divided by.
+/// The inverse of `taken_in`: returns the exclusive or of CRC and data from which `taken_in` computed
+/// `result`. The highest bit of the polynomial shows in which steps it was applied.
 std::uint32_t undone(std::uint32_t result, int bits) {
   for (int bit = 0; bit < bits; ++bit) {
     const bool divided = result >> 31U != 0;
@@ -128,7 +128,7 @@ std::uint32_t seed(const Model& which) {
   return crc;
 }
 
-/// So that a test can put in what no module would.
+/// Sets a correct check, so that a test can store contents that no module would store.
 Record with_check(const Model& which, Record record) {
   const std::size_t check_at = record.size() - 4;
   std::uint32_t crc = seed(which);
@@ -141,7 +141,7 @@ Record with_check(const Model& which, Record record) {
   return record;
 }
 
-/// The only four bytes that can stand from `missing` on in a record with this check and these other bytes.
+/// Returns the only four bytes from `missing` on that match the check and the other bytes of the record.
 std::uint32_t word_that_must_be_at(std::size_t missing, const Record& record, const Model& which) {
   std::uint32_t behind = ~check_in(record);
   for (std::size_t i = record.size() - 5; i > missing + 3; --i) {
@@ -154,7 +154,7 @@ std::uint32_t word_that_must_be_at(std::size_t missing, const Record& record, co
   return undone(behind, 32) ^ before;
 }
 
-/// Any that `which` may have.
+/// Random settings that are possible for the model `which`.
 Stored random_settings(const Model& which, std::mt19937& random) {
   const auto below = [&random](std::uint32_t limit) { return static_cast<std::uint32_t>(random() % limit); };
   Settings settings;
@@ -175,7 +175,7 @@ Stored random_settings(const Model& which, std::mt19937& random) {
   return {settings, static_cast<std::uint16_t>(random())};
 }
 
-/// Records that differ in up to four neighbouring bytes only, whose checks are held to differ too.
+/// Records that differ in up to four adjacent bytes only. Requires that their checks differ, too.
 class OfOneKind {
  public:
   OfOneKind(const char* what, std::size_t at) : what_(what), at_(at) {}
@@ -201,7 +201,7 @@ class OfOneKind {
   std::unordered_set<std::uint32_t> checks_;
 };
 
-// --- what is written comes back ---
+// --- written records are read back ---
 
 TEST(Record, FitsAPageOfTheMemory) {
   EXPECT_EQ(record_of(factory()).size(), kRecordSize);
@@ -286,9 +286,10 @@ TEST(Record, TwoThatDifferInAnyByteAreNotEqual) {
   }
 }
 
-// --- what is not a record ---
+// --- invalid records ---
 
-// The promise of the check, as a proof: whatever the check and the other bytes are, only these four fit.
+// A proof that the check finds every error in four adjacent bytes: for any check and other bytes, only these
+// four bytes match.
 TEST(Record, AnyFourBytesFollowFromTheCheckAndTheOtherBytes) {
   std::mt19937 random(3);
   for (const Model& each : kModels) {
@@ -303,7 +304,7 @@ TEST(Record, AnyFourBytesFollowFromTheCheckAndTheOtherBytes) {
   }
 }
 
-// And by trial, with tens of thousands of records for each place.
+// The same as a trial, with tens of thousands of records for each place.
 TEST(Record, TwoThatDifferInFourBytesOnlyNeverHaveTheSameCheck) {
   OfOneKind lines("address, baud code, format and protocol", 4);
   OfOneKind watchdogs("watchdog and timeout status", 8);
@@ -491,7 +492,7 @@ TEST(Record, WithARightCheckButAnArmedWatchdogWithoutTimeoutIsNone) {
 
 // --- longer and shorter records ---
 
-/// Of a firmware that knows more settings, or fewer.
+/// A record of firmware that has more settings, or fewer.
 Record with_length(const Stored& stored, std::size_t length) {
   Record record = record_of(stored);
   Record settings(record.begin() + kSettingsAt, record.begin() + kCheckAt);
@@ -567,7 +568,7 @@ TEST(Record, ThatIsWrittenOverAShorterOneIsAWholeOne) {
   EXPECT_TRUE(std::equal(bytes.begin(), bytes.begin() + kRecordSize, record_of(changed_settings()).begin()));
 }
 
-// --- which of several counts ---
+// --- the newest of several copies ---
 
 TEST(Edition, OfANewerLayoutCountsOverAnyOfAnOlderOne) {
   constexpr std::uint16_t kSequences[] = {0, 1, 0x7FFF, 0x8000, 0xFFFF};

@@ -1,4 +1,4 @@
-// What is stored, what is not yet, and when it is tried again: wire.md section 8, D6 and D15.
+// The keeper stores changed settings and retries after a failure: wire.md section 8, D6 and D15.
 #include "firmware/settings/settings_keeper.hpp"
 
 #include <gtest/gtest.h>
@@ -12,7 +12,7 @@ class SettingsKeeperTest : public testing::Test {
  protected:
   SettingsKeeperTest() { drive_memory(); }
 
-  /// Until the memory has nothing more to do.
+  /// Runs until the memory has no more jobs.
   void drive_memory() {
     for (int jobs = 0; keeper_.busy(); ++jobs) {
       ASSERT_LT(jobs, 100) << "the store never finishes";
@@ -25,7 +25,7 @@ class SettingsKeeperTest : public testing::Test {
     drive_memory();
   }
   void pass(Duration time) { now_ = now_ + time; }
-  /// How often the memory has been written to.
+  /// The number of writes to the memory.
   [[nodiscard]] std::size_t writes() const { return memory_.writes.size(); }
 
   FakeMemory memory_;
@@ -49,7 +49,7 @@ TEST_F(SettingsKeeperTest, ABlankMemoryHasFactorySettingsAndIsNotUnreadable) {
 TEST_F(SettingsKeeperTest, WritesNothingAsLongAsNothingHasChanged) {
   keeper_.poll(keeper_.stored(), now_);
   EXPECT_FALSE(keeper_.busy());
-  keeper_.settings_changed();  // and back
+  keeper_.settings_changed();  // changed, and changed back
   keeper_.poll(keeper_.stored(), now_);
   EXPECT_FALSE(keeper_.busy());
   EXPECT_EQ(writes(), 0U);
@@ -89,7 +89,7 @@ TEST_F(SettingsKeeperTest, StoresWhatChangedWhileACommandWasStored) {
 TEST_F(SettingsKeeperTest, TriesAgainEverySecondUntilItIsStored) {
   keeper_.settings_changed();
   for (int failures = 0; failures < 3; ++failures) {
-    memory_.unanswered_writes = 4;  // three attempts, and the copy cannot be made invalid
+    memory_.unanswered_writes = 4;  // three attempts, and the write that would invalidate the copy
     keeper_.poll(numbered(5), now_);
     ASSERT_TRUE(keeper_.busy()) << failures;
     drive_memory();
@@ -138,7 +138,7 @@ TEST_F(SettingsKeeperTest, AnUpdateIsFinishedWithoutACommandAndThatIsTriedAgain)
   drive_it();
   EXPECT_TRUE(keeper.stored() == numbered(6));
   EXPECT_FALSE(keeper.certain());
-  memory.unanswered_writes = 4;  // three attempts, and what invalidates their place
+  memory.unanswered_writes = 4;  // three attempts, and the write that would invalidate their place
   keeper.poll(numbered(6), now_);
   ASSERT_TRUE(keeper.busy());
   drive_it();
@@ -189,8 +189,8 @@ TEST_F(SettingsKeeperTest, WhatChangesWhileARefusedCopyIsInvalidatedIsStoredAtOn
   store(numbered(6));
   ASSERT_FALSE(keeper_.saved());
   keeper_.poll(numbered(5), now_);
-  drive_memory();              // the copy is invalidated
-  keeper_.settings_changed();  // meanwhile the host watchdog has expired
+  drive_memory();              // invalidates the copy
+  keeper_.settings_changed();  // the host watchdog has expired meanwhile
   keeper_.poll(numbered(7), now_);
   EXPECT_TRUE(keeper_.busy());
   drive_memory();

@@ -18,9 +18,9 @@ using Found = SettingsStore::Found;
 
 inline constexpr std::size_t kPage = 32;
 inline constexpr std::size_t kAttempts = 3;
-/// Three at the first place, and one at each of the other three.
+/// Three reads at the first place, and one at each of the other three places.
 inline constexpr std::size_t kReadsOfASilentMemory = kAttempts + 3;
-inline constexpr std::size_t kStuckCell = 4;  // of a page: where a record has the address
+inline constexpr std::size_t kStuckCell = 4;  // offset in a page: a record has the address there
 
 inline const Model& model(std::string_view designation) { return *find_model(designation); }
 
@@ -28,7 +28,7 @@ inline const Model& the_model() { return model("EX9042D-M"); }
 
 inline Settings factory() { return Settings::factory(the_model()); }
 
-/// Settings that tell themselves apart.
+/// Returns settings that differ for each `number`.
 inline Settings numbered(unsigned number) {
   Settings settings = factory();
   settings.address = static_cast<std::uint8_t>(1 + number % 247);
@@ -37,15 +37,15 @@ inline Settings numbered(unsigned number) {
   return settings;
 }
 
-/// A few pages of memory that can fail in all the ways a memory can.
+/// A few pages of memory that can fail in every way in which a real memory can.
 class FakeMemory {
  public:
   enum class Garbage { None, Zeroes, Ones, MixedWithOld, MixedWithNew };
   static constexpr Garbage kEveryGarbage[] = {Garbage::None, Garbage::Zeroes, Garbage::Ones,
                                               Garbage::MixedWithOld, Garbage::MixedWithNew};
 
-  /// Does the job as far as there is power; nothing where it has failed meanwhile, else whether the memory
-  /// answered.
+  /// Does the job as far as there is power. Returns whether the memory answered; no value if the power
+  /// failed.
   std::optional<bool> run(const MemoryJob& job) {
     const bool writing = job.kind == MemoryJob::Kind::Write;
     const std::size_t size = job.bytes.size;
@@ -59,15 +59,15 @@ class FakeMemory {
   }
 
   std::vector<std::uint8_t> cells = std::vector<std::uint8_t>(kStoredMemory, 0xFF);
-  std::size_t failing_reads = 0;      ///< so many next reads are not answered
-  std::size_t noisy_reads = 0;        ///< so many next reads read nonsense
-  std::size_t unanswered_writes = 0;  ///< so many next writes are not answered, and not done
-  bool unanswered_but_done = false;   ///< or done all the same
-  bool stuck = false;                 ///< the address of the settings cannot be written, in any page
-  std::optional<std::size_t> power;   ///< fails when so many more bytes are written
-  Garbage garbage = Garbage::None;    ///< in the byte that was being written then
-  std::vector<std::uint16_t> reads;   ///< addresses
-  std::vector<std::uint16_t> writes;  ///< likewise
+  std::size_t failing_reads = 0;      ///< the memory does not answer this many next reads
+  std::size_t noisy_reads = 0;        ///< this many next reads return a wrong bit
+  std::size_t unanswered_writes = 0;  ///< the memory does not answer this many next writes
+  bool unanswered_but_done = false;   ///< the memory stores the data of unanswered writes
+  bool stuck = false;                 ///< the settings' address cannot be written, in any page
+  std::optional<std::size_t> power;   ///< the power fails after this many more bytes are written
+  Garbage garbage = Garbage::None;    ///< in the byte that is being written when the power fails
+  std::vector<std::uint16_t> reads;   ///< addresses of all reads
+  std::vector<std::uint16_t> writes;  ///< addresses of all writes
   std::size_t bytes_written = 0;
 
  private:
@@ -109,7 +109,7 @@ class FakeMemory {
       ++bytes_written;
     }
     if (power && *power == 0) {
-      return std::nullopt;  // all is written, but nobody lives to hear of it
+      return std::nullopt;  // all bytes are written, but the firmware does not learn it
     }
     return answers;
   }
@@ -131,7 +131,7 @@ class FakeMemory {
   }
 };
 
-/// False where the power failed.
+/// Runs all memory jobs of the store. Returns false if the power failed.
 inline bool drive(SettingsStore& store, FakeMemory& memory) {
   for (int jobs = 0; store.busy(); ++jobs) {
     if (jobs == 100) {
@@ -154,7 +154,7 @@ class Boot {
   explicit Boot(FakeMemory& memory, const Model& which = the_model()) : memory_(memory), store_(which) {
     drive(store_, memory_);
   }
-  /// Whether the save was reported as done.
+  /// Returns whether the store reported success.
   bool save(const Settings& settings) {
     store_.begin_saving(settings);
     return drive(store_, memory_) && store_.saved();
@@ -167,7 +167,7 @@ class Boot {
   SettingsStore store_;
 };
 
-/// Where the two copies lie, and those of older layouts.
+/// The addresses of the two copies, and those of older layouts.
 inline constexpr std::uint16_t kCopies[] = {0x080, 0x100};
 inline constexpr std::uint16_t kOldCopies[] = {0x000, 0x020};
 
@@ -179,13 +179,12 @@ inline void put(FakeMemory& memory, std::size_t copy, const Settings& settings, 
               memory.cells.begin() + kCopies[copy]);
 }
 
-/// A copy as firmware of layout 2 stores it (firmware/settings/old_layouts.hpp), written without the
-/// firmware's code.
+/// Stores a copy in layout 2 (firmware/settings/old_layouts.hpp) without the firmware's code.
 inline void put_old(FakeMemory& memory, std::size_t copy, const Settings& settings, std::uint16_t sequence) {
   put_layout_2(the_model(), settings, sequence, memory.cells.data(), kOldCopies[copy]);
 }
 
-/// A record of firmware that knows more settings: `length` bytes of them.
+/// Stores a record of newer firmware with more settings: `length` bytes of them.
 inline void put_longer(FakeMemory& memory, std::size_t copy, const Settings& settings, std::uint16_t sequence,
                        std::uint8_t length) {
   put(memory, copy, settings, sequence);
@@ -194,7 +193,7 @@ inline void put_longer(FakeMemory& memory, std::size_t copy, const Settings& set
 
 inline void corrupt(FakeMemory& memory, std::size_t copy) { memory.cells[kCopies[copy] + 5U] ^= 0x01U; }
 
-/// All ways for a save to fail three times.
+/// Every way in which a save can fail three times.
 inline const std::vector<void (*)(FakeMemory&)> kFailures{
     [](FakeMemory& memory) { memory.noisy_reads = kAttempts; },
     [](FakeMemory& memory) { memory.failing_reads = kAttempts; },

@@ -27,7 +27,7 @@ class PowerCuts : public testing::Test {
     return {blank, one_copy, two_copies, two_copies_the_other_way};
   }
 
-  /// How many bytes a save writes when nothing cuts it short.
+  /// The number of bytes that a complete save writes.
   static std::size_t bytes_of_a_save(FakeMemory memory, const Settings& to) {
     Boot run(memory);
     memory.bytes_written = 0;
@@ -35,7 +35,7 @@ class PowerCuts : public testing::Test {
     return memory.bytes_written;
   }
 
-  /// Saves `to` with a cut behind `bytes`; checks what the next load finds, and returns it.
+  /// Saves `to` with a power cut after `bytes` bytes. Checks what the next load finds, and returns it.
   Settings cut_and_load(FakeMemory& memory, const Settings& to, std::size_t bytes,
                         FakeMemory::Garbage garbage) {
     Boot run(memory);
@@ -106,7 +106,7 @@ TEST_F(PowerCuts, AtAnyByteOfASaveThatFailsLeaveTheOldSettingsOrTheNew) {
         fail(memory);
         return memory;
       };
-      // Only the save fails; what was loaded was loaded before.
+      // Only the save fails; the load before it succeeded.
       const auto cut_at = [&](std::optional<std::size_t> cut) {
         FakeMemory memory = beginning;
         Boot run(memory);

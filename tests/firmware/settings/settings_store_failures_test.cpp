@@ -1,4 +1,4 @@
-// Saves that the memory does not take: wire.md section 8. "A reply means that it is stored."
+// Saves that the memory rejects: wire.md section 8. "A reply means that it is stored."
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -101,7 +101,7 @@ TEST(SettingsStore, AFailedSaveDoesNotTouchTheCopyThatHoldsTheOldSettings) {
   }
 }
 
-/// Ends the store's jobs one after the other, `count` of them, read or written or not answered.
+/// Ends `count` jobs of the store one after the other: done, or not answered.
 void end_jobs(SettingsStore& store, bool answered, int count) {
   for (int i = 0; i < count; ++i) {
     const MemoryJob job = store.job();
@@ -122,9 +122,9 @@ TEST(SettingsStore, WhatIsSettledIsTheDoubtfulCopyAndNotTheOneThatWasLastLookedA
   const std::uint16_t doubtful = store.job().address;
   for (std::size_t attempt = 0; attempt < kAttempts; ++attempt) {
     end_jobs(store, true, 1);   // written,
-    end_jobs(store, false, 1);  // and then silent
+    end_jobs(store, false, 1);  // but the memory does not answer the read
   }
-  end_jobs(store, false, 1);  // not made invalid either
+  end_jobs(store, false, 1);  // cannot be invalidated, either
   ASSERT_TRUE(store.doubtful());
 
   store.begin_saving(numbered(2));
@@ -138,8 +138,8 @@ TEST(SettingsStore, WhatIsSettledIsTheDoubtfulCopyAndNotTheOneThatWasLastLookedA
   EXPECT_FALSE(store.doubtful());
 }
 
-// The memory was silent at reset, a save was refused and could not be invalidated, and the next save looks
-// again.
+// The memory did not answer at reset, a save failed and its copy could not be invalidated, and the next save
+// reads all copies again.
 TEST(SettingsStore, RefusedSettingsDoNotCountWhenAllCopiesAreReadOnceMore) {
   FakeMemory memory;
   put(memory, 0, numbered(5), 7);
@@ -147,9 +147,10 @@ TEST(SettingsStore, RefusedSettingsDoNotCountWhenAllCopiesAreReadOnceMore) {
   Boot run(memory);
   ASSERT_EQ(run.found(), Found::Unreadable);
   memory.unanswered_writes = kAttempts + 1;
-  memory.unanswered_but_done = true;  // the refused settings are there, and what invalidates them too
+  // The rejected settings are stored, and so is the write that invalidates them.
+  memory.unanswered_but_done = true;
   EXPECT_FALSE(run.save(numbered(6)));
-  put(memory, 1, numbered(6), 8);  // as if that had not been done
+  put(memory, 1, numbered(6), 8);  // as if the invalidating write had not been done
   memory.writes.clear();
   memory.unanswered_writes = kAttempts;
   memory.unanswered_but_done = false;

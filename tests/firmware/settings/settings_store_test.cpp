@@ -291,7 +291,7 @@ TEST(SettingsStore, ManySavesFromOneResetWrapTheSequenceToo) {
   }
 }
 
-// A reply means that it is stored, also where the memory was silent at reset only.
+// A reply means that it is stored, even if the memory did not answer at reset.
 TEST(SettingsStore, WhatIsSavedAfterTheMemoryDidNotAnswerAtResetIsFoundAtTheNextLoad) {
   FakeMemory memory;
   put(memory, 0, numbered(5), 700);

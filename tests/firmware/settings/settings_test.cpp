@@ -1,5 +1,5 @@
-// Settings: what a module comes with, what a model can have, and how a command changes them (wire.md 2, 4, 7,
-// 8).
+// Settings: the factory settings, the settings that are possible for a model, and changes by commands
+// (wire.md 2, 4, 7, 8).
 #include "firmware/settings/settings.hpp"
 
 #include <gtest/gtest.h>
@@ -199,7 +199,7 @@ TEST_F(Possible, TheTimeoutStatusWithAndWithoutTheWatchdogArmedAgain) {
 
 // --- changes ---
 
-/// What `name` makes of a change that names nothing yet.
+/// Returns the change that `name` makes, starting from an empty change.
 template <class Naming>
 SettingsChange change(Naming name) {
   SettingsChange change;
@@ -213,7 +213,7 @@ struct FieldChange {
   Settings expected;
 };
 
-/// One for each field, each with another value than `from`.
+/// One change for each field, each to another value than in `from`.
 std::vector<FieldChange> changes_of_each_field(const Settings& from) {
   std::vector<FieldChange> changes;
   const auto add = [&](const char* field, auto name, auto mutate) {
@@ -344,7 +344,7 @@ TEST(SettingsChange, ThatIsClearedNamesNothing) {
   }
 }
 
-// A module has one that it uses again and again.
+// A module uses the same change object again and again.
 TEST(SettingsChange, ThatWasClearedNamesOnlyWhatIsNamedThen) {
   const Settings factory = Settings::factory(model("EX9042D-M"));
   SettingsChange reused;
@@ -358,7 +358,7 @@ TEST(SettingsChange, ThatWasClearedNamesOnlyWhatIsNamedThen) {
   }
 }
 
-// --- as they lie ---
+// --- comparison ---
 
 TEST(Settings, DifferWhereAnyFieldDoes) {
   const Settings factory = Settings::factory(model("EX9042D-M"));

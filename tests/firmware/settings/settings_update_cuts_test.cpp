@@ -1,5 +1,5 @@
-// Power cuts while the settings are saved for the first time after an update, and while a long record is
-// saved: wire.md section 8. "Power may fail at any instant."
+// Power cuts during the first save after an update, and during the save of a long record: wire.md section 8.
+// "Power may fail at any instant."
 #include <gtest/gtest.h>
 
 #include <cstddef>
@@ -40,7 +40,7 @@ std::vector<Beginning> beginnings() {
           {"two longer records", two_longer, numbered(6)}};
 }
 
-/// A module comes up: it loads, and saves once more if an update is unfinished.
+/// Starts a module: it loads the settings, and saves them again if an update is unfinished.
 Settings come_up(FakeMemory& memory) {
   SettingsStore store(the_model());
   if (drive(store, memory) && store.update_unfinished()) {
@@ -50,7 +50,7 @@ Settings come_up(FakeMemory& memory) {
   return store.stored();
 }
 
-/// How many bytes a module writes that comes up and saves `to`.
+/// The number of bytes that a module writes when it starts and saves `to`.
 std::size_t bytes_of(FakeMemory memory, const Settings& to) {
   memory.bytes_written = 0;
   come_up(memory);
@@ -58,7 +58,8 @@ std::size_t bytes_of(FakeMemory memory, const Settings& to) {
   return memory.bytes_written;
 }
 
-/// The power fails behind `bytes`. Whether the save was reported before.
+/// Saves `to` while the power fails after `bytes` bytes. Returns whether the save was reported as done
+/// before.
 bool cut(FakeMemory& memory, const Settings& to, std::size_t bytes, FakeMemory::Garbage garbage) {
   memory.power = bytes;
   memory.garbage = garbage;
@@ -98,7 +99,8 @@ TEST(UpdateCuts, AtEveryPointOfTheFirstStoreLeaveTheOldSettingsOrTheNew) {
   std::printf("power cuts: %zu\n", cuts);
 }
 
-// Twice in a row they grow with the square of what is written: a sample of the pairs, by a seed.
+// The number of pairs grows with the square of the bytes written, so this is a random sample with a fixed
+// seed.
 TEST(UpdateCuts, TwiceInARowLeaveTheOldSettingsOrTheNew) {
   constexpr int kPairs = 4000;
   std::mt19937 random(kSeed);
@@ -114,7 +116,7 @@ TEST(UpdateCuts, TwiceInARowLeaveTheOldSettingsOrTheNew) {
       ASSERT_TRUE(between == numbered(200) || (!saved && between == beginning.settings));
       const bool saved_again = cut(memory, numbered(300), second, garbage());
       const Settings found = come_up(memory);
-      // A page of which one byte was wrong is whole as soon as the next store has come to that byte.
+      // A page with a single wrong byte becomes valid as soon as the next store writes that byte.
       ASSERT_TRUE(found == numbered(300) || (!saved_again && (found == between || found == numbered(200))))
           << beginning.what << ", cut behind byte " << first << ", then " << second << " (seed " << kSeed
           << ")";
@@ -124,7 +126,7 @@ TEST(UpdateCuts, TwiceInARowLeaveTheOldSettingsOrTheNew) {
   }
 }
 
-/// Of the files of stored bytes, at every point too.
+/// The same for the files of stored bytes, at every point.
 TEST(UpdateCuts, OfWhatEarlierFirmwareHasStoredLeaveItsSettingsOrTheNew) {
   for (const StoredBytes& stored : all_stored_bytes()) {
     Settings changed = stored.settings;

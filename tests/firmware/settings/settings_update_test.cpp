@@ -1,4 +1,4 @@
-// A module whose firmware was updated: it finds copies of an older layout, or of a newer one that has more
+// A module after a firmware update: it finds copies of an older layout, or of a newer one that has more
 // settings.
 #include <gtest/gtest.h>
 
@@ -10,7 +10,7 @@
 namespace ex9000 {
 namespace {
 
-/// After an update: copies of layout 2, the second one being the later.
+/// A memory after an update: two copies of layout 2; the second one is newer.
 FakeMemory updated() {
   FakeMemory memory;
   put_old(memory, 0, numbered(5), 7);
@@ -89,7 +89,7 @@ TEST(SettingsAfterAnUpdate, AFirstStoreThatFailsLeavesTheOldOnes) {
   }
 }
 
-/// The power has failed when the new copy was written, perhaps verified, and before the old ones were
+/// The power failed when the new copy was written, perhaps verified, and before the old ones were
 /// invalidated.
 TEST(SettingsAfterAnUpdate, AnOldCopyBesideAGoodNewOneStaysUntilTheSettingsAreSavedOnceMore) {
   FakeMemory memory = updated();
@@ -107,6 +107,20 @@ TEST(SettingsAfterAnUpdate, AnOldCopyBesideAGoodNewOneStaysUntilTheSettingsAreSa
   EXPECT_FALSE(store.update_unfinished());
   expect_no_old_copy_counts(memory);
   EXPECT_TRUE(Boot(memory).stored() == numbered(9));
+}
+
+TEST(SettingsAfterAnUpdate, NothingIsUnfinishedBeforeTheFirstStore) {
+  FakeMemory memory = updated();
+  SettingsStore store(the_model());
+  drive(store, memory);
+  EXPECT_FALSE(store.update_unfinished());
+}
+
+TEST(SettingsAfterAnUpdate, NothingIsUnfinishedInAMemoryWithoutACopy) {
+  FakeMemory memory;
+  SettingsStore store(the_model());
+  drive(store, memory);
+  EXPECT_FALSE(store.update_unfinished());
 }
 
 /// The new copy was badly written: it reads well once, and never again.
@@ -130,7 +144,7 @@ TEST(SettingsAfterAnUpdate, AnOldCopyThatCannotBeInvalidatedIsTriedAgain) {
   SettingsStore store(the_model());
   drive(store, memory);
   store.begin_saving(numbered(9));
-  // The new copy is written and verified; from then on no write is answered.
+  // The new copy is written and verified; after that the memory answers no write.
   for (int jobs = 0; jobs < 2; ++jobs) {
     store.done(*memory.run(store.job()));
   }
@@ -140,7 +154,7 @@ TEST(SettingsAfterAnUpdate, AnOldCopyThatCannotBeInvalidatedIsTriedAgain) {
   ASSERT_TRUE(store.doubtful());
   store.begin_settling();
   drive(store, memory);
-  EXPECT_TRUE(store.doubtful());  // one of the two
+  EXPECT_TRUE(store.doubtful());  // one of the two old copies is left
   store.begin_settling();
   drive(store, memory);
   EXPECT_FALSE(store.doubtful());
@@ -165,7 +179,7 @@ TEST(SettingsAfterAnUpdate, AnOldMemoryThatDidNotAnswerAtResetDoesNotCountAfterA
   expect_no_old_copy_counts(memory);
 }
 
-// --- a record that is longer than this firmware knows ---
+// --- a record that is longer than this firmware expects ---
 
 TEST(ALongerRecord, IsReadAsFarAsItIsKnown) {
   for (unsigned length = 20; length <= 120; ++length) {

@@ -1,12 +1,12 @@
 // Memory contents that released firmware has stored: the files in stored_bytes/. They are committed once and
-// never made anew, so that they show what is in memories in the field and not what this firmware would make
-// of it.
+// never regenerated, so that they show what memories in the field contain, not what this firmware would
+// store.
 //
 //     # comment
 //     model DESIGNATION
-//     at ADDRESS          hex; the bytes that follow lie from there on, all others are FF
+//     at ADDRESS          hex; the bytes that follow begin there, all others are FF
 //       BYTES
-//     settings            that a module with this memory has; each value in hex, but the name
+//     settings            that a module with this memory has; each value in hex, except the name
 //       NAME VALUE
 #pragma once
 
@@ -79,7 +79,7 @@ inline StoredBytes read_stored_bytes(const std::filesystem::path& path) {
   return stored;
 }
 
-/// All files, and at least so many, so that none is lost unseen.
+/// Reads all files. Checks their least number, so that a lost file does not go unnoticed.
 inline std::vector<StoredBytes> all_stored_bytes() {
   constexpr std::size_t kAtLeast = 10;
   std::vector<StoredBytes> all;

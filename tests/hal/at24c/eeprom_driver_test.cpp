@@ -1,4 +1,4 @@
-// The EEPROM's driver on the I2C driver, bit by bit on two wires, with all that can be wrong with them.
+// The EEPROM driver on the I2C driver, bit by bit on two wires, with all faults that the wires can have.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -22,13 +22,13 @@ using std::chrono::nanoseconds;
 
 constexpr std::uint32_t kHertz = 50'000'000;
 
-/// No job may take longer: two pages of 10 ms each, their bytes, and a bus that has to be freed.
+/// The longest permitted time of a job: two pages of 10 ms each, their bytes, and the time to free the bus.
 constexpr milliseconds kLongestJob{40};
-/// No turn of the main loop may cost more accesses to registers.
+/// The greatest permitted number of register accesses in a turn of the main loop.
 constexpr std::uint64_t kMostAccessesATurn = 24;
 
-/// The driver and a main loop that turns on every interrupt, every millisecond, and at once where it is asked
-/// to.
+/// The driver and a main loop that turns on every interrupt, every millisecond, and at once if the driver
+/// requests it.
 template <Family family>
 class Bench {
  public:
@@ -53,7 +53,7 @@ class Bench {
     begin();
   }
 
-  /// The microcontroller is reset; the EEPROM is not.
+  /// Resets the microcontroller but not the EEPROM.
   void reset() {
     mcu.reset();
     begin();
@@ -67,7 +67,7 @@ class Bench {
     driver->start_write(address, {bytes.data(), bytes.size()}, now());
     return finish();
   }
-  /// Runs until the job is over and says whether it succeeded.
+  /// Runs until the job is over. Returns whether it succeeded.
   bool finish() {
     const Instant patience = wires->timeline.now() + kLongestJob;
     while (driver->busy() && wires->timeline.now() < patience) {
@@ -112,7 +112,8 @@ class Bench {
     driver->master().start();
   }
 
-  /// And what is between it and the next one, up to `end`: a test comes in the middle of a byte, too.
+  /// Runs one turn of the main loop and the time until the next one, at most up to `end`, so that a test can
+  /// continue in the middle of a byte.
   void turn(Instant end = kNever) {
     woken_ = false;
     const std::uint64_t before = mcu->accesses();
@@ -172,7 +173,7 @@ class Eeprom : public testing::Test {
   using TheBench = Bench<Kind::kFamily>;
   static TheBench make() { return TheBench(Kind::kManners); }
 
-  /// It does what it should, as if nothing had been.
+  /// Checks that the driver works normally.
   static void expect_works(TheBench& bench, unsigned seed) {
     const auto bytes = some_bytes(40, seed);
     EXPECT_TRUE(bench.write(0x0150, bytes));
@@ -228,8 +229,8 @@ TYPED_TEST(Eeprom, AWriteIsOverWhenTheLastPageIsProgrammed) {
   }
 }
 
-// A page is programmed from its STOP on, behind the 3 ms that its bytes take at 100 kHz, and for 10 ms at
-// most (tWR, doc. 0336, "AC characteristics").
+// A page is programmed from its STOP on, after the 3 ms that its bytes take at 100 kHz, for at most 10 ms
+// (tWR, doc. 0336, "AC characteristics").
 TYPED_TEST(Eeprom, PagesAreWrittenWholeByAChipThatTakesAsLongAsItsDataSheetAllows) {
   for (const std::size_t pages : {1U, 2U}) {
     typename TestFixture::TheBench bench(TypeParam::kManners);
@@ -301,7 +302,7 @@ TYPED_TEST(Eeprom, ABusThatIsFreeHearsStartAndStopAtOnce) {
 
 TYPED_TEST(Eeprom, DataHeldForUpToNineClocksIsFreedAndHearsStartAndStop) {
   for (unsigned held = 1; held <= 9; ++held) {
-    unsigned falls = 0;  // these outlive the wires
+    unsigned falls = 0;  // these must outlive the wires
     bool released = false;
     typename TestFixture::TheBench bench(TypeParam::kManners);
     bench.mcu.reset();
@@ -325,7 +326,8 @@ TYPED_TEST(Eeprom, AResetInTheMiddleOfAReadAtAnyMomentDoesNoHarm) {
   unsigned holding = 0;
   for (int step = 0; step < 90; ++step) {
     typename TestFixture::TheBench bench(TypeParam::kManners);
-    std::fill(bench.memory.begin(), bench.memory.end(), 0x00);  // the data line is low most of the time
+    // Zeroes keep the data line low most of the time.
+    std::fill(bench.memory.begin(), bench.memory.end(), 0x00);
     std::vector<std::uint8_t> bytes(16);
     bench.run_for(milliseconds(1));
     bench.driver->start_read(0, {bytes.data(), bytes.size()}, bench.now());
@@ -340,9 +342,9 @@ TYPED_TEST(Eeprom, AResetInTheMiddleOfAReadAtAnyMomentDoesNoHarm) {
   EXPECT_GT(holding, 15U) << "the test must meet what it is for";
 }
 
-// A pin that is let go while the data line is low and the clock high makes a STOP: right behind a byte that
-// ends the write, and the EEPROM programs what it has taken. No driver can prevent that one; the bus is freed
-// behind it.
+// If the clock pin is released before a low data line, this makes a STOP. Directly after a byte it ends the
+// write, and the EEPROM programs the bytes it has received. No driver can prevent that; the driver frees the
+// bus afterwards.
 TYPED_TEST(Eeprom, AfterAResetInTheMiddleOfAWriteFreeingTheBusProgramsNothing) {
   constexpr std::uint16_t kPlace = 0x20;
   unsigned nothing = 0;
@@ -355,7 +357,7 @@ TYPED_TEST(Eeprom, AfterAResetInTheMiddleOfAWriteFreeingTheBusProgramsNothing) {
     bench.driver->start_write(kPlace, {bytes.data(), bytes.size()}, bench.now());
     bench.run_for(nanoseconds(9700) * step);
     const bool stopped = bench.eeprom->programming();
-    bench.mcu.reset();  // lets go of the pins
+    bench.mcu.reset();  // releases the pins
     std::vector<std::uint8_t> expected = bench.memory;
     const auto cells = bench.eeprom->being_programmed();
     for (const EepromChip::Cell& cell : cells) {
@@ -398,7 +400,7 @@ TYPED_TEST(Eeprom, ALineThatIsStuckForEverFailsEveryJobInBoundedTimeAndNoneBehin
     }
     net.drive(End::Fault, Drive::Nothing);
     bench.run_for(milliseconds(1));
-    // What was under way when the bus came free may fail; what follows does not.
+    // The job that was in progress when the bus became free may fail; the next one must not.
     std::vector<std::uint8_t> bytes(1);
     bench.read(0, bytes);
     TestFixture::expect_works(bench, 5);
@@ -427,7 +429,7 @@ TYPED_TEST(Eeprom, ALineThatIsStuckForAWhileAtAnyMomentCostsAtMostOneJobAndNever
         }
         bench.run_for(milliseconds(10));
         std::vector<std::uint8_t> back(20);
-        // Freeing the bus is the job's that finds it stuck; the one behind that must do.
+        // The job that finds the bus stuck has to free it and may fail; the next one must succeed.
         const bool first = bench.read(0x0200, back);
         if (first) {
           EXPECT_TRUE(std::equal(back.begin(), back.end(), bench.memory.begin() + 0x0200)) << "read wrong";

@@ -1,4 +1,4 @@
-// Does not compile: these outputs have room for eight channels only.
+// Must not compile: these outputs can hold eight channels only.
 #include "hal/board.hpp"
 #include "tests/hal/right_board.hpp"
 

@@ -1,4 +1,4 @@
-// Does not compile: a board lacks one of the members.
+// Must not compile: the board does not have a watchdog.
 #include "hal/board.hpp"
 #include "tests/hal/right_board.hpp"
 

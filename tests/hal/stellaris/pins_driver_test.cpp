@@ -1,4 +1,4 @@
-// Outputs, inputs and switches on pins, in both polarities, also those that no board uses.
+// Outputs, inputs and switches on pins, in both polarities, including those that no board uses.
 #include <gtest/gtest.h>
 
 #include <array>
@@ -17,7 +17,7 @@ using hal::stellaris::Gpio;
 using hal::stellaris::PinGroup;
 using hal::stellaris::Port;
 
-// Groups whose channels lie above and below their pins' numbers; one channel fewer than pins.
+// Groups with channel numbers below and above their pin numbers; one channel fewer than pins.
 constexpr std::array<PinGroup, 3> kGroups{PinGroup{Port::D, 2, 3}, PinGroup{Port::B, 0, 2},
                                           PinGroup{Port::D, 5, 2}};
 constexpr unsigned kChannels = 6;
@@ -26,7 +26,7 @@ struct Place {
   unsigned pin;
 };
 constexpr std::array<Place, kChannels> kPlaces{{{'D', 2}, {'D', 3}, {'D', 4}, {'B', 0}, {'B', 1}, {'D', 5}}};
-constexpr Place kBeyond{'D', 6};  ///< in the last group, and no channel's
+constexpr Place kBeyond{'D', 6};  ///< in the last group, but without a channel
 
 // --- outputs ---
 
@@ -36,7 +36,7 @@ struct OutputKind {
   using Pins = hal::stellaris::OutputPins<kGroups, kChannels, is_active_high>;
 };
 
-/// A resistor holds each pin at its inactive side, as boards have it.
+/// A resistor holds each pin at its inactive level, as on boards.
 template <class Kind>
 class Outputs : public testing::Test {
  protected:
@@ -55,7 +55,7 @@ class Outputs : public testing::Test {
     return channels;
   }
 
-  unsigned changes = 0;  ///< outlives the nets, which count here
+  unsigned changes = 0;  ///< counts changes of the nets; must outlive them
   DriverBench bench;
 };
 using OutputKinds = testing::Types<OutputKind<true>, OutputKind<false>>;
@@ -84,7 +84,7 @@ TYPED_TEST(Outputs, EachChannelIsAtItsOwnPin) {
 }
 
 TYPED_TEST(Outputs, PinsOfNoChannelAreLeftAlone) {
-  // One that is another's, between two groups of the same port.
+  // A pin with another owner, between two groups of the same port.
   Gpio(Port::D).make_output(1U << 7U, 1U << 7U);
   TypeParam::Pins::start();
   for (const unsigned channels : {0x00U, 0x3FU, 0xFFFFU, 0x00U}) {
@@ -113,7 +113,7 @@ class Inputs : public testing::Test {
   }
 
   using Edges = std::vector<std::pair<unsigned, bool>>;
-  /// Edges that the interrupts of both ports tell.
+  /// Returns the edges that the interrupts of both ports report.
   Edges told() {
     Edges edges;
     const auto deliver = [&edges](unsigned channel, bool level) { edges.emplace_back(channel, level); };
@@ -149,7 +149,7 @@ TYPED_TEST(Inputs, ALevelBeyondTheChannelsIsNotTold) {
 }
 
 TYPED_TEST(Inputs, EachEdgeIsToldOnceWithItsChannelAndItsLevel) {
-  this->bench.mcu.core.hold(true);  // the test asks instead of the interrupts
+  this->bench.mcu.core.hold(true);  // the test calls the driver instead of the interrupts
   TypeParam::Pins::start();
   for (unsigned channel = 0; channel < kChannels; ++channel) {
     for (const bool level : {true, false}) {

@@ -26,7 +26,7 @@ class Clock : public testing::Test {
  protected:
   Clock() {
     bench.serve_tick([this] {
-      // Whatever the handler does, it may ask for the time as well.
+      // The handler may also read the clock.
       timer.count_in_interrupt();
       look();
     });
@@ -34,12 +34,12 @@ class Clock : public testing::Test {
     began_ = bench.now();
   }
 
-  /// Asks for the time and holds the answer to the true one, and to the answer before.
+  /// Reads the clock and compares the result with the true time and with the previous result.
   void look() {
     const Instant before = bench.now();
     const std::uint32_t shown = timer.now().microseconds();
     const Instant after = bench.now();
-    // What it shows is a moment between the call and the return, in whole microseconds.
+    // The result lies between the call and the return, in whole microseconds.
     const auto least =
         static_cast<std::uint32_t>(std::chrono::duration_cast<microseconds>(before - began_).count());
     const auto most =
@@ -58,7 +58,7 @@ class Clock : public testing::Test {
 };
 
 TEST_F(Clock, IsExactToTheMicrosecondInEveryPhaseAroundATick) {
-  // The accesses of one question are two clocks apart: every phase of theirs against the counter's zero.
+  // The accesses of one reading are two clocks apart; this covers every phase relative to the counter's zero.
   for (int clocks = -40; clocks <= 40; ++clocks) {
     bench.mcu.run_until(began_ + milliseconds(20 * (clocks + 50)) + clocks * nanoseconds(20));
     for (int i = 0; i < 10; ++i) {
@@ -172,7 +172,7 @@ TYPED_TEST(OneShot, ARestartForgetsTheStartBefore) {
 }
 
 TYPED_TEST(OneShot, ARestartForgetsAnInterruptThatIsPending) {
-  // In every phase of the restart's own accesses against the timer's end.
+  // In every phase of the restart's own accesses relative to the timer's end.
   for (int clocks = -12; clocks <= 12; ++clocks) {
     OneShotBench<TypeParam> bench;
     TypeParam::restart(Duration(100));

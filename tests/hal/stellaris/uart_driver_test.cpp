@@ -1,4 +1,4 @@
-// The UART's driver and its RS-485 driver, on wires with a master that listens.
+// The UART driver and its RS-485 driver enable, on wires with a master that records the line.
 #include <gtest/gtest.h>
 
 #include <tuple>
@@ -88,7 +88,8 @@ class Sending : public testing::TestWithParam<std::tuple<bool, std::uint32_t>> {
   [[nodiscard]] std::uint32_t baud() const { return std::get<1>(GetParam()); }
   [[nodiscard]] Instant character() const { return Instant(10'000'000'000'000 / baud()); }
 
-  /// What must hold whatever comes in between: all bytes on the line, and the driver on around them.
+  /// Checks the conditions that must always hold: all bytes are on the line, and the driver is on around
+  /// them.
   void expect_whole(const UartBench& bench, const std::vector<std::uint8_t>& bytes) {
     ASSERT_EQ(bench.line.heard.size(), bytes.size());
     for (std::size_t i = 0; i < bytes.size(); ++i) {
@@ -98,7 +99,7 @@ class Sending : public testing::TestWithParam<std::tuple<bool, std::uint32_t>> {
     ASSERT_EQ(bench.line.drives.size(), 1U) << "it is switched on and off once";
     EXPECT_LT(bench.line.drives[0].from, bench.line.heard.front().started);
     EXPECT_EQ(bench.line.bits_lost, 0U);
-    // The last stop bit ends as the microcontroller's clock makes it.
+    // The last stop bit has the length that the microcontroller's clock gives it.
     const Instant bit = bench.mcu.uart0.bit_time();
     EXPECT_GE(bench.line.drives[0].to, bench.line.heard.back().started + kBitsACharacter * bit);
   }
@@ -125,7 +126,7 @@ TEST_P(Sending, TheDriverIsOnAroundAllBytesAndOffWithinACharacter) {
       }
     }
     if (size > 9 && baud() < 9600) {
-      break;  // minutes of virtual time, and nothing new
+      break;  // more would take minutes of virtual time and test nothing new
     }
   }
 }
@@ -158,7 +159,7 @@ TEST_P(Sending, NothingOfItsEchoIsReceived) {
 
 TEST_P(Sending, OneReplyComesBehindTheOther) {
   UartBench bench(chip(), baud());
-  for (int i = 0; i < 300; ++i) {  // past the point where counts of 8 bits wrap
+  for (int i = 0; i < 300; ++i) {  // past the wrap of 8-bit counts
     bench.line.heard.clear();
     bench.line.drives.clear();
     const std::vector<std::uint8_t> bytes = some_bytes(1 + static_cast<std::size_t>(i) % 3);

@@ -1,5 +1,5 @@
-// The checks that frames and commands carry, computed from their definitions, so that what is
-// fuzzed is not judged by itself.
+// The checks of frames and commands, computed from their definitions. They share no code with the firmware,
+// so that fuzz tests do not check the firmware with its own code.
 #pragma once
 
 #include <array>
@@ -10,7 +10,7 @@ namespace ex9000::judges {
 
 namespace detail {
 
-/// What `bits` shifts of a reflected CRC make of each value of that many bits.
+/// For each value of `bits` bits, the result of `bits` shifts of a reflected CRC.
 template <class Crc, unsigned bits>
 constexpr std::array<Crc, 1U << bits> crc_table(Crc polynomial) {
   std::array<Crc, 1U << bits> table{};
@@ -28,7 +28,7 @@ inline constexpr auto kCrc16 = crc_table<std::uint16_t, 8>(0xA001);
 
 }  // namespace detail
 
-/// CRC-16/MODBUS; 0 over a frame that carries the right one.
+/// CRC-16/MODBUS; 0 for a frame with a correct CRC.
 inline std::uint16_t crc16(const std::uint8_t* bytes, std::size_t size) {
   unsigned crc = 0xFFFF;
   for (std::size_t i = 0; i < size; ++i) {
@@ -46,12 +46,12 @@ inline std::uint8_t dcon_sum(const std::uint8_t* text, std::size_t size) {
   return static_cast<std::uint8_t>(sum % 256);
 }
 
-/// The upper-case digit of a value below 16.
+/// The upper-case hex digit of a value below 16.
 constexpr std::uint8_t upper_hex(unsigned value) {
   return static_cast<std::uint8_t>("0123456789ABCDEF"[value % 16]);
 }
 
-/// Two upper-case digits, and which value they have.
+/// Whether `text` is the value in two upper-case hex digits.
 constexpr bool are_digits_of(const std::uint8_t* text, unsigned value) {
   return text[0] == upper_hex(value / 16) && text[1] == upper_hex(value);
 }

@@ -1,4 +1,4 @@
-// What a DCON command demands: wire.md 4, written down once more.
+// The effects that a DCON command must have: an independent implementation of wire.md 4.
 #pragma once
 
 #include <cstddef>
@@ -12,7 +12,7 @@ namespace ex9000::judges {
 
 namespace detail {
 
-/// A number of upper-case hex digits.
+/// The value of upper-case hex digits; no value if a character is not one.
 constexpr std::optional<unsigned> hex_number(Bytes digits) {
   unsigned number = 0;
   for (const std::uint8_t digit : digits) {
@@ -25,7 +25,7 @@ constexpr std::optional<unsigned> hex_number(Bytes digits) {
   return number;
 }
 
-/// `#AABBDD` from BB on.
+/// `text`: `#AABBDD` from BB on.
 constexpr Demand demand_of_group_or_single(Bytes text, unsigned outputs) {
   const auto data = hex_number(text.from(2));
   if (!data) {
@@ -54,7 +54,7 @@ constexpr Demand demand_of_group_or_single(Bytes text, unsigned outputs) {
   return demand;
 }
 
-/// `@AA(Data)` from the data on.
+/// `digits`: `@AA(Data)` from the data on.
 constexpr Demand demand_of_all(Bytes digits, unsigned outputs) {
   const std::size_t most = outputs > 8 ? 4 : outputs > 4 ? 2 : 1;
   const auto data = hex_number(digits);
@@ -67,7 +67,7 @@ constexpr Demand demand_of_all(Bytes digits, unsigned outputs) {
   return demand;
 }
 
-/// `~AA` and more, from that on.
+/// `text`: a `~AA` command from the character after AA on.
 constexpr Demand demand_of_tilde(Bytes text, unsigned outputs) {
   Demand demand;
   demand.stores_something = text[0] == 'O' || text[0] == '1' || text[0] == '3' || text[0] == '5';
@@ -89,7 +89,8 @@ constexpr Demand demand_of_tilde(Bytes text, unsigned outputs) {
 
 }  // namespace detail
 
-/// Of a command with delimiter and address, without checksum and CR, at a module of so many outputs.
+/// Returns the effects of `command` on a module with `outputs` outputs. `command` has delimiter and address,
+/// but no checksum and CR.
 constexpr Demand dcon_demand(Bytes command, unsigned outputs) {
   const Bytes text = command.from(3);
   Demand demand;
@@ -112,7 +113,7 @@ constexpr Demand dcon_demand(Bytes command, unsigned outputs) {
   }
 }
 
-/// Whether a command that is not refused drives outputs.
+/// Whether the module drives outputs on this command unless it refuses the command.
 constexpr bool is_dcon_output_command(Bytes command) {
   return (command[0] == '#' && command.size == 7) || (command[0] == '@' && command.size > 3);
 }

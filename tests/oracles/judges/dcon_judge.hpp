@@ -1,4 +1,4 @@
-// Which characters are a DCON command for the module: wire.md 3, written down once more.
+// Decides which characters are a DCON command for the module: an independent implementation of wire.md 3.
 #pragma once
 
 #include <array>
@@ -19,9 +19,9 @@ class DconJudge {
   [[nodiscard]] Microseconds character() const { return character_; }
   [[nodiscard]] bool checksum() const { return checksum_; }
   [[nodiscard]] std::uint8_t own_address() const { return own_; }
-  /// `%` was answered.
+  /// Call it when `%` has been answered.
   void answer_to(std::uint8_t address) { own_ = address; }
-  /// `%` is under way: it may be that the module answers to this address already.
+  /// Call it while `%` is being executed: the module may already answer to this address.
   void may_answer_to(std::optional<std::uint8_t> address) { next_ = address; }
 
   Finding byte(std::uint8_t byte, bool good, Microseconds now) {
@@ -55,7 +55,7 @@ class DconJudge {
     return spoiled_ ? Finding{} : judge(now);
   }
 
-  /// The module has spoken.
+  /// Call it after a reply of the module.
   void spoken() { state_ = State::Hunting; }
 
  private:

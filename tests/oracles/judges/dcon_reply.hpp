@@ -1,4 +1,4 @@
-// The form of DCON replies: wire.md 4, written down once more.
+// The format of DCON replies: an independent implementation of wire.md 4.
 #pragma once
 
 #include <array>
@@ -12,19 +12,19 @@
 
 namespace ex9000::judges {
 
-/// What replies depend on beside the request.
+/// The state that replies depend on besides the request.
 struct DconRules {
   std::uint8_t address = 0;
-  bool init_mode = false;  ///< `$002` tells another address
-  bool inputs = false;     ///< the model has some
-  bool outputs = false;    ///< likewise
+  bool init_mode = false;  ///< `$002` returns the stored address
+  bool inputs = false;     ///< the model has inputs
+  bool outputs = false;    ///< the model has outputs
 };
 
 namespace detail {
 
-/// A request, in which . is any character and * at the end any one or more, and its answer, in which aa is
-/// the address, ss the stored one, nn the one that `%` sets, h a hex digit, d a decimal one, b 0 or 1, and t
-/// at the end a name of 1 to 7 characters.
+/// A request and its answer. In the request, `.` is any character, and `*` at the end is one or more
+/// characters. In the answer, aa is the address, ss the stored address, nn the address that `%` sets, h a hex
+/// digit, d a decimal digit, b 0 or 1, and t at the end a name of 1 to 7 characters.
 struct Shape {
   std::string_view request;
   std::string_view answer;
@@ -104,7 +104,7 @@ inline bool is_answer(std::string_view shape, Bytes request, Bytes reply, const 
   return true;
 }
 
-/// D12: whether a refusal carries no address.
+/// D12: whether the refusal of this request carries no address.
 constexpr bool is_bare_where_refused(Bytes request, const DconRules& rules) {
   const bool is_of_outputs =
       (request[0] == '@' && request.size > 3) || (request[0] == '#' && (request.size != 4 || !rules.inputs));

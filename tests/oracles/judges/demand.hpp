@@ -1,5 +1,5 @@
-// What a command demands of a module's outputs, and of what decides on them: wire.md 4, 6 and 7, written down
-// once more.
+// The effects that a command must have on a module's outputs and on the values that control the outputs:
+// an independent implementation of wire.md 4, 6 and 7.
 #pragma once
 
 #include <cstdint>
@@ -7,14 +7,14 @@
 
 namespace ex9000::judges {
 
-/// Outputs, and what they go to by themselves.
+/// The outputs, and the values that they take without a command.
 struct Values {
-  std::uint16_t outputs = 0;   ///< bit n is channel n, as in the next two
-  std::uint16_t power_on = 0;  ///< stored for the next reset
-  std::uint16_t safe = 0;      ///< stored for a timeout of the host watchdog
+  std::uint16_t outputs = 0;   ///< bit n is channel n, also in the next two fields
+  std::uint16_t power_on = 0;  ///< stored; applies at the next reset
+  std::uint16_t safe = 0;      ///< stored; applies when the host watchdog expires
   std::uint8_t timeout = 0;    ///< of the host watchdog, in 0.1 s
-  bool enabled = false;        ///< the host watchdog
-  bool timed_out = false;      ///< the timeout status, which blocks output commands
+  bool enabled = false;        ///< host watchdog enabled
+  bool timed_out = false;      ///< timeout status; while it is set, output commands are refused
 
   friend constexpr bool operator==(const Values& a, const Values& b) {
     return a.outputs == b.outputs && a.power_on == b.power_on && a.safe == b.safe && a.timeout == b.timeout &&
@@ -22,7 +22,7 @@ struct Values {
   }
   friend constexpr bool operator!=(const Values& a, const Values& b) { return !(a == b); }
 
-  /// wire.md 6: what the host watchdog makes of them.
+  /// wire.md 6: the values after the host watchdog has expired.
   [[nodiscard]] constexpr Values expired() const {
     Values values = *this;
     values.outputs = safe;
@@ -32,22 +32,22 @@ struct Values {
   }
 };
 
-/// Of a command that is carried out; what is refused demands nothing.
+/// The effects of a command that is executed. A refused command has no effects.
 struct Demand {
-  std::uint16_t channels = 0;     ///< that are driven; 0: it is no output command
-  std::uint16_t levels = 0;       ///< of these, and of no others
-  bool of_power_on = false;       ///< Modbus: the power-on value of these channels becomes the same
-  bool of_safe = false;           ///< likewise, the safe value
-  bool keeps_power_on = false;    ///< `~AA5P`: the outputs become the power-on value
-  bool keeps_safe = false;        ///< `~AA5S`
-  bool clears_timeout = false;    ///< the timeout status
-  bool restarts = false;          ///< the host watchdog, where it is enabled then
-  bool stores_something = false;  ///< whatever it is; it may take its time, and may fail
+  std::uint16_t channels = 0;     ///< the driven channels; 0: not an output command
+  std::uint16_t levels = 0;       ///< of the driven channels
+  bool of_power_on = false;       ///< Modbus: the power-on value of these channels becomes `levels`
+  bool of_safe = false;           ///< Modbus: the safe value of these channels becomes `levels`
+  bool keeps_power_on = false;    ///< `~AA5P`: the outputs are stored as power-on value
+  bool keeps_safe = false;        ///< `~AA5S`: the outputs are stored as safe value
+  bool clears_timeout = false;    ///< clears the timeout status
+  bool restarts = false;          ///< restarts the host watchdog if it is enabled afterwards
+  bool stores_something = false;  ///< any setting; storing takes time and may fail
   std::optional<std::uint8_t> timeout{};
   std::optional<bool> enabled{};
 
   [[nodiscard]] constexpr bool drives() const { return channels != 0; }
-  /// Whether values may be others behind it.
+  /// Whether the command can change values.
   [[nodiscard]] constexpr bool changes_values() const {
     return drives() || keeps_power_on || keeps_safe || clears_timeout || timeout || enabled;
   }
@@ -55,7 +55,7 @@ struct Demand {
     return static_cast<std::uint16_t>((value & ~channels) | levels);
   }
 
-  /// The values behind it, where it finds these.
+  /// Returns the values after the command, if `values` are those before it.
   [[nodiscard]] constexpr Values made_of(Values values) const {
     if ((drives() && values.timed_out) || (timeout == 0 && values.enabled) ||
         (enabled == true && !timeout && values.timeout == 0)) {
@@ -67,16 +67,16 @@ struct Demand {
     return values;
   }
 
-  /// Likewise, where the host watchdog has expired while it was being stored: it drives nothing (D6) and
-  /// clears nothing (D17). `outputs`: those before that.
+  /// Like `made_of`, if the host watchdog expired while the command was being stored: the command drives
+  /// nothing (D6) and clears nothing (D17). `outputs`: the outputs before the timeout.
   [[nodiscard]] constexpr Values made_behind_a_timeout(Values values, std::uint16_t outputs) const {
     store(values, outputs);
     values.outputs = values.safe;
     return values;
   }
 
-  /// Whether values can be what they are behind it, nothing but a timeout having come since. `outputs`: those
-  /// before the latest timeout. `since`: that was since the command came in.
+  /// Whether `values` are possible after the command, if only a timeout has occurred since. `outputs`: the
+  /// outputs before the latest timeout. `since`: that timeout occurred after the request was received.
   [[nodiscard]] constexpr bool is_met_by(const Values& values, std::uint16_t outputs, bool since) const {
     const auto are = [this](std::uint16_t value) { return (value & channels) == levels; };
     const auto kept = [&](std::uint16_t value) {

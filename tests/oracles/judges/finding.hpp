@@ -1,4 +1,4 @@
-// What a judge makes of the bytes that a module has heard.
+// The result of a judge for the bytes that a module has received.
 #pragma once
 
 #include "firmware/bytes.hpp"
@@ -8,17 +8,17 @@ namespace ex9000::judges {
 
 struct Finding {
   enum class Kind {
-    Nothing,    ///< no frame, or one whose check fails
+    Nothing,    ///< no frame, or a frame whose check is wrong
     Foreign,    ///< for another module
-    Request,    ///< for the module: it may answer once
-    Broadcast,  ///< for every module: none answers
-    HostOk,     ///< likewise, and it restarts the host watchdog
+    Request,    ///< for the module, which may answer once
+    Broadcast,  ///< for every module; none answers
+    HostOk,     ///< for every module; none answers, and it restarts the host watchdog
   };
 
   Kind kind = Kind::Nothing;
-  Bytes frame{};           ///< without its check; lives until the judge is told of the next byte
-  Microseconds first = 0;  ///< when its first byte was over
-  Microseconds last = 0;   ///< when its last byte was over
+  Bytes frame{};           ///< without its check; valid until the judge receives the next byte
+  Microseconds first = 0;  ///< end of its first byte
+  Microseconds last = 0;   ///< end of its last byte
   bool doubtful = false;   ///< the module may have seen other frames in these bytes
 };
 

@@ -1,4 +1,4 @@
-// What a module knows of itself, in a witness's words.
+// Converts the state of a firmware module to the types of a witness.
 #pragma once
 
 #include <cstdint>
@@ -10,7 +10,7 @@
 
 namespace ex9000::judges {
 
-/// `outputs`: at the pins.
+/// `outputs`: the levels at the pins.
 inline Values values_of(const State& state, std::uint16_t outputs) {
   const Settings& settings = state.settings;
   return {outputs,

@@ -1,13 +1,13 @@
-// How a reply has to look.
+// The kinds of replies.
 #pragma once
 
 namespace ex9000::judges {
 
-/// What a reply is to a request.
+/// The relation of a reply to a request.
 enum class ReplyForm {
-  Wrong,    ///< none that the request can have
-  Answer,   ///< what was asked for, or that it is done
-  Refusal,  ///< an exception, `?`, or `!` alone: nothing is changed
+  Wrong,    ///< not a possible reply to the request
+  Answer,   ///< the requested data, or a confirmation
+  Refusal,  ///< an exception, `?`, or `!` alone: the request has changed nothing
 };
 
 }  // namespace ex9000::judges

@@ -1,4 +1,4 @@
-// What a Modbus request demands: wire.md 7, written down once more.
+// The effects that a Modbus request must have: an independent implementation of wire.md 7.
 #pragma once
 
 #include <cstddef>
@@ -11,7 +11,8 @@ namespace ex9000::judges {
 
 namespace detail {
 
-/// Coils from `first` on; levels: bit n is the nth of them. Nothing where they are no outputs, or not all.
+/// Coils from `first` on. Bit n of `levels` is the nth of them. Returns no effects unless all of them are
+/// outputs.
 constexpr Demand demand_of_coils(unsigned first, unsigned count, std::uint32_t levels, unsigned outputs) {
   const unsigned row = first & 0xFFE0U;
   const unsigned channel = first % 0x20;
@@ -82,7 +83,8 @@ constexpr Demand demand_of_register(unsigned address, unsigned value) {
 
 }  // namespace detail
 
-/// Of a request with address and function, without CRC, at a module of so many outputs.
+/// Returns the effects of `request` on a module with `outputs` outputs. `request` has address and function,
+/// but no CRC.
 constexpr Demand rtu_demand(Bytes request, unsigned outputs) {
   constexpr std::size_t kOneRegister = 9;
   switch (request[1]) {
@@ -93,7 +95,7 @@ constexpr Demand rtu_demand(Bytes request, unsigned outputs) {
     case 0x06:
       return request.size == 6 ? detail::demand_of_register(request.word(2), request.word(4)) : Demand{};
     case 0x10:
-      // The timeout has no neighbour that can be written.
+      // No writable register is next to the timeout register.
       return request.size == kOneRegister && request.word(4) == 1 && request[6] == 2
                  ? detail::demand_of_register(request.word(2), request.word(7))
                  : detail::demand_of_register(0, 0);
@@ -104,7 +106,7 @@ constexpr Demand rtu_demand(Bytes request, unsigned outputs) {
   }
 }
 
-/// Whether a request that is not refused drives outputs.
+/// Whether the module drives outputs on this request unless it refuses the request.
 constexpr bool is_rtu_output_command(Bytes request) {
   if (request.size < 4 || (request[1] != 0x05 && request[1] != 0x0F)) {
     return false;

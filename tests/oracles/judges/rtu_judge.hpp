@@ -1,4 +1,5 @@
-// Which bytes are a Modbus frame for the module: wire.md 7, D9 and D11, written down once more.
+// Decides which bytes are a Modbus frame for the module: an independent implementation of wire.md 7, D9 and
+// D11.
 #pragma once
 
 #include <array>
@@ -13,8 +14,9 @@ namespace ex9000::judges {
 
 class RtuJudge {
  public:
-  /// `strict`: a gap of more than 1.5 characters spoils a frame. `doubt`: so much more or less than what ends
-  /// a frame may be taken for either by the module, whose clock is another; then both are looked for.
+  /// `strict`: a gap of more than 1.5 characters invalidates a frame. `doubt`: the module has its own clock,
+  /// so if a gap differs by at most this much from the silence that ends a frame, the module may decide
+  /// either way; then the judge considers both.
   RtuJudge(std::uint8_t own_address, std::uint32_t baud, bool strict, Microseconds doubt = 0)
       : own_(own_address),
         character_(10'000'000ULL / baud),
@@ -23,11 +25,11 @@ class RtuJudge {
         doubt_(doubt) {}
 
   [[nodiscard]] Microseconds character() const { return character_; }
-  /// T3.5.
+  /// The silence that ends a frame, T3.5.
   [[nodiscard]] Microseconds silence() const { return silence_; }
 
-  /// The end of the byte that is to be over at `end`, so that no rounding to whole microseconds, the clock's
-  /// or the module's, makes it doubtful what the gap before it is.
+  /// Moves the end of a byte to a later time if the gap before it is so near a limit that rounding to whole
+  /// microseconds, by the clock or by the module, could change the result. Returns the new end.
   [[nodiscard]] Microseconds beyond_doubt(Microseconds end) const {
     if (size_ == 0) {
       return end;
@@ -42,7 +44,7 @@ class RtuJudge {
     return end;
   }
 
-  /// So much time has passed without a byte.
+  /// Call it when no byte has arrived until `now`.
   Finding pass(Microseconds now) {
     if (size_ == 0 || now - last_ + doubt_ < silence_) {
       return {};
@@ -60,7 +62,7 @@ class RtuJudge {
     return known ? Finding{} : finding;
   }
 
-  /// A byte is over, `pass` was called of the time before it.
+  /// Call it at the end of a byte, after `pass` for the time before it.
   void byte(std::uint8_t byte, bool good, Microseconds now) {
     if (size_ == 0) {
       first_ = now;
@@ -74,7 +76,8 @@ class RtuJudge {
     last_ = now;
   }
 
-  /// The module has spoken. A frame that was whole but for its silence is judged, any other forgotten.
+  /// Call it after a reply of the module. Judges a frame that was complete except for the silence after it,
+  /// and drops any other.
   Finding spoken() {
     const Finding finding = size_ == 0 || judged_ == size_ ? Finding{} : judge();
     size_ = 0;
@@ -105,7 +108,7 @@ class RtuJudge {
 
   [[nodiscard]] Finding judge_from(std::size_t start) const {
     if (!is_whole_from(start)) {
-      // Behind a turn-around 00?
+      // Is it a frame after a turn-around 00?
       if (bytes_[start] != 0 || !is_whole_from(start + 1)) {
         return {};
       }
@@ -128,15 +131,16 @@ class RtuJudge {
   std::uint8_t own_;
   Microseconds character_;
   Microseconds silence_;
-  Microseconds apart_;  ///< between the ends of two bytes, from which on they are too far apart
+  Microseconds apart_;  ///< the greatest time between the ends of two bytes of a frame
   Microseconds doubt_;
-  static constexpr std::size_t kMost = kLongest + 2;  ///< two more than a frame may have, and then it is none
+  /// Two more than the longest frame, so that a longer one is noticed.
+  static constexpr std::size_t kMost = kLongest + 2;
   std::array<std::uint8_t, kMost> bytes_{};
   std::array<bool, kMost> bad_{};
   std::array<bool, kMost> apart_before_{};
   std::size_t size_ = 0;
-  std::size_t judged_ = 0;   ///< its size when it was
-  std::size_t another_ = 0;  ///< where another may have begun; 0: nowhere
+  std::size_t judged_ = 0;   ///< the size at the last `judge`
+  std::size_t another_ = 0;  ///< where a second frame may have begun; 0: none
   Microseconds first_ = 0;
   Microseconds last_ = 0;
 };

@@ -1,4 +1,4 @@
-// The form of Modbus replies: wire.md 7, written down once more.
+// The format of Modbus replies: an independent implementation of wire.md 7.
 #pragma once
 
 #include <algorithm>
@@ -17,7 +17,7 @@ inline bool begins_like(Bytes reply, Bytes request, std::size_t bytes) {
          std::equal(reply.begin(), reply.begin() + bytes, request.begin());
 }
 
-/// Byte count, then the bits; those behind the last are 0.
+/// Byte count, then the bits. Unused bits of the last byte must be 0.
 inline bool are_bits(Bytes request, Bytes reply) {
   const unsigned bits = request.word(4);
   const std::size_t bytes = (bits + 7) / 8;
@@ -41,13 +41,14 @@ inline bool is_diagnosis(Bytes request, Bytes reply) {
          begins_like(reply, request, 4);
 }
 
-/// Code, FF, the name.
+/// Module code, FF, name.
 inline bool is_server_id(Bytes reply) {
   return reply.size >= 7 && reply.size <= 13 && reply[2] == reply.size - 3 && reply[3] == 0x90 &&
          reply[5] == 0xFF;
 }
 
-/// MEI type, code, conformity, more, next, number; then number, length and text of each object.
+/// MEI type, code, conformity level, more follows, next object, number of objects; then id, length and text
+/// of each object.
 inline bool is_identification(Bytes request, Bytes reply) {
   if (request.size != 5 || reply.size < 8 || !begins_like(reply, request, 4) || request[2] != 0x0E ||
       reply[4] != 0x82 || reply[5] != 0 || reply[6] != 0 || reply[7] == 0) {
@@ -102,7 +103,7 @@ inline bool is_answer(Bytes request, Bytes reply) {
 
 }  // namespace detail
 
-/// Both without CRC, the request with at least address and function.
+/// Both without CRC. The request has at least address and function.
 inline ReplyForm rtu_reply_form(Bytes request, Bytes reply) {
   if (reply.size < 3 || reply[0] != request[0]) {
     return ReplyForm::Wrong;

@@ -1,4 +1,4 @@
-// The time that judges go by.
+// The time base of the judges.
 #pragma once
 
 #include <cstdint>
@@ -6,7 +6,7 @@
 
 namespace ex9000::judges {
 
-/// Since the first power-on.
+/// Time since the first power-on.
 using Microseconds = std::uint64_t;
 constexpr Microseconds kNever = std::numeric_limits<Microseconds>::max();
 constexpr Microseconds kMillisecond = 1000;

@@ -1,4 +1,4 @@
-// Hears what a module hears, and holds what the module does against it.
+// Receives the bytes that a module receives, and checks everything that the module does against them.
 #pragma once
 
 #include <algorithm>
@@ -22,7 +22,7 @@
 
 namespace ex9000::judges {
 
-/// How a module listens, from one reset to the next.
+/// How a module listens; constant from one reset to the next.
 struct Listening {
   bool modbus = false;
   std::uint8_t address = 0;
@@ -33,37 +33,37 @@ struct Listening {
   Microseconds doubt = 0;  ///< see RtuJudge
 };
 
-/// Objects where
-///  - a reply begins that no frame has asked for, or too early or too late, or that is not of the form that
-///    the request demands;
-///  - outputs, power-on and safe value, the host watchdog's timeout and enable, or the timeout status change
-///    to anything but what a command demands that was heard, to the bit, or a timeout of the host watchdog;
-///  - a command is answered, or heard by a module with nothing else to do, and these are not what it demands;
-///  - a command is refused, and one of them has changed all the same; or an output command is refused that is
-///    right;
-///  - a frame for a module with nothing else to do gets no answer;
+/// Reports a violated claim if
+///  - a reply begins that no frame has requested, or begins too early or too late, or does not have the
+///    format that the request demands;
+///  - outputs, power-on value, safe value, timeout or enable of the host watchdog, or the timeout status
+///    change, except exactly as a received command demands or because the host watchdog expires;
+///  - a command is answered, or received by an idle module, and these values are not what it demands;
+///  - a command is refused although one of these values has changed, or a valid output command is refused;
+///  - an idle module does not answer a frame that is addressed to it;
 ///  - the host watchdog expires too early;
-///  - outputs are not the safe value while the timeout status is set, or a model drives one that it lacks.
+///  - outputs are not the safe value while the timeout status is set, or an output is driven that the model
+///    does not have.
 ///
-/// `now` never decreases, from one call to the next.
+/// `now` must never decrease from one call to the next.
 class Witness {
  public:
-  /// Told which claim does not hold.
+  /// Receives the claim that is violated.
   using Objects = void (*)(const char* claim);
-  /// Frames that were heard.
+  /// Numbers of received frames.
   struct Counts {
     std::uint64_t requests = 0;
-    std::uint64_t silent = 0;    ///< carried out without an answer
-    std::uint64_t host_oks = 0;  ///< of these
+    std::uint64_t silent = 0;    ///< executed without an answer
+    std::uint64_t host_oks = 0;  ///< the part of `silent` that are host OKs
     std::uint64_t foreign = 0;
-    std::uint64_t storing = 0;  ///< those of the first two that store something
+    std::uint64_t storing = 0;  ///< the part of `requests` and `silent` that store something
   };
 
   Witness(const Model& model, Objects objects) : model_(model), objects_(objects) {}
 
-  /// The module has come up with `values`; it was reset at `reset`. What of a command that the reset cut
-  /// short is stored is a matter of power cuts (registers/power_cuts_test.cpp); all that values become from
-  /// now on follows from frames.
+  /// The module has started with `values`; its reset was at `reset`. If the reset interrupted a command, this
+  /// class does not check what the command has stored (tests/boards/power_cuts/power_cuts_test.cpp does
+  /// that). It checks every later change of the values.
   void comes_up(const Listening& listening, const Values& values, Microseconds reset) {
     rtu_.reset();
     dcon_.reset();
@@ -85,7 +85,7 @@ class Witness {
   [[nodiscard]] bool hears_modbus() const { return rtu_.has_value(); }
   [[nodiscard]] bool wants_checksum() const { return dcon_ && dcon_->checksum(); }
   [[nodiscard]] Microseconds character() const { return character_; }
-  /// T3.5; in DCON too, where it means nothing.
+  /// T3.5; defined for DCON too, but not used there.
   [[nodiscard]] Microseconds silence() const { return silence_; }
   /// See RtuJudge.
   [[nodiscard]] Microseconds beyond_doubt(Microseconds end) const {
@@ -93,7 +93,7 @@ class Witness {
   }
   [[nodiscard]] const Counts& counts() const { return counts_; }
 
-  /// The module's main loop does nothing from now on, or goes on.
+  /// Call it when the test stops the module's main loop, and when the main loop continues.
   void is_held(bool held, Microseconds now) {
     pass(now);
     held_ = held;
@@ -102,15 +102,15 @@ class Witness {
     }
   }
 
-  /// Nothing was heard until now.
+  /// Call it when no byte has arrived until `now`.
   void pass(Microseconds now) {
     now_ = now;
     note_silence();
     look();
   }
 
-  /// A byte is over, and the module's own driver was off; it is told of it behind this. `address`: the one it
-  /// answers to.
+  /// Call it at the end of a byte that arrived while the module's driver was off, before the module receives
+  /// the byte. `address`: the address that the module answers to.
   void hears(std::uint8_t byte, bool good, std::uint8_t address, Microseconds now) {
     pass(now);
     if (rtu_) {
@@ -125,7 +125,7 @@ class Witness {
     }
   }
 
-  /// What a turn of the main loop has made of the values, if it has.
+  /// Call it after a turn of the main loop with the values of the module.
   void follow(const Values& values, Microseconds now) {
     if (values == values_) {
       return;
@@ -149,14 +149,14 @@ class Witness {
     }
   }
 
-  /// Likewise.
+  /// Call it after a turn of the main loop with the address of the module.
   void follow_address(std::uint8_t address) {
     if (dcon_ && pending_count_ == 0 && address != dcon_->own_address()) {
       objects_("the address changes by a command only");
     }
   }
 
-  /// The module's driver has gone on, `follow` was called before it. `reply`: all of it.
+  /// Call it when the module's driver has been switched on, after `follow`. `reply`: the complete reply.
   void reply_begins(Bytes reply, Microseconds now) {
     now_ = now;
     sending_ = true;
@@ -164,7 +164,7 @@ class Witness {
     rtu_ ? take_rtu_reply(reply) : take_dcon_reply(reply);
   }
 
-  /// The driver is off again.
+  /// Call it when the driver has been switched off.
   void reply_ends(Microseconds now) {
     now_ = now;
     sending_ = false;
@@ -181,17 +181,18 @@ class Witness {
     std::array<std::uint8_t, 256> bytes;
     std::size_t size;
     Microseconds last;
-    Microseconds over;  ///< it was known to be a frame: the silence behind it was over, or the module spoke
+    /// The time at which it became a frame: the silence after it ended, or the module replied.
+    Microseconds over;
     Demand demand;
     bool broadcast;
-    bool alone;  ///< the module had nothing else to do
+    bool alone;  ///< the module was idle
     bool fresh;  ///< see mark_fresh
-    bool done;   ///< values have changed, and by no other
+    bool done;   ///< only this request has changed values
 
     [[nodiscard]] Bytes frame() const { return {bytes.data(), size}; }
   };
-  /// The module keeps one and executes one; others may have been lost, which only it knows. As many as may
-  /// come in while the main loop is held.
+  /// The module keeps one frame and executes another one. It may lose further frames, which cannot be seen
+  /// from outside. This is the greatest number of frames that arrive while the main loop is held.
   static constexpr std::size_t kMostPending = 32;
 
   void note(const Finding& finding) {
@@ -204,7 +205,7 @@ class Witness {
       case Finding::Kind::HostOk:
         ++counts_.silent;
         ++counts_.host_oks;
-        if (!held_) {  // of several, the module knows the last one then
+        if (!held_) {  // the module uses only the last one in this case
           alive_ = std::max(alive_, finding.last);
         }
         return;
@@ -246,22 +247,22 @@ class Witness {
     pending_count_ -= count;
   }
 
-  /// From a request's last byte, or from the module's own, to a reply.
+  /// The least time from the last byte of a request, or of the module's previous reply, to a reply.
   [[nodiscard]] Microseconds distance() const { return rtu_ ? silence_ : character_; }
 
-  /// wire.md 3 and 7: until when a request is acted upon, where the module was free from then on.
+  /// wire.md 3 and 7: the latest time at which the module executes `request`, if it was idle from `free` on.
   [[nodiscard]] Microseconds latest_of(const Pending& request, Microseconds free) const {
     constexpr Microseconds kPlain = 20 * kMillisecond;
     constexpr Microseconds kStoring = 200 * kMillisecond;
     const Microseconds over = request.last + (rtu_ ? silence_ : 0);
     return std::max(over, free) + (request.demand.stores_something ? kStoring : kPlain);
   }
-  /// What has no answer may be under way for all of its time.
+  /// The execution of a request without an answer may take all of its time.
   static bool is_silent_store(const Pending& request) {
     return request.broadcast && request.demand.stores_something;
   }
 
-  /// Which requests may still be acted upon.
+  /// Marks the requests that may still be executed.
   void mark_fresh() {
     Microseconds free = free_;
     for (std::size_t i = 0; i < pending_count_; ++i) {
@@ -272,7 +273,7 @@ class Witness {
     }
   }
 
-  /// Requests that cannot be acted upon any more.
+  /// Drops requests that can no longer be executed.
   void drop_stale() {
     while (pending_count_ != 0 && !held_ && !sending_) {
       const Pending& oldest = pending(0);
@@ -290,8 +291,8 @@ class Witness {
     }
   }
 
-  /// The request that `form_of` finds the reply to be one to, and that has come to that; it and all before it
-  /// are done with.
+  /// Finds the request that this reply answers, according to `form_of` and to the values. Drops it and all
+  /// requests before it.
   template <class FormOf>
   ReplyForm answered(bool refuses_outputs, FormOf form_of) {
     mark_fresh();
@@ -306,7 +307,7 @@ class Witness {
                   : form == ReplyForm::Refusal ? objection_to_refusal(request, refuses_outputs)
                                                : objection_to_answer(request);
       if (objection != nullptr) {
-        continue;  // it may have been lost
+        continue;  // the module may have lost this request
       }
       if (now_ < request.last + distance()) {
         objects_("a reply keeps its distance");
@@ -361,13 +362,13 @@ class Witness {
     dcon_->may_answer_to(std::nullopt);
   }
 
-  /// The second and third of what is a hex digit each; others make no request that is answered.
+  /// Characters 3 and 4 of a `%` command, which are hex digits in every command that is answered.
   static std::uint8_t new_address(Bytes request) {
     const auto value = [](unsigned digit) { return digit > '9' ? digit - 'A' + 10 : digit - '0'; };
     return static_cast<std::uint8_t>(value(request[3]) * 16 + value(request[4]));
   }
 
-  /// Between the end of the store and the reply to `%`, the new address is in force already.
+  /// Between the end of the store and the reply to `%`, the new address is already in force.
   void may_have_taken(std::uint8_t address) {
     for (std::size_t i = 0; i < pending_count_; ++i) {
       const Pending& each = pending(i);
@@ -377,8 +378,8 @@ class Witness {
     }
   }
 
-  /// Why a request cannot have been refused, or null. `refuses_outputs`: as outputs are blocked, or where
-  /// Modbus could not store.
+  /// Returns why the module cannot have refused the request, or null. `refuses_outputs`: the reply says that
+  /// outputs are blocked or that a Modbus request could not be stored.
   [[nodiscard]] const char* objection_to_refusal(const Pending& request, bool refuses_outputs) const {
     const Demand& demand = request.demand;
     if (request.done) {
@@ -393,7 +394,7 @@ class Witness {
     return refuses_outputs && !may_fail ? "only an output command is refused for a timeout" : nullptr;
   }
 
-  /// Why a request cannot have been carried out, or null.
+  /// Returns why the module cannot have executed the request, or null.
   [[nodiscard]] const char* objection_to_answer(const Pending& request) const {
     const Demand& demand = request.demand;
     const bool since = has_expired_since(request);
@@ -411,7 +412,8 @@ class Witness {
 
   [[nodiscard]] bool has_expired_since(const Pending& request) const { return expired_ >= request.last; }
 
-  /// One broadcast that was being stored, another one behind it, and what the silence behind that has ended.
+  /// A broadcast whose storing ends, the broadcast after it, and the frame that the silence after that has
+  /// ended.
   static constexpr unsigned kMostInATurn = 3;
 
   [[nodiscard]] bool leads(const Pending& request, const Values& from, const Values& to) const {
@@ -421,7 +423,7 @@ class Witness {
                                            demand.made_behind_a_timeout(from, outputs_before_) == to));
   }
 
-  /// Whether one command has made `to` of the values, as nearly always.
+  /// Whether one command has changed the values to `to`, which is nearly always the case.
   bool one_leads_to(const Values& to) {
     Pending* only = nullptr;
     unsigned count = 0;
@@ -432,7 +434,7 @@ class Witness {
       }
     }
     if (count != 0 && may_expire(values_) && to == values_.expired()) {
-      // Or the host watchdog did: behind a timeout it disables itself, and does no more.
+      // The host watchdog may have expired instead. After a timeout it is disabled and does nothing more.
       outputs_before_ = values_.outputs;
       expired_ = now_;
     } else if (count == 1) {
@@ -449,7 +451,8 @@ class Witness {
     return values.enabled && now_ - alive_ >= values.timeout * kUnit;
   }
 
-  /// Whether a timeout, or some commands from the one at `next` on, or both, have made `to` of `from`.
+  /// Whether a timeout, or at most `most` commands from number `next` on, or both, have changed `from` to
+  /// `to`.
   bool some_lead(const Values& from, const Values& to, std::size_t next, unsigned most) {
     if (from == to) {
       return true;
@@ -481,7 +484,7 @@ class Witness {
     return false;
   }
 
-  /// What is to be seen when time has passed.
+  /// Checks the effects of time that has passed.
   void look() {
     if (broadcast_ && !held_) {
       broadcast_ = false;
@@ -504,15 +507,16 @@ class Witness {
   std::size_t oldest_ = 0;
   std::size_t pending_count_ = 0;
   Pending answered_;
-  Values values_;                     ///< as commands and timeouts have made them
-  std::uint16_t outputs_before_ = 0;  ///< before the latest timeout
-  Microseconds expired_ = 0;          ///< when that was; 0: not since the last reset
+  Values values_;                     ///< the values after all commands and timeouts so far
+  std::uint16_t outputs_before_ = 0;  ///< the outputs before the latest timeout
+  Microseconds expired_ = 0;          ///< time of the latest timeout; 0: none since the last reset
   bool held_ = false;
   bool sending_ = false;
-  bool broadcast_ = false;  ///< one has come in, alone, and nobody has looked for what it has done
+  /// A broadcast has been received by an idle module, and its effect has not been checked yet.
+  bool broadcast_ = false;
   Microseconds alive_ = 0;  ///< no restart of the host watchdog was earlier than this
-  Microseconds free_ = 0;   ///< from then on nothing but requests can keep the module from the next one
-  Microseconds busy_ = 0;   ///< the last byte that found it so came then
+  Microseconds free_ = 0;   ///< from this time on only requests can delay the next request
+  Microseconds busy_ = 0;   ///< time of the last byte that arrived while the module was busy
 };
 
 }  // namespace ex9000::judges

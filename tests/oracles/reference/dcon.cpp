@@ -9,9 +9,8 @@ namespace ex9000::reference {
 
 namespace {
 
-/// Not a command of this model, or its arguments are out of form or range: nothing is changed, and the answer
-/// is
-/// `?AA` or, where `bare`, `?`.
+/// The command does not exist on this model, or its arguments have a wrong format or range. Nothing changes,
+/// and the answer is `?AA` or, with `bare`, `?`.
 struct Refused {
   std::string rule;
   bool bare = false;
@@ -23,7 +22,7 @@ unsigned with_bit(unsigned value, unsigned channel, bool on) {
 
 }  // namespace
 
-/// AA of replies. wire.md 2: in INIT mode every reply carries 00.
+/// The AA of replies. wire.md 2: in INIT mode every reply carries 00.
 std::string Module::aa() const { return hex(address_, 2); }
 
 /// wire.md 1: First and Second of a model.
@@ -34,14 +33,14 @@ std::string Module::first_second(unsigned outputs, unsigned inputs) const {
   return row_.outputs != 0 ? hex(outputs, 2) + hex(inputs, 2) : hex(inputs, 2) + "00";
 }
 
-/// From the delimiter to before CR. Nothing: silence.
+/// Processes a frame from the delimiter to the character before CR. Returns no value if there is no reply.
 std::optional<std::string> Module::dcon_frame(std::string frame) {
-  // wire.md 3: up to 32 characters are judged.
+  // wire.md 3: a frame has at most 32 characters.
   if (frame.size() > 32) {
     rule("ASCII frame too long");
     return std::nullopt;
   }
-  // CHK stands behind all other characters; wrong or missing: silence.
+  // CHK follows all other characters. If it is wrong or missing, there is no reply.
   if (checksum_) {
     if (frame.size() < 3) {
       rule("ASCII frame too short");
@@ -133,7 +132,7 @@ std::string Module::set_configuration(const std::string& body) {
   stored_.address = address;
   stored_.baud_code = baud_code;
   stored_.format = format;
-  // At once; in INIT mode the module goes on answering as 00.
+  // The new address is in force at once; in INIT mode the module continues to answer as 00.
   if (!init_mode_) {
     address_ = address;
   }
@@ -144,7 +143,7 @@ void Module::take_sample() { sample_ = Sample{first_second(outputs_, levels_), f
 
 std::string Module::hash_command(const std::string& body) {
   const bool one_character = body.size() == 1;
-  // wire.md 3: on a model with both, `#AA` and one character is `#AAN`.
+  // wire.md 3: on a model with inputs and outputs, `#AA` and one character is `#AAN`.
   if (row_.outputs != 0 && !(row_.inputs != 0 && one_character)) {
     return set_group_or_single(body);
   }
@@ -195,7 +194,7 @@ std::string Module::set_group_or_single(const std::string& body) {
     wanted = with_bit(outputs_, channel, data == 0x01);
     reached = "#AABBDD single " + hex(lead, 1) + "c";
   }
-  // wire.md 6: form and range are judged first, then the status.
+  // wire.md 6: the module checks format and range first, then the timeout status.
   if (stored_.timed_out) {
     rule("#AABBDD ignored");
     return "!";
@@ -352,11 +351,11 @@ std::string Module::tilde_command(const std::string& body) {
     rule(name + " " + argument);
     unsigned& value = argument == "P" ? stored_.power_on : stored_.safe;
     if (command == '5') {
-      // wire.md 6: works while the timeout status is set, since it drives nothing.
+      // wire.md 6: this works while the timeout status is set, because it drives nothing.
       value = outputs_;
       return "!" + aa();
     }
-    // E6: as on an output-only model, so nothing of inputs.
+    // E6: the value is shown as on an output-only model, without inputs.
     return "!" + aa() + first_second(value, 0);
   }
   if (command == 'O') {

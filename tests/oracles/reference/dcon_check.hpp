@@ -7,7 +7,7 @@
 
 namespace ex9000::reference {
 
-/// Two upper-case hex digits: the sum of all characters before them, modulo 256.
+/// Returns two upper-case hex digits: the sum of all characters, modulo 256.
 inline std::string check_of(const std::string& characters) {
   unsigned sum = 0;
   for (const char character : characters) {

@@ -87,7 +87,7 @@ std::string name(const Module& module, Random& random) {
   return random.once_in(8) ? module.row().name : text;
 }
 
-/// Delimiter, address and body, as a command or nearly one.
+/// Returns delimiter, address and body of a command, or of something similar to a command.
 std::string command(const Module& module, Random& random) {
   const std::string aa = hex(module.address(), 2);
   const std::string channel = random.once_in(8) ? digit(random) : hex(random.below(8), 1);
@@ -147,7 +147,7 @@ std::string command(const Module& module, Random& random) {
   }
 }
 
-/// One slip in a frame.
+/// Returns the frame with one mistake.
 std::string with_a_slip(const Module& module, std::string frame, Random& random) {
   switch (random.below(8)) {
     case 0:  // for another module
@@ -158,7 +158,7 @@ std::string with_a_slip(const Module& module, std::string frame, Random& random)
       return frame.substr(0, random.below(static_cast<unsigned>(frame.size()) + 1));
     case 2:
       return frame + noise(random, 3);
-    case 3:  // around the longest that is judged
+    case 3:  // around the greatest length that the module accepts
       frame.resize(random.between(28, 36), random.one_of({' ', 'x', '0'}));
       return frame;
     case 4:
@@ -178,7 +178,7 @@ std::string with_a_slip(const Module& module, std::string frame, Random& random)
   }
 }
 
-/// CHK as the module wants it, or not.
+/// Appends CHK as the module requires it; sometimes a wrong one.
 std::string checked(const Module& module, const std::string& frame, Random& random) {
   const std::string check = check_of(frame);
   if (random.once_in(12)) {
@@ -210,7 +210,7 @@ Bytes dcon_request(const Module& module, Random& random) {
   }
   std::string sent = checked(module, frame, random) + "\r";
   switch (random.below(60)) {
-    case 0:  // the next frame goes on where this one stops
+    case 0:  // without CR: the next frame continues this one
       sent.pop_back();
       break;
     case 1:
@@ -226,7 +226,7 @@ Bytes dcon_request(const Module& module, Random& random) {
     case 4:
       sent = "$" + hex(module.address() ^ 0x10U, 2) + "M\r" + sent;
       break;
-    case 5:  // right behind what gets no answer
+    case 5:  // immediately after a command that gets no answer
       sent = checked(module, random.one_of<std::string>({"~**", "#**"}), random) + "\r" + sent;
       break;
     default:

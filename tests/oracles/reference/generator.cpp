@@ -10,7 +10,7 @@ namespace ex9000::reference {
 namespace {
 
 Step wait(const Module& module, Random& random) {
-  // Beyond the host watchdog's timeout, now and then; a step that comes too near to it waits by itself.
+  // Sometimes longer than the host watchdog's timeout. A step too close to the expiry waits by itself.
   if (module.expiry() && random.once_in(2)) {
     return WaitForExpiry{std::chrono::milliseconds(random.between(5, 120))};
   }
@@ -20,7 +20,7 @@ Step wait(const Module& module, Random& random) {
   return Wait{std::chrono::milliseconds(random.between(1, 300))};
 }
 
-/// Mostly few; now and then so many that a counter is about to wrap, or does.
+/// Usually few pulses; sometimes enough to bring a counter to its overflow, or just past it.
 std::uint32_t pulses(const Module& module, Random& random) {
   const std::uint32_t wraps = module.runs_modbus() ? 65536 : 100000;
   return random.once_in(60) ? wraps - 2 + random.below(5) : random.between(1, 5);
@@ -68,13 +68,13 @@ Step next_step(const Module& module, Random& random) {
   if (what < 14) {
     return wait(module, random);
   }
-  // Inputs that a model lacks may be wired up as well: nothing comes of it.
+  // Inputs that a model does not have may be wired, too; they have no effect.
   if (what < (module.row().inputs != 0 ? 40U : 15U)) {
     const unsigned channel = random.below(8);
     return random.once_in(2) ? Step(Input{channel, random.once_in(2)})
                              : Step(Pulse{channel, pulses(module, random)});
   }
-  // A master that takes the module for one of the other protocol.
+  // Sometimes the master uses the other protocol by mistake.
   const bool mistaken = module.row().both_protocols && random.once_in(100);
   Bytes bytes =
       module.runs_modbus() != mistaken ? modbus_request(module, random) : dcon_request(module, random);

@@ -1,5 +1,5 @@
-// Random steps for a session, made for what the reference is at the moment: its protocol, address, checksum,
-// model.
+// Random steps for a session. They suit the current state of the reference module: its protocol, address,
+// checksum and model.
 #pragma once
 
 #include "tests/oracles/reference/random.hpp"
@@ -7,17 +7,17 @@
 
 namespace ex9000::reference {
 
-/// What a session begins with: nothing, or a person who gives a module another address, rate, checksum and
-/// protocol through INIT*, which random steps do in that order but seldom.
+/// Returns the first steps of a session: either none, or the steps by which a person sets another address,
+/// baud rate, checksum and protocol through INIT*. Random steps alone seldom have this order.
 std::vector<Step> first_steps(const ModelRow& row, Random& random);
 
-/// What comes next: mostly a request.
+/// Returns the next step, in most cases a request.
 Step next_step(const Module& module, Random& random);
 
-/// CR, and CHK before it where the module has it on.
+/// Returns a command with CR, and CHK before it if the module uses the checksum.
 Bytes dcon_request(const Module& module, Random& random);
 
-/// With its CRC, mostly.
+/// Returns a frame, in most cases with a correct CRC.
 Bytes modbus_request(const Module& module, Random& random);
 
 }  // namespace ex9000::reference

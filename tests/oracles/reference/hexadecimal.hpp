@@ -1,4 +1,4 @@
-// Upper-case hex digits, as wire.md 3 wants them.
+// Upper-case hex digits, as wire.md 3 requires.
 #pragma once
 
 #include <optional>
@@ -15,7 +15,7 @@ inline std::string hex(unsigned value, std::size_t digits) {
   return text;
 }
 
-/// Nothing where a character is no upper-case hex digit, or where there is none.
+/// Returns no value if `text` is empty or has a character that is not an upper-case hex digit.
 inline std::optional<unsigned> number(const std::string& text) {
   if (text.empty() || text.find_first_not_of("0123456789ABCDEF") != std::string::npos) {
     return std::nullopt;

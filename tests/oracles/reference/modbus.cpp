@@ -1,4 +1,4 @@
-// Modbus RTU of the reference, wire.md 7: whole frames, and which function they are for.
+// Modbus RTU of the reference, wire.md 7: whole frames and the dispatch to functions.
 #include <algorithm>
 
 #include "tests/oracles/reference/hexadecimal.hpp"
@@ -20,11 +20,11 @@ bool known_function(const ModelRow& model, unsigned function) {
 
 }  // namespace
 
-/// A whole frame, whatever it is; the reply with its CRC, or nothing. What function 08 counts is as in Modbus
-/// Application Protocol V1.1b3, 6.8, and, where that leaves it open, Modbus over Serial Line V1.02: a frame
-/// too short to have a CRC is a CRC error, and a broadcast is a message without response.
+/// Processes a complete frame of any content. Returns the reply with its CRC, or nothing. Function 08 counts
+/// as in Modbus Application Protocol V1.1b3, 6.8. Where that is unclear, it follows Modbus over Serial Line
+/// V1.02: a frame too short for a CRC is a CRC error, and a broadcast is a message without response.
 Bytes Module::modbus_frame(Bytes frame) {
-  // A turn-around 00 before a frame does not spoil it.
+  // A turn-around 00 before a frame does not invalidate it.
   if (frame.size() > 4 && !crc_is_right(frame) && frame[0] == 0x00) {
     if (frame.size() > 256) {
       left_open_ = "whether a frame of 256 bytes may have a turn-around 00 before it";
@@ -34,7 +34,7 @@ Bytes Module::modbus_frame(Bytes frame) {
       rule("turn-around 00 before a Modbus frame");
     }
   }
-  // 4 to 256 bytes.
+  // A frame has 4 to 256 bytes.
   if (frame.size() < 4) {
     rule("Modbus frame too short");
     counts_.crc_errors += 1;
@@ -59,7 +59,7 @@ Bytes Module::modbus_frame(Bytes frame) {
     return {};
   }
   counts_.server_messages += 1;
-  // Host OK is decided first, and never answered.
+  // Host OK is recognised first, and never answered.
   if ((function == 0x03 || function == 0x04) && frame.size() == 6 && word(frame, 2) == kHostOk &&
       word(frame, 4) <= 1) {
     rule(std::string(address == 0 ? "broadcast " : "") + "host OK by " + function_name(function));
@@ -86,8 +86,8 @@ Bytes Module::modbus_frame(Bytes frame) {
       rule("broadcast refused");
     } else {
       rule(exception.rule);
-      // V1.1b3, 6.8: the exception responses that were returned, so not those that a broadcast would have
-      // got.
+      // V1.1b3, 6.8: counts the exception responses that were returned, so not those that a broadcast does
+      // not get.
       counts_.exceptions += 1;
     }
     reply = {frame[0], static_cast<std::uint8_t>(function | 0x80U), exception.code};

@@ -9,7 +9,7 @@ namespace ex9000::reference {
 
 namespace {
 
-/// What lies behind a coil's or register's address: a row of the table.
+/// The kinds of coils and registers: the rows of the table.
 enum class Row {
   Outputs,
   Safe,
@@ -33,7 +33,7 @@ struct CoilRow {
   bool by_01, by_05, by_0f;
 };
 
-/// The table of coils for this model; rows of a length of 0 it lacks.
+/// Looks up a coil in the table for this model. Rows of length 0 do not exist on the model.
 CoilRow coil_row(const ModelRow& model, unsigned address) {
   const unsigned outputs = model.outputs;
   const unsigned inputs = model.inputs;
@@ -62,7 +62,8 @@ bool coil_listed(const CoilRow& row, unsigned function) {
   return function == 0x01 ? row.by_01 : function == 0x05 ? row.by_05 : row.by_0f;
 }
 
-/// A coil range runs within one row; holes, what the model lacks and what is not listed for the function: 02.
+/// A range of coils must lie within one row. Holes, coils that the model does not have, and coils that are
+/// not listed for the function cause exception 02.
 CoilRow listed_coils(const ModelRow& model, unsigned first, unsigned quantity, unsigned function) {
   const CoilRow row = coil_row(model, first);
   if (!coil_listed(row, function) || first + quantity > row.first + row.count) {
@@ -71,7 +72,7 @@ CoilRow listed_coils(const ModelRow& model, unsigned first, unsigned quantity, u
   return row;
 }
 
-/// The table of registers.
+/// Whether the table of registers lists this register for this function.
 bool register_listed(const ModelRow& model, unsigned address, unsigned function) {
   const bool counter = address < model.inputs;
   const bool code = address == 0x01E2 || address == 0x01E3;
@@ -120,11 +121,11 @@ bool Module::coil(unsigned address) const {
     case Row::TimeoutStatus:
       return stored_.timed_out;
     default:
-      return false;  // not to be read
+      return false;  // not readable
   }
 }
 
-/// 01 and 02.
+/// Functions 01 and 02.
 Bytes Module::read_bits(const Bytes& frame) {
   const unsigned function = frame[1];
   length_must_be(frame, 6);
@@ -166,7 +167,7 @@ unsigned Module::register_value(unsigned address) const {
   }
 }
 
-/// 03 and 04.
+/// Functions 03 and 04.
 Bytes Module::read_registers(const Bytes& frame) {
   const unsigned function = frame[1];
   length_must_be(frame, 6);
@@ -182,7 +183,7 @@ Bytes Module::read_registers(const Bytes& frame) {
   return reply;
 }
 
-/// Values, then the timeout status. Form and range have been judged.
+/// Checks the values, then the timeout status. Format and range have been checked before.
 void Module::judge_coils(unsigned first, const std::vector<bool>& values, unsigned function) {
   const CoilRow row = coil_row(row_, first);
   const std::string value_refused = function_name(function) + " 03 " + row.name;
@@ -199,7 +200,7 @@ void Module::judge_coils(unsigned first, const std::vector<bool>& values, unsign
       }
       break;
     case Row::ClearCounters:
-      // E8: a 0 bit in 0F leaves the counter, 05 with 0000 is refused.
+      // E8: in 0F, a 0 bit leaves the counter unchanged; 05 with 0000 is refused.
       if (function == 0x05 && !values[0]) {
         throw Exception{0x03, value_refused};
       }
@@ -207,7 +208,7 @@ void Module::judge_coils(unsigned first, const std::vector<bool>& values, unsign
     case Row::Outputs:
     case Row::Safe:
     case Row::PowerOn:
-      // wire.md 6: what drives outputs is refused while the status is set.
+      // wire.md 6: commands that drive outputs are refused while the timeout status is set.
       if (stored_.timed_out) {
         throw Exception{0x04, function_name(function) + " 04 " + row.name};
       }
@@ -229,7 +230,7 @@ void Module::set_coils(unsigned first, const std::vector<bool>& values) {
         put(outputs_);
         break;
       case Row::Safe:
-        // The outputs follow.
+        // The outputs take the same values.
         put(stored_.safe);
         put(outputs_);
         break;
@@ -271,7 +272,7 @@ Bytes Module::write_coil(const Bytes& frame) {
   const CoilRow row = listed_coils(row_, address, 1, 0x05);
   const std::vector<bool> values = {value == 0xFF00};
   judge_coils(address, values, 0x05);
-  // Configuration is never broadcast.
+  // Configuration is not allowed in broadcasts.
   if (frame[0] == 0 && row.row == Row::Protocol) {
     rule("broadcast ignored: configuration");
     return {};
@@ -334,10 +335,10 @@ void Module::set_registers(unsigned first, const std::vector<unsigned>& values) 
   for (unsigned i = 0; i < values.size(); ++i) {
     switch (first + i) {
       case 0x01E4:
-        stored_.address = values[i];  // after reset
+        stored_.address = values[i];  // takes effect at the next reset
         break;
       case 0x01E5:
-        stored_.baud_code = values[i];  // likewise
+        stored_.baud_code = values[i];  // takes effect at the next reset
         break;
       default:
         stored_.timeout = values[i];

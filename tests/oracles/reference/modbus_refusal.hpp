@@ -1,4 +1,4 @@
-// What a Modbus request of the reference is made of, and why it is refused: wire.md 7.
+// Helpers to read and build Modbus frames of the reference, and the reasons to refuse a request: wire.md 7.
 #pragma once
 
 #include <cstdint>
@@ -9,7 +9,8 @@
 
 namespace ex9000::reference {
 
-/// An exception: nothing is changed, and the answer is the function with bit 7 and the code.
+/// A Modbus exception: nothing changes, and the reply is the function code with bit 7 set and the exception
+/// code.
 struct Exception {
   std::uint8_t code;
   std::string rule;
@@ -26,10 +27,10 @@ inline void append_text(Bytes& frame, const std::string& text) {
   frame.insert(frame.end(), text.begin(), text.end());
 }
 
-/// As the rules have it.
+/// The function's name in the rules of rules.cpp.
 inline std::string function_name(unsigned function) { return "FC" + hex(function, 2); }
 
-/// The length of all of a frame but its CRC.
+/// Throws Exception 03 unless the frame, without its CRC, has this length.
 inline void length_must_be(const Bytes& frame, std::size_t length) {
   if (frame.size() != length) {
     throw Exception{0x03, function_name(frame[1]) + " 03 length"};

@@ -1,4 +1,4 @@
-// Modbus requests with arguments in and out of range, and frames that are none: wire.md 7.
+// Modbus requests with arguments in and out of range, and invalid frames: wire.md 7.
 #include <algorithm>
 
 #include "sim/play/modbus_frame.hpp"
@@ -33,7 +33,7 @@ unsigned coil_quantity(const Module& module, unsigned address, Random& random) {
   switch (random.below(8)) {
     case 0:
       return random.one_of({0U, 1U, 1968U, 1969U, 2000U, 2001U, 0xFFFFU});
-    case 1:  // to the row's end, and one beyond
+    case 1:  // to the end of the row, or one coil more
       return module.row().inputs + module.row().outputs - (address & 0x1FU) % 16 + random.below(2);
     case 2:
       return random.between(1, 40);
@@ -91,7 +91,7 @@ unsigned register_content(unsigned address, const Module& module, Random& random
   }
 }
 
-/// Function and data.
+/// Returns function code and data.
 Bytes request(const Module& module, Random& random) {
   Bytes pdu;
   const unsigned coil = coil_address(module, random);
@@ -212,7 +212,7 @@ Bytes request(const Module& module, Random& random) {
 
 Bytes modbus_request(const Module& module, Random& random) {
   Bytes frame = request(module, random);
-  // Truncated or with more behind it, and its CRC right for what it is then.
+  // Some frames are truncated or too long, with a correct CRC for the result.
   if (random.once_in(25)) {
     frame.resize(random.below(static_cast<unsigned>(frame.size()) + 1));
   } else if (random.once_in(25)) {

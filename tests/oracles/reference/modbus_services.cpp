@@ -1,11 +1,11 @@
-// Functions of the reference that are not about coils and registers: 08, 11, 2B and 46, wire.md 7.
+// The functions of the reference that do not access coils or registers: 08, 11, 2B and 46, wire.md 7.
 #include "tests/oracles/reference/hexadecimal.hpp"
 #include "tests/oracles/reference/modbus_refusal.hpp"
 #include "tests/oracles/reference/module.hpp"
 
 namespace ex9000::reference {
 
-/// 08; Modbus Application Protocol V1.1b3, 6.8.
+/// Function 08; Modbus Application Protocol V1.1b3, 6.8.
 Bytes Module::diagnostics(const Bytes& frame) {
   if (frame.size() < 4) {
     throw Exception{0x03, "FC08 03 length"};
@@ -13,7 +13,7 @@ Bytes Module::diagnostics(const Bytes& frame) {
   const unsigned sub_function = word(frame, 2);
   const std::string name = "FC08 " + hex(sub_function, 2);
   if (sub_function == 0x00) {
-    // N x 2 bytes, sent back as they came.
+    // N x 2 bytes, returned unchanged.
     if (frame.size() < 6 || frame.size() % 2 != 0) {
       throw Exception{0x03, "FC08 03 length"};
     }
@@ -40,7 +40,7 @@ Bytes Module::diagnostics(const Bytes& frame) {
       count = counts_.no_response;
       break;
     case 0x12:
-      count = 0;  // a complete frame is always taken from the receiver in time here
+      count = 0;  // this module never loses a complete frame to an overrun
       break;
     default:
       throw Exception{0x01, "FC08 01"};
@@ -69,7 +69,7 @@ Bytes Module::server_id(const Bytes& frame) {
   return reply;
 }
 
-/// 2B; Modbus Application Protocol V1.1b3, 6.21.
+/// Function 2B; Modbus Application Protocol V1.1b3, 6.21.
 Bytes Module::device_identification(const Bytes& frame) {
   if (frame.size() < 3) {
     throw Exception{0x03, "FC2B 03 length"};

@@ -1,5 +1,5 @@
-// The models as the reference knows them: wire.md 1. A table of its own, so that a slip in the firmware's
-// shows.
+// The table of models of the reference: wire.md 1. It is independent of the firmware's table, so that a
+// mistake in one of them is found.
 #pragma once
 
 #include <cstdint>
@@ -11,11 +11,11 @@ struct ModelRow {
   const char* designation;
   unsigned inputs;
   unsigned outputs;
-  bool both_protocols;    ///< the -M models: Modbus RTU beside ASCII
-  bool status_80_84;      ///< `~AA0` answers 00, 80 or 84; else 00 or 04
+  bool both_protocols;    ///< the -M models: Modbus RTU and ASCII
+  bool status_80_84;      ///< `~AA0` answers 00, 80 or 84; if false, 00 or 04
   const char* name;       ///< factory name, `$AAM`
   unsigned longest_name;  ///< 7 on the -M models of the 9068, E5
-  std::uint16_t code;     ///< Modbus; 0 where there is none
+  std::uint16_t code;     ///< Modbus module code; 0 without Modbus
   const char* in_words;   ///< object 04 of function 2B
 };
 

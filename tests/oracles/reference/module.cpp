@@ -8,10 +8,10 @@ namespace ex9000::reference {
 namespace {
 
 constexpr std::chrono::milliseconds kTimeoutUnit{100};  // wire.md 6: VV x 0.1 s
-/// wire.md 3: a reply starts at most 200 ms after the request where a setting is stored; and a Modbus frame
-/// ends up to 32 ms behind its last byte.
+/// wire.md 3: the reply starts at most 200 ms after a request that stores a setting. A Modbus frame ends up
+/// to 32 ms after its last byte.
 constexpr std::chrono::milliseconds kLongestStore{232};
-/// wire.md 7: at 1200 baud. A host OK stores nothing.
+/// The silence that ends a frame, wire.md 7, at 1200 baud. A host OK stores nothing.
 constexpr std::chrono::milliseconds kLongestSilence{33};
 
 auto members(const Stored& s) {
@@ -30,7 +30,7 @@ Module::Module(const ModelRow& row) : row_(row) {
 }
 
 unsigned Module::rate() const {
-  // README, DCON commands: CC.
+  // The baud rates of CC: README, DCON commands.
   constexpr unsigned kRates[] = {1200, 2400, 4800, 9600, 19200, 38400, 57600, 115200};
   return kRates[baud_code_ - 3];
 }
@@ -57,7 +57,8 @@ void Module::reset(Time now) {
 }
 
 void Module::come_up(Time now) {
-  // wire.md 2: INIT* is sampled once, here, and decides for ASCII, 00, 9600 and no checksum.
+  // wire.md 2: INIT* is sampled once, here. If asserted, the module uses ASCII, address 00, 9600 baud and no
+  // checksum.
   init_mode_ = init_asserted_;
   runs_modbus_ = !init_mode_ && stored_.modbus;
   address_ = init_mode_ ? 0x00 : stored_.address;
@@ -74,7 +75,7 @@ void Module::come_up(Time now) {
   framing_ = Framing::Nothing;
   frame_.clear();
   counts_ = {};
-  // wire.md 6: from every reset with its full VV, in every mode.
+  // wire.md 6: every reset starts the host watchdog with its full VV, in every mode.
   expiry_.reset();
   if (stored_.enabled) {
     rule("reset starts the host watchdog");
@@ -96,7 +97,7 @@ void Module::set_input(unsigned channel, bool level) {
 }
 
 void Module::pulse_input(unsigned channel, std::uint32_t count) {
-  // From the level and back: as many rising edges as falling ones.
+  // A pulse goes to the other level and back: as many rising as falling edges.
   edge(channel, true, count);
   edge(channel, false, count);
 }
@@ -165,10 +166,10 @@ Answer Module::on_request(const Bytes& bytes, Time now) {
   if (runs_modbus_) {
     answer.reply = modbus_frame(bytes);
   } else {
-    // wire.md 3: the first of these decides. A CR ends whatever it was.
+    // wire.md 3: the first of these characters decides. A CR ends any frame.
     for (std::size_t i = 0; i < bytes.size(); ++i) {
       const char character = static_cast<char>(bytes[i]);
-      // What one frame of several restarts, it restarts at its own end.
+      // If one of several frames restarts the host watchdog, the restart happens at the end of that frame.
       now_ = now - Time((bytes.size() - 1 - i) * 10 * 1'000'000'000ULL / rate());
       if (!answer.reply.empty()) {
         left_open_ = "what comes while the module answers depends on how fast it is";

@@ -1,7 +1,7 @@
-// A second description of a module, made from the specification alone and as plainly as it can be: whole
-// frames in, whole frames out, no interrupts, no storing that takes time. It shares no code with the
-// firmware, so where the two agree on a random session, two readings of the same sentence agree. Sections, E
-// and D numbers are wire.md's.
+// A second implementation of a module, written from the specification alone and as simply as possible: it
+// takes whole frames and returns whole frames, has no interrupts, and stores settings at once. It shares no
+// code with the firmware. If both agree on a random session, two independent readings of the specification
+// agree. Section, E and D numbers refer to wire.md.
 #pragma once
 
 #include <array>
@@ -17,12 +17,12 @@
 namespace ex9000::reference {
 
 using Bytes = std::vector<std::uint8_t>;
-/// Since any beginning, the same for all that one module is told.
+/// Time since an arbitrary origin, which must be the same for all calls of one module.
 using Time = std::chrono::nanoseconds;
-/// wire.md 2: from power-on or reset until it listens, at most.
+/// wire.md 2: the longest time from power-on or reset until the module listens.
 inline constexpr std::chrono::milliseconds kComingUp{100};
 
-/// wire.md 8: what a power failure leaves.
+/// wire.md 8: the values that survive a power failure.
 struct Stored {
   unsigned address = 0x01;
   unsigned baud_code = 0x06;
@@ -30,48 +30,52 @@ struct Stored {
   bool modbus = false;
   std::string name;
   unsigned power_on = 0;    ///< bit n is channel n
-  unsigned safe = 0;        ///< likewise
-  bool enabled = false;     ///< the host watchdog
+  unsigned safe = 0;        ///< bit n is channel n
+  bool enabled = false;     ///< host watchdog enabled
   unsigned timeout = 0xFF;  ///< in 0.1 s
   bool timed_out = false;   ///< the timeout status
 };
 
 bool operator==(const Stored& a, const Stored& b);
 
-/// What a module does with what was sent.
+/// The module's reaction to a request.
 struct Answer {
   Bytes reply;          ///< empty: silence
-  bool stores = false;  ///< settings change, which may take up to 200 ms
-  /// Not null: the specification does not say what happens, and why. Nothing else here counts then.
+  bool stores = false;  ///< settings change; storing takes up to 200 ms
+  /// If not null, the specification does not define what happens; the text says why. The other members are
+  /// not valid then.
   const char* left_open = nullptr;
 };
 
-/// One module. It is off at first.
+/// A module. Its supply is off at first.
 class Module {
  public:
   explicit Module(const ModelRow& row);
 
   // --- events ---
 
-  /// What it remembers at the next reset.
+  /// Sets the values that the module loads at the next reset.
   void store(const Stored& stored) { stored_ = stored; }
-  /// The supply. What is on is given 100 ms to come up; the reset lies somewhere in them.
+  /// Switches the supply. A module that is switched on has 100 ms to start; its reset is at an unknown time
+  /// within them.
   void power(bool on, Time now);
-  /// Likewise.
+  /// Resets the module, which has 100 ms to start.
   void reset(Time now);
   void set_init(bool asserted) { init_asserted_ = asserted; }
   void set_input(unsigned channel, bool level);
   void pulse_input(unsigned channel, std::uint32_t count);
-  /// The complete bytes that the master sent, the last of which was over at `now`, with silence behind them.
+  /// Processes all bytes that the master has sent. The last byte ended at `now`, and a silence follows.
   Answer on_request(const Bytes& bytes, Time now);
-  /// The first byte of the reply to that began at `now`, so whatever it did has been done by then.
+  /// The first byte of the reply to the last request began at `now`; all effects of the request are complete
+  /// by then.
   void replied(Time now);
-  /// Time has passed. Not to be called while `uncertain`.
+  /// Time has passed until `now`, which must not lie between the earliest and the latest expiry of the host
+  /// watchdog.
   void pass(Time now);
 
-  // --- what can be seen ---
+  // --- visible state ---
 
-  /// The rules that have decided since this was called last, in the words of rules.cpp.
+  /// The rules that have been applied since the last `take_rules`, in the words of rules.cpp.
   [[nodiscard]] const std::vector<std::string>& rules() const { return rules_; }
   std::vector<std::string> take_rules() { return std::exchange(rules_, {}); }
 
@@ -85,15 +89,15 @@ class Module {
   [[nodiscard]] unsigned address() const { return address_; }
   [[nodiscard]] bool init_mode() const { return init_mode_; }
   [[nodiscard]] bool init_asserted() const { return init_asserted_; }
-  /// A reset would change how the master has to speak.
+  /// Whether a reset would change the settings that the master needs to talk to the module.
   [[nodiscard]] bool waits_for_reset() const;
   [[nodiscard]] const Stored& stored() const { return stored_; }
   [[nodiscard]] const ModelRow& row() const { return row_; }
-  /// Whether a frame of the master's was begun and not ended.
+  /// Whether the module has received the beginning of a frame but not its end.
   [[nodiscard]] bool frame_open() const { return framing_ != Framing::Nothing; }
 
-  /// When the host watchdog expires: between these two, as nobody outside knows the moment that it was
-  /// restarted.
+  /// The host watchdog expires between these two times. The exact time is unknown because the time of its
+  /// last restart is not visible from outside.
   struct Expiry {
     Time earliest;
     Time latest;
@@ -157,7 +161,7 @@ class Module {
   std::vector<std::string> rules_;
   Stored stored_;
 
-  // From reset to reset.
+  // State that lasts from one reset to the next.
   bool powered_ = false;
   bool init_asserted_ = false;
   bool init_mode_ = false;
@@ -168,7 +172,7 @@ class Module {
   bool counts_rising_ = false;
   unsigned outputs_ = 0;
   bool reset_status_ = false;
-  unsigned levels_ = 0;  ///< of the inputs; whoever drives them does not mind resets
+  unsigned levels_ = 0;  ///< of the inputs; a reset does not change them
   unsigned latch_high_ = 0;
   unsigned latch_low_ = 0;
   std::array<std::uint32_t, 8> counters_{};
@@ -179,7 +183,7 @@ class Module {
   std::optional<Sample> sample_;
   Framing framing_ = Framing::Nothing;
   std::string frame_;
-  /// Function 08's, by sub-function.
+  /// The counters of function 08.
   struct Counts {
     unsigned bus_messages = 0;
     unsigned crc_errors = 0;
@@ -189,7 +193,7 @@ class Module {
   } counts_;
   std::optional<Expiry> expiry_;
 
-  // Of one call of `on_request`.
+  // State during one call of `on_request`.
   Time now_{0};
   bool restarted_ = false;
   const char* left_open_ = nullptr;

@@ -1,4 +1,4 @@
-// Random numbers that are the same everywhere: the standard's engine without its distributions.
+// Random numbers that are the same on every platform: the standard's engine without its distributions.
 #pragma once
 
 #include <cstdint>
@@ -11,10 +11,10 @@ class Random {
  public:
   explicit Random(std::uint64_t seed) : engine_(seed) {}
 
-  /// Of 0 to `count` - 1.
+  /// Returns a number from 0 to `count` - 1.
   unsigned below(unsigned count) { return static_cast<unsigned>(engine_() % count); }
   unsigned between(unsigned lowest, unsigned highest) { return lowest + below(highest - lowest + 1); }
-  /// Once in so many times.
+  /// Returns true once in `times` calls on average.
   bool once_in(unsigned times) { return below(times) == 0; }
   template <typename T>
   T one_of(std::initializer_list<T> values) {

@@ -1,4 +1,4 @@
-// Which rows, refusals and exceptions random sessions have come to.
+// Counts which rows, refusals and exceptions random sessions have reached.
 #pragma once
 
 #include <cstdint>
@@ -8,16 +8,16 @@
 
 namespace ex9000::reference {
 
-/// Counts what was reached, of a list that is written down: a rule that no session reaches shows.
+/// Counts how often each rule of a fixed list was reached, so that a rule that no session reaches is found.
 class Rules {
  public:
   Rules();
 
-  /// Throws std::logic_error where `rule` is not in the list.
+  /// Throws std::logic_error if `rule` is not in the list.
   void reached(const std::string& rule);
-  /// What was never reached, in the list's order.
+  /// Returns the rules that were never reached, in the order of the list.
   [[nodiscard]] std::vector<std::string> missing() const;
-  /// The list, a rule a line, with how often it was reached.
+  /// Returns the list as text: on each line a rule and how often it was reached.
   [[nodiscard]] std::string table() const;
   [[nodiscard]] std::size_t size() const { return counts_.size(); }
 

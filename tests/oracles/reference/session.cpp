@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <utility>
 
-#include "sim/module_spec.hpp"
+#include "sim/line/module_spec.hpp"
 #include "tests/oracles/reference/dcon_check.hpp"
 #include "tests/oracles/reference/hexadecimal.hpp"
 #include "tests/oracles/reference/modbus_check.hpp"
@@ -14,20 +14,20 @@ namespace {
 
 using std::chrono::milliseconds;
 
-/// How near to the host watchdog's expiry nothing is decided, asked or compared: its tick, and what it takes
-/// until a request is acted upon that has just come in.
+/// The shortest distance from the host watchdog's expiry at which the session decides, sends or compares
+/// anything: one tick, and the time until the module executes a received request.
 constexpr milliseconds kExpiryMargin{3};
-/// wire.md 6: storing status and enable follows the expiry.
+/// wire.md 6: after the expiry, the status and the enable are stored.
 constexpr milliseconds kStored{250};
 /// wire.md 3: a reply that stores nothing starts within 20 ms.
 constexpr milliseconds kAnswers{20};
 constexpr milliseconds kAnswersStoring{200};
-/// Longer than it takes until a reply begins that stores nothing, at any rate. The runner waits as long, so
-/// what is written down here happens there at the same times.
+/// Longer than the time until a reply begins that stores nothing, at any baud rate. The runner of transcripts
+/// waits equally long, so a transcript has the same timing there.
 constexpr milliseconds kNoAnswer{65};
-/// Likewise, before whatever is done next. Whatever comes behind a reply comes in this.
+/// The time before each next step. The rest of a reply, if any, arrives within it.
 constexpr milliseconds kBetween{2};
-/// Longer than any switch takes to settle; wire.md 2: INIT* is debounced.
+/// Longer than the debounce time of any switch; wire.md 2: INIT* is debounced.
 constexpr milliseconds kDebounced{100};
 
 std::string text_of(const Bytes& bytes) { return std::string(bytes.begin(), bytes.end()); }
@@ -37,7 +37,8 @@ bool printable(const std::string& text) {
                      [](char character) { return character >= 0x20 && character <= 0x7E; });
 }
 
-/// In a transcript, where `  ;` begins a comment and braces a variable.
+/// Whether the text can be a line of a transcript, in which `  ;` begins a comment and braces enclose a
+/// variable.
 bool can_be_written(const std::string& text) {
   return printable(text) && text.find("  ;") == std::string::npos && text.find('{') == std::string::npos;
 }
@@ -77,7 +78,7 @@ std::string Session::transcript() const {
 }
 
 bool Session::play(const Step& step) {
-  // Before each step, as a look ahead copies what there is.
+  // Before each step, because a look ahead copies the reference with its rules.
   for (std::string& rule : reference_.take_rules()) {
     rules_.push_back(std::move(rule));
   }
@@ -87,13 +88,13 @@ bool Session::play(const Step& step) {
   return std::visit([this](const auto& one) { return play_step(one); }, step) && settle(Time(0)) && compare();
 }
 
-/// Nothing is being stored any more.
+/// Waits until nothing is being stored.
 bool Session::stored() {
   const bool storing = std::exchange(storing_, false);
   return !(storing || target_.now() < timeout_stored_) || listen(kStored);
 }
 
-/// The master goes where the reference says that the module is.
+/// Sets the master to the baud rate and checksum of the reference.
 bool Session::follow() {
   if (reference_.rate() != rate_) {
     if (!nothing_more()) {
@@ -110,13 +111,13 @@ bool Session::follow() {
   return true;
 }
 
-/// Time that no line of the transcript tells.
+/// Lets a short time pass that the transcript does not mention, and checks that nothing is sent.
 bool Session::nothing_more() {
   const play::Bytes heard = target_.listen(kBetween);
   return heard.empty() || differs("; nothing more", reply_line(heard));
 }
 
-/// Lets the host watchdog expire now, where it might in the time that a step needs.
+/// If the host watchdog might expire within `needed`, lets it expire now.
 bool Session::settle(Time needed) {
   if (reference_.expiry() && target_.now() + needed > reference_.expiry()->earliest - kExpiryMargin) {
     return listen(std::chrono::duration_cast<milliseconds>(needed) + milliseconds(1));
@@ -124,7 +125,7 @@ bool Session::settle(Time needed) {
   return true;
 }
 
-/// As long, or until the host watchdog has expired, where it might be about to.
+/// Listens for `time`, or until the host watchdog has expired if it is about to expire.
 bool Session::listen(milliseconds time) {
   const bool might_expire = reference_.expiry().has_value();
   Time over{0};
@@ -138,7 +139,7 @@ bool Session::listen(milliseconds time) {
   lines_.push_back("wait " + std::to_string(time.count()) + "ms");
   const play::Bytes heard = target_.listen(time);
   reference_.pass(target_.now());
-  // Outputs and status are there at once, and what is asked now is asked while they are being stored.
+  // Outputs and timeout status change at once. The next request may arrive while they are being stored.
   storing_timeout_ = false;
   if (might_expire && !reference_.expiry()) {
     timeout_stored_ = over + kStored;
@@ -147,7 +148,7 @@ bool Session::listen(milliseconds time) {
   return heard.empty() || differs("; silence", reply_line(heard));
 }
 
-/// `expected` is the transcript's next step, or a comment where no step says it.
+/// `expected` is the next step of the transcript, or a comment if no step describes it.
 bool Session::differs(const std::string& expected, const std::string& got) {
   lines_.push_back(expected);
   lines_.push_back("; but the firmware: " + got);
@@ -156,7 +157,7 @@ bool Session::differs(const std::string& expected, const std::string& got) {
 
 bool Session::compare() {
   if (storing_) {
-    return true;  // wire.md 8: effects come when it is stored
+    return true;  // wire.md 8: a command takes effect when it is stored
   }
   const unsigned outputs = target_.outputs();
   if (outputs != reference_.outputs()) {
@@ -172,16 +173,17 @@ bool Session::compare() {
          differs(names[static_cast<unsigned>(expected)], names[static_cast<unsigned>(led)]);
 }
 
-/// How long bytes take on the line, ten bits each.
+/// The time that bytes take on the line, ten bits each.
 Time Session::takes(std::size_t bytes) const { return Time(bytes * 10 * 1'000'000'000ULL / rate_); }
 
 bool Session::play_step(const Send& send) {
-  // wire.md 7: a Modbus frame ends, and a reply starts, behind 3.5 characters of 11 bits, above 19200
-  // baud 1.75 ms.
+  // wire.md 7: a Modbus frame ends, and a reply starts, after 3.5 characters of 11 bits, or after 1.75 ms
+  // above 19200 baud.
   const Time modbus_silence = rate_ <= 19200 ? Time(77ULL * 1'000'000'000ULL / (2ULL * rate_))
                                              : Time(std::chrono::microseconds(1750));
   const Time earliest = reference_.runs_modbus() ? modbus_silence : takes(1);
-  // wire.md 3 has 20 ms for Modbus too, but at 1200 baud the silence alone takes 32 and at 2400 baud 16.
+  // wire.md 3 allows 20 ms for Modbus, too, but the silence alone takes 32 ms at 1200 baud and 16 ms at 2400
+  // baud.
   const Time answers = std::max<Time>(kAnswers, earliest + milliseconds(5));
 
   Answer answer;
@@ -192,7 +194,7 @@ bool Session::play_step(const Send& send) {
       ++left_open_;
       return true;
     }
-    // Twice: what is answered depends on whether the host watchdog has expired.
+    // Twice, because the answer depends on whether the host watchdog has expired.
     const Time done = answer.stores ? answers + kStored : answer.reply.empty() ? Time(kNoAnswer) : answers;
     const Time needed = takes(send.bytes.size() + answer.reply.size()) + done + kBetween;
     if (!settle(needed)) {
@@ -200,7 +202,7 @@ bool Session::play_step(const Send& send) {
     }
   }
 
-  // The runner sends bytes at once, and frames only when no answer can come any more.
+  // The runner sends bytes at once, but frames only when no more answers can arrive.
   behind_expiry_ += storing_timeout_ ? 1U : 0U;
   const bool behind_another = std::exchange(storing_, false) || storing_timeout_;
   storing_timeout_ = false;
@@ -216,7 +218,7 @@ bool Session::play_step(const Send& send) {
   answer = reference_.on_request(send.bytes, sent);
   ++transactions_;
   if (answer.reply.empty()) {
-    // wire.md 8: while one command is being stored, one more frame is kept.
+    // wire.md 8: while one command is being stored, the module keeps one more frame.
     storing_ = send.hurried && answer.stores && reference_.runs_modbus() && !behind_another;
     if (storing_) {
       return listen(std::chrono::duration_cast<milliseconds>(modbus_silence) + milliseconds(2));
@@ -291,7 +293,7 @@ bool Session::play_step(const Init& init) {
   return listen(kDebounced);
 }
 
-/// A transcript has no inputs that its model lacks, so there they are comments.
+/// A transcript cannot set inputs that its model does not have, so those lines become comments.
 std::string Session::lacking(unsigned channel) const { return channel < reference_.row().inputs ? "" : "; "; }
 
 bool Session::play_step(const Input& input) {

@@ -1,5 +1,5 @@
-// A session: what a master and a person at the terminals do to one module, played on the firmware and on the
-// reference.
+// A session: the actions of a master and of a person at the terminals of one module, played on the firmware
+// and on the reference.
 #pragma once
 
 #include <chrono>
@@ -15,16 +15,16 @@
 
 namespace ex9000::reference {
 
-/// The master sends these bytes without a gap, at the rate that the reference has, with silence behind them.
+/// The master sends these bytes without a gap, at the baud rate of the reference. A silence follows.
 struct Send {
   Bytes bytes;
-  /// Where this gets no answer, the next request follows while the module may still be storing.
+  /// If the request gets no answer, the next request may follow while the module is still storing.
   bool hurried = false;
 };
 struct Wait {
   std::chrono::milliseconds time;
 };
-/// Until so long before the host watchdog expires, where it runs.
+/// Waits until `before` before the host watchdog expires, if it is running.
 struct WaitForExpiry {
   std::chrono::milliseconds before;
 };
@@ -46,28 +46,30 @@ struct Pulse {
 
 using Step = std::variant<Send, Wait, WaitForExpiry, Reset, Power, Init, Input, Pulse>;
 
-/// A module by either description, from factory settings. Waits where they could differ in nothing but the
-/// moment that the host watchdog expires, which is settled to a tick and not to the nanosecond.
+/// Plays steps on a firmware module and on a reference module, from factory settings. When a result could
+/// depend on the exact time at which the host watchdog expires, the session waits, because that time is
+/// specified to a tick, not to a nanosecond.
 class Session {
  public:
   explicit Session(const ModelRow& row);
 
-  /// Plays a step on both and compares reply, outputs and LED. False: they differ, and the transcript's last
-  /// lines say how. A request whose answer the specification leaves open is not sent.
+  /// Plays a step on both modules and compares reply, outputs and LED. Returns false if they differ; the last
+  /// lines of the transcript describe the difference. Does not send a request whose answer the specification
+  /// leaves open.
   bool play(const Step& step);
 
   [[nodiscard]] const Module& reference() const { return reference_; }
-  /// What was played, as a conformance transcript (tests/conformance/README.md).
+  /// The steps played so far, as a conformance transcript (tests/conformance/README.md).
   [[nodiscard]] std::string transcript() const;
-  /// What the reference decided by, in the words of rules.cpp.
+  /// The rules that the reference has applied, in the words of rules.cpp.
   [[nodiscard]] std::vector<std::string> rules() const;
-  /// Requests that were sent.
+  /// The number of requests that were sent.
   [[nodiscard]] std::uint64_t transactions() const { return transactions_; }
-  /// Of these, those that were over less than 0.1 s before the host watchdog expired, and those that came
-  /// while its expiry was being stored.
+  /// The number of requests that ended less than 0.1 s before the host watchdog expired, and the number of
+  /// those that arrived while its expiry was being stored.
   [[nodiscard]] std::uint64_t before_expiry() const { return before_expiry_; }
   [[nodiscard]] std::uint64_t behind_expiry() const { return behind_expiry_; }
-  /// Requests that were not sent, as the specification leaves them open.
+  /// The number of requests that were not sent because the specification leaves their answer open.
   [[nodiscard]] std::uint64_t left_open() const { return left_open_; }
 
  private:
@@ -94,11 +96,12 @@ class Session {
 
   Module reference_;
   runner::CoreTarget target_;
-  /// The module may be storing what it was sent last.
+  /// Whether the module may be storing the last request.
   bool storing_ = false;
-  /// Likewise, that the host watchdog has expired.
+  /// Whether the module may be storing the host watchdog's expiry.
   bool storing_timeout_ = false;
-  Time timeout_stored_{0};  ///< by then the latest one's status is, whatever was asked meanwhile
+  /// The time by which the latest timeout status has been stored, independently of later requests.
+  Time timeout_stored_{0};
   unsigned rate_ = 9600;
   bool checksum_ = false;
   std::vector<std::string> lines_;
@@ -109,10 +112,11 @@ class Session {
   std::uint64_t left_open_ = 0;
 };
 
-/// The fewest of these steps that still make a difference, found by taking away; `steps` make one.
+/// Removes steps as long as the rest still makes the two modules differ, and returns the rest. `steps` must
+/// make them differ.
 std::vector<Step> shrink(const ModelRow& row, std::vector<Step> steps);
 
-/// The transcript of all these steps, up to where they differ.
+/// The transcript of these steps, up to the first difference.
 std::string transcript_of(const ModelRow& row, const std::vector<Step>& steps);
 
 }  // namespace ex9000::reference

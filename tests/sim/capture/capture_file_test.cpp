@@ -21,11 +21,14 @@ using system::bytes_of_file;
 using system::Directory;
 using system::write_file;
 
+/// Where it is asked for.
+const std::string kPlace = "bus.json:2: capture: ";
+
 std::vector<std::uint8_t> block(std::string_view text) { return {text.begin(), text.end()}; }
 
 std::string refusal(const std::string& path) {
   try {
-    const CaptureFile file(path);
+    const CaptureFile file(path, kPlace);
   } catch (const std::invalid_argument& error) {
     return error.what();
   }
@@ -34,7 +37,7 @@ std::string refusal(const std::string& path) {
 
 TEST(CaptureFile, IsMadeAndGrows) {
   const Directory directory;
-  CaptureFile file(directory / "a");
+  CaptureFile file(directory / "a", kPlace);
   file.begin();
   file.append(block("one"));
   EXPECT_EQ(bytes_of_file(directory / "a"), "one");
@@ -45,9 +48,9 @@ TEST(CaptureFile, IsMadeAndGrows) {
 TEST(CaptureFile, ThatHoldsSomethingIsOverwrittenNotBeforeItBegins) {
   const Directory directory;
   write_file(directory / "a", "precious");
-  { const CaptureFile file(directory / "a"); }
+  { const CaptureFile file(directory / "a", kPlace); }
   EXPECT_EQ(bytes_of_file(directory / "a"), "precious");
-  CaptureFile file(directory / "a");
+  CaptureFile file(directory / "a", kPlace);
   file.begin();
   EXPECT_EQ(bytes_of_file(directory / "a"), "");
   file.append(block("one"));
@@ -57,7 +60,7 @@ TEST(CaptureFile, ThatHoldsSomethingIsOverwrittenNotBeforeItBegins) {
 TEST(CaptureFile, ThatNeverBeganIsNotThere) {
   const Directory directory;
   {
-    const CaptureFile file(directory / "a");
+    const CaptureFile file(directory / "a", kPlace);
     EXPECT_TRUE(fs::exists(directory / "a"));
   }
   EXPECT_TRUE(fs::is_empty(directory.path()));
@@ -65,46 +68,47 @@ TEST(CaptureFile, ThatNeverBeganIsNotThere) {
 
 TEST(CaptureFile, ThatBeganStays) {
   const Directory directory;
-  { CaptureFile(directory / "a").begin(); }
+  { CaptureFile(directory / "a", kPlace).begin(); }
   EXPECT_TRUE(fs::exists(directory / "a"));
 }
 
 TEST(CaptureFile, IsOfOneSimulatorAtATime) {
   const Directory directory;
-  std::optional<CaptureFile> first(directory / "a");
+  std::optional<CaptureFile> first(std::in_place, directory / "a", kPlace);
   EXPECT_NE(refusal(directory / "a").find("in use by another simulator"), std::string::npos);
   first->begin();
   first.reset();
   EXPECT_EQ(refusal(directory / "a"), "");
 }
 
-TEST(CaptureFile, WhereNothingCanBeWrittenIsRefusedWithThePath) {
+TEST(CaptureFile, WhereNothingCanBeWrittenIsRefusedWithThePlaceAndThePath) {
   const Directory directory;
   for (const std::string& path : {directory / "none/a", directory.path()}) {
     const std::string why = refusal(path);
-    EXPECT_EQ(why.find("--capture " + path + ": "), 0U) << why;
+    EXPECT_EQ(why.find(kPlace + path + ": "), 0U) << why;
     EXPECT_NE(why.find("name a path that can be written"), std::string::npos) << why;
   }
   EXPECT_TRUE(fs::is_empty(directory.path()));
 }
 
 TEST(CaptureFile, AFullDiskIsSaid) {
-  CaptureFile file("/dev/full");
+  CaptureFile file("/dev/full", kPlace);
   file.begin();
   try {
     file.append(block("one"));
     FAIL() << "it was written";
   } catch (const std::runtime_error& error) {
-    EXPECT_EQ(std::string(error.what()), "--capture /dev/full: cannot be written: No space left on device");
+    EXPECT_EQ(std::string(error.what()), kPlace + "/dev/full: cannot be written: No space left on device");
   }
 }
 
 TEST(CaptureFile, APipeMayBeRead) {
   const Directory directory;
   ASSERT_EQ(mkfifo((directory / "a").c_str(), 0600), 0);
-  EXPECT_NE(refusal(directory / "a").find("start who reads it first"), std::string::npos);
+  EXPECT_NE(refusal(directory / "a").find("nobody reads this pipe; start its reader first"),
+            std::string::npos);
   const int reader = open((directory / "a").c_str(), O_RDONLY | O_NONBLOCK);
-  CaptureFile file(directory / "a");
+  CaptureFile file(directory / "a", kPlace);
   file.begin();
   file.append(block("one"));
   char text[4] = {};

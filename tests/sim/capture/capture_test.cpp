@@ -11,7 +11,7 @@
 #include <vector>
 
 #include "sim/capture/capture.hpp"
-#include "sim/line.hpp"
+#include "sim/line/line.hpp"
 #include "sim/play/modbus_frame.hpp"
 #include "tests/sim/capture/tshark.hpp"
 #include "tests/support/control_client.hpp"
@@ -434,7 +434,7 @@ TEST(Capture, NeverGoesOverWhatARunReadsOrServes) {
   const std::vector<std::pair<std::string, std::string>> cases{{"bus.json", "the bus file bus.json"},
                                                                {"ctl", "the control socket ctl"},
                                                                {"tty", "the pseudo-terminal tty"},
-                                                               {"n.bin", "a module's EEPROM, eeprom=n.bin"}};
+                                                               {"n.bin", "a module's EEPROM file n.bin"}};
   for (const auto& [path, what] : cases) {
     std::filesystem::create_symlink(path, directory / "link");
     for (const std::vector<std::string>& named : {std::vector<std::string>{}, {"--capture", path}}) {
@@ -465,7 +465,7 @@ sim::Frame frame_of(std::size_t station, const Bytes& bytes) {
 
 TEST(Capture, EveryLineIsAnInterfaceAndHasItsOwnRequests) {
   const Directory directory;
-  sim::Capture capture(directory / "lines.pcapng");
+  sim::Capture capture(directory / "lines.pcapng", "--capture ");
   capture.begin();
   const std::size_t pumps = capture.add_line("pumps", 1, std::chrono::seconds(1));
   const std::size_t doors = capture.add_line("doors", 1, std::chrono::seconds(2));
@@ -508,7 +508,7 @@ Packet of_a_spoiled(const Bytes& request, OneHit hit) {
   const Directory directory;
   sim::Line line({sim::parse_module_spec("EX9042D-M@01")}, sim::kPaced, [](std::uint8_t, ByteStatus) {});
   line.come_up();
-  sim::Capture capture(directory / "line.pcapng");
+  sim::Capture capture(directory / "line.pcapng", "--capture ");
   sim::FrameWatch frames([&line] { return line.master().baud(); });
   line.bus().observe(frames);
   line.bus().disturb(hit);

@@ -208,7 +208,7 @@ TEST(ControlSocket, ATooLongLineIsAnErrorAndTheEndOfItsClientOnly) {
     ControlClient client(simulator.socket());
     client.send("1 led\n" + std::string(size, 'x') + "\n1 power off\n");
     EXPECT_EQ(client.line(), "ok on") << size;
-    EXPECT_TRUE(starts_with(client.line(), "error: ")) << size;
+    EXPECT_EQ(client.line(), "error: the command is too long; expected up to 1000 characters") << size;
     EXPECT_TRUE(client.at_end()) << size;
     EXPECT_EQ(other.ask("1 led"), "ok on") << size;
   }
@@ -229,7 +229,7 @@ TEST(ControlSocket, AClientThatEndsWithoutANewlineIsToldSo) {
   client.send("1 led\n1 power off");
   client.close_writing();
   EXPECT_EQ(client.line(), "ok on");
-  EXPECT_TRUE(starts_with(client.line(), "error: "));
+  EXPECT_EQ(client.line(), "error: the last command was ignored; expected a newline after it");
   EXPECT_TRUE(client.at_end());
   expect_undisturbed(simulator);
 }
@@ -277,6 +277,8 @@ TEST(ControlSocket, OfAHundredConnectionsSixtyFourAreServedAndTheOthersHungUp) {
   auto clients = connect(simulator.socket(), 100);
   EXPECT_EQ(answered(clients), kMostClients);
   EXPECT_EQ(answered(clients), kMostClients);  // for good
+  EXPECT_EQ(ControlClient(simulator.socket()).line(),
+            "error: there are 64 clients already; close one of them");
   clients.resize(1);
   ASSERT_TRUE(is_answered(*clients[0]));  // behind the others' going
   const auto heirs = connect(simulator.socket(), 100);

@@ -81,12 +81,12 @@ TEST(ControlFault, AWrongOneIsRefusedAndNothingIsChanged) {
 
 TEST(ControlFault, ARefusalNamesWhatIsWrongAndTheMend) {
   ControlBench bench("EX9055D");
-  EXPECT_TRUE(has(bench.tell("fault lost"), "'lost' is no fault; there are bit-errors, lost-bytes"));
-  EXPECT_TRUE(
-      has(bench.tell("1 fault bit-errors 1"), "befalls the line, not a module; leave out the module's"));
+  EXPECT_TRUE(has(bench.tell("fault lost"), "'lost' is not a fault; expected one of bit-errors, lost-bytes"));
+  EXPECT_TRUE(has(bench.tell("1 fault bit-errors 1"),
+                  "concerns the line, not a module; leave out the module's number"));
   EXPECT_TRUE(has(bench.tell("fault off 7"), "no fault 7 on this line; 'faults' lists them"));
-  EXPECT_TRUE(has(bench.tell("fault off"), "the command is fault off K|all"));
-  EXPECT_TRUE(has(bench.tell("fault gone at 1ms"), "that is over, it is 100ms now"));
+  EXPECT_TRUE(has(bench.tell("fault off"), "expected fault off K|all"));
+  EXPECT_TRUE(has(bench.tell("fault gone at 1ms"), "that time is over; it is 100ms now"));
   EXPECT_TRUE(has(bench.tell("line hall faults"), "no line 'hall'; the only one has no name"));
 }
 

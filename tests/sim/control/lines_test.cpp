@@ -132,7 +132,7 @@ TEST(ControlLine, TimeThatMovesByItselfIsNotAdvanced) {
   ControlBench bench("EX9052D");
   const VirtualTime now = bench.now();
   EXPECT_EQ(bench.tell("advance 1s"),
-            "error: the lines' time moves by itself; 'advance' requires --speed step");
+            "error: 'advance' requires --speed step; the lines' time moves by itself");
   EXPECT_EQ(bench.now(), now);
 }
 
@@ -146,10 +146,12 @@ TEST(ControlLines, ARateIsOfTheLineThatIsNamed) {
 TEST(ControlLines, WhatIsOfALineWantsItsName) {
   TwoLines lines;
   for (const char* command : {"fault gone", "faults", "fault off all", "baud 9600", "sent"}) {
-    EXPECT_EQ(lines.tell(command), "error: there are several lines; put 'line NAME' in front") << command;
+    EXPECT_EQ(lines.tell(command), "error: there are several lines; put 'line NAME' before the command")
+        << command;
   }
   EXPECT_EQ(lines.tell("line shed faults"), "error: no line 'shed'; there are hall, yard");
-  EXPECT_TRUE(has(lines.tell("line hall"), "the command is line NAME fault FAULT"));
+  EXPECT_TRUE(has(lines.tell("line hall"),
+                  "expected line NAME and a command of a line, for example line NAME faults"));
   for (const char* command : {"line hall list", "line hall 1 power off", "line hall quit",
                               "line hall line hall faults", "line hall fault", "line hall fault off 1"}) {
     EXPECT_EQ(lines.tell(command).rfind("error: ", 0), 0U) << command;

@@ -3,12 +3,12 @@
 #include <utility>
 #include <vector>
 
-#include "sim/bus.hpp"
+#include "sim/bus/bus.hpp"
+#include "sim/bus/master.hpp"
 #include "sim/faults/echo.hpp"
 #include "sim/faults/noise.hpp"
-#include "sim/line.hpp"
-#include "sim/master.hpp"
-#include "tests/sim/bus_recorder.hpp"
+#include "sim/line/line.hpp"
+#include "tests/sim/bus/bus_recorder.hpp"
 
 namespace ex9000::sim {
 namespace {

@@ -8,8 +8,8 @@
 #include <utility>
 #include <vector>
 
-#include "sim/line.hpp"
-#include "tests/sim/bus_recorder.hpp"
+#include "sim/line/line.hpp"
+#include "tests/sim/bus/bus_recorder.hpp"
 
 namespace ex9000::sim {
 

@@ -8,9 +8,9 @@
 #include <string>
 #include <vector>
 
-#include "sim/bus.hpp"
-#include "sim/module.hpp"
-#include "sim/module_spec.hpp"
+#include "sim/bus/bus.hpp"
+#include "sim/bus/module.hpp"
+#include "sim/line/module_spec.hpp"
 #include "sim/play/modbus_frame.hpp"
 #include "tests/firmware/noise/onlooker.hpp"
 #include "tests/oracles/reference/dcon_check.hpp"

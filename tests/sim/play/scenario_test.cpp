@@ -6,14 +6,14 @@
 #include <string>
 #include <vector>
 
+#include "sim/app/play_record.hpp"
+#include "sim/bus/module.hpp"
 #include "sim/bus_file/bus_file.hpp"
-#include "sim/eeprom_file.hpp"
-#include "sim/module.hpp"
+#include "sim/files/eeprom_file.hpp"
 #include "sim/play/bus_target.hpp"
 #include "sim/play/play.hpp"
 #include "sim/play/player.hpp"
 #include "sim/play/transcript.hpp"
-#include "sim/play_record.hpp"
 #include "tests/support/directory.hpp"
 
 namespace ex9000::play {
@@ -167,11 +167,11 @@ TEST(Play, RefusesWhatTheBusLacksBeforeAnythingIsPlayed) {
         Wrong{"line shed", "no line 'shed'", "there are hall, yard"},
         Wrong{"input 0 on", "the EX9042D has no inputs", "name a module that has"},
         Wrong{"module 2\npulse 8", "the EX9052D has no input 8", "it has 0 to 7"},
-        Wrong{"fault lost", "'lost' is no fault", "there are bit-errors"},
+        Wrong{"fault lost", "'lost' is not a fault", "expected one of bit-errors"},
         Wrong{"fault 4 gone", "no module 4", "there are 1 to 3"},
         Wrong{"fault 0 gone", "no module 0", "there are 1 to 3"},
-        Wrong{"fault 2", "an empty fault", "there are bit-errors"},
-        Wrong{"fault 1 bit-errors 0.1", "befalls the line", "leave out the module's number"},
+        Wrong{"fault 2", "the fault is empty", "expected one of bit-errors"},
+        Wrong{"fault 1 bit-errors 0.1", "concerns the line, not a module", "leave out the module's number"},
         Wrong{"fault gone\nfault off 2", "no fault 2", "'faults' lists them"},
         Wrong{"fault off", "fault off", "K|all"}}) {
     const Directory directory;
@@ -256,8 +256,8 @@ TEST(Play, NeverWritesItsCaptureOverWhatItReads) {
   for (const auto& [capture, what] : std::vector<std::pair<std::string, std::string>>{
            {directory / "a.txt", "the file of steps " + (directory / "a.txt")},
            {directory / "link", "the file of steps " + (directory / "a.txt")},
-           {directory / "eeprom", "eeprom=" + (directory / "eeprom")},
-           {directory / "other", "eeprom=" + (directory / "eeprom")},
+           {directory / "eeprom", "a module's EEPROM file " + (directory / "eeprom")},
+           {directory / "other", "a module's EEPROM file " + (directory / "eeprom")},
            {directory / "bus.json", "the bus file " + (directory / "bus.json")},
            {directory / "../" + std::filesystem::path(directory.path()).filename().string() + "/ctl",
             "the control socket " + (directory / "ctl")},
@@ -271,7 +271,7 @@ TEST(Play, NeverWritesItsCaptureOverWhatItReads) {
       const std::string text = error.what();
       EXPECT_EQ(text.rfind("--capture " + capture + ": is ", 0), 0U) << text;
       EXPECT_NE(text.find(what), std::string::npos) << text;
-      EXPECT_NE(text.find("name another path"), std::string::npos) << text;
+      EXPECT_NE(text.find("which the capture would overwrite; name another path"), std::string::npos) << text;
     }
   }
   EXPECT_EQ(bytes_of_file(directory / "a.txt"), "> $07M\n< !079042D\n");
@@ -294,20 +294,27 @@ TEST(Play, WantsABusForAScenarioAndNoneForATranscript) {
   write_file(directory / "transcript.txt", "source: manual\nmodel: EX9042D\n\n> $01M\n< !019042D\n");
   EXPECT_NE(played(directory / "scenario.txt", true).find("1 run, 2 steps, 0 failed\npassed"),
             std::string::npos);
-  EXPECT_NE(played(directory / "scenario.txt", false).find("wants modules or a bus file"), std::string::npos);
-  EXPECT_NE(played(directory / "transcript.txt", true).find("names its models itself"), std::string::npos);
+  EXPECT_NE(played(directory / "scenario.txt", false).find("so it requires modules or a bus file"),
+            std::string::npos);
+  EXPECT_NE(
+      played(directory / "transcript.txt", true).find("has 'model:' lines; leave out modules and bus file"),
+      std::string::npos);
 }
 
 TEST(Play, RefusesWhatIsNoFileOfSteps) {
   const Directory directory;
-  EXPECT_NE(played(directory / "none.txt", true).find("none.txt: cannot be read"), std::string::npos);
-  EXPECT_NE(played(directory.path(), true).find("no file that ends with .txt"), std::string::npos);
+  EXPECT_NE(played(directory / "none.txt", true).find("none.txt: cannot be read; name a transcript"),
+            std::string::npos);
+  EXPECT_NE(played(directory.path(), true).find("contains no file that ends with .txt; name a transcript"),
+            std::string::npos);
   write_file(directory / "empty.txt", "; nothing\n");
-  EXPECT_NE(played(directory / "empty.txt", true).find("wants a step"), std::string::npos);
+  EXPECT_NE(played(directory / "empty.txt", true).find("has no step; add one"), std::string::npos);
   write_file(directory / "wrong.txt", "> $01M\nwiat 1s\n");
-  EXPECT_NE(played(directory / "wrong.txt", true).find("wrong.txt:2: no step 'wiat 1s'"), std::string::npos);
+  EXPECT_NE(played(directory / "wrong.txt", true).find("wrong.txt:2: 'wiat 1s' is not a step"),
+            std::string::npos);
   write_file(directory / "preset.txt", "preset: protocol=ascii\n> $01M\n");
-  EXPECT_NE(played(directory / "preset.txt", true).find("'preset:'"), std::string::npos);
+  EXPECT_NE(played(directory / "preset.txt", true).find("preset.txt:1: 'preset:' requires a 'model:' line"),
+            std::string::npos);
 }
 
 // --- what a step may be ---
@@ -337,10 +344,10 @@ TEST(Step, TakesWhatItSaysAndNothingElse) {
     const char* what;
     const char* mend;
   };
-  for (const Wrong& wrong : {Wrong{">$01M", "'>$01M'", "a blank behind >"},
-                             Wrong{"<!01", "'<!01'", "a blank behind <"},
-                             Wrong{"=>01", "'=>01'", "a blank behind =>"},
-                             Wrong{"<=01", "'<=01'", "a blank behind <="},
+  for (const Wrong& wrong : {Wrong{">$01M", "'>$01M'", "a blank after >"},
+                             Wrong{"<!01", "'<!01'", "a blank after <"},
+                             Wrong{"=>01", "'=>01'", "a blank after =>"},
+                             Wrong{"<=01", "'<=01'", "a blank after <="},
                              Wrong{"=>", "''", "pairs of hex digits"},
                              Wrong{"=> 01 0", "'01 0'", "pairs of hex digits"},
                              Wrong{"bytes -1 +1", "'-1 +1'", "pairs of hex digits"},
@@ -348,12 +355,12 @@ TEST(Step, TakesWhatItSaysAndNothingElse) {
                              Wrong{"bytes", "'bytes'", "bytes HEX"},
                              Wrong{"input 4294967296 on", "'4294967296'", "0 to 15"},
                              Wrong{"input -1 on", "'-1'", "0 to 15"},
-                             Wrong{"input 0 up", "'up'", "'on' nor 'off'"},
+                             Wrong{"input 0 up", "'up'", "expected on or off"},
                              Wrong{"input 0", "'input 0'", "input C on|off"},
                              Wrong{"pulse 0 x4294967297", "'4294967297'", "1 to 1000000"},
                              Wrong{"pulse 0 x0", "'0'", "1 to 1000000"},
                              Wrong{"pulse 0 x+1", "'+1'", "1 to 1000000"},
-                             Wrong{"pulse 0 5", "'5'", "such as x5"},
+                             Wrong{"pulse 0 5", "'5'", "for example x5"},
                              Wrong{"outputs 0x0", "'0x0'", "hex digits"},
                              Wrong{"outputs -1", "'-1'", "hex digits"},
                              Wrong{"outputs 10000", "'10000'", "hex digits"},
@@ -363,8 +370,8 @@ TEST(Step, TakesWhatItSaysAndNothingElse) {
                              Wrong{"baud 9601", "'9601'", "1200, 2400, 4800, 9600"},
                              Wrong{"wait -1s", "'-1s'", "12.5s"},
                              Wrong{"fault", "'fault'", "[N] FAULT"},
-                             Wrong{"wiat 1s", "no step 'wiat 1s'", "wait TIME"},
-                             Wrong{"OUTPUTS 0001", "no step", "outputs HHHH"}}) {
+                             Wrong{"wiat 1s", "'wiat 1s' is not a step", "wait TIME"},
+                             Wrong{"OUTPUTS 0001", "'OUTPUTS 0001' is not a step", "outputs HHHH"}}) {
     const std::string refusal = refusal_of(wrong.step);
     EXPECT_NE(refusal.find(wrong.what), std::string::npos) << wrong.step << ": " << refusal;
     EXPECT_NE(refusal.find(wrong.mend), std::string::npos) << wrong.step << ": " << refusal;

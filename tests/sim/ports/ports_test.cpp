@@ -363,7 +363,7 @@ TEST(SerialPort, WhatCannotBeHadIsRefused) {
   expect_refused(run({simulator_path(), "EX9042D", "--serial", "/no/such/port"}), "--serial /no/such/port",
                  "name");
   expect_refused(run({simulator_path(), "EX9042D", "--serial", "/dev/null"}), "--serial /dev/null",
-                 "no serial port");
+                 "is not a serial port; name one, for example /dev/ttyUSB0");
   const Cable cable;
   const int holder = open(cable.device().c_str(), O_RDWR | O_NOCTTY | O_CLOEXEC);
   ASSERT_EQ(flock(holder, LOCK_EX | LOCK_NB), 0);

@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "sim/module_spec.hpp"
+#include "sim/line/module_spec.hpp"
 #include "sim/play/modbus_frame.hpp"
 
 namespace ex9000::sim {

@@ -1,4 +1,4 @@
-// Stands before hal/cortex_m/processor.hpp in the include path of host tests, likewise.
+// Host tests include this file instead of hal/cortex_m/processor.hpp; it leads to registers::Microcontroller.
 #pragma once
 
 namespace ex9000::hal::cortex_m::processor {

@@ -1,5 +1,4 @@
-// Stands before hal/registers/bus.hpp in the include path of host tests: the processor's bus leads to
-// registers::Microcontroller.
+// Host tests include this file instead of hal/registers/bus.hpp; it leads to registers::Microcontroller.
 #pragma once
 
 #include <cstdint>

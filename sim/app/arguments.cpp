@@ -1,0 +1,562 @@
+#include "sim/app/arguments.hpp"
+
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <stdexcept>
+#include <utility>
+
+#include "sim/bus_file/bus_file.hpp"
+#include "sim/control/control.hpp"
+#include "sim/describe/describe.hpp"
+#include "sim/text/durations.hpp"
+#include "sim/text/fail.hpp"
+#include "sim/text/values.hpp"
+
+namespace ex9000::sim {
+
+namespace {
+
+constexpr const char* kDescription =
+    "Simulated EX9000 modules on RS-485 lines, for Modbus and DCON masters: on a pseudo-terminal, over TCP, "
+    "or on a real serial port.";
+
+constexpr const char* kDefaultPty = "ex9000.tty";
+/// The value of --panel if no port is given.
+constexpr const char* kUsualPort = "usual";
+
+constexpr const char* kModuleHelp = R"(
+A module is MODEL[@ADDR][,KEY=VALUE]...: MODEL as --models lists it, upper or lower case, with or without EX;
+ADDR in hex as in `$AA2` (01 if left out); the keys:
+  protocol=ascii|modbus    what it speaks; -M models leave the factory with modbus
+  baud=RATE                1200, 2400, 4800, 9600, 19200, 38400, 57600 or 115200
+  checksum=on|off          of ASCII commands
+  edge=falling|rising      what its counters count
+  name=TEXT                what $AAM answers
+  init=on|off              INIT* tied to GND: ASCII at address 00, 9600 baud
+  eeprom=FILE              keeps its settings there, made if missing; what it holds wins over those given here
+
+BUS.json in place of modules describes any number of lines; --example prints one. What it says of ports, rates
+and modules cannot be said on the command line as well.
+
+Commands on the control socket, a line each, answered with `ok ...` or `error: ...`; N is a module's position
+on the command line, or in the bus file through all lines, from 1:
+)";
+
+constexpr const char* kPlayHelp = R"(
+A file is a list of steps: `> $01M` and `< !019042` for DCON, `=> 01 01 0000 000D` and `<= ...` for Modbus
+without its CRC, `silence`, `wait 1.5s`, `bytes HEX`, `checksum on|off`, `baud RATE`, and of a module `power on|off`,
+`power-cycle`, `reset`, `init on|off`, `input C on|off`, `pulse C [xCOUNT]`, `outputs HHHH`, `led on|off|flashing`.
+With `source:` and `model:` lines before them it is a transcript, played on each model; without, a scenario for the
+modules or the bus file behind it, whose steps may also be `module N`, `line NAME`, `fault [N] FAULT` as for --fault,
+and `fault off K|all`. tests/conformance/README.md has it all.
+)";
+
+constexpr const char* kFaultHelp = R"(
+A fault is TROUBLE [VALUE] [WHEN], for --fault (with N before it where it befalls one module alone), bus files
+and the control socket. The troubles:
+)";
+
+constexpr const char* kScheduleHelp = R"(
+  WHEN is one of: at 12.5s | every 5s | every 10th reply | with probability 0.01 (of each reply) |
+  after 3 writes (to the EEPROM); nothing: always. `for 2s` says how long it lasts then. Times are the log's,
+  in us, ms, s, min or h.
+
+An input that moves by itself, for --input (with N before it) and bus files, is C square PERIOD [for TIME] or
+C key at TIME|every TIME for TIME [bounce TIME].
+)";
+
+constexpr const char* kDescribeExamples = R"(
+Examples:
+  ex9000-sim describe EX9042D-M
+  ex9000-sim describe EX9042D-M --format home-assistant --address 0A > modbus.yaml)";
+
+constexpr const char* kExamples = R"(
+Examples:
+  ex9000-sim EX9042D-M@01 EX9052D-M@02,edge=rising 9068d-m@0A,protocol=ascii --log
+  ex9000-sim EX9042D-M@01,eeprom=pump.bin --tcp 5020 --control pump.ctl
+  ex9000-sim EX9042D-M@01 EX9052D-M@02 --panel
+  ex9000-sim EX9052D@01 --watch --input '1 3 square 2s'
+  ex9000-sim EX9042D-M@01 --capture line.pcapng --log json > line.json
+  ex9000-sim EX9052D@01 --input '1 0 square 100ms' --fault '1 lost-reply every 10th reply' --log
+  ex9000-sim --example > bus.json && ex9000-sim bus.json
+The rate that a master sets on the pseudo-terminal is the line's rate.)";
+
+std::string footer() {
+  return kModuleHelp + control_commands() + kFaultHelp + fault_help() + kScheduleHelp + kExamples;
+}
+
+std::string list_models() {
+  std::string text;
+  for (const Model& model : kModels) {
+    std::string name(model.designation);
+    name.resize(12, ' ');
+    text += name + (model.speaks_modbus() ? "ASCII, Modbus RTU  " : "ASCII              ") +
+            std::string(model.description) + "\n";
+  }
+  return text;
+}
+
+Parsed wrong(const std::string& what) {
+  Parsed parsed;
+  parsed.error = "ex9000-sim: " + one_line(what) + "\n";
+  parsed.exit_status = kWrongArguments;
+  return parsed;
+}
+
+struct WritingTexts {
+  std::optional<std::string> log;
+  std::optional<std::string> capture;
+};
+
+/// The arguments as text; the options of a single line come first.
+struct Texts {
+  std::vector<std::string> modules;
+  std::vector<std::string> inputs;
+  std::vector<std::string> faults;
+  std::optional<std::string> pty;
+  std::optional<std::string> tcp;
+  std::optional<std::string> serial;
+  std::optional<std::string> baud;
+  std::optional<std::string> line;
+  bool echo = false;
+  bool strict_gaps = false;
+
+  std::optional<std::string> control;
+  std::optional<std::string> speed;
+  std::optional<std::string> lasts;
+  std::optional<std::string> seed;
+  std::optional<std::string> panel;
+  bool watch = false;
+  WritingTexts writing;
+};
+
+/// Returns the value of an option, as `parse` reads it.
+template <class Parse>
+auto of_option(const char* option, const std::string& text, Parse parse) {
+  return with_place(std::string(option) + ": ", [&] { return parse(text); });
+}
+
+void write_as_told(const WritingTexts& texts, Writing& writing) {
+  if (texts.log) {
+    writing.log = of_option("--log", *texts.log, parse_log);
+  }
+  if (texts.capture) {
+    writing.capture = texts.capture;
+  }
+}
+
+/// Removes the position at the start of `text` and returns it, counted from 0; nullopt if there is none.
+std::optional<std::size_t> take_position(std::string& text, std::size_t modules) {
+  const auto end = text.find(' ');
+  if (text.empty() || text.find_first_not_of("0123456789") < end) {
+    return std::nullopt;
+  }
+  constexpr std::size_t kMostDigits = 6;
+  const std::string number = text.substr(0, end);
+  const std::size_t position = number.size() > kMostDigits ? 0 : std::stoul(number);
+  if (position == 0 || position > modules) {
+    fail(text + ": no module " + number + "; there are 1 to " + std::to_string(modules));
+  }
+  text = end == std::string::npos ? "" : text.substr(end + 1);
+  return position - 1;
+}
+
+Fault parse_fault_of_line(std::string text, std::size_t modules) {
+  const std::string whole = text;
+  const auto module = take_position(text, modules);
+  Fault fault = parse_fault(text);
+  if (module && !befalls_a_module(fault.trouble)) {
+    fail(whole + ": concerns the line, not a module; leave out the module's number");
+  }
+  fault.module = module;
+  return fault;
+}
+
+void add_input(std::string text, std::vector<ModuleSpec>& modules) {
+  const std::string whole = text;
+  const auto module = take_position(text, modules.size());
+  if (!module) {
+    fail("'" + whole + "': expected a module's position before it, for example 1 0 square 100ms");
+  }
+  modules[*module].inputs.push_back(parse_input_program(text, *modules[*module].model));
+}
+
+LineSetup line_of(const Texts& texts) {
+  LineSetup line;
+  for (const std::string& module : texts.modules) {
+    line.modules.push_back(parse_module_spec(module));
+  }
+  for (const std::string& input : texts.inputs) {
+    of_option("--input", input, [&](const std::string& text) {
+      add_input(text, line.modules);
+      return 0;
+    });
+  }
+  for (const std::string& fault : texts.faults) {
+    line.faults.push_back(of_option("--fault", fault, [&](const std::string& text) {
+      return parse_fault_of_line(text, line.modules.size());
+    }));
+  }
+  line.pty = texts.pty;
+  line.serial = texts.serial;
+  line.echo = texts.echo;
+  line.strict_gaps = texts.strict_gaps;
+  if (texts.baud) {
+    line.baud = of_option("--baud", *texts.baud, parse_baud_rate);
+  }
+  if (texts.line) {
+    line.instant = of_option("--line", *texts.line, parse_line_kind);
+  }
+  if (texts.tcp) {
+    line.tcp = of_option("--tcp", *texts.tcp, parse_tcp_address);
+  }
+  return line;
+}
+
+/// Rejects options of a line, because the bus file defines them.
+void want_no_line_besides(const Texts& texts) {
+  const std::pair<const char*, bool> given[] = {
+      {"--input", !texts.inputs.empty()},     {"--fault", !texts.faults.empty()},
+      {"--pty", texts.pty.has_value()},       {"--tcp", texts.tcp.has_value()},
+      {"--serial", texts.serial.has_value()}, {"--baud", texts.baud.has_value()},
+      {"--line", texts.line.has_value()},     {"--echo", texts.echo},
+      {"--strict-gaps", texts.strict_gaps}};
+  for (const auto& [option, is_given] : given) {
+    if (is_given) {
+      fail(std::string(option) + ": cannot be combined with a bus file; add it to a line of the bus file");
+    }
+  }
+  if (texts.modules.size() != 1) {
+    fail(texts.modules[0] + ": a bus file has all modules; leave out the other arguments");
+  }
+}
+
+/// What goes before the message: the place in the bus file, or the option of the command line.
+std::string where(const SetupError& error, const Setup& setup) {
+  const Places& places = error.line ? setup.lines[*error.line].places : setup.places;
+  const auto place = places.find(error.key);
+  if (place != places.end()) {
+    return place->second + ": ";
+  }
+  return error.key == "eeprom" ? "eeprom=" : "--" + error.key + ": ";
+}
+
+/// Throws std::invalid_argument with a one-line message.
+Setup setup_of(const Texts& texts) {
+  if (texts.modules.empty()) {
+    fail("no module given; try 'ex9000-sim EX9042D-M' or --help");
+  }
+  Setup setup;
+  if (std::any_of(texts.modules.begin(), texts.modules.end(), is_bus_file)) {
+    want_no_line_besides(texts);
+    setup = read_bus_file(texts.modules[0]);
+    setup.file = texts.modules[0];
+  } else {
+    setup.lines.push_back(line_of(texts));
+  }
+  if (texts.control) {
+    setup.control = texts.control;
+    setup.places.erase("control");
+  }
+  if (texts.speed) {
+    setup.speed = of_option("--speed", *texts.speed, parse_speed);
+  }
+  if (texts.lasts) {
+    setup.lasts = of_option("--for", *texts.lasts, parse_time);
+  }
+  for (LineSetup& line : setup.lines) {
+    if (!line.pty && !line.tcp && !line.serial && !setup.speed.max()) {
+      line.pty = line.name.empty() ? kDefaultPty : line.name + ".tty";
+    }
+  }
+  if (texts.seed) {
+    setup.seed = of_option("--seed", *texts.seed, parse_seed);
+  }
+  setup.watch = setup.watch || texts.watch;
+  if (texts.panel) {
+    setup.panel = of_option("--panel", *texts.panel == kUsualPort ? "" : *texts.panel, parse_panel);
+    setup.places.erase("panel");
+  }
+  write_as_told(texts.writing, setup);
+  if (texts.writing.capture) {
+    setup.places.erase("capture");
+  }
+  try {
+    check(setup);
+  } catch (const SetupError& error) {
+    fail(where(error, setup) + (setup.file.empty() ? error.named("--", "") : error.named("'", "'")));
+  }
+  return setup;
+}
+
+void add_writing(CLI::App& app, WritingTexts& texts) {
+  app.add_option(
+         "--log", texts.log,
+         "print the bus, a line a frame: time, direction, bytes, meaning; json: an object a line, for "
+         "machines, and nothing else on standard output")
+      ->multi_option_policy(CLI::MultiOptionPolicy::TakeLast)  // later options override those in a script
+      ->type_name("[text|json|off]");
+  app.add_option("--capture", texts.capture,
+                 "keep what was on the lines in this pcapng file, for Wireshark; what it held is gone")
+      ->type_name("FILE");
+}
+
+bool is_number(const std::string& text) {
+  return !text.empty() && text.find_first_not_of("0123456789") == std::string::npos;
+}
+
+/// The values of --log and --panel are optional, and the next word may be a module. CLI11 would take any next
+/// word as the value, so the value is attached to the option here.
+std::vector<std::string> with_optional_values(int argc, const char* const* argv) {
+  std::vector<std::string> words;
+  for (int i = 1; i < argc; ++i) {
+    words.emplace_back(argv[i]);
+    const std::string next = i + 1 < argc ? argv[i + 1] : "";
+    const bool log = words.back() == "--log";
+    const bool panel = words.back() == "--panel";
+    if (log || panel) {
+      const bool named = next == "off" || (log ? next == "text" || next == "json" : is_number(next));
+      words.back() += named ? "=" + next : log ? "=text" : std::string("=") + kUsualPort;
+      i += named ? 1 : 0;
+    }
+  }
+  return words;
+}
+
+struct PlayTexts {
+  std::string file;
+  std::vector<std::string> modules;
+  std::optional<std::string> seed;
+  WritingTexts writing;
+};
+
+const CLI::App* add_play(CLI::App& app, PlayTexts& texts) {
+  CLI::App* const play = app.add_subcommand(
+      "play",
+      "play a transcript or a scenario in virtual time, and exit with 0 where all passes, else with 1");
+  play->footer(kPlayHelp);
+  play->add_option("FILE", texts.file, "the file, or a folder of them")->required();
+  play->add_option("MODULE", texts.modules, "of a scenario: the modules that it is played on, or BUS.json");
+  play->add_option("--seed", texts.seed, "of all chance (default: 1)")->type_name("NUMBER");
+  add_writing(*play, texts.writing);
+  return play;
+}
+
+play::Task task_of(const PlayTexts& play_texts) {
+  play::Task task;
+  task.path = play_texts.file;
+  write_as_told(play_texts.writing, task.writing);
+  if (play_texts.seed) {
+    of_option("--seed", *play_texts.seed, parse_seed);  // check it even if it has no effect
+  }
+  if (task.writing.capture && task.writing.capture->empty()) {
+    fail("--capture: requires a path");
+  }
+  if (!play_texts.modules.empty()) {
+    Texts texts;
+    texts.modules = play_texts.modules;
+    texts.seed = play_texts.seed;
+    task.bus = setup_of(texts);
+  }
+  return task;
+}
+
+CLI::App* add_describe(CLI::App& app, DescribeTexts& texts) {
+  CLI::App* const describe =
+      app.add_subcommand("describe", "print the commands and registers of a model, or of all, and exit");
+  describe->footer(kDescribeExamples);
+  describe->add_option("MODEL", texts.model, "as --models lists it, upper or lower case, with or without EX");
+  describe
+      ->add_option(
+          "--format", texts.format,
+          "markdown (default), json and csv are of any model, or of all where none is named; the others "
+          "are what these tools read, of one that speaks Modbus")
+      ->type_name(describe_formats());
+  describe
+      ->add_option("--address", texts.address,
+                   "the module's in hex, for home-assistant and node-red (default: 01)")
+      ->type_name("HH");
+  describe
+      ->add_option("--tcp", texts.tcp,
+                   "where the simulator serves it, for home-assistant and node-red (default: 127.0.0.1:5020)")
+      ->type_name("HOST:PORT");
+  return describe;
+}
+
+Parsed printed(const std::string& text) {
+  Parsed parsed;
+  parsed.output = text;
+  return parsed;
+}
+
+Parsed print_description(const DescribeTexts& texts) {
+  try {
+    return printed(describe(texts));
+  } catch (const std::invalid_argument& error) {
+    return wrong(std::string("describe: ") + error.what());
+  }
+}
+
+/// Returns the options given for `app` itself, in the order of --help.
+std::vector<const CLI::Option*> given_of(const CLI::App& app) {
+  std::vector<const CLI::Option*> given;
+  for (const CLI::Option* option : app.get_options()) {
+    if (option->count() != 0) {
+      given.push_back(option);
+    }
+  }
+  return given;
+}
+
+/// Returns the name of an option as the user wrote it; for a module, the module itself.
+std::string name_of(const CLI::Option& option) {
+  return option.get_positional() ? option.results().front() : option.get_name();
+}
+
+/// Rejects arguments before a subcommand, because they would have no effect. Throws std::invalid_argument
+/// with a one-line message.
+void want_nothing_in_front_of(const CLI::App& subcommand, const CLI::App& app) {
+  const std::vector<const CLI::Option*> given = given_of(app);
+  if (given.empty()) {
+    return;
+  }
+  const CLI::Option& option = *given.front();
+  const std::string& name = subcommand.get_name();
+  const bool may_stand_behind =
+      option.get_positional() ? name == "play" : subcommand.get_option_no_throw(option.get_name()) != nullptr;
+  fail(name + ": " + name_of(option) + " comes before the subcommand" +
+       (may_stand_behind
+            ? "; move it after '" + name + "'"
+            : ", where it has no effect; leave it out, or see 'ex9000-sim " + name + " --help'"));
+}
+
+/// Rejects arguments beside an option that prints text and runs nothing. Throws std::invalid_argument with a
+/// one-line message.
+void want_nothing_beside(const std::string& printing, const CLI::App& app) {
+  for (const CLI::Option* option : given_of(app)) {
+    if (option->get_name() != printing) {
+      fail(printing + ": prints and runs nothing; leave out " + name_of(*option));
+    }
+  }
+  if (!app.get_subcommands().empty()) {
+    fail(printing + ": prints and runs nothing; leave out " + app.get_subcommands().front()->get_name());
+  }
+}
+
+}  // namespace
+
+std::string one_line(std::string text) {
+  std::replace(text.begin(), text.end(), '\n', ' ');
+  while (!text.empty() && text.back() == ' ') {
+    text.pop_back();
+  }
+  return text;
+}
+
+Parsed parse_arguments(int argc, const char* const* argv) {
+  CLI::App app(kDescription, "ex9000-sim");
+  app.footer(footer());
+  Texts texts;
+  bool models = false;
+  bool example = false;
+  bool schema = false;
+  app.add_option("MODULE", texts.modules, "modules on the line, one after the other; or BUS.json");
+  app.add_option("--pty", texts.pty,
+                 std::string("make a pseudo-terminal and link it at this path (default: ") + kDefaultPty +
+                     ", where neither --tcp nor --serial is given)")
+      ->type_name("LINK");
+  app.add_option("--tcp", texts.tcp, "serve the line's bytes over TCP; HOST is 127.0.0.1 if left out")
+      ->type_name("HOST:PORT");
+  app.add_option("--serial", texts.serial, "put the modules on this serial port, behind a real line")
+      ->type_name("DEVICE");
+  app.add_flag("--echo", texts.echo, "the serial port's adapter hears what it sends");
+  app.add_option("--baud", texts.baud,
+                 "the line's rate until a master sets one (default: the first module's)")
+      ->type_name("RATE");
+  app.add_option("--line", texts.line,
+                 "paced (default): bytes take their time; instant: they cost none, for tests and load")
+      ->type_name("paced|instant");
+  app.add_option("--control", texts.control, "make a UNIX socket at this path that takes commands")
+      ->type_name("PATH");
+  app.add_option("--panel", texts.panel,
+                 "serve a page that shows the modules and the bus, for a browser on this machine (default: "
+                 "9042, or any free port where that is taken)")
+      ->multi_option_policy(CLI::MultiOptionPolicy::TakeLast)
+      ->type_name("[PORT|off]");
+  app.add_flag("--watch", texts.watch,
+               "show the modules on the terminal, each with its LEDs; where standard output is none, a line "
+               "for each change");
+  app.add_option("--input", texts.inputs,
+                 "an input that moves by itself, such as '2 0 square 100ms'; see below")
+      ->type_name("'N INPUT'")
+      ->allow_extra_args(false);
+  app.add_option("--fault", texts.faults,
+                 "what goes wrong, such as 'bit-errors 1e-4' or '2 lost-reply every 10th reply'; see below")
+      ->type_name("'[N] FAULT'")
+      ->allow_extra_args(false);
+  app.add_option(
+         "--speed", texts.speed,
+         "N times as fast as the wall clock, 0.001 to 1000 (default: 1); max: as fast as it can be computed, "
+         "with no port, and --for; step: time stands still until the control socket's 'advance' moves it")
+      ->type_name("N|max|step");
+  app.add_option("--for", texts.lasts,
+                 "end when the modules have been up for so much of the lines' time, such as 10s or 24h")
+      ->type_name("TIME");
+  app.add_option("--seed", texts.seed, "of all chance: the same seed, the same faults (default: 1)")
+      ->type_name("NUMBER");
+  add_writing(app, texts.writing);
+  app.add_flag("--strict-gaps", texts.strict_gaps,
+               "Modbus to the letter: a gap of more than 1.5 characters spoils a frame, and a master that "
+               "does not wait 3.5 characters between frames is on its own");
+  app.add_flag("--example", example, "print an example of a bus file and exit");
+  app.add_flag("--schema", schema, "print the JSON Schema of bus files and exit");
+  app.add_flag("--models", models, "list the models and exit");
+  app.require_subcommand(0, 1);  // a file may have the same name as a subcommand
+  PlayTexts play_texts;
+  const CLI::App* const playing = add_play(app, play_texts);
+  DescribeTexts describe_texts;
+  const CLI::App* const describing = add_describe(app, describe_texts);
+  app.set_version_flag("--version", "ex9000-sim " + std::string(kFirmwareVersion));
+  try {
+    std::vector<std::string> words = with_optional_values(argc, argv);
+    std::reverse(words.begin(), words.end());  // CLI11 expects the last word first
+    app.parse(words);
+  } catch (const CLI::CallForHelp&) {
+    return printed(app.help("", CLI::AppFormatMode::All));
+  } catch (const CLI::CallForVersion& version) {
+    return printed(std::string(version.what()) + "\n");
+  } catch (const CLI::ParseError& error) {
+    return wrong(std::string(error.what()) + "; see --help");
+  }
+  try {
+    if (models) {
+      want_nothing_beside("--models", app);
+      return printed(list_models());
+    }
+    if (example) {
+      want_nothing_beside("--example", app);
+      return printed(example_bus_file());
+    }
+    if (schema) {
+      want_nothing_beside("--schema", app);
+      return printed(bus_file_schema());
+    }
+    for (const CLI::App* subcommand : app.get_subcommands()) {
+      want_nothing_in_front_of(*subcommand, app);
+    }
+    if (describing->parsed()) {
+      return print_description(describe_texts);
+    }
+    Parsed parsed;
+    if (playing->parsed()) {
+      parsed.task = task_of(play_texts);
+    } else {
+      parsed.setup = setup_of(texts);
+    }
+    return parsed;
+  } catch (const std::invalid_argument& error) {
+    return wrong(error.what());
+  }
+}
+
+}  // namespace ex9000::sim

@@ -1,0 +1,40 @@
+// Writes the log and the capture of files that are played.
+#pragma once
+
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "sim/capture/capture.hpp"
+#include "sim/files/new_file.hpp"
+#include "sim/play/onlooker.hpp"
+#include "sim/runtime/line_record.hpp"
+#include "sim/setup/setup.hpp"
+
+namespace ex9000::sim {
+
+class PlayRecord final : public play::Onlooker {
+ public:
+  using Print = LineRecord::Print;
+
+  /// Writes the log and the capture that `writing` asks for. The capture file is opened when the first run
+  /// begins; from then on this class throws what Capture throws.
+  PlayRecord(Writing writing, Print print);
+
+  // --- play::Onlooker ---
+  void begins(const std::string& what) override;
+  Faults::Notice joins(Line& line, const std::string& name) override;
+  void reached(VirtualTime now) override;
+  void ends() override;
+
+ private:
+  Writing writing_;
+  Print print_;
+  std::optional<MadeFile> capture_file_;  ///< kept as soon as it contains a line
+  std::unique_ptr<Capture> capture_;
+  std::string what_;  ///< the file or model that is played
+  std::vector<std::unique_ptr<LineRecord>> lines_;
+};
+
+}  // namespace ex9000::sim

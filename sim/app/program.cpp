@@ -1,0 +1,147 @@
+#include "sim/app/program.hpp"
+
+#include <fcntl.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <boost/asio/io_context.hpp>
+#include <boost/asio/signal_set.hpp>
+#include <cerrno>
+#include <chrono>
+#include <csignal>
+#include <cstring>
+#include <iostream>
+#include <optional>
+#include <stdexcept>
+#include <string>
+#include <thread>
+
+#include "sim/app/arguments.hpp"
+#include "sim/app/play_record.hpp"
+#include "sim/play/play.hpp"
+#include "sim/runtime/session.hpp"
+#include "sim/runtime/stop_signals.hpp"
+#include "sim/watch/terminal_output.hpp"
+
+namespace ex9000::sim {
+
+namespace {
+
+constexpr int kCannotStart = 1;
+constexpr int kFailed = 1;
+
+/// Prints and flushes, because a log is read while it grows. Returns false if the reader has closed the pipe;
+/// throws for other write errors.
+bool print(const std::string& text) {
+  if (!std::cout) {
+    return false;  // an earlier write failed, and its errno is gone
+  }
+  errno = 0;
+  std::cout << text << std::flush;
+  if (!std::cout && errno != EPIPE) {
+    throw std::runtime_error(std::string("standard output: ") + std::strerror(errno));
+  }
+  return static_cast<bool>(std::cout);
+}
+
+bool has_instant_line(const Setup& setup) {
+  return std::any_of(setup.lines.begin(), setup.lines.end(),
+                     [](const LineSetup& line) { return line.instant; });
+}
+
+/// Waking up takes longer than the reply of an instant line. Therefore this function polls for some time
+/// after each event, and yields the processor to other threads in between.
+void run_wakefully(boost::asio::io_context& io) {
+  using Clock = std::chrono::steady_clock;
+  constexpr std::chrono::microseconds kWhile{50};
+  while (io.run_one() != 0) {
+    for (Clock::time_point until = Clock::now() + kWhile; Clock::now() < until;) {
+      if (io.poll_one() != 0) {
+        until = Clock::now() + kWhile;
+      } else {
+        std::this_thread::yield();
+      }
+    }
+  }
+}
+
+void run(const Setup& setup) {
+  boost::asio::io_context io;
+  // The program ends when the reader of its log closes the pipe.
+  const auto print_line = [&io](const std::string& line) {
+    if (!print(line + "\n")) {
+      io.stop();
+    }
+  };
+  boost::asio::signal_set signals(io);
+  add_stop_signals(signals);  // before anything is created that has to be removed at the end
+  signals.async_wait([&io](const boost::system::error_code& /*error*/, int /*signal*/) { io.stop(); });
+  const auto greet = [](const std::string& text) { std::cerr << text << std::endl; };
+  std::optional<TerminalOutput> terminal;
+  if (setup.watch) {
+    terminal.emplace();
+  }
+  Session session(io, setup, print_line, greet, terminal && terminal->is_open() ? &*terminal : nullptr);
+  session.start();
+  if (setup.speed.paced() && has_instant_line(setup)) {
+    run_wakefully(io);
+  } else if (!setup.speed.max()) {
+    io.run();
+  } else {
+    session.run_as_fast_as_it_can();
+  }
+  session.finish();
+}
+
+bool play_task(const play::Task& task) {
+  const auto print_line = [](const std::string& line) { print(line + "\n"); };
+  const auto report = [](const std::string& line) { std::cerr << line << std::endl; };
+  PlayRecord record(task.writing, print_line);
+  if (task.writing.log == LogFormat::Json) {
+    return play::play(task, report, record);  // standard output contains only the log
+  }
+  return play::play(task, print_line, record);
+}
+
+int fail(const std::exception& error, int status) {
+  std::cerr << one_line(std::string("ex9000-sim: ") + error.what()) << '\n';
+  return status;
+}
+
+/// If one of the three streams is closed, the next opened file would get its number, and the log would be
+/// written into that file.
+void occupy_standard_streams() {
+  int fd = open("/dev/null", O_RDWR);
+  while (fd >= 0 && fd <= STDERR_FILENO) {
+    fd = open("/dev/null", O_RDWR);
+  }
+  if (fd >= 0) {
+    close(fd);
+  }
+}
+
+}  // namespace
+
+int run_program(int argc, const char* const* argv) {
+  occupy_standard_streams();
+  static_cast<void>(std::signal(SIGPIPE, SIG_IGN));  // print() handles a write to a closed pipe
+  try {
+    const Parsed parsed = parse_arguments(argc, argv);
+    print(parsed.output);
+    std::cerr << parsed.error;
+    if (parsed.task) {
+      return play_task(*parsed.task) ? 0 : kFailed;
+    }
+    if (!parsed.setup) {
+      return parsed.exit_status;
+    }
+    run(*parsed.setup);
+  } catch (const std::invalid_argument& error) {
+    return fail(error, kWrongArguments);
+  } catch (const std::exception& error) {
+    return fail(error, kCannotStart);
+  }
+  return 0;
+}
+
+}  // namespace ex9000::sim

@@ -1,0 +1,142 @@
+// The virtual RS-485 line: any number of stations on two wires, in virtual time.
+#pragma once
+
+#include <cstdint>
+#include <deque>
+#include <memory>
+#include <vector>
+
+#include "firmware/line/verdict.hpp"
+#include "hal/doubles/serial_line.hpp"
+#include "hal/doubles/virtual_clock.hpp"
+#include "sim/bus/uart_sampler.hpp"
+
+namespace ex9000::sim {
+
+using hal::doubles::kNever;
+using hal::doubles::VirtualClock;
+using hal::doubles::VirtualTime;
+using hal::doubles::Wire;
+
+/// A device on the two wires: a module or a master.
+class Station {
+ public:
+  /// The time of the next call of `run`; kNever: the station only waits for bytes.
+  [[nodiscard]] virtual VirtualTime next() const = 0;
+  /// The bus calls this when the clock has reached `next()`.
+  virtual void run() = 0;
+  /// The rate at which the receiver listens, in bits per second; 0: it does not listen.
+  [[nodiscard]] virtual std::uint32_t baud() const = 0;
+  /// The bus calls this after the stop bit of a byte. A station also receives its own bytes, because both
+  /// directions share the two wires.
+  virtual void receive(std::uint8_t byte, ByteStatus status) = 0;
+
+ protected:
+  ~Station() = default;
+};
+
+/// Gets a report of everything that happens on the wires.
+class BusObserver {
+ public:
+  /// The driver of `station` was enabled or disabled. `station` counts from 0 in the order of attachment.
+  virtual void driver(std::size_t station, bool on, VirtualTime now) = 0;
+  /// The disturbance changes the byte that `station` begins to send now: receivers see `arrives` instead.
+  virtual void changed(std::size_t /*station*/, Levels /*arrives*/) {}
+  /// A byte that began at `start` has ended. A byte is not reported if its driver was disabled before its
+  /// end. `byte` is the byte that was sent. `collided`: another driver was enabled during this byte.
+  virtual void byte(std::size_t station, std::uint8_t byte, std::uint32_t baud, bool collided,
+                    VirtualTime start, VirtualTime end) = 0;
+
+ protected:
+  ~BusObserver() = default;
+};
+
+/// Changes bytes on their way to the receivers, for example as noise does.
+class Disturbance {
+ public:
+  struct Sent {
+    Levels levels;
+    std::uint32_t baud;
+    VirtualTime ends;
+    bool contended;  ///< another driver is enabled
+  };
+  /// Returns the levels that all receivers see instead of `sent`.
+  virtual Levels disturbed(const Sent& sent) = 0;
+
+ protected:
+  ~Disturbance() = default;
+};
+
+/// A half-duplex line with 8N1 characters. A byte takes ten bits at the rate of its sender. A receiver with
+/// the same rate gets the byte after its stop bit. A receiver with another rate samples the wave at its own
+/// rate and sees framing errors and garbage. If two drivers are enabled at once, a 0 of either one wins, and
+/// receivers get what the resulting wave looks like.
+///
+/// The clock jumps from event to event; this class does not depend on real time.
+///
+/// A line may be made `times_faster` times faster than its nominal rates. All rates are multiplied by the
+/// same factor, so it does not change which stations understand each other or which bytes collide.
+class Bus {
+ public:
+  explicit Bus(VirtualClock& clock, std::uint32_t times_faster = 1);
+  Bus(const Bus&) = delete;
+  Bus& operator=(const Bus&) = delete;
+  ~Bus();
+
+  /// Adds a station. `station` must live as long as the bus is used; the returned end of the wires is valid
+  /// for the same time.
+  Wire& attach(Station& station);
+  void observe(BusObserver& observer) { observers_.push_back(&observer); }
+  /// From now on everything that is sent goes through `disturbance`, which must live as long as the bus is
+  /// used.
+  void disturb(Disturbance& disturbance) { disturbance_ = &disturbance; }
+
+  /// Returns the time of the next event of the bus or of a station.
+  [[nodiscard]] VirtualTime next() const;
+  /// Processes all events up to and including `until`. Afterwards the clock shows `until`.
+  void run_until(VirtualTime until);
+  void run_for(VirtualTime duration) { run_until(clock_.virtual_now() + duration); }
+
+  /// Whether at least one byte is on the wires.
+  [[nodiscard]] bool carries() const { return !on_the_wire_.empty(); }
+  /// Whether a byte is on the wires or a driver is enabled.
+  [[nodiscard]] bool busy() const { return carries() || drivers_on_ != 0; }
+  VirtualClock& clock() { return clock_; }
+
+ private:
+  struct End;
+
+  [[nodiscard]] std::uint32_t bit_rate(std::uint32_t baud) const;
+  void drive(End& end, bool on);
+  void put(End& end, std::uint8_t byte, std::uint32_t baud);
+  void sample(End& end);
+  void take_rate(End& end);
+  [[nodiscard]] bool samples(const End& end) const;
+  void forget_waves();
+  void run_wire();
+
+  /// A byte that is being sent.
+  struct Byte {
+    std::size_t station = 0;
+    std::uint8_t byte = 0;
+    bool collided = false;
+    bool cut_off = false;
+    std::uint32_t baud = 0;  ///< the rate that the sender is set to; the wave has the real bit rate
+    Wave wave;
+
+    /// Whether a receiver with the same rate gets the byte unchanged.
+    [[nodiscard]] bool arrives_whole() const { return !collided && wave.levels == levels_of(byte); }
+  };
+
+  VirtualClock& clock_;
+  std::uint32_t times_faster_;
+  std::vector<std::unique_ptr<End>> ends_;
+  std::vector<BusObserver*> observers_;
+  Disturbance* disturbance_ = nullptr;
+  std::vector<Byte> on_the_wire_;
+  std::deque<Wave> waves_;  ///< waves that samplers may still read
+  unsigned drivers_on_ = 0;
+  VirtualTime next_sample_ = kNever;
+};
+
+}  // namespace ex9000::sim

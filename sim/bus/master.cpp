@@ -1,0 +1,55 @@
+#include "sim/bus/master.hpp"
+
+#include <algorithm>
+#include <utility>
+
+namespace ex9000::sim {
+
+Master::Master(Bus& bus, std::uint32_t baud, Receive receive)
+    : clock_(bus.clock()), wire_(bus.attach(*this)), baud_(baud), receive_(std::move(receive)) {}
+
+void Master::send(const std::uint8_t* bytes, std::size_t size, VirtualTime not_before) {
+  waiting_.insert(waiting_.end(), bytes, bytes + size);
+  if (!sending() && !waiting_.empty()) {
+    next_ = std::max(clock_.virtual_now(), not_before);
+    if (next_ == clock_.virtual_now()) {
+      run();
+    }
+  }
+}
+
+void Master::set_baud(std::uint32_t baud) {
+  if (baud != baud_) {
+    baud_ = baud;
+    burst_began_ = next_;
+    burst_bytes_ = 0;
+  }
+}
+
+void Master::run() {
+  if (waiting_.empty()) {
+    driving_ = false;
+    next_ = kNever;
+    wire_.drive(false);
+    return;
+  }
+  if (!driving_) {
+    driving_ = true;
+    wire_.drive(true);
+    burst_began_ = clock_.virtual_now();
+    burst_bytes_ = 0;
+  }
+  const std::uint8_t byte = waiting_.front();
+  waiting_.pop_front();
+  wire_.put(byte, baud_);
+  // Calculated from the first byte, so that rounding errors do not accumulate.
+  next_ = burst_began_ + wire_.takes(++burst_bytes_, baud_);
+}
+
+void Master::receive(std::uint8_t byte, ByteStatus status) {
+  if (!driving_) {
+    receive_(byte, status);
+  }
+}
+
+}  // namespace ex9000::sim

@@ -1,0 +1,52 @@
+// The master's end of the line: sends bytes on the wires one after the other.
+#pragma once
+
+#include <cstdint>
+#include <deque>
+#include <functional>
+
+#include "sim/bus/bus.hpp"
+
+namespace ex9000::sim {
+
+class Master final : public Station {
+ public:
+  using Receive = std::function<void(std::uint8_t byte, ByteStatus status)>;
+
+  /// Attaches itself to `bus`. `receive` is called for every byte that other stations send.
+  Master(Bus& bus, std::uint32_t baud, Receive receive);
+  Master(const Master&) = delete;
+  Master& operator=(const Master&) = delete;
+
+  /// Returns how long `bytes` bytes take on this line.
+  [[nodiscard]] VirtualTime takes(std::size_t bytes) const { return wire_.takes(bytes, baud_); }
+  /// Sends the bytes after those that already wait, or at once, but not before `not_before`. The driver is
+  /// enabled from the first byte to the last. Does not block.
+  void send(const std::uint8_t* bytes, std::size_t size, VirtualTime not_before = VirtualTime(0));
+  /// Whether bytes wait or are on the wires.
+  [[nodiscard]] bool sending() const { return next_ != kNever; }
+  /// Returns how many bytes wait for their start bit.
+  [[nodiscard]] std::size_t waiting() const { return waiting_.size(); }
+
+  /// Takes effect with the next byte.
+  void set_baud(std::uint32_t baud);
+
+  // --- Station ---
+  [[nodiscard]] VirtualTime next() const override { return next_; }
+  void run() override;
+  [[nodiscard]] std::uint32_t baud() const override { return baud_; }
+  void receive(std::uint8_t byte, ByteStatus status) override;
+
+ private:
+  VirtualClock& clock_;
+  Wire& wire_;
+  std::uint32_t baud_;
+  Receive receive_;
+  std::deque<std::uint8_t> waiting_;
+  bool driving_ = false;
+  VirtualTime burst_began_{0};
+  std::size_t burst_bytes_ = 0;
+  VirtualTime next_ = kNever;
+};
+
+}  // namespace ex9000::sim

@@ -1,0 +1,202 @@
+#include "sim/bus/module.hpp"
+
+#include <algorithm>
+
+#include "firmware/settings/places.hpp"
+
+namespace ex9000::sim {
+
+namespace {
+
+/// The wake timer serves all deadlines here. The tick only resets the watchdog, so a slow tick is sufficient.
+constexpr Duration kTick = milliseconds(400);
+
+}  // namespace
+
+SimulatedModule::Mcu::Mcu(SimulatedModule& module)
+    : line(module.clock_, module.wire_),
+      silence_timer(module.clock_),
+      wake_timer(module.clock_),
+      tick(module.clock_, kTick),
+      watchdog(module.clock_),
+      device(module.model_, module.timing_at_,
+             {module.clock_, line, silence_timer, wake_timer, module.inputs_, module.outputs_, module.memory_,
+              module.init_switch_, module.led_, watchdog}) {}
+
+SimulatedModule::SimulatedModule(Bus& bus, const Model& model, TimingAt timing_at)
+    : clock_(bus.clock()),
+      model_(model),
+      timing_at_(timing_at),
+      wire_(clock_, bus.attach(*this)),
+      memory_(clock_) {}
+
+void SimulatedModule::power(bool on) {
+  switched_on_ = on;
+  follow_supply();
+}
+
+void SimulatedModule::interrupt_supply(bool interrupted) {
+  supply_interrupted_ = interrupted;
+  follow_supply();
+}
+
+void SimulatedModule::follow_supply() {
+  const bool on = switched_on_ && !supply_interrupted_;
+  if (on == powered()) {
+    return;
+  }
+  if (on) {
+    start();
+  } else {
+    stop();
+    led_.light(false);
+  }
+}
+
+void SimulatedModule::reset() {
+  if (powered()) {
+    stop();
+    start();
+  }
+}
+
+void SimulatedModule::start() {
+  hung_ = false;
+  mcu_.emplace(*this);
+  mcu_->line.release_late(driver_late_by_);
+  mcu_->tick.start();
+  mcu_->device.start();
+  turn();
+}
+
+void SimulatedModule::stop() {
+  mcu_->line.abort();
+  wire_.abort();
+  memory_.cut();  // before the buffers that it writes from are destroyed
+  mcu_.reset();
+  outputs_.drive(0);
+}
+
+void SimulatedModule::set_init(bool asserted) {
+  init_switch_.set(asserted);
+  if (powered()) {
+    turn();
+  }
+}
+
+void SimulatedModule::set_input(unsigned channel, bool level) {
+  if (inputs_.set(channel, level)) {
+    edge(channel, level);
+    take_edges();
+  }
+}
+
+void SimulatedModule::pulse_input(unsigned channel, std::uint32_t count) {
+  const bool level = inputs_.level(channel);
+  for (std::uint32_t i = 0; i < count; ++i) {
+    edge(channel, !level);
+    edge(channel, level);
+    if (i % 1024 == 0) {
+      take_edges();
+    }
+  }
+  take_edges();
+}
+
+/// The main loop of a real board does this continuously.
+void SimulatedModule::take_edges() {
+  if (powered()) {
+    turn();
+  }
+}
+
+void SimulatedModule::edge(unsigned channel, bool level) {
+  if (powered() && channel < model_.inputs) {
+    mcu_->device.on_edge(channel, level);
+  }
+}
+
+void SimulatedModule::release_driver_late(VirtualTime by) {
+  driver_late_by_ = by;
+  if (powered()) {
+    mcu_->line.release_late(by);
+  }
+}
+
+void SimulatedModule::store(const Settings& settings) { memory_.contents() = memory_image(model_, settings); }
+
+/// The memory of a factory-fresh module is blank (D8).
+std::vector<std::uint8_t> SimulatedModule::memory_image(const Model& model, const Settings& settings) {
+  std::vector<std::uint8_t> image(hal::doubles::Memory::kSize, 0xFF);
+  if (settings != Settings::factory(model)) {
+    RecordBytes record{};
+    write_record(model, settings, 1, record);
+    std::copy_n(record.begin(), record_size({record.data(), record.size()}),
+                image.begin() + kPlaces[0].address);
+  }
+  return image;
+}
+
+bool SimulatedModule::pending() const {
+  return wire_.next() != kNever || memory_.next() != kNever ||
+         (mcu_ &&
+          (mcu_->silence_timer.next() != kNever || mcu_->line.sending() || !mcu_->device.module().at_rest()));
+}
+
+VirtualTime SimulatedModule::next() const {
+  if (!mcu_) {
+    return kNever;
+  }
+  return std::min({wire_.next(), mcu_->line.next(), mcu_->silence_timer.next(), mcu_->wake_timer.next(),
+                   mcu_->tick.next(), mcu_->watchdog.next(), memory_.next()});
+}
+
+void SimulatedModule::run() {
+  if (mcu_->watchdog.bites()) {
+    ++watchdog_resets_;
+    reset();
+    return;
+  }
+  wire_.run();
+  const bool was_sending = mcu_->line.sending();
+  mcu_->line.run();
+  if (was_sending && !mcu_->line.sending()) {
+    mcu_->device.on_sent();
+  }
+  memory_.run();
+  if (mcu_->silence_timer.fire()) {
+    mcu_->device.on_silence();
+  }
+  if (mcu_->wake_timer.fire()) {
+    mcu_->device.on_wake_timer();
+  }
+  if (mcu_->tick.fire()) {
+    mcu_->device.on_tick();
+  }
+  turn();
+}
+
+void SimulatedModule::receive(std::uint8_t byte, ByteStatus status) {
+  if (mcu_->line.sending() || wire_.sends_late()) {
+    return;
+  }
+  if (mcu_->silence_timer.fire()) {
+    mcu_->device.on_silence();  // see hal/one_shot_timer.hpp
+  }
+  mcu_->device.on_receive(byte, status);
+  if (mcu_->device.has_work() || mcu_->device.module().host_ok_waits()) {
+    turn();  // a host OK could wait until the next turn, but the LED should show it at once
+  }
+}
+
+/// Runs the main loop until there is nothing left to do. It takes no virtual time.
+void SimulatedModule::turn() {
+  if (hung_) {
+    return;
+  }
+  do {
+    mcu_->device.on_wake_timer();  // run due work at once, because the tick is too slow for people
+  } while (mcu_->device.turn() || mcu_->device.has_work());
+}
+
+}  // namespace ex9000::sim

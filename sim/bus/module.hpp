@@ -1,0 +1,150 @@
+// A simulated module: the device, built on the test doubles of the peripherals. This is the simulator's
+// composition file.
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <optional>
+#include <utility>
+#include <vector>
+
+#include "firmware/model/model.hpp"
+#include "firmware/settings/settings.hpp"
+#include "hal/device.hpp"
+#include "hal/doubles/init_switch.hpp"
+#include "hal/doubles/inputs.hpp"
+#include "hal/doubles/memory.hpp"
+#include "hal/doubles/one_shot_timer.hpp"
+#include "hal/doubles/outputs.hpp"
+#include "hal/doubles/serial_line.hpp"
+#include "hal/doubles/status_led.hpp"
+#include "hal/doubles/tick.hpp"
+#include "hal/doubles/virtual_clock.hpp"
+#include "hal/doubles/watchdog.hpp"
+#include "sim/bus/bus.hpp"
+#include "sim/bus/module_wire.hpp"
+
+namespace ex9000::sim {
+
+/// One module on a bus; its supply is off at first. This class offers everything that can be done to a real
+/// module from outside.
+class SimulatedModule final : public Station {
+ public:
+  /// Attaches itself to `bus`. `model` is a row of kModels.
+  SimulatedModule(Bus& bus, const Model& model, TimingAt timing_at = LineTiming::at);
+  SimulatedModule(const SimulatedModule&) = delete;
+  SimulatedModule& operator=(const SimulatedModule&) = delete;
+
+  // --- actions from outside, between two runs of the bus ---
+
+  /// Turns the switch of the supply. Switching off interrupts a write in progress and clears all state except
+  /// the memory.
+  void power(bool on);
+  /// Simulates a supply that fails although its switch is on, or that recovers. A failure has the same
+  /// effects as switching off.
+  void interrupt_supply(bool interrupted);
+  [[nodiscard]] bool powered() const { return mcu_.has_value(); }
+  /// Whether the switch of the supply is on. It stays on during a supply failure.
+  [[nodiscard]] bool switched_on() const { return switched_on_; }
+  /// Resets the module without loss of power. Has no effect without power.
+  void reset();
+  /// Connects INIT* to GND or releases it.
+  void set_init(bool asserted);
+  [[nodiscard]] bool init_asserted() const { return init_switch_.asserted(); }
+  /// Sets the level of an input channel, counted from 0. Has no effect on channels that the model lacks.
+  void set_input(unsigned channel, bool level);
+  /// Applies `count` full pulses at this instant; each one leaves the present level and returns to it.
+  void pulse_input(unsigned channel, std::uint32_t count);
+  /// Stops the main loop until the next reset.
+  void hang() { hung_ = true; }
+  /// Keeps the driver enabled for `by` longer after each reply. The setting survives resets.
+  void release_driver_late(VirtualTime by);
+  /// Makes the module receive and send at `baud` regardless of its settings; 0: its settings apply.
+  void force_rate(std::uint32_t baud) { wire_.force_rate(baud); }
+  /// See ModuleWire::hurry.
+  void let_late_replies_go() { wire_.hurry(); }
+  /// See ModuleWire::watch.
+  void watch_replies(ModuleWire::Begins begins, ModuleWire::Ends ends, ModuleWire::OnTheWires on_the_wires) {
+    wire_.watch(std::move(begins), std::move(ends), std::move(on_the_wires));
+  }
+  /// Writes the settings that the module loads at the next reset.
+  void store(const Settings& settings);
+  /// Returns an image of the whole memory that contains `settings`.
+  static std::vector<std::uint8_t> memory_image(const Model& model, const Settings& settings);
+
+  [[nodiscard]] const Model& model() const { return model_; }
+  /// The firmware's state; call it only while the module is powered.
+  [[nodiscard]] const Module& module() const { return mcu_->device.module(); }
+  [[nodiscard]] std::uint16_t outputs() const { return outputs_.channels(); }
+  /// Bit n is channel n.
+  [[nodiscard]] std::uint16_t input_levels() const { return inputs_.levels(); }
+  [[nodiscard]] bool led_lit() const { return led_.lit(); }
+  hal::doubles::Memory& memory() { return memory_; }
+  [[nodiscard]] const hal::doubles::Memory& memory() const { return memory_; }
+  hal::doubles::Outputs& output_pins() { return outputs_; }
+  hal::doubles::StatusLed& led() { return led_; }
+  /// Whether the module receives, waits for a silence, has a request to reply to, sends, stores or starts up.
+  [[nodiscard]] bool pending() const;
+  /// Resets by the hardware watchdog since this object was constructed.
+  [[nodiscard]] std::uint64_t watchdog_resets() const { return watchdog_resets_; }
+  /// Stops the tick until the next reset.
+  void stop_tick() { mcu_->tick.stop(); }
+
+  // --- Station ---
+  [[nodiscard]] VirtualTime next() const override;
+  void run() override;
+  [[nodiscard]] std::uint32_t baud() const override { return mcu_ ? wire_.rate(mcu_->line.baud()) : 0; }
+  void receive(std::uint8_t byte, ByteStatus status) override;
+
+ private:
+  /// See hal/board.hpp.
+  struct Board {
+    VirtualClock& clock;
+    hal::doubles::SerialLine& line;
+    hal::doubles::OneShotTimer& silence_timer;
+    hal::doubles::OneShotTimer& wake_timer;
+    hal::doubles::Inputs& inputs;
+    hal::doubles::Outputs& outputs;
+    hal::doubles::Memory& memory;
+    hal::doubles::InitSwitch& init_switch;
+    hal::doubles::StatusLed& status_led;
+    hal::doubles::Watchdog& watchdog;
+  };
+
+  /// The parts that lose their state at a reset.
+  struct Mcu {
+    explicit Mcu(SimulatedModule& module);
+
+    hal::doubles::SerialLine line;
+    hal::doubles::OneShotTimer silence_timer;
+    hal::doubles::OneShotTimer wake_timer;
+    hal::doubles::Tick tick;
+    hal::doubles::Watchdog watchdog;
+    hal::Device<Board> device;
+  };
+
+  void follow_supply();
+  void start();
+  void stop();
+  void turn();
+  void edge(unsigned channel, bool level);
+  void take_edges();
+
+  VirtualClock& clock_;
+  const Model& model_;
+  TimingAt timing_at_;
+  ModuleWire wire_;
+  hal::doubles::Memory memory_;
+  hal::doubles::Inputs inputs_;
+  hal::doubles::Outputs outputs_;
+  hal::doubles::StatusLed led_;
+  hal::doubles::InitSwitch init_switch_;
+  std::optional<Mcu> mcu_;
+  VirtualTime driver_late_by_{0};
+  bool switched_on_ = false;
+  bool supply_interrupted_ = false;
+  bool hung_ = false;
+  std::uint64_t watchdog_resets_ = 0;
+};
+
+}  // namespace ex9000::sim

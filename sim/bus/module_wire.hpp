@@ -1,0 +1,97 @@
+// Connects a module to the wires and simulates defects of this connection.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <deque>
+#include <functional>
+
+#include "hal/doubles/serial_line.hpp"
+#include "hal/doubles/virtual_clock.hpp"
+
+namespace ex9000::sim {
+
+using hal::doubles::kNever;
+using hal::doubles::VirtualClock;
+using hal::doubles::VirtualTime;
+using hal::doubles::Wire;
+
+/// What happens to a reply.
+struct ReplyFate {
+  bool lost = false;
+  VirtualTime late_by{0};
+};
+
+/// Passes on what a UART sends: unchanged, unless a defect is set.
+class ModuleWire final : public Wire {
+ public:
+  ModuleWire(const VirtualClock& clock, Wire& wire) : clock_(clock), wire_(wire) {}
+
+  /// Called when the driver is enabled. It must not switch off the module's power.
+  using Begins = std::function<ReplyFate()>;
+  /// Called when the driver is disabled, even if the reply is not on the wires yet.
+  using Ends = std::function<void()>;
+  /// Called with true before a reply goes on the wires, and with false after its end or if the power fails
+  /// before that. `reply` counts all replies from 1. Lost replies are counted, but not reported.
+  using OnTheWires = std::function<void(std::uint64_t reply, bool on)>;
+  void watch(Begins begins, Ends ends, OnTheWires on_the_wires);
+  /// Makes the UART run at `baud` regardless of the firmware's setting; 0: the firmware's setting applies.
+  void force_rate(std::uint32_t baud) { forced_ = baud; }
+  [[nodiscard]] std::uint32_t rate(std::uint32_t baud) const {
+    return forced_ != 0 && baud != 0 ? forced_ : baud;
+  }
+
+  /// Whether a late reply is being sent. The UART has finished with it by then.
+  [[nodiscard]] bool sends_late() const { return driving_late_; }
+  [[nodiscard]] VirtualTime next() const { return late_.empty() ? kNever : late_.front().when; }
+  void run();
+  /// Ends the delay of the first late reply; the later ones keep their distance from it.
+  void hurry();
+  /// The supply is off: drops everything that has not been sent.
+  void abort();
+
+  // --- Wire ---
+  void drive(bool on) override;
+  void put(std::uint8_t byte, std::uint32_t baud) override;
+  [[nodiscard]] VirtualTime takes(std::size_t bytes, std::uint32_t baud) const override {
+    return wire_.takes(bytes, reply_rate(baud));
+  }
+
+ private:
+  enum class What { On, Byte, Off };
+  struct Late {
+    VirtualTime when;
+    What what;
+    std::uint8_t byte;
+    std::uint32_t baud;
+    std::uint64_t reply;
+  };
+
+  /// Replies are lost if more entries than this are queued, so that endless requests cannot fill the memory.
+  static constexpr std::size_t kMostLate = 65'536;
+
+  void hand_on(What what, std::uint8_t byte, std::uint32_t baud);
+  void carry_out(const Late& due);
+  void tell(std::uint64_t reply, bool on) const;
+  [[nodiscard]] std::uint32_t reply_rate(std::uint32_t baud) const {
+    if (!drives_) {
+      return rate(baud);
+    }
+    return forced_for_reply_ != 0 ? forced_for_reply_ : baud;
+  }
+
+  const VirtualClock& clock_;
+  Wire& wire_;
+  Begins begins_;
+  Ends ends_;
+  OnTheWires on_the_wires_;
+  ReplyFate fate_;
+  std::uint64_t reply_ = 0;  ///< number of the reply that the UART sends, or has sent last
+  std::uint32_t forced_ = 0;
+  std::uint32_t forced_for_reply_ = 0;  ///< the forced rate for the whole reply
+  bool drives_ = false;                 ///< the UART drives the wires
+  std::deque<Late> late_;
+  bool driving_late_ = false;
+};
+
+}  // namespace ex9000::sim

@@ -1,0 +1,94 @@
+#include "sim/bus/uart_sampler.hpp"
+
+#include <algorithm>
+#include <vector>
+
+namespace ex9000::sim {
+
+namespace {
+
+constexpr std::int64_t kSecond = 1'000'000'000;
+
+/// A 0 from any driver wins.
+bool level_of(const Waves& waves, VirtualTime at) {
+  return std::all_of(waves.begin(), waves.end(), [at](const Wave& wave) { return wave.level(at); });
+}
+
+/// Returns the first time from `from` on and before `until` at which the line has `level`.
+std::optional<VirtualTime> find_level(const Waves& waves, bool level, VirtualTime from, VirtualTime until) {
+  if (from < until && level_of(waves, from) == level) {
+    return from;
+  }
+  std::vector<VirtualTime> boundaries;
+  for (const Wave& wave : waves) {
+    for (unsigned bit = 0; bit <= Wave::kBits; ++bit) {
+      if (wave.boundary(bit) > from && wave.boundary(bit) < until) {
+        boundaries.push_back(wave.boundary(bit));
+      }
+    }
+    if (wave.cut_off > from && wave.cut_off < until) {
+      boundaries.push_back(wave.cut_off);
+    }
+  }
+  std::sort(boundaries.begin(), boundaries.end());
+  const auto found = std::find_if(boundaries.begin(), boundaries.end(),
+                                  [&](VirtualTime at) { return level_of(waves, at) == level; });
+  return found == boundaries.end() ? std::nullopt : std::optional(*found);
+}
+
+}  // namespace
+
+VirtualTime Wave::boundary(unsigned index) const { return start + VirtualTime(index * kSecond / baud); }
+
+bool Wave::level(VirtualTime at) const {
+  if (at < start || at >= end() || at >= cut_off) {
+    return true;
+  }
+  unsigned bit = 0;
+  while (at >= boundary(bit + 1)) {
+    ++bit;
+  }
+  return (levels >> bit & 1U) != 0;
+}
+
+std::optional<UartSampler::Received> UartSampler::advance(const Waves& waves, std::uint32_t baud,
+                                                          VirtualTime until) {
+  while (position_ < until) {
+    if (!receiving_) {
+      const auto found = find_level(waves, wants_idle_, position_, until);
+      position_ = found.value_or(until);
+      if (!found) {
+        break;
+      }
+      if (wants_idle_) {
+        wants_idle_ = false;
+        continue;
+      }
+      receiving_ = true;
+      start_ = *found;
+      bit_ = 0;
+      byte_ = 0;
+    }
+    const VirtualTime middle = start_ + VirtualTime((2 * bit_ + 1) * kSecond / (2 * std::int64_t{baud}));
+    if (middle >= until) {
+      position_ = until;
+      break;
+    }
+    position_ = middle;
+    const bool level = level_of(waves, middle);
+    if (bit_ == 0 && level) {
+      receiving_ = false;  // a spike, not a start bit
+    } else if (bit_ == Wave::kBits - 1) {
+      receiving_ = false;
+      wants_idle_ = !level;
+      const ByteStatus error = byte_ == 0 ? ByteStatus::Break : ByteStatus::FramingError;
+      return Received{byte_, level ? ByteStatus::Good : error};
+    } else if (bit_ != 0) {
+      byte_ = static_cast<std::uint8_t>(byte_ | (level ? 1U << (bit_ - 1) : 0U));
+    }
+    ++bit_;
+  }
+  return std::nullopt;
+}
+
+}  // namespace ex9000::sim

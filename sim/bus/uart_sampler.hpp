@@ -1,0 +1,65 @@
+// Receiver of a UART that samples the wave on the wires. It is used if the wave is not what the receiver
+// expects.
+#pragma once
+
+#include <cstdint>
+#include <deque>
+#include <optional>
+
+#include "firmware/line/verdict.hpp"
+#include "hal/doubles/virtual_clock.hpp"
+
+namespace ex9000::sim {
+
+using hal::doubles::VirtualTime;
+
+/// The levels of a byte on the wires, from bit 0 on: start bit, 8 data bits with the lowest first, stop bit.
+using Levels = std::uint16_t;
+constexpr Levels kIdleLevels = 0x3FF;
+constexpr Levels levels_of(std::uint8_t byte) { return static_cast<Levels>(0x200U | unsigned{byte} << 1U); }
+
+/// The levels of a byte as one driver puts them on the wires.
+struct Wave {
+  VirtualTime start{0};
+  std::uint32_t baud = 0;
+  Levels levels = kIdleLevels;
+  VirtualTime cut_off = hal::doubles::kNever;  ///< time at which the driver was disabled
+
+  static constexpr unsigned kBits = 10;
+
+  /// Returns the time at which bit `index` begins; kBits: the end of the byte.
+  [[nodiscard]] VirtualTime boundary(unsigned index) const;
+  [[nodiscard]] VirtualTime end() const { return boundary(kBits); }
+  /// 1 is the idle level; outside the byte the level is idle too.
+  [[nodiscard]] bool level(VirtualTime at) const;
+};
+
+using Waves = std::deque<Wave>;
+
+/// Samples 8N1 characters: waits for a falling edge, then reads the middle of each bit.
+class UartSampler {
+ public:
+  struct Received {
+    std::uint8_t byte;
+    ByteStatus status;
+  };
+
+  /// Samples the wires up to `until`, or to the end of the first byte if that is earlier.
+  std::optional<Received> advance(const Waves& waves, std::uint32_t baud, VirtualTime until);
+
+  /// Whether it is in the middle of a byte or waits for the line to become idle.
+  [[nodiscard]] bool busy() const { return receiving_ || wants_idle_; }
+  /// The sampler has processed everything before this time.
+  [[nodiscard]] VirtualTime position() const { return position_; }
+  void skip_to(VirtualTime position) { position_ = position; }
+
+ private:
+  bool receiving_ = false;
+  bool wants_idle_ = false;
+  unsigned bit_ = 0;
+  std::uint8_t byte_ = 0;
+  VirtualTime start_{0};
+  VirtualTime position_{0};
+};
+
+}  // namespace ex9000::sim

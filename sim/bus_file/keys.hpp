@@ -1,0 +1,35 @@
+// The keys of a bus file, one row for each key. The reader, its messages, the JSON Schema and the
+// documentation are made from these tables.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <string_view>
+
+#include "sim/bus_file/node.hpp"
+#include "sim/setup/setup.hpp"
+
+namespace ex9000::sim {
+
+template <class Object>
+struct BusFileKey {
+  std::string_view name;
+  std::string_view schema;   ///< the JSON Schema of its value, as JSON
+  std::string_view meaning;  ///< a description for people
+  void (*take)(Object& object, const Node& value);
+};
+
+/// A module while the reader builds it.
+struct ModuleObject {
+  ModuleSpec spec;
+  LineSetup& line;  ///< the line that the module is on
+};
+
+const std::array<BusFileKey<Setup>, 7>& bus_keys();
+const std::array<BusFileKey<LineSetup>, 10>& line_keys();
+const std::array<BusFileKey<ModuleObject>, 11>& module_keys();
+
+/// Throws like Node.
+Setup read_bus(const Node& root);
+
+}  // namespace ex9000::sim

@@ -1,0 +1,51 @@
+// A module's EEPROM as a file.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "firmware/bytes.hpp"
+
+namespace ex9000::sim {
+
+/// Reads the content of an image, without write access and without a lock: the image may be read-only, and a
+/// running simulator may use it. A write in progress may then be read in part, as after a power cut. Returns
+/// nullopt if there is no file. Throws std::invalid_argument with a one-line message if the file is not an
+/// image or is not readable.
+std::optional<std::vector<std::uint8_t>> read_eeprom_file(const std::string& path);
+
+/// An image of the whole memory, byte for byte like the chip: 8192 bytes, erased bytes are FF. The file is
+/// locked against other processes while this object lives.
+///
+/// When `write` returns true, the kernel has the data: it survives any end of this process, but not a crash
+/// of the machine.
+class EepromFile {
+ public:
+  /// Opens and locks an existing file. Throws std::invalid_argument with a one-line message if the file is
+  /// not an image, is not writable or is in use. Does not create a file.
+  explicit EepromFile(std::string path);
+  ~EepromFile();
+  EepromFile(const EepromFile&) = delete;
+  EepromFile& operator=(const EepromFile&) = delete;
+
+  /// Returns the content of the file when it was opened; nullopt if there was no file.
+  [[nodiscard]] const std::optional<std::vector<std::uint8_t>>& found() const { return found_; }
+  /// Creates the file with the whole image or not at all. Throws like the constructor.
+  void create(const std::vector<std::uint8_t>& image);
+  /// Returns false if the system call fails.
+  [[nodiscard]] bool write(std::uint16_t address, Bytes bytes) const;
+
+  [[nodiscard]] const std::string& path() const { return path_; }
+
+ private:
+  [[noreturn]] void refuse(const std::string& why);
+  void lock();
+
+  std::string path_;
+  int fd_ = -1;
+  std::optional<std::vector<std::uint8_t>> found_;
+};
+
+}  // namespace ex9000::sim

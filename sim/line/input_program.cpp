@@ -1,0 +1,179 @@
+#include "sim/line/input_program.hpp"
+
+#include <sstream>
+#include <stdexcept>
+#include <utility>
+#include <vector>
+
+#include "sim/text/durations.hpp"
+#include "sim/text/fail.hpp"
+#include "sim/text/values.hpp"
+
+namespace ex9000::sim {
+
+namespace {
+
+constexpr VirtualTime kShortest = std::chrono::microseconds(10);
+/// How many times contacts bounce during the bounce time.
+constexpr unsigned kChatters = 4;
+
+/// Durations, each after its own keyword; no keyword may appear twice.
+class Times {
+ public:
+  explicit Times(std::istringstream& words) {
+    for (std::string word; words >> word;) {
+      std::string time;
+      if (!(words >> time)) {
+        fail("expected a duration after '" + word + "'");
+      }
+      for (const auto& [known, value] : times_) {
+        if (known == word) {
+          fail("'" + word + "' is given twice; leave out one of them");
+        }
+      }
+      times_.emplace_back(word, parse_time(time));
+    }
+  }
+
+  /// Removes and returns the duration of a keyword; nullopt if it is not given.
+  std::optional<VirtualTime> take(const std::string& word) {
+    for (auto time = times_.begin(); time != times_.end(); ++time) {
+      if (time->first == word) {
+        const VirtualTime value = time->second;
+        times_.erase(time);
+        return value;
+      }
+    }
+    return std::nullopt;
+  }
+
+  void want_no_more(const std::string& there_are) const {
+    if (!times_.empty()) {
+      fail("'" + times_.front().first + "': expected " + there_are);
+    }
+  }
+
+ private:
+  std::vector<std::pair<std::string, VirtualTime>> times_;
+};
+
+void read_square(std::istringstream& words, InputProgram& program) {
+  std::string period;
+  if (!(words >> period)) {
+    fail("expected a period after 'square'");
+  }
+  program.kind = InputProgram::Kind::Square;
+  program.time = parse_time(period);
+  Times times(words);
+  program.high = times.take("for").value_or(program.time / 2);
+  program.bounce = times.take("bounce").value_or(VirtualTime(0));
+  times.want_no_more("'for TIME', how long it is on, or 'bounce TIME'");
+}
+
+void read_key(std::istringstream& words, InputProgram& program) {
+  Times times(words);
+  const auto at = times.take("at");
+  const auto every = times.take("every");
+  const auto high = times.take("for");
+  program.bounce = times.take("bounce").value_or(VirtualTime(0));
+  times.want_no_more("'at TIME', 'every TIME', 'for TIME' or 'bounce TIME'");
+  if (at.has_value() == every.has_value() || !high) {
+    fail("a key requires 'at TIME' or 'every TIME', and 'for TIME', how long it is pressed");
+  }
+  program.kind = at ? InputProgram::Kind::KeyOnce : InputProgram::Kind::KeyAgain;
+  program.time = at ? *at : *every;
+  program.high = *high;
+}
+
+void check(const InputProgram& program) {
+  if (program.bounce != VirtualTime(0) && program.bounce < kShortest) {
+    fail("expected a bounce of at least " + time_text(kShortest));
+  }
+  if (program.high < kShortest || program.high < program.bounce) {
+    fail("expected to be on for at least " + time_text(kShortest) + ", and not shorter than its bounce");
+  }
+  const bool periodic = program.kind != InputProgram::Kind::KeyOnce;
+  if (periodic && program.time < program.high + program.bounce + kShortest) {
+    fail("its period is too short; it must be off again before the next");
+  }
+}
+
+}  // namespace
+
+unsigned parse_input(const std::string& text, const Model& model) {
+  const auto channel = model.inputs == 0 ? std::nullopt : whole_number(text, model.inputs - 1U);
+  if (!channel) {
+    fail("the " + std::string(model.designation) + " has no input '" + text + "'; it has " +
+         (model.inputs == 0 ? "none" : "0 to " + std::to_string(model.inputs - 1)));
+  }
+  return static_cast<unsigned>(*channel);
+}
+
+InputProgram parse_input_program(const std::string& text, const Model& model) {
+  try {
+    std::istringstream words(text);
+    std::string channel;
+    std::string kind;
+    words >> channel >> kind;
+    InputProgram program;
+    program.channel = parse_input(channel, model);
+    if (kind == "square") {
+      read_square(words, program);
+    } else if (kind == "key") {
+      read_key(words, program);
+    } else {
+      fail("'" + kind + "': expected 'square PERIOD' or 'key at TIME for TIME'");
+    }
+    check(program);
+    return program;
+  } catch (const std::invalid_argument& error) {
+    fail(text + ": " + error.what());
+  }
+}
+
+MovedInput::MovedInput(Bus& bus, SimulatedModule& module, const InputProgram& program, std::uint64_t seed)
+    : clock_(bus.clock()), module_(module), program_(program), chance_(seed) {
+  bus.attach(*this);
+  const VirtualTime now = clock_.virtual_now();
+  plan(program.kind == InputProgram::Kind::Square     ? now
+       : program.kind == InputProgram::Kind::KeyAgain ? now + program.time
+                                                      : std::max(now, program.time));
+}
+
+void MovedInput::plan(VirtualTime begins) {
+  chatter(begins, true);
+  chatter(begins + program_.high, false);
+  if (program_.kind != InputProgram::Kind::KeyOnce) {
+    again_ = begins + program_.time;
+  }
+}
+
+/// Real contacts open and close several times before they settle.
+void MovedInput::chatter(VirtualTime begins, bool level) {
+  moves_.push_back({begins, level});
+  if (program_.bounce == VirtualTime(0)) {
+    return;
+  }
+  const VirtualTime slot = program_.bounce / kChatters;
+  for (unsigned i = 0; i < kChatters; ++i) {
+    const VirtualTime slot_begins = begins + slot * i;
+    const auto parts = VirtualTime(
+        1 + static_cast<std::int64_t>(chance_.number() % static_cast<std::uint64_t>(slot.count() / 2)));
+    const auto touches = VirtualTime(
+        1 + static_cast<std::int64_t>(chance_.number() % static_cast<std::uint64_t>(slot.count() / 2)));
+    moves_.push_back({slot_begins + parts, !level});
+    moves_.push_back({slot_begins + parts + touches - VirtualTime(1), level});
+  }
+}
+
+void MovedInput::run() {
+  while (!moves_.empty() && moves_.front().when <= clock_.virtual_now()) {
+    module_.set_input(program_.channel, moves_.front().level);
+    moves_.pop_front();
+    if (moves_.empty() && again_ != kNever) {
+      plan(std::exchange(again_, kNever));
+    }
+  }
+}
+
+}  // namespace ex9000::sim

@@ -1,0 +1,75 @@
+#include "sim/line/line.hpp"
+
+#include <algorithm>
+#include <utility>
+
+namespace ex9000::sim {
+
+namespace {
+
+constexpr std::chrono::milliseconds kComingUp{100};
+
+}  // namespace
+
+/// Bytes of one frame arrive without a gap, so a very short silence ends a frame.
+LineTiming instantly(std::uint32_t /*baud*/) {
+  constexpr Duration kSilence(6);
+  constexpr Duration kQuiet = milliseconds(2);
+  LineTiming timing;
+  timing.dcon_turn_around = Duration();
+  timing.rtu_silence = kSilence;
+  timing.rtu_grace = kQuiet;
+  timing.rtu_slack = LineTiming::kAnyGap;
+  return timing;
+}
+
+Line::Line(const std::vector<ModuleSpec>& modules, LineKind kind, Master::Receive receive)
+    : kind_(kind),
+      bus_(clock_, kind.times_faster),
+      master_(bus_, baud_rate(kFactoryBaudCode), std::move(receive)) {
+  for (const ModuleSpec& spec : modules) {
+    modules_.push_back(std::make_unique<SimulatedModule>(bus_, *spec.model, kind.timing_at));
+    SimulatedModule& module = *modules_.back();
+    module.store(spec.settings);
+    module.set_init(spec.init_asserted);
+  }
+}
+
+void Line::come_up() {
+  for (const auto& module : modules_) {
+    module->power(true);
+  }
+  bus_.run_for(kComingUp);
+}
+
+void Line::expect_trouble(std::uint64_t seed, Faults::Notice notice) {
+  chance_ = Chance(seed);
+  notice_ = std::move(notice);
+}
+
+Faults& Line::faults() {
+  if (!faults_) {
+    faults_ = std::make_unique<Faults>(bus_, master_, modules_, chance_.number(), notice_);
+  }
+  return *faults_;
+}
+
+void Line::move_input(std::size_t index, const InputProgram& program) {
+  moved_inputs_.push_back(std::make_unique<MovedInput>(bus_, *modules_[index], program, chance_.number()));
+}
+
+bool Line::pending() const {
+  return bus_.busy() || master_.sending() || (faults_ && faults_->pending()) ||
+         std::any_of(modules_.begin(), modules_.end(), [](const auto& module) { return module->pending(); });
+}
+
+VirtualTime Line::rtu_silence() const {
+  return std::chrono::microseconds(kind_.timing_at(master_.baud()).rtu_silence.microseconds());
+}
+
+VirtualTime Line::rtu_separate() const {
+  const LineTiming timing = kind_.timing_at(master_.baud());
+  return std::chrono::microseconds((timing.rtu_silence + timing.rtu_grace).microseconds());
+}
+
+}  // namespace ex9000::sim

@@ -1,0 +1,80 @@
+// One line with its master station and its modules.
+#pragma once
+
+#include <memory>
+#include <vector>
+
+#include "sim/bus/bus.hpp"
+#include "sim/bus/master.hpp"
+#include "sim/bus/module.hpp"
+#include "sim/faults/faults.hpp"
+#include "sim/line/input_program.hpp"
+#include "sim/line/module_spec.hpp"
+
+namespace ex9000::sim {
+
+/// How long bytes take on a line, and how its modules detect the end of frames.
+struct LineKind {
+  std::uint32_t times_faster = 1;  ///< compared to the nominal rates
+  TimingAt timing_at = LineTiming::at;
+};
+
+/// Bytes take their real time.
+constexpr LineKind kPaced{};
+/// Bytes take their real time, and modules follow the standard strictly: a gap of more than T1.5 spoils a
+/// Modbus frame.
+constexpr LineKind kStrictlyPaced{1, LineTiming::strictly_at};
+/// A Modbus frame ends when no byte follows at once and its CRC is correct, otherwise after a silence of 2
+/// ms.
+LineTiming instantly(std::uint32_t baud);
+/// Bytes take almost no time: 0.02 us at 115200 baud and 2 us at 1200 baud.
+constexpr LineKind kInstant{4000, instantly};
+
+/// Station 0 is the master; the modules follow in the given order.
+class Line {
+ public:
+  /// The supply of all modules is off at first. The master uses the factory's rate.
+  Line(const std::vector<ModuleSpec>& modules, LineKind kind, Master::Receive receive);
+
+  /// Switches on the supply of all modules and lets the time pass that they need to start up.
+  void come_up();
+
+  VirtualClock& clock() { return clock_; }
+  [[nodiscard]] const VirtualClock& clock() const { return clock_; }
+  Bus& bus() { return bus_; }
+  Master& master() { return master_; }
+  [[nodiscard]] const Master& master() const { return master_; }
+  [[nodiscard]] std::size_t size() const { return modules_.size(); }
+  SimulatedModule& module(std::size_t index) { return *modules_[index]; }
+  [[nodiscard]] const SimulatedModule& module(std::size_t index) const { return *modules_[index]; }
+  /// Sets the seed of all random faults; `notice` gets the messages about faults. Call it before `faults`.
+  void expect_trouble(std::uint64_t seed, Faults::Notice notice);
+  /// Returns the faults of this line. The first call attaches them to the bus.
+  Faults& faults();
+  /// Returns null if `faults` has not been called yet; changes nothing.
+  [[nodiscard]] const Faults* faults_so_far() const { return faults_.get(); }
+  /// From now on `program` moves an input of the module at `index`.
+  void move_input(std::size_t index, const InputProgram& program);
+  /// Whether something is in progress that ends by itself within milliseconds: bytes on the wires or on their
+  /// way there, the silence after a Modbus frame, a delayed reply, a store, a module that starts up. Events
+  /// that only depend on the clock do not count: a host watchdog, a scheduled fault, an input program.
+  [[nodiscard]] bool pending() const;
+  /// Returns T3.5 on this line at the master's rate.
+  [[nodiscard]] VirtualTime rtu_silence() const;
+  /// Returns the silence after which earlier bytes cannot belong to the next frame, even if their CRC is
+  /// wrong.
+  [[nodiscard]] VirtualTime rtu_separate() const;
+
+ private:
+  VirtualClock clock_;
+  LineKind kind_;
+  Bus bus_;
+  Master master_;
+  std::vector<std::unique_ptr<SimulatedModule>> modules_;
+  Chance chance_{1};
+  Faults::Notice notice_;
+  std::unique_ptr<Faults> faults_;
+  std::vector<std::unique_ptr<MovedInput>> moved_inputs_;
+};
+
+}  // namespace ex9000::sim

@@ -1,0 +1,17 @@
+// Settings by their names for people: KEY=VALUE of a module on the command line, in a bus file or in a
+// transcript.
+#pragma once
+
+#include <string>
+
+#include "firmware/model/model.hpp"
+#include "firmware/settings/settings.hpp"
+
+namespace ex9000::sim {
+
+/// Sets the setting that `key` names: protocol, baud, checksum, edge or name. Returns false and changes
+/// nothing if the key is a different one. Throws std::invalid_argument with a one-line message if the value
+/// is not valid for this setting.
+bool set_by_name(Settings& settings, const Model& model, const std::string& key, const std::string& value);
+
+}  // namespace ex9000::sim

@@ -1,0 +1,109 @@
+#include "sim/log/banner.hpp"
+
+#include <map>
+
+#include "firmware/model/model.hpp"
+#include "sim/text/values.hpp"
+
+namespace ex9000::sim {
+
+namespace {
+
+/// Returns the path unchanged if the shell does not require quotes.
+std::string quoted(const std::string& path) {
+  const std::string plain = "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_./-+:@%";
+  if (path.find_first_not_of(plain) == std::string::npos) {
+    return path;
+  }
+  std::string text = "'";
+  for (const char character : path) {
+    text += character == '\'' ? std::string("'\\''") : std::string(1, character);
+  }
+  return text + "'";
+}
+
+/// mbpoll counts from 1. It requires `-P none` because its default is even parity: a pseudo-terminal ignores
+/// the parity, but a real bus does not.
+std::string mbpoll(const ModuleIntroduced& module, const std::string& link) {
+  const std::string common = "mbpoll -m rtu -a " + std::to_string(module.address) + " -b " +
+                             std::to_string(module.baud) + " -P none ";
+  std::string text;
+  if (module.outputs != 0) {
+    text += "    " + common + "-t 0 -r 1 -c " + std::to_string(module.outputs) + " -1 " + link +
+            "    # read the outputs\n";
+    text += "    " + common + "-t 0 -r 1 " + link + " 1" + "    # switch output 0 on\n";
+  }
+  if (module.inputs != 0) {
+    text += "    " + common + "-t 1 -r 1 -c " + std::to_string(module.inputs) + " -1 " + link +
+            "    # read the inputs\n";
+    text += "    " + common + "-t 3 -r 1 -c " + std::to_string(module.inputs) + " -1 " + link +
+            "    # read the counters\n";
+  }
+  return text;
+}
+
+std::string terminal(const ModuleIntroduced& module, const std::string& link) {
+  return "    picocom -q -b " + std::to_string(module.baud) + " --imap crcrlf --echo " + link +
+         "    # then type $" + hex_byte_text(module.address) + "M and Enter\n";
+}
+
+std::string ports(const LineIntroduced& line) {
+  std::string text;
+  if (!line.pty.empty()) {
+    text += "  pseudo-terminal " + quoted(line.pty) + " (" + line.pty_device + ")\n";
+  }
+  if (!line.tcp.empty()) {
+    text += "  TCP " + line.tcp + ", the bytes as they are: Modbus RTU (not Modbus TCP) and ASCII\n";
+  }
+  if (!line.serial.empty()) {
+    text += "  serial port " + line.serial + "\n";
+  }
+  return text;
+}
+
+std::string shared_addresses(const std::vector<ModuleIntroduced>& modules) {
+  std::map<unsigned, unsigned> users;
+  for (const ModuleIntroduced& module : modules) {
+    ++users[module.address];
+  }
+  std::string text;
+  for (const auto& [address, count] : users) {
+    if (count > 1) {
+      text += std::to_string(count) + " modules are at address " + hex_byte_text(address) +
+              " and will answer at once; MODEL@ADDR gives them different ones\n";
+    }
+  }
+  return text;
+}
+
+std::string introduction(const LineIntroduced& line) {
+  std::string text = (line.name.empty() ? "line" : line.name) + " at " + std::to_string(line.baud) + " baud" +
+                     (line.instant ? ", bytes cost no time" : "") + ":\n" + ports(line);
+  for (const ModuleIntroduced& module : line.modules) {
+    text += "  " + module.designation + " at " + hex_byte_text(module.address) + ", " +
+            (module.speaks_ascii ? "ASCII" : "Modbus RTU") + ", " + std::to_string(module.baud) + " baud" +
+            (module.remark.empty() ? "" : "; " + module.remark) + "\n";
+    if (!line.pty.empty()) {
+      const std::string link = quoted(line.pty);
+      text += module.speaks_ascii ? terminal(module, link) : mbpoll(module, link);
+    }
+  }
+  return text + shared_addresses(line.modules);
+}
+
+}  // namespace
+
+std::string greeting(const Introduced& all) {
+  std::string text = all.panel.empty() ? "" : "panel: " + all.panel + "\n";
+  text += "ex9000-sim " + std::string(kFirmwareVersion);
+  text += all.lines.size() == 1 ? ", " : ":\n";
+  for (const LineIntroduced& line : all.lines) {
+    text += introduction(line);
+  }
+  if (!all.control.empty()) {
+    text += "  control socket " + quoted(all.control) + "\n";
+  }
+  return text + "Ctrl-C ends it";
+}
+
+}  // namespace ex9000::sim

@@ -1,0 +1,42 @@
+// The greeting that the program prints first.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+namespace ex9000::sim {
+
+/// A module after it has started up.
+struct ModuleIntroduced {
+  std::string designation;
+  unsigned inputs = 0;
+  unsigned outputs = 0;
+  std::uint8_t address = 0;
+  bool speaks_ascii = false;
+  std::uint32_t baud = 0;
+  std::string remark;  ///< about its settings; empty: none
+};
+
+struct LineIntroduced {
+  std::string name;  ///< empty if there is only one line
+  std::uint32_t baud = 0;
+  bool instant = false;
+  std::vector<ModuleIntroduced> modules;
+  std::string pty;         ///< link of the pseudo-terminal; empty: none
+  std::string pty_device;  ///< the device that the link points to
+  std::string tcp;         ///< HOST:PORT; empty: none
+  std::string serial;      ///< the serial port; empty: none
+};
+
+struct Introduced {
+  std::vector<LineIntroduced> lines;
+  std::string panel;    ///< URL for a browser; empty: none
+  std::string control;  ///< path of the control socket; empty: none
+};
+
+/// Returns several lines of text: the lines, their ports, their modules, and commands to paste that poll each
+/// module.
+std::string greeting(const Introduced& all);
+
+}  // namespace ex9000::sim

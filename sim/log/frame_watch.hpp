@@ -1,0 +1,89 @@
+// Combines the bytes on the wires into frames, for logs, captures and the panel.
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <optional>
+#include <utility>
+#include <vector>
+
+#include "sim/bus/bus.hpp"
+#include "sim/log/frame_meaning.hpp"
+
+namespace ex9000::sim {
+
+/// The bytes that one station has sent in one transmission.
+struct Frame {
+  /// A byte that a disturbance has changed.
+  struct Change {
+    std::size_t position;  ///< among the sent bytes, from 0
+    std::uint8_t sent;
+    Levels arrives;
+
+    /// nullopt: receivers do not detect a byte without a start bit.
+    [[nodiscard]] std::optional<std::uint8_t> byte() const;
+    /// Good: the stop bit is present.
+    [[nodiscard]] ByteStatus status() const;
+  };
+
+  std::size_t station = 0;  ///< in the order of attachment; 0 is the master
+  /// The bytes as a receiver at the sender's rate gets them. Bytes of a collided frame are those that were
+  /// sent. If a start bit is lost, the data that a receiver reads from the rest of the byte is not included.
+  FrameBytes bytes;
+  std::vector<Change> changes;
+  bool collided = false;  ///< another driver was enabled during the frame
+  /// The rates of the sender and of the line, in baud. Receivers of the line get these bytes only if both are
+  /// equal.
+  std::uint32_t sent_at = 0;
+  std::uint32_t line_at = 0;
+  VirtualTime began{0};  ///< first start bit
+  VirtualTime ended{0};  ///< last stop bit
+
+  [[nodiscard]] Speaker speaker() const { return station == 0 ? Speaker::Master : Speaker::Module; }
+};
+
+/// A frame of a module ends when its driver is disabled. A frame of the master, whose writes may arrive in
+/// pieces, ends when no byte follows for some time, when a module replies, or when a gap follows a correct
+/// CRC. A DCON frame, which a person may type, ends with CR.
+class FrameWatch final : public BusObserver {
+ public:
+  using Take = std::function<void(const Frame&)>;
+  /// Returns the present rate of the line in baud.
+  using Rate = std::function<std::uint32_t()>;
+
+  explicit FrameWatch(Rate line_rate) : line_rate_(std::move(line_rate)) {}
+
+  /// From now on `take` gets every frame when it has ended.
+  void tell(Take take) { takers_.push_back(std::move(take)); }
+
+  /// Returns when an unfinished frame is passed on without a detected end; kNever: there is none.
+  [[nodiscard]] VirtualTime next() const;
+  /// Passes on the frames that are due at `now`.
+  void run(VirtualTime now);
+  /// Passes on all unfinished frames at the end of the run.
+  void finish();
+
+  // --- BusObserver ---
+  void driver(std::size_t station, bool on, VirtualTime now) override;
+  void changed(std::size_t station, Levels arrives) override;
+  void byte(std::size_t station, std::uint8_t byte, std::uint32_t baud, bool collided, VirtualTime start,
+            VirtualTime end) override;
+
+ private:
+  struct Sender {
+    Frame frame;  ///< the bytes since the last frame was passed on
+    std::size_t sent = 0;
+    std::optional<Levels> change;  ///< change of the byte in progress
+    VirtualTime patience_ends = kNever;
+  };
+
+  Sender& sender(std::size_t station);
+  [[nodiscard]] bool begins_another(VirtualTime start, VirtualTime end);
+  void hand_out(std::size_t station);
+
+  Rate line_rate_;
+  std::vector<Take> takers_;
+  std::vector<Sender> senders_;
+};
+
+}  // namespace ex9000::sim

@@ -1,0 +1,61 @@
+#include "sim/log/json_log.hpp"
+
+#include <nlohmann/json.hpp>
+
+#include "sim/log/frame_errors.hpp"
+#include "sim/text/values.hpp"
+
+namespace ex9000::sim {
+
+namespace {
+
+using Object = nlohmann::ordered_json;
+
+double seconds(VirtualTime time) { return std::chrono::duration<double>(time).count(); }
+
+/// Replaces invalid UTF-8, because a line may have the name of a path.
+std::string text_of(const Object& object) {
+  return object.dump(-1, ' ', false, Object::error_handler_t::replace);
+}
+
+std::string hex(const FrameBytes& bytes) {
+  std::string text;
+  for (const std::uint8_t byte : bytes) {
+    text += hex_byte_text(byte);
+  }
+  return text;
+}
+
+}  // namespace
+
+void JsonLog::frame(const Frame& frame) {
+  Object object;
+  object["time"] = seconds(frame.began);
+  object["line"] = line_;
+  object["from"] = names_.of(frame.station);
+  object["bytes"] = hex(frame.bytes);
+  if (looks_like_dcon(frame.bytes)) {
+    object["text"] = std::string(frame.bytes.begin(), frame.bytes.end());
+  }
+  const bool clear = !frame.collided && names_.know(frame.station);
+  const std::string means = !clear ? "" : meaning(frame.bytes, frame.speaker());
+  if (!means.empty()) {
+    object["meaning"] = means;
+  }
+  const std::string error = names_.know(frame.station) ? errors(frame) : line_error(frame);
+  if (!error.empty()) {
+    object["error"] = error;
+  }
+  object["collided"] = frame.collided;
+  print_(text_of(object));
+}
+
+void JsonLog::note(VirtualTime now, const std::string& text) {
+  Object object;
+  object["time"] = seconds(now);
+  object["line"] = line_;
+  object["note"] = text;
+  print_(text_of(object));
+}
+
+}  // namespace ex9000::sim

@@ -1,0 +1,96 @@
+// The visible state of a module: its LEDs, its switches, and its internal state.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <string_view>
+
+#include "firmware/model/model.hpp"
+#include "firmware/settings/places.hpp"
+#include "firmware/settings/settings.hpp"
+#include "sim/bus/module.hpp"
+
+namespace ex9000::sim {
+
+enum class Led : std::uint8_t {
+  Off,
+  On,
+  HostTimeout,         ///< flashes at 2 Hz
+  SettingsUnreadable,  ///< two short flashes every 2 s
+};
+
+/// The state of the front plate.
+struct Plate {
+  bool switched_on = false;  ///< the supply's switch
+  bool powered = false;      ///< false during a supply failure, even if the switch is on
+  bool init = false;         ///< INIT* is connected to GND
+  bool listening = false;    ///< the module has started up
+  bool init_mode = false;    ///< the module has started up with INIT*
+  std::uint8_t address = 0;  ///< in force, like the members below: valid only while it listens
+  std::uint32_t baud = 0;
+  Protocol protocol = Protocol::Ascii;
+  bool checksum = false;
+  Led led = Led::Off;
+  std::uint16_t outputs = 0;  ///< driven outputs; bit n is channel n
+  std::uint16_t inputs = 0;   ///< levels at the terminals; bit n is channel n
+  std::uint64_t watchdog_resets = 0;
+
+  friend bool operator==(const Plate& a, const Plate& b);
+};
+
+/// Latches and counters since reset or clearing; valid only while the module listens.
+struct Gathered {
+  std::uint16_t latched_high = 0;
+  std::uint16_t latched_low = 0;
+  std::array<std::uint32_t, kMaxInputs> counters{};
+
+  friend bool operator==(const Gathered& a, const Gathered& b);
+};
+
+/// The state of the host watchdog.
+struct Guard {
+  bool enabled = false;
+  bool timed_out = false;              ///< the timeout status
+  std::uint8_t timeout = 0;            ///< in 0.1 s
+  std::optional<VirtualTime> expires;  ///< in the line's time, without a host OK; nullopt: not running
+  bool reset_status = false;           ///< the reset status that `$AA5` would report
+
+  friend bool operator==(const Guard& a, const Guard& b);
+};
+
+/// The content of the memory, whether the module is powered or not.
+struct Stored {
+  struct Copy {
+    std::vector<std::uint8_t> bytes;        ///< the bytes of a valid copy, or its first page if it is invalid
+    std::optional<std::uint16_t> sequence;  ///< nullopt: the copy is invalid
+
+    friend bool operator==(const Copy& a, const Copy& b) { return a.bytes == b.bytes; }
+  };
+
+  std::vector<Copy> copies;            ///< in the order of kPlaces
+  std::optional<std::size_t> current;  ///< the copy in force; nullopt: no copy is valid
+  bool blank = false;                  ///< nothing has ever been stored: factory settings are in force
+  Settings settings;                   ///< those of `current`, or the factory settings
+
+  friend bool operator==(const Stored& a, const Stored& b);
+};
+
+/// The complete state. The model is not included because it does not change.
+struct Face {
+  Plate plate;
+  Gathered gathered;
+  Guard guard;
+  Stored stored;
+};
+
+/// Reads the state without changing the line or the module. `now` is the time of the line's clock.
+Face face_of(const SimulatedModule& module, VirtualTime now);
+
+/// Returns `off`, `on`, `flashing`, or `flashing: settings unreadable`.
+std::string_view led_text(Led led);
+std::string name_text(const Settings& settings);
+
+}  // namespace ex9000::sim

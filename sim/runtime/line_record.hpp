@@ -1,0 +1,62 @@
+// The records of a line: its log and its capture.
+#pragma once
+
+#include <functional>
+#include <memory>
+#include <string>
+
+#include "sim/capture/capture.hpp"
+#include "sim/line/line.hpp"
+#include "sim/log/bus_log.hpp"
+#include "sim/log/frame_watch.hpp"
+#include "sim/setup/setup.hpp"
+
+namespace ex9000::sim {
+
+/// Records nothing until `print_frames`, `keep_in` or `tell` requests it. Call these functions before
+/// `begin`.
+class LineRecord final : private Station {
+ public:
+  using Print = BusLog::Print;
+
+  /// Records a line that has started up. `line` must outlive this object; `name` is its name in the records.
+  /// `print` gets the lines of its log.
+  LineRecord(Line& line, std::string name, LogFormat format, const Print& print);
+
+  /// Writes a remark about the line at its present time; remarks are printed even if frames are not.
+  void note(const std::string& text);
+  /// Requests that frames are printed.
+  void print_frames();
+  /// Requests that frames are written to `capture`, which must outlive this object. `began` is the wall clock
+  /// time (since 1970-01-01 00:00:00 UTC) that corresponds to time 0 of the line.
+  void keep_in(Capture& capture, VirtualTime began);
+  /// Requests that `take` gets every frame when it has ended, and `note` every remark about the line.
+  void tell(FrameWatch::Take take, BusLog::Note note);
+  /// Ignores events later than `end` in the line's time. The records do not depend on how far the line runs
+  /// beyond `end`, which varies with the moments at which the program reads the wall clock.
+  void end_at(VirtualTime end);
+  /// Returns what collects the frames; null if no frames are recorded.
+  FrameWatch* frames() { return listens_ ? &frames_ : nullptr; }
+  /// Records the frames that are still in progress.
+  void finish() { frames_.finish(); }
+
+ private:
+  // --- Station: only observes the clock ---
+  [[nodiscard]] VirtualTime next() const override { return end_; }
+  void run() override;
+  [[nodiscard]] std::uint32_t baud() const override { return 0; }
+  void receive(std::uint8_t /*byte*/, ByteStatus /*status*/) override {}
+
+  void listen();
+
+  Line& line_;
+  std::string name_;
+  std::unique_ptr<BusLog> log_;
+  FrameWatch frames_{[this] { return line_.master().baud(); }};
+  BusLog::Note also_note_;
+  bool listens_ = false;
+  VirtualTime end_ = kNever;  ///< as long as it is to come
+  bool over_ = false;
+};
+
+}  // namespace ex9000::sim

@@ -1,0 +1,243 @@
+#include "sim/runtime/pacer.hpp"
+
+#include <sys/prctl.h>
+
+#include <algorithm>
+#include <utility>
+
+#include "firmware/line/crc16.hpp"
+#include "sim/text/durations.hpp"
+
+namespace ex9000::sim {
+
+namespace {
+
+/// If more bytes than this wait for the line, masters have to wait, as with a full UART.
+constexpr std::size_t kMostWaiting = 4096;
+
+/// Limits how far virtual time runs ahead, so that watchdogs do not expire early after many transactions in a
+/// row.
+constexpr std::chrono::milliseconds kFarthestAhead{5};
+
+/// By default the kernel may delay timers by 50 us to save power; that is half a character at 115200 baud.
+constexpr unsigned long kTimerSlackNanoseconds = 1;
+
+/// The shortest delay that is reported. A master may notice a reply that is late by this time, and a user
+/// must be able to find the reason.
+constexpr VirtualTime kReportedDelay = std::chrono::milliseconds(20);
+
+}  // namespace
+
+Pacer::Pacer(boost::asio::io_context& io, Line& line, const LinePorts::All& ports, FrameWatch* frames,
+             Pace pace, LinePorts::Notice notice)
+    : timer_(io),
+      line_(line),
+      notice_(std::move(notice)),
+      ports_(line, ports, notice_),
+      frames_(frames),
+      pace_(pace) {
+  line.bus().observe(*this);
+}
+
+void Pacer::start() {
+  prctl(PR_SET_TIMERSLACK, kTimerSlackNanoseconds);
+  began_ = std::chrono::steady_clock::now();
+  first_ = line_.clock().virtual_now();
+  ports_.report_mismatches();
+  for (const auto& port : ports_.all()) {
+    port->start([this, &port = *port](const std::uint8_t* bytes, std::size_t size) {
+      return receive(port, bytes, size);
+    });
+  }
+  follow();
+}
+
+VirtualTime Pacer::wall() const {
+  const VirtualTime real = std::chrono::steady_clock::now() - began_;
+  return first_ + (pace_.speed == 1 ? real : std::chrono::duration_cast<VirtualTime>(real * pace_.speed));
+}
+
+/// Returns when the wall clock reaches `time`. The result is limited to a century ahead, because the clock's
+/// range is finite.
+std::chrono::steady_clock::time_point Pacer::when(VirtualTime time) const {
+  constexpr VirtualTime kCentury = std::chrono::hours(24 * 365 * 100);
+  const VirtualTime ahead = time - first_;
+  if (pace_.speed == 1) {
+    return began_ + ahead;
+  }
+  const auto real = ahead / pace_.speed;
+  return began_ + (real < kCentury ? std::chrono::duration_cast<VirtualTime>(real) : kCentury);
+}
+
+/// Processes due events and leaves the clock at the last event, not at `until`: see Pace::host_latency.
+void Pacer::catch_up(VirtualTime until) {
+  VirtualTime next = line_.bus().next();
+  report_delay(next);
+  for (; next <= until || leads(next); next = line_.bus().next()) {
+    line_.bus().run_until(next);
+  }
+}
+
+/// Whether the event at `next` need not wait for the wall clock.
+bool Pacer::leads(VirtualTime next) const {
+  return pace_.lead != VirtualTime(0) && (line_.bus().carries() || next <= last_byte_ + pace_.lead);
+}
+
+/// Whether masters have to wait, because the line has many bytes to carry or virtual time has run too far
+/// ahead.
+bool Pacer::is_full() const {
+  return line_.master().waiting() >= kMostWaiting || line_.clock().virtual_now() > wall() + kFarthestAhead;
+}
+
+void Pacer::follow() {
+  const VirtualTime present = wall();
+  catch_up(present);
+  ports_.hand_out();
+  if (frames_ != nullptr) {
+    frames_->run(present);  // not later: an event that is due now may continue a frame
+  }
+  if (paused_ && !is_full()) {
+    paused_ = false;
+    for (const auto& port : ports_.all()) {
+      port->resume();
+    }
+  }
+  arm_timer();
+}
+
+void Pacer::arm_timer() {
+  VirtualTime next = std::min(line_.bus().next(), frames_ == nullptr ? kNever : frames_->next());
+  if (paused_ && line_.clock().virtual_now() > wall()) {
+    next = std::min(next, line_.clock().virtual_now() - kFarthestAhead);
+  }
+  if (next == kNever) {
+    return;
+  }
+  timer_.expires_at(when(next));
+  timer_.async_wait([this](const boost::system::error_code& error) {
+    if (!error) {
+      follow();
+    }
+  });
+}
+
+/// Reports the delay of an event that was due at `next`, if the wall clock has passed it. After the first
+/// report, only delays at least twice as long are reported, because a busy host is always late.
+void Pacer::report_delay(VirtualTime next) {
+  if (next > wall()) {
+    return;
+  }
+  const auto delay = std::chrono::duration_cast<VirtualTime>((wall() - next) / pace_.speed);
+  if (delay >= kReportedDelay && delay >= 2 * longest_delay_) {
+    longest_delay_ = delay;
+    notice_("the host was late by " +
+            time_text(std::chrono::duration_cast<std::chrono::milliseconds>(delay)) +
+            ": modules reply later, and frames that a master sent apart may reach them as one");
+  }
+}
+
+void Pacer::report_joined(Bytes bytes) {
+  const Bytes rest = bytes.from(first_frame_size(bytes));
+  if (rest.size != 0 && crc16(rest).value() == 0) {
+    notice_(
+        "two Modbus frames were read in one piece, and modules take them for one: the master left no silence"
+        " between them, or the host was late");
+  }
+}
+
+void Pacer::now(const std::function<void()>& action) {
+  const VirtualTime present = wall();
+  catch_up(present);
+  line_.bus().run_until(std::max(present, line_.clock().virtual_now()));
+  action();
+  follow();
+}
+
+bool Pacer::receive(const Port& port, const std::uint8_t* bytes, std::size_t size) {
+  const VirtualTime travelled = port.is_a_line() ? line_.master().takes(size) : VirtualTime(0);
+  const auto latency = std::chrono::duration_cast<VirtualTime>(pace_.host_latency * pace_.speed);
+  const VirtualTime written = wall() - latency - travelled;
+  catch_up(written);
+  line_.bus().run_until(std::max(written, line_.clock().virtual_now()));
+  ports_.take_rate(port);
+  Bytes rest{bytes, size};
+  const bool splits = pace_.lead != VirtualTime(0);
+  if (!splits) {
+    report_joined(rest);
+  }
+  while (rest.size != 0) {
+    const Bytes piece = rest.first(splits ? first_frame_size(rest) : rest.size);
+    line_.master().send(piece.data, piece.size, silence_before(piece[0]));
+    rest = rest.from(piece.size);
+    if (rest.size != 0) {
+      catch_up(wall());
+    }
+  }
+  follow();
+  if (is_full()) {
+    paused_ = true;
+    arm_timer();
+  }
+  return !paused_;
+}
+
+/// After a request without a reply the next one often follows at once, and both are read in one piece. On an
+/// instant line a frame ends where its CRC is correct. If the CRC of all bytes is correct, they are a single
+/// frame.
+std::size_t Pacer::first_frame_size(Bytes bytes) {
+  constexpr std::size_t kShortest = 4;
+  Crc16 crc;
+  std::size_t first = bytes.size;
+  for (std::size_t i = 0; i < bytes.size; ++i) {
+    crc.add(bytes[i]);
+    if (crc.value() == 0 && i + 1 >= kShortest && first == bytes.size) {
+      first = i + 1;
+    }
+  }
+  return crc.value() == 0 ? bytes.size : first;
+}
+
+/// Returns how long a frame to `address` has to wait, so that a module that has received the earlier bytes
+/// does not treat both as one frame.
+VirtualTime Pacer::silence_before(std::uint8_t address) {
+  if (!pace_.keep_frames_apart) {
+    return VirtualTime(0);
+  }
+  if (last_speaker_ == 0) {
+    return pace_.lead == VirtualTime(0) ? VirtualTime(0) : last_byte_ + line_.rtu_silence();
+  }
+  if (last_speaker_ > line_.size()) {  // a foreign station, which all modules have received
+    return is_for_modbus(address) ? last_byte_ + line_.rtu_separate() : VirtualTime(0);
+  }
+  const SimulatedModule& speaker = line_.module(last_speaker_ - 1);
+  if (!speaker.powered()) {
+    return VirtualTime(0);
+  }
+  const InForce& in_force = speaker.module().state().in_force;
+  if (in_force.protocol == Protocol::Ascii) {
+    return is_for_modbus(address) ? last_byte_ + line_.rtu_separate() : VirtualTime(0);
+  }
+  return in_force.address == address ? VirtualTime(0) : last_byte_ + line_.rtu_silence();
+}
+
+/// Whether a frame that begins with this byte may be for a Modbus module.
+bool Pacer::is_for_modbus(std::uint8_t address) {
+  for (std::size_t i = 0; i < line_.size(); ++i) {
+    const SimulatedModule& module = line_.module(i);
+    if (module.powered()) {
+      const InForce& in_force = module.module().state().in_force;
+      if (in_force.protocol == Protocol::ModbusRtu && (address == 0 || address == in_force.address)) {
+        return true;
+      }
+    }
+  }
+  return false;
+}
+
+void Pacer::byte(std::size_t station, std::uint8_t /*byte*/, std::uint32_t /*baud*/, bool /*collided*/,
+                 VirtualTime /*start*/, VirtualTime end) {
+  last_speaker_ = station;
+  last_byte_ = end;
+}
+
+}  // namespace ex9000::sim

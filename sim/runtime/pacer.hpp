@@ -1,0 +1,96 @@
+// Keeps a virtual line in step with the wall clock and connects its master's end to the ports.
+#pragma once
+
+#include <algorithm>
+#include <boost/asio/io_context.hpp>
+#include <boost/asio/steady_timer.hpp>
+#include <chrono>
+#include <cstdint>
+#include <functional>
+
+#include "sim/line/line.hpp"
+#include "sim/log/frame_watch.hpp"
+#include "sim/runtime/line_ports.hpp"
+
+namespace ex9000::sim {
+
+/// The relation between virtual time and the wall clock.
+struct Pace {
+  /// Compensates for the time that the process takes to wake up and read: bytes from a master count as
+  /// written up to this much earlier, but never before an event that has already happened. Without this, the
+  /// host's delays would extend every transaction.
+  VirtualTime host_latency = std::chrono::microseconds(300);
+  /// Events while a byte is on the wires, or within this time after one, do not wait for the wall clock. When
+  /// virtual time is therefore some milliseconds ahead, masters have to wait. Zero: events happen when the
+  /// wall clock has reached them, so a transaction can only take longer than on a real line.
+  VirtualTime lead{0};
+  /// A frame to a module other than the last sender waits until a silence of T3.5 has passed; a frame to a
+  /// Modbus module after an ASCII reply waits until the module no longer treats the reply as part of a frame.
+  /// If a master begins earlier, only the module that it has just talked to receives the frame, because that
+  /// module does not receive its own reply; for all others the reply and the frame are one. Many masters, for
+  /// example libmodbus, begin too early, which causes no problem with real adapters because of their delay.
+  bool keep_frames_apart = true;
+  /// The ratio of virtual time to the wall clock.
+  double speed = 1;
+};
+
+/// Bytes take their real time.
+constexpr Pace kWallPace{};
+/// Bytes take their real time, for masters that follow the standard strictly.
+constexpr Pace kStrictWallPace{kWallPace.host_latency, kWallPace.lead, false};
+/// Bytes take no time: no timer delays the reply to a request.
+constexpr Pace kInstantPace{VirtualTime(0), std::chrono::microseconds(200), true};
+
+/// Virtual time follows the wall clock from `start` on.
+class Pacer final : private BusObserver {
+ public:
+  /// Sends what the master of `line` receives to all `ports`, and what comes from them on the line. `frames`
+  /// may be null. All arguments must live as long as `io` runs. `notice`: see LinePorts; it also gets a
+  /// message if a delay of the host has affected the line.
+  Pacer(boost::asio::io_context& io, Line& line, const LinePorts::All& ports, FrameWatch* frames, Pace pace,
+        LinePorts::Notice notice);
+
+  void start();
+  /// Takes a byte from the master's end of the line; for Line's constructor.
+  void hear(std::uint8_t byte) { ports_.hear(byte); }
+  /// See LinePorts::sent.
+  [[nodiscard]] std::uint64_t sent() const { return ports_.sent(); }
+  /// Returns the line's time at this moment. The line's clock shows the time of the last event.
+  [[nodiscard]] VirtualTime present() const { return std::max(wall(), line_.clock().virtual_now()); }
+  /// Performs an action on the line from outside, at this moment.
+  void now(const std::function<void()>& action);
+
+ private:
+  [[nodiscard]] VirtualTime wall() const;
+  [[nodiscard]] std::chrono::steady_clock::time_point when(VirtualTime time) const;
+  void follow();
+  void catch_up(VirtualTime until);
+  [[nodiscard]] bool leads(VirtualTime next) const;
+  [[nodiscard]] bool is_full() const;
+  void arm_timer();
+  void report_delay(VirtualTime next);
+  void report_joined(Bytes bytes);
+  bool receive(const Port& port, const std::uint8_t* bytes, std::size_t size);
+  static std::size_t first_frame_size(Bytes bytes);
+  [[nodiscard]] VirtualTime silence_before(std::uint8_t address);
+  [[nodiscard]] bool is_for_modbus(std::uint8_t address);
+  void driver(std::size_t /*station*/, bool /*on*/, VirtualTime /*now*/) override {}
+  void byte(std::size_t station, std::uint8_t byte, std::uint32_t baud, bool collided, VirtualTime start,
+            VirtualTime end) override;
+
+  boost::asio::steady_timer timer_;
+  Line& line_;
+  LinePorts::Notice notice_;
+  LinePorts ports_;
+  FrameWatch* frames_;
+  Pace pace_;
+  std::chrono::steady_clock::time_point began_;
+  VirtualTime first_{0};  ///< what the line's clock showed at `began_`
+  bool paused_ = false;   ///< a port waits for `resume`
+  /// The longest delay of the host that was reported, in wall clock time.
+  VirtualTime longest_delay_{0};
+  std::size_t last_speaker_ = 0;  ///< station; 0: the master
+  VirtualTime last_byte_{0};      ///< end of its last byte
+};
+
+}  // namespace ex9000::sim

@@ -1,0 +1,89 @@
+// One line of a run: the memories of its modules, its ports, its faults and its log.
+#pragma once
+
+#include <boost/asio/io_context.hpp>
+#include <functional>
+#include <list>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "sim/capture/capture.hpp"
+#include "sim/files/eeprom_file.hpp"
+#include "sim/files/new_file.hpp"
+#include "sim/line/line.hpp"
+#include "sim/log/banner.hpp"
+#include "sim/runtime/line_record.hpp"
+#include "sim/runtime/pacer.hpp"
+#include "sim/runtime/stepped_line.hpp"
+#include "sim/setup/setup.hpp"
+
+namespace ex9000::sim {
+
+class RunningLine {
+ public:
+  using Print = std::function<void(const std::string& line)>;
+
+  /// Opens everything that `setup` names. Throws std::invalid_argument or std::runtime_error with a one-line
+  /// message; then everything is closed again, and no file has been created or changed. All arguments must
+  /// outlive this object. `stepped`: the behavior of the ports does not depend on the wall clock.
+  RunningLine(boost::asio::io_context& io, const LineSetup& setup, std::uint64_t seed, LogFormat format,
+              bool stepped, Print print);
+  RunningLine(const RunningLine&) = delete;
+  RunningLine& operator=(const RunningLine&) = delete;
+
+  /// Updates existing EEPROM files with the data that modules have stored while they started up. Throws like
+  /// the constructor.
+  void renew_memories();
+  /// Creates the missing EEPROM files and appends them to `made`. Throws like the constructor.
+  void make_missing_memories(std::list<MadeFile>& made);
+
+  /// Returns the records of the line, which begin with `start`.
+  LineRecord& record() { return *record_; }
+  /// Connects the memories to their files and starts the records.
+  void start();
+  /// Starts to process the line as soon as `io` runs, `speed` times faster than the wall clock.
+  void follow_the_clock(boost::asio::io_context& io, double speed);
+  /// Starts to process the line with its time standing still. `arrived` is called when bytes from masters
+  /// have arrived.
+  SteppedLine& stand_still(SteppedLine::Arrived arrived);
+  /// Ends the records when the modules have been up for `up`. Call it before `start`.
+  void end_at(VirtualTime up) { record_->end_at(came_up_ + up); }
+  /// Processes all events until the modules have been up for `up`, without waiting.
+  void run_until(VirtualTime up);
+  /// Records the frames that are still in progress.
+  void finish() { record_->finish(); }
+
+  [[nodiscard]] const std::string& name() const { return setup_.name; }
+  Line& line() { return *line_; }
+  /// Call it only if the line follows the clock.
+  Pacer& pacer() { return *pacer_; }
+  /// See LinePorts::sent.
+  [[nodiscard]] std::uint64_t sent() const {
+    return pacer_ ? pacer_->sent() : stepped_ ? stepped_->sent() : 0;
+  }
+  /// Returns the time at which the modules have been up for `up`.
+  [[nodiscard]] VirtualTime when_up_for(VirtualTime up) const { return came_up_ + up; }
+  [[nodiscard]] const LineIntroduced& introduced() const { return introduced_; }
+
+ private:
+  void use_memories();
+  void open_ports(boost::asio::io_context& io, bool stepped);
+  [[nodiscard]] std::string log_name() const;
+  [[nodiscard]] std::string remark(std::size_t index) const;
+  void introduce();
+
+  const LineSetup& setup_;
+  Print print_;
+  std::vector<std::unique_ptr<EepromFile>> memories_;  ///< one for each module; null: none
+  std::unique_ptr<Line> line_;
+  VirtualTime came_up_{0};  ///< when the modules had started up, in the line's time
+  LineIntroduced introduced_;
+  LinePorts::All ports_;
+  std::unique_ptr<LineRecord> record_;
+  std::unique_ptr<Pacer> pacer_;          ///< null unless the line follows the clock
+  std::unique_ptr<SteppedLine> stepped_;  ///< null unless its time stands still
+};
+
+}  // namespace ex9000::sim

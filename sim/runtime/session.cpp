@@ -1,0 +1,268 @@
+#include "sim/runtime/session.hpp"
+
+#include <algorithm>
+#include <chrono>
+#include <stdexcept>
+#include <utility>
+
+#include "sim/setup/paths_in_use.hpp"
+#include "sim/text/fail.hpp"
+
+namespace ex9000::sim {
+
+Session::Session(boost::asio::io_context& io, Setup setup, Print print, Print greet, Terminal* terminal)
+    : io_(io),
+      setup_(std::move(setup)),
+      print_(std::move(print)),
+      greet_(std::move(greet)),
+      end_(io),
+      next_look_(io) {
+  if (setup_.watch) {
+    watch_ = std::make_unique<Watch>(terminal, print_);
+    print_ = [this](const std::string& line) { watch_->print(line); };
+  }
+  for (const LineSetup& line : setup_.lines) {
+    // With several lines, each message begins with the line's name. JSON contains it already.
+    const bool as_it_is = line.name.empty() || for_machines();
+    const Print printed =
+        as_it_is ? print_ : [this, &line](const std::string& text) { print_(line.name + ": " + text); };
+    open_line(line, printed);
+  }
+  open_control();
+  open_panel();
+  watch_lines();
+  open_capture();
+}
+
+Session::~Session() = default;
+
+void Session::open_line(const LineSetup& line, const Print& print) {
+  lines_.push_back(std::make_unique<RunningLine>(io_, line, setup_.seed + lines_.size(),
+                                                 setup_.log.value_or(LogFormat::Text), setup_.speed.stepped(),
+                                                 print));
+}
+
+void Session::open_control() {
+  if (!setup_.control && !setup_.panel) {
+    return;
+  }
+  std::vector<Control::ControlledLine> lines;
+  for (const auto& running : lines_) {
+    lines.push_back({running->name(), running->line(), [&line = *running] { return line.sent(); }});
+  }
+  control_.emplace(std::move(lines));
+  if (!setup_.control) {
+    return;
+  }
+  with_place(place_of(setup_.places, "control"), [this] {
+    control_socket_ = std::make_unique<ControlSocket>(
+        io_, *setup_.control,
+        [this](const std::string& command, const ControlSocket::Answer& to) { answer(command, to); },
+        [this] { io_.stop(); });
+  });
+}
+
+void Session::open_panel() {
+  if (!setup_.panel) {
+    return;
+  }
+  panel_ = std::make_unique<Panel>([this](const std::string& command) { return carry_out(command); },
+                                   setup_.speed.factor);
+  for (std::size_t i = 0; i < lines_.size(); ++i) {
+    RunningLine& running = *lines_[i];
+    panel_->add_line(running.introduced(), running.line(), [&running] { return running.pacer().present(); });
+    running.record().tell(
+        [this, i](const Frame& frame) { panel_->hear(i, frame); },
+        [this, i](VirtualTime now, const std::string& text) { panel_->note(i, now, text); });
+  }
+  with_place(place_of(setup_.places, "panel"),
+             [this] { panel_server_ = std::make_unique<PanelServer>(io_, setup_.panel->port, *panel_); });
+}
+
+void Session::watch_lines() {
+  if (!watch_) {
+    return;
+  }
+  for (const auto& line : lines_) {
+    RunningLine& running = *line;
+    watch_->add_line(running.introduced().name, running.line(), [this, &running] {
+      return setup_.speed.paced() ? running.pacer().present() : running.line().clock().virtual_now();
+    });
+  }
+}
+
+/// Repeats the look at an interval. If the lines do not follow a clock, the code that moves the time calls
+/// look() instead.
+void Session::keep_watching() {
+  constexpr auto kBetweenLooks = std::chrono::milliseconds(50);
+  watch_->look();
+  if (!setup_.speed.paced()) {
+    return;
+  }
+  next_look_.expires_after(kBetweenLooks);
+  next_look_.async_wait([this](const boost::system::error_code& error) {
+    if (!error) {
+      keep_watching();
+    }
+  });
+}
+
+void Session::open_capture() {
+  if (!setup_.capture) {
+    return;
+  }
+  const std::string place = place_of(setup_.places, "capture");
+  with_place(place, [this] {
+    refuse_overwriting(*setup_.capture, in_use_by(setup_));  // by now all these files exist
+  });
+  made_.emplace_back(*setup_.capture, is_there(*setup_.capture));
+  capture_ = std::make_unique<Capture>(*setup_.capture, place);
+}
+
+/// Moves all lines to the same time before the command, so that its replies are consistent.
+Control::Reply Session::carry_out(const std::string& command) {
+  if (stepper_) {
+    return control_->carry_out(command);
+  }
+  Control::Reply reply;
+  std::function<void()> action = [&] { reply = control_->carry_out(command); };
+  for (const auto& running : lines_) {
+    action = [&pacer = running->pacer(), action] { pacer.now(action); };
+  }
+  action();
+  return reply;
+}
+
+void Session::answer(const std::string& command, const ControlSocket::Answer& answer) {
+  if (stepper_ && Stepper::is_advance(command)) {
+    stepper_->advance(command, [this, answer](const Control::Reply& reply) {
+      if (watch_) {
+        watch_->look();
+      }
+      answer(reply);
+    });
+  } else {
+    answer(carry_out(command));
+  }
+}
+
+/// If the lines do not follow a clock, the result must not depend on the time of day, and neither must the
+/// capture.
+void Session::keep_a_capture() {
+  capture_->begin();
+  const auto now = std::chrono::system_clock::now().time_since_epoch();
+  for (const auto& running : lines_) {
+    const VirtualTime began =
+        setup_.speed.paced() ? now - running->line().clock().virtual_now() : VirtualTime(0);
+    running->record().keep_in(*capture_, began);
+  }
+}
+
+void Session::make_files_and_greet() {
+  Introduced introduced;
+  introduced.panel = panel_server_ ? panel_server_->address() : "";
+  introduced.control = setup_.control.value_or("");
+  for (const auto& running : lines_) {
+    running->make_missing_memories(made_);
+    introduced.lines.push_back(running->introduced());
+  }
+  if (capture_) {
+    keep_a_capture();
+  }
+  (for_machines() ? greet_ : print_)(greeting(introduced));
+  for (MadeFile& file : made_) {
+    file.keep();
+  }
+}
+
+void Session::start() {
+  for (const auto& running : lines_) {
+    running->renew_memories();
+  }
+  make_files_and_greet();
+  for (const auto& running : lines_) {
+    if (setup_.log) {
+      running->record().print_frames();
+    }
+    if (ends()) {
+      running->end_at(*setup_.lasts);
+    }
+    running->start();
+    if (setup_.speed.paced()) {
+      running->follow_the_clock(io_, setup_.speed.factor);
+    }
+  }
+  if (setup_.speed.stepped()) {
+    stand_still();
+  }
+  if (control_socket_) {
+    control_socket_->start();
+  }
+  if (panel_server_) {
+    panel_server_->start();
+  }
+  if (watch_) {
+    keep_watching();
+  }
+  if (setup_.speed.paced() && ends()) {
+    end_by_the_clock();
+  }
+}
+
+/// Whether the run has an end. A duration that exceeds the range of the clock counts as endless.
+bool Session::ends() const {
+  constexpr auto kNobodyWaits = std::chrono::hours(24 * 365 * 100);
+  return setup_.lasts && (!setup_.speed.paced() || *setup_.lasts / setup_.speed.factor < kNobodyWaits);
+}
+
+/// The timer expires some time after the end. The lines' records end exactly.
+void Session::end_by_the_clock() {
+  end_.expires_after(std::chrono::duration_cast<VirtualTime>(*setup_.lasts / setup_.speed.factor));
+  end_.async_wait([this](const boost::system::error_code& error) {
+    if (error) {
+      return;
+    }
+    for (const auto& running : lines_) {
+      running->run_until(*setup_.lasts);
+    }
+    io_.stop();
+  });
+}
+
+void Session::stand_still() {
+  std::vector<SteppedLine*> lines;
+  for (const auto& running : lines_) {
+    lines.push_back(&running->stand_still([this] {
+      if (stepper_) {
+        stepper_->arrived();
+      }
+    }));
+  }
+  const VirtualTime end = setup_.lasts ? lines_.front()->when_up_for(*setup_.lasts) : kNever;
+  stepper_ = std::make_unique<Stepper>(std::move(lines), end, [this] { return stop_signals_.arrived(); });
+}
+
+void Session::run_as_fast_as_it_can() {
+  constexpr VirtualTime kStep = std::chrono::milliseconds(100);
+  for (VirtualTime now{0}; now < *setup_.lasts && !io_.stopped();) {
+    now = std::min(now + kStep, *setup_.lasts);
+    for (const auto& running : lines_) {
+      running->run_until(now);
+    }
+    if (watch_) {
+      watch_->look();
+    }
+    io_.poll();
+  }
+}
+
+void Session::finish() {
+  for (const auto& running : lines_) {
+    running->finish();
+  }
+  if (watch_) {
+    watch_->look();
+  }
+}
+
+}  // namespace ex9000::sim

@@ -1,0 +1,86 @@
+// One run of the program: its lines, its control socket and its panel.
+#pragma once
+
+#include <boost/asio/io_context.hpp>
+#include <boost/asio/steady_timer.hpp>
+#include <functional>
+#include <list>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "sim/capture/capture.hpp"
+#include "sim/control/control.hpp"
+#include "sim/control/control_socket.hpp"
+#include "sim/files/new_file.hpp"
+#include "sim/log/banner.hpp"
+#include "sim/panel/panel.hpp"
+#include "sim/panel/panel_server.hpp"
+#include "sim/runtime/running_line.hpp"
+#include "sim/runtime/stepper.hpp"
+#include "sim/runtime/stop_signals.hpp"
+#include "sim/setup/setup.hpp"
+#include "sim/watch/watch.hpp"
+
+namespace ex9000::sim {
+
+class Session {
+ public:
+  using Print = RunningLine::Print;
+
+  /// Opens everything that `setup` names. Throws std::invalid_argument or std::runtime_error with a one-line
+  /// message; then everything is closed again, and no file has been created or changed. `print` gets the log
+  /// and the greeting; if the log is for programs, `greet` gets the greeting instead. `terminal` is the
+  /// terminal that `print` writes to, or null. `io` and `terminal` must outlive this object.
+  Session(boost::asio::io_context& io, Setup setup, Print print, Print greet, Terminal* terminal);
+  ~Session();
+  Session(const Session&) = delete;
+  Session& operator=(const Session&) = delete;
+
+  /// Creates the missing files, prints the greeting, and starts to process the lines as soon as `io` runs.
+  /// Stops `io` at the end of the duration in `setup`. Throws like the constructor; files that it has created
+  /// are then removed.
+  void start();
+  /// For lines that do not follow a clock: processes all events in the duration of `setup`, unless `io` is
+  /// stopped.
+  void run_as_fast_as_it_can();
+  /// Records the frames that are still in progress. Call it after `start` or `run_as_fast_as_it_can`. Throws
+  /// like the constructor.
+  void finish();
+
+ private:
+  [[nodiscard]] bool for_machines() const { return setup_.log == LogFormat::Json; }
+  void keep_a_capture();
+  void open_line(const LineSetup& line, const Print& print);
+  void open_control();
+  [[nodiscard]] bool ends() const;
+  void end_by_the_clock();
+  void make_files_and_greet();
+  void open_panel();
+  void open_capture();
+  void watch_lines();
+  void keep_watching();
+  Control::Reply carry_out(const std::string& command);
+  void answer(const std::string& command, const ControlSocket::Answer& answer);
+  void stand_still();
+
+  boost::asio::io_context& io_;
+  const Setup setup_;
+  Print print_;
+  Print greet_;
+  std::unique_ptr<Watch> watch_;
+  std::vector<std::unique_ptr<RunningLine>> lines_;
+  boost::asio::steady_timer end_;
+  boost::asio::steady_timer next_look_;
+  std::optional<Control> control_;
+  StopSignals stop_signals_;
+  std::unique_ptr<Stepper> stepper_;  ///< null unless the lines' time stands still
+  std::unique_ptr<ControlSocket> control_socket_;
+  std::list<MadeFile> made_;  ///< removed with this object until the greeting has been printed
+  std::unique_ptr<Capture> capture_;
+  std::unique_ptr<Panel> panel_;
+  std::unique_ptr<PanelServer> panel_server_;
+};
+
+}  // namespace ex9000::sim

@@ -1,0 +1,18 @@
+// Creates a line from its description.
+#pragma once
+
+#include <memory>
+
+#include "sim/line/line.hpp"
+#include "sim/setup/setup.hpp"
+
+namespace ex9000::sim {
+
+/// The modules have no power; the master uses the factory's rate.
+std::unique_ptr<Line> make_line(const LineSetup& setup, Master::Receive receive);
+
+/// Starts the input programs and the faults after the line has started up. Throws std::invalid_argument with
+/// a one-line message if a fault names a module that the line lacks, or its time has passed.
+void begin_programs(Line& line, const LineSetup& setup);
+
+}  // namespace ex9000::sim

@@ -1,0 +1,194 @@
+#include "sim/setup/setup.hpp"
+
+#include <algorithm>
+#include <cctype>
+#include <charconv>
+#include <limits>
+#include <set>
+#include <utility>
+
+#include "sim/text/fail.hpp"
+#include "sim/text/values.hpp"
+
+namespace ex9000::sim {
+
+namespace {
+
+void check(const LineSetup& line, std::size_t position) {
+  const auto wrong = [position](const std::string& key, const std::string& what,
+                                const std::string& value = "") {
+    throw SetupError(position, key, what, value);
+  };
+  for (const auto& [key, path] : {std::pair("pty", line.pty), std::pair("serial", line.serial)}) {
+    if (path && path->empty()) {
+      wrong(key, "requires a path");
+    }
+  }
+  const auto is_printable = [](unsigned char character) { return std::isgraph(character) != 0; };
+  if (!std::all_of(line.name.begin(), line.name.end(), is_printable)) {
+    wrong("name", "expected one word of ASCII characters, for 'line NAME' on the control socket",
+          "'" + line.name + "'");
+  }
+  if (line.serial && (line.pty || line.tcp)) {
+    wrong("serial", "cannot be combined with {pty} or {tcp}; the master is on the serial line");
+  }
+  if (line.echo && !line.serial) {
+    wrong("echo", "requires {serial}");
+  }
+  if (line.instant && line.serial) {
+    wrong("line", "instant cannot be combined with {serial}; bytes take time on a real line");
+  }
+  if (line.instant && line.strict_gaps) {
+    wrong("strict-gaps", "cannot be combined with {line} instant, where gaps have no length");
+  }
+}
+
+/// Rejects paths and names that are given twice.
+class Once {
+ public:
+  explicit Once(std::string problem) : problem_(std::move(problem)) {}
+
+  void add(std::size_t line, const std::string& key, const std::optional<std::string>& name,
+           std::optional<std::size_t> module = std::nullopt) {
+    if (name && !name->empty() && !seen_.insert(*name).second) {
+      throw SetupError(line, key, problem_, *name, module);
+    }
+  }
+
+ private:
+  std::string problem_;
+  std::set<std::string> seen_;
+};
+
+/// Rejects speeds that are not possible with the ports, because real masters keep the wall clock's time.
+void check_speed(const Setup& setup) {
+  const auto wrong = [](const std::string& what) { throw SetupError(std::nullopt, "speed", what); };
+  for (const LineSetup& line : setup.lines) {
+    if (line.serial && !(setup.speed.paced() && setup.speed.factor == 1)) {
+      wrong("cannot be combined with {serial}; a real line has its own time");
+    }
+    if (setup.speed.max() && (line.pty || line.tcp)) {
+      wrong("max cannot be combined with {pty} or {tcp}, whose masters keep the wall clock's time");
+    }
+  }
+  if (setup.speed.stepped() && !setup.control) {
+    wrong("step requires {control}, because only the control socket moves the time");
+  }
+  if (setup.speed.stepped() && setup.panel) {
+    wrong("step cannot be combined with {panel}, which shows time that passes by itself");
+  }
+  if (setup.speed.max() && setup.control) {
+    wrong("max cannot be combined with {control}");
+  }
+  if (setup.speed.max() && setup.panel) {
+    wrong("max cannot be combined with {panel}");
+  }
+  if (setup.speed.max() && !setup.lasts) {
+    wrong("max requires --for");
+  }
+}
+
+}  // namespace
+
+std::string place_of(const Places& places, const std::string& key) {
+  const auto place = places.find(key);
+  return place == places.end() ? "--" + key + " " : place->second + ": ";
+}
+
+std::string SetupError::named(const std::string& before, const std::string& after) const {
+  std::string text = value.empty() ? "" : value + ": ";
+  for (const char character : std::string(what())) {
+    if (character == '{') {
+      text += before;
+    } else if (character == '}') {
+      text += after;
+    } else {
+      text += character;
+    }
+  }
+  return text;
+}
+
+void check(const Setup& setup) {
+  if (setup.watch && setup.log == LogFormat::Json) {
+    throw SetupError(std::nullopt, "watch",
+                     "cannot be combined with {log} json; both write to standard output");
+  }
+  check_speed(setup);
+  if (setup.control && setup.control->empty()) {
+    throw SetupError(std::nullopt, "control", "requires a path");
+  }
+  if (setup.capture && setup.capture->empty()) {
+    throw SetupError(std::nullopt, "capture", "requires a path");
+  }
+  Once files("two modules cannot share a file; name one for each");
+  Once ports("two lines cannot share a port; name one for each");
+  Once names("two lines have this name; give each its own");
+  for (std::size_t i = 0; i < setup.lines.size(); ++i) {
+    const LineSetup& line = setup.lines[i];
+    check(line, i);
+    for (std::size_t module = 0; module < line.modules.size(); ++module) {
+      files.add(i, "eeprom", line.modules[module].eeprom, module);
+    }
+    ports.add(i, "pty", line.pty);
+    ports.add(i, "serial", line.serial);
+    if (line.tcp && line.tcp->port != 0) {
+      ports.add(i, "tcp", line.tcp->host + ":" + std::to_string(line.tcp->port));
+    }
+    names.add(i, "name", line.name);
+  }
+}
+
+bool parse_line_kind(const std::string& text) { return parse_choice(text, "instant", "paced"); }
+
+std::optional<LogFormat> parse_log(const std::string& text) {
+  if (text == "off") {
+    return std::nullopt;
+  }
+  if (text != "text" && text != "json") {
+    fail("'" + text + "': expected text, json or off");
+  }
+  return text == "json" ? LogFormat::Json : LogFormat::Text;
+}
+
+std::uint64_t parse_seed(const std::string& text) {
+  return parse_whole_number(text, 0, std::numeric_limits<std::uint64_t>::max());
+}
+
+std::optional<PanelSetup> parse_panel(const std::string& text) {
+  if (text == "off") {
+    return std::nullopt;
+  }
+  PanelSetup panel;
+  if (!text.empty()) {
+    constexpr std::uint16_t kLastPort = 65535;
+    const auto port = whole_number(text, kLastPort);
+    if (!port) {
+      fail("'" + text + "': expected a port from 0 to 65535 (0: any free port), or off");
+    }
+    panel.port = static_cast<std::uint16_t>(*port);
+  }
+  return panel;
+}
+
+Speed parse_speed(const std::string& text) {
+  if (text == "max") {
+    return {Speed::Kind::Max};
+  }
+  if (text == "step") {
+    return {Speed::Kind::Stepped};
+  }
+  // The minimum prevents a year from exceeding the range of the clock. Above the maximum, time would advance
+  // in leaps, because the wall clock's timers are not precise enough; `max` is available for that.
+  constexpr double kSlowest = 0.001;
+  constexpr double kFastest = 1000;
+  double speed = 0;
+  const char* const end = text.data() + text.size();
+  const auto [rest, error] = std::from_chars(text.data(), end, speed);
+  if (error != std::errc() || rest != end || !(speed >= kSlowest && speed <= kFastest)) {
+    fail("'" + text + "': expected a number from 0.001 to 1000, max or step");
+  }
+  return {Speed::Kind::Paced, speed};
+}
+
+}  // namespace ex9000::sim

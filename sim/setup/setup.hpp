@@ -1,0 +1,116 @@
+// The configuration of a run, from a command line or from a bus file.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <map>
+#include <optional>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+#include "sim/faults/fault.hpp"
+#include "sim/line/module_spec.hpp"
+#include "sim/ports/tcp_address.hpp"
+
+namespace ex9000::sim {
+
+/// The position of each key in the bus file, for example `bus.json:2: control`. Keys from the command line
+/// are not included.
+using Places = std::map<std::string, std::string>;
+/// Returns the prefix of messages about this key: the place in the bus file, or the option of the command
+/// line.
+std::string place_of(const Places& places, const std::string& key);
+
+struct LineSetup {
+  Places places;
+  std::string name;                   ///< name in the logs; empty if there is only one line
+  std::vector<ModuleSpec> modules;    ///< at least one
+  std::optional<std::string> pty;     ///< path of the link to a pseudo-terminal
+  std::optional<TcpAddress> tcp;      ///< address to listen on
+  std::optional<std::string> serial;  ///< the serial port; excludes all other ports
+  std::optional<std::uint32_t> baud;  ///< rate of the line until a master sets one
+  bool echo = false;                  ///< the serial port receives what it sends
+  bool instant = false;               ///< bytes take no time
+  bool strict_gaps = false;
+  std::vector<Fault> faults;
+};
+
+struct PanelSetup {
+  std::optional<std::uint16_t> port;  ///< 0: any free port; nullopt: the default one, else any
+};
+
+enum class LogFormat { Text, Json };
+
+/// The records that a run writes.
+struct Writing {
+  std::optional<LogFormat> log;        ///< format of the bus log; nullopt: no log
+  std::optional<std::string> capture;  ///< path of the capture file
+};
+
+/// How the time of the lines advances.
+struct Speed {
+  enum class Kind {
+    Paced,    ///< with the wall clock
+    Max,      ///< freely: events follow each other as fast as they can be computed
+    Stepped,  ///< only with the command `advance` of the control socket
+  };
+  Kind kind = Kind::Paced;
+  double factor = 1;  ///< Paced: the ratio of the lines' time to the wall clock
+
+  [[nodiscard]] bool paced() const { return kind == Kind::Paced; }
+  [[nodiscard]] bool max() const { return kind == Kind::Max; }
+  [[nodiscard]] bool stepped() const { return kind == Kind::Stepped; }
+};
+
+struct Setup : Writing {
+  std::string file;                    ///< the bus file; empty: a command line
+  std::vector<LineSetup> lines;        ///< at least one
+  std::optional<std::string> control;  ///< path of the control socket
+  std::optional<PanelSetup> panel;     ///< the page for a browser; nullopt: none
+  bool watch = false;                  ///< show the modules on standard output
+  Speed speed;
+  /// How long the modules are up, in the lines' time, before the run ends; nullopt: until a signal or `quit`.
+  std::optional<VirtualTime> lasts;
+  std::uint64_t seed = 1;  ///< for everything random: noise, probable faults, bouncing contacts
+  Places places;
+};
+
+/// An error in a Setup. It identifies the place by key (an option of the command line or a member of a bus
+/// file), so that the message can use the syntax of either one.
+struct SetupError : std::invalid_argument {
+  /// In `what`, other keys are in braces: `cannot be combined with {serial}`.
+  SetupError(std::optional<std::size_t> its_line, std::string its_key, const std::string& what,
+             std::string its_value = "", std::optional<std::size_t> its_module = std::nullopt)
+      : std::invalid_argument(what),
+        line(its_line),
+        module(its_module),
+        key(std::move(its_key)),
+        value(std::move(its_value)) {}
+
+  /// Returns the message with `before` and `after` instead of the braces.
+  [[nodiscard]] std::string named(const std::string& before, const std::string& after) const;
+
+  std::optional<std::size_t> line;    ///< position of the line; nullopt: not about one line
+  std::optional<std::size_t> module;  ///< position of the module on that line; nullopt: not about one module
+  std::string key;
+  std::string value;  ///< that is wrong; empty: the message needs none
+};
+
+/// Throws SetupError if values that are valid alone cannot be combined.
+void check(const Setup& setup);
+
+// Values with the same syntax on the command line and in a bus file. The parsers throw std::invalid_argument
+// with a one-line message.
+
+/// Returns whether bytes take no time.
+bool parse_line_kind(const std::string& text);
+std::uint64_t parse_seed(const std::string& text);
+/// nullopt: `off`.
+std::optional<LogFormat> parse_log(const std::string& text);
+/// Without a port: the default port; nullopt: `off`.
+std::optional<PanelSetup> parse_panel(const std::string& text);
+/// `text` is a number from 0.001 to 1000, `max` or `step`.
+Speed parse_speed(const std::string& text);
+
+}  // namespace ex9000::sim

@@ -1,0 +1,25 @@
+// Durations as people write them: 12.5s, 50ms, 300us, 2min, 24h.
+#pragma once
+
+#include <string>
+
+#include "hal/doubles/virtual_clock.hpp"
+
+namespace ex9000::sim {
+
+/// Throws std::invalid_argument with a one-line message if `text` is not a number with a unit, is negative,
+/// or is longer than a year.
+hal::doubles::VirtualTime parse_time(const std::string& text);
+
+/// Returns the time in us, ms or s, in the format that parse_time reads.
+std::string time_text(hal::doubles::VirtualTime time);
+
+/// Returns the time in seconds, exact to the nanosecond, without a unit: 1.25, 0.000104166.
+std::string seconds_text(hal::doubles::VirtualTime time);
+
+/// Returns the prefix of log lines: seconds with six decimals, right-aligned in 12 columns.
+std::string stamp_text(hal::doubles::VirtualTime time);
+/// Returns a line of a log that is not a frame.
+std::string note_text(hal::doubles::VirtualTime time, const std::string& text);
+
+}  // namespace ex9000::sim

@@ -1,0 +1,120 @@
+#include "sim/text/values.hpp"
+
+#include <algorithm>
+#include <charconv>
+#include <limits>
+
+#include "firmware/hex.hpp"
+#include "firmware/model/baud.hpp"
+#include "sim/text/fail.hpp"
+
+namespace ex9000::sim {
+
+namespace {
+
+/// Parses the whole text as a number; returns nullopt for any other text and for numbers that are too large.
+template <class Number, class... Format>
+std::optional<Number> number(const std::string& text, Format... format) {
+  Number value{};
+  const char* const end = text.data() + text.size();
+  const auto [rest, error] = std::from_chars(text.data(), end, value, format...);
+  return error == std::errc() && rest == end ? std::optional(value) : std::nullopt;
+}
+
+[[noreturn]] void expect(const std::string& text, const std::string& expected) {
+  fail("'" + text + "': expected " + expected);
+}
+
+/// Returns nullopt unless the text is 1 to `most` hex digits.
+std::optional<unsigned> hex_number(const std::string& text, std::size_t most) {
+  constexpr int kHex = 16;
+  const bool digits = text.find_first_not_of("0123456789ABCDEFabcdef") == std::string::npos;
+  return digits && text.size() <= most ? number<unsigned>(text, kHex) : std::nullopt;
+}
+
+}  // namespace
+
+bool parse_on_off(const std::string& text) { return parse_choice(text, "on", "off"); }
+
+bool parse_choice(const std::string& text, std::string_view yes, std::string_view no) {
+  if (text != yes && text != no) {
+    expect(text, std::string(yes) + " or " + std::string(no));
+  }
+  return text == yes;
+}
+
+std::optional<std::uint64_t> whole_number(const std::string& text, std::uint64_t most) {
+  const auto value = number<std::uint64_t>(text);
+  return value && *value <= most ? value : std::nullopt;
+}
+
+std::uint64_t parse_whole_number(const std::string& text, std::uint64_t least, std::uint64_t most) {
+  const auto value = whole_number(text, most);
+  if (!value || *value < least) {
+    const bool bounded = most != std::numeric_limits<std::uint64_t>::max();
+    expect(text, bounded ? "a whole number from " + std::to_string(least) + " to " + std::to_string(most)
+                         : "a whole number of at least " + std::to_string(least));
+  }
+  return *value;
+}
+
+double parse_probability(const std::string& text) {
+  const auto value = number<double>(text);
+  if (!value || !(*value > 0 && *value <= 1)) {
+    expect(text, "a probability above 0 and up to 1, for example 0.01 or 1e-4");
+  }
+  return *value;
+}
+
+std::uint32_t parse_baud_rate(const std::string& text) {
+  const auto value = number<std::uint32_t>(text);
+  if (!value || std::find(kBaudRates.begin(), kBaudRates.end(), *value) == kBaudRates.end()) {
+    expect(text, "a baud rate: 1200, 2400, 4800, 9600, 19200, 38400, 57600 or 115200");
+  }
+  return *value;
+}
+
+std::uint8_t parse_hex_byte(const std::string& text) {
+  const auto value = hex_number(text, 2);
+  if (!value) {
+    expect(text, "one or two hex digits");
+  }
+  return static_cast<std::uint8_t>(*value);
+}
+
+std::uint16_t parse_hex_word(const std::string& text) {
+  constexpr std::size_t kMostDigits = 4;
+  const auto value = hex_number(text, kMostDigits);
+  if (!value) {
+    expect(text, "one to four hex digits");
+  }
+  return static_cast<std::uint16_t>(*value);
+}
+
+std::vector<std::uint8_t> parse_hex_bytes(const std::string& text) {
+  std::string digits = text;
+  const auto is_blank = [](char character) { return character == ' ' || character == '\t'; };
+  digits.erase(std::remove_if(digits.begin(), digits.end(), is_blank), digits.end());
+  std::vector<std::uint8_t> bytes;
+  for (std::size_t i = 0; i < digits.size(); i += 2) {
+    const auto value = i + 2 <= digits.size() ? hex_number(digits.substr(i, 2), 2) : std::nullopt;
+    if (!value) {
+      expect(text, "pairs of hex digits, for example 01 05 00FF");
+    }
+    bytes.push_back(static_cast<std::uint8_t>(*value));
+  }
+  if (bytes.empty()) {
+    expect(text, "pairs of hex digits, for example 01 05 00FF");
+  }
+  return bytes;
+}
+
+std::string hex_byte_text(unsigned value) {
+  return {static_cast<char>(hex_digit(value >> 4U)), static_cast<char>(hex_digit(value))};
+}
+
+std::string hex_word_text(unsigned value) {
+  return hex_byte_text(value >> 8U & 0xFFU) + hex_byte_text(value & 0xFFU);
+}
+
+}  // namespace ex9000::sim

@@ -1,0 +1,476 @@
+// The command line of ex9000-sim.
+#include "sim/app/arguments.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <array>
+#include <string>
+#include <vector>
+
+#include "sim/bus_file/bus_file.hpp"
+#include "sim/control/control.hpp"
+#include "sim/describe/markdown.hpp"
+
+namespace ex9000::sim {
+namespace {
+
+Parsed parse(const std::vector<const char*>& words) {
+  std::vector<const char*> argv{"ex9000-sim"};
+  argv.insert(argv.end(), words.begin(), words.end());
+  return parse_arguments(static_cast<int>(argv.size()), argv.data());
+}
+
+Setup all_accepted(const std::vector<const char*>& words) {
+  const Parsed parsed = parse(words);
+  EXPECT_TRUE(parsed.setup) << parsed.error;
+  EXPECT_EQ(parsed.exit_status, 0);
+  EXPECT_EQ(parsed.output, "");
+  EXPECT_EQ(parsed.error, "");
+  Setup none;
+  none.lines.emplace_back();
+  return parsed.setup.value_or(none);
+}
+
+/// The one line of a command line.
+LineSetup accepted(const std::vector<const char*>& words) {
+  const Setup setup = all_accepted(words);
+  EXPECT_EQ(setup.lines.size(), 1U);
+  return setup.lines[0];
+}
+
+/// Refused in one line that names what is wrong and what would be right.
+void expect_error(const std::vector<const char*>& words, const std::string& wrong, const std::string& mend) {
+  const Parsed parsed = parse(words);
+  EXPECT_FALSE(parsed.setup);
+  EXPECT_EQ(parsed.output, "");
+  EXPECT_NE(parsed.exit_status, 0);
+  EXPECT_EQ(parsed.error.find("ex9000-sim: "), 0U) << parsed.error;
+  EXPECT_NE(parsed.error.find(wrong), std::string::npos) << parsed.error;
+  EXPECT_NE(parsed.error.find(mend), std::string::npos) << parsed.error;
+  EXPECT_EQ(std::count(parsed.error.begin(), parsed.error.end(), '\n'), 1) << parsed.error;
+  EXPECT_EQ(parsed.error.back(), '\n');
+}
+
+/// Text for standard output, and nothing to do.
+std::string printed(const std::vector<const char*>& words) {
+  const Parsed parsed = parse(words);
+  EXPECT_FALSE(parsed.setup);
+  EXPECT_EQ(parsed.exit_status, 0);
+  EXPECT_EQ(parsed.error, "");
+  EXPECT_EQ(parsed.output.empty() ? ' ' : parsed.output.back(), '\n');
+  return parsed.output;
+}
+
+TEST(Arguments, OneModuleIsEnough) {
+  const LineSetup arguments = accepted({"EX9042D-M"});
+  ASSERT_EQ(arguments.modules.size(), 1U);
+  EXPECT_EQ(arguments.modules[0].model->designation, "EX9042D-M");
+  EXPECT_FALSE(arguments.baud);
+  EXPECT_FALSE(all_accepted({"EX9042D-M"}).log);
+  EXPECT_FALSE(arguments.strict_gaps);
+  EXPECT_FALSE(arguments.instant);
+  EXPECT_EQ(arguments.pty, "ex9000.tty");
+  EXPECT_FALSE(arguments.tcp);
+  EXPECT_FALSE(arguments.serial);
+  EXPECT_FALSE(all_accepted({"EX9042D-M"}).control);
+}
+
+TEST(Arguments, ModulesKeepTheirOrder) {
+  const LineSetup arguments =
+      accepted({"EX9042D-M@01", "EX9052D-M@02,edge=rising", "9068d-m@0A,protocol=ascii"});
+  ASSERT_EQ(arguments.modules.size(), 3U);
+  EXPECT_EQ(arguments.modules[0].settings.address, 0x01);
+  EXPECT_EQ(arguments.modules[1].settings.address, 0x02);
+  EXPECT_EQ(arguments.modules[1].settings.format, 0x80);
+  EXPECT_EQ(arguments.modules[2].settings.address, 0x0A);
+  EXPECT_EQ(arguments.modules[2].settings.protocol, Protocol::Ascii);
+}
+
+TEST(Arguments, OptionsMayStandBeforeBehindAndBetweenModules) {
+  const LineSetup arguments = accepted({"--log", "EX9042D", "--baud", "1200", "EX9052D@02", "--strict-gaps"});
+  EXPECT_EQ(arguments.modules.size(), 2U);
+  EXPECT_TRUE(all_accepted({"--log", "EX9042D"}).log);
+  EXPECT_TRUE(arguments.strict_gaps);
+  EXPECT_EQ(arguments.baud, 1200U);
+}
+
+TEST(Arguments, TheLogIsForPeopleOrForMachines) {
+  EXPECT_EQ(all_accepted({"EX9042D", "--log"}).log, LogFormat::Text);
+  EXPECT_EQ(all_accepted({"EX9042D", "--log", "text"}).log, LogFormat::Text);
+  EXPECT_EQ(all_accepted({"EX9042D", "--log", "json"}).log, LogFormat::Json);
+  EXPECT_EQ(all_accepted({"EX9042D", "--log=json"}).log, LogFormat::Json);
+  EXPECT_EQ(all_accepted({"EX9042D", "--log", "--strict-gaps"}).log, LogFormat::Text);
+  expect_error({"EX9042D", "--log=xml"}, "--log: 'xml'", "text, json or off");
+  expect_error({"EX9042D", "--log="}, "--log", "--help");
+}
+
+TEST(Arguments, ThePanelHasAPortOfItsOwnOrTheUsualOne) {
+  EXPECT_FALSE(all_accepted({"EX9042D"}).panel);
+  for (const std::vector<const char*>& words : {std::vector<const char*>{"EX9042D", "--panel"},
+                                                {"--panel", "EX9042D"},
+                                                {"--panel", "--log", "EX9042D"}}) {
+    const auto setup = all_accepted(words);
+    ASSERT_TRUE(setup.panel);
+    EXPECT_FALSE(setup.panel->port);
+    EXPECT_EQ(setup.lines[0].modules.size(), 1U);
+  }
+  EXPECT_EQ(all_accepted({"--panel", "8080", "EX9042D"}).panel->port, 8080);
+  EXPECT_EQ(all_accepted({"EX9042D", "--panel=0"}).panel->port, 0);
+  EXPECT_EQ(accepted({"--panel", "9042D"}).modules.size(), 1U);
+  expect_error({"EX9042D", "--panel", "65536"}, "--panel: '65536'", "0 to 65535");
+  expect_error({"EX9042D", "--panel=web"}, "--panel: 'web'", "0 to 65535");
+  expect_error({"EX9042D", "--panel="}, "--panel", "--help");
+  expect_error({"EX9042D", "--panel", "--speed", "max", "--for", "1s"}, "--speed: max",
+               "cannot be combined with --panel");
+}
+
+TEST(Arguments, TheModulesMayBeWatched) {
+  EXPECT_FALSE(all_accepted({"EX9042D"}).watch);
+  EXPECT_TRUE(all_accepted({"EX9042D", "--watch", "--log"}).watch);
+  EXPECT_TRUE(all_accepted({"--watch", "EX9042D", "--speed", "max", "--for", "1s"}).watch);
+  expect_error({"EX9042D", "--watch", "--log", "json"}, "--watch: cannot be combined with --log json",
+               "both write to standard output");
+}
+
+/// Whoever starts `sim/run`, which has both, may add them once more.
+TEST(Arguments, OfSeveralPanelsAndLogsTheLastCounts) {
+  EXPECT_EQ(all_accepted({"EX9042D", "--panel", "--log", "--panel", "8080"}).panel->port, 8080);
+  EXPECT_EQ(all_accepted({"EX9042D", "--panel", "--log", "--log", "json"}).log, LogFormat::Json);
+  const auto without = all_accepted({"EX9042D", "--panel", "--log", "--panel", "off", "--log", "off"});
+  EXPECT_FALSE(without.panel);
+  EXPECT_FALSE(without.log);
+  expect_error({"EX9042D", "--tcp", "0", "--tcp", "0"}, "--tcp", "--help");
+}
+
+TEST(Arguments, BehindTheLogsFormatAndInItsPlaceThereMayBeAModule) {
+  EXPECT_EQ(accepted({"--log", "json", "EX9042D"}).modules.size(), 1U);
+  EXPECT_EQ(accepted({"--log", "EX9042D", "EX9052D@02"}).modules.size(), 2U);
+}
+
+TEST(Arguments, ACaptureIsKeptWhereItIsWanted) {
+  EXPECT_FALSE(all_accepted({"EX9042D"}).capture);
+  EXPECT_EQ(all_accepted({"EX9042D", "--capture", "line.pcapng"}).capture, "line.pcapng");
+}
+
+TEST(Arguments, ThePseudoTerminalsLinkCanBeChosen) {
+  EXPECT_EQ(accepted({"EX9042D", "--pty", "line.tty"}).pty, "line.tty");
+  EXPECT_EQ(accepted({"EX9042D", "--pty=line.tty"}).pty, "line.tty");
+}
+
+TEST(Arguments, ThePseudoTerminalIsThereUnlessAnotherPortIs) {
+  EXPECT_FALSE(accepted({"EX9042D", "--tcp", "5020"}).pty);
+  EXPECT_FALSE(accepted({"EX9042D", "--serial", "/dev/ttyUSB0"}).pty);
+  EXPECT_EQ(accepted({"EX9042D", "--tcp", "5020", "--pty", "a"}).pty, "a");
+}
+
+TEST(Arguments, TcpTakesHostAndPortOrAPortAlone) {
+  const auto tcp = [](const char* text) {
+    const TcpAddress address = accepted({"EX9042D", "--tcp", text}).tcp.value_or(TcpAddress());
+    return address.host + " " + std::to_string(address.port);
+  };
+  EXPECT_EQ(tcp("5020"), "127.0.0.1 5020");
+  EXPECT_EQ(tcp(":5020"), "127.0.0.1 5020");
+  EXPECT_EQ(tcp("0.0.0.0:0"), "0.0.0.0 0");
+  EXPECT_EQ(tcp("localhost:65535"), "localhost 65535");
+  EXPECT_EQ(tcp("[::1]:5020"), "::1 5020");
+  for (const char* wrong :
+       {"", ":", "localhost", "localhost:", ":65536", "::1:5020", "a:-1", "5020x", "1:2:3"}) {
+    expect_error({"EX9042D", "--tcp", wrong}, "--tcp", "HOST:PORT");
+  }
+}
+
+TEST(Arguments, TheLineIsPacedOrInstant) {
+  EXPECT_FALSE(accepted({"EX9042D", "--line", "paced"}).instant);
+  EXPECT_TRUE(accepted({"EX9042D", "--line", "instant"}).instant);
+  expect_error({"EX9042D", "--line", "fast"}, "--line: 'fast'", "instant or paced");
+  expect_error({"EX9042D", "--line", "instant", "--strict-gaps"},
+               "--strict-gaps: ", "cannot be combined with --line instant");
+}
+
+TEST(Arguments, ARealLineStandsAlone) {
+  const std::string mend = "cannot be combined with --pty or --tcp; the master is on the serial line";
+  expect_error({"EX9042D", "--serial", "/dev/ttyUSB0", "--tcp", "5020"}, "--serial: ", mend);
+  expect_error({"EX9042D", "--serial", "/dev/ttyUSB0", "--pty", "a"}, "--serial: ", mend);
+}
+
+TEST(Arguments, OnlyARealLineHasAnEchoAndItIsNotInstant) {
+  EXPECT_FALSE(accepted({"EX9042D", "--serial", "/dev/ttyUSB0"}).echo);
+  EXPECT_TRUE(accepted({"EX9042D", "--serial", "/dev/ttyUSB0", "--echo"}).echo);
+  expect_error({"EX9042D", "--echo"}, "--echo: ", "requires --serial");
+  expect_error({"EX9042D", "--serial", "/dev/ttyUSB0", "--line", "instant"}, "--line: instant",
+               "cannot be combined with --serial; bytes take time on a real line");
+}
+
+TEST(Arguments, TwoModulesDoNotShareAnEeprom) {
+  expect_error({"EX9042D,eeprom=a", "EX9052D@02,eeprom=a"},
+               "eeprom=a: ", "two modules cannot share a file; name one for each");
+  EXPECT_EQ(accepted({"EX9042D,eeprom=a", "EX9052D@02,eeprom=b"}).modules[1].eeprom, "b");
+}
+
+TEST(Arguments, EveryRateOfTheModulesCanBeTheLines) {
+  for (const char* rate : {"1200", "2400", "4800", "9600", "19200", "38400", "57600", "115200"}) {
+    EXPECT_EQ(std::to_string(accepted({"EX9042D", "--baud", rate}).baud.value_or(0)), rate);
+  }
+}
+
+TEST(Arguments, NoModuleIsRefusedWithAnExample) {
+  expect_error({}, "no module", "EX9042D-M");
+  expect_error({"--log"}, "no module", "--help");
+}
+
+TEST(Arguments, AWrongModuleIsRefused) {
+  expect_error({"EX9999"}, "EX9999", "--models");
+  expect_error({"EX9042D", "EX9052D@GG"}, "EX9052D@GG", "hex digits");
+  expect_error({""}, "empty argument", "--models");
+}
+
+TEST(Arguments, AWrongRateIsRefusedWithTheRightOnes) {
+  for (const char* rate : {"300", "9601", "9600x", "fast", "-1", "0"}) {
+    expect_error({"EX9042D", "--baud", rate}, rate, "9600");
+  }
+}
+
+TEST(Arguments, AnEmptyRateIsRefused) { expect_error({"EX9042D", "--baud", ""}, "--baud", "9600"); }
+
+TEST(Arguments, AnUnknownOptionIsRefused) { expect_error({"EX9042D", "--verbose"}, "--verbose", "--help"); }
+
+TEST(Arguments, AnOptionWithoutItsValueIsRefused) {
+  expect_error({"EX9042D", "--baud"}, "--baud", "--help");
+  for (const char* option : {"--pty", "--tcp", "--serial", "--line", "--control", "--capture"}) {
+    expect_error({"EX9042D", option}, option, "--help");
+  }
+}
+
+TEST(Arguments, AnEmptyPathIsRefused) {
+  for (const char* option : {"--pty", "--serial", "--control", "--capture"}) {
+    expect_error({"EX9042D", option, ""}, option, "path");
+  }
+  expect_error({"EX9042D,eeprom="}, "eeprom=", "path");
+}
+
+// --- what moves and what goes wrong ---
+
+TEST(Arguments, AnInputIsOfTheModuleAtItsPosition) {
+  const LineSetup arguments = accepted({"EX9042D", "EX9052D@02", "--input", "2 0 square 100ms", "--input",
+                                        "2 7 key at 2s for 300ms", "--log"});
+  EXPECT_TRUE(arguments.modules[0].inputs.empty());
+  ASSERT_EQ(arguments.modules[1].inputs.size(), 2U);
+  EXPECT_EQ(arguments.modules[1].inputs[0].kind, InputProgram::Kind::Square);
+  EXPECT_EQ(arguments.modules[1].inputs[1].channel, 7U);
+}
+
+TEST(Arguments, AWrongInputIsRefused) {
+  for (const auto& [text, wrong, mend] : std::vector<std::array<const char*, 3>>{
+           {"", "--input", "a module's position before it"},
+           {"square 100ms", "'square 100ms'", "for example 1 0 square 100ms"},
+           {"1", "--input: ", "0 to 7"},
+           {"0 0 square 1s", "no module 0", "there are 1 to 1"},
+           {"2 0 square 1s", "no module 2", "there are 1 to 1"},
+           {"99999999999 0 square 1s", "no module 99999999999", "there are 1 to 1"},
+           {"1 8 square 1s", "no input '8'", "0 to 7"},
+           {"1 0 sine 1s", "'sine'", "square PERIOD"},
+       }) {
+    expect_error({"EX9052D", "--input", text}, wrong, mend);
+  }
+  expect_error({"EX9052D", "--input"}, "--input", "--help");
+}
+
+TEST(Arguments, AFaultIsOfTheLineOrOfTheModuleAtItsPosition) {
+  const std::vector<Fault> faults =
+      accepted({"EX9042D", "EX9052D@02", "--fault", "bit-errors 1e-4", "--fault",
+                "2 lost-reply every 10th reply", "--fault", "gone at 12.5s"})
+          .faults;
+  ASSERT_EQ(faults.size(), 3U);
+  EXPECT_EQ(faults[0].trouble, Trouble::BitErrors);
+  EXPECT_FALSE(faults[0].module);
+  EXPECT_EQ(faults[1].trouble, Trouble::LostReply);
+  EXPECT_EQ(faults[1].module, 1U);
+  EXPECT_EQ(faults[1].text, "lost-reply every 10th reply");
+  EXPECT_FALSE(faults[2].module);
+}
+
+TEST(Arguments, AWrongFaultIsRefused) {
+  for (const auto& [text, wrong, mend] : std::vector<std::array<const char*, 3>>{
+           {"", "--fault: the fault is empty", "expected one of bit-errors"},
+           {"1", "--fault: the fault is empty", "expected one of bit-errors"},
+           {"bogus", "--fault: 'bogus' is not a fault", "expected one of bit-errors"},
+           {"0 gone", "no module 0", "there are 1 to 1"},
+           {"2 gone", "no module 2", "there are 1 to 1"},
+           {"1 bit-errors 0.1", "1 bit-errors 0.1: concerns the line", "leave out the module's number"},
+           {"gone at noon", "gone at noon: 'noon'", "12.5s"},
+           {"gone\nat\nnoon", "gone at noon: 'noon'", "12.5s"},
+       }) {
+    expect_error({"EX9052D", "--fault", text}, wrong, mend);
+  }
+  expect_error({"EX9052D", "--fault"}, "--fault", "--help");
+}
+
+TEST(Arguments, ASeedIsAWholeNumber) {
+  EXPECT_EQ(all_accepted({"EX9042D"}).seed, 1U);
+  EXPECT_EQ(all_accepted({"EX9042D", "--seed", "0"}).seed, 0U);
+  EXPECT_EQ(all_accepted({"EX9042D", "--seed", "18446744073709551615"}).seed, 18446744073709551615U);
+  for (const char* seed : {"", "x", "1.5", "18446744073709551616", "0x10", " 1"}) {
+    expect_error({"EX9042D", "--seed", seed}, "--seed: '" + std::string(seed) + "'",
+                 "a whole number of at least 0");
+  }
+}
+
+TEST(Arguments, ASpeedIsANumberThatAClockCanFollow) {
+  EXPECT_TRUE(all_accepted({"EX9042D"}).speed.paced());
+  EXPECT_EQ(all_accepted({"EX9042D"}).speed.factor, 1.0);
+  for (const auto& [text, speed] :
+       {std::pair("0.001", 0.001), std::pair("10", 10.0), std::pair("1e3", 1000.0)}) {
+    EXPECT_EQ(all_accepted({"EX9042D", "--speed", text}).speed.factor, speed);
+  }
+  EXPECT_TRUE(all_accepted({"EX9042D", "--speed", "max", "--for", "1s"}).speed.max());
+  for (const char* speed :
+       {"", "0", "-1", "1e-12", "0.00099", "1000.1", "1e300", "nan", "inf", "fast", "1x"}) {
+    expect_error({"EX9042D", "--speed", speed}, "--speed: '" + std::string(speed) + "'",
+                 "from 0.001 to 1000, max or step");
+  }
+}
+
+TEST(Arguments, SteppedTimeRequiresTheControlSocketAndNothingThatHasATimeOfItsOwn) {
+  const struct Setup setup = all_accepted({"EX9042D", "--speed", "step", "--control", "c"});
+  EXPECT_TRUE(setup.speed.stepped());
+  EXPECT_EQ(setup.lines[0].pty, "ex9000.tty");
+  EXPECT_TRUE(all_accepted({"EX9042D", "--speed", "step", "--control", "c", "--watch"}).watch);
+  expect_error({"EX9042D", "--speed", "step"}, "--speed: step", "requires --control");
+  expect_error({"EX9042D", "--speed", "step", "--control", "c", "--panel"}, "--speed: step",
+               "cannot be combined with --panel");
+  expect_error({"EX9042D", "--speed", "step", "--control", "c", "--serial", "/dev/ttyUSB0"},
+               "--speed: ", "cannot be combined with --serial");
+}
+
+/// What is played; that nothing else is to be done is looked at too.
+play::Task task_of(const std::vector<const char*>& words) {
+  const Parsed parsed = parse(words);
+  EXPECT_FALSE(parsed.setup);
+  EXPECT_TRUE(parsed.task) << parsed.error;
+  return parsed.task.value_or(play::Task());
+}
+
+TEST(Arguments, WhatPlayIsToldStandsBehindIt) {
+  const play::Task task =
+      task_of({"play", "s.txt", "EX9042D", "--capture", "c", "--log", "json", "--seed", "7"});
+  EXPECT_EQ(task.path, "s.txt");
+  EXPECT_EQ(task.writing.capture, "c");
+  EXPECT_EQ(task.writing.log, LogFormat::Json);
+  ASSERT_TRUE(task.bus);
+  EXPECT_EQ(task.bus->seed, 7U);
+  EXPECT_EQ(task_of({"play", "play"}).path, "play");
+  EXPECT_EQ(task_of({"play", "describe"}).path, "describe");
+  expect_error({"--capture", "x", "play", "s.txt"}, "play: --capture comes before the subcommand",
+               "move it after 'play'");
+  expect_error({"--log", "play", "s.txt"}, "play: --log comes before the subcommand", "move it after 'play'");
+  expect_error({"--seed", "1", "play", "s.txt"}, "play: --seed comes before the subcommand",
+               "move it after 'play'");
+  expect_error({"EX9042D@02", "play", "s.txt"}, "play: EX9042D@02 comes before the subcommand",
+               "move it after 'play'");
+  for (const char* option : {"--pty", "--tcp", "--fault", "--control", "--speed", "--for"}) {
+    expect_error({option, "1", "play", "s.txt"},
+                 std::string("play: ") + option + " comes before the subcommand", "leave it out");
+  }
+  expect_error({"--echo", "play", "s.txt"}, "play: --echo comes before the subcommand", "leave it out");
+}
+
+TEST(Arguments, WhatDescribeIsToldStandsBehindIt) {
+  expect_error({"--tcp", "5020", "describe", "EX9042D-M"}, "describe: --tcp comes before the subcommand",
+               "move it after 'describe'");
+  expect_error({"--log", "describe"}, "describe: --log comes before the subcommand", "leave it out");
+  expect_error({"EX9042D", "describe"}, "describe: EX9042D comes before the subcommand", "leave it out");
+}
+
+TEST(Arguments, PlaysSeedAndCaptureAreAlwaysLookedAt) {
+  expect_error({"play", "s.txt", "--seed", "abc"}, "--seed: 'abc'", "a whole number of at least 0");
+  expect_error({"play", "s.txt", "EX9042D", "--seed", "abc"}, "--seed: 'abc'",
+               "a whole number of at least 0");
+  expect_error({"play", "s.txt", "--capture", ""}, "--capture", "path");
+}
+
+TEST(Arguments, TheExampleIsPrintedAndIsABusFile) {
+  EXPECT_EQ(printed({"--example"}), example_bus_file());
+  EXPECT_EQ(parse_bus_file("example", printed({"--example"})).lines.size(), 2U);
+}
+
+TEST(Arguments, HelpTellsOfFaultsInputsAndControlCommandsAsTheyAreTold) {
+  const std::string text = printed({"--help"});
+  EXPECT_NE(text.find(fault_help()), std::string::npos);
+  EXPECT_NE(text.find(control_commands()), std::string::npos);
+}
+
+TEST(Arguments, ModelsListsEveryModelAndWhatItSpeaks) {
+  const std::string text = printed({"--models"});
+  for (const Model& model : kModels) {
+    EXPECT_NE(("\n" + text).find("\n" + std::string(model.designation) + " "), std::string::npos)
+        << model.designation;
+  }
+  EXPECT_EQ(std::count(text.begin(), text.end(), '\n'), static_cast<std::ptrdiff_t>(kModels.size()));
+  EXPECT_NE(text.find("Modbus RTU"), std::string::npos);
+}
+
+TEST(Arguments, DescribeIsOfAllModelsWhereNoneIsNamed) {
+  EXPECT_EQ(printed({"describe"}), markdown_of_all());
+  EXPECT_EQ(printed({"describe", "--format", "markdown"}), markdown_of_all());
+}
+
+TEST(Arguments, DescribeIsOfOneModelInAnyCaseWithOrWithoutEx) {
+  const std::string text = markdown_of(*find_model("EX9052D-M"));
+  for (const char* name : {"EX9052D-M", "ex9052d-m", "9052D-M", "9052d-m"}) {
+    EXPECT_EQ(printed({"describe", name}), text) << name;
+  }
+}
+
+TEST(Arguments, DescribesOptionsMayStandBeforeAndBehindTheModel) {
+  EXPECT_EQ(printed({"describe", "--format=json", "EX9042D"}),
+            printed({"describe", "EX9042D", "--format", "json"}));
+  EXPECT_EQ(printed({"describe", "EX9042D-M", "--tcp", "4001", "--address=2", "--format", "home-assistant"}),
+            printed({"describe", "--format", "home-assistant", "--address", "02", "--tcp", "127.0.0.1:4001",
+                     "EX9042D-M"}));
+}
+
+TEST(Arguments, AWrongDescriptionIsRefused) {
+  expect_error({"describe", "EX9999"}, "describe: 'EX9999'", "--models");
+  expect_error({"describe", "EX9042D@01"}, "EX9042D@01", "--models");
+  expect_error({"describe", "EX9042D", "EX9060D"}, "EX9060D", "--help");
+  expect_error({"describe", "EX9042D", "--pty", "x"}, "--pty", "--help");
+  expect_error({"describe", "EX9042D", "--format"}, "--format", "--help");
+  EXPECT_EQ(parse({"describe", "EX9999"}).exit_status, kWrongArguments);
+}
+
+TEST(Arguments, HelpTellsOfEveryOptionAndKey) {
+  const std::string text = printed({"--help"});
+  for (const char* word :
+       {"MODULE",        "[text|json|off]", "--capture", "--pty",          "--baud",    "--log",
+        "--strict-gaps", "--input",         "--fault",   "--seed",         "--example", "--models",
+        "describe",      "--format",        "--address", "home-assistant", "node-red",  "wb-mqtt-serial",
+        "--panel",       "--watch",         "--version", "protocol=",      "baud=",     "checksum=",
+        "edge=",         "name=",           "init=",     "@ADDR"}) {
+    EXPECT_NE(text.find(word), std::string::npos) << word;
+  }
+}
+
+TEST(Arguments, DescribeHasHelpOfItsOwn) {
+  const std::string text = printed({"describe", "--help"});
+  for (const char* word : {"MODEL", "--format", "markdown|json|csv|home-assistant|node-red|wb-mqtt-serial",
+                           "--address", "--tcp", "127.0.0.1:5020"}) {
+    EXPECT_NE(text.find(word), std::string::npos) << word;
+  }
+  EXPECT_EQ(text.find("--pty"), std::string::npos);
+}
+
+TEST(Arguments, VersionIsTheFirmwares) { EXPECT_EQ(printed({"--version"}), "ex9000-sim D01.00\n"); }
+
+TEST(Arguments, BesideWhatIsPrintedThereIsNothingElse) {
+  EXPECT_EQ(printed({"EX9042D", "--version"}), printed({"--version"}));
+  expect_error({"--models", "EX9042D"}, "--models: prints and runs nothing", "leave out EX9042D");
+  expect_error({"--example", "--log"}, "--example: prints and runs nothing", "leave out --log");
+  expect_error({"--example", "--seed", "abc"}, "--example: prints and runs nothing", "leave out --seed");
+  expect_error({"--models", "--example"}, "--models: prints and runs nothing", "leave out --example");
+  expect_error({"--models", "play", "s.txt"}, "--models: prints and runs nothing", "leave out play");
+  expect_error({"--example", "describe"}, "--example: prints and runs nothing", "leave out describe");
+}
+
+}  // namespace
+}  // namespace ex9000::sim

@@ -1,0 +1,304 @@
+// The program as a program: start, end, and what it says to wrong arguments.
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <chrono>
+#include <csignal>
+#include <filesystem>
+#include <fstream>
+#include <sstream>
+#include <string>
+#include <thread>
+#include <vector>
+
+#include "firmware/model/model.hpp"
+#include "tests/support/simulator_process.hpp"
+
+namespace ex9000::system {
+namespace {
+
+namespace fs = std::filesystem;
+
+Finished simulator(std::vector<std::string> arguments, const std::string& directory) {
+  arguments.insert(arguments.begin(), simulator_path());
+  return run(arguments, directory);
+}
+
+TEST(Program, EndsCleanlyAndRemovesItsLink) {
+  for (const int signal : {SIGINT, SIGTERM}) {
+    SimulatorProcess process({"EX9042D-M"});
+    ASSERT_TRUE(fs::is_symlink(process.tty()));
+    EXPECT_EQ(process.end(signal), 0);
+    EXPECT_FALSE(fs::is_symlink(process.tty()));
+  }
+}
+
+TEST(Program, EndsCleanlyWhenNobodyReadsItsLogAnyMore) {
+  Directory directory;
+  // A master that goes on talking makes the log grow after `head` has gone.
+  const Finished finished =
+      run({"sh", "-c",
+           "(" + simulator_path() +
+               " EX9042D --log; echo ended $? >&2) | head -n 1 & "
+               "until [ -L ex9000.tty ]; do :; done; "
+               "while [ -L ex9000.tty ]; do printf '$012\\r' > ex9000.tty; done 2>/dev/null; wait"},
+          directory.path());
+  EXPECT_NE(finished.error.find("ended 0"), std::string::npos) << finished.error;
+  EXPECT_FALSE(fs::is_symlink(directory.path() + "/ex9000.tty"));
+}
+
+TEST(Program, ASignalThatItIsStartedToIgnoreIsIgnored) {
+  const Directory directory;
+  ChildProcess process({"sh", "-c", "trap '' HUP; exec " + simulator_path() + " EX9042D"}, directory.path());
+  ASSERT_TRUE(process.wait_for("Ctrl-C ends it"));
+  std::ifstream status("/proc/" + std::to_string(process.pid()) + "/status");
+  std::string line;
+  while (std::getline(status, line) && line.rfind("SigIgn:", 0) != 0) {
+  }
+  ASSERT_FALSE(line.empty());
+  const unsigned long ignored = std::stoul(line.substr(line.find('\t') + 1), nullptr, 16);
+  EXPECT_EQ(ignored >> (SIGHUP - 1) & 1U, 1U);  // it was not caught instead
+  EXPECT_EQ(ignored >> (SIGTERM - 1) & 1U, 0U);
+  EXPECT_EQ(process.end(SIGTERM), 0);
+}
+
+TEST(Program, StandardStreamsMayBeClosed) {
+  const Directory directory;
+  const Finished finished =
+      run({"sh", "-c",
+           simulator_path() + " EX9042D@05 <&- >&- 2>&- & until [ -L ex9000.tty ]; do :; done; "
+                              "kill -TERM $!; wait $!"},
+          directory.path());
+  EXPECT_EQ(finished.status, 0);
+  EXPECT_TRUE(fs::is_empty(directory.path()));
+}
+
+TEST(Program, AFullDiskBehindItsOutputIsSaid) {
+  const Directory directory;
+  for (const char* arguments : {" EX9042D", " --help", " describe"}) {
+    const Finished finished =
+        run({"sh", "-c", simulator_path() + arguments + " > /dev/full"}, directory.path());
+    EXPECT_EQ(finished.status, 1) << arguments;
+    EXPECT_NE(finished.error.find("standard output: "), std::string::npos) << finished.error;
+    EXPECT_EQ(std::count(finished.error.begin(), finished.error.end(), '\n'), 1) << finished.error;
+    EXPECT_TRUE(fs::is_empty(directory.path()));
+  }
+}
+
+TEST(Program, ALinkThatAnotherUsersSimulatorHasIsNotTakenOver) {
+  if (geteuid() != 0) {
+    GTEST_SKIP() << "another user's simulator can be started by root only";
+  }
+  SimulatorProcess process({"EX9042D"});
+  fs::permissions(process.directory(), fs::perms::all);
+  const Finished other =
+      run({"setpriv", "--reuid=65534", "--clear-groups", simulator_path(), "EX9052D", "--pty", process.tty()},
+          process.directory());
+  EXPECT_EQ(other.status, 2) << other.error;
+  EXPECT_NE(other.error.find("another simulator is running there"), std::string::npos) << other.error;
+}
+
+TEST(Program, WrongArgumentsGiveOneLineThatNamesThemExitStatus2AndLeaveNothingBehind) {
+  struct Case {
+    std::vector<std::string> arguments;
+    std::string names;
+    std::string mend;
+  };
+  const std::vector<Case> cases{
+      {{}, "no module", "EX9042D-M"},
+      {{"EX1234"}, "EX1234", "--models"},
+      {{"EX9042D-M@"}, "EX9042D-M@", "hex"},
+      {{"EX9042D-M@123"}, "123", "hex"},
+      {{"EX9042D-M@00"}, "00", "01 to F7"},
+      {{"EX9042D-M@F8"}, "F8", "01 to F7"},
+      {{"EX9042D,protocol=modbus"}, "protocol=modbus", "ASCII only"},
+      {{"EX9042D-M,protocol=rtu"}, "protocol=rtu", "modbus or ascii"},
+      {{"EX9042D,baud=9601"}, "baud=9601", "9600"},
+      {{"EX9042D,checksum=yes"}, "checksum=yes", "on or off"},
+      {{"EX9052D,edge=up"}, "edge=up", "rising or falling"},
+      {{"EX9042D,name="}, "name=", "1 to 6"},
+      {{"EX9042D,name=SEVENTY"}, "name=SEVENTY", "1 to 6"},
+      {{"EX9042D,colour=red"}, "colour=red: colour=: unknown key", "expected one of protocol, baud"},
+      {{"EX9042D,init"}, "init", "on or off"},
+      {{"EX9042D", "--baud", "12"}, "--baud: '12'", "1200"},
+      {{"EX9042D", "--bogus"}, "--bogus", "--help"},
+      {{"EX9042D", "--pty", "/no/such/place/tty"}, "--pty /no/such/place/tty", "path"},
+      {{"EX9042D", "--pty", ""}, "--pty", "path"},
+      {{"EX9042D", "--tcp", "here"}, "--tcp: 'here'", "HOST:PORT"},
+      {{"EX9042D", "--tcp", "192.0.2.1:5020"}, "--tcp 192.0.2.1:5020", "name"},
+      {{"EX9042D", "--serial", "/no/such/port"}, "--serial /no/such/port", "name"},
+      {{"EX9042D", "--line", "fast"}, "--line: 'fast'", "instant or paced"},
+      {{"EX9042D", "--control", "/no/such/place/ctl"}, "--control /no/such/place/ctl", "path"},
+      {{"EX9042D", "--capture", "/no/such/place/pcapng"}, "--capture /no/such/place/pcapng", "path"},
+      {{"EX9042D", "--capture", "."}, "--capture .", "path"},
+      {{"EX9042D", "--capture", "a", "--control", "/no/such/place/ctl"}, "--control", "path"},
+      {{"EX9042D,eeprom=/no/such/place/bin", "--capture", "a"}, "eeprom=/no/such/place/bin", "path"},
+      {{"EX9042D", "--log=xml"}, "--log: 'xml'", "text, json or off"},
+      {{"EX9042D,eeprom=/no/such/place/bin"}, "eeprom=/no/such/place/bin", "path"},
+      {{"describe", "EX1"}, "'EX1'", "--models"},
+      {{"describe", "--format", "yaml"}, "--format yaml", "home-assistant"},
+      {{"describe", "--format", "home-assistant"}, "--format home-assistant", "MODEL"},
+      {{"describe", "--format", "node-red"}, "--format node-red", "MODEL"},
+      {{"describe", "--format", "wb-mqtt-serial"}, "--format wb-mqtt-serial", "MODEL"},
+      {{"describe", "EX9042D", "--format", "home-assistant"},
+       "EX9042D --format home-assistant",
+       "Modbus RTU"},
+      {{"describe", "EX9055D", "--format", "node-red"}, "speaks no Modbus", "--models"},
+      {{"describe", "EX9042D-M", "--format", "node-red", "--address", "00"}, "--address 00", "01 to F7"},
+      {{"describe", "EX9042D-M", "--format", "node-red", "--tcp", "host"}, "--tcp 'host'", "HOST:PORT"},
+      {{"describe", "EX9042D-M", "--address", "02"}, "--address", "leave it out"},
+      {{"EX9042D", "describe"}, "describe", "leave it out"},
+      {{"--capture", "a", "play", "b"}, "--capture comes before the subcommand", "move it after 'play'"},
+      {{"--example", "EX9042D"}, "--example", "leave out EX9042D"},
+      {{"EX9042D", "--speed", "1e-12"}, "--speed: '1e-12'", "from 0.001 to 1000"},
+      {{"play", "none.txt", "EX9042D", "--capture", "a"}, "none.txt: cannot be read", "name a transcript"},
+      {{"EX9042D", "--pty", "a", "--capture", "a"}, "--capture a: is the pseudo-terminal a", "another path"},
+      {{"EX9042D", "--control", "a", "--capture", "./a"},
+       "--capture ./a: is the control socket a",
+       "another path"},
+      {{"EX9042D,eeprom=a", "--capture", "a"}, "--capture a: is a module's EEPROM file a", "another path"},
+  };
+  for (const Case& wrong : cases) {
+    Directory directory;
+    const Finished finished = simulator(wrong.arguments, directory.path());
+    EXPECT_EQ(finished.status, 2) << finished.error;
+    EXPECT_EQ(finished.output, "");
+    EXPECT_EQ(std::count(finished.error.begin(), finished.error.end(), '\n'), 1) << finished.error;
+    EXPECT_NE(finished.error.find(wrong.names), std::string::npos) << finished.error;
+    EXPECT_NE(finished.error.find(wrong.mend), std::string::npos) << finished.error;
+    EXPECT_TRUE(fs::is_empty(directory.path())) << finished.error;
+  }
+}
+
+TEST(Program, WhatIsCenturiesAheadIsSleptFor) {
+  // A year at the least speed takes a thousand, more than a clock can count; without power nothing comes
+  // before.
+  for (const std::vector<std::string>& far :
+       {std::vector<std::string>{"--fault", "gone", "--fault", "gone at 8760h"}, {"--for", "8760h"}}) {
+    std::vector<std::string> arguments{"EX9042D", "--speed", "0.001"};
+    arguments.insert(arguments.end(), far.begin(), far.end());
+    SimulatorProcess process(arguments);
+    const auto ticks = [&process] {
+      std::ifstream status("/proc/" + std::to_string(process.pid()) + "/stat");
+      std::string word;
+      unsigned long used = 0;
+      for (int field = 1; status >> word; ++field) {
+        used += field == 14 || field == 15 ? std::stoul(word) : 0;
+      }
+      return used;
+    };
+    const unsigned long before = ticks();
+    // The time over which its use is measured: one that looks all the time would take most of it.
+    std::this_thread::sleep_for(std::chrono::milliseconds(500));
+    EXPECT_LT(ticks() - before, 5U) << "hundredths of a second, of 50";
+    EXPECT_EQ(process.end(SIGTERM), 0);
+  }
+}
+
+/// Seconds from the start to the end of a run of the program. One that hangs is ended after ten minutes, and
+/// its status is not 0.
+double seconds_of_a_run(const std::string& speed, const std::string& lasts) {
+  const Directory directory;
+  const auto began = std::chrono::steady_clock::now();
+  const Finished finished = run(
+      {"timeout", "600", simulator_path(), "EX9042D", "--speed", speed, "--for", lasts}, directory.path());
+  EXPECT_EQ(finished.status, 0) << "--speed " << speed << " --for " << lasts << " " << finished.error;
+  return std::chrono::duration<double>(std::chrono::steady_clock::now() - began).count();
+}
+
+TEST(Program, EndsWhenTheTimeOfTheLineIsOverAndNotThatOfTheWall) {
+  // A slow line: a machine under load makes it longer, and none makes it shorter.
+  EXPECT_GE(seconds_of_a_run("0.01", "5ms"), 0.5);
+  EXPECT_GE(seconds_of_a_run("1", "400ms"), 0.4);
+  // A fast one: what is waited for is over in less than two seconds, and would take half an hour by the wall.
+  EXPECT_GE(seconds_of_a_run("1000", "30min"), 1.8);
+}
+
+TEST(Program, DescribesAModelAndEnds) {
+  const Directory directory;
+  for (const char* format : {"markdown", "json", "csv", "home-assistant", "node-red", "wb-mqtt-serial"}) {
+    const Finished finished = simulator({"describe", "9052d-m", "--format", format}, directory.path());
+    EXPECT_EQ(finished.status, 0) << format;
+    EXPECT_EQ(finished.error, "");
+    EXPECT_NE(finished.output.find("EX9052D-M"), std::string::npos) << format;
+    EXPECT_TRUE(fs::is_empty(directory.path()));
+  }
+}
+
+TEST(Program, SomethingElseWhereTheLinkShouldGoIsLeftAlone) {
+  Directory directory;
+  std::ofstream(directory.path() + "/ex9000.tty") << "precious";
+  const Finished finished = simulator({"EX9042D"}, directory.path());
+  EXPECT_EQ(finished.status, 2);
+  EXPECT_NE(finished.error.find("something else is there"), std::string::npos) << finished.error;
+  EXPECT_TRUE(fs::is_regular_file(directory.path() + "/ex9000.tty"));
+}
+
+TEST(Program, ALinkInUseIsRefusedAndOneLeftByADeadProcessIsTakenOver) {
+  SimulatorProcess process({"EX9042D-M"});
+  const Finished second = simulator({"EX9042D"}, process.directory());
+  EXPECT_EQ(second.status, 2);
+  EXPECT_NE(second.error.find("another simulator"), std::string::npos) << second.error;
+  EXPECT_TRUE(fs::is_symlink(process.tty()));
+  process.end(SIGKILL);
+  ASSERT_TRUE(fs::is_symlink(process.tty()));
+  SimulatorProcess heir({"EX9042D", "--pty", process.tty()});
+  EXPECT_NE(heir.output().find("Ctrl-C ends it"), std::string::npos);
+  EXPECT_EQ(heir.end(SIGTERM), 0);
+  EXPECT_FALSE(fs::is_symlink(process.tty()));
+}
+
+TEST(Program, ALeftLinkThatLeadsToAnotherSimulatorByNowIsTakenOver) {
+  SimulatorProcess other({"EX9042D-M"});
+  const Directory directory;
+  const std::string link = directory.path() + "/left.tty";
+  fs::create_symlink(fs::read_symlink(other.tty()), link);
+  SimulatorProcess heir({"EX9042D", "--pty", link});
+  EXPECT_NE(heir.output().find("Ctrl-C ends it"), std::string::npos);
+  EXPECT_NE(fs::read_symlink(link), fs::read_symlink(other.tty()));
+}
+
+TEST(Program, AnInstalledProgramRunsFromWhereItIsPut) {
+  const Directory directory;
+  const Finished installed = run({"cmake", "--install", EX9000_BUILD, "--prefix", directory.path()});
+  EXPECT_EQ(installed.status, 0) << installed.error;
+  EXPECT_EQ(run({directory.path() + "/bin/ex9000-sim", "--version"}, "/").output, "ex9000-sim D01.00\n");
+}
+
+TEST(Program, TellsItsVersionModelsAndHelp) {
+  Directory directory;
+  EXPECT_EQ(simulator({"--version"}, directory.path()).output, "ex9000-sim D01.00\n");
+  const Finished models = simulator({"--models"}, directory.path());
+  EXPECT_EQ(models.status, 0);
+  EXPECT_EQ(std::count(models.output.begin(), models.output.end(), '\n'),
+            static_cast<std::ptrdiff_t>(kModels.size()));
+  EXPECT_NE(models.output.find("EX9068AD-M"), std::string::npos);
+  const Finished help = simulator({"--help"}, directory.path());
+  EXPECT_EQ(help.status, 0);
+  for (const char* option :
+       {"--pty",     "--baud", "--log",     "--models",  "--version", "--strict-gaps", "--tcp",
+        "--serial",  "--line", "--control", "--capture", "describe",  "eeprom=",       "N pulse C",
+        "protocol=", "edge=",  "checksum=", "name=",     "init=",     "baud="}) {
+    EXPECT_NE(help.output.find(option), std::string::npos) << option;
+  }
+  EXPECT_TRUE(fs::is_empty(directory.path()));
+}
+
+TEST(Program, PrintsMbpollLinesThatWorkWhenPasted) {
+  SimulatorProcess process({"EX9042D-M@01", "EX9052D-M@1A"});
+  int pasted = 0;
+  std::string line;
+  for (std::istringstream lines(process.output()); std::getline(lines, line);) {
+    if (line.find("mbpoll ") == std::string::npos) {
+      continue;
+    }
+    const Finished finished = run({"sh", "-c", line}, process.directory());
+    EXPECT_EQ(finished.status, 0) << line << "\n" << finished.output << finished.error;
+    ++pasted;
+  }
+  EXPECT_EQ(pasted, 4);
+}
+
+}  // namespace
+}  // namespace ex9000::system

@@ -1,0 +1,217 @@
+// The virtual line itself.
+#include "sim/bus/bus.hpp"
+
+#include <gtest/gtest.h>
+
+#include <memory>
+#include <vector>
+
+#include "sim/bus/master.hpp"
+#include "sim/line/line.hpp"
+#include "tests/sim/bus/bus_recorder.hpp"
+
+namespace ex9000::sim {
+namespace {
+
+using std::chrono::microseconds;
+using std::chrono::milliseconds;
+using std::chrono::nanoseconds;
+
+struct Heard {
+  std::uint8_t byte;
+  ByteStatus status;
+  VirtualTime at;
+};
+
+/// A receiver that writes down what it hears.
+class Listener final : public Station {
+ public:
+  Listener(Bus& bus, std::uint32_t baud) : clock_(bus.clock()), wire_(bus.attach(*this)), baud_(baud) {}
+
+  [[nodiscard]] VirtualTime next() const override { return kNever; }
+  void run() override {}
+  [[nodiscard]] std::uint32_t baud() const override { return baud_; }
+  void receive(std::uint8_t byte, ByteStatus status) override {
+    heard.push_back({byte, status, clock_.virtual_now()});
+  }
+
+  void set_baud(std::uint32_t baud) { baud_ = baud; }
+
+  std::vector<Heard> heard;
+
+ private:
+  VirtualClock& clock_;
+  Wire& wire_;
+  std::uint32_t baud_;
+};
+
+class BusTest : public testing::Test {
+ protected:
+  std::unique_ptr<Master> master(std::uint32_t baud) {
+    return std::make_unique<Master>(bus_, baud, [](std::uint8_t /*byte*/, ByteStatus /*status*/) {});
+  }
+  static void send(Master& master, std::vector<std::uint8_t> bytes) {
+    master.send(bytes.data(), bytes.size());
+  }
+
+  VirtualClock clock_;
+  Bus bus_{clock_};
+};
+
+TEST_F(BusTest, AByteTakesTenBitsAtItsSendersRate) {
+  for (const std::uint32_t baud : kBaudRates) {
+    VirtualClock clock;
+    Bus bus(clock);
+    Master sender(bus, baud, [](std::uint8_t /*byte*/, ByteStatus /*status*/) {});
+    Listener listener(bus, baud);
+    const std::vector<std::uint8_t> bytes(100, 0x55);
+    sender.send(bytes.data(), bytes.size());
+    bus.run_for(std::chrono::seconds(2));
+    ASSERT_EQ(listener.heard.size(), 100U) << baud;
+    EXPECT_EQ(listener.heard.front().at, nanoseconds(10'000'000'000 / baud)) << baud;
+    EXPECT_NEAR(static_cast<double>(listener.heard.back().at.count()), 1000e9 / baud, 2.0) << baud;
+  }
+}
+
+TEST_F(BusTest, EveryStationOfTheSameRateHearsEveryByteUnharmed) {
+  const auto sender = master(9600);
+  std::vector<std::unique_ptr<Listener>> listeners;
+  for (int i = 0; i < 33; ++i) {
+    listeners.push_back(std::make_unique<Listener>(bus_, 9600));
+  }
+  send(*sender, {0x00, 0xFF, 0x24});
+  bus_.run_for(milliseconds(10));
+  for (const auto& listener : listeners) {
+    ASSERT_EQ(listener->heard.size(), 3U);
+    EXPECT_EQ(listener->heard[0].byte, 0x00);
+    EXPECT_EQ(listener->heard[1].byte, 0xFF);
+    EXPECT_EQ(listener->heard[2].byte, 0x24);
+    EXPECT_EQ(listener->heard[2].status, ByteStatus::Good);
+  }
+}
+
+TEST_F(BusTest, AReceiverAtHalfTheRateSeesFramingErrorsAndGarbage) {
+  const auto sender = master(19200);
+  Listener slow(bus_, 9600);
+  // '0' is 0 00001100 1 on the wire; two of its bits fall into one of the receiver's.
+  send(*sender, std::vector<std::uint8_t>(20, 0x30));
+  bus_.run_for(milliseconds(30));
+  ASSERT_FALSE(slow.heard.empty());
+  EXPECT_LT(slow.heard.size(), 20U);
+  for (const Heard& heard : slow.heard) {
+    EXPECT_NE(heard.byte, 0x30);
+  }
+}
+
+TEST_F(BusTest, AReceiverAtTenTimesTheRateTakesAZeroByteForABreak) {
+  const auto sender = master(1200);
+  Listener fast(bus_, 115200);
+  send(*sender, {0x00});
+  bus_.run_for(milliseconds(30));
+  ASSERT_EQ(fast.heard.size(), 1U);
+  EXPECT_EQ(fast.heard[0].byte, 0x00);
+  EXPECT_EQ(fast.heard[0].status, ByteStatus::Break);
+}
+
+TEST_F(BusTest, AReceiverAtAnotherRateIsWellAgainAfterwards) {
+  const auto sender = master(1200);
+  Listener listener(bus_, 9600);
+  send(*sender, {0x31, 0x32, 0x33});
+  bus_.run_for(milliseconds(50));
+  listener.heard.clear();
+  sender->set_baud(9600);
+  send(*sender, {0x31, 0x32});
+  bus_.run_for(milliseconds(50));
+  ASSERT_EQ(listener.heard.size(), 2U);
+  EXPECT_EQ(listener.heard[0].byte, 0x31);
+  EXPECT_EQ(listener.heard[1].byte, 0x32);
+}
+
+TEST_F(BusTest, OfTwoDriversAtOnceAZeroWinsBitByBit) {
+  const auto first = master(9600);
+  const auto second = master(9600);
+  Listener listener(bus_, 9600);
+  send(*first, {0xF3});
+  send(*second, {0x3F});
+  bus_.run_for(milliseconds(10));
+  ASSERT_EQ(listener.heard.size(), 1U);
+  EXPECT_EQ(listener.heard[0].byte, 0x33);
+}
+
+TEST_F(BusTest, OverlappingBytesAreReportedAsACollisionAndArriveSpoiled) {
+  const auto first = master(9600);
+  const auto second = master(9600);
+  Listener listener(bus_, 9600);
+  BusRecorder recorder;
+  bus_.observe(recorder);
+  send(*first, {0x55, 0x55});
+  bus_.run_for(microseconds(700));
+  send(*second, {0x55});
+  bus_.run_for(milliseconds(10));
+  ASSERT_EQ(recorder.bytes.size(), 3U);
+  for (const BusRecorder::Byte& byte : recorder.bytes) {
+    EXPECT_TRUE(byte.collided);
+  }
+  bool spoiled = false;
+  for (const Heard& heard : listener.heard) {
+    spoiled = spoiled || heard.byte != 0x55 || heard.status != ByteStatus::Good;
+  }
+  EXPECT_TRUE(spoiled);
+}
+
+TEST_F(BusTest, ADriverThatGoesOffInTheMiddleOfAByteLeavesTheRestIdle) {
+  const auto sender = master(9600);
+  Listener listener(bus_, 9600);
+  SimulatedModule module(bus_, *find_model("EX9042D-M"));
+  module.power(true);
+  bus_.run_for(milliseconds(100));
+  send(*sender, {0x01, 0x01, 0x00, 0x00, 0x00, 0x0D, 0xFD, 0xCF});
+  BusRecorder recorder;
+  bus_.observe(recorder);
+  while (recorder.bytes.size() < 9) {  // eight of the master's, one of the module's
+    bus_.run_until(bus_.next());
+  }
+  bus_.run_for(microseconds(300));
+  module.power(false);
+  bus_.run_for(milliseconds(10));
+  EXPECT_FALSE(bus_.busy());
+  EXPECT_EQ(recorder.bytes.size(), 9U);
+  EXPECT_FALSE(recorder.drivers.back().on);
+}
+
+TEST_F(BusTest, WhatIsSentToAModuleWithoutPowerIsNotCarriedOutWhenItComesBack) {
+  const auto sender = master(9600);
+  SimulatedModule module(bus_, *find_model("EX9043D"));
+  module.power(true);
+  bus_.run_for(milliseconds(100));
+  send(*sender, {0x00});
+  bus_.run_for(microseconds(300));
+  module.power(false);
+  EXPECT_EQ(module.baud(), 0U);
+  bus_.run_for(milliseconds(10));
+  send(*sender, {'@', '0', '1', 'F', 'F', 'F', 'F', '\r'});
+  bus_.run_for(milliseconds(100));
+  module.power(true);
+  bus_.run_for(milliseconds(100));
+  BusRecorder recorder;
+  bus_.observe(recorder);
+  send(*sender, {'$', '0', '1', 'M', '\r'});
+  bus_.run_for(milliseconds(100));
+  EXPECT_EQ(module.outputs(), 0);
+  EXPECT_EQ(recorder.sent_by(1), (std::vector<std::uint8_t>{'!', '0', '1', '9', '0', '4', '3', 'D', '\r'}));
+}
+
+TEST_F(BusTest, AReceiverThatIsOpenedInTheMiddleOfAByteDoesNotGetItWhole) {
+  const auto sender = master(9600);
+  Listener listener(bus_, 0);
+  send(*sender, {0x55});
+  bus_.run_for(microseconds(500));
+  listener.set_baud(9600);
+  bus_.run_for(milliseconds(5));
+  for (const Heard& heard : listener.heard) {
+    EXPECT_NE(heard.byte, 0x55);
+  }
+}
+
+}  // namespace
+}  // namespace ex9000::sim

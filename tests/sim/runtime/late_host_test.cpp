@@ -1,0 +1,76 @@
+// What the program says if the host has no time for it.
+#include <gtest/gtest.h>
+#include <sys/wait.h>
+
+#include <algorithm>
+#include <chrono>
+#include <csignal>
+#include <string>
+#include <thread>
+#include <vector>
+
+#include "firmware/line/crc16.hpp"
+#include "sim/text/durations.hpp"
+#include "tests/support/simulator_process.hpp"
+#include "tests/support/socket_client.hpp"
+
+namespace ex9000::system {
+namespace {
+
+/// A process that gets no processor for `span`, or longer.
+void keep_waiting(int pid, std::chrono::milliseconds span) {
+  kill(pid, SIGSTOP);
+  int status = 0;
+  ASSERT_EQ(waitpid(pid, &status, WUNTRACED), pid);
+  ASSERT_TRUE(WIFSTOPPED(status));
+  std::this_thread::sleep_for(span);  // the delay itself: the test is about it
+  kill(pid, SIGCONT);
+}
+
+/// Function 01: one coil of the module at `address`.
+std::vector<std::uint8_t> request(std::uint8_t address) {
+  std::vector<std::uint8_t> frame{address, 1, 0, 0, 0, 1};
+  const Crc16 crc = crc16({frame.data(), frame.size()});
+  frame.push_back(crc.low_byte());
+  frame.push_back(crc.high_byte());
+  return frame;
+}
+
+std::string text_of(const std::vector<std::uint8_t>& bytes) { return {bytes.begin(), bytes.end()}; }
+
+/// Of those reported so far.
+hal::doubles::VirtualTime longest_delay(const std::string& log) {
+  const std::string lead = "the host was late by ";
+  hal::doubles::VirtualTime longest{0};
+  for (auto at = log.find(lead); at != std::string::npos; at = log.find(lead, at + 1)) {
+    const auto begin = at + lead.size();
+    longest = std::max(longest, sim::parse_time(log.substr(begin, log.find(':', begin) - begin)));
+  }
+  return longest;
+}
+
+TEST(LateHost, IsReportedWithItsDelay) {
+  // An input that moves: there is always something due soon.
+  SimulatorProcess simulator({"EX9052D@01", "--tcp", "0", "--input", "1 0 square 10ms"});
+  SocketClient client(simulator.tcp_port());
+  client.send("$01M\r");
+  ASSERT_EQ(client.receive_text(8), "!019052\r");  // the line's time has begun
+  keep_waiting(simulator.pid(), std::chrono::milliseconds(300));
+  // The input is due every 5 ms. It is not reported if a busy host was late by more than half of it before.
+  for (unsigned reports = 1; longest_delay(simulator.output()) < std::chrono::milliseconds(147); ++reports) {
+    ASSERT_TRUE(simulator.wait_for(": modules reply later", reports)) << simulator.output();
+  }
+}
+
+TEST(LateHost, JoinsTwoRequestsAndSaysSo) {
+  SimulatorProcess simulator({"EX9042D-M@01,protocol=modbus", "--tcp", "0"});
+  SocketClient client(simulator.tcp_port());
+  client.send(text_of(request(1)));
+  EXPECT_EQ(client.receive_text(6).substr(0, 3), std::string("\x01\x01\x01", 3));
+  EXPECT_EQ(simulator.output().find("read in one piece"), std::string::npos) << simulator.output();
+  client.send(text_of(request(2)) + text_of(request(1)));
+  EXPECT_TRUE(simulator.wait_for("two Modbus frames were read in one piece"));
+}
+
+}  // namespace
+}  // namespace ex9000::system

@@ -1,0 +1,359 @@
+// Lines as a bus file or the command line describes them, in the running program: ports, faults, inputs,
+// memories.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <chrono>
+#include <csignal>
+#include <filesystem>
+#include <sstream>
+#include <string>
+#include <vector>
+
+#include "tests/support/control_client.hpp"
+#include "tests/support/directory.hpp"
+#include "tests/support/simulator_process.hpp"
+#include "tests/support/socket_client.hpp"
+#include "tests/support/terminal.hpp"
+
+namespace ex9000::system {
+namespace {
+
+/// It waits for an event; only a program that hangs takes this long.
+constexpr std::chrono::seconds kHang{60};
+
+namespace fs = std::filesystem;
+using std::chrono::milliseconds;
+
+bool has(const std::string& text, const std::string& part) { return text.find(part) != std::string::npos; }
+
+/// A bus file on its own in a directory.
+class BusFile {
+ public:
+  explicit BusFile(const std::string& text) { write_file(path(), text); }
+  [[nodiscard]] std::string path() const { return directory_ / "bus.json"; }
+
+ private:
+  Directory directory_;
+};
+
+/// The program with that bus file.
+class Lines {
+ public:
+  explicit Lines(const std::string& text, const std::vector<std::string>& more = {})
+      : file_(text), process_(arguments(file_.path(), more)) {}
+
+  SimulatorProcess& process() { return process_; }
+  [[nodiscard]] std::string operator/(const std::string& name) const {
+    return process_.directory() + "/" + name;
+  }
+  ControlClient& control() { return control_; }
+  /// Of the line that is told of as the `count`th, from 0, with one.
+  [[nodiscard]] std::uint16_t tcp_port(int count) const {
+    const std::string lead = "TCP 127.0.0.1:";
+    auto at = process_.output().find(lead);
+    for (; count > 0; --count) {
+      at = process_.output().find(lead, at + 1);
+    }
+    return static_cast<std::uint16_t>(std::stoul(process_.output().substr(at + lead.size())));
+  }
+
+ private:
+  static std::vector<std::string> arguments(const std::string& path, const std::vector<std::string>& more) {
+    std::vector<std::string> words{path, "--control", "control"};
+    words.insert(words.end(), more.begin(), more.end());
+    return words;
+  }
+
+  BusFile file_;
+  SimulatorProcess process_;
+  ControlClient control_{process_.directory() + "/control"};
+};
+
+constexpr const char* kHallAndYard = R"({"lines": [
+  {"name": "hall", "pty": "hall.tty", "tcp": 0, "line": "instant",
+   "modules": [{"model": "EX9042D", "address": "01"}, {"model": "EX9055D", "address": "02"}]},
+  {"name": "yard", "pty": "yard.tty", "tcp": 0, "line": "instant",
+   "modules": [{"model": "EX9052D", "address": "01"}]}]})";
+
+/// Fewer, only of a program that hangs.
+std::vector<std::uint8_t> read_exactly(Terminal& terminal, std::size_t size) {
+  std::vector<std::uint8_t> bytes;
+  while (bytes.size() < size) {
+    const std::vector<std::uint8_t> more = terminal.read(kHang);
+    if (more.empty()) {
+      break;
+    }
+    bytes.insert(bytes.end(), more.begin(), more.end());
+  }
+  return bytes;
+}
+
+std::string ask(Terminal& terminal, const std::string& command) {
+  terminal.type(command + "\r");
+  const std::string reply = terminal.read_line();
+  return reply.substr(0, reply.find('\r'));
+}
+
+// --- several lines ---
+
+TEST(Lines, DoNotHearEachOther) {
+  Lines lines(kHallAndYard);
+  Terminal hall(lines / "hall.tty", 9600);
+  Terminal yard(lines / "yard.tty", 9600);
+  SocketClient hall_tcp(lines.tcp_port(0));
+  SocketClient yard_tcp(lines.tcp_port(1));
+  hall_tcp.send("$01M\r");
+  EXPECT_EQ(hall_tcp.receive_text(9), "!019042D\r");
+  EXPECT_EQ(hall.read_line(), "!019042D\r");
+  yard_tcp.send("$01M\r");  // all that was said on the other line would be before it
+  EXPECT_EQ(yard_tcp.receive_text(8), "!019052\r");
+  EXPECT_EQ(yard.read_line(), "!019052\r");
+  EXPECT_EQ(ask(yard, "$01F"), "!01D01.00");
+  EXPECT_EQ(ask(hall, "$02M"), "!029055");
+  EXPECT_TRUE(hall.read(milliseconds(50)).empty());  // a busy machine only looks too early
+}
+
+TEST(Lines, EachHasItsOwnRateAndSaysWhichItIs) {
+  Lines lines(R"({"lines": [
+    {"name": "hall", "pty": "hall.tty", "modules": [{"model": "EX9042D", "baud": 9600}]},
+    {"pty": "yard.tty", "modules": [{"model": "EX9052D", "baud": 115200}]}], "log": true})");
+  EXPECT_TRUE(has(lines.process().output(), "hall at 9600 baud:\n")) << lines.process().output();
+  EXPECT_TRUE(has(lines.process().output(), "line2 at 115200 baud:\n")) << lines.process().output();
+  Terminal yard(lines / "yard.tty", 115200);
+  EXPECT_EQ(ask(yard, "$01M"), "!019052");
+  Terminal hall(lines / "hall.tty", 9600);
+  EXPECT_EQ(ask(hall, "$01M"), "!019042D");
+  EXPECT_TRUE(lines.process().wait_for("!019042D"));
+  std::string yards;
+  std::string halls;
+  std::istringstream printed(lines.process().output());
+  for (std::string line; std::getline(printed, line);) {
+    yards += has(line, "$01M") && line.rfind("line2: ", 0) == 0 ? "x" : "";
+    halls += has(line, "$01M") && line.rfind("hall: ", 0) == 0 ? "x" : "";
+  }
+  EXPECT_EQ(yards, "x");
+  EXPECT_EQ(halls, "x");
+}
+
+TEST(Lines, ModulesAreReachedByTheirNumberThroughAllOfThem) {
+  Lines lines(kHallAndYard);
+  EXPECT_EQ(lines.control().ask("list"),
+            "ok 3 modules: 1 EX9042D at 01 on hall, 2 EX9055D at 02 on hall, 3 EX9052D at 01 on yard");
+  EXPECT_EQ(lines.control().ask("3 input 7 on"), "ok");
+  EXPECT_EQ(lines.control().ask("2 inputs"), "ok 0000");
+  Terminal yard(lines / "yard.tty", 9600);
+  EXPECT_EQ(ask(yard, "@01"), ">8000");
+}
+
+TEST(Lines, FaultsAreOfTheLineThatIsNamed) {
+  Lines lines(kHallAndYard, {"--log"});
+  Terminal hall(lines / "hall.tty", 9600);
+  Terminal yard(lines / "yard.tty", 9600);
+  EXPECT_EQ(lines.control().ask("line yard fault late-reply 30ms every 2nd reply"), "ok 1");
+  EXPECT_EQ(lines.control().ask("3 fault power-cut for 1h"), "ok 2");
+  EXPECT_EQ(lines.control().ask("2 fault gone"), "ok 1");
+  EXPECT_EQ(lines.control().ask("line yard faults"),
+            "ok 2 faults: 1 x0 late-reply 30ms every 2nd reply; 2* x1 3 power-cut for 1h");
+  EXPECT_EQ(lines.control().ask("line hall faults"), "ok 1 fault: 1* x1 2 gone");
+  EXPECT_TRUE(has(lines.control().ask("faults"), "put 'line NAME' before the command"));
+  EXPECT_EQ(ask(hall, "$01M"), "!019042D");
+  yard.type("$01M\r");
+  hall.type("$02M\r");
+  EXPECT_TRUE(lines.process().wait_for("  > master  $02M"));  // before the faults end
+  EXPECT_TRUE(lines.process().wait_for("  > master  $01M", 2));
+  EXPECT_TRUE(yard.read(milliseconds(100)).empty());  // a busy machine only looks too early
+  EXPECT_TRUE(hall.read(milliseconds(100)).empty());
+  EXPECT_EQ(lines.control().ask("line yard fault off 2"), "ok");
+  EXPECT_EQ(lines.control().ask("line hall fault off all"), "ok");
+  while (has(lines.control().ask("3 status"), "starting") ||
+         has(lines.control().ask("2 status"), "starting")) {
+  }
+  EXPECT_EQ(ask(yard, "$01M"), "!019052");
+  EXPECT_EQ(ask(hall, "$02M"), "!029055");
+}
+
+TEST(Lines, OfTheExampleComeUp) {
+  std::string example = run({simulator_path(), "--example"}).output;
+  const std::string port = "127.0.0.1:5020";
+  ASSERT_TRUE(has(example, port));
+  example.replace(example.find(port), port.size(), "127.0.0.1:0");  // it may be in use here
+  Lines lines(example);
+  EXPECT_EQ(lines.control().ask("list"),
+            "ok 4 modules: 1 EX9042D-M at 01 on hall, 2 EX9052D-M at 02 on hall, 3 EX9068D-M at 0A on yard, "
+            "4 EX9055D at 0B on yard");
+  EXPECT_TRUE(
+      has(lines.control().ask("line hall faults"), "ok 4 faults: 1 x0 1 lost-reply every 10th reply; "));
+  SocketClient yard(lines.tcp_port(0));
+  yard.send("$0BM\r");
+  EXPECT_EQ(yard.receive_text(8), "!0B9055\r");
+  EXPECT_EQ(fs::file_size(lines / "hall-01.bin"), 8192U);
+}
+
+TEST(Lines, FilesAreMadeForAllModulesOrForNone) {
+  for (const char* wrong : {R"("pty": "taken")", R"("pty": "missing/tty")", R"("tcp": "192.0.2.1:5020")",
+                            R"("serial": "missing")"}) {
+    const Directory directory;
+    write_file(directory / "taken", "precious");
+    const BusFile file(R"({"control": "control", "lines": [
+      {"pty": "a.tty", "modules": [{"model": "EX9042D", "eeprom": "first"}]},
+      {)" + std::string(wrong) +
+                       R"(, "modules": [{"model": "EX9042D", "eeprom": "second"}]}]})");
+    const auto before = directory.contents();
+    const Finished finished = run({"timeout", "60", simulator_path(), file.path()}, directory.path());
+    EXPECT_EQ(finished.status, 2) << finished.error;
+    EXPECT_EQ(std::count(finished.error.begin(), finished.error.end(), '\n'), 1) << finished.error;
+    EXPECT_EQ(directory.contents(), before) << wrong;
+  }
+}
+
+TEST(Lines, WhatCannotBeOpenedIsToldOfWithWhereItIsAskedFor) {
+  const BusFile file(
+      "{\"lines\": [\n"
+      "{\"tcp\": 0, \"modules\": [{\"model\": \"EX9042D\"}]},\n"
+      "{\"pty\": \"no/such/folder\", \"modules\": [{\"model\": \"EX9042D\"}]}]}");
+  const Finished finished = run({simulator_path(), file.path()});
+  EXPECT_EQ(finished.status, 2);
+  EXPECT_EQ(finished.error,
+            "ex9000-sim: " + file.path() +
+                ":3: lines[1].pty: no/such/folder: No such file or directory; name a path that can "
+                "be written\n");
+}
+
+TEST(Lines, APseudoTerminalThatTheFileDoesNotNameIsToldOfWithItsLine) {
+  const Directory directory;
+  write_file(directory / "line1.tty", "precious");
+  const BusFile file("{\"lines\": [\n{\"modules\": [{\"model\": \"EX9042D\"}]}]}");
+  const Finished finished = run({simulator_path(), file.path()}, directory.path());
+  EXPECT_EQ(finished.status, 2);
+  EXPECT_EQ(finished.error,
+            "ex9000-sim: " + file.path() +
+                ":2: lines[0]: line1.tty: something else is there; remove it or name another path\n");
+}
+
+TEST(Lines, AModulesEepromIsToldOfWithItsPlaceInTheFile) {
+  const Directory directory;
+  write_file(directory / "short", "short");
+  write_file(directory / "steps.txt", "> $01M\n< !019042D\n");
+  const BusFile file(
+      "{\"lines\": [{\"tcp\": 0, \"modules\": [{\"model\": \"EX9042D\",\n\"eeprom\": \"short\"}]}]}");
+  for (const std::vector<std::string>& command : {std::vector<std::string>{simulator_path(), file.path()},
+                                                  {simulator_path(), "play", "steps.txt", file.path()}}) {
+    const Finished finished = run(command, directory.path());
+    EXPECT_EQ(finished.status, 2);
+    EXPECT_EQ(finished.error.rfind(
+                  "ex9000-sim: " + file.path() + ":2: lines[0].modules[0].eeprom: short: has 5 bytes, ", 0),
+              0U)
+        << finished.error;
+  }
+}
+
+TEST(Lines, SoIsWhatBelongsToAllLinesUnlessTheCommandLineAsksForIt) {
+  const SimulatorProcess other({"EX9042D", "--panel", "0"});
+  const std::string address = other.output().substr(0, other.output().find("/\n"));
+  const std::string port = address.substr(address.rfind(':') + 1);
+  const std::pair<std::string, std::string> cases[] = {
+      {"control", "no/such/folder"}, {"capture", "no/such/folder"}, {"panel", port}};
+  for (const auto& [key, wrong] : cases) {
+    const Directory directory;
+    const BusFile file("{\n\"" + key + "\": \"" + wrong +
+                       "\", \"lines\": [{\"tcp\": 0, \"modules\": [{\"model\": \"EX9042D\"}]}]}");
+    const Finished finished = run({simulator_path(), file.path()}, directory.path());
+    EXPECT_EQ(finished.status, 2);
+    EXPECT_EQ(finished.error.rfind("ex9000-sim: " + file.path() + ":2: " + key + ": " + wrong + ": ", 0), 0U)
+        << finished.error;
+    const Finished asked = run({simulator_path(), file.path(), "--" + key, wrong}, directory.path());
+    EXPECT_EQ(asked.error.rfind("ex9000-sim: --" + key + " " + wrong + ": ", 0), 0U) << asked.error;
+    EXPECT_TRUE(fs::is_empty(directory.path()));
+  }
+}
+
+TEST(Lines, AWrongFileIsRefusedInOneLineThatNamesItItsLineAndTheKey) {
+  const Directory directory;
+  const BusFile file("{\"lines\": [{\"modules\": [{\"model\": \"EX9042D\",\n\"colour\": 1}]}]}");
+  const Finished finished = run({simulator_path(), file.path()}, directory.path());
+  EXPECT_EQ(finished.status, 2);
+  EXPECT_EQ(finished.output, "");
+  EXPECT_EQ(
+      finished.error.rfind("ex9000-sim: " + file.path() +
+                               ":2: lines[0].modules[0].colour: unknown key; expected one of model, address",
+                           0),
+      0U)
+      << finished.error;
+  EXPECT_EQ(std::count(finished.error.begin(), finished.error.end(), '\n'), 1);
+  EXPECT_TRUE(fs::is_empty(directory.path()));
+}
+
+// --- what the command line says of one ---
+
+TEST(LineOfTheCommandLine, HasFaultsAndMovedInputs) {
+  SimulatorProcess simulator({"EX9042D@01", "EX9052D@02", "--line", "instant", "--control", "control",
+                              "--input", "2 5 square 2ms", "--fault", "1 late-reply 20ms", "--fault",
+                              "2 gone at 1h"});
+  ControlClient control(simulator.directory() + "/control");
+  EXPECT_EQ(control.ask("faults"), "ok 2 faults: 1* x1 1 late-reply 20ms; 2 x0 2 gone at 1h");
+  Terminal terminal(simulator.tty(), 9600);
+  EXPECT_EQ(ask(terminal, "$01M"), "!019042D");  // 20 ms are long for the square wave
+  const std::string some = ask(terminal, "#025");
+  EXPECT_EQ(some.rfind("!02", 0), 0U);
+  EXPECT_GT(std::stoul(some.substr(3)), 5U);
+}
+
+/// How often a fault has struck after each of many commands.
+std::string strikes(const std::string& seed) {
+  SimulatorProcess simulator({"EX9042D@01", "--line", "instant", "--control", "control", "--fault",
+                              "lost-reply with probability 0.5", "--seed", seed});
+  ControlClient control(simulator.directory() + "/control");
+  Terminal terminal(simulator.tty(), 9600);
+  std::string struck;
+  for (const char digit : std::string("123456789ABCDEF123456789ABCDEF")) {
+    terminal.type("@01000" + std::string(1, digit) + "\r");
+    while (control.ok("1 outputs") != "000" + std::string(1, digit)) {
+    }
+    std::string faults = control.ok("faults");
+    while (has(faults, "*")) {  // the reply is not over
+      faults = control.ok("faults");
+    }
+    struck += faults.substr(faults.find(" x"), 4) + ",";
+  }
+  return struck;
+}
+
+TEST(LineOfTheCommandLine, TheSameSeedStrikesTheSameReplies) {
+  const std::string of_seed = strikes("7");
+  EXPECT_EQ(strikes("7"), of_seed);
+  EXPECT_NE(strikes("8"), of_seed);
+}
+
+// Strangers are on the line behind the modules, in no list of speakers.
+TEST(LineOfTheCommandLine, WhatNoModuleHasSentIsHeardAndLogged) {
+  SimulatorProcess simulator({"EX9042D-M@01", "--control", "control", "--log"});
+  ControlClient control(simulator.directory() + "/control");
+  Terminal terminal(simulator.tty(), 9600);
+  for (int round = 0; round < 3; ++round) {
+    control.ok("fault foreign-traffic 0501000000083C48");
+    EXPECT_EQ(read_exactly(terminal, 8), (std::vector<std::uint8_t>{5, 1, 0, 0, 0, 8, 0x3C, 0x48}));
+    terminal.write({1, 1, 0, 0, 0, 13, 0xFD, 0xCF});
+    EXPECT_EQ(read_exactly(terminal, 7).size(), 7U);
+  }
+  EXPECT_TRUE(simulator.wait_for("? somebody else  05 01 00 00 00 08 3C 48")) << simulator.output();
+  control.ok("fault inserted-bytes 1");
+  terminal.write({0});
+  EXPECT_FALSE(terminal.read(kHang).empty());
+  control.ok("fault echo 2ms");
+  control.ok("fault off 4");
+  terminal.write({0});
+  EXPECT_FALSE(terminal.read(kHang).empty());
+  EXPECT_EQ(simulator.end(SIGTERM), 0);
+}
+
+TEST(LineOfTheCommandLine, TheLogTellsOfFaultsThatComeAndGo) {
+  SimulatorProcess simulator({"EX9042D", "--fault", "gone at 300ms for 100ms"});
+  EXPECT_TRUE(simulator.wait_for("fault 1 strikes: gone at 300ms for 100ms")) << simulator.output();
+  EXPECT_TRUE(simulator.wait_for("fault 1 is over: gone at 300ms for 100ms")) << simulator.output();
+  EXPECT_TRUE(has(simulator.output(), "    0.300000  - fault 1 strikes")) << simulator.output();
+  EXPECT_TRUE(has(simulator.output(), "    0.400000  - fault 1 is over")) << simulator.output();
+}
+
+}  // namespace
+}  // namespace ex9000::system
