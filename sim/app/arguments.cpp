@@ -25,44 +25,44 @@ constexpr const char* kDefaultPty = "ex9000.tty";
 constexpr const char* kUsualPort = "usual";
 
 constexpr const char* kModuleHelp = R"(
-A module is MODEL[@ADDR][,KEY=VALUE]...: MODEL as --models lists it, upper or lower case, with or without EX;
-ADDR in hex as in `$AA2` (01 if left out); the keys:
-  protocol=ascii|modbus    what it speaks; -M models leave the factory with modbus
-  baud=RATE                1200, 2400, 4800, 9600, 19200, 38400, 57600 or 115200
-  checksum=on|off          of ASCII commands
-  edge=falling|rising      what its counters count
-  name=TEXT                what $AAM answers
-  init=on|off              INIT* tied to GND: ASCII at address 00, 9600 baud
-  eeprom=FILE              keeps its settings there, made if missing; what it holds wins over those given here
+A module is MODEL[@ADDR][,KEY=VALUE]... MODEL is a name from --models, in upper or lower case, with or without EX.
+ADDR is the address in hex, as in `$AA2` (default: 01). The keys:
+  protocol=ascii|modbus    sets the protocol (default: modbus for -M models, else ascii)
+  baud=RATE                sets the baud rate: 1200, 2400, 4800, 9600, 19200, 38400, 57600 or 115200
+  checksum=on|off          switches the checksum of ASCII frames on or off
+  edge=falling|rising      sets the edge that the counters count
+  name=TEXT                sets the name that `$AAM` reads
+  init=on|off              ties INIT* to GND: ASCII at address 00, 9600 baud
+  eeprom=FILE              keeps the settings in this file; the file wins over the other keys
 
-BUS.json in place of modules describes any number of lines; --example prints one. What it says of ports, rates
-and modules cannot be said on the command line as well.
+BUS.json in place of modules describes any number of lines. --example prints one, --schema its JSON Schema. The
+command line cannot repeat what a bus file says about ports, rates and modules.
 
-Commands on the control socket, a line each, answered with `ok ...` or `error: ...`; N is a module's position
+Commands of the control socket: one on each line, with the reply `ok ...` or `error: ...`. N is a module's position
 on the command line, or in the bus file through all lines, from 1:
 )";
 
 constexpr const char* kPlayHelp = R"(
 A file is a list of steps: `> $01M` and `< !019042` for DCON, `=> 01 01 0000 000D` and `<= ...` for Modbus
-without its CRC, `silence`, `wait 1.5s`, `bytes HEX`, `checksum on|off`, `baud RATE`, and of a module `power on|off`,
+without its CRC, `silence`, `wait 1.5s`, `bytes HEX`, `checksum on|off`, `baud RATE`, and for a module `power on|off`,
 `power-cycle`, `reset`, `init on|off`, `input C on|off`, `pulse C [xCOUNT]`, `outputs HHHH`, `led on|off|flashing`.
-With `source:` and `model:` lines before them it is a transcript, played on each model; without, a scenario for the
-modules or the bus file behind it, whose steps may also be `module N`, `line NAME`, `fault [N] FAULT` as for --fault,
-and `fault off K|all`. tests/conformance/README.md has it all.
+With `source:` and `model:` lines before the steps the file is a transcript, which is played on each model. Without
+them it is a scenario for the modules or the bus file on the command line. A scenario has more steps: `module N`,
+`line NAME`, `fault [N] FAULT` as for --fault, and `fault off K|all`. See tests/conformance/README.md.
 )";
 
 constexpr const char* kFaultHelp = R"(
-A fault is TROUBLE [VALUE] [WHEN], for --fault (with N before it where it befalls one module alone), bus files
-and the control socket. The troubles:
+A fault is TROUBLE [VALUE] [WHEN], for --fault, for bus files and for the control socket. --fault takes N before it
+for a fault of one module. The troubles:
 )";
 
 constexpr const char* kScheduleHelp = R"(
   WHEN is one of: at 12.5s | every 5s | every 10th reply | with probability 0.01 (of each reply) |
-  after 3 writes (to the EEPROM); nothing: always. `for 2s` says how long it lasts then. Times are the log's,
-  in us, ms, s, min or h.
+  after 3 writes (to the EEPROM). Without WHEN the fault is always on. `for 2s` limits how long it lasts.
+  Times are those of the log, in us, ms, s, min or h.
 
-An input that moves by itself, for --input (with N before it) and bus files, is C square PERIOD [for TIME] or
-C key at TIME|every TIME for TIME [bounce TIME].
+An input that moves by itself is C square PERIOD [for TIME] or C key at TIME|every TIME for TIME [bounce TIME], for
+--input (with N before it) and for bus files.
 )";
 
 constexpr const char* kDescribeExamples = R"(
@@ -79,7 +79,7 @@ Examples:
   ex9000-sim EX9042D-M@01 --capture line.pcapng --log json > line.json
   ex9000-sim EX9052D@01 --input '1 0 square 100ms' --fault '1 lost-reply every 10th reply' --log
   ex9000-sim --example > bus.json && ex9000-sim bus.json
-The rate that a master sets on the pseudo-terminal is the line's rate.)";
+The rate that a master sets on the pseudo-terminal becomes the line's rate.)";
 
 std::string footer() {
   return kModuleHelp + control_commands() + kFaultHelp + fault_help() + kScheduleHelp + kExamples;
@@ -292,12 +292,12 @@ Setup setup_of(const Texts& texts) {
 void add_writing(CLI::App& app, WritingTexts& texts) {
   app.add_option(
          "--log", texts.log,
-         "print the bus, a line a frame: time, direction, bytes, meaning; json: an object a line, for "
-         "machines, and nothing else on standard output")
+         "print the frames on the bus, one on each line: time, direction, bytes, meaning; json: one JSON "
+         "object on each line, and nothing else on standard output")
       ->multi_option_policy(CLI::MultiOptionPolicy::TakeLast)  // later options override those in a script
       ->type_name("[text|json|off]");
   app.add_option("--capture", texts.capture,
-                 "keep what was on the lines in this pcapng file, for Wireshark; what it held is gone")
+                 "write the frames to this pcapng file for Wireshark; overwrites the file")
       ->type_name("FILE");
 }
 
@@ -332,12 +332,11 @@ struct PlayTexts {
 
 const CLI::App* add_play(CLI::App& app, PlayTexts& texts) {
   CLI::App* const play = app.add_subcommand(
-      "play",
-      "play a transcript or a scenario in virtual time, and exit with 0 where all passes, else with 1");
+      "play", "play a transcript or a scenario in virtual time; exit with 0 if all steps pass, else with 1");
   play->footer(kPlayHelp);
   play->add_option("FILE", texts.file, "the file, or a folder of them")->required();
-  play->add_option("MODULE", texts.modules, "of a scenario: the modules that it is played on, or BUS.json");
-  play->add_option("--seed", texts.seed, "of all chance (default: 1)")->type_name("NUMBER");
+  play->add_option("MODULE", texts.modules, "for a scenario: the modules, or BUS.json");
+  play->add_option("--seed", texts.seed, "set the seed of random faults (default: 1)")->type_name("NUMBER");
   add_writing(*play, texts.writing);
   return play;
 }
@@ -362,23 +361,24 @@ play::Task task_of(const PlayTexts& play_texts) {
 }
 
 CLI::App* add_describe(CLI::App& app, DescribeTexts& texts) {
-  CLI::App* const describe =
-      app.add_subcommand("describe", "print the commands and registers of a model, or of all, and exit");
+  CLI::App* const describe = app.add_subcommand(
+      "describe", "print the commands and registers of one model or of all models, and exit");
   describe->footer(kDescribeExamples);
-  describe->add_option("MODEL", texts.model, "as --models lists it, upper or lower case, with or without EX");
+  describe->add_option("MODEL", texts.model,
+                       "a name from --models, in upper or lower case, with or without EX");
   describe
       ->add_option(
           "--format", texts.format,
-          "markdown (default), json and csv are of any model, or of all where none is named; the others "
-          "are what these tools read, of one that speaks Modbus")
+          "markdown (default), json and csv describe one model or all models; the others are for the tool of "
+          "that name and require a model that speaks Modbus")
       ->type_name(describe_formats());
   describe
       ->add_option("--address", texts.address,
-                   "the module's in hex, for home-assistant and node-red (default: 01)")
+                   "the module's address in hex, for home-assistant and node-red (default: 01)")
       ->type_name("HH");
   describe
       ->add_option("--tcp", texts.tcp,
-                   "where the simulator serves it, for home-assistant and node-red (default: 127.0.0.1:5020)")
+                   "the TCP port of the simulator, for home-assistant and node-red (default: 127.0.0.1:5020)")
       ->type_name("HOST:PORT");
   return describe;
 }
@@ -460,54 +460,56 @@ Parsed parse_arguments(int argc, const char* const* argv) {
   bool models = false;
   bool example = false;
   bool schema = false;
-  app.add_option("MODULE", texts.modules, "modules on the line, one after the other; or BUS.json");
+  app.add_option("MODULE", texts.modules, "the modules on the line, or BUS.json");
   app.add_option("--pty", texts.pty,
                  std::string("make a pseudo-terminal and link it at this path (default: ") + kDefaultPty +
-                     ", where neither --tcp nor --serial is given)")
+                     " without --tcp and --serial)")
       ->type_name("LINK");
-  app.add_option("--tcp", texts.tcp, "serve the line's bytes over TCP; HOST is 127.0.0.1 if left out")
+  app.add_option("--tcp", texts.tcp, "serve the line's bytes over TCP (default HOST: 127.0.0.1)")
       ->type_name("HOST:PORT");
-  app.add_option("--serial", texts.serial, "put the modules on this serial port, behind a real line")
+  app.add_option("--serial", texts.serial, "connect the modules to a real line through this serial port")
       ->type_name("DEVICE");
-  app.add_flag("--echo", texts.echo, "the serial port's adapter hears what it sends");
+  app.add_flag("--echo", texts.echo, "expect that the adapter of the serial port receives what it sends");
   app.add_option("--baud", texts.baud,
-                 "the line's rate until a master sets one (default: the first module's)")
+                 "set the line's rate until a master sets one (default: the first module's)")
       ->type_name("RATE");
   app.add_option("--line", texts.line,
-                 "paced (default): bytes take their time; instant: they cost none, for tests and load")
+                 "paced (default): bytes take as long as on a real line; instant: bytes take no time")
       ->type_name("paced|instant");
-  app.add_option("--control", texts.control, "make a UNIX socket at this path that takes commands")
+  app.add_option("--control", texts.control, "make a UNIX socket for commands at this path")
       ->type_name("PATH");
-  app.add_option("--panel", texts.panel,
-                 "serve a page that shows the modules and the bus, for a browser on this machine (default: "
-                 "9042, or any free port where that is taken)")
+  app.add_option(
+         "--panel", texts.panel,
+         "serve a page for a browser on this machine that shows the modules and the bus (default port: "
+         "9042, or any free port if that is in use)")
       ->multi_option_policy(CLI::MultiOptionPolicy::TakeLast)
       ->type_name("[PORT|off]");
   app.add_flag("--watch", texts.watch,
-               "show the modules on the terminal, each with its LEDs; where standard output is none, a line "
-               "for each change");
+               "show the modules in the terminal; print a line for each change if standard output is not a "
+               "terminal");
   app.add_option("--input", texts.inputs,
-                 "an input that moves by itself, such as '2 0 square 100ms'; see below")
+                 "let an input move by itself, for example '2 0 square 100ms'; see below")
       ->type_name("'N INPUT'")
       ->allow_extra_args(false);
   app.add_option("--fault", texts.faults,
-                 "what goes wrong, such as 'bit-errors 1e-4' or '2 lost-reply every 10th reply'; see below")
+                 "add a fault, for example 'bit-errors 1e-4' or '2 lost-reply every 10th reply'; see below")
       ->type_name("'[N] FAULT'")
       ->allow_extra_args(false);
-  app.add_option(
-         "--speed", texts.speed,
-         "N times as fast as the wall clock, 0.001 to 1000 (default: 1); max: as fast as it can be computed, "
-         "with no port, and --for; step: time stands still until the control socket's 'advance' moves it")
+  app.add_option("--speed", texts.speed,
+                 "run N times as fast as the wall clock, 0.001 to 1000 (default: 1); max: as fast as "
+                 "possible, without "
+                 "ports and with --for; step: only the control command 'advance' moves the time")
       ->type_name("N|max|step");
-  app.add_option("--for", texts.lasts,
-                 "end when the modules have been up for so much of the lines' time, such as 10s or 24h")
+  app.add_option("--for", texts.lasts, "end after this time on the lines, for example 10s or 24h")
       ->type_name("TIME");
-  app.add_option("--seed", texts.seed, "of all chance: the same seed, the same faults (default: 1)")
+  app.add_option("--seed", texts.seed,
+                 "set the seed of random faults; the same seed repeats the same faults (default: 1)")
       ->type_name("NUMBER");
   add_writing(app, texts.writing);
-  app.add_flag("--strict-gaps", texts.strict_gaps,
-               "Modbus to the letter: a gap of more than 1.5 characters spoils a frame, and a master that "
-               "does not wait 3.5 characters between frames is on its own");
+  app.add_flag(
+      "--strict-gaps", texts.strict_gaps,
+      "reject a Modbus frame with a gap of more than 1.5 characters, and do not insert the silence between "
+      "frames that a master omits");
   app.add_flag("--example", example, "print an example of a bus file and exit");
   app.add_flag("--schema", schema, "print the JSON Schema of bus files and exit");
   app.add_flag("--models", models, "list the models and exit");

@@ -109,16 +109,16 @@ struct Verb {
 };
 
 constexpr std::array<Verb, 10> kVerbs{{
-    {"power", "on|off", 1, 1, "the supply", power},
-    {"reset", "", 0, 0, "a reset without loss of power", reset},
-    {"init", "on|off", 1, 1, "INIT* tied to GND, or released", init},
-    {"input", "C on|off", 2, 2, "level of input C, from 0", input},
-    {"pulse", "C [COUNT]", 1, 2, "full pulses on input C, from its level and back, all at once", pulse},
-    {"inputs", "", 0, 0, "levels, hex: bit n is input n", inputs},
-    {"outputs", "", 0, 0, "what is driven, hex: bit n is output n", outputs},
-    {"led", "", 0, 0, "the status LED: on, off or flashing", led},
-    {"hang", "", 0, 0, "the main loop stops being run, until the module watchdog resets it", hang},
-    {"status", "", 0, 0, "address, protocol, rate, mode and watchdogs", status},
+    {"power", "on|off", 1, 1, "switches the supply", power},
+    {"reset", "", 0, 0, "resets the module; the supply stays on", reset},
+    {"init", "on|off", 1, 1, "ties INIT* to GND, or releases it", init},
+    {"input", "C on|off", 2, 2, "sets the level of input C, from 0", input},
+    {"pulse", "C [COUNT]", 1, 2, "gives COUNT full pulses on input C at once (default 1)", pulse},
+    {"inputs", "", 0, 0, "reads the input levels in hex; bit n is input n", inputs},
+    {"outputs", "", 0, 0, "reads the outputs in hex; bit n is output n", outputs},
+    {"led", "", 0, 0, "reads the status LED: on, off or flashing", led},
+    {"hang", "", 0, 0, "stops the main loop until the module watchdog resets the module", hang},
+    {"status", "", 0, 0, "reads address, protocol, rate, mode and watchdogs", status},
 }};
 
 /// A command for one line; it may follow `line NAME`.
@@ -133,11 +133,11 @@ struct LineVerb {
 };
 
 constexpr std::array<LineVerb, 5> kLineVerbs{{
-    {"baud", "RATE", "the line's rate from now on, for a port that carries none; a pseudo-terminal's wins"},
-    {"sent", "", "how many bytes the line has written to its ports so far"},
-    {"fault", "FAULT", "from now on, see below; answers its number. Behind N: of that module"},
-    {"fault off", "K|all", "the fault of this number is over"},
-    {"faults", "", "number, how often it has struck, and text of each; * those that strike now"},
+    {"baud", "RATE", "sets the line's rate, for a port without one; the rate of a pseudo-terminal wins"},
+    {"sent", "", "reads how many bytes the line has written to its ports"},
+    {"fault", "FAULT", "adds a fault, see below; replies with its number. With N: for that module"},
+    {"fault off", "K|all", "ends the fault with this number, or all"},
+    {"faults", "", "lists the faults: number, * if active now, how often it was active, text"},
 }};
 
 std::string shape(const Verb& verb) {
@@ -346,12 +346,12 @@ std::string control_commands() {
   for (const LineVerb& verb : kLineVerbs) {
     row(verb.shape(), verb.does);
   }
-  row("line NAME ...", "one of the five above, of that line; required if there are several");
+  row("line NAME ...", "one of the five above, for that line; required if there are several lines");
   text << "  advance TIME [after N] [quiet]\n";
-  row("", "with --speed step: waits until N bytes have arrived from the ports, puts all that arrived on");
-  row("", "the lines, and lets TIME pass, with 'quiet' only until nothing is pending; answers the time");
-  row("list", "the modules");
-  row("help", "the commands");
+  row("", "with --speed step: waits until N bytes have arrived at the ports, sends all of them on the");
+  row("", "lines, and lets TIME pass; with 'quiet' only until nothing is pending. Replies with the time");
+  row("list", "lists the modules");
+  row("help", "lists the commands");
   row("quit", "ends the simulator");
   return text.str();
 }

@@ -156,7 +156,7 @@ class Panel::Viewer final : public PanelViewer {
   [[nodiscard]] std::string carry_out(const std::string& command) const {
     const Words words = words_of(command);
     return !words.empty() && words[0] == "quit"
-               ? "error: no page ends the simulator; Ctrl-C where it runs does"
+               ? "error: a page cannot end the simulator; press Ctrl-C in its terminal"
                : panel_.carry_out_(command).text;
   }
 

@@ -156,7 +156,7 @@ class PanelServer::Listener::Client : public std::enable_shared_from_this<Client
     if (error == http::error::header_limit) {
       answer(http::status::request_header_fields_too_large, "text/plain", "too long a header\n");
     } else if (error == http::error::body_limit) {
-      answer(http::status::payload_too_large, "text/plain", "no request has a body here\n");
+      answer(http::status::payload_too_large, "text/plain", "requests with a body are not supported\n");
     } else if (error) {
       answer(http::status::bad_request, "text/plain", "no HTTP request\n");
     } else {
@@ -170,16 +170,16 @@ class PanelServer::Listener::Client : public std::enable_shared_from_this<Client
     const bool has_origin = origin != request.end();
     const bool live = request.target() == "/live";
     if (request.count(http::field::host) != 1 || !here.is_host(view_of(request[http::field::host]))) {
-      answer(http::status::forbidden, "text/plain", "asked for under a name that is not this machine's\n");
+      answer(http::status::forbidden, "text/plain", "the host name is not one of this machine\n");
     } else if (request.count(http::field::origin) > 1 ||
                (has_origin && !here.is_origin(view_of(origin->value()))) || (live && !has_origin)) {
       answer(http::status::forbidden, "text/plain", "another site's page\n");
     } else if (!is_fetched_by_us(request)) {
-      answer(http::status::forbidden, "text/plain", "on another site's behalf\n");
+      answer(http::status::forbidden, "text/plain", "requests from other sites are not allowed\n");
     } else if (request.method() != http::verb::get) {
-      answer(http::status::method_not_allowed, "text/plain", "GET is all there is\n");
+      answer(http::status::method_not_allowed, "text/plain", "only GET is supported\n");
     } else if (live && !websocket::is_upgrade(request)) {
-      answer(http::status::upgrade_required, "text/plain", "a WebSocket is all there is\n");
+      answer(http::status::upgrade_required, "text/plain", "this path requires a WebSocket\n");
     } else if (live) {
       accept_page(request);
     } else if (const PageFile* file = page_file(view_of(request.target()))) {
