@@ -1,5 +1,5 @@
-// What the core itself takes from a request's first byte to its reply, receive interrupts included; no line,
-// no time.
+// Measures the time that the core itself requires from the first byte of a request to its reply. This
+// includes the receive interrupts, but neither a serial line nor the passage of time on it.
 #include <benchmark/benchmark.h>
 
 #include <string>
@@ -12,7 +12,7 @@
 namespace ex9000::bench {
 namespace {
 
-/// A module on a memory that answers at once, with a clock that is moved by hand.
+/// A module with a memory that replies immediately and a clock that the benchmark advances.
 class BareModule {
  public:
   explicit BareModule(const Model& model, bool ascii) : module_(model), memory_(8192, 0xFF) {
@@ -29,7 +29,7 @@ class BareModule {
     }
   }
 
-  /// The reply's size.
+  /// Returns the size of the reply in bytes.
   std::size_t ask(const std::vector<std::uint8_t>& request) {
     for (const std::uint8_t byte : request) {
       now_ = now_ + Duration(1042);

@@ -1,14 +1,14 @@
 #!/usr/bin/env python3
-"""What tests/bench/instructions makes of a log, and of counts."""
+"""Tests how tests/bench/instructions evaluates a log and counts."""
 
 import sys
 import unittest
 
-sys.dont_write_bytecode = True  # nothing is to be left in the source tree
+sys.dont_write_bytecode = True  # do not leave byte code in the source tree
 
 from instruction_counts import capacity, counter, execution, requests  # noqa: E402
 
-SLEEP = 0x100  # WFI; behind it the main loop goes on at 0x102
+SLEEP = 0x100  # WFI; after it the main loop continues at 0x102
 TICKS_OWN = 0x300
 HANDLERS = {execution.TICK: 0x1000, execution.LINE: 0x2000, execution.SILENCE: 0x3000, execution.LINE_END: 0x4000}
 
@@ -20,7 +20,7 @@ def executed(*addresses):
 
 
 def interrupt(number, *lines):
-    """`lines` are addresses, or lines of other events."""
+    """`lines` are addresses, or log lines of other events."""
     log = [f"nvic_acknowledge_irq NVIC acknowledge IRQ: {number} now active (prio 0)\n".encode()]
     for line in lines:
         log += executed(line) if isinstance(line, int) else [line]
@@ -41,7 +41,8 @@ TICK = interrupt(execution.TICK, 0x1000, 0x1002)
 
 
 def turn(interrupts, *addresses):
-    """The main loop wakes, `interrupts` are served, it goes on, and sleeps again: two more than `addresses`."""
+    """The main loop wakes up, the `interrupts` are served, and it continues and sleeps again: 2 instructions plus
+    `addresses`."""
     return executed(0x102) + interrupts + executed(*addresses, SLEEP)
 
 

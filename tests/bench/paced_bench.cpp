@@ -1,4 +1,5 @@
-// The share of the line's own limit that a master reaches on the program's pseudo-terminal.
+// Measures how close a master on the program's pseudo-terminal comes to the maximum rate of the line, in
+// percent.
 #include <benchmark/benchmark.h>
 #include <modbus/modbus.h>
 
@@ -13,7 +14,7 @@ namespace ex9000::bench {
 namespace {
 
 constexpr int kBaud = 115200;
-/// FC01 x 13: 8 characters there, 7 back, one silence of 1.75 ms.
+/// FC01 with 13 coils: a request of 8 characters, a reply of 7 characters, and one silence of 1.75 ms.
 constexpr double kTransaction = 15.0 * 10 / kBaud + 1.75e-3;
 constexpr int kTransactions = 60;
 constexpr int kRounds = 25;
@@ -39,7 +40,8 @@ void paced_line(benchmark::State& state) {
     state.SkipWithError("cannot connect");
     return;
   }
-  // The host may take the processor away at any time, which only ever makes it less: the best round counts.
+  // The host can preempt the process at any time, which can only lower the result. Therefore the best round
+  // counts.
   double best = 0;
   for ([[maybe_unused]] auto _ : state) {
     best = 0;

@@ -1,4 +1,4 @@
-// Two buses with 32 modules each, polled back to back: no wrong answer, and no growth in memory.
+// Polls two buses with 32 modules each without pauses. Fails if a reply is wrong or if memory grows.
 //
 //     soak [SECONDS]
 #include <array>
@@ -26,7 +26,7 @@ constexpr int kModules = 32;
 constexpr int kBaud = 115200;
 constexpr int kOutputs = 13;
 constexpr int kInputs = 8;
-/// What a process may take more than after its first seconds, in KiB.
+/// Permitted memory growth of a process after its first second, in KiB.
 constexpr long kGrowth = 256;
 
 bool has_outputs(int address) { return address % 2 == 1; }
@@ -43,7 +43,7 @@ std::vector<std::string> modules() {
   return arguments;
 }
 
-/// One line, its master, and what is expected of the modules.
+/// One line, its master, and the expected state of its modules.
 class Bus {
  public:
   void poll_until(Clock::time_point end) {
@@ -61,7 +61,7 @@ class Bus {
 
   [[nodiscard]] long transactions() const { return transactions_; }
   [[nodiscard]] long wrong() const { return wrong_; }
-  /// Resident memory of the simulator, in KiB.
+  /// Returns the resident memory of the simulator, in KiB.
   [[nodiscard]] long memory() const {
     std::ifstream status("/proc/" + std::to_string(simulator_.pid()) + "/status");
     for (std::string line; std::getline(status, line);) {

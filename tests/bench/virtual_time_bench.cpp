@@ -1,4 +1,4 @@
-// How much faster than real time a virtual line runs.
+// Measures how much faster than real time a virtual line runs.
 #include <benchmark/benchmark.h>
 
 #include <array>
@@ -33,7 +33,8 @@ std::vector<std::uint8_t> frame(const std::vector<std::uint8_t>& bytes) { return
 
 double seconds(VirtualTime time) { return std::chrono::duration<double>(time).count(); }
 
-/// All watchdogs armed, one module past its timeout with the LED flashing; a host OK every 20 s.
+/// All watchdogs are enabled. One module has timed out and its LED flashes. The master sends a host OK every
+/// 20 s.
 void idle_line(benchmark::State& state) {
   Line line(a_line_of_modules(), sim::kPaced, [](std::uint8_t, ByteStatus) {});
   const auto tell = [&line](const std::vector<std::uint8_t>& bytes, VirtualTime then) {
@@ -62,7 +63,8 @@ void idle_line(benchmark::State& state) {
 }
 BENCHMARK(idle_line)->Name("32 modules idle, watchdogs armed: x real time");
 
-/// Every module polled in turn, the next request as soon as the silence behind the last reply is over.
+/// The master polls the modules in turn. It sends each request when the silence after the previous reply
+/// ends.
 void loaded_line(benchmark::State& state) {
   bool heard = false;
   Line line(a_line_of_modules(), sim::kPaced, [&heard](std::uint8_t, ByteStatus) { heard = true; });
@@ -78,7 +80,7 @@ void loaded_line(benchmark::State& state) {
     heard = false;
     line.master().send(requests[next].data(), requests[next].size());
     next = (next + 1) % requests.size();
-    // 8 and 13 characters, twice 1.75 ms of silence, and what rounding adds.
+    // 8 and 13 characters, two silences of 1.75 ms, and a margin for rounding.
     line.bus().run_for(std::chrono::microseconds(21 * 10 * 1'000'000 / 115200 + 2 * 1752 + 10));
     if (!heard) {
       state.SkipWithError("no answer");

@@ -1,6 +1,7 @@
-// The documents' examples, pasted. In each section a `sh` block that starts the simulator is one terminal.
-// All other `sh` and `python` blocks are another one, and the `text` block is what they print. A `json` block
-// is `bus.json`. The directory is empty but for `boards` and `build`, where images have been built.
+// Runs the examples of the documents. In each section, a `sh` block that starts the simulator runs in one
+// terminal. All other `sh` and `python` blocks run in a second terminal, and the `text` block is their
+// expected output. A `json` block is `bus.json`. The working directory contains only links to `boards` and
+// `build`, because the images are there.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -31,7 +32,7 @@ struct Section {
   std::vector<Block> blocks;
 };
 
-/// Paths from the project's top.
+/// Returns paths relative to the project's root.
 std::vector<std::string> documents() {
   std::vector<std::string> paths;
   std::istringstream list(EX9000_DOCUMENTS);
@@ -60,7 +61,7 @@ std::vector<Section> sections_of(const std::string& document) {
   return result;
 }
 
-/// The documents' port may be in use here.
+/// Replaces the port of the documents, which may be in use on this machine.
 void replace_port(std::string& text, const std::string& port) {
   const std::string written = "5020";
   for (auto at = text.find(written); at != std::string::npos; at = text.find(written, at + port.size())) {
@@ -68,7 +69,7 @@ void replace_port(std::string& text, const std::string& port) {
   }
 }
 
-/// People do not wait longer than they have to; a busy machine may take more than 0.3 s to answer.
+/// Increases the timeout, because a busy machine can take longer than the 0.3 s in the documents.
 void be_patient(std::string& text) {
   const std::string written = "socat -t 0.3 ";
   for (auto at = text.find(written); at != std::string::npos; at = text.find(written, at + 1)) {
@@ -76,13 +77,14 @@ void be_patient(std::string& text) {
   }
 }
 
-/// `ex9000-sim describe` and `play` print and end.
+/// `ex9000-sim describe` and `ex9000-sim play` print and end, so they are not simulators in this sense.
 bool starts_the_simulator(const Block& block) {
   const auto begins_with = [&](const char* text) { return block.text.rfind(text, 0) == 0; };
   return begins_with("ex9000-sim ") && !begins_with("ex9000-sim describe") && !begins_with("ex9000-sim play");
 }
 
-/// The second terminal: one shell for all blocks of a section, as functions and jobs stay.
+/// The second terminal. All blocks of a section run in one shell, because later blocks use functions and jobs
+/// of earlier ones.
 class Shell {
  public:
   void paste(const Block& block) {
@@ -122,7 +124,7 @@ void paste(const Section& section) {
   EXPECT_EQ(finished.output, expected) << finished.error;
 }
 
-/// As many as that, none of them in use.
+/// Returns `count` TCP ports, none of them in use.
 std::vector<std::string> free_ports(std::size_t count) {
   std::vector<std::unique_ptr<SimulatorProcess>> processes;
   std::vector<std::string> ports;
@@ -148,7 +150,7 @@ std::vector<Section> sections_with_output() {
   return all;
 }
 
-/// All sections at once, for they mostly wait.
+/// Runs all sections in parallel, because they mostly wait.
 TEST(Documents, TheirExamplesDoWhatTheySay) {
   std::vector<Section> pasted = sections_with_output();
   EXPECT_GE(pasted.size(), 14U);
@@ -171,7 +173,7 @@ TEST(Documents, TheirExamplesDoWhatTheySay) {
   }
 }
 
-/// What stands in code in a cell, without the table's own escapes.
+/// Adds the code spans in a table cell, without the escapes of the table syntax.
 void add_codes(const std::string& cell, std::set<std::string>& codes) {
   for (auto open = cell.find('`'); open != std::string::npos;
        open = cell.find('`', cell.find('`', open + 1) + 1)) {
@@ -181,8 +183,8 @@ void add_codes(const std::string& cell, std::set<std::string>& codes) {
   }
 }
 
-/// What a row of a table begins with, in code: `N power on|off`, say, as it is without the table's own
-/// escapes.
+/// Returns the code spans in the first cell of each table row, for example `N power on|off`, without the
+/// escapes of the table syntax.
 std::set<std::string> rows() {
   std::set<std::string> rows;
   for (const std::string& document : documents()) {
@@ -196,14 +198,14 @@ std::set<std::string> rows() {
   return rows;
 }
 
-/// The first column, so many characters wide, of what stands in the help between the line that ends with
-/// `heading` and the blank line behind it.
+/// Returns the first column of a table in the help, `width` characters wide. The table starts after the line
+/// that ends with `heading` and ends at the next blank line.
 std::vector<std::string> column_of(const std::string& help, const std::string& heading, std::size_t width) {
   std::vector<std::string> cells;
   std::istringstream lines(help.substr(help.find(heading) + heading.size()));
   for (std::string line; std::getline(lines, line) && !line.empty();) {
     const std::string cell = line.substr(2, width);
-    if (cell.find_first_not_of(' ') != std::string::npos) {  // else the line before goes on
+    if (cell.find_first_not_of(' ') != std::string::npos) {  // otherwise this line continues the previous one
       cells.push_back(cell.substr(0, cell.find_last_not_of(" .") + 1));
     }
   }

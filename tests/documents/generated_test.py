@@ -1,4 +1,4 @@
-"""What is generated in a document is what its command prints now; toolchain/update-documents renews it."""
+"""Tests that each generated section of a document is up to date. toolchain/update-documents updates it."""
 
 from __future__ import annotations
 

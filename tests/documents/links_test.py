@@ -1,4 +1,4 @@
-"""Every relative link of a document leads to a file that is there, and to a heading that it has."""
+"""Tests that each relative link in a document leads to an existing file, and to an existing heading in it."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ def documents() -> list[Path]:
 
 
 def prose_of(document: Path) -> list[str]:
-    """The lines that are not in a block of code."""
+    """Returns the lines outside of code blocks."""
     lines = []
     inside = False
     for line in document.read_text(encoding="utf-8").splitlines():
@@ -36,7 +36,7 @@ def prose_of(document: Path) -> list[str]:
 
 
 def anchors_of(document: Path) -> set[str]:
-    """As GitHub makes them of headings."""
+    """Returns the anchors of all headings, in the form that GitHub uses."""
     anchors: set[str] = set()
     for line in prose_of(document):
         if match := HEADING.match(line):
@@ -53,7 +53,7 @@ class Links(unittest.TestCase):
         for document in documents():
             for link in LINK.findall("\n".join(prose_of(document))):
                 if re.match(r"[a-z]+:", link):
-                    continue  # another machine's
+                    continue  # on another host
                 name, _, anchor = link.partition("#")
                 target = (document.parent / name).resolve() if name else document
                 with self.subTest(document=str(document.relative_to(ROOT)), link=link):

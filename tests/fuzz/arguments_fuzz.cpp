@@ -1,7 +1,6 @@
-// The command line: `|` in the input is where one argument ends and the next begins. Whatever it is, it comes
-// to something to do, to text, or to one line that says what is wrong, and only to that. An input that begins
-// with
-// `{` is a bus file; no file is read.
+// Fuzzes the command line. `|` in the input separates two arguments. Each command line must result in exactly
+// one of: something to do, text to print, or one line with an error. An input that begins with `{` is a bus
+// file. The target reads no file.
 #include <algorithm>
 #include <stdexcept>
 #include <string>
@@ -77,7 +76,7 @@ void check_setup(const Setup& setup) {
   require(!setup.control || !setup.control->empty(), "a path is not empty");
 }
 
-/// Each has a name, and where two shared one, or a pseudo-terminal, nobody could tell them apart.
+/// Each line requires a unique name and pseudo-terminal. Otherwise a user could not distinguish the lines.
 void check_several(const std::vector<LineSetup>& lines) {
   require(!lines.empty(), "a bus has a line");
   for (const LineSetup& line : lines) {

@@ -61,7 +61,7 @@ class Life {
     }
   }
 
-  /// Whatever has happened, it is not deaf: who asks it by its address is answered.
+  /// Requires that the module still replies to requests to its own address, whatever has happened before.
   void ends() {
     session_.wait_for_quiet();
     const std::uint8_t& address = session_.in_force().address;
@@ -71,7 +71,7 @@ class Life {
               "a module whose line is quiet answers");
       return;
     }
-    session_.byte('\r', ByteStatus::Good);  // whatever is open, a new address too
+    session_.byte('\r', ByteStatus::Good);  // ends any open command; this can also change the address
     session_.wait_for_quiet();
     const std::array<std::uint8_t, 4> name{'$', upper_hex(address / 16U), upper_hex(address), 'M'};
     require(session_.ask({name.data(), name.size()}).size > 3, "a module whose line is quiet answers");
@@ -164,7 +164,7 @@ class Life {
   std::size_t frame_size_ = 0;
 };
 
-/// Where the code at `at` ends.
+/// Returns the index after the code at `at`.
 std::size_t behind(const std::uint8_t* data, std::size_t size, std::size_t at) {
   if (data[at] != kEscape || at + 1 == size) {
     return at + 1;
@@ -176,9 +176,10 @@ bool is_code(const std::uint8_t* data, std::size_t size, std::size_t at, char co
   return at + 1 < size && data[at] == kEscape && data[at + 1] == static_cast<std::uint8_t>(code);
 }
 
-/// In front of a gap the last two bytes become their check, in front of a CR it is put in.
+/// Before a gap, replaces the last two bytes with their check. Before a CR, inserts the check. Returns the
+/// new size.
 std::size_t mend(std::uint8_t* data, std::size_t size, std::size_t most, bool modbus) {
-  std::size_t plain = 0;  // bytes on the line that stand before `at`, one behind the other
+  std::size_t plain = 0;  // consecutive bytes on the line before `at`
   for (std::size_t at = kHeader; at < size;) {
     const std::size_t next = behind(data, size, at);
     const bool gap =

@@ -1,4 +1,4 @@
-// What happens to a module, as a fuzzer's input says it.
+// The format in which the input of a fuzz target describes the events that a module experiences.
 #pragma once
 
 #include <cstddef>
@@ -8,35 +8,35 @@
 
 namespace ex9000::fuzz {
 
-/// Byte 0 chooses the model, byte 1 what the module has stored and how it comes up:
+/// Byte 0 selects the model. Byte 1 selects the settings that the module has stored and its state at start:
 ///
 ///     bits 0-2   baud code, 0: 06 (9600), 1: 07, and so on up to 0A, then 03
 ///     bit 3      checksum
-///     bit 4      counters on the rising edge; on -M models strict gaps too
+///     bit 4      counters on the rising edge; on -M models strict gaps as well
 ///     bit 5      host watchdog enabled with 0.3 s, outputs: power-on value 3, safe value 4
-///     bit 6      where the model has two protocols, the other one than `usual`
-///     bit 7      INIT* tied to GND
+///     bit 6      on a model with two protocols, the protocol that is not `usual`
+///     bit 7      INIT* connected to GND
 ///
-/// The rest is bytes on the line, one behind the other without a gap, but for `\`:
+/// The rest is bytes on the line without gaps between them. Only `\` has a special meaning:
 ///
 ///     \\      the byte 5C
-///     \c      the check over the bytes since the last gap or CR: CRC, or checksum where it is in force
-///     \s      250 ms of silence
+///     \c      the check of the bytes since the last gap or CR: the CRC, or the checksum if it is enabled
+///     \s      250 ms without a byte
 ///     \g N    a gap of N/64 times T3.5
-///     \w N    N times N ms of silence
-///     \f \b \o   the next byte comes with a framing error, as a break, with an overrun
-///     \p N    the byte before, N times more
+///     \w N    N times N ms without a byte
+///     \f \b \o   the next byte arrives with a framing error, as a break, with an overrun
+///     \p N    the previous byte, N more times
 ///     \h N    the main loop does nothing for the next N times 0.1 ms
 ///     \0 to \7   input 0 to 7 changes its level
 ///     \t      a tick
-///     \i      INIT* is tied to GND, or released
-///     \m      the memory does not answer any more, or does again
+///     \i      INIT* is connected to GND, or disconnected
+///     \m      the memory stops to acknowledge, or acknowledges again
 ///     \r      a reset
 ///
-/// and `\` with anything else is nothing.
+/// The module ignores `\` before any other byte.
 void live(const Model& model, Protocol usual, const std::uint8_t* data, std::size_t size);
 
-/// A mutation by libFuzzer; now and then the check of what stands before a gap or a CR is made right.
+/// Mutates the input with libFuzzer. One mutation in four also corrects the check before each gap or CR.
 std::size_t mutate(std::uint8_t* data, std::size_t size, std::size_t most, unsigned seed, bool modbus);
 
 }  // namespace ex9000::fuzz

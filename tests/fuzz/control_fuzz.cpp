@@ -1,5 +1,6 @@
-// Commands of the control socket, a line each, at three modules; `+N` in between is N times 10 ms. What is a
-// command is judged here once more; what is none is refused in one line and changes nothing.
+// Sends commands of the control socket, one on each line, to three modules. A line `+N` lets N times 10 ms
+// pass. The target decides independently whether a command is valid. An invalid command must receive a reply
+// of one line and must change nothing.
 #include <chrono>
 #include <set>
 #include <sstream>
@@ -25,7 +26,7 @@ const std::vector<sim::ModuleSpec>& specs() {
   return kSpecs;
 }
 
-/// What can be seen of a module from outside.
+/// The state of a module that is visible from outside.
 struct Seen {
   bool powered;
   std::uint16_t outputs;
@@ -70,7 +71,7 @@ bool is_number(const std::string& text, unsigned long least, unsigned long most)
 
 bool is_switch(const std::string& text) { return text == "on" || text == "off"; }
 
-/// The line, and what is known of its faults.
+/// The line, and its faults according to the commands so far.
 struct Watched {
   Line line{specs(), sim::kPaced, [this](std::uint8_t /*byte*/, ByteStatus /*status*/) { ++heard; }};
   unsigned long heard = 0;  ///< bytes at the master's end
@@ -97,7 +98,7 @@ bool is_of_the_line(const Watched& watched, Words words, sim::VirtualTime now) {
   return is_fault(words, Whose::AnyModules, now);
 }
 
-/// Without its `line NAME`; with another's, nothing.
+/// Removes the leading `line NAME`. Returns nothing if NAME is another line.
 Words of_the_line(const Words& words) {
   if (words[0] != "line") {
     return words;
@@ -105,7 +106,7 @@ Words of_the_line(const Words& words) {
   return words.size() >= 3 && words[1] == "hall" ? Words(words.begin() + 2, words.end()) : Words();
 }
 
-/// The commands of sim/docs/control-socket.md.
+/// Returns whether the words are a command according to the table of commands in README.
 bool is_command(Watched& watched, const Words& words) {
   Line& line = watched.line;
   const sim::VirtualTime now = line.clock().virtual_now();
@@ -145,7 +146,7 @@ bool is_command(Watched& watched, const Words& words) {
   return args == 0 && (verb == "inputs" || verb == "outputs" || verb == "led" || verb == "status");
 }
 
-/// Of a fault that was added, one that was taken away, and the list of them.
+/// Checks the reply after a fault was added or removed, or after all faults were listed.
 void check_faults(Watched& watched, const Words& words, const std::string& reply) {
   if (words[0] == "faults") {
     const std::size_t number = watched.faults.size();
@@ -182,7 +183,7 @@ void check_effect(Watched& watched, const Words& words, const std::string& reply
   if (words[1] == "fault") {
     check_faults(watched, Words(words.begin() + 1, words.end()), reply);
   } else if (words[1] == "power") {
-    // A fault may have taken the supply behind its switch.
+    // A fault can have cut the supply after the switch.
     require(module.powered() ? words[2] == "on" : words[2] == "off" || !watched.faults.empty(),
             "power is on or off as told");
   } else if (words[1] == "input") {
@@ -222,18 +223,18 @@ void carry_out(Watched& watched, sim::Control& control, const std::string& comma
   }
 }
 
-/// Inputs that take long find little.
+/// Limits the run time, because slow inputs find few errors.
 class Patience {
  public:
-  /// As many steps of 10 ms as are left of 2 s, up to `steps`; a watchdog needs 1.6 s to bite. None on a line
-  /// on which much has been said.
+  /// Lets up to `steps` steps of 10 ms pass, and at most 2 s in total: a watchdog requires 1.6 s to reset the
+  /// module. Lets no time pass on a line that has carried many bytes.
   void pass(Watched& watched, unsigned long steps) {
     constexpr unsigned long kMostHeard = 200;
     for (; steps != 0 && steps_left_ != 0 && watched.heard < kMostHeard; --steps, --steps_left_) {
       watched.line.bus().run_for(std::chrono::milliseconds(10));
     }
   }
-  /// Of pulses up to 99,999 once an input, else 99.
+  /// Accepts one command with up to 99,999 pulses for each input of the fuzzer; otherwise at most 99 pulses.
   bool has_for(const Words& words) {
     const bool pulses = words.size() == 4 && words[1] == "pulse" && is_number(words[3], 100, 1'000'000);
     return !pulses || (std::stoul(words[3]) <= 99'999 && !std::exchange(used_, true));

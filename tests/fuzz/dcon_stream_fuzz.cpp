@@ -1,5 +1,5 @@
-// Characters, pauses and line errors at all models, -M models among them, which speak ASCII unless the input
-// has it otherwise; input: byte_code.hpp.
+// Fuzzes all models with characters, pauses and line errors. -M models use ASCII unless the input selects
+// Modbus. For the input format see byte_code.hpp.
 #include "tests/fuzz/byte_code.hpp"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {

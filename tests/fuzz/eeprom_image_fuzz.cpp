@@ -1,13 +1,14 @@
-// A module comes up on whatever its EEPROM holds, and stores and remembers as if nothing had been.
+// Starts a module with arbitrary EEPROM content. The module must start, and must then store and restore
+// settings normally.
 //
-// Byte 0 of the input is the model, byte 1:
+// Byte 0 of the input selects the model. Byte 1:
 //
-//     bit 0, 1   layout and check of the first, the second copy of layout 2 are made right
-//     bit 2      INIT* tied to GND
-//     bit 3      the memory does not answer until the module has come up
-//     bit 4, 5   layout, length and check of the first, the second copy of layout 3 are made right
+//     bit 0, 1   correct the layout and check of the first, the second copy of layout 2
+//     bit 2      INIT* connected to GND
+//     bit 3      the memory does not acknowledge until the module has started
+//     bit 4, 5   correct the layout, length and check of the first, the second copy of layout 3
 //
-// The rest is what the memory holds from address 0 on; behind it it is erased.
+// The rest is the content of the memory from address 0. The remaining memory is erased.
 #include <algorithm>
 #include <array>
 #include <cstring>
@@ -22,7 +23,7 @@ namespace {
 
 constexpr std::size_t kHeader = 2;
 
-/// What the module has to come up with.
+/// The expected state of the module after its start.
 struct Expected {
   Settings settings;
   bool unreadable = false;
@@ -87,7 +88,7 @@ class Trial {
  private:
   const State& state() { return session_.module().module().state(); }
 
-  /// Until a timeout, which may come at any moment, is stored too.
+  /// Waits until a timeout, which can occur at any time, has also been stored.
   void wait_for_leftovers() {
     constexpr Microseconds kLongest = 1500 * kMillisecond;
     bool timed_out = false;
@@ -100,7 +101,7 @@ class Trial {
   void come_up_with(const Settings& settings) {
     const bool init = session_.around().init_asserted;
     const InForce& in_force = session_.in_force();
-    // No timeout is that short.
+    // No host watchdog timeout is so short that it can already have expired.
     require(same(state().settings, settings),
             "the later good copy counts, or else the factory's settings do");
     require(state().outputs == (settings.timeout_status ? settings.safe_value : settings.power_on_value),

@@ -1,4 +1,4 @@
-// What is a fault, as sim/docs/faults.md has it, by code of its own.
+// Decides whether words describe a valid fault according to README, independently of the simulator's parser.
 #pragma once
 
 #include <array>
@@ -33,7 +33,7 @@ inline bool is_probability(const std::string& text) {
 
 inline std::optional<nanoseconds> time(const std::string& text) {
   constexpr std::array<std::pair<const char*, double>, 5> kUnits{
-      {{"us", 1e3}, {"ms", 1e6}, {"min", 60e9}, {"h", 3600e9}, {"s", 1e9}}};  // us and ms before s
+      {{"us", 1e3}, {"ms", 1e6}, {"min", 60e9}, {"h", 3600e9}, {"s", 1e9}}};  // "us" and "ms" before "s"
   for (const auto& [unit, length] : kUnits) {
     const std::string ending = unit;
     if (text.size() > ending.size() && text.substr(text.size() - ending.size()) == ending) {
@@ -72,7 +72,7 @@ inline bool is_ordinal(const std::string& text) {
   return (ending == "st" || ending == "nd" || ending == "rd" || ending == "th") && value && *value != 0;
 }
 
-/// When, and for how long.
+/// When a fault occurs, and for how long.
 struct When {
   bool right = true;
   bool given = false;
@@ -127,7 +127,7 @@ inline When when(const Words& words, std::size_t at, nanoseconds now) {
 
 enum class Whose { AnyModules, ThisModules };
 
-/// Whether `words` are `TROUBLE [VALUE] [WHEN]`, and whether that may be of `whose`.
+/// Returns whether `words` are `TROUBLE [VALUE] [WHEN]` and describe a fault that is permitted for `whose`.
 inline bool is_fault(const Words& words, Whose whose, std::chrono::nanoseconds now) {
   using namespace fault;
   if (words.empty()) {

@@ -1,5 +1,6 @@
-// The device on peripherals that are plain values, in virtual microseconds. The simulator's module has the
-// same around it and more: a bus, logs, real ports; here a hundred million lives have to be lived in an hour.
+// Runs the device on peripherals that are plain values, in virtual microseconds. The module of the simulator
+// also has a bus, logs and real ports, and is too slow: the fuzz targets must run a hundred million modules
+// in an hour.
 #pragma once
 
 #include <algorithm>
@@ -21,22 +22,22 @@ using judges::kMillisecond;
 using judges::kNever;
 using judges::Microseconds;
 
-/// Sees what a module does to its surroundings, while it does it.
+/// Observes the effects of a module on its surroundings when they occur.
 class Onlooker {
  public:
-  /// The driver goes on.
+  /// The driver enable goes on.
   virtual void reply_begins(Bytes reply) = 0;
-  /// The driver is off again.
+  /// The driver enable goes off.
   virtual void reply_ends() = 0;
   virtual void outputs_change(std::uint16_t channels) = 0;
-  /// The main loop has turned once; only then the state has changed.
+  /// The main loop has completed one turn. The state changes only then.
   virtual void turned() = 0;
 
  protected:
   ~Onlooker() = default;
 };
 
-/// What outlasts a reset.
+/// The state that survives a reset.
 struct Surroundings {
   explicit Surroundings(Onlooker& who) : onlooker(who) { memory.fill(0xFF); }
 
@@ -45,11 +46,11 @@ struct Surroundings {
   std::uint16_t input_levels = 0;
   bool init_asserted = false;
   bool memory_answers = true;
-  /// All that the core uses of an EEPROM.
+  /// The part of the EEPROM that the core uses.
   std::array<std::uint8_t, 0x180> memory{};
 };
 
-/// See hal/board.hpp.
+/// The board interface is described in hal/board.hpp.
 struct LeanBoard {
   explicit LeanBoard(Surroundings& surroundings)
       : clock{surroundings},
@@ -108,7 +109,7 @@ struct LeanBoard {
     }
   };
 
-  /// On a bus of 100 kHz, 5 ms to program a page.
+  /// An EEPROM on a bus with 100 kHz that takes 5 ms to program a page.
   struct Memory {
     Surroundings& around;
     Microseconds ends = kNever;
@@ -155,7 +156,8 @@ struct LeanBoard {
         std::copy_n(around.memory.begin() + at, destination.size, destination.data);
       }
     }
-    /// The supply fails: a write has got as far as its time went, and spoiled the byte it was at.
+    /// Simulates a supply failure. A write has stored the bytes that its elapsed time allows and has
+    /// corrupted the next byte.
     void cut() {
       if (!busy() || source.size == 0 || !around.memory_answers) {
         return;
@@ -193,11 +195,12 @@ struct LeanBoard {
 
 class LeanModule {
  public:
-  /// Without power.
+  /// Creates a module without power.
   LeanModule(const Model& model, Onlooker& onlooker, TimingAt timing_at)
       : model_(model), timing_at_(timing_at), around_(onlooker) {}
 
-  /// A reset, or power-on; a write that was under way is cut. The module has come up then.
+  /// Resets the module or switches it on, which interrupts a write in progress. Returns when the module has
+  /// started.
   void reset() {
     if (device_) {
       board().memory.cut();
@@ -216,7 +219,7 @@ class LeanModule {
     }
   }
 
-  /// Lets everything happen up to and including then.
+  /// Runs all events up to and including `until`.
   void advance_to(Microseconds until) {
     for (Microseconds next = next_event(); next <= until; next = next_event()) {
       around_.now = std::max(around_.now, next);
@@ -226,7 +229,8 @@ class LeanModule {
   }
   void wait(Microseconds time) { advance_to(around_.now + time); }
 
-  /// A byte's stop bit is over now. Not while `sending()`, which nobody hears.
+  /// Delivers a byte whose stop bit ends now. Do not call this while `sending()`: the module cannot receive
+  /// then.
   void receive(std::uint8_t byte, ByteStatus status) {
     device_->on_receive(byte, status);
     look();
@@ -244,7 +248,7 @@ class LeanModule {
     device_->on_tick();
     main_loop();
   }
-  /// The main loop has something that keeps it busy, or has done with it. Interrupts go on.
+  /// Stops the main loop, or lets it continue. Interrupts still occur.
   void hold(bool held) {
     held_ = held;
     main_loop();
@@ -286,14 +290,14 @@ class LeanModule {
     main_loop();
   }
 
-  /// After an interrupt that most often leaves the main loop nothing to do.
+  /// Runs the main loop if an interrupt has left work for it. Most interrupts leave none.
   void look() {
     if (device_->has_work()) {
       main_loop();
     }
   }
 
-  /// Turns until there is nothing left to do; that takes no time here.
+  /// Runs turns until there is no work left. This takes no virtual time.
   void main_loop() {
     if (held_) {
       return;

@@ -1,4 +1,4 @@
-// How a fuzz target says that a property does not hold.
+// How a fuzz target reports that a property does not hold.
 #pragma once
 
 #include <cstdio>
@@ -6,7 +6,7 @@
 
 namespace ex9000::fuzz {
 
-/// Aborts, so that libFuzzer keeps the input, where `holds` is false; `claim` is printed.
+/// If `holds` is false, prints `claim` and aborts, so that libFuzzer keeps the input.
 inline void require(bool holds, const char* claim) {
   if (!holds) {
     std::fprintf(stderr, "does not hold: %s\n", claim);

@@ -1,5 +1,5 @@
-// Bytes, gaps and line errors at -M models, which speak Modbus unless the input has it otherwise; input:
-// byte_code.hpp.
+// Fuzzes -M models with bytes, gaps and line errors. They use Modbus unless the input selects ASCII. For the
+// input format see byte_code.hpp.
 #include "tests/fuzz/byte_code.hpp"
 
 namespace {

@@ -1,5 +1,5 @@
-// A module between one judge and another: what it hears is judged here once more, and whatever it does is
-// held against that.
+// Connects a module to the witness. The witness judges independently what the module receives, and compares
+// everything that the module does with that.
 #pragma once
 
 #include <algorithm>
@@ -24,8 +24,9 @@ using judges::crc16;
 using judges::dcon_sum;
 using judges::upper_hex;
 
-/// Aborts where the witness objects, or outputs do not come up as is stored. Of the module's own words it
-/// believes what is in force from a reset on, and which settings it has come up with.
+/// Aborts if the witness reports an error, or if the outputs do not start with the stored values. The only
+/// states that it takes from the module itself are the settings in force after a reset and the settings that
+/// it started with.
 class Session final : public Onlooker {
  public:
   Session(const Model& model, bool strict_gaps)
@@ -37,10 +38,10 @@ class Session final : public Onlooker {
 
   LeanModule& module() { return module_; }
   Surroundings& around() { return module_.around(); }
-  /// From the last reset to the next.
+  /// Valid from the last reset to the next one.
   [[nodiscard]] bool speaks_modbus() const { return witness_.hears_modbus(); }
   [[nodiscard]] const InForce& in_force() const { return state().in_force; }
-  /// T3.5; in DCON too, where it means nothing.
+  /// T3.5, in microseconds. Also available in DCON, where it has no meaning.
   [[nodiscard]] Microseconds silence() const { return witness_.silence(); }
 
   void reset() {
@@ -59,7 +60,7 @@ class Session final : public Onlooker {
   }
 
   void wait(Microseconds time) { advance_to(module_.now() + time); }
-  /// The main loop does nothing for so long.
+  /// Stops the main loop for this time.
   void hold(Microseconds time) {
     witness_.is_held(true, module_.now());
     held_until_ = module_.now() + time;
@@ -68,26 +69,26 @@ class Session final : public Onlooker {
   void toggle_input(unsigned channel) { module_.toggle_input(channel); }
   void tick() { module_.tick(); }
 
-  /// A byte that begins `gap` from now, or a little later.
+  /// Sends a byte that begins `gap` from now, or a little later.
   void byte(std::uint8_t byte, ByteStatus status, Microseconds gap = 0) {
     const Microseconds end = witness_.beyond_doubt(module_.now() + gap + witness_.character());
     advance_to(end);
     if (module_.sending()) {
-      return;  // the echo's place: nobody hears it
+      return;  // the module cannot receive while it sends: the echo of its reply is here
     }
     witness_.hears(byte, status == ByteStatus::Good, in_force().address, end);
     module_.receive(byte, status);
   }
 
-  /// Until the module has been silent for 250 ms.
+  /// Waits until the module has sent nothing for 250 ms.
   void wait_for_quiet() {
     do {
       wait(250 * kMillisecond);
     } while (module_.sending());
   }
 
-  /// A request without its check, put on a quiet line with it, and the reply without its check; empty where
-  /// there is none. It lives until the next one.
+  /// Adds the check to a request, sends it on a quiet line, and returns the reply without its check. Returns
+  /// nothing if there is no reply. The result is valid until the next call.
   Bytes ask(Bytes request) {
     reply_size_ = 0;
     for (const std::uint8_t each : request) {

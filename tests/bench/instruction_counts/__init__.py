@@ -1,1 +1,1 @@
-"""What tests/bench/instructions is made of."""
+"""The implementation of tests/bench/instructions."""

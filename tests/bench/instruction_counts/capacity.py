@@ -1,4 +1,4 @@
-"""What a TM4C123 can take of edges, reckoned from counts: no measurement."""
+"""Calculates from instruction counts how many input edges a TM4C123 can process. Nothing here is measured."""
 
 import math
 
@@ -11,7 +11,7 @@ BAUD = 115200
 BITS_A_CHARACTER = 10
 TICKS_A_SECOND = 100
 LEFT_TO_THE_MAIN_LOOP = 0.1
-PORTS = (6, 2)  # how many inputs lie on one port: boards/ek-tm4c123gxl/board.hpp
+PORTS = (6, 2)  # number of inputs on each port: boards/ek-tm4c123gxl/board.hpp
 
 
 def cycles(instructions):
@@ -25,10 +25,10 @@ class Found:
         self.received_byte = 0
         self.sent_byte = 0
         self.interrupts = {}
-        self.edges = {}  # of the whole interrupt, by how many it serves
+        self.edges = {}  # number of edges served at once -> instructions of the whole interrupt
 
     def add(self, counter):
-        """`counter` is a counter.Counter."""
+        """Adds the counts of a counter.Counter."""
         self.received_byte = max(self.received_byte, counter.received_byte.count)
         self.sent_byte = max(self.sent_byte, counter.sent_byte.count)
         for mine, its in ((self.interrupts, counter.interrupts), (self.edges, counter.edges)):
@@ -43,21 +43,21 @@ class Found:
                 mine[key] = max(mine.get(key, 0), count)
 
     def edges_at_once(self, edges):
-        """Instructions of an interrupt that serves so many: a straight line through the counts for one and for
-        the most that were counted."""
+        """Returns the instructions of an interrupt that serves this many edges. Interpolates linearly between the count
+        for one edge and the count for the largest measured number of edges."""
         most = max(self.edges)
         one = self.edges[1]
         return one + (edges - 1) * (self.edges[most] - one) / (most - 1)
 
 
 def capacity(found):
-    """The text to print."""
+    """Returns the text to print."""
     ports = [cycles(found.edges_at_once(edges)) for edges in PORTS]
     byte = cycles(found.received_byte)
     tick = cycles(found.interrupts[execution.TICK])
     busy = byte * BAUD / BITS_A_CHARACTER / HERTZ + tick * TICKS_A_SECOND / HERTZ
     left = max(0.0, 1 - busy - LEFT_TO_THE_MAIN_LOOP)
-    # An edge waits at worst for one of each other interrupt, and then until its own flag is cleared.
+    # In the worst case an edge waits for one run of each other interrupt, and then until its own flag is cleared.
     waits = (
         sum(ports)
         + max(byte, cycles(found.sent_byte))

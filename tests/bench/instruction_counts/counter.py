@@ -1,4 +1,4 @@
-"""From what was executed to counts."""
+"""Converts the execution log into instruction counts."""
 
 import threading
 
@@ -6,7 +6,7 @@ from instruction_counts import execution
 
 
 class Highest:
-    """The pass with the most instructions."""
+    """Keeps the pass with the most instructions."""
 
     def __init__(self):
         self.passes = 0
@@ -23,8 +23,8 @@ class Highest:
 
 
 class Median:
-    """The pass in the middle: into some a tick falls, and of a turn that does something else too not all that is
-    done for the tick can be told apart."""
+    """Keeps all passes and returns the median. A tick occurs during some passes, and its instructions cannot be
+    separated completely if the same turn of the main loop also does other work."""
 
     def __init__(self):
         self._passes = []
@@ -46,7 +46,7 @@ class Median:
 
 
 class Sum:
-    """All of them."""
+    """Adds up all passes."""
 
     def __init__(self):
         self.passes = 0
@@ -62,11 +62,11 @@ class Sum:
 
 
 class Counter:
-    """Listens to execution.follow.
+    """A listener for execution.follow.
 
-    A pass is a whole transaction: all interrupts and all turns of the main loop from `begin` to `end`, the
-    tick subtracted: its interrupt, the turn that nothing else has woken, and what another turn does for it. Nor
-    does it have turns that only the tool's own alarm has woken.
+    A pass is a whole transaction: all interrupts and all turns of the main loop from `begin` to `end`. It excludes the
+    tick: its interrupt, the turns that only the tick has woken, and the tick's work in other turns. It also excludes
+    turns that only the alarm of this tool has woken.
     """
 
     def __init__(self, handlers, sleeps, of_the_tick):
@@ -74,41 +74,41 @@ class Counter:
         self._awake = {execution.as_logged(address + 2) for address in sleeps}
         self._of_the_tick = {execution.as_logged(address) for address in of_the_tick}
         self._seen = threading.Event()
-        self._pass = None  # addresses, while one is under way
-        self.answered = False  # the driver went off
-        self.nothing_happens = False  # but ticks
-        self.at_rest = False  # the main loop fell asleep, and no interrupt has come since
+        self._pass = None  # addresses of the current pass; None between passes
+        self.answered = False  # the driver enable has gone off
+        self.nothing_happens = False  # except ticks
+        self.at_rest = False  # the main loop has gone to sleep, and no interrupt has occurred since
         self.requests = {}
         self.edges_at_once = 0
         self.forget()
 
     def forget(self):
-        """Begins to count what is not a request."""
+        """Starts to count everything that is not a request."""
         self.received_byte = Highest()
         self.sent_byte = Highest()
-        self.interrupts = {}  # others, by the number of the exception
-        self.edges = {}  # by how many were served at once
+        self.interrupts = {}  # other interrupts, by exception number
+        self.edges = {}  # by the number of edges served at once
         self.ticks_turn = Highest()
-        self.idling = Sum()  # all that is executed while nothing happens
+        self.idling = Sum()  # everything that is executed while nothing happens
 
     def begin(self):
-        """The main loop sleeps."""
+        """Starts a pass. The main loop must be asleep."""
         self._pass = []
         self.answered = False
         self.at_rest = True
 
     def end(self, request):
-        """`request` is done, and the main loop sleeps."""
+        """Ends the pass of `request`. The request must be complete and the main loop asleep."""
         self.requests.setdefault(request, Median()).note(self._pass)
         self._pass = None
 
     def wait_until_seen(self, patience):
-        """What Emulator.ask_for_sight, called before, asked for."""
+        """Waits until the log contains the line that Emulator.ask_for_sight requested. Call ask_for_sight first."""
         if not self._seen.wait(patience):
             raise RuntimeError("the emulator's log has ended")
         self._seen.clear()
 
-    # --- what execution.follow tells ---
+    # --- events from execution.follow ---
 
     def seen(self):
         self._seen.set()
@@ -118,7 +118,7 @@ class Counter:
             self.at_rest = False
 
     def left(self, span, _main):
-        if span.addresses[:1] == [self._first.get(span.exception)]:  # logged from its begin on
+        if span.addresses[:1] == [self._first.get(span.exception)]:  # the log contains its first instruction
             self._note_interrupt(span)
         if self._pass is not None and span.exception != execution.TICK:
             self._pass += span.addresses
@@ -130,7 +130,7 @@ class Counter:
     def slept(self, main):
         self.at_rest = True
         if main.addresses[0] not in self._awake:
-            return  # logging began in between
+            return  # logging started during this turn
         if self.nothing_happens and main.interrupts:
             self.idling.note(main.addresses)
         if main.interrupts == [execution.TICK]:

@@ -1,4 +1,4 @@
-"""An image in QEMU, in a time of its own: its line, its pins, and the log of what it executes."""
+"""Runs an image in QEMU in emulated time, with access to its line, its pins, and its execution log."""
 
 import ctypes
 import json
@@ -11,22 +11,22 @@ import struct
 import subprocess
 import tempfile
 
-# What is logged beside instructions, in the order in which it happens.
+# Events that QEMU logs together with the instructions, in order of occurrence.
 EVENTS = ["pl011_read", "pl011_write", "nvic_acknowledge_irq", "nvic_complete_irq"]
 
 PORT_A = 8  # /machine/unattached/device[8] is GPIO port A, and the others follow
 UART_FLAGS = 0x4000C018
 RECEIVER_EMPTY = 1 << 4
 UART_IDENTIFICATION = 0x4000CFE0  # a register that no firmware reads
-UART_IDENTIFICATION_2 = 0x4000CFE4  # likewise
+UART_IDENTIFICATION_2 = 0x4000CFE4  # a register that no firmware reads
 
-# tests/qemu/alarm_clock.cpp says why each of these is as it is.
+# tests/qemu/alarm_clock.cpp explains these values.
 TIMERS = range(0x40030000, 0x40034000, 0x1000)
 ALARM = TIMERS[3]
 TIMER_MODE, TIMER_CONTROL, TIMER_MASK, TIMER_CLEAR, TIMER_INTERVAL = 0x04, 0x0C, 0x18, 0x24, 0x28
 ALARM_INTERRUPT = 35
 VECTORS = 16 + 24
-SET_ENABLE = 0xE000E104  # of interrupts from 32 on
+SET_ENABLE = 0xE000E104  # for interrupts from 32 on
 VECTOR_TABLE_OFFSET = 0xE000ED08
 DRIVER_ENABLE = 0x40004100
 STATUS_LED = 0x40025004
@@ -34,14 +34,14 @@ TABLE, TOLD, CODE, ORDERS = 0x20008000, 0x20008000, 0x20009000, 0x2000A000
 NEXT_ALARM, EDGES, HALT, LEFT = ORDERS, ORDERS + 4, ORDERS + 20, ORDERS + 24
 GATE = CODE + 0x48
 HERTZ = 50_000_000
-AT_RESET = 4  # times as slow
+AT_RESET = 4  # clock divisor at reset, relative to HERTZ
 INTERRUPT_TAKES = 0.7e-6
 ROOT = pathlib.Path(__file__).resolve().parents[3]
-HANG = 60  # seconds; only an emulator that hangs takes so long, also on a busy machine
+HANG = 60  # seconds; reached only if the emulator hangs, even on a busy machine
 
 
 def alarm_code():
-    """What AlarmClock in tests/qemu has for an interrupt, with its literals."""
+    """Returns the interrupt code of AlarmClock in tests/qemu, with its literals."""
     text = (ROOT / "tests/qemu/alarm_interrupt.inc").read_text()
     halfwords = [int(word, 16) for word in re.findall(r"^ *(0x[0-9A-F]{4},(?: 0x[0-9A-F]{4},)?)", text, re.M)
                  for word in re.findall("0x[0-9A-F]{4}", word)]
@@ -51,17 +51,18 @@ def alarm_code():
 
 
 def die_with_parent():
-    """So that nothing is left where somebody interrupts this; Linux only."""
+    """Makes sure that no child process stays if the user interrupts this program. Linux only."""
     set_parent_death_signal = 1
     ctypes.CDLL(None).prctl(set_parent_death_signal, signal.SIGKILL)
 
 
 class Emulator:
-    """Stands still but in `run_for`. `log` is a stream of lines that somebody has to read all the time.
+    """The emulator runs only during `run_for`. `log` is a stream of lines, which a thread must read continuously.
 
-    Its time is its own: 8 ns an instruction, however long logging takes, and none while it stands still. In between an
-    interrupt of this tool stops it at a gate (tests/qemu/gate.cpp); execution.follow leaves that out.
-    -singlestep: one instruction at a time, so that each one is logged.
+    The emulated time is independent of real time: 8 ns for each instruction, however long logging takes. It stands
+    still between calls of `run_for`: an interrupt of this tool stops the emulator at a gate (tests/qemu/gate.cpp).
+    execution.follow excludes that interrupt. -singlestep executes one instruction at a time, so that each one is
+    logged.
     """
 
     def __init__(self, image, gate):
@@ -75,7 +76,7 @@ class Emulator:
         self.log = None
 
     def power_up(self, pins):
-        """With these levels outside its pins, and what the EEPROM holds. Before the first instruction."""
+        """Starts the emulator with these pin levels and the stored EEPROM content, before the first instruction."""
         folder = self._directory.name
         names = ("uart", "qmp", "qtest", "gate")
         listeners = [self._listen(f"{folder}/{name}") for name in names]
@@ -133,7 +134,7 @@ class Emulator:
         self._started = False
 
     def run_for(self, seconds):
-        """Seconds of its own; at least 3 us."""
+        """Runs for this many seconds of emulated time; at least 3 us."""
         clocks = max(100, round((seconds - INTERRUPT_TAKES) * HERTZ))
         if self._started:
             self._write(NEXT_ALARM, clocks)
@@ -152,7 +153,7 @@ class Emulator:
             told += piece
 
     def put(self, byte):
-        """A byte on the line: it has come when the emulator goes on."""
+        """Puts a byte on the line. The image has received it when the emulator continues."""
         if not self._read(UART_FLAGS) & RECEIVER_EMPTY:
             raise RuntimeError("the image has not taken the byte before")
         self.line.sendall(bytes([byte]))
@@ -160,25 +161,25 @@ class Emulator:
             pass
 
     def said(self):
-        """What it has put on the line since it was asked last."""
+        """Returns the bytes that the image has sent since the last call."""
         try:
             return self.line.recv(4096)
         except BlockingIOError:
             return b""
 
     def mark(self):
-        """Leaves a line in the log that is nothing of the image's: see execution.py."""
+        """Writes a line to the log that the image cannot cause. See execution.py."""
         self._ask_bus(f"readl {UART_IDENTIFICATION:#x}")
 
     def ask_for_sight(self):
-        """Another line, by which execution.follow tells that it has come so far."""
+        """Writes a different line to the log. execution.follow reports when it reaches that line."""
         self._ask_bus(f"readl {UART_IDENTIFICATION_2:#x}")
 
     def log_instructions(self, on):
         self._execute("human-monitor-command", **{"command-line": "log exec" if on else "log none"})
 
     def set_pin(self, pin, level):
-        """The level outside a pin, such as A7."""
+        """Sets the external level of a pin, for example A7."""
         device = PORT_A + ord(pin[0]) - ord("A")
         self._ask_bus(f"set_irq_in /machine/unattached/device[{device}] unnamed-gpio-in {pin[1]} {level:d}")
 

@@ -1,8 +1,8 @@
-"""The emulator's log of what was executed, cut into interrupts and turns of the main loop.
+"""Divides the emulator's execution log into interrupts and turns of the main loop.
 
-A line is logged before its instruction is executed, which may come to nothing: because a peripheral is touched
-and the emulator begins the instruction anew for that ("cpu_io_recompile"), or because an interrupt comes first
-("Stopped"). The next line then says so, and the one before it does not count.
+QEMU logs a line before it executes the instruction. Two events can prevent the execution: QEMU restarts an instruction
+that accesses a peripheral ("cpu_io_recompile"), or an interrupt comes first ("Stopped"). The next line then reports
+that event, and the line before it does not count.
 """
 
 MAIN = 0
@@ -13,27 +13,27 @@ I2C = 24
 SILENCE = 35
 LINE_END = 37
 WAKE = 39
-ALARM = 51  # of the tool itself: see emulator.py
+ALARM = 51  # alarm interrupt of this tool: see emulator.py
 
 
 class Span:
-    """An interrupt from its first instruction to its return; or a turn of the main loop, from waking to
-    falling asleep, without the interrupts in between."""
+    """An interrupt from its first instruction to its return, or a turn of the main loop from wake-up to sleep without
+    the interrupts in between."""
 
     def __init__(self, exception):
         self.exception = exception
         self.addresses = []  # of all instructions; eight hexadecimal digits each, as logged
-        self.received = []  # bytes taken from the UART
-        self.sent = 0  # bytes given to it
-        self.interrupts = []  # exceptions that came in between
+        self.received = []  # bytes read from the UART
+        self.sent = 0  # number of bytes written to the UART
+        self.interrupts = []  # exceptions that occurred during the turn
 
 
 def follow(log, sleeps, listener):
-    """Reads the log to its end. `sleeps` are the addresses of WFI. `listener` has the methods
+    """Reads the log to its end. `sleeps` are the addresses of WFI instructions. `listener` requires these methods:
 
-    - entered(span, main), left(span, main): an interrupt begins, or has returned
-    - slept(main): a turn is over
-    - seen(): all that was executed before Emulator.ask_for_sight was called has been told
+    - entered(span, main), left(span, main): an interrupt has started, or has returned
+    - slept(main): a turn has ended
+    - seen(): everything that was executed before the call of Emulator.ask_for_sight has been reported
     """
     main = Span(MAIN)
     stack = [main]
@@ -58,7 +58,7 @@ def follow(log, sleeps, listener):
                 if span.exception != ALARM:
                     main.interrupts.append(span.exception)
                     listener.entered(span, main)
-                stack[1:] = [span]  # none interrupts another; a reset leaves none
+                stack[1:] = [span]  # interrupts do not nest; a reset leaves none active
             elif len(stack) > 1:
                 span = stack.pop()
                 if span.exception != ALARM:
@@ -70,7 +70,7 @@ def follow(log, sleeps, listener):
                     stack[-1].received.append(int(line.rsplit(b"0x", 1)[1], 16) & 0xFF)
                 else:
                     stack[-1].sent += 1
-            elif b" addr 0x00000fe0 " in line:  # Emulator.mark: instructions are logged from here on
+            elif b" addr 0x00000fe0 " in line:  # Emulator.mark: instruction logging starts here
                 main = stack[0] = Span(MAIN)
                 here = stack[-1].addresses
             elif b" addr 0x00000fe4 " in line:  # Emulator.ask_for_sight

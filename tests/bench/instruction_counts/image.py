@@ -1,4 +1,4 @@
-"""A firmware image as it is flashed: its functions, its vectors, and what lies inlined at which address."""
+"""Reads a firmware image: its functions, its vectors, and the functions inlined at each address."""
 
 import bisect
 import struct
@@ -25,25 +25,25 @@ class Image:
         return subprocess.run(command, input=text, check=True, stdout=subprocess.PIPE).stdout
 
     def handlers(self):
-        """The address of the first instruction of each exception, by its number."""
+        """Returns the address of the first instruction of each exception handler, by exception number."""
         table = self._tool("objcopy", "-O", "binary", "-j", ".vectors", self.path, "/dev/stdout")
         words = struct.unpack(f"<{len(table) // 4}I", table)
         return {number: word & ~1 for number, word in enumerate(words) if number >= 1}
 
     def sleeps(self):
-        """Where it sleeps: the addresses of WFI."""
+        """Returns the addresses of the WFI instructions, where the main loop sleeps."""
         lines = self._tool("objdump", "-d", self.path).decode().splitlines()
         return {int(line.split(":")[0], 16) for line in lines if line.endswith("\twfi")}
 
     def function(self, address):
-        """The function whose code this is, or the address."""
+        """Returns the name of the function that contains the address, or the address itself if there is none."""
         index = bisect.bisect_right(self._begins, address) - 1
         if index >= 0 and address < self._functions[index][1]:
             return self._functions[index][2]
         return hex(address)
 
     def inlined(self, addresses):
-        """For each address the names of the functions of the source that it belongs to, innermost first."""
+        """Returns for each address the names of the source functions that contain it, innermost first."""
         unknown = sorted(set(addresses) - set(self._chains))
         text = "\n".join(map(hex, unknown)).encode()
         chain = []
@@ -59,8 +59,8 @@ class Image:
         return {address: self._chains[address] for address in addresses}
 
     def addresses_of(self, name):
-        """The addresses of all code of the function `name` of the source, inlined or not, and of what is
-        inlined into it."""
+        """Returns the addresses of all code of the source function `name`, inlined or not, and of the code inlined into
+        it."""
         everywhere = [address for begin, end, _ in self._functions for address in range(begin, end, 2)]
         return {
             address

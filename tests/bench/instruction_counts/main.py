@@ -1,4 +1,4 @@
-"""The command line."""
+"""The command line of tests/bench/instructions."""
 
 import argparse
 import collections
@@ -17,8 +17,8 @@ OUTPUTS = Model("EX9042D-M", 0, 13, True)
 INPUTS = Model("EX9052D-M", 8, 0, True)
 BOTH = Model("EX9055D", 8, 8, False)
 
-# Model, ASCII, and whether what all models have is asked too: once in each protocol, where it costs most,
-# which is where there are inputs.
+# Model, whether it uses ASCII, and whether to also send the requests that all models support. Those are sent once in
+# each protocol, on a model with inputs, where they cost most.
 SESSIONS = [
     (INPUTS, False, True),
     (BOTH, True, True),
@@ -29,9 +29,9 @@ SESSIONS = [
 
 RECORD = pathlib.Path(__file__).resolve().parent.parent / "recorded_instructions"
 EDGE_PASSES = 20  # for each of eight inputs
-GROWTH = 1.05  # of the record, without a new one
+GROWTH = 1.05  # permitted growth without a new record
 
-# A pass has served so many, and its count is shared among them.
+# Each pass has served this many events. The count is divided by that number.
 Row = collections.namedtuple("Row", "name passes served until")
 
 
@@ -64,7 +64,7 @@ def count_of(row):
 
 
 def run_session(options, model, is_ascii, general):
-    """Returns the rows to print, profiles, and what `capacity` needs."""
+    """Returns the rows to print, the profiles, and the input for `capacity`."""
     label = f"{model.name} {'ASCII' if is_ascii else 'RTU'}"
     everything = not options.only
     with Session(os.path.join(options.folder, f"{model.name}.elf"), options.gate, model, is_ascii) as session:

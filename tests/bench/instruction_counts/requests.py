@@ -1,20 +1,20 @@
-"""The requests whose answers are counted: a list for each protocol, by what the model has."""
+"""The requests whose replies are counted: one list for each protocol, depending on the features of the model."""
 
 import collections
 
-# How it ends.
+# How a request ends.
 REPLY = "reply"
-STORE = "store"  # a reply, once it is stored
+STORE = "store"  # a reply, after the value is stored
 DONE = "done"  # no reply
-IGNORED = "ignored"  # it is for somebody else
+IGNORED = "ignored"  # addressed to another module
 
 Model = collections.namedtuple("Model", "name inputs outputs modbus")
 
 
 class Request:
-    """Something to ask several times. `frames` take turns, so that a setting changes each time. Those of
-    `before` go first and are not counted: in turn as well, where there are as many, else all; `settles`: seconds
-    until what they do is done."""
+    """A request to repeat several times. The passes send the `frames` in turn, so that a setting changes each time. The
+    frames of `before` are sent first and not counted: one in turn if there are as many of them as `frames` (more than
+    one), otherwise all. `settles`: seconds to wait until their effect is complete."""
 
     def __init__(
         self,
@@ -55,8 +55,8 @@ def dcon(text, checksum):
 
 
 def modbus_requests(model, general):
-    """firmware/modbus/functions.hpp; up to 4 registers or 13 coils each. The module's address is 01. `general`:
-    what all models have too."""
+    """The requests of firmware/modbus/functions.hpp, up to 4 registers or 13 coils each. The module has address 01.
+    `general`: also return the requests that all models support."""
 
     def request(name, *frames, before=(), **rest):
         return Request(
@@ -160,7 +160,7 @@ def modbus_requests(model, general):
 
 
 def ascii_requests(model, general, checksum):
-    """firmware/dcon/commands.hpp; see modbus_requests."""
+    """The requests of firmware/dcon/commands.hpp. See modbus_requests."""
 
     def request(name, *commands, before=(), **rest):
         return Request(

@@ -1,4 +1,4 @@
-"""One image, one protocol: asks everything and returns what was counted."""
+"""Sends all requests to one image in one protocol and returns the counts."""
 
 import threading
 
@@ -11,23 +11,23 @@ from instruction_counts.requests import DONE, IGNORED, ascii_requests, crc16, dc
 INIT = "A7"  # boards/lm3s6965evb/board.hpp
 INPUTS = ["B0", "B1", "B4", "B5", "B6", "C4", "C5", "C6"]
 
-# Seconds, all of the emulator's own.
+# In seconds of emulated time.
 START_UP = 0.1
 DEBOUNCE = 0.03
 PATIENCE = 0.25  # for a reply
-DRIVER_OFF = 0.0006  # behind a reply, at 115200 baud
+DRIVER_OFF = 0.0006  # after a reply, at 115200 baud
 DRIVER_OFF_AT_9600 = 0.01
 BYTE = 10 / 115200
 BYTE_AT_9600 = 10 / 9600
 SLICE = 0.001
-PASS = 0.3  # is over within that
+PASS = 0.3  # maximum duration of a pass
 REST = 0.2
 
-QUIET = 0.004  # behind a byte: every frame is over, and what it asks for is done
+QUIET = 0.004  # after a byte: all frames have ended, and the module has completed their work
 
 
 class Session:
-    """ASCII is spoken with checksums, which cost more."""
+    """ASCII sessions use checksums because they cost more instructions."""
 
     def __init__(self, image, gate, model, is_ascii):
         self.image = Image(image)
@@ -47,8 +47,8 @@ class Session:
         self._emulator.close()
 
     def count_requests(self, general, wanted, passes):
-        """`general`: what all models have, too; `wanted` says of a request whether it is to be asked; `passes`
-        limits how often."""
+        """`general`: also send the requests that all models support. `wanted`: a function that returns whether to send
+        a request. `passes`: the maximum number of repetitions."""
         requests = (
             ascii_requests(self._model, general, True)
             if self._ascii
@@ -62,7 +62,7 @@ class Session:
                 self._set_init(False)
 
     def count_edges(self, passes):
-        """Each input alone, then all inputs of a port at once; up and down in turn."""
+        """Changes each input alone, then all inputs of a port at once. Levels alternate between high and low."""
         ports = sorted({pin[0] for pin in INPUTS})
         together = [[pin for pin in INPUTS if pin[0] == port] for port in ports]
         for pins in [[pin] for pin in INPUTS] + together:
@@ -82,7 +82,8 @@ class Session:
         self.counter.nothing_happens = False
 
     def set_up(self):
-        """Once, before all else. Address 01, 115200 baud, the checksum where it is ASCII; by INIT*, as people do it."""
+        """Configures the module over INIT*, as a user does: address 01, 115200 baud, checksums for ASCII. Call it once,
+        first."""
         self._power_up(False)
         commands = [f"%0001400A{'40' if self._ascii else '00'}"]
         if self._model.modbus:
@@ -108,7 +109,7 @@ class Session:
         self._run(START_UP)
 
     def _count(self, request, passes):
-        """As the last of its frames leaves the module, so it was before."""
+        """The last frame of a request restores the state that the module had before the request."""
         for attempt in range(passes):
             in_turn = len(request.before) == len(request.frames) > 1
             for frame in [request.before[attempt % len(request.before)]] if in_turn else request.before:
@@ -153,7 +154,7 @@ class Session:
             self._run(byte_takes)
 
     def _converse(self, frame):
-        """A frame whose answer is not counted; broadcasts have none."""
+        """Sends a frame whose reply is not counted. Broadcasts have no reply."""
         self._say(frame)
         if frame[1:3] == b"**":
             self._run(0.003)
@@ -165,7 +166,8 @@ class Session:
         return self._hear() != b""
 
     def _hear(self, end=None):
-        """A reply, whole if it ends with `end` or as the protocol has it; nothing where none comes."""
+        """Returns a reply, which is complete when it ends with `end` or as the protocol specifies. Returns nothing if
+        no reply arrives."""
         reply = self._emulator.said()
         left = PATIENCE
         while not (reply.endswith(end) if end else self._is_whole(reply)) and left > 0:

@@ -1,5 +1,5 @@
-// A Modbus RTU server as one writes it with libmodbus: unit 1, 13 coils, on a pseudo-terminal whose master
-// end it holds itself. Prints the path of the other end, and serves until it is ended.
+// A typical Modbus RTU server that uses libmodbus: unit 1 with 13 coils on a pseudo-terminal. The server
+// holds the master end and prints the path of the other end. It serves until it is terminated.
 #include <fcntl.h>
 #include <modbus/modbus.h>
 #include <termios.h>
@@ -17,7 +17,8 @@ int main() {
     std::perror("pseudo-terminal");
     return 1;
   }
-  // Held open, so that nothing ends between two masters; and no echo before the first one sets its own way.
+  // Keeping this end open prevents a hang-up when one master disconnects and the next one connects. Raw mode
+  // prevents an echo before the first master configures the terminal.
   const int other_end = open(ptsname(master), O_RDWR | O_NOCTTY);
   termios settings{};
   tcgetattr(other_end, &settings);

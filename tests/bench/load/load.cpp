@@ -1,7 +1,7 @@
-// What the simulator carries: one line beside servers that people write with libmodbus and pymodbus, and
-// eight lines of 32 modules in one process.
+// Measures the throughput of the simulator: first one line, compared with servers that use libmodbus and
+// pymodbus; then eight lines of 32 modules in one process.
 //
-//     load [--without pymodbus] [MILLISECONDS]    for each measurement; 1000 if left out
+//     load [--without pymodbus] [MILLISECONDS]    duration of each measurement; default 1000
 #include <unistd.h>
 
 #include <algorithm>
@@ -31,7 +31,8 @@ constexpr std::size_t kRounds = 5;
 constexpr unsigned kLines = 8;
 constexpr unsigned kModules = 32;
 
-/// The word that a server prints when it is ready.
+/// Returns the word that a server prints when it is ready. Throws std::runtime_error if the server does not
+/// start.
 std::string announced(ChildProcess& server) {
   if (!server.wait_for("\n")) {
     throw std::runtime_error("a server has not started");
@@ -51,7 +52,7 @@ struct Peer {
   }
 };
 
-/// Transactions a second.
+/// Returns the transactions per second.
 double rate_of(PollingMaster& master, std::chrono::milliseconds time) {
   const auto began = Clock::now();
   const auto transactions = static_cast<double>(master.poll_until(began + time, 1));
@@ -106,7 +107,7 @@ std::string bus_file() {
   return file.str();
 }
 
-/// All TCP ports that a greeting names.
+/// Returns all TCP ports in a greeting.
 std::vector<std::uint16_t> ports_of(const std::string& greeting) {
   const std::string lead = "TCP 127.0.0.1:";
   std::vector<std::uint16_t> ports;
@@ -116,7 +117,7 @@ std::vector<std::uint16_t> ports_of(const std::string& greeting) {
   return ports;
 }
 
-/// Processor time so far, in seconds: utime and stime of proc(5).
+/// Returns the processor time that the process has used, in seconds: utime and stime of proc(5).
 double processor_seconds(int pid) {
   std::ifstream file("/proc/" + std::to_string(pid) + "/stat");
   std::string text;
@@ -124,7 +125,7 @@ double processor_seconds(int pid) {
   std::istringstream words(text.substr(text.rfind(')') + 1));
   std::string word;
   double ticks = 0;
-  constexpr int kUser = 12;  // behind the name
+  constexpr int kUser = 12;  // field numbers after the process name
   constexpr int kSystem = 13;
   for (int i = 1; words >> word && i <= kSystem; ++i) {
     ticks += i == kUser || i == kSystem ? std::stod(word) : 0;
@@ -132,7 +133,7 @@ double processor_seconds(int pid) {
   return ticks / static_cast<double>(sysconf(_SC_CLK_TCK));
 }
 
-/// Resident memory, in KiB.
+/// Returns the resident memory, in KiB.
 long memory_of(int pid) {
   std::ifstream status("/proc/" + std::to_string(pid) + "/status");
   for (std::string line; std::getline(status, line);) {

@@ -1,4 +1,4 @@
-// A master that asks the same again and again, as fast as it is answered.
+// A master that repeats the same request as fast as the server replies.
 #pragma once
 
 #include <chrono>
@@ -8,21 +8,24 @@
 
 namespace ex9000::bench {
 
-/// Raw bytes on a descriptor; whoever serves is measured, and not a library.
+/// Reads and writes raw bytes on a descriptor, so that the measurement shows the server and no master
+/// library.
 class PollingMaster {
  public:
-  /// Throw std::runtime_error where there is nobody.
+  /// These functions throw std::runtime_error if the connection fails.
   static PollingMaster over_tcp(std::uint16_t port);
   static PollingMaster over_tty(const std::string& path);
-  /// Makes a pseudo-terminal and has its master end; `path` becomes that of the other, for a server.
+  /// Creates a pseudo-terminal and uses its master end. Stores the path of the other end, which a server can
+  /// open, in `path`.
   static PollingMaster over_new_tty(std::string& path);
   PollingMaster(PollingMaster&& other) noexcept;
   PollingMaster(const PollingMaster&) = delete;
   PollingMaster& operator=(const PollingMaster&) = delete;
   ~PollingMaster();
 
-  /// Transactions of FC01, 13 coils from 0, with `units` in turn, until `end`. Throws std::runtime_error at
-  /// the first answer that is not one: nobody is fast who is wrong.
+  /// Reads 13 coils from address 0 with FC01 from units 1 to `units` in turn, until `end`. Returns the number
+  /// of transactions. Throws std::runtime_error at the first wrong or missing reply, because the rate of
+  /// wrong replies is no result.
   std::uint64_t poll_until(std::chrono::steady_clock::time_point end, unsigned units);
 
  private:

@@ -1,10 +1,10 @@
 #!/usr/bin/python3
-"""pymodbus' own server: unit 1, coils, RTU frames.
+"""The server of pymodbus: unit 1, coils, RTU frames.
 
     pymodbus_server.py          over TCP; prints its port
     pymodbus_server.py DEVICE   on a serial port; prints its path
 
-It serves until it is ended.
+It serves until it is terminated.
 """
 
 import asyncio
@@ -32,5 +32,5 @@ async def serve(device):
         await serving
 
 
-logging.disable()  # that it is ended is no error
+logging.disable()  # termination is not an error
 asyncio.run(serve(sys.argv[1] if len(sys.argv) > 1 else None))
