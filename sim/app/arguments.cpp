@@ -165,7 +165,7 @@ Fault parse_fault_of_line(std::string text, std::size_t modules) {
   const std::string whole = text;
   const auto module = take_position(text, modules);
   Fault fault = parse_fault(text);
-  if (module && !befalls_a_module(fault.trouble)) {
+  if (module && !concerns_a_module(fault.trouble)) {
     fail(whole + ": concerns the line, not a module; leave out the module's number");
   }
   fault.module = module;
@@ -214,7 +214,7 @@ LineSetup line_of(const Texts& texts) {
 }
 
 /// Rejects options of a line, because the bus file defines them.
-void want_no_line_besides(const Texts& texts) {
+void reject_line_options(const Texts& texts) {
   const std::pair<const char*, bool> given[] = {
       {"--input", !texts.inputs.empty()},     {"--fault", !texts.faults.empty()},
       {"--pty", texts.pty.has_value()},       {"--tcp", texts.tcp.has_value()},
@@ -248,7 +248,7 @@ Setup setup_of(const Texts& texts) {
   }
   Setup setup;
   if (std::any_of(texts.modules.begin(), texts.modules.end(), is_bus_file)) {
-    want_no_line_besides(texts);
+    reject_line_options(texts);
     setup = read_bus_file(texts.modules[0]);
     setup.file = texts.modules[0];
   } else {
@@ -415,7 +415,7 @@ std::string name_of(const CLI::Option& option) {
 
 /// Rejects arguments before a subcommand, because they would have no effect. Throws std::invalid_argument
 /// with a one-line message.
-void want_nothing_in_front_of(const CLI::App& subcommand, const CLI::App& app) {
+void reject_arguments_before(const CLI::App& subcommand, const CLI::App& app) {
   const std::vector<const CLI::Option*> given = given_of(app);
   if (given.empty()) {
     return;
@@ -432,7 +432,7 @@ void want_nothing_in_front_of(const CLI::App& subcommand, const CLI::App& app) {
 
 /// Rejects arguments beside an option that prints text and runs nothing. Throws std::invalid_argument with a
 /// one-line message.
-void want_nothing_beside(const std::string& printing, const CLI::App& app) {
+void reject_other_arguments(const std::string& printing, const CLI::App& app) {
   for (const CLI::Option* option : given_of(app)) {
     if (option->get_name() != printing) {
       fail(printing + ": prints and runs nothing; leave out " + name_of(*option));
@@ -532,19 +532,19 @@ Parsed parse_arguments(int argc, const char* const* argv) {
   }
   try {
     if (models) {
-      want_nothing_beside("--models", app);
+      reject_other_arguments("--models", app);
       return printed(list_models());
     }
     if (example) {
-      want_nothing_beside("--example", app);
+      reject_other_arguments("--example", app);
       return printed(example_bus_file());
     }
     if (schema) {
-      want_nothing_beside("--schema", app);
+      reject_other_arguments("--schema", app);
       return printed(bus_file_schema());
     }
     for (const CLI::App* subcommand : app.get_subcommands()) {
-      want_nothing_in_front_of(*subcommand, app);
+      reject_arguments_before(*subcommand, app);
     }
     if (describing->parsed()) {
       return print_description(describe_texts);

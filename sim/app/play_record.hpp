@@ -31,7 +31,7 @@ class PlayRecord final : public play::Onlooker {
  private:
   Writing writing_;
   Print print_;
-  std::optional<MadeFile> capture_file_;  ///< kept as soon as it contains a line
+  std::optional<NewFile> capture_file_;  ///< kept as soon as it contains a line
   std::unique_ptr<Capture> capture_;
   std::string what_;  ///< the file or model that is played
   std::vector<std::unique_ptr<LineRecord>> lines_;

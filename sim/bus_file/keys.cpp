@@ -194,7 +194,7 @@ const std::array<BusFileKey<ModuleObject>, 11>& module_keys() {
        [](ModuleObject& module, const Node& value) {
          value.elements([&](const Node& text) {
            Fault fault = parse_fault(text.text());
-           if (!befalls_a_module(fault.trouble)) {
+           if (!concerns_a_module(fault.trouble)) {
              text.refuse("concerns the line, not a module; move it to the line's faults");
            }
            fault.module = module.line.modules.size();

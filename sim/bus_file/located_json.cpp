@@ -51,7 +51,7 @@ class Locator final : public nlohmann::json_sax<json> {
   bool number_float(number_float_t /*value*/, const string_t& /*text*/) override { return scalar(); }
   bool string(string_t& value) override {
     seen_ = line_;
-    want_no_nul(value);
+    reject_nul(value);
     return scalar();
   }
   bool binary(binary_t& /*value*/) override { return scalar(); }
@@ -61,7 +61,7 @@ class Locator final : public nlohmann::json_sax<json> {
   bool end_array() override { return close(); }
   bool key(string_t& name) override {
     seen_ = line_;
-    want_no_nul(name);
+    reject_nul(name);
     open_.back().key = name;
     if (!lines.emplace(member_of(open_.back().path, name), line_).second) {
       throw std::invalid_argument(std::to_string(line_) + ": '" + name +
@@ -96,7 +96,7 @@ class Locator final : public nlohmann::json_sax<json> {
   }
 
   /// Rejects NUL, because it would end a path.
-  void want_no_nul(const std::string& text) const {
+  void reject_nul(const std::string& text) const {
     if (text.find('\0') != std::string::npos) {
       throw std::invalid_argument(std::to_string(line_) + ": a text contains NUL; leave out \\u0000");
     }

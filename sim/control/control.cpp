@@ -14,7 +14,7 @@ namespace ex9000::sim {
 
 namespace {
 
-void want_power(const SimulatedModule& module) {
+void require_power(const SimulatedModule& module) {
   if (!module.powered()) {
     fail("the module has no power; switch it on with 'power on'");
   }
@@ -26,7 +26,7 @@ std::string power(SimulatedModule& module, const Words& args) {
 }
 
 std::string reset(SimulatedModule& module, const Words& /*args*/) {
-  want_power(module);
+  require_power(module);
   module.reset();
   return "";
 }
@@ -65,7 +65,7 @@ std::string led(SimulatedModule& module, const Words& /*args*/) {
 }
 
 std::string hang(SimulatedModule& module, const Words& /*args*/) {
-  want_power(module);
+  require_power(module);
   module.hang();
   return "";
 }
@@ -199,7 +199,7 @@ const Verb& verb_called(const std::string& name) {
 
 std::string add_fault(Line& line, std::optional<std::size_t> module, const std::string& text) {
   Fault fault = parse_fault(text);
-  if (module && !befalls_a_module(fault.trouble)) {
+  if (module && !concerns_a_module(fault.trouble)) {
     fail(text + ": concerns the line, not a module; leave out the module's number");
   }
   fault.module = module;
@@ -222,10 +222,10 @@ std::string end_fault(Line& line, const Words& words) {
 
 /// `position` is the position of the line's first module, from 0.
 std::string list_faults(Line& line, std::size_t position) {
-  const std::vector<Faults::Told> told = line.faults().told();
-  std::string text = std::to_string(told.size()) + (told.size() == 1 ? " fault:" : " faults:");
-  for (const Faults::Told& fault : told) {
-    text += (&fault == told.data() ? " " : "; ") + std::to_string(fault.number) +
+  const std::vector<Faults::Info> faults = line.faults().list();
+  std::string text = std::to_string(faults.size()) + (faults.size() == 1 ? " fault:" : " faults:");
+  for (const Faults::Info& fault : faults) {
+    text += (&fault == faults.data() ? " " : "; ") + std::to_string(fault.number) +
             (fault.strikes != 0 ? "*" : "") + " x" + std::to_string(fault.strikes_so_far) + " " +
             (fault.module ? std::to_string(position + *fault.module + 1) + " " : "") + fault.text;
   }

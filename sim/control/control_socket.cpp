@@ -26,7 +26,7 @@ constexpr std::size_t kMostClients = 64;
 }
 
 /// Removes a dead socket at `path`. Throws if something else is there.
-void clear_the_way(boost::asio::io_context& io, const std::string& path, const Claim& claim) {
+void remove_stale(boost::asio::io_context& io, const std::string& path, const Claim& claim) {
   const std::string in_use = "another program listens there; end it or name another path";
   if (!claim.held()) {
     refuse(path, in_use);
@@ -69,7 +69,7 @@ ControlSocket::ControlSocket(boost::asio::io_context& io, std::string path, Carr
     refuse(path_,
            "expected a path of 1 to " + std::to_string(sizeof(sockaddr_un::sun_path) - 1) + " characters");
   }
-  clear_the_way(io, path_, claim_);
+  remove_stale(io, path_, claim_);
   boost::system::error_code error;
   acceptor_.open(Local(), error);
   if (!error) {

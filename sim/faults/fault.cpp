@@ -201,7 +201,7 @@ void check(const Fault& fault) {
 
 }  // namespace
 
-bool befalls_a_module(Trouble trouble) {
+bool concerns_a_module(Trouble trouble) {
   return std::any_of(kRows.begin(), kRows.end(),
                      [=](const Row& row) { return row.trouble == trouble && row.of_a_module; });
 }

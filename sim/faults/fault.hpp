@@ -62,7 +62,7 @@ struct Fault {
 };
 
 /// Whether the fault affects a module, and not the wires.
-bool befalls_a_module(Trouble trouble);
+bool concerns_a_module(Trouble trouble);
 
 /// Parses `TROUBLE [VALUE] [SCHEDULE]`. A fault of modules applies to all modules of the line. Throws
 /// std::invalid_argument with a one-line message that says what is wrong and what would be right.

@@ -127,8 +127,8 @@ void Faults::let_late_replies_go() {
   }
 }
 
-std::vector<Faults::Told> Faults::told() const {
-  std::vector<Told> all;
+std::vector<Faults::Info> Faults::list() const {
+  std::vector<Info> all;
   for (const Armed& armed : armed_) {
     all.push_back(
         {armed.number, armed.fault.text, armed.fault.module, armed.strikes_now(), armed.strikes_so_far});
@@ -160,7 +160,7 @@ void Faults::run() { act(); }
 void Faults::act() {
   const VirtualTime now = bus_.clock().virtual_now();
   for (Armed& armed : armed_) {
-    relent(armed, [now](const Strike& strike) { return strike.ends <= now; });
+    end_strikes(armed, [now](const Strike& strike) { return strike.ends <= now; });
   }
   for (Armed& armed : armed_) {
     if (armed.begins <= now) {
@@ -215,7 +215,7 @@ void Faults::strike(Armed& armed, std::optional<std::size_t> reply_of) {
 
 /// Ends the strikes for which `over` is true.
 template <class Over>
-void Faults::relent(Armed& armed, Over over) {
+void Faults::end_strikes(Armed& armed, Over over) {
   auto& strikes = armed.strikes;
   const auto rest = std::remove_if(strikes.begin(), strikes.end(), over);
   if (rest != strikes.end()) {
@@ -284,8 +284,9 @@ ReplyFate Faults::reply_begins(std::size_t module) {
 void Faults::reply_ends(std::size_t module) {
   for (Armed& armed : armed_) {
     if (!is_noise(armed.fault.trouble)) {
-      relent(armed,
-             [module](const Strike& strike) { return strike.reply_of == module && strike.ends == kNever; });
+      end_strikes(armed, [module](const Strike& strike) {
+        return strike.reply_of == module && strike.ends == kNever;
+      });
     }
   }
 }
@@ -300,7 +301,7 @@ void Faults::reply_on_the_wires(std::size_t module, std::uint64_t reply, bool on
       return strike.reply_of == module && strike.reply == reply && strike.ends == kNever;
     };
     if (!on) {
-      relent(armed, of_it);
+      end_strikes(armed, of_it);
       continue;
     }
     const auto strike = std::find_if(armed.strikes.begin(), armed.strikes.end(), of_it);

@@ -41,14 +41,14 @@ class Faults final : public Station {
   bool remove(std::size_t number);
   void remove_all();
 
-  struct Told {
+  struct Info {
     std::size_t number;
     std::string text;
     std::optional<std::size_t> module;
     std::size_t strikes;  ///< strikes in progress: one, or one per module if the fault depends on replies
     std::uint64_t strikes_so_far;
   };
-  [[nodiscard]] std::vector<Told> told() const;
+  [[nodiscard]] std::vector<Info> list() const;
 
   /// Whether an echo or a foreign station has bytes to send, or an effect has not been applied yet.
   [[nodiscard]] bool pending() const;
@@ -91,7 +91,7 @@ class Faults final : public Station {
   static void forget_others_of(Armed& armed, const Strike& latest);
   void let_late_replies_go();
   template <class Over>
-  void relent(Armed& armed, Over over);
+  void end_strikes(Armed& armed, Over over);
   void say(const Armed& armed, const std::string& what) const;
   void act();
   void take_effect();

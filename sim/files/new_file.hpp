@@ -15,16 +15,16 @@ inline bool is_there(const std::string& path) {
 }
 
 /// The destructor removes the file if it did not exist before, unless `keep` was called.
-class MadeFile {
+class NewFile {
  public:
-  MadeFile(std::string path, bool was_there) : path_(std::move(path)), kept_(was_there) {}
-  ~MadeFile() {
+  NewFile(std::string path, bool was_there) : path_(std::move(path)), kept_(was_there) {}
+  ~NewFile() {
     if (!kept_) {
       unlink(path_.c_str());
     }
   }
-  MadeFile(const MadeFile&) = delete;
-  MadeFile& operator=(const MadeFile&) = delete;
+  NewFile(const NewFile&) = delete;
+  NewFile& operator=(const NewFile&) = delete;
 
   void keep() { kept_ = true; }
 

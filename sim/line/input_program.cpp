@@ -47,7 +47,7 @@ class Times {
     return std::nullopt;
   }
 
-  void want_no_more(const std::string& there_are) const {
+  void reject_unknown(const std::string& there_are) const {
     if (!times_.empty()) {
       fail("'" + times_.front().first + "': expected " + there_are);
     }
@@ -67,7 +67,7 @@ void read_square(std::istringstream& words, InputProgram& program) {
   Times times(words);
   program.high = times.take("for").value_or(program.time / 2);
   program.bounce = times.take("bounce").value_or(VirtualTime(0));
-  times.want_no_more("'for TIME', how long it is on, or 'bounce TIME'");
+  times.reject_unknown("'for TIME', how long it is on, or 'bounce TIME'");
 }
 
 void read_key(std::istringstream& words, InputProgram& program) {
@@ -76,7 +76,7 @@ void read_key(std::istringstream& words, InputProgram& program) {
   const auto every = times.take("every");
   const auto high = times.take("for");
   program.bounce = times.take("bounce").value_or(VirtualTime(0));
-  times.want_no_more("'at TIME', 'every TIME', 'for TIME' or 'bounce TIME'");
+  times.reject_unknown("'at TIME', 'every TIME', 'for TIME' or 'bounce TIME'");
   if (at.has_value() == every.has_value() || !high) {
     fail("a key requires 'at TIME' or 'every TIME', and 'for TIME', how long it is pressed");
   }

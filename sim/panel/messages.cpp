@@ -121,9 +121,9 @@ Message message_of(const Stored& stored) {
   return message;
 }
 
-Message message_of(const std::vector<Faults::Told>& faults, std::size_t first) {
+Message message_of(const std::vector<Faults::Info>& faults, std::size_t first) {
   Message message = Message::array();
-  for (const Faults::Told& fault : faults) {
+  for (const Faults::Info& fault : faults) {
     Message each;
     each["number"] = fault.number;
     each["text"] = fault.text;

@@ -27,7 +27,7 @@ Message message_of(const Guard& guard);
 Message message_of(const Stored& stored);
 
 /// `first` is the position of the line's first module, from 0.
-Message message_of(const std::vector<Faults::Told>& faults, std::size_t first);
+Message message_of(const std::vector<Faults::Info>& faults, std::size_t first);
 
 /// `modules` is the number of modules on the line; faults have added any later station.
 Message message_of(const Heard::Entry& entry, std::uint64_t number, std::size_t modules);

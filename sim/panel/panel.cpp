@@ -44,7 +44,7 @@ std::string random_id() {
 
 }  // namespace
 
-bool operator==(const Faults::Told& a, const Faults::Told& b) {
+bool operator==(const Faults::Info& a, const Faults::Info& b) {
   return a.number == b.number && a.text == b.text && a.module == b.module && a.strikes == b.strikes &&
          a.strikes_so_far == b.strikes_so_far;
 }
@@ -65,7 +65,7 @@ struct Panel::Watched {
   std::vector<Module> modules;
   Heard heard;
   Changing<std::uint32_t> baud;
-  Changing<std::vector<Faults::Told>> faults;
+  Changing<std::vector<Faults::Info>> faults;
 };
 
 struct Panel::State {
@@ -289,7 +289,7 @@ void Panel::look() {
     }
     watched.baud.set(watched.line->master().baud(), look);
     const Faults* faults = watched.line->faults_so_far();
-    watched.faults.set(faults == nullptr ? std::vector<Faults::Told>() : faults->told(), look);
+    watched.faults.set(faults == nullptr ? std::vector<Faults::Info>() : faults->list(), look);
   }
 }
 

@@ -114,7 +114,7 @@ void BusTarget::reset() {
   run_until(now() + kComingUp);
 }
 
-void BusTarget::want_input(unsigned channel) {
+void BusTarget::require_input(unsigned channel) {
   const std::string flaw = missing_input(module().model(), channel);
   if (!flaw.empty()) {
     throw std::runtime_error(flaw);
@@ -122,12 +122,12 @@ void BusTarget::want_input(unsigned channel) {
 }
 
 void BusTarget::set_input(unsigned channel, bool level) {
-  want_input(channel);
+  require_input(channel);
   module().set_input(channel, level);
 }
 
 void BusTarget::pulse_input(unsigned channel, std::uint32_t count) {
-  want_input(channel);
+  require_input(channel);
   module().pulse_input(channel, count);
 }
 

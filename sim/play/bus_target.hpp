@@ -29,7 +29,7 @@ class BusTarget : public Target {
   BusTarget(const sim::Setup& setup, const Memories& memories, Onlooker* onlooker = nullptr);
 
   /// Throws std::runtime_error, as Target does, if the module lacks the input.
-  void want_input(unsigned channel);
+  void require_input(unsigned channel);
 
   [[nodiscard]] std::size_t size() const { return lines_.size(); }
   sim::Line& line(std::size_t index) { return *lines_[index]; }

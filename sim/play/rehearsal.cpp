@@ -15,8 +15,8 @@ class Rehearsal {
 
   void operator()(const step::OnModule& step) { bus_.choose_module(step.position); }
   void operator()(const step::OnLine& step) { bus_.choose_line(step.name); }
-  void operator()(const step::Input& step) { bus_.want_input(step.channel); }
-  void operator()(const step::Pulse& step) { bus_.want_input(step.channel); }
+  void operator()(const step::Input& step) { bus_.require_input(step.channel); }
+  void operator()(const step::Pulse& step) { bus_.require_input(step.channel); }
   void operator()(const step::Trouble& step) { bus_.trouble(step.command); }
   template <class Other>
   void operator()(const Other& /*step*/) {}

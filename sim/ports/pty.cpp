@@ -28,7 +28,7 @@ std::optional<std::string> link_target(const std::string& link) {
 }
 
 /// Removes a dead link at `link`. Throws if something else is there.
-void clear_the_way(const std::string& link, const Claim& claim) {
+void remove_stale(const std::string& link, const Claim& claim) {
   if (!claim.held()) {
     throw std::invalid_argument(link + ": another simulator is running there; end it or name another path");
   }
@@ -77,7 +77,7 @@ class Slave {
 }  // namespace
 
 Pty::Pty(std::string link, std::uint32_t baud) : link_(std::move(link)), claim_(link_) {
-  clear_the_way(link_, claim_);
+  remove_stale(link_, claim_);
   try {
     make(baud);
   } catch (...) {

@@ -94,7 +94,7 @@ void RunningLine::renew_memories() {
   }
 }
 
-void RunningLine::make_missing_memories(std::list<MadeFile>& made) {
+void RunningLine::make_missing_memories(std::list<NewFile>& made) {
   for (std::size_t i = 0; i < line_->size(); ++i) {
     EepromFile* file = memories_[i].get();
     if (file != nullptr && !file->found()) {

@@ -37,7 +37,7 @@ class RunningLine {
   /// the constructor.
   void renew_memories();
   /// Creates the missing EEPROM files and appends them to `made`. Throws like the constructor.
-  void make_missing_memories(std::list<MadeFile>& made);
+  void make_missing_memories(std::list<NewFile>& made);
 
   /// Returns the records of the line, which begin with `start`.
   LineRecord& record() { return *record_; }

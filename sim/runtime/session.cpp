@@ -170,7 +170,7 @@ void Session::make_files_and_greet() {
     keep_a_capture();
   }
   (for_machines() ? greet_ : print_)(greeting(introduced));
-  for (MadeFile& file : made_) {
+  for (NewFile& file : made_) {
     file.keep();
   }
 }

@@ -77,7 +77,7 @@ class Session {
   StopSignals stop_signals_;
   std::unique_ptr<Stepper> stepper_;  ///< null unless the lines' time stands still
   std::unique_ptr<ControlSocket> control_socket_;
-  std::list<MadeFile> made_;  ///< removed with this object until the greeting has been printed
+  std::list<NewFile> made_;  ///< removed with this object until the greeting has been printed
   std::unique_ptr<Capture> capture_;
   std::unique_ptr<Panel> panel_;
   std::unique_ptr<PanelServer> panel_server_;

@@ -197,7 +197,7 @@ TEST_P(OnBoard, APinOfAnOutputOrTheLedThatADisturbanceHasChangedIsRightAgainWith
     for (unsigned channel = 0; channel < bench.image.outputs; ++channel) {
       bench.run_for(microseconds(11'300));
       disturb(bench.image.output_pins.at(channel));
-      EXPECT_EQ(bench.outputs(), 0xA5U ^ (1U << channel)) << "the test must meet what it is for";
+      EXPECT_EQ(bench.outputs(), 0xA5U ^ (1U << channel)) << "the test did not reach the tested case";
       bench.run_for(kATick);
       EXPECT_EQ(bench.outputs(), 0xA5U) << channel;
     }

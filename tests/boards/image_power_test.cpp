@@ -133,7 +133,7 @@ class CutModule {
     module_.set_init(init);
     module_.power(true);
     module_.run_for(milliseconds(60));
-    ASSERT_NE(module_.baud(), 0U) << "it does not come up";
+    ASSERT_NE(module_.baud(), 0U) << "the module does not start";
   }
   /// The standard baud rate nearest to the rate that the divisors give.
   static std::uint32_t nearest_rate(std::uint32_t rate) {

@@ -59,7 +59,7 @@ void check_line(const LineSetup& line) {
   require(!line.tcp || !line.tcp->host.empty(), "TCP has a host");
   for (const sim::Fault& fault : line.faults) {
     require(!fault.module || *fault.module < line.modules.size(), "a fault is of a module that there is");
-    require(!fault.module || sim::befalls_a_module(fault.trouble), "what befalls the line is of no module");
+    require(!fault.module || sim::concerns_a_module(fault.trouble), "what befalls the line is of no module");
     require(fault.text.find('\n') == std::string::npos, "a fault is told in one line");
   }
 }

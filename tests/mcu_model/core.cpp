@@ -78,7 +78,7 @@ void Core::write(std::uint32_t offset, std::uint32_t value) {
       break;
     case kTickCurrent:
       if ((tick_control_ & 1U) != 0) {
-        fault(offset, "time would go back");
+        fault(offset, "the counter must not be written while it runs");
       }
       break;
     case kSetEnable:
@@ -86,7 +86,7 @@ void Core::write(std::uint32_t offset, std::uint32_t value) {
       break;
     case kApplicationInterrupt:
       if (value >> 16U != kKey) {
-        fault(offset, "without the key nothing is written");
+        fault(offset, "the write requires the key 0x05FA");
       }
       group_shift_ = value >> 8U & 7U;
       if ((value & 4U) != 0 && on_reset_) {

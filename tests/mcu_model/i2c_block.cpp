@@ -123,7 +123,7 @@ void I2cBlock::command(std::uint32_t bits) {
     fault(kControl, "a command while one is being carried out");
   }
   if ((configuration_ & kMaster) == 0) {
-    fault(kControl, "it is no master yet");
+    fault(kControl, "the block is not in master mode");
   }
   const bool starts = (bits & (kRun | kStart)) == (kRun | kStart);
   const bool goes_on = (bits & kRun) != 0 && owns_bus_;

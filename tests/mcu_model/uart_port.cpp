@@ -77,7 +77,7 @@ void UartPort::write(std::uint32_t offset, std::uint32_t value) {
       break;
     case kLineControl:
       if ((value & kFifosOn) != 0 || (value & 0xFFU) != 0x60) {
-        fault(offset, "this double knows 8N1 with the FIFOs off");
+        fault(offset, "the simulation supports only 8N1 with the FIFOs off");
       }
       line_control_ = value;
       divisors_latched_ = true;

@@ -87,7 +87,7 @@ void CutBench::power_up(const Contents& contents, bool init) {
   while (!uart().enabled() && bench_.timeline.now() < bench_.began + kComesUpWithin) {
     bench_.run_for(milliseconds(1));
   }
-  ASSERT_TRUE(uart().enabled()) << "it does not come up";
+  ASSERT_TRUE(uart().enabled()) << "the module does not start";
 }
 
 Manner CutBench::speak_as(const Settings& settings, bool init_mode) {
@@ -318,7 +318,7 @@ AfterReset CutBench::reset_after(Instant time, const Contents& contents, const S
   EXPECT_EQ(bench_.outputs(), 0);
   shown_ = Outputs();
   bench_.run_for(kComesUpWithin);
-  EXPECT_TRUE(uart().enabled()) << "it does not come up";
+  EXPECT_TRUE(uart().enabled()) << "the module does not start";
   return {CutBench::contents(), certainly_done, outputs()};
 }
 

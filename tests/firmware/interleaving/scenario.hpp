@@ -107,14 +107,14 @@ inline Run play(const Scenario& scenario, const Places& places) {
     foreseen |= replies == foreseen_replies;
   }
   require(foreseen, "replies " + all_of(replies));
-  require(!hardware.driving(), "the driver is on for ever");
-  require(hardware.feeds > feeds_before, "the watchdog is hungry");
+  require(!hardware.driving(), "the driver is still on");
+  require(hardware.feeds > feeds_before, "the watchdog was not fed");
   run.outcome = scenario.comes_to(bench);
   require_distances(bench, hardware, scenario);
 
   bench.bytes(scenario.probe);
   bench.rest(milliseconds(10));
-  require(hardware.sent.size() == replies.size() + 1, "it has gone deaf, or says too much");
+  require(hardware.sent.size() == replies.size() + 1, "expected exactly one reply to the probe");
   require(hardware.sent.back().bytes == scenario.probe_reply,
           "probed: " + all_of({hardware.sent.back().bytes}));
   return run;

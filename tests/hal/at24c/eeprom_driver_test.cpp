@@ -339,7 +339,7 @@ TYPED_TEST(Eeprom, AResetInTheMiddleOfAReadAtAnyMomentDoesNoHarm) {
     EXPECT_LE(bench.clocks_before_start, 9U);
     EXPECT_FALSE(bench.data_net().was_shorted() || bench.clock_net().was_shorted());
   }
-  EXPECT_GT(holding, 15U) << "the test must meet what it is for";
+  EXPECT_GT(holding, 15U) << "the test did not reach the tested case";
 }
 
 // If the clock pin is released before a low data line, this makes a STOP. Directly after a byte it ends the
@@ -377,7 +377,7 @@ TYPED_TEST(Eeprom, AfterAResetInTheMiddleOfAWriteFreeingTheBusProgramsNothing) {
     cut_by_the_reset += !stopped && !cells.empty() ? 1U : 0U;
     whole += stopped ? 1U : 0U;
   }
-  EXPECT_GT(nothing, 50U) << "the test must meet what it is for";
+  EXPECT_GT(nothing, 50U) << "the test did not reach the tested case";
   EXPECT_GT(cut_by_the_reset, 0U);
   EXPECT_GT(whole, 50U);
 }

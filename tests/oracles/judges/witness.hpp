@@ -389,7 +389,7 @@ class Witness {
     if (demand.drives()) {
       return refuses_outputs && (values_.timed_out || may_fail)
                  ? nullptr
-                 : "an output command of the right form is refused behind a timeout only";
+                 : "an output command of the right form is refused only after a timeout";
     }
     return refuses_outputs && !may_fail ? "only an output command is refused for a timeout" : nullptr;
   }

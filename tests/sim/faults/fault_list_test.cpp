@@ -24,7 +24,7 @@ TEST(FaultsList, RemovedIsOver) {
       } else {
         EXPECT_TRUE(bench.faults().remove(fault));
       }
-      EXPECT_TRUE(bench.faults().told().empty());
+      EXPECT_TRUE(bench.faults().list().empty());
       bench.run(2s);
       bench.send("\r");  // whatever has begun is over
       EXPECT_EQ(bench.ask("$01M"), kName) << trouble;
@@ -51,7 +51,7 @@ TEST(FaultsList, TellsWhatStrikesNowAndHowOftenItHas) {
   bench.add("lost-reply every reply", 1);
   bench.ask("$01M");
   bench.run_until(1500ms);
-  const std::vector<Faults::Told> told = bench.faults().told();
+  const std::vector<Faults::Info> told = bench.faults().list();
   ASSERT_EQ(told.size(), 2U);
   EXPECT_EQ(told[0].number, 1U);
   EXPECT_EQ(told[0].text, "gone at 1s for 1s");
@@ -61,7 +61,7 @@ TEST(FaultsList, TellsWhatStrikesNowAndHowOftenItHas) {
   EXPECT_EQ(told[1].strikes, 0U);
   EXPECT_EQ(told[1].strikes_so_far, 1U);
   bench.run_until(2s);
-  EXPECT_EQ(bench.faults().told()[0].strikes, 0U);
+  EXPECT_EQ(bench.faults().list()[0].strikes, 0U);
 }
 
 TEST(FaultsNotice, IsGivenOfWhatComesAndGoesByItself) {

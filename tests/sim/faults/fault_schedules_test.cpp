@@ -43,7 +43,7 @@ TEST(FaultsSchedule, AMomentThatIsOverIsRefused) {
   FaultBench bench;
   bench.run_until(2s);
   EXPECT_EQ(refusal([&] { bench.add("gone at 1.5s"); }), "gone at 1.5s: that time is over; it is 2s now");
-  EXPECT_TRUE(bench.faults().told().empty());
+  EXPECT_TRUE(bench.faults().list().empty());
   EXPECT_EQ(bench.add("gone at 2s"), 1U);
   EXPECT_FALSE(bench.at(1).powered());
 }
@@ -72,7 +72,7 @@ TEST(FaultsSchedule, WhatLastsIsOverBeforeItsPeriodIs) {
     bench.run_until(1s + 5s * i + 1s);
     EXPECT_TRUE(bench.at(1).powered()) << i;
   }
-  EXPECT_EQ(bench.faults().told()[0].strikes_so_far, 4U);
+  EXPECT_EQ(bench.faults().list()[0].strikes_so_far, 4U);
 }
 
 TEST(FaultsSchedule, OfRepliesStrikesEveryReplyOrEverySoManieth) {
@@ -82,7 +82,7 @@ TEST(FaultsSchedule, OfRepliesStrikesEveryReplyOrEverySoManieth) {
   FaultBench tenth;
   tenth.add("lost-reply every 10th reply");
   EXPECT_EQ(answered(tenth, 35), "xxxxxxxxx.xxxxxxxxx.xxxxxxxxx.xxxxx");
-  EXPECT_EQ(tenth.faults().told()[0].strikes_so_far, 3U);
+  EXPECT_EQ(tenth.faults().list()[0].strikes_so_far, 3U);
 }
 
 TEST(FaultsSchedule, OfTheRepliesOfAllModulesCountsThemTogether) {
@@ -101,9 +101,9 @@ TEST(FaultsSchedule, NoiseOfRepliesThatLastsIsOneStrikeHoweverManyThereAre) {
     EXPECT_EQ(bench.ask("$01M"), kName);
   }
   bench.run(990ms);
-  EXPECT_EQ(bench.faults().told()[0].strikes, 1U);
-  EXPECT_EQ(bench.faults().told()[1].strikes, 0U);
-  EXPECT_EQ(bench.faults().told()[0].strikes_so_far, 20U);
+  EXPECT_EQ(bench.faults().list()[0].strikes, 1U);
+  EXPECT_EQ(bench.faults().list()[1].strikes, 0U);
+  EXPECT_EQ(bench.faults().list()[0].strikes_so_far, 20U);
 }
 
 TEST(FaultsSchedule, OfRepliesMayLastBeyondTheReply) {
@@ -140,7 +140,7 @@ TEST(FaultsSchedule, OfWritesCutsBehindTheWriteAndBeforeItsReply) {
   EXPECT_EQ(bench.ask("~01OFOURTH"), "!01");  // once
   EXPECT_EQ(bench.ask("~01OFIFTH"), "!01");
   EXPECT_EQ(bench.ask("~01OSIXTH"), "!01");
-  EXPECT_EQ(bench.faults().told()[0].strikes_so_far, 1U);
+  EXPECT_EQ(bench.faults().list()[0].strikes_so_far, 1U);
 }
 
 TEST(FaultsSchedule, OfWritesCountsThoseOfItsOwnModule) {

@@ -48,11 +48,11 @@ TEST(Fault, EveryTroubleHasANameAndItsOneValue) {
 TEST(Fault, WhatIsOnTheWiresBefallsTheLineAndAllElseAModule) {
   for (const Trouble trouble : {Trouble::BitErrors, Trouble::LostBytes, Trouble::InsertedBytes,
                                 Trouble::StrayZeros, Trouble::Echo, Trouble::ForeignTraffic}) {
-    EXPECT_FALSE(befalls_a_module(trouble));
+    EXPECT_FALSE(concerns_a_module(trouble));
   }
   for (const Trouble trouble : {Trouble::LostReply, Trouble::LateReply, Trouble::LateDriver,
                                 Trouble::WrongRate, Trouble::Gone, Trouble::PowerCut, Trouble::Hang}) {
-    EXPECT_TRUE(befalls_a_module(trouble));
+    EXPECT_TRUE(concerns_a_module(trouble));
   }
 }
 

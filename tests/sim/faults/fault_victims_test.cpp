@@ -54,7 +54,7 @@ TEST(FaultsOfAllModules, StrikeAllThatThereAre) {
 TEST(FaultsOfAModule, ThatTheLineLacksAreRefused) {
   FaultBench bench(two());
   EXPECT_EQ(refusal([&] { bench.add("gone", 3); }), "gone: no module 3; this line has 1 to 2");
-  EXPECT_TRUE(bench.faults().told().empty());
+  EXPECT_TRUE(bench.faults().list().empty());
 }
 
 TEST(NoiseOfAReply, HitsThatReplyAndNothingElse) {

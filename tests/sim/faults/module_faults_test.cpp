@@ -162,7 +162,7 @@ TEST(Faults, OfAModuleOutlastItsReset) {
       begin_anew(bench);
       bench.run(100ms);
       EXPECT_TRUE(strikes(bench)) << fault << ", " << how;
-      EXPECT_EQ(bench.faults().told().at(0).strikes, 1U);
+      EXPECT_EQ(bench.faults().list().at(0).strikes, 1U);
       bench.faults().remove(number);
       EXPECT_FALSE(strikes(bench)) << fault << ", " << how;
     }
