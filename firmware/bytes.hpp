@@ -1,4 +1,4 @@
-// A view of bytes that somebody else owns.
+// Views of bytes that the caller owns.
 #pragma once
 
 #include <cstddef>
@@ -6,13 +6,13 @@
 
 namespace ex9000 {
 
-/// Read-only view of `size` bytes; the owner says how long they live.
+/// Read-only view of `size` bytes. The owner of the bytes defines how long the view is valid.
 struct Bytes {
   const std::uint8_t* data = nullptr;
   std::size_t size = 0;
 
   [[gnu::always_inline]] constexpr std::uint8_t operator[](std::size_t index) const { return data[index]; }
-  /// The bytes from `offset` on; none where there are no more.
+  /// Returns the bytes from `offset` to the end; empty if `offset` is at or after the end.
   [[nodiscard, gnu::always_inline]] constexpr Bytes from(std::size_t offset) const {
     return offset < size ? Bytes{data + offset, size - offset} : Bytes{};
   }
@@ -22,11 +22,12 @@ struct Bytes {
   [[nodiscard]] constexpr const std::uint8_t* begin() const { return data; }
   [[nodiscard]] constexpr const std::uint8_t* end() const { return data + size; }
 
-  /// 16 bits at `offset`, high byte first as Modbus sends them.
+  /// Returns the 16 bits at `offset`, high byte first (the Modbus byte order). Does not check the range.
   [[nodiscard, gnu::always_inline]] constexpr std::uint16_t word(std::size_t offset) const {
     return static_cast<std::uint16_t>((data[offset] << 8U) | data[offset + 1]);
   }
-  /// 16 and 32 bits at `offset`, low byte first, as settings are stored.
+  /// Return the 16 or 32 bits at `offset`, low byte first (the byte order of stored settings). They do not
+  /// check the range.
   [[nodiscard]] constexpr std::uint16_t low_byte_first_16(std::size_t offset) const {
     return static_cast<std::uint16_t>(data[offset] | (data[offset + 1] << 8U));
   }
@@ -35,7 +36,7 @@ struct Bytes {
   }
 };
 
-/// View of memory that somebody else fills.
+/// Writable view of `size` bytes.
 struct MutableBytes {
   std::uint8_t* data = nullptr;
   std::size_t size = 0;

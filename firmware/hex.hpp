@@ -1,11 +1,11 @@
-// Hex digits as the DCON protocol writes them: upper case only.
+// Hex digits of the DCON protocol, which allows upper case only.
 #pragma once
 
 #include <cstdint>
 
 namespace ex9000 {
 
-/// 0 to 15, or -1 where `character` is no upper-case hex digit.
+/// Returns 0 to 15, or -1 if `character` is not an upper-case hex digit.
 constexpr int hex_value(std::uint8_t character) {
   if (character >= '0' && character <= '9') {
     return character - '0';
@@ -16,19 +16,20 @@ constexpr int hex_value(std::uint8_t character) {
   return -1;
 }
 
-/// Two digits as 0 to 255, or -1.
+/// Returns the value of two hex digits, 0 to 255, or -1 if one of them is not an upper-case hex digit.
 constexpr int hex_byte(std::uint8_t high, std::uint8_t low) {
   const int upper = hex_value(high);
   const int lower = hex_value(low);
   return upper < 0 || lower < 0 ? -1 : upper * 16 + lower;
 }
 
-/// The digit of the low four bits.
+/// Returns the hex digit of the low four bits of `value`.
 constexpr std::uint8_t hex_digit(unsigned value) {
   return static_cast<std::uint8_t>("0123456789ABCDEF"[value & 0xFU]);
 }
 
-/// The two digits of a byte, the upper one in the low byte: as they lie in a text.
+/// Returns the two hex digits of `value`. The high digit is in the low byte, so that a little-endian store
+/// writes the digits in text order.
 constexpr std::uint16_t hex_digits(std::uint8_t value) {
   return static_cast<std::uint16_t>(hex_digit(value >> 4U) | hex_digit(value) << 8U);
 }

@@ -40,7 +40,7 @@ void Module::step(Time now) {
     return;
   }
   count_host_oks();
-  expire_host_watchdog(now);  // before anything that drives outputs
+  expire_host_watchdog(now);  // must come before everything that drives outputs
   continue_store(now);
   if (cycle_.phase() == RequestCycle::Phase::Idle) {
     dispatch(now);
@@ -55,7 +55,7 @@ void Module::start_up(Time now) {
     use_settings(now);
     start_ = Start::AwaitingInit;
   }
-  // A switch that never stands still is no reason not to come up.
+  // The module starts even if the INIT* switch never settles.
   if (start_ == Start::AwaitingInit && (init_switch_.known() || init_gives_up_.reached(now))) {
     listen();
     start_ = Start::Done;
@@ -89,10 +89,10 @@ void Module::listen() {
   receiver_.answer_to(in_force.address);
 }
 
-// --- what the interrupts have collected ---
+// --- events from interrupts ---
 
 void Module::collect_edges() {
-  // Which edges the counters count is not known before it listens.
+  // Before `listen()`, it is not known whether the counters count rising or falling edges.
   if (listening()) {
     state_.inputs.collect(edges_, state_.model().inputs);
   }
@@ -102,7 +102,7 @@ void Module::count_host_oks() {
   const std::uint32_t host_oks = receiver_.host_oks();
   if (host_oks != host_oks_seen_) {
     host_oks_seen_ = host_oks;
-    // A host OK counts from its end, and is too late if the timeout was over before.
+    // A host OK counts from the time of its reception. It is too late if the watchdog expired before that.
     const Time received = receiver_.host_ok_time();
     expire_host_watchdog(received);
     host_watchdog_.restart(received);
@@ -114,7 +114,7 @@ void Module::expire_host_watchdog(Time now) {
   if (!settings.watchdog_enabled || !host_watchdog_.expired(settings, now)) {
     return;
   }
-  // At once and whatever the memory does; the keeper stores it as soon as it can.
+  // The outputs must not wait for the memory. The keeper stores the new settings as soon as it can.
   settings.timeout_status = true;
   settings.watchdog_enabled = false;
   state_.outputs = settings.safe_value;
@@ -124,7 +124,7 @@ void Module::expire_host_watchdog(Time now) {
 
 // --- requests ---
 
-/// Judges the frame that waits, once the silence after it is over.
+/// Judges the waiting frame when its turn-around time is over.
 void Module::dispatch(Time now) {
   if (!receiver_.queue().has_frame() || !(until_request(now) == Duration())) {
     return;
@@ -139,12 +139,13 @@ void Module::dispatch(Time now) {
   }
 }
 
-/// A frame of Modbus is complete when its silence is over; a DCON frame is complete before its turn-around.
+/// Returns the time until the waiting frame may be judged. A Modbus frame is only complete after its silence,
+/// so the result is 0. A DCON frame is complete before its turn-around time begins.
 Duration Module::until_request(Time now) const {
   if (state_.speaks_modbus()) {
     return {};
   }
-  // Not "how long since": it may have come in after the main loop read its `now`.
+  // A deadline is necessary because the frame may be newer than `now`; `now.since()` would then wrap.
   Deadline over;
   over.set(receiver_.queue().waiting().received + turn_around());
   return over.remaining(now);
@@ -176,7 +177,7 @@ void Module::continue_store(Time now) {
   }
 }
 
-/// Does what the request asks for: it is judged, and its settings are stored.
+/// Carries out a request that has been judged and whose settings are stored.
 void Module::commit(Time now) {
   if (cycle_.outcome().changes_settings()) {
     commit_settings();
@@ -192,7 +193,7 @@ void Module::commit(Time now) {
 void Module::commit_settings() {
   state_.settings = cycle_.outcome().change().applied_to(state_.settings);
   if (state_.settings.timeout_status) {
-    state_.outputs = state_.settings.safe_value;  // which may be a new one (wire.md D6)
+    state_.outputs = state_.settings.safe_value;  // the request may have changed it (wire.md D6)
   }
 }
 
@@ -241,7 +242,7 @@ void Module::finish_request() {
 
 // --- sleep ---
 
-/// Something has happened that `step` or `poll_panel` has not seen.
+/// Returns whether something has happened that `step` or `poll_panel` has not processed yet.
 bool Module::step_is_due() const {
   const bool memory_is_done = !keeper_.busy() && (start_ == Start::Loading || keeper_.has_work() ||
                                                   cycle_.phase() == RequestCycle::Phase::Storing);

@@ -1,4 +1,4 @@
-// One module without its board: the parts it is made of, and how they are connected.
+// A module without its board: its parts and how they are connected.
 #pragma once
 
 #include <cstdint>
@@ -19,95 +19,99 @@
 
 namespace ex9000 {
 
-/// The device without its board. It touches no peripheral and reads no clock: bytes, edges, levels and the
-/// time are arguments; outputs, LED, reply and memory job are asked for. An object lives from one reset to
-/// the next.
+/// The device without its board. It accesses no peripheral and reads no clock. The caller passes bytes,
+/// edges, levels and the time as arguments, and reads the outputs, the LED, the reply and the memory job. An
+/// object exists from one reset to the next.
 ///
-/// Functions named `on_...` are for interrupts, which must not interrupt each other within one line:
-/// `on_byte`, `on_silence` and `on_spoken` share a level, in which `on_silence` comes first if it waits too
-/// (hal/one_shot_timer.hpp); `on_edge` and `on_tick` may have others. All else is for the main loop. Nothing
-/// blocks.
+/// Interrupts call the functions named `on_...`. `on_byte`, `on_silence` and `on_spoken` must not interrupt
+/// each other, so they share one interrupt priority; if several are pending, `on_silence` must run first
+/// (hal/one_shot_timer.hpp). `on_edge` and `on_tick` may have other priorities. The main loop calls all other
+/// functions. No function blocks.
 class Module {
  public:
-  /// `timing_at`: the times that hold on this line; not null.
+  /// `timing_at` returns the times of this line; not null.
   explicit constexpr Module(const Model& model, TimingAt timing_at = LineTiming::at)
       : timing_at_(timing_at), state_(model), keeper_(model), cycle_(state_, receiver_.tallies()) {}
   Module(const Module&) = delete;
   Module& operator=(const Module&) = delete;
 
-  /// Once, before interrupts are enabled. `input_levels`: bit n is channel n, 1 = +4 to +30 V; they are no
-  /// edges.
+  /// Call this once, before interrupts are enabled. `input_levels`: bit n is channel n, 1 = +4 to +30 V.
+  /// These levels do not count as edges.
   void start(std::uint16_t input_levels, Time now);
 
   // --- interrupts ---
 
-  /// See Receiver::on_byte; only while `listening()`, and not while the own driver is on.
+  /// See Receiver::on_byte. Call it only while `listening()` and while the module's own driver is off.
   Duration on_byte(std::uint8_t byte, ByteStatus status, Time now) {
     return receiver_.on_byte(byte, status, now);
   }
-  /// See Receiver.
+  /// See Receiver::on_silence and Receiver::on_spoken.
   Duration on_silence() { return receiver_.on_silence(); }
   void on_spoken(Time now) { receiver_.on_spoken(now); }
   /// See InputEdges::on_edge.
   void on_edge(unsigned channel, bool level) { edges_.on_edge(channel, level); }
   void on_tick() { module_watchdog_.tick_alive(); }
-  /// Main loop too: a request is complete. If it is one of ASCII, its turn-around may not be over.
+  /// Returns whether a complete request is waiting. The turn-around time of an ASCII request may still be
+  /// running. The main loop may call this too.
   [[nodiscard]] bool request_waits() const { return receiver_.queue().has_frame(); }
-  /// Main loop: a host OK has come that no turn has counted yet. That may wait: it counts from its own time.
+  /// Returns whether a host OK has arrived that `step` has not counted yet. `step` may count it later,
+  /// because it counts from the time of its reception. For the main loop.
   [[nodiscard]] bool host_ok_waits() const { return receiver_.host_oks() != host_oks_seen_; }
 
   // --- main loop ---
 
-  /// What people see and touch: at every tick, and when `idle_for` is over. `init_switch`: INIT* is asserted
-  /// (tied to GND), not debounced.
+  /// Updates the INIT* switch and the status LED. Call it at every tick and when the time of `idle_for` is
+  /// over. `init_switch`: whether INIT* is asserted (tied to GND), not debounced.
   void poll_panel(bool init_switch, Time now);
-  /// One turn: dispatches what the interrupts have collected, and does what is due.
+  /// Runs one pass of the main loop: processes the events from interrupts and everything that is due.
   void step(Time now);
-  /// How long nothing will happen by itself, that is, without an interrupt or a finished memory job; at most
-  /// `at_most`. Zero: call `poll_panel` and `step` again at once.
+  /// Returns how long the main loop may sleep, at most `at_most`. An interrupt or a finished memory job must
+  /// wake it earlier. If the result is 0, call `poll_panel` and `step` again at once.
   [[nodiscard]] Duration idle_for(Time now, Duration at_most) const;
 
-  /// Levels to drive: bit n is channel n, 1 = energised. All 0 until the settings are read.
+  /// Returns the levels to drive: bit n is channel n, 1 = energised. All are 0 until the settings are loaded.
   [[nodiscard]] std::uint16_t outputs() const { return state_.outputs; }
   [[nodiscard]] bool led_lit() const { return led_.lit(); }
-  /// Whether to feed the hardware watchdog. That it asks is the main loop's sign of life.
+  /// Returns whether to feed the hardware watchdog. See ModuleWatchdog::main_loop_alive.
   bool feed_watchdog() { return module_watchdog_.main_loop_alive(); }
 
-  /// Settings and INIT* are known: the line may be opened at `baud()`.
+  /// Returns whether the settings and INIT* are known, so that the line can be opened at `baud()`.
   [[nodiscard]] bool listening() const { return start_ == Start::Done; }
-  /// Bits per second, from one reset to the next.
+  /// Returns the baud rate in bits per second. It does not change between two resets.
   [[nodiscard]] std::uint32_t baud() const { return baud_rate(state_.in_force.baud_code); }
 
   [[nodiscard]] bool needs_memory() const { return keeper_.busy(); }
-  /// What to do with the memory, while it is needed; the same until `memory_done`.
+  /// Returns the memory access to carry out; valid while `needs_memory()`. It stays the same until
+  /// `memory_done`.
   [[nodiscard]] MemoryJob memory_job() { return keeper_.job(); }
   void memory_done(bool ok) { keeper_.done(ok); }
 
-  /// The reply to send now; empty: none, or not yet. It lives until `reply_sent`.
+  /// Returns the reply to send now, or nothing if there is none or its time has not come. The bytes are valid
+  /// until `reply_sent`.
   Bytes take_reply(Time now) { return cycle_.take_reply(now); }
-  /// The last stop bit has left and the driver is off.
+  /// Call this when the last stop bit has been sent and the driver is off.
   void reply_sent(Time now) { cycle_.reply_sent(now, turn_around()); }
 
   // --- for panels, logs and tests ---
 
   [[nodiscard]] const State& state() const { return state_; }
   [[nodiscard]] StatusLed::Pattern led_pattern() const { return led_.pattern(); }
-  /// When the host watchdog expires if nobody restarts it; disarmed if it does not run.
+  /// Returns when the host watchdog expires unless it is restarted; disarmed if it is not running.
   [[nodiscard]] Deadline host_watchdog_expiry() const { return host_watchdog_.expiry(state_.settings); }
-  /// It listens, and no request is waiting, being stored or being answered.
+  /// Returns whether the module is listening and no request is waiting, being stored or being answered.
   [[nodiscard]] bool at_rest() const {
     return listening() && cycle_.phase() == RequestCycle::Phase::Idle && !receiver_.queue().has_frame();
   }
-  /// What the last request came to.
+  /// Returns the outcome of the last request.
   [[nodiscard]] const Outcome& outcome() const { return cycle_.outcome(); }
-  /// Whether the settings in the memory could not be read at reset, and none have been stored since.
+  /// Returns whether the settings in the memory could not be read at reset and none have been stored since.
   [[nodiscard]] bool settings_unreadable() const { return keeper_.unreadable(); }
 
  private:
-  /// From reset on.
+  /// The phases of the start after a reset.
   enum class Start : std::uint8_t {
     Loading,       ///< the memory is being read; outputs are off
-    AwaitingInit,  ///< the settings are known, but not whether INIT* is asserted
+    AwaitingInit,  ///< the settings are known; the INIT* switch has not settled yet
     Done,          ///< the line is open
   };
 

@@ -1,4 +1,4 @@
-// Tables whose length is that of their rows.
+// Constant tables whose length the compiler counts.
 #pragma once
 
 #include <array>
@@ -6,8 +6,8 @@
 
 namespace ex9000 {
 
-/// `table<Row>({{...}, {...}})`: a row more is a line more, and no number to change. (What std::array deduces
-/// by itself, GCC 12 puts in writable memory.)
+/// Builds an array from rows: `table<Row>({{...}, {...}})`. The compiler counts the rows. (GCC 12 puts a
+/// std::array with a deduced size into writable memory.)
 template <class Row, std::size_t size>
 constexpr std::array<Row, size> table(const Row (&rows)[size]) {
   std::array<Row, size> result{};

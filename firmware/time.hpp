@@ -1,11 +1,11 @@
-// Time as the core sees it: microseconds from outside, in 32 bits that wrap every 71.6 minutes.
+// Time in the core: 32-bit microseconds, which wrap every 71.6 minutes. The caller supplies them.
 #pragma once
 
 #include <cstdint>
 
 namespace ex9000 {
 
-/// A length of time in microseconds, 0 to 2^32-1 (71.6 minutes).
+/// A duration in microseconds, 0 to 2^32-1 (71.6 minutes).
 class Duration {
  public:
   constexpr Duration() = default;
@@ -18,7 +18,7 @@ class Duration {
   friend constexpr Duration operator+(Duration a, Duration b) {
     return Duration(a.microseconds_ + b.microseconds_);
   }
-  /// `b` is not the longer one.
+  /// `b` must not be longer than `a`.
   friend constexpr Duration operator-(Duration a, Duration b) {
     return Duration(a.microseconds_ - b.microseconds_);
   }
@@ -29,14 +29,14 @@ class Duration {
 
 constexpr Duration milliseconds(std::uint32_t value) { return Duration(value * 1000U); }
 
-/// A point in time. It wraps, so it has no order: ask for the Duration since an earlier point, which is right
-/// while less than 71.6 minutes lie between the two.
+/// A point in time. Times wrap, so they have no order; use `since` instead. Its result is correct if the two
+/// points are less than 71.6 minutes apart.
 class Time {
  public:
   constexpr Time() = default;
   constexpr explicit Time(std::uint32_t microseconds) : microseconds_(microseconds) {}
 
-  /// The count as it was given, for handing it over where only a word fits.
+  /// Returns the raw count, for code that can only pass one 32-bit word.
   [[nodiscard]] constexpr std::uint32_t microseconds() const { return microseconds_; }
   [[nodiscard]] constexpr Duration since(Time earlier) const {
     return Duration(microseconds_ - earlier.microseconds_);
@@ -49,8 +49,8 @@ class Time {
   std::uint32_t microseconds_ = 0;
 };
 
-/// A point in time that may lie ahead. Right while it is asked about less than 35 minutes from the point;
-/// whoever has acted on it disarms it.
+/// A point in time that may be in the future. Its functions are correct within 35 minutes before and after
+/// that point, so the code that has acted on a deadline must disarm it.
 class Deadline {
  public:
   constexpr void set(Time when) {
@@ -63,7 +63,7 @@ class Deadline {
   [[nodiscard, gnu::always_inline]] constexpr bool reached(Time now) const {
     return armed_ && now.since(when_).microseconds() < kHalfRange;
   }
-  /// How long until it is reached, 0 where it is; only for one that is armed.
+  /// Returns the time until the deadline; 0 if it is reached. Call it only while the deadline is armed.
   [[nodiscard]] constexpr Duration remaining(Time now) const {
     return reached(now) ? Duration() : when_.since(now);
   }

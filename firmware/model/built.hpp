@@ -1,4 +1,4 @@
-// Which models a program can be: the simulator all of them, a firmware image the one it is built for.
+// The models that are built into a program: all of them in the simulator, exactly one in a firmware image.
 #pragma once
 
 #include <array>
@@ -10,14 +10,14 @@
 
 namespace ex9000 {
 
-// kBuiltInputs: the most inputs that one of them has.
+// kBuiltInputs: the largest number of inputs of all built models.
 
 #ifdef EX9000_MODEL
 
-/// The image's own; EX9000_MODEL is a designation such as "EX9042D-M".
+/// The model of this image. EX9000_MODEL is a designation, for example "EX9042D-M".
 inline constexpr Model kOnlyModel = *find_model(EX9000_MODEL);
 
-/// The model a module is; nothing is stored, and what depends on it is decided by the compiler.
+/// The model of a module. It takes no memory: the model is a compile-time constant.
 class ChosenModel {
  public:
   explicit constexpr ChosenModel(const Model& /*model*/) {}
@@ -29,7 +29,7 @@ constexpr unsigned kBuiltInputs = kOnlyModel.inputs;
 
 #else
 
-/// The model a module is; a row of kModels.
+/// The model of a module, a row of kModels.
 class ChosenModel {
  public:
   explicit constexpr ChosenModel(const Model& model) : model_(&model) {}
@@ -44,7 +44,7 @@ constexpr unsigned kBuiltInputs = kMaxInputs;
 
 #endif
 
-/// Whether `model` has what a row needs; all rows of an image were chosen for it.
+/// Returns whether `model` has what a row needs. Always true in an image, which contains only matching rows.
 constexpr bool has(const Model& model, Needs needs) {
 #ifdef EX9000_MODEL
   static_cast<void>(model);
@@ -55,10 +55,10 @@ constexpr bool has(const Model& model, Needs needs) {
 #endif
 }
 
-/// Whether a module of this program may speak Modbus; else none of it is built in.
+/// Whether a built model can speak Modbus. If not, the Modbus code is left out.
 constexpr bool kBuiltModbus = some_model_meets(Needs::Modbus);
 
-/// The part of each row of `table` that `part` points to, without those that no model of this program has.
+/// Returns the member `part` of each row of `table`, without the rows that no built model has.
 template <const auto& table, auto part>
 constexpr auto rows_of_built_models() {
   constexpr std::size_t kCount = [] {

@@ -1,4 +1,5 @@
-// The models: one row each. A sister model is one more row; no protocol code knows a model by name.
+// The models, one table row each. To add a model, add a row: the protocol code does not depend on model
+// names.
 #pragma once
 
 #include <cstdint>
@@ -8,10 +9,10 @@
 
 namespace ex9000 {
 
-/// This firmware's version as `$AAF` and Modbus object 02 tell it, shape `Dnn.nn` (manuals 2.8).
+/// The firmware version that `$AAF` and Modbus object 02 return, format `Dnn.nn` (manuals 2.8).
 constexpr std::string_view kFirmwareVersion = "D01.00";
 
-/// How `~AA0` tells the host watchdog's state (manuals 2.16; 2.18 of the EX9052D).
+/// The status values of `~AA0`, which reads the host watchdog (manuals 2.16; 2.18 of the EX9052D).
 enum class StatusStyle : std::uint8_t {
   TimeoutOnly,       ///< 00, 04
   EnableAndTimeout,  ///< 00, 80, 84
@@ -26,9 +27,9 @@ enum class InitInput : std::uint8_t { Terminal, RearSwitch };
 
 struct Model {
   std::string_view designation;  ///< as on the label, e.g. "EX9042D-M"
-  std::uint8_t inputs;           ///< channels, 0 to 16; more than 8 only without outputs
-  std::uint8_t outputs;          ///< channels, 0 to 16
-  std::uint16_t modbus_code;     ///< as function 46 tells it, 0x9042; 0: the model speaks ASCII only
+  std::uint8_t inputs;           ///< number of channels, 0 to 16; more than 8 only without outputs
+  std::uint8_t outputs;          ///< number of channels, 0 to 16
+  std::uint16_t modbus_code;     ///< returned by function 46, e.g. 0x9042; 0: the model speaks ASCII only
   StatusStyle status_style;
   std::string_view factory_name;  ///< what `$AAM` answers from the factory
   std::uint8_t longest_name;      ///< what `~AAO` accepts, in characters
@@ -39,7 +40,7 @@ struct Model {
   [[nodiscard]] constexpr bool speaks_modbus() const { return modbus_code != 0; }
   [[nodiscard]] constexpr bool has_inputs() const { return inputs != 0; }
   [[nodiscard]] constexpr bool has_outputs() const { return outputs != 0; }
-  /// One bit for each output channel.
+  /// The masks have bit n set for each existing channel n.
   [[nodiscard]] constexpr std::uint16_t output_mask() const {
     return static_cast<std::uint16_t>((1UL << outputs) - 1U);
   }
@@ -85,7 +86,7 @@ inline constexpr auto kModels = table<Model>({
     {"EX9068D", 0, 8, 0, StatusStyle::TimeoutOnly, "9068", 6, "8 relay outputs", OutputKind::Relay},
 });
 
-/// The row with this designation, or null.
+/// Returns the row with this designation, or null.
 constexpr const Model* find_model(std::string_view designation) {
   for (const Model& model : kModels) {
     if (model.designation == designation) {
@@ -95,7 +96,7 @@ constexpr const Model* find_model(std::string_view designation) {
   return nullptr;
 }
 
-/// Which models a command or register exists on.
+/// The property of a model that a command or register requires.
 enum class Needs : std::uint8_t { Nothing, Outputs, Inputs, Modbus };
 
 constexpr bool meets(const Model& model, Needs needs) {

@@ -1,4 +1,4 @@
-// A request, what it comes to, and its reply.
+// A request, its outcome and its reply.
 #pragma once
 
 #include "firmware/bytes.hpp"
@@ -9,24 +9,24 @@
 
 namespace ex9000 {
 
-/// What a handler gets. It reads the request and the module's state, writes the reply, and says in the
-/// outcome what must be done. It changes nothing else.
+/// The argument of a handler. A handler reads the request and the module's state, writes the reply, and
+/// records in the outcome what the module must do. It changes nothing else.
 struct Exchange {
   constexpr Exchange(const State& state_of_module, const LineTallies& tallies_of_line)
       : state(state_of_module), tallies(tallies_of_line) {}
 
   const State& state;
-  const LineTallies& tallies;  ///< this request is counted already
+  const LineTallies& tallies;  ///< they already include this request
 
-  Bytes frame;             ///< the request as its assembler accepted it
-  Bytes args;              ///< of a DCON request, what stands after address and key
+  Bytes frame;             ///< the request as the assembler accepted it
+  Bytes args;              ///< the part of a DCON request after address and key
   bool broadcast = false;  ///< a Modbus request to address 0
 
   Outcome outcome;
   Reply reply;
 
   [[nodiscard]] constexpr const Model& model() const { return state.model(); }
-  /// Before the next request is judged.
+  /// Prepares the exchange for the next request.
   void begin(Bytes request) {
     frame = request;
     args = {};

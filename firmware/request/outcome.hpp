@@ -1,4 +1,4 @@
-// What a request comes to: a refusal or an answer, and what the module has to do before it is sent.
+// The outcome of a request: whether it is refused, and what the module must do before it sends the reply.
 #pragma once
 
 #include <cstdint>
@@ -7,38 +7,38 @@
 
 namespace ex9000 {
 
-/// Why a request that reached this module is not carried out. Nothing is changed then.
+/// The reason why the module refuses a request. A refused request changes nothing.
 enum class Refusal : std::uint8_t {
   None,
   // ASCII: `?AA`, `?` for commands that set outputs
-  UnknownCommand,  ///< no command of this model has this form
-  OutOfRange,      ///< the form is right, a value is not
-  NotPermitted,    ///< needs INIT* (marked (I))
-  NoSample,        ///< `$AA4` before any `#**`
-  // Modbus exceptions; the names say what was wrong, the codes are in modbus.cpp
+  UnknownCommand,  ///< no command of this model has this syntax
+  OutOfRange,      ///< the syntax is correct, but a value is out of range
+  NotPermitted,    ///< the command requires INIT* (marked (I))
+  NoSample,        ///< `$AA4` before the first `#**`
+  // Modbus exceptions; modbus.cpp maps these reasons to exception codes
   UnknownFunction,     ///< 01
   UnknownSubfunction,  ///< 01 for 08 and 2B, 02 for 46
-  WrongLength,         ///< 03, also a byte count that does not fit
+  WrongLength,         ///< 03; also if the byte count does not match
   WrongQuantity,       ///< 03
-  WrongCoilValue,      ///< 03: 05 with neither FF00 nor 0000
+  WrongCoilValue,      ///< 03: function 05 with a value other than FF00 and 0000
   WrongAddress,        ///< 02
   WrongValue,          ///< 03
-  UnknownObject,       ///< 02: 2B/0E
+  UnknownObject,       ///< 02, in function 2B/0E
   // both
   OutputsBlocked,  ///< ASCII `!`, Modbus 04: the timeout status is set
-  StoreFailed,     ///< ASCII `?AA`, Modbus 04: the memory did not take it
+  StoreFailed,     ///< ASCII `?AA`, Modbus 04: the memory did not store the settings
 };
 
-/// Outputs to be driven: the channels of `mask` to the bits of `value`.
+/// Outputs to drive: each channel whose bit is set in `mask` gets the level of its bit in `value`.
 struct Drive {
   std::uint16_t mask = 0;
   std::uint16_t value = 0;
 };
 
-/// What a request does beside settings and outputs, when all else is done.
+/// Actions of a request other than settings and outputs. The module carries them out last.
 enum class Effect : std::uint8_t {
   RestartHostWatchdog,
-  TakeAddress,  ///< answer to the stored address from now on
+  TakeAddress,  ///< use the stored address from now on
   TakeSample,
   MarkSampleRead,
   ClearResetStatus,
@@ -47,8 +47,8 @@ enum class Effect : std::uint8_t {
   ClearCounters,
 };
 
-/// What must be done, in one go, before the reply leaves. A change of settings is stored first; all else
-/// happens when it is stored.
+/// Everything the module must do before it sends the reply. It stores a change of settings first, and then
+/// does the rest without interruption by another request.
 class Outcome {
  public:
   void request(Effect effect) { effects_ = static_cast<std::uint16_t>(effects_ | bit(effect)); }
@@ -56,10 +56,10 @@ class Outcome {
   [[nodiscard]] bool has_effects() const { return effects_ != 0; }
 
   void drive(Drive outputs) { drive_ = outputs; }
-  /// An empty mask if none is to be driven.
+  /// Returns the outputs to drive; the mask is 0 if there are none.
   [[nodiscard]] Drive outputs_to_drive() const { return drive_; }
 
-  /// The change of settings, to be added to.
+  /// Returns the change of settings, so that the caller can add to it.
   SettingsChange& change() {
     changes_settings_ = true;
     return change_;
@@ -67,7 +67,7 @@ class Outcome {
   [[nodiscard]] const SettingsChange& change() const { return change_; }
   [[nodiscard]] bool changes_settings() const { return changes_settings_; }
 
-  /// Nothing must be done any more. The reason of a refusal stays.
+  /// Removes everything that is to be done, but keeps the reason of a refusal.
   void clear() {
     effects_ = 0;
     drive_ = {};

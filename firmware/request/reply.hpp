@@ -1,4 +1,4 @@
-// The reply while it is being written.
+// The buffer in which handlers write a reply.
 #pragma once
 
 #include <array>
@@ -12,8 +12,8 @@
 
 namespace ex9000 {
 
-/// Room for the longest frame. The longest reply is an echo of the longest request, so no handler needs more;
-/// whatever a handler puts beyond that is dropped.
+/// Holds a frame of up to kLongestFrame bytes and drops all bytes after that. No handler needs more, because
+/// the longest reply is an echo of the longest request.
 class Reply {
  public:
   void clear() { size_ = 0; }
@@ -35,17 +35,17 @@ class Reply {
       put(character);
     }
   }
-  /// The low byte of `value` as two upper-case hex digits.
+  /// Appends the low byte of `value` as two upper-case hex digits.
   void put_hex(unsigned value) {
     put(hex_digit(value >> 4U));
     put(hex_digit(value));
   }
-  /// The low 16 bits of `value`, high byte first.
+  /// Appends the low 16 bits of `value`, high byte first.
   void put_word(unsigned value) {
     put(static_cast<std::uint8_t>(value >> 8U));
     put(static_cast<std::uint8_t>(value));
   }
-  /// Overwrites a byte that was put before.
+  /// Overwrites the byte at index `at`; ignored if that byte has not been written yet.
   void patch(std::size_t at, std::size_t value) {
     if (at < size_) {
       bytes_[at] = static_cast<std::uint8_t>(value);

@@ -1,4 +1,4 @@
-// A request from the moment it is judged to the end of its reply.
+// The processing of a request, from its evaluation to the end of its reply.
 #pragma once
 
 #include <cstdint>
@@ -9,16 +9,16 @@
 
 namespace ex9000 {
 
-/// One request at a time: it is judged once; if it changes settings, they are stored; what it asks for is
-/// done; then its reply is sent. The module does all that; the cycle says what comes next. Main loop only;
-/// nothing blocks.
+/// Tracks one request at a time: the request is judged once, changed settings are stored, its actions are
+/// carried out, and then its reply is sent. The cycle tracks the phase; the module does the work. For the
+/// main loop only. No function blocks.
 class RequestCycle {
  public:
   enum class Phase : std::uint8_t {
     Idle,           ///< the next request may be judged
-    AwaitingStore,  ///< judged; the memory is busy with another store
-    Storing,        ///< judged; the memory takes the changed settings
-    ReplyReady,     ///< done; the reply waits until the line has been quiet for long enough
+    AwaitingStore,  ///< judged; the store of the changed settings has not begun
+    Storing,        ///< judged; the memory is storing the changed settings
+    ReplyReady,     ///< done; the reply waits until the line has been idle for long enough
     Replying,       ///< the driver is on
   };
 
@@ -26,35 +26,39 @@ class RequestCycle {
 
   [[nodiscard]] Phase phase() const { return phase_; }
 
-  /// Only while Idle. Judges a complete frame, which need not live any longer; changes nothing but the
-  /// outcome. If that changes settings, the cycle is AwaitingStore; otherwise call `finish` when the rest of
-  /// the outcome is done.
+  /// Judges a complete frame. Call it only while Idle. It changes only the outcome and does not keep the
+  /// frame. If the outcome changes settings, the phase becomes AwaitingStore. Otherwise carry out the outcome
+  /// and then call `finish`.
   const Outcome& judge(Bytes frame);
-  /// What the request asks for. After `finish`: nothing more, and the reason of a refusal.
+  /// Returns the outcome of the request. After `finish` it contains only the reason of a refusal.
   [[nodiscard]] const Outcome& outcome() const { return exchange_.outcome; }
-  /// While AwaitingStore: the store has begun.
+  /// Call this while AwaitingStore, when the store has begun.
   void store_begun() { phase_ = Phase::Storing; }
-  /// While AwaitingStore or Storing: the host watchdog has expired. A request that clears the timeout status
-  /// clears the one before, not this one (wire.md D17).
+  /// Call this when the host watchdog has expired. A request that is being stored must not clear the new
+  /// timeout status (wire.md D17).
   void keep_timeout_status();
-  /// While Storing: the memory did not take the settings. Nothing is to be done; the reply says so.
+  /// Call this while Storing, if the memory did not store the settings. It removes all actions of the request
+  /// and replaces the reply with an error reply.
   void refuse_store();
-  /// All is done: the reply may leave, or the next request may come if there is none. True: a reply is ready.
+  /// Call this when the outcome has been carried out. Returns true if a reply is ready to send; otherwise the
+  /// next request may be judged.
   bool finish();
 
-  /// The reply to send now; empty: none, or not yet. It lives until `reply_sent`.
+  /// Returns the reply to send now, or nothing if there is none or its time has not come. The bytes are valid
+  /// until `reply_sent`.
   Bytes take_reply(Time now);
-  /// The last stop bit has left and the driver is off. The next reply leaves `silence` after it (wire.md
-  /// D18).
+  /// Call this when the last stop bit has been sent and the driver is off. The next reply is sent `silence`
+  /// later at the earliest (wire.md D18).
   void reply_sent(Time now, Duration silence);
-  /// Every few minutes at least, because a deadline that nobody asks for becomes one that lies ahead.
+  /// Disarms the deadline of `reply_sent` when it is reached. Call it at least every few minutes: times wrap,
+  /// so an old deadline would later appear to be in the future.
   void forget_old_reply(Time now);
-  /// When `take_reply` will return the reply; only while ReplyReady.
+  /// Returns the time until `take_reply` returns the reply. Call it only while ReplyReady.
   [[nodiscard]] Duration until_reply(Time now) const;
 
  private:
   Phase phase_ = Phase::Idle;
-  Deadline line_quiet_;  ///< armed after a reply
+  Deadline line_quiet_;  ///< end of the minimum gap after the last reply
   Exchange exchange_;
 };
 

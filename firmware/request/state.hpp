@@ -1,4 +1,4 @@
-// Everything a request is judged by.
+// The state of a module, on which the outcome of a request depends.
 #pragma once
 
 #include <cstdint>
@@ -10,9 +10,9 @@
 
 namespace ex9000 {
 
-/// What was taken from the settings, or from INIT mode, at reset and holds until the next one.
+/// Values that are taken from the settings or from INIT mode at reset and apply until the next reset.
 struct InForce {
-  std::uint8_t address = 0;  ///< the exception: `%` changes it at once
+  std::uint8_t address = 0;  ///< exception: `%` changes it at once
   std::uint8_t baud_code = kFactoryBaudCode;
   Protocol protocol = Protocol::Ascii;
   bool checksum = false;
@@ -27,7 +27,8 @@ struct Sample {
   std::uint16_t inputs = 0;
 };
 
-/// What the main loop adds to LineTallies for Modbus function 08, sub-functions 0B to 0F and 12 (wire.md D1).
+/// Counters of the main loop. Together with LineTallies they are the counters of Modbus function 08,
+/// sub-functions 0B to 0F and 12 (wire.md D1).
 struct Diagnostics {
   std::uint16_t exceptions = 0;
   std::uint16_t no_responses = 0;
@@ -39,20 +40,20 @@ struct State {
   ChosenModel chosen;
   Settings settings;
   InForce in_force;
-  bool init_asserted = false;  ///< INIT* at this moment
+  bool init_asserted = false;  ///< whether INIT* is asserted now, debounced
   std::uint16_t outputs = 0;   ///< bit n is channel n, 1 = energised
   Inputs inputs;
   Sample sample;
-  bool reset_status = true;  ///< `$AA5`: nobody has read it since reset
+  bool reset_status = true;  ///< no `$AA5` since reset
   Diagnostics diagnostics;
 
   [[nodiscard]] constexpr const Model& model() const { return chosen.get(); }
   [[nodiscard]] bool speaks_modbus() const {
     return kBuiltModbus && in_force.protocol == Protocol::ModbusRtu;
   }
-  /// Section 2: what commands marked (I) need.
+  /// Returns whether commands marked (I) are permitted (wire.md section 2).
   [[nodiscard]] bool configuration_permitted() const { return in_force.init_mode || init_asserted; }
-  /// Section 6: output commands are ignored.
+  /// Returns whether output commands are ignored (wire.md section 6).
   [[nodiscard]] bool outputs_blocked() const { return settings.timeout_status; }
 };
 
