@@ -70,7 +70,7 @@ inline constexpr auto kModels = table<Model>({
     {"EX9068D-M", 0, 8, 0x9068, StatusStyle::TimeoutOnly, "9068D-M", 7, "8 relay outputs", OutputKind::Relay},
     {"EX9068AD-M", 0, 8, 0x9068, StatusStyle::TimeoutOnly, "9068D-M", 7, "8 PhotoMOS outputs",
      OutputKind::PhotoMos},
-    // Their ASCII-only sisters: outputs from the manuals' tables 2.3 and 2.11, inputs from the ICP DAS
+    // Related models that speak ASCII only: outputs from the tables 2.3 and 2.11, inputs from the ICP DAS
     // I-70xx.
     {"EX9044D", 4, 8, 0, StatusStyle::TimeoutOnly, "9044", 6, "4 inputs, 8 open-collector outputs",
      OutputKind::OpenCollector},
