@@ -74,7 +74,7 @@ bool is_switch(const std::string& text) { return text == "on" || text == "off"; 
 /// The line, and its faults according to the commands so far.
 struct Watched {
   Line line{specs(), sim::kPaced, [this](std::uint8_t /*byte*/, ByteStatus /*status*/) { ++heard; }};
-  unsigned long heard = 0;  ///< bytes at the master's end
+  unsigned long heard = 0;  ///< bytes received at the master's end
   std::set<unsigned long> faults;
   unsigned long numbers = 0;
 };

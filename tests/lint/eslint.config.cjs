@@ -1,8 +1,9 @@
-// ESLint's rules for the panel's page and the foreign masters. tests/lint-scripts sets NODE_PATH for what is required.
+// ESLint rules for the panel's page and for the masters in JavaScript. tests/lint-scripts sets NODE_PATH for `require`.
 "use strict";
 const js = require("@eslint/js");
 
-// Only the globals in use: a browser also has `name`, `event` and `top`, which would hide a missing declaration.
+// Only the globals that the code uses. The full set of a browser contains `name`, `event` and `top`, which would hide a
+// missing declaration.
 const known = (...names) => Object.fromEntries(names.map((name) => [name, "readonly"]));
 const BROWSER = known("ResizeObserver", "WebSocket", "clearTimeout", "devicePixelRatio", "document", "getComputedStyle",
   "location", "matchMedia", "performance", "requestAnimationFrame", "setTimeout");

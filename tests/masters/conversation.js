@@ -1,4 +1,4 @@
-// Plays conversation.txt with a master's library: what the programs in JavaScript share.
+// Plays conversation.txt with a Modbus library. Shared by the masters in JavaScript.
 "use strict";
 const fs = require("fs");
 const path = require("path");
@@ -7,25 +7,26 @@ const timers = require("timers/promises");
 const RATES = [1200, 2400, 4800, 9600, 19200, 38400, 57600, 115200];
 const FIRST_RATE_CODE = 3;
 
-const TIMEOUT = 10000; // long enough for a busy machine; in milliseconds, as all times here
-// How long a master waits after a broadcast, which nobody answers: the longest one here on the line, and 1 s. The line
-// follows the wall clock: on a busy machine the simulator must have read the broadcast by then.
+const TIMEOUT = 10000; // long enough for a busy machine; in milliseconds, like all times in this file
+// The time that a master waits after a broadcast, which has no reply: the duration of the longest broadcast on the
+// line, plus 1 s. The line runs in real time: even on a busy machine, the simulator must read the broadcast within this
+// time.
 const turnaround = (baud) => 1000 + 150000 / baud;
 
 const hex = (bytes) => Buffer.from(bytes).toString("hex").toUpperCase().replace(/..(?=.)/g, "$& ");
 const word = (frame, at) => frame.readUInt16BE(at);
 
-/** The values of a request of function 0F. */
+/** Returns the values in a request with function 0F. */
 function bits(frame) {
   return Array.from({ length: word(frame, 4) }, (_, i) => (frame[7 + (i >> 3)] >> (i & 7)) & 1);
 }
 
-/** The values of a request of function 10. */
+/** Returns the values in a request with function 10. */
 function words(frame) {
   return Array.from({ length: word(frame, 4) }, (_, i) => word(frame, 7 + 2 * i));
 }
 
-/** The frame of a write's answer. */
+/** Returns the frame of the reply to a write. */
 function written(frame, address, value) {
   const answer = Buffer.from(frame.subarray(0, 6));
   answer.writeUInt16BE(address, 2);
@@ -33,7 +34,7 @@ function written(frame, address, value) {
   return answer;
 }
 
-/** The lines of the conversation, without its comments. */
+/** Returns the lines of the conversation without its comments. */
 function lines(baud) {
   const text = fs.readFileSync(path.join(__dirname, "conversation.txt"), "utf8");
   return text
@@ -43,7 +44,7 @@ function lines(baud) {
     .filter((line) => line);
 }
 
-/** The lines grouped: each request with its answer, each wait alone. */
+/** Groups the lines: each request with its reply, and each wait alone. */
 function steps(baud) {
   const result = [];
   for (const line of lines(baud)) {
@@ -63,13 +64,13 @@ class Checks {
   failed = 0;
 
   /**
-   * `ask` promises what the library is told: the text of a frame, "silence", or what went wrong. A step without
-   * `expected` is carried out and not checked.
+   * Sends all requests. `ask` returns a promise of the result that the library delivers: the text of a frame,
+   * "silence", or an error. The result of a step without `expected` is not checked.
    */
   async play(conversation, ask) {
     for (const { asked, frame, expected, wait } of conversation) {
       if (wait) {
-        // The line follows the wall clock, and the conversation says how long the module needs.
+        // The line runs in real time, and the conversation specifies how long the module takes.
         await timers.setTimeout(wait);
         continue;
       }
@@ -89,7 +90,7 @@ function giveUp(what) {
   process.exit(2);
 }
 
-/** The values behind the options. */
+/** Returns the values of the command-line options. */
 function options() {
   const given = {};
   for (let i = 2; i < process.argv.length; i += 2) {
@@ -102,7 +103,7 @@ function options() {
   return given;
 }
 
-/** { tty, baud } or { host, port, baud }. */
+/** Returns { tty, baud } or { host, port, baud }. */
 function whereTo() {
   const { tty, tcp, baud = 9600 } = options();
   if (!RATES.includes(Number(baud))) {
@@ -118,7 +119,7 @@ function whereTo() {
   return { host, port: Number(port), baud: Number(baud) };
 }
 
-/** Runs `converse(where, steps, checks)` and tells what came of it. */
+/** Runs `converse(where, steps, checks)` and prints the result. */
 async function main(library, converse) {
   const where = whereTo();
   const checks = new Checks();

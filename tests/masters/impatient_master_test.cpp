@@ -1,4 +1,4 @@
-// Masters that do not wait for silences that only a real line would force on them.
+// Tests masters that do not keep the silences that a real line would enforce.
 #include <gtest/gtest.h>
 
 #include <string>
@@ -34,7 +34,7 @@ class Line {
  public:
   explicit Line(const std::vector<std::string>& options) : simulator_(with_modules(options)) {}
 
-  /// In one piece, and what comes back.
+  /// Sends the bytes in one piece and returns `answer` bytes of the reply.
   Bytes ask(const Bytes& bytes, std::size_t answer) {
     client_.send(bytes);
     return client_.receive(answer);
@@ -94,8 +94,8 @@ TEST(ImpatientMaster, AnotherModuleMayBeAskedAsSoonAsOneHasAnswered) {
   }
 }
 
-// At 1200 baud T3.5 is 32 ms, on a line at a tenth of the speed 320 ms by the wall clock, which a busy
-// machine keeps: the second request is on the heels of an answer that its module has heard too.
+// At 1200 baud, T3.5 is 32 ms. At a tenth of the speed it is 320 ms of real time, which the test meets even
+// on a busy machine: the second request comes too soon after a reply that its module has also received.
 TEST(ImpatientMaster, IsOnItsOwnWhereTheLineKeepsToTheLetter) {
   SimulatorProcess simulator(
       {"EX9042D-M@01,baud=1200", "EX9052D-M@02,baud=1200", "--tcp", "0", "--strict-gaps", "--speed", "0.1"});
@@ -103,7 +103,7 @@ TEST(ImpatientMaster, IsOnItsOwnWhereTheLineKeepsToTheLetter) {
   client.send(kOutputs1);
   EXPECT_EQ(client.receive(7), kOutputs1Off);
   client.send(kInputs2);
-  EXPECT_TRUE(client.hears_nothing_for(std::chrono::seconds(5)));  // its reply would be over in 2.5 s
+  EXPECT_TRUE(client.hears_nothing_for(std::chrono::seconds(5)));  // its reply would end within 2.5 s
   client.send(kInputs2);
   EXPECT_EQ(client.receive(6), kInputs2Off);
 }

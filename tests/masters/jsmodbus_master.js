@@ -1,4 +1,4 @@
-// Plays conversation.txt with jsmodbus, over a serial line or as RTU frames over TCP.
+// Plays conversation.txt with jsmodbus over a serial line, or as RTU frames over TCP.
 "use strict";
 const events = require("events");
 const net = require("net");
@@ -6,7 +6,7 @@ const jsmodbus = require("jsmodbus");
 const { SerialPort } = require("serialport");
 const { TIMEOUT, turnaround, hex, word, bits, words, written, main } = require("./conversation");
 
-// The library has these functions and no others.
+// The library supports only these functions.
 const REQUESTS = {
   0x01: (client, frame) => client.readCoils(word(frame, 2), word(frame, 4)),
   0x02: (client, frame) => client.readDiscreteInputs(word(frame, 2), word(frame, 4)),
@@ -20,7 +20,7 @@ const REQUESTS = {
 
 const read = (frame, body) => [frame[0], body.fc, body.valuesAsBuffer.length, ...body.valuesAsBuffer];
 
-// A frame, from what the library has made of it.
+// Reconstruct the frame of a reply from the result of the library.
 const ANSWERS = {
   0x01: read,
   0x02: read,
@@ -32,15 +32,18 @@ const ANSWERS = {
   0x10: (frame, body) => written(frame, body.start, body.quantity),
 };
 
-/** What the library refuses to send: more than 2000 coils or inputs. */
+/** Returns whether the library rejects the request: it does so for more than 2000 coils or inputs. */
 const refused = (frame) => frame[1] <= 0x02 && word(frame, 4) > 2000;
 
-/** The library takes the CRC of a right answer to "on" for wrong: it expects that of an answer to "off". */
+/** Returns whether the library reports a CRC error for a correct reply to "on". It expects the CRC of "off". */
 const misread = (frame) => frame[1] === 0x05 && word(frame, 4) === 0xff00;
 
 const granted = ({ wait, frame, expected }) => !wait && expected === hex(frame);
 
-/** What the library can do of the conversation. What it misreads is read back by what follows there. */
+/**
+ * Returns the part of the conversation that the library supports. Replies that it misreads are not checked, because
+ * later requests read the values back.
+ */
 function withinReach(steps) {
   return steps
     .filter(({ wait, frame }) => wait || (frame[1] in REQUESTS && !refused(frame)))
@@ -67,7 +70,7 @@ async function open({ tty, host, port, baud }) {
   }
   const socket = net.connect(port, host);
   await events.once(socket, "connect");
-  socket.isOpen = true; // what the library asks of a line; only serial ports have it
+  socket.isOpen = true; // the library reads this property, which only serial ports have
   return socket;
 }
 

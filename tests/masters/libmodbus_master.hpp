@@ -1,4 +1,4 @@
-// libmodbus as a master on a pseudo-terminal.
+// A Modbus master on a pseudo-terminal that uses libmodbus.
 #pragma once
 
 #include <modbus/modbus.h>
@@ -12,7 +12,7 @@ namespace ex9000::system {
 
 class LibmodbusMaster {
  public:
-  /// Milliseconds: long enough for a busy machine.
+  /// Response timeout in milliseconds, long enough for a busy machine.
   static constexpr unsigned kReplies = 10'000;
 
   LibmodbusMaster(const std::string& tty, int baud)

@@ -1,5 +1,5 @@
-// libmodbus, unmodified, on one line with two modules: raw requests, and so functions it has no call for.
-// They are those of tests/masters/conversation.txt.
+// Tests unmodified libmodbus on one line with two modules. It sends the raw requests of
+// tests/masters/conversation.txt, which include functions that libmodbus has no call for.
 #include <gtest/gtest.h>
 #include <modbus/modbus.h>
 #include <poll.h>
@@ -23,7 +23,7 @@ namespace {
 
 using Frame = std::vector<std::uint8_t>;  // without CRC
 
-/// It waits for an event; only a program that hangs takes this long.
+/// The test waits for an event. Only a program that hangs takes this long.
 constexpr std::chrono::seconds kHang{60};
 
 Frame frame_of(std::istringstream& hex) {
@@ -38,8 +38,9 @@ void send(LibmodbusMaster& master, const Frame& frame) {
   ASSERT_GT(modbus_send_raw_request(master.at(frame[0]), frame.data(), static_cast<int>(frame.size())), 0);
 }
 
-/// What is heard until `size` bytes and a CRC are there, or nothing more comes for `patience`. libmodbus
-/// cannot tell how long the replies are that it has no call for, so they are read past it.
+/// Returns the bytes received until there are `size` bytes and a CRC, or until no byte arrives for
+/// `patience`. Reads the descriptor directly, because libmodbus does not know the length of replies that it
+/// has no call for. Removes a correct CRC.
 Frame heard(LibmodbusMaster& master, std::size_t size, std::chrono::milliseconds patience) {
   Frame frame;
   pollfd ready{modbus_get_socket(master.at(1)), POLLIN, 0};
@@ -56,7 +57,7 @@ Frame heard(LibmodbusMaster& master, std::size_t size, std::chrono::milliseconds
   return frame;
 }
 
-/// As the program's log shows it, without its CRC.
+/// Returns the frame in the format of the program's log, without its CRC.
 std::string logged(const Frame& frame) {
   std::ostringstream text;
   text << "master " << std::hex << std::uppercase << std::setfill('0');
@@ -91,15 +92,15 @@ TEST_P(LibmodbusRaw, HoldsTheWholeConversation) {
       EXPECT_EQ(heard(master, expected.size(), kHang), expected) << line;
       ++answers;
     } else if (what == "silence") {
-      // The line follows the wall clock. If the next request came before the program has read this one, both
-      // would be one frame. A busy machine then only looks too early: what comes late is in front of the next
-      // answer.
+      // The line runs in real time. If the next request came before the program has read this one, both would
+      // form one frame. On a busy machine this check can end too early. A late reply then precedes the next
+      // reply and fails the test there.
       ASSERT_TRUE(modules.simulator().wait_for(logged(sent))) << line;
       EXPECT_EQ(heard(master, 1, milliseconds(300)), Frame{}) << line;
     } else if (what == "wait") {
       int time = 0;
       words >> time;
-      // The line follows the wall clock, and the conversation says how long the module needs.
+      // The line runs in real time, and the conversation specifies how long the module takes.
       std::this_thread::sleep_for(milliseconds(time));
     } else {
       EXPECT_TRUE(what.empty() || what[0] == ';') << line;

@@ -1,5 +1,5 @@
-// libmodbus, unmodified, on one line with two modules: every function it has a call for. Expected values
-// are those of firmware/wire.md 7.
+// Tests unmodified libmodbus on one line with two modules: every function that it has a call for. The
+// expected values are from firmware/wire.md 7.
 #include <gtest/gtest.h>
 #include <modbus/modbus.h>
 
@@ -19,7 +19,7 @@ using Bits = std::vector<std::uint8_t>;
 using Words = std::vector<std::uint16_t>;
 
 constexpr int kOutputs = 1;  // the address of an EX9042D-M
-constexpr int kInputs = 2;   // that of an EX9052D-M
+constexpr int kInputs = 2;   // the address of an EX9052D-M
 constexpr int kBroadcast = 0;
 
 constexpr int kSafe = 0x0080;
@@ -109,7 +109,8 @@ TEST_P(Libmodbus, GetsWhatItAsksFor) {
 
 TEST_P(Libmodbus, BroadcastsAndHostOkHaveNoReply) {
   const auto unanswered = [](int result) { return result == -1 && errno == ETIMEDOUT; };
-  master_.wait_for_replies(500);  // there are none; a module has carried out what it was told by then
+  master_.wait_for_replies(
+      500);  // no reply will come; this time is enough for a module to execute the request
   EXPECT_TRUE(unanswered(write_coils(kBroadcast, 0, {1, 1, 1})));
   EXPECT_TRUE(unanswered(modbus_write_bit(master_.at(kBroadcast), 1, 0)));
   EXPECT_TRUE(unanswered(modbus_write_register(master_.at(kBroadcast), kTimeout, 50)));

@@ -1,5 +1,5 @@
-// mbpoll, unmodified, on one line with two modules: all that it can read and write. Expected values are
-// those of firmware/wire.md 7.
+// Tests unmodified mbpoll on one line with two modules: everything that it can read and write. The expected
+// values are from firmware/wire.md 7.
 #include <gtest/gtest.h>
 
 #include <string>
@@ -14,10 +14,10 @@ using Arguments = std::vector<std::string>;
 
 class Mbpoll : public testing::TestWithParam<Way> {
  protected:
-  /// `options` and `values` are mbpoll's words; references count from 0, as on the line.
+  /// `options` and `values` are arguments of mbpoll. References count from 0, as on the line.
   Finished mbpoll(const Arguments& options, const Arguments& values = {}) {
     Arguments command{"mbpoll", "-m", "rtu", "-b", std::to_string(GetParam().baud), "-P", "none",
-                      "-0",     "-1", "-o",  "10"};  // seconds that a reply may take on a busy machine
+                      "-0",     "-1", "-o",  "10"};  // response timeout in seconds for a busy machine
     command.insert(command.end(), options.begin(), options.end());
     command.push_back(modules_.tty());
     command.insert(command.end(), values.begin(), values.end());
@@ -34,7 +34,7 @@ class Mbpoll : public testing::TestWithParam<Way> {
     EXPECT_EQ(finished.status, 1) << finished.output;
     EXPECT_NE(finished.error.find("failed: " + why + "\n"), std::string::npos) << finished.error;
   }
-  /// That mbpoll has sent this: it chooses between single and multiple writes itself.
+  /// Expects that mbpoll has sent this frame, because mbpoll itself selects single or multiple writes.
   void expect_sent(const std::string& frame) {
     EXPECT_TRUE(modules_.simulator().wait_for("> master  " + frame)) << modules_.simulator().output();
   }
@@ -68,8 +68,8 @@ TEST_P(Mbpoll, ReadsAndWritesBothModulesAlternately) {
 }
 
 TEST_P(Mbpoll, ReportsTheServerId) {
-  // It takes the first byte for the whole id and the second for the status, and prints FF, which is no text,
-  // in hex.
+  // mbpoll uses the first byte as the whole id and the second as the status. It prints FF in hex because it
+  // is not text.
   expect_line({"-a", "1", "-u"}, "Length: 8\nId    : 0x90\nStatus: On\nData  : \\FF9042M");
   expect_line({"-a", "2", "-u"}, "Length: 8\nId    : 0x90\nStatus: On\nData  : \\FF9052M");
 }

@@ -1,4 +1,4 @@
-// Plays conversation.txt with modbus-serial, over a serial line or as RTU frames over TCP.
+// Plays conversation.txt with modbus-serial over a serial line, or as RTU frames over TCP.
 "use strict";
 const events = require("events");
 const net = require("net");
@@ -7,7 +7,7 @@ const crc16 = require("modbus-serial/utils/crc16");
 const { SerialPort } = require("serialport");
 const { TIMEOUT, turnaround, hex, word, bits, words, written, main } = require("./conversation");
 
-// The library has these functions and no others.
+// The library supports only these functions.
 const REQUESTS = {
   0x01: (client, frame) => client.readCoils(word(frame, 2), word(frame, 4)),
   0x02: (client, frame) => client.readDiscreteInputs(word(frame, 2), word(frame, 4)),
@@ -17,7 +17,7 @@ const REQUESTS = {
   0x06: (client, frame) => client.writeRegister(word(frame, 2), word(frame, 4)),
   0x0f: (client, frame) => client.writeCoils(word(frame, 2), bits(frame)),
   0x10: (client, frame) => client.writeRegisters(word(frame, 2), words(frame)),
-  0x11: (client) => client.reportServerID(0, 0), // two arguments that it takes and does not use
+  0x11: (client) => client.reportServerID(0, 0), // the library requires two arguments and ignores them
   0x14: (client, frame) => client.readFileRecords(word(frame, 4), word(frame, 6)),
   0x16: (client, frame) => client.maskWriteRegister(word(frame, 2), word(frame, 4), word(frame, 6)),
   0x2b: (client, frame) => client.readDeviceIdentification(frame[3], frame[4]),
@@ -25,13 +25,13 @@ const REQUESTS = {
 
 const read = (frame, { buffer }) => [frame[0], frame[1], buffer.length, ...buffer];
 
-/** Of the reply's head the library tells the conformity; more follows never. */
+/** The library returns only the conformity level of the reply's header. The modules never set "more follows". */
 function identification(frame, { data, conformityLevel }) {
   const objects = Object.entries(data).map(([id, text]) => [Number(id), text.length, ...Buffer.from(text)]);
   return [...frame.subarray(0, 4), conformityLevel, 0, 0, objects.length, ...objects.flat()];
 }
 
-// A frame, from what the library has made of it.
+// Reconstruct the frame of a reply from the result of the library.
 const ANSWERS = {
   0x01: read,
   0x02: read,
@@ -41,7 +41,7 @@ const ANSWERS = {
   0x06: (frame, { address, value }) => written(frame, address, value),
   0x0f: (frame, { address, length }) => written(frame, address, length),
   0x10: (frame, { address, length }) => written(frame, address, length),
-  // The library takes the first byte for the whole id and the second for "running"; the frame itself is right.
+  // The library uses the first byte as the whole id and the second as "running". The frame itself is correct.
   0x11: (frame, { responses }) => Buffer.concat(responses).subarray(0, -2),
   0x2b: identification,
 };
@@ -59,24 +59,24 @@ async function ask(client, baud, frame) {
   }
 }
 
-/** The library sends no other MEI type than 0E. */
+/** Returns whether the library can send the request. It sends no MEI type other than 0E. */
 const sends = (frame) => frame[1] in REQUESTS && !(frame[1] === 0x2b && frame[2] !== 0x0e);
 
 /**
- * Whether the library's own port gets the answer: it has to know its length, and knows that of few functions. On a
- * serial line it hands over the answer to 11 before the end has come.
+ * Returns whether the library's own port delivers the reply: it must know the length of the reply, which it does for
+ * few functions. On a serial line it delivers the reply to function 11 before the reply is complete.
  */
 function reachesOwnPort({ tty }, frame) {
   const reads = frame[1] <= 0x04;
   return reads ? word(frame, 4) > 0 : [0x05, 0x06, 0x0f, 0x10].includes(frame[1]) || (tty && frame[1] === 0x2b);
 }
 
-/** connectTelnet is the library's RTU over TCP; what it calls TcpRTUBuffered has the head of Modbus TCP. */
+/** connectTelnet is the library's RTU over TCP. Its TcpRTUBuffered uses the header of Modbus TCP. */
 async function connectOwnPort(client, { tty, host, port, baud }) {
   await (tty ? client.connectRTUBuffered(tty, { baudRate: baud }) : client.connectTelnet(host, { port }));
 }
 
-/** A port for the rest, such as the library lets one bring along: an answer is over when its CRC is right. */
+/** A port for the other replies. The library accepts custom ports. A reply is complete when its CRC is correct. */
 class FramePort extends events.EventEmitter {
   constructor(line) {
     super();
@@ -111,7 +111,7 @@ async function openLine({ tty, host, port, baud }) {
 }
 
 async function play(client, where, steps, checks) {
-  client.isDebugEnabled = true; // for `responses`
+  client.isDebugEnabled = true; // provides `responses`
   await checks.play(steps, (frame) => ask(client, where.baud, frame));
   await client.close();
 }

@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""Plays conversation.txt with pymodbus, over a serial line or as RTU frames over TCP."""
+"""Plays conversation.txt with pymodbus over a serial line, or as RTU frames over TCP."""
 
 import argparse
 import logging
@@ -49,14 +49,16 @@ def packed(*values):
 
 
 def turnaround(baud):
-    """How long a master waits after a broadcast, which nobody answers: the longest one here on the line, and 1 s.
+    """Returns the seconds that a master waits after a broadcast, which has no reply: the duration of the longest
+    broadcast on the line, plus 1 s.
 
-    The line follows the wall clock: on a busy machine the simulator must have read the broadcast by then."""
+    The line runs in real time: even on a busy machine, the simulator must read the broadcast within this time.
+    """
     return 1 + 150 / baud
 
 
 class IdentificationRequest(ReadDeviceInformationRequest):
-    """Knows how long its reply will be: the library cannot tell, and would listen for a pause, or until its timeout."""
+    """Specifies the length of its reply. The library does not know it and would wait for a pause or for its timeout."""
 
     def __init__(self, data, reply_size):
         super().__init__(data[1], data[2])
@@ -68,7 +70,7 @@ class IdentificationRequest(ReadDeviceInformationRequest):
 
 
 class MakersRequest(ModbusRequest):
-    """Function 46, as pymodbus wants functions that it does not know."""
+    """Function 46, in the form that pymodbus requires for functions that it does not know."""
 
     function_code = 0x46
 
@@ -123,7 +125,7 @@ def read_write_registers(data):
     )
 
 
-# The library's request for what follows the function in a frame.
+# Creates the library's request from the bytes after the function code of a frame.
 REQUESTS = {
     0x01: lambda data: ReadCoilsRequest(*words(data)),
     0x02: lambda data: ReadDiscreteInputsRequest(*words(data)),
@@ -157,7 +159,7 @@ def identification(response):
     return bytes(head + [response.number_of_objects]) + objects
 
 
-# What follows the function in a frame, from what the library has made of it.
+# Reconstructs the bytes after the function code of a reply from the result of the library.
 ANSWERS = {
     0x01: lambda response: counted(pack_bitstring(response.bits)),
     0x02: lambda response: counted(pack_bitstring(response.bits)),
@@ -168,7 +170,7 @@ ANSWERS = {
     0x08: lambda response: packed(response.sub_function_code, *response.message),
     0x0F: lambda response: packed(response.address, response.count),
     0x10: lambda response: packed(response.address, response.count),
-    # Its own `status` is the last byte of the reply, which is part of the name here.
+    # The library's `status` is the last byte of the reply, which is part of the name here.
     0x11: lambda response: counted(response.identifier),
     0x2B: identification,
     0x46: lambda response: response.data,
@@ -186,10 +188,10 @@ def request_of(frame, expected):
 
 
 def ask(client, request):
-    """What the library is told, as the text of a frame."""
+    """Returns the reply that the library delivers, as the text of a frame."""
     response = client.execute(request)
     if request.unit_id == 0:
-        return "silence"  # the library does not listen; converse() looks
+        return "silence"  # the library does not wait for a reply; converse() checks that none comes
     if not isinstance(response, ModbusResponse):
         return f"nothing ({response})"
     head = bytes([response.unit_id, response.function_code])
@@ -199,7 +201,7 @@ def ask(client, request):
 
 
 def bytes_of(step):
-    """The frame behind `=>` or `<=`."""
+    """Returns the frame after `=>` or `<=`."""
     return b"" if step == "silence" else bytes.fromhex(step[3:])
 
 
@@ -208,7 +210,7 @@ def text_of(frame):
 
 
 def steps(baud):
-    """The lines of the conversation, without its comments."""
+    """Returns the lines of the conversation without its comments."""
     text = pathlib.Path(__file__).with_name("conversation.txt").read_text(encoding="utf-8")
     text = text.replace("{BAUD}", f"{3 + RATES.index(baud):02X}")
     lines = (line.split(";")[0].strip() for line in text.splitlines())
@@ -216,20 +218,21 @@ def steps(baud):
 
 
 def converse(client, baud):
-    """The number of checks passed and failed."""
+    """Returns the number of checks that passed and failed."""
     passed = failed = 0
     asked = ""
     for step in steps(baud):
         if step.startswith("=> "):
             asked = step
         elif step.startswith("wait "):
-            # The line follows the wall clock, and the conversation says how long the module needs.
+            # The line runs in real time, and the conversation specifies how long the module takes.
             time.sleep(int(step[5:-2]) / 1000)
         else:
             expected = step.removeprefix("<= ")
             got = ask(client, request_of(bytes_of(asked), bytes_of(step)))
             if expected == "silence":
-                # What a master leaves behind a broadcast (V1.02, 2.4.1); a busy machine only looks too early.
+                # The pause of a master after a broadcast (V1.02, 2.4.1). On a busy machine this check can only end too
+                # early.
                 time.sleep(turnaround(baud))
                 if select.select([client.socket], [], [], 0)[0]:
                     got = "an answer"

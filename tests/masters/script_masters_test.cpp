@@ -1,5 +1,5 @@
-// Masters in Python and JavaScript on foreign libraries, unmodified, over the pseudo-terminal and as RTU
-// frames over TCP: tests/masters/.
+// Tests masters in Python and JavaScript (tests/masters/) that use unmodified third-party libraries, on the
+// pseudo-terminal and as RTU frames over TCP.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -21,7 +21,7 @@ struct Master {
 };
 
 const std::string kScripts = EX9000_MASTERS;
-/// Debian's, whatever else is in PATH: the library is Debian's too.
+/// Debian's Python, even if PATH contains another one, because the library is Debian's as well.
 const Master kPymodbus{"pymodbus", {"/usr/bin/python3", kScripts + "/pymodbus_master.py"}};
 const std::string kModules = std::string("NODE_PATH=") + EX9000_NODE_MODULES;
 const Master kModbusSerial{"modbus-serial", {"env", kModules, "node", kScripts + "/modbus_serial_master.js"}};

@@ -1,8 +1,8 @@
-"""Small changes to C++ source that a test should notice, by rules.
+"""Applies rules that make small changes to C++ source which a test should detect.
 
-A source is cut into tokens, and each rule offers what it would change: operators, constants, statements that are
-left out, branches that are swapped. Comments, strings, preprocessor lines and static_assert are left alone: no test
-at run time can notice those.
+The module divides a source into tokens, and each rule lists the changes that it can make: other operators and
+constants, removed statements, swapped branches. The rules skip comments, strings, preprocessor lines and static_assert,
+because no test at run time can detect changes there.
 """
 
 import dataclasses
@@ -19,7 +19,7 @@ TOKEN = re.compile(
     re.VERBOSE | re.MULTILINE | re.DOTALL,
 )
 
-# What one operator becomes. Where it may be part of a declaration or a template, the rule below looks about.
+# The replacement of each operator. Operators that can also be part of a declaration or a template are checked below.
 OPERATORS = {
     "==": "!=",
     "!=": "==",
@@ -47,7 +47,7 @@ OPERATORS = {
     "&=": "|=",
     "^=": "|=",
 }
-# clang-format puts spaces around an operator of two operands, and none around what a type has.
+# clang-format puts spaces around a binary operator, but not around the operator of a type.
 BETWEEN_OPERANDS = {"<", ">", "+", "-", "*", "/", "%", "&", "|", "^", "<<", ">>", "&&"}
 
 STATEMENT = re.compile(r"^[ ]+(?P<statement>[a-z_][\w.>\[\]:+\- ]*(?:\(.*\)| [-+|&^]?= .*|\+\+|--);)$", re.MULTILINE)
@@ -92,7 +92,7 @@ def tokens(source):
 
 
 def left_alone(source):
-    """Where static_assert stands."""
+    """Returns the positions of each static_assert."""
     return [(each.start(), each.end()) for each in re.finditer(r"static_assert\(.*?\);", source, re.DOTALL)]
 
 
@@ -148,11 +148,11 @@ def all_of(file, source):
 
 
 def spread(sources, seed):
-    """All mutants of {file: source}, in an order by `seed` that takes the files in turn."""
+    """Yields all mutants of {file: source}. The order depends on `seed` and takes the files in turn."""
     chance = random.Random(seed)
     heaps = []
     for file, source in sorted(sources.items()):
-        # Rules in turn too: constants are many, and say little.
+        # Takes the rules in turn as well, because there are many constants and they show little.
         of_rules = {}
         for mutant in all_of(file, source):
             of_rules.setdefault(mutant.rule, []).append(mutant)

@@ -1,4 +1,4 @@
-"""The places that are changed, and what they are changed to."""
+"""Tests which places are changed, and to what."""
 
 import unittest
 

@@ -1,7 +1,7 @@
-"""Which tests judge which sources, and what those tests are built of.
+"""Defines which tests check which sources, and how those tests are built.
 
-A unit is one object file: several sources that are compiled in one piece. A program is a test; it names the units
-that it may need, and the linker takes from them what it does need. Tests are found where CMake has them.
+A unit is one object file: several sources that are compiled in one piece. A program is a test. It lists the units that
+it may require, and the linker takes those that it does require. The tests are read from CMakeLists.txt.
 """
 
 import dataclasses
@@ -27,7 +27,7 @@ def stem_of(file):
 
 
 def standing_before(file, options):
-    """What the compiler finds in the place of `file`."""
+    """Returns the file that the compiler finds instead of `file`."""
     for option in options:
         place = f"{option[2:]}/{file}"
         if option.startswith("-I") and (ROOT / place).exists():
@@ -37,7 +37,7 @@ def standing_before(file, options):
 
 @functools.lru_cache(None)
 def included(file):
-    """The files of the tree that a file names: from the root on, as all of them do."""
+    """Returns the files of the tree that a file includes. All includes are relative to the root."""
     return tuple(re.findall(r'^#include "([\w./-]+)"', (ROOT / file).read_text(), re.MULTILINE))
 
 
@@ -46,11 +46,11 @@ class Unit:
     name: str
     sources: tuple
     options: tuple = ("-O0",)
-    more: tuple = ()  # sources that a macro includes
+    more: tuple = ()  # sources included by a macro
 
     @functools.cached_property
     def files(self):
-        """All of the tree that it is compiled of."""
+        """Returns all files of the tree that the unit is compiled from."""
         found = set()
         waiting = [*self.sources, *self.more]
         while waiting:
@@ -62,14 +62,15 @@ class Unit:
 
     @functools.cached_property
     def headers(self):
-        """Of libraries, those that take long to compile: GoogleTest's brings most of the standard one's with it."""
+        """Returns the library headers that take long to compile. GoogleTest's header includes most of the standard
+        library."""
         has_json = any("#include <nlohmann/json.hpp>" in (ROOT / file).read_text() for file in self.files)
         return ("gtest/gtest.h", "nlohmann/json.hpp") if has_json else ("gtest/gtest.h",)
 
 
 @dataclasses.dataclass(frozen=True)
 class Image:
-    """A shared object: the composition of a board and a model on the register model's bus."""
+    """A shared object: a board and a model, composed on the bus of the register model."""
 
     board: str
     model: str
@@ -91,11 +92,11 @@ class Image:
 class Program:
     name: str
     tests: tuple  # units
-    libraries: tuple  # units' names
+    libraries: tuple  # names of units
     environment: tuple = ()
     images: tuple = ()
     options: tuple = ()
-    processor_seconds: int = 8  # a multiple of what it takes: what does not end has been noticed
+    processor_seconds: int = 8  # several times its normal run time; a program that exceeds it counts as failed
 
     @property
     def sources(self):
@@ -103,7 +104,8 @@ class Program:
 
     @functools.cached_property
     def units(self):
-        """The tests' and, of the libraries', those that these can reach: whose header one of them includes."""
+        """Returns the units of the tests and those library units whose header a unit includes, directly or
+        indirectly."""
         known = [LIBRARY_UNITS[name] for name in self.libraries]
         reached = list(self.tests) + [image.unit for image in self.images]
         for unit in reached:
@@ -114,19 +116,20 @@ class Program:
         return reached
 
 
-# Of the simulator, what runs on Asio or has files, ports and signals of the operating system: tests of the program as a
-# process have that, and they are no part of this. Names without folder and extension.
+# The parts of the simulator that use Asio, or files, ports and signals of the operating system. Tests that run the
+# program as a process cover them; mutation does not. Names without folder and extension.
 PROCESS = set(
     "claim control_socket line_ports listening main new_file pacer panel_server port program pty pty_port "
     "running_line serial_port session stepped_line stepper stop_signals tcp_port".split()
 )
-# What takes long to compile and few tests reach, beside what sim/CMakeLists.txt compiles on its own.
+# Sources that take long to compile and that few tests reach, in addition to those that sim/CMakeLists.txt compiles
+# separately.
 ALONE = {"line_record", "play_record"}
 
 
 @dataclasses.dataclass(frozen=True)
 class Folder:
-    """A library of sim/CMakeLists.txt: the units that are compiled of it, and the libraries that it is linked with."""
+    """A library of sim/CMakeLists.txt: the units compiled from it, and the libraries that it is linked with."""
 
     units: tuple
     libraries: tuple
@@ -156,7 +159,7 @@ FOLDERS = folders()
 
 
 def units_of(folder):
-    """Names of the units of a folder and of all that it is linked with."""
+    """Returns the names of the units of a folder and of all libraries that it is linked with."""
     names = ["core"]
     waiting = [folder]
     while waiting:
@@ -206,7 +209,7 @@ def test_program(name, folder, sources, libraries):
 
 
 def listed_programs(folder):
-    """Tests of CMakeLists.txt in `folder` that need no other library than these, and no process."""
+    """Returns the tests of CMakeLists.txt in `folder` that require only these libraries and no process."""
     text = (ROOT / folder / "CMakeLists.txt").read_text()
     found = []
     of_one_file = r"ex9000_test\(\$\{\w+\}_test SOURCES \$\{name\}_test\.cpp LIBRARIES (\w+)\)"
@@ -224,7 +227,7 @@ def listed_programs(folder):
 
 
 def players():
-    """Plays the transcripts and random sessions against the second description."""
+    """Returns the program that plays the transcripts and random sessions against the reference model."""
     options = ("-O1", f'-DEX9000_CONFORMANCE_DIR="{ROOT}/tests/conformance"')
     reference = files("tests/oracles/reference/*.cpp")
     driver = "tests/oracles/reference/session.cpp"
@@ -232,15 +235,15 @@ def players():
         Unit("players-transcripts", ("tests/conformance/conformance_core_test.cpp",), options),
         Unit("players-sessions", ("tests/firmware/reference_sessions_test.cpp",), options),
         Unit("players-driver", (driver,), options),
-        # On its own: no header of the firmware is in it, so that no mutant asks for it anew.
+        # A separate unit: it includes no header of the firmware, so no mutant requires a rebuild.
         Unit("players-reference", tuple(file for file in reference if file != driver), options),
     )
-    # Of all random transactions, enough to reach every rule.
+    # A number of random transactions that is large enough to reach every rule.
     enough = (("EX9000_TRANSACTIONS", "100000"),)
     return Program("transcripts and random sessions", units, LIBRARIES["ex9000_runner"], enough)
 
 
-# With inputs and outputs, one a board.
+# One model with inputs and outputs for each board.
 IMAGES = tuple(Image(board, "EX9055D") for board in ("lm3s6965evb", "ek-tm4c123gxl"))
 
 
@@ -256,8 +259,8 @@ def image_programs():
 
 @dataclasses.dataclass(frozen=True)
 class Area:
-    """Sources that are changed, what is shipped of them, and the tests that have to notice: first those that are called
-    like the changed file or name its header, then each group in turn."""
+    """The sources to change, the product units built from them, and the tests that must detect the change. The order
+    is: tests that have the name of the changed file, tests that include its header, then each group in turn."""
 
     name: str
     sources: list
@@ -281,7 +284,7 @@ class Area:
         return sorted((program for group in self.groups for program in group if reaches(program)), key=distance)
 
 
-# They play for long, whatever the mutant.
+# These tests take long for every mutant.
 LONG = {"noise_test", "theory_test"}
 
 

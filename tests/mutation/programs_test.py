@@ -1,10 +1,10 @@
-"""Which tests judge a changed file, and in what order."""
+"""Tests which tests check a changed file, and in what order."""
 
 import unittest
 
 import programs
 
-# Replaced in every test by a bus and a processor of its own, and a list of files that the build generates.
+# Every test replaces the first two by its own bus and processor. The third is a list of files that the build generates.
 REACHED_BY_NONE = {"hal/registers/bus.hpp", "hal/cortex_m/processor.hpp", "sim/panel/page_files.hpp"}
 
 

@@ -1,5 +1,5 @@
-"""Builds tests with a changed source, and runs them. The tree is not touched: the changed file stands in a folder of
-its own, which the compiler looks into first."""
+"""Builds tests with a changed source and runs them. The source tree is not changed: the changed file is in a separate
+folder, which the compiler searches first."""
 
 import concurrent.futures
 import hashlib
@@ -13,7 +13,7 @@ from programs import ROOT
 
 BUILD = ROOT / "build/mutation"
 COMPILE = ["clang++", "-std=c++17", "-w", "-fno-ident"]
-MOST_MEMORY = 4 << 30  # what takes more has been noticed
+MOST_MEMORY = 4 << 30  # a program that requires more counts as failed
 
 
 def run(command, folder=ROOT, **environment):
@@ -31,17 +31,17 @@ def digest_of_text(text):
 
 
 def options_of_header(unit):
-    """A compiled header is of use only to what is compiled with the same options."""
+    """A precompiled header works only with the same options."""
     return [option for option in unit.options if not option.startswith(("-I", "-D"))]
 
 
 def header_of(unit):
-    """What it begins with; compiled, it takes the compiler a fraction of the time."""
+    """Returns the path of the header to include first. Precompiling it saves most of the compile time."""
     return BUILD / f"{digest_of_text(' '.join([*options_of_header(unit), *unit.headers]))}.hpp"
 
 
 def compiled(unit, folder, overlay=None):
-    """The object of `unit` in `folder`; None: it does not compile."""
+    """Compiles `unit` in `folder`. Returns the object file, or None if the unit does not compile."""
     source = folder / f"{unit.name}.cpp"
     source.write_text("".join(f'#include "{each}"\n' for each in unit.sources))
     target = folder / f"{unit.name}.o"
@@ -49,13 +49,13 @@ def compiled(unit, folder, overlay=None):
     header = ["-include", header_of(unit)]
     if not run([*COMPILE, *first, *unit.options, "-I.", *header, "-c", source, "-o", target]):
         return None
-    # Names of files and functions' places in them are no change of the code.
+    # File names and the positions of functions are not changes of the code.
     run(["objcopy", "--strip-debug", "--remove-section=.comment", f"--strip-symbol={source.name}", target])
     return target
 
 
 class Workshop:
-    """What is built of the tree as it is: once, when it is first needed."""
+    """The builds of the unchanged tree. Each is built once, on first use."""
 
     def __init__(self):
         shutil.rmtree(BUILD, ignore_errors=True)
@@ -83,7 +83,7 @@ class Workshop:
         return self.once(("header", header_of(unit)), build)
 
     def unit(self, unit):
-        """Its object, and what tells it from another."""
+        """Returns the object file of the unit, and the digest that identifies it."""
 
         def build():
             self.header(unit)
@@ -97,7 +97,7 @@ class Workshop:
     # --- programs ---
 
     def program(self, program):
-        """The units that the linker takes, once it passes on the tree as it is."""
+        """Returns the units that the linker takes. Exits if the program fails on the unchanged tree."""
 
         def build():
             libraries = [unit for unit in program.units if unit.name in program.libraries]
@@ -153,7 +153,7 @@ class Workshop:
 
 
 class Bench:
-    """A mutant and what has been built of it, in a folder that the caller removes."""
+    """A mutant and its builds, in a folder that the caller removes."""
 
     def __init__(self, workshop, folder, file, changed):
         self.workshop = workshop
@@ -168,7 +168,7 @@ class Bench:
         return self.file in unit.files
 
     def object_of(self, unit):
-        """None: it does not compile."""
+        """Returns None if the unit does not compile."""
         if not self.is_in(unit):
             return self.workshop.unit(unit)[0]
         if unit.name not in self.objects:
@@ -176,7 +176,7 @@ class Bench:
         return self.objects[unit.name]
 
     def changes(self, units):
-        """Whether it compiles, and the object code of one of these units is other than that of the tree as it is."""
+        """Returns whether the mutant compiles and changes the object code of one of these units."""
         for unit in filter(self.is_in, units):
             _, as_it_is = self.workshop.unit(unit)
             changed = self.object_of(unit)
@@ -193,7 +193,7 @@ class Bench:
         return all(self.object_of(unit) is not None for unit in self.units_of(program))
 
     def differs(self, program):
-        """Whether any of its code is other than that of the tree as it is."""
+        """Returns whether any object code of the program differs from that of the unchanged tree."""
         changed = filter(self.is_in, self.units_of(program))
         return any(digest(self.object_of(unit)) != self.workshop.unit(unit)[1] for unit in changed)
 

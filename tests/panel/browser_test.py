@@ -1,5 +1,5 @@
-"""The panel in a real browser: what people do there, what modules do, and what is on the screen. Leaves a picture of
-each state in build/panel."""
+"""Tests the panel in a real browser: user actions, module events, and the display. Saves a picture of each state in
+build/panel."""
 
 import unittest
 
@@ -38,14 +38,14 @@ class Modules(Panel):
 
     def test_a_host_watchdog_that_expires_is_seen(self):
         _, master = self.show_two()
-        master.coil(1, 0x0081, True)  # the safe value: output 1
+        master.coil(1, 0x0081, True)  # the safe value of output 1
         master.ask("010F0000000D020500", 8)
         self.browser.until(lit(5))
         self.browser.click("summary")
         self.browser.until(text(OUTPUTS, ".values", "Safe0100"))
         master.ask("010601E800FF", 8)
         master.coil(1, 0x0104, True)
-        with all_the_while(lambda: master.ask("010601E800FF", 8)):  # which starts it again
+        with all_the_while(lambda: master.ask("010601E800FF", 8)):  # restarts the watchdog
             self.browser.until(text(OUTPUTS, ".readout.wide .value", "of 25.5 s"))
             self.picture("counting-down")
         master.ask("010601E80014", 8)
@@ -84,11 +84,11 @@ class Modules(Panel):
         lost = "document.getElementById('lost').textContent.includes('trying again')"
         simulator.kill()
         self.browser.until(lost)
-        self.assertTrue(self.browser.run(f"return {pressed(DI3)}"))  # as it was
+        self.assertTrue(self.browser.run(f"return {pressed(DI3)}"))  # unchanged
         self.picture("lost")
         simulator.start_again()
         self.browser.until(f"!({lost})")
-        self.browser.until(f"!({pressed(DI3)})")  # another run
+        self.browser.until(f"!({pressed(DI3)})")  # a new run of the simulator
         self.browser.click(DI3)
         self.browser.until(pressed(DI3))
 
@@ -129,7 +129,7 @@ class Modules(Panel):
         error = "document.querySelector('.row[data-kind=error]') !== null"
         for _ in range(200):
             before = self.browser.run("return document.getElementById('tally').textContent")
-            master.send(READ_INPUTS)  # there may be no answer, which takes for ever
+            master.send(READ_INPUTS)  # there may be no reply, so do not wait for one
             self.browser.until("document.getElementById('tally').textContent !== given[0]", before)
             if self.browser.run(f"return {error}"):
                 break
@@ -214,9 +214,9 @@ class Modules(Panel):
         latched = f"""document.querySelector("{plate} li:nth-child(4) .latch").dataset.on === 'true'"""
         with both_lines_busy(simulator):
             self.browser.until("document.querySelectorAll('#filler .row').length > 10")
-            # What the module counts takes the longest way; it counts falling edges, one of every two clicks.
+            # The module's counter is the last value to arrive. It counts falling edges, one for every two clicks.
             clicks = 0
-            for _ in range(3 * CLICKS):  # a page that says, on a busy machine, that it has lost it tells it nothing
+            for _ in range(3 * CLICKS):  # a page that reports a lost connection on a busy machine sends no clicks
                 self.browser.until(f"""{there} && (window.was = [{pressed(input_)}, {count}],
                     document.querySelector("{input_}").click(), true)""")
                 self.browser.until(f"""!({there}) || ({pressed(input_)} !== was[0] && {latched} &&

@@ -1,4 +1,4 @@
-"""The bus in the browser: what is kept, paused, searched and seen on the strip, and its faults."""
+"""Tests the bus in the browser: history, pause, search, the strip, and the faults of the bus."""
 
 import unittest
 
@@ -6,13 +6,13 @@ from panel_page import Panel, pressed
 from simulator import Master, all_the_while, wait_until
 from web_socket import Page
 
-# Of frames: that the host was late is a remark of its own.
+# Rows with frames. Rows that report a delay of the host are notes and do not count.
 ROWS = "document.querySelectorAll('#filler .row:not([data-kind=note])').length"
 TALLY = "document.getElementById('tally').textContent"
 PAUSED = "document.getElementById('pause').getAttribute('aria-pressed') === 'true'"
 LOST = "document.getElementById('lost').textContent.includes('trying again')"
 PICTURE = "document.getElementById('canvas').toDataURL()"
-# Whether the strip has some of the colour named so at this height of it.
+# A function that returns whether the strip contains the colour with this name at this height.
 PAINTED = """((name, y) => {
   const strip = document.getElementById('canvas');
   const copy = document.createElement('canvas');
@@ -41,7 +41,7 @@ class Bus(Panel):
             master.ask("020200000008", 6)
 
     def asking_inputs(self, master):
-        """The strip shows a second: what is to be seen there goes on until it is."""
+        """The strip shows only one second, so the requests continue until the test has seen the result."""
         return all_the_while(lambda: self.ask_inputs(master, 1))
 
     def faults_of(self, simulator):
@@ -132,7 +132,7 @@ class Bus(Panel):
         self.assertTrue(page.tell("1 fault hang every 100ms")["ok"])
         self.browser.until(f"{PAINTED}('note', 26) && {TALLY} === '0 frames'")
         self.assertTrue(page.tell("fault off 1")["ok"])
-        self.browser.until(f"!{PAINTED}('note', 26)")  # it has moved out
+        self.browser.until(f"!{PAINTED}('note', 26)")  # it has moved out of the strip
 
     def test_what_is_handed_out_late_stands_where_it_belongs(self):
         simulator = self.show("EX9042D@01,baud=1200", "--baud", "1200")
@@ -141,10 +141,10 @@ class Bus(Panel):
         master = Master(simulator.lines[0])
         self.addCleanup(master.close)
         error = "document.querySelector('.row[data-kind=error]')"
-        # A frame of 0.3 s; all the while remarks are made on it, which are handed out before it.
+        # A frame of 0.3 s. During this time the simulator makes notes, and the page receives them before the frame.
         page.say("1 fault hang every 50ms")
         master.send(bytes([7] * 40))
-        pause = "(document.getElementById('pause').click(), true)"  # or more remarks would move it out of sight
+        pause = "(document.getElementById('pause').click(), true)"  # otherwise more notes would move it out of sight
         self.browser.until(f"{error} !== null && {PAINTED}('bad', 20) && {PAINTED}('note', 46) && {pause}")
         in_turn = """const rows = [...document.querySelectorAll('#filler .row')];
             rows.sort((a, b) => a.ariaRowIndex - b.ariaRowIndex);
@@ -155,7 +155,7 @@ class Bus(Panel):
         page.until(lambda message: heard.extend(entries_of(message)) or any("error" in each for each in heard))
         late = next(each for each in heard if "error" in each)
         before = sum(each["began"] < late["began"] for each in heard)
-        self.assertLess(before, len(heard) - 1)  # some remarks were made on it
+        self.assertLess(before, len(heard) - 1)  # some notes were made during the frame
         self.assertEqual(self.browser.run(f"return {error}.ariaRowIndex"), str(before + 2))
 
     def test_every_line_has_a_lane(self):
@@ -177,7 +177,7 @@ class Bus(Panel):
 
     def test_the_strip_is_moved_by_keys_and_by_dragging_while_paused(self):
         _, master = self.show_two()
-        with self.asking_inputs(master):  # where it is moved there are others in sight
+        with self.asking_inputs(master):  # after each move the strip shows different frames
             self.browser.until(f"{ROWS} > 20 && {PAINTED}('master', 20)")
             self.browser.click("#pause")
         self.browser.run("document.getElementById('canvas').focus()")

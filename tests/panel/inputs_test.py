@@ -1,4 +1,4 @@
-"""Inputs in the browser: clicked, held, pulsed and touched, by pointer, finger, keys and screen reader."""
+"""Tests inputs in the browser: click, hold, pulse and touch, with pointer, finger, keyboard and screen reader."""
 
 import unittest
 
@@ -13,7 +13,7 @@ PULSE = "input[value=pulse]"
 
 class Inputs(Panel):
     def click_in_the_page(self, selector, times=1):
-        """As a screen reader does: neither pointer nor key has to do with it."""
+        """Clicks as a screen reader does, without pointer and keyboard."""
         self.browser.run(f"""for (let i = 0; i < {times}; ++i) {{ document.querySelector("{selector}").click(); }}""")
 
     def middle_of(self, selector):
@@ -31,7 +31,7 @@ class Inputs(Panel):
         self.browser.until(pressed(DI3))
         simulator.stop()
         self.browser.until(LOST)
-        self.assertTrue(self.browser.run(f"return {pressed(DI3)}"))  # as it was
+        self.assertTrue(self.browser.run(f"return {pressed(DI3)}"))  # unchanged
         self.browser.pointer("up")
         simulator.go_on()
         self.browser.until(f"!({LOST})")

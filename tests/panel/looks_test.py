@@ -1,5 +1,5 @@
-"""How the panel looks, and what a screen reader finds: contrast, narrow windows, what stands in a drawer, and what it
-says where there is nothing to see."""
+"""Tests the appearance of the panel and its content for a screen reader: contrast, narrow windows, the content of a
+drawer, and the messages if there is nothing to display."""
 
 import unittest
 
@@ -9,9 +9,9 @@ from web_socket import Page
 
 MOST_PAGES = 16
 LEGIBLE = 4.5
-VISIBLE = 3  # what is no text
-# The contrast of a colour (a property of what is there, or of what is generated before or behind it) on a ground,
-# with all its ancestors' opacities.
+VISIBLE = 3  # for everything that is not text
+# Returns the contrast between a colour and a background. The colour is a property of an element, or of the content
+# generated before or after it. The opacities of all ancestors count.
 CONTRAST = """
   const [selector, generated, property, ground] = arguments;
   const channels = (colour) => colour.match(/[0-9.]+/g).slice(0, 3).map((each) => Number(each) / 255);
@@ -98,7 +98,7 @@ class Looks(Panel):
         self.assertTrue(scrolled and same and focused and selected, (scrolled, same, focused, selected))
 
     def let_in(self, simulator):
-        """Another page, or None if there is no room for it."""
+        """Returns another page, or None if the server has no room for it."""
         page = Page(simulator.port)
         self.addCleanup(page.close)
         return page if page.next() is not None else None
@@ -110,7 +110,7 @@ class Looks(Panel):
             pages.append(Page(simulator.port))
             self.addCleanup(pages[-1].close)
         self.browser.open("about:blank")
-        page = wait_until(lambda: self.let_in(simulator))  # the browser's own has gone
+        page = wait_until(lambda: self.let_in(simulator))  # the browser's own page has closed
         self.browser.open(simulator.address)
         self.browser.until("document.getElementById('lost').textContent.includes('Too many pages')")
         dot = "getComputedStyle(document.getElementById('link'), '::before').content.includes('○')"
@@ -119,7 +119,7 @@ class Looks(Panel):
         page.close()
         self.browser.until("document.querySelectorAll('.plate').length === 2")
         self.browser.until(f"document.getElementById('lost').textContent === '' && !{dot}")
-        self.assertTrue(self.browser.run(f"document.body.removeAttribute('data-link'); return {dot}"))  # at first
+        self.assertTrue(self.browser.run(f"document.body.removeAttribute('data-link'); return {dot}"))  # not connected
 
     def test_320_pixels_are_enough_for_long_names(self):
         self.browser.size(320, 640, phone=True)

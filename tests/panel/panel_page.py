@@ -1,5 +1,4 @@
-"""What the tests in a browser have in common: the page of a simulator of their own, and a picture of each state in
-build/panel."""
+"""Shared by the browser tests: the page of a separate simulator, and a picture of each state in build/panel."""
 
 import atexit
 import contextlib
@@ -28,7 +27,7 @@ def pressed(selector):
 
 
 def lit(outputs):
-    """What the lamps of the first module say, bit n for output n."""
+    """Returns a condition: the outputs of the first module are lit as given, bit n for output n."""
     lamps = f"""[...document.querySelectorAll("{OUTPUTS} .output")]"""
     return f"{lamps}.reduce((sum, led, n) => sum + (led.dataset.on === 'true' ? 1 << n : 0), 0) === {outputs}"
 
@@ -39,7 +38,7 @@ def text(plate, selector, wanted):
 
 @functools.cache
 def the_browser():
-    """One for all tests: to start it takes as long as most of them."""
+    """Returns one browser for all tests, because its start takes as long as most tests."""
     browser = Browser()
     atexit.register(browser.close)
     return browser
@@ -52,7 +51,7 @@ def bus(lines):
     return Simulator(str(path))
 
 
-# Two lines of 32 modules each: every four an output module, an input module and two with both.
+# Two lines of 32 modules each. Every four modules are one with outputs, one with inputs, and two with both.
 MANY = [
     {"name": name, "tcp": 0, "modules": [
         {"model": ("EX9042D-M", "EX9052D-M", "EX9055D", "EX9068D-M")[i % 4], "address": f"{i + 1:02X}", "baud": 115200}
@@ -63,7 +62,7 @@ MANY = [
 
 @contextlib.contextmanager
 def both_lines_busy(simulator):
-    """A master on each line as long as the block lasts, without a pause."""
+    """Runs a master without pauses on each line while the block runs."""
     over = threading.Event()
     loads = [threading.Thread(target=keep_busy, args=(port, over)) for port in simulator.lines]
     for load in loads:
@@ -77,7 +76,7 @@ def both_lines_busy(simulator):
 
 
 def keep_busy(port, over):
-    """Of every four modules one is told to switch an output, and one to read its inputs."""
+    """Of every four modules, switches an output of one and reads the inputs of another."""
     master = Master(port)
     turn = 0
     while not over.is_set():
@@ -115,16 +114,16 @@ class Panel(unittest.TestCase):
         return simulator, master
 
     def picture(self, name, whole=False):
-        """Of a state of the page, which has to be accessible too."""
+        """Saves a picture of a state of the page, and expects that the state is accessible."""
         self.browser.screenshot(PICTURES / f"{name}.png", whole)
         self.expect_accessible()
 
     def expect_accessible(self):
-        """axe-core finds nothing against the Web Content Accessibility Guidelines 2.2, level AA."""
+        """Expects that axe-core finds no violation of the Web Content Accessibility Guidelines 2.2, level AA."""
         self.assertEqual(self.browser.violations(), [])
 
     def expect_rows_in_order(self):
-        """The frame list's rows stand in the document as they are seen."""
+        """Expects that the rows of the frame list have the same order in the document and on the screen."""
         order = """return [...document.querySelectorAll('#filler .row')].map((row) => Number(row.ariaRowIndex))"""
         rows = self.browser.run(order)
         self.assertEqual(rows, sorted(rows))

@@ -1,4 +1,4 @@
-"""What the panel's server lets in and what it refuses, while a master polls the line and notices nothing."""
+"""Tests what the panel's server accepts and rejects while a master polls the line without a disturbance."""
 
 import json
 import pathlib
@@ -12,18 +12,18 @@ from simulator import HANG, PROGRAM, Master, Simulator, wait_until
 from web_socket import Page, all_of, ask, open_socket, request, status, upgrade
 
 MOST_PAGES = 16
-MOST_REQUESTS = 64  # under way at a time besides
+MOST_REQUESTS = 64  # concurrent requests, in addition to the pages
 TRY_AGAIN_LATER = 1013
-LOOKS = 20  # of a page, enough to tell that another is told nothing any more
+LOOKS = 20  # messages to one page, enough to show that another page receives none
 
 
 class Polling:
-    """A master that asks all the while, and whether it was answered."""
+    """A master that polls continuously and stores the first error."""
 
     def __init__(self, port):
         self._master = Master(port)
         self.wrong = None
-        self._left = None  # polls, since somebody has said that it is to end
+        self._left = None  # remaining polls after end() was called; None before
         self._thread = threading.Thread(target=self._poll)
         self._thread.start()
 
@@ -38,7 +38,7 @@ class Polling:
             self.wrong = wrong
 
     def end(self):
-        """After five more."""
+        """Ends after five more polls."""
         self._left = 5
         self._thread.join()
         self._master.close()
@@ -129,9 +129,9 @@ class Server(unittest.TestCase):
     def test_a_request_may_come_in_pieces(self):
         whole = request(self.port)
         with open_socket(self.port) as connection:
-            for at in range(0, len(whole) - 1, 16):  # few: the server lets a request go that takes 5 s
+            for at in range(0, len(whole) - 1, 16):  # few pieces, because the server closes a request that takes 5 s
                 connection.sendall(whole[at:min(at + 16, len(whole) - 1)])
-                self.expect(200, request(self.port, "/panel.css"))  # so that it has come by itself
+                self.expect(200, request(self.port, "/panel.css"))  # so that the piece arrives separately
             connection.sendall(whole[-1:])
             self.assertEqual(status(all_of(connection)), 200)
 
@@ -141,7 +141,7 @@ class Server(unittest.TestCase):
         self.assertIsNone(another.next())
         self.assertEqual(another.closed_with, TRY_AGAIN_LATER)
         another.close()
-        self.expect(200, request(self.port, "/panel.js"))  # requests have room of their own
+        self.expect(200, request(self.port, "/panel.js"))  # requests have separate slots
         pages[0].close()
         wait_until(lambda: self.page().next())
         self.assertTrue(pages[1].tell("1 status")["ok"])
@@ -153,8 +153,8 @@ class Server(unittest.TestCase):
         rounds = 0
 
         def again():
-            """Of requests that go their places are free at once. If they were let go first, which takes 5 s, so many
-            rounds would be a hang."""
+            """Returns whether three rounds have passed. The slots of requests that disconnect are free immediately. If
+            they were free only after their timeout of 5 s, the rounds would take as long as a hang."""
             nonlocal rounds
             if status(ask(self.port, request(self.port))) == 200:
                 waiting = [open_socket(self.port) for _ in range(MOST_REQUESTS)]
@@ -278,11 +278,12 @@ class Slow(unittest.TestCase):
         for each in slow, page:
             self.addCleanup(each.close)
             self.assertEqual(each.status, 101)
-        told = []  # when the page was, in the simulator's time
+        told = []  # when the page received a message, in simulator time
         reads = threading.Thread(target=page.until, args=(lambda message: told.extend(times_of(message))
                                                           or message.get("reply"),))
         reads.start()
-        full, seen = 0, 0  # what has piled up, and how often the page had been told when it was that much
+        # Bytes that wait to be sent, and the number of messages to the page when that number last changed.
+        full, seen = 0, 0
         while len(told) < seen + LOOKS:
             self.assertTrue(reads.is_alive())
             slow.show_life()
@@ -300,18 +301,18 @@ class Slow(unittest.TestCase):
             times += times_of({"state": state})
             inputs = next((each["plate"]["inputs"] for each in state["modules"]
                            if each["module"] == 1 and "plate" in each), inputs)
-        # It was told nothing while it could not take it.
+        # The slow page received no message while it could not read.
         most = max(sum(before < each < after for each in told) for before, after in zip(times, times[1:]))
         self.assertGreaterEqual(most, LOOKS - 1)
 
 
 def tcp_sockets():
-    """The kernel's list of them, a line each."""
+    """Returns the kernel's list of TCP sockets, one for each line."""
     return pathlib.Path("/proc/net/tcp").read_text(encoding="ascii").splitlines()[1:]
 
 
 def unsent(port, connection):
-    """Bytes that the simulator's socket at the other end of `connection` has yet to get rid of."""
+    """Returns the number of bytes that the simulator's socket at the other end of `connection` has not sent yet."""
     ends = [f"0100007F:{each:04X}" for each in (port, connection.getsockname()[1])]
     for line in tcp_sockets():
         columns = line.split()

@@ -1,4 +1,4 @@
-"""A running ex9000-sim with its panel, and a Modbus master on its line."""
+"""Runs ex9000-sim with its panel, and a Modbus master on its line."""
 
 import contextlib
 import os
@@ -16,11 +16,11 @@ PROGRAM = os.environ.get(
     "EX9000_SIMULATOR", str(pathlib.Path(__file__).resolve().parents[2] / "build/host-debug/sim/ex9000-sim")
 )
 
-HANG = 60  # seconds; only what hangs takes so long: the slowest answer takes a second or two on a busy machine
+HANG = 60  # seconds; reached only by a hang: the slowest reply takes one or two seconds on a busy machine
 
 
 def wait_until(holds):
-    """For what nobody tells of: asks again and again, and fails if it never holds."""
+    """Polls `holds` for a state that no message reports. Returns its first true result; fails after HANG seconds."""
     gives_up = time.monotonic() + HANG
     while not (it := holds()):
         assert time.monotonic() < gives_up, "never"
@@ -29,7 +29,7 @@ def wait_until(holds):
 
 
 class Simulator:
-    """`panel`: the port asked for; 0: any; None: the usual one."""
+    """`panel`: the port to request. 0: any free port. None: the default port."""
 
     def __init__(self, *arguments, panel=0):
         self._directory = tempfile.TemporaryDirectory()
@@ -56,7 +56,7 @@ class Simulator:
         self.process.stdout.close()
 
     def start_again(self, *others):
-        """With what it was started with before, or with others."""
+        """Starts the program with the previous arguments, or with `others`."""
         self._arguments = others or self._arguments
         self._start(self.port)
 
@@ -81,7 +81,7 @@ def crc(data):
 
 
 class Master:
-    """Modbus RTU and DCON, over TCP."""
+    """A master for Modbus RTU and DCON over TCP."""
 
     def __init__(self, port):
         self._socket = socket.create_connection(("127.0.0.1", port), timeout=HANG)
@@ -94,7 +94,7 @@ class Master:
         self._socket.sendall(data)
 
     def ask(self, request, size):
-        """The PDU of an answer of `size` bytes, CRC included."""
+        """Returns the PDU of a reply of `size` bytes, which include the address and the CRC."""
         data = bytes.fromhex(request)
         self._socket.sendall(data + crc(data))
         answer = self._read(size)
@@ -110,7 +110,7 @@ class Master:
         return answer
 
     def say(self, command):
-        """DCON: the answer without its CR."""
+        """Sends a DCON command and returns the reply without its CR."""
         self._socket.sendall(command.encode() + b"\r")
         answer = b""
         while not answer.endswith(b"\r"):
@@ -126,7 +126,7 @@ class Master:
 
 @contextlib.contextmanager
 def all_the_while(do):
-    """Does it again and again as long as the block lasts."""
+    """Calls `do` repeatedly in a thread while the block runs."""
     over = threading.Event()
 
     def repeat():

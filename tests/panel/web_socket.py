@@ -1,4 +1,4 @@
-"""A WebSocket as a page opens it, and as no page would: bytes can be sent as they are."""
+"""A WebSocket as a page opens it. It can also send raw bytes, which no page can."""
 
 import base64
 import json
@@ -10,7 +10,7 @@ from simulator import HANG
 
 
 def open_socket(port, receives=None):
-    """`receives`: bytes that it has room for, less than it usually has."""
+    """`receives`: size of the receive buffer in bytes, smaller than the default."""
     connection = socket.socket()
     connection.settimeout(HANG)
     if receives:
@@ -36,7 +36,7 @@ def upgrade(port, origin="ours", headers=(), **others):
 
 
 def all_of(connection):
-    """What comes until the other side closes."""
+    """Returns all bytes until the other side closes the connection."""
     answer = b""
     try:
         while piece := connection.recv(65536):
@@ -57,7 +57,7 @@ def status(answer):
 
 
 class Page:
-    """The other end of /live."""
+    """The client side of /live."""
 
     def __init__(self, port, receives=None):
         self.closed_with = None
@@ -73,7 +73,7 @@ class Page:
         self.connection.close()
 
     def say(self, command, number=1, **more):
-        """Without waiting for the reply."""
+        """Sends a command without waiting for the reply."""
         self.send(json.dumps({"id": number, "do": command, **more}))
 
     def send(self, text, opcode=1):
@@ -82,11 +82,11 @@ class Page:
         self.connection.sendall(bytes([0x80 | opcode]) + size + bytes(4) + data)
 
     def show_life(self, data=b""):
-        """As a browser does when it is asked, or without that: who does neither for 20 s is let go."""
+        """Sends a pong, as a browser does after a ping. The server closes a connection that sends nothing for 20 s."""
         self.send(data, opcode=10)
 
     def next(self):
-        """The next message; None: it was closed."""
+        """Returns the next message, or None if the connection was closed."""
         while True:
             head = self._stream.read(2)
             if len(head) < 2:
@@ -106,7 +106,7 @@ class Page:
                 return json.loads(data)
 
     def until(self, holds):
-        """The first message of which that is true."""
+        """Returns the first message for which `holds` is true."""
         while (message := self.next()) is not None:
             if holds(message):
                 return message

@@ -1,4 +1,4 @@
-"""A browser, driven over the WebDriver protocol."""
+"""Controls a browser over the WebDriver protocol."""
 
 import base64
 import json
@@ -19,7 +19,7 @@ KEYS = {"Tab": "\ue004", "Enter": "\ue007", "Space": " ", "Shift": "\ue008", "Al
 
 
 class Browser:
-    """Chromium without a screen. One object at a time may be in use by a thread."""
+    """Chromium without a display. Only one thread at a time may use an object."""
 
     def __init__(self, driver="chromedriver", browser="/usr/bin/chromium"):
         self._profile = tempfile.TemporaryDirectory(ignore_cleanup_errors=True)
@@ -38,14 +38,14 @@ class Browser:
             f"--user-data-dir={self._profile.name}",
         ]
         if os.geteuid() == 0:
-            arguments.append("--no-sandbox")  # root cannot have one
+            arguments.append("--no-sandbox")  # the sandbox does not work for root
         options = {
             "goog:chromeOptions": {"args": arguments, "binary": browser},
             "goog:loggingPrefs": {"browser": "ALL"},
         }
         session = self._post("", {"capabilities": {"alwaysMatch": options}})
         self._base += "/" + session["sessionId"]
-        self._post("/timeouts", {"script": 1000 * (HANG + 10)})  # `until` gives up by itself
+        self._post("/timeouts", {"script": 1000 * (HANG + 10)})  # `until` has its own timeout
 
     def close(self):
         try:
@@ -74,11 +74,11 @@ class Browser:
         self._post("/url", {"url": address})
 
     def run(self, script, *arguments):
-        """What `script`, the body of a function, returns."""
+        """Runs `script` as the body of a function and returns its result."""
         return self._post("/execute/sync", {"script": script, "args": list(arguments)})
 
     def promised(self, script, *arguments):
-        """Likewise, of an async function's."""
+        """Runs `script` as the body of an async function and returns its result."""
         text = (
             "const done = arguments[arguments.length - 1];"
             f"(async () => {{ {script} }})().then(done, (error) => done('error: ' + error));"
@@ -88,7 +88,7 @@ class Browser:
         return value
 
     def until(self, condition, *arguments):
-        """Looks at the page again and again until the expression `condition` is true, and fails if it never is."""
+        """Evaluates the expression `condition` in the page until it is true. Fails after HANG seconds."""
         script = f"""
             const given = arguments;
             const holds = () => {{ try {{ return ({condition}); }} catch (error) {{ return false; }} }};
@@ -110,7 +110,7 @@ class Browser:
         self._post(f"/element/{self.find(selector)}/value", {"text": text})
 
     def pointer(self, *actions):
-        """Each is down, up, or a selector to move to."""
+        """Each action is "down", "up", or the selector of an element to move to."""
         moves = [
             {"type": f"pointer{action.capitalize()}", "button": 0}
             if action in ("down", "up")
@@ -120,7 +120,7 @@ class Browser:
         self._post("/actions", {"actions": [{"type": "pointer", "id": "mouse", "actions": moves}]})
 
     def drag(self, selector, pixels):
-        """From the middle of it to the right."""
+        """Drags from the middle of the element to the right."""
         origin = {ELEMENT: self.find(selector)}
         self._post("/actions", {"actions": [{"type": "pointer", "id": "mouse", "actions": [
             {"type": "pointerMove", "x": 0, "y": 0, "origin": origin},
@@ -130,12 +130,13 @@ class Browser:
         ]}]})
 
     def touch(self, kind, *at):
-        """`kind`: start, move, end or cancel; `at`: x and y in the window, of the first two."""
+        """`kind`: start, move, end or cancel. `at`: x and y in the window, for start and move."""
         points = [{"x": at[0], "y": at[1]}] if at else []
         self.devtools("Input.dispatchTouchEvent", type=f"touch{kind.capitalize()}", touchPoints=points)
 
     def key(self, *actions):
-        """Each is a name of KEYS, pressed and let go, or one behind + or -."""
+        """Each action is a name from KEYS, which presses and releases the key. A prefix + only presses it, - only
+        releases it."""
         moves = []
         for action in actions:
             if action[0] != "-":
@@ -153,18 +154,18 @@ class Browser:
         )
 
     def prefers(self, **features):
-        """Such as color_scheme="dark"; all others are as usual."""
+        """Sets media features, for example color_scheme="dark". All others get their defaults."""
         media = [{"name": "prefers-" + name.replace("_", "-"), "value": value} for name, value in features.items()]
         self.devtools("Emulation.setEmulatedMedia", features=media)
 
     def complaints(self):
-        """What the page has complained of since the last time, but that nobody was there."""
+        """Returns the errors that the page has logged since the last call, except failed connections to the server."""
         nobody = ("ERR_CONNECTION_REFUSED", "ERR_CONNECTION_RESET", "closed before the connection is established")
         said = self._post("/se/log", {"type": "browser"})
         return [each["message"] for each in said if not any(text in each["message"] for text in nobody)]
 
     def violations(self):
-        """What axe-core says against the page: the rule, what is wrong, and the first elements concerned."""
+        """Returns the violations that axe-core finds in the page: the rule, the problem, and the first elements."""
         self.run(AXE.read_text(encoding="utf-8") + "; window.axe = axe;")
         found = self.promised("""
             const rules = ["wcag2a", "wcag2aa", "wcag21a", "wcag21aa", "wcag22aa", "best-practice"];
