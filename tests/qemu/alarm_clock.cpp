@@ -12,7 +12,7 @@ namespace {
 
 using std::chrono::nanoseconds;
 
-// GPTM3 is the alarm; the image uses the others.
+// GPTM3 is the alarm timer. The image uses the other timers.
 constexpr std::uint32_t kTimers = 0x4003'0000;
 constexpr std::uint32_t kTimerSize = 0x1000;
 constexpr std::uint32_t kTimerCount = 4;
@@ -27,39 +27,40 @@ constexpr std::uint32_t kInterval = 0x28;
 constexpr std::uint32_t kTimeout = 1;
 
 constexpr std::uint32_t kAlarmInterrupt = 35;
-constexpr std::uint32_t kSetEnable = 0xE000'E104;  // of interrupts from 32 on
+constexpr std::uint32_t kSetEnable = 0xE000'E104;  // for interrupts from 32 on
 constexpr std::uint32_t kVectorTableOffset = 0xE000'ED08;
 constexpr std::uint32_t kExceptions = 16;
-/// As many vectors as an image has: 24 interrupts.
+/// The number of vectors in an image: 16 exceptions and 24 interrupts.
 constexpr std::uint32_t kVectors = kExceptions + 24;
 
-// RAM between what an image keeps at its bottom and the stack at its top. The emulator translates anew what
-// is written near, so what the rig writes is kept away from code.
+// RAM between the data of an image at the bottom and the stack at the top. The emulator retranslates code if
+// data near it is written, so the data that the test bench writes is far from code.
 constexpr std::uint32_t kTable = 0x2000'8000;
 constexpr std::uint32_t kCode = 0x2000'9000;
 constexpr std::uint32_t kOrders = 0x2000'A000;
 constexpr std::uint32_t kThumb = 1;
 
-/// The orders to the interrupt's code, a word each.
+/// Offsets of the parameters of the interrupt code, one word each.
 constexpr std::uint32_t kNextAlarm = 0;  // clocks
-constexpr std::uint32_t kEdges = 4;      // so many alarms make an edge each and do not stop the machine
-constexpr std::uint32_t kEdgePin = 8;    // mask
+constexpr std::uint32_t kEdges = 4;    // number of alarms that each make an edge and do not stop the machine
+constexpr std::uint32_t kEdgePin = 8;  // mask
 constexpr std::uint32_t kEdgeDirection = 12;
 constexpr std::uint32_t kEdgeData = 16;
-constexpr std::uint32_t kHalt = 20;  // not 0: behind the gate the machine halts
-constexpr std::uint32_t kLeft = 24;  // clocks, behind the piece of the time that is under way
-/// What the interrupt tells is how far behind this it loads a byte at the gate.
+constexpr std::uint32_t kHalt = 20;  // if not 0, the machine halts after the gate
+constexpr std::uint32_t kLeft = 24;  // remaining clocks after the current part of the time
+/// The interrupt code reports its state as the distance from this address to the address of the byte that it
+/// loads at the gate.
 constexpr std::uint32_t kTold = 0x2000'8000;
 
 constexpr std::uint32_t kReceiverEmpty = 1U << 4U;
-/// The pins are told above the UART's flags.
+/// The pin levels are reported above the UART flags.
 constexpr unsigned kPins = 8;
 static_assert(board::kDriverEnable.mask() != board::kStatusLed.mask());
 
 constexpr std::uint32_t kUartFlags = 0x4000'C018;
 
 constexpr std::uint32_t kTickCounter = 0xE000'E018;
-/// From the alarm to its interrupt's end: 29 instructions.
+/// From the alarm to the end of its interrupt: 29 instructions.
 constexpr nanoseconds kInterruptTakes{480};
 constexpr nanoseconds kAtLeast{2000};
 
@@ -69,7 +70,7 @@ constexpr std::array<std::uint16_t, 64> kHandler{
 constexpr std::uint32_t kGateInHandler = 0x48;
 static_assert(kCode + kGateInHandler == Emulator::kGate);
 
-/// The interrupt's code and its literals.
+/// Returns the interrupt code and its literals.
 std::vector<std::uint8_t> code() {
   std::vector<std::uint8_t> bytes;
   for (const std::uint16_t instruction : kHandler) {
@@ -99,7 +100,7 @@ void AlarmClock::set_up() {
   bus.write(kCode, code());
   write(kVectorTableOffset, kTable);
   for (std::uint32_t timer = kTimers; timer < kTimers + kTimerCount * kTimerSize; timer += kTimerSize) {
-    // The emulated timers know no reset.
+    // A reset does not affect the emulated timers.
     write(timer + kControl, 0);
     write(timer + kInterruptMask, 0);
     write(timer + kInterruptClear, kTimeout);
@@ -112,7 +113,8 @@ void AlarmClock::set_up() {
 }
 
 std::uint32_t AlarmClock::clocks(nanoseconds time) {
-  // The processor runs on the PLL's 200 MHz, divided by what the image sets, and by 16 before.
+  // The processor runs on the 200 MHz of the PLL: divided by 16 after reset, then by the divider that the
+  // image sets.
   constexpr std::uint32_t kDivider = 16;
   constexpr std::int64_t kPllClock = 5;
   const std::int64_t period = kPllClock * (at_first_ ? kDivider : board::kClock.divider);
@@ -120,7 +122,7 @@ std::uint32_t AlarmClock::clocks(nanoseconds time) {
 }
 
 void AlarmClock::run_for(nanoseconds time) {
-  // The tick is not doubled before it has been seen; there has been none so early.
+  // The first alarm is not divided into parts (alarm_interrupt.inc), so it must end before the first tick.
   constexpr std::chrono::milliseconds kBeforeTicks{1};
   if (at_first_ && time > 2 * kBeforeTicks) {
     run_for(kBeforeTicks);
@@ -133,7 +135,7 @@ void AlarmClock::run_for(nanoseconds time) {
 nanoseconds AlarmClock::make_edges(Pin pin, std::uint32_t edges) {
   constexpr nanoseconds kEach{4'000};
   constexpr std::uint32_t kDirection = 0x400;
-  constexpr std::uint32_t kAtOnce = 200'000;  // a second, which no watchdog minds
+  constexpr std::uint32_t kAtOnce = 200'000;  // one second, which does not trigger the watchdog
   const nanoseconds time = kEach * (std::int64_t{edges} + 1);
   while (edges != 0) {
     const std::uint32_t now = edges < kAtOnce ? edges : kAtOnce;
@@ -156,7 +158,7 @@ void AlarmClock::run(std::uint32_t clocks, const std::string& orders) {
 
 void AlarmClock::begin_to_run(std::uint32_t clocks, const std::string& orders) {
   std::string commands = orders;
-  if (at_first_ || ordered_ != clocks) {  // a byte takes as long as the one before
+  if (at_first_ || ordered_ != clocks) {  // a byte takes as long as the previous one
     commands += QtestClient::write_command(kOrders + kNextAlarm, clocks);
     ordered_ = clocks;
   }
@@ -183,10 +185,10 @@ void AlarmClock::go_on() {
   }
 }
 
-/// False where it has stopped in front of a store.
+/// Returns false if the machine has stopped before a watched store.
 bool AlarmClock::wait_for_alarm() {
-  // An interrupt storm of 1.6 s takes the emulator seconds, and on a busy machine more than `kHang`;
-  // meanwhile it answers.
+  // The emulator can take seconds for an interrupt storm of 1.6 s, and more than `kHang` on a busy machine.
+  // It replies to reads meanwhile.
   constexpr int kMostQuestions = 5;
   for (int asked = 0; !machine_.gdb().has_packet() && !machine_.gate().has_bytes();) {
     if (!wait_for_any({&machine_.gdb().socket(), &machine_.gate()})) {
@@ -213,7 +215,8 @@ bool AlarmClock::wait_for_alarm() {
   throw Halted("the image has stopped running (" + packet + ")");
 }
 
-/// Asked by the program itself, since the emulator could not halt a processor that waits at the gate.
+/// The interrupt code itself requests the halt, because the emulator cannot halt a processor that waits at
+/// the gate.
 void AlarmClock::halt() {
   if (!at_gate_) {
     return;
@@ -239,8 +242,8 @@ void AlarmClock::watch_stores(std::uint32_t address, std::uint32_t size) {
   }
 }
 
-/// Where the emulator counts instructions it stops in front of what is watched, and again each time that it
-/// is to go on: so that one instruction is carried out while nothing is watched.
+/// While the emulator counts instructions, it stops before a watched store, and stops there again when it
+/// continues. Therefore it executes one instruction with the watchpoint removed.
 bool AlarmClock::run_to_store(nanoseconds time) {
   if (at_store_) {
     GdbClient& gdb = machine_.gdb();

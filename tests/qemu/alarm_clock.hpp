@@ -1,4 +1,4 @@
-// The emulated machine's time: it runs for as long as it is told to, and then stands still.
+// Controls the time of the emulated machine: it runs for a given time and then stands still.
 #pragma once
 
 #include <chrono>
@@ -11,46 +11,48 @@
 
 namespace ex9000::rig {
 
-/// The machine has halted by itself: the image is about to be reset, by itself or by its watchdog.
+/// The machine has halted: its image or its watchdog is about to reset it.
 class Halted : public std::runtime_error {
  public:
   using std::runtime_error::runtime_error;
 };
 
-/// What happens in the machine depends on nothing but what is done to it while it stands still. Only where
-/// the emulator lets time pass for a processor that has just fallen asleep, it may at times, by the host's
-/// doing, forget the last instructions: of a hundred transcripts one ends up to 2 us apart from the run
-/// before, where inputs are pulsed up to 7 us.
+/// The behaviour of the machine depends only on what is done to it while it stands still. There is one
+/// exception: when the emulator advances time for a processor that has just gone to sleep, it can lose the
+/// last instructions, depending on the host. Of a hundred transcripts, one then ends up to 2 us later or
+/// earlier than in the previous run, or up to 7 us with input pulses.
 ///
-/// GPTM3, which no image uses, interrupts when the time is over, and the interrupt's code, in RAM that no
-/// image uses, comes to the gate (gate.cpp), where its processor waits. The image itself and its vectors stay
-/// as they are; a copy of these, with one more entry, takes their place. Its interrupt waits for others and
-/// holds them up, as the image's own do, for 1 us each time the machine stands still; on the stack it takes
-/// as much as they.
+/// GPTM3, which no image uses, interrupts when the time has elapsed. Its interrupt code, in RAM that no image
+/// uses, reaches the gate (gate.cpp), where the processor waits. The image and its vectors are not changed: a
+/// copy of the vectors with one more entry replaces them. Like the interrupts of the image, it cannot preempt
+/// others and they cannot preempt it. It delays them by 1 us each time the machine stops, and uses as much
+/// stack as they do.
 ///
-/// Whatever is not as it should be throws std::runtime_error, and Halted if the image is about to be reset.
+/// All functions throw std::runtime_error on an unexpected state, and Halted if the machine is about to be
+/// reset.
 class AlarmClock {
  public:
   explicit AlarmClock(Emulator& machine) : machine_(machine) {}
 
-  /// Behind every reset, before the first instruction.
+  /// Prepares the alarm. Call it after each reset, before the first instruction.
   void set_up();
-  /// Runs the machine. Less than 3 us takes 3 us.
+  /// Runs the machine for `time`, but at least for 3 us.
   void run_for(std::chrono::nanoseconds time);
-  /// Gives an input `edges` edges, one about each 4 us, and runs the machine meanwhile. Returns how long.
+  /// Runs the machine and gives an input `edges` edges, one about every 4 us. Returns the duration.
   std::chrono::nanoseconds make_edges(Pin pin, std::uint32_t edges);
 
-  /// From now on the machine stops in front of every store to these bytes of the bus as well: then only
-  /// `run_to_store` is left.
+  /// From now on the machine also stops before each store to these bytes of the bus. After this call only
+  /// `run_to_store` may run the machine.
   void watch_stores(std::uint32_t address, std::uint32_t size);
-  /// Runs the machine until there is one, for as long as the first call says at most. Whether there was.
+  /// Runs the machine until the next watched store, at most for the `time` of the first call. Returns whether
+  /// the machine has stopped before a store.
   bool run_to_store(std::chrono::nanoseconds time);
 
-  /// Halts the emulator itself, as for a reset: until then it only waits for its processor. Then the machine
-  /// may be reset or run again.
+  /// Halts the emulator, for example for a reset. Until then the emulator only waits for its processor. After
+  /// this call the machine can be reset or can run again.
   void halt();
 
-  // --- how it was when it came to a stop ---
+  // --- state at the last stop ---
 
   [[nodiscard]] bool receiver_empty() const;
   [[nodiscard]] bool driver_on() const;
@@ -64,13 +66,13 @@ class AlarmClock {
   bool wait_for_alarm();
 
   Emulator& machine_;
-  bool at_first_ = true;       ///< no alarm has gone off yet
-  bool at_gate_ = false;       ///< it waits there
-  const char* go_on_ = "c";    ///< what it waits for else
-  bool at_store_ = false;      ///< it has stopped in front of one, and the alarm is still to come
-  std::string watched_;        ///< as the debugger names it
+  bool at_first_ = true;       ///< no alarm has occurred since the reset
+  bool at_gate_ = false;       ///< the processor waits at the gate
+  const char* go_on_ = "c";    ///< the packet that continues it otherwise
+  bool at_store_ = false;      ///< the machine has stopped before a store, and the alarm has not occurred yet
+  std::string watched_;        ///< the range in the debugger's format
   std::uint32_t ordered_ = 0;  ///< the time until the next alarm, in clocks
-  std::uint32_t told_ = 0;     ///< by the interrupt's code
+  std::uint32_t told_ = 0;     ///< the last report of the interrupt code
 };
 
 }  // namespace ex9000::rig

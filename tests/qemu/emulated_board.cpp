@@ -51,7 +51,7 @@ void EmulatedBoard::kill() {
   emulator_.reset();
 }
 
-/// What comes up in a real one is nothing an image may count on.
+/// Fills RAM with noise, because an image must not depend on the content of RAM after power-on.
 void EmulatedBoard::fill_ram() {
   constexpr std::uint32_t kRam = 0x2000'0000;
   constexpr std::uint32_t kRamSize = 0x1'0000;

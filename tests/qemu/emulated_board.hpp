@@ -1,4 +1,4 @@
-// A module's board: microcontroller with its image, EEPROM and pins.
+// The board of a module: the microcontroller with its image, the EEPROM and the pins.
 #pragma once
 
 #include <array>
@@ -13,7 +13,7 @@
 
 namespace ex9000::rig {
 
-/// With the supply off at first. Calls throw std::runtime_error where the emulator fails.
+/// The supply is off at first. All functions throw std::runtime_error if the emulator fails.
 class EmulatedBoard {
  public:
   EmulatedBoard(const EmulatedBoard&) = delete;
@@ -21,37 +21,39 @@ class EmulatedBoard {
 
   [[nodiscard]] const Model& model() const { return model_; }
   [[nodiscard]] bool powered() const { return powered_; }
-  /// INIT* tied to GND, or released.
+  /// Connects INIT* to GND, or disconnects it.
   void set_init(bool asserted);
 
-  /// Bit n is channel n.
+  /// Returns the output levels. Bit n is channel n.
   [[nodiscard]] std::uint16_t outputs();
   [[nodiscard]] bool led_lit();
-  /// Bits per second of the UART as the image has set it up; 0 where it is off.
+  /// Returns the baud rate of the UART as the image has configured it, in bits per second, or 0 if the UART
+  /// is off.
   [[nodiscard]] std::uint32_t baud();
 
-  /// Only while powered.
+  /// Only while the board is powered.
   Emulator& emulator() { return *emulator_; }
-  /// What the EEPROM holds; its file.
+  /// Returns the content of the EEPROM, from its file.
   [[nodiscard]] std::string memory() const { return system::bytes_of_file(directory_ / "memory"); }
   void set_memory(const std::string& bytes) { system::write_file(directory_ / "memory", bytes); }
 
  protected:
-  /// The EEPROM holds `settings`, or nothing where they are null.
+  /// Stores `settings` in the EEPROM. If the pointer is null, erases the EEPROM, which means factory settings.
   EmulatedBoard(const Model& model, const Settings* settings);
   ~EmulatedBoard() = default;
 
-  /// When it comes on the machine is halted before its first instruction, and nothing but the EEPROM is left
-  /// of what was. Making an emulator takes most of the time of a short test, so the same one comes on again:
-  /// halted and reset, by which it reads the EEPROM's file again, with noise in RAM.
+  /// Switches the supply. When it goes on, the machine is halted before its first instruction, and only the
+  /// EEPROM has kept its content. An emulator takes most of the time of a short test to start, so the same
+  /// emulator is halted and reset: it reads the EEPROM's file again, and RAM is filled with noise.
   void supply(bool on);
-  /// Off as by SIGKILL: the next `supply` makes another emulator.
+  /// Switches the supply off and kills the emulator with SIGKILL. The next `supply` starts a new emulator.
   void kill();
-  /// By the reset pin, while halted; it stays halted.
+  /// Resets the machine with the reset pin. The machine must be halted and stays halted.
   void pull_reset();
-  /// Another board with supply just on: INIT* released, inputs off, the EEPROM as the constructor has it.
+  /// Makes the board like a new one whose supply has just gone on: INIT* is disconnected, inputs are off, and
+  /// the EEPROM is as after the constructor.
   void renew(const Settings* settings);
-  /// Level of an input channel that the model has.
+  /// Sets the level of an input channel. The model must have that channel.
   void set_level(unsigned channel, bool level);
   [[nodiscard]] bool level(unsigned channel) const { return levels_.at(channel); }
 
@@ -68,7 +70,7 @@ class EmulatedBoard {
   std::array<bool, kMaxInputs> levels_{};
 };
 
-/// The ELF file of this model.
+/// Returns the path of the ELF file of this model.
 std::string image_of(const Model& model);
 
 }  // namespace ex9000::rig

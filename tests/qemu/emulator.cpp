@@ -8,7 +8,7 @@ namespace ex9000::rig {
 namespace {
 
 std::vector<std::string> command_of(const std::string& image, const std::string& memory) {
-  return {"setpriv",  // whatever ends the test ends the emulator
+  return {"setpriv",  // the emulator ends when the test ends
           "--pdeathsig",
           "KILL",
           "qemu-system-arm",
@@ -29,7 +29,7 @@ std::vector<std::string> command_of(const std::string& image, const std::string&
           "-serial",
           "chardev:uart",
           "-chardev",
-          "socket,id=qmp,path=qmp,mux=on",  // or a thread of its own would be woken at each tick
+          "socket,id=qmp,path=qmp,mux=on",  // without a mux, each tick would wake a separate thread
           "-mon",
           "chardev=qmp,mode=control",
           "-qtest",
@@ -42,7 +42,7 @@ std::vector<std::string> command_of(const std::string& image, const std::string&
           "at24c-eeprom,bus=i2c,address=0x50,rom-size=8192,drive=memory",
           "-icount",
           "shift=4,sleep=off",
-          "-semihosting-config",  // how AlarmClock's interrupt asks the debugger for a stop
+          "-semihosting-config",  // AlarmClock's interrupt code uses it to ask the debugger for a stop
           "enable=on,target=gdb",
           "-plugin",
           EX9000_GATE ",socket=gate,address=" + std::to_string(Emulator::kGate),
@@ -69,17 +69,17 @@ Emulator::Emulator(const std::string& image, const std::string& memory) {
   gate_.emplace(gate.accept());
 }
 
-/// Told to halt where there would be a reset, the emulator does so even if it is asked for one. And its UARTs
-/// have no reset: what matters of it is made up for.
+/// With reboot=shutdown the emulator halts even if a reset is requested, so this function changes the action
+/// for a moment. The emulated UARTs ignore a reset, so it restores the registers that matter.
 void Emulator::reset() {
   qmp_->execute("set-action", "return", R"({"reboot": "reset"})");
   qmp_->execute("system_reset", "RESET");
   qmp_->execute("set-action", "return", R"({"reboot": "shutdown"})");
   bus_->write(kUart0 + kUartInterruptMask, 0);
   bus_->write(kUart0 + kUartControl, kUartControlAtReset);
-  bus_->write(kUart0 + kUartLineControl, kUartFifosOn);  // a change of it empties them
+  bus_->write(kUart0 + kUartLineControl, kUartFifosOn);  // a change of this bit empties the FIFOs
   bus_->write(kUart0 + kUartLineControl, 0);
-  bus_->read(kUart0);  // a byte that nobody has taken would leave its flag and its interrupt
+  bus_->read(kUart0);  // an unread byte would keep its flag and its interrupt
 }
 
 }  // namespace ex9000::rig

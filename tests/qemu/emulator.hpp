@@ -1,4 +1,4 @@
-// The reference board in QEMU, in a time of its own.
+// The reference board in QEMU, in emulated time.
 #pragma once
 
 #include <optional>
@@ -14,34 +14,35 @@
 
 namespace ex9000::rig {
 
-/// One microcontroller from power-on to power-off, with an EEPROM behind it. Made halted before its first
-/// instruction, so that its pins can be given their levels. Destroyed as by a power cut.
+/// One microcontroller with an EEPROM, from power-on to power-off. The constructor halts it before its first
+/// instruction, so that the caller can set the pin levels. The destructor acts like a power cut.
 ///
-/// Where the image resets itself, or the watchdog does, the machine halts instead, for the same reason.
+/// If the image or the watchdog requests a reset, the machine halts instead, for the same reason.
 ///
-/// The thread that makes one stays on one processor of the host from then on: see processor.hpp.
+/// The thread that creates an emulator stays on one processor of the host from then on, see processor.hpp.
 ///
-/// An instruction takes 16 ns. While the processor sleeps, time jumps to what it waits for. AlarmClock runs
-/// the machine.
+/// An instruction takes 16 ns. While the processor sleeps, time jumps to the next event. AlarmClock runs the
+/// machine.
 class Emulator {
  public:
-  /// The address of the instruction at which it waits to be let go on.
+  /// The address of the instruction at which the processor waits until it may continue.
   static constexpr std::uint32_t kGate = 0x2000'9048;
 
-  /// Runs the ELF file `image`; `memory` is the file that holds the EEPROM's 8192 bytes. Throws
-  /// std::runtime_error where it does not come up.
+  /// Runs the ELF file `image`. `memory` is the file with the 8192 bytes of the EEPROM. Throws
+  /// std::runtime_error if the emulator does not start.
   Emulator(const std::string& image, const std::string& memory);
 
-  /// As the reset pin does, while halted; it stays halted. Inputs read 0 after it.
+  /// Resets the machine like the reset pin. The machine must be halted and stays halted. Inputs read 0 after
+  /// the reset.
   void reset();
 
   QmpClient& qmp() { return *qmp_; }
   QtestClient& bus() { return *bus_; }
   GdbClient& gdb() { return *gdb_; }
-  /// Where its processor waits at `kGate`: see gate.cpp.
+  /// The socket of the gate, where the processor waits at `kGate`. See gate.cpp.
   UnixSocket& gate() { return *gate_; }
-  /// UART0, without regard to rates; what it sends has to be taken now and then, for a full socket (278
-  /// bytes) halts the machine.
+  /// The line of UART0, at any baud rate. The caller must read regularly: a full socket (278 bytes) halts the
+  /// machine.
   UnixSocket& uart() { return *uart_; }
   [[nodiscard]] int pid() const { return process_->pid(); }
 

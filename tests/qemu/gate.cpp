@@ -1,12 +1,12 @@
-// A plugin of the emulator, for AlarmClock: where the program loads a byte with one certain instruction, the
-// processor waits until somebody outside lets it go on. Nothing else waits, and no time passes: to halt the
-// whole machine instead, as a debugger does, takes ten times as long.
+// A plugin of the emulator, for AlarmClock. At one specified instruction, which loads a byte, the processor
+// waits until the other end of a socket lets it continue. Only the processor waits, and no emulated time
+// passes. To halt the whole machine as a debugger does takes ten times as long.
 //
-//   -plugin gate.so,address=INSTRUCTION,socket=PATH
+//     -plugin gate.so,address=INSTRUCTION,socket=PATH
 //
-// Each time it sends the address from which the byte is loaded, by which the program can say something, and
-// waits for a byte. What it needs of the emulator is declared here, since Debian has no package with its
-// header: QEMU 7.2, include/qemu/qemu-plugin.h.
+// The plugin sends the address from which the byte is loaded, which the program uses to report its state.
+// Then it waits for a byte. This file declares the required functions of the emulator, because Debian has no
+// package with the header: QEMU 7.2, include/qemu/qemu-plugin.h.
 #include <sys/socket.h>
 #include <sys/un.h>
 #include <unistd.h>
@@ -42,7 +42,7 @@ const int qemu_plugin_version = 1;
 namespace {
 
 constexpr int kNoRegisters = 0;
-constexpr int kLoads = 3;  // and stores: QEMU 7.2 calls nobody who asks for loads alone
+constexpr int kLoads = 3;  // and stores: QEMU 7.2 does not call plugins that register for loads alone
 
 int the_socket = -1;
 std::uint64_t the_instruction = 0;
@@ -51,7 +51,7 @@ void wait(unsigned /*processor*/, std::uint32_t /*what*/, std::uint64_t address,
   const auto said = static_cast<std::uint32_t>(address);
   char go_on = 0;
   if (write(the_socket, &said, sizeof said) != sizeof said || read(the_socket, &go_on, 1) != 1) {
-    _exit(1);  // nobody is there any more
+    _exit(1);  // the other end has closed the socket
   }
 }
 

@@ -1,4 +1,4 @@
-// The emulator's debug port.
+// A client of the emulator's debug port.
 #pragma once
 
 #include <string>
@@ -8,25 +8,25 @@
 
 namespace ex9000::rig {
 
-/// GDB's remote protocol, as far as a test bench needs it. Nothing is acknowledged, which QEMU takes for
-/// that. Nothing may be sent while the machine runs: it would stop wherever it is.
+/// The parts of GDB's remote protocol that the test bench requires. The client acknowledges no packet, which
+/// QEMU accepts. Do not send while the machine runs: it would stop immediately.
 class GdbClient {
  public:
   explicit GdbClient(UnixSocket socket) : socket_(std::move(socket)) {}
 
-  /// `packet` in its frame.
+  /// Returns `packet` with its frame.
   static std::string framed(const std::string& packet);
-  /// What `framed` has made, one behind the other in one piece: the last of them may set the machine going.
+  /// Sends packets from `framed`, concatenated, in one piece. The last one may start the machine.
   void send(const std::string& packets) { socket_.send(packets); }
-  /// The next packet, without its frame. Throws std::runtime_error if none comes for `kHang`.
+  /// Returns the next packet, without its frame. Throws std::runtime_error if none arrives within `kHang`.
   std::string receive();
-  /// Takes what has come; whether a packet is there.
+  /// Reads the received bytes without blocking. Returns whether a complete packet is there.
   bool has_packet();
   [[nodiscard]] const UnixSocket& socket() const { return socket_; }
 
  private:
   UnixSocket socket_;
-  std::string received_;  ///< behind the last packet
+  std::string received_;  ///< bytes after the last packet
 };
 
 }  // namespace ex9000::rig

@@ -13,10 +13,10 @@ using std::chrono::milliseconds;
 using std::chrono::nanoseconds;
 
 constexpr milliseconds kComingUp{100};
-/// The image has dealt with a byte, and shown it at its pins, in less.
+/// The image processes a byte and updates its pins in less time.
 constexpr milliseconds kSettling{1};
 constexpr milliseconds kSlice{2};
-/// The longest phase of a flashing LED, and a bit.
+/// Longer than the longest phase of a flashing LED.
 constexpr milliseconds kFlashing{300};
 constexpr milliseconds kLook{10};
 

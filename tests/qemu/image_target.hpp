@@ -1,4 +1,4 @@
-// The firmware image on the emulated board as a transcript's target.
+// A transcript target: the firmware image on the emulated board.
 #pragma once
 
 #include <chrono>
@@ -9,8 +9,8 @@
 
 namespace ex9000::rig {
 
-/// May play one transcript after the other; each model has its own emulator. Time is the emulated machine's,
-/// so the host has no part in what happens.
+/// Can play several transcripts, one after another. Each model has its own emulator. Time is emulated, so the
+/// host does not affect the result.
 class ImageTarget final : public play::Target {
  public:
   void start(const Model& model, const Settings* preset) override;
@@ -28,14 +28,14 @@ class ImageTarget final : public play::Target {
   void end() override { module_->make_sure(); }
 
  private:
-  /// The module, once it has done what was sent to it.
+  /// Returns the module after it has processed everything that was sent to it.
   TimedModule& settled();
   void hear();
 
   std::map<const Model*, TimedModule> modules_;
   TimedModule* module_ = nullptr;
   std::uint32_t baud_ = 9600;
-  std::chrono::nanoseconds settled_{0};  ///< when the image has had the time for what was sent
+  std::chrono::nanoseconds settled_{0};  ///< when the image has had enough time for everything that was sent
   play::Bytes heard_;
 };
 

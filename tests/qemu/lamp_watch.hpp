@@ -1,4 +1,4 @@
-// The status LED, looked at whenever there is an occasion.
+// Checks the status LED whenever the machine stops.
 #pragma once
 
 #include <chrono>
@@ -7,20 +7,20 @@
 
 namespace ex9000::rig {
 
-/// A lamp that is lit may be about to go dark, if it flashes, and to watch it would take time that the steps
-/// around measure. So that it is lit and does not flash is believed at first, and held against what is seen
-/// later: one that begins to flash begins with its longest phase, so one that is dark before that is over was
-/// flashing all the time.
+/// Verifies later that a lit LED is on steadily and does not flash. To wait for it would take time that the
+/// surrounding steps measure. The transcript first assumes that it is on, and this class compares the
+/// assumption with later states: flashing begins with its longest phase, so an LED that is dark before that
+/// phase has elapsed was flashing all the time.
 class LampWatch {
  public:
-  /// Of what a timeout shows: 2 Hz. Flashing for another reason is faster.
+  /// The phase of the 2 Hz flashing after a timeout. Flashing for other reasons is faster.
   static constexpr std::chrono::milliseconds kPhase{250};
 
-  /// Somebody says that it is steadily on.
+  /// Assumes that the LED is steadily on.
   void believe(std::chrono::nanoseconds now) { until_ = now + kPhase; }
-  /// A reset or a power cut: nothing of what was said holds any more.
+  /// Discards the assumption after a reset or a power cut.
   void forget() { until_.reset(); }
-  /// How it is now. Throws std::runtime_error where what was believed was wrong.
+  /// Compares the current state with the assumption. Throws std::runtime_error if the assumption was wrong.
   void look(std::chrono::nanoseconds now, bool lit) {
     if (until_ && now >= *until_) {
       until_.reset();
@@ -29,7 +29,7 @@ class LampWatch {
       throw std::runtime_error("the LED was flashing when it was to be on");
     }
   }
-  /// When there is nothing left to be proved, if there is.
+  /// Returns when the assumption will be verified, or nothing if there is none.
   [[nodiscard]] std::optional<std::chrono::nanoseconds> until() const { return until_; }
 
  private:

@@ -1,4 +1,4 @@
-// A master at a module's own rate, in the module's time.
+// A master that uses the module's baud rate and the module's time.
 #pragma once
 
 #include <chrono>
@@ -8,15 +8,15 @@
 
 namespace ex9000::rig {
 
-/// Settings that make a model speak ASCII.
+/// Returns settings with the ASCII protocol.
 inline Settings ascii(const Model& model) {
   Settings settings = Settings::factory(model);
   settings.protocol = Protocol::Ascii;
   return settings;
 }
 
-/// The reply, whole: up to where the module's driver goes off. Nothing if there is none within 250 ms, which
-/// is longer than a reply may take.
+/// Sends a request and returns the complete reply, which ends when the module switches its driver enable off.
+/// Returns nothing if no reply arrives within 250 ms, which is longer than any reply takes.
 inline TimedModule::Bytes reply_of(TimedModule& module, const TimedModule::Bytes& request) {
   constexpr std::chrono::milliseconds kSilence{5};  // longer than T3.5 at 9600 baud
   constexpr std::chrono::milliseconds kLongestReply{250};
@@ -34,7 +34,7 @@ inline TimedModule::Bytes reply_of(TimedModule& module, const TimedModule::Bytes
   return reply;
 }
 
-/// DCON: the reply without its CR.
+/// Sends a DCON command and returns the reply without its CR.
 inline std::string ask(TimedModule& module, const std::string& command) {
   const std::string frame = command + "\r";
   const TimedModule::Bytes reply = reply_of(module, {frame.begin(), frame.end()});
@@ -42,7 +42,7 @@ inline std::string ask(TimedModule& module, const std::string& command) {
   return text.substr(0, text.find('\r'));
 }
 
-/// The time in which a module comes up.
+/// The maximum time that a module takes to start.
 inline constexpr std::chrono::milliseconds kComesUpWithin{100};
 
 }  // namespace ex9000::rig

@@ -1,14 +1,15 @@
-// The processor of the host that a test and its emulator run on. They take turns, and so do the emulator's
-// own threads: to wake one another across processors would take longer than all the rest.
+// Selects the host processor that a test and its emulator run on. They run alternately, and so do the threads
+// of the emulator. Waking a thread on another processor would take longer than everything else.
 #pragma once
 
 namespace ex9000::rig {
 
-/// The calling thread, and whatever it starts from here on, runs on this processor of the host, from 0.
-/// Whoever wakes another there goes on until it waits itself.
+/// Binds the calling thread, and every thread or process that it starts from now on, to this processor of the
+/// host, numbered from 0. A thread that wakes another one continues until it waits itself.
 void stay_on_processor(int processor);
 
-/// Likewise, on the one where it runs at this moment, unless one was chosen before.
+/// Binds the calling thread in the same way to the processor that it runs on now, unless it is already bound
+/// to one.
 void stay_on_one_processor();
 
 }  // namespace ex9000::rig

@@ -1,4 +1,4 @@
-// A module behind a pseudo-terminal, for masters that want a serial port.
+// Connects a module to a pseudo-terminal, for masters that require a serial port.
 #pragma once
 
 #include <exception>
@@ -10,11 +10,13 @@
 
 namespace ex9000::rig {
 
-/// A gateway for masters of Modbus RTU: takes a whole request from the terminal, plays it to the module in
-/// the module's time, and hands the whole reply back in one piece. However the host's time tears what a
-/// master writes, the module hears the same. A request ends with the first byte up to which its CRC is right.
+/// A gateway for Modbus RTU masters. It reads a whole request from the terminal, sends it to the module in
+/// the module's time, and returns the whole reply in one piece. The module receives the same bytes even if
+/// the host interrupts the master while it writes. A request ends with the first byte at which its CRC is
+/// correct.
 ///
-/// Nobody else may use the module between a request and its reply. Rates of the terminal make no difference.
+/// No other thread may use the module between a request and its reply. The baud rate of the terminal has no
+/// effect.
 class PtyBridge {
  public:
   explicit PtyBridge(TimedModule& module);
@@ -22,9 +24,9 @@ class PtyBridge {
   PtyBridge(const PtyBridge&) = delete;
   PtyBridge& operator=(const PtyBridge&) = delete;
 
-  /// The path of the master's end.
+  /// Returns the path of the master's end.
   [[nodiscard]] const std::string& tty() const { return tty_; }
-  /// Ends it, and throws what the module has thrown meanwhile.
+  /// Stops the bridge. Throws the error if the module has thrown one.
   void end();
 
  private:
@@ -33,8 +35,8 @@ class PtyBridge {
 
   TimedModule& module_;
   int fd_;
-  int held_open_ = -1;  ///< so that a master that leaves does not hang up the line
-  int over_;            ///< an event: readable when the bridge is to end
+  int held_open_ = -1;  ///< prevents a hang-up when a master disconnects
+  int over_;            ///< an event descriptor, readable when the bridge is to stop
   std::string tty_;
   std::vector<std::uint8_t> request_;
   std::exception_ptr failure_;

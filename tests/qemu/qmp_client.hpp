@@ -1,4 +1,4 @@
-// The emulator's monitor.
+// A client of the emulator's monitor.
 #pragma once
 
 #include <string>
@@ -7,17 +7,16 @@
 
 namespace ex9000::rig {
 
-/// QMP, as far as a test bench needs it.
+/// The parts of QMP that the test bench requires.
 class QmpClient {
  public:
-  /// Takes the greeting, which comes once the machine is complete.
+  /// Reads the greeting, which the emulator sends when the machine is complete.
   explicit QmpClient(UnixSocket socket);
 
-  /// Returns when the emulator has accepted the command and `event` has come that says it is carried out.
-  /// Throws std::runtime_error where it refuses.
-  /// `arguments` are a JSON object.
+  /// Returns when the emulator has accepted the command and has sent `event`, which reports its completion.
+  /// `arguments` is a JSON object. Throws std::runtime_error if the emulator rejects the command.
   void execute(const std::string& command, const std::string& event, const std::string& arguments = "{}");
-  /// Waits for this event. Throws std::runtime_error if nothing comes for `kHang`.
+  /// Waits for this event. Throws std::runtime_error if nothing arrives within `kHang`.
   void wait_for(const std::string& event);
 
  private:

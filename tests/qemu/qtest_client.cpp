@@ -19,7 +19,7 @@ std::string readl(std::uint32_t address) { return "readl " + std::to_string(addr
 
 QtestClient::QtestClient(UnixSocket socket) : socket_(std::move(socket)) {}
 
-/// `OK`, and what was asked for behind it.
+/// Reads a reply. Returns the text after `OK`; throws std::runtime_error if the reply is an error.
 std::string QtestClient::reply() {
   std::string line = socket_.receive_line();
   if (line.rfind("OK", 0) != 0) {
@@ -49,7 +49,7 @@ std::vector<std::uint32_t> QtestClient::read(const std::vector<std::uint32_t>& a
 }
 
 std::vector<std::uint8_t> QtestClient::read(std::uint32_t address, std::uint32_t size) {
-  constexpr std::size_t kLead = 3;  // blank, 0x
+  constexpr std::size_t kLead = 3;  // a space and 0x
   constexpr int kHex = 16;
   socket_.send("read " + std::to_string(address) + " " + std::to_string(size) + "\n");
   const std::string hex = reply();

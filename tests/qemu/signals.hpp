@@ -1,4 +1,4 @@
-// The module's signals at the pins of the emulated board, seen from outside the microcontroller.
+// The module's signals at the pins of the emulated board, as seen from outside the microcontroller.
 #pragma once
 
 #include <cstdint>
@@ -11,17 +11,17 @@ namespace ex9000::rig {
 
 using hal::stellaris::Pin;
 
-/// The pin of a channel; throws std::out_of_range where the board has none.
+/// Returns the pin of a channel. Throws std::out_of_range if the board has no such channel.
 Pin input_pin(unsigned channel);
 Pin output_pin(unsigned channel);
 
-/// Bus address of the registers of the pin's port.
+/// Returns the bus address of the registers of the pin's port.
 std::uint32_t port_address(Pin pin);
-/// Of the data register, where it shows this pin alone.
+/// Returns the bus address at which the data register shows only this pin.
 std::uint32_t data_address(Pin pin);
 
 bool level_of(QtestClient& bus, Pin pin);
-/// Gives an input its level, which it keeps until the next reset.
+/// Sets the level of an input, which stays until the next reset.
 void give_level(QtestClient& bus, Pin pin, bool level);
 
 }  // namespace ex9000::rig

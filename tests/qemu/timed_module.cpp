@@ -75,7 +75,7 @@ void TimedModule::pulse_input(unsigned channel, std::uint32_t count) {
 void TimedModule::run_for(nanoseconds time) { run_until(now_ + time); }
 
 void TimedModule::run_until(nanoseconds when) {
-  // Short enough that no phase of the LED is missed, and that what the module says finds room.
+  // Short enough not to miss a phase of the LED and not to fill the socket with the module's replies.
   constexpr milliseconds kAtOnce{50};
   while (powered() && now_ < when) {
     const nanoseconds time = std::min<nanoseconds>(when - now_, kAtOnce);
@@ -100,8 +100,9 @@ void TimedModule::make_sure() {
   }
 }
 
-/// An EEPROM may stretch the clock of its bus, and a real one takes milliseconds to store. The emulated one
-/// takes no time, so no image would ever be found storing. The driver waits 3 ms for a byte.
+/// A real EEPROM takes milliseconds to store, but the emulated one takes no time, so that a test could never
+/// meet an image that is storing. The EEPROM may stretch the clock of its bus, and disabling the I2C
+/// interrupt has the same effect. The driver waits 3 ms for a byte.
 void TimedModule::hold_memory(bool hold) {
   constexpr std::uint32_t kSetEnable = 0xE000'E100;
   constexpr std::uint32_t kClearEnable = 0xE000'E180;
@@ -112,8 +113,8 @@ void TimedModule::hold_memory(bool hold) {
 void TimedModule::send(const Bytes& bytes, std::uint32_t baud) {
   constexpr milliseconds kLongestHold{2};
   constexpr microseconds kSlice{200};
-  // On a line that speaks a byte takes its time, and the driver is off soon after the last one has been
-  // heard; here it has been heard at once.
+  // On a real line a byte takes time, and the driver enable goes off soon after the last byte has arrived.
+  // Here the byte arrives immediately.
   constexpr milliseconds kLongestWait{100};
   const nanoseconds gives_up = now_ + kLongestWait;
   while (speaks() && now_ < gives_up) {

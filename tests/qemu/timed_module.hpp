@@ -1,5 +1,5 @@
-// A module in a time of its own, in which everything takes as long as it takes on a real one, except what the
-// emulated board does not know: its UART sends and its EEPROM stores at once.
+// A module in emulated time. All events take as long as on a real module, with two exceptions that the
+// emulated board does not support: its UART sends and its EEPROM stores immediately.
 #pragma once
 
 #include <chrono>
@@ -14,51 +14,56 @@
 
 namespace ex9000::rig {
 
-/// Stands still between calls. The same calls have the same effects, whatever the host does; see AlarmClock.
+/// The module stands still between calls. The same calls have the same effects, independently of the host.
+/// See AlarmClock.
 class TimedModule : public EmulatedBoard {
  public:
   using Bytes = std::vector<std::uint8_t>;
 
   explicit TimedModule(const Model& model) : EmulatedBoard(model, nullptr) {}
 
-  /// Another one, see EmulatedBoard::renew, in no time.
+  /// Replaces the module by a new one, see EmulatedBoard::renew. No time passes.
   void begin_anew(const Settings* settings);
-  /// The supply, in no time.
+  /// Switches the supply. No time passes.
   void power(bool on);
-  /// Off, and its emulator killed: nothing but the EEPROM's file is left. In no time.
+  /// Switches the supply off and kills the emulator. Only the EEPROM's file stays. No time passes.
   void kill();
-  /// By the reset pin, in no time; none without power.
+  /// Resets the module with the reset pin. Does nothing without power. No time passes.
   void reset();
-  /// Level of an input channel; 100 us pass. Channels the model lacks may be set and do nothing.
+  /// Sets the level of an input channel; 100 us pass. Ignores channels that the model does not have.
   void set_input(unsigned channel, bool level);
-  /// `count` full pulses of 8 us from the present level and back.
+  /// Generates `count` complete pulses of 8 us from the present level and back.
   void pulse_input(unsigned channel, std::uint32_t count);
 
-  /// Time passes, for the image where there is power.
+  /// Lets time pass. The image runs if the module is powered.
   void run_for(std::chrono::nanoseconds time);
-  /// Time that has passed.
+  /// Returns the time that has passed.
   [[nodiscard]] std::chrono::nanoseconds now() const { return now_; }
 
-  /// From now on `run_to_store` stops it in front of every store to these bytes of the bus; nothing else runs
-  /// it any more, until it is killed.
+  /// From now on `run_to_store` stops the module before each store to these bytes of the bus. Until `kill`,
+  /// no other function may run the module.
   void watch_stores(std::uint32_t address, std::uint32_t size) { clock_->watch_stores(address, size); }
-  /// Until there is one, for as long as the first call says at most. Whether there was.
+  /// Runs until the next watched store, at most for the `time` of the first call. Returns whether there was
+  /// one.
   bool run_to_store(std::chrono::nanoseconds time) { return clock_->run_to_store(time); }
 
-  /// Runs it until it is about to be reset by its watchdog (`WATCHDOG`) or by itself (`SHUTDOWN`); then only
-  /// `reset` is left. Throws std::runtime_error if it is not within `time`.
+  /// Runs until the watchdog (`WATCHDOG`) or the image (`SHUTDOWN`) is about to reset the module. After this
+  /// call only `reset` is allowed. Throws std::runtime_error if this does not occur within `time`.
   void run_to_reset(const std::string& event, std::chrono::nanoseconds time);
 
-  /// Bytes on the line, at `baud` bits per second. What reaches a module that is speaking itself is lost.
+  /// Sends bytes at `baud` bits per second. The module loses bytes that arrive while it sends.
   void send(const Bytes& bytes, std::uint32_t baud);
-  /// What the module has sent so far and nobody has taken, as a receiver at `baud` hears it. Takes no time.
+  /// Returns the bytes that the module has sent since the last call, as a receiver at `baud` samples them. No
+  /// time passes.
   Bytes hear(std::uint32_t baud);
-  /// Its driver was on when it came to a stop.
+  /// Returns whether the driver enable was on at the last stop.
   [[nodiscard]] bool speaks() const { return powered() && clock_->driver_on(); }
 
-  /// Throws, from here or when time passes, where it flashes.
+  /// Assumes that the LED is steadily on. This function, or a later one that lets time pass, throws
+  /// std::runtime_error if the LED flashes.
   void believe_led_on() { lamp_.believe(now_); }
-  /// Nothing is to come that would disturb: time may pass until what was believed is known.
+  /// Lets time pass until the assumption about the LED is verified. Call it when the extra time does not
+  /// disturb later steps.
   void make_sure();
 
  private:
@@ -68,7 +73,7 @@ class TimedModule : public EmulatedBoard {
   void put(std::uint8_t byte);
   void hold_memory(bool hold);
 
-  std::optional<AlarmClock> clock_;  ///< from the first power-on
+  std::optional<AlarmClock> clock_;  ///< since the first power-on
   std::chrono::nanoseconds now_{0};
   LampWatch lamp_;
 };

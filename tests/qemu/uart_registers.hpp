@@ -1,5 +1,5 @@
-// The reference board's UART0 by its registers, for what looks at it from outside: LM3S6965 data sheet,
-// section 12.5.
+// The registers of the reference board's UART0, for code that accesses them from outside: LM3S6965 data
+// sheet, section 12.5.
 #pragma once
 
 #include <cstdint>
@@ -13,7 +13,7 @@ inline constexpr std::uint32_t kUartLineControl = 0x2C;
 inline constexpr std::uint32_t kUartFifosOn = 0x10;  ///< in line control
 inline constexpr std::uint32_t kUartControl = 0x30;
 inline constexpr std::uint32_t kUartEnabled = 1;             ///< in control
-inline constexpr std::uint32_t kUartControlAtReset = 0x300;  ///< likewise
+inline constexpr std::uint32_t kUartControlAtReset = 0x300;  ///< in control
 inline constexpr std::uint32_t kUartInterruptMask = 0x38;
 
 }  // namespace ex9000::rig

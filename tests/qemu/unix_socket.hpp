@@ -1,4 +1,4 @@
-// Both ends of a UNIX socket, for a program that is told where to connect to.
+// Both ends of a UNIX socket. The other program connects to a path that it receives.
 #pragma once
 
 #include <chrono>
@@ -8,11 +8,11 @@
 
 namespace ex9000::rig {
 
-/// How long the host waits for an emulator that owes it a reply. It only detects a hang: a reply takes
-/// milliseconds, on a busy machine seconds.
+/// How long the host waits for a reply of the emulator. It only detects a hang: a reply takes milliseconds,
+/// and seconds on a busy machine.
 inline constexpr std::chrono::seconds kHang{60};
 
-/// A connection. Whatever goes wrong throws std::runtime_error.
+/// A connection. All functions throw std::runtime_error on errors.
 class UnixSocket {
  public:
   explicit UnixSocket(int fd) : fd_(fd) {}
@@ -21,27 +21,27 @@ class UnixSocket {
   UnixSocket& operator=(UnixSocket&&) = delete;
 
   [[nodiscard]] int fd() const { return fd_; }
-  /// In one piece, as far as the kernel takes it; blocks until it has taken all.
+  /// Sends all bytes, in one piece if the kernel accepts them. Blocks until the kernel has accepted all.
   void send(const std::uint8_t* bytes, std::size_t size);
   void send(const std::string& text);
-  /// What is there, once there is something; nothing where nothing came for `patience`.
+  /// Waits for bytes and returns those that are there. Returns nothing if none arrive within `patience`.
   std::vector<std::uint8_t> receive(std::chrono::nanoseconds patience);
-  /// So many bytes. Throws if nothing comes for `kHang`.
+  /// Receives exactly `size` bytes. Throws if none arrive within `kHang`.
   void receive_all(std::uint8_t* bytes, std::size_t size);
-  /// Whether something is there.
+  /// Returns whether bytes are available. Does not block.
   [[nodiscard]] bool has_bytes() const;
-  /// Up to LF, which is left out. Throws if nothing comes for `kHang`.
+  /// Returns the next line without its LF. Throws if nothing arrives within `kHang`.
   std::string receive_line();
 
  private:
   int fd_;
-  std::string received_;  ///< behind the last line
+  std::string received_;  ///< bytes after the last line
 };
 
-/// Waits until one of them has bytes; false if none has for `kHang`.
+/// Waits until one of the sockets has bytes. Returns false if none has within `kHang`.
 bool wait_for_any(const std::vector<const UnixSocket*>& sockets);
 
-/// Where one program will connect to.
+/// Listens at a path for one connection.
 class UnixListener {
  public:
   explicit UnixListener(const std::string& path);
@@ -49,7 +49,7 @@ class UnixListener {
   UnixListener(const UnixListener&) = delete;
   UnixListener& operator=(const UnixListener&) = delete;
 
-  /// Throws std::runtime_error if nobody connects for `kHang`.
+  /// Returns the connection. Throws std::runtime_error if no program connects within `kHang`.
   UnixSocket accept();
 
  private:

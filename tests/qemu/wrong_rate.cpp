@@ -14,7 +14,7 @@ bool same_rate(std::uint32_t a, std::uint32_t b) {
 }  // namespace
 
 std::chrono::nanoseconds duration_at(std::uint32_t baud, std::size_t bytes) {
-  constexpr std::int64_t kCharacter = 10'000'000'000;  // bits, in ns
+  constexpr std::int64_t kCharacter = 10'000'000'000;  // bits of a character, in ns at 1 baud
   return std::chrono::nanoseconds(static_cast<std::int64_t>(bytes) * kCharacter / baud);
 }
 
@@ -34,7 +34,7 @@ std::vector<Arrival> heard_at_rate(const std::vector<std::uint8_t>& bytes, std::
   for (std::size_t i = 0; i < bytes.size(); ++i) {
     waves.push_back({duration_at(sent_at, i), sent_at, bytes[i]});
   }
-  // The last byte may be over for the sender long before it is for the receiver.
+  // At different baud rates, the last byte can end much later for the receiver than for the sender.
   const sim::VirtualTime end = duration_at(sent_at, bytes.size()) + duration_at(heard_at, 2);
   sim::UartSampler sampler;
   while (const auto received = sampler.advance(waves, heard_at, end)) {

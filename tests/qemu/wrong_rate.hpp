@@ -1,4 +1,4 @@
-// What a receiver makes of bytes that were sent at another rate.
+// Calculates which bytes a receiver samples if the sender uses another baud rate.
 #pragma once
 
 #include <chrono>
@@ -8,18 +8,18 @@
 namespace ex9000::rig {
 
 struct Arrival {
-  std::chrono::nanoseconds at;  ///< from the first start bit on
+  std::chrono::nanoseconds at;  ///< time since the first start bit
   std::uint8_t byte;
 };
 
-/// `bytes`, sent without a gap at `sent_at` bits per second, as a receiver at `heard_at` samples them; none
-/// where either is 0. 8N1; framing errors are left out of what is returned, since an emulated UART cannot be
-/// given any, but the bytes they came with are in it. Rates that differ by no more than UARTs bear, 2 %, are
-/// the same.
+/// Returns the bytes that a receiver at `heard_at` samples if `bytes` are sent without gaps at `sent_at` bits
+/// per second. Returns nothing if one of the rates is 0. The format is 8N1. A byte with a framing error is
+/// returned like others, because an emulated UART cannot receive a framing error. Rates that differ by at
+/// most 2 %, the tolerance of UARTs, count as equal.
 std::vector<Arrival> heard_at_rate(const std::vector<std::uint8_t>& bytes, std::uint32_t sent_at,
                                    std::uint32_t heard_at);
 
-/// How long `bytes` take without a gap.
+/// Returns the duration of `bytes` characters without gaps.
 std::chrono::nanoseconds duration_at(std::uint32_t baud, std::size_t bytes);
 
 }  // namespace ex9000::rig
