@@ -1,4 +1,4 @@
-"""What check-image accepts, with exact figures, and what it refuses, with the reason."""
+"""Tests which images check-image accepts, with exact sizes, and which it rejects, with the reason."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ EXCEPTION = 36
 
 
 def holding(code: str) -> str:
-    """Interrupts are held during this assembler code."""
+    """Returns a source that disables interrupts during this assembly code."""
     return f"""
         extern "C" void reset() {{ for (;;) asm volatile("cpsid i\\n{code}cpsie i" ::: "memory"); }}
         """
@@ -26,7 +26,7 @@ def holding(code: str) -> str:
 
 class Accepts(unittest.TestCase):
     def stack(self, verdict: Verdict) -> int:
-        """The worst-case stack without the three exceptions that handlers of no depth add: faults and NMI."""
+        """Returns the worst-case stack without the exception frames of HardFault and NMI, whose handlers use no stack."""
         self.assertTrue(verdict.accepted, verdict.problems)
         match = re.search(r"(\d+) stack at worst", verdict.figures)
         assert match
@@ -45,7 +45,7 @@ class Accepts(unittest.TestCase):
             """,
             options="--verbose",
         )
-        # 8 bytes for the registers that reset keeps, the arrays, and 4 to make it a multiple of eight.
+        # 8 bytes for the registers that reset saves, the arrays, and 4 bytes to round up to a multiple of eight.
         self.assertIn("main loop 136: reset 8 -> deep 24 -> deepest 104", verdict.figures)
         self.assertEqual(self.stack(verdict), 136 + EXCEPTION)
 
@@ -55,7 +55,7 @@ class Accepts(unittest.TestCase):
             extern "C" void interrupt() { room<40>(); }
             """
         self.assertEqual(self.stack(check(source)), EXCEPTION + 40)
-        # On a level of its own, with nobody left on the other.
+        # Alone on a separate level, with no handler on the shared level.
         self.assertEqual(self.stack(check(source, options="--level interrupt")), EXCEPTION + 40)
 
     def test_pointers_reach_functions_of_their_type_only(self) -> None:
@@ -487,7 +487,7 @@ class Refuses(unittest.TestCase):
             """,
         )
 
-    # --- memory, and what was recorded ---
+    # --- memory and records ---
 
     def test_more_than_the_ram_holds(self) -> None:
         source = 'volatile char a[20372]; extern "C" void reset() { for (;;) a[0] = 1; }'

@@ -1,4 +1,4 @@
-"""compare-sizes: what it accepts, refuses and records."""
+"""Tests which sizes compare-sizes accepts, rejects and records."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ PROGRAM = Path(__file__).resolve().parents[2] / "toolchain" / "compare-sizes"
 
 
 class CompareSizes(unittest.TestCase):
-    """One image of 1000 bytes of flash, 200 of static RAM and 100 of stack is in the record."""
+    """The record contains one image with 1000 bytes of flash, 200 of static RAM and 100 of stack."""
 
     def setUp(self) -> None:
         folder = tempfile.TemporaryDirectory()

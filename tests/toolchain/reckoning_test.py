@@ -1,4 +1,4 @@
-"""check-image's parts, each on text that is written here."""
+"""Tests the parts of check-image, each with text input."""
 
 from __future__ import annotations
 
@@ -62,13 +62,13 @@ class CallGraph(unittest.TestCase):
         chain = DeepestChains(self.graph(4)).below(0)
         self.assertEqual(str(chain), "reset 8 -> _ZL4turnv 24 -> _Z5writev 40")
         self.assertEqual(chain.size, 72)
-        # 16 and 32 are more than 40.
+        # 16 and 32 bytes add up to more than 40.
         self.assertEqual(
             str(DeepestChains(self.graph(32)).below(0)), "reset 8 -> _ZL4turnv 24 -> _Z4readv 16 -> memcpy 32"
         )
 
     def graph(self, memcpy: int) -> Graph:
-        """The call graph with addresses by position."""
+        """Returns the call graph. The position of a function is its address."""
         names = [*self.records, "memcpy"]
         nodes = {
             names.index(name): Node(name, r.frame, frozenset(names.index(title.name) for title in r.calls))
@@ -93,7 +93,7 @@ class WorstCase(unittest.TestCase):
     }
 
     def test_handlers_of_one_level_count_once_the_deepest(self) -> None:
-        # 8 + 100 + 4; and 36 of the exception on 24.
+        # 8 + 100 + 4; then 36 for the exception and 24 for its handler.
         self.assertEqual(worst_case(self.GRAPH, 0, [Level("interrupts", [10, 11, 12])]).size, 112 + 36 + 24)
 
     def test_levels_add_up(self) -> None:
@@ -131,15 +131,15 @@ Refusal answer (const struct State & state, struct Bytes args)
 """
 
     def reaches(self, line: int, column: int, readable: str) -> bool:
-        """Whether all calls there can reach a function of this demangled name."""
+        """Returns whether all calls at this location can reach a function with this demangled name."""
         sites = call_sites.parse(self.DUMP)["_Z6answerRK5State", f"dcon.cpp:{line}:{column}"]
         return all(site.can_reach(Function("", readable, 0, 0, ())) for site in sites)
 
     def test_parameters_decide(self) -> None:
         for readable, expected in {
             "ex::read(ex::State const&, ex::Bytes, unsigned short, ex::Kind)": True,
-            "ex::read(ex::State const&, ex::Bytes, unsigned short, char)": True,  # Kind may be one
-            "read": True,  # of C: it may be anything
+            "ex::read(ex::State const&, ex::Bytes, unsigned short, char)": True,  # Kind can be a char
+            "read": True,  # a C function: it can have any parameters
             "ex::read(ex::State const&, ex::Bytes, unsigned int, ex::Kind)": False,
             "ex::read(ex::State*, ex::Bytes, unsigned short, ex::Kind)": False,
             "ex::read(ex::Other const&, ex::Bytes, unsigned short, ex::Kind)": False,
@@ -170,7 +170,8 @@ Refusal answer (const struct State & state, struct Bytes args)
 
 class MachineCode(unittest.TestCase):
     def stack(self, text: str) -> int:
-        """Of `mnemonic operands` a line; a line is 2 bytes, and branches go to `@line`, from 0."""
+        """Returns the stack of the code in `text`: one `mnemonic operands` on each line, 2 bytes for each line.
+        Branches go to `@line`, from 0."""
         code = []
         for number, line in enumerate(text.strip().splitlines()):
             mnemonic, _, operands = line.strip().partition(" ")
@@ -220,7 +221,7 @@ class MachineCode(unittest.TestCase):
             ("mov", "pc, lr", False),
             ("ldr.w", "pc, [sp], #4", False),
             ("bl", "8000 <f>", False),
-            ("ldr.w", "pc, [pc, r2, lsl #2]", False),  # a table of its own
+            ("ldr.w", "pc, [pc, r2, lsl #2]", False),  # a jump table of the function
         ):
             with self.subTest(f"{mnemonic} {operands}"):
                 self.assertEqual(Instruction(0, mnemonic, operands).is_indirect, expected)

@@ -1,4 +1,4 @@
-"""Images small enough to know every byte of: snippets of C++, compiled, linked and handed to check-image."""
+"""Builds images so small that every byte is known: compiles and links snippets of C++, and runs check-image on them."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ _COMPILE = (
 ).split()
 _LINK = "arm-none-eabi-g++ -mcpu=cortex-m3 -mthumb -nostdlib -Wl,--gc-sections,--no-warn-rwx-segments".split()
 
-# `room<N>()` takes N bytes of stack.
+# `room<N>()` uses N bytes of stack.
 PRELUDE = """
 #include <stddef.h>
 #include <stdint.h>
@@ -34,7 +34,7 @@ template <unsigned size> inline __attribute__((always_inline)) void room() {
 NO_INTERRUPT = """
 extern "C" void interrupt() {}
 """
-# Of an image that has one interrupt.
+# The vector table of an image with one interrupt.
 VECTORS = """
 extern "C" void fault() { for (;;) {} }
 [[gnu::section(".vectors"), gnu::used]] const Handler vectors[] = {
@@ -57,7 +57,8 @@ def check(
     compile_options: str = "",
     link_options: str = "",
 ) -> Verdict:
-    """Makes an image of the sources, each a translation unit; the first gets the vectors. Checks it."""
+    """Builds an image from the sources and checks it. Each source is a translation unit. The first one gets the
+    vectors."""
     vectors = VECTORS if "interrupt" in source else NO_INTERRUPT + VECTORS
     with tempfile.TemporaryDirectory(prefix="check-image-") as folder:
         objects = []

@@ -1,1 +1,1 @@
-"""Size, worst-case stack and symbols of a firmware image."""
+"""Checks size, worst-case stack and symbols of a firmware image."""

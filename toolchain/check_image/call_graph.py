@@ -1,4 +1,5 @@
-"""The call graph that GCC writes (-fcallgraph-info=su, text in the form of VCG): functions, frames, calls."""
+"""Reads the call graph that GCC writes with -fcallgraph-info=su (text in the VCG format): functions, frames and
+calls."""
 
 from __future__ import annotations
 
@@ -13,36 +14,36 @@ _STACK = re.compile(r"(\d+) bytes \((static|dynamic|dynamic,bounded)\)$")
 
 
 class NotACallGraph(Exception):
-    """The text is not what GCC 12 writes."""
+    """The text does not have the format of GCC 12."""
 
 
 @dataclass(frozen=True)
 class Title:
-    """What a call graph calls a function: a static one has its source file in front."""
+    """The name of a function in a call graph. The name of a static function is preceded by its source file."""
 
-    file: str  # empty where the name is global
+    file: str  # empty if the name is global
     name: str
 
     @staticmethod
     def parse(text: str) -> Title:
         file, _, name = text.rpartition(":")
-        return Title(file, name.lstrip("*"))  # an asterisk stands where the name was given by asm("")
+        return Title(file, name.lstrip("*"))  # an asterisk precedes names that asm("") has set
 
 
 @dataclass
 class Record:
-    """A function that was compiled."""
+    """A function that the compiler has compiled."""
 
     title: Title
     location: str  # file:line:column
     frame: int  # bytes
-    is_bounded: bool  # false where the stack grows by what is known only when it runs
+    is_bounded: bool  # false if the stack use is known only at run time
     calls: set[Title] = field(default_factory=set)
-    indirect_calls: list[str] = field(default_factory=list)  # their locations; empty where GCC knows none
+    indirect_calls: list[str] = field(default_factory=list)  # their locations; empty if unknown to GCC
 
 
 def parse(text: str) -> list[Record]:
-    """The functions of one translation unit."""
+    """Returns the functions of one translation unit."""
     records: dict[str, Record] = {}
     for line in text.splitlines():
         if line.startswith("node: "):
@@ -67,7 +68,7 @@ def _parse_node(line: str, records: dict[str, Record]) -> None:
         raise NotACallGraph(line)
     label = match.group(2).split("\\n")
     stack = _STACK.match(label[2]) if len(label) > 2 else None
-    if stack:  # else it is called here, and compiled elsewhere
+    if stack:  # otherwise it is called here and compiled elsewhere
         records[match.group(1)] = Record(
             title=Title.parse(match.group(1)),
             location=label[1],

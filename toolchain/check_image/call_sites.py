@@ -1,8 +1,8 @@
-"""Which functions a call through a pointer can reach, by the types that GCC's own dump gives it.
+"""Finds the functions that a call through a pointer can reach, from the types in GCC's dump.
 
-The call graph says of such a call only where it stands. The dump of the optimised program
-(-fdump-tree-optimized-lineno) says more: the type of the function pointer, or the slot of the virtual table.
-Whatever is not understood excludes nothing.
+The call graph contains only the location of such a call. The dump of the optimised program
+(-fdump-tree-optimized-lineno) also contains the type of the function pointer, or the slot of the virtual table. A type
+that this module does not understand excludes no function.
 """
 
 from __future__ import annotations
@@ -14,7 +14,7 @@ from check_image.functions import Function
 
 _HEADER = re.compile(r";; Function .*\((\S+), funcdef_no=")
 _LOCATION = re.compile(r"^  \[([^]]+:\d+:\d+)\] ")
-# `Refusal (*<T44ec>) (const struct State &, struct Bytes) _5;`, or to a member function
+# `Refusal (*<T44ec>) (const struct State &, struct Bytes) _5;`, or for a pointer to a member function
 # `void Thing::<T2b8> (struct Thing *) * f;`
 _POINTER = re.compile(r"^  .*?(?:\(\*<T\w+>\) \((.*)\)|::<T\w+> \((.*)\) \*) ([\w.]+);$")
 _VIRTUAL_CALL = re.compile(r"OBJ_TYPE_REF\(.*;\((const )?[^)]*\)[^>]*->(\d+)B?\) \((.*)\)")
@@ -25,7 +25,7 @@ _POINTER_CALL = re.compile(r"(?:^| = |\] )([\w.]+)(?:\(D\))? \((.*)\);")
 class PointerCall:
     """A call through a pointer to a function."""
 
-    parameters: tuple[str, ...] | None  # None where only their number is known
+    parameters: tuple[str, ...] | None  # None if only their number is known
     count: int
 
     def can_reach(self, target: Function) -> bool:
@@ -35,17 +35,17 @@ class PointerCall:
         ours = self.parameters if self.parameters is not None else ("",) * self.count
         if _agree(ours, theirs):
             return True
-        # The type of a pointer to a member function has the object in front.
+        # The type of a pointer to a member function begins with the object.
         return len(ours) > 0 and _may_be_object(ours[0]) and _agree(ours[1:], theirs)
 
 
 @dataclass(frozen=True)
 class VirtualCall:
-    """A call of a virtual function: the slot in its class's table, from 0."""
+    """A call of a virtual function. `slot` is the slot in the table of its class, from 0."""
 
     slot: int
     is_const: bool
-    count: int  # of parameters, without the object
+    count: int  # number of parameters, without the object
 
     def can_reach(self, target: Function) -> bool:
         theirs = parameters_of(target.readable)
@@ -58,7 +58,7 @@ CallSite = PointerCall | VirtualCall
 
 
 def parse(text: str) -> dict[tuple[str, str], set[CallSite]]:
-    """The calls through pointers of one translation unit, by mangled caller and location."""
+    """Returns the calls through pointers in one translation unit, by mangled caller and location."""
     sites: dict[tuple[str, str], set[CallSite]] = {}
     caller = ""
     pointers: dict[str, tuple[str, ...]] = {}
@@ -84,7 +84,7 @@ def _call_site(line: str, pointers: dict[str, tuple[str, ...]]) -> CallSite | No
     call = _POINTER_CALL.search(line)
     if call:
         name, arguments = call.group(1), split_list(call.group(2))
-        variable, numbered = re.subn(r"_\d+$", "", name)  # values are numbered; functions are not
+        variable, numbered = re.subn(r"_\d+$", "", name)  # names of values end with a number
         parameters = pointers.get(name, pointers.get(variable))
         if numbered or parameters is not None:
             return PointerCall(parameters, len(arguments))
@@ -92,7 +92,7 @@ def _call_site(line: str, pointers: dict[str, tuple[str, ...]]) -> CallSite | No
 
 
 def split_list(text: str) -> tuple[str, ...]:
-    """`a, b<c, d>, e (f, g)` has three parts."""
+    """Splits a list at its top-level commas: `a, b<c, d>, e (f, g)` has three parts."""
     parts, depth, part = [], 0, ""
     for character in text:
         depth += (character in "(<[{") - (character in ")>]}")
@@ -106,7 +106,7 @@ def split_list(text: str) -> tuple[str, ...]:
 
 
 def parameters_of(readable: str) -> tuple[str, ...] | None:
-    """The parameters' types of a demangled function; None where the name does not tell, as in C."""
+    """Returns the parameter types of a demangled function, or None if the name does not contain them, as in C."""
     text = readable.removesuffix(" const")
     if not text.endswith(")"):
         return None
@@ -120,14 +120,14 @@ def parameters_of(readable: str) -> tuple[str, ...] | None:
 
 @dataclass(frozen=True)
 class _Shape:
-    """As much of a type as both spellings show."""
+    """The part of a type that both notations contain."""
 
     kind: str  # "class", "number", or "named": a class or an enumeration
     name: str
     indirections: str  # `*` and `&`
 
 
-# Both spellings of numbers, and what newlib makes of <cstdint>'s.
+# Numeric types in both notations, and newlib's definitions of the types in <cstdint>.
 _NUMBERS = {"bool", "char", "short", "int", "long", "signed", "unsigned", "float", "double", "wchar_t"}
 _ALIASES = {
     "int8_t": "signed char",
@@ -162,7 +162,8 @@ def _may_be_same(ours: _Shape | None, theirs: _Shape | None) -> bool:
 
 
 def _shape_in_dump(text: str) -> _Shape | None:
-    """Of `const struct State &`, `unsigned int`, `uint16_t`; None where it may be anything, as an alias."""
+    """Returns the shape of a type in the dump, for example `const struct State &`, `unsigned int`, `uint16_t`, or None
+    if it can be any type, for example an alias."""
     name, indirections = _take_apart(text)
     if "(" in text:
         return None
@@ -173,7 +174,8 @@ def _shape_in_dump(text: str) -> _Shape | None:
 
 
 def _shape_demangled(text: str) -> _Shape | None:
-    """Of `ex9000::State const&`, `unsigned short`; None where it is not plain."""
+    """Returns the shape of a demangled type, for example `ex9000::State const&`, `unsigned short`, or None if it is not
+    a simple type."""
     name, indirections = _take_apart(text)
     if "(" in text:
         return None
@@ -183,7 +185,8 @@ def _shape_demangled(text: str) -> _Shape | None:
 
 
 def _number(name: str, indirections: str) -> _Shape | None:
-    """`long unsigned int` and `unsigned long` are one; None where it is no number."""
+    """Returns the shape of a numeric type, or None for other types. `long unsigned int` and `unsigned long` are
+    equal."""
     words = name.split()
     if not words or not set(words) <= _NUMBERS:
         return None

@@ -1,4 +1,4 @@
-"""What the machine code itself says: where it branches, and how far it moves the stack pointer."""
+"""Extracts from the machine code where it branches and how far it moves the stack pointer."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from pathlib import Path
 
 from check_image.functions import Function
 
-# Of data that fills no word, objdump shows what it would be as text, which is no mnemonic but by chance.
+# If data does not fill a word, objdump shows it as text, which looks like a mnemonic only by chance.
 _LINE = re.compile(r"^ *([0-9a-f]+):\t(\.?[a-z][a-z0-9.]*)(?:\t([^@;]*)|$)")
 _CONDITIONS = "eq|ne|cs|hs|cc|lo|mi|pl|vs|vc|hi|ls|ge|lt|gt|le"
 _BRANCH = re.compile(rf"(b|bl|blx|cbz|cbnz|b({_CONDITIONS})|bl({_CONDITIONS}))(\.[nw])?")
@@ -29,7 +29,7 @@ class Instruction:
 
     @property
     def branch_target(self) -> int | None:
-        """Where a branch or call to a fixed address goes."""
+        """The target of a branch or call with a fixed address, else None."""
         target = _TARGET.match(self.operands) if _BRANCH.fullmatch(self.mnemonic) else None
         return int(target.group(1), 16) if target else None
 
@@ -39,7 +39,7 @@ class Instruction:
 
     @property
     def is_indirect(self) -> bool:
-        """Calls or jumps to a function whose address is in a register or in memory; a return is neither."""
+        """True for a call or jump to a function whose address is in a register or in memory. False for a return."""
         if self.is_call:
             return self.branch_target is None
         if self.mnemonic.startswith("bx"):
@@ -60,7 +60,7 @@ class Instruction:
 
     @property
     def goes_on(self) -> bool:
-        """Whether the instruction behind it may be next."""
+        """Whether the next instruction in memory can be executed after this one."""
         if (
             self.is_data
             or self.jumps_by_table
@@ -75,7 +75,7 @@ class Instruction:
 
 
 class StackPointerUnknown(Exception):
-    """An instruction moves the stack pointer by what only a run would tell."""
+    """An instruction moves the stack pointer by an amount that is known only at run time."""
 
 
 class Disassembly:
@@ -103,7 +103,7 @@ class Disassembly:
         ]
 
     def immediate_addresses(self) -> set[int]:
-        """What movw and movt put into registers together."""
+        """Returns the addresses that pairs of movw and movt load into registers."""
         lower: dict[str, int] = {}
         found = set()
         for instruction in self.instructions.values():
@@ -116,10 +116,10 @@ class Disassembly:
 
 
 def stack_of(code: list[Instruction]) -> int:
-    """The most bytes that a function's own instructions have on the stack; what it calls is not in it.
+    """Returns the maximum number of bytes that a function itself has on the stack, without the functions that it calls.
 
-    Follows the code along its branches. Behind a jump by table begin the table's targets, at the depth of the
-    jump.
+    Follows the code along its branches. The code after a table jump is reachable only through the table, so it starts
+    with the stack depth of the jump.
     """
     following = {a.address: b.address for a, b in zip(code, code[1:])}
     by_address = {instruction.address: instruction for instruction in code}
@@ -151,9 +151,9 @@ def stack_of(code: list[Instruction]) -> int:
 
 
 def pushed_by(instruction: Instruction) -> int:
-    """By how many bytes the stack grows; negative where it shrinks."""
+    """Returns the number of bytes by which the stack grows, negative if it shrinks."""
     growth = _growth(instruction.mnemonic.split(".")[0], instruction.operands)
-    # A conditional pop belongs to a conditional return; where the code goes on, nothing was popped.
+    # A conditional pop is part of a conditional return. If the code continues, nothing was popped.
     return max(growth, 0) if _CONDITIONAL_POP.match(instruction.mnemonic) else growth
 
 
@@ -175,7 +175,7 @@ def _growth(mnemonic: str, operands: str) -> int:
 
 
 def _count(registers: re.Match[str] | None) -> int:
-    """How many registers a list names; objdump writes each by itself, or a range as r4-r7."""
+    """Returns the number of registers in a list. objdump writes single registers, or a range such as r4-r7."""
     assert registers is not None
     count = 0
     for part in registers.group(1).split(","):

@@ -1,4 +1,4 @@
-"""What a linked 32-bit little-endian ELF file holds: sections and symbols (ELF 1.2, book I; AAELF32)."""
+"""Reads the sections and symbols of a linked 32-bit little-endian ELF file (ELF 1.2, book I; AAELF32)."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ _ARM = 40
 
 
 class NotAnImage(Exception):
-    """The file is not what an Arm linker writes."""
+    """The file does not have the format that an Arm linker writes."""
 
 
 @dataclass(frozen=True)
@@ -31,21 +31,21 @@ class Section:
     size: int
     allocated: bool
     executable: bool
-    loaded: bool  # its contents are in the file, so they take flash
-    data: bytes  # empty where not loaded
+    loaded: bool  # its content is in the file, so it requires flash
+    data: bytes  # empty if not loaded
 
 
 @dataclass(frozen=True)
 class Symbol:
     name: str
-    address: int  # of a function without the Thumb bit
+    address: int  # without the Thumb bit for functions
     size: int
     is_function: bool
     is_object: bool
     has_type: bool
     is_local: bool
-    file: str  # the source that a local symbol is from, as the compiler was given it; empty where not known
-    section: Section | None  # None where absolute or undefined
+    file: str  # source file of a local symbol, as passed to the compiler; empty if unknown
+    section: Section | None  # None if absolute or undefined
     is_undefined: bool
 
 
@@ -65,7 +65,7 @@ class Elf:
                 self._read_symbols(header, headers[header[6]][4])
 
     def word_at(self, address: int) -> int | None:
-        """The loaded word at an address; None where there is none."""
+        """Returns the loaded word at an address, or None if there is none."""
         for section in self.sections:
             if section.loaded and section.address <= address <= section.address + section.size - 4:
                 return int(struct.unpack_from("<I", section.data, address - section.address)[0])

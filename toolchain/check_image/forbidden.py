@@ -1,4 +1,5 @@
-"""What an image must not hold: traces of a heap, exceptions, floating point, code that runs before main."""
+"""Finds forbidden contents of an image: traces of a heap, exceptions, floating point, and code that runs before
+main."""
 
 from __future__ import annotations
 
@@ -17,7 +18,7 @@ _SYMBOLS = [
         (r"_Unwind_|__(aeabi|gnu)_unwind", "exceptions"),
         (r"__cxa_", "the C++ run-time library"),
         (r"__aeabi_u?ldivmod$|__u?(div|mod|divmod)di[34]$", "64-bit division"),
-        # Run-time ABI for the Arm Architecture 4.1.2, and libgcc's own names.
+        # Run-time ABI for the Arm Architecture 4.1.2, and libgcc's internal names.
         (r"__aeabi_([fdh]|c[fd]|u?[il]2[fd])", "floating point"),
         (r"__gnu_[dfh]2|__(?!gnu)[a-z]+[hsdt]f([hsdt][fi])?[23]?$", "floating point"),
         (r"_GLOBAL__(sub_)?[ID]_", "globals initialised at run time"),
@@ -30,8 +31,8 @@ _SECTIONS = [
         (r"\.(preinit_array|init_array|fini_array|ctors|dtors)", "globals initialised at run time"),
     )
 ]
-# One of each table of the core: commands, functions, coils and registers. An image must not carry what only
-# people read.
+# One text from each table of the core: commands, functions, coils and registers. These texts are only for people, so an
+# image must not contain them.
 _TEXTS = (b"clear both latches", b"Write Single Coil", b"host watchdog timeout status")
 
 
@@ -50,11 +51,11 @@ def problems(elf: Elf, records: Iterable[Record], disassembly: Disassembly) -> l
         for text in _TEXTS:
             if text in section.data:
                 found.append(f"section {section.name} has the text '{text.decode()}', which is for people")
-    # A linker script without .init_array would drop these without a word.
+    # A linker script without .init_array would silently discard these.
     for record in records:
         if _what(record.title.name) == "globals initialised at run time":
             found.append(f"{record.location}: globals initialised at run time")
-    # They would also make an exception's frame longer than this tool reckons.
+    # Such a unit would also make an exception frame longer than this tool calculates.
     if any(each.mnemonic.startswith("v") and each.operands for each in disassembly.instructions.values()):
         found.append("instructions of a floating-point unit: floating point")
     return found

@@ -1,4 +1,4 @@
-"""The functions of an image: where each begins and ends, and by which names it goes."""
+"""The functions of an image: their start, end and names."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ from check_image.elf import Elf, Symbol
 @dataclass(frozen=True)
 class Function:
     name: str  # mangled
-    readable: str  # demangled, with its parameters
+    readable: str  # demangled, with parameters
     address: int
     end: int
     names: tuple[str, ...]  # the name and its aliases
@@ -39,7 +39,7 @@ class Functions:
         self._globals: dict[str, Function] = {}
         for index, start in enumerate(self._starts):
             here = by_address[start]
-            # The name that the compiler gave comes before an assembler's label.
+            # The name from the compiler takes precedence over a label from the assembler.
             first = max(here, key=lambda symbol: (symbol.size, not symbol.is_local))
             function = Function(
                 name=first.name,
@@ -59,11 +59,11 @@ class Functions:
         return iter(self._by_address.values())
 
     def at(self, address: int) -> Function | None:
-        """The function that begins at an address."""
+        """Returns the function that begins at an address."""
         return self._by_address.get(address)
 
     def around(self, address: int) -> Function | None:
-        """The function that has an address in its code."""
+        """Returns the function whose code contains an address."""
         index = bisect.bisect_right(self._starts, address) - 1
         function = self._by_address[self._starts[index]] if index >= 0 else None
         return function if function is not None and address < function.end else None
@@ -72,7 +72,7 @@ class Functions:
         return self._globals.get(name)
 
     def local_named(self, name: str, file: str) -> Function | None:
-        """The static function of a source file; symbols know the file's name only, not its folder."""
+        """Returns the static function of a source file. Symbols contain only the name of the file, not its folder."""
         there = self._locals.get(name, [])
         if len(there) == 1:
             return there[0][1]
@@ -81,7 +81,7 @@ class Functions:
         )
 
     def named(self, name: str) -> list[Function]:
-        """All functions of a name, whatever file they are from."""
+        """Returns all functions with this name, from any file."""
         found = self._globals.get(name)
         return ([found] if found else []) + [function for _, function in self._locals.get(name, [])]
 
@@ -92,8 +92,8 @@ class Functions:
 
 
 def demangle(names: list[str]) -> dict[str, str]:
-    """What each mangled name reads like."""
-    # One a line; a clone's suffix would keep c++filt from reading the name.
+    """Returns the demangled form of each mangled name."""
+    # One name on each line. c++filt cannot read a name with the suffix of a clone.
     plain = [name.split(".", 1)[0] for name in names]
     done = subprocess.run(
         ["arm-none-eabi-c++filt"], input="\n".join(plain), capture_output=True, text=True, check=True
@@ -106,13 +106,13 @@ def without_parameters(readable: str) -> str:
     text = readable.replace("(anonymous namespace)::", "").replace("operator()", "operator\0")
     while (shorter := re.sub(r"\([^()]*\)( const)?", "", text)) != text:
         text = shorter
-    # In front of a template's instance stands what it returns.
+    # The demangled name of a template instance begins with the return type.
     text = re.sub(r"^[^<>{}]+? (?=[\w:]+<)", "", text) if "operator " not in text else text
     return text.replace("operator\0", "operator()")
 
 
 def _function_symbols(elf: Elf) -> list[Symbol]:
-    """Functions, and assembler's labels that are not inside one."""
+    """Returns functions, and labels of the assembler that are not inside a function."""
     code = [s for s in elf.symbols if s.section is not None and s.section.executable]
     functions = [s for s in code if s.is_function]
     extents = sorted((s.address, s.address + s.size) for s in code if s.has_type)
@@ -127,6 +127,6 @@ def _function_symbols(elf: Elf) -> list[Symbol]:
 
 
 def _holds(symbol: Symbol) -> bool:
-    """Whether there is something behind a label: a linker script's symbols also stand at a section's end."""
+    """Whether code or data follows a label. Symbols of a linker script are also at the end of a section."""
     section = symbol.section
     return section is not None and section.address <= symbol.address < section.address + section.size

@@ -1,4 +1,4 @@
-"""For how many instructions interrupts are held back: from each `cpsid i` to the `cpsie i` behind it."""
+"""Counts for how many instructions interrupts are disabled: from each `cpsid i` to the next `cpsie i`."""
 
 from __future__ import annotations
 
@@ -6,7 +6,7 @@ import re
 
 from check_image.disassembly import Disassembly, Instruction
 
-# An interrupt that waits for longer than a character loses a byte; this many take a microsecond or two.
+# An interrupt that waits longer than one character loses a byte. This number takes one or two microseconds.
 MOST = 20
 
 _HOLD, _RELEASE = "cpsid", "cpsie"
@@ -14,11 +14,12 @@ _MASKS = re.compile(r"(PRIMASK|BASEPRI|BASEPRI_MAX|FAULTMASK),", re.IGNORECASE)
 
 
 class _HeldForEver(Exception):
-    """There is a way from here that never releases them, or whose length is not known."""
+    """There is a path that never enables interrupts, or whose length is unknown."""
 
 
 class HeldInterrupts:
-    """`longest`: instructions between the two, on the longest way. `problems`: what cannot be reckoned."""
+    """`longest`: number of instructions between `cpsid i` and `cpsie i` on the longest path. `problems`: code whose
+    length cannot be calculated."""
 
     def __init__(self, disassembly: Disassembly) -> None:
         self._code = disassembly.instructions
@@ -43,7 +44,7 @@ class HeldInterrupts:
             self.problems.append(f"{held_at:#x}: interrupts are held, and then {reason}")
 
     def _behind(self, address: int, way: list[int]) -> int:
-        """The most instructions between this one and the release."""
+        """Returns the maximum number of instructions between this one and the `cpsie i`."""
         if address in way:
             raise _HeldForEver(f"there is a loop at {address:#x}")
         if address not in self._known:

@@ -1,4 +1,4 @@
-"""The compiler's call graph on the functions that the linker has kept, checked by the machine code."""
+"""Applies the compiler's call graph to the functions in the linked image, and checks it against the machine code."""
 
 from __future__ import annotations
 
@@ -16,13 +16,13 @@ from check_image.stack import Graph, Node
 
 @dataclass(frozen=True)
 class Foreign:
-    """A function that no compiler has recorded, and why its stack is known all the same."""
+    """A function without a compiler record whose stack is known for another reason."""
 
     frame: int  # bytes, at most
     reason: str
 
 
-# Their frames are compared with what their instructions push; their calls are those of their instructions.
+# The frames are compared with what the instructions push. The calls are taken from the instructions.
 FOREIGN = {
     "memcpy": Foreign(8, "newlib's, or newlib-nano's: loops, no calls"),
     "memmove": Foreign(16, "newlib's, or newlib-nano's: loops, no calls"),
@@ -34,9 +34,10 @@ _VENEER = re.compile(r"__(.*)_veneer")
 
 
 class LinkedGraph:
-    """In `graph` a function is its address, so that aliases are one and equal names of two files are not.
+    """In `graph`, the address identifies a function: aliases are one function, and equal names in two files are two
+    functions.
 
-    `problems` says where compiler and machine code do not agree, whether that is reached or not.
+    `problems` lists the differences between compiler and machine code, even in functions that are not reachable.
     """
 
     def __init__(
@@ -54,14 +55,14 @@ class LinkedGraph:
         self._address_taken = self._find_taken_addresses()
         self._tables = self._find_virtual_tables()
         self.problems: list[str] = []
-        self.locations: dict[int, str] = {}  # of the recorded functions, by address
+        self.locations: dict[int, str] = {}  # locations of the recorded functions, by address
         self.graph: Graph = {}
         self._calls_indirectly: set[int] = set()
-        self.pointer_calls: dict[tuple[str, str], list[str]] = {}  # what each reaches, by caller and location
-        self.untyped = 0  # of them, how many reach all functions whose address is taken
+        self.pointer_calls: dict[tuple[str, str], list[str]] = {}  # targets of each call, by caller and location
+        self.untyped = 0  # number of these calls that can reach all functions whose address is taken
         for record in records:
             function = self._find(record.title)
-            if function is not None:  # else inlined everywhere, or dropped by the linker
+            if function is not None:  # otherwise it was inlined everywhere, or the linker has removed it
                 self._add(function, record)
         for function in functions:
             if function.address in self.locations:
@@ -70,7 +71,7 @@ class LinkedGraph:
                 self._add_unrecorded(function)
 
     def _find(self, title: Title) -> Function | None:
-        # GCC puts the file in front of inline functions as well, of which the linker keeps one of all units.
+        # GCC also writes the file before the names of inline functions, of which the linker keeps one for all units.
         in_file = self._functions.local_named(title.name, title.file) if title.file else None
         return in_file or self._functions.global_named(title.name)
 
@@ -114,7 +115,8 @@ class LinkedGraph:
         return targets
 
     def _find_taken_addresses(self) -> list[Function]:
-        """The functions whose address is in a table, a variable's first value or a literal of the code."""
+        """Returns the functions whose address is in a table, in the initial value of a variable, or in a literal of the
+        code."""
         taken = set(self._disassembly.immediate_addresses())
         for section in self._elf.sections:
             if section.loaded and section.name != ".vectors":
@@ -124,10 +126,10 @@ class LinkedGraph:
         return [function for function in self._functions if function.address | 1 in taken]
 
     def _find_virtual_tables(self) -> list[list[Function]]:
-        """The functions of each virtual table, by slot (Itanium C++ ABI 2.5.2).
+        """Returns the functions of each virtual table, by slot (Itanium C++ ABI 2.5.2).
 
-        A table begins with two words that are no functions; that of a class with several bases is several
-        such tables.
+        A table begins with two words that are not functions. The table of a class with several bases consists of
+        several such tables.
         """
         tables = []
         for symbol in self._elf.symbols:
@@ -169,7 +171,7 @@ class LinkedGraph:
             )
 
     def _targets_in_code(self, function: Function, code: list[Instruction]) -> list[Function]:
-        """Other functions that are called or jumped to, each once, in the code's order."""
+        """Returns the other functions that the code calls or jumps to, each once, in the order of the code."""
         targets: dict[int, Function] = {}
         for instruction in code:
             target = instruction.branch_target
@@ -182,7 +184,7 @@ class LinkedGraph:
         return list(targets.values())
 
     def _behind_veneer(self, function: Function) -> Function:
-        """The linker's way to a function that is out of a branch's reach leads to that function."""
+        """Returns the target of a veneer, which the linker inserts for a function beyond the range of a branch."""
         match = _VENEER.fullmatch(function.name)
         there = self._functions.named(match.group(1)) if match else []
         return there[0] if len(there) == 1 else function
@@ -198,7 +200,7 @@ class LinkedGraph:
 
 
 def _worse_of(a: Node, b: Node) -> Node:
-    """What holds for one function whichever of two records is that of the code in the image."""
+    """Returns a node that is an upper bound for both records, because either can be the code in the image."""
     return Node(a.name, max(a.frame, b.frame), a.calls | b.calls, a.problem or b.problem)
 
 

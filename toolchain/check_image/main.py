@@ -22,7 +22,7 @@ _TOP_SYMBOLS = 20
 
 @dataclass(frozen=True)
 class Units:
-    """What the compiler has written beside the object files."""
+    """The compiler output that is stored next to the object files."""
 
     records: list[call_graph.Record]
     call_sites: dict[tuple[str, str], set[call_sites.CallSite]]
@@ -122,8 +122,8 @@ def _read_units(paths: list[Path]) -> Units:
 def _report(
     options: argparse.Namespace, figures: Figures, vectors: Vectors, held: HeldInterrupts
 ) -> list[str]:
-    """Prints the line of figures and writes them beside the image; says if RAM does not hold them. (If flash does
-    not, the image cannot be linked.)"""
+    """Prints the sizes and writes them to a file next to the image. Returns a problem if RAM is too small. If flash is
+    too small, the linker already fails."""
     before = records.read(options.record).get((options.board, options.image.stem))
     flash, static, stack = figures.since(before)
     print(

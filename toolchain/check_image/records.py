@@ -1,4 +1,4 @@
-"""What images took when they were recorded: a line of BOARD IMAGE FLASH STATIC STACK each, in bytes."""
+"""The recorded sizes of images: one line of BOARD IMAGE FLASH STATIC STACK for each image, in bytes."""
 
 from __future__ import annotations
 
@@ -6,21 +6,21 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
 
-GROWTH = 1.05  # what may come without a new record
+GROWTH = 1.05  # permitted growth without a new record
 
 Key = tuple[str, str]  # board, image
 
 
 @dataclass(frozen=True)
 class Figures:
-    """Bytes."""
+    """Sizes in bytes."""
 
     flash: int
     static: int
     stack: int
 
     def since(self, before: Figures | None) -> list[str]:
-        """Flash, static RAM and stack as text, with what has changed."""
+        """Returns flash, static RAM and stack as text, with the changes since `before`."""
         if before is None:
             return [str(self.flash), str(self.static), str(self.stack)]
         return [
@@ -29,7 +29,7 @@ class Figures:
         ]
 
     def exceeds(self, before: Figures) -> bool:
-        """Whether flash, or RAM as a whole, has grown by more than 5 %."""
+        """Returns whether flash, or RAM as a whole, has grown by more than 5 %."""
         return self.flash > GROWTH * before.flash or self.static + self.stack > GROWTH * (
             before.static + before.stack
         )

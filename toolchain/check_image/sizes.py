@@ -1,4 +1,4 @@
-"""What an image takes of flash and RAM, and what takes it."""
+"""Calculates the flash and RAM that an image requires, in total and by symbol and folder."""
 
 from __future__ import annotations
 
@@ -10,32 +10,33 @@ from pathlib import Path
 from check_image.elf import Elf, Section, Symbol
 from check_image.functions import demangle, without_parameters
 
-# Armv7-M ARM B3.1, the system address map: SRAM, whatever the chip.
+# SRAM in the system address map, the same for all chips (Armv7-M ARM B3.1).
 RAM = range(0x20000000, 0x40000000)
 
 
 def flash(elf: Elf) -> int:
-    """Bytes: code, tables, vectors, and the first values of variables."""
+    """Returns the bytes of code, tables, vectors, and initial values of variables."""
     return sum(section.size for section in elf.sections if section.loaded)
 
 
 def static_ram(elf: Elf) -> int:
-    """Bytes of variables, with or without first values; a section that keeps room for the stack is not."""
+    """Returns the bytes of variables with or without initial values. Does not count a section that reserves the
+    stack."""
     return sum(s.size for s in elf.sections if s.address in RAM and not s.name.startswith(".stack"))
 
 
 def by_symbol(elf: Elf) -> list[tuple[int, str]]:
-    """Flash a symbol, the most first."""
+    """Returns the flash of each symbol in bytes, largest first."""
     symbols = _in_flash(elf)
     readable = demangle([symbol.name for symbol in symbols])
     return sorted(((s.size, without_parameters(readable[s.name])) for s in symbols), reverse=True)
 
 
 def by_folder(elf: Elf, path: Path, locations: Mapping[int, str], root: Path) -> list[tuple[int, str]]:
-    """Flash a source folder, the most first.
+    """Returns the flash of each source folder in bytes, largest first.
 
-    Code is attributed line by line, so that what was inlined counts where it was written. Where there is no
-    debugging information a function counts as a whole; `locations` are those of functions, by address.
+    Code is attributed by line, so that inlined code counts where it was written. A function without debugging
+    information counts as a whole: `locations` contains the locations of functions, by address.
     """
     sums: Counter[str] = Counter()
     code = [symbol for symbol in _in_flash(elf) if symbol.is_function]
@@ -54,7 +55,7 @@ def _halfwords(symbol: Symbol) -> range:
 
 
 def _sources(path: Path, addresses: list[int]) -> list[str]:
-    """The source file of each address; `??` where that is not known."""
+    """Returns the source file of each address, or `??` if it is unknown."""
     done = subprocess.run(
         ["arm-none-eabi-addr2line", "-e", str(path)],
         input="\n".join(map(hex, addresses)),
@@ -75,7 +76,7 @@ def _folder(source: str, root: Path) -> str:
 
 
 def _in_flash(elf: Elf) -> list[Symbol]:
-    """Each loaded symbol, once where it has several names."""
+    """Returns each loaded symbol, once even if it has several names."""
     seen: dict[int, Symbol] = {}
     for symbol in elf.symbols:
         if symbol.size and _is_loaded(symbol.section):

@@ -1,12 +1,12 @@
-"""The deepest stack below a function of a call graph, and of a main loop that interrupts interrupt."""
+"""Calculates the maximum stack depth below a function of a call graph, and of a main loop with interrupts."""
 
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
-# What an exception puts on the stack where there is no floating-point unit: eight words, and one more where
-# the stack is not at a multiple of eight bytes (Armv7-M ARM B1.5.6 and B1.5.7).
+# The stack that an exception uses without a floating-point unit: eight words, and one more if the stack is not aligned
+# to eight bytes (Armv7-M ARM B1.5.6 and B1.5.7).
 EXCEPTION_FRAME = 32 + 4
 
 
@@ -15,19 +15,19 @@ class Node:
     name: str
     frame: int  # bytes
     calls: frozenset[int]
-    problem: str = ""  # why nothing can be said of it; empty where something can
+    problem: str = ""  # why the stack is unknown; empty if it is known
 
 
 Graph = dict[int, Node]  # by address
 
 
 class Unbounded(Exception):
-    """The stack below a function has no bound that is known."""
+    """The stack depth below a function has no known upper bound."""
 
 
 @dataclass(frozen=True)
 class Chain:
-    """A function and the deepest of what it calls, and so on."""
+    """A function, the callee with the deepest stack, the deepest callee of that one, and so on."""
 
     nodes: tuple[Node, ...]
 
@@ -41,14 +41,14 @@ class Chain:
 
 @dataclass(frozen=True)
 class Level:
-    """Exception handlers of which none interrupts another."""
+    """Exception handlers that cannot interrupt each other."""
 
     name: str
     handlers: Sequence[int]  # addresses
 
 
 class DeepestChains:
-    """Finds them, each once."""
+    """Finds the deepest chain below each function and caches it."""
 
     def __init__(self, graph: Mapping[int, Node]) -> None:
         self._graph = graph
@@ -88,7 +88,7 @@ class Interruption:
 
 @dataclass(frozen=True)
 class WorstCase:
-    """The main loop at its deepest, interrupted there by the deepest handler of each level."""
+    """The main loop at its deepest point, interrupted there by the deepest handler of each level."""
 
     main: Chain
     interruptions: tuple[Interruption, ...]
@@ -99,7 +99,7 @@ class WorstCase:
 
 
 def worst_case(graph: Mapping[int, Node], reset: int, levels: Sequence[Level]) -> WorstCase:
-    """Raises Unbounded."""
+    """Calculates the worst case. Raises Unbounded if a stack depth is unknown."""
     chains = DeepestChains(graph)
     return WorstCase(
         chains.below(reset),

@@ -1,4 +1,4 @@
-"""The vector table of an image (Armv7-M ARM B1.5.2 and B1.5.3), and who in it may interrupt whom."""
+"""Reads the vector table of an image (Armv7-M ARM B1.5.2 and B1.5.3), and which handlers can interrupt each other."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ _CONFIGURABLE_FAULTS = range(4, 7)  # MemManage, BusFault, UsageFault
 
 
 class BadVectors(Exception):
-    """The table is missing, or holds what no processor could run."""
+    """The table is missing, or contains values that no processor can run."""
 
 
 class Vectors:
@@ -26,7 +26,7 @@ class Vectors:
             raise BadVectors("there is no section .vectors with a vector table")
         words = struct.unpack(f"<{len(section.data) // 4}I", section.data[: len(section.data) // 4 * 4])
         self.stack_top = words[0]
-        self.handlers: dict[int, Function] = {}  # by exception number, Reset among them
+        self.handlers: dict[int, Function] = {}  # by exception number, including Reset
         for number, word in enumerate(words[1:], start=1):
             if word == 0:
                 continue
@@ -42,10 +42,11 @@ class Vectors:
         return self.handlers[_RESET]
 
     def levels(self, named: Sequence[Sequence[str]]) -> list[Level]:
-        """The handlers by who may interrupt whom; each level may interrupt all others.
+        """Returns the handlers in levels. Handlers of one level cannot interrupt each other, but they can interrupt all
+        other levels.
 
-        `named`: the interrupts that have a priority of their own, a level each; the other interrupts are one
-        level. A fault's handler may fault once more, which is a HardFault; and NMI interrupts that too.
+        `named`: interrupts with a separate priority, one level for each entry. The other interrupts form one level. A
+        fault in a fault handler is a HardFault, and NMI can interrupt that.
         """
         own: list[Level] = []
         left = {
