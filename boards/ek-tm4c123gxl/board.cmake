@@ -1,7 +1,7 @@
-# Its processor.
+# The start-up code of its processor.
 set(start_up cortex_m/start_up.cpp)
 
-# What OpenOCD calls the board, and where a module's line is.
+# OpenOCD's script for the board, and the UART of the module's line.
 set(openocd_script board/ti_ek-tm4c123gxl.cfg)
 
 set(EX9000_BUS rs485 CACHE STRING "A module's line: rs485, a transceiver on UART1; usb, the debugger's serial port")

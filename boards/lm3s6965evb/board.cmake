@@ -1,5 +1,5 @@
-# Its processor.
+# The start-up code of its processor.
 set(start_up cortex_m/start_up.cpp)
 
-# What OpenOCD calls the board.
+# OpenOCD's script for the board.
 set(openocd_script board/ek-lm3s6965.cfg)
