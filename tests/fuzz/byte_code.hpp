@@ -30,7 +30,7 @@ namespace ex9000::fuzz {
 ///     \0 to \7   input 0 to 7 changes its level
 ///     \t      a tick
 ///     \i      INIT* is connected to GND, or disconnected
-///     \m      the memory stops to acknowledge, or acknowledges again
+///     \m      the memory stops acknowledging, or acknowledges again
 ///     \r      a reset
 ///
 /// The module ignores `\` before any other byte.

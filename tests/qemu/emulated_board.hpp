@@ -38,7 +38,8 @@ class EmulatedBoard {
   void set_memory(const std::string& bytes) { system::write_file(directory_ / "memory", bytes); }
 
  protected:
-  /// Stores `settings` in the EEPROM. If the pointer is null, erases the EEPROM, which means factory settings.
+  /// Stores `settings` in the EEPROM. If the pointer is null, erases the EEPROM, which means factory
+  /// settings.
   EmulatedBoard(const Model& model, const Settings* settings);
   ~EmulatedBoard() = default;
 

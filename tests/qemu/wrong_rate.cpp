@@ -14,7 +14,7 @@ bool same_rate(std::uint32_t a, std::uint32_t b) {
 }  // namespace
 
 std::chrono::nanoseconds duration_at(std::uint32_t baud, std::size_t bytes) {
-  constexpr std::int64_t kCharacter = 10'000'000'000;  // bits of a character, in ns at 1 baud
+  constexpr std::int64_t kCharacter = 10'000'000'000;  // 10 bits at 1 baud, in ns
   return std::chrono::nanoseconds(static_cast<std::int64_t>(bytes) * kCharacter / baud);
 }
 
