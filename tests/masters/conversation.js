@@ -96,7 +96,7 @@ function options() {
   for (let i = 2; i < process.argv.length; i += 2) {
     const [option, value] = process.argv.slice(i);
     if (!["--tty", "--tcp", "--baud"].includes(option) || value === undefined) {
-      giveUp(`${option}: wants --tty PATH or --tcp HOST:PORT, and --baud RATE`);
+      giveUp(`${option}: expected --tty PATH or --tcp HOST:PORT, and --baud RATE`);
     }
     given[option.slice(2)] = value;
   }
@@ -107,15 +107,15 @@ function options() {
 function whereTo() {
   const { tty, tcp, baud = 9600 } = options();
   if (!RATES.includes(Number(baud))) {
-    giveUp(`--baud ${baud}: wants one of ${RATES.join(", ")}`);
+    giveUp(`--baud ${baud}: expected one of ${RATES.join(", ")}`);
   }
   if ((tty === undefined) === (tcp === undefined)) {
-    giveUp("wants either --tty PATH or --tcp HOST:PORT");
+    giveUp("expected either --tty PATH or --tcp HOST:PORT");
   }
   if (tty !== undefined) {
     return { tty, baud: Number(baud) };
   }
-  const [, host, port] = tcp.match(/^(.+):(\d+)$/) ?? giveUp(`--tcp ${tcp}: wants HOST:PORT`);
+  const [, host, port] = tcp.match(/^(.+):(\d+)$/) ?? giveUp(`--tcp ${tcp}: expected HOST:PORT`);
   return { host, port: Number(port), baud: Number(baud) };
 }
 

@@ -184,7 +184,7 @@ int main(int argc, char** argv) {
   arguments.erase(arguments.begin(), arguments.begin() + (alone ? 2 : 0));
   const long milliseconds = arguments.empty() ? 1000 : std::atol(arguments[0].c_str());
   if (arguments.size() > 1 || milliseconds < 1) {
-    std::fprintf(stderr, "load: wants a number of milliseconds, or nothing for 1000\n");
+    std::fprintf(stderr, "load: expected a number of milliseconds (default: 1000)\n");
     return 2;
   }
   try {
