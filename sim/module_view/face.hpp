@@ -29,7 +29,8 @@ struct Plate {
   bool init = false;         ///< INIT* is connected to GND
   bool listening = false;    ///< the module has started up
   bool init_mode = false;    ///< the module has started up with INIT*
-  std::uint8_t address = 0;  ///< in force, like the members below: valid only while it listens
+  // address, baud, protocol and checksum are valid only if `listening`.
+  std::uint8_t address = 0;  ///< in force
   std::uint32_t baud = 0;
   Protocol protocol = Protocol::Ascii;
   bool checksum = false;
