@@ -139,8 +139,8 @@ void Module::dispatch(Time now) {
   }
 }
 
-/// Returns the time until the waiting frame may be judged. A Modbus frame is only complete after its silence,
-/// so the result is 0. A DCON frame is complete before its turn-around time begins.
+/// Returns the time until the waiting frame may be judged. This is 0 for a Modbus frame, which is complete
+/// only after its silence. A DCON frame is complete when its turn-around time begins.
 Duration Module::until_request(Time now) const {
   if (state_.speaks_modbus()) {
     return {};

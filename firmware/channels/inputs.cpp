@@ -30,7 +30,7 @@ void Inputs::collect(InputEdges& edges, unsigned channels) {
     }
     const std::uint32_t bit = 1U << channel;
     const std::uint32_t was_high = levels_ >> channel & 1U;
-    const std::uint32_t rising = (fresh + 1U - was_high) / 2U;  // the first of them where it was low
+    const std::uint32_t rising = (fresh + 1U - was_high) / 2U;  // the first edge rises if the level was low
     const std::uint32_t falling = fresh - rising;
     latched_high_ = static_cast<std::uint16_t>(latched_high_ | (rising != 0 ? bit : 0U));
     latched_low_ = static_cast<std::uint16_t>(latched_low_ | (falling != 0 ? bit : 0U));

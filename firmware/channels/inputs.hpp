@@ -10,58 +10,61 @@
 
 namespace ex9000 {
 
-/// Edges as they cross from the edge interrupt to the main loop: one count a channel. Rising and falling ones
-/// take turns, so the count and the level before tell how many there were of each.
+/// Passes edges from the edge interrupt to the main loop, as one count for each channel. Rising and falling
+/// edges alternate, so the main loop computes the number of each from the count and the previous level.
 class InputEdges {
  public:
-  /// Main loop, before edge interrupts come: the levels at reset, bit n for channel n, are no edges.
+  /// Sets the levels at reset, bit n is channel n; they do not count as edges. The main loop calls this
+  /// before it enables edge interrupts.
   void begin(std::uint16_t levels) { levels_ = levels; }
 
-  /// Edge interrupt: an edge was flagged on `channel`, whose level is now `level`. Where the level is what it
-  /// was before, there were two edges since. Channels beyond kMaxInputs are ignored.
+  /// The edge interrupt calls this when the hardware has flagged an edge on `channel`; `level` is its present
+  /// level. If that is the same level as before, there were two edges. Ignores channels from kMaxInputs on.
   void on_edge(unsigned channel, bool level);
 
-  /// Edges of all channels.
+  /// Returns the number of calls of `on_edge` for all channels; it wraps.
   [[nodiscard]] std::uint32_t edges() const { return edges_.load(); }
-  /// Main loop: those of one channel since it was last asked; at least every 65535 of them.
+  /// Returns the number of edges of one channel since the last call. For the main loop, which must call this
+  /// at least every 65535 edges.
   std::uint16_t collect(unsigned channel) { return channels_[channel].collect(); }
 
  private:
-  std::uint16_t levels_ = 0;  // interrupt
+  std::uint16_t levels_ = 0;  // for the interrupt only
   WrittenByInterrupt<std::uint32_t> edges_;
   std::array<EventTally, kMaxInputs> channels_;
 };
 
-/// What the protocols read; main loop only.
+/// Levels, latches and counters as the protocols read them. For the main loop only.
 class Inputs {
  public:
-  /// ASCII tells five decimal digits, Modbus 16 bits; counters wrap accordingly.
+  /// The range of the counters, after which they wrap: five decimal digits in ASCII, 16 bits in Modbus.
   enum class CounterRange : std::uint8_t { FiveDigits, SixteenBits };
 
-  /// `levels` as given to InputEdges::begin.
+  /// `levels`: the same value as for InputEdges::begin.
   void begin(std::uint16_t levels) { levels_ = levels; }
   void configure(CounterRange range, bool count_rising_edges) {
     range_ = range;
     count_rising_edges_ = count_rising_edges;
   }
 
-  /// Takes in what the interrupt has seen on the first `channels`; at least every 65535 edges of a channel.
+  /// Counts and latches the edges of the first `channels` channels. Must be called at least every 65535 edges
+  /// of a channel.
   void collect(InputEdges& edges, unsigned channels);
 
   [[nodiscard]] std::uint16_t levels() const { return levels_; }
-  /// Channels with a rising edge since reset or clearing.
+  /// Returns the channels with a rising edge since reset or `clear_latches`; bit n is channel n.
   [[nodiscard]] std::uint16_t latched_high() const { return latched_high_; }
-  /// Likewise with a falling one.
+  /// Returns the channels with a falling edge since reset or `clear_latches`; bit n is channel n.
   [[nodiscard]] std::uint16_t latched_low() const { return latched_low_; }
-  /// 0 to 99999 or 65535.
+  /// Returns the counter of `channel`: 0 to 99999 in ASCII, 0 to 65535 in Modbus.
   [[nodiscard]] std::uint32_t counter(unsigned channel) const { return counters_[channel]; }
 
   void clear_latches() { latched_high_ = latched_low_ = 0; }
-  /// Bit n of `channels` clears counter n.
+  /// Clears counter n for each bit n that is set in `channels`.
   void clear_counters(std::uint16_t channels);
 
  private:
-  std::uint32_t edges_seen_ = 0;  ///< of all channels
+  std::uint32_t edges_seen_ = 0;  ///< InputEdges::edges at the last `collect`
   CounterRange range_ = CounterRange::FiveDigits;
   bool count_rising_edges_ = false;
   std::uint16_t levels_ = 0;

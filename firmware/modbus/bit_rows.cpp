@@ -1,4 +1,4 @@
-// What stands behind the coils and discrete inputs.
+// The read and write functions of the coils and discrete inputs.
 #include "firmware/modbus/registers.hpp"
 
 namespace ex9000::modbus {

@@ -1,5 +1,5 @@
-// Function 08: Modbus Application Protocol V1.1b3, 6.8; what the counters count: Modbus over Serial Line
-// V1.02, appendix A, and wire.md D1.
+// Function 08: Modbus Application Protocol V1.1b3, 6.8. For the meaning of the counters, see Modbus over
+// Serial Line V1.02, appendix A, and wire.md D1.
 #include "firmware/modbus/functions.hpp"
 
 namespace ex9000::modbus {
@@ -27,7 +27,7 @@ int counter_of(const Exchange& exchange, std::uint16_t subfunction) {
   const Diagnostics& own = exchange.state.diagnostics;
   switch (subfunction) {
     case kClearCounters:
-      return 0;  // the reply is the request
+      return 0;  // the reply echoes the request, whose data is 0
     case kBusMessages:
       return static_cast<std::uint16_t>(line.bus_messages());
     case kBusErrors:

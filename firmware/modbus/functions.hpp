@@ -1,4 +1,4 @@
-// The Modbus functions, one row a function - wire.md section 7.
+// The Modbus functions, one table row each - wire.md section 7.
 #pragma once
 
 #include <cstdint>
@@ -10,8 +10,9 @@
 
 namespace ex9000::modbus {
 
-/// Judges a request, appends to the reply what follows address and function code, and says what is to be
-/// done. The frame is address, function code and data, without CRC; at least 2 bytes.
+/// Judges a request, appends the data after address and function code to the reply, and records in the
+/// outcome what the module must do. The frame contains address, function code and data, without CRC; it has
+/// at least 2 bytes.
 using Handler = Refusal (*)(Exchange& exchange);
 
 // read_functions.cpp
@@ -31,13 +32,13 @@ Refusal vendor_function(Exchange& exchange);
 
 enum class AtBroadcast : std::uint8_t {
   Ignored,
-  CarriedOut,  ///< without a reply
+  CarriedOut,  ///< but without a reply
 };
 
 struct FunctionRow {
   std::uint8_t code = 0;
   Needs needs = Needs::Nothing;
-  AtBroadcast at_broadcast = AtBroadcast::Ignored;  ///< a request to address 0
+  AtBroadcast at_broadcast = AtBroadcast::Ignored;  ///< effect of a request to address 0
   Handler handler = nullptr;
 };
 

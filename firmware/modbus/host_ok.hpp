@@ -1,4 +1,4 @@
-// The request "Send Host OK" of Modbus (manuals, mapping tables; wire.md section 7).
+// The Modbus request "Send Host OK" (manuals, mapping tables; wire.md section 7).
 #pragma once
 
 #include <cstdint>
@@ -9,8 +9,8 @@ namespace ex9000::modbus {
 
 constexpr std::uint16_t kHostOkRegister = 0x3038;
 
-/// Whether `frame`, without its CRC, is a host OK: function 03 or 04, register 0x3038, quantity 0 or 1. The
-/// receive interrupt asks, so that a host OK is never lost while a request waits.
+/// Returns whether `frame`, without its CRC, is a host OK: function 03 or 04, register 0x3038, quantity 0
+/// or 1. The receive interrupt calls this, so that no host OK is lost while a request is waiting.
 constexpr bool is_host_ok(Bytes frame) {
   constexpr unsigned kSize = 6;
   return frame.size == kSize && (frame[1] == 0x03 || frame[1] == 0x04) && frame.word(2) == kHostOkRegister &&

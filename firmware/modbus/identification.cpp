@@ -1,5 +1,5 @@
-// Who is there: functions 11 and 2B/0E (Modbus Application Protocol V1.1b3, 6.13 and 6.21) and the maker's
-// own 46 (manuals, mapping table).
+// Identification of the module: functions 11 and 2B/0E (Modbus Application Protocol V1.1b3, 6.13 and 6.21)
+// and the vendor's function 46 (manuals, mapping table).
 #include "firmware/modbus/functions.hpp"
 
 namespace ex9000::modbus {
@@ -10,14 +10,14 @@ constexpr std::uint8_t kRunning = 0xFF;
 
 constexpr std::string_view kVendor = "OpenEX9000";
 constexpr std::uint8_t kReadDeviceIdMei = 0x0E;
-constexpr std::uint8_t kConformity = 0x82;  // regular identification, by stream and by object
+constexpr std::uint8_t kConformity = 0x82;  // regular identification, stream access and individual access
 
 enum ReadDeviceIdCode : std::uint8_t { kBasic = 1, kRegular = 2, kExtended = 3, kOneObject = 4 };
 enum ObjectId : std::uint8_t {
   kVendorName = 0,
   kProductCode = 1,
   kRevision = 2,
-  kVendorUrl = 3,  // optional in the standard, and absent
+  kVendorUrl = 3,  // optional in the standard; this firmware does not have it
   kProductName = 4,
   kModelName = 5,
   kUserApplicationName = 6,
@@ -90,14 +90,14 @@ Refusal read_device_identification(Exchange& exchange) {
     if (code == kOneObject) {
       return Refusal::UnknownObject;
     }
-    object = kVendorName;  // the standard: begin at the beginning
+    object = kVendorName;  // the standard requires a restart at the first object
   }
   const std::uint8_t last = code == kOneObject ? object : last_of_level;
   exchange.reply.put(kReadDeviceIdMei);
   exchange.reply.put(code);
   exchange.reply.put(kConformity);
-  exchange.reply.put(std::uint8_t{0});  // nothing follows in another reply
-  exchange.reply.put(std::uint8_t{0});
+  exchange.reply.put(std::uint8_t{0});  // "more follows": no
+  exchange.reply.put(std::uint8_t{0});  // next object: none
   const std::size_t count_at = exchange.reply.size();
   exchange.reply.put(std::uint8_t{0});
   std::size_t count = 0;

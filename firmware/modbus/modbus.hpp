@@ -1,15 +1,16 @@
-// Answers Modbus RTU requests - wire.md section 7.
+// Replies to Modbus RTU requests - wire.md section 7.
 #pragma once
 
 #include "firmware/request/exchange.hpp"
 
 namespace ex9000::modbus {
 
-/// Judges an accepted frame. The reply is what to send, CRC included, once the outcome is done; it stays
-/// empty for broadcasts. Changes nothing by itself.
+/// Judges the frame of `exchange` and writes its reply, including the CRC. The reply must be sent after the
+/// outcome has been carried out; it is empty for a broadcast. Changes nothing but `exchange`.
 void answer(Exchange& exchange);
 
-/// Makes a reply to a request that could not be stored an exception; a broadcast's stays empty.
+/// Replaces the reply with an exception, because the settings could not be stored. An empty reply to a
+/// broadcast stays empty.
 void refuse_store(Exchange& exchange);
 
 }  // namespace ex9000::modbus

@@ -1,4 +1,5 @@
-// The Modbus register map, one row a range of coils, discrete inputs or registers - wire.md section 7.
+// The Modbus register map, one table row for each range of coils, discrete inputs or registers - wire.md
+// section 7.
 #pragma once
 
 #include <cstdint>
@@ -12,7 +13,7 @@
 
 namespace ex9000::modbus {
 
-/// Function codes a row is listed for.
+/// A set of function codes that can access a row; bit n is function n.
 using Functions = std::uint16_t;
 constexpr Functions kReadCoils = 1U << 0x1U;
 constexpr Functions kReadDiscreteInputs = 1U << 0x2U;
@@ -21,10 +22,10 @@ constexpr Functions kReadInputRegisters = 1U << 0x4U;
 constexpr Functions kWriteSingleCoil = 1U << 0x5U;
 constexpr Functions kWriteSingleRegister = 1U << 0x6U;
 constexpr Functions kWriteMultipleCoils = 1U << 0xFU;
-/// Function 10 (hex) is allowed wherever 06 is.
+/// Functions 06 and 10 (hex) can always access the same rows, so they share one bit.
 constexpr Functions kWriteRegisters = kWriteSingleRegister;
 
-/// How many coils or registers a row has: so many, or as many as the model has channels.
+/// The number of coils or registers of a row: a fixed number, or the number of channels of the model.
 enum class Width : std::uint8_t { One = 1, Two = 2, PerOutput, PerInput };
 
 constexpr unsigned width_of(Width width, const Model& model) {
@@ -34,41 +35,42 @@ constexpr unsigned width_of(Width width, const Model& model) {
   return width == Width::PerOutput ? model.outputs : model.inputs;
 }
 
-/// Bits to write: those of `mask`, to the bits of `value`; bit 0 is the row's first coil.
+/// Coils to write: each coil whose bit is set in `mask` gets its bit in `value`. Bit 0 is the row's first
+/// coil.
 struct BitWrite {
   std::uint16_t mask = 0;
   std::uint16_t value = 0;
 };
 
-/// What else holds for a row that can be written.
+/// Additional rules for writing to a row.
 using Rules = std::uint8_t;
 constexpr Rules kPlain = 0;
-constexpr Rules kDrivesOutputs = 1U << 0U;  ///< refused with 04 while the timeout status is set
-constexpr Rules kOnlyOn = 1U << 1U;         ///< function 05 with 0000 is refused with 03
-constexpr Rules kConfiguration = 1U << 2U;  ///< never by broadcast
+constexpr Rules kDrivesOutputs = 1U << 0U;  ///< exception 04 while the timeout status is set
+constexpr Rules kOnlyOn = 1U << 1U;         ///< exception 03 for function 05 with 0000
+constexpr Rules kConfiguration = 1U << 2U;  ///< broadcasts are ignored
 
-/// What the module itself needs of a row of coils or discrete inputs.
+/// The part of a row of coils or discrete inputs that an image contains.
 struct BitRow {
   std::uint16_t first = 0;
   Width width = Width::One;
   Needs needs = Needs::Nothing;
   Functions functions = 0;
   Rules rules = kPlain;
-  std::uint16_t (*read)(const State& state) = nullptr;  ///< the whole row; bit 0 is the first
+  std::uint16_t (*read)(const State& state) = nullptr;  ///< returns the whole row; bit 0 is the first coil
   Refusal (*write)(const State& state, BitWrite bits, Outcome& outcome) = nullptr;
 
   [[nodiscard]] constexpr bool has(Rules rule) const { return (rules & rule) != 0; }
 };
 
-/// Likewise of registers.
+/// The part of a row of registers that an image contains.
 struct WordRow {
   std::uint16_t first = 0;
   Width width = Width::One;
   Needs needs = Needs::Nothing;
   Functions functions = 0;
   Rules rules = kPlain;
-  std::uint8_t lowest = 0;  ///< of the values that may be written
-  std::uint8_t highest = 0;
+  std::uint8_t lowest = 0;   ///< lowest value that may be written
+  std::uint8_t highest = 0;  ///< highest value that may be written
   std::uint16_t (*read)(const State& state, unsigned index) = nullptr;
   Refusal (*write)(const State& state, std::uint16_t value, Outcome& outcome) = nullptr;
 
@@ -103,12 +105,11 @@ Refusal write_baud_code(const State& state, std::uint16_t value, Outcome& outcom
 std::uint16_t read_watchdog_timeout(const State& state, unsigned index);
 Refusal write_watchdog_timeout(const State& state, std::uint16_t value, Outcome& outcome);
 
-/// A row with what people read of it. The texts are not referred to by the module, so an image does not carry
-/// them.
+/// A row with its documentation. The firmware never uses the texts, so an image does not contain them.
 struct BitRegister {
   std::string_view id;  ///< stable, for coverage and cross-reference
   std::string_view meaning;
-  std::string_view range;  ///< of what may be written; empty where nothing may
+  std::string_view range;  ///< values that may be written; empty if the row is read-only
   BitRow row;
 };
 
@@ -206,8 +207,7 @@ inline constexpr auto kWordRegisters = table<WordRegister>({
      "0 to 255; not 0 while the host watchdog is enabled",
      {0x01E8, Width::One, Needs::Nothing, kReadHoldingRegisters | kWriteRegisters, kPlain, 0, 255,
       read_watchdog_timeout, write_watchdog_timeout}},
-    // For people only: host OK is decided where the frame is received and never looked up, so no function is
-    // listed.
+    // This row is documentation only. The receiver recognises a host OK, so no function looks this row up.
     WordRegister{"host-ok",
                  "host OK: a request for 0 or 1 registers from here restarts the host watchdog and gets no "
                  "reply; address 0 reaches all modules",
@@ -215,10 +215,11 @@ inline constexpr auto kWordRegisters = table<WordRegister>({
                  {kHostOkRegister, Width::One, Needs::Nothing, 0, kPlain, 0, 0, nullptr, nullptr}},
 });
 
-/// The row of coils or discrete inputs that holds `quantity` of them (1 to 2000) from `address` on and that
-/// is listed for `function` on this model, or null.
+/// Returns the row that contains the `quantity` (1 to 2000) coils or discrete inputs from `address` on and
+/// that `function` can access on this model, or null.
 const BitRow* find_bits(const Model& model, Functions function, unsigned address, unsigned quantity);
-/// The row of registers that `address` (also one beyond 0xFFFF, where there is none) lies in; likewise.
+/// Returns the row that contains the register `address` and that `function` can access on this model, or
+/// null. `address` may be above 0xFFFF; the result is then null.
 const WordRow* find_word(const Model& model, Functions function, unsigned address);
 
 }  // namespace ex9000::modbus

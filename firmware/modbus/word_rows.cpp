@@ -1,4 +1,4 @@
-// What stands behind the registers.
+// The read and write functions of the registers.
 #include "firmware/modbus/registers.hpp"
 
 namespace ex9000::modbus {
@@ -8,7 +8,7 @@ std::uint16_t read_counter(const State& state, unsigned index) {
 }
 
 std::uint16_t read_module_code(const State& state, unsigned index) {
-  // 0x9042 reads 0x0090, 0x4200.
+  // Example: the code 0x9042 is read as 0x0090, 0x4200.
   const unsigned code = state.model().modbus_code;
   return static_cast<std::uint16_t>(index == 0 ? code >> 8U : code << 8U);
 }

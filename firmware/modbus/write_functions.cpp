@@ -1,6 +1,5 @@
-// Functions 05, 06, 0F, 10: Modbus Application Protocol V1.1b3, 6.5, 6.6, 6.11, 6.12. What is wrong is found
-// in the order length and quantity, address, value, timeout status; nothing is changed unless all of it is
-// right.
+// Functions 05, 06, 0F, 10: Modbus Application Protocol V1.1b3, 6.5, 6.6, 6.11, 6.12. The order of the checks
+// is: length and quantity, address, value, timeout status. A request that fails a check changes nothing.
 #include "firmware/modbus/functions.hpp"
 #include "firmware/modbus/registers.hpp"
 
@@ -15,12 +14,12 @@ constexpr unsigned kMostRegisters = 123;
 constexpr std::uint16_t kCoilOn = 0xFF00;
 constexpr std::uint16_t kCoilOff = 0x0000;
 
-/// The reply of all four: the request's address and value, or quantity.
+/// Writes the reply of all four functions: address and value, or address and quantity, of the request.
 void put_echo(Exchange& exchange) { exchange.reply.put(exchange.frame.first(kSingleSize).from(2)); }
 
 Refusal write_bits(Exchange& exchange, const BitRow& row, BitWrite bits) {
   if (exchange.broadcast && row.has(kConfiguration)) {
-    return Refusal::None;  // ignored: one frame must not reconfigure every module
+    return Refusal::None;  // ignored, because one frame must not reconfigure all modules
   }
   const Refusal refusal = row.write(exchange.state, bits, exchange.outcome);
   if (refusal != Refusal::None) {
@@ -40,7 +39,8 @@ Refusal check_value(Exchange& exchange, const WordRow& row, std::uint16_t value)
   return row.write(exchange.state, value, exchange.outcome);
 }
 
-/// Length, quantity and byte count of 0F and 10, which carry `bits` a value.
+/// Checks length, quantity and byte count of functions 0F and 10. `most`: largest quantity; `bits`: bits per
+/// value.
 Refusal check_multiple(Bytes frame, unsigned most, unsigned bits) {
   if (frame.size < kMultipleHeader) {
     return Refusal::WrongLength;

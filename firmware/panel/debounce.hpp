@@ -1,14 +1,14 @@
-// A switch that bounces.
+// Debounces a switch.
 #pragma once
 
 #include "firmware/time.hpp"
 
 namespace ex9000 {
 
-/// A level counts once it has stood for 10 ms (wire.md D13).
+/// Accepts a level when it has been stable for 10 ms (wire.md D13).
 class Debounce {
  public:
-  /// Main loop, with the switch as it is: at every tick, and when `next_sample` has come.
+  /// Processes the present level of the switch. The main loop calls this at every tick and at `next_sample`.
   void sample(bool level, Time now) {
     if (!sampled_ || level != candidate_) {
       sampled_ = true;
@@ -26,11 +26,10 @@ class Debounce {
     }
   }
 
-  /// Whether any level has stood long enough since reset.
+  /// Returns whether a level has been accepted since reset.
   [[nodiscard]] bool known() const { return known_; }
   [[nodiscard]] bool level() const { return level_; }
-  /// When to sample the switch again so that no bounce of a level that settles is missed; disarmed if it
-  /// stands still.
+  /// Returns when to sample the switch again, so that no bounce is missed; disarmed if the level is stable.
   [[nodiscard]] Deadline next_sample() const { return next_sample_; }
 
  private:

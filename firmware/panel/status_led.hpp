@@ -12,11 +12,11 @@ class StatusLed {
  public:
   enum class Pattern : std::uint8_t {
     Steady,              ///< on
-    HostTimeout,         ///< 2 Hz, until the timeout status is cleared (manuals 1.8, 2.19)
+    HostTimeout,         ///< flashes at 2 Hz until the timeout status is cleared (manuals 1.8, 2.19)
     SettingsUnreadable,  ///< two short flashes every 2 s (wire.md D8)
   };
 
-  /// Main loop, once a turn.
+  /// Selects and advances the pattern. The main loop calls this in every pass.
   void show(Pattern pattern, Time now) {
     if (pattern != pattern_) {
       pattern_ = pattern;
@@ -29,15 +29,15 @@ class StatusLed {
   }
 
   [[nodiscard]] Pattern pattern() const { return pattern_; }
-  /// Even phases are lit.
+  /// Returns whether the LED is on: it is on in even phases.
   [[nodiscard]] bool lit() const { return phase_ % 2 == 0; }
-  /// When it changes; disarmed while it is steady.
+  /// Returns when the LED changes next; disarmed while it is steady.
   [[nodiscard]] Deadline next_change() const { return next_; }
 
  private:
   static constexpr unsigned kPhases = 4;
 
-  /// How long a phase lasts.
+  /// Returns the duration of the present phase.
   [[nodiscard]] Duration length() const {
     if (pattern_ == Pattern::HostTimeout) {
       return milliseconds(250);

@@ -44,7 +44,7 @@ struct State {
   std::uint16_t outputs = 0;   ///< bit n is channel n, 1 = energised
   Inputs inputs;
   Sample sample;
-  bool reset_status = true;  ///< no `$AA5` since reset
+  bool reset_status = true;  ///< true until `$AA5` reads it
   Diagnostics diagnostics;
 
   [[nodiscard]] constexpr const Model& model() const { return chosen.get(); }

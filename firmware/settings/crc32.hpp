@@ -1,4 +1,4 @@
-// CRC-32, which guards the stored settings.
+// The CRC-32 of the stored settings.
 #pragma once
 
 #include <cstdint>
@@ -7,8 +7,8 @@
 
 namespace ex9000 {
 
-/// CRC-32 as IEEE 802.3, 3.2.9 defines it, over bytes that come one after the other. It is computed bit by
-/// bit, without a table, because settings are loaded and stored rarely: some 60 instructions a byte.
+/// Computes the CRC-32 of IEEE 802.3, 3.2.9, byte by byte. It uses no table and needs about 60 instructions
+/// per byte, because settings are rarely loaded and stored.
 class Crc32 {
  public:
   constexpr void add(std::uint8_t byte) {

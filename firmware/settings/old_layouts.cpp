@@ -8,7 +8,7 @@ bool has_check(const Model& model, Bytes page, std::size_t at) {
   return page.low_byte_first_32(at) == settings_check(model, page.first(at));
 }
 
-/// A name that is too long becomes an empty one, which no model could have stored.
+/// A name that is too long becomes an empty name, which no model could have stored.
 Name name_at(Bytes page, std::size_t at, std::size_t length) {
   return Name(page.from(at).first(length <= kMaxNameLength ? length : 0));
 }
@@ -54,7 +54,7 @@ StoredSettings read_layout_2(Bytes page) {
 std::optional<StoredSettings> read_old_layout(const Model& model, Bytes page) {
   constexpr std::size_t kCheckOf1 = 21;
   constexpr std::size_t kCheckOf2 = 24;
-  StoredSettings stored;  // of layout 0, which does not exist
+  StoredSettings stored;  // layout 0, which does not exist
   if (page.low_byte_first_16(22) == 2 && (page[5] | page[6]) <= 1 && has_check(model, page, kCheckOf2)) {
     stored = read_layout_2(page);
   } else if (page[0] == 1 && has_check(model, page, kCheckOf1)) {

@@ -1,4 +1,4 @@
-// Settings as earlier firmware has stored them.
+// The layouts in which earlier firmware stored the settings.
 #pragma once
 
 #include <cstddef>
@@ -10,7 +10,8 @@
 
 namespace ex9000 {
 
-/// A copy of layout 1 or 2 took one page of the memory. All numbers have the low byte first.
+/// A copy of layout 1 or 2 occupied one page of the memory. All numbers have the low byte first. The check is
+/// `settings_check` over all bytes before it.
 ///
 ///     layout 1                        layout 2
 ///     0       layout, 1               0       address
@@ -21,21 +22,21 @@ namespace ex9000 {
 ///     6       protocol                5       watchdog enabled, 0 or 1
 ///     7       bit 0 watchdog enabled  6       timeout status, 0 or 1
 ///             bit 1 timeout status    7       0
-///     8       watchdog timeout        8-14    name, filled up with 0
+///     8       watchdog timeout        8-14    name, padded with 0
 ///     9-10    power-on value          15      length of the name
 ///     11-12   safe value              16-17   power-on value
 ///     13      length of the name      18-19   safe value
-///     14-20   name, filled up with 0  20-21   sequence
+///     14-20   name, padded with 0     20-21   sequence
 ///                                     22-23   layout, 2
 ///     21-24   check                   24-27   check
 constexpr std::size_t kOldCopySize = 28;
 
-/// Zeros in these bytes make a copy of either layout invalid: its check, and more.
+/// Zeros in these bytes, which include the check, make a copy of either layout invalid.
 constexpr std::size_t kOldInvalidatedFrom = 20;
 constexpr std::size_t kOldInvalidatedSize = kOldCopySize - kOldInvalidatedFrom;
 
-/// Nothing unless `page`, kOldCopySize bytes, is a good copy of either layout: its check is right, and the
-/// model could have stored these settings.
+/// Returns the settings if `page`, kOldCopySize bytes, is a good copy of either layout: its check is correct,
+/// and the model could have stored these settings. Otherwise returns nothing.
 std::optional<StoredSettings> read_old_layout(const Model& model, Bytes page);
 
 }  // namespace ex9000

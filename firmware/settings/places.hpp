@@ -1,4 +1,4 @@
-// Where the memory holds copies of the settings.
+// The places in the memory that hold copies of the settings.
 #pragma once
 
 #include <array>
@@ -12,28 +12,29 @@
 
 namespace ex9000 {
 
-/// The smallest page of any supported memory, in bytes. A power cut spoils at most one page, and no write
-/// crosses the end of one.
+/// The smallest page of any supported memory, in bytes. No write crosses the end of a page, so a power
+/// failure damages at most one page.
 constexpr std::size_t kMemoryPage = 32;
 
-/// A part of the memory for one copy. It begins at the beginning of a page and shares no page with another.
+/// A part of the memory for one copy. It begins at the start of a page and shares no page with another place.
 struct Place {
   std::uint16_t address;
-  bool old;  ///< for layouts 1 and 2; never written again, except that a copy there is invalidated
+  bool old;  ///< a place of layouts 1 and 2; this firmware writes to it only to invalidate the copy
 };
 
-/// Two places take turns. The places of older firmware keep their settings until this firmware stores
-/// something, and so a power cut in its first store leaves them.
+/// The first two places are written in turn. The other two belong to older firmware. Their settings stay
+/// valid until the first save of this firmware is verified, so a power failure during that save does not lose
+/// them.
 constexpr std::array<Place, 4> kPlaces{{{0x0080, false}, {0x0100, false}, {0x0000, true}, {0x0020, true}}};
 static_assert(kOldCopySize <= kMemoryPage && kRecordRoom <= 0x0080, "a copy fits its place");
 
-/// What of a copy is read first tells how long the copy is: its first page. 0: this is no copy.
+/// Returns the size in bytes of the copy whose first page is given, or 0 if it is not a copy.
 std::size_t copy_size(const Place& place, Bytes first_page);
 
-/// Nothing unless `copy`, which lies at `place`, is a good one.
+/// Returns the settings if `copy`, the bytes at `place`, is a good copy. Otherwise returns nothing.
 std::optional<StoredSettings> read_copy(const Model& model, const Place& place, Bytes copy);
 
-/// Whether nothing was ever written where `bytes` were read: an erased EEPROM reads FF.
+/// Returns whether `bytes` come from memory that was never written: an erased EEPROM contains FF.
 bool is_blank(Bytes bytes);
 
 }  // namespace ex9000

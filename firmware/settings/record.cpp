@@ -25,7 +25,7 @@ static_assert(sizeof(bool) == 1 && sizeof(Protocol) == 1 && sizeof(Name) == kMax
               "a setting takes as many bytes in a record as in the microcontroller");
 static_assert(kKnownSettings <= kRoomForSettings, "the settings do not fit in a record");
 
-/// Puts settings into a record, one behind the other.
+/// Writes settings into a record, one after the other.
 class Encoder {
  public:
   explicit Encoder(std::uint8_t* to) : to_(to) {}
@@ -55,8 +55,8 @@ class Encoder {
   std::uint8_t* to_;
 };
 
-/// Takes settings out of a record, in the same order. A setting that the record does not reach is left as it
-/// is.
+/// Reads settings from a record, in the same order. If the record ends before a setting, the setting keeps
+/// its value.
 class Decoder {
  public:
   explicit Decoder(Bytes from) : from_(from) {}
@@ -71,7 +71,7 @@ class Decoder {
     from_.data += sizeof value;
     from_.size -= sizeof value;
   }
-  /// No byte had a value that its type does not have.
+  /// Returns false if a byte had a value that its type does not allow.
   [[nodiscard]] bool valid() const { return valid_; }
 
  private:
@@ -86,7 +86,7 @@ class Decoder {
   }
   void decode(std::uint16_t& value) { value = from_.low_byte_first_16(0); }
   void decode(Name& value) {
-    // A name that is too long becomes an empty one, which no model could have stored.
+    // A name that is too long becomes an empty name, which no model could have stored.
     const std::size_t length = from_.data[kMaxNameLength];
     value = Name(Bytes{from_.data, length <= kMaxNameLength ? length : 0});
   }

@@ -1,4 +1,4 @@
-// The settings: what a module remembers without power, and how a command changes it - wire.md section 8.
+// The settings, which a module keeps without power, and changes to them - wire.md section 8.
 #pragma once
 
 #include <array>
@@ -25,7 +25,7 @@ constexpr bool is_modbus_address(unsigned address) {
   return address >= kFirstModbusAddress && address <= kLastModbusAddress;
 }
 
-/// The module's name, 1 to 7 characters 0x20 to 0x7E.
+/// The module's name: 1 to 7 characters from 0x20 to 0x7E.
 class Name {
  public:
   constexpr Name() = default;
@@ -43,7 +43,7 @@ class Name {
   static constexpr bool is_name_character(std::uint8_t byte) { return byte >= 0x20 && byte <= 0x7E; }
 
   [[nodiscard]] constexpr Bytes bytes() const { return {characters_.data(), length_}; }
-  /// 1 to `longest` characters, all of them allowed.
+  /// Returns whether the name has 1 to `longest` characters and all of them are allowed.
   [[nodiscard]] bool is_possible(unsigned longest) const;
 
   friend constexpr bool operator==(const Name& a, const Name& b) {
@@ -69,19 +69,18 @@ class Name {
 constexpr std::uint8_t kFactoryAddress = 1;
 constexpr std::uint8_t kFactoryWatchdogTimeout = 0xFF;
 
-/// Every setting, declared once: SETTING(type, name, factory value, whether a value is possible). The last
-/// two may use `model`, and the last one `value`. What members Settings and SettingsChange have, what is
-/// stored, and how, follows from this list. It is in the order in which a record holds the settings
-/// (record.hpp). A new setting is appended. None is ever removed, moved or given another type, because
-/// memories in the field hold them.
+/// Declares each setting once: SETTING(type, name, factory value, whether `value` is possible). The last two
+/// may use `model`, and the last one may use `value`. This list defines the members of Settings and of
+/// SettingsChange and the layout of a record (record.hpp), in the same order. Append new settings. Never
+/// remove or move a setting or change its type, because memories in the field contain them.
 ///
-///     address           the module's own
+///     address           the module's address
 ///     baud_code         CC (model/baud.hpp)
 ///     format            FF: kFormatRisingEdge, kFormatChecksum
-///     protocol          spoken from the next reset on
-///     watchdog_timeout  of the host watchdog, VV, in 0.1 s
-///     watchdog_enabled  the host watchdog runs
-///     timeout_status    the host watchdog has expired and nobody has cleared that
+///     protocol          protocol from the next reset on
+///     watchdog_timeout  timeout of the host watchdog, VV, in units of 0.1 s
+///     watchdog_enabled  the host watchdog is running
+///     timeout_status    the host watchdog has expired and no command has cleared the status
 ///     name              the module's name
 ///     power_on_value    outputs from reset on; bit n is output channel n
 ///     safe_value        outputs while the timeout status is set
@@ -104,23 +103,24 @@ struct Settings {
   EX9000_SETTINGS(EX9000_MEMBER)
 #undef EX9000_MEMBER
 
-  /// wire.md section 2: the settings of a new module.
+  /// Returns the settings of a new module (wire.md section 2).
   static Settings factory(const Model& model);
 
-  /// Whether this model could ever have stored these: each value is possible, and they fit each other.
+  /// Returns whether `model` could have stored these settings: each value is possible, and no value
+  /// contradicts another one.
   [[nodiscard]] bool possible_for(const Model& model) const;
 
   friend bool operator==(const Settings& a, const Settings& b);
   friend bool operator!=(const Settings& a, const Settings& b) { return !(a == b); }
 };
 
-/// New values for some of the settings: what one command changes, all or nothing.
+/// New values for some of the settings. A command changes all of them or none.
 struct SettingsChange {
 #define EX9000_MEMBER(type, name, factory_value, possible) std::optional<type> name{};
   EX9000_SETTINGS(EX9000_MEMBER)
 #undef EX9000_MEMBER
 
-  /// `settings` with this change made; a setting without a new value stays as it is.
+  /// Returns `settings` with this change. Settings without a new value stay the same.
   [[nodiscard]] Settings applied_to(const Settings& settings) const;
 };
 // NOLINTEND(bugprone-macro-parentheses)

@@ -11,7 +11,7 @@ constexpr Duration kRetry = milliseconds(1000);  // wire.md D15
 void SettingsKeeper::save(const Settings& settings, Time now) {
   end_own_save(now);
   store_.begin_saving(settings);
-  may_differ_ = true;  // even if it succeeds: the host watchdog may expire meanwhile
+  may_differ_ = true;  // even if the save succeeds, because the host watchdog may expire during it
 }
 
 void SettingsKeeper::poll(const Settings& in_force, Time now) {

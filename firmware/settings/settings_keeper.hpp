@@ -1,4 +1,4 @@
-// Keeps the stored settings equal to those in force, through failures of the memory.
+// Keeps the stored settings equal to the settings in force, even if accesses to the memory fail.
 #pragma once
 
 #include "firmware/model/model.hpp"
@@ -8,43 +8,51 @@
 
 namespace ex9000 {
 
-/// Loads the settings at reset, and stores those of a command when it is asked to. What nobody asked for it
-/// does by itself: it stores a watchdog timeout, which changes settings at once, repeats the first save
-/// after an update if the power failed in it, and invalidates a copy that must not count. That is retried
-/// every second until it succeeds (wire.md D15). Main loop only; nothing blocks.
+/// Loads the settings at reset and stores the settings of a command. In addition, it does the following
+/// without a command:
+/// - It stores a watchdog timeout, which changes the settings in force at once.
+/// - It repeats the first save after a firmware update if the power failed during that save.
+/// - It invalidates copies that must not be used.
+///
+/// It retries these every second until they succeed (wire.md D15). For the main loop only. No function
+/// blocks.
 class SettingsKeeper {
  public:
   explicit constexpr SettingsKeeper(const Model& model) : store_(model) {}
 
-  /// Until the memory has been read. Afterwards `stored()` and `unreadable()` hold.
+  /// Returns whether the memory is still being read. Afterwards `stored()` and `unreadable()` are valid.
   [[nodiscard]] bool loading() const { return store_.loading(); }
-  /// What a reset now would find, if `certain()`.
+  /// Returns the settings that a reset now would load, if `certain()`.
   [[nodiscard]] const Settings& stored() const { return store_.stored(); }
-  /// The memory held something at reset that is not this model's settings, and none have been stored since.
+  /// Returns whether the memory contained something other than settings of this model at reset, and no
+  /// settings have been stored since.
   [[nodiscard]] bool unreadable() const { return store_.found() == SettingsStore::Found::Unreadable; }
 
-  /// A reset now would find `stored()` for certain, or a blank memory: not settings that could not be read
-  /// before, and no copy that must not count.
+  /// Returns whether a reset now would certainly load `stored()`, also if the memory is blank. This is not
+  /// certain if the memory contains settings that could not be read before, or a copy that must not be used.
   [[nodiscard]] bool certain() const {
     return !unreadable() && !store_.doubtful() && !store_.update_unfinished();
   }
 
-  /// The memory is at work.
+  /// Returns whether a memory access is necessary or running.
   [[nodiscard]] bool busy() const { return store_.busy(); }
-  /// Stores settings for a command; only while not `busy()`. When it is not busy any more, `saved()` holds.
+  /// Starts to store the settings of a command. Call it only while not `busy()`. `saved()` is valid as soon
+  /// as `busy()` is false again.
   void save(const Settings& settings, Time now);
   [[nodiscard]] bool saved() const { return store_.saved(); }
 
-  /// The settings in force have changed and may not be what is stored.
+  /// Call this when the settings in force have changed, so that the next `poll` compares them with the stored
+  /// settings.
   void settings_changed() { may_differ_ = true; }
-  /// Every turn: stores `in_force` if that is necessary.
+  /// Starts to store `in_force` or to invalidate a copy, if necessary. Call it in every pass of the main
+  /// loop.
   void poll(const Settings& in_force, Time now);
-  /// `poll` has something to do.
+  /// Returns whether a save without a command has ended and `poll` has not processed its result yet.
   [[nodiscard]] bool has_work() const { return own_save_ && !busy(); }
-  /// When it tries again; disarmed if nothing failed.
+  /// Returns when the keeper tries again; disarmed if nothing failed.
   [[nodiscard]] Deadline retry() const { return retry_; }
 
-  // --- the memory's side; see SettingsStore ---
+  // --- memory access; see SettingsStore ---
 
   [[nodiscard]] MemoryJob job() { return store_.job(); }
   void done(bool ok) { store_.done(ok); }
@@ -53,8 +61,8 @@ class SettingsKeeper {
   void end_own_save(Time now);
 
   SettingsStore store_;
-  bool may_differ_ = false;  ///< the settings in force may not be stored
-  bool own_save_ = false;    ///< the store that is under way was not asked for by a command
+  bool may_differ_ = false;  ///< the settings in force may differ from the stored settings
+  bool own_save_ = false;    ///< the running save does not belong to a command
   Deadline retry_;
 };
 

@@ -4,7 +4,7 @@ namespace ex9000 {
 
 // --- jobs ---
 
-/// The bytes that one job reads or writes: up to the end of the page, or of the copy.
+/// Returns the number of bytes that the next job reads or writes: up to the end of the page or of the copy.
 std::size_t SettingsStore::page_size() const {
   const std::size_t left = copy_size_ - done_;
   return left < kMemoryPage ? left : kMemoryPage;
@@ -25,7 +25,7 @@ MemoryJob SettingsStore::job() {
 }
 
 void SettingsStore::done(bool ok) {
-  switch (step_) {  // not covered: every value has its case
+  switch (step_) {  // not covered: the cases are complete
     case Step::Load:
     case Step::LookAgain:
       read_page(ok);
@@ -46,7 +46,7 @@ void SettingsStore::done(bool ok) {
       }
       invalidate_from(place_ + 1);
       break;
-    case Step::Idle:  // not covered: nothing ends that was not begun
+    case Step::Idle:  // not covered: no job is running while idle
       break;
   }
 }
@@ -54,7 +54,7 @@ void SettingsStore::done(bool ok) {
 void SettingsStore::begin_copy(std::size_t place) {
   place_ = place;
   done_ = 0;
-  copy_size_ = kMemoryPage;  // until the first page says more
+  copy_size_ = kMemoryPage;  // the first page contains the real size
   attempt_ = 0;
 }
 
@@ -89,7 +89,7 @@ void SettingsStore::read_page(bool ok) {
   }
   silent_ = !ok;
   if (!ok && step_ == Step::LookAgain) {
-    saved_ = false;  // a memory that does not answer is not written to
+    saved_ = false;  // the memory does not answer, so a write would fail too
     step_ = Step::Idle;
     return;
   }
@@ -102,7 +102,7 @@ void SettingsStore::read_page(bool ok) {
   next_place();
 }
 
-/// A good copy at the place that was read.
+/// Processes a good copy at the place that was read.
 void SettingsStore::take_copy(const StoredSettings& stored) {
   const bool old = kPlaces[place_].old;
   if (old) {
@@ -182,7 +182,7 @@ void SettingsStore::retry_or_give_up() {
     step_ = Step::Write;
     return;
   }
-  // The copy may be whole all the same, and only its answer be lost.
+  // The copy may be complete although the memory reported an error.
   must_not_count_ |= bit(place_);
   saved_ = false;
   invalidate_from(0);
@@ -203,11 +203,11 @@ void SettingsStore::finish_writing() {
 // --- invalidating ---
 
 void SettingsStore::begin_settling() {
-  saved_ = true;  // nothing is to be saved, so that only what must not count can fail
+  saved_ = true;  // there is nothing to save, so no save can fail
   invalidate_from(0);
 }
 
-/// The first copy that must not count, at this place or a later one; idle if there is none.
+/// Begins to invalidate the first copy that must not be used, from `place` on. Becomes idle if there is none.
 void SettingsStore::invalidate_from(std::size_t place) {
   while (place < kPlaces.size() && (must_not_count_ & bit(place)) == 0) {
     ++place;

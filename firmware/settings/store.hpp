@@ -1,4 +1,4 @@
-// Keeps the settings in a memory that takes time to write and may lose power at any instant.
+// Stores the settings in a memory whose writes take time. The power may fail at any time.
 #pragma once
 
 #include <array>
@@ -14,67 +14,69 @@
 
 namespace ex9000 {
 
-/// What the store needs done with the memory. The buffers live until `SettingsStore::done`.
+/// A memory access that the store requests. The buffer is valid until `SettingsStore::done`.
 struct MemoryJob {
   enum class Kind : std::uint8_t { Read, Write };
 
   Kind kind = Kind::Read;
-  std::uint16_t address = 0;  ///< of the first byte; a job never crosses the end of a page (kMemoryPage)
-  MutableBytes bytes;         ///< to be filled, or to be written
+  std::uint16_t address = 0;  ///< address of the first byte; a job stays within a page (kMemoryPage)
+  MutableBytes bytes;         ///< buffer for the bytes to read or write
 };
 
-/// Two copies of the settings, each in a place of its own (places.hpp). A save overwrites the older or broken
-/// one, page by page, and reads back each page. Only the check at the end of the whole copy makes it count,
-/// and the other copy stays as it is. So a power cut leaves either the old settings or the new ones.
+/// Keeps two copies of the settings, each in its own place (places.hpp). A save overwrites the older or
+/// broken copy, page by page, and reads back each page. The new copy becomes valid only with the check at its
+/// end, and the other copy does not change. After a power failure, the memory therefore contains either the
+/// old or the new settings.
 ///
-/// The first save after an update leaves the copies of older layouts in the same way. When it is verified, it
-/// invalidates them: they must not count again, even if both newer copies fail later.
+/// The first save after a firmware update does not overwrite the copies of older layouts. When the save is
+/// verified, the store invalidates these copies: they must not be used again, even if both newer copies fail
+/// later.
 ///
-/// The store does nothing by itself: whoever owns the memory starts `job()` and reports `done()` when it has
-/// ended.
+/// The store does not access the memory. The owner of the memory carries out `job()` and then calls `done()`.
 class SettingsStore {
  public:
   enum class Found : std::uint8_t {
-    Settings,    ///< a good copy
-    Blank,       ///< never written: factory settings
-    Unreadable,  ///< something else; factory settings are used, and not written
+    Settings,    ///< the memory contains a good copy
+    Blank,       ///< the memory was never written; factory settings are used
+    Unreadable,  ///< the memory contains something else; factory settings are used but not stored
   };
 
-  /// Begins to load: reads all places, each up to three times. A memory that did not answer at one place is
-  /// asked once at the next. Afterwards `found()` and `stored()` hold.
+  /// Begins to load: reads all places, each up to three times. If the memory did not answer at one place, the
+  /// store reads the next place only once. `found()` and `stored()` are valid when loading has ended.
   explicit constexpr SettingsStore(const Model& model) : model_(model) {}
   [[nodiscard]] bool loading() const { return step_ == Step::Load; }
   [[nodiscard]] Found found() const { return found_; }
 
-  /// Writes and verifies; the third failure of any page ends it. Only while not `busy()`. Afterwards
-  /// `saved()` and `stored()` hold.
+  /// Begins to write and verify `settings`. The save fails when writing or verifying has failed three times.
+  /// Call it only while not `busy()`. `saved()` and `stored()` are valid when the save has ended.
   ///
-  /// If no copy could be read at reset, all are read once more first: one that answers now must not count as
-  /// the later one after the next reset.
+  /// If no copy could be read at reset, the store first reads all places again. If a copy is readable now,
+  /// the new copy gets a later sequence number, so that the old copy is not used after the next reset.
   void begin_saving(const Settings& settings);
   [[nodiscard]] bool busy() const { return step_ != Step::Idle; }
-  /// Whether the last save succeeded.
+  /// Returns whether the last save succeeded.
   [[nodiscard]] bool saved() const { return saved_; }
 
-  /// The power failed in the first save after an update: the new copy counts, and so may those of an older
-  /// layout. One good reading does not prove that the new one is well written, so they stay until a save has
-  /// been verified.
+  /// Returns whether the power failed during the first save after a firmware update, so that the new copy is
+  /// used but copies of an older layout are still valid. One successful read does not prove that the new copy
+  /// is well written, so the old copies stay until a save has been verified.
   [[nodiscard]] bool update_unfinished() const {
     return current_place_ != kNoPlace && !kPlaces[current_place_].old && old_copies_ != 0;
   }
 
-  /// A copy may count after a reset that must not: one of refused settings, or one of an older layout.
+  /// Returns whether a reset now could load a copy that must not be used: a copy of refused settings, or a
+  /// copy of an older layout.
   [[nodiscard]] bool doubtful() const { return must_not_count_ != 0; }
-  /// Invalidates it. Only while not `busy()`; `doubtful()` stays true if the memory does not take this
-  /// either.
+  /// Begins to invalidate such copies. Call it only while not `busy()`. If this fails, `doubtful()` stays
+  /// true.
   void begin_settling();
 
-  /// The settings that a reset now would find.
+  /// Returns the settings that a reset now would load.
   [[nodiscard]] const Settings& stored() const { return stored_; }
 
-  /// What has to be done, while `busy()`; the same until `done`.
+  /// Returns the memory access to carry out. Call it only while `busy()`. It stays the same until `done`.
   [[nodiscard]] MemoryJob job();
-  /// The job has ended: `ok` unless the memory did not answer.
+  /// Call this when the job has ended. `ok`: the memory answered.
   void done(bool ok);
 
  private:
@@ -102,21 +104,21 @@ class SettingsStore {
   Found found_ = Found::Unreadable;
   bool saved_ = false;
 
-  std::size_t place_ = 0;                ///< of the copy that is read or written
-  std::size_t done_ = 0;                 ///< so many of its bytes are
-  std::size_t copy_size_ = kMemoryPage;  ///< and so many it takes
-  std::uint8_t attempt_ = 0;             ///< failures so far
+  std::size_t place_ = 0;                ///< place of the copy that is being read or written
+  std::size_t done_ = 0;                 ///< bytes of that copy that have been processed
+  std::size_t copy_size_ = kMemoryPage;  ///< size of that copy in bytes
+  std::uint8_t attempt_ = 0;             ///< failed attempts at that copy
   bool silent_ = false;                  ///< the memory did not answer at the last place
   std::uint8_t blank_places_ = 0;
-  std::size_t current_place_ = kNoPlace;  ///< of the copy that counts
+  std::size_t current_place_ = kNoPlace;  ///< place of the current copy, which a reset would load
   unsigned old_copies_ = 0;               ///< bit n: place n holds a good copy of an older layout
-  unsigned must_not_count_ = 0;           ///< bit n: the copy at place n has to be invalidated
+  unsigned must_not_count_ = 0;           ///< bit n: the copy at place n must be invalidated
 
-  Edition edition_;          ///< of the copy that counts
-  Settings stored_;          ///< what it holds
-  Settings saving_;          ///< what is being saved
-  RecordBytes record_{};     ///< the record that counts, then the one that is written; zeros if there is none
-  RecordBytes read_back_{};  ///< what is read
+  Edition edition_;          ///< edition of the current copy
+  Settings stored_;          ///< settings in the current copy
+  Settings saving_;          ///< settings that are being saved
+  RecordBytes record_{};     ///< the current record, or the record being written; zeros if there is none
+  RecordBytes read_back_{};  ///< bytes read from the memory
 };
 
 }  // namespace ex9000

@@ -1,4 +1,5 @@
-// The host watchdog: outputs go to the safe value when the host falls silent - wire.md section 6.
+// The host watchdog, which sets the outputs to the safe value if the host stops sending host OKs - wire.md
+// section 6.
 #pragma once
 
 #include "firmware/settings/settings.hpp"
@@ -6,19 +7,19 @@
 
 namespace ex9000 {
 
-/// Only the time is kept here; whether it runs and how long are settings.
+/// Keeps only the time of the last restart. The enable flag and the timeout are settings.
 class HostWatchdog {
  public:
-  /// From reset, on enabling, and at every host OK.
+  /// Call this at reset, when the watchdog is enabled, and at every host OK.
   constexpr void restart(Time now) { started_ = now; }
 
-  /// VV x 0.1 s after the last restart, and never before.
+  /// Returns whether at least VV x 0.1 s have passed since the last restart.
   [[nodiscard]] constexpr bool expired(const Settings& settings, Time now) const {
-    // Not "how long since": an interrupt may have restarted it after the main loop took its `now`.
+    // A deadline is necessary because the restart may be newer than `now`; `now.since()` would then wrap.
     return expiry(settings).reached(now);
   }
 
-  /// When it expires if nobody restarts it; disarmed where it does not run.
+  /// Returns when the watchdog expires unless it is restarted; disarmed if it is not enabled.
   [[nodiscard]] constexpr Deadline expiry(const Settings& settings) const {
     Deadline deadline;
     if (settings.watchdog_enabled) {
@@ -30,8 +31,8 @@ class HostWatchdog {
  private:
   static constexpr Duration timeout(const Settings& settings) {
     constexpr std::uint32_t kUnitMilliseconds = 100;
-    constexpr Duration kRoundUp(
-        1);  // the restart happened up to a microsecond after the time it is noted with
+    // The restart may have happened up to 1 us later than the recorded time.
+    constexpr Duration kRoundUp(1);
     return milliseconds(settings.watchdog_timeout * kUnitMilliseconds) + kRoundUp;
   }
 

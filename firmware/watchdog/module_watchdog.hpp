@@ -1,4 +1,4 @@
-// When the MCU's hardware watchdog may be fed - wire.md section 6.
+// Decides when to feed the MCU's hardware watchdog - wire.md section 6.
 #pragma once
 
 #include <cstdint>
@@ -7,14 +7,15 @@
 
 namespace ex9000 {
 
-/// Fed only when the main loop and the tick interrupt have both shown life since the last feed: a main loop
-/// that spins beside a dead tick is as lost as one that hangs.
+/// Allows a feed only if both the main loop and the tick interrupt have run since the last feed. If either
+/// one stops, the hardware watchdog resets the MCU.
 class ModuleWatchdog {
  public:
-  /// Tick interrupt.
+  /// The tick interrupt calls this.
   void tick_alive() { ticks_.store_in_interrupt(ticks_.load() + 1U); }
 
-  /// Main loop, at every tick; that it asks is its sign of life. True: feed now.
+  /// The main loop calls this at every tick; the call itself shows that the main loop runs. Returns true if
+  /// the hardware watchdog must be fed now.
   bool main_loop_alive() {
     const std::uint32_t ticks = ticks_.load();
     const bool both = ticks != ticks_at_feed_;
