@@ -1,4 +1,4 @@
-// The DCON (ASCII) command set, one row a command - wire.md section 4.
+// The DCON (ASCII) command set, one table row for each command - wire.md section 4.
 #pragma once
 
 #include <cstdint>
@@ -10,8 +10,9 @@
 
 namespace ex9000::dcon {
 
-/// Judges the arguments of one command, writes the reply without checksum and CR, and says what is to be
-/// done. The arguments are the characters behind address and key; their number fits the row.
+/// Judges the arguments of a command, writes the reply without checksum and CR, and records in the outcome
+/// what the module must do. The arguments are the characters after address and key; their number matches the
+/// row.
 using Handler = Refusal (*)(Exchange& exchange);
 
 // configuration_commands.cpp
@@ -48,10 +49,10 @@ Refusal set_watchdog(Exchange& exchange);
 constexpr char kNoKey = 0;
 constexpr char kBroadcastKey = '*';
 
-/// What the module itself needs of a row.
+/// The part of a row that an image contains.
 struct Dispatch {
   char delimiter = 0;
-  char key = kNoKey;  ///< the character behind the address; kBroadcastKey: the address is `**`
+  char key = kNoKey;  ///< the character after the address; kBroadcastKey: the address is `**`
   std::uint8_t fewest_args = 0;
   std::uint8_t most_args = 0;
   Needs needs = Needs::Nothing;
@@ -60,19 +61,18 @@ struct Dispatch {
 
 enum class Access : std::uint8_t { Read, Write, Store };
 
-/// Whether a command is marked (I): only with INIT* asserted, or in INIT mode.
+/// Whether a command is marked (I): it is permitted only while INIT* is asserted or in INIT mode.
 enum class Init : std::uint8_t { NotRequired, Required };
 
-/// A row: what people read, and what the module needs. The texts are not referred to by the module, so an
-/// image does not carry them.
+/// A row with its documentation. The firmware never uses the texts, so an image does not contain them.
 struct Command {
   std::string_view id;      ///< stable, for coverage and cross-reference
-  std::string_view syntax;  ///< as the manuals write it
-  std::string_view reply;   ///< the valid one; empty: none
+  std::string_view syntax;  ///< in the notation of the manuals
+  std::string_view reply;   ///< reply if the command is valid; empty if there is none
   std::string_view meaning;
-  std::string_view range;  ///< of the arguments
-  Access access;           ///< Store: the reply leaves when the EEPROM holds it
-  Init init;               ///< `%`: only where baud rate or checksum change
+  std::string_view range;  ///< range of the arguments
+  Access access;           ///< Store: the reply is sent after the EEPROM has stored the settings
+  Init init;               ///< for `%`: required only if the baud rate or the checksum changes
   Dispatch dispatch;
 };
 

@@ -1,4 +1,4 @@
-// Configuration, name, protocol, version: manuals 2.1, 2.4, 2.6, 2.8, 2.9, 2.12 to 2.14.
+// Commands for configuration, name, protocol and version: manuals 2.1, 2.4, 2.6, 2.8, 2.9, 2.12 to 2.14.
 #include "firmware/dcon/commands.hpp"
 #include "firmware/dcon/writing.hpp"
 #include "firmware/hex.hpp"
@@ -8,7 +8,7 @@ namespace ex9000::dcon {
 namespace {
 
 constexpr int kDioType = 0x40;
-constexpr int kDioTypeOfTheExample = 0x24;  // E1
+constexpr int kDioTypeOfTheExample = 0x24;  // wire.md E1
 
 }  // namespace
 
@@ -46,7 +46,7 @@ Refusal set_configuration(Exchange& exchange) {
 }
 
 Refusal read_configuration(Exchange& exchange) {
-  // The stored address, in INIT mode too: this is how a lost one is found.
+  // This is the stored address in INIT mode too, so that a user can find out a lost address.
   exchange.reply.put('!');
   exchange.reply.put_hex(exchange.state.settings.address);
   exchange.reply.put_hex(kDioType);

@@ -12,12 +12,12 @@ namespace {
 
 constexpr std::size_t kBodyAt = 3;
 
-/// The rows without their texts.
+/// The table without its texts, which an image does not contain.
 constexpr auto kDispatch = rows_of_built_models<kCommands, &Command::dispatch>();
 
 bool is_broadcast(Bytes frame) { return frame[1] == '*'; }
 
-/// What stands behind the key.
+/// Returns the characters after the key.
 Bytes arguments(const Dispatch& row, Bytes frame) {
   const bool has_key = row.key != kNoKey && row.key != kBroadcastKey;
   return frame.from(kBodyAt + (has_key ? 1 : 0));
@@ -35,8 +35,8 @@ bool matches(const Dispatch& row, const Model& model, Bytes frame) {
   return args >= row.fewest_args && args <= row.most_args && has(model, row.needs);
 }
 
-/// Refused commands that set outputs are answered without the address (manuals 2.3, 2.11); wire.md D12 says
-/// which they are.
+/// Returns whether the reply to a refused command has no address. This applies to commands that set outputs
+/// (manuals 2.3, 2.11; wire.md D12).
 bool refused_without_address(const Model& model, Bytes frame) {
   const std::size_t body = frame.size - kBodyAt;
   if (!model.has_outputs()) {
@@ -45,7 +45,7 @@ bool refused_without_address(const Model& model, Bytes frame) {
   if (frame[0] == '#') {
     return !(model.has_inputs() && body == 1);
   }
-  return frame[0] == '@';  // with data: without, it is never refused
+  return frame[0] == '@';  // it has data, because `@AA` without data is never refused
 }
 
 void refuse(Exchange& exchange, Refusal refusal) {
@@ -61,7 +61,7 @@ void refuse(Exchange& exchange, Refusal refusal) {
   }
 }
 
-/// Checksum, where it is in force, and CR.
+/// Appends the checksum, if it is in force, and CR.
 void finish(Exchange& exchange) {
   Reply& reply = exchange.reply;
   if (reply.empty()) {
@@ -91,7 +91,7 @@ std::size_t find_command(const Model& model, Bytes frame) {
 void answer(Exchange& exchange) {
   const Bytes frame = exchange.frame;
   if (!is_broadcast(frame) && hex_byte(frame[1], frame[2]) != exchange.state.in_force.address) {
-    return;  // `%` has changed the address since the frame came in (wire.md D16)
+    return;  // `%` has changed the address since the frame was received (wire.md D16)
   }
   Refusal refusal = Refusal::UnknownCommand;
   const std::size_t command = find_command(exchange.model(), frame);

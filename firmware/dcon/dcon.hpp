@@ -1,4 +1,4 @@
-// Answers DCON (ASCII) requests - wire.md sections 3 and 4.
+// Replies to DCON (ASCII) requests - wire.md sections 3 and 4.
 #pragma once
 
 #include <cstddef>
@@ -11,15 +11,17 @@ namespace ex9000::dcon {
 
 constexpr std::size_t kNoCommand = static_cast<std::size_t>(-1);
 
-/// Row of kCommands that `frame` calls for on `model`, or kNoCommand. `frame` is as the assembler accepted
-/// it: from the delimiter on, without checksum and CR.
+/// Returns the index of the command in `frame` among the rows of kCommands that the built models have, or
+/// kNoCommand if `model` has no such command. `frame` begins with the delimiter and has no checksum and no
+/// CR.
 std::size_t find_command(const Model& model, Bytes frame);
 
-/// Judges an accepted frame. The reply is what to send, checksum and CR included, once the outcome is done;
-/// it stays empty for broadcasts and for another address. Changes nothing by itself.
+/// Judges the frame of `exchange` and writes its reply, including checksum and CR. The reply must be sent
+/// after the outcome has been carried out; it is empty for broadcasts and for other addresses. Changes
+/// nothing but `exchange`.
 void answer(Exchange& exchange);
 
-/// The reply of a command that could not be stored.
+/// Replaces the reply with `?AA`, because the settings could not be stored.
 void refuse_store(Exchange& exchange);
 
 }  // namespace ex9000::dcon

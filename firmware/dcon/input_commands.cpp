@@ -1,4 +1,4 @@
-// Counters and latches: EX9052D manual 2.3, 2.10 to 2.12.
+// Commands for counters and latches: EX9052D manual 2.3, 2.10 to 2.12.
 #include "firmware/dcon/commands.hpp"
 #include "firmware/dcon/writing.hpp"
 #include "firmware/hex.hpp"
@@ -9,7 +9,7 @@ namespace {
 
 constexpr unsigned kNoChannel = kMaxInputs;
 
-/// N, a hex digit, as a channel of this model, or kNoChannel.
+/// Returns the input channel of the hex digit N, or kNoChannel if this model does not have it.
 unsigned channel_of(const Model& model, std::uint8_t digit) {
   const int channel = hex_value(digit);
   return channel >= 0 && channel < model.inputs ? static_cast<unsigned>(channel) : kNoChannel;
@@ -51,7 +51,7 @@ Refusal read_latches(Exchange& exchange) {
   if (exchange.args[0] != '0' && exchange.args[0] != '1') {
     return Refusal::OutOfRange;
   }
-  // On a module with both, First is where the outputs stand elsewhere; here it is 00.
+  // On a module with inputs and outputs, First is for outputs. Outputs have no latches, so First is 00.
   const Inputs& inputs = exchange.state.inputs;
   exchange.reply.put('!');
   put_data(exchange, 0, exchange.args[0] == '1' ? inputs.latched_high() : inputs.latched_low());

@@ -1,4 +1,4 @@
-// Setting outputs, power-on and safe values: manuals 2.3, 2.11, 2.20, 2.21.
+// Commands for outputs, power-on value and safe value: manuals 2.3, 2.11, 2.20, 2.21.
 #include "firmware/dcon/commands.hpp"
 #include "firmware/dcon/writing.hpp"
 #include "firmware/hex.hpp"
@@ -10,7 +10,7 @@ namespace {
 constexpr std::uint16_t kLowGroup = 0x00FF;
 constexpr unsigned kHighGroupShift = 8;
 
-/// Form and range are right; now the timeout status decides.
+/// Drives outputs after syntax and range have been checked. Refuses while the timeout status is set.
 Refusal drive(Exchange& exchange, Drive drive) {
   if (exchange.state.outputs_blocked()) {
     return Refusal::OutputsBlocked;
@@ -20,7 +20,7 @@ Refusal drive(Exchange& exchange, Drive drive) {
   return Refusal::None;
 }
 
-/// BB = 00, 0A or 0B: the bits of a group.
+/// Returns the outputs of a group, BB = 00, 0A or 0B; the mask is 0 if they are out of range.
 Drive group(const Model& model, std::uint8_t selector, int data) {
   const bool high = selector == 'B';
   const unsigned channels = model.output_mask() & (high ? ~unsigned{kLowGroup} : unsigned{kLowGroup});
@@ -31,7 +31,7 @@ Drive group(const Model& model, std::uint8_t selector, int data) {
   return {static_cast<std::uint16_t>(channels), static_cast<std::uint16_t>(value)};
 }
 
-/// BB = 1c, Ac or Bc: one channel.
+/// Returns one output, BB = 1c, Ac or Bc; the mask is 0 if it is out of range.
 Drive single(const Model& model, std::uint8_t selector, int channel, int data) {
   const bool high = selector == 'B';
   if ((selector != '1' && selector != 'A' && !high) || channel < 0 || channel > 7 || data > 1) {
@@ -44,8 +44,8 @@ Drive single(const Model& model, std::uint8_t selector, int channel, int data) {
   return {static_cast<std::uint16_t>(bit), static_cast<std::uint16_t>(data == 1 ? bit : 0U)};
 }
 
-/// One digit stands for 4 outputs; how many a full set takes on this model, and what the examples shorten it
-/// to (E4).
+/// The number of hex digits for all outputs of a model, 4 outputs for each digit, and the number in the
+/// shorter form of the manuals' examples (wire.md E4).
 struct Digits {
   std::size_t full;
   std::size_t shortened;

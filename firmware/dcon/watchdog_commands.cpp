@@ -1,4 +1,4 @@
-// The host watchdog: manuals 2.15 to 2.19 (EX9052D 2.17 to 2.21).
+// Commands for the host watchdog: manuals 2.15 to 2.19 (EX9052D 2.17 to 2.21).
 #include "firmware/dcon/commands.hpp"
 #include "firmware/dcon/writing.hpp"
 #include "firmware/hex.hpp"
@@ -20,8 +20,8 @@ unsigned status_of(const State& state) {
 
 }  // namespace
 
-/// The assembler hears `~**` in the interrupt, so that it is never lost, and keeps it from the queue; the
-/// row's function says the same to whoever hands the frame to `answer`.
+/// The assembler counts `~**` in the interrupt, so that it is never lost, and does not queue it. This handler
+/// gives the same result if a caller passes such a frame to `answer`.
 Refusal host_ok(Exchange& exchange) {
   exchange.outcome.request(Effect::RestartHostWatchdog);
   return Refusal::None;

@@ -1,4 +1,4 @@
-// How DCON replies write channels and addresses.
+// Writes channels and addresses into DCON replies.
 #pragma once
 
 #include <cstdint>
@@ -7,8 +7,9 @@
 
 namespace ex9000::dcon {
 
-/// First and Second data (manuals 1.10): more than 8 outputs or inputs fill both, high byte first. Otherwise
-/// outputs are First and inputs Second; a module without outputs has its inputs in First.
+/// Writes First and Second data (manuals 1.10). More than 8 outputs or inputs use both, high byte first.
+/// Otherwise First contains the outputs and Second the inputs. On a module without outputs, First contains
+/// the inputs and Second is 00.
 inline void put_data(const Model& model, std::uint16_t outputs, std::uint16_t inputs, Reply& reply) {
   constexpr unsigned kChannelsOfAByte = 8;
   if (model.outputs > kChannelsOfAByte || model.inputs > kChannelsOfAByte) {
@@ -28,7 +29,7 @@ inline void put_data(Exchange& exchange, std::uint16_t outputs, std::uint16_t in
   put_data(exchange.model(), outputs, inputs, exchange.reply);
 }
 
-/// `!AA`, the beginning of most replies; AA is the address in force, 00 in INIT mode.
+/// Writes `!AA`, the beginning of most replies. AA is the address in force, 00 in INIT mode.
 inline void put_valid(Exchange& exchange) {
   exchange.reply.put('!');
   exchange.reply.put_hex(exchange.state.in_force.address);

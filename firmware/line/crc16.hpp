@@ -12,7 +12,7 @@ namespace detail {
 
 using Crc16Table = std::array<std::uint16_t, 256>;
 
-/// What each byte does to the CRC.
+/// Returns the table with the effect of each byte value on the CRC.
 constexpr Crc16Table make_crc16_table() {
   constexpr unsigned kReflectedPolynomial = 0xA001;
   Crc16Table table{};
@@ -30,19 +30,19 @@ inline constexpr Crc16Table kCrc16Table = make_crc16_table();
 
 }  // namespace detail
 
-/// A CRC that grows with the bytes. Over a frame with its own CRC (low byte first) it is 0.
+/// Computes the CRC byte by byte. The CRC of a frame that includes its CRC (low byte first) is 0.
 class Crc16 {
  public:
   constexpr void add(std::uint8_t byte) {
     value_ = (value_ >> 8U) ^ detail::kCrc16Table[(value_ ^ byte) & 0xFFU];
   }
-  /// 16 bits.
+  /// Returns the CRC, 16 bits.
   [[nodiscard]] constexpr std::uint32_t value() const { return value_; }
   [[nodiscard]] constexpr std::uint8_t low_byte() const { return static_cast<std::uint8_t>(value_); }
   [[nodiscard]] constexpr std::uint8_t high_byte() const { return static_cast<std::uint8_t>(value_ >> 8U); }
 
  private:
-  std::uint32_t value_ = 0xFFFF;  // a word is what the processor calculates with
+  std::uint32_t value_ = 0xFFFF;  // 32 bits, because the processor calculates with words
 };
 
 constexpr Crc16 crc16(Bytes bytes) {

@@ -1,4 +1,4 @@
-// What crosses between interrupt and main loop: a value with one writer, whose type says which side that is.
+// Values that interrupts and the main loop share. Each value has one writer, which its type names.
 #pragma once
 
 #include <atomic>
@@ -9,9 +9,9 @@ namespace ex9000 {
 
 namespace detail {
 
-/// One aligned value up to a machine word, so that a load or a store is one instruction and needs no lock;
-/// volatile, so that it is one each time. There is one core: what the compiler must not do is move other
-/// accesses across it, and that is what the fence forbids.
+/// One aligned value of at most a machine word, so that a load or a store is one instruction and needs no
+/// lock. It is volatile, so that the compiler keeps each access. There is only one core, so a compiler fence
+/// is sufficient: it prevents the compiler from moving other accesses across this one.
 template <class T>
 class Crossing {
   // NOLINTNEXTLINE(bugprone-sizeof-expression): where T is a pointer, its own size is meant
@@ -37,23 +37,24 @@ class Crossing {
 
 }  // namespace detail
 
-/// Written by interrupts only, which must not interrupt each other while they write it; read by anybody.
+/// Only interrupts write this value, and they must not interrupt each other while they write it. Interrupts
+/// and the main loop may read it.
 template <class T>
 class WrittenByInterrupt : public detail::Crossing<T> {
  public:
   [[gnu::always_inline]] void store_in_interrupt(T value) { this->store(value); }
 };
 
-/// Written by the main loop only; read by anybody.
+/// Only the main loop writes this value. Interrupts and the main loop may read it.
 template <class T>
 class WrittenByMainLoop : public detail::Crossing<T> {
  public:
   [[gnu::always_inline]] void store_in_main_loop(T value) { this->store(value); }
 };
 
-/// Too large for one instruction, and handed over whole: the main loop's until it stores a WrittenByMainLoop
-/// that says so, then the interrupts' until they store a WrittenByInterrupt that gives it back. Either side
-/// touches it only while it is its own.
+/// A value that is too large for one instruction, so its ownership changes sides. The main loop owns it first
+/// and hands it over by storing to a WrittenByMainLoop. The interrupts return it by storing to a
+/// WrittenByInterrupt. A side must access it only while it owns it.
 template <class T>
 class HandedToInterrupt {
  public:

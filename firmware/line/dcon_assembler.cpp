@@ -16,7 +16,7 @@ constexpr bool is_delimiter(std::uint8_t byte) {
 
 constexpr bool is_reply_lead(std::uint8_t byte) { return byte == '!' || byte == '>' || byte == '?'; }
 
-/// The two characters from `text` on are these digits.
+/// Returns whether the two characters at `text` are `digits`, in the format of `hex_digits`.
 bool are_digits(const std::uint8_t* text, std::uint32_t digits) {
   return (unsigned{text[0]} | unsigned{text[1]} << 8U) == digits;
 }
@@ -25,7 +25,7 @@ bool are_digits(const std::uint8_t* text, std::uint32_t digits) {
 
 Verdict DconAssembler::byte(FrameQueue& queue, std::uint8_t byte, ByteStatus status, Time now) {
   if (status != ByteStatus::Good) {
-    // It may have been anything: a CR ends nothing, a delimiter begins nothing.
+    // The byte's value is unreliable, so it neither ends a frame as CR nor begins one as delimiter.
     if (state_ == State::InFrame) {
       state_ = State::Spoiled;
       loss_ = Verdict::LineError;
@@ -48,7 +48,7 @@ Verdict DconAssembler::byte(FrameQueue& queue, std::uint8_t byte, ByteStatus sta
   return Verdict::Open;
 }
 
-/// The last two characters may be the checksum, so the sum stays behind them.
+/// The sum excludes the last two characters, because they may be the checksum.
 void DconAssembler::add(std::uint8_t* text, std::uint8_t byte) {
   const unsigned size = size_;
   text[size] = byte;

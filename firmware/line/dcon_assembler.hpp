@@ -1,4 +1,4 @@
-// Assembles DCON (ASCII) frames from received bytes; runs in the receive interrupt.
+// Assembles DCON (ASCII) frames from received bytes. Runs in the receive interrupt.
 #pragma once
 
 #include <cstdint>
@@ -11,29 +11,31 @@
 
 namespace ex9000 {
 
-/// Most characters before CR that are judged.
+/// The largest number of characters before CR; longer frames are dropped.
 constexpr std::uint8_t kLongestDconFrame = 32;
 
-/// delimiter, address, body, [CHK], CR - wire.md section 3. There is no inter-character timeout: a person may
-/// type.
+/// Frame format: delimiter, address, body, [CHK], CR - wire.md section 3. There is no timeout between
+/// characters, so that a person can type commands.
 class DconAssembler {
  public:
   void use_checksum(bool on) { checksum_ = on; }
-  /// Main loop, also while bytes come in: the module's address, from the next frame on that ends.
+  /// Sets the module's address for all frames that end after this call. For the main loop, which may call it
+  /// while bytes are received.
   void answer_to(std::uint8_t address) { own_digits_.store_in_main_loop(hex_digits(address)); }
 
-  /// Interrupt. An accepted frame holds the characters from the delimiter on, without CHK and CR.
+  /// Processes a received byte. An accepted frame contains the characters from the delimiter on, without CHK
+  /// and CR. For the receive interrupt.
   Verdict byte(FrameQueue& queue, std::uint8_t byte, ByteStatus status, Time now);
 
-  /// Interrupt. Forgets an open frame.
+  /// Drops an incomplete frame. For interrupts.
   void forget() { state_ = State::Hunting; }
 
  private:
   enum class State : std::uint8_t {
-    Hunting,   ///< between frames: what is neither delimiter nor lead is noise
-    InFrame,   ///< every character is content
-    Spoiled,   ///< a frame that is lost already; `loss_` says why
-    Skipping,  ///< another module is answering: whatever it says, up to its CR
+    Hunting,   ///< between frames; characters other than a delimiter or a reply lead are ignored
+    InFrame,   ///< in a frame; every character is content
+    Spoiled,   ///< in a frame that is already lost; `loss_` is the reason
+    Skipping,  ///< in a reply of another module, which is ignored up to its CR
   };
 
   void add(std::uint8_t* text, std::uint8_t byte);
@@ -46,7 +48,7 @@ class DconAssembler {
   Verdict loss_ = Verdict::Open;
   bool checksum_ = false;
   std::uint8_t size_ = 0;
-  std::uint8_t sum_ = 0;  ///< of all characters but the last two
+  std::uint8_t sum_ = 0;  ///< sum of all characters except the last two
 };
 
 }  // namespace ex9000

@@ -1,4 +1,4 @@
-// How events cross from an interrupt to the main loop.
+// Counts events in an interrupt for the main loop.
 #pragma once
 
 #include <cstdint>
@@ -7,16 +7,16 @@
 
 namespace ex9000 {
 
-/// Counts events in an interrupt and hands them to the main loop, none lost and none twice, as long as the
-/// main loop collects before 65536 have gathered. Neither side ever writes what the other writes.
+/// Counts events in an interrupt and passes the count to the main loop. Each event is counted exactly once if
+/// the main loop collects at least every 65535 events. No variable is written by both sides.
 class EventTally {
  public:
-  /// Interrupt.
+  /// Counts `events` events. For the interrupt.
   [[gnu::always_inline]] void count_in_interrupt(unsigned events = 1) {
     total_.store_in_interrupt(static_cast<std::uint16_t>(total_.load() + events));
   }
 
-  /// Main loop: how many since it was last called, modulo 65536.
+  /// Returns the number of events since the last call, modulo 65536. For the main loop.
   std::uint16_t collect() {
     const std::uint16_t total = total_.load();
     const auto fresh = static_cast<std::uint16_t>(total - collected_);
@@ -26,7 +26,7 @@ class EventTally {
 
  private:
   WrittenByInterrupt<std::uint16_t> total_;
-  std::uint16_t collected_ = 0;  // main loop
+  std::uint16_t collected_ = 0;  // for the main loop only
 };
 
 }  // namespace ex9000

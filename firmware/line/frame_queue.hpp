@@ -1,4 +1,4 @@
-// How complete frames cross from the receive interrupt to the main loop.
+// Passes complete frames from the receive interrupt to the main loop.
 #pragma once
 
 #include <array>
@@ -12,29 +12,30 @@
 
 namespace ex9000 {
 
-/// Longest Modbus RTU frame (Modbus over Serial Line V1.02, 2.5.1); without Modbus, the longest DCON frame
-/// that is judged.
+/// Length of the longest Modbus RTU frame in bytes (Modbus over Serial Line V1.02, 2.5.1). Without Modbus:
+/// length of the longest DCON frame that is accepted.
 constexpr std::size_t kLongestFrame = kBuiltModbus ? 256 : 32;
 
-/// A frame that is for this module and passed its check.
+/// A frame for this module whose check is correct.
 struct Frame {
-  std::uint16_t offset = 0;  ///< where its first byte lies: 1 behind a turn-around byte
-  std::uint16_t size = 0;    ///< bytes from there on, without checksum, CRC and CR
-  Time received;             ///< when its last byte was complete
+  std::uint16_t offset = 0;  ///< index of the first byte; 1 after a turn-around byte
+  std::uint16_t size = 0;    ///< number of bytes from there on, without checksum, CRC and CR
+  Time received;             ///< end of the last byte
   std::array<std::uint8_t, kLongestFrame + 1> storage{};
 
   [[nodiscard]] Bytes bytes() const { return {storage.data() + offset, size}; }
 };
 
-/// Two frames that take turns: one waits for the main loop while the next one is assembled. While a command
-/// is executed or stored, one more frame is kept; what comes on top of that is lost, and the interrupt is
-/// told so.
+/// Two frame buffers that are used in turn: one frame waits for the main loop while the next one is
+/// assembled. While a command is executed or stored, the queue keeps one more frame. Further frames are lost,
+/// and `complete_in_interrupt` returns false for them.
 class FrameQueue {
  public:
-  /// Interrupt: the frame that is being assembled.
+  /// Returns the frame that is being assembled. For the interrupt.
   [[gnu::always_inline]] Frame& assembling() { return frames_[completed_.load() % kFrames]; }
 
-  /// Interrupt: the assembled frame is complete. False if another one waits already; then this one is lost.
+  /// Queues the assembled frame. Returns false if another frame is already waiting; the assembled frame is
+  /// then lost. For the interrupt.
   [[gnu::always_inline]] bool complete_in_interrupt() {
     if (has_frame()) {
       return false;
@@ -43,20 +44,21 @@ class FrameQueue {
     return true;
   }
 
-  /// Interrupts and main loop: whether a frame waits.
+  /// Returns whether a frame is waiting. For interrupts and the main loop.
   [[nodiscard, gnu::always_inline]] bool has_frame() const { return completed_.load() != dropped_.load(); }
 
-  /// Main loop, only if one waits: that frame. It stays as it is until it is dropped.
+  /// Returns the waiting frame, which does not change until it is dropped. For the main loop; call it only if
+  /// `has_frame()`.
   [[nodiscard]] const Frame& waiting() const { return frames_[dropped_.load() % kFrames]; }
 
-  /// Main loop: done with the waiting frame.
+  /// Removes the waiting frame. For the main loop.
   void drop_in_main_loop() { dropped_.store_in_main_loop(dropped_.load() + 1U); }
 
  private:
   static constexpr std::uint32_t kFrames = 2;
 
-  WrittenByInterrupt<std::uint32_t> completed_;  ///< how many frames; wraps
-  WrittenByMainLoop<std::uint32_t> dropped_;     ///< how many of them the main loop is done with
+  WrittenByInterrupt<std::uint32_t> completed_;  ///< number of completed frames; wraps
+  WrittenByMainLoop<std::uint32_t> dropped_;     ///< number of frames that the main loop has dropped; wraps
   std::array<Frame, kFrames> frames_{};
 };
 

@@ -1,4 +1,4 @@
-// What the receive interrupt counts for Modbus function 08 (Modbus over Serial Line V1.02, appendix A).
+// The counters of the receive interrupt for Modbus function 08 (Modbus over Serial Line V1.02, appendix A).
 #pragma once
 
 #include <array>
@@ -10,18 +10,19 @@
 
 namespace ex9000 {
 
-/// Frames by what became of them: one count each, so that the interrupt has one to look after. Which of them
-/// make up a counter is for those who are asked for it. Whole words, which cost the interrupt less than an
-/// EventTally's halves.
+/// Counts frames by verdict, so that the interrupt increments exactly one count for each frame. The main loop
+/// adds up the counts for each Modbus counter. The counts are 32-bit words, which take less time in the
+/// interrupt than the 16-bit count of an EventTally.
 class LineTallies {
  public:
-  /// Interrupt.
+  /// Counts a frame. For interrupts.
   [[gnu::always_inline]] void count_in_interrupt(Verdict verdict) {
     auto& total = totals_[static_cast<std::size_t>(verdict)];
     total.store_in_interrupt(total.load() + 1U);
   }
 
-  /// Main loop: since reset or `clear`, modulo 65536; of the verdicts from `first` to `last`.
+  /// Returns the number of frames with a verdict from `first` to `last` since reset or `clear`, modulo 65536.
+  /// For the main loop.
   [[nodiscard, gnu::noinline]] std::uint16_t count(Verdict first, Verdict last) const {
     unsigned sum = 0;
     for (auto each = static_cast<std::size_t>(first); each <= static_cast<std::size_t>(last); ++each) {
@@ -37,7 +38,7 @@ class LineTallies {
     return count(Verdict::NoRoom, Verdict::NoRoom) + count(Verdict::Overrun, Verdict::Overrun);
   }
 
-  /// Main loop.
+  /// Sets all counters to 0. For the main loop.
   void clear() {
     for (std::size_t each = 0; each < kVerdicts; ++each) {
       cleared_[each] = static_cast<std::uint16_t>(totals_[each].load());
@@ -48,7 +49,7 @@ class LineTallies {
   static constexpr std::size_t kVerdicts = static_cast<std::size_t>(Verdict::Overrun) + 1;
 
   std::array<WrittenByInterrupt<std::uint32_t>, kVerdicts> totals_;
-  std::array<std::uint16_t, kVerdicts> cleared_{};  // main loop
+  std::array<std::uint16_t, kVerdicts> cleared_{};  // for the main loop only
 };
 
 }  // namespace ex9000

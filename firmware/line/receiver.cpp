@@ -33,7 +33,7 @@ Duration Receiver::on_silence() {
 
 void Receiver::on_spoken(Time now) {
   if (modbus()) {
-    // The frame is over now, even if its silence would have gone on.
+    // The own reply ends the frame, even if its silence was not over.
     const Verdict verdict = rtu_.cut_off(queue_);
     Deadline silence;
     silence.set(rtu_.silent_since());
@@ -43,7 +43,7 @@ void Receiver::on_spoken(Time now) {
   }
 }
 
-/// `over`: when the frame was, if one was ended.
+/// Counts the verdict. `over`: the time when the frame ended, if the verdict belongs to a frame.
 void Receiver::note(Verdict verdict, Time over) {
   if (verdict == Verdict::Open) {
     return;

@@ -1,4 +1,4 @@
-// The interrupt side of the line: bytes in, complete frames for this module out.
+// The interrupt part of the line: turns received bytes into complete frames for this module.
 #pragma once
 
 #include <cstdint>
@@ -16,7 +16,7 @@
 
 namespace ex9000 {
 
-/// How to listen, from one reset to the next.
+/// The line settings, which do not change between two resets.
 struct Listening {
   Protocol protocol = Protocol::Ascii;
   bool checksum = false;
@@ -25,36 +25,37 @@ struct Listening {
 
 class Receiver {
  public:
-  /// Main loop, before bytes are passed on.
+  /// Sets the line settings. The main loop calls this before the first `on_byte`.
   void listen(const Listening& how);
 
   // --- interrupts, which must not interrupt each other ---
 
-  /// A byte was received; `now` is the end of its stop bit, or earlier by what the timing allows for. Returns
-  /// the time after which `on_silence` must be called, counted from now and restarted by every byte; zero:
-  /// the timer is left as it is. After a DCON frame it is the turn-around.
+  /// Processes a received byte. `now` is the end of its stop bit, or earlier if the timing allows for that.
+  /// Returns the time from now after which `on_silence` must be called; each byte restarts it. If it returns
+  /// 0, the timer must not change. After a DCON frame, the result is the turn-around time.
   Duration on_byte(std::uint8_t byte, ByteStatus status, Time now);
 
-  /// That time has passed. Returns as `on_byte` does.
+  /// Call this when the time that `on_byte` or `on_silence` returned is over. The result has the same meaning
+  /// as that of `on_byte`.
   Duration on_silence();
 
-  /// This module's own driver was on until `now`, and no byte was passed on meanwhile: a frame that is open
-  /// and not whole is forgotten (wire.md D9).
+  /// Call this when the module's own driver has been on until `now`; `on_byte` must not be called during that
+  /// time. Drops an incomplete frame (wire.md D9).
   void on_spoken(Time now);
 
   // --- main loop ---
 
-  /// The address to answer to, after `listen`; takes effect with the next frame that ends.
+  /// Sets the module's address for all frames that end after this call. Call it after `listen`.
   void answer_to(std::uint8_t address);
-  /// As given to `listen`.
+  /// Returns the timing that was passed to `listen`.
   [[nodiscard]] const LineTiming& timing() const { return rtu_.timing(); }
   FrameQueue& queue() { return queue_; }
   [[nodiscard]] const FrameQueue& queue() const { return queue_; }
   constexpr LineTallies& tallies() { return tallies_; }
   [[nodiscard]] constexpr const LineTallies& tallies() const { return tallies_; }
-  /// Interrupts too. How many host OKs were received; wraps.
+  /// Returns the number of received host OKs; wraps. Interrupts may call this too.
   [[nodiscard]] std::uint32_t host_oks() const { return host_oks_.load(); }
-  /// When the latest of them was over: its CR, or the silence after it.
+  /// Returns the time of the last host OK: the time of its CR, or the end of the silence after it.
   [[nodiscard]] Time host_ok_time() const { return Time(host_ok_time_.load()); }
 
  private:

@@ -18,7 +18,7 @@ Verdict RtuAssembler::byte(FrameQueue& queue, std::uint8_t byte, ByteStatus stat
   const Duration gap = now.since(last_);
   last_ = now;
   if (state_ == State::Doubtful && !(gap < timing_.rtu_silence + timing_.rtu_grace)) {
-    before = why_lost();  // the byte began after T3.5, and the timer is late
+    before = why_lost();  // the byte began after T3.5, but the timer interrupt has not run yet
     state_ = State::Idle;
   }
   if (state_ == State::Idle) {
@@ -44,7 +44,7 @@ void RtuAssembler::open() {
   behind_first_ = Crc16();
 }
 
-/// The last byte, or the gap behind it.
+/// Marks the last byte, or the gap after it, as faulty.
 void RtuAssembler::spoil() {
   if (received_ == 1) {
     first_spoiled_ = true;
@@ -66,7 +66,7 @@ void RtuAssembler::append(Frame& frame, std::uint8_t byte) {
 
 Verdict RtuAssembler::silence(FrameQueue& queue) {
   Verdict verdict = Verdict::Open;
-  switch (state_) {  // not covered: every value has its case
+  switch (state_) {  // not covered: the cases are complete
     case State::Idle:
       break;
     case State::Receiving:
@@ -91,7 +91,7 @@ Verdict RtuAssembler::cut_off(FrameQueue& queue) {
   return verdict;
 }
 
-/// A frame whose CRC is right, from its first byte on or from behind a turn-around 00.
+/// Queues the frame if its CRC is correct, either from the first byte or after a turn-around byte 00.
 Verdict RtuAssembler::conclude(FrameQueue& queue) {
   Frame& frame = queue.assembling();
   unsigned offset = 0;

@@ -1,4 +1,5 @@
-// Assembles Modbus RTU frames from received bytes and silences. Runs in the receive and timer interrupts.
+// Assembles Modbus RTU frames from received bytes and silences. Runs in the receive interrupt and in the
+// timer interrupt.
 #pragma once
 
 #include <cstdint>
@@ -12,40 +13,42 @@
 
 namespace ex9000 {
 
-/// address, function, data, CRC, then T3.5 of silence - wire.md section 7.
+/// Frame format: address, function, data, CRC, then a silence of T3.5 - wire.md section 7.
 ///
-/// A timer ends frames. Its interrupt is served before that of a byte that comes later
+/// A timer ends frames. Its interrupt must run before the interrupt of a byte that arrives later
 /// (hal/one_shot_timer.hpp).
 class RtuAssembler {
  public:
   void use(const LineTiming& timing) { timing_ = timing; }
   [[nodiscard]] const LineTiming& timing() const { return timing_; }
-  /// Main loop, also while bytes come in: the module's address, for every frame that ends from now on.
+  /// Sets the module's address for all frames that end after this call. For the main loop, which may call it
+  /// while bytes are received.
   void answer_to(std::uint8_t address) { own_address_.store_in_main_loop(address); }
 
-  /// Receive interrupt: a byte was complete at `now`. Restart the timer with T3.5 after it. Says what became
-  /// of the frame before, if the byte shows that it is over.
+  /// Processes a byte that was complete at `now`. Restart the timer with T3.5 after this call. Returns the
+  /// verdict on the previous frame if this byte shows that it has ended, else Open. For the receive
+  /// interrupt.
   Verdict byte(FrameQueue& queue, std::uint8_t byte, ByteStatus status, Time now);
 
-  /// Timer interrupt: the time has passed since the last byte, or since the last call. Restart the timer with
-  /// `next_wait()` after it. An accepted frame holds address, function and data: neither the CRC nor a
-  /// turn-around 00 before it.
+  /// Call this when the timer has expired. Restart the timer with `next_wait()` after this call. An accepted
+  /// frame contains address, function and data, but neither the CRC nor a leading turn-around byte 00. For
+  /// the timer interrupt.
   Verdict silence(FrameQueue& queue);
-  /// Zero if nothing is waited for.
+  /// Returns the next time for the timer; 0 if none is necessary.
   [[nodiscard]] Duration next_wait() const;
 
-  /// Interrupt: the own driver was on. A frame whose CRC is right was whole and is judged, any other is
-  /// forgotten (wire.md D9).
+  /// Call this when the module's own driver has been on. A frame with a correct CRC is complete and is
+  /// judged; any other frame is dropped (wire.md D9). For interrupts.
   Verdict cut_off(FrameQueue& queue);
 
-  /// When the silence was over that ended the last frame.
+  /// Returns the end of the silence after the last byte.
   [[nodiscard]] Time silent_since() const { return last_ + timing_.rtu_silence; }
 
  private:
   enum class State : std::uint8_t {
     Idle,       ///< no frame is open
-    Receiving,  ///< the last byte is less than T3.5 old
-    Doubtful,   ///< T3.5 have passed and this is no frame: a byte that began in time may still come in
+    Receiving,  ///< a frame is open, and T3.5 is not over
+    Doubtful,   ///< T3.5 is over without a valid frame; a byte that began before that may still arrive
   };
 
   void open();
@@ -57,13 +60,13 @@ class RtuAssembler {
   WrittenByMainLoop<std::uint32_t> own_address_;
   LineTiming timing_{};
   State state_ = State::Idle;
-  std::uint32_t received_ = 0;  ///< bytes of the open frame, also those there is no room for
-  bool first_spoiled_ = false;  ///< the first byte had a line error, or a strict gap behind it
-  bool rest_spoiled_ = false;   ///< any other byte had
-  bool overrun_ = false;        ///< and one of these errors was an overrun
-  Crc16 whole_;                 ///< over all bytes
-  Crc16 behind_first_;          ///< over all but the first, if that is 00
-  Time last_;                   ///< when the last byte was complete
+  std::uint32_t received_ = 0;  ///< number of bytes of the open frame, including those that did not fit
+  bool first_spoiled_ = false;  ///< the first byte had a line error, or the gap after it was too long
+  bool rest_spoiled_ = false;   ///< the same for any other byte
+  bool overrun_ = false;        ///< one of these line errors was an overrun
+  Crc16 whole_;                 ///< CRC of all bytes
+  Crc16 behind_first_;          ///< CRC of all bytes except the first, if that is 00
+  Time last_;                   ///< end of the last byte
 };
 
 }  // namespace ex9000

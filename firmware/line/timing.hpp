@@ -1,4 +1,4 @@
-// The times by which a receiver tells frames apart and a reply keeps its distance.
+// The times that separate received frames from each other and a reply from its request.
 #pragma once
 
 #include <cstdint>
@@ -8,23 +8,23 @@
 namespace ex9000 {
 
 struct LineTiming {
-  /// Between CR and the reply: one character, 10 bits; rounded up.
+  /// Time between CR and the reply: one character of 10 bits, rounded up.
   Duration dcon_turn_around;
-  /// T3.5, the silence that ends a Modbus RTU frame, and that comes before a reply; rounded up, so that a
-  /// reply is never early.
+  /// T3.5, the silence that ends a Modbus RTU frame and precedes a reply. It is rounded up, so that a reply
+  /// is never early.
   Duration rtu_silence;
-  /// After `rtu_silence`, how long a byte that began before T3.5 may take until it is complete: one
-  /// character; rounded down, so that a frame after exactly T3.5 is one of its own.
+  /// Time after `rtu_silence` within which a byte that began before T3.5 becomes complete: one character. It
+  /// is rounded down, so that a byte that begins after exactly T3.5 begins a new frame.
   Duration rtu_grace;
-  /// Bytes whose ends lie further apart than this spoil a frame.
+  /// The largest time between the ends of two bytes; a larger time makes the frame invalid.
   Duration rtu_slack;
 
-  /// For rtu_slack: no gap spoils a frame.
+  /// A value for `rtu_slack` that allows every gap.
   static constexpr Duration kAnyGap{0xFFFF'FFFFU};
 
-  /// Modbus over Serial Line V1.02, 2.5.1.1: T3.5 counts 11-bit characters up to 19200 baud and is fixed
-  /// above. Gaps inside a frame are tolerated, since USB adapters and gateways make them. `baud` in bits per
-  /// second, 50 to 4000000.
+  /// Returns the times of Modbus over Serial Line V1.02, 2.5.1.1: T3.5 is 3.5 characters of 11 bits up to
+  /// 19200 baud, and fixed above that. Gaps within a frame are allowed, because USB adapters and gateways
+  /// cause them. `baud`: 50 to 4000000 bits per second.
   static constexpr LineTiming at(std::uint32_t baud) {
     const std::uint32_t character = microseconds(2 * 10, baud);
     const std::uint32_t t35 = silence(7, baud, 1750);
@@ -36,18 +36,19 @@ struct LineTiming {
     return timing;
   }
 
-  /// Likewise, for standard rates and a UART that tells of a byte when it has seen the middle of its stop
-  /// bit, half a bit before that is over.
+  /// Returns the times of `at` for a UART that reports a byte in the middle of its stop bit, half a bit
+  /// before the end. `baud` must be a standard rate.
   static constexpr LineTiming told_in_the_stop_bit(std::uint32_t baud) {
     LineTiming timing = at(baud);
     const Duration half_bit(microseconds(1, baud) + 1U);
     timing.dcon_turn_around = timing.dcon_turn_around + half_bit;
     timing.rtu_silence = timing.rtu_silence + half_bit;
-    timing.rtu_grace = timing.rtu_grace - half_bit;  // the byte is told as early
+    timing.rtu_grace = timing.rtu_grace - half_bit;  // the UART reports the late byte half a bit early too
     return timing;
   }
 
-  /// As `at`, but a gap of more than T1.5 spoils a frame, as the same clause has it.
+  /// Return the same times as the functions above, except that a gap of more than T1.5 makes the frame
+  /// invalid, as 2.5.1.1 requires.
   static constexpr LineTiming strictly_at(std::uint32_t baud) { return strictly(at(baud), baud); }
   static constexpr LineTiming strictly_told_in_the_stop_bit(std::uint32_t baud) {
     return strictly(told_in_the_stop_bit(baud), baud);
@@ -59,9 +60,9 @@ struct LineTiming {
     return timing;
   }
 
-  /// One for the division, one for a clock that shows whole microseconds.
+  /// In microseconds: 1 for the rounding of the division, 1 for the resolution of the clock.
   static constexpr std::uint32_t kRoundUp = 2;
-  /// What rtu_silence was rounded up by, and one.
+  /// In microseconds: kRoundUp, which is already part of rtu_silence, and 1 for the resolution of the clock.
   static constexpr std::uint32_t kRoundDown = kRoundUp + 1;
 
   static constexpr std::uint32_t microseconds(std::uint32_t half_bits, std::uint32_t baud) {
@@ -75,8 +76,8 @@ struct LineTiming {
   }
 };
 
-/// What times hold at which rate: `LineTiming::at` on two wires. Other carriers, where bytes cost no time,
-/// have their own.
+/// A function that returns the times at a baud rate. On an RS-485 line it is `LineTiming::at`. Lines on which
+/// bytes take no time use other functions.
 using TimingAt = LineTiming (*)(std::uint32_t baud);
 
 }  // namespace ex9000

@@ -1,26 +1,27 @@
-// What a received byte brought.
+// The status of a received byte and the verdict on a received frame.
 #pragma once
 
 #include <cstdint>
 
 namespace ex9000 {
 
-/// What the UART says of a byte.
+/// The status of a byte as the UART reports it.
 enum class ByteStatus : std::uint8_t { Good, FramingError, Break, Overrun };
 
-/// What became of the frame that a byte or a silence ended. Only Accepted reaches the main loop; to all
-/// others the module stays silent. Frames with a right check come first.
+/// The verdict on a frame that a byte or a silence has ended. The module sends no reply to a frame unless it
+/// is Accepted; only these frames reach the main loop. LineTallies uses the order: frames with a correct
+/// check come first.
 enum class Verdict : std::uint8_t {
   Open,       ///< no frame ended
-  Accepted,   ///< for this module or a broadcast, its check is right: it waits in the queue
-  HostOk,     ///< the host says that it is alive; noted at once, so that it is never lost
-  Foreign,    ///< right, but for another address
-  NoRoom,     ///< would have been accepted, but one frame is waiting already
+  Accepted,   ///< correct, and for this module or a broadcast; the frame is in the queue
+  HostOk,     ///< a host OK; counted in the interrupt, so that it is never lost
+  Foreign,    ///< correct, but for another address
+  NoRoom,     ///< correct and for this module, but lost because another frame is already waiting
   BadCheck,   ///< wrong or missing checksum, wrong CRC
-  TooShort,   ///< cannot hold an address and a check
-  TooLong,    ///< longer than any frame may be
-  LineError,  ///< a byte came with a framing, break or overrun error
-  Overrun,    ///< a byte was lost because the one before was not taken in time
+  TooShort,   ///< too short for an address and a check
+  TooLong,    ///< longer than the longest allowed frame
+  LineError,  ///< a byte had a framing, break or overrun error
+  Overrun,    ///< a byte was lost because the previous byte was not read in time
 };
 
 }  // namespace ex9000
