@@ -14,7 +14,7 @@ namespace detail {
 /// is sufficient: it prevents the compiler from moving other accesses across this one.
 template <class T>
 class Crossing {
-  // NOLINTNEXTLINE(bugprone-sizeof-expression): where T is a pointer, its own size is meant
+  // NOLINTNEXTLINE(bugprone-sizeof-expression): if T is a pointer, the size of the pointer is meant
   static_assert(std::is_trivially_copyable<T>::value && sizeof(T) <= sizeof(std::uintptr_t),
                 "must be read and written by one instruction");
 

@@ -62,7 +62,7 @@ struct LineTiming {
 
   /// In microseconds: 1 for the rounding of the division, 1 for the resolution of the clock.
   static constexpr std::uint32_t kRoundUp = 2;
-  /// In microseconds: kRoundUp, which is already part of rtu_silence, and 1 for the resolution of the clock.
+  /// In microseconds: kRoundUp, because rtu_silence is already rounded up by it, and 1 more.
   static constexpr std::uint32_t kRoundDown = kRoundUp + 1;
 
   static constexpr std::uint32_t microseconds(std::uint32_t half_bits, std::uint32_t baud) {

@@ -18,11 +18,12 @@ enum class StatusStyle : std::uint8_t {
   EnableAndTimeout,  ///< 00, 80, 84
 };
 
-/// What switches the outputs of a model; for people.
+/// The switching elements of the outputs. This is documentation for users only.
 enum class OutputKind : std::uint8_t { None, OpenCollector, Relay, PhotoMos };
 
-/// Where INIT* is tied to GND; for people. Section 1.4 of the manuals: older modules have a terminal, newer
-/// ones a slide switch at the rear. The first pages of two manuals say which.
+/// The place at which the user ties INIT* to GND. This is documentation for users only. Section 1.4 of the
+/// manuals: older modules have a terminal, newer modules have a slide switch at the rear. The first pages of
+/// two manuals name the models.
 enum class InitInput : std::uint8_t { Terminal, RearSwitch };
 
 struct Model {
@@ -31,9 +32,9 @@ struct Model {
   std::uint8_t outputs;          ///< number of channels, 0 to 16
   std::uint16_t modbus_code;     ///< returned by function 46, e.g. 0x9042; 0: the model speaks ASCII only
   StatusStyle status_style;
-  std::string_view factory_name;  ///< what `$AAM` answers from the factory
-  std::uint8_t longest_name;      ///< what `~AAO` accepts, in characters
-  std::string_view description;   ///< Modbus object 04, and for people
+  std::string_view factory_name;  ///< factory setting of the name, which `$AAM` returns
+  std::uint8_t longest_name;      ///< longest name that `~AAO` accepts, in characters
+  std::string_view description;   ///< Modbus object 04; also shown to users
   OutputKind output_kind;
   InitInput init_input = InitInput::Terminal;
 
@@ -100,7 +101,7 @@ constexpr const Model* find_model(std::string_view designation) {
 enum class Needs : std::uint8_t { Nothing, Outputs, Inputs, Modbus };
 
 constexpr bool meets(const Model& model, Needs needs) {
-  switch (needs) {  // not covered: every value has its case
+  switch (needs) {  // not covered: the cases are complete
     case Needs::Outputs:
       return model.has_outputs();
     case Needs::Inputs:
