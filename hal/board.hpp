@@ -1,4 +1,4 @@
-// A board as what its peripherals promise.
+// Checks that a board has all peripherals with the required functions.
 #pragma once
 
 #include <type_traits>
@@ -15,9 +15,9 @@
 
 namespace ex9000::hal {
 
-/// What a board provides: a struct with a member of each of these names, a driver or a reference to one. If a
-/// member is missing or is not what its header promises, this does not compile, and the message names the
-/// member.
+/// `Board` must be a struct with a member of each of these names. Each member is a driver or a reference to a
+/// driver. If a member is missing or lacks a function that its header requires, compilation fails with a
+/// message that names the member.
 // NOLINTBEGIN(bugprone-macro-parentheses): the arguments are names
 template <class Board>
 constexpr bool is_board() {

@@ -8,14 +8,15 @@
 
 namespace ex9000::hal {
 
-/// Free-running time. Wraps; see Time.
+/// A free-running clock. Its time wraps; see Time.
 ///
 ///     Time now() const
-///         Never blocks; interrupts and main loop may call it. Never goes back.
+///         Returns the time, which never goes back. Interrupts and the main loop may call it; does not block.
 ///     Time now_in_interrupt() const
-///         The same for interrupts that the clock's own does not interrupt, which may spare them something.
+///         Returns the same and may be faster. Only for interrupts that the clock's own interrupt does not
+///         interrupt.
 ///
-/// Whether `T` offers that.
+/// True if `T` has these functions.
 template <class T, class = void>
 inline constexpr bool kIsClock = false;
 template <class T>

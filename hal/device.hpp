@@ -1,4 +1,4 @@
-// The module on its peripherals: what every board and every simulated module runs.
+// Connects the module to its peripherals. Every board and every simulated module uses this class.
 #pragma once
 
 #include <cstdint>
@@ -11,9 +11,9 @@
 
 namespace ex9000::hal {
 
-/// Lives from one reset to the next. A composition file makes one, calls `start`, points the interrupts at
-/// the `on_...` functions and then, for ever, calls `turn` until that returns false, and sleeps until it
-/// `has_work`.
+/// An object exists from one reset to the next. A composition file creates it, calls `start`, and makes the
+/// interrupts call the `on_...` functions. Then it repeats the following in an endless loop: it calls `turn`
+/// until that returns false, and sleeps until `has_work` returns true.
 ///
 /// `Board`: see hal/board.hpp.
 template <class Board>
@@ -21,32 +21,34 @@ class Device {
   static_assert(is_board<Board>());
 
  public:
-  /// With a board of its own. `timing_at`: see Module.
+  /// Creates a device with its own board. `timing_at`: see Module.
   constexpr Device(const Model& model, TimingAt timing_at) : board_(), module_(model, timing_at) {}
-  /// On one that refers to somebody else's peripherals.
+  /// Creates a device with a board that refers to peripherals of the caller.
   constexpr Device(const Model& model, TimingAt timing_at, const Board& board)
       : board_(board), module_(model, timing_at) {}
 
-  /// Once, before interrupts are enabled; the tick runs already.
+  /// Call this once, before interrupts are enabled and after the tick has been started.
   void start() {
     module_.start(board_.inputs.start(), board_.clock.now());
     board_.watchdog.feed();
   }
 
-  // --- interrupts; on_receive, on_silence and on_sent share a priority, the others may have their own ---
+  // --- interrupts; on_receive, on_silence and on_sent share a priority, the others may have other priorities
+  // ---
 
-  /// A byte was received, good or not, while the own driver was off.
+  /// Call this for each byte that was received while the module's own driver was off, with or without an
+  /// error.
   void on_receive(std::uint8_t byte, ByteStatus status) {
     const Duration silence = module_.on_byte(byte, status, board_.clock.now_in_interrupt());
     if (!(silence == Duration())) {
       board_.silence_timer.restart(silence);
     } else if (module_.request_waits()) {
-      wake();  // on a line on which nothing takes time, the turn-around is over already
+      wake();  // on a line on which bytes take no time, the turn-around time is already over
     }
   }
   void on_silence() {
     const Duration more = module_.on_silence();
-    // A frame that is still open behind an own reply is closed by its end.
+    // While a reply is being sent, no timer is necessary: `on_sent` ends a frame that is still open.
     if (!(more == Duration()) && !board_.line.sending()) {
       board_.silence_timer.restart(more);
     }
@@ -54,7 +56,7 @@ class Device {
       wake();
     }
   }
-  /// The last stop bit has left and the driver is off.
+  /// Call this when the last stop bit has been sent and the driver is off.
   void on_sent() {
     module_.on_spoken(board_.clock.now_in_interrupt());
     wake();
@@ -68,17 +70,17 @@ class Device {
     times_due_.store_in_interrupt(times_due_.load() + 1U);
     wake();
   }
-  /// The memory can continue.
+  /// Call this when the memory can continue its job.
   void on_memory() { wake(); }
 
-  // --- main loop; none of it blocks ---
+  // --- main loop; no function blocks ---
 
   [[nodiscard]] bool has_work() const { return wakes_.load() != wakes_seen_; }
 
-  /// Requests, settings, outputs and the panel. True: call it again at once, because no interrupt will tell
-  /// when.
+  /// Runs one pass: processes requests, settings, outputs and the panel. If it returns true, call it again at
+  /// once, because no interrupt will wake the main loop.
   bool turn() {
-    wakes_seen_ = wakes_.load();  // first: what happens from here on gets a turn of its own
+    wakes_seen_ = wakes_.load();  // must be first, so that later events cause another pass
     const Time now = board_.clock.now();
     const bool memory_polls = poll_memory(now);
     if (panel_is_due()) {
@@ -97,8 +99,8 @@ class Device {
   [[nodiscard]] const Module& module() const { return module_; }
 
  private:
-  /// INIT*, the status LED and the hardware watchdog: at every tick, and when the wake timer has fired. The
-  /// outputs too, whatever may have happened to their registers.
+  /// Processes INIT*, the status LED and the hardware watchdog, at every tick and when the wake timer has
+  /// fired. It also drives the outputs again, in case a disturbance has changed their registers.
   void poll_panel() {
     module_.poll_panel(board_.init_switch.asserted(), board_.clock.now());
     board_.status_led.light(module_.led_lit());
@@ -121,7 +123,7 @@ class Device {
         return;
       }
       reply_under_way_ = false;
-      module_.reply_sent(board_.clock.now());  // not `now`: it may have ended since
+      module_.reply_sent(board_.clock.now());  // not `now`, because the reply may have ended after that time
     }
     const Bytes reply = module_.take_reply(now);
     if (reply.size != 0) {
@@ -134,7 +136,7 @@ class Device {
     board_.line.send(reply);
   }
 
-  /// The tick or the wake timer has fired, or `idle_for` said that something is due.
+  /// Returns whether the tick or the wake timer has fired, or the last `idle_for` was 0.
   bool panel_is_due() {
     const std::uint32_t times_due = times_due_.load();
     const bool due = due_now_ || times_due != times_seen_;
@@ -142,7 +144,7 @@ class Device {
     return due;
   }
 
-  /// The main loop has something to go on with.
+  /// Makes `has_work` return true, which wakes the main loop.
   void wake() { wakes_.store_in_interrupt(wakes_.load() + 1U); }
 
   void drive_outputs() {
@@ -150,7 +152,7 @@ class Device {
     board_.outputs.drive(driven_);
   }
 
-  /// True: again at once.
+  /// Continues a memory job. Returns true if it must be called again at once.
   bool poll_memory(Time now) {
     if (!memory_job_under_way_) {
       return false;
@@ -176,8 +178,8 @@ class Device {
     memory_job_under_way_ = true;
   }
 
-  /// For whatever is due next. A turn that takes some time makes it late by that, and no more. True: it is
-  /// due now.
+  /// Sets the wake timer to the next event. The duration of this pass delays that event, but delays do not
+  /// add up. Returns true if the event is due now.
   bool set_wake_timer(Time now) {
     const Duration idle = module_.idle_for(now, memory_job_under_way_ ? kMemoryPollPeriod : kLongestWake);
     due_now_ = idle == Duration();
@@ -194,9 +196,9 @@ class Device {
   bool memory_job_under_way_ = false;
   std::uint16_t driven_ = 0;
   std::uint32_t wakes_seen_ = 0;
-  std::uint32_t times_seen_ = 0;  ///< of `times_due_`
+  std::uint32_t times_seen_ = 0;  ///< the value of `times_due_` that has been processed
   WrittenByInterrupt<std::uint32_t> wakes_;
-  WrittenByInterrupt<std::uint32_t> times_due_;  ///< how often the tick or the wake timer has fired
+  WrittenByInterrupt<std::uint32_t> times_due_;  ///< number of times the tick or the wake timer has fired
   Module module_;
 };
 

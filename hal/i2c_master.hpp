@@ -1,4 +1,4 @@
-// What a driver of an I2C master is asked for and answers.
+// The functions that a driver of an I2C master must have.
 #pragma once
 
 #include <cstddef>
@@ -12,25 +12,30 @@
 
 namespace ex9000::hal {
 
-/// One visit to a device: START, its address, bytes one way, STOP. A driver of a master offers, for the main
-/// loop alone and without blocking:
+/// A transfer to or from a device: START, address, bytes in one direction, STOP. A driver of a master has the
+/// following functions. They are for the main loop only and do not block.
 ///
-///     void begin(const I2cTransfer&, Time now)   only while not busy(); the transfer lives until then
-///     bool poll(Time now)                        every turn; true: again at once, no interrupt will tell
+///     void begin(const I2cTransfer&, Time now)
+///         Begins a transfer. Call it only while not `busy()`. The transfer must stay valid while `busy()`.
+///     bool poll(Time now)
+///         Continues the transfer. Call it in every pass. If it returns true, call it again at once, because
+///         no interrupt will occur.
 ///     bool busy() const
-///     I2cResult result() const                   of the last transfer, while not busy()
+///         Returns whether a transfer is running.
+///     I2cResult result() const
+///         Returns the result of the last transfer. Call it only while not `busy()`.
 ///
 struct I2cTransfer {
-  std::uint8_t device = 0;   ///< 7 bits
-  Bytes header;              ///< written first
-  Bytes source;              ///< written behind it
-  MutableBytes destination;  ///< filled, where nothing is written
+  std::uint8_t device = 0;   ///< address of the device, 7 bits
+  Bytes header;              ///< bytes to write first; if empty, the transfer reads
+  Bytes source;              ///< bytes to write after the header
+  MutableBytes destination;  ///< buffer for a read
 
   [[nodiscard]] constexpr bool writes() const { return header.size != 0; }
   [[nodiscard]] constexpr std::size_t size() const {
     return writes() ? header.size + source.size : destination.size;
   }
-  /// The byte to be written in place `index`.
+  /// Returns the byte to write at position `index`.
   [[nodiscard]] constexpr std::uint8_t byte(std::size_t index) const {
     return index < header.size ? header[index] : source[index - header.size];
   }
@@ -38,11 +43,11 @@ struct I2cTransfer {
 
 enum class I2cResult : std::uint8_t {
   Done,
-  NoAcknowledge,  ///< nobody answered to the address, or a byte was not taken
-  Failed,         ///< the bus did not move: a line is stuck, or somebody else is on it
+  NoAcknowledge,  ///< no device acknowledged the address, or a byte was not acknowledged
+  Failed,         ///< the transfer did not advance: a line is stuck, or another master uses the bus
 };
 
-/// Whether `T` offers what I2cTransfer says of a master.
+/// True if `T` has the functions of a master that I2cTransfer lists.
 template <class T, class = void>
 inline constexpr bool kIsI2cMaster = false;
 template <class T>

@@ -7,12 +7,12 @@
 
 namespace ex9000::hal {
 
-/// The INIT* pin, active low. Where a jumper has given the pin to another signal it reads released.
+/// The INIT* pin, active low. If a jumper connects the pin to another signal, INIT* reads as released.
 ///
 ///     bool asserted() const
-///         INIT* is tied to GND at this moment; bounces and all. Main loop; does not block.
+///         Returns whether INIT* is tied to GND now, not debounced. For the main loop; does not block.
 ///
-/// Whether `T` offers that.
+/// True if `T` has this function.
 template <class T, class = void>
 inline constexpr bool kIsInitSwitch = false;
 template <class T>

@@ -8,14 +8,14 @@
 
 namespace ex9000::hal {
 
-/// The input channels. Every edge is handed to `Device::on_edge` in the edge interrupt, with the level read
-/// after the edge flag was cleared.
+/// The input channels. The edge interrupt calls `Device::on_edge` for each edge. It must clear the edge flag
+/// before it reads the level.
 ///
 ///     std::uint16_t start()
-///         From now on edges are told. Returns the levels they start from: bit n is channel n, 1 = logic 1
-///         (+4 to +30 V). Main loop, once after reset; does not block.
+///         Enables the reporting of edges. Returns the levels before the first edge: bit n is channel n, 1 =
+///         logic 1 (+4 to +30 V). For the main loop, once after reset; does not block.
 ///
-/// Whether `T` offers that.
+/// True if `T` has this function.
 template <class T, class = void>
 inline constexpr bool kIsInputs = false;
 template <class T>

@@ -10,28 +10,31 @@
 
 namespace ex9000::hal {
 
-/// What no interrupt tells of, such as a bus that does not move, is noticed within this time.
+/// The period of `poll` during a job. It limits the delay of events without an interrupt, for example a bus
+/// error.
 inline constexpr Duration kMemoryPollPeriod = milliseconds(1);
 
-/// A nonvolatile memory that takes its time, such as an AT24C64: one job at once, begun here and looked after
-/// while the main loop goes on. Where an interrupt tells that it can go on, that calls `Device::on_memory`.
+/// A nonvolatile memory, for example an AT24C64. It carries out one job at a time while the main loop
+/// continues. If it has an interrupt that shows that the job can continue, that interrupt calls
+/// `Device::on_memory`. All functions are for the main loop and do not block.
 ///
 ///     void start_read(std::uint16_t address, MutableBytes destination, Time now)
-///         Begins to read `destination.size` bytes from `address` on. Main loop, only while not `busy()`;
-///         does not block. `destination` lives until then.
+///         Begins to read `destination.size` bytes from `address` on. Call it only while not `busy()`.
+///         `destination` must stay valid while `busy()`.
 ///     void start_write(std::uint16_t address, Bytes source, Time now)
-///         Begins to write; the job never crosses a 32-byte page. Ends when the memory has programmed the
-///         bytes, not when it has taken them. `source` lives until then. Likewise.
+///         Begins to write `source`, which must not cross the end of a 32-byte page. The job ends when the
+///         memory has programmed the bytes, not when it has received them. Call it only while not `busy()`.
+///         `source` must stay valid while `busy()`.
 ///     bool poll(Time now)
-///         Continues the job. Main loop, behind every interrupt of the memory, and every `kMemoryPollPeriod`;
-///         does not block. True: must be called again at once, no interrupt will tell when.
+///         Continues the job. Call it after each interrupt of the memory and every `kMemoryPollPeriod`. If it
+///         returns true, call it again at once, because no interrupt will occur.
 ///     bool busy() const
-///         Whether a job is under way. Main loop.
+///         Returns whether a job is running.
 ///     bool succeeded() const
-///         Whether the last job succeeded; false where the memory did not answer or took longer than its data
-///         sheet says. Main loop, while not `busy()`.
+///         Returns whether the last job succeeded; false if the memory did not answer or took longer than its
+///         data sheet allows. Call it only while not `busy()`.
 ///
-/// Whether `T` offers that.
+/// True if `T` has these functions.
 template <class T, class = void>
 inline constexpr bool kIsMemory = false;
 template <class T>

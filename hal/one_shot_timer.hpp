@@ -14,18 +14,16 @@ inline constexpr Duration kLongestWake = milliseconds(1000);
 /// A timer that calls one function of `Device` in its interrupt. A board has two:
 ///
 ///   - The silence timer calls `on_silence`. It is set to 60 us to 34 ms. Its interrupt and the receive
-///   interrupt
-///     do not interrupt each other. If both wait, the silence timer is served first, because a byte that
-///     comes after the silence must not be taken for one before it.
-///   - The wake timer calls `on_wake_timer` for whatever is due next. It is set to 1 us to `kLongestWake`. If
-///   it
-///     failed, everything would be done at the next tick.
+///     interrupt must not interrupt each other. If both are pending, the interrupt of the silence timer
+///     must run first: a byte after the silence does not belong to the frame before the silence.
+///   - The wake timer calls `on_wake_timer` for the next event that is due. It is set to 1 us to
+///     `kLongestWake`. If this timer failed, the next tick would process the event.
 ///
 ///     void restart(Duration after)
-///         Fires once, `after` from now, at most 5 us late and never early. An earlier start is forgotten,
-///         even if its interrupt is pending already. Interrupts and main loop; does not block.
+///         Makes the timer fire once, `after` from now, at most 5 us late and never early. Cancels an earlier
+///         start, even if its interrupt is already pending. For interrupts and the main loop; does not block.
 ///
-/// Whether `T` offers that.
+/// True if `T` has this function.
 template <class T, class = void>
 inline constexpr bool kIsOneShotTimer = false;
 template <class T>

@@ -8,15 +8,15 @@
 
 namespace ex9000::hal {
 
-/// The output channels: open collectors, relays or PhotoMOS. From reset until the first `drive` all are
-/// de-energised.
+/// The output channels: open collectors, relays or PhotoMOS. All are de-energised from reset to the first
+/// `drive`.
 ///
 ///     void drive(std::uint16_t channels)
-///         Bit n is channel n, 1 = energised (the transistor conducts, the relay is pulled); polarity is the
-///         board's. All channels change together, those that stay the same without a glitch. Main loop, every
-///         turn; does not block.
+///         Drives all channels: bit n is channel n, 1 = energised (the transistor conducts, the relay is
+///         pulled). The board defines the polarity. All channels change together, and unchanged channels have
+///         no glitch. For the main loop, in every pass; does not block.
 ///
-/// Whether `T` offers that.
+/// True if `T` has this function.
 template <class T, class = void>
 inline constexpr bool kIsOutputs = false;
 template <class T>

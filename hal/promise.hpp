@@ -1,19 +1,19 @@
-// How a contract of hal/ is put so that the compiler checks it.
+// Helpers with which the compiler checks the function signatures that hal/ requires.
 #pragma once
 
 #include <type_traits>
 
 namespace ex9000::hal {
 
-/// An argument that becomes a `T` and nothing else: a function that takes something wider or narrower cannot
-/// be called with it.
+/// An argument that converts to `T` only. A function whose parameter has a wider or narrower type cannot be
+/// called with it.
 template <class T>
 struct Exactly {
   template <class U, class = std::enable_if_t<std::is_same_v<U, T>>>
-  operator U() const;  // NOLINT(google-explicit-constructor): that it converts is what it is for
+  operator U() const;  // NOLINT(google-explicit-constructor): the implicit conversion is intended
 };
 
-/// Is a type only if what a call returns is `Wanted` itself.
+/// A valid type only if a call returns exactly `Wanted`.
 template <class Wanted, class Returned>
 using Returns = std::enable_if_t<std::is_same_v<Wanted, Returned>>;
 

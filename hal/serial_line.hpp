@@ -9,24 +9,24 @@
 
 namespace ex9000::hal {
 
-/// The UART and the RS-485 driver behind it, 8N1, half duplex.
+/// The UART and its RS-485 driver, 8N1, half duplex.
 ///
-/// What it receives it hands to `Device::on_receive` in its receive interrupt, errors included; but nothing
-/// while the driver is on, for that is the echo. That it has sent it tells `Device::on_sent`, in an interrupt
-/// of the same priority.
+/// The receive interrupt calls `Device::on_receive` for each byte, including bytes with errors, but not while
+/// the driver is on, because these bytes are the echo. When a reply has been sent, an interrupt of the same
+/// priority calls `Device::on_sent`.
 ///
 ///     void open(std::uint32_t baud)
-///         Starts receiving at `baud` bits per second (1200 to 115200). Before it, the line is neither heard
-///         nor driven. Main loop, once after reset; does not block.
+///         Starts to receive at `baud` bits per second (1200 to 115200). Before this call, the driver is off
+///         and nothing is received. For the main loop, once after reset; does not block.
 ///     void send(Bytes bytes)
-///         Driver on, then all of `bytes`, then driver off. The driver is on before the first start bit, and
-///         off after the last stop bit has left the shift register (transmission complete, not "data register
-///         empty"), within one character time. Main loop, only while not `sending()`; does not block. `bytes`
-///         live until `sending()` is false again.
+///         Turns the driver on, sends `bytes` and turns the driver off. The driver is on before the first
+///         start bit. It goes off within one character time after the last stop bit has left the shift
+///         register (transmission complete, not "data register empty"). For the main loop, only while not
+///         `sending()`; does not block. `bytes` must stay valid while `sending()`.
 ///     bool sending() const
-///         Whether the driver is on. Interrupts and main loop.
+///         Returns whether the driver is on. For interrupts and the main loop.
 ///
-/// Whether `T` offers that.
+/// True if `T` has these functions.
 template <class T, class = void>
 inline constexpr bool kIsSerialLine = false;
 template <class T>

@@ -10,9 +10,9 @@ namespace ex9000::hal {
 /// The status LED.
 ///
 ///     void light(bool on)
-///         Main loop, every turn; does not block.
+///         Turns the LED on or off. For the main loop, in every pass; does not block.
 ///
-/// Whether `T` offers that.
+/// True if `T` has this function.
 template <class T, class = void>
 inline constexpr bool kIsStatusLed = false;
 template <class T>

@@ -8,19 +8,19 @@
 
 namespace ex9000::hal {
 
-/// A board's tick. So long may wait what has no time of its own: that INIT* has changed, or that a register
-/// of the outputs has to be written again. The wake timer serves everything else on time. A longer period
-/// would save little, and a shorter one would wake a module that has nothing to do.
+/// The period of a board's tick. It limits the delay of events that have no deadline: a change of INIT*, or
+/// an output register that must be written again. The wake timer serves all other events on time. A longer
+/// period would save little, and a shorter one would wake an idle module too often.
 inline constexpr Duration kTickPeriod = milliseconds(10);
 
-/// A periodic interrupt that calls `Device::on_tick`: the sign of life that the hardware watchdog waits for
-/// beside the main loop's.
+/// A periodic interrupt that calls `Device::on_tick`. The hardware watchdog is fed only if both the tick and
+/// the main loop run.
 ///
 ///     void start()
-///         From now on, every `kTickPeriod`, or in the simulator more rarely. Main loop, once after reset;
-///         does not block.
+///         Starts the interrupt, with the period `kTickPeriod` or, in the simulator, a longer one. For the
+///         main loop, once after reset; does not block.
 ///
-/// Whether `T` offers that.
+/// True if `T` has this function.
 template <class T, class = void>
 inline constexpr bool kIsTick = false;
 template <class T>

@@ -8,15 +8,16 @@
 
 namespace ex9000::hal {
 
-/// Longest time the hardware watchdog waits for a feed before it resets the MCU (wire.md section 6).
+/// The longest time without a feed after which the hardware watchdog resets the MCU (wire.md section 6).
 inline constexpr Duration kWatchdogPeriod = milliseconds(1600);
 
-/// The MCU's own watchdog. It runs from the first `feed` on and cannot be stopped.
+/// The MCU's own watchdog. It is running after the first `feed` at the latest and cannot be stopped.
 ///
 ///     void feed()
-///         Gives the module another `kWatchdogPeriod` at most. Main loop; does not block.
+///         Restarts the watchdog's time, which is at most `kWatchdogPeriod`. For the main loop; does not
+///         block.
 ///
-/// Whether `T` offers that.
+/// True if `T` has this function.
 template <class T, class = void>
 inline constexpr bool kIsWatchdog = false;
 template <class T>

@@ -1,5 +1,5 @@
-// An AT24C64 on an I2C bus. Facts: Atmel AT24C64 data sheet (doc. 0336), "write operations" and "read
-// operations".
+// Driver of an AT24C64 on an I2C bus. Source: Atmel AT24C64 data sheet (doc. 0336), "write operations" and
+// "read operations".
 #pragma once
 
 #include <array>
@@ -12,11 +12,12 @@
 
 namespace ex9000::hal {
 
-/// 8 KiB in pages of 32 bytes; see hal/memory.hpp for what it offers. `Master`: see I2cTransfer.
+/// An EEPROM of 8 KiB in pages of 32 bytes. For its functions, see hal/memory.hpp; for `Master`, see
+/// I2cTransfer.
 ///
-/// While it programs a page it answers to nothing, which is how its end is found. It is read with STOP
-/// between the address and the data: its address counter keeps that, and a START in the middle of a transfer
-/// is nothing that every master can do.
+/// The EEPROM does not answer while it programs a page, so the driver repeats its address until it answers.
+/// For a read, the driver sends STOP between the address and the data, because not every master supports a
+/// repeated START. The EEPROM's address counter keeps the address.
 template <class Master>
 class At24c {
   static_assert(kIsI2cMaster<Master>, "Master does not offer what hal/i2c_master.hpp says");
@@ -48,15 +49,16 @@ class At24c {
  private:
   enum class Step : std::uint8_t {
     Idle,
-    Addressing,  ///< the address of what is to be read
+    Addressing,  ///< sends the address for a read
     Reading,
-    Writing,      ///< bytes of one page
-    Programming,  ///< until it answers again
+    Writing,      ///< sends bytes of one page
+    Programming,  ///< waits until the EEPROM answers again
   };
 
-  static constexpr std::uint8_t kDevice = 0x50;  // A2, A1 and A0 to GND
+  static constexpr std::uint8_t kDevice = 0x50;  // A2, A1 and A0 are connected to GND
   static constexpr std::size_t kPage = 32;
-  /// A page takes 10 ms at most. Where a reset has come in between, the first to be read waits for it too.
+  /// The timeout. Programming a page takes at most 10 ms. The first read after a reset may have to wait for
+  /// that too.
   static constexpr Duration kPatience = milliseconds(12);
 
   void begin(Step step, std::uint16_t address, Time now) {
@@ -66,15 +68,15 @@ class At24c {
     transfer(now);
   }
 
-  /// As many bytes as lie in the page that is written first.
+  /// Returns the number of bytes to write to the current page.
   [[nodiscard]] std::size_t chunk() const {
     const std::size_t room = kPage - header_[1] % kPage;
     return rest_.size < room ? rest_.size : room;
   }
 
   void transfer(Time now) {
-    // What is read is addressed first; what was written is over when half an address, which writes nothing,
-    // is acknowledged.
+    // After a write, the driver polls with one byte of the address, which writes nothing. When the EEPROM
+    // acknowledges that, the write has ended.
     transfer_.device = kDevice;
     transfer_.header = {header_.data(), step_ == Step::Programming ? 1U : step_ == Step::Reading ? 0U : 2U};
     transfer_.source = step_ == Step::Writing ? rest_.first(chunk()) : Bytes();

@@ -1,5 +1,5 @@
-// The interrupt controller of a Cortex-M3 or -M4, and waiting for it. Facts: ARMv7-M Architecture Reference
-// Manual, B3.2 and B3.4.
+// The interrupt controller of a Cortex-M3 or -M4, and sleep until an interrupt. Source: ARMv7-M Architecture
+// Reference Manual, B3.2 and B3.4.
 #pragma once
 
 #include <cstdint>
@@ -11,10 +11,12 @@ namespace ex9000::hal::cortex_m {
 
 class Interrupts {
  public:
-  /// `numbers`: a mask, bit n for interrupt n, of the first 32. Of priorities only the part counts that says
-  /// which of several that wait comes first: none interrupts another, so the stack holds one at a time, and
-  /// what interrupts share they need not guard. `last` comes behind all others, which go by their numbers,
-  /// SysTick before them: a silence that is over is told before the byte that ends it.
+  /// Enables interrupts. `numbers` is a mask, bit n is interrupt n, 0 to 31.
+  ///
+  /// No interrupt interrupts another one. The stack therefore needs room for only one interrupt, and
+  /// interrupts can share data without protection. Priorities only define the order of pending interrupts:
+  /// SysTick, then the others by number, then `last`. The board passes the UART as `last`, so that the end of
+  /// a silence is processed before the byte that follows it.
   static void enable(std::uint32_t numbers, std::uint32_t last) {
     constexpr std::uint32_t kLowest = 0xFF;
     constexpr std::uint32_t kInterruptsAWord = 4;
@@ -25,9 +27,9 @@ class Interrupts {
     kSetEnable.write(Bits<SetEnable>(numbers));
   }
 
-  /// Sleeps until `has_work()`; interrupts that bring none are served meanwhile. Main loop. They are held
-  /// back only between the question and the sleep, so that none comes in between unseen; one that waits ends
-  /// the sleep all the same.
+  /// Sleeps until `has_work()` returns true. Interrupts run meanwhile. They are disabled only between the
+  /// call of `has_work` and the sleep, so that no event is missed; a pending interrupt ends the sleep
+  /// nevertheless. For the main loop.
   template <class HasWork>
   static void sleep_until(HasWork has_work) {
     processor::hold_interrupts();
@@ -39,7 +41,7 @@ class Interrupts {
     processor::release_interrupts();
   }
 
-  /// Resets the microcontroller at once. Anywhere; does not return.
+  /// Resets the microcontroller at once and does not return. May be called anywhere.
   [[noreturn]] static void reset() {
     constexpr Bits<ApplicationInterrupt> kReset(1U << 2U);
     kApplicationInterrupt.write(kKey | kReset);

@@ -1,4 +1,4 @@
-// SysTick: time and tick in one. Facts: ARMv7-M Architecture Reference Manual, B3.3, and B3.2.4 (ICSR).
+// SysTick as clock and tick. Source: ARMv7-M Architecture Reference Manual, B3.3, and B3.2.4 (ICSR).
 #pragma once
 
 #include <cstdint>
@@ -10,7 +10,7 @@
 
 namespace ex9000::hal::cortex_m {
 
-/// Counts ticks by interrupt and the microseconds in between from its counter.
+/// Counts ticks in the interrupt and reads the microseconds since the last tick from the counter.
 template <std::uint32_t cycles_per_microsecond>
 class SystemTimer {
  public:
@@ -35,15 +35,15 @@ class SystemTimer {
     std::uint32_t counted = counted_.load();
     std::uint32_t left = kCurrent.read().value();
     if (kInterruptControl.read().has(kPending)) {
-      // It has begun anew and its interrupt must wait, for the one that asks. Whether it had when `left` was
-      // read nobody knows, so that is read again.
+      // The counter has restarted, but the tick interrupt has not run yet. It is unknown whether `left` was
+      // read before or after the restart, so it is read again.
       left = kCurrent.read().value();
       counted += kTickMicroseconds;
     }
     return Time(counted + kLastMicrosecond - left / cycles_per_microsecond);
   }
 
-  /// Its interrupt.
+  /// Counts a tick. For the SysTick interrupt.
   void count_in_interrupt() { counted_.store_in_interrupt(counted_.load() + kTickMicroseconds); }
 
  private:
@@ -61,7 +61,7 @@ class SystemTimer {
   static constexpr std::uint32_t kPeriod = kTickMicroseconds * cycles_per_microsecond;
   static_assert(kPeriod <= 1U << 24U, "the counter has 24 bits");
 
-  WrittenByInterrupt<std::uint32_t> counted_;  ///< microseconds, in whole ticks
+  WrittenByInterrupt<std::uint32_t> counted_;  ///< microseconds of all counted ticks
 };
 
 }  // namespace ex9000::hal::cortex_m

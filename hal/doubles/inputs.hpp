@@ -10,7 +10,8 @@ class Inputs {
   [[nodiscard]] std::uint16_t levels() const { return levels_; }
   [[nodiscard]] bool level(unsigned channel) const { return (levels_ >> channel & 1U) != 0; }
 
-  /// True where this is an edge; then call the interrupt.
+  /// Sets the level of a channel. Returns true if this is an edge; the caller must then call the edge
+  /// interrupt.
   bool set(unsigned channel, bool level) {
     const auto bit = static_cast<std::uint16_t>(1U << channel);
     const std::uint16_t before = levels_;

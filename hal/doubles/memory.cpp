@@ -12,7 +12,7 @@ void Memory::begin(bool writing, std::uint16_t address, std::size_t size) {
   if (address + size > kSize || (writing && address / kPage != (address + size - 1) / kPage)) {
     throw std::logic_error("memory: a job leaves the memory, or a write its page");
   }
-  constexpr std::int64_t kAddressing = 4;  // device address twice, word address in two bytes
+  constexpr std::int64_t kAddressing = 4;  // bytes: device address twice, word address of two bytes
   writing_ = writing;
   address_ = address;
   began_ = clock_.virtual_now();

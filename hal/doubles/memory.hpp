@@ -11,8 +11,8 @@
 
 namespace ex9000::hal::doubles {
 
-/// An AT24C64 as the core sees it: 8 KiB, erased to FF, on a 100 kHz bus, 5 ms to program a page. Loses power
-/// in the middle of a job if told so.
+/// Simulates an AT24C64: 8 KiB, erased to FF, on a 100 kHz bus, 5 ms to program a page. `cut` simulates a
+/// power failure during a job.
 class Memory {
  public:
   static constexpr std::size_t kSize = 8192;
@@ -24,7 +24,7 @@ class Memory {
 
   void start_read(std::uint16_t address, MutableBytes destination, Time now);
   void start_write(std::uint16_t address, Bytes source, Time now);
-  /// The virtual clock does: `run`.
+  /// Does nothing: `run` continues the job when the virtual time has come.
   bool poll(Time /*now*/) { return false; }
   [[nodiscard]] bool busy() const { return ends_ != kNever; }
   [[nodiscard]] bool succeeded() const { return succeeded_; }
@@ -32,24 +32,25 @@ class Memory {
   [[nodiscard]] VirtualTime next() const { return ends_; }
   void run();
 
-  /// The supply fails or the MCU is reset. A write under way leaves the page as far as it got: the first
-  /// bytes new, in proportion to the time it had, one byte spoiled, the rest old.
+  /// Simulates a power failure or a reset of the MCU. A write in progress changes only a part of the page:
+  /// the first bytes are new, in proportion to the time that has passed, the next byte is corrupted, and the
+  /// rest is old.
   void cut();
 
-  /// Told of every range that has been programmed, before the job is over, for contents that are to outlive
-  /// this object; false: that cannot be had, and the job fails.
+  /// A function that saves each programmed range, so that the contents can outlive this object. It is called
+  /// before the job ends. If it returns false, the job fails.
   using Keep = std::function<bool(std::uint16_t address, Bytes bytes)>;
   void keep(Keep keep) { keep_ = std::move(keep); }
 
-  /// Called behind every write that has succeeded, before whoever started it knows.
+  /// Sets a function that is called after each successful write, before the job ends.
   void on_write(std::function<void()> written) { written_ = std::move(written); }
 
-  /// From now on no job succeeds, and nothing is written.
+  /// While `on`, all jobs fail and nothing is written.
   void fail(bool on) { failing_ = on; }
 
   [[nodiscard]] const std::vector<std::uint8_t>& contents() const { return contents_; }
   std::vector<std::uint8_t>& contents() { return contents_; }
-  /// Writes that have changed or could have changed something, for wear.
+  /// Returns the number of started writes, for the calculation of wear.
   [[nodiscard]] std::uint64_t writes() const { return writes_; }
 
  private:

@@ -19,7 +19,7 @@ class Outputs {
   }
 
   [[nodiscard]] std::uint16_t channels() const { return channels_; }
-  /// Called with every new value.
+  /// Sets a function that is called with each new value.
   void on_change(std::function<void(std::uint16_t)> observer) { on_change_ = std::move(observer); }
 
  private:

@@ -23,7 +23,7 @@ void SerialLine::run() {
     return;
   }
   wire_.put(bytes_[sent_++], baud_);
-  // From the first start bit on, so that rounding does not add up.
+  // The time is calculated from the first start bit, so that rounding errors do not add up.
   next_ = first_start_bit_ + wire_.takes(sent_, baud_);
   if (sent_ == bytes_.size) {
     over_ = next_ + kDriverTail;

@@ -8,25 +8,26 @@
 
 namespace ex9000::hal::doubles {
 
-/// Two wires that a UART's driver can be put on. The virtual bus is one.
+/// A two-wire line to which a UART's driver is connected, for example the virtual bus.
 class Wire {
  public:
-  /// This end's driver goes on or off.
+  /// Turns the driver of this end on or off.
   virtual void drive(bool on) = 0;
-  /// The start bit of `byte` begins now; the driver is on. Start, 8 data, stop at `baud`.
+  /// Begins to send `byte` with its start bit now: start bit, 8 data bits and stop bit at `baud`. The driver
+  /// is on.
   virtual void put(std::uint8_t byte, std::uint32_t baud) = 0;
-  /// How long so many bytes without a gap take at `baud`.
+  /// Returns the duration of `bytes` bytes without a gap at `baud`.
   [[nodiscard]] virtual VirtualTime takes(std::size_t bytes, std::uint32_t baud) const = 0;
 
  protected:
   ~Wire() = default;
 };
 
-/// A UART that sends at exactly its rate. What it receives is handed to the device by whoever owns the wire.
+/// A UART that sends exactly at its baud rate. The owner of the wire passes received bytes to the device.
 class SerialLine {
  public:
-  /// Driver on before the first start bit, and after the last stop bit: like a register write or two; that
-  /// is, where it is not made to go off late.
+  /// The driver is on for these times before the first start bit and after the last stop bit, about the
+  /// duration of one or two register writes. `release_late` extends the second time.
   static constexpr VirtualTime kDriverLead = std::chrono::microseconds(2);
   static constexpr VirtualTime kDriverTail = std::chrono::microseconds(2);
 
@@ -36,14 +37,14 @@ class SerialLine {
   void send(Bytes bytes);
   [[nodiscard]] bool sending() const { return driving_; }
 
-  /// 0 until it is opened.
+  /// Returns the baud rate; 0 until `open`.
   [[nodiscard]] std::uint32_t baud() const { return baud_; }
-  /// By how much later its driver goes off than it should, this one's too.
+  /// Makes the driver go off later than it should, by `by`. This also applies to a reply that is being sent.
   void release_late(VirtualTime by);
-  /// When `run` has something to do.
+  /// Returns when `run` must be called.
   [[nodiscard]] VirtualTime next() const { return next_; }
   void run();
-  /// Power or reset takes the driver off in the middle of a byte.
+  /// Turns the driver off at once, even during a byte, as a power failure or a reset does.
   void abort();
 
  private:
@@ -55,7 +56,7 @@ class SerialLine {
   std::size_t sent_ = 0;
   VirtualTime first_start_bit_{0};
   VirtualTime next_ = kNever;
-  VirtualTime over_ = kNever;  ///< when the driver should go off, once the last byte is under way
+  VirtualTime over_ = kNever;  ///< when the driver should go off; known from the last byte on
   VirtualTime late_by_{0};
 };
 static_assert(kIsSerialLine<SerialLine>);

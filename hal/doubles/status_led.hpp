@@ -19,7 +19,7 @@ class StatusLed {
   }
 
   [[nodiscard]] bool lit() const { return lit_; }
-  /// Called at every change.
+  /// Sets a function that is called at each change.
   void on_change(std::function<void(bool)> observer) { on_change_ = std::move(observer); }
 
  private:

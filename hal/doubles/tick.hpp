@@ -13,7 +13,7 @@ class Tick {
   void start() { next_ = clock_.virtual_now() + period_; }
 
   [[nodiscard]] VirtualTime next() const { return next_; }
-  /// Whether it fires now; then call the interrupt.
+  /// Returns whether the tick fires now; the caller must then call its interrupt.
   bool fire() {
     if (next_ > clock_.virtual_now()) {
       return false;
@@ -21,7 +21,7 @@ class Tick {
     next_ += period_;
     return true;
   }
-  /// The tick stops, as if its timer had died.
+  /// Stops the tick, as if its timer had failed.
   void stop() { next_ = kNever; }
 
  private:

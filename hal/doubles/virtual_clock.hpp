@@ -1,4 +1,4 @@
-// Time that somebody turns by hand; the doubles' and the virtual bus's clock.
+// The clock of the doubles and of the virtual bus, which the simulator or a test sets.
 #pragma once
 
 #include <chrono>
@@ -7,7 +7,7 @@
 
 namespace ex9000::hal::doubles {
 
-/// Since the start of the simulation; 64 bits of nanoseconds last 292 years.
+/// The time since the start of the simulation; 64 bits of nanoseconds last 292 years.
 using VirtualTime = std::chrono::nanoseconds;
 
 constexpr VirtualTime kNever = VirtualTime::max();
@@ -22,7 +22,7 @@ class VirtualClock {
   [[nodiscard]] VirtualTime virtual_now() const { return now_; }
   void set(VirtualTime now) { now_ = now; }
 
-  /// The first instant at which `now()` shows `after` more than it does now.
+  /// Returns the first time at which `now()` is `after` later than it is now.
   [[nodiscard]] VirtualTime when(Duration after) const {
     return std::chrono::duration_cast<std::chrono::microseconds>(now_) +
            std::chrono::microseconds(after.microseconds());

@@ -5,7 +5,7 @@
 
 namespace ex9000::hal::doubles {
 
-/// Whoever owns it resets the module when it has bitten.
+/// The owner resets the module when `bites()` returns true.
 class Watchdog {
  public:
   explicit Watchdog(const VirtualClock& clock) : clock_(clock) {}

@@ -1,4 +1,4 @@
-// Registers and their bits as types, so that the bits of one cannot be written to another.
+// Types for registers and their bits, so that the bits of one register cannot be written to another one.
 #pragma once
 
 #include <cstdint>
@@ -7,7 +7,7 @@
 
 namespace ex9000::hal {
 
-/// What a register holds; `Name` is a type that stands for the register and for nothing else.
+/// The contents of a register. `Name` is a type that identifies the register.
 template <class Name>
 class Bits {
  public:
@@ -15,7 +15,7 @@ class Bits {
   constexpr explicit Bits(std::uint32_t value) : value_(value) {}
 
   [[nodiscard]] constexpr std::uint32_t value() const { return value_; }
-  /// Whether any of `bits` is set.
+  /// Returns whether any of `bits` is set.
   [[nodiscard]] constexpr bool has(Bits bits) const { return (value_ & bits.value_) != 0; }
   [[nodiscard]] constexpr Bits without(Bits bits) const { return Bits(value_ & ~bits.value_); }
   friend constexpr Bits operator|(Bits a, Bits b) { return Bits(a.value_ | b.value_); }
@@ -24,8 +24,8 @@ class Bits {
   std::uint32_t value_ = 0;
 };
 
-/// A 32-bit register. `set` and `clear` read and write, so they belong where no interrupt writes the same
-/// register.
+/// A 32-bit register. `set` and `clear` read and then write, so use them only if no interrupt can write the
+/// same register in between.
 template <class Name>
 class Register {
  public:

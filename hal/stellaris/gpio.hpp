@@ -1,5 +1,5 @@
-// General-purpose pins. Facts: LM3S6965 data sheet, 8.3 to 8.5; TM4C123GH6PM data sheet, 10.3 to 10.5 (the
-// same registers on its APB aperture, and GPIOPCTL and GPIOAMSEL beside them).
+// General-purpose pins. Sources: LM3S6965 data sheet, 8.3 to 8.5; TM4C123GH6PM data sheet, 10.3 to 10.5 (it
+// has the same registers on its APB aperture, and also GPIOPCTL and GPIOAMSEL).
 #pragma once
 
 #include <cstdint>
@@ -10,7 +10,7 @@ namespace ex9000::hal::stellaris {
 
 enum class Family : std::uint8_t {
   Lm3s,  ///< a pin has one peripheral function
-  Tm4c,  ///< GPIOPCTL chooses among many
+  Tm4c,  ///< GPIOPCTL selects one of several peripheral functions
 };
 
 enum class Port : std::uint8_t { A, B, C, D, E, F, G };
@@ -22,7 +22,7 @@ struct Pin {
   [[nodiscard]] constexpr std::uint32_t mask() const { return 1U << number; }
 };
 
-/// Neighbouring pins of one port that carry neighbouring channels.
+/// Adjacent pins of one port for adjacent channels.
 struct PinGroup {
   Port port;
   std::uint8_t first_pin;
@@ -31,20 +31,20 @@ struct PinGroup {
   [[nodiscard]] constexpr std::uint32_t mask() const { return ((1U << count) - 1U) << first_pin; }
 };
 
-/// The registers of one port. `pins` is a mask, bit n for pin n.
+/// The registers of one port. `pins` is a mask, bit n is pin n.
 class Gpio {
  public:
   constexpr explicit Gpio(Port port)
       : base_(port < Port::E ? 0x4000'4000U + static_cast<std::uint32_t>(port) * 0x1000U
                              : 0x4002'4000U + (static_cast<std::uint32_t>(port) - 4U) * 0x1000U) {}
 
-  /// The data register answers at 256 addresses, whose bits 2 to 9 say which pins take part; so no read is
-  /// needed to leave the others alone, and no interrupt can come between.
+  /// Read or write the data register. It has 256 addresses, whose bits 2 to 9 select the pins. A write
+  /// therefore needs no read to preserve the other pins, and no interrupt can come between.
   [[nodiscard]] std::uint32_t read(std::uint32_t pins) const { return data(pins).read().value(); }
   void write(std::uint32_t pins, std::uint32_t levels) const { data(pins).write(Bits<Data>(levels)); }
 
-  /// Digital input; `pull_up`: with the weak pull-up, else with the weak pull-down, so that an open pin reads
-  /// inactive.
+  /// Makes `pins` digital inputs with the weak pull-up if `pull_up`, else with the weak pull-down. Select the
+  /// inactive level, so that an open pin reads as inactive.
   void make_input(std::uint32_t pins, bool pull_up) const { make_input_of(*this, pins, pull_up); }
   [[gnu::noinline]] static void make_input_of(Gpio port, std::uint32_t pins, bool pull_up) {
     (pull_up ? port.pull_up_register() : port.pull_down_register()).set(Bits<Pull>(pins));
@@ -52,8 +52,8 @@ class Gpio {
     port.digital_enable().set(Bits<DigitalEnable>(pins));
   }
 
-  /// Digital output with 8 mA that begins at `levels`, without a glitch: a pin that is not enabled yet drives
-  /// nothing, and what hangs on it is pulled to its inactive side.
+  /// Makes `pins` digital outputs of 8 mA with the initial `levels`, without a glitch: a pin drives nothing
+  /// until it is enabled, and the connected circuit pulls it to its inactive level until then.
   void make_output(std::uint32_t pins, std::uint32_t levels) const { make_output_of(*this, pins, levels); }
   [[gnu::noinline]] static void make_output_of(Gpio port, std::uint32_t pins, std::uint32_t levels) {
     port.direction().set(Bits<Direction>(pins));
@@ -62,7 +62,8 @@ class Gpio {
     port.digital_enable().set(Bits<DigitalEnable>(pins));
   }
 
-  /// Gives the pins to their peripheral; `function`: GPIOPCTL's number for it, on a TM4C.
+  /// Connects the pins to their peripheral. `function`: number of the peripheral function in GPIOPCTL, for a
+  /// TM4C.
   template <Family family, std::uint32_t pins, std::uint32_t function>
   void make_peripheral() const {
     if constexpr (family == Family::Tm4c) {
@@ -77,24 +78,24 @@ class Gpio {
     alternate_function().clear(Bits<AlternateFunction>(pins));
   }
   void set_open_drain(std::uint32_t pins) const { open_drain().set(Bits<OpenDrain>(pins)); }
-  /// Of `pins` those of `outputs` drive, the others do not.
+  /// Makes the pins in `outputs` outputs, and the other pins in `pins` inputs.
   void choose_outputs(std::uint32_t pins, std::uint32_t outputs) const {
     direction().write(direction().read().without(Bits<Direction>(pins)) | Bits<Direction>(outputs));
   }
 
   // --- edges ---
 
-  /// Both edges of `pins` interrupt from now on, and what was flagged before.
+  /// Enables interrupts for both edges of `pins`. Edges that are already flagged cause an interrupt too.
   void watch_edges(std::uint32_t pins) const {
     both_edges().set(Bits<BothEdges>(pins));
     interrupt_mask().set(Bits<InterruptMask>(pins));
   }
-  /// Pins that have seen an edge since it was cleared.
+  /// Returns the pins that have had an edge since `clear_edges`.
   [[nodiscard]] std::uint32_t edges() const { return masked_interrupt_status().read().value(); }
   void clear_edges(std::uint32_t pins) const { interrupt_clear().write(Bits<InterruptClear>(pins)); }
 
  private:
-  /// Bit 4n for bit n: GPIOPCTL has four bits a pin.
+  /// Returns bit 4n for each bit n, because GPIOPCTL has four bits for each pin.
   static constexpr std::uint32_t one_a_nibble(std::uint32_t pins) {
     std::uint32_t nibbles = 0;
     for (std::uint32_t pin = 0; pin < 8; ++pin) {

@@ -1,5 +1,5 @@
-// I2C master 0. Facts: LM3S6965 data sheet, 14.3 to 14.5; TM4C123GH6PM data sheet, 16.3 to 16.5; freeing a
-// bus that is stuck: NXP UM10204, 3.1.16, and the AT24C64's data sheet, "memory reset".
+// I2C master 0. Sources: LM3S6965 data sheet, 14.3 to 14.5; TM4C123GH6PM data sheet, 16.3 to 16.5. For
+// freeing a stuck bus: NXP UM10204, 3.1.16, and the AT24C64 data sheet, "memory reset".
 #pragma once
 
 #include <cstddef>
@@ -13,12 +13,12 @@
 
 namespace ex9000::hal::stellaris {
 
-/// 100 kHz, single master. A byte at a time: the interrupt counts what is complete and wakes the main loop,
-/// which goes on. See I2cTransfer for what it offers.
+/// A single master at 100 kHz. After each byte, the interrupt counts it and wakes the main loop, which
+/// continues the transfer. For its functions, see I2cTransfer.
 template <Family family, std::uint32_t clock>
 class I2c {
  public:
-  /// Once; the bus is free a little later.
+  /// Begins to free the bus. Call this once. Transfers wait until the bus is free.
   void start() { begin_freeing(); }
 
   void begin(const I2cTransfer& transfer, Time now) {
@@ -42,7 +42,8 @@ class I2c {
     }
     const bool told = completed_.load() != completed_seen_;
     const Bits<ControlStatus> status = kControlStatus.read();
-    // Where it is busy all the same, what was told was a byte that had been given up.
+    // If the master is busy although the interrupt has run, the interrupt was for a byte of an aborted
+    // transfer.
     if (told && !status.has(kBusy)) {
       next(status, now);
     } else if (deadline_.reached(now)) {
@@ -54,7 +55,7 @@ class I2c {
   [[nodiscard]] bool busy() const { return busy_; }
   [[nodiscard]] I2cResult result() const { return result_; }
 
-  /// Its interrupt: a byte is over, good or not.
+  /// Counts a byte that has ended, with or without an error. For the I2C interrupt.
   void on_interrupt() {
     kInterruptClear.write(Bits<InterruptClear>(1));
     completed_.store_in_interrupt(completed_.load() + 1U);
@@ -71,9 +72,9 @@ class I2c {
   struct SoftwareReset;
 
   enum class Step : std::uint8_t {
-    Freeing,  ///< the pins are moved by hand
+    Freeing,  ///< the driver controls the pins directly
     Idle,
-    Moving,  ///< a byte is on its way
+    Moving,  ///< a byte is being transferred
   };
 
   static constexpr std::uint32_t kBase = 0x4002'0000U;
@@ -84,19 +85,19 @@ class I2c {
   static constexpr Register<InterruptMask> kInterruptMask{kBase + 0x010};
   static constexpr Register<InterruptClear> kInterruptClear{kBase + 0x01C};
   static constexpr Register<Configuration> kConfiguration{kBase + 0x020};
-  static constexpr Register<SoftwareReset> kSoftwareReset{0x400F'E044};  // system control's
+  static constexpr Register<SoftwareReset> kSoftwareReset{0x400F'E044};  // in system control
 
-  // Written
+  // Bits for writing
   static constexpr Bits<ControlStatus> kRun{1U << 0U};
   static constexpr Bits<ControlStatus> kStart{1U << 1U};
   static constexpr Bits<ControlStatus> kStop{1U << 2U};
   static constexpr Bits<ControlStatus> kAcknowledge{1U << 3U};
-  // Read
-  static constexpr Bits<ControlStatus> kBusy{1U << 0U};  // while it is set, no other means anything
+  // Bits for reading
+  static constexpr Bits<ControlStatus> kBusy{1U << 0U};  // while it is set, the other bits are invalid
   static constexpr Bits<ControlStatus> kError{1U << 1U};
   static constexpr Bits<ControlStatus> kArbitrationLost{1U << 4U};
 
-  // Its pins, the same on both families.
+  // The pins are the same on both families.
   static constexpr Gpio kPort{Port::B};
   static constexpr std::uint32_t kClock = 1U << 2U;
   static constexpr std::uint32_t kDataPin = 1U << 3U;
@@ -104,19 +105,20 @@ class I2c {
   static constexpr std::uint32_t kPortControlFunction = 3;
 
   static constexpr Duration kHalfClock{5};
-  static constexpr Duration kByteTimeout = milliseconds(3);  ///< 90 us, and a main loop that was asleep
+  static constexpr Duration kByteTimeout = milliseconds(3);  ///< 90 us, plus the time the main loop may sleep
 
   // --- freeing the bus ---
 
-  /// A device that was interrupted in the middle of a byte may hold the data line. It is clocked until it
-  /// lets go, nine times at most, and then hears START and STOP. The peripheral is reset, or it would go on
-  /// with a byte that it was stuck in, and tell that as the end of the next one.
+  /// Begins to free the bus. A device that was interrupted during a byte may hold the data line low. The
+  /// driver sends up to nine clocks until the device releases the line, and then START and STOP. It also
+  /// resets the peripheral. Otherwise the peripheral would continue an unfinished byte and report its end as
+  /// the end of the next byte.
   void begin_freeing() {
     constexpr Bits<SoftwareReset> kI2c0(1U << 12U);
     kSoftwareReset.write(kI2c0);
     kSoftwareReset.write({});
     kPort.take_from_peripheral(kBoth);
-    kPort.make_input(kBoth, true);  // the weak pull-ups keep a board quiet that has no EEPROM
+    kPort.make_input(kBoth, true);  // with the weak pull-ups, the lines are high on a board without EEPROM
     step_ = Step::Freeing;
     freeing_ = kFirstClock;
     deadline_.disarm();
@@ -144,13 +146,13 @@ class I2c {
     ++freeing_;
   }
 
-  /// Drives these pins low and lets the other float.
+  /// Drives `pins` low and lets the other pins float.
   static void pull(std::uint32_t pins) {
     kPort.choose_outputs(kBoth, pins);
     kPort.write(kBoth, 0);
   }
 
-  /// The pins become the peripheral's.
+  /// Connects the pins to the peripheral and starts it.
   void hand_over(Time now) {
     constexpr std::uint32_t kBitRate = 100'000;
     constexpr std::uint32_t kClocksAStep = 2U * (6U + 4U);  // low and high time of SCL
@@ -159,12 +161,12 @@ class I2c {
     if constexpr (family == Family::Lm3s) {
       kPort.set_open_drain(kBoth);
     } else {
-      kPort.set_open_drain(kDataPin);  // its clock pin must not be
+      kPort.set_open_drain(kDataPin);  // the clock pin must not be open-drain
     }
     kConfiguration.write(kMaster);
     kTimerPeriod.write(
         Bits<TimerPeriod>((clock + kClocksAStep * kBitRate - 1U) / (kClocksAStep * kBitRate) - 1U));
-    kControlStatus.write(kStop);  // the bus may count as busy from before a reset
+    kControlStatus.write(kStop);  // the master may consider the bus busy since before a reset
     kInterruptMask.write(Bits<InterruptMask>(1));
     step_ = Step::Idle;
     if (busy_) {
@@ -181,7 +183,7 @@ class I2c {
     move(kStart, now);
   }
 
-  /// Puts byte `done_` on its way, with STOP where it is the last.
+  /// Begins the transfer of byte `done_`, followed by STOP if it is the last byte.
   void move(Bits<ControlStatus> start, Time now) {
     const bool last = done_ + 1U == transfer_->size();
     if (transfer_->writes()) {
@@ -189,7 +191,7 @@ class I2c {
     }
     step_ = Step::Moving;
     deadline_.set(now + kByteTimeout);
-    completed_seen_ = completed_.load();  // the last of them may be one that was given up
+    completed_seen_ = completed_.load();  // ignores the interrupt of an aborted transfer
     kControlStatus.write(kRun | start |
                          (last                  ? kStop
                           : transfer_->writes() ? Bits<ControlStatus>()
@@ -198,7 +200,7 @@ class I2c {
 
   void next(Bits<ControlStatus> status, Time now) {
     if (status.has(kError)) {
-      // Where there is no other master, arbitration is lost to a line that is stuck.
+      // There is no other master, so lost arbitration means that a line is stuck.
       give_up(status.has(kArbitrationLost) ? I2cResult::Failed : I2cResult::NoAcknowledge);
       return;
     }
@@ -212,7 +214,7 @@ class I2c {
     }
   }
 
-  /// Freeing the bus ends the transfer for the device as well.
+  /// Aborts the transfer. Freeing the bus ends it for the device too.
   void give_up(I2cResult result) {
     finish(result);
     begin_freeing();
@@ -225,14 +227,14 @@ class I2c {
   }
 
   static constexpr std::uint8_t kFirstClock = 0;
-  static constexpr std::uint8_t kBusStart = 18;  ///< behind nine clocks
+  static constexpr std::uint8_t kBusStart = 18;  ///< after nine clocks
   static constexpr std::uint8_t kBusStop = 19;
 
   Step step_ = Step::Freeing;
   I2cResult result_ = {};
   bool busy_ = false;
   std::uint8_t freeing_ = kFirstClock;
-  std::uint8_t done_ = 0;  ///< bytes of the transfer
+  std::uint8_t done_ = 0;  ///< number of transferred bytes
   std::uint32_t completed_seen_ = 0;
   WrittenByInterrupt<std::uint32_t> completed_;
   Deadline deadline_;

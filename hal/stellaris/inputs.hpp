@@ -1,4 +1,4 @@
-// Input channels on pins, with both edges interrupting.
+// Input channels on pins, with interrupts at both edges.
 #pragma once
 
 #include <array>
@@ -8,13 +8,14 @@
 
 namespace ex9000::hal::stellaris {
 
-/// `groups` is an array of PinGroup that carry the channels in order, from channel 0 on; `active_high`: a
-/// high pin is logic 1.
+/// `groups` is an array of PinGroup that contains the pins of the channels in order, from channel 0 on.
+/// `active_high`: a high pin is logic 1.
 template <const auto& groups, unsigned channels, bool active_high>
 class InputPins {
  public:
-  /// Bit n is channel n. Every edge behind what this returns is flagged. An edge while the levels are read
-  /// would be told as two, so they are read until none came between.
+  /// Enables edge interrupts and returns the levels, bit n is channel n. Each later edge is flagged. An edge
+  /// during the read would count as two edges, so the levels are read until no edge has occurred during the
+  /// read.
   static std::uint16_t start() {
     unsigned first = 0;
     unsigned levels = 0;
@@ -31,7 +32,7 @@ class InputPins {
     return static_cast<std::uint16_t>(levels & ((1U << channels) - 1U));
   }
 
-  /// Whether any channel is on this port.
+  /// Returns whether `port` has a channel.
   static constexpr bool on(Port port) {
     unsigned first = 0;
     for (const PinGroup& group : groups) {
@@ -43,8 +44,8 @@ class InputPins {
     return false;
   }
 
-  /// The port's interrupt: `deliver(channel, level)` for each channel that has seen an edge, with the level
-  /// read after the flag was cleared, so that an edge in between is flagged anew.
+  /// Calls `deliver(channel, level)` for each channel that has had an edge. The level is read after the flag
+  /// has been cleared, so that an edge in between is flagged again. For the port's interrupt.
   template <Port port, class Deliver>
   static void take_edges(Deliver deliver) {
     static constexpr std::array<std::uint8_t, 8> kChannels = channels_of(port);
@@ -52,9 +53,9 @@ class InputPins {
   }
 
  private:
-  /// Clears the flags of `flagged` and what is flagged meanwhile, and reads the levels behind the last of
-  /// these edges. An edge between flag and level would else be told twice: by the level now, by its flag
-  /// later. Returns the flags in bits 0 to 7 and the levels in bits 8 to 15.
+  /// Clears the flags of `flagged` and those of new edges, and reads the levels after the last of these
+  /// edges. This is repeated because an edge between flag and level would count twice: now because of its
+  /// level, and later because of its flag. Returns the flags in bits 0 to 7 and the levels in bits 8 to 15.
   [[gnu::noinline]] static std::uint32_t settle(Gpio gpio, std::uint32_t flagged) {
     std::uint32_t told = 0;
     std::uint32_t levels = 0;
@@ -83,7 +84,7 @@ class InputPins {
 
   static std::uint32_t logic(std::uint32_t levels) { return active_high ? levels : ~levels; }
 
-  /// The channel of each pin of a port; pins without one never have an edge to tell.
+  /// Returns the channel of each pin of a port. Pins without a channel never have an edge.
   static constexpr std::array<std::uint8_t, 8> channels_of(Port port) {
     std::array<std::uint8_t, 8> result{};
     unsigned channel = 0;

@@ -1,11 +1,11 @@
-// Interrupt numbers. Facts: LM3S6965 data sheet, 2.5 (vector table); TM4C123GH6PM data sheet, 2.5.
+// Interrupt numbers. Sources: LM3S6965 data sheet, 2.5 (vector table); TM4C123GH6PM data sheet, 2.5.
 #pragma once
 
 #include <cstdint>
 
 namespace ex9000::hal::stellaris {
 
-/// The same on both families.
+/// These numbers are the same on both families.
 enum class Interrupt : std::uint8_t {
   GpioA = 0,
   GpioB = 1,

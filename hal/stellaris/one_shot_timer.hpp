@@ -1,5 +1,5 @@
-// A general-purpose timer as a 32-bit one-shot. Facts: LM3S6965 data sheet, 9.3 to 9.5; TM4C123GH6PM data
-// sheet, 11.3 to 11.5.
+// A general-purpose timer as a 32-bit one-shot timer. Sources: LM3S6965 data sheet, 9.3 to 9.5; TM4C123GH6PM
+// data sheet, 11.3 to 11.5.
 #pragma once
 
 #include <cstdint>
@@ -9,11 +9,11 @@
 
 namespace ex9000::hal::stellaris {
 
-/// `number`: 0 for GPTM0, and so on to 3. `cycles_per_microsecond` of the system clock.
+/// `number`: 0 to 3 for GPTM0 to GPTM3. `cycles_per_microsecond`: frequency of the system clock in MHz.
 template <unsigned number, std::uint32_t cycles_per_microsecond>
 class OneShotTimer {
  public:
-  /// Once, before `restart`; after reset it stands still and is 32 bits wide.
+  /// Call this once, before `restart`. After reset, the timer is stopped and 32 bits wide.
   static void start() {
     constexpr Bits<Mode> kOneShot(0x1);
     kMode.write(kOneShot);
@@ -27,8 +27,8 @@ class OneShotTimer {
     kControl.write(kEnable);
   }
 
-  /// First thing in its interrupt: whether it has run out. Where it was restarted while its interrupt was
-  /// pending, it has not.
+  /// Returns whether the timer has expired, and clears its flag. Its interrupt must call this first: the
+  /// timer has not expired if it was restarted while its interrupt was pending.
   static bool ran_out() {
     if (!kMaskedInterrupts.read().has(kHasTimedOut)) {
       return false;

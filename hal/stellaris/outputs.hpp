@@ -9,26 +9,27 @@
 
 namespace ex9000::hal::stellaris {
 
-/// `groups` is an array of PinGroup that carry the channels in order, from channel 0 on; `active_high`: a
-/// high pin energises.
+/// `groups` is an array of PinGroup that contains the pins of the channels in order, from channel 0 on.
+/// `active_high`: a high pin energises its channel.
 template <const auto& groups, unsigned channels, bool active_high>
 class OutputPins {
  public:
-  /// De-energised from here on, as they were while they floated. Once, before `drive`.
+  /// Makes the pins outputs with all channels de-energised, as they are while the pins float. Call this once,
+  /// before `drive`.
   static void start() {
     each_group(0, [](const Gpio& gpio, std::uint32_t pins, std::uint32_t levels) {
       gpio.make_output(pins, levels);
     });
   }
 
-  /// One store a group, a few processor clocks apart.
+  /// Writes one register for each group, a few processor clocks apart.
   static void drive(std::uint16_t energised) {
     each_group(energised,
                [](const Gpio& gpio, std::uint32_t pins, std::uint32_t levels) { gpio.write(pins, levels); });
   }
 
  private:
-  /// Channels that lie before `group`.
+  /// Returns the number of channels before `group`.
   static constexpr unsigned before(std::size_t group) {
     unsigned sum = 0;
     for (std::size_t i = 0; i < group; ++i) {

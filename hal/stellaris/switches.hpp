@@ -1,11 +1,11 @@
-// INIT* and the status LED: one pin each.
+// INIT* and the status LED, one pin each.
 #pragma once
 
 #include "hal/stellaris/gpio.hpp"
 
 namespace ex9000::hal::stellaris {
 
-/// INIT*, active low, held up by the pin's weak pull-up.
+/// INIT*, active low, with the pin's weak pull-up.
 template <const Pin& pin>
 class InitPin {
  public:
@@ -13,7 +13,7 @@ class InitPin {
   [[nodiscard]] static bool asserted() { return Gpio(pin.port).read(pin.mask()) == 0; }
 };
 
-/// Lit by a high pin.
+/// A status LED that is on while its pin is high.
 template <const Pin& pin>
 class LedPin {
  public:

@@ -1,5 +1,6 @@
-// Clock tree and clock gates. Facts: LM3S6965 data sheet, 6.4 and 6.5 (system control); TM4C123GH6PM data
-// sheet, 5.3 and 5.5, whose legacy RCC and RCGCn registers lie at the same addresses and mean the same.
+// Clock tree and clock gates. Sources: LM3S6965 data sheet, 6.4 and 6.5 (system control); TM4C123GH6PM data
+// sheet, 5.3 and 5.5. The legacy RCC and RCGCn registers of the TM4C have the same addresses and the same
+// meaning.
 #pragma once
 
 #include <cstdint>
@@ -8,16 +9,17 @@
 
 namespace ex9000::hal::stellaris {
 
-/// The clock a board runs on: a crystal on the main oscillator, the PLL's 400 MHz halved, and a divider.
+/// The system clock of a board: a crystal on the main oscillator, the PLL's 400 MHz divided by 2, and a
+/// divider.
 struct ClockTree {
   std::uint32_t crystal_code;  ///< RCC field XTAL
-  std::uint32_t divider;       ///< of the PLL's 200 MHz, 4 to 16
+  std::uint32_t divider;       ///< divides the PLL's 200 MHz, 4 to 16
 
-  /// Cycles a second.
+  /// Returns the frequency in Hz.
   [[nodiscard]] constexpr std::uint32_t frequency() const { return 200'000'000U / divider; }
 };
 
-/// What is to be given a clock, one bit a peripheral.
+/// The peripherals that need a clock, one bit for each.
 struct ClockGates {
   std::uint32_t rcgc0;
   std::uint32_t rcgc1;
@@ -36,8 +38,9 @@ constexpr std::uint32_t kTimer2 = 1U << 18U;
 
 class SystemControl {
  public:
-  /// Runs the processor on `clock`: waits for the PLL on the oscillator it came up with, a few hundred
-  /// microseconds. Once after reset; blocks until the PLL has locked, which the watchdog watches over.
+  /// Switches the processor to `clock`. Call this once after reset, when the watchdog is running. It blocks
+  /// for a few hundred microseconds until the PLL has locked; until then the processor runs on its initial
+  /// oscillator. If the PLL never locks, the watchdog resets the MCU.
   static void use(const ClockTree& clock) {
     constexpr Bits<Rcc> kBypass(1U << 11U);
     constexpr Bits<Rcc> kPowerDown(1U << 13U);
@@ -49,7 +52,7 @@ class SystemControl {
     constexpr Bits<Rcc> kMainOscillatorOff(1U << 0U);
     constexpr Bits<InterruptStatus> kPllLocked(1U << 6U);
 
-    // Off the PLL while it is set, as both data sheets order it.
+    // Both data sheets require that the PLL is bypassed while it is configured.
     Bits<Rcc> rcc = (kRcc.read() | kBypass).without(kUseDivider);
     kRcc.write(rcc);
     rcc = rcc.without(kCrystal | kOscillatorSource | kMainOscillatorOff | kPowerDown | kOutputDisable) |
@@ -62,13 +65,13 @@ class SystemControl {
     kRcc.write(rcc.without(kBypass));
   }
 
-  /// Gives `gates` a clock and waits until their registers can be written.
+  /// Enables the clocks of `gates` and waits until the registers of these peripherals can be accessed.
   static void open(const ClockGates& gates) {
     kRcgc0.set(Bits<Rcgc0>(gates.rcgc0));
-    kRcgc1.write(Bits<Rcgc1>(gates.rcgc1));  // all off after reset
+    kRcgc1.write(Bits<Rcgc1>(gates.rcgc1));  // all clocks are off after reset
     kRcgc2.write(Bits<Rcgc2>(gates.rcgc2));
-    // A peripheral must not be touched for 3 clocks (LM3S) or 5 (TM4C) after it was given one; each of these
-    // reads takes at least 2.
+    // A peripheral must not be accessed for 3 clocks (LM3S) or 5 clocks (TM4C) after its clock has been
+    // enabled. Each of these reads takes at least 2 clocks.
     for (int i = 0; i < 3; ++i) {
       (void)kRcgc2.read();
     }

@@ -1,5 +1,5 @@
-// A UART and the RS-485 driver behind it. Facts: LM3S6965 data sheet, 12.3 to 12.5; TM4C123GH6PM data sheet,
-// 14.3 to 14.5.
+// A UART and its RS-485 driver. Sources: LM3S6965 data sheet, 12.3 to 12.5; TM4C123GH6PM data sheet, 14.3
+// to 14.5.
 #pragma once
 
 #include <cstdint>
@@ -14,20 +14,19 @@
 
 namespace ex9000::hal::stellaris {
 
-/// `number`: 0 or 1; `clock`: of the system, in Hz; `driver_enable`: high while this module speaks;
-/// `EndTimer`: a one-shot timer of its own, whose interrupt is `on_end_timer`.
+/// `number`: 0 or 1; `clock`: system clock in Hz; `driver_enable`: pin that is high while the module sends;
+/// `EndTimer`: a one-shot timer for this UART only, whose interrupt calls `on_end_timer`.
 ///
-/// The FIFOs stay off: each byte then interrupts as it arrives, and the silence behind it is measured from
-/// there. What that costs is an overrun where an interrupt waits for longer than a character.
+/// The FIFOs stay off, so that each byte causes an interrupt when it arrives and the silence after it can be
+/// measured. The disadvantage is an overrun if an interrupt is delayed by more than a character.
 ///
-/// One member has the main loop as its writer and one the interrupts; which of the two is ahead says whether
-/// the driver is on.
+/// The main loop writes `begun_` and the interrupts write `ended_`. The driver is on while the two differ.
 template <unsigned number, std::uint32_t clock, const Pin& driver_enable, class EndTimer>
 class Uart {
   static_assert(largest_baud_error(clock) < kTolerableBaudError, "this clock cannot make all baud rates");
 
  public:
-  /// The driver off. Once, before `open`.
+  /// Turns the driver off. Call this once, before `open`.
   static void start() { Gpio(driver_enable.port).make_output(driver_enable.mask(), 0); }
 
   // --- main loop; see hal/serial_line.hpp ---
@@ -41,14 +40,14 @@ class Uart {
     kControl.write({});
     kIntegerDivisor.write(Bits<IntegerDivisor>(divisor >> 6U));
     kFractionalDivisor.write(Bits<FractionalDivisor>(divisor & 0x3FU));
-    kLineControl.write(kEightBits);  // behind the divisors, which it makes take effect
+    kLineControl.write(kEightBits);  // must follow the divisors, because this write activates them
     kInterruptMask.write(kReceived | kTransmitted);
     kControl.write(kEnable | kTransmitEnable | kReceiveEnable);
   }
 
   void send(Bytes bytes) {
     rest_.set_in_main_loop(bytes.from(1));
-    kInterruptMask.write(kTransmitted);  // what is received from here on is the echo
+    kInterruptMask.write(kTransmitted);  // bytes that are received from now on are the echo
     begun_.store_in_main_loop(begun_.load() + 1U);
     Gpio(driver_enable.port).write(driver_enable.mask(), driver_enable.mask());
     kData.write(Bits<Data>(bytes[0]));
@@ -58,12 +57,12 @@ class Uart {
 
   // --- interrupts ---
 
-  /// The UART's: hands what was received to `deliver(byte, status)` and goes on sending.
+  /// Calls `deliver(byte, status)` for a received byte, or continues to send. For the UART's interrupt.
   template <class Deliver>
   void on_interrupt(Deliver deliver) {
     const Bits<MaskedInterrupts> why = kMaskedInterrupts.read();
     if (why.has(kWasReceived)) {
-      // One byte, and reading it clears the flag. What else there is interrupts again.
+      // There is only one byte, and reading it clears the flag. Other events cause another interrupt.
       const Bits<Data> data = kData.read();
       deliver(static_cast<std::uint8_t>(data.value()), status_of(data));
     } else if (why.has(kWasTransmitted)) {
@@ -73,8 +72,9 @@ class Uart {
     }
   }
 
-  /// The last byte has had the time to leave. No interrupt tells that it has, on an LM3S: the busy flag does.
-  /// True: it has, and the driver is off.
+  /// Call this when the end timer has expired, after the time of the last byte. The LM3S has no interrupt for
+  /// the end of transmission, so this checks the busy flag. Returns true if the last byte has been sent and
+  /// the driver is off; otherwise it restarts the timer. For the interrupt of the end timer.
   bool on_end_timer() {
     if (kFlags.read().has(kBusy)) {
       EndTimer::restart(bit_);
@@ -82,7 +82,7 @@ class Uart {
     }
     take_echo();
     kInterruptMask.write(kReceived | kTransmitted);
-    Gpio(driver_enable.port).write(driver_enable.mask(), 0);  // last: who sees it off may speak
+    Gpio(driver_enable.port).write(driver_enable.mask(), 0);  // last, because a master may send from now on
     ended_.store_in_interrupt(begun_.load());
     return true;
   }
@@ -134,14 +134,15 @@ class Uart {
     return data.has(kBreakError) ? ByteStatus::Break : ByteStatus::FramingError;
   }
 
-  /// Of the byte that has been sent, where the receiver hears it: it must not be full when the next comes.
+  /// Discards the echo of a sent byte, if the receiver gets it, so that the receiver is empty for the next
+  /// byte.
   static void take_echo() {
     if (!kFlags.read().has(kReceiverEmpty)) {
       static_cast<void>(kData.read());
     }
   }
 
-  /// The byte before has left the holding register for the shift register.
+  /// Sends the next byte, after the previous one has moved from the holding register to the shift register.
   void send_next() {
     Bytes& rest = rest_.in_interrupt();
     if (rest.size != 0) {
@@ -152,9 +153,9 @@ class Uart {
     }
   }
 
-  Duration bit_;  ///< both rounded up
-  Duration character_;
-  HandedToInterrupt<Bytes> rest_;  ///< by `begun_`, and back by `ended_`
+  Duration bit_;                   ///< duration of a bit, rounded up
+  Duration character_;             ///< duration of a character, rounded up
+  HandedToInterrupt<Bytes> rest_;  ///< `begun_` hands it to the interrupts, `ended_` returns it
   WrittenByMainLoop<std::uint32_t> begun_;
   WrittenByInterrupt<std::uint32_t> ended_;
 };

@@ -1,5 +1,5 @@
-// Baud rates that the UART's divisor can make. Facts: LM3S6965 data sheet, 12.3.2; TM4C123GH6PM data sheet,
-// 14.3.2.
+// The UART's baud-rate divisor and its error. Sources: LM3S6965 data sheet, 12.3.2; TM4C123GH6PM data
+// sheet, 14.3.2.
 #pragma once
 
 #include <cstdint>
@@ -8,19 +8,20 @@
 
 namespace ex9000::hal::stellaris {
 
-/// The clock's divisor for 16 samples a bit, in 64ths: 16 bits before the point and 6 behind it.
+/// Returns the divisor of the clock for 16 samples per bit, in units of 1/64: 16 integer bits and 6
+/// fractional bits.
 constexpr std::uint32_t baud_divisor(std::uint32_t clock, std::uint32_t baud) {
   return (4U * clock + baud / 2U) / baud;
 }
 
-/// How far the rate that comes out lies from `baud`, in millionths of it.
+/// Returns the deviation of the real baud rate from `baud`, in millionths of `baud`.
 constexpr std::uint32_t baud_error(std::uint32_t clock, std::uint32_t baud) {
   const std::uint64_t wanted = std::uint64_t{baud} * baud_divisor(clock, baud);
   const std::uint64_t made = 4U * std::uint64_t{clock};
   return static_cast<std::uint32_t>((made > wanted ? made - wanted : wanted - made) * 1'000'000U / wanted);
 }
 
-/// The largest of all the rates that a module can be set to, in millionths.
+/// Returns the largest error of all baud rates of a module, in millionths.
 constexpr std::uint32_t largest_baud_error(std::uint32_t clock) {
   std::uint32_t largest = 0;
   for (const std::uint32_t baud : kBaudRates) {
@@ -30,8 +31,9 @@ constexpr std::uint32_t largest_baud_error(std::uint32_t clock) {
   return largest;
 }
 
-/// A receiver samples the stop bit 9.5 bits behind the start bit's edge, so both ends together may be off by
-/// a twentieth; this end takes a fifth of that.
+/// The largest allowed error of the module, in millionths. A receiver samples the stop bit 9.5 bits after the
+/// edge of the start bit, so the errors of both ends together may be 1/20. The module may use a fifth of
+/// that.
 constexpr std::uint32_t kTolerableBaudError = 10'000;
 
 }  // namespace ex9000::hal::stellaris

@@ -1,4 +1,4 @@
-// Watchdog timer 0. Facts: LM3S6965 data sheet, 10.3 to 10.5; TM4C123GH6PM data sheet, 12.3 to 12.5.
+// Watchdog timer 0. Sources: LM3S6965 data sheet, 10.3 to 10.5; TM4C123GH6PM data sheet, 12.3 to 12.5.
 #pragma once
 
 #include <cstdint>
@@ -8,11 +8,12 @@
 
 namespace ex9000::hal::stellaris {
 
-/// It counts down twice before it resets: the first time it only raises a flag, which nobody answers.
+/// The watchdog counts down twice before it resets the MCU. The first countdown only sets a flag, which this
+/// driver does not use.
 template <std::uint32_t cycles_per_microsecond>
 class HardwareWatchdog {
  public:
-  /// From now on it runs, until the next reset, which leaves it unlocked.
+  /// Starts the watchdog, which then runs until the next reset. A reset leaves its registers unlocked.
   static void start() {
     constexpr Bits<Control> kRunAndReset(0x3);
     kLoad.write(Bits<Load>(kCountdown.microseconds() * cycles_per_microsecond));
@@ -22,7 +23,7 @@ class HardwareWatchdog {
 
   static void feed() {
     kLock.write(kUnlocked);
-    kClear.write(Bits<Clear>(1));  // any value clears the flag and begins anew
+    kClear.write(Bits<Clear>(1));  // any value clears the flag and restarts the countdown
     kLock.write(kLocked);
   }
 
