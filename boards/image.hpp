@@ -1,5 +1,5 @@
-// What holds of every image, whatever its microcontroller. Included once, behind the `board.hpp` of a board:
-// its kOutputs and kInputs are arrays of groups of pins, each with a `count`.
+// Checks and definitions for all images, on any microcontroller. Include this file once, after the
+// `board.hpp` of a board. There, kOutputs and kInputs must be arrays of pin groups, each with a `count`.
 #pragma once
 
 #include "firmware/line/timing.hpp"

@@ -1,8 +1,10 @@
-// What the compiler calls where it copies, clears and compares (freestanding C++, [basic.compound] leaves
-// these to us). Byte by byte: an image copies a few dozen bytes a second.
+// Functions that the compiler calls to copy, clear and compare memory. A freestanding program must define
+// them itself (freestanding C++, [basic.compound]). They work byte by byte, because an image copies only a
+// few dozen bytes per second.
 #include <cstddef>
 
-// Or the compiler would find a copy in the loop and call it.
+// Without this attribute, the compiler would recognise the loop as a copy and replace it with a call of the
+// same function.
 #define NOT_BY_ITSELF __attribute__((optimize("no-tree-loop-distribute-patterns"), externally_visible))
 
 extern "C" {

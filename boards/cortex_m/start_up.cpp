@@ -4,7 +4,7 @@
 
 namespace ex9000::start_up {
 
-// The linker script's, each where an array of words begins or ends.
+// Symbols of the linker script. Each is the beginning or the end of an array of words.
 extern "C" const std::uint32_t data_image[];
 extern "C" std::uint32_t data_begin[];
 extern "C" std::uint32_t data_end[];

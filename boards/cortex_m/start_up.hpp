@@ -1,4 +1,4 @@
-// From a Cortex-M's reset to main: its vectors, and memory as C++ expects it.
+// The start of a Cortex-M from reset to main: its vectors, and the initialisation of the memory for C++.
 #pragma once
 
 #include <cstdint>
@@ -7,8 +7,8 @@ namespace ex9000::start_up {
 
 using Handler = void (*)();
 
-/// What the processor reads from address 0 on (ARMv7-M Architecture Reference Manual, B1.5.3): the stack
-/// pointer at reset, the system exceptions, then the interrupts by their numbers.
+/// The table that the processor reads from address 0 on (ARMv7-M Architecture Reference Manual, B1.5.3): the
+/// initial stack pointer, the system exceptions, and the interrupts by number.
 template <unsigned interrupts>
 struct VectorTable {
   const void* stack_top;
@@ -27,23 +27,23 @@ struct VectorTable {
   Handler interrupt[interrupts];
 };
 
-/// The linker's, where the stack begins, which grows down.
+/// The beginning of the stack, which grows down. The linker script defines this symbol.
 extern "C" std::uint32_t stack_top[];
 
-/// Copies what is initialised to RAM, clears the rest of what the linker placed there, and calls `main`.
+/// Copies the initialised data to RAM, clears the other variables in RAM, and calls `main`.
 extern "C" [[noreturn]] __attribute__((externally_visible)) void reset_handler();
 
-/// Faults, and interrupts that nobody has asked for: resets the microcontroller at once, which lets go of all
-/// outputs.
+/// Resets the microcontroller at once, which de-energises all outputs. Handles faults and unexpected
+/// interrupts.
 extern "C" [[noreturn]] void fault_handler();
 
-/// An interrupt and who serves it.
+/// An interrupt and its handler.
 struct Served {
   unsigned number;
-  Handler handler;  ///< null: nobody, in this image
+  Handler handler;  ///< null: this image has no handler
 };
 
-/// Bit n for interrupt n, of those that somebody serves.
+/// Returns the interrupts that have a handler; bit n is interrupt n.
 template <class List>
 constexpr std::uint32_t numbers_of(const List& list) {
   std::uint32_t numbers = 0;
@@ -55,7 +55,7 @@ constexpr std::uint32_t numbers_of(const List& list) {
   return numbers;
 }
 
-/// All that nobody serves is a fault.
+/// Returns the vector table. All exceptions and interrupts without a handler call `fault_handler`.
 template <unsigned interrupts, class List>
 constexpr VectorTable<interrupts> vectors(Handler on_system_tick, const List& list) {
   constexpr Handler kFault = fault_handler;
@@ -79,5 +79,5 @@ constexpr VectorTable<interrupts> vectors(Handler on_system_tick, const List& li
 
 }  // namespace ex9000::start_up
 
-/// The composition's; does not return.
+/// Defined in the composition file; does not return.
 int main();

@@ -1,4 +1,4 @@
-// The EK-TM4C123GXL LaunchPad: clock, pins and polarity. How to wire them: README.md beside this file.
+// The EK-TM4C123GXL LaunchPad: clock, pins and polarity. README.md in this folder describes the wiring.
 #pragma once
 
 #include <array>
@@ -15,17 +15,17 @@ using hal::stellaris::Port;
 
 inline constexpr auto kFamily = hal::stellaris::Family::Tm4c;
 
-/// A 16 MHz crystal, and 50 MHz from the PLL: what the LM3S6965 runs at too, so that one set of divisors is
-/// proven for both.
+/// A 16 MHz crystal, and 50 MHz from the PLL. The LM3S6965 uses the same frequency, so that tests of the
+/// divisors apply to both.
 inline constexpr hal::stellaris::ClockTree kClock{0x15, 4};
 
 #ifdef EX9000_BUS_ON_USB
-/// The line: UART0, which the debugger makes a serial port on USB.
+/// The line is UART0, which the debugger connects to a serial port on USB.
 inline constexpr unsigned kUart = 0;
 inline constexpr PinGroup kUartPins{Port::A, 0, 2};
 inline constexpr std::uint32_t kUartFunction = 1;
 #else
-/// The line: UART1 on PC4 (receive) and PC5 (transmit).
+/// The line is UART1 on PC4 (receive) and PC5 (transmit).
 inline constexpr unsigned kUart = 1;
 inline constexpr PinGroup kUartPins{Port::C, 4, 2};
 inline constexpr std::uint32_t kUartFunction = 2;
@@ -35,8 +35,8 @@ inline constexpr Pin kDriverEnable{Port::C, 6};
 inline constexpr Pin kInitSwitch{Port::F, 4};  ///< SW1
 inline constexpr Pin kStatusLed{Port::F, 3};   ///< green
 
-/// In order of channels: outputs begin with the first eight pins, inputs with the second eight. A model with
-/// more than eight of one kind has none of the other, and uses all pins.
+/// The pins in the order of the channels. Outputs begin with the first eight pins, inputs with the second
+/// eight. A model with more than eight outputs has no inputs, and vice versa, so it can use all pins.
 inline constexpr std::array<PinGroup, 2> kFirstEight{PinGroup{Port::A, 2, 6}, PinGroup{Port::D, 2, 2}};
 inline constexpr std::array<PinGroup, 2> kSecondEight{PinGroup{Port::E, 0, 6}, PinGroup{Port::B, 4, 2}};
 inline constexpr std::array<PinGroup, 4> kOutputs{kFirstEight[0], kFirstEight[1], kSecondEight[0],

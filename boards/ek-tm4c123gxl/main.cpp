@@ -1,3 +1,3 @@
 #include "boards/ek-tm4c123gxl/board.hpp"
-// The rest is the same for every board of the family.
+// Must follow board.hpp. This file is the same for all boards of the family.
 #include "boards/stellaris/composition.hpp"

@@ -1,5 +1,5 @@
-// The Stellaris LM3S6965 evaluation board: clock, pins and polarity. How to wire them: README.md beside this
-// file.
+// The Stellaris LM3S6965 evaluation board: clock, pins and polarity. README.md in this folder describes the
+// wiring.
 #pragma once
 
 #include <array>
@@ -16,10 +16,10 @@ using hal::stellaris::Port;
 
 inline constexpr auto kFamily = hal::stellaris::Family::Lm3s;
 
-/// An 8 MHz crystal, and 50 MHz from the PLL: as fast as this family goes.
+/// An 8 MHz crystal, and 50 MHz from the PLL, the highest frequency of this family.
 inline constexpr hal::stellaris::ClockTree kClock{0x0E, 4};
 
-/// The line: UART0 on PA0 (receive) and PA1 (transmit).
+/// The line is UART0 on PA0 (receive) and PA1 (transmit).
 inline constexpr unsigned kUart = 0;
 inline constexpr PinGroup kUartPins{Port::A, 0, 2};
 inline constexpr std::uint32_t kUartFunction = 1;
@@ -28,8 +28,8 @@ inline constexpr Pin kDriverEnable{Port::A, 6};
 inline constexpr Pin kInitSwitch{Port::A, 7};
 inline constexpr Pin kStatusLed{Port::F, 0};
 
-/// In order of channels: outputs begin with the first eight pins, inputs with the second eight. A model with
-/// more than eight of one kind has none of the other, and uses all pins.
+/// The pins in the order of the channels. Outputs begin with the first eight pins, inputs with the second
+/// eight. A model with more than eight outputs has no inputs, and vice versa, so it can use all pins.
 inline constexpr std::array<PinGroup, 2> kFirstEight{PinGroup{Port::D, 2, 6}, PinGroup{Port::G, 0, 2}};
 inline constexpr std::array<PinGroup, 3> kSecondEight{PinGroup{Port::B, 0, 2}, PinGroup{Port::B, 4, 3},
                                                       PinGroup{Port::C, 4, 3}};

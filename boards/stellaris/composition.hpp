@@ -1,5 +1,6 @@
-// An image from reset to the main loop, on a board of this family: the drivers on the pins of `board.hpp`,
-// the module on the drivers, and the interrupts. Included once, by the main.cpp of a board.
+// An image for a board of this family, from reset to the main loop. This file connects the drivers to the
+// pins of `board.hpp`, the module to the drivers, and the interrupts to their handlers. The main.cpp of a
+// board includes it once.
 #pragma once
 
 #include <array>
@@ -60,7 +61,7 @@ struct Board {
 hal::Device<Board> device(kOnlyModel, kTimingAt);
 Board& board = device.board();
 
-// --- interrupts: none interrupts another ---
+// --- interrupts, which do not interrupt each other ---
 
 void on_system_tick() {
   board.clock.count_in_interrupt();
@@ -105,7 +106,7 @@ void on_edges() {
   board.inputs.take_edges<port>(DeliverEdge());
 }
 
-/// Null where this model has no input on the port.
+/// Returns the handler of the port's edge interrupt, or null if this model has no input on the port.
 template <Port port>
 constexpr start_up::Handler handler_of_edges() {
   if constexpr (decltype(board.inputs)::on(port)) {
@@ -162,7 +163,8 @@ constexpr ClockGates kClockGates{
     ports_of_the_module(),
 };
 
-/// The watchdog first, so that nothing behind it can hang for ever; then the outputs, which float until here.
+/// Starts the drivers. The watchdog is first, so that it can reset the MCU if a later step hangs. The outputs
+/// are next, because they float until then.
 void start() {
   SystemControl::open(kClockGates);
   Watchdog::start();

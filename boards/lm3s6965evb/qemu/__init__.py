@@ -1,1 +1,1 @@
-"""QEMU's lm3s6965evb as a module on a pseudo-terminal."""
+"""Runs a module on QEMU's lm3s6965evb and connects it to a pseudo-terminal."""

@@ -1,4 +1,4 @@
-"""The AT24C64's contents: a file that lasts, or memory."""
+"""The contents of the AT24C64, in a file or in memory."""
 
 from __future__ import annotations
 
@@ -13,14 +13,17 @@ _BLANK = b"\xff" * SIZE
 
 
 def in_memory() -> int:
-    """A blank one that is gone with its descriptor."""
+    """Returns the descriptor of a blank EEPROM in memory, which exists until the descriptor is closed."""
     descriptor = os.memfd_create("eeprom")
     os.write(descriptor, _BLANK)
     return descriptor
 
 
 def in_file(path: Path) -> int:
-    """The descriptor holds the file against a second run. A missing file is made, blank."""
+    """Returns the descriptor of an EEPROM file and locks it against other runs. Creates a missing file, blank.
+
+    Raises Refusal if the file cannot be written, is locked, or has the wrong size.
+    """
     try:
         descriptor = os.open(path, os.O_RDWR | os.O_CREAT | os.O_CLOEXEC, 0o666)
     except OSError as error:

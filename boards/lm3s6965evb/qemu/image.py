@@ -1,4 +1,4 @@
-"""What is to be run: an ELF file for this board."""
+"""Checks that an image is an ELF file for this board."""
 
 from __future__ import annotations
 
@@ -9,11 +9,11 @@ from qemu.refusal import Refusal
 
 _ARM = 40
 _LOADED = 1  # PT_LOAD
-_TOP_OF_RAM = 0x20010000  # 64 KiB, as image.ld has them
+_TOP_OF_RAM = 0x20010000  # 64 KiB, as in image.ld
 
 
 def check(path: Path) -> None:
-    """Raises Refusal where QEMU would run something that can only be silent."""
+    """Raises Refusal if the file is not an image for this board. QEMU would run it, but it would never reply."""
     try:
         file = path.read_bytes()
     except OSError as error:
@@ -27,7 +27,7 @@ def check(path: Path) -> None:
 
 
 def _initial_stack_pointer(file: bytes) -> int | None:
-    """The first word that the processor reads, from address 0."""
+    """Returns the word at address 0, which the processor reads first, or None if the file has no such word."""
     (headers,) = struct.unpack_from("<I", file, 28)
     size, count = struct.unpack_from("<HH", file, 42)
     for index in range(count):

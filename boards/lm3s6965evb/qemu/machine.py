@@ -1,7 +1,7 @@
-"""The board in QEMU: its processor is started, told of INIT* before the first instruction, and ended.
+"""Starts and ends the board in QEMU, and sets INIT* before the first instruction.
 
-QEMU knows no pull-ups: an input that nobody drives is low, and every reset of the machine lets go of all inputs. So a
-reset that the image itself asks for, or its watchdog, is turned into a stop, and done here.
+QEMU has no pull-ups: an input that is not driven is low, and each reset of the machine releases all inputs. Therefore a
+reset by the image or by its watchdog only stops QEMU, and this module carries out the reset and sets INIT* again.
 """
 
 from __future__ import annotations
@@ -24,17 +24,17 @@ from qemu.refusal import Refusal
 _PROGRAM = "qemu-system-arm"
 _INIT_RELEASED = "set_irq_in /machine/unattached/device[8] unnamed-gpio-in 7 1"  # PA7 high
 _UART0_CONTROL = 0x4000C030
-_DRIVER_ENABLE = 0x40004100  # PA6 alone, high while the module speaks
+_DRIVER_ENABLE = 0x40004100  # PA6 only, high while the module sends
 _PR_SET_PDEATHSIG = 1
-_HANG = 60  # seconds; only a QEMU or an image that hangs takes so long, also on a host that is busy with other things
+_HANG = 60  # seconds; even on a busy host, only QEMU or an image that hangs takes longer
 
 
 class Ended(Exception):
-    """QEMU runs no more."""
+    """QEMU has ended."""
 
 
 class Machine:
-    """`line` is what the module says, non-blocking; when `events` is readable, call `take_events`."""
+    """`line` is a non-blocking socket with the bytes of the module. When `events` is readable, call `take_events`."""
 
     def __init__(self, image: Path, eeprom: int, init_grounded: bool, gdb_port: int | None) -> None:
         self._init_grounded = init_grounded
@@ -46,7 +46,7 @@ class Machine:
         self._untaken: deque[dict[str, Any]] = deque()
         self._errors = tempfile.TemporaryFile()
         words = [_PROGRAM, "-M", "lm3s6965evb", "-display", "none", "-nodefaults", "-S"]
-        words += ["-icount", "shift=3"]  # 8 ns an instruction: time is not the host's to distort
+        words += ["-icount", "shift=3"]  # 8 ns per instruction, so that a slow host does not distort the time
         words += ["-action", "reboot=shutdown,shutdown=pause", "-kernel", str(image)]
         words += ["-chardev", f"socket,id=line,fd={line.fileno()}", "-serial", "chardev:line"]
         words += ["-chardev", f"socket,id=monitor,fd={monitor.fileno()}", "-mon", "monitor,mode=control"]
@@ -72,7 +72,7 @@ class Machine:
     def _start(self, words: list[str], descriptors: list[int]) -> subprocess.Popen[bytes]:
         libc = ctypes.CDLL(None)
         try:
-            # In a session of its own, so that Ctrl-C reaches it through `end` alone.
+            # QEMU gets its own session, so that Ctrl-C does not reach it; `end` ends it.
             return subprocess.Popen(
                 words,
                 stdin=subprocess.DEVNULL,
@@ -86,27 +86,27 @@ class Machine:
             raise Refusal(f"{_PROGRAM} is missing; install the package {_PROGRAM}") from error
 
     def say(self, data: bytes) -> None:
-        """Puts a master's bytes on the line, by `go_on`, once the module's driver is off.
+        """Queues a master's bytes, which `go_on` sends when the module's driver is off.
 
-        QEMU's UART sends in no time, so a reply is with the master before the driver goes off, and a master that is
-        quick to go on would not be heard. On a wire it could not be that quick.
+        QEMU's UART sends in no time, so the master gets a reply before the driver goes off. The module would lose the
+        request of a fast master. On a real line, no master can be that fast.
         """
         self._unsaid += data
 
     def hear(self) -> bytes:
-        """What the module says; while `line` is readable."""
+        """Returns the bytes from the module. Call it only while `line` is readable."""
         return self._received_from(self.line)
 
     @property
     def go_on_within(self) -> float:
-        """Seconds until `go_on` is due."""
+        """The time in seconds within which `go_on` must be called."""
         return 0.001 if self._unsaid else 0.1
 
     def go_on(self) -> None:
-        """What the module does not take is lost, as on a wire. Does not wait.
+        """Sends queued bytes. Bytes that the module does not receive are lost, as on a real line. Does not wait.
 
-        To be called even where there is nothing to say: of a module that hangs QEMU may forget the time, and so the
-        watchdog that is to reset it, unless somebody asks for something.
+        Must be called even if nothing is queued: if the module hangs, QEMU's time may stop without requests. The
+        watchdog would then not reset the module.
         """
         speaking = self._word_at(_DRIVER_ENABLE)
         if self._unsaid and not speaking:
@@ -115,7 +115,7 @@ class Machine:
             self._unsaid = b""
 
     def take_events(self) -> None:
-        """Resets the machine where the module has asked for it."""
+        """Reads events and resets the machine if the module has requested a reset."""
         self._untaken.append(self._next_message())
         while self._untaken or b"\n" in self._unread:
             event = self._untaken.popleft() if self._untaken else self._next_message()
@@ -123,7 +123,7 @@ class Machine:
                 self._reset()
 
     def end(self) -> None:
-        """At once, and waits for it."""
+        """Ends QEMU at once and waits for its end."""
         with contextlib.suppress(OSError):
             self.events.sendall(b'{"execute": "quit"}\n')
         try:
@@ -146,7 +146,7 @@ class Machine:
         self._command("cont")
 
     def _wait_until_listening(self) -> None:
-        """A byte that comes before the UART is enabled is lost, and who opens a line wants it to be there."""
+        """Waits until the UART is enabled, because bytes before that are lost. Raises Refusal after 60 s."""
         deadline = time.monotonic() + _HANG
         while not self._word_at(_UART0_CONTROL) & 1:
             if time.monotonic() > deadline:

@@ -1,4 +1,4 @@
-"""Arguments, and the way of the bytes between the module and the pseudo-terminal."""
+"""Parses the arguments and passes bytes between the module and the pseudo-terminal."""
 
 from __future__ import annotations
 
@@ -38,7 +38,7 @@ def _arguments(words: list[str]) -> argparse.Namespace:
 
 
 def main(words: list[str]) -> int:
-    """The program's exit status: 0 when it was told to end, 1 where QEMU has ended, 2 for wrong arguments."""
+    """Runs the program. Returns its exit status: 0 after a signal, 1 if QEMU has ended, 2 for wrong arguments."""
     arguments = _arguments(words)
     try:
         with contextlib.ExitStack() as at_the_end:
@@ -64,18 +64,18 @@ def main(words: list[str]) -> int:
 
 
 def _told_to_end() -> int:
-    """Becomes readable with a signal that asks for the end."""
+    """Returns a descriptor that becomes readable when SIGINT, SIGTERM or SIGHUP arrives."""
     readable, writable = os.pipe()
     os.set_blocking(writable, False)
     signal.set_wakeup_fd(writable)
     for number in (signal.SIGINT, signal.SIGTERM, signal.SIGHUP):
-        if signal.getsignal(number) != signal.SIG_IGN:  # as nohup wants it
+        if signal.getsignal(number) != signal.SIG_IGN:  # nohup ignores SIGHUP
             signal.signal(number, lambda *_: None)
     return readable
 
 
 def _carry_bytes(machine: Machine, terminal: PseudoTerminal, told_to_end: int) -> None:
-    """Neither side ever waits for the other: a UART whose bytes nobody takes would stop the whole machine."""
+    """Passes bytes until a signal arrives. No side waits for the other, because a blocked UART stops the machine."""
     while True:
         watched = [told_to_end, machine.events, terminal.visits, machine.line]
         if terminal.visited():
@@ -89,7 +89,7 @@ def _carry_bytes(machine: Machine, terminal: PseudoTerminal, told_to_end: int) -
             machine.take_events()
         if machine.line in ready:
             terminal.write(machine.hear())
-        requests = terminal.read()  # whatever has happened: a master may have written and gone
+        requests = terminal.read()  # always, because a master may have written and closed the terminal
         if requests:
             machine.say(requests)
         machine.go_on()

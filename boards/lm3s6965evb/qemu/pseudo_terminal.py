@@ -1,7 +1,7 @@
-"""A pseudo-terminal that masters open and leave as they would a serial port.
+"""A pseudo-terminal that masters open and close like a serial port.
 
-QEMU can make one itself, but looks for a visitor only now and then, and what the module says to a new one in the
-first 0.7 s is lost.
+QEMU can create one itself, but it only checks from time to time whether a master has opened it. The module's bytes to a
+new master would be lost for the first 0.7 s.
 """
 
 from __future__ import annotations
@@ -21,7 +21,10 @@ _IN_CLOSE_WRITE, _IN_CLOSE_NOWRITE, _IN_OPEN = 0x08, 0x10, 0x20
 
 
 class PseudoTerminal:
-    """Raw. What is sent while nobody is there is lost, as on a wire, and so is what a master leaves unread."""
+    """A pseudo-terminal in raw mode.
+
+    As on a real line, bytes are lost if no master has opened it, or if a master closes it without reading them.
+    """
 
     def __init__(self) -> None:
         self.master, slave = pty.openpty()
@@ -30,11 +33,14 @@ class PseudoTerminal:
         os.close(slave)
         os.set_blocking(self.master, False)
         self.visits = _watch(self.device)
-        self._written = False  # since it was last empty for sure
+        self._written = False  # whether it may contain unread bytes
         self._link: Path | None = None
 
     def link(self, path: Path) -> None:
-        """A symbolic link to it. One that a killed run has left is taken over."""
+        """Creates a symbolic link to the terminal. Replaces a link that a killed run has left.
+
+        Raises Refusal if the path exists or cannot be written.
+        """
         try:
             if path.is_symlink() and _leads_nowhere(path, self.device):
                 path.unlink()
@@ -46,18 +52,18 @@ class PseudoTerminal:
         self._link = path
 
     def unlink(self) -> None:
-        """Removes the link, if it is still this one's."""
+        """Removes the link if it still points to this terminal."""
         if self._link is not None and self._link.is_symlink() and os.readlink(self._link) == self.device:
             self._link.unlink()
 
     def visited(self) -> bool:
-        """Somebody has it open."""
+        """Returns whether a master has opened the terminal."""
         poll = select.poll()
         poll.register(self.master, 0)
-        return not poll.poll(0)  # or it says that the other end is hung up
+        return not poll.poll(0)  # if no master has opened it, poll reports a hang-up
 
     def take_visits(self) -> None:
-        """Whenever `visits` is readable: somebody has opened or closed it."""
+        """Processes that a master has opened or closed the terminal. Call it when `visits` is readable."""
         with contextlib.suppress(BlockingIOError):
             while os.read(self.visits, 4096):
                 pass
@@ -65,21 +71,24 @@ class PseudoTerminal:
             self._forget_unread()
 
     def _forget_unread(self) -> None:
-        """A reply to one master must not be the next one's first. Not when that one comes: it reads at once."""
+        """Discards unread bytes, so that the next master does not get the reply to another master.
+
+        This must happen when a master closes the terminal: the next one may read as soon as it has opened it.
+        """
         self._written = False
         slave = os.open(self.device, os.O_RDWR | os.O_NOCTTY | os.O_CLOEXEC)
         termios.tcflush(slave, termios.TCIFLUSH)
         os.close(slave)
 
     def read(self) -> bytes:
-        """What masters have written, also one that has gone; empty: nothing."""
+        """Returns the bytes that masters have written, even if they have closed the terminal. May be empty."""
         try:
             return os.read(self.master, 4096)
-        except OSError:  # nothing yet, or nobody there
+        except OSError:  # there are no bytes, or no master has opened the terminal
             return b""
 
     def write(self, data: bytes) -> None:
-        """Does not wait: who does not read loses what does not fit into the terminal, some 4 KiB."""
+        """Writes bytes to a master without waiting. If it does not read, bytes after about 4 KiB are lost."""
         if self.visited():
             self._written = True
             with contextlib.suppress(BlockingIOError):
@@ -87,7 +96,7 @@ class PseudoTerminal:
 
 
 def _watch(device: str) -> int:
-    """Python has no inotify."""
+    """Returns an inotify descriptor for opening and closing `device`. Uses libc, because Python has no inotify."""
     libc = ctypes.CDLL(None, use_errno=True)
     descriptor = int(libc.inotify_init1(os.O_NONBLOCK | os.O_CLOEXEC))
     events = _IN_OPEN | _IN_CLOSE_WRITE | _IN_CLOSE_NOWRITE
@@ -97,6 +106,6 @@ def _watch(device: str) -> int:
 
 
 def _leads_nowhere(link: Path, own_device: str) -> bool:
-    """To a terminal that is gone, or whose number is the one just made."""
+    """Returns whether the link points to a terminal that no longer exists or that has the number of the new one."""
     target = os.readlink(link)
     return target.startswith("/dev/pts/") and (target == own_device or not os.path.exists(target))

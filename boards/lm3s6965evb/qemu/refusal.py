@@ -1,5 +1,5 @@
-"""What cannot be done, in one line for people."""
+"""The exception for errors that the user can fix."""
 
 
 class Refusal(Exception):
-    """Says which argument or program is meant, what is wrong with it, and what helps."""
+    """Its one-line message names the argument or program, the error, and the remedy."""
