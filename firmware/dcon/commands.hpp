@@ -195,7 +195,7 @@ inline constexpr auto kCommands = table<Command>({
      "$AAPN",
      "!AA",
      "set the protocol, from the next reset on",
-     "N: 0 ASCII, 1 Modbus RTU (wants a stored address of 01-F7)",
+     "N: 0 ASCII, 1 Modbus RTU (requires a stored address of 01-F7)",
      Access::Store,
      Init::Required,
      {'$', 'P', 1, 1, Needs::Modbus, set_protocol}},

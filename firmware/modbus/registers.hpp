@@ -162,7 +162,7 @@ inline constexpr auto kBitRegisters = table<BitRegister>({
       write_protocol}},
     {"watchdog-enable",
      "host watchdog enable",
-     "0 off, 1 on and restart; on wants a timeout other than 0",
+     "0 off, 1 on and restart; on requires a timeout other than 0",
      {0x0104, Width::One, Needs::Nothing, kReadCoils | kWriteSingleCoil, kPlain, read_watchdog_enable,
       write_watchdog_enable}},
     {"clear-latches",

@@ -1,4 +1,5 @@
-// Decides whether words describe a valid fault according to sim/docs/faults.md, independently of the simulator's parser.
+// Decides whether words describe a valid fault according to sim/docs/faults.md, independently of the
+// simulator's parser.
 #pragma once
 
 #include <array>
