@@ -177,15 +177,17 @@ Action parse_verb(const std::string& text) {
   fail("'" + text + "' is not a step; expected one of " + all_shapes());
 }
 
+[[noreturn]] void reject_without_blank(const std::string& text, const std::string& lead) {
+  fail("'" + text + "': expected a blank after " + lead);
+}
+
 Action parse_action(const std::string& text) {
   for (const std::string lead : {"<=", "=>", "<", ">"}) {
     if (text.rfind(lead, 0) != 0) {
       continue;
     }
     if (text.size() > lead.size() && text[lead.size()] != ' ' && text[lead.size()] != '\t') {
-      std::string expected = "expected a blank after ";
-      expected += lead;
-      fail("'" + text + "': " + expected);
+      reject_without_blank(text, lead);
     }
     const std::string rest = text.size() > lead.size() ? text.substr(lead.size() + 1) : "";
     if (lead == "<=") {

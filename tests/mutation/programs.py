@@ -295,7 +295,7 @@ def areas():
     interleaved = [each for each in firmware if each.name == "interleaving_test"]
     hal = listed_programs("tests/hal")
     sim = listed_programs("tests/sim")
-    without_process = [file for file in files("sim/*.cpp", "sim/*.hpp") if stem_of(file) not in PROCESS]
+    judged = [file for file in files("sim/*.cpp", "sim/*.hpp") if stem_of(file) not in PROCESS]
     core = [LIBRARY_UNITS["core"]]
     images = [image.unit for image in IMAGES]
     of_drivers = [hal, interleaved, sim, [players()], image_programs()]
@@ -303,5 +303,5 @@ def areas():
     return [
         Area("firmware", files("firmware/*.cpp", "firmware/*.hpp"), core + images, [[players()], of_core]),
         Area("hal", files("hal/*.cpp", "hal/*.hpp"), core + images, of_drivers),
-        Area("sim", without_process, of_simulator, [sim, [players()]]),
+        Area("sim", judged, of_simulator, [sim, [players()]]),
     ]

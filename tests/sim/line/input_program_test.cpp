@@ -81,6 +81,7 @@ TEST(InputProgram, AKeyIsPressedOnceOrAgainAndAgain) {
   EXPECT_EQ(again.kind, Kind::KeyAgain);
   EXPECT_EQ(again.time, 10s);
   EXPECT_EQ(again.bounce, 5ms);
+  EXPECT_EQ(parsed("3 key at 1s for 300ms bounce 10us").bounce, 10us);
 }
 
 TEST(InputProgram, AWrongOneIsRefusedWithWhatIsWrongAndTheMend) {
