@@ -182,6 +182,10 @@ void SettingsStore::retry_or_give_up() {
     step_ = Step::Write;
     return;
   }
+  if (update_unfinished()) {  // the other place cannot be written: what counts now has been read well
+    must_not_count_ |= old_copies_;
+    old_copies_ = 0;
+  }
   // The copy may be complete although the memory reported an error.
   must_not_count_ |= bit(place_);
   saved_ = false;

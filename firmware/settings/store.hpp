@@ -59,9 +59,10 @@ class SettingsStore {
 
   /// Returns whether the power failed during the first save after a firmware update, so that the new copy is
   /// used but copies of an older layout are still valid. One successful read does not prove that the new copy
-  /// is well written, so the old copies stay until a save has been verified.
+  /// is well written, so the old copies stay until the settings have been saved once more. If that save
+  /// fails, the old copies are invalidated all the same.
   [[nodiscard]] bool update_unfinished() const {
-    return current_place_ != kNoPlace && !kPlaces[current_place_].old && old_copies_ != 0;
+    return found_ == Found::Settings && old_copies_ != 0 && !kPlaces[current_place_].old;
   }
 
   /// Returns whether a reset now could load a copy that must not be used: a copy of refused settings, or a

@@ -272,7 +272,10 @@ Setup setup_of(const Texts& texts) {
   if (texts.seed) {
     setup.seed = of_option("--seed", *texts.seed, parse_seed);
   }
-  setup.watch = setup.watch || texts.watch;
+  if (texts.watch) {
+    setup.watch = true;
+    setup.places.erase("watch");
+  }
   if (texts.panel) {
     setup.panel = of_option("--panel", *texts.panel == kUsualPort ? "" : *texts.panel, parse_panel);
     setup.places.erase("panel");

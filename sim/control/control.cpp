@@ -311,6 +311,9 @@ Control::Reply Control::carry_out(const std::string& command) {
   const Words words = words_of(command);
   const std::string first = words.empty() ? "" : words[0];
   try {
+    if (command.find('\0') != std::string::npos) {
+      fail("the command contains NUL; leave it out");
+    }
     std::string result;
     const bool quit = first == "quit";
     if (quit || first == "list" || first == "help") {

@@ -36,6 +36,7 @@ struct ModelRun {
   const Model* model;
   Variables variables;
   sim::Words presets;
+  unsigned preset_line = 0;
 };
 
 std::string trimmed(const std::string& text) {
@@ -231,7 +232,7 @@ struct Source {
   std::vector<Line> steps;
 };
 
-bool read_header(const std::string& text, Source& source) {
+bool read_header(const std::string& text, unsigned number, Source& source) {
   if (const auto from = header_value(text, "source")) {
     source.names_its_source = !from->empty();
   } else if (const auto model = header_value(text, "model")) {
@@ -239,7 +240,7 @@ bool read_header(const std::string& text, Source& source) {
     if (word.empty()) {
       fail("'model:' requires a model's name");
     }
-    ModelRun run{&model_named(word[0]), {}, {}};
+    ModelRun run{&model_named(word[0]), {}, {}, 0};
     for (std::size_t i = 1; i < word.size(); ++i) {
       const auto equals = word[i].find('=');
       if (equals == std::string::npos) {
@@ -254,6 +255,7 @@ bool read_header(const std::string& text, Source& source) {
     }
     for (; source.preset_ends < source.models.size(); ++source.preset_ends) {
       source.models[source.preset_ends].presets = sim::words_of(*preset);
+      source.models[source.preset_ends].preset_line = number;
     }
   } else if (const auto tags = header_value(text, "tags")) {
     if (*tags != "slow") {
@@ -272,7 +274,7 @@ void read_line(const std::string& raw, unsigned number, Source& source) {
   if (text.empty()) {
     return;
   }
-  if (source.steps.empty() && read_header(text, source)) {
+  if (source.steps.empty() && read_header(text, number, source)) {
     return;
   }
   source.steps.push_back({number, text});
@@ -297,6 +299,7 @@ Transcript transcript_of(const std::string& path, const Source& source, const Mo
   transcript.model = run.model;
   transcript.preset = Settings::factory(*run.model);
   transcript.preset_given = !run.presets.empty();
+  line = run.presets.empty() ? line : run.preset_line;
   for (const std::string& preset : run.presets) {
     apply_preset(preset, *run.model, transcript.preset);
   }

@@ -13,8 +13,7 @@
 
 namespace ex9000::sim {
 
-/// Records nothing until `print_frames`, `keep_in` or `tell` requests it. Call these functions before
-/// `begin`.
+/// Records nothing until `print_frames`, `keep_in` or `tell` requests it.
 class LineRecord final : private Station {
  public:
   using Print = BusLog::Print;

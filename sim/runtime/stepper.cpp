@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "sim/text/durations.hpp"
+#include "sim/text/fail.hpp"
 #include "sim/text/values.hpp"
 #include "sim/text/words.hpp"
 
@@ -13,7 +14,7 @@ namespace ex9000::sim {
 namespace {
 
 constexpr const char* kCommand = "advance";
-constexpr const char* kShape = "'advance' requires TIME [after N] [quiet], for example advance 250ms after 8";
+constexpr const char* kShape = "requires TIME [after N] [quiet], for example advance 250ms after 8";
 
 }  // namespace
 
@@ -51,7 +52,7 @@ Stepper::Request Stepper::parse(const std::string& command) {
 void Stepper::advance(const std::string& command, Answer answer) {
   Request request;
   try {
-    request = parse(command);
+    request = with_place("advance: ", [&] { return parse(command); });
   } catch (const std::invalid_argument& error) {
     answer({std::string("error: ") + error.what(), false});
     return;
@@ -94,12 +95,13 @@ void Stepper::carry_out(const Request& request, const Answer& answer) {
   for (SteppedLine* line : lines_) {
     line->put_on_line();
   }
-  if (!pass(request)) {
-    answer({"error: the program was asked to end while time passed", false});
-    return;
-  }
+  const bool completed = pass(request);
   for (SteppedLine* line : lines_) {
     line->hand_out();
+  }
+  if (!completed) {
+    answer({"error: the program was asked to end while time passed", false});
+    return;
   }
   const VirtualTime now = lines_.front()->now();
   answer({"ok " + seconds_text(now), now >= end_});
@@ -123,6 +125,7 @@ bool Stepper::pass(const Request& request) {
   VirtualTime now = lines_.front()->now();
   constexpr unsigned kEventsBetweenLooks = 4096;
   unsigned events = 0;
+  bool completed = true;
   const VirtualTime until = request.time < end_ - now ? now + request.time : end_;
   while (!request.quiet || std::any_of(states.begin(), states.end(), is_pending)) {
     const auto earliest = std::min_element(states.begin(), states.end(), is_earlier);
@@ -131,7 +134,8 @@ bool Stepper::pass(const Request& request) {
       break;
     }
     if (++events % kEventsBetweenLooks == 0 && stop_requested_()) {
-      return false;
+      completed = false;
+      break;
     }
     now = std::max(now, earliest->next);
     earliest->line->run_until(now);
@@ -141,7 +145,7 @@ bool Stepper::pass(const Request& request) {
   for (SteppedLine* line : lines_) {
     line->run_until(now);
   }
-  return true;
+  return completed;
 }
 
 }  // namespace ex9000::sim

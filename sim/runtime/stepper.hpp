@@ -34,9 +34,10 @@ class Stepper {
   /// - TIME has passed, or, with `quiet`, less if nothing is pending on any line,
   /// - every reply has been written to its port.
   ///
-  /// `answer` gets `ok NOW`, the lines' time in seconds, or `error: ...`; after an error nothing has changed.
-  /// A later call replaces one that still waits for bytes; the replaced call gets an error. If the program is
-  /// asked to end while time passes, time stops there and `answer` gets an error.
+  /// `answer` gets `ok NOW`, the lines' time in seconds, or `error: ...`. After an error nothing has changed,
+  /// except that time has passed if the program ends. A later call replaces one that still waits for bytes;
+  /// the replaced call gets an error. If the program is asked to end while time passes, time stops there and
+  /// `answer` gets an error.
   void advance(const std::string& command, Answer answer);
   /// Call it when bytes have arrived at a port.
   void arrived();

@@ -67,11 +67,12 @@ double parse_probability(const std::string& text) {
 }
 
 std::uint32_t parse_baud_rate(const std::string& text) {
-  const auto value = number<std::uint32_t>(text);
-  if (!value || std::find(kBaudRates.begin(), kBaudRates.end(), *value) == kBaudRates.end()) {
-    expect(text, "a baud rate: 1200, 2400, 4800, 9600, 19200, 38400, 57600 or 115200");
+  for (const std::uint32_t rate : kBaudRates) {
+    if (text == std::to_string(rate)) {
+      return rate;
+    }
   }
-  return *value;
+  expect(text, "a baud rate: 1200, 2400, 4800, 9600, 19200, 38400, 57600 or 115200");
 }
 
 std::uint8_t parse_hex_byte(const std::string& text) {
@@ -99,12 +100,12 @@ std::vector<std::uint8_t> parse_hex_bytes(const std::string& text) {
   for (std::size_t i = 0; i < digits.size(); i += 2) {
     const auto value = i + 2 <= digits.size() ? hex_number(digits.substr(i, 2), 2) : std::nullopt;
     if (!value) {
-      expect(text, "pairs of hex digits, for example 01 05 00FF");
+      expect(text, "pairs of hex digits, for example 010500FF");
     }
     bytes.push_back(static_cast<std::uint8_t>(*value));
   }
   if (bytes.empty()) {
-    expect(text, "pairs of hex digits, for example 01 05 00FF");
+    expect(text, "pairs of hex digits, for example 010500FF");
   }
   return bytes;
 }

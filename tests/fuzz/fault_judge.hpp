@@ -8,6 +8,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <optional>
+#include <set>
 #include <string>
 #include <system_error>
 #include <vector>
@@ -50,13 +51,8 @@ inline std::optional<nanoseconds> time(const std::string& text) {
 }
 
 inline bool is_rate(const std::string& text) {
-  const auto value = number<std::uint32_t>(text);
-  for (const std::uint32_t rate : {1200U, 2400U, 4800U, 9600U, 19200U, 38400U, 57600U, 115200U}) {
-    if (value == rate) {
-      return true;
-    }
-  }
-  return false;
+  const std::set<std::string> rates{"1200", "2400", "4800", "9600", "19200", "38400", "57600", "115200"};
+  return rates.count(text) != 0;
 }
 
 inline bool is_hex(const std::string& text) {

@@ -123,20 +123,47 @@ TEST(SettingsAfterAnUpdate, NothingIsUnfinishedInAMemoryWithoutACopy) {
   EXPECT_FALSE(store.update_unfinished());
 }
 
-/// The new copy was badly written: it reads well once, and never again.
+/// The new copy was written with too little charge: it can be read once, and never again.
 TEST(SettingsAfterAnUpdate, ANewCopyThatFadesBeforeItIsSavedOnceMoreLeavesTheOldOnes) {
   FakeMemory memory = updated();
   put(memory, 0, numbered(9), 9);
   SettingsStore store(the_model());
   drive(store, memory);
   ASSERT_TRUE(store.update_unfinished());
-  memory.unanswered_writes = 4;
+  corrupt(memory, 0);
+  EXPECT_TRUE(Boot(memory).stored() == numbered(6));
+}
+
+/// The other place cannot be written. The old copies must not count again even if the new copy fails later.
+TEST(SettingsAfterAnUpdate, TheOldCopiesAreInvalidatedIfTheSettingsCannotBeSavedOnceMore) {
+  FakeMemory memory = updated();
+  put(memory, 0, numbered(9), 9);
+  SettingsStore store(the_model());
+  drive(store, memory);
+  memory.unanswered_writes = 3;
   store.begin_saving(store.stored());
   drive(store, memory);
   EXPECT_FALSE(store.saved());
-  EXPECT_TRUE(store.update_unfinished());
-  corrupt(memory, 0);
-  EXPECT_TRUE(Boot(memory).stored() == numbered(6));
+  EXPECT_FALSE(store.update_unfinished());
+  EXPECT_FALSE(store.doubtful());
+  expect_no_old_copy_counts(memory);
+  EXPECT_TRUE(Boot(memory).stored() == numbered(9));
+}
+
+/// Neither place answered at reset, so the factory settings are in force. They must never be stored unasked.
+TEST(SettingsAfterAnUpdate, NothingIsUnfinishedWhileTheMemoryCannotBeRead) {
+  FakeMemory memory = updated();
+  put(memory, 0, numbered(9), 9);
+  memory.failing_reads = kReadsOfASilentMemory;
+  SettingsStore store(the_model());
+  drive(store, memory);
+  ASSERT_EQ(store.found(), Found::Unreadable);
+  memory.unanswered_writes = 4;
+  store.begin_saving(numbered(10));
+  drive(store, memory);
+  EXPECT_FALSE(store.saved());
+  EXPECT_FALSE(store.update_unfinished());
+  EXPECT_TRUE(Boot(memory).stored() == numbered(9));
 }
 
 TEST(SettingsAfterAnUpdate, AnOldCopyThatCannotBeInvalidatedIsTriedAgain) {

@@ -134,7 +134,7 @@ TEST(HexBytes, ArePairsOfDigitsWithOrWithoutBlanks) {
   EXPECT_EQ(parse_hex_bytes(" 0\t1 "), Bytes{0x01});
   EXPECT_EQ(parse_hex_bytes(std::string(2000, 'F')), Bytes(1000, 0xFF));
   expect_refused(parse_hex_bytes, {"", " \t", "5", "01 0", "0x01", "05G1", "-1", "-1 +1", "01,02", "01\n02"},
-                 "pairs of hex digits, for example 01 05 00FF");
+                 "pairs of hex digits, for example 010500FF");
 }
 
 // --- as the program writes them ---
