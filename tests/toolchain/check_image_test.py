@@ -26,7 +26,7 @@ def holding(code: str) -> str:
 
 class Accepts(unittest.TestCase):
     def stack(self, verdict: Verdict) -> int:
-        """Returns the worst-case stack without the exception frames of HardFault and NMI, whose handlers use no stack."""
+        """Returns the worst-case stack without the exception frames of HardFault and NMI, which use no stack."""
         self.assertTrue(verdict.accepted, verdict.problems)
         match = re.search(r"(\d+) stack at worst", verdict.figures)
         assert match
