@@ -40,7 +40,7 @@ void Module::step(Time now) {
     return;
   }
   count_host_oks();
-  expire_host_watchdog(now);  // must come before everything that drives outputs
+  expire_host_watchdog(now);  // must run before the steps that drive outputs
   continue_store(now);
   if (cycle_.phase() == RequestCycle::Phase::Idle) {
     dispatch(now);

@@ -60,8 +60,8 @@ class Module {
 
   // --- main loop ---
 
-  /// Updates the INIT* switch and the status LED. Call it at every tick and when the time of `idle_for` is
-  /// over. `init_switch`: whether INIT* is asserted (tied to GND), not debounced.
+  /// Updates the INIT* switch and the status LED. Call it at every tick and when the time that
+  /// `idle_for` returned is over. `init_switch`: whether INIT* is asserted (tied to GND), not debounced.
   void poll_panel(bool init_switch, Time now);
   /// Runs one pass of the main loop: processes the events from interrupts and everything that is due.
   void step(Time now);
@@ -86,8 +86,8 @@ class Module {
   [[nodiscard]] MemoryJob memory_job() { return keeper_.job(); }
   void memory_done(bool ok) { keeper_.done(ok); }
 
-  /// Returns the reply to send now, or nothing if there is none or its time has not come. The bytes are valid
-  /// until `reply_sent`.
+  /// Returns the reply to send now, or nothing if there is no reply or it is too early to send it. The bytes
+  /// are valid until `reply_sent`.
   Bytes take_reply(Time now) { return cycle_.take_reply(now); }
   /// Call this when the last stop bit has been sent and the driver is off.
   void reply_sent(Time now) { cycle_.reply_sent(now, turn_around()); }

@@ -52,8 +52,8 @@ class WrittenByMainLoop : public detail::Crossing<T> {
   [[gnu::always_inline]] void store_in_main_loop(T value) { this->store(value); }
 };
 
-/// A value that is too large for one instruction, so its ownership changes sides. The main loop owns it first
-/// and hands it over by storing to a WrittenByMainLoop. The interrupts return it by storing to a
+/// A value that is too large for one instruction, so only one side at a time owns it. The main loop owns it
+/// first and hands it over by storing to a WrittenByMainLoop. The interrupts return it by storing to a
 /// WrittenByInterrupt. A side must access it only while it owns it.
 template <class T>
 class HandedToInterrupt {

@@ -33,7 +33,7 @@ Duration Receiver::on_silence() {
 
 void Receiver::on_spoken(Time now) {
   if (modbus()) {
-    // The own reply ends the frame, even if its silence was not over.
+    // The module's own reply ends the frame, even if its silence was not over.
     const Verdict verdict = rtu_.cut_off(queue_);
     Deadline silence;
     silence.set(rtu_.silent_since());

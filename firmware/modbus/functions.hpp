@@ -32,7 +32,7 @@ Refusal vendor_function(Exchange& exchange);
 
 enum class AtBroadcast : std::uint8_t {
   Ignored,
-  CarriedOut,  ///< but without a reply
+  CarriedOut,  ///< the module executes the request but sends no reply
 };
 
 struct FunctionRow {

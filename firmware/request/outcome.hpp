@@ -24,7 +24,7 @@ enum class Refusal : std::uint8_t {
   WrongAddress,        ///< 02
   WrongValue,          ///< 03
   UnknownObject,       ///< 02, in function 2B/0E
-  // both
+  // both protocols
   OutputsBlocked,  ///< ASCII `!`, Modbus 04: the timeout status is set
   StoreFailed,     ///< ASCII `?AA`, Modbus 04: the memory did not store the settings
 };

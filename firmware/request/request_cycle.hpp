@@ -44,8 +44,8 @@ class RequestCycle {
   /// next request may be judged.
   bool finish();
 
-  /// Returns the reply to send now, or nothing if there is none or its time has not come. The bytes are valid
-  /// until `reply_sent`.
+  /// Returns the reply to send now, or nothing if there is no reply or it is too early to send it. The bytes
+  /// are valid until `reply_sent`.
   Bytes take_reply(Time now);
   /// Call this when the last stop bit has been sent and the driver is off. The next reply is sent `silence`
   /// later at the earliest (wire.md D18).

@@ -12,7 +12,7 @@
 
 namespace ex9000 {
 
-/// The age of a copy. It decides which one of several good copies is used.
+/// The age of a copy. The newest good copy is used.
 struct Edition {
   std::uint8_t layout = 0;
   std::uint16_t sequence = 0;
@@ -49,8 +49,7 @@ constexpr std::size_t kRecordRoom = 128;
 ///     then        CRC-32 over the model's designation and all bytes before it, low byte first
 ///
 /// New settings are only appended. A record of older firmware is shorter; the settings that are missing in it
-/// get their factory values. A record of newer firmware is longer; `write_record` keeps the bytes that this
-/// firmware does not know.
+/// get their factory values. A record of newer firmware is longer; `write_record` keeps the additional bytes.
 ///
 /// The CRC includes the designation, so that settings of another model are never used: their power-on value
 /// is intended for other outputs. The CRC detects every error burst of up to 32 bits and every error of two

@@ -14,8 +14,8 @@ namespace ex9000 {
 /// - It repeats the first save after a firmware update if the power failed during that save.
 /// - It invalidates copies that must not be used.
 ///
-/// It retries these every second until they succeed (wire.md D15). For the main loop only. No function
-/// blocks.
+/// It retries each of these actions every second until it succeeds (wire.md D15). For the main loop only. No
+/// function blocks.
 class SettingsKeeper {
  public:
   explicit constexpr SettingsKeeper(const Model& model) : store_(model) {}
@@ -28,7 +28,7 @@ class SettingsKeeper {
   /// settings have been stored since.
   [[nodiscard]] bool unreadable() const { return store_.found() == SettingsStore::Found::Unreadable; }
 
-  /// Returns whether a reset now would certainly load `stored()`, also if the memory is blank. This is not
+  /// Returns whether a reset now would certainly load `stored()`, even if the memory is blank. This is not
   /// certain if the memory contains settings that could not be read before, or a copy that must not be used.
   [[nodiscard]] bool certain() const {
     return !unreadable() && !store_.doubtful() && !store_.update_unfinished();

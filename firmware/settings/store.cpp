@@ -182,7 +182,9 @@ void SettingsStore::retry_or_give_up() {
     step_ = Step::Write;
     return;
   }
-  if (update_unfinished()) {  // the other place cannot be written: what counts now has been read well
+  if (update_unfinished()) {
+    // The other place cannot be written. The current copy was read correctly, so the old copies are not
+    // needed.
     must_not_count_ |= old_copies_;
     old_copies_ = 0;
   }

@@ -57,10 +57,10 @@ class SettingsStore {
   /// Returns whether the last save succeeded.
   [[nodiscard]] bool saved() const { return saved_; }
 
-  /// Returns whether the power failed during the first save after a firmware update, so that the new copy is
-  /// used but copies of an older layout are still valid. One successful read does not prove that the new copy
-  /// is well written, so the old copies stay until the settings have been saved once more. If that save
-  /// fails, the old copies are invalidated all the same.
+  /// Returns whether the power failed during the first save after a firmware update. The new copy is then
+  /// used, but copies of an older layout are still valid. One successful read does not prove that the new
+  /// copy is well written, so the old copies stay until the settings have been saved again. If that save
+  /// fails, the old copies are invalidated nevertheless.
   [[nodiscard]] bool update_unfinished() const {
     return found_ == Found::Settings && old_copies_ != 0 && !kPlaces[current_place_].old;
   }
