@@ -33,8 +33,8 @@ class Device {
     board_.watchdog.feed();
   }
 
-  // --- interrupts; on_receive, on_silence and on_sent share a priority, the others may have other priorities
-  // ---
+  // --- interrupts ---
+  // on_receive, on_silence and on_sent must have the same priority. The others may have other priorities.
 
   /// Call this for each byte that was received while the module's own driver was off, with or without an
   /// error.
@@ -43,7 +43,7 @@ class Device {
     if (!(silence == Duration())) {
       board_.silence_timer.restart(silence);
     } else if (module_.request_waits()) {
-      wake();  // on a line on which bytes take no time, the turn-around time is already over
+      wake();  // if bytes take no time on this line, the turn-around time is already over
     }
   }
   void on_silence() {

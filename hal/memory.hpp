@@ -15,7 +15,7 @@ namespace ex9000::hal {
 inline constexpr Duration kMemoryPollPeriod = milliseconds(1);
 
 /// A nonvolatile memory, for example an AT24C64. It carries out one job at a time while the main loop
-/// continues. If it has an interrupt that shows that the job can continue, that interrupt calls
+/// continues. If an interrupt occurs when the job can continue, that interrupt must call
 /// `Device::on_memory`. All functions are for the main loop and do not block.
 ///
 ///     void start_read(std::uint16_t address, MutableBytes destination, Time now)

@@ -13,8 +13,8 @@ namespace ex9000::hal {
 ///
 ///     void drive(std::uint16_t channels)
 ///         Drives all channels: bit n is channel n, 1 = energised (the transistor conducts, the relay is
-///         pulled). The board defines the polarity. All channels change together, and unchanged channels have
-///         no glitch. For the main loop, in every pass; does not block.
+///         pulled in). The board defines the polarity. All channels change together, and unchanged channels
+///         have no glitch. For the main loop, in every pass; does not block.
 ///
 /// True if `T` has this function.
 template <class T, class = void>

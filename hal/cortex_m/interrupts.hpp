@@ -13,10 +13,10 @@ class Interrupts {
  public:
   /// Enables interrupts. `numbers` is a mask, bit n is interrupt n, 0 to 31.
   ///
-  /// No interrupt interrupts another one. The stack therefore needs room for only one interrupt, and
-  /// interrupts can share data without protection. Priorities only define the order of pending interrupts:
-  /// SysTick, then the others by number, then `last`. The board passes the UART as `last`, so that the end of
-  /// a silence is processed before the byte that follows it.
+  /// An interrupt cannot interrupt another interrupt. The stack therefore needs room for only one interrupt,
+  /// and interrupts can share data without protection. Priorities only define the order of pending
+  /// interrupts: SysTick, then the others by number, then `last`. The board passes the UART as `last`, so
+  /// that the end of a silence is processed before the byte that follows it.
   static void enable(std::uint32_t numbers, std::uint32_t last) {
     constexpr std::uint32_t kLowest = 0xFF;
     constexpr std::uint32_t kInterruptsAWord = 4;
@@ -41,7 +41,8 @@ class Interrupts {
     processor::release_interrupts();
   }
 
-  /// Resets the microcontroller at once and does not return. May be called anywhere.
+  /// Resets the microcontroller at once and does not return. Interrupts, faults and the main loop may call
+  /// it.
   [[noreturn]] static void reset() {
     constexpr Bits<ApplicationInterrupt> kReset(1U << 2U);
     kApplicationInterrupt.write(kKey | kReset);

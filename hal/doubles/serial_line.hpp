@@ -39,7 +39,7 @@ class SerialLine {
 
   /// Returns the baud rate; 0 until `open`.
   [[nodiscard]] std::uint32_t baud() const { return baud_; }
-  /// Makes the driver go off later than it should, by `by`. This also applies to a reply that is being sent.
+  /// Delays the end of the driver enable by `by`. This also applies to a reply that is being sent.
   void release_late(VirtualTime by);
   /// Returns when `run` must be called.
   [[nodiscard]] VirtualTime next() const { return next_; }
@@ -56,7 +56,7 @@ class SerialLine {
   std::size_t sent_ = 0;
   VirtualTime first_start_bit_{0};
   VirtualTime next_ = kNever;
-  VirtualTime over_ = kNever;  ///< when the driver should go off; known from the last byte on
+  VirtualTime over_ = kNever;  ///< when the driver should go off; kNever until the last byte is being sent
   VirtualTime late_by_{0};
 };
 static_assert(kIsSerialLine<SerialLine>);

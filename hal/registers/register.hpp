@@ -1,4 +1,5 @@
-// Types for registers and their bits, so that the bits of one register cannot be written to another one.
+// Types for registers and their bits, so that the compiler rejects a write of the bits of one
+// register to another register.
 #pragma once
 
 #include <cstdint>

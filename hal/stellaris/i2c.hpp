@@ -42,8 +42,7 @@ class I2c {
     }
     const bool told = completed_.load() != completed_seen_;
     const Bits<ControlStatus> status = kControlStatus.read();
-    // If the master is busy although the interrupt has run, the interrupt was for a byte of an aborted
-    // transfer.
+    // If the master is busy although the interrupt has run, the interrupt belongs to an aborted transfer.
     if (told && !status.has(kBusy)) {
       next(status, now);
     } else if (deadline_.reached(now)) {
@@ -105,7 +104,8 @@ class I2c {
   static constexpr std::uint32_t kPortControlFunction = 3;
 
   static constexpr Duration kHalfClock{5};
-  static constexpr Duration kByteTimeout = milliseconds(3);  ///< 90 us, plus the time the main loop may sleep
+  /// A byte takes 90 us. The rest is the time for which the main loop may sleep.
+  static constexpr Duration kByteTimeout = milliseconds(3);
 
   // --- freeing the bus ---
 

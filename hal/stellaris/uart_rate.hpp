@@ -32,8 +32,8 @@ constexpr std::uint32_t largest_baud_error(std::uint32_t clock) {
 }
 
 /// The largest allowed error of the module, in millionths. A receiver samples the stop bit 9.5 bits after the
-/// edge of the start bit, so the errors of both ends together may be 1/20. The module may use a fifth of
-/// that.
+/// edge of the start bit, so the errors of both ends together must be below 1/20. The module may use a fifth
+/// of that.
 constexpr std::uint32_t kTolerableBaudError = 10'000;
 
 }  // namespace ex9000::hal::stellaris
