@@ -1,6 +1,6 @@
 // Functions that the compiler calls to copy, clear and compare memory. A freestanding program must define
-// them itself (freestanding C++, [basic.compound]). They work byte by byte, because an image copies only a
-// few dozen bytes per second.
+// them itself (GCC manual, "Language Standards Supported by GCC"). They work byte by byte, because an image
+// copies only a few dozen bytes per second.
 #include <cstddef>
 
 // Without this attribute, the compiler would recognise the loop as a copy and replace it with a call of the

@@ -61,7 +61,7 @@ struct Board {
 hal::Device<Board> device(kOnlyModel, kTimingAt);
 Board& board = device.board();
 
-// --- interrupts, which do not interrupt each other ---
+// --- interrupts; none can interrupt another, because they have the same preemption priority ---
 
 void on_system_tick() {
   board.clock.count_in_interrupt();

@@ -88,8 +88,8 @@ class Machine:
     def say(self, data: bytes) -> None:
         """Queues a master's bytes, which `go_on` sends when the module's driver is off.
 
-        QEMU's UART sends in no time, so the master gets a reply before the driver goes off. The module would lose the
-        request of a fast master. On a real line, no master can be that fast.
+        QEMU's UART sends without delay, so the master gets a reply before the driver goes off. Without this queue, the
+        module would lose the next request of a fast master. On a real line, no master can be that fast.
         """
         self._unsaid += data
 

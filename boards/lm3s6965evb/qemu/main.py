@@ -75,7 +75,7 @@ def _told_to_end() -> int:
 
 
 def _carry_bytes(machine: Machine, terminal: PseudoTerminal, told_to_end: int) -> None:
-    """Passes bytes until a signal arrives. No side waits for the other, because a blocked UART stops the machine."""
+    """Passes bytes until a signal arrives. Neither side waits for the other, because a blocked UART stops QEMU."""
     while True:
         watched = [told_to_end, machine.events, terminal.visits, machine.line]
         if terminal.visited():

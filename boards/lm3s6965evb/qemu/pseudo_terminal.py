@@ -63,7 +63,7 @@ class PseudoTerminal:
         return not poll.poll(0)  # if no master has opened it, poll reports a hang-up
 
     def take_visits(self) -> None:
-        """Processes that a master has opened or closed the terminal. Call it when `visits` is readable."""
+        """Call this when `visits` is readable, because a master has opened or closed the terminal."""
         with contextlib.suppress(BlockingIOError):
             while os.read(self.visits, 4096):
                 pass
@@ -88,7 +88,7 @@ class PseudoTerminal:
             return b""
 
     def write(self, data: bytes) -> None:
-        """Writes bytes to a master without waiting. If it does not read, bytes after about 4 KiB are lost."""
+        """Writes bytes to a master without waiting. If the master does not read, bytes after about 4 KiB are lost."""
         if self.visited():
             self._written = True
             with contextlib.suppress(BlockingIOError):
@@ -106,6 +106,6 @@ def _watch(device: str) -> int:
 
 
 def _leads_nowhere(link: Path, own_device: str) -> bool:
-    """Returns whether the link points to a terminal that no longer exists or that has the number of the new one."""
+    """Returns whether the link points to a terminal that no longer exists, or to the new terminal by chance."""
     target = os.readlink(link)
     return target.startswith("/dev/pts/") and (target == own_device or not os.path.exists(target))
