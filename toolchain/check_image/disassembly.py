@@ -9,7 +9,7 @@ from pathlib import Path
 
 from check_image.functions import Function
 
-# If data does not fill a word, objdump shows it as text, which looks like a mnemonic only by chance.
+# If data does not fill a word, objdump prints it as characters, which resemble a mnemonic only by chance.
 _LINE = re.compile(r"^ *([0-9a-f]+):\t(\.?[a-z][a-z0-9.]*)(?:\t([^@;]*)|$)")
 _CONDITIONS = "eq|ne|cs|hs|cc|lo|mi|pl|vs|vc|hi|ls|ge|lt|gt|le"
 _BRANCH = re.compile(rf"(b|bl|blx|cbz|cbnz|b({_CONDITIONS})|bl({_CONDITIONS}))(\.[nw])?")

@@ -6,7 +6,8 @@ import re
 
 from check_image.disassembly import Disassembly, Instruction
 
-# An interrupt that waits longer than one character loses a byte. This number takes one or two microseconds.
+# If an interrupt waits longer than one character, a byte is lost. This number of instructions takes one or two
+# microseconds.
 MOST = 20
 
 _HOLD, _RELEASE = "cpsid", "cpsie"
@@ -14,7 +15,7 @@ _MASKS = re.compile(r"(PRIMASK|BASEPRI|BASEPRI_MAX|FAULTMASK),", re.IGNORECASE)
 
 
 class _HeldForEver(Exception):
-    """There is a path that never enables interrupts, or whose length is unknown."""
+    """A path never enables interrupts again, or its length is unknown."""
 
 
 class HeldInterrupts:

@@ -16,7 +16,7 @@ _CONFIGURABLE_FAULTS = range(4, 7)  # MemManage, BusFault, UsageFault
 
 
 class BadVectors(Exception):
-    """The table is missing, or contains values that no processor can run."""
+    """The table is missing, or contains a value that is not the address of a function."""
 
 
 class Vectors:
