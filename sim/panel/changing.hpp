@@ -7,18 +7,19 @@
 
 namespace ex9000::sim {
 
-/// A value, and the number of the look at which it last changed.
+/// A value, and the number of the look at which it last changed. A look captures the present state for all
+/// viewers.
 template <class Value>
 class Changing {
  public:
-  /// `look` is the number of the present look.
+  /// Stores `value`. `look` is the number of the present look.
   void set(Value value, std::uint64_t look) {
     if (!value_ || !(*value_ == value)) {
       value_ = std::move(value);
       changed_ = look;
     }
   }
-  /// Whether the value has changed after look number `told`.
+  /// Returns whether the value has changed after look number `told`.
   [[nodiscard]] bool is_news_since(std::uint64_t told) const { return changed_ > told; }
   [[nodiscard]] const Value& value() const { return *value_; }
 

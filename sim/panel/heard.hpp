@@ -12,12 +12,13 @@
 
 namespace ex9000::sim {
 
+/// Stores the last 512 entries.
 class Heard {
  public:
   /// A frame, or a note about the line if `note` has a value.
   struct Entry {
     Frame frame;
-    std::optional<std::string> note;  ///< its time is the frame's `began`
+    std::optional<std::string> note;  ///< `frame.began` is the time of the note
   };
 
   void add(Entry entry) {
@@ -30,12 +31,13 @@ class Heard {
 
   /// Entries are numbered from 0 in the order of arrival. Returns the number of the next entry.
   [[nodiscard]] std::uint64_t end() const { return first_ + entries_.size(); }
-  /// Returns the first of the last `most` entries from number `from` on. Entries before it are skipped.
+  /// Returns the number of the first entry to show: it is at least `from`, still stored, and one of the last
+  /// `most` entries.
   [[nodiscard]] std::uint64_t first_of(std::uint64_t from, std::size_t most) const {
     const std::uint64_t newest = end() - std::min<std::uint64_t>(most, end());
     return std::max({from, first_, newest});
   }
-  /// `number` comes from `first_of` or is a later one.
+  /// `number` must be at least the result of `first_of`, and less than `end()`.
   [[nodiscard]] const Entry& entry(std::uint64_t number) const {
     return entries_[static_cast<std::size_t>(number - first_)];
   }

@@ -9,8 +9,8 @@
 
 namespace ex9000::sim {
 
-/// The names under which a browser on this machine may reach a server at a port. A request under any other
-/// name, even if that name resolves to this machine, comes from a foreign site.
+/// The names under which a browser on this machine may reach a server at a port. A request with any other
+/// name comes from another site, even if that name resolves to this machine.
 class Loopback {
  public:
   explicit Loopback(std::uint16_t port) : port_(":" + std::to_string(port)), is_usual_(port == kUsualPort) {}
@@ -29,7 +29,7 @@ class Loopback {
 
  private:
   static constexpr std::string_view kNames[] = {"127.0.0.1", "localhost"};
-  static constexpr std::uint16_t kUsualPort = 80;  ///< of HTTP: browsers omit it
+  static constexpr std::uint16_t kUsualPort = 80;  ///< the default port of HTTP, which browsers omit
 
   std::string port_;
   bool is_usual_;

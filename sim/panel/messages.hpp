@@ -29,7 +29,7 @@ Message message_of(const Stored& stored);
 /// `first` is the position of the line's first module, from 0.
 Message message_of(const std::vector<Faults::Info>& faults, std::size_t first);
 
-/// `modules` is the number of modules on the line; faults have added any later station.
+/// `modules` is the number of modules on the line. A station with a higher number was added by a fault.
 Message message_of(const Heard::Entry& entry, std::uint64_t number, std::size_t modules);
 
 /// A request of the page.

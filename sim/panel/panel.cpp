@@ -22,12 +22,14 @@ namespace {
 /// The maximum number of frames in one message, for all lines together. It is more than two lines at 115200
 /// baud can carry between two messages, and small enough to be written without a delay that a master notices.
 constexpr std::size_t kMostFrames = 250;
+/// The limit for each line is at least this number, even if there are many lines.
 constexpr std::size_t kFewestFrames = 20;
 
 /// The limit for actions that a page holds active; only a faulty page exceeds it.
 constexpr std::size_t kMostHeld = 256;
 
-/// With this interval a page can detect that the simulator has stopped.
+/// The longest time between two messages to a page. Without messages, the page cannot distinguish an idle
+/// simulator from a stopped one.
 constexpr std::chrono::seconds kHeartbeat{1};
 
 /// Returns an id that distinguishes this run of the program from other runs.

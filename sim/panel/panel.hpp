@@ -17,7 +17,7 @@
 
 namespace ex9000::sim {
 
-/// Viewing does not affect the lines. Without viewers, the only cost is the memory for the last frames.
+/// Viewers do not affect the lines. Without viewers, the panel only stores the last frames of each line.
 class Panel final : public PanelSource {
  public:
   using CarryOut = std::function<Control::Reply(const std::string& command)>;
@@ -31,10 +31,10 @@ class Panel final : public PanelSource {
   Panel(const Panel&) = delete;
   Panel& operator=(const Panel&) = delete;
 
-  /// Adds a line before the first viewer connects. `line` must outlive this object; `present` returns the
-  /// line's time.
+  /// Adds a line. Call it before the first viewer connects. `line` must outlive this object; `present`
+  /// returns the line's time.
   void add_line(const LineIntroduced& introduced, const Line& line, std::function<VirtualTime()> present);
-  /// Adds a frame of the line at this position, from 0.
+  /// Adds a frame of a line. `line` is its position, from 0.
   void hear(std::size_t line, const Frame& frame);
   void note(std::size_t line, VirtualTime now, const std::string& text);
 

@@ -30,7 +30,8 @@ using boost::system::error_code;
 constexpr std::uint16_t kDefaultPort = 9042;
 /// The limit for open pages. Only clients that never disconnect can exceed it.
 constexpr std::size_t kMostPages = 16;
-/// The limit for simultaneous requests besides pages. A browser has up to six, for all its pages together.
+/// The limit for simultaneous requests besides pages. A browser sends up to six at a time, for all its pages
+/// together.
 constexpr std::size_t kMostRequests = 64;
 constexpr std::uint32_t kLongestHeader = 8192;
 constexpr std::size_t kLongestAsked = 4096;
@@ -38,13 +39,14 @@ constexpr std::size_t kLongestAsked = 4096;
 constexpr std::chrono::seconds kPatience{5};
 /// A page that does not answer pings for this time is disconnected.
 constexpr std::chrono::seconds kIdle{20};
-/// The interval between two looks. Changes must be on the screen within 100 ms; this is half of that time,
-/// minus the time to draw them.
+/// The interval between two looks. A change must be on the screen within 100 ms. The interval is half of that
+/// time, minus the time to draw the change.
 constexpr std::chrono::milliseconds kLookEvery{30};
 
 tcp::endpoint here(std::uint16_t port) { return {boost::asio::ip::address_v4::loopback(), port}; }
 
-/// The complete response for excess connections. It is constant, so that they require no memory.
+/// The complete response for connections beyond the limit. It is constant, so that it requires no memory for
+/// each connection.
 constexpr std::string_view kTurnedAway =
     "HTTP/1.1 503 Service Unavailable\r\nContent-Type: text/plain\r\nContent-Length: 36\r\n"
     "Connection: close\r\n\r\ntoo many requests are under way yet\n";
@@ -114,7 +116,7 @@ class PanelServer::Listener::Client : public std::enable_shared_from_this<Client
   }
 
   [[nodiscard]] bool is_page() const { return viewer_ != nullptr; }
-  /// Whether it is a page or will become one.
+  /// Returns whether the connection is a page or will become one.
   [[nodiscard]] bool takes_a_page() const { return takes_a_page_; }
 
   /// Sends the changes, unless the previous message is still being sent.
@@ -268,8 +270,8 @@ class PanelServer::Listener::Client : public std::enable_shared_from_this<Client
     });
   }
 
-  /// Accepts the WebSocket and closes it, because a page gets a reason only for a close and not for a
-  /// rejection.
+  /// Closes the WebSocket after it was accepted: a browser gives the page a reason for a closed WebSocket,
+  /// but not for a rejected one.
   void turn_away() {
     socket_.async_close({websocket::close_code::try_again_later, "too many pages are open already"},
                         [self = shared_from_this()](const error_code& /*error*/) {});
@@ -341,7 +343,8 @@ void PanelServer::Listener::accept() {
   });
 }
 
-/// The process has no free file descriptor. An immediate retry would use all of the processor's time.
+/// Accepts again after a delay. If the process has no free file descriptor, an immediate retry would use all
+/// of the processor's time.
 void PanelServer::Listener::accept_later() {
   constexpr std::chrono::milliseconds kWhile{100};
   next_try_.expires_after(kWhile);

@@ -23,7 +23,7 @@ class PanelViewer {
   /// Carries out a request of the page; `next` returns the reply. Returns false if `text` is not a request.
   /// Actions that the page holds active are undone when this object is destroyed.
   virtual bool ask(const std::string& text) = 0;
-  /// Returns the changes that the page does not have yet, as of the last look; empty: none.
+  /// Returns the changes up to the last look that the page does not have yet; empty if there are none.
   virtual std::string next() = 0;
 };
 
@@ -37,19 +37,20 @@ class PanelSource {
 
   /// Captures the present state for all viewers.
   virtual void look() = 0;
+  /// Returns the viewer for a page that has connected.
   virtual std::unique_ptr<PanelViewer> viewer() = 0;
 };
 
 /// Serves one page, its files, and a WebSocket at /live. A page that reads slowly gets fewer messages, each
 /// with the state at that time: nothing queues up, and the simulation does not wait for the page.
 ///
-/// Rejects requests under a name other than that of the loopback, and WebSocket connections from pages of
-/// other sites.
+/// Rejects requests for a host name other than 127.0.0.1 and localhost, and requests from pages of other
+/// sites.
 class PanelServer {
  public:
-  /// Listens on `port`. nullopt: on 9042, or on any free port if 9042 is in use; 0: on any free port. Throws
-  /// std::invalid_argument with a one-line message if a given port is not available. `io` and `source` must
-  /// outlive this object.
+  /// Listens on `port`. If `port` is nullopt, listens on 9042, or on any free port if 9042 is in use. If it
+  /// is 0, listens on any free port. Throws std::invalid_argument with a one-line message if a given port is
+  /// not available. `io` and `source` must outlive this object.
   PanelServer(boost::asio::io_context& io, std::optional<std::uint16_t> port, PanelSource& source);
   ~PanelServer();
   PanelServer(const PanelServer&) = delete;

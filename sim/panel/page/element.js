@@ -1,4 +1,4 @@
-// Creates an element with attributes and children, and updates only changed values.
+// Functions that create elements with attributes and children, and that update only changed values.
 
 export function make(tag, attributes = {}, ...children) {
   const element = document.createElement(tag);

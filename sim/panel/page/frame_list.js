@@ -87,7 +87,8 @@ export class FrameList {
     return row;
   }
 
-  /// In the order in which they are read: screen readers and searches follow the document, not the picture.
+  /// Puts the row at its position in the document, because screen readers and searches follow the order of the
+  /// document, not the order on the screen.
   place(row, position) {
     const there = this.filler.children[position];
     if (there !== row) {

@@ -45,7 +45,7 @@ export class Input {
     }
   }
 
-  /// Losing the connection has ended the hold as well.
+  /// Call it when the connection is lost: the simulator then releases a held input.
   lost() { this.held = null; }
 
   listenToPointer(button) {
@@ -60,7 +60,7 @@ export class Input {
     for (const over of ["pointerup", "pointercancel", "lostpointercapture", "blur"]) {
       button.addEventListener(over, () => this.release());
     }
-    // Clicks from a screen reader have no pointer: they hold nothing, and their `detail` is 0.
+    // A click from a screen reader has no pointer, so it cannot hold an input, and its `detail` is 0.
     const isPointers = (event) => event.detail > 0;
     button.addEventListener("click", (event) => {
       if (isPointers(event) && heldByPointer) {

@@ -2,14 +2,15 @@
 
 const firstWait = 100;
 const longestWait = 1000;
-/// In ms. The simulator sends a message at least every second.
+/// The connection is lost if no message arrives for this time, in ms. The simulator sends a message at least every
+/// second.
 const patience = 3500;
 /// The close code if too many pages are open.
 const tooMany = 1013;
 
 export class Live {
-  /// `take(message)` gets each message; it calls `answer` with the reply when that is shown. `lost(why)` is called
-  /// when the connection is lost, and with "" when it is restored.
+  /// `take(message)` gets each message. It must call `answer` with each reply after it has shown the changes.
+  /// `lost(why)` is called with a reason when the connection is lost, and with "" when it is restored.
   constructor(take, lost) {
     this.take = take;
     this.lost = lost;
@@ -35,7 +36,7 @@ export class Live {
     socket.onclose = (event) => this.gone(socket, event.code === tooMany ? "tooMany" : "gone");
   }
 
-  /// Detects a stopped simulator or a broken connection, because neither closes the socket.
+  /// Restarts the timeout that detects a stopped simulator or a broken connection. Neither of them closes the socket.
   listen(socket) {
     clearTimeout(this.silence);
     this.silence = setTimeout(() => {

@@ -13,7 +13,7 @@ let version = null;
 let speed = 1;
 let plates = [];
 let lines = [];
-/// For each line, the time of its clock and when that was received.
+/// For each line, the time of its clock, and the time at which the page received it.
 let clocks = [];
 let fresh = [];
 let due = false;
@@ -110,7 +110,7 @@ function repaint(when) {
   requestAnimationFrame(repaint);
 }
 
-/// The texts for the values of `why`, except "" for a restored connection.
+/// The text for each reason of a lost connection.
 const reasons = {
   gone: "No simulator – trying again. What you see is how it was.",
   tooMany: "Too many pages are open already – waiting until another is closed.",

@@ -7,7 +7,7 @@ const slowest = 30;
 const slowestUnmoving = 1000;
 const unmoving = matchMedia("(prefers-reduced-motion: reduce)");
 
-/// In px.
+/// Heights in px.
 const laneHeight = 52;
 const scaleHeight = 20;
 

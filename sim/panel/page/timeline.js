@@ -1,4 +1,4 @@
-// The traffic of the lines: stores, pauses and searches it, and shows it as a strip on a time scale and as a list of
+// Stores, pauses and searches the traffic of the lines, and shows it as a strip on a time scale and as a list of
 // frames.
 
 import {setAttribute, setText} from "/element.js";
@@ -41,8 +41,8 @@ export class Timeline {
     this.begin([], null, null);
   }
 
-  /// Starts with an empty list. `lines`: {name}. `who(line, station)` returns the name of a sender, or of the line
-  /// without `station`. `now(line)` is its time in us.
+  /// Starts with an empty list. `lines`: {name}. `who(line, station)` returns the name of a sender;
+  /// without `station` it returns the name of the line. `now(line)` returns the time of the line in us.
   begin(lines, who, now) {
     this.who = who;
     this.entries = [];
@@ -66,7 +66,7 @@ export class Timeline {
     this.stale = true;
   }
 
-  /// `frames` is a member of a message.
+  /// Adds entries. `frames` is the member `frames` of a message.
   add(frames) {
     const fresh = [];
     for (const {line, entries} of frames) {
