@@ -24,7 +24,8 @@ inline constexpr Lamps kPlainLamps{"*", "-"};
 std::vector<std::string> face_text(std::size_t number, const SimulatedModule& module, VirtualTime now,
                                    const Lamps& lamps);
 
-/// Returns the changes between two looks, a few words each; the whole state if `before` is null.
+/// Returns a short text for each difference between `before` and `now`, or for the whole state if `before` is
+/// null.
 std::vector<std::string> changes_text(const Model& model, const Face* before, const Face& now);
 
 }  // namespace ex9000::sim

@@ -26,9 +26,9 @@ class Terminal {
 
   /// Returns the present properties of the screen.
   [[nodiscard]] virtual Screen screen() const = 0;
-  /// Does not block as long as the terminal keeps up.
+  /// Writes `text`. Does not block while the terminal keeps up.
   virtual void write(const std::string& text) = 0;
-  /// Whether the terminal has taken everything that was written.
+  /// Returns whether the terminal has accepted everything that was written.
   virtual bool keeps_up() = 0;
 };
 

@@ -21,7 +21,8 @@ std::string environment(const char* name) {
   return value == nullptr ? "" : value;
 }
 
-/// The first variable that is not empty applies (POSIX.1-2017, XBD 8.2).
+/// Returns the value of the first variable that is not empty, because that variable applies (POSIX.1-2017,
+/// XBD 8.2).
 std::string locale() {
   for (const char* variable : {"LC_ALL", "LC_CTYPE", "LANG"}) {
     if (std::string value = environment(variable); !value.empty()) {
@@ -82,7 +83,8 @@ bool TerminalOutput::keeps_up() {
   return waiting_.empty();
 }
 
-/// Drops the output if the terminal has disappeared; a signal ends the program then.
+/// Writes until the terminal accepts no more. If the terminal has disappeared, discards the output; a signal
+/// then ends the program.
 void TerminalOutput::flush() {
   while (!waiting_.empty()) {
     const ssize_t taken = ::write(fd_, waiting_.data(), waiting_.size());

@@ -7,27 +7,27 @@
 
 namespace ex9000::sim {
 
-/// Whether the name of a locale or character map, for example `UTF-8` or `en_US.utf8`, means UTF-8.
+/// Returns whether the name of a locale or character map, for example `UTF-8` or `en_US.utf8`, means UTF-8.
 bool names_utf8(const std::string& locale);
 
-/// Stores output that the terminal has not taken yet, so that a terminal stopped by Ctrl-S does not stop the
-/// program. Opens the terminal a second time for this, because the shell shares the file description of
+/// Stores output that the terminal has not accepted yet, so that a terminal stopped by Ctrl-S does not stop
+/// the program. Opens the terminal a second time for this, because the shell shares the file description of
 /// standard output.
 class TerminalOutput final : public Terminal {
  public:
   TerminalOutput();
-  /// Output that the terminal has not taken is lost.
+  /// Discards output that the terminal has not accepted.
   ~TerminalOutput() override;
   TerminalOutput(const TerminalOutput&) = delete;
   TerminalOutput& operator=(const TerminalOutput&) = delete;
 
-  /// Returns false if standard output is not a terminal, or is one whose cursor cannot be moved. Then no
-  /// other function may be called.
+  /// Returns false if standard output is not a terminal, or if the cursor of the terminal cannot be moved. In
+  /// this case no other function may be called.
   [[nodiscard]] bool is_open() const { return fd_ >= 0; }
 
   // --- Terminal ---
   [[nodiscard]] Screen screen() const override;
-  /// Blocks if a megabyte already waits.
+  /// Blocks while more than 1 MiB of output is waiting.
   void write(const std::string& text) override;
   bool keeps_up() override;
 

@@ -49,7 +49,7 @@ void Watch::look() {
     return;
   }
   const Screen screen = terminal_->screen();
-  // After a change of its size, the positions of the old lines are unknown.
+  // After a change of the screen's size, the positions of the old lines are unknown.
   const bool moved = !painted_.empty() && !(screen == screen_);
   screen_ = screen;
   const std::vector<std::string> faces = painting();
@@ -75,8 +75,8 @@ void Watch::put(const std::string& lines) {
   }
 }
 
-/// Returns as many modules as fit, with one row for the cursor and, if necessary, one that says how many are
-/// missing.
+/// Returns the lines of as many modules as fit. Leaves one row for the cursor and, if modules are missing,
+/// one for their number.
 std::vector<std::string> Watch::painting() const {
   const std::vector<std::vector<std::string>> faces = all_faces();
   std::size_t rows = 0;

@@ -47,7 +47,7 @@ class Watch {
   Terminal* terminal_;
   Print print_;
   std::vector<Watched> lines_;
-  Screen screen_;                     ///< as it was at the last drawing
+  Screen screen_;                     ///< the screen at the last drawing
   std::vector<std::string> painted_;  ///< the lines above the cursor; empty: no faces
 };
 
