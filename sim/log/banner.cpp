@@ -9,7 +9,7 @@ namespace ex9000::sim {
 
 namespace {
 
-/// Returns the path unchanged if the shell does not require quotes.
+/// Returns the path, in quotes if the shell requires them.
 std::string quoted(const std::string& path) {
   const std::string plain = "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_./-+:@%";
   if (path.find_first_not_of(plain) == std::string::npos) {
@@ -22,8 +22,8 @@ std::string quoted(const std::string& path) {
   return text + "'";
 }
 
-/// mbpoll counts from 1. It requires `-P none` because its default is even parity: a pseudo-terminal ignores
-/// the parity, but a real bus does not.
+/// Returns commands for mbpoll, which counts addresses from 1. They contain `-P none` because the default of
+/// mbpoll is even parity: a pseudo-terminal ignores the parity, but a real bus does not.
 std::string mbpoll(const ModuleIntroduced& module, const std::string& link) {
   const std::string common = "mbpoll -m rtu -a " + std::to_string(module.address) + " -b " +
                              std::to_string(module.baud) + " -P none ";
@@ -42,6 +42,7 @@ std::string mbpoll(const ModuleIntroduced& module, const std::string& link) {
   return text;
 }
 
+/// Returns a command for a terminal program.
 std::string terminal(const ModuleIntroduced& module, const std::string& link) {
   return "    picocom -q -b " + std::to_string(module.baud) + " --imap crcrlf --echo " + link +
          "    # then type $" + hex_byte_text(module.address) + "M and Enter\n";

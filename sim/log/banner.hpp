@@ -24,7 +24,7 @@ struct LineIntroduced {
   bool instant = false;
   std::vector<ModuleIntroduced> modules;
   std::string pty;         ///< link of the pseudo-terminal; empty: none
-  std::string pty_device;  ///< the device that the link points to
+  std::string pty_device;  ///< the device to which the link points
   std::string tcp;         ///< HOST:PORT; empty: none
   std::string serial;      ///< the serial port; empty: none
 };

@@ -10,8 +10,8 @@
 
 namespace ex9000::sim {
 
-/// The name of each station, the master first. Stations that faults add to the line follow after the modules
-/// and have no name.
+/// The names of the master and of the modules, in the order of the stations. Stations that faults add to the
+/// line follow after the modules and have no name.
 class StationNames {
  public:
   explicit StationNames(std::vector<std::string> names) : names_(std::move(names)) {}

@@ -41,7 +41,7 @@ struct DconRequest {
 
 DconRequest dcon_request_of(const std::string& text) {
   const bool broadcast = text.compare(1, 2, "**") == 0;
-  // A checksum is optional, so commands without two more characters are possible too.
+  // The checksum is optional, so each command is possible with and without two more characters.
   for (const std::size_t checksum : {std::size_t{0}, kChecksumDigits}) {
     for (const dcon::Command& command : dcon::kCommands) {
       const dcon::Dispatch& row = command.dispatch;
@@ -110,7 +110,7 @@ std::string dcon_reply(const FrameBytes& bytes) {
   }
 }
 
-/// Whether the address is in `row` on at least one model.
+/// Returns whether the address is in `row` on at least one model.
 template <class Row>
 bool lies_in(const Row& row, modbus::Functions listed, unsigned address) {
   return (row.functions & listed) != 0 &&

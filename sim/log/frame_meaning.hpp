@@ -11,21 +11,22 @@ using FrameBytes = std::vector<std::uint8_t>;
 
 enum class Speaker { Master, Module };
 
-/// Whether the bytes look like a DCON frame: a delimiter or a reply's lead character, then printable
-/// characters, up to CR.
+/// Returns whether the bytes look like a DCON frame: a delimiter or the first character of a reply, then
+/// printable characters, then optionally CR.
 bool looks_like_dcon(const FrameBytes& bytes);
-/// Whether the bytes look like a DCON frame, or begin and end like one and have no correct CRC: a DCON frame
-/// that was damaged.
+/// Returns whether the bytes look like a DCON frame or like a damaged one. A damaged one begins and ends like
+/// a DCON frame and has no correct CRC.
 bool was_dcon(const FrameBytes& bytes);
 
 /// Returns the bytes as text for people: DCON as text with \r, everything else in hex.
 std::string shown(const FrameBytes& bytes);
 
-/// Describes errors that receivers detect: a wrong CRC, a wrong checksum if the command requires one, or
-/// characters that DCON does not have. Empty: no error, or it is not possible to tell.
+/// Describes an error that receivers detect: a wrong CRC, a wrong checksum if the request has one, or
+/// characters that are not printable. Returns an empty string if there is no error, or if the bytes do not
+/// show it.
 std::string check_error(const FrameBytes& bytes, Speaker speaker);
 
-/// Empty if the meaning is unknown.
+/// Returns the meaning of a frame; empty if it is unknown.
 std::string meaning(const FrameBytes& bytes, Speaker speaker);
 
 }  // namespace ex9000::sim

@@ -11,7 +11,8 @@ namespace {
 
 constexpr std::size_t kMaster = 0;
 
-/// A master's writes may arrive in pieces, and a person pauses between two keys.
+/// The longest pauses inside a frame. A master's writes may arrive in pieces, and a person pauses between two
+/// keys.
 constexpr VirtualTime kPatienceForRest = std::chrono::milliseconds(5);
 constexpr VirtualTime kPatienceForTyping = std::chrono::seconds(5);
 
@@ -42,7 +43,8 @@ FrameWatch::Sender& FrameWatch::sender(std::size_t station) {
   return senders_[station];
 }
 
-/// Requests without a reply may follow each other with shorter gaps than the pieces of one request.
+/// Returns whether this byte of the master begins a new frame. A time limit alone cannot detect that: gaps
+/// between requests without a reply may be shorter than gaps between the pieces of one request.
 bool FrameWatch::begins_another(VirtualTime start, VirtualTime end) {
   constexpr std::size_t kShortest = 4;
   const Frame& frame = sender(kMaster).frame;
@@ -81,7 +83,7 @@ void FrameWatch::byte(std::size_t station, std::uint8_t byte, std::uint32_t baud
   if ((dcon && frame.bytes.back() == '\r') || sending.sent >= kLongest) {
     hand_out(station);
   } else {
-    constexpr VirtualTime kFourCharacters{40'000'000'000};  // bits in nanoseconds, at 1 baud
+    constexpr VirtualTime kFourCharacters{40'000'000'000};  // the time of 40 bits at 1 baud, in ns
     sending.patience_ends =
         end + (dcon ? kPatienceForTyping : std::max(kPatienceForRest, kFourCharacters / baud));
   }

@@ -20,15 +20,17 @@ struct Frame {
     std::uint8_t sent;
     Levels arrives;
 
-    /// nullopt: receivers do not detect a byte without a start bit.
+    /// Returns the byte that receivers read; nullopt if it has no start bit, because receivers do not detect
+    /// it.
     [[nodiscard]] std::optional<std::uint8_t> byte() const;
-    /// Good: the stop bit is present.
+    /// Returns the status at receivers: Good if the stop bit is present, Break if all bits are 0, otherwise
+    /// FramingError.
     [[nodiscard]] ByteStatus status() const;
   };
 
   std::size_t station = 0;  ///< in the order of attachment; 0 is the master
-  /// The bytes as a receiver at the sender's rate gets them. Bytes of a collided frame are those that were
-  /// sent. If a start bit is lost, the data that a receiver reads from the rest of the byte is not included.
+  /// The bytes as a receiver at the sender's rate gets them. A collision does not change them here. If a
+  /// start bit is lost, the data that a receiver reads from the rest of the byte is not included.
   FrameBytes bytes;
   std::vector<Change> changes;
   bool collided = false;  ///< another driver was enabled during the frame
@@ -53,10 +55,11 @@ class FrameWatch final : public BusObserver {
 
   explicit FrameWatch(Rate line_rate) : line_rate_(std::move(line_rate)) {}
 
-  /// From now on `take` gets every frame when it has ended.
+  /// Registers a receiver: `take` gets each later frame when it has ended.
   void tell(Take take) { takers_.push_back(std::move(take)); }
 
-  /// Returns when an unfinished frame is passed on without a detected end; kNever: there is none.
+  /// Returns the time at which the first unfinished frame is due, because its end was not detected; kNever if
+  /// there is none.
   [[nodiscard]] VirtualTime next() const;
   /// Passes on the frames that are due at `now`.
   void run(VirtualTime now);

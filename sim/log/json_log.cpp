@@ -13,7 +13,7 @@ using Object = nlohmann::ordered_json;
 
 double seconds(VirtualTime time) { return std::chrono::duration<double>(time).count(); }
 
-/// Replaces invalid UTF-8, because a line may have the name of a path.
+/// Replaces invalid UTF-8, because the name of a line may be a path, and a path may contain any bytes.
 std::string text_of(const Object& object) {
   return object.dump(-1, ' ', false, Object::error_handler_t::replace);
 }
