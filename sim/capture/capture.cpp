@@ -18,7 +18,7 @@ UpperPdu dissected_by(const Frame& frame) {
     pdu.protocol = "DCON";
   } else {
     pdu.dissector = frame.bytes.size() < kShortestThatMbrtuTakes ? "data" : "mbrtu";
-    pdu.protocol = "Modbus RTU";  // also for frames that the dissector cannot decode
+    pdu.protocol = "Modbus RTU";  // even if the dissector cannot decode the frame
   }
   return pdu;
 }

@@ -21,7 +21,7 @@ constexpr std::uint16_t kCapturedModulesPort = 9000;
 /// line are not marked as request or reply.
 class Capture {
  public:
-  /// Opens the file. This function and all others throw what CaptureFile throws.
+  /// Opens the file. All functions throw the exceptions of CaptureFile.
   Capture(std::string path, const std::string& place) : file_(std::move(path), place) {}
 
   /// Replaces the content of the file with an empty capture. Call it first.

@@ -12,14 +12,14 @@ class CaptureFile {
  public:
   /// Creates the file if it is missing. An existing file keeps its content until `begin`. Throws
   /// std::invalid_argument with a one-line message if the file is not writable or another simulator uses it.
-  /// `place` stands before the path in all messages.
+  /// All messages begin with `place` and the path.
   CaptureFile(std::string path, const std::string& place);
-  /// What was made, and never begun, is removed.
+  /// Removes the file if the constructor has created it and `begin` has not been called.
   ~CaptureFile();
   CaptureFile(const CaptureFile&) = delete;
   CaptureFile& operator=(const CaptureFile&) = delete;
 
-  /// Deletes the content of the file.
+  /// Deletes the content of a regular file. Throws std::runtime_error with a one-line message if this fails.
   void begin();
   /// Writes the whole block or nothing, directly to the kernel. A reader of the file sees only whole blocks,
   /// even if the program is killed. Blocks while the reader of a pipe does not read. Throws
@@ -30,7 +30,7 @@ class CaptureFile {
   [[noreturn]] void refuse(const std::string& why);
 
   std::string path_;
-  std::string where_;  ///< for messages
+  std::string where_;  ///< place and path, for messages
   int fd_ = -1;
   bool regular_ = false;
   bool made_ = false;

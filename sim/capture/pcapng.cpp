@@ -24,14 +24,14 @@ void put(Block& block, Number number) {
   }
 }
 
-/// Pads with zeros to a multiple of four bytes.
+/// Appends `bytes` and pads the block with zeros to a multiple of four bytes.
 template <class Bytes>
 void put_padded(Block& block, const Bytes& bytes) {
   block.insert(block.end(), bytes.begin(), bytes.end());
   block.resize((block.size() + 3) / 4 * 4);
 }
 
-/// 3.5. The length excludes the padding.
+/// Appends an option (3.5). Its length excludes the padding.
 void put_option(Block& block, std::uint16_t code, const std::string& value) {
   constexpr std::size_t kLongest = 0xFFFF;
   const std::string fitting = value.substr(0, kLongest);

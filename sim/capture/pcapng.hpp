@@ -11,17 +11,19 @@ namespace ex9000::sim::pcapng {
 
 using Block = std::vector<std::uint8_t>;
 
-/// 4.1: the first block of a file. `userappl` is the program that writes the file.
+/// Returns a Section Header Block (4.1), the first block of a file. `userappl` is the program that writes the
+/// file.
 Block section_header(const std::string& userappl);
 
-/// 4.2: a source of packets. Interfaces count from 0 in the order of their blocks. Packets may have any
-/// length; their times are in nanoseconds (if_tsresol 9).
+/// Returns an Interface Description Block (4.2), which describes a source of packets. Interfaces are numbered
+/// from 0 in the order of their blocks. Packets may have any length. Their times are in nanoseconds
+/// (if_tsresol 9).
 Block interface_description(std::uint16_t link_type, const std::string& name);
 
-/// 4.3.1: bits 0 and 1 of epb_flags.
+/// Bits 0 and 1 of epb_flags (4.3.1).
 enum class Direction : std::uint32_t { Inbound = 1, Outbound = 2 };
 
-/// 4.3.
+/// The content of an Enhanced Packet Block (4.3).
 struct EnhancedPacket {
   std::uint32_t interface_id = 0;
   std::chrono::nanoseconds timestamp{0};  ///< since 1970-01-01 00:00:00 UTC

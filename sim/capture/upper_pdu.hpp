@@ -1,6 +1,6 @@
 // The header that lets Wireshark dissect a frame without the layers below it: LINKTYPE_WIRESHARK_UPPER_PDU,
 // see https://wiki.wireshark.org/Protocols/exported_pdu. No link type for serial lines records which side
-// sends the request. This one does, and it names the dissector, so that users need not configure one.
+// sends the request. This link type does. It also names the dissector, so that users need not configure one.
 #pragma once
 
 #include <cstdint>
