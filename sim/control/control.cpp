@@ -98,7 +98,7 @@ std::string status(SimulatedModule& module, const Words& /*args*/) {
   return text + rest.str();
 }
 
-/// A command for one module, after the module's position.
+/// A command for one module. The position of the module precedes it.
 struct Verb {
   std::string_view name;
   std::string_view args;
@@ -121,7 +121,7 @@ constexpr std::array<Verb, 10> kVerbs{{
     {"status", "", 0, 0, "reads address, protocol, rate, mode and watchdogs", status},
 }};
 
-/// A command for one line; it may follow `line NAME`.
+/// A command for one line. `line NAME` may precede it.
 struct LineVerb {
   std::string_view name;
   std::string_view args;

@@ -17,7 +17,7 @@ namespace {
 
 using Local = boost::asio::local::stream_protocol;
 
-constexpr std::size_t kLongestLine = 1000;  // without its newline
+constexpr std::size_t kLongestLine = 1000;  // without the newline
 /// The limit for clients. Only clients that never disconnect can exceed it.
 constexpr std::size_t kMostClients = 64;
 
@@ -120,7 +120,8 @@ void ControlSocket::accept() {
   });
 }
 
-/// The process has no free file descriptor. An immediate retry would use all of the processor's time.
+/// Accepts again after a delay. If the process has no free file descriptor, an immediate retry would use all
+/// of the processor's time.
 void ControlSocket::accept_later() {
   constexpr std::chrono::milliseconds kPatience{100};
   next_try_.expires_after(kPatience);
@@ -160,7 +161,7 @@ void ControlSocket::send(const std::shared_ptr<Client>& client, const std::strin
         if (then == Then::Quit) {
           quit_();
         } else if (then == Then::ReadOn) {
-          read(client);  // also if the client has disconnected, because commands already sent are carried out
+          read(client);  // even if the client has disconnected, to carry out the commands that it has sent
         }
       });
 }

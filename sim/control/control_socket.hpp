@@ -21,7 +21,7 @@ namespace ex9000::sim {
 class ControlSocket {
  public:
   using Answer = std::function<void(const Control::Reply&)>;
-  /// Calls `answer` exactly once, at once or later. Until then the server reads nothing more from that
+  /// Calls `answer` exactly once, immediately or later. Until then the server reads nothing more from that
   /// client.
   using CarryOut = std::function<void(const std::string& command, const Answer& answer)>;
 
@@ -45,7 +45,7 @@ class ControlSocket {
   void accept();
   void accept_later();
   void read(const std::shared_ptr<Client>& client);
-  /// What to do after the reply has been sent.
+  /// The action after the reply has been sent.
   enum class Then { ReadOn, Part, Quit };
   void send(const std::shared_ptr<Client>& client, const std::string& text, Then then);
 
