@@ -68,7 +68,8 @@ Guard guard_of(const SimulatedModule& module, VirtualTime now) {
   guard.timeout = state.settings.watchdog_timeout;
   guard.reset_status = state.reset_status;
   const Deadline expiry = module.module().host_watchdog_expiry();
-  // In microseconds, like the firmware's clock: the value stays the same until the watchdog is restarted.
+  // Rounds to microseconds, like the firmware's clock, so that the result stays the same until the watchdog
+  // is restarted.
   const auto since = std::chrono::duration_cast<std::chrono::microseconds>(now);
   const Time core_now(static_cast<std::uint32_t>(since.count()));
   if (expiry.armed() && !expiry.reached(core_now)) {
@@ -89,7 +90,7 @@ Stored::Copy copy_of(const std::vector<std::uint8_t>& memory, const Place& place
   return read;
 }
 
-/// Chooses the copy in force among the valid ones, see wire.md section 8.
+/// Chooses the copy in force from the valid copies, see wire.md section 8.
 Stored stored_of(const SimulatedModule& module) {
   Stored stored;
   stored.settings = Settings::factory(module.model());

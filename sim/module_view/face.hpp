@@ -30,7 +30,7 @@ struct Plate {
   bool listening = false;    ///< the module has started up
   bool init_mode = false;    ///< the module has started up with INIT*
   // address, baud, protocol and checksum are valid only if `listening`.
-  std::uint8_t address = 0;  ///< in force
+  std::uint8_t address = 0;  ///< the address in force
   std::uint32_t baud = 0;
   Protocol protocol = Protocol::Ascii;
   bool checksum = false;
@@ -56,7 +56,7 @@ struct Guard {
   bool enabled = false;
   bool timed_out = false;              ///< the timeout status
   std::uint8_t timeout = 0;            ///< in 0.1 s
-  std::optional<VirtualTime> expires;  ///< in the line's time, without a host OK; nullopt: not running
+  std::optional<VirtualTime> expires;  ///< line time of the expiry if no host OK comes; nullopt: not running
   bool reset_status = false;           ///< the reset status that `$AA5` would report
 
   friend bool operator==(const Guard& a, const Guard& b);
@@ -92,6 +92,7 @@ Face face_of(const SimulatedModule& module, VirtualTime now);
 
 /// Returns `off`, `on`, `flashing`, or `flashing: settings unreadable`.
 std::string_view led_text(Led led);
+/// Returns the module's name.
 std::string name_text(const Settings& settings);
 
 }  // namespace ex9000::sim

@@ -1,4 +1,4 @@
-// What is printed at a module's terminals.
+// The labels of a module's terminals.
 #pragma once
 
 #include <string>
@@ -7,17 +7,17 @@
 
 namespace ex9000::sim {
 
-/// The label of an output channel, from 0. Relays and PhotoMOS switches are counted from 1 on the label and
-/// from 0 on the wire.
+/// Returns the label of output `channel`, from 0. Relays and PhotoMOS switches are counted from 1 on the
+/// label and from 0 on the wire.
 inline std::string output_terminal(const Model& model, unsigned channel) {
   const bool open_collector = model.output_kind == OutputKind::OpenCollector;
   return open_collector ? "DO" + std::to_string(channel) : "RL" + std::to_string(channel + 1);
 }
 
-/// The label of an input channel, from 0.
+/// Returns the label of input `channel`, from 0.
 inline std::string input_terminal(unsigned channel) { return "DI" + std::to_string(channel); }
 
-/// INIT* is a terminal beside those of the power supply.
+/// Returns whether the model has a terminal for INIT*. It is next to the terminals of the supply.
 inline bool has_init_terminal(const Model& model) { return model.init_input == InitInput::Terminal; }
 
 }  // namespace ex9000::sim
