@@ -1,4 +1,4 @@
-// Plays against lines in virtual time.
+// The target that plays against simulated lines in virtual time.
 #pragma once
 
 #include <memory>
@@ -19,16 +19,17 @@ using Memories = std::vector<std::optional<std::vector<std::uint8_t>>>;
 /// std::invalid_argument with a one-line message.
 Memories read_memories(const sim::Setup& setup);
 
-/// All lines have the same time.
+/// All lines have the same virtual time.
 class BusTarget : public Target {
  public:
-  /// For a transcript, which names its own module. `onlooker` may be null and must outlive this object.
+  /// Creates a target for a transcript; `start` provides its module. `onlooker` may be null and must outlive
+  /// this object.
   explicit BusTarget(Onlooker* onlooker = nullptr) : onlooker_(onlooker) {}
-  /// For a scenario: the modules of `setup` start up with `memories`. Opens neither files nor ports. Throws
-  /// std::invalid_argument with a one-line message.
+  /// Creates a target for a scenario: the modules of `setup` start up with `memories`. Opens no files and no
+  /// ports. Throws std::invalid_argument with a one-line message if `setup` is not valid.
   BusTarget(const sim::Setup& setup, const Memories& memories, Onlooker* onlooker = nullptr);
 
-  /// Throws std::runtime_error, as Target does, if the module lacks the input.
+  /// Throws std::runtime_error if the chosen module lacks the input.
   void require_input(unsigned channel);
 
   [[nodiscard]] std::size_t size() const { return lines_.size(); }

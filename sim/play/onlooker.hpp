@@ -14,13 +14,14 @@ class Onlooker {
   Onlooker& operator=(const Onlooker&) = delete;
   virtual ~Onlooker() = default;
 
-  /// A file, or the part of it for one model, is about to be played.
+  /// Called before each run of a file. `what` names the file and, for a transcript, the model.
   virtual void begins(const std::string& what) = 0;
-  /// A line of the play has started up. It lives until `ends`. `name` may be empty if there is only one line.
-  /// Returns the receiver of messages about its faults.
+  /// Called when a line has started up. The line exists until `ends` is called. `name` may be empty if there
+  /// is only one line. Returns the receiver of messages about its faults.
   virtual sim::Faults::Notice joins(sim::Line& line, const std::string& name) = 0;
-  /// All events on its lines up to `now` have been observed.
+  /// Called when all events on the lines up to `now` have been processed.
   virtual void reached(sim::VirtualTime now) = 0;
+  /// Called at the end of each run.
   virtual void ends() = 0;
 };
 

@@ -43,7 +43,7 @@ void check(const Transcript& transcript, const std::optional<sim::Setup>& bus) {
   }
 }
 
-/// Must run before the capture is started, because that overwrites its file.
+/// Throws if the capture would overwrite a file that the play reads. Call it before the capture starts.
 void spare_what_is_read(const Task& task, const std::vector<Transcript>& all) {
   if (!task.writing.capture) {
     return;

@@ -16,7 +16,8 @@ constexpr std::chrono::milliseconds kAfterReply{2};
 /// first character.
 constexpr std::chrono::milliseconds kReplyBegins{65};
 
-/// Calculates DCON's checksum independently, so that the tests do not check the firmware with its own code.
+/// Returns the checksum of DCON. It does not use the firmware's code, so that the tests do not check the
+/// firmware with its own code.
 std::string checksum_of(const std::string& text) {
   unsigned sum = 0;
   for (const char character : text) {
@@ -28,7 +29,7 @@ std::string checksum_of(const std::string& text) {
 
 Bytes bytes_of(const std::string& text) { return {text.begin(), text.end()}; }
 
-/// Returns the bytes for people: as text if all are printable, otherwise in hex.
+/// Returns the bytes as text if all are printable, otherwise in hex.
 std::string shown(const Bytes& bytes) {
   bool text = !bytes.empty();
   for (std::size_t i = 0; i < bytes.size(); ++i) {
@@ -138,7 +139,7 @@ class Playing {
   }
   void operator()(const step::Trouble& step) { target_.trouble(step.command); }
 
-  /// Fails if bytes arrive that no step has expected.
+  /// Throws std::runtime_error if bytes arrive that no step expects.
   void nothing_more() { nothing_for(open_question_ ? kReplyBegins : kAfterReply); }
 
  private:

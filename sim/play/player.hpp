@@ -1,4 +1,4 @@
-// Plays transcripts.
+// Plays transcripts and scenarios.
 #pragma once
 
 #include <cstddef>

@@ -1,4 +1,5 @@
-// Finds what a scenario requires and the bus lacks, before anything is played.
+// Finds modules, lines, inputs and faults that a scenario uses and the bus lacks, before the scenario is
+// played.
 #pragma once
 
 #include "sim/play/bus_target.hpp"

@@ -50,11 +50,12 @@ class Target {
   // Functions for a bus with several modules and faults. They throw std::runtime_error if the module, the
   // line or the fault does not exist; other targets always throw.
 
-  /// Chooses the module for the following calls, from 0 across all lines, or the first module of a line. The
-  /// master sends on its line.
+  /// Chooses the module for the following calls by its position, from 0 across all lines. The master then
+  /// sends on the line of this module.
   virtual void choose_module(std::size_t /*position*/) {
     throw std::runtime_error("there is only one module");
   }
+  /// Chooses the first module of the line with this name.
   virtual void choose_line(const std::string& /*name*/) {
     throw std::runtime_error("there is only one line");
   }

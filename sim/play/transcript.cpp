@@ -45,7 +45,7 @@ std::string trimmed(const std::string& text) {
   return first == std::string::npos ? "" : text.substr(first, last - first + 1);
 }
 
-/// Another function checks whether the model has this channel.
+/// Parses a channel. Does not check whether the model has it.
 unsigned channel(const std::string& text) {
   constexpr unsigned long kMostChannels = 16;
   return static_cast<unsigned>(parse_whole_number(text, 0, kMostChannels - 1));
@@ -111,7 +111,7 @@ struct Verb {
   std::string_view args;
   std::size_t fewest;
   std::size_t most;
-  Action (*action)(const sim::Words& words);  ///< makes the action from the words after the name
+  Action (*action)(const sim::Words& words);  ///< creates the action from the words after the name
 
   [[nodiscard]] std::string shape() const {
     return std::string(name) + (args.empty() ? "" : " ") + std::string(args);

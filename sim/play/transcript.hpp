@@ -65,7 +65,7 @@ struct Outputs {
 struct Led {
   enum class Shows { On, Off, Flashing } shows;
 };
-// Only for scenarios, which have a bus.
+// The following steps are only valid in scenarios, because only scenarios have a bus.
 struct OnModule {
   std::size_t position;
 };  ///< from 0, across all lines
@@ -102,7 +102,7 @@ struct Transcript {
   [[nodiscard]] std::chrono::milliseconds waits() const;
 };
 
-/// If `silence` is expected, no byte may arrive in this time. It is longer than any reply may take.
+/// The duration of a `silence` step, in which no byte may arrive. It is longer than any reply takes.
 constexpr std::chrono::milliseconds kSilence{250};
 
 /// Describes what is wrong if `model` lacks an input with this number; empty: the input exists.
