@@ -12,7 +12,8 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-// Home Assistant warns about intervals below 5 s. It shortens a timeout that is not below all intervals.
+// Home Assistant warns about intervals shorter than 5 s. It shortens the timeout if an interval is not
+// longer.
 constexpr unsigned kOftenSeconds = 5;
 constexpr unsigned kSeldomSeconds = 30;
 constexpr unsigned kTimeoutSeconds = 2;

@@ -1,5 +1,4 @@
-// The commands and registers as Markdown, for people. The text is made from the tables that the firmware
-// itself uses.
+// The commands and registers as Markdown, for people. The text is generated from the firmware's tables.
 #pragma once
 
 #include <string>
@@ -8,7 +7,7 @@
 
 namespace ex9000::sim {
 
-/// Describes all models, for a section of README.md.
+/// Describes all models, for firmware/registers.md.
 std::string markdown_of_all();
 
 /// Describes only this model.

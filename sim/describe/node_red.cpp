@@ -14,7 +14,7 @@ using Json = nlohmann::ordered_json;
 
 constexpr unsigned kPollSeconds = 1;
 
-// Pixels on the tab.
+// Positions on the tab, in pixels.
 constexpr unsigned kLeft = 140;
 constexpr unsigned kColumn = 240;
 constexpr unsigned kRow = 40;
@@ -87,7 +87,7 @@ class Flow {
          {"clienttype", "tcp"},
          {"tcpHost", place_.tcp.host},
          {"tcpPort", std::to_string(place_.tcp.port)},
-         {"tcpType", "TELNET"},  // the bytes as on the line; the other types add the header of Modbus TCP
+         {"tcpType", "TELNET"},  // sends the bytes as on the line; other types add the header of Modbus TCP
          // One request at a time, because all modules share one line.
          {"bufferCommands", true},
          {"parallelUnitIdsAllowed", false},

@@ -8,8 +8,9 @@
 
 namespace ex9000::sim {
 
-/// Returns a flow to import, as a JSON array: a tab that reads all values, switches outputs, and clears what
-/// can be cleared. The ids depend only on the model and the address. `model` must support Modbus.
+/// Returns a flow to import, as a JSON array: a tab that reads all values, switches outputs, and clears
+/// latches, counters and the timeout status. The ids depend only on the model and the address. `model` must
+/// support Modbus.
 std::string node_red_flow(const Model& model, const Place& place);
 
 }  // namespace ex9000::sim

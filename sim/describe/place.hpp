@@ -1,4 +1,5 @@
-// Where a tool finds the module: the simulator's TCP port and the address on its line.
+// The addresses that a tool requires to reach a module: the simulator's TCP port and the module's Modbus
+// address.
 #pragma once
 
 #include <cstdint>

@@ -68,7 +68,8 @@ constexpr const Button* button_of(std::string_view id) {
   return nullptr;
 }
 
-/// If the firmware's tables get a new row, it must be added here.
+/// Returns whether kReadings and kButtons cover all rows of the firmware's tables. A new row must be added
+/// there too.
 constexpr bool every_row_is_decided_on() {
   for (const modbus::BitRegister& row : modbus::kBitRegisters) {
     if (reading_of(row.id) == nullptr || (button_of(row.id) != nullptr) != row.row.has(modbus::kOnlyOn)) {

@@ -19,7 +19,7 @@ enum class Role : std::uint8_t {
   State,    ///< on or off, both are normal
   Problem,  ///< on means a problem
   Tenths,   ///< units of 0.1 s; read-only
-  Button,   ///< a coil that does something when 1 is written to it
+  Button,   ///< a coil that starts an action when 1 is written to it
 };
 
 /// One row of the map, or a button for it.
@@ -39,10 +39,10 @@ struct Shown {
   [[nodiscard]] std::string key_of(unsigned index) const;
 };
 
-/// Returns the rows in the order of the map. A row that is in two areas appears only in the first of them.
-/// Excluded are the rows that would disconnect the client (address, rate, protocol), the one that never gets
-/// a reply (host OK), and the one that never changes (the module's code). Empty if the model does not support
-/// Modbus.
+/// Returns the rows in the order of the map; empty if the model does not support Modbus. A row that is in two
+/// areas appears only in the first of them. The result excludes the rows that would disconnect the client
+/// (address, rate, protocol), the row that never gets a reply (host OK), and the row that never changes (the
+/// module's code).
 std::vector<Shown> shown_by(const Model& model);
 
 }  // namespace ex9000::sim

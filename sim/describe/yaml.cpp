@@ -10,7 +10,7 @@ using Json = nlohmann::ordered_json;
 
 constexpr std::string_view kLetters = "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ";
 
-/// Words that YAML 1.1 reads as true, false or null.
+/// Returns whether YAML 1.1 reads the word as true, false or null.
 bool is_taken_for_something(const std::string& text) {
   std::string lower = text;
   for (char& character : lower) {
@@ -24,7 +24,8 @@ bool is_taken_for_something(const std::string& text) {
   return false;
 }
 
-/// Other strings are written as in JSON, in quotes, which YAML reads too.
+/// Returns whether the string needs no quotes. Other strings are written in quotes as in JSON, which YAML
+/// accepts.
 bool is_plain(const std::string& text) {
   return !text.empty() && kLetters.find(text.front()) != std::string_view::npos && text.back() != ' ' &&
          text.find_first_not_of(std::string(kLetters) + "0123456789_ -") == std::string::npos &&
