@@ -1,4 +1,4 @@
-// Words of the descriptions for the access to a command or a register.
+// The words that descriptions use for the access to a command or a register.
 #pragma once
 
 #include "firmware/dcon/commands.hpp"
@@ -18,7 +18,7 @@ constexpr const char* access_text(dcon::Access access) {
   return "stored";
 }
 
-/// At least one of the two must be true.
+/// Returns `read, write`, `read` or `write`. At least one argument must be true.
 constexpr const char* access_text(bool reads, bool writes) {
   return reads && writes ? "read, write" : reads ? "read" : "write";
 }

@@ -83,7 +83,7 @@ Place parse_place(const DescribeTexts& texts) {
   return place;
 }
 
-/// Rejects options that only formats for one module have.
+/// Rejects options that are valid only with formats for one module.
 void refuse_place(const DescribeTexts& texts) {
   for (const auto& [option, given] :
        {std::pair("--address", texts.address.has_value()), std::pair("--tcp", texts.tcp.has_value())}) {

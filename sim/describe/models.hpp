@@ -8,7 +8,7 @@
 
 namespace ex9000::sim {
 
-/// Never empty.
+/// The list is never empty.
 using Models = std::vector<const Model*>;
 
 inline Models all_models() {

@@ -15,7 +15,7 @@ enum class Role : std::uint8_t {
   Output,   ///< read and written
   Input,    ///< a level or a latch; read-only
   Counter,  ///< counts up, and from its highest value to 0
-  Preset,   ///< a stored value of the outputs; read-only, because writing it would drive them
+  Preset,   ///< a stored value of the outputs; read-only, because a write would also drive them
   State,    ///< on or off, both are normal
   Problem,  ///< on means a problem
   Tenths,   ///< units of 0.1 s; read-only

@@ -10,7 +10,8 @@ namespace ex9000::sim {
 /// Describes collisions and bytes that a disturbance has changed; positions count from 1. Empty: no error.
 std::string line_error(const Frame& frame);
 
-/// Describes these errors and those that receivers detect: a wrong CRC or checksum. Empty: no error found.
+/// Describes the errors of `line_error` and those that receivers detect: a wrong CRC or checksum. Empty: no
+/// error.
 std::string errors(const Frame& frame);
 
 }  // namespace ex9000::sim

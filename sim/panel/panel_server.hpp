@@ -42,7 +42,7 @@ class PanelSource {
 };
 
 /// Serves one page, its files, and a WebSocket at /live. A page that reads slowly gets fewer messages, each
-/// with the state at that time: nothing queues up, and the simulation does not wait for the page.
+/// with the state at that time: messages do not accumulate, and the simulation does not wait for the page.
 ///
 /// Rejects requests for a host name other than 127.0.0.1 and localhost, and requests from pages of other
 /// sites.

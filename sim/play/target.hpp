@@ -28,7 +28,7 @@ class Target {
 
   /// Sends `bytes` on the line without a gap, at the master's rate.
   virtual void send(const Bytes& bytes) = 0;
-  /// Returns the bytes received until there are `count` of them or none has come for `patience`.
+  /// Returns the bytes that arrive until there are `count` of them, or until none has arrived for `patience`.
   virtual Bytes receive(std::size_t count, std::chrono::milliseconds patience) = 0;
   /// Returns the bytes received while `time` passes.
   virtual Bytes listen(std::chrono::nanoseconds time) = 0;

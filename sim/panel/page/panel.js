@@ -93,7 +93,7 @@ function take(message) {
     clocks[index] = {showed: news.now, when};
   }
   fresh.push(message);
-  // The browser does not repaint a hidden page, so messages would pile up.
+  // The browser does not repaint a hidden page, so messages would accumulate.
   if (document.hidden && !due) {
     due = true;
     setTimeout(() => { due = false; fresh.splice(0).forEach(show); }, 200);

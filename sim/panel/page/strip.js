@@ -32,7 +32,7 @@ export class Strip {
     this.measure();
   }
 
-  /// Creates a lane for each of `lines`; `now(line)` is its time in us.
+  /// Creates a lane for each of `lines`; `now(line)` returns its time in us.
   begin(lines, now) {
     this.lines = lines;
     this.now = now;
