@@ -108,7 +108,7 @@ struct WritingTexts {
   std::optional<std::string> capture;
 };
 
-/// The arguments as text; the options of a single line come first.
+/// The arguments as text. The options of a single line come first.
 struct Texts {
   std::vector<std::string> modules;
   std::vector<std::string> inputs;
@@ -231,7 +231,7 @@ void reject_line_options(const Texts& texts) {
   }
 }
 
-/// What goes before the message: the place in the bus file, or the option of the command line.
+/// Returns the prefix of the error message: the place in the bus file, or the option of the command line.
 std::string where(const SetupError& error, const Setup& setup) {
   const Places& places = error.line ? setup.lines[*error.line].places : setup.places;
   const auto place = places.find(error.key);

@@ -24,6 +24,8 @@ struct Parsed {
 /// Returns `text` with each newline replaced by a blank, because arguments may contain newlines.
 std::string one_line(std::string text);
 
+/// Parses the command line and reads the bus file that it names. Wrong arguments do not cause an exception:
+/// the result then has the error text and the exit status.
 Parsed parse_arguments(int argc, const char* const* argv);
 
 }  // namespace ex9000::sim

@@ -49,8 +49,8 @@ bool has_instant_line(const Setup& setup) {
                      [](const LineSetup& line) { return line.instant; });
 }
 
-/// Waking up takes longer than the reply of an instant line. Therefore this function polls for some time
-/// after each event, and yields the processor to other threads in between.
+/// A blocked process needs longer to wake up than an instant line needs to reply. Therefore this function
+/// polls for 50 us after each event, and yields the processor to other threads in between.
 void run_wakefully(boost::asio::io_context& io) {
   using Clock = std::chrono::steady_clock;
   constexpr std::chrono::microseconds kWhile{50};
@@ -108,8 +108,8 @@ int fail(const std::exception& error, int status) {
   return status;
 }
 
-/// If one of the three streams is closed, the next opened file would get its number, and the log would be
-/// written into that file.
+/// Opens /dev/null in place of each standard stream that is closed. Otherwise the next file that the program
+/// opens would get the number of that stream, and the log would be written into that file.
 void occupy_standard_streams() {
   int fd = open("/dev/null", O_RDWR);
   while (fd >= 0 && fd <= STDERR_FILENO) {

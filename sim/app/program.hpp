@@ -3,7 +3,8 @@
 
 namespace ex9000::sim {
 
-/// Does what the arguments say. Returns the exit status when the work is done or a signal requests the end.
+/// Carries out the command line. Blocks until the work is done or a signal ends the program, and returns the
+/// exit status.
 int run_program(int argc, const char* const* argv);
 
 }  // namespace ex9000::sim
