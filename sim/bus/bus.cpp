@@ -28,7 +28,8 @@ Bus::Bus(VirtualClock& clock, std::uint32_t times_faster) : clock_(clock), times
 
 Bus::~Bus() = default;
 
-/// Half a bit must last at least a nanosecond, so that samplers make progress; no module has a higher rate.
+/// Limits the rate, because samplers only make progress if half a bit lasts at least a nanosecond. No module
+/// reaches this limit.
 std::uint32_t Bus::bit_rate(std::uint32_t baud) const {
   constexpr std::uint64_t kFastest = 500'000'000;
   return static_cast<std::uint32_t>(std::min(std::uint64_t{baud} * times_faster_, kFastest));
@@ -168,7 +169,7 @@ void Bus::run_wire() {
       }
     }
   }
-  // The bus runs samplers every half bit, which delivers their bytes early enough.
+  // A sampler runs every half bit, which is often enough to deliver its bytes in time.
   next_sample_ = kNever;
   for (const auto& end : ends_) {
     if (samples(*end)) {

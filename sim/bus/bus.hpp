@@ -21,11 +21,11 @@ using hal::doubles::Wire;
 /// A device on the two wires: a module or a master.
 class Station {
  public:
-  /// The time of the next call of `run`; kNever: the station only waits for bytes.
+  /// Returns the time at which the bus must call `run`; kNever if the station only waits for bytes.
   [[nodiscard]] virtual VirtualTime next() const = 0;
   /// The bus calls this when the clock has reached `next()`.
   virtual void run() = 0;
-  /// The rate at which the receiver listens, in bits per second; 0: it does not listen.
+  /// Returns the rate of the receiver in bits per second; 0 if it does not listen.
   [[nodiscard]] virtual std::uint32_t baud() const = 0;
   /// The bus calls this after the stop bit of a byte. A station also receives its own bytes, because both
   /// directions share the two wires.
@@ -35,12 +35,12 @@ class Station {
   ~Station() = default;
 };
 
-/// Gets a report of everything that happens on the wires.
+/// The bus notifies observers of each event on the wires.
 class BusObserver {
  public:
   /// The driver of `station` was enabled or disabled. `station` counts from 0 in the order of attachment.
   virtual void driver(std::size_t station, bool on, VirtualTime now) = 0;
-  /// The disturbance changes the byte that `station` begins to send now: receivers see `arrives` instead.
+  /// The disturbance has changed the byte that `station` begins to send now: receivers see `arrives` instead.
   virtual void changed(std::size_t /*station*/, Levels /*arrives*/) {}
   /// A byte that began at `start` has ended. A byte is not reported if its driver was disabled before its
   /// end. `byte` is the byte that was sent. `collided`: another driver was enabled during this byte.
@@ -51,7 +51,7 @@ class BusObserver {
   ~BusObserver() = default;
 };
 
-/// Changes bytes on their way to the receivers, for example as noise does.
+/// Changes bytes on their way to the receivers, for example by noise.
 class Disturbance {
  public:
   struct Sent {
@@ -69,13 +69,13 @@ class Disturbance {
 
 /// A half-duplex line with 8N1 characters. A byte takes ten bits at the rate of its sender. A receiver with
 /// the same rate gets the byte after its stop bit. A receiver with another rate samples the wave at its own
-/// rate and sees framing errors and garbage. If two drivers are enabled at once, a 0 of either one wins, and
-/// receivers get what the resulting wave looks like.
+/// rate and sees framing errors and garbage. If two drivers are enabled at once, a 0 from either driver wins,
+/// and receivers sample the resulting wave.
 ///
 /// The clock jumps from event to event; this class does not depend on real time.
 ///
-/// A line may be made `times_faster` times faster than its nominal rates. All rates are multiplied by the
-/// same factor, so it does not change which stations understand each other or which bytes collide.
+/// `times_faster` multiplies all nominal rates of the line. It does not change which stations understand each
+/// other or which bytes collide.
 class Bus {
  public:
   explicit Bus(VirtualClock& clock, std::uint32_t times_faster = 1);
@@ -87,8 +87,7 @@ class Bus {
   /// for the same time.
   Wire& attach(Station& station);
   void observe(BusObserver& observer) { observers_.push_back(&observer); }
-  /// From now on everything that is sent goes through `disturbance`, which must live as long as the bus is
-  /// used.
+  /// From now on `disturbance` may change each byte that is sent. It must live as long as the bus is used.
   void disturb(Disturbance& disturbance) { disturbance_ = &disturbance; }
 
   /// Returns the time of the next event of the bus or of a station.

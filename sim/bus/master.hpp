@@ -28,7 +28,7 @@ class Master final : public Station {
   /// Returns how many bytes wait for their start bit.
   [[nodiscard]] std::size_t waiting() const { return waiting_.size(); }
 
-  /// Takes effect with the next byte.
+  /// Sets the rate in bits per second. It takes effect with the next byte.
   void set_baud(std::uint32_t baud);
 
   // --- Station ---

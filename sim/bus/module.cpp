@@ -103,7 +103,7 @@ void SimulatedModule::pulse_input(unsigned channel, std::uint32_t count) {
   take_edges();
 }
 
-/// The main loop of a real board does this continuously.
+/// Lets the device process the edges. The main loop of a real board does this continuously.
 void SimulatedModule::take_edges() {
   if (powered()) {
     turn();
@@ -125,7 +125,7 @@ void SimulatedModule::release_driver_late(VirtualTime by) {
 
 void SimulatedModule::store(const Settings& settings) { memory_.contents() = memory_image(model_, settings); }
 
-/// The memory of a factory-fresh module is blank (D8).
+/// The memory of a factory-fresh module is blank (wire.md D8).
 std::vector<std::uint8_t> SimulatedModule::memory_image(const Model& model, const Settings& settings) {
   std::vector<std::uint8_t> image(hal::doubles::Memory::kSize, 0xFF);
   if (settings != Settings::factory(model)) {
@@ -195,7 +195,7 @@ void SimulatedModule::turn() {
     return;
   }
   do {
-    mcu_->device.on_wake_timer();  // run due work at once, because the tick is too slow for people
+    mcu_->device.on_wake_timer();  // runs due work at once: people would notice the delay of the slow tick
   } while (mcu_->device.turn() || mcu_->device.has_work());
 }
 

@@ -26,8 +26,8 @@
 
 namespace ex9000::sim {
 
-/// One module on a bus; its supply is off at first. This class offers everything that can be done to a real
-/// module from outside.
+/// One module on a bus; its supply is off at first. The functions of this class include every action that is
+/// possible on a real module from outside.
 class SimulatedModule final : public Station {
  public:
   /// Attaches itself to `bus`. `model` is a row of kModels.
@@ -37,7 +37,7 @@ class SimulatedModule final : public Station {
 
   // --- actions from outside, between two runs of the bus ---
 
-  /// Turns the switch of the supply. Switching off interrupts a write in progress and clears all state except
+  /// Switches the supply on or off. Switching off interrupts a write in progress and clears all state except
   /// the memory.
   void power(bool on);
   /// Simulates a supply that fails although its switch is on, or that recovers. A failure has the same
@@ -85,7 +85,7 @@ class SimulatedModule final : public Station {
   hal::doubles::StatusLed& led() { return led_; }
   /// Whether the module receives, waits for a silence, has a request to reply to, sends, stores or starts up.
   [[nodiscard]] bool pending() const;
-  /// Resets by the hardware watchdog since this object was constructed.
+  /// Returns how often the hardware watchdog has reset the module since this object was constructed.
   [[nodiscard]] std::uint64_t watchdog_resets() const { return watchdog_resets_; }
   /// Stops the tick until the next reset.
   void stop_tick() { mcu_->tick.stop(); }

@@ -16,13 +16,13 @@ using hal::doubles::VirtualClock;
 using hal::doubles::VirtualTime;
 using hal::doubles::Wire;
 
-/// What happens to a reply.
+/// The effect of defects on one reply.
 struct ReplyFate {
   bool lost = false;
   VirtualTime late_by{0};
 };
 
-/// Passes on what a UART sends: unchanged, unless a defect is set.
+/// Passes on the bytes that a UART sends. They are unchanged unless a defect is set.
 class ModuleWire final : public Wire {
  public:
   ModuleWire(const VirtualClock& clock, Wire& wire) : clock_(clock), wire_(wire) {}
@@ -47,7 +47,7 @@ class ModuleWire final : public Wire {
   void run();
   /// Ends the delay of the first late reply; the later ones keep their distance from it.
   void hurry();
-  /// The supply is off: drops everything that has not been sent.
+  /// Drops everything that has not been sent. Call it when the module loses its supply or is reset.
   void abort();
 
   // --- Wire ---

@@ -1,5 +1,5 @@
-// Receiver of a UART that samples the wave on the wires. It is used if the wave is not what the receiver
-// expects.
+// The receiver of a UART that samples the wave on the wires. The bus uses it if the receiver cannot get a
+// byte unchanged, for example because the sender has another rate.
 #pragma once
 
 #include <cstdint>
@@ -27,10 +27,10 @@ struct Wave {
 
   static constexpr unsigned kBits = 10;
 
-  /// Returns the time at which bit `index` begins; kBits: the end of the byte.
+  /// Returns the time at which bit `index` begins; for kBits, the end of the byte.
   [[nodiscard]] VirtualTime boundary(unsigned index) const;
   [[nodiscard]] VirtualTime end() const { return boundary(kBits); }
-  /// 1 is the idle level; outside the byte the level is idle too.
+  /// Returns true for the idle level. Outside the byte the level is idle too.
   [[nodiscard]] bool level(VirtualTime at) const;
 };
 
