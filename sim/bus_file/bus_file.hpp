@@ -7,10 +7,11 @@
 
 namespace ex9000::sim {
 
-/// Whether an argument names a bus file: its name ends with .json.
+/// Whether an argument names a bus file. The name of a bus file ends with .json.
 bool is_bus_file(const std::string& argument);
 
-/// Throws std::invalid_argument with a one-line message, `PATH:LINE: KEY: what is wrong and how to fix it`.
+/// Reads and checks a bus file. Throws std::invalid_argument with a one-line message, `PATH:LINE: KEY: what
+/// is wrong; what would be right`.
 Setup read_bus_file(const std::string& path);
 /// Parses `text` as the content of `path`. Throws like read_bus_file.
 Setup parse_bus_file(const std::string& path, const std::string& text);

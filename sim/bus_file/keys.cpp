@@ -22,7 +22,7 @@ constexpr std::string_view kPort =
 constexpr std::string_view kNumber =
     R"({"anyOf": [{"type": "integer", "minimum": 0}, {"type": "string", "pattern": "^[0-9]+$"}]})";
 
-/// Calls the row of each member of an object.
+/// Calls `take` of its key for each member of an object. Rejects unknown keys.
 template <class Object, std::size_t kSize>
 void read_members(const Node& node, const std::array<BusFileKey<Object>, kSize>& keys, Object& object) {
   node.members([&](const std::string& name, const Node& member) {
@@ -38,7 +38,7 @@ void read_members(const Node& node, const std::array<BusFileKey<Object>, kSize>&
   });
 }
 
-/// `kRead`: what kinds of values it has.
+/// Sets the setting `kKey`. `kRead` determines which types of JSON values are accepted.
 template <const char* kKey, std::string (Node::*kRead)() const>
 void take_setting(ModuleObject& module, const Node& value) {
   apply_setting(module.spec, kKey, (value.*kRead)());
@@ -72,7 +72,7 @@ void read_module(const Node& node, LineSetup& line) {
 void read_line(const Node& node, Setup& setup) {
   LineSetup line;
   line.places["fault"] = node.place();
-  line.places["pty"] = node.place();  // of one that the file does not name
+  line.places["pty"] = node.place();  // for a pseudo-terminal that the file does not name
   read_members(node, line_keys(), line);
   if (line.modules.empty()) {
     node.refuse("modules", R"(a line requires at least one module, for example {"model": "EX9042D-M"})");
@@ -171,7 +171,7 @@ const std::array<BusFileKey<ModuleObject>, 11>& module_keys() {
   static const std::array<BusFileKey<ModuleObject>, 11> keys{{
       {"model", kText, "the model, as --models lists it, in any case, with or without EX; required",
        [](ModuleObject& /*module*/, const Node& /*value*/) {
-       }},  // read before, because other keys depend on it
+       }},  // read_module has read it already, because other keys depend on it
       {"address", R"({"type": "string", "pattern": "^[0-9A-Fa-f]{1,2}$"})", "hex, as in $AA2 (default 01)",
        [](ModuleObject& module, const Node& value) { set_address(module.spec, value.text()); }},
       {"protocol", R"({"enum": ["ascii", "modbus"]})",

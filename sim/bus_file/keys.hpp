@@ -29,7 +29,7 @@ const std::array<BusFileKey<Setup>, 7>& bus_keys();
 const std::array<BusFileKey<LineSetup>, 10>& line_keys();
 const std::array<BusFileKey<ModuleObject>, 11>& module_keys();
 
-/// Throws like Node.
+/// Reads all keys of a bus file. Throws like Node.
 Setup read_bus(const Node& root);
 
 }  // namespace ex9000::sim

@@ -116,7 +116,8 @@ class Locator final : public nlohmann::json_sax<json> {
   }
 
   bool open(bool is_array) {
-    // More than any bus file requires. The limit saves memory, because each open place stores its whole path.
+    // No bus file requires more levels. The limit saves memory, because each open place stores its whole
+    // path.
     constexpr std::size_t kDeepest = 16;
     if (open_.size() == kDeepest) {
       throw std::invalid_argument(std::to_string(line_) +

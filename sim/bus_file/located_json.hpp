@@ -14,11 +14,11 @@ struct LocatedJson {
   std::map<std::string, unsigned> lines;
 };
 
-/// Throws std::invalid_argument, `LINE: what is wrong`, if `text` is not JSON or an object has the same key
-/// twice.
+/// Parses `text`. Throws std::invalid_argument with the message `LINE: what is wrong` if `text` is not JSON
+/// or an object has the same key twice.
 LocatedJson parse_located(const std::string& text);
 
-/// Return the path of a member or an element of the value at `path`.
+/// These functions return the path of a member or an element of the value at `path`.
 std::string member_of(const std::string& path, const std::string& key);
 std::string element_of(const std::string& path, std::size_t index);
 

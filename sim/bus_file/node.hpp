@@ -1,4 +1,4 @@
-// A value of a bus file that knows its place in the file, for error messages.
+// A value of a bus file, with its place in the file for error messages.
 #pragma once
 
 #include <cstddef>
@@ -16,8 +16,8 @@ class Node {
  public:
   using json = nlohmann::ordered_json;
 
-  /// The whole file. `name` is the file's path for people. `file` and `name` must outlive this object and the
-  /// nodes made from it.
+  /// Represents the whole file. `name` is the file's path in messages. `file` and `name` must outlive this
+  /// object and the nodes made from it.
   Node(const LocatedJson& file, const std::string& name) : Node(file, name, file.value, "") {}
 
   [[noreturn]] void refuse(const std::string& what) const { refuse_at(path_, what); }
@@ -26,7 +26,7 @@ class Node {
     refuse_at(member_of(path_, path), what);
   }
 
-  /// Returns the place for people: the file, the line number, and the path of the value.
+  /// Returns the place in the form of messages: the file, the line number, and the path of the value.
   [[nodiscard]] std::string place() const { return place_of(path_) + path_; }
 
   /// Calls `take(key, member)` for each member of an object.
@@ -70,7 +70,7 @@ class Node {
   Node(const LocatedJson& file, const std::string& name, const json& value, std::string path)
       : file_(&file), name_(&name), value_(&value), path_(std::move(path)) {}
 
-  /// Adds this node's place to errors from below that have none.
+  /// Runs `action` and adds this node's place to its errors that have no place yet.
   template <class Action>
   void guarded(Action action) const {
     try {
