@@ -22,7 +22,8 @@ class Echo final : public Station {
   Echo(const Echo&) = delete;
   Echo& operator=(const Echo&) = delete;
 
-  /// Listens and sends at the rate of the line. It sends when no byte has come for `delay`.
+  /// From now on the echo listens and sends at the rate of the line. It sends when no byte has arrived for
+  /// `delay`.
   void switch_on(VirtualTime delay) {
     on_ = true;
     delay_ = delay;

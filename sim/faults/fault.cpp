@@ -22,7 +22,7 @@ std::uint64_t parse_count(const std::string& word) {
 
 struct Row {
   std::string_view name;
-  std::string_view value;  ///< name of its value in the help text; empty: it has none
+  std::string_view value;  ///< name of the fault's value in the help text; empty: the fault has no value
   Trouble trouble;
   bool of_a_module;
   void (*take)(Fault& fault, const std::string& word);
@@ -32,7 +32,7 @@ struct Row {
 void take_nothing(Fault& /*fault*/, const std::string& /*word*/) {}
 void take_probability(Fault& fault, const std::string& word) { fault.probability = parse_probability(word); }
 void take_time(Fault& fault, const std::string& word) { fault.time = parse_time(word); }
-/// A shorter delay would keep an instant line busy forever.
+/// Requires at least 1 ms, because a shorter delay would keep an instant line busy forever.
 void take_silence(Fault& fault, const std::string& word) {
   fault.time = parse_time(word);
   if (fault.time < std::chrono::milliseconds(1)) {

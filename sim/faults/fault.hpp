@@ -1,4 +1,4 @@
-// A fault as the user writes it: what goes wrong, and when.
+// A fault in the notation of the user: the kind of fault, and its schedule.
 //
 //   bit-errors 1e-4                     probability for each bit on the line
 //   lost-reply every 10th reply
@@ -35,7 +35,7 @@ enum class Trouble {
   Hang,
 };
 
-/// When a fault strikes.
+/// The times at which a fault strikes.
 struct Schedule {
   enum class When { Always, At, EveryTime, EveryReply, Probably, AfterWrites };
 
@@ -61,7 +61,7 @@ struct Fault {
   std::string text;                   ///< as the user wrote it
 };
 
-/// Whether the fault affects a module, and not the wires.
+/// Returns true if the fault affects a module, false if it affects the wires.
 bool concerns_a_module(Trouble trouble);
 
 /// Parses `TROUBLE [VALUE] [SCHEDULE]`. A fault of modules applies to all modules of the line. Throws

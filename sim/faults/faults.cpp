@@ -13,7 +13,7 @@ namespace {
 using When = Schedule::When;
 
 constexpr VirtualTime kPowerCutLasts = std::chrono::seconds(1);
-/// The foreign station drops further messages if more bytes than this are waiting.
+/// The foreign station drops a message if this many bytes are already waiting.
 constexpr std::size_t kMostForeign = 1024;
 
 bool is_of(const Fault& fault, std::size_t module) { return !fault.module || *fault.module == module; }
@@ -156,7 +156,7 @@ VirtualTime Faults::next() const {
 
 void Faults::run() { act(); }
 
-/// Does what is due: ends strikes first, then begins new ones.
+/// Processes everything that is due: ends strikes first, then begins new ones.
 void Faults::act() {
   const VirtualTime now = bus_.clock().virtual_now();
   for (Armed& armed : armed_) {
@@ -175,7 +175,8 @@ void Faults::act() {
   }
 }
 
-/// A module may call this during its work, so modules do not change before `act`.
+/// Begins a strike. A module may cause this call during its work; therefore the modules do not change before
+/// the next call of `act`.
 void Faults::strike(Armed& armed, std::optional<std::size_t> reply_of) {
   const Fault& fault = armed.fault;
   ++armed.strikes_so_far;
@@ -328,7 +329,8 @@ void Faults::written(std::size_t module) {
   }
 }
 
-/// A strike on a module's reply affects only that module.
+/// Returns a fault of this kind that affects the module at present, or null. A strike on a module's reply
+/// affects only that module.
 const Fault* Faults::striking(Trouble trouble, std::size_t module) const {
   for (const Armed& armed : armed_) {
     if (armed.fault.trouble == trouble && armed.befalls(module)) {

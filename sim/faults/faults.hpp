@@ -19,7 +19,7 @@
 
 namespace ex9000::sim {
 
-/// With the same faults, the same seed and the same traffic, faults strike at the same times.
+/// The same faults, the same seed and the same traffic produce strikes at the same times.
 class Faults final : public Station {
  public:
   using Modules = std::vector<std::unique_ptr<SimulatedModule>>;
@@ -64,7 +64,8 @@ class Faults final : public Station {
   struct Strike {
     /// The module whose reply it strikes; it does not affect other modules.
     std::optional<std::size_t> reply_of;
-    /// In the line's time; kNever for a strike on a reply: it ends with the reply.
+    /// The end in the line's time; kNever: a strike on a reply ends with the reply, any other strike does not
+    /// end by itself.
     VirtualTime ends = kNever;
     /// For noise: the number of the reply in the module's count.
     std::uint64_t reply = 0;
