@@ -26,7 +26,7 @@ mode_t file_mask() {
   return mask;
 }
 
-/// Returns the reason why an open file cannot be an image; empty: it may be one.
+/// Returns the reason why an open file cannot be an image; empty if it may be an image.
 std::string flaw_of(const struct stat& status) {
   if (!S_ISREG(status.st_mode)) {
     return "is not a regular file; name another path";

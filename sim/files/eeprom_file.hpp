@@ -11,9 +11,9 @@
 namespace ex9000::sim {
 
 /// Reads the content of an image, without write access and without a lock: the image may be read-only, and a
-/// running simulator may use it. A write in progress may then be read in part, as after a power cut. Returns
-/// nullopt if there is no file. Throws std::invalid_argument with a one-line message if the file is not an
-/// image or is not readable.
+/// running simulator may use it. The result may then contain only a part of a write in progress, like an
+/// image after a power cut. Returns nullopt if there is no file. Throws std::invalid_argument with a one-line
+/// message if the file is not an image or is not readable.
 std::optional<std::vector<std::uint8_t>> read_eeprom_file(const std::string& path);
 
 /// An image of the whole memory, byte for byte like the chip: 8192 bytes, erased bytes are FF. The file is
@@ -34,7 +34,7 @@ class EepromFile {
   [[nodiscard]] const std::optional<std::vector<std::uint8_t>>& found() const { return found_; }
   /// Creates the file with the whole image or not at all. Throws like the constructor.
   void create(const std::vector<std::uint8_t>& image);
-  /// Returns false if the system call fails.
+  /// Writes `bytes` at `address`. Returns false if the system call fails; errno then has the reason.
   [[nodiscard]] bool write(std::uint16_t address, Bytes bytes) const;
 
   [[nodiscard]] const std::string& path() const { return path_; }

@@ -1,4 +1,4 @@
-// A file that is removed again unless the work succeeds.
+// A new file that is removed again unless the work succeeds.
 #pragma once
 
 #include <sys/stat.h>
