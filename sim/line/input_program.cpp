@@ -17,7 +17,7 @@ constexpr VirtualTime kShortest = std::chrono::microseconds(10);
 /// How many times contacts bounce during the bounce time.
 constexpr unsigned kChatters = 4;
 
-/// Durations, each after its own keyword; no keyword may appear twice.
+/// Parses durations. Each duration follows its keyword, and no keyword may appear twice.
 class Times {
  public:
   explicit Times(std::istringstream& words) {
@@ -148,7 +148,7 @@ void MovedInput::plan(VirtualTime begins) {
   }
 }
 
-/// Real contacts open and close several times before they settle.
+/// Plans one change of the level. Real contacts open and close several times before they settle.
 void MovedInput::chatter(VirtualTime begins, bool level) {
   moves_.push_back({begins, level});
   if (program_.bounce == VirtualTime(0)) {

@@ -25,14 +25,14 @@ struct InputProgram {
   VirtualTime bounce{0};  ///< how long the contacts bounce
 };
 
-/// `model` defines which channels exist. Throws std::invalid_argument with a one-line message that says what
-/// is wrong and what would be right.
+/// Parses a program. `model` defines which channels exist. Throws std::invalid_argument with a one-line
+/// message that says what is wrong and what would be right.
 InputProgram parse_input_program(const std::string& text, const Model& model);
 
-/// Returns an input channel of this model. Throws std::invalid_argument with a one-line message.
+/// Parses the number of an input channel of this model. Throws std::invalid_argument with a one-line message.
 unsigned parse_input(const std::string& text, const Model& model);
 
-/// Moves one input, whether the module has power or not.
+/// Moves one input. It does so even if the module has no power.
 class MovedInput final : public Station {
  public:
   /// Attaches itself to `bus` and begins now. The same `seed` produces the same bouncing.

@@ -13,7 +13,7 @@
 
 namespace ex9000::sim {
 
-/// How long bytes take on a line, and how its modules detect the end of frames.
+/// The speed of a line, and the rules by which its modules detect the end of frames.
 struct LineKind {
   std::uint32_t times_faster = 1;  ///< compared to the nominal rates
   TimingAt timing_at = LineTiming::at;
@@ -24,19 +24,19 @@ constexpr LineKind kPaced{};
 /// Bytes take their real time, and modules follow the standard strictly: a gap of more than T1.5 spoils a
 /// Modbus frame.
 constexpr LineKind kStrictlyPaced{1, LineTiming::strictly_at};
-/// A Modbus frame ends when no byte follows at once and its CRC is correct, otherwise after a silence of 2
-/// ms.
+/// Returns the timing of an instant line: a Modbus frame ends when no byte follows at once and its CRC is
+/// correct, otherwise after a silence of 2 ms.
 LineTiming instantly(std::uint32_t baud);
 /// Bytes take almost no time: 0.02 us at 115200 baud and 2 us at 1200 baud.
 constexpr LineKind kInstant{4000, instantly};
 
-/// Station 0 is the master; the modules follow in the given order.
+/// Station 0 of the bus is the master; the modules follow in the given order.
 class Line {
  public:
   /// The supply of all modules is off at first. The master uses the factory's rate.
   Line(const std::vector<ModuleSpec>& modules, LineKind kind, Master::Receive receive);
 
-  /// Switches on the supply of all modules and lets the time pass that they need to start up.
+  /// Switches on the supply of all modules and runs the line for 100 ms, in which the modules start up.
   void come_up();
 
   VirtualClock& clock() { return clock_; }

@@ -23,13 +23,15 @@ struct ModuleSpec {
   std::vector<InputProgram> inputs;      ///< programs that move inputs
 };
 
-/// Throws std::invalid_argument with a one-line message that says what is wrong and what would be right.
+/// Parses MODEL[@ADDR][,KEY=VALUE]... Throws std::invalid_argument with a one-line message that says what is
+/// wrong and what would be right.
 ModuleSpec parse_module_spec(const std::string& text);
 
 // The steps of parse_module_spec. They throw the same exceptions.
 
+/// Returns a module of this model with factory settings.
 ModuleSpec factory_fresh(const Model& model);
-/// `text` is one or two hex digits.
+/// Sets the address. `text` is one or two hex digits.
 void set_address(ModuleSpec& spec, const std::string& text);
 /// Applies one KEY=VALUE of the command line.
 void apply_setting(ModuleSpec& spec, const std::string& key, const std::string& value);
