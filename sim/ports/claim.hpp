@@ -1,4 +1,4 @@
-// A lock for a path that a process leaves behind when it dies.
+// A lock for a path that may remain after the process that created it has died.
 #pragma once
 
 #include <string>

@@ -18,6 +18,7 @@ class OwnEcho {
 
   explicit OwnEcho(std::uint32_t baud) : baud_(baud) {}
 
+  /// From now on the echo of `bytes`, which were sent at `now`, is expected.
   void sent(Bytes bytes, Clock::time_point now) {
     constexpr std::chrono::nanoseconds kCharacterBits{10'000'000'000};
     awaited_.insert(awaited_.end(), bytes.begin(), bytes.end());

@@ -23,8 +23,9 @@ class Port {
 
   /// Call it once. `received` is called while the io_context runs.
   virtual void start(Received received) = 0;
+  /// Continues to deliver bytes after `received` has returned false.
   virtual void resume() = 0;
-  /// Calls `received` for all bytes that have arrived, as if the io_context had run. Call it only if
+  /// Calls `received` at once for all bytes that have arrived; the io_context need not run. Call it only if
   /// `received` can take more bytes.
   virtual void read_waiting() {}
 
@@ -37,7 +38,7 @@ class Port {
   /// Returns the rate that a master has set at this port, in bits per second; nullopt if the port has no rate
   /// or no UART supports the rate.
   [[nodiscard]] virtual std::optional<std::uint32_t> baud() const { return std::nullopt; }
-  /// Whether the port is a real line, on which the bytes have already taken their time.
+  /// Whether the port is a real line. Bytes from a real line have already taken their time.
   [[nodiscard]] virtual bool is_a_line() const { return false; }
 };
 

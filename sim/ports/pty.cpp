@@ -43,8 +43,8 @@ void remove_stale(const std::string& link, const Claim& claim) {
   unlink(link.c_str());
 }
 
-/// The slave, opened for a moment for operations that only work there. This counts as a visit, so do not use
-/// it while no master has the slave open.
+/// Opens the slave for a moment, for operations that work only there. The system reports this like the visit
+/// of a master. Therefore use it only before visits are watched or while a master has the slave open.
 class Slave {
  public:
   explicit Slave(const std::string& device)

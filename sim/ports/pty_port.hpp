@@ -1,4 +1,4 @@
-// A pseudo-terminal that masters open as they would a serial port.
+// A pseudo-terminal that masters open like a serial port.
 #pragma once
 
 #include <boost/asio/io_context.hpp>
@@ -25,7 +25,7 @@ class PtyPort final : public Port {
   [[nodiscard]] const Pty& pty() const { return pty_; }
 
  private:
-  /// Continues by itself. Stops while no master has the slave open, and after `received` has returned false.
+  /// Reads again whenever bytes arrive, until no master has the slave open or `received` returns false.
   void read();
   bool take();
   void watch_visits();

@@ -17,7 +17,7 @@ class SerialPort final : public Port {
  public:
   /// Opens `device` with 8N1 at `baud` and prevents others from opening it. `echo`: the adapter receives what
   /// it sends. Throws std::invalid_argument with a one-line message if the device or the settings are not
-  /// available. `place` stands before the device in all messages.
+  /// available. `place` is the prefix of the device in all messages.
   SerialPort(boost::asio::io_context& io, const std::string& place, const std::string& device,
              std::uint32_t baud, bool echo);
 

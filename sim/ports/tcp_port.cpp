@@ -15,7 +15,7 @@ namespace {
 
 using boost::asio::ip::tcp;
 
-/// The limit for masters on one line. Only clients that never disconnect can exceed it.
+/// The maximum number of masters on one line. In practice only clients that never disconnect reach it.
 constexpr std::size_t kMostMasters = 64;
 
 [[noreturn]] void refuse(const TcpAddress& address, const std::string& why) {
@@ -117,7 +117,7 @@ void TcpPort::read_waiting() {
   }
 }
 
-/// Returns the reason why there is no more to read; no error if the client has to wait.
+/// Reads all available bytes. Returns the error that ended reading; no error if the client is paused.
 boost::system::error_code TcpPort::take(Client& client) {
   std::array<std::uint8_t, 4096> bytes{};
   boost::system::error_code ended;
@@ -130,7 +130,7 @@ boost::system::error_code TcpPort::take(Client& client) {
   return ended;
 }
 
-/// Removes the client that has lingered longest.
+/// If the limit is reached, removes the client that has lingered longest.
 void TcpPort::make_room() {
   if (clients_.size() >= kMostMasters) {
     const auto oldest =
@@ -141,7 +141,8 @@ void TcpPort::make_room() {
   }
 }
 
-/// The process has no free file descriptor. An immediate retry would use all of the processor's time.
+/// Tries again after 100 ms, because the process has no free file descriptor. Immediate retries would use all
+/// of the processor's time.
 void TcpPort::accept_later() {
   constexpr std::chrono::milliseconds kPatience{100};
   next_try_.expires_after(kPatience);

@@ -1,4 +1,4 @@
-// The line's bytes over TCP, as serial device servers provide them.
+// The line's bytes over TCP, in the same form as from a serial device server.
 #pragma once
 
 #include <boost/asio/io_context.hpp>
