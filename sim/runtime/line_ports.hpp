@@ -25,7 +25,7 @@ class LinePorts final : private BusObserver {
   /// each module whose rate differs from the line's, and for bytes that a port had no room for.
   LinePorts(Line& line, const All& ports, Notice notice);
 
-  /// Takes a byte from the master's end of the line; for Line's constructor.
+  /// Takes a byte from the master's end of the line. The line calls it for each byte that it receives.
   void hear(std::uint8_t byte) { heard_.push_back(byte); }
   /// Whether a module has stopped sending since the last `hand_out`.
   [[nodiscard]] bool reply_is_complete() const { return stopped_sending_; }
@@ -51,7 +51,7 @@ class LinePorts final : private BusObserver {
   const All& ports_;
   Notice notice_;
   using Mismatch = std::pair<std::uint32_t, std::uint32_t>;  ///< rate of the line, rate of a module
-  std::vector<Mismatch> reported_;                           ///< one for each module; zeros: none
+  std::vector<Mismatch> reported_;                           ///< one for each module; zeros: no mismatch
   std::vector<std::uint8_t> heard_;
   std::uint64_t sent_ = 0;
   std::vector<const Port*> full_;  ///< ports whose dropped bytes have been reported

@@ -34,7 +34,7 @@ class LineRecord final : private Station {
   /// Ignores events later than `end` in the line's time. The records do not depend on how far the line runs
   /// beyond `end`, which varies with the moments at which the program reads the wall clock.
   void end_at(VirtualTime end);
-  /// Returns what collects the frames; null if no frames are recorded.
+  /// Returns the collector of the frames; null if no frames are recorded.
   FrameWatch* frames() { return listens_ ? &frames_ : nullptr; }
   /// Records the frames that are still in progress.
   void finish() { frames_.finish(); }
@@ -54,7 +54,7 @@ class LineRecord final : private Station {
   FrameWatch frames_{[this] { return line_.master().baud(); }};
   BusLog::Note also_note_;
   bool listens_ = false;
-  VirtualTime end_ = kNever;  ///< as long as it is to come
+  VirtualTime end_ = kNever;  ///< kNever if no end is set, or after the end
   bool over_ = false;
 };
 

@@ -57,8 +57,8 @@ VirtualTime Pacer::wall() const {
   return first_ + (pace_.speed == 1 ? real : std::chrono::duration_cast<VirtualTime>(real * pace_.speed));
 }
 
-/// Returns when the wall clock reaches `time`. The result is limited to a century ahead, because the clock's
-/// range is finite.
+/// Returns the moment at which the wall clock reaches `time`. The result is at most a century ahead, because
+/// the clock's range is finite.
 std::chrono::steady_clock::time_point Pacer::when(VirtualTime time) const {
   constexpr VirtualTime kCentury = std::chrono::hours(24 * 365 * 100);
   const VirtualTime ahead = time - first_;
@@ -181,9 +181,9 @@ bool Pacer::receive(const Port& port, const std::uint8_t* bytes, std::size_t siz
   return !paused_;
 }
 
-/// After a request without a reply the next one often follows at once, and both are read in one piece. On an
-/// instant line a frame ends where its CRC is correct. If the CRC of all bytes is correct, they are a single
-/// frame.
+/// Returns the size of the first frame in `bytes`. After a request without a reply the next request often
+/// follows at once, and both are read in one piece. On an instant line a frame ends as soon as its CRC is
+/// correct. If the CRC of all bytes is correct, they are a single frame.
 std::size_t Pacer::first_frame_size(Bytes bytes) {
   constexpr std::size_t kShortest = 4;
   Crc16 crc;
@@ -206,7 +206,7 @@ VirtualTime Pacer::silence_before(std::uint8_t address) {
   if (last_speaker_ == 0) {
     return pace_.lead == VirtualTime(0) ? VirtualTime(0) : last_byte_ + line_.rtu_silence();
   }
-  if (last_speaker_ > line_.size()) {  // a foreign station, which all modules have received
+  if (last_speaker_ > line_.size()) {  // a foreign station, whose bytes all modules have received
     return is_for_modbus(address) ? last_byte_ + line_.rtu_separate() : VirtualTime(0);
   }
   const SimulatedModule& speaker = line_.module(last_speaker_ - 1);

@@ -44,14 +44,14 @@ constexpr Pace kInstantPace{VirtualTime(0), std::chrono::microseconds(200), true
 /// Virtual time follows the wall clock from `start` on.
 class Pacer final : private BusObserver {
  public:
-  /// Sends what the master of `line` receives to all `ports`, and what comes from them on the line. `frames`
-  /// may be null. All arguments must live as long as `io` runs. `notice`: see LinePorts; it also gets a
-  /// message if a delay of the host has affected the line.
+  /// Sends the bytes that the master of `line` receives to all `ports`, and puts the bytes from the ports on
+  /// the line. `frames` may be null. All arguments must live as long as `io` runs. `notice`: see LinePorts;
+  /// it also gets a message if a delay of the host has affected the line.
   Pacer(boost::asio::io_context& io, Line& line, const LinePorts::All& ports, FrameWatch* frames, Pace pace,
         LinePorts::Notice notice);
 
   void start();
-  /// Takes a byte from the master's end of the line; for Line's constructor.
+  /// See LinePorts::hear.
   void hear(std::uint8_t byte) { ports_.hear(byte); }
   /// See LinePorts::sent.
   [[nodiscard]] std::uint64_t sent() const { return ports_.sent(); }
@@ -85,11 +85,11 @@ class Pacer final : private BusObserver {
   FrameWatch* frames_;
   Pace pace_;
   std::chrono::steady_clock::time_point began_;
-  VirtualTime first_{0};  ///< what the line's clock showed at `began_`
+  VirtualTime first_{0};  ///< the line's time at `began_`
   bool paused_ = false;   ///< a port waits for `resume`
   /// The longest delay of the host that was reported, in wall clock time.
   VirtualTime longest_delay_{0};
-  std::size_t last_speaker_ = 0;  ///< station; 0: the master
+  std::size_t last_speaker_ = 0;  ///< the station that has sent last; 0: the master
   VirtualTime last_byte_{0};      ///< end of its last byte
 };
 

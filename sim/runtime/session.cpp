@@ -91,8 +91,8 @@ void Session::watch_lines() {
   }
 }
 
-/// Repeats the look at an interval. If the lines do not follow a clock, the code that moves the time calls
-/// look() instead.
+/// Updates the view of the modules every 50 ms. If the lines do not follow a clock, the code that moves the
+/// time calls look() instead.
 void Session::keep_watching() {
   constexpr auto kBetweenLooks = std::chrono::milliseconds(50);
   watch_->look();
@@ -146,8 +146,8 @@ void Session::answer(const std::string& command, const ControlSocket::Answer& an
   }
 }
 
-/// If the lines do not follow a clock, the result must not depend on the time of day, and neither must the
-/// capture.
+/// If the lines do not follow a clock, the result must not depend on the time of day. Then the times in the
+/// capture begin at 0.
 void Session::keep_a_capture() {
   capture_->begin();
   const auto now = std::chrono::system_clock::now().time_since_epoch();
@@ -209,7 +209,8 @@ void Session::start() {
   }
 }
 
-/// Whether the run has an end. A duration that exceeds the range of the clock counts as endless.
+/// Whether the run has an end. A duration of more than a century on the wall clock counts as endless, because
+/// the clock's range is finite.
 bool Session::ends() const {
   constexpr auto kNobodyWaits = std::chrono::hours(24 * 365 * 100);
   return setup_.lasts && (!setup_.speed.paced() || *setup_.lasts / setup_.speed.factor < kNobodyWaits);

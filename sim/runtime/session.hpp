@@ -31,8 +31,8 @@ class Session {
 
   /// Opens everything that `setup` names. Throws std::invalid_argument or std::runtime_error with a one-line
   /// message; then everything is closed again, and no file has been created or changed. `print` gets the log
-  /// and the greeting; if the log is for programs, `greet` gets the greeting instead. `terminal` is the
-  /// terminal that `print` writes to, or null. `io` and `terminal` must outlive this object.
+  /// and the greeting; if the log is JSON, `greet` gets the greeting instead. `terminal` is the terminal that
+  /// `print` writes to, or null. `io` and `terminal` must outlive this object.
   Session(boost::asio::io_context& io, Setup setup, Print print, Print greet, Terminal* terminal);
   ~Session();
   Session(const Session&) = delete;
@@ -77,7 +77,7 @@ class Session {
   StopSignals stop_signals_;
   std::unique_ptr<Stepper> stepper_;  ///< null unless the lines' time stands still
   std::unique_ptr<ControlSocket> control_socket_;
-  std::list<NewFile> made_;  ///< removed with this object until the greeting has been printed
+  std::list<NewFile> made_;  ///< the destructor removes them unless the greeting has been printed
   std::unique_ptr<Capture> capture_;
   std::unique_ptr<Panel> panel_;
   std::unique_ptr<PanelServer> panel_server_;

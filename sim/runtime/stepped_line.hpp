@@ -26,7 +26,7 @@ class SteppedLine {
 
   /// Accepts masters. `arrived` is called whenever bytes have arrived.
   void start(Arrived arrived);
-  /// Takes a byte from the master's end of the line; for Line's constructor.
+  /// See LinePorts::hear.
   void hear(std::uint8_t byte) { ports_.hear(byte); }
 
   /// Returns how many bytes have arrived that are not on the line yet.
