@@ -13,7 +13,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Compares files by their inodes; if one does not exist yet, compares the paths.
+/// Compares files by their inodes. If one of the files does not exist yet, compares the paths.
 bool are_one(const std::string& a, const std::string& b) {
   struct stat of_a {};
   struct stat of_b {};

@@ -37,7 +37,7 @@ struct LineSetup {
 };
 
 struct PanelSetup {
-  std::optional<std::uint16_t> port;  ///< 0: any free port; nullopt: the default one, else any
+  std::optional<std::uint16_t> port;  ///< 0: any free port; nullopt: the default port, or any if it is in use
 };
 
 enum class LogFormat { Text, Json };
@@ -72,7 +72,7 @@ struct Setup : Writing {
   Speed speed;
   /// How long the modules are up, in the lines' time, before the run ends; nullopt: until a signal or `quit`.
   std::optional<VirtualTime> lasts;
-  std::uint64_t seed = 1;  ///< for everything random: noise, probable faults, bouncing contacts
+  std::uint64_t seed = 1;  ///< seed of all random events: noise, faults with a probability, bouncing contacts
   Places places;
 };
 
@@ -94,7 +94,7 @@ struct SetupError : std::invalid_argument {
   std::optional<std::size_t> line;    ///< position of the line; nullopt: not about one line
   std::optional<std::size_t> module;  ///< position of the module on that line; nullopt: not about one module
   std::string key;
-  std::string value;  ///< that is wrong; empty: the message needs none
+  std::string value;  ///< the wrong value; empty if the message does not need it
 };
 
 /// Throws SetupError if values that are valid alone cannot be combined.
@@ -105,10 +105,12 @@ void check(const Setup& setup);
 
 /// Returns whether bytes take no time.
 bool parse_line_kind(const std::string& text);
+/// Parses a whole number of up to 64 bits.
 std::uint64_t parse_seed(const std::string& text);
-/// nullopt: `off`.
+/// Parses `text`, `json` or `off`. Returns nullopt for `off`.
 std::optional<LogFormat> parse_log(const std::string& text);
-/// Without a port: the default port; nullopt: `off`.
+/// Parses a port number, `off` or an empty text. Returns a setup without a port for an empty text, and
+/// nullopt for `off`.
 std::optional<PanelSetup> parse_panel(const std::string& text);
 /// `text` is a number from 0.001 to 1000, `max` or `step`.
 Speed parse_speed(const std::string& text);
