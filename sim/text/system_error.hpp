@@ -1,4 +1,4 @@
-// The reason why a system call has failed, in the system's words.
+// The system's text for the reason why a system call has failed.
 #pragma once
 
 #include <cerrno>
@@ -7,7 +7,7 @@
 
 namespace ex9000::sim {
 
-/// Call it directly after the system call, because the next one may change errno.
+/// Returns the text for errno. Call it directly after the system call, because the next one may change errno.
 inline std::string reason() { return std::strerror(errno); }
 
 }  // namespace ex9000::sim
