@@ -19,7 +19,7 @@ class PlayRecord final : public play::Onlooker {
   using Print = LineRecord::Print;
 
   /// Writes the log and the capture that `writing` asks for. The capture file is opened when the first run
-  /// begins; from then on this class throws what Capture throws.
+  /// begins; from then on this class throws like Capture.
   PlayRecord(Writing writing, Print print);
 
   // --- play::Onlooker ---
