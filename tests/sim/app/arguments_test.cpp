@@ -32,14 +32,14 @@ Setup all_accepted(const std::vector<const char*>& words) {
   return parsed.setup.value_or(none);
 }
 
-/// The one line of a command line.
+/// Parses words that describe a single line, and returns that line.
 LineSetup accepted(const std::vector<const char*>& words) {
   const Setup setup = all_accepted(words);
   EXPECT_EQ(setup.lines.size(), 1U);
   return setup.lines[0];
 }
 
-/// Refused in one line that names what is wrong and what would be right.
+/// Expects that the program rejects `words` with a one-line message that contains `wrong` and `mend`.
 void expect_error(const std::vector<const char*>& words, const std::string& wrong, const std::string& mend) {
   const Parsed parsed = parse(words);
   EXPECT_FALSE(parsed.setup);
@@ -52,7 +52,7 @@ void expect_error(const std::vector<const char*>& words, const std::string& wron
   EXPECT_EQ(parsed.error.back(), '\n');
 }
 
-/// Text for standard output, and nothing to do.
+/// Expects that `words` only print text, and returns the text.
 std::string printed(const std::vector<const char*>& words) {
   const Parsed parsed = parse(words);
   EXPECT_FALSE(parsed.setup);
@@ -133,7 +133,7 @@ TEST(Arguments, TheModulesMayBeWatched) {
                "both write to standard output");
 }
 
-/// Whoever starts `sim/run`, which has both, may add them once more.
+/// A user of `sim/run`, which passes both options, may repeat them.
 TEST(Arguments, OfSeveralPanelsAndLogsTheLastCounts) {
   EXPECT_EQ(all_accepted({"EX9042D", "--panel", "--log", "--panel", "8080"}).panel->port, 8080);
   EXPECT_EQ(all_accepted({"EX9042D", "--panel", "--log", "--log", "json"}).log, LogFormat::Json);
@@ -249,7 +249,7 @@ TEST(Arguments, AnEmptyPathIsRefused) {
   expect_error({"EX9042D,eeprom="}, "eeprom=", "path");
 }
 
-// --- what moves and what goes wrong ---
+// --- moving inputs and faults ---
 
 TEST(Arguments, AnInputIsOfTheModuleAtItsPosition) {
   const LineSetup arguments = accepted({"EX9042D", "EX9052D@02", "--input", "2 0 square 100ms", "--input",
@@ -343,7 +343,7 @@ TEST(Arguments, SteppedTimeRequiresTheControlSocketAndNothingThatHasATimeOfItsOw
                "--speed: ", "cannot be combined with --serial");
 }
 
-/// What is played; that nothing else is to be done is looked at too.
+/// Expects that `words` only request a play, and returns its task.
 play::Task task_of(const std::vector<const char*>& words) {
   const Parsed parsed = parse(words);
   EXPECT_FALSE(parsed.setup);

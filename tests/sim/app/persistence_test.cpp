@@ -1,4 +1,4 @@
-// Modules whose EEPROM is a file: what outlasts the program, however it ends.
+// Modules whose EEPROM is a file: tests which settings survive each way in which the program can end.
 #include <gtest/gtest.h>
 #include <sys/stat.h>
 
@@ -24,15 +24,14 @@ namespace {
 namespace fs = std::filesystem;
 
 using Arguments = std::vector<std::string>;
-/// It waits for an event; only a program that hangs takes this long.
+/// A timeout for events. Only a program that hangs reaches it.
 constexpr std::chrono::seconds kHang{60};
 
 using std::chrono::microseconds;
 
 constexpr std::size_t kImageSize = 8192;
-/// Nobody who has to wait for one of these would be waiting for long.
-constexpr std::chrono::seconds kPatience{
-    60};  // it waits for an event; only a program that hangs takes this long
+/// A timeout for replies. Only a program that hangs reaches it.
+constexpr std::chrono::seconds kPatience{60};
 
 bool has(const std::string& text, const std::string& part) { return text.find(part) != std::string::npos; }
 
@@ -44,7 +43,7 @@ class Simulator {
         terminal_(process_.tty(), 9600),
         control_(process_.directory() + "/control") {}
 
-  /// A command without CR, and its reply without CR.
+  /// Sends a command and returns its reply, both without CR.
   std::string ask(const std::string& command) {
     type(command);
     const std::string reply = terminal_.read_line(kPatience);
@@ -52,26 +51,26 @@ class Simulator {
   }
   std::string tell(const std::string& command) { return control_.ok(command); }
 
-  /// Types a command and looks on for so long; true: it was acknowledged.
+  /// Types a command. Returns whether a complete reply arrives within `time`.
   bool is_acknowledged_within(microseconds time, const std::string& command) {
     type(command);
     const std::vector<std::uint8_t> reply = terminal_.read(time);
     return !reply.empty() && reply.back() == '\r';
   }
 
-  /// The supply fails. What was typed before was on the line before: the control socket is a way of its own,
-  /// on which a command could overtake it.
+  /// Switches the supply off. First waits until the typed commands are on the line, because a command on the
+  /// control socket could overtake them.
   void power_off() {
     EXPECT_TRUE(process_.wait_for("  > master  ", typed_));
     tell("1 power off");
   }
-  /// The supply fails and comes back.
+  /// Switches the supply off and on again, and waits until the module has started.
   void power_cycle() {
     power_off();
     tell("1 power on");
     while (has(tell("1 status"), "mode=starting")) {
     }
-    // What it had to say before.
+    // Discards the replies that the module sent before.
     while (terminal_.received() < std::stoull(tell("sent")) && !terminal_.read(kHang).empty()) {
     }
   }
@@ -98,7 +97,7 @@ class Simulator {
 
 std::string image_in(const Directory& directory) { return ",eeprom=" + directory / "image"; }
 
-// --- a file is made, and found ---
+// --- the program creates a file, and uses an existing file ---
 
 TEST(Persistence, AMissingFileIsMadeWithThePresetsAndSurvivesAnyEnd) {
   for (const int signal : {SIGKILL, SIGTERM}) {
@@ -221,11 +220,12 @@ TEST(Persistence, ATimeoutOfTheHostWatchdogIsRemembered) {
     EXPECT_EQ(simulator.ask("@011001"), ">");
     EXPECT_EQ(simulator.ask("~015S"), "!01");
     EXPECT_EQ(simulator.ask("~013101"), "!01");
-    // Not by a command: nobody reads the log meanwhile, and a full pipe would stop the program.
+    // Polls instead of waiting for text in the log: this test does not read the log meanwhile, and a full
+    // pipe would stop the program.
     while (simulator.tell("1 led") != "flashing") {
     }
     EXPECT_EQ(simulator.ask("~010"), "!0184");
-    EXPECT_EQ(simulator.ask("~01ONEW"), "!01");  // behind the timeout's own store
+    EXPECT_EQ(simulator.ask("~01ONEW"), "!01");  // the module has stored the timeout before it replies
     simulator.process().end(SIGKILL);
   }
   Simulator simulator({"EX9042D" + image_in(directory)});
@@ -234,9 +234,10 @@ TEST(Persistence, ATimeoutOfTheHostWatchdogIsRemembered) {
   EXPECT_EQ(simulator.tell("1 outputs"), "1001");
 }
 
-// --- what cannot be read (wire.md D8) ---
+// --- images without valid settings (wire.md D8) ---
 
-/// Factory settings, a flashing LED and a word on it; the file stays as it is until something is stored.
+/// Expects factory settings, a flashing LED and a remark in the greeting. The file must not change until the
+/// module stores something.
 void expect_factory_settings(const Directory& directory) {
   const std::string image = bytes_of_file(directory / "image");
   {
@@ -293,14 +294,14 @@ TEST(Persistence, ABlankImageIsAFactoryFreshModuleWhateverThePresets) {
   EXPECT_TRUE(has(simulator.greeting(), "not from the command line")) << simulator.greeting();
 }
 
-// --- wire.md 8: a reply means it is stored; power may fail at any instant ---
+// --- wire.md 8: a reply means that the settings are stored; power may fail at any instant ---
 
-/// Questions about all that the stores below change, and what is answered.
+/// Commands that read everything that the stores below change, and their replies.
 using Answers = std::map<std::string, std::string>;
 
-/// A command that stores, and the question that it changes the answer to.
+/// A command that stores, and the command that reads the stored value.
 struct Store {
-  std::string before;  ///< what has to be commanded first; empty: nothing
+  std::string before;  ///< the command to send first; empty: none
   std::string command;
   std::string question;
   std::string answer;
@@ -335,7 +336,7 @@ class Stores {
     std::generate(name.begin(), name.end(), [this] { return static_cast<char>(0x20U + below(0x5F)); });
     return {"", "~01O" + name, "$01M", "!01" + name};
   }
-  /// An enabled one has 20 s or more, so that it never expires here.
+  /// An enabled watchdog has a timeout of 20 s or more, so that it never expires in these tests.
   Store host_watchdog() {
     const bool on = below(2) == 0;
     const std::string value = (on ? "1" : "0") + reference::hex(on ? 200 + below(56) : 1 + below(255), 2);
@@ -349,14 +350,15 @@ class Stores {
   std::mt19937 random_;
 };
 
-/// A module that loses its power again and again, and what it must remember.
+/// Checks which settings a module has after each of many power failures.
 class Ordeal {
  public:
   explicit Ordeal(unsigned seed) : stores_(seed) {}
 
   [[nodiscard]] std::string module() const { return "EX9042D" + image_in(directory_); }
 
-  /// After a start: the last command is wholly done or not at all, and done if it was acknowledged.
+  /// Call it after a start. The last command must be carried out completely or not at all, and completely if
+  /// it was acknowledged.
   void check(Simulator& simulator) {
     Answers answers;
     for (const auto& [question, answer] : before_) {
@@ -365,14 +367,16 @@ class Ordeal {
     EXPECT_TRUE(answers == after_ || (!acknowledged_ && answers == before_))
         << testing::PrintToString(answers) << "\nbefore: " << testing::PrintToString(before_)
         << "\nafter: " << testing::PrintToString(after_);
-    // A blank memory whose first write was cut is neither blank nor readable (wire.md D8).
+    // If the first write to a blank memory was interrupted, the memory is neither blank nor readable (wire.md
+    // D8).
     EXPECT_TRUE(!anything_stored_ || simulator.tell("1 led") == "on");
     ++(acknowledged_ ? acknowledged_count_ : answers == after_ ? done_count_ : not_done_count_);
     before_ = after_ = answers;
     acknowledged_ = true;
   }
 
-  /// Some stores that are acknowledged, and one that may be.
+  /// Sends up to two stores and waits for their acknowledgements. Then sends another store, which may not be
+  /// acknowledged in time.
   void begin_cut(Simulator& simulator) {
     for (unsigned i = stores_.below(3); i > 0; --i) {
       const Store store = begin(simulator);
@@ -381,7 +385,7 @@ class Ordeal {
       anything_stored_ = true;
     }
     const Store store = begin(simulator);
-    constexpr unsigned kMostMicroseconds = 13'000;  // a store takes some 10 ms
+    constexpr unsigned kMostMicroseconds = 13'000;  // a store takes about 10 ms
     acknowledged_ =
         simulator.is_acknowledged_within(microseconds(stores_.below(kMostMicroseconds)), store.command);
   }
@@ -462,9 +466,10 @@ TEST(Persistence, APowerCutAndAKillUponItLeaveNoMoreThanEither) {
   ordeal.report("power off and SIGKILL");
 }
 
-// --- files that are refused ---
+// --- files that the program rejects ---
 
-/// Nothing starts: exit status 2, one line that names the file, and `directory` is as it was.
+/// Expects that the program does not start: exit status 2, one line that names the file, and no change in
+/// `directory`.
 void expect_refused(const Arguments& modules, const std::string& file, const Directory& directory) {
   const auto before = directory.contents();
   Arguments command{"timeout", "60", simulator_path(), "--control", "control"};
@@ -477,7 +482,7 @@ void expect_refused(const Arguments& modules, const std::string& file, const Dir
   EXPECT_EQ(directory.contents(), before) << finished.error;
 }
 
-/// Behind another module whose file would be made too.
+/// Tests the file alone, and after another module whose file would be created too.
 void expect_refused(const std::string& file, const Directory& directory) {
   expect_refused({"EX9042D,name=NEW,eeprom=" + file}, file, directory);
   expect_refused({"EX9052D@02,eeprom=beside", "EX9042D,eeprom=" + file}, file, directory);

@@ -1,4 +1,4 @@
-// The program as a program: start, end, and what it says to wrong arguments.
+// Tests the program as a process: its start, its end, and its messages about wrong arguments.
 #include <gtest/gtest.h>
 #include <unistd.h>
 
@@ -36,7 +36,7 @@ TEST(Program, EndsCleanlyAndRemovesItsLink) {
 
 TEST(Program, EndsCleanlyWhenNobodyReadsItsLogAnyMore) {
   Directory directory;
-  // A master that goes on talking makes the log grow after `head` has gone.
+  // A master that continues to send makes the log grow after `head` has ended.
   const Finished finished =
       run({"sh", "-c",
            "(" + simulator_path() +
@@ -58,7 +58,7 @@ TEST(Program, ASignalThatItIsStartedToIgnoreIsIgnored) {
   }
   ASSERT_FALSE(line.empty());
   const unsigned long ignored = std::stoul(line.substr(line.find('\t') + 1), nullptr, 16);
-  EXPECT_EQ(ignored >> (SIGHUP - 1) & 1U, 1U);  // it was not caught instead
+  EXPECT_EQ(ignored >> (SIGHUP - 1) & 1U, 1U);  // the program has not installed a handler
   EXPECT_EQ(ignored >> (SIGTERM - 1) & 1U, 0U);
   EXPECT_EQ(process.end(SIGTERM), 0);
 }
@@ -172,8 +172,8 @@ TEST(Program, WrongArgumentsGiveOneLineThatNamesThemExitStatus2AndLeaveNothingBe
 }
 
 TEST(Program, WhatIsCenturiesAheadIsSleptFor) {
-  // A year at the least speed takes a thousand, more than a clock can count; without power nothing comes
-  // before.
+  // A year at the lowest speed takes a thousand years, which is more than a clock can count. Without power
+  // there is no earlier event.
   for (const std::vector<std::string>& far :
        {std::vector<std::string>{"--fault", "gone", "--fault", "gone at 8760h"}, {"--for", "8760h"}}) {
     std::vector<std::string> arguments{"EX9042D", "--speed", "0.001"};
@@ -189,15 +189,15 @@ TEST(Program, WhatIsCenturiesAheadIsSleptFor) {
       return used;
     };
     const unsigned long before = ticks();
-    // The time over which its use is measured: one that looks all the time would take most of it.
+    // The period in which the processor time is measured. A program that polls would use most of it.
     std::this_thread::sleep_for(std::chrono::milliseconds(500));
     EXPECT_LT(ticks() - before, 5U) << "hundredths of a second, of 50";
     EXPECT_EQ(process.end(SIGTERM), 0);
   }
 }
 
-/// Seconds from the start to the end of a run of the program. One that hangs is ended after ten minutes, and
-/// its status is not 0.
+/// Returns the seconds from the start to the end of a run of the program. A program that hangs is ended after
+/// ten minutes with a status other than 0.
 double seconds_of_a_run(const std::string& speed, const std::string& lasts) {
   const Directory directory;
   const auto began = std::chrono::steady_clock::now();
@@ -208,10 +208,10 @@ double seconds_of_a_run(const std::string& speed, const std::string& lasts) {
 }
 
 TEST(Program, EndsWhenTheTimeOfTheLineIsOverAndNotThatOfTheWall) {
-  // A slow line: a machine under load makes it longer, and none makes it shorter.
+  // A slow line: load on the machine can extend this time, but nothing can shorten it.
   EXPECT_GE(seconds_of_a_run("0.01", "5ms"), 0.5);
   EXPECT_GE(seconds_of_a_run("1", "400ms"), 0.4);
-  // A fast one: what is waited for is over in less than two seconds, and would take half an hour by the wall.
+  // A fast line: 30 minutes on the line take 1.8 s on the wall clock.
   EXPECT_GE(seconds_of_a_run("1000", "30min"), 1.8);
 }
 
