@@ -1,4 +1,4 @@
-// Writes down what happens on a virtual line.
+// Records the events on a virtual line.
 #pragma once
 
 #include <cstdint>
@@ -32,7 +32,7 @@ class BusRecorder final : public BusObserver {
     bytes.push_back({station, byte, collided, start, end});
   }
 
-  /// What `station` has sent, in order.
+  /// Returns the bytes that `station` has sent, in order.
   [[nodiscard]] std::vector<std::uint8_t> sent_by(std::size_t station) const {
     std::vector<std::uint8_t> sent;
     for (const Byte& each : bytes) {

@@ -1,4 +1,4 @@
-// The virtual line itself.
+// Tests the virtual line.
 #include "sim/bus/bus.hpp"
 
 #include <gtest/gtest.h>
@@ -23,7 +23,7 @@ struct Heard {
   VirtualTime at;
 };
 
-/// A receiver that writes down what it hears.
+/// A station that records the bytes that it receives.
 class Listener final : public Station {
  public:
   Listener(Bus& bus, std::uint32_t baud) : clock_(bus.clock()), wire_(bus.attach(*this)), baud_(baud) {}
@@ -93,7 +93,7 @@ TEST_F(BusTest, EveryStationOfTheSameRateHearsEveryByteUnharmed) {
 TEST_F(BusTest, AReceiverAtHalfTheRateSeesFramingErrorsAndGarbage) {
   const auto sender = master(19200);
   Listener slow(bus_, 9600);
-  // '0' is 0 00001100 1 on the wire; two of its bits fall into one of the receiver's.
+  // '0' is 0 00001100 1 on the wire; two of these bits fall into one bit of the receiver.
   send(*sender, std::vector<std::uint8_t>(20, 0x30));
   bus_.run_for(milliseconds(30));
   ASSERT_FALSE(slow.heard.empty());
@@ -168,7 +168,7 @@ TEST_F(BusTest, ADriverThatGoesOffInTheMiddleOfAByteLeavesTheRestIdle) {
   send(*sender, {0x01, 0x01, 0x00, 0x00, 0x00, 0x0D, 0xFD, 0xCF});
   BusRecorder recorder;
   bus_.observe(recorder);
-  while (recorder.bytes.size() < 9) {  // eight of the master's, one of the module's
+  while (recorder.bytes.size() < 9) {  // eight bytes from the master, one from the module
     bus_.run_until(bus_.next());
   }
   bus_.run_for(microseconds(300));

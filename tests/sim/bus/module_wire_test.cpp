@@ -1,4 +1,4 @@
-// A module's way to the wires, without a module.
+// Tests a module's connection to the wires without a module.
 #include "sim/bus/module_wire.hpp"
 
 #include <gtest/gtest.h>
@@ -12,7 +12,7 @@ namespace {
 using namespace std::chrono_literals;
 using Happened = std::vector<std::string>;
 
-/// Writes down what comes, and when, in milliseconds.
+/// Records each event with its time in milliseconds.
 struct Wires final : Wire {
   explicit Wires(const VirtualClock& its_clock) : clock(its_clock) {}
 
@@ -31,7 +31,7 @@ struct Wires final : Wire {
   Happened happened;
 };
 
-/// A UART that hands out a reply of one byte, which takes a millisecond.
+/// Simulates a UART that sends replies of one byte. A reply takes one millisecond.
 class ModuleWireTest : public testing::Test {
  protected:
   void run_until(VirtualTime time) {
