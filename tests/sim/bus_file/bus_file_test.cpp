@@ -1,4 +1,4 @@
-// Files that describe lines and their modules.
+// Tests files that describe lines and their modules.
 #include "sim/bus_file/bus_file.hpp"
 
 #include <gtest/gtest.h>
@@ -24,7 +24,7 @@ std::string why_not(const std::string& text) {
   return refusal([&] { parsed(text); });
 }
 
-/// A file with one line, of one module, with these members besides.
+/// Returns a file with one line of one module. The line also has `members`.
 std::string line_with(const std::string& members) {
   return "{\"lines\": [{\"modules\": [{\"model\": \"EX9052D-M\"}],\n" + members + "}]}";
 }
@@ -37,7 +37,7 @@ ModuleSpec module_of(const std::string& members) {
   return parsed(module_with(members)).lines.at(0).modules.at(0);
 }
 
-// --- what it may say ---
+// --- valid files ---
 
 TEST(BusFile, TheExampleIsWhatItSays) {
   const auto setup = parsed(example_bus_file());
@@ -149,7 +149,7 @@ TEST(BusFile, AModuleMayHaveAllThatACommandLineMay) {
   EXPECT_EQ(module_of("\"checksum\": \"on\"").settings.format, 0x40);
   EXPECT_EQ(module_of("\"checksum\": false").settings.format, 0x00);
   EXPECT_EQ(module_of("\"edge\": \"rising\"").settings.format, 0x80);
-  EXPECT_EQ(module_of("\"name\": \"a b,c\"").settings.name, Name("a b,c"));  // more than a command line may
+  EXPECT_EQ(module_of("\"name\": \"a b,c\"").settings.name, Name("a b,c"));  // not possible on a command line
   EXPECT_TRUE(module_of("\"init\": true").init_asserted);
   EXPECT_EQ(module_of("\"eeprom\": \"a,b.bin\"").eeprom, "a,b.bin");
 }
@@ -166,7 +166,7 @@ TEST(BusFile, KeysMayStandInAnyOrder) {
   EXPECT_EQ(setup.lines[0].faults[1].module, 0U);
 }
 
-// --- what is refused ---
+// --- files that the program rejects ---
 
 struct Wrong {
   const char* file;
@@ -344,7 +344,7 @@ TEST(WrongLinesOfABusFile, TwoModulesCannotShareAnEeprom) {
   EXPECT_EQ(parsed(with("y")).lines.size(), 2U);
 }
 
-// --- as a file ---
+// --- reading from disk ---
 
 TEST(BusFile, IsWhatEndsWithJson) {
   EXPECT_TRUE(is_bus_file("bus.json"));

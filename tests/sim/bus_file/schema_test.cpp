@@ -1,4 +1,4 @@
-// The JSON Schema and the documentation of bus files name what the reader takes.
+// Tests that the JSON Schema and the documentation of bus files contain the keys of the reader.
 #include <gtest/gtest.h>
 
 #include <nlohmann/json.hpp>
@@ -12,7 +12,7 @@ namespace {
 
 using json = nlohmann::json;
 
-/// The schema of an object has these keys and no other, each with its schema and its meaning.
+/// Expects that the schema of an object has exactly these keys, each with its schema and its meaning.
 template <class Keys>
 void expect_keys(const json& object, const Keys& keys) {
   EXPECT_EQ(object.at("type"), "object");

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""The JSON Schema of bus files and the program agree on which files are wrong."""
+"""Tests that the JSON Schema of bus files and the program reject the same files."""
 
 import copy
 import json
@@ -15,7 +15,7 @@ ROOT = pathlib.Path(__file__).resolve().parents[3]
 PROGRAM = os.environ.get("EX9000_SIMULATOR", str(ROOT / "build/host-debug/sim/ex9000-sim"))
 FILE = "bus.json"
 
-# A right value of each key, by the object that has it.
+# A valid value of each key, grouped by the object that has the key.
 RIGHT = {
     "": {
         "lines": [{"tcp": 0, "modules": [{"model": "EX9052D-M"}]}],
@@ -53,7 +53,7 @@ RIGHT = {
     },
 }
 REQUIRED = {"": "lines", "lines[0]": "modules", "lines[0].modules[0]": "model"}
-# One of each of JSON's types; each key takes some of them.
+# One value of each JSON type. Each key accepts some of them.
 OF_EACH_TYPE = [None, True, 5, 1.5, "?", [], {}]
 
 
@@ -70,7 +70,7 @@ def schema_accepts(file):
 
 
 def run_with(file):
-    """The program with this bus file, which it leaves again at once if it takes it."""
+    """Runs the program with this bus file. If the file is valid, the program ends after 1 ms."""
     with tempfile.TemporaryDirectory() as folder:
         pathlib.Path(folder, FILE).write_text(json.dumps(file), encoding="utf-8")
         return run(FILE, "--for", "1ms", folder=folder)
@@ -92,7 +92,7 @@ def file_with(place, key, value):
 
 
 def keys():
-    """Each key as the place of its object, its name and a right value."""
+    """Returns the place of the object, the name and a valid value of each key."""
     return [(place, key, value) for place, members in RIGHT.items() for key, value in members.items()]
 
 
@@ -102,7 +102,7 @@ def path_of(place, key):
 
 class BusFileSchema(unittest.TestCase):
     def expect_refused(self, file, path):
-        """By the schema, and by the program in one line that names the file and the path in it."""
+        """Expects that the schema rejects the file, and the program too, with one line that names file and path."""
         self.assertFalse(schema_accepts(file))
         finished = run_with(file)
         self.assertEqual(finished.returncode, 2, finished.stderr)
@@ -127,7 +127,7 @@ class BusFileSchema(unittest.TestCase):
             with self.subTest(key=path_of(place, key)):
                 file = file_with(place, key, value)
                 self.assertTrue(schema_accepts(file))
-                if key != "serial":  # which takes a port that is there
+                if key != "serial":  # the program requires that the port exists
                     finished = run_with(file)
                     self.assertEqual(finished.returncode, 0, finished.stderr)
 
