@@ -1,4 +1,4 @@
-// The file a capture is kept in: what is made, what is overwritten, what is left alone.
+// Tests the file of a capture: when the program creates, overwrites or keeps a file.
 #include "sim/capture/capture_file.hpp"
 
 #include <fcntl.h>
@@ -21,7 +21,7 @@ using system::bytes_of_file;
 using system::Directory;
 using system::write_file;
 
-/// Where it is asked for.
+/// The place in the configuration that names the file.
 const std::string kPlace = "bus.json:2: capture: ";
 
 std::vector<std::uint8_t> block(std::string_view text) { return {text.begin(), text.end()}; }

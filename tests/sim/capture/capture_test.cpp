@@ -1,4 +1,4 @@
-// What is kept of a line, as Wireshark shows it, and the log for machines.
+// Tests captures as Wireshark shows them, and the JSON log.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -28,12 +28,12 @@ using Bytes = std::vector<std::uint8_t>;
 const std::string kSent = "0";  // frame.p2p_dir
 const std::string kReceived = "1";
 
-/// A simulator in stepped time that is killed before anybody looks at what it has kept.
+/// A simulator in stepped time. It is killed before the test reads its capture.
 class Captured {
  public:
   explicit Captured(std::vector<std::string> arguments) : simulator_(with_capture(std::move(arguments))) {}
 
-  /// Sends a request; waits for so many bytes of an answer.
+  /// Sends a request, and waits for a reply of `answer` bytes.
   void ask(const Bytes& request, std::size_t answer) {
     tell(request);
     EXPECT_EQ(client_.receive(answer).size(), answer);
@@ -41,13 +41,13 @@ class Captured {
   void ask(const std::string& request, std::size_t answer) {
     ask(Bytes(request.begin(), request.end()), answer);
   }
-  /// Sends a request, and waits until whatever comes of it is over and written down.
+  /// Sends a request, and waits until it and its replies have ended and are recorded.
   void tell(const Bytes& request) {
     client_.send(request);
     control_.ok("advance 1s after " + std::to_string(request.size()) + " quiet");
-    pass("100ms");  // longer than it is left open whether a frame goes on
+    pass("100ms");  // longer than the time in which a frame may continue
   }
-  /// Lets so much time pass.
+  /// Advances the time of the line.
   void pass(const std::string& time) { control_.ok("advance " + time); }
 
   void wait_for(const std::string& text) { EXPECT_TRUE(simulator_.wait_for(text)); }
@@ -73,8 +73,7 @@ class Captured {
   bool killed_ = false;
 };
 
-/// A request, how long its answer is, and the fields that Wireshark shows of each, beside those that all
-/// have.
+/// A request, the length of its reply, and the fields that Wireshark shows only for these two frames.
 struct Exchange {
   Bytes request;
   std::size_t answer;
@@ -197,7 +196,7 @@ TEST(Capture, AWrongCrcOrChecksumAndACollisionAreComments) {
   wrong.back() ^= 1U;
   line.tell(wrong);
   line.tell({'$', '0', '2', '2', 'B', '9', '\r'});
-  line.tell(with_crc({1, 1, 0, 0, 0, 1}));  // two answer
+  line.tell(with_crc({1, 1, 0, 0, 0, 1}));  // two modules reply
   const std::vector<Packet> packets = line.decoded(
       {"frame.p2p_dir", "frame.comment", "mbrtu.unit_id", "modbus.func_code", "mbrtu.crc16.status"});
   ASSERT_EQ(packets.size(), 5U);
@@ -222,7 +221,7 @@ TEST(Capture, FaultsAreCommentsToo) {
   for (const Packet& packet : line.decoded({"frame.comment"})) {
     damaged += packet.at("frame.comment").find("noise: byte ") == 0 ? 1U : 0U;
   }
-  EXPECT_GE(damaged, 5U);  // of ten requests with 80 bits each
+  EXPECT_GE(damaged, 5U);  // ten requests were sent, each with 80 bits
 }
 
 TEST(Capture, TheLinesOfABusFileAreInterfaces) {
@@ -273,7 +272,7 @@ TEST(Capture, OfARunInVirtualTimeIsTheSameEveryTime) {
   EXPECT_EQ(packets[0].at("frame.time_epoch").substr(0, 4), "1.10");
 }
 
-/// A busy host may be late, and the log says so; on the line nothing changes by it.
+/// Removes the notes about delays of the host. A busy host may be late, but this does not change the line.
 std::string without_delays_of_the_host(const std::string& log) {
   std::string kept;
   std::istringstream lines(log);
@@ -285,7 +284,7 @@ std::string without_delays_of_the_host(const std::string& log) {
 
 TEST(Capture, EndsAtTheSameTimeOfTheLineWhateverItsSpeed) {
   const Directory directory;
-  // A stranger every second, one of them shortly before the end and one at it, cut off.
+  // A foreign message begins every second. The end of the run cuts off the last one.
   write_file(directory / "bus.json", R"({"log": "json", "lines": [{"name": "hall",
     "faults": ["foreign-traffic 0101000000083DCC every 1s", "gone at 5.2s for 1s"],
     "modules": [{"model": "EX9042D-M"}]}]})");
@@ -345,16 +344,16 @@ TEST(Capture, WhatWiresharkDoesNotDecodeIsAsReadmeSays) {
       line.decoded({"_ws.col.Info", "_ws.col.Protocol", "exported_pdu.exported_pdu", "mbrtu.unit_id",
                     "modbus.func_code", "modbus.data", "modbus.diagnostic_code", "data.data"});
   ASSERT_EQ(packets.size(), 7U);
-  // Function 46 has no name there.
+  // Wireshark has no name for function 46.
   EXPECT_NE(packets[0].at("_ws.col.Info").find("Query"), std::string::npos);
   EXPECT_NE(packets[0].at("_ws.col.Info").find("Unknown function (70)"), std::string::npos);
   EXPECT_EQ(packets[0].at("modbus.func_code"), "70");
   EXPECT_EQ(packets[1].at("modbus.data").substr(0, 2), "00");
-  // Four bytes are too few.
+  // Four bytes are too few for Wireshark.
   expect_shown(packets[2], {{"mbrtu.unit_id", ""}, {"modbus.func_code", ""}, {"data.data", "0111c02c"}});
   EXPECT_EQ(packets[3].at("modbus.func_code"), "17");
   EXPECT_EQ(packets[4].at("modbus.diagnostic_code"), "0");
-  // Nor does it take broadcasts.
+  // Wireshark does not decode broadcasts either.
   expect_shown(packets[6], {{"mbrtu.unit_id", ""}, {"exported_pdu.exported_pdu", "00050001ff00dc2b"}});
   for (const Packet& packet : packets) {
     EXPECT_EQ(packet.at("_ws.col.Protocol"), "Modbus RTU");
@@ -379,7 +378,7 @@ TEST(Capture, TimesAreTheLinesOwnBehindTheWallClockOfTheStart) {
   const double answered = std::stod(packets[1].at("frame.time_epoch"));
   EXPECT_GT(asked, before);
   EXPECT_LT(answered, after);
-  // Eight characters, 3.5 of silence, and what the module takes.
+  // The time of eight characters, a silence of 3.5 characters, and the module's delay.
   EXPECT_NEAR(answered - asked, (8 + 3.5) * 10 / 9600, 0.001);
   EXPECT_EQ(packets[0].at("frame.interface_name").find("127.0.0.1:"), 0U);
 }
@@ -442,7 +441,7 @@ TEST(Capture, NeverGoesOverWhatARunReadsOrServes) {
       command.insert(command.end(), named.begin(), named.end());
       const Finished finished = run(command, directory.path());
       EXPECT_EQ(finished.status, 2) << finished.error;
-      // A link to what is not there yet is none to a file at all.
+      // While the target of the link does not exist, the program cannot know that both are the same file.
       if (path != "n.bin" || !named.empty()) {
         EXPECT_NE(finished.error.find(": is " + what + ", "), std::string::npos) << finished.error;
       }
@@ -454,7 +453,7 @@ TEST(Capture, NeverGoesOverWhatARunReadsOrServes) {
   EXPECT_FALSE(std::filesystem::exists(directory / "n.bin"));
 }
 
-// --- without the program ---
+// --- the classes without the program ---
 
 sim::Frame frame_of(std::size_t station, const Bytes& bytes) {
   sim::Frame frame;
@@ -490,7 +489,7 @@ TEST(Capture, EveryLineIsAnInterfaceAndHasItsOwnRequests) {
                             {"modbus.bitnum", "8"}});
 }
 
-/// Spoils one byte of what is sent.
+/// Changes one of the bytes that are sent.
 class OneHit final : public sim::Disturbance {
  public:
   OneHit(unsigned byte, sim::Levels mask) : byte_(byte), mask_(mask) {}
@@ -503,7 +502,7 @@ class OneHit final : public sim::Disturbance {
   sim::Levels mask_;
 };
 
-/// What is kept of a request of which `hit` spoils a byte.
+/// Returns the packet of a captured request after `hit` has changed one of its bytes.
 Packet of_a_spoiled(const Bytes& request, OneHit hit) {
   const Directory directory;
   sim::Line line({sim::parse_module_spec("EX9042D-M@01")}, sim::kPaced, [](std::uint8_t, ByteStatus) {});
@@ -545,7 +544,7 @@ TEST(Capture, DconIsTextAlsoWhereAByteIsDamaged) {
   EXPECT_EQ(packet.at("text").find("$0"), 0U) << packet.at("text");
 }
 
-// --- the log for machines ---
+// --- the JSON log ---
 
 TEST(JsonLog, IsAllThatIsOnStandardOutput) {
   const Directory directory;

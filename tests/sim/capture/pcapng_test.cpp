@@ -1,5 +1,5 @@
-// Blocks of a capture, byte by byte as the draft has them, and what stands before a frame in Wireshark's own
-// link type.
+// Compares the blocks of a capture with the pcapng draft byte by byte, and tests the header of a frame in
+// Wireshark's own link type.
 #include "sim/capture/pcapng.hpp"
 
 #include <gtest/gtest.h>

@@ -10,7 +10,7 @@ namespace ex9000::system {
 
 namespace {
 
-/// Also an empty one behind the last separator.
+/// Splits a line. The last part is empty if the line ends with the separator.
 std::vector<std::string> split(const std::string& line, char separator) {
   std::vector<std::string> parts(1);
   for (const char character : line) {
@@ -35,7 +35,7 @@ std::vector<Packet> decoded(const std::string& path, const std::vector<std::stri
   const Finished finished = run(command);
   EXPECT_EQ(finished.status, 0) << finished.error;
   EXPECT_EQ(finished.error.find("appears to"), std::string::npos)
-      << finished.error;  // be cut short, be damaged
+      << finished.error;  // tshark says "appears to be cut short" or "appears to be damaged"
   std::vector<Packet> packets;
   std::string line;
   for (std::istringstream lines(finished.output); std::getline(lines, line);) {

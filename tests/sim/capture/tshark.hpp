@@ -1,4 +1,4 @@
-// What Wireshark makes of a capture.
+// Decodes captures with tshark, the command-line program of Wireshark.
 #pragma once
 
 #include <map>
@@ -7,11 +7,11 @@
 
 namespace ex9000::system {
 
-/// A packet: what was asked for, by field; more than one of a kind with commas between.
+/// The values of the requested fields of a packet. Several values of one field are separated by commas.
 using Packet = std::map<std::string, std::string>;
 
-/// All packets of a capture, as README's command decodes them. Fails the test where tshark finds fault with
-/// the file.
+/// Decodes all packets of a capture with the options that sim/docs/capture.md recommends. Fails the test if
+/// tshark reports an error in the file.
 std::vector<Packet> decoded(const std::string& path, const std::vector<std::string>& fields);
 
 }  // namespace ex9000::system
