@@ -1,4 +1,4 @@
-// Modules, a master and somebody with his hands on the modules, by commands of the control socket.
+// A bench with modules, a master, and the commands of the control socket.
 #pragma once
 
 #include <gtest/gtest.h>
@@ -14,7 +14,7 @@ inline bool has(const std::string& text, const std::string& part) {
   return text.find(part) != std::string::npos;
 }
 
-/// Holds for every reply.
+/// Checks the form that every reply must have, and returns its text.
 inline std::string checked(const Control::Reply& reply) {
   const std::string& text = reply.text;
   EXPECT_TRUE(text == "ok" || text.rfind("ok ", 0) == 0 || text.rfind("error: ", 0) == 0) << text;
@@ -23,7 +23,7 @@ inline std::string checked(const Control::Reply& reply) {
   return text;
 }
 
-/// A module, a master and somebody with his hands on the module.
+/// A module, a master, and the commands of the control socket.
 class ControlBench : public ModuleBench {
  public:
   explicit ControlBench(const std::string& spec) : ModuleBench(spec), control_({{"", line()}}) {}
@@ -34,7 +34,7 @@ class ControlBench : public ModuleBench {
     return checked(reply);
   }
 
-  /// `ok HEX`.
+  /// Returns the number in a reply of the form `ok HEX`.
   unsigned number(const std::string& command) {
     const std::string reply = tell(command);
     EXPECT_EQ(reply.rfind("ok ", 0), 0U) << reply;
@@ -44,7 +44,7 @@ class ControlBench : public ModuleBench {
 
   bool status_has(const std::string& part) { return has(tell("1 status"), part); }
 
-  /// Until the module is being reset, or 2 s are over.
+  /// Runs the line until the module is being reset, but at most 2 s.
   void run_to_reset() {
     const VirtualTime gives_up = now() + std::chrono::milliseconds(2000);
     while (!status_has("mode=starting") && now() < gives_up) {
@@ -52,7 +52,7 @@ class ControlBench : public ModuleBench {
     }
   }
 
-  /// All of the module that a command could have changed.
+  /// Returns everything in the module that a command could have changed.
   std::string snapshot() {
     std::string text = tell("1 status") + tell("1 inputs") + tell("1 outputs") + tell("1 led");
     if (module().powered()) {
@@ -66,7 +66,7 @@ class ControlBench : public ModuleBench {
     return text;
   }
 
-  /// Refused, and nothing has changed, now or a moment later.
+  /// Expects that the command is rejected and changes nothing, neither at once nor within 20 ms.
   void expect_refused(const std::string& command) {
     run(std::chrono::milliseconds(20));
     const std::string before = snapshot();
@@ -79,7 +79,7 @@ class ControlBench : public ModuleBench {
   Control control_;
 };
 
-/// Several modules.
+/// Three modules on one line, with the commands of the control socket.
 class ThreeModules {
  public:
   ThreeModules() { line_.come_up(); }

@@ -1,4 +1,4 @@
-// The control socket of the running program, and all that clients may do to it.
+// Tests the control socket of the running program with well-behaved and misbehaving clients.
 #include <gtest/gtest.h>
 #include <sys/socket.h>
 #include <sys/stat.h>
@@ -24,10 +24,10 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr std::size_t kMostClients = 64;
-/// It waits for an event; only a program that hangs takes this long.
+/// A timeout for events. Only a program that hangs reaches it.
 constexpr std::chrono::seconds kPatience{60};
 
-/// The program with a control socket.
+/// Runs the program with a control socket.
 class Simulator : public SimulatorProcess {
  public:
   explicit Simulator(const std::vector<std::string>& modules) : SimulatorProcess(arguments(modules)) {}
@@ -43,13 +43,14 @@ class Simulator : public SimulatorProcess {
 
 bool starts_with(const std::string& text, const std::string& start) { return text.rfind(start, 0) == 0; }
 
-/// A program that starts after all is ended, with a status of its own.
+/// Runs the program. If it starts unexpectedly, `timeout` ends it with a different status.
 Finished finish(std::vector<std::string> arguments, const std::string& directory) {
   arguments.insert(arguments.begin(), {"timeout", "60", simulator_path()});
   return run(arguments, directory);
 }
 
-/// Nothing starts: exit status 2, one line that names the path, and `directory` is as it was.
+/// Expects that the program does not start: exit status 2, one line that names the path, and no change in
+/// `directory`.
 void expect_refused(const std::string& path, const Directory& directory) {
   const auto before = directory.contents();
   const Finished finished = finish({"EX9042D,eeprom=image", "--control", path}, directory.path());
@@ -89,7 +90,7 @@ std::vector<std::unique_ptr<ControlClient>> connect(const std::string& path, std
   return clients;
 }
 
-/// The line answers, and so does the socket.
+/// Expects that the line and the control socket reply.
 void expect_undisturbed(const Simulator& simulator) {
   Terminal terminal(simulator.tty(), 9600);
   terminal.type("$01M\r");
@@ -239,7 +240,7 @@ TEST(ControlSocket, AClientThatSendsAndGoesHasItsCommandsCarriedOut) {
   ControlClient(simulator.socket()).send("1 input 0 on\n1 input 7 on\n");
   ControlClient other(simulator.socket());
   std::string inputs;
-  for (int turn = 0; inputs != "ok 0081" && turn < 100; ++turn) {  // the two take turns
+  for (int turn = 0; inputs != "ok 0081" && turn < 100; ++turn) {  // the program serves clients in turns
     inputs = other.ask("1 inputs");
   }
   EXPECT_EQ(inputs, "ok 0081");
@@ -253,7 +254,7 @@ TEST(ControlSocket, AClientThatNeverReadsIsNotReadFromAndDisturbsNobody) {
   {
     ControlClient deaf(simulator.socket());
     std::size_t refusals = 0;
-    // A reply of another client comes after the program has read all that it ever will.
+    // When the other client gets its reply, the program has read as much from this client as it can.
     while (refusals < 100) {
       const std::size_t taken = deaf.offer(command);
       sent += taken / command.size();
@@ -264,7 +265,7 @@ TEST(ControlSocket, AClientThatNeverReadsIsNotReadFromAndDisturbsNobody) {
     EXPECT_GT(sent, 100U);
     expect_undisturbed(simulator);
     for (std::size_t i = 0; i < sent; ++i) {
-      ASSERT_TRUE(starts_with(deaf.line(), "ok EX9055D")) << i;  // all of them, once it reads
+      ASSERT_TRUE(starts_with(deaf.line(), "ok EX9055D")) << i;  // no reply is lost
     }
     while (deaf.offer(command) != 0) {
     }
@@ -276,11 +277,11 @@ TEST(ControlSocket, OfAHundredConnectionsSixtyFourAreServedAndTheOthersHungUp) {
   Simulator simulator({"EX9055D"});
   auto clients = connect(simulator.socket(), 100);
   EXPECT_EQ(answered(clients), kMostClients);
-  EXPECT_EQ(answered(clients), kMostClients);  // for good
+  EXPECT_EQ(answered(clients), kMostClients);  // the accepted clients stay connected
   EXPECT_EQ(ControlClient(simulator.socket()).line(),
             "error: there are 64 clients already; close one of them");
   clients.resize(1);
-  ASSERT_TRUE(is_answered(*clients[0]));  // behind the others' going
+  ASSERT_TRUE(is_answered(*clients[0]));  // by then the program has noticed that the others have left
   const auto heirs = connect(simulator.socket(), 100);
   EXPECT_EQ(answered(heirs), kMostClients - 1);
   EXPECT_TRUE(is_answered(*clients[0]));
@@ -288,7 +289,7 @@ TEST(ControlSocket, OfAHundredConnectionsSixtyFourAreServedAndTheOthersHungUp) {
 
 TEST(ControlSocket, ConnectionsThatComeAndGoUseNothingUp) {
   Simulator simulator({"EX9055D"});
-  for (int i = 0; i < 1500; ++i) {  // more than a process may have files open
+  for (int i = 0; i < 1500; ++i) {  // more than the number of files that a process may have open
     ControlClient client(simulator.socket());
     if (i % 2 == 0) {
       client.send("1 led");
@@ -363,7 +364,7 @@ TEST(ControlSocket, OneInUseIsRefusedAndGoesOnWorking) {
   const Directory directory;
   expect_refused(simulator.socket(), directory);
   expect_undisturbed(simulator);
-  const auto clients = connect(simulator.socket(), kMostClients);  // a full house is in use as well
+  const auto clients = connect(simulator.socket(), kMostClients);  // no free connection: still in use
   expect_refused(simulator.socket(), directory);
   EXPECT_TRUE(is_answered(*clients[0]));
 }

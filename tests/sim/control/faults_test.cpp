@@ -1,4 +1,4 @@
-// Faults by the control socket.
+// Tests the commands for faults on the control socket.
 #include <gtest/gtest.h>
 
 #include "tests/sim/control/control_bench.hpp"

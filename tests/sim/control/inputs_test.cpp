@@ -1,4 +1,4 @@
-// Inputs and pulses by the control socket, in virtual time.
+// Tests the commands for inputs and pulses on the control socket, in virtual time.
 #include <gtest/gtest.h>
 
 #include <string>

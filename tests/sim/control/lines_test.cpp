@@ -1,4 +1,4 @@
-// Commands for a line, for one of several, and for modules by their positions.
+// Tests commands for a single line, for one of several lines, and for modules by their positions.
 #include <gtest/gtest.h>
 
 #include <string>
@@ -64,7 +64,7 @@ TEST(ControlLine, QuitIsAcknowledgedAndOnlyTheWholeWordQuits) {
   }
 }
 
-/// Two modules on the one, one on the other.
+/// Two lines: `hall` with two modules, `yard` with one.
 class TwoLines {
  public:
   TwoLines() {

@@ -1,4 +1,4 @@
-// What is no command of the control socket changes nothing.
+// Tests that the control socket rejects unknown commands and that they change nothing.
 #include <gtest/gtest.h>
 
 #include <string>

@@ -1,4 +1,4 @@
-// Power, reset, INIT* and a main loop that hangs, by the control socket, in virtual time.
+// Tests the commands for power, reset, INIT* and a main loop that hangs, in virtual time.
 #include <gtest/gtest.h>
 
 #include <string>
@@ -70,7 +70,7 @@ TEST(ControlReset, ItIsAResetLikeAnyOther) {
   EXPECT_EQ(bench.ask("$015"), "!011");
   EXPECT_EQ(bench.ask("@01"), ">0008");
   EXPECT_EQ(bench.ask("#010"), "!0100000");
-  EXPECT_EQ(bench.ask("$01L1"), "!000000");  // levels at reset are no edges
+  EXPECT_EQ(bench.ask("$01L1"), "!000000");  // a level at a reset is not an edge
   EXPECT_TRUE(bench.status_has("watchdog-resets=0"));
 }
 

@@ -1,4 +1,4 @@
-// What the control socket tells of outputs, LED and status.
+// Tests the replies of the control socket about outputs, LED and status.
 #include <gtest/gtest.h>
 
 #include <string>
