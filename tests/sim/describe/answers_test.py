@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""What the maps name is there: the simulated module answers all of it, and does what it is said to do."""
+"""Tests that the simulated module has each register in the maps, and does what the maps say."""
 
 import json
 import re
@@ -10,11 +10,11 @@ import yaml
 from line import Line
 from program import describe, models_with_modbus
 
-# The words of the tools for what Line calls coil, discrete_input, holding and input.
+# The terms of the tools, and the terms of Line: coil, discrete_input, holding and input.
 NODE_RED = {"Coil": "coil", "Input": "discrete_input", "HoldingRegister": "holding", "InputRegister": "input"}
 WIREN_BOARD = {"coil": "coil", "discrete": "discrete_input", "holding": "holding", "input": "input"}
 
-# wire.md section 1: outputs and inputs.
+# The number of outputs and of inputs (wire.md section 1).
 CHANNELS = {
     "EX9042D-M": (13, 0),
     "EX9043D-M": (16, 0),
@@ -28,7 +28,7 @@ CHANNELS = {
 
 
 def coils_to_write(model):
-    """Address and value of each coil that a master has to be able to write: wire.md section 7."""
+    """Returns address and value of each coil that a master must be able to write (wire.md section 7)."""
     outputs, inputs = CHANNELS[model]
     switched = {(address, on) for address in range(outputs) for on in [True, False]}
     cleared = {0x010D} | ({0x0107} | {0x0200 + counter for counter in range(inputs)} if inputs else set())
@@ -36,7 +36,7 @@ def coils_to_write(model):
 
 
 def ranges_to_read(model):
-    """First address and number of what a master has to be able to read: wire.md section 7."""
+    """Returns the first address and the size of each range that a master must be able to read (wire.md section 7)."""
     outputs, inputs = CHANNELS[model]
     of_outputs = {(0x0000, outputs), (0x0080, outputs), (0x00A0, outputs)} if outputs else set()
     of_inputs = {(0x0000, inputs), (0x0040, inputs), (0x0060, inputs)} if inputs else set()

@@ -1,4 +1,4 @@
-// The description for spreadsheets, read as RFC 4180 says. What is expected stands in wire.md.
+// Tests the description for spreadsheets with a reader for RFC 4180. The expected values are from wire.md.
 #include "sim/describe/csv.hpp"
 
 #include <gtest/gtest.h>
@@ -45,7 +45,7 @@ std::vector<Cells> rows_of(const std::string& text) {
 
 std::vector<Cells> table_of(const char* designation) { return rows_of(csv_of({find_model(designation)})); }
 
-/// The row with this table and this address or command.
+/// Returns the row with this table and this address or command.
 Cells row(const char* designation, const std::string& table, const std::string& which) {
   for (const Cells& cells : table_of(designation)) {
     if (cells[1] == table && (cells[2] == which || cells[6] == which)) {
@@ -65,9 +65,9 @@ TEST(DescribeCsv, HasAHeadAndEveryRowItsCells) {
 }
 
 TEST(DescribeCsv, HasARowACommandACoilAndARegister) {
-  // 21 commands, 3 x 13 coils of outputs, 3 of the general part, 5 holding registers, host OK in two tables
+  // 21 commands, 3 x 13 coils for outputs, 3 general coils, 5 holding registers, host OK in two tables
   EXPECT_EQ(table_of("EX9042D-M").size(), 1U + 21 + 39 + 3 + 5 + 2);
-  // 23 commands of a model with both, and no Modbus
+  // 23 commands, because the model has inputs and outputs; no registers, because it does not speak Modbus
   EXPECT_EQ(table_of("EX9055D").size(), 1U + 23);
 }
 

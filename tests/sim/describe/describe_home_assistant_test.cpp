@@ -1,4 +1,4 @@
-// The hub for Home Assistant: what is in it, by wire.md. Its form is checked in tests/describe.
+// Tests the content of the hub for Home Assistant against wire.md. home_assistant_test.py checks its form.
 #include "sim/describe/home_assistant.hpp"
 
 #include <gtest/gtest.h>

@@ -1,4 +1,4 @@
-// The description for programs. What is expected stands in wire.md.
+// Tests the description for programs. The expected values are from wire.md.
 #include "sim/describe/json.hpp"
 
 #include <gtest/gtest.h>
@@ -16,7 +16,7 @@ Json json_of_model(const char* designation) {
   return Json::parse(json_of({find_model(designation)})).at("models").at(0);
 }
 
-/// Of an array, the object that has this value under this key; null where there is none.
+/// Returns the object of the array that has this value under this key; null if there is none.
 Json with(const Json& objects, const char* key, const Json& value) {
   for (const Json& object : objects) {
     if (object.at(key) == value) {
@@ -26,7 +26,7 @@ Json with(const Json& objects, const char* key, const Json& value) {
   return {};
 }
 
-/// The register of this id in this table.
+/// Returns the register with this id in this table; null if there is none.
 Json in_table(const Json& registers, const char* id, const char* table) {
   for (const Json& each : registers) {
     if (each.at("id") == id && each.at("table") == table) {

@@ -1,4 +1,4 @@
-// The description in Markdown, and its copy in README.md.
+// Tests the description in Markdown, and its copy in firmware/registers.md.
 #include "sim/describe/markdown.hpp"
 
 #include <gtest/gtest.h>
@@ -31,7 +31,7 @@ std::string text_of(const char* designation) { return markdown_of(*find_model(de
 
 bool has(const std::string& text, const std::string& part) { return text.find(part) != std::string::npos; }
 
-/// The first `count` cells of each row of the tables whose first column is called `title`.
+/// Returns the first `count` cells of each row of the tables whose first column has the heading `title`.
 std::vector<Lines> rows(const std::string& text, const std::string& title, std::size_t count) {
   std::vector<Lines> found;
   bool inside = false;
@@ -62,7 +62,7 @@ Lines first_cells(const std::string& text, const std::string& title) {
 
 Lines functions(const char* designation) { return first_cells(text_of(designation), "function"); }
 
-/// Without the backticks around them.
+/// Returns the syntax of each command, without the backticks around it.
 Lines commands(const char* designation) {
   Lines syntaxes;
   for (const std::string& cell : first_cells(text_of(designation), "command")) {
@@ -71,10 +71,10 @@ Lines commands(const char* designation) {
   return syntaxes;
 }
 
-/// Table, address, PLC number, functions, access.
+/// Returns table, address, PLC number, functions and access of each register.
 std::vector<Lines> map_of(const char* designation) { return rows(text_of(designation), "table", 5); }
 
-/// The row of all models' table that begins with this cell.
+/// Returns the row of the tables for all models that begins with this cell.
 std::string row_beginning(const std::string& first) {
   for (const std::string& line : lines_of(markdown_of_all())) {
     if (line.find("| " + first + " |") == 0) {
@@ -88,7 +88,7 @@ bool ends(const std::string& text, const std::string& end) {
   return text.size() >= end.size() && text.compare(text.size() - end.size(), end.size(), end) == 0;
 }
 
-/// Those that part cells: an escaped one is text.
+/// Counts the pipes that separate cells. An escaped pipe is text.
 std::ptrdiff_t pipes_in(const std::string& line) {
   std::ptrdiff_t pipes = 0;
   char before = 0;
@@ -99,7 +99,7 @@ std::ptrdiff_t pipes_in(const std::string& line) {
   return pipes;
 }
 
-/// Of a row: it has as many cells as the head of its table, and what is opened is closed.
+/// Expects that a row has as many cells as the head of its table, no empty cell, and pairs of backticks.
 void expect_row(const std::string& line, std::ptrdiff_t pipes) {
   EXPECT_EQ(line.back(), '|') << line;
   EXPECT_EQ(pipes_in(line), pipes) << line;
@@ -142,7 +142,7 @@ std::string generated_section() {
              : document.substr(from + begin.size(), to - from - begin.size());
 }
 
-/// Both texts are long, so a failure shows the first line only that differs.
+/// Returns the first line that differs, because both texts are long; empty if there is no difference.
 std::string difference(const std::string& stands, const std::string& wanted) {
   if (stands == wanted) {
     return "";
@@ -161,7 +161,7 @@ TEST(Registers, HoldsWhatTheProgramPrints) {
   EXPECT_TRUE(found.empty()) << "registers.md has\n" << found << "\nRenew it with toolchain/update-documents";
 }
 
-// --- its form ---
+// --- form ---
 
 TEST(DescribeMarkdown, IsMarkdown) {
   expect_markdown(markdown_of_all());
@@ -274,7 +274,7 @@ TEST(DescribeMarkdown, ListsEveryFunction) {
             "| 10 | Write Multiple Registers | done by all modules, without answer | -M |");
 }
 
-/// The rows that every -M model has.
+// The rows that every -M model has.
 const Lines kProtocol{"coil", "0x0100", "00257", "01, 05", "read, write"};
 const Lines kEnable{"coil", "0x0104", "00261", "01, 05", "read, write"};
 const Lines kTimeoutStatus{"coil", "0x010D", "00270", "01, 05", "read, write"};

@@ -1,4 +1,4 @@
-// The flow for Node-RED: what it asks for, by wire.md. Its form is checked in tests/describe.
+// Tests the requests in the flow for Node-RED against wire.md. node_red_test.py checks its form.
 #include "sim/describe/node_red.hpp"
 
 #include <gtest/gtest.h>
@@ -17,7 +17,7 @@ Json flow_of(const char* designation, const Place& place = {}) {
   return Json::parse(node_red_flow(*find_model(designation), place));
 }
 
-/// What the nodes of this type ask for: data type, address, quantity.
+/// Returns data type, address and quantity of each node of this type.
 std::vector<std::string> asked(const Json& flow, const char* type) {
   std::vector<std::string> all;
   for (const Json& node : flow) {

@@ -1,4 +1,4 @@
-// Which description is of what, and what is refused.
+// Tests which models each format describes, and which arguments are rejected.
 #include "sim/describe/describe.hpp"
 
 #include <gtest/gtest.h>
@@ -18,7 +18,7 @@ std::string described(const char* model, const char* format) {
   return describe(texts);
 }
 
-/// In one line that names what is wrong and what would be right.
+/// Expects a one-line message that contains `wrong` and `mend`.
 void expect_refused(const DescribeTexts& texts, const std::string& wrong, const std::string& mend) {
   try {
     describe(texts);

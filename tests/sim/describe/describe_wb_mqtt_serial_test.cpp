@@ -1,4 +1,5 @@
-// The template for wb-mqtt-serial: its channels, by wire.md. Its form is checked in tests/describe.
+// Tests the channels in the template for wb-mqtt-serial against wire.md. wb_mqtt_serial_test.py checks the
+// form of the template.
 #include "sim/describe/wb_mqtt_serial.hpp"
 
 #include <gtest/gtest.h>

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Home Assistant's hubs against a schema of its modbus integration, and what no schema can say."""
+"""Checks Home Assistant's hubs with a schema of its modbus integration, and rules that a schema cannot express."""
 
 import copy
 import json
@@ -28,7 +28,7 @@ def entities(hub):
 
 
 def serial_alternative(text):
-    """The comment's keys in place of type, host and port."""
+    """Returns the hub with the keys in the comment instead of type, host and port."""
     lines = text.splitlines()
     first = lines.index("#   type: serial")
     last = lines.index("#   stopbits: 1")

@@ -1,4 +1,4 @@
-"""A simulated module, and a master that asks it as a tool would."""
+"""A simulated module, and a master that sends requests as the tools do."""
 
 import re
 import socket
@@ -20,7 +20,7 @@ def crc16(data):
 
 
 class Line:
-    """One module at address 01 behind a TCP port; Modbus RTU as on the line."""
+    """One module at address 01. It is reached over TCP with Modbus RTU frames."""
 
     def __init__(self, model):
         command = [PROGRAM, f"{model}@01", "--tcp", "0", "--line", "instant"]
@@ -48,7 +48,7 @@ class Line:
         return data
 
     def _ask(self, function, first, value):
-        """The data behind address and function, without CRC."""
+        """Returns the data of the reply, without address, function and CRC. Raises ValueError for an exception."""
         request = struct.pack(">BBHH", 1, function, first, value)
         self._socket.sendall(request + crc16(request))
         reply = self._receive(3)
@@ -61,12 +61,12 @@ class Line:
         return reply[2:-2]
 
     def read(self, kind, first, count=1):
-        """Bits or registers, as numbers. ValueError where the answer is an exception."""
+        """Returns bits or registers as numbers. Raises ValueError if the reply is an exception."""
         data = self._ask(FUNCTION_OF_READING[kind], first, count)[1:]
         if kind in ["coil", "discrete_input"]:
             return [data[bit // 8] >> bit % 8 & 1 for bit in range(count)]
         return list(struct.unpack(f">{count}H", data))
 
     def write_coil(self, address, on):
-        """ValueError where the answer is an exception."""
+        """Writes a coil. Raises ValueError if the reply is an exception."""
         self._ask(5, address, 0xFF00 if on else 0x0000)

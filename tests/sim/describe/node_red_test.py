@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Node-RED's flows: every id, wire and property is one that Node-RED and node-red-contrib-modbus know."""
+"""Tests that Node-RED and node-red-contrib-modbus support every property of the flows, and checks ids and wires."""
 
 import copy
 import json
@@ -46,7 +46,7 @@ def wrong_wires(node, nodes):
 
 
 def mistakes(all_nodes):
-    """What is wrong with a flow, in words."""
+    """Returns a description of each error in a flow."""
     unknown = {node["type"] for node in all_nodes} - set(KNOWN["nodes"])
     if unknown:
         return [f"there is no node {', '.join(unknown)}"]

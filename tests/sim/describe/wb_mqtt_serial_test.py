@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""wb-mqtt-serial's device templates against a schema of them, and what no schema can say."""
+"""Checks the device templates for wb-mqtt-serial with a schema, and rules that a schema cannot express."""
 
 import copy
 import json

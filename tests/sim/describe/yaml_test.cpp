@@ -1,4 +1,4 @@
-// Values as YAML.
+// Tests the conversion of JSON values to YAML.
 #include "sim/describe/yaml.hpp"
 
 #include <gtest/gtest.h>
