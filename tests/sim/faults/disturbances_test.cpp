@@ -18,7 +18,7 @@ using std::chrono::seconds;
 
 using Heard = std::vector<std::pair<int, ByteStatus>>;
 
-/// One who sends and one who hears it.
+/// A line with a sender and a receiver.
 struct TwoOnALine {
   VirtualClock clock;
   Bus bus{clock};
@@ -63,7 +63,7 @@ TEST(Disturbance, OfTheStartBitMakesTheFirst0TheStart) {
   TwoOnALine line;
   Flips flips(1U << 0U);
   line.bus.disturb(flips);
-  line.send({0x2D});  // 1 0 1 1 0 1 0 0 on the wires: from its second bit on, 1 1 0 1 0 0 1 1
+  line.send({0x2D});  // data bits on the wires: 1 0 1 1 0 1 0 0; after the first 0: 1 1 0 1 0 0 1 1
   EXPECT_EQ(line.heard, (Heard{{0xCB, ByteStatus::Good}}));
 }
 

@@ -1,4 +1,4 @@
-// A line with faults, a master, and somebody who writes down what is heard.
+// A line with faults and a master that records the bytes that it receives.
 #pragma once
 
 #include <chrono>
@@ -15,7 +15,7 @@ namespace ex9000::sim {
 
 class FaultBench {
  public:
-  /// `modules` as on the simulator's command line; 100 ms have passed since power-on.
+  /// `modules` have the form of the simulator's command line. The line's time is 100 ms after power-on.
   explicit FaultBench(const std::vector<std::string>& modules = {"EX9042D@01"}, std::uint64_t seed = 1)
       : line_(specs(modules), kPaced, [this](std::uint8_t byte, ByteStatus status) {
           heard_.push_back(static_cast<char>(byte));
@@ -26,7 +26,7 @@ class FaultBench {
     line_.expect_trouble(seed, [this](const std::string& text) { notices_.push_back(text); });
   }
 
-  /// Of the module at `position`, from 1, where there is one.
+  /// Adds a fault of the line, or of the module at `position`, counted from 1. Returns its number.
   std::size_t add(const std::string& text, std::optional<std::size_t> position = std::nullopt) {
     Fault fault = parse_fault(text);
     if (position) {
@@ -49,7 +49,8 @@ class FaultBench {
       line_.bus().run_until(line_.bus().next());
     }
   }
-  /// A DCON command without its CR, and all that is heard within `patience`, likewise.
+  /// Sends a DCON command and returns everything that the master receives within `patience`, both without the
+  /// last CR.
   std::string ask(const std::string& command, VirtualTime patience = std::chrono::milliseconds(50)) {
     forget();
     send(command + "\r");
@@ -57,9 +58,9 @@ class FaultBench {
     return heard_.empty() || heard_.back() != '\r' ? heard_ : heard_.substr(0, heard_.size() - 1);
   }
 
-  /// All since it was forgotten.
+  /// Returns everything that the master has received since the last `forget`.
   [[nodiscard]] const std::string& heard() const { return heard_; }
-  /// Whether there were errors among it.
+  /// Whether at least one of these bytes had an error.
   [[nodiscard]] bool garbled() const { return garbled_; }
   void forget() {
     heard_.clear();
@@ -87,7 +88,7 @@ inline const std::string kName = "!019042D";
 
 inline std::vector<std::string> two() { return {"EX9042D@01", "EX9052D@02"}; }
 
-/// When each byte that is none of the master's or of the only module's began, and its value.
+/// Returns the start time and the value of each byte that neither the master nor a module has sent.
 inline std::vector<std::pair<VirtualTime, int>> of_others(FaultBench& bench) {
   std::vector<std::pair<VirtualTime, int>> bytes;
   for (const BusRecorder::Byte& byte : bench.recorder().bytes) {
@@ -98,7 +99,7 @@ inline std::vector<std::pair<VirtualTime, int>> of_others(FaultBench& bench) {
   return bytes;
 }
 
-/// When the module at `position` has begun to answer.
+/// Returns the times at which the module at `position` has begun to reply.
 inline std::vector<VirtualTime> answers_of(FaultBench& bench, std::size_t position) {
   std::vector<VirtualTime> begun;
   for (const BusRecorder::Driver& driver : bench.recorder().drivers) {
@@ -109,7 +110,8 @@ inline std::vector<VirtualTime> answers_of(FaultBench& bench, std::size_t positi
   return begun;
 }
 
-/// Which of so many requests are answered: `.` those that are not.
+/// Sends `requests` requests and returns one character for each: `x` for a reply, `.` for none, `?` for a
+/// damaged reply.
 inline std::string answered(FaultBench& bench, unsigned requests, const std::string& address = "01") {
   std::string which;
   for (unsigned i = 0; i < requests; ++i) {

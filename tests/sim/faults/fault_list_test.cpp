@@ -1,4 +1,4 @@
-// What can be told of faults, and how they are taken away again.
+// Tests the list of faults, their removal and their notices.
 #include <gtest/gtest.h>
 
 #include <string>
@@ -26,7 +26,7 @@ TEST(FaultsList, RemovedIsOver) {
       }
       EXPECT_TRUE(bench.faults().list().empty());
       bench.run(2s);
-      bench.send("\r");  // whatever has begun is over
+      bench.send("\r");  // ends a frame that has begun
       EXPECT_EQ(bench.ask("$01M"), kName) << trouble;
     }
   }

@@ -1,4 +1,4 @@
-// When a fault strikes.
+// Tests the times at which faults strike.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -109,9 +109,9 @@ TEST(FaultsSchedule, NoiseOfRepliesThatLastsIsOneStrikeHoweverManyThereAre) {
 TEST(FaultsSchedule, OfRepliesMayLastBeyondTheReply) {
   FaultBench bench;
   bench.add("lost-reply every 3rd reply for 100ms");
-  const std::string which = answered(bench, 6);  // one takes 55 ms
+  const std::string which = answered(bench, 6);  // a request takes 55 ms
   EXPECT_EQ(which.substr(0, 4), "xx..");
-  EXPECT_EQ(which[5], '.');  // the sixth
+  EXPECT_EQ(which[5], '.');  // the sixth reply
 }
 
 TEST(FaultsSchedule, AProbabilityIsKeptAndASeedRepeatsIt) {
@@ -137,7 +137,7 @@ TEST(FaultsSchedule, OfWritesCutsBehindTheWriteAndBeforeItsReply) {
   EXPECT_FALSE(bench.at(1).powered());
   bench.run(1200ms);
   EXPECT_EQ(bench.ask("$01M"), "!01THIRD");
-  EXPECT_EQ(bench.ask("~01OFOURTH"), "!01");  // once
+  EXPECT_EQ(bench.ask("~01OFOURTH"), "!01");  // the fault strikes only once
   EXPECT_EQ(bench.ask("~01OFIFTH"), "!01");
   EXPECT_EQ(bench.ask("~01OSIXTH"), "!01");
   EXPECT_EQ(bench.faults().list()[0].strikes_so_far, 1U);

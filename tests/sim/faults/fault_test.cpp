@@ -1,4 +1,4 @@
-// Faults as people write them.
+// Tests the syntax of faults.
 #include "sim/faults/fault.hpp"
 
 #include <gtest/gtest.h>
@@ -18,7 +18,7 @@ std::string why_not(const std::string& text) {
   return refusal([&] { parse_fault(text); });
 }
 
-// --- what goes wrong ---
+// --- kinds of faults ---
 
 TEST(Fault, EveryTroubleHasANameAndItsOneValue) {
   EXPECT_EQ(parse_fault("bit-errors 1e-4").trouble, Trouble::BitErrors);
@@ -72,7 +72,7 @@ TEST(Fault, HelpTellsOfEachTroubleWithItsValue) {
   }
 }
 
-// --- when ---
+// --- schedules ---
 
 TEST(FaultSchedule, MayBeAMoment) {
   const Schedule schedule = parse_fault("gone at 12.5s").schedule;
@@ -121,14 +121,14 @@ TEST(FaultSchedule, HowLongItLastsMayStandAnywhereBehindTheTrouble) {
   EXPECT_EQ(parse_fault("late-reply 1ms every 3rd reply for 2s").schedule.lasts, 2s);
 }
 
-// --- as it is told ---
+// --- the text of a fault ---
 
 TEST(Fault, IsToldInOneLineHoweverItWasWritten) {
   EXPECT_EQ(parse_fault("  gone\n at\t1s ").text, "gone at 1s");
   EXPECT_EQ(why_not("gone\nat\n1").find('\n'), std::string::npos);
 }
 
-// --- what is refused ---
+// --- wrong faults ---
 
 struct Wrong {
   const char* text;

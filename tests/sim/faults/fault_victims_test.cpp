@@ -1,4 +1,4 @@
-// Whom a fault befalls, and what becomes of several.
+// Tests which modules a fault affects, and the effect of several faults together.
 #include <gtest/gtest.h>
 
 #include <string>
@@ -35,7 +35,7 @@ TEST(FaultsOfAllModules, ThatStrikeWithAReplyBefallWhoSendsIt) {
   bench.run(5s);
   EXPECT_EQ(bench.ask("$02M"), "");
   EXPECT_FALSE(bench.at(2).powered());
-  EXPECT_FALSE(bench.at(1).powered());  // the other's strike does not end its own
+  EXPECT_FALSE(bench.at(1).powered());  // the strike on module 2 does not end the one on module 1
   bench.run_until(first + 10s);
   EXPECT_TRUE(bench.at(1).powered());
   EXPECT_FALSE(bench.at(2).powered());
@@ -63,7 +63,7 @@ TEST(NoiseOfAReply, HitsThatReplyAndNothingElse) {
   for (int i = 0; i < 6; ++i) {
     const std::string outputs = i % 2 == 0 ? "0001" : "0002";
     const std::string reply = bench.ask("@01" + outputs);
-    EXPECT_EQ(bench.at(1).outputs(), i % 2 == 0 ? 1 : 2);  // each request was heard
+    EXPECT_EQ(bench.at(1).outputs(), i % 2 == 0 ? 1 : 2);  // the module has received each request
     EXPECT_EQ(reply == ">", i % 2 == 0) << i;
   }
 }

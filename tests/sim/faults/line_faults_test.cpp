@@ -1,4 +1,4 @@
-// Faults of the line, in virtual time: what everybody hears of each.
+// Tests the effect of each fault of the line, in virtual time.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -19,7 +19,7 @@ TEST(BitErrors, OfAllBitsMakeTheLineUnreadable) {
   EXPECT_NE(bench.ask("@010001"), ">");
   EXPECT_EQ(bench.at(1).outputs(), 0);
   EXPECT_TRUE(bench.faults().remove(fault));
-  bench.send("\r");  // whatever has begun is over
+  bench.send("\r");  // ends a frame that has begun
   EXPECT_EQ(bench.ask("@010001"), ">");
 }
 
@@ -31,9 +31,9 @@ TEST(BitErrors, AreAsManyAsTheirProbabilitySays) {
   int whole = 0;
   for (int i = 0; i < kRequests; ++i) {
     whole += bench.ask("$01M") == kName && !bench.garbled() ? 1 : 0;
-    bench.send("\r");  // whatever has begun is over
+    bench.send("\r");  // ends a frame that has begun
   }
-  // "$01M\r" and "!019042D\r", ten bits a character.
+  // A request is "$01M\r", a reply "!019042D\r"; each character has ten bits.
   const double expected = std::pow(1 - probability, 10 * (5 + 9));
   const double deviation = std::sqrt(expected * (1 - expected) / kRequests);
   EXPECT_NEAR(whole / double{kRequests}, expected, 4 * deviation);
@@ -54,7 +54,7 @@ TEST(LostBytes, AreAsManyAsTheirProbabilitySays) {
   int unheard = 0;
   for (int i = 0; i < kRequests; ++i) {
     unheard += bench.ask("$01M").empty() ? 1 : 0;
-    bench.send("\r");  // whatever has begun is over
+    bench.send("\r");  // ends a frame that has begun
   }
   const double expected = 1 - std::pow(0.99, 5);  // "$01M\r"
   const double deviation = std::sqrt(expected * (1 - expected) / kRequests);
@@ -99,14 +99,14 @@ TEST(StrayZeros, BehindSomeBytesLeaveTheOthersAlone) {
 TEST(EchoFault, SaysAgainWhatWasSaidAfterItsSilence) {
   FaultBench bench;
   bench.add("echo 5ms");
-  EXPECT_EQ(bench.ask("$05M"), "$05M");  // for a module that is not here
+  EXPECT_EQ(bench.ask("$05M"), "$05M");  // the line has no module 05
   const VirtualTime request_over = bench.recorder().bytes[4].end;
   EXPECT_EQ(of_others(bench)[0].first, request_over + 5ms);
 }
 
 TEST(EchoFault, WaitsForTheEndOfWhatIsSaidHoweverShortItsSilence) {
   FaultBench bench;
-  bench.add("echo 1ms");  // of which a character at 9600 baud takes 1.04
+  bench.add("echo 1ms");  // shorter than a character at 9600 baud, which takes 1.04 ms
   EXPECT_EQ(bench.ask("$05M"), "$05M");
   EXPECT_GT(of_others(bench)[0].first, bench.recorder().bytes[4].end);
 }

@@ -1,4 +1,4 @@
-// Faults of modules, in virtual time: what each is to a master, and when it is over.
+// Tests the effect and the end of each fault of a module, in virtual time.
 #include <gtest/gtest.h>
 
 #include <functional>
@@ -112,7 +112,7 @@ TEST(Hang, OfEveryReplyLetsThatReplyOut) {
   EXPECT_EQ(bench.at(1).watchdog_resets(), 1U);
 }
 
-/// How a module begins anew.
+/// The causes of a reset.
 const std::pair<const char*, std::function<void(FaultBench&)>> kResets[] = {
     {"reset", [](FaultBench& bench) { bench.at(1).reset(); }},
     {"supply",
@@ -128,7 +128,7 @@ const std::pair<const char*, std::function<void(FaultBench&)>> kResets[] = {
      }},
 };
 
-/// Whether it does what each fault of a reply, or of a rate, that lasts is to a master.
+// Each function returns whether a master notices this fault.
 bool replies_are_lost(FaultBench& bench) { return bench.ask("$01M", 100ms).empty(); }
 bool replies_are_late(FaultBench& bench) {
   return bench.ask("$01M", 50ms).empty() && bench.ask("", 100ms) == kName;

@@ -1,5 +1,5 @@
-// An hour of noise at each protocol: nothing is answered, and no output changes, but by a frame that is
-// right. What is right is judged here once more, by nothing of the firmware's.
+// Feeds an hour of noise to a module with each protocol: only a valid frame may cause a reply or change an
+// output. The test decides which frames are valid without the firmware's code.
 #include <gtest/gtest.h>
 
 #include <cstdio>
@@ -23,7 +23,7 @@ using std::chrono::nanoseconds;
 
 constexpr VirtualTime kAnHour = std::chrono::hours(1);
 constexpr VirtualTime kByte = nanoseconds(10'000'000'000 / 9600);
-/// A powered module whose receiver is fed byte by byte, and what it does about it.
+/// Feeds bytes to the receiver of a powered module, and checks its reaction.
 class NoisyLine {
  public:
   explicit NoisyLine(const std::string& spec) {
@@ -38,7 +38,7 @@ class NoisyLine {
 
   [[nodiscard]] VirtualTime now() { return clock_.virtual_now(); }
   void run(VirtualTime time) { bus_.run_for(time); }
-  /// The byte is over one byte time from now.
+  /// Delivers a byte. It ends one byte time from now.
   void put(std::uint8_t byte, ByteStatus status) {
     run(kByte);
     onlooker_->hears(byte, status);
@@ -116,7 +116,7 @@ void report(const char* what, std::size_t bytes, NoisyLine& line) {
   const std::uint64_t requests = line.requests();
   std::printf("%s: %zu bytes in an hour, %llu requests right, %llu answered\n", what, bytes,
               static_cast<unsigned long long>(requests), static_cast<unsigned long long>(line.replies()));
-  // One that comes while another is being answered is lost; most are not.
+  // A request that arrives during a reply is lost; most requests do not.
   EXPECT_GT(requests, 1000U);
   EXPECT_GT(line.replies(), requests / 2);
 }
@@ -183,7 +183,7 @@ void an_hour_of_modbus(std::uint32_t seed) {
       line.put(byte, noise.status());
       ++bytes;
       if (noise.once_in(50)) {
-        line.run(std::chrono::microseconds(noise.below(2900)));  // with the next byte less than T3.5
+        line.run(std::chrono::microseconds(noise.below(2900)));  // together with the next byte less than T3.5
       }
     }
     line.run(milliseconds(5 + noise.below(20)));

@@ -1,4 +1,4 @@
-// Faults of replies, in virtual time: what a master hears of each.
+// Tests the effect of each fault of replies on a master, in virtual time.
 #include <gtest/gtest.h>
 
 #include <string>
@@ -31,10 +31,10 @@ TEST(LateReply, MayComeBehindTheNextRequestAndThenTheNextReplyFollowsIt) {
   FaultBench bench;
   bench.add("late-reply 50ms every 2nd reply");
   EXPECT_EQ(bench.ask("$01M"), kName);
-  EXPECT_EQ(bench.ask("$01M", 20ms), "");  // gives up too early,
-  EXPECT_EQ(bench.ask("$012", 1ms), "");   // asks for something else,
+  EXPECT_EQ(bench.ask("$01M", 20ms), "");  // the master's timeout is too short
+  EXPECT_EQ(bench.ask("$012", 1ms), "");   // it sends another request
   bench.run(100ms);
-  EXPECT_EQ(bench.heard(), kName + "\r!01400600\r");  // and takes the one for the other
+  EXPECT_EQ(bench.heard(), kName + "\r!01400600\r");  // and gets the first reply to the second request
   EXPECT_FALSE(bench.garbled());
 }
 
@@ -76,8 +76,8 @@ TEST(LateReply, IsHitByTheNoiseThatIsOfItAndNothingElseIs) {
   bench.add("late-reply 50ms every 2nd reply");
   bench.add("bit-errors 1 every 2nd reply");
   EXPECT_EQ(bench.ask("$01M"), kName);
-  EXPECT_EQ(bench.ask("$01M", 20ms), "");  // gives up too early, and asks on:
-  bench.send("@010001\r");                 // that is not hit
+  EXPECT_EQ(bench.ask("$01M", 20ms), "");  // the master's timeout is too short
+  bench.send("@010001\r");                 // the noise does not affect the next request
   bench.run(200ms);
   EXPECT_EQ(bench.at(1).outputs(), 1);
   EXPECT_EQ(bench.heard().find(kName), std::string::npos);
@@ -107,7 +107,7 @@ TEST(LateDriver, HoldsTheLineAndWhatIsSaidThenIsLost) {
   FaultBench bench;
   bench.add("late-driver 20ms");
   EXPECT_EQ(bench.ask("$01M", 15ms), kName);
-  EXPECT_NE(bench.ask("$01M", 15ms), kName);  // begins within the 20 ms
+  EXPECT_NE(bench.ask("$01M", 15ms), kName);  // the request begins within the 20 ms
   bench.run(100ms);
   EXPECT_EQ(bench.ask("$01M", 100ms), kName);
   const BusRecorder::Driver off = bench.recorder().drivers.back();
