@@ -1,4 +1,4 @@
-// A module's EEPROM as a file: what is opened, made, refused and kept.
+// Tests the file of a module's EEPROM: which files are opened, created, rejected and kept.
 #include "sim/files/eeprom_file.hpp"
 
 #include <gtest/gtest.h>
@@ -32,7 +32,7 @@ constexpr std::size_t kImageSize = 8192;
 
 using Image = std::vector<std::uint8_t>;
 
-/// No two pages alike.
+/// Returns an image in which no two pages are equal.
 Image some_image() {
   Image image(kImageSize);
   for (std::size_t i = 0; i < image.size(); ++i) {
@@ -43,7 +43,7 @@ Image some_image() {
 
 std::string text_of(const Image& image) { return {image.begin(), image.end()}; }
 
-/// What the refusal says; empty where there is none.
+/// Returns the message of the exception that `act` throws; empty if it throws none.
 std::string refusal(const std::function<void()>& act) {
   try {
     act();
@@ -57,7 +57,7 @@ std::string refusal_of(const std::string& path) {
   return refusal([&path] { const EepromFile file(path); });
 }
 
-/// One line that names the file.
+/// Expects a one-line message that begins with the path of the file.
 void expect_refused(const std::string& refusal, const std::string& path) {
   EXPECT_EQ(refusal.find(path + ": "), 0U) << refusal;
   EXPECT_EQ(std::count(refusal.begin(), refusal.end(), '\n'), 0) << refusal;
@@ -67,7 +67,7 @@ bool write_byte(const EepromFile& file, std::uint16_t address, std::uint8_t byte
   return file.write(address, {&byte, 1});
 }
 
-/// Files grow no further than this while it lives.
+/// Limits the size of files that this process writes while the object lives.
 class FileSizeLimit {
  public:
   explicit FileSizeLimit(rlim_t limit) : handler_(std::signal(SIGXFSZ, SIG_IGN)) {
