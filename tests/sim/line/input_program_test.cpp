@@ -1,4 +1,4 @@
-// Inputs that move by themselves.
+// Tests inputs that move by themselves.
 #include "sim/line/input_program.hpp"
 
 #include <gtest/gtest.h>
@@ -18,10 +18,10 @@ using Kind = InputProgram::Kind;
 
 InputProgram parsed(const std::string& text) { return parse_input_program(text, model_called("EX9052D")); }
 
-/// When an input has moved, and to what.
+/// The times at which an input has moved, and its new levels.
 using Moves = std::vector<std::pair<VirtualTime, bool>>;
 
-/// A module whose inputs move; it is 100 ms.
+/// A module with a moving input. The line's time is 100 ms at first.
 class InputBench {
  public:
   explicit InputBench(const std::string& program, const std::string& edge = "falling", std::uint64_t seed = 1)
@@ -35,11 +35,11 @@ class InputBench {
   void run_until(VirtualTime time) { line_.bus().run_until(time); }
   [[nodiscard]] bool level() { return (module().input_levels() >> program_.channel & 1U) != 0; }
   [[nodiscard]] std::uint32_t counter() {
-    module().set_init(false);  // the main loop turns, and takes in what has been counted
+    module().set_init(false);  // runs the main loop, which adds the edges to the counter
     return module().module().state().inputs.counter(program_.channel);
   }
   SimulatedModule& module() { return line_.module(0); }
-  /// Up to and including `time`, as far as the level is another than it was.
+  /// Runs the line up to and including `time`, and returns the changes of the level.
   Moves moves_until(VirtualTime time) {
     Moves moves;
     bool was = level();
@@ -58,7 +58,7 @@ class InputBench {
   Line line_;
 };
 
-// --- as people write them ---
+// --- syntax ---
 
 TEST(InputProgram, ASquareWaveIsUpForHalfOfItsPeriodUnlessTold) {
   const InputProgram half = parsed("0 square 100ms");
@@ -124,7 +124,7 @@ TEST(InputProgram, AWrongOneIsRefusedWithWhatIsWrongAndTheMend) {
             "0 square 1s: the EX9042D has no input '0'; it has none");
 }
 
-// --- as they move ---
+// --- movements ---
 
 TEST(MovedInput, ASquareWavesPeriodIsExactAndEachIsCounted) {
   for (const std::string edge : {"falling", "rising"}) {
@@ -175,13 +175,13 @@ TEST(MovedInput, ContactsThatChatterMakeAndBreakSomeTimesAndThenStay) {
     const VirtualTime at = moves[i].first;
     const bool makes = at < 1300ms;
     making += makes ? 1 : 0;
-    EXPECT_EQ(moves[i].second, i % 2 == 0);  // every move is one
+    EXPECT_EQ(moves[i].second, i % 2 == 0);  // each move changes the level
     EXPECT_TRUE(makes ? at >= 1s && at < 1005ms : at >= 1300ms && at < 1305ms) << at.count();
   }
   EXPECT_EQ(moves.front().first, 1s);
   EXPECT_GE(making, 3U);
-  EXPECT_EQ(making % 2, 1U);                   // it stays on
-  EXPECT_EQ((moves.size() - making) % 2, 1U);  // and off
+  EXPECT_EQ(making % 2, 1U);                   // after the bouncing the input is on
+  EXPECT_EQ((moves.size() - making) % 2, 1U);  // after the release and its bouncing it is off
   EXPECT_GE(moves.size() - making, 3U);
   EXPECT_EQ(bench.counter(), moves.size() / 2);
   EXPECT_FALSE(bench.level());
@@ -205,7 +205,7 @@ TEST(MovedInput, MovesWithoutSupplyTooAndIsNotCountedThen) {
   bench.run_until(1175ms);
   EXPECT_FALSE(bench.level());
   bench.run_until(1275ms);
-  EXPECT_EQ(bench.counter(), 2U);  // at 1150 and 1250 ms
+  EXPECT_EQ(bench.counter(), 2U);  // the falling edges at 1150 and 1250 ms
 }
 
 }  // namespace

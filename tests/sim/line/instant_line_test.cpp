@@ -1,4 +1,4 @@
-// A line where bytes cost no time: `--line instant`.
+// Tests a line on which bytes take no time: `--line instant`.
 #include <gtest/gtest.h>
 
 #include <string>
@@ -17,7 +17,7 @@ using std::chrono::milliseconds;
 const Frame kReadOutputs = with_crc({0x01, 0x01, 0x00, 0x00, 0x00, 0x0D});
 const Frame kOutputsOff = with_crc({0x01, 0x01, 0x02, 0x00, 0x00});
 
-/// From the first byte of a request to the last of its reply, at any rate.
+/// The maximum time from the first byte of a request to the last byte of its reply, at any rate.
 constexpr microseconds kAtOnce{100};
 
 class InstantLine : public testing::TestWithParam<std::uint32_t> {

@@ -1,4 +1,4 @@
-// MODEL[@ADDR][,KEY=VALUE]... on the simulator's command line.
+// Tests the syntax MODEL[@ADDR][,KEY=VALUE]... on the simulator's command line.
 #include "sim/line/module_spec.hpp"
 
 #include <gtest/gtest.h>
@@ -14,7 +14,7 @@ std::string name_of(const ModuleSpec& spec) {
   return {name.begin(), name.end()};
 }
 
-/// What is said of a wrong argument; empty where it is taken.
+/// Returns the error message for an argument; empty if the argument is valid.
 std::string error_of(const std::string& text) {
   try {
     parse_module_spec(text);
@@ -24,7 +24,7 @@ std::string error_of(const std::string& text) {
   return "";
 }
 
-/// One line that begins with the argument and tells what would be right.
+/// Expects a one-line message that begins with the argument and contains `mend`.
 void expect_error(const std::string& text, const std::string& mend) {
   const std::string error = error_of(text);
   EXPECT_EQ(error.find(text + ": "), 0U) << text << " -> " << error;
