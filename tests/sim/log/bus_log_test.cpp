@@ -1,4 +1,4 @@
-// What both logs say of frames.
+// Tests the lines that the text log and the JSON log write for frames.
 #include <gtest/gtest.h>
 
 #include <nlohmann/json.hpp>

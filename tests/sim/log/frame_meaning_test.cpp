@@ -1,4 +1,4 @@
-// What the simulator's log says of a frame.
+// Tests the meaning that the simulator's log shows for a frame.
 #include "sim/log/frame_meaning.hpp"
 
 #include <gtest/gtest.h>
@@ -22,7 +22,7 @@ std::string of_reply(const FrameBytes& bytes) { return meaning(rtu(bytes), Speak
 
 bool has(const std::string& text, std::string_view part) { return text.find(part) != std::string::npos; }
 
-// --- which protocol ---
+// --- detection of the protocol ---
 
 TEST(LooksLikeDcon, ADelimiterOrALeadAndPrintableCharactersDo) {
   for (const char* text :
@@ -78,7 +78,7 @@ TEST(LooksLikeDcon, NothingElseDoes) {
   EXPECT_FALSE(looks_like_dcon(rtu({0x24, 0x05, 0x00, 0x00, 0xFF, 0x00})));
 }
 
-// --- as people read it ---
+// --- text for people ---
 
 TEST(Shown, DconIsText) { EXPECT_EQ(shown(dcon("$01M\r")), "$01M\\r"); }
 

@@ -1,4 +1,4 @@
-// What belongs together on the line.
+// Tests which bytes on the line form one frame.
 #include "sim/log/frame_watch.hpp"
 
 #include <gtest/gtest.h>
