@@ -1,4 +1,4 @@
-// What can be seen of a module: that its face shows it, and that looking changes nothing.
+// Tests that a face shows the visible state of a module, and that reading it changes nothing.
 #include "sim/module_view/face.hpp"
 
 #include <gtest/gtest.h>
@@ -56,7 +56,7 @@ TEST(Face, WithoutPowerThereIsNothingButTheSwitchesAndTheMemory) {
   EXPECT_TRUE(face.plate.init);
   EXPECT_EQ(face.plate.led, Led::Off);
   EXPECT_EQ(face.plate.outputs, 0);
-  EXPECT_EQ(face.plate.inputs, 0x01);  // what is wired there stays
+  EXPECT_EQ(face.plate.inputs, 0x01);  // the level at the terminal does not depend on the supply
   EXPECT_EQ(face.gathered, Gathered());
   EXPECT_EQ(face.guard, Guard());
   EXPECT_EQ(face.stored.settings.address, 0x07);
@@ -93,7 +93,7 @@ TEST(Face, TellsWhenTheHostWatchdogExpiresAndThatItHas) {
   ASSERT_TRUE(runs.expires);
   EXPECT_GT(*runs.expires, bench.now());
   bench.run(milliseconds(100));
-  EXPECT_EQ(face_of(bench).guard, runs);  // the same until somebody restarts it
+  EXPECT_EQ(face_of(bench).guard, runs);  // does not change until the master restarts it
   bench.line().bus().run_until(*runs.expires - milliseconds(1));
   EXPECT_FALSE(face_of(bench).guard.timed_out);
   bench.run(milliseconds(2));
