@@ -1,4 +1,4 @@
-// What a page is told: all at first, then what has changed, and of frames no more than it can read.
+// Tests the messages to a page: first the whole state, then the changes, and a limited number of frames.
 #include <gtest/gtest.h>
 
 #include <chrono>
@@ -18,7 +18,7 @@ namespace {
 
 using std::chrono::milliseconds;
 
-/// A line with two outputs' worth of interest, and somebody who looks.
+/// A line with one module, and a page of the panel that shows it.
 class PanelBench : public ModuleBench {
  public:
   explicit PanelBench(const std::string& spec)
@@ -35,18 +35,18 @@ class PanelBench : public ModuleBench {
     viewer_ = panel_.viewer();
   }
 
-  /// What is told at the next look; null: nothing.
+  /// Returns the next message to the page; null if there is none.
   Message look() { return look(*viewer_); }
   Message look(PanelViewer& viewer) {
     panel_.look();
     const std::string text = viewer.next();
     return text.empty() ? Message() : Message::parse(text);
   }
-  /// Nothing more of what has begun will come.
+  /// Ends the frames that are in progress.
   void end_frames() { frames_.finish(); }
   PanelViewer& viewer() { return *viewer_; }
   Panel& panel() { return panel_; }
-  /// Only this lets the wall clock go on.
+  /// Advances the wall clock, which otherwise stands still.
   void pass_wall_time(std::chrono::nanoseconds time) { wall_clock_ += time; }
 
  private:
@@ -226,7 +226,7 @@ TEST(PanelOfTwoLines, ARateIsItsLines) {
 TEST(PanelOfTwoLines, EachLineHasItsOwnTime) {
   TwoLines bench;
   bench.line(1).bus().run_for(milliseconds(250));
-  bench.line(1).master().set_baud(19200);  // so that there is something to tell
+  bench.line(1).master().set_baud(19200);  // a change, so that there is a message
   const Message lines = bench.look()["state"]["lines"];
   EXPECT_EQ(lines[1]["now"].get<std::int64_t>() - lines[0]["now"].get<std::int64_t>(), 250'000);
 }
