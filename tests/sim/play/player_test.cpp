@@ -1,4 +1,4 @@
-// The runner fails what it should: an answer that no step asks for, wherever it comes.
+// Tests that the player reports wrong, missing and unexpected replies, and rejects wrong files.
 #include "sim/play/player.hpp"
 
 #include <gtest/gtest.h>

@@ -1,4 +1,4 @@
-// Scenarios: steps against a bus of several modules and lines, and what `play` makes of files and folders.
+// Tests scenarios, whose steps run on several modules and lines, and `play` with files and folders.
 #include <gtest/gtest.h>
 
 #include <filesystem>
@@ -30,7 +30,7 @@ const sim::Setup& two_lines() {
   return kSetup;
 }
 
-/// Empty: it passes.
+/// Plays `steps` and returns the failure; empty if all steps pass.
 std::string failure_of(const std::string& steps, const sim::Setup& setup = two_lines()) {
   const Directory directory;
   write_file(directory / "steps.txt", steps);
@@ -83,7 +83,7 @@ TEST(Scenario, WhatWasHeardOnALineWhileTheStepsWereAboutAnotherIsForgotten) {
   EXPECT_EQ(failure_of(talk + "line yard\nwait 31s\nline hall\nmodule 2\n> $02M\n< !029052\n"), "");
   EXPECT_EQ(failure_of(talk + "module 3\nwait 31s\nmodule 1\n> $01M\n< !019042D\n"), "");
   EXPECT_NE(failure_of(talk + "wait 31s\n").find("expected nothing, heard '10"), std::string::npos);
-  // To choose another module of the same line is no reason to forget.
+  // The choice of another module on the same line does not discard the received bytes.
   EXPECT_NE(failure_of("fault late-reply 100ms\n> $01M\nmodule 2\nwait 1s\n").find("heard '!019042D"),
             std::string::npos);
 }
@@ -106,7 +106,7 @@ TEST(Scenario, FailsAtTheSameStepEachTime) {
   EXPECT_EQ(step_of(failure_of(steps)), step_of(failure));
 }
 
-/// What is wrong, or what was printed and whether all has passed.
+/// Plays a file or folder. Returns the error message, or the printed text followed by `passed` or `failed`.
 std::string played(const std::string& path, bool on_a_bus, const sim::Writing& writing = {}) {
   std::string text;
   const auto print = [&](const std::string& line) { text += line + "\n"; };
@@ -204,7 +204,7 @@ sim::Setup with_eeprom(const std::string& path) {
   return setup;
 }
 
-/// An image of a module at address 07.
+/// Returns an image of a module at address 07.
 std::string image_at_07() {
   const auto image = sim::SimulatedModule::memory_image(*find_model("EX9042D"),
                                                         sim::parse_module_spec("EX9042D@07").settings);
@@ -317,9 +317,10 @@ TEST(Play, RefusesWhatIsNoFileOfSteps) {
             std::string::npos);
 }
 
-// --- what a step may be ---
+// --- syntax of steps ---
 
-/// What is wrong with a file of this one step; empty: nothing.
+/// Loads a file that contains only this step. Returns the error message without its place; empty if the step
+/// is valid.
 std::string refusal_of(const std::string& step) {
   const Directory directory;
   write_file(directory / "steps.txt", step + "\n");
