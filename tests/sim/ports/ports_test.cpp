@@ -1,4 +1,4 @@
-// The program's ways to the line besides the pseudo-terminal: TCP, and a real serial port.
+// Tests the program's ports other than the pseudo-terminal: TCP and a real serial port.
 #include <fcntl.h>
 #include <gtest/gtest.h>
 #include <poll.h>
@@ -61,7 +61,7 @@ TEST_P(Tcp, SeveralClientsShareTheLine) {
   SimulatorProcess simulator({"EX9042D@05", "--tcp", "0", "--line", GetParam()});
   SocketClient first(simulator.tcp_port());
   auto second = std::make_unique<SocketClient>(simulator.tcp_port());
-  second->send("$05M\r");  // the first was let in before it
+  second->send("$05M\r");  // the program has accepted the first client by now
   EXPECT_EQ(second->receive_text(9), "!059042D\r");
   EXPECT_EQ(first.receive_text(9), "!059042D\r");
   first.send("$052\r");
@@ -81,8 +81,8 @@ TEST_P(Tcp, WhoHasNoMoreToSayIsStillAnsweredAndThenLetGo) {
   EXPECT_TRUE(client.closed());
 }
 
-/// What comes until `reply` is heard. The request is sent again whenever nothing has come for a second; there
-/// are enough tries for a minute.
+/// Returns the bytes that arrive until they contain `reply`. Sends the request again if nothing has arrived
+/// for a second, at most 60 times.
 std::string heard_by_asking_again(SocketClient& client, const std::string& request,
                                   const std::string& reply) {
   std::string heard;
@@ -105,12 +105,12 @@ TEST_P(Tcp, WhoGoesWithAResetBehindARequestDoesNoHarm) {
     client.send("$05M\r");
     client.abort();
   }
-  // Its replies may collide with the next request, so a master asks again when the line is quiet.
+  // The replies may collide with the next request, so the master repeats it when the line is quiet.
   EXPECT_NE(heard_by_asking_again(other, "\r$052\r", "!05400600\r").find("!05400600\r"), std::string::npos);
   EXPECT_EQ(simulator.end(SIGTERM), 0);
 }
 
-// Until the flood has run off, the client's command and the answer to it collide with it.
+// While the flood is on the line, the client's command and its reply collide with the flood.
 TEST_P(Tcp, AFloodOfGarbageIsHeldBackAndTheLineGoesOn) {
   SimulatorProcess simulator({"EX9042D@05,baud=115200", "--tcp", "0", "--line", GetParam()});
   {
@@ -118,7 +118,7 @@ TEST_P(Tcp, AFloodOfGarbageIsHeldBackAndTheLineGoesOn) {
     flooder.send(std::vector<std::uint8_t>(20'000, 'x'));
   }
   SocketClient client(simulator.tcp_port());
-  // A master asks again while the line is still busy with the flood.
+  // The master repeats its request while the line is busy with the flood.
   EXPECT_NE(heard_by_asking_again(client, "\r$05M\r", "!059042D\r").find("!059042D\r"), std::string::npos);
 }
 
@@ -153,7 +153,7 @@ TEST(TcpPort, SixtyFourAreServedAtOnceAndAPlaceThatIsFreeIsGivenAgain) {
 
 TEST(TcpPort, ListensWhereItIsTold) {
   std::vector<std::string> hosts{"127.0.0.1"};
-  if (fs::exists("/proc/net/if_inet6")) {  // where there is no IPv6, there is no such address to listen at
+  if (fs::exists("/proc/net/if_inet6")) {  // without IPv6 this address does not exist
     hosts.emplace_back("[::1]");
   }
   for (const std::string& host : hosts) {
@@ -162,11 +162,11 @@ TEST(TcpPort, ListensWhereItIsTold) {
   }
 }
 
-// A line that is full must not cost the processor: held back is not looked after.
+// A full line must not use processor time: the program does not poll clients that have to wait.
 TEST(TcpPort, WhoIsHeldBackCostsNoTime) {
   SimulatorProcess simulator({"EX9042D@05,baud=1200", "--tcp", "0"});
   SocketClient flooder(simulator.tcp_port());
-  flooder.send(std::vector<std::uint8_t>(20'000, 'x'));  // some minutes at 1200 baud
+  flooder.send(std::vector<std::uint8_t>(20'000, 'x'));  // takes almost three minutes at 1200 baud
   const auto ticks = [&simulator] {
     std::ifstream stat("/proc/" + std::to_string(simulator.pid()) + "/stat");
     std::string word;
@@ -179,8 +179,7 @@ TEST(TcpPort, WhoIsHeldBackCostsNoTime) {
     return user + system;
   };
   EXPECT_TRUE(flooder.hears_nothing_for(std::chrono::milliseconds(200)));
-  // Processor time and the wall clock are compared: a program that looks all the time takes all that it is
-  // given.
+  // Compares processor time with the wall clock, because a program that polls uses all the time that it gets.
   const auto began = std::chrono::steady_clock::now();
   const long before = ticks();
   EXPECT_TRUE(flooder.hears_nothing_for(std::chrono::milliseconds(1000)));
@@ -211,7 +210,7 @@ TEST(TcpPort, AnAddressThatIsNotOursIsRefused) {
                  "--tcp no.such.host.invalid:5020", "name");
 }
 
-/// The far end of a serial cable whose near end is a device.
+/// The far end of a serial cable. The near end is the device that the program opens.
 class Cable {
  public:
   Cable() : far_(posix_openpt(O_RDWR | O_NOCTTY | O_CLOEXEC)) {
@@ -229,14 +228,14 @@ class Cable {
   void write(const std::string& text) const {
     ASSERT_EQ(::write(far_, text.data(), text.size()), static_cast<ssize_t>(text.size()));
   }
-  /// So many bytes, or what came before none came for 10 s.
+  /// Returns `count` bytes, or fewer if no byte arrives for a minute.
   [[nodiscard]] std::string read(std::size_t count) const {
     std::string bytes;
     while (bytes.size() < count && read_one(bytes)) {
     }
     return bytes;
   }
-  /// Up to CR, likewise.
+  /// Returns the bytes up to CR, or fewer if no byte arrives for a minute.
   [[nodiscard]] std::string read_line() const {
     std::string line;
     while ((line.empty() || line.back() != '\r') && read_one(line)) {
@@ -248,8 +247,8 @@ class Cable {
     tcgetattr(far_, &settings);
     return settings;
   }
-  /// As another program may have left it: nothing that a line of modules needs, but for the 8 data bits that
-  /// a pseudo-terminal always has.
+  /// Sets the port as another program may have left it. No setting suits a line of modules, except the 8 data
+  /// bits that a pseudo-terminal always has.
   void leave_set_for_something_else() const {
     termios settings{};
     tcgetattr(far_, &settings);
@@ -273,8 +272,7 @@ class Cable {
 
  private:
   bool read_one(std::string& bytes) const {
-    constexpr int kHangMilliseconds =
-        60'000;  // it waits for an event; only a program that hangs takes this long
+    constexpr int kHangMilliseconds = 60'000;  // only a program that hangs reaches this timeout
     pollfd ready{far_, POLLIN, 0};
     char byte = 0;
     if (poll(&ready, 1, kHangMilliseconds) != 1 || ::read(far_, &byte, 1) != 1) {
@@ -301,7 +299,7 @@ TEST(SerialPort, TheModulesHangOnTheLineBehindIt) {
   EXPECT_EQ(simulator.end(SIGTERM), 0);
 }
 
-// What adapters have besides data, and no module: CTS that may never come, a carrier that may never be there.
+// Adapters have control signals that modules do not have. CTS and carrier may never become active.
 TEST(SerialPort, HoweverItWasLeftItIsSetToTheLinesRateRawWithoutFlowControl) {
   const Cable cable;
   cable.leave_set_for_something_else();
@@ -319,7 +317,7 @@ TEST(SerialPort, HoweverItWasLeftItIsSetToTheLinesRateRawWithoutFlowControl) {
   EXPECT_EQ(cable.read_line(), "!069052\r");
 }
 
-// 248 characters take a quarter of a second, so a reply to them is handed out in pieces.
+// 248 characters take a quarter of a second, so the program writes the reply in pieces.
 TEST(SerialPort, AReplyOfAnyLengthComesWhole) {
   const Cable cable;
   SimulatorProcess simulator({"EX9042D-M@05", "--serial", cable.device()});
@@ -331,7 +329,7 @@ TEST(SerialPort, AReplyOfAnyLengthComesWhole) {
   EXPECT_EQ(cable.read(echo.size()), echo);
 }
 
-// To a module its reply would be the request once more.
+// Without --echo, a module would treat its own reply as the same request again.
 TEST(SerialPort, AnAdapterThatHearsItselfIsToldOf) {
   const Cable cable;
   SimulatorProcess simulator({"EX9042D-M@01", "--serial", cable.device(), "--echo"});

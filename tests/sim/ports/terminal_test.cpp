@@ -1,4 +1,4 @@
-// A terminal program, and so DCON by hand, on the program's pseudo-terminal.
+// Tests DCON commands that a person types in a terminal program on the program's pseudo-terminal.
 #include <gtest/gtest.h>
 
 #include <string>
@@ -33,7 +33,7 @@ TEST(Dcon, AReplyThatNobodyHasWaitedForIsNotTheNextMastersFirst) {
   }
   ASSERT_TRUE(simulator.wait_for("!05FIRST")) << simulator.output();
   ControlClient(simulator.directory() + "/control")
-      .ok("list");  // by then its last byte has been handed out, too
+      .ok("list");  // by then the program has written the last byte too
   Terminal terminal(simulator.tty(), 9600);
   terminal.type("$052\r");
   EXPECT_EQ(terminal.read_line(), "!05400600\r");
@@ -62,7 +62,7 @@ TEST(Dcon, TheRateThatAMasterSetsIsTheLinesAndAMismatchIsSaid) {
   terminal.type("$052\r");
   EXPECT_TRUE(simulator.wait_for("the line is at 1200 baud, EX9042D at 05 listens at 19200"))
       << simulator.output();
-  EXPECT_EQ(terminal.read_line(std::chrono::milliseconds(500)), "");  // a busy machine only looks too early
+  EXPECT_EQ(terminal.read_line(std::chrono::milliseconds(500)), "");  // a busy machine can only hide an error
 }
 
 }  // namespace

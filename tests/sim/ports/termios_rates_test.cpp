@@ -1,4 +1,4 @@
-// Rates as termios has them. The C library judges: its cfsetspeed takes a rate in bits per second as well.
+// Compares the conversion of rates with the C library: its cfsetspeed also accepts bits per second.
 #include <gtest/gtest.h>
 #include <termios.h>
 
@@ -11,13 +11,13 @@
 namespace ex9000::sim {
 namespace {
 
-/// All that Linux has a constant for (asm-generic/termbits.h).
+/// All rates for which Linux has a constant (asm-generic/termbits.h).
 constexpr std::array<std::uint32_t, 30> kRates{
     50,     75,     110,     134,     150,     200,     300,     600,     1200,    1800,
     2400,   4800,   9600,    19200,   38400,   57600,   115200,  230400,  460800,  500000,
     576000, 921600, 1000000, 1152000, 1500000, 2000000, 2500000, 3000000, 3500000, 4000000};
 
-/// What the C library sets for `rate`.
+/// Returns the settings of the C library for `rate`.
 termios settings_at(std::uint32_t rate) {
   termios settings{};
   EXPECT_EQ(cfsetspeed(&settings, rate), 0) << rate;
