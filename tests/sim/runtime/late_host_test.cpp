@@ -1,4 +1,4 @@
-// What the program says if the host has no time for it.
+// Tests the messages of the program if the host gives it no processor time.
 #include <gtest/gtest.h>
 #include <sys/wait.h>
 
@@ -17,7 +17,7 @@
 namespace ex9000::system {
 namespace {
 
-/// A process that gets no processor for `span`, or longer.
+/// Stops the process for at least `span`.
 void keep_waiting(int pid, std::chrono::milliseconds span) {
   kill(pid, SIGSTOP);
   int status = 0;
@@ -27,7 +27,7 @@ void keep_waiting(int pid, std::chrono::milliseconds span) {
   kill(pid, SIGCONT);
 }
 
-/// Function 01: one coil of the module at `address`.
+/// Returns a request with function 01 for one coil of the module at `address`.
 std::vector<std::uint8_t> request(std::uint8_t address) {
   std::vector<std::uint8_t> frame{address, 1, 0, 0, 0, 1};
   const Crc16 crc = crc16({frame.data(), frame.size()});
@@ -38,7 +38,7 @@ std::vector<std::uint8_t> request(std::uint8_t address) {
 
 std::string text_of(const std::vector<std::uint8_t>& bytes) { return {bytes.begin(), bytes.end()}; }
 
-/// Of those reported so far.
+/// Returns the longest delay that the log reports.
 hal::doubles::VirtualTime longest_delay(const std::string& log) {
   const std::string lead = "the host was late by ";
   hal::doubles::VirtualTime longest{0};
@@ -50,13 +50,14 @@ hal::doubles::VirtualTime longest_delay(const std::string& log) {
 }
 
 TEST(LateHost, IsReportedWithItsDelay) {
-  // An input that moves: there is always something due soon.
+  // With a moving input, the next event is always due soon.
   SimulatorProcess simulator({"EX9052D@01", "--tcp", "0", "--input", "1 0 square 10ms"});
   SocketClient client(simulator.tcp_port());
   client.send("$01M\r");
   ASSERT_EQ(client.receive_text(8), "!019052\r");  // the line's time has begun
   keep_waiting(simulator.pid(), std::chrono::milliseconds(300));
-  // The input is due every 5 ms. It is not reported if a busy host was late by more than half of it before.
+  // An event is due every 5 ms. A delay is only reported if it is at least twice the longest one reported
+  // before, and a busy host may have been late before.
   for (unsigned reports = 1; longest_delay(simulator.output()) < std::chrono::milliseconds(147); ++reports) {
     ASSERT_TRUE(simulator.wait_for(": modules reply later", reports)) << simulator.output();
   }

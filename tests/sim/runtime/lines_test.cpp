@@ -1,4 +1,4 @@
-// Lines as a bus file or the command line describes them, in the running program: ports, faults, inputs,
+// Tests lines of a bus file and of the command line in the running program: ports, faults, inputs and
 // memories.
 #include <gtest/gtest.h>
 
@@ -19,7 +19,7 @@
 namespace ex9000::system {
 namespace {
 
-/// It waits for an event; only a program that hangs takes this long.
+/// A timeout for events. Only a program that hangs reaches it.
 constexpr std::chrono::seconds kHang{60};
 
 namespace fs = std::filesystem;
@@ -27,7 +27,7 @@ using std::chrono::milliseconds;
 
 bool has(const std::string& text, const std::string& part) { return text.find(part) != std::string::npos; }
 
-/// A bus file on its own in a directory.
+/// A bus file in its own directory.
 class BusFile {
  public:
   explicit BusFile(const std::string& text) { write_file(path(), text); }
@@ -37,7 +37,7 @@ class BusFile {
   Directory directory_;
 };
 
-/// The program with that bus file.
+/// Runs the program with a bus file.
 class Lines {
  public:
   explicit Lines(const std::string& text, const std::vector<std::string>& more = {})
@@ -48,7 +48,7 @@ class Lines {
     return process_.directory() + "/" + name;
   }
   ControlClient& control() { return control_; }
-  /// Of the line that is told of as the `count`th, from 0, with one.
+  /// Returns the TCP port in the greeting with the index `count`, from 0.
   [[nodiscard]] std::uint16_t tcp_port(int count) const {
     const std::string lead = "TCP 127.0.0.1:";
     auto at = process_.output().find(lead);
@@ -76,7 +76,7 @@ constexpr const char* kHallAndYard = R"({"lines": [
   {"name": "yard", "pty": "yard.tty", "tcp": 0, "line": "instant",
    "modules": [{"model": "EX9052D", "address": "01"}]}]})";
 
-/// Fewer, only of a program that hangs.
+/// Reads `size` bytes. Returns fewer only if the program hangs.
 std::vector<std::uint8_t> read_exactly(Terminal& terminal, std::size_t size) {
   std::vector<std::uint8_t> bytes;
   while (bytes.size() < size) {
@@ -106,12 +106,12 @@ TEST(Lines, DoNotHearEachOther) {
   hall_tcp.send("$01M\r");
   EXPECT_EQ(hall_tcp.receive_text(9), "!019042D\r");
   EXPECT_EQ(hall.read_line(), "!019042D\r");
-  yard_tcp.send("$01M\r");  // all that was said on the other line would be before it
+  yard_tcp.send("$01M\r");  // bytes from the other line would arrive before the reply
   EXPECT_EQ(yard_tcp.receive_text(8), "!019052\r");
   EXPECT_EQ(yard.read_line(), "!019052\r");
   EXPECT_EQ(ask(yard, "$01F"), "!01D01.00");
   EXPECT_EQ(ask(hall, "$02M"), "!029055");
-  EXPECT_TRUE(hall.read(milliseconds(50)).empty());  // a busy machine only looks too early
+  EXPECT_TRUE(hall.read(milliseconds(50)).empty());  // a busy machine can only hide an error
 }
 
 TEST(Lines, EachHasItsOwnRateAndSaysWhichItIs) {
@@ -162,7 +162,7 @@ TEST(Lines, FaultsAreOfTheLineThatIsNamed) {
   hall.type("$02M\r");
   EXPECT_TRUE(lines.process().wait_for("  > master  $02M"));  // before the faults end
   EXPECT_TRUE(lines.process().wait_for("  > master  $01M", 2));
-  EXPECT_TRUE(yard.read(milliseconds(100)).empty());  // a busy machine only looks too early
+  EXPECT_TRUE(yard.read(milliseconds(100)).empty());  // a busy machine can only hide an error
   EXPECT_TRUE(hall.read(milliseconds(100)).empty());
   EXPECT_EQ(lines.control().ask("line yard fault off 2"), "ok");
   EXPECT_EQ(lines.control().ask("line hall fault off all"), "ok");
@@ -284,7 +284,7 @@ TEST(Lines, AWrongFileIsRefusedInOneLineThatNamesItItsLineAndTheKey) {
   EXPECT_TRUE(fs::is_empty(directory.path()));
 }
 
-// --- what the command line says of one ---
+// --- one line on the command line ---
 
 TEST(LineOfTheCommandLine, HasFaultsAndMovedInputs) {
   SimulatorProcess simulator({"EX9042D@01", "EX9052D@02", "--line", "instant", "--control", "control",
@@ -293,13 +293,13 @@ TEST(LineOfTheCommandLine, HasFaultsAndMovedInputs) {
   ControlClient control(simulator.directory() + "/control");
   EXPECT_EQ(control.ask("faults"), "ok 2 faults: 1* x1 1 late-reply 20ms; 2 x0 2 gone at 1h");
   Terminal terminal(simulator.tty(), 9600);
-  EXPECT_EQ(ask(terminal, "$01M"), "!019042D");  // 20 ms are long for the square wave
+  EXPECT_EQ(ask(terminal, "$01M"), "!019042D");  // the square wave has ten periods in these 20 ms
   const std::string some = ask(terminal, "#025");
   EXPECT_EQ(some.rfind("!02", 0), 0U);
   EXPECT_GT(std::stoul(some.substr(3)), 5U);
 }
 
-/// How often a fault has struck after each of many commands.
+/// Returns how often a fault has struck after each of 30 commands.
 std::string strikes(const std::string& seed) {
   SimulatorProcess simulator({"EX9042D@01", "--line", "instant", "--control", "control", "--fault",
                               "lost-reply with probability 0.5", "--seed", seed});
@@ -325,7 +325,7 @@ TEST(LineOfTheCommandLine, TheSameSeedStrikesTheSameReplies) {
   EXPECT_NE(strikes("8"), of_seed);
 }
 
-// Strangers are on the line behind the modules, in no list of speakers.
+// Stations of faults are attached after the modules, and the log has no names for them.
 TEST(LineOfTheCommandLine, WhatNoModuleHasSentIsHeardAndLogged) {
   SimulatorProcess simulator({"EX9042D-M@01", "--control", "control", "--log"});
   ControlClient control(simulator.directory() + "/control");

@@ -1,5 +1,5 @@
-// How long a frame waits for its turn on a line that runs along with the wall clock. The line is so slow that
-// what a busy host adds is little to it, and times are lower bounds, of the line's own.
+// Tests how long a frame has to wait on a line that follows the wall clock. The line is so slow that the
+// delays of a busy host are small in comparison. All expected times are lower bounds in the line's time.
 #include "sim/runtime/pacer.hpp"
 
 #include <gtest/gtest.h>
@@ -23,7 +23,7 @@ using FrameBytes = std::vector<std::uint8_t>;
 const FrameBytes kInputs2 = with_crc({0x02, 0x02, 0x00, 0x00, 0x00, 0x08});
 const FrameBytes kAllFirstOn = with_crc({0x00, 0x05, 0x00, 0x00, 0xFF, 0x00});
 
-/// A master that is told at once what comes, and is heard at once.
+/// A port that delivers bytes at once and discards the replies.
 class Ear final : public Port {
  public:
   explicit Ear(Received& received) : received_(received) {}
@@ -35,7 +35,7 @@ class Ear final : public Port {
   Received& received_;
 };
 
-/// At 115200 baud, T3.5 is 1.75 ms: 35 ms by the wall clock.
+/// At 115200 baud, T3.5 is 1.75 ms. On the wall clock this takes 35 ms.
 constexpr Pace kSlow{VirtualTime(0), VirtualTime(0), true, 0.05};
 
 class PacedLine : public testing::Test {
@@ -50,14 +50,14 @@ class PacedLine : public testing::Test {
     pacer_->start();
   }
 
-  /// Until nothing is under way any more.
+  /// Runs until nothing on the line is in progress.
   void rest() {
     while (line_.pending()) {
       ASSERT_GT(io_.run_one(), 0U);
     }
   }
   void send(const FrameBytes& bytes) { ASSERT_TRUE(received_(bytes.data(), bytes.size())); }
-  /// Until the last character of its answer, of so many, is over.
+  /// Sends a request and runs until a reply of `answer` characters has ended.
   void ask(const FrameBytes& bytes, std::size_t answer) {
     recorder_.clear();
     send(bytes);
@@ -65,7 +65,7 @@ class PacedLine : public testing::Test {
       ASSERT_GT(io_.run_one(), 0U);
     }
   }
-  /// What was silent on the wires before the master's last frame, of so many characters.
+  /// Returns the length of the silence before the master's last frame, which has `characters` characters.
   [[nodiscard]] VirtualTime silence_before_last(std::size_t characters) const {
     const auto& bytes = recorder_.bytes;
     const std::size_t first = bytes.size() - characters;

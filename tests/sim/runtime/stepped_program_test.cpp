@@ -1,4 +1,4 @@
-// The program in stepped time, as a user's test of a master has it.
+// Tests the program in stepped time, as the test of a master uses it.
 #include <gtest/gtest.h>
 
 #include <csignal>
@@ -73,7 +73,7 @@ TEST(SteppedProgram, AMasterThatCrashesWhileItIsAnsweredDoesNoHarm) {
       crashing.send("$01M\r");
     }
     crashing.abort();
-    other.send("\r$01M\r");  // what the other sent may have gone with it
+    other.send("\r$01M\r");  // the abort may have discarded the requests of `crashing`
     EXPECT_EQ(stepped.control.line().rfind("ok ", 0), 0U);
     EXPECT_EQ(stepped.simulator.end(SIGTERM), 0);
   }
@@ -89,7 +89,7 @@ TEST(SteppedProgram, TheSameCommandsProduceTheSameBytesAtTheSameTimes) {
       master.type("@01\r");
       text += stepped.control.ok("advance 1s after 4 quiet") + " " + stepped.control.ok("sent") + "\n";
     }
-    EXPECT_EQ(stepped.control.ok("advance 2h"), "3600.1");  // and ends it
+    EXPECT_EQ(stepped.control.ok("advance 2h"), "3600.1");  // the program ends after --for
     EXPECT_EQ(stepped.simulator.wait(), 0);
     const std::string& output = stepped.simulator.output();
     return text + output.substr(output.find("Ctrl-C ends it")) +
@@ -113,7 +113,8 @@ TEST(SteppedProgram, APortThatNobodyReadsIsReported) {
   const Terminal silent(stepped.simulator.tty(), 9600);
   // Foreign traffic reaches the port like a reply; a pseudo-terminal holds some kilobytes.
   stepped.control.ok("fault foreign-traffic 2430314D0D every 10ms");
-  stepped.control.send("advance 60s\n");  // the log has to be read meanwhile, each strike is a line of it
+  // `send` does not wait for the reply: wait_for has to read the log meanwhile, which grows with each strike.
+  stepped.control.send("advance 60s\n");
   EXPECT_TRUE(stepped.simulator.wait_for("a port is full: ")) << stepped.simulator.output();
 }
 
@@ -133,7 +134,7 @@ TEST(SteppedProgram, AnAdvanceThatWaitsIsReplacedByALaterOne) {
   Stepped stepped({"EX9042D"});
   stepped.control.send("advance 1s after 5\n");
   ControlClient other(stepped.simulator.directory() + "/ctl");
-  other.ok("list");  // the first command was there before this client
+  other.ok("list");  // by then the first command has arrived
   EXPECT_EQ(other.ok("advance 1s"), "1.1");
   EXPECT_EQ(stepped.control.line().rfind("error: ", 0), 0U);
   EXPECT_EQ(stepped.control.ok("advance 1s"), "2.1");

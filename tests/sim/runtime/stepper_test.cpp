@@ -1,4 +1,4 @@
-// `advance`: what it waits for, how far it lets time pass, and what it answers.
+// Tests `advance`: the events that it waits for, the time that it lets pass, and its replies.
 #include "sim/runtime/stepper.hpp"
 
 #include <gtest/gtest.h>
@@ -16,7 +16,7 @@ namespace {
 using std::chrono::milliseconds;
 using FrameOfBytes = std::vector<std::uint8_t>;
 
-/// A port in memory. What a master writes waits, as in a kernel, until the simulator is told or looks.
+/// A port in memory. As in the kernel, the bytes of a master wait until `tell` or until the simulator reads.
 class FakePort final : public Port {
  public:
   void start(Received received) override { received_ = std::move(received); }
@@ -34,12 +34,12 @@ class FakePort final : public Port {
   }
   [[nodiscard]] std::optional<std::uint32_t> baud() const override { return rate_; }
 
-  /// The simulator does not know yet.
+  /// Writes bytes as a master. The simulator is not notified yet.
   void write(const std::vector<std::uint8_t>& bytes) {
     written_.insert(written_.end(), bytes.begin(), bytes.end());
   }
   void write(const std::string& text) { write(std::vector<std::uint8_t>(text.begin(), text.end())); }
-  /// Now it does.
+  /// Notifies the simulator of the written bytes.
   void tell() { read_waiting(); }
   std::string take_read() { return std::exchange(read_, {}); }
 
@@ -53,7 +53,7 @@ class FakePort final : public Port {
   std::string read_;
 };
 
-/// A line with a port that stands still.
+/// A line with a port, whose time stands still.
 struct StillLine {
   explicit StillLine(const std::vector<std::string>& modules) {
     std::vector<ModuleSpec> specs;
@@ -118,7 +118,7 @@ class StepperTest : public testing::Test {
 };
 
 TEST_F(StepperTest, TimePassesAsToldOnAllLinesAndIsAnsweredInSeconds) {
-  EXPECT_EQ(advance("250ms"), "ok 0.35");  // modules have 100 ms to come up
+  EXPECT_EQ(advance("250ms"), "ok 0.35");  // the time is 0.1 s after the modules have started up
   EXPECT_EQ(line_.stepped->now(), milliseconds(350));
   EXPECT_EQ(other_.stepped->now(), milliseconds(350));
   EXPECT_EQ(advance("0s"), "ok 0.35");
@@ -141,7 +141,7 @@ TEST_F(StepperTest, NothingHappensWithoutIt) {
 
 TEST_F(StepperTest, WhatHasArrivedIsPutOnTheLineAndAnsweredInItsTime) {
   line_.port->write("$01M\r");
-  // Five characters of request at 9600 baud end after 5.208 ms, the reply begins a character later.
+  // The request of five characters at 9600 baud ends after 5.208 ms; the reply begins one character later.
   advance("6ms");
   EXPECT_EQ(line_.port->take_read(), "");
   advance("20ms");
@@ -204,14 +204,14 @@ TEST_F(StepperTest, QuietEndsAsSoonAsTheReplyIsOver) {
   other_.port->write("$01M\r");
   const std::string answer = advance("10s after 5 quiet");
   EXPECT_EQ(other_.port->take_read(), "!019052\r");
-  // 5 + 1 + 8 characters of 1.0417 ms, and the driver's switching. No Modbus module listens on this line.
+  // 5 + 1 + 8 characters of 1.0417 ms, and the time to switch the driver. This line has no Modbus module.
   const double took = std::stod(answer.substr(3)) - 0.1;
   EXPECT_GT(took, 0.0145);
   EXPECT_LT(took, 0.0147);
 }
 
 TEST_F(StepperTest, QuietWaitsForTheSilenceThatEndsAModbusFrame) {
-  line_.port->write(with_crc({7, 1, 0, 0, 0, 13}));  // nobody's address
+  line_.port->write(with_crc({7, 1, 0, 0, 0, 13}));  // no module has this address
   const double took = std::stod(advance("10s after 8 quiet").substr(3)) - 0.1;
   EXPECT_GT(took, 8 * 10 / 9600.0 + 3.5 * 11 / 9600.0 - 1e-6);
   EXPECT_LT(took, 0.015);
