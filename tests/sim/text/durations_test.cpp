@@ -1,4 +1,4 @@
-// Spans of time as people write them.
+// Tests durations as people write them.
 #include "sim/text/durations.hpp"
 
 #include <gtest/gtest.h>

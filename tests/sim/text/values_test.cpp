@@ -1,4 +1,4 @@
-// Values as people write them.
+// Tests values as people write them.
 #include "sim/text/values.hpp"
 
 #include <gtest/gtest.h>
@@ -17,7 +17,7 @@ using Bytes = std::vector<std::uint8_t>;
 
 constexpr std::uint64_t kMost = std::numeric_limits<std::uint64_t>::max();
 
-/// `parse` refuses each of `texts` with the text in quotes and what it expects instead.
+/// Expects that `parse` rejects each of `texts` with a message that contains the text and `expected`.
 template <class Parse>
 void expect_refused(Parse parse, const std::vector<std::string>& texts, const std::string& expected) {
   for (const std::string& text : texts) {
@@ -137,7 +137,7 @@ TEST(HexBytes, ArePairsOfDigitsWithOrWithoutBlanks) {
                  "pairs of hex digits, for example 010500FF");
 }
 
-// --- as the program writes them ---
+// --- values that the program writes ---
 
 TEST(HexText, HasTwoOrFourUpperCaseDigitsOfTheLowestBits) {
   EXPECT_EQ(hex_byte_text(0x00), "00");
