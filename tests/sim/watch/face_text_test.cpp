@@ -1,4 +1,4 @@
-// A module's face as text: what each part of it looks like, and what is told of a change.
+// Tests the text of each part of a module's face, and the lines about its changes.
 #include "sim/watch/face_text.hpp"
 
 #include <gtest/gtest.h>
@@ -90,11 +90,11 @@ TEST(FaceText, WithoutPowerThereAreTheSwitchesAndTheTerminals) {
   EXPECT_NE(shown(bench)[0].find("no power"), std::string::npos);
 }
 
-/// README, "Host watchdog": 2.0 s, then outputs go safe and the LED flashes twice a second.
+/// After the timeout of 2.0 s the outputs go to their safe values, and the LED flashes twice a second.
 TEST(FaceText, AHostWatchdogCountsDownAndThenTheLedFlashes) {
   ModuleBench bench("EX9042D");
   ASSERT_EQ(bench.ask("@010001"), ">");
-  ASSERT_EQ(bench.ask("~015S"), "!01");  // the present value is the safe one
+  ASSERT_EQ(bench.ask("~015S"), "!01");  // stores the present value as the safe value
   ASSERT_EQ(bench.ask("@010000"), ">");
   ASSERT_EQ(bench.ask("~013114"), "!01");
   bench.send("~**\r");

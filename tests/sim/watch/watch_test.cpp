@@ -1,4 +1,4 @@
-// The faces in a terminal: repainted in place where there is one, told by lines where there is none.
+// Tests the view of modules: repainted in place in a terminal, otherwise one printed line for each change.
 #include "sim/watch/watch.hpp"
 
 #include <gtest/gtest.h>
@@ -74,7 +74,7 @@ TEST_F(WatchTest, PaintsAndRepaintsInPlaceWhatHasChanged) {
   EXPECT_EQ(looked(), Prints{relays(kAllOff)});
   EXPECT_EQ(looked(), Prints{});
   module().power(false);
-  // Five lines up, to the first column, and away with what is below.
+  // The sequence moves the cursor five lines up to the first column and erases everything below.
   EXPECT_EQ(looked(),
             (Prints{"\x1b[5F\x1b[J1  EX9067D     9067                            LED - off      power off\n" +
                     std::string(kLabels) + "\n" + kAllOff + "\n   power-on 0000, safe 0000\n"}));
@@ -99,11 +99,11 @@ TEST_F(WatchTest, HasRoundLampsWhereTheTerminalHas) {
 TEST_F(WatchTest, LeavesOutModulesThatTheTerminalHasNoRoomFor) {
   const std::string left_out = " more, for which this terminal has no room";
   watch({"EX9067D", "EX9067D@02", "EX9067D@03", "EX9067D@04"});
-  terminal_.shape.rows = 21;  // five lines each, and the cursor
+  terminal_.shape.rows = 21;  // five lines for each module, and one for the cursor
   EXPECT_EQ(looked()[0].find(left_out), std::string::npos);
   terminal_.shape.rows = 20;
   EXPECT_NE(looked()[0].find("\n1" + left_out), std::string::npos);
-  terminal_.shape.rows = 12;  // two of them, the line that says so, the cursor
+  terminal_.shape.rows = 12;  // two modules, the line about the others, and the cursor
   const std::string two = looked()[0];
   EXPECT_NE(two.find("\n2  EX9067D"), std::string::npos);
   EXPECT_EQ(two.find("\n3  EX9067D"), std::string::npos);
@@ -140,7 +140,7 @@ TEST_F(WatchTest, LeavesATerminalAloneThatDoesNotKeepUp) {
   module().power(true);
   module().set_init(true);
   terminal_.takes = true;
-  EXPECT_NE(looked()[0].find("power on, INIT*"), std::string::npos);  // how things are by then
+  EXPECT_NE(looked()[0].find("power on, INIT*"), std::string::npos);  // shows the present state
 }
 
 TEST(TerminalOutput, KnowsUtf8HoweverItIsSpelt) {

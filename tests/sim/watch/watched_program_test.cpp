@@ -1,4 +1,4 @@
-// --watch in a terminal, in one that is stopped, and in a pipe.
+// Tests --watch in a terminal, in a terminal that is not read, and in a pipe.
 #include <fcntl.h>
 #include <gtest/gtest.h>
 #include <poll.h>
@@ -17,7 +17,7 @@
 namespace ex9000::system {
 namespace {
 
-/// In a terminal that takes UTF-8, of so many rows and columns, by `script`.
+/// Runs the program in a terminal with UTF-8, which `script` provides. `settings` are arguments of stty.
 std::string in_a_terminal(const std::string& settings, const std::string& arguments) {
   const Finished finished = run(
       {"script", "-qec",
@@ -63,7 +63,7 @@ TEST(WatchedProgram, TellsChangesWhereTheOutputIsNoTerminal) {
       << finished.output;
 }
 
-/// A terminal window of 400 rows, both ends.
+/// Both ends of a terminal window with 400 rows.
 class Window {
  public:
   Window() : window_(posix_openpt(O_RDWR | O_NOCTTY | O_CLOEXEC)) {
@@ -81,14 +81,14 @@ class Window {
   Window(const Window&) = delete;
   Window& operator=(const Window&) = delete;
 
-  /// Of the programs' end.
+  /// Returns the path of the end for programs.
   [[nodiscard]] const std::string& device() const { return device_; }
   /// Whether a program could print there without waiting.
   [[nodiscard]] bool has_room() const {
     pollfd ready{programs_, POLLOUT, 0};
     return poll(&ready, 1, 0) == 1;
   }
-  /// What was printed, up to 64 KiB; waits for it where there is nothing yet.
+  /// Waits for printed text and returns up to 64 KiB of it.
   std::string read_some() {
     std::array<char, 65536> buffer{};
     const ssize_t size = read(window_, buffer.data(), buffer.size());
@@ -129,7 +129,7 @@ TEST(WatchedProgram, ATerminalThatNobodyReadsKeepsNoMasterWaiting) {
   for (int i = 0; i < 10; ++i) {
     ASSERT_TRUE(answers());
   }
-  // And once it is read again, it is painted as if nothing had been.
+  // When the window is read again, the program paints all modules again.
   std::string painted;
   while (!window.has_room()) {
     painted = window.read_some();
