@@ -40,10 +40,10 @@ constexpr std::uint32_t kCode = 0x2000'9000;
 constexpr std::uint32_t kOrders = 0x2000'A000;
 constexpr std::uint32_t kThumb = 1;
 
-/// Offsets of the parameters of the interrupt code, one word each.
+/// Offsets of the interrupt code's parameters. Each parameter is one word.
 constexpr std::uint32_t kNextAlarm = 0;  // clocks
-constexpr std::uint32_t kEdges = 4;    // number of alarms that each make an edge and do not stop the machine
-constexpr std::uint32_t kEdgePin = 8;  // mask
+constexpr std::uint32_t kEdges = 4;      // number of alarms that make an edge instead of stopping the machine
+constexpr std::uint32_t kEdgePin = 8;    // mask
 constexpr std::uint32_t kEdgeDirection = 12;
 constexpr std::uint32_t kEdgeData = 16;
 constexpr std::uint32_t kHalt = 20;  // if not 0, the machine halts after the gate
@@ -53,14 +53,14 @@ constexpr std::uint32_t kLeft = 24;  // remaining clocks after the current part 
 constexpr std::uint32_t kTold = 0x2000'8000;
 
 constexpr std::uint32_t kReceiverEmpty = 1U << 4U;
-/// The pin levels are reported above the UART flags.
+/// A report contains the pin levels from this bit on. The UART flags are in the bits below it.
 constexpr unsigned kPins = 8;
 static_assert(board::kDriverEnable.mask() != board::kStatusLed.mask());
 
 constexpr std::uint32_t kUartFlags = 0x4000'C018;
 
 constexpr std::uint32_t kTickCounter = 0xE000'E018;
-/// From the alarm to the end of its interrupt: 29 instructions.
+/// The time from the alarm to the end of its interrupt: 29 instructions.
 constexpr nanoseconds kInterruptTakes{480};
 constexpr nanoseconds kAtLeast{2000};
 
@@ -113,8 +113,8 @@ void AlarmClock::set_up() {
 }
 
 std::uint32_t AlarmClock::clocks(nanoseconds time) {
-  // The processor runs on the 200 MHz of the PLL: divided by 16 after reset, then by the divider that the
-  // image sets.
+  // The PLL supplies 200 MHz. The processor's clock divides it by 16 after a reset, and later by the divider
+  // that the image sets.
   constexpr std::uint32_t kDivider = 16;
   constexpr std::int64_t kPllClock = 5;
   const std::int64_t period = kPllClock * (at_first_ ? kDivider : board::kClock.divider);
@@ -135,7 +135,7 @@ void AlarmClock::run_for(nanoseconds time) {
 nanoseconds AlarmClock::make_edges(Pin pin, std::uint32_t edges) {
   constexpr nanoseconds kEach{4'000};
   constexpr std::uint32_t kDirection = 0x400;
-  constexpr std::uint32_t kAtOnce = 200'000;  // one second, which does not trigger the watchdog
+  constexpr std::uint32_t kAtOnce = 200'000;  // 0.8 s, which does not trigger the watchdog
   const nanoseconds time = kEach * (std::int64_t{edges} + 1);
   while (edges != 0) {
     const std::uint32_t now = edges < kAtOnce ? edges : kAtOnce;
@@ -158,7 +158,7 @@ void AlarmClock::run(std::uint32_t clocks, const std::string& orders) {
 
 void AlarmClock::begin_to_run(std::uint32_t clocks, const std::string& orders) {
   std::string commands = orders;
-  if (at_first_ || ordered_ != clocks) {  // a byte takes as long as the previous one
+  if (at_first_ || ordered_ != clocks) {  // unchanged from byte to byte, because all bytes take the same time
     commands += QtestClient::write_command(kOrders + kNextAlarm, clocks);
     ordered_ = clocks;
   }
@@ -188,7 +188,7 @@ void AlarmClock::go_on() {
 /// Returns false if the machine has stopped before a watched store.
 bool AlarmClock::wait_for_alarm() {
   // The emulator can take seconds for an interrupt storm of 1.6 s, and more than `kHang` on a busy machine.
-  // It replies to reads meanwhile.
+  // It still replies to reads during that time.
   constexpr int kMostQuestions = 5;
   for (int asked = 0; !machine_.gdb().has_packet() && !machine_.gate().has_bytes();) {
     if (!wait_for_any({&machine_.gdb().socket(), &machine_.gate()})) {
@@ -215,8 +215,8 @@ bool AlarmClock::wait_for_alarm() {
   throw Halted("the image has stopped running (" + packet + ")");
 }
 
-/// The interrupt code itself requests the halt, because the emulator cannot halt a processor that waits at
-/// the gate.
+/// Makes the interrupt code request the halt, because the emulator cannot halt a processor that waits at the
+/// gate.
 void AlarmClock::halt() {
   if (!at_gate_) {
     return;

@@ -17,10 +17,10 @@ class Halted : public std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
-/// The behaviour of the machine depends only on what is done to it while it stands still. There is one
-/// exception: when the emulator advances time for a processor that has just gone to sleep, it can lose the
-/// last instructions, depending on the host. Of a hundred transcripts, one then ends up to 2 us later or
-/// earlier than in the previous run, or up to 7 us with input pulses.
+/// The machine stands still between calls. The same calls have the same effects, independently of the host,
+/// with one exception: when the emulator advances time for a processor that has just gone to sleep, it can
+/// lose the last instructions, depending on the host. About one of a hundred transcripts then ends up to 2 us
+/// later or earlier than in the previous run, or up to 7 us with input pulses.
 ///
 /// GPTM3, which no image uses, interrupts when the time has elapsed. Its interrupt code, in RAM that no image
 /// uses, reaches the gate (gate.cpp), where the processor waits. The image and its vectors are not changed: a
@@ -48,8 +48,8 @@ class AlarmClock {
   /// the machine has stopped before a store.
   bool run_to_store(std::chrono::nanoseconds time);
 
-  /// Halts the emulator, for example for a reset. Until then the emulator only waits for its processor. After
-  /// this call the machine can be reset or can run again.
+  /// Halts the whole machine, for example for a reset. Before this call, only the processor waits. After this
+  /// call the machine can be reset or can run again.
   void halt();
 
   // --- state at the last stop ---
@@ -68,7 +68,7 @@ class AlarmClock {
   Emulator& machine_;
   bool at_first_ = true;       ///< no alarm has occurred since the reset
   bool at_gate_ = false;       ///< the processor waits at the gate
-  const char* go_on_ = "c";    ///< the packet that continues it otherwise
+  const char* go_on_ = "c";    ///< the debugger's packet that continues a machine that is not at the gate
   bool at_store_ = false;      ///< the machine has stopped before a store, and the alarm has not occurred yet
   std::string watched_;        ///< the range in the debugger's format
   std::uint32_t ordered_ = 0;  ///< the time until the next alarm, in clocks

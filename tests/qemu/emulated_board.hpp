@@ -31,7 +31,7 @@ class EmulatedBoard {
   /// is off.
   [[nodiscard]] std::uint32_t baud();
 
-  /// Only while the board is powered.
+  /// Returns the emulator. Call it only while the board is powered.
   Emulator& emulator() { return *emulator_; }
   /// Returns the content of the EEPROM, from its file.
   [[nodiscard]] std::string memory() const { return system::bytes_of_file(directory_ / "memory"); }
@@ -44,15 +44,16 @@ class EmulatedBoard {
   ~EmulatedBoard() = default;
 
   /// Switches the supply. When it goes on, the machine is halted before its first instruction, and only the
-  /// EEPROM has kept its content. An emulator takes most of the time of a short test to start, so the same
-  /// emulator is halted and reset: it reads the EEPROM's file again, and RAM is filled with noise.
+  /// EEPROM has kept its content. The start of an emulator takes most of the time of a short test, so this
+  /// function halts and resets the same emulator: it reads the EEPROM's file again, and RAM is filled with
+  /// noise.
   void supply(bool on);
   /// Switches the supply off and kills the emulator with SIGKILL. The next `supply` starts a new emulator.
   void kill();
   /// Resets the machine with the reset pin. The machine must be halted and stays halted.
   void pull_reset();
   /// Makes the board like a new one whose supply has just gone on: INIT* is disconnected, inputs are off, and
-  /// the EEPROM is as after the constructor.
+  /// the EEPROM contains `settings`, see the constructor.
   void renew(const Settings* settings);
   /// Sets the level of an input channel. The model must have that channel.
   void set_level(unsigned channel, bool level);

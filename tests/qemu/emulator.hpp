@@ -17,7 +17,8 @@ namespace ex9000::rig {
 /// One microcontroller with an EEPROM, from power-on to power-off. The constructor halts it before its first
 /// instruction, so that the caller can set the pin levels. The destructor acts like a power cut.
 ///
-/// If the image or the watchdog requests a reset, the machine halts instead, for the same reason.
+/// If the image or the watchdog requests a reset, the machine halts instead, so that the caller can set the
+/// pin levels before the reset.
 ///
 /// The thread that creates an emulator stays on one processor of the host from then on, see processor.hpp.
 ///

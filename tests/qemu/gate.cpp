@@ -1,6 +1,6 @@
 // A plugin of the emulator, for AlarmClock. At one specified instruction, which loads a byte, the processor
 // waits until the other end of a socket lets it continue. Only the processor waits, and no emulated time
-// passes. To halt the whole machine as a debugger does takes ten times as long.
+// passes. A halt of the whole machine, which a debugger uses, takes ten times as long.
 //
 //     -plugin gate.so,address=INSTRUCTION,socket=PATH
 //

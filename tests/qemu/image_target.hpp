@@ -35,7 +35,8 @@ class ImageTarget final : public play::Target {
   std::map<const Model*, TimedModule> modules_;
   TimedModule* module_ = nullptr;
   std::uint32_t baud_ = 9600;
-  std::chrono::nanoseconds settled_{0};  ///< when the image has had enough time for everything that was sent
+  std::chrono::nanoseconds settled_{
+      0};  ///< the time at which the image has processed everything that was sent
   play::Bytes heard_;
 };
 

@@ -7,13 +7,13 @@
 
 namespace ex9000::rig {
 
-/// Verifies later that a lit LED is on steadily and does not flash. To wait for it would take time that the
-/// surrounding steps measure. The transcript first assumes that it is on, and this class compares the
-/// assumption with later states: flashing begins with its longest phase, so an LED that is dark before that
-/// phase has elapsed was flashing all the time.
+/// Verifies later that a lit LED is on steadily and does not flash. A wait for the next flash would take time
+/// that the surrounding steps measure. The transcript first assumes that the LED is on, and this class
+/// compares the assumption with later states: a flashing LED is never lit for longer than `kPhase`, so an LED
+/// that goes dark before `kPhase` has elapsed was flashing.
 class LampWatch {
  public:
-  /// The phase of the 2 Hz flashing after a timeout. Flashing for other reasons is faster.
+  /// How long the LED is lit when it flashes at 2 Hz after a timeout. Flashes for other reasons are shorter.
   static constexpr std::chrono::milliseconds kPhase{250};
 
   /// Assumes that the LED is steadily on.

@@ -28,8 +28,8 @@ class QtestClient {
   void carry_out(const std::string& commands);
   /// Fills memory.
   void fill(std::uint32_t address, std::uint32_t size, std::uint8_t byte);
-  /// Sets the level of an input line of the device at `path`. A number that the device does not have ends the
-  /// emulator.
+  /// Sets the level of an input line of the device at `path`. The emulator ends if the device has no line
+  /// with this number.
   void set_input(const std::string& path, unsigned number, bool level);
 
  private:

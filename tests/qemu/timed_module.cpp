@@ -100,9 +100,9 @@ void TimedModule::make_sure() {
   }
 }
 
-/// A real EEPROM takes milliseconds to store, but the emulated one takes no time, so that a test could never
-/// meet an image that is storing. The EEPROM may stretch the clock of its bus, and disabling the I2C
-/// interrupt has the same effect. The driver waits 3 ms for a byte.
+/// Disables the I2C interrupt, or enables it again. A real EEPROM takes milliseconds to store, but the
+/// emulated one takes no time, so a request would never arrive while the image stores. A disabled interrupt
+/// has the same effect as an EEPROM that stretches the clock of its bus. The driver waits 3 ms for a byte.
 void TimedModule::hold_memory(bool hold) {
   constexpr std::uint32_t kSetEnable = 0xE000'E100;
   constexpr std::uint32_t kClearEnable = 0xE000'E180;

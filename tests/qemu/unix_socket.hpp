@@ -1,4 +1,4 @@
-// Both ends of a UNIX socket. The other program connects to a path that it receives.
+// A listening UNIX socket and its connection. The other program receives the path and connects to it.
 #pragma once
 
 #include <chrono>
@@ -8,8 +8,8 @@
 
 namespace ex9000::rig {
 
-/// How long the host waits for a reply of the emulator. It only detects a hang: a reply takes milliseconds,
-/// and seconds on a busy machine.
+/// The maximum time to wait for a reply of the emulator. It only detects a hang: a reply takes milliseconds,
+/// or seconds on a busy machine.
 inline constexpr std::chrono::seconds kHang{60};
 
 /// A connection. All functions throw std::runtime_error on errors.
@@ -24,7 +24,7 @@ class UnixSocket {
   /// Sends all bytes, in one piece if the kernel accepts them. Blocks until the kernel has accepted all.
   void send(const std::uint8_t* bytes, std::size_t size);
   void send(const std::string& text);
-  /// Waits for bytes and returns those that are there. Returns nothing if none arrive within `patience`.
+  /// Waits until bytes arrive and returns them. Returns nothing if none arrive within `patience`.
   std::vector<std::uint8_t> receive(std::chrono::nanoseconds patience);
   /// Receives exactly `size` bytes. Throws if none arrive within `kHang`.
   void receive_all(std::uint8_t* bytes, std::size_t size);
@@ -38,7 +38,7 @@ class UnixSocket {
   std::string received_;  ///< bytes after the last line
 };
 
-/// Waits until one of the sockets has bytes. Returns false if none has within `kHang`.
+/// Waits until one of the sockets has bytes. Returns false if no bytes arrive within `kHang`.
 bool wait_for_any(const std::vector<const UnixSocket*>& sockets);
 
 /// Listens at a path for one connection.
