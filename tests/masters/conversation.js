@@ -1,4 +1,4 @@
-// Plays conversation.txt with a Modbus library. Shared by the masters in JavaScript.
+// Plays conversation.txt with a Modbus library. The masters in JavaScript share this file.
 "use strict";
 const fs = require("fs");
 const path = require("path");
@@ -44,7 +44,7 @@ function lines(baud) {
     .filter((line) => line);
 }
 
-/** Groups the lines: each request with its reply, and each wait alone. */
+/** Returns the steps of the conversation: each request with its reply, and each wait as a step of its own. */
 function steps(baud) {
   const result = [];
   for (const line of lines(baud)) {

@@ -94,8 +94,9 @@ TEST(ImpatientMaster, AnotherModuleMayBeAskedAsSoonAsOneHasAnswered) {
   }
 }
 
-// At 1200 baud, T3.5 is 32 ms. At a tenth of the speed it is 320 ms of real time, which the test meets even
-// on a busy machine: the second request comes too soon after a reply that its module has also received.
+// At 1200 baud, T3.5 is 32 ms, which is 320 ms of real time at a tenth of the speed. Even on a busy machine,
+// the test sends the second request before this gap after the first reply has ended. Module 02 has also
+// received that reply, so the request without the gap is part of the same frame.
 TEST(ImpatientMaster, IsOnItsOwnWhereTheLineKeepsToTheLetter) {
   SimulatorProcess simulator(
       {"EX9042D-M@01,baud=1200", "EX9052D-M@02,baud=1200", "--tcp", "0", "--strict-gaps", "--speed", "0.1"});

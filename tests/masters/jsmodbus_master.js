@@ -20,7 +20,7 @@ const REQUESTS = {
 
 const read = (frame, body) => [frame[0], body.fc, body.valuesAsBuffer.length, ...body.valuesAsBuffer];
 
-// Reconstruct the frame of a reply from the result of the library.
+// Functions that reconstruct the frame of a reply from the result of the library.
 const ANSWERS = {
   0x01: read,
   0x02: read,
@@ -32,7 +32,7 @@ const ANSWERS = {
   0x10: (frame, body) => written(frame, body.start, body.quantity),
 };
 
-/** Returns whether the library rejects the request: it does so for more than 2000 coils or inputs. */
+/** Returns whether the library rejects the request because it reads more than 2000 coils or inputs. */
 const refused = (frame) => frame[1] <= 0x02 && word(frame, 4) > 2000;
 
 /** Returns whether the library reports a CRC error for a correct reply to "on". It expects the CRC of "off". */

@@ -1,5 +1,5 @@
 // Tests unmodified libmodbus on one line with two modules. It sends the raw requests of
-// tests/masters/conversation.txt, which include functions that libmodbus has no call for.
+// tests/masters/conversation.txt, which include functions for which libmodbus has no call.
 #include <gtest/gtest.h>
 #include <modbus/modbus.h>
 #include <poll.h>
@@ -23,7 +23,7 @@ namespace {
 
 using Frame = std::vector<std::uint8_t>;  // without CRC
 
-/// The test waits for an event. Only a program that hangs takes this long.
+/// A timeout that only detects a program that hangs.
 constexpr std::chrono::seconds kHang{60};
 
 Frame frame_of(std::istringstream& hex) {
@@ -39,8 +39,8 @@ void send(LibmodbusMaster& master, const Frame& frame) {
 }
 
 /// Returns the bytes received until there are `size` bytes and a CRC, or until no byte arrives for
-/// `patience`. Reads the descriptor directly, because libmodbus does not know the length of replies that it
-/// has no call for. Removes a correct CRC.
+/// `patience`. Reads the descriptor directly, because libmodbus cannot calculate the length of replies to
+/// functions for which it has no call. Removes a correct CRC.
 Frame heard(LibmodbusMaster& master, std::size_t size, std::chrono::milliseconds patience) {
   Frame frame;
   pollfd ready{modbus_get_socket(master.at(1)), POLLIN, 0};

@@ -1,5 +1,5 @@
-// Tests unmodified libmodbus on one line with two modules: every function that it has a call for. The
-// expected values are from firmware/wire.md 7.
+// Tests unmodified libmodbus on one line with two modules. Uses every function for which libmodbus has a
+// call. The expected values are from firmware/wire.md 7.
 #include <gtest/gtest.h>
 #include <modbus/modbus.h>
 
@@ -109,8 +109,7 @@ TEST_P(Libmodbus, GetsWhatItAsksFor) {
 
 TEST_P(Libmodbus, BroadcastsAndHostOkHaveNoReply) {
   const auto unanswered = [](int result) { return result == -1 && errno == ETIMEDOUT; };
-  master_.wait_for_replies(
-      500);  // no reply will come; this time is enough for a module to execute the request
+  master_.wait_for_replies(500);  // no reply arrives; this time is enough for a module to execute the request
   EXPECT_TRUE(unanswered(write_coils(kBroadcast, 0, {1, 1, 1})));
   EXPECT_TRUE(unanswered(modbus_write_bit(master_.at(kBroadcast), 1, 0)));
   EXPECT_TRUE(unanswered(modbus_write_register(master_.at(kBroadcast), kTimeout, 50)));

@@ -1,5 +1,5 @@
-// Tests unmodified mbpoll on one line with two modules: everything that it can read and write. The expected
-// values are from firmware/wire.md 7.
+// Tests unmodified mbpoll on one line with two modules. Uses all functions of mbpoll that read or write. The
+// expected values are from firmware/wire.md 7.
 #include <gtest/gtest.h>
 
 #include <string>
@@ -34,7 +34,8 @@ class Mbpoll : public testing::TestWithParam<Way> {
     EXPECT_EQ(finished.status, 1) << finished.output;
     EXPECT_NE(finished.error.find("failed: " + why + "\n"), std::string::npos) << finished.error;
   }
-  /// Expects that mbpoll has sent this frame, because mbpoll itself selects single or multiple writes.
+  /// Expects that mbpoll has sent this frame. mbpoll itself selects the function, for example a single or a
+  /// multiple write.
   void expect_sent(const std::string& frame) {
     EXPECT_TRUE(modules_.simulator().wait_for("> master  " + frame)) << modules_.simulator().output();
   }
@@ -68,8 +69,8 @@ TEST_P(Mbpoll, ReadsAndWritesBothModulesAlternately) {
 }
 
 TEST_P(Mbpoll, ReportsTheServerId) {
-  // mbpoll uses the first byte as the whole id and the second as the status. It prints FF in hex because it
-  // is not text.
+  // mbpoll uses the first byte as the whole id and the second as the status. It prints FF in hex because FF
+  // is not a printable character.
   expect_line({"-a", "1", "-u"}, "Length: 8\nId    : 0x90\nStatus: On\nData  : \\FF9042M");
   expect_line({"-a", "2", "-u"}, "Length: 8\nId    : 0x90\nStatus: On\nData  : \\FF9052M");
 }

@@ -31,7 +31,7 @@ function identification(frame, { data, conformityLevel }) {
   return [...frame.subarray(0, 4), conformityLevel, 0, 0, objects.length, ...objects.flat()];
 }
 
-// Reconstruct the frame of a reply from the result of the library.
+// Functions that reconstruct the frame of a reply from the result of the library.
 const ANSWERS = {
   0x01: read,
   0x02: read,
@@ -63,8 +63,8 @@ async function ask(client, baud, frame) {
 const sends = (frame) => frame[1] in REQUESTS && !(frame[1] === 0x2b && frame[2] !== 0x0e);
 
 /**
- * Returns whether the library's own port delivers the reply: it must know the length of the reply, which it does for
- * few functions. On a serial line it delivers the reply to function 11 before the reply is complete.
+ * Returns whether the library's own port delivers the reply. The port delivers a reply only if it can calculate the
+ * length, and supports few functions. On a serial line it delivers the reply to function 11 before it is complete.
  */
 function reachesOwnPort({ tty }, frame) {
   const reads = frame[1] <= 0x04;

@@ -49,7 +49,7 @@ def packed(*values):
 
 
 def turnaround(baud):
-    """Returns the seconds that a master waits after a broadcast, which has no reply: the duration of the longest
+    """Returns how long a master waits after a broadcast, which has no reply, in seconds: the duration of the longest
     broadcast on the line, plus 1 s.
 
     The line runs in real time: even on a busy machine, the simulator must read the broadcast within this time.
@@ -58,7 +58,7 @@ def turnaround(baud):
 
 
 class IdentificationRequest(ReadDeviceInformationRequest):
-    """Specifies the length of its reply. The library does not know it and would wait for a pause or for its timeout."""
+    """A request with the length of its reply. Without the length, the library waits for a pause or for its timeout."""
 
     def __init__(self, data, reply_size):
         super().__init__(data[1], data[2])
@@ -70,7 +70,7 @@ class IdentificationRequest(ReadDeviceInformationRequest):
 
 
 class MakersRequest(ModbusRequest):
-    """Function 46, in the form that pymodbus requires for functions that it does not know."""
+    """Function 46, as a custom request of pymodbus."""
 
     function_code = 0x46
 
@@ -125,7 +125,7 @@ def read_write_registers(data):
     )
 
 
-# Creates the library's request from the bytes after the function code of a frame.
+# Functions that create the library's request from the bytes after the function code of a frame.
 REQUESTS = {
     0x01: lambda data: ReadCoilsRequest(*words(data)),
     0x02: lambda data: ReadDiscreteInputsRequest(*words(data)),
@@ -159,7 +159,7 @@ def identification(response):
     return bytes(head + [response.number_of_objects]) + objects
 
 
-# Reconstructs the bytes after the function code of a reply from the result of the library.
+# Functions that reconstruct the bytes after the function code of a reply from the result of the library.
 ANSWERS = {
     0x01: lambda response: counted(pack_bitstring(response.bits)),
     0x02: lambda response: counted(pack_bitstring(response.bits)),
@@ -231,8 +231,8 @@ def converse(client, baud):
             expected = step.removeprefix("<= ")
             got = ask(client, request_of(bytes_of(asked), bytes_of(step)))
             if expected == "silence":
-                # The pause of a master after a broadcast (V1.02, 2.4.1). On a busy machine this check can only end too
-                # early.
+                # A master pauses after a broadcast (V1.02, 2.4.1). On a busy machine this check can miss a late reply,
+                # but it cannot fail without one.
                 time.sleep(turnaround(baud))
                 if select.select([client.socket], [], [], 0)[0]:
                     got = "an answer"
@@ -278,7 +278,7 @@ def main():
         parser.error(f"cannot open {arguments.tty or arguments.tcp}")
     passed, failed = converse(client, arguments.baud)
     client.close()
-    version = ".".join(pymodbus.__version__.split(".")[:3])  # Debian's 3.0.0 calls itself 3.0.0.rc1
+    version = ".".join(pymodbus.__version__.split(".")[:3])  # Debian's version 3.0.0 reports 3.0.0.rc1
     print(f"pymodbus {version}: {passed} checks passed" + (f", {failed} failed" if failed else ""))
     return 1 if failed else 0
 
