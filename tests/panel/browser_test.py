@@ -143,7 +143,7 @@ class Modules(Panel):
         for channel in range(3):
             master.coil(1, channel, True)
             master.counter(2, channel)
-        # A busy host adds a note that it was late.
+        # On a busy host, the list also contains notes that the host was late.
         count = "document.querySelectorAll('#filler .row:not([data-kind=note])').length"
         self.browser.until(f"{count} === 12")
         self.browser.type("#search", "coil 0002")

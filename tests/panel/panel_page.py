@@ -1,4 +1,5 @@
-"""Shared by the browser tests: the page of a separate simulator, and a picture of each state in build/panel."""
+"""The base class and the helpers of the browser tests. Each test starts its own simulator and shows its page. The tests
+save pictures in build/panel."""
 
 import atexit
 import contextlib
@@ -27,7 +28,7 @@ def pressed(selector):
 
 
 def lit(outputs):
-    """Returns a condition: the outputs of the first module are lit as given, bit n for output n."""
+    """Returns a condition that is true if exactly these outputs of the first module are lit. Bit n is output n."""
     lamps = f"""[...document.querySelectorAll("{OUTPUTS} .output")]"""
     return f"{lamps}.reduce((sum, led, n) => sum + (led.dataset.on === 'true' ? 1 << n : 0), 0) === {outputs}"
 
@@ -51,7 +52,7 @@ def bus(lines):
     return Simulator(str(path))
 
 
-# Two lines of 32 modules each. Every four modules are one with outputs, one with inputs, and two with both.
+# Two lines with 32 modules each, in groups of four: one with outputs, one with inputs, and two with both.
 MANY = [
     {"name": name, "tcp": 0, "modules": [
         {"model": ("EX9042D-M", "EX9052D-M", "EX9055D", "EX9068D-M")[i % 4], "address": f"{i + 1:02X}", "baud": 115200}
@@ -76,7 +77,7 @@ def both_lines_busy(simulator):
 
 
 def keep_busy(port, over):
-    """Of every four modules, switches an output of one and reads the inputs of another."""
+    """In each group of four modules, switches an output of the first and reads the inputs of the second."""
     master = Master(port)
     turn = 0
     while not over.is_set():

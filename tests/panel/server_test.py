@@ -278,7 +278,7 @@ class Slow(unittest.TestCase):
         for each in slow, page:
             self.addCleanup(each.close)
             self.assertEqual(each.status, 101)
-        told = []  # when the page received a message, in simulator time
+        told = []  # the simulator times of the messages that the page has received
         reads = threading.Thread(target=page.until, args=(lambda message: told.extend(times_of(message))
                                                           or message.get("reply"),))
         reads.start()
@@ -307,7 +307,7 @@ class Slow(unittest.TestCase):
 
 
 def tcp_sockets():
-    """Returns the kernel's list of TCP sockets, one for each line."""
+    """Returns the lines of the kernel's list of TCP sockets. Each line is one socket."""
     return pathlib.Path("/proc/net/tcp").read_text(encoding="ascii").splitlines()[1:]
 
 

@@ -16,11 +16,12 @@ PROGRAM = os.environ.get(
     "EX9000_SIMULATOR", str(pathlib.Path(__file__).resolve().parents[2] / "build/host-debug/sim/ex9000-sim")
 )
 
-HANG = 60  # seconds; reached only by a hang: the slowest reply takes one or two seconds on a busy machine
+HANG = 60  # seconds; only detects a hang: on a busy machine, the slowest reply takes one or two seconds
 
 
 def wait_until(holds):
-    """Polls `holds` for a state that no message reports. Returns its first true result; fails after HANG seconds."""
+    """Waits for a state that no message reports: calls `holds` until its result is true, and returns that result. Fails
+    after HANG seconds."""
     gives_up = time.monotonic() + HANG
     while not (it := holds()):
         assert time.monotonic() < gives_up, "never"
@@ -29,7 +30,7 @@ def wait_until(holds):
 
 
 class Simulator:
-    """`panel`: the port to request. 0: any free port. None: the default port."""
+    """A running ex9000-sim. `panel` is the port to request: 0 means any free port, and None means the default port."""
 
     def __init__(self, *arguments, panel=0):
         self._directory = tempfile.TemporaryDirectory()

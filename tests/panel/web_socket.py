@@ -1,4 +1,4 @@
-"""A WebSocket as a page opens it. It can also send raw bytes, which no page can."""
+"""A client of the panel's WebSocket. Unlike a page in a browser, it can also send raw bytes."""
 
 import base64
 import json
@@ -10,7 +10,7 @@ from simulator import HANG
 
 
 def open_socket(port, receives=None):
-    """`receives`: size of the receive buffer in bytes, smaller than the default."""
+    """Opens a connection. `receives` is the size of a smaller receive buffer than the default, in bytes."""
     connection = socket.socket()
     connection.settimeout(HANG)
     if receives:

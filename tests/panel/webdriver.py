@@ -110,7 +110,7 @@ class Browser:
         self._post(f"/element/{self.find(selector)}/value", {"text": text})
 
     def pointer(self, *actions):
-        """Each action is "down", "up", or the selector of an element to move to."""
+        """Performs actions of the mouse. Each is "down", "up", or the selector of an element to move to."""
         moves = [
             {"type": f"pointer{action.capitalize()}", "button": 0}
             if action in ("down", "up")
@@ -130,13 +130,14 @@ class Browser:
         ]}]})
 
     def touch(self, kind, *at):
-        """`kind`: start, move, end or cancel. `at`: x and y in the window, for start and move."""
+        """Sends a touch event. `kind` is start, move, end or cancel. `at` is x and y in the window, for start and
+        move."""
         points = [{"x": at[0], "y": at[1]}] if at else []
         self.devtools("Input.dispatchTouchEvent", type=f"touch{kind.capitalize()}", touchPoints=points)
 
     def key(self, *actions):
-        """Each action is a name from KEYS, which presses and releases the key. A prefix + only presses it, - only
-        releases it."""
+        """Presses and releases keys. Each action is a name from KEYS. With the prefix +, the key is only pressed; with the
+        prefix -, it is only released."""
         moves = []
         for action in actions:
             if action[0] != "-":
