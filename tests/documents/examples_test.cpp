@@ -1,7 +1,7 @@
 // Runs the examples of the documents. In each section, a `sh` block that starts the simulator runs in one
 // terminal. All other `sh` and `python` blocks run in a second terminal, and the `text` block is their
-// expected output. A `json` block is `bus.json`. The working directory contains only links to `boards` and
-// `build`, because the images are there.
+// expected output. A `json` block is the content of the file `bus.json`. The working directory contains only
+// links to `boards` and `build`, because the images are there.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -77,7 +77,8 @@ void be_patient(std::string& text) {
   }
 }
 
-/// `ex9000-sim describe` and `ex9000-sim play` print and end, so they are not simulators in this sense.
+/// Returns whether the block starts a simulator that runs until it is stopped. `ex9000-sim describe` and
+/// `ex9000-sim play` end by themselves.
 bool starts_the_simulator(const Block& block) {
   const auto begins_with = [&](const char* text) { return block.text.rfind(text, 0) == 0; };
   return begins_with("ex9000-sim ") && !begins_with("ex9000-sim describe") && !begins_with("ex9000-sim play");
@@ -124,7 +125,7 @@ void paste(const Section& section) {
   EXPECT_EQ(finished.output, expected) << finished.error;
 }
 
-/// Returns `count` TCP ports, none of them in use.
+/// Returns `count` TCP ports that are not in use.
 std::vector<std::string> free_ports(std::size_t count) {
   std::vector<std::unique_ptr<SimulatorProcess>> processes;
   std::vector<std::string> ports;
