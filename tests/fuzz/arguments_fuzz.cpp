@@ -1,6 +1,6 @@
-// Fuzzes the command line. `|` in the input separates two arguments. Each command line must result in exactly
-// one of: something to do, text to print, or one line with an error. An input that begins with `{` is a bus
-// file. The target reads no file.
+// Fuzzes the command line. `|` in the input separates two arguments. The result of each command line must be
+// a simulator or another task to run, a text to print, or one line with an error. An input that begins with
+// `{` is a bus file. The target reads no file.
 #include <algorithm>
 #include <stdexcept>
 #include <string>

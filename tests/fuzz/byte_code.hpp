@@ -12,12 +12,12 @@ namespace ex9000::fuzz {
 ///
 ///     bits 0-2   baud code, 0: 06 (9600), 1: 07, and so on up to 0A, then 03
 ///     bit 3      checksum
-///     bit 4      counters on the rising edge; on -M models strict gaps as well
+///     bit 4      counters count rising edges; -M models also require strict gaps
 ///     bit 5      host watchdog enabled with 0.3 s, outputs: power-on value 3, safe value 4
 ///     bit 6      on a model with two protocols, the protocol that is not `usual`
 ///     bit 7      INIT* connected to GND
 ///
-/// The rest is bytes on the line without gaps between them. Only `\` has a special meaning:
+/// The other bytes are bytes on the line without gaps between them. Only `\` has a special meaning:
 ///
 ///     \\      the byte 5C
 ///     \c      the check of the bytes since the last gap or CR: the CRC, or the checksum if it is enabled
@@ -25,7 +25,7 @@ namespace ex9000::fuzz {
 ///     \g N    a gap of N/64 times T3.5
 ///     \w N    N times N ms without a byte
 ///     \f \b \o   the next byte arrives with a framing error, as a break, with an overrun
-///     \p N    the previous byte, N more times
+///     \p N    the previous byte arrives N more times
 ///     \h N    the main loop does nothing for the next N times 0.1 ms
 ///     \0 to \7   input 0 to 7 changes its level
 ///     \t      a tick

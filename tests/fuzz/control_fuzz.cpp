@@ -79,7 +79,7 @@ struct Watched {
   unsigned long numbers = 0;
 };
 
-/// What may have `line NAME` before it.
+/// Returns whether the words are a command that `line NAME` may precede.
 bool is_of_the_line(const Watched& watched, Words words, sim::VirtualTime now) {
   if (words.size() == 1) {
     return words[0] == "faults" || words[0] == "sent";
@@ -234,7 +234,8 @@ class Patience {
       watched.line.bus().run_for(std::chrono::milliseconds(10));
     }
   }
-  /// Accepts one command with up to 99,999 pulses for each input of the fuzzer; otherwise at most 99 pulses.
+  /// Returns whether the command may run. Each fuzzer input may contain one command with 100 to 99,999
+  /// pulses.
   bool has_for(const Words& words) {
     const bool pulses = words.size() == 4 && words[1] == "pulse" && is_number(words[3], 100, 1'000'000);
     return !pulses || (std::stoul(words[3]) <= 99'999 && !std::exchange(used_, true));

@@ -3,10 +3,11 @@
 //
 // Byte 0 of the input selects the model. Byte 1:
 //
-//     bit 0, 1   correct the layout and check of the first, the second copy of layout 2
+//     bit 0, 1   correct the layout and check of the first (bit 0) and the second (bit 1) copy of layout 2
 //     bit 2      INIT* connected to GND
 //     bit 3      the memory does not acknowledge until the module has started
-//     bit 4, 5   correct the layout, length and check of the first, the second copy of layout 3
+//     bit 4, 5   correct the layout, length and check of the first (bit 4) and the second (bit 5) copy of
+//                layout 3
 //
 // The rest is the content of the memory from address 0. The remaining memory is erased.
 #include <algorithm>
@@ -88,7 +89,7 @@ class Trial {
  private:
   const State& state() { return session_.module().module().state(); }
 
-  /// Waits until a timeout, which can occur at any time, has also been stored.
+  /// Waits until the module has also stored a timeout of the host watchdog, which can occur at any time.
   void wait_for_leftovers() {
     constexpr Microseconds kLongest = 1500 * kMillisecond;
     bool timed_out = false;

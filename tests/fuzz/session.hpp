@@ -1,5 +1,5 @@
-// Connects a module to the witness. The witness judges independently what the module receives, and compares
-// everything that the module does with that.
+// Connects a module to the witness. The witness decides independently how the module must react to each
+// received byte, and compares this with all actions of the module.
 #pragma once
 
 #include <algorithm>
@@ -74,7 +74,7 @@ class Session final : public Onlooker {
     const Microseconds end = witness_.beyond_doubt(module_.now() + gap + witness_.character());
     advance_to(end);
     if (module_.sending()) {
-      return;  // the module cannot receive while it sends: the echo of its reply is here
+      return;  // the module does not receive while it sends, because it would receive its own reply
     }
     witness_.hears(byte, status == ByteStatus::Good, in_force().address, end);
     module_.receive(byte, status);
