@@ -1,4 +1,4 @@
-"""Tests which places are changed, and to what."""
+"""Tests which parts of a source the rules change, and how."""
 
 import unittest
 

@@ -70,7 +70,7 @@ class Unit:
 
 @dataclasses.dataclass(frozen=True)
 class Image:
-    """A shared object: a board and a model, composed on the bus of the register model."""
+    """A shared object with the image of a board and a model. It runs on the bus of the register model."""
 
     board: str
     model: str
@@ -259,8 +259,8 @@ def image_programs():
 
 @dataclasses.dataclass(frozen=True)
 class Area:
-    """The sources to change, the product units built from them, and the tests that must detect the change. The order
-    is: tests that have the name of the changed file, tests that include its header, then each group in turn."""
+    """The sources to change, the product units built from them, and the tests that must detect the change. Tests that
+    have the name of the changed file run first, then tests that include its header, then each group in turn."""
 
     name: str
     sources: list
@@ -284,7 +284,7 @@ class Area:
         return sorted((program for group in self.groups for program in group if reaches(program)), key=distance)
 
 
-# These tests take long for every mutant.
+# These tests take too long to run for every mutant.
 LONG = {"noise_test", "theory_test"}
 
 

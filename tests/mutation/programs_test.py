@@ -1,4 +1,4 @@
-"""Tests which tests check a changed file, and in what order."""
+"""Tests the selection and the order of the tests that check a changed file."""
 
 import unittest
 

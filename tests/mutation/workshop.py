@@ -31,7 +31,7 @@ def digest_of_text(text):
 
 
 def options_of_header(unit):
-    """A precompiled header works only with the same options."""
+    """Returns the options that affect a precompiled header. It works only with the same options."""
     return [option for option in unit.options if not option.startswith(("-I", "-D"))]
 
 
@@ -49,7 +49,7 @@ def compiled(unit, folder, overlay=None):
     header = ["-include", header_of(unit)]
     if not run([*COMPILE, *first, *unit.options, "-I.", *header, "-c", source, "-o", target]):
         return None
-    # File names and the positions of functions are not changes of the code.
+    # File names and the positions of functions can differ although the code is the same.
     run(["objcopy", "--strip-debug", "--remove-section=.comment", f"--strip-symbol={source.name}", target])
     return target
 
@@ -168,7 +168,7 @@ class Bench:
         return self.file in unit.files
 
     def object_of(self, unit):
-        """Returns None if the unit does not compile."""
+        """Returns the object file of the unit, or None if the unit does not compile."""
         if not self.is_in(unit):
             return self.workshop.unit(unit)[0]
         if unit.name not in self.objects:
