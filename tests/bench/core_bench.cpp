@@ -1,5 +1,5 @@
 // Measures the time that the core itself requires from the first byte of a request to its reply. This
-// includes the receive interrupts, but neither a serial line nor the passage of time on it.
+// includes the receive interrupts, but not the time that the bytes take on a serial line.
 #include <benchmark/benchmark.h>
 
 #include <string>

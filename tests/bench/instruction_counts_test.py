@@ -20,7 +20,7 @@ def executed(*addresses):
 
 
 def interrupt(number, *lines):
-    """`lines` are addresses, or log lines of other events."""
+    """Returns the log of an interrupt. `lines` are addresses, or log lines of other events."""
     log = [f"nvic_acknowledge_irq NVIC acknowledge IRQ: {number} now active (prio 0)\n".encode()]
     for line in lines:
         log += executed(line) if isinstance(line, int) else [line]
@@ -41,8 +41,8 @@ TICK = interrupt(execution.TICK, 0x1000, 0x1002)
 
 
 def turn(interrupts, *addresses):
-    """The main loop wakes up, the `interrupts` are served, and it continues and sleeps again: 2 instructions plus
-    `addresses`."""
+    """Returns the log of a turn: the main loop wakes up, the `interrupts` occur, and the main loop continues and sleeps
+    again. The main loop executes 2 instructions plus `addresses`."""
     return executed(0x102) + interrupts + executed(*addresses, SLEEP)
 
 

@@ -76,7 +76,7 @@ class Counter:
         self._seen = threading.Event()
         self._pass = None  # addresses of the current pass; None between passes
         self.answered = False  # the driver enable has gone off
-        self.nothing_happens = False  # except ticks
+        self.nothing_happens = False  # nothing except ticks happens
         self.at_rest = False  # the main loop has gone to sleep, and no interrupt has occurred since
         self.requests = {}
         self.edges_at_once = 0

@@ -37,7 +37,7 @@ HERTZ = 50_000_000
 AT_RESET = 4  # clock divisor at reset, relative to HERTZ
 INTERRUPT_TAKES = 0.7e-6
 ROOT = pathlib.Path(__file__).resolve().parents[3]
-HANG = 60  # seconds; reached only if the emulator hangs, even on a busy machine
+HANG = 60  # seconds; only detects a hang: a busy machine is faster than this
 
 
 def alarm_code():
@@ -51,7 +51,7 @@ def alarm_code():
 
 
 def die_with_parent():
-    """Makes sure that no child process stays if the user interrupts this program. Linux only."""
+    """Ends the calling child process when this program ends, even if the user interrupts it. Linux only."""
     set_parent_death_signal = 1
     ctypes.CDLL(None).prctl(set_parent_death_signal, signal.SIGKILL)
 
@@ -134,7 +134,7 @@ class Emulator:
         self._started = False
 
     def run_for(self, seconds):
-        """Runs for this many seconds of emulated time; at least 3 us."""
+        """Runs for this emulated time, but at least for 3 us."""
         clocks = max(100, round((seconds - INTERRUPT_TAKES) * HERTZ))
         if self._started:
             self._write(NEXT_ALARM, clocks)
@@ -153,7 +153,7 @@ class Emulator:
             told += piece
 
     def put(self, byte):
-        """Puts a byte on the line. The image has received it when the emulator continues."""
+        """Puts a byte on the line. The image receives it when the emulator continues."""
         if not self._read(UART_FLAGS) & RECEIVER_EMPTY:
             raise RuntimeError("the image has not taken the byte before")
         self.line.sendall(bytes([byte]))

@@ -18,7 +18,7 @@ INPUTS = Model("EX9052D-M", 8, 0, True)
 BOTH = Model("EX9055D", 8, 8, False)
 
 # Model, whether it uses ASCII, and whether to also send the requests that all models support. Those are sent once in
-# each protocol, on a model with inputs, where they cost most.
+# each protocol, to a model with inputs, because they require most instructions there.
 SESSIONS = [
     (INPUTS, False, True),
     (BOTH, True, True),
@@ -31,7 +31,7 @@ RECORD = pathlib.Path(__file__).resolve().parent.parent / "recorded_instructions
 EDGE_PASSES = 20  # for each of eight inputs
 GROWTH = 1.05  # permitted growth without a new record
 
-# Each pass has served this many events. The count is divided by that number.
+# A line of the result. Each pass has served `served` events, so the count is divided by that number.
 Row = collections.namedtuple("Row", "name passes served until")
 
 

@@ -12,9 +12,10 @@ Model = collections.namedtuple("Model", "name inputs outputs modbus")
 
 
 class Request:
-    """A request to repeat several times. The passes send the `frames` in turn, so that a setting changes each time. The
-    frames of `before` are sent first and not counted: one in turn if there are as many of them as `frames` (more than
-    one), otherwise all. `settles`: seconds to wait until their effect is complete."""
+    """A request to repeat several times. The passes send the `frames` in turn, so that a setting changes each time.
+    Before each pass, the frames of `before` are sent, which are not counted. If there are as many of them as `frames`,
+    and more than one, each pass sends only one of them, in turn. `settles` is the time until their effect is complete,
+    in seconds."""
 
     def __init__(
         self,
@@ -55,8 +56,8 @@ def dcon(text, checksum):
 
 
 def modbus_requests(model, general):
-    """The requests of firmware/modbus/functions.hpp, up to 4 registers or 13 coils each. The module has address 01.
-    `general`: also return the requests that all models support."""
+    """Returns the requests of firmware/modbus/functions.hpp, with up to 4 registers or 13 coils each. The module has
+    address 01. With `general`, also returns the requests that all models support."""
 
     def request(name, *frames, before=(), **rest):
         return Request(
@@ -160,7 +161,7 @@ def modbus_requests(model, general):
 
 
 def ascii_requests(model, general, checksum):
-    """The requests of firmware/dcon/commands.hpp. See modbus_requests."""
+    """Returns the requests of firmware/dcon/commands.hpp. See modbus_requests."""
 
     def request(name, *commands, before=(), **rest):
         return Request(

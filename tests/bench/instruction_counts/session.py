@@ -23,11 +23,11 @@ SLICE = 0.001
 PASS = 0.3  # maximum duration of a pass
 REST = 0.2
 
-QUIET = 0.004  # after a byte: all frames have ended, and the module has completed their work
+QUIET = 0.004  # after a byte; then all frames have ended, and the module has processed them
 
 
 class Session:
-    """ASCII sessions use checksums because they cost more instructions."""
+    """Sends requests to one image. ASCII sessions use checksums, because they require more instructions."""
 
     def __init__(self, image, gate, model, is_ascii):
         self.image = Image(image)
@@ -47,8 +47,8 @@ class Session:
         self._emulator.close()
 
     def count_requests(self, general, wanted, passes):
-        """`general`: also send the requests that all models support. `wanted`: a function that returns whether to send
-        a request. `passes`: the maximum number of repetitions."""
+        """Counts the instructions of requests. With `general`, also sends the requests that all models support.
+        `wanted` is a function that returns whether to send a request. `passes` is the maximum number of repetitions."""
         requests = (
             ascii_requests(self._model, general, True)
             if self._ascii
@@ -82,8 +82,8 @@ class Session:
         self.counter.nothing_happens = False
 
     def set_up(self):
-        """Configures the module over INIT*, as a user does: address 01, 115200 baud, checksums for ASCII. Call it once,
-        first."""
+        """Configures the module in INIT mode, as a user does: address 01, 115200 baud, checksums for ASCII. Call this
+        function once, before all others."""
         self._power_up(False)
         commands = [f"%0001400A{'40' if self._ascii else '00'}"]
         if self._model.modbus:
@@ -100,7 +100,7 @@ class Session:
         self.counter.forget()
 
     def _power_up(self, init):
-        """`init`: the level of INIT*."""
+        """Switches the supply on. `init` is the level of INIT*."""
         self._emulator.power_up({**dict.fromkeys(INPUTS, False), INIT: init})
         threading.Thread(
             target=execution.follow, args=(self._emulator.log, self._sleeps, self.counter), daemon=True
@@ -109,7 +109,7 @@ class Session:
         self._run(START_UP)
 
     def _count(self, request, passes):
-        """The last frame of a request restores the state that the module had before the request."""
+        """Repeats a request. Its last frame restores the state that the module had before the request."""
         for attempt in range(passes):
             in_turn = len(request.before) == len(request.frames) > 1
             for frame in [request.before[attempt % len(request.before)]] if in_turn else request.before:

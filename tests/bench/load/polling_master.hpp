@@ -8,8 +8,7 @@
 
 namespace ex9000::bench {
 
-/// Reads and writes raw bytes on a descriptor, so that the measurement shows the server and no master
-/// library.
+/// Reads and writes raw bytes on a descriptor, so that it measures only the server and no master library.
 class PollingMaster {
  public:
   /// These functions throw std::runtime_error if the connection fails.
@@ -24,8 +23,8 @@ class PollingMaster {
   ~PollingMaster();
 
   /// Reads 13 coils from address 0 with FC01 from units 1 to `units` in turn, until `end`. Returns the number
-  /// of transactions. Throws std::runtime_error at the first wrong or missing reply, because the rate of
-  /// wrong replies is no result.
+  /// of transactions. Throws std::runtime_error at the first wrong or missing reply, because a rate of wrong
+  /// replies has no meaning.
   std::uint64_t poll_until(std::chrono::steady_clock::time_point end, unsigned units);
 
  private:
