@@ -1,4 +1,4 @@
-"""Tests which images check-image accepts, with exact sizes, and which it rejects, with the reason."""
+"""Tests check-image: the exact sizes that it prints for images that it accepts, and its reason to reject an image."""
 
 from __future__ import annotations
 
@@ -55,7 +55,7 @@ class Accepts(unittest.TestCase):
             extern "C" void interrupt() { room<40>(); }
             """
         self.assertEqual(self.stack(check(source)), EXCEPTION + 40)
-        # Alone on a separate level, with no handler on the shared level.
+        # The handler is alone on a separate level, and there is no handler on the shared level.
         self.assertEqual(self.stack(check(source, options="--level interrupt")), EXCEPTION + 40)
 
     def test_pointers_reach_functions_of_their_type_only(self) -> None:
@@ -491,7 +491,7 @@ class Refuses(unittest.TestCase):
 
     def test_more_than_the_ram_holds(self) -> None:
         source = 'volatile char a[20372]; extern "C" void reset() { for (;;) a[0] = 1; }'
-        self.assertTrue(check(source).accepted)  # and three exceptions
+        self.assertTrue(check(source).accepted)  # the rest of RAM is for three exceptions
         verdict = check(source.replace("20372", "20376"))
         self.assertFalse(verdict.accepted)
         self.assertEqual(verdict.problems, "image: RAM does not hold it: 20484 of 20480 bytes\n")

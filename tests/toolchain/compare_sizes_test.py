@@ -1,4 +1,4 @@
-"""Tests which sizes compare-sizes accepts, rejects and records."""
+"""Tests compare-sizes: the sizes that it accepts, rejects and records."""
 
 from __future__ import annotations
 

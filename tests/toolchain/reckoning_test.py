@@ -1,4 +1,4 @@
-"""Tests the parts of check-image, each with text input."""
+"""Tests the parts of check-image separately, with texts as input."""
 
 from __future__ import annotations
 
