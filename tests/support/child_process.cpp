@@ -29,7 +29,8 @@ Pipe make_pipe() {
   return {ends[0], ends[1]};
 }
 
-/// posix_spawn, since tests with threads start many of these.
+/// Starts a command with posix_spawn, because tests with several threads start many commands. Returns its
+/// process id. If `error` is negative, the command inherits standard error.
 int spawn(const std::vector<std::string>& command, const std::string& directory, int out, int error) {
   std::vector<char*> words;
   for (const std::string& word : command) {
@@ -82,8 +83,7 @@ ChildProcess::~ChildProcess() {
 }
 
 bool ChildProcess::read_more() {
-  constexpr int kHangMilliseconds =
-      60'000;  // it waits for an event; only a program that hangs takes this long
+  constexpr int kHangMilliseconds = 60'000;  // only detects a program that hangs
   pollfd ready{out_, POLLIN, 0};
   return poll(&ready, 1, kHangMilliseconds) == 1 && append_from(out_, output_);
 }

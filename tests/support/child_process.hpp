@@ -1,4 +1,4 @@
-// Other programs, as a user would start them.
+// Starts other programs, as a user does.
 #pragma once
 
 #include <string>
@@ -6,13 +6,14 @@
 
 namespace ex9000::system {
 
-/// A program in the background; ends with this object, by force if need be.
+/// A program in the background. The destructor kills it if it still runs.
 class ChildProcess {
  public:
   enum class Errors { Apart, WithOutput };
 
-  /// The first word is looked up in PATH. Throws std::runtime_error where it cannot be started. What it
-  /// prints on standard error goes where this program's goes, or into `output()`.
+  /// Starts the program. The first word of `command` is a path, or a name that is searched in PATH. Throws
+  /// std::runtime_error if the program does not start. With `Apart`, its standard error is that of the test;
+  /// with `WithOutput`, `output()` includes it.
   ChildProcess(const std::vector<std::string>& command, const std::string& directory,
                Errors errors = Errors::Apart);
   ~ChildProcess();
@@ -20,14 +21,16 @@ class ChildProcess {
   ChildProcess& operator=(const ChildProcess&) = delete;
 
   [[nodiscard]] int pid() const { return pid_; }
-  /// Reads what it prints until `text` has come, as often as `times` says; false where it ends before.
+  /// Reads the output until it contains `text` at least `times` times. Returns false if the program ends
+  /// before, or if it prints nothing for 60 s.
   bool wait_for(const std::string& text, unsigned times = 1);
-  /// All it has printed so far, as far as it was read.
+  /// Returns all output that has been read so far.
   [[nodiscard]] const std::string& output() const { return output_; }
 
-  /// Sends `signal` and waits for the end; the exit status, or 128 + the signal that ended it.
+  /// Sends `signal` and waits until the program ends. Returns its exit status, or 128 plus the number of the
+  /// signal that has ended it.
   int end(int signal);
-  /// Waits for the end likewise.
+  /// Waits until the program ends. Returns the same value as `end`.
   int wait();
 
  private:
@@ -44,7 +47,7 @@ struct Finished {
   std::string error;   ///< standard error
 };
 
-/// Runs a command to its end; the first word is looked up in PATH.
+/// Runs a command and waits until it ends. The first word is a path, or a name that is searched in PATH.
 Finished run(const std::vector<std::string>& command, const std::string& directory = "/");
 
 }  // namespace ex9000::system

@@ -36,7 +36,7 @@ std::size_t ControlClient::offer(const std::string& bytes) {
 
 void ControlClient::close_writing() { shutdown(fd_, SHUT_WR); }
 
-/// Only a program that hangs takes longer.
+/// Returns false if the connection has ended. The timeout only detects a program that hangs.
 bool ControlClient::read_more() {
   constexpr int kHangMilliseconds = 60'000;
   pollfd ready{fd_, POLLIN, 0};

@@ -8,25 +8,27 @@ namespace ex9000::system {
 
 class ControlClient {
  public:
-  /// Throws std::runtime_error where nobody listens at `path`.
+  /// Connects to the socket at `path`. Throws std::runtime_error if no program listens there.
   explicit ControlClient(const std::string& path);
   ~ControlClient();
   ControlClient(const ControlClient&) = delete;
   ControlClient& operator=(const ControlClient&) = delete;
 
-  /// Sends a command and waits for its reply, without newline; throws where the simulator has gone.
+  /// Sends a command and returns its reply without the newline. Throws std::runtime_error if the connection
+  /// ends, or if no reply arrives within 60 s.
   std::string ask(const std::string& command);
-  /// What follows `ok `; throws where the reply is another.
+  /// Sends a command and returns the text after `ok `. Throws std::runtime_error if the reply is an error.
   std::string ok(const std::string& command);
-  /// Sends bytes as they are.
+  /// Sends bytes without a newline.
   void send(const std::string& bytes);
-  /// Sends as much as goes without waiting for the simulator; how much that was.
+  /// Sends as many bytes as possible without blocking. Returns their number.
   std::size_t offer(const std::string& bytes);
-  /// Says that nothing more will come, and listens on.
+  /// Closes the sending direction. The client can still receive.
   void close_writing();
-  /// The next line, without newline; throws where the connection ends before.
+  /// Returns the next line without the newline. Throws std::runtime_error if the connection ends before.
   std::string line();
-  /// Nothing comes any more.
+  /// Returns whether the simulator has closed the connection and all its bytes have been read. Waits until
+  /// bytes arrive or the connection ends.
   bool at_end();
 
  private:

@@ -1,4 +1,4 @@
-// The core in virtual time as a transcript's target, with a note of what transcripts reach.
+// A transcript target: the core in virtual time. It records the table rows that transcripts reach.
 #pragma once
 
 #include "sim/play/bus_target.hpp"
@@ -11,10 +11,11 @@ using play::Bytes;
 /// A module and a master on a virtual bus.
 class CoreTarget final : public play::BusTarget {
  public:
-  /// What the transcripts reach is noted in `coverage`, where there is one.
+  /// Records in `coverage` what the transcripts reach. Records nothing if the pointer is null.
   explicit CoreTarget(Coverage* coverage = nullptr) : coverage_(coverage) {}
 
-  /// Its terminals: inputs that the model lacks can be wired up too, which a transcript has no words for.
+  /// Returns the module with its terminals. It also has terminals for inputs that the model does not have. A
+  /// transcript cannot change these.
   using play::BusTarget::module;
 
   void send(const Bytes& bytes) override;
@@ -25,7 +26,7 @@ class CoreTarget final : public play::BusTarget {
   void note_coverage(const Bytes& heard);
 
   Coverage* coverage_;
-  Bytes sent_;  ///< since coverage was last noted
+  Bytes sent_;  ///< bytes sent since the last record
 };
 
 }  // namespace ex9000::runner

@@ -28,7 +28,7 @@ constexpr std::array<std::pair<Refusal, const char*>, 13> kRefusals{{
     {Refusal::WrongValue, "WrongValue"},
     {Refusal::UnknownObject, "UnknownObject"},
     {Refusal::OutputsBlocked, "OutputsBlocked"},
-    // Refusal::StoreFailed needs a broken memory, which no master can bring about:
+    // A master cannot cause Refusal::StoreFailed, which requires a broken memory. See
     // tests/firmware/module_storing_test.cpp.
 }};
 
@@ -39,7 +39,7 @@ constexpr std::array<std::pair<Verdict, const char*>, 6> kVerdicts{{
     {Verdict::BadCheck, "BadCheck"},
     {Verdict::TooShort, "TooShort"},
     {Verdict::TooLong, "TooLong"},
-    // LineError, Overrun and NoRoom need a line or a master out of order:
+    // LineError, Overrun and NoRoom require a faulty line or a faulty master. See
     // tests/firmware/line/*_assembler_test.cpp.
 }};
 
@@ -63,7 +63,7 @@ std::string register_id(const char* kind, const Register& row, unsigned function
   return std::string(kind) + "/" + std::string(row.id) + "/" + hex_code(function);
 }
 
-/// Functions that read or write `row`, in the order of their codes; 10 wherever 06 is.
+/// Returns the codes of `functions` in ascending order. Function 10 is allowed for the same rows as 06.
 std::vector<unsigned> functions_of(modbus::Functions functions) {
   std::vector<unsigned> codes;
   for (unsigned code = 1; code < 16; ++code) {
@@ -80,7 +80,7 @@ std::vector<unsigned> functions_of(modbus::Functions functions) {
 }  // namespace
 
 void Coverage::note(const Module& module, const play::Bytes& sent, const play::Bytes& heard) {
-  // The same assemblers once more, beside the module, to learn what it made of the bytes.
+  // A second instance of the module's assembler repeats the verdict that the module has reached.
   const InForce& in_force = module.state().in_force;
   FrameQueue queue;
   Verdict verdict = Verdict::Open;
@@ -124,7 +124,7 @@ void Coverage::note(const Module& module, const play::Bytes& sent, const play::B
 }
 
 void Coverage::note_answered(const Module& module, ex9000::Bytes frame) {
-  const Refusal refusal = module.outcome().refusal;  // of this frame, since it was answered
+  const Refusal refusal = module.outcome().refusal;  // belongs to this frame, because the module has replied
   if (refusal != Refusal::None) {
     reached_.insert("refusal/" + name_in(kRefusals, refusal));
     return;

@@ -1,4 +1,4 @@
-// Which rows of the core's tables and which refusals the transcripts have reached.
+// Records which rows of the core's tables, refusals and verdicts the transcripts have reached.
 #pragma once
 
 #include <set>
@@ -9,15 +9,15 @@
 
 namespace ex9000::runner {
 
-/// Every row and every kind of refusal has an id: `dcon/read-latches`, `modbus/08`, `coil/outputs/05`,
-/// `register/address/06`, `refusal/OutOfRange`, `verdict/Foreign`.
+/// Each row, refusal and verdict has an id, for example `dcon/read-latches`, `modbus/08`, `coil/outputs/05`,
+/// `register/address/06`, `refusal/OutOfRange` or `verdict/Foreign`.
 class Coverage {
  public:
-  /// `sent` was put on the line at the module's rate, `module` has dealt with it, and `heard` is its answer.
-  /// What is not answered counts only where silence is the answer.
+  /// Records the effect of the bytes `sent`, which were sent at the module's baud rate and which `module` has
+  /// processed. `heard` is its reply. A frame without a reply counts only if the module must not reply to it.
   void note(const Module& module, const play::Bytes& sent, const play::Bytes& heard);
 
-  /// Ids that can be reached by what a master may send, and were not.
+  /// Returns the ids that a master can reach, but that no transcript has reached.
   [[nodiscard]] std::set<std::string> missing() const;
   [[nodiscard]] std::size_t reached() const { return reached_.size(); }
 

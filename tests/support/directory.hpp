@@ -1,4 +1,4 @@
-// A fresh directory, and the files in it.
+// A temporary directory and the files in it.
 #pragma once
 
 #include <sys/stat.h>
@@ -22,7 +22,7 @@ inline void write_file(const std::string& path, const std::string& bytes) {
   std::ofstream(path, std::ios::binary) << bytes;
 }
 
-/// Lasts, with all that is in it, as long as this object.
+/// Creates an empty directory. The destructor removes it with its content.
 class Directory {
  public:
   Directory() {
@@ -33,10 +33,10 @@ class Directory {
   Directory(const Directory&) = delete;
   Directory& operator=(const Directory&) = delete;
   [[nodiscard]] const std::string& path() const { return path_; }
-  /// The path of what is called `name` in here.
+  /// Returns the path of the entry `name` in this directory.
   [[nodiscard]] std::string operator/(const std::string& name) const { return path_ + "/" + name; }
 
-  /// All that can be seen of what is in here, by its name: to compare with what it was.
+  /// Returns a description of each entry, by its relative path. A test can compare it with a later one.
   [[nodiscard]] std::map<std::string, std::string> contents() const {
     std::map<std::string, std::string> contents;
     for (const auto& entry : std::filesystem::recursive_directory_iterator(path_)) {

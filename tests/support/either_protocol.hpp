@@ -1,5 +1,5 @@
-// A master that asks the same thing of a module in whichever protocol that speaks, at address 01 and without
-// a checksum.
+// A master that sends the same request in ASCII or in Modbus RTU, to a module with address 01 and without a
+// checksum.
 #pragma once
 
 #include <cstdint>
@@ -16,7 +16,7 @@ namespace ex9000 {
 class EitherProtocol {
  public:
   using Bytes = std::vector<std::uint8_t>;
-  /// Puts a frame on the line and returns what comes back; nothing where nothing does.
+  /// Sends a frame and returns the reply. Returns nothing if there is no reply.
   using Exchange = std::function<Bytes(const Bytes& frame)>;
 
   EitherProtocol(Protocol protocol, Exchange exchange)
@@ -24,7 +24,7 @@ class EitherProtocol {
 
   [[nodiscard]] bool ascii() const { return protocol_ == Protocol::Ascii; }
 
-  /// ASCII with its CR, or Modbus with its CRC, whichever the module speaks.
+  /// Returns the request for the module's protocol: `text` with CR, or `modbus` with its CRC.
   [[nodiscard]] Bytes framed(const std::string& text, const Bytes& modbus) const {
     if (!ascii()) {
       return with_crc(modbus);
@@ -35,7 +35,7 @@ class EitherProtocol {
   }
   Bytes ask(const std::string& text, const Bytes& modbus) { return exchange_(framed(text, modbus)); }
 
-  // Throw std::out_of_range where the reply is too short.
+  // These functions throw std::out_of_range if the reply is too short.
   bool timeout_status() {
     const Bytes reply = ask("~010", {1, 0x01, 0x01, 0x0D, 0, 1});
     return ascii() ? reply.at(4) == '4' : reply.at(3) == 1;
@@ -44,8 +44,8 @@ class EitherProtocol {
     const Bytes reply = ask("~012", {1, 0x01, 0x01, 0x04, 0, 1});
     return ascii() ? reply.at(3) == '1' : reply.at(3) == 1;
   }
-  /// That there was a reset since this was asked last: `$AA5`, or in Modbus counters that begin with the
-  /// request that asks for them.
+  /// Returns whether the module was reset since the last call. Uses `$AA5` in ASCII, and the bus message
+  /// counter in Modbus: after a reset, it counts only the request that reads it.
   bool was_reset() {
     const Bytes reply = ask("$015", {1, 0x08, 0, 0x0B, 0, 0});
     return ascii() ? reply.at(3) == '1' : (reply.at(4) << 8U | reply.at(5)) == 1;

@@ -1,4 +1,4 @@
-// What a long run is told through its environment.
+// Reads the environment variables that control long runs.
 #pragma once
 
 #include <cstdint>
@@ -8,8 +8,8 @@
 
 namespace ex9000 {
 
-/// What `variable` says, or `otherwise` where it is not set. Throws std::runtime_error where it is no decimal
-/// number: a run that is shorter than it was meant to be must not pass for a long one.
+/// Returns the value of `variable`, or `otherwise` if it is not set. Throws std::runtime_error if it is not a
+/// decimal number of up to 18 digits, so that a mistake does not replace a long run by a short one.
 inline std::uint64_t number_in_environment(const char* variable, std::uint64_t otherwise) {
   const char* const text = std::getenv(variable);  // NOLINT(concurrency-mt-unsafe): tests set none
   if (text == nullptr) {
@@ -22,8 +22,8 @@ inline std::uint64_t number_in_environment(const char* variable, std::uint64_t o
   return std::stoull(digits);
 }
 
-/// Whether EX9000_CUTS=all asks for all there is to try instead of some of it; not set, it does not. Throws
-/// std::runtime_error where it says anything else, for the reason above.
+/// Returns true if EX9000_CUTS=all selects all cases, and false if the variable is not set, which selects
+/// some of them. Throws std::runtime_error if it has another value, for the same reason.
 inline bool all_of_them() {
   const char* const which = std::getenv("EX9000_CUTS");  // NOLINT(concurrency-mt-unsafe): tests set none
   if (which != nullptr && std::string(which) != "all") {

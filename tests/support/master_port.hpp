@@ -1,4 +1,4 @@
-// A master's end of one of the simulator's ports, whatever kind that is.
+// The master's end of a port of the simulator, which is a pseudo-terminal or a TCP connection.
 #pragma once
 
 #include <cstdint>
@@ -17,12 +17,12 @@ class MasterPort {
   MasterPort& operator=(const MasterPort&) = delete;
   virtual ~MasterPort() = default;
 
-  /// Blocks until the kernel has all of `bytes`.
+  /// Sends `bytes`. Blocks until the kernel has accepted all of them.
   virtual void write(const std::vector<std::uint8_t>& bytes) = 0;
-  /// Blocks until there is something. Throws std::runtime_error if nothing comes for 60 s, which only a
-  /// simulator that hangs takes.
+  /// Blocks until bytes arrive and returns them. Throws std::runtime_error if none arrive within 60 s, which
+  /// only detects a simulator that hangs.
   virtual std::vector<std::uint8_t> read() = 0;
-  /// False if the port carries no rate.
+  /// Sets the baud rate. Returns false if the port has no baud rate.
   virtual bool set_baud(std::uint32_t rate) = 0;
 };
 

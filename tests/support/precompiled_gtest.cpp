@@ -1,1 +1,1 @@
-// Nothing of its own: carries the precompiled header that all tests use.
+// CMake builds the precompiled header of all tests with this file, which has no other content.

@@ -22,9 +22,10 @@ ProcessTarget::ProcessTarget(std::unique_ptr<MasterPort> port, ControlClient& co
 
 void ProcessTarget::start(const Model& /*model*/, const Settings* /*preset*/) { power(true); }
 
-/// Returns when everything that the simulator has written to the port has been read from it.
+/// Lets the simulator's time pass. Returns after all bytes that the simulator has written to the port have
+/// been read.
 void ProcessTarget::advance(std::chrono::nanoseconds time, const std::string& how) {
-  // Both at once: two answers cost one change of processes.
+  // Both commands are sent together, so that only one switch between the processes is necessary.
   control_.send("advance " + sim::seconds_text(time) + "s" + how + "\nline " + line_ + " sent\n");
   const std::string now = control_.line();
   const std::string sent = control_.line();
@@ -112,7 +113,7 @@ play::step::Led::Shows ProcessTarget::led(play::step::Led::Shows /*expected*/) {
   return shows == "on" ? play::step::Led::Shows::On : play::step::Led::Shows::Off;
 }
 
-/// Off, it costs the simulator nothing while the next one is played.
+/// Switches the module off, because it then requires no processor time while the next transcript is played.
 void ProcessTarget::end() { power(false); }
 
 }  // namespace ex9000::system

@@ -1,5 +1,5 @@
-// A module of a running ex9000-sim as a transcript's target: one of its line's ports and its control socket,
-// in stepped time.
+// A transcript target: a module of a running ex9000-sim in stepped time. It uses a port of the module's line
+// and the control socket.
 #pragma once
 
 #include <chrono>
@@ -13,12 +13,12 @@
 
 namespace ex9000::system {
 
-/// Nothing here depends on the wall clock: the simulator's time moves only while a call lasts.
+/// The results do not depend on real time: the simulator's time passes only during calls.
 class ProcessTarget final : public play::Target {
  public:
-  /// The module with `number` on the control socket, alone on the line called `line`, which `port` is
-  /// connected to. It is as `start` requires, but for its supply, which is off. `control` lives as long as
-  /// this object; the simulator runs with --speed step.
+  /// `number` identifies the module on the control socket. It must be the only module on the line `line`, and
+  /// `port` must be connected to that line. The module must have the state that `start` requires, except that
+  /// its supply is off. `control` must live as long as this object. The simulator must run with --speed step.
   ProcessTarget(std::unique_ptr<MasterPort> port, ControlClient& control, std::string line,
                 std::size_t number);
 
@@ -46,7 +46,7 @@ class ProcessTarget final : public play::Target {
   std::string line_;
   std::string number_;
   std::uint32_t baud_ = 0;
-  std::size_t read_ = 0;  ///< bytes from the port so far
+  std::size_t read_ = 0;  ///< number of bytes read from the port so far
   play::Bytes heard_;
 };
 

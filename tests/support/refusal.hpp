@@ -1,4 +1,4 @@
-// Why something is refused.
+// Returns the reason why a parser rejects its input.
 #pragma once
 
 #include <stdexcept>
@@ -6,7 +6,7 @@
 
 namespace ex9000::sim {
 
-/// What `parse` throws, or a word that it throws nothing.
+/// Returns the message of the std::invalid_argument that `parse` throws, or "accepted" if it throws nothing.
 template <class Parse>
 std::string refusal(Parse parse) {
   try {

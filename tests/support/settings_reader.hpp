@@ -1,4 +1,4 @@
-// A master that asks a module for all its settings, in either protocol, and checks the frames of its replies.
+// A master that reads all settings of a module in either protocol and checks the frames of its replies.
 #pragma once
 
 #include <cstdint>
@@ -13,38 +13,39 @@
 
 namespace ex9000 {
 
-/// How a module is spoken to.
+/// The protocol, address and frame format that a module uses.
 struct Manner {
   Protocol protocol;
   std::uint8_t address;
   bool checksum;
 
-  /// One that has come up with these settings.
+  /// Returns the values of a module that has started with these settings.
   static Manner of(const Settings& settings) {
     return {settings.protocol, settings.address, (settings.format & kFormatChecksum) != 0};
   }
   static Manner init_mode() { return {Protocol::Ascii, 0, false}; }
 
-  /// What of `request`, ASCII without checksum and CR or Modbus without CRC, goes on the line.
+  /// Returns the frame of `request`, which is ASCII without checksum and CR, or Modbus without CRC.
   [[nodiscard]] std::vector<std::uint8_t> framed(const std::vector<std::uint8_t>& request) const;
 };
 
 class SettingsReader {
  public:
   using Bytes = std::vector<std::uint8_t>;
-  /// Puts a frame on the line and returns what comes back; nothing where nothing does.
+  /// Sends a frame and returns the reply. Returns nothing if there is no reply.
   using Exchange = std::function<Bytes(const Bytes& frame)>;
 
   SettingsReader(const Model& model, Manner manner, Exchange exchange)
       : model_(model), manner_(manner), exchange_(std::move(exchange)) {}
 
-  /// All of them; none where the module does not answer. Modbus does not tell the data format: it is taken
-  /// from here. Throws std::out_of_range where a reply is too short for what it is to.
+  /// Reads all settings. Returns nothing if the module does not reply. Modbus has no register for the data
+  /// format, so the result contains `format` then. Throws std::out_of_range if a reply is too short.
   std::optional<Settings> read(std::uint8_t format);
 
-  /// The reply to a command by its delimiter and what is behind its address, without checksum and CR.
+  /// Sends a DCON command, given without its address: the delimiter and the text after the address. Returns
+  /// the reply without checksum and CR.
   std::string ask(const std::string& command);
-  /// The reply to a Modbus request without its address and CRC; with its address.
+  /// Sends a Modbus request, given without address and CRC. Returns the reply with its address, without CRC.
   Bytes ask(const Bytes& request);
 
  private:
@@ -56,7 +57,7 @@ class SettingsReader {
   Exchange exchange_;
 };
 
-/// Two hex digits of a text.
+/// Returns the value of the two hex digits at position `at`.
 std::uint8_t hex_byte(const std::string& text, std::size_t at);
 
 }  // namespace ex9000

@@ -1,4 +1,4 @@
-// A running ex9000-sim, as a user would start it.
+// A running ex9000-sim, started as a user starts it.
 #pragma once
 
 #include <cstdint>
@@ -10,22 +10,22 @@
 
 namespace ex9000::system {
 
-/// The program under test, with sanitizers in the build that has them.
+/// Returns the path of the program under test. It has sanitizers if this build has them.
 std::string simulator_path();
-/// The program as it is shipped, optimised, which another preset builds.
+/// Returns the path of the optimised program, as it is shipped. Another preset builds it.
 std::string shipped_simulator_path();
 
 class SimulatorProcess {
  public:
-  /// Starts the program with `arguments` in a fresh directory of its own and returns when it has greeted.
-  /// Throws std::runtime_error where it ends before.
+  /// Starts the program with `arguments` in a new temporary directory. Returns when it has printed its
+  /// greeting. Throws std::runtime_error if it ends before.
   explicit SimulatorProcess(const std::vector<std::string>& arguments,
                             const std::string& program = simulator_path());
 
-  /// Where it runs; the link `ex9000.tty` is there unless the arguments say otherwise.
+  /// Returns the working directory. The link `ex9000.tty` is there unless the arguments specify another path.
   [[nodiscard]] const std::string& directory() const { return directory_.path(); }
   [[nodiscard]] std::string tty() const { return directory() + "/ex9000.tty"; }
-  /// Where it listens; `position`: of the lines that have a TCP port, from 0.
+  /// Returns the TCP port of a line. `position` counts the lines that have a TCP port, from 0.
   [[nodiscard]] std::uint16_t tcp_port(std::size_t position = 0) const;
   [[nodiscard]] int pid() const { return process_.pid(); }
 

@@ -14,7 +14,7 @@ namespace ex9000::system {
 
 namespace {
 
-/// It waits for an event; only a program that hangs takes this long.
+/// A timeout that only detects a program that hangs.
 constexpr std::chrono::milliseconds kHang{60'000};
 
 }  // namespace

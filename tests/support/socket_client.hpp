@@ -10,7 +10,7 @@ namespace ex9000::system {
 
 class SocketClient {
  public:
-  /// Throws std::runtime_error where nobody listens.
+  /// Connects to a port of this machine. Throws std::runtime_error if no program listens there.
   explicit SocketClient(std::uint16_t port);
   ~SocketClient();
   SocketClient(const SocketClient&) = delete;
@@ -18,18 +18,18 @@ class SocketClient {
 
   void send(const std::vector<std::uint8_t>& bytes);
   void send(const std::string& text) { send(std::vector<std::uint8_t>(text.begin(), text.end())); }
-  /// Says that nothing more will come, and listens on.
+  /// Closes the sending direction. The client can still receive.
   void close_writing();
-  /// Goes at once, with a reset, as a program that crashes; nothing can be done with it any more.
+  /// Closes the connection with a reset, like a program that crashes. Call no other function after this one.
   void abort();
-  /// What comes until `count` bytes are there, nothing came for 60 s, which only a program that hangs takes,
-  /// or the other side has closed.
+  /// Waits until `count` bytes have arrived and returns them. Returns fewer bytes if the other side closes
+  /// the connection, or if none arrive for 60 s, which only detects a program that hangs.
   std::vector<std::uint8_t> receive(std::size_t count);
   std::string receive_text(std::size_t count);
-  /// What is there as soon as there is something; empty: nothing came for `patience`.
+  /// Waits until bytes arrive and returns them. Returns nothing if none arrive within `patience`.
   std::vector<std::uint8_t> receive_some(std::chrono::milliseconds patience);
   bool hears_nothing_for(std::chrono::milliseconds time);
-  /// Whether the other side has closed; waits 60 s for it.
+  /// Returns whether the other side closes the connection within 60 s.
   bool closed();
 
  private:

@@ -1,4 +1,5 @@
-// What an EEPROM holds, as StoredCopy reads it, in the core's types, so that the two can be compared.
+// Converts the settings that StoredCopy reads from an EEPROM to the types of the core, for comparisons with
+// the core.
 #pragma once
 
 #include <algorithm>
@@ -31,7 +32,8 @@ inline Settings settings_of(const CopiedSettings& stored) {
   return settings;
 }
 
-/// wire.md section 2: what a module comes up with whose EEPROM holds `memory`, kStoredMemory bytes.
+/// Returns the settings with which a module starts if `memory`, of kStoredMemory bytes, is the content of its
+/// EEPROM (wire.md section 2).
 inline Settings settings_from(const Model& model, const std::uint8_t* memory) {
   const StoringModel storing = storing_model(model);
   const std::size_t place = place_that_counts(storing, memory);
@@ -39,7 +41,7 @@ inline Settings settings_from(const Model& model, const std::uint8_t* memory) {
                                 : settings_of(StoredCopy(storing, memory, place).settings());
 }
 
-/// A copy as firmware of layout 2 stored it at `place`.
+/// Stores a copy of `settings` at `place` in the format of firmware with layout 2.
 inline void put_layout_2(const Model& model, const Settings& settings, std::uint16_t sequence,
                          std::uint8_t* memory, std::size_t place) {
   std::uint8_t* bytes = memory + place;
@@ -64,10 +66,10 @@ inline void put_layout_2(const Model& model, const Settings& settings, std::uint
   StoredCopy::seal(storing, memory, place);
 }
 
-/// The byte that newer firmware has stored behind the settings that this one knows.
+/// Returns a byte that newer firmware has stored after the settings that this firmware supports.
 inline std::uint8_t unknown_byte(std::size_t index) { return static_cast<std::uint8_t>(0xC1U ^ index); }
 
-/// Makes of a good record of layout 3 at `place` one with `length` bytes of settings.
+/// Extends the valid record of layout 3 at `place` to `length` bytes of settings.
 inline void lengthen(const Model& model, std::uint8_t* memory, std::size_t place, std::uint8_t length) {
   std::uint8_t* bytes = memory + place;
   for (std::size_t index = bytes[1]; index < length; ++index) {

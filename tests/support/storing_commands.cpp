@@ -8,22 +8,22 @@ namespace {
 
 using Bytes = std::vector<std::uint8_t>;
 
-/// Two digits.
+/// Returns two hex digits.
 std::string hex(unsigned value) { return reference::hex(value, 2); }
 
 Bytes text(const std::string& characters) { return {characters.begin(), characters.end()}; }
 
-/// `%` and its arguments behind AA.
+/// Returns the arguments of the `%` command after AA.
 std::string configuration(unsigned address, unsigned baud_code, unsigned format) {
   return hex(address) + "40" + hex(baud_code) + hex(format);
 }
 
-/// Another rate than this one.
+/// Returns a code other than `code`.
 std::uint8_t other_baud_code(std::uint8_t code) { return code == kFactoryBaudCode ? 0x0A : kFactoryBaudCode; }
 
 constexpr std::uint8_t kNewAddress = 0x2B;
 constexpr std::uint8_t kNewTimeout = 0x64;
-constexpr std::uint8_t kShortTimeout = 0x05;  // all settings can be read within
+constexpr std::uint8_t kShortTimeout = 0x05;  // long enough to read all settings
 constexpr std::uint16_t kNewValue = 0x3C96;
 constexpr std::uint16_t kOneBit = 1U << 0U;
 
@@ -121,7 +121,7 @@ std::vector<StoringCommand> modbus_commands(const Model& model) {
   const Change take_address = [](Settings& settings, std::uint16_t) { settings.address = kNewAddress; };
   add("05 protocol", needs_nothing, {0x05, 0x01, 0x00, 0x00, 0x00},
       [](Settings& settings, std::uint16_t) { settings.protocol = Protocol::Ascii; });
-  // wire.md 7: what an address 0 may carry, "configuration is never broadcast".
+  // These requests are also allowed as broadcasts (wire.md 7: "configuration is never broadcast").
   for (const std::string to : {"", "broadcast "}) {
     add(to + "05 watchdog on", needs_disabled, {0x05, 0x01, 0x04, 0xFF, 0x00},
         [](Settings& settings, std::uint16_t) { settings.watchdog_enabled = true; });

@@ -1,5 +1,5 @@
-// Every way to make a module store something - wire.md section 8 - and what it is to become of the settings.
-// None of the core's code takes part in that but its types.
+// All commands and events that make a module store settings (wire.md section 8), and the expected settings.
+// The expected settings are calculated without the code of the core, except for its types.
 #pragma once
 
 #include <cstdint>
@@ -13,30 +13,30 @@
 
 namespace ex9000 {
 
-/// INIT* when the command comes.
+/// The state of INIT* when the command arrives.
 enum class Init : std::uint8_t {
   Released,
-  Tied,       ///< since it has come up: configuration permission
-  SinceReset  ///< the module runs in INIT mode
+  Tied,       ///< connected to GND after the module has started, which permits configuration
+  SinceReset  ///< connected to GND since the reset, so the module runs in INIT mode
 };
 
 struct StoringCommand {
   std::string name;
-  Protocol protocol;  ///< that the module has to speak; INIT mode is ASCII whatever is stored
+  Protocol protocol;  ///< the protocol that the module must use; always ASCII in INIT mode
   Init init = Init::Released;
-  /// What must be so before it can store anything.
+  /// Changes the settings to a state in which the command can store something.
   std::function<void(Settings&)> prepare;
-  /// What is sent: ASCII without checksum and CR, Modbus without CRC. Empty: nothing, it is the host watchdog
-  /// that stores.
+  /// Returns the frame to send: ASCII without checksum and CR, or Modbus without CRC. If it is empty, no
+  /// frame is sent, and the timeout of the host watchdog stores the settings.
   std::function<std::vector<std::uint8_t>(const Settings&)> frame;
-  /// What it does to the settings; `outputs` are those at that moment.
+  /// Applies the expected change to the settings. `outputs` are the outputs at that time.
   std::function<void(Settings&, std::uint16_t outputs)> change;
-  /// What the outputs are once it is done, where it drives them.
+  /// Returns the outputs after the command. Empty if the command does not change the outputs.
   std::function<std::uint16_t(const Settings& done, std::uint16_t outputs)> drive;
-  bool answered = true;  ///< else a broadcast, or no command at all
+  bool answered = true;  ///< false for a broadcast and for a timeout of the host watchdog
 
   [[nodiscard]] bool is_timeout() const { return !frame; }
-  /// Whether it changes anything of these, without preparation.
+  /// Returns whether the command changes these settings and requires no preparation for that.
   [[nodiscard]] bool stores_from(const Settings& settings, std::uint16_t outputs) const;
   [[nodiscard]] Settings done_to(Settings settings, std::uint16_t outputs) const {
     change(settings, outputs);
@@ -44,10 +44,10 @@ struct StoringCommand {
   }
 };
 
-/// All of a model that has both protocols.
+/// Returns all commands of a model that supports both protocols.
 std::vector<StoringCommand> storing_commands(const Model& model);
 
-/// With CHK where `checksum`, and CR.
+/// Returns `text` with CR, and with the checksum before it if `checksum` is set.
 std::vector<std::uint8_t> ascii_frame(const std::string& text, bool checksum);
 
 }  // namespace ex9000

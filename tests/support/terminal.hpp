@@ -1,4 +1,4 @@
-// A master's end of a pseudo-terminal, as terminal programs have it.
+// The master's end of a pseudo-terminal, as terminal programs use it.
 #pragma once
 
 #include <chrono>
@@ -10,21 +10,22 @@ namespace ex9000::system {
 
 class Terminal {
  public:
-  /// Opens `tty` raw at `baud`; throws std::runtime_error.
+  /// Opens `tty` in raw mode at `baud` bits per second. Throws std::runtime_error if that fails.
   Terminal(const std::string& tty, std::uint32_t baud);
   ~Terminal();
   Terminal(const Terminal&) = delete;
   Terminal& operator=(const Terminal&) = delete;
 
   void set_baud(std::uint32_t baud);
-  /// In one piece.
+  /// Writes all bytes in one piece. Throws std::runtime_error if that fails.
   void write(const std::vector<std::uint8_t>& bytes);
   void type(const std::string& text);
-  /// What is there, or comes within `patience`; empty: nothing.
+  /// Waits until bytes arrive and returns them. Returns nothing if none arrive within `patience`.
   std::vector<std::uint8_t> read(std::chrono::nanoseconds patience);
-  /// Up to CR, or what has come before nothing came for `patience`: only a program that hangs takes 60 s.
+  /// Returns the bytes up to and including a CR. Returns the bytes without CR if no more arrive within
+  /// `patience`; its default only detects a program that hangs.
   std::string read_line(std::chrono::milliseconds patience = std::chrono::seconds(60));
-  /// Bytes that were read so far.
+  /// Returns the number of bytes that were read so far.
   [[nodiscard]] std::uint64_t received() const { return received_; }
 
  private:

@@ -1,4 +1,4 @@
-// A running ex9000-sim in stepped time, with a line for each of several transcripts.
+// A running ex9000-sim in stepped time, with one line for each transcript.
 #pragma once
 
 #include <cstddef>
@@ -13,17 +13,18 @@
 
 namespace ex9000::system {
 
-/// One process, because starting one for each takes longer than what most of them say. Its lines share their
-/// time, so transcripts are played one after the other.
+/// One process serves all transcripts, because the start of a process takes longer than most transcripts. Its
+/// lines share one time, so a test must play the transcripts one after another.
 class TranscriptLines {
  public:
   enum class Over { PseudoTerminal, Tcp };
 
-  /// Each line has the module that the transcript at its position begins with, without power. Over TCP this
-  /// is the program as it is shipped; over the pseudo-terminal, with sanitizers.
+  /// Each line has the module with which the transcript at the same position begins. Its supply is off. With
+  /// TCP, the program is the shipped one; with pseudo-terminals, it is the program under test, which can have
+  /// sanitizers.
   TranscriptLines(const std::vector<const play::Transcript*>& transcripts, Over over);
 
-  /// That module.
+  /// Returns the module for the transcript at `position`.
   ProcessTarget target(std::size_t position);
 
  private:

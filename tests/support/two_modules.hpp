@@ -1,4 +1,5 @@
-// An EX9042D-M at 01 and an EX9052D-M at 02 on one line, and a way to it for masters that want a serial port.
+// An EX9042D-M at address 01 and an EX9052D-M at address 02 on one line, for masters that require a serial
+// port.
 #pragma once
 
 #include <optional>
@@ -10,9 +11,9 @@
 
 namespace ex9000::system {
 
-/// How a master reaches the line, and the line's rate.
+/// How a master connects to the line, and the baud rate of the line.
 struct Way {
-  bool over_tcp;  ///< through socat, which makes a pseudo-terminal of a TCP connection
+  bool over_tcp;  ///< over socat, which connects a pseudo-terminal to a TCP port
   int baud;
 
   friend std::ostream& operator<<(std::ostream& out, const Way& way) {

@@ -1,4 +1,4 @@
-// The microcontroller around a module: a UART with its RS-485 driver, three timers, a memory, a clock.
+// A model of the microcontroller: a UART with its RS-485 driver, three timers, a memory and a clock.
 #pragma once
 
 #include <algorithm>
@@ -17,14 +17,16 @@ namespace ex9000::interleaving {
 
 inline constexpr hal::stellaris::Pin kDriverEnable{hal::stellaris::Port::A, 6};
 
-/// A reply as it left, or whatever else was sent while the driver was on once.
+/// The bytes that were sent from one time that the driver was switched on until it was switched off. This is
+/// usually a reply.
 struct Sent {
-  std::uint32_t started;  ///< microseconds, driver on
-  std::uint32_t ended;    ///< the last stop bit
+  std::uint32_t started;  ///< when the driver was switched on, in microseconds
+  std::uint32_t ended;    ///< when the last stop bit ended
   std::string bytes;
 };
 
-/// Hardware only. It knows when it will interrupt; who owns it calls the interrupt when that time has come.
+/// Only the hardware. It stores the time of each next interrupt. Its owner must call the interrupt handlers
+/// at those times.
 class Chip final : public hal::bus::Peripherals {
  public:
   static constexpr std::uint32_t kNever = 0xFFFF'FFFF;
@@ -37,27 +39,27 @@ class Chip final : public hal::bus::Peripherals {
   std::uint32_t line_end_due = kNever;
   std::uint32_t wake_due = kNever;
   std::uint32_t memory_due = kNever;
-  std::uint32_t sent_due = kNever;  ///< the byte in the shift register has left
+  std::uint32_t sent_due = kNever;  ///< when the byte in the shift register has been sent
 
   std::vector<Sent> sent;
   std::uint16_t outputs = 0;
   unsigned ticks = 0;
-  unsigned feeds = 0;  ///< of the watchdog
+  unsigned feeds = 0;  ///< how often the watchdog was fed
 
   [[nodiscard]] std::uint32_t next() const {
     return std::min({tick_due, silence_due, line_end_due, wake_due, memory_due, sent_due});
   }
 
-  // --- the UART; facts as in hal/stellaris/uart.hpp ---
+  // --- the UART; see hal/stellaris/uart.hpp for its properties ---
 
   [[nodiscard]] bool driving() const { return driving_; }
-  /// Whether a byte that is received interrupts.
+  /// Returns whether a received byte causes an interrupt.
   [[nodiscard]] bool hears() const { return (enabled_ & kReceive) != 0; }
   void receive(std::uint8_t byte) {
     received_ = byte;
     flagged_ |= kReceive;
   }
-  /// The byte in the shift register has left; the one that waits goes in.
+  /// Ends the transmission of the byte in the shift register. If another byte waits, its transmission begins.
   void shift() {
     sent.back().bytes.push_back(static_cast<char>(shifting_));
     sent.back().ended = now;
@@ -144,7 +146,7 @@ class Chip final : public hal::bus::Peripherals {
   bool driving_ = false;
 };
 
-/// The one that the drivers are on.
+/// The chip that the drivers use.
 inline Chip* chip = nullptr;
 
 struct Clock {
@@ -164,7 +166,7 @@ struct LineEndTimer {
   static void restart(Duration after) { chip->line_end_due = chip->now + after.microseconds(); }
 };
 
-/// Of the main loop, which interrupts come in between.
+/// Only the main loop uses this timer, so interrupts can occur between its accesses.
 struct WakeTimer {
   static void restart(Duration after) {
     Points::pass();
@@ -192,14 +194,14 @@ struct StatusLed {
 
 struct Watchdog {
   static void feed() {
-    // The first is that at reset; each other takes a tick for itself.
+    // The watchdog is fed once at reset, and then at most once for each tick.
     if (chip->feeds++ > chip->ticks) {
       throw std::logic_error("the watchdog is fed though no tick has come since it was");
     }
   }
 };
 
-/// What the main loop has begun is done when its time has come; an interrupt tells.
+/// A memory whose jobs end after `kMemoryJob`, with an interrupt.
 class Memory {
  public:
   static constexpr std::size_t kSize = 0x180;
@@ -210,7 +212,7 @@ class Memory {
     source_ = {};
     begin();
   }
-  /// What is to be written is looked at from `poll` on.
+  /// Starts a write. `poll` reads the bytes of `source` later, so they must not change before.
   void start_write(std::uint16_t address, Bytes source, Time /*now*/) {
     Points::pass();
     address_ = address;

@@ -1,4 +1,4 @@
-// The points at which an interrupt can come between two things that the main loop does.
+// The points at which an interrupt can occur between two accesses of the main loop.
 #pragma once
 
 #include <functional>
@@ -6,11 +6,11 @@
 
 namespace ex9000::interleaving {
 
-/// Counts the points that the main loop passes, and calls whoever waits for one of them. Code that runs in an
-/// interrupt passes none: interrupts do not interrupt each other.
+/// Counts the points that the main loop passes, and calls a function at each one. Code that runs in an
+/// interrupt passes no points, because interrupts do not interrupt each other.
 class Points {
  public:
-  /// Main loop: an interrupt may come here. Nothing in an interrupt.
+  /// Marks a point at which an interrupt can occur. Has no effect in an interrupt.
   static void pass() {
     Points& points = instance();
     if (!points.in_interrupt_ && points.visit_) {
@@ -27,8 +27,8 @@ class Points {
     code();
   }
 
-  /// Runs `code` as the main loop, and calls `visit` with the number, from 0, of each point it passes. How
-  /// many it has passed.
+  /// Runs `code` as the main loop and calls `visit` at each point with its number, from 0. Returns the number
+  /// of points.
   template <class Code>
   static unsigned watch(std::function<void(unsigned)> visit, Code code) {
     const Restored<std::function<void(unsigned)>> restored(instance().visit_);
@@ -39,7 +39,7 @@ class Points {
   }
 
  private:
-  /// Also where what is tested throws.
+  /// Restores a variable at the end of a scope, even if the code under test throws.
   template <class T>
   class Restored {
    public:

@@ -1,5 +1,6 @@
-// In the place of firmware/line/crossing.hpp, which it copies: a count of 32 bits begins just before its
-// wrap, where it is after months. It is as good a beginning as 0, as nobody asks but for what has changed.
+// Replaces firmware/line/crossing.hpp and has the same interface. A 32-bit counter starts shortly before it
+// wraps, as after months of operation. The core only compares counters with earlier values, so it works with
+// any start value.
 #pragma once
 
 #include <cstdint>

@@ -1,5 +1,5 @@
-// In the place of firmware/line/crossing.hpp, which it copies: before and behind every access of the main
-// loop there is a point at which an interrupt may come. It also holds each side to what the types say.
+// Replaces firmware/line/crossing.hpp and has the same interface. Before and after each access of the main
+// loop there is a point at which an interrupt can occur. It also throws an error if the wrong side writes.
 #pragma once
 
 #include <cstdint>

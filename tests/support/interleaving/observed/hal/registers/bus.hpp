@@ -1,5 +1,5 @@
-// In the place of hal/registers/bus.hpp: registers that a test makes, and a point before and behind every
-// access of the main loop.
+// Replaces hal/registers/bus.hpp. A test supplies the registers. Before and after each access of the main
+// loop there is a point at which an interrupt can occur.
 #pragma once
 
 #include <cstdint>
@@ -8,7 +8,7 @@
 
 namespace ex9000::hal::bus {
 
-/// What answers at all addresses; made by the test.
+/// Implements the registers at all addresses. The test supplies it.
 class Peripherals {
  public:
   virtual std::uint32_t read(std::uint32_t address) = 0;
