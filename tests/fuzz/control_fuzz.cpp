@@ -106,7 +106,7 @@ Words of_the_line(const Words& words) {
   return words.size() >= 3 && words[1] == "hall" ? Words(words.begin() + 2, words.end()) : Words();
 }
 
-/// Returns whether the words are a command according to the table of commands in README.
+/// Returns whether the words are a command according to the table of commands in sim/docs/control-socket.md.
 bool is_command(Watched& watched, const Words& words) {
   Line& line = watched.line;
   const sim::VirtualTime now = line.clock().virtual_now();
