@@ -136,8 +136,8 @@ class Browser:
         self.devtools("Input.dispatchTouchEvent", type=f"touch{kind.capitalize()}", touchPoints=points)
 
     def key(self, *actions):
-        """Presses and releases keys. Each action is a name from KEYS. With the prefix +, the key is only pressed; with the
-        prefix -, it is only released."""
+        """Presses and releases keys. Each action is a name from KEYS. With the prefix +, the key is only pressed; with
+        the prefix -, it is only released."""
         moves = []
         for action in actions:
             if action[0] != "-":
