@@ -1,5 +1,5 @@
-// A module never answers a request for another address: every other address with every command and every
-// function code.
+// Tests that a module never answers a request for another address. The requests combine every other address
+// with every command and every function code.
 #include <gtest/gtest.h>
 
 #include <string>
@@ -16,7 +16,7 @@ using Bytes = ModuleBench::Bytes;
 
 constexpr unsigned kOwnAddress = 0x35;
 
-/// Valid arguments for each command, so that only the address is wrong.
+/// Returns valid arguments for the command, so that only the address is wrong.
 std::string arguments(const dcon::Command& command) {
   if (command.id == "set-configuration") {
     return "02400600";
@@ -78,8 +78,8 @@ void every_function_to_every_other_address(const char* model) {
       if (address == kOwnAddress) {
         continue;
       }
-      // Coil 0000 on, or register 0000, or quantity 0xFF00: valid or not, this module must ignore the
-      // request.
+      // Depending on the function, the data means coil 0000 on, register 0000, or quantity 0xFF00. The module
+      // must ignore the request whether or not it is valid.
       Bytes frame{static_cast<std::uint8_t>(address), static_cast<std::uint8_t>(function), 0, 0, 0xFF, 0};
       if (function == 0x0F) {
         frame = {frame[0], frame[1], 0, 0, 0, 8, 1, 0xFF};

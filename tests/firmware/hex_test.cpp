@@ -1,4 +1,4 @@
-// Hex digits: upper case only (wire.md section 3).
+// Tests hex digits, which are upper case only (wire.md section 3).
 #include "firmware/hex.hpp"
 
 #include <gtest/gtest.h>

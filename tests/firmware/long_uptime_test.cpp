@@ -1,4 +1,5 @@
-// A module that has run for months: when the 32-bit counts of the interrupts wrap, nothing changes.
+// Tests a module that has run for months: when the 32-bit counts of the interrupts wrap, its behaviour does
+// not change.
 #include <gtest/gtest.h>
 
 #include "firmware/watchdog/module_watchdog.hpp"
@@ -42,7 +43,7 @@ TEST(LongUptime, InputsLatchesAndCountersFollowEveryEdge) {
   }
 }
 
-// One edge at a time, so that the main loop reads the total at every value around the wrap.
+// This test makes one edge at a time, so that the main loop reads the total at every value around the wrap.
 TEST(LongUptime, NoSingleEdgeIsMissed) {
   CoreBench bench("EX9052D-M");
   const Inputs& inputs = bench.module().state().inputs;

@@ -21,7 +21,8 @@ class ModuleBench {
  public:
   using Bytes = std::vector<std::uint8_t>;
 
-  /// `module` has the form of the simulator's command line. 100 ms have passed since power-on.
+  /// `module` has the form of the simulator's command line. When the constructor returns, 100 ms have passed
+  /// since power-on.
   explicit ModuleBench(const std::string& module)
       : spec_(parse_module_spec(module)),
         line_({spec_}, kPaced, [this](std::uint8_t byte, ByteStatus /*status*/) { heard_.push_back(byte); }) {

@@ -1,4 +1,5 @@
-// A module and its memory: stores and their time, power cuts, and the frames that are kept during a store.
+// Tests a module and its memory: stores and their duration, power cuts, and the frames that the module keeps
+// during a store.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -72,7 +73,7 @@ void expect_nothing_written_the_second_time(ModuleBench& bench, const std::vecto
 }
 
 TEST(Storing, ACommandThatChangesNothingWritesNothing) {
-  // The outputs differ from the stored values, for `~AA5V`.
+  // The outputs differ from the stored values, so that `~AA5P` and `~AA5S` have a value to store.
   ModuleBench ascii("EX9042D-M,protocol=ascii");
   ascii.ask("@010005");
   const std::vector<std::string> commands{"%0101400680", "~01OABC", "~0131FE", "~01OABCD",
@@ -230,7 +231,7 @@ TEST(Storing, SettingsThatCannotBeReadGiveFactorySettingsUnwrittenWithin100msAnd
 }
 
 TEST(Storing, WhatIsStoredAfterAMemoryThatDidNotAnswerAtResetIsThereAtTheNext) {
-  // The newer copy is in the first place, or in the second.
+  // The number of stores decides whether the newer copy is in the first or in the second place.
   for (const int stores : {3, 4}) {
     ModuleBench bench("EX9042D,name=OLD");
     for (int i = 0; i < stores; ++i) {
@@ -264,7 +265,7 @@ TEST(Storing, ARefusedStoreIsNotInForceAfterTheNextResetThoughItsWriteHadLanded)
 }
 
 TEST(Storing, AReplyWaitsForATimeoutThatIsNotStoredYet) {
-  // The timeout has disabled the watchdog, but the memory does not have this yet. The "off" of the command
+  // The timeout has disabled the watchdog, but this is not stored yet. The command that disables the watchdog
   // must not be stored before the timeout is.
   ModuleBench bench("EX9042D");
   ASSERT_EQ(bench.ask("~013103"), "!01");
@@ -323,7 +324,7 @@ TEST(Queueing, AWholeModbusFrameSurvivesTheReplyToTheOneBeforeIt) {
   bench.recorder().clear();
   bench.run(milliseconds(400));
   ASSERT_FALSE(bench.recorder().drivers.empty());
-  // Otherwise the test would show nothing.
+  // Otherwise the silence would end before the driver is switched on, and the test would show nothing.
   EXPECT_LT(bench.recorder().drivers[0].at, sent + microseconds(4010));
   EXPECT_FALSE(bench.module().module().state().settings.timeout_status);
 }

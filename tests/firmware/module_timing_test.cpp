@@ -1,4 +1,4 @@
-// The timing of a module's reset, its replies and its driver.
+// Tests the timing of a module's reset, its replies and its driver.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -127,7 +127,7 @@ TEST(Time, NothingHappensWhenTheMicrosecondsWrap) {
   bench.line().bus().run_until(kWrap - milliseconds(1000));
   ASSERT_EQ(bench.ask(Bytes{1, 0x05, 0x01, 0x04, 0xFF, 0x00}).at(1), 0x05);
   const Bytes host_ok = with_crc({1, 0x03, 0x30, 0x38, 0x00, 0x00});
-  // A frame across the wrap.
+  // The frame is sent across the wrap.
   bench.line().bus().run_until(kWrap - milliseconds(4));
   bench.send(host_ok);
   const VirtualTime restarted = bench.now() + microseconds(4010);  // T3.5

@@ -1,5 +1,5 @@
-// A module whose main loop turns without polling the panel, as on a board between two ticks, and the time for
-// which the module allows it to sleep.
+// Tests a module whose main loop turns without polling the panel, as on a board between two ticks, and the
+// time for which the module allows the main loop to sleep.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -34,7 +34,7 @@ class ModuleTurns : public testing::Test {
 
   void pass(Duration time) { now_ = now_ + time; }
 
-  /// Does a memory job, without a step of the module after it.
+  /// Does a memory job, without a step of the module afterwards.
   void do_memory_job() {
     const MemoryJob job = module_.memory_job();
     for (std::size_t i = 0; i < job.bytes.size; ++i) {

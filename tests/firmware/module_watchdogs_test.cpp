@@ -1,4 +1,4 @@
-// A module's host watchdog and its hardware watchdog, to the microsecond and while the memory is busy.
+// Tests a module's host watchdog and its hardware watchdog, to the microsecond and while the memory is busy.
 #include <gtest/gtest.h>
 
 #include <algorithm>

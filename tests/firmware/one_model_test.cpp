@@ -1,4 +1,4 @@
-// Code that is compiled for one model, as in an image: EX9000_MODEL is "EX9042D-M" here.
+// Tests code that is compiled for one model, as in an image: EX9000_MODEL is "EX9042D-M" here.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -20,7 +20,7 @@ TEST(OneModel, ADeviceIsMadeByTheCompiler) {
   EXPECT_EQ(&untouched_device.module().state().model(), &kOnlyModel);
 }
 
-// A program for all models reads what an image stores, and vice versa.
+// A program for all models must read the settings that an image stores, and vice versa.
 TEST(OneModel, ItsRecordIsThatOfAllModels) {
   const std::vector<std::uint8_t> from_the_factory{
       3,    19,   1,    0,                    // layout, length, sequence

@@ -1,4 +1,4 @@
-// Random sessions, played on the firmware and on the reference.
+// Plays random sessions on the firmware and on the reference.
 //   EX9000_TRANSACTIONS  number of requests; default 200000; the long form is 10000000
 //   EX9000_SEED          seed of the first session; each further session has the next number
 #include <gtest/gtest.h>
@@ -17,7 +17,7 @@
 namespace ex9000::reference {
 namespace {
 
-/// Steps of a session: enough for the effect of one step to influence many others.
+/// The number of steps of a session. It is large enough for one step to influence many others.
 constexpr unsigned kSteps = 300;
 
 /// Returns each model in turn; models with two protocols occur three times as often.

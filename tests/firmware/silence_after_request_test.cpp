@@ -1,5 +1,5 @@
-// The module processes a request when the silence after it is over. Events during that silence still count:
-// wire.md sections 3, 7 and 8.
+// Tests that the module processes a request when the silence after it is over, and that events during that
+// silence still count: wire.md sections 3, 7 and 8.
 #include <gtest/gtest.h>
 
 #include <chrono>
@@ -97,7 +97,7 @@ TEST(SilenceAfterRequest, NothingIsDoneWithinTheSilence) {
     const VirtualTime ended = bench.now();
     bench.run(kLong);
     ASSERT_EQ(changes.size(), 1U) << model;
-    // One character of ten bits, or 3.5 characters of eleven bits.
+    // The silence is one character of ten bits, or 3.5 characters of eleven bits.
     EXPECT_GE(changes[0].at - ended, ascii ? microseconds(1041) : microseconds(4010)) << model;
     EXPECT_LE(changes[0].at - ended, ascii ? microseconds(1060) : microseconds(4030)) << model;
   }
@@ -127,8 +127,8 @@ TEST(SilenceAfterRequest, AFrameThatIsSpoiledBehindItsCrcIsNotActedUpon) {
 }
 
 TEST(SilenceAfterRequest, TheInitSwitchCountsAsItStandsWhereTheSilenceEnds) {
-  // At 1200 baud the turn-around takes 8.3 ms. The switch moves so early that its debounce time of 10 ms ends
-  // in the middle of the turn-around.
+  // At 1200 baud the turn-around takes 8.3 ms. The switch changes so early that its debounce time of 10 ms
+  // ends in the middle of the turn-around.
   constexpr microseconds kCharacter{10'000'000 / 1200};
   constexpr milliseconds kMovedBeforeTheEnd{6};
   // The command sets another baud rate, which is permitted only while INIT* is asserted.
@@ -150,7 +150,7 @@ TEST(SilenceAfterRequest, TheInitSwitchCountsAsItStandsWhereTheSilenceEnds) {
 TEST(SilenceAfterRequest, ARequestCountsItselfAmongTheBusMessages) {
   ModuleBench bench("EX9052D-M");
   EXPECT_EQ(bench.ask(kBusMessages), (Bytes{0x01, 0x08, 0x00, 0x0B, 0x00, 0x01}));
-  // The same if an input changes in the silence after it.
+  // The request also counts itself if an input changes in the silence after it.
   EXPECT_EQ(answer(bench, kBusMessages, [&] { bench.module().pulse_input(0, 1); }),
             with_crc({0x01, 0x08, 0x00, 0x0B, 0x00, 0x02}));
   EXPECT_EQ(bench.ask(kBusMessages), (Bytes{0x01, 0x08, 0x00, 0x0B, 0x00, 0x03}));

@@ -1,4 +1,4 @@
-// The tables of models, commands and registers are consistent in themselves and with each other.
+// Tests that the tables of models, commands and registers are consistent, each in itself and with the others.
 #include <gtest/gtest.h>
 
 #include <set>

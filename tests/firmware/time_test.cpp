@@ -1,4 +1,4 @@
-// Durations, times and deadlines on a clock that wraps at 2^32 microseconds.
+// Tests durations, times and deadlines on a clock that wraps at 2^32 microseconds.
 #include "firmware/time.hpp"
 
 #include <gtest/gtest.h>

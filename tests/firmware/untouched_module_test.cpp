@@ -1,4 +1,4 @@
-// A module before `start`: the compiler initialises it, so it is valid before any code runs.
+// Tests a module before `start`: the compiler initialises it, so it is valid before any code runs.
 #include <gtest/gtest.h>
 
 #include "firmware/module.hpp"

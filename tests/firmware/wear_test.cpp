@@ -1,4 +1,4 @@
-// How often an EEPROM is written in use, compared with the manufacturer's guarantee.
+// Tests how often an EEPROM is written in use, compared with the manufacturer's guarantee.
 #include <gtest/gtest.h>
 
 #include <array>
@@ -14,13 +14,13 @@ namespace {
 using PageWrites = std::array<unsigned, hal::doubles::Memory::kSize / hal::doubles::Memory::kPage>;
 using Bytes = ModuleBench::Bytes;
 
-/// AT24C64, Atmel doc. 0336: write cycles of a page.
+/// Write cycles of a page of an AT24C64: Atmel doc. 0336.
 constexpr double kCycles = 1'000'000;
 constexpr double kMinutesAYear = 525'600;
 constexpr double kDaysAYear = 365;
 
-/// The number of writes of one repetition of `use`, averaged over a hundred. It must be the same for all
-/// pages in use.
+/// Returns the number of writes per repetition of `use`, averaged over a hundred repetitions. Checks that all
+/// pages in use have the same number of writes. `pages`: returns the number of pages in use.
 double writes_of(ModuleBench& bench, const std::function<void(unsigned round)>& use, unsigned& pages) {
   constexpr unsigned kRounds = 100;
   PageWrites writes{};

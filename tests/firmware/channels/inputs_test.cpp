@@ -1,4 +1,4 @@
-// Edges, latches and counters: wire.md section 5.
+// Tests edges, latches and counters: wire.md section 5.
 #include "firmware/channels/inputs.hpp"
 
 #include <gtest/gtest.h>

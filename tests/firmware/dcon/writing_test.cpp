@@ -1,4 +1,5 @@
-// First and Second data: manuals 1.10, and for models with more than eight inputs wire.md section 4.
+// Tests First and Second of the reply data: manuals 1.10; for models with more than eight inputs, wire.md
+// section 4.
 #include "firmware/dcon/writing.hpp"
 
 #include <gtest/gtest.h>

@@ -81,7 +81,7 @@ class Bench {
 
   // --- external events; they may also occur in the middle of a turn of the main loop ---
 
-  /// The next byte on the line is complete, one character time later.
+  /// Completes the next byte on the line, one character time later.
   void byte(std::uint8_t value) {
     pass_time_until(chip_.now + Chip::kCharacter);
     interrupt([&] {
@@ -89,7 +89,7 @@ class Bench {
       serve_uart();
     });
   }
-  /// The line stays silent until the silence timer expires.
+  /// Keeps the line silent until the silence timer expires.
   void silence() {
     if (chip_.silence_due != Chip::kNever) {
       pass_time_until(chip_.silence_due);

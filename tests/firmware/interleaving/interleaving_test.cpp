@@ -1,10 +1,10 @@
-// Interrupts at every point at which the main loop accesses data that it shares with them.
+// Tests interrupts at every point at which the main loop accesses data that it shares with them.
 //
 // The core's own sources and hal/device.hpp run here with crossings, a clock and registers that report every
 // access (observed/). The test runs an interrupt before and after each access. The outcome must be the same
 // as if the interrupt had come before the turn, after it, or between two steps of a script.
 //
-// Data that both sides access besides the crossings themselves, and how it is handed over:
+// Both sides also access the following data outside the crossings. It is handed over as follows:
 //  - FrameQueue::frames_: the waiting frame belongs to the main loop from `completed_` to `dropped_`;
 //  - Uart::rest_, a HandedToInterrupt: it belongs to the main loop until `begun_`, to the interrupts until
 //    `ended_`;
@@ -15,8 +15,8 @@
 //  - the driver's pin: both sides write it through the mask in the address, which needs no read.
 // Only the main loop uses EventTally::collected_; the interrupt only writes `total_`.
 //
-// Time is that of the line: a byte takes 87 us even if it arrives in the middle of a turn, so a turn may be
-// interrupted for milliseconds.
+// Time passes as on a line: a byte takes 87 us even if it arrives in the middle of a turn, so interrupts may
+// delay a turn by milliseconds.
 #include <gtest/gtest.h>
 
 #include <cstdio>
@@ -60,7 +60,7 @@ void reply_byte_leaves(Bench& bench) { bench.reply_byte_leaves(); }
 Step edge(unsigned channel, bool level) {
   return [=](Bench& bench) { bench.edge(channel, level); };
 }
-/// A request byte by byte, and the silence after it.
+/// Returns steps that send a request byte by byte, and the silence after it.
 std::vector<Step> frame(const std::string& request, const std::string& reply) {
   std::vector<Step> steps;
   for (std::size_t i = 0; i < request.size(); ++i) {
@@ -86,8 +86,8 @@ Parts outputs_and_name(Bench& bench) {
   return {"outputs " + std::to_string(bench.hardware().outputs) + " name " +
           std::string(settings.name.bytes().begin(), settings.name.bytes().end())};
 }
-/// One part for each channel: an edge on one channel may count as before a command, and an earlier edge on
-/// another channel as after it.
+/// Returns one part for each channel, because the order of edges on different channels is not defined: a
+/// command may see an edge on one channel, but not an earlier edge on another channel.
 Parts inputs(Bench& bench) {
   const ex9000::Inputs& inputs = bench.module().state().inputs;
   Parts parts;
@@ -127,7 +127,8 @@ class Interleaver {
  public:
   Interleaver(const Scenario& scenario, Tried& counted)
       : scenario_(scenario), counted_(counted), steps_(scenario.script.size()) {
-    // An outcome that is possible between two turns is also possible within a turn.
+    // Collects the permitted outcomes: those that occur if the first steps come before the turn and the
+    // others after it.
     for (std::size_t before = 0; before <= steps_; ++before) {
       Places places(steps_, kBehindTheTurn);
       std::fill_n(places.begin(), before, kBeforeTheTurn);
@@ -269,7 +270,7 @@ Step asked(const std::string& request, const std::string& reply) {
     bench.silence();
   };
 }
-/// The turn begins while a store is in progress.
+/// Prepares a turn that begins while a store is in progress.
 Step storing(const std::string& request, const std::string& reply) {
   return [=](Bench& bench) {
     bench.asks(request, reply);
@@ -277,10 +278,10 @@ Step storing(const std::string& request, const std::string& reply) {
     bench.whole_turn();
   };
 }
-/// The turn begins while a reply is being sent.
+/// Prepares a turn that begins while a reply is being sent.
 Step replying(const std::string& request, const std::string& reply) { return storing(request, reply); }
 
-/// The turn begins while a reply is being sent and the next request waits.
+/// Prepares a turn that begins while a reply is being sent and the next request waits.
 Step replying_with_one_more(const std::string& request, const std::string& reply, const std::string& next,
                             const std::string& next_reply) {
   return [=](Bench& bench) {
@@ -403,8 +404,8 @@ TEST(Interleaving, ASilenceIsThatOfItsOwnFrame) {
   EXPECT_GT(all.interleavings, 200U);
 }
 
-/// Passes a whole frame at each point of the turn that answers another frame. From the point at which that
-/// one is processed until the driver is switched on, no frame may be lost.
+/// Sends a whole frame at each point of the turn that answers an earlier frame. The new frame must not be
+/// lost from the point at which the earlier frame has been processed until the driver is switched on.
 void expect_one_more_is_kept(Scenario scenario, const std::string& request, const std::string& reply) {
   bool driving = false;
   std::size_t answered = 0;

@@ -16,14 +16,14 @@ struct Scenario {
   const char* name;
   const char* model;
   std::function<void(Settings&)> settings;
-  Step before;               ///< prepares the turn
+  Step before;               ///< prepares the module for the turn
   std::vector<Step> script;  ///< the events, in this order, during, before or after the turn
   /// Each permitted list of replies, from the start of the turn until the module is idle.
   std::vector<std::vector<std::string>> replies;
   std::function<std::vector<std::string>(Bench&)> comes_to;
   std::string probe;          ///< a request after everything else
   std::string probe_reply;    ///< the expected reply to it
-  std::uint32_t turn_around;  ///< the least time before each reply, in microseconds
+  std::uint32_t turn_around;  ///< the minimum time before each reply, in microseconds
   bool restless = false;      ///< the main loop is woken all the time
 };
 
@@ -62,7 +62,7 @@ inline void require(bool holds, const std::string& what) {
   }
 }
 
-/// Checks the least time between two replies, and between a request in `asked` and its reply.
+/// Checks the minimum time between two replies, and between a request in `asked` and its reply.
 inline void require_distances(const Bench& bench, const Chip& hardware, const Scenario& scenario) {
   const std::vector<Sent>& sent = hardware.sent;
   for (std::size_t i = 0; i < sent.size(); ++i) {

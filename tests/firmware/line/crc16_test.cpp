@@ -1,4 +1,4 @@
-// CRC-16/MODBUS, checked with the worked examples of wire.md section 7 and of Modbus over Serial Line V1.02.
+// Tests CRC-16/MODBUS with the worked examples of wire.md section 7 and of Modbus over Serial Line V1.02.
 #include "firmware/line/crc16.hpp"
 
 #include <gtest/gtest.h>

@@ -1,4 +1,5 @@
-// The states of the DCON assembler, and framing: wire.md section 3, "The receiver" and "Judging a frame" 1.
+// Tests the states of the DCON assembler, and framing: wire.md section 3, "The receiver" and "Judging a
+// frame" 1.
 #include "firmware/line/dcon_assembler.hpp"
 
 #include <gtest/gtest.h>

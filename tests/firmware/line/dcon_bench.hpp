@@ -43,7 +43,7 @@ class DconAssemblerTest : public testing::Test {
     return text;
   }
 
-  /// Checks that the receiver waits for a delimiter and has kept nothing of what was sent before.
+  /// Checks that the assembler waits for a delimiter and has kept no earlier character.
   void expect_hunting() {
     EXPECT_EQ(put("$01M\r"), Verdict::Accepted);
     EXPECT_EQ(taken(), "$01M");

@@ -1,4 +1,4 @@
-// Checksum, address and broadcasts of DCON frames: wire.md section 3, "Judging a frame" 2 to 4.
+// Tests checksum, address and broadcasts of DCON frames: wire.md section 3, "Judging a frame" 2 to 4.
 #include <gtest/gtest.h>
 
 #include <cstdint>
@@ -11,7 +11,7 @@
 namespace ex9000 {
 namespace {
 
-/// The checksum of wire.md section 3, computed without the firmware's code.
+/// Appends the checksum of wire.md section 3, computed without the firmware's code.
 std::string with_checksum(std::string text) {
   unsigned sum = 0;
   for (const char character : text) {

@@ -1,4 +1,4 @@
-// Two frames that the receive interrupt and the main loop use in turn.
+// Tests the queue of two frames that the receive interrupt and the main loop use in turn.
 #include "firmware/line/frame_queue.hpp"
 
 #include <gtest/gtest.h>

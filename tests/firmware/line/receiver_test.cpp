@@ -1,4 +1,4 @@
-// The receiver: protocol selection, the counters of function 08 (wire.md D1), host OK, D9.
+// Tests the receiver: protocol selection, the counters of function 08 (wire.md D1), host OK, D9.
 #include "firmware/line/receiver.hpp"
 
 #include <gtest/gtest.h>
@@ -302,7 +302,7 @@ TEST_F(ReceiverTest, AsciiWantsTheTurnAroundBehindAnAcceptedFrameAndNeverLess) {
       EXPECT_EQ(receiver.on_byte(static_cast<std::uint8_t>(character), ByteStatus::Good, now_).microseconds(),
                 0U);
     }
-    // One character of ten bits (wire.md section 3).
+    // The turn-around is one character of ten bits (wire.md section 3).
     const double ten_bits = 10 * 1e6 / baud;
     constexpr double kRounding = 3;
     const std::uint32_t wanted = receiver.on_byte('\r', ByteStatus::Good, now_).microseconds();
@@ -356,7 +356,7 @@ TEST_F(ReceiverTest, ModbusWantsNoMoreSilenceBehindARightCrc) {
 TEST_F(ReceiverTest, ModbusWantsOneMoreCharacterBehindAWrongCrc) {
   listen(Protocol::ModbusRtu);
   bytes({0x01, 0x05, 0x00});
-  // From T3.5, which the timer rounds up, to the end of a byte that began at T3.5.
+  // The wait lasts from T3.5, which the timer rounds up, to the end of a byte that began at T3.5.
   constexpr double kTenBits = 10 * 1e6 / kBaud;
   constexpr double kRounding = 5;
   const std::uint32_t wanted = receiver_.on_silence().microseconds();
@@ -401,8 +401,8 @@ TEST_F(ReceiverTest, AModbusFrameWhoseCrcIsRightIsCountedAndTakenWhenTheModuleSp
   EXPECT_TRUE(took_frame());
 }
 
-// wire.md D9: it is judged after the module's reply, which may end before the silence after the host OK
-// would.
+// wire.md D9: the host OK is judged after the module's reply. The reply may end before the silence that
+// belongs to the host OK would have ended.
 TEST_F(ReceiverTest, AHostOkThatEndsWithTheModulesReplyCountsNotBeforeItsTime) {
   listen(Protocol::ModbusRtu);
   bytes(kHostOk);

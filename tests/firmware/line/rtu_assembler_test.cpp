@@ -1,4 +1,4 @@
-// Assembly of Modbus RTU frames and the verdicts on them: wire.md section 7, "Framing", and D11; Modbus over
+// Tests how Modbus RTU frames are assembled and judged: wire.md section 7, "Framing", and D11; Modbus over
 // Serial Line V1.02, 2.5.1.
 #include "firmware/line/rtu_assembler.hpp"
 
@@ -14,14 +14,14 @@ namespace {
 
 class RtuAssemblerTest : public testing::Test {
  protected:
-  /// The verdict on one frame, with silence before and after it.
+  /// Sends one frame, with silence before and after it. Returns the verdict.
   Verdict verdict_of(const FrameBytes& bytes) {
     wire_.verdicts.clear();
     wire_.frame(bytes);
     EXPECT_EQ(wire_.verdicts.size(), 1U);
     return wire_.verdicts.empty() ? Verdict::Open : wire_.verdicts.front();
   }
-  /// Does the same with a line error in byte `errored`.
+  /// Like the other overload, but with a line error in byte `errored`.
   Verdict verdict_of(const FrameBytes& bytes, std::size_t errored, ByteStatus status) {
     wire_.verdicts.clear();
     for (std::size_t i = 0; i < bytes.size(); ++i) {

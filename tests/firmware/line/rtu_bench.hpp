@@ -36,8 +36,8 @@ inline FrameBytes behind(std::uint8_t first, const FrameBytes& frame) {
   return bytes;
 }
 
-/// T1.5 and T3.5 of the Modbus serial line guide: 11-bit characters up to 19200 baud; 750 and 1750
-/// microseconds above.
+/// Returns T1.5 or T3.5 of the Modbus serial line guide: a number of half characters of 11 bits up to 19200
+/// baud, and above that `fixed`, which is 750 or 1750 microseconds.
 inline Nanoseconds silence_of_half_characters(int halves, std::uint32_t baud, Nanoseconds fixed) {
   return baud <= 19200 ? Nanoseconds{halves} * 11 * 500'000'000 / baud : fixed;
 }
@@ -90,7 +90,7 @@ class Wire {
   bool collect = true;  ///< take each frame from the queue when it is complete
   Verdicts verdicts;
   std::vector<FrameBytes> frames;
-  Time received;  ///< of the latest frame
+  Time received;  ///< when the latest frame was received
 
  private:
   void run_timer() {

@@ -1,5 +1,5 @@
-// The silences between RTU frames and the gaps within them. T3.5 and T1.5 are measured from a stop bit to the
-// next start bit: wire.md section 7, "Framing", and D11; Modbus over Serial Line V1.02, 2.5.1.
+// Tests the silences between RTU frames and the gaps within them. T3.5 and T1.5 are measured from a stop bit
+// to the next start bit: wire.md section 7, "Framing", and D11; Modbus over Serial Line V1.02, 2.5.1.
 #include <gtest/gtest.h>
 
 #include <cstddef>
@@ -238,7 +238,7 @@ TEST_P(RtuGaps, StrictlyAGapShorterThanT35StillDoesNotEndAFrame) {
   EXPECT_TRUE(wire_.frames.empty());
 }
 
-// A gap inside a frame is rejected, but the frame without the 00 is valid.
+// The gap would invalidate a frame that contains it, but the frame without the 00 is valid.
 TEST_P(RtuGaps, StrictlyAGapBehindATurnAround00DoesNotSpoilTheFrame) {
   assembler_.use(LineTiming::strictly_at(baud_));
   with_gap(behind(0x00, kChannel0On), 1, t15(baud_) + kClock);

@@ -1,4 +1,4 @@
-// The counters of function 08: wire.md 7 and D1.
+// Tests the counters of function 08: wire.md section 7 and D1.
 #include <gtest/gtest.h>
 
 #include <functional>

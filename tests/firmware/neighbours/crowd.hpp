@@ -1,4 +1,4 @@
-// 32 modules on one line. Beside each of them runs its reference model, which receives the same bytes.
+// 32 modules on one line. Each module has a reference model, which receives the same bytes.
 #pragma once
 
 #include <cstdint>

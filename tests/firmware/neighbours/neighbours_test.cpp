@@ -1,4 +1,4 @@
-// A full line: 32 modules of both protocols, which get one request after the other without a pause. Each
+// Tests a full line: 32 modules of both protocols receive one request after another without a pause. Each
 // module answers only its own requests, does not treat another module's reply as a request, keeps receiving,
 // and counts its pulses.
 //

@@ -1,5 +1,5 @@
-// Noise on the line: the module answers and changes outputs only for frames whose received bytes pass the
-// check. The test also counts the damaged frames that pass it.
+// Tests noise on the line: the module answers and changes outputs only for frames whose received bytes pass
+// the check. The test also counts the damaged frames that pass it.
 //
 //     EX9000_FRAMES=N    frames for each check and error rate; default 10,000
 //     EX9000_SEED=N      default 1
@@ -47,8 +47,8 @@ TEST_P(Checks, LetThroughWhatTheoryExpectsAndTheModuleDoesWhatItHeard) {
         static_cast<unsigned long long>(tally.in_data), static_cast<unsigned long long>(tally.taken_in_data),
         seen.low, seen.high, tally.expected, static_cast<unsigned long long>(tally.taken_otherwise));
     std::fflush(stdout);
-    // These commands are executed, and the module is set up again after them, because the theory does not
-    // consider a module with another address. More of them than this would not be chance.
+    // After such a command, the module is set up again, because the theory does not consider a module with
+    // another address. More such commands than this limit would not be chance.
     std::printf("  %llu stored something\n", static_cast<unsigned long long>(tally.storing));
     EXPECT_LE(tally.storing, 1 + tally.sent / 10'000);
     // Twice as wide as the 95 % interval; otherwise one of the twelve rows would fail in every second run.

@@ -19,10 +19,10 @@ using std::chrono::milliseconds;
 
 constexpr std::size_t kModule = 1;
 constexpr unsigned kOutputs = 13;
-/// The time from the last byte of a request until the next one may follow: a reply of at most 9 characters is
-/// over.
+/// The time from the last byte of a request until the next request may follow. It is long enough for a reply
+/// of at most 9 characters.
 constexpr VirtualTime kReplies = milliseconds(6);
-/// Longer than storing or any other effect of a frame takes.
+/// Longer than a store or any other effect of a frame takes.
 constexpr VirtualTime kLongest = milliseconds(300);
 std::string spec_of(Check check) {
   const std::string spec = "EX9042D-M@01,baud=115200";
@@ -80,7 +80,7 @@ void NoisyLine::come_up() {
 
 FrameBytes NoisyLine::a_request() {
   const unsigned kind = below(3);
-  // Only a few values, because the theory is computed for each request.
+  // There are only a few values because the theory is computed for each request.
   constexpr std::uint16_t kOutputValues[] = {0x0000, 0x1FFF, 0x0A5A, 0x15A5};
   const std::uint16_t data = kOutputValues[below(4)];
   if (check_ == Check::Crc) {

@@ -51,11 +51,11 @@ class NoisyLine final : public sim::Disturbance, public sim::Station {
 
   /// Returns a request that the master may send: it reads or writes outputs.
   FrameBytes a_request();
-  /// Sends `request` while noise flips each bit with the probability `flipped_bit`, and checks all that
-  /// follows. Reports failures through GoogleTest.
+  /// Sends `request` while noise flips each bit with the probability `flipped_bit`, and checks all effects.
+  /// Reports failures through GoogleTest.
   void exchange(const FrameBytes& request, double flipped_bit, Tally& tally);
-  /// Checks the module when the line has no more disturbance: after a silence, and a CR if frames end with
-  /// one, the module answers the first frame correctly.
+  /// Checks the module after the disturbance of the line has ended: after a silence, and a CR if frames end
+  /// with one, the module answers the first frame correctly.
   void expect_the_first_clean_frame_is_answered();
 
   /// The number of replies and changes of outputs. The witness has found a reason for each of them in the

@@ -36,7 +36,7 @@ class Onlooker final : public sim::BusObserver {
   Onlooker(const Onlooker&) = delete;
   Onlooker& operator=(const Onlooker&) = delete;
 
-  /// Stops checking: the module is about to be switched off and may do anything.
+  /// Stops checking. Call it before the module is switched off.
   void look_away() { looking_ = false; }
   /// Begins to check. Call it when the module has started and nothing has been sent to it since.
   void look_again() {
@@ -48,7 +48,7 @@ class Onlooker final : public sim::BusObserver {
     looking_ = true;
   }
 
-  /// Passes a byte to the witness that the module receives or has received; the module may not have processed
+  /// Passes to the witness a byte that the module receives or has received; the module may not have processed
   /// it yet.
   void hears(std::uint8_t byte, ByteStatus status) {
     if (!driving_) {
@@ -56,7 +56,7 @@ class Onlooker final : public sim::BusObserver {
     }
   }
 
-  /// The counts of what the module has received until now.
+  /// Returns the counts of frames that the module has received until now.
   const judges::Witness::Counts& counts() {
     witness_.pass(now());
     return witness_.counts();

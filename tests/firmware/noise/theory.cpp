@@ -28,8 +28,8 @@ double choose(unsigned from, unsigned count) {
   return ways;
 }
 
-/// The number of ways to choose `weight` of `bits` places with an even number of `marked` ones among them,
-/// minus those with an odd number.
+/// Returns the number of ways to choose `weight` of `bits` places with an even number of `marked` places
+/// among them, minus the number of ways with an odd number.
 double krawtchouk(unsigned bits, unsigned weight, unsigned marked) {
   double sum = 0;
   for (unsigned j = 0; j <= weight && j <= marked; ++j) {
@@ -38,7 +38,8 @@ double krawtchouk(unsigned bits, unsigned weight, unsigned marked) {
   return sum;
 }
 
-/// For each place, the change of the CRC if that bit is flipped. Apart from its start value, a CRC is linear.
+/// Returns, for each place, the change of the CRC if that bit is flipped. Apart from its start value, a CRC
+/// is linear.
 std::vector<unsigned> syndromes(unsigned bits) {
   std::vector<unsigned> all;
   for (unsigned place = 0; place < bits; ++place) {
@@ -74,7 +75,7 @@ Words words_of(unsigned bits) {
   return words;
 }
 
-/// The probability that flips change `from` to `to`.
+/// Returns the probability that flips change `from` to `to`.
 double becomes(unsigned from, unsigned to, double flipped_bit) {
   const unsigned flips = ones(from ^ to);
   return std::pow(flipped_bit, flips) * std::pow(1 - flipped_bit, 8 - flips);
@@ -82,7 +83,8 @@ double becomes(unsigned from, unsigned to, double flipped_bit) {
 
 bool in(char character, const char* set) { return std::string(set).find(character) != std::string::npos; }
 
-/// The probability that `text` with a CR after it passes: its last two characters are the sum of the others.
+/// Returns the probability that `text` with a CR after it passes the check: its last two characters are the
+/// sum of the others.
 double sum_fits(const std::string& text, double flipped_bit) {
   Sums sums{};
   sums[0] = 1;
@@ -109,7 +111,7 @@ double sum_fits(const std::string& text, double flipped_bit) {
   return passes;
 }
 
-/// The words of a frame of `bytes` bytes, computed once.
+/// Returns the words of a frame of `bytes` bytes, which are computed only once.
 const Words& known_words(std::size_t bytes) {
   static std::map<std::size_t, Words> known;
   const auto [place, fresh] = known.try_emplace(bytes);

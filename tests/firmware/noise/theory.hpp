@@ -24,11 +24,12 @@ double crc_misses(std::size_t bytes, double flipped_bit);
 /// four flips for that. With a checksum, also ignores frames whose own CR has become another character.
 double dcon_misses(const std::string& frame, bool checksum, double flipped_bit);
 
-/// The 95 % confidence interval of the mean of a Poisson variable that has produced `count` events.
+/// A 95 % confidence interval of the mean of a Poisson variable.
 struct Interval {
   double low;
   double high;
 };
+/// Returns the interval for a variable that has produced `count` events.
 Interval interval_of(std::uint64_t count);
 
 }  // namespace ex9000::noise

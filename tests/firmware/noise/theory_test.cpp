@@ -12,7 +12,8 @@
 namespace ex9000::noise {
 namespace {
 
-/// For each bit of a frame, the change of the CRC when that bit is flipped, computed from the frame itself.
+/// Returns, for each bit of a frame, the change of the CRC when that bit is flipped, computed from the frame
+/// itself.
 std::vector<unsigned> syndromes_of(std::size_t bytes) {
   std::vector<std::uint8_t> frame(bytes, 0xA5);
   const unsigned untouched = judges::crc16(frame.data(), bytes);

@@ -1,4 +1,4 @@
-// INIT*, the status LED and the two watchdogs: wire.md sections 2 and 6, D8, D13.
+// Tests INIT*, the status LED and the two watchdogs: wire.md sections 2 and 6, D8, D13.
 #include <gtest/gtest.h>
 
 #include "firmware/panel/debounce.hpp"
@@ -104,7 +104,7 @@ TEST(Debounce, AChangeThatStandsChangesTheLevelBothWays) {
 
 // --- the status LED ---
 
-/// Whether the LED is lit after `after` milliseconds, if the main loop turns every millisecond.
+/// The LED of a module whose main loop turns every millisecond. Times are in milliseconds from the start.
 class LedOverTime {
  public:
   LedOverTime(Pattern pattern, Time start) : pattern_(pattern), start_(start) { led.show(pattern, start); }

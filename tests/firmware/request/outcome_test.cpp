@@ -1,4 +1,4 @@
-// The outcome of a request: it holds exactly the requested effects, and nothing after it is cleared.
+// Tests the outcome of a request: it holds exactly the requested effects, and none after it is cleared.
 #include "firmware/request/outcome.hpp"
 
 #include <gtest/gtest.h>

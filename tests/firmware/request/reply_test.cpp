@@ -1,4 +1,4 @@
-// A reply while it is being written: it never exceeds its buffer, even if a handler appends too much.
+// Tests how a reply is written: it never exceeds its buffer, even if a handler appends too much.
 #include "firmware/request/reply.hpp"
 
 #include <gtest/gtest.h>

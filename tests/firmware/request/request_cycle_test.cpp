@@ -1,4 +1,4 @@
-// A request from its evaluation to the end of its reply: wire.md sections 3, 7 and 8, D17 and D18.
+// Tests a request from its evaluation to the end of its reply: wire.md sections 3, 7 and 8, D17 and D18.
 #include "firmware/request/request_cycle.hpp"
 
 #include <gtest/gtest.h>
@@ -26,7 +26,7 @@ class RequestCycleTest : public testing::Test {
     request_.assign(request.begin(), request.end());
     return cycle_.judge({request_.data(), request_.size()});
   }
-  /// The request has no CRC.
+  /// `request` has no CRC.
   const Outcome& judge_modbus(std::vector<std::uint8_t> request) {
     state_.in_force.protocol = Protocol::ModbusRtu;
     request_ = std::move(request);

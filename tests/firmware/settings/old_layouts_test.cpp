@@ -1,4 +1,4 @@
-// Settings that earlier firmware has stored, after an update: wire.md section 8.
+// Tests settings that earlier firmware has stored, after a firmware update: wire.md section 8.
 #include "firmware/settings/old_layouts.hpp"
 
 #include <gtest/gtest.h>

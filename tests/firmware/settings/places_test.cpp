@@ -1,4 +1,4 @@
-// The places of the copies of the settings.
+// Tests the places at which copies of the settings are stored.
 #include "firmware/settings/places.hpp"
 
 #include <gtest/gtest.h>

@@ -1,5 +1,5 @@
-// The stored form of settings: what is written is read back, and nothing else is accepted as settings
-// (wire.md D8).
+// Tests the stored form of settings: a written record is read back, and other data is not accepted as
+// settings (wire.md D8).
 #include "firmware/settings/record.hpp"
 
 #include <gtest/gtest.h>
@@ -25,7 +25,7 @@ struct Stored {
   std::uint16_t sequence;
 };
 
-/// Every field differs from its factory value.
+/// Returns settings in which every field differs from its factory value.
 Stored changed_settings() {
   Settings settings;
   settings.address = 0xF7;
@@ -66,7 +66,7 @@ void expect_round_trip(const Model& which, const Stored& stored) {
   EXPECT_EQ(found->edition.layout, 3) << which.designation;
 }
 
-// firmware/settings/record.hpp
+// The layout: firmware/settings/record.hpp.
 constexpr std::size_t kLengthAt = 1;
 constexpr std::size_t kSettingsAt = 4;
 constexpr std::size_t kSettingsSize = 19;
@@ -154,7 +154,7 @@ std::uint32_t word_that_must_be_at(std::size_t missing, const Record& record, co
   return undone(behind, 32) ^ before;
 }
 
-/// Random settings that are possible for the model `which`.
+/// Returns random settings that are possible for the model `which`.
 Stored random_settings(const Model& which, std::mt19937& random) {
   const auto below = [&random](std::uint32_t limit) { return static_cast<std::uint32_t>(random() % limit); };
   Settings settings;
@@ -288,8 +288,8 @@ TEST(Record, TwoThatDifferInAnyByteAreNotEqual) {
 
 // --- invalid records ---
 
-// A proof that the check finds every error in four adjacent bytes: for any check and other bytes, only these
-// four bytes match.
+// This proves that the check finds every error in four adjacent bytes: for given other bytes and a given
+// check, only one value of the four bytes matches.
 TEST(Record, AnyFourBytesFollowFromTheCheckAndTheOtherBytes) {
   std::mt19937 random(3);
   for (const Model& each : kModels) {
@@ -304,7 +304,7 @@ TEST(Record, AnyFourBytesFollowFromTheCheckAndTheOtherBytes) {
   }
 }
 
-// The same as a trial, with tens of thousands of records for each place.
+// This tries the same with tens of thousands of records for each place.
 TEST(Record, TwoThatDifferInFourBytesOnlyNeverHaveTheSameCheck) {
   OfOneKind lines("address, baud code, format and protocol", 4);
   OfOneKind watchdogs("watchdog and timeout status", 8);
@@ -492,7 +492,7 @@ TEST(Record, WithARightCheckButAnArmedWatchdogWithoutTimeoutIsNone) {
 
 // --- longer and shorter records ---
 
-/// A record of firmware that has more settings, or fewer.
+/// Returns a record of firmware that has more or fewer settings.
 Record with_length(const Stored& stored, std::size_t length) {
   Record record = record_of(stored);
   Record settings(record.begin() + kSettingsAt, record.begin() + kCheckAt);

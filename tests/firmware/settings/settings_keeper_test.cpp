@@ -1,4 +1,4 @@
-// The keeper stores changed settings and retries after a failure: wire.md section 8, D6 and D15.
+// Tests that the keeper stores changed settings and retries after a failure: wire.md section 8, D6 and D15.
 #include "firmware/settings/settings_keeper.hpp"
 
 #include <gtest/gtest.h>
@@ -153,7 +153,8 @@ TEST_F(SettingsKeeperTest, AnUpdateIsFinishedWithoutACommandAndNotTriedForEver) 
   EXPECT_FALSE(keeper.retry().armed());
   EXPECT_TRUE(keeper.certain());
   EXPECT_TRUE(Boot(memory).stored() == numbered(6));
-  // Three attempts, and what invalidates the failed copy, the old one, and the failed copy a second later.
+  // There are three attempts, and one write each to invalidate the failed copy, the old copy, and the failed
+  // copy again a second later.
   EXPECT_EQ(memory.writes.size(), 6U);
   keeper.poll(numbered(6), now_ + milliseconds(5000));
   EXPECT_FALSE(keeper.busy());

@@ -20,7 +20,7 @@ inline constexpr std::size_t kPage = 32;
 inline constexpr std::size_t kAttempts = 3;
 /// Three reads at the first place, and one at each of the other three places.
 inline constexpr std::size_t kReadsOfASilentMemory = kAttempts + 3;
-inline constexpr std::size_t kStuckCell = 4;  // offset in a page: a record has the address there
+inline constexpr std::size_t kStuckCell = 4;  // offset in a page, at which a record has the address
 
 inline const Model& model(std::string_view designation) { return *find_model(designation); }
 
@@ -44,8 +44,8 @@ class FakeMemory {
   static constexpr Garbage kEveryGarbage[] = {Garbage::None, Garbage::Zeroes, Garbage::Ones,
                                               Garbage::MixedWithOld, Garbage::MixedWithNew};
 
-  /// Does the job as far as there is power. Returns whether the memory answered; no value if the power
-  /// failed.
+  /// Runs the job until it is done or the power fails. Returns whether the memory answered; no value if the
+  /// power failed.
   std::optional<bool> run(const MemoryJob& job) {
     const bool writing = job.kind == MemoryJob::Kind::Write;
     const std::size_t size = job.bytes.size;
@@ -59,10 +59,10 @@ class FakeMemory {
   }
 
   std::vector<std::uint8_t> cells = std::vector<std::uint8_t>(kStoredMemory, 0xFF);
-  std::size_t failing_reads = 0;      ///< the memory does not answer this many next reads
-  std::size_t noisy_reads = 0;        ///< this many next reads return a wrong bit
-  std::size_t unanswered_writes = 0;  ///< the memory does not answer this many next writes
-  bool unanswered_but_done = false;   ///< the memory stores the data of unanswered writes
+  std::size_t failing_reads = 0;      ///< number of the next reads that the memory does not answer
+  std::size_t noisy_reads = 0;        ///< number of the next reads that return a wrong bit
+  std::size_t unanswered_writes = 0;  ///< number of the next writes that the memory does not answer
+  bool unanswered_but_done = false;   ///< the memory stores the data of writes that it does not answer
   bool stuck = false;                 ///< the settings' address cannot be written, in any page
   std::optional<std::size_t> power;   ///< the power fails after this many more bytes are written
   Garbage garbage = Garbage::None;    ///< in the byte that is being written when the power fails
@@ -109,7 +109,7 @@ class FakeMemory {
       ++bytes_written;
     }
     if (power && *power == 0) {
-      return std::nullopt;  // all bytes are written, but the firmware does not learn it
+      return std::nullopt;  // all bytes are written, but the firmware gets no answer
     }
     return answers;
   }
@@ -148,7 +148,7 @@ inline bool drive(SettingsStore& store, FakeMemory& memory) {
   return true;
 }
 
-/// A module's store from one reset to the next.
+/// A module's settings store from one reset to the next.
 class Boot {
  public:
   explicit Boot(FakeMemory& memory, const Model& which = the_model()) : memory_(memory), store_(which) {
@@ -184,7 +184,7 @@ inline void put_old(FakeMemory& memory, std::size_t copy, const Settings& settin
   put_layout_2(the_model(), settings, sequence, memory.cells.data(), kOldCopies[copy]);
 }
 
-/// Stores a record of newer firmware with more settings: `length` bytes of them.
+/// Stores a record of newer firmware that has `length` bytes of settings.
 inline void put_longer(FakeMemory& memory, std::size_t copy, const Settings& settings, std::uint16_t sequence,
                        std::uint8_t length) {
   put(memory, copy, settings, sequence);

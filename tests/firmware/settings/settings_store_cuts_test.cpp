@@ -1,4 +1,4 @@
-// Power cuts while the settings are saved: wire.md section 8. "Power may fail at any instant."
+// Tests power cuts while the settings are saved: wire.md section 8, "Power may fail at any instant."
 #include <gtest/gtest.h>
 
 #include <cstddef>
@@ -35,7 +35,8 @@ class PowerCuts : public testing::Test {
     return memory.bytes_written;
   }
 
-  /// Saves `to` with a power cut after `bytes` bytes. Checks what the next load finds, and returns it.
+  /// Saves `to` with a power cut after `bytes` bytes. Checks the settings that the next load finds, and
+  /// returns them.
   Settings cut_and_load(FakeMemory& memory, const Settings& to, std::size_t bytes,
                         FakeMemory::Garbage garbage) {
     Boot run(memory);

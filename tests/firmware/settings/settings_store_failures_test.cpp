@@ -1,4 +1,4 @@
-// Saves that the memory rejects: wire.md section 8. "A reply means that it is stored."
+// Tests saves that the memory rejects: wire.md section 8, "A reply means that it is stored."
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -101,7 +101,8 @@ TEST(SettingsStore, AFailedSaveDoesNotTouchTheCopyThatHoldsTheOldSettings) {
   }
 }
 
-/// Ends `count` jobs of the store one after the other: done, or not answered.
+/// Ends `count` jobs of the store, one after the other. If `answered` is false, the memory does not answer
+/// them.
 void end_jobs(SettingsStore& store, bool answered, int count) {
   for (int i = 0; i < count; ++i) {
     const MemoryJob job = store.job();

@@ -1,4 +1,4 @@
-// Loading and saving the settings: wire.md section 8. "A reply means that it is stored."
+// Tests how the settings are loaded and saved: wire.md section 8, "A reply means that it is stored."
 #include "firmware/settings/store.hpp"
 
 #include <gtest/gtest.h>
@@ -291,7 +291,7 @@ TEST(SettingsStore, ManySavesFromOneResetWrapTheSequenceToo) {
   }
 }
 
-// A reply means that it is stored, even if the memory did not answer at reset.
+// A reply means that the settings are stored, even if the memory did not answer at reset.
 TEST(SettingsStore, WhatIsSavedAfterTheMemoryDidNotAnswerAtResetIsFoundAtTheNextLoad) {
   FakeMemory memory;
   put(memory, 0, numbered(5), 700);

@@ -1,5 +1,5 @@
-// Settings: the factory settings, the settings that are possible for a model, and changes by commands
-// (wire.md 2, 4, 7, 8).
+// Tests the factory settings, the settings that are possible for a model, and changes by commands (wire.md
+// sections 2, 4, 7 and 8).
 #include "firmware/settings/settings.hpp"
 
 #include <gtest/gtest.h>
@@ -213,7 +213,7 @@ struct FieldChange {
   Settings expected;
 };
 
-/// One change for each field, each to another value than in `from`.
+/// Returns one change for each field. Each change sets another value than `from` has.
 std::vector<FieldChange> changes_of_each_field(const Settings& from) {
   std::vector<FieldChange> changes;
   const auto add = [&](const char* field, auto name, auto mutate) {
@@ -344,7 +344,7 @@ TEST(SettingsChange, ThatIsClearedNamesNothing) {
   }
 }
 
-// A module uses the same change object again and again.
+// A module uses the same change object for all requests.
 TEST(SettingsChange, ThatWasClearedNamesOnlyWhatIsNamedThen) {
   const Settings factory = Settings::factory(model("EX9042D-M"));
   SettingsChange reused;

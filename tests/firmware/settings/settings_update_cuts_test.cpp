@@ -1,5 +1,5 @@
-// Power cuts during the first save after an update, and during the save of a long record: wire.md section 8.
-// "Power may fail at any instant."
+// Tests power cuts during the first save after an update, and during the save of a long record: wire.md
+// section 8, "Power may fail at any instant."
 #include <gtest/gtest.h>
 
 #include <cstddef>
@@ -50,7 +50,7 @@ Settings come_up(FakeMemory& memory) {
   return store.stored();
 }
 
-/// The number of bytes that a module writes when it starts and saves `to`.
+/// Returns the number of bytes that a module writes when it starts and saves `to`.
 std::size_t bytes_of(FakeMemory memory, const Settings& to) {
   memory.bytes_written = 0;
   come_up(memory);
@@ -58,8 +58,8 @@ std::size_t bytes_of(FakeMemory memory, const Settings& to) {
   return memory.bytes_written;
 }
 
-/// Saves `to` while the power fails after `bytes` bytes. Returns whether the save was reported as done
-/// before.
+/// Saves `to` with a power cut after `bytes` bytes. Returns whether the store reported success before the
+/// cut.
 bool cut(FakeMemory& memory, const Settings& to, std::size_t bytes, FakeMemory::Garbage garbage) {
   memory.power = bytes;
   memory.garbage = garbage;
@@ -126,7 +126,7 @@ TEST(UpdateCuts, TwiceInARowLeaveTheOldSettingsOrTheNew) {
   }
 }
 
-/// The same for the files of stored bytes, at every point.
+/// Tests the same with the files of stored bytes, at every point.
 TEST(UpdateCuts, OfWhatEarlierFirmwareHasStoredLeaveItsSettingsOrTheNew) {
   for (const StoredBytes& stored : all_stored_bytes()) {
     Settings changed = stored.settings;

@@ -1,5 +1,5 @@
-// A module after a firmware update: it finds copies of an older layout, or of a newer one that has more
-// settings.
+// Tests a module after a firmware update. It finds copies of an older layout, or of a newer layout that has
+// more settings.
 #include <gtest/gtest.h>
 
 #include <cstdint>
@@ -10,7 +10,7 @@
 namespace ex9000 {
 namespace {
 
-/// A memory after an update: two copies of layout 2; the second one is newer.
+/// Returns a memory after an update: two copies of layout 2, of which the second is newer.
 FakeMemory updated() {
   FakeMemory memory;
   put_old(memory, 0, numbered(5), 7);
@@ -89,7 +89,7 @@ TEST(SettingsAfterAnUpdate, AFirstStoreThatFailsLeavesTheOldOnes) {
   }
 }
 
-/// The power failed when the new copy was written, perhaps verified, and before the old ones were
+/// The power failed after the new copy was written and perhaps verified, but before the old copies were
 /// invalidated.
 TEST(SettingsAfterAnUpdate, AnOldCopyBesideAGoodNewOneStaysUntilTheSettingsAreSavedOnceMore) {
   FakeMemory memory = updated();
@@ -123,7 +123,7 @@ TEST(SettingsAfterAnUpdate, NothingIsUnfinishedInAMemoryWithoutACopy) {
   EXPECT_FALSE(store.update_unfinished());
 }
 
-/// The new copy was written with too little charge: it can be read once, and never again.
+/// The new copy was written with too little charge, so it can be read only once.
 TEST(SettingsAfterAnUpdate, ANewCopyThatFadesBeforeItIsSavedOnceMoreLeavesTheOldOnes) {
   FakeMemory memory = updated();
   put(memory, 0, numbered(9), 9);
@@ -150,7 +150,8 @@ TEST(SettingsAfterAnUpdate, TheOldCopiesAreInvalidatedIfTheSettingsCannotBeSaved
   EXPECT_TRUE(Boot(memory).stored() == numbered(9));
 }
 
-/// Neither place answered at reset, so the factory settings are in force. They must never be stored unasked.
+/// Neither place answered at reset, so the factory settings are in force. They must never be stored unless a
+/// command requests it.
 TEST(SettingsAfterAnUpdate, NothingIsUnfinishedWhileTheMemoryCannotBeRead) {
   FakeMemory memory = updated();
   put(memory, 0, numbered(9), 9);

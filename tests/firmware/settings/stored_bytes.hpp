@@ -1,12 +1,12 @@
-// Memory contents that released firmware has stored: the files in stored_bytes/. They are committed once and
-// never regenerated, so that they show what memories in the field contain, not what this firmware would
-// store.
+// Reads the files in stored_bytes/: memory contents that released firmware has stored. The files are
+// committed once and never regenerated, so that they hold the bytes of memories in the field, not the bytes
+// that this firmware would store.
 //
 //     # comment
 //     model DESIGNATION
 //     at ADDRESS          hex; the bytes that follow begin there, all others are FF
 //       BYTES
-//     settings            that a module with this memory has; each value in hex, except the name
+//     settings            the settings of a module with this memory follow; values are hex, except the name
 //       NAME VALUE
 #pragma once
 
@@ -79,7 +79,7 @@ inline StoredBytes read_stored_bytes(const std::filesystem::path& path) {
   return stored;
 }
 
-/// Reads all files. Checks their least number, so that a lost file does not go unnoticed.
+/// Reads all files. Checks that there are at least ten, so that a missing file is noticed.
 inline std::vector<StoredBytes> all_stored_bytes() {
   constexpr std::size_t kAtLeast = 10;
   std::vector<StoredBytes> all;
