@@ -1,5 +1,5 @@
-// Interrupts at every point of the drivers that share a counter with their interrupt, and edges at every
-// point of the driver that handles them.
+// Tests interrupts at every point of the drivers that share a counter with their interrupt, and edges at
+// every point of the driver that handles edges.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -33,7 +33,7 @@ class SysTick final : public bus::Peripherals {
   hal::cortex_m::SystemTimer<kMegahertz> timer;
 
   [[nodiscard]] unsigned microseconds() const { return cycles_ / kMegahertz; }
-  /// Interrupts are served as soon as possible; while this is true, they wait.
+  /// While this is true, interrupts wait. Otherwise they are served as soon as possible.
   bool held = false;
   void pass() {
     if (pending() && !held && late_++ >= accesses_late_) {
@@ -85,7 +85,7 @@ TEST(SystemTimer, TellsTheTimeWhereverItsTickComes) {
 
 // --- I2C ---
 
-/// A free bus, and a controller that the test tells when a byte is complete.
+/// A free bus and a controller on it. The test decides when a byte is complete.
 class I2cController final : public bus::Peripherals {
  public:
   I2cController() { bus::peripherals = this; }
@@ -104,8 +104,8 @@ class I2cController final : public bus::Peripherals {
   static constexpr std::uint32_t kControl = 0x4002'0004;
 };
 
-/// `completes`: the point at which the byte completes, in the turn that gives it up. Returns the number of
-/// points of that turn.
+/// Sends a byte that is complete at the point `completes` of the turn in which the driver gives it up.
+/// Returns the number of points of that turn.
 unsigned give_up_a_byte_that_completes(unsigned completes) {
   I2cController controller;
   hal::stellaris::I2c<hal::stellaris::Family::Lm3s, 50'000'000> i2c;
@@ -179,9 +179,9 @@ TEST(I2c, AByteThatIsToldToBeOverAndIsNotIsGivenUpInTheEnd) {
 using hal::stellaris::PinGroup;
 using hal::stellaris::Port;
 
-/// Ports of input pins. LM3S6965 data sheet, 8.3.2 and 8.5: a change to which the pin is sensitive sets its
-/// raw flag, which stays set until it is cleared. The pin is sensitive to both edges if GPIOIBE is set,
-/// otherwise to the falling edge. The masked flags cause interrupts.
+/// Simulates ports of input pins. LM3S6965 data sheet, 8.3.2 and 8.5: a change to which the pin is sensitive
+/// sets its raw flag, which stays set until it is cleared. The pin is sensitive to both edges if GPIOIBE is
+/// set, otherwise to the falling edge. The masked flags cause interrupts.
 class InputPorts final : public bus::Peripherals {
  public:
   InputPorts() { bus::peripherals = this; }
@@ -290,8 +290,8 @@ class InputBench {
     }
   }
 
-  /// Returns the edges counted on `channel`. Checks that the level that follows from them is that of the
-  /// wire.
+  /// Returns the number of edges counted on `channel`. Checks that the level computed from them equals the
+  /// level of the wire.
   unsigned counted(unsigned channel) {
     const unsigned count = edges_.collect(channel);
     const bool told = ((baseline_ >> channel ^ count) & 1U) != 0;
@@ -317,8 +317,8 @@ class Inputs : public testing::Test {};
 using Polarities = testing::Types<InputBench<true>, InputBench<false>>;
 TYPED_TEST_SUITE(Inputs, Polarities);
 
-/// Channel 0 has seen an edge. The channels of `later` see one edge each at these points of the interrupt
-/// that serves it. Returns the number of points of the interrupt.
+/// Serves an edge on channel 0. `later`: points of the interrupt that serves this edge, and for each point
+/// the channel on which one more edge occurs. Returns the number of points of the interrupt.
 template <class Bench>
 unsigned serve_an_edge(Bench& bench, const std::vector<std::pair<unsigned, unsigned>>& later) {
   bench.start();

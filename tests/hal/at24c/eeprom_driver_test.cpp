@@ -1,4 +1,5 @@
-// The EEPROM driver on the I2C driver, bit by bit on two wires, with all faults that the wires can have.
+// Tests the EEPROM driver together with the I2C driver, bit by bit on two wires, with all faults that the
+// wires can have.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -22,7 +23,8 @@ using std::chrono::nanoseconds;
 
 constexpr std::uint32_t kHertz = 50'000'000;
 
-/// The longest permitted time of a job: two pages of 10 ms each, their bytes, and the time to free the bus.
+/// The longest permitted time of a job. It consists of two pages of 10 ms each, their bytes, and the time to
+/// free the bus.
 constexpr milliseconds kLongestJob{40};
 /// The greatest permitted number of register accesses in a turn of the main loop.
 constexpr std::uint64_t kMostAccessesATurn = 24;
@@ -342,9 +344,9 @@ TYPED_TEST(Eeprom, AResetInTheMiddleOfAReadAtAnyMomentDoesNoHarm) {
   EXPECT_GT(holding, 15U) << "the test did not reach the tested case";
 }
 
-// If the clock pin is released before a low data line, this makes a STOP. Directly after a byte it ends the
-// write, and the EEPROM programs the bytes it has received. No driver can prevent that; the driver frees the
-// bus afterwards.
+// A reset releases both pins. If the clock line rises while the data line is low, the data line rises after
+// it, and this makes a STOP. Directly after a byte the STOP ends the write, and the EEPROM programs the bytes
+// that it has received. No driver can prevent that; the driver frees the bus afterwards.
 TYPED_TEST(Eeprom, AfterAResetInTheMiddleOfAWriteFreeingTheBusProgramsNothing) {
   constexpr std::uint16_t kPlace = 0x20;
   unsigned nothing = 0;

@@ -1,4 +1,4 @@
-// Outputs, inputs and switches on pins, in both polarities, including those that no board uses.
+// Tests outputs, inputs and switches on pins, in both polarities, including those that no board uses.
 #include <gtest/gtest.h>
 
 #include <array>
@@ -17,7 +17,7 @@ using hal::stellaris::Gpio;
 using hal::stellaris::PinGroup;
 using hal::stellaris::Port;
 
-// Groups with channel numbers below and above their pin numbers; one channel fewer than pins.
+// The groups have channel numbers below and above their pin numbers, and there is one more pin than channels.
 constexpr std::array<PinGroup, 3> kGroups{PinGroup{Port::D, 2, 3}, PinGroup{Port::B, 0, 2},
                                           PinGroup{Port::D, 5, 2}};
 constexpr unsigned kChannels = 6;
@@ -46,7 +46,7 @@ class Outputs : public testing::Test {
     }
   }
   Net& net(Place place) { return bench.pins.at(place.port, place.pin); }
-  /// Bit n: channel n is energised.
+  /// Returns the energised channels: bit n is channel n.
   unsigned energised() {
     unsigned channels = 0;
     for (unsigned channel = 0; channel < kChannels; ++channel) {
@@ -84,7 +84,7 @@ TYPED_TEST(Outputs, EachChannelIsAtItsOwnPin) {
 }
 
 TYPED_TEST(Outputs, PinsOfNoChannelAreLeftAlone) {
-  // A pin with another owner, between two groups of the same port.
+  // This pin is on the same port as two groups but does not belong to them.
   Gpio(Port::D).make_output(1U << 7U, 1U << 7U);
   TypeParam::Pins::start();
   for (const unsigned channels : {0x00U, 0x3FU, 0xFFFFU, 0x00U}) {

@@ -1,4 +1,4 @@
-// Time: SysTick as the clock, the one-shot timers, the watchdog.
+// Tests SysTick as the clock, the one-shot timers and the watchdog.
 #include <gtest/gtest.h>
 
 #include <random>
@@ -172,7 +172,7 @@ TYPED_TEST(OneShot, ARestartForgetsTheStartBefore) {
 }
 
 TYPED_TEST(OneShot, ARestartForgetsAnInterruptThatIsPending) {
-  // In every phase of the restart's own accesses relative to the timer's end.
+  // The loop covers every phase of the restart's own accesses relative to the timer's end.
   for (int clocks = -12; clocks <= 12; ++clocks) {
     OneShotBench<TypeParam> bench;
     TypeParam::restart(Duration(100));

@@ -1,4 +1,4 @@
-// The UART driver and its RS-485 driver enable, on wires with a master that records the line.
+// Tests the UART driver and its RS-485 driver enable, on wires with a master that records the line.
 #include <gtest/gtest.h>
 
 #include <tuple>
@@ -57,7 +57,7 @@ class UartBench : public DriverBench {
     uart.open(baud);
   }
 
-  /// Sends, and waits until the driver is off.
+  /// Sends bytes and waits until the RS-485 driver is off.
   void send(const std::vector<std::uint8_t>& bytes) {
     uart.send({bytes.data(), bytes.size()});
     EXPECT_TRUE(uart.sending());
@@ -88,8 +88,8 @@ class Sending : public testing::TestWithParam<std::tuple<bool, std::uint32_t>> {
   [[nodiscard]] std::uint32_t baud() const { return std::get<1>(GetParam()); }
   [[nodiscard]] Instant character() const { return Instant(10'000'000'000'000 / baud()); }
 
-  /// Checks the conditions that must always hold: all bytes are on the line, and the driver is on around
-  /// them.
+  /// Checks the conditions that must always hold: all bytes are on the line, and the driver is on from before
+  /// the first byte until after the last byte.
   void expect_whole(const UartBench& bench, const std::vector<std::uint8_t>& bytes) {
     ASSERT_EQ(bench.line.heard.size(), bytes.size());
     for (std::size_t i = 0; i < bytes.size(); ++i) {
@@ -118,7 +118,7 @@ TEST_P(Sending, TheDriverIsOnAroundAllBytesAndOffWithinACharacter) {
         bench.send(bytes);
         expect_whole(bench, bytes);
         EXPECT_LE(bench.line.drives[0].to, bench.line.heard.back().started + 2 * character());
-        // Without a gap.
+        // The characters follow each other without a gap.
         const Instant bit = bench.mcu.uart0.bit_time();
         EXPECT_NEAR(
             static_cast<double>((bench.line.heard.back().started - bench.line.heard.front().started).count()),
