@@ -1,6 +1,5 @@
-// The processor's part: SysTick, the interrupt controller, and the order in which exceptions are served.
-// ARMv7-M Architecture Reference Manual: B1.5 (exceptions), B3.2 (system control block), B3.3 (SysTick), B3.4
-// (NVIC).
+// The processor: SysTick, the interrupt controller, and the order in which exceptions are served. ARMv7-M
+// Architecture Reference Manual: B1.5 (exceptions), B3.2 (system control block), B3.3 (SysTick), B3.4 (NVIC).
 #pragma once
 
 #include <array>
@@ -39,7 +38,7 @@ class Core final : public Peripheral {
   void on_exception(std::function<void(unsigned exception)> act) { serve_ = std::move(act); }
   /// Sets the function to call when software requests a reset through the system control block.
   void on_reset_request(std::function<void()> act) { on_reset_ = std::move(act); }
-  /// Delays each exception by `latency` before it is served, as instructions do that cannot be interrupted.
+  /// Delays each exception by `latency` before it is served, like instructions that cannot be interrupted.
   void set_latency(Instant latency) { latency_ = latency; }
 
   void interrupt_line_of(unsigned interrupt, bool asserted);

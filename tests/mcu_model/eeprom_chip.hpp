@@ -23,15 +23,16 @@ class EepromChip {
   /// stored bytes.
   EepromChip(Timeline& timeline, Net& clock, Net& data, std::vector<std::uint8_t>& contents);
 
-  /// Sets how long a page write takes: at most 10 ms, typically half of it.
+  /// Sets how long a page write takes: at most 10 ms, typically 5 ms.
   void set_programming_time(Instant time) { programming_time_ = time; }
   /// Removes the chip from its wires, with or without the pull-ups.
   void remove(bool pull_ups_too);
-  /// The supply fails. If a page is being programmed, the time so far decides how many of its first bytes are
-  /// complete; one more byte is spoiled and the rest keep their old values. The chip forgets the state of the
-  /// bus.
+  /// Makes the supply fail. If a page is being programmed, the elapsed time decides how many of its first
+  /// bytes are complete; the next byte is spoiled, and the rest keep their old values. The chip forgets the
+  /// state of the bus.
   void lose_power();
-  /// From now on the chip acknowledges at most `bytes` bytes of a transfer, including the address bytes.
+  /// Makes the chip acknowledge at most `bytes` bytes of each transfer from now on, including the address
+  /// bytes.
   void refuse_after(unsigned bytes) { patience_ = bytes; }
 
   /// Makes a byte worn out: from its next write on, `bits` keep the value that they have in `stuck`. The chip
@@ -42,7 +43,7 @@ class EepromChip {
   [[nodiscard]] unsigned spoiled() const { return spoiled_; }
 
   /// Sets the function to call after each START, byte and STOP on the bus, and when a page has been
-  /// programmed. Only one function; it may be null.
+  /// programmed. Only one function can be set; it may be null.
   void on_event(std::function<void()> act) { on_event_ = std::move(act); }
 
   [[nodiscard]] bool programming() const { return programmed_.is_set(); }

@@ -6,7 +6,7 @@ namespace {
 
 std::uint32_t debug_pins(char letter) { return letter == 'C' ? 0x0FU : 0; }
 
-/// Pins that GPIOCR protects; data sheets, "commit control".
+/// Returns the pins that GPIOCR protects (data sheets, "commit control").
 std::uint32_t locked_pins(const Chip& chip, char letter) {
   if (!chip.port_control) {
     return debug_pins(letter) | (letter == 'B' ? 0x80U : 0);

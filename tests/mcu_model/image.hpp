@@ -16,7 +16,7 @@ struct PinPlace {
   std::uint8_t pin;
 };
 
-/// The description that the shared object gives of itself.
+/// The description of an image, which its shared object exports.
 struct Image {
   const char* model;
   bool tm4c;

@@ -38,7 +38,7 @@ class LineBench {
   void send(const std::vector<std::uint8_t>& bytes);
   void send_one(Character character);
   [[nodiscard]] bool sending() const { return sender_.busy() || !waiting_.empty(); }
-  /// When the last sent character ended.
+  /// Returns the time at which the last sent character ended.
   [[nodiscard]] Instant sent() const { return sent_; }
 
   [[nodiscard]] bool driven() const { return enable_.level(); }
@@ -46,8 +46,9 @@ class LineBench {
   std::vector<Driven> drives;
   /// The number of bits that the board sent while its driver was off. They do not appear on the line.
   unsigned bits_lost = 0;
-  /// How often the driver went off before the end of the last stop bit (with a tolerance of a tenth of a bit
-  /// for the difference of the clocks), and how often it stayed on for more than a character after it.
+  /// The number of times that the driver went off before the end of the last stop bit (with a tolerance of a
+  /// tenth of a bit for the difference of the clocks), and the number of times that it stayed on for more
+  /// than a character after it.
   unsigned let_go_early = 0;
   unsigned let_go_late = 0;
 

@@ -40,7 +40,7 @@ struct Pins {
   Pins& operator=(const Pins&) = delete;
 
   Net& at(char letter, unsigned pin) { return ports.at(static_cast<unsigned>(letter - 'A')).at(pin); }
-  /// Whether two ends of any pin have ever driven it hard to opposite levels.
+  /// Whether two ends have ever driven any pin hard to opposite levels.
   [[nodiscard]] bool any_was_shorted() const {
     return std::any_of(ports.begin(), ports.end(), [](const PortNets& port) {
       return std::any_of(port.begin(), port.end(), [](const Net& net) { return net.was_shorted(); });
@@ -68,7 +68,7 @@ enum class Hangs : std::uint8_t {
   Handler,   ///< the next handler that is served, from its next access on; nothing preempts it
 };
 
-/// Exists from one reset to the next. The drivers' bus accesses go to the latest instance.
+/// An object exists from one reset to the next. The drivers' bus accesses go to the latest instance.
 class Microcontroller {
  public:
   Microcontroller(const Chip& chip, Timeline& timeline, Pins& pins, I2cManners manners = {});
@@ -94,12 +94,12 @@ class Microcontroller {
 
   /// Sets the function that serves each exception; see Core.
   void on_exception(std::function<void(unsigned exception)> act) { core.on_exception(std::move(act)); }
-  /// Sets the function that lets time pass up to a point, or less far. Default: Timeline::advance.
+  /// Sets the function that lets time pass until `to`. It may return earlier. Default: Timeline::advance.
   void pass_time_by(std::function<void(Instant to)> pass) { pass_ = std::move(pass); }
 
   /// Sets the clocks that each access takes. The default is 2, the minimum of a bus access. The model does
-  /// not count the instructions between two accesses, so it checks delays that consist of accesses at their
-  /// shortest. A greater value makes long waits cheap to simulate.
+  /// not count the instructions between two accesses, so a delay that consists of accesses has its shortest
+  /// length. A greater value makes long waits cheap to simulate.
   void set_clocks_an_access(int clocks) { clocks_an_access_ = clocks; }
   [[nodiscard]] std::uint64_t accesses() const { return accesses_; }
   void record(bool on) { recording_ = on; }

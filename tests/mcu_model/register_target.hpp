@@ -1,4 +1,4 @@
-// A target of transcripts: an image on a simulated microcontroller and its board.
+// Plays transcripts on an image that runs on a simulated microcontroller and its board.
 #pragma once
 
 #include <optional>

@@ -1,4 +1,5 @@
-// Virtual time in picoseconds, which resolves the clock cycles of any crystal, and alarms in it.
+// Virtual time, and alarms that ring at a time. The unit is a picosecond, which is fine enough for the clock
+// cycles of any crystal.
 #pragma once
 
 #include <chrono>
@@ -8,7 +9,7 @@
 
 namespace ex9000::registers {
 
-/// Time since the supply was switched on for the first time; 64 bits last 106 days.
+/// Time since the supply was switched on for the first time; 64 bits suffice for 106 days.
 using Instant = std::chrono::duration<std::int64_t, std::pico>;
 
 constexpr Instant kNever = Instant::max();
@@ -23,10 +24,10 @@ class Timeline {
   Timeline& operator=(const Timeline&) = delete;
 
   [[nodiscard]] Instant now() const { return now_; }
-  /// When the next alarm is due; kNever if none is set.
+  /// Returns the time at which the next alarm is due; kNever if none is set.
   [[nodiscard]] Instant next();
-  /// Rings all alarms that are due up to `to`, each at its time. Then the time is `to`, unless it was later
-  /// already.
+  /// Rings all alarms that are due up to `to`, each at its time. Afterwards the time is `to`, or later if it
+  /// was already later.
   void advance(Instant to);
 
  private:
@@ -48,7 +49,7 @@ class Alarm {
   Alarm& operator=(const Alarm&) = delete;
 
   void set(Instant when) {
-    // If this alarm neither was the next one nor becomes the next one, the known next alarm stays valid.
+    // The known next alarm stays valid only if this alarm was not the next one and does not become it.
     timeline_.next_known_ = timeline_.next_known_ && timeline_.next_ != this && when > timeline_.next_at_;
     when_ = when;
   }

@@ -47,7 +47,7 @@ class UartPort final : public Peripheral {
 
   [[nodiscard]] Instant bit_time() const { return bit_time_; }
   [[nodiscard]] bool enabled() const { return (control_ & 1U) != 0; }
-  /// How often the receiver was not read in time.
+  /// Returns the number of bytes that were lost because the receiver was not read in time.
   [[nodiscard]] unsigned overruns() const { return overruns_; }
 
  private:

@@ -19,7 +19,7 @@ class WatchdogTimer final : public Peripheral {
   static constexpr std::uint32_t kClear = 0x00C;
   static constexpr std::uint32_t kLock = 0xC00;
 
-  /// Calls `bite` when it has counted down twice.
+  /// The timer calls `bite` when it has counted down twice.
   WatchdogTimer(SystemControl& clock, Timeline& timeline, std::function<void()> bite)
       : Peripheral(kBase), clock_(clock), timeline_(timeline), bite_(std::move(bite)), end_(timeline, [this] {
           counted_down();

@@ -1,4 +1,5 @@
-// Host tests include this file instead of hal/cortex_m/processor.hpp; it leads to registers::Microcontroller.
+// Host tests include this file instead of hal/cortex_m/processor.hpp; its functions call
+// registers::Microcontroller.
 #pragma once
 
 namespace ex9000::hal::cortex_m::processor {

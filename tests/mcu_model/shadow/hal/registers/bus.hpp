@@ -1,4 +1,5 @@
-// Host tests include this file instead of hal/registers/bus.hpp; it leads to registers::Microcontroller.
+// Host tests include this file instead of hal/registers/bus.hpp; its functions call
+// registers::Microcontroller.
 #pragma once
 
 #include <cstdint>
