@@ -1,4 +1,4 @@
-// Faults around a board, and the reaction of its image.
+// Tests faults around a board, and the reaction of its image.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -39,8 +39,8 @@ class OnBoard : public testing::TestWithParam<ImageName> {
     EXPECT_EQ(bench.resets, 0U);
     EXPECT_EQ(bench.ask("$01M"), "!019055");
   }
-  /// Sends the command that stores a name, and switches the supply off for 50 ms after the time `after`.
-  /// Returns whether the module had begun to answer.
+  /// Sends the command that stores a name. After the time `after`, switches the supply off for 50 ms. Returns
+  /// whether the module had begun to answer.
   bool cut_while_it_stores(const std::string& name, Instant after) {
     const std::string command = "~01O" + name + "\r";
     bench.line.heard.clear();
@@ -84,7 +84,8 @@ class OnBoard : public testing::TestWithParam<ImageName> {
   bool cut_a_page_ = false;
 };
 
-/// Its I2C controller never reports that a START has failed; the data sheets do not define this case.
+/// A board whose I2C controller never reports that a START has failed; the data sheets do not define this
+/// case.
 class OnBoardWhoseI2cWaits : public OnBoard {
  protected:
   OnBoardWhoseI2cWaits() : OnBoard({true, false, true}) {}
@@ -184,7 +185,7 @@ TEST_P(OnBoard, RepliesAtOnceWhenTheTurnAroundIsOver) {
 }
 
 TEST_P(OnBoard, APinOfAnOutputOrTheLedThatADisturbanceHasChangedIsRightAgainWithTheNextTick) {
-  constexpr microseconds kATick{10'050};  // and the time that the main loop needs after it
+  constexpr microseconds kATick{10'050};  // a tick, and the time that the main loop needs after it
   power_up();
   ASSERT_EQ(bench.ask("@01A5"), ">");
   const auto disturb = [this](PinPlace place) {
@@ -291,7 +292,7 @@ TEST_P(OnBoard, CountsPulsesOnEveryInputHoweverLateTheInterruptIs) {
   bench.mcu->core.set_latency(microseconds(10));
   for (unsigned channel = 0; channel < bench.image.inputs; ++channel) {
     for (int i = 0; i < 7; ++i) {
-      // A pulse so short that both edges set one flag and the level is as before.
+      // The pulse is so short that both edges set the same flag and the level is back at its old value.
       bench.set_input(channel, true);
       bench.run_for(microseconds(i));
       bench.set_input(channel, false);
@@ -323,7 +324,7 @@ TEST_P(OnBoard, IsResetByTheWatchdogWithin1600msWhereTheTickStops) {
   EXPECT_EQ(bench.ask("$015"), "!011");
 }
 
-/// wire.md D13. Sampled only every 10 ms, this switch would seem to be stable.
+/// wire.md D13. If the module sampled this switch only every 10 ms, the switch would seem to be stable.
 TEST_P(OnBoard, TakesAnInitSwitchForReleasedThatStandsStillForNo10MsAfterReset) {
   for (const bool most_of_the_time : {true, false}) {
     for (int phase = 0; phase < 10; ++phase) {
@@ -357,10 +358,10 @@ TEST_P(OnBoard, ListensWithin30MsOfResetAndInInitModeWhereTheSwitchStandsStill) 
   }
 }
 
-/// wire.md 6: 2 Hz.
+/// wire.md 6: the LED flashes at 2 Hz.
 TEST_P(OnBoard, FlashesItsLedOnTimeWhateverTheTick) {
   power_up();
-  // The net calls its function for as long as it exists.
+  // The net calls this function as long as the net exists, so the function shares ownership of the list.
   const auto changes = std::make_shared<std::vector<Instant>>();
   bench.net(bench.image.status_led).on_change([this, changes] { changes->push_back(bench.timeline.now()); });
   ASSERT_EQ(bench.ask("~013103"), "!01");
@@ -388,7 +389,7 @@ TEST_P(OnBoard, TouchesNothingWhileInterruptsAreHeld) {
   EXPECT_EQ(bench.mcu->most_accesses_held(), 0U);
 }
 
-/// All 32-bit counts of the interrupts are about to wrap (tests/support/long_uptime).
+/// In this image, all 32-bit counts of the interrupts are about to wrap (tests/support/long_uptime).
 class OnBoardForMonths : public OnBoard {};
 
 TEST_P(OnBoardForMonths, AnswersCountsStoresAndHeedsTheHostAcrossTheWrapOfEveryCount) {

@@ -1,4 +1,5 @@
-// Unmodified third-party masters and the image of a module. The expected values come from firmware/wire.md 7.
+// Tests unmodified third-party masters with the image of a module. The expected values come from
+// firmware/wire.md 7.
 #include <gtest/gtest.h>
 #include <modbus/modbus.h>
 

@@ -1,8 +1,8 @@
-// Power cuts: each power-on starts a new emulator, and only the EEPROM's file remains from the one before.
+// Tests power cuts. Each power-on starts a new emulator, which uses the EEPROM file of the previous one.
 //
-// The emulated EEPROM stores a page at once when STOP arrives. So this test shows in which order the image
-// writes, reads back and answers, and that it starts afterwards. power_cuts_test checks what a cut leaves of
-// a page.
+// The emulated EEPROM stores a page at once when STOP arrives. Therefore this test shows in which order the
+// image writes, reads back and answers, and that it starts afterwards. power_cuts_test checks what a cut
+// leaves of a page.
 #include <gtest/gtest.h>
 
 #include <chrono>
@@ -44,7 +44,7 @@ TEST(ImageWithoutPower, KeepsItsSettings) {
   EXPECT_EQ(ask(module, "$025"), "!021");
 }
 
-/// Settings that `command` changes.
+/// Returns settings that `command` changes.
 Settings settings_before(const Model& model, const StoringCommand& command) {
   Settings settings = Settings::factory(model);
   if (command.init != Init::SinceReset) {
@@ -62,8 +62,8 @@ class CutModule {
   CutModule(const Model& model, const StoringCommand& command)
       : command_(command), before_(settings_before(model, command)), module_(model) {}
 
-  /// Executes the command until the power fails, then restarts the module. Returns false if the command was
-  /// complete before.
+  /// Starts the module, sends the command, and makes the power fail after `stores` stores to the registers of
+  /// its I2C master. Returns false if the command was complete before.
   bool cut_behind(unsigned stores) {
     constexpr std::uint32_t kI2c = 0x4002'0000;
     constexpr std::uint32_t kRegisters = 0x24;
@@ -98,8 +98,8 @@ class CutModule {
     return stopped;
   }
 
-  /// Checks that the module starts with the old or the new settings, and with the matching outputs. They must
-  /// be the new settings if `must_be_done` or if it had begun to answer.
+  /// Checks that the module starts with the old or the new settings, and with the matching outputs. The
+  /// settings must be the new ones if `must_be_done` is true or if the module had begun to answer.
   void expect_wholly_done_or_not_at_all(bool must_be_done) {
     module_.set_init(false);
     power_up(false);
@@ -135,7 +135,7 @@ class CutModule {
     module_.run_for(milliseconds(60));
     ASSERT_NE(module_.baud(), 0U) << "the module does not start";
   }
-  /// The standard baud rate nearest to the rate that the divisors give.
+  /// Returns the standard baud rate within 5 % of the rate that the divisors give; 0 if there is none.
   static std::uint32_t nearest_rate(std::uint32_t rate) {
     for (const std::uint32_t each : kBaudRates) {
       if (rate > each - each / 20 && rate < each + each / 20) {

@@ -1,6 +1,6 @@
-// An image that is made to hang: its hardware watchdog resets it. The image itself is not changed. The code
-// that makes it hang is in RAM that the image does not use. The vector table leads to that code, and a
-// reset restores the table.
+// Tests that the hardware watchdog resets an image that hangs. The image itself is not changed. The code that
+// makes it hang is in RAM that the image does not use. The vector table points to that code, and a reset
+// restores the table.
 #include <gtest/gtest.h>
 
 #include <string>
@@ -28,7 +28,8 @@ constexpr std::uint32_t kSetPending = 0xE000'E200;
 constexpr std::uint32_t kSysTickVector = 15;
 constexpr std::uint32_t kI2c0 = 8;
 constexpr std::uint32_t kI2c0Vector = 16 + kI2c0;
-/// Between the RAM that the image and the rig use and the image's stack at the top of RAM.
+/// This address is above the RAM that the image and the rig use and below the image's stack at the top of
+/// RAM.
 constexpr std::uint32_t kCode = 0x2000'C000;
 constexpr std::uint32_t kThumb = 1;
 
@@ -106,8 +107,8 @@ class FaultyImage : public testing::TestWithParam<Protocol>, protected EitherPro
  public:
   // --- faults ---
 
-  /// From now on this code is the handler of an interrupt. In the code, kEntry stands for the address of its
-  /// entry in the table, and kOwn for the image's own handler.
+  /// `make_interrupt_run` makes code the handler of an interrupt. In the code, kEntry stands for the address
+  /// of the interrupt's entry in the vector table, and kOwn for the image's own handler.
   static constexpr std::uint32_t kEntry = 0xE1E1'E1E1;
   static constexpr std::uint32_t kOwn = 0xE2E2'E2E2;
   void make_interrupt_run(std::uint32_t vector, const std::vector<std::uint32_t>& code) {
@@ -158,8 +159,8 @@ class FaultyImage : public testing::TestWithParam<Protocol>, protected EitherPro
   }
 
  protected:
-  /// Waits until the watchdog resets the module. In cases where the time cannot be observed, the watchdog's
-  /// registers show it.
+  /// Waits until the watchdog resets the module. Also checks the watchdog's registers, because the time
+  /// cannot be observed in all cases.
   void expect_reset_in_time() {
     constexpr std::uint32_t kWatchdogLoad = 0x4000'0000;
     constexpr std::uint32_t kCountdowns = 2;
@@ -168,8 +169,8 @@ class FaultyImage : public testing::TestWithParam<Protocol>, protected EitherPro
     module_.run_to_reset("WATCHDOG", kWatchdogPeriod);
   }
 
-  /// In the short form, each timeout status is tested with half of the activities, because a storm takes the
-  /// emulator seconds.
+  /// Whether the short form runs this case. It runs each value of the timeout status with half of the
+  /// activities, and only one storm, because a storm takes the emulator seconds.
   [[nodiscard]] bool belongs_to_short_form(Doing doing, bool status, Fault fault) const {
     const bool first_half = doing == Doing::Nothing || doing == Doing::Storing;
     if (fault == &FaultyImage::storm) {
@@ -295,7 +296,8 @@ TEST_F(HungImage, ResetsItselfAtAnInterruptThatNobodyHasAskedFor) {
   expect_reset_because("SHUTDOWN");
 }
 
-/// At the highest baud rate, this many bytes without a gap take more than three periods of the watchdog.
+/// At the highest baud rate, the bytes follow each other without a gap for more than three periods of the
+/// watchdog.
 TEST_F(HungImage, AnswersAfterAFloodOfBytes) {
   constexpr std::uint8_t kFastest = 0x0A;  // 115200 baud
   settings_.baud_code = kFastest;

@@ -1,4 +1,4 @@
-// Both watchdogs of an image during each of its activities: wire.md section 6.
+// Tests both watchdogs of an image during each of its activities: wire.md section 6.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -27,11 +27,11 @@ using std::chrono::seconds;
 constexpr milliseconds kComesUpWithin{100};
 constexpr milliseconds kResetsWithin{1600};
 constexpr milliseconds kTick{10};
-/// The module may time its restart this much late: its clock counts microseconds, and it rounds up the end of
-/// a byte and of the silence after it, so that the host watchdog does not expire too early.
+/// The module may restart its host watchdog this much too late: its clock counts microseconds, and it rounds
+/// up the end of a byte and of the silence after it, so that the host watchdog does not expire too early.
 constexpr microseconds kRounding{3};
-/// The time that the main loop needs after the interrupt at the expiry until the last of sixteen pins, which
-/// change one after the other, has its level. Measured: 2.5 us.
+/// The time from the interrupt at the expiry until the main loop has set the last of sixteen pins, which
+/// change one after the other. The measured time is 2.5 us.
 constexpr microseconds kTurn{5};
 constexpr milliseconds kExpiresWithin{1};
 
@@ -40,10 +40,10 @@ constexpr std::uint16_t kSafeValue = 0xA5A4;
 constexpr std::uint16_t kDriven = 0xC35A;
 constexpr std::uint8_t kTimeout = 0x64;
 
-/// Two hex digits.
+/// Returns two hex digits.
 std::string hex(unsigned value) { return reference::hex(value, 2); }
 
-/// Settings in which all output values differ from each other and from the driven value.
+/// Returns settings in which all output values differ from each other and from the driven value.
 Settings set_up(const Model& model, Protocol protocol) {
   Settings settings = Settings::factory(model);
   settings.protocol = protocol;
@@ -116,7 +116,7 @@ class WatchedModule : public EitherProtocol {
     }
     return bench.line.sent() + over_behind_its_last_bit();
   }
-  /// Waits so that a host OK sent now ends `phase` after a tick.
+  /// Waits until a host OK that is sent immediately after this call ends `phase` after a tick.
   void wait_until_a_host_ok_is_over_behind_a_tick(Instant phase) {
     constexpr unsigned kAscii = 4;
     constexpr unsigned kModbus = 8;
@@ -175,7 +175,7 @@ class FaultOnBoard : public testing::TestWithParam<std::tuple<ImageName, Protoco
   [[nodiscard]] ImageName image() const { return std::get<0>(GetParam()); }
   [[nodiscard]] Protocol protocol() const { return std::get<1>(GetParam()); }
 
-  /// Brings the module to this activity. The command that stores sets the name, or in Modbus the host
+  /// Brings the module into this activity. The command that stores sets the name, or in Modbus the host
   /// watchdog's timeout.
   static void make_it(WatchedModule& module, Doing doing) {
     BoardBench& bench = module.bench;
@@ -277,7 +277,7 @@ TEST_P(FaultOnBoard, AnInterruptThatDoesNotEndIsReset) {
 TEST_P(FaultOnBoard, ATickThatStopsIsReset) {
   expect_reset("the tick stops", [](BoardBench& bench) {
     bench.mcu->core.write(Core::kTickControl, 4);
-    bench.mcu->set_clocks_an_access(1000);  // time stands still, so the wake timer fires again and again
+    bench.mcu->set_clocks_an_access(1000);  // the clock stands still, so the wake timer fires repeatedly
   });
 }
 
@@ -343,7 +343,7 @@ TEST_P(FaultOnBoard, AWedgedEepromBusIsNoHangButRefusesToStoreUntilItIsFree) {
 
 class HostWatchdogOnBoard : public FaultOnBoard {
  protected:
-  /// Arms the host watchdog. The outputs have values that only a command can set.
+  /// Arms the host watchdog, and drives values on the outputs that only a command can set.
   static void arm(WatchedModule& module, unsigned timeout) {
     module.ask("~013001", {1, 0x05, 0x01, 0x04, 0, 0});
     module.ask("~011", {1, 0x05, 0x01, 0x0D, 0xFF, 0});
@@ -351,7 +351,7 @@ class HostWatchdogOnBoard : public FaultOnBoard {
     ASSERT_TRUE(module.drive(kDriven));
     module.ask("~0131" + hex(timeout), {1, 0x05, 0x01, 0x04, 0xFF, 0});
   }
-  /// Restores what commands may have stored.
+  /// Restores the settings that commands may have stored.
   static void restore(WatchedModule& module) {
     module.ask("~011", {1, 0x05, 0x01, 0x0D, 0xFF, 0});
     module.drive(kPowerOnValue);
@@ -360,7 +360,7 @@ class HostWatchdogOnBoard : public FaultOnBoard {
   }
 };
 
-/// The expiry falls right before a tick, right after one, or anywhere.
+/// Tests expiries immediately before a tick, immediately after a tick, and at other times.
 class ExpiryOnBoard : public HostWatchdogOnBoard {
  protected:
   void expect_expiry_within(Instant most, const std::function<void(BoardBench&)>& prepare);
@@ -405,8 +405,9 @@ TEST_P(ExpiryOnBoard, IsATickLateAtMostWhereTheWakeTimerIsDead) {
                        [](BoardBench& bench) { bench.mcu->timer2.write(TimerBlock::kMask, 0); });
 }
 
-/// Commands that end at any time around the expiry: one that only drives, one that drives the value that it
-/// stores, and one that drives and follows another one that is being stored.
+/// Sends commands that end at any time around the expiry: a command that only drives outputs, a command that
+/// drives the value that it stores, and a command that drives outputs while the command before it is being
+/// stored.
 TEST_P(HostWatchdogOnBoard, NoCommandDrivesAnythingOnceItHasExpired) {
   constexpr unsigned kVv = 5;
   constexpr std::uint16_t kCommanded = 0x3C96;
@@ -450,8 +451,8 @@ TEST_P(HostWatchdogOnBoard, NoCommandDrivesAnythingOnceItHasExpired) {
   std::printf("%u moments, %u of them beyond the expiry\n", moments, too_late);
 }
 
-/// wire.md D6. From the expiry on, the outputs have the old safe value. From the end of storing on, they have
-/// the new one. They never take the value of a later command.
+/// wire.md D6. From the expiry on, the outputs have the old safe value. When the command is stored, they take
+/// the new safe value. They never take the value of a later command.
 TEST_P(HostWatchdogOnBoard, ACommandThatChangesTheSafeValueAsItExpiresGivesTheNewOneOnceThatIsStored) {
   constexpr unsigned kVv = 5;
   constexpr std::uint16_t kCommanded = 0x3C96;
@@ -500,7 +501,7 @@ TEST_P(HostWatchdogOnBoard, ACommandThatChangesTheSafeValueAsItExpiresGivesTheNe
       if (change.at < over) {
         continue;
       }
-      // The pins change one after the other; pins that are equal in both values do not change.
+      // The pins change one after the other. Pins that are equal in both safe values do not change.
       const bool is_new = change.outputs == new_value;
       expired = expired || change.outputs == kSafeValue;
       ASSERT_TRUE(!expired || ((change.outputs ^ kSafeValue) & ~(kSafeValue ^ new_value)) == 0);
@@ -603,7 +604,8 @@ TEST_P(HostWatchdogOnBoard, APowerCutAtAnyMomentAfterItHasExpiredGivesNoCommande
       const std::uint16_t from_reset = stored ? kSafeValue : power_on_value;
       EXPECT_EQ(outputs, from_reset);
       for (const WatchedModule::Change& change : module.changes) {
-        // The outputs go off with the supply and on with the new supply; no other output is ever on.
+        // The outputs go off when the supply is switched off, and on after it is switched on again. No other
+        // output is ever on.
         EXPECT_EQ(change.at < bench.began ? change.outputs & ~kSafeValue : change.outputs & ~from_reset, 0);
       }
       unstored += stored ? 0U : 1U;

@@ -11,7 +11,7 @@
 
 namespace ex9000::registers {
 
-/// `board`: the name of its folder.
+/// Loads the image. `board`: the name of its folder.
 inline const Image& image_of(const std::string& board, const std::string& model) {
   return load_image(std::string(EX9000_IMAGES) + "/image_" + board + "_" + model + ".so");
 }

@@ -1,5 +1,5 @@
-// The functions that the compiler calls in an image, as shipped. They must change every byte of the requested
-// range and no other byte (C17, 7.24.2.1, 7.24.4.1, 7.24.6.1).
+// Tests the shipped functions of an image that the compiler calls. They must change every byte of the
+// requested range and no other byte (C17, 7.24.2.1, 7.24.4.1, 7.24.6.1).
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -7,7 +7,7 @@
 #include <cstddef>
 #include <cstdint>
 
-// Renamed, because the test program has those of the C library.
+// The functions are renamed because the test program already has those of the C library.
 #define memcpy memcpy_of_the_image
 #define memset memset_of_the_image
 #define memcmp memcmp_of_the_image
@@ -22,7 +22,7 @@ constexpr std::size_t kSpace = 48;
 constexpr std::size_t kMost = 40;
 using Memory = std::array<std::uint8_t, kSpace>;
 
-/// All bytes differ, so that a misplaced byte is noticed.
+/// Returns bytes that all differ, so that a misplaced byte is noticed.
 Memory some_bytes(unsigned seed) {
   Memory bytes{};
   for (std::size_t i = 0; i < bytes.size(); ++i) {

@@ -33,7 +33,7 @@ using Arguments = std::vector<std::string>;
 const std::string kRun = EX9000_RUN;
 constexpr std::size_t kEepromSize = 8192;
 constexpr int kRepetitions = 10;
-/// A limit for hangs: the program and QEMU answer within seconds even on a busy machine.
+/// A limit that only detects hangs: the program and QEMU answer within seconds even on a busy machine.
 constexpr std::chrono::seconds kHang{60};
 /// The time that a master waits for a reply, long enough for a busy machine.
 constexpr std::chrono::seconds kMastersPatience{10};
@@ -64,7 +64,7 @@ class RunningImage {
 
   /// Sends a command and its CR, and returns the answer up to CR.
   [[nodiscard]] std::string ask(const std::string& command) const { return ask_behind("", command); }
-  /// Does the same, but first skips answers to earlier requests, which are all `before`.
+  /// Like `ask`, but first skips answers to earlier requests, which are all `before`.
   [[nodiscard]] std::string ask_behind(const std::string& before, const std::string& command) const {
     Terminal terminal(tty(), 9600);
     terminal.type(command + "\r");
@@ -75,8 +75,8 @@ class RunningImage {
     return reply.substr(0, reply.find('\r'));
   }
 
-  /// A busy host may interrupt a frame for longer than T3.5, which ends the frame; then the master repeats
-  /// it.
+  /// Runs mbpoll and repeats it after a timeout, because a busy host may interrupt a frame for longer than
+  /// T3.5, which ends the frame.
   [[nodiscard]] Finished mbpoll(Arguments options, const Arguments& values = {}) const {
     options.insert(options.begin(), {"mbpoll", "-m", "rtu", "-b", "9600", "-P", "none", "-1", "-o",
                                      std::to_string(kMastersPatience.count())});
@@ -129,7 +129,7 @@ TEST(QemuRun, MbpollReadsAndWrites) {
                   "[9]: \t0\n[10]: \t0\n[11]: \t0\n[12]: \t0\n[13]: \t0\n"));
 }
 
-/// See RunningImage::mbpoll.
+/// Calls `call`, and repeats it after a timeout; see RunningImage::mbpoll.
 template <typename Call>
 int repeated(Call call) {
   int result = call();
@@ -173,7 +173,7 @@ TEST(QemuRun, MastersComeAndGo) {
   }
 }
 
-/// Opens and closes of a terminal by any process. The kernel merges equal ones.
+/// Observes when any process opens or closes a terminal. The kernel merges successive equal events.
 class Visits {
  public:
   explicit Visits(const std::string& tty) : fd_(inotify_init1(IN_CLOEXEC)) {
@@ -197,7 +197,8 @@ class Visits {
   int fd_;
 };
 
-/// Sends a command, waits for the whole reply, and leaves it unread. Returns when the program has noticed.
+/// Sends a command, waits for the whole reply, and leaves it unread. Returns when the program has emptied the
+/// terminal.
 void leave_reply_unread(const std::string& tty, const std::string& command, const std::string& reply) {
   Visits visits(tty);
   {
@@ -214,7 +215,8 @@ void leave_reply_unread(const std::string& tty, const std::string& command, cons
     EXPECT_EQ(there, reply.size() + 1);
     close(fd);
   }
-  visits.wait_for(IN_CLOSE);  // by this function; then by the program, which empties the terminal
+  // This function has closed the terminal. Then the program opens and closes it in order to empty it.
+  visits.wait_for(IN_CLOSE);
   visits.wait_for(IN_OPEN);
   visits.wait_for(IN_CLOSE);
 }
@@ -315,7 +317,7 @@ class Debugger {
     return digits.data();
   }
 
-  /// GDB's remote protocol: sends a command and returns the reply without its framing.
+  /// Sends a command of GDB's remote protocol and returns the reply without its framing.
   std::string ask(const std::string& command) {
     unsigned sum = 0;
     for (const char character : command) {

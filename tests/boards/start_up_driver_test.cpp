@@ -1,5 +1,5 @@
-// The register accesses of an image from reset until it listens, compared with the data sheets. The simulated
-// peripherals themselves reject an access without a clock, and a wrong use of the PLL.
+// Compares the register accesses of an image from reset until it listens with the data sheets. The simulated
+// peripherals themselves reject an access to a peripheral without a clock, and a wrong use of the PLL.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -76,7 +76,7 @@ class StartUp : public testing::TestWithParam<ImageName> {
 
 TEST_P(StartUp, GoesToThePllInTheOrderOfTheDataSheetsAndRunsAt50MHz) {
   come_up();
-  // Bypass; crystal and power; divider; and, after the lock, end of bypass.
+  // The writes are: bypass; crystal and power; divider; and, after the lock, end of bypass.
   const std::vector<std::uint32_t> lm3s{0x078E'3AD1, 0x078E'0B80, 0x01CE'0B80, 0x01CE'0380};
   const std::vector<std::uint32_t> tm4c{0x078E'3AD1, 0x078E'0D40, 0x01CE'0D40, 0x01CE'0540};
   EXPECT_EQ(written(0x400F'E060), image.tm4c ? tm4c : lm3s);
@@ -235,7 +235,7 @@ TEST_P(StartUp, SetsUpTheUartForEachRateAsTheDataSheetsComputeIt) {
     settings.baud_code = static_cast<std::uint8_t>(kFirstBaudCode + i);
     store(settings);
     come_up();
-    // Off; divisors; the line control write that latches them (8N1 without FIFOs); interrupts; on.
+    // The writes are: off; divisors; the line control that latches them (8N1 without FIFOs); interrupts; on.
     EXPECT_EQ(writes_to(uart().base()), (Writes{{0x030, 0},
                                                 {0x024, at.integer},
                                                 {0x028, at.fraction},
@@ -257,7 +257,8 @@ TEST_P(StartUp, EnablesTheInterruptsThatItServesAndNoneInterruptsAnother) {
   EXPECT_EQ(core.enabled(), 1U << uart_interrupt | 1U << 8U | 1U << 19U | 1U << 21U | 1U << 23U |
                                 (inputs ? 1U << 1U | 1U << other_port : 0));
   for (unsigned interrupt = 0; interrupt < 24; ++interrupt) {
-    // Of pending interrupts the UART is served last, so that a silence is reported before the byte after it.
+    // The UART is served after all other pending interrupts, so that a silence is reported before the byte
+    // after it.
     EXPECT_EQ(core.priority(interrupt), interrupt == uart_interrupt ? 0xE0U : 0U) << interrupt;
     EXPECT_EQ(core.group(core.priority(interrupt)), 0U) << interrupt;
   }

@@ -1,5 +1,5 @@
-// The code that an image runs before its main, as shipped, on a piece of memory with extra words around the
-// sections that the linker marks.
+// Tests the shipped code that an image runs before its `main`. The memory has extra words around the sections
+// that the linker marks.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -22,8 +22,8 @@ constexpr std::size_t kWords = 1 + kCopied + 1 + kCleared + 1;
 
 }  // namespace
 
-// Does what the linker script does on a board. A C++ array would not work, because it is an object of its
-// own, whose bounds a sanitizer checks.
+// Does what the linker script does on a board. A C++ array for each section would not work, because a
+// sanitizer checks the bounds of each array.
 asm(".pushsection .data\n"
     ".balign 4\n"
     ".globl memory_of_the_image, data_image, data_begin, data_end, zero_begin, zero_end\n"

@@ -1,4 +1,5 @@
-// Users wire a board according to its README, so its tables must match board.hpp. Built once for each board.
+// Users wire a board according to its README, so its tables must match board.hpp. This test is built once for
+// each board.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -79,14 +80,14 @@ std::vector<std::string> names_of(const Groups& groups) {
   return names;
 }
 
-/// The name of an output on the model's label: RL1 is channel 0 (wire.md section 1).
+/// Returns the name of an output on the model's label: RL1 is channel 0 (wire.md section 1).
 std::string output_label(const Model& model, unsigned channel) {
   const bool is_relay = model.description.find("relay") != std::string_view::npos ||
                         model.description.find("PhotoMOS") != std::string_view::npos;
   return is_relay ? "RL" + std::to_string(channel + 1) : "DO" + std::to_string(channel);
 }
 
-/// The terminal at each pin of a model.
+/// Returns the terminal at each pin of a model.
 std::map<std::string, std::string> terminals_of(const Model& model) {
   std::map<std::string, std::string> terminals;
   const std::vector<std::string> outputs = names_of(kOutputs);

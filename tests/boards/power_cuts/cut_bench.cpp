@@ -15,7 +15,7 @@ using std::chrono::milliseconds;
 
 constexpr milliseconds kComesUpWithin{100};
 constexpr milliseconds kStoresWithin{600};  // includes the wait for a timeout
-constexpr std::uint16_t kDriven = 0xC35A;   // a command sets it before the command that stores
+constexpr std::uint16_t kDriven = 0xC35A;   // set by a command before the command that stores
 
 constexpr unsigned kWholeCopy = 20;  // in bytes; a write that invalidates a copy is shorter
 
@@ -29,7 +29,8 @@ std::uint8_t left(unsigned way, std::uint8_t old_byte, std::uint8_t new_byte) {
 
 }  // namespace
 
-/// Whether a good new copy is next to a good old one: the power failed before the old one was invalidated.
+/// Whether `contents` hold a good new copy and a good old copy. This happens if the power failed before the
+/// old copy was invalidated.
 bool CutBench::holds_what_must_not_count(const Contents& contents) const {
   const StoringModel storing = storing_model(model_);
   const auto good = [&](std::size_t place) { return StoredCopy(storing, contents.data(), place).is_good(); };
@@ -37,8 +38,8 @@ bool CutBench::holds_what_must_not_count(const Contents& contents) const {
          (good(kStoredPlaces[2]) || good(kStoredPlaces[3]));
 }
 
-/// firmware/settings/store.hpp: the number of pages that the next store programs, including those that
-/// invalidate old copies.
+/// Returns the number of pages that the next store programs, including those that invalidate old copies
+/// (firmware/settings/store.hpp).
 std::size_t CutBench::pages_of_a_store(const Contents& contents) const {
   const StoringModel storing = storing_model(model_);
   const std::size_t place = place_that_counts(storing, contents.data());
@@ -151,8 +152,8 @@ Found CutBench::come_up(const Contents& contents, const std::vector<Settings>& g
   return found;
 }
 
-/// Adds the contents that a cut at this time may leave. While a page is programmed, byte by byte from either
-/// end, each byte is a separate point.
+/// Adds the contents that a cut at this time may leave. A page may be programmed byte by byte from either
+/// end, and each byte is a separate point.
 void CutBench::note_cuts(Cuts& cuts) {
   const bool done = !bench_.line.drives.empty();
   const auto note = [&](const Contents& contents) {

@@ -1,5 +1,5 @@
-// An image that stores settings, the contents of its EEPROM at every point at which the power may fail
-// meanwhile, and the settings with which it starts from these contents.
+// Runs an image that stores settings, and collects the contents of its EEPROM at every point at which the
+// power may fail. Also starts the image from such contents and reads its settings.
 #pragma once
 
 #include <array>
@@ -79,15 +79,15 @@ class CutBench {
   AfterReset reset_after(Instant time, const Contents& contents, const Settings& before,
                          const StoringCommand& command);
 
-  /// Sends the command to a module that starts with `contents`, which store `before`. Then the memory is worn
-  /// out: the bits `bits` of the byte at `place` keep the value `stuck`.
+  /// Starts a module with `contents`, which store `before`. Then wears out its memory: the bits `bits` of the
+  /// byte at `place` keep the value `stuck`. Then sends the command.
   Attempt attempt(const Contents& contents, const Settings& before, const StoringCommand& command,
                   std::uint16_t place, std::uint8_t bits, std::uint8_t stuck);
 
   /// Sets the programming time of a page: at most 10 ms according to the AT24C64's data sheet.
   void set_programming_time(Instant time) { bench_.eeprom.set_programming_time(time); }
 
-  /// The outputs before such a command.
+  /// Returns the outputs before a command that is executed with these settings.
   [[nodiscard]] std::uint16_t outputs_before(const Settings& settings) const;
 
   /// Starts the module with `contents` and reads all its settings with the protocol, baud rate and address of

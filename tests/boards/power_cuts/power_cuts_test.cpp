@@ -1,5 +1,6 @@
-// Power cuts at every point of every command that stores, and of a timeout: wire.md section 8. "At the next
-// reset each command is either wholly done or not done at all", and an answered command is done.
+// Tests power cuts at every point of every command that stores, and of a timeout: wire.md section 8, "At the
+// next reset each command is either wholly done or not done at all". A command that was answered must be
+// done.
 //
 // The image stores settings with its own drivers. A reader without code of the firmware (StoredCopy) checks
 // all contents that a cut may leave in the EEPROM. The image also starts from some of them, chosen by a seed,
@@ -39,7 +40,7 @@ class PowerCutsOf : public testing::TestWithParam<ImageName> {
     ASSERT_EQ(outputs.changes, std::bitset<16>(outputs.now).count());
   }
 
-  /// Starts the image from `contents`, which StoredCopy has already found to be `settings`.
+  /// Starts the image from `contents`, in which StoredCopy has already found `settings`.
   void come_up(const Contents& contents, const Settings& settings, const Settings& otherwise) {
     const Found found = bench_.come_up(contents, {settings, otherwise}, all_of_them());
     ASSERT_TRUE(found.settings) << "it does not answer";
@@ -177,8 +178,8 @@ TEST_P(PowerCutsOf, LeaveEachCommandWhollyDoneOrNotAtAll) {
   });
 }
 
-/// The first store after an update, and the store of a record of four pages, with some commands or all of
-/// them.
+/// Tests the first store after an update, and the store of a record of four pages, with some commands or all
+/// of them.
 TEST_P(PowerCutsOf, InAStoreOfSeveralPagesLeaveEachCommandWhollyDoneOrNotAtAll) {
   for_some_commands_of_several_pages([this](const State& state, const StoringCommand& command) {
     const Cuts cuts = bench_.cut_everywhere(state.contents, state.settings, command);
@@ -205,7 +206,8 @@ TEST_P(PowerCutsOf, TwiceInARowInStoresOfSeveralPagesLeaveEachCommandWhollyDoneO
   });
 }
 
-/// Only the microcontroller is reset, during traffic on the bus, and finds the EEPROM busy with programming.
+/// Resets only the microcontroller, during traffic on the bus. After the reset, the EEPROM may be busy with
+/// programming.
 TEST_P(PowerCutsOf, ThatTheEepromDoesNotNoticeLeaveEachCommandWhollyDoneOrNotAtAll) {
   const std::size_t one_in = all_of_them() ? 1 : 28;
   for_each_command([this, one_in](const State& state, const StoringCommand& command) {

@@ -18,7 +18,7 @@ void put(const Model& model, const Settings& settings, std::uint16_t sequence, s
               contents.begin() + kPlaces[copy].address);
 }
 
-/// Settings that all differ from the factory settings.
+/// Returns settings that all differ from the factory settings.
 Settings full_settings(const Model& model, const StoringCommand& command) {
   Settings settings = Settings::factory(model);
   settings.protocol = command.init == Init::SinceReset ? Protocol::Ascii : command.protocol;
@@ -37,7 +37,7 @@ Settings full_settings(const Model& model, const StoringCommand& command) {
   return settings;
 }
 
-/// Factory settings, unless the command requires others.
+/// Returns a state with factory settings, unless the command requires others.
 State factory_state(const Model& model, const StoringCommand& command) {
   State state;
   state.contents.fill(0xFF);

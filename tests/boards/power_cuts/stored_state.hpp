@@ -27,10 +27,10 @@ struct State {
 /// before the wrap, and all settings differ from the factory settings.
 State begin_at(Beginning beginning, const Model& model, const StoringCommand& command);
 
-/// The settings with which a module must start, read by code that is independent of the firmware.
+/// Returns the settings with which a module must start. The code is independent of the firmware.
 Settings settings_in(const Model& model, const Contents& contents);
 
-/// wire.md 2: the outputs of a module after its start.
+/// Returns the outputs of a module after its start (wire.md section 2).
 std::uint16_t outputs_from_reset(const Settings& settings);
 
 }  // namespace ex9000::registers

@@ -1,6 +1,6 @@
-// A worn-out EEPROM: it acknowledges everything, but one byte of a page keeps another value. The firmware
-// reads back every write, so wire.md 8 still holds: "A write that fails: ?AA or exception 04, and everything
-// stays as it was", and D15: it tries three times.
+// Tests a worn-out EEPROM: it acknowledges everything, but one byte of a page keeps another value. The
+// firmware reads back every write, so wire.md 8 still holds: "A write that fails: ?AA or exception 04, and
+// everything stays as it was", and D15: it tries three times.
 #include <gtest/gtest.h>
 
 #include <chrono>
@@ -23,7 +23,8 @@ struct Stuck {
   std::uint8_t bits;
   std::uint8_t at;
 };
-/// Bytes of an address, a timeout, a name, a sequence number and a check; one bit and all bits.
+/// The bytes belong to an address, a timeout, a name, a sequence number and a check. One bit, several bits or
+/// all bits of a byte are stuck.
 constexpr Stuck kStuck[] = {{23, 0xFF, 0x00}, {4, 0x80, 0x80},  {25, 0xFF, 0xFF},
                             {2, 0x03, 0x03},  {24, 0x55, 0xAA}, {14, 0xFF, 0x00}};
 
