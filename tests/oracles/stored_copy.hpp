@@ -35,7 +35,7 @@ struct CopiedSettings {
   std::uint16_t safe_value;
 };
 
-/// The addresses of copies: two places for layout 3, two for the older layouts.
+/// The addresses of copies. The first two are for layout 3, the others for the older layouts.
 constexpr std::array<std::size_t, 4> kStoredPlaces{0x080, 0x100, 0x000, 0x020};
 constexpr std::size_t kStoredMemory = 0x180;  ///< bytes of the memory that settings may occupy
 constexpr std::size_t kStoredPage = 32;

@@ -10,7 +10,7 @@ namespace ex9000::judges {
 
 namespace detail {
 
-/// For each value of `bits` bits, the result of `bits` shifts of a reflected CRC.
+/// Returns, for each value of `bits` bits, the result of `bits` shifts of a reflected CRC.
 template <class Crc, unsigned bits>
 constexpr std::array<Crc, 1U << bits> crc_table(Crc polynomial) {
   std::array<Crc, 1U << bits> table{};
@@ -28,7 +28,7 @@ inline constexpr auto kCrc16 = crc_table<std::uint16_t, 8>(0xA001);
 
 }  // namespace detail
 
-/// CRC-16/MODBUS; 0 for a frame with a correct CRC.
+/// Returns the CRC-16/MODBUS; 0 for a frame with a correct CRC.
 inline std::uint16_t crc16(const std::uint8_t* bytes, std::size_t size) {
   unsigned crc = 0xFFFF;
   for (std::size_t i = 0; i < size; ++i) {
@@ -37,7 +37,7 @@ inline std::uint16_t crc16(const std::uint8_t* bytes, std::size_t size) {
   return static_cast<std::uint16_t>(crc);
 }
 
-/// The sum of all characters, modulo 256.
+/// Returns the sum of all characters, modulo 256.
 inline std::uint8_t dcon_sum(const std::uint8_t* text, std::size_t size) {
   unsigned sum = 0;
   for (std::size_t i = 0; i < size; ++i) {
@@ -46,7 +46,7 @@ inline std::uint8_t dcon_sum(const std::uint8_t* text, std::size_t size) {
   return static_cast<std::uint8_t>(sum % 256);
 }
 
-/// The upper-case hex digit of a value below 16.
+/// Returns the upper-case hex digit of `value` modulo 16.
 constexpr std::uint8_t upper_hex(unsigned value) {
   return static_cast<std::uint8_t>("0123456789ABCDEF"[value % 16]);
 }

@@ -12,7 +12,7 @@ namespace ex9000::judges {
 
 namespace detail {
 
-/// The value of upper-case hex digits; no value if a character is not one.
+/// Returns the value of `digits`; no value if a character is not an upper-case hex digit.
 constexpr std::optional<unsigned> hex_number(Bytes digits) {
   unsigned number = 0;
   for (const std::uint8_t digit : digits) {

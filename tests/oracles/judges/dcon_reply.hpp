@@ -113,7 +113,8 @@ constexpr bool is_bare_where_refused(Bytes request, const DconRules& rules) {
 
 }  // namespace detail
 
-/// Both without checksum and CR, the request with delimiter and address.
+/// Returns how `reply` relates to `request`. Both have no checksum and no CR. The request has delimiter and
+/// address.
 inline ReplyForm dcon_reply_form(Bytes request, Bytes reply, const DconRules& rules) {
   if (detail::is_bare_where_refused(request, rules)) {
     if (reply.size == 1 && (reply[0] == '?' || reply[0] == '!')) {

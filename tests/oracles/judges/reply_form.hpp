@@ -1,4 +1,4 @@
-// The kinds of replies.
+// The ways in which a reply can relate to its request.
 #pragma once
 
 namespace ex9000::judges {

@@ -11,8 +11,8 @@ namespace ex9000::judges {
 
 namespace detail {
 
-/// Coils from `first` on. Bit n of `levels` is the nth of them. Returns no effects unless all of them are
-/// outputs.
+/// Returns the effects of a write to `count` coils from `first` on. Bit n of `levels` is the level of the nth
+/// coil, counted from 0. Returns no effects unless all coils are outputs.
 constexpr Demand demand_of_coils(unsigned first, unsigned count, std::uint32_t levels, unsigned outputs) {
   const unsigned row = first & 0xFFE0U;
   const unsigned channel = first % 0x20;

@@ -15,8 +15,8 @@ namespace ex9000::judges {
 class RtuJudge {
  public:
   /// `strict`: a gap of more than 1.5 characters invalidates a frame. `doubt`: the module has its own clock,
-  /// so if a gap differs by at most this much from the silence that ends a frame, the module may decide
-  /// either way; then the judge considers both.
+  /// so if a gap differs by at most this much from the silence that ends a frame, the module may or may not
+  /// end the frame; then the judge considers both cases.
   RtuJudge(std::uint8_t own_address, std::uint32_t baud, bool strict, Microseconds doubt = 0)
       : own_(own_address),
         character_(10'000'000ULL / baud),
@@ -108,7 +108,7 @@ class RtuJudge {
 
   [[nodiscard]] Finding judge_from(std::size_t start) const {
     if (!is_whole_from(start)) {
-      // Is it a frame after a turn-around 00?
+      // The bytes may be a turn-around 00 and a frame.
       if (bytes_[start] != 0 || !is_whole_from(start + 1)) {
         return {};
       }
@@ -140,7 +140,7 @@ class RtuJudge {
   std::array<bool, kMost> apart_before_{};
   std::size_t size_ = 0;
   std::size_t judged_ = 0;   ///< the size at the last `judge`
-  std::size_t another_ = 0;  ///< where a second frame may have begun; 0: none
+  std::size_t another_ = 0;  ///< offset at which a second frame may have begun; 0: none
   Microseconds first_ = 0;
   Microseconds last_ = 0;
 };

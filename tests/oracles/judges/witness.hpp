@@ -1,4 +1,4 @@
-// Receives the bytes that a module receives, and checks everything that the module does against them.
+// Receives the same bytes as a module, and checks everything that the module does against them.
 #pragma once
 
 #include <algorithm>
@@ -38,7 +38,8 @@ struct Listening {
 ///    format that the request demands;
 ///  - outputs, power-on value, safe value, timeout or enable of the host watchdog, or the timeout status
 ///    change, except exactly as a received command demands or because the host watchdog expires;
-///  - a command is answered, or received by an idle module, and these values are not what it demands;
+///  - a command is answered, or a broadcast is received by an idle module, and these values are not what the
+///    command demands;
 ///  - a command is refused although one of these values has changed, or a valid output command is refused;
 ///  - an idle module does not answer a frame that is addressed to it;
 ///  - the host watchdog expires too early;
@@ -61,9 +62,9 @@ class Witness {
 
   Witness(const Model& model, Objects objects) : model_(model), objects_(objects) {}
 
-  /// The module has started with `values`; its reset was at `reset`. If the reset interrupted a command, this
-  /// class does not check what the command has stored (tests/boards/power_cuts/power_cuts_test.cpp does
-  /// that). It checks every later change of the values.
+  /// Call it when the module has started with `values`. `reset`: the time of the reset. If the reset
+  /// interrupted a command, this class does not check what the command has stored
+  /// (tests/boards/power_cuts/power_cuts_test.cpp does that). It checks every later change of the values.
   void comes_up(const Listening& listening, const Values& values, Microseconds reset) {
     rtu_.reset();
     dcon_.reset();
@@ -205,7 +206,7 @@ class Witness {
       case Finding::Kind::HostOk:
         ++counts_.silent;
         ++counts_.host_oks;
-        if (!held_) {  // the module uses only the last one in this case
+        if (!held_) {  // while it is held, the module uses only the last one
           alive_ = std::max(alive_, finding.last);
         }
         return;
@@ -362,7 +363,8 @@ class Witness {
     dcon_->may_answer_to(std::nullopt);
   }
 
-  /// Characters 3 and 4 of a `%` command, which are hex digits in every command that is answered.
+  /// Returns the address in characters 3 and 4 of a `%` command. They are hex digits in every command that is
+  /// answered.
   static std::uint8_t new_address(Bytes request) {
     const auto value = [](unsigned digit) { return digit > '9' ? digit - 'A' + 10 : digit - '0'; };
     return static_cast<std::uint8_t>(value(request[3]) * 16 + value(request[4]));
@@ -412,8 +414,8 @@ class Witness {
 
   [[nodiscard]] bool has_expired_since(const Pending& request) const { return expired_ >= request.last; }
 
-  /// A broadcast whose storing ends, the broadcast after it, and the frame that the silence after that has
-  /// ended.
+  /// The greatest number of commands that take effect in one turn of the main loop: a broadcast whose storing
+  /// ends, the broadcast after it, and the frame that ends with the silence after that.
   static constexpr unsigned kMostInATurn = 3;
 
   [[nodiscard]] bool leads(const Pending& request, const Values& from, const Values& to) const {
@@ -514,7 +516,7 @@ class Witness {
   bool sending_ = false;
   /// A broadcast has been received by an idle module, and its effect has not been checked yet.
   bool broadcast_ = false;
-  Microseconds alive_ = 0;  ///< no restart of the host watchdog was earlier than this
+  Microseconds alive_ = 0;  ///< the latest restart of the host watchdog was not earlier than this
   Microseconds free_ = 0;   ///< from this time on only requests can delay the next request
   Microseconds busy_ = 0;   ///< time of the last byte that arrived while the module was busy
 };

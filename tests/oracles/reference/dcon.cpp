@@ -22,10 +22,10 @@ unsigned with_bit(unsigned value, unsigned channel, bool on) {
 
 }  // namespace
 
-/// The AA of replies. wire.md 2: in INIT mode every reply carries 00.
+/// Returns the AA of replies. wire.md 2: in INIT mode every reply carries 00.
 std::string Module::aa() const { return hex(address_, 2); }
 
-/// wire.md 1: First and Second of a model.
+/// Returns First and Second of a model (wire.md 1).
 std::string Module::first_second(unsigned outputs, unsigned inputs) const {
   if (row_.outputs > 8) {
     return hex(outputs >> 8, 2) + hex(outputs, 2);

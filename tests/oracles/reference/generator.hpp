@@ -1,5 +1,5 @@
-// Random steps for a session. They suit the current state of the reference module: its protocol, address,
-// checksum and model.
+// Generates random steps for a session. They suit the current state of the reference module: its protocol,
+// address, checksum and model.
 #pragma once
 
 #include "tests/oracles/reference/random.hpp"

@@ -21,8 +21,9 @@ bool known_function(const ModelRow& model, unsigned function) {
 }  // namespace
 
 /// Processes a complete frame of any content. Returns the reply with its CRC, or nothing. Function 08 counts
-/// as in Modbus Application Protocol V1.1b3, 6.8. Where that is unclear, it follows Modbus over Serial Line
-/// V1.02: a frame too short for a CRC is a CRC error, and a broadcast is a message without response.
+/// as in Modbus Application Protocol V1.1b3, 6.8. If that specification is unclear, it follows Modbus over
+/// Serial Line V1.02: a frame too short for a CRC is a CRC error, and a broadcast is a message without
+/// response.
 Bytes Module::modbus_frame(Bytes frame) {
   // A turn-around 00 before a frame does not invalidate it.
   if (frame.size() > 4 && !crc_is_right(frame) && frame[0] == 0x00) {
@@ -86,8 +87,7 @@ Bytes Module::modbus_frame(Bytes frame) {
       rule("broadcast refused");
     } else {
       rule(exception.rule);
-      // V1.1b3, 6.8: counts the exception responses that were returned, so not those that a broadcast does
-      // not get.
+      // V1.1b3, 6.8: the counter counts only exception responses that were returned. A broadcast gets none.
       counts_.exceptions += 1;
     }
     reply = {frame[0], static_cast<std::uint8_t>(function | 0x80U), exception.code};

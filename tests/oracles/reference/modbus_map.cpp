@@ -125,7 +125,7 @@ bool Module::coil(unsigned address) const {
   }
 }
 
-/// Functions 01 and 02.
+/// Executes functions 01 and 02.
 Bytes Module::read_bits(const Bytes& frame) {
   const unsigned function = frame[1];
   length_must_be(frame, 6);
@@ -167,7 +167,7 @@ unsigned Module::register_value(unsigned address) const {
   }
 }
 
-/// Functions 03 and 04.
+/// Executes functions 03 and 04.
 Bytes Module::read_registers(const Bytes& frame) {
   const unsigned function = frame[1];
   length_must_be(frame, 6);

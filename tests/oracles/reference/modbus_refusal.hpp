@@ -27,7 +27,7 @@ inline void append_text(Bytes& frame, const std::string& text) {
   frame.insert(frame.end(), text.begin(), text.end());
 }
 
-/// The function's name in the rules of rules.cpp.
+/// Returns the function's name as the rules in rules.cpp use it.
 inline std::string function_name(unsigned function) { return "FC" + hex(function, 2); }
 
 /// Throws Exception 03 unless the frame, without its CRC, has this length.

@@ -5,7 +5,7 @@
 
 namespace ex9000::reference {
 
-/// Function 08; Modbus Application Protocol V1.1b3, 6.8.
+/// Executes function 08: Modbus Application Protocol V1.1b3, 6.8.
 Bytes Module::diagnostics(const Bytes& frame) {
   if (frame.size() < 4) {
     throw Exception{0x03, "FC08 03 length"};
@@ -69,7 +69,7 @@ Bytes Module::server_id(const Bytes& frame) {
   return reply;
 }
 
-/// Function 2B; Modbus Application Protocol V1.1b3, 6.21.
+/// Executes function 2B: Modbus Application Protocol V1.1b3, 6.21.
 Bytes Module::device_identification(const Bytes& frame) {
   if (frame.size() < 3) {
     throw Exception{0x03, "FC2B 03 length"};

@@ -57,8 +57,8 @@ void Module::reset(Time now) {
 }
 
 void Module::come_up(Time now) {
-  // wire.md 2: INIT* is sampled once, here. If asserted, the module uses ASCII, address 00, 9600 baud and no
-  // checksum.
+  // wire.md 2: INIT* is sampled only at reset. If asserted, the module uses ASCII, address 00, 9600 baud and
+  // no checksum.
   init_mode_ = init_asserted_;
   runs_modbus_ = !init_mode_ && stored_.modbus;
   address_ = init_mode_ ? 0x00 : stored_.address;
@@ -97,7 +97,7 @@ void Module::set_input(unsigned channel, bool level) {
 }
 
 void Module::pulse_input(unsigned channel, std::uint32_t count) {
-  // A pulse goes to the other level and back: as many rising as falling edges.
+  // A pulse goes to the other level and back, so it has as many rising as falling edges.
   edge(channel, true, count);
   edge(channel, false, count);
 }

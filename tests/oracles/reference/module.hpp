@@ -66,16 +66,16 @@ class Module {
   void pulse_input(unsigned channel, std::uint32_t count);
   /// Processes all bytes that the master has sent. The last byte ended at `now`, and a silence follows.
   Answer on_request(const Bytes& bytes, Time now);
-  /// The first byte of the reply to the last request began at `now`; all effects of the request are complete
-  /// by then.
+  /// Call it when the first byte of the reply to the last request began at `now`. All effects of the request
+  /// are complete by then.
   void replied(Time now);
-  /// Time has passed until `now`, which must not lie between the earliest and the latest expiry of the host
+  /// Lets time pass until `now`, which must not lie between the earliest and the latest expiry of the host
   /// watchdog.
   void pass(Time now);
 
   // --- visible state ---
 
-  /// The rules that have been applied since the last `take_rules`, in the words of rules.cpp.
+  /// The rules that have been applied since the last `take_rules`, as rules.cpp names them.
   [[nodiscard]] const std::vector<std::string>& rules() const { return rules_; }
   std::vector<std::string> take_rules() { return std::exchange(rules_, {}); }
 

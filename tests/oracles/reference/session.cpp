@@ -14,16 +14,16 @@ namespace {
 
 using std::chrono::milliseconds;
 
-/// The shortest distance from the host watchdog's expiry at which the session decides, sends or compares
-/// anything: one tick, and the time until the module executes a received request.
+/// The session decides, sends and compares nothing closer than this to the expiry of the host watchdog: one
+/// tick, and the time until the module executes a received request.
 constexpr milliseconds kExpiryMargin{3};
 /// wire.md 6: after the expiry, the status and the enable are stored.
 constexpr milliseconds kStored{250};
 /// wire.md 3: a reply that stores nothing starts within 20 ms.
 constexpr milliseconds kAnswers{20};
 constexpr milliseconds kAnswersStoring{200};
-/// Longer than the time until a reply begins that stores nothing, at any baud rate. The runner of transcripts
-/// waits equally long, so a transcript has the same timing there.
+/// Longer than the time until the reply to a request that stores nothing begins, at any baud rate. The runner
+/// of transcripts waits equally long, so a transcript has the same timing there.
 constexpr milliseconds kNoAnswer{65};
 /// The time before each next step. The rest of a reply, if any, arrives within it.
 constexpr milliseconds kBetween{2};
@@ -78,7 +78,7 @@ std::string Session::transcript() const {
 }
 
 bool Session::play(const Step& step) {
-  // Before each step, because a look ahead copies the reference with its rules.
+  // The rules are moved before each step, because `play_step` copies the reference with its rules.
   for (std::string& rule : reference_.take_rules()) {
     rules_.push_back(std::move(rule));
   }
@@ -139,7 +139,7 @@ bool Session::listen(milliseconds time) {
   lines_.push_back("wait " + std::to_string(time.count()) + "ms");
   const play::Bytes heard = target_.listen(time);
   reference_.pass(target_.now());
-  // Outputs and timeout status change at once. The next request may arrive while they are being stored.
+  // Outputs and timeout status change at once. The next request may arrive while the timeout is being stored.
   storing_timeout_ = false;
   if (might_expire && !reference_.expiry()) {
     timeout_stored_ = over + kStored;
@@ -148,7 +148,8 @@ bool Session::listen(milliseconds time) {
   return heard.empty() || differs("; silence", reply_line(heard));
 }
 
-/// `expected` is the next step of the transcript, or a comment if no step describes it.
+/// Adds the difference to the transcript and returns false. `expected`: the next step of the transcript, or a
+/// comment if no step describes it.
 bool Session::differs(const std::string& expected, const std::string& got) {
   lines_.push_back(expected);
   lines_.push_back("; but the firmware: " + got);
@@ -173,7 +174,7 @@ bool Session::compare() {
          differs(names[static_cast<unsigned>(expected)], names[static_cast<unsigned>(led)]);
 }
 
-/// The time that bytes take on the line, ten bits each.
+/// Returns the time that bytes take on the line, with ten bits each.
 Time Session::takes(std::size_t bytes) const { return Time(bytes * 10 * 1'000'000'000ULL / rate_); }
 
 bool Session::play_step(const Send& send) {
@@ -194,7 +195,7 @@ bool Session::play_step(const Send& send) {
       ++left_open_;
       return true;
     }
-    // Twice, because the answer depends on whether the host watchdog has expired.
+    // The loop runs twice because the answer depends on whether the host watchdog has expired.
     const Time done = answer.stores ? answers + kStored : answer.reply.empty() ? Time(kNoAnswer) : answers;
     const Time needed = takes(send.bytes.size() + answer.reply.size()) + done + kBetween;
     if (!settle(needed)) {

@@ -1,5 +1,5 @@
-// A session: the actions of a master and of a person at the terminals of one module, played on the firmware
-// and on the reference.
+// Plays a session on the firmware and on the reference: the actions of a master, and of a person at the
+// terminals of one module.
 #pragma once
 
 #include <chrono>
@@ -59,9 +59,9 @@ class Session {
   bool play(const Step& step);
 
   [[nodiscard]] const Module& reference() const { return reference_; }
-  /// The steps played so far, as a conformance transcript (tests/conformance/README.md).
+  /// Returns the steps played so far as a conformance transcript (tests/conformance/README.md).
   [[nodiscard]] std::string transcript() const;
-  /// The rules that the reference has applied, in the words of rules.cpp.
+  /// The rules that the reference has applied, as rules.cpp names them.
   [[nodiscard]] std::vector<std::string> rules() const;
   /// The number of requests that were sent.
   [[nodiscard]] std::uint64_t transactions() const { return transactions_; }
@@ -116,7 +116,7 @@ class Session {
 /// make them differ.
 std::vector<Step> shrink(const ModelRow& row, std::vector<Step> steps);
 
-/// The transcript of these steps, up to the first difference.
+/// Returns the transcript of these steps, up to the first difference.
 std::string transcript_of(const ModelRow& row, const std::vector<Step>& steps);
 
 }  // namespace ex9000::reference
