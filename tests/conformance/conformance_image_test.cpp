@@ -39,7 +39,7 @@ std::uint64_t pulses_of(const play::Transcript& transcript) {
   return pulses;
 }
 
-/// Returns roughly how long the transcript takes.
+/// Returns the approximate duration of the transcript.
 std::chrono::microseconds duration_of(const play::Transcript& transcript) {
   constexpr std::chrono::microseconds kPulse{100};
   return transcript.waits() + kPulse * static_cast<std::int64_t>(pulses_of(transcript));
@@ -62,7 +62,7 @@ std::vector<Played> all_runs() {
   return runs;
 }
 
-/// The processors that this program may use.
+/// Returns the processors that this program may use.
 std::vector<int> processors() {
   cpu_set_t allowed;
   CPU_ZERO(&allowed);

@@ -1,5 +1,5 @@
-// Plays transcripts on images that run on simulated microcontrollers, with the unchanged drivers, from the
-// bits on the line to those on the EEPROM's wires.
+// Plays transcripts on images that run on simulated microcontrollers. The drivers are unchanged; the bits on
+// the line and on the EEPROM's wires are simulated.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -23,9 +23,9 @@ namespace {
 constexpr std::array<const char*, 6> kFoldersOfDrivers{
     "framing", "init", "inputs", "modbus-framing", "modbus-persistence", "persistence"};
 
-/// All transcripts run on the LaunchPad's images, because no emulator supports that board. The other board's
-/// images use the same drivers, so only the folders above run there, unless EX9000_TRANSCRIPTS=all is set in
-/// the environment.
+/// Returns whether the test plays a file on an image. All transcripts run on the LaunchPad's images, because
+/// no emulator supports that board. The other board's images use the same drivers, so only the folders above
+/// run there, unless EX9000_TRANSCRIPTS=all is set in the environment.
 bool plays(const Image& image, const std::string& file) {
   const char* wanted = std::getenv("EX9000_TRANSCRIPTS");
   const std::string folder = std::filesystem::path(file).parent_path().filename();
