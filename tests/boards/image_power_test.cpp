@@ -1,8 +1,8 @@
 // Tests power cuts. Each power-on starts a new emulator, which uses the EEPROM file of the previous one.
 //
 // The emulated EEPROM stores a page at once when STOP arrives. Therefore this test shows in which order the
-// image writes, reads back and answers, and that it starts afterwards. power_cuts_test checks what a cut
-// leaves of a page.
+// image writes, reads back and answers, and that it starts afterwards. power_cuts_test checks the contents of
+// a page after a cut.
 #include <gtest/gtest.h>
 
 #include <chrono>

@@ -22,8 +22,8 @@ constexpr std::size_t kWords = 1 + kCopied + 1 + kCleared + 1;
 
 }  // namespace
 
-// Does what the linker script does on a board. A C++ array for each section would not work, because a
-// sanitizer checks the bounds of each array.
+// Defines the sections and symbols that the linker script defines on a board. A C++ array for each section
+// would not work, because a sanitizer checks the bounds of each array.
 asm(".pushsection .data\n"
     ".balign 4\n"
     ".globl memory_of_the_image, data_image, data_begin, data_end, zero_begin, zero_end\n"

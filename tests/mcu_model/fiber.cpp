@@ -6,7 +6,7 @@
 #include <system_error>
 #include <utility>
 
-// AddressSanitizer must be told about each switch of stacks.
+// The code must report each switch of stacks to AddressSanitizer.
 #if defined(__has_feature)
 #if __has_feature(address_sanitizer)
 #define EX9000_ADDRESS_SANITIZER

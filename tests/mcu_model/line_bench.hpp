@@ -28,8 +28,8 @@ class LineBench {
     Instant to;
   };
 
-  /// `transmit`, `enable`, `receive`: the board's pins. `receive` shows what the board's receiver outputs.
-  /// `echo`: the board receives what it sends.
+  /// `transmit`, `enable`, `receive`: the board's pins. `receive` carries the output of the board's receiver.
+  /// `echo`: the board receives the bytes that it sends.
   LineBench(Timeline& timeline, Net& transmit, Net& enable, Net& receive, bool echo = true);
 
   void set_baud(std::uint32_t baud);

@@ -56,7 +56,7 @@ class Bench {
 
   [[nodiscard]] bool takes_bytes_for_its_echo() const { return !chip_.hears(); }
 
-  /// Does what the main loop of an image does between two sleeps.
+  /// Runs one turn of the main loop if there is work, like an image between two sleeps.
   void turn() {
     if (has_to_turn()) {
       turns_again_ = device_.turn();

@@ -1,8 +1,8 @@
 // Tests interrupts at every point at which the main loop accesses data that it shares with them.
 //
 // The core's own sources and hal/device.hpp run here with crossings, a clock and registers that report every
-// access (observed/). The test runs an interrupt before and after each access. The outcome must be the same
-// as if the interrupt had come before the turn, after it, or between two steps of a script.
+// access (observed/). The test runs an interrupt before and after each access. The outcome must be one that
+// also occurs if the interrupt comes before the turn, after it, or between two steps of a script.
 //
 // Both sides also access the following data outside the crossings. It is handed over as follows:
 //  - FrameQueue::frames_: the waiting frame belongs to the main loop from `completed_` to `dropped_`;
@@ -30,7 +30,7 @@
 namespace ex9000::interleaving {
 namespace {
 
-/// Counts what a test has tried, so that the test can require a minimum.
+/// Counts the points and interleavings that a test has tried, so that the test can require a minimum.
 struct Tried {
   unsigned points = 0;
   unsigned interleavings = 0;

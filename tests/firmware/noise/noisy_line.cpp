@@ -141,7 +141,7 @@ void NoisyLine::exchange(const FrameBytes& request, double flipped_bit, Tally& t
   ASSERT_TRUE(damaged || requests == 1) << "the witness heard something else";
   ASSERT_EQ(onlooker_.replies() - replies_before, requests) << "frames as received, and replies";
   if (after.storing != before.storing) {
-    // The command was executed correctly, but later requests must not depend on what it has stored.
+    // The command was executed correctly, but later requests must not depend on the stored values.
     ++tally.storing;
     line_.bus().run_for(kLongest);
     come_up();
