@@ -5,11 +5,11 @@
 
 // Without this attribute, the compiler would recognise the loop as a copy and replace it with a call of the
 // same function.
-#define NOT_BY_ITSELF __attribute__((optimize("no-tree-loop-distribute-patterns"), externally_visible))
+#define NO_SELF_CALL __attribute__((optimize("no-tree-loop-distribute-patterns"), externally_visible))
 
 extern "C" {
 
-NOT_BY_ITSELF void* memcpy(void* destination, const void* source, std::size_t size) {
+NO_SELF_CALL void* memcpy(void* destination, const void* source, std::size_t size) {
   auto* to = static_cast<unsigned char*>(destination);
   const auto* from = static_cast<const unsigned char*>(source);
   for (; size != 0; --size) {
@@ -18,7 +18,7 @@ NOT_BY_ITSELF void* memcpy(void* destination, const void* source, std::size_t si
   return destination;
 }
 
-NOT_BY_ITSELF void* memset(void* destination, int value, std::size_t size) {
+NO_SELF_CALL void* memset(void* destination, int value, std::size_t size) {
   auto* to = static_cast<unsigned char*>(destination);
   for (; size != 0; --size) {
     *to++ = static_cast<unsigned char>(value);
@@ -26,7 +26,7 @@ NOT_BY_ITSELF void* memset(void* destination, int value, std::size_t size) {
   return destination;
 }
 
-NOT_BY_ITSELF int memcmp(const void* a, const void* b, std::size_t size) {
+NO_SELF_CALL int memcmp(const void* a, const void* b, std::size_t size) {
   const auto* left = static_cast<const unsigned char*>(a);
   const auto* right = static_cast<const unsigned char*>(b);
   for (; size != 0; --size, ++left, ++right) {

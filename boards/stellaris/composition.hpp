@@ -73,13 +73,13 @@ void on_line() {
 }
 
 void on_silence_timer() {
-  if (SilenceTimer::ran_out()) {
+  if (SilenceTimer::take_expiry()) {
     device.on_silence();
   }
 }
 
 void on_line_end_timer() {
-  if (LineEndTimer::ran_out()) {
+  if (LineEndTimer::take_expiry()) {
     if (board.line.on_end_timer()) {
       device.on_sent();
     }
@@ -87,7 +87,7 @@ void on_line_end_timer() {
 }
 
 void on_wake_timer() {
-  if (WakeTimer::ran_out()) {
+  if (WakeTimer::take_expiry()) {
     device.on_wake_timer();
   }
 }

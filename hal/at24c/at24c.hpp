@@ -59,12 +59,12 @@ class At24c {
   static constexpr std::size_t kPage = 32;
   /// The timeout. Programming a page takes at most 10 ms. The first read after a reset may have to wait for
   /// that too.
-  static constexpr Duration kPatience = milliseconds(12);
+  static constexpr Duration kAnswerTimeout = milliseconds(12);
 
   void begin(Step step, std::uint16_t address, Time now) {
     step_ = step;
     header_ = {static_cast<std::uint8_t>(address >> 8U), static_cast<std::uint8_t>(address)};
-    patience_.set(now + kPatience);
+    answer_deadline_.set(now + kAnswerTimeout);
     transfer(now);
   }
 
@@ -85,7 +85,7 @@ class At24c {
   }
 
   void next(Time now) {
-    if (master_.result() == I2cResult::NoAcknowledge && !patience_.reached(now)) {
+    if (master_.result() == I2cResult::NoAcknowledge && !answer_deadline_.reached(now)) {
       transfer(now);
       return;
     }
@@ -100,7 +100,7 @@ class At24c {
         break;
       case Step::Writing:
         step_ = Step::Programming;
-        patience_.set(now + kPatience);
+        answer_deadline_.set(now + kAnswerTimeout);
         transfer(now);
         break;
       case Step::Programming:
@@ -135,7 +135,7 @@ class At24c {
   std::array<std::uint8_t, 2> header_{};
   Bytes rest_;
   MutableBytes destination_;
-  Deadline patience_;
+  Deadline answer_deadline_;
   I2cTransfer transfer_;
 };
 

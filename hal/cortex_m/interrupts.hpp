@@ -32,13 +32,13 @@ class Interrupts {
   /// nevertheless. For the main loop.
   template <class HasWork>
   static void sleep_until(HasWork has_work) {
-    processor::hold_interrupts();
+    processor::disable_interrupts();
     while (!has_work()) {
       processor::wait_for_interrupt();
-      processor::release_interrupts();
-      processor::hold_interrupts();
+      processor::enable_interrupts();
+      processor::disable_interrupts();
     }
-    processor::release_interrupts();
+    processor::enable_interrupts();
   }
 
   /// Resets the microcontroller at once and does not return. Interrupts, faults and the main loop may call

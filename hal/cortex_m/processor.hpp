@@ -3,10 +3,10 @@
 
 namespace ex9000::hal::cortex_m::processor {
 
-/// Disables interrupts, but not faults, until `release_interrupts`. For the main loop.
-inline void hold_interrupts() { __asm volatile("cpsid i" ::: "memory"); }
+/// Disables interrupts, but not faults, until `enable_interrupts`. For the main loop.
+inline void disable_interrupts() { __asm volatile("cpsid i" ::: "memory"); }
 /// Enables interrupts. Pending interrupts run before the next instruction, even if that disables them again.
-inline void release_interrupts() { __asm volatile("cpsie i\n\tisb" ::: "memory"); }
+inline void enable_interrupts() { __asm volatile("cpsie i\n\tisb" ::: "memory"); }
 
 /// Sleeps until an interrupt is pending, even if interrupts are disabled. For the main loop.
 inline void wait_for_interrupt() { __asm volatile("wfi" ::: "memory"); }

@@ -40,10 +40,10 @@ class I2c {
       case Step::Moving:
         break;
     }
-    const bool told = completed_.load() != completed_seen_;
+    const bool byte_completed = completed_.load() != completed_seen_;
     const Bits<ControlStatus> status = kControlStatus.read();
     // If the master is busy although the interrupt has run, the interrupt belongs to an aborted transfer.
-    if (told && !status.has(kBusy)) {
+    if (byte_completed && !status.has(kBusy)) {
       next(status, now);
     } else if (deadline_.reached(now)) {
       give_up(I2cResult::Failed);

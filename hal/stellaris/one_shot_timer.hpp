@@ -29,7 +29,7 @@ class OneShotTimer {
 
   /// Returns whether the timer has expired, and clears its flag. Its interrupt must call this first: the
   /// timer has not expired if it was restarted while its interrupt was pending.
-  static bool ran_out() {
+  static bool take_expiry() {
     if (!kMaskedInterrupts.read().has(kHasTimedOut)) {
       return false;
     }

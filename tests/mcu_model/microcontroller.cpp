@@ -208,12 +208,12 @@ void Microcontroller::write(std::uint32_t address, std::uint32_t value) {
   check_reset();
 }
 
-void Microcontroller::hold_interrupts() {
+void Microcontroller::disable_interrupts() {
   core.hold(true);
   held_since_ = accesses_;
 }
 
-void Microcontroller::release_interrupts() {
+void Microcontroller::enable_interrupts() {
   most_held_ = std::max(most_held_, accesses_ - held_since_);
   core.hold(false);
   core.serve_pending();
@@ -246,8 +246,8 @@ std::uint32_t bus::read(std::uint32_t address) { return registers::Microcontroll
 void bus::write(std::uint32_t address, std::uint32_t value) {
   registers::Microcontroller::current().write(address, value);
 }
-void cortex_m::processor::hold_interrupts() { registers::Microcontroller::current().hold_interrupts(); }
-void cortex_m::processor::release_interrupts() { registers::Microcontroller::current().release_interrupts(); }
+void cortex_m::processor::disable_interrupts() { registers::Microcontroller::current().disable_interrupts(); }
+void cortex_m::processor::enable_interrupts() { registers::Microcontroller::current().enable_interrupts(); }
 void cortex_m::processor::wait_for_interrupt() { registers::Microcontroller::current().wait_for_interrupt(); }
 
 }  // namespace ex9000::hal

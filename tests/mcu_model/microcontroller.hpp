@@ -82,8 +82,8 @@ class Microcontroller {
 
   std::uint32_t read(std::uint32_t address);
   void write(std::uint32_t address, std::uint32_t value);
-  void hold_interrupts();
-  void release_interrupts();
+  void disable_interrupts();
+  void enable_interrupts();
   void wait_for_interrupt();
 
   // --- for tests ---

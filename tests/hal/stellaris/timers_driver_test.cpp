@@ -135,7 +135,7 @@ class OneShotBench : public DriverBench {
     Timer::start();
     serve(kInterruptOf<Timer>, [this] {
       ++interrupts;
-      if (Timer::ran_out()) {
+      if (Timer::take_expiry()) {
         fired.push_back(now());
       }
     });

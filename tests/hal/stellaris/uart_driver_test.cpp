@@ -49,7 +49,7 @@ class UartBench : public DriverBench {
       });
     });
     serve(kTimer1Interrupt, [this] {
-      if (EndTimer::ran_out()) {
+      if (EndTimer::take_expiry()) {
         uart.on_end_timer();
       }
     });

@@ -4,8 +4,8 @@
 
 namespace ex9000::hal::cortex_m::processor {
 
-void hold_interrupts();
-void release_interrupts();
+void disable_interrupts();
+void enable_interrupts();
 void wait_for_interrupt();
 
 }  // namespace ex9000::hal::cortex_m::processor
