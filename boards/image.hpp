@@ -28,9 +28,9 @@ static_assert((kOnlyModel.outputs <= 8 && kOnlyModel.inputs <= 8) || kOnlyModel.
               "outputs and inputs of the model need the same pins of this board");
 
 #ifdef EX9000_STRICT_GAPS
-inline constexpr TimingAt kTimingAt = LineTiming::strictly_told_in_the_stop_bit;
+inline constexpr TimingAt kTimingAt = LineTiming::strictly_reported_in_stop_bit;
 #else
-inline constexpr TimingAt kTimingAt = LineTiming::told_in_the_stop_bit;
+inline constexpr TimingAt kTimingAt = LineTiming::reported_in_stop_bit;
 #endif
 
 }  // namespace ex9000::board

@@ -4,7 +4,7 @@ namespace ex9000 {
 
 namespace {
 
-constexpr Duration kInitGivesUp = milliseconds(50);  // wire.md D13
+constexpr Duration kInitTimeout = milliseconds(50);  // wire.md D13
 constexpr std::uint8_t kInitModeAddress = 0x00;
 
 constexpr Duration sooner(Duration a, Duration b) { return b < a ? b : a; }
@@ -15,7 +15,7 @@ void Module::start(std::uint16_t input_levels, Time now) {
   const auto levels = static_cast<std::uint16_t>(input_levels & state_.model().input_mask());
   edges_.begin(levels);
   state_.inputs.begin(levels);
-  init_gives_up_.set(now + kInitGivesUp);
+  init_timeout_.set(now + kInitTimeout);
 }
 
 void Module::poll_panel(bool init_switch, Time now) {
@@ -23,7 +23,7 @@ void Module::poll_panel(bool init_switch, Time now) {
   state_.init_asserted = init_switch_.level();
   led_.show(led_pattern_due(), now);
   collect_edges();
-  cycle_.forget_old_reply(now);
+  cycle_.end_reply_gap(now);
 }
 
 StatusLed::Pattern Module::led_pattern_due() const {
@@ -56,7 +56,7 @@ void Module::start_up(Time now) {
     start_ = Start::AwaitingInit;
   }
   // The module starts even if the INIT* switch never settles.
-  if (start_ == Start::AwaitingInit && (init_switch_.known() || init_gives_up_.reached(now))) {
+  if (start_ == Start::AwaitingInit && (init_switch_.known() || init_timeout_.reached(now))) {
     listen();
     start_ = Start::Done;
   }
@@ -84,7 +84,7 @@ void Module::listen() {
   state_.inputs.configure(in_force.protocol == Protocol::Ascii ? Inputs::CounterRange::FiveDigits
                                                                : Inputs::CounterRange::SixteenBits,
                           (settings.format & kFormatRisingEdge) != 0);
-  init_gives_up_.disarm();
+  init_timeout_.disarm();
   receiver_.listen({in_force.protocol, in_force.checksum, timing_at_(baud())});
   receiver_.answer_to(in_force.address);
 }
@@ -264,7 +264,7 @@ Duration Module::idle_for(Time now, Duration at_most) const {
   if (start_ == Start::Loading) {
     return idle;
   }
-  consider(init_gives_up_);
+  consider(init_timeout_);
   consider(host_watchdog_expiry());
   if (!keeper_.busy()) {
     consider(keeper_.retry());

@@ -23,10 +23,10 @@ namespace ex9000 {
 /// edges, levels and the time as arguments, and reads the outputs, the LED, the reply and the memory job. An
 /// object exists from one reset to the next.
 ///
-/// Interrupts call the functions named `on_...`. `on_byte`, `on_silence` and `on_spoken` must not interrupt
-/// each other, so they share one interrupt priority; if several are pending, `on_silence` must run first
-/// (hal/one_shot_timer.hpp). `on_edge` and `on_tick` may have other priorities. The main loop calls all other
-/// functions. No function blocks.
+/// Interrupts call the functions named `on_...`. `on_byte`, `on_silence` and `on_own_driver_off` must not
+/// interrupt each other, so they share one interrupt priority; if several are pending, `on_silence` must run
+/// first (hal/one_shot_timer.hpp). `on_edge` and `on_tick` may have other priorities. The main loop calls all
+/// other functions. No function blocks.
 class Module {
  public:
   /// `timing_at` returns the times of this line; not null.
@@ -45,9 +45,9 @@ class Module {
   Duration on_byte(std::uint8_t byte, ByteStatus status, Time now) {
     return receiver_.on_byte(byte, status, now);
   }
-  /// See Receiver::on_silence and Receiver::on_spoken.
+  /// See Receiver::on_silence and Receiver::on_own_driver_off.
   Duration on_silence() { return receiver_.on_silence(); }
-  void on_spoken(Time now) { receiver_.on_spoken(now); }
+  void on_own_driver_off(Time now) { receiver_.on_own_driver_off(now); }
   /// See InputEdges::on_edge.
   void on_edge(unsigned channel, bool level) { edges_.on_edge(channel, level); }
   void on_tick() { module_watchdog_.tick_alive(); }
@@ -134,7 +134,7 @@ class Module {
 
   TimingAt timing_at_;
   Start start_ = Start::Loading;
-  Deadline init_gives_up_;
+  Deadline init_timeout_;
   std::uint32_t host_oks_seen_ = 0;
 
   State state_;

@@ -58,7 +58,7 @@ class Device {
   }
   /// Call this when the last stop bit has been sent and the driver is off.
   void on_sent() {
-    module_.on_spoken(board_.clock.now_in_interrupt());
+    module_.on_own_driver_off(board_.clock.now_in_interrupt());
     wake();
   }
   void on_edge(unsigned channel, bool level) { module_.on_edge(channel, level); }

@@ -11,11 +11,11 @@ constexpr unsigned kStatusEnabled = 0x80;
 constexpr unsigned kStatusTimeout = 0x04;
 
 unsigned status_of(const State& state) {
-  const bool tells_enable = state.model().status_style == StatusStyle::EnableAndTimeout;
+  const bool reports_enable = state.model().status_style == StatusStyle::EnableAndTimeout;
   if (state.settings.timeout_status) {
-    return tells_enable ? kStatusEnabled | kStatusTimeout : kStatusTimeout;
+    return reports_enable ? kStatusEnabled | kStatusTimeout : kStatusTimeout;
   }
-  return tells_enable && state.settings.watchdog_enabled ? kStatusEnabled : 0;
+  return reports_enable && state.settings.watchdog_enabled ? kStatusEnabled : 0;
 }
 
 }  // namespace

@@ -31,7 +31,7 @@ Duration Receiver::on_silence() {
   return rtu_.next_wait();
 }
 
-void Receiver::on_spoken(Time now) {
+void Receiver::on_own_driver_off(Time now) {
   if (modbus()) {
     // The module's own reply ends the frame, even if its silence was not over.
     const Verdict verdict = rtu_.cut_off(queue_);

@@ -41,7 +41,7 @@ class Receiver {
 
   /// Call this when the module's own driver has been on until `now`; `on_byte` must not be called during that
   /// time. Drops an incomplete frame (wire.md D9).
-  void on_spoken(Time now);
+  void on_own_driver_off(Time now);
 
   // --- main loop ---
 

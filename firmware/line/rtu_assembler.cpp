@@ -17,8 +17,8 @@ Verdict RtuAssembler::byte(FrameQueue& queue, std::uint8_t byte, ByteStatus stat
   Verdict before = Verdict::Open;
   const Duration gap = now.since(last_);
   last_ = now;
-  if (state_ == State::Doubtful && !(gap < timing_.rtu_silence + timing_.rtu_grace)) {
-    before = why_lost();  // the byte began after T3.5, but the timer interrupt has not run yet
+  if (state_ == State::GracePeriod && !(gap < timing_.rtu_silence + timing_.rtu_grace)) {
+    before = loss_verdict();  // the byte began after T3.5, but the timer interrupt has not run yet
     state_ = State::Idle;
   }
   if (state_ == State::Idle) {
@@ -41,7 +41,7 @@ void RtuAssembler::open() {
   rest_spoiled_ = false;
   overrun_ = false;
   whole_ = Crc16();
-  behind_first_ = Crc16();
+  crc_after_first_ = Crc16();
 }
 
 /// Marks the last byte, or the gap after it, as faulty.
@@ -56,7 +56,7 @@ void RtuAssembler::spoil() {
 void RtuAssembler::append(Frame& frame, std::uint8_t byte) {
   whole_.add(byte);
   if (received_ != 0 && frame.storage[0] == kTurnAround) {
-    behind_first_.add(byte);
+    crc_after_first_.add(byte);
   }
   if (received_ < frame.storage.size()) {
     frame.storage[received_] = byte;
@@ -71,10 +71,10 @@ Verdict RtuAssembler::silence(FrameQueue& queue) {
       break;
     case State::Receiving:
       verdict = conclude(queue);
-      state_ = verdict == Verdict::Open ? State::Doubtful : State::Idle;
+      state_ = verdict == Verdict::Open ? State::GracePeriod : State::Idle;
       break;
-    case State::Doubtful:
-      verdict = why_lost();
+    case State::GracePeriod:
+      verdict = loss_verdict();
       state_ = State::Idle;
       break;
   }
@@ -82,7 +82,7 @@ Verdict RtuAssembler::silence(FrameQueue& queue) {
 }
 
 Duration RtuAssembler::next_wait() const {
-  return state_ == State::Doubtful ? timing_.rtu_grace : Duration();
+  return state_ == State::GracePeriod ? timing_.rtu_grace : Duration();
 }
 
 Verdict RtuAssembler::cut_off(FrameQueue& queue) {
@@ -96,7 +96,7 @@ Verdict RtuAssembler::conclude(FrameQueue& queue) {
   Frame& frame = queue.assembling();
   unsigned offset = 0;
   if (whole_.value() != 0 || first_spoiled_ || rest_spoiled_) {
-    if (frame.storage[0] != kTurnAround || behind_first_.value() != 0 || rest_spoiled_) {
+    if (frame.storage[0] != kTurnAround || crc_after_first_.value() != 0 || rest_spoiled_) {
       return Verdict::Open;
     }
     offset = 1;
@@ -118,7 +118,7 @@ Verdict RtuAssembler::conclude(FrameQueue& queue) {
   return queue.complete_in_interrupt() ? Verdict::Accepted : Verdict::NoRoom;
 }
 
-Verdict RtuAssembler::why_lost() const {
+Verdict RtuAssembler::loss_verdict() const {
   if (overrun_) {
     return Verdict::Overrun;
   }

@@ -46,16 +46,16 @@ class RtuAssembler {
 
  private:
   enum class State : std::uint8_t {
-    Idle,       ///< no frame is open
-    Receiving,  ///< a frame is open, and T3.5 is not over
-    Doubtful,   ///< T3.5 is over without a valid frame; a byte that began before that may still arrive
+    Idle,         ///< no frame is open
+    Receiving,    ///< a frame is open, and T3.5 is not over
+    GracePeriod,  ///< T3.5 is over without a valid frame; a byte that began before that may still arrive
   };
 
   void open();
   void spoil();
   void append(Frame& frame, std::uint8_t byte);
   Verdict conclude(FrameQueue& queue);
-  [[nodiscard]] Verdict why_lost() const;
+  [[nodiscard]] Verdict loss_verdict() const;
 
   WrittenByMainLoop<std::uint32_t> own_address_;
   LineTiming timing_{};
@@ -65,7 +65,7 @@ class RtuAssembler {
   bool rest_spoiled_ = false;   ///< the same for any other byte
   bool overrun_ = false;        ///< one of these line errors was an overrun
   Crc16 whole_;                 ///< CRC of all bytes
-  Crc16 behind_first_;          ///< CRC of all bytes except the first, if that is 00
+  Crc16 crc_after_first_;       ///< CRC of all bytes except the first, if that is 00
   Time last_;                   ///< end of the last byte
 };
 

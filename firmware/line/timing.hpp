@@ -38,7 +38,7 @@ struct LineTiming {
 
   /// Returns the times of `at` for a UART that reports a byte in the middle of its stop bit, half a bit
   /// before the end. `baud` must be a standard rate.
-  static constexpr LineTiming told_in_the_stop_bit(std::uint32_t baud) {
+  static constexpr LineTiming reported_in_stop_bit(std::uint32_t baud) {
     LineTiming timing = at(baud);
     const Duration half_bit(microseconds(1, baud) + 1U);
     timing.dcon_turn_around = timing.dcon_turn_around + half_bit;
@@ -50,8 +50,8 @@ struct LineTiming {
   /// Return the same times as the functions above, except that a gap of more than T1.5 makes the frame
   /// invalid, as 2.5.1.1 requires.
   static constexpr LineTiming strictly_at(std::uint32_t baud) { return strictly(at(baud), baud); }
-  static constexpr LineTiming strictly_told_in_the_stop_bit(std::uint32_t baud) {
-    return strictly(told_in_the_stop_bit(baud), baud);
+  static constexpr LineTiming strictly_reported_in_stop_bit(std::uint32_t baud) {
+    return strictly(reported_in_stop_bit(baud), baud);
   }
 
  private:

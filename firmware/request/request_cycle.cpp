@@ -55,17 +55,17 @@ Bytes RequestCycle::take_reply(Time now) {
 }
 
 Duration RequestCycle::until_reply(Time now) const {
-  return line_quiet_.armed() ? line_quiet_.remaining(now) : Duration();
+  return reply_gap_end_.armed() ? reply_gap_end_.remaining(now) : Duration();
 }
 
 void RequestCycle::reply_sent(Time now, Duration silence) {
   phase_ = Phase::Idle;
-  line_quiet_.set(now + silence);
+  reply_gap_end_.set(now + silence);
 }
 
-void RequestCycle::forget_old_reply(Time now) {
-  if (line_quiet_.reached(now)) {
-    line_quiet_.disarm();
+void RequestCycle::end_reply_gap(Time now) {
+  if (reply_gap_end_.reached(now)) {
+    reply_gap_end_.disarm();
   }
 }
 

@@ -52,13 +52,13 @@ class RequestCycle {
   void reply_sent(Time now, Duration silence);
   /// Disarms the deadline of `reply_sent` when it is reached. Call it at least every few minutes: times wrap,
   /// so an old deadline would later appear to be in the future.
-  void forget_old_reply(Time now);
+  void end_reply_gap(Time now);
   /// Returns the time until `take_reply` returns the reply. Call it only while ReplyReady.
   [[nodiscard]] Duration until_reply(Time now) const;
 
  private:
   Phase phase_ = Phase::Idle;
-  Deadline line_quiet_;  ///< end of the minimum gap after the last reply
+  Deadline reply_gap_end_;  ///< end of the minimum gap after the last reply
   Exchange exchange_;
 };
 

@@ -19,7 +19,7 @@ struct Edition {
 
   /// Returns whether this copy is newer than `other`. A newer layout is always newer. In the same layout, the
   /// later sequence number is newer. Sequence numbers wrap: the later one is less than half the range ahead.
-  [[nodiscard]] constexpr bool counts_over(const Edition& other) const {
+  [[nodiscard]] constexpr bool is_newer_than(const Edition& other) const {
     constexpr std::uint16_t kHalfRange = 0x8000;
     const auto ahead = static_cast<std::uint16_t>(sequence - other.sequence);
     return layout == other.layout ? ahead != 0 && ahead < kHalfRange : layout > other.layout;

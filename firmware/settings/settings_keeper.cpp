@@ -20,7 +20,7 @@ void SettingsKeeper::poll(const Settings& in_force, Time now) {
   }
   end_own_save(now);
   const bool unsaved = (may_differ_ && in_force != stored()) || store_.update_unfinished();
-  if (!unsaved && !store_.doubtful()) {
+  if (!unsaved && !store_.needs_invalidation()) {
     may_differ_ = false;
     retry_.disarm();
     return;
@@ -33,12 +33,12 @@ void SettingsKeeper::poll(const Settings& in_force, Time now) {
   if (unsaved) {
     store_.begin_saving(in_force);
   } else {
-    store_.begin_settling();
+    store_.begin_invalidating();
   }
 }
 
 void SettingsKeeper::end_own_save(Time now) {
-  if (own_save_ && (!saved() || store_.doubtful())) {
+  if (own_save_ && (!saved() || store_.needs_invalidation())) {
     retry_.set(now + kRetry);
   }
   own_save_ = false;

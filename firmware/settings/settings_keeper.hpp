@@ -31,7 +31,7 @@ class SettingsKeeper {
   /// Returns whether a reset now would certainly load `stored()`, even if the memory is blank. This is not
   /// certain if the memory contains settings that could not be read before, or a copy that must not be used.
   [[nodiscard]] bool certain() const {
-    return !unreadable() && !store_.doubtful() && !store_.update_unfinished();
+    return !unreadable() && !store_.needs_invalidation() && !store_.update_unfinished();
   }
 
   /// Returns whether a memory access is necessary or running.

@@ -42,7 +42,7 @@ void SettingsStore::done(bool ok) {
       break;
     case Step::Invalidate:
       if (ok) {
-        must_not_count_ &= ~bit(place_);
+        copies_to_invalidate_ &= ~bit(place_);
       }
       invalidate_from(place_ + 1);
       break;
@@ -108,8 +108,8 @@ void SettingsStore::take_copy(const StoredSettings& stored) {
   if (old) {
     old_copies_ |= bit(place_);
   }
-  const bool refused = (must_not_count_ & bit(place_)) != 0;
-  if (refused || (current_place_ != kNoPlace && !stored.edition.counts_over(edition_))) {
+  const bool refused = (copies_to_invalidate_ & bit(place_)) != 0;
+  if (refused || (current_place_ != kNoPlace && !stored.edition.is_newer_than(edition_))) {
     return;
   }
   current_place_ = place_;
@@ -185,11 +185,11 @@ void SettingsStore::retry_or_give_up() {
   if (update_unfinished()) {
     // The other place cannot be written. The current copy was read correctly, so the old copies are not
     // needed.
-    must_not_count_ |= old_copies_;
+    copies_to_invalidate_ |= old_copies_;
     old_copies_ = 0;
   }
   // The copy may be complete although the memory reported an error.
-  must_not_count_ |= bit(place_);
+  copies_to_invalidate_ |= bit(place_);
   saved_ = false;
   invalidate_from(0);
 }
@@ -200,7 +200,7 @@ void SettingsStore::finish_writing() {
   ++edition_.sequence;
   edition_.layout = kLayout;
   stored_ = saving_;
-  must_not_count_ = (must_not_count_ & ~bit(place_)) | old_copies_;
+  copies_to_invalidate_ = (copies_to_invalidate_ & ~bit(place_)) | old_copies_;
   old_copies_ = 0;
   saved_ = true;
   invalidate_from(0);
@@ -208,14 +208,14 @@ void SettingsStore::finish_writing() {
 
 // --- invalidating ---
 
-void SettingsStore::begin_settling() {
+void SettingsStore::begin_invalidating() {
   saved_ = true;  // there is nothing to save, so no save can fail
   invalidate_from(0);
 }
 
 /// Begins to invalidate the first copy that must not be used, from `place` on. Becomes idle if there is none.
 void SettingsStore::invalidate_from(std::size_t place) {
-  while (place < kPlaces.size() && (must_not_count_ & bit(place)) == 0) {
+  while (place < kPlaces.size() && (copies_to_invalidate_ & bit(place)) == 0) {
     ++place;
   }
   if (place == kPlaces.size()) {

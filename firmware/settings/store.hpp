@@ -67,10 +67,10 @@ class SettingsStore {
 
   /// Returns whether a reset now could load a copy that must not be used: a copy of refused settings, or a
   /// copy of an older layout.
-  [[nodiscard]] bool doubtful() const { return must_not_count_ != 0; }
-  /// Begins to invalidate such copies. Call it only while not `busy()`. If this fails, `doubtful()` stays
-  /// true.
-  void begin_settling();
+  [[nodiscard]] bool needs_invalidation() const { return copies_to_invalidate_ != 0; }
+  /// Begins to invalidate such copies. Call it only while not `busy()`. If this fails, `needs_invalidation()`
+  /// stays true.
+  void begin_invalidating();
 
   /// Returns the settings that a reset now would load.
   [[nodiscard]] const Settings& stored() const { return stored_; }
@@ -113,7 +113,7 @@ class SettingsStore {
   std::uint8_t blank_places_ = 0;
   std::size_t current_place_ = kNoPlace;  ///< place of the current copy, which a reset would load
   unsigned old_copies_ = 0;               ///< bit n: place n holds a good copy of an older layout
-  unsigned must_not_count_ = 0;           ///< bit n: the copy at place n must be invalidated
+  unsigned copies_to_invalidate_ = 0;     ///< bit n: the copy at place n must be invalidated
 
   Edition edition_;          ///< edition of the current copy
   Settings stored_;          ///< settings in the current copy

@@ -5,19 +5,19 @@
 
 namespace ex9000::hal::doubles {
 
-/// The owner resets the module when `bites()` returns true.
+/// The owner resets the module when `has_expired()` returns true.
 class Watchdog {
  public:
   explicit Watchdog(const VirtualClock& clock) : clock_(clock) {}
 
-  void feed() { bites_ = clock_.when(kWatchdogPeriod); }
+  void feed() { expiry_time_ = clock_.when(kWatchdogPeriod); }
 
-  [[nodiscard]] VirtualTime next() const { return bites_; }
-  [[nodiscard]] bool bites() const { return bites_ <= clock_.virtual_now(); }
+  [[nodiscard]] VirtualTime next() const { return expiry_time_; }
+  [[nodiscard]] bool has_expired() const { return expiry_time_ <= clock_.virtual_now(); }
 
  private:
   const VirtualClock& clock_;
-  VirtualTime bites_ = kNever;
+  VirtualTime expiry_time_ = kNever;
 };
 static_assert(kIsWatchdog<Watchdog>);
 

@@ -152,7 +152,7 @@ VirtualTime SimulatedModule::next() const {
 }
 
 void SimulatedModule::run() {
-  if (mcu_->watchdog.bites()) {
+  if (mcu_->watchdog.has_expired()) {
     ++watchdog_resets_;
     reset();
     return;

@@ -101,7 +101,7 @@ Stored stored_of(const SimulatedModule& module) {
     stored.copies.push_back(copy_of(module.memory().contents(), kPlaces[place], read, module.model()));
     const std::vector<std::uint8_t>& bytes = stored.copies.back().bytes;
     stored.blank = stored.blank && is_blank({bytes.data(), bytes.size()});
-    if (read && (!stored.current || read->edition.counts_over(counts))) {
+    if (read && (!stored.current || read->edition.is_newer_than(counts))) {
       stored.current = place;
       stored.settings = read->settings;
       counts = read->edition;

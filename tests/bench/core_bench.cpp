@@ -40,7 +40,7 @@ class BareModule {
     module_.poll_panel(false, now_);
     module_.step(now_);
     const Bytes reply = module_.take_reply(now_);
-    module_.on_spoken(now_);
+    module_.on_own_driver_off(now_);
     module_.reply_sent(now_);
     now_ = now_ + Duration(10'000);
     return reply.size;

@@ -76,7 +76,7 @@ class StoredCopy {
     return word(check_at()) == right % 65536 && word(check_at() + 2) == right / 65536 && is_possible();
   }
   /// Whether this copy is newer than `other`. Both must be good.
-  [[nodiscard]] bool counts_over(const StoredCopy& other) const {
+  [[nodiscard]] bool is_newer_than(const StoredCopy& other) const {
     const unsigned ahead = (sequence() - other.sequence()) & 0xFFFFU;
     return layout_ == other.layout_ ? ahead != 0 && ahead < 0x8000 : layout_ > other.layout_;
   }
@@ -200,7 +200,8 @@ inline std::size_t place_that_counts(const StoringModel& model, const std::uint8
   std::size_t counts = kStoredMemory;
   for (const std::size_t place : kStoredPlaces) {
     const StoredCopy copy(model, memory, place);
-    if (copy.is_good() && (counts == kStoredMemory || copy.counts_over(StoredCopy(model, memory, counts)))) {
+    if (copy.is_good() &&
+        (counts == kStoredMemory || copy.is_newer_than(StoredCopy(model, memory, counts)))) {
       counts = place;
     }
   }

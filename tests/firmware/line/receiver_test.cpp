@@ -376,7 +376,7 @@ TEST_F(ReceiverTest, SilenceWithoutAFrameWantsNoMore) {
 TEST_F(ReceiverTest, AnOpenAsciiFrameIsForgottenWhenTheModuleSpeaks) {
   listen(Protocol::Ascii);
   text("$01");
-  receiver_.on_spoken(now_);
+  receiver_.on_own_driver_off(now_);
   text("M\r");
   EXPECT_FALSE(took_frame());
   text("$01M\r");
@@ -386,7 +386,7 @@ TEST_F(ReceiverTest, AnOpenAsciiFrameIsForgottenWhenTheModuleSpeaks) {
 TEST_F(ReceiverTest, AnOpenModbusFrameIsForgottenWhenTheModuleSpeaks) {
   listen(Protocol::ModbusRtu);
   bytes({0x01, 0x05, 0x00});
-  receiver_.on_spoken(now_);
+  receiver_.on_own_driver_off(now_);
   EXPECT_EQ(receiver_.on_silence().microseconds(), 0U);
   EXPECT_EQ(counts(), (Counts{0, 0, 0, 0, 0}));
   frame(kChannel0On);
@@ -396,7 +396,7 @@ TEST_F(ReceiverTest, AnOpenModbusFrameIsForgottenWhenTheModuleSpeaks) {
 TEST_F(ReceiverTest, AModbusFrameWhoseCrcIsRightIsCountedAndTakenWhenTheModuleSpeaks) {
   listen(Protocol::ModbusRtu);
   bytes(kChannel0On);
-  receiver_.on_spoken(now_);
+  receiver_.on_own_driver_off(now_);
   EXPECT_EQ(counts(), (Counts{1, 0, 1, 0, 0}));
   EXPECT_TRUE(took_frame());
 }
@@ -407,7 +407,7 @@ TEST_F(ReceiverTest, AHostOkThatEndsWithTheModulesReplyCountsNotBeforeItsTime) {
   listen(Protocol::ModbusRtu);
   bytes(kHostOk);
   const Time spoken = now_ + Duration(100);
-  receiver_.on_spoken(spoken);
+  receiver_.on_own_driver_off(spoken);
   EXPECT_EQ(receiver_.host_oks(), 1U);
   EXPECT_EQ(receiver_.host_ok_time().microseconds(), spoken.microseconds());
 }
@@ -416,7 +416,7 @@ TEST_F(ReceiverTest, AHostOkWhoseSilenceIsOverLongBeforeTheModuleHasSpokenCounts
   listen(Protocol::ModbusRtu);
   bytes(kHostOk);
   const Time over = now_ + receiver_.timing().rtu_silence;
-  receiver_.on_spoken(now_ + milliseconds(50));
+  receiver_.on_own_driver_off(now_ + milliseconds(50));
   EXPECT_EQ(receiver_.host_oks(), 1U);
   EXPECT_EQ(receiver_.host_ok_time().microseconds(), over.microseconds());
 }
@@ -424,7 +424,7 @@ TEST_F(ReceiverTest, AHostOkWhoseSilenceIsOverLongBeforeTheModuleHasSpokenCounts
 TEST_F(ReceiverTest, TheNextFrameDoesNotContinueOneForgotten) {
   listen(Protocol::ModbusRtu);
   bytes({0x01, 0x05, 0x00});
-  receiver_.on_spoken(now_);
+  receiver_.on_own_driver_off(now_);
   frame(kChannel0On);
   EXPECT_TRUE(took_frame());
   EXPECT_EQ(counts(), (Counts{1, 0, 1, 0, 0}));
@@ -433,7 +433,7 @@ TEST_F(ReceiverTest, TheNextFrameDoesNotContinueOneForgotten) {
 TEST_F(ReceiverTest, SpeakingLeavesTheWaitingFrame) {
   listen(Protocol::Ascii);
   text("$01M\r");
-  receiver_.on_spoken(now_);
+  receiver_.on_own_driver_off(now_);
   text("$02M\r");
   EXPECT_TRUE(took_frame());
 }
@@ -441,7 +441,7 @@ TEST_F(ReceiverTest, SpeakingLeavesTheWaitingFrame) {
 TEST_F(ReceiverTest, SpeakingForgetsOnlyWhatIsOpenThen) {
   listen(Protocol::Ascii);
   for (int i = 0; i < 300; ++i) {
-    receiver_.on_spoken(now_);
+    receiver_.on_own_driver_off(now_);
     text("$01M\r");
     EXPECT_TRUE(took_frame()) << i;
   }

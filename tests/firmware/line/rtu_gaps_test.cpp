@@ -175,7 +175,7 @@ TEST_P(RtuGaps, TheSilenceWasOverT35BehindTheLastByteAndNeverBefore) {
 // The UART reports a byte half a bit before its end, so silences that begin there are half a bit longer.
 TEST_P(RtuGaps, SilencesCountFromTheEndOfTheStopBitThoughTheUartTellsOfItInTheMiddle) {
   const LineTiming end = LineTiming::at(baud_);
-  const LineTiming middle = LineTiming::told_in_the_stop_bit(baud_);
+  const LineTiming middle = LineTiming::reported_in_stop_bit(baud_);
   const std::uint32_t half_bit = 500'000 / baud_;
   for (const auto silence : {&LineTiming::rtu_silence, &LineTiming::dcon_turn_around}) {
     const std::uint32_t longer = (middle.*silence).microseconds() - (end.*silence).microseconds();
@@ -189,9 +189,9 @@ TEST_P(RtuGaps, SilencesCountFromTheEndOfTheStopBitThoughTheUartTellsOfItInTheMi
 
 TEST_P(RtuGaps, StrictlyThoughTheUartTellsOfAByteInItsStopBitGapsAreAsLongAndSilencesLonger) {
   const LineTiming end = LineTiming::strictly_at(baud_);
-  const LineTiming middle = LineTiming::strictly_told_in_the_stop_bit(baud_);
+  const LineTiming middle = LineTiming::strictly_reported_in_stop_bit(baud_);
   EXPECT_TRUE(middle.rtu_slack == end.rtu_slack);
-  EXPECT_TRUE(middle.rtu_silence == LineTiming::told_in_the_stop_bit(baud_).rtu_silence);
+  EXPECT_TRUE(middle.rtu_silence == LineTiming::reported_in_stop_bit(baud_).rtu_silence);
 }
 
 TEST_P(RtuGaps, AFrameAcrossTheWrapOfTheClockIsOneFrame) {

@@ -162,7 +162,7 @@ TEST_F(RequestCycleTest, AReplyOfLongAgoHoldsNothingBack) {
   cycle_.reply_sent(now_, kCharacter);
   for (int minute = 0; minute < 60; ++minute) {
     now_ = now_ + milliseconds(60'000);
-    cycle_.forget_old_reply(now_);
+    cycle_.end_reply_gap(now_);
   }
   judge("$01F");
   cycle_.finish();

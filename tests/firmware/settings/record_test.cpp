@@ -574,10 +574,10 @@ TEST(Edition, OfANewerLayoutCountsOverAnyOfAnOlderOne) {
   constexpr std::uint16_t kSequences[] = {0, 1, 0x7FFF, 0x8000, 0xFFFF};
   for (const std::uint16_t a : kSequences) {
     for (const std::uint16_t b : kSequences) {
-      EXPECT_TRUE((Edition{3, a}.counts_over({2, b})));
-      EXPECT_FALSE((Edition{2, a}.counts_over({3, b})));
-      EXPECT_TRUE((Edition{2, a}.counts_over({1, b})));
-      EXPECT_FALSE((Edition{1, a}.counts_over({2, b})));
+      EXPECT_TRUE((Edition{3, a}.is_newer_than({2, b})));
+      EXPECT_FALSE((Edition{2, a}.is_newer_than({3, b})));
+      EXPECT_TRUE((Edition{2, a}.is_newer_than({1, b})));
+      EXPECT_FALSE((Edition{1, a}.is_newer_than({2, b})));
     }
   }
 }
@@ -587,10 +587,10 @@ TEST(Edition, OfALaterSequenceCountsAlsoBehindTheWrap) {
     const Edition older{3, static_cast<std::uint16_t>(from)};
     for (const unsigned ahead : {1U, 2U, 0x7FFFU}) {
       const Edition newer{3, static_cast<std::uint16_t>(from + ahead)};
-      EXPECT_TRUE(newer.counts_over(older));
-      EXPECT_FALSE(older.counts_over(newer));
+      EXPECT_TRUE(newer.is_newer_than(older));
+      EXPECT_FALSE(older.is_newer_than(newer));
     }
-    EXPECT_FALSE(older.counts_over(older));
+    EXPECT_FALSE(older.is_newer_than(older));
   }
 }
 

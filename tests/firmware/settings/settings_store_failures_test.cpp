@@ -120,23 +120,23 @@ TEST(SettingsStore, WhatIsSettledIsTheDoubtfulCopyAndNotTheOneThatWasLastLookedA
   ASSERT_EQ(store.found(), SettingsStore::Found::Unreadable);
   store.begin_saving(numbered(1));
   end_jobs(store, true, kAllReads);  // all copies are garbage
-  const std::uint16_t doubtful = store.job().address;
+  const std::uint16_t invalidated = store.job().address;
   for (std::size_t attempt = 0; attempt < kAttempts; ++attempt) {
     end_jobs(store, true, 1);   // written,
     end_jobs(store, false, 1);  // but the memory does not answer the read
   }
   end_jobs(store, false, 1);  // cannot be invalidated, either
-  ASSERT_TRUE(store.doubtful());
+  ASSERT_TRUE(store.needs_invalidation());
 
   store.begin_saving(numbered(2));
   end_jobs(store, true, 3);
   end_jobs(store, false, 3);  // the second copy does not answer
   ASSERT_FALSE(store.busy());
-  ASSERT_TRUE(store.doubtful());
-  store.begin_settling();
-  EXPECT_EQ(store.job().address / kPage, doubtful / kPage);
+  ASSERT_TRUE(store.needs_invalidation());
+  store.begin_invalidating();
+  EXPECT_EQ(store.job().address / kPage, invalidated / kPage);
   end_jobs(store, true, 1);
-  EXPECT_FALSE(store.doubtful());
+  EXPECT_FALSE(store.needs_invalidation());
 }
 
 // The memory did not answer at reset, a save failed and its copy could not be invalidated, and the next save

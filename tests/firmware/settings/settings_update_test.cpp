@@ -98,12 +98,12 @@ TEST(SettingsAfterAnUpdate, AnOldCopyBesideAGoodNewOneStaysUntilTheSettingsAreSa
   drive(store, memory);
   EXPECT_TRUE(store.stored() == numbered(9));
   EXPECT_TRUE(memory.writes.empty());
-  EXPECT_FALSE(store.doubtful());
+  EXPECT_FALSE(store.needs_invalidation());
   ASSERT_TRUE(store.update_unfinished());
   store.begin_saving(store.stored());
   drive(store, memory);
   EXPECT_TRUE(store.saved());
-  EXPECT_FALSE(store.doubtful());
+  EXPECT_FALSE(store.needs_invalidation());
   EXPECT_FALSE(store.update_unfinished());
   expect_no_old_copy_counts(memory);
   EXPECT_TRUE(Boot(memory).stored() == numbered(9));
@@ -145,7 +145,7 @@ TEST(SettingsAfterAnUpdate, TheOldCopiesAreInvalidatedIfTheSettingsCannotBeSaved
   drive(store, memory);
   EXPECT_FALSE(store.saved());
   EXPECT_FALSE(store.update_unfinished());
-  EXPECT_FALSE(store.doubtful());
+  EXPECT_FALSE(store.needs_invalidation());
   expect_no_old_copy_counts(memory);
   EXPECT_TRUE(Boot(memory).stored() == numbered(9));
 }
@@ -179,13 +179,13 @@ TEST(SettingsAfterAnUpdate, AnOldCopyThatCannotBeInvalidatedIsTriedAgain) {
   memory.unanswered_writes = 3;
   drive(store, memory);
   EXPECT_TRUE(store.saved());
-  ASSERT_TRUE(store.doubtful());
-  store.begin_settling();
+  ASSERT_TRUE(store.needs_invalidation());
+  store.begin_invalidating();
   drive(store, memory);
-  EXPECT_TRUE(store.doubtful());  // one of the two old copies is left
-  store.begin_settling();
+  EXPECT_TRUE(store.needs_invalidation());  // one of the two old copies is left
+  store.begin_invalidating();
   drive(store, memory);
-  EXPECT_FALSE(store.doubtful());
+  EXPECT_FALSE(store.needs_invalidation());
   expect_no_old_copy_counts(memory);
 }
 
