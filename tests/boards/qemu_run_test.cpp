@@ -446,27 +446,29 @@ TEST(QemuRun, RefusesWhatIsNoImageForThisBoard) {
   expect_refusal(directory, {"none.elf"}, {"none.elf: No such file", "cmake --build --preset lm3s6965evb"});
   expect_refusal(directory, {"/"}, {"/: Is a directory"});
   write_file(directory / "text.elf", "no image");
-  expect_refusal(directory, {"text.elf"}, {"text.elf: no ELF file for Arm"});
-  expect_refusal(directory, {"/usr/bin/python3"}, {"/usr/bin/python3: no ELF file for Arm"});
-  expect_refusal(directory, {EX9000_IMAGES "/EX9042D.bin"}, {"EX9042D.bin: no ELF file", "MODEL.elf"});
+  expect_refusal(directory, {"text.elf"}, {"text.elf: the file is not an ELF file for Arm"});
+  expect_refusal(directory, {"/usr/bin/python3"}, {"/usr/bin/python3: the file is not an ELF file for Arm"});
+  expect_refusal(directory, {EX9000_IMAGES "/EX9042D.bin"},
+                 {"EX9042D.bin: the file is not an ELF file", "MODEL.elf"});
 
   std::string image = bytes_of_file(image_of("EX9042D"));
   const std::string top_of_ram("\x00\x00\x01\x20", 4);
   const std::string top_of_the_launchpads("\x00\x80\x00\x20", 4);
   image.replace(image.find(top_of_ram), top_of_ram.size(), top_of_the_launchpads);
   write_file(directory / "other.elf", image);
-  expect_refusal(directory, {"other.elf"}, {"other.elf: made for another board", "lm3s6965evb"});
+  expect_refusal(directory, {"other.elf"}, {"other.elf: the image is for another board", "lm3s6965evb"});
 }
 
 TEST(QemuRun, RefusesAnEepromFileThatItCannotUse) {
   const Directory directory;
   const std::string image = image_of("EX9042D");
   write_file(directory / "short", std::string(kEepromSize - 1, '\xFF'));
-  expect_refusal(directory, {image, "--eeprom", "short"}, {"--eeprom short: 8191 bytes", "8192", "remove"});
+  expect_refusal(directory, {image, "--eeprom", "short"},
+                 {"--eeprom short: the file has 8191 bytes", "8192", "remove"});
   expect_refusal(directory, {image, "--eeprom", "/"}, {"--eeprom /: Is a directory", "name a file"});
   expect_refusal(directory, {image, "--eeprom", "none/eeprom"}, {"--eeprom none/eeprom: No such file"});
   const RunningImage other("EX9042D", {"--eeprom", directory / "taken"});
-  expect_refusal(directory, {image, "--eeprom", "taken"}, {"--eeprom taken: another run has it"});
+  expect_refusal(directory, {image, "--eeprom", "taken"}, {"--eeprom taken: another run uses this file"});
 }
 
 TEST(QemuRun, RefusesALinkWhereSomethingIs) {
@@ -475,11 +477,12 @@ TEST(QemuRun, RefusesALinkWhereSomethingIs) {
   write_file(directory / "file", "somebody's");
   fs::create_symlink("file", directory / "link");
   for (const std::string path : {"file", "link", "/"}) {
-    expect_refusal(directory, {image, "--link", path}, {"--link " + path + ": something is there", "remove"});
+    expect_refusal(directory, {image, "--link", path},
+                   {"--link " + path + ": the path exists already", "remove"});
   }
   expect_refusal(directory, {image, "--link", "none/tty"}, {"--link none/tty: No such file"});
   const RunningImage other("EX9042D", {"--link", directory / "taken"});
-  expect_refusal(directory, {image, "--link", "taken"}, {"--link taken: something is there"});
+  expect_refusal(directory, {image, "--link", "taken"}, {"--link taken: the path exists already"});
 }
 
 TEST(QemuRun, SaysWhatQemuCouldNotDo) {

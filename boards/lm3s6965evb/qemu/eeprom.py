@@ -31,12 +31,12 @@ def in_file(path: Path) -> int:
     try:
         fcntl.flock(descriptor, fcntl.LOCK_EX | fcntl.LOCK_NB)
     except OSError as error:
-        raise Refusal(f"--eeprom {path}: another run has it; end that one or name another file") from error
+        raise Refusal(f"--eeprom {path}: another run uses this file; end that run or name another file") from error
     size = os.fstat(descriptor).st_size
     if size == 0:
         os.write(descriptor, _BLANK)
     elif size != SIZE:
         raise Refusal(
-            f"--eeprom {path}: {size} bytes, and an AT24C64 has {SIZE}; name another file or remove this one"
+            f"--eeprom {path}: the file has {size} bytes instead of {SIZE}; name another file or remove this one"
         )
     return descriptor

@@ -21,9 +21,9 @@ def check(path: Path) -> None:
             f"{path}: {error.strerror}; build an image with `cmake --build --preset lm3s6965evb`"
         ) from error
     if file[:5] != b"\x7fELF\x01" or struct.unpack_from("<H", file, 18)[0] != _ARM:
-        raise Refusal(f"{path}: no ELF file for Arm; name MODEL.elf, not MODEL.bin or MODEL.hex")
+        raise Refusal(f"{path}: the file is not an ELF file for Arm; name MODEL.elf, not MODEL.bin or MODEL.hex")
     if _initial_stack_pointer(file) != _TOP_OF_RAM:
-        raise Refusal(f"{path}: made for another board; QEMU runs images of the preset lm3s6965evb")
+        raise Refusal(f"{path}: the image is for another board; name an image of the preset lm3s6965evb")
 
 
 def _initial_stack_pointer(file: bytes) -> int | None:

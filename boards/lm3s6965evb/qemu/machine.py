@@ -37,13 +37,14 @@ class Machine:
     """`line` is a non-blocking socket with the bytes of the module. When `events` is readable, call `take_events`."""
 
     def __init__(self, image: Path, eeprom: int, init_grounded: bool, gdb_port: int | None) -> None:
+        self._image = image
         self._init_grounded = init_grounded
         self.line, line = socket.socketpair()
         self.events, monitor = socket.socketpair()
         self._test_port, test_port = socket.socketpair()
         self._unread = b""
-        self._unsaid = b""
-        self._untaken: deque[dict[str, Any]] = deque()
+        self._queued_bytes = b""
+        self._pending_events: deque[dict[str, Any]] = deque()
         self._errors = tempfile.TemporaryFile()
         words = [_PROGRAM, "-M", "lm3s6965evb", "-display", "none", "-nodefaults", "-S"]
         words += ["-icount", "shift=3"]  # 8 ns per instruction, so that a slow host does not distort the time
@@ -85,40 +86,40 @@ class Machine:
         except FileNotFoundError as error:
             raise Refusal(f"{_PROGRAM} is missing; install the package {_PROGRAM}") from error
 
-    def say(self, data: bytes) -> None:
-        """Queues a master's bytes, which `go_on` sends when the module's driver is off.
+    def queue_request(self, data: bytes) -> None:
+        """Queues a master's bytes, which `send_queued` sends when the module's driver is off.
 
         QEMU's UART sends without delay, so the master gets a reply before the driver goes off. Without this queue, the
         module would lose the next request of a fast master. On a real line, no master can be that fast.
         """
-        self._unsaid += data
+        self._queued_bytes += data
 
-    def hear(self) -> bytes:
+    def receive_reply(self) -> bytes:
         """Returns the bytes from the module. Call it only while `line` is readable."""
         return self._received_from(self.line)
 
     @property
-    def go_on_within(self) -> float:
-        """The time in seconds within which `go_on` must be called."""
-        return 0.001 if self._unsaid else 0.1
+    def send_queued_within(self) -> float:
+        """The time in seconds within which `send_queued` must be called."""
+        return 0.001 if self._queued_bytes else 0.1
 
-    def go_on(self) -> None:
+    def send_queued(self) -> None:
         """Sends queued bytes. Bytes that the module does not receive are lost, as on a real line. Does not wait.
 
         Must be called even if nothing is queued: if the module hangs, QEMU's time may stop without requests. The
         watchdog would then not reset the module.
         """
         speaking = self._word_at(_DRIVER_ENABLE)
-        if self._unsaid and not speaking:
+        if self._queued_bytes and not speaking:
             with contextlib.suppress(BlockingIOError, BrokenPipeError):
-                self.line.send(self._unsaid)
-            self._unsaid = b""
+                self.line.send(self._queued_bytes)
+            self._queued_bytes = b""
 
     def take_events(self) -> None:
         """Reads events and resets the machine if the module has requested a reset."""
-        self._untaken.append(self._next_message())
-        while self._untaken or b"\n" in self._unread:
-            event = self._untaken.popleft() if self._untaken else self._next_message()
+        self._pending_events.append(self._next_message())
+        while self._pending_events or b"\n" in self._unread:
+            event = self._pending_events.popleft() if self._pending_events else self._next_message()
             if event.get("event") == "SHUTDOWN" and event["data"]["reason"] == "guest-reset":
                 self._reset()
 
@@ -135,8 +136,8 @@ class Machine:
     def _reset(self) -> None:
         self._command("set-action", reboot="reset")
         self._command("system_reset")
-        while not any(event["event"] == "RESET" for event in self._untaken):
-            self._untaken.append(self._next_message())
+        while not any(event["event"] == "RESET" for event in self._pending_events):
+            self._pending_events.append(self._next_message())
         self._command("set-action", reboot="shutdown")
         self._run()
 
@@ -150,14 +151,17 @@ class Machine:
         deadline = time.monotonic() + _HANG
         while not self._word_at(_UART0_CONTROL) & 1:
             if time.monotonic() > deadline:
-                raise Refusal("the image does not enable its UART; is it one of this firmware?")
+                raise Refusal(
+                    f"{self._image}: the image does not enable its UART within {_HANG} s; "
+                    "name an image of this firmware"
+                )
             time.sleep(0.001)
 
     def _command(self, name: str, **arguments: str) -> None:
         self._send(self.events, json.dumps({"execute": name, "arguments": arguments}))
         message = self._next_message()
         while "event" in message:
-            self._untaken.append(message)
+            self._pending_events.append(message)
             message = self._next_message()
         if "error" in message:
             raise Ended(f"{_PROGRAM} refuses {name}: {message['error']['desc']}")
@@ -183,7 +187,7 @@ class Machine:
         try:
             connection.sendall(line.encode() + b"\n")
         except BrokenPipeError as error:
-            raise Ended(self._last_words()) from error
+            raise Ended(self._exit_message()) from error
 
     def _received_from(self, connection: socket.socket) -> bytes:
         try:
@@ -191,10 +195,10 @@ class Machine:
         except ConnectionResetError:
             data = b""
         if not data:
-            raise Ended(self._last_words())
+            raise Ended(self._exit_message())
         return data
 
-    def _last_words(self) -> str:
+    def _exit_message(self) -> str:
         status = self._process.wait()
         self._errors.seek(0, os.SEEK_SET)
         lines = self._errors.read().decode(errors="replace").splitlines()

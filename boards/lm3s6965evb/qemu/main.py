@@ -22,7 +22,7 @@ def _arguments(words: list[str]) -> argparse.Namespace:
         description="Runs a firmware image in QEMU. The first line it prints is the pseudo-terminal that is the "
         "module's RS-485 line. Ctrl-C or SIGTERM ends it.",
     )
-    parser.add_argument("image", metavar="IMAGE.elf", type=Path, help="of the preset lm3s6965evb")
+    parser.add_argument("image", metavar="IMAGE.elf", type=Path, help="an image of the preset lm3s6965evb")
     parser.add_argument(
         "--link", metavar="PATH", type=Path, help="make a symbolic link to the pseudo-terminal"
     )
@@ -30,10 +30,11 @@ def _arguments(words: list[str]) -> argparse.Namespace:
         "--eeprom",
         metavar="FILE",
         type=Path,
-        help="keep what the module stores in this file of 8192 bytes; made if missing, as a factory-fresh module",
+        help="keep the contents of the EEPROM in this file of 8192 bytes; create a missing file as a factory-fresh "
+        "module",
     )
-    parser.add_argument("--init", action="store_true", help="INIT* tied to GND: ASCII, address 00, 9600 baud")
-    parser.add_argument("--gdb", metavar="PORT", type=int, help="let a debugger in at 127.0.0.1:PORT")
+    parser.add_argument("--init", action="store_true", help="tie INIT* to GND: ASCII, address 00, 9600 baud")
+    parser.add_argument("--gdb", metavar="PORT", type=int, help="let a debugger connect to 127.0.0.1:PORT")
     return parser.parse_args(words)
 
 
@@ -42,7 +43,7 @@ def main(words: list[str]) -> int:
     arguments = _arguments(words)
     try:
         with contextlib.ExitStack() as at_the_end:
-            told_to_end = _told_to_end()
+            signal_descriptor = _signal_descriptor()
             image.check(arguments.image)
             terminal = PseudoTerminal()
             if arguments.link:
@@ -53,7 +54,7 @@ def main(words: list[str]) -> int:
             at_the_end.callback(machine.end)
             print(terminal.device)
             print(f"{arguments.image.name} runs in QEMU; Ctrl-C ends it", flush=True)
-            _carry_bytes(machine, terminal, told_to_end)
+            _carry_bytes(machine, terminal, signal_descriptor)
     except Refusal as refusal:
         print(f"run: {refusal}", file=sys.stderr)
         return 2
@@ -63,7 +64,7 @@ def main(words: list[str]) -> int:
     return 0
 
 
-def _told_to_end() -> int:
+def _signal_descriptor() -> int:
     """Returns a descriptor that becomes readable when SIGINT, SIGTERM or SIGHUP arrives."""
     readable, writable = os.pipe()
     os.set_blocking(writable, False)
@@ -74,22 +75,22 @@ def _told_to_end() -> int:
     return readable
 
 
-def _carry_bytes(machine: Machine, terminal: PseudoTerminal, told_to_end: int) -> None:
+def _carry_bytes(machine: Machine, terminal: PseudoTerminal, signal_descriptor: int) -> None:
     """Passes bytes until a signal arrives. Neither side waits for the other, because a blocked UART stops QEMU."""
     while True:
-        watched = [told_to_end, machine.events, terminal.visits, machine.line]
-        if terminal.visited():
+        watched = [signal_descriptor, machine.events, terminal.open_events, machine.line]
+        if terminal.is_opened():
             watched.append(terminal.master)
-        ready, _, _ = select.select(watched, [], [], machine.go_on_within)
-        if told_to_end in ready:
+        ready, _, _ = select.select(watched, [], [], machine.send_queued_within)
+        if signal_descriptor in ready:
             return
-        if terminal.visits in ready:
-            terminal.take_visits()
+        if terminal.open_events in ready:
+            terminal.process_open_events()
         if machine.events in ready:
             machine.take_events()
         if machine.line in ready:
-            terminal.write(machine.hear())
+            terminal.write(machine.receive_reply())
         requests = terminal.read()  # always, because a master may have written and closed the terminal
         if requests:
-            machine.say(requests)
-        machine.go_on()
+            machine.queue_request(requests)
+        machine.send_queued()

@@ -32,7 +32,7 @@ class PseudoTerminal:
         self.device = os.ttyname(slave)
         os.close(slave)
         os.set_blocking(self.master, False)
-        self.visits = _watch(self.device)
+        self.open_events = _watch(self.device)
         self._written = False  # whether it may contain unread bytes
         self._link: Path | None = None
 
@@ -42,11 +42,11 @@ class PseudoTerminal:
         Raises Refusal if the path exists or cannot be written.
         """
         try:
-            if path.is_symlink() and _leads_nowhere(path, self.device):
+            if path.is_symlink() and _is_stale(path, self.device):
                 path.unlink()
             path.symlink_to(self.device)
         except FileExistsError as error:
-            raise Refusal(f"--link {path}: something is there; remove it or name another path") from error
+            raise Refusal(f"--link {path}: the path exists already; remove it or name another path") from error
         except OSError as error:
             raise Refusal(f"--link {path}: {error.strerror}; name a path that can be written") from error
         self._link = path
@@ -56,18 +56,18 @@ class PseudoTerminal:
         if self._link is not None and self._link.is_symlink() and os.readlink(self._link) == self.device:
             self._link.unlink()
 
-    def visited(self) -> bool:
+    def is_opened(self) -> bool:
         """Returns whether a master has opened the terminal."""
         poll = select.poll()
         poll.register(self.master, 0)
         return not poll.poll(0)  # if no master has opened it, poll reports a hang-up
 
-    def take_visits(self) -> None:
-        """Call this when `visits` is readable, because a master has opened or closed the terminal."""
+    def process_open_events(self) -> None:
+        """Call this when `open_events` is readable, because a master has opened or closed the terminal."""
         with contextlib.suppress(BlockingIOError):
-            while os.read(self.visits, 4096):
+            while os.read(self.open_events, 4096):
                 pass
-        if self._written and not self.visited():
+        if self._written and not self.is_opened():
             self._forget_unread()
 
     def _forget_unread(self) -> None:
@@ -89,7 +89,7 @@ class PseudoTerminal:
 
     def write(self, data: bytes) -> None:
         """Writes bytes to a master without waiting. If the master does not read, bytes after about 4 KiB are lost."""
-        if self.visited():
+        if self.is_opened():
             self._written = True
             with contextlib.suppress(BlockingIOError):
                 os.write(self.master, data)
@@ -105,7 +105,7 @@ def _watch(device: str) -> int:
     return descriptor
 
 
-def _leads_nowhere(link: Path, own_device: str) -> bool:
+def _is_stale(link: Path, own_device: str) -> bool:
     """Returns whether the link points to a terminal that no longer exists, or to the new terminal by chance."""
     target = os.readlink(link)
     return target.startswith("/dev/pts/") and (target == own_device or not os.path.exists(target))
