@@ -86,7 +86,7 @@ class Flash(unittest.TestCase):
             program.chmod(0o755)
             finished = flash("board/any.cfg", path=directory)
         self.assertEqual(finished.returncode, 1)
-        self.assertRegex(finished.stderr, rf"^flash: {IMAGE} is not on the board; .*USB.*\n$")
+        self.assertRegex(finished.stderr, rf"^flash: {IMAGE}: OpenOCD could not write it; .*USB.*\n$")
 
     def test_where_openocd_is_missing_one_line_names_the_package(self) -> None:
         finished = flash("board/any.cfg", path="/nowhere")

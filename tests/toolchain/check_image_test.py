@@ -183,7 +183,7 @@ class Accepts(unittest.TestCase):
         self.assertIn("(600 static,", verdict.figures)
         self.assertRegex(verdict.figures, r"^image: flash 196 bytes, RAM 708 bytes")
 
-    def test_interrupts_that_are_held_are_counted_along_the_longest_way(self) -> None:
+    def test_interrupts_that_are_disabled_are_counted_along_the_longest_way(self) -> None:
         verdict = check(
             """
             extern "C" void reset() {
@@ -192,9 +192,9 @@ class Accepts(unittest.TestCase):
             """
         )
         self.assertTrue(verdict.accepted, verdict.problems)
-        self.assertIn("interrupts held for 4 instructions\n", verdict.figures)
+        self.assertIn("interrupts disabled for 4 instructions\n", verdict.figures)
         self.assertIn(
-            "interrupts held for 20 instructions\n", check(holding("nop\\n" * 20)).figures
+            "interrupts disabled for 20 instructions\n", check(holding("nop\\n" * 20)).figures
         )
 
     def test_data_that_reads_like_an_instruction_is_none(self) -> None:
@@ -260,7 +260,11 @@ class Refuses(unittest.TestCase):
             "volatile char* p = static_cast<char*>(__builtin_alloca(unsigned(n))); *p = 1;",
             "volatile char a[n]; a[0] = 1;",
         ):
-            self.refused("reset takes as much stack as it likes", source.format(frame), compile_options="-w")
+            self.refused(
+                "reset uses an amount of stack that is known only at run time",
+                source.format(frame),
+                compile_options="-w",
+            )
 
     def test_an_assemblers_function_that_is_reached(self) -> None:
         self.refused(
@@ -337,27 +341,28 @@ class Refuses(unittest.TestCase):
 
     def test_a_vector_that_is_no_function(self) -> None:
         self.refused(
-            "vector 15 holds 0x[0-9a-f]+, which is no function",
+            "vector 15 is 0x[0-9a-f]+, which is not the address of a function",
             """
             extern "C" void reset() { for (;;) {} }
             asm(".global interrupt\\n.set interrupt, 0x08000003");
             """,
         )
 
-    # --- interrupts that are held ---
+    # --- interrupts that are disabled ---
 
-    def test_interrupts_held_for_long(self) -> None:
-        self.refused("interrupts are held for 21 instructions; 20 may be", holding("nop\\n" * 21))
+    def test_interrupts_disabled_for_long(self) -> None:
+        self.refused("interrupts are disabled for 21 instructions; at most 20 are permitted", holding("nop\\n" * 21))
 
-    def test_interrupts_held_in_a_loop(self) -> None:
+    def test_interrupts_disabled_in_a_loop(self) -> None:
         self.refused(
-            "0x[0-9a-f]+: interrupts are held, and then there is a loop at .*",
+            "0x[0-9a-f]+: interrupts are disabled, and then there is a loop at .*",
             holding("1: cbz r0, 2f\\nb 1b\\n2: "),
         )
 
-    def test_interrupts_held_during_a_call(self) -> None:
+    def test_interrupts_disabled_during_a_call(self) -> None:
         self.refused(
-            "0x[0-9a-f]+: interrupts are held, and then 0x[0-9a-f]+ calls or jumps beyond what is followed",
+            "0x[0-9a-f]+: interrupts are disabled, and then 0x[0-9a-f]+ makes a call or jump that check-image cannot"
+            " follow",
             """
             FAR void far_away() { room<40>(); }
             extern "C" void reset() {
@@ -370,18 +375,18 @@ class Refuses(unittest.TestCase):
             """,
         )
 
-    def test_interrupts_held_beyond_the_return(self) -> None:
+    def test_interrupts_disabled_beyond_the_return(self) -> None:
         self.refused(
-            "0x[0-9a-f]+: interrupts are held, and then 0x[0-9a-f]+ returns",
+            "0x[0-9a-f]+: interrupts are disabled, and then 0x[0-9a-f]+ returns",
             """
             FAR void hold() { asm volatile("cpsid i" ::: "memory"); }
             extern "C" void reset() { for (;;) hold(); }
             """,
         )
 
-    def test_interrupts_held_by_other_means(self) -> None:
+    def test_interrupts_disabled_by_other_means(self) -> None:
         self.refused(
-            "0x[0-9a-f]+: interrupts are held by PRIMASK, r0",
+            "0x[0-9a-f]+: interrupts are disabled by PRIMASK, r0",
             'extern "C" void reset() { for (;;) asm volatile("msr primask, r0" ::: "memory"); }',
         )
 
@@ -478,7 +483,7 @@ class Refuses(unittest.TestCase):
 
     def test_texts_for_people(self) -> None:
         self.refused(
-            "section .text has the text 'clear both latches', which is for people",
+            "section .text contains the text 'clear both latches', which an image must not contain",
             """
             extern const char text[];
             const char text[] = "clear both latches of all channels";
@@ -494,7 +499,9 @@ class Refuses(unittest.TestCase):
         self.assertTrue(check(source).accepted)  # the rest of RAM is for three exceptions
         verdict = check(source.replace("20372", "20376"))
         self.assertFalse(verdict.accepted)
-        self.assertEqual(verdict.problems, "image: RAM does not hold it: 20484 of 20480 bytes\n")
+        self.assertEqual(
+            verdict.problems, "image: RAM is too small: the image requires 20484 bytes, and the board has 20480\n"
+        )
 
     def test_what_has_changed_since_it_was_recorded(self) -> None:
         source = 'volatile char a[100]; extern "C" void reset() { for (;;) a[0] = 1; }'

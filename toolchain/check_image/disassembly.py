@@ -17,7 +17,7 @@ _CALL = re.compile(rf"blx?({_CONDITIONS})?(\.[nw])?")
 _TARGET = re.compile(r"(?:\w+, )?([0-9a-f]+) <")
 _DIRECT_JUMP = re.compile(r"b(\.[nw])?")
 _CONDITIONAL_POP = re.compile(rf"(pop|ldmia|ldr|add)({_CONDITIONS})\b")
-_MOST_BELIEVED = 1 << 16
+_MAX_DEPTH = 1 << 16
 _TABLE_JUMP = re.compile(r"tb[bh]")
 
 
@@ -59,7 +59,7 @@ class Instruction:
         return self.mnemonic.startswith(".")
 
     @property
-    def goes_on(self) -> bool:
+    def falls_through(self) -> bool:
         """Whether the next instruction in memory can be executed after this one."""
         if (
             self.is_data
@@ -140,12 +140,12 @@ def stack_of(code: list[Instruction]) -> int:
             instruction = by_address[address]
             depth += pushed_by(instruction)
             deepest = max(deepest, depth)
-            if depth > _MOST_BELIEVED:
+            if depth > _MAX_DEPTH:
                 raise StackPointerUnknown("a loop that pushes")
             target = instruction.branch_target
             if target is not None and not instruction.is_call:
                 ways.append((target, depth))
-            if instruction.goes_on and address in following:
+            if instruction.falls_through and address in following:
                 ways.append((following[address], depth))
     return deepest
 

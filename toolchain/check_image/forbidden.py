@@ -50,7 +50,9 @@ def problems(elf: Elf, records: Iterable[Record], disassembly: Disassembly) -> l
                 found.append(f"section {section.name}: {what}")
         for text in _TEXTS:
             if text in section.data:
-                found.append(f"section {section.name} has the text '{text.decode()}', which is for people")
+                found.append(
+                    f"section {section.name} contains the text '{text.decode()}', which an image must not contain"
+                )
     # A linker script without .init_array would silently discard these.
     for record in records:
         if _what(record.title.name) == "globals initialised at run time":

@@ -76,7 +76,7 @@ class LinkedGraph:
         return in_file or self._functions.global_named(title.name)
 
     def _add(self, function: Function, record: Record) -> None:
-        problem = "" if record.is_bounded else "takes as much stack as it likes"
+        problem = "" if record.is_bounded else "uses an amount of stack that is known only at run time"
         calls = set()
         for title in record.calls:
             target = self._find(title)
@@ -87,7 +87,7 @@ class LinkedGraph:
         for location in record.indirect_calls:
             targets = self._indirect_targets(record.title.name, location)
             if not targets:
-                problem = f"calls through a pointer at {location} what the image does not have"
+                problem = f"calls through a pointer at {location}, but no function of the image matches"
             calls |= targets
             self.pointer_calls[str(function), location] = [
                 str(self._functions.at(t)) for t in sorted(targets)

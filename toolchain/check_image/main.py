@@ -11,7 +11,7 @@ from check_image import call_graph, call_sites, forbidden, records, sizes
 from check_image.disassembly import Disassembly
 from check_image.elf import Elf, NotAnImage
 from check_image.functions import Functions
-from check_image.held import HeldInterrupts
+from check_image.disabled_interrupts import DisabledInterrupts
 from check_image.linked_graph import LinkedGraph
 from check_image.records import Figures
 from check_image.stack import EXCEPTION_FRAME, Unbounded, WorstCase, worst_case
@@ -50,17 +50,17 @@ def _parse(arguments: list[str]) -> argparse.Namespace:
         type=Path,
         nargs="+",
         help=(
-            "the compiler's call graphs (.ci), or the object files they lie beside; an object file without"
-            " one is assembler"
+            "the compiler's call graphs (.ci), or the object files next to them; an object file without a"
+            " call graph is assembler code"
         ),
     )
     parser.add_argument(
         "--record",
         type=Path,
         metavar="FILE",
-        help="lines of BOARD IMAGE FLASH STATIC STACK, to say what has changed since",
+        help="print the changes since this record, which has lines of BOARD IMAGE FLASH STATIC STACK",
     )
-    parser.add_argument("--board", default="", help="whose lines of the record count")
+    parser.add_argument("--board", default="", help="use the lines of this board in the record")
     parser.add_argument(
         "--level",
         action="append",
@@ -69,7 +69,7 @@ def _parse(arguments: list[str]) -> argparse.Namespace:
         help="interrupt handlers with a preemption priority of their own; the others share one",
     )
     parser.add_argument(
-        "--verbose", action="store_true", help="also the deepest calls, and what takes the flash"
+        "--verbose", action="store_true", help="also print the deepest calls, and the flash by folder and by symbol"
     )
     return parser.parse_args(arguments)
 
@@ -81,8 +81,8 @@ def _check(options: argparse.Namespace) -> int:
     vectors = Vectors(elf, functions)
     disassembly = Disassembly(options.image)
     linked = LinkedGraph(elf, functions, disassembly, units.records, units.call_sites)
-    held = HeldInterrupts(disassembly)
-    problems = forbidden.problems(elf, units.records, disassembly) + linked.problems + held.problems
+    disabled = DisabledInterrupts(disassembly)
+    problems = forbidden.problems(elf, units.records, disassembly) + linked.problems + disabled.problems
     try:
         stack = worst_case(
             linked.graph, vectors.reset.address, vectors.levels([level.split(",") for level in options.level])
@@ -91,12 +91,12 @@ def _check(options: argparse.Namespace) -> int:
         problems.append(str(unbounded))
         if linked.untyped:
             problems.append(
-                f"{linked.untyped} calls through pointers were taken to reach whatever has its address taken:"
-                " no dump of -fdump-tree-optimized-lineno lies beside the call graph, or it does not know"
-                " them"
+                f"{linked.untyped} calls through pointers may reach every function whose address is taken:"
+                " the dump of -fdump-tree-optimized-lineno is missing next to the call graph, or does not contain"
+                " these calls"
             )
     else:
-        problems += _report(options, Figures(sizes.flash(elf), sizes.static_ram(elf), stack.size), vectors, held)
+        problems += _report(options, Figures(sizes.flash(elf), sizes.static_ram(elf), stack.size), vectors, disabled)
         if options.verbose:
             _report_stack(stack)
             _report_pointer_calls(linked)
@@ -120,7 +120,7 @@ def _read_units(paths: list[Path]) -> Units:
 
 
 def _report(
-    options: argparse.Namespace, figures: Figures, vectors: Vectors, held: HeldInterrupts
+    options: argparse.Namespace, figures: Figures, vectors: Vectors, disabled: DisabledInterrupts
 ) -> list[str]:
     """Prints the sizes and writes them to a file next to the image. Returns a problem if RAM is too small. If flash is
     too small, the linker already fails."""
@@ -128,12 +128,12 @@ def _report(
     flash, static, stack = figures.since(before)
     print(
         f"{options.image.stem}: flash {flash} bytes, RAM {figures.static + figures.stack} bytes "
-        f"({static} static, {stack} stack at worst), interrupts held for {held.longest} instructions"
+        f"({static} static, {stack} stack at worst), interrupts disabled for {disabled.longest} instructions"
     )
     records.write(options.image.with_suffix(".size"), {(options.board, options.image.stem): figures})
     ram = vectors.stack_top - sizes.RAM.start
     used = figures.static + figures.stack
-    return [f"RAM does not hold it: {used} of {ram} bytes"] if used > ram else []
+    return [f"RAM is too small: the image requires {used} bytes, and the board has {ram}"] if used > ram else []
 
 
 def _report_stack(stack: WorstCase) -> None:

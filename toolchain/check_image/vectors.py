@@ -32,7 +32,7 @@ class Vectors:
                 continue
             function = functions.at(word & ~1)
             if function is None or word & 1 == 0:
-                raise BadVectors(f"vector {number} holds {word:#010x}, which is no function")
+                raise BadVectors(f"vector {number} is {word:#010x}, which is not the address of a function")
             self.handlers[number] = function
         if _RESET not in self.handlers:
             raise BadVectors("there is no reset handler")

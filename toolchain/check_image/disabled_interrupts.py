@@ -10,15 +10,15 @@ from check_image.disassembly import Disassembly, Instruction
 # microseconds.
 MOST = 20
 
-_HOLD, _RELEASE = "cpsid", "cpsie"
+_DISABLE, _ENABLE = "cpsid", "cpsie"
 _MASKS = re.compile(r"(PRIMASK|BASEPRI|BASEPRI_MAX|FAULTMASK),", re.IGNORECASE)
 
 
-class _HeldForEver(Exception):
+class _NeverEnabled(Exception):
     """A path never enables interrupts again, or its length is unknown."""
 
 
-class HeldInterrupts:
+class DisabledInterrupts:
     """`longest`: number of instructions between `cpsid i` and `cpsie i` on the longest path. `problems`: code whose
     length cannot be calculated."""
 
@@ -32,43 +32,45 @@ class HeldInterrupts:
         for address in addresses:
             instruction = self._code[address]
             if instruction.mnemonic.startswith("msr") and _MASKS.match(instruction.operands):
-                self.problems.append(f"{address:#x}: interrupts are held by {instruction.operands}")
-            if instruction.mnemonic.startswith(_HOLD):
+                self.problems.append(f"{address:#x}: interrupts are disabled by {instruction.operands}")
+            if instruction.mnemonic.startswith(_DISABLE):
                 self._follow(address)
         if self.longest > MOST:
-            self.problems.append(f"interrupts are held for {self.longest} instructions; {MOST} may be")
+            self.problems.append(
+                f"interrupts are disabled for {self.longest} instructions; at most {MOST} are permitted"
+            )
 
-    def _follow(self, held_at: int) -> None:
+    def _follow(self, disabled_at: int) -> None:
         try:
-            self.longest = max(self.longest, self._behind(held_at, []))
-        except _HeldForEver as reason:
-            self.problems.append(f"{held_at:#x}: interrupts are held, and then {reason}")
+            self.longest = max(self.longest, self._longest_after(disabled_at, []))
+        except _NeverEnabled as reason:
+            self.problems.append(f"{disabled_at:#x}: interrupts are disabled, and then {reason}")
 
-    def _behind(self, address: int, way: list[int]) -> int:
+    def _longest_after(self, address: int, way: list[int]) -> int:
         """Returns the maximum number of instructions between this one and the `cpsie i`."""
         if address in way:
-            raise _HeldForEver(f"there is a loop at {address:#x}")
+            raise _NeverEnabled(f"there is a loop at {address:#x}")
         if address not in self._known:
             instruction = self._code[address]
             self._known[address] = max(
-                self._from(behind, [*way, address]) for behind in self._next(instruction)
+                self._from(following, [*way, address]) for following in self._next(instruction)
             )
         return self._known[address]
 
     def _from(self, address: int, way: list[int]) -> int:
         instruction = self._code.get(address)
         if instruction is None or instruction.is_data:
-            raise _HeldForEver(f"there is no code at {address:#x}")
-        if instruction.mnemonic.startswith(_RELEASE):
+            raise _NeverEnabled(f"there is no code at {address:#x}")
+        if instruction.mnemonic.startswith(_ENABLE):
             return 0
-        return 1 + self._behind(address, way)
+        return 1 + self._longest_after(address, way)
 
     def _next(self, instruction: Instruction) -> list[int]:
         if instruction.is_call or instruction.is_indirect or instruction.jumps_by_table:
-            raise _HeldForEver(f"{instruction.address:#x} calls or jumps beyond what is followed")
-        behind = [] if instruction.branch_target is None else [instruction.branch_target]
-        if instruction.goes_on:
-            behind += [self._following.get(instruction.address, -1)]
-        if not behind:
-            raise _HeldForEver(f"{instruction.address:#x} returns")
-        return behind
+            raise _NeverEnabled(f"{instruction.address:#x} makes a call or jump that check-image cannot follow")
+        following = [] if instruction.branch_target is None else [instruction.branch_target]
+        if instruction.falls_through:
+            following += [self._following.get(instruction.address, -1)]
+        if not following:
+            raise _NeverEnabled(f"{instruction.address:#x} returns")
+        return following
