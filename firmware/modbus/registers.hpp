@@ -189,7 +189,7 @@ inline constexpr auto kWordRegisters = table<WordRegister>({
       read_counter, nullptr}},
     WordRegister{
         "module-code",
-        "module code, its digits spread out: 0x0090, then the last two and 00",
+        "module code in two registers: 0x0090, then its last two digits and 00",
         "",
         {0x01E2, Width::Two, Needs::Nothing, kReadHoldingRegisters, kPlain, 0, 0, read_module_code, nullptr}},
     {"address",
