@@ -9,8 +9,8 @@ namespace ex9000::board {
 
 #ifdef EX9000_IMAGES
 static_assert(kModels.size() == EX9000_IMAGES,
-              "a row of the model table gets no image: boards/CMakeLists.txt reads rows that begin with "
-              "{\"EX9..., inputs, outputs");
+              "a row of the model table has no image; begin the row with {\"EX9..., inputs, outputs, so that "
+              "boards/CMakeLists.txt reads it");
 #endif
 
 template <class Groups>

@@ -23,7 +23,8 @@ template <class Board>
 constexpr bool is_board() {
 #define EX9000_REQUIRE(member, promise, header)                            \
   static_assert(promise<std::remove_reference_t<decltype(Board::member)>>, \
-                "Board::" #member " does not offer what hal/" header " says")
+                "Board::" #member                                          \
+                ": lacks a function, or a function has a wrong signature; see hal/" header)
   EX9000_REQUIRE(clock, kIsClock, "clock.hpp");
   EX9000_REQUIRE(line, kIsSerialLine, "serial_line.hpp");
   EX9000_REQUIRE(silence_timer, kIsOneShotTimer, "one_shot_timer.hpp");

@@ -40,9 +40,11 @@ using WakeTimer = OneShotTimer<2, kMegahertz>;
 using Line = Uart<kUart, kHertz, kDriverEnable, LineEndTimer>;
 using Eeprom = hal::At24c<I2c<kFamily, kHertz>>;
 using Watchdog = HardwareWatchdog<kMegahertz>;
-static_assert(hal::kIsTick<Clock>, "the clock does not offer what hal/tick.hpp says");
-static_assert(hal::kIsOneShotTimer<LineEndTimer>,
-              "the timer does not offer what hal/one_shot_timer.hpp says");
+static_assert(hal::kIsTick<Clock>,
+              "Clock: lacks a function, or a function has a wrong signature; see hal/tick.hpp");
+static_assert(
+    hal::kIsOneShotTimer<LineEndTimer>,
+    "LineEndTimer: lacks a function, or a function has a wrong signature; see hal/one_shot_timer.hpp");
 
 /// See hal/board.hpp.
 struct Board {

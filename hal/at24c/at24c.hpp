@@ -20,7 +20,8 @@ namespace ex9000::hal {
 /// repeated START. The EEPROM's address counter keeps the address.
 template <class Master>
 class At24c {
-  static_assert(kIsI2cMaster<Master>, "Master does not offer what hal/i2c_master.hpp says");
+  static_assert(kIsI2cMaster<Master>,
+                "Master: lacks a function, or a function has a wrong signature; see hal/i2c_master.hpp");
 
  public:
   Master& master() { return master_; }

@@ -10,7 +10,8 @@ void Memory::begin(bool writing, std::uint16_t address, std::size_t size) {
     throw std::logic_error("memory: a job was started while another is under way");
   }
   if (address + size > kSize || (writing && address / kPage != (address + size - 1) / kPage)) {
-    throw std::logic_error("memory: a job leaves the memory, or a write its page");
+    throw std::logic_error(
+        "memory: a job goes beyond the end of the memory, or a write beyond the end of its page");
   }
   constexpr std::int64_t kAddressing = 4;  // bytes: device address twice, word address of two bytes
   writing_ = writing;

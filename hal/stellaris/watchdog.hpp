@@ -40,7 +40,8 @@ class HardwareWatchdog {
   static constexpr Bits<Lock> kLocked{0};
 
   static constexpr Duration kCountdown = milliseconds(750);
-  static_assert(2 * kCountdown.microseconds() < kWatchdogPeriod.microseconds(), "it resets after two");
+  static_assert(2 * kCountdown.microseconds() < kWatchdogPeriod.microseconds(),
+                "the watchdog resets the MCU after two countdowns");
 };
 
 }  // namespace ex9000::hal::stellaris

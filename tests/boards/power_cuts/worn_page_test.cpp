@@ -1,6 +1,6 @@
 // Tests a worn-out EEPROM: it acknowledges everything, but one byte of a page keeps another value. The
-// firmware reads back every write, so wire.md 8 still holds: "A write that fails: ?AA or exception 04, and
-// everything stays as it was", and D15: it tries three times.
+// firmware reads back every write, so wire.md 8 still holds: "If a write fails, the module replies `?AA` or
+// exception 04, and everything stays as it was." As D15 requires, it tries three times.
 #include <gtest/gtest.h>
 
 #include <chrono>

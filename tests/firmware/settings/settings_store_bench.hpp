@@ -52,7 +52,7 @@ class FakeMemory {
     EXPECT_NE(size, 0U);
     EXPECT_EQ(job.address / kPage, (job.address + size - 1) / kPage) << "a job crosses a page";
     if (job.address + size > cells.size()) {
-      ADD_FAILURE() << "a job leaves the memory";
+      ADD_FAILURE() << "a job goes beyond the end of the memory";
       return false;
     }
     return writing ? write(job) : read(job);
