@@ -7,7 +7,7 @@ namespace ex9000::sim {
 PlayRecord::PlayRecord(Writing writing, Print print)
     : writing_(std::move(writing)), print_(std::move(print)) {}
 
-void PlayRecord::begins(const std::string& what) {
+void PlayRecord::run_begins(const std::string& what) {
   if (writing_.capture && !capture_) {
     capture_file_.emplace(*writing_.capture, is_there(*writing_.capture));
     capture_ = std::make_unique<Capture>(*writing_.capture, "--capture ");
@@ -19,7 +19,7 @@ void PlayRecord::begins(const std::string& what) {
   }
 }
 
-Faults::Notice PlayRecord::joins(Line& line, const std::string& name) {
+Faults::Notice PlayRecord::line_started(Line& line, const std::string& name) {
   const bool says_which = !name.empty() && writing_.log == LogFormat::Text;
   const Print printed =
       says_which ? [this, name](const std::string& text) { print_(name + ": " + text); } : print_;
@@ -39,7 +39,7 @@ Faults::Notice PlayRecord::joins(Line& line, const std::string& name) {
   return [&record](const std::string& text) { record.note(text); };
 }
 
-void PlayRecord::reached(VirtualTime now) {
+void PlayRecord::time_reached(VirtualTime now) {
   for (const auto& line : lines_) {
     if (FrameWatch* frames = line->frames()) {
       frames->run(now);
@@ -47,7 +47,7 @@ void PlayRecord::reached(VirtualTime now) {
   }
 }
 
-void PlayRecord::ends() {
+void PlayRecord::run_ends() {
   for (const auto& line : lines_) {
     line->finish();
   }

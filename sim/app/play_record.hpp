@@ -8,13 +8,13 @@
 
 #include "sim/capture/capture.hpp"
 #include "sim/files/new_file.hpp"
-#include "sim/play/onlooker.hpp"
+#include "sim/play/play_observer.hpp"
 #include "sim/runtime/line_record.hpp"
 #include "sim/setup/setup.hpp"
 
 namespace ex9000::sim {
 
-class PlayRecord final : public play::Onlooker {
+class PlayRecord final : public play::PlayObserver {
  public:
   using Print = LineRecord::Print;
 
@@ -22,11 +22,11 @@ class PlayRecord final : public play::Onlooker {
   /// begins; from then on this class throws like Capture.
   PlayRecord(Writing writing, Print print);
 
-  // --- play::Onlooker ---
-  void begins(const std::string& what) override;
-  Faults::Notice joins(Line& line, const std::string& name) override;
-  void reached(VirtualTime now) override;
-  void ends() override;
+  // --- play::PlayObserver ---
+  void run_begins(const std::string& what) override;
+  Faults::Notice line_started(Line& line, const std::string& name) override;
+  void time_reached(VirtualTime now) override;
+  void run_ends() override;
 
  private:
   Writing writing_;

@@ -29,8 +29,8 @@ Memories read_memories(const sim::Setup& setup) {
   return memories;
 }
 
-BusTarget::BusTarget(const sim::Setup& setup, const Memories& memories, Onlooker* onlooker)
-    : onlooker_(onlooker) {
+BusTarget::BusTarget(const sim::Setup& setup, const Memories& memories, PlayObserver* observer)
+    : observer_(observer) {
   auto next = memories.begin();
   for (const sim::LineSetup& line : setup.lines) {
     add_line(line, next, setup.seed + lines_.size());
@@ -62,7 +62,7 @@ void BusTarget::add_line(const sim::LineSetup& setup, Memories::const_iterator m
   }
   line.come_up();
   line.master().set_baud(setup.baud.value_or(line.module(0).baud()));
-  line.expect_trouble(seed, onlooker_ == nullptr ? nullptr : onlooker_->joins(line, setup.name));
+  line.expect_trouble(seed, observer_ == nullptr ? nullptr : observer_->line_started(line, setup.name));
   sim::begin_programs(line, setup);
 }
 
@@ -70,8 +70,8 @@ void BusTarget::run_until(sim::VirtualTime until) {
   for (const auto& line : lines_) {
     line->bus().run_until(until);
   }
-  if (onlooker_ != nullptr) {
-    onlooker_->reached(until);
+  if (observer_ != nullptr) {
+    observer_->time_reached(until);
   }
 }
 
@@ -178,7 +178,7 @@ void BusTarget::turn_to(std::size_t line, std::size_t module) {
   module_ = module;
 }
 
-void BusTarget::trouble(const std::string& command) {
+void BusTarget::run_fault_command(const std::string& command) {
   sim::Words words = sim::words_of(command);
   std::vector<sim::Control::ControlledLine> lines{{"", chosen()}};
   std::string told = command;

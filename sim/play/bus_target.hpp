@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "sim/line/line.hpp"
-#include "sim/play/onlooker.hpp"
+#include "sim/play/play_observer.hpp"
 #include "sim/play/target.hpp"
 #include "sim/setup/setup.hpp"
 
@@ -22,12 +22,12 @@ Memories read_memories(const sim::Setup& setup);
 /// All lines have the same virtual time.
 class BusTarget : public Target {
  public:
-  /// Creates a target for a transcript; `start` provides its module. `onlooker` may be null and must outlive
+  /// Creates a target for a transcript; `start` provides its module. `observer` may be null and must outlive
   /// this object.
-  explicit BusTarget(Onlooker* onlooker = nullptr) : onlooker_(onlooker) {}
+  explicit BusTarget(PlayObserver* observer = nullptr) : observer_(observer) {}
   /// Creates a target for a scenario: the modules of `setup` start up with `memories`. Opens no files and no
   /// ports. Throws std::invalid_argument with a one-line message if `setup` is not valid.
-  BusTarget(const sim::Setup& setup, const Memories& memories, Onlooker* onlooker = nullptr);
+  BusTarget(const sim::Setup& setup, const Memories& memories, PlayObserver* observer = nullptr);
 
   /// Throws std::runtime_error if the chosen module lacks the input.
   void require_input(unsigned channel);
@@ -53,7 +53,7 @@ class BusTarget : public Target {
   step::Led::Shows led(step::Led::Shows expected) override;
   void choose_module(std::size_t position) override;
   void choose_line(const std::string& name) override;
-  void trouble(const std::string& command) override;
+  void run_fault_command(const std::string& command) override;
 
  protected:
   sim::Line& chosen() { return *lines_[line_]; }
@@ -63,7 +63,7 @@ class BusTarget : public Target {
   void add_line(const sim::LineSetup& setup, Memories::const_iterator memories, std::uint64_t seed);
   void turn_to(std::size_t line, std::size_t module);
 
-  Onlooker* onlooker_;
+  PlayObserver* observer_;
   std::vector<std::string> names_;
   std::vector<std::unique_ptr<sim::Line>> lines_;
   std::vector<Bytes> heard_;  ///< bytes that each master has received since the line was last chosen

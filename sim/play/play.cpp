@@ -44,7 +44,7 @@ void check(const Transcript& transcript, const std::optional<sim::Setup>& bus) {
 }
 
 /// Throws if the capture would overwrite a file that the play reads. Call it before the capture starts.
-void spare_what_is_read(const Task& task, const std::vector<Transcript>& all) {
+void check_capture_path(const Task& task, const std::vector<Transcript>& all) {
   if (!task.writing.capture) {
     return;
   }
@@ -57,7 +57,8 @@ void spare_what_is_read(const Task& task, const std::vector<Transcript>& all) {
 
 }  // namespace
 
-bool play(const Task& task, const std::function<void(const std::string& line)>& print, Onlooker& onlooker) {
+bool play(const Task& task, const std::function<void(const std::string& line)>& print,
+          PlayObserver& observer) {
   const std::vector<Transcript> all = load_all(task.path);
   const Memories memories = task.bus ? read_memories(*task.bus) : Memories();
   for (const Transcript& transcript : all) {
@@ -67,16 +68,16 @@ bool play(const Task& task, const std::function<void(const std::string& line)>& 
       rehearse(transcript, bus);
     }
   }
-  spare_what_is_read(task, all);
+  check_capture_path(task, all);
   std::size_t steps = 0;
   std::size_t failed = 0;
   for (const Transcript& transcript : all) {
     const std::string who =
         transcript.model == nullptr ? "" : " (" + std::string(transcript.model->designation) + ")";
-    onlooker.begins(transcript.file + who);
-    BusTarget target = task.bus ? BusTarget(*task.bus, memories, &onlooker) : BusTarget(&onlooker);
+    observer.run_begins(transcript.file + who);
+    BusTarget target = task.bus ? BusTarget(*task.bus, memories, &observer) : BusTarget(&observer);
     const Result result = play(transcript, target);
-    onlooker.ends();
+    observer.run_ends();
     steps += result.steps;
     failed += result.passed() ? 0U : 1U;
     print(result.passed()

@@ -5,7 +5,7 @@
 #include <optional>
 #include <string>
 
-#include "sim/play/onlooker.hpp"
+#include "sim/play/play_observer.hpp"
 #include "sim/setup/setup.hpp"
 
 namespace ex9000::play {
@@ -20,8 +20,9 @@ struct Task {
 
 /// Prints one line of text for each run and a summary. Returns whether all runs have passed. Throws
 /// std::invalid_argument with a one-line message if the path or the content of a file is wrong, if the bus is
-/// missing, incomplete or not used, or if the capture is one of the files to read. In these cases `onlooker`
+/// missing, incomplete or not used, or if the capture is one of the files to read. In these cases `observer`
 /// has not been called.
-bool play(const Task& task, const std::function<void(const std::string& line)>& print, Onlooker& onlooker);
+bool play(const Task& task, const std::function<void(const std::string& line)>& print,
+          PlayObserver& observer);
 
 }  // namespace ex9000::play

@@ -91,7 +91,7 @@ class Playing {
   /// Does not check for earlier replies, because the bytes may be the rest of a frame.
   void operator()(const step::SendBytes& step) {
     target_.send(step.bytes);
-    open_question_ = true;
+    reply_pending_ = true;
   }
   void operator()(const step::Silence& /*step*/) { nothing_for(kSilence); }
   void operator()(const step::Wait& step) { nothing_for(step.time); }
@@ -137,21 +137,21 @@ class Playing {
     nothing_more();
     target_.choose_line(step.name);
   }
-  void operator()(const step::Trouble& step) { target_.trouble(step.command); }
+  void operator()(const step::FaultCommand& step) { target_.run_fault_command(step.command); }
 
   /// Throws std::runtime_error if bytes arrive that no step expects.
-  void nothing_more() { nothing_for(open_question_ ? kReplyBegins : kAfterReply); }
+  void nothing_more() { nothing_for(reply_pending_ ? kReplyBegins : kAfterReply); }
 
  private:
   void send(const Bytes& bytes) {
     nothing_more();
     target_.send(bytes);
-    open_question_ = true;
+    reply_pending_ = true;
   }
 
   void expect(const Bytes& wanted) {
     const Bytes heard = target_.receive(wanted.size(), kLongestReply);
-    open_question_ = false;
+    reply_pending_ = false;
     if (heard != wanted) {
       throw std::runtime_error("expected " + shown(wanted) + ", heard " + shown(heard));
     }
@@ -159,7 +159,7 @@ class Playing {
 
   void nothing_for(std::chrono::nanoseconds time) {
     const Bytes heard = target_.listen(time);
-    open_question_ = open_question_ && time < kReplyBegins;
+    reply_pending_ = reply_pending_ && time < kReplyBegins;
     if (!heard.empty()) {
       throw std::runtime_error("expected nothing, heard " + shown(heard));
     }
@@ -167,7 +167,7 @@ class Playing {
 
   Target& target_;
   bool checksum_;
-  bool open_question_ = false;  ///< something was sent, and a reply may still come
+  bool reply_pending_ = false;  ///< something was sent, and a reply may still come
 };
 
 }  // namespace

@@ -17,7 +17,7 @@ class Rehearsal {
   void operator()(const step::OnLine& step) { bus_.choose_line(step.name); }
   void operator()(const step::Input& step) { bus_.require_input(step.channel); }
   void operator()(const step::Pulse& step) { bus_.require_input(step.channel); }
-  void operator()(const step::Trouble& step) { bus_.trouble(step.command); }
+  void operator()(const step::FaultCommand& step) { bus_.run_fault_command(step.command); }
   template <class Other>
   void operator()(const Other& /*step*/) {}
 

@@ -61,7 +61,7 @@ class Target {
   }
   /// Carries out `fault FAULT`, `fault off K|all` or `faults` for the chosen line, or `fault N FAULT` for a
   /// module, from 1 across all lines.
-  virtual void trouble(const std::string& /*command*/) {
+  virtual void run_fault_command(const std::string& /*command*/) {
     throw std::runtime_error("this target has no faults");
   }
 

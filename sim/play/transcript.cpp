@@ -151,8 +151,8 @@ constexpr std::array<Verb, 17> kVerbs{{
      }},
     {"line", "NAME", 1, 1, [](const Words& words) -> Action { return step::OnLine{words[0]}; }},
     {"fault", "[N] FAULT, or fault off K|all", 1, kAnyNumber,
-     [](const Words& words) -> Action { return step::Trouble{"fault " + sim::joined(words)}; }},
-    {"faults", "", 0, 0, [](const Words& /*words*/) -> Action { return step::Trouble{"faults"}; }},
+     [](const Words& words) -> Action { return step::FaultCommand{"fault " + sim::joined(words)}; }},
+    {"faults", "", 0, 0, [](const Words& /*words*/) -> Action { return step::FaultCommand{"faults"}; }},
 }};
 
 std::string all_shapes() {
@@ -202,9 +202,9 @@ Action parse_action(const std::string& text) {
   return parse_verb(text);
 }
 
-bool is_of_a_bus(const Action& action) {
+bool requires_bus(const Action& action) {
   return std::holds_alternative<step::OnModule>(action) || std::holds_alternative<step::OnLine>(action) ||
-         std::holds_alternative<step::Trouble>(action);
+         std::holds_alternative<step::FaultCommand>(action);
 }
 
 /// Rejects channels that the model lacks, because the step would have no effect.
@@ -309,7 +309,7 @@ Transcript transcript_of(const std::string& path, const Source& source, const Mo
     const std::string text = substitute(raw.text, run.variables);
     transcript.steps.push_back({raw.number, text, parse_action(text)});
     check_channel(*run.model, transcript.steps.back().action);
-    if (is_of_a_bus(transcript.steps.back().action)) {
+    if (requires_bus(transcript.steps.back().action)) {
       fail("'" + text + "': only scenarios have this step, and they have no 'model:' line");
     }
   }

@@ -72,16 +72,16 @@ struct OnModule {
 struct OnLine {
   std::string name;
 };
-struct Trouble {
+struct FaultCommand {
   std::string command;
-};  ///< see Target::trouble
+};  ///< see Target::run_fault_command
 
 }  // namespace step
 
 using Action = std::variant<step::SendDcon, step::ExpectDcon, step::SendModbus, step::ExpectModbus,
                             step::SendBytes, step::Silence, step::Wait, step::Checksum, step::Baud,
                             step::Power, step::PowerCycle, step::Reset, step::Init, step::Input, step::Pulse,
-                            step::Outputs, step::Led, step::OnModule, step::OnLine, step::Trouble>;
+                            step::Outputs, step::Led, step::OnModule, step::OnLine, step::FaultCommand>;
 
 struct Step {
   unsigned line;     ///< line number in the file, from 1
