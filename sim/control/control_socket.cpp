@@ -123,8 +123,8 @@ void ControlSocket::accept() {
 /// Accepts again after a delay. If the process has no free file descriptor, an immediate retry would use all
 /// of the processor's time.
 void ControlSocket::accept_later() {
-  constexpr std::chrono::milliseconds kPatience{100};
-  next_try_.expires_after(kPatience);
+  constexpr std::chrono::milliseconds kRetryDelay{100};
+  next_try_.expires_after(kRetryDelay);
   next_try_.async_wait([this](const boost::system::error_code& error) {
     if (!error) {
       accept();

@@ -70,7 +70,7 @@ constexpr const Button* button_of(std::string_view id) {
 
 /// Returns whether kReadings and kButtons cover all rows of the firmware's tables. A new row must be added
 /// there too.
-constexpr bool every_row_is_decided_on() {
+constexpr bool covers_every_row() {
   for (const modbus::BitRegister& row : modbus::kBitRegisters) {
     if (reading_of(row.id) == nullptr || (button_of(row.id) != nullptr) != row.row.has(modbus::kOnlyOn)) {
       return false;
@@ -83,7 +83,7 @@ constexpr bool every_row_is_decided_on() {
   }
   return kReadings.size() == modbus::kBitRegisters.size() + modbus::kWordRegisters.size();
 }
-static_assert(every_row_is_decided_on());
+static_assert(covers_every_row());
 
 Shown shown(const MapRow& row, std::string_view id, Role role, std::string_view name) {
   return {id, role, name, row.area->table, row.first, row.last - row.first + 1, row.per_channel};

@@ -11,7 +11,7 @@ using Json = nlohmann::ordered_json;
 constexpr std::string_view kLetters = "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ";
 
 /// Returns whether YAML 1.1 reads the word as true, false or null.
-bool is_taken_for_something(const std::string& text) {
+bool reads_as_other_type(const std::string& text) {
   std::string lower = text;
   for (char& character : lower) {
     character = static_cast<char>(character >= 'A' && character <= 'Z' ? character - 'A' + 'a' : character);
@@ -29,7 +29,7 @@ bool is_taken_for_something(const std::string& text) {
 bool is_plain(const std::string& text) {
   return !text.empty() && kLetters.find(text.front()) != std::string_view::npos && text.back() != ' ' &&
          text.find_first_not_of(std::string(kLetters) + "0123456789_ -") == std::string::npos &&
-         !is_taken_for_something(text);
+         !reads_as_other_type(text);
 }
 
 std::string scalar(const Json& value) {

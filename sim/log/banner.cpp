@@ -24,7 +24,7 @@ std::string quoted(const std::string& path) {
 
 /// Returns commands for mbpoll, which counts addresses from 1. They contain `-P none` because the default of
 /// mbpoll is even parity: a pseudo-terminal ignores the parity, but a real bus does not.
-std::string mbpoll(const ModuleIntroduced& module, const std::string& link) {
+std::string mbpoll(const ModuleSummary& module, const std::string& link) {
   const std::string common = "mbpoll -m rtu -a " + std::to_string(module.address) + " -b " +
                              std::to_string(module.baud) + " -P none ";
   std::string text;
@@ -43,12 +43,12 @@ std::string mbpoll(const ModuleIntroduced& module, const std::string& link) {
 }
 
 /// Returns a command for a terminal program.
-std::string terminal(const ModuleIntroduced& module, const std::string& link) {
+std::string terminal(const ModuleSummary& module, const std::string& link) {
   return "    picocom -q -b " + std::to_string(module.baud) + " --imap crcrlf --echo " + link +
          "    # then type $" + hex_byte_text(module.address) + "M and Enter\n";
 }
 
-std::string ports(const LineIntroduced& line) {
+std::string ports(const LineSummary& line) {
   std::string text;
   if (!line.pty.empty()) {
     text += "  pseudo-terminal " + quoted(line.pty) + " (" + line.pty_device + ")\n";
@@ -62,9 +62,9 @@ std::string ports(const LineIntroduced& line) {
   return text;
 }
 
-std::string shared_addresses(const std::vector<ModuleIntroduced>& modules) {
+std::string shared_addresses(const std::vector<ModuleSummary>& modules) {
   std::map<unsigned, unsigned> users;
-  for (const ModuleIntroduced& module : modules) {
+  for (const ModuleSummary& module : modules) {
     ++users[module.address];
   }
   std::string text;
@@ -77,10 +77,10 @@ std::string shared_addresses(const std::vector<ModuleIntroduced>& modules) {
   return text;
 }
 
-std::string introduction(const LineIntroduced& line) {
+std::string introduction(const LineSummary& line) {
   std::string text = (line.name.empty() ? "line" : line.name) + " at " + std::to_string(line.baud) + " baud" +
                      (line.instant ? ", bytes cost no time" : "") + ":\n" + ports(line);
-  for (const ModuleIntroduced& module : line.modules) {
+  for (const ModuleSummary& module : line.modules) {
     text += "  " + module.designation + " at " + hex_byte_text(module.address) + ", " +
             (module.speaks_ascii ? "ASCII" : "Modbus RTU") + ", " + std::to_string(module.baud) + " baud" +
             (module.remark.empty() ? "" : "; " + module.remark) + "\n";
@@ -94,11 +94,11 @@ std::string introduction(const LineIntroduced& line) {
 
 }  // namespace
 
-std::string greeting(const Introduced& all) {
+std::string greeting(const BannerContent& all) {
   std::string text = all.panel.empty() ? "" : "panel: " + all.panel + "\n";
   text += "ex9000-sim " + std::string(kFirmwareVersion);
   text += all.lines.size() == 1 ? ", " : ":\n";
-  for (const LineIntroduced& line : all.lines) {
+  for (const LineSummary& line : all.lines) {
     text += introduction(line);
   }
   if (!all.control.empty()) {

@@ -8,7 +8,7 @@
 namespace ex9000::sim {
 
 /// A module after it has started up.
-struct ModuleIntroduced {
+struct ModuleSummary {
   std::string designation;
   unsigned inputs = 0;
   unsigned outputs = 0;
@@ -18,25 +18,25 @@ struct ModuleIntroduced {
   std::string remark;  ///< about its settings; empty: none
 };
 
-struct LineIntroduced {
+struct LineSummary {
   std::string name;  ///< empty if there is only one line
   std::uint32_t baud = 0;
   bool instant = false;
-  std::vector<ModuleIntroduced> modules;
+  std::vector<ModuleSummary> modules;
   std::string pty;         ///< link of the pseudo-terminal; empty: none
   std::string pty_device;  ///< the device to which the link points
   std::string tcp;         ///< HOST:PORT; empty: none
   std::string serial;      ///< the serial port; empty: none
 };
 
-struct Introduced {
-  std::vector<LineIntroduced> lines;
+struct BannerContent {
+  std::vector<LineSummary> lines;
   std::string panel;    ///< URL for a browser; empty: none
   std::string control;  ///< path of the control socket; empty: none
 };
 
 /// Returns several lines of text: the lines, their ports, their modules, and commands to paste that poll each
 /// module.
-std::string greeting(const Introduced& all);
+std::string greeting(const BannerContent& all);
 
 }  // namespace ex9000::sim

@@ -13,8 +13,8 @@ constexpr std::size_t kMaster = 0;
 
 /// The longest pauses inside a frame. A master's writes may arrive in pieces, and a person pauses between two
 /// keys.
-constexpr VirtualTime kPatienceForRest = std::chrono::milliseconds(5);
-constexpr VirtualTime kPatienceForTyping = std::chrono::seconds(5);
+constexpr VirtualTime kLongestPauseInWrite = std::chrono::milliseconds(5);
+constexpr VirtualTime kLongestPauseInTyping = std::chrono::seconds(5);
 
 constexpr Levels kStartBit = 1U;
 constexpr Levels kStopBit = 1U << 9U;
@@ -84,8 +84,8 @@ void FrameWatch::byte(std::size_t station, std::uint8_t byte, std::uint32_t baud
     hand_out(station);
   } else {
     constexpr VirtualTime kFourCharacters{40'000'000'000};  // the time of 40 bits at 1 baud, in ns
-    sending.patience_ends =
-        end + (dcon ? kPatienceForTyping : std::max(kPatienceForRest, kFourCharacters / baud));
+    sending.frame_deadline =
+        end + (dcon ? kLongestPauseInTyping : std::max(kLongestPauseInWrite, kFourCharacters / baud));
   }
 }
 
@@ -104,14 +104,14 @@ void FrameWatch::driver(std::size_t station, bool on, VirtualTime /*now*/) {
 VirtualTime FrameWatch::next() const {
   VirtualTime next = kNever;
   for (const Sender& each : senders_) {
-    next = std::min(next, each.patience_ends);
+    next = std::min(next, each.frame_deadline);
   }
   return next;
 }
 
 void FrameWatch::run(VirtualTime now) {
   for (std::size_t station = 0; station < senders_.size(); ++station) {
-    if (senders_[station].patience_ends <= now) {
+    if (senders_[station].frame_deadline <= now) {
       hand_out(station);
     }
   }
@@ -128,7 +128,7 @@ void FrameWatch::hand_out(std::size_t station) {
   if (std::exchange(sending.sent, 0) == 0) {
     return;
   }
-  sending.patience_ends = kNever;
+  sending.frame_deadline = kNever;
   Frame next;
   next.station = station;
   const Frame frame = std::exchange(sending.frame, next);

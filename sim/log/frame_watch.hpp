@@ -56,7 +56,7 @@ class FrameWatch final : public BusObserver {
   explicit FrameWatch(Rate line_rate) : line_rate_(std::move(line_rate)) {}
 
   /// Registers a receiver: `take` gets each later frame when it has ended.
-  void tell(Take take) { takers_.push_back(std::move(take)); }
+  void add_receiver(Take take) { takers_.push_back(std::move(take)); }
 
   /// Returns the time at which the first unfinished frame is due, because its end was not detected; kNever if
   /// there is none.
@@ -77,7 +77,7 @@ class FrameWatch final : public BusObserver {
     Frame frame;  ///< the bytes since the last frame was passed on
     std::size_t sent = 0;
     std::optional<Levels> change;  ///< change of the byte in progress
-    VirtualTime patience_ends = kNever;
+    VirtualTime frame_deadline = kNever;
   };
 
   Sender& sender(std::size_t station);

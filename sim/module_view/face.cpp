@@ -44,8 +44,8 @@ Plate plate_of(const SimulatedModule& module) {
   return plate;
 }
 
-Gathered gathered_of(const SimulatedModule& module) {
-  Gathered gathered;
+InputRecords gathered_of(const SimulatedModule& module) {
+  InputRecords gathered;
   if (module.powered() && module.module().listening()) {
     const Inputs& inputs = module.module().state().inputs;
     gathered.latched_high = inputs.latched_high();
@@ -57,8 +57,8 @@ Gathered gathered_of(const SimulatedModule& module) {
   return gathered;
 }
 
-Guard guard_of(const SimulatedModule& module, VirtualTime now) {
-  Guard guard;
+HostWatchdogState guard_of(const SimulatedModule& module, VirtualTime now) {
+  HostWatchdogState guard;
   if (!module.powered() || !module.module().listening()) {
     return guard;
   }
@@ -120,12 +120,12 @@ bool operator==(const Plate& a, const Plate& b) {
   return all(a) == all(b);
 }
 
-bool operator==(const Gathered& a, const Gathered& b) {
+bool operator==(const InputRecords& a, const InputRecords& b) {
   return a.latched_high == b.latched_high && a.latched_low == b.latched_low && a.counters == b.counters;
 }
 
-bool operator==(const Guard& a, const Guard& b) {
-  const auto all = [](const Guard& g) {
+bool operator==(const HostWatchdogState& a, const HostWatchdogState& b) {
+  const auto all = [](const HostWatchdogState& g) {
     return std::tie(g.enabled, g.timed_out, g.timeout, g.expires, g.reset_status);
   };
   return all(a) == all(b);

@@ -43,23 +43,23 @@ struct Plate {
 };
 
 /// Latches and counters since reset or clearing; valid only while the module listens.
-struct Gathered {
+struct InputRecords {
   std::uint16_t latched_high = 0;
   std::uint16_t latched_low = 0;
   std::array<std::uint32_t, kMaxInputs> counters{};
 
-  friend bool operator==(const Gathered& a, const Gathered& b);
+  friend bool operator==(const InputRecords& a, const InputRecords& b);
 };
 
 /// The state of the host watchdog.
-struct Guard {
+struct HostWatchdogState {
   bool enabled = false;
   bool timed_out = false;              ///< the timeout status
   std::uint8_t timeout = 0;            ///< in 0.1 s
   std::optional<VirtualTime> expires;  ///< line time of the expiry if no host OK comes; nullopt: not running
   bool reset_status = false;           ///< the reset status that `$AA5` would report
 
-  friend bool operator==(const Guard& a, const Guard& b);
+  friend bool operator==(const HostWatchdogState& a, const HostWatchdogState& b);
 };
 
 /// The content of the memory, whether the module is powered or not.
@@ -82,8 +82,8 @@ struct Stored {
 /// The complete state. The model is not included because it does not change.
 struct Face {
   Plate plate;
-  Gathered gathered;
-  Guard guard;
+  InputRecords gathered;
+  HostWatchdogState guard;
   Stored stored;
 };
 

@@ -84,7 +84,7 @@ Message message_of(const Plate& plate) {
   return message;
 }
 
-Message message_of(const Gathered& gathered, unsigned inputs) {
+Message message_of(const InputRecords& gathered, unsigned inputs) {
   Message message;
   message["high"] = gathered.latched_high;
   message["low"] = gathered.latched_low;
@@ -95,7 +95,7 @@ Message message_of(const Gathered& gathered, unsigned inputs) {
   return message;
 }
 
-Message message_of(const Guard& guard) {
+Message message_of(const HostWatchdogState& guard) {
   Message message;
   message["enabled"] = guard.enabled;
   message["timedOut"] = guard.timed_out;
@@ -135,7 +135,7 @@ Message message_of(const std::vector<Faults::Info>& faults, std::size_t first) {
   return message;
 }
 
-Message message_of(const Heard::Entry& entry, std::uint64_t number, std::size_t modules) {
+Message message_of(const RecentTraffic::Entry& entry, std::uint64_t number, std::size_t modules) {
   const Frame& frame = entry.frame;
   Message message;
   message["number"] = number;
@@ -162,7 +162,7 @@ Message message_of(const Heard::Entry& entry, std::uint64_t number, std::size_t 
   return message;
 }
 
-std::optional<Asked> asked_in(const std::string& text) {
+std::optional<PageRequest> parse_page_request(const std::string& text) {
   constexpr std::size_t kLongest = 1000;
   const Message message = Message::parse(text, nullptr, false);
   if (!message.is_object()) {
@@ -176,14 +176,14 @@ std::optional<Asked> asked_in(const std::string& text) {
       command == message.end() || !command->is_string() || (undone && !undo->is_string())) {
     return std::nullopt;
   }
-  Asked asked{id->get<std::uint64_t>(), command->get<std::string>(), std::nullopt};
+  PageRequest request{id->get<std::uint64_t>(), command->get<std::string>(), std::nullopt};
   if (undone) {
-    asked.undo = undo->get<std::string>();
+    request.undo = undo->get<std::string>();
   }
-  if (asked.command.size() > kLongest || (asked.undo && asked.undo->size() > kLongest)) {
+  if (request.command.size() > kLongest || (request.undo && request.undo->size() > kLongest)) {
     return std::nullopt;
   }
-  return asked;
+  return request;
 }
 
 std::string text_of(const Message& message) {

@@ -10,7 +10,7 @@
 #include "sim/faults/faults.hpp"
 #include "sim/log/frame_watch.hpp"
 #include "sim/module_view/face.hpp"
-#include "sim/panel/heard.hpp"
+#include "sim/panel/recent_traffic.hpp"
 
 namespace ex9000::sim {
 
@@ -22,25 +22,25 @@ Message plate_layout(const Model& model);
 // The parts of a face are separate messages because they change independently.
 Message message_of(const Plate& plate);
 /// Contains the first `inputs` counters.
-Message message_of(const Gathered& gathered, unsigned inputs);
-Message message_of(const Guard& guard);
+Message message_of(const InputRecords& gathered, unsigned inputs);
+Message message_of(const HostWatchdogState& guard);
 Message message_of(const Stored& stored);
 
 /// `first` is the position of the line's first module, from 0.
 Message message_of(const std::vector<Faults::Info>& faults, std::size_t first);
 
 /// `modules` is the number of modules on the line. A station with a higher number was added by a fault.
-Message message_of(const Heard::Entry& entry, std::uint64_t number, std::size_t modules);
+Message message_of(const RecentTraffic::Entry& entry, std::uint64_t number, std::size_t modules);
 
 /// A request of the page.
-struct Asked {
+struct PageRequest {
   std::uint64_t id = 0;             ///< chosen by the page, for the reply
   std::string command;              ///< a command of the control socket
   std::optional<std::string> undo;  ///< carried out if the page disconnects without requesting it
 };
 
 /// Returns nullopt if `text` is not a request.
-std::optional<Asked> asked_in(const std::string& text);
+std::optional<PageRequest> parse_page_request(const std::string& text);
 
 /// Returns the text to send over the socket; invalid UTF-8 is replaced.
 std::string text_of(const Message& message);

@@ -10,9 +10,9 @@
 
 #include "firmware/model/model.hpp"
 #include "sim/module_view/face.hpp"
-#include "sim/panel/changing.hpp"
-#include "sim/panel/heard.hpp"
+#include "sim/panel/change_tracked.hpp"
 #include "sim/panel/messages.hpp"
+#include "sim/panel/recent_traffic.hpp"
 #include "sim/text/words.hpp"
 
 namespace ex9000::sim {
@@ -53,21 +53,21 @@ bool operator==(const Faults::Info& a, const Faults::Info& b) {
 
 struct Panel::Module {
   const SimulatedModule* module = nullptr;
-  Changing<Plate> plate;
-  Changing<Gathered> gathered;
-  Changing<Guard> guard;
-  Changing<Stored> stored;
+  ChangeTracked<Plate> plate;
+  ChangeTracked<InputRecords> gathered;
+  ChangeTracked<HostWatchdogState> guard;
+  ChangeTracked<Stored> stored;
 };
 
 struct Panel::Watched {
-  LineIntroduced introduced;
+  LineSummary summary;
   const Line* line = nullptr;
   std::function<VirtualTime()> present;
   std::size_t first_module = 0;  ///< position across all lines
   std::vector<Module> modules;
-  Heard heard;
-  Changing<std::uint32_t> baud;
-  Changing<std::vector<Faults::Info>> faults;
+  RecentTraffic recent;
+  ChangeTracked<std::uint32_t> baud;
+  ChangeTracked<std::vector<Faults::Info>> faults;
 };
 
 struct Panel::State {
@@ -81,7 +81,7 @@ class Panel::Viewer final : public PanelViewer {
  public:
   explicit Viewer(Panel& panel) : panel_(panel) {
     for (const Watched& watched : state().lines) {
-      told_frames_.push_back(watched.heard.first_of(0, most_frames()));
+      next_entries_.push_back(watched.recent.first_of(0, most_frames()));
     }
   }
 
@@ -93,18 +93,18 @@ class Panel::Viewer final : public PanelViewer {
   }
 
   bool ask(const std::string& text) override {
-    const std::optional<Asked> asked = asked_in(text);
-    if (!asked || (asked->undo && held_.size() >= kMostHeld)) {
+    const std::optional<PageRequest> request = parse_page_request(text);
+    if (!request || (request->undo && held_.size() >= kMostHeld)) {
       return false;
     }
-    const std::string answer = carry_out(asked->command);
+    const std::string answer = carry_out(request->command);
     const bool ok = answer.rfind("ok", 0) == 0;
-    held_.erase(asked->command);
-    if (ok && asked->undo) {
-      held_.insert(*asked->undo);
+    held_.erase(request->command);
+    if (ok && request->undo) {
+      held_.insert(*request->undo);
     }
     reply_ = Message();
-    (*reply_)["id"] = asked->id;
+    (*reply_)["id"] = request->id;
     (*reply_)["ok"] = ok;
     (*reply_)["text"] = answer;
     return true;
@@ -112,7 +112,7 @@ class Panel::Viewer final : public PanelViewer {
 
   std::string next() override {
     Message message;
-    if (told_look_ == 0) {
+    if (sent_look_ == 0) {
       message["hello"] = hello();
     }
     if (reply_) {
@@ -133,12 +133,12 @@ class Panel::Viewer final : public PanelViewer {
       }
       lines.push_back(news_of(watched));
       news = news || lines.back().size() > 1;
-      if (told_frames_[i] < watched.heard.end()) {
+      if (next_entries_[i] < watched.recent.end()) {
         frames.push_back(frames_of(i));
       }
     }
     const auto now = panel_.wall_clock_();
-    news = news || !modules.empty() || !frames.empty() || now - told_at_ >= kHeartbeat;
+    news = news || !modules.empty() || !frames.empty() || now - last_sent_at_ >= kHeartbeat;
     if (news) {
       message["state"]["lines"] = std::move(lines);
       message["state"]["modules"] = std::move(modules);
@@ -146,11 +146,11 @@ class Panel::Viewer final : public PanelViewer {
     if (!frames.empty()) {
       message["frames"] = std::move(frames);
     }
-    told_look_ = state().looks;
+    sent_look_ = state().looks;
     if (message.is_null()) {
       return "";
     }
-    told_at_ = now;
+    last_sent_at_ = now;
     return text_of(message);
   }
 
@@ -176,11 +176,10 @@ class Panel::Viewer final : public PanelViewer {
     hello["modules"] = Message::array();
     for (const Watched& watched : state().lines) {
       Message line;
-      line["name"] = watched.introduced.name;
-      line["instant"] = watched.introduced.instant;
+      line["name"] = watched.summary.name;
+      line["instant"] = watched.summary.instant;
       line["ports"] = Message::array();
-      for (const std::string& port :
-           {watched.introduced.pty, watched.introduced.tcp, watched.introduced.serial}) {
+      for (const std::string& port : {watched.summary.pty, watched.summary.tcp, watched.summary.serial}) {
         if (!port.empty()) {
           line["ports"].push_back(port);
         }
@@ -197,16 +196,16 @@ class Panel::Viewer final : public PanelViewer {
 
   [[nodiscard]] Message news_of(const Module& module) const {
     Message message;
-    if (module.plate.is_news_since(told_look_)) {
+    if (module.plate.has_changed_since(sent_look_)) {
       message["plate"] = message_of(module.plate.value());
     }
-    if (module.gathered.is_news_since(told_look_)) {
+    if (module.gathered.has_changed_since(sent_look_)) {
       message["gathered"] = message_of(module.gathered.value(), module.module->model().inputs);
     }
-    if (module.guard.is_news_since(told_look_)) {
+    if (module.guard.has_changed_since(sent_look_)) {
       message["guard"] = message_of(module.guard.value());
     }
-    if (module.stored.is_news_since(told_look_)) {
+    if (module.stored.has_changed_since(sent_look_)) {
       message["stored"] = message_of(module.stored.value());
     }
     return message;
@@ -215,10 +214,10 @@ class Panel::Viewer final : public PanelViewer {
   [[nodiscard]] Message news_of(const Watched& watched) const {
     Message message;
     message["now"] = std::chrono::duration_cast<std::chrono::microseconds>(watched.present()).count();
-    if (watched.baud.is_news_since(told_look_)) {
+    if (watched.baud.has_changed_since(sent_look_)) {
       message["baud"] = watched.baud.value();
     }
-    if (watched.faults.is_news_since(told_look_)) {
+    if (watched.faults.has_changed_since(sent_look_)) {
       message["faults"] = message_of(watched.faults.value(), watched.first_module);
     }
     return message;
@@ -226,23 +225,23 @@ class Panel::Viewer final : public PanelViewer {
 
   Message frames_of(std::size_t line) {
     const Watched& watched = state().lines[line];
-    const std::uint64_t first = watched.heard.first_of(told_frames_[line], most_frames());
+    const std::uint64_t first = watched.recent.first_of(next_entries_[line], most_frames());
     Message message;
     message["line"] = line;
     message["entries"] = Message::array();
-    for (std::uint64_t number = first; number < watched.heard.end(); ++number) {
-      message["entries"].push_back(message_of(watched.heard.entry(number), number, watched.modules.size()));
+    for (std::uint64_t number = first; number < watched.recent.end(); ++number) {
+      message["entries"].push_back(message_of(watched.recent.entry(number), number, watched.modules.size()));
     }
-    told_frames_[line] = watched.heard.end();
+    next_entries_[line] = watched.recent.end();
     return message;
   }
 
   Panel& panel_;
-  std::uint64_t told_look_ = 0;
-  std::vector<std::uint64_t> told_frames_;  ///< number of the next entry, for each line
+  std::uint64_t sent_look_ = 0;
+  std::vector<std::uint64_t> next_entries_;  ///< number of the next entry, for each line
   std::optional<Message> reply_;
   std::set<std::string> held_;  ///< commands that undo the actions that the page holds active
-  std::chrono::steady_clock::time_point told_at_;
+  std::chrono::steady_clock::time_point last_sent_at_;
 };
 
 Panel::Panel(CarryOut carry_out, double speed, WallClock wall_clock)
@@ -254,10 +253,9 @@ Panel::Panel(CarryOut carry_out, double speed, WallClock wall_clock)
 
 Panel::~Panel() = default;
 
-void Panel::add_line(const LineIntroduced& introduced, const Line& line,
-                     std::function<VirtualTime()> present) {
+void Panel::add_line(const LineSummary& summary, const Line& line, std::function<VirtualTime()> present) {
   Watched watched;
-  watched.introduced = introduced;
+  watched.summary = summary;
   watched.line = &line;
   watched.present = std::move(present);
   for (const Watched& before : state_->lines) {
@@ -270,12 +268,12 @@ void Panel::add_line(const LineIntroduced& introduced, const Line& line,
   state_->lines.push_back(std::move(watched));
 }
 
-void Panel::hear(std::size_t line, const Frame& frame) { state_->lines[line].heard.add({frame, {}}); }
+void Panel::hear(std::size_t line, const Frame& frame) { state_->lines[line].recent.add({frame, {}}); }
 
 void Panel::note(std::size_t line, VirtualTime now, const std::string& text) {
   Frame frame;
   frame.began = frame.ended = now;
-  state_->lines[line].heard.add({frame, text});
+  state_->lines[line].recent.add({frame, text});
 }
 
 void Panel::look() {

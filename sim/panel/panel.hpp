@@ -33,7 +33,7 @@ class Panel final : public PanelSource {
 
   /// Adds a line. Call it before the first viewer connects. `line` must outlive this object; `present`
   /// returns the line's time.
-  void add_line(const LineIntroduced& introduced, const Line& line, std::function<VirtualTime()> present);
+  void add_line(const LineSummary& summary, const Line& line, std::function<VirtualTime()> present);
   /// Adds a frame of a line. `line` is its position, from 0.
   void hear(std::size_t line, const Frame& frame);
   void note(std::size_t line, VirtualTime now, const std::string& text);

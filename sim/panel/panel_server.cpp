@@ -34,9 +34,9 @@ constexpr std::size_t kMostPages = 16;
 /// together.
 constexpr std::size_t kMostRequests = 64;
 constexpr std::uint32_t kLongestHeader = 8192;
-constexpr std::size_t kLongestAsked = 4096;
+constexpr std::size_t kLongestPageRequest = 4096;
 /// The timeout for a request to arrive and for its response to be sent.
-constexpr std::chrono::seconds kPatience{5};
+constexpr std::chrono::seconds kRequestTimeout{5};
 /// A page that does not answer pings for this time is disconnected.
 constexpr std::chrono::seconds kIdle{20};
 /// The interval between two looks. A change must be on the screen within 100 ms. The interval is half of that
@@ -47,7 +47,7 @@ tcp::endpoint here(std::uint16_t port) { return {boost::asio::ip::address_v4::lo
 
 /// The complete response for connections beyond the limit. It is constant, so that it requires no memory for
 /// each connection.
-constexpr std::string_view kTurnedAway =
+constexpr std::string_view kTooManyRequestsResponse =
     "HTTP/1.1 503 Service Unavailable\r\nContent-Type: text/plain\r\nContent-Length: 36\r\n"
     "Connection: close\r\n\r\ntoo many requests are under way yet\n";
 
@@ -108,7 +108,7 @@ class PanelServer::Listener::Client : public std::enable_shared_from_this<Client
   void read_request() {
     parser_.header_limit(kLongestHeader);
     parser_.body_limit(0);
-    stream().expires_after(kPatience);
+    stream().expires_after(kRequestTimeout);
     http::async_read(stream(), buffer_, parser_,
                      [self = shared_from_this()](const error_code& error, std::size_t /*size*/) {
                        self->have_request(error);
@@ -124,19 +124,19 @@ class PanelServer::Listener::Client : public std::enable_shared_from_this<Client
     if (!viewer_ || writing_) {
       return;
     }
-    told_ = viewer_->next();
-    if (told_.empty()) {
+    outgoing_ = viewer_->next();
+    if (outgoing_.empty()) {
       return;
     }
     writing_ = true;
     socket_.text(true);
-    socket_.async_write(boost::asio::buffer(told_),
+    socket_.async_write(boost::asio::buffer(outgoing_),
                         [self = shared_from_this()](const error_code& error, std::size_t /*size*/) {
                           self->writing_ = false;
                           if (error) {
                             self->part();
                           } else if (self->answering_) {
-                            self->answer_asked();
+                            self->answer_page_request();
                           }
                         });
   }
@@ -216,7 +216,7 @@ class PanelServer::Listener::Client : public std::enable_shared_from_this<Client
     }
     response_.body() = text;
     response_.prepare_payload();
-    stream().expires_after(kPatience);
+    stream().expires_after(kRequestTimeout);
     http::async_write(
         stream(), response_,
         [self = shared_from_this()](const error_code& /*error*/, std::size_t /*size*/) { self->leave(); });
@@ -236,7 +236,7 @@ class PanelServer::Listener::Client : public std::enable_shared_from_this<Client
       return;
     }
     buffer_.clear();
-    stream().async_read_some(buffer_.prepare(kLongestAsked),
+    stream().async_read_some(buffer_.prepare(kLongestPageRequest),
                              [self = shared_from_this()](const error_code& error, std::size_t size) {
                                self->drained_ += size;
                                if (!error) {
@@ -249,35 +249,35 @@ class PanelServer::Listener::Client : public std::enable_shared_from_this<Client
     takes_a_page_ = listener_->pages() < kMostPages;
     stream().expires_never();
     websocket::stream_base::timeout timeout{};
-    timeout.handshake_timeout = kPatience;
+    timeout.handshake_timeout = kRequestTimeout;
     timeout.idle_timeout = kIdle;
     timeout.keep_alive_pings = true;
     socket_.set_option(timeout);
-    socket_.read_message_max(kLongestAsked);
+    socket_.read_message_max(kLongestPageRequest);
     socket_.auto_fragment(false);
     socket_.async_accept(request, [self = shared_from_this()](const error_code& error) {
       if (error || self->listener_->stopped_) {
         return;
       }
       if (!self->takes_a_page_) {
-        self->turn_away();
+        self->reject_page();
       } else {
         self->buffer_.clear();
         self->viewer_ = self->listener_->source_.viewer();
         self->listener_->watch();
-        self->read_asked();
+        self->read_page_request();
       }
     });
   }
 
   /// Closes the WebSocket after it was accepted: a browser gives the page a reason for a closed WebSocket,
   /// but not for a rejected one.
-  void turn_away() {
+  void reject_page() {
     socket_.async_close({websocket::close_code::try_again_later, "too many pages are open already"},
                         [self = shared_from_this()](const error_code& /*error*/) {});
   }
 
-  void read_asked() {
+  void read_page_request() {
     socket_.async_read(buffer_, [self = shared_from_this()](const error_code& error, std::size_t /*size*/) {
       if (error || !self->viewer_) {
         self->viewer_.reset();
@@ -285,14 +285,14 @@ class PanelServer::Listener::Client : public std::enable_shared_from_this<Client
       }
       self->answering_ = true;
       if (!self->writing_) {
-        self->answer_asked();
+        self->answer_page_request();
       }
     });
   }
 
   /// The next request is read only after the reply to this one has been queued, so a client cannot send
   /// requests faster than they are answered.
-  void answer_asked() {
+  void answer_page_request() {
     answering_ = false;
     const std::string asked = beast::buffers_to_string(buffer_.data());
     buffer_.clear();
@@ -303,18 +303,18 @@ class PanelServer::Listener::Client : public std::enable_shared_from_this<Client
       return;
     }
     listener_->look();
-    read_asked();
+    read_page_request();
   }
 
   std::shared_ptr<Listener> listener_;
   websocket::stream<beast::tcp_stream> socket_;
-  beast::flat_buffer buffer_{kLongestHeader + kLongestAsked};
+  beast::flat_buffer buffer_{kLongestHeader + kLongestPageRequest};
   http::request_parser<http::empty_body> parser_;
   Response response_;
   std::size_t drained_ = 0;
   bool takes_a_page_ = false;
   std::unique_ptr<PanelViewer> viewer_;
-  std::string told_;
+  std::string outgoing_;
   bool writing_ = false;
   bool answering_ = false;  ///< a request waits until the present message has been sent
 };
@@ -337,7 +337,7 @@ void PanelServer::Listener::accept() {
       client->read_request();
     } else {
       socket.non_blocking(true, ignored);
-      socket.write_some(boost::asio::buffer(kTurnedAway), ignored);
+      socket.write_some(boost::asio::buffer(kTooManyRequestsResponse), ignored);
     }
     self->accept();
   });
@@ -346,8 +346,8 @@ void PanelServer::Listener::accept() {
 /// Accepts again after a delay. If the process has no free file descriptor, an immediate retry would use all
 /// of the processor's time.
 void PanelServer::Listener::accept_later() {
-  constexpr std::chrono::milliseconds kWhile{100};
-  next_try_.expires_after(kWhile);
+  constexpr std::chrono::milliseconds kRetryDelay{100};
+  next_try_.expires_after(kRetryDelay);
   next_try_.async_wait([self = shared_from_this()](const error_code& error) {
     if (!error && !self->stopped_) {
       self->accept();

@@ -44,13 +44,13 @@ void LineRecord::note(const std::string& text) {
 }
 
 void LineRecord::tell(FrameWatch::Take take, BusLog::Note note) {
-  frames_.tell(std::move(take));
+  frames_.add_receiver(std::move(take));
   also_note_ = std::move(note);
   listen();
 }
 
 void LineRecord::print_frames() {
-  frames_.tell([this](const Frame& frame) {
+  frames_.add_receiver([this](const Frame& frame) {
     if (!over_) {
       log_->frame(frame);
     }
@@ -60,7 +60,7 @@ void LineRecord::print_frames() {
 
 void LineRecord::keep_in(Capture& capture, VirtualTime began) {
   const std::size_t line = capture.add_line(name_, line_.size(), began);
-  frames_.tell([this, &capture, line](const Frame& frame) {
+  frames_.add_receiver([this, &capture, line](const Frame& frame) {
     if (!over_) {
       capture.write(line, frame);
     }

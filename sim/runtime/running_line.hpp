@@ -65,7 +65,7 @@ class RunningLine {
   }
   /// Returns the time at which the modules have been up for `up`.
   [[nodiscard]] VirtualTime when_up_for(VirtualTime up) const { return came_up_ + up; }
-  [[nodiscard]] const LineIntroduced& introduced() const { return introduced_; }
+  [[nodiscard]] const LineSummary& introduced() const { return introduced_; }
 
  private:
   void use_memories();
@@ -79,7 +79,7 @@ class RunningLine {
   std::vector<std::unique_ptr<EepromFile>> memories_;  ///< one for each module; null: none
   std::unique_ptr<Line> line_;
   VirtualTime came_up_{0};  ///< when the modules had started up, in the line's time
-  LineIntroduced introduced_;
+  LineSummary introduced_;
   LinePorts::All ports_;
   std::unique_ptr<LineRecord> record_;
   std::unique_ptr<Pacer> pacer_;          ///< null unless the line follows the clock

@@ -159,7 +159,7 @@ void Session::keep_a_capture() {
 }
 
 void Session::make_files_and_greet() {
-  Introduced introduced;
+  BannerContent introduced;
   introduced.panel = panel_server_ ? panel_server_->address() : "";
   introduced.control = setup_.control.value_or("");
   for (const auto& running : lines_) {

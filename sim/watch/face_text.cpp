@@ -48,7 +48,7 @@ std::string in_force_text(const Plate& plate) {
          (ascii && plate.checksum ? " checksum" : "");
 }
 
-std::string guard_text(const Guard& guard) {
+std::string guard_text(const HostWatchdogState& guard) {
   if (guard.timed_out) {
     return "timed out";
   }
@@ -60,7 +60,7 @@ std::string values_text(const Face& face) {
   return "power-on " + hex_word_text(stored.power_on_value) + ", safe " + hex_word_text(stored.safe_value);
 }
 
-std::string counters_text(const Model& model, const Gathered& gathered) {
+std::string counters_text(const Model& model, const InputRecords& gathered) {
   std::string text = "counters";
   for (unsigned channel = 0; channel < model.inputs; ++channel) {
     text += " " + std::to_string(gathered.counters[channel]);
@@ -74,7 +74,7 @@ std::string inputs_text(const Model& model, std::uint16_t inputs) {
   return model.inputs > kInputsOfAByte ? hex_word_text(inputs) : hex_byte_text(inputs);
 }
 
-std::string latches_text(const Model& model, const Gathered& gathered) {
+std::string latches_text(const Model& model, const InputRecords& gathered) {
   return "latched high " + inputs_text(model, gathered.latched_high) + ", low " +
          inputs_text(model, gathered.latched_low);
 }
@@ -107,7 +107,7 @@ void add_channels(std::vector<std::string>& lines, const std::string& first_term
   lines.push_back(leds);
 }
 
-std::string guard_line(const Guard& guard, VirtualTime now) {
+std::string guard_line(const HostWatchdogState& guard, VirtualTime now) {
   std::string text = "host watchdog " + guard_text(guard);
   if (guard.expires) {
     text += ", " + tenths(*guard.expires > now ? *guard.expires - now : VirtualTime(0)) + " left";

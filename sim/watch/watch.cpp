@@ -42,7 +42,7 @@ void Watch::add_line(std::string name, const Line& line, std::function<VirtualTi
 
 void Watch::look() {
   if (terminal_ == nullptr) {
-    tell_changes();
+    print_changes();
     return;
   }
   if (!terminal_->keeps_up()) {
@@ -116,7 +116,7 @@ std::vector<std::vector<std::string>> Watch::all_faces() const {
   return faces;
 }
 
-void Watch::tell_changes() {
+void Watch::print_changes() {
   std::size_t number = 0;
   for (Watched& watched : lines_) {
     const VirtualTime now = watched.present();

@@ -41,7 +41,7 @@ class Watch {
 
   [[nodiscard]] std::vector<std::string> painting() const;
   [[nodiscard]] std::vector<std::vector<std::string>> all_faces() const;
-  void tell_changes();
+  void print_changes();
   void put(const std::string& lines);
 
   Terminal* terminal_;

@@ -37,7 +37,7 @@ export class Timeline {
     this.list = new FrameList(this.rows, this.filler);
     this.strip = new Strip(this.lanes, this.canvas, this.span, (entry) => this.matches(entry));
     this.pause.addEventListener("click", () => this.setPaused(!this.paused));
-    this.search.addEventListener("input", () => this.filterAnew());
+    this.search.addEventListener("input", () => this.applySearch());
     this.begin([], null, null);
   }
 
@@ -84,7 +84,7 @@ export class Timeline {
       this.next.set(line, entries[entries.length - 1].number + 1);
     }
     if (this.paused) {
-      this.keepBack(fresh);
+      this.addWhilePaused(fresh);
     } else {
       this.take(fresh);
     }
@@ -92,7 +92,7 @@ export class Timeline {
 
   /// Adds entries during a pause. If there are too many, replaces the oldest ones by one entry for each line with
   /// their number.
-  keepBack(fresh) {
+  addWhilePaused(fresh) {
     this.pending.push(...fresh);
     if (this.pending.length > waitingTrimmedFrom) {
       const gone = this.pending.splice(0, this.pending.length - mostWaiting);
@@ -142,7 +142,7 @@ export class Timeline {
     this.stale = true;
   }
 
-  filterAnew() {
+  applySearch() {
     this.sought = this.search.value.trim().toLowerCase();
     this.shown = this.entries.filter((entry) => this.matches(entry));
     this.list.follows = true;

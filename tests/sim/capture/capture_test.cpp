@@ -513,7 +513,7 @@ Packet of_a_spoiled(const Bytes& request, OneHit hit) {
   line.bus().disturb(hit);
   capture.begin();
   const std::size_t number = capture.add_line("line", 1, std::chrono::seconds(0));
-  frames.tell([&](const sim::Frame& frame) { capture.write(number, frame); });
+  frames.add_receiver([&](const sim::Frame& frame) { capture.write(number, frame); });
   line.master().send(request.data(), request.size());
   line.bus().run_for(std::chrono::milliseconds(100));
   frames.finish();

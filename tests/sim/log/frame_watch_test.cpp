@@ -24,7 +24,7 @@ FrameBytes dcon(std::string_view text) { return {text.begin(), text.end()}; }
 class FrameWatchTest : public testing::Test {
  protected:
   FrameWatchTest() {
-    watch.tell([this](const Frame& frame) { frames.push_back(frame); });
+    watch.add_receiver([this](const Frame& frame) { frames.push_back(frame); });
   }
 
   void send(std::size_t station, const FrameBytes& bytes, bool collided = false) {
@@ -222,7 +222,7 @@ TEST_F(FrameWatchTest, AStationThatComesLaterIsWatchedToo) {
 
 TEST_F(FrameWatchTest, EverybodyIsTold) {
   int others = 0;
-  watch.tell([&others](const Frame& /*frame*/) { ++others; });
+  watch.add_receiver([&others](const Frame& /*frame*/) { ++others; });
   send(kMaster, dcon("$01M\r"));
   EXPECT_EQ(frames.size(), 1U);
   EXPECT_EQ(others, 1);

@@ -57,8 +57,8 @@ TEST(Face, WithoutPowerThereIsNothingButTheSwitchesAndTheMemory) {
   EXPECT_EQ(face.plate.led, Led::Off);
   EXPECT_EQ(face.plate.outputs, 0);
   EXPECT_EQ(face.plate.inputs, 0x01);  // the level at the terminal does not depend on the supply
-  EXPECT_EQ(face.gathered, Gathered());
-  EXPECT_EQ(face.guard, Guard());
+  EXPECT_EQ(face.gathered, InputRecords());
+  EXPECT_EQ(face.guard, HostWatchdogState());
   EXPECT_EQ(face.stored.settings.address, 0x07);
 }
 
@@ -87,7 +87,7 @@ TEST(Face, TellsWhenTheHostWatchdogExpiresAndThatItHas) {
   ASSERT_EQ(bench.ask("@010001"), ">");
   EXPECT_FALSE(face_of(bench).guard.expires);
   ASSERT_EQ(bench.ask("~01310A"), "!01");
-  const Guard runs = face_of(bench).guard;
+  const HostWatchdogState runs = face_of(bench).guard;
   EXPECT_TRUE(runs.enabled);
   EXPECT_EQ(runs.timeout, 10);
   ASSERT_TRUE(runs.expires);

@@ -26,11 +26,11 @@ class PanelBench : public ModuleBench {
         control_({{"hall", line()}}),
         panel_([this](const std::string& command) { return control_.carry_out(command); }, 1,
                [this] { return wall_clock_; }) {
-    LineIntroduced introduced;
+    LineSummary introduced;
     introduced.name = "hall";
     introduced.tcp = "127.0.0.1:5020";
     panel_.add_line(introduced, line(), [this] { return now(); });
-    frames_.tell([this](const Frame& frame) { panel_.hear(0, frame); });
+    frames_.add_receiver([this](const Frame& frame) { panel_.hear(0, frame); });
     line().bus().observe(frames_);
     viewer_ = panel_.viewer();
   }
@@ -129,7 +129,7 @@ class TwoLines {
   TwoLines() {
     for (std::size_t i = 0; i < lines_.size(); ++i) {
       lines_[i]->come_up();
-      LineIntroduced introduced;
+      LineSummary introduced;
       introduced.name = i == 0 ? "hall" : "yard";
       panel_.add_line(introduced, *lines_[i], [this, i] { return lines_[i]->clock().virtual_now(); });
     }
@@ -394,11 +394,11 @@ TEST(PanelMessages, WhatIsNoRequestIsTakenForNone) {
         R"({"id":"1","do":"list"})", R"({"id":1,"do":"list","x":1})", R"({"id":1,"do":"list"} x)",
         R"({"id":1,"do":"list","undo":2})", R"({"id":1,"undo":"list"})", R"({"do":"list","undo":"list"})",
         R"({"id":1,"do":"list","undo":"list","x":1})"}) {
-    EXPECT_FALSE(asked_in(text)) << text;
+    EXPECT_FALSE(parse_page_request(text)) << text;
   }
-  EXPECT_FALSE(asked_in(R"({"id":1,"do":")" + std::string(1001, 'x') + "\"}"));
-  EXPECT_FALSE(asked_in(R"({"id":1,"do":"list","undo":")" + std::string(1001, 'x') + "\"}"));
-  const auto asked = asked_in(R"({"id":1,"do":"list"})");
+  EXPECT_FALSE(parse_page_request(R"({"id":1,"do":")" + std::string(1001, 'x') + "\"}"));
+  EXPECT_FALSE(parse_page_request(R"({"id":1,"do":"list","undo":")" + std::string(1001, 'x') + "\"}"));
+  const auto asked = parse_page_request(R"({"id":1,"do":"list"})");
   ASSERT_TRUE(asked);
   EXPECT_EQ(asked->command, "list");
 }

@@ -10,7 +10,7 @@ namespace ex9000::sim {
 /// A value, and the number of the look at which it last changed. A look captures the present state for all
 /// viewers.
 template <class Value>
-class Changing {
+class ChangeTracked {
  public:
   /// Stores `value`. `look` is the number of the present look.
   void set(Value value, std::uint64_t look) {
@@ -19,8 +19,8 @@ class Changing {
       changed_ = look;
     }
   }
-  /// Returns whether the value has changed after look number `told`.
-  [[nodiscard]] bool is_news_since(std::uint64_t told) const { return changed_ > told; }
+  /// Returns whether the value has changed after look number `look`.
+  [[nodiscard]] bool has_changed_since(std::uint64_t look) const { return changed_ > look; }
   [[nodiscard]] const Value& value() const { return *value_; }
 
  private:

@@ -13,7 +13,7 @@
 namespace ex9000::sim {
 
 /// Stores the last 512 entries.
-class Heard {
+class RecentTraffic {
  public:
   /// A frame, or a note about the line if `note` has a value.
   struct Entry {
