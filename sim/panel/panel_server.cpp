@@ -48,8 +48,8 @@ tcp::endpoint here(std::uint16_t port) { return {boost::asio::ip::address_v4::lo
 /// The complete response for connections beyond the limit. It is constant, so that it requires no memory for
 /// each connection.
 constexpr std::string_view kTooManyRequestsResponse =
-    "HTTP/1.1 503 Service Unavailable\r\nContent-Type: text/plain\r\nContent-Length: 36\r\n"
-    "Connection: close\r\n\r\ntoo many requests are under way yet\n";
+    "HTTP/1.1 503 Service Unavailable\r\nContent-Type: text/plain\r\nContent-Length: 34\r\n"
+    "Connection: close\r\n\r\ntoo many requests are in progress\n";
 
 std::string_view view_of(beast::string_view text) { return {text.data(), text.size()}; }
 
@@ -156,11 +156,12 @@ class PanelServer::Listener::Client : public std::enable_shared_from_this<Client
       return;
     }
     if (error == http::error::header_limit) {
-      answer(http::status::request_header_fields_too_large, "text/plain", "too long a header\n");
+      answer(http::status::request_header_fields_too_large, "text/plain",
+             "the header is too long; expected up to 8192 bytes\n");
     } else if (error == http::error::body_limit) {
       answer(http::status::payload_too_large, "text/plain", "requests with a body are not supported\n");
     } else if (error) {
-      answer(http::status::bad_request, "text/plain", "no HTTP request\n");
+      answer(http::status::bad_request, "text/plain", "the request is not valid HTTP\n");
     } else {
       serve(parser_.get());
     }
@@ -172,10 +173,10 @@ class PanelServer::Listener::Client : public std::enable_shared_from_this<Client
     const bool has_origin = origin != request.end();
     const bool live = request.target() == "/live";
     if (request.count(http::field::host) != 1 || !here.is_host(view_of(request[http::field::host]))) {
-      answer(http::status::forbidden, "text/plain", "the host name is not one of this machine\n");
+      answer(http::status::forbidden, "text/plain", "the host name must be 127.0.0.1 or localhost\n");
     } else if (request.count(http::field::origin) > 1 ||
                (has_origin && !here.is_origin(view_of(origin->value()))) || (live && !has_origin)) {
-      answer(http::status::forbidden, "text/plain", "another site's page\n");
+      answer(http::status::forbidden, "text/plain", "requests from pages of other sites are not allowed\n");
     } else if (!is_fetched_by_us(request)) {
       answer(http::status::forbidden, "text/plain", "requests from other sites are not allowed\n");
     } else if (request.method() != http::verb::get) {
@@ -298,7 +299,7 @@ class PanelServer::Listener::Client : public std::enable_shared_from_this<Client
     buffer_.clear();
     if (!viewer_ || !socket_.got_text() || !viewer_->ask(asked)) {
       viewer_.reset();
-      socket_.async_close({websocket::close_code::policy_error, "no request"},
+      socket_.async_close({websocket::close_code::policy_error, "the message is not a valid request"},
                           [self = shared_from_this()](const error_code& /*error*/) {});
       return;
     }

@@ -57,7 +57,7 @@ export class Live {
     this.socket = null;
     clearTimeout(this.silence);
     for (const answer of this.waiting.values()) {
-      answer({ok: false, text: "error: the simulator has gone"});
+      answer({ok: false, text: "error: the connection to the simulator is lost"});
     }
     this.waiting.clear();
     this.lost(why);
@@ -69,7 +69,7 @@ export class Live {
   /// the page disconnects without having sent it.
   tell(command, undo) {
     if (this.socket?.readyState !== WebSocket.OPEN) {
-      return Promise.resolve({ok: false, text: "error: there is no simulator"});
+      return Promise.resolve({ok: false, text: "error: there is no connection to the simulator"});
     }
     const id = ++this.asked;
     return new Promise((resolve) => {
