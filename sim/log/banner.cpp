@@ -71,7 +71,7 @@ std::string shared_addresses(const std::vector<ModuleSummary>& modules) {
   for (const auto& [address, count] : users) {
     if (count > 1) {
       text += std::to_string(count) + " modules are at address " + hex_byte_text(address) +
-              " and will answer at once; MODEL@ADDR gives them different ones\n";
+              " and will reply at the same time; use MODEL@ADDR to give them different addresses\n";
     }
   }
   return text;
@@ -79,7 +79,7 @@ std::string shared_addresses(const std::vector<ModuleSummary>& modules) {
 
 std::string introduction(const LineSummary& line) {
   std::string text = (line.name.empty() ? "line" : line.name) + " at " + std::to_string(line.baud) + " baud" +
-                     (line.instant ? ", bytes cost no time" : "") + ":\n" + ports(line);
+                     (line.instant ? ", bytes take no time" : "") + ":\n" + ports(line);
   for (const ModuleSummary& module : line.modules) {
     text += "  " + module.designation + " at " + hex_byte_text(module.address) + ", " +
             (module.speaks_ascii ? "ASCII" : "Modbus RTU") + ", " + std::to_string(module.baud) + " baud" +
@@ -104,7 +104,7 @@ std::string greeting(const BannerContent& all) {
   if (!all.control.empty()) {
     text += "  control socket " + quoted(all.control) + "\n";
   }
-  return text + "Ctrl-C ends it";
+  return text + "press Ctrl-C to end";
 }
 
 }  // namespace ex9000::sim

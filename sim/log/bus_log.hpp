@@ -17,7 +17,7 @@ class StationNames {
   explicit StationNames(std::vector<std::string> names) : names_(std::move(names)) {}
   [[nodiscard]] bool know(std::size_t station) const { return station < names_.size(); }
   [[nodiscard]] std::string of(std::size_t station) const {
-    return know(station) ? names_[station] : "somebody else";
+    return know(station) ? names_[station] : "unknown sender";
   }
 
  private:

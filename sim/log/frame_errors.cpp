@@ -11,7 +11,7 @@ std::string told(const Frame::Change& change) {
   const std::string which = "byte " + std::to_string(change.position + 1) + ": ";
   const auto byte = change.byte();
   if (!byte) {
-    return which + sent + " is lost, it has no start bit";
+    return which + sent + " is lost because its start bit is missing";
   }
   if (change.status() == ByteStatus::Break) {
     return which + "break instead of " + sent;
@@ -33,7 +33,7 @@ std::string line_error(const Frame& frame) {
   for (const Frame::Change& change : frame.changes) {
     append(changes, told(change));
   }
-  std::string text = frame.collided ? "collision: something else was on the wires" : "";
+  std::string text = frame.collided ? "collision: another station drove the line at the same time" : "";
   if (frame.sent_at != frame.line_at) {
     append(text, "sent at " + std::to_string(frame.sent_at) + " baud on a line at " +
                      std::to_string(frame.line_at));

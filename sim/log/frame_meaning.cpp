@@ -92,7 +92,7 @@ std::string dcon_request(const FrameBytes& bytes) {
   }
   const dcon::Command* command = dcon_request_of(text).command;
   if (command == nullptr) {
-    return "no command";
+    return "unknown command";
   }
   const std::string error = check_error(bytes, Speaker::Master);
   return std::string(command->syntax) + ": " + std::string(command->meaning) +
@@ -102,11 +102,11 @@ std::string dcon_request(const FrameBytes& bytes) {
 std::string dcon_reply(const FrameBytes& bytes) {
   switch (bytes.front()) {
     case '?':
-      return "refused";
+      return "rejected";
     case '!':
-      return bytes.size() == 2 ? "ignored: the timeout status is set" : "answer";
+      return bytes.size() == 2 ? "ignored: the timeout status is set" : "reply";
     default:
-      return "answer";
+      return "reply";
   }
 }
 
@@ -138,7 +138,7 @@ std::string row_meaning(unsigned function, unsigned address, unsigned value) {
       return ", " + std::string(entry.meaning);
     }
   }
-  return ", no such address";
+  return ", unknown address";
 }
 
 constexpr std::size_t kShortestModbus = 4;
@@ -164,7 +164,7 @@ std::string modbus_meaning(const FrameBytes& bytes, Speaker speaker) {
   const std::string name =
       row == modbus::kFunctions.end() ? "function " + hex_byte_text(function) : std::string(row->name);
   if (speaker == Speaker::Module) {
-    return who + name + (function >= 0x80 ? ", exception " + hex_byte_text(bytes[2]) : ", answer");
+    return who + name + (function >= 0x80 ? ", exception " + hex_byte_text(bytes[2]) : ", reply");
   }
   if (bytes.size() < 8 || row == modbus::kFunctions.end() || function > 0x10 || function == 0x08) {
     return who + name;
@@ -216,7 +216,7 @@ std::string check_error(const FrameBytes& bytes, Speaker speaker) {
     return modbus_check_error(bytes);
   }
   if (!looks_like_dcon(bytes)) {
-    return "not only printable characters";
+    return "contains characters that are not printable";
   }
   if (speaker == Speaker::Module) {
     return "";  // the module's setting decides whether its last two characters are a checksum

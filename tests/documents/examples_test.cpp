@@ -116,7 +116,7 @@ void paste(const Section& section) {
     } else if (block.language == "sh" && starts_the_simulator(block)) {
       simulator = std::make_unique<ChildProcess>(std::vector<std::string>{"sh", "-c", "exec " + block.text},
                                                  directory.path(), ChildProcess::Errors::WithOutput);
-      ASSERT_TRUE(simulator->wait_for("Ctrl-C ends it")) << block.text;
+      ASSERT_TRUE(simulator->wait_for("press Ctrl-C to end")) << block.text;
     } else if (block.language == "sh" || block.language == "python") {
       shell.paste(block);
     }

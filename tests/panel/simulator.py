@@ -45,7 +45,7 @@ class Simulator:
         greeting = ""
         for line in self.process.stdout:
             greeting += line
-            if line.startswith("Ctrl-C"):
+            if line.startswith("press Ctrl-C"):
                 break
         self.address = re.match(r"panel: (\S+)\n", greeting).group(1)
         self.port = urllib.parse.urlsplit(self.address).port

@@ -61,7 +61,7 @@ function begin(hello) {
       return several ? lines[line].name : "line";
     }
     const module = station ? lines[line].modules[station - 1] : null;
-    const who = station === 0 ? "master" : module ? `${module.position + 1} ${module.model}` : "somebody else";
+    const who = station === 0 ? "master" : module ? `${module.position + 1} ${module.model}` : "unknown sender";
     return several ? `${lines[line].name}: ${who}` : who;
   }, now);
 }
@@ -112,7 +112,7 @@ function repaint(when) {
 
 /// The text for each reason of a lost connection.
 const reasons = {
-  gone: "No simulator – trying again. What you see is how it was.",
+  gone: "Not connected to the simulator; trying again. The page shows the last known state.",
   tooMany: "Too many pages are open already – waiting until another is closed.",
 };
 

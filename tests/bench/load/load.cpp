@@ -148,7 +148,7 @@ void load(std::chrono::milliseconds time) {
   const Directory directory;
   ex9000::system::write_file(directory / "bus.json", bus_file());
   ChildProcess simulator({ex9000::system::simulator_path(), "bus.json"}, directory.path());
-  if (!simulator.wait_for("Ctrl-C ends it")) {
+  if (!simulator.wait_for("press Ctrl-C to end")) {
     throw std::runtime_error("the simulator has not started");
   }
   std::array<std::uint64_t, kLines> transactions{};

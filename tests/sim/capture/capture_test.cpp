@@ -208,7 +208,8 @@ TEST(Capture, AWrongCrcOrChecksumAndACollisionAreComments) {
   EXPECT_EQ(packets[2].at("frame.comment"), "");
   for (const std::size_t reply : {3U, 4U}) {
     EXPECT_EQ(packets[reply].at("frame.p2p_dir"), kReceived);
-    EXPECT_EQ(packets[reply].at("frame.comment"), "collision: something else was on the wires");
+    EXPECT_EQ(packets[reply].at("frame.comment"),
+              "collision: another station drove the line at the same time");
   }
 }
 
@@ -230,7 +231,7 @@ TEST(Capture, TheLinesOfABusFileAreInterfaces) {
     {"name": "hall", "pty": "hall.tty", "modules": [{"model": "EX9042D", "address": "01"}]},
     {"name": "yard", "pty": "yard.tty", "modules": [{"model": "EX9052D", "address": "02"}]}]})");
   ChildProcess simulator({simulator_path(), "bus.json"}, directory.path(), ChildProcess::Errors::WithOutput);
-  ASSERT_TRUE(simulator.wait_for("Ctrl-C ends it"));
+  ASSERT_TRUE(simulator.wait_for("press Ctrl-C to end"));
   Terminal yard(directory / "yard.tty", 9600);
   yard.type("$02M\r");
   EXPECT_EQ(yard.read_line(), "!029052\r");
@@ -534,13 +535,14 @@ TEST(Capture, WhatNoiseHasChangedIsShownAsItArrivesAndWhatWasSentIsAComment) {
   EXPECT_EQ(of_a_spoiled(request, OneHit(2, 1U << 9U)).at("frame.comment"),
             "noise: byte 3: break instead of 00");
   EXPECT_EQ(of_a_spoiled(request, OneHit(0, 1U)).at("frame.comment"),
-            "noise: byte 1: 01 is lost, it has no start bit; wrong CRC");
+            "noise: byte 1: 01 is lost because its start bit is missing; wrong CRC");
 }
 
 TEST(Capture, DconIsTextAlsoWhereAByteIsDamaged) {
   const std::string request = "$01M\r";
   const Packet packet = of_a_spoiled(Bytes(request.begin(), request.end()), OneHit(2, 1U << 8U));
-  EXPECT_EQ(packet.at("frame.comment"), "noise: byte 3: B1 instead of 31; not only printable characters");
+  EXPECT_EQ(packet.at("frame.comment"),
+            "noise: byte 3: B1 instead of 31; contains characters that are not printable");
   EXPECT_EQ(packet.at("text").find("$0"), 0U) << packet.at("text");
 }
 
@@ -551,7 +553,7 @@ TEST(JsonLog, IsAllThatIsOnStandardOutput) {
   ChildProcess simulator(
       {"sh", "-c", "exec " + simulator_path() + " EX9042D@01 EX9052D@02,baud=19200 --log json > log"},
       directory.path(), ChildProcess::Errors::WithOutput);
-  ASSERT_TRUE(simulator.wait_for("Ctrl-C ends it"));
+  ASSERT_TRUE(simulator.wait_for("press Ctrl-C to end"));
   Terminal terminal(directory / "ex9000.tty", 9600);
   terminal.type("$01M\r");
   EXPECT_EQ(terminal.read_line(), "!019042D\r");

@@ -25,7 +25,7 @@ class Line:
     def __init__(self, model):
         command = [PROGRAM, f"{model}@01", "--tcp", "0", "--line", "instant"]
         self._program = subprocess.Popen(command, stdout=subprocess.PIPE, encoding="utf-8")
-        greeting = "".join(iter(self._program.stdout.readline, "Ctrl-C ends it\n"))
+        greeting = "".join(iter(self._program.stdout.readline, "press Ctrl-C to end\n"))
         port = int(re.search(r"TCP 127\.0\.0\.1:(\d+)", greeting).group(1))
         self._socket = socket.create_connection(("127.0.0.1", port), timeout=60)
 

@@ -52,14 +52,15 @@ TEST(BusLog, SaysAtWhichRateAFrameWasSentWhereThatIsNotTheLines) {
 TEST(TextLog, AFrameIsALine) {
   EXPECT_EQ(text_of(frame_of(0, with_crc({1, 5, 0, 2, 0xFF, 0}))),
             "   12.345679  > master  01 05 00 02 FF 00 2D FA  ; 01: Write Single Coil 0002 = FF00, outputs|");
-  EXPECT_EQ(text_of(dcon(1, ">0004\r")), "   12.345679  < 01 EX9042D-M  >0004\\r  ; answer|");
+  EXPECT_EQ(text_of(dcon(1, ">0004\r")), "   12.345679  < 01 EX9042D-M  >0004\\r  ; reply|");
 }
 
 TEST(TextLog, ACollisionLeavesNoMeaning) {
   Frame frame = frame_of(1, {1, 2, 3});
   frame.collided = true;
   EXPECT_EQ(text_of(frame),
-            "   12.345679  < 01 EX9042D-M  01 02 03  ; collision: something else was on the wires|");
+            "   12.345679  < 01 EX9042D-M  01 02 03  ; collision: another station drove the line at the same "
+            "time|");
 }
 
 TEST(TextLog, WhatNoiseHasChangedIsSaidWithWhatItMeans) {
@@ -76,7 +77,7 @@ TEST(TextLog, ANoteIsALineToo) {
 }
 
 TEST(TextLog, WhatSomebodyElseMeansIsNotSaid) {
-  EXPECT_EQ(text_of(frame_of(5, {1, 2, 3})), "   12.345679  ? somebody else  01 02 03|");
+  EXPECT_EQ(text_of(frame_of(5, {1, 2, 3})), "   12.345679  ? unknown sender  01 02 03|");
 }
 
 TEST(JsonLog, AFrameIsAnObjectWithItsKeysInOrder) {
@@ -88,7 +89,7 @@ TEST(JsonLog, AFrameIsAnObjectWithItsKeysInOrder) {
 TEST(JsonLog, DconIsTextAsWell) {
   EXPECT_EQ(json_line_of(dcon(1, "!01\"\\\r")),
             R"({"time":12.345678901,"line":"pump","from":"01 EX9042D-M","bytes":"213031225C0D",)"
-            R"("text":"!01\"\\\r","meaning":"answer","collided":false})");
+            R"("text":"!01\"\\\r","meaning":"reply","collided":false})");
 }
 
 TEST(JsonLog, WhatWentWrongIsTold) {
@@ -98,14 +99,14 @@ TEST(JsonLog, WhatWentWrongIsTold) {
   frame.collided = true;
   EXPECT_EQ(json_of(frame)["collided"], true);
   EXPECT_EQ(json_of(frame)["error"],
-            "collision: something else was on the wires; noise: byte 3: 03 instead of 07");
+            "collision: another station drove the line at the same time; noise: byte 3: 03 instead of 07");
   EXPECT_FALSE(json_of(frame).contains("meaning"));
 }
 
 TEST(JsonLog, WhatSomebodyElseMeansIsNotSaid) {
   EXPECT_EQ(
       json_line_of(frame_of(5, {1, 2, 3})),
-      R"({"time":12.345678901,"line":"pump","from":"somebody else","bytes":"010203","collided":false})");
+      R"({"time":12.345678901,"line":"pump","from":"unknown sender","bytes":"010203","collided":false})");
 }
 
 TEST(JsonLog, ANoteHasItsTimeAndLine) {
@@ -130,7 +131,7 @@ TEST(LineError, NamesWhatBecameOfABytePositionByPosition) {
   frame.changes.push_back({9, 0x41, levels_of(0x61) & 0x1FFU});
   frame.changes.push_back({10, 0x41, 0});
   EXPECT_EQ(line_error(frame),
-            "noise: byte 1: 43 instead of 41; byte 5: 41 is lost, it has no start bit; "
+            "noise: byte 1: 43 instead of 41; byte 5: 41 is lost because its start bit is missing; "
             "byte 10: framing error, 61 instead of 41; byte 11: break instead of 41");
 }
 

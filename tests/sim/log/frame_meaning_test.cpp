@@ -56,7 +56,7 @@ TEST(WasDcon, WhatBeginsAndEndsAsDconWasOneBeforeItWasDamaged) {
   EXPECT_TRUE(was_dcon(dcon("$01")));
   EXPECT_TRUE(was_dcon(dcon("$0\xB1M\r")));
   EXPECT_TRUE(was_dcon(dcon("!01\x05\r")));
-  EXPECT_EQ(meaning(dcon("$0\xB1M\r"), Speaker::Master), "not only printable characters");
+  EXPECT_EQ(meaning(dcon("$0\xB1M\r"), Speaker::Master), "contains characters that are not printable");
 }
 
 TEST(WasDcon, NothingElseWas) {
@@ -132,9 +132,9 @@ TEST(DconMeaning, WhatMayBeWithoutAChecksumIsNotSaidToHaveAWrongOne) {
 }
 
 TEST(DconMeaning, WhatIsNoCommandIsSaidToBeNone) {
-  EXPECT_EQ(of_request("$01Z\r"), "no command");
-  EXPECT_EQ(of_request("$**\r"), "no command");
-  EXPECT_EQ(of_request("%01\r"), "no command");
+  EXPECT_EQ(of_request("$01Z\r"), "unknown command");
+  EXPECT_EQ(of_request("$**\r"), "unknown command");
+  EXPECT_EQ(of_request("%01\r"), "unknown command");
 }
 
 TEST(DconMeaning, NothingIsSaidOfAFrameTooShortForAnAddress) {
@@ -143,12 +143,12 @@ TEST(DconMeaning, NothingIsSaidOfAFrameTooShortForAnAddress) {
 }
 
 TEST(DconMeaning, ARefusalAnIgnoredCommandAndAnAnswerAreToldApart) {
-  EXPECT_EQ(of_reply("?01\r"), "refused");
-  EXPECT_EQ(of_reply("?\r"), "refused");
+  EXPECT_EQ(of_reply("?01\r"), "rejected");
+  EXPECT_EQ(of_reply("?\r"), "rejected");
   EXPECT_TRUE(has(of_reply("!\r"), "ignored"));
-  EXPECT_EQ(of_reply("!01400640\r"), "answer");
-  EXPECT_EQ(of_reply(">\r"), "answer");
-  EXPECT_EQ(of_reply(">0F00\r"), "answer");
+  EXPECT_EQ(of_reply("!01400640\r"), "reply");
+  EXPECT_EQ(of_reply(">\r"), "reply");
+  EXPECT_EQ(of_reply(">0F00\r"), "reply");
 }
 
 // --- Modbus RTU ---
@@ -193,14 +193,14 @@ TEST(ModbusMeaning, ReadingRegister3038WithAnotherQuantityIsNoHostOk) {
 }
 
 TEST(ModbusMeaning, AnAddressOutsideTheMapIsSaidToBeNone) {
-  EXPECT_TRUE(has(of_request(FrameBytes{0x01, 0x01, 0x03, 0x00, 0x00, 0x01}), "no such address"));
-  EXPECT_TRUE(has(of_request(FrameBytes{0x01, 0x06, 0x01, 0xE2, 0x00, 0x01}), "no such address"));
-  EXPECT_TRUE(has(of_request(FrameBytes{0x01, 0x03, 0x00, 0x08, 0x00, 0x01}), "no such address"));
+  EXPECT_TRUE(has(of_request(FrameBytes{0x01, 0x01, 0x03, 0x00, 0x00, 0x01}), "unknown address"));
+  EXPECT_TRUE(has(of_request(FrameBytes{0x01, 0x06, 0x01, 0xE2, 0x00, 0x01}), "unknown address"));
+  EXPECT_TRUE(has(of_request(FrameBytes{0x01, 0x03, 0x00, 0x08, 0x00, 0x01}), "unknown address"));
 }
 
 TEST(ModbusMeaning, NoModelHasMoreThan8Inputs) {
-  EXPECT_TRUE(has(of_request(FrameBytes{0x01, 0x01, 0x00, 0x28, 0x00, 0x01}), "no such address"));
-  EXPECT_TRUE(has(of_request(FrameBytes{0x01, 0x05, 0x02, 0x08, 0xFF, 0x00}), "no such address"));
+  EXPECT_TRUE(has(of_request(FrameBytes{0x01, 0x01, 0x00, 0x28, 0x00, 0x01}), "unknown address"));
+  EXPECT_TRUE(has(of_request(FrameBytes{0x01, 0x05, 0x02, 0x08, 0xFF, 0x00}), "unknown address"));
 }
 
 TEST(ModbusMeaning, OtherFunctionsAreNamed) {
@@ -220,7 +220,7 @@ TEST(ModbusMeaning, ARepliesExceptionIsShown) {
 }
 
 TEST(ModbusMeaning, AnyOtherReplyIsAnAnswer) {
-  EXPECT_EQ(of_reply(FrameBytes{0x01, 0x01, 0x02, 0x07, 0x00}), "01: Read Coils, answer");
+  EXPECT_EQ(of_reply(FrameBytes{0x01, 0x01, 0x02, 0x07, 0x00}), "01: Read Coils, reply");
 }
 
 TEST(ModbusMeaning, AShortFrameAndAWrongCrcAreNamed) {

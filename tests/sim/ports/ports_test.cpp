@@ -350,7 +350,7 @@ TEST(SerialPort, WhenItGoesTheProgramEndsAndSaysSo) {
   const Directory directory;
   ChildProcess simulator({simulator_path(), "EX9042D", "--serial", cable.device()}, directory.path(),
                          ChildProcess::Errors::WithOutput);
-  ASSERT_TRUE(simulator.wait_for("Ctrl-C ends it"));
+  ASSERT_TRUE(simulator.wait_for("press Ctrl-C to end"));
   cable.pull();
   EXPECT_EQ(simulator.wait(), 1);
   EXPECT_NE(simulator.output().find("--serial " + cable.device()), std::string::npos) << simulator.output();

@@ -22,7 +22,7 @@ TEST(Dcon, ATypedSessionIsAnswered) {
   terminal.type("@0A\r");
   EXPECT_EQ(terminal.read_line(), ">8100\r");
   EXPECT_TRUE(simulator.wait_for("> master  @0A81\\r  ; @AA(Data): set all outputs")) << simulator.output();
-  EXPECT_TRUE(simulator.wait_for("< 0A EX9068D-M  !0APUMP\\r  ; answer")) << simulator.output();
+  EXPECT_TRUE(simulator.wait_for("< 0A EX9068D-M  !0APUMP\\r  ; reply")) << simulator.output();
 }
 
 TEST(Dcon, AReplyThatNobodyHasWaitedForIsNotTheNextMastersFirst) {

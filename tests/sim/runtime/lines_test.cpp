@@ -336,7 +336,7 @@ TEST(LineOfTheCommandLine, WhatNoModuleHasSentIsHeardAndLogged) {
     terminal.write({1, 1, 0, 0, 0, 13, 0xFD, 0xCF});
     EXPECT_EQ(read_exactly(terminal, 7).size(), 7U);
   }
-  EXPECT_TRUE(simulator.wait_for("? somebody else  05 01 00 00 00 08 3C 48")) << simulator.output();
+  EXPECT_TRUE(simulator.wait_for("? unknown sender  05 01 00 00 00 08 3C 48")) << simulator.output();
   control.ok("fault inserted-bytes 1");
   terminal.write({0});
   EXPECT_FALSE(terminal.read(kHang).empty());

@@ -92,7 +92,7 @@ TEST(SteppedProgram, TheSameCommandsProduceTheSameBytesAtTheSameTimes) {
     EXPECT_EQ(stepped.control.ok("advance 2h"), "3600.1");  // the program ends after --for
     EXPECT_EQ(stepped.simulator.wait(), 0);
     const std::string& output = stepped.simulator.output();
-    return text + output.substr(output.find("Ctrl-C ends it")) +
+    return text + output.substr(output.find("press Ctrl-C to end")) +
            bytes_of_file(stepped.simulator.directory() + "/" + capture);
   };
   const std::string first = run_once("line.pcapng");
@@ -104,7 +104,7 @@ TEST(SteppedProgram, ASignalEndsItWhileALongTimePasses) {
   Stepped stepped({"EX9042D", "--log"});
   stepped.control.ok("fault foreign-traffic 2430314D0D at 1min");
   stepped.control.send("advance 8760h\n");
-  ASSERT_TRUE(stepped.simulator.wait_for("somebody else")) << stepped.simulator.output();
+  ASSERT_TRUE(stepped.simulator.wait_for("unknown sender")) << stepped.simulator.output();
   EXPECT_EQ(stepped.simulator.end(SIGTERM), 0);
 }
 

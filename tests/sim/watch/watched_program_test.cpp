@@ -31,23 +31,23 @@ TEST(WatchedProgram, PaintsModulesOnATerminalAndRepaintsThem) {
   const std::string shown =
       in_a_terminal("rows 7 cols 30", "EX9052D --watch --speed max --for 200ms --input '1 3 square 200ms'");
   const std::string head = "1  EX9052D     9052    01 DCON\n   DI      0  1  2  3  4  5  6\n";
-  EXPECT_EQ(shown.substr(shown.find("Ctrl-C")), "Ctrl-C ends it\n" + head +
-                                                    "           ○  ○  ○  ○  ○  ○  ○\n"
-                                                    "   counters 0 0 0 0 0 0 0 0\n"
-                                                    "   latched high 00, low 00\n"
-                                                    "   host watchdog off\n"
-                                                    "\x1b[6F\x1b[J" +
-                                                    head +
-                                                    "           ○  ○  ○  ○  ○  ○  ○\n"
-                                                    "   counters 0 0 0 1 0 0 0 0\n"
-                                                    "   latched high 08, low 08\n"
-                                                    "   host watchdog off\n"
-                                                    "\x1b[6F\x1b[J" +
-                                                    head +
-                                                    "           ○  ○  ○  ●  ○  ○  ○\n"
-                                                    "   counters 0 0 0 1 0 0 0 0\n"
-                                                    "   latched high 08, low 08\n"
-                                                    "   host watchdog off\n");
+  EXPECT_EQ(shown.substr(shown.find("press Ctrl-C")), "press Ctrl-C to end\n" + head +
+                                                          "           ○  ○  ○  ○  ○  ○  ○\n"
+                                                          "   counters 0 0 0 0 0 0 0 0\n"
+                                                          "   latched high 00, low 00\n"
+                                                          "   host watchdog off\n"
+                                                          "\x1b[6F\x1b[J" +
+                                                          head +
+                                                          "           ○  ○  ○  ○  ○  ○  ○\n"
+                                                          "   counters 0 0 0 1 0 0 0 0\n"
+                                                          "   latched high 08, low 08\n"
+                                                          "   host watchdog off\n"
+                                                          "\x1b[6F\x1b[J" +
+                                                          head +
+                                                          "           ○  ○  ○  ●  ○  ○  ○\n"
+                                                          "   counters 0 0 0 1 0 0 0 0\n"
+                                                          "   latched high 08, low 08\n"
+                                                          "   host watchdog off\n");
 }
 
 TEST(WatchedProgram, TellsChangesWhereTheOutputIsNoTerminal) {
@@ -115,7 +115,7 @@ TEST(WatchedProgram, ATerminalThatNobodyReadsKeepsNoMasterWaiting) {
   while (!std::filesystem::exists(link)) {
   }
   std::string greeting;
-  while (greeting.find("Ctrl-C ends it") == std::string::npos) {
+  while (greeting.find("press Ctrl-C to end") == std::string::npos) {
     greeting += window.read_some();
   }
   Terminal master(link, 115200);
