@@ -24,7 +24,7 @@ CaptureFile::CaptureFile(std::string path, const std::string& place)
     fd_ = open(path_.c_str(), kFlags);
   }
   if (fd_ < 0 && errno == ENXIO) {
-    refuse("nobody reads this pipe; start its reader first");
+    refuse("the pipe has no reader; start its reader first");
   }
   struct stat status {};
   if (fd_ < 0 || fstat(fd_, &status) != 0 || fcntl(fd_, F_SETFL, 0) != 0) {
@@ -32,7 +32,7 @@ CaptureFile::CaptureFile(std::string path, const std::string& place)
   }
   regular_ = S_ISREG(status.st_mode);
   if (regular_ && flock(fd_, LOCK_EX | LOCK_NB) != 0) {
-    refuse("is in use by another simulator; end that or name another path");
+    refuse("the file is in use by another simulator; end that simulator or name another path");
   }
 }
 
@@ -57,7 +57,7 @@ void CaptureFile::append(const std::vector<std::uint8_t>& block) {
     if (written < 0 && errno != EINTR) {
       const std::string why = reason();
       if (regular_ && ftruncate(fd_, before) != 0) {
-        throw std::runtime_error(where_ + ": cannot be written, and ends in half a frame: " + why);
+        throw std::runtime_error(where_ + ": cannot be written, and its last frame is incomplete: " + why);
       }
       throw std::runtime_error(where_ + ": cannot be written: " + why);
     }

@@ -133,7 +133,7 @@ struct LineVerb {
 };
 
 constexpr std::array<LineVerb, 5> kLineVerbs{{
-    {"baud", "RATE", "sets the line's rate, for a port without one; the rate of a pseudo-terminal wins"},
+    {"baud", "RATE", "sets the line's rate, for ports without a rate; a pseudo-terminal overrides it"},
     {"sent", "", "reads how many bytes the line has written to its ports"},
     {"fault", "FAULT", "adds a fault, see below; replies with its number. With N: for that module"},
     {"fault off", "K|all", "ends the fault with this number, or all"},
@@ -278,7 +278,7 @@ std::string on_some_line(const Lines& lines, const Words& words) {
     position += controlled.line.size();
   }
   fail("no line '" + words[1] + "'; " +
-       (names.empty() ? "the only one has no name, leave out 'line NAME'" : "there are " + names));
+       (names.empty() ? "the only line has no name; leave out 'line NAME'" : "there are " + names));
 }
 
 std::string on_module(const Lines& lines, const Words& words) {

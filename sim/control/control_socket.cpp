@@ -36,7 +36,7 @@ void remove_stale(boost::asio::io_context& io, const std::string& path, const Cl
     return;
   }
   if (!S_ISSOCK(status.st_mode)) {
-    refuse(path, "something else is there; remove it or name another path");
+    refuse(path, "the path is in use by a file that is not a socket; remove it or name another path");
   }
   Local::socket visitor(io);
   boost::system::error_code error;

@@ -100,7 +100,8 @@ const Model& modbus_model(const DescribeTexts& texts) {
   const Model& model = model_called(texts.model);
   if (!model.speaks_modbus()) {
     fail(std::string(model.designation) + " --format " + texts.format,
-         "the model speaks no Modbus; take one that --models lists with Modbus RTU, or --format json");
+         "the model does not support Modbus; name a model that --models lists with Modbus RTU, or use "
+         "--format json");
   }
   return model;
 }

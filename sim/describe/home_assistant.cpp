@@ -146,8 +146,8 @@ std::string head(const Model& model, const Place& place) {
   return "# " + who +
          ", for Home Assistant's modbus integration. In configuration.yaml:\n"
          "#   modbus: !include modbus.yaml\n"
-         "# Further modules on the same line go under this hub: one with the same host and port is not "
-         "loaded.\n"
+         "# Put further modules on the same line under this hub: Home Assistant does not load a second hub "
+         "with the same host and port.\n"
          "# A module on a serial port has, in place of type, host and port:\n"
          "#   type: serial\n"
          "#   port: /dev/ttyUSB0\n"
@@ -164,7 +164,7 @@ std::string head(const Model& model, const Place& place) {
 
 std::string home_assistant_hub(const Model& model, const Place& place) {
   const Hub hub(model, place);
-  return head(model, place) + yaml_of(Json::array({hub.hub()})) + "# Actions for what has no entity:\n" +
+  return head(model, place) + yaml_of(Json::array({hub.hub()})) + "# Actions for items without an entity:\n" +
          hub.actions();
 }
 

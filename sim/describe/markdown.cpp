@@ -145,15 +145,15 @@ std::string dcon_notes(const Models& models) {
   text += outputs ? " `~AA4V` has 00 in place of inputs." : "";
   text +=
       "\n- `TT` is 40; `CC` the baud rate: " + baud_codes() +
-      "; `FF` 80 where counters count rising edges instead of falling ones, plus 40 with checksum.\n"
+      "; `FF` is 80 if the counters count rising edges, otherwise 00; the checksum adds 40.\n"
       "- `SS` is 04 or 84 after a timeout of the host watchdog, 80 while it is enabled, else 00; the table "
       "above says which of them a model has.\n"
-      "- A refused command is answered `?AA`.";
-  text += outputs ? " Models with outputs answer `?` to a refused one that sets outputs, and `!` to one that "
-                    "is ignored because the timeout status is set."
+      "- The reply to a rejected command is `?AA`.";
+  text += outputs ? " Models with outputs reply `?` to a rejected command that sets outputs, and `!` to one "
+                    "that is ignored because the timeout status is set."
                   : "";
   return text +
-         "\n- Access: what is *stored* is in the EEPROM before the reply leaves. (I): only with INIT* tied "
+         "\n- Access: a *stored* value is in the EEPROM before the module replies. (I): requires INIT* tied "
          "to GND.\n";
 }
 
@@ -227,8 +227,9 @@ std::string map_table(const Model& model) {
 }
 
 std::string map_notes() {
-  return "Addresses count from 0, as on the line; PLC numbers count from 1 behind the digit of their table. "
-         "What is written is stored in the EEPROM, unless it is the outputs or clears latches or counters. "
+  return "Addresses count from 0, as on the line; PLC numbers count from 1 after the digit of their table. "
+         "Written values are stored in the EEPROM, except writes that set outputs or clear latches or "
+         "counters. "
          "Writes that drive outputs get exception 04 while the timeout status is set. "
          "Baud codes are those of `CC` above.\n";
 }

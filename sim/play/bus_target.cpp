@@ -165,7 +165,7 @@ void BusTarget::choose_line(const std::string& name) {
   }
   throw std::runtime_error(
       "no line '" + name + "'; " +
-      (names.empty() ? "the only one has no name, leave the step out" : "there are " + names));
+      (names.empty() ? "the only line has no name; remove the step" : "there are " + names));
 }
 
 /// Chooses a line and a module. On a change of the line, discards the bytes that the master of the new line

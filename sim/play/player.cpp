@@ -153,7 +153,7 @@ class Playing {
     const Bytes heard = target_.receive(wanted.size(), kLongestReply);
     reply_pending_ = false;
     if (heard != wanted) {
-      throw std::runtime_error("expected " + shown(wanted) + ", heard " + shown(heard));
+      throw std::runtime_error("expected " + shown(wanted) + ", received " + shown(heard));
     }
   }
 
@@ -161,7 +161,7 @@ class Playing {
     const Bytes heard = target_.listen(time);
     reply_pending_ = reply_pending_ && time < kReplyBegins;
     if (!heard.empty()) {
-      throw std::runtime_error("expected nothing, heard " + shown(heard));
+      throw std::runtime_error("expected nothing, received " + shown(heard));
     }
   }
 

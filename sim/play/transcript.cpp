@@ -251,7 +251,7 @@ bool read_header(const std::string& text, unsigned number, Source& source) {
     source.models.push_back(run);
   } else if (const auto preset = header_value(text, "preset")) {
     if (source.preset_ends == source.models.size()) {
-      fail("'preset:' requires a 'model:' line above it, which has no preset yet");
+      fail("'preset:' requires a preceding 'model:' line without a preset");
     }
     for (; source.preset_ends < source.models.size(); ++source.preset_ends) {
       source.models[source.preset_ends].presets = sim::words_of(*preset);
@@ -324,7 +324,7 @@ std::string missing_input(const Model& model, unsigned channel) {
   }
   const std::string name(model.designation);
   return "the " + name +
-         (model.inputs == 0 ? " has no inputs; name a module that has, or leave the step out"
+         (model.inputs == 0 ? " has no inputs; choose a module with inputs or remove the step"
                             : " has no input " + std::to_string(channel) + "; it has 0 to " +
                                   std::to_string(model.inputs - 1));
 }

@@ -51,7 +51,7 @@ TEST(Program, EndsCleanlyWhenNobodyReadsItsLogAnyMore) {
 TEST(Program, ASignalThatItIsStartedToIgnoreIsIgnored) {
   const Directory directory;
   ChildProcess process({"sh", "-c", "trap '' HUP; exec " + simulator_path() + " EX9042D"}, directory.path());
-  ASSERT_TRUE(process.wait_for("Ctrl-C ends it"));
+  ASSERT_TRUE(process.wait_for("press Ctrl-C to end"));
   std::ifstream status("/proc/" + std::to_string(process.pid()) + "/status");
   std::string line;
   while (std::getline(status, line) && line.rfind("SigIgn:", 0) != 0) {
@@ -144,7 +144,7 @@ TEST(Program, WrongArgumentsGiveOneLineThatNamesThemExitStatus2AndLeaveNothingBe
       {{"describe", "EX9042D", "--format", "home-assistant"},
        "EX9042D --format home-assistant",
        "Modbus RTU"},
-      {{"describe", "EX9055D", "--format", "node-red"}, "speaks no Modbus", "--models"},
+      {{"describe", "EX9055D", "--format", "node-red"}, "does not support Modbus", "--models"},
       {{"describe", "EX9042D-M", "--format", "node-red", "--address", "00"}, "--address 00", "01 to F7"},
       {{"describe", "EX9042D-M", "--format", "node-red", "--tcp", "host"}, "--tcp 'host'", "HOST:PORT"},
       {{"describe", "EX9042D-M", "--address", "02"}, "--address", "leave it out"},
@@ -244,7 +244,7 @@ TEST(Program, ALinkInUseIsRefusedAndOneLeftByADeadProcessIsTakenOver) {
   process.end(SIGKILL);
   ASSERT_TRUE(fs::is_symlink(process.tty()));
   SimulatorProcess heir({"EX9042D", "--pty", process.tty()});
-  EXPECT_NE(heir.output().find("Ctrl-C ends it"), std::string::npos);
+  EXPECT_NE(heir.output().find("press Ctrl-C to end"), std::string::npos);
   EXPECT_EQ(heir.end(SIGTERM), 0);
   EXPECT_FALSE(fs::is_symlink(process.tty()));
 }
@@ -255,7 +255,7 @@ TEST(Program, ALeftLinkThatLeadsToAnotherSimulatorByNowIsTakenOver) {
   const std::string link = directory.path() + "/left.tty";
   fs::create_symlink(fs::read_symlink(other.tty()), link);
   SimulatorProcess heir({"EX9042D", "--pty", link});
-  EXPECT_NE(heir.output().find("Ctrl-C ends it"), std::string::npos);
+  EXPECT_NE(heir.output().find("press Ctrl-C to end"), std::string::npos);
   EXPECT_NE(fs::read_symlink(link), fs::read_symlink(other.tty()));
 }
 

@@ -105,7 +105,7 @@ TEST(CaptureFile, AFullDiskIsSaid) {
 TEST(CaptureFile, APipeMayBeRead) {
   const Directory directory;
   ASSERT_EQ(mkfifo((directory / "a").c_str(), 0600), 0);
-  EXPECT_NE(refusal(directory / "a").find("nobody reads this pipe; start its reader first"),
+  EXPECT_NE(refusal(directory / "a").find("the pipe has no reader; start its reader first"),
             std::string::npos);
   const int reader = open((directory / "a").c_str(), O_RDONLY | O_NONBLOCK);
   CaptureFile file(directory / "a", kPlace);

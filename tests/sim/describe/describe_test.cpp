@@ -50,8 +50,8 @@ TEST(Describe, TheOthersAreOfModelsThatSpeakModbus) {
       if (model.speaks_modbus()) {
         EXPECT_NE(described(name.c_str(), format).find(name), std::string::npos) << format;
       } else {
-        expect_refused({name, format, {}, {}}, name + " --format " + format + ": the model speaks no Modbus",
-                       "--models");
+        expect_refused({name, format, {}, {}},
+                       name + " --format " + format + ": the model does not support Modbus", "--models");
       }
     }
     expect_refused({"", format, {}, {}}, std::string("--format ") + format, "MODEL");

@@ -82,7 +82,7 @@ TEST(Scenario, WhatWasHeardOnALineWhileTheStepsWereAboutAnotherIsForgotten) {
   const std::string talk = "fault foreign-traffic 3130 every 10s\n";
   EXPECT_EQ(failure_of(talk + "line yard\nwait 31s\nline hall\nmodule 2\n> $02M\n< !029052\n"), "");
   EXPECT_EQ(failure_of(talk + "module 3\nwait 31s\nmodule 1\n> $01M\n< !019042D\n"), "");
-  EXPECT_NE(failure_of(talk + "wait 31s\n").find("expected nothing, heard '10"), std::string::npos);
+  EXPECT_NE(failure_of(talk + "wait 31s\n").find("expected nothing, received '10"), std::string::npos);
   // The choice of another module on the same line does not discard the received bytes.
   EXPECT_NE(failure_of("fault late-reply 100ms\n> $01M\nmodule 2\nwait 1s\n").find("heard '!019042D"),
             std::string::npos);
@@ -90,7 +90,7 @@ TEST(Scenario, WhatWasHeardOnALineWhileTheStepsWereAboutAnotherIsForgotten) {
 
 TEST(Scenario, NamesFileLineStepAndWhatWasHeard) {
   const std::string failure = failure_of("; a comment\n> $01M\n< !019043D\n");
-  EXPECT_NE(failure.find("steps.txt:3: < !019043D: expected '!019043D\\r', heard '!019042D\\r'"),
+  EXPECT_NE(failure.find("steps.txt:3: < !019043D: expected '!019043D\\r', received '!019042D\\r'"),
             std::string::npos)
       << failure;
 }
@@ -165,7 +165,7 @@ TEST(Play, RefusesWhatTheBusLacksBeforeAnythingIsPlayed) {
   for (const Wrong& wrong :
        {Wrong{"module 4", "no module 4", "there are 1 to 3"},
         Wrong{"line shed", "no line 'shed'", "there are hall, yard"},
-        Wrong{"input 0 on", "the EX9042D has no inputs", "name a module that has"},
+        Wrong{"input 0 on", "the EX9042D has no inputs", "choose a module with inputs"},
         Wrong{"module 2\npulse 8", "the EX9052D has no input 8", "it has 0 to 7"},
         Wrong{"fault lost", "'lost' is not a fault", "expected one of bit-errors"},
         Wrong{"fault 4 gone", "no module 4", "there are 1 to 3"},
