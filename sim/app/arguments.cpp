@@ -136,7 +136,7 @@ auto of_option(const char* option, const std::string& text, Parse parse) {
   return with_place(std::string(option) + ": ", [&] { return parse(text); });
 }
 
-void write_as_told(const WritingTexts& texts, Writing& writing) {
+void apply_writing(const WritingTexts& texts, Writing& writing) {
   if (texts.log) {
     writing.log = of_option("--log", *texts.log, parse_log);
   }
@@ -280,7 +280,7 @@ Setup setup_of(const Texts& texts) {
     setup.panel = of_option("--panel", *texts.panel == kUsualPort ? "" : *texts.panel, parse_panel);
     setup.places.erase("panel");
   }
-  write_as_told(texts.writing, setup);
+  apply_writing(texts.writing, setup);
   if (texts.writing.capture) {
     setup.places.erase("capture");
   }
@@ -347,7 +347,7 @@ const CLI::App* add_play(CLI::App& app, PlayTexts& texts) {
 play::Task task_of(const PlayTexts& play_texts) {
   play::Task task;
   task.path = play_texts.file;
-  write_as_told(play_texts.writing, task.writing);
+  apply_writing(play_texts.writing, task.writing);
   if (play_texts.seed) {
     of_option("--seed", *play_texts.seed, parse_seed);  // check it even if it has no effect
   }

@@ -51,7 +51,7 @@ bool has_instant_line(const Setup& setup) {
 
 /// A blocked process needs longer to wake up than an instant line needs to reply. Therefore this function
 /// polls for 50 us after each event, and yields the processor to other threads in between.
-void run_wakefully(boost::asio::io_context& io) {
+void run_with_polling(boost::asio::io_context& io) {
   using Clock = std::chrono::steady_clock;
   constexpr std::chrono::microseconds kWhile{50};
   while (io.run_one() != 0) {
@@ -84,11 +84,11 @@ void run(const Setup& setup) {
   Session session(io, setup, print_line, greet, terminal && terminal->is_open() ? &*terminal : nullptr);
   session.start();
   if (setup.speed.paced() && has_instant_line(setup)) {
-    run_wakefully(io);
+    run_with_polling(io);
   } else if (!setup.speed.max()) {
     io.run();
   } else {
-    session.run_as_fast_as_it_can();
+    session.run_unpaced();
   }
   session.finish();
 }

@@ -61,8 +61,8 @@ class SimulatedModule final : public Station {
   void release_driver_late(VirtualTime by);
   /// Makes the module receive and send at `baud` regardless of its settings; 0: its settings apply.
   void force_rate(std::uint32_t baud) { wire_.force_rate(baud); }
-  /// See ModuleWire::hurry.
-  void let_late_replies_go() { wire_.hurry(); }
+  /// See ModuleWire::end_first_delay.
+  void release_late_replies() { wire_.end_first_delay(); }
   /// See ModuleWire::watch.
   void watch_replies(ModuleWire::Begins begins, ModuleWire::Ends ends, ModuleWire::OnTheWires on_the_wires) {
     wire_.watch(std::move(begins), std::move(ends), std::move(on_the_wires));

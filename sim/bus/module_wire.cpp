@@ -73,7 +73,7 @@ void ModuleWire::run() {
   }
 }
 
-void ModuleWire::hurry() {
+void ModuleWire::end_first_delay() {
   if (late_.empty() || late_.front().what != What::On) {
     return;
   }

@@ -46,7 +46,7 @@ class ModuleWire final : public Wire {
   [[nodiscard]] VirtualTime next() const { return late_.empty() ? kNever : late_.front().when; }
   void run();
   /// Ends the delay of the first late reply; the later ones keep their distance from it.
-  void hurry();
+  void end_first_delay();
   /// Drops everything that has not been sent. Call it when the module loses its supply or is reset.
   void abort();
 

@@ -55,13 +55,13 @@ std::optional<UartSampler::Received> UartSampler::advance(const Waves& waves, st
                                                           VirtualTime until) {
   while (position_ < until) {
     if (!receiving_) {
-      const auto found = find_level(waves, wants_idle_, position_, until);
+      const auto found = find_level(waves, waits_for_idle_, position_, until);
       position_ = found.value_or(until);
       if (!found) {
         break;
       }
-      if (wants_idle_) {
-        wants_idle_ = false;
+      if (waits_for_idle_) {
+        waits_for_idle_ = false;
         continue;
       }
       receiving_ = true;
@@ -80,7 +80,7 @@ std::optional<UartSampler::Received> UartSampler::advance(const Waves& waves, st
       receiving_ = false;  // a spike, not a start bit
     } else if (bit_ == Wave::kBits - 1) {
       receiving_ = false;
-      wants_idle_ = !level;
+      waits_for_idle_ = !level;
       const ByteStatus error = byte_ == 0 ? ByteStatus::Break : ByteStatus::FramingError;
       return Received{byte_, level ? ByteStatus::Good : error};
     } else if (bit_ != 0) {

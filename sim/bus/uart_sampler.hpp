@@ -48,14 +48,14 @@ class UartSampler {
   std::optional<Received> advance(const Waves& waves, std::uint32_t baud, VirtualTime until);
 
   /// Whether it is in the middle of a byte or waits for the line to become idle.
-  [[nodiscard]] bool busy() const { return receiving_ || wants_idle_; }
+  [[nodiscard]] bool busy() const { return receiving_ || waits_for_idle_; }
   /// The sampler has processed everything before this time.
   [[nodiscard]] VirtualTime position() const { return position_; }
   void skip_to(VirtualTime position) { position_ = position; }
 
  private:
   bool receiving_ = false;
-  bool wants_idle_ = false;
+  bool waits_for_idle_ = false;
   unsigned bit_ = 0;
   std::uint8_t byte_ = 0;
   VirtualTime start_{0};

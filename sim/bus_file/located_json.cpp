@@ -71,7 +71,7 @@ class Locator final : public nlohmann::json_sax<json> {
   }
   bool parse_error(std::size_t /*position*/, const std::string& /*token*/,
                    const nlohmann::detail::exception& error) override {
-    throw std::invalid_argument(told(error.what(), line_));
+    throw std::invalid_argument(located_message(error.what(), line_));
   }
 
  private:
@@ -85,7 +85,7 @@ class Locator final : public nlohmann::json_sax<json> {
   /// Turns a message of the parser into `LINE: what is wrong`. The message is either
   /// `[json.exception.parse_error.101] parse error at line 3, column 5: syntax error while ...` or, for other
   /// errors, `[json.exception.out_of_range.406] number overflow ...`
-  static std::string told(const std::string& text, unsigned line) {
+  static std::string located_message(const std::string& text, unsigned line) {
     const std::string lead = "] parse error at line ";
     const auto at = text.find(lead);
     if (at == std::string::npos) {

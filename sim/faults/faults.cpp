@@ -107,7 +107,7 @@ bool Faults::remove(std::size_t number) {
   const bool was_late = found->fault.trouble == Trouble::LateReply;
   armed_.erase(found);
   if (was_late) {
-    let_late_replies_go();
+    release_late_replies();
   }
   changed_ = true;
   act();
@@ -116,14 +116,14 @@ bool Faults::remove(std::size_t number) {
 
 void Faults::remove_all() {
   armed_.clear();
-  let_late_replies_go();
+  release_late_replies();
   changed_ = true;
   act();
 }
 
-void Faults::let_late_replies_go() {
+void Faults::release_late_replies() {
   for (const auto& module : modules_) {
-    module->let_late_replies_go();
+    module->release_late_replies();
   }
 }
 
@@ -231,7 +231,7 @@ std::size_t Faults::Armed::strikes_now() const {
       std::count_if(strikes.begin(), strikes.end(), [](const Strike& strike) { return !strike.waits; }));
 }
 
-bool Faults::Armed::befalls(std::size_t module) const {
+bool Faults::Armed::strikes_module(std::size_t module) const {
   return is_of(fault, module) && std::any_of(strikes.begin(), strikes.end(), [module](const Strike& strike) {
            return strike.reply_of.value_or(module) == module;
          });
@@ -333,7 +333,7 @@ void Faults::written(std::size_t module) {
 /// affects only that module.
 const Fault* Faults::striking(Trouble trouble, std::size_t module) const {
   for (const Armed& armed : armed_) {
-    if (armed.fault.trouble == trouble && armed.befalls(module)) {
+    if (armed.fault.trouble == trouble && armed.strikes_module(module)) {
       return &armed.fault;
     }
   }

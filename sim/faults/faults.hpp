@@ -81,7 +81,7 @@ class Faults final : public Station {
 
     /// Returns how many strikes are in progress, without those that wait.
     [[nodiscard]] std::size_t strikes_now() const;
-    [[nodiscard]] bool befalls(std::size_t module) const;
+    [[nodiscard]] bool strikes_module(std::size_t module) const;
   };
 
   ReplyFate reply_begins(std::size_t module);
@@ -90,7 +90,7 @@ class Faults final : public Station {
   void written(std::size_t module);
   void strike(Armed& armed, std::optional<std::size_t> reply_of);
   static void forget_others_of(Armed& armed, const Strike& latest);
-  void let_late_replies_go();
+  void release_late_replies();
   template <class Over>
   void end_strikes(Armed& armed, Over over);
   void say(const Armed& armed, const std::string& what) const;

@@ -19,7 +19,7 @@ Levels Noise::disturbed(const Sent& sent) {
     if (chance_.happens(rates_.flipped_bit)) {
       levels = static_cast<Levels>(levels ^ mask);
     }
-    if (sent.contended && (levels & mask) == 0 && chance_.happens(rates_.lost_in_a_fight)) {
+    if (sent.contended && (levels & mask) == 0 && chance_.happens(rates_.lost_in_contention)) {
       levels = static_cast<Levels>(levels | mask);
     }
   }

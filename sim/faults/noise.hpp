@@ -19,7 +19,7 @@ struct NoiseRates {
   /// After each character: a 00 follows, as the turn-around of a line produces it.
   double stray_zero = 0;
   /// For each 0 that is sent while another driver is enabled and holds the idle level.
-  double lost_in_a_fight = 0;
+  double lost_in_contention = 0;
 };
 
 /// The same seed and the same traffic produce the same noise.

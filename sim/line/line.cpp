@@ -42,7 +42,7 @@ void Line::come_up() {
   bus_.run_for(kComingUp);
 }
 
-void Line::expect_trouble(std::uint64_t seed, Faults::Notice notice) {
+void Line::configure_faults(std::uint64_t seed, Faults::Notice notice) {
   chance_ = Chance(seed);
   notice_ = std::move(notice);
 }

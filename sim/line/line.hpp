@@ -48,7 +48,7 @@ class Line {
   SimulatedModule& module(std::size_t index) { return *modules_[index]; }
   [[nodiscard]] const SimulatedModule& module(std::size_t index) const { return *modules_[index]; }
   /// Sets the seed of all random faults; `notice` gets the messages about faults. Call it before `faults`.
-  void expect_trouble(std::uint64_t seed, Faults::Notice notice);
+  void configure_faults(std::uint64_t seed, Faults::Notice notice);
   /// Returns the faults of this line. The first call attaches them to the bus.
   Faults& faults();
   /// Returns null if `faults` has not been called yet; changes nothing.

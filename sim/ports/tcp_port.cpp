@@ -144,8 +144,8 @@ void TcpPort::make_room() {
 /// Tries again after 100 ms, because the process has no free file descriptor. Immediate retries would use all
 /// of the processor's time.
 void TcpPort::accept_later() {
-  constexpr std::chrono::milliseconds kPatience{100};
-  next_try_.expires_after(kPatience);
+  constexpr std::chrono::milliseconds kAcceptRetryDelay{100};
+  next_try_.expires_after(kAcceptRetryDelay);
   next_try_.async_wait([this](const boost::system::error_code& error) {
     if (!error) {
       accept();

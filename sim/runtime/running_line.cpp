@@ -46,7 +46,7 @@ RunningLine::RunningLine(boost::asio::io_context& io, const LineSetup& setup, st
   introduce();
   open_ports(io, stepped);
   record_ = std::make_unique<LineRecord>(*line_, log_name(), format, print_);
-  line_->expect_trouble(seed, [this](const std::string& text) { record_->note(text); });
+  line_->configure_faults(seed, [this](const std::string& text) { record_->note(text); });
   with_place(place_of(setup.places, "fault"), [&] { begin_programs(*line_, setup); });
 }
 

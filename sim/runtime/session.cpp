@@ -212,8 +212,8 @@ void Session::start() {
 /// Whether the run has an end. A duration of more than a century on the wall clock counts as endless, because
 /// the clock's range is finite.
 bool Session::ends() const {
-  constexpr auto kNobodyWaits = std::chrono::hours(24 * 365 * 100);
-  return setup_.lasts && (!setup_.speed.paced() || *setup_.lasts / setup_.speed.factor < kNobodyWaits);
+  constexpr auto kLongestRun = std::chrono::hours(24 * 365 * 100);
+  return setup_.lasts && (!setup_.speed.paced() || *setup_.lasts / setup_.speed.factor < kLongestRun);
 }
 
 /// The timer expires some time after the end. The lines' records end exactly.
@@ -243,7 +243,7 @@ void Session::stand_still() {
   stepper_ = std::make_unique<Stepper>(std::move(lines), end, [this] { return stop_signals_.arrived(); });
 }
 
-void Session::run_as_fast_as_it_can() {
+void Session::run_unpaced() {
   constexpr VirtualTime kStep = std::chrono::milliseconds(100);
   for (VirtualTime now{0}; now < *setup_.lasts && !io_.stopped();) {
     now = std::min(now + kStep, *setup_.lasts);

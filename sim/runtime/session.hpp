@@ -44,9 +44,9 @@ class Session {
   void start();
   /// For lines that do not follow a clock: processes all events in the duration of `setup`, unless `io` is
   /// stopped.
-  void run_as_fast_as_it_can();
-  /// Records the frames that are still in progress. Call it after `start` or `run_as_fast_as_it_can`. Throws
-  /// like the constructor.
+  void run_unpaced();
+  /// Records the frames that are still in progress. Call it after `start` or `run_unpaced`. Throws like the
+  /// constructor.
   void finish();
 
  private:

@@ -89,7 +89,7 @@ sim::NoiseRates only(double sim::NoiseRates::*what, double rate) {
 }
 
 void late_driver(NoisyLine& noisy, std::uint64_t exchanges) {
-  noisy.noise().set_rates(only(&sim::NoiseRates::lost_in_a_fight, 0.5));
+  noisy.noise().set_rates(only(&sim::NoiseRates::lost_in_contention, 0.5));
   for (std::uint64_t i = 0; i < exchanges; ++i) {
     noisy.line().module(0).release_driver_late(microseconds(noisy.below(5000)));
     ask(noisy);

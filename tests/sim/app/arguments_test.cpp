@@ -134,7 +134,7 @@ TEST(Arguments, TheModulesMayBeWatched) {
 }
 
 /// A user of `sim/run`, which passes both options, may repeat them.
-TEST(Arguments, OfSeveralPanelsAndLogsTheLastCounts) {
+TEST(Arguments, TheLastPanelAndLogOptionWins) {
   EXPECT_EQ(all_accepted({"EX9042D", "--panel", "--log", "--panel", "8080"}).panel->port, 8080);
   EXPECT_EQ(all_accepted({"EX9042D", "--panel", "--log", "--log", "json"}).log, LogFormat::Json);
   const auto without = all_accepted({"EX9042D", "--panel", "--log", "--panel", "off", "--log", "off"});
@@ -143,7 +143,7 @@ TEST(Arguments, OfSeveralPanelsAndLogsTheLastCounts) {
   expect_error({"EX9042D", "--tcp", "0", "--tcp", "0"}, "--tcp", "--help");
 }
 
-TEST(Arguments, BehindTheLogsFormatAndInItsPlaceThereMayBeAModule) {
+TEST(Arguments, AModuleMayFollowTheLogOption) {
   EXPECT_EQ(accepted({"--log", "json", "EX9042D"}).modules.size(), 1U);
   EXPECT_EQ(accepted({"--log", "EX9042D", "EX9052D@02"}).modules.size(), 2U);
 }
@@ -351,7 +351,7 @@ play::Task task_of(const std::vector<const char*>& words) {
   return parsed.task.value_or(play::Task());
 }
 
-TEST(Arguments, WhatPlayIsToldStandsBehindIt) {
+TEST(Arguments, PlayOptionsFollowTheSubcommand) {
   const play::Task task =
       task_of({"play", "s.txt", "EX9042D", "--capture", "c", "--log", "json", "--seed", "7"});
   EXPECT_EQ(task.path, "s.txt");
@@ -375,7 +375,7 @@ TEST(Arguments, WhatPlayIsToldStandsBehindIt) {
   expect_error({"--echo", "play", "s.txt"}, "play: --echo comes before the subcommand", "leave it out");
 }
 
-TEST(Arguments, WhatDescribeIsToldStandsBehindIt) {
+TEST(Arguments, DescribeOptionsFollowTheSubcommand) {
   expect_error({"--tcp", "5020", "describe", "EX9042D-M"}, "describe: --tcp comes before the subcommand",
                "move it after 'describe'");
   expect_error({"--log", "describe"}, "describe: --log comes before the subcommand", "leave it out");
@@ -394,7 +394,7 @@ TEST(Arguments, TheExampleIsPrintedAndIsABusFile) {
   EXPECT_EQ(parse_bus_file("example", printed({"--example"})).lines.size(), 2U);
 }
 
-TEST(Arguments, HelpTellsOfFaultsInputsAndControlCommandsAsTheyAreTold) {
+TEST(Arguments, HelpContainsFaultsAndControlCommands) {
   const std::string text = printed({"--help"});
   EXPECT_NE(text.find(fault_help()), std::string::npos);
   EXPECT_NE(text.find(control_commands()), std::string::npos);
@@ -462,7 +462,7 @@ TEST(Arguments, DescribeHasHelpOfItsOwn) {
 
 TEST(Arguments, VersionIsTheFirmwares) { EXPECT_EQ(printed({"--version"}), "ex9000-sim D01.00\n"); }
 
-TEST(Arguments, BesideWhatIsPrintedThereIsNothingElse) {
+TEST(Arguments, PrintingOptionsRejectOtherArguments) {
   EXPECT_EQ(printed({"EX9042D", "--version"}), printed({"--version"}));
   expect_error({"--models", "EX9042D"}, "--models: prints and runs nothing", "leave out EX9042D");
   expect_error({"--example", "--log"}, "--example: prints and runs nothing", "leave out --log");

@@ -31,7 +31,7 @@ using std::chrono::microseconds;
 
 constexpr std::size_t kImageSize = 8192;
 /// A timeout for replies. Only a program that hangs reaches it.
-constexpr std::chrono::seconds kPatience{60};
+constexpr std::chrono::seconds kReplyTimeout{60};
 
 bool has(const std::string& text, const std::string& part) { return text.find(part) != std::string::npos; }
 
@@ -46,7 +46,7 @@ class Simulator {
   /// Sends a command and returns its reply, both without CR.
   std::string ask(const std::string& command) {
     type(command);
-    const std::string reply = terminal_.read_line(kPatience);
+    const std::string reply = terminal_.read_line(kReplyTimeout);
     return reply.substr(0, reply.find('\r'));
   }
   std::string tell(const std::string& command) { return control_.ok(command); }
@@ -351,9 +351,9 @@ class Stores {
 };
 
 /// Checks which settings a module has after each of many power failures.
-class Ordeal {
+class PowerFailureChecker {
  public:
-  explicit Ordeal(unsigned seed) : stores_(seed) {}
+  explicit PowerFailureChecker(unsigned seed) : stores_(seed) {}
 
   [[nodiscard]] std::string module() const { return "EX9042D" + image_in(directory_); }
 
@@ -423,47 +423,47 @@ class Ordeal {
 };
 
 TEST(Persistence, WheneverTheProgramIsKilledACommandIsWholeAndAnAcknowledgedOneIsDone) {
-  Ordeal ordeal(1);
+  PowerFailureChecker checker(1);
   for (int round = 0; round < 60 && !HasFailure(); ++round) {
-    Simulator simulator({ordeal.module()});
-    ordeal.check(simulator);
-    ordeal.begin_cut(simulator);
+    Simulator simulator({checker.module()});
+    checker.check(simulator);
+    checker.begin_cut(simulator);
     simulator.process().end(SIGKILL);
   }
-  Simulator simulator({ordeal.module()});
-  ordeal.check(simulator);
-  ordeal.report("SIGKILL");
+  Simulator simulator({checker.module()});
+  checker.check(simulator);
+  checker.report("SIGKILL");
 }
 
 TEST(Persistence, WheneverThePowerFailsACommandIsWholeAndAnAcknowledgedOneIsDone) {
-  Ordeal ordeal(2);
-  Simulator simulator({ordeal.module()});
+  PowerFailureChecker checker(2);
+  Simulator simulator({checker.module()});
   for (int round = 0; round < 40 && !HasFailure(); ++round) {
-    ordeal.check(simulator);
-    ordeal.begin_cut(simulator);
+    checker.check(simulator);
+    checker.begin_cut(simulator);
     simulator.power_cycle();
   }
-  ordeal.check(simulator);
-  ordeal.report("power off");
+  checker.check(simulator);
+  checker.report("power off");
 }
 
 TEST(Persistence, APowerCutAndAKillUponItLeaveNoMoreThanEither) {
-  Ordeal ordeal(3);
+  PowerFailureChecker checker(3);
   for (int round = 0; round < 15 && !HasFailure(); ++round) {
-    Simulator simulator({ordeal.module()});
-    ordeal.check(simulator);
-    if (ordeal.toss()) {
-      ordeal.begin_cut(simulator);
+    Simulator simulator({checker.module()});
+    checker.check(simulator);
+    if (checker.toss()) {
+      checker.begin_cut(simulator);
       simulator.power_cycle();
-      ordeal.check(simulator);
+      checker.check(simulator);
     }
-    ordeal.begin_cut(simulator);
+    checker.begin_cut(simulator);
     simulator.power_off();
     simulator.process().end(SIGKILL);
   }
-  Simulator simulator({ordeal.module()});
-  ordeal.check(simulator);
-  ordeal.report("power off and SIGKILL");
+  Simulator simulator({checker.module()});
+  checker.check(simulator);
+  checker.report("power off and SIGKILL");
 }
 
 // --- files that the program rejects ---

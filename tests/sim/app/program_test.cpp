@@ -171,7 +171,7 @@ TEST(Program, WrongArgumentsGiveOneLineThatNamesThemExitStatus2AndLeaveNothingBe
   }
 }
 
-TEST(Program, WhatIsCenturiesAheadIsSleptFor) {
+TEST(Program, AnEventInCenturiesUsesNoProcessorTime) {
   // A year at the lowest speed takes a thousand years, which is more than a clock can count. Without power
   // there is no earlier event.
   for (const std::vector<std::string>& far :

@@ -83,7 +83,7 @@ TEST_F(ModuleWireTest, LetsWhatIsLateGoAtOnce) {
   reply(5ms, 'a');
   reply(10ms, 'b');
   run_until(20ms);
-  wire.hurry();
+  wire.end_first_delay();
   fate.late_by = 0ms;
   run_until(30ms);
   EXPECT_EQ(wires.happened, (Happened{"20 on", "20 a 9600", "21 off", "25 on", "25 b 9600", "26 off"}));
@@ -97,7 +97,7 @@ TEST_F(ModuleWireTest, RemembersNoMoreLateRepliesThanABoundAndGoesOnBehindThem) 
   for (int i = 0; i < 30'000; ++i) {
     reply(5ms, 'a');
   }
-  wire.hurry();
+  wire.end_first_delay();
   run_until(2h);
   EXPECT_LT(wires.happened.size(), 66'000U);
   EXPECT_GT(wires.happened.size(), 65'000U);

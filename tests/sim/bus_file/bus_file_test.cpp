@@ -399,7 +399,7 @@ TEST(BusFile, WhatIsWrongWithItOnlyInTheRunIsRefusedWithItsPlace) {
             "ex9000-sim: --speed: step requires 'control', because only the control socket moves the time\n");
 }
 
-TEST(BusFile, StandsAloneOnTheCommandLineButForWhatIsOfNoLine) {
+TEST(BusFile, RejectsLineOptionsOnTheCommandLine) {
   const system::Directory directory;
   const std::string path = directory / "bus.json";
   system::write_file(path, example_bus_file());

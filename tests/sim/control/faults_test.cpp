@@ -30,7 +30,7 @@ TEST(ControlFault, TheListTellsWhatStrikesHowOftenAndWhom) {
   EXPECT_TRUE(modules.at(1).powered());
 }
 
-TEST(ControlFault, WhoeverIsGoneHasNoPowerUntilItIsBackAndTheSwitchIsAnotherMatter) {
+TEST(ControlFault, GoneIsIndependentOfThePowerSwitch) {
   ControlBench bench("EX9042D");
   bench.tell("1 fault gone");
   EXPECT_TRUE(bench.status_has("power=off"));

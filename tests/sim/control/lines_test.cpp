@@ -143,7 +143,7 @@ TEST(ControlLines, ARateIsOfTheLineThatIsNamed) {
   EXPECT_EQ(lines.hall().master().baud(), 9600U);
 }
 
-TEST(ControlLines, WhatIsOfALineWantsItsName) {
+TEST(ControlLines, LineCommandsRequireTheLineName) {
   TwoLines lines;
   for (const char* command : {"fault gone", "faults", "fault off all", "baud 9600", "sent"}) {
     EXPECT_EQ(lines.tell(command), "error: there are several lines; put 'line NAME' before the command")

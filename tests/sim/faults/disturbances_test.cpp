@@ -86,10 +86,10 @@ TEST(Noise, OfStrayZerosPutsOneRightBehindTheLastCharacter) {
   EXPECT_EQ(line.heard, (Heard{{0x41, ByteStatus::Good}, {0x00, ByteStatus::Good}}));
 }
 
-TEST(Noise, InAFightTakesTheZerosOfWhoIsNotAlone) {
+TEST(Noise, LosesZerosWhileAnotherDriverIsEnabled) {
   TwoOnALine line;
   NoiseRates rates;
-  rates.lost_in_a_fight = 1;
+  rates.lost_in_contention = 1;
   const Noise noise(line.bus, rates, 1);
   line.send({0x41});
   EXPECT_EQ(line.heard, (Heard{{0x41, ByteStatus::Good}}));

@@ -23,7 +23,7 @@ class FaultBench {
         }) {
     line_.bus().observe(recorder_);
     line_.come_up();
-    line_.expect_trouble(seed, [this](const std::string& text) { notices_.push_back(text); });
+    line_.configure_faults(seed, [this](const std::string& text) { notices_.push_back(text); });
   }
 
   /// Adds a fault of the line, or of the module at `position`, counted from 1. Returns its number.

@@ -51,15 +51,15 @@ TEST(FaultsList, TellsWhatStrikesNowAndHowOftenItHas) {
   bench.add("lost-reply every reply", 1);
   bench.ask("$01M");
   bench.run_until(1500ms);
-  const std::vector<Faults::Info> told = bench.faults().list();
-  ASSERT_EQ(told.size(), 2U);
-  EXPECT_EQ(told[0].number, 1U);
-  EXPECT_EQ(told[0].text, "gone at 1s for 1s");
-  EXPECT_EQ(told[0].module, 1U);
-  EXPECT_EQ(told[0].strikes, 1U);
-  EXPECT_EQ(told[0].strikes_so_far, 1U);
-  EXPECT_EQ(told[1].strikes, 0U);
-  EXPECT_EQ(told[1].strikes_so_far, 1U);
+  const std::vector<Faults::Info> infos = bench.faults().list();
+  ASSERT_EQ(infos.size(), 2U);
+  EXPECT_EQ(infos[0].number, 1U);
+  EXPECT_EQ(infos[0].text, "gone at 1s for 1s");
+  EXPECT_EQ(infos[0].module, 1U);
+  EXPECT_EQ(infos[0].strikes, 1U);
+  EXPECT_EQ(infos[0].strikes_so_far, 1U);
+  EXPECT_EQ(infos[1].strikes, 0U);
+  EXPECT_EQ(infos[1].strikes_so_far, 1U);
   bench.run_until(2s);
   EXPECT_EQ(bench.faults().list()[0].strikes, 0U);
 }

@@ -28,7 +28,7 @@ class InputBench {
       : program_(parsed(program)),
         line_({parse_module_spec("EX9052D,edge=" + edge)}, kPaced, [](std::uint8_t, ByteStatus) {}) {
     line_.come_up();
-    line_.expect_trouble(seed, [](const std::string&) {});
+    line_.configure_faults(seed, [](const std::string&) {});
     line_.move_input(0, program_);
   }
 

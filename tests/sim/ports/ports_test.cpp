@@ -97,7 +97,7 @@ std::string heard_by_asking_again(SocketClient& client, const std::string& reque
   return heard;
 }
 
-TEST_P(Tcp, WhoGoesWithAResetBehindARequestDoesNoHarm) {
+TEST_P(Tcp, AClientThatResetsItsConnectionDoesNoHarm) {
   SimulatorProcess simulator({"EX9042D@05", "--tcp", "0", "--line", GetParam()});
   SocketClient other(simulator.tcp_port());
   for (int visit = 0; visit < 20; ++visit) {

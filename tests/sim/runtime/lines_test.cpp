@@ -207,7 +207,7 @@ TEST(Lines, FilesAreMadeForAllModulesOrForNone) {
   }
 }
 
-TEST(Lines, WhatCannotBeOpenedIsToldOfWithWhereItIsAskedFor) {
+TEST(Lines, PortErrorNamesItsPlaceInTheBusFile) {
   const BusFile file(
       "{\"lines\": [\n"
       "{\"tcp\": 0, \"modules\": [{\"model\": \"EX9042D\"}]},\n"
@@ -248,7 +248,7 @@ TEST(Lines, AModulesEepromIsToldOfWithItsPlaceInTheFile) {
   }
 }
 
-TEST(Lines, SoIsWhatBelongsToAllLinesUnlessTheCommandLineAsksForIt) {
+TEST(Lines, GlobalErrorsNameTheBusFileOrTheOption) {
   const SimulatorProcess other({"EX9042D", "--panel", "0"});
   const std::string address = other.output().substr(0, other.output().find("/\n"));
   const std::string port = address.substr(address.rfind(':') + 1);

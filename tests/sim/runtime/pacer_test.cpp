@@ -24,9 +24,9 @@ const FrameBytes kInputs2 = with_crc({0x02, 0x02, 0x00, 0x00, 0x00, 0x08});
 const FrameBytes kAllFirstOn = with_crc({0x00, 0x05, 0x00, 0x00, 0xFF, 0x00});
 
 /// A port that delivers bytes at once and discards the replies.
-class Ear final : public Port {
+class ImmediatePort final : public Port {
  public:
-  explicit Ear(Received& received) : received_(received) {}
+  explicit ImmediatePort(Received& received) : received_(received) {}
   void start(Received received) override { received_ = std::move(received); }
   void resume() override {}
   std::size_t send(const std::vector<std::uint8_t>& /*bytes*/) override { return 0; }
@@ -41,7 +41,7 @@ constexpr Pace kSlow{VirtualTime(0), VirtualTime(0), true, 0.05};
 class PacedLine : public testing::Test {
  protected:
   PacedLine() {
-    ports_.push_back(std::make_unique<Ear>(received_));
+    ports_.push_back(std::make_unique<ImmediatePort>(received_));
     pacer_.emplace(io_, line_, ports_, nullptr, kSlow, [](const std::string& /*text*/) {});
     line_.bus().observe(recorder_);
     line_.come_up();

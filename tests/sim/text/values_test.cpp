@@ -98,7 +98,7 @@ TEST(BaudRate, IsOneThatAModuleCanHave) {
                  "a baud rate: 1200, 2400, 4800, 9600, 19200, 38400, 57600 or 115200");
 }
 
-TEST(BaudRate, IsToldOfInFullWhereItIsWrong) {
+TEST(BaudRate, AWrongRateIsRejectedWithAllRates) {
   std::string rates;
   for (const std::uint32_t rate : kBaudRates) {
     rates += (rates.empty() ? "" : rate == kBaudRates.back() ? " or " : ", ") + std::to_string(rate);
