@@ -22,7 +22,7 @@ def wrong_properties(node):
             yield f"{key} is no property of {node['type']}"
     for key in known["required"]:
         if key not in node:
-            yield f"{node['type']} wants {key}"
+            yield f"{node['type']} requires {key}"
     for key, values in known.get("values", {}).items():
         if key in node and node[key] not in values:
             yield f"{key} of {node['type']} is {node[key]}"
@@ -38,7 +38,7 @@ def wrong_wires(node, nodes):
         yield f"{node['type']} has {known['outputs']} outputs"
     for target in (target for output in node["wires"] for target in output):
         if target not in nodes or KNOWN["nodes"][nodes[target]["type"]].get("inputs", 0) == 0:
-            yield f"a wire of {node['id']} leads nowhere"
+            yield f"a wire of {node['id']} has no valid target"
     if nodes.get(node["z"], {}).get("type") != "tab":
         yield f"{node['id']} is on no tab"
     if "server" in node and nodes.get(node["server"], {}).get("type") != "modbus-client":
