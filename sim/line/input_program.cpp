@@ -67,7 +67,7 @@ void read_square(std::istringstream& words, InputProgram& program) {
   Times times(words);
   program.high = times.take("for").value_or(program.time / 2);
   program.bounce = times.take("bounce").value_or(VirtualTime(0));
-  times.reject_unknown("'for TIME', how long it is on, or 'bounce TIME'");
+  times.reject_unknown("'for TIME' for how long the input is on, or 'bounce TIME'");
 }
 
 void read_key(std::istringstream& words, InputProgram& program) {
@@ -77,8 +77,12 @@ void read_key(std::istringstream& words, InputProgram& program) {
   const auto high = times.take("for");
   program.bounce = times.take("bounce").value_or(VirtualTime(0));
   times.reject_unknown("'at TIME', 'every TIME', 'for TIME' or 'bounce TIME'");
-  if (at.has_value() == every.has_value() || !high) {
-    fail("a key requires 'at TIME' or 'every TIME', and 'for TIME', how long it is pressed");
+  if (at && every) {
+    fail("'at' and 'every' cannot be combined; leave out one of them");
+  }
+  if ((!at && !every) || !high) {
+    fail(
+        "a key is incomplete; expected 'at TIME' or 'every TIME', and 'for TIME' for how long it is pressed");
   }
   program.kind = at ? InputProgram::Kind::KeyOnce : InputProgram::Kind::KeyAgain;
   program.time = at ? *at : *every;
@@ -94,7 +98,7 @@ void check(const InputProgram& program) {
   }
   const bool periodic = program.kind != InputProgram::Kind::KeyOnce;
   if (periodic && program.time < program.high + program.bounce + kShortest) {
-    fail("its period is too short; it must be off again before the next");
+    fail("the period is too short; the input must be off again before the next period");
   }
 }
 
@@ -110,11 +114,14 @@ unsigned parse_input(const std::string& text, const Model& model) {
 }
 
 InputProgram parse_input_program(const std::string& text, const Model& model) {
+  std::istringstream words(text);
+  std::string channel;
+  if (!(words >> channel)) {
+    fail("the channel is missing; expected 'CHANNEL square PERIOD' or 'CHANNEL key at TIME for TIME'");
+  }
   try {
-    std::istringstream words(text);
-    std::string channel;
     std::string kind;
-    words >> channel >> kind;
+    words >> kind;
     InputProgram program;
     program.channel = parse_input(channel, model);
     if (kind == "square") {

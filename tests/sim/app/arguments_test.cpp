@@ -264,7 +264,7 @@ TEST(Arguments, AWrongInputIsRefused) {
   for (const auto& [text, wrong, mend] : std::vector<std::array<const char*, 3>>{
            {"", "--input", "a module's position before it"},
            {"square 100ms", "'square 100ms'", "for example 1 0 square 100ms"},
-           {"1", "--input: ", "0 to 7"},
+           {"1", "ex9000-sim: --input: the channel is missing; ", "'CHANNEL square PERIOD'"},
            {"0 0 square 1s", "no module 0", "there are 1 to 1"},
            {"2 0 square 1s", "no module 2", "there are 1 to 1"},
            {"99999999999 0 square 1s", "no module 99999999999", "there are 1 to 1"},

@@ -91,7 +91,7 @@ TEST(InputProgram, AWrongOneIsRefusedWithWhatIsWrongAndTheMend) {
     const char* mend;
   };
   for (const Refused& wrong : std::vector<Refused>{
-           {"", "no input ''", "0 to 7"},
+           {"", "the channel is missing", "expected 'CHANNEL square PERIOD'"},
            {"8 square 1s", "no input '8'", "0 to 7"},
            {"-1 square 1s", "no input '-1'", "0 to 7"},
            {"0x1 square 1s", "no input '0x1'", "0 to 7"},
@@ -103,16 +103,16 @@ TEST(InputProgram, AWrongOneIsRefusedWithWhatIsWrongAndTheMend) {
            {"0 square 1s for", "expected a duration", "after 'for'"},
            {"0 square 1s for 1ms for 1ms", "'for' is given twice", "leave out one of them"},
            {"0 square 10us", "expected to be on", "at least 10us"},
-           {"0 square 1s for 1s", "its period is too short", "it must be off again"},
-           {"0 square 1s for 999.991ms", "its period is too short", "it must be off again"},
+           {"0 square 1s for 1s", "the period is too short", "the input must be off again"},
+           {"0 square 1s for 999.991ms", "the period is too short", "the input must be off again"},
            {"0 square 1s bounce 600ms", "expected to be on", "not shorter than its bounce"},
            {"0 square 1s bounce 5us", "expected a bounce", "at least 10us"},
-           {"0 key", "a key requires", "'at TIME'"},
-           {"0 key at 1s", "a key requires", "'for TIME'"},
-           {"0 key for 1s", "a key requires", "'every TIME'"},
-           {"0 key at 1s every 2s for 1ms", "a key requires", "'at TIME' or 'every TIME'"},
+           {"0 key", "a key is incomplete", "'at TIME'"},
+           {"0 key at 1s", "a key is incomplete", "'for TIME'"},
+           {"0 key for 1s", "a key is incomplete", "'every TIME'"},
+           {"0 key at 1s every 2s for 1ms", "'at' and 'every' cannot be combined", "leave out one of them"},
            {"0 key at 1s for 1ms loud 1s", "'loud': expected 'at TIME'", "'bounce TIME'"},
-           {"0 key every 1s for 1s", "its period is too short", "it must be off again"},
+           {"0 key every 1s for 1s", "the period is too short", "the input must be off again"},
        }) {
     const std::string why = refusal([&] { parsed(wrong.text); });
     EXPECT_EQ(why.rfind(wrong.text, 0), 0U) << why;
