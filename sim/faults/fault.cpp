@@ -51,7 +51,7 @@ constexpr std::array<Row, 13> kRows{{
     {"stray-zeros", "P", Trouble::StrayZeros, false, take_probability,
      "adds 00 after a byte with this probability, like the turn-around of a line"},
     {"echo", "TIME", Trouble::Echo, false, take_silence,
-     "repeats everything that was sent after this silence"},
+     "repeats everything that was sent, after this silence"},
     {"foreign-traffic", "HEX", Trouble::ForeignTraffic, false, take_bytes,
      "sends these bytes, as another device would"},
     {"lost-reply", "", Trouble::LostReply, true, take_nothing, "drops the reply"},
@@ -185,14 +185,14 @@ void check(const Fault& fault) {
   const bool lasting = fault.trouble != Trouble::ForeignTraffic && fault.trouble != Trouble::Hang &&
                        fault.trouble != Trouble::PowerCut;
   if (schedule.when == Schedule::When::EveryTime && lasting && !schedule.lasts) {
-    fail("requires 'for TIME', because it lasts");
+    fail("has no end; add 'for TIME'");
   }
   if (schedule.when == Schedule::When::EveryTime && schedule.lasts && *schedule.lasts >= schedule.time) {
     fail("'for' is not shorter than the period; shorten it");
   }
   if (schedule.of_replies() && (fault.trouble == Trouble::Gone || fault.trouble == Trouble::WrongRate) &&
       !schedule.lasts) {
-    fail("requires 'for TIME', because it lasts");
+    fail("has no end; add 'for TIME'");
   }
   if (schedule.lasts && (fault.trouble == Trouble::ForeignTraffic || fault.trouble == Trouble::Hang)) {
     fail("'for': this fault takes no time; leave it out");
@@ -219,7 +219,7 @@ Fault parse_fault(const std::string& text) {
     std::size_t used = 1;
     if (!row.value.empty()) {
       if (words.size() == 1) {
-        fail("requires " + std::string(row.value) + " after it");
+        fail("has no value; add " + std::string(row.value) + " after it");
       }
       row.take(fault, words[used++]);
     }

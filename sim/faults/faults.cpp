@@ -58,7 +58,8 @@ std::size_t Faults::add(const Fault& fault) {
     armed.begins = now;
   } else if (schedule.when == When::At) {
     if (schedule.time < now) {
-      throw std::invalid_argument(fault.text + ": that time is over; it is " + time_text(now) + " now");
+      throw std::invalid_argument(fault.text + ": the time has passed; expected a time from " +
+                                  time_text(now) + " on");
     }
     armed.begins = schedule.time;
   } else if (schedule.when == When::EveryTime) {

@@ -110,14 +110,15 @@ void EepromFile::create(const std::vector<std::uint8_t>& image) {
   std::string draft = path_ + ".XXXXXX";
   fd_ = mkostemp(draft.data(), O_CLOEXEC);
   if (fd_ < 0) {
-    refuse("cannot be made: " + reason() + "; name a path that can be written");
+    refuse("cannot be created: " + reason() + "; name a path that can be written");
   }
   const bool made = fchmod(fd_, 0666 & ~file_mask()) == 0 && write(0, {image.data(), image.size()}) &&
                     flock(fd_, LOCK_EX | LOCK_NB) == 0 && link(draft.c_str(), path_.c_str()) == 0;
-  const std::string why = errno == EEXIST ? "it came up meanwhile, or is a link to nowhere" : reason();
+  const std::string why =
+      errno == EEXIST ? "the file was created meanwhile, or the path is a dangling link" : reason();
   unlink(draft.c_str());
   if (!made) {
-    refuse("cannot be made: " + why + "; name a path that can be written");
+    refuse("cannot be created: " + why + "; name a path that can be written");
   }
 }
 

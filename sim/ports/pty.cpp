@@ -38,7 +38,8 @@ void remove_stale(const std::string& link, const Claim& claim) {
   }
   const auto target = link_target(link);
   if (!target || target->rfind("/dev/pts/", 0) != 0) {
-    throw std::invalid_argument(link + ": something else is there; remove it or name another path");
+    throw std::invalid_argument(
+        link + ": exists and is not a link to a pseudo-terminal; remove it or name another path");
   }
   unlink(link.c_str());
 }
@@ -91,7 +92,7 @@ void Pty::make(std::uint32_t baud) {
   std::array<char, 64> name{};
   if (master_ < 0 || grantpt(master_) != 0 || unlockpt(master_) != 0 ||
       ptsname_r(master_, name.data(), name.size()) != 0) {
-    throw std::runtime_error(link_ + ": cannot make a pseudo-terminal: " + reason());
+    throw std::runtime_error(link_ + ": cannot create a pseudo-terminal: " + reason());
   }
   device_ = name.data();
   if (!Slave(device_).set_up(baud)) {

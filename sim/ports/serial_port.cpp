@@ -41,7 +41,7 @@ void set_up(int fd, const std::string& device, std::uint32_t baud) {
     refuse("is not a serial port; name one, for example /dev/ttyUSB0");
   }
   if (flock(fd, LOCK_EX | LOCK_NB) != 0 || ioctl(fd, TIOCEXCL) != 0) {
-    refuse("another program has it; end that or name another port");
+    refuse("another program uses it; end that program or name another port");
   }
   cfmakeraw(&settings);
   // No XON/XOFF, because XOFF would go out on the line; no parity check, because bytes with errors count too.
@@ -64,7 +64,7 @@ int open_port(const std::string& device, std::uint32_t baud) {
   if (fd < 0) {
     throw std::invalid_argument(device + ": " +
                                 (errno == EBUSY
-                                     ? "another program has it; end that or name another port"
+                                     ? "another program uses it; end that program or name another port"
                                      : reason() + "; name a serial port that can be read and written"));
   }
   try {
@@ -105,7 +105,7 @@ void SerialPort::read() {
           return;
         }
         if (error) {
-          throw std::runtime_error(where_ + ": " + error.message() + "; the port has gone");
+          throw std::runtime_error(where_ + ": " + error.message() + "; the port has disappeared");
         }
         take(size);
         if (!paused_) {

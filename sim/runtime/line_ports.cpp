@@ -35,7 +35,7 @@ void LinePorts::report_dropped(const Port& port, std::size_t bytes) {
   } else if (bytes != 0 && known == full_.end()) {
     full_.push_back(&port);
     notice_("a port is full: " + std::to_string(bytes) +
-            " bytes are dropped, and all that follow until its master reads");
+            " bytes are dropped; all later bytes are dropped too until its master reads");
   }
 }
 

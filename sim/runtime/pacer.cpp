@@ -132,7 +132,7 @@ void Pacer::report_delay(VirtualTime next) {
     longest_delay_ = delay;
     notice_("the host was late by " +
             time_text(std::chrono::duration_cast<std::chrono::milliseconds>(delay)) +
-            ": modules reply later, and frames that a master sent apart may reach them as one");
+            ": modules reply later, and separate frames of a master may reach them as one frame");
   }
 }
 
@@ -140,8 +140,8 @@ void Pacer::report_joined(Bytes bytes) {
   const Bytes rest = bytes.from(first_frame_size(bytes));
   if (rest.size != 0 && crc16(rest).value() == 0) {
     notice_(
-        "two Modbus frames were read in one piece, and modules take them for one: the master left no silence"
-        " between them, or the host was late");
+        "two Modbus frames were read in one piece, and modules treat them as one frame: the master left no "
+        "silence between them, or the host was late");
   }
 }
 

@@ -125,7 +125,8 @@ std::string RunningLine::remark(std::size_t index) const {
   }
   const Module& module = line_->module(index).module();
   if (module.settings_unreadable()) {
-    return file->path() + " holds no settings of this model: factory settings until some are stored";
+    return file->path() +
+           " contains no settings of this model; the module uses factory settings until it stores new ones";
   }
   const bool overruled = spec.settings_given && module.state().settings != spec.settings;
   const bool of_a_bus_file = !setup_.places.empty();

@@ -86,7 +86,7 @@ TEST(ControlFault, ARefusalNamesWhatIsWrongAndTheMend) {
                   "concerns the line, not a module; leave out the module's number"));
   EXPECT_TRUE(has(bench.tell("fault off 7"), "no fault 7 on this line; 'faults' lists them"));
   EXPECT_TRUE(has(bench.tell("fault off"), "expected fault off K|all"));
-  EXPECT_TRUE(has(bench.tell("fault gone at 1ms"), "that time is over; it is 100ms now"));
+  EXPECT_TRUE(has(bench.tell("fault gone at 1ms"), "the time has passed; expected a time from 100ms on"));
   EXPECT_TRUE(has(bench.tell("line hall faults"), "no line 'hall'; the only line has no name"));
 }
 

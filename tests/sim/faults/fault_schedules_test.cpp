@@ -42,7 +42,8 @@ TEST(FaultsSchedule, AMomentIsExactAndCountsFromTheLinesBegin) {
 TEST(FaultsSchedule, AMomentThatIsOverIsRefused) {
   FaultBench bench;
   bench.run_until(2s);
-  EXPECT_EQ(refusal([&] { bench.add("gone at 1.5s"); }), "gone at 1.5s: that time is over; it is 2s now");
+  EXPECT_EQ(refusal([&] { bench.add("gone at 1.5s"); }),
+            "gone at 1.5s: the time has passed; expected a time from 2s on");
   EXPECT_TRUE(bench.faults().list().empty());
   EXPECT_EQ(bench.add("gone at 2s"), 1U);
   EXPECT_FALSE(bench.at(1).powered());

@@ -354,7 +354,7 @@ TEST(SerialPort, WhenItGoesTheProgramEndsAndSaysSo) {
   cable.pull();
   EXPECT_EQ(simulator.wait(), 1);
   EXPECT_NE(simulator.output().find("--serial " + cable.device()), std::string::npos) << simulator.output();
-  EXPECT_NE(simulator.output().find("the port has gone"), std::string::npos) << simulator.output();
+  EXPECT_NE(simulator.output().find("the port has disappeared"), std::string::npos) << simulator.output();
 }
 
 TEST(SerialPort, WhatCannotBeHadIsRefused) {
@@ -366,7 +366,7 @@ TEST(SerialPort, WhatCannotBeHadIsRefused) {
   const int holder = open(cable.device().c_str(), O_RDWR | O_NOCTTY | O_CLOEXEC);
   ASSERT_EQ(flock(holder, LOCK_EX | LOCK_NB), 0);
   expect_refused(run({simulator_path(), "EX9042D", "--serial", cable.device()}), "--serial " + cable.device(),
-                 "another program has it");
+                 "another program uses it");
   close(holder);
 }
 

@@ -226,9 +226,9 @@ TEST(Lines, APseudoTerminalThatTheFileDoesNotNameIsToldOfWithItsLine) {
   const BusFile file("{\"lines\": [\n{\"modules\": [{\"model\": \"EX9042D\"}]}]}");
   const Finished finished = run({simulator_path(), file.path()}, directory.path());
   EXPECT_EQ(finished.status, 2);
-  EXPECT_EQ(finished.error,
-            "ex9000-sim: " + file.path() +
-                ":2: lines[0]: line1.tty: something else is there; remove it or name another path\n");
+  EXPECT_EQ(finished.error, "ex9000-sim: " + file.path() +
+                                ":2: lines[0]: line1.tty: exists and is not a link to a pseudo-terminal; "
+                                "remove it or name another path\n");
 }
 
 TEST(Lines, AModulesEepromIsToldOfWithItsPlaceInTheFile) {
