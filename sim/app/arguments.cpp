@@ -148,7 +148,7 @@ void apply_writing(const WritingTexts& texts, Writing& writing) {
 /// Removes the position at the start of `text` and returns it, counted from 0; nullopt if there is none.
 std::optional<std::size_t> take_position(std::string& text, std::size_t modules) {
   const auto end = text.find(' ');
-  if (text.empty() || text.find_first_not_of("0123456789") < end) {
+  if (text.empty() || end == 0 || text.find_first_not_of("0123456789") < end) {
     return std::nullopt;
   }
   constexpr std::size_t kMostDigits = 6;
@@ -241,6 +241,13 @@ std::string where(const SetupError& error, const Setup& setup) {
   return error.key == "eeprom" ? "eeprom=" : "--" + error.key + ": ";
 }
 
+/// Returns how a message refers to a key: as the option of the command line, unless the bus file has the key.
+std::string name_of(const std::string& key, const std::string& value, const Setup& setup) {
+  const auto has_key = [&key](const auto& part) { return part.places.count(key) != 0; };
+  const bool in_file = has_key(setup) || std::any_of(setup.lines.begin(), setup.lines.end(), has_key);
+  return in_file ? "'" + key + "'" + value + " in " + setup.file : "--" + key + value;
+}
+
 /// Throws std::invalid_argument with a one-line message.
 Setup setup_of(const Texts& texts) {
   if (texts.modules.empty()) {
@@ -281,13 +288,18 @@ Setup setup_of(const Texts& texts) {
     setup.places.erase("panel");
   }
   apply_writing(texts.writing, setup);
+  if (texts.writing.log) {
+    setup.places.erase("log");
+  }
   if (texts.writing.capture) {
     setup.places.erase("capture");
   }
   try {
     check(setup);
   } catch (const SetupError& error) {
-    fail(where(error, setup) + (setup.file.empty() ? error.named("--", "") : error.named("'", "'")));
+    fail(where(error, setup) + error.named([&](const std::string& key, const std::string& value) {
+      return name_of(key, value, setup);
+    }));
   }
   return setup;
 }
@@ -352,7 +364,7 @@ play::Task task_of(const PlayTexts& play_texts) {
     of_option("--seed", *play_texts.seed, parse_seed);  // check it even if it has no effect
   }
   if (task.writing.capture && task.writing.capture->empty()) {
-    fail("--capture: requires a path");
+    fail("--capture: is empty; name a path");
   }
   if (!play_texts.modules.empty()) {
     Texts texts;

@@ -48,7 +48,9 @@ Setup parse_bus_file(const std::string& path, const std::string& text) {
   try {
     check(setup);
   } catch (const SetupError& error) {
-    root.refuse(path_of(error), error.named("'", "'"));
+    root.refuse(path_of(error), error.named([](const std::string& key, const std::string& value) {
+      return "'" + key + "'" + value;
+    }));
   }
   return setup;
 }

@@ -112,6 +112,7 @@ const std::array<BusFileKey<Setup>, 7>& bus_keys() {
        }},
       {"log", R"({"enum": [true, false, "text", "json", "on", "off"]})", "prints the bus log",
        [](Setup& setup, const Node& value) {
+         setup.places["log"] = value.place();
          const std::string log = value.flag_or_text();
          setup.log = parse_log(log == "on" ? "text" : log);
        }},

@@ -49,7 +49,7 @@ void set_address(ModuleSpec& spec, const std::string& text) {
 void apply_setting(ModuleSpec& spec, const std::string& key, const std::string& value) {
   if (key == "eeprom") {
     if (value.empty()) {
-      fail("requires a path");
+      fail("is empty; name a path");
     }
     spec.eeprom = value;
   } else if (key == "init") {

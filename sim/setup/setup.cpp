@@ -21,7 +21,7 @@ void check(const LineSetup& line, std::size_t position) {
   };
   for (const auto& [key, path] : {std::pair("pty", line.pty), std::pair("serial", line.serial)}) {
     if (path && path->empty()) {
-      wrong(key, "requires a path");
+      wrong(key, "is empty; name a path");
     }
   }
   const auto is_printable = [](unsigned char character) { return std::isgraph(character) != 0; };
@@ -33,13 +33,13 @@ void check(const LineSetup& line, std::size_t position) {
     wrong("serial", "cannot be combined with {pty} or {tcp}; the master is on the serial line");
   }
   if (line.echo && !line.serial) {
-    wrong("echo", "requires {serial}");
+    wrong("echo", "requires {serial}; add it, or leave this out");
   }
   if (line.instant && line.serial) {
     wrong("line", "instant cannot be combined with {serial}; bytes take time on a real line");
   }
   if (line.instant && line.strict_gaps) {
-    wrong("strict-gaps", "cannot be combined with {line} instant, where gaps have no length");
+    wrong("strict-gaps", "cannot be combined with {line instant}, where gaps have no length");
   }
 }
 
@@ -68,7 +68,8 @@ void check_speed(const Setup& setup) {
       wrong("cannot be combined with {serial}; a real line has its own time");
     }
     if (setup.speed.max() && (line.pty || line.tcp)) {
-      wrong("max cannot be combined with {pty} or {tcp}, whose masters keep the wall clock's time");
+      wrong(std::string("max cannot be combined with ") + (line.pty ? "{pty}" : "{tcp}") +
+            ", whose masters keep the wall clock's time; leave out one of them");
     }
   }
   if (setup.speed.stepped() && !setup.control) {
@@ -78,13 +79,13 @@ void check_speed(const Setup& setup) {
     wrong("step cannot be combined with {panel}, which shows time that passes by itself");
   }
   if (setup.speed.max() && setup.control) {
-    wrong("max cannot be combined with {control}");
+    wrong("max cannot be combined with {control}; leave out one of them");
   }
   if (setup.speed.max() && setup.panel) {
-    wrong("max cannot be combined with {panel}");
+    wrong("max cannot be combined with {panel}; leave out one of them");
   }
   if (setup.speed.max() && !setup.lasts) {
-    wrong("max requires --for");
+    wrong("max requires --for; add it, for example --for 10s");
   }
 }
 
@@ -95,31 +96,31 @@ std::string place_of(const Places& places, const std::string& key) {
   return place == places.end() ? "--" + key + " " : place->second + ": ";
 }
 
-std::string SetupError::named(const std::string& before, const std::string& after) const {
+std::string SetupError::named(const NameOfKey& name_of) const {
+  const std::string message = what();
   std::string text = value.empty() ? "" : value + ": ";
-  for (const char character : std::string(what())) {
-    if (character == '{') {
-      text += before;
-    } else if (character == '}') {
-      text += after;
-    } else {
-      text += character;
-    }
+  std::size_t at = 0;
+  for (auto open = message.find('{'); open != std::string::npos; open = message.find('{', at)) {
+    const auto close = message.find('}', open);
+    const auto key_ends = std::min(message.find(' ', open), close);
+    text += message.substr(at, open - at) + name_of(message.substr(open + 1, key_ends - open - 1),
+                                                    message.substr(key_ends, close - key_ends));
+    at = close + 1;
   }
-  return text;
+  return text + message.substr(at);
 }
 
 void check(const Setup& setup) {
   if (setup.watch && setup.log == LogFormat::Json) {
     throw SetupError(std::nullopt, "watch",
-                     "cannot be combined with {log} json; both write to standard output");
+                     "cannot be combined with {log json}; both write to standard output");
   }
   check_speed(setup);
   if (setup.control && setup.control->empty()) {
-    throw SetupError(std::nullopt, "control", "requires a path");
+    throw SetupError(std::nullopt, "control", "is empty; name a path");
   }
   if (setup.capture && setup.capture->empty()) {
-    throw SetupError(std::nullopt, "capture", "requires a path");
+    throw SetupError(std::nullopt, "capture", "is empty; name a path");
   }
   Once files("two modules cannot share a file; name one for each");
   Once ports("two lines cannot share a port; name one for each");

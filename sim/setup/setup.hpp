@@ -3,6 +3,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <map>
 #include <optional>
 #include <stdexcept>
@@ -79,7 +80,8 @@ struct Setup : Writing {
 /// An error in a Setup. It identifies the place by key (an option of the command line or a member of a bus
 /// file), so that the message can use the syntax of either one.
 struct SetupError : std::invalid_argument {
-  /// In `what`, other keys are in braces: `cannot be combined with {serial}`.
+  /// In `what`, other keys are in braces, with or without a value: `cannot be combined with {serial}` or
+  /// `cannot be combined with {log json}`.
   SetupError(std::optional<std::size_t> its_line, std::string its_key, const std::string& what,
              std::string its_value = "", std::optional<std::size_t> its_module = std::nullopt)
       : std::invalid_argument(what),
@@ -88,8 +90,10 @@ struct SetupError : std::invalid_argument {
         key(std::move(its_key)),
         value(std::move(its_value)) {}
 
-  /// Returns the message with `before` and `after` instead of the braces.
-  [[nodiscard]] std::string named(const std::string& before, const std::string& after) const;
+  /// `value` is empty, or a value of the key with a space before it.
+  using NameOfKey = std::function<std::string(const std::string& key, const std::string& value)>;
+  /// Returns the message with the result of `name_of` in place of each pair of braces.
+  [[nodiscard]] std::string named(const NameOfKey& name_of) const;
 
   std::optional<std::size_t> line;    ///< position of the line; nullopt: not about one line
   std::optional<std::size_t> module;  ///< position of the module on that line; nullopt: not about one module

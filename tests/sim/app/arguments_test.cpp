@@ -197,7 +197,7 @@ TEST(Arguments, ARealLineStandsAlone) {
 TEST(Arguments, OnlyARealLineHasAnEchoAndItIsNotInstant) {
   EXPECT_FALSE(accepted({"EX9042D", "--serial", "/dev/ttyUSB0"}).echo);
   EXPECT_TRUE(accepted({"EX9042D", "--serial", "/dev/ttyUSB0", "--echo"}).echo);
-  expect_error({"EX9042D", "--echo"}, "--echo: ", "requires --serial");
+  expect_error({"EX9042D", "--echo"}, "--echo: ", "requires --serial; add it");
   expect_error({"EX9042D", "--serial", "/dev/ttyUSB0", "--line", "instant"}, "--line: instant",
                "cannot be combined with --serial; bytes take time on a real line");
 }
@@ -244,9 +244,9 @@ TEST(Arguments, AnOptionWithoutItsValueIsRefused) {
 
 TEST(Arguments, AnEmptyPathIsRefused) {
   for (const char* option : {"--pty", "--serial", "--control", "--capture"}) {
-    expect_error({"EX9042D", option, ""}, option, "path");
+    expect_error({"EX9042D", option, ""}, std::string(option) + ": is empty", "name a path");
   }
-  expect_error({"EX9042D,eeprom="}, "eeprom=", "path");
+  expect_error({"EX9042D,eeprom="}, "eeprom=: is empty", "name a path");
 }
 
 // --- moving inputs and faults ---
@@ -263,6 +263,7 @@ TEST(Arguments, AnInputIsOfTheModuleAtItsPosition) {
 TEST(Arguments, AWrongInputIsRefused) {
   for (const auto& [text, wrong, mend] : std::vector<std::array<const char*, 3>>{
            {"", "--input", "a module's position before it"},
+           {" 1 0 square 1s", "' 1 0 square 1s'", "a module's position before it"},
            {"square 100ms", "'square 100ms'", "for example 1 0 square 100ms"},
            {"1", "ex9000-sim: --input: the channel is missing; ", "'CHANNEL square PERIOD'"},
            {"0 0 square 1s", "no module 0", "there are 1 to 1"},
@@ -293,6 +294,7 @@ TEST(Arguments, AFaultIsOfTheLineOrOfTheModuleAtItsPosition) {
 TEST(Arguments, AWrongFaultIsRefused) {
   for (const auto& [text, wrong, mend] : std::vector<std::array<const char*, 3>>{
            {"", "--fault: the fault is empty", "expected one of bit-errors"},
+           {" ", "--fault: the fault is empty", "expected one of bit-errors"},
            {"1", "--fault: the fault is empty", "expected one of bit-errors"},
            {"bogus", "--fault: 'bogus' is not a fault", "expected one of bit-errors"},
            {"0 gone", "no module 0", "there are 1 to 1"},
@@ -324,6 +326,9 @@ TEST(Arguments, ASpeedIsANumberThatAClockCanFollow) {
     EXPECT_EQ(all_accepted({"EX9042D", "--speed", text}).speed.factor, speed);
   }
   EXPECT_TRUE(all_accepted({"EX9042D", "--speed", "max", "--for", "1s"}).speed.max());
+  expect_error({"EX9042D", "--speed", "max"}, "--speed: max requires --for", "for example --for 10s");
+  expect_error({"EX9042D", "--speed", "max", "--for", "1s", "--tcp", "0"},
+               "--speed: max cannot be combined with --tcp, ", "leave out one of them");
   for (const char* speed :
        {"", "0", "-1", "1e-12", "0.00099", "1000.1", "1e300", "nan", "inf", "fast", "1x"}) {
     expect_error({"EX9042D", "--speed", speed}, "--speed: '" + std::string(speed) + "'",

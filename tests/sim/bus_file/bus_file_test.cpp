@@ -219,9 +219,9 @@ INSTANTIATE_TEST_SUITE_P(
         Wrong{"{\n\"seed\": \"x\"}", "bus.json:2: seed: 'x': expected a whole number"},
         Wrong{"{\n\"control\": 1}", "bus.json:2: control: expected a text in quotes"},
         Wrong{"{\n\"capture\": \"\", \"lines\": [{\"pty\": \"a\", \"modules\": [{\"model\": \"EX9042D\"}]}]}",
-              "bus.json:2: capture: requires a path"},
+              "bus.json:2: capture: is empty; name a path"},
         Wrong{"{\n\"control\": \"\", \"lines\": [{\"pty\": \"a\", \"modules\": [{\"model\": \"EX9042D\"}]}]}",
-              "bus.json:2: control: requires a path"}));
+              "bus.json:2: control: is empty; name a path"}));
 
 INSTANTIATE_TEST_SUITE_P(
     Lines, WrongBusFile,
@@ -277,8 +277,9 @@ TEST(WrongModuleOfABusFile, IsRefusedWithFileLineKeyAndMend) {
             "name: 'TOOLONG': expected 1 to 6 printable ASCII characters for the EX9052D-M"},
            {"\"init\": \"yes\"", "init: 'yes': expected on or off"},
            {"\"init\": 1", "init: expected true, false or a text in quotes"},
-           {"\"eeprom\": \"\"", "eeprom: requires a path"},
+           {"\"eeprom\": \"\"", "eeprom: is empty; name a path"},
            {"\"inputs\": \"0 square 1s\"", "inputs: expected a list, [ ]"},
+           {"\"inputs\": [\"\"]", "inputs[0]: the channel is missing; expected 'CHANNEL square PERIOD'"},
            {"\"inputs\": [\"8 square 1s\"]",
             "inputs[0]: 8 square 1s: the EX9052D-M has no input '8'; it has 0 to 7"},
            {"\"faults\": [\"hang\", \"lost\"]",
@@ -299,10 +300,10 @@ TEST(WrongModuleOfABusFile, AnAddressThatItsProtocolLacksIsRefused) {
 
 TEST(WrongLineOfABusFile, WhatDoesNotGoTogetherIsRefusedWhereItStands) {
   for (const auto& [members, why] : std::vector<std::pair<std::string, std::string>>{
-           {"\"pty\": \"\"", "pty: requires a path"},
+           {"\"pty\": \"\"", "pty: is empty; name a path"},
            {"\"serial\": \"a\", \"pty\": \"b\"",
             "serial: cannot be combined with 'pty' or 'tcp'; the master is on the serial line"},
-           {"\"pty\": \"a\", \"echo\": true", "echo: requires 'serial'"},
+           {"\"pty\": \"a\", \"echo\": true", "echo: requires 'serial'; add it, or leave this out"},
            {"\"serial\": \"a\", \"line\": \"instant\"",
             "line: instant cannot be combined with 'serial'; bytes take time on a real line"},
            {"\"pty\": \"a\", \"line\": \"instant\", \"strict-gaps\": true",
@@ -394,9 +395,36 @@ TEST(BusFile, WhatIsWrongWithItOnlyInTheRunIsRefusedWithItsPlace) {
                                      "each\n");
   EXPECT_EQ(parse({path, "--log", "json"}).error,
             "ex9000-sim: " + path +
-                ":2: watch: cannot be combined with 'log' json; both write to standard output\n");
+                ":2: watch: cannot be combined with --log json; both write to standard output\n");
   EXPECT_EQ(parse({path, "--speed", "step"}).error,
-            "ex9000-sim: --speed: step requires 'control', because only the control socket moves the time\n");
+            "ex9000-sim: --speed: step requires --control, because only the control socket moves the time\n");
+}
+
+TEST(BusFile, AnErrorNamesTheOtherKeyWhereItIsGiven) {
+  const system::Directory directory;
+  const std::string path = directory / "bus.json";
+  const auto error = [&path](const std::string& keys, const std::string& port,
+                             const std::vector<std::string>& options) {
+    system::write_file(path,
+                       "{" + keys + "\"lines\": [{" + port + "\"modules\": [{\"model\": \"EX9042D\"}]}]}");
+    std::vector<std::string> words{path};
+    words.insert(words.end(), options.begin(), options.end());
+    return parse(words).error;
+  };
+  const std::vector<std::string> max{"--speed", "max", "--for", "1s"};
+  const std::vector<std::string> max_with_panel{"--speed", "max", "--for", "1s", "--panel"};
+  const std::string cannot = "ex9000-sim: --speed: max cannot be combined with ";
+  EXPECT_EQ(error("\"panel\": true, ", "", max), cannot + "'panel' in " + path + "; leave out one of them\n");
+  EXPECT_EQ(error("\"panel\": true, ", "", max_with_panel), cannot + "--panel; leave out one of them\n");
+  EXPECT_EQ(error("", "", max_with_panel), cannot + "--panel; leave out one of them\n");
+  EXPECT_EQ(error("\"control\": \"a\", ", "", max),
+            cannot + "'control' in " + path + "; leave out one of them\n");
+  EXPECT_EQ(
+      error("", "\"tcp\": 0, ", max),
+      cannot + "'tcp' in " + path + ", whose masters keep the wall clock's time; leave out one of them\n");
+  EXPECT_EQ(error("\"log\": \"json\", ", "", {"--watch"}),
+            "ex9000-sim: --watch: cannot be combined with 'log' json in " + path +
+                "; both write to standard output\n");
 }
 
 TEST(BusFile, RejectsLineOptionsOnTheCommandLine) {
