@@ -77,7 +77,7 @@ class Passes(unittest.TestCase):
         log += turn(interrupt(execution.WAKE, 0x6000), 0x500)
         self.assertEqual(count(log)[0].idling.count, (2 + 2 + 32) + (1 + 2 + 1))
 
-    def test_of_a_turn_that_a_byte_and_a_tick_wake_it_has_what_is_not_for_the_tick(self):
+    def test_a_turn_of_a_byte_and_a_tick_excludes_the_work_of_the_tick(self):
         self.assertEqual(count(ASLEEP + turn(self.BYTE + TICK, TICKS_OWN, *TURN))[1], 2 + 2 + 32)
 
     def test_it_does_not_have_a_turn_that_the_tools_own_alarm_wakes(self):

@@ -117,9 +117,9 @@ int main(int argc, char** argv) {
   }
   std::this_thread::sleep_for(std::chrono::seconds(1));
   const std::array<long, 2> before{buses[0].memory(), buses[1].memory()};
-  constexpr std::chrono::seconds kTell{60};
-  for (auto tell = Clock::now() + kTell; tell < end; tell += kTell) {
-    std::this_thread::sleep_until(tell);
+  constexpr std::chrono::seconds kReportInterval{60};
+  for (auto report = Clock::now() + kReportInterval; report < end; report += kReportInterval) {
+    std::this_thread::sleep_until(report);
     std::printf("%ld and %ld transactions, %ld wrong\n", buses[0].transactions(), buses[1].transactions(),
                 buses[0].wrong() + buses[1].wrong());
     std::fflush(stdout);

@@ -71,7 +71,7 @@ class CutModule {
     module_.power(false);
     store(before_);
     power_up(init_mode);
-    SettingsReader master = spoken_to(init_mode ? Manner::init_mode() : Manner::of(before_));
+    SettingsReader master = spoken_to(init_mode ? FrameFormat::init_mode() : FrameFormat::of(before_));
     if (!before_.timeout_status) {
       const bool driven = before_.protocol == Protocol::Ascii || init_mode
                               ? master.ask(std::string("@C35A")) == ">"
@@ -85,8 +85,8 @@ class CutModule {
     done_ = command_.done_to(before_, module_.outputs());
     module_.hear(module_.baud());
     if (!command_.is_timeout()) {
-      const Manner manner = init_mode ? Manner::init_mode() : Manner::of(before_);
-      module_.send(manner.framed(command_.frame(before_)), module_.baud());
+      const FrameFormat frame_format = init_mode ? FrameFormat::init_mode() : FrameFormat::of(before_);
+      module_.send(frame_format.framed(command_.frame(before_)), module_.baud());
     }
     module_.watch_stores(kI2c, kRegisters);
     bool stopped = true;
@@ -109,7 +109,7 @@ class CutModule {
     std::optional<Settings>& found = known_[module_.memory()];
     for (const Settings* guess : {&done_, &before_}) {
       if (!found && baud_rate(guess->baud_code) == nearest_rate(module_.baud())) {
-        found = spoken_to(Manner::of(*guess)).read(guess->format);
+        found = spoken_to(FrameFormat::of(*guess)).read(guess->format);
       }
     }
     ASSERT_TRUE(found) << "it does not answer";
@@ -144,8 +144,8 @@ class CutModule {
     }
     return 0;
   }
-  SettingsReader spoken_to(const Manner& manner) {
-    return {module_.model(), manner, [this](const Bytes& frame) {
+  SettingsReader spoken_to(const FrameFormat& frame_format) {
+    return {module_.model(), frame_format, [this](const Bytes& frame) {
               constexpr milliseconds kSilence{5};
               module_.run_for(kSilence);
               module_.hear(module_.baud());
@@ -170,7 +170,7 @@ TEST(ImageWithoutPower, HasOldOrNewSettingsWhereverBetweenTwoStoresToItsI2cMaste
   unsigned cuts = 0;
   unsigned commands = 0;
   for (const StoringCommand& command : storing_commands(model)) {
-    if (!all_of_them() && command.name != "~AAO") {
+    if (!all_cases_requested() && command.name != "~AAO") {
       continue;
     }
     SCOPED_TRACE(command.name);

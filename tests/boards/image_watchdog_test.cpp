@@ -182,7 +182,7 @@ class FaultyImage : public testing::TestWithParam<Protocol>, protected EitherPro
   void expect_resets(const char* what, Fault fault) {
     for (const Doing doing : kEverything) {
       for (const bool status : {false, true}) {
-        if (!all_of_them() && !belongs_to_short_form(doing, status, fault)) {
+        if (!all_cases_requested() && !belongs_to_short_form(doing, status, fault)) {
           continue;
         }
         SCOPED_TRACE(std::string(what) + " while it does " + std::to_string(static_cast<int>(doing)) +

@@ -372,7 +372,7 @@ void ExpiryOnBoard::expect_expiry_within(Instant most, const std::function<void(
   prepare(bench);
   Instant earliest = kNever;
   Instant latest{0};
-  const unsigned step = all_of_them() ? 1 : module.ascii() ? 5 : 11;
+  const unsigned step = all_cases_requested() ? 1 : module.ascii() ? 5 : 11;
   unsigned timeouts = 0;
   for (unsigned timeout = 1; timeout <= 0xFF; timeout += step, ++timeouts) {
     SCOPED_TRACE(timeout);
@@ -411,7 +411,7 @@ TEST_P(ExpiryOnBoard, IsATickLateAtMostWhereTheWakeTimerIsDead) {
 TEST_P(HostWatchdogOnBoard, NoCommandDrivesAnythingOnceItHasExpired) {
   constexpr unsigned kVv = 5;
   constexpr std::uint16_t kCommanded = 0x3C96;
-  const Instant step = all_of_them() ? microseconds(100) : microseconds(2300);
+  const Instant step = all_cases_requested() ? microseconds(100) : microseconds(2300);
   WatchedModule module(image(), set_up(*find_model(image().model), protocol()));
   BoardBench& bench = module.bench;
   const Bytes drives = module.drive_frame(kCommanded);
@@ -458,7 +458,7 @@ TEST_P(HostWatchdogOnBoard, ACommandThatChangesTheSafeValueAsItExpiresGivesTheNe
   constexpr std::uint16_t kCommanded = 0x3C96;
   // `~AA5S` stores the driven value.
   const std::uint16_t new_value = protocol() == Protocol::Ascii ? kDriven : 0x0FF0;
-  const Instant step = all_of_them() ? microseconds(100) : microseconds(1100);
+  const Instant step = all_cases_requested() ? microseconds(100) : microseconds(1100);
   WatchedModule module(image(), set_up(*find_model(image().model), protocol()));
   BoardBench& bench = module.bench;
   const auto store_safe_value = [&module](std::uint16_t value) {
@@ -541,7 +541,7 @@ enum class Storing : std::uint8_t { Nothing, OnTheBus, Programming };
 TEST_P(HostWatchdogOnBoard, APowerCutAtAnyMomentAfterItHasExpiredGivesNoCommandedValueBack) {
   constexpr unsigned kVv = 9;
   constexpr std::uint16_t kOtherPowerOnValue = 0x3CC3;
-  const Instant step = all_of_them() ? microseconds(50) : microseconds(700);
+  const Instant step = all_cases_requested() ? microseconds(50) : microseconds(700);
   WatchedModule module(image(), set_up(*find_model(image().model), protocol()));
   BoardBench& bench = module.bench;
   unsigned events = 0;

@@ -96,7 +96,7 @@ TEST(Conformance, TheImagesOfTheManualsModelsPassEveryTranscriptThatNamesThem) {
   std::vector<std::thread> players;
   for (const int processor : processors()) {
     players.emplace_back([&, processor] {
-      rig::stay_on_processor(processor);
+      rig::bind_to_processor(processor);
       rig::ImageTarget target;
       for (std::size_t mine = next++; mine < runs.size(); mine = next++) {
         play_on_the_image(runs[mine], target);

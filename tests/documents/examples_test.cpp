@@ -70,7 +70,7 @@ void replace_port(std::string& text, const std::string& port) {
 }
 
 /// Increases the timeout, because a busy machine can take longer than the 0.3 s in the documents.
-void be_patient(std::string& text) {
+void extend_timeouts(std::string& text) {
   const std::string written = "socat -t 0.3 ";
   for (auto at = text.find(written); at != std::string::npos; at = text.find(written, at + 1)) {
     text.replace(at, written.size(), "socat -t 2 ");
@@ -152,7 +152,7 @@ std::vector<Section> sections_with_output() {
 }
 
 /// Runs all sections in parallel, because they mostly wait.
-TEST(Documents, TheirExamplesDoWhatTheySay) {
+TEST(Documents, ExamplesPrintTheExpectedOutput) {
   std::vector<Section> pasted = sections_with_output();
   EXPECT_GE(pasted.size(), 14U);
   const std::vector<std::string> ports = free_ports(pasted.size());
@@ -164,7 +164,7 @@ TEST(Documents, TheirExamplesDoWhatTheySay) {
       SCOPED_TRACE(section.heading);
       for (Block& block : section.blocks) {
         replace_port(block.text, port);
-        be_patient(block.text);
+        extend_timeouts(block.text);
       }
       paste(section);
     });

@@ -215,8 +215,8 @@ void live(const Model& model, Protocol usual, const std::uint8_t* data, std::siz
 
 std::size_t mutate(std::uint8_t* data, std::size_t size, std::size_t most, unsigned seed, bool modbus) {
   const std::size_t mutated = LLVMFuzzerMutate(data, size, most);
-  constexpr unsigned kNowAndThen = 4;
-  return seed % kNowAndThen == 0 ? mend(data, mutated, most, modbus) : mutated;
+  constexpr unsigned kMendOneIn = 4;
+  return seed % kMendOneIn == 0 ? mend(data, mutated, most, modbus) : mutated;
 }
 
 }  // namespace ex9000::fuzz

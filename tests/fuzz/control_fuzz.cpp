@@ -224,7 +224,7 @@ void carry_out(Watched& watched, sim::Control& control, const std::string& comma
 }
 
 /// Limits the run time, because slow inputs find few errors.
-class Patience {
+class RunTimeLimit {
  public:
   /// Lets up to `steps` steps of 10 ms pass, and at most 2 s in total: a watchdog requires 1.6 s to reset the
   /// module. Lets no time pass on a line that has carried many bytes.
@@ -236,7 +236,7 @@ class Patience {
   }
   /// Returns whether the command may run. Each fuzzer input may contain one command with 100 to 99,999
   /// pulses.
-  bool has_for(const Words& words) {
+  bool permits(const Words& words) {
     const bool pulses = words.size() == 4 && words[1] == "pulse" && is_number(words[3], 100, 1'000'000);
     return !pulses || (std::stoul(words[3]) <= 99'999 && !std::exchange(used_, true));
   }
@@ -251,15 +251,15 @@ void live(const std::string& text) {
   watched.line.come_up();
   sim::Control control({{"hall", watched.line}});
   std::istringstream lines(text);
-  Patience patience;
+  RunTimeLimit limit;
   for (std::string command; std::getline(lines, command);) {
     if (!command.empty() && command[0] == '+') {
       const std::string number = command.substr(1);
-      patience.pass(watched, is_number(number, 0, 99) ? std::stoul(number) : 1);
+      limit.pass(watched, is_number(number, 0, 99) ? std::stoul(number) : 1);
       continue;
     }
     const Words words = words_of(command);
-    if (patience.has_for(words)) {
+    if (limit.permits(words)) {
       carry_out(watched, control, command, words);
     }
   }

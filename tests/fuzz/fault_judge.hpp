@@ -148,10 +148,10 @@ inline bool is_fault(const Words& words, Whose whose, std::chrono::nanoseconds n
   }
   const When schedule = when(words, plain ? 1 : 2, now);
   const bool moment = trouble == "hang" || trouble == "foreign-traffic";
-  const bool wants_end = schedule.every
-                             ? !moment && trouble != "power-cut"
-                             : schedule.of_replies && (trouble == "gone" || trouble == "wrong-rate");
-  return schedule.right && (schedule.lasts ? !moment : !wants_end) &&
+  const bool requires_end = schedule.every
+                                ? !moment && trouble != "power-cut"
+                                : schedule.of_replies && (trouble == "gone" || trouble == "wrong-rate");
+  return schedule.right && (schedule.lasts ? !moment : !requires_end) &&
          !(schedule.every && schedule.lasts && *schedule.lasts >= *schedule.every);
 }
 

@@ -23,7 +23,7 @@ using judges::kNever;
 using judges::Microseconds;
 
 /// Observes the effects of a module on its surroundings when they occur.
-class Onlooker {
+class ModuleObserver {
  public:
   /// The driver enable goes on.
   virtual void reply_begins(Bytes reply) = 0;
@@ -34,14 +34,14 @@ class Onlooker {
   virtual void turned() = 0;
 
  protected:
-  ~Onlooker() = default;
+  ~ModuleObserver() = default;
 };
 
 /// The state that survives a reset.
 struct Surroundings {
-  explicit Surroundings(Onlooker& who) : onlooker(who) { memory.fill(0xFF); }
+  explicit Surroundings(ModuleObserver& observed_by) : observer(observed_by) { memory.fill(0xFF); }
 
-  Onlooker& onlooker;
+  ModuleObserver& observer;
   Microseconds now = 0;
   std::uint16_t input_levels = 0;
   bool init_asserted = false;
@@ -76,7 +76,7 @@ struct LeanBoard {
     void open(std::uint32_t rate) { baud = rate; }
     void send(Bytes bytes) {
       ends = around.now + 4 + bytes.size * 10'000'000ULL / baud;
-      around.onlooker.reply_begins(bytes);
+      around.observer.reply_begins(bytes);
     }
     [[nodiscard]] bool sending() const { return ends != kNever; }
   };
@@ -104,7 +104,7 @@ struct LeanBoard {
     void drive(std::uint16_t channels) {
       if (channels != driven) {
         driven = channels;
-        around.onlooker.outputs_change(channels);
+        around.observer.outputs_change(channels);
       }
     }
   };
@@ -196,8 +196,8 @@ struct LeanBoard {
 class LeanModule {
  public:
   /// Creates a module without power.
-  LeanModule(const Model& model, Onlooker& onlooker, TimingAt timing_at)
-      : model_(model), timing_at_(timing_at), around_(onlooker) {}
+  LeanModule(const Model& model, ModuleObserver& observer, TimingAt timing_at)
+      : model_(model), timing_at_(timing_at), around_(observer) {}
 
   /// Resets the module or switches it on, which interrupts a write in progress. Returns when the module has
   /// started.
@@ -273,7 +273,7 @@ class LeanModule {
     LeanBoard& its = board();
     if (its.line.ends <= around_.now) {
       its.line.ends = kNever;
-      around_.onlooker.reply_ends();
+      around_.observer.reply_ends();
       device_->on_sent();
     }
     if (its.memory.ends <= around_.now) {
@@ -309,7 +309,7 @@ class LeanModule {
       require(++turns < kMostTurns, "the main loop comes to rest");
       device_->on_wake_timer();
       again = device_->turn() || device_->has_work();
-      around_.onlooker.turned();
+      around_.observer.turned();
     }
   }
 

@@ -27,7 +27,7 @@ using judges::upper_hex;
 /// Aborts if the witness reports an error, or if the outputs do not start with the stored values. The only
 /// states that it takes from the module itself are the settings in force after a reset and the settings that
 /// it started with.
-class Session final : public Onlooker {
+class Session final : public ModuleObserver {
  public:
   Session(const Model& model, bool strict_gaps)
       : strict_gaps_(strict_gaps),
@@ -110,7 +110,7 @@ class Session final : public Onlooker {
     return {reply_.data(), reply_size_};
   }
 
-  // --- Onlooker ---
+  // --- ModuleObserver ---
 
   void reply_begins(Bytes reply) override {
     witness_.follow(values(), module_.now());

@@ -104,7 +104,7 @@ function options() {
 }
 
 /** Returns { tty, baud } or { host, port, baud }. */
-function whereTo() {
+function portOptions() {
   const { tty, tcp, baud = 9600 } = options();
   if (!RATES.includes(Number(baud))) {
     giveUp(`--baud ${baud}: expected one of ${RATES.join(", ")}`);
@@ -121,7 +121,7 @@ function whereTo() {
 
 /** Runs `converse(where, steps, checks)` and prints the result. */
 async function main(library, converse) {
-  const where = whereTo();
+  const where = portOptions();
   const checks = new Checks();
   await converse(where, steps(where.baud), checks).catch((error) => giveUp(error.message));
   const { version } = require(`${library}/package.json`);

@@ -54,7 +54,7 @@ class Line {
   SocketClient client_{simulator_.tcp_port()};
 };
 
-TEST(ImpatientMaster, WhereBytesCostNoTimeFramesInOnePieceAreEachAnswered) {
+TEST(ImpatientMaster, OnAnInstantLineEachFrameOfOnePieceGetsAReply) {
   Line line({"--line", "instant"});
   for (int round = 0; round < 10; ++round) {
     EXPECT_EQ(line.ask(kOutputs1 + kInputs2, 13), kOutputs1Off + kInputs2Off);
@@ -62,7 +62,7 @@ TEST(ImpatientMaster, WhereBytesCostNoTimeFramesInOnePieceAreEachAnswered) {
   }
 }
 
-TEST(ImpatientMaster, WhereBytesCostNoTimeARequestMayFollowOneThatHasNoAnswer) {
+TEST(ImpatientMaster, OnAnInstantLineARequestMayFollowOneWithoutAReply) {
   Line line({"--line", "instant"});
   for (const Bytes& unanswered : {kHostOk1, kHostOkAll, kAbsent}) {
     for (int round = 0; round < 10; ++round) {
@@ -97,7 +97,7 @@ TEST(ImpatientMaster, AnotherModuleMayBeAskedAsSoonAsOneHasAnswered) {
 // At 1200 baud, T3.5 is 32 ms, which is 320 ms of real time at a tenth of the speed. Even on a busy machine,
 // the test sends the second request before this gap after the first reply has ended. Module 02 has also
 // received that reply, so the request without the gap is part of the same frame.
-TEST(ImpatientMaster, IsOnItsOwnWhereTheLineKeepsToTheLetter) {
+TEST(ImpatientMaster, LosesARequestWithoutAGapIfGapsAreStrict) {
   SimulatorProcess simulator(
       {"EX9042D-M@01,baud=1200", "EX9052D-M@02,baud=1200", "--tcp", "0", "--strict-gaps", "--speed", "0.1"});
   SocketClient client(simulator.tcp_port());

@@ -44,7 +44,7 @@ const granted = ({ wait, frame, expected }) => !wait && expected === hex(frame);
  * Returns the part of the conversation that the library supports. Replies that it misreads are not checked, because
  * later requests read the values back.
  */
-function withinReach(steps) {
+function supportedSteps(steps) {
   return steps
     .filter(({ wait, frame }) => wait || (frame[1] in REQUESTS && !refused(frame)))
     .map((step) => (granted(step) && misread(step.frame) ? { ...step, expected: undefined } : step));
@@ -79,6 +79,6 @@ main("jsmodbus", async (where, steps, checks) => {
   const clients = [turnaround(where.baud), TIMEOUT, TIMEOUT].map(
     (timeout, address) => new jsmodbus.client.RTU(line, address, timeout),
   );
-  await checks.play(withinReach(steps), (frame) => ask(clients[frame[0]], frame));
+  await checks.play(supportedSteps(steps), (frame) => ask(clients[frame[0]], frame));
   line.destroy();
 });

@@ -75,7 +75,7 @@ TEST_P(Libmodbus, PollsBothModulesAlternately) {
   }
 }
 
-TEST_P(Libmodbus, GetsWhatItAsksFor) {
+TEST_P(Libmodbus, ReadsAndWritesValues) {
   const Bits pattern{1, 0, 1, 1, 0, 0, 1, 0, 1, 1, 1, 0, 1};
   EXPECT_EQ(write_coils(kOutputs, 0, pattern), 13);
   EXPECT_EQ(input_registers(kInputs, 0, 8), Words(8, 0));
@@ -125,7 +125,7 @@ TEST_P(Libmodbus, BroadcastsAndHostOkHaveNoReply) {
   }
 }
 
-TEST_P(Libmodbus, GetsTheExceptionsItDeserves) {
+TEST_P(Libmodbus, GetsTheExpectedExceptions) {
   Bits bits(2000);
   Words words(125);
   struct Refused {

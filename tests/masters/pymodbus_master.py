@@ -69,7 +69,7 @@ class IdentificationRequest(ReadDeviceInformationRequest):
         return self.reply_size
 
 
-class MakersRequest(ModbusRequest):
+class Function46Request(ModbusRequest):
     """Function 46, as a custom request of pymodbus."""
 
     function_code = 0x46
@@ -82,7 +82,7 @@ class MakersRequest(ModbusRequest):
         return self.data
 
 
-class MakersResponse(ModbusResponse):
+class Function46Response(ModbusResponse):
     function_code = 0x46
     _rtu_frame_size = 9
 
@@ -145,7 +145,7 @@ REQUESTS = {
     0x16: lambda data: MaskWriteRegisterRequest(*words(data)),
     0x17: read_write_registers,
     0x18: lambda data: ReadFifoQueueRequest(*words(data)),
-    0x46: MakersRequest,
+    0x46: Function46Request,
 }
 
 
@@ -251,7 +251,7 @@ def connected(arguments):
     else:
         host, port = arguments.tcp
         client = ModbusTcpClient(host, port=port, **options)
-    client.register(MakersResponse)
+    client.register(Function46Response)
     return client
 
 

@@ -69,7 +69,7 @@ class Mutant:
     def of(self, source):
         return source[: self.begin] + self.text + source[self.end :]
 
-    def told(self, source):
+    def describe(self, source):
         line = source.count("\n", 0, self.begin) + 1
         start = source.rfind("\n", 0, self.begin) + 1
         stop = source.find("\n", self.begin)

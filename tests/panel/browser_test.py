@@ -4,7 +4,7 @@ build/panel."""
 import unittest
 
 from panel_page import DI3, INIT, INPUTS, OUTPUTS, PHONE, POWER, Panel, both_lines_busy, lit, pressed, text
-from simulator import Master, all_the_while, crc
+from simulator import Master, crc, repeating
 
 CLICKS = 24
 READ_INPUTS = bytes.fromhex("020200000008") + crc(bytes.fromhex("020200000008"))
@@ -45,7 +45,7 @@ class Modules(Panel):
         self.browser.until(text(OUTPUTS, ".values", "Safe0100"))
         master.ask("010601E800FF", 8)
         master.coil(1, 0x0104, True)
-        with all_the_while(lambda: master.ask("010601E800FF", 8)):  # restarts the watchdog
+        with repeating(lambda: master.ask("010601E800FF", 8)):  # restarts the watchdog
             self.browser.until(text(OUTPUTS, ".readout.wide .value", "of 25.5 s"))
             self.picture("counting-down")
         master.ask("010601E80014", 8)

@@ -3,7 +3,7 @@
 import unittest
 
 from panel_page import Panel, pressed
-from simulator import Master, all_the_while, wait_until
+from simulator import Master, repeating, wait_until
 from web_socket import Page
 
 # Rows with frames. Rows that report a delay of the host are notes and do not count.
@@ -42,7 +42,7 @@ class Bus(Panel):
 
     def asking_inputs(self, master):
         """The strip shows only one second, so the requests continue until the test has seen the result."""
-        return all_the_while(lambda: self.ask_inputs(master, 1))
+        return repeating(lambda: self.ask_inputs(master, 1))
 
     def faults_of(self, simulator):
         page = Page(simulator.port)
@@ -54,7 +54,7 @@ class Bus(Panel):
         self.browser.run(f"""const field = document.querySelector("{selector}"); field.value = "{words}";
             field.dispatchEvent(new Event('input'))""")
 
-    def test_who_pauses_is_told_what_waits_and_gets_it_later(self):
+    def test_a_paused_page_counts_new_frames_and_shows_them_later(self):
         _, master = self.show_two()
         self.ask_inputs(master, 2)
         self.browser.until(f"{TALLY} === '4 frames'")
@@ -80,7 +80,7 @@ class Bus(Panel):
         self.type("#search", "")
         self.browser.until(f"{ROWS} === 6")
 
-    def test_of_what_there_is_no_room_for_while_paused_each_line_says_how_much(self):
+    def test_each_line_counts_the_frames_that_a_paused_page_left_out(self):
         modules = [{"model": "EX9052D-M", "address": "02"}]
         simulator = self.bus([{"name": name, "tcp": 0, "line": "instant", "modules": modules}
                               for name in ("hall", "yard")])
@@ -122,7 +122,7 @@ class Bus(Panel):
         self.addCleanup(again.close)
         self.assertEqual(again.say("$02M"), "!029055")
         self.browser.until(f"{TALLY} === '2 frames' && {ROWS} === 2")
-        with all_the_while(lambda: again.say("$02M")):
+        with repeating(lambda: again.say("$02M")):
             self.browser.until(f"{PAINTED}('master', 20) && {PAINTED}('module', 30)")
 
     def test_the_strip_moves_while_there_are_only_remarks_on_it(self):
@@ -134,7 +134,7 @@ class Bus(Panel):
         self.assertTrue(page.tell("fault off 1")["ok"])
         self.browser.until(f"!{PAINTED}('note', 26)")  # it has moved out of the strip
 
-    def test_what_is_handed_out_late_stands_where_it_belongs(self):
+    def test_a_late_frame_is_sorted_by_its_time(self):
         simulator = self.show("EX9042D@01,baud=1200", "--baud", "1200")
         page = Page(simulator.port)
         self.addCleanup(page.close)

@@ -23,7 +23,7 @@ class Inputs(Panel):
     def focus(self, selector):
         self.browser.run(f"""document.querySelector("{selector}").focus()""")
 
-    def test_what_is_held_when_the_simulator_hangs_is_let_go_and_all_else_stays(self):
+    def test_a_held_input_is_released_after_the_simulator_hangs(self):
         simulator, _ = self.show_two()
         self.browser.click("[aria-label='2 EX9052D-M: input DI1']")
         self.browser.click(HOLD)
@@ -41,7 +41,7 @@ class Inputs(Panel):
         self.browser.click(DI3)
         self.browser.until(pressed(DI3))
 
-    def test_what_is_held_when_the_page_goes_is_let_go(self):
+    def test_a_held_input_is_released_when_the_page_closes(self):
         simulator, _ = self.show_two()
         self.browser.click(HOLD)
         self.browser.pointer(DI3, "down")
@@ -68,7 +68,7 @@ class Inputs(Panel):
         self.click_in_the_page(DI3)
         self.browser.until(pressed(DI3))
 
-    def test_who_can_hold_nothing_switches(self):
+    def test_a_click_without_a_pointer_toggles_in_hold_mode(self):
         self.show_two()
         self.browser.click(HOLD)
         self.click_in_the_page(DI3)

@@ -30,7 +30,7 @@ CONTRAST = """
 
 
 class Looks(Panel):
-    def test_what_there_is_to_read_and_to_click_stands_out_in_light_and_dark(self):
+    def test_texts_and_controls_have_enough_contrast_in_light_and_dark(self):
         self.show_two()
         self.browser.run("document.querySelector('.said').textContent = 'error'")
         for scheme in "light", "dark":
@@ -74,7 +74,7 @@ class Looks(Panel):
         ):
             self.assertIn(wanted, found)
 
-    def test_what_is_read_in_a_drawer_stays_while_things_change(self):
+    def test_a_drawer_keeps_scroll_focus_and_selection_while_values_change(self):
         _, master = self.show_two()
         self.browser.size(320, 700)
         self.browser.click(f"{OUTPUTS} summary")

@@ -95,7 +95,7 @@ class Panel(unittest.TestCase):
         self.browser.prefers()
 
     def tearDown(self):
-        self.assertEqual(self.browser.complaints(), [])
+        self.assertEqual(self.browser.logged_errors(), [])
         self.expect_rows_in_order()
 
     def show(self, *arguments):

@@ -72,7 +72,7 @@ class Server(unittest.TestCase):
         self.assertEqual(status(answer), wanted, (data[:200], answer[:200]))
         return answer
 
-    def test_the_page_comes_with_what_keeps_others_out(self):
+    def test_the_page_has_security_headers(self):
         for target, kind in ("/", b"text/html"), ("/panel.css", b"text/css"), ("/panel.js", b"text/javascript"):
             answer = self.expect(200, request(self.port, target))
             for part in (kind, b"Content-Security-Policy: default-src 'self'", b"Cache-Control: no-store",
@@ -95,7 +95,7 @@ class Server(unittest.TestCase):
         self.expect(403, upgrade(self.port, origin=None))
         self.expect(403, request(self.port, "/live"))
 
-    def test_what_is_fetched_on_another_sites_behalf_is_refused(self):
+    def test_a_request_from_another_site_is_refused(self):
         for site in "cross-site", "same-site", "nonsense":
             self.expect(403, request(self.port, headers=[f"Sec-Fetch-Site: {site}"]))
             twice = ["Sec-Fetch-Site: none", f"Sec-Fetch-Site: {site}"]
@@ -120,7 +120,7 @@ class Server(unittest.TestCase):
                         b"GET / HTTP/1.1\r\nHost : x\r\n\r\n", b"\x16\x03\x01\x02\x00\x01\x00\x01\xfc\x03\x03\r\n\r\n"):
             self.expect(400, garbage)
 
-    def test_who_never_ends_his_request_is_let_go(self):
+    def test_an_incomplete_request_is_closed_after_a_timeout(self):
         with open_socket(self.port) as silent, open_socket(self.port) as slow:
             slow.sendall(b"GET / HTTP/1.1\r\nHost:")
             for connection in silent, slow:
@@ -135,7 +135,7 @@ class Server(unittest.TestCase):
             connection.sendall(whole[-1:])
             self.assertEqual(status(all_of(connection)), 200)
 
-    def test_one_page_too_many_is_told_so_until_another_leaves(self):
+    def test_an_extra_page_is_rejected_until_another_closes(self):
         pages = [self.page() for _ in range(MOST_PAGES)]
         another = self.page()
         self.assertIsNone(another.next())
@@ -170,7 +170,7 @@ class Server(unittest.TestCase):
 
         wait_until(again)
 
-    def test_a_page_that_talks_garbage_is_let_go(self):
+    def test_a_page_that_sends_invalid_messages_is_closed(self):
         for text in ("garbage", "[]", "{}", '{"id":1}', '{"do":"list"}', '{"id":-1,"do":"list"}', '{"id":1,"do":2}',
                      '{"id":1,"do":"list","more":1}', "x" * 5000, json.dumps({"id": 1, "do": "x" * 2000}), b"\xff\xfe",
                      "[" * 4000):
@@ -206,7 +206,7 @@ class Server(unittest.TestCase):
         page.close()
         wait_until(lambda: another.tell("2 inputs")["text"] == "ok 0000")
 
-    def test_who_goes_in_the_middle_of_anything_is_forgotten(self):
+    def test_connections_that_end_early_free_their_slots(self):
         for data in (b"GET", upgrade(self.port)[:-1], upgrade(self.port), request(self.port)):
             for _ in range(10):
                 with open_socket(self.port) as connection:
@@ -269,7 +269,7 @@ class Start(unittest.TestCase):
 
 
 class Slow(unittest.TestCase):
-    def test_a_page_that_reads_nothing_keeps_nobody_waiting_and_then_learns_how_things_are(self):
+    def test_a_page_that_does_not_read_delays_no_other_and_then_gets_the_state(self):
         simulator = Simulator("EX9042D-M@01", "EX9052D-M@02", "--tcp", "0", "--line", "instant")
         self.addCleanup(simulator.close)
         master = Master(simulator.lines[0])

@@ -126,7 +126,7 @@ class Master:
 
 
 @contextlib.contextmanager
-def all_the_while(do):
+def repeating(do):
     """Calls `do` repeatedly in a thread while the block runs."""
     over = threading.Event()
 

@@ -159,7 +159,7 @@ class Browser:
         media = [{"name": "prefers-" + name.replace("_", "-"), "value": value} for name, value in features.items()]
         self.devtools("Emulation.setEmulatedMedia", features=media)
 
-    def complaints(self):
+    def logged_errors(self):
         """Returns the errors that the page has logged since the last call, except failed connections to the server."""
         nobody = ("ERR_CONNECTION_REFUSED", "ERR_CONNECTION_RESET", "closed before the connection is established")
         said = self._post("/se/log", {"type": "browser"})

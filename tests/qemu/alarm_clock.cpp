@@ -50,7 +50,7 @@ constexpr std::uint32_t kHalt = 20;  // if not 0, the machine halts after the ga
 constexpr std::uint32_t kLeft = 24;  // remaining clocks after the current part of the time
 /// The interrupt code reports its state as the distance from this address to the address of the byte that it
 /// loads at the gate.
-constexpr std::uint32_t kTold = 0x2000'8000;
+constexpr std::uint32_t kReportBase = 0x2000'8000;
 
 constexpr std::uint32_t kReceiverEmpty = 1U << 4U;
 /// A report contains the pin levels from this bit on. The UART flags are in the bits below it.
@@ -78,7 +78,7 @@ std::vector<std::uint8_t> code() {
     bytes.push_back(static_cast<std::uint8_t>(instruction >> 8U));
   }
   for (const std::uint32_t literal : {kOrders, kAlarm, kUartFlags, data_address(board::kDriverEnable),
-                                      data_address(board::kStatusLed), kTold}) {
+                                      data_address(board::kStatusLed), kReportBase}) {
     for (unsigned shift = 0; shift < 32; shift += 8) {
       bytes.push_back(static_cast<std::uint8_t>(literal >> shift));
     }
@@ -202,8 +202,8 @@ bool AlarmClock::wait_for_alarm() {
     constexpr std::size_t kAddress = sizeof(std::uint32_t);
     std::array<std::uint8_t, kAddress> address{};
     machine_.gate().receive_all(address.data(), address.size());
-    std::memcpy(&told_, address.data(), address.size());
-    told_ -= kTold;
+    std::memcpy(&last_report_, address.data(), address.size());
+    last_report_ -= kReportBase;
     at_gate_ = true;
     return true;
   }
@@ -261,8 +261,8 @@ bool AlarmClock::run_to_store(nanoseconds time) {
   return at_store_;
 }
 
-bool AlarmClock::receiver_empty() const { return (told_ & kReceiverEmpty) != 0; }
-bool AlarmClock::driver_on() const { return (told_ >> kPins & board::kDriverEnable.mask()) != 0; }
-bool AlarmClock::led_lit() const { return (told_ >> kPins & board::kStatusLed.mask()) != 0; }
+bool AlarmClock::receiver_empty() const { return (last_report_ & kReceiverEmpty) != 0; }
+bool AlarmClock::driver_on() const { return (last_report_ >> kPins & board::kDriverEnable.mask()) != 0; }
+bool AlarmClock::led_lit() const { return (last_report_ >> kPins & board::kStatusLed.mask()) != 0; }
 
 }  // namespace ex9000::rig

@@ -72,7 +72,7 @@ class AlarmClock {
   bool at_store_ = false;      ///< the machine has stopped before a store, and the alarm has not occurred yet
   std::string watched_;        ///< the range in the debugger's format
   std::uint32_t ordered_ = 0;  ///< the time until the next alarm, in clocks
-  std::uint32_t told_ = 0;     ///< the last report of the interrupt code
+  std::uint32_t last_report_ = 0;  ///< by the interrupt code
 };
 
 }  // namespace ex9000::rig

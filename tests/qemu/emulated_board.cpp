@@ -39,7 +39,7 @@ void EmulatedBoard::supply(bool on) {
   }
   if (!emulator_) {
     emulator_.emplace(image_of(model_), directory_ / "memory");
-    give_levels();
+    set_pin_levels();
   } else {
     pull_reset();
   }
@@ -61,29 +61,29 @@ void EmulatedBoard::fill_ram() {
 
 void EmulatedBoard::pull_reset() {
   emulator_->reset();
-  give_levels();
+  set_pin_levels();
   while (!emulator_->uart().receive(std::chrono::nanoseconds(0)).empty()) {
   }
 }
 
-void EmulatedBoard::give_levels() {
-  give_level(emulator_->bus(), board::kInitSwitch, !init_asserted_);
+void EmulatedBoard::set_pin_levels() {
+  set_pin_level(emulator_->bus(), board::kInitSwitch, !init_asserted_);
   for (unsigned channel = 0; channel < model_.inputs; ++channel) {
-    give_level(emulator_->bus(), input_pin(channel), levels_[channel]);
+    set_pin_level(emulator_->bus(), input_pin(channel), levels_[channel]);
   }
 }
 
 void EmulatedBoard::set_init(bool asserted) {
   init_asserted_ = asserted;
   if (powered()) {
-    give_level(emulator_->bus(), board::kInitSwitch, !asserted);
+    set_pin_level(emulator_->bus(), board::kInitSwitch, !asserted);
   }
 }
 
 void EmulatedBoard::set_level(unsigned channel, bool level) {
   levels_.at(channel) = level;
   if (powered()) {
-    give_level(emulator_->bus(), input_pin(channel), level);
+    set_pin_level(emulator_->bus(), input_pin(channel), level);
   }
 }
 

@@ -62,7 +62,7 @@ class EmulatedBoard {
  private:
   void store(const Settings* settings);
   void fill_ram();
-  void give_levels();
+  void set_pin_levels();
 
   const Model& model_;
   system::Directory directory_;

@@ -55,7 +55,7 @@ std::vector<std::string> command_of(const std::string& image, const std::string&
 }  // namespace
 
 Emulator::Emulator(const std::string& image, const std::string& memory) {
-  stay_on_one_processor();
+  bind_to_one_processor();
   UnixListener uart(directory_ / "uart");
   UnixListener qmp(directory_ / "qmp");
   UnixListener qtest(directory_ / "qtest");

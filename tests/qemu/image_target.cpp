@@ -104,7 +104,7 @@ Led::Shows ImageTarget::led(Led::Shows expected) {
     return Led::Shows::Off;
   }
   if (lit && expected == Led::Shows::On) {
-    module_->believe_led_on();
+    module_->assume_led_on();
     return Led::Shows::On;
   }
   const nanoseconds gives_up = module_->now() + kFlashing;

@@ -25,7 +25,7 @@ class ImageTarget final : public play::Target {
   void pulse_input(unsigned channel, std::uint32_t count) override;
   std::uint16_t outputs() override;
   play::step::Led::Shows led(play::step::Led::Shows expected) override;
-  void end() override { module_->make_sure(); }
+  void end() override { module_->verify_led(); }
 
  private:
   /// Returns the module after it has processed everything that was sent to it.

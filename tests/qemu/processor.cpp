@@ -4,7 +4,7 @@
 
 namespace ex9000::rig {
 
-void stay_on_processor(int processor) {
+void bind_to_processor(int processor) {
   const sched_param none{};
   sched_setscheduler(0, SCHED_BATCH, &none);
   cpu_set_t only;
@@ -13,12 +13,12 @@ void stay_on_processor(int processor) {
   sched_setaffinity(0, sizeof only, &only);
 }
 
-void stay_on_one_processor() {
+void bind_to_one_processor() {
   cpu_set_t allowed;
   CPU_ZERO(&allowed);
   sched_getaffinity(0, sizeof allowed, &allowed);
   if (CPU_COUNT(&allowed) != 1) {
-    stay_on_processor(sched_getcpu());
+    bind_to_processor(sched_getcpu());
   }
 }
 

@@ -6,10 +6,10 @@ namespace ex9000::rig {
 
 /// Binds the calling thread, and every thread or process that it starts from now on, to this processor of the
 /// host, numbered from 0. A thread that wakes another one continues until it waits itself.
-void stay_on_processor(int processor);
+void bind_to_processor(int processor);
 
 /// Binds the calling thread in the same way to the processor that it runs on now, unless it is already bound
 /// to one.
-void stay_on_one_processor();
+void bind_to_one_processor();
 
 }  // namespace ex9000::rig

@@ -71,10 +71,10 @@ void PtyBridge::end() {
 }
 
 void PtyBridge::carry() {
-  constexpr int kUntilThereIsSomething = -1;
+  constexpr int kNoTimeout = -1;
   for (;;) {
     std::array<pollfd, 2> ready{{{fd_, POLLIN, 0}, {over_, POLLIN, 0}}};
-    if (poll(ready.data(), ready.size(), kUntilThereIsSomething) < 0 || ready[1].revents != 0) {
+    if (poll(ready.data(), ready.size(), kNoTimeout) < 0 || ready[1].revents != 0) {
       return;
     }
     std::array<std::uint8_t, 512> buffer{};

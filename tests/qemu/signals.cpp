@@ -41,7 +41,7 @@ std::uint32_t data_address(Pin pin) { return port_address(pin) + (pin.mask() << 
 
 bool level_of(QtestClient& bus, Pin pin) { return bus.read(data_address(pin)) != 0; }
 
-void give_level(QtestClient& bus, Pin pin, bool level) {
+void set_pin_level(QtestClient& bus, Pin pin, bool level) {
   bus.set_input(path_of(pin.port), pin.number, level);
 }
 

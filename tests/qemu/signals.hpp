@@ -22,6 +22,6 @@ std::uint32_t data_address(Pin pin);
 
 bool level_of(QtestClient& bus, Pin pin);
 /// Sets the level of an input, which stays until the next reset.
-void give_level(QtestClient& bus, Pin pin, bool level);
+void set_pin_level(QtestClient& bus, Pin pin, bool level);
 
 }  // namespace ex9000::rig

@@ -94,7 +94,7 @@ void TimedModule::run_to_reset(const std::string& event, nanoseconds time) {
   emulator().qmp().wait_for(event);
 }
 
-void TimedModule::make_sure() {
+void TimedModule::verify_led() {
   if (lamp_.until()) {
     run_until(*lamp_.until());
   }

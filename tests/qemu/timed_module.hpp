@@ -61,10 +61,10 @@ class TimedModule : public EmulatedBoard {
 
   /// Assumes that the LED is steadily on. This function, or a later one that lets time pass, throws
   /// std::runtime_error if the LED flashes.
-  void believe_led_on() { lamp_.believe(now_); }
+  void assume_led_on() { lamp_.believe(now_); }
   /// Lets time pass until the assumption about the LED is verified. Call this function only if the extra time
   /// does not disturb later steps.
-  void make_sure();
+  void verify_led();
 
  private:
   void come_up();

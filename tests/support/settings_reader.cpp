@@ -19,19 +19,19 @@ std::uint8_t hex_byte(const std::string& text, std::size_t at) {
   return static_cast<std::uint8_t>(std::stoul(text.substr(at, 2), nullptr, 16));
 }
 
-std::vector<std::uint8_t> Manner::framed(const std::vector<std::uint8_t>& request) const {
+std::vector<std::uint8_t> FrameFormat::framed(const std::vector<std::uint8_t>& request) const {
   return protocol == Protocol::Ascii ? ascii_frame({request.begin(), request.end()}, checksum)
                                      : with_crc(request);
 }
 
 std::optional<Settings> SettingsReader::read(std::uint8_t format) {
-  return manner_.protocol == Protocol::Ascii ? read_ascii() : read_modbus(format);
+  return frame_format_.protocol == Protocol::Ascii ? read_ascii() : read_modbus(format);
 }
 
 SettingsReader::Bytes SettingsReader::ask(const Bytes& request) {
   Bytes frame = request;
-  frame.insert(frame.begin(), manner_.address);
-  const Bytes reply = exchange_(manner_.framed(frame));
+  frame.insert(frame.begin(), frame_format_.address);
+  const Bytes reply = exchange_(frame_format_.framed(frame));
   if (reply.size() < 4) {
     return {};
   }
@@ -42,15 +42,15 @@ SettingsReader::Bytes SettingsReader::ask(const Bytes& request) {
 
 std::string SettingsReader::ask(const std::string& command) {
   constexpr const char* kDigits = "0123456789ABCDEF";
-  const std::string text = command.substr(0, 1) + kDigits[manner_.address / 16] +
-                           kDigits[manner_.address % 16] + command.substr(1);
-  const Bytes reply = exchange_(manner_.framed({text.begin(), text.end()}));
-  const std::size_t frame = manner_.checksum ? 3 : 1;
+  const std::string text = command.substr(0, 1) + kDigits[frame_format_.address / 16] +
+                           kDigits[frame_format_.address % 16] + command.substr(1);
+  const Bytes reply = exchange_(frame_format_.framed({text.begin(), text.end()}));
+  const std::size_t frame = frame_format_.checksum ? 3 : 1;
   if (reply.size() <= frame) {
     return {};
   }
   const std::string body(reply.begin(), reply.end() - static_cast<std::ptrdiff_t>(frame));
-  EXPECT_EQ(ascii_frame(body, manner_.checksum), reply);
+  EXPECT_EQ(ascii_frame(body, frame_format_.checksum), reply);
   return body;
 }
 

@@ -13,17 +13,17 @@
 
 namespace ex9000 {
 
-/// The protocol, address and frame format that a module uses.
-struct Manner {
+/// The protocol and the address of a module, and whether its DCON frames have a checksum.
+struct FrameFormat {
   Protocol protocol;
   std::uint8_t address;
   bool checksum;
 
   /// Returns the values of a module that has started with these settings.
-  static Manner of(const Settings& settings) {
+  static FrameFormat of(const Settings& settings) {
     return {settings.protocol, settings.address, (settings.format & kFormatChecksum) != 0};
   }
-  static Manner init_mode() { return {Protocol::Ascii, 0, false}; }
+  static FrameFormat init_mode() { return {Protocol::Ascii, 0, false}; }
 
   /// Returns the frame of `request`, which is ASCII without checksum and CR, or Modbus without CRC.
   [[nodiscard]] std::vector<std::uint8_t> framed(const std::vector<std::uint8_t>& request) const;
@@ -35,8 +35,8 @@ class SettingsReader {
   /// Sends a frame and returns the reply. Returns nothing if there is no reply.
   using Exchange = std::function<Bytes(const Bytes& frame)>;
 
-  SettingsReader(const Model& model, Manner manner, Exchange exchange)
-      : model_(model), manner_(manner), exchange_(std::move(exchange)) {}
+  SettingsReader(const Model& model, FrameFormat frame_format, Exchange exchange)
+      : model_(model), frame_format_(frame_format), exchange_(std::move(exchange)) {}
 
   /// Reads all settings. Returns nothing if the module does not reply. Modbus has no register for the data
   /// format, so the result contains `format` then. Throws std::out_of_range if a reply is too short.
@@ -53,7 +53,7 @@ class SettingsReader {
   std::optional<Settings> read_modbus(std::uint8_t format);
 
   const Model& model_;
-  Manner manner_;
+  FrameFormat frame_format_;
   Exchange exchange_;
 };
 

@@ -103,7 +103,7 @@ class Counter:
         self._pass = None
 
     def wait_until_seen(self, patience):
-        """Waits until the log contains the line that Emulator.ask_for_sight requested. Call ask_for_sight first."""
+        """Waits until the log contains the line of Emulator.write_sync_line. Call write_sync_line first."""
         if not self._seen.wait(patience):
             raise RuntimeError("the emulator's log has ended")
         self._seen.clear()

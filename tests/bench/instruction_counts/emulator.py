@@ -171,7 +171,7 @@ class Emulator:
         """Writes a line to the log that the image cannot cause. See execution.py."""
         self._ask_bus(f"readl {UART_IDENTIFICATION:#x}")
 
-    def ask_for_sight(self):
+    def write_sync_line(self):
         """Writes a different line to the log. execution.follow reports when it reaches that line."""
         self._ask_bus(f"readl {UART_IDENTIFICATION_2:#x}")
 

@@ -33,7 +33,7 @@ def follow(log, sleeps, listener):
 
     - entered(span, main), left(span, main): an interrupt has started, or has returned
     - slept(main): a turn has ended
-    - seen(): everything that was executed before the call of Emulator.ask_for_sight has been reported
+    - seen(): everything that was executed before the call of Emulator.write_sync_line has been reported
     """
     main = Span(MAIN)
     stack = [main]
@@ -73,7 +73,7 @@ def follow(log, sleeps, listener):
             elif b" addr 0x00000fe0 " in line:  # Emulator.mark: instruction logging starts here
                 main = stack[0] = Span(MAIN)
                 here = stack[-1].addresses
-            elif b" addr 0x00000fe4 " in line:  # Emulator.ask_for_sight
+            elif b" addr 0x00000fe4 " in line:  # Emulator.write_sync_line
                 listener.seen()
 
 

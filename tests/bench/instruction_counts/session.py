@@ -139,7 +139,7 @@ class Session:
     def _run_until(self, is_over, name):
         for _ in range(round(PASS / SLICE)):
             self._run(SLICE)
-            self._emulator.ask_for_sight()
+            self._emulator.write_sync_line()
             self.counter.wait_until_seen(HANG)
             if is_over():
                 return

@@ -91,9 +91,9 @@ void CutBench::power_up(const Contents& contents, bool init) {
   ASSERT_TRUE(uart().enabled()) << "the module does not start";
 }
 
-Manner CutBench::speak_as(const Settings& settings, bool init_mode) {
+FrameFormat CutBench::speak_as(const Settings& settings, bool init_mode) {
   bench_.line.set_baud(baud_rate(init_mode ? kFactoryBaudCode : settings.baud_code));
-  return init_mode ? Manner::init_mode() : Manner::of(settings);
+  return init_mode ? FrameFormat::init_mode() : FrameFormat::of(settings);
 }
 
 /// Sends `frame` after a sufficient silence.
@@ -121,8 +121,8 @@ CutBench::Bytes CutBench::hear() {
   return reply;
 }
 
-SettingsReader CutBench::master(const Manner& manner) {
-  return {model_, manner, [this](const Bytes& frame) {
+SettingsReader CutBench::master(const FrameFormat& frame_format) {
+  return {model_, frame_format, [this](const Bytes& frame) {
             send(frame);
             return hear();
           }};
@@ -183,22 +183,22 @@ void CutBench::note_cuts(Cuts& cuts) {
   cuts.points += cells.size() - 1;
 }
 
-void CutBench::set_outputs(const Manner& manner) {
-  if (manner.protocol == Protocol::Ascii) {
-    ASSERT_EQ(master(manner).ask(std::string("@C35A")), ">");
+void CutBench::set_outputs(const FrameFormat& frame_format) {
+  if (frame_format.protocol == Protocol::Ascii) {
+    ASSERT_EQ(master(frame_format).ask(std::string("@C35A")), ">");
   } else {
-    const Bytes reply = master(manner).ask(Bytes{0x0F, 0, 0, 0, 16, 2, kDriven & 0xFFU, kDriven >> 8U});
-    ASSERT_EQ(reply, (Bytes{manner.address, 0x0F, 0, 0, 0, 16}));
+    const Bytes reply = master(frame_format).ask(Bytes{0x0F, 0, 0, 0, 16, 2, kDriven & 0xFFU, kDriven >> 8U});
+    ASSERT_EQ(reply, (Bytes{frame_format.address, 0x0F, 0, 0, 0, 16}));
   }
   ASSERT_EQ(bench_.outputs(), kDriven);
 }
 
 /// Executes a command until it is stored and answered, and the bus and the line are idle.
-void CutBench::carry_out(const Manner& manner, const StoringCommand& command, const Settings& before,
-                         std::size_t pages) {
+void CutBench::carry_out(const FrameFormat& frame_format, const StoringCommand& command,
+                         const Settings& before, std::size_t pages) {
   const std::size_t had_programmed = bench_.eeprom.programmed().size();
   if (!command.is_timeout()) {
-    send(manner.framed(command.frame(before)));
+    send(frame_format.framed(command.frame(before)));
     while (bench_.line.sending()) {
       bench_.run_for(microseconds(500));
     }
@@ -211,7 +211,7 @@ void CutBench::carry_out(const Manner& manner, const StoringCommand& command, co
   if (command.answered) {
     const Bytes reply = hear();
     ASSERT_GE(reply.size(), 3U) << "no answer";
-    EXPECT_TRUE(manner.protocol == Protocol::Ascii ? reply[0] == '!' : reply[1] < 0x80U) << "refused";
+    EXPECT_TRUE(frame_format.protocol == Protocol::Ascii ? reply[0] == '!' : reply[1] < 0x80U) << "refused";
   }
   bench_.run_for(milliseconds(10));  // the module reads back what it has stored
 }
@@ -223,12 +223,13 @@ std::uint16_t CutBench::outputs_before(const Settings& settings) const {
   return settings.timeout_status ? settings.safe_value : kDriven;
 }
 
-Manner CutBench::get_ready(const Contents& contents, const Settings& before, const StoringCommand& command) {
+FrameFormat CutBench::get_ready(const Contents& contents, const Settings& before,
+                                const StoringCommand& command) {
   const bool init_mode = command.init == Init::SinceReset;
   power_up(contents, init_mode);
-  const Manner manner = speak_as(before, init_mode);
+  const FrameFormat frame_format = speak_as(before, init_mode);
   if (model_.outputs != 0 && !before.timeout_status) {
-    set_outputs(manner);
+    set_outputs(frame_format);
   }
   if (command.init == Init::Tied) {
     bench_.set_init(true);
@@ -236,13 +237,13 @@ Manner CutBench::get_ready(const Contents& contents, const Settings& before, con
   }
   EXPECT_EQ(bench_.outputs(), outputs_before(before));
   bench_.line.drives.clear();
-  return manner;
+  return frame_format;
 }
 
 Cuts CutBench::cut_everywhere(const Contents& contents, const Settings& before,
                               const StoringCommand& command) {
   Cuts cuts;
-  const Manner manner = get_ready(contents, before, command);
+  const FrameFormat frame_format = get_ready(contents, before, command);
   const Instant began = bench_.timeline.now();
   cuts.outputs = bench_.outputs();
   const Settings done = command.done_to(before, cuts.outputs);
@@ -255,7 +256,7 @@ Cuts CutBench::cut_everywhere(const Contents& contents, const Settings& before,
       EXPECT_EQ(bench_.outputs(), command.is_timeout() ? outputs_done : cuts.outputs);
     }
   });
-  carry_out(manner, command, before, pages_of_a_store(contents));
+  carry_out(frame_format, command, before, pages_of_a_store(contents));
   bench_.eeprom.on_event(nullptr);
   ++cuts.points;
   ++cuts.cuts;
@@ -268,7 +269,7 @@ Attempt CutBench::attempt(const Contents& contents, const Settings& before, cons
                           std::uint16_t place, std::uint8_t bits, std::uint8_t stuck) {
   constexpr milliseconds kTriedAgain{1300};  // the module retries every second, wire.md D15
   Attempt attempt;
-  const Manner manner = get_ready(contents, before, command);
+  const FrameFormat frame_format = get_ready(contents, before, command);
   EepromChip& eeprom = bench_.eeprom;
   eeprom.wear_out(place, bits, stuck);
   attempt.outputs_before = bench_.outputs();
@@ -278,7 +279,7 @@ Attempt CutBench::attempt(const Contents& contents, const Settings& before, cons
     (bench_.line.drives.empty() ? attempt.meanwhile : attempt.behind).push_back(CutBench::contents());
   });
   if (!command.is_timeout()) {
-    send(manner.framed(command.frame(before)));
+    send(frame_format.framed(command.frame(before)));
     while (bench_.line.sending()) {
       bench_.run_for(microseconds(100));
     }
@@ -303,10 +304,10 @@ Attempt CutBench::attempt(const Contents& contents, const Settings& before, cons
 
 AfterReset CutBench::reset_after(Instant time, const Contents& contents, const Settings& before,
                                  const StoringCommand& command) {
-  const Manner manner = get_ready(contents, before, command);
+  const FrameFormat frame_format = get_ready(contents, before, command);
   const Instant when = bench_.timeline.now() + time;
   if (!command.is_timeout()) {
-    send(manner.framed(command.frame(before)));
+    send(frame_format.framed(command.frame(before)));
   }
   bench_.run_until(when);
   const bool certainly_done = !bench_.line.drives.empty();

@@ -105,13 +105,13 @@ class CutBench {
   [[nodiscard]] std::size_t pages_of_a_store(const Contents& contents) const;
   Outputs outputs();
   void note_cuts(Cuts& cuts);
-  Manner speak_as(const Settings& settings, bool init_mode);
+  FrameFormat speak_as(const Settings& settings, bool init_mode);
   void send(const Bytes& frame);
   Bytes hear();
-  SettingsReader master(const Manner& manner);
-  void set_outputs(const Manner& manner);
-  Manner get_ready(const Contents& contents, const Settings& before, const StoringCommand& command);
-  void carry_out(const Manner& manner, const StoringCommand& command, const Settings& before,
+  SettingsReader master(const FrameFormat& frame_format);
+  void set_outputs(const FrameFormat& frame_format);
+  FrameFormat get_ready(const Contents& contents, const Settings& before, const StoringCommand& command);
+  void carry_out(const FrameFormat& frame_format, const StoringCommand& command, const Settings& before,
                  std::size_t pages);
 
   const Model& model_;

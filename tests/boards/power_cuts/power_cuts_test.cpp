@@ -42,7 +42,7 @@ class PowerCutsOf : public testing::TestWithParam<ImageName> {
 
   /// Starts the image from `contents`, in which StoredCopy has already found `settings`.
   void come_up(const Contents& contents, const Settings& settings, const Settings& otherwise) {
-    const Found found = bench_.come_up(contents, {settings, otherwise}, all_of_them());
+    const Found found = bench_.come_up(contents, {settings, otherwise}, all_cases_requested());
     ASSERT_TRUE(found.settings) << "it does not answer";
     ASSERT_TRUE(*found.settings == settings);
     expect_outputs(found.outputs, settings);
@@ -95,7 +95,7 @@ class PowerCutsOf : public testing::TestWithParam<ImageName> {
         commands.push_back(&command);
       }
       std::shuffle(commands.begin(), commands.end(), random_);
-      commands.resize(all_of_them() ? commands.size() : kSome);
+      commands.resize(all_cases_requested() ? commands.size() : kSome);
       for (const StoringCommand* command : commands) {
         SCOPED_TRACE(command->name + (beginning == Beginning::Updated ? ", updated" : ", longer record"));
         what(begin_at(beginning, model_, *command), *command);
@@ -174,7 +174,8 @@ class PowerCutsOf : public testing::TestWithParam<ImageName> {
 TEST_P(PowerCutsOf, LeaveEachCommandWhollyDoneOrNotAtAll) {
   for_each_command([this](const State& state, const StoringCommand& command) {
     const Cuts cuts = bench_.cut_everywhere(state.contents, state.settings, command);
-    judge(cuts, state.settings, command.done_to(state.settings, cuts.outputs), all_of_them() ? SIZE_MAX : 18);
+    judge(cuts, state.settings, command.done_to(state.settings, cuts.outputs),
+          all_cases_requested() ? SIZE_MAX : 18);
   });
 }
 
@@ -183,7 +184,8 @@ TEST_P(PowerCutsOf, LeaveEachCommandWhollyDoneOrNotAtAll) {
 TEST_P(PowerCutsOf, InAStoreOfSeveralPagesLeaveEachCommandWhollyDoneOrNotAtAll) {
   for_some_commands_of_several_pages([this](const State& state, const StoringCommand& command) {
     const Cuts cuts = bench_.cut_everywhere(state.contents, state.settings, command);
-    judge(cuts, state.settings, command.done_to(state.settings, cuts.outputs), all_of_them() ? SIZE_MAX : 6);
+    judge(cuts, state.settings, command.done_to(state.settings, cuts.outputs),
+          all_cases_requested() ? SIZE_MAX : 6);
   });
 }
 
@@ -194,7 +196,7 @@ TEST_P(PowerCutsOf, InAStoreOfSeveralPagesLeaveEachCommandWhollyDoneOrNotAtAll) 
 /// the same value. The first command is wholly done then, and nothing that was answered is lost.
 TEST_P(PowerCutsOf, TwiceInARowLeaveEachCommandWhollyDoneOrNotAtAll) {
   for_each_command([this](const State& state, const StoringCommand& first) {
-    cut_twice(state, first, all_of_them() ? SIZE_MAX : 2);
+    cut_twice(state, first, all_cases_requested() ? SIZE_MAX : 2);
   });
 }
 
@@ -202,14 +204,14 @@ TEST_P(PowerCutsOf, TwiceInARowLeaveEachCommandWhollyDoneOrNotAtAll) {
 /// tests/long.
 TEST_P(PowerCutsOf, TwiceInARowInStoresOfSeveralPagesLeaveEachCommandWhollyDoneOrNotAtAll) {
   for_some_commands_of_several_pages([this](const State& state, const StoringCommand& first) {
-    cut_twice(state, first, all_of_them() ? 40 : 2);
+    cut_twice(state, first, all_cases_requested() ? 40 : 2);
   });
 }
 
 /// Resets only the microcontroller, during traffic on the bus. After the reset, the EEPROM may be busy with
 /// programming.
 TEST_P(PowerCutsOf, ThatTheEepromDoesNotNoticeLeaveEachCommandWhollyDoneOrNotAtAll) {
-  const std::size_t one_in = all_of_them() ? 1 : 28;
+  const std::size_t one_in = all_cases_requested() ? 1 : 28;
   for_each_command([this, one_in](const State& state, const StoringCommand& command) {
     const Cuts cuts = bench_.cut_everywhere(state.contents, state.settings, command);
     const Settings done = command.done_to(state.settings, cuts.outputs);

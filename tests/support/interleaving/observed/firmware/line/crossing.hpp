@@ -12,7 +12,7 @@ namespace ex9000 {
 
 namespace detail {
 
-inline void hold_to_side(bool interrupt) {
+inline void require_side(bool interrupt) {
   if (interleaving::Points::in_interrupt() != interrupt) {
     throw std::logic_error("a crossing was written by the side that must not");
   }
@@ -48,7 +48,7 @@ template <class T>
 class WrittenByInterrupt : public detail::Crossing<T> {
  public:
   void store_in_interrupt(T value) {
-    detail::hold_to_side(true);
+    detail::require_side(true);
     this->store(value);
   }
 };
@@ -57,7 +57,7 @@ template <class T>
 class WrittenByMainLoop : public detail::Crossing<T> {
  public:
   void store_in_main_loop(T value) {
-    detail::hold_to_side(false);
+    detail::require_side(false);
     this->store(value);
   }
 };
@@ -66,7 +66,7 @@ template <class T>
 class HandedToInterrupt {
  public:
   void set_in_main_loop(const T& value) {
-    detail::hold_to_side(false);
+    detail::require_side(false);
     torn_ = true;
     interleaving::Points::pass();
     value_ = value;
@@ -74,7 +74,7 @@ class HandedToInterrupt {
     torn_ = false;
   }
   T& in_interrupt() {
-    detail::hold_to_side(true);
+    detail::require_side(true);
     if (torn_) {
       throw std::logic_error("an interrupt uses what the main loop is just writing");
     }
