@@ -32,7 +32,7 @@ class Reporter final : public benchmark::ConsoleReporter {
     const bool meets =
         figure >= counter(run, "at_least", -kNoLimit) && figure <= counter(run, "at_most", kNoLimit);
     if (!meets) {
-      std::cerr << run.benchmark_name() << ": " << figure << " is not what is demanded of a quiet machine\n";
+      std::cerr << run.benchmark_name() << ": " << figure << " is outside the limits for a quiet machine\n";
     }
   }
 

@@ -74,8 +74,8 @@ def capacity(found):
             f"  all eight inputs at once, both edges counted, the line saturated at {BAUD} baud, "
             f"{LEFT_TO_THE_MAIN_LOOP:.0%} left to the main loop: {math.floor(pulses / 100) * 100} pulses a second "
             "on each input",
-            f"  an edge is served within {math.ceil(wait * 1e6)} us whatever other interrupts wait: a pulse as long as "
-            "that is seen edge by edge; one that is shorter is still counted, if it and the gap behind it last so long "
-            "together",
+            f"  an edge is served within {math.ceil(wait * 1e6)} us whatever other interrupts wait: each edge of a "
+            "pulse of that length is detected; a shorter pulse is still counted if the pulse and the following gap "
+            "together have that length",
         ]
     )

@@ -155,7 +155,7 @@ class Emulator:
     def put(self, byte):
         """Puts a byte on the line. The image receives it when the emulator continues."""
         if not self._read(UART_FLAGS) & RECEIVER_EMPTY:
-            raise RuntimeError("the image has not taken the byte before")
+            raise RuntimeError("the image has not read the previous byte")
         self.line.sendall(bytes([byte]))
         while self._read(UART_FLAGS) & RECEIVER_EMPTY:
             pass

@@ -114,32 +114,33 @@ def main(arguments):
     parser = argparse.ArgumentParser(
         prog="instructions",
         description="Counts the instructions that firmware images execute in QEMU for whole transactions, from the "
-        "first received byte to the last sent one: all interrupts and the main loop, the tick subtracted, the median "
-        "of 100 passes; of single interrupts, the highest; and what each is more or less than the record. Exit "
-        "status 1 if one has grown by more than 5 % since it was recorded.",
+        "first received byte to the last sent one. It counts all interrupts and the main loop without the tick, and "
+        "prints the median of 100 passes. For single interrupts it prints the highest count. It also prints the "
+        "difference from the record. The exit status is 1 if a count has grown by more than 5 % since it was recorded.",
     )
-    parser.add_argument("folder", help="with the images for lm3s6965evb, as ELF files")
+    parser.add_argument("folder", help="folder with the images for lm3s6965evb, as ELF files")
     parser.add_argument(
-        "--only", default="", metavar="TEXT", help="requests whose names hold it, and nothing else"
+        "--only", default="", metavar="TEXT", help="count only requests whose names contain TEXT"
     )
     parser.add_argument(
-        "--profile", default="", metavar="TEXT", help="by function, what the pass has executed that counts"
+        "--profile", default="", metavar="TEXT",
+        help="print the instructions of each function in results whose names contain TEXT"
     )
     parser.add_argument("--passes", type=int, default=100)
     parser.add_argument(
         "--gate",
         default=os.path.join(ROOT, "build/host-debug/tests/qemu/libex9000_gate.so"),
         metavar="FILE",
-        help="tests/qemu/gate.cpp, as a preset for the host builds it; of host-debug if left out",
+        help="the plugin tests/qemu/gate.cpp, built by a preset for the host (default: host-debug)",
     )
-    parser.add_argument("--all", action="store_true", help="every request on every model that has it")
+    parser.add_argument("--all", action="store_true", help="count every request on every model that supports it")
     parser.add_argument(
-        "--jobs", type=int, default=os.cpu_count() or 1, help="sessions at a time"
+        "--jobs", type=int, default=os.cpu_count() or 1, help="number of concurrent sessions"
     )
     parser.add_argument("--record", action="store_true", help="write the counts to the record")
     options = parser.parse_args(arguments)
     if options.record and (options.only or options.all):
-        parser.error("--record: needs all counts; leave out --only and --all")
+        parser.error("--record: requires all counts; omit --only and --all")
     before = recorded()
     counts = {}
     found = Found()

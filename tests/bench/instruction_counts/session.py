@@ -35,7 +35,9 @@ class Session:
         self._ascii = is_ascii
         of_the_tick = self.image.addresses_of("poll_panel")
         if not of_the_tick:
-            raise RuntimeError(f"{image}: no code of `poll_panel`, which the main loop does for the tick")
+            raise RuntimeError(
+                f"{image}: no code of `poll_panel`; expected the function that the main loop calls for the tick"
+            )
         self._sleeps = self.image.sleeps()
         self.counter = Counter(self.image.handlers(), self._sleeps, of_the_tick)
         self._emulator = Emulator(image, gate)
@@ -120,7 +122,9 @@ class Session:
         if len(request.frames) > 1:
             self._converse(request.frames[-1])
             if not self._is_there():
-                raise RuntimeError(f"{self._model.name} is deaf behind {request.name}")
+                raise RuntimeError(
+                    f"{self._model.name}: no reply after {request.name}; expected a reply at its own address"
+                )
 
     def _pass(self, request, frame):
         self._log(True)

@@ -85,8 +85,8 @@ void compare(std::chrono::milliseconds time, bool with_pymodbus) {
   }
   std::printf("one line, FC01 x 13 back to back, median of %zu rounds in turn:\n", kRounds);
   for (const Peer& peer : peers) {
-    std::printf("  %-28s %8.0f transactions/s, of which ex9000-sim's TCP has %5.2f times as many\n",
-                peer.name, peer.median(), peers[0].median() / peer.median());
+    std::printf("  %-28s %8.0f transactions/s; ex9000-sim over TCP: %5.2f times as many\n", peer.name,
+                peer.median(), peers[0].median() / peer.median());
   }
 }
 
