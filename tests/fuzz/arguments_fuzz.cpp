@@ -30,9 +30,9 @@ void check_error(const Parsed& parsed) {
 void check_module(const ModuleSpec& module) {
   require(module.model != nullptr && module.settings.possible_for(*module.model),
           "a module starts with settings it could have stored");
-  require(module.eeprom.find('\0') == std::string::npos, "a path is a path");
+  require(module.eeprom.find('\0') == std::string::npos, "a path contains no NUL");
   for (const sim::InputProgram& input : module.inputs) {
-    require(input.channel < module.model->inputs, "an input that moves is one of the model's");
+    require(input.channel < module.model->inputs, "an input program uses an input of the model");
     require(input.high.count() > 0 && input.bounce <= input.high, "an input has time to move");
   }
 }
@@ -49,18 +49,20 @@ void check_line(const LineSetup& line) {
   }
   require(!line.serial || (!line.pty && !line.tcp && !line.instant), "a real line is the only one");
   require(!line.echo || line.serial, "only a serial port has an echo");
-  require(!line.instant || !line.strict_gaps, "gaps mean nothing where bytes cost no time");
+  require(!line.instant || !line.strict_gaps, "an instant line has no strict gaps");
   for (const auto& path : {line.pty, line.serial}) {
-    require(!path || (!path->empty() && path->find('\0') == std::string::npos), "a path is a path");
+    require(!path || (!path->empty() && path->find('\0') == std::string::npos),
+            "a path is not empty and contains no NUL");
   }
   const auto is_rate = [&](std::uint32_t rate) { return rate == *line.baud; };
   require(!line.baud || std::any_of(kBaudRates.begin(), kBaudRates.end(), is_rate),
           "the line's rate is one of eight");
   require(!line.tcp || !line.tcp->host.empty(), "TCP has a host");
   for (const sim::Fault& fault : line.faults) {
-    require(!fault.module || *fault.module < line.modules.size(), "a fault is of a module that there is");
-    require(!fault.module || sim::concerns_a_module(fault.trouble), "what befalls the line is of no module");
-    require(fault.text.find('\n') == std::string::npos, "a fault is told in one line");
+    require(!fault.module || *fault.module < line.modules.size(), "a fault belongs to an existing module");
+    require(!fault.module || sim::concerns_a_module(fault.trouble),
+            "a fault of the line belongs to no module");
+    require(fault.text.find('\n') == std::string::npos, "the text of a fault is one line");
   }
 }
 
@@ -68,11 +70,11 @@ void check_setup(const Setup& setup) {
   for (const LineSetup& line : setup.lines) {
     check_line(line);
     require(!setup.speed.max() || (!line.pty && !line.tcp && !line.serial),
-            "no master keeps up with all speeds");
+            "maximum speed has no port for a master");
   }
-  require(!setup.speed.max() || setup.lasts, "what goes as fast as it can has an end");
+  require(!setup.speed.max() || setup.lasts, "maximum speed requires a duration");
   require(setup.speed.factor > 0, "time passes");
-  require(!setup.speed.stepped() || setup.control, "something moves time that stands still");
+  require(!setup.speed.stepped() || setup.control, "stepped time requires a control socket");
   require(!setup.control || !setup.control->empty(), "a path is not empty");
 }
 
@@ -84,7 +86,8 @@ void check_several(const std::vector<LineSetup>& lines) {
     const auto is_like = [&line](const LineSetup& other) {
       return other.name == line.name || (other.pty && other.pty == line.pty);
     };
-    require(std::count_if(lines.begin(), lines.end(), is_like) == 1, "each line is another");
+    require(std::count_if(lines.begin(), lines.end(), is_like) == 1,
+            "line names and pseudo-terminals are unique");
   }
 }
 
@@ -98,10 +101,10 @@ void parse_file(const std::string& text) {
     const std::string place = "bus.json:";
     const auto end = what.find_first_not_of("0123456789", place.size());
     require(what.rfind(place, 0) == 0 && end > place.size() && what.compare(end, 2, ": ") == 0,
-            "what is wrong in a file is told with its line");
+            "an error in a file names its line");
     const auto lines = std::count(text.begin(), text.end(), '\n') + 1;
     const auto line = std::stol(what.substr(place.size(), end - place.size()));
-    require(line >= 1 && line <= lines, "and that is a line of it");
+    require(line >= 1 && line <= lines, "the line exists in the file");
   }
 }
 
@@ -124,17 +127,17 @@ void parse(const std::string& text) {
   const Parsed parsed = sim::parse_arguments(static_cast<int>(words.size()), argv.data());
   if (parsed.setup) {
     require(parsed.output.empty() && parsed.error.empty() && parsed.exit_status == 0,
-            "something to do is all there is");
+            "a setup comes without text and error");
     require(parsed.setup->lines.size() == 1, "a command line has one line");
     const LineSetup& line = parsed.setup->lines[0];
     require(parsed.setup->speed.max() || line.pty || line.tcp || line.serial, "there is a way to the line");
     check_setup(*parsed.setup);
   } else if (parsed.task) {
     require(parsed.output.empty() && parsed.error.empty() && parsed.exit_status == 0,
-            "to play is all there is");
+            "a task comes without text and error");
     require(!parsed.task->bus || parsed.task->bus->lines.size() == 1, "modules behind it are on one line");
   } else if (!parsed.output.empty()) {
-    require(parsed.error.empty() && parsed.exit_status == 0, "text is all there is");
+    require(parsed.error.empty() && parsed.exit_status == 0, "a text comes without an error");
   } else {
     check_error(parsed);
   }

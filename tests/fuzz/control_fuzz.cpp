@@ -165,7 +165,7 @@ void check_faults(Watched& watched, const Words& words, const std::string& reply
 void check_effect(Watched& watched, const Words& words, const std::string& reply) {
   const Words on_line = of_the_line(words);
   if (on_line[0] == "baud") {
-    require(watched.line.master().baud() == std::stoul(on_line[1]), "the line has the rate it was told");
+    require(watched.line.master().baud() == std::stoul(on_line[1]), "the line has the requested baud rate");
     return;
   }
   if (on_line[0] == "sent") {
@@ -185,16 +185,16 @@ void check_effect(Watched& watched, const Words& words, const std::string& reply
   } else if (words[1] == "power") {
     // A fault can have cut the supply after the switch.
     require(module.powered() ? words[2] == "on" : words[2] == "off" || !watched.faults.empty(),
-            "power is on or off as told");
+            "the supply has the requested state");
   } else if (words[1] == "input") {
     require((module.input_levels() >> std::stoul(words[2]) & 1U) == (words[3] == "on" ? 1U : 0U),
-            "an input has the level it was told");
+            "an input has the requested level");
   } else if (words[1] == "status") {
-    require(reply.find(std::string(module.model().designation)) == 3, "status tells the model");
+    require(reply.find(std::string(module.model().designation)) == 3, "the status contains the model");
   } else if (words[1] == "inputs" || words[1] == "outputs") {
     require(reply.size() == 7 && std::stoul(reply.substr(3), nullptr, 16) ==
                                      (words[1] == "inputs" ? module.input_levels() : module.outputs()),
-            "levels are told in four hex digits");
+            "levels are printed as four hex digits");
   }
 }
 
@@ -218,8 +218,8 @@ void carry_out(Watched& watched, sim::Control& control, const std::string& comma
     require(reply.text == "ok" || reply.text.rfind("ok ", 0) == 0, "a command is carried out");
     check_effect(watched, words, reply.text);
   } else {
-    require(reply.text.rfind("error: ", 0) == 0, "what is no command is refused");
-    require(before == seen(line), "what is refused changes nothing");
+    require(reply.text.rfind("error: ", 0) == 0, "an invalid command is rejected");
+    require(before == seen(line), "a rejected command changes nothing");
   }
 }
 

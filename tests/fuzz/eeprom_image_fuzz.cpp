@@ -75,7 +75,7 @@ class Trial {
     session_.reset();
     come_up_with(expected.settings);
     require(session_.module().module().settings_unreadable() == expected.unreadable,
-            "settings that cannot be read are told from an erased memory");
+            "unreadable settings are distinguished from an erased memory");
     session_.around().memory_answers = true;
     tells(expected.settings);
     store_something();
@@ -104,14 +104,14 @@ class Trial {
     const InForce& in_force = session_.in_force();
     // No host watchdog timeout is so short that it can already have expired.
     require(same(state().settings, settings),
-            "the later good copy counts, or else the factory's settings do");
+            "the module uses the newest valid copy, or else the factory settings");
     require(state().outputs == (settings.timeout_status ? settings.safe_value : settings.power_on_value),
-            "outputs come up with the power-on value, or the safe value behind a timeout");
+            "outputs start with the power-on value, or with the safe value after a timeout");
     require(in_force.init_mode == init && in_force.address == (init ? 0 : settings.address) &&
                 in_force.baud_code == (init ? 0x06 : settings.baud_code) &&
                 in_force.protocol == (init ? Protocol::Ascii : settings.protocol) &&
                 in_force.checksum == (!init && (settings.format & 0x40U) != 0),
-            "what is stored is in force, or what INIT* says");
+            "the stored settings are in force, or those of INIT mode");
   }
 
   Bytes ask(std::string_view command) {

@@ -53,7 +53,7 @@ class Session final : public ModuleObserver {
     booting_ = false;
     const judges::Values came_up = values();
     require(outputs_ == (came_up.timed_out ? came_up.safe : came_up.power_on),
-            "outputs come up with the power-on value, or the safe value behind a timeout");
+            "outputs start with the power-on value, or with the safe value after a timeout");
     judges::Listening listening = judges::listening_of(state());
     listening.strict_gaps = strict_gaps_;
     witness_.comes_up(listening, came_up, began);
