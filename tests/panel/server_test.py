@@ -31,7 +31,7 @@ class Polling:
         try:
             while self._left != 0:
                 if self._master.ask("020200000008", 6)[:2] != b"\x02\x01":
-                    raise AssertionError("no answer to what was asked")
+                    raise AssertionError("unexpected reply to the poll")
                 if self._left is not None:
                     self._left -= 1
         except Exception as wrong:  # pylint: disable=broad-exception-caught # the test reads it

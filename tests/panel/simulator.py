@@ -24,7 +24,7 @@ def wait_until(holds):
     after HANG seconds."""
     gives_up = time.monotonic() + HANG
     while not (it := holds()):
-        assert time.monotonic() < gives_up, "never"
+        assert time.monotonic() < gives_up, f"timeout: not true within {HANG} s"
         time.sleep(0.01)
     return it
 

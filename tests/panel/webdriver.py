@@ -98,7 +98,7 @@ class Browser:
               await new Promise((go_on) => setTimeout(go_on, 10));
             }}
             return true;"""
-        assert self.promised(script, *arguments), f"never: {condition} {arguments}"
+        assert self.promised(script, *arguments), f"timeout: not true within {HANG} s: {condition} {arguments}"
 
     def find(self, selector):
         return self._post("/element", {"using": "css selector", "value": selector})[ELEMENT]

@@ -152,7 +152,7 @@ nanoseconds AlarmClock::make_edges(Pin pin, std::uint32_t edges) {
 void AlarmClock::run(std::uint32_t clocks, const std::string& orders) {
   begin_to_run(clocks, orders);
   if (!wait_for_alarm()) {
-    throw std::runtime_error("a store that nobody waits for");
+    throw std::runtime_error("unexpected stop before a watched store");
   }
 }
 
@@ -238,7 +238,7 @@ void AlarmClock::watch_stores(std::uint32_t address, std::uint32_t size) {
   watched_ = range.data();
   machine_.gdb().send(GdbClient::framed("Z" + watched_));
   if (machine_.gdb().receive() != "OK") {
-    throw std::runtime_error("the emulator watches no stores");
+    throw std::runtime_error("the emulator rejects the watchpoint");
   }
 }
 
@@ -252,7 +252,7 @@ bool AlarmClock::run_to_store(nanoseconds time) {
     }
     gdb.send(GdbClient::framed("Z" + watched_) + GdbClient::framed("c"));
     if (gdb.receive() != "OK") {
-      throw std::runtime_error("the emulator watches no stores any more");
+      throw std::runtime_error("the emulator rejects the watchpoint");
     }
   } else {
     begin_to_run(clocks(time - kInterruptTakes), {});

@@ -26,7 +26,7 @@ class LampWatch {
       until_.reset();
     } else if (until_ && !lit) {
       until_.reset();
-      throw std::runtime_error("the LED was flashing when it was to be on");
+      throw std::runtime_error("the LED flashes; expected it to be on steadily");
     }
   }
   /// Returns when the assumption will be verified, or nothing if there is none.

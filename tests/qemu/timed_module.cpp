@@ -150,7 +150,7 @@ void TimedModule::put(std::uint8_t byte) {
     return;
   }
   if (!clock_->receiver_empty()) {
-    throw std::runtime_error("the image has not taken the byte before");
+    throw std::runtime_error("the image has not read the previous byte");
   }
   emulator().uart().send(&byte, 1);
   constexpr std::uint32_t kUartFlags = 0x4000'C018;

@@ -55,7 +55,7 @@ std::vector<std::uint8_t> UnixSocket::receive(std::chrono::nanoseconds patience)
   }
   const ssize_t size = recv(fd_, buffer.data(), buffer.size(), 0);
   if (size <= 0) {
-    throw std::runtime_error("the emulator has hung up");
+    throw std::runtime_error("the emulator has closed the connection");
   }
   return {buffer.begin(), buffer.begin() + size};
 }
@@ -64,7 +64,7 @@ void UnixSocket::receive_all(std::uint8_t* bytes, std::size_t size) {
   while (size != 0) {
     const ssize_t received = readable(fd_, kHang) ? recv(fd_, bytes, size, 0) : 0;
     if (received <= 0) {
-      throw std::runtime_error("the emulator has hung up");
+      throw std::runtime_error("the emulator has closed the connection, or has sent nothing for 60 s");
     }
     bytes += received;
     size -= static_cast<std::size_t>(received);
@@ -113,7 +113,7 @@ UnixListener::~UnixListener() { close(fd_); }
 
 UnixSocket UnixListener::accept() {
   if (!readable(fd_, kHang)) {
-    throw std::runtime_error("the emulator does not come up");
+    throw std::runtime_error("the emulator has not connected within 60 s");
   }
   return UnixSocket(accept4(fd_, nullptr, nullptr, SOCK_CLOEXEC));
 }

@@ -17,7 +17,7 @@ ControlClient::ControlClient(const std::string& path) : fd_(socket(AF_UNIX, SOCK
   path.copy(address.sun_path, sizeof address.sun_path - 1);
   if (connect(fd_, reinterpret_cast<const sockaddr*>(&address), sizeof address) != 0) {
     close(fd_);
-    throw std::runtime_error("nobody listens at " + path);
+    throw std::runtime_error("no program listens at " + path);
   }
 }
 
@@ -55,7 +55,7 @@ std::string ControlClient::line() {
   auto end = input_.find('\n');
   while (end == std::string::npos) {
     if (!read_more()) {
-      throw std::runtime_error("the simulator has hung up");
+      throw std::runtime_error("the simulator has closed the connection");
     }
     end = input_.find('\n');
   }

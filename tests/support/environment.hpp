@@ -17,7 +17,8 @@ inline std::uint64_t number_in_environment(const char* variable, std::uint64_t o
   }
   const std::string digits = text;
   if (digits.empty() || digits.size() > 18 || digits.find_first_not_of("0123456789") != std::string::npos) {
-    throw std::runtime_error(std::string(variable) + "=" + digits + " is no number of up to 18 digits");
+    throw std::runtime_error(std::string(variable) + "=" + digits +
+                             ": not a number; expected up to 18 decimal digits");
   }
   return std::stoull(digits);
 }

@@ -28,7 +28,7 @@ SocketClient::SocketClient(std::uint16_t port) : fd_(socket(AF_INET, SOCK_STREAM
   setsockopt(fd_, IPPROTO_TCP, TCP_NODELAY, &on, sizeof on);
   if (connect(fd_, reinterpret_cast<const sockaddr*>(&address), sizeof address) != 0) {
     close(fd_);
-    throw std::runtime_error("nobody listens at port " + std::to_string(port));
+    throw std::runtime_error("no program listens at port " + std::to_string(port));
   }
 }
 

@@ -128,7 +128,7 @@ class Chip final : public hal::bus::Peripherals {
   }
   void drive(bool on) {
     if (on == driving_) {
-      throw std::logic_error("the driver is switched to what it is");
+      throw std::logic_error("the driver already has this state");
     }
     if (on) {
       sent.push_back({now, kNever, ""});
@@ -196,7 +196,7 @@ struct Watchdog {
   static void feed() {
     // The watchdog is fed once at reset, and then at most once for each tick.
     if (chip->feeds++ > chip->ticks) {
-      throw std::logic_error("the watchdog is fed though no tick has come since it was");
+      throw std::logic_error("the watchdog is fed twice without a tick in between");
     }
   }
 };

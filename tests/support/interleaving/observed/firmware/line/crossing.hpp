@@ -14,7 +14,7 @@ namespace detail {
 
 inline void require_side(bool interrupt) {
   if (interleaving::Points::in_interrupt() != interrupt) {
-    throw std::logic_error("a crossing was written by the side that must not");
+    throw std::logic_error("the wrong side has written a crossing");
   }
 }
 
@@ -76,7 +76,7 @@ class HandedToInterrupt {
   T& in_interrupt() {
     detail::require_side(true);
     if (torn_) {
-      throw std::logic_error("an interrupt uses what the main loop is just writing");
+      throw std::logic_error("an interrupt uses a value while the main loop writes it");
     }
     return value_;
   }
