@@ -24,7 +24,8 @@ constexpr milliseconds kComesUpWithin{100};
 
 class OnBoard : public testing::TestWithParam<ImageName> {
  protected:
-  explicit OnBoard(I2cManners manners = {}) : bench(image_of(GetParam().board, GetParam().model), manners) {}
+  explicit OnBoard(I2cBehaviour behaviour = {})
+      : bench(image_of(GetParam().board, GetParam().model), behaviour) {}
 
   void power_up() {
     bench.power_on();

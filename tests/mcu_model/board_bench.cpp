@@ -2,12 +2,12 @@
 
 namespace ex9000::registers {
 
-BoardBench::BoardBench(const Image& of, I2cManners manners)
+BoardBench::BoardBench(const Image& of, I2cBehaviour behaviour)
     : image(of),
       memory(EepromChip::kSize, 0xFF),
       eeprom(timeline, pins.at('B', I2cBlock::kClockPin), pins.at('B', I2cBlock::kDataPin), memory),
       line(timeline, net(of.transmit), net(of.driver_enable), net(of.receive)),
-      manners_(manners) {
+      behaviour_(behaviour) {
   for (unsigned channel = 0; channel < image.outputs; ++channel) {
     Net& output = net(image.output_pins.at(channel));
     output.drive(End::Resistor, Drive::WeakLow);
@@ -27,7 +27,7 @@ BoardBench::~BoardBench() { stop(); }
 void BoardBench::start() {
   began = timeline.now();
   output_came_on = kNever;
-  mcu.emplace(image.chip(), timeline, pins, manners_);
+  mcu.emplace(image.chip(), timeline, pins, behaviour_);
   mcu->system_control.set_crystal_start(crystal_start);
   mcu->record(record);
   run_.emplace(image, *mcu, timeline);
@@ -59,7 +59,7 @@ void BoardBench::run_until(Instant when) {
       run_->run_until(when);
     } catch (const ResetRequest&) {
       ++resets;
-      watchdog_resets += mcu->watchdog_bites();
+      watchdog_resets += mcu->watchdog_expiries();
       reset();
     }
   }

@@ -19,7 +19,7 @@ namespace ex9000::registers {
 class BoardBench {
  public:
   /// The supply is off at first.
-  explicit BoardBench(const Image& image, I2cManners manners = {});
+  explicit BoardBench(const Image& image, I2cBehaviour behaviour = {});
   ~BoardBench();
 
   void power_on();
@@ -64,7 +64,7 @@ class BoardBench {
   void start();
   void stop();
 
-  I2cManners manners_;
+  I2cBehaviour behaviour_;
   std::optional<ImageRun> run_;
 };
 

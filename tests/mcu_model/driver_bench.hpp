@@ -13,8 +13,8 @@ namespace ex9000::registers {
 
 class DriverBench {
  public:
-  explicit DriverBench(const Chip& chip = kLm3s6965, I2cManners manners = {})
-      : mcu(chip, timeline, pins, manners) {
+  explicit DriverBench(const Chip& chip = kLm3s6965, I2cBehaviour behaviour = {})
+      : mcu(chip, timeline, pins, behaviour) {
     using hal::stellaris::SystemControl;
     SystemControl::open({1U << 3U, 1U << 0U | 1U << 12U | 7U << 16U, (1U << chip.ports) - 1U});
     SystemControl::use({chip.crystal_code, 4});

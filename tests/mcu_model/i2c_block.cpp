@@ -26,13 +26,13 @@ constexpr int kHighTime = 4;
 }  // namespace
 
 I2cBlock::I2cBlock(const Chip& chip, const SystemControl& clock, Timeline& timeline, GpioPort& port_b,
-                   PortNets& nets, I2cManners manners)
+                   PortNets& nets, I2cBehaviour behaviour)
     : Peripheral(kBase),
       chip_(chip),
       clock_(clock),
       port_(port_b),
       nets_(nets),
-      manners_(manners),
+      behaviour_(behaviour),
       next_(timeline, [this] { go_on(); }) {
   software_reset();
 }
@@ -183,7 +183,7 @@ void I2cBlock::begin_move() {
   const Move move = moves_.front();
   if (move == Move::Start) {
     if (!clock_high() || !data_high()) {
-      if (manners_.waits_for_free_bus) {
+      if (behaviour_.waits_for_free_bus) {
         return;  // until a reset: the driver must free the bus
       }
       fail(kArbitrationLost);
@@ -280,7 +280,7 @@ void I2cBlock::fail(std::uint32_t bits) {
     owns_bus_ = false;
     clock(true);
     data(true);
-  } else if (stop_asked_ && manners_.stops_after_error) {
+  } else if (stop_asked_ && behaviour_.stops_after_error) {
     moves_.push_back(Move::Stop);
     begin_move();
     return;
@@ -290,7 +290,7 @@ void I2cBlock::fail(std::uint32_t bits) {
 
 void I2cBlock::finish() {
   busy_ = false;
-  if (!only_stopping_ || manners_.stop_interrupts) {
+  if (!only_stopping_ || behaviour_.stop_interrupts) {
     raw_ |= 1U;
     tell_interrupt();
   }

@@ -14,7 +14,7 @@
 namespace ex9000::registers {
 
 /// Behaviour that the data sheets leave open.
-struct I2cManners {
+struct I2cBehaviour {
   bool stop_interrupts = false;     ///< a STOP without a byte raises an interrupt, like a byte
   bool stops_after_error = false;   ///< a STOP requested together with a byte is sent even if the byte failed
   bool waits_for_free_bus = false;  ///< a START waits until the bus is free; if false, arbitration is lost
@@ -38,7 +38,7 @@ class I2cBlock final : public Peripheral {
   static constexpr std::uint32_t kFunction = 3;
 
   I2cBlock(const Chip& chip, const SystemControl& clock, Timeline& timeline, GpioPort& port_b, PortNets& nets,
-           I2cManners manners);
+           I2cBehaviour behaviour);
 
   std::uint32_t read(std::uint32_t offset) override;
   void write(std::uint32_t offset, std::uint32_t value) override;
@@ -72,7 +72,7 @@ class I2cBlock final : public Peripheral {
   const SystemControl& clock_;
   GpioPort& port_;
   PortNets& nets_;
-  I2cManners manners_;
+  I2cBehaviour behaviour_;
 
   std::uint32_t target_ = 0;
   std::uint32_t data_ = 0;

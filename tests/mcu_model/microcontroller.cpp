@@ -31,7 +31,7 @@ std::vector<std::unique_ptr<GpioPort>> make_ports(const Chip& chip, Pins& pins) 
 
 }  // namespace
 
-Microcontroller::Microcontroller(const Chip& chip, Timeline& timeline, Pins& pins, I2cManners manners)
+Microcontroller::Microcontroller(const Chip& chip, Timeline& timeline, Pins& pins, I2cBehaviour behaviour)
     : chip_(chip),
       timeline_(timeline),
       pins_(pins),
@@ -45,10 +45,10 @@ Microcontroller::Microcontroller(const Chip& chip, Timeline& timeline, Pins& pin
       timer2(2, system_control, timeline),
       watchdog(system_control, timeline,
                [this] {
-                 ++bites_;
+                 ++watchdog_expiries_;
                  reset_requested_ = true;
                }),
-      i2c(chip, system_control, timeline, port('B'), pins.ports.at(1), manners) {
+      i2c(chip, system_control, timeline, port('B'), pins.ports.at(1), behaviour) {
   for (unsigned i = 0; i < chip.ports; ++i) {
     places_.push_back({ports_[i].get(), 2, i});
   }
@@ -171,7 +171,7 @@ void Microcontroller::pass_all(Instant to) {
 }
 
 /// If the firmware is to hang here, returns only after a reset.
-void Microcontroller::hang_if_told() {
+void Microcontroller::hang_if_requested() {
   if (hangs_ == Hangs::MainLoop && !core.in_handler()) {
     run_until(kNever);
   }
@@ -182,7 +182,7 @@ void Microcontroller::hang_if_told() {
 
 void Microcontroller::begin_access(std::uint32_t address, bool write, std::uint32_t value) {
   pass_all(timeline_.now() + clocks_an_access_ * system_control.cycle());
-  hang_if_told();
+  hang_if_requested();
   core.serve_pending();
   ++accesses_;
   if (recording_) {

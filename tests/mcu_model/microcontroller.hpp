@@ -71,7 +71,7 @@ enum class Hangs : std::uint8_t {
 /// An object exists from one reset to the next. The drivers' bus accesses go to the latest instance.
 class Microcontroller {
  public:
-  Microcontroller(const Chip& chip, Timeline& timeline, Pins& pins, I2cManners manners = {});
+  Microcontroller(const Chip& chip, Timeline& timeline, Pins& pins, I2cBehaviour behaviour = {});
   ~Microcontroller();
   Microcontroller(const Microcontroller&) = delete;
   Microcontroller& operator=(const Microcontroller&) = delete;
@@ -106,7 +106,7 @@ class Microcontroller {
   [[nodiscard]] const std::vector<Access>& recorded() const { return recorded_; }
   /// The greatest number of accesses while interrupts were held.
   [[nodiscard]] std::uint64_t most_accesses_held() const { return most_held_; }
-  [[nodiscard]] unsigned watchdog_bites() const { return bites_; }
+  [[nodiscard]] unsigned watchdog_expiries() const { return watchdog_expiries_; }
   /// Sets a function to call before each write takes effect.
   void on_write(std::function<void(std::uint32_t address, std::uint32_t value)> act) {
     on_write_ = std::move(act);
@@ -151,7 +151,7 @@ class Microcontroller {
   void begin_access(std::uint32_t address, bool write, std::uint32_t value);
   void pass(Instant to);
   void pass_all(Instant to);
-  void hang_if_told();
+  void hang_if_requested();
   void check_reset() const;
   void pin_changed(unsigned port, unsigned pin);
 
@@ -161,7 +161,7 @@ class Microcontroller {
   int clocks_an_access_ = 2;
   Hangs hangs_ = Hangs::Nothing;
   bool reset_requested_ = false;
-  unsigned bites_ = 0;
+  unsigned watchdog_expiries_ = 0;
   std::uint64_t accesses_ = 0;
   std::uint64_t held_since_ = 0;
   std::uint64_t most_held_ = 0;

@@ -19,11 +19,13 @@ class WatchdogTimer final : public Peripheral {
   static constexpr std::uint32_t kClear = 0x00C;
   static constexpr std::uint32_t kLock = 0xC00;
 
-  /// The timer calls `bite` when it has counted down twice.
-  WatchdogTimer(SystemControl& clock, Timeline& timeline, std::function<void()> bite)
-      : Peripheral(kBase), clock_(clock), timeline_(timeline), bite_(std::move(bite)), end_(timeline, [this] {
-          counted_down();
-        }) {
+  /// The timer calls `on_expiry` when it has counted down twice.
+  WatchdogTimer(SystemControl& clock, Timeline& timeline, std::function<void()> on_expiry)
+      : Peripheral(kBase),
+        clock_(clock),
+        timeline_(timeline),
+        on_expiry_(std::move(on_expiry)),
+        end_(timeline, [this] { counted_down(); }) {
     clock.on_clock_change([this](Instant cycle) { change_clock(cycle); });
   }
 
@@ -86,7 +88,7 @@ class WatchdogTimer final : public Peripheral {
   }
   void counted_down() {
     if (flagged_ && (control_ & 2U) != 0) {
-      bite_();
+      on_expiry_();
       return;
     }
     flagged_ = true;
@@ -100,7 +102,7 @@ class WatchdogTimer final : public Peripheral {
 
   SystemControl& clock_;
   Timeline& timeline_;
-  std::function<void()> bite_;
+  std::function<void()> on_expiry_;
   std::uint32_t load_ = 0xFFFF'FFFF;
   std::uint32_t control_ = 0;
   bool locked_ = false;

@@ -36,7 +36,7 @@ class Bench {
  public:
   using Driver = hal::At24c<hal::stellaris::I2c<family, kHertz>>;
 
-  explicit Bench(I2cManners manners) : manners_(manners), memory(EepromChip::kSize, 0xFF) {
+  explicit Bench(I2cBehaviour behaviour) : behaviour_(behaviour), memory(EepromChip::kSize, 0xFF) {
     wires.emplace();
     eeprom.emplace(wires->timeline, wires->pins.at('B', 2), wires->pins.at('B', 3), memory);
     Net& clock = clock_net();
@@ -100,7 +100,7 @@ class Bench {
 
   void begin() {
     const Chip& chip = family == Family::Tm4c ? kTm4c123 : kLm3s6965;
-    mcu.emplace(chip, wires->timeline, wires->pins, manners_);
+    mcu.emplace(chip, wires->timeline, wires->pins, behaviour_);
     using hal::stellaris::SystemControl;
     SystemControl::open({0, 1U << 12U, 1U << 1U});
     SystemControl::use({chip.crystal_code, 4});
@@ -129,7 +129,7 @@ class Bench {
     }
   }
 
-  I2cManners manners_;
+  I2cBehaviour behaviour_;
   bool woken_ = false;
 
  public:
@@ -154,26 +154,26 @@ std::vector<std::uint8_t> some_bytes(std::size_t count, unsigned seed = 0) {
 
 struct Lm3sPlain {
   static constexpr Family kFamily = Family::Lm3s;
-  static constexpr I2cManners kManners{};
+  static constexpr I2cBehaviour kBehaviour{};
 };
 struct Tm4cPlain {
   static constexpr Family kFamily = Family::Tm4c;
-  static constexpr I2cManners kManners{};
+  static constexpr I2cBehaviour kBehaviour{};
 };
 struct Tm4cTellsStops {
   static constexpr Family kFamily = Family::Tm4c;
-  static constexpr I2cManners kManners{true, true, false};
+  static constexpr I2cBehaviour kBehaviour{true, true, false};
 };
 struct Lm3sWaits {
   static constexpr Family kFamily = Family::Lm3s;
-  static constexpr I2cManners kManners{true, false, true};
+  static constexpr I2cBehaviour kBehaviour{true, false, true};
 };
 
 template <class Kind>
 class Eeprom : public testing::Test {
  protected:
   using TheBench = Bench<Kind::kFamily>;
-  static TheBench make() { return TheBench(Kind::kManners); }
+  static TheBench make() { return TheBench(Kind::kBehaviour); }
 
   /// Checks that the driver works normally.
   static void expect_works(TheBench& bench, unsigned seed) {
@@ -188,7 +188,7 @@ using Kinds = testing::Types<Lm3sPlain, Tm4cPlain, Tm4cTellsStops, Lm3sWaits>;
 TYPED_TEST_SUITE(Eeprom, Kinds);
 
 TYPED_TEST(Eeprom, ReadsWhatIsThere) {
-  typename TestFixture::TheBench bench(TypeParam::kManners);
+  typename TestFixture::TheBench bench(TypeParam::kBehaviour);
   for (std::size_t i = 0; i < bench.memory.size(); ++i) {
     bench.memory[i] = static_cast<std::uint8_t>(i * 7 + i / 256);
   }
@@ -203,7 +203,7 @@ TYPED_TEST(Eeprom, ReadsWhatIsThere) {
 }
 
 TYPED_TEST(Eeprom, WritesPageByPageWhateverTheAddress) {
-  typename TestFixture::TheBench bench(TypeParam::kManners);
+  typename TestFixture::TheBench bench(TypeParam::kBehaviour);
   std::vector<std::uint8_t> expected = bench.memory;
   unsigned seed = 0;
   for (const unsigned place : {0x0000U, 0x0004U, 0x0005U, 0x001FU, 0x00F0U, 0x1FC5U}) {
@@ -222,7 +222,7 @@ TYPED_TEST(Eeprom, WritesPageByPageWhateverTheAddress) {
 
 TYPED_TEST(Eeprom, AWriteIsOverWhenTheLastPageIsProgrammed) {
   for (const int ms : {0, 1, 5, 10}) {
-    typename TestFixture::TheBench bench(TypeParam::kManners);
+    typename TestFixture::TheBench bench(TypeParam::kBehaviour);
     bench.eeprom->set_programming_time(milliseconds(ms) + microseconds(1));
     EXPECT_TRUE(bench.write(0x0010, some_bytes(32)));
     EXPECT_FALSE(bench.eeprom->programming());
@@ -235,7 +235,7 @@ TYPED_TEST(Eeprom, AWriteIsOverWhenTheLastPageIsProgrammed) {
 // (tWR, doc. 0336, "AC characteristics").
 TYPED_TEST(Eeprom, PagesAreWrittenWholeByAChipThatTakesAsLongAsItsDataSheetAllows) {
   for (const std::size_t pages : {1U, 2U}) {
-    typename TestFixture::TheBench bench(TypeParam::kManners);
+    typename TestFixture::TheBench bench(TypeParam::kBehaviour);
     bench.eeprom->set_programming_time(milliseconds(10));
     const auto bytes = some_bytes(pages * EepromChip::kPage);
     EXPECT_TRUE(bench.write(0x0020, bytes));
@@ -246,7 +246,7 @@ TYPED_TEST(Eeprom, PagesAreWrittenWholeByAChipThatTakesAsLongAsItsDataSheetAllow
 }
 
 TYPED_TEST(Eeprom, AWriteThatTakesLongerThanTheDataSheetSaysFails) {
-  typename TestFixture::TheBench bench(TypeParam::kManners);
+  typename TestFixture::TheBench bench(TypeParam::kBehaviour);
   bench.eeprom->set_programming_time(milliseconds(20));
   EXPECT_FALSE(bench.write(0x0000, some_bytes(4)));
   bench.run_for(milliseconds(20));
@@ -255,7 +255,7 @@ TYPED_TEST(Eeprom, AWriteThatTakesLongerThanTheDataSheetSaysFails) {
 }
 
 TYPED_TEST(Eeprom, WaitsForAPageThatWasBeingProgrammedWhenTheMicrocontrollerWasReset) {
-  typename TestFixture::TheBench bench(TypeParam::kManners);
+  typename TestFixture::TheBench bench(TypeParam::kBehaviour);
   bench.eeprom->set_programming_time(milliseconds(10));
   const auto bytes = some_bytes(32);
   bench.driver->start_write(0x0040, {bytes.data(), bytes.size()}, bench.now());
@@ -270,7 +270,7 @@ TYPED_TEST(Eeprom, WaitsForAPageThatWasBeingProgrammedWhenTheMicrocontrollerWasR
 
 TYPED_TEST(Eeprom, NothingThereIsAFailureAndNoHang) {
   for (const bool pull_ups_too : {false, true}) {
-    typename TestFixture::TheBench bench(TypeParam::kManners);
+    typename TestFixture::TheBench bench(TypeParam::kBehaviour);
     bench.eeprom->remove(pull_ups_too);
     const Instant begun = bench.wires->timeline.now();
     std::vector<std::uint8_t> bytes(28);
@@ -283,7 +283,7 @@ TYPED_TEST(Eeprom, NothingThereIsAFailureAndNoHang) {
 
 TYPED_TEST(Eeprom, ARefusalAtAnyByteIsAFailureAndNothingIsProgrammed) {
   for (unsigned taken = 1; taken < 20; ++taken) {
-    typename TestFixture::TheBench bench(TypeParam::kManners);
+    typename TestFixture::TheBench bench(TypeParam::kBehaviour);
     bench.eeprom->refuse_after(taken);
     EXPECT_FALSE(bench.write(0x0100, some_bytes(17))) << taken;
     EXPECT_TRUE(std::all_of(bench.memory.begin(), bench.memory.end(),
@@ -296,7 +296,7 @@ TYPED_TEST(Eeprom, ARefusalAtAnyByteIsAFailureAndNothingIsProgrammed) {
 // --- a bus that is stuck ---
 
 TYPED_TEST(Eeprom, ABusThatIsFreeHearsStartAndStopAtOnce) {
-  typename TestFixture::TheBench bench(TypeParam::kManners);
+  typename TestFixture::TheBench bench(TypeParam::kBehaviour);
   std::vector<std::uint8_t> bytes(1);
   EXPECT_TRUE(bench.read(0, bytes));
   EXPECT_LE(bench.clocks_before_start, 1U);
@@ -306,7 +306,7 @@ TYPED_TEST(Eeprom, DataHeldForUpToNineClocksIsFreedAndHearsStartAndStop) {
   for (unsigned held = 1; held <= 9; ++held) {
     unsigned falls = 0;  // these must outlive the wires
     bool released = false;
-    typename TestFixture::TheBench bench(TypeParam::kManners);
+    typename TestFixture::TheBench bench(TypeParam::kBehaviour);
     bench.mcu.reset();
     bench.data_net().drive(End::Fault, Drive::Low);
     bench.clock_net().on_change([&bench, held, &falls, &released] {
@@ -327,7 +327,7 @@ TYPED_TEST(Eeprom, DataHeldForUpToNineClocksIsFreedAndHearsStartAndStop) {
 TYPED_TEST(Eeprom, AResetInTheMiddleOfAReadAtAnyMomentDoesNoHarm) {
   unsigned holding = 0;
   for (int step = 0; step < 90; ++step) {
-    typename TestFixture::TheBench bench(TypeParam::kManners);
+    typename TestFixture::TheBench bench(TypeParam::kBehaviour);
     // Zeroes keep the data line low most of the time.
     std::fill(bench.memory.begin(), bench.memory.end(), 0x00);
     std::vector<std::uint8_t> bytes(16);
@@ -353,7 +353,7 @@ TYPED_TEST(Eeprom, AfterAResetInTheMiddleOfAWriteFreeingTheBusProgramsNothing) {
   unsigned cut_by_the_reset = 0;
   unsigned whole = 0;
   for (int step = 0; step < 300; ++step) {
-    typename TestFixture::TheBench bench(TypeParam::kManners);
+    typename TestFixture::TheBench bench(TypeParam::kBehaviour);
     const auto bytes = some_bytes(20);
     bench.run_for(milliseconds(1));
     bench.driver->start_write(kPlace, {bytes.data(), bytes.size()}, bench.now());
@@ -388,7 +388,7 @@ enum class Line : std::uint8_t { Clock, Data };
 
 TYPED_TEST(Eeprom, ALineThatIsStuckForEverFailsEveryJobInBoundedTimeAndNoneBehindIt) {
   for (const Line line : {Line::Clock, Line::Data}) {
-    typename TestFixture::TheBench bench(TypeParam::kManners);
+    typename TestFixture::TheBench bench(TypeParam::kBehaviour);
     bench.mcu.reset();
     Net& net = line == Line::Clock ? bench.clock_net() : bench.data_net();
     net.drive(End::Fault, Drive::Low);
@@ -416,7 +416,7 @@ TYPED_TEST(Eeprom, ALineThatIsStuckForAWhileAtAnyMomentCostsAtMostOneJobAndNever
       for (int step = 0; step < 33; ++step) {
         SCOPED_TRACE(std::string(line == Line::Clock ? "clock" : "data") + " for " +
                      std::to_string(held.count()) + ", step " + std::to_string(step));
-        typename TestFixture::TheBench bench(TypeParam::kManners);
+        typename TestFixture::TheBench bench(TypeParam::kBehaviour);
         Net& net = line == Line::Clock ? bench.clock_net() : bench.data_net();
         Timeline& timeline = bench.wires->timeline;
         Alarm sticks(timeline, [&net] { net.drive(End::Fault, Drive::Low); });
