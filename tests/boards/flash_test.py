@@ -13,7 +13,7 @@ IMAGE = "/some where/EX9042D-M.elf"
 HANG = 60  # seconds; OpenOCD takes less than one, or a few on a busy machine
 
 MOVES_A_BOARD = ("init", "reset", "flash", "verify_image", "poll")
-SAY_INSTEAD = "; ".join([f'proc {name} {{args}} {{ echo "> {name} $args" }}' for name in MOVES_A_BOARD])
+ECHO_INSTEAD = "; ".join([f'proc {name} {{args}} {{ echo "> {name} $args" }}' for name in MOVES_A_BOARD])
 
 
 def openocd_scripts() -> dict[str, str]:
@@ -65,7 +65,7 @@ class Flash(unittest.TestCase):
         for board, script in openocd_scripts().items():
             with self.subTest(board):
                 words = openocd_words(script)
-                finished = openocd([*words[:2], "-c", "noinit", "-c", SAY_INSTEAD, *words[2:]])
+                finished = openocd([*words[:2], "-c", "noinit", "-c", ECHO_INSTEAD, *words[2:]])
                 self.assertEqual(finished.returncode, 0, finished.stderr)
                 self.assertEqual(
                     [line[2:].strip() for line in finished.stderr.splitlines() if line.startswith("> ")],

@@ -266,7 +266,7 @@ TEST_P(OnBoard, DropsTheRequestOfWhichACharacterIsLostToAnOverrun) {
   EXPECT_EQ(bench.ask("$01M"), "!019055");
 }
 
-TEST_P(OnBoard, HeedsAHostOkThatAnotherFollowsAtOnceBeforeTheTickCouldTellOfEither) {
+TEST_P(OnBoard, AcceptsAHostOkThatAnotherHostOkFollowsWithoutAPause) {
   const Model& model = *find_model(bench.image.model);
   Settings settings = Settings::factory(model);
   settings.baud_code = 0x0A;  // at 115200 baud a host OK takes 0.35 ms
@@ -326,7 +326,7 @@ TEST_P(OnBoard, IsResetByTheWatchdogWithin1600msWhereTheTickStops) {
 }
 
 /// wire.md D13. If the module sampled this switch only every 10 ms, the switch would seem to be stable.
-TEST_P(OnBoard, TakesAnInitSwitchForReleasedThatStandsStillForNo10MsAfterReset) {
+TEST_P(OnBoard, TreatsAnInitSwitchThatBouncesAfterResetAsReleased) {
   for (const bool most_of_the_time : {true, false}) {
     for (int phase = 0; phase < 10; ++phase) {
       bench.power_off();

@@ -287,7 +287,7 @@ class HungImage : public testing::Test {
   TimedModule module_{model_};
 };
 
-TEST_F(HungImage, ResetsItselfAtAnInterruptThatNobodyHasAskedFor) {
+TEST_F(HungImage, ResetsItselfAtAnUnexpectedInterrupt) {
   constexpr std::uint32_t kPend = 0xE000'E200;
   constexpr std::uint32_t kEnable = 0xE000'E100;
   constexpr std::uint32_t kSsi0 = 1U << 7U;

@@ -36,7 +36,7 @@ constexpr int kRepetitions = 10;
 /// A limit that only detects hangs: the program and QEMU answer within seconds even on a busy machine.
 constexpr std::chrono::seconds kHang{60};
 /// The time that a master waits for a reply, long enough for a busy machine.
-constexpr std::chrono::seconds kMastersPatience{10};
+constexpr std::chrono::seconds kMasterReplyTimeout{10};
 
 std::string image_of(const std::string& model) { return EX9000_IMAGES "/" + model + ".elf"; }
 bool has(const std::string& text, const std::string& part) { return text.find(part) != std::string::npos; }
@@ -79,7 +79,7 @@ class RunningImage {
   /// T3.5, which ends the frame.
   [[nodiscard]] Finished mbpoll(Arguments options, const Arguments& values = {}) const {
     options.insert(options.begin(), {"mbpoll", "-m", "rtu", "-b", "9600", "-P", "none", "-1", "-o",
-                                     std::to_string(kMastersPatience.count())});
+                                     std::to_string(kMasterReplyTimeout.count())});
     options.push_back(tty());
     options.insert(options.end(), values.begin(), values.end());
     Finished finished = system::run(options);
@@ -142,7 +142,7 @@ int repeated(Call call) {
 TEST(QemuRun, LibmodbusReadsAndWrites) {
   const RunningImage image("EX9042D-M");
   LibmodbusMaster master(image.tty(), 9600);
-  master.wait_for_replies(static_cast<unsigned>(std::chrono::milliseconds(kMastersPatience).count()));
+  master.wait_for_replies(static_cast<unsigned>(std::chrono::milliseconds(kMasterReplyTimeout).count()));
   modbus_t* const module = master.at(1);
   const std::array<std::uint8_t, 13> written{1, 0, 1, 1, 0, 0, 0, 1, 0, 0, 0, 0, 1};
   std::array<std::uint8_t, 13> read{};
@@ -245,7 +245,7 @@ TEST(QemuRun, ARequestOfAMasterThatHasGoneIsDone) {
   EXPECT_TRUE(gets(image, "@01", ">0005"));
 }
 
-TEST(QemuRun, WhatOneMasterLeavesUnreadIsNotTheNextOnesFirst) {
+TEST(QemuRun, TheNextMasterDoesNotReceiveAnUnreadReply) {
   const RunningImage image("EX9042D");
   for (int visit = 0; visit < 5; ++visit) {
     leave_reply_unread(image.tty(), "$01M", "!019042D");

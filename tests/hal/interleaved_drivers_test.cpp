@@ -152,7 +152,7 @@ TEST(I2c, AByteThatIsGivenUpIsNeverTakenForALaterOne) {
   EXPECT_GT(points, 5U);
 }
 
-TEST(I2c, AByteThatIsToldToBeOverAndIsNotIsGivenUpInTheEnd) {
+TEST(I2c, AByteThatIsWronglyReportedAsCompleteIsGivenUpAfterATimeout) {
   I2cController controller;
   hal::stellaris::I2c<hal::stellaris::Family::Lm3s, 50'000'000> i2c;
   Time now(0);

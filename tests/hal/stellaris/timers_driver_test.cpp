@@ -191,7 +191,7 @@ TYPED_TEST(OneShot, ARestartForgetsAnInterruptThatIsPending) {
 
 using Watchdog = HardwareWatchdog<kMegahertz>;
 
-TEST(Watchdog, BitesBehindTwoCountdownsAndWithin1600ms) {
+TEST(Watchdog, ResetsAfterTwoCountdownsAndWithin1600ms) {
   DriverBench bench;
   Watchdog::start();
   const Instant begun = bench.now();

@@ -221,7 +221,7 @@ TEST_F(Receiving, ABreakIsToldOnceHoweverLong) {
   EXPECT_EQ(bench.received[1].byte, 0x42);
 }
 
-TEST_F(Receiving, AByteThatNobodyTookInTimeIsTold) {
+TEST_F(Receiving, AByteThatWasNotReadInTimeIsReportedAsAnOverrun) {
   bench.mcu.core.hold(true);
   bench.line.send({1, 2, 3});
   bench.mcu.run_for(4 * kCharacter);
