@@ -61,7 +61,7 @@ class ModuleTurns : public testing::Test {
     const Bytes reply = module_.take_reply(now_);
     return {reply.begin(), reply.end()};
   }
-  bool wants_to_be_called_again() { return module_.idle_for(now_, kLong) == Duration(); }
+  bool requests_another_turn() { return module_.idle_for(now_, kLong) == Duration(); }
 
   Module module_{*find_model("EX9043D")};
   Time now_;
@@ -90,13 +90,13 @@ TEST_F(ModuleTurns, ItIsAtRestUnlessARequestWaitsIsStoredOrIsAnswered) {
 TEST_F(ModuleTurns, AReplyThatIsReadyWantsToBeTaken) {
   put("$01M");
   module_.step(now_);
-  EXPECT_TRUE(wants_to_be_called_again());
+  EXPECT_TRUE(requests_another_turn());
   EXPECT_EQ(take_reply(), "!019043D\r");
-  EXPECT_FALSE(wants_to_be_called_again());
+  EXPECT_FALSE(requests_another_turn());
 }
 
 // wire.md D18.
-TEST_F(ModuleTurns, TheNextReplyLeavesASilenceBehindThisOneThoughNobodyLooksAround) {
+TEST_F(ModuleTurns, TheNextReplyKeepsItsGapEvenIfThePanelIsNotPolled) {
   put("$01M");
   module_.step(now_);
   put("$01F");
@@ -104,27 +104,27 @@ TEST_F(ModuleTurns, TheNextReplyLeavesASilenceBehindThisOneThoughNobodyLooksArou
   module_.reply_sent(now_);
   module_.step(now_);
   EXPECT_EQ(take_reply(), "");
-  EXPECT_FALSE(wants_to_be_called_again());
+  EXPECT_FALSE(requests_another_turn());
   pass(kCharacter);
   EXPECT_EQ(take_reply(), "");
   pass(Duration(2));
-  EXPECT_TRUE(wants_to_be_called_again());
+  EXPECT_TRUE(requests_another_turn());
   EXPECT_EQ(take_reply(), "!01D01.00\r");
 }
 
-TEST_F(ModuleTurns, WhatTheMemoryHasDoneWantsToBeGoneOnWith) {
+TEST_F(ModuleTurns, AFinishedMemoryJobRequestsAnotherTurn) {
   put("~01Opump");
   module_.step(now_);
   while (module_.needs_memory()) {
-    EXPECT_FALSE(wants_to_be_called_again());
+    EXPECT_FALSE(requests_another_turn());
     do_memory_job();
   }
-  EXPECT_TRUE(wants_to_be_called_again());
+  EXPECT_TRUE(requests_another_turn());
   module_.step(now_);
   EXPECT_EQ(take_reply(), "!01\r");
 }
 
-TEST_F(ModuleTurns, ATimeoutWantsItsLightAtOnceAndToBeGoneOnWithOnceItIsStored) {
+TEST_F(ModuleTurns, ATimeoutRequestsATurnForTheLedAndAnotherWhenItIsStored) {
   put("~013101");
   module_.step(now_);
   while (module_.needs_memory()) {
@@ -137,16 +137,16 @@ TEST_F(ModuleTurns, ATimeoutWantsItsLightAtOnceAndToBeGoneOnWithOnceItIsStored) 
   pass(kUnitOfTimeout + milliseconds(1));
   module_.step(now_);
   ASSERT_TRUE(module_.state().settings.timeout_status);
-  EXPECT_TRUE(wants_to_be_called_again());
+  EXPECT_TRUE(requests_another_turn());
   module_.poll_panel(false, now_);
-  EXPECT_FALSE(wants_to_be_called_again());
+  EXPECT_FALSE(requests_another_turn());
   ASSERT_TRUE(module_.needs_memory());
   while (module_.needs_memory()) {
     do_memory_job();
   }
-  EXPECT_TRUE(wants_to_be_called_again());
+  EXPECT_TRUE(requests_another_turn());
   module_.step(now_);
-  EXPECT_FALSE(wants_to_be_called_again());
+  EXPECT_FALSE(requests_another_turn());
 }
 
 TEST(ModuleComesUp, OnceItsMemoryIsRead) {
@@ -163,11 +163,11 @@ TEST(ModuleComesUp, OnceItsMemoryIsRead) {
 }
 
 TEST_F(ModuleTurns, AHostOkThatComesInBehindATurnIsDueAtOnce) {
-  EXPECT_FALSE(wants_to_be_called_again());
+  EXPECT_FALSE(requests_another_turn());
   put("~**");
-  EXPECT_TRUE(wants_to_be_called_again());
+  EXPECT_TRUE(requests_another_turn());
   module_.step(now_);
-  EXPECT_FALSE(wants_to_be_called_again());
+  EXPECT_FALSE(requests_another_turn());
 }
 
 // The receiver processes `~**` itself instead of queueing it, so that it is never lost. A direct call of

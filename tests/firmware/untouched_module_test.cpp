@@ -26,7 +26,7 @@ TEST(UntouchedModule, DrivesNothingAndDoesNotListen) {
   EXPECT_TRUE(untouched_module.led_lit());
 }
 
-TEST(UntouchedModule, HasItsSettingsToReadAndNobodyHasReadItsResetStatus) {
+TEST(UntouchedModule, MustReadItsSettingsAndHasAnUnreadResetStatus) {
   EXPECT_TRUE(untouched_module.needs_memory());
   EXPECT_TRUE(untouched_module.state().reset_status);
 }

@@ -130,7 +130,7 @@ class Interleaver {
     // Collects the permitted outcomes: those that occur if the first steps come before the turn and the
     // others after it.
     for (std::size_t before = 0; before <= steps_; ++before) {
-      Places places(steps_, kBehindTheTurn);
+      Places places(steps_, kAfterTheTurn);
       std::fill_n(places.begin(), before, kBeforeTheTurn);
       const Run run = tried(places);
       outcomes_.resize(std::max(outcomes_.size(), run.outcome.size()));
@@ -372,7 +372,7 @@ std::vector<Scenario> scenarios() {
   return all;
 }
 
-TEST(Interleaving, AScriptOfInterruptsComesToTheSameAtEveryPoint) {
+TEST(Interleaving, AScriptOfInterruptsHasAPermittedOutcomeAtEveryPoint) {
   Tried all;
   for (const Scenario& scenario : scenarios()) {
     Interleaver(scenario, all).at_every_point();
@@ -382,7 +382,7 @@ TEST(Interleaving, AScriptOfInterruptsComesToTheSameAtEveryPoint) {
   EXPECT_GT(all.interleavings, 2000U);
 }
 
-TEST(Interleaving, AndInTwoPartsAtEveryPairOfPointsThatWasDrawn) {
+TEST(Interleaving, AScriptInTwoPartsHasAPermittedOutcomeAtRandomPairsOfPoints) {
   std::mt19937 random(20261121);  // NOLINT(cert-msc51-cpp): the same pairs each time
   Tried all;
   for (const Scenario& scenario : scenarios()) {
@@ -418,7 +418,7 @@ void expect_one_more_is_kept(Scenario scenario, const std::string& request, cons
     answered = bench.hardware().sent.size();
     return Parts();
   };
-  const int points = static_cast<int>(play(scenario, {kBehindTheTurn}).points);
+  const int points = static_cast<int>(play(scenario, {kAfterTheTurn}).points);
   EXPECT_GT(points, 10) << scenario.name;
   bool judged = false;
   int kept = 0;
@@ -432,7 +432,7 @@ void expect_one_more_is_kept(Scenario scenario, const std::string& request, cons
   EXPECT_GT(kept, 1) << scenario.name;
 }
 
-TEST(Interleaving, OneMoreFrameIsKeptFromWhereOneIsJudgedUntilTheDriverIsOn) {
+TEST(Interleaving, TheNextFrameIsKeptUntilTheDriverIsSwitchedOn) {
   expect_one_more_is_kept(dcon("a frame behind one that is answered", asked("$01F\r", "!01D01.00\r"), {},
                                {{"!01D01.00\r", "!019055\r"}, {"!01D01.00\r"}}, no_matter),
                           "$01M\r", "!019055\r");
@@ -448,10 +448,10 @@ TEST(Interleaving, AFrameThatEndsWhileTheMainLoopTurnsIsNotAnsweredTooEarly) {
   const Scenario scenario =
       dcon("a CR behind the clock", nothing, {[](Bench& bench) { bench.asks("@0105\r", ">\r"); }, silence},
            {{">\r"}}, outputs_and_name);
-  const int points = static_cast<int>(play(scenario, {kBehindTheTurn, kBehindTheTurn}).points);
+  const int points = static_cast<int>(play(scenario, {kAfterTheTurn, kAfterTheTurn}).points);
   EXPECT_GT(points, 10);
   for (int point = kBeforeTheTurn; point < points; ++point) {
-    EXPECT_NO_THROW(play(scenario, {point, kBehindTheTurn})) << point;
+    EXPECT_NO_THROW(play(scenario, {point, kAfterTheTurn})) << point;
   }
 }
 
@@ -461,7 +461,7 @@ TEST(Interleaving, ARequestForTheBusMessagesCountsItselfOnceWhereverItsSilenceEn
   const Scenario scenario = modbus(
       "a silence while bus messages are read", [=](Bench& bench) { bench.asks(request, reply); }, {silence},
       {{reply}}, outputs_and_name);
-  const int points = static_cast<int>(play(scenario, {kBehindTheTurn}).points);
+  const int points = static_cast<int>(play(scenario, {kAfterTheTurn}).points);
   EXPECT_GT(points, 10);
   for (int point = kBeforeTheTurn; point < points; ++point) {
     EXPECT_NO_THROW(play(scenario, {point})) << point;

@@ -31,7 +31,7 @@ struct Scenario {
 /// after the turn.
 using Places = std::vector<int>;
 inline constexpr int kBeforeTheTurn = -1;
-inline constexpr int kBehindTheTurn = 1'000'000;
+inline constexpr int kAfterTheTurn = 1'000'000;
 
 struct Run {
   std::vector<std::string> outcome;  ///< in parts that are independent of each other
@@ -92,7 +92,7 @@ inline Run play(const Scenario& scenario, const Places& places) {
   Run run;
   run.points = Points::watch([&](unsigned point) { deliver_until(static_cast<int>(point)); },
                              [&] { bench.whole_turn(); });
-  deliver_until(kBehindTheTurn);
+  deliver_until(kAfterTheTurn);
   if (scenario.restless) {
     bench.rest_restlessly(milliseconds(5));
   }

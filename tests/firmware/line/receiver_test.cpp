@@ -254,7 +254,7 @@ TEST_F(ReceiverTest, AsciiDoesNotHearModbus) {
   EXPECT_FALSE(took_frame());
 }
 
-TEST_F(ReceiverTest, TheChecksumIsWantedWhereItIsEnabled) {
+TEST_F(ReceiverTest, TheChecksumIsRequiredIfItIsEnabled) {
   listen(Protocol::Ascii, true);
   text("$012\r");
   EXPECT_FALSE(took_frame());

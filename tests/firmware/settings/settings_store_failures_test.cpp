@@ -113,7 +113,7 @@ void end_jobs(SettingsStore& store, bool answered, int count) {
   }
 }
 
-TEST(SettingsStore, WhatIsSettledIsTheDoubtfulCopyAndNotTheOneThatWasLastLookedAt) {
+TEST(SettingsStore, SettlingInvalidatesTheUncertainCopyAndNotTheLastReadCopy) {
   constexpr int kAllReads = 4 * static_cast<int>(kAttempts);
   SettingsStore store(the_model());
   end_jobs(store, false, static_cast<int>(kReadsOfASilentMemory));
