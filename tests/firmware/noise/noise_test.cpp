@@ -160,12 +160,12 @@ TEST_P(ALineWith, DoesNothingWithoutAFrameThatIsRightAndAnswersTheFirstCleanOne)
   const std::uint64_t exchanges = frames() / 20;
   NoisyLine noisy(check, seed());
   trouble.happens(noisy, exchanges);
-  const std::uint64_t deeds = noisy.deeds();
+  const std::uint64_t replies_and_output_changes = noisy.replies_and_output_changes();
   noisy.expect_the_first_clean_frame_is_answered();
   std::printf("%s, %s: %llu exchanges, %llu replies and changes of outputs, each with its reason\n",
               trouble.name, name_of(check), static_cast<unsigned long long>(exchanges),
-              static_cast<unsigned long long>(deeds));
-  EXPECT_GT(deeds, exchanges / 20);
+              static_cast<unsigned long long>(replies_and_output_changes));
+  EXPECT_GT(replies_and_output_changes, exchanges / 20);
 }
 
 INSTANTIATE_TEST_SUITE_P(Noise, ALineWith,

@@ -71,11 +71,11 @@ NoisyLine::NoisyLine(Check check, std::uint64_t seed)
 }
 
 void NoisyLine::come_up() {
-  onlooker_.look_away();
+  onlooker_.stop_checking();
   line_.module(0).power(false);
   line_.module(0).store(specs_[0].settings);
   line_.come_up();
-  onlooker_.look_again();
+  onlooker_.start_checking();
 }
 
 FrameBytes NoisyLine::a_request() {

@@ -60,7 +60,9 @@ class NoisyLine final : public sim::Disturbance, public sim::Station {
 
   /// The number of replies and changes of outputs. The witness has found a reason for each of them in the
   /// bytes that the module received from any sender.
-  [[nodiscard]] std::uint64_t deeds() const { return onlooker_.deeds(); }
+  [[nodiscard]] std::uint64_t replies_and_output_changes() const {
+    return onlooker_.replies_and_output_changes();
+  }
 
   // --- sim::Disturbance: counts the effects of the noise ---
   sim::Levels disturbed(const Sent& sent) override;

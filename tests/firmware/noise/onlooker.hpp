@@ -27,8 +27,8 @@ class Onlooker final : public sim::BusObserver {
         witness_(module.model(), [](const char* claim) { ADD_FAILURE() << "does not hold: " << claim; }) {
     bus.observe(*this);
     module.output_pins().on_change([this](std::uint16_t /*channels*/) {
-      if (looking_) {
-        ++deeds_;
+      if (checking_) {
+        ++replies_and_output_changes_;
         witness_.follow(values(), now());
       }
     });
@@ -37,15 +37,15 @@ class Onlooker final : public sim::BusObserver {
   Onlooker& operator=(const Onlooker&) = delete;
 
   /// Stops checking. Call it before the module is switched off.
-  void look_away() { looking_ = false; }
+  void stop_checking() { checking_ = false; }
   /// Begins to check. Call it when the module has started and nothing has been sent to it since.
-  void look_again() {
+  void start_checking() {
     judges::Listening listening = judges::listening_of(module_.module().state());
     // The greatest difference between the module's clock and the clock of the witness.
     constexpr judges::Microseconds kDoubt = 8;
     listening.doubt = kDoubt;
     witness_.comes_up(listening, values(), now());
-    looking_ = true;
+    checking_ = true;
   }
 
   /// Passes to the witness a byte that the module receives or has received; the module may not have processed
@@ -63,17 +63,17 @@ class Onlooker final : public sim::BusObserver {
   }
   [[nodiscard]] std::uint64_t replies() const { return replies_; }
   /// The number of replies and changes of outputs.
-  [[nodiscard]] std::uint64_t deeds() const { return deeds_; }
+  [[nodiscard]] std::uint64_t replies_and_output_changes() const { return replies_and_output_changes_; }
 
   // --- sim::BusObserver ---
   void driver(std::size_t station, bool on, sim::VirtualTime /*now*/) override {
-    if (station != station_ || !looking_) {
+    if (station != station_ || !checking_) {
       return;
     }
     driving_ = on;
     if (on) {
       ++replies_;
-      ++deeds_;
+      ++replies_and_output_changes_;
       began_ = now();
       reply_.clear();
       witness_.follow(values(), began_);
@@ -102,12 +102,12 @@ class Onlooker final : public sim::BusObserver {
   sim::SimulatedModule& module_;
   std::size_t station_;
   judges::Witness witness_;
-  bool looking_ = false;
+  bool checking_ = false;
   bool driving_ = false;
   judges::Microseconds began_ = 0;
   std::vector<std::uint8_t> reply_;
   std::uint64_t replies_ = 0;
-  std::uint64_t deeds_ = 0;
+  std::uint64_t replies_and_output_changes_ = 0;
 };
 
 }  // namespace ex9000::noise

@@ -50,7 +50,7 @@ struct Listening {
 class Witness {
  public:
   /// Receives the claim that is violated.
-  using Objects = void (*)(const char* claim);
+  using ReportViolation = void (*)(const char* claim);
   /// Numbers of received frames.
   struct Counts {
     std::uint64_t requests = 0;
@@ -60,7 +60,8 @@ class Witness {
     std::uint64_t storing = 0;  ///< the part of `requests` and `silent` that store something
   };
 
-  Witness(const Model& model, Objects objects) : model_(model), objects_(objects) {}
+  Witness(const Model& model, ReportViolation report_violation)
+      : model_(model), report_violation_(report_violation) {}
 
   /// Call it when the module has started with `values`. `reset`: the time of the reset. If the reset
   /// interrupted a command, this class does not check what the command has stored
@@ -136,24 +137,24 @@ class Witness {
     mark_fresh();
     if (!one_leads_to(values)) {
       if (values.timed_out && !values_.timed_out && !may_expire(values_)) {
-        objects_("the host watchdog never expires too early");
+        report_violation_("the host watchdog never expires too early");
       } else if (!some_lead(values_, values, 0, kMostInATurn)) {
-        objects_("values change by what a command demands, a timeout or a reset only");
+        report_violation_("values change by what a command demands, a timeout or a reset only");
       }
     }
     values_ = values;
     if (values.timed_out && values.outputs != values.safe) {
-      objects_("outputs are the safe value while the timeout status is set");
+      report_violation_("outputs are the safe value while the timeout status is set");
     }
     if ((values.outputs & ~model_.output_mask()) != 0) {
-      objects_("only outputs that the model has are driven");
+      report_violation_("only outputs that the model has are driven");
     }
   }
 
   /// Call it after a turn of the main loop with the address of the module.
   void follow_address(std::uint8_t address) {
     if (dcon_ && pending_count_ == 0 && address != dcon_->own_address()) {
-      objects_("the address changes by a command only");
+      report_violation_("the address changes by a command only");
     }
   }
 
@@ -283,7 +284,7 @@ class Witness {
         return;
       }
       if (!oldest.broadcast && oldest.alone) {
-        objects_("a module with nothing else to do answers in time");
+        report_violation_("a module with nothing else to do answers in time");
       }
       if (is_silent_store(oldest)) {
         free_ = latest;
@@ -311,7 +312,7 @@ class Witness {
         continue;  // the module may have lost this request
       }
       if (now_ < request.last + distance()) {
-        objects_("a reply keeps its distance");
+        report_violation_("a reply keeps its distance");
       }
       if (form == ReplyForm::Answer && request.demand.restarts) {
         alive_ = std::max(alive_, request.over);
@@ -320,16 +321,16 @@ class Witness {
       drop_oldest(i + 1);
       return form;
     }
-    objects_(objection);
+    report_violation_(objection);
     return ReplyForm::Wrong;
   }
 
   void take_rtu_reply(Bytes reply) {
     if (reply.size < 5 || reply.size > 256) {
-      return objects_("a Modbus reply has 5 to 256 bytes");
+      return report_violation_("a Modbus reply has 5 to 256 bytes");
     }
     if (crc16(reply.data, reply.size) != 0) {
-      return objects_("a Modbus reply carries its CRC");
+      return report_violation_("a Modbus reply carries its CRC");
     }
     constexpr std::uint8_t kFailure = 0x04;
     answered(reply[2] == kFailure,
@@ -338,17 +339,17 @@ class Witness {
 
   void take_dcon_reply(Bytes reply) {
     if (reply.size < 2 || reply[reply.size - 1] != '\r') {
-      return objects_("a DCON reply ends with CR");
+      return report_violation_("a DCON reply ends with CR");
     }
     std::size_t size = reply.size - 1;
     for (const std::uint8_t c : reply.first(size)) {
       if (c < 0x20 || c > 0x7E) {
-        return objects_("a DCON reply is printable");
+        return report_violation_("a DCON reply is printable");
       }
     }
     if (dcon_->checksum()) {
       if (size <= 2 || !are_digits_of(reply.data + size - 2, dcon_sum(reply.data, size - 2))) {
-        return objects_("a DCON reply carries its checksum");
+        return report_violation_("a DCON reply carries its checksum");
       }
       size -= 2;
     }
@@ -422,7 +423,7 @@ class Witness {
     const Demand& demand = request.demand;
     return request.fresh && !request.done && demand.changes_values() &&
            (demand.made_of(from) == to || (from.timed_out && has_expired_since(request) &&
-                                           demand.made_behind_a_timeout(from, outputs_before_) == to));
+                                           demand.values_after_a_timeout(from, outputs_before_) == to));
   }
 
   /// Whether one command has changed the values to `to`, which is nearly always the case.
@@ -478,7 +479,7 @@ class Witness {
           return true;
         }
         if (from.timed_out && has_expired_since(each) &&
-            some_lead(each.demand.made_behind_a_timeout(from, outputs_before_), to, i + 1, most - 1)) {
+            some_lead(each.demand.values_after_a_timeout(from, outputs_before_), to, i + 1, most - 1)) {
           return true;
         }
       }
@@ -491,13 +492,13 @@ class Witness {
     if (broadcast_ && !held_) {
       broadcast_ = false;
       if (!values_.timed_out && !pending(0).demand.is_met_by(values_, outputs_before_, false)) {
-        objects_("a broadcast to a module with nothing else to do is carried out");
+        report_violation_("a broadcast to a module with nothing else to do is carried out");
       }
     }
   }
 
   const Model& model_;
-  Objects objects_;
+  ReportViolation report_violation_;
   Listening listening_;
   std::optional<RtuJudge> rtu_;
   std::optional<DconJudge> dcon_;

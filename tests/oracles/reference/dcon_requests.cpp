@@ -148,7 +148,7 @@ std::string command(const Module& module, Random& random) {
 }
 
 /// Returns the frame with one mistake.
-std::string with_a_slip(const Module& module, std::string frame, Random& random) {
+std::string with_one_mistake(const Module& module, std::string frame, Random& random) {
   switch (random.below(8)) {
     case 0:  // for another module
       return frame.substr(0, 1) +
@@ -206,7 +206,7 @@ std::string checked(const Module& module, const std::string& frame, Random& rand
 Bytes dcon_request(const Module& module, Random& random) {
   std::string frame = command(module, random);
   if (random.once_in(10)) {
-    frame = with_a_slip(module, frame, random);
+    frame = with_one_mistake(module, frame, random);
   }
   std::string sent = checked(module, frame, random) + "\r";
   switch (random.below(60)) {

@@ -220,7 +220,7 @@ bool Session::play_step(const Send& send) {
   ++transactions_;
   if (answer.reply.empty()) {
     // wire.md 8: while one command is being stored, the module keeps one more frame.
-    storing_ = send.hurried && answer.stores && reference_.runs_modbus() && !behind_another;
+    storing_ = send.next_may_follow_at_once && answer.stores && reference_.runs_modbus() && !behind_another;
     if (storing_) {
       return listen(std::chrono::duration_cast<milliseconds>(modbus_silence) + milliseconds(2));
     }

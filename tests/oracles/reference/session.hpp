@@ -19,7 +19,7 @@ namespace ex9000::reference {
 struct Send {
   Bytes bytes;
   /// If the request gets no answer, the next request may follow while the module is still storing.
-  bool hurried = false;
+  bool next_may_follow_at_once = false;
 };
 struct Wait {
   std::chrono::milliseconds time;

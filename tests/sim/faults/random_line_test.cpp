@@ -33,7 +33,7 @@ class NoisyLine {
     onlooker_.emplace(bus_, *module_, 0);
     module_->power(true);
     bus_.run_for(milliseconds(100));
-    onlooker_->look_again();
+    onlooker_->start_checking();
   }
 
   [[nodiscard]] VirtualTime now() { return clock_.virtual_now(); }
