@@ -60,7 +60,7 @@ void Core::write(std::uint32_t offset, std::uint32_t value) {
   switch (offset) {
     case kTickControl:
       if ((value & 4U) == 0) {
-        fault(offset, "the tick would run on something else than the system clock");
+        fault(offset, "SysTick must use the system clock");
       }
       if ((value & 1U) != 0 && (tick_control_ & 1U) == 0) {
         tick_began_ = timeline_.now();
@@ -72,7 +72,7 @@ void Core::write(std::uint32_t offset, std::uint32_t value) {
       break;
     case kTickReload:
       if (value > 0xFF'FFFFU) {
-        fault(offset, "24 bits");
+        fault(offset, "the reload value has more than 24 bits");
       }
       reload_ = value;
       break;

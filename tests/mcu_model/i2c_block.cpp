@@ -87,7 +87,7 @@ void I2cBlock::write(std::uint32_t offset, std::uint32_t value) {
       break;
     case kPeriod:
       if (value > 0x7F) {
-        fault(offset, "seven bits");
+        fault(offset, "the timer period has more than 7 bits");
       }
       period_ = value;
       break;
@@ -109,18 +109,18 @@ void I2cBlock::write(std::uint32_t offset, std::uint32_t value) {
 
 void I2cBlock::check_pins() const {
   if (!port_.given_to(kClockPin, kFunction) || !port_.given_to(kDataPin, kFunction)) {
-    fault(kControl, "its pins are not its own");
+    fault(kControl, "its pins are not assigned to it");
   }
   const std::uint32_t open_drain = port_.peek(GpioPort::kOpenDrain);
   if ((open_drain >> kDataPin & 1U) == 0 ||
       ((open_drain >> kClockPin & 1U) != 0) != chip_.i2c_clock_open_drain) {
-    fault(kControl, "its pins are not open drain as the family wants them");
+    fault(kControl, "its pins do not have the open-drain setting that the family requires");
   }
 }
 
 void I2cBlock::command(std::uint32_t bits) {
   if (busy_) {
-    fault(kControl, "a command while one is being carried out");
+    fault(kControl, "a command is written while another is in progress");
   }
   if ((configuration_ & kMaster) == 0) {
     fault(kControl, "the block is not in master mode");

@@ -76,7 +76,7 @@ Microcontroller::Microcontroller(const Chip& chip, Timeline& timeline, Pins& pin
   system_control.on_software_reset([this](unsigned index, unsigned bit) {
     if (index != 1 || bit != 12) {
       throw Fault(SystemControl::kBase + SystemControl::kSrcr + 4 * index,
-                  "resets what no software reset is known of here");
+                  "the simulation does not support a software reset of this peripheral");
     }
     i2c.software_reset();
   });
@@ -115,7 +115,7 @@ Microcontroller& Microcontroller::current() {
 
 Peripheral& Microcontroller::peripheral_at(std::uint32_t address) {
   if (address % 4 != 0) {
-    throw Fault(address, "not on a word's boundary");
+    throw Fault(address, "the address is not a multiple of 4");
   }
   const std::uint32_t base = address & ~0xFFFU;
   if (base == SystemControl::kBase) {
@@ -140,7 +140,8 @@ void Microcontroller::check_usable(const Place& place, std::uint32_t address) co
     case SystemControl::Gate::Shut:
       throw Fault(address, "has no clock");
     case SystemControl::Gate::TooFresh:
-      throw Fault(address, "was given its clock only just now");
+      throw Fault(address,
+                  "its clock gate was opened too recently; wait the clocks that the data sheet requires");
     case SystemControl::Gate::Open:
       break;
   }
@@ -223,7 +224,7 @@ void Microcontroller::wait_for_interrupt() {
   while (!core.wakes()) {
     const Instant next = std::min(timeline_.next(), core.next_wake());
     if (next == kNever && !pass_) {
-      throw Fault(0, "sleeps for ever");
+      throw Fault(0, "the processor sleeps, and no event is left that could wake it");
     }
     pass(next);
   }

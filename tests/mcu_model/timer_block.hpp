@@ -74,7 +74,7 @@ class TimerBlock final : public Peripheral {
         break;
       case kInterval:
         if (running) {
-          fault(offset, "loaded while it counts");
+          fault(offset, "the interval is written while the timer counts");
         }
         interval_ = value;
         break;

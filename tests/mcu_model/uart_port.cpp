@@ -114,10 +114,10 @@ void UartPort::transmit(std::uint8_t byte) {
     fault(kData, "the transmitter is off");
   }
   if (!pins_.port->given_to(pins_.transmit, pins_.function)) {
-    fault(kData, "the transmitter's pin is not its own");
+    fault(kData, "the transmit pin is not assigned to the UART");
   }
   if (transmit_holding_) {
-    fault(kData, "the byte before has not left the holding register");
+    fault(kData, "the previous byte is still in the holding register");
   }
   if (shifting_) {
     transmit_holding_ = byte;
