@@ -505,7 +505,7 @@ TEST_P(HostWatchdogOnBoard, ACommandThatChangesTheSafeValueAsItExpiresGivesTheNe
       const bool is_new = change.outputs == new_value;
       expired = expired || change.outputs == kSafeValue;
       ASSERT_TRUE(!expired || ((change.outputs ^ kSafeValue) & ~(kSafeValue ^ new_value)) == 0);
-      ASSERT_FALSE(was_new) << "and behind it something else";
+      ASSERT_FALSE(was_new) << "the outputs change again after the new safe value";
       if (expired && is_new) {
         ++switched;
         EXPECT_GE(change.at, stored - microseconds(50));

@@ -69,7 +69,7 @@ void expect_nothing_written_the_second_time(ModuleBench& bench, const std::vecto
     EXPECT_EQ(bench.module().memory().writes(), writes);
     stored += writes != before ? 1U : 0U;
   }
-  EXPECT_GT(stored, commands.size() / 2) << "this shows nothing";
+  EXPECT_GT(stored, commands.size() / 2) << "too few commands stored something, so this test proves nothing";
 }
 
 TEST(Storing, ACommandThatChangesNothingWritesNothing) {

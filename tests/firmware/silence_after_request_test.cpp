@@ -123,7 +123,7 @@ TEST(SilenceAfterRequest, AFrameThatIsSpoiledBehindItsCrcIsNotActedUpon) {
   EXPECT_EQ(bench.heard_text(), "");
   EXPECT_EQ(bench.module().outputs(), 0U);
   EXPECT_EQ(bench.ask(kReadOutputs), (Bytes{0x01, 0x01, 0x01, 0x00}));
-  EXPECT_EQ(bench.module().outputs(), 0U) << "nor is it with the next one";
+  EXPECT_EQ(bench.module().outputs(), 0U) << "the next frame must not execute it either";
 }
 
 TEST(SilenceAfterRequest, TheInitSwitchCountsAsItStandsWhereTheSilenceEnds) {

@@ -286,7 +286,7 @@ class InputBench {
       for (int i = 0; i < 10 && ports_.interrupts(port_of(channel)); ++i) {
         serve(channel);
       }
-      EXPECT_FALSE(ports_.interrupts(port_of(channel))) << "an edge interrupts for ever";
+      EXPECT_FALSE(ports_.interrupts(port_of(channel))) << "the interrupt of an edge does not end";
     }
   }
 

@@ -147,7 +147,7 @@ Found CutBench::come_up(const Contents& contents, const std::vector<Settings>& g
   }
   EXPECT_EQ(shown_.changes, found.outputs.changes) << "reading has changed outputs";
   if (!holds_what_must_not_count(contents)) {
-    EXPECT_EQ(CutBench::contents(), contents) << "coming up has written";
+    EXPECT_EQ(CutBench::contents(), contents) << "the start of the module has written to the EEPROM";
   }
   return found;
 }
@@ -207,7 +207,8 @@ void CutBench::carry_out(const FrameFormat& frame_format, const StoringCommand& 
   while (bench_.timeline.now() < gives_up && bench_.eeprom.programmed().size() < had_programmed + pages) {
     bench_.run_for(milliseconds(1));
   }
-  ASSERT_EQ(bench_.eeprom.programmed().size(), had_programmed + pages) << "it does not store what it should";
+  ASSERT_EQ(bench_.eeprom.programmed().size(), had_programmed + pages)
+      << "the command does not program the expected number of pages";
   if (command.answered) {
     const Bytes reply = hear();
     ASSERT_GE(reply.size(), 3U) << "no answer";

@@ -192,7 +192,7 @@ class Interleaver {
     const Run run = tried(places);
     for (std::size_t part = 0; part < run.outcome.size(); ++part) {
       if (outcomes_[part].count(run.outcome[part]) == 0) {
-        complain("comes to " + run.outcome[part], places);
+        complain("unexpected outcome: " + run.outcome[part], places);
       }
     }
   }

@@ -86,7 +86,8 @@ inline std::vector<StoredBytes> all_stored_bytes() {
   for (const auto& entry : std::filesystem::directory_iterator(EX9000_STORED_BYTES)) {
     all.push_back(read_stored_bytes(entry.path()));
     if (all.back().model == nullptr) {
-      throw std::runtime_error(entry.path().string() + ": no model of that name");
+      throw std::runtime_error(entry.path().string() +
+                               ": unknown model; expected a designation of the model table");
     }
   }
   EXPECT_GE(all.size(), kAtLeast);

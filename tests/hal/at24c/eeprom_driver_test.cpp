@@ -75,7 +75,7 @@ class Bench {
     while (driver->busy() && wires->timeline.now() < patience) {
       turn();
     }
-    EXPECT_FALSE(driver->busy()) << "the job takes for ever";
+    EXPECT_FALSE(driver->busy()) << "the job does not finish";
     return !driver->busy() && driver->succeeded();
   }
   void run_for(Instant time) {
@@ -319,8 +319,8 @@ TYPED_TEST(Eeprom, DataHeldForUpToNineClocksIsFreedAndHearsStartAndStop) {
     TestFixture::expect_works(bench, held);
     EXPECT_TRUE(released);
     EXPECT_LE(bench.clocks_before_start, 9U) << held;
-    EXPECT_GE(bench.clocks_before_start, held) << "and not one more than it takes, but for the last";
-    EXPECT_LE(bench.clocks_before_start, held + 1);
+    EXPECT_GE(bench.clocks_before_start, held);
+    EXPECT_LE(bench.clocks_before_start, held + 1) << "at most one clock more than necessary";
   }
 }
 

@@ -139,7 +139,7 @@ class Witness {
       if (values.timed_out && !values_.timed_out && !may_expire(values_)) {
         report_violation_("the host watchdog never expires too early");
       } else if (!some_lead(values_, values, 0, kMostInATurn)) {
-        report_violation_("values change by what a command demands, a timeout or a reset only");
+        report_violation_("values change only because of a command, a timeout or a reset");
       }
     }
     values_ = values;
@@ -312,7 +312,7 @@ class Witness {
         continue;  // the module may have lost this request
       }
       if (now_ < request.last + distance()) {
-        report_violation_("a reply keeps its distance");
+        report_violation_("a reply does not begin too early");
       }
       if (form == ReplyForm::Answer && request.demand.restarts) {
         alive_ = std::max(alive_, request.over);
@@ -409,8 +409,9 @@ class Witness {
     if (demand.drives() && values_.timed_out && !since) {
       return "an output command is refused while the timeout status is set";
     }
-    return demand.is_met_by(values_, outputs_before_, since) ? nullptr
-                                                             : "what is answered is done, to the bit";
+    return demand.is_met_by(values_, outputs_before_, since)
+               ? nullptr
+               : "an answered command has exactly the effects that it requires";
   }
 
   [[nodiscard]] bool has_expired_since(const Pending& request) const { return expired_ >= request.last; }
@@ -492,7 +493,7 @@ class Witness {
     if (broadcast_ && !held_) {
       broadcast_ = false;
       if (!values_.timed_out && !pending(0).demand.is_met_by(values_, outputs_before_, false)) {
-        report_violation_("a broadcast to a module with nothing else to do is carried out");
+        report_violation_("an idle module executes a broadcast");
       }
     }
   }

@@ -172,7 +172,7 @@ Answer Module::on_request(const Bytes& bytes, Time now) {
       // If one of several frames restarts the host watchdog, the restart happens at the end of that frame.
       now_ = now - Time((bytes.size() - 1 - i) * 10 * 1'000'000'000ULL / rate());
       if (!answer.reply.empty()) {
-        left_open_ = "what comes while the module answers depends on how fast it is";
+        left_open_ = "the effect of bytes that arrive while the module answers depends on its timing";
       }
       if (framing_ == Framing::Nothing) {
         if (std::string("#$%@~").find(character) != std::string::npos) {

@@ -257,7 +257,7 @@ Rules::Rules() {
 void Rules::reached(const std::string& rule) {
   const auto found = counts_.find(rule);
   if (found == counts_.end()) {
-    throw std::logic_error("'" + rule + "' is in no list of rules");
+    throw std::logic_error("'" + rule + "': not in the list of rules; add it to kRules");
   }
   ++found->second;
 }
