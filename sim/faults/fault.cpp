@@ -23,6 +23,7 @@ std::uint64_t parse_count(const std::string& word) {
 struct Row {
   std::string_view name;
   std::string_view value;  ///< name of the fault's value in the help text; empty: the fault has no value
+  std::string_view usual;  ///< a usual value, and a schedule if the fault requires one
   Trouble trouble;
   bool of_a_module;
   void (*take)(Fault& fault, const std::string& word);
@@ -43,25 +44,27 @@ void take_rate(Fault& fault, const std::string& word) { fault.baud = parse_baud_
 void take_bytes(Fault& fault, const std::string& word) { fault.bytes = parse_hex_bytes(word); }
 
 constexpr std::array<Row, 13> kRows{{
-    {"bit-errors", "P", Trouble::BitErrors, false, take_probability,
+    {"bit-errors", "P", "1e-4", Trouble::BitErrors, false, take_probability,
      "inverts each bit with this probability"},
-    {"lost-bytes", "P", Trouble::LostBytes, false, take_probability, "drops each byte with this probability"},
-    {"inserted-bytes", "P", Trouble::InsertedBytes, false, take_probability,
+    {"lost-bytes", "P", "0.01", Trouble::LostBytes, false, take_probability,
+     "drops each byte with this probability"},
+    {"inserted-bytes", "P", "0.01", Trouble::InsertedBytes, false, take_probability,
      "adds a random byte after a byte with this probability"},
-    {"stray-zeros", "P", Trouble::StrayZeros, false, take_probability,
+    {"stray-zeros", "P", "0.01", Trouble::StrayZeros, false, take_probability,
      "adds 00 after a byte with this probability, like the turn-around of a line"},
-    {"echo", "TIME", Trouble::Echo, false, take_silence,
+    {"echo", "TIME", "5ms", Trouble::Echo, false, take_silence,
      "repeats everything that was sent, after this silence"},
-    {"foreign-traffic", "HEX", Trouble::ForeignTraffic, false, take_bytes,
+    {"foreign-traffic", "HEX", "0501000000083C48 every 1s", Trouble::ForeignTraffic, false, take_bytes,
      "sends these bytes, as another device would"},
-    {"lost-reply", "", Trouble::LostReply, true, take_nothing, "drops the reply"},
-    {"late-reply", "TIME", Trouble::LateReply, true, take_time, "delays the reply"},
-    {"late-driver", "TIME", Trouble::LateDriver, true, take_time, "releases the driver late"},
-    {"wrong-rate", "RATE", Trouble::WrongRate, true, take_rate,
+    {"lost-reply", "", "every 3rd reply", Trouble::LostReply, true, take_nothing, "drops the reply"},
+    {"late-reply", "TIME", "50ms", Trouble::LateReply, true, take_time, "delays the reply"},
+    {"late-driver", "TIME", "2ms", Trouble::LateDriver, true, take_time, "releases the driver late"},
+    {"wrong-rate", "RATE", "19200", Trouble::WrongRate, true, take_rate,
      "lets the module listen and send at this rate"},
-    {"gone", "", Trouble::Gone, true, take_nothing, "switches the supply off, and on again"},
-    {"power-cut", "", Trouble::PowerCut, true, take_nothing, "cuts the supply, for 1s by default"},
-    {"hang", "", Trouble::Hang, true, take_nothing,
+    {"gone", "", "", Trouble::Gone, true, take_nothing, "switches the supply off, and on again"},
+    {"power-cut", "", "every 10s", Trouble::PowerCut, true, take_nothing,
+     "cuts the supply, for 1s by default"},
+    {"hang", "", "every 10s", Trouble::Hang, true, take_nothing,
      "stops the main loop until the module watchdog resets the module"},
 }};
 
@@ -230,6 +233,14 @@ Fault parse_fault(const std::string& text) {
   } catch (const std::invalid_argument& error) {
     fail(joined(words) + ": " + error.what());
   }
+}
+
+std::vector<std::string> usual_faults() {
+  std::vector<std::string> faults;
+  for (const Row& row : kRows) {
+    faults.push_back(std::string(row.name) + (row.usual.empty() ? "" : " ") + std::string(row.usual));
+  }
+  return faults;
 }
 
 std::string fault_help() {

@@ -68,6 +68,9 @@ bool concerns_a_module(Trouble trouble);
 /// std::invalid_argument with a one-line message that says what is wrong and what would be right.
 Fault parse_fault(const std::string& text);
 
+/// Returns one usual fault of each kind, in the notation of the user.
+std::vector<std::string> usual_faults();
+
 /// Returns the syntax of faults, one line each, for --help and the manual.
 std::string fault_help();
 

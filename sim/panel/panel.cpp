@@ -172,6 +172,7 @@ class Panel::Viewer final : public PanelViewer {
     hello["version"] = kFirmwareVersion;
     hello["run"] = state().run;
     hello["speed"] = state().speed;
+    hello["usualFaults"] = usual_faults();
     hello["lines"] = Message::array();
     hello["modules"] = Message::array();
     for (const Watched& watched : state().lines) {

@@ -3,16 +3,10 @@
 import {make, setAttribute, setText} from "/element.js";
 import {Switch} from "/switch.js";
 
-/// The initial list: one fault of each kind.
-const usual = [
-  "bit-errors 1e-4", "lost-bytes 0.01", "inserted-bytes 0.01", "stray-zeros 0.01", "echo 5ms",
-  "foreign-traffic 0501000000083C48 every 1s", "lost-reply every 3rd reply", "late-reply 50ms", "late-driver 2ms",
-  "wrong-rate 19200", "gone", "power-cut every 10s", "hang every 10s",
-];
-
 export class Faults {
-  /// `modules`: {position, model} of each module on the line; `tell(command)` carries out a command.
-  constructor(line, several, modules, tell) {
+  /// `usual`: the initial list of faults; `modules`: {position, model} of each module on the line; `tell(command)`
+  /// carries out a command.
+  constructor(line, several, usual, modules, tell) {
     this.prefix = several ? `line ${line.name} ` : "";
     this.tell = tell;
     this.known = new Map();

@@ -48,7 +48,8 @@ function begin(hello) {
   lines = hello.lines.map((line, index) => {
     const modules = hello.modules.map((layout, position) => ({position, model: layout.model, line: layout.line}))
       .filter((module) => module.line === index);
-    return {...line, modules, faults: new Faults(line, several, modules, (command) => live.tell(command))};
+    const faults = new Faults(line, several, hello.usualFaults, modules, (command) => live.tell(command));
+    return {...line, modules, faults};
   });
   at("plates").dataset.count = plates.length === 1 ? "one" : plates.length > 8 ? "many" : "some";
   at("plates").replaceChildren(...(several ? lines.flatMap((line) =>

@@ -56,20 +56,34 @@ TEST(Fault, WhatIsOnTheWiresBefallsTheLineAndAllElseAModule) {
   }
 }
 
-TEST(Fault, IsOfAllModulesAndAlwaysUnlessTold) {
+TEST(Fault, ConcernsAllModulesPermanentlyByDefault) {
   const Fault fault = parse_fault("lost-reply");
   EXPECT_FALSE(fault.module);
   EXPECT_EQ(fault.schedule.when, When::Always);
   EXPECT_FALSE(fault.schedule.lasts);
 }
 
-TEST(Fault, HelpTellsOfEachTroubleWithItsValue) {
+TEST(Fault, HelpContainsEachKindWithItsValue) {
   const std::string help = fault_help();
   for (const char* shape : {"bit-errors P", "lost-bytes P", "inserted-bytes P", "stray-zeros P", "echo TIME",
                             "foreign-traffic HEX", "lost-reply", "late-reply TIME", "late-driver TIME",
                             "wrong-rate RATE", "gone", "power-cut", "hang"}) {
     EXPECT_NE(("\n" + help).find("\n  " + std::string(shape) + " "), std::string::npos) << shape;
   }
+}
+
+TEST(Fault, TheUsualFaultsAreOneOfEachKind) {
+  std::vector<Trouble> kinds;
+  for (const std::string& text : usual_faults()) {
+    const Fault fault = parse_fault(text);
+    EXPECT_EQ(fault.text, text);
+    kinds.push_back(fault.trouble);
+  }
+  EXPECT_EQ(kinds,
+            (std::vector<Trouble>{Trouble::BitErrors, Trouble::LostBytes, Trouble::InsertedBytes,
+                                  Trouble::StrayZeros, Trouble::Echo, Trouble::ForeignTraffic,
+                                  Trouble::LostReply, Trouble::LateReply, Trouble::LateDriver,
+                                  Trouble::WrongRate, Trouble::Gone, Trouble::PowerCut, Trouble::Hang}));
 }
 
 // --- schedules ---

@@ -63,6 +63,7 @@ TEST(PanelMessages, TheFirstHasAllThatAPageNeeds) {
   const Message& hello = message["hello"];
   EXPECT_EQ(hello["version"], kFirmwareVersion);
   EXPECT_EQ(hello["run"].get<std::string>().size(), 16U);
+  EXPECT_EQ(hello["usualFaults"][0], "bit-errors 1e-4");
   EXPECT_EQ(hello["lines"][0]["name"], "hall");
   EXPECT_EQ(hello["lines"][0]["ports"][0], "127.0.0.1:5020");
   EXPECT_EQ(hello["modules"][0]["model"], "EX9055D");
