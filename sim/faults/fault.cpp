@@ -237,6 +237,7 @@ Fault parse_fault(const std::string& text) {
 
 std::vector<std::string> usual_faults() {
   std::vector<std::string> faults;
+  faults.reserve(kRows.size());
   for (const Row& row : kRows) {
     faults.push_back(std::string(row.name) + (row.usual.empty() ? "" : " ") + std::string(row.usual));
   }

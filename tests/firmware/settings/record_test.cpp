@@ -591,6 +591,9 @@ TEST(Edition, OfALaterSequenceCountsAlsoBehindTheWrap) {
       EXPECT_FALSE(older.is_newer_than(newer));
     }
     EXPECT_FALSE(older.is_newer_than(older));
+    const Edition opposite{3, static_cast<std::uint16_t>(from + 0x8000)};
+    EXPECT_FALSE(opposite.is_newer_than(older));
+    EXPECT_FALSE(older.is_newer_than(opposite));
   }
 }
 

@@ -84,7 +84,7 @@ TEST(Scenario, WhatWasHeardOnALineWhileTheStepsWereAboutAnotherIsForgotten) {
   EXPECT_EQ(failure_of(talk + "module 3\nwait 31s\nmodule 1\n> $01M\n< !019042D\n"), "");
   EXPECT_NE(failure_of(talk + "wait 31s\n").find("expected nothing, received '10"), std::string::npos);
   // The choice of another module on the same line does not discard the received bytes.
-  EXPECT_NE(failure_of("fault late-reply 100ms\n> $01M\nmodule 2\nwait 1s\n").find("heard '!019042D"),
+  EXPECT_NE(failure_of("fault late-reply 100ms\n> $01M\nmodule 2\nwait 1s\n").find("received '!019042D"),
             std::string::npos);
 }
 
@@ -313,7 +313,8 @@ TEST(Play, RefusesWhatIsNoFileOfSteps) {
   EXPECT_NE(played(directory / "wrong.txt", true).find("wrong.txt:2: 'wiat 1s' is not a step"),
             std::string::npos);
   write_file(directory / "preset.txt", "preset: protocol=ascii\n> $01M\n");
-  EXPECT_NE(played(directory / "preset.txt", true).find("preset.txt:1: 'preset:' requires a 'model:' line"),
+  EXPECT_NE(played(directory / "preset.txt", true)
+                .find("preset.txt:1: 'preset:' requires a preceding 'model:' line without a preset"),
             std::string::npos);
 }
 
