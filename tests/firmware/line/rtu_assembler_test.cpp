@@ -158,6 +158,15 @@ TEST_F(RtuAssemblerTest, AnOverrunAtAnyPositionLosesTheFrame) {
   expect_next_frame_accepted();
 }
 
+TEST_F(RtuAssemblerTest, AnOverrunIsNotReportedAgainForTheNextDamagedFrame) {
+  FrameBytes wrong_crc = kChannel0On;
+  wrong_crc.back() ^= 0x01;
+  ASSERT_EQ(verdict_of(kChannel0On, 2, ByteStatus::Overrun), Verdict::Overrun);
+  EXPECT_EQ(verdict_of(wrong_crc, 0, ByteStatus::Good), Verdict::BadCheck);
+  ASSERT_EQ(verdict_of(kChannel0On, 2, ByteStatus::Overrun), Verdict::Overrun);
+  EXPECT_EQ(verdict_of(kChannel0On, 2, ByteStatus::FramingError), Verdict::LineError);
+}
+
 TEST_F(RtuAssemblerTest, ALineErrorSpoilsAForeignAndAShortFrameToo) {
   EXPECT_EQ(verdict_of(frame_of(8, 0x02), 3, ByteStatus::FramingError), Verdict::LineError);
   EXPECT_EQ(verdict_of({0x01, 0x11}, 1, ByteStatus::FramingError), Verdict::LineError);

@@ -6,10 +6,13 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include <array>
 #include <filesystem>
 #include <optional>
 #include <stdexcept>
+#include <string>
 #include <string_view>
+#include <thread>
 
 #include "tests/support/directory.hpp"
 
@@ -114,6 +117,29 @@ TEST(CaptureFile, APipeMayBeRead) {
   char text[4] = {};
   EXPECT_EQ(read(reader, text, sizeof text), 3);
   EXPECT_STREQ(text, "one");
+  close(reader);
+}
+
+TEST(CaptureFile, WaitsForTheReaderOfAFullPipe) {
+  const Directory directory;
+  ASSERT_EQ(mkfifo((directory / "a").c_str(), 0600), 0);
+  const int reader = open((directory / "a").c_str(), O_RDONLY | O_NONBLOCK);
+  CaptureFile file(directory / "a", kPlace);
+  ASSERT_EQ(fcntl(reader, F_SETFL, 0), 0);
+  file.begin();
+  const std::string text(static_cast<std::size_t>(4 * fcntl(reader, F_GETPIPE_SZ)), 'x');
+  std::thread writer([&] { EXPECT_NO_THROW(file.append(block(text))); });
+  std::string all;
+  std::array<char, 4096> some{};
+  while (all.size() < text.size()) {
+    const ssize_t size = read(reader, some.data(), some.size());
+    if (size <= 0) {
+      break;
+    }
+    all.append(some.data(), static_cast<std::size_t>(size));
+  }
+  writer.join();
+  EXPECT_EQ(all, text);
   close(reader);
 }
 

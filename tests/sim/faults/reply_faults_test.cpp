@@ -51,13 +51,19 @@ TEST(LateReply, OfEveryReplyKeepsTheirOrder) {
 }
 
 TEST(LateReply, ComesAtOnceWhenItsFaultIsRemovedAndTheNextIsOnTime) {
-  FaultBench bench;
-  const std::size_t fault = bench.add("late-reply 1h");
-  EXPECT_EQ(bench.ask("$01M"), "");
-  EXPECT_TRUE(bench.faults().remove(fault));
-  bench.run(50ms);
-  EXPECT_EQ(bench.heard(), kName + "\r");
-  EXPECT_EQ(bench.ask("$01M"), kName);
+  for (const bool all : {false, true}) {
+    FaultBench bench;
+    const std::size_t fault = bench.add("late-reply 1h");
+    EXPECT_EQ(bench.ask("$01M"), "");
+    if (all) {
+      bench.faults().remove_all();
+    } else {
+      EXPECT_TRUE(bench.faults().remove(fault));
+    }
+    bench.run(50ms);
+    EXPECT_EQ(bench.heard(), kName + "\r");
+    EXPECT_EQ(bench.ask("$01M"), kName);
+  }
 }
 
 TEST(LateReply, IsNeverSentOnceTheSupplyHasFailed) {
