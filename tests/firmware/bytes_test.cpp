@@ -5,7 +5,7 @@
 namespace ex9000 {
 namespace {
 
-TEST(Bytes, AreNoneUntilTheyAreGiven) {
+TEST(Bytes, AreEmptyByDefault) {
   EXPECT_EQ(Bytes().size, 0U);
   EXPECT_EQ(Bytes().data, nullptr);
   EXPECT_EQ(MutableBytes().size, 0U);

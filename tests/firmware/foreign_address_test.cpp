@@ -65,7 +65,7 @@ void every_command_to_every_other_address(const char* model) {
   EXPECT_NE(bench.ask("$352"), "") << "the module must still receive";
 }
 
-TEST(ForeignAddress, EveryCommandToEveryOtherAddressIsLeftAlone) {
+TEST(ForeignAddress, CommandsToOtherAddressesAreIgnored) {
   every_command_to_every_other_address("EX9055D");
   every_command_to_every_other_address("EX9042D-M");
 }
@@ -95,7 +95,7 @@ void every_function_to_every_other_address(const char* model) {
   EXPECT_FALSE(bench.ask(Bytes{kOwnAddress, 0x11}).empty()) << "the module must still receive";
 }
 
-TEST(ForeignAddress, EveryFunctionCodeToEveryOtherAddressIsLeftAlone) {
+TEST(ForeignAddress, FunctionCodesToOtherAddressesAreIgnored) {
   every_function_to_every_other_address("EX9042D-M");
   every_function_to_every_other_address("EX9052D-M");
 }

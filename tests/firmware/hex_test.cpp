@@ -38,7 +38,7 @@ TEST(Hex, TwoDigitsMakeEveryByteHighDigitFirst) {
   }
 }
 
-TEST(Hex, TwoCharactersAreNoByteWhereEitherIsNoDigit) {
+TEST(Hex, TwoCharactersAreNotAByteIfEitherIsNotADigit) {
   EXPECT_EQ(hex_byte('G', '0'), -1);
   EXPECT_EQ(hex_byte('0', 'G'), -1);
   EXPECT_EQ(hex_byte('*', '*'), -1);

@@ -65,7 +65,7 @@ TEST(LongUptime, EveryRequestIsAnsweredOnce) {
   }
 }
 
-TEST(LongUptime, EveryHostOkRestartsTheHostWatchdogAndNothingElseDoes) {
+TEST(LongUptime, EveryHostOkRestartsTheHostWatchdog) {
   CoreBench bench("EX9052D-M");
   bench.ask({0x01, 0x06, 0x01, 0xE8, 0x00, 0x02});  // 0.2 s
   bench.ask({0x01, 0x05, 0x01, 0x04, 0xFF, 0x00});
@@ -80,7 +80,7 @@ TEST(LongUptime, EveryHostOkRestartsTheHostWatchdogAndNothingElseDoes) {
   EXPECT_TRUE(bench.module().state().settings.timeout_status);
 }
 
-TEST(LongUptime, FunctionEightCountsOn) {
+TEST(LongUptime, DiagnosticCountersKeepCounting) {
   CoreBench bench("EX9052D-M");
   const FrameBytes clear{0x01, 0x08, 0x00, 0x0A, 0x00, 0x00};
   ASSERT_EQ(bench.ask(clear), CoreBench::with_crc(clear));

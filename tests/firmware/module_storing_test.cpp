@@ -172,7 +172,7 @@ TEST(Storing, AnUnchangedSafeBitIsNotStoredButStillDrivesItsOutput) {
   EXPECT_EQ(bench.module().memory().writes(), writes);
 }
 
-TEST(Storing, WhereverThePowerFailsACommandIsWhollyDoneOrNotAtAllAndAnAcknowledgedOneIsDone) {
+TEST(Storing, APowerFailureNeverLeavesACommandHalfDoneOrLosesAnAcknowledgedOne) {
   const std::vector<std::string> commands{"%0133400680", "~01OABCDEF", "~013164", "~015P", "~015S"};
   int cuts = 0;
   for (const std::string& command : commands) {
@@ -209,7 +209,7 @@ TEST(Storing, WhereverThePowerFailsACommandIsWhollyDoneOrNotAtAllAndAnAcknowledg
   std::printf("power cuts of whole modules: %d\n", cuts);
 }
 
-TEST(Storing, SettingsThatCannotBeReadGiveFactorySettingsUnwrittenWithin100msAndAPatternOfTheirOwn) {
+TEST(Storing, UnreadableSettingsGiveFactorySettingsALedPatternAndNoWrite) {
   ModuleBench bench("EX9042D,name=OLD");
   for (const bool no_answer : {false, true}) {
     bench.module().power(false);
@@ -230,7 +230,7 @@ TEST(Storing, SettingsThatCannotBeReadGiveFactorySettingsUnwrittenWithin100msAnd
   EXPECT_EQ(bench.ask("$01M"), "!01NEW");
 }
 
-TEST(Storing, WhatIsStoredAfterAMemoryThatDidNotAnswerAtResetIsThereAtTheNext) {
+TEST(Storing, AStoreIsPermanentEvenIfTheMemoryDidNotAnswerAtReset) {
   // The number of stores decides whether the newer copy is in the first or in the second place.
   for (const int stores : {3, 4}) {
     ModuleBench bench("EX9042D,name=OLD");
@@ -248,7 +248,7 @@ TEST(Storing, WhatIsStoredAfterAMemoryThatDidNotAnswerAtResetIsThereAtTheNext) {
   }
 }
 
-TEST(Storing, ARefusedStoreIsNotInForceAfterTheNextResetThoughItsWriteHadLanded) {
+TEST(Storing, ARefusedStoreIsNotInForceAfterTheNextResetEvenIfItWasWritten) {
   ModuleBench bench("EX9042D,name=OLD");
   bench.send("~01ONEW\r");
   bench.line().bus().run_until(bench.line().bus().next());       // the turn-around is over
@@ -264,7 +264,7 @@ TEST(Storing, ARefusedStoreIsNotInForceAfterTheNextResetThoughItsWriteHadLanded)
   EXPECT_EQ(bench.ask("$01M"), "!01OLD");
 }
 
-TEST(Storing, AReplyWaitsForATimeoutThatIsNotStoredYet) {
+TEST(Storing, AStoringCommandIsRefusedWhileAnEarlierTimeoutCannotBeStored) {
   // The timeout has disabled the watchdog, but this is not stored yet. The command that disables the watchdog
   // must not be stored before the timeout is.
   ModuleBench bench("EX9042D");
@@ -294,7 +294,7 @@ TEST(Storing, AnotherModelsSettingsDoNotCount) {
 
 // --- wire.md 8: while one command is executed or stored, the module keeps one more frame ---
 
-TEST(Queueing, OfTwoFramesBehindAStoringOneTheFirstIsKept) {
+TEST(Queueing, WhileACommandIsStoredOnlyTheFirstOfTwoFramesIsKept) {
   ModuleBench bench("EX9042D,baud=115200");
   bench.forget_heard();
   bench.send("~01ONEW\r$01M\r$012\r");
@@ -302,7 +302,7 @@ TEST(Queueing, OfTwoFramesBehindAStoringOneTheFirstIsKept) {
   EXPECT_EQ(bench.heard_text(), "!01\r!01NEW\r");
 }
 
-TEST(Queueing, AHostOkBehindAFullQueueIsNotLost) {
+TEST(Queueing, AHostOkIsNotLostWhileTheQueueIsFull) {
   ModuleBench bench("EX9042D,baud=115200");
   ASSERT_EQ(bench.ask("~013105"), "!01");
   bench.run(milliseconds(200));  // together with the wait in `ask`, 450 ms of the 500 ms are over
@@ -311,7 +311,7 @@ TEST(Queueing, AHostOkBehindAFullQueueIsNotLost) {
   EXPECT_FALSE(bench.module().module().state().settings.timeout_status);
 }
 
-TEST(Queueing, AWholeModbusFrameSurvivesTheReplyToTheOneBeforeIt) {
+TEST(Queueing, ACompleteModbusFrameIsNotLostWhenThePreviousReplyStarts) {
   // The host OK is complete, except for its silence, when the driver is switched on.
   ModuleBench bench("EX9068D-M");
   bench.ask(Bytes{1, 0x06, 0x01, 0xE8, 0x00, 0x05});
@@ -329,7 +329,7 @@ TEST(Queueing, AWholeModbusFrameSurvivesTheReplyToTheOneBeforeIt) {
   EXPECT_FALSE(bench.module().module().state().settings.timeout_status);
 }
 
-TEST(Queueing, TwoRepliesAreNeverOneFrameToTheMaster) {
+TEST(Queueing, TwoRepliesAreAtLeastT35Apart) {
   ModuleBench bench("EX9068D-M,baud=115200");
   bench.send(with_crc({1, 0x05, 0x00, 0xA0, 0xFF, 0x00}));
   bench.run(microseconds(1800));
@@ -348,7 +348,7 @@ TEST(Queueing, TwoRepliesAreNeverOneFrameToTheMaster) {
 
 // "A reply means that it is stored": settings that could not be read may be readable again after the next
 // reset.
-TEST(Storing, ACommandThatSaysWhatTheFactoryDoesIsStoredIfTheSettingsCouldNotBeRead) {
+TEST(Storing, ACommandWithFactoryValuesIsStoredIfTheSettingsWereUnreadable) {
   ModuleBench bench("EX9042D");
   ASSERT_EQ(bench.ask("~01OONE"), "!01");
   bench.module().memory().fail(true);

@@ -35,7 +35,7 @@ TEST(Reset, OutputsGoFromDeEnergisedToThePowerOnValueWithoutAGlitch) {
   EXPECT_LT(changes[1].at - changes[0].at, milliseconds(100));
 }
 
-TEST(Reset, ABouncingInitSwitchCountsOnlyOnceItStandsStill) {
+TEST(Reset, ABouncingInitSwitchIsReadOnlyAfterItIsStable) {
   ModuleBench bench("EX9042D");
   for (int i = 0; i < 20; ++i) {
     bench.module().set_init(i % 2 == 0);
@@ -56,7 +56,7 @@ TEST(Reset, ABouncingInitSwitchCountsOnlyOnceItStandsStill) {
 
 // --- wire.md 3 and 7: start of a reply; 9: the driver ---
 
-TEST(Timing, AnAsciiReplyStartsOneCharacterAfterCrAtTheEarliestAndWithin20msOr200WhereSomethingIsStored) {
+TEST(Timing, AnAsciiReplyStartsAfterOneCharacterAndWithin20msOr200msIfStored) {
   for (const std::uint32_t baud : kBaudRates) {
     ModuleBench bench("EX9055D,baud=" + std::to_string(baud));
     for (const auto& [command, most] :
@@ -76,7 +76,7 @@ TEST(Timing, AnAsciiReplyStartsOneCharacterAfterCrAtTheEarliestAndWithin20msOr20
   }
 }
 
-TEST(Timing, AModbusReplyStartsAfterThreeAndAHalfCharactersAtTheEarliestAndSoon) {
+TEST(Timing, AModbusReplyStartsAfterT35AndWithin20msOr200msIfStored) {
   for (const std::uint32_t baud : kBaudRates) {
     ModuleBench bench("EX9042D-M,baud=" + std::to_string(baud));
     const VirtualTime silence = baud > 19200 ? VirtualTime(1'750'000) : VirtualTime(38'500'000'000 / baud);
@@ -119,7 +119,7 @@ TEST(Driver, ItsOwnEchoIsNeverTakenForARequest) {
 
 // --- clock ---
 
-TEST(Time, NothingHappensWhenTheMicrosecondsWrap) {
+TEST(Time, TheHostWatchdogExpiresOnTimeAcrossTheClockWrap) {
   constexpr microseconds kWrap{std::int64_t{1} << 32};
   ModuleBench bench("EX9043D-M");
   ASSERT_EQ(bench.ask(Bytes{1, 0x0F, 0x00, 0x00, 0x00, 0x10, 0x02, 0x0F, 0x00}).at(1), 0x0F);
@@ -155,7 +155,7 @@ TEST(Time, AMasterThatPollsOnceAWrapIsAnsweredEveryTime) {
 // minutes.
 constexpr std::array kPauses{std::chrono::minutes(36), std::chrono::minutes(50), std::chrono::minutes(71)};
 
-TEST(Time, ARequestIsAnsweredHoweverLongTheMasterHasPausedBehindAReply) {
+TEST(Time, ARequestIsAnsweredAfterAnyPause) {
   ModuleBench modbus("EX9042D-M");
   ModuleBench ascii("EX9042D");
   for (const auto pause : kPauses) {
@@ -168,7 +168,7 @@ TEST(Time, ARequestIsAnsweredHoweverLongTheMasterHasPausedBehindAReply) {
   }
 }
 
-TEST(Time, AStoreTheInitSwitchAndTheHostWatchdogAreOnTimeHoweverLongNothingHasHappened) {
+TEST(Time, StoresInitSwitchAndHostWatchdogAreOnTimeAfterAnyPause) {
   ModuleBench bench("EX9042D");
   unsigned number = 0;
   for (const auto pause : kPauses) {

@@ -71,7 +71,7 @@ class ModuleTurns : public testing::Test {
   bool written_ = false;
 };
 
-TEST_F(ModuleTurns, ItIsAtRestUnlessARequestWaitsIsStoredOrIsAnswered) {
+TEST_F(ModuleTurns, TheModuleIsNotAtRestWhileARequestIsInProgress) {
   EXPECT_TRUE(module_.at_rest());
   put("$01M");
   EXPECT_FALSE(module_.at_rest());  // the request waits
@@ -87,7 +87,7 @@ TEST_F(ModuleTurns, ItIsAtRestUnlessARequestWaitsIsStoredOrIsAnswered) {
   EXPECT_FALSE(Module(*find_model("EX9043D")).at_rest());  // a module that has not started
 }
 
-TEST_F(ModuleTurns, AReplyThatIsReadyWantsToBeTaken) {
+TEST_F(ModuleTurns, AReadyReplyRequestsAnotherTurnUntilItIsTaken) {
   put("$01M");
   module_.step(now_);
   EXPECT_TRUE(requests_another_turn());
@@ -96,7 +96,7 @@ TEST_F(ModuleTurns, AReplyThatIsReadyWantsToBeTaken) {
 }
 
 // wire.md D18.
-TEST_F(ModuleTurns, TheNextReplyKeepsItsGapEvenIfThePanelIsNotPolled) {
+TEST_F(ModuleTurns, TheGapBeforeTheNextReplyIsKeptEvenIfThePanelIsNotPolled) {
   put("$01M");
   module_.step(now_);
   put("$01F");
@@ -149,7 +149,7 @@ TEST_F(ModuleTurns, ATimeoutRequestsATurnForTheLedAndAnotherWhenItIsStored) {
   EXPECT_FALSE(requests_another_turn());
 }
 
-TEST(ModuleComesUp, OnceItsMemoryIsRead) {
+TEST(ModuleComesUp, AfterItsMemoryIsRead) {
   Module module(*find_model("EX9043D"));
   module.start(0, Time());
   module.poll_panel(false, Time());
@@ -162,7 +162,7 @@ TEST(ModuleComesUp, OnceItsMemoryIsRead) {
   EXPECT_TRUE(module.idle_for(Time(), kLong) == Duration());
 }
 
-TEST_F(ModuleTurns, AHostOkThatComesInBehindATurnIsDueAtOnce) {
+TEST_F(ModuleTurns, AHostOkReceivedAfterATurnRequestsAnotherTurn) {
   EXPECT_FALSE(requests_another_turn());
   put("~**");
   EXPECT_TRUE(requests_another_turn());

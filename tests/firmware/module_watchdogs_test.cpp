@@ -20,7 +20,7 @@ using std::chrono::seconds;
 
 // --- wire.md 6: host watchdog ---
 
-TEST(HostWatchdog, HostOksCloserThanTheTimeoutKeepItFromExpiringAtAnyRate) {
+TEST(HostWatchdog, HostOksMoreFrequentThanTheTimeoutPreventExpiryAtAnyBaudRate) {
   for (const std::uint32_t baud : kBaudRates) {
     ModuleBench bench("EX9068D-M,baud=" + std::to_string(baud));
     const Bytes host_ok = with_crc({1, 0x03, 0x30, 0x38, 0x00, 0x00});
@@ -36,7 +36,7 @@ TEST(HostWatchdog, HostOksCloserThanTheTimeoutKeepItFromExpiringAtAnyRate) {
   }
 }
 
-TEST(HostWatchdog, ATimeoutBehindAClearingThatIsBeingStoredIsNotClearedByIt) {
+TEST(HostWatchdog, ATimeoutWhileAClearCommandIsStoredIsNotCleared) {
   ModuleBench bench("EX9043D,baud=115200");
   ASSERT_EQ(bench.ask("~013101"), "!01");  // has expired when `ask` returns
   bench.send("~013101\r");                 // armed again
@@ -53,7 +53,7 @@ TEST(HostWatchdog, ATimeoutBehindAClearingThatIsBeingStoredIsNotClearedByIt) {
   EXPECT_EQ(bench.ask("~010"), "!0104");
 }
 
-TEST(HostWatchdog, RunsThoughTheInitSwitchNeverStandsStill) {
+TEST(HostWatchdog, RunsEvenIfTheInitSwitchBouncesContinuously) {
   ModuleBench bench("EX9043D");
   ASSERT_EQ(bench.ask("@010001"), ">");
   ASSERT_EQ(bench.ask("~015P"), "!01");
@@ -84,7 +84,7 @@ TEST(HostWatchdog, ExpiresAfterEveryTimeoutNeverEarlyAndAtMostAMillisecondLate) 
   }
 }
 
-TEST(HostWatchdog, TellsWhenItExpires) {
+TEST(HostWatchdog, ReportsItsExpiryTime) {
   ModuleBench bench("EX9043D");
   const auto expiry = [&bench] { return bench.module().module().host_watchdog_expiry(); };
   EXPECT_FALSE(expiry().armed());
@@ -138,7 +138,7 @@ TEST(HostWatchdog, ExpiryDrivesTheSafeValueAtOnceEvenWhileACommandIsBeingStored)
   EXPECT_EQ(bench.module().outputs(), 0);
 }
 
-TEST(HostWatchdog, ATimeoutThatCannotBeStoredHoldsAllTheSameAndIsStoredLater) {
+TEST(HostWatchdog, ATimeoutThatCannotBeStoredTakesEffectAndIsStoredLater) {
   ModuleBench bench("EX9043D");
   ASSERT_EQ(bench.ask("@0100FF"), ">");
   ASSERT_EQ(bench.ask("~013105"), "!01");
@@ -155,7 +155,7 @@ TEST(HostWatchdog, ATimeoutThatCannotBeStoredHoldsAllTheSameAndIsStoredLater) {
   EXPECT_EQ(bench.ask("~012"), "!01005");
 }
 
-TEST(HostWatchdog, ClearingTheStatusWhileItsStoreIsUnderWayIsStoredBehindIt) {
+TEST(HostWatchdog, AStatusClearedDuringItsStoreIsStoredAsCleared) {
   ModuleBench bench("EX9043D,baud=115200");
   ASSERT_EQ(bench.ask("~013103"), "!01");
   ASSERT_TRUE(bench.runs_until([&bench] { return bench.module().module().state().settings.timeout_status; }));
@@ -184,7 +184,7 @@ TEST(HostWatchdog, TheLedFlashesAtTwoHertzOnItsPin) {
 
 // --- wire.md 6: module watchdog ---
 
-TEST(ModuleWatchdog, AHungMainLoopIsResetWithin1600msAndSaysSo) {
+TEST(ModuleWatchdog, AHungMainLoopCausesAReportedResetWithin1600ms) {
   ModuleBench bench("EX9068D-M,protocol=ascii");
   ASSERT_EQ(bench.ask("@0155"), ">");
   ASSERT_EQ(bench.ask("~015P"), "!01");
@@ -199,7 +199,7 @@ TEST(ModuleWatchdog, AHungMainLoopIsResetWithin1600msAndSaysSo) {
   EXPECT_EQ(bench.module().outputs(), 0x55);
 }
 
-TEST(ModuleWatchdog, AStoppedTickIsResetLikewise) {
+TEST(ModuleWatchdog, AStoppedTickCausesAResetWithin1600ms) {
   ModuleBench bench("EX9068D-M,protocol=ascii");
   bench.module().stop_tick();
   bench.run(milliseconds(1600));

@@ -21,7 +21,7 @@ TEST(OneModel, ADeviceIsMadeByTheCompiler) {
 }
 
 // A program for all models must read the settings that an image stores, and vice versa.
-TEST(OneModel, ItsRecordIsThatOfAllModels) {
+TEST(OneModel, ItsRecordIsTheSameAsInAProgramForAllModels) {
   const std::vector<std::uint8_t> from_the_factory{
       3,    19,   1,    0,                    // layout, length, sequence
       1,    6,    0,    1,    0xFF, 0, 0,     // address to timeout status

@@ -85,7 +85,7 @@ TEST(RandomSessions, TheFirmwareDoesWhatTheReferenceSays) {
   EXPECT_GT(behind_expiry, wanted / 1000);
 }
 
-TEST(RandomSessions, AreWrittenDownAsTheRunnerPlaysThem) {
+TEST(RandomSessions, CanBeReplayedByTheRunnerFromTheirTranscript) {
   const system::Directory directory;
   const std::string path = directory / "session.txt";
   for (std::uint64_t seed = 0; seed < 27; ++seed) {

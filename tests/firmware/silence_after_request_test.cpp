@@ -48,7 +48,7 @@ Bytes answer(ModuleBench& bench, const Bytes& frame, Event event) {
   return {heard.begin(), heard.end()};
 }
 
-TEST(SilenceAfterRequest, AnInputThatChangesWithinTheSilenceIsReadAsItIsThen) {
+TEST(SilenceAfterRequest, AnInputChangeDuringTheSilenceIsInTheModbusReply) {
   ModuleBench bench("EX9052D-M");
   EXPECT_EQ(answer(bench, kReadInputs, [&] { bench.module().set_input(3, true); }),
             with_crc({0x01, 0x02, 0x01, 0x08}));
@@ -56,13 +56,13 @@ TEST(SilenceAfterRequest, AnInputThatChangesWithinTheSilenceIsReadAsItIsThen) {
             with_crc({0x01, 0x03, 0x02, 0x00, 0x05}));
 }
 
-TEST(SilenceAfterRequest, LikewiseInAscii) {
+TEST(SilenceAfterRequest, AnInputChangeDuringTheTurnAroundIsInTheAsciiReply) {
   ModuleBench bench("EX9052D");
   EXPECT_EQ(answer(bench, "$016", [&] { bench.module().set_input(0, true); }), "!010000\r");
   EXPECT_EQ(answer(bench, "#012", [&] { bench.module().pulse_input(2, 7); }), "!0100007\r");
 }
 
-TEST(SilenceAfterRequest, AnOutputCommandIsRefusedWhereTheHostWatchdogExpiresWithinItsSilence) {
+TEST(SilenceAfterRequest, AnOutputCommandIsRefusedIfTheHostWatchdogExpiresDuringItsSilence) {
   constexpr milliseconds kTimeout{100};
   constexpr microseconds kCommand{8 * 10'000'000 / 9600};
   constexpr microseconds kBeforeTheTimeout{500};
@@ -103,7 +103,7 @@ TEST(SilenceAfterRequest, NothingIsDoneWithinTheSilence) {
   }
 }
 
-TEST(SilenceAfterRequest, AFrameWhoseBeginningIsAFrameIsTakenAsAWhole) {
+TEST(SilenceAfterRequest, AFrameThatBeginsWithAValidFrameIsTreatedAsOneFrame) {
   ModuleBench bench("EX9042D-M");
   const Bytes beginning = with_crc(kOutput0On);
   Bytes longer = beginning;
@@ -113,7 +113,7 @@ TEST(SilenceAfterRequest, AFrameWhoseBeginningIsAFrameIsTakenAsAWhole) {
   EXPECT_EQ(bench.module().outputs(), 0U);
 }
 
-TEST(SilenceAfterRequest, AFrameThatIsSpoiledBehindItsCrcIsNotActedUpon) {
+TEST(SilenceAfterRequest, AFrameWithAnExtraByteAfterItsCrcIsNotExecuted) {
   ModuleBench bench("EX9042D-M");
   Bytes spoiled = with_crc(kOutput0On);
   spoiled.push_back(0x55);
@@ -126,7 +126,7 @@ TEST(SilenceAfterRequest, AFrameThatIsSpoiledBehindItsCrcIsNotActedUpon) {
   EXPECT_EQ(bench.module().outputs(), 0U) << "the next frame must not execute it either";
 }
 
-TEST(SilenceAfterRequest, TheInitSwitchCountsAsItStandsWhereTheSilenceEnds) {
+TEST(SilenceAfterRequest, TheInitSwitchIsEvaluatedAtTheEndOfTheSilence) {
   // At 1200 baud the turn-around takes 8.3 ms. The switch changes so early that its debounce time of 10 ms
   // ends in the middle of the turn-around.
   constexpr microseconds kCharacter{10'000'000 / 1200};
@@ -147,7 +147,7 @@ TEST(SilenceAfterRequest, TheInitSwitchCountsAsItStandsWhereTheSilenceEnds) {
   }
 }
 
-TEST(SilenceAfterRequest, ARequestCountsItselfAmongTheBusMessages) {
+TEST(SilenceAfterRequest, ABusMessageCountIncludesItsOwnRequest) {
   ModuleBench bench("EX9052D-M");
   EXPECT_EQ(bench.ask(kBusMessages), (Bytes{0x01, 0x08, 0x00, 0x0B, 0x00, 0x01}));
   // The request also counts itself if an input changes in the silence after it.

@@ -30,7 +30,7 @@ TEST(Tables, EveryRowHasAnIdOfItsOwn) {
   expect_unique(modbus::kFunctions, [](const modbus::Function& row) { return row.name; });
 }
 
-TEST(Tables, EveryModelFitsTheLimitsAndLeavesTheFactoryWithSettingsOfItsOwn) {
+TEST(Tables, EveryModelIsWithinTheLimitsAndHasPossibleFactorySettings) {
   for (const Model& model : kModels) {
     EXPECT_LE(model.inputs, kMaxInputs) << model.designation;
     EXPECT_LE(model.outputs, kMaxOutputs) << model.designation;
@@ -45,7 +45,7 @@ TEST(Tables, EveryModelFitsTheLimitsAndLeavesTheFactoryWithSettingsOfItsOwn) {
   }
 }
 
-TEST(Tables, ACommandsSyntaxSaysWhatItsDispatchMatches) {
+TEST(Tables, TheSyntaxOfEveryCommandMatchesItsDispatch) {
   for (const dcon::Command& command : dcon::kCommands) {
     const dcon::Dispatch& row = command.dispatch;
     EXPECT_EQ(command.syntax[0], row.delimiter) << command.syntax;
@@ -58,7 +58,7 @@ TEST(Tables, ACommandsSyntaxSaysWhatItsDispatchMatches) {
   }
 }
 
-TEST(Tables, RowsListedForOneFunctionNeverOverlapAndDoWhatTheyAreListedFor) {
+TEST(Tables, RowsOfOneFunctionDoNotOverlapAndHaveTheRequiredHandler) {
   for (unsigned code = 1; code < 16; ++code) {
     const auto function = static_cast<modbus::Functions>(1U << code);
     for (const Model& model : kModels) {

@@ -37,12 +37,12 @@ TEST(Time, IsGivenBackAsItWasGiven) {
   EXPECT_EQ(Time(kLast).microseconds(), kLast);
 }
 
-TEST(Time, TellsTheDurationSinceAnEarlierPoint) {
+TEST(Time, GivesTheDurationSinceAnEarlierTime) {
   EXPECT_EQ(Time(500).since(Time(200)).microseconds(), 300U);
   EXPECT_EQ(Time(500).since(Time(500)).microseconds(), 0U);
 }
 
-TEST(Time, TellsTheDurationAcrossTheWrap) {
+TEST(Time, GivesTheDurationAcrossTheWrap) {
   EXPECT_EQ(Time(0).since(Time(kLast)).microseconds(), 1U);
   EXPECT_EQ(Time(200).since(kShortlyBeforeTheWrap).microseconds(), 300U);
 }
@@ -90,14 +90,14 @@ TEST(Deadline, StaysReachedAcrossTheWrap) {
   EXPECT_TRUE(deadline.reached(Time(0)));
 }
 
-TEST(Deadline, LooksHalfTheRangeAheadAndBack) {
+TEST(Deadline, CoversHalfTheRangeAheadAndBack) {
   Deadline deadline;
   deadline.set(Time(kHalf));
   EXPECT_FALSE(deadline.reached(Time(0)));
   EXPECT_TRUE(deadline.reached(Time(kLast)));
 }
 
-TEST(Deadline, TellsHowLongUntilItIsReached) {
+TEST(Deadline, GivesTheRemainingTime) {
   Deadline deadline;
   deadline.set(Time(1000));
   EXPECT_EQ(deadline.remaining(Time(400)).microseconds(), 600U);
@@ -111,7 +111,7 @@ TEST(Deadline, NothingRemainsOnceItIsReached) {
   EXPECT_EQ(deadline.remaining(Time(5000)).microseconds(), 0U);
 }
 
-TEST(Deadline, TellsWhatRemainsAcrossTheWrap) {
+TEST(Deadline, GivesTheRemainingTimeAcrossTheWrap) {
   Deadline deadline;
   deadline.set(Time(50));
   EXPECT_EQ(deadline.remaining(kShortlyBeforeTheWrap).microseconds(), 150U);

@@ -45,7 +45,7 @@ double writes_of(ModuleBench& bench, const std::function<void(unsigned round)>& 
 
 double years(double writes_a_year, unsigned pages) { return kCycles * pages / writes_a_year; }
 
-TEST(Wear, OfAHostWatchdogThatExpiresEveryMinuteTakesThreeWritesEachAndAYearForAMillionOnEachPage) {
+TEST(Wear, OfAHostWatchdogExpiringEveryMinuteIsThreeWritesEach) {
   ModuleBench bench("EX9042D-M@01,protocol=ascii");
   unsigned pages = 0;
   const double writes = writes_of(
@@ -65,7 +65,7 @@ TEST(Wear, OfAHostWatchdogThatExpiresEveryMinuteTakesThreeWritesEachAndAYearForA
   EXPECT_GT(years(a_year, pages), 1);
 }
 
-TEST(Wear, OfOutputsStoredDailyOutlivesTheDevice) {
+TEST(Wear, OfADailyStoredPowerOnValueAllows1000Years) {
   ModuleBench bench("EX9042D-M");
   unsigned pages = 0;
   const double writes = writes_of(
@@ -115,7 +115,7 @@ TEST(Wear, OfCountingIsNone) {
   EXPECT_EQ(modbus.module().memory().writes(), 0U);
 }
 
-TEST(Wear, OfHostOksIsNoneHoweverManyKeepTheWatchdogFromExpiring) {
+TEST(Wear, OfHostOksIsZero) {
   ModuleBench ascii("EX9042D");
   ASSERT_EQ(ascii.ask("~013105"), "!01");
   ModuleBench modbus("EX9042D-M");

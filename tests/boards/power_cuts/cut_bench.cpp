@@ -15,7 +15,8 @@ using std::chrono::milliseconds;
 
 constexpr milliseconds kComesUpWithin{100};
 constexpr milliseconds kStoresWithin{600};  // includes the wait for a timeout
-constexpr std::uint16_t kDriven = 0xC35A;   // set by a command before the command that stores
+constexpr milliseconds kFinishesAnUpdateWithin{200};
+constexpr std::uint16_t kDriven = 0xC35A;  // set by a command before the command that stores
 
 constexpr unsigned kWholeCopy = 20;  // in bytes; a write that invalidates a copy is shorter
 
@@ -228,6 +229,7 @@ FrameFormat CutBench::get_ready(const Contents& contents, const Settings& before
                                 const StoringCommand& command) {
   const bool init_mode = command.init == Init::SinceReset;
   power_up(contents, init_mode);
+  finish_update();
   const FrameFormat frame_format = speak_as(before, init_mode);
   if (model_.outputs != 0 && !before.timeout_status) {
     set_outputs(frame_format);
@@ -239,6 +241,28 @@ FrameFormat CutBench::get_ready(const Contents& contents, const Settings& before
   EXPECT_EQ(bench_.outputs(), outputs_before(before));
   bench_.line.drives.clear();
   return frame_format;
+}
+
+/// Waits until the module has finished an update that a power cut has interrupted: it saves the settings once
+/// more and invalidates the old copies, without a command.
+void CutBench::finish_update() {
+  const Instant gives_up = bench_.timeline.now() + kFinishesAnUpdateWithin;
+  while (holds_what_must_not_count(CutBench::contents()) && bench_.timeline.now() < gives_up) {
+    bench_.run_for(milliseconds(1));
+  }
+  ASSERT_FALSE(holds_what_must_not_count(CutBench::contents())) << "the update is not finished";
+  bench_.run_for(milliseconds(10));  // the module reads back what it has stored
+}
+
+Cuts CutBench::cut_while_finishing_update(const Contents& contents) {
+  Cuts cuts;
+  if (holds_what_must_not_count(contents)) {
+    bench_.eeprom.on_event([&] { note_cuts(cuts); });
+    power_up(contents, false);
+    finish_update();
+    bench_.eeprom.on_event(nullptr);
+  }
+  return cuts;
 }
 
 Cuts CutBench::cut_everywhere(const Contents& contents, const Settings& before,

@@ -79,6 +79,10 @@ class CutBench {
   AfterReset reset_after(Instant time, const Contents& contents, const Settings& before,
                          const StoringCommand& command);
 
+  /// Starts a module with `contents`, which a cut during the first store after an update has left, and lets
+  /// it finish the update. Returns no cuts if nothing is unfinished.
+  Cuts cut_while_finishing_update(const Contents& contents);
+
   /// Starts a module with `contents`, which store `before`. Then wears out its memory: the bits `bits` of the
   /// byte at `place` keep the value `stuck`. Then sends the command.
   Attempt attempt(const Contents& contents, const Settings& before, const StoringCommand& command,
@@ -104,6 +108,7 @@ class CutBench {
   [[nodiscard]] bool holds_what_must_not_count(const Contents& contents) const;
   [[nodiscard]] std::size_t pages_of_a_store(const Contents& contents) const;
   Outputs outputs();
+  void finish_update();
   void note_cuts(Cuts& cuts);
   FrameFormat speak_as(const Settings& settings, bool init_mode);
   void send(const Bytes& frame);

@@ -68,7 +68,7 @@ TEST_F(InputsTest, AFallingEdgeLowersTheLevelAndSetsLatchLow) {
   EXPECT_EQ(inputs_.latched_low(), 0x0008);
 }
 
-TEST_F(InputsTest, AnEdgeThatLeavesTheLevelHighWasTwo) {
+TEST_F(InputsTest, ARisingEdgeAtAHighLevelIsTreatedAsTwoEdges) {
   begin(0x0002);
   inputs_.configure(Inputs::CounterRange::FiveDigits, false);
   rise(1);
@@ -79,7 +79,7 @@ TEST_F(InputsTest, AnEdgeThatLeavesTheLevelHighWasTwo) {
   EXPECT_EQ(inputs_.counter(1), 1U);
 }
 
-TEST_F(InputsTest, AnEdgeThatLeavesTheLevelLowWasTwo) {
+TEST_F(InputsTest, AFallingEdgeAtALowLevelIsTreatedAsTwoEdges) {
   inputs_.configure(Inputs::CounterRange::FiveDigits, true);
   fall(1);
   collect();
@@ -89,7 +89,7 @@ TEST_F(InputsTest, AnEdgeThatLeavesTheLevelLowWasTwo) {
   EXPECT_EQ(inputs_.counter(1), 1U);
 }
 
-TEST_F(InputsTest, CountersCountRisingEdgesWhereTheyAreToldTo) {
+TEST_F(InputsTest, CountersCountRisingEdgesIfConfigured) {
   inputs_.configure(Inputs::CounterRange::FiveDigits, true);
   rise(0);
   collect();
@@ -99,7 +99,7 @@ TEST_F(InputsTest, CountersCountRisingEdgesWhereTheyAreToldTo) {
   EXPECT_EQ(inputs_.counter(0), 1U);
 }
 
-TEST_F(InputsTest, CountersCountFallingEdgesWhereTheyAreToldTo) {
+TEST_F(InputsTest, CountersCountFallingEdgesIfConfigured) {
   inputs_.configure(Inputs::CounterRange::FiveDigits, false);
   rise(0);
   collect();
@@ -109,7 +109,7 @@ TEST_F(InputsTest, CountersCountFallingEdgesWhereTheyAreToldTo) {
   EXPECT_EQ(inputs_.counter(0), 1U);
 }
 
-TEST_F(InputsTest, FallingEdgesAreCountedFromTheFactory) {
+TEST_F(InputsTest, CountersCountFallingEdgesByDefault) {
   rise(0);
   collect();
   EXPECT_EQ(inputs_.counter(0), 0U);
@@ -128,7 +128,7 @@ TEST_F(InputsTest, EveryChannelHasACounterOfItsOwn) {
   }
 }
 
-TEST_F(InputsTest, EdgesBetweenTwoLooksAreAllCountedAndNoneTwice) {
+TEST_F(InputsTest, EveryEdgeBetweenTwoCollectionsIsCountedOnce) {
   pulse(2, 1000);
   collect();
   collect();
@@ -138,7 +138,7 @@ TEST_F(InputsTest, EdgesBetweenTwoLooksAreAllCountedAndNoneTwice) {
   EXPECT_EQ(inputs_.counter(2), 1001U);
 }
 
-TEST_F(InputsTest, AsMuchAs65535EdgesBetweenTwoLooksAreCounted) {
+TEST_F(InputsTest, UpTo65535EdgesBetweenTwoCollectionsAreCounted) {
   inputs_.configure(Inputs::CounterRange::FiveDigits, true);
   pulse(0, 32'767);
   rise(0);
@@ -155,7 +155,7 @@ TEST_F(InputsTest, AsMuchAs65535EdgesBetweenTwoLooksAreCounted) {
 }
 
 // The interrupt delivers a single count; the main loop uses the level to find out which edge came first.
-TEST_F(InputsTest, RisingAndFallingEdgesAreToldApartWhateverTheLevelWasAndHoweverManyThereWere) {
+TEST_F(InputsTest, RisingAndFallingEdgesAreDistinguishedAtAnyLevelAndForAnyNumber) {
   for (const bool count_rising : {true, false}) {
     for (const bool high : {true, false}) {
       for (unsigned edges = 1; edges <= 9; ++edges) {
@@ -186,7 +186,7 @@ TEST_F(InputsTest, TheLevelsAtResetAreReadBeforeAnythingIsCollected) {
   EXPECT_EQ(inputs_.levels(), 0x00A5);
 }
 
-TEST_F(InputsTest, AnEdgeOfAnyChannelIsNewsOfEdges) {
+TEST_F(InputsTest, AnEdgeOnAnyChannelChangesTheTotalOfEdges) {
   for (unsigned channel = 0; channel < kAll; ++channel) {
     for (int i = 0; i < 2; ++i) {
       const std::uint32_t before = edges_.edges();
@@ -199,7 +199,7 @@ TEST_F(InputsTest, AnEdgeOfAnyChannelIsNewsOfEdges) {
   EXPECT_EQ(edges_.edges(), before);
 }
 
-TEST_F(InputsTest, TheTallyOfEdgesMayPass65536) {
+TEST_F(InputsTest, TheTotalOfEdgesMayExceed65535) {
   pulse_and_collect(0, 65'530);
   pulse_and_collect(0, 20);
   EXPECT_EQ(inputs_.counter(0), 65'550U);
@@ -215,7 +215,7 @@ TEST_F(InputsTest, AnAsciiCounterWrapsFrom99999To0) {
   EXPECT_EQ(inputs_.counter(0), 5U);
 }
 
-TEST_F(InputsTest, AnAsciiCounterMayWrapWithinOneLook) {
+TEST_F(InputsTest, AnAsciiCounterMayWrapWithinOneCollection) {
   inputs_.configure(Inputs::CounterRange::FiveDigits, false);
   pulse_and_collect(0, 99'990);
   pulse_and_collect(0, 25);

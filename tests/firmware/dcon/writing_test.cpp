@@ -16,12 +16,12 @@ std::string data_of(std::uint8_t inputs, std::uint8_t outputs) {
   return {reply.bytes().begin(), reply.bytes().end()};
 }
 
-TEST(Data, OfMoreThanEightOutputsFillsBothHighByteFirst) {
+TEST(Data, OfMoreThanEightOutputsHasBothOutputBytesHighByteFirst) {
   EXPECT_EQ(data_of(0, 9), "1234");
   EXPECT_EQ(data_of(0, 16), "1234");
 }
 
-TEST(Data, OfMoreThanEightInputsFillsBothHighByteFirst) {
+TEST(Data, OfMoreThanEightInputsHasBothInputBytesHighByteFirst) {
   EXPECT_EQ(data_of(9, 0), "5678");
   EXPECT_EQ(data_of(16, 0), "5678");
 }
@@ -31,7 +31,7 @@ TEST(Data, OfUpToEightOutputsAndInputsHasOutputsFirst) {
   EXPECT_EQ(data_of(1, 1), "3478");
 }
 
-TEST(Data, OfUpToEightInputsAloneHasThemFirst) { EXPECT_EQ(data_of(8, 0), "7800"); }
+TEST(Data, OfUpToEightInputsWithoutOutputsHasTheInputsFirst) { EXPECT_EQ(data_of(8, 0), "7800"); }
 
 }  // namespace
 }  // namespace ex9000::dcon

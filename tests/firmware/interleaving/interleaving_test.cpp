@@ -372,7 +372,7 @@ std::vector<Scenario> scenarios() {
   return all;
 }
 
-TEST(Interleaving, AScriptOfInterruptsHasAPermittedOutcomeAtEveryPoint) {
+TEST(Interleaving, AnInterruptAtAnyPointHasAPermittedOutcome) {
   Tried all;
   for (const Scenario& scenario : scenarios()) {
     Interleaver(scenario, all).at_every_point();
@@ -382,7 +382,7 @@ TEST(Interleaving, AScriptOfInterruptsHasAPermittedOutcomeAtEveryPoint) {
   EXPECT_GT(all.interleavings, 2000U);
 }
 
-TEST(Interleaving, AScriptInTwoPartsHasAPermittedOutcomeAtRandomPairsOfPoints) {
+TEST(Interleaving, InterruptsAtRandomPairsOfPointsHaveAPermittedOutcome) {
   std::mt19937 random(20261121);  // NOLINT(cert-msc51-cpp): the same pairs each time
   Tried all;
   for (const Scenario& scenario : scenarios()) {
@@ -392,7 +392,7 @@ TEST(Interleaving, AScriptInTwoPartsHasAPermittedOutcomeAtRandomPairsOfPoints) {
   EXPECT_GT(all.interleavings, 4000U);
 }
 
-TEST(Interleaving, ASilenceIsThatOfItsOwnFrame) {
+TEST(Interleaving, ASilenceBelongsToTheFrameBeforeIt) {
   // The silence after a frame without a reply ends while the frame is processed, and the next frame arrives
   // while that silence is not yet processed.
   Scenario scenario = dcon(
@@ -455,7 +455,7 @@ TEST(Interleaving, AFrameThatEndsWhileTheMainLoopTurnsIsNotAnsweredTooEarly) {
   }
 }
 
-TEST(Interleaving, ARequestForTheBusMessagesCountsItselfOnceWhereverItsSilenceEnds) {
+TEST(Interleaving, ABusMessageCountRequestIsCountedOnceWheneverItsSilenceEnds) {
   const std::string request = rtu({1, 0x08, 0, 0x0B, 0, 0});
   const std::string reply = rtu({1, 0x08, 0, 0x0B, 0, 1});
   const Scenario scenario = modbus(

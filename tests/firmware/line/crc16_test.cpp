@@ -94,7 +94,7 @@ TEST(Crc16, SeesEverySingleAndDoubleBitError) {
   }
 }
 
-TEST(Crc16, IsKnownToTheCompiler) {
+TEST(Crc16, CanBeComputedAtCompileTime) {
   constexpr std::uint8_t kFrame[] = {0x02, 0x07};
   static_assert(crc16({kFrame, 2}).value() == 0x1241);
 }

@@ -26,7 +26,7 @@ TEST_F(DconAssemblerTest, EveryDelimiterOpensAFrame) {
   }
 }
 
-TEST_F(DconAssemblerTest, AFrameIsCompleteWhenItsCarriageReturnIs) {
+TEST_F(DconAssemblerTest, TheCarriageReturnCompletesAFrame) {
   put("$01M");
   EXPECT_FALSE(queue_.has_frame());
   put('\r');
@@ -40,7 +40,7 @@ TEST_F(DconAssemblerTest, ACarriageReturnBetweenFramesChangesNothing) {
   expect_hunting();
 }
 
-TEST_F(DconAssemblerTest, EveryCharacterButADelimiterAndALeadIsNoiseBetweenFrames) {
+TEST_F(DconAssemblerTest, BetweenFramesAllCharactersExceptDelimitersAndLeadsAreIgnored) {
   for (int character = 0; character < 256; ++character) {
     const char noise = static_cast<char>(character);
     if (kDelimiters.find(noise) != std::string_view::npos || kLeads.find(noise) != std::string_view::npos) {
@@ -123,7 +123,7 @@ TEST_F(DconAssemblerTest, ALineErrorWithinAFrameSpoilsItUpToTheNextCarriageRetur
   }
 }
 
-TEST_F(DconAssemblerTest, EveryCharacterBehindTheDelimiterCanSpoilTheFrame) {
+TEST_F(DconAssemblerTest, ALineErrorInAnyCharacterAfterTheDelimiterSpoilsTheFrame) {
   constexpr std::string_view kFrame = "$01M";
   for (std::size_t errored = 1; errored < kFrame.size(); ++errored) {
     for (std::size_t i = 0; i < kFrame.size(); ++i) {
@@ -163,7 +163,7 @@ TEST_F(DconAssemblerTest, ASpoiledFrameStaysSpoiledWhateverFollows) {
 
 // --- skipping another module's reply ---
 
-TEST_F(DconAssemblerTest, EveryLeadSkipsAllUpToTheCarriageReturn) {
+TEST_F(DconAssemblerTest, AReplyIsSkippedFromAnyLeadToTheCarriageReturn) {
   for (const char lead : kLeads) {
     EXPECT_EQ(put(std::string(1, lead) + "02$01M\r"), Verdict::Open) << lead;
     EXPECT_EQ(taken(), "nothing");
@@ -197,7 +197,7 @@ TEST_F(DconAssemblerTest, ACarriageReturnWithALineErrorDoesNotEndASkippedReply) 
   expect_hunting();
 }
 
-TEST_F(DconAssemblerTest, NoiseBeforeALeadDoesNotKeepItFromSkipping) {
+TEST_F(DconAssemblerTest, AReplyAfterNoiseIsSkipped) {
   EXPECT_EQ(put("\nX!02$01M\r"), Verdict::Open);
   EXPECT_EQ(taken(), "nothing");
   expect_hunting();
@@ -213,7 +213,7 @@ TEST_F(DconAssemblerTest, AFrameShorterThanDelimiterAndAddressIsDropped) {
   expect_hunting();
 }
 
-TEST_F(DconAssemblerTest, AFrameOfDelimiterAndAddressIsJudged) {
+TEST_F(DconAssemblerTest, AFrameOfDelimiterAndAddressIsAccepted) {
   EXPECT_EQ(put("@01\r"), Verdict::Accepted);
   EXPECT_EQ(taken(), "@01");
 }
@@ -231,7 +231,7 @@ TEST_F(DconAssemblerTest, AFrameLongerThan32CharactersIsDroppedAndTheNextOneAnsw
   }
 }
 
-TEST_F(DconAssemblerTest, ALineErrorInCharacter32SpoilsTheFrameAndOneInCharacter33Too) {
+TEST_F(DconAssemblerTest, ALineErrorInCharacter32Or33SpoilsTheFrame) {
   for (const std::size_t good : {31U, 32U}) {
     put(frame_of(good));
     put('X', ByteStatus::FramingError);
@@ -251,7 +251,7 @@ TEST_F(DconAssemblerTest, AFrameIsAssembledWhileOneWaits) {
   EXPECT_EQ(taken(), "$012");
 }
 
-TEST_F(DconAssemblerTest, AFrameThatEndsWhileOneWaitsHasNoRoomAndLeavesTheOtherAlone) {
+TEST_F(DconAssemblerTest, AFrameThatEndsWhileAnotherWaitsIsDropped) {
   EXPECT_EQ(put("$01M\r"), Verdict::Accepted);
   EXPECT_EQ(put("$012\r"), Verdict::NoRoom);
   EXPECT_EQ(taken(), "$01M");
@@ -295,7 +295,7 @@ TEST_F(DconAssemblerTest, ATooLongFrameCanBeForgotten) {
   expect_hunting();
 }
 
-TEST_F(DconAssemblerTest, NothingOfAForgottenFrameGetsIntoTheNextOnesChecksum) {
+TEST_F(DconAssemblerTest, ADiscardedFrameDoesNotAffectTheNextChecksum) {
   assembler_.use_checksum(true);
   put("$01XYZ");
   assembler_.forget();
@@ -303,7 +303,7 @@ TEST_F(DconAssemblerTest, NothingOfAForgottenFrameGetsIntoTheNextOnesChecksum) {
   EXPECT_EQ(taken(), "$012");
 }
 
-TEST_F(DconAssemblerTest, ForgettingLeavesTheWaitingFrame) {
+TEST_F(DconAssemblerTest, DiscardingTheOpenFrameKeepsTheWaitingFrame) {
   EXPECT_EQ(put("$01M\r"), Verdict::Accepted);
   assembler_.forget();
   EXPECT_EQ(taken(), "$01M");

@@ -60,7 +60,7 @@ TEST_F(DconAssemblerTest, AMissingChecksumIsDropped) {
   EXPECT_EQ(taken(), "nothing");
 }
 
-TEST_F(DconAssemblerTest, DelimiterAndAddressWithChecksumAreEnough) {
+TEST_F(DconAssemblerTest, AFrameOfDelimiterAddressAndChecksumIsAccepted) {
   assembler_.use_checksum(true);
   EXPECT_EQ(put(with_checksum("@01") + "\r"), Verdict::Accepted);
   EXPECT_EQ(taken(), "@01");
@@ -72,12 +72,12 @@ TEST_F(DconAssemblerTest, AFrameTooShortForAnAddressIsDroppedEvenWithARightCheck
   EXPECT_EQ(put(with_checksum("$") + "\r"), Verdict::TooShort);
 }
 
-TEST_F(DconAssemblerTest, WithoutChecksumTwoMoreCharactersAreContent) {
+TEST_F(DconAssemblerTest, ChecksumCharactersAreContentIfTheChecksumIsDisabled) {
   EXPECT_EQ(put("$012B7\r"), Verdict::Accepted);
   EXPECT_EQ(taken(), "$012B7");
 }
 
-TEST_F(DconAssemblerTest, AWrongChecksumIsSeenBeforeTheAddress) {
+TEST_F(DconAssemblerTest, TheChecksumIsCheckedBeforeTheAddress) {
   assembler_.use_checksum(true);
   EXPECT_EQ(put("$022B7\r"), Verdict::BadCheck);
   EXPECT_EQ(put("$022B8\r"), Verdict::Foreign);
@@ -125,7 +125,7 @@ TEST_F(DconAssemblerTest, EveryAddressCanBeTheOwnOne) {
   }
 }
 
-TEST_F(DconAssemblerTest, TheAddressThatHoldsAtTheCarriageReturnCounts) {
+TEST_F(DconAssemblerTest, AChangedAddressAppliesToTheOpenFrame) {
   put("$02M");
   own_ = 0x02;
   EXPECT_EQ(put('\r'), Verdict::Accepted);
@@ -136,7 +136,7 @@ TEST_F(DconAssemblerTest, TheSampleBroadcastIsAccepted) {
   EXPECT_EQ(taken(), "#**");
 }
 
-TEST_F(DconAssemblerTest, TheHostOkBroadcastIsNotedAtOnceAndTakesNoRoom) {
+TEST_F(DconAssemblerTest, TheHostOkBroadcastIsRecognizedAndNotQueued) {
   EXPECT_EQ(put("~**\r"), Verdict::HostOk);
   EXPECT_EQ(taken(), "nothing");
   expect_hunting();
@@ -158,13 +158,13 @@ TEST_F(DconAssemblerTest, ABroadcastWithoutOrWithAWrongChecksumIsDropped) {
   EXPECT_EQ(taken(), "nothing");
 }
 
-TEST_F(DconAssemblerTest, WithoutChecksumABroadcastWithTwoMoreCharactersIsNone) {
+TEST_F(DconAssemblerTest, ABroadcastWithAChecksumIsForeignIfTheChecksumIsDisabled) {
   EXPECT_EQ(put("~**D2\r"), Verdict::Foreign);
   EXPECT_EQ(put("#**77\r"), Verdict::Foreign);
   EXPECT_EQ(taken(), "nothing");
 }
 
-TEST_F(DconAssemblerTest, OtherDelimitersHaveNoBroadcast) {
+TEST_F(DconAssemblerTest, OtherFramesWithABroadcastAddressAreForeign) {
   for (const char* text : {"$**\r", "%**\r", "@**\r", "$**M\r", "@**FF\r", "#**0\r", "~**0\r"}) {
     EXPECT_EQ(put(text), Verdict::Foreign) << text;
     EXPECT_EQ(taken(), "nothing");

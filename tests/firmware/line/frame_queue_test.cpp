@@ -44,7 +44,7 @@ TEST(FrameQueue, AFrameThatIsBeingAssembledStaysWhileTheWaitingOneIsDropped) {
   EXPECT_EQ(&queue.assembling(), &open);
 }
 
-TEST(FrameQueue, AFrameBesideAWaitingOneIsLostAndDoesNotCount) {
+TEST(FrameQueue, AFrameThatEndsWhileAnotherWaitsIsLost) {
   FrameQueue queue;
   ASSERT_TRUE(put(queue, 0x11));
   EXPECT_FALSE(put(queue, 0x22));
@@ -65,7 +65,7 @@ TEST(FrameQueue, HandsOverEveryFrame) {
   }
 }
 
-TEST(Frame, HasItsBytesBehindATurnAroundByte) {
+TEST(Frame, HasItsBytesAfterATurnAroundByte) {
   Frame frame;
   frame.storage[1] = 0x55;
   frame.offset = 1;

@@ -160,7 +160,7 @@ TEST_F(ReceiverTest, AFrameLostToAnOverrunIsABusErrorAndAnOverrun) {
   EXPECT_EQ(counts(), (Counts{0, 1, 0, 0, 1}));
 }
 
-TEST_F(ReceiverTest, AFrameThatFindsNoRoomIsABusMessageAndAnOverrun) {
+TEST_F(ReceiverTest, AFrameReceivedWhileTheQueueIsFullCountsAsAnOverrun) {
   listen(Protocol::ModbusRtu);
   frame(kChannel0On);
   counts();
@@ -190,7 +190,7 @@ TEST_F(ReceiverTest, AnOpenFrameIsNotCounted) {
 
 // --- host OK ---
 
-TEST_F(ReceiverTest, AHostOkOfModbusIsReceivedWithTheSilenceBehindIt) {
+TEST_F(ReceiverTest, AModbusHostOkIsReceivedAtTheEndOfItsSilence) {
   listen(Protocol::ModbusRtu);
   const std::uint32_t before = receiver_.host_oks();
   bytes(kHostOk);
@@ -201,7 +201,7 @@ TEST_F(ReceiverTest, AHostOkOfModbusIsReceivedWithTheSilenceBehindIt) {
   expect_host_ok_between(end, now_);
 }
 
-TEST_F(ReceiverTest, AHostOkOfAsciiCountsFromItsCarriageReturn) {
+TEST_F(ReceiverTest, AnAsciiHostOkIsReceivedAtItsCarriageReturn) {
   listen(Protocol::Ascii);
   text("~**\r");
   EXPECT_EQ(receiver_.host_oks(), 1);
@@ -283,7 +283,7 @@ TEST_F(ReceiverTest, ANewAddressHoldsForModbusToo) {
 
 // --- durations ---
 
-TEST_F(ReceiverTest, AsciiWantsNoSilenceWithinAFrameNorBehindOneThatIsNotAccepted) {
+TEST_F(ReceiverTest, AsciiRequiresNoSilenceWithinAFrameOrAfterARejectedFrame) {
   listen(Protocol::Ascii, true);
   for (const std::string_view text : {"$01M", "\r", "$02MD3\r", "$012B8\r", "noise\r", "~**\r", "~**D2"}) {
     for (const char character : text) {
@@ -293,7 +293,7 @@ TEST_F(ReceiverTest, AsciiWantsNoSilenceWithinAFrameNorBehindOneThatIsNotAccepte
   EXPECT_FALSE(took_frame());
 }
 
-TEST_F(ReceiverTest, AsciiWantsTheTurnAroundBehindAnAcceptedFrameAndNeverLess) {
+TEST_F(ReceiverTest, AsciiRequiresTheFullTurnAroundAfterAnAcceptedFrame) {
   for (const std::uint32_t baud : kBaudRates) {
     Receiver receiver;
     receiver.listen({Protocol::Ascii, false, LineTiming::at(baud)});
@@ -311,7 +311,7 @@ TEST_F(ReceiverTest, AsciiWantsTheTurnAroundBehindAnAcceptedFrameAndNeverLess) {
   }
 }
 
-TEST_F(ReceiverTest, AsciiWantsNoMoreSilenceBehindTheTurnAround) {
+TEST_F(ReceiverTest, AsciiRequiresNoMoreSilenceAfterTheTurnAround) {
   listen(Protocol::Ascii);
   EXPECT_EQ(receiver_.on_silence().microseconds(), 0U);
   text("$01");
@@ -321,7 +321,7 @@ TEST_F(ReceiverTest, AsciiWantsNoMoreSilenceBehindTheTurnAround) {
   EXPECT_TRUE(took_frame());
 }
 
-TEST_F(ReceiverTest, AsciiWantsNoSilenceBehindAHostOkOrAFrameThatThereIsNoRoomFor) {
+TEST_F(ReceiverTest, AsciiRequiresNoSilenceAfterAHostOkOrIfTheQueueIsFull) {
   listen(Protocol::Ascii);
   for (const char character : std::string_view("~**\r")) {
     EXPECT_EQ(byte(static_cast<std::uint8_t>(character)).microseconds(), 0U);
@@ -335,7 +335,7 @@ TEST_F(ReceiverTest, AsciiWantsNoSilenceBehindAHostOkOrAFrameThatThereIsNoRoomFo
   EXPECT_FALSE(took_frame());
 }
 
-TEST_F(ReceiverTest, ModbusWantsT35BehindEveryByteAndNeverLess) {
+TEST_F(ReceiverTest, ModbusRequiresAtLeastT35AfterEveryByte) {
   listen(Protocol::ModbusRtu);
   constexpr double kT35 = 3.5 * 11 * 1e6 / kBaud;
   constexpr double kRounding = 3;
@@ -346,14 +346,14 @@ TEST_F(ReceiverTest, ModbusWantsT35BehindEveryByteAndNeverLess) {
   }
 }
 
-TEST_F(ReceiverTest, ModbusWantsNoMoreSilenceBehindARightCrc) {
+TEST_F(ReceiverTest, ModbusRequiresNoMoreSilenceAfterACorrectCrc) {
   listen(Protocol::ModbusRtu);
   bytes(kChannel0On);
   EXPECT_EQ(receiver_.on_silence().microseconds(), 0U);
   EXPECT_TRUE(took_frame());
 }
 
-TEST_F(ReceiverTest, ModbusWantsOneMoreCharacterBehindAWrongCrc) {
+TEST_F(ReceiverTest, ModbusWaitsOneMoreCharacterAfterAWrongCrc) {
   listen(Protocol::ModbusRtu);
   bytes({0x01, 0x05, 0x00});
   // The wait lasts from T3.5, which the timer rounds up, to the end of a byte that began at T3.5.
@@ -365,7 +365,7 @@ TEST_F(ReceiverTest, ModbusWantsOneMoreCharacterBehindAWrongCrc) {
   EXPECT_EQ(receiver_.on_silence().microseconds(), 0U);
 }
 
-TEST_F(ReceiverTest, SilenceWithoutAFrameWantsNoMore) {
+TEST_F(ReceiverTest, SilenceWithoutAFrameRequiresNoMoreSilence) {
   listen(Protocol::ModbusRtu);
   EXPECT_EQ(receiver_.on_silence().microseconds(), 0U);
   EXPECT_EQ(counts(), (Counts{0, 0, 0, 0, 0}));
@@ -373,7 +373,7 @@ TEST_F(ReceiverTest, SilenceWithoutAFrameWantsNoMore) {
 
 // --- replies of the module ---
 
-TEST_F(ReceiverTest, AnOpenAsciiFrameIsForgottenWhenTheModuleSpeaks) {
+TEST_F(ReceiverTest, AnOpenAsciiFrameIsDiscardedWhenTheModuleTransmits) {
   listen(Protocol::Ascii);
   text("$01");
   receiver_.on_own_driver_off(now_);
@@ -383,7 +383,7 @@ TEST_F(ReceiverTest, AnOpenAsciiFrameIsForgottenWhenTheModuleSpeaks) {
   EXPECT_TRUE(took_frame());
 }
 
-TEST_F(ReceiverTest, AnOpenModbusFrameIsForgottenWhenTheModuleSpeaks) {
+TEST_F(ReceiverTest, AnOpenModbusFrameIsDiscardedWhenTheModuleTransmits) {
   listen(Protocol::ModbusRtu);
   bytes({0x01, 0x05, 0x00});
   receiver_.on_own_driver_off(now_);
@@ -393,7 +393,7 @@ TEST_F(ReceiverTest, AnOpenModbusFrameIsForgottenWhenTheModuleSpeaks) {
   EXPECT_TRUE(took_frame());
 }
 
-TEST_F(ReceiverTest, AModbusFrameWhoseCrcIsRightIsCountedAndTakenWhenTheModuleSpeaks) {
+TEST_F(ReceiverTest, ACompleteModbusFrameIsAcceptedWhenTheModuleTransmits) {
   listen(Protocol::ModbusRtu);
   bytes(kChannel0On);
   receiver_.on_own_driver_off(now_);
@@ -403,7 +403,7 @@ TEST_F(ReceiverTest, AModbusFrameWhoseCrcIsRightIsCountedAndTakenWhenTheModuleSp
 
 // wire.md D9: the host OK is judged after the module's reply. The reply may end before the silence that
 // belongs to the host OK would have ended.
-TEST_F(ReceiverTest, AHostOkThatEndsWithTheModulesReplyCountsNotBeforeItsTime) {
+TEST_F(ReceiverTest, AHostOkWhoseSilenceIsCutOffByAReplyCountsFromTheEndOfTheReply) {
   listen(Protocol::ModbusRtu);
   bytes(kHostOk);
   const Time spoken = now_ + Duration(100);
@@ -412,7 +412,7 @@ TEST_F(ReceiverTest, AHostOkThatEndsWithTheModulesReplyCountsNotBeforeItsTime) {
   EXPECT_EQ(receiver_.host_ok_time().microseconds(), spoken.microseconds());
 }
 
-TEST_F(ReceiverTest, AHostOkWhoseSilenceIsOverLongBeforeTheModuleHasSpokenCountsFromTheEndOfItsSilence) {
+TEST_F(ReceiverTest, AHostOkWhoseSilenceEndsDuringAReplyCountsFromTheEndOfItsSilence) {
   listen(Protocol::ModbusRtu);
   bytes(kHostOk);
   const Time over = now_ + receiver_.timing().rtu_silence;
@@ -421,7 +421,7 @@ TEST_F(ReceiverTest, AHostOkWhoseSilenceIsOverLongBeforeTheModuleHasSpokenCounts
   EXPECT_EQ(receiver_.host_ok_time().microseconds(), over.microseconds());
 }
 
-TEST_F(ReceiverTest, TheNextFrameDoesNotContinueOneForgotten) {
+TEST_F(ReceiverTest, TheNextFrameDoesNotContinueADiscardedOne) {
   listen(Protocol::ModbusRtu);
   bytes({0x01, 0x05, 0x00});
   receiver_.on_own_driver_off(now_);
@@ -430,7 +430,7 @@ TEST_F(ReceiverTest, TheNextFrameDoesNotContinueOneForgotten) {
   EXPECT_EQ(counts(), (Counts{1, 0, 1, 0, 0}));
 }
 
-TEST_F(ReceiverTest, SpeakingLeavesTheWaitingFrame) {
+TEST_F(ReceiverTest, TransmittingKeepsTheWaitingFrame) {
   listen(Protocol::Ascii);
   text("$01M\r");
   receiver_.on_own_driver_off(now_);
@@ -438,7 +438,7 @@ TEST_F(ReceiverTest, SpeakingLeavesTheWaitingFrame) {
   EXPECT_TRUE(took_frame());
 }
 
-TEST_F(ReceiverTest, SpeakingForgetsOnlyWhatIsOpenThen) {
+TEST_F(ReceiverTest, TransmittingDoesNotDiscardTheNextFrame) {
   listen(Protocol::Ascii);
   for (int i = 0; i < 300; ++i) {
     receiver_.on_own_driver_off(now_);

@@ -49,7 +49,7 @@ TEST_F(RtuAssemblerTest, AFrameWithARightCrcIsAcceptedWithoutItsCrc) {
   EXPECT_EQ(wire_.frames, std::vector<FrameBytes>{without_crc(kChannel0On)});
 }
 
-TEST_F(RtuAssemblerTest, AFrameIsReceivedWhenItsLastByteIsComplete) {
+TEST_F(RtuAssemblerTest, TheReceptionTimeOfAFrameIsTheEndOfItsLastByte) {
   wire_.bytes(kChannel0On);
   const Time end = wire_.time();
   wire_.rest();
@@ -110,7 +110,7 @@ TEST_F(RtuAssemblerTest, AFrameOfMoreThan256BytesIsTooLongAndTheNextOneAccepted)
   }
 }
 
-TEST_F(RtuAssemblerTest, AFrameTooLongForAnyCounterIsTooLong) {
+TEST_F(RtuAssemblerTest, AFrameOfMoreThan65536BytesIsTooLong) {
   wire_.bytes(FrameBytes(65'540, 0x01));
   EXPECT_EQ(verdict_of(kChannel0On), Verdict::TooLong);
   expect_next_frame_accepted();
@@ -172,7 +172,7 @@ TEST_F(RtuAssemblerTest, ALineErrorSpoilsAForeignAndAShortFrameToo) {
   EXPECT_EQ(verdict_of({0x01, 0x11}, 1, ByteStatus::FramingError), Verdict::LineError);
 }
 
-TEST_F(RtuAssemblerTest, ALineErrorFarBehindTheLongestFrameLosesItAllTheSame) {
+TEST_F(RtuAssemblerTest, ALineErrorInAFrameThatIsTooLongDropsIt) {
   const FrameBytes frame = frame_of(300);
   EXPECT_NE(verdict_of(frame, 299, ByteStatus::FramingError), Verdict::Accepted);
   EXPECT_TRUE(wire_.frames.empty());
@@ -201,7 +201,7 @@ TEST_F(RtuAssemblerTest, ATurnAround00BeforeTheLongestFrameIsTakenOff) {
   EXPECT_EQ(wire_.frames.back(), without_crc(longest));
 }
 
-TEST_F(RtuAssemblerTest, ATurnAround00BeforeAFrameOf257BytesDoesNotMakeItShorter) {
+TEST_F(RtuAssemblerTest, AFrameOf257BytesAfterATurnAround00IsTooLong) {
   EXPECT_EQ(verdict_of(behind(0x00, frame_of(257))), Verdict::TooLong);
   EXPECT_TRUE(wire_.frames.empty());
 }
@@ -215,7 +215,7 @@ TEST_F(RtuAssemblerTest, ATurnAround00BeforeTheShortestFrameIsTakenOff) {
   EXPECT_EQ(wire_.frames.back(), (FrameBytes{0x01, 0x11}));
 }
 
-TEST_F(RtuAssemblerTest, WhatIsTooShortWithoutTheTurnAround00IsDropped) {
+TEST_F(RtuAssemblerTest, AFrameThatIsTooShortWithoutTheTurnAround00IsDropped) {
   EXPECT_EQ(verdict_of(behind(0x00, with_crc({0x01}))), Verdict::BadCheck);
   EXPECT_TRUE(wire_.frames.empty());
 }
@@ -226,7 +226,7 @@ TEST_F(RtuAssemblerTest, ATurnAround00BeforeABroadcastIsTakenOff) {
   EXPECT_EQ(wire_.frames.back(), without_crc(broadcast));
 }
 
-TEST_F(RtuAssemblerTest, TheFirst00OfABroadcastIsItsAddressAndNoTurnAround) {
+TEST_F(RtuAssemblerTest, TheFirst00OfABroadcastIsNotRemoved) {
   const FrameBytes broadcast = with_crc({0x00, 0x05, 0x00, 0x00, 0xFF, 0x00});
   EXPECT_EQ(verdict_of(broadcast, 0, ByteStatus::FramingError), Verdict::LineError);
   EXPECT_TRUE(wire_.frames.empty());
@@ -253,14 +253,14 @@ TEST_F(RtuAssemblerTest, NoOtherByteIsTakenOff) {
   EXPECT_TRUE(wire_.frames.empty());
 }
 
-TEST_F(RtuAssemblerTest, ALineErrorBehindTheTurnAround00SpoilsTheFrame) {
+TEST_F(RtuAssemblerTest, ALineErrorAfterTheTurnAround00SpoilsTheFrame) {
   for (std::size_t errored = 1; errored <= kChannel0On.size(); ++errored) {
     EXPECT_EQ(verdict_of(behind(0x00, kChannel0On), errored, ByteStatus::FramingError), Verdict::LineError);
   }
   EXPECT_TRUE(wire_.frames.empty());
 }
 
-TEST_F(RtuAssemblerTest, ATurnAround00WithSilenceBehindItIsAFrameOfItsOwn) {
+TEST_F(RtuAssemblerTest, ATurnAround00FollowedBySilenceIsASeparateFrame) {
   wire_.byte(0x00);
   wire_.silence(t35(9600) + kClock);
   wire_.frame(kChannel0On);
@@ -269,7 +269,7 @@ TEST_F(RtuAssemblerTest, ATurnAround00WithSilenceBehindItIsAFrameOfItsOwn) {
 
 // --- host OK ---
 
-TEST_F(RtuAssemblerTest, HostOkIsFunction03Or04OfRegister3038WithQuantity0Or1AtTheOwnAddressOr0) {
+TEST_F(RtuAssemblerTest, ReadingRegister3038WithQuantity0Or1IsAHostOk) {
   for (const std::uint8_t address : {kOwn, std::uint8_t{0}}) {
     for (const std::uint8_t function : {std::uint8_t{0x03}, std::uint8_t{0x04}}) {
       for (const std::uint8_t quantity : {std::uint8_t{0}, std::uint8_t{1}}) {
@@ -331,7 +331,7 @@ TEST_F(RtuAssemblerTest, AFrameIsAssembledWhileOneWaits) {
   EXPECT_EQ(wire_.frames.back(), without_crc(frame_of(20)));
 }
 
-TEST_F(RtuAssemblerTest, AFrameThatEndsWhileOneWaitsHasNoRoomAndLeavesTheOtherAlone) {
+TEST_F(RtuAssemblerTest, AFrameThatEndsWhileAnotherWaitsIsDropped) {
   wire_.collect = false;
   EXPECT_EQ(verdict_of(kChannel0On), Verdict::Accepted);
   EXPECT_EQ(verdict_of(frame_of(256)), Verdict::NoRoom);
@@ -371,7 +371,7 @@ TEST_F(RtuAssemblerTest, AnOpenFrameCanBeForgotten) {
   expect_next_frame_accepted();
 }
 
-TEST_F(RtuAssemblerTest, AFrameThatIsWholeButForItsSilenceIsJudgedAllTheSame) {
+TEST_F(RtuAssemblerTest, ACompleteFrameCutOffBeforeItsSilenceIsAccepted) {
   wire_.bytes(kChannel0On);
   EXPECT_EQ(assembler_.cut_off(queue_), Verdict::Accepted);
   ASSERT_TRUE(queue_.has_frame());

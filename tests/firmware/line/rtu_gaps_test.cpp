@@ -29,7 +29,7 @@ class RtuGaps : public testing::TestWithParam<std::uint32_t> {
 };
 
 // A simulated line can have any baud rate.
-TEST(LineTimingAt, FourMegabaudStillWaitsForAByteThatBeganInTime) {
+TEST(LineTimingAt, FourMegabaudHasAGraceOfAtLeastOneMicrosecond) {
   EXPECT_EQ(LineTiming::at(4'000'000).rtu_grace.microseconds(), 1U);
 }
 
@@ -66,7 +66,7 @@ TEST_P(RtuGaps, AGapLongerThanT35EndsTheFrame) {
                                       Verdict::BadCheck, Verdict::TooShort, Verdict::BadCheck}));
 }
 
-TEST_P(RtuGaps, AFrameT35BehindAnotherIsOneOfItsOwn) {
+TEST_P(RtuGaps, AFrameT35AfterAnotherIsSeparate) {
   for (const Nanoseconds gap : {t35(baud_), t35(baud_) + kClock, 2 * t35(baud_)}) {
     wire_.verdicts.clear();
     wire_.bytes(kChannel0On);
@@ -77,7 +77,7 @@ TEST_P(RtuGaps, AFrameT35BehindAnotherIsOneOfItsOwn) {
   }
 }
 
-TEST_P(RtuGaps, AFrameT35BehindABrokenOneIsOneOfItsOwn) {
+TEST_P(RtuGaps, AFrameT35AfterABrokenOneIsSeparate) {
   wire_.bytes({0x01, 0x05, 0x00, 0x00, 0xFF, 0x00, 0x8C, 0x3B});
   wire_.silence(t35(baud_));
   wire_.frame(kChannel0On);
@@ -85,7 +85,7 @@ TEST_P(RtuGaps, AFrameT35BehindABrokenOneIsOneOfItsOwn) {
 }
 
 // A timer that is some microseconds late must not join a frame to the invalid frame before it.
-TEST_P(RtuGaps, AFrameT35BehindABrokenOneIsOneOfItsOwnThoughTheTimerIsLate) {
+TEST_P(RtuGaps, AFrameT35AfterABrokenOneIsSeparateEvenIfTheTimerIsLate) {
   Time now(1'000'000);
   const auto byte = [&](std::uint8_t value) { return assembler_.byte(queue_, value, ByteStatus::Good, now); };
   const auto character = static_cast<std::uint32_t>(wire_.character() / 1000);
@@ -101,7 +101,7 @@ TEST_P(RtuGaps, AFrameT35BehindABrokenOneIsOneOfItsOwnThoughTheTimerIsLate) {
   EXPECT_EQ(assembler_.silence(queue_), Verdict::Accepted);
 }
 
-TEST_P(RtuGaps, AByteThatIsCompleteWithinT35BelongsToTheFrameWhateverItsCrc) {
+TEST_P(RtuGaps, AByteThatEndsWithinT35BelongsToTheFrameEvenIfTheCrcWasCorrect) {
   wire_.bytes(kChannel0On);
   wire_.silence(t35(baud_) - wire_.character() - kClock);
   wire_.byte(0x55);
@@ -109,7 +109,7 @@ TEST_P(RtuGaps, AByteThatIsCompleteWithinT35BelongsToTheFrameWhateverItsCrc) {
   EXPECT_EQ(wire_.verdicts, Verdicts{Verdict::BadCheck});
 }
 
-TEST_P(RtuGaps, AFrameWithARightCrcIsOverAtT35ThoughAByteIsComingIn) {
+TEST_P(RtuGaps, AFrameWithACorrectCrcEndsAtT35EvenIfAByteIsBeingReceived) {
   wire_.bytes(kChannel0On);
   wire_.silence(t35(baud_) - wire_.character() / 2);
   wire_.byte(0x55);
@@ -117,7 +117,7 @@ TEST_P(RtuGaps, AFrameWithARightCrcIsOverAtT35ThoughAByteIsComingIn) {
   EXPECT_EQ(wire_.verdicts, (Verdicts{Verdict::Accepted, Verdict::TooShort}));
 }
 
-TEST_P(RtuGaps, AWrongCrcAtT35WaitsForAByteThatMayBeComingIn) {
+TEST_P(RtuGaps, AWrongCrcAtT35ExtendsTheWaitForAByteBeingReceived) {
   wire_.bytes({0x01, 0x05, 0x00});
   EXPECT_EQ(assembler_.silence(queue_), Verdict::Open);
   EXPECT_FALSE(assembler_.next_wait() == Duration());
@@ -145,7 +145,7 @@ TEST_P(RtuGaps, AFrameMayBeInDoubtMoreThanOnce) {
   EXPECT_EQ(wire_.verdicts, Verdicts{Verdict::Accepted});
 }
 
-TEST_P(RtuGaps, AByteComingInAtT35BelongsToAFrameThatIsTooLongTimeAndAgain) {
+TEST_P(RtuGaps, BytesBeingReceivedAtT35BelongToAFrameThatIsTooLong) {
   wire_.bytes(FrameBytes(258, 0x02));
   for (int i = 0; i < 3; ++i) {
     wire_.silence(t35(baud_) - wire_.character() / 2);
@@ -157,13 +157,13 @@ TEST_P(RtuGaps, AByteComingInAtT35BelongsToAFrameThatIsTooLongTimeAndAgain) {
   EXPECT_EQ(wire_.verdicts, Verdicts{Verdict::TooLong});
 }
 
-TEST_P(RtuGaps, ARightCrcAtT35IsAcceptedAtOnce) {
+TEST_P(RtuGaps, ACorrectCrcAtT35IsAcceptedImmediately) {
   wire_.bytes(kChannel0On);
   EXPECT_EQ(assembler_.silence(queue_), Verdict::Accepted);
   EXPECT_TRUE(assembler_.next_wait() == Duration());
 }
 
-TEST_P(RtuGaps, TheSilenceWasOverT35BehindTheLastByteAndNeverBefore) {
+TEST_P(RtuGaps, TheSilenceEndsT35AfterTheLastByteAndNeverEarlier) {
   for (const std::uint8_t byte : kChannel0On) {
     wire_.byte(byte);
     const Nanoseconds over = Nanoseconds{assembler_.silent_since().since(wire_.time()).microseconds()} * 1000;
@@ -173,7 +173,7 @@ TEST_P(RtuGaps, TheSilenceWasOverT35BehindTheLastByteAndNeverBefore) {
 }
 
 // The UART reports a byte half a bit before its end, so silences that begin there are half a bit longer.
-TEST_P(RtuGaps, SilencesCountFromTheEndOfTheStopBitThoughTheUartTellsOfItInTheMiddle) {
+TEST_P(RtuGaps, SilencesAreHalfABitLongerIfTheUartReportsBytesInTheStopBit) {
   const LineTiming end = LineTiming::at(baud_);
   const LineTiming middle = LineTiming::reported_in_stop_bit(baud_);
   const std::uint32_t half_bit = 500'000 / baud_;
@@ -187,7 +187,7 @@ TEST_P(RtuGaps, SilencesCountFromTheEndOfTheStopBitThoughTheUartTellsOfItInTheMi
   EXPECT_TRUE(middle.rtu_slack == end.rtu_slack);
 }
 
-TEST_P(RtuGaps, StrictlyThoughTheUartTellsOfAByteInItsStopBitGapsAreAsLongAndSilencesLonger) {
+TEST_P(RtuGaps, StrictTimingKeepsItsGapsIfTheUartReportsBytesInTheStopBit) {
   const LineTiming end = LineTiming::strictly_at(baud_);
   const LineTiming middle = LineTiming::strictly_reported_in_stop_bit(baud_);
   EXPECT_TRUE(middle.rtu_slack == end.rtu_slack);
@@ -203,7 +203,7 @@ TEST_P(RtuGaps, AFrameAcrossTheWrapOfTheClockIsOneFrame) {
   }
 }
 
-TEST_P(RtuGaps, StrictlyAGapLongerThanT15SpoilsTheFrame) {
+TEST_P(RtuGaps, StrictTimingRejectsAGapLongerThanT15) {
   assembler_.use(LineTiming::strictly_at(baud_));
   for (std::size_t split = 1; split < kChannel0On.size(); ++split) {
     wire_.verdicts.clear();
@@ -214,7 +214,7 @@ TEST_P(RtuGaps, StrictlyAGapLongerThanT15SpoilsTheFrame) {
   EXPECT_TRUE(wire_.frames.empty());
 }
 
-TEST_P(RtuGaps, StrictlyAGapOfT15IsAllowed) {
+TEST_P(RtuGaps, StrictTimingAllowsAGapOfT15) {
   assembler_.use(LineTiming::strictly_at(baud_));
   for (std::size_t split = 1; split < kChannel0On.size(); ++split) {
     wire_.verdicts.clear();
@@ -223,7 +223,7 @@ TEST_P(RtuGaps, StrictlyAGapOfT15IsAllowed) {
   }
 }
 
-TEST_P(RtuGaps, StrictlyAFrameWithoutGapsBehindASpoiledOneIsAccepted) {
+TEST_P(RtuGaps, StrictTimingAcceptsAFrameWithoutGapsAfterASpoiledOne) {
   assembler_.use(LineTiming::strictly_at(baud_));
   with_gap(kChannel0On, 4, t15(baud_) + kClock);
   wire_.verdicts.clear();
@@ -231,7 +231,7 @@ TEST_P(RtuGaps, StrictlyAFrameWithoutGapsBehindASpoiledOneIsAccepted) {
   EXPECT_EQ(wire_.verdicts, Verdicts{Verdict::Accepted});
 }
 
-TEST_P(RtuGaps, StrictlyAGapShorterThanT35StillDoesNotEndAFrame) {
+TEST_P(RtuGaps, StrictTimingDoesNotEndAFrameAtAGapShorterThanT35) {
   assembler_.use(LineTiming::strictly_at(baud_));
   with_gap(frame_of(20), 12, t35(baud_) - kClock);
   EXPECT_EQ(wire_.verdicts.size(), 1U);
@@ -239,7 +239,7 @@ TEST_P(RtuGaps, StrictlyAGapShorterThanT35StillDoesNotEndAFrame) {
 }
 
 // The gap would invalidate a frame that contains it, but the frame without the 00 is valid.
-TEST_P(RtuGaps, StrictlyAGapBehindATurnAround00DoesNotSpoilTheFrame) {
+TEST_P(RtuGaps, StrictTimingAllowsAGapAfterATurnAround00) {
   assembler_.use(LineTiming::strictly_at(baud_));
   with_gap(behind(0x00, kChannel0On), 1, t15(baud_) + kClock);
   EXPECT_EQ(wire_.verdicts, Verdicts{Verdict::Accepted});

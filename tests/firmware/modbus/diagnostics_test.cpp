@@ -68,7 +68,7 @@ class Diagnosed : public testing::Test, protected CoreBench {
   }
 };
 
-TEST_F(Diagnosed, WhateverHasBeenCountedIsZeroOnceItIsCleared) {
+TEST_F(Diagnosed, ClearingSetsEveryCounterToZero) {
   struct Cause {
     const char* what;
     std::function<void()> happens;

@@ -35,7 +35,7 @@ void report(const char* what, const Crowd& crowd) {
   EXPECT_GT(crowd.pulses(), 0U);
 }
 
-TEST(Neighbours, AnswerForThemselvesAloneAt9600BaudWhileOneOfThemCounts250PulsesASecondOnEachInput) {
+TEST(Neighbours, AnswerOnlyOwnRequestsAt9600BaudWhileOneCounts250PulsesPerSecond) {
   Crowd crowd(9600, number_in_environment("EX9000_SEED", 1));
   crowd.pulser().start(250);
   run(crowd, std::chrono::seconds(number_in_environment("EX9000_VIRTUAL_SECONDS", 60)));
@@ -46,7 +46,7 @@ TEST(Neighbours, AnswerForThemselvesAloneAt9600BaudWhileOneOfThemCounts250Pulses
   }
 }
 
-TEST(Neighbours, AnswerForThemselvesAloneAt115200BaudWhileOneOfThemCounts34500PulsesASecondOnEachInput) {
+TEST(Neighbours, AnswerOnlyOwnRequestsAt115200BaudWhileOneCounts34500PulsesPerSecond) {
   Crowd crowd(115200, number_in_environment("EX9000_SEED", 1));
   crowd.pulser().start(34'500);
   run(crowd, std::chrono::seconds(

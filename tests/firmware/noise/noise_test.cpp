@@ -26,7 +26,7 @@ std::uint64_t seed() { return number_in_environment("EX9000_SEED", 1); }
 
 class Checks : public testing::TestWithParam<Check> {};
 
-TEST_P(Checks, LetThroughWhatTheoryExpectsAndTheModuleDoesWhatItHeard) {
+TEST_P(Checks, MissAsManyDamagedFramesAsTheTheoryExpects) {
   const double rates[] = {1e-5, 1e-4, 1e-3, 1e-2};
   for (const double rate : rates) {
     NoisyLine noisy(GetParam(), seed());
@@ -155,7 +155,7 @@ const std::vector<Trouble>& troubles() {
 
 class ALineWith : public testing::TestWithParam<std::tuple<Trouble, Check>> {};
 
-TEST_P(ALineWith, DoesNothingWithoutAFrameThatIsRightAndAnswersTheFirstCleanOne) {
+TEST_P(ALineWith, CausesActionOnlyForValidFramesAndTheFirstCleanFrameIsAnswered) {
   const auto& [trouble, check] = GetParam();
   const std::uint64_t exchanges = frames() / 20;
   NoisyLine noisy(check, seed());

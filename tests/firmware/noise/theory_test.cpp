@@ -58,7 +58,7 @@ Misses count_misses(std::size_t bytes) {
   return misses;
 }
 
-TEST(Theory, OfFourFlipsMissedByTheCrcIsWhatTryingAllOfThemCounts) {
+TEST(Theory, OfUpToFourFlipsMissedByTheCrcMatchesAnExhaustiveCount) {
   const Misses misses = count_misses(8);  // a frame of function 01 or 05
   EXPECT_EQ(misses.tried_with_four, 635'376U);
   EXPECT_GT(misses.of[4], 0U);
@@ -67,7 +67,7 @@ TEST(Theory, OfFourFlipsMissedByTheCrcIsWhatTryingAllOfThemCounts) {
   }
 }
 
-TEST(Theory, HasNoMissOfOneToThreeFlipsInTheLongestFrameThatIsSentHere) {
+TEST(Theory, ExpectsNoMissOfOneToThreeFlipsInAFrameOf11Bytes) {
   for (unsigned flips = 1; flips <= 3; ++flips) {
     EXPECT_EQ(crc_misses_of(11, flips), 0) << flips << " flips";
   }

@@ -18,7 +18,7 @@ Time ms(Time start, std::uint32_t after) { return start + milliseconds(after); }
 
 // --- INIT*, debounced for 10 ms (D13) ---
 
-TEST(Debounce, KnowsNothingBeforeALevelHasStoodFor10Ms) {
+TEST(Debounce, TheLevelIsUnknownUntilItIsStableFor10Ms) {
   for (const Time start : kStarts) {
     Debounce debounce;
     debounce.sample(true, start);
@@ -40,7 +40,7 @@ TEST(Debounce, AReleasedSwitchIsKnownAfter10MsToo) {
   EXPECT_FALSE(debounce.level());
 }
 
-TEST(Debounce, WantsToBeSampledEachMillisecondWhileALevelSettlesAndAsItCounts) {
+TEST(Debounce, RequestsASampleEachMillisecondUntilALevelIsStable) {
   for (const Time start : kStarts) {
     Debounce debounce;
     debounce.sample(true, start);
@@ -89,7 +89,7 @@ TEST(Debounce, AShortPulseDoesNotChangeTheLevel) {
   EXPECT_TRUE(debounce.known());
 }
 
-TEST(Debounce, AChangeThatStandsChangesTheLevelBothWays) {
+TEST(Debounce, AStableChangeChangesTheLevelInBothDirections) {
   Debounce debounce;
   debounce.sample(true, Time(0));
   debounce.sample(true, ms(Time(0), 10));
@@ -156,7 +156,7 @@ TEST(StatusLed, GivesTwoFlashesOf100MsEvery2SWhileTheSettingsAreUnreadable) {
   }
 }
 
-TEST(StatusLed, TellsWhenItChanges) {
+TEST(StatusLed, ReportsTheTimeOfItsNextChange) {
   for (const Time start : kStarts) {
     StatusLed led;
     led.show(Pattern::HostTimeout, start);
@@ -189,19 +189,19 @@ TEST(StatusLed, ANewPatternStartsWithAFlash) {
 
 // --- the module watchdog ---
 
-TEST(ModuleWatchdog, IsNotFedBeforeTheTickHasShownLife) {
+TEST(ModuleWatchdog, IsNotFedBeforeATick) {
   ModuleWatchdog watchdog;
   EXPECT_FALSE(watchdog.main_loop_alive());
   EXPECT_FALSE(watchdog.main_loop_alive());
 }
 
-TEST(ModuleWatchdog, IsFedWhenBothHaveShownLife) {
+TEST(ModuleWatchdog, IsFedAfterATickAndATurnOfTheMainLoop) {
   ModuleWatchdog watchdog;
   watchdog.tick_alive();
   EXPECT_TRUE(watchdog.main_loop_alive());
 }
 
-TEST(ModuleWatchdog, WantsANewSignOfLifeOfTheTickForEveryFeed) {
+TEST(ModuleWatchdog, RequiresANewTickForEveryFeed) {
   ModuleWatchdog watchdog;
   watchdog.tick_alive();
   EXPECT_TRUE(watchdog.main_loop_alive());
@@ -212,7 +212,7 @@ TEST(ModuleWatchdog, WantsANewSignOfLifeOfTheTickForEveryFeed) {
   EXPECT_FALSE(watchdog.main_loop_alive());
 }
 
-TEST(ModuleWatchdog, IsFedForEver) {
+TEST(ModuleWatchdog, IsFedAtEveryTickAndTurn) {
   ModuleWatchdog watchdog;
   for (int i = 0; i < 1000; ++i) {
     watchdog.tick_alive();
@@ -220,7 +220,7 @@ TEST(ModuleWatchdog, IsFedForEver) {
   }
 }
 
-TEST(ModuleWatchdog, ASlowMainLoopIsFedOnTheTurnAfterAtTheLatest) {
+TEST(ModuleWatchdog, ASlowMainLoopFeedsItInTheNextTurnAtTheLatest) {
   for (int ticks = 1; ticks < 1000; ++ticks) {
     ModuleWatchdog watchdog;
     for (int i = 0; i < ticks; ++i) {
@@ -243,7 +243,7 @@ Settings running(std::uint8_t tenths) {
   return settings;
 }
 
-TEST(HostWatchdog, DoesNotRunWhereItIsDisabled) {
+TEST(HostWatchdog, DoesNotRunIfItIsDisabled) {
   HostWatchdog watchdog;
   watchdog.restart(Time(0));
   Settings settings = running(1);
@@ -267,7 +267,7 @@ TEST(HostWatchdog, ExpiresAfterEveryTimeoutAndNeverEarlier) {
   }
 }
 
-TEST(HostWatchdog, TellsWhenItExpires) {
+TEST(HostWatchdog, ExpiryReturnsTheTimeOfTheTimeout) {
   for (const Time start : kStarts) {
     HostWatchdog watchdog;
     watchdog.restart(start);
@@ -289,7 +289,7 @@ TEST(HostWatchdog, ARestartGivesItItsFullTimeAgain) {
   }
 }
 
-TEST(HostWatchdog, ARestartBehindTheNowOfTheMainLoopDoesNotExpireIt) {
+TEST(HostWatchdog, ARestartLaterThanTheTimeOfTheMainLoopDoesNotExpireIt) {
   for (const Time start : kStarts) {
     for (const std::uint32_t ahead : {1U, 1'000U, 99'000U, 500'000U}) {
       HostWatchdog watchdog;
@@ -300,7 +300,7 @@ TEST(HostWatchdog, ARestartBehindTheNowOfTheMainLoopDoesNotExpireIt) {
   }
 }
 
-TEST(HostWatchdog, RunsForAsLongAsTheHostIsAlive) {
+TEST(HostWatchdog, DoesNotExpireAcrossClockWrapsWhileItIsRestarted) {
   HostWatchdog watchdog;
   Time now(0);
   for (int i = 0; i < 100'000; ++i) {  // 2.7 hours, more than two wraps of the clock

@@ -59,7 +59,7 @@ TEST(Outcome, AsksForTheEffectsThatWereRequestedAndNoOthers) {
   }
 }
 
-TEST(Outcome, ToDriveOutputsIsNeitherAnEffectNorAChange) {
+TEST(Outcome, ThatDrivesOutputsHasNoEffectAndNoSettingsChange) {
   Outcome outcome;
   outcome.drive({0x0003, 0x0002});
   EXPECT_FALSE(outcome.has_effects());
@@ -68,7 +68,7 @@ TEST(Outcome, ToDriveOutputsIsNeitherAnEffectNorAChange) {
   EXPECT_EQ(outcome.outputs_to_drive().value, 0x0002);
 }
 
-TEST(Outcome, ToChangeSettingsIsNeitherAnEffectNorOutputsToDrive) {
+TEST(Outcome, ThatChangesSettingsHasNoEffectAndDrivesNoOutputs) {
   Outcome outcome;
   outcome.change().address = 0x2A;
   outcome.change().watchdog_timeout = 0x64;
@@ -87,7 +87,7 @@ TEST(Outcome, ThatIsClearedIsNothing) {
   expect_nothing(outcome);
 }
 
-TEST(Outcome, ThatIsClearedStillTellsWhyItWasRefused) {
+TEST(Outcome, ThatWasClearedKeepsItsRefusal) {
   Outcome outcome = of_everything();
   outcome.refusal = Refusal::OutOfRange;
   outcome.clear();

@@ -21,7 +21,7 @@ TEST(Reply, IsEmptyAtFirstAndOnceItIsCleared) {
   EXPECT_EQ(reply.bytes().size, 0U);
 }
 
-TEST(Reply, HasWhatWasPutInItsOrder) {
+TEST(Reply, HasItsContentInTheOrderItWasPut) {
   Reply reply;
   reply.put('!');
   reply.put_hex(0x1A5);  // only the low byte

@@ -81,7 +81,7 @@ TEST_F(RequestCycleTest, ARequestThatChangesSettingsIsStoredBeforeItIsAnswered) 
   EXPECT_EQ(take_reply(), "!01\r");
 }
 
-TEST_F(RequestCycleTest, ARefusedRequestAsksForNothingAndSaysWhy) {
+TEST_F(RequestCycleTest, ARefusedRequestHasARefusalAndNoEffects) {
   const Outcome& outcome = judge("~0130FF?");
   EXPECT_EQ(outcome.refusal, Refusal::UnknownCommand);
   EXPECT_FALSE(outcome.changes_settings());
@@ -115,7 +115,7 @@ TEST_F(RequestCycleTest, ABroadcastThatCannotBeStoredStaysWithoutAReply) {
   EXPECT_FALSE(cycle_.finish());
 }
 
-TEST_F(RequestCycleTest, OneJudgementLeavesNothingBehindForTheNext) {
+TEST_F(RequestCycleTest, ABroadcastDoesNotAffectTheNextRequest) {
   judge_modbus({0x00, 0x06, 0x01, 0xE8, 0x00, 0x05});
   cycle_.finish();
   EXPECT_FALSE(judge_modbus({0x01, 0x01, 0x00, 0x00, 0x00, 0x01}).changes_settings());
@@ -123,7 +123,7 @@ TEST_F(RequestCycleTest, OneJudgementLeavesNothingBehindForTheNext) {
 }
 
 // wire.md D17.
-TEST_F(RequestCycleTest, ATimeoutWhileItIsClearedIsNotCleared) {
+TEST_F(RequestCycleTest, ATimeoutDuringAClearCommandIsNotCleared) {
   state_.settings.timeout_status = true;
   judge("~011");
   EXPECT_FALSE(cycle_.outcome().change().applied_to(state_.settings).timeout_status);
@@ -132,7 +132,7 @@ TEST_F(RequestCycleTest, ATimeoutWhileItIsClearedIsNotCleared) {
   EXPECT_TRUE(cycle_.finish());
 }
 
-TEST_F(RequestCycleTest, ATimeoutBeforeARequestDoesNotKeepItFromClearing) {
+TEST_F(RequestCycleTest, ATimeoutBeforeAClearCommandIsCleared) {
   state_.settings.timeout_status = true;
   cycle_.keep_timeout_status();
   judge("~011");
@@ -140,7 +140,7 @@ TEST_F(RequestCycleTest, ATimeoutBeforeARequestDoesNotKeepItFromClearing) {
 }
 
 // wire.md D18.
-TEST_F(RequestCycleTest, TheNextReplyLeavesASilenceAfterTheOneBefore) {
+TEST_F(RequestCycleTest, TheNextReplyStartsAfterASilenceSinceThePreviousOne) {
   judge("$01M");
   cycle_.finish();
   take_reply();
@@ -155,7 +155,7 @@ TEST_F(RequestCycleTest, TheNextReplyLeavesASilenceAfterTheOneBefore) {
   EXPECT_EQ(take_reply(), "!01D01.00\r");
 }
 
-TEST_F(RequestCycleTest, AReplyOfLongAgoHoldsNothingBack) {
+TEST_F(RequestCycleTest, AReplyLongAgoDoesNotDelayTheNextReply) {
   judge("$01M");
   cycle_.finish();
   take_reply();

@@ -32,7 +32,7 @@ TEST(StoredBytes, AreTheSettingsThatWereStored) {
   }
 }
 
-TEST(StoredBytes, NeverMakeAModuleAnswerAtAnAddressThatItDidNotHave) {
+TEST(StoredBytes, KeepTheirAddressWhenOtherSettingsAreStored) {
   for (const StoredBytes& stored : all_stored_bytes()) {
     FakeMemory memory;
     memory.cells = stored.memory;
@@ -74,7 +74,7 @@ TEST(OldLayouts, EverySingleCorruptedByteIsSeen) {
   }
 }
 
-TEST(OldLayouts, WithTheirInvalidatedBytesZeroAreNone) {
+TEST(OldLayouts, WithTheInvalidatingZerosAreNotRead) {
   for (const StoredBytes& stored : all_stored_bytes()) {
     for (const std::size_t place : {0x00U, 0x20U}) {
       std::vector<std::uint8_t> memory = stored.memory;
@@ -85,7 +85,7 @@ TEST(OldLayouts, WithTheirInvalidatedBytesZeroAreNone) {
   }
 }
 
-TEST(OldLayouts, ACopyOfLayout2WithARightCheckButWhatTheModelCannotHaveIsNone) {
+TEST(OldLayouts, ACopyOfLayout2WithImpossibleSettingsIsNotRead) {
   struct Bad {
     const char* what;
     std::size_t at;

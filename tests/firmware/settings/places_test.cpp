@@ -9,7 +9,7 @@
 namespace ex9000 {
 namespace {
 
-TEST(Places, AreWhereMemoriesInTheFieldHaveThem) {
+TEST(Places, HaveTheAddressesUsedInTheField) {
   ASSERT_EQ(kPlaces.size(), 4U);
   EXPECT_EQ(kPlaces[0].address, 0x0080);
   EXPECT_EQ(kPlaces[1].address, 0x0100);

@@ -250,7 +250,7 @@ TEST(Record, TheLongestNameComesBack) {
 
 // --- the layout ---
 
-TEST(Record, IsLaidOutAsItsHeaderSays) {
+TEST(Record, HasTheDocumentedLayout) {
   const Record changed{
       3,    19,   0xEF, 0xBE,                   // layout, length, sequence
       0xF7, 0x0A, 0xC0, 1,    0x64, 1,   1,     // address to timeout status
@@ -269,7 +269,7 @@ TEST(Record, IsLaidOutAsItsHeaderSays) {
   EXPECT_EQ(record_of(factory()), from_the_factory);
 }
 
-TEST(Record, HasTheCheckThatItsHeaderSays) {
+TEST(Record, HasTheDocumentedCheck) {
   std::mt19937 random(2);
   for (const Model& each : kModels) {
     for (int i = 0; i < 1000; ++i) {
@@ -290,7 +290,7 @@ TEST(Record, TwoThatDifferInAnyByteAreNotEqual) {
 
 // This proves that the check finds every error in four adjacent bytes: for given other bytes and a given
 // check, only one value of the four bytes matches.
-TEST(Record, AnyFourBytesFollowFromTheCheckAndTheOtherBytes) {
+TEST(Record, AnyFourAdjacentBytesAreDeterminedByTheCheckAndTheOtherBytes) {
   std::mt19937 random(3);
   for (const Model& each : kModels) {
     for (int i = 0; i < 1000; ++i) {
@@ -392,14 +392,14 @@ TEST(Record, TripleBitErrorsAreSeen) {
   }
 }
 
-TEST(Record, ARecordTornOnBlankMemoryIsNone) {
+TEST(Record, ATornWriteToBlankMemoryIsNotARecord) {
   const Record good = record_of(changed_settings());
   for (std::size_t written = 0; written < kRecordSize; ++written) {
     EXPECT_FALSE(is_good(the_model(), torn_record(good, written, filled_with(0xFF)))) << written << " bytes";
   }
 }
 
-TEST(Record, ARecordTornOnAnotherOneIsEitherOfThemOrNone) {
+TEST(Record, ATornWriteOverAnotherRecordIsOneOfTheTwoOrInvalid) {
   const Record older = record_of(factory());
   const Record newer = record_of(changed_settings());
   for (std::size_t written = 0; written <= kRecordSize; ++written) {
@@ -408,7 +408,7 @@ TEST(Record, ARecordTornOnAnotherOneIsEitherOfThemOrNone) {
   }
 }
 
-TEST(Record, ARecordTornOnTheOneBeforeItIsEitherOfThemOrNone) {
+TEST(Record, ATornWriteOverThePreviousRecordIsOneOfTheTwoOrInvalid) {
   Stored stored = changed_settings();
   const Record older = record_of(stored);
   ++stored.sequence;
@@ -420,7 +420,7 @@ TEST(Record, ARecordTornOnTheOneBeforeItIsEitherOfThemOrNone) {
   }
 }
 
-TEST(Record, OneWhoseCheckWasMadeZerosIsNone) {
+TEST(Record, WithACheckOfZerosIsInvalid) {
   std::mt19937 random(4);
   for (int i = 0; i < 1000; ++i) {
     Record record = record_of(random_settings(the_model(), random));
@@ -429,7 +429,7 @@ TEST(Record, OneWhoseCheckWasMadeZerosIsNone) {
   }
 }
 
-TEST(Record, AnotherModelsRecordIsNone) {
+TEST(Record, OfAnotherModelIsInvalid) {
   for (const Model& writer : kModels) {
     const Record record = record_of({Settings::factory(writer), 1}, writer);
     for (const Model& reader : kModels) {
@@ -447,7 +447,7 @@ TEST(Record, BlankZeroedAndUniformMemoryIsNoRecord) {
   }
 }
 
-TEST(Record, WithARightCheckButWhatTheModelCannotHaveIsNone) {
+TEST(Record, WithACorrectCheckButImpossibleSettingsIsInvalid) {
   struct Bad {
     const char* what;
     std::size_t at;
@@ -484,7 +484,7 @@ TEST(Record, WithARightCheckButWhatTheModelCannotHaveIsNone) {
   EXPECT_TRUE(is_good(the_model(), with_check(the_model(), good)));
 }
 
-TEST(Record, WithARightCheckButAnArmedWatchdogWithoutTimeoutIsNone) {
+TEST(Record, WithACorrectCheckButAnEnabledWatchdogAndTimeout0IsInvalid) {
   Record record = record_of(changed_settings());
   record[8] = 0;
   EXPECT_FALSE(is_good(the_model(), with_check(the_model(), record)));
@@ -515,7 +515,7 @@ TEST(Record, HasRoomFor96BytesOfSettingsAndMore) {
   }
 }
 
-TEST(Record, ThatIsLongerThanItsPlaceIsNone) {
+TEST(Record, ThatIsLongerThanItsPlaceIsInvalid) {
   for (std::size_t length = 121; length <= 255; ++length) {
     const Record record = with_length(changed_settings(), length);
     EXPECT_EQ(record_size({record.data(), record.size()}), 0U) << length;
@@ -523,7 +523,7 @@ TEST(Record, ThatIsLongerThanItsPlaceIsNone) {
   }
 }
 
-TEST(Record, OfWhichNotAllIsThereIsNone) {
+TEST(Record, ThatIsIncompleteIsNotRead) {
   const Record record = with_length(changed_settings(), 60);
   for (std::size_t size = kSettingsAt; size < record.size(); ++size) {
     EXPECT_FALSE(read_record(the_model(), {record.data(), size})) << size;
@@ -549,7 +549,7 @@ TEST(Record, ThatLacksTheLastSettingsHasTheirFactoryValues) {
   EXPECT_TRUE(found(0) == Settings::factory(the_model()));
 }
 
-TEST(Record, ThatIsWrittenOverALongerOneKeepsWhatThisFirmwareDoesNotKnow) {
+TEST(Record, ThatIsWrittenOverALongerOneKeepsTheUnknownSettings) {
   for (std::size_t length = kSettingsSize; length <= 120; ++length) {
     const Record longer = with_length(factory(), length);
     RecordBytes bytes{};
@@ -570,7 +570,7 @@ TEST(Record, ThatIsWrittenOverAShorterOneIsAWholeOne) {
 
 // --- the newest of several copies ---
 
-TEST(Edition, OfANewerLayoutCountsOverAnyOfAnOlderOne) {
+TEST(Edition, OfANewerLayoutIsNewerThanAnyOfAnOlderLayout) {
   constexpr std::uint16_t kSequences[] = {0, 1, 0x7FFF, 0x8000, 0xFFFF};
   for (const std::uint16_t a : kSequences) {
     for (const std::uint16_t b : kSequences) {
@@ -582,7 +582,7 @@ TEST(Edition, OfANewerLayoutCountsOverAnyOfAnOlderOne) {
   }
 }
 
-TEST(Edition, OfALaterSequenceCountsAlsoBehindTheWrap) {
+TEST(Edition, OfALaterSequenceIsNewerAcrossTheWrap) {
   for (unsigned from = 0; from < 0x10000; from += 0x1FF) {
     const Edition older{3, static_cast<std::uint16_t>(from)};
     for (const unsigned ahead : {1U, 2U, 0x7FFFU}) {

@@ -160,7 +160,7 @@ TEST_F(SettingsKeeperTest, AnUpdateIsFinishedWithoutACommandAndNotTriedForEver) 
   EXPECT_FALSE(keeper.busy());
 }
 
-TEST_F(SettingsKeeperTest, ACommandWhoseStoreCannotInvalidateAnOldCopyIsStoredAndThatIsTriedAgain) {
+TEST_F(SettingsKeeperTest, ACommandIsStoredEvenIfAnOldCopyCanOnlyBeInvalidatedLater) {
   FakeMemory memory;
   put_old(memory, 0, numbered(5), 7);
   SettingsKeeper keeper(the_model());
@@ -188,7 +188,7 @@ TEST_F(SettingsKeeperTest, ACommandWhoseStoreCannotInvalidateAnOldCopyIsStoredAn
   EXPECT_EQ(memory.writes.size(), 4U);
 }
 
-TEST_F(SettingsKeeperTest, WhatChangesWhileARefusedCopyIsInvalidatedIsStoredAtOnce) {
+TEST_F(SettingsKeeperTest, AChangeWhileARefusedCopyIsInvalidatedIsStoredImmediately) {
   store(numbered(5));
   memory_.unanswered_writes = 4;
   store(numbered(6));
@@ -202,7 +202,7 @@ TEST_F(SettingsKeeperTest, WhatChangesWhileARefusedCopyIsInvalidatedIsStoredAtOn
   EXPECT_TRUE(keeper_.stored() == numbered(7));
 }
 
-TEST_F(SettingsKeeperTest, WhatAResetWouldFindIsNotCertainWhileARefusedCopyMayCount) {
+TEST_F(SettingsKeeperTest, StoredSettingsAreUncertainUntilARefusedCopyIsInvalidated) {
   store(numbered(5));
   EXPECT_TRUE(keeper_.certain());
   memory_.unanswered_writes = 4;
@@ -213,7 +213,7 @@ TEST_F(SettingsKeeperTest, WhatAResetWouldFindIsNotCertainWhileARefusedCopyMayCo
   EXPECT_TRUE(keeper_.certain());
 }
 
-TEST(SettingsKeeperAtReset, WhatAResetWouldFindIsNotCertainIfTheMemoryDidNotAnswer) {
+TEST(SettingsKeeperAtReset, StoredSettingsAreUncertainIfTheMemoryDidNotAnswer) {
   FakeMemory memory;
   memory.failing_reads = kReadsOfASilentMemory;
   SettingsKeeper keeper(the_model());

@@ -82,7 +82,7 @@ TEST_F(PowerCuts, AtAnyByteOfASaveLeaveTheOldSettingsOrTheNew) {
   }
 }
 
-TEST_F(PowerCuts, BehindTheLastByteLeaveTheNewSettings) {
+TEST_F(PowerCuts, AfterTheLastByteLeaveTheNewSettings) {
   for (const FakeMemory& beginning : beginnings()) {
     FakeMemory memory = beginning;
     const std::size_t bytes = bytes_of_a_save(beginning, numbered(200));

@@ -66,7 +66,7 @@ TEST(SettingsStore, AFailedSaveIsTriedThreeTimesAndThenMadeInvalid) {
   EXPECT_TRUE(Boot(memory).stored() == factory());
 }
 
-TEST(SettingsStore, AFailedSaveDoesNotEndUnreadable) {
+TEST(SettingsStore, AfterAFailedSaveUnreadableSettingsStayUnreadable) {
   FakeMemory memory;
   put(memory, 0, numbered(5), 7);
   corrupt(memory, 0);
@@ -76,7 +76,7 @@ TEST(SettingsStore, AFailedSaveDoesNotEndUnreadable) {
   EXPECT_EQ(run.found(), Found::Unreadable);
 }
 
-TEST(SettingsStore, ASaveBehindAFailedOneSucceeds) {
+TEST(SettingsStore, ASaveAfterAFailedSaveSucceeds) {
   for (const auto fail : kFailures) {
     FakeMemory memory;
     Boot run(memory);

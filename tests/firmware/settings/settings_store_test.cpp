@@ -30,7 +30,7 @@ TEST(SettingsStore, LoadsFromTheBeginningUntilAllCopiesAreRead) {
   EXPECT_FALSE(store.busy());
 }
 
-TEST(SettingsStore, WantsTheSameJobUntilItIsDone) {
+TEST(SettingsStore, RequestsTheSameJobUntilItIsDone) {
   SettingsStore store(the_model());
   const MemoryJob first = store.job();
   const MemoryJob second = store.job();
@@ -156,7 +156,7 @@ TEST(SettingsStore, ACopyThatCannotBeReadLeavesTheOtherOne) {
   EXPECT_TRUE(run.stored() == numbered(6));
 }
 
-TEST(SettingsStore, BehindACopyThatCannotBeReadANoisyReadOfTheOtherIsTriedAgain) {
+TEST(SettingsStore, AfterAnUnreadableCopyANoisyReadOfTheOtherIsRetried) {
   FakeMemory memory;
   put(memory, 0, numbered(5), 8);
   put(memory, 1, numbered(6), 7);
@@ -260,7 +260,7 @@ TEST(SettingsStore, ASaveOverwritesACorruptedCopyAndNotTheGoodOne) {
   }
 }
 
-TEST(SettingsStore, ASaveEndsUnreadable) {
+TEST(SettingsStore, AfterASaveUnreadableSettingsAreReadable) {
   FakeMemory memory;
   put(memory, 0, numbered(5), 700);
   put(memory, 1, numbered(6), 701);
@@ -292,7 +292,7 @@ TEST(SettingsStore, ManySavesFromOneResetWrapTheSequenceToo) {
 }
 
 // A reply means that the settings are stored, even if the memory did not answer at reset.
-TEST(SettingsStore, WhatIsSavedAfterTheMemoryDidNotAnswerAtResetIsFoundAtTheNextLoad) {
+TEST(SettingsStore, SettingsSavedAfterASilentMemoryAtResetAreFoundAtTheNextLoad) {
   FakeMemory memory;
   put(memory, 0, numbered(5), 700);
   put(memory, 1, numbered(6), 701);

@@ -336,7 +336,7 @@ TEST(SettingsChange, ToFalseOr0IsAChangeToo) {
   EXPECT_EQ(changed.safe_value, 0);
 }
 
-TEST(SettingsChange, ThatIsClearedNamesNothing) {
+TEST(SettingsChange, ThatWasClearedChangesNothing) {
   const Settings factory = Settings::factory(model("EX9042D-M"));
   for (FieldChange& each : changes_of_each_field(factory)) {
     each.change = SettingsChange();
@@ -345,7 +345,7 @@ TEST(SettingsChange, ThatIsClearedNamesNothing) {
 }
 
 // A module uses the same change object for all requests.
-TEST(SettingsChange, ThatWasClearedNamesOnlyWhatIsNamedThen) {
+TEST(SettingsChange, ThatWasClearedChangesOnlyWhatIsSetAfterwards) {
   const Settings factory = Settings::factory(model("EX9042D-M"));
   SettingsChange reused;
   for (const FieldChange& each : changes_of_each_field(factory)) {
@@ -360,7 +360,7 @@ TEST(SettingsChange, ThatWasClearedNamesOnlyWhatIsNamedThen) {
 
 // --- comparison ---
 
-TEST(Settings, DifferWhereAnyFieldDoes) {
+TEST(Settings, DifferIfAnyFieldDiffers) {
   const Settings factory = Settings::factory(model("EX9042D-M"));
   const std::vector<FieldChange> changes = changes_of_each_field(factory);
   for (const FieldChange& one : changes) {

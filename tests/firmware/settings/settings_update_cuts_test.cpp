@@ -127,7 +127,7 @@ TEST(UpdateCuts, TwiceInARowLeaveTheOldSettingsOrTheNew) {
 }
 
 /// Tests the same with the files of stored bytes, at every point.
-TEST(UpdateCuts, OfWhatEarlierFirmwareHasStoredLeaveItsSettingsOrTheNew) {
+TEST(UpdateCuts, WithDataOfEarlierFirmwareLeaveTheOldOrTheNewSettings) {
   for (const StoredBytes& stored : all_stored_bytes()) {
     Settings changed = stored.settings;
     changed.watchdog_timeout = 0x77;

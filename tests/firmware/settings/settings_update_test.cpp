@@ -40,7 +40,7 @@ TEST(SettingsAfterAnUpdate, AreThoseOfTheOnlyGoodOldCopy) {
   }
 }
 
-TEST(SettingsAfterAnUpdate, BothOldCopiesBadAreUnreadable) {
+TEST(SettingsAfterAnUpdate, AreUnreadableIfBothOldCopiesAreCorrupted) {
   FakeMemory memory = updated();
   memory.cells[kOldCopies[0] + 3U] ^= 0x40U;
   memory.cells[kOldCopies[1] + 3U] ^= 0x40U;
@@ -91,7 +91,7 @@ TEST(SettingsAfterAnUpdate, AFirstStoreThatFailsLeavesTheOldOnes) {
 
 /// The power failed after the new copy was written and perhaps verified, but before the old copies were
 /// invalidated.
-TEST(SettingsAfterAnUpdate, AnOldCopyBesideAGoodNewOneStaysUntilTheSettingsAreSavedOnceMore) {
+TEST(SettingsAfterAnUpdate, OldCopiesStayValidUntilTheSettingsAreSavedAgain) {
   FakeMemory memory = updated();
   put(memory, 0, numbered(9), 9);
   SettingsStore store(the_model());
@@ -124,7 +124,7 @@ TEST(SettingsAfterAnUpdate, NothingIsUnfinishedInAMemoryWithoutACopy) {
 }
 
 /// The new copy was written with too little charge, so it can be read only once.
-TEST(SettingsAfterAnUpdate, ANewCopyThatFadesBeforeItIsSavedOnceMoreLeavesTheOldOnes) {
+TEST(SettingsAfterAnUpdate, OldCopiesAreUsedIfTheNewCopyFadesBeforeItIsSavedAgain) {
   FakeMemory memory = updated();
   put(memory, 0, numbered(9), 9);
   SettingsStore store(the_model());
@@ -135,7 +135,7 @@ TEST(SettingsAfterAnUpdate, ANewCopyThatFadesBeforeItIsSavedOnceMoreLeavesTheOld
 }
 
 /// The other place cannot be written. The old copies must not count again even if the new copy fails later.
-TEST(SettingsAfterAnUpdate, TheOldCopiesAreInvalidatedIfTheSettingsCannotBeSavedOnceMore) {
+TEST(SettingsAfterAnUpdate, OldCopiesAreInvalidatedIfTheSettingsCannotBeSavedAgain) {
   FakeMemory memory = updated();
   put(memory, 0, numbered(9), 9);
   SettingsStore store(the_model());
@@ -167,7 +167,7 @@ TEST(SettingsAfterAnUpdate, NothingIsUnfinishedWhileTheMemoryCannotBeRead) {
   EXPECT_TRUE(Boot(memory).stored() == numbered(9));
 }
 
-TEST(SettingsAfterAnUpdate, AnOldCopyThatCannotBeInvalidatedIsTriedAgain) {
+TEST(SettingsAfterAnUpdate, InvalidatingAnOldCopyIsRetried) {
   FakeMemory memory = updated();
   SettingsStore store(the_model());
   drive(store, memory);
@@ -189,7 +189,7 @@ TEST(SettingsAfterAnUpdate, AnOldCopyThatCannotBeInvalidatedIsTriedAgain) {
   expect_no_old_copy_counts(memory);
 }
 
-TEST(SettingsAfterAnUpdate, ANewCopyCountsWhateverTheSequenceOfAnOldOne) {
+TEST(SettingsAfterAnUpdate, ANewCopyIsUsedForAnySequenceNumberOfAnOldCopy) {
   for (const unsigned sequence : {0U, 1U, 0x7FFFU, 0x8000U, 0xFFFFU}) {
     FakeMemory memory = updated();
     put(memory, 1, numbered(9), static_cast<std::uint16_t>(sequence));
@@ -197,7 +197,7 @@ TEST(SettingsAfterAnUpdate, ANewCopyCountsWhateverTheSequenceOfAnOldOne) {
   }
 }
 
-TEST(SettingsAfterAnUpdate, AnOldMemoryThatDidNotAnswerAtResetDoesNotCountAfterAStore) {
+TEST(SettingsAfterAnUpdate, OldCopiesAreNotUsedAfterAStoreEvenIfTheMemoryWasSilentAtReset) {
   FakeMemory memory = updated();
   memory.failing_reads = kReadsOfASilentMemory;
   Boot run(memory);
@@ -264,7 +264,7 @@ TEST(ALongerRecord, IsWrittenPageByPageAndOnlyAsFarAsItGoes) {
   EXPECT_EQ(shorter.writes, (std::vector<std::uint16_t>{0x100, 0x120}));
 }
 
-TEST(ALongerRecord, OfWhichAnyByteIsWrongDoesNotCount) {
+TEST(ALongerRecord, WithAnyWrongByteIsInvalid) {
   FakeMemory good;
   put_longer(good, 0, numbered(5), 7, 96);
   put(good, 1, numbered(6), 6);
@@ -275,7 +275,7 @@ TEST(ALongerRecord, OfWhichAnyByteIsWrongDoesNotCount) {
   }
 }
 
-TEST(ALongerRecord, OfWhichOnePageFailsThreeTimesIsRefusedAndTheOldOneStays) {
+TEST(ALongerRecord, IsRefusedIfOnePageFailsThreeTimesAndTheOldRecordStays) {
   for (std::size_t page = 0; page < 4; ++page) {
     FakeMemory memory;
     put_longer(memory, 0, numbered(5), 7, 96);

@@ -87,7 +87,7 @@ TEST(Arguments, ModulesKeepTheirOrder) {
   EXPECT_EQ(arguments.modules[2].settings.protocol, Protocol::Ascii);
 }
 
-TEST(Arguments, OptionsMayStandBeforeBehindAndBetweenModules) {
+TEST(Arguments, OptionsMayComeBeforeAfterAndBetweenModules) {
   const LineSetup arguments = accepted({"--log", "EX9042D", "--baud", "1200", "EX9052D@02", "--strict-gaps"});
   EXPECT_EQ(arguments.modules.size(), 2U);
   EXPECT_TRUE(all_accepted({"--log", "EX9042D"}).log);
@@ -95,7 +95,7 @@ TEST(Arguments, OptionsMayStandBeforeBehindAndBetweenModules) {
   EXPECT_EQ(arguments.baud, 1200U);
 }
 
-TEST(Arguments, TheLogIsForPeopleOrForMachines) {
+TEST(Arguments, TheLogFormatIsTextOrJson) {
   EXPECT_EQ(all_accepted({"EX9042D", "--log"}).log, LogFormat::Text);
   EXPECT_EQ(all_accepted({"EX9042D", "--log", "text"}).log, LogFormat::Text);
   EXPECT_EQ(all_accepted({"EX9042D", "--log", "json"}).log, LogFormat::Json);
@@ -105,7 +105,7 @@ TEST(Arguments, TheLogIsForPeopleOrForMachines) {
   expect_error({"EX9042D", "--log="}, "--log", "--help");
 }
 
-TEST(Arguments, ThePanelHasAPortOfItsOwnOrTheUsualOne) {
+TEST(Arguments, ThePanelTakesAnOptionalPort) {
   EXPECT_FALSE(all_accepted({"EX9042D"}).panel);
   for (const std::vector<const char*>& words : {std::vector<const char*>{"EX9042D", "--panel"},
                                                 {"--panel", "EX9042D"},
@@ -125,7 +125,7 @@ TEST(Arguments, ThePanelHasAPortOfItsOwnOrTheUsualOne) {
                "cannot be combined with --panel");
 }
 
-TEST(Arguments, TheModulesMayBeWatched) {
+TEST(Arguments, WatchIsAcceptedExceptWithAJsonLog) {
   EXPECT_FALSE(all_accepted({"EX9042D"}).watch);
   EXPECT_TRUE(all_accepted({"EX9042D", "--watch", "--log"}).watch);
   EXPECT_TRUE(all_accepted({"--watch", "EX9042D", "--speed", "max", "--for", "1s"}).watch);
@@ -148,7 +148,7 @@ TEST(Arguments, AModuleMayFollowTheLogOption) {
   EXPECT_EQ(accepted({"--log", "EX9042D", "EX9052D@02"}).modules.size(), 2U);
 }
 
-TEST(Arguments, ACaptureIsKeptWhereItIsWanted) {
+TEST(Arguments, CaptureTakesAPath) {
   EXPECT_FALSE(all_accepted({"EX9042D"}).capture);
   EXPECT_EQ(all_accepted({"EX9042D", "--capture", "line.pcapng"}).capture, "line.pcapng");
 }
@@ -158,7 +158,7 @@ TEST(Arguments, ThePseudoTerminalsLinkCanBeChosen) {
   EXPECT_EQ(accepted({"EX9042D", "--pty=line.tty"}).pty, "line.tty");
 }
 
-TEST(Arguments, ThePseudoTerminalIsThereUnlessAnotherPortIs) {
+TEST(Arguments, ThePseudoTerminalIsTheDefaultUnlessAnotherPortIsGiven) {
   EXPECT_FALSE(accepted({"EX9042D", "--tcp", "5020"}).pty);
   EXPECT_FALSE(accepted({"EX9042D", "--serial", "/dev/ttyUSB0"}).pty);
   EXPECT_EQ(accepted({"EX9042D", "--tcp", "5020", "--pty", "a"}).pty, "a");
@@ -180,7 +180,7 @@ TEST(Arguments, TcpTakesHostAndPortOrAPortAlone) {
   }
 }
 
-TEST(Arguments, TheLineIsPacedOrInstant) {
+TEST(Arguments, LineIsPacedOrInstantAndStrictGapsRequirePaced) {
   EXPECT_FALSE(accepted({"EX9042D", "--line", "paced"}).instant);
   EXPECT_TRUE(accepted({"EX9042D", "--line", "instant"}).instant);
   expect_error({"EX9042D", "--line", "fast"}, "--line: 'fast'", "instant or paced");
@@ -188,13 +188,13 @@ TEST(Arguments, TheLineIsPacedOrInstant) {
                "--strict-gaps: ", "cannot be combined with --line instant");
 }
 
-TEST(Arguments, ARealLineStandsAlone) {
+TEST(Arguments, ASerialLineCannotBeCombinedWithPtyOrTcp) {
   const std::string mend = "cannot be combined with --pty or --tcp; the master is on the serial line";
   expect_error({"EX9042D", "--serial", "/dev/ttyUSB0", "--tcp", "5020"}, "--serial: ", mend);
   expect_error({"EX9042D", "--serial", "/dev/ttyUSB0", "--pty", "a"}, "--serial: ", mend);
 }
 
-TEST(Arguments, OnlyARealLineHasAnEchoAndItIsNotInstant) {
+TEST(Arguments, EchoRequiresASerialLineWhichCannotBeInstant) {
   EXPECT_FALSE(accepted({"EX9042D", "--serial", "/dev/ttyUSB0"}).echo);
   EXPECT_TRUE(accepted({"EX9042D", "--serial", "/dev/ttyUSB0", "--echo"}).echo);
   expect_error({"EX9042D", "--echo"}, "--echo: ", "requires --serial; add it");
@@ -202,13 +202,13 @@ TEST(Arguments, OnlyARealLineHasAnEchoAndItIsNotInstant) {
                "cannot be combined with --serial; bytes take time on a real line");
 }
 
-TEST(Arguments, TwoModulesDoNotShareAnEeprom) {
+TEST(Arguments, TwoModulesCannotShareAnEepromFile) {
   expect_error({"EX9042D,eeprom=a", "EX9052D@02,eeprom=a"},
                "eeprom=a: ", "two modules cannot share a file; name one for each");
   EXPECT_EQ(accepted({"EX9042D,eeprom=a", "EX9052D@02,eeprom=b"}).modules[1].eeprom, "b");
 }
 
-TEST(Arguments, EveryRateOfTheModulesCanBeTheLines) {
+TEST(Arguments, TheLineAcceptsEveryBaudRateOfTheModules) {
   for (const char* rate : {"1200", "2400", "4800", "9600", "19200", "38400", "57600", "115200"}) {
     EXPECT_EQ(std::to_string(accepted({"EX9042D", "--baud", rate}).baud.value_or(0)), rate);
   }
@@ -225,7 +225,7 @@ TEST(Arguments, AWrongModuleIsRefused) {
   expect_error({""}, "empty argument", "--models");
 }
 
-TEST(Arguments, AWrongRateIsRefusedWithTheRightOnes) {
+TEST(Arguments, AWrongRateIsRefusedWithAListOfValidRates) {
   for (const char* rate : {"300", "9601", "9600x", "fast", "-1", "0"}) {
     expect_error({"EX9042D", "--baud", rate}, rate, "9600");
   }
@@ -251,7 +251,7 @@ TEST(Arguments, AnEmptyPathIsRefused) {
 
 // --- moving inputs and faults ---
 
-TEST(Arguments, AnInputIsOfTheModuleAtItsPosition) {
+TEST(Arguments, AnInputIsAssignedToTheModuleAtItsPosition) {
   const LineSetup arguments = accepted({"EX9042D", "EX9052D@02", "--input", "2 0 square 100ms", "--input",
                                         "2 7 key at 2s for 300ms", "--log"});
   EXPECT_TRUE(arguments.modules[0].inputs.empty());
@@ -277,7 +277,7 @@ TEST(Arguments, AWrongInputIsRefused) {
   expect_error({"EX9052D", "--input"}, "--input", "--help");
 }
 
-TEST(Arguments, AFaultIsOfTheLineOrOfTheModuleAtItsPosition) {
+TEST(Arguments, AFaultIsAssignedToTheLineOrToTheModuleAtItsPosition) {
   const std::vector<Fault> faults =
       accepted({"EX9042D", "EX9052D@02", "--fault", "bit-errors 1e-4", "--fault",
                 "2 lost-reply every 10th reply", "--fault", "gone at 12.5s"})
@@ -318,7 +318,7 @@ TEST(Arguments, ASeedIsAWholeNumber) {
   }
 }
 
-TEST(Arguments, ASpeedIsANumberThatAClockCanFollow) {
+TEST(Arguments, SpeedIsAFactorWithinLimitsOrMax) {
   EXPECT_TRUE(all_accepted({"EX9042D"}).speed.paced());
   EXPECT_EQ(all_accepted({"EX9042D"}).speed.factor, 1.0);
   for (const auto& [text, speed] :
@@ -336,7 +336,7 @@ TEST(Arguments, ASpeedIsANumberThatAClockCanFollow) {
   }
 }
 
-TEST(Arguments, SteppedTimeRequiresTheControlSocketAndNothingThatHasATimeOfItsOwn) {
+TEST(Arguments, SteppedTimeRequiresTheControlSocketAndExcludesPanelAndSerial) {
   const struct Setup setup = all_accepted({"EX9042D", "--speed", "step", "--control", "c"});
   EXPECT_TRUE(setup.speed.stepped());
   EXPECT_EQ(setup.lines[0].pty, "ex9000.tty");
@@ -387,14 +387,14 @@ TEST(Arguments, DescribeOptionsFollowTheSubcommand) {
   expect_error({"EX9042D", "describe"}, "describe: EX9042D comes before the subcommand", "leave it out");
 }
 
-TEST(Arguments, PlaysSeedAndCaptureAreAlwaysLookedAt) {
+TEST(Arguments, PlayAlwaysChecksSeedAndCapture) {
   expect_error({"play", "s.txt", "--seed", "abc"}, "--seed: 'abc'", "a whole number of at least 0");
   expect_error({"play", "s.txt", "EX9042D", "--seed", "abc"}, "--seed: 'abc'",
                "a whole number of at least 0");
   expect_error({"play", "s.txt", "--capture", ""}, "--capture", "path");
 }
 
-TEST(Arguments, TheExampleIsPrintedAndIsABusFile) {
+TEST(Arguments, ExamplePrintsAValidBusFile) {
   EXPECT_EQ(printed({"--example"}), example_bus_file());
   EXPECT_EQ(parse_bus_file("example", printed({"--example"})).lines.size(), 2U);
 }
@@ -405,7 +405,7 @@ TEST(Arguments, HelpContainsFaultsAndControlCommands) {
   EXPECT_NE(text.find(control_commands()), std::string::npos);
 }
 
-TEST(Arguments, ModelsListsEveryModelAndWhatItSpeaks) {
+TEST(Arguments, ModelsListsEveryModelWithItsProtocols) {
   const std::string text = printed({"--models"});
   for (const Model& model : kModels) {
     EXPECT_NE(("\n" + text).find("\n" + std::string(model.designation) + " "), std::string::npos)
@@ -415,19 +415,19 @@ TEST(Arguments, ModelsListsEveryModelAndWhatItSpeaks) {
   EXPECT_NE(text.find("Modbus RTU"), std::string::npos);
 }
 
-TEST(Arguments, DescribeIsOfAllModelsWhereNoneIsNamed) {
+TEST(Arguments, DescribePrintsAllModelsByDefault) {
   EXPECT_EQ(printed({"describe"}), markdown_of_all());
   EXPECT_EQ(printed({"describe", "--format", "markdown"}), markdown_of_all());
 }
 
-TEST(Arguments, DescribeIsOfOneModelInAnyCaseWithOrWithoutEx) {
+TEST(Arguments, DescribeAcceptsAModelNameInAnyCaseWithOrWithoutEx) {
   const std::string text = markdown_of(*find_model("EX9052D-M"));
   for (const char* name : {"EX9052D-M", "ex9052d-m", "9052D-M", "9052d-m"}) {
     EXPECT_EQ(printed({"describe", name}), text) << name;
   }
 }
 
-TEST(Arguments, DescribesOptionsMayStandBeforeAndBehindTheModel) {
+TEST(Arguments, DescribeOptionsMayComeBeforeOrAfterTheModel) {
   EXPECT_EQ(printed({"describe", "--format=json", "EX9042D"}),
             printed({"describe", "EX9042D", "--format", "json"}));
   EXPECT_EQ(printed({"describe", "EX9042D-M", "--tcp", "4001", "--address=2", "--format", "home-assistant"}),
@@ -435,7 +435,7 @@ TEST(Arguments, DescribesOptionsMayStandBeforeAndBehindTheModel) {
                      "EX9042D-M"}));
 }
 
-TEST(Arguments, AWrongDescriptionIsRefused) {
+TEST(Arguments, WrongDescribeArgumentsAreRefused) {
   expect_error({"describe", "EX9999"}, "describe: 'EX9999'", "--models");
   expect_error({"describe", "EX9042D@01"}, "EX9042D@01", "--models");
   expect_error({"describe", "EX9042D", "EX9060D"}, "EX9060D", "--help");
@@ -444,7 +444,7 @@ TEST(Arguments, AWrongDescriptionIsRefused) {
   EXPECT_EQ(parse({"describe", "EX9999"}).exit_status, kWrongArguments);
 }
 
-TEST(Arguments, HelpTellsOfEveryOptionAndKey) {
+TEST(Arguments, HelpListsEveryOptionAndKey) {
   const std::string text = printed({"--help"});
   for (const char* word :
        {"MODULE",        "[text|json|off]", "--capture", "--pty",          "--baud",    "--log",
@@ -456,7 +456,7 @@ TEST(Arguments, HelpTellsOfEveryOptionAndKey) {
   }
 }
 
-TEST(Arguments, DescribeHasHelpOfItsOwn) {
+TEST(Arguments, DescribeHasItsOwnHelp) {
   const std::string text = printed({"describe", "--help"});
   for (const char* word : {"MODEL", "--format", "markdown|json|csv|home-assistant|node-red|wb-mqtt-serial",
                            "--address", "--tcp", "127.0.0.1:5020"}) {
@@ -465,7 +465,7 @@ TEST(Arguments, DescribeHasHelpOfItsOwn) {
   EXPECT_EQ(text.find("--pty"), std::string::npos);
 }
 
-TEST(Arguments, VersionIsTheFirmwares) { EXPECT_EQ(printed({"--version"}), "ex9000-sim D01.00\n"); }
+TEST(Arguments, VersionIsThatOfTheFirmware) { EXPECT_EQ(printed({"--version"}), "ex9000-sim D01.00\n"); }
 
 TEST(Arguments, PrintingOptionsRejectOtherArguments) {
   EXPECT_EQ(printed({"EX9042D", "--version"}), printed({"--version"}));

@@ -99,7 +99,7 @@ std::string image_in(const Directory& directory) { return ",eeprom=" + directory
 
 // --- the program creates a file, and uses an existing file ---
 
-TEST(Persistence, AMissingFileIsMadeWithThePresetsAndSurvivesAnyEnd) {
+TEST(Persistence, AMissingFileIsCreatedFromThePresetsAndKeptAfterTheProgramEnds) {
   for (const int signal : {SIGKILL, SIGTERM}) {
     const Directory directory;
     std::string status;
@@ -119,7 +119,7 @@ TEST(Persistence, AMissingFileIsMadeWithThePresetsAndSurvivesAnyEnd) {
   }
 }
 
-TEST(Persistence, AFileWithoutPresetsIsAFactoryFreshModule) {
+TEST(Persistence, ANewFileWithoutPresetsHasFactorySettings) {
   const Directory directory;
   const std::string module = "EX9042D" + image_in(directory);
   for (int start = 0; start < 2; ++start) {
@@ -131,7 +131,7 @@ TEST(Persistence, AFileWithoutPresetsIsAFactoryFreshModule) {
   }
 }
 
-TEST(Persistence, WhatTheFileHoldsWinsOverThePresetsAndTheGreetingSaysSo) {
+TEST(Persistence, TheFileOverridesThePresetsAndTheGreetingSaysSo) {
   const Directory directory;
   Simulator({"EX9042D@0A,name=FILED" + image_in(directory)});
   const std::string image = bytes_of_file(directory / "image");
@@ -144,7 +144,7 @@ TEST(Persistence, WhatTheFileHoldsWinsOverThePresetsAndTheGreetingSaysSo) {
   EXPECT_EQ(bytes_of_file(directory / "image"), image);
 }
 
-TEST(Persistence, TheGreetingNamesTheBusFileWhereThatWasOverruled) {
+TEST(Persistence, TheGreetingSaysThatTheFileOverridesTheBusFile) {
   const Directory directory;
   Simulator({"EX9042D@0A,name=FILED" + image_in(directory)});
   write_file(directory / "bus.json", R"({"lines": [{"tcp": 0, "modules": [
@@ -154,7 +154,7 @@ TEST(Persistence, TheGreetingNamesTheBusFileWhereThatWasOverruled) {
   EXPECT_TRUE(has(finished.output, "settings from image, not from the bus file")) << finished.output;
 }
 
-TEST(Persistence, TheGreetingDoesNotSaySoWhereNothingWasOverruled) {
+TEST(Persistence, TheGreetingMentionsNoOverrideIfNoPresetDiffers) {
   const Directory directory;
   Simulator({"EX9042D@0A,name=FILED" + image_in(directory)});
   for (const char* module : {"EX9042D", "EX9042D@0A,name=FILED"}) {
@@ -164,7 +164,7 @@ TEST(Persistence, TheGreetingDoesNotSaySoWhereNothingWasOverruled) {
   }
 }
 
-TEST(Persistence, InitIsASwitchAndNotStored) {
+TEST(Persistence, TheInitSwitchIsNotStored) {
   const Directory directory;
   Simulator({"EX9042D@0A,init=on" + image_in(directory)});
   Simulator simulator({"EX9042D" + image_in(directory)});
@@ -172,7 +172,7 @@ TEST(Persistence, InitIsASwitchAndNotStored) {
   EXPECT_TRUE(has(simulator.tell("1 status"), "mode=normal"));
 }
 
-TEST(Persistence, EveryModuleHasAFileOfItsOwn) {
+TEST(Persistence, EveryModuleHasItsOwnFile) {
   const Directory directory;
   const std::string first = "EX9042D@01,eeprom=" + directory / "first";
   const std::string second = "EX9052D@02,eeprom=" + directory / "second";
@@ -201,7 +201,7 @@ TEST(Persistence, AFileMayBeReachedThroughASymbolicLink) {
   EXPECT_EQ(Simulator({"EX9042D" + image_in(directory)}).ask("$01M"), "!01NEW");
 }
 
-TEST(Persistence, OutputsComeUpWithTheStoredPowerOnValue) {
+TEST(Persistence, OutputsStartWithTheStoredPowerOnValue) {
   const Directory directory;
   {
     Simulator simulator({"EX9042D" + image_in(directory)});
@@ -213,7 +213,7 @@ TEST(Persistence, OutputsComeUpWithTheStoredPowerOnValue) {
   EXPECT_EQ(Simulator({"EX9042D" + image_in(directory)}).tell("1 outputs"), "1A05");
 }
 
-TEST(Persistence, ATimeoutOfTheHostWatchdogIsRemembered) {
+TEST(Persistence, AHostWatchdogTimeoutSurvivesARestart) {
   const Directory directory;
   {
     Simulator simulator({"EX9042D" + image_in(directory)});
@@ -285,7 +285,7 @@ TEST(Persistence, AnImageOfGarbageGivesFactorySettings) {
   }
 }
 
-TEST(Persistence, ABlankImageIsAFactoryFreshModuleWhateverThePresets) {
+TEST(Persistence, ABlankImageGivesFactorySettingsDespitePresets) {
   const Directory directory;
   write_file(directory / "image", std::string(kImageSize, '\xFF'));
   Simulator simulator({"EX9042D@0B,name=TYPED" + image_in(directory)});
@@ -422,7 +422,7 @@ class PowerFailureChecker {
   int not_done_count_ = 0;
 };
 
-TEST(Persistence, WheneverTheProgramIsKilledACommandIsWholeAndAnAcknowledgedOneIsDone) {
+TEST(Persistence, AKillAtAnyTimeLeavesStoresAtomicAndKeepsAcknowledgedOnes) {
   PowerFailureChecker checker(1);
   for (int round = 0; round < 60 && !HasFailure(); ++round) {
     Simulator simulator({checker.module()});
@@ -435,7 +435,7 @@ TEST(Persistence, WheneverTheProgramIsKilledACommandIsWholeAndAnAcknowledgedOneI
   checker.report("SIGKILL");
 }
 
-TEST(Persistence, WheneverThePowerFailsACommandIsWholeAndAnAcknowledgedOneIsDone) {
+TEST(Persistence, APowerCutAtAnyTimeLeavesStoresAtomicAndKeepsAcknowledgedOnes) {
   PowerFailureChecker checker(2);
   Simulator simulator({checker.module()});
   for (int round = 0; round < 40 && !HasFailure(); ++round) {
@@ -447,7 +447,7 @@ TEST(Persistence, WheneverThePowerFailsACommandIsWholeAndAnAcknowledgedOneIsDone
   checker.report("power off");
 }
 
-TEST(Persistence, APowerCutAndAKillUponItLeaveNoMoreThanEither) {
+TEST(Persistence, APowerCutFollowedByAKillLeavesStoresAtomic) {
   PowerFailureChecker checker(3);
   for (int round = 0; round < 15 && !HasFailure(); ++round) {
     Simulator simulator({checker.module()});
@@ -490,7 +490,7 @@ void expect_refused(const std::string& file, const Directory& directory) {
 
 std::string some_image() { return std::string(kImageSize, '\xFF'); }
 
-TEST(BadFile, OneOfAnotherSizeIsRefused) {
+TEST(BadFile, AFileOfTheWrongSizeIsRefused) {
   for (const std::size_t size : {0U, 100U, 8191U, 8193U}) {
     const Directory directory;
     write_file(directory / "image", std::string(size, 'x'));
@@ -498,14 +498,14 @@ TEST(BadFile, OneOfAnotherSizeIsRefused) {
   }
 }
 
-TEST(BadFile, AReadOnlyOneIsRefusedWhoeverAsks) {
+TEST(BadFile, AReadOnlyFileIsRefusedForEveryUser) {
   const Directory directory;
   write_file(directory / "image", some_image());
   fs::permissions(directory / "image", fs::perms(0444));
   expect_refused("image", directory);
 }
 
-TEST(BadFile, WhatIsNoFileIsRefusedAndNotWaitedFor) {
+TEST(BadFile, DirectoriesPipesAndDevicesAreRefusedWithoutBlocking) {
   const Directory directory;
   fs::create_directory(directory / "image");
   ASSERT_EQ(mkfifo((directory / "fifo").c_str(), 0644), 0);
@@ -514,7 +514,7 @@ TEST(BadFile, WhatIsNoFileIsRefusedAndNotWaitedFor) {
   }
 }
 
-TEST(BadFile, OneThatCannotBeMadeIsRefusedAndNoOtherIsMade) {
+TEST(BadFile, AFileThatCannotBeCreatedIsRefusedAndNoOtherIsCreated) {
   const Directory directory;
   fs::create_symlink("missing/image", directory / "dangling");
   for (const char* file : {"missing/image", "dangling", "/proc/image"}) {
@@ -522,7 +522,7 @@ TEST(BadFile, OneThatCannotBeMadeIsRefusedAndNoOtherIsMade) {
   }
 }
 
-TEST(BadFile, OneInUseByAnotherProcessIsRefusedUnderAnyName) {
+TEST(BadFile, AFileInUseByAnotherProcessIsRefusedUnderAnyName) {
   const Directory directory;
   write_file(directory / "image", some_image());
   fs::create_symlink("image", directory / "symbolic");
@@ -536,7 +536,7 @@ TEST(BadFile, OneInUseByAnotherProcessIsRefusedUnderAnyName) {
   EXPECT_EQ(Simulator({"EX9042D" + image_in(directory)}).ask("$01M"), "!01NEW");
 }
 
-TEST(BadFile, OneFileUnderTwoNamesForTwoModulesIsRefused) {
+TEST(BadFile, TwoNamesOfOneFileForTwoModulesAreRefused) {
   const Directory directory;
   write_file(directory / "image", some_image());
   fs::create_symlink("image", directory / "symbolic");
@@ -546,7 +546,7 @@ TEST(BadFile, OneFileUnderTwoNamesForTwoModulesIsRefused) {
   }
 }
 
-TEST(BadFile, OneMissingFileUnderTwoNamesForTwoModulesIsRefusedAndNotMade) {
+TEST(BadFile, TwoNamesOfOneMissingFileAreRefusedAndNoFileIsCreated) {
   const Directory directory;
   fs::create_directory(directory / "place");
   fs::create_directory_symlink("place", directory / "elsewhere");
@@ -555,7 +555,7 @@ TEST(BadFile, OneMissingFileUnderTwoNamesForTwoModulesIsRefusedAndNotMade) {
                  directory);
 }
 
-TEST(BadFile, NoFileIsMadeWhereSomethingElseIsRefused) {
+TEST(BadFile, NoFileIsCreatedIfAnotherArgumentIsRefused) {
   const Directory directory;
   write_file(directory / "taken", "precious");
   const auto before = directory.contents();

@@ -34,7 +34,7 @@ TEST(Program, EndsCleanlyAndRemovesItsLink) {
   }
 }
 
-TEST(Program, EndsCleanlyWhenNobodyReadsItsLogAnyMore) {
+TEST(Program, EndsCleanlyAfterTheReaderOfItsLogHasGone) {
   Directory directory;
   // A master that continues to send makes the log grow after `head` has ended.
   const Finished finished =
@@ -48,7 +48,7 @@ TEST(Program, EndsCleanlyWhenNobodyReadsItsLogAnyMore) {
   EXPECT_FALSE(fs::is_symlink(directory.path() + "/ex9000.tty"));
 }
 
-TEST(Program, ASignalThatItIsStartedToIgnoreIsIgnored) {
+TEST(Program, ASignalIgnoredAtStartStaysIgnored) {
   const Directory directory;
   ChildProcess process({"sh", "-c", "trap '' HUP; exec " + simulator_path() + " EX9042D"}, directory.path());
   ASSERT_TRUE(process.wait_for("press Ctrl-C to end"));
@@ -74,7 +74,7 @@ TEST(Program, StandardStreamsMayBeClosed) {
   EXPECT_TRUE(fs::is_empty(directory.path()));
 }
 
-TEST(Program, AFullDiskBehindItsOutputIsSaid) {
+TEST(Program, AFullDiskForStandardOutputIsReported) {
   const Directory directory;
   for (const char* arguments : {" EX9042D", " --help", " describe"}) {
     const Finished finished =
@@ -86,7 +86,7 @@ TEST(Program, AFullDiskBehindItsOutputIsSaid) {
   }
 }
 
-TEST(Program, ALinkThatAnotherUsersSimulatorHasIsNotTakenOver) {
+TEST(Program, ALinkInUseByAnotherUsersSimulatorIsNotTakenOver) {
   if (geteuid() != 0) {
     GTEST_SKIP() << "another user's simulator can be started by root only";
   }
@@ -99,7 +99,7 @@ TEST(Program, ALinkThatAnotherUsersSimulatorHasIsNotTakenOver) {
   EXPECT_NE(other.error.find("another simulator is running there"), std::string::npos) << other.error;
 }
 
-TEST(Program, WrongArgumentsGiveOneLineThatNamesThemExitStatus2AndLeaveNothingBehind) {
+TEST(Program, WrongArgumentsGiveAOneLineErrorAndStatus2AndCreateNoFiles) {
   struct Case {
     std::vector<std::string> arguments;
     std::string names;
@@ -171,7 +171,7 @@ TEST(Program, WrongArgumentsGiveOneLineThatNamesThemExitStatus2AndLeaveNothingBe
   }
 }
 
-TEST(Program, AnEventInCenturiesUsesNoProcessorTime) {
+TEST(Program, WaitingForAnEventInTheFarFutureUsesNoProcessorTime) {
   // A year at the lowest speed takes a thousand years, which is more than a clock can count. Without power
   // there is no earlier event.
   for (const std::vector<std::string>& far :
@@ -207,7 +207,7 @@ double seconds_of_a_run(const std::string& speed, const std::string& lasts) {
   return std::chrono::duration<double>(std::chrono::steady_clock::now() - began).count();
 }
 
-TEST(Program, EndsWhenTheTimeOfTheLineIsOverAndNotThatOfTheWall) {
+TEST(Program, RunDurationIsMeasuredInLineTime) {
   // A slow line: load on the machine can extend this time, but nothing can shorten it.
   EXPECT_GE(seconds_of_a_run("0.01", "5ms"), 0.5);
   EXPECT_GE(seconds_of_a_run("1", "400ms"), 0.4);
@@ -215,7 +215,7 @@ TEST(Program, EndsWhenTheTimeOfTheLineIsOverAndNotThatOfTheWall) {
   EXPECT_GE(seconds_of_a_run("1000", "30min"), 1.8);
 }
 
-TEST(Program, DescribesAModelAndEnds) {
+TEST(Program, DescribesAModelInEveryFormat) {
   const Directory directory;
   for (const char* format : {"markdown", "json", "csv", "home-assistant", "node-red", "wb-mqtt-serial"}) {
     const Finished finished = simulator({"describe", "9052d-m", "--format", format}, directory.path());
@@ -226,7 +226,7 @@ TEST(Program, DescribesAModelAndEnds) {
   }
 }
 
-TEST(Program, SomethingElseWhereTheLinkShouldGoIsLeftAlone) {
+TEST(Program, AFileAtTheLinksPathIsLeftAlone) {
   Directory directory;
   std::ofstream(directory.path() + "/ex9000.tty") << "precious";
   const Finished finished = simulator({"EX9042D"}, directory.path());
@@ -236,7 +236,7 @@ TEST(Program, SomethingElseWhereTheLinkShouldGoIsLeftAlone) {
   EXPECT_TRUE(fs::is_regular_file(directory.path() + "/ex9000.tty"));
 }
 
-TEST(Program, ALinkInUseIsRefusedAndOneLeftByADeadProcessIsTakenOver) {
+TEST(Program, ALinkInUseIsRefusedAndAStaleOneIsTakenOver) {
   SimulatorProcess process({"EX9042D-M"});
   const Finished second = simulator({"EX9042D"}, process.directory());
   EXPECT_EQ(second.status, 2);
@@ -250,7 +250,7 @@ TEST(Program, ALinkInUseIsRefusedAndOneLeftByADeadProcessIsTakenOver) {
   EXPECT_FALSE(fs::is_symlink(process.tty()));
 }
 
-TEST(Program, ALeftLinkThatLeadsToAnotherSimulatorByNowIsTakenOver) {
+TEST(Program, AStaleLinkToAnotherSimulatorsTerminalIsTakenOver) {
   SimulatorProcess other({"EX9042D-M"});
   const Directory directory;
   const std::string link = directory.path() + "/left.tty";
@@ -260,14 +260,14 @@ TEST(Program, ALeftLinkThatLeadsToAnotherSimulatorByNowIsTakenOver) {
   EXPECT_NE(fs::read_symlink(link), fs::read_symlink(other.tty()));
 }
 
-TEST(Program, AnInstalledProgramRunsFromWhereItIsPut) {
+TEST(Program, RunsFromItsInstallPrefix) {
   const Directory directory;
   const Finished installed = run({"cmake", "--install", EX9000_BUILD, "--prefix", directory.path()});
   EXPECT_EQ(installed.status, 0) << installed.error;
   EXPECT_EQ(run({directory.path() + "/bin/ex9000-sim", "--version"}, "/").output, "ex9000-sim D01.00\n");
 }
 
-TEST(Program, TellsItsVersionModelsAndHelp) {
+TEST(Program, PrintsItsVersionModelsAndHelp) {
   Directory directory;
   EXPECT_EQ(simulator({"--version"}, directory.path()).output, "ex9000-sim D01.00\n");
   const Finished models = simulator({"--models"}, directory.path());

@@ -73,7 +73,7 @@ TEST_F(BusTest, AByteTakesTenBitsAtItsSendersRate) {
   }
 }
 
-TEST_F(BusTest, EveryStationOfTheSameRateHearsEveryByteUnharmed) {
+TEST_F(BusTest, EveryStationAtTheSameRateReceivesEveryByteIntact) {
   const auto sender = master(9600);
   std::vector<std::unique_ptr<Listener>> listeners;
   for (int i = 0; i < 33; ++i) {
@@ -90,7 +90,7 @@ TEST_F(BusTest, EveryStationOfTheSameRateHearsEveryByteUnharmed) {
   }
 }
 
-TEST_F(BusTest, AReceiverAtHalfTheRateSeesFramingErrorsAndGarbage) {
+TEST_F(BusTest, AReceiverAtHalfTheRateReceivesFewerAndWrongBytes) {
   const auto sender = master(19200);
   Listener slow(bus_, 9600);
   // '0' is 0 00001100 1 on the wire; two of these bits fall into one bit of the receiver.
@@ -103,7 +103,7 @@ TEST_F(BusTest, AReceiverAtHalfTheRateSeesFramingErrorsAndGarbage) {
   }
 }
 
-TEST_F(BusTest, AReceiverAtTenTimesTheRateTakesAZeroByteForABreak) {
+TEST_F(BusTest, AMuchFasterReceiverTakesAZeroByteForABreak) {
   const auto sender = master(1200);
   Listener fast(bus_, 115200);
   send(*sender, {0x00});
@@ -113,7 +113,7 @@ TEST_F(BusTest, AReceiverAtTenTimesTheRateTakesAZeroByteForABreak) {
   EXPECT_EQ(fast.heard[0].status, ByteStatus::Break);
 }
 
-TEST_F(BusTest, AReceiverAtAnotherRateIsWellAgainAfterwards) {
+TEST_F(BusTest, AReceiverRecoversAfterTrafficAtAnotherRate) {
   const auto sender = master(1200);
   Listener listener(bus_, 9600);
   send(*sender, {0x31, 0x32, 0x33});
@@ -127,7 +127,7 @@ TEST_F(BusTest, AReceiverAtAnotherRateIsWellAgainAfterwards) {
   EXPECT_EQ(listener.heard[1].byte, 0x32);
 }
 
-TEST_F(BusTest, OfTwoDriversAtOnceAZeroWinsBitByBit) {
+TEST_F(BusTest, IfTwoDriversSendAtOnceAZeroBitWins) {
   const auto first = master(9600);
   const auto second = master(9600);
   Listener listener(bus_, 9600);
@@ -138,7 +138,7 @@ TEST_F(BusTest, OfTwoDriversAtOnceAZeroWinsBitByBit) {
   EXPECT_EQ(listener.heard[0].byte, 0x33);
 }
 
-TEST_F(BusTest, OverlappingBytesAreReportedAsACollisionAndArriveSpoiled) {
+TEST_F(BusTest, OverlappingBytesAreReportedAsACollisionAndArriveCorrupted) {
   const auto first = master(9600);
   const auto second = master(9600);
   Listener listener(bus_, 9600);
@@ -159,7 +159,7 @@ TEST_F(BusTest, OverlappingBytesAreReportedAsACollisionAndArriveSpoiled) {
   EXPECT_TRUE(spoiled);
 }
 
-TEST_F(BusTest, ADriverThatGoesOffInTheMiddleOfAByteLeavesTheRestIdle) {
+TEST_F(BusTest, ADriverDisabledInMidByteLeavesTheLineIdle) {
   const auto sender = master(9600);
   Listener listener(bus_, 9600);
   SimulatedModule module(bus_, *find_model("EX9042D-M"));
@@ -179,7 +179,7 @@ TEST_F(BusTest, ADriverThatGoesOffInTheMiddleOfAByteLeavesTheRestIdle) {
   EXPECT_FALSE(recorder.drivers.back().on);
 }
 
-TEST_F(BusTest, WhatIsSentToAModuleWithoutPowerIsNotCarriedOutWhenItComesBack) {
+TEST_F(BusTest, ACommandSentToAnUnpoweredModuleIsNotExecutedLater) {
   const auto sender = master(9600);
   SimulatedModule module(bus_, *find_model("EX9043D"));
   module.power(true);
@@ -201,7 +201,7 @@ TEST_F(BusTest, WhatIsSentToAModuleWithoutPowerIsNotCarriedOutWhenItComesBack) {
   EXPECT_EQ(recorder.sent_by(1), (std::vector<std::uint8_t>{'!', '0', '1', '9', '0', '4', '3', 'D', '\r'}));
 }
 
-TEST_F(BusTest, AReceiverThatIsOpenedInTheMiddleOfAByteDoesNotGetItWhole) {
+TEST_F(BusTest, AReceiverEnabledInMidByteDoesNotReceiveThatByte) {
   const auto sender = master(9600);
   Listener listener(bus_, 0);
   send(*sender, {0x55});

@@ -63,7 +63,7 @@ class ModuleWireTest : public testing::Test {
   std::vector<std::string> on_the_wires;
 };
 
-TEST_F(ModuleWireTest, KeepsARatesReplyAtItToTheEnd) {
+TEST_F(ModuleWireTest, AReplyKeepsItsForcedRateToTheEnd) {
   wire.force_rate(1200);
   run_until(5ms);
   wire.drive(true);
@@ -77,7 +77,7 @@ TEST_F(ModuleWireTest, KeepsARatesReplyAtItToTheEnd) {
   EXPECT_EQ(wires.happened, (Happened{"5 on", "5 a 1200", "5 b 1200", "5 off", "5 on", "5 c 9600"}));
 }
 
-TEST_F(ModuleWireTest, LetsWhatIsLateGoAtOnce) {
+TEST_F(ModuleWireTest, EndingTheDelaySendsALateReplyAtOnce) {
   watch();
   fate.late_by = 1h;
   reply(5ms, 'a');
@@ -91,7 +91,7 @@ TEST_F(ModuleWireTest, LetsWhatIsLateGoAtOnce) {
   EXPECT_EQ(wires.happened.size(), 9U);
 }
 
-TEST_F(ModuleWireTest, RemembersNoMoreLateRepliesThanABoundAndGoesOnBehindThem) {
+TEST_F(ModuleWireTest, LimitsTheNumberOfStoredLateReplies) {
   watch();
   fate.late_by = 1h;
   for (int i = 0; i < 30'000; ++i) {
@@ -103,7 +103,7 @@ TEST_F(ModuleWireTest, RemembersNoMoreLateRepliesThanABoundAndGoesOnBehindThem) 
   EXPECT_GT(wires.happened.size(), 65'000U);
 }
 
-TEST_F(ModuleWireTest, SaysWhichReplyIsOnTheWiresOrNeverWillBe) {
+TEST_F(ModuleWireTest, ReportsWhichReplyIsOnTheWiresOrDropped) {
   watch();
   fate.late_by = 20ms;
   reply(5ms, 'a');
@@ -119,20 +119,20 @@ TEST_F(ModuleWireTest, SaysWhichReplyIsOnTheWiresOrNeverWillBe) {
   EXPECT_EQ(on_the_wires, (std::vector<std::string>{"1 on", "1 off", "2 off", "4 on", "4 off"}));
 }
 
-TEST_F(ModuleWireTest, HandsOnAtOnceWhatNobodyWatches) {
+TEST_F(ModuleWireTest, ForwardsAReplyAtOnceWithoutAWatcher) {
   reply(5ms, 'a');
   EXPECT_EQ(wires.happened, (Happened{"5 on", "5 a 9600", "6 off"}));
   EXPECT_EQ(wire.next(), kNever);
 }
 
-TEST_F(ModuleWireTest, TellsOfTheBeginAndTheEndOfEachReply) {
+TEST_F(ModuleWireTest, ReportsTheEndOfAReply) {
   watch();
   reply(5ms, 'a');
   EXPECT_EQ(ended, 1);
   EXPECT_EQ(wires.happened, (Happened{"5 on", "5 a 9600", "6 off"}));
 }
 
-TEST_F(ModuleWireTest, ALostReplyDoesNotEvenSwitchTheDriver) {
+TEST_F(ModuleWireTest, ALostReplyDoesNotEnableTheDriver) {
   watch();
   fate.lost = true;
   reply(5ms, 'a');
@@ -143,7 +143,7 @@ TEST_F(ModuleWireTest, ALostReplyDoesNotEvenSwitchTheDriver) {
   EXPECT_EQ(wires.happened, (Happened{"10 on", "10 b 9600", "11 off"}));
 }
 
-TEST_F(ModuleWireTest, ALateReplyIsTheSameSoMuchLaterWhileTheUartIsDone) {
+TEST_F(ModuleWireTest, ALateReplyIsSentUnchangedAfterTheUartHasFinished) {
   watch();
   fate.late_by = 50ms;
   reply(5ms, 'a');
@@ -157,7 +157,7 @@ TEST_F(ModuleWireTest, ALateReplyIsTheSameSoMuchLaterWhileTheUartIsDone) {
   EXPECT_EQ(wires.happened, (Happened{"55 on", "55 a 9600", "56 off"}));
 }
 
-TEST_F(ModuleWireTest, AReplyBehindOneThatIsLateComesBehindItAndNotInIt) {
+TEST_F(ModuleWireTest, AReplyAfterALateOneIsSentAfterIt) {
   watch();
   fate.late_by = 50ms;
   reply(5ms, 'a');
@@ -167,7 +167,7 @@ TEST_F(ModuleWireTest, AReplyBehindOneThatIsLateComesBehindItAndNotInIt) {
   EXPECT_EQ(wires.happened, (Happened{"55 on", "55 a 9600", "56 off", "56 on", "56 b 9600", "57 off"}));
 }
 
-TEST_F(ModuleWireTest, AReplyThatBeginsWhileALateOneIsOnItsWayComesBehindItToo) {
+TEST_F(ModuleWireTest, AReplyThatBeginsDuringALateOneIsSentAfterIt) {
   watch();
   fate.late_by = 4ms;
   reply(5ms, 'a');
@@ -179,7 +179,7 @@ TEST_F(ModuleWireTest, AReplyThatBeginsWhileALateOneIsOnItsWayComesBehindItToo) 
                                       "12 c 9600", "13 off"}));
 }
 
-TEST_F(ModuleWireTest, WithoutSupplyALateReplyStopsWhereItIs) {
+TEST_F(ModuleWireTest, AbortStopsALateReplyAndDropsAWaitingOne) {
   watch();
   fate.late_by = 50ms;
   reply(5ms, 'a');
@@ -194,7 +194,7 @@ TEST_F(ModuleWireTest, WithoutSupplyALateReplyStopsWhereItIs) {
   EXPECT_EQ(wires.happened.size(), 3U);
 }
 
-TEST_F(ModuleWireTest, AForcedRateIsThatOfEveryByteAndOfWhatTheyTake) {
+TEST_F(ModuleWireTest, AForcedRateAppliesToEveryByteAndItsDuration) {
   wire.force_rate(1200);
   reply(5ms, 'a');
   EXPECT_EQ(wires.happened[1], "5 a 1200");

@@ -39,7 +39,7 @@ ModuleSpec module_of(const std::string& members) {
 
 // --- valid files ---
 
-TEST(BusFile, TheExampleIsWhatItSays) {
+TEST(BusFile, TheExampleGivesTheExpectedSetup) {
   const auto setup = parsed(example_bus_file());
   EXPECT_EQ(setup.control, "ex9000.ctl");
   EXPECT_EQ(setup.seed, 1U);
@@ -91,7 +91,7 @@ TEST(BusFile, TheExampleIsWhatItSays) {
   EXPECT_EQ(yard.faults[1].text, "gone at 1h for 2min");
 }
 
-TEST(BusFile, ThePanelIsOnOffOrOnAPort) {
+TEST(BusFile, PanelIsTrueFalseOrAPort) {
   const auto panel = [](const std::string& value) {
     return parsed(R"({"panel": )" + value + R"(, "lines": [{"modules": [{"model": "EX9042D"}]}]})").panel;
   };
@@ -102,7 +102,7 @@ TEST(BusFile, ThePanelIsOnOffOrOnAPort) {
   EXPECT_EQ(panel("\"0\"")->port, 0);
 }
 
-TEST(BusFile, ItsModulesMayBeWatched) {
+TEST(BusFile, WatchIsTrueOrFalse) {
   const auto watch = [](const std::string& value) {
     return parsed(R"({"watch": )" + value + R"(, "lines": [{"modules": [{"model": "EX9042D"}]}]})").watch;
   };
@@ -128,7 +128,7 @@ TEST(BusFile, LinesWithoutANameAreNumbered) {
   EXPECT_EQ(setup.lines[2].name, "line3");
 }
 
-TEST(BusFile, ALineMayHaveAllThatACommandLineMay) {
+TEST(BusFile, ALineAcceptsTheOptionsOfTheCommandLine) {
   EXPECT_EQ(line_of("\"tcp\": 5020").tcp.value_or(TcpAddress()).host, "127.0.0.1");
   EXPECT_EQ(line_of("\"tcp\": \"[::1]:5020\"").tcp.value_or(TcpAddress()).host, "::1");
   EXPECT_EQ(line_of("\"pty\": \"a\"").pty, "a");
@@ -141,7 +141,7 @@ TEST(BusFile, ALineMayHaveAllThatACommandLineMay) {
   EXPECT_TRUE(line_of("\"pty\": \"a\", \"strict-gaps\": true").strict_gaps);
 }
 
-TEST(BusFile, AModuleMayHaveAllThatACommandLineMay) {
+TEST(BusFile, AModuleAcceptsTheKeysOfTheCommandLine) {
   EXPECT_EQ(module_of("\"address\": \"F\"").settings.address, 0x0F);
   EXPECT_EQ(module_of("\"protocol\": \"ascii\"").settings.protocol, Protocol::Ascii);
   EXPECT_EQ(module_of("\"baud\": 115200").settings.baud_code, 0x0A);
@@ -154,7 +154,7 @@ TEST(BusFile, AModuleMayHaveAllThatACommandLineMay) {
   EXPECT_EQ(module_of("\"eeprom\": \"a,b.bin\"").eeprom, "a,b.bin");
 }
 
-TEST(BusFile, KeysMayStandInAnyOrder) {
+TEST(BusFile, KeysMayComeInAnyOrder) {
   const auto setup = parsed(R"({"seed": 7, "log": true, "lines": [{"faults": ["echo 2ms"], "modules": [
     {"faults": ["gone"], "inputs": ["7 square 1s"], "address": "02", "model": "EX9052D"}], "pty": "a"}]})");
   EXPECT_EQ(setup.seed, 7U);
@@ -175,7 +175,7 @@ struct Wrong {
 
 class WrongBusFile : public testing::TestWithParam<Wrong> {};
 
-TEST_P(WrongBusFile, IsRefusedWithFileLineKeyAndMend) {
+TEST_P(WrongBusFile, IsRefusedWithFileLineKeyAndRemedy) {
   const std::string why = why_not(GetParam().file);
   EXPECT_EQ(why.rfind(GetParam().why, 0), 0U) << why;
   EXPECT_EQ(why.find('\n'), std::string::npos) << why;
@@ -259,7 +259,7 @@ INSTANTIATE_TEST_SUITE_P(
                           "bus.json:2: lines[0].modules[0].model: 'EX1' is not a model; 'ex9000-sim "
                           "--models' lists them"}));
 
-TEST(WrongModuleOfABusFile, IsRefusedWithFileLineKeyAndMend) {
+TEST(WrongModuleOfABusFile, IsRefusedWithFileLineKeyAndRemedy) {
   for (const auto& [members, why] : std::vector<std::pair<std::string, std::string>>{
            {"\"colour\": \"red\"", "colour: unknown key; expected one of model, address"},
            {"\"address\": 1", "address: expected a text in quotes"},
@@ -292,13 +292,13 @@ TEST(WrongModuleOfABusFile, IsRefusedWithFileLineKeyAndMend) {
   }
 }
 
-TEST(WrongModuleOfABusFile, AnAddressThatItsProtocolLacksIsRefused) {
+TEST(WrongModuleOfABusFile, AnAddressInvalidForItsProtocolIsRefused) {
   EXPECT_EQ(why_not(module_with("\"address\": \"00\"")),
             "bus.json:1: lines[0].modules[0]: address 00: Modbus has 01 to F7; choose one of these, or the "
             "protocol ascii");
 }
 
-TEST(WrongLineOfABusFile, WhatDoesNotGoTogetherIsRefusedWhereItStands) {
+TEST(WrongLineOfABusFile, InvalidOrConflictingKeysAreRefusedWithTheirPlace) {
   for (const auto& [members, why] : std::vector<std::pair<std::string, std::string>>{
            {"\"pty\": \"\"", "pty: is empty; name a path"},
            {"\"serial\": \"a\", \"pty\": \"b\"",
@@ -322,7 +322,7 @@ std::string two_lines(const std::string& first, const std::string& second) {
          "},\n{\"modules\": [{\"model\": \"EX9042D\"}],\n" + second + "}]}";
 }
 
-TEST(WrongLinesOfABusFile, TwoCannotShareAPortOrAName) {
+TEST(WrongLinesOfABusFile, TwoLinesCannotShareAPortOrAName) {
   EXPECT_EQ(why_not(two_lines("\"pty\": \"a\"", "\"pty\": \"a\"")),
             "bus.json:5: lines[1].pty: a: two lines cannot share a port; name one for each");
   EXPECT_EQ(why_not(two_lines("\"serial\": \"a\"", "\"serial\": \"a\"")),
@@ -347,7 +347,7 @@ TEST(WrongLinesOfABusFile, TwoModulesCannotShareAnEeprom) {
 
 // --- reading from disk ---
 
-TEST(BusFile, IsWhatEndsWithJson) {
+TEST(BusFile, IsRecognizedByTheExtensionJson) {
   EXPECT_TRUE(is_bus_file("bus.json"));
   EXPECT_TRUE(is_bus_file("a/b.json"));
   EXPECT_FALSE(is_bus_file(".json"));
@@ -355,7 +355,7 @@ TEST(BusFile, IsWhatEndsWithJson) {
   EXPECT_FALSE(is_bus_file("EX9042D"));
 }
 
-TEST(BusFile, ThatCannotBeReadIsRefusedWithItsName) {
+TEST(BusFile, IsRefusedWithItsPathIfItCannotBeRead) {
   const system::Directory directory;
   std::filesystem::create_directory(directory / "folder.json");
   for (const std::string& path : {directory / "missing.json", directory / "folder.json"}) {
@@ -372,7 +372,7 @@ Parsed parse(const std::vector<std::string>& words) {
   return parse_arguments(static_cast<int>(argv.size()), argv.data());
 }
 
-TEST(BusFile, ALineWithoutAPortHasAPseudoTerminalOfItsName) {
+TEST(BusFile, ALineWithoutAPortGetsAPseudoTerminalNamedAfterIt) {
   const system::Directory directory;
   const std::string path = directory / "bus.json";
   system::write_file(path, R"({"lines": [{"modules": [{"model": "EX9042D"}]},
@@ -384,7 +384,7 @@ TEST(BusFile, ALineWithoutAPortHasAPseudoTerminalOfItsName) {
   EXPECT_FALSE(with.setup->lines[2].pty);
 }
 
-TEST(BusFile, WhatIsWrongWithItOnlyInTheRunIsRefusedWithItsPlace) {
+TEST(BusFile, AConflictFoundAfterParsingIsRefused) {
   const system::Directory directory;
   const std::string path = directory / "bus.json";
   system::write_file(path,
@@ -400,7 +400,7 @@ TEST(BusFile, WhatIsWrongWithItOnlyInTheRunIsRefusedWithItsPlace) {
             "ex9000-sim: --speed: step requires --control, because only the control socket moves the time\n");
 }
 
-TEST(BusFile, AnErrorNamesTheOtherKeyWhereItIsGiven) {
+TEST(BusFile, AnErrorNamesTheConflictingKeyOrOption) {
   const system::Directory directory;
   const std::string path = directory / "bus.json";
   const auto error = [&path](const std::string& keys, const std::string& port,

@@ -38,7 +38,7 @@ std::string refusal(const std::string& path) {
   return "";
 }
 
-TEST(CaptureFile, IsMadeAndGrows) {
+TEST(CaptureFile, IsCreatedAndAppendedTo) {
   const Directory directory;
   CaptureFile file(directory / "a", kPlace);
   file.begin();
@@ -48,7 +48,7 @@ TEST(CaptureFile, IsMadeAndGrows) {
   EXPECT_EQ(bytes_of_file(directory / "a"), "onetwo");
 }
 
-TEST(CaptureFile, ThatHoldsSomethingIsOverwrittenNotBeforeItBegins) {
+TEST(CaptureFile, AnExistingFileIsNotOverwrittenBeforeTheCaptureBegins) {
   const Directory directory;
   write_file(directory / "a", "precious");
   { const CaptureFile file(directory / "a", kPlace); }
@@ -60,7 +60,7 @@ TEST(CaptureFile, ThatHoldsSomethingIsOverwrittenNotBeforeItBegins) {
   EXPECT_EQ(bytes_of_file(directory / "a"), "one");
 }
 
-TEST(CaptureFile, ThatNeverBeganIsNotThere) {
+TEST(CaptureFile, IsRemovedIfTheCaptureNeverBegan) {
   const Directory directory;
   {
     const CaptureFile file(directory / "a", kPlace);
@@ -69,13 +69,13 @@ TEST(CaptureFile, ThatNeverBeganIsNotThere) {
   EXPECT_TRUE(fs::is_empty(directory.path()));
 }
 
-TEST(CaptureFile, ThatBeganStays) {
+TEST(CaptureFile, IsKeptOnceTheCaptureHasBegun) {
   const Directory directory;
   { CaptureFile(directory / "a", kPlace).begin(); }
   EXPECT_TRUE(fs::exists(directory / "a"));
 }
 
-TEST(CaptureFile, IsOfOneSimulatorAtATime) {
+TEST(CaptureFile, IsUsedByOneSimulatorAtATime) {
   const Directory directory;
   std::optional<CaptureFile> first(std::in_place, directory / "a", kPlace);
   EXPECT_NE(refusal(directory / "a").find("in use by another simulator"), std::string::npos);
@@ -84,7 +84,7 @@ TEST(CaptureFile, IsOfOneSimulatorAtATime) {
   EXPECT_EQ(refusal(directory / "a"), "");
 }
 
-TEST(CaptureFile, WhereNothingCanBeWrittenIsRefusedWithThePlaceAndThePath) {
+TEST(CaptureFile, APathThatCannotBeWrittenIsRefusedWithPlaceAndPath) {
   const Directory directory;
   for (const std::string& path : {directory / "none/a", directory.path()}) {
     const std::string why = refusal(path);
@@ -94,7 +94,7 @@ TEST(CaptureFile, WhereNothingCanBeWrittenIsRefusedWithThePlaceAndThePath) {
   EXPECT_TRUE(fs::is_empty(directory.path()));
 }
 
-TEST(CaptureFile, AFullDiskIsSaid) {
+TEST(CaptureFile, AFullDiskIsReported) {
   CaptureFile file("/dev/full", kPlace);
   file.begin();
   try {
@@ -105,7 +105,7 @@ TEST(CaptureFile, AFullDiskIsSaid) {
   }
 }
 
-TEST(CaptureFile, APipeMayBeRead) {
+TEST(CaptureFile, APipeIsAcceptedIfItHasAReader) {
   const Directory directory;
   ASSERT_EQ(mkfifo((directory / "a").c_str(), 0600), 0);
   EXPECT_NE(refusal(directory / "a").find("the pipe has no reader; start its reader first"),

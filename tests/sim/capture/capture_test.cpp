@@ -190,7 +190,7 @@ TEST(Capture, DconIsShownAsText) {
   }
 }
 
-TEST(Capture, AWrongCrcOrChecksumAndACollisionAreComments) {
+TEST(Capture, WrongCrcsWrongChecksumsAndCollisionsGetAComment) {
   Captured line({"EX9042D-M@01", "EX9042D-M@01", "EX9052D@02,checksum=on"});
   Bytes wrong = with_crc({1, 5, 0, 2, 0xFF, 0});
   wrong.back() ^= 1U;
@@ -213,7 +213,7 @@ TEST(Capture, AWrongCrcOrChecksumAndACollisionAreComments) {
   }
 }
 
-TEST(Capture, FaultsAreCommentsToo) {
+TEST(Capture, NoiseGetsAComment) {
   Captured line({"EX9042D-M@01", "--fault", "bit-errors 0.02"});
   for (int i = 0; i < 10; ++i) {
     line.tell(with_crc({1, 1, 0, 0, 0, 1}));
@@ -247,7 +247,7 @@ TEST(Capture, TheLinesOfABusFileAreInterfaces) {
   EXPECT_NE(simulator.output().find(R"("line":"yard","from":"02 EX9052D")"), std::string::npos);
 }
 
-TEST(Capture, WhatAStrangerSaysIsNotTakenForAnAnswer) {
+TEST(Capture, ForeignTrafficIsNotTakenForAReply) {
   Captured line({"EX9042D-M@01", "--fault", "foreign-traffic 0501000000083C48 at 1s", "--log"});
   line.pass("1s");
   line.wait_for("05 01 00 00 00 08 3C 48");
@@ -258,7 +258,7 @@ TEST(Capture, WhatAStrangerSaysIsNotTakenForAnAnswer) {
   EXPECT_EQ(packets[0].at("_ws.col.Info"), "   Query: Unit:   5, Func:   1: Read Coils");
 }
 
-TEST(Capture, OfARunInVirtualTimeIsTheSameEveryTime) {
+TEST(Capture, OfARunInVirtualTimeIsReproducible) {
   const Directory directory;
   for (const char* name : {"a", "b"}) {
     const Finished finished =
@@ -283,7 +283,7 @@ std::string without_delays_of_the_host(const std::string& log) {
   return kept;
 }
 
-TEST(Capture, EndsAtTheSameTimeOfTheLineWhateverItsSpeed) {
+TEST(Capture, IsTheSameAtEverySpeed) {
   const Directory directory;
   // A foreign message begins every second. The end of the run cuts off the last one.
   write_file(directory / "bus.json", R"({"log": "json", "lines": [{"name": "hall",
@@ -308,7 +308,7 @@ TEST(Capture, EndsAtTheSameTimeOfTheLineWhateverItsSpeed) {
   }
 }
 
-TEST(Capture, OfWhatIsPlayedHasEachRunAsAnInterface) {
+TEST(Capture, OfAPlayHasOneInterfacePerRun) {
   const Directory directory;
   write_file(directory / "a.txt",
              "source: manual\nmodel: EX9042D-M\nmodel: EX9043D-M\npreset: protocol=modbus\n\n"
@@ -335,7 +335,7 @@ TEST(Capture, OfWhatIsPlayedHasEachRunAsAnInterface) {
   }
 }
 
-TEST(Capture, WhatWiresharkDoesNotDecodeIsAsReadmeSays) {
+TEST(Capture, TheLimitsOfWiresharksDecodingMatchTheReadme) {
   Captured line({"EX9042D-M@01"});
   line.tell(with_crc({1, 0x46, 0}));
   line.tell(with_crc({1, 0x11}));
@@ -361,7 +361,7 @@ TEST(Capture, WhatWiresharkDoesNotDecodeIsAsReadmeSays) {
   }
 }
 
-TEST(Capture, TimesAreTheLinesOwnBehindTheWallClockOfTheStart) {
+TEST(Capture, TimestampsAreTheStartTimePlusTheLineTime) {
   const auto wall = [] {
     return std::chrono::duration<double>(std::chrono::system_clock::now().time_since_epoch()).count();
   };
@@ -384,7 +384,7 @@ TEST(Capture, TimesAreTheLinesOwnBehindTheWallClockOfTheStart) {
   EXPECT_EQ(packets[0].at("frame.interface_name").find("127.0.0.1:"), 0U);
 }
 
-TEST(Capture, WhatTheLineHadNotFinishedIsKeptWhereTheProgramEndsInPeace) {
+TEST(Capture, AnUnfinishedFrameIsWrittenAtAnOrderlyExit) {
   SimulatorProcess simulator(
       {"EX9042D@01", "--capture", "line.pcapng", "--log", "--speed", "step", "--control", "control"});
   ControlClient control(simulator.directory() + "/control");
@@ -400,14 +400,14 @@ TEST(Capture, WhatTheLineHadNotFinishedIsKeptWhereTheProgramEndsInPeace) {
   EXPECT_EQ(packets[2].at("text").find("$01"), 0U) << packets[2].at("text");
 }
 
-TEST(Capture, OfARunThatCannotWriteItEndsWithOneLineAndStatus1) {
+TEST(Capture, AWriteErrorEndsTheRunWithAOneLineErrorAndStatus1) {
   const Directory directory;
   const Finished finished = run({simulator_path(), "EX9042D", "--capture", "/dev/full"}, directory.path());
   EXPECT_EQ(finished.status, 1);
   EXPECT_EQ(finished.error, "ex9000-sim: --capture /dev/full: cannot be written: No space left on device\n");
 }
 
-TEST(Capture, ThatCannotBeWrittenLeavesNothingThatWasMadeForTheRun) {
+TEST(Capture, AWriteErrorLeavesNoCreatedFilesBehind) {
   const Directory directory;
   const Finished finished =
       run({simulator_path(), "EX9042D@01,eeprom=n.bin", "--capture", "/dev/full"}, directory.path());
@@ -426,7 +426,7 @@ TEST(Capture, ThatCannotBeWrittenLeavesNothingThatWasMadeForTheRun) {
   }
 }
 
-TEST(Capture, NeverGoesOverWhatARunReadsOrServes) {
+TEST(Capture, NeverOverwritesAFileThatTheRunUses) {
   const Directory directory;
   const std::string bus = R"({"capture": "link", "control": "ctl", "lines": [
     {"pty": "tty", "modules": [{"model": "EX9042D", "eeprom": "n.bin"}]}]})";
@@ -463,7 +463,7 @@ sim::Frame frame_of(std::size_t station, const Bytes& bytes) {
   return frame;
 }
 
-TEST(Capture, EveryLineIsAnInterfaceAndHasItsOwnRequests) {
+TEST(Capture, EachLineIsAnInterfaceWithItsOwnRequests) {
   const Directory directory;
   sim::Capture capture(directory / "lines.pcapng", "--capture ");
   capture.begin();
@@ -524,7 +524,7 @@ Packet of_a_spoiled(const Bytes& request, OneHit hit) {
   return packets.empty() ? Packet() : packets[0];
 }
 
-TEST(Capture, WhatNoiseHasChangedIsShownAsItArrivesAndWhatWasSentIsAComment) {
+TEST(Capture, ADamagedByteIsShownAsReceivedWithTheSentByteInAComment) {
   const Bytes request = with_crc({1, 5, 0, 2, 0xFF, 0});
   expect_shown(of_a_spoiled(request, OneHit(3, 1U << 3U)),
                {{"frame.comment", "noise: byte 4: 06 instead of 02; wrong CRC"},
@@ -538,7 +538,7 @@ TEST(Capture, WhatNoiseHasChangedIsShownAsItArrivesAndWhatWasSentIsAComment) {
             "noise: byte 1: 01 is lost because its start bit is missing; wrong CRC");
 }
 
-TEST(Capture, DconIsTextAlsoWhereAByteIsDamaged) {
+TEST(Capture, DconIsShownAsTextEvenIfAByteIsDamaged) {
   const std::string request = "$01M\r";
   const Packet packet = of_a_spoiled(Bytes(request.begin(), request.end()), OneHit(2, 1U << 8U));
   EXPECT_EQ(packet.at("frame.comment"),
@@ -548,7 +548,7 @@ TEST(Capture, DconIsTextAlsoWhereAByteIsDamaged) {
 
 // --- the JSON log ---
 
-TEST(JsonLog, IsAllThatIsOnStandardOutput) {
+TEST(JsonLog, IsTheOnlyTextOnStandardOutput) {
   const Directory directory;
   ChildProcess simulator(
       {"sh", "-c", "exec " + simulator_path() + " EX9042D@01 EX9052D@02,baud=19200 --log json > log"},

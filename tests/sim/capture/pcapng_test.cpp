@@ -52,7 +52,7 @@ TEST(Pcapng, APacketMayHaveAComment) {
             "02000400 01000000 01000300 62616400 00000000 34000000");
 }
 
-TEST(Pcapng, ACommentIsNoLongerThanAnOptionMayBe) {
+TEST(Pcapng, ACommentIsCutToTheMaximumOptionLength) {
   pcapng::EnhancedPacket packet;
   packet.comment = std::string(70'000, 'x');
   const pcapng::Block block = pcapng::enhanced_packet(packet);

@@ -115,7 +115,7 @@ TEST(ControlSocket, EveryCommandTakesEffectOnTheLine) {
   EXPECT_EQ(std::stoul(client.ok("1 outputs"), nullptr, 16), 0x81U);
 }
 
-TEST(ControlSocket, TheModuleWatchdogEndsAHangWithoutAnybodysHelp) {
+TEST(ControlSocket, TheModuleWatchdogEndsAHangWithoutACommand) {
   Simulator simulator({"EX9055D"});
   ControlClient client(simulator.socket());
   Terminal terminal(simulator.tty(), 9600);
@@ -144,7 +144,7 @@ TEST(ControlSocket, CommandsInOneWriteAreAnsweredInTheirOrder) {
   EXPECT_EQ(client.line(), "ok 0002");
 }
 
-TEST(ControlSocket, MoreInOneWriteThanALineMayHaveIsNoLongLine) {
+TEST(ControlSocket, ManyShortCommandsInOneWriteAreNotATooLongLine) {
   Simulator simulator({"EX9055D"});
   ControlClient client(simulator.socket());
   client.send(lines("1 pulse 3", 200) + lines("1 inputs", 1));
@@ -157,7 +157,7 @@ TEST(ControlSocket, MoreInOneWriteThanALineMayHaveIsNoLongLine) {
   EXPECT_EQ(terminal.read_line(kReplyTimeout), "!0100200\r");
 }
 
-TEST(ControlSocket, ACommandMayComeInPieces) {
+TEST(ControlSocket, ACommandMayArriveInPieces) {
   Simulator simulator({"EX9055D"});
   ControlClient other(simulator.socket());
   ControlClient client(simulator.socket());
@@ -195,14 +195,14 @@ TEST(ControlSocket, SeveralClientsInterleaveAndEachGetsItsOwnReplies) {
 
 // --- clients that misbehave ---
 
-TEST(ControlSocket, ALineOfTheGreatestLengthIsACommand) {
+TEST(ControlSocket, ALineOfMaximumLengthIsAccepted) {
   Simulator simulator({"EX9055D"});
   ControlClient client(simulator.socket());
   const std::string command = "1 led" + std::string(995, ' ');
   EXPECT_EQ(client.ask(command), "ok on");
 }
 
-TEST(ControlSocket, ATooLongLineIsAnErrorAndTheEndOfItsClientOnly) {
+TEST(ControlSocket, ATooLongLineIsAnErrorAndDisconnectsOnlyItsClient) {
   Simulator simulator({"EX9055D"});
   ControlClient other(simulator.socket());
   for (const std::size_t size : {1001U, 1002U, 5000U, 20'000U}) {
@@ -216,7 +216,7 @@ TEST(ControlSocket, ATooLongLineIsAnErrorAndTheEndOfItsClientOnly) {
   expect_undisturbed(simulator);
 }
 
-TEST(ControlSocket, AClientThatGoesInTheMiddleOfALineHasSaidNothing) {
+TEST(ControlSocket, AnIncompleteLineOfADisconnectedClientIsIgnored) {
   Simulator simulator({"EX9055D"});
   for (const char* piece : {"1 power off", "1 power o", "quit", "1"}) {
     ControlClient(simulator.socket()).send(piece);
@@ -224,7 +224,7 @@ TEST(ControlSocket, AClientThatGoesInTheMiddleOfALineHasSaidNothing) {
   }
 }
 
-TEST(ControlSocket, AClientThatEndsWithoutANewlineIsToldSo) {
+TEST(ControlSocket, AMissingFinalNewlineIsReportedToTheClient) {
   Simulator simulator({"EX9055D"});
   ControlClient client(simulator.socket());
   client.send("1 led\n1 power off");
@@ -235,7 +235,7 @@ TEST(ControlSocket, AClientThatEndsWithoutANewlineIsToldSo) {
   expect_undisturbed(simulator);
 }
 
-TEST(ControlSocket, AClientThatSendsAndGoesHasItsCommandsCarriedOut) {
+TEST(ControlSocket, CommandsOfAClientThatDisconnectsAtOnceAreExecuted) {
   Simulator simulator({"EX9055D"});
   ControlClient(simulator.socket()).send("1 input 0 on\n1 input 7 on\n");
   ControlClient other(simulator.socket());
@@ -246,7 +246,7 @@ TEST(ControlSocket, AClientThatSendsAndGoesHasItsCommandsCarriedOut) {
   EXPECT_EQ(inputs, "ok 0081");
 }
 
-TEST(ControlSocket, AClientThatNeverReadsIsNotReadFromAndDisturbsNobody) {
+TEST(ControlSocket, AClientThatNeverReadsIsThrottledAndDisturbsNoOther) {
   Simulator simulator({"EX9055D"});
   ControlClient other(simulator.socket());
   const std::string command = "1 status\n";
@@ -273,7 +273,7 @@ TEST(ControlSocket, AClientThatNeverReadsIsNotReadFromAndDisturbsNobody) {
   expect_undisturbed(simulator);
 }
 
-TEST(ControlSocket, OfAHundredConnectionsSixtyFourAreServedAndTheOthersHungUp) {
+TEST(ControlSocket, AtMost64ClientsAreServedAndFurtherOnesAreDisconnected) {
   Simulator simulator({"EX9055D"});
   auto clients = connect(simulator.socket(), 100);
   EXPECT_EQ(answered(clients), kMostClients);
@@ -287,7 +287,7 @@ TEST(ControlSocket, OfAHundredConnectionsSixtyFourAreServedAndTheOthersHungUp) {
   EXPECT_TRUE(is_answered(*clients[0]));
 }
 
-TEST(ControlSocket, ConnectionsThatComeAndGoUseNothingUp) {
+TEST(ControlSocket, ClosedConnectionsLeakNoFileDescriptors) {
   Simulator simulator({"EX9055D"});
   for (int i = 0; i < 1500; ++i) {  // more than the number of files that a process may have open
     ControlClient client(simulator.socket());
@@ -313,7 +313,7 @@ TEST(ControlSocket, QuitEndsTheProgramWithStatus0AndRemovesLinkAndSocket) {
   EXPECT_TRUE(fs::is_empty(simulator.directory()));
 }
 
-TEST(ControlSocket, QuitDoesNotDependOnClientsThatRead) {
+TEST(ControlSocket, QuitWorksWhileAnotherClientDoesNotRead) {
   Simulator simulator({"EX9055D"});
   ControlClient deaf(simulator.socket());
   const std::string flood = lines("1 status", 1000);
@@ -324,7 +324,7 @@ TEST(ControlSocket, QuitDoesNotDependOnClientsThatRead) {
   EXPECT_TRUE(fs::is_empty(simulator.directory()));
 }
 
-TEST(ControlSocket, ASignalRemovesItToo) {
+TEST(ControlSocket, ASignalRemovesLinkAndSocket) {
   for (const int signal : {SIGINT, SIGTERM, SIGHUP}) {
     Simulator simulator({"EX9055D"});
     ControlClient client(simulator.socket());
@@ -334,7 +334,7 @@ TEST(ControlSocket, ASignalRemovesItToo) {
   }
 }
 
-TEST(ControlSocket, ASocketThatIsAnothersByNowIsNotRemoved) {
+TEST(ControlSocket, AFileThatReplacedTheSocketIsNotRemoved) {
   Simulator simulator({"EX9055D"});
   fs::remove(simulator.socket());
   write_file(simulator.socket(), "precious");
@@ -344,12 +344,12 @@ TEST(ControlSocket, ASocketThatIsAnothersByNowIsNotRemoved) {
 
 // --- the path ---
 
-TEST(ControlSocket, TheGreetingNamesIt) {
+TEST(ControlSocket, TheGreetingNamesTheSocket) {
   Simulator simulator({"EX9055D"});
   EXPECT_NE(simulator.output().find("control socket control\n"), std::string::npos) << simulator.output();
 }
 
-TEST(ControlSocket, OneLeftByADeadProcessIsTakenOver) {
+TEST(ControlSocket, ASocketLeftByADeadProcessIsTakenOver) {
   Simulator dead({"EX9055D"});
   EXPECT_EQ(dead.end(SIGKILL), 128 + SIGKILL);
   ASSERT_TRUE(fs::is_socket(dead.socket()));
@@ -359,7 +359,7 @@ TEST(ControlSocket, OneLeftByADeadProcessIsTakenOver) {
   EXPECT_TRUE(fs::is_empty(dead.directory()));
 }
 
-TEST(ControlSocket, OneInUseIsRefusedAndGoesOnWorking) {
+TEST(ControlSocket, ASocketInUseIsRefusedAndContinuesToWork) {
   Simulator simulator({"EX9055D"});
   const Directory directory;
   expect_refused(simulator.socket(), directory);
@@ -369,7 +369,7 @@ TEST(ControlSocket, OneInUseIsRefusedAndGoesOnWorking) {
   EXPECT_TRUE(is_answered(*clients[0]));
 }
 
-TEST(ControlSocket, SomethingElseAtThePathIsRefusedAndLeftAlone) {
+TEST(ControlSocket, AnyOtherFileAtThePathIsRefusedAndLeftAlone) {
   const Directory directory;
   write_file(directory / "file", "precious");
   write_file(directory / "empty", "");
@@ -383,7 +383,7 @@ TEST(ControlSocket, SomethingElseAtThePathIsRefusedAndLeftAlone) {
   expect_refused("/dev/null", directory);
 }
 
-TEST(ControlSocket, ASocketOfAnotherKindIsRefusedAndLeftAlone) {
+TEST(ControlSocket, ADatagramSocketAtThePathIsRefusedAndLeftAlone) {
   const Directory directory;
   const int datagrams = socket(AF_UNIX, SOCK_DGRAM | SOCK_CLOEXEC, 0);
   sockaddr_un address{};
@@ -394,7 +394,7 @@ TEST(ControlSocket, ASocketOfAnotherKindIsRefusedAndLeftAlone) {
   close(datagrams);
 }
 
-TEST(ControlSocket, APathThatCannotBeMadeIsRefusedAndLeavesNothing) {
+TEST(ControlSocket, APathThatCannotBeCreatedIsRefusedAndLeavesNothing) {
   const Directory directory;
   for (const std::string& path : {std::string("missing/control"), std::string("/proc/control"),
                                   std::string(108, 'x'), std::string(300, 'x')}) {
@@ -402,7 +402,7 @@ TEST(ControlSocket, APathThatCannotBeMadeIsRefusedAndLeavesNothing) {
   }
 }
 
-TEST(ControlSocket, ThePathMayBeAsLongAsTheSystemTakesIt) {
+TEST(ControlSocket, APathOfMaximumLengthIsAccepted) {
   const std::string name(107, 'x');
   SimulatorProcess simulator({"EX9055D", "--control", name});
   fs::create_symlink(name, simulator.directory() + "/short");

@@ -6,7 +6,7 @@
 namespace ex9000::sim {
 namespace {
 
-TEST(ControlFault, StrikesFromNowOnAndItsNumberEndsIt) {
+TEST(ControlFault, StrikesAtOnceAndIsRemovedByItsNumber) {
   ControlBench bench("EX9042D");
   EXPECT_EQ(bench.tell("1 fault lost-reply"), "ok 1");
   EXPECT_EQ(bench.ask("$01M"), "");
@@ -19,7 +19,7 @@ TEST(ControlFault, StrikesFromNowOnAndItsNumberEndsIt) {
   EXPECT_EQ(bench.tell("fault off all"), "ok");
 }
 
-TEST(ControlFault, TheListTellsWhatStrikesHowOftenAndWhom) {
+TEST(ControlFault, TheListShowsStateCountAndModuleOfEachFault) {
   ThreeModules modules;
   EXPECT_EQ(modules.tell("2 fault gone"), "ok 1");
   EXPECT_EQ(modules.tell("3 fault   power-cut \t after 3 writes"), "ok 2");
@@ -44,7 +44,7 @@ TEST(ControlFault, GoneIsIndependentOfThePowerSwitch) {
   EXPECT_TRUE(bench.status_has("power=off"));
 }
 
-TEST(ControlFault, AWrongOneIsRefusedAndNothingIsChanged) {
+TEST(ControlFault, AWrongFaultIsRefusedAndChangesNothing) {
   ControlBench bench("EX9055D");
   for (const char* command : {"fault",
                               "1 fault",
@@ -79,7 +79,7 @@ TEST(ControlFault, AWrongOneIsRefusedAndNothingIsChanged) {
   }
 }
 
-TEST(ControlFault, ARefusalNamesWhatIsWrongAndTheMend) {
+TEST(ControlFault, ARefusalNamesTheErrorAndTheRemedy) {
   ControlBench bench("EX9055D");
   EXPECT_TRUE(has(bench.tell("fault lost"), "'lost' is not a fault; expected one of bit-errors, lost-bytes"));
   EXPECT_TRUE(has(bench.tell("1 fault bit-errors 1"),

@@ -12,7 +12,7 @@ namespace {
 using Bytes = ModuleBench::Bytes;
 using std::chrono::milliseconds;
 
-TEST(ControlInputs, EveryInputOfEveryModelHasALevelOfItsOwn) {
+TEST(ControlInputs, EveryInputOfEveryModelHasItsOwnLevel) {
   for (const Model& model : kModels) {
     ControlBench bench(std::string(model.designation));
     unsigned levels = 0;
@@ -29,7 +29,7 @@ TEST(ControlInputs, EveryInputOfEveryModelHasALevelOfItsOwn) {
   }
 }
 
-TEST(ControlInputs, AModuleReadsLatchesAndCountsWhatIsSet) {
+TEST(ControlInputs, AModuleReadsLatchesAndCountsTheSetLevels) {
   ControlBench bench("EX9052D");
   bench.tell("1 input 6 on");
   EXPECT_EQ(bench.ask("@01"), ">4000");
@@ -42,7 +42,7 @@ TEST(ControlInputs, AModuleReadsLatchesAndCountsWhatIsSet) {
   EXPECT_EQ(bench.ask("#016"), "!0100001");
 }
 
-TEST(ControlInputs, LevelsOutlastAResetAndAPowerCut) {
+TEST(ControlInputs, LevelsSurviveAResetAndAPowerCut) {
   ControlBench bench("EX9052D");
   bench.tell("1 input 1 on");
   bench.tell("1 reset");
@@ -67,7 +67,7 @@ TEST(ControlInputs, AChannelThatTheModelLacksIsRefused) {
   }
 }
 
-TEST(ControlPulse, OnePulseIsBothEdgesAndTheLevelStays) {
+TEST(ControlPulse, APulseMakesBothEdgesAndKeepsTheLevel) {
   for (const bool high : {false, true}) {
     for (const std::string edge : {"falling", "rising"}) {
       ControlBench bench("EX9052D,edge=" + edge);
@@ -84,7 +84,7 @@ TEST(ControlPulse, OnePulseIsBothEdgesAndTheLevelStays) {
   }
 }
 
-TEST(ControlPulse, AsManyAsAreAskedForAreCountedAtOnceUpToAMillion) {
+TEST(ControlPulse, UpToAMillionPulsesAreCountedAtOnce) {
   struct Case {
     const char* count;
     const char* ascii;  ///< modulo 100000
@@ -110,7 +110,7 @@ TEST(ControlPulse, AsManyAsAreAskedForAreCountedAtOnceUpToAMillion) {
   }
 }
 
-TEST(ControlPulse, ACountThatIsNoneIsRefused) {
+TEST(ControlPulse, AnInvalidCountIsRefused) {
   ControlBench bench("EX9052D");
   for (const char* count :
        {"0", "00", "1000001", "10000000", "999999999", "4294967296", "4294967297", "18446744073709551617",

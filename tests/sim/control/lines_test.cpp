@@ -18,7 +18,7 @@ TEST(ControlLine, ListNamesEveryModuleByItsPosition) {
   EXPECT_TRUE(has(modules.tell("list"), "2 EX9052D"));
 }
 
-TEST(ControlLine, APositionIsThatModuleAndNoOther) {
+TEST(ControlLine, APositionSelectsOnlyThatModule) {
   ThreeModules modules;
   EXPECT_EQ(modules.tell("3 input 0 on"), "ok");
   EXPECT_EQ(modules.at(2).input_levels(), 0);
@@ -84,7 +84,7 @@ class TwoLines {
   Control control_{{{"hall", hall_}, {"yard", yard_}}};
 };
 
-TEST(ControlLines, ModulesAreNumberedThroughAllOfThem) {
+TEST(ControlLines, ModulesAreNumberedAcrossAllLines) {
   TwoLines lines;
   EXPECT_EQ(lines.tell("list"),
             "ok 3 modules: 1 EX9042D at 01 on hall, 2 EX9052D at 02 on hall, 3 EX9055D at 01 on yard");
@@ -94,7 +94,7 @@ TEST(ControlLines, ModulesAreNumberedThroughAllOfThem) {
   EXPECT_TRUE(has(lines.tell("4 power off"), "no module 4; there are 1 to 3"));
 }
 
-TEST(ControlLines, AFaultIsOfTheLineThatIsNamedOrWhoseModuleIs) {
+TEST(ControlLines, AFaultBelongsToTheNamedLineOrToTheLineOfItsModule) {
   TwoLines lines;
   EXPECT_EQ(lines.tell("3 fault gone"), "ok 1");
   EXPECT_FALSE(lines.yard().module(0).powered());
@@ -111,7 +111,7 @@ TEST(ControlLines, AFaultIsOfTheLineThatIsNamedOrWhoseModuleIs) {
   EXPECT_TRUE(lines.yard().module(0).powered());
 }
 
-TEST(ControlLine, ARateIsTheMastersFromNowOn) {
+TEST(ControlLine, BaudSetsTheRateOfTheMaster) {
   ControlBench bench("EX9052D");
   EXPECT_EQ(bench.tell("baud 19200"), "ok");
   EXPECT_EQ(bench.line().master().baud(), 19200U);
@@ -121,14 +121,14 @@ TEST(ControlLine, ARateIsTheMastersFromNowOn) {
   }
 }
 
-TEST(ControlLine, SentIsTheCountOfBytesThatItsPortsGot) {
+TEST(ControlLine, SentReportsTheNumberOfBytesSentToThePorts) {
   ModuleBench bench("EX9052D");
   Control control({{"", bench.line(), [] { return 42U; }}});
   EXPECT_EQ(control.carry_out("sent").text, "ok 42");
   EXPECT_EQ(control.carry_out("sent now").text.rfind("error: ", 0), 0U);
 }
 
-TEST(ControlLine, TimeThatMovesByItselfIsNotAdvanced) {
+TEST(ControlLine, AdvanceRequiresSteppedTime) {
   ControlBench bench("EX9052D");
   const VirtualTime now = bench.now();
   EXPECT_EQ(bench.tell("advance 1s"),
@@ -136,7 +136,7 @@ TEST(ControlLine, TimeThatMovesByItselfIsNotAdvanced) {
   EXPECT_EQ(bench.now(), now);
 }
 
-TEST(ControlLines, ARateIsOfTheLineThatIsNamed) {
+TEST(ControlLines, BaudAppliesOnlyToTheNamedLine) {
   TwoLines lines;
   EXPECT_EQ(lines.tell("line yard baud 115200"), "ok");
   EXPECT_EQ(lines.yard().master().baud(), 115200U);

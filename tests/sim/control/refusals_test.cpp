@@ -8,7 +8,7 @@
 namespace ex9000::sim {
 namespace {
 
-TEST(ControlRefusals, WhatIsNoCommandIsRefused) {
+TEST(ControlRefusals, InvalidCommandsAreRefused) {
   ControlBench bench("EX9055D");
   for (const char* command : {"",
                               " ",
@@ -61,7 +61,7 @@ TEST(ControlRefusals, WhatIsNoCommandIsRefused) {
   }
 }
 
-TEST(ControlRefusals, BytesThatAreNoTextAreRefusedInOneLine) {
+TEST(ControlRefusals, BinaryBytesAndOverlongCommandsAreRefusedInOneLine) {
   ControlBench bench("EX9055D");
   using namespace std::string_literals;
   for (const std::string& command :

@@ -19,7 +19,7 @@ TEST(ControlPower, OffSilencesTheModuleAndDropsItsOutputs) {
   EXPECT_EQ(bench.ask("$01M"), "");
 }
 
-TEST(ControlPower, OnBringsItBackWithItsPowerOnValueAndResetStatus) {
+TEST(ControlPower, OnRestartsTheModuleWithItsPowerOnValueAndResetStatus) {
   ControlBench bench("EX9042D");
   bench.ask("@010A05");
   ASSERT_EQ(bench.ask("~015P"), "!01");
@@ -32,7 +32,7 @@ TEST(ControlPower, OnBringsItBackWithItsPowerOnValueAndResetStatus) {
   EXPECT_EQ(bench.ask("$015"), "!011");
 }
 
-TEST(ControlPower, ItMayBeSetToWhatItIsWithoutEffect) {
+TEST(ControlPower, SettingTheCurrentStateHasNoEffect) {
   ControlBench bench("EX9042D");
   bench.ask("@010001");
   bench.ask("$015");
@@ -45,7 +45,7 @@ TEST(ControlPower, ItMayBeSetToWhatItIsWithoutEffect) {
   EXPECT_EQ(bench.ask("$01M"), "");
 }
 
-TEST(ControlPower, OffInTheMiddleOfAWriteLeavesTheOldSettingsOrTheNew) {
+TEST(ControlPower, OffDuringAWriteLeavesTheOldOrTheNewSettings) {
   for (int cut = 0; cut <= 12; ++cut) {
     ControlBench bench("EX9042D,name=OLD");
     bench.send("~01ONEW\r");
@@ -58,7 +58,7 @@ TEST(ControlPower, OffInTheMiddleOfAWriteLeavesTheOldSettingsOrTheNew) {
   }
 }
 
-TEST(ControlReset, ItIsAResetLikeAnyOther) {
+TEST(ControlReset, ClearsOutputsAndCountersAndSetsTheResetStatus) {
   ControlBench bench("EX9055D");
   bench.tell("1 input 3 on");
   bench.tell("1 pulse 0 7");
@@ -74,7 +74,7 @@ TEST(ControlReset, ItIsAResetLikeAnyOther) {
   EXPECT_TRUE(bench.status_has("watchdog-resets=0"));
 }
 
-TEST(ControlInit, TheModeIsChosenAtTheNextReset) {
+TEST(ControlInit, InitModeIsEnteredAndLeftOnlyAtAReset) {
   ControlBench bench("EX9042D-M@0A");
   EXPECT_EQ(bench.tell("1 init on"), "ok");
   bench.run(milliseconds(100));
@@ -92,7 +92,7 @@ TEST(ControlInit, TheModeIsChosenAtTheNextReset) {
   EXPECT_EQ(bench.ask("$002"), "");
 }
 
-TEST(ControlInit, PermissionIsThereAsSoonAsItIsDebounced) {
+TEST(ControlInit, PermissionFollowsTheDebouncedSwitch) {
   ControlBench bench("EX9042D");
   EXPECT_EQ(bench.ask("%0101400700"), "?01");
   bench.tell("1 init on");
@@ -103,7 +103,7 @@ TEST(ControlInit, PermissionIsThereAsSoonAsItIsDebounced) {
   EXPECT_EQ(bench.ask("%0101400600"), "?01");
 }
 
-TEST(ControlInit, ItCanBeTiedBeforeThePowerComes) {
+TEST(ControlInit, CanBeSetBeforePowerOn) {
   ControlBench bench("EX9042D@0A");
   bench.tell("1 power off");
   EXPECT_EQ(bench.tell("1 init on"), "ok");
@@ -112,7 +112,7 @@ TEST(ControlInit, ItCanBeTiedBeforeThePowerComes) {
   EXPECT_EQ(bench.ask("$00M"), "!009042D");
 }
 
-TEST(ControlHang, TheModuleWatchdogResetsItWithin1600msWheneverItHangs) {
+TEST(ControlHang, TheModuleWatchdogResetsAHungModuleWithin1600ms) {
   for (int moment = 0; moment < 400; moment += 37) {
     ControlBench bench("EX9042D");
     bench.ask("@010003");
@@ -132,7 +132,7 @@ TEST(ControlHang, TheModuleWatchdogResetsItWithin1600msWheneverItHangs) {
   }
 }
 
-TEST(ControlHang, AHungModuleIsSilentAndKeepsItsOutputsUntilThen) {
+TEST(ControlHang, AHungModuleIsSilentAndKeepsItsOutputs) {
   ControlBench bench("EX9042D");
   bench.ask("@011FFF");
   bench.tell("1 hang");
@@ -141,7 +141,7 @@ TEST(ControlHang, AHungModuleIsSilentAndKeepsItsOutputsUntilThen) {
   EXPECT_EQ(bench.number("1 outputs"), 0x1FFFU);
 }
 
-TEST(ControlHang, ASecondOneDelaysNothing) {
+TEST(ControlHang, ASecondHangDoesNotDelayTheWatchdogReset) {
   ControlBench bench("EX9042D");
   bench.tell("1 hang");
   bench.run(milliseconds(900));
@@ -153,7 +153,7 @@ TEST(ControlHang, ASecondOneDelaysNothing) {
   EXPECT_EQ(bench.ask("$01M"), "!019042D");
 }
 
-TEST(ControlHang, AResetOrAPowerCutEndsItBefore) {
+TEST(ControlHang, AResetOrAPowerCutEndsAHang) {
   for (const bool cut : {false, true}) {
     ControlBench bench("EX9042D");
     bench.tell("1 hang");
@@ -171,7 +171,7 @@ TEST(ControlHang, AResetOrAPowerCutEndsItBefore) {
   }
 }
 
-TEST(ControlHang, EverythingElseCanBeDoneToAHungModule) {
+TEST(ControlHang, OtherCommandsWorkOnAHungModule) {
   ControlBench bench("EX9055D");
   bench.tell("1 hang");
   for (const char* command : {"1 input 0 on", "1 pulse 1 100000", "1 init on", "1 init off", "1 inputs",
@@ -183,7 +183,7 @@ TEST(ControlHang, EverythingElseCanBeDoneToAHungModule) {
   EXPECT_EQ(bench.ask("@01"), ">0001");
 }
 
-TEST(ControlWithoutPower, ResetAndHangAreRefusedAndEverythingElseIsAnswered) {
+TEST(ControlWithoutPower, ResetAndHangAreRefusedAndStatesCanBeRead) {
   ControlBench bench("EX9055D");
   bench.tell("1 power off");
   bench.expect_refused("1 reset");

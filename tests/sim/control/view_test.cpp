@@ -10,7 +10,7 @@ namespace {
 
 using std::chrono::milliseconds;
 
-TEST(ControlOutputs, EveryOutputOfEveryModelIsABitOfItsOwn) {
+TEST(ControlOutputs, EveryOutputOfEveryModelHasItsOwnBit) {
   for (const Model& model : kModels) {
     if (model.outputs == 0) {
       continue;
@@ -25,7 +25,7 @@ TEST(ControlOutputs, EveryOutputOfEveryModelIsABitOfItsOwn) {
   }
 }
 
-TEST(ControlLed, ItIsOnFlashesAfterATimeoutAndIsOffWithoutPower) {
+TEST(ControlLed, IsOnFlashesAfterATimeoutAndIsOffWithoutPower) {
   ControlBench bench("EX9042D");
   EXPECT_EQ(bench.tell("1 led"), "ok on");
   ASSERT_EQ(bench.ask("~013101"), "!01");
@@ -51,7 +51,7 @@ TEST(ControlLed, ItFlashesWhileTheSettingsCannotBeRead) {
   EXPECT_EQ(bench.tell("1 led"), "ok on");
 }
 
-TEST(ControlStatus, ItTellsWhatIsInForce) {
+TEST(ControlStatus, ReportsTheSettingsInForce) {
   ControlBench ascii("EX9042D@1f,baud=115200,checksum=on");
   const std::string of_ascii = ascii.tell("1 status");
   for (const char* part : {"EX9042D", "address=1F", "protocol=ascii", "baud=115200", "checksum=on",
@@ -80,7 +80,7 @@ TEST(ControlStatus, ItFollowsTheHostWatchdog) {
   EXPECT_TRUE(bench.status_has("host-watchdog=disabled"));
 }
 
-TEST(ControlStatus, AModuleThatStartsOrHasNoPowerHasOneToo) {
+TEST(ControlStatus, IsReportedDuringStartAndWithoutPower) {
   ControlBench bench("EX9042D");
   bench.tell("1 reset");
   EXPECT_TRUE(bench.status_has("EX9042D"));

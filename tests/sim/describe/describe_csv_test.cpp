@@ -55,7 +55,7 @@ Cells row(const char* designation, const std::string& table, const std::string& 
   return {};
 }
 
-TEST(DescribeCsv, HasAHeadAndEveryRowItsCells) {
+TEST(DescribeCsv, HasAHeaderAndAllCellsInEveryRow) {
   const std::vector<Cells> rows = rows_of(csv_of(all_models()));
   EXPECT_EQ(rows.front(), (Cells{"model", "table", "address", "plc_number", "channel", "functions", "command",
                                  "reply", "access", "range", "needs_init", "id", "meaning"}));
@@ -64,14 +64,14 @@ TEST(DescribeCsv, HasAHeadAndEveryRowItsCells) {
   }
 }
 
-TEST(DescribeCsv, HasARowACommandACoilAndARegister) {
+TEST(DescribeCsv, HasOneRowPerCommandCoilAndRegister) {
   // 21 commands, 3 x 13 coils for outputs, 3 general coils, 5 holding registers, host OK in two tables
   EXPECT_EQ(table_of("EX9042D-M").size(), 1U + 21 + 39 + 3 + 5 + 2);
   // 23 commands, because the model has inputs and outputs; no registers, because it does not speak Modbus
   EXPECT_EQ(table_of("EX9055D").size(), 1U + 23);
 }
 
-TEST(DescribeCsv, ACommandHasWhatIsAskedForAndAnswered) {
+TEST(DescribeCsv, ACommandRowHasSyntaxReplyAccessAndMeaning) {
   EXPECT_EQ(row("EX9042D-M", "DCON command", "~AA3EVV"),
             (Cells{"EX9042D-M", "DCON command", "", "", "", "", "~AA3EVV", "!AA", "stored",
                    "E: 0 off, 1 on; VV: timeout 01-FF in units of 0.1 s", "no", "set-watchdog",

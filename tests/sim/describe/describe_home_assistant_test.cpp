@@ -23,7 +23,7 @@ std::ptrdiff_t times(const std::string& text, const std::string& part) {
 
 bool has_once(const std::string& text, const std::string& part) { return times(text, part) == 1; }
 
-TEST(DescribeHomeAssistant, IsReachedOverTheSimulatorsPort) {
+TEST(DescribeHomeAssistant, UsesRtuOverTcpOnTheSimulatorsPort) {
   EXPECT_TRUE(has_once(configuration_of("EX9042D-M"),
                        "- name: ex9042d_m_01\n"
                        "  type: rtuovertcp\n"
@@ -103,7 +103,7 @@ TEST(DescribeHomeAssistant, TheHostWatchdogIsShown) {
                        "      unit_of_measurement: s\n"));
 }
 
-TEST(DescribeHomeAssistant, WhatCanBeClearedIsAnAction) {
+TEST(DescribeHomeAssistant, ClearCommandsAreListedAsActions) {
   const std::string text = configuration_of("EX9052D-M", {{}, 0x02});
   EXPECT_TRUE(has_once(
       text,
@@ -114,7 +114,7 @@ TEST(DescribeHomeAssistant, WhatCanBeClearedIsAnAction) {
   EXPECT_EQ(times(configuration_of("EX9042D-M"), "modbus.write_coil"), 1);
 }
 
-TEST(DescribeHomeAssistant, NothingIsPolledThatDoesNotAnswerOrTakesTheModuleAway) {
+TEST(DescribeHomeAssistant, DoesNotPollHostOkCommunicationSettingsOrClearRegisters) {
   for (const char* model : {"EX9043D-M", "EX9052D-M"}) {
     for (const char* address :
          {"12344", "256", "484", "485", "512"}) {  // host OK, protocol, address, rate, clear

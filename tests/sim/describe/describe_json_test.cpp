@@ -42,7 +42,7 @@ TEST(DescribeJson, HasEveryModelAndTheFirmwaresVersion) {
   EXPECT_EQ(json_of_model("EX9060D").at("model"), "EX9060D");
 }
 
-TEST(DescribeJson, HasAModelsFacts) {
+TEST(DescribeJson, HasThePropertiesOfAModel) {
   const Json relays = json_of_model("EX9068D-M");
   EXPECT_EQ(relays.at("inputs"), 0);
   EXPECT_EQ(relays.at("outputs"), 8);
@@ -103,7 +103,7 @@ TEST(DescribeJson, HasAModelsRegisters) {
   EXPECT_EQ(json_of_model("EX9043D").at("modbus_registers"), Json::array());
 }
 
-TEST(DescribeJson, WhatIsOnlyReadOrOnlyWrittenIsSaidToBe) {
+TEST(DescribeJson, MarksReadOnlyAndWriteOnlyRegisters) {
   const Json registers = json_of_model("EX9052D-M").at("modbus_registers");
   const Json counters = in_table(registers, "counters", "input register");
   EXPECT_EQ(counters.at("last"), 7);

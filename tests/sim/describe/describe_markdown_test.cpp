@@ -156,7 +156,7 @@ std::string difference(const std::string& stands, const std::string& wanted) {
                                 : "'" + *line.first + "'\nwhere the program prints\n'" + *line.second + "'";
 }
 
-TEST(Registers, HoldsWhatTheProgramPrints) {
+TEST(Registers, MatchTheOutputOfTheProgram) {
   const std::string found = difference(generated_section(), markdown_of_all());
   EXPECT_TRUE(found.empty()) << "registers.md has\n" << found << "\nRenew it with toolchain/update-documents";
 }
@@ -181,7 +181,7 @@ TEST(DescribeMarkdown, ListsEveryModel) {
   }
 }
 
-TEST(DescribeMarkdown, SaysWhatAModelIs) {
+TEST(DescribeMarkdown, ShowsThePropertiesOfAModel) {
   EXPECT_EQ(
       row_beginning("EX9042D-M"),
       "| EX9042D-M | 13 open-collector outputs | - | 13 | ASCII, Modbus RTU | `9042M` | 0x9042 | DO8-12 | "
@@ -198,7 +198,7 @@ TEST(DescribeMarkdown, SaysWhatAModelIs) {
       "00, 04 |");
 }
 
-TEST(DescribeMarkdown, OfOneModelIsOfNoOther) {
+TEST(DescribeMarkdown, OfOneModelListsOnlyThatModel) {
   for (const Model& model : kModels) {
     const std::string text = markdown_of(model);
     EXPECT_EQ(
@@ -231,7 +231,7 @@ TEST(DescribeMarkdown, AModelWithInputsAndModbusHasItsCommands) {
                    "@AA",         "~AAO(Name)", "~**",  "~AA0",  "~AA1",  "~AA2", "~AA3EVV"}));
 }
 
-TEST(DescribeMarkdown, AModelWithBothHasAllButTheProtocolsCommands) {
+TEST(DescribeMarkdown, AModelWithInputsAndOutputsHasAllButTheProtocolCommands) {
   const Lines wanted{"%AANNTTCCFF", "#**",  "#AABBDD", "#AAN",  "$AA2",    "$AA4",  "$AA5",      "$AA6",
                      "$AAF",        "$AAM", "$AAC",    "$AACN", "$AALS",   "@AA",   "@AA(Data)", "~AAO(Name)",
                      "~**",         "~AA0", "~AA1",    "~AA2",  "~AA3EVV", "~AA4V", "~AA5V"};
@@ -248,7 +248,7 @@ TEST(DescribeMarkdown, SaysWhichModelsHaveACommand) {
   EXPECT_TRUE(ends(row_beginning("`$AAP`"), " | -M |"));
 }
 
-TEST(DescribeMarkdown, SaysWhatACommandAnswersAndNeeds) {
+TEST(DescribeMarkdown, ShowsReplyAccessAndInitRequirementOfACommand) {
   EXPECT_EQ(row_beginning("`$AAM`"),
             "| `$AAM` | `!AA(Name)` | read the module's name | - | read | - | all |");
   EXPECT_TRUE(has(row_beginning("`#**`"), "| `#**` | - |"));
@@ -285,7 +285,7 @@ const Lines kBaud{"holding register", "0x01E5", "40486", "03, 06, 10", "read, wr
 const Lines kTimeout{"holding register", "0x01E8", "40489", "03, 06, 10", "read, write"};
 const Lines kHostOk{"holding register", "0x3038", "412345", "03", "read"};
 
-TEST(DescribeMarkdown, MapOfThirteenOutputs) {
+TEST(DescribeMarkdown, ListsTheModbusMapOfThirteenOutputs) {
   EXPECT_EQ(map_of("EX9042D-M"),
             (std::vector<Lines>{{"coil", "0x0000-0x000C", "00001-00013", "01, 05, 0F", "read, write"},
                                 {"coil", "0x0080-0x008C", "00129-00141", "01, 05, 0F", "read, write"},
@@ -301,7 +301,7 @@ TEST(DescribeMarkdown, MapOfThirteenOutputs) {
                                 kHostOk}));
 }
 
-TEST(DescribeMarkdown, MapOfEightOutputs) {
+TEST(DescribeMarkdown, ListsTheModbusMapOfEightOutputs) {
   EXPECT_EQ(map_of("EX9068AD-M"),
             (std::vector<Lines>{{"coil", "0x0000-0x0007", "00001-00008", "01, 05, 0F", "read, write"},
                                 {"coil", "0x0080-0x0087", "00129-00136", "01, 05, 0F", "read, write"},
@@ -317,7 +317,7 @@ TEST(DescribeMarkdown, MapOfEightOutputs) {
                                 kHostOk}));
 }
 
-TEST(DescribeMarkdown, MapOfEightInputs) {
+TEST(DescribeMarkdown, ListsTheModbusMapOfEightInputs) {
   EXPECT_EQ(map_of("EX9052D-M"),
             (std::vector<Lines>{{"coil", "0x0020-0x0027", "00033-00040", "01", "read"},
                                 {"coil", "0x0040-0x0047", "00065-00072", "01", "read"},
@@ -346,7 +346,7 @@ TEST(DescribeMarkdown, AModelWithoutModbusHasNoMap) {
   }
 }
 
-TEST(DescribeMarkdown, SaysWhatARegisterIsAndWhatMayBeWritten) {
+TEST(DescribeMarkdown, ShowsMeaningAndRangeOfARegister) {
   const std::string text = text_of("EX9052D-M");
   for (const modbus::WordRegister& row : modbus::kWordRegisters) {
     EXPECT_TRUE(has(text, " | " + std::string(row.meaning) + " |\n")) << row.id;

@@ -36,7 +36,7 @@ Json first(const Json& flow, const char* key, const char* value) {
   return found == flow.end() ? Json() : *found;
 }
 
-TEST(DescribeNodeRed, IsReachedOverTheSimulatorsPortWithTheBytesOfTheLine) {
+TEST(DescribeNodeRed, SendsRtuFramesOverTcpToTheGivenPort) {
   const Json client = first(flow_of("EX9042D-M", {{"gateway", 4001}, 0x0A}), "type", "modbus-client");
   EXPECT_EQ(client.at("tcpHost"), "gateway");
   EXPECT_EQ(client.at("tcpPort"), "4001");
@@ -45,13 +45,13 @@ TEST(DescribeNodeRed, IsReachedOverTheSimulatorsPortWithTheBytesOfTheLine) {
   EXPECT_EQ(client.at("parallelUnitIdsAllowed"), false);
 }
 
-TEST(DescribeNodeRed, ReadsWhatAModelWithOutputsHas) {
+TEST(DescribeNodeRed, ReadsTheRegistersOfAModelWithOutputs) {
   EXPECT_EQ(asked(flow_of("EX9042D-M"), "modbus-read"),
             (std::vector<std::string>{"Coil 0 13", "Coil 128 13", "Coil 160 13", "Coil 260 1", "Coil 269 1",
                                       "HoldingRegister 488 1"}));
 }
 
-TEST(DescribeNodeRed, ReadsWhatAModelWithInputsHas) {
+TEST(DescribeNodeRed, ReadsTheRegistersOfAModelWithInputs) {
   EXPECT_EQ(asked(flow_of("EX9052D-M"), "modbus-read"),
             (std::vector<std::string>{"Coil 64 8", "Coil 96 8", "Coil 260 1", "Coil 269 1", "Input 0 8",
                                       "InputRegister 0 8", "HoldingRegister 488 1"}));
@@ -73,7 +73,7 @@ TEST(DescribeNodeRed, SwitchesEachOutputOnAndOff) {
   EXPECT_EQ(injected, (std::vector<std::string>{"on true", "off false"}));
 }
 
-TEST(DescribeNodeRed, ClearsWhatCanBeCleared) {
+TEST(DescribeNodeRed, HasAWriteForEveryClearCommand) {
   const std::vector<std::string> writes = asked(flow_of("EX9052D-M"), "modbus-write");
   EXPECT_EQ(writes,
             (std::vector<std::string>{"Coil 263 1", "Coil 269 1", "Coil 512 1", "Coil 513 1", "Coil 514 1",

@@ -31,7 +31,7 @@ void expect_refused(const DescribeTexts& texts, const std::string& wrong, const 
   }
 }
 
-TEST(Describe, MarkdownJsonAndCsvAreOfEveryModelAndOfAll) {
+TEST(Describe, MarkdownJsonAndCsvDescribeOneModelOrAll) {
   for (const char* format : {"markdown", "json", "csv"}) {
     const std::string all = described("", format);
     for (const Model& model : kModels) {
@@ -43,7 +43,7 @@ TEST(Describe, MarkdownJsonAndCsvAreOfEveryModelAndOfAll) {
   }
 }
 
-TEST(Describe, TheOthersAreOfModelsThatSpeakModbus) {
+TEST(Describe, TheOtherFormatsRequireAModelWithModbus) {
   for (const char* format : {"home-assistant", "node-red", "wb-mqtt-serial"}) {
     for (const Model& model : kModels) {
       const std::string name(model.designation);
@@ -72,7 +72,7 @@ TEST(Describe, AnAddressIsOneOrTwoHexDigitsFrom01ToF7) {
   EXPECT_NE(describe({"EX9042D-M", "home-assistant", "a", {}}).find("slave: 10\n"), std::string::npos);
 }
 
-TEST(Describe, APortIsOneThatASimulatorServes) {
+TEST(Describe, AnInvalidTcpHostOrPortIsRefused) {
   for (const char* tcp : {"", "0", "localhost:0", "localhost", "65536", "a b:1", "\xFF:1", "\"a\":1"}) {
     expect_refused({"EX9042D-M", "node-red", {}, tcp}, "--tcp ", "HOST:PORT");
   }
@@ -81,7 +81,7 @@ TEST(Describe, APortIsOneThatASimulatorServes) {
   EXPECT_NE(text.find("\"tcpPort\": \"4001\""), std::string::npos);
 }
 
-TEST(Describe, AFormatThatIsOfNoModuleHasNoAddressAndNoPort) {
+TEST(Describe, FormatsOtherThanHomeAssistantAndNodeRedRefuseAddressAndTcp) {
   for (const char* format : {"markdown", "json", "csv", "wb-mqtt-serial"}) {
     expect_refused({"EX9042D-M", format, "01", {}}, "--address: --format " + std::string(format),
                    "leave it out");
@@ -90,7 +90,7 @@ TEST(Describe, AFormatThatIsOfNoModuleHasNoAddressAndNoPort) {
   }
 }
 
-TEST(Describe, AnUnknownFormatIsRefusedWithTheOnesThereAre) {
+TEST(Describe, AnUnknownFormatIsRefusedWithAListOfFormats) {
   for (const char* format : {"", "yaml", "Markdown", "json "}) {
     expect_refused({"EX9042D-M", format, {}, {}}, std::string("--format ") + format, describe_formats());
   }

@@ -25,7 +25,7 @@ Json channel(const char* designation, const char* name) {
   return {};
 }
 
-TEST(DescribeWbMqttSerial, IsCalledAfterItsModel) {
+TEST(DescribeWbMqttSerial, IsNamedAfterItsModel) {
   const Json all = template_of("EX9068AD-M");
   EXPECT_EQ(all.at("title"), "EX9068AD-M, 8 PhotoMOS outputs");
   EXPECT_EQ(all.at("device_type"), "EX9068AD-M");
@@ -33,7 +33,7 @@ TEST(DescribeWbMqttSerial, IsCalledAfterItsModel) {
   EXPECT_EQ(all.at("device").at("id"), "ex9068ad_m");
 }
 
-TEST(DescribeWbMqttSerial, ARequestTakesAllChannelsAtOnceAndWaitsForTheSilence) {
+TEST(DescribeWbMqttSerial, AllowsAReadOfAllChannelsAfterAGuardInterval) {
   EXPECT_EQ(template_of("EX9043D-M").at("device").at("max_read_registers"), 16);
   EXPECT_EQ(template_of("EX9052D-M").at("device").at("max_read_registers"), 8);
   EXPECT_EQ(template_of("EX9052D-M").at("device").at("guard_interval_us"), 3645);  // 35 bits at 9600 baud
@@ -48,14 +48,14 @@ TEST(DescribeWbMqttSerial, OutputsAreSwitches) {
   EXPECT_TRUE(channel("EX9042D-M", "Output 13").is_null());
 }
 
-TEST(DescribeWbMqttSerial, PresetsAreShownWhereSomebodyWantsThem) {
+TEST(DescribeWbMqttSerial, PowerOnValuesAreReadOnlyAndDisabledByDefault) {
   const Json preset = channel("EX9042D-M", "Power-on value 12");
   EXPECT_EQ(preset.at("address"), 0xAC);
   EXPECT_EQ(preset.at("enabled"), false);
   EXPECT_EQ(preset.at("readonly"), true);
 }
 
-TEST(DescribeWbMqttSerial, InputsAndCountersAreRead) {
+TEST(DescribeWbMqttSerial, InputsAndCountersAreReadOnly) {
   EXPECT_EQ(channel("EX9052D-M", "Input 7"), (Json{{"name", "Input 7"},
                                                    {"id", "inputs_7"},
                                                    {"reg_type", "discrete"},
@@ -72,7 +72,7 @@ TEST(DescribeWbMqttSerial, InputsAndCountersAreRead) {
   EXPECT_EQ(channel("EX9052D-M", "Latch high 0").at("address"), 0x40);
 }
 
-TEST(DescribeWbMqttSerial, WhatIsOnlyWrittenIsAButtonThatIsNotRead) {
+TEST(DescribeWbMqttSerial, ClearCommandsAreWriteOnlyPushbuttons) {
   EXPECT_EQ(channel("EX9052D-M", "Clear counter 7"), (Json{{"name", "Clear counter 7"},
                                                            {"id", "clear_counters_7"},
                                                            {"reg_type", "coil"},

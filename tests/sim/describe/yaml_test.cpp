@@ -29,13 +29,13 @@ TEST(Yaml, ScalarsMayBeItems) {
             "- - false\n");
 }
 
-TEST(Yaml, WhatIsEmptyIsSaidToBe) {
+TEST(Yaml, EmptyValuesAreWrittenExplicitly) {
   EXPECT_EQ(yaml_of(Ordered{{"a", Ordered::object()}, {"b", Ordered::array()}, {"c", ""}}),
             "a: {}\nb: []\nc: \"\"\n");
   EXPECT_EQ(yaml_of(Ordered::object()), "{}\n");
 }
 
-TEST(Yaml, WhatCouldBeTakenForSomethingElseIsQuoted) {
+TEST(Yaml, AmbiguousStringsAreQuoted) {
   const auto scalar = [](const char* text) { return yaml_of(Ordered(text)); };
   for (const char* word : {"on",   "Off", "YES", "no",  "y",    "N",    "true",      "null", "~",  "12",
                            "0x10", "1e3", "-",   "- a", "a: b", "a #b", "127.0.0.1", "a ",   " a", "*a",

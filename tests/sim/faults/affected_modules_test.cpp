@@ -11,7 +11,7 @@ namespace {
 
 using namespace std::chrono_literals;
 
-TEST(FaultsOfAModule, LeaveTheOthersAlone) {
+TEST(FaultsOfAModule, DoNotAffectOtherModules) {
   for (const char* trouble : {"lost-reply", "late-reply 30ms", "late-driver 5ms", "wrong-rate 1200", "gone",
                               "power-cut", "hang", "lost-reply every reply", "late-reply 30ms every reply",
                               "gone every reply for 5s", "hang every reply", "power-cut every reply",
@@ -25,7 +25,7 @@ TEST(FaultsOfAModule, LeaveTheOthersAlone) {
   }
 }
 
-TEST(FaultsOfAllModules, ThatStrikeWithAReplyBefallWhoSendsIt) {
+TEST(FaultsOfAllModules, TriggeredByAReplyStrikeOnlyItsSender) {
   FaultBench bench(two());
   bench.add("gone every reply for 10s");
   EXPECT_EQ(bench.ask("$01M"), "");
@@ -43,7 +43,7 @@ TEST(FaultsOfAllModules, ThatStrikeWithAReplyBefallWhoSendsIt) {
   EXPECT_TRUE(bench.at(2).powered());
 }
 
-TEST(FaultsOfAllModules, StrikeAllThatThereAre) {
+TEST(FaultsOfAllModules, AtAGivenTimeStrikeEveryModule) {
   FaultBench bench(two());
   bench.add("gone at 1s");
   bench.run_until(1s);
@@ -51,7 +51,7 @@ TEST(FaultsOfAllModules, StrikeAllThatThereAre) {
   EXPECT_FALSE(bench.at(2).powered());
 }
 
-TEST(FaultsOfAModule, ThatTheLineLacksAreRefused) {
+TEST(FaultsOfAModule, AreRefusedIfTheLineHasNoSuchModule) {
   FaultBench bench(two());
   EXPECT_EQ(refusal([&] { bench.add("gone", 3); }), "gone: no module 3; this line has 1 to 2");
   EXPECT_TRUE(bench.faults().list().empty());
@@ -68,7 +68,7 @@ TEST(NoiseOfAReply, HitsThatReplyAndNothingElse) {
   }
 }
 
-TEST(NoiseOfSeveralFaults, IsThatOfTheWorst) {
+TEST(NoiseOfSeveralFaults, HasTheHighestProbability) {
   FaultBench bench;
   const std::size_t worst = bench.add("lost-bytes 1");
   bench.add("lost-bytes 1e-9");

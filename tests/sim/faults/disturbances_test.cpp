@@ -41,7 +41,7 @@ struct Flips final : Disturbance {
   Levels mask;
 };
 
-TEST(Disturbance, OfADataBitMakesAnotherByteAndLeavesTheNextAlone) {
+TEST(Disturbance, OfADataBitChangesOnlyThatByte) {
   TwoOnALine line;
   Flips flips(1U << 3U);
   line.bus.disturb(flips);
@@ -49,7 +49,7 @@ TEST(Disturbance, OfADataBitMakesAnotherByteAndLeavesTheNextAlone) {
   EXPECT_EQ(line.heard, (Heard{{0x51, ByteStatus::Good}, {0x12, ByteStatus::Good}}));
 }
 
-TEST(Disturbance, OfTheStopBitIsAFramingErrorAndOfZerosABreak) {
+TEST(Disturbance, OfTheStopBitGivesAFramingErrorOrForAZeroByteABreak) {
   for (const auto& [byte, status] : Heard{{0xF0, ByteStatus::FramingError}, {0x00, ByteStatus::Break}}) {
     TwoOnALine line;
     Flips flips(1U << 9U);
@@ -59,7 +59,7 @@ TEST(Disturbance, OfTheStopBitIsAFramingErrorAndOfZerosABreak) {
   }
 }
 
-TEST(Disturbance, OfTheStartBitMakesTheFirst0TheStart) {
+TEST(Disturbance, OfTheStartBitMakesTheFirstZeroBitTheStartBit) {
   TwoOnALine line;
   Flips flips(1U << 0U);
   line.bus.disturb(flips);
@@ -77,7 +77,7 @@ TEST(Noise, ThatLosesEveryCharacterLeavesTheLineIdle) {
   EXPECT_EQ(noise.strikes(), 3U);
 }
 
-TEST(Noise, OfStrayZerosPutsOneRightBehindTheLastCharacter) {
+TEST(Noise, AddsAStrayZeroAfterTheLastCharacter) {
   TwoOnALine line;
   NoiseRates rates;
   rates.stray_zero = 1;
@@ -86,7 +86,7 @@ TEST(Noise, OfStrayZerosPutsOneRightBehindTheLastCharacter) {
   EXPECT_EQ(line.heard, (Heard{{0x41, ByteStatus::Good}, {0x00, ByteStatus::Good}}));
 }
 
-TEST(Noise, LosesZerosWhileAnotherDriverIsEnabled) {
+TEST(Noise, LosesCharactersInContentionOnlyWhileAnotherDriverIsEnabled) {
   TwoOnALine line;
   NoiseRates rates;
   rates.lost_in_contention = 1;
@@ -113,12 +113,12 @@ Heard what_is_heard(std::uint64_t seed) {
   return line.heard;
 }
 
-TEST(Noise, OfTheSameSeedIsTheSame) {
+TEST(Noise, IsReproducibleFromItsSeed) {
   EXPECT_EQ(what_is_heard(1), what_is_heard(1));
   EXPECT_NE(what_is_heard(1), what_is_heard(2));
 }
 
-TEST(Echo, SendsAgainWhatItHasHeardOnceItIsQuiet) {
+TEST(Echo, RepeatsTheReceivedBytesOnceTheLineIsQuiet) {
   TwoOnALine line;
   std::uint32_t rate = 9600;
   Echo echo(line.bus, [&rate] { return rate; });

@@ -11,7 +11,7 @@ namespace {
 
 using namespace std::chrono_literals;
 
-TEST(FaultsList, RemovedIsOver) {
+TEST(FaultsList, ARemovedFaultHasNoFurtherEffect) {
   for (const char* trouble :
        {"bit-errors 1", "lost-bytes 1", "stray-zeros 1", "inserted-bytes 1", "lost-reply", "late-reply 1s",
         "wrong-rate 1200", "gone", "power-cut for 1h", "lost-reply every reply", "gone every 10ms for 5ms"}) {
@@ -32,7 +32,7 @@ TEST(FaultsList, RemovedIsOver) {
   }
 }
 
-TEST(FaultsList, NumbersGoOnAndNoneIsGivenTwice) {
+TEST(FaultsList, FaultNumbersAreNeverReused) {
   FaultBench bench;
   EXPECT_EQ(bench.add("lost-reply at 1h"), 1U);
   EXPECT_EQ(bench.add("lost-reply at 2h"), 2U);
@@ -45,7 +45,7 @@ TEST(FaultsList, NumbersGoOnAndNoneIsGivenTwice) {
   EXPECT_EQ(bench.add("lost-reply"), 4U);
 }
 
-TEST(FaultsList, TellsWhatStrikesNowAndHowOftenItHas) {
+TEST(FaultsList, ReportsCurrentAndTotalStrikes) {
   FaultBench bench(two());
   bench.add("gone at 1s for 1s", 2);
   bench.add("lost-reply every reply", 1);
@@ -64,7 +64,7 @@ TEST(FaultsList, TellsWhatStrikesNowAndHowOftenItHas) {
   EXPECT_EQ(bench.faults().list()[0].strikes, 0U);
 }
 
-TEST(FaultsNotice, IsGivenOfWhatComesAndGoesByItself) {
+TEST(FaultsNotice, IsGivenOnlyForTimedFaults) {
   FaultBench bench;
   bench.add("lost-reply every reply");
   bench.add("lost-bytes 1e-9");

@@ -13,7 +13,7 @@ namespace {
 
 using namespace std::chrono_literals;
 
-TEST(FaultsSchedule, AlwaysBeginsAtOnceAndEndsWhenItIsTold) {
+TEST(FaultsSchedule, AFaultWithoutATimeBeginsAtOnceAndLastsItsDuration) {
   FaultBench bench;
   bench.run_until(1s);
   bench.add("gone for 250ms");
@@ -26,7 +26,7 @@ TEST(FaultsSchedule, AlwaysBeginsAtOnceAndEndsWhenItIsTold) {
   EXPECT_TRUE(bench.at(1).powered());
 }
 
-TEST(FaultsSchedule, AMomentIsExactAndCountsFromTheLinesBegin) {
+TEST(FaultsSchedule, ATimeIsExactAndCountsFromTheStartOfTheLine) {
   FaultBench bench;
   bench.add("gone at 12.5s for 2s");
   bench.run_until(12'500ms - 1ns);
@@ -39,7 +39,7 @@ TEST(FaultsSchedule, AMomentIsExactAndCountsFromTheLinesBegin) {
   EXPECT_TRUE(bench.at(1).powered());
 }
 
-TEST(FaultsSchedule, AMomentThatIsOverIsRefused) {
+TEST(FaultsSchedule, ATimeInThePastIsRefused) {
   FaultBench bench;
   bench.run_until(2s);
   EXPECT_EQ(refusal([&] { bench.add("gone at 1.5s"); }),
@@ -49,7 +49,7 @@ TEST(FaultsSchedule, AMomentThatIsOverIsRefused) {
   EXPECT_FALSE(bench.at(1).powered());
 }
 
-TEST(FaultsSchedule, APeriodIsExactFromWhenItIsAdded) {
+TEST(FaultsSchedule, APeriodIsExactAndCountsFromTheAdditionOfTheFault) {
   FaultBench bench;
   bench.run_until(700ms);
   bench.add("foreign-traffic 55 every 5s");
@@ -61,7 +61,7 @@ TEST(FaultsSchedule, APeriodIsExactFromWhenItIsAdded) {
   }
 }
 
-TEST(FaultsSchedule, WhatLastsIsOverBeforeItsPeriodIs) {
+TEST(FaultsSchedule, APeriodicFaultLastsItsDurationInEveryPeriod) {
   FaultBench bench;
   bench.run_until(1s);
   bench.add("gone every 5s for 1s");
@@ -76,7 +76,7 @@ TEST(FaultsSchedule, WhatLastsIsOverBeforeItsPeriodIs) {
   EXPECT_EQ(bench.faults().list()[0].strikes_so_far, 4U);
 }
 
-TEST(FaultsSchedule, OfRepliesStrikesEveryReplyOrEverySoManieth) {
+TEST(FaultsSchedule, AReplyFaultStrikesEveryReplyOrEveryNthReply) {
   FaultBench every;
   every.add("lost-reply every reply");
   EXPECT_EQ(answered(every, 5), ".....");
@@ -86,7 +86,7 @@ TEST(FaultsSchedule, OfRepliesStrikesEveryReplyOrEverySoManieth) {
   EXPECT_EQ(tenth.faults().list()[0].strikes_so_far, 3U);
 }
 
-TEST(FaultsSchedule, OfTheRepliesOfAllModulesCountsThemTogether) {
+TEST(FaultsSchedule, TheRepliesOfAllModulesAreCountedTogether) {
   FaultBench bench(two());
   bench.add("lost-reply every 3rd reply");
   EXPECT_EQ(answered(bench, 2, "01"), "xx");
@@ -94,7 +94,7 @@ TEST(FaultsSchedule, OfTheRepliesOfAllModulesCountsThemTogether) {
   EXPECT_EQ(answered(bench, 2, "01"), "x.");
 }
 
-TEST(FaultsSchedule, NoiseOfRepliesThatLastsIsOneStrikeHoweverManyThereAre) {
+TEST(FaultsSchedule, OverlappingNoiseOfManyRepliesIsOneCurrentStrike) {
   FaultBench bench;
   bench.add("bit-errors 1e-12 every reply for 1h");
   bench.add("lost-bytes 1e-12 every reply for 1s");
@@ -107,7 +107,7 @@ TEST(FaultsSchedule, NoiseOfRepliesThatLastsIsOneStrikeHoweverManyThereAre) {
   EXPECT_EQ(bench.faults().list()[0].strikes_so_far, 20U);
 }
 
-TEST(FaultsSchedule, OfRepliesMayLastBeyondTheReply) {
+TEST(FaultsSchedule, AReplyFaultMayLastBeyondTheReply) {
   FaultBench bench;
   bench.add("lost-reply every 3rd reply for 100ms");
   const std::string which = answered(bench, 6);  // a request takes 55 ms
@@ -115,7 +115,7 @@ TEST(FaultsSchedule, OfRepliesMayLastBeyondTheReply) {
   EXPECT_EQ(which[5], '.');  // the sixth reply
 }
 
-TEST(FaultsSchedule, AProbabilityIsKeptAndASeedRepeatsIt) {
+TEST(FaultsSchedule, AReplyFaultHasItsProbabilityAndIsReproducibleFromTheSeed) {
   const auto which = [](std::uint64_t seed) {
     FaultBench bench({"EX9042D@01"}, seed);
     bench.add("lost-reply with probability 0.25");
@@ -128,7 +128,7 @@ TEST(FaultsSchedule, AProbabilityIsKeptAndASeedRepeatsIt) {
   EXPECT_NEAR(lost, 0.25, 4 * std::sqrt(0.25 * 0.75 / 2000));
 }
 
-TEST(FaultsSchedule, OfWritesCutsBehindTheWriteAndBeforeItsReply) {
+TEST(FaultsSchedule, APowerCutAfterWritesComesAfterTheWriteAndBeforeItsReply) {
   FaultBench bench;
   bench.add("power-cut after 3 writes");
   EXPECT_EQ(bench.ask("~01OFIRST"), "!01");
@@ -144,7 +144,7 @@ TEST(FaultsSchedule, OfWritesCutsBehindTheWriteAndBeforeItsReply) {
   EXPECT_EQ(bench.faults().list()[0].strikes_so_far, 1U);
 }
 
-TEST(FaultsSchedule, OfWritesCountsThoseOfItsOwnModule) {
+TEST(FaultsSchedule, OnlyTheWritesOfTheFaultsModuleAreCounted) {
   FaultBench bench(two());
   bench.add("gone after 1 write for 1s", 2);
   EXPECT_EQ(bench.ask("~01OOTHER"), "!01");

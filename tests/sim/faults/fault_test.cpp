@@ -20,7 +20,7 @@ std::string why_not(const std::string& text) {
 
 // --- kinds of faults ---
 
-TEST(Fault, EveryTroubleHasANameAndItsOneValue) {
+TEST(Fault, EveryKindHasANameAndAtMostOneValue) {
   EXPECT_EQ(parse_fault("bit-errors 1e-4").trouble, Trouble::BitErrors);
   EXPECT_EQ(parse_fault("bit-errors 1e-4").probability, 1e-4);
   EXPECT_EQ(parse_fault("lost-bytes 0.01").trouble, Trouble::LostBytes);
@@ -45,7 +45,7 @@ TEST(Fault, EveryTroubleHasANameAndItsOneValue) {
   EXPECT_EQ(parse_fault("hang").trouble, Trouble::Hang);
 }
 
-TEST(Fault, WhatIsOnTheWiresBefallsTheLineAndAllElseAModule) {
+TEST(Fault, EveryKindConcernsEitherTheLineOrAModule) {
   for (const Trouble trouble : {Trouble::BitErrors, Trouble::LostBytes, Trouble::InsertedBytes,
                                 Trouble::StrayZeros, Trouble::Echo, Trouble::ForeignTraffic}) {
     EXPECT_FALSE(concerns_a_module(trouble));
@@ -88,7 +88,7 @@ TEST(Fault, TheUsualFaultsAreOneOfEachKind) {
 
 // --- schedules ---
 
-TEST(FaultSchedule, MayBeAMoment) {
+TEST(FaultSchedule, MayBeATime) {
   const Schedule schedule = parse_fault("gone at 12.5s").schedule;
   EXPECT_EQ(schedule.when, When::At);
   EXPECT_EQ(schedule.time, 12'500ms);
@@ -102,7 +102,7 @@ TEST(FaultSchedule, MayBeAPeriod) {
   EXPECT_EQ(parse_fault("gone every 5s for 4s").schedule.lasts, 4s);
 }
 
-TEST(FaultSchedule, MayBeOfReplies) {
+TEST(FaultSchedule, MayDependOnReplies) {
   EXPECT_EQ(parse_fault("lost-reply every reply").schedule.when, When::EveryReply);
   EXPECT_EQ(parse_fault("lost-reply every reply").schedule.count, 1U);
   for (const auto& [word, count] : std::vector<std::pair<std::string, std::uint64_t>>{
@@ -118,13 +118,13 @@ TEST(FaultSchedule, MayBeOfReplies) {
   EXPECT_TRUE(probable.of_replies());
 }
 
-TEST(FaultSchedule, MayBeOfWrites) {
+TEST(FaultSchedule, MayDependOnWrites) {
   EXPECT_EQ(parse_fault("power-cut after 3 writes").schedule.when, When::AfterWrites);
   EXPECT_EQ(parse_fault("power-cut after 3 writes").schedule.count, 3U);
   EXPECT_EQ(parse_fault("power-cut after 1 write").schedule.count, 1U);
 }
 
-TEST(FaultSchedule, HowLongItLastsMayStandAnywhereBehindTheTrouble) {
+TEST(FaultSchedule, TheDurationMayComeAnywhereAfterTheFault) {
   for (const char* text : {"gone at 1s for 2s", "gone for 2s at 1s"}) {
     const Schedule schedule = parse_fault(text).schedule;
     EXPECT_EQ(schedule.when, When::At);
@@ -137,7 +137,7 @@ TEST(FaultSchedule, HowLongItLastsMayStandAnywhereBehindTheTrouble) {
 
 // --- the text of a fault ---
 
-TEST(Fault, IsToldInOneLineHoweverItWasWritten) {
+TEST(Fault, TextAndErrorsAreReducedToOneLine) {
   EXPECT_EQ(parse_fault("  gone\n at\t1s ").text, "gone at 1s");
   EXPECT_EQ(why_not("gone\nat\n1").find('\n'), std::string::npos);
 }
@@ -152,7 +152,7 @@ struct Wrong {
 
 class WrongFault : public testing::TestWithParam<Wrong> {};
 
-TEST_P(WrongFault, IsRefusedInOneLineThatNamesItAndTheMend) {
+TEST_P(WrongFault, IsRefusedInOneLineThatNamesTheErrorAndTheRemedy) {
   const std::string why = why_not(GetParam().text);
   EXPECT_NE(why.find(GetParam().names), std::string::npos) << why;
   EXPECT_NE(why.find(GetParam().mend), std::string::npos) << why;

@@ -13,7 +13,7 @@ namespace {
 using namespace std::chrono_literals;
 using namespace std::string_literals;
 
-TEST(BitErrors, OfAllBitsMakeTheLineUnreadable) {
+TEST(BitErrors, InAllBitsMakeTheLineUnreadable) {
   FaultBench bench;
   const std::size_t fault = bench.add("bit-errors 1");
   EXPECT_NE(bench.ask("@010001"), ">");
@@ -23,7 +23,7 @@ TEST(BitErrors, OfAllBitsMakeTheLineUnreadable) {
   EXPECT_EQ(bench.ask("@010001"), ">");
 }
 
-TEST(BitErrors, AreAsManyAsTheirProbabilitySays) {
+TEST(BitErrors, OccurWithTheGivenProbability) {
   FaultBench bench;
   const double probability = 1e-3;
   bench.add("bit-errors 1e-3");
@@ -39,7 +39,7 @@ TEST(BitErrors, AreAsManyAsTheirProbabilitySays) {
   EXPECT_NEAR(whole / double{kRequests}, expected, 4 * deviation);
 }
 
-TEST(LostBytes, AreNotHeardByAnybody) {
+TEST(LostBytes, AreReceivedByNoStation) {
   FaultBench bench;
   bench.add("lost-bytes 1");
   EXPECT_EQ(bench.ask("@010001"), "");
@@ -47,7 +47,7 @@ TEST(LostBytes, AreNotHeardByAnybody) {
   EXPECT_FALSE(bench.garbled());
 }
 
-TEST(LostBytes, AreAsManyAsTheirProbabilitySays) {
+TEST(LostBytes, OccurWithTheGivenProbability) {
   FaultBench bench;
   bench.add("lost-bytes 0.01");
   constexpr int kRequests = 2000;
@@ -61,7 +61,7 @@ TEST(LostBytes, AreAsManyAsTheirProbabilitySays) {
   EXPECT_NEAR(unheard / double{kRequests}, expected, 4 * deviation);
 }
 
-TEST(InsertedBytes, ComeRightBehindEachByte) {
+TEST(InsertedBytes, FollowAByteImmediately) {
   FaultBench bench;
   bench.add("inserted-bytes 1");
   bench.send("\r");
@@ -73,14 +73,14 @@ TEST(InsertedBytes, ComeRightBehindEachByte) {
   EXPECT_FALSE(bench.garbled());
 }
 
-TEST(StrayZeros, ComeRightBehindEachByte) {
+TEST(StrayZeros, FollowAByteImmediately) {
   FaultBench bench;
   bench.add("stray-zeros 1");
   bench.ask("");
   EXPECT_EQ(bench.heard(), "\0"s);
 }
 
-TEST(InsertedBytes, BehindEveryByteAreAsManyAsThereAreBytes) {
+TEST(InsertedBytes, FollowEveryByteAtProbability1) {
   FaultBench bench;
   bench.add("inserted-bytes 1");
   bench.send("0123456789ABCDE\r");
@@ -88,7 +88,7 @@ TEST(InsertedBytes, BehindEveryByteAreAsManyAsThereAreBytes) {
   EXPECT_EQ(of_others(bench).size(), 16U);
 }
 
-TEST(StrayZeros, BehindSomeBytesLeaveTheOthersAlone) {
+TEST(StrayZeros, AtALowProbabilityLeaveMostRepliesIntact) {
   FaultBench bench;
   bench.add("stray-zeros 0.01");
   const std::string which = answered(bench, 200);
@@ -96,7 +96,7 @@ TEST(StrayZeros, BehindSomeBytesLeaveTheOthersAlone) {
   EXPECT_LT(std::count(which.begin(), which.end(), 'x'), 195);
 }
 
-TEST(EchoFault, SaysAgainWhatWasSaidAfterItsSilence) {
+TEST(EchoFault, RepeatsARequestAfterTheGivenSilence) {
   FaultBench bench;
   bench.add("echo 5ms");
   EXPECT_EQ(bench.ask("$05M"), "$05M");  // the line has no module 05
@@ -104,7 +104,7 @@ TEST(EchoFault, SaysAgainWhatWasSaidAfterItsSilence) {
   EXPECT_EQ(of_others(bench)[0].first, request_over + 5ms);
 }
 
-TEST(EchoFault, WaitsForTheEndOfWhatIsSaidHoweverShortItsSilence) {
+TEST(EchoFault, WaitsForTheEndOfTheRequestEvenIfTheSilenceIsShort) {
   FaultBench bench;
   bench.add("echo 1ms");  // shorter than a character at 9600 baud, which takes 1.04 ms
   EXPECT_EQ(bench.ask("$05M"), "$05M");
@@ -118,14 +118,14 @@ TEST(EchoFault, FollowsTheLinesRate) {
   EXPECT_EQ(bench.ask("$05M"), "$05M");
 }
 
-TEST(EchoFault, LeavesOffWhenItIsRemoved) {
+TEST(EchoFault, StopsWhenItIsRemoved) {
   FaultBench bench;
   const std::size_t fault = bench.add("echo 5ms");
   EXPECT_TRUE(bench.faults().remove(fault));
   EXPECT_EQ(bench.ask("$05M"), "");
 }
 
-TEST(ForeignTraffic, IsSaidFromItsMomentOnAtTheLinesRate) {
+TEST(ForeignTraffic, IsSentFromItsScheduledTimeAtTheLinesRate) {
   FaultBench bench;
   bench.add("foreign-traffic 0501000000083C48 at 1s");
   bench.run_until(2s);
@@ -136,14 +136,14 @@ TEST(ForeignTraffic, IsSaidFromItsMomentOnAtTheLinesRate) {
   EXPECT_EQ(said[7].first - said[0].first, bench.line().master().takes(7));
 }
 
-TEST(ForeignTraffic, CollidesWithWhoeverTalks) {
+TEST(ForeignTraffic, CollidesWithOtherTraffic) {
   FaultBench bench;
   bench.run_until(1s);
   bench.add("foreign-traffic 0000000000");
   EXPECT_NE(bench.ask("$01M"), kName);
 }
 
-TEST(ForeignTraffic, MoreOfItThanALineCarriesDoesNotPileUp) {
+TEST(ForeignTraffic, DoesNotQueueUpIfItExceedsTheLinesCapacity) {
   FaultBench bench;
   const std::size_t fault = bench.add("foreign-traffic 00112233445566778899 every 1ms");
   bench.run(30s);

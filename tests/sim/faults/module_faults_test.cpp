@@ -11,7 +11,7 @@ namespace {
 
 using namespace std::chrono_literals;
 
-TEST(WrongRate, IsThatAtWhichItListensAndSends) {
+TEST(WrongRate, IsUsedForReceivingAndSending) {
   FaultBench bench(two());
   const std::size_t fault = bench.add("wrong-rate 19200", 1);
   EXPECT_NE(bench.ask("$01M"), kName);
@@ -23,7 +23,7 @@ TEST(WrongRate, IsThatAtWhichItListensAndSends) {
   EXPECT_EQ(bench.ask("$01M"), kName);
 }
 
-TEST(Gone, TakesTheSupplyAndGivesItBack) {
+TEST(Gone, RemovesTheSupplyAndRestoresIt) {
   FaultBench bench;
   bench.ask("@010A05");
   bench.ask("$015");
@@ -36,7 +36,7 @@ TEST(Gone, TakesTheSupplyAndGivesItBack) {
   EXPECT_EQ(bench.ask("$015"), "!011");
 }
 
-TEST(Gone, InTheMiddleOfAReplyCutsIt) {
+TEST(Gone, CutsOffAReplyInProgress) {
   FaultBench bench;
   bench.forget();
   bench.send("$01M\r");
@@ -47,7 +47,7 @@ TEST(Gone, InTheMiddleOfAReplyCutsIt) {
   EXPECT_FALSE(bench.recorder().drivers.back().on);
 }
 
-TEST(Gone, DoesNotSwitchAModuleOnThatSomebodyElseHasSwitchedOff) {
+TEST(Gone, DoesNotSwitchOnAModuleThatWasSwitchedOffSeparately) {
   for (const bool before : {true, false}) {
     FaultBench bench;
     if (before) {
@@ -63,7 +63,7 @@ TEST(Gone, DoesNotSwitchAModuleOnThatSomebodyElseHasSwitchedOff) {
   }
 }
 
-TEST(Gone, LastsAlsoWhereSomebodySwitchesTheModuleOn) {
+TEST(Gone, LastsEvenIfTheModuleIsSwitchedOn) {
   FaultBench bench;
   bench.add("gone for 2s");
   bench.run(1s);
@@ -73,7 +73,7 @@ TEST(Gone, LastsAlsoWhereSomebodySwitchesTheModuleOn) {
   EXPECT_TRUE(bench.at(1).powered());
 }
 
-TEST(PowerCut, LastsASecondUnlessTold) {
+TEST(PowerCut, LastsOneSecondByDefault) {
   for (const auto& [text, lasts] : {std::pair("power-cut", 1000ms), std::pair("power-cut for 30ms", 30ms)}) {
     FaultBench bench;
     bench.add(text);
@@ -102,7 +102,7 @@ TEST(Hang, SilencesAModuleUntilItsWatchdogResetsIt) {
   EXPECT_EQ(bench.at(1).watchdog_resets(), 1U);
 }
 
-TEST(Hang, OfEveryReplyLetsThatReplyOut) {
+TEST(Hang, TriggeredByAReplyBeginsAfterThatReply) {
   FaultBench bench;
   bench.add("hang every 2nd reply");
   EXPECT_EQ(bench.ask("$01M"), kName);
@@ -146,7 +146,7 @@ bool its_rate_is_wrong(FaultBench& bench) {
   return deaf && answers;
 }
 
-TEST(Faults, OfAModuleOutlastItsReset) {
+TEST(Faults, OfAModuleSurviveItsReset) {
   const std::pair<const char*, bool (*)(FaultBench&)> faults[] = {
       {"lost-reply", replies_are_lost},
       {"late-reply 60ms", replies_are_late},

@@ -191,9 +191,9 @@ void an_hour_of_modbus(std::uint32_t seed) {
   report("Modbus RTU", bytes, line);
 }
 
-TEST(RandomLine, AnHourOfDconNoiseIsAnsweredOnlyWhereAFrameIsRight) { an_hour_of_dcon(false, 1); }
-TEST(RandomLine, AnHourOfDconNoiseWithChecksumLikewise) { an_hour_of_dcon(true, 2); }
-TEST(RandomLine, AnHourOfModbusNoiseLikewise) { an_hour_of_modbus(3); }
+TEST(RandomLine, OnlyValidRequestsInAnHourOfDconNoiseAreAnswered) { an_hour_of_dcon(false, 1); }
+TEST(RandomLine, OnlyValidRequestsInAnHourOfDconNoiseWithChecksumAreAnswered) { an_hour_of_dcon(true, 2); }
+TEST(RandomLine, OnlyValidRequestsInAnHourOfModbusNoiseAreAnswered) { an_hour_of_modbus(3); }
 
 }  // namespace
 }  // namespace ex9000::sim

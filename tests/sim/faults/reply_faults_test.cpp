@@ -10,7 +10,7 @@ namespace {
 
 using namespace std::chrono_literals;
 
-TEST(LostReply, IsNotHeardAndTheCommandIsCarriedOut) {
+TEST(LostReply, IsNotSentAlthoughTheCommandIsExecuted) {
   FaultBench bench;
   bench.add("lost-reply");
   EXPECT_EQ(bench.ask("@010001"), "");
@@ -18,7 +18,7 @@ TEST(LostReply, IsNotHeardAndTheCommandIsCarriedOut) {
   EXPECT_EQ(answers_of(bench, 1).size(), 0U);
 }
 
-TEST(LateReply, BeginsLaterByThatAndIsWhole) {
+TEST(LateReply, IsCompleteAndDelayedByTheGivenTime) {
   FaultBench punctual;
   EXPECT_EQ(punctual.ask("$01M"), kName);
   FaultBench bench;
@@ -27,7 +27,7 @@ TEST(LateReply, BeginsLaterByThatAndIsWhole) {
   EXPECT_EQ(answers_of(bench, 1)[0], answers_of(punctual, 1)[0] + 50ms);
 }
 
-TEST(LateReply, MayComeBehindTheNextRequestAndThenTheNextReplyFollowsIt) {
+TEST(LateReply, MayComeAfterTheNextRequestAndBeforeItsReply) {
   FaultBench bench;
   bench.add("late-reply 50ms every 2nd reply");
   EXPECT_EQ(bench.ask("$01M"), kName);
@@ -38,7 +38,7 @@ TEST(LateReply, MayComeBehindTheNextRequestAndThenTheNextReplyFollowsIt) {
   EXPECT_FALSE(bench.garbled());
 }
 
-TEST(LateReply, OfEveryReplyKeepsTheirOrder) {
+TEST(LateReply, KeepsTheOrderOfTheReplies) {
   FaultBench bench;
   bench.add("late-reply 200ms");
   bench.forget();
@@ -77,7 +77,7 @@ TEST(LateReply, IsNeverSentOnceTheSupplyHasFailed) {
   EXPECT_EQ(bench.heard(), "");
 }
 
-TEST(LateReply, IsHitByTheNoiseThatIsOfItAndNothingElseIs) {
+TEST(LateReply, IsDamagedByItsOwnNoiseWhichDamagesNothingElse) {
   FaultBench bench;
   bench.add("late-reply 50ms every 2nd reply");
   bench.add("bit-errors 1 every 2nd reply");
@@ -90,7 +90,7 @@ TEST(LateReply, IsHitByTheNoiseThatIsOfItAndNothingElseIs) {
   EXPECT_TRUE(bench.garbled());
 }
 
-TEST(LateReply, ThatIsLostTakesItsNoiseWithIt) {
+TEST(LateReply, NoiseOfALostReplyDoesNotDamageTheNextReply) {
   FaultBench bench;
   bench.add("lost-reply every 2nd reply");
   bench.add("bit-errors 1 every 2nd reply");
@@ -99,7 +99,7 @@ TEST(LateReply, ThatIsLostTakesItsNoiseWithIt) {
   EXPECT_EQ(bench.ask("$01M"), kName);
 }
 
-TEST(LateDriver, GoesOffAtOnceWhenItsFaultIsRemoved) {
+TEST(LateDriver, IsDisabledAtOnceWhenItsFaultIsRemoved) {
   FaultBench bench;
   bench.add("late-driver 1h");
   EXPECT_EQ(bench.ask("$01M"), kName);
@@ -109,7 +109,7 @@ TEST(LateDriver, GoesOffAtOnceWhenItsFaultIsRemoved) {
   EXPECT_FALSE(bench.garbled());
 }
 
-TEST(LateDriver, HoldsTheLineAndWhatIsSaidThenIsLost) {
+TEST(LateDriver, HoldsTheLineAndBlocksARequestInThatTime) {
   FaultBench bench;
   bench.add("late-driver 20ms");
   EXPECT_EQ(bench.ask("$01M", 15ms), kName);

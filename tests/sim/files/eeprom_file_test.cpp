@@ -87,7 +87,7 @@ class FileSizeLimit {
   void (*handler_)(int);
 };
 
-TEST(EepromFile, AMissingFileIsFoundMissingAndNotMade) {
+TEST(EepromFile, AMissingFileIsReportedAndNotCreated) {
   const Directory directory;
   const EepromFile file(directory / "a");
   EXPECT_FALSE(file.found());
@@ -95,7 +95,7 @@ TEST(EepromFile, AMissingFileIsFoundMissingAndNotMade) {
   EXPECT_TRUE(directory.contents().empty());
 }
 
-TEST(EepromFile, WhatIsMadeIsTheImageAndNothingElse) {
+TEST(EepromFile, CreateWritesOnlyTheImage) {
   const Directory directory;
   EepromFile file(directory / "a");
   file.create(some_image());
@@ -103,7 +103,7 @@ TEST(EepromFile, WhatIsMadeIsTheImageAndNothingElse) {
   EXPECT_EQ(directory.contents().size(), 1U);
 }
 
-TEST(EepromFile, WhatIsThereIsFoundByteForByteAndLeftAsItIs) {
+TEST(EepromFile, AnExistingFileIsReadByteForByteAndNotChanged) {
   const Directory directory;
   write_file(directory / "a", text_of(some_image()));
   const auto before = directory.contents();
@@ -115,7 +115,7 @@ TEST(EepromFile, WhatIsThereIsFoundByteForByteAndLeftAsItIs) {
   EXPECT_EQ(directory.contents(), before);
 }
 
-TEST(EepromFile, WhatIsWrittenGoesToItsPlaceAndNowhereElse) {
+TEST(EepromFile, AWriteChangesOnlyItsOwnAddress) {
   const Directory directory;
   Image image = some_image();
   EepromFile made(directory / "a");
@@ -127,7 +127,7 @@ TEST(EepromFile, WhatIsWrittenGoesToItsPlaceAndNowhereElse) {
   }
 }
 
-TEST(EepromFile, WhatWasWrittenIsFoundNextTimeInAFileMadeOrFound) {
+TEST(EepromFile, WritesToNewAndExistingFilesPersist) {
   const Directory directory;
   Image image = some_image();
   {
@@ -145,14 +145,14 @@ TEST(EepromFile, WhatWasWrittenIsFoundNextTimeInAFileMadeOrFound) {
   EXPECT_EQ(EepromFile(directory / "a").found().value_or(Image()), image);
 }
 
-TEST(EepromFile, NothingCanBeWrittenBeforeTheFileIsMade) {
+TEST(EepromFile, NothingCanBeWrittenBeforeTheFileIsCreated) {
   const Directory directory;
   const EepromFile file(directory / "a");
   EXPECT_FALSE(write_byte(file, 0, 1));
   EXPECT_TRUE(directory.contents().empty());
 }
 
-TEST(EepromFile, AFileOfAnyOtherSizeIsRefusedAndLeftAlone) {
+TEST(EepromFile, AFileOfTheWrongSizeIsRefusedAndLeftAlone) {
   for (const std::size_t size : {0U, 1U, 100U, 8191U, 8193U, 65536U}) {
     const Directory directory;
     write_file(directory / "a", std::string(size, 'x'));
@@ -164,7 +164,7 @@ TEST(EepromFile, AFileOfAnyOtherSizeIsRefusedAndLeftAlone) {
   }
 }
 
-TEST(EepromFile, AFileThatNobodyMayWriteIsRefusedWhoeverAsks) {
+TEST(EepromFile, AReadOnlyFileIsRefusedForEveryUser) {
   const Directory directory;
   write_file(directory / "a", text_of(some_image()));
   for (const fs::perms mode : {fs::perms(0444), fs::perms(0400), fs::perms(0)}) {
@@ -175,7 +175,7 @@ TEST(EepromFile, AFileThatNobodyMayWriteIsRefusedWhoeverAsks) {
   EXPECT_EQ(refusal_of(directory / "a"), "");
 }
 
-TEST(EepromFile, WhatIsNoFileIsRefusedAndNeverWaitedFor) {
+TEST(EepromFile, DirectoriesPipesAndDevicesAreRefusedWithoutBlocking) {
   const Directory directory;
   fs::create_directory(directory / "directory");
   ASSERT_EQ(mkfifo((directory / "fifo").c_str(), 0644), 0);
@@ -188,7 +188,7 @@ TEST(EepromFile, WhatIsNoFileIsRefusedAndNeverWaitedFor) {
   EXPECT_EQ(directory.contents(), before);
 }
 
-TEST(EepromFile, WhereNoFileCanBeMadeCreatingIsRefusedAndLeavesNothing) {
+TEST(EepromFile, APathThatCannotBeCreatedIsRefusedAndLeavesNothing) {
   const Directory directory;
   fs::create_symlink(directory / "nowhere", directory / "dangling");
   const auto before = directory.contents();
@@ -199,7 +199,7 @@ TEST(EepromFile, WhereNoFileCanBeMadeCreatingIsRefusedAndLeavesNothing) {
   }
 }
 
-TEST(EepromFile, AFileThatHasComeInTheMeantimeIsNotReplaced) {
+TEST(EepromFile, AFileCreatedByAnotherInTheMeantimeIsNotReplaced) {
   const Directory directory;
   EepromFile file(directory / "a");
   write_file(directory / "a", "precious");
@@ -208,7 +208,7 @@ TEST(EepromFile, AFileThatHasComeInTheMeantimeIsNotReplaced) {
   EXPECT_EQ(directory.contents(), before);
 }
 
-TEST(EepromFile, AFileThatIsInUseIsRefusedUnderAnyOfItsNamesUntilItIsGivenBack) {
+TEST(EepromFile, AFileInUseIsRefusedUnderAnyNameUntilItIsReleased) {
   const Directory directory;
   write_file(directory / "a", text_of(some_image()));
   fs::create_symlink(directory / "a", directory / "symbolic");
@@ -230,14 +230,14 @@ TEST(EepromFile, AFileThatIsInUseIsRefusedUnderAnyOfItsNamesUntilItIsGivenBack) 
   }
 }
 
-TEST(EepromFile, AFileJustMadeIsInUse) {
+TEST(EepromFile, ANewlyCreatedFileIsInUse) {
   const Directory directory;
   EepromFile file(directory / "a");
   file.create(some_image());
   EXPECT_NE(refusal_of(directory / "a").find("in use"), std::string::npos);
 }
 
-TEST(EepromFile, AFileIsInUseForOtherProcessesAndOnlyAsLongAsItsUserLives) {
+TEST(EepromFile, AFileInUseIsLockedForOtherProcessesUntilItIsReleased) {
   const Directory directory;
   write_file(directory / "a", text_of(some_image()));
   const auto child_status = [&directory] {
@@ -256,7 +256,7 @@ TEST(EepromFile, AFileIsInUseForOtherProcessesAndOnlyAsLongAsItsUserLives) {
   EXPECT_EQ(child_status(), 0);
 }
 
-TEST(EepromFile, ADiskThatIsFullWhileTheFileIsMadeLeavesNothing) {
+TEST(EepromFile, AFullDiskDuringCreationLeavesNoFile) {
   const Directory directory;
   EepromFile file(directory / "a");
   {
@@ -266,7 +266,7 @@ TEST(EepromFile, ADiskThatIsFullWhileTheFileIsMadeLeavesNothing) {
   EXPECT_TRUE(directory.contents().empty());
 }
 
-TEST(EepromFile, AModuleWhoseFileTakesNothingRefusesToStoreAndHasTheOldSettingsNextTime) {
+TEST(EepromFile, AFailedWriteIsAnErrorReplyAndKeepsTheOldSettings) {
   const Directory directory;
   {
     ModuleBench bench("EX9042D,name=OLD");
