@@ -19,8 +19,8 @@
 #include "sim/app/arguments.hpp"
 #include "sim/app/play_record.hpp"
 #include "sim/play/play.hpp"
-#include "sim/runtime/session.hpp"
-#include "sim/runtime/stop_signals.hpp"
+#include "sim/session/session.hpp"
+#include "sim/session/stop_signals.hpp"
 #include "sim/watch/terminal_output.hpp"
 
 namespace ex9000::sim {

@@ -3,8 +3,8 @@
 #include "firmware/model/model.hpp"
 #include "sim/capture/pcapng.hpp"
 #include "sim/capture/upper_pdu.hpp"
-#include "sim/log/frame_errors.hpp"
-#include "sim/log/frame_meaning.hpp"
+#include "sim/frames/frame_errors.hpp"
+#include "sim/frames/frame_meaning.hpp"
 
 namespace ex9000::sim {
 

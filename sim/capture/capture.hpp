@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "sim/capture/capture_file.hpp"
-#include "sim/log/frame_watch.hpp"
+#include "sim/frames/frame_watch.hpp"
 
 namespace ex9000::sim {
 

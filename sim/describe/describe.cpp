@@ -26,7 +26,7 @@ struct Format {
   std::string (*of_models)(const Models& models) = nullptr;
   // These two require a model with Modbus.
   std::string (*of_model)(const Model& model) = nullptr;
-  std::string (*of_module)(const Model& model, const Place& place) = nullptr;
+  std::string (*of_module)(const Model& model, const NetworkAddress& place) = nullptr;
 };
 
 std::string markdown(const Models& models) {
@@ -72,8 +72,8 @@ TcpAddress parse_master_address(const std::string& text) {
   return tcp;
 }
 
-Place parse_place(const DescribeTexts& texts) {
-  Place place;
+NetworkAddress parse_place(const DescribeTexts& texts) {
+  NetworkAddress place;
   if (texts.address) {
     place.address = parse_modbus_address(*texts.address);
   }
@@ -119,7 +119,7 @@ std::string describe_formats() {
 std::string describe(const DescribeTexts& texts) {
   const Format& format = format_called(texts.format);
   if (format.of_module != nullptr) {
-    const Place place = parse_place(texts);
+    const NetworkAddress place = parse_place(texts);
     return format.of_module(modbus_model(texts), place);
   }
   refuse_place(texts);

@@ -36,7 +36,7 @@ const char* input_type(Table table) {
 
 class Hub {
  public:
-  Hub(const Model& model, const Place& place)
+  Hub(const Model& model, const NetworkAddress& place)
       : model_(model), place_(place), key_(model_key(model) + "_" + hex_byte_text(place.address)) {}
 
   [[nodiscard]] Json hub() const {
@@ -137,11 +137,11 @@ class Hub {
   }
 
   const Model& model_;
-  const Place& place_;
+  const NetworkAddress& place_;
   std::string key_;
 };
 
-std::string head(const Model& model, const Place& place) {
+std::string head(const Model& model, const NetworkAddress& place) {
   const std::string who = std::string(model.designation) + " at address " + hex_byte_text(place.address);
   return "# " + who +
          ", for Home Assistant's modbus integration. In configuration.yaml:\n"
@@ -162,7 +162,7 @@ std::string head(const Model& model, const Place& place) {
 
 }  // namespace
 
-std::string home_assistant_hub(const Model& model, const Place& place) {
+std::string home_assistant_hub(const Model& model, const NetworkAddress& place) {
   const Hub hub(model, place);
   return head(model, place) + yaml_of(Json::array({hub.hub()})) + "# Actions for items without an entity:\n" +
          hub.actions();

@@ -4,12 +4,12 @@
 #include <string>
 
 #include "firmware/model/model.hpp"
-#include "sim/describe/place.hpp"
+#include "sim/describe/network_address.hpp"
 
 namespace ex9000::sim {
 
 /// Returns YAML for `modbus: !include FILE` in configuration.yaml: a hub with switches, binary sensors and
 /// sensors. `model` must support Modbus.
-std::string home_assistant_hub(const Model& model, const Place& place);
+std::string home_assistant_hub(const Model& model, const NetworkAddress& place);
 
 }  // namespace ex9000::sim

@@ -35,7 +35,7 @@ const char* data_type(Table table) {
 
 class Flow {
  public:
-  Flow(const Model& model, const Place& place)
+  Flow(const Model& model, const NetworkAddress& place)
       : module_(std::string(model.designation) + " " + hex_byte_text(place.address)),
         key_(model_key(model) + "_" + hex_byte_text(place.address)),
         place_(place) {
@@ -174,13 +174,15 @@ class Flow {
 
   std::string module_;
   std::string key_;
-  const Place& place_;
+  const NetworkAddress& place_;
   Json nodes_ = Json::array();
   unsigned row_ = 0;
 };
 
 }  // namespace
 
-std::string node_red_flow(const Model& model, const Place& place) { return Flow(model, place).text(); }
+std::string node_red_flow(const Model& model, const NetworkAddress& place) {
+  return Flow(model, place).text();
+}
 
 }  // namespace ex9000::sim

@@ -6,7 +6,7 @@
 #include <utility>
 #include <vector>
 
-#include "sim/log/frame_watch.hpp"
+#include "sim/frames/frame_watch.hpp"
 
 namespace ex9000::sim {
 

@@ -2,7 +2,7 @@
 
 #include <nlohmann/json.hpp>
 
-#include "sim/log/frame_errors.hpp"
+#include "sim/frames/frame_errors.hpp"
 #include "sim/text/values.hpp"
 
 namespace ex9000::sim {

@@ -1,6 +1,6 @@
 #include "sim/log/text_log.hpp"
 
-#include "sim/log/frame_errors.hpp"
+#include "sim/frames/frame_errors.hpp"
 #include "sim/text/durations.hpp"
 
 namespace ex9000::sim {

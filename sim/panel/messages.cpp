@@ -2,9 +2,9 @@
 
 #include <chrono>
 
+#include "sim/frames/frame_errors.hpp"
+#include "sim/frames/frame_meaning.hpp"
 #include "sim/line/module_spec.hpp"
-#include "sim/log/frame_errors.hpp"
-#include "sim/log/frame_meaning.hpp"
 #include "sim/module_view/terminals.hpp"
 
 namespace ex9000::sim {

@@ -10,9 +10,9 @@
 #include <vector>
 
 #include "sim/control/control.hpp"
+#include "sim/frames/frame_watch.hpp"
 #include "sim/line/line.hpp"
 #include "sim/log/banner.hpp"
-#include "sim/log/frame_watch.hpp"
 #include "sim/panel/panel_server.hpp"
 
 namespace ex9000::sim {

@@ -8,7 +8,7 @@
 #include <optional>
 #include <string>
 
-#include "sim/log/frame_watch.hpp"
+#include "sim/frames/frame_watch.hpp"
 
 namespace ex9000::sim {
 

@@ -9,7 +9,7 @@
 namespace ex9000::sim {
 namespace {
 
-std::string configuration_of(const char* designation, const Place& place = {}) {
+std::string configuration_of(const char* designation, const NetworkAddress& place = {}) {
   return home_assistant_hub(*find_model(designation), place);
 }
 

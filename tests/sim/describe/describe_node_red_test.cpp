@@ -13,7 +13,7 @@ namespace {
 
 using Json = nlohmann::json;
 
-Json flow_of(const char* designation, const Place& place = {}) {
+Json flow_of(const char* designation, const NetworkAddress& place = {}) {
   return Json::parse(node_red_flow(*find_model(designation), place));
 }
 

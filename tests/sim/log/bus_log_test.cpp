@@ -4,7 +4,7 @@
 #include <nlohmann/json.hpp>
 #include <string_view>
 
-#include "sim/log/frame_errors.hpp"
+#include "sim/frames/frame_errors.hpp"
 #include "sim/log/json_log.hpp"
 #include "sim/log/text_log.hpp"
 #include "sim/play/modbus_frame.hpp"

@@ -8,7 +8,7 @@
 
 namespace ex9000::sim {
 
-struct Place {
+struct NetworkAddress {
   TcpAddress tcp{"127.0.0.1", 5020};
   std::uint8_t address = 0x01;  ///< 1 to 247
 };

@@ -1,4 +1,4 @@
-#include "sim/runtime/stepper.hpp"
+#include "sim/session/stepper.hpp"
 
 #include <algorithm>
 #include <stdexcept>

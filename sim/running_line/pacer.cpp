@@ -1,4 +1,4 @@
-#include "sim/runtime/pacer.hpp"
+#include "sim/running_line/pacer.hpp"
 
 #include <sys/prctl.h>
 

@@ -1,4 +1,4 @@
-#include "sim/runtime/stepped_line.hpp"
+#include "sim/running_line/stepped_line.hpp"
 
 #include <utility>
 

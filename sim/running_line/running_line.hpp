@@ -14,9 +14,9 @@
 #include "sim/files/new_file.hpp"
 #include "sim/line/line.hpp"
 #include "sim/log/banner.hpp"
-#include "sim/runtime/line_record.hpp"
-#include "sim/runtime/pacer.hpp"
-#include "sim/runtime/stepped_line.hpp"
+#include "sim/running_line/line_record.hpp"
+#include "sim/running_line/pacer.hpp"
+#include "sim/running_line/stepped_line.hpp"
 #include "sim/setup/setup.hpp"
 
 namespace ex9000::sim {

@@ -1,4 +1,4 @@
-#include "sim/runtime/line_ports.hpp"
+#include "sim/running_line/line_ports.hpp"
 #include "sim/text/values.hpp"
 
 #include <algorithm>

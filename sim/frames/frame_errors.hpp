@@ -3,7 +3,7 @@
 
 #include <string>
 
-#include "sim/log/frame_watch.hpp"
+#include "sim/frames/frame_watch.hpp"
 
 namespace ex9000::sim {
 

@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "sim/control/control.hpp"
-#include "sim/runtime/stepped_line.hpp"
+#include "sim/running_line/stepped_line.hpp"
 
 namespace ex9000::sim {
 

@@ -6,9 +6,9 @@
 #include <string>
 
 #include "sim/capture/capture.hpp"
+#include "sim/frames/frame_watch.hpp"
 #include "sim/line/line.hpp"
 #include "sim/log/bus_log.hpp"
-#include "sim/log/frame_watch.hpp"
 #include "sim/setup/setup.hpp"
 
 namespace ex9000::sim {

@@ -1,4 +1,4 @@
-#include "sim/runtime/session.hpp"
+#include "sim/session/session.hpp"
 
 #include <algorithm>
 #include <chrono>

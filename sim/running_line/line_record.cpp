@@ -1,4 +1,4 @@
-#include "sim/runtime/line_record.hpp"
+#include "sim/running_line/line_record.hpp"
 
 #include <utility>
 #include <vector>

@@ -17,9 +17,9 @@
 #include "sim/log/banner.hpp"
 #include "sim/panel/panel.hpp"
 #include "sim/panel/panel_server.hpp"
-#include "sim/runtime/running_line.hpp"
-#include "sim/runtime/stepper.hpp"
-#include "sim/runtime/stop_signals.hpp"
+#include "sim/running_line/running_line.hpp"
+#include "sim/session/stepper.hpp"
+#include "sim/session/stop_signals.hpp"
 #include "sim/setup/setup.hpp"
 #include "sim/watch/watch.hpp"
 

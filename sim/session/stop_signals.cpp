@@ -1,4 +1,4 @@
-#include "sim/runtime/stop_signals.hpp"
+#include "sim/session/stop_signals.hpp"
 
 #include <csignal>
 

@@ -1,5 +1,5 @@
 // Tests the meaning that the simulator's log shows for a frame.
-#include "sim/log/frame_meaning.hpp"
+#include "sim/frames/frame_meaning.hpp"
 
 #include <gtest/gtest.h>
 

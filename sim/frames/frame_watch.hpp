@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "sim/bus/bus.hpp"
-#include "sim/log/frame_meaning.hpp"
+#include "sim/frames/frame_meaning.hpp"
 
 namespace ex9000::sim {
 

@@ -8,9 +8,9 @@
 #include <cstdint>
 #include <functional>
 
+#include "sim/frames/frame_watch.hpp"
 #include "sim/line/line.hpp"
-#include "sim/log/frame_watch.hpp"
-#include "sim/runtime/line_ports.hpp"
+#include "sim/running_line/line_ports.hpp"
 
 namespace ex9000::sim {
 

@@ -1,6 +1,6 @@
 // Tests how long a frame has to wait on a line that follows the wall clock. The line is so slow that the
 // delays of a busy host are small in comparison. All expected times are lower bounds in the line's time.
-#include "sim/runtime/pacer.hpp"
+#include "sim/running_line/pacer.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "sim/runtime/running_line.hpp"
+#include "sim/running_line/running_line.hpp"
 
 #include <algorithm>
 #include <stdexcept>

@@ -1,4 +1,4 @@
-#include "sim/log/frame_errors.hpp"
+#include "sim/frames/frame_errors.hpp"
 
 #include "sim/text/values.hpp"
 

@@ -1,5 +1,5 @@
 // Tests `advance`: the events that it waits for, the time that it lets pass, and its replies.
-#include "sim/runtime/stepper.hpp"
+#include "sim/session/stepper.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "sim/log/frame_watch.hpp"
+#include "sim/frames/frame_watch.hpp"
 
 #include <algorithm>
 #include <utility>

@@ -1,4 +1,4 @@
-#include "sim/log/frame_meaning.hpp"
+#include "sim/frames/frame_meaning.hpp"
 
 #include <algorithm>
 #include <string_view>

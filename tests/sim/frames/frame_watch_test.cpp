@@ -1,5 +1,5 @@
 // Tests which bytes on the line form one frame.
-#include "sim/log/frame_watch.hpp"
+#include "sim/frames/frame_watch.hpp"
 
 #include <gtest/gtest.h>
 
