@@ -112,15 +112,15 @@ TEST_P(OnBoard, ComesUpWithin100msWhileTheEepromStillPrograms) {
   EXPECT_EQ(bench.ask("$01M"), "!01PUMP");
 }
 
-TEST_P(OnBoard, ComesUpWithin100msWithALineStuckForEverAndStoresOnceItIsFree) {
+TEST_P(OnBoard, ComesUpWithin100msWithAStuckEepromBusAndStoresOnceItIsFree) {
   expect_lives_with_stuck_lines();
 }
 
-TEST_P(OnBoardWhoseI2cWaits, ComesUpWithin100msWithALineStuckForEverAndStoresOnceItIsFree) {
+TEST_P(OnBoardWhoseI2cWaits, ComesUpWithin100msWithAStuckEepromBusAndStoresOnceItIsFree) {
   expect_lives_with_stuck_lines();
 }
 
-TEST_P(OnBoard, ComesUpWithin100msAfterAResetAtAnyMomentOfReadingItsSettings) {
+TEST_P(OnBoard, ComesUpWithin100msAfterAResetAtAnyTimeWhileItReadsItsSettings) {
   bench.power_on();
   for (int i = 0; i < 120; ++i) {
     bench.run_for(milliseconds(2) + microseconds(97 * i));
@@ -133,7 +133,7 @@ TEST_P(OnBoard, ComesUpWithin100msAfterAResetAtAnyMomentOfReadingItsSettings) {
   EXPECT_EQ(bench.ask("$01M"), "!019055");
 }
 
-TEST_P(OnBoard, HasOldOrNewSettingsAfterAPowerCutAtAnyMomentOfAStoreAndNewOnesOnceItHasAnswered) {
+TEST_P(OnBoard, HasOldOrNewSettingsAfterAPowerCutAndNewOnesIfItHasReplied) {
   // The command takes 9.4 ms and its turn-around 1 ms; storing takes another 10 ms, or twice that if an
   // earlier cut has left a copy that must be repaired first.
   constexpr microseconds kCommandIsSent{10'300};
@@ -171,7 +171,7 @@ TEST_P(OnBoard, TheDriverIsOffUnlessItReplies) {
   EXPECT_EQ(bench.line.bits_lost, 0U);
 }
 
-TEST_P(OnBoard, RepliesAtOnceWhenTheTurnAroundIsOver) {
+TEST_P(OnBoard, RepliesImmediatelyAfterTheTurnAroundTime) {
   constexpr microseconds kAtOnce{100};  // not at the next tick
   power_up();
   for (int i = 0; i < 20; ++i) {
@@ -185,7 +185,7 @@ TEST_P(OnBoard, RepliesAtOnceWhenTheTurnAroundIsOver) {
   }
 }
 
-TEST_P(OnBoard, APinOfAnOutputOrTheLedThatADisturbanceHasChangedIsRightAgainWithTheNextTick) {
+TEST_P(OnBoard, RestoresADisturbedOutputOrLedPinAtTheNextTick) {
   constexpr microseconds kATick{10'050};  // a tick, and the time that the main loop needs after it
   power_up();
   ASSERT_EQ(bench.ask("@01A5"), ">");
@@ -213,7 +213,7 @@ TEST_P(OnBoard, APinOfAnOutputOrTheLedThatADisturbanceHasChangedIsRightAgainWith
 
 class ModbusOnBoard : public OnBoard {};
 
-TEST_P(ModbusOnBoard, RepliesAtOnceWhenT35IsOver) {
+TEST_P(ModbusOnBoard, RepliesImmediatelyAfterT35) {
   constexpr microseconds kAtOnce{100};
   const Instant t35 = 77 * bench.line.bit_time() / 2;  // 3.5 characters of 11 bits
   power_up();
@@ -228,7 +228,7 @@ TEST_P(ModbusOnBoard, RepliesAtOnceWhenT35IsOver) {
   }
 }
 
-TEST_P(OnBoard, TakesABreakBetweenRequestsForNoiseAndDropsTheRequestThatHasOneInside) {
+TEST_P(OnBoard, IgnoresABreakBetweenRequestsAndDropsARequestThatContainsOne) {
   constexpr Character kBreak{0, true, 30};
   power_up();
   bench.line.send_one(kBreak);
@@ -239,7 +239,7 @@ TEST_P(OnBoard, TakesABreakBetweenRequestsForNoiseAndDropsTheRequestThatHasOneIn
   EXPECT_EQ(bench.ask("$01M"), "!019055");
 }
 
-TEST_P(OnBoard, DropsTheRequestThatHasACharacterWithoutAStopBit) {
+TEST_P(OnBoard, DropsARequestThatHasACharacterWithoutAStopBit) {
   power_up();
   bench.line.send({'$', '0', '1'});
   bench.line.send_one({'M', false, 0});
@@ -253,7 +253,7 @@ TEST_P(OnBoard, DropsTheRequestThatHasACharacterWithoutAStopBit) {
   EXPECT_EQ(bench.ask("$01M"), "!019055");
 }
 
-TEST_P(OnBoard, DropsTheRequestOfWhichACharacterIsLostToAnOverrun) {
+TEST_P(OnBoard, DropsARequestThatLostACharacterToAnOverrun) {
   power_up();
   bench.line.send({'~', '0', '1', 'O', 'P', 'U'});
   bench.run_for(milliseconds(8));
@@ -266,7 +266,7 @@ TEST_P(OnBoard, DropsTheRequestOfWhichACharacterIsLostToAnOverrun) {
   EXPECT_EQ(bench.ask("$01M"), "!019055");
 }
 
-TEST_P(OnBoard, AcceptsAHostOkThatAnotherHostOkFollowsWithoutAPause) {
+TEST_P(OnBoard, AcceptsTwoHostOksWithoutAPauseBetweenThem) {
   const Model& model = *find_model(bench.image.model);
   Settings settings = Settings::factory(model);
   settings.baud_code = 0x0A;  // at 115200 baud a host OK takes 0.35 ms
@@ -288,7 +288,7 @@ TEST_P(OnBoard, AcceptsAHostOkThatAnotherHostOkFollowsWithoutAPause) {
   }
 }
 
-TEST_P(OnBoard, CountsPulsesOnEveryInputHoweverLateTheInterruptIs) {
+TEST_P(OnBoard, CountsShortPulsesOnEveryInputDespiteInterruptLatency) {
   power_up();
   bench.mcu->core.set_latency(microseconds(10));
   for (unsigned channel = 0; channel < bench.image.inputs; ++channel) {
@@ -303,7 +303,7 @@ TEST_P(OnBoard, CountsPulsesOnEveryInputHoweverLateTheInterruptIs) {
   }
 }
 
-TEST_P(OnBoard, CountsNoEdgeAtStartWhateverTheLevels) {
+TEST_P(OnBoard, CountsNoEdgesAtStartAtAnyInputLevels) {
   for (unsigned channel = 0; channel < bench.image.inputs; ++channel) {
     bench.set_input(channel, channel % 3 != 0);
   }
@@ -314,7 +314,7 @@ TEST_P(OnBoard, CountsNoEdgeAtStartWhateverTheLevels) {
   EXPECT_EQ(bench.ask("$01L1"), bench.ask("$01L0")) << "no latch, high or low";
 }
 
-TEST_P(OnBoard, IsResetByTheWatchdogWithin1600msWhereTheTickStops) {
+TEST_P(OnBoard, IsResetByTheWatchdogWithin1600msIfTheTickStops) {
   power_up();
   ASSERT_EQ(bench.ask("$015"), "!011");
   ASSERT_EQ(bench.ask("$015"), "!010");
@@ -347,7 +347,7 @@ TEST_P(OnBoard, TreatsAnInitSwitchThatBouncesAfterResetAsReleased) {
   }
 }
 
-TEST_P(OnBoard, ListensWithin30MsOfResetAndInInitModeWhereTheSwitchStandsStill) {
+TEST_P(OnBoard, ListensWithin30msOfResetIfTheInitSwitchDoesNotBounce) {
   for (const bool init : {false, true}) {
     bench.power_off();
     bench.run_for(milliseconds(20));
@@ -360,7 +360,7 @@ TEST_P(OnBoard, ListensWithin30MsOfResetAndInInitModeWhereTheSwitchStandsStill) 
 }
 
 /// wire.md 6: the LED flashes at 2 Hz.
-TEST_P(OnBoard, FlashesItsLedOnTimeWhateverTheTick) {
+TEST_P(OnBoard, FlashesItsLedEvery250msWithin1ms) {
   power_up();
   // The net calls this function as long as the net exists, so the function shares ownership of the list.
   const auto changes = std::make_shared<std::vector<Instant>>();
@@ -384,7 +384,7 @@ TEST_P(OnBoard, RunsForAMinuteWithoutAReset) {
   EXPECT_EQ(bench.ask("$01M"), "!019055");
 }
 
-TEST_P(OnBoard, TouchesNothingWhileInterruptsAreHeld) {
+TEST_P(OnBoard, AccessesNoRegisterWhileInterruptsAreDisabled) {
   power_up();
   bench.ask("~01OPUMP");
   EXPECT_EQ(bench.mcu->most_accesses_held(), 0U);
@@ -393,7 +393,7 @@ TEST_P(OnBoard, TouchesNothingWhileInterruptsAreHeld) {
 /// In this image, all 32-bit counts of the interrupts are about to wrap (tests/support/long_uptime).
 class OnBoardForMonths : public OnBoard {};
 
-TEST_P(OnBoardForMonths, AnswersCountsStoresAndHeedsTheHostAcrossTheWrapOfEveryCount) {
+TEST_P(OnBoardForMonths, WorksAcrossTheWrapOfEvery32BitCount) {
   power_up();
   Instant shortest = kNever;  // silence before the answer to a store
   Instant longest{0};

@@ -165,7 +165,7 @@ class CutModule {
   unsigned news_ = 0;
 };
 
-TEST(ImageWithoutPower, HasOldOrNewSettingsWhereverBetweenTwoStoresToItsI2cMasterThePowerFails) {
+TEST(ImageWithoutPower, HasOldOrNewSettingsAfterAPowerCutBetweenAnyTwoI2cRegisterWrites) {
   const Model& model = *find_model("EX9043D-M");
   unsigned cuts = 0;
   unsigned commands = 0;

@@ -209,21 +209,21 @@ class FaultyImage : public testing::TestWithParam<Protocol>, protected EitherPro
   TimedModule module_{model_};
 };
 
-TEST_P(FaultyImage, IsResetWhereTheMainLoopHangsAndInterruptsGoOn) {
+TEST_P(FaultyImage, IsResetIfTheMainLoopHangsAndInterruptsContinue) {
   expect_resets("the main loop hangs", &FaultyImage::hang_main_loop);
 }
 
-TEST_P(FaultyImage, IsResetWhereItHangsInAnInterrupt) {
+TEST_P(FaultyImage, IsResetIfItHangsInAnInterrupt) {
   expect_resets("an interrupt hangs", &FaultyImage::hang_interrupt);
 }
 
-TEST_P(FaultyImage, IsResetWhereTheTickStops) { expect_resets("the tick stops", &FaultyImage::stop_tick); }
+TEST_P(FaultyImage, IsResetIfTheTickStops) { expect_resets("the tick stops", &FaultyImage::stop_tick); }
 
-TEST_P(FaultyImage, IsResetWhereAnInterruptStorms) {
+TEST_P(FaultyImage, IsResetDuringAnInterruptStorm) {
   expect_resets("an interrupt storms", &FaultyImage::storm);
 }
 
-TEST_P(FaultyImage, GoesOnWhereItsEepromsBusIsWedgedAndStoresOnceItIsNot) {
+TEST_P(FaultyImage, RunsWithABlockedEepromBusAndStoresOnceItIsFree) {
   for (const Doing doing : kEverything) {
     SCOPED_TRACE(static_cast<int>(doing));
     begin(false);
@@ -287,7 +287,7 @@ class HungImage : public testing::Test {
   TimedModule module_{model_};
 };
 
-TEST_F(HungImage, ResetsItselfAtAnUnexpectedInterrupt) {
+TEST_F(HungImage, ResetsItselfOnAnUnexpectedInterrupt) {
   constexpr std::uint32_t kPend = 0xE000'E200;
   constexpr std::uint32_t kEnable = 0xE000'E100;
   constexpr std::uint32_t kSsi0 = 1U << 7U;
@@ -311,7 +311,7 @@ TEST_F(HungImage, AnswersAfterAFloodOfBytes) {
   EXPECT_EQ(module_.outputs(), 0x1FFF);
 }
 
-TEST(ImageInAnInterruptStorm, IsResetAndComesBackWhenItIsOver) {
+TEST(ImageInAnInterruptStorm, IsResetAndWorksAfterTheStormHasEnded) {
   // Input 0 is PB0. The interrupt is set to trigger on its level instead of its edges; no handler can end it.
   const std::string kPortB = "/machine/unattached/device[9]";
   constexpr std::uint32_t kSense = 0x4000'5404;

@@ -262,11 +262,11 @@ class FaultOnBoard : public testing::TestWithParam<std::tuple<ImageName, Protoco
   unsigned resets_ = 0;
 };
 
-TEST_P(FaultOnBoard, AMainLoopThatHangsIsReset) {
+TEST_P(FaultOnBoard, AHungMainLoopCausesAReset) {
   expect_reset("the main loop hangs", [](BoardBench& bench) { bench.mcu->hang(Hangs::MainLoop); });
 }
 
-TEST_P(FaultOnBoard, AnInterruptThatDoesNotEndIsReset) {
+TEST_P(FaultOnBoard, AHungInterruptHandlerCausesAReset) {
   expect_reset("an interrupt hangs", [](BoardBench& bench) {
     bench.mcu->hang(Hangs::Handler);
     // Not every handler accesses a register; this one does.
@@ -274,14 +274,14 @@ TEST_P(FaultOnBoard, AnInterruptThatDoesNotEndIsReset) {
   });
 }
 
-TEST_P(FaultOnBoard, ATickThatStopsIsReset) {
+TEST_P(FaultOnBoard, AStoppedTickCausesAReset) {
   expect_reset("the tick stops", [](BoardBench& bench) {
     bench.mcu->core.write(Core::kTickControl, 4);
     bench.mcu->set_clocks_an_access(1000);  // the clock stands still, so the wake timer fires repeatedly
   });
 }
 
-TEST_P(FaultOnBoard, AnInterruptThatStormsIsReset) {
+TEST_P(FaultOnBoard, AnInterruptStormCausesAReset) {
   WatchedModule module(image(), set_up(*find_model(image().model), protocol()));
   const std::uint32_t enabled = module.bench.mcu->core.enabled();
   ASSERT_NE(enabled, 0U);
@@ -295,7 +295,7 @@ TEST_P(FaultOnBoard, AnInterruptThatStormsIsReset) {
   }
 }
 
-TEST_P(FaultOnBoard, AWedgedEepromBusIsNoHangButRefusesToStoreUntilItIsFree) {
+TEST_P(FaultOnBoard, AStuckEepromBusCausesRefusedStoresButNoReset) {
   for (const unsigned line : {I2cBlock::kClockPin, I2cBlock::kDataPin}) {
     for (const Doing doing : kEverything) {
       SCOPED_TRACE(std::string(line == I2cBlock::kClockPin ? "the clock" : "the data line") +
@@ -396,11 +396,11 @@ void ExpiryOnBoard::expect_expiry_within(Instant most, const std::function<void(
               static_cast<double>(earliest.count()) / 1e9, static_cast<double>(latest.count()) / 1e9);
 }
 
-TEST_P(ExpiryOnBoard, IsAMillisecondLateAtMostForEveryTimeoutAndNeverEarly) {
+TEST_P(ExpiryOnBoard, IsNeverEarlyAndAtMostOneMillisecondLateForEveryTimeout) {
   expect_expiry_within(kExpiresWithin, [](BoardBench& /*bench*/) {});
 }
 
-TEST_P(ExpiryOnBoard, IsATickLateAtMostWhereTheWakeTimerIsDead) {
+TEST_P(ExpiryOnBoard, IsAtMostOneTickLateIfTheWakeTimerFails) {
   expect_expiry_within(kTick + kRounding + kTurn,
                        [](BoardBench& bench) { bench.mcu->timer2.write(TimerBlock::kMask, 0); });
 }
@@ -408,7 +408,7 @@ TEST_P(ExpiryOnBoard, IsATickLateAtMostWhereTheWakeTimerIsDead) {
 /// Sends commands that end at any time around the expiry: a command that only drives outputs, a command that
 /// drives the value that it stores, and a command that drives outputs while the command before it is being
 /// stored.
-TEST_P(HostWatchdogOnBoard, NoCommandDrivesAnythingOnceItHasExpired) {
+TEST_P(HostWatchdogOnBoard, NoCommandDrivesOutputsAfterItHasExpired) {
   constexpr unsigned kVv = 5;
   constexpr std::uint16_t kCommanded = 0x3C96;
   const Instant step = all_cases_requested() ? microseconds(100) : microseconds(2300);
@@ -453,7 +453,7 @@ TEST_P(HostWatchdogOnBoard, NoCommandDrivesAnythingOnceItHasExpired) {
 
 /// wire.md D6. From the expiry on, the outputs have the old safe value. When the command is stored, they take
 /// the new safe value. They never take the value of a later command.
-TEST_P(HostWatchdogOnBoard, ACommandThatChangesTheSafeValueAsItExpiresGivesTheNewOneOnceThatIsStored) {
+TEST_P(HostWatchdogOnBoard, ASafeValueStoredDuringExpiryIsDrivenOnceItIsStored) {
   constexpr unsigned kVv = 5;
   constexpr std::uint16_t kCommanded = 0x3C96;
   // `~AA5S` stores the driven value.
@@ -538,7 +538,7 @@ TEST_P(HostWatchdogOnBoard, ACommandThatChangesTheSafeValueAsItExpiresGivesTheNe
 /// The progress of a command that is being stored when the host watchdog expires.
 enum class Storing : std::uint8_t { Nothing, OnTheBus, Programming };
 
-TEST_P(HostWatchdogOnBoard, APowerCutAtAnyMomentAfterItHasExpiredGivesNoCommandedValueBack) {
+TEST_P(HostWatchdogOnBoard, NoCommandedValueReturnsAfterAPowerCutFollowingExpiry) {
   constexpr unsigned kVv = 9;
   constexpr std::uint16_t kOtherPowerOnValue = 0x3CC3;
   const Instant step = all_cases_requested() ? microseconds(50) : microseconds(700);

@@ -31,7 +31,7 @@ Memory some_bytes(unsigned seed) {
   return bytes;
 }
 
-TEST(MemoryFunctions, ACopyIsOfAsManyBytesAsAreAskedForWhereverTheyLie) {
+TEST(MemoryFunctions, MemcpyCopiesExactlyTheRequestedBytesAtAnyAlignment) {
   for (std::size_t size = 0; size <= kMost; ++size) {
     for (std::size_t from = 0; from < 4; ++from) {
       for (std::size_t to = 0; to < 4; ++to) {
@@ -46,7 +46,7 @@ TEST(MemoryFunctions, ACopyIsOfAsManyBytesAsAreAskedForWhereverTheyLie) {
   }
 }
 
-TEST(MemoryFunctions, AsManyBytesAreSetAsAreAskedForToTheLastByteOfTheValue) {
+TEST(MemoryFunctions, MemsetSetsExactlyTheRequestedBytesToTheLowByteOfTheValue) {
   for (std::size_t size = 0; size <= kMost; ++size) {
     for (std::size_t at = 0; at < 4; ++at) {
       Memory bytes = some_bytes(101);
@@ -58,7 +58,7 @@ TEST(MemoryFunctions, AsManyBytesAreSetAsAreAskedForToTheLastByteOfTheValue) {
   }
 }
 
-TEST(MemoryFunctions, WhatIsEqualInAsManyBytesAsAreAskedForIsEqual) {
+TEST(MemoryFunctions, MemcmpComparesOnlyTheRequestedBytes) {
   for (std::size_t size = 0; size < kMost; ++size) {
     const Memory left = some_bytes(1);
     Memory right = left;
@@ -67,7 +67,7 @@ TEST(MemoryFunctions, WhatIsEqualInAsManyBytesAsAreAskedForIsEqual) {
   }
 }
 
-TEST(MemoryFunctions, TheFirstByteThatDiffersDecidesAndHasNoSign) {
+TEST(MemoryFunctions, MemcmpComparesTheFirstDifferingBytesAsUnsigned) {
   for (std::size_t size = 1; size <= kMost; ++size) {
     for (std::size_t differs = 0; differs < size; ++differs) {
       Memory left = some_bytes(1);

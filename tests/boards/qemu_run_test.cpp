@@ -153,7 +153,7 @@ TEST(QemuRun, LibmodbusReadsAndWrites) {
   EXPECT_EQ(errno, EMBXILADD);
 }
 
-TEST(QemuRun, APersonMayType) {
+TEST(QemuRun, ACommandMayBeTypedByHand) {
   // A busy machine makes the pauses longer, which does not matter.
   constexpr std::chrono::milliseconds kBetweenKeys{50};
   const RunningImage image("EX9042D");
@@ -166,7 +166,7 @@ TEST(QemuRun, APersonMayType) {
   EXPECT_EQ(terminal.read_line(kHang), "!019042D\r");
 }
 
-TEST(QemuRun, MastersComeAndGo) {
+TEST(QemuRun, MastersMayConnectAndDisconnectRepeatedly) {
   const RunningImage image("EX9042D");
   for (int visit = 0; visit < 20; ++visit) {
     EXPECT_EQ(image.ask("$01M"), "!019042D");
@@ -239,7 +239,7 @@ bool gets(const RunningImage& image, const std::string& command, const std::stri
   return false;
 }
 
-TEST(QemuRun, ARequestOfAMasterThatHasGoneIsDone) {
+TEST(QemuRun, ARequestIsExecutedAfterItsMasterHasDisconnected) {
   const RunningImage image("EX9042D");
   Terminal(image.tty(), 9600).type("@010005\r");
   EXPECT_TRUE(gets(image, "@01", ">0005"));
@@ -268,7 +268,7 @@ TEST(QemuRun, AMasterThatNeverReadsDoesNotStopTheModule) {
 
 // --- persistence ---
 
-TEST(QemuRun, SettingsAreFoundAgainInTheEepromFile) {
+TEST(QemuRun, SettingsPersistInTheEepromFile) {
   const Directory directory;
   const Arguments options{"--eeprom", directory / "eeprom"};
   {
@@ -288,7 +288,7 @@ TEST(QemuRun, SettingsAreFoundAgainInTheEepromFile) {
   EXPECT_EQ(bytes_of_file(directory / "eeprom").size(), kEepromSize);
 }
 
-TEST(QemuRun, WithoutAFileEveryRunIsAFactoryFreshModule) {
+TEST(QemuRun, WithoutAnEepromFileEveryRunStartsWithFactorySettings) {
   EXPECT_EQ(RunningImage("EX9042D").ask("~01OPUMP"), "!01");
   EXPECT_EQ(RunningImage("EX9042D").ask("$01M"), "!019042D");
 }
@@ -365,7 +365,7 @@ class Debugger {
 };
 
 /// If INIT* were low, the module would start in INIT mode and no longer answer to 01.
-TEST(QemuRun, InitStaysReleasedThroughAResetOfTheModulesOwn) {
+TEST(QemuRun, InitStaysReleasedWhenTheModuleResetsItself) {
   constexpr std::uint32_t kNothingThere = 0xF0000000;
   constexpr std::uint32_t kDeafLoop = 0x20008000;
   constexpr std::uint32_t kLoop = kDeafLoop + 2;
@@ -389,7 +389,7 @@ TEST(QemuRun, InitStaysReleasedThroughAResetOfTheModulesOwn) {
 
 // --- end of the program ---
 
-TEST(QemuRun, EndsCleanlyAndTakesQemuAlong) {
+TEST(QemuRun, EndsCleanlyOnASignalAndEndsQemu) {
   for (const int signal : {SIGINT, SIGTERM, SIGHUP}) {
     const Directory directory;
     RunningImage image("EX9042D", {"--link", directory / "tty"});
@@ -402,7 +402,7 @@ TEST(QemuRun, EndsCleanlyAndTakesQemuAlong) {
   }
 }
 
-TEST(QemuRun, LeavesNoQemuBehindWhenItIsKilled) {
+TEST(QemuRun, QemuEndsWhenTheProgramIsKilled) {
   const Directory directory;
   const Arguments options{"--link", directory / "tty"};
   {
@@ -415,7 +415,7 @@ TEST(QemuRun, LeavesNoQemuBehindWhenItIsKilled) {
   EXPECT_EQ(fs::read_symlink(directory / "tty"), next.tty());
 }
 
-TEST(QemuRun, EndsWhenQemuDoes) {
+TEST(QemuRun, EndsWhenQemuEnds) {
   const Directory directory;
   RunningImage image("EX9042D", {"--link", directory / "tty"});
   kill(image.qemu(), SIGKILL);
@@ -441,7 +441,7 @@ void expect_refusal(const Directory& directory, const Arguments& arguments, cons
   EXPECT_EQ(directory.contents(), before);
 }
 
-TEST(QemuRun, RefusesWhatIsNoImageForThisBoard) {
+TEST(QemuRun, RefusesAFileThatIsNotAnImageForThisBoard) {
   const Directory directory;
   expect_refusal(directory, {"none.elf"}, {"none.elf: No such file", "cmake --build --preset lm3s6965evb"});
   expect_refusal(directory, {"/"}, {"/: Is a directory"});
@@ -471,7 +471,7 @@ TEST(QemuRun, RefusesAnEepromFileThatItCannotUse) {
   expect_refusal(directory, {image, "--eeprom", "taken"}, {"--eeprom taken: another run uses this file"});
 }
 
-TEST(QemuRun, RefusesALinkWhereSomethingIs) {
+TEST(QemuRun, RefusesALinkIfItsPathExists) {
   const Directory directory;
   const std::string image = image_of("EX9042D");
   write_file(directory / "file", "somebody's");
@@ -485,14 +485,14 @@ TEST(QemuRun, RefusesALinkWhereSomethingIs) {
   expect_refusal(directory, {image, "--link", "taken"}, {"--link taken: the path exists already"});
 }
 
-TEST(QemuRun, SaysWhatQemuCouldNotDo) {
+TEST(QemuRun, ReportsTheErrorMessageOfQemu) {
   const Directory directory;
   const std::string port = std::to_string(20000 + getpid() % 10000);
   const RunningImage other("EX9042D", {"--gdb", port});
   expect_refusal(directory, {image_of("EX9042D"), "--gdb", port}, {"qemu-system-arm has ended", "in use"}, 1);
 }
 
-TEST(QemuRun, NamesThePackageThatIsMissing) {
+TEST(QemuRun, NamesTheMissingPackage) {
   const Directory directory;
   const std::string path = getenv("PATH");
   setenv("PATH", directory.path().c_str(), 1);

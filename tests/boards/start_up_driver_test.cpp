@@ -74,7 +74,7 @@ class StartUp : public testing::TestWithParam<ImageName> {
   const Model& model;
 };
 
-TEST_P(StartUp, GoesToThePllInTheOrderOfTheDataSheetsAndRunsAt50MHz) {
+TEST_P(StartUp, SwitchesToThePllInTheDataSheetsOrderAndRunsAt50MHz) {
   come_up();
   // The writes are: bypass; crystal and power; divider; and, after the lock, end of bypass.
   const std::vector<std::uint32_t> lm3s{0x078E'3AD1, 0x078E'0B80, 0x01CE'0B80, 0x01CE'0380};
@@ -83,7 +83,7 @@ TEST_P(StartUp, GoesToThePllInTheOrderOfTheDataSheetsAndRunsAt50MHz) {
   EXPECT_EQ(bench.mcu->system_control.cycle(), std::chrono::nanoseconds(20));
 }
 
-TEST_P(StartUp, IsResetByTheWatchdogWhereThePllNeverLocks) {
+TEST_P(StartUp, IsResetByTheWatchdogIfThePllNeverLocks) {
   bench.record = false;
   bench.power_on();
   bench.mcu->system_control.set_lock_time(kNever);
@@ -95,7 +95,7 @@ TEST_P(StartUp, IsResetByTheWatchdogWhereThePllNeverLocks) {
   EXPECT_TRUE(uart().enabled());
 }
 
-TEST_P(StartUp, OpensTheClockGatesOfWhatItUsesAndNoOthers) {
+TEST_P(StartUp, EnablesTheClocksOfTheUsedPeripheralsOnly) {
   come_up();
   const auto gates = [this](unsigned index) { return bench.mcu->system_control.read(0x100 + 4 * index); };
   EXPECT_EQ(gates(0), 1U << 3U);
@@ -104,7 +104,7 @@ TEST_P(StartUp, OpensTheClockGatesOfWhatItUsesAndNoOthers) {
   EXPECT_EQ(gates(2), image.tm4c ? 0x3FU : 0x6FU);
 }
 
-TEST_P(StartUp, LeavesTheDebugPinsAlone) {
+TEST_P(StartUp, DoesNotChangeTheDebugPins) {
   come_up();
   for (std::uint8_t pin = 0; pin < 4; ++pin) {
     EXPECT_TRUE(has({'C', pin}, GpioPort::kAlternate));
@@ -113,7 +113,7 @@ TEST_P(StartUp, LeavesTheDebugPinsAlone) {
   }
 }
 
-TEST_P(StartUp, MakesOutputsOfOutputsWith8mA) {
+TEST_P(StartUp, ConfiguresOutputPinsAs8mAOutputs) {
   come_up();
   std::vector<PinPlace> outputs(image.output_pins.begin(), image.output_pins.begin() + image.outputs);
   outputs.push_back(image.driver_enable);
@@ -131,7 +131,7 @@ TEST_P(StartUp, MakesOutputsOfOutputsWith8mA) {
   }
 }
 
-TEST_P(StartUp, MakesInputsOfInputsThatReadInactiveWhereNothingIsConnected) {
+TEST_P(StartUp, ConfiguresInputPinsWithAPullToTheInactiveLevel) {
   come_up();
   for (unsigned channel = 0; channel < image.inputs; ++channel) {
     const PinPlace pin = image.input_pins.at(channel);
@@ -152,7 +152,7 @@ TEST_P(StartUp, MakesInputsOfInputsThatReadInactiveWhereNothingIsConnected) {
   EXPECT_TRUE(bench.net(init).level());
 }
 
-TEST_P(StartUp, GivesItsPinsToUartAndI2cAsTheFamilyWantsIt) {
+TEST_P(StartUp, AssignsTheUartAndI2cPinsAsTheFamilyRequires) {
   come_up();
   for (const PinPlace pin : {image.receive, image.transmit, PinPlace{'B', 2}, PinPlace{'B', 3}}) {
     EXPECT_TRUE(has(pin, GpioPort::kAlternate));
@@ -187,7 +187,7 @@ TEST_P(StartUp, SetsTheLevelOfAnOutputBeforeThePinIsEnabled) {
   }
 }
 
-TEST_P(StartUp, EnergisesNothingBeforeTheSettingsAreRead) {
+TEST_P(StartUp, EnergisesNoOutputBeforeTheSettingsAreRead) {
   Settings settings = Settings::factory(model);
   settings.power_on_value = model.output_mask();
   store(settings);
@@ -204,14 +204,14 @@ TEST_P(StartUp, EnergisesNothingBeforeTheSettingsAreRead) {
   EXPECT_GT(bytes_read, 16U);
 }
 
-TEST_P(StartUp, EnergisesNothingAtAllWhereThePowerOnValueIsZero) {
+TEST_P(StartUp, EnergisesNoOutputIfThePowerOnValueIsZero) {
   come_up();
   EXPECT_EQ(bench.output_came_on, kNever);
   EXPECT_TRUE(bench.line.drives.empty());
   EXPECT_EQ(bench.line.bits_lost, 0U);
 }
 
-TEST_P(StartUp, SetsUpTheUartForEachRateAsTheDataSheetsComputeIt) {
+TEST_P(StartUp, SetsTheUartDivisorsOfTheDataSheetsForEachBaudRate) {
   // 50 MHz / (16 * rate): the integer part, and the rest rounded to 64ths.
   struct Divisors {
     std::uint32_t rate;
@@ -248,7 +248,7 @@ TEST_P(StartUp, SetsUpTheUartForEachRateAsTheDataSheetsComputeIt) {
   }
 }
 
-TEST_P(StartUp, EnablesTheInterruptsThatItServesAndNoneInterruptsAnother) {
+TEST_P(StartUp, EnablesOnlyTheServedInterruptsAndDoesNotNestThem) {
   come_up();
   const Core& core = bench.mcu->core;
   const bool inputs = image.inputs != 0;
@@ -272,7 +272,7 @@ TEST_P(StartUp, TicksEvery10Milliseconds) {
   EXPECT_EQ(bench.mcu->core.tick_reload(), 499'999U);
 }
 
-TEST_P(StartUp, StartsTheWatchdogBeforeAnythingThatCouldHang) {
+TEST_P(StartUp, StartsTheWatchdogBeforeItConfiguresTheClock) {
   come_up();
   Writes writes = writes_to(WatchdogTimer::kBase);
   writes.resize(3);
@@ -293,14 +293,14 @@ TEST_P(StartUp, RunsTheI2cBusAt100kHz) {
   EXPECT_EQ(bench.mcu->i2c.bit_time(), microseconds(10));
 }
 
-TEST_P(StartUp, ListensWithin100msHoweverSlowTheCrystalIs) {
+TEST_P(StartUp, ListensWithin100msWithASlowCrystal) {
   bench.crystal_start = milliseconds(18);
   come_up();
   EXPECT_TRUE(uart().enabled());
   EXPECT_EQ(bench.resets, 0U);
 }
 
-TEST_P(StartUp, ForgetsNothingWhenItIsResetAgainAndAgain) {
+TEST_P(StartUp, WorksAfterRepeatedResetsDuringStartUp) {
   bench.power_on();
   for (int i = 0; i < 50; ++i) {
     bench.run_for(microseconds(731 * i));

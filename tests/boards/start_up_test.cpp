@@ -87,7 +87,7 @@ class StartUpCode : public testing::Test {
   std::array<std::uint32_t, kWords> before{};
 };
 
-TEST_F(StartUpCode, CopiesAndClearsEveryWordThatTheLinkerMarksAndNoOtherBeforeMain) {
+TEST_F(StartUpCode, CopiesAndClearsExactlyTheLinkersSectionsBeforeMain) {
   std::array<std::uint32_t, kWords> expected = before;
   std::copy_n(std::array<std::uint32_t, kCopied>{0x1111'1111, 0x2222'2222, 0x3333'3333}.begin(), kCopied,
               expected.begin() + 1);
@@ -97,7 +97,7 @@ TEST_F(StartUpCode, CopiesAndClearsEveryWordThatTheLinkerMarksAndNoOtherBeforeMa
   EXPECT_TRUE(writes.empty());
 }
 
-TEST_F(StartUpCode, AMainThatReturnsIsAFault) {
+TEST_F(StartUpCode, AReturnFromMainResetsTheMicrocontroller) {
   main_returns = true;
   EXPECT_THROW(ex9000::start_up::reset_handler(), Reset);
   EXPECT_EQ(writes, kTheReset);

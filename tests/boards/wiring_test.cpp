@@ -115,7 +115,7 @@ std::size_t column_of(const Row& head, std::string_view model) {
   return found;
 }
 
-TEST(Wiring, EveryModelHasItsTerminalsAtThePinsOfTheBoard) {
+TEST(Wiring, TheReadmeListsThePinOfEveryTerminalOfEveryModel) {
   const Table table = table_of("pin");
   for (const Model& model : kModels) {
     const std::size_t column = column_of(table[0], model.designation);
@@ -130,7 +130,7 @@ TEST(Wiring, EveryModelHasItsTerminalsAtThePinsOfTheBoard) {
   }
 }
 
-TEST(Wiring, WhatEveryModuleHasIsAtThePinsOfTheBoard) {
+TEST(Wiring, TheReadmeListsThePinsOfTheCommonSignals) {
   std::map<std::string, std::string> written;
   const Table table = table_of("signal");
   for (auto row = table.begin() + 1; row != table.end(); ++row) {
@@ -152,7 +152,7 @@ TEST(Wiring, WhatEveryModuleHasIsAtThePinsOfTheBoard) {
   EXPECT_EQ(written, expected);
 }
 
-TEST(Wiring, NoPinIsTwoThings) {
+TEST(Wiring, NoPinHasTwoFunctions) {
   std::set<std::string> pins;
   const auto add = [&pins](const std::string& pin) { EXPECT_TRUE(pins.insert(pin).second) << pin; };
   for (const std::string& pin : names_of(kOutputs)) {
@@ -164,7 +164,7 @@ TEST(Wiring, NoPinIsTwoThings) {
   }
 }
 
-TEST(Wiring, NoPinIsOneOfTheDebuggers) {
+TEST(Wiring, NoDebuggerPinIsUsed) {
   const std::array<std::string, 5> debugger{"PC0", "PC1", "PC2", "PC3", "PB7"};
   for (const Table& table : {table_of("pin"), table_of("signal")}) {
     for (const Row& row : table) {
@@ -193,7 +193,7 @@ std::string pin_at(const std::string& position) {
              : "nothing";
 }
 
-TEST(Wiring, EveryPinIsWhereTheHeadersHaveIt) {
+TEST(Wiring, EveryHeaderPositionInTheTablesMatchesItsPin) {
   for (const auto& [head, pin_column] : std::map<std::string, std::size_t>{{"pin", 0}, {"signal", 1}}) {
     const Table table = table_of(head);
     ASSERT_EQ(table[0].at(pin_column + 1), "header");
@@ -203,7 +203,7 @@ TEST(Wiring, EveryPinIsWhereTheHeadersHaveIt) {
   }
 }
 
-TEST(Wiring, EveryPositionThatIsNamedWithItsPinIsThatPins) {
+TEST(Wiring, EveryHeaderPositionInTheTextMatchesItsPin) {
   std::ifstream file(EX9000_BOARD_README);
   const std::string text{std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>()};
   int named = 0;

@@ -40,7 +40,7 @@ TEST(Conformance, TheCorePassesEveryTranscriptOnEveryModelItNames) {
               steps, coverage.reached());
 }
 
-TEST(Conformance, WaitsStayUnderTwoSecondsUnlessTheFileSaysSlow) {
+TEST(Conformance, WaitsAreUnderTwoSecondsUnlessTheFileIsMarkedSlow) {
   for (const std::string& file : play::transcript_files(EX9000_CONFORMANCE_DIR)) {
     for (const play::Transcript& transcript : play::load_transcripts(file)) {
       EXPECT_TRUE(transcript.slow || transcript.waits() < std::chrono::seconds(2)) << file;

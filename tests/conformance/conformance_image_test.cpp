@@ -85,7 +85,7 @@ void play_on_the_image(Played& run, rig::ImageTarget& target) {
   }
 }
 
-TEST(Conformance, TheImagesOfTheManualsModelsPassEveryTranscriptThatNamesThem) {
+TEST(Conformance, TheImagesOfTheManualsModelsPassEveryTranscriptForThem) {
   for (const std::string_view model : kModelsOfTheManuals) {
     const system::Finished sum = system::run({"sha256sum", rig::image_of(*find_model(model))});
     ASSERT_EQ(sum.status, 0) << sum.error;

@@ -213,7 +213,7 @@ std::vector<std::string> column_of(const std::string& help, const std::string& h
   return cells;
 }
 
-TEST(Documents, EveryOptionCommandAndFaultHasItsRow) {
+TEST(Documents, EveryOptionCommandAndFaultHasATableRow) {
   const std::set<std::string> rows_there = rows();
   const auto has_row = [&rows_there](const std::string& beginning) {
     return std::any_of(rows_there.begin(), rows_there.end(), [&](const std::string& row) {

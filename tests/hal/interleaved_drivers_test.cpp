@@ -60,7 +60,7 @@ class SysTick final : public bus::Peripherals {
   unsigned served_ = 0;
 };
 
-TEST(SystemTimer, TellsTheTimeWhereverItsTickComes) {
+TEST(SystemTimer, ReturnsTheCorrectTimeIfATickOccursAtAnyPoint) {
   unsigned asked = 0;
   for (unsigned cycles = kPeriod - 300; cycles < kPeriod + 300; ++cycles) {
     for (const unsigned an_access : {1U, 7U, 40U}) {
@@ -143,7 +143,7 @@ unsigned give_up_a_byte_that_completes(unsigned completes) {
   return points;
 }
 
-TEST(I2c, AByteThatIsGivenUpIsNeverTakenForALaterOne) {
+TEST(I2c, TheCompletionOfAnAbandonedByteIsNotUsedForALaterByte) {
   unsigned points = 1;
   for (unsigned point = 0; point < points; ++point) {
     points = std::max(points, give_up_a_byte_that_completes(point));
@@ -152,7 +152,7 @@ TEST(I2c, AByteThatIsGivenUpIsNeverTakenForALaterOne) {
   EXPECT_GT(points, 5U);
 }
 
-TEST(I2c, AByteThatIsWronglyReportedAsCompleteIsGivenUpAfterATimeout) {
+TEST(I2c, AByteFalselyReportedAsCompleteFailsAfterATimeout) {
   I2cController controller;
   hal::stellaris::I2c<hal::stellaris::Family::Lm3s, 50'000'000> i2c;
   Time now(0);
@@ -336,7 +336,7 @@ unsigned serve_an_edge(Bench& bench, const std::vector<std::pair<unsigned, unsig
   return points;
 }
 
-TYPED_TEST(Inputs, AnEdgeAtAnyAccessOfTheInterruptIsCountedBesideTheOneThatIsServed) {
+TYPED_TEST(Inputs, AnEdgeAtAnyPointOfTheInterruptIsCountedInAdditionToTheServedEdge) {
   for (unsigned levels = 0; levels < 1U << kChannels; ++levels) {
     for (unsigned second = 0; second < kChannels; ++second) {
       TypeParam undisturbed(levels);
@@ -356,7 +356,7 @@ TYPED_TEST(Inputs, AnEdgeAtAnyAccessOfTheInterruptIsCountedBesideTheOneThatIsSer
   }
 }
 
-TYPED_TEST(Inputs, TheLevelThatIsToldIsTheLastOneWhereverTwoMoreEdgesCome) {
+TYPED_TEST(Inputs, TheReportedLevelIsTheLastOneIfTwoMoreEdgesOccurAtAnyPoints) {
   for (const unsigned levels : {0U, 1U}) {
     unsigned points = 1;
     for (unsigned first = 0; first < points; ++first) {
@@ -372,7 +372,7 @@ TYPED_TEST(Inputs, TheLevelThatIsToldIsTheLastOneWhereverTwoMoreEdgesCome) {
   }
 }
 
-TYPED_TEST(Inputs, AnEdgeWhileTheyStartIsPartOfTheLevelsTheyStartFromOrIsCounted) {
+TYPED_TEST(Inputs, AnEdgeDuringStartIsInTheInitialLevelsOrIsCounted) {
   for (unsigned levels = 0; levels < 1U << kChannels; ++levels) {
     for (unsigned moving = 0; moving < kChannels; ++moving) {
       unsigned points = 1;

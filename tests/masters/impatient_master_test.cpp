@@ -54,7 +54,7 @@ class Line {
   SocketClient client_{simulator_.tcp_port()};
 };
 
-TEST(ImpatientMaster, OnAnInstantLineEachFrameOfOnePieceGetsAReply) {
+TEST(ImpatientMaster, OnAnInstantLineEachOfTwoFramesSentTogetherGetsAReply) {
   Line line({"--line", "instant"});
   for (int round = 0; round < 10; ++round) {
     EXPECT_EQ(line.ask(kOutputs1 + kInputs2, 13), kOutputs1Off + kInputs2Off);
@@ -62,7 +62,7 @@ TEST(ImpatientMaster, OnAnInstantLineEachFrameOfOnePieceGetsAReply) {
   }
 }
 
-TEST(ImpatientMaster, OnAnInstantLineARequestMayFollowOneWithoutAReply) {
+TEST(ImpatientMaster, OnAnInstantLineARequestMayFollowAnUnansweredRequestAtOnce) {
   Line line({"--line", "instant"});
   for (const Bytes& unanswered : {kHostOk1, kHostOkAll, kAbsent}) {
     for (int round = 0; round < 10; ++round) {
@@ -74,7 +74,7 @@ TEST(ImpatientMaster, OnAnInstantLineARequestMayFollowOneWithoutAReply) {
   EXPECT_EQ(line.ask(kAllFirstOn + kOutputs1, 7), kOutputs1First);
 }
 
-TEST(ImpatientMaster, AModbusRequestMayFollowAnAsciiAnswerAtOnce) {
+TEST(ImpatientMaster, AModbusRequestMayImmediatelyFollowAnAsciiReply) {
   for (const char* kind : {"paced", "instant"}) {
     Line line({"--line", kind});
     for (int round = 0; round < 5; ++round) {
@@ -84,7 +84,7 @@ TEST(ImpatientMaster, AModbusRequestMayFollowAnAsciiAnswerAtOnce) {
   }
 }
 
-TEST(ImpatientMaster, AnotherModuleMayBeAskedAsSoonAsOneHasAnswered) {
+TEST(ImpatientMaster, ARequestToAnotherModuleMayImmediatelyFollowAReply) {
   for (const char* kind : {"paced", "instant"}) {
     Line line({"--line", kind});
     for (int round = 0; round < 5; ++round) {

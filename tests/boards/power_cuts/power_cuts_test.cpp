@@ -174,7 +174,7 @@ class PowerCutsOf : public testing::TestWithParam<ImageName> {
   std::size_t booted_ = 0;
 };
 
-TEST_P(PowerCutsOf, LeaveEachCommandWhollyDoneOrNotAtAll) {
+TEST_P(PowerCutsOf, LeaveEachCommandCompletelyStoredOrNotAtAll) {
   for_each_command([this](const State& state, const StoringCommand& command) {
     const Cuts cuts = bench_.cut_everywhere(state.contents, state.settings, command);
     judge(cuts, state.settings, command.done_to(state.settings, cuts.outputs),
@@ -184,7 +184,7 @@ TEST_P(PowerCutsOf, LeaveEachCommandWhollyDoneOrNotAtAll) {
 
 /// Tests the first store after an update, and the store of a record of four pages, with some commands or all
 /// of them.
-TEST_P(PowerCutsOf, InAStoreOfSeveralPagesLeaveEachCommandWhollyDoneOrNotAtAll) {
+TEST_P(PowerCutsOf, InAMultiPageStoreLeaveEachCommandCompletelyStoredOrNotAtAll) {
   for_some_commands_of_several_pages([this](const State& state, const StoringCommand& command) {
     const Cuts cuts = bench_.cut_everywhere(state.contents, state.settings, command);
     judge(cuts, state.settings, command.done_to(state.settings, cuts.outputs),
@@ -197,7 +197,7 @@ TEST_P(PowerCutsOf, InAStoreOfSeveralPagesLeaveEachCommandWhollyDoneOrNotAtAll) 
 /// After the second cut, the settings of the first command may be valid although they were not after the
 /// first cut: a page with a single wrong byte becomes valid as soon as the next store writes that byte with
 /// the same value. The first command is wholly done then, and nothing that was answered is lost.
-TEST_P(PowerCutsOf, TwiceInARowLeaveEachCommandWhollyDoneOrNotAtAll) {
+TEST_P(PowerCutsOf, TwiceInARowLeaveEachCommandCompletelyStoredOrNotAtAll) {
   for_each_command([this](const State& state, const StoringCommand& first) {
     cut_twice(state, first, all_cases_requested() ? SIZE_MAX : 2);
   });
@@ -205,7 +205,7 @@ TEST_P(PowerCutsOf, TwiceInARowLeaveEachCommandWhollyDoneOrNotAtAll) {
 
 /// The number of pairs grows with the square of the bytes written, so this is a random sample, also in
 /// tests/long.
-TEST_P(PowerCutsOf, TwiceInARowInStoresOfSeveralPagesLeaveEachCommandWhollyDoneOrNotAtAll) {
+TEST_P(PowerCutsOf, TwiceInMultiPageStoresLeaveEachCommandCompletelyStoredOrNotAtAll) {
   for_some_commands_of_several_pages([this](const State& state, const StoringCommand& first) {
     cut_twice(state, first, all_cases_requested() ? 200 : 2);
   });
@@ -213,7 +213,7 @@ TEST_P(PowerCutsOf, TwiceInARowInStoresOfSeveralPagesLeaveEachCommandWhollyDoneO
 
 /// Resets only the microcontroller, during traffic on the bus. After the reset, the EEPROM may be busy with
 /// programming.
-TEST_P(PowerCutsOf, ThatTheEepromDoesNotNoticeLeaveEachCommandWhollyDoneOrNotAtAll) {
+TEST_P(PowerCutsOf, ThatOnlyResetTheMicrocontrollerLeaveCommandsStoredOrNotAtAll) {
   const std::size_t one_in = all_cases_requested() ? 1 : 28;
   for_each_command([this, one_in](const State& state, const StoringCommand& command) {
     const Cuts cuts = bench_.cut_everywhere(state.contents, state.settings, command);

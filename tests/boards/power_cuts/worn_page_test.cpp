@@ -69,7 +69,7 @@ class WornPageOf : public testing::TestWithParam<ImageName> {
   CutBench bench_;
 };
 
-TEST_P(WornPageOf, MakesACommandRefusedAndLeavesWhatWasStoredBeforeWhole) {
+TEST_P(WornPageOf, CausesARefusalAndLeavesTheStoredSettingsIntact) {
   const StoringModel storing = storing_model(model_);
   unsigned refused = 0;
   unsigned accepted = 0;
@@ -101,7 +101,7 @@ TEST_P(WornPageOf, MakesACommandRefusedAndLeavesWhatWasStoredBeforeWhole) {
 }
 
 /// wire.md section 3: a reply to a command that stores begins at most 200 ms after the request.
-TEST_P(WornPageOf, IsAnsweredInTimeThoughTheRecordIsAsLongAsItCanBeAndEachPageTakesTheLongest) {
+TEST_P(WornPageOf, CausesARefusalInTimeWithTheLongestRecordAndTheSlowestPages) {
   constexpr std::uint8_t kLongest = 120;
   constexpr std::uint16_t kInTheLastPage = 0x60 + 5;
   constexpr std::chrono::milliseconds kInTime{200};

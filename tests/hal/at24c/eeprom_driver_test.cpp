@@ -187,7 +187,7 @@ class Eeprom : public testing::Test {
 using Kinds = testing::Types<Lm3sPlain, Tm4cPlain, Tm4cTellsStops, Lm3sWaits>;
 TYPED_TEST_SUITE(Eeprom, Kinds);
 
-TYPED_TEST(Eeprom, ReadsWhatIsThere) {
+TYPED_TEST(Eeprom, ReadsTheStoredBytesAtAnyAddress) {
   typename TestFixture::TheBench bench(TypeParam::kBehaviour);
   for (std::size_t i = 0; i < bench.memory.size(); ++i) {
     bench.memory[i] = static_cast<std::uint8_t>(i * 7 + i / 256);
@@ -202,7 +202,7 @@ TYPED_TEST(Eeprom, ReadsWhatIsThere) {
   }
 }
 
-TYPED_TEST(Eeprom, WritesPageByPageWhateverTheAddress) {
+TYPED_TEST(Eeprom, WritesPageByPageAtAnyAddress) {
   typename TestFixture::TheBench bench(TypeParam::kBehaviour);
   std::vector<std::uint8_t> expected = bench.memory;
   unsigned seed = 0;
@@ -220,7 +220,7 @@ TYPED_TEST(Eeprom, WritesPageByPageWhateverTheAddress) {
   }
 }
 
-TYPED_TEST(Eeprom, AWriteIsOverWhenTheLastPageIsProgrammed) {
+TYPED_TEST(Eeprom, AWriteEndsAfterTheLastPageIsProgrammed) {
   for (const int ms : {0, 1, 5, 10}) {
     typename TestFixture::TheBench bench(TypeParam::kBehaviour);
     bench.eeprom->set_programming_time(milliseconds(ms) + microseconds(1));
@@ -233,7 +233,7 @@ TYPED_TEST(Eeprom, AWriteIsOverWhenTheLastPageIsProgrammed) {
 
 // A page is programmed from its STOP on, after the 3 ms that its bytes take at 100 kHz, for at most 10 ms
 // (tWR, doc. 0336, "AC characteristics").
-TYPED_TEST(Eeprom, PagesAreWrittenWholeByAChipThatTakesAsLongAsItsDataSheetAllows) {
+TYPED_TEST(Eeprom, PagesAreWrittenWithTheLongestProgrammingTimeOfTheDataSheet) {
   for (const std::size_t pages : {1U, 2U}) {
     typename TestFixture::TheBench bench(TypeParam::kBehaviour);
     bench.eeprom->set_programming_time(milliseconds(10));
@@ -245,7 +245,7 @@ TYPED_TEST(Eeprom, PagesAreWrittenWholeByAChipThatTakesAsLongAsItsDataSheetAllow
   }
 }
 
-TYPED_TEST(Eeprom, AWriteThatTakesLongerThanTheDataSheetSaysFails) {
+TYPED_TEST(Eeprom, AWriteThatTakesLongerThanTheDataSheetAllowsFails) {
   typename TestFixture::TheBench bench(TypeParam::kBehaviour);
   bench.eeprom->set_programming_time(milliseconds(20));
   EXPECT_FALSE(bench.write(0x0000, some_bytes(4)));
@@ -254,7 +254,7 @@ TYPED_TEST(Eeprom, AWriteThatTakesLongerThanTheDataSheetSaysFails) {
   TestFixture::expect_works(bench, 1);
 }
 
-TYPED_TEST(Eeprom, WaitsForAPageThatWasBeingProgrammedWhenTheMicrocontrollerWasReset) {
+TYPED_TEST(Eeprom, AReadAfterAResetWaitsForThePageBeingProgrammed) {
   typename TestFixture::TheBench bench(TypeParam::kBehaviour);
   bench.eeprom->set_programming_time(milliseconds(10));
   const auto bytes = some_bytes(32);
@@ -268,7 +268,7 @@ TYPED_TEST(Eeprom, WaitsForAPageThatWasBeingProgrammedWhenTheMicrocontrollerWasR
   EXPECT_EQ(back, bytes);
 }
 
-TYPED_TEST(Eeprom, NothingThereIsAFailureAndNoHang) {
+TYPED_TEST(Eeprom, AMissingEepromFailsEveryJobWithoutAHang) {
   for (const bool pull_ups_too : {false, true}) {
     typename TestFixture::TheBench bench(TypeParam::kBehaviour);
     bench.eeprom->remove(pull_ups_too);
@@ -281,7 +281,7 @@ TYPED_TEST(Eeprom, NothingThereIsAFailureAndNoHang) {
   }
 }
 
-TYPED_TEST(Eeprom, ARefusalAtAnyByteIsAFailureAndNothingIsProgrammed) {
+TYPED_TEST(Eeprom, AWriteWithAnyByteNotAcknowledgedFailsAndProgramsNothing) {
   for (unsigned taken = 1; taken < 20; ++taken) {
     typename TestFixture::TheBench bench(TypeParam::kBehaviour);
     bench.eeprom->refuse_after(taken);
@@ -295,14 +295,14 @@ TYPED_TEST(Eeprom, ARefusalAtAnyByteIsAFailureAndNothingIsProgrammed) {
 
 // --- a bus that is stuck ---
 
-TYPED_TEST(Eeprom, ABusThatIsFreeHearsStartAndStopAtOnce) {
+TYPED_TEST(Eeprom, AFreeBusGetsAtMostOneClockBeforeTheFirstStart) {
   typename TestFixture::TheBench bench(TypeParam::kBehaviour);
   std::vector<std::uint8_t> bytes(1);
   EXPECT_TRUE(bench.read(0, bytes));
   EXPECT_LE(bench.clocks_before_start, 1U);
 }
 
-TYPED_TEST(Eeprom, DataHeldForUpToNineClocksIsFreedAndHearsStartAndStop) {
+TYPED_TEST(Eeprom, ADataLineHeldLowForUpToNineClocksIsFreed) {
   for (unsigned held = 1; held <= 9; ++held) {
     unsigned falls = 0;  // these must outlive the wires
     bool released = false;
@@ -324,7 +324,7 @@ TYPED_TEST(Eeprom, DataHeldForUpToNineClocksIsFreedAndHearsStartAndStop) {
   }
 }
 
-TYPED_TEST(Eeprom, AResetInTheMiddleOfAReadAtAnyMomentDoesNoHarm) {
+TYPED_TEST(Eeprom, AReadSucceedsAfterAResetAtAnyTimeDuringARead) {
   unsigned holding = 0;
   for (int step = 0; step < 90; ++step) {
     typename TestFixture::TheBench bench(TypeParam::kBehaviour);
@@ -347,7 +347,7 @@ TYPED_TEST(Eeprom, AResetInTheMiddleOfAReadAtAnyMomentDoesNoHarm) {
 // A reset releases both pins. If the clock line rises while the data line is low, the data line rises after
 // it, and this makes a STOP. Directly after a byte the STOP ends the write, and the EEPROM programs the bytes
 // that it has received. No driver can prevent that; the driver frees the bus afterwards.
-TYPED_TEST(Eeprom, AfterAResetInTheMiddleOfAWriteFreeingTheBusProgramsNothing) {
+TYPED_TEST(Eeprom, FreeingTheBusAfterAResetDuringAWriteProgramsNothing) {
   constexpr std::uint16_t kPlace = 0x20;
   unsigned nothing = 0;
   unsigned cut_by_the_reset = 0;
@@ -386,7 +386,7 @@ TYPED_TEST(Eeprom, AfterAResetInTheMiddleOfAWriteFreeingTheBusProgramsNothing) {
 
 enum class Line : std::uint8_t { Clock, Data };
 
-TYPED_TEST(Eeprom, ALineThatIsStuckForEverFailsEveryJobInBoundedTimeAndNoneBehindIt) {
+TYPED_TEST(Eeprom, AStuckLineFailsEveryJobInBoundedTimeUntilItIsReleased) {
   for (const Line line : {Line::Clock, Line::Data}) {
     typename TestFixture::TheBench bench(TypeParam::kBehaviour);
     bench.mcu.reset();
@@ -409,7 +409,7 @@ TYPED_TEST(Eeprom, ALineThatIsStuckForEverFailsEveryJobInBoundedTimeAndNoneBehin
   }
 }
 
-TYPED_TEST(Eeprom, ALineThatIsStuckForAWhileAtAnyMomentCostsAtMostOneJobAndNeverLies) {
+TYPED_TEST(Eeprom, ALineStuckForAShortTimeCausesNoFalseSuccessAndNoLastingFailure) {
   for (const Line line : {Line::Clock, Line::Data}) {
     for (const Instant held :
          {Instant(microseconds(40)), Instant(milliseconds(2)), Instant(milliseconds(6))}) {

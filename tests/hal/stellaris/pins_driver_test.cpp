@@ -75,7 +75,7 @@ TYPED_TEST(Outputs, StartDeenergisedAndWithoutAGlitch) {
   }
 }
 
-TYPED_TEST(Outputs, EachChannelIsAtItsOwnPin) {
+TYPED_TEST(Outputs, EachChannelDrivesItsOwnPin) {
   TypeParam::Pins::start();
   for (unsigned channels = 0; channels < 1U << kChannels; ++channels) {
     TypeParam::Pins::drive(static_cast<std::uint16_t>(channels));
@@ -83,7 +83,7 @@ TYPED_TEST(Outputs, EachChannelIsAtItsOwnPin) {
   }
 }
 
-TYPED_TEST(Outputs, PinsOfNoChannelAreLeftAlone) {
+TYPED_TEST(Outputs, OtherPinsAreNotChanged) {
   // This pin is on the same port as two groups but does not belong to them.
   Gpio(Port::D).make_output(1U << 7U, 1U << 7U);
   TypeParam::Pins::start();
@@ -132,7 +132,7 @@ TYPED_TEST(Inputs, AnOpenPinIsInactive) {
   EXPECT_TRUE(this->told().empty());
 }
 
-TYPED_TEST(Inputs, StartFromTheLevelsThatAreThere) {
+TYPED_TEST(Inputs, StartReturnsThePresentLevels) {
   for (unsigned levels = 0; levels < 1U << kChannels; ++levels) {
     for (unsigned channel = 0; channel < kChannels; ++channel) {
       this->wire(channel, (levels >> channel & 1U) != 0);
@@ -142,13 +142,13 @@ TYPED_TEST(Inputs, StartFromTheLevelsThatAreThere) {
   }
 }
 
-TYPED_TEST(Inputs, ALevelBeyondTheChannelsIsNotTold) {
+TYPED_TEST(Inputs, ThePinOfAnUnusedChannelIsNotReported) {
   this->bench.pins.at(kBeyond.port, kBeyond.pin)
       .drive(End::Board, TypeParam::kActiveHigh ? Drive::High : Drive::Low);
   EXPECT_EQ(TypeParam::Pins::start(), 0U);
 }
 
-TYPED_TEST(Inputs, EachEdgeIsToldOnceWithItsChannelAndItsLevel) {
+TYPED_TEST(Inputs, EachEdgeIsReportedOnceWithItsChannelAndLevel) {
   this->bench.mcu.core.hold(true);  // the test calls the driver instead of the interrupts
   TypeParam::Pins::start();
   for (unsigned channel = 0; channel < kChannels; ++channel) {
@@ -161,7 +161,7 @@ TYPED_TEST(Inputs, EachEdgeIsToldOnceWithItsChannelAndItsLevel) {
   }
 }
 
-TYPED_TEST(Inputs, BothEdgesInterruptAndNothingElseDoes) {
+TYPED_TEST(Inputs, EachRisingOrFallingEdgeCausesOneInterrupt) {
   unsigned served = 0;
   const auto count = [&] { served += static_cast<unsigned>(this->told().size()); };
   this->bench.serve(1, count);  // port B
@@ -179,7 +179,7 @@ TYPED_TEST(Inputs, BothEdgesInterruptAndNothingElseDoes) {
   EXPECT_EQ(served, edges);
 }
 
-TEST(InputPorts, AreThoseOfTheChannelsAndNoOthers) {
+TEST(InputPorts, AreOnlyThePortsOfTheChannels) {
   using AllOfThem = hal::stellaris::InputPins<kGroups, kChannels, true>;
   EXPECT_TRUE(AllOfThem::on(Port::B));
   EXPECT_TRUE(AllOfThem::on(Port::D));
@@ -195,7 +195,7 @@ TEST(InputPorts, AreThoseOfTheChannelsAndNoOthers) {
 constexpr hal::stellaris::Pin kInit{Port::A, 7};
 constexpr hal::stellaris::Pin kLed{Port::F, 0};
 
-TEST(Switches, InitIsAssertedByALowPinAndReleasedByAnOpenOne) {
+TEST(Switches, InitIsAssertedByALowPinAndReleasedByAnOpenPin) {
   DriverBench bench;
   using Init = hal::stellaris::InitPin<kInit>;
   bench.pins.at('A', 6).drive(End::Board, Drive::High);
@@ -207,7 +207,7 @@ TEST(Switches, InitIsAssertedByALowPinAndReleasedByAnOpenOne) {
   EXPECT_FALSE(Init::asserted());
 }
 
-TEST(Switches, TheLedIsDarkUntilItIsLit) {
+TEST(Switches, TheLedIsOffUntilItIsSwitchedOn) {
   DriverBench bench;
   using Led = hal::stellaris::LedPin<kLed>;
   Led::start();

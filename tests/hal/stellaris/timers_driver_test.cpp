@@ -67,7 +67,7 @@ TEST_F(Clock, IsExactToTheMicrosecondInEveryPhaseAroundATick) {
   }
 }
 
-TEST_F(Clock, IsExactInEveryPhaseWhileTheTickMustWait) {
+TEST_F(Clock, IsExactInEveryPhaseWhileTheTickInterruptIsDelayed) {
   for (int clocks = -40; clocks <= 40; ++clocks) {
     bench.mcu.run_until(began_ + milliseconds(20 * (clocks + 50)) + clocks * nanoseconds(20) -
                         microseconds(1));
@@ -82,7 +82,7 @@ TEST_F(Clock, IsExactInEveryPhaseWhileTheTickMustWait) {
   }
 }
 
-TEST_F(Clock, NeverGoesBackHoweverItIsAsked) {
+TEST_F(Clock, NeverGoesBackWhenItIsReadAtRandomTimes) {
   std::mt19937 random(1);
   for (int i = 0; i < 20'000; ++i) {
     const bool hold = random() % 4 == 0;
@@ -144,7 +144,7 @@ class OneShotBench : public DriverBench {
   unsigned interrupts = 0;
 };
 
-TYPED_TEST(OneShot, FiresOnceNeverEarlyAndSoonAfter) {
+TYPED_TEST(OneShot, FiresOnceAndNeverEarlyAndAtMost5usLate) {
   for (const unsigned after : {1U, 80U, 87U, 100U, 1000U, 1750U, 4011U, 9999U, 34'000U}) {
     OneShotBench<TypeParam> bench;
     const Instant begun = bench.now();
@@ -157,7 +157,7 @@ TYPED_TEST(OneShot, FiresOnceNeverEarlyAndSoonAfter) {
   }
 }
 
-TYPED_TEST(OneShot, ARestartForgetsTheStartBefore) {
+TYPED_TEST(OneShot, ARestartCancelsThePreviousStart) {
   OneShotBench<TypeParam> bench;
   for (int i = 0; i < 50; ++i) {
     TypeParam::restart(Duration(200));
@@ -171,7 +171,7 @@ TYPED_TEST(OneShot, ARestartForgetsTheStartBefore) {
   EXPECT_GE(bench.fired[0], begun + microseconds(80));
 }
 
-TYPED_TEST(OneShot, ARestartForgetsAnInterruptThatIsPending) {
+TYPED_TEST(OneShot, ARestartCancelsAPendingInterrupt) {
   // The loop covers every phase of the restart's own accesses relative to the timer's end.
   for (int clocks = -12; clocks <= 12; ++clocks) {
     OneShotBench<TypeParam> bench;
@@ -200,7 +200,7 @@ TEST(Watchdog, ResetsAfterTwoCountdownsAndWithin1600ms) {
   EXPECT_LE(bench.now(), begun + milliseconds(1600));
 }
 
-TEST(Watchdog, LivesOnEveryFeedWhetherTheFirstCountdownIsOverOrNot) {
+TEST(Watchdog, EveryFeedRestartsItBeforeAndAfterTheFirstCountdown) {
   DriverBench bench;
   Watchdog::start();
   for (const int pause : {1, 700, 749, 751, 1400, 1490}) {
@@ -214,7 +214,7 @@ TEST(Watchdog, LivesOnEveryFeedWhetherTheFirstCountdownIsOverOrNot) {
   EXPECT_GE(bench.now(), fed + milliseconds(1400));
 }
 
-TEST(Watchdog, IsLockedSoThatARunawayStoreDoesNotFeedIt) {
+TEST(Watchdog, IsLockedAgainstUnintendedRegisterWrites) {
   DriverBench bench;
   Watchdog::start();
   EXPECT_THROW(bench.mcu.write(WatchdogTimer::kBase + WatchdogTimer::kClear, 1), Fault);

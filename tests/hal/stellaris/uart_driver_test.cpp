@@ -105,7 +105,7 @@ class Sending : public testing::TestWithParam<std::tuple<bool, std::uint32_t>> {
   }
 };
 
-TEST_P(Sending, TheDriverIsOnAroundAllBytesAndOffWithinACharacter) {
+TEST_P(Sending, TheDriverIsOnForAllBytesAndOffWithinOneCharacterAfterThem) {
   for (const std::size_t size : {1U, 2U, 3U, 9U, 60U, 256U}) {
     for (const Instant latency :
          {Instant(0), Instant(microseconds(2)), Instant(microseconds(10)), 3 * character() / 10}) {
@@ -131,7 +131,7 @@ TEST_P(Sending, TheDriverIsOnAroundAllBytesAndOffWithinACharacter) {
   }
 }
 
-TEST_P(Sending, TheDriverIsNeverOffEarlyHoweverLateInterruptsAre) {
+TEST_P(Sending, TheDriverIsNotSwitchedOffEarlyIfInterruptsAreLate) {
   for (const int tenths : {8, 11, 15, 24}) {
     UartBench bench(chip(), baud());
     bench.mcu.core.set_latency(tenths * character() / 10);
@@ -141,7 +141,7 @@ TEST_P(Sending, TheDriverIsNeverOffEarlyHoweverLateInterruptsAre) {
   }
 }
 
-TEST_P(Sending, NothingOfItsEchoIsReceived) {
+TEST_P(Sending, ItsOwnEchoIsNotReceived) {
   for (const Instant latency : {Instant(0), Instant(microseconds(30))}) {
     UartBench bench(chip(), baud());
     bench.mcu.core.set_latency(latency);
@@ -157,7 +157,7 @@ TEST_P(Sending, NothingOfItsEchoIsReceived) {
   }
 }
 
-TEST_P(Sending, OneReplyComesBehindTheOther) {
+TEST_P(Sending, ManyRepliesCanBeSentInSequence) {
   UartBench bench(chip(), baud());
   for (int i = 0; i < 300; ++i) {  // past the wrap of 8-bit counts
     bench.line.heard.clear();
@@ -168,7 +168,7 @@ TEST_P(Sending, OneReplyComesBehindTheOther) {
   }
 }
 
-TEST_P(Sending, WhatItReceivesIsWhatTheMasterSent) {
+TEST_P(Sending, ReceivesTheBytesThatTheMasterSends) {
   UartBench bench(chip(), baud());
   const std::vector<std::uint8_t> bytes = some_bytes(256);
   bench.line.send(bytes);
@@ -213,7 +213,7 @@ TEST_F(Receiving, ALowStopBitIsAFramingError) {
   EXPECT_EQ(bench.received[1].byte, 0x41);
 }
 
-TEST_F(Receiving, ABreakIsToldOnceHoweverLong) {
+TEST_F(Receiving, ALongBreakIsReportedOnce) {
   bench.line.send_one(Character{0, true, 50});
   bench.line.send({0x42});
   bench.mcu.run_for(8 * kCharacter);
@@ -233,7 +233,7 @@ TEST_F(Receiving, AByteThatWasNotReadInTimeIsReportedAsAnOverrun) {
   EXPECT_EQ(statuses(), (std::vector<ByteStatus>{ByteStatus::Good, ByteStatus::Overrun, ByteStatus::Good}));
 }
 
-TEST_F(Receiving, AByteIsTakenAsLongAsTheInterruptWaitsForLessThanACharacter) {
+TEST_F(Receiving, NoByteIsLostIfTheInterruptIsLateByLessThanOneCharacter) {
   bench.mcu.core.set_latency(95 * kCharacter / 100);
   const std::vector<std::uint8_t> bytes = some_bytes(100);
   bench.line.send(bytes);
@@ -242,7 +242,7 @@ TEST_F(Receiving, AByteIsTakenAsLongAsTheInterruptWaitsForLessThanACharacter) {
   EXPECT_EQ(bench.received.size(), bytes.size());
 }
 
-TEST_F(Receiving, ASpikeIsNoByte) {
+TEST_F(Receiving, ASpikeIsNotReceivedAsAByte) {
   bench.mcu.run_for(kCharacter);
   bench.pins.at('A', 0).drive(End::Board, Drive::Low);
   bench.mcu.run_for(microseconds(20));

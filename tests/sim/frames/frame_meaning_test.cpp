@@ -24,14 +24,14 @@ bool has(const std::string& text, std::string_view part) { return text.find(part
 
 // --- detection of the protocol ---
 
-TEST(LooksLikeDcon, ADelimiterOrALeadAndPrintableCharactersDo) {
+TEST(LooksLikeDcon, IsTrueForADelimiterOrLeadFollowedByPrintableCharacters) {
   for (const char* text :
        {"#**\r", "$01M\r", "%0102400640\r", "@01\r", "~**\r", "!01400640\r", ">\r", "?01\r"}) {
     EXPECT_TRUE(looks_like_dcon(dcon(text))) << text;
   }
 }
 
-TEST(LooksLikeDcon, WhatModulesSkipBeforeADelimiterMakesNoDifference) {
+TEST(LooksLikeDcon, CharactersThatModulesSkipBeforeADelimiterAreIgnored) {
   const FrameBytes behind_line_feed = dcon("\n$01M\r");
   EXPECT_TRUE(looks_like_dcon(behind_line_feed));
   EXPECT_EQ(shown(behind_line_feed), "\\n$01M\\r");
@@ -46,12 +46,12 @@ TEST(LooksLikeDcon, WhatModulesSkipBeforeADelimiterMakesNoDifference) {
   EXPECT_FALSE(looks_like_dcon(rtu({0x0A, 0x24, 0x00, 0x00})));
 }
 
-TEST(LooksLikeDcon, AFrameThatIsNotCompleteYetDoes) {
+TEST(LooksLikeDcon, IsTrueForAnIncompleteFrame) {
   EXPECT_TRUE(looks_like_dcon(dcon("$")));
   EXPECT_TRUE(looks_like_dcon(dcon("$01")));
 }
 
-TEST(WasDcon, WhatBeginsAndEndsAsDconWasOneBeforeItWasDamaged) {
+TEST(WasDcon, IsTrueForADamagedFrameThatBeginsAndEndsAsDcon) {
   EXPECT_TRUE(was_dcon(dcon("$01M\r")));
   EXPECT_TRUE(was_dcon(dcon("$01")));
   EXPECT_TRUE(was_dcon(dcon("$0\xB1M\r")));
@@ -59,7 +59,7 @@ TEST(WasDcon, WhatBeginsAndEndsAsDconWasOneBeforeItWasDamaged) {
   EXPECT_EQ(meaning(dcon("$0\xB1M\r"), Speaker::Master), "contains characters that are not printable");
 }
 
-TEST(WasDcon, NothingElseWas) {
+TEST(WasDcon, IsFalseForAllOtherFrames) {
   EXPECT_FALSE(was_dcon({}));
   EXPECT_FALSE(was_dcon(dcon("$0\xB1M")));
   EXPECT_FALSE(was_dcon(dcon("\x01\x05\r")));
@@ -68,7 +68,7 @@ TEST(WasDcon, NothingElseWas) {
   EXPECT_FALSE(was_dcon(modbus));
 }
 
-TEST(LooksLikeDcon, NothingElseDoes) {
+TEST(LooksLikeDcon, IsFalseForAllOtherFrames) {
   EXPECT_FALSE(looks_like_dcon({}));
   EXPECT_FALSE(looks_like_dcon(dcon("01M\r")));
   EXPECT_FALSE(looks_like_dcon(dcon("\r")));
@@ -82,9 +82,9 @@ TEST(LooksLikeDcon, NothingElseDoes) {
 
 TEST(Shown, DconIsText) { EXPECT_EQ(shown(dcon("$01M\r")), "$01M\\r"); }
 
-TEST(Shown, DconWithoutCarriageReturnIsTextToo) { EXPECT_EQ(shown(dcon("$01M")), "$01M"); }
+TEST(Shown, DconWithoutACarriageReturnIsText) { EXPECT_EQ(shown(dcon("$01M")), "$01M"); }
 
-TEST(Shown, AllElseIsHex) {
+TEST(Shown, AllOtherBytesAreHex) {
   EXPECT_EQ(shown({0x01, 0x05, 0x00, 0x00, 0xFF, 0x00, 0x8C, 0x3A}), "01 05 00 00 FF 00 8C 3A");
   EXPECT_EQ(shown({0x00}), "00");
   EXPECT_EQ(shown({}), "");
@@ -117,32 +117,32 @@ TEST(DconMeaning, ACommandWithAChecksumIsNamedToo) {
   EXPECT_EQ(of_request("#**77\r").find("#**: "), 0U);
 }
 
-TEST(DconMeaning, AWrongChecksumIsSaid) {
+TEST(DconMeaning, AWrongChecksumIsReported) {
   EXPECT_TRUE(has(of_request("$012B8\r"), ", wrong checksum"));
   EXPECT_EQ(check_error(dcon("$012B8\r"), Speaker::Master), "wrong checksum");
   EXPECT_EQ(check_error(dcon("$012B7\r"), Speaker::Master), "");
   EXPECT_EQ(check_error(dcon("~**D3\r"), Speaker::Master), "wrong checksum");
 }
 
-TEST(DconMeaning, WhatMayBeWithoutAChecksumIsNotSaidToHaveAWrongOne) {
+TEST(DconMeaning, NoWrongChecksumIsReportedIfTheFrameMayHaveNone) {
   EXPECT_EQ(check_error(dcon("@01FF\r"), Speaker::Master), "");
   EXPECT_EQ(check_error(dcon("$01Z\r"), Speaker::Master), "");
   EXPECT_EQ(check_error(dcon("$\r"), Speaker::Master), "");
   EXPECT_EQ(check_error(dcon("!01400600\r"), Speaker::Module), "");
 }
 
-TEST(DconMeaning, WhatIsNoCommandIsSaidToBeNone) {
+TEST(DconMeaning, AnUnknownCommandIsReported) {
   EXPECT_EQ(of_request("$01Z\r"), "unknown command");
   EXPECT_EQ(of_request("$**\r"), "unknown command");
   EXPECT_EQ(of_request("%01\r"), "unknown command");
 }
 
-TEST(DconMeaning, NothingIsSaidOfAFrameTooShortForAnAddress) {
+TEST(DconMeaning, AFrameTooShortForAnAddressHasNoMeaning) {
   EXPECT_EQ(of_request("$\r"), "");
   EXPECT_EQ(of_request("$0\r"), "");
 }
 
-TEST(DconMeaning, ARefusalAnIgnoredCommandAndAnAnswerAreToldApart) {
+TEST(DconMeaning, RefusalsIgnoredCommandsAndRepliesAreDistinguished) {
   EXPECT_EQ(of_reply("?01\r"), "rejected");
   EXPECT_EQ(of_reply("?\r"), "rejected");
   EXPECT_TRUE(has(of_reply("!\r"), "ignored"));
@@ -153,7 +153,7 @@ TEST(DconMeaning, ARefusalAnIgnoredCommandAndAnAnswerAreToldApart) {
 
 // --- Modbus RTU ---
 
-TEST(ModbusMeaning, ARequestIsNamedWithWhomItIsForAndWhatItTouches) {
+TEST(ModbusMeaning, ARequestIsNamedWithItsAddressAndTheDataItAccesses) {
   const std::string text = of_request(FrameBytes{0x01, 0x05, 0x00, 0x00, 0xFF, 0x00});
   EXPECT_EQ(text.find("01: Write Single Coil"), 0U) << text;
   EXPECT_TRUE(has(text, "0000 = FF00")) << text;
@@ -192,13 +192,13 @@ TEST(ModbusMeaning, ReadingRegister3038WithAnotherQuantityIsNoHostOk) {
   EXPECT_FALSE(has(of_request(FrameBytes{0x01, 0x03, 0x30, 0x38, 0x00, 0x02}), "host OK"));
 }
 
-TEST(ModbusMeaning, AnAddressOutsideTheMapIsSaidToBeNone) {
+TEST(ModbusMeaning, AnAddressOutsideTheMapIsReportedAsUnknown) {
   EXPECT_TRUE(has(of_request(FrameBytes{0x01, 0x01, 0x03, 0x00, 0x00, 0x01}), "unknown address"));
   EXPECT_TRUE(has(of_request(FrameBytes{0x01, 0x06, 0x01, 0xE2, 0x00, 0x01}), "unknown address"));
   EXPECT_TRUE(has(of_request(FrameBytes{0x01, 0x03, 0x00, 0x08, 0x00, 0x01}), "unknown address"));
 }
 
-TEST(ModbusMeaning, NoModelHasMoreThan8Inputs) {
+TEST(ModbusMeaning, AddressesOfMoreThan8InputsAreUnknown) {
   EXPECT_TRUE(has(of_request(FrameBytes{0x01, 0x01, 0x00, 0x28, 0x00, 0x01}), "unknown address"));
   EXPECT_TRUE(has(of_request(FrameBytes{0x01, 0x05, 0x02, 0x08, 0xFF, 0x00}), "unknown address"));
 }
@@ -213,13 +213,13 @@ TEST(ModbusMeaning, AnUnknownFunctionIsShownInHex) {
   EXPECT_TRUE(has(of_request(FrameBytes{0x01, 0x41, 0x00, 0x00, 0x00, 0x00}), "function 41"));
 }
 
-TEST(ModbusMeaning, ARepliesExceptionIsShown) {
+TEST(ModbusMeaning, AnExceptionReplyIsShownWithItsCode) {
   const std::string text = of_reply(FrameBytes{0x01, 0x85, 0x04});
   EXPECT_TRUE(has(text, "Write Single Coil")) << text;
   EXPECT_TRUE(has(text, "exception 04")) << text;
 }
 
-TEST(ModbusMeaning, AnyOtherReplyIsAnAnswer) {
+TEST(ModbusMeaning, AnyOtherReplyIsNamedAsAReply) {
   EXPECT_EQ(of_reply(FrameBytes{0x01, 0x01, 0x02, 0x07, 0x00}), "01: Read Coils, reply");
 }
 

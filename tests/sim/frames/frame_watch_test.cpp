@@ -48,7 +48,7 @@ class FrameWatchTest : public testing::Test {
   VirtualTime now{0};
 };
 
-TEST_F(FrameWatchTest, ItIsKeptAtWhichRateAFrameWasSentAndAtWhichTheLineWas) {
+TEST_F(FrameWatchTest, AFrameHasTheBaudRatesOfItsSenderAndOfTheLine) {
   line_rate = 1200;
   watch.driver(kModule, true, now);
   send(kModule, {1});
@@ -58,7 +58,7 @@ TEST_F(FrameWatchTest, ItIsKeptAtWhichRateAFrameWasSentAndAtWhichTheLineWas) {
   EXPECT_EQ(frames[0].line_at, 1200U);
 }
 
-TEST_F(FrameWatchTest, WhatADriverSendsUntilItGoesOffIsAFrame) {
+TEST_F(FrameWatchTest, AModulesFrameEndsWhenItsDriverIsSwitchedOff) {
   watch.driver(kModule, true, now);
   send(kModule, {1, 2, 3});
   EXPECT_TRUE(frames.empty());
@@ -73,7 +73,7 @@ TEST_F(FrameWatchTest, WhatADriverSendsUntilItGoesOffIsAFrame) {
   EXPECT_EQ(frames[0].ended, 3 * kCharacter);
 }
 
-TEST_F(FrameWatchTest, AMastersPiecesAreOneFrame) {
+TEST_F(FrameWatchTest, PiecesFromTheMasterAreOneFrame) {
   send(kMaster, {1, 5});
   watch.driver(kMaster, false, now);
   pass(milliseconds(4));
@@ -86,14 +86,14 @@ TEST_F(FrameWatchTest, AMastersPiecesAreOneFrame) {
   EXPECT_EQ(frames[0].speaker(), Speaker::Master);
 }
 
-TEST_F(FrameWatchTest, AMastersFrameIsOverWhenSomebodyAnswers) {
+TEST_F(FrameWatchTest, TheMastersFrameEndsWhenAModuleReplies) {
   send(kMaster, {1, 5});
   watch.driver(kModule, true, now);
   ASSERT_EQ(frames.size(), 1U);
   EXPECT_EQ(frames[0].bytes, (FrameBytes{1, 5}));
 }
 
-TEST_F(FrameWatchTest, RequestsThatNobodyAnswersAreFramesOfTheirOwn) {
+TEST_F(FrameWatchTest, UnansweredRequestsAreSeparateFrames) {
   const FrameBytes request = with_crc({0, 5, 0, 2, 0xFF, 0});
   send(kMaster, request);
   pass(microseconds(3700));  // 3.5 characters
@@ -105,7 +105,7 @@ TEST_F(FrameWatchTest, RequestsThatNobodyAnswersAreFramesOfTheirOwn) {
   EXPECT_EQ(frames[1].bytes, request);
 }
 
-TEST_F(FrameWatchTest, WithoutAGapARightCrcDoesNotEndAFrame) {
+TEST_F(FrameWatchTest, ACorrectCrcWithoutAGapDoesNotEndAFrame) {
   const FrameBytes request = with_crc({0, 5, 0, 2, 0xFF, 0});
   send(kMaster, request);
   pass(microseconds(1500));
@@ -115,7 +115,7 @@ TEST_F(FrameWatchTest, WithoutAGapARightCrcDoesNotEndAFrame) {
   EXPECT_EQ(frames[0].bytes.size(), request.size() + 1);
 }
 
-TEST_F(FrameWatchTest, DconEndsWithCr) {
+TEST_F(FrameWatchTest, ACarriageReturnEndsADconFrame) {
   send(kMaster, dcon("$01M\r$02M\r"));
   ASSERT_EQ(frames.size(), 2U);
   EXPECT_EQ(frames[0].bytes, dcon("$01M\r"));
@@ -123,7 +123,7 @@ TEST_F(FrameWatchTest, DconEndsWithCr) {
   EXPECT_EQ(frames[1].began, 5 * kCharacter);
 }
 
-TEST_F(FrameWatchTest, WhoTypesHasTimeToThink) {
+TEST_F(FrameWatchTest, AnIncompleteDconCommandWaitsFiveSecondsForMore) {
   send(kMaster, dcon("$01"));
   pass(seconds(4));
   watch.driver(kModule, true, now);
@@ -139,13 +139,13 @@ TEST_F(FrameWatchTest, WhoTypesHasTimeToThink) {
   EXPECT_EQ(watch.next(), hal::doubles::kNever);
 }
 
-TEST_F(FrameWatchTest, ABabblerIsHandedOutInPieces) {
+TEST_F(FrameWatchTest, AnEndlessFrameIsReportedInPieces) {
   send(kMaster, FrameBytes(700, 0x55));
   ASSERT_EQ(frames.size(), 2U);
   EXPECT_EQ(frames[0].bytes.size(), 300U);
 }
 
-TEST_F(FrameWatchTest, ACollisionIsOfTheWholeFrame) {
+TEST_F(FrameWatchTest, ACollisionMarksTheWholeFrame) {
   send(kModule, {1, 2});
   send(kModule, {3}, true);
   send(kModule, {4});
@@ -157,7 +157,7 @@ TEST_F(FrameWatchTest, ACollisionIsOfTheWholeFrame) {
   EXPECT_FALSE(frames[1].collided);
 }
 
-TEST_F(FrameWatchTest, AChangedByteIsInTheFrameAsItArrives) {
+TEST_F(FrameWatchTest, AFrameContainsAChangedByteAsReceived) {
   send(kModule, {0x10});
   send_changed(kModule, 0xFF, levels_of(0xFB));
   send(kModule, {0x12});
@@ -185,7 +185,7 @@ TEST_F(FrameWatchTest, AByteWithoutItsStartBitDoesNotArrive) {
   EXPECT_FALSE(frames[0].changes[1].byte());
 }
 
-TEST_F(FrameWatchTest, AFrameOfWhichNothingArrivesIsOneAllTheSame) {
+TEST_F(FrameWatchTest, AFrameIsReportedEvenIfAllItsBytesAreLost) {
   send_changed(kModule, 0x41, kIdleLevels);
   watch.driver(kModule, false, now);
   ASSERT_EQ(frames.size(), 1U);
@@ -202,7 +202,7 @@ TEST_F(FrameWatchTest, AByteWithoutItsStopBitIsAFramingErrorOrABreak) {
   EXPECT_EQ(brk.status(), ByteStatus::Break);
 }
 
-TEST_F(FrameWatchTest, WhatWasCutOffIsNotChangedLater) {
+TEST_F(FrameWatchTest, AChangeOfAnAbortedByteDoesNotAffectALaterByte) {
   watch.changed(kModule, kIdleLevels);
   watch.driver(kModule, false, now);
   send(kModule, {0x41});
@@ -211,7 +211,7 @@ TEST_F(FrameWatchTest, WhatWasCutOffIsNotChangedLater) {
   EXPECT_EQ(frames[0].bytes, (FrameBytes{0x41}));
 }
 
-TEST_F(FrameWatchTest, AStationThatComesLaterIsWatchedToo) {
+TEST_F(FrameWatchTest, AStationAddedLaterIsWatched) {
   constexpr std::size_t kNoise = 7;
   send(kNoise, {0x55});
   EXPECT_NE(watch.next(), hal::doubles::kNever);
@@ -220,7 +220,7 @@ TEST_F(FrameWatchTest, AStationThatComesLaterIsWatchedToo) {
   EXPECT_EQ(frames[0].station, kNoise);
 }
 
-TEST_F(FrameWatchTest, EverybodyIsTold) {
+TEST_F(FrameWatchTest, EveryReceiverGetsTheFrame) {
   int others = 0;
   watch.add_receiver([&others](const Frame& /*frame*/) { ++others; });
   send(kMaster, dcon("$01M\r"));
@@ -228,7 +228,7 @@ TEST_F(FrameWatchTest, EverybodyIsTold) {
   EXPECT_EQ(others, 1);
 }
 
-TEST_F(FrameWatchTest, InTheEndTheRestIsHandedOutOnce) {
+TEST_F(FrameWatchTest, FinishReportsAnIncompleteFrameOnce) {
   send(kMaster, {1});
   watch.finish();
   watch.finish();

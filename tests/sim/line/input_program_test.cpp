@@ -60,7 +60,7 @@ class InputBench {
 
 // --- syntax ---
 
-TEST(InputProgram, ASquareWaveIsUpForHalfOfItsPeriodUnlessTold) {
+TEST(InputProgram, ASquareWaveIsOnForHalfOfItsPeriodByDefault) {
   const InputProgram half = parsed("0 square 100ms");
   EXPECT_EQ(half.channel, 0U);
   EXPECT_EQ(half.kind, Kind::Square);
@@ -71,7 +71,7 @@ TEST(InputProgram, ASquareWaveIsUpForHalfOfItsPeriodUnlessTold) {
   EXPECT_EQ(parsed("7 square 100ms bounce 2ms for 10ms").bounce, 2ms);
 }
 
-TEST(InputProgram, AKeyIsPressedOnceOrAgainAndAgain) {
+TEST(InputProgram, AKeyIsPressedOnceOrPeriodically) {
   const InputProgram once = parsed("3 key at 2s for 300ms");
   EXPECT_EQ(once.channel, 3U);
   EXPECT_EQ(once.kind, Kind::KeyOnce);
@@ -84,7 +84,7 @@ TEST(InputProgram, AKeyIsPressedOnceOrAgainAndAgain) {
   EXPECT_EQ(parsed("3 key at 1s for 300ms bounce 10us").bounce, 10us);
 }
 
-TEST(InputProgram, AWrongOneIsRefusedWithWhatIsWrongAndTheMend) {
+TEST(InputProgram, AnInvalidProgramIsRefusedWithTheErrorAndTheExpectedSyntax) {
   struct Refused {
     const char* text;
     const char* names;
@@ -126,7 +126,7 @@ TEST(InputProgram, AWrongOneIsRefusedWithWhatIsWrongAndTheMend) {
 
 // --- movements ---
 
-TEST(MovedInput, ASquareWavesPeriodIsExactAndEachIsCounted) {
+TEST(MovedInput, ASquareWaveHasAnExactPeriodAndEachPulseIsCounted) {
   for (const std::string edge : {"falling", "rising"}) {
     InputBench bench("5 square 7ms for 3ms", edge);
     for (int i = 0; i < 1000; ++i) {
@@ -146,18 +146,18 @@ TEST(MovedInput, ASquareWavesPeriodIsExactAndEachIsCounted) {
   }
 }
 
-TEST(MovedInput, AKeyThatIsPressedOnceMovesAtItsMomentAndNeverAgain) {
+TEST(MovedInput, AKeyPressedOnceMovesAtItsTimeAndNeverAgain) {
   InputBench bench("0 key at 2s for 300ms");
   EXPECT_EQ(bench.moves_until(1h), (Moves{{2s, true}, {2300ms, false}}));
   EXPECT_EQ(bench.counter(), 1U);
 }
 
-TEST(MovedInput, AKeyWhoseMomentIsOverIsPressedAtOnce) {
+TEST(MovedInput, AKeyWhoseTimeHasPassedIsPressedImmediately) {
   InputBench bench("0 key at 1ms for 300ms");
   EXPECT_EQ(bench.moves_until(1s), (Moves{{100ms, true}, {400ms, false}}));
 }
 
-TEST(MovedInput, AKeyThatIsPressedAgainAndAgainBeginsAPeriodFromNow) {
+TEST(MovedInput, APeriodicKeyIsFirstPressedAfterOnePeriod) {
   InputBench bench("0 key every 10s for 300ms");
   EXPECT_EQ(bench.moves_until(31s), (Moves{{10'100ms, true},
                                            {10'400ms, false},
@@ -167,7 +167,7 @@ TEST(MovedInput, AKeyThatIsPressedAgainAndAgainBeginsAPeriodFromNow) {
                                            {30'400ms, false}}));
 }
 
-TEST(MovedInput, ContactsThatChatterMakeAndBreakSomeTimesAndThenStay) {
+TEST(MovedInput, BouncingContactsChangeSeveralTimesAndThenSettle) {
   InputBench bench("0 key at 1s for 300ms bounce 5ms", "rising");
   const Moves moves = bench.moves_until(10s);
   std::size_t making = 0;
@@ -187,7 +187,7 @@ TEST(MovedInput, ContactsThatChatterMakeAndBreakSomeTimesAndThenStay) {
   EXPECT_FALSE(bench.level());
 }
 
-TEST(MovedInput, TheSameSeedChattersAlikeAndAnotherDoesNot) {
+TEST(MovedInput, EqualSeedsBounceEquallyAndDifferentSeedsDoNot) {
   const auto moves = [](std::uint64_t seed) {
     return InputBench("0 square 50ms bounce 5ms", "falling", seed).moves_until(1s);
   };
@@ -195,7 +195,7 @@ TEST(MovedInput, TheSameSeedChattersAlikeAndAnotherDoesNot) {
   EXPECT_NE(moves(1), moves(2));
 }
 
-TEST(MovedInput, MovesWithoutSupplyTooAndIsNotCountedThen) {
+TEST(MovedInput, MovesWithoutSupplyButIsNotCounted) {
   InputBench bench("0 square 100ms");
   bench.run_until(1s);
   bench.module().power(false);

@@ -56,7 +56,7 @@ TEST_P(InstantLine, ADconCommandIsAnsweredAtOnce) {
   EXPECT_EQ(heard_within(kAtOnce), Frame(reply.begin(), reply.end()));
 }
 
-TEST_P(InstantLine, AFrameInTwoPiecesLessThanTwoMillisecondsApartIsOne) {
+TEST_P(InstantLine, TwoPiecesLessThanTwoMillisecondsApartAreOneFrame) {
   for (std::size_t split = 1; split < kReadOutputs.size(); ++split) {
     const auto at = kReadOutputs.begin() + static_cast<std::ptrdiff_t>(split);
     send(Frame(kReadOutputs.begin(), at));
@@ -67,14 +67,14 @@ TEST_P(InstantLine, AFrameInTwoPiecesLessThanTwoMillisecondsApartIsOne) {
   }
 }
 
-TEST_P(InstantLine, TwoMillisecondsOfQuietEndAFrameWhoseCrcIsWrong) {
+TEST_P(InstantLine, TwoMillisecondsOfSilenceEndAFrameWithAWrongCrc) {
   send(Frame(kReadOutputs.begin(), kReadOutputs.end() - 1));
   EXPECT_EQ(heard_within(milliseconds(3)), Frame());
   send(kReadOutputs);
   EXPECT_EQ(heard_within(kAtOnce), kOutputsOff);
 }
 
-TEST_P(InstantLine, TheNextModuleCanBeAskedAsSoonAsTheFirstHasAnswered) {
+TEST_P(InstantLine, ARequestMayFollowAReplyAfterTheRtuSilence) {
   for (int round = 0; round < 20; ++round) {
     const auto address = static_cast<std::uint8_t>(1 + round % 2);
     const Frame request = with_crc({address, 0x01, 0x00, 0x00, 0x00, 0x08});
@@ -83,13 +83,13 @@ TEST_P(InstantLine, TheNextModuleCanBeAskedAsSoonAsTheFirstHasAnswered) {
   }
 }
 
-TEST_P(InstantLine, AModuleAtAnotherRateStillHearsNothingOfIt) {
+TEST_P(InstantLine, ARequestAtAnotherBaudRateGetsNoReply) {
   line_.master().set_baud(GetParam() == 9600 ? 19200 : 9600);
   send(kReadOutputs);
   EXPECT_EQ(heard_within(milliseconds(10)), Frame());
 }
 
-TEST_P(InstantLine, TheHostWatchdogStillTakesItsTime) {
+TEST_P(InstantLine, TheHostWatchdogExpiresAfterItsNormalTimeout) {
   send(with_crc({0x01, 0x06, 0x01, 0xE8, 0x00, 0x05}));  // 0.5 s
   line_.bus().run_for(milliseconds(50));
   send(with_crc({0x01, 0x05, 0x01, 0x04, 0xFF, 0x00}));  // enabled

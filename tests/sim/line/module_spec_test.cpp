@@ -97,13 +97,13 @@ TEST(ModuleSpec, AKeyGivenTwiceIsRefused) {
   EXPECT_THROW(parse_module_spec("EX9052D,checksum=on,edge=rising,checksum=off"), std::invalid_argument);
 }
 
-TEST(ModuleSpec, TheNameIsTakenAsItIsWritten) {
+TEST(ModuleSpec, TheNameIsStoredUnchanged) {
   EXPECT_EQ(name_of(parse_module_spec("EX9042D,name=pump 1")), "pump 1");
   EXPECT_EQ(name_of(parse_module_spec("EX9042D,name=a=b@c")), "a=b@c");
   EXPECT_EQ(name_of(parse_module_spec("EX9068D-M,name=ABCDEFG")), "ABCDEFG");
 }
 
-TEST(ModuleSpec, InitLeavesTheStoredSettingsAlone) {
+TEST(ModuleSpec, InitDoesNotChangeTheStoredSettings) {
   const ModuleSpec spec = parse_module_spec("EX9042D-M@2A,baud=115200,init=on");
   EXPECT_TRUE(spec.init_asserted);
   EXPECT_EQ(spec.settings.address, 0x2A);
@@ -111,7 +111,7 @@ TEST(ModuleSpec, InitLeavesTheStoredSettingsAlone) {
   EXPECT_FALSE(parse_module_spec("EX9042D-M,init=off").init_asserted);
 }
 
-TEST(ModuleSpec, TheEepromsFileAndInitAreNoSettings) {
+TEST(ModuleSpec, TheEepromFileAndInitAreNotSettings) {
   const ModuleSpec spec = parse_module_spec("EX9042D-M,eeprom=a dir/pump.bin,init=off");
   EXPECT_EQ(spec.eeprom, "a dir/pump.bin");
   EXPECT_FALSE(spec.settings_given);
@@ -119,7 +119,7 @@ TEST(ModuleSpec, TheEepromsFileAndInitAreNoSettings) {
   EXPECT_TRUE(parse_module_spec("EX9042D-M,baud=9600").settings_given);
 }
 
-TEST(ModuleSpec, AllCanBeSaidAtOnce) {
+TEST(ModuleSpec, AllKeysCanBeCombined) {
   const ModuleSpec spec =
       parse_module_spec("9052d-m@1F,protocol=ascii,baud=19200,checksum=on,edge=rising,name=x");
   EXPECT_EQ(spec.model->designation, "EX9052D-M");
@@ -129,7 +129,7 @@ TEST(ModuleSpec, AllCanBeSaidAtOnce) {
   EXPECT_EQ(name_of(spec), "x");
 }
 
-TEST(ModuleSpec, WhateverIsTakenCanBeStoredByTheModel) {
+TEST(ModuleSpec, AcceptedSettingsCanBeStoredByTheModel) {
   for (const char* text : {"EX9042D@00", "EX9042D-M@F7,name=~", "EX9068AD-M,name=ABCDEFG,checksum=on"}) {
     const ModuleSpec spec = parse_module_spec(text);
     EXPECT_TRUE(spec.settings.possible_for(*spec.model)) << text;
@@ -156,7 +156,7 @@ TEST(ModuleSpec, AnAddressThatIsNotOneOrTwoHexDigitsIsRefused) {
   }
 }
 
-TEST(ModuleSpec, AWrongValueIsRefusedWithTheRightOnes) {
+TEST(ModuleSpec, AWrongValueIsRefusedWithTheAllowedValues) {
   expect_error("EX9042D-M,protocol=rtu", "modbus or ascii");
   expect_error("EX9042D-M,protocol=", "modbus or ascii");
   expect_error("EX9042D-M,protocol", "modbus or ascii");
@@ -168,7 +168,7 @@ TEST(ModuleSpec, AWrongValueIsRefusedWithTheRightOnes) {
   expect_error("EX9042D-M,baud=", "9600");
 }
 
-TEST(ModuleSpec, ModbusIsRefusedOnAModelThatLacksIt) {
+TEST(ModuleSpec, ModbusIsRefusedForAModelWithoutIt) {
   expect_error("EX9042D,protocol=modbus",
                "protocol=: 'modbus': the EX9042D speaks ASCII only; expected ascii");
 }
@@ -181,7 +181,7 @@ TEST(ModuleSpec, ANameTheModelCannotStoreIsRefused) {
   expect_error("EX9042D,name=\xC3\xBC", "printable");
 }
 
-TEST(ModuleSpec, AnUnknownKeyIsRefusedWithTheRightOnes) {
+TEST(ModuleSpec, AnUnknownKeyIsRefusedWithTheKnownKeys) {
   for (const char* text : {"EX9042D,adress=01", "EX9042D,,baud=9600", "EX9042D,Baud=9600", "EX9042D,x"}) {
     expect_error(text, "=: unknown key; expected one of protocol, baud, checksum, edge, name, init, eeprom");
   }

@@ -40,7 +40,7 @@ std::string json_line_of(const Frame& frame) {
 }
 nlohmann::json json_of(const Frame& frame) { return nlohmann::json::parse(json_line_of(frame)); }
 
-TEST(BusLog, SaysAtWhichRateAFrameWasSentWhereThatIsNotTheLines) {
+TEST(BusLog, ReportsTheBaudRateOfAFrameIfItDiffersFromTheLines) {
   Frame frame = frame_of(1, {1, 2, 3});
   frame.sent_at = 115200;
   frame.line_at = 9600;
@@ -55,7 +55,7 @@ TEST(TextLog, AFrameIsALine) {
   EXPECT_EQ(text_of(dcon(1, ">0004\r")), "   12.345679  < 01 EX9042D-M  >0004\\r  ; reply|");
 }
 
-TEST(TextLog, ACollisionLeavesNoMeaning) {
+TEST(TextLog, ACollidedFrameHasNoMeaning) {
   Frame frame = frame_of(1, {1, 2, 3});
   frame.collided = true;
   EXPECT_EQ(text_of(frame),
@@ -63,7 +63,7 @@ TEST(TextLog, ACollisionLeavesNoMeaning) {
             "time|");
 }
 
-TEST(TextLog, WhatNoiseHasChangedIsSaidWithWhatItMeans) {
+TEST(TextLog, ChangesByNoiseAreReportedWithTheMeaning) {
   Frame frame = frame_of(1, {1, 2, 3, 4});
   frame.changes.push_back({2, 0x07, levels_of(0x03)});
   EXPECT_EQ(text_of(frame),
@@ -76,7 +76,7 @@ TEST(TextLog, ANoteIsALineToo) {
   EXPECT_EQ(printed, "   12.345679  - so it is");
 }
 
-TEST(TextLog, WhatSomebodyElseMeansIsNotSaid) {
+TEST(TextLog, AFrameFromAnUnknownSenderHasNoMeaning) {
   EXPECT_EQ(text_of(frame_of(5, {1, 2, 3})), "   12.345679  ? unknown sender  01 02 03|");
 }
 
@@ -92,7 +92,7 @@ TEST(JsonLog, DconIsTextAsWell) {
             R"("text":"!01\"\\\r","meaning":"reply","collided":false})");
 }
 
-TEST(JsonLog, WhatWentWrongIsTold) {
+TEST(JsonLog, ErrorsAndCollisionsAreReported) {
   Frame frame = frame_of(1, {1, 2, 3, 4});
   frame.changes.push_back({2, 0x07, levels_of(0x03)});
   EXPECT_EQ(json_of(frame)["error"], "noise: byte 3: 03 instead of 07; wrong CRC");
@@ -103,7 +103,7 @@ TEST(JsonLog, WhatWentWrongIsTold) {
   EXPECT_FALSE(json_of(frame).contains("meaning"));
 }
 
-TEST(JsonLog, WhatSomebodyElseMeansIsNotSaid) {
+TEST(JsonLog, AFrameFromAnUnknownSenderHasNoMeaning) {
   EXPECT_EQ(
       json_line_of(frame_of(5, {1, 2, 3})),
       R"({"time":12.345678901,"line":"pump","from":"unknown sender","bytes":"010203","collided":false})");
@@ -117,13 +117,13 @@ TEST(JsonLog, ANoteHasItsTimeAndLine) {
   EXPECT_EQ(printed, R"({"time":12.345678901,"line":"pump","note":"at \"9600\"\nbaud"})");
 }
 
-TEST(JsonLog, ALineThatIsCalledAfterAPathOfAnyBytesIsStillJson) {
+TEST(JsonLog, ALineNameThatIsNotUtf8StillGivesValidJson) {
   std::string printed;
   JsonLog("p\xFFmp", names(), [&printed](const std::string& line) { printed = line; }).note(kBegan, "");
   EXPECT_EQ(nlohmann::json::parse(printed)["line"], "p\xEF\xBF\xBDmp");
 }
 
-TEST(LineError, NamesWhatBecameOfABytePositionByPosition) {
+TEST(LineError, ListsEachChangedByteWithItsPosition) {
   Frame frame;
   EXPECT_EQ(line_error(frame), "");
   frame.changes.push_back({0, 0x41, levels_of(0x43)});
@@ -135,13 +135,13 @@ TEST(LineError, NamesWhatBecameOfABytePositionByPosition) {
             "byte 10: framing error, 61 instead of 41; byte 11: break instead of 41");
 }
 
-TEST(LineError, ARightFrameHasNone) {
+TEST(LineError, AValidFrameHasNone) {
   EXPECT_EQ(errors(frame_of(0, with_crc({1, 5, 0, 2, 0xFF, 0}))), "");
   EXPECT_EQ(errors(dcon(0, "$012B7\r")), "");
   EXPECT_EQ(errors(frame_of(0, {0x0A})), "");
 }
 
-TEST(LineError, AWrongCheckIsOne) {
+TEST(LineError, ReportsAWrongCrcOrChecksum) {
   EXPECT_EQ(errors(frame_of(1, {1, 5, 0, 2, 0xFF, 0, 0x2D, 0xFB})), "wrong CRC");
   EXPECT_EQ(errors(dcon(0, "$012B8\r")), "wrong checksum");
 }

@@ -17,7 +17,7 @@ using std::chrono::milliseconds;
 
 Face face_of(ModuleBench& bench) { return face_of(bench.module(), bench.now()); }
 
-TEST(Face, ShowsWhatIsInForceAndWhatIsDriven) {
+TEST(Face, ShowsTheActiveSettingsAndTheLed) {
   ModuleBench bench("EX9042D@2A,baud=19200,checksum=on,name=PUMPS");
   const Plate plate = face_of(bench).plate;
   EXPECT_TRUE(plate.switched_on && plate.powered && plate.listening);
@@ -45,7 +45,7 @@ TEST(Face, ShowsOutputsInputsCountersAndLatches) {
   EXPECT_EQ(face.gathered.counters[1], 0U);
 }
 
-TEST(Face, WithoutPowerThereIsNothingButTheSwitchesAndTheMemory) {
+TEST(Face, WithoutPowerShowsOnlySwitchesInputsAndStoredSettings) {
   ModuleBench bench("EX9055D@07");
   ASSERT_EQ(bench.ask("@0705"), ">");
   bench.module().set_input(0, true);
@@ -62,14 +62,14 @@ TEST(Face, WithoutPowerThereIsNothingButTheSwitchesAndTheMemory) {
   EXPECT_EQ(face.stored.settings.address, 0x07);
 }
 
-TEST(Face, ASupplyThatFailsLeavesItsSwitchOn) {
+TEST(Face, AnInterruptedSupplyLeavesItsSwitchOn) {
   ModuleBench bench("EX9055D");
   bench.module().interrupt_supply(true);
   EXPECT_TRUE(face_of(bench).plate.switched_on);
   EXPECT_FALSE(face_of(bench).plate.powered);
 }
 
-TEST(Face, ShowsInitModeOnlyBehindAReset) {
+TEST(Face, ShowsInitModeOnlyAfterAReset) {
   ModuleBench bench("EX9042D-M@2A");
   bench.module().set_init(true);
   bench.run(milliseconds(100));
@@ -80,7 +80,7 @@ TEST(Face, ShowsInitModeOnlyBehindAReset) {
   EXPECT_EQ(face_of(bench).plate.address, 0x00);
 }
 
-TEST(Face, TellsWhenTheHostWatchdogExpiresAndThatItHas) {
+TEST(Face, ShowsWhenTheHostWatchdogExpiresAndThatItHasExpired) {
   ModuleBench bench("EX9043D");
   ASSERT_EQ(bench.ask("@010002"), ">");
   ASSERT_EQ(bench.ask("~015S"), "!01");
@@ -104,7 +104,7 @@ TEST(Face, TellsWhenTheHostWatchdogExpiresAndThatItHas) {
   EXPECT_EQ(expired.plate.outputs, 0x02);
 }
 
-TEST(Face, ShowsTheCopyThatCounts) {
+TEST(Face, ShowsTheCurrentCopyOfTheSettings) {
   ModuleBench bench("EX9042D");
   EXPECT_TRUE(face_of(bench).stored.blank);
   EXPECT_EQ(face_of(bench).stored.settings, Settings::factory(bench.module().model()));
@@ -118,7 +118,7 @@ TEST(Face, ShowsTheCopyThatCounts) {
   }
 }
 
-TEST(Face, ADamagedCopyDoesNotCount) {
+TEST(Face, IgnoresADamagedCopyOfTheSettings) {
   ModuleBench bench("EX9042D");
   ASSERT_EQ(bench.ask("~01OONE"), "!01");
   ASSERT_EQ(bench.ask("~01OTWO"), "!01");
@@ -130,7 +130,7 @@ TEST(Face, ADamagedCopyDoesNotCount) {
   EXPECT_EQ(name_text(stored.settings), "ONE");
 }
 
-TEST(Face, SettingsThatCannotBeReadShowInTheLed) {
+TEST(Face, TheLedShowsUnreadableSettings) {
   ModuleBench bench("EX9042D");
   bench.module().memory().contents()[kPlaces[0].address] = 0;
   bench.module().memory().contents()[kPlaces[1].address] = 0;
@@ -139,7 +139,7 @@ TEST(Face, SettingsThatCannotBeReadShowInTheLed) {
   EXPECT_FALSE(face_of(bench).stored.current);
 }
 
-TEST(Face, LookingChangesNothing) {
+TEST(Face, ReadingItDoesNotChangeTheModule) {
   ModuleBench looked("EX9055D");
   ModuleBench left("EX9055D");
   for (int i = 0; i < 200; ++i) {

@@ -57,7 +57,7 @@ class PanelBench : public ModuleBench {
   std::unique_ptr<PanelViewer> viewer_;
 };
 
-TEST(PanelMessages, TheFirstHasAllThatAPageNeeds) {
+TEST(PanelMessages, TheFirstMessageHasTheCompleteState) {
   PanelBench bench("EX9055D@07,name=PUMPS");
   const Message message = bench.look();
   const Message& hello = message["hello"];
@@ -78,7 +78,7 @@ TEST(PanelMessages, TheFirstHasAllThatAPageNeeds) {
   EXPECT_EQ(message["state"]["lines"][0]["baud"], 9600);
 }
 
-TEST(PanelMessages, TheNextHasOnlyWhatHasChanged) {
+TEST(PanelMessages, LaterMessagesHaveOnlyTheChanges) {
   PanelBench bench("EX9055D");
   static_cast<void>(bench.look());
   EXPECT_TRUE(bench.look().is_null());
@@ -92,7 +92,7 @@ TEST(PanelMessages, TheNextHasOnlyWhatHasChanged) {
   EXPECT_TRUE(bench.look().is_null());
 }
 
-TEST(PanelMessages, WhoHasNotReadForLongIsToldHowThingsAreNow) {
+TEST(PanelMessages, APageThatReadsLateGetsTheCurrentState) {
   PanelBench bench("EX9055D");
   const auto slow = bench.panel().viewer();
   static_cast<void>(bench.look(*slow));
@@ -106,7 +106,7 @@ TEST(PanelMessages, WhoHasNotReadForLongIsToldHowThingsAreNow) {
   EXPECT_TRUE(bench.look(*slow).is_null());
 }
 
-TEST(PanelMessages, APageThatHasHeardNothingForASecondIsToldTheTime) {
+TEST(PanelMessages, APageGetsTheTimeAfterOneSecondWithoutAMessage) {
   PanelBench bench("EX9055D");
   static_cast<void>(bench.look());
   bench.pass_wall_time(milliseconds(999));
@@ -172,7 +172,7 @@ class TwoLines {
   Message hello_;
 };
 
-TEST(PanelOfTwoLines, EachModuleIsOnItsLine) {
+TEST(PanelOfTwoLines, EachModuleIsListedWithItsLine) {
   const TwoLines bench;
   const Message& modules = bench.hello()["modules"];
   ASSERT_EQ(modules.size(), 4U);
@@ -186,7 +186,7 @@ TEST(PanelOfTwoLines, EachModuleIsOnItsLine) {
   EXPECT_EQ(bench.hello()["lines"][1]["name"], "yard");
 }
 
-TEST(PanelOfTwoLines, AFaultIsItsModulesAndItsLines) {
+TEST(PanelOfTwoLines, AFaultIsReportedWithItsModuleAndLine) {
   const std::vector<std::pair<std::string, Message>> faults{{"1 fault late-reply 50ms", 0},
                                                             {"2 fault late-reply 50ms", 1},
                                                             {"3 fault late-reply 50ms", 2},
@@ -205,7 +205,7 @@ TEST(PanelOfTwoLines, AFaultIsItsModulesAndItsLines) {
   }
 }
 
-TEST(PanelOfTwoLines, AChangeIsItsModules) {
+TEST(PanelOfTwoLines, AChangeIsReportedWithItsModule) {
   TwoLines bench;
   bench.line(1).module(1).set_input(5, true);
   const Message modules = bench.look()["state"]["modules"];
@@ -216,7 +216,7 @@ TEST(PanelOfTwoLines, AChangeIsItsModules) {
   EXPECT_EQ(bench.look()["state"]["modules"][0]["module"], 1);
 }
 
-TEST(PanelOfTwoLines, ARateIsItsLines) {
+TEST(PanelOfTwoLines, ABaudRateIsReportedWithItsLine) {
   TwoLines bench;
   bench.line(1).master().set_baud(19200);
   const Message lines = bench.look()["state"]["lines"];
@@ -232,7 +232,7 @@ TEST(PanelOfTwoLines, EachLineHasItsOwnTime) {
   EXPECT_EQ(lines[1]["now"].get<std::int64_t>() - lines[0]["now"].get<std::int64_t>(), 250'000);
 }
 
-TEST(PanelOfTwoLines, WhatIsSaidIsItsLines) {
+TEST(PanelOfTwoLines, ANoteIsReportedWithItsLine) {
   TwoLines bench;
   bench.panel().note(1, milliseconds(5), "gone begins");
   Message frames = bench.look()["frames"];
@@ -263,7 +263,7 @@ TEST(PanelMessages, FramesComeWithTimeDirectionBytesAndMeaning) {
   EXPECT_EQ(entries[1]["number"], 1);
 }
 
-TEST(PanelMessages, DamagedFramesAndRemarksAreTold) {
+TEST(PanelMessages, DamagedFramesAndNotesAreReported) {
   PanelBench bench("EX9042D-M");
   static_cast<void>(bench.look());
   bench.send(ModuleBench::Bytes{1, 1, 0, 0, 0, 13, 0, 0});
@@ -275,7 +275,7 @@ TEST(PanelMessages, DamagedFramesAndRemarksAreTold) {
   EXPECT_EQ(entries.back()["note"], "gone begins");
 }
 
-TEST(PanelMessages, OfMoreFramesThanItCanReadThePageGetsTheLast) {
+TEST(PanelMessages, APageGetsOnlyTheLast250Entries) {
   PanelBench bench("EX9042D");
   static_cast<void>(bench.look());
   constexpr std::size_t kMany = 2000;
@@ -291,7 +291,7 @@ TEST(PanelMessages, OfMoreFramesThanItCanReadThePageGetsTheLast) {
   EXPECT_TRUE(bench.look().is_null());
 }
 
-TEST(PanelMessages, FaultsAreToldAsTheyComeAndGo) {
+TEST(PanelMessages, FaultsAreReportedWhenTheyBeginAndEnd) {
   PanelBench bench("EX9042D");
   EXPECT_EQ(bench.look()["state"]["lines"][0]["faults"], Message::array());
   ASSERT_TRUE(bench.viewer().ask(R"({"id": 5, "do": "1 fault late-reply 50ms"})"));
@@ -307,7 +307,7 @@ TEST(PanelMessages, FaultsAreToldAsTheyComeAndGo) {
   EXPECT_EQ(bench.look()["state"]["lines"][0]["faults"], Message::array());
 }
 
-TEST(PanelMessages, ARefusedCommandSaysWhyAndQuitIsOne) {
+TEST(PanelMessages, ARefusedCommandGetsAnErrorAndQuitIsRefused) {
   PanelBench bench("EX9042D");
   for (const std::string command : {"quit", " quit", "quit now", "1 input 0 on", "nonsense"}) {
     ASSERT_TRUE(bench.viewer().ask(R"({"id": 1, "do": ")" + command + "\"}")) << command;
@@ -317,7 +317,7 @@ TEST(PanelMessages, ARefusedCommandSaysWhyAndQuitIsOne) {
   }
 }
 
-TEST(PanelMessages, WhatAPageHoldsIsLetGoWhenItGoes) {
+TEST(PanelMessages, ClosingAPageRunsItsUndoCommands) {
   PanelBench bench("EX9055D");
   auto page = bench.panel().viewer();
   ASSERT_TRUE(page->ask(R"({"id": 1, "do": "1 input 3 on", "undo": "1 input 3 off"})"));
@@ -327,7 +327,7 @@ TEST(PanelMessages, WhatAPageHoldsIsLetGoWhenItGoes) {
   EXPECT_EQ(bench.module().input_levels(), 0x10U);
 }
 
-TEST(PanelMessages, WhatAPageHasLetGoItselfIsNotLetGoAgain) {
+TEST(PanelMessages, ClosingAPageDoesNotRepeatAnUndoThatThePageHasDone) {
   PanelBench bench("EX9055D");
   auto page = bench.panel().viewer();
   ASSERT_TRUE(page->ask(R"({"id": 1, "do": "1 input 3 on", "undo": "1 input 3 off"})"));
@@ -337,7 +337,7 @@ TEST(PanelMessages, WhatAPageHasLetGoItselfIsNotLetGoAgain) {
   EXPECT_EQ(bench.module().input_levels(), 0x08U);
 }
 
-TEST(PanelMessages, WhatWasRefusedIsNotUndone) {
+TEST(PanelMessages, ClosingAPageDoesNotUndoARefusedCommand) {
   PanelBench bench("EX9055D");
   auto page = bench.panel().viewer();
   ASSERT_TRUE(page->ask(R"({"id": 1, "do": "nonsense", "undo": "1 input 3 on"})"));
@@ -345,7 +345,7 @@ TEST(PanelMessages, WhatWasRefusedIsNotUndone) {
   EXPECT_EQ(bench.module().input_levels(), 0U);
 }
 
-TEST(PanelMessages, APageThatNeverLetsGoIsNoPage) {
+TEST(PanelMessages, APageWithTooManyUndoCommandsIsRejected) {
   PanelBench bench("EX9055D");
   auto page = bench.panel().viewer();
   bool taken = true;
@@ -355,7 +355,7 @@ TEST(PanelMessages, APageThatNeverLetsGoIsNoPage) {
   EXPECT_FALSE(taken);
 }
 
-TEST(PanelMessages, InitIsATerminalWhereItIsNoSwitchAtTheRear) {
+TEST(PanelMessages, InitIsATerminalOnModelsWithoutARearSwitch) {
   for (const char* with : {"EX9042D-M", "EX9043D", "EX9052D", "EX9068D-M"}) {
     EXPECT_EQ(plate_layout(*find_model(with))["initTerminal"], true) << with;
   }
@@ -364,7 +364,7 @@ TEST(PanelMessages, InitIsATerminalWhereItIsNoSwitchAtTheRear) {
   }
 }
 
-TEST(Loopback, KnowsItsNamesWithTheirPort) {
+TEST(Loopback, AcceptsItsNamesWithThePort) {
   const Loopback here(9042);
   for (const std::string name : {"127.0.0.1", "localhost"}) {
     EXPECT_TRUE(here.is_host(name + ":9042"));
@@ -376,7 +376,7 @@ TEST(Loopback, KnowsItsNamesWithTheirPort) {
   EXPECT_FALSE(here.is_host("example.org:9042"));
 }
 
-TEST(Loopback, AtTheUsualPortItMayBeLeftOut) {
+TEST(Loopback, AcceptsItsNamesWithoutThePortIfItIs80) {
   const Loopback here(80);
   for (const std::string name : {"127.0.0.1", "localhost"}) {
     for (const std::string port : {"", ":80"}) {
@@ -389,7 +389,7 @@ TEST(Loopback, AtTheUsualPortItMayBeLeftOut) {
   EXPECT_FALSE(here.is_host("example.org"));
 }
 
-TEST(PanelMessages, WhatIsNoRequestIsTakenForNone) {
+TEST(PanelMessages, AnInvalidRequestIsRejected) {
   for (const std::string text :
        {"", "x", "[]", "{}", R"({"id":1})", R"({"id":1,"do":2})", R"({"id":-1,"do":"list"})",
         R"({"id":"1","do":"list"})", R"({"id":1,"do":"list","x":1})", R"({"id":1,"do":"list"} x)",

@@ -48,12 +48,12 @@ bool loads(const std::string& text) {
   }
 }
 
-TEST(Player, PassesWhatIsRight) {
+TEST(Player, PassesACorrectTranscript) {
   EXPECT_TRUE(passes(kHeader + "> $01M\n< !019042M\n> $02M\nsilence\noutputs 0000\nled on\n"));
   EXPECT_TRUE(passes(kModbusHeader + "=> 01 01 00 00 00 0D\n<= 01 01 02 00 00\n"));
 }
 
-TEST(Player, FailsAWrongAnswerAndAMissingOne) {
+TEST(Player, FailsAWrongOrMissingReply) {
   EXPECT_FALSE(passes(kHeader + "> $01M\n< !019042\n"));
   EXPECT_FALSE(passes(kHeader + "> $01M\n< !019042MM\n"));
   EXPECT_FALSE(passes(kHeader + "> $02M\n< !029042M\n"));
@@ -61,7 +61,7 @@ TEST(Player, FailsAWrongAnswerAndAMissingOne) {
   EXPECT_FALSE(passes(kHeader + "led flashing\n"));
 }
 
-TEST(Player, FailsAnAnswerThatNoStepAsksForWhereverItComes) {
+TEST(Player, FailsAnUnexpectedReplyAtAnyStep) {
   EXPECT_FALSE(passes(kHeader + "> $01M\n> $02M\nsilence\n"));
   EXPECT_FALSE(passes(kHeader + "> $01M\nsilence\n"));
   EXPECT_FALSE(passes(kHeader + "> $01M\nwait 100ms\n"));
@@ -73,7 +73,7 @@ TEST(Player, FailsAnAnswerThatNoStepAsksForWhereverItComes) {
   EXPECT_FALSE(passes(kModbusHeader + "=> 01 01 00 00 00 0D\n"));
 }
 
-TEST(Player, RefusesAFileThatSaysWhatCannotBe) {
+TEST(Player, RefusesAFileWithAnInvalidStepOrHeader) {
   EXPECT_TRUE(loads(kHeader + "outputs FFFF\n"));
   EXPECT_FALSE(loads(kHeader + "outputs 10000\n"));
   EXPECT_FALSE(loads(kHeader + "input 0 on\n"));

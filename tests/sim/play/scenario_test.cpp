@@ -38,11 +38,11 @@ std::string failure_of(const std::string& steps, const sim::Setup& setup = two_l
   return play(load(directory / "steps.txt").front(), target).failure;
 }
 
-TEST(Scenario, TalksToTheModulesOfALine) {
+TEST(Scenario, CommunicatesWithTheModulesOfALine) {
   EXPECT_EQ(failure_of("> $01M\n< !019042D\n> $02M\n< !029052\n> $0AM\nsilence\n"), "");
 }
 
-TEST(Scenario, ModuleChoosesWhoseInputsAndOutputsAreMeant) {
+TEST(Scenario, ModuleSelectsTheModuleForInputsAndOutputs) {
   EXPECT_EQ(failure_of("> @010005\n< >\noutputs 0005\nmodule 2\noutputs 0000\ninput 3 on\n> @02\n< >0800\n"),
             "");
   EXPECT_EQ(failure_of(
@@ -51,7 +51,7 @@ TEST(Scenario, ModuleChoosesWhoseInputsAndOutputsAreMeant) {
             "");
 }
 
-TEST(Scenario, LineChoosesTheMastersLineAndItsFirstModule) {
+TEST(Scenario, LineSelectsTheLineAndItsFirstModule) {
   EXPECT_EQ(
       failure_of("line yard\n=> 0A 05 00 00 FF 00\n<= 0A 05 00 00 FF 00\noutputs 0001\n> $01M\nsilence\n"
                  "line hall\noutputs 0000\n> $01M\n< !019042D\n"),
@@ -63,7 +63,7 @@ TEST(Scenario, AllLinesHaveTheSameTime) {
             "");
 }
 
-TEST(Scenario, FaultsStrikeTheLineThatIsChosen) {
+TEST(Scenario, FaultsAffectTheSelectedLine) {
   EXPECT_EQ(failure_of("fault lost-reply\n> $01M\nsilence\nfault off 1\n> $01M\n< !019042D\n"), "");
   EXPECT_EQ(
       failure_of(
@@ -71,14 +71,14 @@ TEST(Scenario, FaultsStrikeTheLineThatIsChosen) {
       "");
 }
 
-TEST(Scenario, AFaultMayBeOfOneModuleWhicheverLineIsChosen) {
+TEST(Scenario, AFaultMayAffectAModuleOfAnyLine) {
   EXPECT_EQ(failure_of("fault 2 gone\n> $02M\nsilence\n> $01M\n< !019042D\n"), "");
   EXPECT_EQ(failure_of("fault 3 lost-reply\nline yard\n=> 0A 01 0000 0008\nsilence\nfault off 1\n"
                        "=> 0A 01 0000 0008\n<= 0A 01 01 00\n"),
             "");
 }
 
-TEST(Scenario, WhatWasHeardOnALineWhileTheStepsWereAboutAnotherIsForgotten) {
+TEST(Scenario, BytesReceivedOnALineThatIsNotSelectedAreDiscarded) {
   const std::string talk = "fault foreign-traffic 3130 every 10s\n";
   EXPECT_EQ(failure_of(talk + "line yard\nwait 31s\nline hall\nmodule 2\n> $02M\n< !029052\n"), "");
   EXPECT_EQ(failure_of(talk + "module 3\nwait 31s\nmodule 1\n> $01M\n< !019042D\n"), "");
@@ -88,7 +88,7 @@ TEST(Scenario, WhatWasHeardOnALineWhileTheStepsWereAboutAnotherIsForgotten) {
             std::string::npos);
 }
 
-TEST(Scenario, NamesFileLineStepAndWhatWasHeard) {
+TEST(Scenario, AFailureNamesTheFileLineStepAndReceivedBytes) {
   const std::string failure = failure_of("; a comment\n> $01M\n< !019043D\n");
   EXPECT_NE(failure.find("steps.txt:3: < !019043D: expected '!019043D\\r', received '!019042D\\r'"),
             std::string::npos)
@@ -120,7 +120,7 @@ std::string played(const std::string& path, bool on_a_bus, const sim::Writing& w
   }
 }
 
-TEST(Play, ReportsEachRunAndAllTogether) {
+TEST(Play, ReportsEachRunAndTheTotal) {
   const Directory directory;
   write_file(directory / "a.txt", "source: manual\nmodel: EX9042D\nmodel: EX9043D\n\n> $01F\n< !01D01.00\n");
   write_file(directory / "b.txt", "source: manual\nmodel: EX9042D\n\n> $01M\n< !019043D\n");
@@ -133,7 +133,7 @@ TEST(Play, ReportsEachRunAndAllTogether) {
   EXPECT_NE(text.find("3 runs, 6 steps, 1 failed\nfailed"), std::string::npos) << text;
 }
 
-TEST(Play, PrintsTheBusWhereItIsTold) {
+TEST(Play, PrintsTheBusLogIfRequested) {
   const Directory directory;
   write_file(directory / "a.txt", "source: manual\nmodel: EX9042D\n\n> $01M\n< !019042D\n");
   const std::string text = played(directory / "a.txt", false, {sim::LogFormat::Text, std::nullopt});
@@ -144,7 +144,7 @@ TEST(Play, PrintsTheBusWhereItIsTold) {
   EXPECT_TRUE(begins < asks && asks < answers && answers < passes && passes != std::string::npos) << text;
 }
 
-TEST(Play, SaysOfWhichLineTheLogIsAndWhatGoesWrongWithIt) {
+TEST(Play, TheLogNamesTheLineAndItsFaults) {
   const Directory directory;
   write_file(
       directory / "a.txt",
@@ -156,7 +156,7 @@ TEST(Play, SaysOfWhichLineTheLogIsAndWhatGoesWrongWithIt) {
   EXPECT_NE(text.find("yard:     5."), std::string::npos) << text;
 }
 
-TEST(Play, RefusesWhatTheBusLacksBeforeAnythingIsPlayed) {
+TEST(Play, RefusesStepsThatDoNotFitTheBusBeforePlaying) {
   struct Wrong {
     const char* step;
     const char* what;
@@ -190,7 +190,7 @@ TEST(Play, RefusesWhatTheBusLacksBeforeAnythingIsPlayed) {
   }
 }
 
-TEST(Play, AFaultThatComesTooLateFailsItsStep) {
+TEST(Play, AFaultWhoseTimeHasPassedFailsItsStep) {
   const Directory directory;
   write_file(directory / "a.txt", "wait 2s\nfault gone at 1s\n");
   EXPECT_NE(played(directory / "a.txt", true).find("FAILED  " + (directory / "a.txt") + ":2: "),
@@ -211,7 +211,7 @@ std::string image_at_07() {
   return {image.begin(), image.end()};
 }
 
-TEST(Play, ReadsAnEepromThatIsReadOnlyOrThatARunningSimulatorHas) {
+TEST(Play, ReadsAnEepromFileThatIsReadOnlyOrInUse) {
   const Directory directory;
   write_file(directory / "eeprom", image_at_07());
   const sim::EepromFile held(directory / "eeprom");
@@ -223,7 +223,7 @@ TEST(Play, ReadsAnEepromThatIsReadOnlyOrThatARunningSimulatorHas) {
   EXPECT_FALSE(std::filesystem::exists(directory / "none"));
 }
 
-TEST(Play, RefusesAnEepromThatIsNoImageBeforeTheCaptureIsTouched) {
+TEST(Play, RefusesAnInvalidEepromFileBeforeOverwritingTheCapture) {
   const Directory directory;
   write_file(directory / "a.txt", "> $01M\n< !019042D\n");
   write_file(directory / "eeprom", "short");
@@ -241,7 +241,7 @@ TEST(Play, RefusesAnEepromThatIsNoImageBeforeTheCaptureIsTouched) {
   EXPECT_EQ(bytes_of_file(directory / "capture"), "precious");
 }
 
-TEST(Play, NeverWritesItsCaptureOverWhatItReads) {
+TEST(Play, RefusesACaptureThatWouldOverwriteAnotherFileOfTheRun) {
   const Directory directory;
   write_file(directory / "a.txt", "> $07M\n< !079042D\n");
   write_file(directory / "eeprom", image_at_07());
@@ -280,7 +280,7 @@ TEST(Play, NeverWritesItsCaptureOverWhatItReads) {
   EXPECT_FALSE(std::filesystem::exists(directory / "ctl"));
 }
 
-TEST(Play, LeavesNoCaptureWhereNothingCanBePlayed) {
+TEST(Play, CreatesNoCaptureIfNothingCanBePlayed) {
   const Directory directory;
   const std::string capture = directory / "line.pcapng";
   EXPECT_NE(played(directory / "none.txt", false, {std::nullopt, capture}).find("none.txt"),
@@ -288,7 +288,7 @@ TEST(Play, LeavesNoCaptureWhereNothingCanBePlayed) {
   EXPECT_FALSE(std::filesystem::exists(capture));
 }
 
-TEST(Play, WantsABusForAScenarioAndNoneForATranscript) {
+TEST(Play, RequiresABusForAScenarioAndNoneForATranscript) {
   const Directory directory;
   write_file(directory / "scenario.txt", "> $01M\n< !019042D\n");
   write_file(directory / "transcript.txt", "source: manual\nmodel: EX9042D\n\n> $01M\n< !019042D\n");
@@ -301,7 +301,7 @@ TEST(Play, WantsABusForAScenarioAndNoneForATranscript) {
       std::string::npos);
 }
 
-TEST(Play, RefusesWhatIsNoFileOfSteps) {
+TEST(Play, RefusesAFileWithoutValidSteps) {
   const Directory directory;
   EXPECT_NE(played(directory / "none.txt", true).find("none.txt: cannot be read; name a transcript"),
             std::string::npos);
@@ -335,7 +335,7 @@ std::string refusal_of(const std::string& step) {
   }
 }
 
-TEST(Step, TakesWhatItSaysAndNothingElse) {
+TEST(Step, AcceptsValidSyntaxOnly) {
   for (const char* step : {"> $01M", ">", "< >", "<\t!01", "=> 01 05 0000 FF00", "bytes 01 02", "input 15 on",
                            "pulse 0", "pulse 0 x1000000", "outputs 5", "outputs FFFF", "module 1",
                            "baud 1200", "wait 0s", "wait 1.5ms", "fault 2 gone", "fault off all", "faults"}) {
@@ -380,7 +380,7 @@ TEST(Step, TakesWhatItSaysAndNothingElse) {
   }
 }
 
-TEST(Step, ATimeIsKeptToTheNanosecond) {
+TEST(Step, TimesAreRoundedToTheNanosecond) {
   const Directory directory;
   write_file(directory / "steps.txt", "wait 0.5ms\nwait 12.3456us\n");
   const std::vector<Step> steps = load(directory / "steps.txt").front().steps;

@@ -24,7 +24,7 @@ class Adapter {
   OwnEcho echo_{9600};
 };
 
-TEST(OwnEcho, WhatWasSentIsTakenOutOfWhatIsHeardOnce) {
+TEST(OwnEcho, SentBytesAreRecognizedOnceInTheReceivedBytes) {
   Adapter adapter;
   EXPECT_EQ(adapter.echo_in({1, 2, 3}, milliseconds(0)), 0U);
   adapter.sends({1, 2, 3}, milliseconds(0));
@@ -32,7 +32,7 @@ TEST(OwnEcho, WhatWasSentIsTakenOutOfWhatIsHeardOnce) {
   EXPECT_EQ(adapter.echo_in({1, 2, 3}, milliseconds(6)), 0U);
 }
 
-TEST(OwnEcho, ItMayComeInPiecesAndLate) {
+TEST(OwnEcho, MayArriveLateAndInPieces) {
   Adapter adapter;
   adapter.sends({1, 2}, milliseconds(0));
   adapter.sends({3, 4}, milliseconds(1));
@@ -41,14 +41,14 @@ TEST(OwnEcho, ItMayComeInPiecesAndLate) {
   EXPECT_EQ(adapter.echo_in({4, 9, 9}, milliseconds(60)), 1U);
 }
 
-TEST(OwnEcho, WhatOthersSayEndsIt) {
+TEST(OwnEcho, OtherBytesEndIt) {
   Adapter adapter;
   adapter.sends({1, 2, 3}, milliseconds(0));
   EXPECT_EQ(adapter.echo_in({1, 9}, milliseconds(5)), 1U);
   EXPECT_EQ(adapter.echo_in({2, 3}, milliseconds(6)), 0U);
 }
 
-TEST(OwnEcho, IsNotAwaitedForEver) {
+TEST(OwnEcho, IsNotExpectedAfterATimeout) {
   Adapter adapter;
   adapter.sends({1, 2, 3}, milliseconds(0));
   EXPECT_EQ(adapter.echo_in({1, 2, 3}, milliseconds(200)), 0U);

@@ -43,7 +43,7 @@ TEST_P(Tcp, AloneThereIsNoPseudoTerminal) {
   EXPECT_FALSE(fs::is_symlink(simulator.tty()));
 }
 
-TEST_P(Tcp, BesideThePseudoTerminalBothReachTheSameLine) {
+TEST_P(Tcp, AndThePseudoTerminalReachTheSameLine) {
   SimulatorProcess simulator({"EX9042D@05", "--tcp", ":0", "--pty", "ex9000.tty", "--line", GetParam()});
   SocketClient client(simulator.tcp_port());
   client.send("$05M\r");
@@ -72,7 +72,7 @@ TEST_P(Tcp, SeveralClientsShareTheLine) {
   EXPECT_EQ(first.receive_text(6), ">0000\r");
 }
 
-TEST_P(Tcp, WhoHasNoMoreToSayIsStillAnsweredAndThenLetGo) {
+TEST_P(Tcp, AHalfClosedClientGetsItsReplyAndIsThenDisconnected) {
   SimulatorProcess simulator({"EX9042D@05", "--tcp", "0", "--line", GetParam()});
   SocketClient client(simulator.tcp_port());
   client.send("$05M\r");
@@ -111,7 +111,7 @@ TEST_P(Tcp, AClientThatResetsItsConnectionDoesNoHarm) {
 }
 
 // While the flood is on the line, the client's command and its reply collide with the flood.
-TEST_P(Tcp, AFloodOfGarbageIsHeldBackAndTheLineGoesOn) {
+TEST_P(Tcp, AFloodOfInvalidBytesDoesNotBlockTheLine) {
   SimulatorProcess simulator({"EX9042D@05,baud=115200", "--tcp", "0", "--line", GetParam()});
   {
     SocketClient flooder(simulator.tcp_port());
@@ -124,7 +124,7 @@ TEST_P(Tcp, AFloodOfGarbageIsHeldBackAndTheLineGoesOn) {
 
 INSTANTIATE_TEST_SUITE_P(Lines, Tcp, testing::Values("paced", "instant"));
 
-TEST(TcpPort, ManyOneAfterTheOtherAreAllServed) {
+TEST(TcpPort, ServesManyClientsOneAfterTheOther) {
   SimulatorProcess simulator({"EX9042D@05", "--tcp", "0", "--line", "instant"});
   for (int visit = 0; visit < 300; ++visit) {
     SocketClient client(simulator.tcp_port());
@@ -133,7 +133,7 @@ TEST(TcpPort, ManyOneAfterTheOtherAreAllServed) {
   }
 }
 
-TEST(TcpPort, SixtyFourAreServedAtOnceAndAPlaceThatIsFreeIsGivenAgain) {
+TEST(TcpPort, Serves64ClientsAtOnceAndReusesAFreePlace) {
   SimulatorProcess simulator({"EX9042D@05", "--tcp", "0", "--line", "instant"});
   std::vector<std::unique_ptr<SocketClient>> clients;
   for (int i = 0; i < 64; ++i) {
@@ -151,7 +151,7 @@ TEST(TcpPort, SixtyFourAreServedAtOnceAndAPlaceThatIsFreeIsGivenAgain) {
   EXPECT_EQ(next.receive_text(10), "!05400600\r");
 }
 
-TEST(TcpPort, ListensWhereItIsTold) {
+TEST(TcpPort, ListensOnTheGivenAddress) {
   std::vector<std::string> hosts{"127.0.0.1"};
   if (fs::exists("/proc/net/if_inet6")) {  // without IPv6 this address does not exist
     hosts.emplace_back("[::1]");
@@ -163,7 +163,7 @@ TEST(TcpPort, ListensWhereItIsTold) {
 }
 
 // A full line must not use processor time: the program does not poll clients that have to wait.
-TEST(TcpPort, WhoIsHeldBackCostsNoTime) {
+TEST(TcpPort, AWaitingClientUsesNoProcessorTime) {
   SimulatorProcess simulator({"EX9042D@05,baud=1200", "--tcp", "0"});
   SocketClient flooder(simulator.tcp_port());
   flooder.send(std::vector<std::uint8_t>(20'000, 'x'));  // takes almost three minutes at 1200 baud
@@ -188,7 +188,7 @@ TEST(TcpPort, WhoIsHeldBackCostsNoTime) {
   EXPECT_LT(static_cast<double>(used), passed.count() * static_cast<double>(sysconf(_SC_CLK_TCK)) / 4);
 }
 
-TEST(TcpPort, InUseIsRefusedAndOneOfADeadProcessIsTakenOver) {
+TEST(TcpPort, IsRefusedIfInUseAndReusableAfterItsProcessWasKilled) {
   SimulatorProcess first({"EX9042D@05", "--tcp", "0"});
   const std::string address = "127.0.0.1:" + std::to_string(first.tcp_port());
   expect_refused(run({simulator_path(), "EX9042D", "--tcp", address}, first.directory()), "--tcp " + address,
@@ -203,7 +203,7 @@ TEST(TcpPort, InUseIsRefusedAndOneOfADeadProcessIsTakenOver) {
   EXPECT_EQ(heir.receive_text(9), "!059042D\r");
 }
 
-TEST(TcpPort, AnAddressThatIsNotOursIsRefused) {
+TEST(TcpPort, AnAddressOfAnotherHostIsRefused) {
   expect_refused(run({simulator_path(), "EX9042D", "--tcp", "192.0.2.1:5020"}), "--tcp 192.0.2.1:5020",
                  "name");
   expect_refused(run({simulator_path(), "EX9042D", "--tcp", "no.such.host.invalid:5020"}),
@@ -286,7 +286,7 @@ class Cable {
   std::string device_;
 };
 
-TEST(SerialPort, TheModulesHangOnTheLineBehindIt) {
+TEST(SerialPort, ConnectsTheModulesToItsLine) {
   const Cable cable;
   SimulatorProcess simulator({"EX9042D@05", "EX9052D@06", "--serial", cable.device()});
   EXPECT_FALSE(fs::is_symlink(simulator.tty()));
@@ -300,7 +300,7 @@ TEST(SerialPort, TheModulesHangOnTheLineBehindIt) {
 }
 
 // Adapters have control signals that modules do not have. CTS and carrier may never become active.
-TEST(SerialPort, HoweverItWasLeftItIsSetToTheLinesRateRawWithoutFlowControl) {
+TEST(SerialPort, IsSetToTheLinesBaudRateAndRawModeWithoutFlowControl) {
   const Cable cable;
   cable.leave_set_for_something_else();
   SimulatorProcess simulator(
@@ -318,7 +318,7 @@ TEST(SerialPort, HoweverItWasLeftItIsSetToTheLinesRateRawWithoutFlowControl) {
 }
 
 // 248 characters take a quarter of a second, so the program writes the reply in pieces.
-TEST(SerialPort, AReplyOfAnyLengthComesWhole) {
+TEST(SerialPort, ALongReplyIsSentCompletely) {
   const Cable cable;
   SimulatorProcess simulator({"EX9042D-M@05", "--serial", cable.device()});
   std::string echo = std::string("\x05\x08\x00\x00", 4) + std::string(244, 'x');
@@ -330,7 +330,7 @@ TEST(SerialPort, AReplyOfAnyLengthComesWhole) {
 }
 
 // Without --echo, a module would treat its own reply as the same request again.
-TEST(SerialPort, AnAdapterThatHearsItselfIsToldOf) {
+TEST(SerialPort, TheEchoOfAnAdapterIsIgnoredWithTheEchoOption) {
   const Cable cable;
   SimulatorProcess simulator({"EX9042D-M@01", "--serial", cable.device(), "--echo"});
   const std::string switch_on("\x01\x05\x00\x00\xFF\x00\x8C\x3A", 8);
@@ -345,7 +345,7 @@ TEST(SerialPort, AnAdapterThatHearsItselfIsToldOf) {
   EXPECT_EQ(cable.read(7).substr(0, 5), std::string("\x01\x01\x02\x01\x00", 5));
 }
 
-TEST(SerialPort, WhenItGoesTheProgramEndsAndSaysSo) {
+TEST(SerialPort, TheProgramEndsWithAnErrorWhenThePortDisappears) {
   Cable cable;
   const Directory directory;
   ChildProcess simulator({simulator_path(), "EX9042D", "--serial", cable.device()}, directory.path(),
@@ -357,7 +357,7 @@ TEST(SerialPort, WhenItGoesTheProgramEndsAndSaysSo) {
   EXPECT_NE(simulator.output().find("the port has disappeared"), std::string::npos) << simulator.output();
 }
 
-TEST(SerialPort, WhatCannotBeHadIsRefused) {
+TEST(SerialPort, AMissingUnsuitableOrUsedPortIsRefused) {
   expect_refused(run({simulator_path(), "EX9042D", "--serial", "/no/such/port"}), "--serial /no/such/port",
                  "name");
   expect_refused(run({simulator_path(), "EX9042D", "--serial", "/dev/null"}), "--serial /dev/null",

@@ -10,7 +10,7 @@
 namespace ex9000::system {
 namespace {
 
-TEST(Dcon, ATypedSessionIsAnswered) {
+TEST(Dcon, TypedCommandsGetReplies) {
   SimulatorProcess simulator({"9068d-m@0A,protocol=ascii,name=PUMP", "--log"});
   Terminal terminal(simulator.tty(), 9600);
   terminal.type("$0AM\r");
@@ -25,7 +25,7 @@ TEST(Dcon, ATypedSessionIsAnswered) {
   EXPECT_TRUE(simulator.wait_for("< 0A EX9068D-M  !0APUMP\\r  ; reply")) << simulator.output();
 }
 
-TEST(Dcon, AReplyThatNobodyHasWaitedForIsNotTheNextMastersFirst) {
+TEST(Dcon, TheNextMasterDoesNotReceiveAnUnreadReply) {
   SimulatorProcess simulator({"EX9042D@05,name=FIRST", "--log", "--control", "control"});
   {
     Terminal impatient(simulator.tty(), 9600);
@@ -39,7 +39,7 @@ TEST(Dcon, AReplyThatNobodyHasWaitedForIsNotTheNextMastersFirst) {
   EXPECT_EQ(terminal.read_line(), "!05400600\r");
 }
 
-TEST(Dcon, WhoGoesLeavesTheOthersAtTheLine) {
+TEST(Dcon, AMasterThatDisconnectsDoesNotDisconnectTheOthers) {
   SimulatorProcess simulator({"EX9042D@05"});
   for (int round = 0; round < 5; ++round) {
     Terminal stays(simulator.tty(), 9600);
@@ -49,7 +49,7 @@ TEST(Dcon, WhoGoesLeavesTheOthersAtTheLine) {
   }
 }
 
-TEST(Dcon, TheRateThatAMasterSetsIsTheLinesAndAMismatchIsSaid) {
+TEST(Dcon, TheLineTakesTheMastersBaudRateAndReportsAMismatch) {
   SimulatorProcess simulator({"EX9042D@05,baud=19200", "--baud", "9600"});
   EXPECT_TRUE(simulator.wait_for("the line is at 9600 baud, EX9042D at 05 listens at 19200"))
       << simulator.output();

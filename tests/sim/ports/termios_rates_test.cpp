@@ -24,34 +24,34 @@ termios settings_at(std::uint32_t rate) {
   return settings;
 }
 
-TEST(TermiosRates, EachRateHasTheNumberThatTheCLibraryGivesIt) {
+TEST(TermiosRates, EachRateHasTheSpeedConstantOfTheCLibrary) {
   for (const std::uint32_t rate : kRates) {
     const termios settings = settings_at(rate);
     EXPECT_EQ(termios_speed(rate), cfgetospeed(&settings)) << rate;
   }
 }
 
-TEST(TermiosRates, WhatIsSetIsReadAsItsRate) {
+TEST(TermiosRates, AStoredRateIsReadBack) {
   for (const std::uint32_t rate : kRates) {
     EXPECT_EQ(termios_rate(settings_at(rate)), rate);
   }
 }
 
-TEST(TermiosRates, NoTwoRatesShareANumber) {
+TEST(TermiosRates, EachRateHasADifferentSpeedConstant) {
   std::set<speed_t> speeds;
   for (const std::uint32_t rate : kRates) {
     EXPECT_TRUE(speeds.insert(termios_speed(rate).value()).second) << rate;
   }
 }
 
-TEST(TermiosRates, EveryRateOfAModuleIsOne) {
+TEST(TermiosRates, IncludeEveryBaudRateOfAModule) {
   // wire.md section 4: CC 03 to 0A.
   for (const std::uint32_t rate : {1200U, 2400U, 4800U, 9600U, 19200U, 38400U, 57600U, 115200U}) {
     EXPECT_TRUE(termios_speed(rate)) << rate;
   }
 }
 
-TEST(TermiosRates, WhatTermiosHasNoNumberForIsNone) {
+TEST(TermiosRates, OtherRatesHaveNoSpeedConstant) {
   for (const std::uint32_t rate : {0U, 1U, 49U, 9601U, 57601U, 14400U, 250000U, 4000001U, 0xFFFF'FFFFU}) {
     EXPECT_FALSE(termios_speed(rate)) << rate;
   }

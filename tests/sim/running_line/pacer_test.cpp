@@ -88,7 +88,7 @@ class PacedLine : public testing::Test {
 
 const FrameBytes kName3{'$', '0', '3', 'M', '\r'};
 
-TEST_F(PacedLine, ABroadcastRightBehindAnAsciiAnswerIsHeldBackUntilModbusModulesTakeItForAFrame) {
+TEST_F(PacedLine, DelaysABroadcastAfterAnAsciiReplyUntilItIsASeparateModbusFrame) {
   ask(kName3, 9);
   send(kAllFirstOn);
   rest();
@@ -96,13 +96,13 @@ TEST_F(PacedLine, ABroadcastRightBehindAnAsciiAnswerIsHeldBackUntilModbusModules
   EXPECT_TRUE(first_are_on());
 }
 
-TEST_F(PacedLine, ARequestToAModbusModuleRightBehindAnAsciiAnswerIsHeldBackLikewise) {
+TEST_F(PacedLine, AModbusRequestImmediatelyAfterAnAsciiReplyGetsItsReply) {
   ask(kName3, 9);
   ask(kInputs2, 6);
   EXPECT_EQ(recorder_.sent_by(2), with_crc({0x02, 0x02, 0x01, 0x00}));
 }
 
-TEST_F(PacedLine, ABroadcastRightBehindAModbusAnswerIsHeldBackForT35) {
+TEST_F(PacedLine, DelaysABroadcastAfterAModbusReplyForT35) {
   ask(kInputs2, 6);
   send(kAllFirstOn);
   rest();
@@ -110,7 +110,7 @@ TEST_F(PacedLine, ABroadcastRightBehindAModbusAnswerIsHeldBackForT35) {
   EXPECT_TRUE(first_are_on());
 }
 
-TEST_F(PacedLine, ABroadcastRightBehindWhatSomebodyElseHasSaidIsHeldBackUntilModbusModulesTakeItForAFrame) {
+TEST_F(PacedLine, DelaysABroadcastAfterForeignTrafficUntilItIsASeparateModbusFrame) {
   pacer_->now([this] { line_.faults().add(parse_fault("foreign-traffic 2430394D0D")); });
   while (recorder_.bytes.size() < kName3.size()) {
     ASSERT_GT(io_.run_one(), 0U);

@@ -63,7 +63,7 @@ TEST(LateHost, IsReportedWithItsDelay) {
   }
 }
 
-TEST(LateHost, JoinsTwoRequestsAndSaysSo) {
+TEST(LateHost, TwoRequestsReadInOnePieceAreReported) {
   SimulatorProcess simulator({"EX9042D-M@01,protocol=modbus", "--tcp", "0"});
   SocketClient client(simulator.tcp_port());
   client.send(text_of(request(1)));

@@ -97,7 +97,7 @@ std::string ask(Terminal& terminal, const std::string& command) {
 
 // --- several lines ---
 
-TEST(Lines, DoNotHearEachOther) {
+TEST(Lines, DoNotReceiveEachOthersBytes) {
   Lines lines(kHallAndYard);
   Terminal hall(lines / "hall.tty", 9600);
   Terminal yard(lines / "yard.tty", 9600);
@@ -114,7 +114,7 @@ TEST(Lines, DoNotHearEachOther) {
   EXPECT_TRUE(hall.read(milliseconds(50)).empty());  // a busy machine can only hide an error
 }
 
-TEST(Lines, EachHasItsOwnRateAndSaysWhichItIs) {
+TEST(Lines, EachHasItsOwnBaudRateAndIsNamedInTheLog) {
   Lines lines(R"({"lines": [
     {"name": "hall", "pty": "hall.tty", "modules": [{"model": "EX9042D", "baud": 9600}]},
     {"pty": "yard.tty", "modules": [{"model": "EX9052D", "baud": 115200}]}], "log": true})");
@@ -136,7 +136,7 @@ TEST(Lines, EachHasItsOwnRateAndSaysWhichItIs) {
   EXPECT_EQ(halls, "x");
 }
 
-TEST(Lines, ModulesAreReachedByTheirNumberThroughAllOfThem) {
+TEST(Lines, ModulesAreNumberedThroughAllLines) {
   Lines lines(kHallAndYard);
   EXPECT_EQ(lines.control().ask("list"),
             "ok 3 modules: 1 EX9042D at 01 on hall, 2 EX9055D at 02 on hall, 3 EX9052D at 01 on yard");
@@ -146,7 +146,7 @@ TEST(Lines, ModulesAreReachedByTheirNumberThroughAllOfThem) {
   EXPECT_EQ(ask(yard, "@01"), ">8000");
 }
 
-TEST(Lines, FaultsAreOfTheLineThatIsNamed) {
+TEST(Lines, FaultsAffectTheNamedLineOnly) {
   Lines lines(kHallAndYard, {"--log"});
   Terminal hall(lines / "hall.tty", 9600);
   Terminal yard(lines / "yard.tty", 9600);
@@ -173,7 +173,7 @@ TEST(Lines, FaultsAreOfTheLineThatIsNamed) {
   EXPECT_EQ(ask(hall, "$02M"), "!029055");
 }
 
-TEST(Lines, OfTheExampleComeUp) {
+TEST(Lines, OfTheExampleBusFileStart) {
   std::string example = run({simulator_path(), "--example"}).output;
   const std::string port = "127.0.0.1:5020";
   ASSERT_TRUE(has(example, port));
@@ -190,7 +190,7 @@ TEST(Lines, OfTheExampleComeUp) {
   EXPECT_EQ(fs::file_size(lines / "hall-01.bin"), 8192U);
 }
 
-TEST(Lines, FilesAreMadeForAllModulesOrForNone) {
+TEST(Lines, NoFilesAreCreatedIfOneLineFails) {
   for (const char* wrong : {R"("pty": "taken")", R"("pty": "missing/tty")", R"("tcp": "192.0.2.1:5020")",
                             R"("serial": "missing")"}) {
     const Directory directory;
@@ -220,7 +220,7 @@ TEST(Lines, PortErrorNamesItsPlaceInTheBusFile) {
                 "be written\n");
 }
 
-TEST(Lines, APseudoTerminalThatTheFileDoesNotNameIsToldOfWithItsLine) {
+TEST(Lines, AnErrorOfAnUnnamedPseudoTerminalNamesItsLine) {
   const Directory directory;
   write_file(directory / "line1.tty", "precious");
   const BusFile file("{\"lines\": [\n{\"modules\": [{\"model\": \"EX9042D\"}]}]}");
@@ -231,7 +231,7 @@ TEST(Lines, APseudoTerminalThatTheFileDoesNotNameIsToldOfWithItsLine) {
                                 "remove it or name another path\n");
 }
 
-TEST(Lines, AModulesEepromIsToldOfWithItsPlaceInTheFile) {
+TEST(Lines, AnEepromErrorNamesItsPlaceInTheBusFile) {
   const Directory directory;
   write_file(directory / "short", "short");
   write_file(directory / "steps.txt", "> $01M\n< !019042D\n");
@@ -268,7 +268,7 @@ TEST(Lines, GlobalErrorsNameTheBusFileOrTheOption) {
   }
 }
 
-TEST(Lines, AWrongFileIsRefusedInOneLineThatNamesItItsLineAndTheKey) {
+TEST(Lines, AWrongBusFileIsRefusedWithItsNameLineAndKey) {
   const Directory directory;
   const BusFile file("{\"lines\": [{\"modules\": [{\"model\": \"EX9042D\",\n\"colour\": 1}]}]}");
   const Finished finished = run({simulator_path(), file.path()}, directory.path());
@@ -319,14 +319,14 @@ std::string strikes(const std::string& seed) {
   return struck;
 }
 
-TEST(LineOfTheCommandLine, TheSameSeedStrikesTheSameReplies) {
+TEST(LineOfTheCommandLine, EqualSeedsAffectTheSameReplies) {
   const std::string of_seed = strikes("7");
   EXPECT_EQ(strikes("7"), of_seed);
   EXPECT_NE(strikes("8"), of_seed);
 }
 
 // Stations of faults are attached after the modules, and the log has no names for them.
-TEST(LineOfTheCommandLine, WhatNoModuleHasSentIsHeardAndLogged) {
+TEST(LineOfTheCommandLine, BytesThatNoModuleHasSentAreReceivedAndLogged) {
   SimulatorProcess simulator({"EX9042D-M@01", "--control", "control", "--log"});
   ControlClient control(simulator.directory() + "/control");
   Terminal terminal(simulator.tty(), 9600);
@@ -347,7 +347,7 @@ TEST(LineOfTheCommandLine, WhatNoModuleHasSentIsHeardAndLogged) {
   EXPECT_EQ(simulator.end(SIGTERM), 0);
 }
 
-TEST(LineOfTheCommandLine, TheLogTellsOfFaultsThatComeAndGo) {
+TEST(LineOfTheCommandLine, TheLogReportsTheBeginningAndEndOfFaults) {
   SimulatorProcess simulator({"EX9042D", "--fault", "gone at 300ms for 100ms"});
   EXPECT_TRUE(simulator.wait_for("fault 1 strikes: gone at 300ms for 100ms")) << simulator.output();
   EXPECT_TRUE(simulator.wait_for("fault 1 is over: gone at 300ms for 100ms")) << simulator.output();

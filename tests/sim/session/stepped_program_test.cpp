@@ -32,7 +32,7 @@ class Stepped {
   }
 };
 
-TEST(SteppedProgram, ADayOfTheHostWatchdogPassesInOneCommand) {
+TEST(SteppedProgram, TheHostWatchdogExpiresWhenOneCommandAdvancesADay) {
   Stepped stepped({"EX9042D"});
   Terminal master(stepped.simulator.tty(), 9600);
   master.type("~0131FF\r");  // enabled, 25.5 s
@@ -54,7 +54,7 @@ TEST(SteppedProgram, ItWaitsForAMasterThatWritesLater) {
   EXPECT_EQ(master.receive_text(9), "!019042D\r");
 }
 
-TEST(SteppedProgram, AMasterThatHasClosedItsSideStillGetsItsReply) {
+TEST(SteppedProgram, AHalfClosedMasterGetsItsReply) {
   Stepped stepped({"EX9042D", "--tcp", "0"});
   SocketClient master(stepped.simulator.tcp_port());
   master.send("$01M\r");
@@ -63,7 +63,7 @@ TEST(SteppedProgram, AMasterThatHasClosedItsSideStillGetsItsReply) {
   EXPECT_EQ(master.receive_text(9), "!019042D\r");
 }
 
-TEST(SteppedProgram, AMasterThatCrashesWhileItIsAnsweredDoesNoHarm) {
+TEST(SteppedProgram, AMasterThatCrashesDuringItsReplyDoesNoHarm) {
   for (int round = 0; round < 5; ++round) {
     Stepped stepped({"EX9042D", "--tcp", "0"});
     SocketClient crashing(stepped.simulator.tcp_port());
@@ -100,7 +100,7 @@ TEST(SteppedProgram, TheSameCommandsProduceTheSameBytesAtTheSameTimes) {
   EXPECT_NE(first.find("> master  @01"), std::string::npos) << first;
 }
 
-TEST(SteppedProgram, ASignalEndsItWhileALongTimePasses) {
+TEST(SteppedProgram, ASignalEndsItDuringALongAdvance) {
   Stepped stepped({"EX9042D", "--log"});
   stepped.control.ok("fault foreign-traffic 2430314D0D at 1min");
   stepped.control.send("advance 8760h\n");
@@ -108,7 +108,7 @@ TEST(SteppedProgram, ASignalEndsItWhileALongTimePasses) {
   EXPECT_EQ(stepped.simulator.end(SIGTERM), 0);
 }
 
-TEST(SteppedProgram, APortThatNobodyReadsIsReported) {
+TEST(SteppedProgram, AFullPortIsReported) {
   Stepped stepped({"EX9042D"});
   const Terminal silent(stepped.simulator.tty(), 9600);
   // Foreign traffic reaches the port like a reply; a pseudo-terminal holds some kilobytes.
@@ -118,7 +118,7 @@ TEST(SteppedProgram, APortThatNobodyReadsIsReported) {
   EXPECT_TRUE(stepped.simulator.wait_for("a port is full: ")) << stepped.simulator.output();
 }
 
-TEST(SteppedProgram, TheRateOfATcpPortIsToldOnTheControlSocket) {
+TEST(SteppedProgram, TheBaudRateOfATcpPortIsSetOnTheControlSocket) {
   Stepped stepped({"EX9042D@01,baud=19200", "--baud", "9600", "--tcp", "0"});
   SocketClient master(stepped.simulator.tcp_port());
   master.send("$01M\r");
@@ -130,7 +130,7 @@ TEST(SteppedProgram, TheRateOfATcpPortIsToldOnTheControlSocket) {
   EXPECT_EQ(master.receive_text(9), "!019042D\r");
 }
 
-TEST(SteppedProgram, AnAdvanceThatWaitsIsReplacedByALaterOne) {
+TEST(SteppedProgram, AWaitingAdvanceIsReplacedByALaterOne) {
   Stepped stepped({"EX9042D"});
   stepped.control.send("advance 1s after 5\n");
   ControlClient other(stepped.simulator.directory() + "/ctl");

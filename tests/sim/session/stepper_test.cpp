@@ -117,7 +117,7 @@ class StepperTest : public testing::Test {
   bool asked_to_end_ = false;
 };
 
-TEST_F(StepperTest, TimePassesAsToldOnAllLinesAndIsAnsweredInSeconds) {
+TEST_F(StepperTest, AdvancesTheTimeOfAllLinesAndReportsItInSeconds) {
   EXPECT_EQ(advance("250ms"), "ok 0.35");  // the time is 0.1 s after the modules have started up
   EXPECT_EQ(line_.stepped->now(), milliseconds(350));
   EXPECT_EQ(other_.stepped->now(), milliseconds(350));
@@ -132,14 +132,14 @@ TEST_F(StepperTest, TimeStopsWhenTheProgramIsAskedToEnd) {
   EXPECT_LT(line_.stepped->now(), std::chrono::hours(1));
 }
 
-TEST_F(StepperTest, NothingHappensWithoutIt) {
+TEST_F(StepperTest, NothingHappensWithoutAnAdvance) {
   line_.port->write("$01M\r");
   line_.port->tell();
   EXPECT_EQ(line_.stepped->now(), milliseconds(100));
   EXPECT_EQ(line_.port->take_read(), "");
 }
 
-TEST_F(StepperTest, WhatHasArrivedIsPutOnTheLineAndAnsweredInItsTime) {
+TEST_F(StepperTest, WrittenBytesAreSentOnTheLineAndTheReplyTakesItsTime) {
   line_.port->write("$01M\r");
   // The request of five characters at 9600 baud ends after 5.208 ms; the reply begins one character later.
   advance("6ms");
@@ -148,7 +148,7 @@ TEST_F(StepperTest, WhatHasArrivedIsPutOnTheLineAndAnsweredInItsTime) {
   EXPECT_EQ(line_.port->take_read(), "!019042D\r");
 }
 
-TEST_F(StepperTest, ItWaitsForBytesThatHaveNotArrivedYet) {
+TEST_F(StepperTest, WaitsForTheGivenNumberOfBytes) {
   EXPECT_EQ(advance("50ms after 5"), "");
   EXPECT_EQ(line_.stepped->now(), milliseconds(100));
   line_.port->write("$01");
@@ -161,7 +161,7 @@ TEST_F(StepperTest, ItWaitsForBytesThatHaveNotArrivedYet) {
   EXPECT_EQ(line_.port->take_read(), "!019042D\r");
 }
 
-TEST_F(StepperTest, ItCountsTheBytesOfAllLinesThatNoEarlierOneHasPutOnALine) {
+TEST_F(StepperTest, CountsTheNewBytesOfAllLines) {
   line_.port->write("$01M\r");
   EXPECT_EQ(advance("50ms after 5"), "ok 0.15");
   EXPECT_EQ(advance("50ms after 10"), "");  // those five do not count again
@@ -174,7 +174,7 @@ TEST_F(StepperTest, ItCountsTheBytesOfAllLinesThatNoEarlierOneHasPutOnALine) {
   EXPECT_EQ(other_.port->take_read(), "!019052\r");
 }
 
-TEST_F(StepperTest, ItTakesEverythingThatIsThereAndNotOnlyWhatItWaitsFor) {
+TEST_F(StepperTest, SendsAllAvailableBytesAndNotOnlyTheGivenNumber) {
   line_.port->write("$01M\r");
   other_.port->write("$01M\r");
   EXPECT_EQ(advance("50ms after 5"), "ok 0.15");
@@ -191,7 +191,7 @@ TEST_F(StepperTest, BytesReadTogetherFollowEachOtherWithoutAGap) {
   EXPECT_EQ(line_.port->take_read().size(), 7U);
 }
 
-TEST_F(StepperTest, BytesOfTwoCommandsHaveItsTimeBetweenThem) {
+TEST_F(StepperTest, BytesOfTwoAdvancesAreSeparatedByTheAdvancedTime) {
   const std::vector<std::uint8_t> request = with_crc({2, 1, 0, 0, 0, 13});
   line_.port->write(FrameOfBytes(request.begin(), request.begin() + 3));
   advance("20ms after 3");
@@ -200,7 +200,7 @@ TEST_F(StepperTest, BytesOfTwoCommandsHaveItsTimeBetweenThem) {
   EXPECT_EQ(line_.port->take_read(), "");  // a silence of more than 3.5 characters has cut the frame in two
 }
 
-TEST_F(StepperTest, QuietEndsAsSoonAsTheReplyIsOver) {
+TEST_F(StepperTest, QuietEndsWhenTheReplyIsComplete) {
   other_.port->write("$01M\r");
   const std::string answer = advance("10s after 5 quiet");
   EXPECT_EQ(other_.port->take_read(), "!019052\r");
@@ -225,7 +225,7 @@ TEST_F(StepperTest, QuietWaitsForAStore) {
   EXPECT_FALSE(line_.stepped->pending());
 }
 
-TEST_F(StepperTest, QuietWaitsForAModuleThatComesUp) {
+TEST_F(StepperTest, QuietWaitsForAModuleThatIsStarting) {
   line_.line->module(0).power(false);
   line_.line->module(0).power(true);
   EXPECT_TRUE(line_.stepped->pending());
@@ -240,7 +240,7 @@ TEST_F(StepperTest, QuietWaitsForAReplyThatAFaultDelays) {
   EXPECT_EQ(line_.port->take_read(), "!019042D\r");
 }
 
-TEST_F(StepperTest, QuietMovesNoTimeIfNothingIsPending) {
+TEST_F(StepperTest, QuietDoesNotAdvanceIfNothingIsPending) {
   EXPECT_EQ(advance("10s quiet"), "ok 0.1");
   EXPECT_EQ(advance("10s"), "ok 10.1");
 }
@@ -277,7 +277,7 @@ TEST_F(StepperTest, TheSameCommandsHaveTheSameEffectsAtTheSameTimes) {
   EXPECT_NE(first.find(">0000"), std::string::npos);
 }
 
-TEST_F(StepperTest, TheRateOfAPortIsTheLinesRateFromItsBytesOn) {
+TEST_F(StepperTest, TheLineTakesThePortsBaudRateWhenItsBytesAreSent) {
   line_.port->rate_ = 19200;
   line_.port->write("$01M\r");
   advance("50ms");
@@ -289,7 +289,7 @@ TEST_F(StepperTest, TheRateOfAPortIsTheLinesRateFromItsBytesOn) {
   EXPECT_EQ(line_.port->take_read(), "!019042D\r");
 }
 
-TEST_F(StepperTest, BytesThatFindNoRoomAreDroppedAndReported) {
+TEST_F(StepperTest, BytesForAFullPortAreDroppedAndReported) {
   line_.port->room_ = 4;
   line_.port->write("$01M\r");
   EXPECT_EQ(advance("50ms"), "ok 0.15");
@@ -316,7 +316,7 @@ TEST_F(StepperTest, AFullPortIsReportedOnceUntilItHasRoomAgain) {
   EXPECT_EQ(line_.notices.size(), 2U);
 }
 
-TEST_F(StepperTest, ALaterOneReplacesOneThatStillWaits) {
+TEST_F(StepperTest, ALaterAdvanceReplacesAWaitingOne) {
   std::string first;
   stepper_->advance("advance 1s after 5", [&](const Control::Reply& reply) { first = reply.text; });
   EXPECT_EQ(first, "");
@@ -324,7 +324,7 @@ TEST_F(StepperTest, ALaterOneReplacesOneThatStillWaits) {
   EXPECT_EQ(first.rfind("error: ", 0), 0U) << first;
 }
 
-TEST_F(StepperTest, TheProgramEndsWhenItsTimeIsOver) {
+TEST_F(StepperTest, TheProgramEndsAtItsEndTime) {
   begin(milliseconds(600));
   EXPECT_EQ(advance("499ms"), "ok 0.599");
   EXPECT_FALSE(quits_);
@@ -345,7 +345,7 @@ TEST_F(StepperTest, MastersWaitWhenTooMuchHasArrived) {
   EXPECT_EQ(line_.stepped->waiting(), 5U);
 }
 
-TEST_F(StepperTest, WhatIsWrongIsRefusedAndMovesNothing) {
+TEST_F(StepperTest, AnInvalidAdvanceIsRefusedAndDoesNotAdvance) {
   for (const char* wrong : {"", "soon", "1", "-1s", "1s after", "1s after x", "1s after -1", "1s after 65537",
                             "1s quietly", "1s quiet after 5", "1s after 5 quiet now", "1s 5"}) {
     const std::string answer = advance(wrong);
@@ -354,7 +354,7 @@ TEST_F(StepperTest, WhatIsWrongIsRefusedAndMovesNothing) {
   }
 }
 
-TEST(Stepper, KnowsItsCommand) {
+TEST(Stepper, RecognizesTheAdvanceCommand) {
   EXPECT_TRUE(Stepper::is_advance("advance 1s"));
   EXPECT_TRUE(Stepper::is_advance("advance"));
   EXPECT_FALSE(Stepper::is_advance("advanced 1s"));

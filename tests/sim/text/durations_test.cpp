@@ -41,7 +41,7 @@ TEST(TimeText, AnythingElseIsRefusedWithExamples) {
   }
 }
 
-TEST(TimeText, OfATimeIsReadAsThatTime) {
+TEST(TimeText, IsReadBackAsTheSameTime) {
   EXPECT_EQ(time_text(12'500ms), "12.5s");
   EXPECT_EQ(time_text(100ms), "100ms");
   EXPECT_EQ(time_text(10us), "10us");

@@ -27,7 +27,7 @@ void expect_refused(Parse parse, const std::vector<std::string>& texts, const st
 
 // --- switches and choices ---
 
-TEST(OnOff, IsOneOfTheTwoWordsAsTheyAreWritten) {
+TEST(OnOff, AcceptsOnlyOnAndOffInLowerCase) {
   EXPECT_TRUE(parse_on_off("on"));
   EXPECT_FALSE(parse_on_off("off"));
   expect_refused(parse_on_off, {"maybe", "", "On", "OFF", "on ", " off", "1", "true", "onoff"}, "on or off");
@@ -42,7 +42,7 @@ TEST(Choice, IsTrueForTheFirstWordAndFalseForTheSecond) {
 
 // --- whole numbers ---
 
-TEST(WholeNumber, ReachesFromTheLeastToTheMost) {
+TEST(WholeNumber, IsWithinItsBounds) {
   EXPECT_EQ(parse_whole_number("3", 3, 15), 3U);
   EXPECT_EQ(parse_whole_number("15", 3, 15), 15U);
   EXPECT_EQ(parse_whole_number("007", 3, 15), 7U);
@@ -55,14 +55,14 @@ TEST(WholeNumber, ReachesFromTheLeastToTheMost) {
       "a whole number from 3 to 15");
 }
 
-TEST(WholeNumber, WithoutABoundReachesAsFarAs64Bits) {
+TEST(WholeNumber, WithoutAnUpperBoundMayHave64Bits) {
   EXPECT_EQ(parse_whole_number("18446744073709551615", 1, kMost), kMost);
   EXPECT_EQ(parse_whole_number("1", 1, kMost), 1U);
   const auto parse = [](const std::string& text) { return parse_whole_number(text, 1, kMost); };
   expect_refused(parse, {"0", "18446744073709551616", "", "-1", "1e3"}, "a whole number of at least 1");
 }
 
-TEST(WholeNumber, IsNothingWhereItIsNone) {
+TEST(WholeNumber, IsEmptyIfTheTextIsNotAValidNumber) {
   EXPECT_EQ(whole_number("0", 7), 0U);
   EXPECT_EQ(whole_number("7", 7), 7U);
   EXPECT_EQ(whole_number("18446744073709551615", kMost), kMost);
@@ -88,7 +88,7 @@ TEST(Probability, IsAbove0AndUpTo1) {
 
 // --- baud rates ---
 
-TEST(BaudRate, IsOneThatAModuleCanHave) {
+TEST(BaudRate, IsABaudRateThatModulesSupport) {
   for (const std::uint32_t rate : kBaudRates) {
     EXPECT_EQ(parse_baud_rate(std::to_string(rate)), rate);
   }
@@ -150,7 +150,7 @@ TEST(HexText, HasTwoOrFourUpperCaseDigitsOfTheLowestBits) {
   EXPECT_EQ(hex_word_text(0x12345), "2345");
 }
 
-TEST(HexText, IsReadAsTheValueThatItWasWrittenFrom) {
+TEST(HexText, IsReadBackAsTheSameValue) {
   for (unsigned value = 0; value <= 0xFF; ++value) {
     EXPECT_EQ(parse_hex_byte(hex_byte_text(value)), value);
   }

@@ -19,7 +19,7 @@ Lines shown(ModuleBench& bench, const Lamps& lamps = kPlainLamps) {
   return face_text(1, bench.module(), bench.now(), lamps);
 }
 
-TEST(FaceText, OfOutputs) {
+TEST(FaceText, ShowsAModuleWithOutputs) {
   ModuleBench bench("EX9042D@2A,checksum=off,name=PUMPS");
   ASSERT_EQ(bench.ask("@2A1005"), ">");
   EXPECT_EQ(shown(bench), (Lines{
@@ -31,7 +31,7 @@ TEST(FaceText, OfOutputs) {
                           }));
 }
 
-TEST(FaceText, OfInputs) {
+TEST(FaceText, ShowsAModuleWithInputs) {
   ModuleBench bench("EX9052D-M@02,edge=rising");
   bench.module().set_input(1, true);
   bench.module().pulse_input(7, 12);
@@ -45,7 +45,7 @@ TEST(FaceText, OfInputs) {
                           }));
 }
 
-TEST(FaceText, OfBoth) {
+TEST(FaceText, ShowsAModuleWithOutputsAndInputs) {
   ModuleBench bench("EX9055D");
   const Lines lines = shown(bench);
   ASSERT_EQ(lines.size(), 9U);
@@ -58,7 +58,7 @@ TEST(FaceText, RelaysAreCountedFromOne) {
   EXPECT_EQ(shown(bench)[1], "   RL      1  2  3  4  5  6  7  8");
 }
 
-TEST(FaceText, NoneIsWiderThanATerminal) {
+TEST(FaceText, HasNoLineOf80OrMoreCharacters) {
   for (const Model& model : kModels) {
     ModuleBench bench(std::string(model.designation) + (model.inputs != 0 ? ",protocol=ascii" : "") +
                       ",baud=115200,checksum=on,init=on");
@@ -68,13 +68,13 @@ TEST(FaceText, NoneIsWiderThanATerminal) {
   }
 }
 
-TEST(FaceText, LampsThatAreRound) {
+TEST(FaceText, MayHaveRoundLamps) {
   ModuleBench bench("EX9060D");
   ASSERT_EQ(bench.ask("@011"), ">");
   EXPECT_EQ(shown(bench, kRoundLamps)[2], "           ●  ○  ○  ○");
 }
 
-TEST(FaceText, WithoutPowerThereAreTheSwitchesAndTheTerminals) {
+TEST(FaceText, WithoutPowerShowsOnlyTheSwitchesAndTheTerminals) {
   ModuleBench bench("EX9052D@07");
   bench.module().set_input(0, true);
   bench.module().set_init(true);
@@ -91,7 +91,7 @@ TEST(FaceText, WithoutPowerThereAreTheSwitchesAndTheTerminals) {
 }
 
 /// After the timeout of 2.0 s the outputs go to their safe values, and the LED flashes twice a second.
-TEST(FaceText, AHostWatchdogCountsDownAndThenTheLedFlashes) {
+TEST(FaceText, ShowsTheHostWatchdogsCountdownAndThenTheFlashingLed) {
   ModuleBench bench("EX9042D");
   ASSERT_EQ(bench.ask("@010001"), ">");
   ASSERT_EQ(bench.ask("~015S"), "!01");  // stores the present value as the safe value
@@ -113,7 +113,7 @@ TEST(FaceText, AHostWatchdogCountsDownAndThenTheLedFlashes) {
   EXPECT_EQ(lit, 20U);
 }
 
-TEST(FaceChanges, AllOfItWhereThereWasNoneBefore) {
+TEST(FaceChanges, ListsEverythingIfThereIsNoPreviousFace) {
   ModuleBench bench("EX9055D@0A");
   const Face face = face_of(bench.module(), bench.now());
   EXPECT_EQ(
@@ -122,14 +122,14 @@ TEST(FaceChanges, AllOfItWhereThereWasNoneBefore) {
              "inputs 00", "counters 0 0 0 0 0 0 0 0", "latched high 00, low 00", "host watchdog off"}));
 }
 
-TEST(FaceChanges, NothingWhereNothingHasChanged) {
+TEST(FaceChanges, ListsNothingIfNothingHasChanged) {
   ModuleBench bench("EX9055D");
   const Face before = face_of(bench.module(), bench.now());
   bench.run(std::chrono::seconds(10));
   EXPECT_EQ(changes_text(bench.module().model(), &before, face_of(bench.module(), bench.now())), Lines{});
 }
 
-TEST(FaceChanges, WhatHasChanged) {
+TEST(FaceChanges, ListsOnlyTheChanges) {
   ModuleBench bench("EX9055D");
   const Face before = face_of(bench.module(), bench.now());
   ASSERT_EQ(bench.ask("@0181"), ">");

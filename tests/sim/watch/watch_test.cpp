@@ -69,7 +69,7 @@ std::string relays(const std::string& lamps) {
   return std::string(kRelays) + "\n" + kLabels + "\n" + lamps + "\n" + kRest + "\n";
 }
 
-TEST_F(WatchTest, PaintsAndRepaintsInPlaceWhatHasChanged) {
+TEST_F(WatchTest, PaintsModulesAndRepaintsThemInPlaceAfterAChange) {
   watch({"EX9067D"});
   EXPECT_EQ(looked(), Prints{relays(kAllOff)});
   EXPECT_EQ(looked(), Prints{});
@@ -82,21 +82,21 @@ TEST_F(WatchTest, PaintsAndRepaintsInPlaceWhatHasChanged) {
   EXPECT_EQ(looked()[0].substr(0, 7), "\x1b[4F\x1b[J");
 }
 
-TEST_F(WatchTest, PrintsWhatElseThereIsAboveTheFaces) {
+TEST_F(WatchTest, PrintsOtherTextAboveTheFaces) {
   watch({"EX9067D"});
   EXPECT_EQ(printed("a greeting"), Prints{"a greeting\n"});
   looked();
   EXPECT_EQ(printed("a line of the log"), Prints{"\x1b[5F\x1b[Ja line of the log\n" + relays(kAllOff)});
 }
 
-TEST_F(WatchTest, HasRoundLampsWhereTheTerminalHas) {
+TEST_F(WatchTest, HasRoundLampsOnAUtf8Terminal) {
   terminal_.shape.utf8 = true;
   watch({"EX9067D"});
   EXPECT_NE(looked()[0].find("●"), std::string::npos);
   EXPECT_NE(terminal_.written[0].find("○  ○  ○  ○  ○  ○  ○"), std::string::npos);
 }
 
-TEST_F(WatchTest, LeavesOutModulesThatTheTerminalHasNoRoomFor) {
+TEST_F(WatchTest, LeavesOutModulesThatDoNotFitTheTerminal) {
   const std::string left_out = " more not shown; the terminal has too few rows";
   watch({"EX9067D", "EX9067D@02", "EX9067D@03", "EX9067D@04"});
   terminal_.shape.rows = 21;  // five lines for each module, and one for the cursor
@@ -114,7 +114,7 @@ TEST_F(WatchTest, LeavesOutModulesThatTheTerminalHasNoRoomFor) {
   EXPECT_EQ(looked()[0], "\x1b[H\x1b[J4" + left_out + "\n");
 }
 
-TEST_F(WatchTest, ShortensLinesToTheTerminal) {
+TEST_F(WatchTest, ShortensLinesToTheTerminalWidth) {
   terminal_.shape.columns = 9;
   terminal_.shape.utf8 = true;
   watch({"EX9067D"});
@@ -124,14 +124,14 @@ TEST_F(WatchTest, ShortensLinesToTheTerminal) {
   EXPECT_NE(looked()[0].find("\n           ○\n"), std::string::npos);
 }
 
-TEST_F(WatchTest, BeginsAnewWhereTheTerminalHasAnotherSize) {
+TEST_F(WatchTest, RepaintsEverythingAfterAChangeOfTheTerminalSize) {
   watch({"EX9067D"});
   looked();
   terminal_.shape.columns = 100;
   EXPECT_EQ(looked(), Prints{"\x1b[H\x1b[J" + relays(kAllOff)});
 }
 
-TEST_F(WatchTest, LeavesATerminalAloneThatDoesNotKeepUp) {
+TEST_F(WatchTest, PrintsNothingOnATerminalThatIsNotReady) {
   watch({"EX9067D"});
   looked();
   terminal_.takes = false;
@@ -143,7 +143,7 @@ TEST_F(WatchTest, LeavesATerminalAloneThatDoesNotKeepUp) {
   EXPECT_NE(looked()[0].find("power on, INIT*"), std::string::npos);  // shows the present state
 }
 
-TEST(TerminalOutput, KnowsUtf8HoweverItIsSpelt) {
+TEST(TerminalOutput, RecognizesUtf8InAnySpelling) {
   for (const char* name : {"C.UTF-8", "en_US.utf8", "de_DE.UTF8", "en_GB.utf-8", "nl_NL.UTF-8@euro"}) {
     EXPECT_TRUE(names_utf8(name)) << name;
   }
@@ -161,7 +161,7 @@ TEST_F(WatchTest, SeveralLinesHaveTheirNames) {
   EXPECT_NE(text.find("\n--- yard\n3  EX9067D"), std::string::npos);
 }
 
-TEST_F(WatchTest, TellsChangesWhereThereIsNoTerminal) {
+TEST_F(WatchTest, ReportsChangesIfThereIsNoTerminal) {
   without_a_terminal();
   watch({"EX9067D", "EX9052D@02"});
   looked();

@@ -50,7 +50,7 @@ TEST(WatchedProgram, PaintsModulesOnATerminalAndRepaintsThem) {
                                                           "   host watchdog off\n");
 }
 
-TEST(WatchedProgram, TellsChangesWhereTheOutputIsNoTerminal) {
+TEST(WatchedProgram, ReportsChangesIfTheOutputIsNotATerminal) {
   const Finished finished = run({simulator_path(), "EX9052D", "--watch", "--speed", "max", "--for", "250ms",
                                  "--input", "1 3 square 200ms"});
   EXPECT_EQ(finished.status, 0) << finished.error;
@@ -101,7 +101,7 @@ class Window {
   std::string device_;
 };
 
-TEST(WatchedProgram, ATerminalThatNobodyReadsKeepsNoMasterWaiting) {
+TEST(WatchedProgram, AnUnreadTerminalDoesNotDelayReplies) {
   const Directory directory;
   Window window;
   std::string command = "exec env TERM=xterm " + simulator_path() + " EX9052D@01,baud=115200";
