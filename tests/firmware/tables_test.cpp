@@ -21,7 +21,7 @@ void expect_unique(const Table& table, Id id) {
   }
 }
 
-TEST(Tables, EveryRowHasAnIdOfItsOwn) {
+TEST(Tables, EveryRowHasItsOwnId) {
   expect_unique(kModels, [](const Model& row) { return row.designation; });
   expect_unique(dcon::kCommands, [](const dcon::Command& row) { return row.id; });
   expect_unique(dcon::kCommands, [](const dcon::Command& row) { return row.syntax; });

@@ -118,7 +118,7 @@ TEST_F(InputsTest, CountersCountFallingEdgesByDefault) {
   EXPECT_EQ(inputs_.counter(0), 1U);
 }
 
-TEST_F(InputsTest, EveryChannelHasACounterOfItsOwn) {
+TEST_F(InputsTest, EveryChannelHasItsOwnCounter) {
   for (unsigned channel = 0; channel < kAll; ++channel) {
     pulse(channel, channel + 1);
   }

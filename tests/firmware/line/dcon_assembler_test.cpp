@@ -274,7 +274,7 @@ TEST_F(DconAssemblerTest, AForeignFrameNeedsNoRoom) {
 
 // --- forget ---
 
-TEST_F(DconAssemblerTest, AnOpenFrameCanBeForgotten) {
+TEST_F(DconAssemblerTest, AnOpenFrameCanBeDiscarded) {
   put("$01");
   assembler_.forget();
   EXPECT_EQ(put("M\r"), Verdict::Open);
@@ -282,14 +282,14 @@ TEST_F(DconAssemblerTest, AnOpenFrameCanBeForgotten) {
   expect_hunting();
 }
 
-TEST_F(DconAssemblerTest, ASpoiledFrameCanBeForgotten) {
+TEST_F(DconAssemblerTest, ASpoiledFrameCanBeDiscarded) {
   put("$01");
   put('X', ByteStatus::Break);
   assembler_.forget();
   expect_hunting();
 }
 
-TEST_F(DconAssemblerTest, ATooLongFrameCanBeForgotten) {
+TEST_F(DconAssemblerTest, ATooLongFrameCanBeDiscarded) {
   put(frame_of(40));
   assembler_.forget();
   expect_hunting();

@@ -363,7 +363,7 @@ TEST_F(RtuAssemblerTest, ANewAddressHoldsForAFrameThatIsOpen) {
 
 // --- after the module's own driver was on ---
 
-TEST_F(RtuAssemblerTest, AnOpenFrameCanBeForgotten) {
+TEST_F(RtuAssemblerTest, AnOpenFrameCanBeDiscarded) {
   wire_.bytes({0x01, 0x05, 0x00});
   EXPECT_EQ(assembler_.cut_off(queue_), Verdict::Open);
   wire_.rest();
@@ -382,14 +382,14 @@ TEST_F(RtuAssemblerTest, ACompleteFrameCutOffBeforeItsSilenceIsAccepted) {
   expect_next_frame_accepted();
 }
 
-TEST_F(RtuAssemblerTest, TheNextFrameMayFollowAForgottenOneAtOnce) {
+TEST_F(RtuAssemblerTest, TheNextFrameMayFollowADiscardedOneAtOnce) {
   wire_.byte(0x01, ByteStatus::FramingError);
   wire_.byte(0x05, ByteStatus::Overrun);
   EXPECT_EQ(assembler_.cut_off(queue_), Verdict::Open);
   expect_next_frame_accepted();
 }
 
-TEST_F(RtuAssemblerTest, AFrameThatIsInDoubtCanBeForgotten) {
+TEST_F(RtuAssemblerTest, AFrameThatIsInDoubtCanBeDiscarded) {
   wire_.bytes({0x01, 0x05, 0x00});
   EXPECT_EQ(assembler_.silence(queue_), Verdict::Open);
   ASSERT_FALSE(assembler_.next_wait() == Duration());

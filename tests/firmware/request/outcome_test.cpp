@@ -96,7 +96,7 @@ TEST(Outcome, ThatWasClearedKeepsItsRefusal) {
 }
 
 // A module uses one outcome object for all requests.
-TEST(Outcome, ThatWasClearedHoldsOnlyWhatCameAfter) {
+TEST(Outcome, ThatWasClearedHasOnlyLaterEffects) {
   Outcome outcome = of_everything();
   outcome.clear();
   outcome.change().watchdog_timeout = 0x64;

@@ -170,7 +170,7 @@ TEST(SettingsStore, AfterAnUnreadableCopyANoisyReadOfTheOtherIsRetried) {
   EXPECT_TRUE(store.stored() == numbered(6));
 }
 
-TEST(SettingsStore, EachCopyHasThreeReadsOfItsOwn) {
+TEST(SettingsStore, EachCopyHasThreeReads) {
   FakeMemory memory;
   put(memory, 0, numbered(5), 8);
   corrupt(memory, 0);
@@ -196,7 +196,7 @@ TEST(SettingsStore, AMemoryThatDoesNotAnswerIsUnreadable) {
 
 // --- saving ---
 
-TEST(SettingsStore, WhatIsSavedIsStoredAndFoundAtTheNextLoad) {
+TEST(SettingsStore, SavedSettingsAreFoundAtTheNextLoad) {
   FakeMemory memory;
   Boot run(memory);
   EXPECT_TRUE(run.save(numbered(1)));

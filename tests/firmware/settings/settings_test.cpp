@@ -270,7 +270,7 @@ TEST(SettingsChange, OfOneFieldMakesADifference) {
   }
 }
 
-TEST(SettingsChange, OfOneFieldKeepsWhatOthersHaveChanged) {
+TEST(SettingsChange, OfOneFieldKeepsEarlierChangesOfOthers) {
   const Settings factory = Settings::factory(model("EX9042D-M"));
   Settings all = factory;
   for (const FieldChange& each : changes_of_each_field(factory)) {

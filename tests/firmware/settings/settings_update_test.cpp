@@ -219,7 +219,7 @@ TEST(ALongerRecord, IsReadAsFarAsItIsKnown) {
   }
 }
 
-TEST(ALongerRecord, KeepsWhatIsNotKnownThroughStores) {
+TEST(ALongerRecord, KeepsUnknownSettingsThroughStores) {
   for (unsigned length = 20; length <= 120; ++length) {
     FakeMemory memory;
     put_longer(memory, 0, numbered(5), 7, static_cast<std::uint8_t>(length));
@@ -238,7 +238,7 @@ TEST(ALongerRecord, KeepsWhatIsNotKnownThroughStores) {
   }
 }
 
-TEST(ALongerRecord, KeepsWhatIsNotKnownAlsoAfterAFailedStore) {
+TEST(ALongerRecord, KeepsUnknownSettingsAfterAFailedStore) {
   FakeMemory memory;
   put_longer(memory, 0, numbered(5), 7, 96);
   Boot run(memory);
