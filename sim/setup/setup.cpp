@@ -30,16 +30,19 @@ void check(const LineSetup& line, std::size_t position) {
           "'" + line.name + "'");
   }
   if (line.serial && (line.pty || line.tcp)) {
-    wrong("serial", "cannot be combined with {pty} or {tcp}; the master is on the serial line");
+    wrong("serial",
+          "cannot be combined with {pty} or {tcp}, because the master is on the serial line; leave out one "
+          "of them");
   }
   if (line.echo && !line.serial) {
     wrong("echo", "requires {serial}; add it, or leave this out");
   }
   if (line.instant && line.serial) {
-    wrong("line", "instant cannot be combined with {serial}; bytes take time on a real line");
+    wrong("line", "instant cannot be combined with {serial}, where bytes take time; leave out one of them");
   }
   if (line.instant && line.strict_gaps) {
-    wrong("strict-gaps", "cannot be combined with {line instant}, where gaps have no length");
+    wrong("strict-gaps",
+          "cannot be combined with {line instant}, where gaps have no length; leave out one of them");
   }
 }
 
@@ -65,7 +68,7 @@ void check_speed(const Setup& setup) {
   const auto wrong = [](const std::string& what) { throw SetupError(std::nullopt, "speed", what); };
   for (const LineSetup& line : setup.lines) {
     if (line.serial && !(setup.speed.paced() && setup.speed.factor == 1)) {
-      wrong("cannot be combined with {serial}; a real line has its own time");
+      wrong("cannot be combined with {serial}, whose line has its own time; leave out one of them");
     }
     if (setup.speed.max() && (line.pty || line.tcp)) {
       wrong(std::string("max cannot be combined with ") + (line.pty ? "{pty}" : "{tcp}") +
@@ -76,7 +79,9 @@ void check_speed(const Setup& setup) {
     wrong("step requires {control}, because only the control socket moves the time");
   }
   if (setup.speed.stepped() && setup.panel) {
-    wrong("step cannot be combined with {panel}, which shows time that passes by itself");
+    wrong(
+        "step cannot be combined with {panel}, which shows time that passes by itself; leave out one of "
+        "them");
   }
   if (setup.speed.max() && setup.control) {
     wrong("max cannot be combined with {control}; leave out one of them");
@@ -112,8 +117,9 @@ std::string SetupError::named(const NameOfKey& name_of) const {
 
 void check(const Setup& setup) {
   if (setup.watch && setup.log == LogFormat::Json) {
-    throw SetupError(std::nullopt, "watch",
-                     "cannot be combined with {log json}; both write to standard output");
+    throw SetupError(
+        std::nullopt, "watch",
+        "cannot be combined with {log json}, because both write to standard output; leave out one of them");
   }
   check_speed(setup);
   if (setup.control && setup.control->empty()) {

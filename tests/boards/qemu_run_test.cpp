@@ -46,7 +46,7 @@ class RunningImage {
  public:
   explicit RunningImage(const std::string& model, const Arguments& options = {})
       : process_(words(model, options), directory_.path()) {
-    if (!process_.wait_for("Ctrl-C ends it")) {
+    if (!process_.wait_for("press Ctrl-C to end")) {
       throw std::runtime_error(model + " does not run");
     }
   }

@@ -20,7 +20,7 @@ def _arguments(words: list[str]) -> argparse.Namespace:
     parser = argparse.ArgumentParser(
         prog="run",
         description="Runs a firmware image in QEMU. The first line it prints is the pseudo-terminal that is the "
-        "module's RS-485 line. Ctrl-C or SIGTERM ends it.",
+        "module's RS-485 line. Press Ctrl-C or send SIGTERM to end it.",
     )
     parser.add_argument("image", metavar="IMAGE.elf", type=Path, help="an image of the preset lm3s6965evb")
     parser.add_argument(
@@ -53,7 +53,7 @@ def main(words: list[str]) -> int:
             machine = Machine(arguments.image, memory, arguments.init, arguments.gdb)
             at_the_end.callback(machine.end)
             print(terminal.device)
-            print(f"{arguments.image.name} runs in QEMU; Ctrl-C ends it", flush=True)
+            print(f"{arguments.image.name} runs in QEMU; press Ctrl-C to end", flush=True)
             _carry_bytes(machine, terminal, signal_descriptor)
     except Refusal as refusal:
         print(f"run: {refusal}", file=sys.stderr)

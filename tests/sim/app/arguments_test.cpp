@@ -130,7 +130,7 @@ TEST(Arguments, WatchIsAcceptedExceptWithAJsonLog) {
   EXPECT_TRUE(all_accepted({"EX9042D", "--watch", "--log"}).watch);
   EXPECT_TRUE(all_accepted({"--watch", "EX9042D", "--speed", "max", "--for", "1s"}).watch);
   expect_error({"EX9042D", "--watch", "--log", "json"}, "--watch: cannot be combined with --log json",
-               "both write to standard output");
+               "both write to standard output; leave out one of them");
 }
 
 /// A user of `sim/run`, which passes both options, may repeat them.
@@ -189,7 +189,9 @@ TEST(Arguments, LineIsPacedOrInstantAndStrictGapsRequirePaced) {
 }
 
 TEST(Arguments, ASerialLineCannotBeCombinedWithPtyOrTcp) {
-  const std::string mend = "cannot be combined with --pty or --tcp; the master is on the serial line";
+  const std::string mend =
+      "cannot be combined with --pty or --tcp, because the master is on the serial line; leave out one of "
+      "them";
   expect_error({"EX9042D", "--serial", "/dev/ttyUSB0", "--tcp", "5020"}, "--serial: ", mend);
   expect_error({"EX9042D", "--serial", "/dev/ttyUSB0", "--pty", "a"}, "--serial: ", mend);
 }
@@ -199,7 +201,7 @@ TEST(Arguments, EchoRequiresASerialLineWhichCannotBeInstant) {
   EXPECT_TRUE(accepted({"EX9042D", "--serial", "/dev/ttyUSB0", "--echo"}).echo);
   expect_error({"EX9042D", "--echo"}, "--echo: ", "requires --serial; add it");
   expect_error({"EX9042D", "--serial", "/dev/ttyUSB0", "--line", "instant"}, "--line: instant",
-               "cannot be combined with --serial; bytes take time on a real line");
+               "cannot be combined with --serial, where bytes take time; leave out one of them");
 }
 
 TEST(Arguments, TwoModulesCannotShareAnEepromFile) {

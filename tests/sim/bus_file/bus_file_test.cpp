@@ -213,7 +213,8 @@ INSTANTIATE_TEST_SUITE_P(
               "bus.json:2: panel: expected a text in quotes, a whole number, true or false"},
         Wrong{"{\n\"watch\": \"yes\"}", "bus.json:2: watch: expected true or false"},
         Wrong{"{\"log\": \"json\",\n\"watch\": true, \"lines\": [{\"modules\": [{\"model\": \"EX9042D\"}]}]}",
-              "bus.json:2: watch: cannot be combined with 'log' json; both write to standard output"},
+              "bus.json:2: watch: cannot be combined with 'log' json, because both write to standard output; "
+              "leave out one of them"},
         Wrong{"{\n\"seed\": -1}", "bus.json:2: seed: expected a whole number"},
         Wrong{"{\n\"seed\": 1.5}", "bus.json:2: seed: expected a whole number"},
         Wrong{"{\n\"seed\": \"x\"}", "bus.json:2: seed: 'x': expected a whole number"},
@@ -302,10 +303,11 @@ TEST(WrongLineOfABusFile, InvalidOrConflictingKeysAreRefusedWithTheirPlace) {
   for (const auto& [members, why] : std::vector<std::pair<std::string, std::string>>{
            {"\"pty\": \"\"", "pty: is empty; name a path"},
            {"\"serial\": \"a\", \"pty\": \"b\"",
-            "serial: cannot be combined with 'pty' or 'tcp'; the master is on the serial line"},
+            "serial: cannot be combined with 'pty' or 'tcp', because the master is on the serial line; leave "
+            "out one of them"},
            {"\"pty\": \"a\", \"echo\": true", "echo: requires 'serial'; add it, or leave this out"},
            {"\"serial\": \"a\", \"line\": \"instant\"",
-            "line: instant cannot be combined with 'serial'; bytes take time on a real line"},
+            "line: instant cannot be combined with 'serial', where bytes take time; leave out one of them"},
            {"\"pty\": \"a\", \"line\": \"instant\", \"strict-gaps\": true",
             "strict-gaps: cannot be combined with 'line' instant"},
            {"\"pty\": \"a\", \"name\": \"the hall\"",
@@ -395,7 +397,8 @@ TEST(BusFile, AConflictFoundAfterParsingIsRefused) {
                                      "each\n");
   EXPECT_EQ(parse({path, "--log", "json"}).error,
             "ex9000-sim: " + path +
-                ":2: watch: cannot be combined with --log json; both write to standard output\n");
+                ":2: watch: cannot be combined with --log json, because both write to standard output; leave "
+                "out one of them\n");
   EXPECT_EQ(parse({path, "--speed", "step"}).error,
             "ex9000-sim: --speed: step requires --control, because only the control socket moves the time\n");
 }
@@ -424,7 +427,7 @@ TEST(BusFile, AnErrorNamesTheConflictingKeyOrOption) {
       cannot + "'tcp' in " + path + ", whose masters keep the wall clock's time; leave out one of them\n");
   EXPECT_EQ(error("\"log\": \"json\", ", "", {"--watch"}),
             "ex9000-sim: --watch: cannot be combined with 'log' json in " + path +
-                "; both write to standard output\n");
+                ", because both write to standard output; leave out one of them\n");
 }
 
 TEST(BusFile, RejectsLineOptionsOnTheCommandLine) {
