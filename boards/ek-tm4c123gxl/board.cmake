@@ -1,10 +1,11 @@
-# The start-up code of its processor.
+# The start-up code of the board's processor.
 set(start_up cortex_m/start_up.cpp)
 
-# OpenOCD's script for the board, and the UART of the module's line.
+# OpenOCD's script for the board.
 set(openocd_script board/ti_ek-tm4c123gxl.cfg)
 
-set(EX9000_BUS rs485 CACHE STRING "A module's line: rs485, a transceiver on UART1; usb, the debugger's serial port")
+# The UART of the module's line.
+set(EX9000_BUS rs485 CACHE STRING "Line of the module: rs485 (a transceiver on UART1) or usb (the debugger's serial port)")
 set_property(CACHE EX9000_BUS PROPERTY STRINGS rs485 usb)
 if(EX9000_BUS STREQUAL usb)
   set(board_definitions EX9000_BUS_ON_USB)

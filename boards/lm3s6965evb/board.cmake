@@ -1,4 +1,4 @@
-# The start-up code of its processor.
+# The start-up code of the board's processor.
 set(start_up cortex_m/start_up.cpp)
 
 # OpenOCD's script for the board.

@@ -20,7 +20,7 @@ unsigned status_of(const State& state) {
 
 }  // namespace
 
-/// The assembler counts `~**` in the interrupt, so that it is never lost, and does not queue it. This handler
+/// The receiver counts `~**` in the interrupt and does not queue it, so that it is never lost. This handler
 /// gives the same result if a caller passes such a frame to `answer`.
 Refusal host_ok(Exchange& exchange) {
   exchange.outcome.request(Effect::RestartHostWatchdog);

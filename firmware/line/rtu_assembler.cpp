@@ -91,7 +91,8 @@ Verdict RtuAssembler::cut_off(FrameQueue& queue) {
   return verdict;
 }
 
-/// Queues the frame if its CRC is correct, either from the first byte or after a turn-around byte 00.
+/// Queues the frame if its CRC is correct, either from the first byte or after a turn-around byte 00, and if
+/// it is a broadcast or has the address of this module. Does not queue a host OK.
 Verdict RtuAssembler::conclude(FrameQueue& queue) {
   Frame& frame = queue.assembling();
   unsigned offset = 0;

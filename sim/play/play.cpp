@@ -36,14 +36,14 @@ std::vector<Transcript> load_all(const std::string& path) {
 
 void check(const Transcript& transcript, const std::optional<sim::Setup>& bus) {
   if (transcript.model == nullptr && !bus) {
-    fail(transcript.file + ": has no 'model:' line, so it requires modules or a bus file after it");
+    fail(transcript.file + ": has no 'model:' line; add modules or a bus file to the command line");
   }
   if (transcript.model != nullptr && bus) {
     fail(transcript.file + ": has 'model:' lines; leave out modules and bus file");
   }
 }
 
-/// Throws if the capture would overwrite a file that the play reads. Call it before the capture starts.
+/// Throws if the capture would overwrite a file that `play` reads. Call it before the capture starts.
 void check_capture_path(const Task& task, const std::vector<Transcript>& all) {
   if (!task.writing.capture) {
     return;

@@ -1,4 +1,4 @@
-// A lock for a path that may remain after the process that created it has died.
+// A lock for a path. The path may remain after the process that created it has ended, but the lock does not.
 #pragma once
 
 #include <string>

@@ -10,15 +10,16 @@
 
 namespace ex9000::sim {
 
-/// Some adapters receive what they send. A module ignores its own bytes (wire.md section 9). Without this
-/// filter it would carry out its own replies, because the reply to a Modbus function 05 equals the request.
+/// Some adapters receive what they send. A real module ignores its own bytes (wire.md section 9). Without
+/// this filter, a simulated module would receive its own reply as a request. It would then carry out the
+/// reply to Modbus function 05, because that reply equals the request.
 class OwnEcho {
  public:
   using Clock = std::chrono::steady_clock;
 
   explicit OwnEcho(std::uint32_t baud) : baud_(baud) {}
 
-  /// From now on the echo of `bytes`, which were sent at `now`, is expected.
+  /// Records that the program sends `bytes` at `now`, so that `in` expects their echo.
   void sent(Bytes bytes, Clock::time_point now) {
     constexpr std::chrono::nanoseconds kCharacterBits{10'000'000'000};
     awaited_.insert(awaited_.end(), bytes.begin(), bytes.end());

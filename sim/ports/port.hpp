@@ -38,7 +38,8 @@ class Port {
   /// Returns the rate that a master has set at this port, in bits per second; nullopt if the port has no rate
   /// or no UART supports the rate.
   [[nodiscard]] virtual std::optional<std::uint32_t> baud() const { return std::nullopt; }
-  /// Whether the port is a real line. Bytes from a real line have already taken their time.
+  /// Whether the port is a real line. If it is, the transmission time of the bytes has already passed when
+  /// they arrive.
   [[nodiscard]] virtual bool is_a_line() const { return false; }
 };
 

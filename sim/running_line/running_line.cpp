@@ -104,7 +104,8 @@ void RunningLine::make_missing_memories(std::list<NewFile>& made) {
   }
 }
 
-/// A line without a name gets the name of its port.
+/// Returns the name of the line. If the line has no name, returns the name of its first port, in the order
+/// pseudo-terminal, TCP, serial; "line" if it has no port.
 std::string RunningLine::log_name() const {
   for (const std::string& name : {setup_.name, introduced_.pty, introduced_.tcp, introduced_.serial}) {
     if (!name.empty()) {
@@ -156,7 +157,7 @@ void RunningLine::start() {
   }
 }
 
-void RunningLine::follow_the_clock(boost::asio::io_context& io, double speed) {
+void RunningLine::start_paced(boost::asio::io_context& io, double speed) {
   Pace pace = pace_of(setup_);
   pace.speed = speed;
   pacer_ = std::make_unique<Pacer>(io, *line_, ports_, record_->frames(), pace,
@@ -164,7 +165,7 @@ void RunningLine::follow_the_clock(boost::asio::io_context& io, double speed) {
   pacer_->start();
 }
 
-SteppedLine& RunningLine::stand_still(SteppedLine::Arrived arrived) {
+SteppedLine& RunningLine::start_stepped(SteppedLine::Arrived arrived) {
   stepped_ = std::make_unique<SteppedLine>(*line_, ports_, record_->frames(),
                                            [this](const std::string& text) { record_->note(text); });
   stepped_->start(std::move(arrived));

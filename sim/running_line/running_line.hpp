@@ -44,10 +44,10 @@ class RunningLine {
   /// Connects the memories to their files and starts the records.
   void start();
   /// Starts to process the line as soon as `io` runs, `speed` times faster than the wall clock.
-  void follow_the_clock(boost::asio::io_context& io, double speed);
+  void start_paced(boost::asio::io_context& io, double speed);
   /// Starts to process the line. Its time stands still until the caller moves it. `arrived` is called when
   /// bytes from masters have arrived.
-  SteppedLine& stand_still(SteppedLine::Arrived arrived);
+  SteppedLine& start_stepped(SteppedLine::Arrived arrived);
   /// Ends the records when the modules have been up for `up`. Call it before `start`.
   void end_at(VirtualTime up) { record_->end_at(came_up_ + up); }
   /// Processes all events until the modules have been up for `up`, without waiting.

@@ -189,11 +189,11 @@ void Session::start() {
     }
     running->start();
     if (setup_.speed.paced()) {
-      running->follow_the_clock(io_, setup_.speed.factor);
+      running->start_paced(io_, setup_.speed.factor);
     }
   }
   if (setup_.speed.stepped()) {
-    stand_still();
+    start_stepped();
   }
   if (control_socket_) {
     control_socket_->start();
@@ -230,10 +230,10 @@ void Session::end_by_the_clock() {
   });
 }
 
-void Session::stand_still() {
+void Session::start_stepped() {
   std::vector<SteppedLine*> lines;
   for (const auto& running : lines_) {
-    lines.push_back(&running->stand_still([this] {
+    lines.push_back(&running->start_stepped([this] {
       if (stepper_) {
         stepper_->arrived();
       }

@@ -63,7 +63,7 @@ class Session {
   void keep_watching();
   Control::Reply carry_out(const std::string& command);
   void answer(const std::string& command, const ControlSocket::Answer& answer);
-  void stand_still();
+  void start_stepped();
 
   boost::asio::io_context& io_;
   const Setup setup_;

@@ -94,8 +94,8 @@ class FaultyImage : public testing::TestWithParam<Protocol>, protected EitherPro
         ASSERT_TRUE(level_of(bus(), board::kDriverEnable));
         break;
       case Doing::Storing:
-        // The emulated EEPROM takes no time, so the test masks the interrupt for a byte: the image waits for
-        // it.
+        // The emulated EEPROM stores immediately. Therefore the test disables the I2C interrupt until the
+        // image has received the request and waits for the end of a byte.
         module_.send(framed("~01OPUMP", {1, 0x06, 0x01, 0xE8, 0, 0x41}), module_.baud());
         bus().write(kClearEnable, 1U << kI2c0);
         module_.run_for(std::chrono::microseconds(ascii() ? 2500 : 5500));
@@ -123,8 +123,9 @@ class FaultyImage : public testing::TestWithParam<Protocol>, protected EitherPro
   }
 
   void hang_main_loop() {
-    // Replaces the return address of the tick by a jump to itself, then calls the image's own handler. From
-    // the next tick on, only that handler runs.
+    // At the next tick, this code restores the entry of the vector table, replaces the return address of the
+    // interrupt with the address of an endless loop, and jumps to the image's own handler. After that,
+    // interrupts run, but the main loop does not.
     make_interrupt_run(kSysTickVector, {
                                            0x4A044803,  // ldr r0, =entry; ldr r2, =own
                                            0xA0016002,  // str r2, [r0]; adr r0, loop
@@ -159,7 +160,7 @@ class FaultyImage : public testing::TestWithParam<Protocol>, protected EitherPro
   }
 
  protected:
-  /// Waits until the watchdog resets the module. Also checks the watchdog's registers, because the time
+  /// Waits until the watchdog resets the module. Also checks the watchdog's load register, because the time
   /// cannot be observed in all cases.
   void expect_reset_in_time() {
     constexpr std::uint32_t kWatchdogLoad = 0x4000'0000;
@@ -169,8 +170,9 @@ class FaultyImage : public testing::TestWithParam<Protocol>, protected EitherPro
     module_.run_to_reset("WATCHDOG", kWatchdogPeriod);
   }
 
-  /// Whether the short form runs this case. It runs each value of the timeout status with half of the
-  /// activities, and only one storm, because a storm takes the emulator seconds.
+  /// Whether the test runs this case without EX9000_CUTS=all. In ASCII, it runs each value of the timeout
+  /// status with half of the activities. In Modbus, it runs only Storing with a clear timeout status. It runs
+  /// only one storm, because the emulator requires seconds for a storm.
   [[nodiscard]] bool belongs_to_short_form(Doing doing, bool status, Fault fault) const {
     const bool first_half = doing == Doing::Nothing || doing == Doing::Storing;
     if (fault == &FaultyImage::storm) {
@@ -185,7 +187,7 @@ class FaultyImage : public testing::TestWithParam<Protocol>, protected EitherPro
         if (!all_cases_requested() && !belongs_to_short_form(doing, status, fault)) {
           continue;
         }
-        SCOPED_TRACE(std::string(what) + " while it does " + std::to_string(static_cast<int>(doing)) +
+        SCOPED_TRACE(std::string(what) + ", activity " + std::to_string(static_cast<int>(doing)) +
                      (status ? ", timeout status set" : ""));
         begin(status);
         make_it(doing);
@@ -312,7 +314,8 @@ TEST_F(HungImage, AnswersAfterAFloodOfBytes) {
 }
 
 TEST(ImageInAnInterruptStorm, IsResetAndWorksAfterTheStormHasEnded) {
-  // Input 0 is PB0. The interrupt is set to trigger on its level instead of its edges; no handler can end it.
+  // Input 0 is PB0. The test sets the interrupt of PB0 to trigger on a high level instead of on edges. No
+  // handler can end this interrupt while the pin is high.
   const std::string kPortB = "/machine/unattached/device[9]";
   constexpr std::uint32_t kSense = 0x4000'5404;
   constexpr std::uint32_t kBothEdges = 0x4000'5408;

@@ -279,7 +279,7 @@ class Refuses(unittest.TestCase):
 
     def test_a_copy_that_takes_more_than_the_table_says(self) -> None:
         self.refused(
-            "memset has 64 bytes on the stack, and only 16 in the tool's table",
+            "memset uses 64 bytes of stack, but the tool's table has only 16",
             """
             extern "C" void* memset(void*, int, size_t);
             asm(".section .text.memset\\n.thumb_func\\n.global memset\\n.type memset, %function\\n"
@@ -291,7 +291,7 @@ class Refuses(unittest.TestCase):
 
     def test_a_call_that_the_compiler_has_not_seen(self) -> None:
         self.refused(
-            "reset branches to hidden, unrecorded by the compiler",
+            "reset branches to hidden, but the compiler recorded no such call",
             """
             extern "C" __attribute__((used)) FAR void hidden() { room<40>(); }
             extern "C" void reset() { for (;;) asm volatile("bl hidden" ::: "lr", "memory"); }
@@ -300,7 +300,7 @@ class Refuses(unittest.TestCase):
 
     def test_a_jump_that_the_compiler_has_not_seen(self) -> None:
         self.refused(
-            "interrupt branches to hidden, unrecorded by the compiler",
+            "interrupt branches to hidden, but the compiler recorded no such call",
             """
             extern "C" __attribute__((used)) FAR void hidden() { room<40>(); }
             extern "C" void reset() { for (;;) {} }
@@ -310,7 +310,7 @@ class Refuses(unittest.TestCase):
 
     def test_a_call_through_a_register_that_the_compiler_has_not_seen(self) -> None:
         self.refused(
-            "reset branches through a register, unrecorded by the compiler",
+            "reset branches through a register, but the compiler recorded no indirect call",
             """
             extern "C" void reset() { for (;;) asm volatile("blx r3" ::: "r3", "lr", "memory"); }
             """,
@@ -318,7 +318,7 @@ class Refuses(unittest.TestCase):
 
     def test_a_push_that_the_compiler_has_not_seen(self) -> None:
         self.refused(
-            "reset has 8 bytes on the stack, and only 0 recorded by the compiler",
+            "reset uses 8 bytes of stack, but the compiler recorded only 0",
             """
             extern "C" void reset() { for (;;) asm volatile("push {r0, r1}\\npop {r0, r1}" ::: "memory"); }
             """,

@@ -9,7 +9,8 @@ from pathlib import Path
 
 from check_image.functions import Function
 
-# If data does not fill a word, objdump prints it as characters, which resemble a mnemonic only by chance.
+# objdump prints an object in a code section as characters. Such a line matches only if the characters happen to look
+# like a mnemonic without operands.
 _LINE = re.compile(r"^ *([0-9a-f]+):\t(\.?[a-z][a-z0-9.]*)(?:\t([^@;]*)|$)")
 _CONDITIONS = "eq|ne|cs|hs|cc|lo|mi|pl|vs|vc|hi|ls|ge|lt|gt|le"
 _BRANCH = re.compile(rf"(b|bl|blx|cbz|cbnz|b({_CONDITIONS})|bl({_CONDITIONS}))(\.[nw])?")

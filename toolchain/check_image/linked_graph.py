@@ -37,7 +37,8 @@ class LinkedGraph:
     """In `graph`, the address identifies a function: aliases are one function, and equal names in two files are two
     functions.
 
-    `problems` lists the differences between compiler and machine code, even in functions that are not reachable.
+    `problems` lists the differences between the compiler's records and the machine code, even in functions that are not
+    reachable.
     """
 
     def __init__(
@@ -71,7 +72,8 @@ class LinkedGraph:
                 self._add_unrecorded(function)
 
     def _find(self, title: Title) -> Function | None:
-        # GCC also writes the file before the names of inline functions, of which the linker keeps one for all units.
+        # GCC writes the file before the name of an inline function too, but the linker keeps one global copy for all
+        # units. Therefore the global functions are searched if the file has no such function.
         in_file = self._functions.local_named(title.name, title.file) if title.file else None
         return in_file or self._functions.global_named(title.name)
 
@@ -115,8 +117,8 @@ class LinkedGraph:
         return targets
 
     def _find_taken_addresses(self) -> list[Function]:
-        """Returns the functions whose address is in a table, in the initial value of a variable, or in a literal of the
-        code."""
+        """Returns the functions whose address is in a table, in the initial value of a variable, in a literal pool, or
+        in a pair of movw and movt."""
         taken = set(self._disassembly.immediate_addresses())
         for section in self._elf.sections:
             if section.loaded and section.name != ".vectors":
@@ -155,9 +157,9 @@ class LinkedGraph:
         code = self._disassembly.of(function)
         for target in self._targets_in_code(function, code):
             if target.address not in node.calls:
-                self.problems.append(f"{node.name} branches to {target}, unrecorded by the compiler")
+                self.problems.append(f"{node.name} branches to {target}, but the compiler recorded no such call")
         if any(i.is_indirect for i in code) and function.address not in self._calls_indirectly:
-            self.problems.append(f"{node.name} branches through a register, unrecorded by the compiler")
+            self.problems.append(f"{node.name} branches through a register, but the compiler recorded no indirect call")
         try:
             pushed = stack_of(code)
         except StackPointerUnknown as unknown:
@@ -167,7 +169,7 @@ class LinkedGraph:
             return
         if pushed > node.frame:
             self.problems.append(
-                f"{node.name} has {pushed} bytes on the stack, and only {node.frame} recorded by the compiler"
+                f"{node.name} uses {pushed} bytes of stack, but the compiler recorded only {node.frame}"
             )
 
     def _targets_in_code(self, function: Function, code: list[Instruction]) -> list[Function]:
@@ -184,7 +186,10 @@ class LinkedGraph:
         return list(targets.values())
 
     def _behind_veneer(self, function: Function) -> Function:
-        """Returns the target of a veneer, which the linker inserts for a function beyond the range of a branch."""
+        """Returns the target of `function` if it is a veneer, otherwise `function`.
+
+        The linker inserts a veneer if a function is beyond the range of a branch.
+        """
         match = _VENEER.fullmatch(function.name)
         there = self._functions.named(match.group(1)) if match else []
         return there[0] if len(there) == 1 else function
@@ -210,7 +215,7 @@ def _compare_with_table(known: Foreign, code: list[Instruction]) -> str:
     except StackPointerUnknown as unknown:
         return f"moves the stack pointer in a way that is not understood: {unknown}"
     if pushed > known.frame:
-        return f"has {pushed} bytes on the stack, and only {known.frame} in the tool's table"
+        return f"uses {pushed} bytes of stack, but the tool's table has only {known.frame}"
     if any(instruction.is_indirect for instruction in code):
         return "branches through a register"
     return ""

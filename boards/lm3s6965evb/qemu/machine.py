@@ -1,7 +1,7 @@
 """Starts and ends the board in QEMU, and sets INIT* before the first instruction.
 
 QEMU has no pull-ups: an input that is not driven is low, and each reset of the machine releases all inputs. Therefore a
-reset by the image or by its watchdog only stops QEMU, and this module carries out the reset and sets INIT* again.
+reset by the image or by its watchdog only stops QEMU. Then `Machine` carries out the reset and sets INIT* again.
 """
 
 from __future__ import annotations
@@ -26,7 +26,7 @@ _INIT_RELEASED = "set_irq_in /machine/unattached/device[8] unnamed-gpio-in 7 1" 
 _UART0_CONTROL = 0x4000C030
 _DRIVER_ENABLE = 0x40004100  # PA6 only, high while the module sends
 _PR_SET_PDEATHSIG = 1
-_HANG = 60  # seconds; even on a busy host, only QEMU or an image that hangs takes longer
+_HANG = 60  # seconds; exceeded only if QEMU or the image hangs, even on a busy host
 
 
 class Ended(Exception):
@@ -106,8 +106,8 @@ class Machine:
     def send_queued(self) -> None:
         """Sends queued bytes. Bytes that the module does not receive are lost, as on a real line. Does not wait.
 
-        Must be called even if nothing is queued: if the module hangs, QEMU's time may stop without requests. The
-        watchdog would then not reset the module.
+        Must be called even if nothing is queued: if the module hangs, QEMU's virtual time may stop until QEMU gets a
+        command. Without such a command, the watchdog would not reset the module.
         """
         speaking = self._word_at(_DRIVER_ENABLE)
         if self._queued_bytes and not speaking:

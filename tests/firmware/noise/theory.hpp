@@ -20,8 +20,9 @@ double crc_misses(std::size_t bytes, double flipped_bit);
 
 /// Returns the probability that a DCON frame arrives damaged and is accepted. `frame` begins with its
 /// delimiter and ends before CR; it includes the checksum if there is one. An undamaged CR follows later.
-/// Ignores frames that end early because a character has become a CR: all characters used here need at least
-/// four flips for that. With a checksum, also ignores frames whose own CR has become another character.
+/// Ignores frames that end early because a character has become a CR: all characters used here require at
+/// least three flips for that. With a checksum, also ignores frames whose own CR has become another
+/// character.
 double dcon_misses(const std::string& frame, bool checksum, double flipped_bit);
 
 /// A 95 % confidence interval of the mean of a Poisson variable.

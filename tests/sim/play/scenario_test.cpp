@@ -294,7 +294,7 @@ TEST(Play, RequiresABusForAScenarioAndNoneForATranscript) {
   write_file(directory / "transcript.txt", "source: manual\nmodel: EX9042D\n\n> $01M\n< !019042D\n");
   EXPECT_NE(played(directory / "scenario.txt", true).find("1 run, 2 steps, 0 failed\npassed"),
             std::string::npos);
-  EXPECT_NE(played(directory / "scenario.txt", false).find("so it requires modules or a bus file"),
+  EXPECT_NE(played(directory / "scenario.txt", false).find("add modules or a bus file to the command line"),
             std::string::npos);
   EXPECT_NE(
       played(directory / "transcript.txt", true).find("has 'model:' lines; leave out modules and bus file"),

@@ -1,4 +1,4 @@
-// Tests the messages of the program if the host gives it no processor time.
+// Tests the messages that the program prints if the host gives it no processor time.
 #include <gtest/gtest.h>
 #include <sys/wait.h>
 
@@ -18,12 +18,12 @@ namespace ex9000::system {
 namespace {
 
 /// Stops the process for at least `span`.
-void keep_waiting(int pid, std::chrono::milliseconds span) {
+void suspend(int pid, std::chrono::milliseconds span) {
   kill(pid, SIGSTOP);
   int status = 0;
   ASSERT_EQ(waitpid(pid, &status, WUNTRACED), pid);
   ASSERT_TRUE(WIFSTOPPED(status));
-  std::this_thread::sleep_for(span);  // the delay itself: the test is about it
+  std::this_thread::sleep_for(span);  // the test requires this delay; it does not wait for an event
   kill(pid, SIGCONT);
 }
 
@@ -55,9 +55,11 @@ TEST(LateHost, IsReportedWithItsDelay) {
   SocketClient client(simulator.tcp_port());
   client.send("$01M\r");
   ASSERT_EQ(client.receive_text(8), "!019052\r");  // the line's time has begun
-  keep_waiting(simulator.pid(), std::chrono::milliseconds(300));
-  // An event is due every 5 ms. A delay is only reported if it is at least twice the longest one reported
-  // before, and a busy host may have been late before.
+  suspend(simulator.pid(), std::chrono::milliseconds(300));
+  // An event is due every 5 ms, so the program is late by at least 295 ms when it continues. It reports a
+  // delay only if that delay is at least twice the longest delay that it has reported before. If a busy host
+  // has caused a report before, this delay may not be reported, but then the earlier report is of more than
+  // 147 ms.
   for (unsigned reports = 1; longest_delay(simulator.output()) < std::chrono::milliseconds(147); ++reports) {
     ASSERT_TRUE(simulator.wait_for(": modules reply later", reports)) << simulator.output();
   }

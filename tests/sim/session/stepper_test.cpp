@@ -82,9 +82,9 @@ struct StillLine {
 
 class StepperTest : public testing::Test {
  protected:
-  StepperTest() { stand_still(line_); }
+  StepperTest() { start_stepped(line_); }
 
-  void stand_still(StillLine& line) {
+  void start_stepped(StillLine& line) {
     line.stepped->start([this] {
       if (stepper_) {
         stepper_->arrived();
@@ -96,7 +96,7 @@ class StepperTest : public testing::Test {
                      [this] { return asked_to_end_; });
   }
   void SetUp() override {
-    stand_still(other_);
+    start_stepped(other_);
     begin();
   }
 
