@@ -151,8 +151,7 @@ TEST(Time, AMasterThatPollsOnceAWrapIsAnsweredEveryTime) {
   }
 }
 
-// On a 32-bit microsecond clock, a moment in the past looks like one in the future for between 36 and 72
-// minutes.
+// On a 32-bit microsecond clock, a moment that is 36 to 71 minutes in the past looks like one in the future.
 constexpr std::array kPauses{std::chrono::minutes(36), std::chrono::minutes(50), std::chrono::minutes(71)};
 
 TEST(Time, ARequestIsAnsweredAfterAnyPause) {

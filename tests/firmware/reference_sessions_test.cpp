@@ -1,6 +1,6 @@
 // Plays random sessions on the firmware and on the reference.
 //   EX9000_TRANSACTIONS  number of requests; default 200000; the long form is 10000000
-//   EX9000_SEED          seed of the first session; each further session has the next number
+//   EX9000_SEED          seed of the first session, default 9042; each further session has the next number
 #include <gtest/gtest.h>
 
 #include <cstdio>
@@ -20,7 +20,7 @@ namespace {
 /// The number of steps of a session. It is large enough for one step to influence many others.
 constexpr unsigned kSteps = 300;
 
-/// Returns each model in turn; models with two protocols occur three times as often.
+/// Consecutive seeds return each model in turn; models with two protocols occur three times as often.
 const ModelRow& row_of(std::uint64_t seed) {
   std::vector<const ModelRow*> rows;
   for (const ModelRow& row : kModelRows) {

@@ -19,8 +19,9 @@ constexpr double kCycles = 1'000'000;
 constexpr double kMinutesAYear = 525'600;
 constexpr double kDaysAYear = 365;
 
-/// Returns the number of writes per repetition of `use`, averaged over a hundred repetitions. Checks that all
-/// pages in use have the same number of writes. `pages`: returns the number of pages in use.
+/// Returns the number of writes per repetition of `use`, averaged over a hundred repetitions. Checks that no
+/// page has more than one write above the average of the pages in use. `pages`: returns the number of pages
+/// in use.
 double writes_of(ModuleBench& bench, const std::function<void(unsigned round)>& use, unsigned& pages) {
   constexpr unsigned kRounds = 100;
   PageWrites writes{};

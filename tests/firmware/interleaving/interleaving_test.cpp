@@ -1,8 +1,9 @@
 // Tests interrupts at every point at which the main loop accesses data that it shares with them.
 //
 // The core's own sources and hal/device.hpp run here with crossings, a clock and registers that report every
-// access (observed/). The test runs an interrupt before and after each access. The outcome must be one that
-// also occurs if the interrupt comes before the turn, after it, or between two steps of a script.
+// access (observed/). The test runs an interrupt before and after each access. Each part of the outcome must
+// be one that also occurs if no step of the script happens during the turn: the first steps come before the
+// turn, and the others after it.
 //
 // Both sides also access the following data outside the crossings. It is handed over as follows:
 //  - FrameQueue::frames_: the waiting frame belongs to the main loop from `completed_` to `dropped_`;
@@ -100,7 +101,7 @@ Parts inputs(Bench& bench) {
   return parts;
 }
 Parts no_matter(Bench& /*bench*/) { return {}; }
-/// Checks to the microsecond that the host OK, and nothing else, has restarted the watchdog.
+/// Checks to 3 microseconds that the host OK, and nothing else, has restarted the watchdog.
 Parts restarted(Bench& bench) {
   const std::uint32_t expires = bench.asked.at("host OK") + 100'000;
   const auto timed_out = [&] { return bench.module().state().settings.timeout_status; };
@@ -115,7 +116,7 @@ Parts restarted(Bench& bench) {
   return {};
 }
 
-/// Does the same for Modbus, where a host OK counts from the end of its silence.
+/// Does the same for Modbus: a host OK counts from the end of its silence.
 Parts modbus_restarted(Bench& bench) {
   bench.asked["host OK"] += LineTiming::at(115200).rtu_silence.microseconds();
   return restarted(bench);
@@ -141,7 +142,8 @@ class Interleaver {
     }
   }
 
-  /// Tries all steps at one point, and one step at each point from there on.
+  /// For each point, tries all steps at this point, and then one step each at this point and at the points
+  /// after it.
   void at_every_point() {
     for (int point = 0; point < static_cast<int>(points_); ++point) {
       check(Places(steps_, point));

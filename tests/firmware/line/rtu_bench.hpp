@@ -16,7 +16,7 @@ using Nanoseconds = std::int64_t;
 
 inline constexpr std::uint8_t kOwn = 0x01;
 
-/// The worked example of wire.md.
+/// A worked example of wire.md section 7.
 inline const FrameBytes kChannel0On{0x01, 0x05, 0x00, 0x00, 0xFF, 0x00, 0x8C, 0x3A};
 
 /// Returns a frame of `size` bytes, CRC included.

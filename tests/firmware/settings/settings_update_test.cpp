@@ -150,7 +150,7 @@ TEST(SettingsAfterAnUpdate, OldCopiesAreInvalidatedIfTheSettingsCannotBeSavedAga
   EXPECT_TRUE(Boot(memory).stored() == numbered(9));
 }
 
-/// Neither place answered at reset, so the factory settings are in force. They must never be stored unless a
+/// No place answered at reset, so the factory settings are in force. They must never be stored unless a
 /// command requests it.
 TEST(SettingsAfterAnUpdate, NothingIsUnfinishedWhileTheMemoryCannotBeRead) {
   FakeMemory memory = updated();
