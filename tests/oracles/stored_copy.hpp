@@ -47,8 +47,8 @@ class StoredCopy {
   StoredCopy(const StoringModel& model, const std::uint8_t* memory, std::size_t place)
       : model_(model), bytes_(memory + place), layout_(place >= 0x080 ? 3 : layout_of_old(bytes_)) {}
 
-  /// Makes layout and check of the copy at `place` correct: those of layout 2 in an old place; in a new place
-  /// those of layout 3, and the length if it is too great.
+  /// Sets the layout of the copy at `place` (2 in an old place, 3 in a new one), reduces a length that is too
+  /// great, and then sets the correct check.
   static void seal(const StoringModel& model, std::uint8_t* memory, std::size_t place) {
     std::uint8_t* bytes = memory + place;
     if (place >= 0x080) {

@@ -7,7 +7,7 @@
 
 namespace ex9000::judges {
 
-/// The outputs, and the values that they take without a command.
+/// The outputs, and the values that control them.
 struct Values {
   std::uint16_t outputs = 0;   ///< bit n is channel n, also in the next two fields
   std::uint16_t power_on = 0;  ///< stored; applies at the next reset
@@ -76,7 +76,8 @@ struct Demand {
   }
 
   /// Whether `values` are possible after the command, if only a timeout has occurred since. `outputs`: the
-  /// outputs before the latest timeout. `since`: that timeout occurred after the request was received.
+  /// outputs before the latest timeout. `since`: whether that timeout occurred after the request was
+  /// received.
   [[nodiscard]] constexpr bool is_met_by(const Values& values, std::uint16_t outputs, bool since) const {
     const auto are = [this](std::uint16_t value) { return (value & channels) == levels; };
     const auto kept = [&](std::uint16_t value) {

@@ -95,7 +95,7 @@ constexpr Demand rtu_demand(Bytes request, unsigned outputs) {
     case 0x06:
       return request.size == 6 ? detail::demand_of_register(request.word(2), request.word(4)) : Demand{};
     case 0x10:
-      // No writable register is next to the timeout register.
+      // A write of several registers cannot include the timeout register: no register next to it is writable.
       return request.size == kOneRegister && request.word(4) == 1 && request[6] == 2
                  ? detail::demand_of_register(request.word(2), request.word(7))
                  : detail::demand_of_register(0, 0);

@@ -38,11 +38,12 @@ struct Listening {
 ///    format that the request demands;
 ///  - outputs, power-on value, safe value, timeout or enable of the host watchdog, or the timeout status
 ///    change, except exactly as a received command demands or because the host watchdog expires;
-///  - a command is answered, or a broadcast is received by an idle module, and these values are not what the
-///    command demands;
+///  - a command is answered, or an idle module receives a broadcast that drives outputs without storing, and
+///    these values are not what the command demands;
 ///  - a command is refused although one of these values has changed, or a valid output command is refused;
 ///  - an idle module does not answer a frame that is addressed to it;
 ///  - the host watchdog expires too early;
+///  - the address changes without a command;
 ///  - outputs are not the safe value while the timeout status is set, or an output is driven that the model
 ///    does not have.
 ///
@@ -187,14 +188,15 @@ class Witness {
     Microseconds over;
     Demand demand;
     bool broadcast;
-    bool alone;  ///< the module was idle
+    bool alone;  ///< the module was idle, and the frame is not doubtful
     bool fresh;  ///< see mark_fresh
-    bool done;   ///< only this request has changed values
+    bool done;   ///< an observed change of values has been attributed to this request
 
     [[nodiscard]] Bytes frame() const { return {bytes.data(), size}; }
   };
   /// The module keeps one frame and executes another one. It may lose further frames, which cannot be seen
-  /// from outside. This is the greatest number of frames that arrive while the main loop is held.
+  /// from outside. This is the greatest number of frames that the witness keeps; it drops the oldest one if
+  /// another arrives.
   static constexpr std::size_t kMostPending = 32;
 
   void note(const Finding& finding) {
@@ -259,7 +261,8 @@ class Witness {
     const Microseconds over = request.last + (rtu_ ? silence_ : 0);
     return std::max(over, free) + (request.demand.stores_something ? kStoring : kPlain);
   }
-  /// The execution of a request without an answer may take all of its time.
+  /// Whether the module stores something and sends no reply, so that it may be busy until the latest
+  /// permitted time.
   static bool is_silent_store(const Pending& request) {
     return request.broadcast && request.demand.stores_something;
   }
@@ -427,7 +430,8 @@ class Witness {
                                            demand.values_after_a_timeout(from, outputs_before_) == to));
   }
 
-  /// Whether one command has changed the values to `to`, which is nearly always the case.
+  /// Whether one command can have changed the values to `to`, which is nearly always the case. Also records
+  /// the change.
   bool one_leads_to(const Values& to) {
     Pending* only = nullptr;
     unsigned count = 0;
@@ -455,7 +459,7 @@ class Witness {
     return values.enabled && now_ - alive_ >= values.timeout * kUnit;
   }
 
-  /// Whether a timeout, or at most `most` commands from number `next` on, or both, have changed `from` to
+  /// Whether a timeout, or at most `most` commands from number `next` on, or both, can have changed `from` to
   /// `to`.
   bool some_lead(const Values& from, const Values& to, std::size_t next, unsigned most) {
     if (from == to) {
@@ -488,7 +492,7 @@ class Witness {
     return false;
   }
 
-  /// Checks the effects of time that has passed.
+  /// Checks that an idle module has executed the latest broadcast.
   void look() {
     if (broadcast_ && !held_) {
       broadcast_ = false;

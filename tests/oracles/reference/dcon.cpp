@@ -9,8 +9,8 @@ namespace ex9000::reference {
 
 namespace {
 
-/// The command does not exist on this model, or its arguments have a wrong format or range. Nothing changes,
-/// and the answer is `?AA` or, with `bare`, `?`.
+/// The command does not exist on this model, its arguments have a wrong format or range, or it requires
+/// INIT*. Nothing changes, and the answer is `?AA` or, with `bare`, `?`.
 struct Refused {
   std::string rule;
   bool bare = false;

@@ -178,7 +178,7 @@ std::string with_one_mistake(const Module& module, std::string frame, Random& ra
   }
 }
 
-/// Appends CHK as the module requires it; sometimes a wrong one.
+/// Appends CHK if the module uses the checksum. Sometimes CHK is wrong, missing or unnecessary.
 std::string checked(const Module& module, const std::string& frame, Random& random) {
   const std::string check = check_of(frame);
   if (random.once_in(12)) {

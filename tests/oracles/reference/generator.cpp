@@ -10,7 +10,8 @@ namespace ex9000::reference {
 namespace {
 
 Step wait(const Module& module, Random& random) {
-  // Sometimes longer than the host watchdog's timeout. A step too close to the expiry waits by itself.
+  // Some waits are longer than the host watchdog's timeout. If a step is too close to the expiry, the session
+  // waits by itself.
   if (module.expiry() && random.once_in(2)) {
     return WaitForExpiry{std::chrono::milliseconds(random.between(5, 120))};
   }

@@ -14,7 +14,8 @@ std::vector<Step> first_steps(const ModelRow& row, Random& random);
 /// Returns the next step, in most cases a request.
 Step next_step(const Module& module, Random& random);
 
-/// Returns a command with CR, and CHK before it if the module uses the checksum.
+/// Returns a command with CR, and CHK before it if the module uses the checksum. Some commands have a
+/// mistake, or other bytes before them.
 Bytes dcon_request(const Module& module, Random& random);
 
 /// Returns a frame, in most cases with a correct CRC.

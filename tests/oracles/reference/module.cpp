@@ -166,7 +166,7 @@ Answer Module::on_request(const Bytes& bytes, Time now) {
   if (runs_modbus_) {
     answer.reply = modbus_frame(bytes);
   } else {
-    // wire.md 3: the first of these characters decides. A CR ends any frame.
+    // wire.md 3: the first delimiter, or the first lead of a reply, decides. A CR ends any frame.
     for (std::size_t i = 0; i < bytes.size(); ++i) {
       const char character = static_cast<char>(bytes[i]);
       // If one of several frames restarts the host watchdog, the restart happens at the end of that frame.

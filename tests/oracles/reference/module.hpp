@@ -40,7 +40,7 @@ bool operator==(const Stored& a, const Stored& b);
 
 /// The module's reaction to a request.
 struct Answer {
-  Bytes reply;          ///< empty: silence
+  Bytes reply;          ///< empty: no reply
   bool stores = false;  ///< settings change; storing takes up to 200 ms
   /// If not null, the specification does not define what happens; the text says why. The other members are
   /// not valid then.

@@ -19,11 +19,11 @@ using std::chrono::milliseconds;
 constexpr milliseconds kExpiryMargin{3};
 /// wire.md 6: after the expiry, the status and the enable are stored.
 constexpr milliseconds kStored{250};
-/// wire.md 3: a reply that stores nothing starts within 20 ms.
+/// wire.md 3: the reply to a request that stores nothing starts within 20 ms.
 constexpr milliseconds kAnswers{20};
 constexpr milliseconds kAnswersStoring{200};
-/// Longer than the time until the reply to a request that stores nothing begins, at any baud rate. The runner
-/// of transcripts waits equally long, so a transcript has the same timing there.
+/// Longer than the time until the reply to a request that stores nothing begins, at any baud rate. The player
+/// of transcripts (sim/play/player.cpp) waits equally long, so a transcript has the same timing there.
 constexpr milliseconds kNoAnswer{65};
 /// The time before each next step. The rest of a reply, if any, arrives within it.
 constexpr milliseconds kBetween{2};
@@ -203,7 +203,7 @@ bool Session::play_step(const Send& send) {
     }
   }
 
-  // The runner sends bytes at once, but frames only when no more answers can arrive.
+  // The player sends a `bytes` line at once, but any other request only when no more replies can arrive.
   behind_expiry_ += storing_timeout_ ? 1U : 0U;
   const bool behind_another = std::exchange(storing_, false) || storing_timeout_;
   storing_timeout_ = false;

@@ -65,8 +65,8 @@ class Session {
   [[nodiscard]] std::vector<std::string> rules() const;
   /// The number of requests that were sent.
   [[nodiscard]] std::uint64_t transactions() const { return transactions_; }
-  /// The number of requests that ended less than 0.1 s before the host watchdog expired, and the number of
-  /// those that arrived while its expiry was being stored.
+  /// The number of requests that ended less than 0.1 s before the host watchdog could expire, and the number
+  /// of those that arrived while its expiry was being stored.
   [[nodiscard]] std::uint64_t before_expiry() const { return before_expiry_; }
   [[nodiscard]] std::uint64_t behind_expiry() const { return behind_expiry_; }
   /// The number of requests that were not sent because the specification leaves their answer open.
