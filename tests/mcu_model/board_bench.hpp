@@ -36,10 +36,10 @@ class BoardBench {
   void set_init(bool asserted);
   [[nodiscard]] bool led() { return net(image.status_led).level(); }
 
-  /// Sends a DCON command and its CR. Receives until 250 ms pass without a character; returns the reply
-  /// without CR.
+  /// Sends a DCON command and its CR. Receives like `exchange`; returns the reply without CR.
   std::string ask(const std::string& command);
-  /// Sends any bytes. Receives until 250 ms pass without a character; returns what was received.
+  /// Sends any bytes. Waits up to 250 ms for a reply, and then until about 20 ms pass without a character;
+  /// returns what was received.
   std::vector<std::uint8_t> exchange(const std::vector<std::uint8_t>& bytes);
 
   Net& net(PinPlace place) { return pins.at(place.port, place.pin); }

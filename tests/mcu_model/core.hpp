@@ -51,7 +51,7 @@ class Core final : public Peripheral {
   [[nodiscard]] bool held() const { return held_; }
   /// Whether a sleeping processor wakes up now.
   [[nodiscard]] bool wakes() const { return next_to_serve() != 0; }
-  /// The time at which the latency of a pending exception ends; kNever if none is pending.
+  /// The earliest time at which the latency of an enabled pending exception ends; kNever if there is none.
   [[nodiscard]] Instant next_wake() const;
   /// Serves all exceptions that may be served now, one after the other.
   void serve_pending();

@@ -39,7 +39,7 @@ class EepromChip {
   /// still acknowledges every byte.
   void wear_out(std::uint16_t place, std::uint8_t bits, std::uint8_t stuck) { worn_[place] = {bits, stuck}; }
   void renew() { worn_.clear(); }
-  /// The number of bytes whose value differs from what was programmed.
+  /// The number of times that a worn-out byte did not take the programmed value.
   [[nodiscard]] unsigned spoiled() const { return spoiled_; }
 
   /// Sets the function to call after each START, byte and STOP on the bus, and when a page has been

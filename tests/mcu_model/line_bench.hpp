@@ -44,7 +44,8 @@ class LineBench {
   [[nodiscard]] bool driven() const { return enable_.level(); }
   std::vector<Heard> heard;
   std::vector<Driven> drives;
-  /// The number of bits that the board sent while its driver was off. They do not appear on the line.
+  /// The number of times that the board's transmit pin went low while its driver was off. These bits do not
+  /// appear on the line.
   unsigned bits_lost = 0;
   /// The number of times that the driver went off before the end of the last stop bit (with a tolerance of a
   /// tenth of a bit for the difference of the clocks), and the number of times that it stayed on for more

@@ -171,7 +171,7 @@ void Microcontroller::pass_all(Instant to) {
   }
 }
 
-/// If the firmware is to hang here, returns only after a reset.
+/// If the firmware is to hang here, does not return; only an exception, for example a ResetRequest, ends it.
 void Microcontroller::hang_if_requested() {
   if (hangs_ == Hangs::MainLoop && !core.in_handler()) {
     run_until(kNever);
