@@ -25,10 +25,11 @@ class ControlClient {
   std::size_t offer(const std::string& bytes);
   /// Closes the sending direction. The client can still receive.
   void close_writing();
-  /// Returns the next line without the newline. Throws std::runtime_error if the connection ends before.
+  /// Returns the next line without the newline. Throws std::runtime_error if the connection ends before, or
+  /// if nothing arrives for 60 s.
   std::string line();
   /// Returns whether the simulator has closed the connection and all its bytes have been read. Waits until
-  /// bytes arrive or the connection ends.
+  /// bytes arrive or the connection ends; throws std::runtime_error after 60 s.
   bool at_end();
 
  private:

@@ -24,7 +24,7 @@ inline std::uint64_t number_in_environment(const char* variable, std::uint64_t o
 }
 
 /// Returns true if EX9000_CUTS=all selects all cases, and false if the variable is not set, which selects
-/// some of them. Throws std::runtime_error if it has another value, for the same reason.
+/// some of them. Throws std::runtime_error if it has another value.
 inline bool all_cases_requested() {
   const char* const which = std::getenv("EX9000_CUTS");  // NOLINT(concurrency-mt-unsafe): tests set none
   if (which != nullptr && std::string(which) != "all") {

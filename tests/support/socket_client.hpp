@@ -26,10 +26,11 @@ class SocketClient {
   /// the connection, or if none arrive for 60 s, which only detects a program that hangs.
   std::vector<std::uint8_t> receive(std::size_t count);
   std::string receive_text(std::size_t count);
-  /// Waits until bytes arrive and returns them. Returns nothing if none arrive within `patience`.
+  /// Waits until bytes arrive and returns them. Returns nothing if none arrive within `patience`, or if the
+  /// other side closes the connection.
   std::vector<std::uint8_t> receive_some(std::chrono::milliseconds patience);
   bool hears_nothing_for(std::chrono::milliseconds time);
-  /// Returns whether the other side closes the connection within 60 s.
+  /// Returns whether the other side closes the connection within 60 s without sending more bytes.
   bool closed();
 
  private:

@@ -121,7 +121,7 @@ std::vector<StoringCommand> modbus_commands(const Model& model) {
   const Change take_address = [](Settings& settings, std::uint16_t) { settings.address = kNewAddress; };
   add("05 protocol", needs_nothing, {0x05, 0x01, 0x00, 0x00, 0x00},
       [](Settings& settings, std::uint16_t) { settings.protocol = Protocol::Ascii; });
-  // These requests are also allowed as broadcasts (wire.md 7: "configuration is never broadcast").
+  // These requests are also allowed as broadcasts, because they do not change the configuration (wire.md 7).
   for (const std::string to : {"", "broadcast "}) {
     add(to + "05 watchdog on", needs_disabled, {0x05, 0x01, 0x04, 0xFF, 0x00},
         [](Settings& settings, std::uint16_t) { settings.watchdog_enabled = true; });

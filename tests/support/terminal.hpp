@@ -22,8 +22,8 @@ class Terminal {
   void type(const std::string& text);
   /// Waits until bytes arrive and returns them. Returns nothing if none arrive within `patience`.
   std::vector<std::uint8_t> read(std::chrono::nanoseconds patience);
-  /// Returns the bytes up to and including a CR. Returns the bytes without CR if no more arrive within
-  /// `patience`; its default only detects a program that hangs.
+  /// Reads until the last received byte is a CR, and returns all bytes. Returns them without CR if no more
+  /// arrive within `patience`. The default only detects a program that hangs.
   std::string read_line(std::chrono::milliseconds patience = std::chrono::seconds(60));
   /// Returns the number of bytes that were read so far.
   [[nodiscard]] std::uint64_t received() const { return received_; }

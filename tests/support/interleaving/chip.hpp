@@ -17,16 +17,15 @@ namespace ex9000::interleaving {
 
 inline constexpr hal::stellaris::Pin kDriverEnable{hal::stellaris::Port::A, 6};
 
-/// The bytes that were sent from one time that the driver was switched on until it was switched off. This is
-/// usually a reply.
+/// The bytes that were sent between switching the driver on and switching it off. They are usually a reply.
 struct Sent {
   std::uint32_t started;  ///< when the driver was switched on, in microseconds
   std::uint32_t ended;    ///< when the last stop bit ended
   std::string bytes;
 };
 
-/// Only the hardware. It stores the time of each next interrupt. Its owner must call the interrupt handlers
-/// at those times.
+/// Simulates only the hardware. It stores the time of each next interrupt; its owner must call the interrupt
+/// handlers at those times.
 class Chip final : public hal::bus::Peripherals {
  public:
   static constexpr std::uint32_t kNever = 0xFFFF'FFFF;
