@@ -10,7 +10,7 @@
 namespace ex9000::hal {
 namespace {
 
-/// Each type below whose assertion begins with `!` has one missing or wrong member.
+/// Each type below whose assertion begins with `!` has at least one missing or wrong member.
 struct ClockWithoutItsSecond {
   [[nodiscard]] static Time now();
 };

@@ -29,8 +29,8 @@ constexpr milliseconds kLongestJob{40};
 /// The greatest permitted number of register accesses in a turn of the main loop.
 constexpr std::uint64_t kMostAccessesATurn = 24;
 
-/// The driver and a main loop that turns on every interrupt, every millisecond, and at once if the driver
-/// requests it.
+/// The driver and a main loop. A turn of the main loop runs after each interrupt, every millisecond, and at
+/// once if the driver requests it.
 template <Family family>
 class Bench {
  public:

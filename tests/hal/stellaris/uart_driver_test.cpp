@@ -126,7 +126,7 @@ TEST_P(Sending, TheDriverIsOnForAllBytesAndOffWithinOneCharacterAfterThem) {
       }
     }
     if (size > 9 && baud() < 9600) {
-      break;  // more would take minutes of virtual time and test nothing new
+      break;  // 256 bytes would take seconds of virtual time and test nothing new
     }
   }
 }
