@@ -79,7 +79,7 @@ inline StoredBytes read_stored_bytes(const std::filesystem::path& path) {
   return stored;
 }
 
-/// Reads all files. Checks that there are at least ten, so that a missing file is noticed.
+/// Reads all files. Checks that there are at least ten.
 inline std::vector<StoredBytes> all_stored_bytes() {
   constexpr std::size_t kAtLeast = 10;
   std::vector<StoredBytes> all;
