@@ -35,7 +35,7 @@ class GpioPort final : public Peripheral {
   static constexpr std::uint32_t kControl = 0x52C;
 
   /// `letter`: 'A' to 'G'. The nets must outlive the port. The constructor and the destructor release all of
-  /// them.
+  /// them, except that the constructor connects the pull-ups of the debug pins.
   GpioPort(const Chip& chip, char letter, PortNets& nets);
   ~GpioPort() override;
 
