@@ -98,7 +98,8 @@ std::optional<Settings> SettingsReader::read_modbus(std::uint8_t format) {
   settings.watchdog_enabled = coil(0x04);
   settings.timeout_status = coil(0x0D);
   const Bytes identification = ask(Bytes{0x11});
-  settings.name = Name(std::string_view(std::string(identification.begin() + 6, identification.end())));
+  // substr throws std::out_of_range if the reply is too short.
+  settings.name = Name(std::string(identification.begin(), identification.end()).substr(6));
   if (model_.outputs != 0) {
     const auto value = [&](std::uint8_t row) {
       const Bytes reply = ask(Bytes{0x01, 0x00, row, 0x00, 0x10});
