@@ -33,7 +33,7 @@ namespace ex9000::fuzz {
 ///     \m      the memory stops acknowledging, or acknowledges again
 ///     \r      a reset
 ///
-/// The module ignores `\` before any other byte.
+/// `\` and any other byte after it have no effect.
 void live(const Model& model, Protocol usual, const std::uint8_t* data, std::size_t size);
 
 /// Mutates the input with libFuzzer. One mutation in four also corrects the check before each gap or CR.

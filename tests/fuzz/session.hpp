@@ -80,15 +80,15 @@ class Session final : public ModuleObserver {
     module_.receive(byte, status);
   }
 
-  /// Waits until the module has sent nothing for 250 ms.
+  /// Waits 250 ms, and again as long as the module is still sending at the end of the wait.
   void wait_for_quiet() {
     do {
       wait(250 * kMillisecond);
     } while (module_.sending());
   }
 
-  /// Adds the check to a request, sends it on a quiet line, and returns the reply without its check. Returns
-  /// nothing if there is no reply. The result is valid until the next call.
+  /// Adds the check to a request, sends it, and returns the reply without its check. Returns nothing if there
+  /// is no reply. The line must be quiet. The result is valid until the next call.
   Bytes ask(Bytes request) {
     reply_size_ = 0;
     for (const std::uint8_t each : request) {
