@@ -1,5 +1,5 @@
-// A module in emulated time. All events take as long as on a real module, with two exceptions that the
-// emulated board does not support: its UART sends and its EEPROM stores immediately.
+// A module in emulated time. All events take as long as on a real module, with two exceptions: the UART of
+// the emulated board sends immediately, and its EEPROM stores immediately.
 #pragma once
 
 #include <chrono>
@@ -51,7 +51,8 @@ class TimedModule : public EmulatedBoard {
   /// call only `reset` is allowed. Throws std::runtime_error if this does not occur within `time`.
   void run_to_reset(const std::string& event, std::chrono::nanoseconds time);
 
-  /// Sends bytes at `baud` bits per second. The module loses bytes that arrive while it sends.
+  /// Waits up to 100 ms until the module does not send, then sends bytes at `baud` bits per second. The
+  /// module loses bytes that arrive while it sends.
   void send(const Bytes& bytes, std::uint32_t baud);
   /// Returns the bytes that the module has sent since the last call, as a receiver at `baud` samples them. No
   /// time passes.

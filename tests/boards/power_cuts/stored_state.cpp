@@ -18,7 +18,7 @@ void put(const Model& model, const Settings& settings, std::uint16_t sequence, s
               contents.begin() + kPlaces[copy].address);
 }
 
-/// Returns settings that all differ from the factory settings.
+/// Returns settings that differ from the factory settings as far as the model and the command permit.
 Settings full_settings(const Model& model, const StoringCommand& command) {
   Settings settings = Settings::factory(model);
   settings.protocol = command.init == Init::SinceReset ? Protocol::Ascii : command.protocol;
