@@ -45,7 +45,7 @@ std::chrono::microseconds duration_of(const play::Transcript& transcript) {
   return transcript.waits() + kPulse * static_cast<std::int64_t>(pulses_of(transcript));
 }
 
-/// Returns the longest runs first, so that the end does not wait for a few long runs.
+/// Returns all runs, the longest ones first, so that the test does not wait for a few long runs at the end.
 std::vector<Played> all_runs() {
   std::vector<Played> runs;
   for (const std::string& file : play::transcript_files(EX9000_CONFORMANCE_DIR)) {

@@ -148,7 +148,7 @@ def all_of(file, source):
 
 
 def spread(sources, seed):
-    """Yields all mutants of {file: source}. The order depends on `seed` and takes the files in turn."""
+    """Yields all mutants of {file: source}, from each file in turn. The order depends on `seed`."""
     chance = random.Random(seed)
     heaps = []
     for file, source in sorted(sources.items()):

@@ -31,7 +31,7 @@ def digest_of_text(text):
 
 
 def options_of_header(unit):
-    """Returns the options that affect a precompiled header. It works only with the same options."""
+    """Returns the options that affect a precompiled header, which works only with the same options."""
     return [option for option in unit.options if not option.startswith(("-I", "-D"))]
 
 

@@ -1,4 +1,4 @@
-"""Tests what the panel's server accepts and rejects while a master polls the line without a disturbance."""
+"""Tests what the panel's server accepts and rejects, and that this does not disturb a master that polls the line."""
 
 import json
 import pathlib

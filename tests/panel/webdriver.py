@@ -120,7 +120,7 @@ class Browser:
         self._post("/actions", {"actions": [{"type": "pointer", "id": "mouse", "actions": moves}]})
 
     def drag(self, selector, pixels):
-        """Drags from the middle of the element to the right."""
+        """Drags from the middle of the element by `pixels` to the right, or to the left if negative."""
         origin = {ELEMENT: self.find(selector)}
         self._post("/actions", {"actions": [{"type": "pointer", "id": "mouse", "actions": [
             {"type": "pointerMove", "x": 0, "y": 0, "origin": origin},

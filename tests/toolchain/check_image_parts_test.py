@@ -171,7 +171,7 @@ Refusal answer (const struct State & state, struct Bytes args)
 class MachineCode(unittest.TestCase):
     def stack(self, text: str) -> int:
         """Returns the stack of the code in `text`: one `mnemonic operands` on each line, 2 bytes for each line.
-        Branches go to `@line`, from 0."""
+        The target of a branch is `@` and the number of a line, counted from 0."""
         code = []
         for number, line in enumerate(text.strip().splitlines()):
             mnemonic, _, operands = line.strip().partition(" ")

@@ -83,7 +83,7 @@ class Counter:
         self.forget()
 
     def forget(self):
-        """Starts to count everything that is not a request."""
+        """Discards the counts of everything that is not a request."""
         self.received_byte = Highest()
         self.sent_byte = Highest()
         self.interrupts = {}  # other interrupts, by exception number

@@ -18,7 +18,7 @@ INPUTS = Model("EX9052D-M", 8, 0, True)
 BOTH = Model("EX9055D", 8, 8, False)
 
 # Model, whether it uses ASCII, and whether to also send the requests that all models support. Those are sent once in
-# each protocol, to a model with inputs, because they require most instructions there.
+# each protocol, to a model with inputs, because they require the most instructions there.
 SESSIONS = [
     (INPUTS, False, True),
     (BOTH, True, True),

@@ -122,7 +122,7 @@ TEST(CaptureFile, APipeIsAcceptedIfItHasAReader) {
   close(reader);
 }
 
-/// The reader reads only when the pipe is full, so a write that does not wait for it fails.
+/// The reader reads only when the pipe is full, so a write that does not wait for the reader fails.
 TEST(CaptureFile, WaitsForTheReaderOfAFullPipe) {
   const Directory directory;
   ASSERT_EQ(mkfifo((directory / "a").c_str(), 0600), 0);

@@ -116,7 +116,7 @@ void report(const char* what, std::size_t bytes, NoisyLine& line) {
   const std::uint64_t requests = line.requests();
   std::printf("%s: %zu bytes in an hour, %llu requests right, %llu answered\n", what, bytes,
               static_cast<unsigned long long>(requests), static_cast<unsigned long long>(line.replies()));
-  // A request that arrives during a reply is lost; most requests do not.
+  // A request that arrives during a reply is lost. Most requests arrive at other times.
   EXPECT_GT(requests, 1000U);
   EXPECT_GT(line.replies(), requests / 2);
 }
