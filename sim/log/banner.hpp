@@ -19,7 +19,7 @@ struct ModuleSummary {
 };
 
 struct LineSummary {
-  std::string name;  ///< empty if there is only one line
+  std::string name;  ///< empty for the line of a command line
   std::uint32_t baud = 0;
   bool instant = false;
   std::vector<ModuleSummary> modules;
@@ -35,8 +35,8 @@ struct BannerContent {
   std::string control;  ///< path of the control socket; empty: none
 };
 
-/// Returns several lines of text: the lines, their ports, their modules, and commands to paste that poll each
-/// module.
+/// Returns several lines of text: the lines, their ports, their modules, and for each module on a
+/// pseudo-terminal commands to paste that read it or switch an output.
 std::string greeting(const BannerContent& all);
 
 }  // namespace ex9000::sim

@@ -68,8 +68,8 @@ HostWatchdogState guard_of(const SimulatedModule& module, VirtualTime now) {
   guard.timeout = state.settings.watchdog_timeout;
   guard.reset_status = state.reset_status;
   const Deadline expiry = module.module().host_watchdog_expiry();
-  // Rounds to microseconds, like the firmware's clock, so that the result stays the same until the watchdog
-  // is restarted.
+  // Rounds down to microseconds, like the firmware's clock, so that the result stays the same until the
+  // watchdog is restarted.
   const auto since = std::chrono::duration_cast<std::chrono::microseconds>(now);
   const Time core_now(static_cast<std::uint32_t>(since.count()));
   if (expiry.armed() && !expiry.reached(core_now)) {

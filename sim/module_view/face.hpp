@@ -1,4 +1,4 @@
-// The visible state of a module: its LEDs, its switches, and its internal state.
+// The state of a module that viewers show: its LEDs, its switches, and its internal state.
 #pragma once
 
 #include <array>

@@ -19,8 +19,9 @@ struct Lamps {
 inline constexpr Lamps kRoundLamps{"●", "○"};
 inline constexpr Lamps kPlainLamps{"*", "-"};
 
-/// Returns the plate as lines of up to 79 columns. `number` is the module's position across all lines, from
-/// 1, and `now` is the time of its line's clock.
+/// Returns the face as lines of up to 79 columns; the counters of a model with more than eight inputs may
+/// require more. `number` is the module's position across all lines, from 1, and `now` is the time of its
+/// line's clock.
 std::vector<std::string> face_text(std::size_t number, const SimulatedModule& module, VirtualTime now,
                                    const Lamps& lamps);
 
