@@ -20,7 +20,8 @@ namespace ex9000::sim {
 
 namespace {
 
-/// Replies are sent with this delay, so that delays of the host do not cause gaps in them.
+/// The beginning of a reply waits this long, or until the reply is complete, so that delays of the host do
+/// not cause gaps in the reply.
 constexpr std::chrono::milliseconds kCushion{10};
 
 /// Asks the driver for low latency, because adapters may wait up to 16 ms for more bytes, which splits
@@ -44,7 +45,8 @@ void set_up(int fd, const std::string& device, std::uint32_t baud) {
     refuse("another program uses it; end that program or name another port");
   }
   cfmakeraw(&settings);
-  // No XON/XOFF, because XOFF would go out on the line; no parity check, because bytes with errors count too.
+  // No XON/XOFF, because XOFF would go out on the line; no parity check, because bytes with errors are also
+  // read.
   settings.c_iflag = 0;
   settings.c_cflag &= ~static_cast<tcflag_t>(CSTOPB | CRTSCTS);
   settings.c_cflag |= CLOCAL | CREAD;

@@ -1,4 +1,4 @@
-// The syntax of TCP addresses on the command line.
+// The syntax of TCP addresses on the command line and in bus files.
 #pragma once
 
 #include <cstdint>
@@ -6,13 +6,14 @@
 
 namespace ex9000::sim {
 
-/// The address to listen on. An empty host means the loopback.
+/// An address to listen on or to connect to.
 struct TcpAddress {
   std::string host;
   std::uint16_t port = 0;  ///< 0: any free port
 };
 
-/// Parses HOST:PORT, :PORT, PORT or [IPV6]:PORT. Throws std::invalid_argument with a one-line message.
+/// Parses HOST:PORT, :PORT, PORT or [IPV6]:PORT. Without HOST, the result has the loopback address 127.0.0.1.
+/// Throws std::invalid_argument with a one-line message.
 TcpAddress parse_tcp_address(const std::string& text);
 
 }  // namespace ex9000::sim

@@ -130,7 +130,8 @@ boost::system::error_code TcpPort::take(Client& client) {
   return ended;
 }
 
-/// If the limit is reached, removes the client that has lingered longest.
+/// If the limit is reached, removes the first client to connect of those that linger; if none lingers, does
+/// nothing.
 void TcpPort::make_room() {
   if (clients_.size() >= kMostMasters) {
     const auto oldest =
@@ -141,8 +142,8 @@ void TcpPort::make_room() {
   }
 }
 
-/// Tries again after 100 ms, because the process has no free file descriptor. Immediate retries would use all
-/// of the processor's time.
+/// Tries again after 100 ms. If the process has no free file descriptor, immediate retries would use all of
+/// the processor's time.
 void TcpPort::accept_later() {
   constexpr std::chrono::milliseconds kAcceptRetryDelay{100};
   next_try_.expires_after(kAcceptRetryDelay);
