@@ -8,7 +8,7 @@
 
 namespace ex9000::sim {
 
-/// Creates a line. Its modules have no power yet, and its master uses the factory's rate.
+/// Creates a line. Its modules have no power yet, and its master uses the factory baud rate.
 std::unique_ptr<Line> make_line(const LineSetup& setup, Master::Receive receive);
 
 /// Starts the input programs and the faults. Call it after the line has started up. Throws

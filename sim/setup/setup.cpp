@@ -63,7 +63,8 @@ class Once {
   std::set<std::string> seen_;
 };
 
-/// Rejects speeds that are not possible with the ports, because real masters keep the wall clock's time.
+/// Rejects speeds that cannot be combined with the ports, the control socket, the panel or the duration. Real
+/// masters keep the wall clock's time.
 void check_speed(const Setup& setup) {
   const auto wrong = [](const std::string& what) { throw SetupError(std::nullopt, "speed", what); };
   for (const LineSetup& line : setup.lines) {
@@ -185,8 +186,8 @@ Speed parse_speed(const std::string& text) {
   if (text == "step") {
     return {Speed::Kind::Stepped};
   }
-  // The minimum prevents a year from exceeding the range of the clock. Above the maximum, time would advance
-  // in leaps, because the wall clock's timers are not precise enough; `max` is available for that.
+  // Above the maximum, time would advance in leaps, because the wall clock's timers are not precise enough;
+  // `max` is available for that.
   constexpr double kSlowest = 0.001;
   constexpr double kFastest = 1000;
   double speed = 0;

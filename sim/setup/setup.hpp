@@ -25,7 +25,7 @@ std::string place_of(const Places& places, const std::string& key);
 
 struct LineSetup {
   Places places;
-  std::string name;                   ///< name in the logs; empty if there is only one line
+  std::string name;                   ///< name in the logs; empty for the line of a command line
   std::vector<ModuleSpec> modules;    ///< at least one
   std::optional<std::string> pty;     ///< path of the link to a pseudo-terminal
   std::optional<TcpAddress> tcp;      ///< address to listen on
@@ -101,7 +101,7 @@ struct SetupError : std::invalid_argument {
   std::string value;  ///< the wrong value; empty if the message does not need it
 };
 
-/// Throws SetupError if values that are valid alone cannot be combined.
+/// Throws SetupError if values cannot be combined, or if a path or a name is not valid.
 void check(const Setup& setup);
 
 // Values with the same syntax on the command line and in a bus file. The parsers throw std::invalid_argument
@@ -116,7 +116,7 @@ std::optional<LogFormat> parse_log(const std::string& text);
 /// Parses a port number, `off` or an empty text. Returns a setup without a port for an empty text, and
 /// nullopt for `off`.
 std::optional<PanelSetup> parse_panel(const std::string& text);
-/// `text` is a number from 0.001 to 1000, `max` or `step`.
+/// Parses a number from 0.001 to 1000, `max` or `step`.
 Speed parse_speed(const std::string& text);
 
 }  // namespace ex9000::sim
