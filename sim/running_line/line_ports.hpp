@@ -32,9 +32,9 @@ class LinePorts final : private BusObserver {
   /// Writes the bytes received since the last call to all ports. Does not block: bytes without room are
   /// dropped, with a notice for the first of them.
   void hand_out();
-  /// Sets the line to the rate of the port. Has no effect if no master has set a rate there.
+  /// Sets the line to the rate of the port, if the port has one, and reports mismatches.
   void take_rate(const Port& port);
-  /// Returns the number of bytes written to the ports so far, including dropped bytes.
+  /// Returns the number of bytes written to each port so far, including dropped bytes.
   [[nodiscard]] std::uint64_t sent() const { return sent_; }
   /// Reports each mismatch of rates once, until it ends.
   void report_mismatches();

@@ -13,7 +13,7 @@
 
 namespace ex9000::sim {
 
-/// Records nothing until `print_frames`, `keep_in` or `tell` requests it.
+/// Records no frames until `print_frames`, `keep_in` or `tell` requests it.
 class LineRecord final : private Station {
  public:
   using Print = BusLog::Print;
@@ -31,8 +31,8 @@ class LineRecord final : private Station {
   void keep_in(Capture& capture, VirtualTime began);
   /// Requests that `take` gets every frame when it has ended, and `note` every remark about the line.
   void tell(FrameWatch::Take take, BusLog::Note note);
-  /// Ignores events later than `end` in the line's time. The records do not depend on how far the line runs
-  /// beyond `end`, which varies with the moments at which the program reads the wall clock.
+  /// Ends the log and the capture at `end` in the line's time. Then they do not depend on how far the line
+  /// runs beyond `end`, which varies with the moments at which the program reads the wall clock.
   void end_at(VirtualTime end);
   /// Returns the collector of the frames; null if no frames are recorded.
   FrameWatch* frames() { return listens_ ? &frames_ : nullptr; }

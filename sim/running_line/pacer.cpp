@@ -12,7 +12,7 @@ namespace ex9000::sim {
 
 namespace {
 
-/// If more bytes than this wait for the line, masters have to wait, as with a full UART.
+/// If this many bytes wait for the line, masters have to wait, as with a full UART.
 constexpr std::size_t kMostWaiting = 4096;
 
 /// Limits how far virtual time runs ahead, so that watchdogs do not expire early after many transactions in a

@@ -39,16 +39,16 @@ class RunningLine {
   /// Creates the missing EEPROM files and appends them to `made`. Throws like the constructor.
   void make_missing_memories(std::list<NewFile>& made);
 
-  /// Returns the records of the line, which begin with `start`.
+  /// Returns the records of the line.
   LineRecord& record() { return *record_; }
-  /// Connects the memories to their files and starts the records.
+  /// Connects the memories to their files: from now on, the files get everything that modules store.
   void start();
   /// Starts to process the line as soon as `io` runs, `speed` times faster than the wall clock.
   void start_paced(boost::asio::io_context& io, double speed);
   /// Starts to process the line. Its time stands still until the caller moves it. `arrived` is called when
   /// bytes from masters have arrived.
   SteppedLine& start_stepped(SteppedLine::Arrived arrived);
-  /// Ends the records when the modules have been up for `up`. Call it before `start`.
+  /// Ends the log and the capture when the modules have been up for `up`. Call it before `start`.
   void end_at(VirtualTime up) { record_->end_at(came_up_ + up); }
   /// Processes all events until the modules have been up for `up`, without waiting.
   void run_until(VirtualTime up);

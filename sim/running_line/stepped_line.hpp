@@ -18,7 +18,7 @@ class SteppedLine {
  public:
   using Arrived = std::function<void()>;
 
-  /// The limit for stored bytes; beyond it masters have to wait.
+  /// If this many bytes are stored, masters have to wait.
   static constexpr std::size_t kMostBytes = 65'536;
 
   /// `frames` may be null. All arguments must outlive this object.
