@@ -113,7 +113,7 @@ void Session::open_capture() {
   }
   const std::string place = place_of(setup_.places, "capture");
   with_place(place, [this] {
-    refuse_overwriting(*setup_.capture, in_use_by(setup_));  // by now all these files exist
+    refuse_overwriting(*setup_.capture, in_use_by(setup_));  // the links and the control socket exist now
   });
   made_.emplace_back(*setup_.capture, is_there(*setup_.capture));
   capture_ = std::make_unique<Capture>(*setup_.capture, place);
@@ -216,7 +216,7 @@ bool Session::ends() const {
   return setup_.lasts && (!setup_.speed.paced() || *setup_.lasts / setup_.speed.factor < kLongestRun);
 }
 
-/// The timer expires some time after the end. The lines' records end exactly.
+/// The timer expires some time after the end of the duration. The logs and captures end exactly at its end.
 void Session::end_by_the_clock() {
   end_.expires_after(std::chrono::duration_cast<VirtualTime>(*setup_.lasts / setup_.speed.factor));
   end_.async_wait([this](const boost::system::error_code& error) {

@@ -38,15 +38,14 @@ class Session {
   Session(const Session&) = delete;
   Session& operator=(const Session&) = delete;
 
-  /// Creates the missing files, prints the greeting, and starts to process the lines as soon as `io` runs.
-  /// Stops `io` at the end of the duration in `setup`. Throws like the constructor; files that it has created
-  /// are then removed.
+  /// Creates the missing files, prints the greeting, and prepares the lines. Paced lines advance as soon as
+  /// `io` runs, stepped lines at each `advance`; both stop `io` at the end of the duration in `setup`. Throws
+  /// like the constructor; files that it has created are then removed.
   void start();
-  /// For lines that do not follow a clock: processes all events in the duration of `setup`, unless `io` is
-  /// stopped.
+  /// Only for Speed::Kind::Max: processes all events in the duration of `setup`, unless `io` is stopped.
   void run_unpaced();
-  /// Records the frames that are still in progress. Call it after `start` or `run_unpaced`. Throws like the
-  /// constructor.
+  /// Records the frames that are still in progress. Call it when `io` has stopped or `run_unpaced` has
+  /// returned. Throws like the constructor.
   void finish();
 
  private:
