@@ -17,7 +17,8 @@
 
 namespace ex9000::sim {
 
-/// Viewers do not affect the lines. Without viewers, the panel only stores the last frames of each line.
+/// Viewers affect the lines only by the commands that their pages send. Without viewers, the panel only
+/// stores the last frames of each line.
 class Panel final : public PanelSource {
  public:
   using CarryOut = std::function<Control::Reply(const std::string& command)>;

@@ -363,7 +363,7 @@ std::size_t PanelServer::Listener::pages() const {
   }));
 }
 
-/// Starts regular looks when the first page opens.
+/// Looks at once for a new page. Starts regular looks when the first page opens.
 void PanelServer::Listener::watch() {
   if (looking_) {
     look();

@@ -23,7 +23,8 @@ class PanelViewer {
   /// Carries out a request of the page; `next` returns the reply. Returns false if `text` is not a request.
   /// Actions that the page holds active are undone when this object is destroyed.
   virtual bool ask(const std::string& text) = 0;
-  /// Returns the changes up to the last look that the page does not have yet; empty if there are none.
+  /// Returns the next message for the page: the reply to its request, and the changes up to the last look
+  /// that it does not have yet. Returns an empty text if there is nothing to send.
   virtual std::string next() = 0;
 };
 

@@ -1,4 +1,4 @@
-// The list of frames. Only the visible entries have a row, because there may be thousands of them.
+// The list of frames. Only the visible entries and some around them have a row, because there may be thousands of them.
 
 import {make, setAttribute, setText} from "/element.js";
 

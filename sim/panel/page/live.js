@@ -2,8 +2,8 @@
 
 const firstWait = 100;
 const longestWait = 1000;
-/// The connection is lost if no message arrives for this time, in ms. The simulator sends a message at least every
-/// second.
+/// The connection counts as lost if no message arrives for this time, in ms. The simulator sends a message at least
+/// every second.
 const patience = 3500;
 /// The close code if too many pages are open.
 const tooMany = 1013;
