@@ -66,7 +66,7 @@ class BusTarget : public Target {
   PlayObserver* observer_;
   std::vector<std::string> names_;
   std::vector<std::unique_ptr<sim::Line>> lines_;
-  std::vector<Bytes> heard_;  ///< bytes that each master has received since the line was last chosen
+  std::vector<Bytes> heard_;  ///< bytes received by each master that no call has returned yet
   std::size_t line_ = 0;
   std::size_t module_ = 0;  ///< position on that line
 };

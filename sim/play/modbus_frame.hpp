@@ -1,4 +1,4 @@
-// Modbus RTU frames for tests.
+// Modbus RTU frames for transcripts and tests.
 #pragma once
 
 #include <cstdint>

@@ -10,8 +10,8 @@
 
 namespace ex9000::play {
 
-/// The files to play: a transcript, which names its models, a directory of transcripts, or a scenario on
-/// `bus`.
+/// The files to play: a transcript, which names its models, a scenario, which requires `bus`, or a directory
+/// of either.
 struct Task {
   std::string path;
   std::optional<sim::Setup> bus;

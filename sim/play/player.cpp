@@ -10,10 +10,10 @@ namespace ex9000::play {
 namespace {
 
 constexpr std::chrono::milliseconds kLongestReply{250};
-/// If a reply is too long, its extra bytes arrive within this time.
+/// If a reply is too long, its first extra byte arrives within this time, at 9600 baud or more.
 constexpr std::chrono::milliseconds kAfterReply{2};
-/// An unexpected reply begins within this time: T3.5 at 1200 baud, the 20 ms that a reply may take, and its
-/// first character.
+/// An unexpected reply begins within this time: T3.5 at 1200 baud, the 20 ms before a reply must begin, and
+/// its first character.
 constexpr std::chrono::milliseconds kReplyBegins{65};
 
 /// Returns the checksum of DCON. It does not use the firmware's code, so that the tests do not check the

@@ -102,7 +102,7 @@ struct Transcript {
   [[nodiscard]] std::chrono::milliseconds waits() const;
 };
 
-/// The duration of a `silence` step, in which no byte may arrive. It is longer than any reply takes.
+/// The duration of a `silence` step, in which no byte may arrive. Without faults, any reply begins earlier.
 constexpr std::chrono::milliseconds kSilence{250};
 
 /// Describes what is wrong if `model` lacks an input with this number; empty: the input exists.
