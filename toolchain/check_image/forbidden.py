@@ -1,5 +1,5 @@
-"""Finds forbidden contents of an image: a heap, exceptions, floating point, 64-bit division, code that runs before
-main, and texts for people."""
+"""Finds forbidden contents of an image: undefined symbols, a heap, exceptions, floating point, 64-bit division,
+code that runs before main, and texts for people."""
 
 from __future__ import annotations
 

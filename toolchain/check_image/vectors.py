@@ -1,4 +1,4 @@
-"""Reads the vector table of an image (Armv7-M ARM B1.5.2 and B1.5.3), and which handlers can interrupt each other."""
+"""Reads the vector table of an image (Armv7-M ARM B1.5.2 and B1.5.3) and groups the handlers by priority."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ _CONFIGURABLE_FAULTS = range(4, 7)  # MemManage, BusFault, UsageFault
 
 
 class BadVectors(Exception):
-    """The table is missing, or contains a value that is not the address of a function."""
+    """The table is missing, contains a value that is not the address of a function, or lacks a named handler."""
 
 
 class Vectors:
@@ -42,8 +42,8 @@ class Vectors:
         return self.handlers[_RESET]
 
     def levels(self, named: Sequence[Sequence[str]]) -> list[Level]:
-        """Returns the handlers in levels. Handlers of one level cannot interrupt each other, but they can interrupt all
-        other levels.
+        """Returns the handlers in levels. Handlers of one level cannot interrupt each other. Handlers of different
+        levels can be active at the same time.
 
         `named`: interrupts with a separate priority, one level for each entry. The other interrupts form one level. A
         fault in a fault handler is a HardFault, and NMI can interrupt that.
