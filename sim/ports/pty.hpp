@@ -13,11 +13,11 @@ namespace ex9000::sim {
 /// terminal is in raw mode.
 class Pty {
  public:
-  /// Creates a pseudo-terminal set to `baud` and a symbolic link to its slave at `link`. Replaces a link that
-  /// a dead simulator has left. Throws std::invalid_argument with a one-line message if anything else exists
-  /// there, another simulator uses the path, or the path cannot be created, and std::runtime_error if the
-  /// system cannot create or watch a pseudo-terminal. After an exception, neither the link nor the
-  /// pseudo-terminal remains.
+  /// Creates a pseudo-terminal set to `baud` and a symbolic link to its slave at `link`. Replaces a link
+  /// to a pseudo-terminal that no running simulator uses. Throws std::invalid_argument with a one-line
+  /// message if anything else exists there, another simulator uses the path, or the path cannot be created,
+  /// and std::runtime_error if the system cannot create or watch a pseudo-terminal. After an exception,
+  /// neither the link nor the pseudo-terminal remains.
   Pty(std::string link, std::uint32_t baud);
   /// Removes the link, if it still belongs to this object.
   ~Pty();
