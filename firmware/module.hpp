@@ -23,10 +23,10 @@ namespace ex9000 {
 /// edges, levels and the time as arguments, and reads the outputs, the LED, the reply and the memory job. An
 /// object exists from one reset to the next.
 ///
-/// Interrupts call the functions named `on_...`. `on_byte`, `on_silence` and `on_own_driver_off` must not
-/// interrupt each other, so they share one interrupt priority; if several are pending, `on_silence` must run
-/// first (hal/one_shot_timer.hpp). `on_edge` and `on_tick` may have other priorities. The main loop calls all
-/// other functions. No function blocks.
+/// Interrupts call `request_waits` and the functions named `on_...`. `on_byte`, `on_silence` and
+/// `on_own_driver_off` must not interrupt each other, so they share one interrupt priority; if several are
+/// pending, `on_silence` must run first (hal/one_shot_timer.hpp). `on_edge` and `on_tick` may have other
+/// priorities. The main loop calls all other functions. No function blocks.
 class Module {
  public:
   /// `timing_at` returns the times of this line; not null.
@@ -77,7 +77,7 @@ class Module {
 
   /// Returns whether the settings and INIT* are known, so that the line can be opened at `baud()`.
   [[nodiscard]] bool listening() const { return start_ == Start::Done; }
-  /// Returns the baud rate in bits per second. It does not change between two resets.
+  /// Returns the baud rate in bits per second. It does not change while `listening()`.
   [[nodiscard]] std::uint32_t baud() const { return baud_rate(state_.in_force.baud_code); }
 
   [[nodiscard]] bool needs_memory() const { return keeper_.busy(); }
@@ -102,7 +102,7 @@ class Module {
   [[nodiscard]] bool at_rest() const {
     return listening() && cycle_.phase() == RequestCycle::Phase::Idle && !receiver_.queue().has_frame();
   }
-  /// Returns the outcome of the last request.
+  /// See RequestCycle::outcome.
   [[nodiscard]] const Outcome& outcome() const { return cycle_.outcome(); }
   /// Returns whether the settings in the memory could not be read at reset and none have been stored since.
   [[nodiscard]] bool settings_unreadable() const { return keeper_.unreadable(); }

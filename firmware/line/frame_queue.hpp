@@ -1,4 +1,4 @@
-// Passes complete frames from the receive interrupt to the main loop.
+// Passes complete frames from interrupts to the main loop.
 #pragma once
 
 #include <array>

@@ -1,4 +1,4 @@
-// The counters of the receive interrupt for Modbus function 08 (Modbus over Serial Line V1.02, appendix A).
+// The counters of the interrupts for Modbus function 08 (Modbus over Serial Line V1.02, appendix A).
 #pragma once
 
 #include <array>

@@ -76,8 +76,8 @@ struct LineTiming {
   }
 };
 
-/// A function that returns the times at a baud rate. On an RS-485 line it is `LineTiming::at`. A line on
-/// which bytes take no time uses another function.
+/// A function that returns the times at a baud rate, for example `LineTiming::at`. A line on which bytes take
+/// no time uses another function.
 using TimingAt = LineTiming (*)(std::uint32_t baud);
 
 }  // namespace ex9000

@@ -20,8 +20,8 @@ enum class Verdict : std::uint8_t {
   BadCheck,   ///< wrong or missing checksum, wrong CRC
   TooShort,   ///< too short for an address and a check
   TooLong,    ///< longer than the longest allowed frame
-  LineError,  ///< a byte had a framing, break or overrun error
-  Overrun,    ///< a byte was lost because the previous byte was not read in time
+  LineError,  ///< a byte had a framing error or a break; in ASCII also: an overrun
+  Overrun,    ///< Modbus: a byte was lost because the previous byte was not read in time
 };
 
 }  // namespace ex9000

@@ -16,7 +16,7 @@ class StatusLed {
     SettingsUnreadable,  ///< two short flashes every 2 s (wire.md D8)
   };
 
-  /// Selects and advances the pattern. The main loop calls this in every pass.
+  /// Selects and advances the pattern. The main loop calls this at every tick and at `next_change`.
   void show(Pattern pattern, Time now) {
     if (pattern != pattern_) {
       pattern_ = pattern;

@@ -26,7 +26,7 @@ class RequestCycle {
 
   [[nodiscard]] Phase phase() const { return phase_; }
 
-  /// Judges a complete frame. Call it only while Idle. It changes only the outcome and does not keep the
+  /// Judges a complete frame. Call it only while Idle. It does not change the module's state or keep the
   /// frame. If the outcome changes settings, the phase becomes AwaitingStore. Otherwise carry out the outcome
   /// and then call `finish`.
   const Outcome& judge(Bytes frame);

@@ -14,8 +14,8 @@ namespace ex9000 {
 /// - It repeats the first save after a firmware update if the power failed during that save.
 /// - It invalidates copies that must not be used.
 ///
-/// It retries each of these actions every second until it succeeds (wire.md D15). For the main loop only. No
-/// function blocks.
+/// It repeats that first save only once. It retries the other two actions every second until they succeed
+/// (wire.md D15). For the main loop only. No function blocks.
 class SettingsKeeper {
  public:
   explicit constexpr SettingsKeeper(const Model& model) : store_(model) {}

@@ -38,7 +38,7 @@ class SettingsStore {
   enum class Found : std::uint8_t {
     Settings,    ///< the memory contains a good copy
     Blank,       ///< the memory was never written; factory settings are used
-    Unreadable,  ///< the memory contains something else; factory settings are used but not stored
+    Unreadable,  ///< something else, or no answer; factory settings are used but not stored
   };
 
   /// Begins to load: reads all places, each up to three times. If the memory did not answer at one place, the

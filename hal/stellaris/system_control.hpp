@@ -39,8 +39,8 @@ constexpr std::uint32_t kTimer2 = 1U << 18U;
 class SystemControl {
  public:
   /// Switches the processor to `clock`. Call this once after reset, when the watchdog is running. It blocks
-  /// for a few hundred microseconds until the PLL has locked; until then the processor runs on its initial
-  /// oscillator. If the PLL never locks, the watchdog resets the MCU.
+  /// for a few hundred microseconds until the PLL has locked; until then the processor runs without the
+  /// PLL. If the PLL never locks, the watchdog resets the MCU.
   static void use(const ClockTree& clock) {
     constexpr Bits<Rcc> kBypass(1U << 11U);
     constexpr Bits<Rcc> kPowerDown(1U << 13U);

@@ -82,7 +82,7 @@ class Uart {
     }
     take_echo();
     kInterruptMask.write(kReceived | kTransmitted);
-    Gpio(driver_enable.port).write(driver_enable.mask(), 0);  // last, because a master may send from now on
+    Gpio(driver_enable.port).write(driver_enable.mask(), 0);  // after the mask: a master may send now
     ended_.store_in_interrupt(begun_.load());
     return true;
   }
