@@ -26,7 +26,7 @@ struct Format {
   std::string (*of_models)(const Models& models) = nullptr;
   // These two require a model with Modbus.
   std::string (*of_model)(const Model& model) = nullptr;
-  std::string (*of_module)(const Model& model, const NetworkAddress& place) = nullptr;
+  std::string (*of_module)(const Model& model, const NetworkAddress& network_address) = nullptr;
 };
 
 std::string markdown(const Models& models) {
@@ -72,15 +72,15 @@ TcpAddress parse_master_address(const std::string& text) {
   return tcp;
 }
 
-NetworkAddress parse_place(const DescribeTexts& texts) {
-  NetworkAddress place;
+NetworkAddress parse_network_address(const DescribeTexts& texts) {
+  NetworkAddress network_address;
   if (texts.address) {
-    place.address = parse_modbus_address(*texts.address);
+    network_address.address = parse_modbus_address(*texts.address);
   }
   if (texts.tcp) {
-    place.tcp = parse_master_address(*texts.tcp);
+    network_address.tcp = parse_master_address(*texts.tcp);
   }
-  return place;
+  return network_address;
 }
 
 /// Rejects options that are valid only with formats for one module.
@@ -119,8 +119,8 @@ std::string describe_formats() {
 std::string describe(const DescribeTexts& texts) {
   const Format& format = format_called(texts.format);
   if (format.of_module != nullptr) {
-    const NetworkAddress place = parse_place(texts);
-    return format.of_module(modbus_model(texts), place);
+    const NetworkAddress network_address = parse_network_address(texts);
+    return format.of_module(modbus_model(texts), network_address);
   }
   refuse_place(texts);
   if (format.of_model != nullptr) {

@@ -36,14 +36,16 @@ const char* input_type(Table table) {
 
 class Hub {
  public:
-  Hub(const Model& model, const NetworkAddress& place)
-      : model_(model), place_(place), key_(model_key(model) + "_" + hex_byte_text(place.address)) {}
+  Hub(const Model& model, const NetworkAddress& network_address)
+      : model_(model),
+        network_address_(network_address),
+        key_(model_key(model) + "_" + hex_byte_text(network_address.address)) {}
 
   [[nodiscard]] Json hub() const {
     Json hub{{"name", key_},
              {"type", "rtuovertcp"},
-             {"host", place_.tcp.host},
-             {"port", place_.tcp.port},
+             {"host", network_address_.tcp.host},
+             {"port", network_address_.tcp.port},
              {"timeout", kTimeoutSeconds},
              {"message_wait_milliseconds", kWaitMilliseconds}};
     for (const Shown& shown : shown_by(model_)) {
@@ -60,7 +62,7 @@ class Hub {
     for (const Shown& shown : shown_by(model_)) {
       for (unsigned index = 0; shown.role == Role::Button && index < shown.width; ++index) {
         text += "#   " + shown.name_of(index) + ": modbus.write_coil with hub: " + key_ +
-                ", slave: " + std::to_string(place_.address) +
+                ", slave: " + std::to_string(network_address_.address) +
                 ", address: " + std::to_string(shown.first + index) + ", state: true\n";
       }
     }
@@ -69,10 +71,10 @@ class Hub {
 
  private:
   [[nodiscard]] Json entity(const Shown& shown, unsigned index, unsigned seconds) const {
-    return {{"name", std::string(model_.designation) + " " + hex_byte_text(place_.address) + " " +
+    return {{"name", std::string(model_.designation) + " " + hex_byte_text(network_address_.address) + " " +
                          shown.name_of(index)},
             {"unique_id", key_ + "_" + shown.key_of(index)},
-            {"slave", place_.address},
+            {"slave", network_address_.address},
             {"address", shown.first + index},
             {"scan_interval", seconds}};
   }
@@ -137,12 +139,13 @@ class Hub {
   }
 
   const Model& model_;
-  const NetworkAddress& place_;
+  const NetworkAddress& network_address_;
   std::string key_;
 };
 
-std::string head(const Model& model, const NetworkAddress& place) {
-  const std::string who = std::string(model.designation) + " at address " + hex_byte_text(place.address);
+std::string head(const Model& model, const NetworkAddress& network_address) {
+  const std::string who =
+      std::string(model.designation) + " at address " + hex_byte_text(network_address.address);
   return "# " + who +
          ", for Home Assistant's modbus integration. In configuration.yaml:\n"
          "#   modbus: !include modbus.yaml\n"
@@ -162,10 +165,10 @@ std::string head(const Model& model, const NetworkAddress& place) {
 
 }  // namespace
 
-std::string home_assistant_hub(const Model& model, const NetworkAddress& place) {
-  const Hub hub(model, place);
-  return head(model, place) + yaml_of(Json::array({hub.hub()})) + "# Actions for items without an entity:\n" +
-         hub.actions();
+std::string home_assistant_hub(const Model& model, const NetworkAddress& network_address) {
+  const Hub hub(model, network_address);
+  return head(model, network_address) + yaml_of(Json::array({hub.hub()})) +
+         "# Actions for items without an entity:\n" + hub.actions();
 }
 
 }  // namespace ex9000::sim

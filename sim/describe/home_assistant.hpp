@@ -10,6 +10,6 @@ namespace ex9000::sim {
 
 /// Returns YAML for `modbus: !include FILE` in configuration.yaml: a hub with switches, binary sensors and
 /// sensors. `model` must support Modbus.
-std::string home_assistant_hub(const Model& model, const NetworkAddress& place);
+std::string home_assistant_hub(const Model& model, const NetworkAddress& network_address);
 
 }  // namespace ex9000::sim

@@ -35,10 +35,10 @@ const char* data_type(Table table) {
 
 class Flow {
  public:
-  Flow(const Model& model, const NetworkAddress& place)
-      : module_(std::string(model.designation) + " " + hex_byte_text(place.address)),
-        key_(model_key(model) + "_" + hex_byte_text(place.address)),
-        place_(place) {
+  Flow(const Model& model, const NetworkAddress& network_address)
+      : module_(std::string(model.designation) + " " + hex_byte_text(network_address.address)),
+        key_(model_key(model) + "_" + hex_byte_text(network_address.address)),
+        network_address_(network_address) {
     add_tab();
     add_client();
     for (const Shown& shown : shown_by(model)) {
@@ -85,13 +85,13 @@ class Flow {
          {"type", "modbus-client"},
          {"name", "line of " + module_},
          {"clienttype", "tcp"},
-         {"tcpHost", place_.tcp.host},
-         {"tcpPort", std::to_string(place_.tcp.port)},
+         {"tcpHost", network_address_.tcp.host},
+         {"tcpPort", std::to_string(network_address_.tcp.port)},
          {"tcpType", "TELNET"},  // sends the bytes as on the line; other types add the header of Modbus TCP
          // One request at a time, because all modules share one line.
          {"bufferCommands", true},
          {"parallelUnitIdsAllowed", false},
-         {"unit_id", std::to_string(place_.address)},
+         {"unit_id", std::to_string(network_address_.address)},
          {"commandDelay", "30"},
          {"clientTimeout", "1000"},
          {"reconnectOnTimeout", true},
@@ -117,7 +117,7 @@ class Flow {
     Json read = node(name, "modbus-read", 1);
     read["name"] = shown.name;
     read["topic"] = shown.id;
-    read["unitid"] = std::to_string(place_.address);
+    read["unitid"] = std::to_string(network_address_.address);
     read["dataType"] = data_type(shown.table);
     read["adr"] = std::to_string(shown.first);
     read["quantity"] = std::to_string(shown.width);
@@ -149,7 +149,7 @@ class Flow {
     row_ = top;
     Json write = node("write " + key, "modbus-write", 1);
     write["name"] = shown.name_of(index);
-    write["unitid"] = std::to_string(place_.address);
+    write["unitid"] = std::to_string(network_address_.address);
     write["dataType"] = data_type(shown.table);
     write["adr"] = std::to_string(shown.first + index);
     write["quantity"] = "1";
@@ -174,15 +174,15 @@ class Flow {
 
   std::string module_;
   std::string key_;
-  const NetworkAddress& place_;
+  const NetworkAddress& network_address_;
   Json nodes_ = Json::array();
   unsigned row_ = 0;
 };
 
 }  // namespace
 
-std::string node_red_flow(const Model& model, const NetworkAddress& place) {
-  return Flow(model, place).text();
+std::string node_red_flow(const Model& model, const NetworkAddress& network_address) {
+  return Flow(model, network_address).text();
 }
 
 }  // namespace ex9000::sim

@@ -32,7 +32,7 @@ std::uint8_t left(unsigned way, std::uint8_t old_byte, std::uint8_t new_byte) {
 
 /// Whether `contents` hold a good new copy and a good old copy. This happens if the power failed before the
 /// old copy was invalidated.
-bool CutBench::holds_what_must_not_count(const Contents& contents) const {
+bool CutBench::has_unfinished_update(const Contents& contents) const {
   const StoringModel storing = storing_model(model_);
   const auto good = [&](std::size_t place) { return StoredCopy(storing, contents.data(), place).is_good(); };
   return (good(kStoredPlaces[0]) || good(kStoredPlaces[1])) &&
@@ -147,7 +147,7 @@ Found CutBench::come_up(const Contents& contents, const std::vector<Settings>& g
     }
   }
   EXPECT_EQ(shown_.changes, found.outputs.changes) << "reading has changed outputs";
-  if (!holds_what_must_not_count(contents)) {
+  if (!has_unfinished_update(contents)) {
     EXPECT_EQ(CutBench::contents(), contents) << "the start of the module has written to the EEPROM";
   }
   return found;
@@ -247,16 +247,16 @@ FrameFormat CutBench::get_ready(const Contents& contents, const Settings& before
 /// more and invalidates the old copies, without a command.
 void CutBench::finish_update() {
   const Instant gives_up = bench_.timeline.now() + kFinishesAnUpdateWithin;
-  while (holds_what_must_not_count(CutBench::contents()) && bench_.timeline.now() < gives_up) {
+  while (has_unfinished_update(CutBench::contents()) && bench_.timeline.now() < gives_up) {
     bench_.run_for(milliseconds(1));
   }
-  ASSERT_FALSE(holds_what_must_not_count(CutBench::contents())) << "the update is not finished";
+  ASSERT_FALSE(has_unfinished_update(CutBench::contents())) << "the update is not finished";
   bench_.run_for(milliseconds(10));  // the module reads back what it has stored
 }
 
 Cuts CutBench::cut_while_finishing_update(const Contents& contents) {
   Cuts cuts;
-  if (holds_what_must_not_count(contents)) {
+  if (has_unfinished_update(contents)) {
     bench_.eeprom.on_event([&] { note_cuts(cuts); });
     power_up(contents, false);
     finish_update();

@@ -105,7 +105,7 @@ class CutBench {
   void power_up(const Contents& contents, bool init);
   UartPort& uart() { return bench_.image.uart == 0 ? bench_.mcu->uart0 : bench_.mcu->uart1; }
   [[nodiscard]] Contents contents() const;
-  [[nodiscard]] bool holds_what_must_not_count(const Contents& contents) const;
+  [[nodiscard]] bool has_unfinished_update(const Contents& contents) const;
   [[nodiscard]] std::size_t pages_of_a_store(const Contents& contents) const;
   Outputs outputs();
   void finish_update();
