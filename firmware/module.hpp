@@ -60,8 +60,9 @@ class Module {
 
   // --- main loop ---
 
-  /// Updates the INIT* switch and the status LED. Call it at every tick and when the time that
-  /// `idle_for` returned is over. `init_switch`: whether INIT* is asserted (tied to GND), not debounced.
+  /// Updates the INIT* switch and the status LED, collects edges, and ends the gap after a reply. Call it at
+  /// every tick and when the time that `idle_for` returned is over. `init_switch`: whether INIT* is asserted
+  /// (tied to GND), not debounced.
   void poll_panel(bool init_switch, Time now);
   /// Runs one pass of the main loop: processes the events from interrupts and everything that is due.
   void step(Time now);

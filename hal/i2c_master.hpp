@@ -18,8 +18,9 @@ namespace ex9000::hal {
 ///     void begin(const I2cTransfer&, Time now)
 ///         Begins a transfer. Call it only while not `busy()`. The transfer must stay valid while `busy()`.
 ///     bool poll(Time now)
-///         Continues the transfer. Call it in every pass. If it returns true, call it again at once, because
-///         no interrupt will occur.
+///         Continues the transfer. While `busy()`, call it after each interrupt of the master and at least
+///         every `kMemoryPollPeriod` (hal/memory.hpp). If it returns true, call it again at once, because no
+///         interrupt will occur.
 ///     bool busy() const
 ///         Returns whether a transfer is running.
 ///     I2cResult result() const

@@ -13,8 +13,9 @@ namespace ex9000::hal {
 ///
 ///     void drive(std::uint16_t channels)
 ///         Drives all channels: bit n is channel n, 1 = energised (the transistor conducts, the relay is
-///         pulled in). The board defines the polarity. All channels change together, and unchanged channels
-///         have no glitch. For the main loop, in every pass; does not block.
+///         pulled in). The board defines the polarity. All channels change within a few processor clocks,
+///         and unchanged channels have no glitch. For the main loop, at each change and at least at every
+///         tick; does not block.
 ///
 /// True if `T` has this function.
 template <class T, class = void>

@@ -1,3 +1,3 @@
 #include "boards/ek-tm4c123gxl/board.hpp"
-// Must follow board.hpp. This file is the same for all boards of the family.
+// composition.hpp must follow board.hpp. All boards of the family use the same composition.hpp.
 #include "boards/stellaris/composition.hpp"

@@ -1,4 +1,4 @@
-// Values that interrupts and the main loop share. Each value has one writer, which its type names.
+// Values that interrupts and the main loop share. The type of a value defines which side may write it.
 #pragma once
 
 #include <atomic>

@@ -32,7 +32,7 @@ class DconAssembler {
 
  private:
   enum class State : std::uint8_t {
-    Hunting,   ///< between frames; characters other than a delimiter or a reply lead are ignored
+    Hunting,   ///< between frames; ignores all characters except delimiters and `!`, `>`, `?` of a reply
     InFrame,   ///< in a frame; every character is content
     Spoiled,   ///< in a frame that is already lost; `loss_` is the reason
     Skipping,  ///< in a reply of another module, which is ignored up to its CR

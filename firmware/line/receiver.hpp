@@ -31,8 +31,9 @@ class Receiver {
   // --- interrupts, which must not interrupt each other ---
 
   /// Processes a received byte. `now` is the end of its stop bit, or earlier if the timing allows for that.
-  /// Returns the time from now after which `on_silence` must be called; each byte restarts it. If it returns
-  /// 0, the timer must not change. After a DCON frame, the result is the turn-around time.
+  /// Returns the time from now after which `on_silence` must be called: restart the timer with it. If it
+  /// returns 0, the timer must not change. In Modbus, it returns `rtu_silence` for each byte. In DCON, it
+  /// returns the turn-around time for the CR of an accepted frame, and otherwise 0.
   Duration on_byte(std::uint8_t byte, ByteStatus status, Time now);
 
   /// Call this when the time that `on_byte` or `on_silence` returned is over. The result has the same meaning

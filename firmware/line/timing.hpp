@@ -37,7 +37,7 @@ struct LineTiming {
   }
 
   /// Returns the times of `at` for a UART that reports a byte in the middle of its stop bit, half a bit
-  /// before the end. `baud` must be a standard rate.
+  /// before the end. `baud` must be one of kBaudRates.
   static constexpr LineTiming reported_in_stop_bit(std::uint32_t baud) {
     LineTiming timing = at(baud);
     const Duration half_bit(microseconds(1, baud) + 1U);

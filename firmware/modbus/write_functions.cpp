@@ -1,5 +1,6 @@
 // Functions 05, 06, 0F, 10: Modbus Application Protocol V1.1b3, 6.5, 6.6, 6.11, 6.12. The order of the checks
-// is: length and quantity, address, value, timeout status. A request that fails a check changes nothing.
+// is: length and quantity, address, value, timeout status. Exception: function 05 checks for FF00 and 0000
+// before the address. A request that fails a check changes nothing.
 #include "firmware/modbus/functions.hpp"
 #include "firmware/modbus/registers.hpp"
 

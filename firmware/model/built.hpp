@@ -17,7 +17,7 @@ namespace ex9000 {
 /// The model of this image. EX9000_MODEL is a designation, for example "EX9042D-M".
 inline constexpr Model kOnlyModel = *find_model(EX9000_MODEL);
 
-/// The model of a module. It takes no memory: the model is a compile-time constant.
+/// The model of a module. It stores nothing, because the model is a compile-time constant.
 class ChosenModel {
  public:
   explicit constexpr ChosenModel(const Model& /*model*/) {}

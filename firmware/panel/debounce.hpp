@@ -29,7 +29,8 @@ class Debounce {
   /// Returns whether a level has been accepted since reset.
   [[nodiscard]] bool known() const { return known_; }
   [[nodiscard]] bool level() const { return level_; }
-  /// Returns when to sample the switch again, so that no bounce is missed; disarmed if the level is stable.
+  /// Returns when to sample the switch again, at most 1 ms after the last sample; disarmed if the level has
+  /// been accepted.
   [[nodiscard]] Deadline next_sample() const { return next_sample_; }
 
  private:

@@ -53,7 +53,7 @@ struct State {
   }
   /// Returns whether commands marked (I) are permitted (wire.md section 2).
   [[nodiscard]] bool configuration_permitted() const { return in_force.init_mode || init_asserted; }
-  /// Returns whether output commands are ignored (wire.md section 6).
+  /// Returns whether output commands are refused (wire.md section 6).
   [[nodiscard]] bool outputs_blocked() const { return settings.timeout_status; }
 };
 

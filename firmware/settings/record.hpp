@@ -58,8 +58,8 @@ constexpr std::size_t kRecordRoom = 128;
 constexpr std::uint8_t kLayout = 3;
 using RecordBytes = std::array<std::uint8_t, kRecordRoom>;
 
-/// Writes `settings` and `sequence` into `record`, which must be a good record or contain only zeros. If it
-/// is longer than the known settings, the bytes after them stay the same.
+/// Writes `settings`, `sequence` and the CRC into `record`, which must be a good record or contain only
+/// zeros. Settings of newer firmware, which follow the known settings, stay the same.
 void write_record(const Model& model, const Settings& settings, std::uint16_t sequence, RecordBytes& record);
 
 /// Returns the size in bytes of the record that begins with `beginning`, which must have at least four bytes;

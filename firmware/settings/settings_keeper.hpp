@@ -24,12 +24,13 @@ class SettingsKeeper {
   [[nodiscard]] bool loading() const { return store_.loading(); }
   /// Returns the settings that a reset now would load, if `certain()`.
   [[nodiscard]] const Settings& stored() const { return store_.stored(); }
-  /// Returns whether the memory contained something other than settings of this model at reset, and no
-  /// settings have been stored since.
+  /// Returns whether the memory did not answer at reset, or contained something other than settings of this
+  /// model, and no settings have been stored since. False if the memory was blank.
   [[nodiscard]] bool unreadable() const { return store_.found() == SettingsStore::Found::Unreadable; }
 
-  /// Returns whether a reset now would certainly load `stored()`, even if the memory is blank. This is not
-  /// certain if the memory contains settings that could not be read before, or a copy that must not be used.
+  /// Returns whether a reset now would certainly load `stored()`. True for a blank memory. False if the
+  /// memory is `unreadable()` or contains a copy that must not be used, or if the first save after a firmware
+  /// update is not finished.
   [[nodiscard]] bool certain() const {
     return !unreadable() && !store_.needs_invalidation() && !store_.update_unfinished();
   }

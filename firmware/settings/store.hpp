@@ -42,7 +42,8 @@ class SettingsStore {
   };
 
   /// Begins to load: reads all places, each up to three times. If the memory did not answer at one place, the
-  /// store reads the next place only once. `found()` and `stored()` are valid when loading has ended.
+  /// store does not repeat a read without answer at the next place. `found()` and `stored()` are valid when
+  /// loading has ended.
   explicit constexpr SettingsStore(const Model& model) : model_(model) {}
   [[nodiscard]] bool loading() const { return step_ == Step::Load; }
   [[nodiscard]] Found found() const { return found_; }
@@ -50,8 +51,9 @@ class SettingsStore {
   /// Begins to write and verify `settings`. The save fails when writing or verifying has failed three times.
   /// Call it only while not `busy()`. `saved()` and `stored()` are valid when the save has ended.
   ///
-  /// If no copy could be read at reset, the store first reads all places again. If a copy is readable now,
-  /// the new copy gets a later sequence number, so that the old copy is not used after the next reset.
+  /// If `found()` is Unreadable, the store first reads all places again. If the memory does not answer, the
+  /// save fails. If a copy is readable now, the new copy gets a later sequence number, so that the old copy
+  /// is not used after the next reset.
   void begin_saving(const Settings& settings);
   [[nodiscard]] bool busy() const { return step_ != Step::Idle; }
   /// Returns whether the last save succeeded.
@@ -72,7 +74,7 @@ class SettingsStore {
   /// stays true.
   void begin_invalidating();
 
-  /// Returns the settings that a reset now would load.
+  /// Returns the settings that a reset now would load; for the exceptions, see SettingsKeeper::certain.
   [[nodiscard]] const Settings& stored() const { return stored_; }
 
   /// Returns the memory access to carry out. Call it only while `busy()`. It stays the same until `done`.

@@ -10,10 +10,11 @@ namespace ex9000 {
 /// Keeps only the time of the last restart. The enable flag and the timeout are settings.
 class HostWatchdog {
  public:
-  /// Call this at reset, when the watchdog is enabled, and at every host OK.
+  /// Call this at reset, when a request enables the watchdog or writes the timeout of the enabled watchdog,
+  /// and at every host OK.
   constexpr void restart(Time now) { started_ = now; }
 
-  /// Returns whether at least VV x 0.1 s have passed since the last restart.
+  /// Returns whether the watchdog is enabled and at least VV x 0.1 s have passed since the last restart.
   [[nodiscard]] constexpr bool expired(const Settings& settings, Time now) const {
     // A deadline is necessary because the restart may be newer than `now`; `now.since()` would then wrap.
     return expiry(settings).reached(now);

@@ -39,7 +39,10 @@ def _arguments(words: list[str]) -> argparse.Namespace:
 
 
 def main(words: list[str]) -> int:
-    """Runs the program. Returns its exit status: 0 after a signal, 1 if QEMU has ended, 2 for wrong arguments."""
+    """Runs the program. Returns its exit status: 0 after a signal, 1 if QEMU has ended, 2 after a Refusal.
+
+    Wrong options raise SystemExit with status 2.
+    """
     arguments = _arguments(words)
     try:
         with contextlib.ExitStack() as at_the_end:
