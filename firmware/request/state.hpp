@@ -12,7 +12,7 @@ namespace ex9000 {
 
 /// Values that are taken from the settings or from INIT mode at reset and apply until the next reset.
 struct InForce {
-  std::uint8_t address = 0;  ///< exception: `%` changes it at once
+  std::uint8_t address = 0;  ///< exception: `%` changes it at once, but not in INIT mode
   std::uint8_t baud_code = kFactoryBaudCode;
   Protocol protocol = Protocol::Ascii;
   bool checksum = false;

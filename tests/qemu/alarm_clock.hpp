@@ -25,7 +25,7 @@ class Halted : public std::runtime_error {
 /// GPTM3, which no image uses, interrupts when the time has elapsed. Its interrupt code, in RAM that no image
 /// uses, reaches the gate (gate.cpp), where the processor waits. The image and its vectors are not changed: a
 /// copy of the vectors with one more entry replaces them. Like the interrupts of the image, it cannot preempt
-/// others and they cannot preempt it. It delays them by 1 us each time the machine stops, and uses as much
+/// others and they cannot preempt it. It delays them by 0.5 us each time the machine stops, and uses as much
 /// stack as they do.
 ///
 /// All functions throw std::runtime_error on an unexpected state, and Halted if the machine is about to be
@@ -36,7 +36,7 @@ class AlarmClock {
 
   /// Prepares the alarm. Call it after each reset, before the first instruction.
   void set_up();
-  /// Runs the machine for `time`, but at least for 3 us.
+  /// Runs the machine for `time`, but at least for 2.5 us.
   void run_for(std::chrono::nanoseconds time);
   /// Runs the machine and gives an input `edges` edges, one about every 4 us. Returns the duration.
   std::chrono::nanoseconds make_edges(Pin pin, std::uint32_t edges);

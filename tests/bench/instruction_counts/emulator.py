@@ -134,7 +134,7 @@ class Emulator:
         self._started = False
 
     def run_for(self, seconds):
-        """Runs for this emulated time, but at least for 3 us."""
+        """Runs for about this emulated time, but at least for 2 us."""
         clocks = max(100, round((seconds - INTERRUPT_TAKES) * HERTZ))
         if self._started:
             self._write(NEXT_ALARM, clocks)
