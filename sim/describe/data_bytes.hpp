@@ -1,4 +1,4 @@
-// The content of the two data bytes of DCON replies, (First) and (Second).
+// The content of the two data bytes of DCON replies, (First) and (Second), and the values of the status byte.
 #pragma once
 
 #include <cstddef>

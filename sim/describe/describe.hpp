@@ -6,7 +6,7 @@
 
 namespace ex9000::sim {
 
-/// The arguments of the command line; missing ones are empty or nullopt.
+/// The arguments of the command line; the initial values are the defaults.
 struct DescribeTexts {
   std::string model;
   std::string format = "markdown";
@@ -17,8 +17,8 @@ struct DescribeTexts {
 /// Returns `markdown|json|...`, for the help text.
 std::string describe_formats();
 
-/// Returns the text to print; describes all models if none is named. Throws std::invalid_argument with a
-/// one-line message that names the argument and how to fix it.
+/// Returns the text to print. Without a model, the text describes all models; some formats require a model.
+/// Throws std::invalid_argument with a one-line message that names the argument and says how to fix it.
 std::string describe(const DescribeTexts& texts);
 
 }  // namespace ex9000::sim

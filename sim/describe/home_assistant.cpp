@@ -13,11 +13,11 @@ namespace {
 using Json = nlohmann::ordered_json;
 
 // Home Assistant warns about intervals shorter than 5 s. It shortens the timeout if an interval is not
-// longer.
+// longer than the timeout.
 constexpr unsigned kOftenSeconds = 5;
 constexpr unsigned kSeldomSeconds = 30;
 constexpr unsigned kTimeoutSeconds = 2;
-/// The silence between two frames, 3.5 characters, takes 29.2 ms at 1200 baud.
+/// The silence between two frames, 3.5 characters of 10 bits, takes 29.2 ms at 1200 baud.
 constexpr unsigned kWaitMilliseconds = 30;
 
 const char* input_type(Table table) {
@@ -56,7 +56,8 @@ class Hub {
     return hub;
   }
 
-  /// Returns actions for items without an entity; automations and buttons can call them.
+  /// Returns actions for the items of role Button, which have no entity; automations and dashboards can call
+  /// them.
   [[nodiscard]] std::string actions() const {
     std::string text;
     for (const Shown& shown : shown_by(model_)) {

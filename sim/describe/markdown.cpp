@@ -26,7 +26,7 @@ constexpr const char* kNone = "-";
 
 std::string code(std::string_view text) { return "`" + std::string(text) + "`"; }
 
-/// Escapes the pipe, which would end the cell even inside backticks.
+/// Escapes the pipe, which would end the cell even inside backticks. Returns `-` for an empty text.
 std::string escaped_cell(std::string_view text) {
   std::string escaped;
   for (const char character : text) {

@@ -1,5 +1,5 @@
-// The addresses that a tool requires to reach a module: the simulator's TCP port and the module's Modbus
-// address.
+// The addresses that a tool requires to reach a module: the simulator's host and TCP port, and the module's
+// Modbus address.
 #pragma once
 
 #include <cstdint>

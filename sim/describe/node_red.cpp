@@ -49,7 +49,8 @@ class Flow {
   [[nodiscard]] std::string text() const { return nodes_.dump(2) + "\n"; }
 
  private:
-  /// Returns sixteen hex digits, like Node-RED's own ids: the FNV-1a hash of the node's name.
+  /// Returns sixteen hex digits, like Node-RED's own ids: the FNV-1a hash of the module's key and the node's
+  /// name.
   [[nodiscard]] std::string id(const std::string& node) const {
     std::uint64_t hash = 0xCBF29CE484222325;
     for (const char character : key_ + "/" + node) {

@@ -37,7 +37,7 @@ constexpr auto kReadings = table<Reading>({
     {"host-ok", std::nullopt, ""},
 });
 
-/// The action of a coil that accepts only 1.
+/// The action that starts when 1 is written to a coil.
 struct Button {
   std::string_view row;
   std::string_view id;
@@ -68,8 +68,8 @@ constexpr const Button* button_of(std::string_view id) {
   return nullptr;
 }
 
-/// Returns whether kReadings and kButtons cover all rows of the firmware's tables. A new row must be added
-/// there too.
+/// Returns whether kReadings and kButtons cover all rows of the firmware's tables. A new row must be added to
+/// kReadings, and to kButtons if it has the rule kOnlyOn.
 constexpr bool covers_every_row() {
   for (const modbus::BitRegister& row : modbus::kBitRegisters) {
     if (reading_of(row.id) == nullptr || (button_of(row.id) != nullptr) != row.row.has(modbus::kOnlyOn)) {

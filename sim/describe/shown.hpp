@@ -14,7 +14,7 @@ namespace ex9000::sim {
 enum class Role : std::uint8_t {
   Output,   ///< read and written
   Input,    ///< a level or a latch; read-only
-  Counter,  ///< counts up, and from its highest value to 0
+  Counter,  ///< counts up; after its highest value, it continues with 0
   Preset,   ///< a stored value of the outputs; read-only, because a write would also drive them
   State,    ///< on or off, both are normal
   Problem,  ///< on means a problem
@@ -41,8 +41,8 @@ struct Shown {
 
 /// Returns the rows in the order of the map; empty if the model does not support Modbus. A row that is in two
 /// areas appears only in the first of them. The result excludes the rows that would disconnect the client
-/// (address, rate, protocol), the row that never gets a reply (host OK), and the row that never changes (the
-/// module's code).
+/// (address, rate, protocol), the row that never gets a reply (host OK), the row that never changes (the
+/// module's code), and the coils that repeat the inputs.
 std::vector<Shown> shown_by(const Model& model);
 
 }  // namespace ex9000::sim
