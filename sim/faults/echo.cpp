@@ -11,7 +11,7 @@ void Echo::receive(std::uint8_t byte, ByteStatus /*status*/) {
 
 void Echo::run() {
   if (!driving_ && bus_.carries()) {
-    // A byte on the wires may already have ended the silence; the receiver gets it only after its end.
+    // A byte on the wires may already have ended the silence; `receive` is called only after its stop bit.
     next_ = clock_.virtual_now() + wire_.takes(1, rate_());
     return;
   }

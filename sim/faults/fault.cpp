@@ -23,7 +23,7 @@ std::uint64_t parse_count(const std::string& word) {
 struct Row {
   std::string_view name;
   std::string_view value;  ///< name of the fault's value in the help text; empty: the fault has no value
-  std::string_view usual;  ///< a usual value, and a schedule if the fault requires one
+  std::string_view usual;  ///< a usual value and, for some faults, a usual schedule
   Trouble trouble;
   bool of_a_module;
   void (*take)(Fault& fault, const std::string& word);

@@ -43,8 +43,8 @@ struct Schedule {
   VirtualTime time{0};      ///< At: since the start of the line's time; EveryTime: the period
   std::uint64_t count = 1;  ///< EveryReply, AfterWrites
   double probability = 0;   ///< Probably: for each reply
-  /// How long the fault lasts after it strikes; nullopt: permanently, or, if it depends on replies, until the
-  /// end of the reply.
+  /// How long the fault lasts after it strikes. nullopt: a power cut lasts 1 s, another fault that depends on
+  /// replies lasts until the end of the reply, and any other fault with a duration is permanent.
   std::optional<VirtualTime> lasts;
 
   [[nodiscard]] bool of_replies() const { return when == When::EveryReply || when == When::Probably; }
@@ -53,7 +53,7 @@ struct Schedule {
 struct Fault {
   Trouble trouble = Trouble::BitErrors;
   double probability = 0;           ///< the probability for each bit or byte
-  VirtualTime time{0};              ///< the delay of faults that make something late
+  VirtualTime time{0};              ///< the delay of faults that make something late, or before an echo
   std::uint32_t baud = 0;           ///< the wrong rate
   std::vector<std::uint8_t> bytes;  ///< the foreign bytes
   Schedule schedule;

@@ -176,8 +176,8 @@ void Faults::act() {
   }
 }
 
-/// Begins a strike. A module may cause this call during its work; therefore the modules do not change before
-/// the next call of `act`.
+/// Begins a strike. A module may cause this call during its work; therefore this function does not change
+/// the modules. The next call of `act` applies the strike.
 void Faults::strike(Armed& armed, std::optional<std::size_t> reply_of) {
   const Fault& fault = armed.fault;
   ++armed.strikes_so_far;
@@ -293,7 +293,8 @@ void Faults::reply_ends(std::size_t module) {
   }
 }
 
-/// Noise affects only this reply, from its first bit on, even if the reply is late.
+/// Begins noise with the first bit of this reply, even if the reply is late. Noise without a duration ends
+/// with the reply.
 void Faults::reply_on_the_wires(std::size_t module, std::uint64_t reply, bool on) {
   for (Armed& armed : armed_) {
     if (!is_noise(armed.fault.trouble)) {

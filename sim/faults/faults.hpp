@@ -23,8 +23,8 @@ namespace ex9000::sim {
 class Faults final : public Station {
  public:
   using Modules = std::vector<std::unique_ptr<SimulatedModule>>;
-  /// Gets one line of text for people when a fault strikes or ends. Faults that depend on replies and
-  /// permanent faults are not reported.
+  /// Gets one line of text for people when a fault strikes or ends. Faults that depend on replies and faults
+  /// without a schedule of strikes (When::Always) are not reported.
   using Notice = std::function<void(const std::string&)>;
 
   /// Attaches itself to `bus`. `master` has the line's rate; `notice` may be empty. All arguments must live
@@ -45,7 +45,7 @@ class Faults final : public Station {
     std::size_t number;
     std::string text;
     std::optional<std::size_t> module;
-    std::size_t strikes;  ///< strikes in progress: one, or one per module if the fault depends on replies
+    std::size_t strikes;  ///< in progress: at most one, or one per module if the fault depends on replies
     std::uint64_t strikes_so_far;
   };
   [[nodiscard]] std::vector<Info> list() const;
@@ -62,7 +62,8 @@ class Faults final : public Station {
  private:
   /// One strike in progress.
   struct Strike {
-    /// The module whose reply it strikes; it does not affect other modules.
+    /// The module whose reply is struck; the strike does not affect other modules. nullopt: the strike does
+    /// not depend on a reply.
     std::optional<std::size_t> reply_of;
     /// The end in the line's time; kNever: a strike on a reply ends with the reply, any other strike does not
     /// end by itself.
@@ -75,7 +76,7 @@ class Faults final : public Station {
     std::size_t number = 0;
     Fault fault;
     VirtualTime begins = kNever;  ///< in the line's time
-    std::vector<Strike> strikes;  ///< in progress: one, or one per module if the fault depends on replies
+    std::vector<Strike> strikes;  ///< strikes in progress, and strikes that wait for their reply
     std::uint64_t counted = 0;    ///< replies or writes
     std::uint64_t strikes_so_far = 0;
 

@@ -37,7 +37,7 @@ Levels Noise::disturbed(const Sent& sent) {
   return levels;
 }
 
-/// The driver enable stays off, because a stray character overrides the termination, not the sender.
+/// The driver enable stays off, because no station drives the line to send a stray character.
 void Noise::run() {
   const Stray stray = strays_.front();
   strays_.pop_front();
