@@ -19,7 +19,8 @@ namespace {
 
 constexpr std::size_t kSize = hal::doubles::Memory::kSize;
 
-/// Returns the umask, because mkostemp creates files with more restrictive permissions.
+/// Returns the umask. The caller sets the usual permissions with it, because those of mkostemp are more
+/// restrictive.
 mode_t file_mask() {
   const mode_t mask = umask(0);
   umask(mask);
