@@ -110,7 +110,7 @@ std::string dcon_reply(const FrameBytes& bytes) {
   }
 }
 
-/// Returns whether the address is in `row` on at least one model.
+/// Returns whether the address is in `row` on at least one model and a function of `listed` can access it.
 template <class Row>
 bool lies_in(const Row& row, modbus::Functions listed, unsigned address) {
   return (row.functions & listed) != 0 &&
@@ -219,7 +219,7 @@ std::string check_error(const FrameBytes& bytes, Speaker speaker) {
     return "contains characters that are not printable";
   }
   if (speaker == Speaker::Module) {
-    return "";  // the module's setting decides whether its last two characters are a checksum
+    return "";  // the module's setting decides whether the last two characters are a checksum
   }
   const std::string text = dcon_text(bytes);
   const DconRequest request = text.size() < 3 ? DconRequest() : dcon_request_of(text);

@@ -11,8 +11,8 @@ namespace {
 
 constexpr std::size_t kMaster = 0;
 
-/// The longest pauses inside a frame. A master's writes may arrive in pieces, and a person pauses between two
-/// keys.
+/// The longest pauses inside a frame; at low rates, four characters replace the first one. A master's writes
+/// may arrive in pieces, and a person pauses between two keys.
 constexpr VirtualTime kLongestPauseInWrite = std::chrono::milliseconds(5);
 constexpr VirtualTime kLongestPauseInTyping = std::chrono::seconds(5);
 

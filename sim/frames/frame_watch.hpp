@@ -33,7 +33,7 @@ struct Frame {
   /// start bit is lost, the data that a receiver reads from the rest of the byte is not included.
   FrameBytes bytes;
   std::vector<Change> changes;
-  bool collided = false;  ///< another driver was enabled during the frame
+  bool collided = false;  ///< a byte overlapped with another enabled driver or another byte
   /// The rates of the sender and of the line, in baud. Receivers of the line get these bytes only if both are
   /// equal.
   std::uint32_t sent_at = 0;
@@ -46,7 +46,7 @@ struct Frame {
 
 /// A frame of a module ends when its driver is disabled. A frame of the master, whose writes may arrive in
 /// pieces, ends when no byte follows for some time, when a module replies, or when a gap follows a correct
-/// CRC. A DCON frame, which a person may type, ends with CR.
+/// CRC. A DCON frame, which a person may type, ends with CR. Every frame ends after 300 bytes at the latest.
 class FrameWatch final : public BusObserver {
  public:
   using Take = std::function<void(const Frame&)>;
@@ -58,7 +58,7 @@ class FrameWatch final : public BusObserver {
   /// Registers a receiver: `take` gets each later frame when it has ended.
   void add_receiver(Take take) { takers_.push_back(std::move(take)); }
 
-  /// Returns the time at which the first unfinished frame is due, because its end was not detected; kNever if
+  /// Returns the time at which `run` must pass on the first unfinished frame if no byte follows; kNever if
   /// there is none.
   [[nodiscard]] VirtualTime next() const;
   /// Passes on the frames that are due at `now`.
