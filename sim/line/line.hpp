@@ -21,8 +21,8 @@ struct LineKind {
 
 /// Bytes take their real time.
 constexpr LineKind kPaced{};
-/// Bytes take their real time, and modules follow the standard strictly: a gap of more than T1.5 spoils a
-/// Modbus frame.
+/// Bytes take their real time, and modules follow the standard strictly: a gap of more than T1.5 makes a
+/// Modbus frame invalid.
 constexpr LineKind kStrictlyPaced{1, LineTiming::strictly_at};
 /// Returns the timing of an instant line: a Modbus frame ends when no byte follows at once and its CRC is
 /// correct, otherwise after a silence of 2 ms.
@@ -47,7 +47,8 @@ class Line {
   [[nodiscard]] std::size_t size() const { return modules_.size(); }
   SimulatedModule& module(std::size_t index) { return *modules_[index]; }
   [[nodiscard]] const SimulatedModule& module(std::size_t index) const { return *modules_[index]; }
-  /// Sets the seed of all random faults; `notice` gets the messages about faults. Call it before `faults`.
+  /// Sets the seed of all random faults and of bouncing contacts; `notice` gets the messages about faults.
+  /// Call it before `faults` and `move_input`.
   void configure_faults(std::uint64_t seed, Faults::Notice notice);
   /// Returns the faults of this line. The first call attaches them to the bus.
   Faults& faults();
@@ -55,9 +56,9 @@ class Line {
   [[nodiscard]] const Faults* faults_so_far() const { return faults_.get(); }
   /// From now on `program` moves an input of the module at `index`.
   void move_input(std::size_t index, const InputProgram& program);
-  /// Whether something is in progress that ends by itself within milliseconds: bytes on the wires or on their
-  /// way there, the silence after a Modbus frame, a delayed reply, a store, a module that starts up. Events
-  /// that only depend on the clock do not count: a host watchdog, a scheduled fault, an input program.
+  /// Whether something is in progress that ends by itself, usually within milliseconds: bytes on the wires or
+  /// on their way there, the silence after a Modbus frame, a delayed reply, a store, a module that starts up.
+  /// Events that only depend on the clock do not count: a host watchdog, a scheduled fault, an input program.
   [[nodiscard]] bool pending() const;
   /// Returns T3.5 on this line at the master's rate.
   [[nodiscard]] VirtualTime rtu_silence() const;
