@@ -25,7 +25,7 @@ class InputPins {
         const std::uint32_t pins = group.mask();
         gpio.make_input(pins, !active_high);
         gpio.watch_edges(pins);
-        levels |= ((settle(gpio, pins) >> kLevels & pins) >> group.first_pin) << first;
+        levels |= ((settle(gpio, pins, pins) >> kLevels & pins) >> group.first_pin) << first;
         first += group.count;
       }
     }
@@ -53,24 +53,25 @@ class InputPins {
   }
 
  private:
-  /// Clears the flags of `flagged` and those of new edges, and reads the levels after the last of these
-  /// edges. This is repeated because an edge between flag and level would count twice: now because of its
-  /// level, and later because of its flag. Returns the flags in bits 0 to 7 and the levels in bits 8 to 15.
-  [[gnu::noinline]] static std::uint32_t settle(Gpio gpio, std::uint32_t flagged) {
-    std::uint32_t told = 0;
+  /// Clears the flags of `flagged` and those of new edges of `pins`, and reads the levels after the last of
+  /// these edges. This is repeated because an edge between flag and level would count twice: now because of
+  /// its level, and later because of its flag. Other pins keep their flags, because their levels are not
+  /// used. Returns the cleared flags in bits 0 to 7 and the levels of all pins in bits 8 to 15.
+  [[gnu::noinline]] static std::uint32_t settle(Gpio gpio, std::uint32_t pins, std::uint32_t flagged) {
+    std::uint32_t cleared = 0;
     std::uint32_t levels = 0;
     do {
-      told |= flagged;
+      cleared |= flagged;
       gpio.clear_edges(flagged);
       levels = logic(gpio.read(kAllPins)) & kAllPins;
-      flagged = gpio.edges();
+      flagged = gpio.edges() & pins;
     } while (flagged != 0);
-    return told | levels << kLevels;
+    return cleared | levels << kLevels;
   }
 
   template <class Deliver>
   [[gnu::noinline]] static void take_edges(Gpio gpio, const std::uint8_t* channel, Deliver deliver) {
-    const std::uint32_t settled = settle(gpio, gpio.edges());
+    const std::uint32_t settled = settle(gpio, kAllPins, gpio.edges());
     std::uint32_t levels = settled >> kLevels;
     for (std::uint32_t flagged = settled & kAllPins; flagged != 0; flagged >>= 1U, levels >>= 1U, ++channel) {
       if ((flagged & 1U) != 0) {

@@ -245,10 +245,11 @@ class InputPorts final : public bus::Peripherals {
   std::map<std::uint32_t, PortState> states_;
 };
 
-constexpr std::array<PinGroup, 2> kInputGroups{PinGroup{Port::B, 4, 2}, PinGroup{Port::C, 5, 2}};
-constexpr unsigned kChannels = 4;
+constexpr std::array<PinGroup, 3> kInputGroups{PinGroup{Port::B, 4, 2}, PinGroup{Port::C, 5, 2},
+                                               PinGroup{Port::B, 0, 1}};
+constexpr unsigned kChannels = 5;
 
-/// Channels 0 and 1 are on one port, 2 and 3 on the other.
+/// Channels 0, 1 and 4 are on one port, in two groups, and 2 and 3 are on another port.
 template <bool active_high>
 class InputBench {
  public:
@@ -301,8 +302,11 @@ class InputBench {
   }
 
  private:
-  static Port port_of(unsigned channel) { return channel < 2 ? Port::B : Port::C; }
-  static unsigned pin_of(unsigned channel) { return channel < 2 ? 4 + channel : 5 + channel - 2; }
+  static Port port_of(unsigned channel) { return channel == 2 || channel == 3 ? Port::C : Port::B; }
+  static unsigned pin_of(unsigned channel) {
+    constexpr std::array<unsigned, kChannels> kPins{4, 5, 5, 6, 0};
+    return kPins[channel];
+  }
   void set(unsigned channel, bool level) {
     ports_.set(port_of(channel), pin_of(channel), level == active_high);
   }
