@@ -193,6 +193,10 @@ void check(const Fault& fault) {
   if (schedule.when == Schedule::When::EveryTime && schedule.lasts && *schedule.lasts >= schedule.time) {
     fail("'for' is not shorter than the period; shorten it");
   }
+  if (schedule.when == Schedule::When::EveryTime && !schedule.lasts && fault.trouble == Trouble::PowerCut &&
+      schedule.time <= kPowerCutLasts) {
+    fail("the power cut lasts 1s, which is not shorter than the period; add 'for TIME'");
+  }
   if (schedule.of_replies() && (fault.trouble == Trouble::Gone || fault.trouble == Trouble::WrongRate) &&
       !schedule.lasts) {
     fail("has no end; add 'for TIME'");

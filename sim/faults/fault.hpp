@@ -7,6 +7,7 @@
 //   power-cut after 3 writes
 #pragma once
 
+#include <chrono>
 #include <cstddef>
 #include <cstdint>
 #include <optional>
@@ -35,6 +36,9 @@ enum class Trouble {
   Hang,
 };
 
+/// The duration of a power cut without `for`.
+inline constexpr VirtualTime kPowerCutLasts = std::chrono::seconds(1);
+
 /// The times at which a fault strikes.
 struct Schedule {
   enum class When { Always, At, EveryTime, EveryReply, Probably, AfterWrites };
@@ -43,8 +47,8 @@ struct Schedule {
   VirtualTime time{0};      ///< At: since the start of the line's time; EveryTime: the period
   std::uint64_t count = 1;  ///< EveryReply, AfterWrites
   double probability = 0;   ///< Probably: for each reply
-  /// How long the fault lasts after it strikes. nullopt: a power cut lasts 1 s, another fault that depends on
-  /// replies lasts until the end of the reply, and any other fault with a duration is permanent.
+  /// How long the fault lasts after it strikes. nullopt: a power cut lasts kPowerCutLasts, another fault that
+  /// depends on replies lasts until the end of the reply, and any other fault with a duration is permanent.
   std::optional<VirtualTime> lasts;
 
   [[nodiscard]] bool of_replies() const { return when == When::EveryReply || when == When::Probably; }

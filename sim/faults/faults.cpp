@@ -12,7 +12,6 @@ namespace {
 
 using When = Schedule::When;
 
-constexpr VirtualTime kPowerCutLasts = std::chrono::seconds(1);
 /// The foreign station drops a message if this many bytes are already waiting.
 constexpr std::size_t kMostForeign = 1024;
 

@@ -218,6 +218,7 @@ INSTANTIATE_TEST_SUITE_P(
                     Wrong{"gone every 5s", "has no end", "add 'for TIME'"},
                     Wrong{"bit-errors 0.1 every 5s", "has no end", "add 'for TIME'"},
                     Wrong{"gone every 5s for 5s", "'for' is not shorter than the period", "shorten it"},
+                    Wrong{"power-cut every 1s", "lasts 1s, which is not shorter", "add 'for TIME'"},
                     Wrong{"gone every 10th reply", "has no end", "add 'for TIME'"},
                     Wrong{"wrong-rate 1200 with probability 0.5", "has no end", "add 'for TIME'"},
                     Wrong{"hang for 1s", "'for': this fault takes no time", "leave it out"},
