@@ -103,7 +103,7 @@ bool play_task(const play::Task& task) {
   return play::play(task, print_line, record);
 }
 
-int fail(const std::exception& error, int status) {
+int report_error(const std::exception& error, int status) {
   std::cerr << one_line(std::string("ex9000-sim: ") + error.what()) << '\n';
   return status;
 }
@@ -137,9 +137,9 @@ int run_program(int argc, const char* const* argv) {
     }
     run(*parsed.setup);
   } catch (const std::invalid_argument& error) {
-    return fail(error, kWrongArguments);
+    return report_error(error, kWrongArguments);
   } catch (const std::exception& error) {
-    return fail(error, kCannotStart);
+    return report_error(error, kCannotStart);
   }
   return 0;
 }

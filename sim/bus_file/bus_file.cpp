@@ -13,7 +13,7 @@ namespace ex9000::sim {
 
 namespace {
 
-LocatedJson json_of(const std::string& path, const std::string& text) {
+LocatedJson parse_json(const std::string& path, const std::string& text) {
   try {
     return parse_located(text);
   } catch (const std::invalid_argument& error) {
@@ -42,7 +42,7 @@ bool is_bus_file(const std::string& argument) {
 }
 
 Setup parse_bus_file(const std::string& path, const std::string& text) {
-  const LocatedJson file = json_of(path, text);
+  const LocatedJson file = parse_json(path, text);
   const Node root(file, path);
   Setup setup = read_bus(root);
   try {

@@ -42,7 +42,7 @@ constexpr auto kFormats = table<Format>({
     {"wb-mqtt-serial", nullptr, wb_mqtt_serial_template, nullptr},
 });
 
-[[noreturn]] void fail(const std::string& argument, const std::string& what) {
+[[noreturn]] void reject(const std::string& argument, const std::string& what) {
   throw std::invalid_argument(argument + ": " + what);
 }
 
@@ -52,13 +52,13 @@ const Format& format_called(const std::string& name) {
       return format;
     }
   }
-  fail("--format " + name, "expected " + describe_formats());
+  reject("--format " + name, "expected " + describe_formats());
 }
 
 std::uint8_t parse_modbus_address(const std::string& text) {
   const std::uint8_t address = with_place("--address ", [&] { return parse_hex_byte(text); });
   if (!is_modbus_address(address)) {
-    fail("--address " + text, "expected a Modbus address, hex 01 to F7");
+    reject("--address " + text, "expected a Modbus address, hex 01 to F7");
   }
   return address;
 }
@@ -67,7 +67,7 @@ TcpAddress parse_master_address(const std::string& text) {
   TcpAddress tcp = with_place("--tcp ", [&] { return parse_tcp_address(text); });
   const std::string of_hosts = "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789.-_:%";
   if (tcp.port == 0 || tcp.host.find_first_not_of(of_hosts) != std::string::npos) {
-    fail("--tcp " + text, "expected HOST:PORT of a simulator, for example 127.0.0.1:5020");
+    reject("--tcp " + text, "expected HOST:PORT of a simulator, for example 127.0.0.1:5020");
   }
   return tcp;
 }
@@ -88,20 +88,20 @@ void refuse_place(const DescribeTexts& texts) {
   for (const auto& [option, given] :
        {std::pair("--address", texts.address.has_value()), std::pair("--tcp", texts.tcp.has_value())}) {
     if (given) {
-      fail(option, "--format " + texts.format + " has no such option; leave it out");
+      reject(option, "--format " + texts.format + " has no such option; leave it out");
     }
   }
 }
 
 const Model& modbus_model(const DescribeTexts& texts) {
   if (texts.model.empty()) {
-    fail("--format " + texts.format, "requires a MODEL, for example 'describe EX9042D-M'");
+    reject("--format " + texts.format, "requires a MODEL, for example 'describe EX9042D-M'");
   }
   const Model& model = model_called(texts.model);
   if (!model.speaks_modbus()) {
-    fail(std::string(model.designation) + " --format " + texts.format,
-         "the model does not support Modbus; name a model that --models lists with Modbus RTU, or use "
-         "--format json");
+    reject(std::string(model.designation) + " --format " + texts.format,
+           "the model does not support Modbus; name a model that --models lists with Modbus RTU, or use "
+           "--format json");
   }
   return model;
 }

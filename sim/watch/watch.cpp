@@ -25,7 +25,7 @@ std::string shortened(const std::string& line, std::size_t columns) {
   return line;
 }
 
-std::string joined(const std::vector<std::string>& lines) {
+std::string one_text(const std::vector<std::string>& lines) {
   std::string text;
   for (const std::string& line : lines) {
     text += (text.empty() ? "" : "\n") + line;
@@ -57,13 +57,13 @@ void Watch::look() {
     put((moved              ? std::string(kEraseAll)
          : painted_.empty() ? std::string()
                             : back_over(painted_.size())) +
-        joined(faces));
+        one_text(faces));
     painted_ = faces;
   }
 }
 
 void Watch::print(const std::string& lines) {
-  put(painted_.empty() ? lines : back_over(painted_.size()) + lines + "\n" + joined(painted_));
+  put(painted_.empty() ? lines : back_over(painted_.size()) + lines + "\n" + one_text(painted_));
 }
 
 /// Writes to a terminal in one call, so that no partial output is visible.
