@@ -4,8 +4,7 @@
 
 namespace ex9000::sim {
 
-/// The connection of one station to the wires.
-struct Bus::End final : Wire {
+struct Bus::End final : BusEnd {
   End(Bus& its_bus, Station& its_station, std::size_t its_index)
       : bus(its_bus), station(its_station), index(its_index) {}
 
@@ -15,12 +14,15 @@ struct Bus::End final : Wire {
     constexpr std::int64_t kBitNanoseconds = 1'000'000'000;
     return VirtualTime(static_cast<std::int64_t>(bytes * Wave::kBits) * kBitNanoseconds / bus.bit_rate(baud));
   }
+  void listen(std::uint32_t baud) override { bus.listen(*this, baud); }
+  void run_at(VirtualTime when) override { bus.due_times_.set(index, when); }
 
   Bus& bus;
   Station& station;
   std::size_t index;
   bool driving = false;
-  std::uint32_t bit_rate = 0;  ///< the rate of the sampler; 0: the station does not listen
+  std::uint32_t bit_rate = 0;  ///< of the receiver; 0: the station does not listen
+  bool samples = false;        ///< the receiver samples the wires instead of getting whole bytes
   UartSampler sampler;
 };
 
@@ -35,30 +37,19 @@ std::uint32_t Bus::bit_rate(std::uint32_t baud) const {
   return static_cast<std::uint32_t>(std::min(std::uint64_t{baud} * times_faster_, kFastest));
 }
 
-Wire& Bus::attach(Station& station) {
-  ends_.push_back(std::make_unique<End>(*this, station, ends_.size()));
+BusEnd& Bus::attach(Station& station) {
+  ends_.push_back(std::make_unique<End>(*this, station, due_times_.add()));
   return *ends_.back();
 }
 
-VirtualTime Bus::next() const {
-  VirtualTime next = next_sample_;
-  for (const Byte& byte : on_the_wire_) {
-    next = std::min(next, byte.wave.end());
-  }
-  for (const auto& end : ends_) {
-    next = std::min(next, end->station.next());
-  }
-  return next;
-}
+VirtualTime Bus::next() { return std::min({next_byte_end_, next_sample_, due_times_.next()}); }
 
 void Bus::run_until(VirtualTime until) {
   for (VirtualTime now = next(); now <= until; now = next()) {
     clock_.set(std::max(now, clock_.virtual_now()));
     run_wire();
-    for (const auto& end : ends_) {
-      if (end->station.next() <= clock_.virtual_now()) {
-        end->station.run();
-      }
+    while (const auto station = due_times_.take(clock_.virtual_now())) {
+      ends_[*station]->station.run();
     }
   }
   clock_.set(std::max(until, clock_.virtual_now()));
@@ -71,23 +62,15 @@ void Bus::drive(End& end, bool on) {
   end.driving = on;
   drivers_on_ += on ? 1U : -1U;
   const VirtualTime now = clock_.virtual_now();
-  if (drivers_on_ > 1) {
-    for (Byte& byte : on_the_wire_) {
+  for (Byte& byte : on_the_wire_) {
+    byte.collided = byte.collided || drivers_on_ > 1;
+    if (!on && byte.station == end.index && byte.wave->end() > now) {
+      // The byte ends here. The rest of it is the idle level, which each receiver interprets.
       byte.collided = true;
+      byte.wave->cut_off = now;
     }
   }
-  if (!on) {
-    // The byte in progress ends here. The rest of it is the idle level, which each receiver interprets.
-    for (Byte& byte : on_the_wire_) {
-      if (byte.station == end.index && byte.wave.end() > now) {
-        byte.collided = byte.cut_off = true;
-        byte.wave.cut_off = now;
-        std::find_if(waves_.rbegin(), waves_.rend(), [&](const Wave& wave) {
-          return wave.start == byte.wave.start && wave.levels == byte.wave.levels;
-        })->cut_off = now;
-      }
-    }
-  }
+  begin_sampling();
   for (BusObserver* observer : observers_) {
     observer->driver(end.index, on, now);
   }
@@ -103,87 +86,146 @@ void Bus::put(End& end, std::uint8_t byte, std::uint32_t baud) {
       }
     }
   }
-  const bool collided = drivers_on_ > 1 || !on_the_wire_.empty();
+  const bool collides = drivers_on_ > 1 || !on_the_wire_.empty();
   for (Byte& other : on_the_wire_) {
     other.collided = true;
   }
-  on_the_wire_.push_back({end.index, byte, collided, false, baud, wave});
   waves_.push_back(wave);
-  run_wire();
-}
-
-/// A receiver that was off or has changed its rate starts now, even in the middle of a byte.
-void Bus::take_rate(End& end) {
-  const std::uint32_t rate = bit_rate(end.station.baud());
-  if (rate != end.bit_rate) {
-    end.bit_rate = rate;
-    end.sampler = UartSampler();
-    end.sampler.skip_to(clock_.virtual_now());
+  on_the_wire_.push_back({end.index, byte, collides, baud, &waves_.back()});
+  next_byte_end_ = std::min(next_byte_end_, wave.end());
+  if (!on_the_wire_.back().arrives_whole() || has_listeners_at_other_rates(wave.baud)) {
+    begin_sampling();
   }
 }
 
-/// Whether a receiver has to sample the wave instead of receiving whole bytes.
-bool Bus::samples(const End& end) const {
-  if (end.bit_rate == 0) {
-    return false;
+void Bus::listen(End& end, std::uint32_t baud) {
+  const std::uint32_t rate = bit_rate(baud);
+  if (rate == end.bit_rate) {
+    return;
   }
-  return end.sampler.busy() || std::any_of(on_the_wire_.begin(), on_the_wire_.end(), [&](const Byte& byte) {
-           return !byte.arrives_whole() || byte.wave.baud != end.bit_rate ||
-                  end.sampler.position() > byte.wave.start;
-         });
+  count_listener(end.bit_rate, -1);
+  count_listener(rate, 1);
+  end.bit_rate = rate;
+  sampling_ -= end.samples ? 1U : 0U;
+  end.samples = false;
+  end.sampler = UartSampler();
+  end.sampler.skip_to(clock_.virtual_now());
+  begin_sampling();
 }
 
-void Bus::sample(End& end) {
-  while (const auto received = end.sampler.advance(waves_, end.bit_rate, clock_.virtual_now())) {
-    end.station.receive(received->byte, received->status);
+void Bus::count_listener(std::uint32_t rate, int change) {
+  if (rate != 0 && (listeners_[rate] += change) == 0) {
+    listeners_.erase(rate);
+  }
+}
+
+bool Bus::has_listeners_at_other_rates(std::uint32_t rate) const {
+  return listeners_.size() > 1 || (listeners_.size() == 1 && listeners_.begin()->first != rate);
+}
+
+/// Whether the receiver gets this byte without sampling it.
+bool Bus::gets_whole(const End& end, const Byte& byte) const {
+  return byte.arrives_whole() && byte.wave->baud == end.bit_rate &&
+         end.sampler.position() <= byte.wave->start;
+}
+
+bool Bus::has_to_sample(const End& end) const {
+  return end.bit_rate != 0 &&
+         (end.sampler.busy() || std::any_of(on_the_wire_.begin(), on_the_wire_.end(),
+                                            [&](const Byte& byte) { return !gets_whole(end, byte); }));
+}
+
+/// Lets those receivers sample that do not get all bytes on the wires whole.
+void Bus::begin_sampling() {
+  for (const auto& end : ends_) {
+    if (!end->samples && has_to_sample(*end)) {
+      end->samples = true;
+      ++sampling_;
+      // Until the first of these bytes, the line was idle or the receiver got whole bytes.
+      end->sampler.skip_to(std::max(end->sampler.position(), on_the_wire_.front().wave->start));
+      next_sample_ = std::min(next_sample_, end->sampler.next(end->bit_rate, clock_.virtual_now()));
+    }
+  }
+}
+
+void Bus::end_sampling() {
+  next_sample_ = kNever;
+  for (const auto& end : ends_) {
+    if (end->samples && !has_to_sample(*end)) {
+      end->samples = false;
+      --sampling_;
+    }
+    if (end->samples) {
+      next_sample_ = std::min(next_sample_, end->sampler.next(end->bit_rate, clock_.virtual_now()));
+    }
   }
 }
 
 void Bus::run_wire() {
-  const VirtualTime now = clock_.virtual_now();
+  if (std::min(next_byte_end_, next_sample_) > clock_.virtual_now()) {
+    return;
+  }
+  if (sampling_ != 0) {
+    run_samplers();
+  }
+  finish_bytes();
+  if (next_sample_ != kNever) {
+    end_sampling();
+  }
+  forget_waves();
+}
+
+void Bus::run_samplers() {
   for (const auto& end : ends_) {
-    take_rate(*end);
-    if (samples(*end)) {
-      sample(*end);
+    while (end->samples) {
+      const auto received = end->sampler.advance(waves_, end->bit_rate, clock_.virtual_now());
+      if (!received) {
+        break;
+      }
+      end->station.receive(received->byte, received->status);
     }
   }
+}
+
+/// Takes the bytes that have ended off the wires, and delivers them.
+void Bus::finish_bytes() {
+  const VirtualTime now = clock_.virtual_now();
   for (std::size_t i = 0; i < on_the_wire_.size();) {
-    if (on_the_wire_[i].wave.end() > now) {
+    if (on_the_wire_[i].wave->end() > now) {
       ++i;
       continue;
     }
     const Byte over = on_the_wire_[i];
     on_the_wire_.erase(on_the_wire_.begin() + static_cast<std::ptrdiff_t>(i));
-    if (over.cut_off) {
-      continue;
-    }
-    for (BusObserver* observer : observers_) {
-      observer->byte(over.station, over.byte, over.baud, over.collided, over.wave.start, now);
-    }
-    for (const auto& end : ends_) {
-      const bool whole =
-          over.arrives_whole() && !end->sampler.busy() && end->sampler.position() <= over.wave.start;
-      if (whole && end->bit_rate == over.wave.baud) {
-        end->sampler.skip_to(now);
-        end->station.receive(over.byte, ByteStatus::Good);
-      }
+    if (over.wave->cut_off == kNever) {
+      deliver(over);
     }
   }
-  // A sampler runs every half bit, which is often enough to deliver its bytes in time.
-  next_sample_ = kNever;
+  next_byte_end_ = kNever;
+  for (const Byte& byte : on_the_wire_) {
+    next_byte_end_ = std::min(next_byte_end_, byte.wave->end());
+  }
+}
+
+void Bus::deliver(const Byte& over) {
+  for (BusObserver* observer : observers_) {
+    observer->byte(over.station, over.byte, over.baud, over.collided, over.wave->start, clock_.virtual_now());
+  }
+  if (!over.arrives_whole()) {
+    return;
+  }
   for (const auto& end : ends_) {
-    if (samples(*end)) {
-      next_sample_ = std::min(next_sample_, now + VirtualTime(500'000'000 / end->bit_rate));
+    if (!end->samples && gets_whole(*end, over)) {
+      end->station.receive(over.byte, ByteStatus::Good);
     }
   }
-  forget_waves();
 }
 
 void Bus::forget_waves() {
   while (!waves_.empty() && waves_.front().end() <= clock_.virtual_now()) {
-    const bool needed = std::any_of(ends_.begin(), ends_.end(), [this](const auto& end) {
-      return end->bit_rate != 0 && end->sampler.busy() && end->sampler.position() < waves_.front().end();
-    });
+    const bool needed = sampling_ != 0 && std::any_of(ends_.begin(), ends_.end(), [this](const auto& end) {
+                          return end->samples && end->sampler.position() < waves_.front().end();
+                        });
     if (needed) {
       return;
     }

@@ -2,37 +2,46 @@
 #pragma once
 
 #include <cstdint>
-#include <deque>
+#include <map>
 #include <memory>
 #include <vector>
 
 #include "firmware/line/verdict.hpp"
 #include "hal/doubles/serial_line.hpp"
 #include "hal/doubles/virtual_clock.hpp"
+#include "sim/bus/due_times.hpp"
 #include "sim/bus/uart_sampler.hpp"
 
 namespace ex9000::sim {
 
-using hal::doubles::kNever;
 using hal::doubles::VirtualClock;
-using hal::doubles::VirtualTime;
 using hal::doubles::Wire;
 
 /// A device on the two wires: a module or a master.
 class Station {
  public:
-  /// Returns the time at which the bus must call `run`; kNever if the station only waits for bytes.
-  [[nodiscard]] virtual VirtualTime next() const = 0;
-  /// The bus calls this when the clock has reached `next()`.
+  /// The bus calls this at the time that the station has set with BusEnd::run_at. The time is used up then.
   virtual void run() = 0;
-  /// Returns the rate of the receiver in bits per second; 0 if it does not listen.
-  [[nodiscard]] virtual std::uint32_t baud() const = 0;
-  /// The bus calls this after the stop bit of a byte. A station also receives its own bytes, because both
-  /// directions share the two wires.
+  /// The bus calls this after the stop bit of a byte, if the station listens. A station also receives its own
+  /// bytes, because both directions share the two wires.
   virtual void receive(std::uint8_t byte, ByteStatus status) = 0;
 
  protected:
   ~Station() = default;
+};
+
+/// A station's end of the wires.
+class BusEnd : public Wire {
+ public:
+  /// From now on the station receives at this rate in bits per second; 0: it does not listen. A receiver that
+  /// begins in the middle of a byte samples the rest of it.
+  virtual void listen(std::uint32_t baud) = 0;
+  /// Sets the time of the station's next `run`, in place of an earlier setting; kNever: it only waits for
+  /// bytes.
+  virtual void run_at(VirtualTime when) = 0;
+
+ protected:
+  ~BusEnd() = default;
 };
 
 /// The bus notifies observers of each event on the wires.
@@ -83,15 +92,15 @@ class Bus {
   Bus& operator=(const Bus&) = delete;
   ~Bus();
 
-  /// Adds a station. `station` must live as long as the bus is used; the returned end of the wires is valid
-  /// for the same time.
-  Wire& attach(Station& station);
+  /// Adds a station, which does not listen yet. `station` must live as long as the bus is used; the returned
+  /// end of the wires is valid for the same time.
+  BusEnd& attach(Station& station);
   void observe(BusObserver& observer) { observers_.push_back(&observer); }
   /// From now on `disturbance` may change each byte that is sent. It must live as long as the bus is used.
   void disturb(Disturbance& disturbance) { disturbance_ = &disturbance; }
 
   /// Returns the time of the next event of the bus or of a station.
-  [[nodiscard]] VirtualTime next() const;
+  [[nodiscard]] VirtualTime next();
   /// Processes all events up to and including `until`. Afterwards the clock shows `until`.
   void run_until(VirtualTime until);
   void run_for(VirtualTime duration) { run_until(clock_.virtual_now() + duration); }
@@ -105,36 +114,46 @@ class Bus {
  private:
   struct End;
 
+  /// A byte that is being sent.
+  struct Byte {
+    std::size_t station;
+    std::uint8_t byte;
+    bool collided;
+    std::uint32_t baud;  ///< the rate that the sender is set to; the wave has the real bit rate
+    Wave* wave;
+
+    /// Whether a receiver with the same rate gets the byte unchanged.
+    [[nodiscard]] bool arrives_whole() const { return !collided && wave->levels == levels_of(byte); }
+  };
+
   [[nodiscard]] std::uint32_t bit_rate(std::uint32_t baud) const;
   void drive(End& end, bool on);
   void put(End& end, std::uint8_t byte, std::uint32_t baud);
-  void sample(End& end);
-  void take_rate(End& end);
-  [[nodiscard]] bool samples(const End& end) const;
-  void forget_waves();
+  void listen(End& end, std::uint32_t baud);
+  [[nodiscard]] bool gets_whole(const End& end, const Byte& byte) const;
+  [[nodiscard]] bool has_to_sample(const End& end) const;
+  void count_listener(std::uint32_t rate, int change);
+  [[nodiscard]] bool has_listeners_at_other_rates(std::uint32_t rate) const;
+  void begin_sampling();
+  void end_sampling();
   void run_wire();
-
-  /// A byte that is being sent.
-  struct Byte {
-    std::size_t station = 0;
-    std::uint8_t byte = 0;
-    bool collided = false;
-    bool cut_off = false;
-    std::uint32_t baud = 0;  ///< the rate that the sender is set to; the wave has the real bit rate
-    Wave wave;
-
-    /// Whether a receiver with the same rate gets the byte unchanged.
-    [[nodiscard]] bool arrives_whole() const { return !collided && wave.levels == levels_of(byte); }
-  };
+  void run_samplers();
+  void finish_bytes();
+  void deliver(const Byte& over);
+  void forget_waves();
 
   VirtualClock& clock_;
   std::uint32_t times_faster_;
   std::vector<std::unique_ptr<End>> ends_;
+  DueTimes due_times_;
   std::vector<BusObserver*> observers_;
   Disturbance* disturbance_ = nullptr;
   std::vector<Byte> on_the_wire_;
-  std::deque<Wave> waves_;  ///< waves that samplers may still read
+  Waves waves_;  ///< the waves of these bytes, and older ones that samplers may still read
   unsigned drivers_on_ = 0;
+  std::map<std::uint32_t, int> listeners_;  ///< number of receivers for each bit rate
+  unsigned sampling_ = 0;                   ///< number of receivers that sample
+  VirtualTime next_byte_end_ = kNever;
   VirtualTime next_sample_ = kNever;
 };
 

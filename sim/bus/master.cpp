@@ -6,12 +6,14 @@
 namespace ex9000::sim {
 
 Master::Master(Bus& bus, std::uint32_t baud, Receive receive)
-    : clock_(bus.clock()), wire_(bus.attach(*this)), baud_(baud), receive_(std::move(receive)) {}
+    : clock_(bus.clock()), wire_(bus.attach(*this)), baud_(baud), receive_(std::move(receive)) {
+  wire_.listen(baud_);
+}
 
 void Master::send(const std::uint8_t* bytes, std::size_t size, VirtualTime not_before) {
   waiting_.insert(waiting_.end(), bytes, bytes + size);
   if (!sending() && !waiting_.empty()) {
-    next_ = std::max(clock_.virtual_now(), not_before);
+    wake_at(std::max(clock_.virtual_now(), not_before));
     if (next_ == clock_.virtual_now()) {
       run();
     }
@@ -23,13 +25,22 @@ void Master::set_baud(std::uint32_t baud) {
     baud_ = baud;
     burst_began_ = next_;
     burst_bytes_ = 0;
+    wire_.listen(baud_);
+    if (changed_) {
+      changed_(baud_);
+    }
   }
+}
+
+void Master::wake_at(VirtualTime when) {
+  next_ = when;
+  wire_.run_at(when);
 }
 
 void Master::run() {
   if (waiting_.empty()) {
     driving_ = false;
-    next_ = kNever;
+    wake_at(kNever);
     wire_.drive(false);
     return;
   }
@@ -43,7 +54,7 @@ void Master::run() {
   waiting_.pop_front();
   wire_.put(byte, baud_);
   // Calculated from the first byte, so that rounding errors do not accumulate.
-  next_ = burst_began_ + wire_.takes(++burst_bytes_, baud_);
+  wake_at(burst_began_ + wire_.takes(++burst_bytes_, baud_));
 }
 
 void Master::receive(std::uint8_t byte, ByteStatus status) {

@@ -31,22 +31,27 @@ class Master final : public Station {
   /// Sets the rate in bits per second. It takes effect with the next byte.
   void set_baud(std::uint32_t baud);
 
+  [[nodiscard]] std::uint32_t baud() const { return baud_; }
+  /// Sets a function to call when the rate changes.
+  void on_rate(std::function<void(std::uint32_t baud)> changed) { changed_ = std::move(changed); }
+
   // --- Station ---
-  [[nodiscard]] VirtualTime next() const override { return next_; }
   void run() override;
-  [[nodiscard]] std::uint32_t baud() const override { return baud_; }
   void receive(std::uint8_t byte, ByteStatus status) override;
 
  private:
   VirtualClock& clock_;
-  Wire& wire_;
+  BusEnd& wire_;
   std::uint32_t baud_;
   Receive receive_;
+  std::function<void(std::uint32_t baud)> changed_;
   std::deque<std::uint8_t> waiting_;
   bool driving_ = false;
   VirtualTime burst_began_{0};
   std::size_t burst_bytes_ = 0;
-  VirtualTime next_ = kNever;
+  VirtualTime next_ = kNever;  ///< when the present byte ends, or when the first one begins
+
+  void wake_at(VirtualTime when);
 };
 
 }  // namespace ex9000::sim

@@ -27,7 +27,8 @@ SimulatedModule::SimulatedModule(Bus& bus, const Model& model, TimingAt timing_a
     : clock_(bus.clock()),
       model_(model),
       timing_at_(timing_at),
-      wire_(clock_, bus.attach(*this)),
+      end_(bus.attach(*this)),
+      wire_(clock_, end_),
       memory_(clock_) {}
 
 void SimulatedModule::power(bool on) {
@@ -51,12 +52,14 @@ void SimulatedModule::follow_supply() {
     stop();
     led_.light(false);
   }
+  settle();
 }
 
 void SimulatedModule::reset() {
   if (powered()) {
     stop();
     start();
+    settle();
   }
 }
 
@@ -81,6 +84,7 @@ void SimulatedModule::set_init(bool asserted) {
   init_switch_.set(asserted);
   if (powered()) {
     turn();
+    settle();
   }
 }
 
@@ -107,6 +111,7 @@ void SimulatedModule::pulse_input(unsigned channel, std::uint32_t count) {
 void SimulatedModule::take_edges() {
   if (powered()) {
     turn();
+    settle();
   }
 }
 
@@ -120,7 +125,23 @@ void SimulatedModule::release_driver_late(VirtualTime by) {
   driver_late_by_ = by;
   if (powered()) {
     mcu_->line.release_late(by);
+    settle();
   }
+}
+
+void SimulatedModule::force_rate(std::uint32_t baud) {
+  wire_.force_rate(baud);
+  settle();
+}
+
+void SimulatedModule::release_late_replies() {
+  wire_.end_first_delay();
+  settle();
+}
+
+void SimulatedModule::stop_tick() {
+  mcu_->tick.stop();
+  settle();
 }
 
 void SimulatedModule::store(const Settings& settings) { memory_.contents() = memory_image(model_, settings); }
@@ -141,6 +162,12 @@ bool SimulatedModule::pending() const {
   return wire_.next() != kNever || memory_.next() != kNever ||
          (mcu_ &&
           (mcu_->silence_timer.next() != kNever || mcu_->line.sending() || !mcu_->device.module().at_rest()));
+}
+
+/// Tells the bus when this module has to run next, and at which rate it receives.
+void SimulatedModule::settle() {
+  end_.listen(baud());
+  end_.run_at(next());
 }
 
 VirtualTime SimulatedModule::next() const {
@@ -174,6 +201,7 @@ void SimulatedModule::run() {
     mcu_->device.on_tick();
   }
   turn();
+  settle();
 }
 
 void SimulatedModule::receive(std::uint8_t byte, ByteStatus status) {
@@ -187,6 +215,7 @@ void SimulatedModule::receive(std::uint8_t byte, ByteStatus status) {
   if (mcu_->device.has_work() || mcu_->device.module().host_ok_waits()) {
     turn();  // a host OK could wait until the next turn, but the LED should show it at once
   }
+  settle();
 }
 
 /// Runs the main loop until there is nothing left to do. It takes no virtual time.

@@ -60,9 +60,11 @@ class SimulatedModule final : public Station {
   /// Keeps the driver enabled for `by` longer after each reply. The setting survives resets.
   void release_driver_late(VirtualTime by);
   /// Makes the module receive and send at `baud` regardless of its settings; 0: its settings apply.
-  void force_rate(std::uint32_t baud) { wire_.force_rate(baud); }
+  void force_rate(std::uint32_t baud);
+  /// Returns the rate at which the module receives; 0 if it does not listen.
+  [[nodiscard]] std::uint32_t baud() const { return mcu_ ? wire_.rate(mcu_->line.baud()) : 0; }
   /// See ModuleWire::end_first_delay.
-  void release_late_replies() { wire_.end_first_delay(); }
+  void release_late_replies();
   /// See ModuleWire::watch.
   void watch_replies(ModuleWire::Begins begins, ModuleWire::Ends ends, ModuleWire::OnTheWires on_the_wires) {
     wire_.watch(std::move(begins), std::move(ends), std::move(on_the_wires));
@@ -88,12 +90,10 @@ class SimulatedModule final : public Station {
   /// Returns how often the hardware watchdog has reset the module since this object was constructed.
   [[nodiscard]] std::uint64_t watchdog_resets() const { return watchdog_resets_; }
   /// Stops the tick until the next reset.
-  void stop_tick() { mcu_->tick.stop(); }
+  void stop_tick();
 
   // --- Station ---
-  [[nodiscard]] VirtualTime next() const override;
   void run() override;
-  [[nodiscard]] std::uint32_t baud() const override { return mcu_ ? wire_.rate(mcu_->line.baud()) : 0; }
   void receive(std::uint8_t byte, ByteStatus status) override;
 
  private:
@@ -123,6 +123,8 @@ class SimulatedModule final : public Station {
     hal::Device<Board> device;
   };
 
+  [[nodiscard]] VirtualTime next() const;
+  void settle();
   void follow_supply();
   void start();
   void stop();
@@ -133,6 +135,7 @@ class SimulatedModule final : public Station {
   VirtualClock& clock_;
   const Model& model_;
   TimingAt timing_at_;
+  BusEnd& end_;
   ModuleWire wire_;
   hal::doubles::Memory memory_;
   hal::doubles::Inputs inputs_;

@@ -1,6 +1,7 @@
 #include "sim/bus/uart_sampler.hpp"
 
 #include <algorithm>
+#include <utility>
 #include <vector>
 
 namespace ex9000::sim {
@@ -36,6 +37,10 @@ std::optional<VirtualTime> find_level(const Waves& waves, bool level, VirtualTim
   return found == boundaries.end() ? std::nullopt : std::optional(*found);
 }
 
+VirtualTime end_of_byte(VirtualTime start, std::uint32_t baud) {
+  return start + VirtualTime(Wave::kBits * kSecond / baud);
+}
+
 }  // namespace
 
 VirtualTime Wave::boundary(unsigned index) const { return start + VirtualTime(index * kSecond / baud); }
@@ -54,6 +59,9 @@ bool Wave::level(VirtualTime at) const {
 std::optional<UartSampler::Received> UartSampler::advance(const Waves& waves, std::uint32_t baud,
                                                           VirtualTime until) {
   while (position_ < until) {
+    if (complete_) {
+      return end_of_byte(start_, baud) <= until ? std::exchange(complete_, std::nullopt) : std::nullopt;
+    }
     if (!receiving_) {
       const auto found = find_level(waves, waits_for_idle_, position_, until);
       position_ = found.value_or(until);
@@ -82,13 +90,17 @@ std::optional<UartSampler::Received> UartSampler::advance(const Waves& waves, st
       receiving_ = false;
       waits_for_idle_ = !level;
       const ByteStatus error = byte_ == 0 ? ByteStatus::Break : ByteStatus::FramingError;
-      return Received{byte_, level ? ByteStatus::Good : error};
+      complete_ = Received{byte_, level ? ByteStatus::Good : error};
     } else if (bit_ != 0) {
       byte_ = static_cast<std::uint8_t>(byte_ | (level ? 1U << (bit_ - 1) : 0U));
     }
     ++bit_;
   }
   return std::nullopt;
+}
+
+VirtualTime UartSampler::next(std::uint32_t baud, VirtualTime now) const {
+  return complete_ ? end_of_byte(start_, baud) : now + VirtualTime(kSecond / 2 / baud);
 }
 
 }  // namespace ex9000::sim

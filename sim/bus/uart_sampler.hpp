@@ -44,11 +44,14 @@ class UartSampler {
     ByteStatus status;
   };
 
-  /// Samples the wires up to `until`, or to the end of the first byte if that is earlier.
+  /// Samples the wires up to `until`. Returns a byte when its stop bit is over; call again then.
   std::optional<Received> advance(const Waves& waves, std::uint32_t baud, VirtualTime until);
 
   /// Whether it is in the middle of a byte or waits for the line to become idle.
-  [[nodiscard]] bool busy() const { return receiving_ || waits_for_idle_; }
+  [[nodiscard]] bool busy() const { return receiving_ || waits_for_idle_ || complete_; }
+  /// Returns when `advance` must be called again after a call with `now`: at the end of the byte, or after
+  /// half a bit.
+  [[nodiscard]] VirtualTime next(std::uint32_t baud, VirtualTime now) const;
   /// The sampler has processed everything before this time.
   [[nodiscard]] VirtualTime position() const { return position_; }
   void skip_to(VirtualTime position) { position_ = position; }
@@ -60,6 +63,7 @@ class UartSampler {
   std::uint8_t byte_ = 0;
   VirtualTime start_{0};
   VirtualTime position_{0};
+  std::optional<Received> complete_;  ///< a byte whose stop bit has been sampled, but is not over
 };
 
 }  // namespace ex9000::sim

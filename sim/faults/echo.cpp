@@ -2,36 +2,48 @@
 
 namespace ex9000::sim {
 
+void Echo::set_baud(std::uint32_t baud) {
+  baud_ = baud;
+  if (on_) {
+    wire_.listen(baud_);
+  }
+}
+
+void Echo::wake_at(VirtualTime when) {
+  next_ = when;
+  wire_.run_at(when);
+}
+
 void Echo::receive(std::uint8_t byte, ByteStatus /*status*/) {
   if (!driving_ && heard_.size() < kMostHeard) {
     heard_.push_back(byte);
-    next_ = clock_.virtual_now() + delay_;
+    wake_at(clock_.virtual_now() + delay_);
   }
 }
 
 void Echo::run() {
   if (!driving_ && bus_.carries()) {
     // A byte on the wires may already have ended the silence; `receive` is called only after its stop bit.
-    next_ = clock_.virtual_now() + wire_.takes(1, rate_());
+    wake_at(clock_.virtual_now() + wire_.takes(1, baud_));
     return;
   }
   if (!driving_) {
     driving_ = true;
     began_ = clock_.virtual_now();
-    sends_at_ = rate_();
+    sends_at_ = baud_;
     wire_.drive(true);
   }
   if (sent_ == heard_.size()) {
     driving_ = false;
     heard_.clear();
     sent_ = 0;
-    next_ = kNever;
+    wake_at(kNever);
     wire_.drive(false);
     return;
   }
   wire_.put(heard_[sent_], sends_at_);
   // Calculated from the first byte, so that rounding errors do not accumulate.
-  next_ = began_ + wire_.takes(++sent_, sends_at_);
+  wake_at(began_ + wire_.takes(++sent_, sends_at_));
 }
 
 }  // namespace ex9000::sim

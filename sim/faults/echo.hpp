@@ -13,12 +13,9 @@ namespace ex9000::sim {
 
 class Echo final : public Station {
  public:
-  /// Returns the present rate of the line in baud.
-  using Rate = std::function<std::uint32_t()>;
-
-  /// Attaches itself to `bus`; the echo is off at first.
-  Echo(Bus& bus, Rate rate)
-      : bus_(bus), clock_(bus.clock()), wire_(bus.attach(*this)), rate_(std::move(rate)) {}
+  /// Attaches itself to `bus`; the echo is off at first. `baud` is the present rate of the line.
+  Echo(Bus& bus, std::uint32_t baud)
+      : bus_(bus), clock_(bus.clock()), wire_(bus.attach(*this)), baud_(baud) {}
   Echo(const Echo&) = delete;
   Echo& operator=(const Echo&) = delete;
 
@@ -27,14 +24,20 @@ class Echo final : public Station {
   void switch_on(VirtualTime delay) {
     on_ = true;
     delay_ = delay;
+    wire_.listen(baud_);
   }
   /// Stops listening; bytes already received are still sent.
-  void switch_off() { on_ = false; }
+  void switch_off() {
+    on_ = false;
+    wire_.listen(0);
+  }
+  /// Sets the rate of the line.
+  void set_baud(std::uint32_t baud);
+  /// Whether bytes wait or are being sent.
+  [[nodiscard]] bool sending() const { return next_ != kNever; }
 
   // --- Station ---
-  [[nodiscard]] VirtualTime next() const override { return next_; }
   void run() override;
-  [[nodiscard]] std::uint32_t baud() const override { return on_ ? rate_() : 0; }
   void receive(std::uint8_t byte, ByteStatus status) override;
 
  private:
@@ -42,8 +45,8 @@ class Echo final : public Station {
 
   const Bus& bus_;
   VirtualClock& clock_;
-  Wire& wire_;
-  Rate rate_;
+  BusEnd& wire_;
+  std::uint32_t baud_;
   bool on_ = false;
   std::uint32_t sends_at_ = 0;  ///< rate of the present transmission, from its first byte to its last
   VirtualTime delay_{0};
@@ -52,6 +55,8 @@ class Echo final : public Station {
   bool driving_ = false;
   VirtualTime began_{0};
   VirtualTime next_ = kNever;
+
+  void wake_at(VirtualTime when);
 };
 
 }  // namespace ex9000::sim

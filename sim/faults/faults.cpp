@@ -28,14 +28,14 @@ bool is_a_moment(Trouble trouble) { return trouble == Trouble::ForeignTraffic ||
 
 }  // namespace
 
-Faults::Faults(Bus& bus, const Master& master, Modules& modules, std::uint64_t seed, Notice notice)
+Faults::Faults(Bus& bus, Master& master, Modules& modules, std::uint64_t seed, Notice notice)
     : bus_(bus),
+      end_(bus.attach(*this)),
       master_(master),
       modules_(modules),
       notice_(std::move(notice)),
       chance_(seed),
       replies_(modules.size()) {
-  bus_.attach(*this);
   for (std::size_t i = 0; i < modules_.size(); ++i) {
     modules_[i]->watch_replies([this, i] { return reply_begins(i); }, [this, i] { reply_ends(i); },
                                [this, i](std::uint64_t reply, bool on) { reply_on_the_wires(i, reply, on); });
@@ -84,7 +84,8 @@ void Faults::prepare(Trouble trouble) {
       break;
     case Trouble::Echo:
       if (!echo_) {
-        echo_ = std::make_unique<Echo>(bus_, [this] { return master_.baud(); });
+        echo_ = std::make_unique<Echo>(bus_, master_.baud());
+        master_.on_rate([this](std::uint32_t baud) { echo_->set_baud(baud); });
       }
       break;
     case Trouble::ForeignTraffic:
@@ -109,7 +110,7 @@ bool Faults::remove(std::size_t number) {
   if (was_late) {
     release_late_replies();
   }
-  changed_ = true;
+  change();
   act();
   return true;
 }
@@ -117,7 +118,7 @@ bool Faults::remove(std::size_t number) {
 void Faults::remove_all() {
   armed_.clear();
   release_late_replies();
-  changed_ = true;
+  change();
   act();
 }
 
@@ -137,7 +138,7 @@ std::vector<Faults::Info> Faults::list() const {
 }
 
 bool Faults::pending() const {
-  return changed_ || (echo_ && echo_->next() != kNever) || (stranger_ && stranger_->sending());
+  return changed_ || (echo_ && echo_->sending()) || (stranger_ && stranger_->sending());
 }
 
 VirtualTime Faults::next() const {
@@ -173,6 +174,13 @@ void Faults::act() {
     changed_ = false;
     take_effect();
   }
+  end_.run_at(next());
+}
+
+/// Requests that the effects are updated as soon as the modules have finished their present actions.
+void Faults::change() {
+  changed_ = true;
+  end_.run_at(bus_.clock().virtual_now());
 }
 
 /// Begins a strike. A module may cause this call during its work; therefore this function does not change
@@ -180,7 +188,7 @@ void Faults::act() {
 void Faults::strike(Armed& armed, std::optional<std::size_t> reply_of) {
   const Fault& fault = armed.fault;
   ++armed.strikes_so_far;
-  changed_ = true;
+  change();
   say(armed, "strikes");
   if (fault.trouble == Trouble::ForeignTraffic) {
     to_say_.push_back(fault.bytes);
@@ -221,7 +229,7 @@ void Faults::end_strikes(Armed& armed, Over over) {
   const auto rest = std::remove_if(strikes.begin(), strikes.end(), over);
   if (rest != strikes.end()) {
     strikes.erase(rest, strikes.end());
-    changed_ = true;
+    change();
     say(armed, "is over");
   }
 }

@@ -29,7 +29,7 @@ class Faults final : public Station {
 
   /// Attaches itself to `bus`. `master` has the line's rate; `notice` may be empty. All arguments must live
   /// as long as the bus is used.
-  Faults(Bus& bus, const Master& master, Modules& modules, std::uint64_t seed, Notice notice);
+  Faults(Bus& bus, Master& master, Modules& modules, std::uint64_t seed, Notice notice);
   Faults(const Faults&) = delete;
   Faults& operator=(const Faults&) = delete;
 
@@ -54,9 +54,7 @@ class Faults final : public Station {
   [[nodiscard]] bool pending() const;
 
   // --- Station ---
-  [[nodiscard]] VirtualTime next() const override;
   void run() override;
-  [[nodiscard]] std::uint32_t baud() const override { return 0; }
   void receive(std::uint8_t /*byte*/, ByteStatus /*status*/) override {}
 
  private:
@@ -85,6 +83,8 @@ class Faults final : public Station {
     [[nodiscard]] bool strikes_module(std::size_t module) const;
   };
 
+  [[nodiscard]] VirtualTime next() const;
+  void change();
   ReplyFate reply_begins(std::size_t module);
   void reply_ends(std::size_t module);
   void reply_on_the_wires(std::size_t module, std::uint64_t reply, bool on);
@@ -111,7 +111,8 @@ class Faults final : public Station {
   void say_foreign(const std::vector<std::uint8_t>& bytes);
 
   Bus& bus_;
-  const Master& master_;
+  BusEnd& end_;
+  Master& master_;
   Modules& modules_;
   Notice notice_;
   Chance chance_;

@@ -32,6 +32,7 @@ Levels Noise::disturbed(const Sent& sent) {
     const auto later = std::find_if(strays_.begin(), strays_.end(),
                                     [&sent](const Stray& stray) { return sent.ends < stray.at; });
     strays_.insert(later, {sent.ends, byte, sent.baud});
+    wait_for_next();
   }
   strikes_ += levels != sent.levels ? 1U : 0U;
   return levels;
@@ -45,6 +46,9 @@ void Noise::run() {
   straying_ = true;
   wire_.put(stray.byte, stray.baud);
   straying_ = false;
+  wait_for_next();
 }
+
+void Noise::wait_for_next() { wire_.run_at(strays_.empty() ? kNever : strays_.front().at); }
 
 }  // namespace ex9000::sim

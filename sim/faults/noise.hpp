@@ -38,9 +38,7 @@ class Noise final : public Disturbance, public Station {
   Levels disturbed(const Sent& sent) override;
 
   // --- Station ---
-  [[nodiscard]] VirtualTime next() const override { return strays_.empty() ? kNever : strays_.front().at; }
   void run() override;
-  [[nodiscard]] std::uint32_t baud() const override { return 0; }
   void receive(std::uint8_t /*byte*/, ByteStatus /*status*/) override {}
 
  private:
@@ -50,7 +48,9 @@ class Noise final : public Disturbance, public Station {
     std::uint32_t baud;
   };
 
-  Wire& wire_;
+  void wait_for_next();
+
+  BusEnd& wire_;
   NoiseRates rates_;
   Chance chance_;
   std::uint64_t strikes_ = 0;

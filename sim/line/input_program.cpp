@@ -139,12 +139,12 @@ InputProgram parse_input_program(const std::string& text, const Model& model) {
 }
 
 MovedInput::MovedInput(Bus& bus, SimulatedModule& module, const InputProgram& program, std::uint64_t seed)
-    : clock_(bus.clock()), module_(module), program_(program), chance_(seed) {
-  bus.attach(*this);
+    : clock_(bus.clock()), end_(bus.attach(*this)), module_(module), program_(program), chance_(seed) {
   const VirtualTime now = clock_.virtual_now();
   plan(program.kind == InputProgram::Kind::Square     ? now
        : program.kind == InputProgram::Kind::KeyAgain ? now + program.time
                                                       : std::max(now, program.time));
+  end_.run_at(moves_.front().when);
 }
 
 void MovedInput::plan(VirtualTime begins) {
@@ -181,6 +181,7 @@ void MovedInput::run() {
       plan(std::exchange(again_, kNever));
     }
   }
+  end_.run_at(moves_.empty() ? kNever : moves_.front().when);
 }
 
 }  // namespace ex9000::sim

@@ -41,9 +41,7 @@ class MovedInput final : public Station {
   MovedInput& operator=(const MovedInput&) = delete;
 
   // --- Station ---
-  [[nodiscard]] VirtualTime next() const override { return moves_.empty() ? kNever : moves_.front().when; }
   void run() override;
-  [[nodiscard]] std::uint32_t baud() const override { return 0; }
   void receive(std::uint8_t /*byte*/, ByteStatus /*status*/) override {}
 
  private:
@@ -56,6 +54,7 @@ class MovedInput final : public Station {
   void chatter(VirtualTime begins, bool level);
 
   VirtualClock& clock_;
+  BusEnd& end_;
   SimulatedModule& module_;
   InputProgram program_;
   Chance chance_;

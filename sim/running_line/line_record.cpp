@@ -68,13 +68,9 @@ void LineRecord::keep_in(Capture& capture, VirtualTime began) {
   listen();
 }
 
-void LineRecord::end_at(VirtualTime end) {
-  end_ = end;
-  line_.bus().attach(*this);
-}
+void LineRecord::end_at(VirtualTime end) { line_.bus().attach(*this).run_at(end); }
 
 void LineRecord::run() {
-  end_ = kNever;
   frames_.finish();
   over_ = true;
 }

@@ -41,9 +41,7 @@ class LineRecord final : private Station {
 
  private:
   // --- Station: only observes the clock ---
-  [[nodiscard]] VirtualTime next() const override { return end_; }
   void run() override;
-  [[nodiscard]] std::uint32_t baud() const override { return 0; }
   void receive(std::uint8_t /*byte*/, ByteStatus /*status*/) override {}
 
   void listen();
@@ -54,7 +52,6 @@ class LineRecord final : private Station {
   FrameWatch frames_{[this] { return line_.master().baud(); }};
   BusLog::Note also_note_;
   bool listens_ = false;
-  VirtualTime end_ = kNever;  ///< kNever if no end is set, or after the end
   bool over_ = false;
 };
 

@@ -66,12 +66,12 @@ reference::Module described(std::size_t index, std::uint32_t baud) {
 
 void Pulser::start(std::uint32_t per_second) {
   period_ = VirtualTime(1'000'000'000 / per_second);
-  next_ = clock_.virtual_now() + period_;
+  wake_at(clock_.virtual_now() + period_);
 }
 
 void Pulser::resume() {
   if (period_ != VirtualTime(0) && next_ == sim::kNever) {
-    next_ = clock_.virtual_now() + period_;
+    wake_at(clock_.virtual_now() + period_);
   }
 }
 
@@ -80,7 +80,7 @@ void Pulser::run() {
     module_.pulse_input(channel, 1);
   }
   ++pulses_;
-  next_ += period_;
+  wake_at(next_ + period_);
 }
 
 Crowd::Crowd(std::uint32_t baud, std::uint64_t seed)

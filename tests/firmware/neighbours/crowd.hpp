@@ -14,30 +14,33 @@ namespace ex9000::neighbours {
 /// Sends pulses to all inputs of one module at a constant rate, at the same instant on every input.
 class Pulser final : public sim::Station {
  public:
-  Pulser(sim::Bus& bus, sim::SimulatedModule& module) : clock_(bus.clock()), module_(module) {
-    bus.attach(*this);
-  }
+  Pulser(sim::Bus& bus, sim::SimulatedModule& module)
+      : clock_(bus.clock()), end_(bus.attach(*this)), module_(module) {}
   Pulser(const Pulser&) = delete;
   Pulser& operator=(const Pulser&) = delete;
 
   void start(std::uint32_t per_second);
   void stop() {
     period_ = sim::VirtualTime(0);
-    next_ = sim::kNever;
+    pause();
   }
-  void pause() { next_ = sim::kNever; }
+  void pause() { wake_at(sim::kNever); }
   void resume();
   /// Returns the pulses on each input since the last call.
   std::uint32_t take() { return std::exchange(pulses_, 0); }
 
   // --- sim::Station ---
-  [[nodiscard]] sim::VirtualTime next() const override { return next_; }
   void run() override;
-  [[nodiscard]] std::uint32_t baud() const override { return 0; }
   void receive(std::uint8_t /*byte*/, ByteStatus /*status*/) override {}
 
  private:
+  void wake_at(sim::VirtualTime when) {
+    next_ = when;
+    end_.run_at(when);
+  }
+
   sim::VirtualClock& clock_;
+  sim::BusEnd& end_;
   sim::SimulatedModule& module_;
   sim::VirtualTime period_{0};
   sim::VirtualTime next_ = sim::kNever;

@@ -98,7 +98,7 @@ void late_driver(NoisyLine& noisy, std::uint64_t exchanges) {
 }
 
 void echo(NoisyLine& noisy, std::uint64_t exchanges) {
-  auto& repeater = noisy.attach<sim::Echo>([] { return NoisyLine::kBaud; });
+  auto& repeater = noisy.attach<sim::Echo>(NoisyLine::kBaud);
   repeater.switch_on(milliseconds(3));
   for (std::uint64_t i = 0; i < exchanges; ++i) {
     ask(noisy);

@@ -68,9 +68,7 @@ class NoisyLine final : public sim::Disturbance, public sim::Station {
   sim::Levels disturbed(const Sent& sent) override;
 
   // --- sim::Station: the witness ---
-  [[nodiscard]] sim::VirtualTime next() const override { return sim::kNever; }
   void run() override {}
-  [[nodiscard]] std::uint32_t baud() const override { return kBaud; }
   void receive(std::uint8_t byte, ByteStatus status) override;
 
  private:

@@ -26,23 +26,22 @@ struct Heard {
 /// A station that records the bytes that it receives.
 class Listener final : public Station {
  public:
-  Listener(Bus& bus, std::uint32_t baud) : clock_(bus.clock()), wire_(bus.attach(*this)), baud_(baud) {}
+  Listener(Bus& bus, std::uint32_t baud) : clock_(bus.clock()), wire_(bus.attach(*this)) {
+    wire_.listen(baud);
+  }
 
-  [[nodiscard]] VirtualTime next() const override { return kNever; }
   void run() override {}
-  [[nodiscard]] std::uint32_t baud() const override { return baud_; }
   void receive(std::uint8_t byte, ByteStatus status) override {
     heard.push_back({byte, status, clock_.virtual_now()});
   }
 
-  void set_baud(std::uint32_t baud) { baud_ = baud; }
+  void set_baud(std::uint32_t baud) { wire_.listen(baud); }
 
   std::vector<Heard> heard;
 
  private:
   VirtualClock& clock_;
-  Wire& wire_;
-  std::uint32_t baud_;
+  BusEnd& wire_;
 };
 
 class BusTest : public testing::Test {

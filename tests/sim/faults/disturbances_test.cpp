@@ -95,9 +95,7 @@ TEST(Noise, LosesCharactersInContentionOnlyWhileAnotherDriverIsEnabled) {
   EXPECT_EQ(line.heard, (Heard{{0x41, ByteStatus::Good}}));
 
   struct Holder final : Station {
-    [[nodiscard]] VirtualTime next() const override { return kNever; }
     void run() override {}
-    [[nodiscard]] std::uint32_t baud() const override { return 0; }
     void receive(std::uint8_t /*byte*/, ByteStatus /*status*/) override {}
   } holder;
   line.bus.attach(holder).drive(true);
@@ -120,8 +118,7 @@ TEST(Noise, IsReproducibleFromItsSeed) {
 
 TEST(Echo, RepeatsTheReceivedBytesOnceTheLineIsQuiet) {
   TwoOnALine line;
-  std::uint32_t rate = 9600;
-  Echo echo(line.bus, [&rate] { return rate; });
+  Echo echo(line.bus, 9600);
   echo.switch_on(milliseconds(5));
   line.send({1, 2, 3});
   EXPECT_EQ(line.heard, (Heard{{1, ByteStatus::Good},

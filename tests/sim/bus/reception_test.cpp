@@ -1,0 +1,306 @@
+// Compares what stations receive with receivers that sample every bit of the whole traffic. The bus samples
+// only where it has to.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <memory>
+#include <optional>
+#include <ostream>
+#include <random>
+#include <string>
+#include <vector>
+
+#include "firmware/model/baud.hpp"
+#include "sim/bus/bus.hpp"
+
+namespace ex9000::sim {
+namespace {
+
+struct Received {
+  std::uint8_t byte;
+  ByteStatus status;
+  VirtualTime at;
+
+  bool operator==(const Received& other) const {
+    return byte == other.byte && status == other.status && at == other.at;
+  }
+  friend std::ostream& operator<<(std::ostream& out, const Received& received) {
+    return out << unsigned{received.byte} << " status " << static_cast<int>(received.status) << " at "
+               << received.at.count() << " ns";
+  }
+};
+
+/// How the traffic of a test is troubled. Each number is a probability.
+struct Trouble {
+  const char* name;
+  double noise = 0;       ///< that a byte arrives with other levels
+  double collision = 0;   ///< that a station begins although another one sends
+  double cut_off = 0;     ///< that a driver is disabled in the middle of a byte
+  double other_rate = 0;  ///< that a station sends, or a receiver listens, at another rate
+
+  friend std::ostream& operator<<(std::ostream& out, const Trouble& trouble) { return out << trouble.name; }
+};
+
+using Random = std::mt19937_64;
+
+bool happens(Random& random, double probability) {
+  return std::uniform_real_distribution<double>(0, 1)(random) < probability;
+}
+
+VirtualTime between(Random& random, VirtualTime least, VirtualTime most) {
+  return VirtualTime(std::uniform_int_distribution<std::int64_t>(least.count(), most.count())(random));
+}
+
+constexpr std::uint32_t kUsualRate = 9600;
+
+std::uint32_t some_rate(Random& random, double other_rate) {
+  return happens(random, other_rate) ? kBaudRates[random() % kBaudRates.size()] : kUsualRate;
+}
+
+/// Changes some bytes, and records the waves of all bytes.
+class Recorder final : public Disturbance {
+ public:
+  Recorder(const VirtualClock& clock, Random& random, double noise)
+      : clock_(clock), random_(random), noise_(noise) {}
+
+  Levels disturbed(const Sent& sent) override {
+    const Levels levels =
+        happens(random_, noise_) ? static_cast<Levels>(random_() & kIdleLevels) : sent.levels;
+    waves.push_back({clock_.virtual_now(), sent.baud, levels});
+    return levels;
+  }
+
+  Waves waves;
+
+ private:
+  const VirtualClock& clock_;
+  Random& random_;
+  double noise_;
+};
+
+/// Sends bursts of random bytes with random gaps between them.
+class Talker final : public Station {
+ public:
+  Talker(Bus& bus, Recorder& recorder, Random& random, const Trouble& trouble)
+      : bus_(bus), end_(bus.attach(*this)), recorder_(recorder), random_(random), trouble_(trouble) {
+    rest();
+  }
+
+  void run() override {
+    if (cuts_off_) {
+      recorder_.waves[wave_].cut_off = bus_.clock().virtual_now();
+    }
+    if (cuts_off_ || (driving_ && left_ == 0)) {
+      driving_ = cuts_off_ = false;
+      end_.drive(false);
+      rest();
+    } else if (driving_ || !bus_.busy() || happens(random_, trouble_.collision)) {
+      send();
+    } else {
+      rest();
+    }
+  }
+  void receive(std::uint8_t /*byte*/, ByteStatus /*status*/) override {}
+
+ private:
+  void rest() {
+    left_ = 1 + random_() % 12;
+    baud_ = some_rate(random_, trouble_.other_rate);
+    end_.run_at(bus_.clock().virtual_now() + between(random_, VirtualTime(1), std::chrono::milliseconds(20)));
+  }
+  void send() {
+    const VirtualTime now = bus_.clock().virtual_now();
+    driving_ = true;
+    end_.drive(true);
+    wave_ = recorder_.waves.size();
+    end_.put(static_cast<std::uint8_t>(random_()), baud_);
+    --left_;
+    const VirtualTime takes = end_.takes(1, baud_);
+    cuts_off_ = happens(random_, trouble_.cut_off);
+    end_.run_at(now + (cuts_off_ ? between(random_, VirtualTime(1), takes - VirtualTime(1)) : takes));
+  }
+
+  Bus& bus_;
+  BusEnd& end_;
+  Recorder& recorder_;
+  Random& random_;
+  const Trouble& trouble_;
+  bool driving_ = false;
+  bool cuts_off_ = false;
+  std::size_t left_ = 0;
+  std::uint32_t baud_ = kUsualRate;
+  std::size_t wave_ = 0;
+};
+
+/// Receives, and changes its rate at random times.
+class Listener final : public Station {
+ public:
+  struct Period {
+    VirtualTime begins;
+    std::uint32_t baud;
+    std::vector<Received> received = {};
+  };
+
+  Listener(Bus& bus, Random& random, double other_rate)
+      : clock_(bus.clock()), end_(bus.attach(*this)), random_(random), other_rate_(other_rate) {
+    run();
+  }
+
+  void run() override {
+    const std::uint32_t baud = happens(random_, 0.1) ? 0 : some_rate(random_, other_rate_);
+    if (periods.empty() || periods.back().baud != baud) {
+      periods.push_back({clock_.virtual_now(), baud});
+    }
+    end_.listen(baud);
+    end_.run_at(clock_.virtual_now() + between(random_, VirtualTime(1), std::chrono::milliseconds(500)));
+  }
+  void receive(std::uint8_t byte, ByteStatus status) override {
+    periods.back().received.push_back({byte, status, clock_.virtual_now()});
+  }
+
+  std::vector<Period> periods;
+
+ private:
+  VirtualClock& clock_;
+  BusEnd& end_;
+  Random& random_;
+  double other_rate_;
+};
+
+/// A receiver that samples every bit of the recorded traffic: it waits for a falling edge, reads the middle
+/// of ten bits, and has received the byte when the stop bit is over.
+class SamplingReceiver {
+ public:
+  SamplingReceiver(const Waves& waves, std::uint32_t baud) : waves_(waves), baud_(baud) {}
+
+  /// Returns what it receives if it listens from `begins` to `ends`.
+  std::vector<Received> listen(VirtualTime begins, VirtualTime ends) {
+    std::vector<Received> received;
+    VirtualTime now = begins;
+    while (const auto start = find(false, now, ends)) {
+      now = *start + bits(1);
+      if (level(now)) {
+        continue;  // a spike
+      }
+      unsigned byte = 0;
+      for (unsigned bit = 0; bit < 8; ++bit) {
+        byte |= level(*start + bits(2 * bit + 3)) ? 1U << bit : 0U;
+      }
+      now = *start + bits(19);
+      const bool stop_bit = level(now);
+      const VirtualTime at = *start + bits(20);
+      if (at > ends) {
+        break;
+      }
+      received.push_back({static_cast<std::uint8_t>(byte),
+                          stop_bit    ? ByteStatus::Good
+                          : byte == 0 ? ByteStatus::Break
+                                      : ByteStatus::FramingError,
+                          at});
+      if (!stop_bit) {
+        const auto idle = find(true, now, ends);
+        if (!idle) {
+          break;
+        }
+        now = *idle;
+      }
+    }
+    return received;
+  }
+
+ private:
+  /// Returns the duration of `halves` half bits.
+  [[nodiscard]] VirtualTime bits(unsigned halves) const {
+    return VirtualTime(std::int64_t{halves} * 1'000'000'000 / (2 * std::int64_t{baud_}));
+  }
+
+  [[nodiscard]] bool level(VirtualTime at) const {
+    for (std::size_t i = first_; i < waves_.size() && waves_[i].start <= at; ++i) {
+      if (!waves_[i].level(at)) {
+        return false;
+      }
+    }
+    return true;
+  }
+
+  /// Returns the first time from `from` on and before `until` with this level. Forgets the waves before
+  /// `from`.
+  std::optional<VirtualTime> find(bool wanted, VirtualTime from, VirtualTime until) {
+    while (first_ < waves_.size() && waves_[first_].end() <= from) {
+      ++first_;
+    }
+    for (VirtualTime at = from; at < until; at = edge_after(at)) {
+      if (level(at) == wanted) {
+        return at;
+      }
+    }
+    return std::nullopt;
+  }
+
+  /// Returns the first time after `at` at which the level can change.
+  [[nodiscard]] VirtualTime edge_after(VirtualTime at) const {
+    VirtualTime edge = kNever;
+    for (std::size_t i = first_; i < waves_.size() && waves_[i].start < edge; ++i) {
+      for (unsigned bit = 0; bit <= Wave::kBits; ++bit) {
+        if (waves_[i].boundary(bit) > at) {
+          edge = std::min(edge, waves_[i].boundary(bit));
+        }
+      }
+      if (waves_[i].cut_off > at) {
+        edge = std::min(edge, waves_[i].cut_off);
+      }
+    }
+    return edge;
+  }
+
+  const Waves& waves_;
+  std::uint32_t baud_;
+  std::size_t first_ = 0;
+};
+
+class Reception : public testing::TestWithParam<Trouble> {};
+
+TEST_P(Reception, IsThatOfReceiversThatSampleEveryBit) {
+  const Trouble& trouble = GetParam();
+  Random random(1);
+  VirtualClock clock;
+  Bus bus(clock);
+  Recorder recorder(clock, random, trouble.noise);
+  bus.disturb(recorder);
+  std::vector<std::unique_ptr<Talker>> talkers;
+  std::vector<std::unique_ptr<Listener>> listeners;
+  for (unsigned i = 0; i < 3; ++i) {
+    talkers.push_back(std::make_unique<Talker>(bus, recorder, random, trouble));
+    listeners.push_back(std::make_unique<Listener>(bus, random, trouble.other_rate));
+  }
+  constexpr std::chrono::seconds kDuration{60};
+  bus.run_until(kDuration);
+
+  std::size_t compared = 0;
+  for (const auto& listener : listeners) {
+    for (std::size_t i = 0; i < listener->periods.size(); ++i) {
+      const Listener::Period& period = listener->periods[i];
+      if (period.baud == 0) {
+        EXPECT_TRUE(period.received.empty());
+        continue;
+      }
+      const VirtualTime ends =
+          i + 1 < listener->periods.size() ? listener->periods[i + 1].begins : VirtualTime(kDuration);
+      const auto expected = SamplingReceiver(recorder.waves, period.baud).listen(period.begins, ends);
+      ASSERT_EQ(period.received, expected)
+          << period.baud << " baud from " << period.begins.count() << " ns on";
+      compared += expected.size();
+    }
+  }
+  EXPECT_GT(compared, 10'000U);
+}
+
+INSTANTIATE_TEST_SUITE_P(, Reception,
+                         testing::Values(Trouble{"none"}, Trouble{"noise", 0.05},
+                                         Trouble{"collisions", 0, 0.5}, Trouble{"cut_off_bytes", 0, 0, 0.05},
+                                         Trouble{"other_rates", 0, 0, 0, 0.3},
+                                         Trouble{"everything", 0.05, 0.5, 0.05, 0.3}),
+                         [](const auto& instance) { return std::string(instance.param.name); });
+
+}  // namespace
+}  // namespace ex9000::sim
