@@ -167,16 +167,16 @@ bool SimulatedModule::pending() const {
 /// Tells the bus when this module has to run next, and at which rate it receives.
 void SimulatedModule::settle() {
   end_.listen(baud());
-  end_.run_at(next());
+  if (mcu_) {
+    next_without_silence_ = std::min({wire_.next(), mcu_->line.next(), mcu_->wake_timer.next(),
+                                      mcu_->tick.next(), mcu_->watchdog.next(), memory_.next()});
+    wait();
+  } else {
+    end_.run_at(kNever);
+  }
 }
 
-VirtualTime SimulatedModule::next() const {
-  if (!mcu_) {
-    return kNever;
-  }
-  return std::min({wire_.next(), mcu_->line.next(), mcu_->silence_timer.next(), mcu_->wake_timer.next(),
-                   mcu_->tick.next(), mcu_->watchdog.next(), memory_.next()});
-}
+void SimulatedModule::wait() { end_.run_at(std::min(next_without_silence_, mcu_->silence_timer.next())); }
 
 void SimulatedModule::run() {
   if (mcu_->watchdog.has_expired()) {
@@ -184,24 +184,43 @@ void SimulatedModule::run() {
     reset();
     return;
   }
+  const bool only_silence = next_without_silence_ > clock_.virtual_now();
+  if (!only_silence) {
+    run_line();
+    run_memory();
+  }
+  if (mcu_->silence_timer.fire()) {
+    mcu_->device.on_silence();
+  }
+  if (!only_silence) {
+    run_timers();
+  }
+  work();
+}
+
+void SimulatedModule::run_line() {
   wire_.run();
   const bool was_sending = mcu_->line.sending();
   mcu_->line.run();
   if (was_sending && !mcu_->line.sending()) {
     mcu_->device.on_sent();
   }
-  memory_.run();
-  if (mcu_->silence_timer.fire()) {
-    mcu_->device.on_silence();
+}
+
+void SimulatedModule::run_memory() {
+  if (memory_.next() <= clock_.virtual_now()) {
+    memory_.run();
+    mcu_->device.on_memory();
   }
+}
+
+void SimulatedModule::run_timers() {
   if (mcu_->wake_timer.fire()) {
     mcu_->device.on_wake_timer();
   }
   if (mcu_->tick.fire()) {
     mcu_->device.on_tick();
   }
-  turn();
-  settle();
 }
 
 void SimulatedModule::receive(std::uint8_t byte, ByteStatus status) {
@@ -212,10 +231,21 @@ void SimulatedModule::receive(std::uint8_t byte, ByteStatus status) {
     mcu_->device.on_silence();  // see hal/one_shot_timer.hpp
   }
   mcu_->device.on_receive(byte, status);
-  if (mcu_->device.has_work() || mcu_->device.module().host_ok_waits()) {
-    turn();  // a host OK could wait until the next turn, but the LED should show it at once
+  work();
+}
+
+/// Runs the main loop if an interrupt has woken it. A host OK could wait until the next turn, but the LED
+/// should show it at once.
+void SimulatedModule::work() {
+  const bool woken = mcu_->device.has_work() || mcu_->device.module().host_ok_waits();
+  if (woken) {
+    turn();
   }
-  settle();
+  if (woken || next_without_silence_ <= clock_.virtual_now()) {
+    settle();
+  } else {
+    wait();  // most bytes and silences only move the silence timer
+  }
 }
 
 /// Runs the main loop until there is nothing left to do. It takes no virtual time.

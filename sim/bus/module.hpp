@@ -123,7 +123,11 @@ class SimulatedModule final : public Station {
     hal::Device<Board> device;
   };
 
-  [[nodiscard]] VirtualTime next() const;
+  void run_line();
+  void run_memory();
+  void run_timers();
+  void work();
+  void wait();
   void settle();
   void follow_supply();
   void start();
@@ -144,6 +148,7 @@ class SimulatedModule final : public Station {
   hal::doubles::InitSwitch init_switch_;
   std::optional<Mcu> mcu_;
   VirtualTime driver_late_by_{0};
+  VirtualTime next_without_silence_ = kNever;
   bool switched_on_ = false;
   bool supply_interrupted_ = false;
   bool hung_ = false;
