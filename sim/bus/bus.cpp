@@ -42,7 +42,7 @@ BusEnd& Bus::attach(Station& station) {
   return *ends_.back();
 }
 
-VirtualTime Bus::next() { return std::min({next_byte_end_, next_sample_, due_times_.next()}); }
+VirtualTime Bus::next() const { return std::min({next_byte_end_, next_sample_, due_times_.next()}); }
 
 void Bus::run_until(VirtualTime until) {
   for (VirtualTime now = next(); now <= until; now = next()) {
@@ -123,16 +123,17 @@ bool Bus::has_listeners_at_other_rates(std::uint32_t rate) const {
   return listeners_.size() > 1 || (listeners_.size() == 1 && listeners_.begin()->first != rate);
 }
 
-/// Whether the receiver gets this byte without sampling it.
-bool Bus::gets_whole(const End& end, const Byte& byte) const {
-  return byte.arrives_whole() && byte.wave->baud == end.bit_rate &&
-         end.sampler.position() <= byte.wave->start;
+/// Whether the receiver has the rate of the byte and has listened since its start.
+bool Bus::has_heard_from_the_start(const End& end, const Wave& wave) {
+  return wave.baud == end.bit_rate && end.sampler.position() <= wave.start;
 }
 
 bool Bus::has_to_sample(const End& end) const {
+  const auto gets_whole = [&](const Byte& byte) {
+    return byte.arrives_whole() && has_heard_from_the_start(end, *byte.wave);
+  };
   return end.bit_rate != 0 &&
-         (end.sampler.busy() || std::any_of(on_the_wire_.begin(), on_the_wire_.end(),
-                                            [&](const Byte& byte) { return !gets_whole(end, byte); }));
+         (end.sampler.busy() || !std::all_of(on_the_wire_.begin(), on_the_wire_.end(), gets_whole));
 }
 
 /// Lets those receivers sample that do not get all bytes on the wires whole.
@@ -215,7 +216,7 @@ void Bus::deliver(const Byte& over) {
     return;
   }
   for (const auto& end : ends_) {
-    if (!end->samples && gets_whole(*end, over)) {
+    if (!end->samples && has_heard_from_the_start(*end, *over.wave)) {
       end->station.receive(over.byte, ByteStatus::Good);
     }
   }

@@ -100,7 +100,7 @@ class Bus {
   void disturb(Disturbance& disturbance) { disturbance_ = &disturbance; }
 
   /// Returns the time of the next event of the bus or of a station.
-  [[nodiscard]] VirtualTime next();
+  [[nodiscard]] VirtualTime next() const;
   /// Processes all events up to and including `until`. Afterwards the clock shows `until`.
   void run_until(VirtualTime until);
   void run_for(VirtualTime duration) { run_until(clock_.virtual_now() + duration); }
@@ -130,7 +130,7 @@ class Bus {
   void drive(End& end, bool on);
   void put(End& end, std::uint8_t byte, std::uint32_t baud);
   void listen(End& end, std::uint32_t baud);
-  [[nodiscard]] bool gets_whole(const End& end, const Byte& byte) const;
+  static bool has_heard_from_the_start(const End& end, const Wave& wave);
   [[nodiscard]] bool has_to_sample(const End& end) const;
   void count_listener(std::uint32_t rate, int change);
   [[nodiscard]] bool has_listeners_at_other_rates(std::uint32_t rate) const;

@@ -1,49 +1,45 @@
 #include "sim/bus/due_times.hpp"
 
+#include <algorithm>
+#include <utility>
+
 namespace ex9000::sim {
 
 std::size_t DueTimes::add() {
-  stations_.emplace_back();
-  return stations_.size() - 1;
+  if (stations_ == leaves()) {
+    const DueTimes before = std::exchange(*this, {});
+    tree_.assign(2 * before.tree_.size(), kNever);
+    for (; stations_ < before.stations_; ++stations_) {
+      set(stations_, before.tree_[before.leaves() + stations_]);
+    }
+  }
+  return stations_++;
 }
 
 void DueTimes::set(std::size_t station, VirtualTime when) {
-  stations_[station].due = when;
-  if (when < stations_[station].queued) {
-    push(station);
-  }
-}
-
-void DueTimes::push(std::size_t station) {
-  stations_[station].queued = stations_[station].due;
-  queue_.push({stations_[station].due, station});
-}
-
-VirtualTime DueTimes::next() {
-  while (!queue_.empty()) {
-    const Entry first = queue_.top();
-    Times& times = stations_[first.station];
-    const bool earliest = first.when == times.queued;  // otherwise an earlier entry has replaced this one
-    if (earliest && first.when == times.due) {
-      return first.when;
+  std::size_t node = leaves() + station;
+  tree_[node] = when;
+  while (node != kRoot) {
+    const VirtualTime earlier = std::min(tree_[node], tree_[node ^ 1U]);
+    node /= 2;
+    if (tree_[node] == earlier) {
+      return;
     }
-    queue_.pop();
-    if (earliest) {
-      times.queued = kNever;
-      set(first.station, times.due);
-    }
+    tree_[node] = earlier;
   }
-  return kNever;
 }
 
 std::optional<std::size_t> DueTimes::take(VirtualTime now) {
-  if (next() > now) {
+  const VirtualTime when = next();
+  if (when > now) {
     return std::nullopt;
   }
-  const std::size_t station = queue_.top().station;
-  queue_.pop();
-  stations_[station] = {};
-  return station;
+  std::size_t node = kRoot;
+  while (node < leaves()) {
+    node = tree_[2 * node] == when ? 2 * node : 2 * node + 1;
+  }
+  set(node - leaves(), kNever);
+  return node - leaves();
 }
 
 }  // namespace ex9000::sim

@@ -3,7 +3,6 @@
 
 #include <cstddef>
 #include <optional>
-#include <queue>
 #include <vector>
 
 #include "hal/doubles/virtual_clock.hpp"
@@ -13,8 +12,9 @@ namespace ex9000::sim {
 using hal::doubles::kNever;
 using hal::doubles::VirtualTime;
 
-/// Each station has one due time. Moving it to a later time costs almost nothing: the queue finds out when
-/// the earlier time is reached. Receivers do this with every byte, because it restarts their silence timer.
+/// Each station has one due time. The times are the leaves of a binary tree, in which each node is the
+/// earlier one of its two children. If many stations set the same time in turn, as receivers do after each
+/// byte, most changes end at the first node above the leaf.
 class DueTimes {
  public:
   /// Adds a station, due never, and returns its number, counted from 0.
@@ -22,28 +22,19 @@ class DueTimes {
   /// Sets the due time of a station in place of its last one; kNever: none.
   void set(std::size_t station, VirtualTime when);
   /// Returns the earliest due time; kNever if there is none.
-  VirtualTime next();
-  /// Returns the first of the stations that are due at `now` and removes its due time. Stations with the same
-  /// due time are in the order of their numbers.
+  [[nodiscard]] VirtualTime next() const { return tree_[kRoot]; }
+  /// Returns a station that is due at `now`, and removes its due time: that with the earliest due time, and
+  /// with the lowest number among several. nullopt if no station is due.
   std::optional<std::size_t> take(VirtualTime now);
 
  private:
-  struct Entry {
-    VirtualTime when;
-    std::size_t station;
-    bool operator>(const Entry& other) const {
-      return when != other.when ? when > other.when : station > other.station;
-    }
-  };
-  struct Times {
-    VirtualTime due = kNever;
-    VirtualTime queued = kNever;  ///< the earliest entry of this station; kNever: it has no entry
-  };
+  static constexpr std::size_t kRoot = 1;
 
-  void push(std::size_t station);
+  [[nodiscard]] std::size_t leaves() const { return tree_.size() / 2; }
 
-  std::vector<Times> stations_;
-  std::priority_queue<Entry, std::vector<Entry>, std::greater<>> queue_;
+  std::size_t stations_ = 0;
+  /// The children of node n are 2n and 2n + 1; the second half of the nodes are the leaves.
+  std::vector<VirtualTime> tree_{kNever, kNever};
 };
 
 }  // namespace ex9000::sim
