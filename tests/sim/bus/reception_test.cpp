@@ -133,7 +133,7 @@ class Talker final : public Station {
 };
 
 /// Receives, and changes its rate at random times.
-class Listener final : public Station {
+class RetunedListener final : public Station {
  public:
   struct Period {
     VirtualTime begins;
@@ -141,7 +141,7 @@ class Listener final : public Station {
     std::vector<Received> received = {};
   };
 
-  Listener(Bus& bus, Random& random, double other_rate)
+  RetunedListener(Bus& bus, Random& random, double other_rate)
       : clock_(bus.clock()), end_(bus.attach(*this)), random_(random), other_rate_(other_rate) {
     run();
   }
@@ -268,10 +268,10 @@ TEST_P(Reception, IsThatOfReceiversThatSampleEveryBit) {
   Recorder recorder(clock, random, trouble.noise);
   bus.disturb(recorder);
   std::vector<std::unique_ptr<Talker>> talkers;
-  std::vector<std::unique_ptr<Listener>> listeners;
+  std::vector<std::unique_ptr<RetunedListener>> listeners;
   for (unsigned i = 0; i < 3; ++i) {
     talkers.push_back(std::make_unique<Talker>(bus, recorder, random, trouble));
-    listeners.push_back(std::make_unique<Listener>(bus, random, trouble.other_rate));
+    listeners.push_back(std::make_unique<RetunedListener>(bus, random, trouble.other_rate));
   }
   constexpr std::chrono::seconds kDuration{60};
   bus.run_until(kDuration);
@@ -279,7 +279,7 @@ TEST_P(Reception, IsThatOfReceiversThatSampleEveryBit) {
   std::size_t compared = 0;
   for (const auto& listener : listeners) {
     for (std::size_t i = 0; i < listener->periods.size(); ++i) {
-      const Listener::Period& period = listener->periods[i];
+      const RetunedListener::Period& period = listener->periods[i];
       if (period.baud == 0) {
         EXPECT_TRUE(period.received.empty());
         continue;
