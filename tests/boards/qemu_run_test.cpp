@@ -13,6 +13,7 @@
 #include <csignal>
 #include <filesystem>
 #include <fstream>
+#include <optional>
 #include <string>
 #include <thread>
 #include <vector>
@@ -200,7 +201,7 @@ class Visits {
 /// Sends a command, waits for the whole reply, and leaves it unread. Returns when the program has emptied the
 /// terminal.
 void leave_reply_unread(const std::string& tty, const std::string& command, const std::string& reply) {
-  Visits visits(tty);
+  std::optional<Visits> visits;
   {
     Terminal terminal(tty, 9600);
     const int fd = open(tty.c_str(), O_RDWR | O_NOCTTY | O_CLOEXEC);
@@ -213,12 +214,13 @@ void leave_reply_unread(const std::string& tty, const std::string& command, cons
       there = static_cast<std::size_t>(count);
     }
     EXPECT_EQ(there, reply.size() + 1);
+    visits.emplace(tty);  // not earlier: the program may have emptied the terminal after an earlier visit
     close(fd);
   }
   // This function has closed the terminal. Then the program opens and closes it in order to empty it.
-  visits.wait_for(IN_CLOSE);
-  visits.wait_for(IN_OPEN);
-  visits.wait_for(IN_CLOSE);
+  visits->wait_for(IN_CLOSE);
+  visits->wait_for(IN_OPEN);
+  visits->wait_for(IN_CLOSE);
 }
 
 /// Repeats a request until its reply arrives, as a master does, because a module receives nothing while it
