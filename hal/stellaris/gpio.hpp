@@ -39,7 +39,8 @@ class Gpio {
                              : 0x4002'4000U + (static_cast<std::uint32_t>(port) - 4U) * 0x1000U) {}
 
   /// Read or write the data register. It has 256 addresses, whose bits 2 to 9 select the pins. A write
-  /// therefore needs no read to preserve the other pins, and no interrupt can come between.
+  /// therefore requires no read to preserve the other pins, so no interrupt can change them between a read
+  /// and a write.
   [[nodiscard]] std::uint32_t read(std::uint32_t pins) const { return data(pins).read().value(); }
   void write(std::uint32_t pins, std::uint32_t levels) const { data(pins).write(Bits<Data>(levels)); }
 

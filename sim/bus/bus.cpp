@@ -30,8 +30,8 @@ Bus::Bus(VirtualClock& clock, std::uint32_t times_faster) : clock_(clock), times
 
 Bus::~Bus() = default;
 
-/// Limits the rate, because samplers only make progress if half a bit lasts at least a nanosecond. No module
-/// reaches this limit.
+/// Returns the real bit rate. It is limited, because samplers only make progress if half a bit lasts at least
+/// a nanosecond. No module reaches this limit.
 std::uint32_t Bus::bit_rate(std::uint32_t baud) const {
   constexpr std::uint64_t kFastest = 500'000'000;
   return static_cast<std::uint32_t>(std::min(std::uint64_t{baud} * times_faster_, kFastest));
@@ -65,7 +65,7 @@ void Bus::drive(End& end, bool on) {
   for (Byte& byte : on_the_wire_) {
     byte.collided = byte.collided || drivers_on_ > 1;
     if (!on && byte.station == end.index && byte.wave->end() > now) {
-      // The byte ends here. The rest of it is the idle level, which each receiver interprets.
+      // The sender leaves the line idle for the rest of the byte, and the receivers sample the result.
       byte.collided = true;
       byte.wave->cut_off = now;
     }
@@ -136,13 +136,13 @@ bool Bus::has_to_sample(const End& end) const {
          (end.sampler.busy() || !std::all_of(on_the_wire_.begin(), on_the_wire_.end(), gets_whole));
 }
 
-/// Lets those receivers sample that do not get all bytes on the wires whole.
+/// Starts to sample for each receiver that does not get all bytes on the wires whole.
 void Bus::begin_sampling() {
   for (const auto& end : ends_) {
     if (!end->samples && has_to_sample(*end)) {
       end->samples = true;
       ++sampling_;
-      // Until the first of these bytes, the line was idle or the receiver got whole bytes.
+      // Before the first of these bytes began, the line was idle or the receiver got whole bytes.
       end->sampler.skip_to(std::max(end->sampler.position(), on_the_wire_.front().wave->start));
       next_sample_ = std::min(next_sample_, end->sampler.next(end->bit_rate, clock_.virtual_now()));
     }
@@ -188,7 +188,7 @@ void Bus::run_samplers() {
   }
 }
 
-/// Takes the bytes that have ended off the wires, and delivers them.
+/// Removes the bytes that have ended from the wires, and delivers those that were not cut off.
 void Bus::finish_bytes() {
   const VirtualTime now = clock_.virtual_now();
   for (std::size_t i = 0; i < on_the_wire_.size();) {

@@ -20,7 +20,7 @@ using hal::doubles::Wire;
 /// A device on the two wires: a module or a master.
 class Station {
  public:
-  /// The bus calls this at the time that the station has set with BusEnd::run_at. The time is used up then.
+  /// The bus calls this at the time that the station has set with BusEnd::run_at. This clears the time.
   virtual void run() = 0;
   /// The bus calls this after the stop bit of a byte, if the station listens. A station also receives its own
   /// bytes, because both directions share the two wires.
@@ -52,7 +52,8 @@ class BusObserver {
   /// The disturbance has changed the byte that `station` begins to send now: receivers see `arrives` instead.
   virtual void changed(std::size_t /*station*/, Levels /*arrives*/) {}
   /// A byte that began at `start` has ended. A byte is not reported if its driver was disabled before its
-  /// end. `byte` is the byte that was sent. `collided`: another driver was enabled during this byte.
+  /// end. `byte` is the byte that was sent. `collided`: another driver was enabled, or another byte was on
+  /// the wires, during this byte.
   virtual void byte(std::size_t station, std::uint8_t byte, std::uint32_t baud, bool collided,
                     VirtualTime start, VirtualTime end) = 0;
 
@@ -76,10 +77,10 @@ class Disturbance {
   ~Disturbance() = default;
 };
 
-/// A half-duplex line with 8N1 characters. A byte takes ten bits at the rate of its sender. A receiver with
-/// the same rate gets the byte after its stop bit. A receiver with another rate samples the wave at its own
-/// rate and sees framing errors and garbage. If two drivers are enabled at once, a 0 from either driver wins,
-/// and receivers sample the resulting wave.
+/// A half-duplex line with 8N1 characters. A byte lasts ten bit times at the rate of its sender. A receiver
+/// with the same rate gets the byte after its stop bit. A receiver with another rate samples the wave at its
+/// own rate and sees framing errors and garbage. If two drivers are enabled at once, a 0 from either driver
+/// wins, and receivers sample the resulting wave.
 ///
 /// The clock jumps from event to event; this class does not depend on real time.
 ///

@@ -12,19 +12,20 @@ namespace ex9000::sim {
 using hal::doubles::kNever;
 using hal::doubles::VirtualTime;
 
-/// Each station has one due time. The times are the leaves of a binary tree, in which each node is the
-/// earlier one of its two children. If many stations set the same time in turn, as receivers do after each
-/// byte, most changes end at the first node above the leaf.
+/// Each station has one due time. The times are the leaves of a binary tree. Each other node holds the
+/// earlier time of its two children. If many stations set the same time in turn, for example receivers after
+/// each byte, half of the changes end at the first node above the leaf, and few reach the root.
 class DueTimes {
  public:
-  /// Adds a station, due never, and returns its number, counted from 0.
+  /// Adds a station without a due time. Returns its number, counted from 0.
   std::size_t add();
   /// Sets the due time of a station in place of its last one; kNever: none.
   void set(std::size_t station, VirtualTime when);
   /// Returns the earliest due time; kNever if there is none.
   [[nodiscard]] VirtualTime next() const { return tree_[kRoot]; }
-  /// Returns a station that is due at `now`, and removes its due time: that with the earliest due time, and
-  /// with the lowest number among several. nullopt if no station is due.
+  /// Returns the station with the earliest due time, if that is not after `now`, and removes the due time. If
+  /// several stations have the same due time, returns the lowest number. Returns nullopt if no station is
+  /// due.
   std::optional<std::size_t> take(VirtualTime now);
 
  private:

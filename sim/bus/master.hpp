@@ -13,22 +13,23 @@ class Master final : public Station {
  public:
   using Receive = std::function<void(std::uint8_t byte, ByteStatus status)>;
 
-  /// Attaches itself to `bus`. `receive` is called for every byte that other stations send.
+  /// Attaches itself to `bus`. `receive` is called for each byte that arrives while the master does not send.
   Master(Bus& bus, std::uint32_t baud, Receive receive);
   Master(const Master&) = delete;
   Master& operator=(const Master&) = delete;
 
   /// Returns how long `bytes` bytes take on this line.
   [[nodiscard]] VirtualTime takes(std::size_t bytes) const { return wire_.takes(bytes, baud_); }
-  /// Sends the bytes after those that already wait, or at once, but not before `not_before`. The driver is
-  /// enabled from the first byte to the last. Does not block.
+  /// Sends the bytes after those that already wait or are on the wires. If there are none, sends them at
+  /// once, but not before `not_before`. The driver is enabled from the first byte to the last. Does not
+  /// block.
   void send(const std::uint8_t* bytes, std::size_t size, VirtualTime not_before = VirtualTime(0));
   /// Whether bytes wait or are on the wires.
   [[nodiscard]] bool sending() const { return next_ != kNever; }
   /// Returns how many bytes wait for their start bit.
   [[nodiscard]] std::size_t waiting() const { return waiting_.size(); }
 
-  /// Sets the rate in bits per second. It takes effect with the next byte.
+  /// Sets the rate in bits per second. The receiver uses it at once, and the sender from the next byte on.
   void set_baud(std::uint32_t baud);
 
   [[nodiscard]] std::uint32_t baud() const { return baud_; }

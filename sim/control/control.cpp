@@ -200,7 +200,7 @@ const Verb& verb_called(const std::string& name) {
 std::string add_fault(Line& line, std::optional<std::size_t> module, const std::string& text) {
   Fault fault = parse_fault(text);
   if (module && !concerns_a_module(fault.trouble)) {
-    fail(text + ": concerns the line, not a module; leave out the module's number");
+    fail(text + ": concerns the line, not a module; leave out the module's position");
   }
   fault.module = module;
   return std::to_string(line.faults().add(fault));
@@ -284,7 +284,7 @@ std::string on_some_line(const Lines& lines, const Words& words) {
 std::string on_module(const Lines& lines, const Words& words) {
   const auto position = whole_number(words[0], modules_of(lines));
   if (!position || *position == 0) {
-    fail("no module " + words[0] + "; there are 1 to " + std::to_string(modules_of(lines)));
+    fail("no module " + words[0] + "; expected a position from 1 to " + std::to_string(modules_of(lines)));
   }
   if (words.size() == 1) {
     fail("'" + words[0] + "' is not a command; expected one of " + all_shapes());

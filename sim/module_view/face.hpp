@@ -51,7 +51,7 @@ struct InputRecords {
   friend bool operator==(const InputRecords& a, const InputRecords& b);
 };
 
-/// The state of the host watchdog.
+/// The state of the host watchdog; valid only while the module listens.
 struct HostWatchdogState {
   bool enabled = false;
   bool timed_out = false;              ///< the timeout status
@@ -65,15 +65,15 @@ struct HostWatchdogState {
 /// The content of the memory, whether the module is powered or not.
 struct Stored {
   struct Copy {
-    std::vector<std::uint8_t> bytes;        ///< the bytes of a valid copy, or its first page if it is invalid
+    std::vector<std::uint8_t> bytes;        ///< all of them; of an invalid copy, the first page of its place
     std::optional<std::uint16_t> sequence;  ///< nullopt: the copy is invalid
 
     friend bool operator==(const Copy& a, const Copy& b) { return a.bytes == b.bytes; }
   };
 
   std::vector<Copy> copies;            ///< in the order of kPlaces
-  std::optional<std::size_t> current;  ///< the copy in force; nullopt: no copy is valid
-  bool blank = false;                  ///< nothing has ever been stored: factory settings are in force
+  std::optional<std::size_t> current;  ///< the copy that a reset would load; nullopt: none is valid
+  bool blank = false;                  ///< nothing has been stored: a reset would load factory settings
   Settings settings;                   ///< those of `current`, or the factory settings
 
   friend bool operator==(const Stored& a, const Stored& b);

@@ -149,7 +149,7 @@ void BusTarget::choose_module(std::size_t position) {
     }
     index -= lines_[line]->size();
   }
-  throw std::runtime_error("no module " + std::to_string(position + 1) + "; there are 1 to " +
+  throw std::runtime_error("no module " + std::to_string(position + 1) + "; expected a position from 1 to " +
                            std::to_string(position - index));
 }
 

@@ -14,7 +14,7 @@ constexpr std::uint32_t kKey = 0x05FA;
 Core::Core(const SystemControl& clock, Timeline& timeline)
     : Peripheral(kBase), clock_(clock), timeline_(timeline), tick_(timeline, [this] { count_tick(); }) {}
 
-/// The counter is 0 when it is written. The next clock loads the reload value, and each further clock
+/// A write sets the counter to 0. The next clock loads the reload value, and each further clock
 /// decrements it. The exception becomes pending when the counter reaches 0.
 std::uint32_t Core::current() const {
   if ((tick_control_ & 1U) == 0) {
@@ -118,7 +118,8 @@ void Core::interrupt_line_of(unsigned interrupt, bool asserted) {
   }
 }
 
-/// Returns the exception to serve next, 0 if there is none. Ignores whether interrupts are held.
+/// Returns the exception to serve next, 0 if there is none. Does not consider whether interrupts are
+/// disabled.
 unsigned Core::next_to_serve() const {
   const std::uint64_t candidates = waiting();
   unsigned best = 0;

@@ -64,7 +64,8 @@ class Core final : public Peripheral {
   /// Returns the group priority: the part of a priority that decides whether one interrupt preempts another.
   [[nodiscard]] unsigned group(unsigned priority) const { return priority >> (group_shift_ + 1U); }
   [[nodiscard]] std::uint32_t tick_reload() const { return reload_; }
-  /// The time of the last tick, served or not.
+  /// The time of the last tick, served or not; before the first one, the time at which the counter was
+  /// enabled.
   [[nodiscard]] Instant ticked() const { return tick_began_; }
 
  private:

@@ -1,6 +1,6 @@
-// A plugin of the emulator, for AlarmClock. At one specified instruction, which loads a byte, the processor
-// waits until the other end of a socket lets it continue. Only the processor waits, and no emulated time
-// passes. A halt of the whole machine, which a debugger uses, takes ten times as long.
+// A plugin of the emulator. AlarmClock uses it. At one specified instruction, which loads a byte, the
+// processor waits until the other end of a socket lets it continue. Only the processor waits, and no emulated
+// time passes. A halt of the whole machine, which a debugger uses, takes ten times as long.
 //
 //     -plugin gate.so,address=INSTRUCTION,socket=PATH
 //
@@ -42,7 +42,7 @@ const int qemu_plugin_version = 1;
 namespace {
 
 constexpr int kNoRegisters = 0;
-constexpr int kLoads = 3;  // and stores: QEMU 7.2 does not call plugins that register for loads alone
+constexpr int kLoads = 3;  // and stores, because QEMU 7.2 calls no plugins that register for loads alone
 
 int the_socket = -1;
 std::uint64_t the_instruction = 0;

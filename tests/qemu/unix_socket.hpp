@@ -12,7 +12,7 @@ namespace ex9000::rig {
 /// or seconds on a busy machine.
 inline constexpr std::chrono::seconds kHang{60};
 
-/// A connection. All functions throw std::runtime_error on errors.
+/// A connection. The functions that send or receive throw std::runtime_error on errors.
 class UnixSocket {
  public:
   explicit UnixSocket(int fd) : fd_(fd) {}

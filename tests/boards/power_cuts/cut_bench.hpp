@@ -59,7 +59,7 @@ struct Attempt {
   std::vector<std::uint8_t> reply;
   Instant reply_after{0};  ///< from the end of the request until the driver is on; up to 0.1 ms too short
   unsigned spoiled = 0;    ///< bytes that the memory has stored incorrectly
-  unsigned tries = 0;      ///< number of whole copies that were programmed
+  unsigned tries = 0;      ///< number of pages that were programmed with at least 20 bytes
   std::vector<Contents> meanwhile;  ///< until the reply began, or the last page was programmed
   std::vector<Contents> behind;     ///< after that, for more than a second
   std::uint16_t outputs_before = 0;

@@ -1,6 +1,6 @@
-// Tests a worn-out EEPROM: it acknowledges everything, but one byte of a page keeps another value. The
+// Tests a worn-out EEPROM: it acknowledges everything, but some bits of one byte keep a fixed value. The
 // firmware reads back every write, so wire.md 8 still holds: "If a write fails, the module replies `?AA` or
-// exception 04, and everything stays as it was." As D15 requires, it tries three times.
+// exception 04, and everything stays as it was." As D15 requires, the firmware tries the store three times.
 #include <gtest/gtest.h>
 
 #include <chrono>
@@ -23,8 +23,8 @@ struct Stuck {
   std::uint8_t bits;
   std::uint8_t at;
 };
-/// The bytes belong to an address, a timeout, a name, a sequence number and a check. One bit, several bits or
-/// all bits of a byte are stuck.
+/// The bytes belong to the sequence number, the address, the name and the check, which has three of them. One
+/// bit, several bits or all bits of a byte are stuck.
 constexpr Stuck kStuck[] = {{23, 0xFF, 0x00}, {4, 0x80, 0x80},  {25, 0xFF, 0xFF},
                             {2, 0x03, 0x03},  {24, 0x55, 0xAA}, {14, 0xFF, 0x00}};
 
@@ -32,7 +32,7 @@ class WornPageOf : public testing::TestWithParam<ImageName> {
  protected:
   WornPageOf() : bench_(image_of(GetParam().board, GetParam().model), model_) {}
 
-  /// Checks that the answer and the outputs match `done`: whether the command was stored.
+  /// Checks that the reply and the outputs match `done`, which says whether the command was stored.
   void judge(const State& state, const StoringCommand& command, const Attempt& attempt, bool done) {
     const Settings wanted = command.done_to(state.settings, attempt.outputs_before);
     const Settings found = done ? wanted : state.settings;
@@ -78,7 +78,8 @@ TEST_P(WornPageOf, CausesARefusalAndLeavesTheStoredSettingsIntact) {
     for (const StoringCommand& command : storing_commands(model_)) {
       const State state = begin_at(beginning, model_, command);
       const bool second_counts = place_that_counts(storing, state.contents.data()) == kStoredPlaces[1];
-      // The newest copy is never overwritten, but a bit may be stuck at the value that it will have.
+      // Wear of the newest copy has no effect, because a store never overwrites it. Wear of the other copy
+      // has no effect if the stuck bits already have their new values.
       for (const bool of_the_one_that_counts : {false, true}) {
         const Stuck& stuck = kStuck[number++ % std::size(kStuck)];
         const std::size_t page = kStoredPlaces[second_counts == of_the_one_that_counts ? 1 : 0];
@@ -116,7 +117,7 @@ TEST_P(WornPageOf, CausesARefusalInTimeWithTheLongestRecordAndTheSlowestPages) {
     const Attempt attempt = bench_.attempt(state.contents, state.settings, command,
                                            kStoredPlaces[0] + kInTheLastPage, 0xFF, 0x00);
     ASSERT_EQ(attempt.spoiled, kTries);
-    ASSERT_EQ(attempt.tries, 3 + kTries);
+    ASSERT_EQ(attempt.tries, 3 + kTries);  // the other three pages were programmed once
     ASSERT_LT(attempt.reply_after, kInTime);
     judge(state, command, attempt, false);
     ASSERT_FALSE(HasFailure());

@@ -91,7 +91,7 @@ TEST(ControlLines, ModulesAreNumberedAcrossAllLines) {
   EXPECT_EQ(lines.tell("3 input 0 on"), "ok");
   EXPECT_EQ(lines.yard().module(0).input_levels(), 1);
   EXPECT_EQ(lines.hall().module(1).input_levels(), 0);
-  EXPECT_TRUE(has(lines.tell("4 power off"), "no module 4; there are 1 to 3"));
+  EXPECT_TRUE(has(lines.tell("4 power off"), "no module 4; expected a position from 1 to 3"));
 }
 
 TEST(ControlLines, AFaultBelongsToTheNamedLineOrToTheLineOfItsModule) {

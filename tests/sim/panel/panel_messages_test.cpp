@@ -1,4 +1,5 @@
-// Tests the messages to a page: first the whole state, then the changes, and a limited number of frames.
+// Tests the messages to a page: first the whole state, then the changes, and a limited number of frames. Also
+// tests the requests of a page, and the names that Loopback accepts.
 #include <gtest/gtest.h>
 
 #include <chrono>
@@ -121,10 +122,10 @@ TEST(PanelMessages, APageGetsTheTimeAfterOneSecondWithoutAMessage) {
   bench.module().set_input(0, true);
   EXPECT_FALSE(bench.look().is_null());
   bench.pass_wall_time(milliseconds(999));
-  EXPECT_TRUE(bench.look().is_null()) << "the second counts from what was told last";
+  EXPECT_TRUE(bench.look().is_null()) << "the second begins at the last message";
 }
 
-/// Two lines of two modules each; modules are numbered through both.
+/// Two lines with two modules each. The modules of both lines are numbered consecutively.
 class TwoLines {
  public:
   TwoLines() {

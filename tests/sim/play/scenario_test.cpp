@@ -163,15 +163,15 @@ TEST(Play, RefusesStepsThatDoNotFitTheBusBeforePlaying) {
     const char* mend;
   };
   for (const Wrong& wrong :
-       {Wrong{"module 4", "no module 4", "there are 1 to 3"},
+       {Wrong{"module 4", "no module 4", "expected a position from 1 to 3"},
         Wrong{"line shed", "no line 'shed'", "there are hall, yard"},
         Wrong{"input 0 on", "the EX9042D has no inputs", "choose a module with inputs"},
         Wrong{"module 2\npulse 8", "the EX9052D has no input 8", "it has 0 to 7"},
         Wrong{"fault lost", "'lost' is not a fault", "expected one of bit-errors"},
-        Wrong{"fault 4 gone", "no module 4", "there are 1 to 3"},
-        Wrong{"fault 0 gone", "no module 0", "there are 1 to 3"},
+        Wrong{"fault 4 gone", "no module 4", "expected a position from 1 to 3"},
+        Wrong{"fault 0 gone", "no module 0", "expected a position from 1 to 3"},
         Wrong{"fault 2", "the fault is empty", "expected one of bit-errors"},
-        Wrong{"fault 1 bit-errors 0.1", "concerns the line, not a module", "leave out the module's number"},
+        Wrong{"fault 1 bit-errors 0.1", "concerns the line, not a module", "leave out the module's position"},
         Wrong{"fault gone\nfault off 2", "no fault 2", "'faults' lists them"},
         Wrong{"fault off", "fault off", "K|all"}}) {
     const Directory directory;
