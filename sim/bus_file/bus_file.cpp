@@ -3,6 +3,7 @@
 #include <filesystem>
 #include <fstream>
 #include <sstream>
+#include <system_error>
 
 #include "sim/bus_file/keys.hpp"
 #include "sim/bus_file/located_json.hpp"
@@ -56,12 +57,17 @@ Setup parse_bus_file(const std::string& path, const std::string& text) {
 }
 
 Setup read_bus_file(const std::string& path) {
-  const std::ifstream file(path, std::ios::binary);
+  std::ifstream file;
+  std::error_code unknown;
+  // Opening a pipe may block, and a device may have no end.
+  if (std::filesystem::is_regular_file(path, unknown)) {
+    file.open(path, std::ios::binary);
+  }
+  if (!file.is_open()) {
+    fail(path + ": is not a file that can be read; 'ex9000-sim --example' prints a bus file");
+  }
   std::ostringstream text;
   text << file.rdbuf();
-  if (!file || std::filesystem::is_directory(path)) {  // opening a directory succeeds
-    fail(path + ": cannot be read; 'ex9000-sim --example' prints a bus file");
-  }
   return parse_bus_file(path, text.str());
 }
 

@@ -6,7 +6,7 @@
 #include <unistd.h>
 
 #include <cerrno>
-#include <cstdlib>
+#include <filesystem>
 #include <stdexcept>
 #include <utility>
 
@@ -19,13 +19,43 @@ namespace {
 
 constexpr std::size_t kSize = hal::doubles::Memory::kSize;
 
-/// Returns the umask. The caller sets the usual permissions with it, because those of mkostemp are more
-/// restrictive.
-mode_t file_mask() {
-  const mode_t mask = umask(0);
-  umask(mask);
-  return mask;
-}
+/// A file that gets its name when it is complete: if the process dies before, no incomplete file remains.
+class Draft {
+ public:
+  /// Opens the file in the folder of `path`. Some file systems do not support files without a name; there,
+  /// the file has a temporary name.
+  explicit Draft(const std::string& path) {
+    const std::filesystem::path folder = std::filesystem::path(path).parent_path();
+    constexpr mode_t kAsUmaskPermits = 0666;
+    constexpr int kFlags = O_RDWR | O_CLOEXEC;
+    fd_ = open(folder.empty() ? "." : folder.c_str(), kFlags | O_TMPFILE, kAsUmaskPermits);
+    name_ = "/proc/self/fd/" + std::to_string(fd_);
+    if (fd_ < 0 && (errno == EOPNOTSUPP || errno == EISDIR)) {
+      name_ = path + "." + std::to_string(getpid());
+      fd_ = open(name_.c_str(), kFlags | O_CREAT | O_EXCL, kAsUmaskPermits);
+      temporary_ = fd_ >= 0;
+    }
+  }
+  ~Draft() {
+    if (temporary_) {
+      unlink(name_.c_str());
+    }
+  }
+  Draft(const Draft&) = delete;
+  Draft& operator=(const Draft&) = delete;
+
+  /// The open file, which the caller has to close; -1 if it cannot be opened.
+  [[nodiscard]] int fd() const { return fd_; }
+  /// Does not replace an existing file. Returns false if the system call fails.
+  [[nodiscard]] bool link_to(const std::string& path) const {
+    return linkat(AT_FDCWD, name_.c_str(), AT_FDCWD, path.c_str(), AT_SYMLINK_FOLLOW) == 0;
+  }
+
+ private:
+  int fd_ = -1;
+  std::string name_;
+  bool temporary_ = false;
+};
 
 /// Returns the reason why an open file cannot be an image; empty if it may be an image.
 std::string flaw_of(const struct stat& status) {
@@ -105,30 +135,24 @@ EepromFile::~EepromFile() {
   }
 }
 
-/// Creates the file under a temporary name and links it when it is complete: if the process dies in between,
-/// no incomplete file remains at `path`.
 void EepromFile::create(const std::vector<std::uint8_t>& image) {
-  std::string draft = path_ + ".XXXXXX";
-  fd_ = mkostemp(draft.data(), O_CLOEXEC);
-  if (fd_ < 0) {
-    refuse("cannot be created: " + reason() + "; name a path that can be written");
-  }
-  const bool made = fchmod(fd_, 0666 & ~file_mask()) == 0 && write(0, {image.data(), image.size()}) &&
-                    flock(fd_, LOCK_EX | LOCK_NB) == 0 && link(draft.c_str(), path_.c_str()) == 0;
-  const std::string why =
-      errno == EEXIST ? "the file was created meanwhile, or the path is a dangling link" : reason();
-  unlink(draft.c_str());
-  if (!made) {
+  const Draft draft(path_);
+  fd_ = draft.fd();
+  if (fd_ < 0 || !write(0, {image.data(), image.size()}) || flock(fd_, LOCK_EX | LOCK_NB) != 0 ||
+      !draft.link_to(path_)) {
+    const std::string why =
+        errno == EEXIST ? "the file was created meanwhile, or the path is a dangling link" : reason();
     refuse("cannot be created: " + why + "; name a path that can be written");
   }
 }
 
 bool EepromFile::write(std::uint16_t address, Bytes bytes) const {
-  const ssize_t written = pwrite(fd_, bytes.data, bytes.size, address);
-  if (written >= 0 && static_cast<std::size_t>(written) < bytes.size) {
-    errno = ENOSPC;
+  // After an incomplete write, the next one fails with the reason.
+  ssize_t written = 0;
+  for (std::size_t done = 0; done < bytes.size && written >= 0; done += static_cast<std::size_t>(written)) {
+    written = pwrite(fd_, bytes.data + done, bytes.size - done, static_cast<off_t>(address + done));
   }
-  return written == static_cast<ssize_t>(bytes.size);
+  return written >= 0;
 }
 
 void EepromFile::lock() {

@@ -5,8 +5,9 @@
 #include <unistd.h>
 
 #include <cstddef>
-#include <filesystem>
 #include <functional>
+
+#include "sim/files/one_spelling.hpp"
 
 namespace ex9000::sim {
 
@@ -14,11 +15,7 @@ namespace {
 
 /// Returns the same name for all spellings of a path, short enough for the name of a socket.
 std::string name_of(const std::string& path) {
-  namespace fs = std::filesystem;
-  std::error_code error;
-  const fs::path directory = fs::path(path).has_parent_path() ? fs::path(path).parent_path() : ".";
-  const fs::path canonical = fs::canonical(directory, error) / fs::path(path).filename();
-  return "ex9000-sim/" + std::to_string(std::hash<std::string>()(canonical.string()));
+  return "ex9000-sim/" + std::to_string(std::hash<std::string>()(one_spelling(path)));
 }
 
 }  // namespace

@@ -7,6 +7,7 @@
 #include <set>
 #include <utility>
 
+#include "sim/files/one_spelling.hpp"
 #include "sim/text/fail.hpp"
 #include "sim/text/values.hpp"
 
@@ -49,17 +50,23 @@ void check(const LineSetup& line, std::size_t position) {
 /// Rejects paths and names that are given twice.
 class Once {
  public:
-  explicit Once(std::string problem) : problem_(std::move(problem)) {}
+  /// `identity` returns the same text for all names of the same thing.
+  using Identity = std::string (*)(const std::string& name);
+
+  explicit Once(
+      std::string problem, Identity identity = [](const std::string& name) { return name; })
+      : problem_(std::move(problem)), identity_(identity) {}
 
   void add(std::size_t line, const std::string& key, const std::optional<std::string>& name,
            std::optional<std::size_t> module = std::nullopt) {
-    if (name && !name->empty() && !seen_.insert(*name).second) {
+    if (name && !name->empty() && !seen_.insert(identity_(*name)).second) {
       throw SetupError(line, key, problem_, *name, module);
     }
   }
 
  private:
   std::string problem_;
+  Identity identity_;
   std::set<std::string> seen_;
 };
 
@@ -129,7 +136,7 @@ void check(const Setup& setup) {
   if (setup.capture && setup.capture->empty()) {
     throw SetupError(std::nullopt, "capture", "is empty; name a path");
   }
-  Once files("two modules cannot share a file; name one for each");
+  Once files("two modules cannot share a file; name one for each", one_spelling);
   Once ports("two lines cannot share a port; name one for each");
   Once names("two lines have this name; give each its own");
   for (std::size_t i = 0; i < setup.lines.size(); ++i) {
@@ -161,6 +168,11 @@ std::optional<LogFormat> parse_log(const std::string& text) {
 
 std::uint64_t parse_seed(const std::string& text) {
   return parse_whole_number(text, 0, std::numeric_limits<std::uint64_t>::max());
+}
+
+std::size_t parse_threads(const std::string& text) {
+  constexpr std::uint64_t kMostThreads = 256;
+  return parse_whole_number(text, 1, kMostThreads);
 }
 
 std::optional<PanelSetup> parse_panel(const std::string& text) {

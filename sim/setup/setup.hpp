@@ -71,6 +71,7 @@ struct Setup : Writing {
   std::optional<PanelSetup> panel;     ///< the page for a browser; nullopt: none
   bool watch = false;                  ///< show the modules on standard output
   Speed speed;
+  std::optional<std::size_t> threads;  ///< number of threads for the lines; nullopt: one for each processor
   /// How long the modules are up, in the lines' time, before the run ends; nullopt: until a signal or `quit`.
   std::optional<VirtualTime> lasts;
   std::uint64_t seed = 1;  ///< seed of all random events: noise, faults with a probability, bouncing contacts
@@ -111,6 +112,8 @@ void check(const Setup& setup);
 bool parse_line_kind(const std::string& text);
 /// Parses a whole number of up to 64 bits.
 std::uint64_t parse_seed(const std::string& text);
+/// Parses a number of threads.
+std::size_t parse_threads(const std::string& text);
 /// Parses `text`, `json` or `off`. Returns nullopt for `off`.
 std::optional<LogFormat> parse_log(const std::string& text);
 /// Parses a port number, `off` or an empty text. Returns a setup without a port for an empty text, and

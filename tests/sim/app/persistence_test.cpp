@@ -553,6 +553,9 @@ TEST(BadFile, TwoNamesOfOneMissingFileAreRefusedAndNoFileIsCreated) {
   expect_refused({"EX9042D,eeprom=image", "EX9052D@02,eeprom=./image"}, "./image", directory);
   expect_refused({"EX9042D,eeprom=place/image", "EX9052D@02,eeprom=elsewhere/image"}, "elsewhere/image",
                  directory);
+  const Finished finished =
+      run({simulator_path(), "EX9042D,eeprom=image", "EX9052D@02,eeprom=./image"}, directory.path());
+  EXPECT_TRUE(has(finished.error, "eeprom=./image: two modules cannot share a file")) << finished.error;
 }
 
 TEST(BadFile, NoFileIsCreatedIfAnotherArgumentIsRefused) {

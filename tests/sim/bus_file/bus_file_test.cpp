@@ -2,6 +2,7 @@
 #include "sim/bus_file/bus_file.hpp"
 
 #include <gtest/gtest.h>
+#include <sys/stat.h>
 
 #include <cstdlib>
 #include <filesystem>
@@ -357,12 +358,15 @@ TEST(BusFile, IsRecognizedByTheExtensionJson) {
   EXPECT_FALSE(is_bus_file("EX9042D"));
 }
 
-TEST(BusFile, IsRefusedWithItsPathIfItCannotBeRead) {
+TEST(BusFile, IsRefusedWithItsPathIfItIsNotAFile) {
   const system::Directory directory;
   std::filesystem::create_directory(directory / "folder.json");
-  for (const std::string& path : {directory / "missing.json", directory / "folder.json"}) {
+  std::filesystem::create_symlink("/dev/zero", directory / "endless.json");
+  ASSERT_EQ(mkfifo((directory / "pipe.json").c_str(), 0644), 0);
+  for (const char* name : {"missing.json", "folder.json", "endless.json", "pipe.json"}) {
+    const std::string path = directory / name;
     EXPECT_EQ(refusal([&] { read_bus_file(path); }),
-              path + ": cannot be read; 'ex9000-sim --example' prints a bus file");
+              path + ": is not a file that can be read; 'ex9000-sim --example' prints a bus file");
   }
 }
 

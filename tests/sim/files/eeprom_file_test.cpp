@@ -2,13 +2,16 @@
 #include "sim/files/eeprom_file.hpp"
 
 #include <gtest/gtest.h>
+#include <sys/inotify.h>
 #include <sys/resource.h>
 #include <sys/stat.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
 #include <algorithm>
+#include <array>
 #include <csignal>
+#include <cstring>
 #include <filesystem>
 #include <functional>
 #include <optional>
@@ -101,6 +104,42 @@ TEST(EepromFile, CreateWritesOnlyTheImage) {
   file.create(some_image());
   EXPECT_EQ(bytes_of_file(directory / "a"), text_of(some_image()));
   EXPECT_EQ(directory.contents().size(), 1U);
+}
+
+TEST(EepromFile, CreateMakesNoTemporaryFileThatCouldRemainAfterAKill) {
+  const Directory directory;
+  const int changes = inotify_init1(IN_NONBLOCK);
+  ASSERT_GE(inotify_add_watch(changes, directory.path().c_str(), IN_CREATE | IN_MOVED_TO), 0);
+  EepromFile file(directory / "a");
+  file.create(some_image());
+  alignas(inotify_event) std::array<char, 4096> events{};
+  const ssize_t size = read(changes, events.data(), events.size());
+  close(changes);
+  inotify_event first{};
+  ASSERT_GE(size, static_cast<ssize_t>(sizeof first));
+  std::memcpy(&first, events.data(), sizeof first);
+  EXPECT_STREQ(events.data() + sizeof first, "a");
+  EXPECT_EQ(size, static_cast<ssize_t>(sizeof first + first.len)) << "more than one file was created";
+}
+
+TEST(EepromFile, ANewFileHasThePermissionsThatTheUmaskAllows) {
+  const Directory directory;
+  const mode_t before = umask(027);
+  EepromFile file(directory / "a");
+  file.create(some_image());
+  umask(before);
+  EXPECT_EQ(fs::status(directory / "a").permissions(), fs::perms(0640));
+}
+
+TEST(EepromFile, AFileBeyondTheSizeLimitIsRefusedWithTheReasonAndLeavesNothing) {
+  const Directory directory;
+  for (const rlim_t limit : {0U, 4096U}) {
+    EepromFile file(directory / "a");
+    const FileSizeLimit limited(limit);
+    const std::string refused = refusal([&file] { file.create(some_image()); });
+    EXPECT_EQ(refused, directory / "a: cannot be created: File too large; name a path that can be written");
+    EXPECT_TRUE(directory.contents().empty());
+  }
 }
 
 TEST(EepromFile, AnExistingFileIsReadByteForByteAndNotChanged) {
