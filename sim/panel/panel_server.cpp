@@ -158,9 +158,9 @@ class PanelServer::Listener::Client : public std::enable_shared_from_this<Client
     if (error == http::error::header_limit) {
       answer(http::status::request_header_fields_too_large, "text/plain",
              "the header is too long; expected up to 8192 bytes\n");
-    } else if (error == http::error::body_limit) {
+    } else if (error == http::error::body_limit && reads(parser_.get())) {
       answer(http::status::payload_too_large, "text/plain", "requests with a body are not supported\n");
-    } else if (error) {
+    } else if (error && error != http::error::body_limit) {
       answer(http::status::bad_request, "text/plain", "the request is not valid HTTP\n");
     } else {
       serve(parser_.get());
@@ -179,8 +179,8 @@ class PanelServer::Listener::Client : public std::enable_shared_from_this<Client
       answer(http::status::forbidden, "text/plain", "requests from pages of other sites are not allowed\n");
     } else if (!is_fetched_by_us(request)) {
       answer(http::status::forbidden, "text/plain", "requests from other sites are not allowed\n");
-    } else if (request.method() != http::verb::get) {
-      answer(http::status::method_not_allowed, "text/plain", "only GET is supported\n");
+    } else if (!reads(request)) {
+      answer(http::status::method_not_allowed, "text/plain", "only GET and HEAD are supported\n");
     } else if (live && !websocket::is_upgrade(request)) {
       answer(http::status::upgrade_required, "text/plain", "this path requires a WebSocket\n");
     } else if (live) {
@@ -190,6 +190,10 @@ class PanelServer::Listener::Client : public std::enable_shared_from_this<Client
     } else {
       answer(http::status::not_found, "text/plain", "no such page\n");
     }
+  }
+
+  [[nodiscard]] static bool reads(const Request& request) {
+    return request.method() == http::verb::get || request.method() == http::verb::head;
   }
 
   /// Browsers do not send Origin with every request, but newer ones always send Sec-Fetch-Site.
@@ -213,10 +217,12 @@ class PanelServer::Listener::Client : public std::enable_shared_from_this<Client
     response_.set("Cross-Origin-Resource-Policy", "same-origin");
     response_.set("Referrer-Policy", "no-referrer");
     if (status == http::status::method_not_allowed) {
-      response_.set(http::field::allow, "GET");
+      response_.set(http::field::allow, "GET, HEAD");
     }
-    response_.body() = text;
-    response_.prepare_payload();
+    response_.content_length(text.size());
+    if (parser_.get().method() != http::verb::head) {
+      response_.body() = text;
+    }
     stream().expires_after(kRequestTimeout);
     http::async_write(
         stream(), response_,

@@ -107,10 +107,20 @@ class Server(unittest.TestCase):
     def test_nothing_else_is_served(self):
         for target in ("/nothing", "/../etc/passwd", "/panel.js?x", "//", "http://example.org/"):
             self.expect(404, request(self.port, target))
-        for method in "POST", "PUT", "DELETE", "OPTIONS", "HEAD", "FOO":
-            self.expect(405, request(self.port, method=method))
+        for method in "POST", "PUT", "DELETE", "OPTIONS", "FOO":
+            answer = self.expect(405, request(self.port, method=method))
+            self.assertIn(b"\r\nAllow: GET, HEAD\r\n", answer)
+            with_body = request(self.port, method=method, headers=["Content-Length: 10"]) + b"0123456789"
+            self.expect(405, with_body)
         self.expect(426, request(self.port, "/live", headers=[f"Origin: http://127.0.0.1:{self.port}"]))
-        self.expect(413, request(self.port, method="POST", headers=["Content-Length: 10"]) + b"0123456789")
+        for method in "GET", "HEAD":
+            self.expect(413, request(self.port, method=method, headers=["Content-Length: 10"]) + b"0123456789")
+
+    def test_head_gets_the_header_of_get_without_the_body(self):
+        for target in "/", "/panel.js", "/nothing":
+            header, body = ask(self.port, request(self.port, target)).split(b"\r\n\r\n", 1)
+            self.assertNotEqual(body, b"")
+            self.assertEqual(ask(self.port, request(self.port, target, method="HEAD")), header + b"\r\n\r\n")
 
     def test_what_is_malformed_is_refused(self):
         self.expect(431, request(self.port, headers=["X: " + "x" * 10000]))
