@@ -2,7 +2,6 @@
 
 #include <fcntl.h>
 #include <poll.h>
-#include <sys/inotify.h>
 #include <sys/stat.h>
 #include <termios.h>
 #include <unistd.h>
@@ -83,7 +82,7 @@ Pty::Pty(std::string link, std::uint32_t baud) : link_(std::move(link)), claim_(
   try {
     make(baud);
   } catch (...) {
-    close_all();
+    close(master_);
     throw;
   }
 }
@@ -99,14 +98,6 @@ void Pty::make(std::uint32_t baud) {
   if (!Slave(device_).set_up(baud)) {
     throw std::runtime_error(link_ + ": cannot set up " + device_ + ": " + reason());
   }
-  visits_ = inotify_init1(IN_NONBLOCK | IN_CLOEXEC);
-  if (visits_ < 0) {
-    throw std::runtime_error(link_ + ": cannot watch " + device_ + ": " + reason() +
-                             "; use fewer pseudo-terminals or raise fs.inotify.max_user_instances");
-  }
-  if (inotify_add_watch(visits_, device_.c_str(), IN_OPEN | IN_CLOSE) < 0) {
-    throw std::runtime_error(link_ + ": cannot watch " + device_ + ": " + reason());
-  }
   if (symlink(device_.c_str(), link_.c_str()) != 0) {
     throw std::invalid_argument(link_ + ": " + reason() + "; name a path that can be written");
   }
@@ -116,15 +107,7 @@ Pty::~Pty() {
   if (link_target(link_) == device_) {
     unlink(link_.c_str());
   }
-  close_all();
-}
-
-void Pty::close_all() const {
-  for (const int fd : {visits_, master_}) {
-    if (fd >= 0) {
-      close(fd);
-    }
-  }
+  close(master_);
 }
 
 bool Pty::visited() const {
@@ -132,12 +115,7 @@ bool Pty::visited() const {
   return poll(&master, 1, 0) == 0 || (master.revents & POLLHUP) == 0;
 }
 
-/// The events only indicate a change. They cannot be counted, because the kernel merges identical consecutive
-/// events.
-void Pty::take_visits() {
-  std::array<char, 4096> events{};
-  while (::read(visits_, events.data(), events.size()) > 0) {
-  }
+void Pty::take_visit() {
   const bool there = visited();
   if (there && deserted_) {
     Slave(device_).forget_unread();

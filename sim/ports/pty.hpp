@@ -16,8 +16,8 @@ class Pty {
   /// Creates a pseudo-terminal set to `baud` and a symbolic link to its slave at `link`. Replaces a link
   /// to a pseudo-terminal that no running simulator uses. Throws std::invalid_argument with a one-line
   /// message if anything else exists there, another simulator uses the path, or the path cannot be created,
-  /// and std::runtime_error if the system cannot create or watch a pseudo-terminal. After an exception,
-  /// neither the link nor the pseudo-terminal remains.
+  /// and std::runtime_error if the system cannot create a pseudo-terminal. After an exception, neither the
+  /// link nor the pseudo-terminal remains.
   Pty(std::string link, std::uint32_t baud);
   /// Removes the link, if it still belongs to this object.
   ~Pty();
@@ -30,11 +30,10 @@ class Pty {
   [[nodiscard]] const std::string& link() const { return link_; }
   /// The path of the slave, for example /dev/pts/5.
   [[nodiscard]] const std::string& device() const { return device_; }
-  /// Becomes readable when a master opens or closes the slave; then call `take_visits`.
-  [[nodiscard]] int visits_fd() const { return visits_; }
-  /// If a master has opened the slave after a time without any master, discards unread bytes, as a serial
-  /// port does: a new master must not receive a reply to the previous one.
-  void take_visits();
+  /// Call it when a master has opened or closed the slave. If a master has opened it after a time without any
+  /// master, discards unread bytes, as a serial port does: a new master must not receive a reply to the
+  /// previous one.
+  void take_visit();
   /// Whether a master has the slave open. Do not write otherwise: the bytes would wait for the next master.
   [[nodiscard]] bool visited() const;
 
@@ -43,13 +42,11 @@ class Pty {
 
  private:
   void make(std::uint32_t baud);
-  void close_all() const;
 
   std::string link_;
   Claim claim_;
   std::string device_;
   int master_ = -1;
-  int visits_ = -1;
   bool deserted_ = true;  ///< at the last check, no master had the slave open
 };
 

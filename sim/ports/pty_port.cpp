@@ -1,26 +1,37 @@
 #include "sim/ports/pty_port.hpp"
 
-#include <poll.h>
 #include <unistd.h>
 
 #include <array>
 #include <cerrno>
 #include <utility>
 
+#include "sim/text/fail.hpp"
+
 namespace ex9000::sim {
 
 PtyPort::PtyPort(boost::asio::io_context& io, const std::string& link, std::uint32_t baud)
-    : pty_(link, baud), visits_(io, pty_.visits_fd()), descriptor_(io, pty_.master_fd()) {}
+    : pty_(link, baud),
+      visits_(boost::asio::use_service<Visits>(io)),
+      watch_(watch()),
+      descriptor_(io, pty_.master_fd()) {}
 
-/// The pseudo-terminal owns the file descriptors.
+int PtyPort::watch() {
+  const auto visited = [this] {
+    pty_.take_visit();
+    read();
+  };
+  return with_place(pty_.link() + ": ", [&] { return visits_.watch(pty_.device(), visited); });
+}
+
+/// The pseudo-terminal owns the file descriptor.
 PtyPort::~PtyPort() {
-  visits_.release();
+  visits_.ignore(watch_);
   descriptor_.release();
 }
 
 void PtyPort::start(Received received) {
   received_ = std::move(received);
-  watch_visits();
   read();
 }
 
@@ -30,51 +41,34 @@ void PtyPort::resume() {
 }
 
 void PtyPort::read() {
-  if (reading_ || paused_) {
+  if (!received_ || reading_ || paused_) {
     return;
   }
   reading_ = true;
   descriptor_.async_wait(boost::asio::posix::stream_descriptor::wait_read,
                          [this](const boost::system::error_code& error) {
                            reading_ = false;
-                           if (!error && take()) {
+                           if (!error && take() >= 0) {
                              read();
                            }
                          });
 }
 
-void PtyPort::watch_visits() {
-  visits_.async_wait(boost::asio::posix::stream_descriptor::wait_read,
-                     [this](const boost::system::error_code& error) {
-                       if (!error) {
-                         pty_.take_visits();
-                         read();
-                         watch_visits();
-                       }
-                     });
-}
-
-/// Usually there is nothing to read, and a single system call detects that.
 void PtyPort::read_waiting() {
-  std::array<pollfd, 2> ready{{{pty_.visits_fd(), POLLIN, 0}, {pty_.master_fd(), POLLIN, 0}}};
-  const bool any = poll(ready.data(), ready.size(), 0) > 0;
-  if (any && ((ready[0].revents | ready[1].revents) & POLLIN) != 0) {
-    take();
+  while (!paused_ && take() > 0) {
   }
 }
 
-/// Returns false if no master has the pseudo-terminal open.
-bool PtyPort::take() {
-  pty_.take_visits();  // detect a new master before replying to its bytes
+/// Returns the number of bytes read; 0 if there are none, negative if no master has the pseudo-terminal open.
+ssize_t PtyPort::take() {
+  visits_.take();  // detect a new master before replying to its bytes
   std::array<std::uint8_t, 4096> bytes{};
-  while (!paused_) {
-    const ssize_t size = ::read(pty_.master_fd(), bytes.data(), bytes.size());
-    if (size <= 0) {
-      return size < 0 && errno == EAGAIN;
-    }
+  const ssize_t size = ::read(pty_.master_fd(), bytes.data(), bytes.size());
+  if (size > 0) {
     paused_ = !received_(bytes.data(), static_cast<std::size_t>(size));
+    return size;
   }
-  return true;
+  return size < 0 && errno == EAGAIN ? 0 : -1;
 }
 
 /// The pseudo-terminal buffers about 4 KiB before bytes are lost.

@@ -1,18 +1,21 @@
 // A pseudo-terminal that masters open like a serial port.
 #pragma once
 
+#include <sys/types.h>
+
 #include <boost/asio/io_context.hpp>
 #include <boost/asio/posix/stream_descriptor.hpp>
 #include <string>
 
 #include "sim/ports/port.hpp"
 #include "sim/ports/pty.hpp"
+#include "sim/ports/visits.hpp"
 
 namespace ex9000::sim {
 
 class PtyPort final : public Port {
  public:
-  /// See Pty::Pty.
+  /// See Pty::Pty. Throws std::runtime_error too if the system cannot watch the pseudo-terminal.
   PtyPort(boost::asio::io_context& io, const std::string& link, std::uint32_t baud);
   ~PtyPort() override;
 
@@ -27,11 +30,12 @@ class PtyPort final : public Port {
  private:
   /// Reads again whenever bytes arrive, until no master has the slave open or `received` returns false.
   void read();
-  bool take();
-  void watch_visits();
+  [[nodiscard]] ssize_t take();
+  int watch();
 
   Pty pty_;
-  boost::asio::posix::stream_descriptor visits_;
+  Visits& visits_;
+  int watch_;
   boost::asio::posix::stream_descriptor descriptor_;
   Received received_;
   bool reading_ = false;

@@ -113,21 +113,20 @@ void TcpPort::read_waiting() {
   }
   const std::list<ClientPointer> clients = clients_;
   for (const ClientPointer& client : clients) {
-    take(*client);
+    while (!client->paused && !take(*client)) {
+    }
   }
 }
 
-/// Reads all available bytes. Returns the error that ended reading; no error if the client is paused.
+/// Reads the available bytes, up to the size of a buffer. Returns the error if there are none.
 boost::system::error_code TcpPort::take(Client& client) {
   std::array<std::uint8_t, 4096> bytes{};
-  boost::system::error_code ended;
-  while (!client.paused && !ended && client.socket.is_open()) {
-    const std::size_t size = client.socket.read_some(boost::asio::buffer(bytes), ended);
-    if (!ended) {
-      client.paused = !received_(bytes.data(), size);
-    }
+  boost::system::error_code error;
+  const std::size_t size = client.socket.read_some(boost::asio::buffer(bytes), error);
+  if (!error) {
+    client.paused = !received_(bytes.data(), size);
   }
-  return ended;
+  return error;
 }
 
 /// If the limit is reached, removes the first client to connect of those that linger; if none lingers, does

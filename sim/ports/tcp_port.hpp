@@ -46,7 +46,7 @@ class TcpPort final : public Port {
   using ClientPointer = std::shared_ptr<Client>;
 
   void read(const ClientPointer& client);
-  boost::system::error_code take(Client& client);
+  [[nodiscard]] boost::system::error_code take(Client& client);
   void make_room();
   void part_with(const ClientPointer& client, bool listens);
   void forget(const ClientPointer& client);

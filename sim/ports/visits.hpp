@@ -1,0 +1,41 @@
+// Reports when masters open or close pseudo-terminals.
+#pragma once
+
+#include <boost/asio/io_context.hpp>
+#include <boost/asio/posix/stream_descriptor.hpp>
+#include <functional>
+#include <map>
+#include <string>
+
+namespace ex9000::sim {
+
+/// A service of an io_context, so that all its pseudo-terminals share one inotify instance. On Debian, a
+/// user may have only 128 of them. Get it with boost::asio::use_service. No function blocks.
+class Visits final : public boost::asio::io_context::service {
+ public:
+  static boost::asio::io_context::id id;
+
+  /// Called by boost::asio::use_service.
+  explicit Visits(boost::asio::io_context& io);
+  ~Visits() override = default;
+  Visits(const Visits&) = delete;
+  Visits& operator=(const Visits&) = delete;
+
+  /// From now on calls `visited` after a process has opened or closed `device`, while the io_context runs or
+  /// from `take`. Returns the number of the watch. Throws std::runtime_error with a one-line message if the
+  /// system cannot watch the device.
+  int watch(const std::string& device, std::function<void()> visited);
+  /// Ends a watch. Its function is not called any more.
+  void ignore(int watch);
+  /// Reports all visits up to now.
+  void take();
+
+ private:
+  void shutdown() override;
+  void wait();
+
+  boost::asio::posix::stream_descriptor inotify_;  ///< opened for the first watch
+  std::map<int, std::function<void()>> watches_;
+};
+
+}  // namespace ex9000::sim
