@@ -110,12 +110,14 @@ void Pacer::arm_timer() {
   if (paused_ && line_.clock().virtual_now() > wall()) {
     next = std::min(next, line_.clock().virtual_now() - kFarthestAhead);
   }
-  if (next == kNever) {
-    return;
+  if (next >= timer_expires_) {
+    return;  // setting the timer later would cost more than one early `follow`
   }
+  timer_expires_ = next;
   timer_.expires_at(when(next));
   timer_.async_wait([this](const boost::system::error_code& error) {
     if (!error) {
+      timer_expires_ = kNever;
       follow();
     }
   });

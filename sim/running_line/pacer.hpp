@@ -79,6 +79,7 @@ class Pacer final : private BusObserver {
             VirtualTime end) override;
 
   boost::asio::steady_timer timer_;
+  VirtualTime timer_expires_ = kNever;  ///< kNever: the timer is not set
   Line& line_;
   LinePorts::Notice notice_;
   LinePorts ports_;
