@@ -62,6 +62,7 @@ struct Texts {
 
   std::optional<std::string> control;
   std::optional<std::string> speed;
+  std::optional<std::string> threads;
   std::optional<std::string> lasts;
   std::optional<std::string> seed;
   std::optional<std::string> panel;
@@ -94,7 +95,7 @@ std::optional<std::size_t> take_position(std::string& text, std::size_t modules)
   const std::string number = text.substr(0, end);
   const std::size_t position = number.size() > kMostDigits ? 0 : std::stoul(number);
   if (position == 0 || position > modules) {
-    fail(text + ": no module " + number + "; there are 1 to " + std::to_string(modules));
+    fail(text + ": no module " + number + "; expected a position from 1 to " + std::to_string(modules));
   }
   text = end == std::string::npos ? "" : text.substr(end + 1);
   return position - 1;
@@ -105,7 +106,7 @@ Fault parse_fault_of_line(std::string text, std::size_t modules) {
   const auto module = take_position(text, modules);
   Fault fault = parse_fault(text);
   if (module && !concerns_a_module(fault.trouble)) {
-    fail(whole + ": concerns the line, not a module; leave out the module's number");
+    fail(whole + ": concerns the line, not a module; leave out the module's position");
   }
   fault.module = module;
   return fault;
@@ -115,7 +116,7 @@ void add_input(std::string text, std::vector<ModuleSpec>& modules) {
   const std::string whole = text;
   const auto module = take_position(text, modules.size());
   if (!module) {
-    fail("'" + whole + "': expected a module's position before it, for example 1 0 square 100ms");
+    fail("'" + whole + "': expected a module's position first, for example '1 0 square 100ms'");
   }
   modules[*module].inputs.push_back(parse_input_program(text, *modules[*module].model));
 }
@@ -152,7 +153,7 @@ LineSetup line_of(const Texts& texts) {
   return line;
 }
 
-/// Rejects options of a line, because the bus file defines them.
+/// Rejects other modules and options of a line, because the bus file defines them.
 void reject_line_options(const Texts& texts) {
   const std::pair<const char*, bool> given[] = {
       {"--input", !texts.inputs.empty()},     {"--fault", !texts.faults.empty()},
@@ -206,6 +207,9 @@ Setup setup_of(const Texts& texts) {
   }
   if (texts.speed) {
     setup.speed = of_option("--speed", *texts.speed, parse_speed);
+  }
+  if (texts.threads) {
+    setup.threads = of_option("--threads", *texts.threads, parse_threads);
   }
   if (texts.lasts) {
     setup.lasts = of_option("--for", *texts.lasts, parse_time);
@@ -288,9 +292,10 @@ const CLI::App* add_play(CLI::App& app, PlayTexts& texts) {
   CLI::App* const play = app.add_subcommand(
       "play", "play a transcript or a scenario in virtual time; exit with 0 if all steps pass, else with 1");
   play->footer(help::of_play());
-  play->add_option("FILE", texts.file, "the file, or a folder of them")->required();
+  play->add_option("FILE", texts.file, "the file, or a folder of such files")->required();
   play->add_option("MODULE", texts.modules, "for a scenario: the modules, or BUS.json");
-  play->add_option("--seed", texts.seed, "set the seed of random faults (default: 1)")->type_name("NUMBER");
+  play->add_option("--seed", texts.seed, "set the seed of random faults and bouncing inputs (default: 1)")
+      ->type_name("NUMBER");
   add_writing(*play, texts.writing);
   return play;
 }
@@ -388,11 +393,11 @@ void reject_arguments_before(const CLI::App& subcommand, const CLI::App& app) {
 void reject_other_arguments(const std::string& printing, const CLI::App& app) {
   for (const CLI::Option* option : given_of(app)) {
     if (option->get_name() != printing) {
-      fail(printing + ": prints and runs nothing; leave out " + name_of(*option));
+      fail(printing + ": only prints text; leave out " + name_of(*option));
     }
   }
   if (!app.get_subcommands().empty()) {
-    fail(printing + ": prints and runs nothing; leave out " + app.get_subcommands().front()->get_name());
+    fail(printing + ": only prints text; leave out " + app.get_subcommands().front()->get_name());
   }
 }
 
@@ -416,7 +421,7 @@ Parsed parse_arguments(int argc, const char* const* argv) {
   app.add_option("MODULE", texts.modules, "the modules on the line, or BUS.json");
   app.add_option("--pty", texts.pty,
                  std::string("make a pseudo-terminal and link it at this path (default: ") + kDefaultPty +
-                     " without --tcp and --serial)")
+                     " without --tcp, --serial and --speed max)")
       ->type_name("LINK");
   app.add_option("--tcp", texts.tcp, "serve the line's bytes over TCP (default HOST: 127.0.0.1)")
       ->type_name("HOST:PORT");
@@ -453,10 +458,13 @@ Parsed parse_arguments(int argc, const char* const* argv) {
                  "possible, without ports and with --for; step: only the control command 'advance' moves the "
                  "time")
       ->type_name("N|max|step");
+  app.add_option("--threads", texts.threads,
+                 "run the lines of a bus file on N threads (default: one for each processor)")
+      ->type_name("N");
   app.add_option("--for", texts.lasts, "end after this time on the lines, for example 10s or 24h")
       ->type_name("TIME");
   app.add_option("--seed", texts.seed,
-                 "set the seed of random faults; the same seed repeats the same faults (default: 1)")
+                 "set the seed of random faults and bouncing inputs; the same seed repeats them (default: 1)")
       ->type_name("NUMBER");
   add_writing(app, texts.writing);
   app.add_flag(

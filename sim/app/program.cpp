@@ -1,20 +1,18 @@
 #include "sim/app/program.hpp"
 
 #include <fcntl.h>
+#include <poll.h>
 #include <unistd.h>
 
-#include <algorithm>
 #include <boost/asio/io_context.hpp>
 #include <boost/asio/signal_set.hpp>
 #include <cerrno>
-#include <chrono>
 #include <csignal>
 #include <cstring>
 #include <iostream>
 #include <optional>
 #include <stdexcept>
 #include <string>
-#include <thread>
 
 #include "sim/app/arguments.hpp"
 #include "sim/app/play_record.hpp"
@@ -44,32 +42,26 @@ bool print(const std::string& text) {
   return static_cast<bool>(std::cout);
 }
 
-bool has_instant_line(const Setup& setup) {
-  return std::any_of(setup.lines.begin(), setup.lines.end(),
-                     [](const LineSetup& line) { return line.instant; });
-}
-
-/// A blocked process needs longer to wake up than an instant line needs to reply. Therefore this function
-/// polls for 50 us after each event, and yields the processor to other threads in between.
-void run_with_polling(boost::asio::io_context& io) {
-  using Clock = std::chrono::steady_clock;
-  constexpr std::chrono::microseconds kWhile{50};
-  while (io.run_one() != 0) {
-    for (Clock::time_point until = Clock::now() + kWhile; Clock::now() < until;) {
-      if (io.poll_one() != 0) {
-        until = Clock::now() + kWhile;
-      } else {
-        std::this_thread::yield();
-      }
+/// Waits until standard output accepts a line. Returns false if a signal asks the program to end first,
+/// because the reader of a full pipe may never read again.
+bool can_print(StopSignals& stop_signals) {
+  constexpr int kCheckEvery = 100;  // ms; a signal ends the wait, but not if another thread receives it
+  pollfd out{STDOUT_FILENO, POLLOUT, 0};
+  while (poll(&out, 1, 0) == 0) {
+    if (stop_signals.arrived()) {
+      return false;
     }
+    poll(&out, 1, kCheckEvery);
   }
+  return true;
 }
 
 void run(const Setup& setup) {
   boost::asio::io_context io;
+  StopSignals stop_signals;
   // The program ends when the reader of its log closes the pipe.
-  const auto print_line = [&io](const std::string& line) {
-    if (!print(line + "\n")) {
+  const auto print_line = [&io, &stop_signals](const std::string& line) {
+    if (!can_print(stop_signals) || !print(line + "\n")) {
       io.stop();
     }
   };
@@ -83,12 +75,10 @@ void run(const Setup& setup) {
   }
   Session session(io, setup, print_line, greet, terminal && terminal->is_open() ? &*terminal : nullptr);
   session.start();
-  if (setup.speed.paced() && has_instant_line(setup)) {
-    run_with_polling(io);
-  } else if (!setup.speed.max()) {
-    io.run();
-  } else {
+  if (setup.speed.max()) {
     session.run_unpaced();
+  } else {
+    io.run();
   }
   session.finish();
 }
@@ -124,7 +114,10 @@ void occupy_standard_streams() {
 
 int run_program(int argc, const char* const* argv) {
   occupy_standard_streams();
-  static_cast<void>(std::signal(SIGPIPE, SIG_IGN));  // print() handles a write to a closed pipe
+  // While these signals are ignored, a write to a closed pipe or beyond the file-size limit does not end the
+  // program. It fails, and the code that writes handles that.
+  static_cast<void>(std::signal(SIGPIPE, SIG_IGN));
+  static_cast<void>(std::signal(SIGXFSZ, SIG_IGN));
   try {
     const Parsed parsed = parse_arguments(argc, argv);
     print(parsed.output);

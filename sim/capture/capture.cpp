@@ -61,6 +61,7 @@ void Capture::write(std::size_t line, const Frame& frame) {
   packet.data = pdu.header();
   packet.data.insert(packet.data.end(), frame.bytes.begin(), frame.bytes.end());
   packet.comment = errors(frame);
+  const std::lock_guard<std::mutex> lock(writing_);
   file_.append(pcapng::enhanced_packet(packet));
 }
 

@@ -3,6 +3,7 @@
 
 #include <chrono>
 #include <cstdint>
+#include <mutex>
 #include <string>
 #include <vector>
 
@@ -30,6 +31,7 @@ class Capture {
   /// (since 1970-01-01 00:00:00 UTC) that corresponds to time 0 of the line. Returns the line's number for
   /// `write`.
   std::size_t add_line(const std::string& name, std::size_t modules, std::chrono::nanoseconds began);
+  /// Any thread may call it.
   void write(std::size_t line, const Frame& frame);
 
  private:
@@ -38,6 +40,7 @@ class Capture {
     std::chrono::nanoseconds began;
   };
 
+  std::mutex writing_;
   CaptureFile file_;
   std::vector<CapturedLine> lines_;
 };

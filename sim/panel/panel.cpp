@@ -63,6 +63,7 @@ struct Panel::Watched {
   LineSummary summary;
   const Line* line = nullptr;
   std::function<VirtualTime()> present;
+  VirtualTime now{0};            ///< the line's time at the last look
   std::size_t first_module = 0;  ///< position across all lines
   std::vector<Module> modules;
   RecentTraffic recent;
@@ -214,7 +215,7 @@ class Panel::Viewer final : public PanelViewer {
 
   [[nodiscard]] Message news_of(const Watched& watched) const {
     Message message;
-    message["now"] = std::chrono::duration_cast<std::chrono::microseconds>(watched.present()).count();
+    message["now"] = std::chrono::duration_cast<std::chrono::microseconds>(watched.now).count();
     if (watched.baud.has_changed_since(sent_look_)) {
       message["baud"] = watched.baud.value();
     }
@@ -280,6 +281,7 @@ void Panel::note(std::size_t line, VirtualTime now, const std::string& text) {
 void Panel::look() {
   const std::uint64_t look = ++state_->looks;
   for (Watched& watched : state_->lines) {
+    watched.now = watched.present();
     const VirtualTime now = watched.line->clock().virtual_now();
     for (Module& module : watched.modules) {
       Face face = face_of(*module.module, now);

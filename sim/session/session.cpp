@@ -1,8 +1,10 @@
 #include "sim/session/session.hpp"
 
 #include <algorithm>
+#include <boost/asio/dispatch.hpp>
 #include <chrono>
 #include <stdexcept>
+#include <thread>
 #include <utility>
 
 #include "sim/setup/paths_in_use.hpp"
@@ -10,11 +12,26 @@
 
 namespace ex9000::sim {
 
+namespace {
+
+/// Returns the number of threads for the lines. Lines that do not follow the wall clock run on the main
+/// thread, which moves their time.
+std::size_t threads_of(const Setup& setup) {
+  if (!setup.speed.paced()) {
+    return 1;
+  }
+  const std::size_t processors = std::max(1U, std::thread::hardware_concurrency());
+  return std::min(setup.threads.value_or(processors), setup.lines.size());
+}
+
+}  // namespace
+
 Session::Session(boost::asio::io_context& io, Setup setup, Print print, Print greet, Terminal* terminal)
     : io_(io),
       setup_(std::move(setup)),
       print_(std::move(print)),
       greet_(std::move(greet)),
+      threads_(io, threads_of(setup_)),
       end_(io),
       next_look_(io) {
   if (setup_.watch) {
@@ -24,9 +41,8 @@ Session::Session(boost::asio::io_context& io, Setup setup, Print print, Print gr
   for (const LineSetup& line : setup_.lines) {
     // With several lines, each message begins with the line's name. JSON contains it already.
     const bool as_it_is = line.name.empty() || for_machines();
-    const Print printed =
-        as_it_is ? print_ : [this, &line](const std::string& text) { print_(line.name + ": " + text); };
-    open_line(line, printed);
+    const std::string lead = as_it_is ? "" : line.name + ": ";
+    open_line(line, [this, lead](const std::string& text) { print_line(lead + text); });
   }
   open_control();
   open_panel();
@@ -34,12 +50,17 @@ Session::Session(boost::asio::io_context& io, Setup setup, Print print, Print gr
   open_capture();
 }
 
-Session::~Session() = default;
+Session::~Session() { threads_.end(); }
+
+void Session::print_line(const std::string& line) {
+  const std::lock_guard<std::mutex> lock(printing_);
+  print_(line);
+}
 
 void Session::open_line(const LineSetup& line, const Print& print) {
-  lines_.push_back(std::make_unique<RunningLine>(io_, line, setup_.seed + lines_.size(),
-                                                 setup_.log.value_or(LogFormat::Text), setup_.speed.stepped(),
-                                                 print));
+  lines_.push_back(
+      std::make_unique<RunningLine>(threads_.io(lines_.size()), line, setup_.seed + lines_.size(),
+                                    setup_.log.value_or(LogFormat::Text), setup_.speed.stepped(), print));
 }
 
 void Session::open_control() {
@@ -72,12 +93,23 @@ void Session::open_panel() {
     RunningLine& running = *lines_[i];
     panel_->add_line(running.introduced(), running.line(), [&running] { return running.pacer().present(); });
     running.record().tell(
-        [this, i](const Frame& frame) { panel_->hear(i, frame); },
-        [this, i](VirtualTime now, const std::string& text) { panel_->note(i, now, text); });
+        [this, i](const Frame& frame) {
+          boost::asio::dispatch(io_, [this, i, frame] { panel_->hear(i, frame); });
+        },
+        [this, i](VirtualTime now, const std::string& text) {
+          boost::asio::dispatch(io_, [this, i, now, text] { panel_->note(i, now, text); });
+        });
   }
-  with_place(place_of(setup_.places, "panel"),
-             [this] { panel_server_ = std::make_unique<PanelServer>(io_, setup_.panel->port, *panel_); });
+  with_place(place_of(setup_.places, "panel"), [this] {
+    panel_server_ = std::make_unique<PanelServer>(io_, setup_.panel->port, static_cast<PanelSource&>(*this));
+  });
 }
+
+void Session::look() {
+  threads_.pause_for([this] { panel_->look(); });
+}
+
+std::unique_ptr<PanelViewer> Session::viewer() { return panel_->viewer(); }
 
 void Session::watch_lines() {
   if (!watch_) {
@@ -95,7 +127,7 @@ void Session::watch_lines() {
 /// time calls look() instead.
 void Session::keep_watching() {
   constexpr auto kBetweenLooks = std::chrono::milliseconds(50);
-  watch_->look();
+  threads_.pause_for([this] { watch_->look(); });
   if (!setup_.speed.paced()) {
     return;
   }
@@ -129,7 +161,7 @@ Control::Reply Session::carry_out(const std::string& command) {
   for (const auto& running : lines_) {
     action = [&pacer = running->pacer(), action] { pacer.now(action); };
   }
-  action();
+  threads_.pause_for(action);
   return reply;
 }
 
@@ -180,18 +212,20 @@ void Session::start() {
     running->renew_memories();
   }
   make_files_and_greet();
-  for (const auto& running : lines_) {
+  for (std::size_t i = 0; i < lines_.size(); ++i) {
+    RunningLine& running = *lines_[i];
     if (setup_.log) {
-      running->record().print_frames();
+      running.record().print_frames();
     }
     if (ends()) {
-      running->end_at(*setup_.lasts);
+      running.end_at(*setup_.lasts);
     }
-    running->start();
+    running.start();
     if (setup_.speed.paced()) {
-      running->start_paced(io_, setup_.speed.factor);
+      running.start_paced(threads_.io(i), setup_.speed.factor);
     }
   }
+  threads_.start();
   if (setup_.speed.stepped()) {
     start_stepped();
   }
@@ -223,9 +257,11 @@ void Session::end_by_the_clock() {
     if (error) {
       return;
     }
-    for (const auto& running : lines_) {
-      running->run_until(*setup_.lasts);
-    }
+    threads_.pause_for([this] {
+      for (const auto& running : lines_) {
+        running->run_until(*setup_.lasts);
+      }
+    });
     io_.stop();
   });
 }
@@ -258,6 +294,8 @@ void Session::run_unpaced() {
 }
 
 void Session::finish() {
+  threads_.end();
+  threads_.rethrow();
   for (const auto& running : lines_) {
     running->finish();
   }

@@ -6,6 +6,7 @@
 #include <functional>
 #include <list>
 #include <memory>
+#include <mutex>
 #include <optional>
 #include <string>
 #include <vector>
@@ -18,6 +19,7 @@
 #include "sim/panel/panel.hpp"
 #include "sim/panel/panel_server.hpp"
 #include "sim/running_line/running_line.hpp"
+#include "sim/session/line_threads.hpp"
 #include "sim/session/stepper.hpp"
 #include "sim/session/stop_signals.hpp"
 #include "sim/setup/setup.hpp"
@@ -25,7 +27,7 @@
 
 namespace ex9000::sim {
 
-class Session {
+class Session : private PanelSource {
  public:
   using Print = RunningLine::Print;
 
@@ -34,7 +36,7 @@ class Session {
   /// and the greeting; if the log is JSON, `greet` gets the greeting instead. `terminal` is the terminal that
   /// `print` writes to, or null. `io` and `terminal` must outlive this object.
   Session(boost::asio::io_context& io, Setup setup, Print print, Print greet, Terminal* terminal);
-  ~Session();
+  ~Session() override;
   Session(const Session&) = delete;
   Session& operator=(const Session&) = delete;
 
@@ -52,6 +54,7 @@ class Session {
   [[nodiscard]] bool for_machines() const { return setup_.log == LogFormat::Json; }
   void keep_a_capture();
   void open_line(const LineSetup& line, const Print& print);
+  void print_line(const std::string& line);
   void open_control();
   [[nodiscard]] bool ends() const;
   void end_by_the_clock();
@@ -60,6 +63,10 @@ class Session {
   void open_capture();
   void watch_lines();
   void keep_watching();
+  // --- PanelSource ---
+  void look() override;
+  std::unique_ptr<PanelViewer> viewer() override;
+
   Control::Reply carry_out(const std::string& command);
   void answer(const std::string& command, const ControlSocket::Answer& answer);
   void start_stepped();
@@ -68,6 +75,8 @@ class Session {
   const Setup setup_;
   Print print_;
   Print greet_;
+  std::mutex printing_;
+  LineThreads threads_;
   std::unique_ptr<Watch> watch_;
   std::vector<std::unique_ptr<RunningLine>> lines_;
   boost::asio::steady_timer end_;

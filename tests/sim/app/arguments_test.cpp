@@ -264,13 +264,13 @@ TEST(Arguments, AnInputIsAssignedToTheModuleAtItsPosition) {
 
 TEST(Arguments, AWrongInputIsRefused) {
   for (const auto& [text, wrong, mend] : std::vector<std::array<const char*, 3>>{
-           {"", "--input", "a module's position before it"},
-           {" 1 0 square 1s", "' 1 0 square 1s'", "a module's position before it"},
-           {"square 100ms", "'square 100ms'", "for example 1 0 square 100ms"},
+           {"", "--input", "a module's position first"},
+           {" 1 0 square 1s", "' 1 0 square 1s'", "a module's position first"},
+           {"square 100ms", "'square 100ms'", "for example '1 0 square 100ms'"},
            {"1", "ex9000-sim: --input: the channel is missing; ", "'CHANNEL square PERIOD'"},
-           {"0 0 square 1s", "no module 0", "there are 1 to 1"},
-           {"2 0 square 1s", "no module 2", "there are 1 to 1"},
-           {"99999999999 0 square 1s", "no module 99999999999", "there are 1 to 1"},
+           {"0 0 square 1s", "no module 0", "expected a position from 1 to 1"},
+           {"2 0 square 1s", "no module 2", "expected a position from 1 to 1"},
+           {"99999999999 0 square 1s", "no module 99999999999", "expected a position from 1 to 1"},
            {"1 8 square 1s", "no input '8'", "0 to 7"},
            {"1 0 sine 1s", "'sine'", "square PERIOD"},
        }) {
@@ -299,9 +299,9 @@ TEST(Arguments, AWrongFaultIsRefused) {
            {" ", "--fault: the fault is empty", "expected one of bit-errors"},
            {"1", "--fault: the fault is empty", "expected one of bit-errors"},
            {"bogus", "--fault: 'bogus' is not a fault", "expected one of bit-errors"},
-           {"0 gone", "no module 0", "there are 1 to 1"},
-           {"2 gone", "no module 2", "there are 1 to 1"},
-           {"1 bit-errors 0.1", "1 bit-errors 0.1: concerns the line", "leave out the module's number"},
+           {"0 gone", "no module 0", "expected a position from 1 to 1"},
+           {"2 gone", "no module 2", "expected a position from 1 to 1"},
+           {"1 bit-errors 0.1", "1 bit-errors 0.1: concerns the line", "leave out the module's position"},
            {"gone at noon", "gone at noon: 'noon'", "12.5s"},
            {"gone\nat\nnoon", "gone at noon: 'noon'", "12.5s"},
        }) {
@@ -317,6 +317,15 @@ TEST(Arguments, ASeedIsAWholeNumber) {
   for (const char* seed : {"", "x", "1.5", "18446744073709551616", "0x10", " 1"}) {
     expect_error({"EX9042D", "--seed", seed}, "--seed: '" + std::string(seed) + "'",
                  "a whole number of at least 0");
+  }
+}
+
+TEST(Arguments, ThreadsAreANumberFrom1To256) {
+  EXPECT_EQ(all_accepted({"EX9042D"}).threads, std::nullopt);
+  EXPECT_EQ(all_accepted({"EX9042D", "--threads", "256"}).threads, 256U);
+  for (const char* threads : {"0", "257", "two", ""}) {
+    expect_error({"EX9042D", "--threads", threads}, "--threads: '" + std::string(threads) + "'",
+                 "a whole number from 1 to 256");
   }
 }
 
@@ -449,11 +458,11 @@ TEST(Arguments, WrongDescribeArgumentsAreRefused) {
 TEST(Arguments, HelpListsEveryOptionAndKey) {
   const std::string text = printed({"--help"});
   for (const char* word :
-       {"MODULE",        "[text|json|off]", "--capture", "--pty",          "--baud",    "--log",
-        "--strict-gaps", "--input",         "--fault",   "--seed",         "--example", "--models",
-        "describe",      "--format",        "--address", "home-assistant", "node-red",  "wb-mqtt-serial",
-        "--panel",       "--watch",         "--version", "protocol=",      "baud=",     "checksum=",
-        "edge=",         "name=",           "init=",     "@ADDR"}) {
+       {"MODULE",         "[text|json|off]", "--capture", "--pty",     "--baud",         "--log",
+        "--strict-gaps",  "--input",         "--fault",   "--seed",    "--threads",      "--example",
+        "--models",       "describe",        "--format",  "--address", "home-assistant", "node-red",
+        "wb-mqtt-serial", "--panel",         "--watch",   "--version", "protocol=",      "baud=",
+        "checksum=",      "edge=",           "name=",     "init=",     "@ADDR"}) {
     EXPECT_NE(text.find(word), std::string::npos) << word;
   }
 }
@@ -471,12 +480,12 @@ TEST(Arguments, VersionIsThatOfTheFirmware) { EXPECT_EQ(printed({"--version"}), 
 
 TEST(Arguments, PrintingOptionsRejectOtherArguments) {
   EXPECT_EQ(printed({"EX9042D", "--version"}), printed({"--version"}));
-  expect_error({"--models", "EX9042D"}, "--models: prints and runs nothing", "leave out EX9042D");
-  expect_error({"--example", "--log"}, "--example: prints and runs nothing", "leave out --log");
-  expect_error({"--example", "--seed", "abc"}, "--example: prints and runs nothing", "leave out --seed");
-  expect_error({"--models", "--example"}, "--models: prints and runs nothing", "leave out --example");
-  expect_error({"--models", "play", "s.txt"}, "--models: prints and runs nothing", "leave out play");
-  expect_error({"--example", "describe"}, "--example: prints and runs nothing", "leave out describe");
+  expect_error({"--models", "EX9042D"}, "--models: only prints text", "leave out EX9042D");
+  expect_error({"--example", "--log"}, "--example: only prints text", "leave out --log");
+  expect_error({"--example", "--seed", "abc"}, "--example: only prints text", "leave out --seed");
+  expect_error({"--models", "--example"}, "--models: only prints text", "leave out --example");
+  expect_error({"--models", "play", "s.txt"}, "--models: only prints text", "leave out play");
+  expect_error({"--example", "describe"}, "--example: only prints text", "leave out describe");
 }
 
 }  // namespace

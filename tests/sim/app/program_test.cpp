@@ -1,5 +1,7 @@
 // Tests the program as a process: its start, its end, and its messages about wrong arguments.
+#include <fcntl.h>
 #include <gtest/gtest.h>
+#include <sys/ioctl.h>
 #include <unistd.h>
 
 #include <algorithm>
@@ -14,6 +16,7 @@
 
 #include "firmware/model/model.hpp"
 #include "tests/support/simulator_process.hpp"
+#include "tests/support/socket_client.hpp"
 
 namespace ex9000::system {
 namespace {
@@ -84,6 +87,41 @@ TEST(Program, AFullDiskForStandardOutputIsReported) {
     EXPECT_EQ(std::count(finished.error.begin(), finished.error.end(), '\n'), 1) << finished.error;
     EXPECT_TRUE(fs::is_empty(directory.path()));
   }
+}
+
+/// Returns how many bytes a pipe may hold without room for one more line. A page holds only whole lines.
+int full(int pipe) {
+  const int capacity = fcntl(pipe, F_GETPIPE_SZ);
+  return capacity - capacity / 8;
+}
+
+TEST(Program, ASignalEndsItAlthoughThePipeOfItsLogIsFull) {
+  for (const int signal : {SIGINT, SIGTERM}) {
+    SimulatorProcess simulator({"EX9042D@01", "--tcp", "0", "--line", "instant", "--log"});
+    SocketClient master(simulator.tcp_port());
+    std::string requests;
+    for (int i = 0; i < 4000; ++i) {
+      requests += "$01M\r";
+    }
+    master.send(requests);
+    const std::string out = "/proc/" + std::to_string(simulator.pid()) + "/fd/1";
+    const int pipe = open(out.c_str(), O_RDONLY | O_NONBLOCK | O_CLOEXEC);
+    ASSERT_GE(pipe, 0);
+    for (int waiting = 0; waiting < full(pipe);) {
+      ASSERT_EQ(ioctl(pipe, FIONREAD, &waiting), 0);
+      std::this_thread::yield();
+    }
+    EXPECT_EQ(simulator.end(signal), 0);
+    close(pipe);
+  }
+}
+
+TEST(Program, AFileSizeLimitForStandardOutputIsReported) {
+  const Directory directory;
+  const Finished finished =
+      run({"sh", "-c", "ulimit -f 0; exec " + simulator_path() + " --help > help"}, directory.path());
+  EXPECT_EQ(finished.status, 1);
+  EXPECT_EQ(finished.error, "ex9000-sim: standard output: File too large\n");
 }
 
 TEST(Program, ALinkInUseByAnotherUsersSimulatorIsNotTakenOver) {

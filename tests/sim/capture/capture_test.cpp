@@ -416,7 +416,7 @@ TEST(Capture, AWriteErrorLeavesNoCreatedFilesBehind) {
   write_file(directory / "a.txt", "> $01M\n< !019042D\n");
   for (const char* arguments : {" EX9042D@01", " EX9042D@01,eeprom=n.bin", " play a.txt EX9042D"}) {
     const std::string command =
-        "trap '' XFSZ; ulimit -f 0; exec " + simulator_path() + arguments + " --capture line.pcapng";
+        "ulimit -f 0; exec " + simulator_path() + arguments + " --capture line.pcapng";
     const Finished limited = run({"sh", "-c", command}, directory.path());
     EXPECT_EQ(limited.status, std::string(arguments).find("n.bin") == std::string::npos ? 1 : 2)
         << limited.error;

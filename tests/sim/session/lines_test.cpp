@@ -8,6 +8,8 @@
 #include <filesystem>
 #include <sstream>
 #include <string>
+#include <system_error>
+#include <thread>
 #include <vector>
 
 #include "tests/support/control_client.hpp"
@@ -75,6 +77,17 @@ constexpr const char* kHallAndYard = R"({"lines": [
    "modules": [{"model": "EX9042D", "address": "01"}, {"model": "EX9055D", "address": "02"}]},
   {"name": "yard", "pty": "yard.tty", "tcp": 0, "line": "instant",
    "modules": [{"model": "EX9052D", "address": "01"}]}]})";
+
+/// Debian permits 128 inotify instances for each user.
+TEST(Lines, ThePseudoTerminalsOfAThreadShareOneInotifyInstance) {
+  Lines lines(kHallAndYard, {"--threads", "1"});
+  int instances = 0;
+  for (const auto& file : fs::directory_iterator("/proc/" + std::to_string(lines.process().pid()) + "/fd")) {
+    std::error_code closed_meanwhile;
+    instances += fs::read_symlink(file.path(), closed_meanwhile) == "anon_inode:inotify" ? 1 : 0;
+  }
+  EXPECT_EQ(instances, 1);
+}
 
 /// Reads `size` bytes. Returns fewer only if the program hangs.
 std::vector<std::uint8_t> read_exactly(Terminal& terminal, std::size_t size) {
@@ -171,6 +184,43 @@ TEST(Lines, FaultsAffectTheNamedLineOnly) {
   }
   EXPECT_EQ(ask(yard, "$01M"), "!019052");
   EXPECT_EQ(ask(hall, "$02M"), "!029055");
+}
+
+TEST(Lines, RunOnAnyNumberOfThreadsWithLogCaptureAndCommands) {
+  constexpr int kRequests = 50;
+  for (const char* threads : {"1", "2", "8"}) {
+    Lines lines(R"({"lines": [
+      {"tcp": 0, "line": "instant", "modules": [{"model": "EX9042D"}, {"model": "EX9052D", "address": "02"}]},
+      {"tcp": 0, "line": "instant", "modules": [{"model": "EX9042D"}]},
+      {"tcp": 0, "line": "instant", "modules": [{"model": "EX9042D"}]}]})",
+                {"--threads", threads, "--log", "--capture", "lines.pcapng"});
+    std::vector<std::string> wrong(3);
+    std::vector<std::thread> masters;
+    for (int line = 0; line < 3; ++line) {
+      masters.emplace_back([&wrong = wrong[static_cast<std::size_t>(line)], port = lines.tcp_port(line)] {
+        SocketClient master(port);
+        for (int i = 0; i < kRequests; ++i) {
+          master.send("$01M\r");
+          const std::string reply = master.receive_text(9);
+          wrong += reply == "!019042D\r" ? "" : reply + ",";
+        }
+      });
+    }
+    for (int i = 0; i < kRequests; ++i) {
+      EXPECT_EQ(lines.control().ask(i % 2 == 0 ? "2 input 3 on" : "2 input 3 off"), "ok");
+      EXPECT_EQ(lines.control().ask("2 inputs"), i % 2 == 0 ? "ok 0008" : "ok 0000");
+    }
+    for (std::thread& master : masters) {
+      master.join();
+    }
+    EXPECT_EQ(wrong, std::vector<std::string>(3)) << threads;
+    EXPECT_TRUE(lines.process().wait_for("  < 01 EX9042D  !019042D\\r", 3 * kRequests));
+    std::istringstream log(lines.process().output());
+    for (std::string line; std::getline(log, line);) {
+      EXPECT_TRUE(!has(line, "  < 01 EX9042D") || line.rfind("line", 0) == 0) << line;
+    }
+    EXPECT_EQ(lines.process().end(SIGTERM), 0) << threads;
+  }
 }
 
 TEST(Lines, OfTheExampleBusFileStart) {
