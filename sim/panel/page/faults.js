@@ -4,9 +4,9 @@ import {make, setAttribute, setText} from "/element.js";
 import {Switch} from "/switch.js";
 
 export class Faults {
-  /// `usual`: the initial list of faults; `modules`: {position, model} of each module on the line; `tell(command)`
-  /// carries out a command.
-  constructor(line, several, usual, modules, tell) {
+  /// `several`: there are several lines; `unfolded`: their lists are open at first; `usual`: the initial list of
+  /// faults; `modules`: {position, model} of each module on the line; `tell(command)` carries out a command.
+  constructor(line, {several, unfolded, usual}, modules, tell) {
     this.prefix = several ? `line ${line.name} ` : "";
     this.tell = tell;
     this.known = new Map();
@@ -16,8 +16,11 @@ export class Faults {
     for (const text of usual) {
       this.learn(text, null);
     }
-    this.element = make("section", {class: "faultline", "aria-label": `Faults of ${line.name || "the line"}`},
-      several ? make("h3", {}, line.name) : "", this.list, this.form(modules), this.said);
+    const attributes = {class: "faultline", "aria-label": `Faults of ${line.name || "the line"}`};
+    const content = [this.list, this.form(modules), this.said];
+    this.element = several
+      ? make("details", {...attributes, open: unfolded}, make("summary", {}, make("h3", {}, line.name)), ...content)
+      : make("section", attributes, ...content);
   }
 
   form(modules) {

@@ -1,7 +1,8 @@
 // The panel: one page that shows the simulator's messages as they arrive.
 
-import {make, setText} from "/element.js";
+import {setText} from "/element.js";
 import {Faults} from "/faults.js";
+import {LineView, mostUnfolded} from "/line_view.js";
 import {Live} from "/live.js";
 import {Plate} from "/plate.js";
 import {Timeline} from "/timeline.js";
@@ -11,7 +12,9 @@ const timeline = new Timeline();
 let run = null;
 let version = null;
 let speed = 1;
+/// The plates that exist, by position, and the state of every module.
 let plates = [];
+let states = [];
 let lines = [];
 /// For each line, the time of its clock, and the time at which the page received it.
 let clocks = [];
@@ -41,21 +44,33 @@ function begin(hello) {
     several ? `${hello.lines.length} lines` : [first.name, first.ports.join(", ")].filter(Boolean).join(": ")]
     .filter(Boolean).join(" · "));
   const wayOfClicks = () => document.querySelector("input[name=way]:checked").value;
-  plates = hello.modules.map((layout, position) => {
+  const plateOf = (position) => {
     const its = (command) => command && `${position + 1} ${command}`;
-    return new Plate(layout, position, (command, undo) => live.tell(its(command), its(undo)), wayOfClicks);
-  });
+    if (!plates[position]) {
+      plates[position] = new Plate(hello.modules[position], position,
+        (command, undo) => live.tell(its(command), its(undo)), wayOfClicks);
+      plates[position].show(states[position]);
+    }
+    return plates[position];
+  };
+  plates = [];
+  states = hello.modules.map(() => ({}));
+  const count = states.length === 1 ? "one" : states.length > 8 ? "many" : "some";
+  const unfolded = states.length <= mostUnfolded;
+  const modulesOf = hello.lines.map(() => []);
+  hello.modules.forEach(({model, line}, position) => modulesOf[line].push({position, model}));
   lines = hello.lines.map((line, index) => {
-    const modules = hello.modules.map((layout, position) => ({position, model: layout.model, line: layout.line}))
-      .filter((module) => module.line === index);
-    const faults = new Faults(line, several, hello.usualFaults, modules, (command) => live.tell(command));
-    return {...line, modules, faults};
+    const modules = modulesOf[index];
+    const faults = new Faults(line, {several, unfolded, usual: hello.usualFaults}, modules,
+      (command) => live.tell(command));
+    const view = several ? new LineView(line, modules, count, unfolded, (position) => states[position], plateOf) : null;
+    return {...line, modules, faults, view};
   });
-  at("plates").dataset.count = plates.length === 1 ? "one" : plates.length > 8 ? "many" : "some";
-  at("plates").replaceChildren(...(several ? lines.flatMap((line) =>
-    [make("h3", {class: "linename"}, line.name, " ", make("span", {class: "quiet"}, line.ports.join(", "))),
-      ...line.modules.map(({position}) => plates[position].element)])
-    : plates.map((plate) => plate.element)));
+  at("finder").hidden = !several;
+  at("find").value = "";
+  at("plates").dataset.count = count;
+  at("plates").replaceChildren(...(several ? lines.map(({view}) => view.element)
+    : states.map((_, position) => plateOf(position).element)));
   at("faultlines").replaceChildren(...lines.map((line) => line.faults.element));
   timeline.begin(lines, (line, station) => {
     if (station === undefined) {
@@ -67,9 +82,25 @@ function begin(hello) {
   }, now);
 }
 
+/// Shows the modules that match the words in the search field. Opens their lines, unless too many match.
+function find() {
+  const words = at("find").value.toLowerCase().split(/\s+/).filter(Boolean);
+  const found = lines.map(({view}) => view.matches(words));
+  const total = found.reduce((sum, modules) => sum + modules.length, 0);
+  lines.forEach(({view, faults}, index) => {
+    view.show(found[index]);
+    faults.element.hidden = !found[index].length;
+    if (words.length) {
+      view.unfold(found[index].length > 0 && total <= mostUnfolded);
+    }
+  });
+  setText(at("found"), words.length ? `${total} modules found` : "");
+}
+
 function show(message) {
-  for (const news of message.state?.modules ?? []) {
-    plates[news.module].show(news);
+  for (const {module, ...news} of message.state?.modules ?? []) {
+    Object.assign(states[module], news);
+    plates[module]?.show(news);
   }
   for (const [index, news] of (message.state?.lines ?? []).entries()) {
     if (news.faults) {
@@ -104,9 +135,7 @@ function take(message) {
 /// Draws everything, once per repaint.
 function repaint(when) {
   fresh.splice(0).forEach(show);
-  for (const plate of plates) {
-    plate.tick(now(plate.layout.line));
-  }
+  plates.forEach((plate) => plate.tick(now(plate.layout.line)));
   timeline.draw(when);
   requestAnimationFrame(repaint);
 }
@@ -131,5 +160,6 @@ const header = document.querySelector(".top");
 const measure = () => document.documentElement.style.setProperty("--top", `${header.offsetHeight}px`);
 new ResizeObserver(measure).observe(header);
 
+at("find").addEventListener("input", find);
 const live = new Live(take, lost);
 requestAnimationFrame(repaint);

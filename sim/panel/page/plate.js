@@ -79,7 +79,7 @@ export class Plate {
   /// Call it when the connection is lost.
   lost() { this.inputs.forEach((input) => input.lost()); }
 
-  /// Shows the changes in `news`.
+  /// Shows the changes in `news`, which may be empty.
   show(news) {
     if (news.plate) {
       this.plate = news.plate;
