@@ -1,92 +1,121 @@
-// Measures the throughput of the simulator: first one line, compared with servers that use libmodbus and
-// pymodbus; then eight lines of 32 modules in one process.
+// Measures the processor time that the simulator uses for a transaction, beside servers that use libmodbus
+// and pymodbus on the same transport; then the cost of many modules, of many lines and of memory.
 //
 //     load [--without pymodbus] [MILLISECONDS]    duration of each measurement; default 1000
-#include <unistd.h>
-
-#include <algorithm>
+//
+// Fails if a ratio is above its limit. Times alone only depend on the machine.
 #include <array>
 #include <chrono>
 #include <cstdio>
 #include <cstdlib>
 #include <fstream>
-#include <optional>
+#include <memory>
 #include <sstream>
 #include <string>
 #include <thread>
 #include <vector>
 
 #include "tests/bench/load/polling_master.hpp"
-#include "tests/support/simulator_process.hpp"
+#include "tests/bench/load/server.hpp"
 
 namespace {
 
-using ex9000::bench::PollingMaster;
+using namespace ex9000::bench;
 using ex9000::system::ChildProcess;
 using ex9000::system::Directory;
+using ex9000::system::simulator_path;
 using ex9000::system::SimulatorProcess;
 using Clock = std::chrono::steady_clock;
+using std::chrono::milliseconds;
 
-constexpr std::size_t kRounds = 5;
 constexpr unsigned kLines = 8;
 constexpr unsigned kModules = 32;
+constexpr unsigned kMostModules = 247;
 
-/// Returns the word that a server prints when it is ready. Throws std::runtime_error if the server does not
-/// start.
-std::string announced(ChildProcess& server) {
-  if (!server.wait_for("\n")) {
-    throw std::runtime_error("a server has not started");
-  }
-  return server.output().substr(0, server.output().find('\n'));
+bool failed = false;
+
+/// Prints a ratio with its target, and fails if it is above `limit`.
+void judge(const std::string& what, double ratio, double target, double limit) {
+  std::printf("  %s: %.2f (target: %.2f, limit: %.2f)%s\n", what.c_str(), ratio, target, limit,
+              ratio > limit ? "  TOO MUCH" : "");
+  failed = failed || ratio > limit;
 }
 
-struct Peer {
-  const char* name;
-  PollingMaster master;
-  std::array<double, kRounds> rates{};
-
-  [[nodiscard]] double median() const {
-    auto sorted = rates;
-    std::sort(sorted.begin(), sorted.end());
-    return sorted[kRounds / 2];
+std::vector<std::string> line_of(unsigned modules) {
+  std::vector<std::string> arguments;
+  for (unsigned address = 1; address <= modules; ++address) {
+    std::array<char, 8> hex{};
+    std::snprintf(hex.data(), hex.size(), "%02X", address);
+    arguments.push_back(std::string("EX9042D-M@") + hex.data());
   }
-};
-
-/// Returns the transactions per second.
-double rate_of(PollingMaster& master, std::chrono::milliseconds time) {
-  const auto began = Clock::now();
-  const auto transactions = static_cast<double>(master.poll_until(began + time, 1));
-  return transactions / std::chrono::duration<double>(Clock::now() - began).count();
+  arguments.insert(arguments.end(), {"--line", "instant"});
+  return arguments;
 }
 
-void compare(std::chrono::milliseconds time, bool with_pymodbus) {
-  SimulatorProcess simulator({"EX9042D-M@01", "--tcp", "0", "--line", "instant"});
-  SimulatorProcess other_simulator({"EX9042D-M@01", "--line", "instant"});
-  ChildProcess libmodbus({EX9000_LIBMODBUS_SERVER}, "/");
-  std::optional<ChildProcess> pymodbus;
-  std::optional<ChildProcess> pymodbus_tcp;
-  std::vector<Peer> peers;
-  peers.push_back({"ex9000-sim, TCP", PollingMaster::over_tcp(simulator.tcp_port())});
-  peers.push_back({"ex9000-sim, pseudo-terminal", PollingMaster::over_tty(other_simulator.tty())});
-  peers.push_back({"libmodbus, pseudo-terminal", PollingMaster::over_tty(announced(libmodbus))});
+std::vector<std::string> over_tcp(std::vector<std::string> arguments) {
+  arguments.insert(arguments.end(), {"--tcp", "0"});
+  return arguments;
+}
+
+std::unique_ptr<ChildProcess> pymodbus_server(const std::vector<std::string>& arguments) {
+  std::vector<std::string> command{"/usr/bin/python3", EX9000_PYMODBUS_SERVER};
+  command.insert(command.end(), arguments.begin(), arguments.end());
+  return std::make_unique<ChildProcess>(command, "/");
+}
+
+/// One module over TCP and over a pseudo-terminal.
+void compare_one_module(milliseconds time, bool with_pymodbus) {
+  const SimulatorProcess tcp_simulator(over_tcp(line_of(1)));
+  const SimulatorProcess tty_simulator(line_of(1));
+  ChildProcess tcp_libmodbus({EX9000_LIBMODBUS_SERVER, "tcp"}, "/");
+  ChildProcess tty_libmodbus({EX9000_LIBMODBUS_SERVER}, "/");
+  std::vector<Server> tcp;
+  tcp.emplace_back("ex9000-sim", tcp_simulator.pid(), PollingMaster::over_tcp(tcp_simulator.tcp_port()), 1);
+  tcp.emplace_back("libmodbus", tcp_libmodbus.pid(), PollingMaster::over_tcp(port_of(tcp_libmodbus)), 1);
+  std::vector<Server> tty;
+  tty.emplace_back("ex9000-sim", tty_simulator.pid(), PollingMaster::over_tty(tty_simulator.tty()), 1);
+  tty.emplace_back("libmodbus", tty_libmodbus.pid(), PollingMaster::over_tty(announced(tty_libmodbus)), 1);
+  std::vector<std::unique_ptr<ChildProcess>> pymodbus;
   if (with_pymodbus) {
-    std::string tty;
-    peers.push_back({"pymodbus, pseudo-terminal", PollingMaster::over_new_tty(tty)});
-    announced(
-        pymodbus.emplace(std::vector<std::string>{"/usr/bin/python3", EX9000_PYMODBUS_SERVER, tty}, "/"));
-    pymodbus_tcp.emplace(std::vector<std::string>{"/usr/bin/python3", EX9000_PYMODBUS_SERVER}, "/");
-    const auto port = static_cast<std::uint16_t>(std::stoul(announced(*pymodbus_tcp)));
-    peers.push_back({"pymodbus, TCP", PollingMaster::over_tcp(port)});
+    pymodbus.push_back(pymodbus_server({"tcp", "1"}));
+    tcp.emplace_back("pymodbus", pymodbus[0]->pid(), PollingMaster::over_tcp(port_of(*pymodbus[0])), 1);
+    std::string path;
+    PollingMaster master = PollingMaster::over_new_tty(path);
+    pymodbus.push_back(pymodbus_server({path, "1"}));
+    announced(*pymodbus[1]);
+    tty.emplace_back("pymodbus", pymodbus[1]->pid(), std::move(master), 1);
   }
-  for (std::size_t round = 0; round < kRounds; ++round) {
-    for (Peer& peer : peers) {
-      peer.rates[round] = rate_of(peer.master, time);
-    }
+  for (auto& [transport, servers] : {std::pair<const char*, std::vector<Server>&>{"TCP", tcp},
+                                     std::pair<const char*, std::vector<Server>&>{"pseudo-terminal", tty}}) {
+    std::printf("one module over %s:\n", transport);
+    measure(servers, time);
+    judge("ex9000-sim / libmodbus", servers[0].median() / servers[1].median(), 1.25, 1.5);
   }
-  std::printf("one line, FC01 x 13 back to back, median of %zu rounds in turn:\n", kRounds);
-  for (const Peer& peer : peers) {
-    std::printf("  %-28s %8.0f transactions/s; ex9000-sim over TCP: %5.2f times as many\n", peer.name,
-                peer.median(), peers[0].median() / peer.median());
+}
+
+/// Many modules on one line.
+void compare_modules(milliseconds time, bool with_pymodbus) {
+  const std::array<unsigned, 3> sizes{1, kModules, kMostModules};
+  std::vector<std::unique_ptr<SimulatorProcess>> simulators;
+  std::vector<std::unique_ptr<ChildProcess>> pymodbus;
+  std::vector<Server> servers;
+  for (const unsigned size : sizes) {
+    simulators.push_back(std::make_unique<SimulatorProcess>(over_tcp(line_of(size))));
+    servers.emplace_back("ex9000-sim, " + std::to_string(size) + " modules", simulators.back()->pid(),
+                         PollingMaster::over_tcp(simulators.back()->tcp_port()), size);
+  }
+  for (std::size_t i = 1; with_pymodbus && i < sizes.size(); ++i) {
+    pymodbus.push_back(pymodbus_server({"tcp", std::to_string(sizes[i])}));
+    servers.emplace_back("pymodbus, " + std::to_string(sizes[i]) + " units", pymodbus.back()->pid(),
+                         PollingMaster::over_tcp(port_of(*pymodbus.back())), sizes[i]);
+  }
+  std::printf("modules on one line, polled in turn over TCP:\n");
+  measure(servers, time);
+  judge("32 modules / one module", servers[1].median() / servers[0].median(), 1.5, 2);
+  judge("247 modules / one module", servers[2].median() / servers[0].median(), 4, 8);
+  for (std::size_t i = sizes.size(); i < servers.size(); ++i) {
+    const Server& ours = servers[i - sizes.size() + 1];
+    judge(ours.name() + " / pymodbus", ours.median() / servers[i].median(), 1, i == sizes.size() ? 1 : 3);
   }
 }
 
@@ -117,37 +146,22 @@ std::vector<std::uint16_t> ports_of(const std::string& greeting) {
   return ports;
 }
 
-/// Returns the processor time that the process has used, in seconds: utime and stime of proc(5).
-double processor_seconds(int pid) {
-  std::ifstream file("/proc/" + std::to_string(pid) + "/stat");
-  std::string text;
-  std::getline(file, text);
-  std::istringstream words(text.substr(text.rfind(')') + 1));
-  std::string word;
-  double ticks = 0;
-  constexpr int kUser = 12;  // field numbers after the process name
-  constexpr int kSystem = 13;
-  for (int i = 1; words >> word && i <= kSystem; ++i) {
-    ticks += i == kUser || i == kSystem ? std::stod(word) : 0;
-  }
-  return ticks / static_cast<double>(sysconf(_SC_CLK_TCK));
-}
-
 /// Returns the resident memory, in KiB.
-long memory_of(int pid) {
+double memory_of(int pid) {
   std::ifstream status("/proc/" + std::to_string(pid) + "/status");
   for (std::string line; std::getline(status, line);) {
     if (line.rfind("VmRSS:", 0) == 0) {
-      return std::stol(line.substr(line.find(':') + 1));
+      return std::stod(line.substr(line.find(':') + 1));
     }
   }
   return 0;
 }
 
-void load(std::chrono::milliseconds time) {
+/// Eight lines in one process, each with a master of its own. Returns the transactions per second.
+double load(milliseconds time, const std::string& threads) {
   const Directory directory;
   ex9000::system::write_file(directory / "bus.json", bus_file());
-  ChildProcess simulator({ex9000::system::simulator_path(), "bus.json"}, directory.path());
+  ChildProcess simulator({simulator_path(), "bus.json", "--threads", threads}, directory.path());
   if (!simulator.wait_for("press Ctrl-C to end")) {
     throw std::runtime_error("the simulator has not started");
   }
@@ -166,14 +180,18 @@ void load(std::chrono::milliseconds time) {
     master.join();
   }
   const double seconds = std::chrono::duration<double>(Clock::now() - began).count();
-  std::uint64_t all = 0;
+  double all = 0;
   for (const std::uint64_t each : transactions) {
-    all += each;
+    all += static_cast<double>(each);
   }
-  std::printf(
-      "%zu lines of %u modules in one process: %.0f transactions/s in all, %ld KiB, %.0f %% of a processor\n",
-      ports.size(), kModules, static_cast<double>(all) / seconds, memory_of(simulator.pid()),
-      100 * (processor_seconds(simulator.pid()) - before) / seconds);
+  std::printf("  --threads %s: %6.0f transactions/s, %.0f %% of a processor\n", threads.c_str(),
+              all / seconds, 100 * (processor_seconds(simulator.pid()) - before) / seconds);
+  if (threads == "1") {
+    const SimulatorProcess small(over_tcp(line_of(1)));
+    judge("memory, KiB for each module",
+          (memory_of(simulator.pid()) - memory_of(small.pid())) / (kLines * kModules - 1), 16, 16);
+  }
+  return all / seconds;
 }
 
 }  // namespace
@@ -182,17 +200,23 @@ int main(int argc, char** argv) {
   std::vector<std::string> arguments(argv + 1, argv + argc);
   const bool alone = arguments.size() > 1 && arguments[0] == "--without" && arguments[1] == "pymodbus";
   arguments.erase(arguments.begin(), arguments.begin() + (alone ? 2 : 0));
-  const long milliseconds = arguments.empty() ? 1000 : std::atol(arguments[0].c_str());
-  if (arguments.size() > 1 || milliseconds < 1) {
+  const long number = arguments.empty() ? 1000 : std::atol(arguments[0].c_str());
+  if (arguments.size() > 1 || number < 1) {
     std::fprintf(stderr, "load: expected a number of milliseconds (default: 1000)\n");
     return 2;
   }
   try {
-    compare(std::chrono::milliseconds(milliseconds), !alone);
-    load(std::chrono::milliseconds(milliseconds * static_cast<long>(kRounds)));
+    const milliseconds time(number);
+    std::printf("FC01 x 13 back to back on an instant line, median of %zu rounds in turn\n", kRounds);
+    compare_one_module(time, !alone);
+    compare_modules(time, !alone);
+    std::printf("%u lines of %u modules in one process, with a master on each line:\n", kLines, kModules);
+    const double one = load(time * kRounds, "1");
+    const double two = load(time * kRounds, "2");
+    std::printf("  two threads / one thread: %.2f (target on two idle processors: 1.70)\n", two / one);
   } catch (const std::exception& error) {
     std::fprintf(stderr, "load: %s\n", error.what());
     return 1;
   }
-  return 0;
+  return failed ? 1 : 0;
 }

@@ -1,8 +1,8 @@
 #!/usr/bin/python3
-"""The server of pymodbus: unit 1, coils, RTU frames.
+"""The server of pymodbus: coils in units 1 to UNITS, RTU frames.
 
-    pymodbus_server.py          over TCP; prints its port
-    pymodbus_server.py DEVICE   on a serial port; prints its path
+    pymodbus_server.py tcp UNITS      over TCP; prints its port
+    pymodbus_server.py DEVICE UNITS   on a serial port; prints its path
 
 It serves until it is terminated.
 """
@@ -16,10 +16,13 @@ from pymodbus.server.async_io import ModbusSerialServer, ModbusTcpServer
 from pymodbus.transaction import ModbusRtuFramer
 
 
-async def serve(device):
-    unit = ModbusSlaveContext(co=ModbusSequentialDataBlock(0, [False] * 16), zero_mode=True)
-    context = ModbusServerContext(slaves={1: unit}, single=False)
-    if device:
+def a_unit():
+    return ModbusSlaveContext(co=ModbusSequentialDataBlock(0, [False] * 16), zero_mode=True)
+
+
+async def serve(device, units):
+    context = ModbusServerContext(slaves={unit: a_unit() for unit in range(1, units + 1)}, single=False)
+    if device != "tcp":
         server = ModbusSerialServer(context, framer=ModbusRtuFramer, port=device, baudrate=115200)
         await server.start()
         print(device, flush=True)
@@ -33,4 +36,4 @@ async def serve(device):
 
 
 logging.disable()  # termination is not an error
-asyncio.run(serve(sys.argv[1] if len(sys.argv) > 1 else None))
+asyncio.run(serve(sys.argv[1], int(sys.argv[2])))
