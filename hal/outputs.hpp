@@ -11,10 +11,11 @@ namespace ex9000::hal {
 /// The output channels: open collectors, relays or PhotoMOS. All are de-energised from reset to the first
 /// `drive`.
 ///
-/// void drive(std::uint16_t channels) Drives all channels: bit n is channel n, 1 = energised (the transistor
-/// conducts, the relay is pulled in). The board defines the polarity. All channels change within a few
-/// processor clocks, and unchanged channels have no glitch. The main loop calls this at each change and at
-/// least at every tick. It does not block.
+///     void drive(std::uint16_t channels)
+///         Drives all channels: bit n is channel n, 1 = energised (the transistor conducts, the relay is
+///         pulled in). The board defines the polarity. All channels change within a few processor clocks, and
+///         unchanged channels have no glitch. The main loop calls this at each change and at least at every
+///         tick. It does not block.
 ///
 /// True if `T` has this function.
 template <class T, class = void>
