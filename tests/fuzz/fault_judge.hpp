@@ -151,8 +151,11 @@ inline bool is_fault(const Words& words, Whose whose, std::chrono::nanoseconds n
   const bool requires_end = schedule.every
                                 ? !moment && trouble != "power-cut"
                                 : schedule.of_replies && (trouble == "gone" || trouble == "wrong-rate");
+  const auto lasts = schedule.lasts           ? schedule.lasts
+                     : trouble == "power-cut" ? std::optional<nanoseconds>(std::chrono::seconds(1))
+                                              : std::nullopt;
   return schedule.right && (schedule.lasts ? !moment : !requires_end) &&
-         !(schedule.every && schedule.lasts && *schedule.lasts >= *schedule.every);
+         !(schedule.every && lasts && *lasts >= *schedule.every);
 }
 
 }  // namespace ex9000::fuzz

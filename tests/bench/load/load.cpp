@@ -3,7 +3,9 @@
 //
 //     load [--without pymodbus] [MILLISECONDS]    duration of each measurement; default 1000
 //
-// Fails if a ratio is above its limit. Times alone only depend on the machine.
+// Fails if one module costs more than its limit, or if a module requires too much memory. The cost of many
+// modules is only printed, because other programs that use the caches change it;
+// tests/bench/simulator_instructions judges it.
 #include <array>
 #include <chrono>
 #include <cstdio>
@@ -33,6 +35,11 @@ constexpr unsigned kModules = 32;
 constexpr unsigned kMostModules = 247;
 
 bool failed = false;
+
+/// Prints a ratio with its target.
+void print(const std::string& what, double ratio, double target) {
+  std::printf("  %s: %.2f (target: %.2f)\n", what.c_str(), ratio, target);
+}
 
 /// Prints a ratio with its target, and fails if it is above `limit`.
 void judge(const std::string& what, double ratio, double target, double limit) {
@@ -111,11 +118,11 @@ void compare_modules(milliseconds time, bool with_pymodbus) {
   }
   std::printf("modules on one line, polled in turn over TCP:\n");
   measure(servers, time);
-  judge("32 modules / one module", servers[1].median() / servers[0].median(), 1.5, 2);
-  judge("247 modules / one module", servers[2].median() / servers[0].median(), 4, 8);
+  print("32 modules / one module", servers[1].median() / servers[0].median(), 1.5);
+  print("247 modules / one module", servers[2].median() / servers[0].median(), 4);
   for (std::size_t i = sizes.size(); i < servers.size(); ++i) {
     const Server& ours = servers[i - sizes.size() + 1];
-    judge(ours.name() + " / pymodbus", ours.median() / servers[i].median(), 1, i == sizes.size() ? 1 : 3);
+    print(ours.name() + " / pymodbus", ours.median() / servers[i].median(), 1);
   }
 }
 
