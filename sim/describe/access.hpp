@@ -7,15 +7,7 @@ namespace ex9000::sim {
 
 /// Returns `read`, `write` or `stored`.
 constexpr const char* access_text(dcon::Access access) {
-  switch (access) {
-    case dcon::Access::Read:
-      return "read";
-    case dcon::Access::Write:
-      return "write";
-    case dcon::Access::Store:
-      break;
-  }
-  return "stored";
+  return access == dcon::Access::Read ? "read" : access == dcon::Access::Write ? "write" : "stored";
 }
 
 /// Returns `read, write`, `read` or `write`. At least one argument must be true.

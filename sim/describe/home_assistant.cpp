@@ -1,5 +1,7 @@
 #include "sim/describe/home_assistant.hpp"
 
+#include <array>
+
 #include "firmware/model/baud.hpp"
 #include "sim/describe/identity.hpp"
 #include "sim/describe/shown.hpp"
@@ -20,19 +22,10 @@ constexpr unsigned kTimeoutSeconds = 2;
 /// The silence between two frames, 3.5 characters of 10 bits, takes 29.2 ms at 1200 baud.
 constexpr unsigned kWaitMilliseconds = 30;
 
-const char* input_type(Table table) {
-  switch (table) {
-    case Table::Coils:
-      return "coil";
-    case Table::DiscreteInputs:
-      return "discrete_input";
-    case Table::InputRegisters:
-      return "input";
-    case Table::HoldingRegisters:
-      break;
-  }
-  return "holding";
-}
+/// In the order of Table.
+constexpr std::array<const char*, 4> kInputTypes{"coil", "discrete_input", "input", "holding"};
+
+const char* input_type(Table table) { return kInputTypes[static_cast<std::size_t>(table)]; }
 
 class Hub {
  public:

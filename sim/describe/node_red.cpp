@@ -1,5 +1,6 @@
 #include "sim/describe/node_red.hpp"
 
+#include <array>
 #include <nlohmann/json.hpp>
 
 #include "sim/describe/identity.hpp"
@@ -19,19 +20,10 @@ constexpr unsigned kLeft = 140;
 constexpr unsigned kColumn = 240;
 constexpr unsigned kRow = 40;
 
-const char* data_type(Table table) {
-  switch (table) {
-    case Table::Coils:
-      return "Coil";
-    case Table::DiscreteInputs:
-      return "Input";
-    case Table::InputRegisters:
-      return "InputRegister";
-    case Table::HoldingRegisters:
-      break;
-  }
-  return "HoldingRegister";
-}
+/// In the order of Table.
+constexpr std::array<const char*, 4> kDataTypes{"Coil", "Input", "InputRegister", "HoldingRegister"};
+
+const char* data_type(Table table) { return kDataTypes[static_cast<std::size_t>(table)]; }
 
 class Flow {
  public:

@@ -1,6 +1,7 @@
 #include "sim/describe/wb_mqtt_serial.hpp"
 
 #include <algorithm>
+#include <array>
 #include <nlohmann/json.hpp>
 
 #include "firmware/model/baud.hpp"
@@ -13,19 +14,10 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-const char* register_type(Table table) {
-  switch (table) {
-    case Table::Coils:
-      return "coil";
-    case Table::DiscreteInputs:
-      return "discrete";
-    case Table::InputRegisters:
-      return "input";
-    case Table::HoldingRegisters:
-      break;
-  }
-  return "holding";
-}
+/// In the order of Table.
+constexpr std::array<const char*, 4> kRegisterTypes{"coil", "discrete", "input", "holding"};
+
+const char* register_type(Table table) { return kRegisterTypes[static_cast<std::size_t>(table)]; }
 
 /// The silence between two frames at the factory's rate, in microseconds: 3.5 characters of 10 bits.
 constexpr unsigned kSilenceMicroseconds = 35'000'000 / baud_rate(kFactoryBaudCode);

@@ -139,17 +139,8 @@ Face face_of(const SimulatedModule& module, VirtualTime now) {
 }
 
 std::string_view led_text(Led led) {
-  switch (led) {
-    case Led::On:
-      return "on";
-    case Led::HostTimeout:
-      return "flashing";
-    case Led::SettingsUnreadable:
-      return "flashing: settings unreadable";
-    case Led::Off:
-      break;
-  }
-  return "off";
+  constexpr std::array<std::string_view, 4> kTexts{"off", "on", "flashing", "flashing: settings unreadable"};
+  return kTexts[static_cast<std::size_t>(led)];  // in the order of Led
 }
 
 std::string name_text(const Settings& settings) {

@@ -54,15 +54,7 @@ std::string shown(const Bytes& bytes) {
 }
 
 const char* name_of(step::Led::Shows shows) {
-  switch (shows) {
-    case step::Led::Shows::On:
-      return "on";
-    case step::Led::Shows::Off:
-      return "off";
-    case step::Led::Shows::Flashing:
-      break;
-  }
-  return "flashing";
+  return shows == step::Led::Shows::On ? "on" : shows == step::Led::Shows::Off ? "off" : "flashing";
 }
 
 std::string hex_word(unsigned value) {
