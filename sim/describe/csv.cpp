@@ -1,9 +1,8 @@
-#include "sim/describe/csv.hpp"
-
 #include <vector>
 
 #include "firmware/dcon/commands.hpp"
 #include "sim/describe/access.hpp"
+#include "sim/describe/formats.hpp"
 #include "sim/describe/register_map.hpp"
 #include "sim/line/module_spec.hpp"
 

@@ -6,12 +6,7 @@
 
 #include "firmware/settings/settings.hpp"
 #include "firmware/table.hpp"
-#include "sim/describe/csv.hpp"
-#include "sim/describe/home_assistant.hpp"
-#include "sim/describe/json.hpp"
-#include "sim/describe/markdown.hpp"
-#include "sim/describe/node_red.hpp"
-#include "sim/describe/wb_mqtt_serial.hpp"
+#include "sim/describe/formats.hpp"
 #include "sim/line/module_spec.hpp"
 #include "sim/text/fail.hpp"
 #include "sim/text/values.hpp"

@@ -1,8 +1,7 @@
-#include "sim/describe/home_assistant.hpp"
-
 #include <array>
 
 #include "firmware/model/baud.hpp"
+#include "sim/describe/formats.hpp"
 #include "sim/describe/identity.hpp"
 #include "sim/describe/shown.hpp"
 #include "sim/describe/yaml.hpp"

@@ -1,11 +1,10 @@
-#include "sim/describe/json.hpp"
-
 #include <nlohmann/json.hpp>
 
 #include "firmware/dcon/commands.hpp"
 #include "firmware/modbus/functions.hpp"
 #include "sim/describe/access.hpp"
 #include "sim/describe/data_bytes.hpp"
+#include "sim/describe/formats.hpp"
 #include "sim/describe/register_map.hpp"
 
 namespace ex9000::sim {

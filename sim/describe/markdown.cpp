@@ -1,5 +1,3 @@
-#include "sim/describe/markdown.hpp"
-
 #include <algorithm>
 #include <array>
 #include <string_view>
@@ -10,7 +8,7 @@
 #include "firmware/model/baud.hpp"
 #include "sim/describe/access.hpp"
 #include "sim/describe/data_bytes.hpp"
-#include "sim/describe/models.hpp"
+#include "sim/describe/formats.hpp"
 #include "sim/describe/register_map.hpp"
 #include "sim/text/values.hpp"
 

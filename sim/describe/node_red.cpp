@@ -1,8 +1,7 @@
-#include "sim/describe/node_red.hpp"
-
 #include <array>
 #include <nlohmann/json.hpp>
 
+#include "sim/describe/formats.hpp"
 #include "sim/describe/identity.hpp"
 #include "sim/describe/shown.hpp"
 #include "sim/text/values.hpp"

@@ -1,10 +1,9 @@
-#include "sim/describe/wb_mqtt_serial.hpp"
-
 #include <algorithm>
 #include <array>
 #include <nlohmann/json.hpp>
 
 #include "firmware/model/baud.hpp"
+#include "sim/describe/formats.hpp"
 #include "sim/describe/identity.hpp"
 #include "sim/describe/shown.hpp"
 

@@ -10,7 +10,7 @@
 
 #include "sim/bus_file/bus_file.hpp"
 #include "sim/control/control.hpp"
-#include "sim/describe/markdown.hpp"
+#include "sim/describe/formats.hpp"
 
 namespace ex9000::sim {
 namespace {

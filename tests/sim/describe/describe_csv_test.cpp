@@ -1,5 +1,5 @@
 // Tests the description for spreadsheets with a reader for RFC 4180. The expected values are from wire.md.
-#include "sim/describe/csv.hpp"
+#include "sim/describe/formats.hpp"
 
 #include <gtest/gtest.h>
 

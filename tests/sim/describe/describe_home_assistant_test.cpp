@@ -1,5 +1,5 @@
 // Tests the content of the hub for Home Assistant against wire.md. home_assistant_test.py checks its form.
-#include "sim/describe/home_assistant.hpp"
+#include "sim/describe/formats.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,5 +1,5 @@
 // Tests the description for programs. The expected values are from wire.md.
-#include "sim/describe/json.hpp"
+#include "sim/describe/formats.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,5 +1,5 @@
 // Tests the description in Markdown, and its copy in firmware/registers.md.
-#include "sim/describe/markdown.hpp"
+#include "sim/describe/formats.hpp"
 
 #include <gtest/gtest.h>
 

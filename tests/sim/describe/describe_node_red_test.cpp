@@ -1,5 +1,5 @@
 // Tests the requests in the flow for Node-RED against wire.md. node_red_test.py checks its form.
-#include "sim/describe/node_red.hpp"
+#include "sim/describe/formats.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,6 +1,6 @@
 // Tests the channels in the template for wb-mqtt-serial against wire.md. wb_mqtt_serial_test.py checks the
 // form of the template.
-#include "sim/describe/wb_mqtt_serial.hpp"
+#include "sim/describe/formats.hpp"
 
 #include <gtest/gtest.h>
 
