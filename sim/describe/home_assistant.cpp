@@ -2,7 +2,6 @@
 
 #include "firmware/model/baud.hpp"
 #include "sim/describe/formats.hpp"
-#include "sim/describe/identity.hpp"
 #include "sim/describe/shown.hpp"
 #include "sim/describe/yaml.hpp"
 #include "sim/text/values.hpp"

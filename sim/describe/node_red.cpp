@@ -2,7 +2,6 @@
 #include <nlohmann/json.hpp>
 
 #include "sim/describe/formats.hpp"
-#include "sim/describe/identity.hpp"
 #include "sim/describe/shown.hpp"
 #include "sim/text/values.hpp"
 

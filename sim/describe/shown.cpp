@@ -116,4 +116,13 @@ std::vector<Shown> shown_by(const Model& model) {
   return all;
 }
 
+std::string model_key(const Model& model) {
+  std::string key;
+  for (const char character : model.designation) {
+    const bool upper = character >= 'A' && character <= 'Z';
+    key += character == '-' ? '_' : static_cast<char>(upper ? character - 'A' + 'a' : character);
+  }
+  return key;
+}
+
 }  // namespace ex9000::sim

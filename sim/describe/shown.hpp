@@ -45,4 +45,7 @@ struct Shown {
 /// module's code), and the coils that repeat the inputs.
 std::vector<Shown> shown_by(const Model& model);
 
+/// Returns an id of the model that every tool accepts, for example `ex9042d_m`.
+std::string model_key(const Model& model);
+
 }  // namespace ex9000::sim

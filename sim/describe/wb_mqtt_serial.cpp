@@ -4,7 +4,6 @@
 
 #include "firmware/model/baud.hpp"
 #include "sim/describe/formats.hpp"
-#include "sim/describe/identity.hpp"
 #include "sim/describe/shown.hpp"
 
 namespace ex9000::sim {
