@@ -76,10 +76,16 @@ auto of_option(const char* option, const std::string& text, Parse parse) {
   return with_place(std::string(option) + ": ", [&] { return parse(text); });
 }
 
-void apply_writing(const WritingTexts& texts, Writing& writing) {
-  if (texts.log) {
-    writing.log = of_option("--log", *texts.log, parse_log);
+/// Sets `value` if the option is given.
+template <class Parse, class Value>
+void take_option(const char* option, const std::optional<std::string>& text, Parse parse, Value& value) {
+  if (text) {
+    value = of_option(option, *text, parse);
   }
+}
+
+void apply_writing(const WritingTexts& texts, Writing& writing) {
+  take_option("--log", texts.log, parse_log, writing.log);
   if (texts.capture) {
     writing.capture = texts.capture;
   }
@@ -127,10 +133,7 @@ LineSetup line_of(const Texts& texts) {
     line.modules.push_back(parse_module_spec(module));
   }
   for (const std::string& input : texts.inputs) {
-    of_option("--input", input, [&](const std::string& text) {
-      add_input(text, line.modules);
-      return 0;
-    });
+    of_option("--input", input, [&](const std::string& text) { add_input(text, line.modules); });
   }
   for (const std::string& fault : texts.faults) {
     line.faults.push_back(of_option("--fault", fault, [&](const std::string& text) {
@@ -141,15 +144,9 @@ LineSetup line_of(const Texts& texts) {
   line.serial = texts.serial;
   line.echo = texts.echo;
   line.strict_gaps = texts.strict_gaps;
-  if (texts.baud) {
-    line.baud = of_option("--baud", *texts.baud, parse_baud_rate);
-  }
-  if (texts.line) {
-    line.instant = of_option("--line", *texts.line, parse_line_kind);
-  }
-  if (texts.tcp) {
-    line.tcp = of_option("--tcp", *texts.tcp, parse_tcp_address);
-  }
+  take_option("--baud", texts.baud, parse_baud_rate, line.baud);
+  take_option("--line", texts.line, parse_line_kind, line.instant);
+  take_option("--tcp", texts.tcp, parse_tcp_address, line.tcp);
   return line;
 }
 
@@ -188,6 +185,32 @@ std::string name_of(const std::string& key, const std::string& value, const Setu
   return in_file ? "'" + key + "'" + value + " in " + setup.file : "--" + key + value;
 }
 
+std::optional<PanelSetup> parse_panel_option(const std::string& text) {
+  return parse_panel(text == kUsualPort ? "" : text);
+}
+
+/// Applies the options that are not those of a line. They override the keys of a bus file.
+void apply_options(const Texts& texts, Setup& setup) {
+  take_option("--speed", texts.speed, parse_speed, setup.speed);
+  take_option("--threads", texts.threads, parse_threads, setup.threads);
+  take_option("--for", texts.lasts, parse_time, setup.lasts);
+  take_option("--seed", texts.seed, parse_seed, setup.seed);
+  take_option("--panel", texts.panel, parse_panel_option, setup.panel);
+  apply_writing(texts.writing, setup);
+  setup.control = texts.control ? texts.control : setup.control;
+  setup.watch = texts.watch || setup.watch;
+  const std::pair<const char*, bool> given[] = {{"control", texts.control.has_value()},
+                                                {"watch", texts.watch},
+                                                {"panel", texts.panel.has_value()},
+                                                {"log", texts.writing.log.has_value()},
+                                                {"capture", texts.writing.capture.has_value()}};
+  for (const auto& [key, is_given] : given) {
+    if (is_given) {
+      setup.places.erase(key);
+    }
+  }
+}
+
 /// Throws std::invalid_argument with a one-line message.
 Setup setup_of(const Texts& texts) {
   if (texts.modules.empty()) {
@@ -201,41 +224,11 @@ Setup setup_of(const Texts& texts) {
   } else {
     setup.lines.push_back(line_of(texts));
   }
-  if (texts.control) {
-    setup.control = texts.control;
-    setup.places.erase("control");
-  }
-  if (texts.speed) {
-    setup.speed = of_option("--speed", *texts.speed, parse_speed);
-  }
-  if (texts.threads) {
-    setup.threads = of_option("--threads", *texts.threads, parse_threads);
-  }
-  if (texts.lasts) {
-    setup.lasts = of_option("--for", *texts.lasts, parse_time);
-  }
+  apply_options(texts, setup);
   for (LineSetup& line : setup.lines) {
     if (!line.pty && !line.tcp && !line.serial && !setup.speed.max()) {
       line.pty = line.name.empty() ? kDefaultPty : line.name + ".tty";
     }
-  }
-  if (texts.seed) {
-    setup.seed = of_option("--seed", *texts.seed, parse_seed);
-  }
-  if (texts.watch) {
-    setup.watch = true;
-    setup.places.erase("watch");
-  }
-  if (texts.panel) {
-    setup.panel = of_option("--panel", *texts.panel == kUsualPort ? "" : *texts.panel, parse_panel);
-    setup.places.erase("panel");
-  }
-  apply_writing(texts.writing, setup);
-  if (texts.writing.log) {
-    setup.places.erase("log");
-  }
-  if (texts.writing.capture) {
-    setup.places.erase("capture");
   }
   try {
     check(setup);
@@ -346,14 +339,6 @@ Parsed printed(const std::string& text) {
   Parsed parsed;
   parsed.output = text;
   return parsed;
-}
-
-Parsed print_description(const DescribeTexts& texts) {
-  try {
-    return printed(describe(texts));
-  } catch (const std::invalid_argument& error) {
-    return wrong(std::string("describe: ") + error.what());
-  }
 }
 
 /// Returns the options given for `app` itself, in the order of --help.
@@ -508,7 +493,7 @@ Parsed parse_arguments(int argc, const char* const* argv) {
       reject_arguments_before(*subcommand, app);
     }
     if (describing->parsed()) {
-      return print_description(describe_texts);
+      return printed(with_place("describe: ", [&] { return describe(describe_texts); }));
     }
     Parsed parsed;
     if (playing->parsed()) {
