@@ -23,11 +23,12 @@ struct BusFileKey {
 struct ModuleObject {
   ModuleSpec spec;
   LineSetup& line;  ///< the line that the module is on
+  Places places;    ///< of its keys
 };
 
-const std::array<BusFileKey<Setup>, 7>& bus_keys();
-const std::array<BusFileKey<LineSetup>, 10>& line_keys();
-const std::array<BusFileKey<ModuleObject>, 11>& module_keys();
+extern const std::array<BusFileKey<Setup>, 7> bus_keys;
+extern const std::array<BusFileKey<LineSetup>, 10> line_keys;
+extern const std::array<BusFileKey<ModuleObject>, 11> module_keys;
 
 /// Reads all keys of a bus file. Throws like Node.
 Setup read_bus(const Node& root);

@@ -29,6 +29,9 @@ class Node {
   /// Returns the place in the form of messages: the file, the line number, and the path of the value.
   [[nodiscard]] std::string place() const { return place_of(path_) + path_; }
 
+  /// Returns the key of a member.
+  [[nodiscard]] std::string key() const { return path_.substr(path_.rfind('.') + 1); }
+
   /// Calls `take(key, member)` for each member of an object.
   template <class Take>
   void members(Take take) const {

@@ -26,9 +26,8 @@ json object_of(const Keys& keys, const char* required) {
 std::string bus_file_schema() {
   json schema{{"$schema", "https://json-schema.org/draft/2020-12/schema"},
               {"title", "A bus file of ex9000-sim"}};
-  schema.update(object_of(bus_keys(), "lines"));
-  schema["$defs"] = {{"line", object_of(line_keys(), "modules")},
-                     {"module", object_of(module_keys(), "model")}};
+  schema.update(object_of(bus_keys, "lines"));
+  schema["$defs"] = {{"line", object_of(line_keys, "modules")}, {"module", object_of(module_keys, "model")}};
   constexpr int kIndent = 2;
   return schema.dump(kIndent) + "\n";
 }
