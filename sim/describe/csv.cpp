@@ -4,7 +4,7 @@
 #include "sim/describe/access.hpp"
 #include "sim/describe/formats.hpp"
 #include "sim/describe/register_map.hpp"
-#include "sim/line/module_spec.hpp"
+#include "sim/text/values.hpp"
 
 namespace ex9000::sim {
 
@@ -70,7 +70,7 @@ std::string register_line(const Model& model, const MapRow& of, unsigned address
   row.address = std::to_string(address);
   row.plc_number = plc_number(*of.area, address);
   row.channel = of.per_channel ? std::to_string(address - of.first) : "";
-  row.functions = hex_codes(of.functions, " ");
+  row.functions = hex_text(of.functions, " ");
   row.access = access_text(of.reads, of.writes);
   row.range = of.range;
   row.id = of.id;

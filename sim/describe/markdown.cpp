@@ -211,7 +211,7 @@ std::string functions_table(const Models& models) {
 std::string map_line(const MapRow& row) {
   return table_line({row.area->name, range_text(hex_word(row.first), hex_word(row.last)),
                      range_text(plc_number(*row.area, row.first), plc_number(*row.area, row.last)),
-                     hex_codes(row.functions, ", "), access_text(row.reads, row.writes),
+                     hex_text(row.functions, ", "), access_text(row.reads, row.writes),
                      std::string(row.range), std::string(row.meaning)});
 }
 

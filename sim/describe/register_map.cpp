@@ -1,7 +1,5 @@
 #include "sim/describe/register_map.hpp"
 
-#include "sim/text/values.hpp"
-
 namespace ex9000::sim {
 
 namespace {
@@ -13,9 +11,9 @@ modbus::Functions functions_of(const modbus::WordRow& row) {
   return row.functions != 0 ? row.functions : modbus::kReadHoldingRegisters | modbus::kReadInputRegisters;
 }
 
-std::vector<unsigned> function_codes(modbus::Functions functions) {
-  std::vector<unsigned> codes;
-  for (unsigned function = 0; function < 16; ++function) {
+std::vector<std::uint8_t> function_codes(modbus::Functions functions) {
+  std::vector<std::uint8_t> codes;
+  for (std::uint8_t function = 0; function < 16; ++function) {
     if ((functions >> function & 1U) != 0) {
       codes.push_back(function);
     }
@@ -64,14 +62,6 @@ std::string plc_number(const Area& area, unsigned address) {
   constexpr std::size_t kDigits = 4;
   const std::string number = std::to_string(address + 1);
   return area.digit + std::string(number.size() < kDigits ? kDigits - number.size() : 0, '0') + number;
-}
-
-std::string hex_codes(const std::vector<unsigned>& functions, const char* separator) {
-  std::string text;
-  for (const unsigned function : functions) {
-    text += (text.empty() ? "" : separator) + hex_byte_text(function);
-  }
-  return text;
 }
 
 }  // namespace ex9000::sim

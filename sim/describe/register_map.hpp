@@ -35,10 +35,10 @@ constexpr std::array<Area, 4> kAreas{{
 struct MapRow {
   std::string_view id;
   const Area* area = nullptr;
-  unsigned first = 0;               ///< protocol address of the first item, from 0
-  unsigned last = 0;                ///< protocol address of the last item
-  bool per_channel = false;         ///< one item for each input or output
-  std::vector<unsigned> functions;  ///< codes in ascending order; never empty
+  unsigned first = 0;                   ///< protocol address of the first item, from 0
+  unsigned last = 0;                    ///< protocol address of the last item
+  bool per_channel = false;             ///< one item for each input or output
+  std::vector<std::uint8_t> functions;  ///< codes in ascending order; never empty
   bool reads = false;
   bool writes = false;
   std::string_view range;  ///< values that may be written; empty: read-only
@@ -51,8 +51,5 @@ std::vector<MapRow> register_map(const Model& model);
 
 /// Returns the number as PLCs count: from 1, with at least four digits after the digit of the table.
 std::string plc_number(const Area& area, unsigned address);
-
-/// Returns the function codes as two hex digits each.
-std::string hex_codes(const std::vector<unsigned>& functions, const char* separator);
 
 }  // namespace ex9000::sim

@@ -198,15 +198,12 @@ bool was_dcon(const FrameBytes& bytes) {
 }
 
 std::string shown(const FrameBytes& bytes) {
-  std::string text;
-  if (looks_like_dcon(bytes)) {
-    for (const std::uint8_t byte : bytes) {
-      text += escaped(byte);
-    }
-    return text;
+  if (!looks_like_dcon(bytes)) {
+    return hex_text(bytes, " ");
   }
+  std::string text;
   for (const std::uint8_t byte : bytes) {
-    text += (text.empty() ? "" : " ") + hex_byte_text(byte);
+    text += escaped(byte);
   }
   return text;
 }

@@ -18,14 +18,6 @@ std::string text_of(const Object& object) {
   return object.dump(-1, ' ', false, Object::error_handler_t::replace);
 }
 
-std::string hex(const FrameBytes& bytes) {
-  std::string text;
-  for (const std::uint8_t byte : bytes) {
-    text += hex_byte_text(byte);
-  }
-  return text;
-}
-
 }  // namespace
 
 void JsonLog::frame(const Frame& frame) {
@@ -33,7 +25,7 @@ void JsonLog::frame(const Frame& frame) {
   object["time"] = seconds(frame.began);
   object["line"] = line_;
   object["from"] = names_.of(frame.station);
-  object["bytes"] = hex(frame.bytes);
+  object["bytes"] = hex_text(frame.bytes);
   if (looks_like_dcon(frame.bytes)) {
     object["text"] = std::string(frame.bytes.begin(), frame.bytes.end());
   }

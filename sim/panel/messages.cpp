@@ -6,6 +6,7 @@
 #include "sim/frames/frame_meaning.hpp"
 #include "sim/line/module_spec.hpp"
 #include "sim/module_view/terminals.hpp"
+#include "sim/text/values.hpp"
 
 namespace ex9000::sim {
 
@@ -13,18 +14,6 @@ namespace {
 
 std::int64_t microseconds(VirtualTime time) {
   return std::chrono::duration_cast<std::chrono::microseconds>(time).count();
-}
-
-template <class Bytes>
-std::string hex(const Bytes& bytes) {
-  constexpr char kDigits[] = "0123456789ABCDEF";
-  std::string text;
-  text.reserve(bytes.size() * 2);
-  for (const std::uint8_t byte : bytes) {
-    text += kDigits[byte >> 4U];
-    text += kDigits[byte & 0xFU];
-  }
-  return text;
 }
 
 std::string_view protocol_text(Protocol protocol) { return protocol == Protocol::Ascii ? "ascii" : "modbus"; }
@@ -110,7 +99,7 @@ Message message_of(const Stored& stored) {
   message["copies"] = Message::array();
   for (std::size_t copy = 0; copy < stored.copies.size(); ++copy) {
     Message each;
-    each["bytes"] = hex(stored.copies[copy].bytes);
+    each["bytes"] = hex_text(stored.copies[copy].bytes);
     each["sequence"] = stored.copies[copy].sequence ? Message(*stored.copies[copy].sequence) : Message();
     each["old"] = kPlaces[copy].old;
     message["copies"].push_back(std::move(each));
@@ -147,7 +136,7 @@ Message message_of(const RecentTraffic::Entry& entry, std::uint64_t number, std:
   const bool known = frame.station <= modules;
   message["ended"] = microseconds(frame.ended);
   message["station"] = known ? Message(frame.station) : Message();
-  message["bytes"] = hex(frame.bytes);
+  message["bytes"] = hex_text(frame.bytes);
   if (looks_like_dcon(frame.bytes)) {
     message["text"] = shown(frame.bytes);
   }

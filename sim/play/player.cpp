@@ -4,6 +4,7 @@
 #include <stdexcept>
 
 #include "sim/play/modbus_frame.hpp"
+#include "sim/text/values.hpp"
 
 namespace ex9000::play {
 
@@ -45,26 +46,11 @@ std::string shown(const Bytes& bytes) {
     }
     return result + "'";
   }
-  std::string result;
-  constexpr std::array<char, 17> kDigits{"0123456789ABCDEF"};
-  for (const std::uint8_t byte : bytes) {
-    result += {kDigits[byte / 16], kDigits[byte % 16], ' '};
-  }
-  return result + "(" + std::to_string(bytes.size()) + " bytes)";
+  return sim::hex_text(bytes, " ") + " (" + std::to_string(bytes.size()) + " bytes)";
 }
 
 const char* name_of(step::Led::Shows shows) {
   return shows == step::Led::Shows::On ? "on" : shows == step::Led::Shows::Off ? "off" : "flashing";
-}
-
-std::string hex_word(unsigned value) {
-  std::string text;
-  constexpr std::array<char, 17> kDigits{"0123456789ABCDEF"};
-  for (unsigned shift = 16; shift != 0;) {
-    shift -= 4;
-    text += kDigits[value >> shift & 0xFU];
-  }
-  return text;
 }
 
 /// Carries out one step. Throws std::runtime_error if the result is not the expected one.
@@ -111,7 +97,7 @@ class Playing {
   void operator()(const step::Outputs& step) {
     const std::uint16_t outputs = target_.outputs();
     if (outputs != step.channels) {
-      throw std::runtime_error("outputs are " + hex_word(outputs));
+      throw std::runtime_error("outputs are " + sim::hex_word_text(outputs));
     }
   }
   void operator()(const step::Led& step) {

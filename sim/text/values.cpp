@@ -118,4 +118,13 @@ std::string hex_word_text(unsigned value) {
   return hex_byte_text(value >> 8U & 0xFFU) + hex_byte_text(value & 0xFFU);
 }
 
+std::string hex_text(const std::vector<std::uint8_t>& bytes, std::string_view separator) {
+  std::string text;
+  for (const std::uint8_t byte : bytes) {
+    text += text.empty() ? "" : separator;
+    text += hex_byte_text(byte);
+  }
+  return text;
+}
+
 }  // namespace ex9000::sim

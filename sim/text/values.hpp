@@ -37,5 +37,7 @@ std::optional<std::uint64_t> whole_number(const std::string& text, std::uint64_t
 std::string hex_byte_text(unsigned value);
 /// Returns the lowest 16 bits as four upper-case hex digits.
 std::string hex_word_text(unsigned value);
+/// Returns each byte as two upper-case hex digits.
+std::string hex_text(const std::vector<std::uint8_t>& bytes, std::string_view separator = "");
 
 }  // namespace ex9000::sim
