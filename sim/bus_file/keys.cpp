@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "sim/text/values.hpp"
+#include "sim/text/words.hpp"
 
 namespace ex9000::sim {
 
@@ -26,16 +27,14 @@ constexpr std::string_view kNumber =
 template <class Object, std::size_t kSize>
 void read_members(const Node& node, const std::array<BusFileKey<Object>, kSize>& keys, Object& object) {
   node.members([&](const std::string& name, const Node& member) {
-    std::string names;
     for (const BusFileKey<Object>& key : keys) {
       if (key.name == name) {
         object.places[name] = member.place();
         key.take(object, member);
         return;
       }
-      names += (names.empty() ? "" : ", ") + std::string(key.name);
     }
-    member.refuse("unknown key; expected one of " + names);
+    member.refuse("unknown key; expected one of " + names_of(keys));
   });
 }
 

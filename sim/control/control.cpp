@@ -253,7 +253,7 @@ std::string on_line(const Control::ControlledLine& controlled, std::size_t posit
   }
   if (words[0] == "fault" && words.size() >= 2) {
     return words[1] == "off" ? end_fault(line, words)
-                             : add_fault(line, std::nullopt, joined(words.begin() + 1, words.end()));
+                             : add_fault(line, std::nullopt, joined(Words(words.begin() + 1, words.end())));
   }
   fail("'" + joined(words) + "' is not a command; expected one of " + all_shapes());
 }
@@ -268,15 +268,14 @@ std::string on_some_line(const Lines& lines, const Words& words) {
   if (words.size() < 3) {
     fail("expected line NAME and a command of a line, for example line NAME faults");
   }
-  std::string names;
   std::size_t position = 0;
   for (const Control::ControlledLine& controlled : lines) {
     if (controlled.name == words[1]) {
       return on_line(controlled, position, Words(words.begin() + 2, words.end()));
     }
-    names += (names.empty() ? "" : ", ") + controlled.name;
     position += controlled.line.size();
   }
+  const std::string names = names_of(lines);
   fail("no line '" + words[1] + "'; " +
        (names.empty() ? "the only line has no name; leave out 'line NAME'" : "there are " + names));
 }
@@ -294,11 +293,11 @@ std::string on_module(const Lines& lines, const Words& words) {
   for (; index >= controlled->line.size(); ++controlled) {
     index -= controlled->line.size();
   }
+  const Words args(words.begin() + 2, words.end());
   if (words[1] == "fault") {
-    return add_fault(controlled->line, index, joined(words.begin() + 2, words.end()));
+    return add_fault(controlled->line, index, joined(args));
   }
   const Verb& verb = verb_called(words[1]);
-  const Words args(words.begin() + 2, words.end());
   if (args.size() < verb.fewest || args.size() > verb.most) {
     fail("expected " + shape(verb));
   }

@@ -10,6 +10,7 @@
 #include "sim/line/module_spec.hpp"
 #include "sim/text/fail.hpp"
 #include "sim/text/values.hpp"
+#include "sim/text/words.hpp"
 
 namespace ex9000::sim {
 
@@ -103,13 +104,7 @@ const Model& modbus_model(const DescribeTexts& texts) {
 
 }  // namespace
 
-std::string describe_formats() {
-  std::string names;
-  for (const Format& format : kFormats) {
-    names += (names.empty() ? "" : "|") + std::string(format.name);
-  }
-  return names;
-}
+std::string describe_formats() { return names_of(kFormats, "|"); }
 
 std::string describe(const DescribeTexts& texts) {
   const Format& format = format_called(texts.format);

@@ -11,6 +11,7 @@
 #include "sim/describe/formats.hpp"
 #include "sim/describe/register_map.hpp"
 #include "sim/text/values.hpp"
+#include "sim/text/words.hpp"
 
 namespace ex9000::sim {
 
@@ -49,14 +50,6 @@ std::string table_head(const Cells& titles) {
   return table_line(titles) + rule + "\n";
 }
 
-std::string join(const std::vector<std::string>& parts) {
-  std::string text;
-  for (const std::string& part : parts) {
-    text += (text.empty() ? "" : ", ") + part;
-  }
-  return text;
-}
-
 std::string hex_word(unsigned value) { return "0x" + hex_word_text(value); }
 
 std::string range_text(const std::string& first, const std::string& last) {
@@ -92,7 +85,7 @@ std::string who(const Models& models, Has has) {
       names.emplace_back(model->designation);
     }
   }
-  return join(names);
+  return joined(names, ", ");
 }
 
 /// Adds the column of models, which is not necessary for a single model.
@@ -126,7 +119,7 @@ std::string baud_codes() {
   for (std::uint8_t baud = kFirstBaudCode; baud <= kLastBaudCode; ++baud) {
     codes.push_back(hex_byte_text(baud) + " " + std::to_string(baud_rate(baud)));
   }
-  return join(codes);
+  return joined(codes, ", ");
 }
 
 /// Explains the letters in the syntax and the other possible replies.
@@ -258,7 +251,7 @@ std::vector<SharedMap> shared_maps(const Models& models) {
 std::string maps_text(const Models& models) {
   std::string text = map_notes();
   for (const SharedMap& map : shared_maps(models)) {
-    text += models.size() > 1 ? "\n#### " + join(map.models) + "\n" : "";
+    text += models.size() > 1 ? "\n#### " + joined(map.models, ", ") + "\n" : "";
     text += "\n" + map.table;
   }
   return text;

@@ -68,19 +68,11 @@ constexpr std::array<Row, 13> kRows{{
      "stops the main loop until the module watchdog resets the module"},
 }};
 
-std::string all_names() {
-  std::string names;
-  for (const Row& row : kRows) {
-    names += (names.empty() ? "" : ", ") + std::string(row.name);
-  }
-  return names;
-}
-
 const Row& row_called(const std::string& name) {
   const auto* const row =
       std::find_if(kRows.begin(), kRows.end(), [&](const Row& known) { return known.name == name; });
   if (row == kRows.end()) {
-    fail("'" + name + "' is not a fault; expected one of " + all_names());
+    fail("'" + name + "' is not a fault; expected one of " + names_of(kRows));
   }
   return *row;
 }
@@ -216,7 +208,7 @@ bool concerns_a_module(Trouble trouble) {
 Fault parse_fault(const std::string& text) {
   Words words = words_of(text);
   if (words.empty()) {
-    fail("the fault is empty; expected one of " + all_names());
+    fail("the fault is empty; expected one of " + names_of(kRows));
   }
   const Row& row = row_called(words[0]);
   try {

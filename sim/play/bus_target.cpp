@@ -159,10 +159,7 @@ void BusTarget::choose_line(const std::string& name) {
     turn_to(static_cast<std::size_t>(found - names_.begin()), 0);
     return;
   }
-  std::string names;
-  for (const std::string& known : names_) {
-    names += (names.empty() ? "" : ", ") + known;
-  }
+  const std::string names = sim::joined(names_, ", ");
   throw std::runtime_error(
       "no line '" + name + "'; " +
       (names.empty() ? "the only line has no name; remove the step" : "there are " + names));
@@ -189,10 +186,7 @@ void BusTarget::run_fault_command(const std::string& command) {
     }
     // The control socket expects the module's position before the command.
     std::swap(words[0], words[1]);
-    told.clear();
-    for (const std::string& word : words) {
-      told += (told.empty() ? "" : " ") + word;
-    }
+    told = sim::joined(words);
   }
   const std::string reply = sim::Control(std::move(lines)).carry_out(told).text;
   if (reply.rfind("ok", 0) != 0) {

@@ -1,8 +1,9 @@
-// Splits a line of text into words.
+// Splits a line of text into words, and joins words.
 #pragma once
 
 #include <sstream>
 #include <string>
+#include <string_view>
 #include <vector>
 
 namespace ex9000::sim {
@@ -19,14 +20,24 @@ inline Words words_of(const std::string& text) {
   return words;
 }
 
-/// Returns the words from `first` to `last`, separated by one blank each.
-inline std::string joined(Words::const_iterator first, Words::const_iterator last) {
+/// Returns the words with `separator` between them.
+inline std::string joined(const Words& words, std::string_view separator = " ") {
   std::string text;
-  for (; first != last; ++first) {
-    text += (text.empty() ? "" : " ") + *first;
+  for (const std::string& word : words) {
+    text += text.empty() ? "" : separator;
+    text += word;
   }
   return text;
 }
-inline std::string joined(const Words& words) { return joined(words.begin(), words.end()); }
+
+/// Returns the names of the rows of a table, with `separator` between them.
+template <class Rows>
+std::string names_of(const Rows& rows, std::string_view separator = ", ") {
+  Words names;
+  for (const auto& row : rows) {
+    names.emplace_back(row.name);
+  }
+  return joined(names, separator);
+}
 
 }  // namespace ex9000::sim

@@ -1,6 +1,7 @@
 #include "sim/watch/watch.hpp"
 
 #include "sim/text/durations.hpp"
+#include "sim/text/words.hpp"
 #include "sim/watch/face_text.hpp"
 
 namespace ex9000::sim {
@@ -23,14 +24,6 @@ std::string shortened(const std::string& line, std::size_t columns) {
     }
   }
   return line;
-}
-
-std::string one_text(const std::vector<std::string>& lines) {
-  std::string text;
-  for (const std::string& line : lines) {
-    text += (text.empty() ? "" : "\n") + line;
-  }
-  return text;
 }
 
 }  // namespace
@@ -57,13 +50,13 @@ void Watch::look() {
     put((moved              ? std::string(kEraseAll)
          : painted_.empty() ? std::string()
                             : back_over(painted_.size())) +
-        one_text(faces));
+        joined(faces, "\n"));
     painted_ = faces;
   }
 }
 
 void Watch::print(const std::string& lines) {
-  put(painted_.empty() ? lines : back_over(painted_.size()) + lines + "\n" + one_text(painted_));
+  put(painted_.empty() ? lines : back_over(painted_.size()) + lines + "\n" + joined(painted_, "\n"));
 }
 
 /// Writes to a terminal in one call, so that no partial output is visible.
