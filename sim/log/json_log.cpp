@@ -21,11 +21,10 @@ std::string text_of(const Object& object) {
 }  // namespace
 
 void JsonLog::frame(const Frame& frame) {
-  Object object;
-  object["time"] = seconds(frame.began);
-  object["line"] = line_;
-  object["from"] = names_.of(frame.station);
-  object["bytes"] = hex_text(frame.bytes);
+  Object object{{"time", seconds(frame.began)},
+                {"line", line_},
+                {"from", names_.of(frame.station)},
+                {"bytes", hex_text(frame.bytes)}};
   if (looks_like_dcon(frame.bytes)) {
     object["text"] = std::string(frame.bytes.begin(), frame.bytes.end());
   }
@@ -43,11 +42,7 @@ void JsonLog::frame(const Frame& frame) {
 }
 
 void JsonLog::note(VirtualTime now, const std::string& text) {
-  Object object;
-  object["time"] = seconds(now);
-  object["line"] = line_;
-  object["note"] = text;
-  print_(text_of(object));
+  print_(text_of({{"time", seconds(now)}, {"line", line_}, {"note", text}}));
 }
 
 }  // namespace ex9000::sim

@@ -1,6 +1,7 @@
 #include "sim/panel/messages.hpp"
 
 #include <chrono>
+#include <utility>
 
 #include "sim/frames/frame_errors.hpp"
 #include "sim/frames/frame_meaning.hpp"
@@ -19,124 +20,106 @@ std::int64_t microseconds(VirtualTime time) {
 std::string_view protocol_text(Protocol protocol) { return protocol == Protocol::Ascii ? "ascii" : "modbus"; }
 
 Message message_of(const Settings& settings) {
-  Message message;
-  message["address"] = settings.address;
-  message["baud"] = baud_rate(settings.baud_code);
-  message["protocol"] = protocol_text(settings.protocol);
-  message["checksum"] = (settings.format & kFormatChecksum) != 0;
-  message["edge"] = (settings.format & kFormatRisingEdge) != 0 ? "rising" : "falling";
-  message["name"] = name_text(settings);
-  message["powerOn"] = settings.power_on_value;
-  message["safe"] = settings.safe_value;
-  message["watchdog"] = settings.watchdog_enabled;
-  message["timeout"] = settings.watchdog_timeout;
-  message["timedOut"] = settings.timeout_status;
-  return message;
+  return {{"address", settings.address},
+          {"baud", baud_rate(settings.baud_code)},
+          {"protocol", protocol_text(settings.protocol)},
+          {"checksum", (settings.format & kFormatChecksum) != 0},
+          {"edge", (settings.format & kFormatRisingEdge) != 0 ? "rising" : "falling"},
+          {"name", name_text(settings)},
+          {"powerOn", settings.power_on_value},
+          {"safe", settings.safe_value},
+          {"watchdog", settings.watchdog_enabled},
+          {"timeout", settings.watchdog_timeout},
+          {"timedOut", settings.timeout_status}};
 }
 
 }  // namespace
 
 Message plate_layout(const Model& model) {
-  Message layout;
-  layout["model"] = model.designation;
-  layout["description"] = model.description;
-  layout["modbus"] = model.speaks_modbus();
-  layout["inputs"] = Message::array();
+  Message inputs = Message::array();
   for (unsigned channel = 0; channel < model.inputs; ++channel) {
-    layout["inputs"].push_back(input_terminal(channel));
+    inputs.push_back(input_terminal(channel));
   }
-  layout["outputs"] = Message::array();
+  Message outputs = Message::array();
   for (unsigned channel = 0; channel < model.outputs; ++channel) {
-    layout["outputs"].push_back(output_terminal(model, channel));
+    outputs.push_back(output_terminal(model, channel));
   }
-  layout["initTerminal"] = has_init_terminal(model);
-  return layout;
+  return {{"model", model.designation},      {"description", model.description},
+          {"modbus", model.speaks_modbus()}, {"inputs", std::move(inputs)},
+          {"outputs", std::move(outputs)},   {"initTerminal", has_init_terminal(model)}};
 }
 
 Message message_of(const Plate& plate) {
-  Message message;
-  message["switch"] = plate.switched_on;
-  message["powered"] = plate.powered;
-  message["init"] = plate.init;
-  message["listening"] = plate.listening;
+  Message message{{"switch", plate.switched_on},
+                  {"powered", plate.powered},
+                  {"init", plate.init},
+                  {"listening", plate.listening}};
   if (plate.listening) {
-    message["initMode"] = plate.init_mode;
-    message["address"] = plate.address;
-    message["baud"] = plate.baud;
-    message["protocol"] = protocol_text(plate.protocol);
-    message["checksum"] = plate.checksum;
+    message.update({{"initMode", plate.init_mode},
+                    {"address", plate.address},
+                    {"baud", plate.baud},
+                    {"protocol", protocol_text(plate.protocol)},
+                    {"checksum", plate.checksum}});
   }
-  message["led"] = led_text(plate.led);
-  message["outputs"] = plate.outputs;
-  message["inputs"] = plate.inputs;
-  message["resets"] = plate.watchdog_resets;
+  message.update({{"led", led_text(plate.led)},
+                  {"outputs", plate.outputs},
+                  {"inputs", plate.inputs},
+                  {"resets", plate.watchdog_resets}});
   return message;
 }
 
 Message message_of(const InputRecords& gathered, unsigned inputs) {
-  Message message;
-  message["high"] = gathered.latched_high;
-  message["low"] = gathered.latched_low;
-  message["counters"] = Message::array();
-  for (unsigned channel = 0; channel < inputs; ++channel) {
-    message["counters"].push_back(gathered.counters[channel]);
-  }
-  return message;
+  const auto counters = gathered.counters.begin();
+  return {{"high", gathered.latched_high},
+          {"low", gathered.latched_low},
+          {"counters", std::vector<std::uint32_t>(counters, counters + inputs)}};
 }
 
 Message message_of(const HostWatchdogState& guard) {
-  Message message;
-  message["enabled"] = guard.enabled;
-  message["timedOut"] = guard.timed_out;
-  message["timeout"] = guard.timeout;
-  message["expires"] = guard.expires ? Message(microseconds(*guard.expires)) : Message();
-  message["resetStatus"] = guard.reset_status;
-  return message;
+  return {{"enabled", guard.enabled},
+          {"timedOut", guard.timed_out},
+          {"timeout", guard.timeout},
+          {"expires", guard.expires ? Message(microseconds(*guard.expires)) : Message()},
+          {"resetStatus", guard.reset_status}};
 }
 
 Message message_of(const Stored& stored) {
-  Message message;
-  message["copies"] = Message::array();
-  for (std::size_t copy = 0; copy < stored.copies.size(); ++copy) {
-    Message each;
-    each["bytes"] = hex_text(stored.copies[copy].bytes);
-    each["sequence"] = stored.copies[copy].sequence ? Message(*stored.copies[copy].sequence) : Message();
-    each["old"] = kPlaces[copy].old;
-    message["copies"].push_back(std::move(each));
+  Message copies = Message::array();
+  for (std::size_t i = 0; i < stored.copies.size(); ++i) {
+    const Stored::Copy& copy = stored.copies[i];
+    copies.push_back({{"bytes", hex_text(copy.bytes)},
+                      {"sequence", copy.sequence ? Message(*copy.sequence) : Message()},
+                      {"old", kPlaces[i].old}});
   }
-  message["current"] = stored.current ? Message(*stored.current) : Message();
-  message["blank"] = stored.blank;
-  message["settings"] = message_of(stored.settings);
-  return message;
+  return {{"copies", std::move(copies)},
+          {"current", stored.current ? Message(*stored.current) : Message()},
+          {"blank", stored.blank},
+          {"settings", message_of(stored.settings)}};
 }
 
 Message message_of(const std::vector<Faults::Info>& faults, std::size_t first) {
   Message message = Message::array();
   for (const Faults::Info& fault : faults) {
-    Message each;
-    each["number"] = fault.number;
-    each["text"] = fault.text;
-    each["module"] = fault.module ? Message(first + *fault.module) : Message();
-    each["strikes"] = fault.strikes;
-    each["soFar"] = fault.strikes_so_far;
-    message.push_back(std::move(each));
+    message.push_back({{"number", fault.number},
+                       {"text", fault.text},
+                       {"module", fault.module ? Message(first + *fault.module) : Message()},
+                       {"strikes", fault.strikes},
+                       {"soFar", fault.strikes_so_far}});
   }
   return message;
 }
 
 Message message_of(const RecentTraffic::Entry& entry, std::uint64_t number, std::size_t modules) {
   const Frame& frame = entry.frame;
-  Message message;
-  message["number"] = number;
-  message["began"] = microseconds(frame.began);
+  Message message{{"number", number}, {"began", microseconds(frame.began)}};
   if (entry.note) {
     message["note"] = *entry.note;
     return message;
   }
   const bool known = frame.station <= modules;
-  message["ended"] = microseconds(frame.ended);
-  message["station"] = known ? Message(frame.station) : Message();
-  message["bytes"] = hex_text(frame.bytes);
+  message.update({{"ended", microseconds(frame.ended)},
+                  {"station", known ? Message(frame.station) : Message()},
+                  {"bytes", hex_text(frame.bytes)}});
   if (looks_like_dcon(frame.bytes)) {
     message["text"] = shown(frame.bytes);
   }

@@ -104,10 +104,7 @@ class Panel::Viewer final : public PanelViewer {
     if (ok && request->undo) {
       held_.insert(*request->undo);
     }
-    reply_ = Message();
-    (*reply_)["id"] = request->id;
-    (*reply_)["ok"] = ok;
-    (*reply_)["text"] = answer;
+    reply_ = Message{{"id", request->id}, {"ok", ok}, {"text", answer}};
     return true;
   }
 
@@ -169,31 +166,25 @@ class Panel::Viewer final : public PanelViewer {
   }
 
   [[nodiscard]] Message hello() const {
-    Message hello;
-    hello["version"] = kFirmwareVersion;
-    hello["run"] = state().run;
-    hello["speed"] = state().speed;
-    hello["usualFaults"] = usual_faults();
-    hello["lines"] = Message::array();
-    hello["modules"] = Message::array();
+    Message lines = Message::array();
+    Message modules = Message::array();
     for (const Watched& watched : state().lines) {
-      Message line;
-      line["name"] = watched.summary.name;
-      line["instant"] = watched.summary.instant;
-      line["ports"] = Message::array();
+      for (const Module& module : watched.modules) {
+        modules.push_back(plate_layout(module.module->model()));
+        modules.back()["line"] = lines.size();
+      }
+      Message ports = Message::array();
       for (const std::string& port : {watched.summary.pty, watched.summary.tcp, watched.summary.serial}) {
         if (!port.empty()) {
-          line["ports"].push_back(port);
+          ports.push_back(port);
         }
       }
-      for (const Module& module : watched.modules) {
-        Message layout = plate_layout(module.module->model());
-        layout["line"] = hello["lines"].size();
-        hello["modules"].push_back(std::move(layout));
-      }
-      hello["lines"].push_back(std::move(line));
+      lines.push_back({{"name", watched.summary.name},
+                       {"instant", watched.summary.instant},
+                       {"ports", std::move(ports)}});
     }
-    return hello;
+    return {{"version", kFirmwareVersion},   {"run", state().run},        {"speed", state().speed},
+            {"usualFaults", usual_faults()}, {"lines", std::move(lines)}, {"modules", std::move(modules)}};
   }
 
   [[nodiscard]] Message news_of(const Module& module) const {
@@ -228,14 +219,12 @@ class Panel::Viewer final : public PanelViewer {
   Message frames_of(std::size_t line) {
     const Watched& watched = state().lines[line];
     const std::uint64_t first = watched.recent.first_of(next_entries_[line], most_frames());
-    Message message;
-    message["line"] = line;
-    message["entries"] = Message::array();
+    Message entries = Message::array();
     for (std::uint64_t number = first; number < watched.recent.end(); ++number) {
-      message["entries"].push_back(message_of(watched.recent.entry(number), number, watched.modules.size()));
+      entries.push_back(message_of(watched.recent.entry(number), number, watched.modules.size()));
     }
     next_entries_[line] = watched.recent.end();
-    return message;
+    return {{"line", line}, {"entries", std::move(entries)}};
   }
 
   Panel& panel_;
