@@ -329,18 +329,6 @@ std::string missing_input(const Model& model, unsigned channel) {
                                   std::to_string(model.inputs - 1));
 }
 
-std::chrono::milliseconds Transcript::waits() const {
-  std::chrono::nanoseconds total{0};
-  for (const Step& step : steps) {
-    if (const auto* wait = std::get_if<step::Wait>(&step.action)) {
-      total += wait->time;
-    } else if (std::holds_alternative<step::Silence>(step.action)) {
-      total += kSilence;
-    }
-  }
-  return std::chrono::ceil<std::chrono::milliseconds>(total);
-}
-
 std::vector<std::string> transcript_files(const std::string& directory) {
   std::vector<std::string> files;
   for (const auto& entry : std::filesystem::recursive_directory_iterator(directory)) {
@@ -384,14 +372,6 @@ std::vector<Transcript> load(const std::string& path) {
   } catch (const std::exception& error) {
     fail(path + ":" + std::to_string(line) + ": " + error.what());
   }
-}
-
-std::vector<Transcript> load_transcripts(const std::string& path) {
-  std::vector<Transcript> transcripts = load(path);
-  if (transcripts[0].model == nullptr) {
-    fail(path + ":1: requires at least one 'model:' line");
-  }
-  return transcripts;
 }
 
 }  // namespace ex9000::play

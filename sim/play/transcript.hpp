@@ -97,9 +97,6 @@ struct Transcript {
   bool preset_given = false;
   bool slow = false;
   std::vector<Step> steps;
-
-  /// Returns the total time of all `wait` and `silence` steps, rounded up.
-  [[nodiscard]] std::chrono::milliseconds waits() const;
 };
 
 /// The duration of a `silence` step, in which no byte may arrive. Without faults, any reply begins earlier.
@@ -114,7 +111,5 @@ std::vector<std::string> transcript_files(const std::string& directory);
 /// Returns all runs of a transcript, one for each `model:` line, or the single run of a scenario. Throws
 /// std::invalid_argument that names the file, the line and what is wrong.
 std::vector<Transcript> load(const std::string& path);
-/// The same for files that must not be scenarios.
-std::vector<Transcript> load_transcripts(const std::string& path);
 
 }  // namespace ex9000::play

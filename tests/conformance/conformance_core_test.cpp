@@ -9,6 +9,7 @@
 #include "sim/play/transcript.hpp"
 #include "tests/support/core_target.hpp"
 #include "tests/support/coverage.hpp"
+#include "tests/support/transcripts.hpp"
 
 namespace ex9000 {
 namespace {
@@ -21,7 +22,7 @@ TEST(Conformance, TheCorePassesEveryTranscriptOnEveryModelItNames) {
   std::set<std::string_view> models;
   runner::Coverage coverage;
   for (const std::string& file : files) {
-    for (const play::Transcript& transcript : play::load_transcripts(file)) {
+    for (const play::Transcript& transcript : runner::load_transcripts(file)) {
       runner::CoreTarget target(&coverage);
       const play::Result result = play::play(transcript, target);
       EXPECT_TRUE(result.passed()) << result.failure;
@@ -42,8 +43,8 @@ TEST(Conformance, TheCorePassesEveryTranscriptOnEveryModelItNames) {
 
 TEST(Conformance, WaitsAreUnderTwoSecondsUnlessTheFileIsMarkedSlow) {
   for (const std::string& file : play::transcript_files(EX9000_CONFORMANCE_DIR)) {
-    for (const play::Transcript& transcript : play::load_transcripts(file)) {
-      EXPECT_TRUE(transcript.slow || transcript.waits() < std::chrono::seconds(2)) << file;
+    for (const play::Transcript& transcript : runner::load_transcripts(file)) {
+      EXPECT_TRUE(transcript.slow || runner::waits_of(transcript) < std::chrono::seconds(2)) << file;
     }
   }
 }

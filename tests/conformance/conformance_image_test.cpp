@@ -18,6 +18,7 @@
 #include "tests/qemu/processor.hpp"
 #include "tests/support/child_process.hpp"
 #include "tests/support/core_target.hpp"
+#include "tests/support/transcripts.hpp"
 
 namespace ex9000 {
 namespace {
@@ -42,14 +43,14 @@ std::uint64_t pulses_of(const play::Transcript& transcript) {
 /// Returns the approximate duration of the transcript.
 std::chrono::microseconds duration_of(const play::Transcript& transcript) {
   constexpr std::chrono::microseconds kPulse{100};
-  return transcript.waits() + kPulse * static_cast<std::int64_t>(pulses_of(transcript));
+  return runner::waits_of(transcript) + kPulse * static_cast<std::int64_t>(pulses_of(transcript));
 }
 
 /// Returns all runs, the longest ones first, so that the test does not wait for a few long runs at the end.
 std::vector<Played> all_runs() {
   std::vector<Played> runs;
   for (const std::string& file : play::transcript_files(EX9000_CONFORMANCE_DIR)) {
-    for (play::Transcript& transcript : play::load_transcripts(file)) {
+    for (play::Transcript& transcript : runner::load_transcripts(file)) {
       if (std::count(kModelsOfTheManuals.begin(), kModelsOfTheManuals.end(), transcript.model->designation) !=
           0) {
         runs.push_back({std::move(transcript), {}});

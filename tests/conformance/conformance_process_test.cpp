@@ -13,6 +13,7 @@
 #include "tests/support/core_target.hpp"
 #include "tests/support/process_target.hpp"
 #include "tests/support/transcript_lines.hpp"
+#include "tests/support/transcripts.hpp"
 
 namespace ex9000 {
 namespace {
@@ -29,7 +30,7 @@ struct Played {
 std::vector<Played> all_runs() {
   std::vector<Played> runs;
   for (const std::string& file : play::transcript_files(EX9000_CONFORMANCE_DIR)) {
-    for (play::Transcript& transcript : play::load_transcripts(file)) {
+    for (play::Transcript& transcript : runner::load_transcripts(file)) {
       runs.push_back({std::move(transcript), {}});
     }
   }

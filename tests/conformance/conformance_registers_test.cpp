@@ -13,6 +13,7 @@
 #include "sim/play/transcript.hpp"
 #include "tests/boards/images_under_test.hpp"
 #include "tests/mcu_model/register_target.hpp"
+#include "tests/support/transcripts.hpp"
 
 namespace ex9000::registers {
 namespace {
@@ -43,7 +44,7 @@ TEST_P(ConformanceOnRegisters, PassesTheTranscriptsOfItsModel) {
     if (!plays(image, file)) {
       continue;
     }
-    for (const play::Transcript& transcript : play::load_transcripts(file)) {
+    for (const play::Transcript& transcript : runner::load_transcripts(file)) {
       if (transcript.model->designation != image.model) {
         continue;
       }

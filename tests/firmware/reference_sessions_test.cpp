@@ -13,6 +13,7 @@
 #include "tests/oracles/reference/session.hpp"
 #include "tests/support/directory.hpp"
 #include "tests/support/environment.hpp"
+#include "tests/support/transcripts.hpp"
 
 namespace ex9000::reference {
 namespace {
@@ -92,7 +93,7 @@ TEST(RandomSessions, CanBeReplayedByTheRunnerFromTheirTranscript) {
     const Played played(seed, kSteps / 3);
     ASSERT_TRUE(played.alike) << played.session.transcript();
     system::write_file(path, played.session.transcript());
-    for (const play::Transcript& transcript : play::load_transcripts(path)) {
+    for (const play::Transcript& transcript : runner::load_transcripts(path)) {
       runner::CoreTarget target;
       const play::Result result = play::play(transcript, target);
       EXPECT_TRUE(result.passed()) << "seed " << seed << ": " << result.failure << "\n"

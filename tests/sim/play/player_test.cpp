@@ -10,6 +10,7 @@
 #include <string>
 
 #include "tests/support/core_target.hpp"
+#include "tests/support/transcripts.hpp"
 
 namespace ex9000::runner {
 namespace {
@@ -36,13 +37,13 @@ const std::string kModbusHeader = "source: wire.md 7\nmodel: EX9042D-M\n\n";
 bool passes(const std::string& text) {
   const TranscriptFile file(text);
   CoreTarget target;
-  return play::play(play::load_transcripts(file.path()).front(), target).passed();
+  return play::play(runner::load_transcripts(file.path()).front(), target).passed();
 }
 
 bool loads(const std::string& text) {
   const TranscriptFile file(text);
   try {
-    return !play::load_transcripts(file.path()).empty();
+    return !runner::load_transcripts(file.path()).empty();
   } catch (const std::invalid_argument&) {
     return false;
   }

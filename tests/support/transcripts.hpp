@@ -1,0 +1,36 @@
+// Transcripts, which name their models, without scenarios.
+#pragma once
+
+#include <chrono>
+#include <string>
+#include <variant>
+#include <vector>
+
+#include "sim/play/transcript.hpp"
+#include "sim/text/fail.hpp"
+
+namespace ex9000::runner {
+
+/// Returns all runs of a file that must not be a scenario. Throws like play::load.
+inline std::vector<play::Transcript> load_transcripts(const std::string& path) {
+  std::vector<play::Transcript> transcripts = play::load(path);
+  if (transcripts[0].model == nullptr) {
+    sim::fail(path + ":1: requires at least one 'model:' line");
+  }
+  return transcripts;
+}
+
+/// Returns the total time of all `wait` and `silence` steps, rounded up.
+inline std::chrono::milliseconds waits_of(const play::Transcript& transcript) {
+  std::chrono::nanoseconds total{0};
+  for (const play::Step& step : transcript.steps) {
+    if (const auto* wait = std::get_if<play::step::Wait>(&step.action)) {
+      total += wait->time;
+    } else if (std::holds_alternative<play::step::Silence>(step.action)) {
+      total += play::kSilence;
+    }
+  }
+  return std::chrono::ceil<std::chrono::milliseconds>(total);
+}
+
+}  // namespace ex9000::runner
