@@ -1,5 +1,3 @@
-#include <vector>
-
 #include "firmware/dcon/commands.hpp"
 #include "sim/describe/access.hpp"
 #include "sim/describe/formats.hpp"

@@ -1,6 +1,5 @@
 #include "sim/describe/describe.hpp"
 
-#include <optional>
 #include <stdexcept>
 #include <utility>
 

@@ -4,7 +4,6 @@
 #include <string_view>
 
 #include "firmware/dcon/commands.hpp"
-#include "firmware/hex.hpp"
 #include "firmware/line/crc16.hpp"
 #include "firmware/modbus/functions.hpp"
 #include "firmware/modbus/registers.hpp"

@@ -1,8 +1,6 @@
 // The description of a module on the command line or in a bus file: MODEL[@ADDR][,KEY=VALUE]...
 #pragma once
 
-#include <cstdint>
-#include <optional>
 #include <string>
 #include <vector>
 

@@ -1,6 +1,5 @@
 #include "sim/module_view/face.hpp"
 
-#include <algorithm>
 #include <chrono>
 #include <tuple>
 

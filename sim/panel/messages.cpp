@@ -5,7 +5,6 @@
 
 #include "sim/frames/frame_errors.hpp"
 #include "sim/frames/frame_meaning.hpp"
-#include "sim/line/module_spec.hpp"
 #include "sim/module_view/terminals.hpp"
 #include "sim/text/values.hpp"
 

@@ -8,7 +8,6 @@
 #include <vector>
 
 #include "sim/faults/faults.hpp"
-#include "sim/frames/frame_watch.hpp"
 #include "sim/module_view/face.hpp"
 #include "sim/panel/recent_traffic.hpp"
 

@@ -3,11 +3,9 @@
 
 #include <chrono>
 #include <cstddef>
-#include <cstdint>
 #include <functional>
 #include <memory>
 #include <string>
-#include <vector>
 
 #include "sim/control/control.hpp"
 #include "sim/frames/frame_watch.hpp"

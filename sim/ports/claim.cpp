@@ -4,7 +4,6 @@
 #include <sys/un.h>
 #include <unistd.h>
 
-#include <cstddef>
 #include <functional>
 
 #include "sim/files/one_spelling.hpp"

@@ -1,7 +1,6 @@
 // The records of a line: its log and its capture.
 #pragma once
 
-#include <functional>
 #include <memory>
 #include <string>
 

@@ -5,11 +5,9 @@
 #include <functional>
 #include <list>
 #include <memory>
-#include <optional>
 #include <string>
 #include <vector>
 
-#include "sim/capture/capture.hpp"
 #include "sim/files/eeprom_file.hpp"
 #include "sim/files/new_file.hpp"
 #include "sim/line/line.hpp"

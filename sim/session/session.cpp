@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <boost/asio/dispatch.hpp>
 #include <chrono>
-#include <stdexcept>
 #include <thread>
 #include <utility>
 

@@ -1,7 +1,6 @@
 // Shows the modules' faces in a terminal.
 #pragma once
 
-#include <cstddef>
 #include <functional>
 #include <optional>
 #include <string>
