@@ -14,14 +14,6 @@ namespace ex9000::sim {
 
 namespace {
 
-LocatedJson parse_json(const std::string& path, const std::string& text) {
-  try {
-    return parse_located(text);
-  } catch (const std::invalid_argument& error) {
-    fail(path + ":" + error.what());
-  }
-}
-
 /// Returns the path of `error` in the file, from its root.
 std::string path_of(const SetupError& error) {
   std::string object;
@@ -43,7 +35,7 @@ bool is_bus_file(const std::string& argument) {
 }
 
 Setup parse_bus_file(const std::string& path, const std::string& text) {
-  const LocatedJson file = parse_json(path, text);
+  const LocatedJson file = with_place(path + ":", [&] { return parse_located(text); });
   const Node root(file, path);
   Setup setup = read_bus(root);
   try {

@@ -5,7 +5,6 @@
 #include <iomanip>
 #include <limits>
 #include <sstream>
-#include <stdexcept>
 
 #include "sim/text/durations.hpp"
 #include "sim/text/fail.hpp"
@@ -211,9 +210,9 @@ Fault parse_fault(const std::string& text) {
     fail("the fault is empty; expected one of " + names_of(kRows));
   }
   const Row& row = row_called(words[0]);
-  try {
-    Fault fault;
-    fault.text = joined(words);
+  Fault fault;
+  fault.text = joined(words);
+  with_place(fault.text + ": ", [&] {
     fault.trouble = row.trouble;
     std::size_t used = 1;
     if (!row.value.empty()) {
@@ -225,10 +224,8 @@ Fault parse_fault(const std::string& text) {
     fault.schedule =
         ScheduleReader(Words(words.begin() + static_cast<std::ptrdiff_t>(used), words.end())).read();
     check(fault);
-    return fault;
-  } catch (const std::invalid_argument& error) {
-    fail(joined(words) + ": " + error.what());
-  }
+  });
+  return fault;
 }
 
 std::vector<std::string> usual_faults() {

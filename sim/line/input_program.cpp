@@ -1,7 +1,6 @@
 #include "sim/line/input_program.hpp"
 
 #include <sstream>
-#include <stdexcept>
 #include <utility>
 #include <vector>
 
@@ -119,7 +118,7 @@ InputProgram parse_input_program(const std::string& text, const Model& model) {
   if (!(words >> channel)) {
     fail("the channel is missing; expected 'CHANNEL square PERIOD' or 'CHANNEL key at TIME for TIME'");
   }
-  try {
+  return with_place(text + ": ", [&] {
     std::string kind;
     words >> kind;
     InputProgram program;
@@ -133,9 +132,7 @@ InputProgram parse_input_program(const std::string& text, const Model& model) {
     }
     check(program);
     return program;
-  } catch (const std::invalid_argument& error) {
-    fail(text + ": " + error.what());
-  }
+  });
 }
 
 MovedInput::MovedInput(Bus& bus, SimulatedModule& module, const InputProgram& program, std::uint64_t seed)

@@ -4,7 +4,6 @@
 #include <cctype>
 #include <set>
 #include <sstream>
-#include <stdexcept>
 
 #include "sim/line/named_settings.hpp"
 #include "sim/text/fail.hpp"
@@ -69,7 +68,7 @@ void check(const ModuleSpec& spec) {
 }
 
 ModuleSpec parse_module_spec(const std::string& text) {
-  try {
+  return with_place((text.empty() ? "an empty argument" : text) + ": ", [&] {
     std::istringstream parts(text);
     std::string name;
     std::getline(parts, name, ',');
@@ -94,9 +93,7 @@ ModuleSpec parse_module_spec(const std::string& text) {
     }
     check(spec);
     return spec;
-  } catch (const std::invalid_argument& error) {
-    fail((text.empty() ? "an empty argument" : text) + ": " + error.what());
-  }
+  });
 }
 
 }  // namespace ex9000::sim

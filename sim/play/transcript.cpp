@@ -64,15 +64,13 @@ void apply_preset(const std::string& word, const Model& model, Settings& setting
   const auto equals = word.find('=');
   const std::string key = word.substr(0, equals);
   const std::string value = equals == std::string::npos ? "" : word.substr(equals + 1);
-  try {
+  sim::with_place("preset " + key + "=: ", [&] {
     if (key == "address") {
       settings.address = parse_hex_byte(value);
     } else if (!sim::set_by_name(settings, model, key, value)) {
       fail("unknown key; expected one of address, protocol, baud, checksum, edge, name");
     }
-  } catch (const std::invalid_argument& error) {
-    fail("preset " + key + "=: " + error.what());
-  }
+  });
 }
 
 std::string substitute(std::string text, const Variables& variables) {
