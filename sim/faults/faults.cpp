@@ -73,29 +73,14 @@ std::size_t Faults::add(const Fault& fault) {
 
 /// Attaches only the stations that the fault requires.
 void Faults::prepare(Trouble trouble) {
-  switch (trouble) {
-    case Trouble::BitErrors:
-    case Trouble::LostBytes:
-    case Trouble::InsertedBytes:
-    case Trouble::StrayZeros:
-      if (!noise_) {
-        noise_ = std::make_unique<Noise>(bus_, NoiseRates(), chance_.number());
-      }
-      break;
-    case Trouble::Echo:
-      if (!echo_) {
-        echo_ = std::make_unique<Echo>(bus_, master_.baud());
-        master_.on_rate([this](std::uint32_t baud) { echo_->set_baud(baud); });
-      }
-      break;
-    case Trouble::ForeignTraffic:
-      if (!stranger_) {
-        stranger_ = std::make_unique<Master>(bus_, master_.baud(),
-                                             [](std::uint8_t /*byte*/, ByteStatus /*status*/) {});
-      }
-      break;
-    default:
-      break;
+  if (is_noise(trouble) && !noise_) {
+    noise_ = std::make_unique<Noise>(bus_, NoiseRates(), chance_.number());
+  } else if (trouble == Trouble::Echo && !echo_) {
+    echo_ = std::make_unique<Echo>(bus_, master_.baud());
+    master_.on_rate([this](std::uint32_t baud) { echo_->set_baud(baud); });
+  } else if (trouble == Trouble::ForeignTraffic && !stranger_) {
+    stranger_ =
+        std::make_unique<Master>(bus_, master_.baud(), [](std::uint8_t /*byte*/, ByteStatus /*status*/) {});
   }
 }
 
