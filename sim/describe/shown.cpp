@@ -14,6 +14,9 @@ struct Reading {
   std::string_view id;
   std::optional<Role> role;  ///< nullopt: the row is excluded
   std::string_view name;
+  // The action that starts when 1 is written to the coil; empty: none.
+  std::string_view button_id{};
+  std::string_view button_name{};
 };
 
 constexpr auto kReadings = table<Reading>({
@@ -26,28 +29,16 @@ constexpr auto kReadings = table<Reading>({
     {"power-on-value", Role::Preset, "Power-on value"},
     {"protocol", std::nullopt, ""},
     {"watchdog-enable", Role::State, "Host watchdog enabled"},
-    {"clear-latches", std::nullopt, ""},
-    {"timeout-status", Role::Problem, "Host watchdog timeout status"},
-    {"clear-counters", std::nullopt, ""},
+    {"clear-latches", std::nullopt, "", "clear-latches", "Clear latches"},
+    {"timeout-status", Role::Problem, "Host watchdog timeout status", "clear-timeout-status",
+     "Clear timeout status"},
+    {"clear-counters", std::nullopt, "", "clear-counters", "Clear counter"},
     {"counters", Role::Counter, "Counter"},
     {"module-code", std::nullopt, ""},
     {"address", std::nullopt, ""},
     {"baud-code", std::nullopt, ""},
     {"watchdog-timeout", Role::Tenths, "Host watchdog timeout"},
     {"host-ok", std::nullopt, ""},
-});
-
-/// The action that starts when 1 is written to a coil.
-struct Button {
-  std::string_view row;
-  std::string_view id;
-  std::string_view name;
-};
-
-constexpr auto kButtons = table<Button>({
-    {"clear-latches", "clear-latches", "Clear latches"},
-    {"timeout-status", "clear-timeout-status", "Clear timeout status"},
-    {"clear-counters", "clear-counters", "Clear counter"},
 });
 
 constexpr const Reading* reading_of(std::string_view id) {
@@ -59,20 +50,12 @@ constexpr const Reading* reading_of(std::string_view id) {
   return nullptr;
 }
 
-constexpr const Button* button_of(std::string_view id) {
-  for (const Button& each : kButtons) {
-    if (each.row == id) {
-      return &each;
-    }
-  }
-  return nullptr;
-}
-
-/// Returns whether kReadings and kButtons cover all rows of the firmware's tables. A new row must be added to
-/// kReadings, and to kButtons if it has the rule kOnlyOn.
+/// Returns whether kReadings covers all rows of the firmware's tables. A new row must be added to kReadings,
+/// with a button if it has the rule kOnlyOn.
 constexpr bool covers_every_row() {
   for (const modbus::BitRegister& row : modbus::kBitRegisters) {
-    if (reading_of(row.id) == nullptr || (button_of(row.id) != nullptr) != row.row.has(modbus::kOnlyOn)) {
+    const Reading* const reading = reading_of(row.id);
+    if (reading == nullptr || reading->button_id.empty() == row.row.has(modbus::kOnlyOn)) {
       return false;
     }
   }
@@ -109,8 +92,8 @@ std::vector<Shown> shown_by(const Model& model) {
     if (reading.role && row.reads && std::none_of(all.begin(), all.end(), same)) {
       all.push_back(shown(row, row.id, *reading.role, reading.name));
     }
-    if (const Button* button = button_of(row.id)) {
-      all.push_back(shown(row, button->id, Role::Button, button->name));
+    if (!reading.button_id.empty()) {
+      all.push_back(shown(row, reading.button_id, Role::Button, reading.button_name));
     }
   }
   return all;
