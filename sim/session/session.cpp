@@ -41,7 +41,9 @@ Session::Session(boost::asio::io_context& io, Setup setup, Print print, Print gr
     // With several lines, each message begins with the line's name. JSON contains it already.
     const bool as_it_is = line.name.empty() || for_machines();
     const std::string lead = as_it_is ? "" : line.name + ": ";
-    open_line(line, [this, lead](const std::string& text) { print_line(lead + text); });
+    lines_.push_back(std::make_unique<RunningLine>(
+        threads_.io(lines_.size()), line, setup_.seed + lines_.size(), setup_.log.value_or(LogFormat::Text),
+        setup_.speed.stepped(), [this, lead](const std::string& text) { print_line(lead + text); }));
   }
   open_control();
   open_panel();
@@ -54,12 +56,6 @@ Session::~Session() { threads_.end(); }
 void Session::print_line(const std::string& line) {
   const std::lock_guard<std::mutex> lock(printing_);
   print_(line);
-}
-
-void Session::open_line(const LineSetup& line, const Print& print) {
-  lines_.push_back(
-      std::make_unique<RunningLine>(threads_.io(lines_.size()), line, setup_.seed + lines_.size(),
-                                    setup_.log.value_or(LogFormat::Text), setup_.speed.stepped(), print));
 }
 
 void Session::open_control() {

@@ -52,7 +52,6 @@ class Session : private PanelSource {
  private:
   [[nodiscard]] bool for_machines() const { return setup_.log == LogFormat::Json; }
   void keep_a_capture();
-  void open_line(const LineSetup& line, const Print& print);
   void print_line(const std::string& line);
   void open_control();
   [[nodiscard]] bool ends() const;
