@@ -24,7 +24,7 @@ class Station {
   virtual void run() = 0;
   /// The bus calls this after the stop bit of a byte, if the station listens. A station also receives its own
   /// bytes, because both directions share the two wires.
-  virtual void receive(std::uint8_t byte, ByteStatus status) = 0;
+  virtual void receive(std::uint8_t /*byte*/, ByteStatus /*status*/) {}
 
  protected:
   ~Station() = default;
@@ -48,7 +48,7 @@ class BusEnd : public Wire {
 class BusObserver {
  public:
   /// The driver of `station` was enabled or disabled. `station` counts from 0 in the order of attachment.
-  virtual void driver(std::size_t station, bool on, VirtualTime now) = 0;
+  virtual void driver(std::size_t /*station*/, bool /*on*/, VirtualTime /*now*/) {}
   /// The disturbance has changed the byte that `station` begins to send now: receivers see `arrives` instead.
   virtual void changed(std::size_t /*station*/, Levels /*arrives*/) {}
   /// A byte that began at `start` has ended. A byte is not reported if its driver was disabled before its

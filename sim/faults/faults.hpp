@@ -55,7 +55,6 @@ class Faults final : public Station {
 
   // --- Station ---
   void run() override;
-  void receive(std::uint8_t /*byte*/, ByteStatus /*status*/) override {}
 
  private:
   /// One strike in progress.

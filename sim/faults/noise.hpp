@@ -39,7 +39,6 @@ class Noise final : public Disturbance, public Station {
 
   // --- Station ---
   void run() override;
-  void receive(std::uint8_t /*byte*/, ByteStatus /*status*/) override {}
 
  private:
   struct Stray {

@@ -42,7 +42,6 @@ class MovedInput final : public Station {
 
   // --- Station ---
   void run() override;
-  void receive(std::uint8_t /*byte*/, ByteStatus /*status*/) override {}
 
  private:
   struct Move {

@@ -41,7 +41,6 @@ class LineRecord final : private Station {
  private:
   // --- Station: only observes the clock ---
   void run() override;
-  void receive(std::uint8_t /*byte*/, ByteStatus /*status*/) override {}
 
   void listen();
 

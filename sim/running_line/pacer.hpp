@@ -74,7 +74,6 @@ class Pacer final : private BusObserver {
   static std::size_t first_frame_size(Bytes bytes);
   [[nodiscard]] VirtualTime silence_before(std::uint8_t address);
   [[nodiscard]] bool is_for_modbus(std::uint8_t address);
-  void driver(std::size_t /*station*/, bool /*on*/, VirtualTime /*now*/) override {}
   void byte(std::size_t station, std::uint8_t byte, std::uint32_t baud, bool collided, VirtualTime start,
             VirtualTime end) override;
 

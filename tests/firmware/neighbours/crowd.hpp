@@ -31,7 +31,6 @@ class Pulser final : public sim::Station {
 
   // --- sim::Station ---
   void run() override;
-  void receive(std::uint8_t /*byte*/, ByteStatus /*status*/) override {}
 
  private:
   void wake_at(sim::VirtualTime when) {

@@ -100,7 +100,6 @@ class Talker final : public Station {
       rest();
     }
   }
-  void receive(std::uint8_t /*byte*/, ByteStatus /*status*/) override {}
 
  private:
   void rest() {

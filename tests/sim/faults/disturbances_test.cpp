@@ -96,7 +96,6 @@ TEST(Noise, LosesCharactersInContentionOnlyWhileAnotherDriverIsEnabled) {
 
   struct Holder final : Station {
     void run() override {}
-    void receive(std::uint8_t /*byte*/, ByteStatus /*status*/) override {}
   } holder;
   line.bus.attach(holder).drive(true);
   line.heard.clear();
