@@ -1,7 +1,6 @@
 #include "sim/session/line_threads.hpp"
 
 #include <boost/asio/post.hpp>
-#include <iterator>
 
 namespace ex9000::sim {
 
@@ -12,9 +11,7 @@ LineThreads::LineThreads(boost::asio::io_context& main, std::size_t threads) : m
 }
 
 boost::asio::io_context& LineThreads::io(std::size_t line) {
-  return workers_.empty()
-             ? main_
-             : std::next(workers_.begin(), static_cast<std::ptrdiff_t>(line % workers_.size()))->io;
+  return workers_.empty() ? main_ : workers_[line % workers_.size()].io;
 }
 
 void LineThreads::start() {

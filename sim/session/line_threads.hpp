@@ -6,9 +6,9 @@
 #include <condition_variable>
 #include <cstddef>
 #include <cstdint>
+#include <deque>
 #include <exception>
 #include <functional>
-#include <list>
 #include <mutex>
 #include <thread>
 
@@ -47,9 +47,9 @@ class LineThreads {
   void resume();
 
   boost::asio::io_context& main_;
-  std::list<Worker> workers_;
-  std::size_t running_ = 0;  ///< number of started threads
-  std::mutex mutex_;         ///< of the members below
+  std::deque<Worker> workers_;  ///< they keep their addresses
+  std::size_t running_ = 0;     ///< number of started threads
+  std::mutex mutex_;            ///< of the members below
   std::condition_variable changed_;
   std::size_t paused_ = 0;    ///< number of threads in the present pause
   std::uint64_t pauses_ = 0;  ///< number of pauses that have ended
