@@ -11,6 +11,8 @@
 #include <stdexcept>
 #include <utility>
 
+#include "sim/ports/listening.hpp"
+
 namespace ex9000::sim {
 
 namespace {
@@ -96,40 +98,22 @@ void ControlSocket::remove() const {
   }
 }
 
-void ControlSocket::accept() {
-  acceptor_.async_accept([this](const boost::system::error_code& error, Local::socket socket) {
-    if (error == boost::asio::error::operation_aborted) {
-      return;
-    }
-    clients_.erase(std::remove_if(clients_.begin(), clients_.end(),
-                                  [](const std::weak_ptr<Client>& client) { return client.expired(); }),
-                   clients_.end());
-    if (error) {
-      accept_later();
-      return;
-    }
-    const auto client = std::make_shared<Client>(std::move(socket));
-    if (clients_.size() < kMostClients) {
-      clients_.push_back(client);
-      read(client);
-    } else {
-      send(client, "error: there are " + std::to_string(kMostClients) + " clients already; close one of them",
-           Then::Part);
-    }
-    accept();
-  });
+void ControlSocket::start() {
+  keep_accepting(acceptor_, next_try_, [this](Local::socket socket) { admit(std::move(socket)); });
 }
 
-/// Accepts again after a delay. If the process has no free file descriptor, an immediate retry would use all
-/// of the processor's time.
-void ControlSocket::accept_later() {
-  constexpr std::chrono::milliseconds kRetryDelay{100};
-  next_try_.expires_after(kRetryDelay);
-  next_try_.async_wait([this](const boost::system::error_code& error) {
-    if (!error) {
-      accept();
-    }
-  });
+void ControlSocket::admit(Local::socket socket) {
+  clients_.erase(std::remove_if(clients_.begin(), clients_.end(),
+                                [](const std::weak_ptr<Client>& client) { return client.expired(); }),
+                 clients_.end());
+  const auto client = std::make_shared<Client>(std::move(socket));
+  if (clients_.size() < kMostClients) {
+    clients_.push_back(client);
+    read(client);
+  } else {
+    send(client, "error: there are " + std::to_string(kMostClients) + " clients already; close one of them",
+         Then::Part);
+  }
 }
 
 void ControlSocket::read(const std::shared_ptr<Client>& client) {

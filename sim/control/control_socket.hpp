@@ -36,14 +36,13 @@ class ControlSocket {
   ControlSocket& operator=(const ControlSocket&) = delete;
 
   /// Accepts clients. Call it when the line is ready for commands.
-  void start() { accept(); }
+  void start();
 
  private:
   struct Client;
 
   void remove() const;
-  void accept();
-  void accept_later();
+  void admit(boost::asio::local::stream_protocol::socket socket);
   void read(const std::shared_ptr<Client>& client);
   /// The action after the reply has been sent.
   enum class Then { ReadOn, Part, Quit };

@@ -1,8 +1,11 @@
-// Helpers for listening on a TCP port of this machine.
+// Helpers for servers that listen on this machine.
 #pragma once
 
 #include <boost/asio/ip/tcp.hpp>
+#include <boost/asio/steady_timer.hpp>
+#include <chrono>
 #include <string>
+#include <utility>
 
 namespace ex9000::sim {
 
@@ -27,6 +30,27 @@ inline boost::system::error_code listen_at(boost::asio::ip::tcp::acceptor& accep
     acceptor.close(ignored);
   }
   return error;
+}
+
+/// Calls `admit` with the socket of each new connection until `acceptor` and `next_try` are destroyed. After
+/// an error, accepts again after 100 ms: if the process has no free file descriptor, immediate retries would
+/// use all of the processor's time.
+template <class Acceptor, class Admit>
+void keep_accepting(Acceptor& acceptor, boost::asio::steady_timer& next_try, Admit admit) {
+  using Socket = typename Acceptor::protocol_type::socket;
+  acceptor.async_accept([&acceptor, &next_try, admit](const boost::system::error_code& error, Socket socket) {
+    if (!error) {
+      admit(std::move(socket));
+      keep_accepting(acceptor, next_try, admit);
+    } else if (error != boost::asio::error::operation_aborted) {
+      next_try.expires_after(std::chrono::milliseconds(100));
+      next_try.async_wait([&acceptor, &next_try, admit](const boost::system::error_code& aborted) {
+        if (!aborted) {
+          keep_accepting(acceptor, next_try, admit);
+        }
+      });
+    }
+  });
 }
 
 /// Describes the error; adds `mend` unless another program uses the port.

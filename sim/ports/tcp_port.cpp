@@ -75,21 +75,7 @@ std::string TcpPort::address() const {
 
 void TcpPort::start(Received received) {
   received_ = std::move(received);
-  accept();
-}
-
-void TcpPort::accept() {
-  acceptor_.async_accept([this](const boost::system::error_code& error, tcp::socket socket) {
-    if (error == boost::asio::error::operation_aborted) {
-      return;
-    }
-    if (error) {
-      accept_later();
-      return;
-    }
-    admit(std::move(socket));
-    accept();
-  });
+  keep_accepting(acceptor_, next_try_, [this](tcp::socket socket) { admit(std::move(socket)); });
 }
 
 void TcpPort::admit(tcp::socket socket) {
@@ -139,18 +125,6 @@ void TcpPort::make_room() {
       forget(ClientPointer(*oldest));
     }
   }
-}
-
-/// Tries again after 100 ms. If the process has no free file descriptor, immediate retries would use all of
-/// the processor's time.
-void TcpPort::accept_later() {
-  constexpr std::chrono::milliseconds kAcceptRetryDelay{100};
-  next_try_.expires_after(kAcceptRetryDelay);
-  next_try_.async_wait([this](const boost::system::error_code& error) {
-    if (!error) {
-      accept();
-    }
-  });
 }
 
 void TcpPort::read(const ClientPointer& client) {

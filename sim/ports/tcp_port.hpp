@@ -38,9 +38,7 @@ class TcpPort final : public Port {
  private:
   struct Client;
 
-  void accept();
   void admit(boost::asio::ip::tcp::socket socket);
-  void accept_later();
   /// Shared with pending asynchronous reads: a client may be removed during a read because a reply to it
   /// fails.
   using ClientPointer = std::shared_ptr<Client>;
