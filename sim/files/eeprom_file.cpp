@@ -7,10 +7,10 @@
 
 #include <cerrno>
 #include <filesystem>
-#include <stdexcept>
 #include <utility>
 
 #include "hal/doubles/memory.hpp"
+#include "sim/text/fail.hpp"
 #include "sim/text/system_error.hpp"
 
 namespace ex9000::sim {
@@ -28,12 +28,12 @@ class Draft {
     const std::filesystem::path folder = std::filesystem::path(path).parent_path();
     constexpr mode_t kAsUmaskPermits = 0666;
     constexpr int kFlags = O_RDWR | O_CLOEXEC;
-    fd_ = open(folder.empty() ? "." : folder.c_str(), kFlags | O_TMPFILE, kAsUmaskPermits);
-    name_ = "/proc/self/fd/" + std::to_string(fd_);
-    if (fd_ < 0 && (errno == EOPNOTSUPP || errno == EISDIR)) {
+    file_ = FileDescriptor(open(folder.empty() ? "." : folder.c_str(), kFlags | O_TMPFILE, kAsUmaskPermits));
+    name_ = "/proc/self/fd/" + std::to_string(file_.get());
+    if (!file_.is_open() && (errno == EOPNOTSUPP || errno == EISDIR)) {
       name_ = path + "." + std::to_string(getpid());
-      fd_ = open(name_.c_str(), kFlags | O_CREAT | O_EXCL, kAsUmaskPermits);
-      temporary_ = fd_ >= 0;
+      file_ = FileDescriptor(open(name_.c_str(), kFlags | O_CREAT | O_EXCL, kAsUmaskPermits));
+      temporary_ = file_.is_open();
     }
   }
   ~Draft() {
@@ -44,15 +44,15 @@ class Draft {
   Draft(const Draft&) = delete;
   Draft& operator=(const Draft&) = delete;
 
-  /// The open file, which the caller has to close; -1 if it cannot be opened.
-  [[nodiscard]] int fd() const { return fd_; }
+  /// Gives the file to the caller; it is not open if opening has failed.
+  [[nodiscard]] FileDescriptor take_file() { return std::move(file_); }
   /// Does not replace an existing file. Returns false if the system call fails.
   [[nodiscard]] bool link_to(const std::string& path) const {
     return linkat(AT_FDCWD, name_.c_str(), AT_FDCWD, path.c_str(), AT_SYMLINK_FOLLOW) == 0;
   }
 
  private:
-  int fd_ = -1;
+  FileDescriptor file_;
   std::string name_;
   bool temporary_ = false;
 };
@@ -69,11 +69,11 @@ std::string flaw_of(const struct stat& status) {
   return "";
 }
 
-/// Throws std::runtime_error with a one-line message if reading fails.
-std::vector<std::uint8_t> image_in(int fd) {
+/// Reads the image in `file`. Throws std::invalid_argument with a one-line message if reading fails.
+std::vector<std::uint8_t> image_in(const FileDescriptor& file, const std::string& path) {
   std::vector<std::uint8_t> image(kSize);
-  if (pread(fd, image.data(), kSize, 0) != static_cast<ssize_t>(kSize)) {
-    throw std::runtime_error("cannot be read: " + reason() + "; name another path");
+  if (pread(file.get(), image.data(), kSize, 0) != static_cast<ssize_t>(kSize)) {
+    fail(path + ": cannot be read: " + reason() + "; name another path");
   }
   return image;
 }
@@ -81,37 +81,27 @@ std::vector<std::uint8_t> image_in(int fd) {
 }  // namespace
 
 std::optional<std::vector<std::uint8_t>> read_eeprom_file(const std::string& path) {
-  const int fd = open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK);
-  if (fd < 0 && errno == ENOENT) {
+  const FileDescriptor file(open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK));
+  if (!file.is_open() && errno == ENOENT) {
     return std::nullopt;
   }
-  std::string why;
-  std::optional<std::vector<std::uint8_t>> image;
   struct stat status {};
-  try {
-    why = fd < 0 || fstat(fd, &status) != 0 ? reason() + "; name a file that can be read" : flaw_of(status);
-    if (why.empty()) {
-      image = image_in(fd);
-    }
-  } catch (const std::runtime_error& error) {
-    why = error.what();
-  }
-  if (fd >= 0) {
-    close(fd);
-  }
+  const std::string why = !file.is_open() || fstat(file.get(), &status) != 0
+                              ? reason() + "; name a file that can be read"
+                              : flaw_of(status);
   if (!why.empty()) {
-    throw std::invalid_argument(path + ": " + why);
+    fail(path + ": " + why);
   }
-  return image;
+  return image_in(file, path);
 }
 
-EepromFile::EepromFile(std::string path) : path_(std::move(path)) {
-  fd_ = open(path_.c_str(), O_RDWR | O_CLOEXEC | O_NONBLOCK);
-  if (fd_ < 0 && errno == ENOENT) {
+EepromFile::EepromFile(std::string path)
+    : path_(std::move(path)), file_(open(path_.c_str(), O_RDWR | O_CLOEXEC | O_NONBLOCK)) {
+  if (!file_.is_open() && errno == ENOENT) {
     return;
   }
   struct stat status {};
-  if (fd_ < 0 || fstat(fd_, &status) != 0) {
+  if (!file_.is_open() || fstat(file_.get(), &status) != 0) {
     refuse(reason() + "; name a file that can be read and written");
   }
   if (const std::string why = flaw_of(status); !why.empty()) {
@@ -122,24 +112,14 @@ EepromFile::EepromFile(std::string path) : path_(std::move(path)) {
     refuse("is read-only; chmod u+w, or name another path");
   }
   lock();
-  try {
-    found_ = image_in(fd_);
-  } catch (const std::runtime_error& error) {
-    refuse(error.what());
-  }
-}
-
-EepromFile::~EepromFile() {
-  if (fd_ >= 0) {
-    close(fd_);
-  }
+  found_ = image_in(file_, path_);
 }
 
 void EepromFile::create(const std::vector<std::uint8_t>& image) {
-  const Draft draft(path_);
-  fd_ = draft.fd();
-  if (fd_ < 0 || !write(0, {image.data(), image.size()}) || flock(fd_, LOCK_EX | LOCK_NB) != 0 ||
-      !draft.link_to(path_)) {
+  Draft draft(path_);
+  file_ = draft.take_file();
+  if (!file_.is_open() || !write(0, {image.data(), image.size()}) ||
+      flock(file_.get(), LOCK_EX | LOCK_NB) != 0 || !draft.link_to(path_)) {
     const std::string why =
         errno == EEXIST ? "the file was created meanwhile, or the path is a dangling link" : reason();
     refuse("cannot be created: " + why + "; name a path that can be written");
@@ -150,23 +130,18 @@ bool EepromFile::write(std::uint16_t address, Bytes bytes) const {
   // After an incomplete write, the next one fails with the reason.
   ssize_t written = 0;
   for (std::size_t done = 0; done < bytes.size && written >= 0; done += static_cast<std::size_t>(written)) {
-    written = pwrite(fd_, bytes.data + done, bytes.size - done, static_cast<off_t>(address + done));
+    written = pwrite(file_.get(), bytes.data + done, bytes.size - done, static_cast<off_t>(address + done));
   }
   return written >= 0;
 }
 
-void EepromFile::lock() {
-  if (flock(fd_, LOCK_EX | LOCK_NB) != 0) {
+void EepromFile::lock() const {
+  if (flock(file_.get(), LOCK_EX | LOCK_NB) != 0) {
     refuse(errno == EWOULDBLOCK ? "is in use by another module; end that simulator or name another path"
                                 : reason() + "; name another path");
   }
 }
 
-void EepromFile::refuse(const std::string& why) {
-  if (fd_ >= 0) {
-    close(std::exchange(fd_, -1));
-  }
-  throw std::invalid_argument(path_ + ": " + why);
-}
+void EepromFile::refuse(const std::string& why) const { fail(path_ + ": " + why); }
 
 }  // namespace ex9000::sim

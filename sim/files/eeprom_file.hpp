@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "firmware/bytes.hpp"
+#include "sim/files/file_descriptor.hpp"
 
 namespace ex9000::sim {
 
@@ -26,9 +27,6 @@ class EepromFile {
   /// Opens and locks an existing file. Throws std::invalid_argument with a one-line message if the file is
   /// not an image, is not writable or is in use. Does not create a file.
   explicit EepromFile(std::string path);
-  ~EepromFile();
-  EepromFile(const EepromFile&) = delete;
-  EepromFile& operator=(const EepromFile&) = delete;
 
   /// Returns the content of the file when it was opened; nullopt if there was no file.
   [[nodiscard]] const std::optional<std::vector<std::uint8_t>>& found() const { return found_; }
@@ -40,11 +38,11 @@ class EepromFile {
   [[nodiscard]] const std::string& path() const { return path_; }
 
  private:
-  [[noreturn]] void refuse(const std::string& why);
-  void lock();
+  [[noreturn]] void refuse(const std::string& why) const;
+  void lock() const;
 
   std::string path_;
-  int fd_ = -1;
+  FileDescriptor file_;
   std::optional<std::vector<std::uint8_t>> found_;
 };
 

@@ -2,7 +2,6 @@
 
 #include <sys/socket.h>
 #include <sys/un.h>
-#include <unistd.h>
 
 #include <functional>
 
@@ -20,21 +19,14 @@ std::string name_of(const std::string& path) {
 }  // namespace
 
 /// Uses an abstract socket: the kernel gives the name to only one process and releases it automatically.
-Claim::Claim(const std::string& path) : fd_(socket(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0)) {
+Claim::Claim(const std::string& path) : socket_(socket(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0)) {
   sockaddr_un address{};
   address.sun_family = AF_UNIX;
   const std::string name = name_of(path);
   name.copy(address.sun_path + 1, sizeof address.sun_path - 1);
   const auto size = static_cast<socklen_t>(offsetof(sockaddr_un, sun_path) + 1 + name.size());
-  if (fd_ >= 0 && bind(fd_, reinterpret_cast<const sockaddr*>(&address), size) != 0) {
-    close(fd_);
-    fd_ = -1;
-  }
-}
-
-Claim::~Claim() {
-  if (fd_ >= 0) {
-    close(fd_);
+  if (held() && bind(socket_.get(), reinterpret_cast<const sockaddr*>(&address), size) != 0) {
+    socket_ = FileDescriptor();
   }
 }
 

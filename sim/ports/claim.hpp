@@ -3,6 +3,8 @@
 
 #include <string>
 
+#include "sim/files/file_descriptor.hpp"
+
 namespace ex9000::sim {
 
 /// Only one process holds a claim at a time, and the system releases it when the process ends in any way: if
@@ -11,15 +13,12 @@ namespace ex9000::sim {
 class Claim {
  public:
   explicit Claim(const std::string& path);
-  ~Claim();
-  Claim(const Claim&) = delete;
-  Claim& operator=(const Claim&) = delete;
 
   /// Returns false if another process holds the claim.
-  [[nodiscard]] bool held() const { return fd_ >= 0; }
+  [[nodiscard]] bool held() const { return socket_.is_open(); }
 
  private:
-  int fd_;
+  FileDescriptor socket_;
 };
 
 }  // namespace ex9000::sim

@@ -49,49 +49,33 @@ void remove_stale(const std::string& link, const Claim& claim) {
 class Slave {
  public:
   explicit Slave(const std::string& device)
-      : fd_(open(device.c_str(), O_RDWR | O_NOCTTY | O_NONBLOCK | O_CLOEXEC)) {}
-  ~Slave() {
-    if (fd_ >= 0) {
-      close(fd_);
-    }
-  }
-  Slave(const Slave&) = delete;
-  Slave& operator=(const Slave&) = delete;
+      : file_(open(device.c_str(), O_RDWR | O_NOCTTY | O_NONBLOCK | O_CLOEXEC)) {}
 
   [[nodiscard]] bool set_up(std::uint32_t baud) const {
     termios settings{};
-    if (fd_ < 0 || tcgetattr(fd_, &settings) != 0) {
+    if (!file_.is_open() || tcgetattr(file_.get(), &settings) != 0) {
       return false;
     }
     cfmakeraw(&settings);
     if (const auto speed = termios_speed(baud)) {
       cfsetspeed(&settings, *speed);
     }
-    return tcsetattr(fd_, TCSANOW, &settings) == 0;
+    return tcsetattr(file_.get(), TCSANOW, &settings) == 0;
   }
-  void forget_unread() const { tcflush(fd_, TCIFLUSH); }
+  void forget_unread() const { tcflush(file_.get(), TCIFLUSH); }
 
  private:
-  int fd_;
+  FileDescriptor file_;
 };
 
 }  // namespace
 
 Pty::Pty(std::string link, std::uint32_t baud) : link_(std::move(link)), claim_(link_) {
   remove_stale(link_, claim_);
-  try {
-    make(baud);
-  } catch (...) {
-    close(master_);
-    throw;
-  }
-}
-
-void Pty::make(std::uint32_t baud) {
-  master_ = posix_openpt(O_RDWR | O_NOCTTY | O_CLOEXEC | O_NONBLOCK);
+  master_ = FileDescriptor(posix_openpt(O_RDWR | O_NOCTTY | O_CLOEXEC | O_NONBLOCK));
   std::array<char, 64> name{};
-  if (master_ < 0 || grantpt(master_) != 0 || unlockpt(master_) != 0 ||
-      ptsname_r(master_, name.data(), name.size()) != 0) {
+  if (!master_.is_open() || grantpt(master_fd()) != 0 || unlockpt(master_fd()) != 0 ||
+      ptsname_r(master_fd(), name.data(), name.size()) != 0) {
     throw std::runtime_error(link_ + ": cannot create a pseudo-terminal: " + reason());
   }
   device_ = name.data();
@@ -107,11 +91,10 @@ Pty::~Pty() {
   if (link_target(link_) == device_) {
     unlink(link_.c_str());
   }
-  close(master_);
 }
 
 bool Pty::visited() const {
-  pollfd master{master_, 0, 0};
+  pollfd master{master_fd(), 0, 0};
   return poll(&master, 1, 0) == 0 || (master.revents & POLLHUP) == 0;
 }
 
@@ -125,7 +108,7 @@ void Pty::take_visit() {
 
 std::optional<std::uint32_t> Pty::baud() const {
   termios settings{};
-  return tcgetattr(master_, &settings) == 0 ? termios_rate(settings) : std::nullopt;
+  return tcgetattr(master_fd(), &settings) == 0 ? termios_rate(settings) : std::nullopt;
 }
 
 }  // namespace ex9000::sim

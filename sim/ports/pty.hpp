@@ -5,6 +5,7 @@
 #include <optional>
 #include <string>
 
+#include "sim/files/file_descriptor.hpp"
 #include "sim/ports/claim.hpp"
 
 namespace ex9000::sim {
@@ -26,7 +27,7 @@ class Pty {
 
   /// The simulator's end for reading and writing; non-blocking. Reading fails while no master has the slave
   /// open.
-  [[nodiscard]] int master_fd() const { return master_; }
+  [[nodiscard]] int master_fd() const { return master_.get(); }
   [[nodiscard]] const std::string& link() const { return link_; }
   /// The path of the slave, for example /dev/pts/5.
   [[nodiscard]] const std::string& device() const { return device_; }
@@ -41,12 +42,10 @@ class Pty {
   [[nodiscard]] std::optional<std::uint32_t> baud() const;
 
  private:
-  void make(std::uint32_t baud);
-
   std::string link_;
   Claim claim_;
   std::string device_;
-  int master_ = -1;
+  FileDescriptor master_;
   bool deserted_ = true;  ///< at the last check, no master had the slave open
 };
 

@@ -12,6 +12,7 @@
 #include <stdexcept>
 #include <utility>
 
+#include "sim/files/file_descriptor.hpp"
 #include "sim/ports/termios_rates.hpp"
 #include "sim/text/fail.hpp"
 #include "sim/text/system_error.hpp"
@@ -60,22 +61,17 @@ void set_up(int fd, const std::string& device, std::uint32_t baud) {
   tcflush(fd, TCIOFLUSH);
 }
 
-/// Opens the port; closes it again if it is not usable.
+/// Opens the port. The caller has to close it.
 int open_port(const std::string& device, std::uint32_t baud) {
-  const int fd = open(device.c_str(), O_RDWR | O_NOCTTY | O_NONBLOCK | O_CLOEXEC);
-  if (fd < 0) {
+  FileDescriptor port(open(device.c_str(), O_RDWR | O_NOCTTY | O_NONBLOCK | O_CLOEXEC));
+  if (!port.is_open()) {
     throw std::invalid_argument(device + ": " +
                                 (errno == EBUSY
                                      ? "another program uses it; end that program or name another port"
                                      : reason() + "; name a serial port that can be read and written"));
   }
-  try {
-    set_up(fd, device, baud);
-  } catch (...) {
-    close(fd);
-    throw;
-  }
-  return fd;
+  set_up(port.get(), device, baud);
+  return port.release();
 }
 
 }  // namespace

@@ -1,0 +1,37 @@
+// A file descriptor with an owner.
+#pragma once
+
+#include <unistd.h>
+
+#include <utility>
+
+namespace ex9000::sim {
+
+/// Closes the file descriptor at the end of its life.
+class FileDescriptor {
+ public:
+  FileDescriptor() = default;
+  /// Owns `fd`, the result of a system call; a negative number means that nothing is open.
+  explicit FileDescriptor(int fd) : fd_(fd) {}
+  FileDescriptor(FileDescriptor&& other) noexcept : fd_(other.release()) {}
+  FileDescriptor& operator=(FileDescriptor&& other) noexcept {
+    std::swap(fd_, other.fd_);
+    return *this;
+  }
+  ~FileDescriptor() {
+    if (is_open()) {
+      close(fd_);
+    }
+  }
+
+  [[nodiscard]] bool is_open() const { return fd_ >= 0; }
+  /// Returns the number, which is valid as long as this object owns it.
+  [[nodiscard]] int get() const { return fd_; }
+  /// Returns the number; the caller has to close it.
+  int release() { return std::exchange(fd_, -1); }
+
+ private:
+  int fd_ = -1;
+};
+
+}  // namespace ex9000::sim
