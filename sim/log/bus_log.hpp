@@ -1,4 +1,4 @@
-// Writes the log of the bus: one line for each frame.
+// Writes the log of the bus: one line of text for each frame.
 #pragma once
 
 #include <functional>
@@ -37,45 +37,6 @@ class BusLog {
   virtual void frame(const Frame& frame) = 0;
   /// Writes a remark about the line at `now`.
   virtual void note(VirtualTime now, const std::string& text) = 0;
-};
-
-/// The log for people: time, direction, bytes, meaning.
-class TextLog final : public BusLog {
- public:
-  TextLog(StationNames names, Print print) : names_(std::move(names)), print_(std::move(print)) {}
-
-  void frame(const Frame& frame) override;
-  void note(VirtualTime now, const std::string& text) override;
-
- private:
-  StationNames names_;
-  Print print_;
-};
-
-/// The log for programs: one JSON object (RFC 8259) per line.
-///
-/// Members of a frame:
-///   time      start of its first start bit, in seconds of the line's time
-///   line      name of the line
-///   from      name of the station that sent it
-///   bytes     in hex, without blanks
-///   text      present if the bytes are DCON
-///   meaning   present if it is known and there was no collision
-///   error     collisions, noise, wrong CRC or checksum; present if there are any
-///   collided  whether another driver was enabled
-/// Members of a note: time, line, note.
-class JsonLog final : public BusLog {
- public:
-  JsonLog(std::string line, StationNames names, Print print)
-      : line_(std::move(line)), names_(std::move(names)), print_(std::move(print)) {}
-
-  void frame(const Frame& frame) override;
-  void note(VirtualTime now, const std::string& text) override;
-
- private:
-  std::string line_;
-  StationNames names_;
-  Print print_;
 };
 
 }  // namespace ex9000::sim

@@ -1,4 +1,4 @@
-#include "sim/log/bus_log.hpp"
+#include "sim/log/json_log.hpp"
 
 #include <nlohmann/json.hpp>
 

@@ -1,4 +1,4 @@
-#include "sim/log/bus_log.hpp"
+#include "sim/log/text_log.hpp"
 
 #include "sim/frames/frame_errors.hpp"
 #include "sim/text/durations.hpp"

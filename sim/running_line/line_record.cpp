@@ -3,6 +3,8 @@
 #include <utility>
 #include <vector>
 
+#include "sim/log/json_log.hpp"
+#include "sim/log/text_log.hpp"
 #include "sim/text/values.hpp"
 
 namespace ex9000::sim {

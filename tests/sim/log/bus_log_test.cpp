@@ -5,7 +5,8 @@
 #include <string_view>
 
 #include "sim/frames/frame_errors.hpp"
-#include "sim/log/bus_log.hpp"
+#include "sim/log/json_log.hpp"
+#include "sim/log/text_log.hpp"
 #include "sim/play/modbus_frame.hpp"
 
 namespace ex9000::sim {
