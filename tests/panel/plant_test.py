@@ -79,8 +79,10 @@ class Plant(Panel):
         self.assertEqual(self.value(OPEN_LINES), [])
         self.assertEqual(self.value("document.getElementById('found').textContent"), "70 modules found")
         self.find("hall1")
+        self.assertNotEqual(self.value(OPEN_LINES), [])
         self.find("")
         self.assertEqual(len(self.value(SHOWN_LINES)), 7)
+        self.assertEqual(self.value(OPEN_LINES), [], "the lines of a large plant are folded again")
         self.assertEqual(self.value("document.getElementById('found').textContent"), "")
 
     def test_a_search_also_selects_the_faults_of_the_lines(self):

@@ -90,9 +90,7 @@ function find() {
   lines.forEach(({view, faults}, index) => {
     view.show(found[index]);
     faults.element.hidden = !found[index].length;
-    if (words.length) {
-      view.unfold(found[index].length > 0 && total <= mostUnfolded);
-    }
+    view.unfold(found[index].length > 0 && total <= mostUnfolded);
   });
   setText(at("found"), words.length ? `${total} modules found` : "");
 }
