@@ -54,16 +54,16 @@ Message message_of(const Plate& plate) {
                   {"init", plate.init},
                   {"listening", plate.listening}};
   if (plate.listening) {
-    message.update({{"initMode", plate.init_mode},
-                    {"address", plate.address},
-                    {"baud", plate.baud},
-                    {"protocol", protocol_text(plate.protocol)},
-                    {"checksum", plate.checksum}});
+    message["initMode"] = plate.init_mode;
+    message["address"] = plate.address;
+    message["baud"] = plate.baud;
+    message["protocol"] = protocol_text(plate.protocol);
+    message["checksum"] = plate.checksum;
   }
-  message.update({{"led", led_text(plate.led)},
-                  {"outputs", plate.outputs},
-                  {"inputs", plate.inputs},
-                  {"resets", plate.watchdog_resets}});
+  message["led"] = led_text(plate.led);
+  message["outputs"] = plate.outputs;
+  message["inputs"] = plate.inputs;
+  message["resets"] = plate.watchdog_resets;
   return message;
 }
 
@@ -116,9 +116,9 @@ Message message_of(const RecentTraffic::Entry& entry, std::uint64_t number, std:
     return message;
   }
   const bool known = frame.station <= modules;
-  message.update({{"ended", microseconds(frame.ended)},
-                  {"station", known ? Message(frame.station) : Message()},
-                  {"bytes", hex_text(frame.bytes)}});
+  message["ended"] = microseconds(frame.ended);
+  message["station"] = known ? Message(frame.station) : Message();
+  message["bytes"] = hex_text(frame.bytes);
   if (looks_like_dcon(frame.bytes)) {
     message["text"] = shown(frame.bytes);
   }
