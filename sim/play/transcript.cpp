@@ -339,8 +339,13 @@ std::vector<std::string> transcript_files(const std::string& directory) {
 }
 
 std::vector<Transcript> load(const std::string& path) {
-  std::ifstream file(path);
-  if (!file) {
+  std::ifstream file;
+  std::error_code unknown;
+  // Opening a pipe may block, and a device may have no end.
+  if (std::filesystem::is_regular_file(path, unknown)) {
+    file.open(path);
+  }
+  if (!file.is_open()) {
     fail(path + ": cannot be read; name a transcript, a scenario or a folder of them");
   }
   unsigned line = 0;

@@ -305,6 +305,8 @@ TEST(Play, RefusesAFileWithoutValidSteps) {
   const Directory directory;
   EXPECT_NE(played(directory / "none.txt", true).find("none.txt: cannot be read; name a transcript"),
             std::string::npos);
+  EXPECT_NE(played("/dev/zero", true).find("/dev/zero: cannot be read"), std::string::npos)
+      << "it has no end";
   EXPECT_NE(played(directory.path(), true).find("contains no file that ends with .txt; name a transcript"),
             std::string::npos);
   write_file(directory / "empty.txt", "; nothing\n");
