@@ -59,7 +59,7 @@ void Visits::wait() {
 }
 
 /// Calls each function once. The events cannot be counted, because the kernel merges identical consecutive
-/// events.
+/// events. If its queue was full, any visit may be missing.
 void Visits::take() {
   std::set<int> visited;
   alignas(inotify_event) std::array<char, 4096> events{};
@@ -68,6 +68,11 @@ void Visits::take() {
       inotify_event event{};
       std::memcpy(&event, events.data() + at, sizeof event);
       at += sizeof event + event.len;
+      if ((event.mask & IN_Q_OVERFLOW) != 0) {
+        for (const auto& each : watches_) {
+          visited.insert(each.first);
+        }
+      }
       visited.insert(event.wd);
     }
   }

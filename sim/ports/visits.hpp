@@ -27,7 +27,8 @@ class Visits final : public boost::asio::io_context::service {
   int watch(const std::string& device, std::function<void()> visited);
   /// Ends a watch. Its function is not called any more.
   void ignore(int watch);
-  /// Reports all visits up to now.
+  /// Reports all visits up to now. If there were more than the system keeps (fs.inotify.max_queued_events),
+  /// reports a visit of each device.
   void take();
 
  private:
