@@ -1,14 +1,11 @@
 #include "sim/app/program.hpp"
 
 #include <fcntl.h>
-#include <poll.h>
 #include <unistd.h>
 
 #include <boost/asio/io_context.hpp>
 #include <boost/asio/signal_set.hpp>
-#include <cerrno>
 #include <csignal>
-#include <cstring>
 #include <iostream>
 #include <optional>
 #include <stdexcept>
@@ -16,6 +13,7 @@
 
 #include "sim/app/arguments.hpp"
 #include "sim/app/play_record.hpp"
+#include "sim/app/standard_stream.hpp"
 #include "sim/play/play.hpp"
 #include "sim/session/session.hpp"
 #include "sim/session/stop_signals.hpp"
@@ -27,48 +25,24 @@ namespace {
 
 constexpr int kCannotStart = 1;
 constexpr int kFailed = 1;
-
-/// Prints and flushes, because a log is read while it grows. Returns false if the reader has closed the pipe;
-/// throws for other write errors.
-bool print(const std::string& text) {
-  if (!std::cout) {
-    return false;  // an earlier write failed, and its errno is gone
-  }
-  errno = 0;
-  std::cout << text << std::flush;
-  if (!std::cout && errno != EPIPE) {
-    throw std::runtime_error(std::string("standard output: ") + std::strerror(errno));
-  }
-  return static_cast<bool>(std::cout);
-}
-
-/// Waits until standard output accepts a line. Returns false if a signal asks the program to end first,
-/// because the reader of a full pipe may never read again.
-bool can_print(StopSignals& stop_signals) {
-  constexpr int kCheckEvery = 100;  // ms; a signal ends the wait, but not if another thread receives it
-  pollfd out{STDOUT_FILENO, POLLOUT, 0};
-  while (poll(&out, 1, 0) == 0) {
-    if (stop_signals.arrived()) {
-      return false;
-    }
-    poll(&out, 1, kCheckEvery);
-  }
-  return true;
-}
+constexpr auto kOutput = "standard output";
 
 void run(const Setup& setup) {
   boost::asio::io_context io;
   StopSignals stop_signals;
+  const auto gives_up = [&stop_signals] { return stop_signals.arrived(); };
+  StandardStream output(STDOUT_FILENO, kOutput, gives_up);
+  StandardStream errors(STDERR_FILENO, "standard error", gives_up);
   // The program ends when the reader of its log closes the pipe.
-  const auto print_line = [&io, &stop_signals](const std::string& line) {
-    if (!can_print(stop_signals) || !print(line + "\n")) {
+  const auto print_line = [&io, &output](const std::string& line) {
+    if (!output.write(line + "\n")) {
       io.stop();
     }
   };
   boost::asio::signal_set signals(io);
   add_stop_signals(signals);  // before anything is created that has to be removed at the end
   signals.async_wait([&io](const boost::system::error_code& /*error*/, int /*signal*/) { io.stop(); });
-  const auto greet = [](const std::string& text) { std::cerr << text << std::endl; };
+  const auto greet = [&errors](const std::string& text) { errors.write(text + "\n"); };
   std::optional<TerminalOutput> terminal;
   if (setup.watch) {
     terminal.emplace();
@@ -84,7 +58,8 @@ void run(const Setup& setup) {
 }
 
 bool play_task(const play::Task& task) {
-  const auto print_line = [](const std::string& line) { print(line + "\n"); };
+  StandardStream output(STDOUT_FILENO, kOutput);
+  const auto print_line = [&output](const std::string& line) { output.write(line + "\n"); };
   const auto report = [](const std::string& line) { std::cerr << line << std::endl; };
   PlayRecord record(task.writing, print_line);
   if (task.writing.log == LogFormat::Json) {
@@ -120,7 +95,7 @@ int run_program(int argc, const char* const* argv) {
   static_cast<void>(std::signal(SIGXFSZ, SIG_IGN));
   try {
     const Parsed parsed = parse_arguments(argc, argv);
-    print(parsed.output);
+    StandardStream(STDOUT_FILENO, kOutput).write(parsed.output);
     std::cerr << parsed.error;
     if (parsed.task) {
       return play_task(*parsed.task) ? 0 : kFailed;

@@ -2,6 +2,7 @@
 #include <fcntl.h>
 #include <gtest/gtest.h>
 #include <sys/ioctl.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 #include <algorithm>
@@ -9,6 +10,7 @@
 #include <csignal>
 #include <filesystem>
 #include <fstream>
+#include <iomanip>
 #include <sstream>
 #include <string>
 #include <thread>
@@ -89,10 +91,20 @@ TEST(Program, AFullDiskForStandardOutputIsReported) {
   }
 }
 
-/// Returns how many bytes a pipe may hold without room for one more line. A page holds only whole lines.
-int full(int pipe) {
+/// Waits until a pipe has no room for one more line. Returns false if nothing arrives for 60 s, which only
+/// detects a program that has ended. A page of a pipe may hold only whole lines, so that it is never quite
+/// full.
+bool wait_until_full(int pipe) {
+  constexpr std::chrono::seconds kHang{60};
   const int capacity = fcntl(pipe, F_GETPIPE_SZ);
-  return capacity - capacity / 8;
+  const auto began = std::chrono::steady_clock::now();
+  for (int waiting = 0; waiting < capacity - capacity / 8;) {
+    if (ioctl(pipe, FIONREAD, &waiting) != 0 || std::chrono::steady_clock::now() - began > kHang) {
+      return false;
+    }
+    std::this_thread::yield();
+  }
+  return true;
 }
 
 TEST(Program, ASignalEndsItAlthoughThePipeOfItsLogIsFull) {
@@ -107,11 +119,34 @@ TEST(Program, ASignalEndsItAlthoughThePipeOfItsLogIsFull) {
     const std::string out = "/proc/" + std::to_string(simulator.pid()) + "/fd/1";
     const int pipe = open(out.c_str(), O_RDONLY | O_NONBLOCK | O_CLOEXEC);
     ASSERT_GE(pipe, 0);
-    for (int waiting = 0; waiting < full(pipe);) {
-      ASSERT_EQ(ioctl(pipe, FIONREAD, &waiting), 0);
-      std::this_thread::yield();
-    }
+    ASSERT_TRUE(wait_until_full(pipe));
     EXPECT_EQ(simulator.end(signal), 0);
+    close(pipe);
+  }
+}
+
+TEST(Program, ASignalEndsItAlthoughNobodyReadsItsGreeting) {
+  for (const std::string log : {"off", "json"}) {  // with json, the greeting is on standard error
+    const Directory directory;
+    std::ofstream bus(directory / "bus.json");
+    bus << R"({"lines": [{"pty": "link", "modules": [)";
+    for (int address = 1; address <= 200; ++address) {
+      bus << (address > 1 ? "," : "") << R"({"model": "EX9042D", "address": ")" << std::hex << std::setw(2)
+          << std::setfill('0') << address << "\"}";
+    }
+    bus << "]}]}";
+    bus.close();
+    ASSERT_EQ(mkfifo((directory / "fifo").c_str(), 0600), 0);
+    const int pipe = open((directory / "fifo").c_str(), O_RDWR | O_CLOEXEC);
+    ASSERT_GE(pipe, 0);
+    ASSERT_GT(fcntl(pipe, F_SETPIPE_SZ, 4096), 0);
+    ChildProcess process(
+        {"sh", "-c",
+         "exec " + simulator_path() + " bus.json --log " + log + (log == "json" ? " 2" : " ") + "> fifo"},
+        directory.path());
+    ASSERT_TRUE(wait_until_full(pipe));
+    EXPECT_EQ(process.end(SIGTERM), 0) << log;
+    EXPECT_FALSE(fs::is_symlink(directory / "link"));
     close(pipe);
   }
 }

@@ -1,0 +1,31 @@
+// Writing to standard output and standard error.
+#pragma once
+
+#include <functional>
+#include <string>
+
+namespace ex9000::sim {
+
+/// A standard stream without a buffer, because a log is read while it grows. One thread at a time may use it.
+class StandardStream {
+ public:
+  /// `file`: STDOUT_FILENO or STDERR_FILENO. `name` is for messages. `gives_up` says whether to stop waiting
+  /// for a reader that does not read; it must not throw.
+  StandardStream(
+      int file, std::string name, std::function<bool()> gives_up = [] { return false; });
+
+  /// Writes `text`. Blocks while the reader of a full pipe does not read, until `gives_up`. Returns false if
+  /// it has given up or if the reader has closed the pipe; later texts are then discarded. Throws
+  /// std::runtime_error with a one-line message for all other errors.
+  bool write(const std::string& text);
+
+ private:
+  [[nodiscard]] bool wait_for_room() const;
+
+  int file_;
+  std::string name_;
+  std::function<bool()> gives_up_;
+  bool ended_ = false;  ///< texts are discarded
+};
+
+}  // namespace ex9000::sim
