@@ -1,6 +1,9 @@
 #include "sim/session/line_threads.hpp"
 
 #include <boost/asio/post.hpp>
+#include <stdexcept>
+#include <string>
+#include <system_error>
 
 namespace ex9000::sim {
 
@@ -16,7 +19,13 @@ boost::asio::io_context& LineThreads::io(std::size_t line) {
 
 void LineThreads::start() {
   for (Worker& worker : workers_) {
-    worker.thread = std::thread([this, &worker] { run(worker.io); });
+    try {
+      worker.thread = std::thread([this, &worker] { run(worker.io); });
+    } catch (const std::system_error& error) {
+      throw std::runtime_error("cannot start thread " + std::to_string(running_ + 1) + " of " +
+                               std::to_string(workers_.size()) + ": " + error.code().message() +
+                               "; use fewer with --threads");
+    }
     ++running_;
   }
 }

@@ -26,7 +26,8 @@ class LineThreads {
 
   /// Returns the io_context of a line. `line` is its position, from 0.
   [[nodiscard]] boost::asio::io_context& io(std::size_t line);
-  /// Starts the threads. If a handler of a line throws, `main` is stopped.
+  /// Starts the threads. If a handler of a line throws, `main` is stopped. Throws std::runtime_error with a
+  /// one-line message if the system cannot start a thread.
   void start();
   /// Runs `action` while no handler of a line runs. Blocks until the present handlers have ended.
   void pause_for(const std::function<void()>& action);

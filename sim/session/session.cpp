@@ -19,7 +19,8 @@ std::size_t threads_of(const Setup& setup) {
   if (!setup.speed.paced()) {
     return 1;
   }
-  const std::size_t processors = std::max(1U, std::thread::hardware_concurrency());
+  const std::size_t processors =
+      std::clamp<std::size_t>(std::thread::hardware_concurrency(), 1, kMostThreads);
   return std::min(setup.threads.value_or(processors), setup.lines.size());
 }
 
@@ -206,21 +207,8 @@ void Session::start() {
   for (const auto& running : lines_) {
     running->renew_memories();
   }
-  make_files_and_greet();
-  for (std::size_t i = 0; i < lines_.size(); ++i) {
-    RunningLine& running = *lines_[i];
-    if (setup_.log) {
-      running.record().print_frames();
-    }
-    if (ends()) {
-      running.end_at(*setup_.lasts);
-    }
-    running.start();
-    if (setup_.speed.paced()) {
-      running.start_paced(threads_.io(i), setup_.speed.factor);
-    }
-  }
   threads_.start();
+  threads_.pause_for([this] { begin(); });
   if (setup_.speed.stepped()) {
     start_stepped();
   }
@@ -235,6 +223,24 @@ void Session::start() {
   }
   if (setup_.speed.paced() && ends()) {
     end_by_the_clock();
+  }
+}
+
+/// Creates the files, and starts the lines. This follows everything that may fail for other reasons.
+void Session::begin() {
+  make_files_and_greet();
+  for (std::size_t i = 0; i < lines_.size(); ++i) {
+    RunningLine& running = *lines_[i];
+    if (setup_.log) {
+      running.record().print_frames();
+    }
+    if (ends()) {
+      running.end_at(*setup_.lasts);
+    }
+    running.start();
+    if (setup_.speed.paced()) {
+      running.start_paced(threads_.io(i), setup_.speed.factor);
+    }
   }
 }
 

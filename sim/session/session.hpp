@@ -56,6 +56,7 @@ class Session : private PanelSource {
   void open_control();
   [[nodiscard]] bool ends() const;
   void end_by_the_clock();
+  void begin();
   void make_files_and_greet();
   void open_panel();
   void open_capture();

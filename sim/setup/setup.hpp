@@ -112,7 +112,11 @@ void check(const Setup& setup);
 bool parse_line_kind(const std::string& text);
 /// Parses a whole number of up to 64 bits.
 std::uint64_t parse_seed(const std::string& text);
-/// Parses a number of threads.
+/// The limit of the number of threads. A thread whose lines have pseudo-terminals requires an inotify
+/// instance. On Debian, a user may have 128 of them.
+inline constexpr std::size_t kMostThreads = 64;
+
+/// Parses a number of threads, 1 to kMostThreads.
 std::size_t parse_threads(const std::string& text);
 /// Parses `text`, `json` or `off`. Returns nullopt for `off`.
 std::optional<LogFormat> parse_log(const std::string& text);

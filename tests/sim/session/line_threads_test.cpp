@@ -2,10 +2,13 @@
 #include "sim/session/line_threads.hpp"
 
 #include <gtest/gtest.h>
+#include <sys/resource.h>
+#include <unistd.h>
 
 #include <atomic>
 #include <boost/asio/post.hpp>
 #include <functional>
+#include <iostream>
 #include <set>
 #include <stdexcept>
 #include <thread>
@@ -53,10 +56,10 @@ TEST(LineThreads, NoHandlerOfALineRunsDuringAPause) {
   keep_counting(threads.io(0), counts[0]);
   keep_counting(threads.io(1), counts[1]);
   threads.start();
-  for (int pause = 0; pause < 100; ++pause) {
+  for (int pause = 0; pause < 20; ++pause) {
     threads.pause_for([&counts] {
       const int before[2]{counts[0], counts[1]};
-      for (int i = 0; i < 1000; ++i) {
+      for (int i = 0; i < 100; ++i) {
         std::this_thread::yield();
       }
       EXPECT_EQ(counts[0], before[0]);
@@ -70,6 +73,27 @@ TEST(LineThreads, NoHandlerOfALineRunsDuringAPause) {
   const int after = counts[0];
   threads.pause_for([] {});  // has nothing to wait for
   EXPECT_EQ(counts[0], after);
+}
+
+/// Starts threads as a user who may not have more processes, and prints why that fails.
+void start_without_permission() {
+  constexpr uid_t kNobody = 65534;
+  const rlimit none{0, 0};
+  io_context main;
+  LineThreads threads(main, 2);
+  if ((geteuid() != 0 || setuid(kNobody) == 0) && setrlimit(RLIMIT_NPROC, &none) == 0) {
+    try {
+      threads.start();
+    } catch (const std::runtime_error& error) {
+      std::cerr << error.what() << '\n';
+    }
+  }
+  _exit(0);
+}
+
+TEST(LineThreadsDeathTest, AThreadThatCannotStartIsReported) {
+  EXPECT_EXIT(start_without_permission(), testing::ExitedWithCode(0),
+              "^cannot start thread 1 of 2: Resource temporarily unavailable; use fewer with --threads\n$");
 }
 
 TEST(LineThreads, AnActionThatThrowsEndsThePause) {
