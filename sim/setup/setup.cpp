@@ -57,7 +57,7 @@ class Once {
       std::string problem, Identity identity = [](const std::string& name) { return name; })
       : problem_(std::move(problem)), identity_(identity) {}
 
-  void add(std::size_t line, const std::string& key, const std::optional<std::string>& name,
+  void add(std::optional<std::size_t> line, const std::string& key, const std::optional<std::string>& name,
            std::optional<std::size_t> module = std::nullopt) {
     if (name && !name->empty() && !seen_.insert(identity_(*name)).second) {
       throw SetupError(line, key, problem_, *name, module);
@@ -102,6 +102,20 @@ void check_speed(const Setup& setup) {
   }
 }
 
+/// Rejects a path that has two uses.
+void check_paths(const Setup& setup) {
+  Once paths("has another use too; name another path", one_spelling);
+  paths.add(std::nullopt, "control", setup.control);
+  for (std::size_t i = 0; i < setup.lines.size(); ++i) {
+    const LineSetup& line = setup.lines[i];
+    paths.add(i, "pty", line.pty);
+    paths.add(i, "serial", line.serial);
+    for (std::size_t module = 0; module < line.modules.size(); ++module) {
+      paths.add(i, "eeprom", line.modules[module].eeprom, module);
+    }
+  }
+}
+
 }  // namespace
 
 std::string place_of(const Places& places, const std::string& key) {
@@ -137,7 +151,8 @@ void check(const Setup& setup) {
     throw SetupError(std::nullopt, "capture", "is empty; name a path");
   }
   Once files("two modules cannot share a file; name one for each", one_spelling);
-  Once ports("two lines cannot share a port; name one for each");
+  Once ports("two lines cannot share a port; name one for each", one_spelling);
+  Once addresses("two lines cannot share a port; name one for each");
   Once names("two lines have this name; give each its own");
   for (std::size_t i = 0; i < setup.lines.size(); ++i) {
     const LineSetup& line = setup.lines[i];
@@ -148,10 +163,11 @@ void check(const Setup& setup) {
     ports.add(i, "pty", line.pty);
     ports.add(i, "serial", line.serial);
     if (line.tcp && line.tcp->port != 0) {
-      ports.add(i, "tcp", line.tcp->host + ":" + std::to_string(line.tcp->port));
+      addresses.add(i, "tcp", line.tcp->host + ":" + std::to_string(line.tcp->port));
     }
     names.add(i, "name", line.name);
   }
+  check_paths(setup);
 }
 
 bool parse_line_kind(const std::string& text) { return parse_choice(text, "instant", "paced"); }
@@ -170,10 +186,7 @@ std::uint64_t parse_seed(const std::string& text) {
   return parse_whole_number(text, 0, std::numeric_limits<std::uint64_t>::max());
 }
 
-std::size_t parse_threads(const std::string& text) {
-  constexpr std::uint64_t kMostThreads = 256;
-  return parse_whole_number(text, 1, kMostThreads);
-}
+std::size_t parse_threads(const std::string& text) { return parse_whole_number(text, 1, kMostThreads); }
 
 std::optional<PanelSetup> parse_panel(const std::string& text) {
   if (text == "off") {

@@ -210,6 +210,15 @@ TEST(Arguments, TwoModulesCannotShareAnEepromFile) {
   EXPECT_EQ(accepted({"EX9042D,eeprom=a", "EX9052D@02,eeprom=b"}).modules[1].eeprom, "b");
 }
 
+TEST(Arguments, APathHasOneUse) {
+  expect_error({"EX9042D,eeprom=a", "--pty", "b", "--control", "./b"},
+               "--pty: ", "b: has another use too; name another path");
+  expect_error({"EX9042D,eeprom=a", "--control", "a"},
+               "eeprom=a: ", "has another use too; name another path");
+  expect_error({"EX9042D,eeprom=a", "--pty", "x/../a"},
+               "eeprom=a: ", "has another use too; name another path");
+}
+
 TEST(Arguments, TheLineAcceptsEveryBaudRateOfTheModules) {
   for (const char* rate : {"1200", "2400", "4800", "9600", "19200", "38400", "57600", "115200"}) {
     EXPECT_EQ(std::to_string(accepted({"EX9042D", "--baud", rate}).baud.value_or(0)), rate);
@@ -320,12 +329,12 @@ TEST(Arguments, ASeedIsAWholeNumber) {
   }
 }
 
-TEST(Arguments, ThreadsAreANumberFrom1To256) {
+TEST(Arguments, ThreadsAreANumberFrom1To64) {
   EXPECT_EQ(all_accepted({"EX9042D"}).threads, std::nullopt);
-  EXPECT_EQ(all_accepted({"EX9042D", "--threads", "256"}).threads, 256U);
+  EXPECT_EQ(all_accepted({"EX9042D", "--threads", "64"}).threads, 64U);
   for (const char* threads : {"0", "257", "two", ""}) {
     expect_error({"EX9042D", "--threads", threads}, "--threads: '" + std::string(threads) + "'",
-                 "a whole number from 1 to 256");
+                 "a whole number from 1 to 64");
   }
 }
 

@@ -328,6 +328,8 @@ std::string two_lines(const std::string& first, const std::string& second) {
 TEST(WrongLinesOfABusFile, TwoLinesCannotShareAPortOrAName) {
   EXPECT_EQ(why_not(two_lines("\"pty\": \"a\"", "\"pty\": \"a\"")),
             "bus.json:5: lines[1].pty: a: two lines cannot share a port; name one for each");
+  EXPECT_EQ(why_not(two_lines("\"pty\": \"a\"", "\"pty\": \"./a\"")),
+            "bus.json:5: lines[1].pty: ./a: two lines cannot share a port; name one for each");
   EXPECT_EQ(why_not(two_lines("\"serial\": \"a\"", "\"serial\": \"a\"")),
             "bus.json:5: lines[1].serial: a: two lines cannot share a port; name one for each");
   EXPECT_EQ(why_not(two_lines("\"tcp\": 5020", "\"tcp\": \"127.0.0.1:5020\"")),
