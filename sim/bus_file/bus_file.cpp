@@ -1,13 +1,11 @@
 #include "sim/bus_file/bus_file.hpp"
 
-#include <filesystem>
-#include <fstream>
 #include <sstream>
-#include <system_error>
 
 #include "sim/bus_file/keys.hpp"
 #include "sim/bus_file/located_json.hpp"
 #include "sim/bus_file/node.hpp"
+#include "sim/files/regular_file.hpp"
 #include "sim/text/fail.hpp"
 
 namespace ex9000::sim {
@@ -49,12 +47,7 @@ Setup parse_bus_file(const std::string& path, const std::string& text) {
 }
 
 Setup read_bus_file(const std::string& path) {
-  std::ifstream file;
-  std::error_code unknown;
-  // Opening a pipe may block, and a device may have no end.
-  if (std::filesystem::is_regular_file(path, unknown)) {
-    file.open(path, std::ios::binary);
-  }
+  const std::ifstream file = open_regular_file(path);
   if (!file.is_open()) {
     fail(path + ": is not a file that can be read; 'ex9000-sim --example' prints a bus file");
   }

@@ -22,15 +22,17 @@ constexpr std::size_t kSize = hal::doubles::Memory::kSize;
 /// A file that gets its name when it is complete: if the process dies before, no incomplete file remains.
 class Draft {
  public:
-  /// Opens the file in the folder of `path`. Some file systems do not support files without a name; there,
-  /// the file has a temporary name.
+  /// Opens the file in the folder of `path`. Some file systems do not support files without a name, and only
+  /// /proc can give such a file a name; otherwise, the file has a temporary name.
   explicit Draft(const std::string& path) {
     const std::filesystem::path folder = std::filesystem::path(path).parent_path();
     constexpr mode_t kAsUmaskPermits = 0666;
     constexpr int kFlags = O_RDWR | O_CLOEXEC;
     file_ = FileDescriptor(open(folder.empty() ? "." : folder.c_str(), kFlags | O_TMPFILE, kAsUmaskPermits));
     name_ = "/proc/self/fd/" + std::to_string(file_.get());
-    if (!file_.is_open() && (errno == EOPNOTSUPP || errno == EISDIR)) {
+    const bool supported =
+        file_.is_open() ? access(name_.c_str(), F_OK) == 0 : errno != EOPNOTSUPP && errno != EISDIR;
+    if (!supported) {
       name_ = path + "." + std::to_string(getpid());
       file_ = FileDescriptor(open(name_.c_str(), kFlags | O_CREAT | O_EXCL, kAsUmaskPermits));
       temporary_ = file_.is_open();

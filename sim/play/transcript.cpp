@@ -9,6 +9,7 @@
 #include <string_view>
 
 #include "sim/control/control.hpp"
+#include "sim/files/regular_file.hpp"
 #include "sim/line/named_settings.hpp"
 #include "sim/text/durations.hpp"
 #include "sim/text/fail.hpp"
@@ -20,6 +21,7 @@ namespace ex9000::play {
 namespace {
 
 using sim::fail;
+using sim::open_regular_file;
 using sim::parse_hex_byte;
 using sim::parse_hex_bytes;
 using sim::parse_hex_word;
@@ -339,12 +341,7 @@ std::vector<std::string> transcript_files(const std::string& directory) {
 }
 
 std::vector<Transcript> load(const std::string& path) {
-  std::ifstream file;
-  std::error_code unknown;
-  // Opening a pipe may block, and a device may have no end.
-  if (std::filesystem::is_regular_file(path, unknown)) {
-    file.open(path);
-  }
+  std::ifstream file = open_regular_file(path);
   if (!file.is_open()) {
     fail(path + ": cannot be read; name a transcript, a scenario or a folder of them");
   }

@@ -1,0 +1,22 @@
+// Opens files that the user names.
+#pragma once
+
+#include <filesystem>
+#include <fstream>
+#include <string>
+#include <system_error>
+
+namespace ex9000::sim {
+
+/// Opens a regular file for reading. Anything else stays closed: opening a pipe may block, and a device may
+/// have no end.
+inline std::ifstream open_regular_file(const std::string& path) {
+  std::ifstream file;
+  std::error_code unknown;
+  if (std::filesystem::is_regular_file(path, unknown)) {
+    file.open(path, std::ios::binary);
+  }
+  return file;
+}
+
+}  // namespace ex9000::sim
