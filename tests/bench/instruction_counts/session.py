@@ -128,6 +128,7 @@ class Session:
 
     def _pass(self, request, frame):
         self._log(True)
+        self._let_counter_catch_up()  # events of the previous request must not count for this one
         self.counter.begin()
         self._say(frame)
         is_answered = request.until not in (DONE, IGNORED)
@@ -143,11 +144,15 @@ class Session:
     def _run_until(self, is_over, name):
         for _ in range(round(PASS / SLICE)):
             self._run(SLICE)
-            self._emulator.write_sync_line()
-            self.counter.wait_until_seen(HANG)
+            self._let_counter_catch_up()
             if is_over():
                 return
         raise RuntimeError(f"{self._model.name}: {name} does not come to an end")
+
+    def _let_counter_catch_up(self):
+        """Waits until the counter has read the log up to now. The emulator stands still meanwhile."""
+        self._emulator.write_sync_line()
+        self.counter.wait_until_seen(HANG)
 
     def _run(self, seconds):
         self._emulator.run_for(seconds)

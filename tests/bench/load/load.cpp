@@ -3,7 +3,8 @@
 //
 //     load [--without pymodbus] [MILLISECONDS]    duration of each measurement; default 1000
 //
-// Fails if one module costs more than its limit, or if a module requires too much memory. The cost of many
+// Fails if one module costs more than its limit, or if a module requires too much memory. The limit applies
+// to the best round of each server, because other programs on the processors only add cost. The cost of many
 // modules is only printed, because other programs that use the caches change it;
 // tests/bench/simulator_instructions judges it.
 #include <array>
@@ -96,7 +97,8 @@ void compare_one_module(milliseconds time, bool with_pymodbus) {
                                      std::pair<const char*, std::vector<Server>&>{"pseudo-terminal", tty}}) {
     std::printf("one module over %s:\n", transport);
     measure(servers, time);
-    judge("ex9000-sim / libmodbus", servers[0].median() / servers[1].median(), 1.25, 1.5);
+    print("ex9000-sim / libmodbus", servers[0].median() / servers[1].median(), 1.25);
+    judge("ex9000-sim / libmodbus in the best rounds", servers[0].least() / servers[1].least(), 1.25, 1.5);
   }
 }
 

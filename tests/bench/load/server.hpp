@@ -60,6 +60,9 @@ class Server {
   [[nodiscard]] const std::string& name() const { return name_; }
   /// Returns the median of the processor time for a transaction, in microseconds.
   [[nodiscard]] double median() const { return median_of(microseconds_); }
+  /// Returns the least processor time for a transaction, in microseconds. Other programs on the processors
+  /// can only increase it.
+  [[nodiscard]] double least() const { return *std::min_element(microseconds_.begin(), microseconds_.end()); }
   [[nodiscard]] double rate() const { return median_of(rates_); }
 
  private:
