@@ -61,6 +61,7 @@ Examples:
   ex9000-sim EX9052D@01 --watch --input '1 3 square 2s'
   ex9000-sim EX9042D-M@01 --capture line.pcapng --log json > line.json
   ex9000-sim EX9052D@01 --input '1 0 square 100ms' --fault '1 lost-reply every 10th reply' --log
+  ex9000-sim EX9042D-M@01 --tcp 5020 --control test.ctl --speed step
   ex9000-sim --example > bus.json && ex9000-sim bus.json
 The rate that a master sets on the pseudo-terminal becomes the line's rate.)";
 

@@ -21,9 +21,8 @@ void SteppedLine::start(Arrived arrived) {
 bool SteppedLine::receive(const Port& port, const std::uint8_t* bytes, std::size_t size) {
   chunks_.push_back({&port, {bytes, bytes + size}});
   waiting_ += size;
-  paused_ = waiting_ >= kMostBytes;
   arrived_();
-  return !paused_;
+  return !full();
 }
 
 void SteppedLine::read_ports() {
@@ -37,8 +36,9 @@ void SteppedLine::put_on_line() {
     ports_.take_rate(*chunk.port);
     line_.master().send(chunk.bytes.data(), chunk.bytes.size());
   }
+  const bool paused = full();
   waiting_ = 0;
-  if (std::exchange(paused_, false)) {
+  if (paused) {
     for (const auto& port : ports_.all()) {
       port->resume();
     }

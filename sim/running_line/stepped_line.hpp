@@ -55,6 +55,8 @@ class SteppedLine {
   };
 
   bool receive(const Port& port, const std::uint8_t* bytes, std::size_t size);
+  /// Whether the ports wait for `resume`.
+  [[nodiscard]] bool full() const { return waiting_ >= kMostBytes; }
 
   Line& line_;
   LinePorts ports_;
@@ -62,7 +64,6 @@ class SteppedLine {
   Arrived arrived_;
   std::vector<Chunk> chunks_;  ///< in the order of arrival
   std::size_t waiting_ = 0;    ///< number of bytes in them
-  bool paused_ = false;        ///< a port waits for `resume`
 };
 
 }  // namespace ex9000::sim

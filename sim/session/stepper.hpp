@@ -44,7 +44,7 @@ class Stepper {
 
  private:
   struct Request {
-    VirtualTime time{0};
+    VirtualTime time{};
     std::size_t after = 0;
     bool quiet = false;
   };
