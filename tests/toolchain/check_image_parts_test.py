@@ -42,13 +42,13 @@ class CallGraph(unittest.TestCase):
         self.assertEqual(self.records["_ZL4turnv"].title.file, "core.cpp")
         self.assertEqual(self.records["_Z5writev"].location, "core.cpp:3:1")
 
-    def test_frames(self) -> None:
+    def test_a_frame_has_the_size_that_the_compiler_states(self) -> None:
         self.assertEqual([record.frame for record in self.records.values()], [8, 24, 40, 16, 16, 0])
 
     def test_only_frames_without_a_bound_are_unbounded(self) -> None:
         self.assertEqual([name for name, r in self.records.items() if not r.is_bounded], ["_Z4growj"])
 
-    def test_calls(self) -> None:
+    def test_a_function_calls_the_targets_of_its_edges(self) -> None:
         self.assertEqual({title.name for title in self.records["_ZL4turnv"].calls}, {"_Z5writev", "_Z4readv"})
         self.assertEqual({title.name for title in self.records["_Z4readv"].calls}, {"memcpy"})
         self.assertEqual(self.records["_Z4readv"].indirect_calls, ["core.cpp:4:20"])
@@ -58,7 +58,7 @@ class CallGraph(unittest.TestCase):
             with self.assertRaises(call_graph.NotACallGraph):
                 call_graph.parse(line)
 
-    def test_the_deepest_chain(self) -> None:
+    def test_the_deepest_chain_has_the_largest_sum_of_frames(self) -> None:
         chain = DeepestChains(self.graph(4)).below(0)
         self.assertEqual(str(chain), "reset 8 -> _ZL4turnv 24 -> _Z5writev 40")
         self.assertEqual(chain.size, 72)

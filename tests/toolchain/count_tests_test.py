@@ -1,0 +1,44 @@
+"""Tests count-tests, which counts the tests in CTest's log for tests/run."""
+
+import pathlib
+import subprocess
+import tempfile
+import unittest
+
+COUNT_TESTS = pathlib.Path(__file__).resolve().parents[1] / "count-tests"
+
+
+def count(log, table):
+    """Returns how many tests passed, failed and were skipped."""
+    with tempfile.TemporaryDirectory() as folder:
+        files = [pathlib.Path(folder, name) for name in ("log", "table")]
+        for file, text in zip(files, (log, table)):
+            file.write_text(text, encoding="utf-8")
+        printed = subprocess.run([COUNT_TESTS, *files], check=True, capture_output=True, encoding="utf-8").stdout
+    return tuple(int(number) for number in printed.split())
+
+
+class CountTests(unittest.TestCase):
+    def test_a_program_of_googletest_counts_each_test(self):
+        log = (
+            "1/1 Testing: bus_test\n"
+            "[  FAILED  ] Bus.Arrives (3 ms)\n"
+            "[  FAILED  ] Ways/Bus.Arrives/1, where GetParam() = 5 (3 ms)\n"
+            "[  PASSED  ] 5 tests.\n"
+            "[  SKIPPED ] 1 test.\n"
+        )
+        self.assertEqual(count(log, "bus_test 1 FAILED ctest\n"), (5, 2, 1))
+
+    def test_a_program_of_unittest_counts_each_test(self):
+        log = "1/1 Testing: bus_py\nRan 9 tests in 1 s\nFAILED (failures=1, errors=2, skipped=1)\n"
+        self.assertEqual(count(log, "bus_py 1 FAILED ctest\n"), (5, 3, 1))
+        log = "1/1 Testing: bus_py\nRan 9 tests in 1 s\nOK (skipped=2)\n"
+        self.assertEqual(count(log, "bus_py 1 passed ctest\n"), (7, 0, 2))
+
+    def test_a_part_that_fails_without_a_failed_test_counts_as_one(self):
+        log = "1/2 Testing: bus_test\nterminate called\n2/2 Testing: line_test\n[  PASSED  ] 5 tests.\n"
+        self.assertEqual(count(log, "build 1 FAILED b\nbus_test 1 FAILED b\nline_test 1 passed b\n"), (5, 2, 0))
+
+
+if __name__ == "__main__":
+    unittest.main()
