@@ -116,12 +116,14 @@ class Program:
         return reached
 
 
-# The parts of the simulator that use Asio, or files, ports and signals of the operating system. Tests that run the
-# program as a process cover them; mutation does not. Names without folder and extension.
+# The parts of the simulator that use sockets, files, ports and signals of the operating system. Mutation does not
+# change them, because only tests that run the program as a process cover them. Names without folder and extension.
 PROCESS = set(
-    "claim control_socket line_ports listening main new_file pacer panel_server port program pty pty_port "
-    "running_line serial_port session stepped_line stepper stop_signals tcp_port".split()
+    "claim control_socket line_ports listening main new_file panel_server port program pty pty_port "
+    "running_line serial_port session stop_signals tcp_port".split()
 )
+# Parts of it that only the whole program links.
+WHOLE = {"main", "panel_server", "program", "session"}
 # Sources that take long to compile and that few tests reach, in addition to those that sim/CMakeLists.txt compiles
 # separately.
 ALONE = {"line_record", "play_record"}
@@ -135,8 +137,8 @@ class Folder:
     libraries: tuple
 
 
-def without_process(sources):
-    return [each for each in sources.split() if stem_of(each) not in PROCESS]
+def built(sources):
+    return [each for each in sources.split() if stem_of(each) not in WHOLE]
 
 
 def folders():
@@ -144,9 +146,9 @@ def folders():
     found = {}
     for name, body in re.findall(r"^ex9000_folder\((\w+)\s+([^)]*)\)", text, re.MULTILINE):
         parts = dict(re.findall(r"(SOURCES|ON_THEIR_OWN|PUBLIC|PRIVATE)\s+([^A-Z]*(?:[A-Z]\w*::\w+[^A-Z]*)*)", body))
-        sources = without_process(parts.get("SOURCES", ""))
+        sources = built(parts.get("SOURCES", ""))
         together = tuple(f"sim/{name}/{each}" for each in sources if stem_of(each) not in ALONE)
-        alone = [each for each in sources if stem_of(each) in ALONE] + without_process(parts.get("ON_THEIR_OWN", ""))
+        alone = [each for each in sources if stem_of(each) in ALONE] + built(parts.get("ON_THEIR_OWN", ""))
         options = ("-O1",) if "ex9000_hot" in parts.get("PRIVATE", "") else ("-O0",)
         units = [Unit(name, together, options)] if together else []
         units += [Unit(stem_of(each), (f"sim/{name}/{each}",)) for each in alone]

@@ -20,11 +20,16 @@ using FrameOfBytes = std::vector<std::uint8_t>;
 class FakePort final : public Port {
  public:
   void start(Received received) override { received_ = std::move(received); }
-  void resume() override { paused_ = false; }
+  void resume() override {
+    EXPECT_TRUE(paused_ || receiving_) << "no port waits";
+    paused_ = false;
+  }
   void read_waiting() override {
     if (!written_.empty() && !paused_) {
       const std::vector<std::uint8_t> bytes = std::exchange(written_, {});
+      receiving_ = true;
       paused_ = !received_(bytes.data(), bytes.size());
+      receiving_ = false;
     }
   }
   std::size_t send(const std::vector<std::uint8_t>& bytes) override {
@@ -49,6 +54,7 @@ class FakePort final : public Port {
  private:
   Received received_;
   bool paused_ = false;
+  bool receiving_ = false;
   std::vector<std::uint8_t> written_;
   std::string read_;
 };
@@ -130,6 +136,7 @@ TEST_F(StepperTest, TimeStopsWhenTheProgramIsAskedToEnd) {
   asked_to_end_ = true;
   EXPECT_EQ(advance("24h"), "error: the program was asked to end while time passed");
   EXPECT_LT(line_.stepped->now(), std::chrono::hours(1));
+  EXPECT_FALSE(quits_);
 }
 
 TEST_F(StepperTest, NothingHappensWithoutAnAdvance) {
@@ -146,6 +153,15 @@ TEST_F(StepperTest, WrittenBytesAreSentOnTheLineAndTheReplyTakesItsTime) {
   EXPECT_EQ(line_.port->take_read(), "");
   advance("20ms");
   EXPECT_EQ(line_.port->take_read(), "!019042D\r");
+}
+
+TEST_F(StepperTest, AnAdvanceThatEndsDuringAReplyDeliversTheBytesSoFar) {
+  line_.port->write("$01M\r");
+  advance("11ms");
+  const std::string begun = line_.port->take_read();
+  EXPECT_FALSE(begun.empty());
+  advance("20ms");
+  EXPECT_EQ(begun + line_.port->take_read(), "!019042D\r");
 }
 
 TEST_F(StepperTest, WaitsForTheGivenNumberOfBytes) {
@@ -352,6 +368,21 @@ TEST_F(StepperTest, AnInvalidAdvanceIsRefusedAndDoesNotAdvance) {
     EXPECT_EQ(answer.rfind("error: ", 0), 0U) << wrong << ": " << answer;
     EXPECT_EQ(line_.stepped->now(), milliseconds(100));
   }
+}
+
+TEST_F(StepperTest, WaitsForAsManyBytesAsItStores) {
+  EXPECT_EQ(advance("1s after 65536"), "");
+  line_.port->write(std::vector<std::uint8_t>(65536, 0));
+  line_.port->tell();
+  EXPECT_EQ(answers_, std::vector<std::string>{"ok 1.1"});
+}
+
+TEST_F(StepperTest, AModuleAtAnotherRateIsReportedAtTheStart) {
+  StillLine mixed({"EX9042D@01", "EX9052D@02,baud=1200"});
+  EXPECT_TRUE(mixed.notices.empty());
+  start_stepped(mixed);
+  ASSERT_EQ(mixed.notices.size(), 1U);
+  EXPECT_NE(mixed.notices[0].find("1200"), std::string::npos) << mixed.notices[0];
 }
 
 TEST(Stepper, RecognizesTheAdvanceCommand) {
