@@ -22,6 +22,7 @@
 #include "tests/masters/libmodbus_master.hpp"
 #include "tests/support/child_process.hpp"
 #include "tests/support/directory.hpp"
+#include "tests/support/free_port.hpp"
 #include "tests/support/socket_client.hpp"
 #include "tests/support/terminal.hpp"
 
@@ -33,7 +34,6 @@ using Arguments = std::vector<std::string>;
 
 const std::string kRun = EX9000_RUN;
 constexpr std::size_t kEepromSize = 8192;
-constexpr int kRepetitions = 10;
 /// A limit that only detects hangs: the program and QEMU answer within seconds even on a busy machine.
 constexpr std::chrono::seconds kHang{60};
 /// The time that a master waits for a reply, long enough for a busy machine.
@@ -76,18 +76,13 @@ class RunningImage {
     return reply.substr(0, reply.find('\r'));
   }
 
-  /// Runs mbpoll and repeats it after a timeout, because a busy host may interrupt a frame for longer than
-  /// T3.5, which ends the frame.
+  /// Runs mbpoll once.
   [[nodiscard]] Finished mbpoll(Arguments options, const Arguments& values = {}) const {
     options.insert(options.begin(), {"mbpoll", "-m", "rtu", "-b", "9600", "-P", "none", "-1", "-o",
                                      std::to_string(kMasterReplyTimeout.count())});
     options.push_back(tty());
     options.insert(options.end(), values.begin(), values.end());
-    Finished finished = system::run(options);
-    for (int i = 0; i < kRepetitions && has(finished.error, "timed out"); ++i) {
-      finished = system::run(options);
-    }
-    return finished;
+    return system::run(options);
   }
 
  private:
@@ -130,16 +125,6 @@ TEST(QemuRun, MbpollReadsAndWrites) {
                   "[9]: \t0\n[10]: \t0\n[11]: \t0\n[12]: \t0\n[13]: \t0\n"));
 }
 
-/// Calls `call`, and repeats it after a timeout; see RunningImage::mbpoll.
-template <typename Call>
-int repeated(Call call) {
-  int result = call();
-  for (int i = 0; i < kRepetitions && result == -1 && errno == ETIMEDOUT; ++i) {
-    result = call();
-  }
-  return result;
-}
-
 TEST(QemuRun, LibmodbusReadsAndWrites) {
   const RunningImage image("EX9042D-M");
   LibmodbusMaster master(image.tty(), 9600);
@@ -147,10 +132,10 @@ TEST(QemuRun, LibmodbusReadsAndWrites) {
   modbus_t* const module = master.at(1);
   const std::array<std::uint8_t, 13> written{1, 0, 1, 1, 0, 0, 0, 1, 0, 0, 0, 0, 1};
   std::array<std::uint8_t, 13> read{};
-  ASSERT_EQ(repeated([&] { return modbus_write_bits(module, 0, 13, written.data()); }), 13);
-  ASSERT_EQ(repeated([&] { return modbus_read_bits(module, 0, 13, read.data()); }), 13);
+  ASSERT_EQ(modbus_write_bits(module, 0, 13, written.data()), 13);
+  ASSERT_EQ(modbus_read_bits(module, 0, 13, read.data()), 13);
   EXPECT_EQ(read, written);
-  EXPECT_EQ(repeated([&] { return modbus_write_bit(module, 13, 1); }), -1);
+  EXPECT_EQ(modbus_write_bit(module, 13, 1), -1);
   EXPECT_EQ(errno, EMBXILADD);
 }
 
@@ -371,7 +356,7 @@ TEST(QemuRun, InitStaysReleasedWhenTheModuleResetsItself) {
   constexpr std::uint32_t kNothingThere = 0xF0000000;
   constexpr std::uint32_t kDeafLoop = 0x20008000;
   constexpr std::uint32_t kLoop = kDeafLoop + 2;
-  const std::string port = std::to_string(20000 + getpid() % 10000);
+  const std::string port = std::to_string(free_port());
   const RunningImage image("EX9042D", {"--gdb", port});
   EXPECT_EQ(image.ask("$015"), "!011");
   // The first address causes a fault; the others make the program hang until the watchdog resets it.
@@ -407,9 +392,12 @@ TEST(QemuRun, EndsCleanlyOnASignalAndEndsQemu) {
 TEST(QemuRun, QemuEndsWhenTheProgramIsKilled) {
   const Directory directory;
   const Arguments options{"--link", directory / "tty"};
+  std::optional<Terminal> master;
   {
     RunningImage image("EX9042D", options);
     const int qemu = image.qemu();
+    master.emplace(image.tty(),
+                   9600);  // while it is open, no other terminal of this machine receives the same name
     image.process().end(SIGKILL);
     EXPECT_TRUE(ends(qemu));
   }
@@ -489,7 +477,7 @@ TEST(QemuRun, RefusesALinkIfItsPathExists) {
 
 TEST(QemuRun, ReportsTheErrorMessageOfQemu) {
   const Directory directory;
-  const std::string port = std::to_string(20000 + getpid() % 10000);
+  const std::string port = std::to_string(free_port());
   const RunningImage other("EX9042D", {"--gdb", port});
   expect_refusal(directory, {image_of("EX9042D"), "--gdb", port}, {"qemu-system-arm has ended", "in use"}, 1);
 }

@@ -22,11 +22,11 @@ def section_of(document: str, command: str) -> str:
 
 
 class Generated(unittest.TestCase):
-    def test_the_picture_of_the_folders(self) -> None:
+    def test_the_picture_of_the_folders_is_up_to_date(self) -> None:
         pictured = section_of(".github/CONTRIBUTING.md", "toolchain/draw-folders")
         self.assertEqual(pictured, printed(["toolchain/draw-folders"]))
 
-    def test_the_keys_of_a_bus_file(self) -> None:
+    def test_the_table_of_bus_file_keys_is_up_to_date(self) -> None:
         schema = (ROOT / "sim/docs/bus-file.schema.json").read_text(encoding="utf-8")
         written = section_of("sim/docs/bus-files.md", "toolchain/bus-file-keys")
         self.assertEqual(written, printed(["toolchain/bus-file-keys"], schema))

@@ -9,9 +9,9 @@ const FIRST_RATE_CODE = 3;
 
 const TIMEOUT = 10000; // long enough for a busy machine; in milliseconds, like all times in this file
 // The time that a master waits after a broadcast, which has no reply: the duration of the longest broadcast on the
-// line, plus 1 s. The line runs in real time: even on a busy machine, the simulator must read the broadcast within this
+// line, plus 5 s. The line runs in real time: even on a busy machine, the simulator must read the broadcast within this
 // time.
-const turnaround = (baud) => 1000 + 150000 / baud;
+const turnaround = (baud) => 5000 + 150000 / baud;
 
 const hex = (bytes) => Buffer.from(bytes).toString("hex").toUpperCase().replace(/..(?=.)/g, "$& ");
 const word = (frame, at) => frame.readUInt16BE(at);

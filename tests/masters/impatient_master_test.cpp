@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "sim/play/modbus_frame.hpp"
+#include "tests/support/control_client.hpp"
 #include "tests/support/simulator_process.hpp"
 #include "tests/support/socket_client.hpp"
 
@@ -94,19 +95,24 @@ TEST(ImpatientMaster, ARequestToAnotherModuleMayImmediatelyFollowAReply) {
   }
 }
 
-// At 1200 baud, T3.5 is 32 ms, which is 320 ms of real time at a tenth of the speed. Even on a busy machine,
-// the test sends the second request before this gap after the first reply has ended. Module 02 has also
-// received that reply, so the request without the gap is part of the same frame.
+// At 1200 baud, the request takes 67 ms, T3.5 takes 32 ms and the reply takes 58 ms, so the reply ends
+// between 157 ms and 167 ms. Module 02 has also received the reply. A request that begins less than T3.5
+// later is part of the same frame.
 TEST(ImpatientMaster, LosesARequestWithoutAGapIfGapsAreStrict) {
-  SimulatorProcess simulator(
-      {"EX9042D-M@01,baud=1200", "EX9052D-M@02,baud=1200", "--tcp", "0", "--strict-gaps", "--speed", "0.1"});
+  SimulatorProcess simulator({"EX9042D-M@01,baud=1200", "EX9052D-M@02,baud=1200", "--tcp", "0",
+                              "--strict-gaps", "--speed", "step", "--control", "ctl"});
+  ControlClient control(simulator.directory() + "/ctl");
   SocketClient client(simulator.tcp_port());
   client.send(kOutputs1);
+  control.ok("advance 175ms after 8");
   EXPECT_EQ(client.receive(7), kOutputs1Off);
   client.send(kInputs2);
-  EXPECT_TRUE(client.hears_nothing_for(std::chrono::seconds(5)));  // its reply would end within 2.5 s
+  control.ok("advance 10s after 8");
   client.send(kInputs2);
+  control.ok("advance 10s after 8");
   EXPECT_EQ(client.receive(6), kInputs2Off);
+  EXPECT_TRUE(client.hears_nothing_for(std::chrono::milliseconds(0)))
+      << "the first request to 02 was answered";
 }
 
 }  // namespace

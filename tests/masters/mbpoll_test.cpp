@@ -96,7 +96,10 @@ TEST_P(Mbpoll, NamesTheExceptionsItGets) {
 }
 
 TEST_P(Mbpoll, HostOkHasNoReplyAndATimeoutBlocksTheOutputs) {
+  // No reply arrives, so mbpoll need not wait long. The program must have read this request before the next
+  // one.
   expect_refusal({"-a", "1", "-t", "4", "-r", "0x3038", "-o", "0.2"}, "Connection timed out");
+  expect_sent("01 03 30 38 00 01");
   expect_line({"-a", "1", "-t", "4", "-r", "0x1E8"}, "Written 1 references.", {"1"});
   expect_line({"-a", "1", "-t", "0", "-r", "0x104"}, "Written 1 references.", {"1"});
   while (mbpoll({"-a", "1", "-t", "0", "-r", "0x10D"}).output.find("]: \t0") != std::string::npos) {

@@ -50,11 +50,11 @@ def packed(*values):
 
 def turnaround(baud):
     """Returns how long a master waits after a broadcast, which has no reply, in seconds: the duration of the longest
-    broadcast on the line, plus 1 s.
+    broadcast on the line, plus 5 s.
 
     The line runs in real time: even on a busy machine, the simulator must read the broadcast within this time.
     """
-    return 1 + 150 / baud
+    return 5 + 150 / baud
 
 
 class IdentificationRequest(ReadDeviceInformationRequest):

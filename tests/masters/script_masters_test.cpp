@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "tests/support/left_out.hpp"
 #include "tests/support/simulator_process.hpp"
 
 namespace ex9000::system {
@@ -29,6 +30,11 @@ const Master kJsmodbus{"jsmodbus", {"env", kModules, "node", kScripts + "/jsmodb
 
 class ScriptMaster : public testing::TestWithParam<Master> {
  protected:
+  void SetUp() override {
+    if (without(GetParam().library)) {
+      GTEST_SKIP() << "left out: " << GetParam().library;
+    }
+  }
   static void expect_to_pass(std::vector<std::string> arguments) {
     std::vector<std::string> command{"timeout", "1200"};
     command.insert(command.end(), GetParam().command.begin(), GetParam().command.end());

@@ -178,7 +178,7 @@ class Modules(Panel):
         self.expect_no_scrolling_sideways()
         self.picture("phone-64")
 
-    def test_the_picture_in_the_readme(self):
+    def test_the_module_of_the_readme_shows_its_outputs(self):
         self.browser.size(1060, 900)
         _, master = self.show_two()
         self.browser.click("[aria-label='2 EX9052D-M: input DI1']")
@@ -196,7 +196,7 @@ class Modules(Panel):
         self.browser.until(lit(0x0555))
         self.picture("readme")
 
-    def test_one_module_is_large_in_light_and_dark(self):
+    def test_a_single_module_shows_pressed_inputs_in_light_and_dark(self):
         self.show("EX9055D@01,name=PUMPS")
         for channel in 1, 4:
             self.browser.click(f"[aria-label='1 EX9055D: input DI{channel}']")

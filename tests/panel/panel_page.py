@@ -6,6 +6,7 @@ import contextlib
 import functools
 import json
 import pathlib
+import tempfile
 import threading
 import unittest
 
@@ -46,10 +47,11 @@ def the_browser():
 
 
 def bus(lines):
-    path = PICTURES / "bus.json"
-    path.parent.mkdir(parents=True, exist_ok=True)
-    path.write_text(json.dumps({"lines": lines}))
-    return Simulator(str(path))
+    """Starts a simulator with a bus file of these lines. The program reads the file before it prints its greeting."""
+    with tempfile.NamedTemporaryFile("w", suffix=".json") as file:
+        json.dump({"lines": lines}, file)
+        file.flush()
+        return Simulator(file.name)
 
 
 # Two lines with 32 modules each, in groups of four: one with outputs, one with inputs, and two with both.

@@ -45,16 +45,10 @@ class Polling:
 
 
 class Server(unittest.TestCase):
-    @classmethod
-    def setUpClass(cls):
-        cls.simulator = Simulator("EX9042D-M@01,baud=115200", "EX9052D-M@02,baud=115200", "--tcp", "0")
-        cls.port = cls.simulator.port
-
-    @classmethod
-    def tearDownClass(cls):
-        cls.simulator.close()
-
     def setUp(self):
+        self.simulator = Simulator("EX9042D-M@01,baud=115200", "EX9052D-M@02,baud=115200", "--tcp", "0")
+        self.addCleanup(self.simulator.close)
+        self.port = self.simulator.port
         self.polling = Polling(self.simulator.lines[0])
 
     def tearDown(self):
@@ -274,6 +268,11 @@ class Start(unittest.TestCase):
         listening = [line.split()[1] for line in tcp_sockets() if line.split()[3] == "0A"]
         self.assertIn(f"0100007F:{simulator.port:04X}", listening)
         self.assertNotIn(f"00000000:{simulator.port:04X}", listening)
+
+    @unittest.skipUnless(pathlib.Path("/proc/net/if_inet6").exists(), "this machine has no IPv6")
+    def test_it_does_not_listen_on_the_loopback_of_ipv6(self):
+        simulator = Simulator("EX9042D", "--tcp", "0")
+        self.addCleanup(simulator.close)
         with self.assertRaises(OSError):
             socket.create_connection(("::1", simulator.port), HANG)
 

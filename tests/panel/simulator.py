@@ -25,7 +25,7 @@ def wait_until(holds):
     gives_up = time.monotonic() + HANG
     while not (it := holds()):
         assert time.monotonic() < gives_up, f"timeout: not true within {HANG} s"
-        time.sleep(0.01)
+        time.sleep(0.01)  # leaves the processor to the simulator
     return it
 
 

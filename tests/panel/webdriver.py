@@ -95,7 +95,7 @@ class Browser:
             const gives_up = performance.now() + {1000 * HANG};
             while (!holds()) {{
               if (performance.now() > gives_up) {{ return false; }}
-              await new Promise((go_on) => setTimeout(go_on, 10));
+              await new Promise((go_on) => setTimeout(go_on, 10)); // lets the page receive messages
             }}
             return true;"""
         assert self.promised(script, *arguments), f"timeout: not true within {HANG} s: {condition} {arguments}"

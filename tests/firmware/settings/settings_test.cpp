@@ -95,7 +95,7 @@ class Possible : public testing::Test {
   Settings settings_ = Settings::factory(model_);
 };
 
-TEST_F(Possible, EveryAddressInAscii) {
+TEST_F(Possible, AsciiAllowsEveryAddress) {
   settings_.protocol = Protocol::Ascii;
   for (unsigned address = 0; address < 256; ++address) {
     settings_.address = static_cast<std::uint8_t>(address);
@@ -103,14 +103,14 @@ TEST_F(Possible, EveryAddressInAscii) {
   }
 }
 
-TEST_F(Possible, Addresses1To247InModbus) {
+TEST_F(Possible, ModbusAllowsAddresses1To247) {
   for (unsigned address = 0; address < 256; ++address) {
     settings_.address = static_cast<std::uint8_t>(address);
     EXPECT_EQ(possible(), address >= 1 && address <= 247) << address;
   }
 }
 
-TEST_F(Possible, ModbusOnMModelsOnly) {
+TEST_F(Possible, OnlyMModelsAllowModbus) {
   for (const Model& each : kModels) {
     Settings settings = Settings::factory(each);
     settings.protocol = Protocol::ModbusRtu;
@@ -120,21 +120,21 @@ TEST_F(Possible, ModbusOnMModelsOnly) {
   }
 }
 
-TEST_F(Possible, BaudCodes03To0A) {
+TEST_F(Possible, BaudCodesAre03To0A) {
   for (unsigned code = 0; code < 256; ++code) {
     settings_.baud_code = static_cast<std::uint8_t>(code);
     EXPECT_EQ(possible(), code >= 0x03 && code <= 0x0A) << code;
   }
 }
 
-TEST_F(Possible, OnlyBits7And6OfTheFormat) {
+TEST_F(Possible, AFormatHasOnlyBits7And6) {
   for (unsigned format = 0; format < 256; ++format) {
     settings_.format = static_cast<std::uint8_t>(format);
     EXPECT_EQ(possible(), (format & 0x3FU) == 0) << format;
   }
 }
 
-TEST_F(Possible, OutputValuesOfTheModelsChannelsOnly) {
+TEST_F(Possible, OutputValuesHaveOnlyTheModelsChannels) {
   const std::vector<std::pair<std::string_view, unsigned>> outputs{
       {"EX9042D", 13}, {"EX9043D", 16}, {"EX9052D", 0}, {"EX9068D-M", 8}, {"EX9060D", 4}, {"EX9063D", 3}};
   for (const auto& [designation, channels] : outputs) {
@@ -150,7 +150,7 @@ TEST_F(Possible, OutputValuesOfTheModelsChannelsOnly) {
   }
 }
 
-TEST_F(Possible, NamesOf1To6Characters) {
+TEST_F(Possible, ANameHas1To6Characters) {
   settings_.name = Name();
   EXPECT_FALSE(possible());
   settings_.name = Name("A");
@@ -161,7 +161,7 @@ TEST_F(Possible, NamesOf1To6Characters) {
   EXPECT_FALSE(possible());
 }
 
-TEST_F(Possible, NamesOf7CharactersOnTheTwoEX9068MModels) {
+TEST_F(Possible, ANameOf7CharactersIsPossibleOnTheTwoEX9068MModels) {
   for (const char* designation : {"EX9068D-M", "EX9068AD-M"}) {
     use(designation);
     settings_.name = Name("ABCDEFG");
@@ -172,7 +172,7 @@ TEST_F(Possible, NamesOf7CharactersOnTheTwoEX9068MModels) {
   EXPECT_FALSE(possible());
 }
 
-TEST_F(Possible, NamesOfPrintableCharactersOnly) {
+TEST_F(Possible, ANameHasOnlyPrintableCharacters) {
   settings_.name = Name(" ~$01m");
   EXPECT_TRUE(possible());
   for (const char* name : {"\x1F", "A\x7F", "AB\r", "\xFF"}) {
@@ -181,7 +181,7 @@ TEST_F(Possible, NamesOfPrintableCharactersOnly) {
   }
 }
 
-TEST_F(Possible, Timeout0OnlyWhileTheWatchdogIsDisabled) {
+TEST_F(Possible, ATimeoutOf0RequiresADisabledWatchdog) {
   settings_.watchdog_timeout = 0;
   EXPECT_TRUE(possible());
   settings_.watchdog_enabled = true;
@@ -190,7 +190,7 @@ TEST_F(Possible, Timeout0OnlyWhileTheWatchdogIsDisabled) {
   EXPECT_TRUE(possible());
 }
 
-TEST_F(Possible, TheTimeoutStatusWithAndWithoutTheWatchdogArmedAgain) {
+TEST_F(Possible, TheTimeoutStatusIsPossibleWithAndWithoutTheWatchdogArmedAgain) {
   settings_.timeout_status = true;
   EXPECT_TRUE(possible());
   settings_.watchdog_enabled = true;

@@ -58,8 +58,8 @@ OF_EACH_TYPE = [None, True, 5, 1.5, "?", [], {}]
 
 
 def run(*arguments, folder=None):
-    return subprocess.run([PROGRAM, *arguments], cwd=folder, capture_output=True, encoding="utf-8", timeout=300,
-                          check=False)
+    return subprocess.run([PROGRAM, *arguments], cwd=folder, capture_output=True, encoding="utf-8", check=False,
+                          timeout=300)  # seconds; only detects a hang
 
 
 SCHEMA = json.loads(run("--schema").stdout)

@@ -54,7 +54,7 @@ class EveryMap(unittest.TestCase):
             line.write_coil(write, on)
             self.assertEqual(line.read(*read), [int(on)])
 
-    def test_home_assistants_entities(self):
+    def test_every_entity_of_home_assistant_reads_and_switches_its_channel(self):
         def play(line, model):
             text = describe(model, "--format", "home-assistant")
             hub = yaml.safe_load(text)[0]
@@ -73,7 +73,7 @@ class EveryMap(unittest.TestCase):
 
         self.of_each_model(play)
 
-    def test_node_reds_nodes(self):
+    def test_every_node_of_node_red_reads_or_writes_its_channel(self):
         def play(line, model):
             nodes = {node["id"]: node for node in json.loads(describe(model, "--format", "node-red"))}
             read, written = set(), set()
@@ -96,7 +96,7 @@ class EveryMap(unittest.TestCase):
 
         self.of_each_model(play)
 
-    def test_wiren_boards_channels(self):
+    def test_every_channel_of_wiren_board_reads_and_writes_its_channel(self):
         def play(line, model):
             device = json.loads(describe(model, "--format", "wb-mqtt-serial"))["device"]
             written = set()

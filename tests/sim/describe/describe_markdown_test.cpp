@@ -163,7 +163,7 @@ TEST(Registers, MatchTheOutputOfTheProgram) {
 
 // --- form ---
 
-TEST(DescribeMarkdown, IsMarkdown) {
+TEST(DescribeMarkdown, HasHeadingsAndTablesOfMarkdown) {
   expect_markdown(markdown_of_all());
   for (const Model& model : kModels) {
     SCOPED_TRACE(model.designation);

@@ -27,7 +27,7 @@ class Line:
         self._program = subprocess.Popen(command, stdout=subprocess.PIPE, encoding="utf-8")
         greeting = "".join(iter(self._program.stdout.readline, "press Ctrl-C to end\n"))
         port = int(re.search(r"TCP 127\.0\.0\.1:(\d+)", greeting).group(1))
-        self._socket = socket.create_connection(("127.0.0.1", port), timeout=60)
+        self._socket = socket.create_connection(("127.0.0.1", port), timeout=60)  # seconds; only detects a hang
 
     def __enter__(self):
         return self

@@ -152,14 +152,18 @@ TEST(TcpPort, Serves64ClientsAtOnceAndReusesAFreePlace) {
 }
 
 TEST(TcpPort, ListensOnTheGivenAddress) {
-  std::vector<std::string> hosts{"127.0.0.1"};
-  if (fs::exists("/proc/net/if_inet6")) {  // without IPv6 this address does not exist
-    hosts.emplace_back("[::1]");
+  const std::string host = "127.0.0.1";
+  SimulatorProcess simulator({"EX9042D", "--tcp", host + ":0"});
+  EXPECT_NE(simulator.output().find("  TCP " + host + ":"), std::string::npos) << simulator.output();
+}
+
+TEST(TcpPort, ListensOnAnAddressOfIpv6) {
+  if (!fs::exists("/proc/net/if_inet6")) {
+    GTEST_SKIP() << "this machine has no IPv6";
   }
-  for (const std::string& host : hosts) {
-    SimulatorProcess simulator({"EX9042D", "--tcp", host + ":0"});
-    EXPECT_NE(simulator.output().find("  TCP " + host + ":"), std::string::npos) << simulator.output();
-  }
+  const std::string host = "[::1]";
+  SimulatorProcess simulator({"EX9042D", "--tcp", host + ":0"});
+  EXPECT_NE(simulator.output().find("  TCP " + host + ":"), std::string::npos) << simulator.output();
 }
 
 // A full line must not use processor time: the program does not poll clients that have to wait.
