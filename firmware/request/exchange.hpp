@@ -18,9 +18,9 @@ struct Exchange {
   const State& state;
   const LineTallies& tallies;  ///< they already include this request
 
-  Bytes frame;             ///< the request as the assembler accepted it
-  Bytes args;              ///< the part of a DCON request after address and key
-  bool broadcast = false;  ///< a Modbus request to address 0
+  Bytes frame;       ///< the request as the assembler accepted it
+  Bytes args;        ///< the part of a DCON request after address and key
+  bool broadcast{};  ///< a Modbus request to address 0
 
   Outcome outcome;
   Reply reply;

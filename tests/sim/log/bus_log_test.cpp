@@ -55,6 +55,11 @@ TEST(TextLog, AFrameIsALine) {
   EXPECT_EQ(text_of(dcon(1, ">0004\r")), "   12.345679  < 01 EX9042D-M  >0004\\r  ; reply|");
 }
 
+TEST(BusLog, AStationAfterTheNamedOnesIsUnknown) {
+  EXPECT_NE(text_of(frame_of(2, {1, 2, 3})).find("unknown sender"), std::string::npos);
+  EXPECT_EQ(names().of(1), "01 EX9042D-M");
+}
+
 TEST(TextLog, ACollidedFrameHasNoMeaning) {
   Frame frame = frame_of(1, {1, 2, 3});
   frame.collided = true;
