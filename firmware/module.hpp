@@ -41,7 +41,7 @@ class Module {
 
   // --- interrupts ---
 
-  /// See Receiver::on_byte. Call it only while `listening()` and while the module's own driver is off.
+  /// See Receiver::on_byte. Call this only while `listening()` and while the module's own driver is off.
   Duration on_byte(std::uint8_t byte, ByteStatus status, Time now) {
     return receiver_.on_byte(byte, status, now);
   }
@@ -60,9 +60,9 @@ class Module {
 
   // --- main loop ---
 
-  /// Updates the INIT* switch and the status LED, collects edges, and ends the gap after a reply. Call it at
-  /// every tick and when the time that `idle_for` returned is over. `init_switch`: whether INIT* is asserted
-  /// (tied to GND), not debounced.
+  /// Updates the INIT* switch and the status LED, collects edges, and ends the gap after a reply. Call this
+  /// at every tick and when the time that `idle_for` returned is over. `init_switch`: whether INIT* is
+  /// asserted (tied to GND), not debounced.
   void poll_panel(bool init_switch, Time now);
   /// Runs one pass of the main loop: processes the events from interrupts and everything that is due.
   void step(Time now);

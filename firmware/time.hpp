@@ -63,7 +63,7 @@ class Deadline {
   [[nodiscard, gnu::always_inline]] constexpr bool reached(Time now) const {
     return armed_ && now.since(when_).microseconds() < kHalfRange;
   }
-  /// Returns the time until the deadline; 0 if it is reached. Call it only while the deadline is armed.
+  /// Returns the time until the deadline; 0 if it is reached. Call this only while the deadline is armed.
   [[nodiscard]] constexpr Duration remaining(Time now) const {
     return reached(now) ? Duration() : when_.since(now);
   }

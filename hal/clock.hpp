@@ -11,7 +11,8 @@ namespace ex9000::hal {
 /// A free-running clock. Its time wraps; see Time.
 ///
 ///     Time now() const
-///         Returns the time, which never goes back. Interrupts and the main loop may call it; does not block.
+///         Returns the time, which never goes back. Interrupts and the main loop may call this; does not
+///         block.
 ///     Time now_in_interrupt() const
 ///         Returns the same and may be faster. Only for interrupts that the clock's own interrupt does not
 ///         interrupt.

@@ -77,8 +77,8 @@ class Device {
 
   [[nodiscard]] bool has_work() const { return wakes_.load() != wakes_seen_; }
 
-  /// Runs one pass: processes requests, settings, outputs and the panel. If it returns true, call it again at
-  /// once, because no interrupt will wake the main loop.
+  /// Runs one pass: processes requests, settings, outputs and the panel. If it returns true, call this again
+  /// at once, because no interrupt will wake the main loop.
   bool turn() {
     wakes_seen_ = wakes_.load();  // must be first, so that later events cause another pass
     const Time now = board_.clock.now();

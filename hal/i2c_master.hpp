@@ -16,15 +16,15 @@ namespace ex9000::hal {
 /// following functions. They are for the main loop only and do not block.
 ///
 ///     void begin(const I2cTransfer&, Time now)
-///         Begins a transfer. Call it only while not `busy()`. The transfer must stay valid while `busy()`.
+///         Begins a transfer. Call this only while not `busy()`. The transfer must stay valid while `busy()`.
 ///     bool poll(Time now)
-///         Continues the transfer. While `busy()`, call it after each interrupt of the master and at least
-///         every `kMemoryPollPeriod` (hal/memory.hpp). If it returns true, call it again at once, because no
-///         interrupt will occur.
+///         Continues the transfer. While `busy()`, call this after each interrupt of the master and at least
+///         every `kMemoryPollPeriod` (hal/memory.hpp). If it returns true, call this again at once, because
+///         no interrupt will occur.
 ///     bool busy() const
 ///         Returns whether a transfer is running.
 ///     I2cResult result() const
-///         Returns the result of the last transfer. Call it only while not `busy()`.
+///         Returns the result of the last transfer. Call this only while not `busy()`.
 ///
 struct I2cTransfer {
   std::uint8_t device = 0;   ///< address of the device, 7 bits

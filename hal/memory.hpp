@@ -19,20 +19,20 @@ inline constexpr Duration kMemoryPollPeriod = milliseconds(1);
 /// `Device::on_memory`. All functions are for the main loop and do not block.
 ///
 ///     void start_read(std::uint16_t address, MutableBytes destination, Time now)
-///         Begins to read `destination.size` bytes from `address` on. Call it only while not `busy()`.
+///         Begins to read `destination.size` bytes from `address` on. Call this only while not `busy()`.
 ///         `destination` must stay valid while `busy()`.
 ///     void start_write(std::uint16_t address, Bytes source, Time now)
 ///         Begins to write `source`, which must not cross the end of a 32-byte page. The job ends when the
-///         memory has programmed the bytes, not when it has received them. Call it only while not `busy()`.
+///         memory has programmed the bytes, not when it has received them. Call this only while not `busy()`.
 ///         `source` must stay valid while `busy()`.
 ///     bool poll(Time now)
-///         Continues the job. Call it after each interrupt of the memory and every `kMemoryPollPeriod`. If it
-///         returns true, call it again at once, because no interrupt will occur.
+///         Continues the job. Call this after each interrupt of the memory and every `kMemoryPollPeriod`. If
+///         it returns true, call this again at once, because no interrupt will occur.
 ///     bool busy() const
 ///         Returns whether a job is running.
 ///     bool succeeded() const
 ///         Returns whether the last job succeeded; false if the memory did not answer or took longer than its
-///         data sheet allows. Call it only while not `busy()`.
+///         data sheet allows. Call this only while not `busy()`.
 ///
 /// True if `T` has these functions.
 template <class T, class = void>

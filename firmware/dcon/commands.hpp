@@ -61,7 +61,8 @@ struct Dispatch {
 
 enum class Access : std::uint8_t { Read, Write, Store };
 
-/// Whether a command is marked (I): it is permitted only while INIT* is asserted or in INIT mode.
+/// The mark (I) of a command. Required: the command is permitted only in INIT mode or while INIT* is
+/// asserted.
 enum class Init : std::uint8_t { NotRequired, Required };
 
 /// A row with its documentation. The firmware never uses the texts, so an image does not contain them.

@@ -19,8 +19,8 @@ constexpr std::uint8_t kLongestDconFrame = 32;
 class DconAssembler {
  public:
   void use_checksum(bool on) { checksum_ = on; }
-  /// Sets the module's address for all frames that end after this call. For the main loop, which may call it
-  /// while bytes are received.
+  /// Sets the module's address for all frames that end after this call. For the main loop, which may call
+  /// this while bytes are received.
   void answer_to(std::uint8_t address) { own_digits_.store_in_main_loop(hex_digits(address)); }
 
   /// Processes a received byte. An accepted frame contains the characters from the delimiter on, without CHK

@@ -19,7 +19,7 @@ constexpr std::size_t kLongestFrame = kBuiltModbus ? 256 : 32;
 /// A frame for this module whose check is correct.
 struct Frame {
   std::uint16_t offset = 0;  ///< index of the first byte; 1 after a turn-around byte
-  std::uint16_t size = 0;    ///< number of bytes from there on, without checksum, CRC and CR
+  std::uint16_t size = 0;    ///< number of bytes from `offset` on, without checksum, CRC and CR
   Time received;             ///< end of the last byte
   std::array<std::uint8_t, kLongestFrame + 1> storage{};
 
@@ -47,8 +47,8 @@ class FrameQueue {
   /// Returns whether a frame is waiting. For interrupts and the main loop.
   [[nodiscard, gnu::always_inline]] bool has_frame() const { return completed_.load() != dropped_.load(); }
 
-  /// Returns the waiting frame, which does not change until it is dropped. For the main loop; call it only if
-  /// `has_frame()`.
+  /// Returns the waiting frame, which does not change until it is dropped. For the main loop; call this only
+  /// if `has_frame()`.
   [[nodiscard]] const Frame& waiting() const { return frames_[dropped_.load() % kFrames]; }
 
   /// Removes the waiting frame. For the main loop.

@@ -31,9 +31,9 @@ class Receiver {
   // --- interrupts, which must not interrupt each other ---
 
   /// Processes a received byte. `now` is the end of its stop bit, or earlier if the timing allows for that.
-  /// Returns the time from now after which `on_silence` must be called: restart the timer with it. If it
-  /// returns 0, the timer must not change. In Modbus, it returns `rtu_silence` for each byte. In DCON, it
-  /// returns the turn-around time for the CR of an accepted frame, and otherwise 0.
+  /// Returns the time from `now` after which `on_silence` must be called: restart the timer with this time.
+  /// Do not change the timer if the result is 0. In Modbus, the result is `rtu_silence` for each byte. In
+  /// DCON, the result is the turn-around time for the CR of an accepted frame, otherwise 0.
   Duration on_byte(std::uint8_t byte, ByteStatus status, Time now);
 
   /// Call this when the time that `on_byte` or `on_silence` returned is over. The result has the same meaning
@@ -46,7 +46,7 @@ class Receiver {
 
   // --- main loop ---
 
-  /// Sets the module's address for all frames that end after this call. Call it after `listen`.
+  /// Sets the module's address for all frames that end after this call. Call this after `listen`.
   void answer_to(std::uint8_t address);
   /// Returns the timing that was passed to `listen`.
   [[nodiscard]] const LineTiming& timing() const { return rtu_.timing(); }

@@ -21,8 +21,8 @@ class RtuAssembler {
  public:
   void use(const LineTiming& timing) { timing_ = timing; }
   [[nodiscard]] const LineTiming& timing() const { return timing_; }
-  /// Sets the module's address for all frames that end after this call. For the main loop, which may call it
-  /// while bytes are received.
+  /// Sets the module's address for all frames that end after this call. For the main loop, which may call
+  /// this while bytes are received.
   void answer_to(std::uint8_t address) { own_address_.store_in_main_loop(address); }
 
   /// Processes a byte that was complete at `now`. Restart the timer with T3.5 after this call. Returns the

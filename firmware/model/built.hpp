@@ -55,7 +55,7 @@ constexpr bool has(const Model& model, Needs needs) {
 #endif
 }
 
-/// Whether a built model can speak Modbus. If not, the Modbus code is left out.
+/// True if a built model can speak Modbus. If false, the program contains no Modbus code.
 constexpr bool kBuiltModbus = some_model_meets(Needs::Modbus);
 
 /// Returns the member `part` of each row of `table`, without the rows that no built model has.

@@ -16,7 +16,7 @@ struct Exchange {
       : state(state_of_module), tallies(tallies_of_line) {}
 
   const State& state;
-  const LineTallies& tallies;  ///< they already include this request
+  const LineTallies& tallies;  ///< the counts already include this request
 
   Bytes frame;       ///< the request as the assembler accepted it
   Bytes args;        ///< the part of a DCON request after address and key

@@ -26,7 +26,7 @@ class RequestCycle {
 
   [[nodiscard]] Phase phase() const { return phase_; }
 
-  /// Judges a complete frame. Call it only while Idle. It does not change the module's state or keep the
+  /// Judges a complete frame. Call this only while Idle. It does not change the module's state or keep the
   /// frame. If the outcome changes settings, the phase becomes AwaitingStore. Otherwise carry out the outcome
   /// and then call `finish`.
   const Outcome& judge(Bytes frame);
@@ -50,10 +50,10 @@ class RequestCycle {
   /// Call this when the last stop bit has been sent and the driver is off. The next reply is sent `silence`
   /// later at the earliest (wire.md D18).
   void reply_sent(Time now, Duration silence);
-  /// Disarms the deadline of `reply_sent` when it is reached. Call it at least every few minutes: times wrap,
-  /// so an old deadline would later appear to be in the future.
+  /// Disarms the deadline of `reply_sent` when it is reached. Call this at least every few minutes: times
+  /// wrap, so an old deadline would later appear to be in the future.
   void end_reply_gap(Time now);
-  /// Returns the time until `take_reply` returns the reply. Call it only while ReplyReady.
+  /// Returns the time until `take_reply` returns the reply. Call this only while ReplyReady.
   [[nodiscard]] Duration until_reply(Time now) const;
 
  private:

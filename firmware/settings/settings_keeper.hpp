@@ -37,7 +37,7 @@ class SettingsKeeper {
 
   /// Returns whether a memory access is necessary or running.
   [[nodiscard]] bool busy() const { return store_.busy(); }
-  /// Starts to store the settings of a command. Call it only while not `busy()`. `saved()` is valid as soon
+  /// Starts to store the settings of a command. Call this only while not `busy()`. `saved()` is valid as soon
   /// as `busy()` is false again.
   void save(const Settings& settings, Time now);
   [[nodiscard]] bool saved() const { return store_.saved(); }
@@ -45,7 +45,7 @@ class SettingsKeeper {
   /// Call this when the settings in force have changed, so that the next `poll` compares them with the stored
   /// settings.
   void settings_changed() { may_differ_ = true; }
-  /// Starts to store `in_force` or to invalidate a copy, if necessary. Call it in every pass of the main
+  /// Starts to store `in_force` or to invalidate a copy, if necessary. Call this in every pass of the main
   /// loop.
   void poll(const Settings& in_force, Time now);
   /// Returns whether a save without a command has ended and `poll` has not processed its result yet.

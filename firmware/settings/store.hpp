@@ -49,7 +49,7 @@ class SettingsStore {
   [[nodiscard]] Found found() const { return found_; }
 
   /// Begins to write and verify `settings`. The save fails when writing or verifying has failed three times.
-  /// Call it only while not `busy()`. `saved()` and `stored()` are valid when the save has ended.
+  /// Call this only while not `busy()`. `saved()` and `stored()` are valid when the save has ended.
   ///
   /// If `found()` is Unreadable, the store first reads all places again. If the memory does not answer, the
   /// save fails. If a copy is readable now, the new copy gets a later sequence number, so that the old copy
@@ -70,14 +70,14 @@ class SettingsStore {
   /// Returns whether a reset now could load a copy that must not be used: a copy of refused settings, or a
   /// copy of an older layout.
   [[nodiscard]] bool needs_invalidation() const { return copies_to_invalidate_ != 0; }
-  /// Begins to invalidate such copies. Call it only while not `busy()`. If this fails, `needs_invalidation()`
-  /// stays true.
+  /// Begins to invalidate such copies. Call this only while not `busy()`. If this fails,
+  /// `needs_invalidation()` stays true.
   void begin_invalidating();
 
   /// Returns the settings that a reset now would load; for the exceptions, see SettingsKeeper::certain.
   [[nodiscard]] const Settings& stored() const { return stored_; }
 
-  /// Returns the memory access to carry out. Call it only while `busy()`. It stays the same until `done`.
+  /// Returns the memory access to carry out. Call this only while `busy()`. It stays the same until `done`.
   [[nodiscard]] MemoryJob job();
   /// Call this when the job has ended. `ok`: the memory answered.
   void done(bool ok);

@@ -77,7 +77,7 @@ class At24c {
 
   void transfer(Time now) {
     // After a write, the driver polls with one byte of the address, which writes nothing. When the EEPROM
-    // acknowledges that, the write has ended.
+    // acknowledges this byte, the write has ended.
     transfer_.device = kDevice;
     transfer_.header = {header_.data(), step_ == Step::Programming ? 1U : step_ == Step::Reading ? 0U : 2U};
     transfer_.source = step_ == Step::Writing ? rest_.first(chunk()) : Bytes();

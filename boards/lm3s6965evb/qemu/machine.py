@@ -95,7 +95,7 @@ class Machine:
         self._queued_bytes += data
 
     def receive_reply(self) -> bytes:
-        """Returns the bytes from the module. Call it only while `line` is readable."""
+        """Returns the bytes from the module. Call this only while `line` is readable."""
         return self._received_from(self.line)
 
     @property
