@@ -405,7 +405,7 @@ Parsed parse_arguments(int argc, const char* const* argv) {
   bool schema = false;
   app.add_option("MODULE", texts.modules, "the modules on the line, or BUS.json");
   app.add_option("--pty", texts.pty,
-                 std::string("make a pseudo-terminal and link it at this path (default: ") + kDefaultPty +
+                 std::string("create a pseudo-terminal and link it at this path (default: ") + kDefaultPty +
                      " without --tcp, --serial and --speed max)")
       ->type_name("LINK");
   app.add_option("--tcp", texts.tcp, "serve the line's bytes over TCP (default HOST: 127.0.0.1)")
@@ -419,7 +419,7 @@ Parsed parse_arguments(int argc, const char* const* argv) {
   app.add_option("--line", texts.line,
                  "paced (default): bytes take as long as on a real line; instant: bytes take no time")
       ->type_name("paced|instant");
-  app.add_option("--control", texts.control, "make a UNIX socket for commands at this path")
+  app.add_option("--control", texts.control, "create a UNIX socket for commands at this path")
       ->type_name("PATH");
   app.add_option(
          "--panel", texts.panel,
@@ -431,7 +431,7 @@ Parsed parse_arguments(int argc, const char* const* argv) {
                "show the modules in the terminal; print a line for each change if standard output is not a "
                "terminal");
   app.add_option("--input", texts.inputs,
-                 "let an input move by itself, for example '2 0 square 100ms'; see below")
+                 "let an input change by itself, for example '2 0 square 100ms'; see below")
       ->type_name("'N INPUT'")
       ->allow_extra_args(false);
   app.add_option("--fault", texts.faults,

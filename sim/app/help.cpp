@@ -44,7 +44,7 @@ constexpr const char* kScheduleHelp = R"(
   after 3 writes (to the EEPROM). Without WHEN the fault is always on. `for 2s` limits how long it lasts.
   Times are those of the log, in us, ms, s, min or h.
 
-An input that moves by itself is C square PERIOD [for TIME] or C key at TIME|every TIME for TIME [bounce TIME], for
+An input that changes by itself is C square PERIOD [for TIME] or C key at TIME|every TIME for TIME [bounce TIME], for
 --input (with N before it) and for bus files.
 )";
 

@@ -123,7 +123,7 @@ bool Bus::has_listeners_at_other_rates(std::uint32_t rate) const {
   return listeners_.size() > 1 || (listeners_.size() == 1 && listeners_.begin()->first != rate);
 }
 
-/// Whether the receiver has the rate of the byte and has listened since its start.
+/// Returns whether the receiver has the rate of the byte and has listened since its start.
 bool Bus::has_heard_from_the_start(const End& end, const Wave& wave) {
   return wave.baud == end.bit_rate && end.sampler.position() <= wave.start;
 }

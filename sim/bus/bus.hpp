@@ -33,8 +33,8 @@ class Station {
 /// A station's end of the wires.
 class BusEnd : public Wire {
  public:
-  /// From now on the station receives at this rate in bits per second; 0: it does not listen. A receiver that
-  /// begins in the middle of a byte samples the rest of it.
+  /// Makes the station receive at this rate in bits per second from now on; 0: the station does not listen. A
+  /// receiver that begins in the middle of a byte samples the rest of it.
   virtual void listen(std::uint32_t baud) = 0;
   /// Sets the time of the station's next `run`, in place of an earlier setting; kNever: it only waits for
   /// bytes.
@@ -47,13 +47,15 @@ class BusEnd : public Wire {
 /// The bus notifies observers of each event on the wires.
 class BusObserver {
  public:
-  /// The driver of `station` was enabled or disabled. `station` counts from 0 in the order of attachment.
+  /// Called when the driver of `station` was enabled or disabled. `station` counts from 0 in the order of
+  /// attachment.
   virtual void driver(std::size_t /*station*/, bool /*on*/, VirtualTime /*now*/) {}
-  /// The disturbance has changed the byte that `station` begins to send now: receivers see `arrives` instead.
+  /// Called when the disturbance has changed the byte that `station` begins to send now. Receivers get the
+  /// levels `arrives` instead.
   virtual void changed(std::size_t /*station*/, Levels /*arrives*/) {}
-  /// A byte that began at `start` has ended. A byte is not reported if its driver was disabled before its
-  /// end. `byte` is the byte that was sent. `collided`: another driver was enabled, or another byte was on
-  /// the wires, during this byte.
+  /// Called when a byte that began at `start` has ended. A byte is not reported if its driver was disabled
+  /// before its end. `byte` is the byte that was sent. `collided`: another driver was enabled, or another
+  /// byte was on the wires, during this byte.
   virtual void byte(std::size_t station, std::uint8_t byte, std::uint32_t baud, bool collided,
                     VirtualTime start, VirtualTime end) = 0;
 
@@ -106,9 +108,9 @@ class Bus {
   void run_until(VirtualTime until);
   void run_for(VirtualTime duration) { run_until(clock_.virtual_now() + duration); }
 
-  /// Whether at least one byte is on the wires.
+  /// Returns whether at least one byte is on the wires.
   [[nodiscard]] bool carries() const { return !on_the_wire_.empty(); }
-  /// Whether a byte is on the wires or a driver is enabled.
+  /// Returns whether a byte is on the wires or a driver is enabled.
   [[nodiscard]] bool busy() const { return carries() || drivers_on_ != 0; }
   VirtualClock& clock() { return clock_; }
 
@@ -123,7 +125,7 @@ class Bus {
     std::uint32_t baud;  ///< the rate that the sender is set to; the wave has the real bit rate
     Wave* wave;
 
-    /// Whether a receiver with the same rate gets the byte unchanged.
+    /// Returns whether a receiver with the same rate gets the byte unchanged.
     [[nodiscard]] bool arrives_whole() const { return !collided && wave->levels == levels_of(byte); }
   };
 

@@ -53,7 +53,7 @@ void Master::run() {
   const std::uint8_t byte = waiting_.front();
   waiting_.pop_front();
   wire_.put(byte, baud_);
-  // Calculated from the first byte, so that rounding errors do not accumulate.
+  // The end is calculated from the first byte, so that rounding errors do not accumulate.
   wake_at(burst_began_ + wire_.takes(++burst_bytes_, baud_));
 }
 

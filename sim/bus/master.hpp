@@ -24,7 +24,7 @@ class Master final : public Station {
   /// once, but not before `not_before`. The driver is enabled from the first byte to the last. Does not
   /// block.
   void send(const std::uint8_t* bytes, std::size_t size, VirtualTime not_before = VirtualTime(0));
-  /// Whether bytes wait or are on the wires.
+  /// Returns whether bytes wait or are on the wires.
   [[nodiscard]] bool sending() const { return next_ != kNever; }
   /// Returns how many bytes wait for their start bit.
   [[nodiscard]] std::size_t waiting() const { return waiting_.size(); }

@@ -43,7 +43,7 @@ class SimulatedModule final : public Station {
   /// effects as switching off.
   void interrupt_supply(bool interrupted);
   [[nodiscard]] bool powered() const { return mcu_.has_value(); }
-  /// Whether the switch of the supply is on. It stays on during a supply failure.
+  /// Returns whether the switch of the supply is on. It stays on during a supply failure.
   [[nodiscard]] bool switched_on() const { return switched_on_; }
   /// Resets the module without loss of power. Has no effect without power.
   void reset();
@@ -74,17 +74,18 @@ class SimulatedModule final : public Station {
   static std::vector<std::uint8_t> memory_image(const Model& model, const Settings& settings);
 
   [[nodiscard]] const Model& model() const { return model_; }
-  /// The firmware's state; call it only while the module is powered.
+  /// Returns the firmware's state. Call this only while the module is powered.
   [[nodiscard]] const Module& module() const { return mcu_->device.module(); }
   [[nodiscard]] std::uint16_t outputs() const { return outputs_.channels(); }
-  /// Bit n is channel n.
+  /// Returns the levels at the terminals; bit n is channel n.
   [[nodiscard]] std::uint16_t input_levels() const { return inputs_.levels(); }
   [[nodiscard]] bool led_lit() const { return led_.lit(); }
   hal::doubles::Memory& memory() { return memory_; }
   [[nodiscard]] const hal::doubles::Memory& memory() const { return memory_; }
   hal::doubles::Outputs& output_pins() { return outputs_; }
   hal::doubles::StatusLed& led() { return led_; }
-  /// Whether the module receives, waits for a silence, has a request to reply to, sends, stores or starts up.
+  /// Returns whether the module receives, waits for a silence, has a request to reply to, sends, stores or
+  /// starts up.
   [[nodiscard]] bool pending() const;
   /// Returns how often the hardware watchdog has reset the module since this object was constructed.
   [[nodiscard]] std::uint64_t watchdog_resets() const { return watchdog_resets_; }

@@ -41,13 +41,13 @@ class ModuleWire final : public Wire {
     return forced_ != 0 && baud != 0 ? forced_ : baud;
   }
 
-  /// Whether a late reply is being sent. The UART has finished with it by then.
+  /// Returns whether a late reply is being sent. The UART has finished with it by then.
   [[nodiscard]] bool sends_late() const { return driving_late_; }
   [[nodiscard]] VirtualTime next() const { return late_.empty() ? kNever : late_.front().when; }
   void run();
   /// Ends the delay of the first late reply; the later ones keep their distance from it.
   void end_first_delay();
-  /// Drops everything that has not been sent. Call it when the module loses its supply or is reset.
+  /// Drops everything that has not been sent. Call this when the module loses its supply or is reset.
   void abort();
 
   // --- Wire ---

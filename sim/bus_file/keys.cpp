@@ -81,7 +81,7 @@ const std::array<BusFileKey<Setup>, 7> bus_keys{{
      [](Setup& setup, const Node& value) {
        value.elements([&](const Node& line) { read_line(line, setup); });
      }},
-    {"control", kPath, "makes the control socket at this path",
+    {"control", kPath, "creates the control socket at this path",
      [](Setup& setup, const Node& value) { setup.control = value.text(); }},
     {"panel", R"({"anyOf": [{"type": "boolean"}, {"type": "integer", "minimum": 0, "maximum": 65535},
                             {"type": "string", "pattern": "^([0-9]+|on|off)?$"}]})",
@@ -107,13 +107,13 @@ const std::array<BusFileKey<LineSetup>, 10> line_keys{{
     {"name", kText, "the line's name, one word (default: line1, line2, ...)",
      [](LineSetup& line, const Node& value) { line.name = value.text(); }},
     {"pty", kPath,
-     "makes a pseudo-terminal and links it at this path (default: NAME.tty without tcp and serial)",
+     "creates a pseudo-terminal and links it at this path (default: NAME.tty without tcp and serial)",
      [](LineSetup& line, const Node& value) { line.pty = value.text(); }},
     {"tcp", kPort, "serves the line's bytes at HOST:PORT, or at a port of 127.0.0.1",
      [](LineSetup& line, const Node& value) { line.tcp = parse_tcp_address(value.number_or_text()); }},
-    {"serial", kPath, "puts the modules on this serial port",
+    {"serial", kPath, "connects the modules to this serial port",
      [](LineSetup& line, const Node& value) { line.serial = value.text(); }},
-    {"echo", kFlag, "the serial port's adapter receives what it sends",
+    {"echo", kFlag, "ignores the echo of an adapter that receives what it sends",
      [](LineSetup& line, const Node& value) { line.echo = value.flag(); }},
     {"baud", kRate, "the line's rate until a master sets one (default: the first module's)",
      [](LineSetup& line, const Node& value) { line.baud = parse_baud_rate(value.number_or_text()); }},
@@ -152,7 +152,7 @@ const std::array<BusFileKey<ModuleObject>, 11> module_keys{{
        module.spec.eeprom_place = value.place() + ": ";
        take_setting<&Node::text>(module, value);
      }},
-    {"inputs", kTexts, "inputs that move by themselves",
+    {"inputs", kTexts, "inputs that change by themselves",
      [](ModuleObject& module, const Node& value) {
        value.elements([&](const Node& input) {
          module.spec.inputs.push_back(parse_input_program(input.text(), *module.spec.model));

@@ -22,7 +22,7 @@ struct BusFileKey {
 struct ModuleObject {
   ModuleSpec spec;
   LineSetup& line;  ///< the line that the module is on
-  Places places;    ///< of its keys
+  Places places;    ///< the place of each key in the file
 };
 
 extern const std::array<BusFileKey<Setup>, 7> bus_keys;

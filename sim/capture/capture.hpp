@@ -25,13 +25,13 @@ class Capture {
   /// Opens the file. All functions throw the exceptions of CaptureFile.
   Capture(std::string path, const std::string& place) : file_(std::move(path), place) {}
 
-  /// Replaces the content of the file with an empty capture. Call it first.
+  /// Replaces the content of the file with an empty capture. Call this first.
   void begin();
   /// Adds a line with `modules` modules, which are attached after the master. `began` is the wall clock time
   /// (since 1970-01-01 00:00:00 UTC) that corresponds to time 0 of the line. Returns the line's number for
   /// `write`.
   std::size_t add_line(const std::string& name, std::size_t modules, std::chrono::nanoseconds began);
-  /// Any thread may call it.
+  /// Any thread may call this.
   void write(std::size_t line, const Frame& frame);
 
  private:

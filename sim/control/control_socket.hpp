@@ -35,7 +35,7 @@ class ControlSocket {
   ControlSocket(const ControlSocket&) = delete;
   ControlSocket& operator=(const ControlSocket&) = delete;
 
-  /// Accepts clients. Call it when the line is ready for commands.
+  /// Accepts clients. Call this when the line is ready for commands.
   void start();
 
  private:

@@ -47,8 +47,8 @@ class Hub {
     return hub;
   }
 
-  /// Returns actions for the items of role Button, which have no entity; automations and dashboards can call
-  /// them.
+  /// Returns actions for the items of role Button, which have no entity. Automations and dashboards can call
+  /// these actions.
   [[nodiscard]] std::string actions() const {
     std::string text;
     for (const Shown& shown : shown_by(model_)) {

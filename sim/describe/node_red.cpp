@@ -67,7 +67,7 @@ class Flow {
                       {"type", "tab"},
                       {"label", module_},
                       {"disabled", false},
-                      {"info", "Needs node-red-contrib-modbus."}});
+                      {"info", "Requires node-red-contrib-modbus."}});
   }
 
   void add_client() {

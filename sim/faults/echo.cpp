@@ -42,7 +42,7 @@ void Echo::run() {
     return;
   }
   wire_.put(heard_[sent_], sends_at_);
-  // Calculated from the first byte, so that rounding errors do not accumulate.
+  // The end is calculated from the first byte, so that rounding errors do not accumulate.
   wake_at(began_ + wire_.takes(++sent_, sends_at_));
 }
 

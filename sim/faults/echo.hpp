@@ -31,7 +31,7 @@ class Echo final : public Station {
   }
   /// Sets the rate of the line.
   void set_baud(std::uint32_t baud);
-  /// Whether bytes wait or are being sent.
+  /// Returns whether bytes wait or are being sent.
   [[nodiscard]] bool sending() const { return next_ != kNever; }
 
   // --- Station ---

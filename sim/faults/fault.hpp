@@ -38,7 +38,7 @@ enum class Trouble {
 /// The duration of a power cut without `for`.
 inline constexpr VirtualTime kPowerCutLasts = std::chrono::seconds(1);
 
-/// The times at which a fault strikes.
+/// The times at which a fault strikes, that is, takes effect.
 struct Schedule {
   enum class When { Always, At, EveryTime, EveryReply, Probably, AfterWrites };
 

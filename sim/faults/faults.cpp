@@ -23,7 +23,7 @@ bool is_noise(Trouble trouble) {
          trouble == Trouble::InsertedBytes || trouble == Trouble::StrayZeros;
 }
 
-/// Whether the fault has no duration.
+/// Returns whether the fault has no duration.
 bool is_a_moment(Trouble trouble) { return trouble == Trouble::ForeignTraffic || trouble == Trouble::Hang; }
 
 }  // namespace

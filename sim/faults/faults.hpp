@@ -50,7 +50,7 @@ class Faults final : public Station {
   };
   [[nodiscard]] std::vector<Info> list() const;
 
-  /// Whether an echo or a foreign station has bytes to send, or an effect has not been applied yet.
+  /// Returns whether an echo or a foreign station has bytes to send, or an effect has not been applied yet.
   [[nodiscard]] bool pending() const;
 
   // --- Station ---
@@ -59,8 +59,8 @@ class Faults final : public Station {
  private:
   /// One strike in progress.
   struct Strike {
-    /// The module whose reply is struck; the strike does not affect other modules. nullopt: the strike does
-    /// not depend on a reply.
+    /// The module whose reply the strike affects; the strike does not affect other modules. nullopt: the
+    /// strike does not depend on a reply.
     std::optional<std::size_t> reply_of;
     /// The end in the line's time; kNever: a strike on a reply ends with the reply, any other strike does not
     /// end by itself.

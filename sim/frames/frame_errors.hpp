@@ -7,12 +7,12 @@
 
 namespace ex9000::sim {
 
-/// Describes a collision, a rate that is not the line's, and bytes that a disturbance has changed; positions
-/// count from 1. Empty: no error.
+/// Describes a collision, a sender at another baud rate than the line, and bytes that a disturbance has
+/// changed. Positions count from 1. Returns an empty string if there is no error.
 std::string line_error(const Frame& frame);
 
-/// Describes the errors of `line_error` and, if there was no collision, the error of `check_error`. Empty: no
-/// error.
+/// Describes the errors of `line_error` and, if there was no collision, the error of `check_error`. Returns
+/// an empty string if there is no error.
 std::string errors(const Frame& frame);
 
 }  // namespace ex9000::sim

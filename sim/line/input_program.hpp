@@ -1,4 +1,4 @@
-// Programs that move a module's input: square waves and key presses.
+// Programs that change the level of a module's input: square waves and key presses.
 //
 //   0 square 100ms                       on for one half of the period, off for the other half
 //   3 key at 2s for 300ms                pressed once
@@ -32,7 +32,7 @@ InputProgram parse_input_program(const std::string& text, const Model& model);
 /// Parses the number of an input channel of this model. Throws std::invalid_argument with a one-line message.
 unsigned parse_input(const std::string& text, const Model& model);
 
-/// Moves one input. It does so even if the module has no power.
+/// Changes the level of one input, even if the module has no power.
 class MovedInput final : public Station {
  public:
   /// Attaches itself to `bus` and begins now. The same `seed` produces the same bouncing.

@@ -48,17 +48,18 @@ class Line {
   SimulatedModule& module(std::size_t index) { return *modules_[index]; }
   [[nodiscard]] const SimulatedModule& module(std::size_t index) const { return *modules_[index]; }
   /// Sets the seed of all random faults and of bouncing contacts; `notice` gets the messages about faults.
-  /// Call it before `faults` and `move_input`.
+  /// Call this before `faults` and `move_input`.
   void configure_faults(std::uint64_t seed, Faults::Notice notice);
   /// Returns the faults of this line. The first call attaches them to the bus.
   Faults& faults();
   /// Returns null if `faults` has not been called yet; changes nothing.
   [[nodiscard]] const Faults* faults_so_far() const { return faults_.get(); }
-  /// From now on `program` moves an input of the module at `index`.
+  /// Starts `program`, which changes the level of an input of the module at `index`.
   void move_input(std::size_t index, const InputProgram& program);
-  /// Whether something is in progress that ends by itself, usually within milliseconds: bytes on the wires or
-  /// on their way there, the silence after a Modbus frame, a delayed reply, a store, a module that starts up.
-  /// Events that only depend on the clock do not count: a host watchdog, a scheduled fault, an input program.
+  /// Returns whether something is in progress that ends by itself, usually within milliseconds: bytes on the
+  /// wires or on their way there, the silence after a Modbus frame, a delayed reply, a store, a module that
+  /// starts up. Events that only depend on the clock do not count: a host watchdog, a scheduled fault, an
+  /// input program.
   [[nodiscard]] bool pending() const;
   /// Returns T3.5 on this line at the master's rate.
   [[nodiscard]] VirtualTime rtu_silence() const;

@@ -18,7 +18,7 @@ struct ModuleSpec {
   bool init_asserted = false;
   std::string eeprom;  ///< path of the EEPROM file; empty: settings are lost when the program ends
   std::string eeprom_place = "eeprom=";  ///< prefix of messages about that file
-  std::vector<InputProgram> inputs;      ///< programs that move inputs
+  std::vector<InputProgram> inputs;      ///< programs that change inputs
 };
 
 /// Parses MODEL[@ADDR][,KEY=VALUE]... Throws std::invalid_argument with a one-line message that says what is

@@ -15,13 +15,13 @@ class Loopback {
  public:
   explicit Loopback(std::uint16_t port) : port_(":" + std::to_string(port)), is_usual_(port == kUsualPort) {}
 
-  /// `host` is the value of the Host header.
+  /// Returns whether `host`, the value of the Host header, is such a name with the port.
   [[nodiscard]] bool is_host(std::string_view host) const {
     return std::any_of(std::begin(kNames), std::end(kNames), [&](std::string_view name) {
       return host == std::string(name) + port_ || (is_usual_ && host == name);
     });
   }
-  /// `origin` is the value of the Origin header.
+  /// Returns whether `origin`, the value of the Origin header, is a page of this server.
   [[nodiscard]] bool is_origin(std::string_view origin) const {
     constexpr std::string_view kScheme = "http://";
     return origin.substr(0, kScheme.size()) == kScheme && is_host(origin.substr(kScheme.size()));

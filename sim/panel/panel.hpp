@@ -30,7 +30,7 @@ class Panel final : public PanelSource {
   Panel(const Panel&) = delete;
   Panel& operator=(const Panel&) = delete;
 
-  /// Adds a line. Call it before the first viewer connects. `line` must outlive this object; `present`
+  /// Adds a line. Call this before the first viewer connects. `line` must outlive this object; `present`
   /// returns the line's time.
   void add_line(const LineSummary& summary, const Line& line, std::function<VirtualTime()> present);
   /// Adds a frame of a line. `line` is its position, from 0.

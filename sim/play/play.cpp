@@ -43,7 +43,7 @@ void check(const Transcript& transcript, const std::optional<sim::Setup>& bus) {
   }
 }
 
-/// Throws if the capture would overwrite a file that `play` reads. Call it before the capture starts.
+/// Throws if the capture would overwrite a file that `play` reads. Call this before the capture starts.
 void check_capture_path(const Task& task, const std::vector<Transcript>& all) {
   if (!task.writing.capture) {
     return;

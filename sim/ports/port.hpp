@@ -21,11 +21,11 @@ class Port {
   Port& operator=(const Port&) = delete;
   virtual ~Port() = default;
 
-  /// Call it once. `received` is called while the io_context runs.
+  /// Call this once. `received` is called while the io_context runs.
   virtual void start(Received received) = 0;
   /// Continues to deliver bytes after `received` has returned false.
   virtual void resume() = 0;
-  /// Calls `received` at once for all bytes that have arrived; the io_context need not run. Call it only if
+  /// Calls `received` at once for all bytes that have arrived; the io_context need not run. Call this only if
   /// `received` can take more bytes.
   virtual void read_waiting() {}
 
@@ -38,8 +38,8 @@ class Port {
   /// Returns the rate that a master has set at this port, in bits per second; nullopt if the port has no rate
   /// or no UART supports the rate.
   [[nodiscard]] virtual std::optional<std::uint32_t> baud() const { return std::nullopt; }
-  /// Whether the port is a real line. If it is, the transmission time of the bytes has already passed when
-  /// they arrive.
+  /// Returns whether the port is a real line. If it is, the transmission time of the bytes has already passed
+  /// when they arrive.
   [[nodiscard]] virtual bool is_a_line() const { return false; }
 };
 

@@ -31,11 +31,12 @@ class Pty {
   [[nodiscard]] const std::string& link() const { return link_; }
   /// The path of the slave, for example /dev/pts/5.
   [[nodiscard]] const std::string& device() const { return device_; }
-  /// Call it when a master has opened or closed the slave. If a master has opened it after a time without any
-  /// master, discards unread bytes, as a serial port does: a new master must not receive a reply to the
+  /// Call this when a master has opened or closed the slave. If a master has opened it after a time without
+  /// any master, discards unread bytes, as a serial port does: a new master must not receive a reply to the
   /// previous one.
   void take_visit();
-  /// Whether a master has the slave open. Do not write otherwise: the bytes would wait for the next master.
+  /// Returns whether a master has the slave open. Do not write otherwise: the bytes would wait for the next
+  /// master.
   [[nodiscard]] bool visited() const;
 
   /// Returns the rate set on the slave, in bits per second; nullopt if it is not a known rate.

@@ -115,8 +115,8 @@ boost::system::error_code TcpPort::take(Client& client) {
   return error;
 }
 
-/// If the limit is reached, removes the first client to connect of those that linger; if none lingers, does
-/// nothing.
+/// If the limit is reached, removes the lingering client that connected first. Does nothing if no client
+/// lingers.
 void TcpPort::make_room() {
   if (clients_.size() >= kMostMasters) {
     const auto oldest =

@@ -27,7 +27,7 @@ class LinePorts final : private BusObserver {
 
   /// Takes a byte from the master's end of the line. The line calls it for each byte that it receives.
   void hear(std::uint8_t byte) { heard_.push_back(byte); }
-  /// Whether a module has stopped sending since the last `hand_out`.
+  /// Returns whether a module has stopped sending since the last `hand_out`.
   [[nodiscard]] bool reply_is_complete() const { return stopped_sending_; }
   /// Writes the bytes received since the last call to all ports. Does not block: bytes without room are
   /// dropped, with a notice for the first of them.

@@ -78,13 +78,13 @@ void Pacer::catch_up(VirtualTime until) {
   }
 }
 
-/// Whether the event at `next` need not wait for the wall clock.
+/// Returns whether the event at `next` need not wait for the wall clock.
 bool Pacer::leads(VirtualTime next) const {
   return pace_.lead != VirtualTime(0) && (line_.bus().carries() || next <= last_byte_ + pace_.lead);
 }
 
-/// Whether masters have to wait, because the line has many bytes to carry or virtual time has run too far
-/// ahead.
+/// Returns whether masters have to wait, because the line has many bytes to carry or virtual time has run too
+/// far ahead.
 bool Pacer::is_full() const {
   return line_.master().waiting() >= kMostWaiting || line_.clock().virtual_now() > wall() + kFarthestAhead;
 }
@@ -222,7 +222,7 @@ VirtualTime Pacer::silence_before(std::uint8_t address) {
   return in_force.address == address ? VirtualTime(0) : last_byte_ + line_.rtu_silence();
 }
 
-/// Whether a frame that begins with this byte may be for a Modbus module.
+/// Returns whether a frame that begins with this byte may be for a Modbus module.
 bool Pacer::is_for_modbus(std::uint8_t address) {
   for (std::size_t i = 0; i < line_.size(); ++i) {
     const SimulatedModule& module = line_.module(i);

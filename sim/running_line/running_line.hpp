@@ -46,7 +46,7 @@ class RunningLine {
   /// Starts to process the line. Its time stands still until the caller moves it. `arrived` is called when
   /// bytes from masters have arrived.
   SteppedLine& start_stepped(SteppedLine::Arrived arrived);
-  /// Ends the log and the capture when the modules have been up for `up`. Call it before `start`.
+  /// Ends the log and the capture when the modules have been up for `up`. Call this before `start`.
   void end_at(VirtualTime up) { record_->end_at(came_up_ + up); }
   /// Processes all events until the modules have been up for `up`, without waiting.
   void run_until(VirtualTime up);
@@ -55,7 +55,7 @@ class RunningLine {
 
   [[nodiscard]] const std::string& name() const { return setup_.name; }
   Line& line() { return *line_; }
-  /// Call it only if the line follows the clock.
+  /// Call this only if the line follows the clock.
   Pacer& pacer() { return *pacer_; }
   /// See LinePorts::sent.
   [[nodiscard]] std::uint64_t sent() const {

@@ -1,4 +1,4 @@
-// A line whose time stands still until a command moves it.
+// A line in stepped time: its clock stops until a command advances it.
 #pragma once
 
 #include <cstddef>
@@ -41,7 +41,7 @@ class SteppedLine {
   [[nodiscard]] VirtualTime next() const { return line_.bus().next(); }
   /// Processes all events up to and including `until`.
   void run_until(VirtualTime until);
-  /// Whether a byte, a silence, a reply or a store is in progress: see Line::pending.
+  /// Returns whether a byte, a silence, a reply or a store is in progress: see Line::pending.
   [[nodiscard]] bool pending() const { return line_.pending(); }
   /// See LinePorts::sent.
   [[nodiscard]] std::uint64_t sent() const { return ports_.sent(); }
@@ -55,7 +55,7 @@ class SteppedLine {
   };
 
   bool receive(const Port& port, const std::uint8_t* bytes, std::size_t size);
-  /// Whether the ports wait for `resume`.
+  /// Returns whether the ports wait for `resume`.
   [[nodiscard]] bool full() const { return waiting_ >= kMostBytes; }
 
   Line& line_;

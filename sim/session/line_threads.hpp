@@ -33,7 +33,7 @@ class LineThreads {
   void pause_for(const std::function<void()>& action);
   /// Ends the threads. Blocks until the present handlers have ended.
   void end();
-  /// Throws the first exception that a handler of a line has thrown. Call it after `end`.
+  /// Throws the first exception that a handler of a line has thrown. Call this after `end`.
   void rethrow() const;
 
  private:

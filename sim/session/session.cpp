@@ -244,8 +244,8 @@ void Session::begin() {
   }
 }
 
-/// Whether the run has an end. A duration of more than a century on the wall clock counts as endless, because
-/// the clock's range is finite.
+/// Returns whether the run has an end. A duration of more than a century on the wall clock counts as endless,
+/// because the clock's range is finite.
 bool Session::ends() const {
   constexpr auto kLongestRun = std::chrono::hours(24 * 365 * 100);
   return setup_.lasts && (!setup_.speed.paced() || *setup_.lasts / setup_.speed.factor < kLongestRun);

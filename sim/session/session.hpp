@@ -45,7 +45,7 @@ class Session : private PanelSource {
   void start();
   /// Only for Speed::Kind::Max: processes all events in the duration of `setup`, unless `io` is stopped.
   void run_unpaced();
-  /// Records the frames that are still in progress. Call it when `io` has stopped or `run_unpaced` has
+  /// Records the frames that are still in progress. Call this when `io` has stopped or `run_unpaced` has
   /// returned. Throws like the constructor.
   void finish();
 
@@ -82,7 +82,7 @@ class Session : private PanelSource {
   boost::asio::steady_timer next_look_;
   std::optional<Control> control_;
   StopSignals stop_signals_;
-  std::unique_ptr<Stepper> stepper_;  ///< null unless the lines' time stands still
+  std::unique_ptr<Stepper> stepper_;  ///< null unless time is stepped
   std::unique_ptr<ControlSocket> control_socket_;
   std::list<NewFile> made_;  ///< the destructor removes them unless the greeting has been printed
   std::unique_ptr<Capture> capture_;

@@ -18,14 +18,14 @@ class Stepper {
  public:
   using Answer = std::function<void(const Control::Reply&)>;
 
-  /// Whether the program has been asked to end.
+  /// Returns whether the program has been asked to end.
   using StopRequested = std::function<bool()>;
 
   /// `lines` must outlive this object. When their time reaches `end`, the program ends; kNever: no end.
   /// `stop_requested` is called regularly while time passes.
   Stepper(std::vector<SteppedLine*> lines, VirtualTime end, StopRequested stop_requested);
 
-  /// Whether `command` is an `advance` command.
+  /// Returns whether `command` is an `advance` command.
   static bool is_advance(const std::string& command);
   /// Carries out `advance TIME [after N] [quiet]`. Does not block: `answer` is called, perhaps later, as soon
   /// as all of these are true:
@@ -39,7 +39,7 @@ class Stepper {
   /// the replaced call gets an error. If the program is asked to end while time passes, time stops there and
   /// `answer` gets an error.
   void advance(const std::string& command, Answer answer);
-  /// Call it when bytes have arrived at a port.
+  /// Call this when bytes have arrived at a port.
   void arrived();
 
  private:

@@ -17,7 +17,7 @@ class StopSignals {
   StopSignals(const StopSignals&) = delete;
   StopSignals& operator=(const StopSignals&) = delete;
 
-  /// Whether a signal has arrived since construction. Does not block.
+  /// Returns whether a signal has arrived since construction. Does not block.
   bool arrived();
 
  private:

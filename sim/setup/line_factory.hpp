@@ -11,7 +11,7 @@ namespace ex9000::sim {
 /// Creates a line. Its modules have no power yet, and its master uses the factory baud rate.
 std::unique_ptr<Line> make_line(const LineSetup& setup, Master::Receive receive);
 
-/// Starts the input programs and the faults. Call it after the line has started up. Throws
+/// Starts the input programs and the faults. Call this after the line has started up. Throws
 /// std::invalid_argument with a one-line message if a fault names a module that the line lacks. A fault whose
 /// time has already passed strikes at once.
 void begin_programs(Line& line, const LineSetup& setup);

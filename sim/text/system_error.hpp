@@ -7,7 +7,8 @@
 
 namespace ex9000::sim {
 
-/// Returns the text for errno. Call it directly after the system call, because the next one may change errno.
+/// Returns the text for errno. Call this directly after the system call, because the next one may change
+/// errno.
 inline std::string reason() { return std::strerror(errno); }
 
 }  // namespace ex9000::sim

@@ -26,7 +26,7 @@ class Terminal {
 
   /// Returns the present properties of the screen.
   [[nodiscard]] virtual Screen screen() const = 0;
-  /// Writes `text`. Does not block while the terminal keeps up.
+  /// Writes `text`. Blocks only if the terminal accepts output too slowly.
   virtual void write(const std::string& text) = 0;
   /// Returns whether the terminal has accepted everything that was written.
   virtual bool keeps_up() = 0;

@@ -22,8 +22,8 @@ class Watch {
   /// `terminal` may be null; then `print` gets the lines. `terminal` must outlive this object.
   Watch(Terminal* terminal, Print print) : terminal_(terminal), print_(std::move(print)) {}
 
-  /// Adds a line; call it before `look`. `line` must outlive this object, and `present` returns its time. An
-  /// empty name is not shown.
+  /// Adds a line; call this before `look`. `line` must outlive this object, and `present` returns its time.
+  /// An empty name is not shown.
   void add_line(std::string name, const Line& line, std::function<VirtualTime()> present);
   /// Shows the changes since the last look, unless the terminal does not keep up.
   void look();

@@ -45,7 +45,7 @@ export class Input {
     }
   }
 
-  /// Call it when the connection is lost: the simulator then releases a held input.
+  /// Call this when the connection is lost: the simulator then releases a held input.
   lost() { this.held = null; }
 
   listenToPointer(button) {

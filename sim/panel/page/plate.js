@@ -76,7 +76,7 @@ export class Plate {
       make("span", {class: "label", "aria-hidden": "true"}, label), led)};
   }
 
-  /// Call it when the connection is lost.
+  /// Call this when the connection is lost.
   lost() { this.inputs.forEach((input) => input.lost()); }
 
   /// Shows the changes in `news`, which may be empty.

@@ -260,7 +260,7 @@ TEST(Arguments, AnEmptyPathIsRefused) {
   expect_error({"EX9042D,eeprom="}, "eeprom=: is empty", "name a path");
 }
 
-// --- moving inputs and faults ---
+// --- changing inputs and faults ---
 
 TEST(Arguments, AnInputIsAssignedToTheModuleAtItsPosition) {
   const LineSetup arguments = accepted({"EX9042D", "EX9052D@02", "--input", "2 0 square 100ms", "--input",

@@ -1,4 +1,4 @@
-// Tests inputs that move by themselves.
+// Tests inputs that change by themselves.
 #include "sim/line/input_program.hpp"
 
 #include <gtest/gtest.h>
@@ -21,7 +21,7 @@ InputProgram parsed(const std::string& text) { return parse_input_program(text, 
 /// The times at which an input has moved, and its new levels.
 using Moves = std::vector<std::pair<VirtualTime, bool>>;
 
-/// A module with a moving input. The line's time is 100 ms at first.
+/// A module with a changing input. The line's time is 100 ms at first.
 class InputBench {
  public:
   explicit InputBench(const std::string& program, const std::string& edge = "falling", std::uint64_t seed = 1)
@@ -146,7 +146,7 @@ TEST(MovedInput, ASquareWaveHasAnExactPeriodAndEachPulseIsCounted) {
   }
 }
 
-TEST(MovedInput, AKeyPressedOnceMovesAtItsTimeAndNeverAgain) {
+TEST(MovedInput, AKeyPressedOnceChangesTheInputAtItsTimeAndNeverAgain) {
   InputBench bench("0 key at 2s for 300ms");
   EXPECT_EQ(bench.moves_until(1h), (Moves{{2s, true}, {2300ms, false}}));
   EXPECT_EQ(bench.counter(), 1U);
@@ -195,7 +195,7 @@ TEST(MovedInput, EqualSeedsBounceEquallyAndDifferentSeedsDoNot) {
   EXPECT_NE(moves(1), moves(2));
 }
 
-TEST(MovedInput, MovesWithoutSupplyButIsNotCounted) {
+TEST(MovedInput, ChangesWithoutSupplyButIsNotCounted) {
   InputBench bench("0 square 100ms");
   bench.run_until(1s);
   bench.module().power(false);

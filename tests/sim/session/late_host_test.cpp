@@ -50,7 +50,7 @@ hal::doubles::VirtualTime longest_delay(const std::string& log) {
 }
 
 TEST(LateHost, IsReportedWithItsDelay) {
-  // With a moving input, the next event is always due soon.
+  // With a changing input, the next event is always due soon.
   SimulatorProcess simulator({"EX9052D@01", "--tcp", "0", "--input", "1 0 square 10ms"});
   SocketClient client(simulator.tcp_port());
   client.send("$01M\r");

@@ -336,7 +336,7 @@ TEST(Lines, AWrongBusFileIsRefusedWithItsNameLineAndKey) {
 
 // --- one line on the command line ---
 
-TEST(LineOfTheCommandLine, HasFaultsAndMovedInputs) {
+TEST(LineOfTheCommandLine, HasFaultsAndInputPrograms) {
   SimulatorProcess simulator({"EX9042D@01", "EX9052D@02", "--line", "instant", "--control", "control",
                               "--input", "2 5 square 2ms", "--fault", "1 late-reply 20ms", "--fault",
                               "2 gone at 1h"});
