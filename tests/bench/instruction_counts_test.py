@@ -67,7 +67,7 @@ class Passes(unittest.TestCase):
         self.assertEqual((its.received_byte.count, its.sent_byte.count), (2, 1))
         self.assertTrue(its.answered)
 
-    def test_it_does_not_have_the_tick_nor_the_turn_that_the_tick_wakes(self):
+    def test_a_pass_excludes_the_tick_and_the_turn_that_the_tick_wakes(self):
         its, found = count(ASLEEP + turn(self.BYTE) + turn(TICK, *TURN) + turn(self.BYTE))
         self.assertEqual(found, 2 * (2 + 2))
         self.assertEqual(its.ticks_turn.count, 2 + 32)
@@ -80,34 +80,34 @@ class Passes(unittest.TestCase):
     def test_a_turn_of_a_byte_and_a_tick_excludes_the_work_of_the_tick(self):
         self.assertEqual(count(ASLEEP + turn(self.BYTE + TICK, TICKS_OWN, *TURN))[1], 2 + 2 + 32)
 
-    def test_it_does_not_have_a_turn_that_the_tools_own_alarm_wakes(self):
+    def test_a_pass_excludes_a_turn_that_the_alarm_of_the_tool_wakes(self):
         log = ASLEEP + turn(interrupt(execution.ALARM, 0x5000)) + turn(self.BYTE)
         self.assertEqual(count(log)[1], 2 + 2)
 
-    def test_what_was_not_executed_after_all_does_not_count(self):
+    def test_a_logged_instruction_that_was_not_executed_does_not_count(self):
         byte = interrupt(execution.LINE, 0x2000, BEGUN_ANEW, 0x2000, received(1), 0x2002)
         log = ASLEEP + executed(0x102) + byte + executed(0x400) + [STOPPED] + executed(0x400, SLEEP)
         self.assertEqual(count(log)[1], 2 + 3)
 
-    def test_it_is_at_rest_from_where_the_main_loop_sleeps_to_the_next_interrupt(self):
+    def test_the_module_is_at_rest_from_the_sleep_of_the_main_loop_to_the_next_interrupt(self):
         self.assertTrue(count(ASLEEP + turn(self.BYTE) + turn(TICK))[0].at_rest)
         self.assertFalse(count(ASLEEP + executed(0x102) + self.BYTE)[0].at_rest)
 
-    def test_nothing_is_answered_before_the_driver_goes_off(self):
+    def test_a_request_is_answered_when_the_driver_goes_off(self):
         self.assertFalse(count(ASLEEP + turn(interrupt(execution.LINE, 0x2000, SENT)))[0].answered)
 
-    def test_an_interrupt_with_two_bytes_is_no_measure_of_one(self):
+    def test_an_interrupt_with_two_bytes_does_not_count_as_one_byte(self):
         its, found = count(ASLEEP + turn(interrupt(execution.LINE, 0x2000, received(1), received(2))))
         self.assertEqual((its.received_byte.passes, found), (0, 1 + 2))
 
 
 class Capacity(unittest.TestCase):
-    def test_edges_lie_on_a_straight_line(self):
+    def test_the_count_of_edges_is_interpolated_linearly(self):
         found = capacity.Found()
         found.edges = {1: 80, 3: 120, 5: 160}
         self.assertEqual(found.edges_at_once(6), 180)
 
-    def test_a_slower_edge_makes_fewer_of_them(self):
+    def test_more_instructions_per_edge_lower_the_pulse_rate(self):
         def pulses(edge):
             found = capacity.Found()
             found.received_byte = 100
@@ -119,11 +119,11 @@ class Capacity(unittest.TestCase):
 
 
 class Requests(unittest.TestCase):
-    def test_frames_are_those_of_the_wire(self):
+    def test_frames_have_the_check_that_the_wire_requires(self):
         self.assertEqual(requests.rtu("01 01 0000 000D").hex(), "01010000000dfdcf")
         self.assertEqual(requests.dcon("$012", True), b"$012B7\r")
 
-    def test_names_are_said_once(self):
+    def test_the_names_of_requests_are_unique(self):
         model = requests.Model("", 8, 13, True)
         for asked in (requests.modbus_requests(model, True), requests.ascii_requests(model, True, True)):
             names = [request.name for request in asked]

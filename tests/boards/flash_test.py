@@ -54,14 +54,14 @@ class Flash(unittest.TestCase):
                 finished = openocd(["-f", script, "-c", "noinit", "-c", "shutdown"])
                 self.assertEqual(finished.returncode, 0, finished.stderr)
 
-    def test_openocd_is_told_to_write_to_compare_and_to_reset(self) -> None:
+    def test_openocd_gets_the_command_to_write_verify_and_reset(self) -> None:
         for board, script in openocd_scripts().items():
             with self.subTest(board):
                 self.assertEqual(
                     openocd_words(script), ["-f", script, "-c", f"program {{{IMAGE}}} verify reset exit"]
                 )
 
-    def test_openocd_does_so_in_this_order(self) -> None:
+    def test_openocd_resets_writes_verifies_and_resets_in_this_order(self) -> None:
         for board, script in openocd_scripts().items():
             with self.subTest(board):
                 words = openocd_words(script)
@@ -79,7 +79,7 @@ class Flash(unittest.TestCase):
                     ],
                 )
 
-    def test_a_failure_says_what_to_look_at(self) -> None:
+    def test_the_error_of_a_failure_says_what_to_check(self) -> None:
         with tempfile.TemporaryDirectory() as directory:
             program = Path(directory, "openocd")
             program.write_text("#!/bin/sh\nexit 1\n")
@@ -88,7 +88,7 @@ class Flash(unittest.TestCase):
         self.assertEqual(finished.returncode, 1)
         self.assertRegex(finished.stderr, rf"^flash: {IMAGE}: OpenOCD could not write it; .*USB.*\n$")
 
-    def test_where_openocd_is_missing_one_line_names_the_package(self) -> None:
+    def test_the_error_of_a_missing_openocd_names_the_package(self) -> None:
         finished = flash("board/any.cfg", path="/nowhere")
         self.assertEqual(finished.returncode, 1)
         self.assertEqual(finished.stderr, "flash: openocd is missing; install the package openocd\n")

@@ -170,9 +170,9 @@ class FaultyImage : public testing::TestWithParam<Protocol>, protected EitherPro
     module_.run_to_reset("WATCHDOG", kWatchdogPeriod);
   }
 
-  /// Whether the test runs this case without EX9000_CUTS=all. In ASCII, it runs each value of the timeout
-  /// status with half of the activities. In Modbus, it runs only Storing with a clear timeout status. It runs
-  /// only one storm, because the emulator requires seconds for a storm.
+  /// Returns whether the test runs this case without EX9000_CUTS=all. In ASCII, it runs each value of the
+  /// timeout status with half of the activities. In Modbus, it runs only Storing with a clear timeout status.
+  /// It runs only one storm, because the emulator requires seconds for a storm.
   [[nodiscard]] bool belongs_to_short_form(Doing doing, bool status, Fault fault) const {
     const bool first_half = doing == Doing::Nothing || doing == Doing::Storing;
     if (fault == &FaultyImage::storm) {

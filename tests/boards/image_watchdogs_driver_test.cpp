@@ -129,7 +129,7 @@ class WatchedModule : public EitherProtocol {
   }
 
   const Model& model;
-  std::vector<Change> changes;  ///< of the outputs; declared before the board because it must outlive it
+  std::vector<Change> changes;  ///< of the outputs; declared before `bench` because it must outlive `bench`
   BoardBench bench;
 
  private:
@@ -175,8 +175,8 @@ class FaultOnBoard : public testing::TestWithParam<std::tuple<ImageName, Protoco
   [[nodiscard]] ImageName image() const { return std::get<0>(GetParam()); }
   [[nodiscard]] Protocol protocol() const { return std::get<1>(GetParam()); }
 
-  /// Brings the module into this activity. The command that stores sets the name, or in Modbus the host
-  /// watchdog's timeout.
+  /// Brings the module into this activity. To store something, it sets the name, or in Modbus the timeout of
+  /// the host watchdog.
   static void make_it(WatchedModule& module, Doing doing) {
     BoardBench& bench = module.bench;
     const Bytes harmless = module.framed("$01M", {1, 0x11});
@@ -269,7 +269,7 @@ TEST_P(FaultOnBoard, AHungMainLoopCausesAReset) {
 TEST_P(FaultOnBoard, AHungInterruptHandlerCausesAReset) {
   expect_reset("an interrupt hangs", [](BoardBench& bench) {
     bench.mcu->hang(Hangs::Handler);
-    // Not every handler accesses a register; this one does.
+    // The hang begins at a register access. The handler of this interrupt, I2C0, accesses a register.
     bench.mcu->core.stick(8);
   });
 }
@@ -343,7 +343,7 @@ TEST_P(FaultOnBoard, AStuckEepromBusCausesRefusedStoresButNoReset) {
 
 class HostWatchdogOnBoard : public FaultOnBoard {
  protected:
-  /// Arms the host watchdog, and drives values on the outputs that only a command can set.
+  /// Arms the host watchdog, and drives the outputs to a value that only a command can set.
   static void arm(WatchedModule& module, unsigned timeout) {
     module.ask("~013001", {1, 0x05, 0x01, 0x04, 0, 0});
     module.ask("~011", {1, 0x05, 0x01, 0x0D, 0xFF, 0});
@@ -392,7 +392,7 @@ void ExpiryOnBoard::expect_expiry_within(Instant most, const std::function<void(
   }
   EXPECT_GE(earliest, Instant(0));
   EXPECT_LE(latest, most);
-  std::printf("%u timeouts: the outputs %.3f to %.3f ms after they were over\n", timeouts,
+  std::printf("%u timeouts: the outputs changed %.3f to %.3f ms after the expiry\n", timeouts,
               static_cast<double>(earliest.count()) / 1e9, static_cast<double>(latest.count()) / 1e9);
 }
 
@@ -448,7 +448,7 @@ TEST_P(HostWatchdogOnBoard, NoCommandDrivesOutputsAfterItHasExpired) {
     }
   }
   EXPECT_GT(moments, 2 * too_late);
-  std::printf("%u moments, %u of them beyond the expiry\n", moments, too_late);
+  std::printf("%u commands, %u of them ended after the expiry\n", moments, too_late);
 }
 
 /// wire.md D6. From the expiry on, the outputs have the old safe value. When the command is stored, they take
@@ -531,7 +531,7 @@ TEST_P(HostWatchdogOnBoard, ASafeValueStoredDuringExpiryIsDrivenOnceItIsStored) 
   EXPECT_GT(stored_before, 0U);
   EXPECT_GT(stored_behind, 0U);
   EXPECT_GT(too_late, 0U);
-  std::printf("a new safe value stored %u times before the expiry, %u times behind it; too late %u times\n",
+  std::printf("a new safe value stored %u times before the expiry, %u times after it; too late %u times\n",
               stored_before, stored_behind, too_late);
 }
 
@@ -574,9 +574,9 @@ TEST_P(HostWatchdogOnBoard, NoCommandedValueReturnsAfterAPowerCutFollowingExpiry
         bench.line.drives.clear();
         bench.line.send(command);
         bench.run_until(over);
-        // Otherwise the test would show nothing.
+        // Without these conditions, the test would prove nothing.
         ASSERT_GT(events, 3U) << "nothing is being stored";
-        ASSERT_EQ(bench.eeprom.programmed().size(), had_programmed) << "it is stored";
+        ASSERT_EQ(bench.eeprom.programmed().size(), had_programmed) << "the command is already stored";
         ASSERT_EQ(bench.eeprom.programming(), storing == Storing::Programming);
         bench.eeprom.on_event(nullptr);
       }
@@ -619,8 +619,9 @@ TEST_P(HostWatchdogOnBoard, NoCommandedValueReturnsAfterAPowerCutFollowingExpiry
   EXPECT_GT(unstored, 0U);
   EXPECT_LT(unstored, cuts / 2);
   EXPECT_GT(done, 0U);
-  std::printf("%u cuts, %u of them before it was stored; %u commands that were being stored are done\n", cuts,
-              unstored, done);
+  std::printf(
+      "%u power cuts, %u of them before the timeout was stored; %u commands in progress were completed\n",
+      cuts, unstored, done);
 }
 
 const auto kProtocols = testing::Values(Protocol::Ascii, Protocol::ModbusRtu);

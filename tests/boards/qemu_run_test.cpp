@@ -96,7 +96,7 @@ class RunningImage {
   ChildProcess process_;
 };
 
-/// Whether the process has ended. It may still have an entry that its parent has not read.
+/// Returns whether the process has ended. It may still have an entry that its parent has not read.
 bool has_ended(int pid) {
   std::ifstream status("/proc/" + std::to_string(pid) + "/stat");
   std::string number;

@@ -1,6 +1,5 @@
-// Compares the register accesses of an image between reset and its first ability to receive with the data
-// sheets. The simulated peripherals reject an access to a peripheral without a clock, and a wrong use of the
-// PLL.
+// Compares the register accesses of an image, from reset until it can receive, with the data sheets. The
+// simulated peripherals reject an access to a peripheral without a clock, and a wrong use of the PLL.
 #include <gtest/gtest.h>
 
 #include <algorithm>

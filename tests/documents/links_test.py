@@ -48,7 +48,7 @@ def anchors_of(document: Path) -> set[str]:
 
 
 class Links(unittest.TestCase):
-    def test_each_leads_somewhere(self) -> None:
+    def test_each_link_has_a_target(self) -> None:
         checked = 0
         for document in documents():
             for link in LINK.findall("\n".join(prose_of(document))):

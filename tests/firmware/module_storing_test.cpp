@@ -279,7 +279,7 @@ TEST(Storing, AStoringCommandIsRefusedWhileAnEarlierTimeoutCannotBeStored) {
   EXPECT_EQ(bench.ask("~012"), "!01003");
 }
 
-TEST(Storing, AnotherModelsSettingsDoNotCount) {
+TEST(Storing, AnotherModelsSettingsAreNotUsed) {
   ModuleBench bench("EX9043D");
   ModuleBench other("EX9042D");
   ASSERT_EQ(other.ask("@011FFF"), ">");
@@ -324,7 +324,7 @@ TEST(Queueing, ACompleteModbusFrameIsNotLostWhenThePreviousReplyStarts) {
   bench.recorder().clear();
   bench.run(milliseconds(400));
   ASSERT_FALSE(bench.recorder().drivers.empty());
-  // Otherwise the silence would end before the driver is switched on, and the test would show nothing.
+  // Otherwise the silence would end before the driver is switched on, and the test would prove nothing.
   EXPECT_LT(bench.recorder().drivers[0].at, sent + microseconds(4010));
   EXPECT_FALSE(bench.module().module().state().settings.timeout_status);
 }

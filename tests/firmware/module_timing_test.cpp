@@ -109,7 +109,7 @@ TEST(Driver, IsOnBeforeTheFirstStartBitAndOffWithinACharacterAfterTheLastStopBit
   }
 }
 
-TEST(Driver, ItsOwnEchoIsNeverTakenForARequest) {
+TEST(Driver, ItsOwnEchoIsNeverProcessedAsARequest) {
   // The name is a command for this module; on a two-wire line the module receives it while it sends it.
   ModuleBench bench("EX9042D,name=$01M");
   EXPECT_EQ(bench.ask("$01M"), "!01$01M");

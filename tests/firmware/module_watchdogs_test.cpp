@@ -206,7 +206,7 @@ TEST(ModuleWatchdog, AStoppedTickCausesAResetWithin1600ms) {
   EXPECT_EQ(bench.module().watchdog_resets(), 1U);
 }
 
-TEST(ModuleWatchdog, AModuleThatIsWellIsNeverReset) {
+TEST(ModuleWatchdog, AHealthyModuleIsNeverReset) {
   ModuleBench bench("EX9068D-M");
   bench.run(std::chrono::hours(3));
   EXPECT_EQ(bench.module().watchdog_resets(), 0U);

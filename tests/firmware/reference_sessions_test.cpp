@@ -77,8 +77,8 @@ TEST(RandomSessions, TheFirmwareDoesWhatTheReferenceSays) {
     ADD_FAILURE() << rule << " was never reached";
   }
   std::printf(
-      "reference: %llu transactions in %llu sessions, %zu of %zu rules reached; %llu requests right before "
-      "an expiry, %llu right behind one; %llu requests left out\n",
+      "reference: %llu transactions in %llu sessions, %zu of %zu rules reached; %llu requests less than "
+      "0.1 s before an expiry, %llu while an expiry was being stored; %llu requests omitted\n",
       static_cast<unsigned long long>(transactions), static_cast<unsigned long long>(sessions),
       rules.size() - rules.missing().size(), rules.size(), static_cast<unsigned long long>(before_expiry),
       static_cast<unsigned long long>(behind_expiry), static_cast<unsigned long long>(left_open));

@@ -25,14 +25,14 @@ TEST(Duration, IsOrderedByLength) {
   EXPECT_TRUE(Duration(0) < Duration(kLast));
 }
 
-TEST(Duration, IsEqualToOneOfTheSameLengthOnly) {
+TEST(Duration, IsEqualOnlyToADurationOfTheSameLength) {
   EXPECT_TRUE(Duration(1000) == milliseconds(1));
   EXPECT_FALSE(Duration(999) == milliseconds(1));
 }
 
 TEST(Duration, Adds) { EXPECT_EQ((Duration(40) + milliseconds(2)).microseconds(), 2040U); }
 
-TEST(Time, IsGivenBackAsItWasGiven) {
+TEST(Time, ReturnsTheMicrosecondsOfItsConstructor) {
   EXPECT_EQ(Time().microseconds(), 0U);
   EXPECT_EQ(Time(kLast).microseconds(), kLast);
 }

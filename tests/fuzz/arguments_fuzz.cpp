@@ -33,7 +33,8 @@ void check_module(const ModuleSpec& module) {
   require(module.eeprom.find('\0') == std::string::npos, "a path contains no NUL");
   for (const sim::InputProgram& input : module.inputs) {
     require(input.channel < module.model->inputs, "an input program uses an input of the model");
-    require(input.high.count() > 0 && input.bounce <= input.high, "an input has time to move");
+    require(input.high.count() > 0 && input.bounce <= input.high,
+            "an input is on for at least as long as it bounces");
   }
 }
 
@@ -47,7 +48,8 @@ void check_line(const LineSetup& line) {
     require(std::count_if(line.modules.begin(), line.modules.end(), same_file) <= 1,
             "each EEPROM has a file of its own");
   }
-  require(!line.serial || (!line.pty && !line.tcp && !line.instant), "a real line is the only one");
+  require(!line.serial || (!line.pty && !line.tcp && !line.instant),
+          "a serial port excludes other ports and an instant line");
   require(!line.echo || line.serial, "only a serial port has an echo");
   require(!line.instant || !line.strict_gaps, "an instant line has no strict gaps");
   for (const auto& path : {line.pty, line.serial}) {
@@ -57,7 +59,7 @@ void check_line(const LineSetup& line) {
   const auto is_rate = [&](std::uint32_t rate) { return rate == *line.baud; };
   require(!line.baud || std::any_of(kBaudRates.begin(), kBaudRates.end(), is_rate),
           "the line's rate is one of eight");
-  require(!line.tcp || !line.tcp->host.empty(), "TCP has a host");
+  require(!line.tcp || !line.tcp->host.empty(), "a TCP address has a host");
   for (const sim::Fault& fault : line.faults) {
     require(!fault.module || *fault.module < line.modules.size(), "a fault belongs to an existing module");
     require(!fault.module || sim::concerns_a_module(fault.trouble),
@@ -82,7 +84,7 @@ void check_setup(const Setup& setup) {
 void check_several(const std::vector<LineSetup>& lines) {
   require(!lines.empty(), "a bus has a line");
   for (const LineSetup& line : lines) {
-    require(!line.name.empty(), "a line of several has a name");
+    require(!line.name.empty(), "each line of a bus file has a name");
     const auto is_like = [&line](const LineSetup& other) {
       return other.name == line.name || (other.pty && other.pty == line.pty);
     };
@@ -130,12 +132,13 @@ void parse(const std::string& text) {
             "a setup comes without text and error");
     require(parsed.setup->lines.size() == 1, "a command line has one line");
     const LineSetup& line = parsed.setup->lines[0];
-    require(parsed.setup->speed.max() || line.pty || line.tcp || line.serial, "there is a way to the line");
+    require(parsed.setup->speed.max() || line.pty || line.tcp || line.serial, "the line has a port");
     check_setup(*parsed.setup);
   } else if (parsed.task) {
     require(parsed.output.empty() && parsed.error.empty() && parsed.exit_status == 0,
             "a task comes without text and error");
-    require(!parsed.task->bus || parsed.task->bus->lines.size() == 1, "modules behind it are on one line");
+    require(!parsed.task->bus || parsed.task->bus->lines.size() == 1,
+            "the modules of a play are on one line");
   } else if (!parsed.output.empty()) {
     require(parsed.error.empty() && parsed.exit_status == 0, "a text comes without an error");
   } else {

@@ -25,12 +25,12 @@ using judges::Microseconds;
 /// Observes the effects of a module on its surroundings when they occur.
 class ModuleObserver {
  public:
-  /// The driver enable goes on.
+  /// Called when the driver has been switched on.
   virtual void reply_begins(Bytes reply) = 0;
-  /// The driver enable goes off.
+  /// Called when the driver has been switched off.
   virtual void reply_ends() = 0;
   virtual void outputs_change(std::uint16_t channels) = 0;
-  /// The main loop has completed one turn. The state changes only then.
+  /// Called when the main loop has completed one turn. The state changes only then.
   virtual void turned() = 0;
 
  protected:

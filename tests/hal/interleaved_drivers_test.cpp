@@ -345,7 +345,7 @@ TYPED_TEST(Inputs, AnEdgeAtAnyPointOfTheInterruptIsCountedInAdditionToTheServedE
     for (unsigned second = 0; second < kChannels; ++second) {
       TypeParam undisturbed(levels);
       const unsigned points = serve_an_edge(undisturbed, {});
-      ASSERT_GE(points, 8U) << "four accesses have a point before and behind each";
+      ASSERT_GE(points, 8U) << "four accesses have a point before and after each";
       for (unsigned point = 0; point < points; ++point) {
         SCOPED_TRACE("levels " + std::to_string(levels) + ", channel " + std::to_string(second) + ", point " +
                      std::to_string(point));

@@ -49,7 +49,7 @@ class Core final : public Peripheral {
   }
   void hold(bool on) { held_ = on; }
   [[nodiscard]] bool held() const { return held_; }
-  /// Whether a sleeping processor wakes up now.
+  /// Returns whether a sleeping processor wakes up now.
   [[nodiscard]] bool wakes() const { return next_to_serve() != 0; }
   /// The earliest time at which the latency of an enabled pending exception ends; kNever if there is none.
   [[nodiscard]] Instant next_wake() const;

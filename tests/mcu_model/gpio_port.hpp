@@ -47,7 +47,7 @@ class GpioPort final : public Peripheral {
     alternate_drive_.at(pin) = drive;
     drive_pin(pin);
   }
-  /// Whether the pin is assigned to the peripheral that has `function` in GPIOPCTL.
+  /// Returns whether the pin is assigned to the peripheral that has `function` in GPIOPCTL.
   [[nodiscard]] bool given_to(unsigned pin, std::uint32_t function) const;
   /// Returns the value of a register without a bus access.
   [[nodiscard]] std::uint32_t peek(std::uint32_t offset) const {

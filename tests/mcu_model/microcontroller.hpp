@@ -1,5 +1,5 @@
 // A microcontroller at register level: the target of the drivers' bus accesses on a host. Every access takes
-// its time, and interrupts occur between accesses.
+// time, and interrupts occur between accesses.
 #pragma once
 
 #include <algorithm>
@@ -40,7 +40,7 @@ struct Pins {
   Pins& operator=(const Pins&) = delete;
 
   Net& at(char letter, unsigned pin) { return ports.at(static_cast<unsigned>(letter - 'A')).at(pin); }
-  /// Whether two ends have ever driven any pin hard to opposite levels.
+  /// Returns whether two ends have ever driven a pin to opposite levels.
   [[nodiscard]] bool any_was_shorted() const {
     return std::any_of(ports.begin(), ports.end(), [](const PortNets& port) {
       return std::any_of(port.begin(), port.end(), [](const Net& net) { return net.was_shorted(); });
@@ -58,7 +58,7 @@ struct Access {
   bool write;
 };
 
-/// Thrown when the microcontroller is to be reset.
+/// Thrown when the microcontroller must be reset.
 class ResetRequest {};
 
 /// The part of the firmware that stops.
@@ -68,7 +68,7 @@ enum class Hangs : std::uint8_t {
   Handler,   ///< the next handler that is served, from its next access on; nothing preempts it
 };
 
-/// An object exists from one reset to the next. The drivers' bus accesses go to the latest instance.
+/// An object exists from one reset to the next. The bus accesses of the drivers go to the latest object.
 class Microcontroller {
  public:
   Microcontroller(const Chip& chip, Timeline& timeline, Pins& pins, I2cBehaviour behaviour = {});

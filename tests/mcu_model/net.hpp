@@ -15,8 +15,8 @@ enum class Drive : std::uint8_t { Nothing, WeakLow, WeakHigh, Low, High };
 
 /// The ends that can drive a wire.
 enum class End : std::uint8_t {
-  Microcontroller,  ///< its output stage
-  WeakPull,         ///< its own pull-up or pull-down
+  Microcontroller,  ///< the output stage of the microcontroller
+  WeakPull,         ///< the weak pull-up or pull-down of the microcontroller
   Board,            ///< the parts that the board connects to the wire
   Resistor,         ///< a pull-up or pull-down on the board; stronger than the microcontroller's own
   Device,           ///< another chip on the board
@@ -42,7 +42,7 @@ class Net {
   /// everything it refers to must live as long.
   void on_change(std::function<void()> act) { on_change_.push_back(std::move(act)); }
 
-  /// Whether two ends have ever driven the wire hard to opposite levels.
+  /// Returns whether two ends have ever driven the wire to opposite levels (Low and High).
   [[nodiscard]] bool was_shorted() const { return was_shorted_; }
 
  private:

@@ -1,5 +1,5 @@
-// Virtual time, and alarms that ring at a time. The unit is a picosecond, which is fine enough for the clock
-// cycles of any crystal.
+// Virtual time, and alarms that call a function at a set time. The unit is a picosecond, which is fine enough
+// for the clock cycles of any crystal.
 #pragma once
 
 #include <chrono>
@@ -16,7 +16,7 @@ constexpr Instant kNever = Instant::max();
 
 class Alarm;
 
-/// Rings alarms in the order in which they are due.
+/// Calls alarms in the order in which they are due.
 class Timeline {
  public:
   Timeline() = default;
@@ -26,7 +26,7 @@ class Timeline {
   [[nodiscard]] Instant now() const { return now_; }
   /// Returns the time at which the next alarm is due; kNever if none is set.
   [[nodiscard]] Instant next();
-  /// Rings all alarms that are due up to `to`, each at its time. Afterwards the time is `to`, or later if it
+  /// Calls all alarms that are due up to `to`, each at its time. Afterwards the time is `to`, or later if it
   /// was already later.
   void advance(Instant to);
 
@@ -40,7 +40,7 @@ class Timeline {
   Instant next_at_ = kNever;
 };
 
-/// Rings once for each `set`. The timeline must outlive it.
+/// Calls its function once for each `set`. The timeline must outlive the alarm.
 class Alarm {
  public:
   Alarm(Timeline& timeline, std::function<void()> ring);

@@ -75,7 +75,7 @@ class WatchdogTimer final : public Peripheral {
   [[nodiscard]] bool locked() const { return locked_; }
   [[nodiscard]] bool running() const { return end_.is_set(); }
   [[nodiscard]] unsigned feeds() const { return feeds_; }
-  /// Whether the first of the two countdowns is over.
+  /// Returns whether the first of the two countdowns is over.
   [[nodiscard]] bool flagged() const { return flagged_; }
 
  private:

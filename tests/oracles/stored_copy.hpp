@@ -75,7 +75,7 @@ class StoredCopy {
     const std::uint32_t right = check();
     return word(check_at()) == right % 65536 && word(check_at() + 2) == right / 65536 && is_possible();
   }
-  /// Whether this copy is newer than `other`. Both must be good.
+  /// Returns whether this copy is newer than `other`. Both must be good.
   [[nodiscard]] bool is_newer_than(const StoredCopy& other) const {
     const unsigned ahead = (sequence() - other.sequence()) & 0xFFFFU;
     return layout_ == other.layout_ ? ahead != 0 && ahead < 0x8000 : layout_ > other.layout_;

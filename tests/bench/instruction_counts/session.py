@@ -93,7 +93,7 @@ class Session:
         for command in commands:
             self._say(dcon(command, False), BYTE_AT_9600)
             if not self._hear(b"\r").startswith(b"!"):
-                raise RuntimeError(f"{self._model.name} does not take {command}")
+                raise RuntimeError(f"{self._model.name} rejects {command}")
             self._run(DRIVER_OFF_AT_9600)
         self._emulator.power_down()
         self._power_up(True)
@@ -147,7 +147,7 @@ class Session:
             self._let_counter_catch_up()
             if is_over():
                 return
-        raise RuntimeError(f"{self._model.name}: {name} does not come to an end")
+        raise RuntimeError(f"{self._model.name}: {name} does not end")
 
     def _let_counter_catch_up(self):
         """Waits until the counter has read the log up to now. The emulator stands still meanwhile."""

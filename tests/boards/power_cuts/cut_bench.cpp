@@ -30,8 +30,8 @@ std::uint8_t left(unsigned way, std::uint8_t old_byte, std::uint8_t new_byte) {
 
 }  // namespace
 
-/// Whether `contents` hold a good new copy and a good old copy. This happens if the power failed before the
-/// old copy was invalidated.
+/// Returns whether `contents` hold a good new copy and a good old copy. This happens if the power failed
+/// before the old copy was invalidated.
 bool CutBench::has_unfinished_update(const Contents& contents) const {
   const StoringModel storing = storing_model(model_);
   const auto good = [&](std::size_t place) { return StoredCopy(storing, contents.data(), place).is_good(); };

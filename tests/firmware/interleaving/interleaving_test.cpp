@@ -111,7 +111,7 @@ Parts restarted(Bench& bench) {
   require(!timed_out(), "a host OK was lost");
   bench.pass_time_until(expires + 3);
   bench.whole_turn();
-  require(timed_out(), "a host OK was taken twice, or too late");
+  require(timed_out(), "a host OK was counted twice, or too late");
   bench.rest(milliseconds(10));  // the timeout is being stored
   return {};
 }
@@ -306,7 +306,7 @@ std::vector<Scenario> scenarios() {
       dcon("a frame while the one before is carried out", asked("$015\r", "!011\r"), dcon_name,
            {{"!011\r", "!019055\r"}, {"!011\r"}}, outputs_and_name),
       dcon(
-          "a frame behind one without a reply", [](Bench& bench) { bench.bytes("#**\r"); },
+          "a frame after a frame without a reply", [](Bench& bench) { bench.bytes("#**\r"); },
           std::vector<Step>{silence} + dcon_name, {{"!019055\r"}, {}}, outputs_and_name),
       dcon("a frame and the memory while storing", storing("~01ONEW\r", "!01\r"),
            frame("$01M\r", "!01NEW\r") + std::vector<Step>{memory_done}, {{"!01\r", "!01NEW\r"}},
@@ -332,9 +332,9 @@ std::vector<Scenario> scenarios() {
            {{"!01\r"}}, inputs),
       dcon("ticks while idle", nothing, {tick, tick}, {{}}, outputs_and_name),
       with_watchdog(dcon("host OK while idle", nothing, frame("~**\r", "host OK"), {{}}, restarted)),
-      with_watchdog(dcon("host OK behind a frame without a reply", asked("#**\r", ""),
+      with_watchdog(dcon("host OK after a frame without a reply", asked("#**\r", ""),
                          frame("~**\r", "host OK"), {{}}, restarted)),
-      with_watchdog(dcon("host OK behind a frame", asked("$01M\r", "!019055\r"), frame("~**\r", "host OK"),
+      with_watchdog(dcon("host OK after a frame", asked("$01M\r", "!019055\r"), frame("~**\r", "host OK"),
                          {{"!019055\r"}}, no_matter)),
       with_watchdog(dcon(
           "host OK while storing, the queue full",
@@ -435,21 +435,21 @@ void expect_one_more_is_kept(Scenario scenario, const std::string& request, cons
 }
 
 TEST(Interleaving, TheNextFrameIsKeptUntilTheDriverIsSwitchedOn) {
-  expect_one_more_is_kept(dcon("a frame behind one that is answered", asked("$01F\r", "!01D01.00\r"), {},
+  expect_one_more_is_kept(dcon("a frame after one that is answered", asked("$01F\r", "!01D01.00\r"), {},
                                {{"!01D01.00\r", "!019055\r"}, {"!01D01.00\r"}}, no_matter),
                           "$01M\r", "!019055\r");
-  expect_one_more_is_kept(dcon("a frame behind one that is carried out", asked("$015\r", "!011\r"), {},
+  expect_one_more_is_kept(dcon("a frame after one that is carried out", asked("$015\r", "!011\r"), {},
                                {{"!011\r", "!019055\r"}, {"!011\r"}}, no_matter),
                           "$01M\r", "!019055\r");
-  expect_one_more_is_kept(modbus("a Modbus frame behind one that is carried out", asked(kRtuOn, kRtuOn), {},
+  expect_one_more_is_kept(modbus("a Modbus frame after one that is carried out", asked(kRtuOn, kRtuOn), {},
                                  {{kRtuOn, kRtuReadOnReply}, {kRtuOn}}, no_matter),
                           kRtuRead, kRtuReadOnReply);
 }
 
 TEST(Interleaving, AFrameThatEndsWhileTheMainLoopTurnsIsNotAnsweredTooEarly) {
   const Scenario scenario =
-      dcon("a CR behind the clock", nothing, {[](Bench& bench) { bench.asks("@0105\r", ">\r"); }, silence},
-           {{">\r"}}, outputs_and_name);
+      dcon("a CR that is newer than the time of the turn", nothing,
+           {[](Bench& bench) { bench.asks("@0105\r", ">\r"); }, silence}, {{">\r"}}, outputs_and_name);
   const int points = static_cast<int>(play(scenario, {kAfterTheTurn, kAfterTheTurn}).points);
   EXPECT_GT(points, 10);
   for (int point = kBeforeTheTurn; point < points; ++point) {

@@ -36,18 +36,18 @@ TEST(Crc16, TheCheckValueIs4B37) {
   EXPECT_EQ(crc.value(), 0x4B37);
 }
 
-TEST(Crc16, TheExampleOfTheSerialLineGuideComesTo1241) {
+TEST(Crc16, TheExampleOfTheSerialLineGuideIs1241) {
   const Crc16 crc = crc_of({0x02, 0x07});
   EXPECT_EQ(crc.value(), 0x1241);
   EXPECT_EQ(crc.low_byte(), 0x41);
   EXPECT_EQ(crc.high_byte(), 0x12);
 }
 
-TEST(Crc16, SwitchingChannel0OnComesTo3A8C) {
+TEST(Crc16, OfSwitchingChannel0OnIs3A8C) {
   EXPECT_EQ(crc_of({0x01, 0x05, 0x00, 0x00, 0xFF, 0x00}).value(), 0x3A8C);
 }
 
-TEST(Crc16, GoesLowByteFirstInEveryWorkedFrame) {
+TEST(Crc16, IsSentLowByteFirstInEveryWorkedFrame) {
   for (const FrameBytes& frame : kWorkedFrames) {
     const Crc16 crc = crc16({frame.data(), frame.size() - 2});
     EXPECT_EQ(crc.low_byte(), frame[frame.size() - 2]) << "function " << int{frame[1]};
@@ -55,13 +55,13 @@ TEST(Crc16, GoesLowByteFirstInEveryWorkedFrame) {
   }
 }
 
-TEST(Crc16, ComesTo0OverAFrameWithItsCrc) {
+TEST(Crc16, IsZeroOverAFrameWithItsCrc) {
   for (const FrameBytes& frame : kWorkedFrames) {
     EXPECT_EQ(crc_of(frame).value(), 0) << "function " << int{frame[1]};
   }
 }
 
-TEST(Crc16, ComesTo0OverTheLongestFrameWithItsCrc) {
+TEST(Crc16, IsZeroOverTheLongestFrameWithItsCrc) {
   FrameBytes frame;
   for (unsigned i = 0; i < 254; ++i) {
     frame.push_back(static_cast<std::uint8_t>(i * 7 + 3));
@@ -72,11 +72,11 @@ TEST(Crc16, ComesTo0OverTheLongestFrameWithItsCrc) {
   EXPECT_EQ(crc_of(frame).value(), 0);
 }
 
-TEST(Crc16, DoesNotComeTo0WithTheHighByteFirst) {
+TEST(Crc16, IsNotZeroWithTheHighByteFirst) {
   EXPECT_NE(crc_of({0x01, 0x05, 0x00, 0x00, 0xFF, 0x00, 0x3A, 0x8C}).value(), 0);
 }
 
-TEST(Crc16, SeesEverySingleAndDoubleBitError) {
+TEST(Crc16, DetectsEverySingleAndDoubleBitError) {
   const FrameBytes frame = kWorkedFrames[0];
   const std::size_t bits = frame.size() * 8;
   const auto flip = [](FrameBytes& bytes, std::size_t bit) {

@@ -25,7 +25,7 @@ std::string with_checksum(std::string text) {
 
 // --- the checksum ---
 
-TEST_F(DconAssemblerTest, ARightChecksumIsTakenOff) {
+TEST_F(DconAssemblerTest, ACorrectChecksumIsRemoved) {
   assembler_.use_checksum(true);
   EXPECT_EQ(put("$012B7\r"), Verdict::Accepted);
   EXPECT_EQ(taken(), "$012");
@@ -66,7 +66,7 @@ TEST_F(DconAssemblerTest, AFrameOfDelimiterAddressAndChecksumIsAccepted) {
   EXPECT_EQ(taken(), "@01");
 }
 
-TEST_F(DconAssemblerTest, AFrameTooShortForAnAddressIsDroppedEvenWithARightChecksum) {
+TEST_F(DconAssemblerTest, AFrameTooShortForAnAddressIsDroppedEvenWithACorrectChecksum) {
   assembler_.use_checksum(true);
   EXPECT_EQ(put(with_checksum("$0") + "\r"), Verdict::TooShort);
   EXPECT_EQ(put(with_checksum("$") + "\r"), Verdict::TooShort);
@@ -115,7 +115,7 @@ TEST_F(DconAssemblerTest, AnAddressInLowerCaseIsForeign) {
   EXPECT_EQ(put("$ABM\r"), Verdict::Accepted);
 }
 
-TEST_F(DconAssemblerTest, EveryAddressCanBeTheOwnOne) {
+TEST_F(DconAssemblerTest, EveryAddressCanBeTheAddressOfTheModule) {
   constexpr std::string_view kDigits = "0123456789ABCDEF";
   for (unsigned address = 0; address < 256; ++address) {
     own_ = static_cast<std::uint8_t>(address);

@@ -240,14 +240,14 @@ TEST_F(ReceiverTest, AHostOkAcrossTheWrapOfTheClockKeepsItsTime) {
 
 // --- protocol, checksum, address ---
 
-TEST_F(ReceiverTest, ModbusDoesNotHearAscii) {
+TEST_F(ReceiverTest, ModbusIgnoresAscii) {
   listen(Protocol::ModbusRtu);
   text("$01M\r");
   silence();
   EXPECT_FALSE(took_frame());
 }
 
-TEST_F(ReceiverTest, AsciiDoesNotHearModbus) {
+TEST_F(ReceiverTest, AsciiIgnoresModbus) {
   listen(Protocol::Ascii);
   frame(kChannel0On);
   byte('\r');
@@ -262,7 +262,7 @@ TEST_F(ReceiverTest, TheChecksumIsRequiredIfItIsEnabled) {
   EXPECT_TRUE(took_frame());
 }
 
-TEST_F(ReceiverTest, ANewAddressHoldsForTheNextFrameThatEnds) {
+TEST_F(ReceiverTest, ANewAddressAppliesToTheNextFrameThatEnds) {
   listen(Protocol::Ascii);
   text("$02M");
   receiver_.answer_to(0x02);
@@ -272,7 +272,7 @@ TEST_F(ReceiverTest, ANewAddressHoldsForTheNextFrameThatEnds) {
   EXPECT_FALSE(took_frame());
 }
 
-TEST_F(ReceiverTest, ANewAddressHoldsForModbusToo) {
+TEST_F(ReceiverTest, ANewAddressAppliesToModbusToo) {
   listen(Protocol::ModbusRtu);
   frame(kGuideExample);
   EXPECT_FALSE(took_frame());

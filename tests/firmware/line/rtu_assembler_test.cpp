@@ -44,7 +44,7 @@ class RtuAssemblerTest : public testing::Test {
 
 // --- verdicts ---
 
-TEST_F(RtuAssemblerTest, AFrameWithARightCrcIsAcceptedWithoutItsCrc) {
+TEST_F(RtuAssemblerTest, AFrameWithACorrectCrcIsAcceptedWithoutItsCrc) {
   EXPECT_EQ(verdict_of(kChannel0On), Verdict::Accepted);
   EXPECT_EQ(wire_.frames, std::vector<FrameBytes>{without_crc(kChannel0On)});
 }
@@ -61,7 +61,7 @@ TEST_F(RtuAssemblerTest, NothingIsAcceptedBeforeTheSilence) {
   EXPECT_TRUE(wire_.verdicts.empty());
 }
 
-TEST_F(RtuAssemblerTest, SilenceWithoutAFrameIsNothing) {
+TEST_F(RtuAssemblerTest, SilenceWithoutAFrameHasNoVerdict) {
   EXPECT_EQ(assembler_.silence(queue_), Verdict::Open);
   EXPECT_TRUE(assembler_.next_wait() == Duration());
   EXPECT_EQ(assembler_.silence(queue_), Verdict::Open);
@@ -125,7 +125,7 @@ TEST_F(RtuAssemblerTest, OnlyTheOwnAddressAndBroadcastsAreAccepted) {
   EXPECT_EQ(wire_.frames.size(), 2U);
 }
 
-TEST_F(RtuAssemblerTest, EveryModbusAddressCanBeTheOwnOne) {
+TEST_F(RtuAssemblerTest, EveryModbusAddressCanBeTheAddressOfTheModule) {
   for (unsigned address = 1; address <= 247; ++address) {
     wire_.own = static_cast<std::uint8_t>(address);
     EXPECT_EQ(verdict_of(frame_of(8, wire_.own)), Verdict::Accepted) << address;
@@ -181,19 +181,19 @@ TEST_F(RtuAssemblerTest, ALineErrorInAFrameThatIsTooLongDropsIt) {
 
 // --- a 00 from a line turn-around ---
 
-TEST_F(RtuAssemblerTest, ATurnAround00BeforeAFrameIsTakenOff) {
+TEST_F(RtuAssemblerTest, ATurnAround00BeforeAFrameIsRemoved) {
   EXPECT_EQ(verdict_of(behind(0x00, kChannel0On)), Verdict::Accepted);
   EXPECT_EQ(wire_.frames.back(), without_crc(kChannel0On));
 }
 
-TEST_F(RtuAssemblerTest, ATurnAround00WithALineErrorIsTakenOffToo) {
+TEST_F(RtuAssemblerTest, ATurnAround00WithALineErrorIsRemovedToo) {
   for (const ByteStatus status : {ByteStatus::FramingError, ByteStatus::Break}) {
     EXPECT_EQ(verdict_of(behind(0x00, kChannel0On), 0, status), Verdict::Accepted);
     EXPECT_EQ(wire_.frames.back(), without_crc(kChannel0On));
   }
 }
 
-TEST_F(RtuAssemblerTest, ATurnAround00BeforeTheLongestFrameIsTakenOff) {
+TEST_F(RtuAssemblerTest, ATurnAround00BeforeTheLongestFrameIsRemoved) {
   const FrameBytes longest = frame_of(256);
   EXPECT_EQ(verdict_of(behind(0x00, longest)), Verdict::Accepted);
   EXPECT_EQ(wire_.frames.back(), without_crc(longest));
@@ -210,7 +210,7 @@ TEST_F(RtuAssemblerTest, ABroadcastOf257BytesIsTooLong) {
   EXPECT_EQ(verdict_of(frame_of(257, 0x00)), Verdict::TooLong);
 }
 
-TEST_F(RtuAssemblerTest, ATurnAround00BeforeTheShortestFrameIsTakenOff) {
+TEST_F(RtuAssemblerTest, ATurnAround00BeforeTheShortestFrameIsRemoved) {
   EXPECT_EQ(verdict_of({0x00, 0x01, 0x11, 0xC0, 0x2C}), Verdict::Accepted);
   EXPECT_EQ(wire_.frames.back(), (FrameBytes{0x01, 0x11}));
 }
@@ -220,7 +220,7 @@ TEST_F(RtuAssemblerTest, AFrameThatIsTooShortWithoutTheTurnAround00IsDropped) {
   EXPECT_TRUE(wire_.frames.empty());
 }
 
-TEST_F(RtuAssemblerTest, ATurnAround00BeforeABroadcastIsTakenOff) {
+TEST_F(RtuAssemblerTest, ATurnAround00BeforeABroadcastIsRemoved) {
   const FrameBytes broadcast = with_crc({0x00, 0x05, 0x00, 0x00, 0xFF, 0x00});
   EXPECT_EQ(verdict_of(behind(0x00, broadcast)), Verdict::Accepted);
   EXPECT_EQ(wire_.frames.back(), without_crc(broadcast));
@@ -240,12 +240,12 @@ TEST_F(RtuAssemblerTest, ATurnAround00BeforeAHostOkLeavesItAHostOk) {
   EXPECT_EQ(verdict_of(behind(0x00, with_crc({0x01, 0x03, 0x30, 0x38, 0x00, 0x00}))), Verdict::HostOk);
 }
 
-TEST_F(RtuAssemblerTest, OnlyOneTurnAround00IsTakenOff) {
+TEST_F(RtuAssemblerTest, OnlyOneTurnAround00IsRemoved) {
   EXPECT_EQ(verdict_of(behind(0x00, behind(0x00, kChannel0On))), Verdict::BadCheck);
   EXPECT_TRUE(wire_.frames.empty());
 }
 
-TEST_F(RtuAssemblerTest, NoOtherByteIsTakenOff) {
+TEST_F(RtuAssemblerTest, NoOtherByteIsRemoved) {
   for (unsigned first = 1; first < 256; ++first) {
     EXPECT_EQ(verdict_of(behind(static_cast<std::uint8_t>(first), kChannel0On)), Verdict::BadCheck) << first;
   }
@@ -311,7 +311,7 @@ TEST_F(RtuAssemblerTest, AHostOkForAnotherModuleIsForeign) {
   EXPECT_EQ(verdict_of(with_crc({0x02, 0x03, 0x30, 0x38, 0x00, 0x00})), Verdict::Foreign);
 }
 
-TEST_F(RtuAssemblerTest, AHostOkWithAWrongCrcIsNone) {
+TEST_F(RtuAssemblerTest, AFrameWithAWrongCrcIsNotAHostOk) {
   EXPECT_EQ(verdict_of({0x01, 0x03, 0x30, 0x38, 0x00, 0x00, 0xCB, 0x06}), Verdict::BadCheck);
 }
 
@@ -351,7 +351,7 @@ TEST_F(RtuAssemblerTest, AHostOkAndAForeignFrameNeedNoRoom) {
   EXPECT_EQ(verdict_of(frame_of(8, 0x02)), Verdict::Foreign);
 }
 
-TEST_F(RtuAssemblerTest, ANewAddressHoldsForAFrameThatIsOpen) {
+TEST_F(RtuAssemblerTest, ANewAddressAppliesToAFrameThatIsOpen) {
   wire_.bytes(frame_of(8, 0x02));
   wire_.own = 0x02;
   assembler_.answer_to(0x02);
@@ -389,7 +389,7 @@ TEST_F(RtuAssemblerTest, TheNextFrameMayFollowADiscardedOneAtOnce) {
   expect_next_frame_accepted();
 }
 
-TEST_F(RtuAssemblerTest, AFrameThatIsInDoubtCanBeDiscarded) {
+TEST_F(RtuAssemblerTest, AFrameInItsGracePeriodCanBeDiscarded) {
   wire_.bytes({0x01, 0x05, 0x00});
   EXPECT_EQ(assembler_.silence(queue_), Verdict::Open);
   ASSERT_FALSE(assembler_.next_wait() == Duration());

@@ -40,7 +40,7 @@ TEST_P(RtuGaps, AGapShorterThanT35StaysWithinTheFrame) {
   for (std::size_t split = 1; split < kChannel0On.size(); ++split) {
     wire_.verdicts.clear();
     with_gap(kChannel0On, split, t35(baud_) - kClock);
-    EXPECT_EQ(wire_.verdicts, Verdicts{Verdict::Accepted}) << "behind byte " << split;
+    EXPECT_EQ(wire_.verdicts, Verdicts{Verdict::Accepted}) << "after byte " << split;
   }
 }
 
@@ -136,7 +136,7 @@ TEST_P(RtuGaps, AByteThatStartedBeforeT35ContinuesABrokenFrame) {
   EXPECT_EQ(wire_.verdicts, Verdicts{Verdict::Accepted});
 }
 
-TEST_P(RtuGaps, AFrameMayBeInDoubtMoreThanOnce) {
+TEST_P(RtuGaps, AFrameMayHaveMoreThanOneGracePeriod) {
   wire_.bytes({0x01, 0x05, 0x00});
   wire_.silence(t35(baud_) - wire_.character() / 2);
   wire_.bytes({0x00, 0xFF});
@@ -208,8 +208,8 @@ TEST_P(RtuGaps, StrictTimingRejectsAGapLongerThanT15) {
   for (std::size_t split = 1; split < kChannel0On.size(); ++split) {
     wire_.verdicts.clear();
     with_gap(kChannel0On, split, t15(baud_) + kClock);
-    ASSERT_EQ(wire_.verdicts.size(), 1U) << "behind byte " << split;
-    EXPECT_NE(wire_.verdicts.front(), Verdict::Accepted) << "behind byte " << split;
+    ASSERT_EQ(wire_.verdicts.size(), 1U) << "after byte " << split;
+    EXPECT_NE(wire_.verdicts.front(), Verdict::Accepted) << "after byte " << split;
   }
   EXPECT_TRUE(wire_.frames.empty());
 }
@@ -219,7 +219,7 @@ TEST_P(RtuGaps, StrictTimingAllowsAGapOfT15) {
   for (std::size_t split = 1; split < kChannel0On.size(); ++split) {
     wire_.verdicts.clear();
     with_gap(kChannel0On, split, t15(baud_));
-    EXPECT_EQ(wire_.verdicts, Verdicts{Verdict::Accepted}) << "behind byte " << split;
+    EXPECT_EQ(wire_.verdicts, Verdicts{Verdict::Accepted}) << "after byte " << split;
   }
 }
 

@@ -36,9 +36,9 @@ class Onlooker final : public sim::BusObserver {
   Onlooker(const Onlooker&) = delete;
   Onlooker& operator=(const Onlooker&) = delete;
 
-  /// Stops checking. Call it before the module is switched off.
+  /// Stops checking. Call this before the module is switched off.
   void stop_checking() { checking_ = false; }
-  /// Begins to check. Call it when the module has started and nothing has been sent to it since.
+  /// Begins to check. Call this when the module has started and nothing has been sent to it since.
   void start_checking() {
     judges::Listening listening = judges::listening_of(module_.module().state());
     // The greatest difference between the module's clock and the clock of the witness.

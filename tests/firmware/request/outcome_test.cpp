@@ -37,13 +37,13 @@ void expect_nothing(const Outcome& outcome) {
   EXPECT_TRUE(outcome.change().applied_to(factory) == factory);
 }
 
-TEST(Outcome, IsNothingAtFirst) {
+TEST(Outcome, IsEmptyAtFirst) {
   const Outcome outcome;
   expect_nothing(outcome);
   EXPECT_EQ(outcome.refusal, Refusal::None);
 }
 
-TEST(Outcome, AsksForTheEffectsThatWereRequestedAndNoOthers) {
+TEST(Outcome, HasTheEffectsThatWereRequestedAndNoOthers) {
   for (const Effect one : kEveryEffect) {
     for (const Effect other : kEveryEffect) {
       Outcome outcome;
@@ -81,7 +81,7 @@ TEST(Outcome, ThatChangesSettingsHasNoEffectAndDrivesNoOutputs) {
   EXPECT_TRUE(outcome.change().applied_to(Settings::factory(the_model())) == expected);
 }
 
-TEST(Outcome, ThatIsClearedIsNothing) {
+TEST(Outcome, ThatIsClearedIsEmpty) {
   Outcome outcome = of_everything();
   outcome.clear();
   expect_nothing(outcome);

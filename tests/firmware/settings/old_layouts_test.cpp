@@ -56,7 +56,7 @@ TEST(StoredBytes, OfAnotherModelAreNotRead) {
 }
 
 /// Corrupts every byte of the files' copies, in both older layouts.
-TEST(OldLayouts, EverySingleCorruptedByteIsSeen) {
+TEST(OldLayouts, EverySingleCorruptedByteIsDetected) {
   for (const StoredBytes& stored : all_stored_bytes()) {
     for (const std::size_t place : {0x00U, 0x20U}) {
       const std::optional<StoredSettings> good = read(*stored.model, stored.memory, place);

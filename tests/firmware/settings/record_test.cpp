@@ -208,15 +208,15 @@ TEST(Record, FitsAPageOfTheMemory) {
   EXPECT_LE(kRecordSize, 32U);
 }
 
-TEST(Record, FactorySettingsOfEveryModelComeBack) {
+TEST(Record, FactorySettingsOfEveryModelAreReadBack) {
   for (const Model& each : kModels) {
     expect_round_trip(each, {Settings::factory(each), 0});
   }
 }
 
-TEST(Record, EveryFieldComesBack) { expect_round_trip(the_model(), changed_settings()); }
+TEST(Record, EveryFieldIsReadBack) { expect_round_trip(the_model(), changed_settings()); }
 
-TEST(Record, AnySettingsOfAnyModelComeBack) {
+TEST(Record, AnySettingsOfAnyModelAreReadBack) {
   std::mt19937 random(1);
   for (const Model& each : kModels) {
     for (int i = 0; i < 1000; ++i) {
@@ -225,7 +225,7 @@ TEST(Record, AnySettingsOfAnyModelComeBack) {
   }
 }
 
-TEST(Record, EachFlagComesBackAlone) {
+TEST(Record, EachFlagIsReadBackAlone) {
   Stored stored = factory();
   stored.settings.watchdog_enabled = true;
   expect_round_trip(the_model(), stored);
@@ -234,7 +234,7 @@ TEST(Record, EachFlagComesBackAlone) {
   expect_round_trip(the_model(), stored);
 }
 
-TEST(Record, EverySequenceNumberComesBack) {
+TEST(Record, EverySequenceNumberIsReadBack) {
   Stored stored = factory();
   for (unsigned sequence = 0; sequence < 0x10000; sequence += 0xFF) {
     stored.sequence = static_cast<std::uint16_t>(sequence);
@@ -242,7 +242,7 @@ TEST(Record, EverySequenceNumberComesBack) {
   }
 }
 
-TEST(Record, TheLongestNameComesBack) {
+TEST(Record, TheLongestNameIsReadBack) {
   Stored stored{Settings::factory(model("EX9068D-M")), 1};
   stored.settings.name = Name("ABCDEFG");
   expect_round_trip(model("EX9068D-M"), stored);
@@ -354,7 +354,7 @@ TEST(Record, TwoThatDifferInFourBytesOnlyNeverHaveTheSameCheck) {
   }
 }
 
-TEST(Record, EverySingleCorruptedByteIsSeen) {
+TEST(Record, EverySingleCorruptedByteIsDetected) {
   for (const Stored& stored : {factory(), changed_settings()}) {
     const Record good = record_of(stored);
     for (std::size_t at = 0; at < kRecordSize; ++at) {
@@ -367,7 +367,7 @@ TEST(Record, EverySingleCorruptedByteIsSeen) {
   }
 }
 
-TEST(Record, EveryDoubleBitErrorIsSeen) {
+TEST(Record, EveryDoubleBitErrorIsDetected) {
   const Record good = record_of(changed_settings());
   for (std::size_t first = 0; first < kRecordBits; ++first) {
     for (std::size_t second = first + 1; second < kRecordBits; ++second) {
@@ -377,7 +377,7 @@ TEST(Record, EveryDoubleBitErrorIsSeen) {
   }
 }
 
-TEST(Record, TripleBitErrorsAreSeen) {
+TEST(Record, TripleBitErrorsAreDetected) {
   std::mt19937 random(5);
   const Record good = record_of(changed_settings());
   for (int i = 0; i < 100'000; ++i) {

@@ -125,7 +125,7 @@ TEST_F(SettingsKeeperTest, ACopyThatMayHoldRefusedSettingsIsMadeInvalid) {
 
 // wire.md section 8: the power failed in the first store after an update, before the old copies were
 // invalidated.
-TEST_F(SettingsKeeperTest, AnUpdateIsFinishedWithoutACommandAndNotTriedForEver) {
+TEST_F(SettingsKeeperTest, AnUpdateIsFinishedWithoutACommandAndNotRetriedForever) {
   FakeMemory memory;
   put_old(memory, 0, numbered(5), 7);
   put(memory, 0, numbered(6), 8);

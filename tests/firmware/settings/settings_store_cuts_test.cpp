@@ -43,11 +43,11 @@ class PowerCuts : public testing::Test {
     const Settings before = run.stored();
     memory.power = bytes;
     memory.garbage = garbage;
-    EXPECT_FALSE(run.save(to)) << "no cut behind byte " << bytes;
+    EXPECT_FALSE(run.save(to)) << "no cut after byte " << bytes;
     ++cuts_;
     with_power(memory);
     const Boot next(memory);
-    EXPECT_TRUE(next.stored() == before || next.stored() == to) << "cut behind byte " << bytes;
+    EXPECT_TRUE(next.stored() == before || next.stored() == to) << "cut after byte " << bytes;
     return next.stored();
   }
 
@@ -121,7 +121,7 @@ TEST_F(PowerCuts, AtAnyByteOfASaveThatFailsLeaveTheOldSettingsOrTheNew) {
         with_power(memory);
         const Settings found = Boot(memory).stored();
         EXPECT_TRUE(found == numbered(200) || (!saved && found == before))
-            << "cut behind byte " << cut.value_or(0);
+            << "cut after byte " << cut.value_or(0);
         memory.stuck = false;
         expect_works(memory);
         return bytes;

@@ -122,10 +122,10 @@ TEST(SettingsStore, SettlingInvalidatesTheUncertainCopyAndNotTheLastReadCopy) {
   end_jobs(store, true, kAllReads);  // all copies are garbage
   const std::uint16_t invalidated = store.job().address;
   for (std::size_t attempt = 0; attempt < kAttempts; ++attempt) {
-    end_jobs(store, true, 1);   // written,
-    end_jobs(store, false, 1);  // but the memory does not answer the read
+    end_jobs(store, true, 1);   // the write succeeds
+    end_jobs(store, false, 1);  // the memory does not answer the read-back
   }
-  end_jobs(store, false, 1);  // cannot be invalidated, either
+  end_jobs(store, false, 1);  // the memory does not answer the write that invalidates the copy
   ASSERT_TRUE(store.needs_invalidation());
 
   store.begin_saving(numbered(2));

@@ -136,7 +136,7 @@ TEST(SettingsStore, AReadThatFailsIsTriedUpToThreeTimes) {
   }
 }
 
-TEST(SettingsStore, AReadOfNonsenseIsTriedUpToThreeTimes) {
+TEST(SettingsStore, AReadOfInvalidDataIsTriedUpToThreeTimes) {
   for (std::size_t noisy = 1; noisy < kAttempts; ++noisy) {
     FakeMemory memory;
     put(memory, 0, numbered(5), 8);

@@ -32,7 +32,7 @@ TEST(FactorySettings, AreThoseOfSection2OnEveryModel) {
   }
 }
 
-TEST(FactorySettings, AnMModelSpeaksModbusAndTheOthersAscii) {
+TEST(FactorySettings, OfAnMModelSelectModbusAndThoseOfOtherModelsAscii) {
   for (const Model& each : kModels) {
     const bool is_m = each.designation.substr(each.designation.size() - 2) == "-M";
     EXPECT_EQ(Settings::factory(each).protocol, is_m ? Protocol::ModbusRtu : Protocol::Ascii)
@@ -68,7 +68,7 @@ TEST(Name, HoldsUpTo7Characters) {
 
 TEST(Name, KeepsTheFirst7OfMore) { EXPECT_EQ(text_of(Name("9068AD-M")), "9068AD-"); }
 
-TEST(Name, EqualsOneOfTheSameCharactersOnly) {
+TEST(Name, EqualsOnlyANameWithTheSameCharacters) {
   EXPECT_TRUE(Name("9042D") == Name("9042D"));
   EXPECT_FALSE(Name("9042D") == Name("9042d"));
   EXPECT_FALSE(Name("9042") == Name("9042D"));
@@ -250,7 +250,7 @@ std::vector<FieldChange> changes_of_each_field(const Settings& from) {
   return changes;
 }
 
-TEST(SettingsChange, OfNothingLeavesAllAsItIs) {
+TEST(SettingsChange, WithoutValuesChangesNothing) {
   for (const Model& each : kModels) {
     EXPECT_TRUE(SettingsChange().applied_to(Settings::factory(each)) == Settings::factory(each));
   }
@@ -370,7 +370,7 @@ TEST(Settings, DifferIfAnyFieldDiffers) {
   }
 }
 
-TEST(Settings, AreNothingButZerosAtFirst) {
+TEST(Settings, AreAllZerosAtFirst) {
   const Settings untouched;
   EXPECT_EQ(untouched.address, 0);
   EXPECT_EQ(untouched.baud_code, 0);

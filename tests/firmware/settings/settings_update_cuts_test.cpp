@@ -85,7 +85,7 @@ TEST(UpdateCuts, AtEveryPointOfTheFirstStoreLeaveTheOldSettingsOrTheNew) {
         ++cuts;
         const Settings found = come_up(memory);
         ASSERT_TRUE(found == numbered(200) || (!saved && found == beginning.settings))
-            << beginning.what << ", cut behind byte " << at;
+            << beginning.what << ", cut after byte " << at;
         ASSERT_NE(found.address, 1) << "the address has fallen back";
         if (found == numbered(200)) {
           expect_old_copies_do_not_count(memory);
@@ -118,7 +118,7 @@ TEST(UpdateCuts, TwiceInARowLeaveTheOldSettingsOrTheNew) {
       const Settings found = come_up(memory);
       // A page with a single wrong byte becomes valid as soon as the next store writes that byte.
       ASSERT_TRUE(found == numbered(300) || (!saved_again && (found == between || found == numbered(200))))
-          << beginning.what << ", cut behind byte " << first << ", then " << second << " (seed " << kSeed
+          << beginning.what << ", cut after byte " << first << ", then " << second << " (seed " << kSeed
           << ")";
       ASSERT_TRUE(Boot(memory).save(numbered(4000)));
       ASSERT_TRUE(come_up(memory) == numbered(4000));
@@ -142,7 +142,7 @@ TEST(UpdateCuts, WithDataOfEarlierFirmwareLeaveTheOldOrTheNewSettings) {
       Boot(memory, *stored.model).save(changed);
       memory.power.reset();
       const Settings found = Boot(memory, *stored.model).stored();
-      EXPECT_TRUE(found == stored.settings || found == changed) << stored.file << ", cut behind byte " << at;
+      EXPECT_TRUE(found == stored.settings || found == changed) << stored.file << ", cut after byte " << at;
     }
   }
 }

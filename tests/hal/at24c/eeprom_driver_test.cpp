@@ -370,7 +370,7 @@ TYPED_TEST(Eeprom, FreeingTheBusAfterAResetDuringAWriteProgramsNothing) {
     ASSERT_TRUE(bench.read(kPlace, back)) << step;
     ASSERT_EQ(bench.memory, expected) << step;
     ASSERT_TRUE(std::equal(back.begin(), back.end(), expected.begin() + kPlace)) << step;
-    EXPECT_TRUE(!stopped || back == bytes) << step << ": the driver's own STOP is behind the last byte";
+    EXPECT_TRUE(!stopped || back == bytes) << step << ": the STOP of the driver follows the last byte";
     EXPECT_TRUE(
         std::equal(cells.begin(), cells.end(), bytes.begin(),
                    [](const EepromChip::Cell& cell, std::uint8_t byte) { return cell.value == byte; }))
@@ -427,7 +427,7 @@ TYPED_TEST(Eeprom, ALineStuckForAShortTimeCausesNoFalseSuccessAndNoLastingFailur
         const auto bytes = some_bytes(20, static_cast<unsigned>(step));
         if (bench.write(0x0200, bytes)) {
           EXPECT_TRUE(std::equal(bytes.begin(), bytes.end(), bench.memory.begin() + 0x0200))
-              << "said to be written and is not";
+              << "reported as written, but not stored";
         }
         bench.run_for(milliseconds(10));
         std::vector<std::uint8_t> back(20);

@@ -151,7 +151,7 @@ TEST_P(Sending, ItsOwnEchoIsNotReceived) {
     EXPECT_TRUE(bench.received.empty());
     bench.line.send({0x5A});
     bench.mcu.run_for(3 * character());
-    ASSERT_EQ(bench.received.size(), 1U) << "and what comes behind it is";
+    ASSERT_EQ(bench.received.size(), 1U) << "expected only the byte after the echo";
     EXPECT_EQ(bench.received[0].byte, 0x5A);
     EXPECT_EQ(bench.received[0].status, ByteStatus::Good);
   }

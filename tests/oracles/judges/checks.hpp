@@ -51,7 +51,7 @@ constexpr std::uint8_t upper_hex(unsigned value) {
   return static_cast<std::uint8_t>("0123456789ABCDEF"[value % 16]);
 }
 
-/// Whether `text` is the value in two upper-case hex digits.
+/// Returns whether `text` is the value in two upper-case hex digits.
 constexpr bool are_digits_of(const std::uint8_t* text, unsigned value) {
   return text[0] == upper_hex(value / 16) && text[1] == upper_hex(value);
 }

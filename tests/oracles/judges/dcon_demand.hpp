@@ -113,7 +113,7 @@ constexpr Demand dcon_demand(Bytes command, unsigned outputs) {
   }
 }
 
-/// Whether the module drives outputs on this command unless it refuses the command.
+/// Returns whether the module drives outputs on this command unless it refuses the command.
 constexpr bool is_dcon_output_command(Bytes command) {
   return (command[0] == '#' && command.size == 7) || (command[0] == '@' && command.size > 3);
 }

@@ -19,9 +19,9 @@ class DconJudge {
   [[nodiscard]] Microseconds character() const { return character_; }
   [[nodiscard]] bool checksum() const { return checksum_; }
   [[nodiscard]] std::uint8_t own_address() const { return own_; }
-  /// Call it when `%` has been answered.
+  /// Call this when `%` has been answered.
   void answer_to(std::uint8_t address) { own_ = address; }
-  /// Call it while `%` is being executed: the module may already answer to this address.
+  /// Call this while `%` is being executed: the module may already answer to this address.
   void may_answer_to(std::optional<std::uint8_t> address) { next_ = address; }
 
   Finding byte(std::uint8_t byte, bool good, Microseconds now) {
@@ -55,7 +55,7 @@ class DconJudge {
     return spoiled_ ? Finding{} : judge(now);
   }
 
-  /// Call it after a reply of the module.
+  /// Call this after a reply of the module.
   void spoken() { state_ = State::Hunting; }
 
  private:

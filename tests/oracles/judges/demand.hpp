@@ -47,7 +47,7 @@ struct Demand {
   std::optional<bool> enabled{};
 
   [[nodiscard]] constexpr bool drives() const { return channels != 0; }
-  /// Whether the command can change values.
+  /// Returns whether the command can change values.
   [[nodiscard]] constexpr bool changes_values() const {
     return drives() || keeps_power_on || keeps_safe || clears_timeout || timeout || enabled;
   }
@@ -75,9 +75,9 @@ struct Demand {
     return values;
   }
 
-  /// Whether `values` are possible after the command, if only a timeout has occurred since. `outputs`: the
-  /// outputs before the latest timeout. `since`: whether that timeout occurred after the request was
-  /// received.
+  /// Returns whether `values` are possible after the command, if only a timeout has occurred since.
+  /// `outputs`: the outputs before the latest timeout. `since`: whether that timeout occurred after the
+  /// request was received.
   [[nodiscard]] constexpr bool is_met_by(const Values& values, std::uint16_t outputs, bool since) const {
     const auto are = [this](std::uint16_t value) { return (value & channels) == levels; };
     const auto kept = [&](std::uint16_t value) {

@@ -106,7 +106,7 @@ constexpr Demand rtu_demand(Bytes request, unsigned outputs) {
   }
 }
 
-/// Whether the module drives outputs on this request unless it refuses the request.
+/// Returns whether the module drives outputs on this request unless it refuses the request.
 constexpr bool is_rtu_output_command(Bytes request) {
   if (request.size < 4 || (request[1] != 0x05 && request[1] != 0x0F)) {
     return false;

@@ -44,7 +44,7 @@ class RtuJudge {
     return end;
   }
 
-  /// Call it when no byte has arrived until `now`.
+  /// Call this when no byte has arrived until `now`.
   Finding pass(Microseconds now) {
     if (size_ == 0 || now - last_ + doubt_ < silence_) {
       return {};
@@ -62,7 +62,7 @@ class RtuJudge {
     return known ? Finding{} : finding;
   }
 
-  /// Call it at the end of a byte, after `pass` for the time before it.
+  /// Call this at the end of a byte, after `pass` for the time before it.
   void byte(std::uint8_t byte, bool good, Microseconds now) {
     if (size_ == 0) {
       first_ = now;
@@ -76,7 +76,7 @@ class RtuJudge {
     last_ = now;
   }
 
-  /// Call it after a reply of the module. Judges a frame that was complete except for the silence after it,
+  /// Call this after a reply of the module. Judges a frame that was complete except for the silence after it,
   /// and drops any other.
   Finding spoken() {
     const Finding finding = size_ == 0 || judged_ == size_ ? Finding{} : judge();

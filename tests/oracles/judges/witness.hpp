@@ -64,7 +64,7 @@ class Witness {
   Witness(const Model& model, ReportViolation report_violation)
       : model_(model), report_violation_(report_violation) {}
 
-  /// Call it when the module has started with `values`. `reset`: the time of the reset. If the reset
+  /// Call this when the module has started with `values`. `reset`: the time of the reset. If the reset
   /// interrupted a command, this class does not check what the command has stored
   /// (tests/boards/power_cuts/power_cuts_test.cpp does that). It checks every later change of the values.
   void comes_up(const Listening& listening, const Values& values, Microseconds reset) {
@@ -96,7 +96,7 @@ class Witness {
   }
   [[nodiscard]] const Counts& counts() const { return counts_; }
 
-  /// Call it when the test stops the module's main loop, and when the main loop continues.
+  /// Call this when the test stops the module's main loop, and when the main loop continues.
   void is_held(bool held, Microseconds now) {
     pass(now);
     held_ = held;
@@ -105,15 +105,15 @@ class Witness {
     }
   }
 
-  /// Call it when no byte has arrived until `now`.
+  /// Call this when no byte has arrived until `now`.
   void pass(Microseconds now) {
     now_ = now;
     note_silence();
     look();
   }
 
-  /// Call it at the end of a byte that arrived while the module's driver was off, before the module receives
-  /// the byte. `address`: the address that the module answers to.
+  /// Call this at the end of a byte that arrived while the module's driver was off, before the module
+  /// receives the byte. `address`: the address that the module answers to.
   void hears(std::uint8_t byte, bool good, std::uint8_t address, Microseconds now) {
     pass(now);
     if (rtu_) {
@@ -128,7 +128,7 @@ class Witness {
     }
   }
 
-  /// Call it after a turn of the main loop with the values of the module.
+  /// Call this after a turn of the main loop with the values of the module.
   void follow(const Values& values, Microseconds now) {
     if (values == values_) {
       return;
@@ -152,14 +152,14 @@ class Witness {
     }
   }
 
-  /// Call it after a turn of the main loop with the address of the module.
+  /// Call this after a turn of the main loop with the address of the module.
   void follow_address(std::uint8_t address) {
     if (dcon_ && pending_count_ == 0 && address != dcon_->own_address()) {
       report_violation_("the address changes by a command only");
     }
   }
 
-  /// Call it when the module's driver has been switched on, after `follow`. `reply`: the complete reply.
+  /// Call this when the module's driver has been switched on, after `follow`. `reply`: the complete reply.
   void reply_begins(Bytes reply, Microseconds now) {
     now_ = now;
     sending_ = true;
@@ -167,7 +167,7 @@ class Witness {
     rtu_ ? take_rtu_reply(reply) : take_dcon_reply(reply);
   }
 
-  /// Call it when the driver has been switched off.
+  /// Call this when the driver has been switched off.
   void reply_ends(Microseconds now) {
     now_ = now;
     sending_ = false;
@@ -261,7 +261,7 @@ class Witness {
     const Microseconds over = request.last + (rtu_ ? silence_ : 0);
     return std::max(over, free) + (request.demand.stores_something ? kStoring : kPlain);
   }
-  /// Whether the module stores something and sends no reply, so that it may be busy until the latest
+  /// Returns whether the module stores something and sends no reply, so that it may be busy until the latest
   /// permitted time.
   static bool is_silent_store(const Pending& request) {
     return request.broadcast && request.demand.stores_something;
@@ -430,8 +430,8 @@ class Witness {
                                            demand.values_after_a_timeout(from, outputs_before_) == to));
   }
 
-  /// Whether one command can have changed the values to `to`, which is nearly always the case. Also records
-  /// the change.
+  /// Returns whether one command can have changed the values to `to`, which is nearly always the case. Also
+  /// records the change.
   bool one_leads_to(const Values& to) {
     Pending* only = nullptr;
     unsigned count = 0;
@@ -459,8 +459,8 @@ class Witness {
     return values.enabled && now_ - alive_ >= values.timeout * kUnit;
   }
 
-  /// Whether a timeout, or at most `most` commands from number `next` on, or both, can have changed `from` to
-  /// `to`.
+  /// Returns whether a timeout, or at most `most` commands from number `next` on, or both, can have changed
+  /// `from` to `to`.
   bool some_lead(const Values& from, const Values& to, std::size_t next, unsigned most) {
     if (from == to) {
       return true;

@@ -72,7 +72,7 @@ CoilRow listed_coils(const ModelRow& model, unsigned first, unsigned quantity, u
   return row;
 }
 
-/// Whether the table of registers lists this register for this function.
+/// Returns whether the table of registers lists this register for this function.
 bool register_listed(const ModelRow& model, unsigned address, unsigned function) {
   const bool counter = address < model.inputs;
   const bool code = address == 0x01E2 || address == 0x01E3;

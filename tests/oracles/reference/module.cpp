@@ -110,7 +110,7 @@ void Module::edge(unsigned channel, bool rising, std::uint32_t count) {
   if (rising == counts_rising_) {
     const std::uint64_t edges = std::uint64_t{counters_[channel]} + count;
     if (edges >= counter_modulus()) {
-      rule(runs_modbus_ ? "counter wraps behind 65535" : "counter wraps behind 99999");
+      rule(runs_modbus_ ? "counter wraps after 65535" : "counter wraps after 99999");
     }
     counters_[channel] = static_cast<std::uint32_t>(edges % counter_modulus());
   }

@@ -66,8 +66,8 @@ class Module {
   void pulse_input(unsigned channel, std::uint32_t count);
   /// Processes all bytes that the master has sent. The last byte ended at `now`, and a silence follows.
   Answer on_request(const Bytes& bytes, Time now);
-  /// Call it when the first byte of the reply to the last request began at `now`. All effects of the request
-  /// are complete by then.
+  /// Call this when the first byte of the reply to the last request began at `now`. All effects of the
+  /// request are complete by then.
   void replied(Time now);
   /// Lets time pass until `now`, which must not lie between the earliest and the latest expiry of the host
   /// watchdog.
@@ -89,11 +89,11 @@ class Module {
   [[nodiscard]] unsigned address() const { return address_; }
   [[nodiscard]] bool init_mode() const { return init_mode_; }
   [[nodiscard]] bool init_asserted() const { return init_asserted_; }
-  /// Whether a reset would change the settings that the master needs to talk to the module.
+  /// Returns whether a reset would change the settings that the master needs to talk to the module.
   [[nodiscard]] bool waits_for_reset() const;
   [[nodiscard]] const Stored& stored() const { return stored_; }
   [[nodiscard]] const ModelRow& row() const { return row_; }
-  /// Whether the module has received the beginning of a frame but not its end.
+  /// Returns whether the module has received the beginning of a frame but not its end.
   [[nodiscard]] bool frame_open() const { return framing_ != Framing::Nothing; }
 
   /// The host watchdog expires between these two times. The exact time is unknown because the time of its

@@ -116,8 +116,8 @@ const char* const kRules[] = {
     "~AA5V refused",
     "~ no command",
     // wire.md 5
-    "counter wraps behind 99999",
-    "counter wraps behind 65535",
+    "counter wraps after 99999",
+    "counter wraps after 65535",
     // wire.md 6
     "host watchdog expires",
     "host watchdog expires again",

@@ -37,8 +37,8 @@ bool printable(const std::string& text) {
                      [](char character) { return character >= 0x20 && character <= 0x7E; });
 }
 
-/// Whether the text can be a line of a transcript, in which `  ;` begins a comment and braces enclose a
-/// variable.
+/// Returns whether the text can be a line of a transcript, in which `  ;` begins a comment and braces enclose
+/// a variable.
 bool can_be_written(const std::string& text) {
   return printable(text) && text.find("  ;") == std::string::npos && text.find('{') == std::string::npos;
 }

@@ -357,8 +357,8 @@ class PowerFailureChecker {
 
   [[nodiscard]] std::string module() const { return "EX9042D" + image_in(directory_); }
 
-  /// Call it after a start. The last command must be carried out completely or not at all, and completely if
-  /// it was acknowledged.
+  /// Call this after a start. The last command must be carried out completely or not at all, and completely
+  /// if it was acknowledged.
   void check(Simulator& simulator) {
     Answers answers;
     for (const auto& [question, answer] : before_) {

@@ -107,7 +107,7 @@ bool wait_until_full(int pipe) {
   return true;
 }
 
-TEST(Program, ASignalEndsItAlthoughThePipeOfItsLogIsFull) {
+TEST(Program, ASignalEndsItIfThePipeOfItsLogIsFull) {
   for (const int signal : {SIGINT, SIGTERM}) {
     SimulatorProcess simulator({"EX9042D@01", "--tcp", "0", "--line", "instant", "--log"});
     SocketClient master(simulator.tcp_port());
@@ -125,7 +125,7 @@ TEST(Program, ASignalEndsItAlthoughThePipeOfItsLogIsFull) {
   }
 }
 
-TEST(Program, ASignalEndsItAlthoughNobodyReadsItsGreeting) {
+TEST(Program, ASignalEndsItIfItsGreetingIsNotRead) {
   for (const std::string log : {"off", "json"}) {  // with json, the greeting is on standard error
     const Directory directory;
     std::ofstream bus(directory / "bus.json");

@@ -102,7 +102,7 @@ TEST_F(BusTest, AReceiverAtHalfTheRateReceivesFewerAndWrongBytes) {
   }
 }
 
-TEST_F(BusTest, AMuchFasterReceiverTakesAZeroByteForABreak) {
+TEST_F(BusTest, AMuchFasterReceiverReportsAZeroByteAsABreak) {
   const auto sender = master(1200);
   Listener fast(bus_, 115200);
   send(*sender, {0x00});

@@ -29,7 +29,7 @@ TEST(DueTimes, AreTakenEarliestFirstAndInTheOrderOfTheStations) {
   EXPECT_EQ(times.next(), VirtualTime(40));
 }
 
-TEST(DueTimes, AreThoseOfASearchThroughAllStations) {
+TEST(DueTimes, EqualThoseOfASearchThroughAllStations) {
   std::mt19937_64 random(1);
   DueTimes times;
   std::vector<VirtualTime> expected;

@@ -22,7 +22,7 @@ void expect_keys(const json& object, const Keys& keys) {
     SCOPED_TRACE(key.name);
     ASSERT_TRUE(object.at("properties").contains(key.name));
     EXPECT_FALSE(key.meaning.empty());
-    EXPECT_EQ(key.meaning.find('|'), std::string::npos) << "it stands in a table";
+    EXPECT_EQ(key.meaning.find('|'), std::string::npos) << "the meaning is in a table of the documentation";
     json property = json::parse(key.schema);
     EXPECT_TRUE(property.is_object());
     property["description"] = key.meaning;

@@ -111,18 +111,18 @@ class BusFileSchema(unittest.TestCase):
         self.assertRegex(finished.stderr, rf"^ex9000-sim: {FILE}:1: ")
         self.assertIn(f":1: {path}", finished.stderr)
 
-    def test_it_is_a_schema(self):
+    def test_the_schema_is_a_valid_json_schema(self):
         jsonschema.Draft202012Validator.check_schema(SCHEMA)
 
-    def test_it_accepts_the_example(self):
+    def test_the_schema_accepts_the_example(self):
         self.assertTrue(schema_accepts(json.loads(run("--example").stdout)))
 
-    def test_every_key_is_tried_here(self):
+    def test_this_file_has_a_value_for_every_key(self):
         for place, properties in (("", SCHEMA), ("lines[0]", SCHEMA["$defs"]["line"]),
                                   ("lines[0].modules[0]", SCHEMA["$defs"]["module"])):
             self.assertEqual(set(RIGHT[place]), set(properties["properties"]), place)
 
-    def test_a_right_value_of_every_key_is_accepted(self):
+    def test_a_valid_value_of_every_key_is_accepted(self):
         for place, key, value in keys():
             with self.subTest(key=path_of(place, key)):
                 file = file_with(place, key, value)
@@ -151,14 +151,14 @@ class BusFileSchema(unittest.TestCase):
                 del object_at(file, place)[key]
                 self.expect_refused(file, path_of(place, key))
 
-    def test_what_is_no_object_is_refused(self):
+    def test_a_value_that_is_not_an_object_is_refused(self):
         for value in [None, True, 5, "EX9052D-M", []]:
             for file, place in [(value, ""), ({"lines": [value]}, "lines[0]"),
                                 ({"lines": [{"modules": [value]}]}, "lines[0].modules[0]")]:
                 with self.subTest(place=place, value=value):
                     self.expect_refused(file, f"{place}: expected an object" if place else "expected an object")
 
-    def test_the_published_schema_is_what_the_program_prints(self):
+    def test_the_published_schema_is_the_schema_that_the_program_prints(self):
         published = ROOT / "sim/docs/bus-file.schema.json"
         self.assertEqual(published.read_text(encoding="utf-8"), run("--schema").stdout,
                          "renew it with toolchain/update-documents")

@@ -247,7 +247,7 @@ TEST(Capture, TheLinesOfABusFileAreInterfaces) {
   EXPECT_NE(simulator.output().find(R"("line":"yard","from":"02 EX9052D")"), std::string::npos);
 }
 
-TEST(Capture, ForeignTrafficIsNotTakenForAReply) {
+TEST(Capture, ForeignTrafficIsNotShownAsAReply) {
   Captured line({"EX9042D-M@01", "--fault", "foreign-traffic 0501000000083C48 at 1s", "--log"});
   line.pass("1s");
   line.wait_for("05 01 00 00 00 08 3C 48");

@@ -364,7 +364,8 @@ TEST(ControlSocket, ASocketInUseIsRefusedAndContinuesToWork) {
   const Directory directory;
   expect_refused(simulator.socket(), directory);
   expect_undisturbed(simulator);
-  const auto clients = connect(simulator.socket(), kMostClients);  // no free connection: still in use
+  const auto clients =
+      connect(simulator.socket(), kMostClients);  // all connections are in use, and so is the path
   expect_refused(simulator.socket(), directory);
   EXPECT_TRUE(is_answered(*clients[0]));
 }

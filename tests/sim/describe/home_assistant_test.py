@@ -39,7 +39,7 @@ def serial_alternative(text):
 
 
 class HomeAssistant(unittest.TestCase):
-    def test_the_schema_is_one(self):
+    def test_the_schema_is_a_valid_json_schema(self):
         jsonschema.Draft7Validator.check_schema(SCHEMA)
 
     def test_every_model_that_speaks_modbus_fits_the_schema(self):
@@ -64,19 +64,19 @@ class HomeAssistant(unittest.TestCase):
                 self.assertEqual(len(set(ids)), len(ids))
                 self.assertEqual(len(set(names)), len(names))
 
-    def test_the_timeout_is_below_every_interval_and_none_is_warned_of(self):
+    def test_the_timeout_is_below_every_interval_and_no_interval_causes_a_warning(self):
         for model in models_with_modbus():
             hub = hubs(model)[0]
             for _, entity in entities(hub):
                 self.assertLess(hub["timeout"], entity["scan_interval"])
                 self.assertGreaterEqual(entity["scan_interval"], 5)
 
-    def test_address_and_port_are_those_that_are_asked_for(self):
+    def test_address_and_port_are_those_of_the_arguments(self):
         hub = hubs("EX9052D-M", "--address", "2a", "--tcp", "192.0.2.7:4001")[0]
         self.assertEqual((hub["host"], hub["port"], hub["name"]), ("192.0.2.7", 4001, "ex9052d_m_2A"))
         self.assertEqual({entity["slave"] for _, entity in entities(hub)}, {0x2A})
 
-    def test_the_schema_refuses_what_is_wrong(self):
+    def test_the_schema_rejects_wrong_hubs(self):
         def hub_with(**keys):
             return lambda hub: hub.update(keys)
 

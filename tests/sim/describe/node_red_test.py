@@ -19,7 +19,7 @@ def wrong_properties(node):
     known = KNOWN["nodes"][node["type"]]
     for key in node:
         if key not in KNOWN["anywhere"] + known["properties"]:
-            yield f"{key} is no property of {node['type']}"
+            yield f"{key} is not a property of {node['type']}"
     for key in known["required"]:
         if key not in node:
             yield f"{node['type']} requires {key}"
@@ -40,9 +40,9 @@ def wrong_wires(node, nodes):
         if target not in nodes or KNOWN["nodes"][nodes[target]["type"]].get("inputs", 0) == 0:
             yield f"a wire of {node['id']} has no valid target"
     if nodes.get(node["z"], {}).get("type") != "tab":
-        yield f"{node['id']} is on no tab"
+        yield f"{node['id']} is not on a tab"
     if "server" in node and nodes.get(node["server"], {}).get("type") != "modbus-client":
-        yield f"{node['id']} has no line"
+        yield f"{node['id']} has no client"
 
 
 def mistakes(all_nodes):
@@ -51,28 +51,28 @@ def mistakes(all_nodes):
     if unknown:
         return [f"there is no node {', '.join(unknown)}"]
     nodes = {node["id"]: node for node in all_nodes}
-    found = [] if len(nodes) == len(all_nodes) else ["two nodes have one id"]
+    found = [] if len(nodes) == len(all_nodes) else ["two nodes have the same id"]
     for node in all_nodes:
         found += [*wrong_properties(node), *wrong_wires(node, nodes)]
     places = [(node["x"], node["y"]) for node in all_nodes if "x" in node]
-    return found if len(set(places)) == len(places) else [*found, "two nodes lie on each other"]
+    return found if len(set(places)) == len(places) else [*found, "two nodes have the same position"]
 
 
 class NodeRed(unittest.TestCase):
-    def test_every_flow_is_right(self):
+    def test_every_flow_is_valid(self):
         models = models_with_modbus()
         self.assertGreaterEqual(len(models), 5)
         for model in models:
             with self.subTest(model=model):
                 self.assertEqual(mistakes(flow(model)), [])
 
-    def test_ids_stay_and_two_modules_share_none(self):
+    def test_ids_are_stable_and_differ_between_modules(self):
         ids = [node["id"] for node in flow("EX9042D-M")]
         self.assertEqual(ids, [node["id"] for node in flow("EX9042D-M", "--tcp", "192.0.2.7:4001")])
         others = flow("EX9042D-M", "--address", "02") + flow("EX9043D-M")
         self.assertEqual(set(ids) & {node["id"] for node in others}, set())
 
-    def test_a_wrong_flow_is_found_out(self):
+    def test_the_checks_find_the_errors_of_a_wrong_flow(self):
         right = flow("EX9052D-M")
         of = {node["type"]: number for number, node in enumerate(right)}
         wrong = [

@@ -22,7 +22,7 @@ def is_valid(value):
 
 
 class WbMqttSerial(unittest.TestCase):
-    def test_the_schema_is_one(self):
+    def test_the_schema_is_a_valid_json_schema(self):
         jsonschema.Draft7Validator.check_schema(SCHEMA)
 
     def test_every_model_that_speaks_modbus_fits_the_schema(self):
@@ -39,7 +39,7 @@ class WbMqttSerial(unittest.TestCase):
                 values = [channel[key] for channel in channels]
                 self.assertEqual(len(set(values)), len(values), model)
 
-    def test_the_schema_refuses_what_is_wrong(self):
+    def test_the_schema_rejects_wrong_templates(self):
         right = template("EX9052D-M")
         of = {channel["id"]: number for number, channel in enumerate(right["device"]["channels"])}
 

@@ -60,7 +60,7 @@ class FaultBench {
 
   /// Returns everything that the master has received since the last `forget`.
   [[nodiscard]] const std::string& heard() const { return heard_; }
-  /// Whether at least one of these bytes had an error.
+  /// Returns whether at least one byte since the last `forget` had an error.
   [[nodiscard]] bool garbled() const { return garbled_; }
   void forget() {
     heard_.clear();

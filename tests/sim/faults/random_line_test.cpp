@@ -114,7 +114,7 @@ std::string dcon_noise(Noise& noise, bool checksum) {
 
 void report(const char* what, std::size_t bytes, NoisyLine& line) {
   const std::uint64_t requests = line.requests();
-  std::printf("%s: %zu bytes in an hour, %llu requests right, %llu answered\n", what, bytes,
+  std::printf("%s: %zu bytes in an hour, %llu valid requests, %llu answered\n", what, bytes,
               static_cast<unsigned long long>(requests), static_cast<unsigned long long>(line.replies()));
   // A request that arrives during a reply is lost. Most requests arrive at other times.
   EXPECT_GT(requests, 1000U);

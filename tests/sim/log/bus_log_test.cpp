@@ -77,8 +77,8 @@ TEST(TextLog, ChangesByNoiseAreReportedWithTheMeaning) {
 
 TEST(TextLog, ANoteIsALineToo) {
   std::string printed;
-  TextLog(names(), [&printed](const std::string& line) { printed = line; }).note(kBegan, "so it is");
-  EXPECT_EQ(printed, "   12.345679  - so it is");
+  TextLog(names(), [&printed](const std::string& line) { printed = line; }).note(kBegan, "a remark");
+  EXPECT_EQ(printed, "   12.345679  - a remark");
 }
 
 TEST(TextLog, AFrameFromAnUnknownSenderHasNoMeaning) {

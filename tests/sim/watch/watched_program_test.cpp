@@ -83,7 +83,7 @@ class Window {
 
   /// Returns the path of the end for programs.
   [[nodiscard]] const std::string& device() const { return device_; }
-  /// Whether a program could print there without waiting.
+  /// Returns whether a program could print in the window without waiting.
   [[nodiscard]] bool has_room() const {
     pollfd ready{programs_, POLLOUT, 0};
     return poll(&ready, 1, 0) == 1;
