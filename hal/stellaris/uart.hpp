@@ -1,163 +1,25 @@
-// A UART and its RS-485 driver. Sources: LM3S6965 data sheet, 12.3 to 12.5; TM4C123GH6PM data sheet, 14.3
-// to 14.5.
+// The UARTs of this family and their RS-485 driver. Sources: LM3S6965 data sheet, 12.4; TM4C123GH6PM data
+// sheet, 14.4.
 #pragma once
 
 #include <cstdint>
 
-#include "firmware/bytes.hpp"
-#include "firmware/line/crossing.hpp"
-#include "firmware/line/verdict.hpp"
-#include "firmware/time.hpp"
-#include "hal/registers/register.hpp"
+#include "hal/pl011/uart.hpp"
 #include "hal/stellaris/gpio.hpp"
-#include "hal/stellaris/uart_rate.hpp"
 
 namespace ex9000::hal::stellaris {
 
-/// `number`: 0 or 1; `clock`: system clock in Hz; `driver_enable`: pin that is high while the module sends;
-/// `EndTimer`: a one-shot timer for this UART only, whose interrupt calls `on_end_timer`.
-///
-/// The FIFOs stay off, so that each byte causes an interrupt when it arrives and the silence after it can be
-/// measured. The disadvantage is an overrun if an interrupt is delayed by more than a character.
-///
-/// The main loop writes `begun_` and the interrupts write `ended_`. The driver is on while the two differ.
-template <unsigned number, std::uint32_t clock, const Pin& driver_enable, class EndTimer>
-class Uart {
-  static_assert(largest_baud_error(clock) < kTolerableBaudError, "this clock cannot make all baud rates");
-
+/// An RS-485 driver that is on while its pin is high.
+template <const Pin& pin>
+class DriverEnablePin {
  public:
-  /// Turns the driver off. Call this once, before `open`.
-  static void start() { Gpio(driver_enable.port).make_output(driver_enable.mask(), 0); }
-
-  // --- main loop; see hal/serial_line.hpp ---
-
-  void open(std::uint32_t baud) {
-    constexpr std::uint32_t kBitsACharacter = 10;
-    constexpr std::uint32_t kMicroseconds = 1'000'000;
-    const std::uint32_t divisor = baud_divisor(clock, baud);
-    bit_ = Duration(kMicroseconds / baud + 1U);
-    character_ = Duration(kBitsACharacter * kMicroseconds / baud + 1U);
-    kControl.write({});
-    kIntegerDivisor.write(Bits<IntegerDivisor>(divisor >> 6U));
-    kFractionalDivisor.write(Bits<FractionalDivisor>(divisor & 0x3FU));
-    kLineControl.write(kEightBits);  // must follow the divisors, because this write activates them
-    kInterruptMask.write(kReceived | kTransmitted);
-    kControl.write(kEnable | kTransmitEnable | kReceiveEnable);
-  }
-
-  void send(Bytes bytes) {
-    rest_.set_in_main_loop(bytes.from(1));
-    kInterruptMask.write(kTransmitted);  // bytes that are received from now on are the echo
-    begun_.store_in_main_loop(begun_.load() + 1U);
-    Gpio(driver_enable.port).write(driver_enable.mask(), driver_enable.mask());
-    kData.write(Bits<Data>(bytes[0]));
-  }
-
-  [[nodiscard, gnu::always_inline]] bool sending() const { return begun_.load() != ended_.load(); }
-
-  // --- interrupts ---
-
-  /// Calls `deliver(byte, status)` for a received byte, or continues to send. For the UART's interrupt.
-  template <class Deliver>
-  void on_interrupt(Deliver deliver) {
-    const Bits<MaskedInterrupts> why = kMaskedInterrupts.read();
-    if (why.has(kWasReceived)) {
-      // There is only one byte, and reading it clears the flag. Other events cause another interrupt.
-      const Bits<Data> data = kData.read();
-      deliver(static_cast<std::uint8_t>(data.value()), status_of(data));
-    } else if (why.has(kWasTransmitted)) {
-      kInterruptClear.write(kTransmittedClear);
-      take_echo();
-      send_next();
-    }
-  }
-
-  /// Call this when the end timer has expired, after the time of the last byte. The LM3S has no interrupt for
-  /// the end of transmission, so this checks the busy flag. Returns true if the last byte has been sent and
-  /// the driver is off; otherwise it restarts the timer. For the interrupt of the end timer.
-  bool on_end_timer() {
-    if (kFlags.read().has(kBusy)) {
-      EndTimer::restart(bit_);
-      return false;
-    }
-    take_echo();
-    kInterruptMask.write(kReceived | kTransmitted);
-    Gpio(driver_enable.port).write(driver_enable.mask(), 0);  // after the mask: a master may send now
-    ended_.store_in_interrupt(begun_.load());
-    return true;
-  }
-
- private:
-  struct Data;
-  struct Flags;
-  struct IntegerDivisor;
-  struct FractionalDivisor;
-  struct LineControl;
-  struct Control;
-  struct InterruptMask;
-  struct MaskedInterrupts;
-  struct InterruptClear;
-
-  static constexpr std::uint32_t kBase = 0x4000'C000U + number * 0x1000U;
-  static constexpr Register<Data> kData{kBase + 0x000};
-  static constexpr Register<Flags> kFlags{kBase + 0x018};
-  static constexpr Register<IntegerDivisor> kIntegerDivisor{kBase + 0x024};
-  static constexpr Register<FractionalDivisor> kFractionalDivisor{kBase + 0x028};
-  static constexpr Register<LineControl> kLineControl{kBase + 0x02C};
-  static constexpr Register<Control> kControl{kBase + 0x030};
-  static constexpr Register<InterruptMask> kInterruptMask{kBase + 0x038};
-  static constexpr Register<MaskedInterrupts> kMaskedInterrupts{kBase + 0x040};
-  static constexpr Register<InterruptClear> kInterruptClear{kBase + 0x044};
-
-  static constexpr Bits<Data> kFramingError{1U << 8U};
-  static constexpr Bits<Data> kBreakError{1U << 10U};
-  static constexpr Bits<Data> kOverrunError{1U << 11U};
-  static constexpr Bits<Flags> kBusy{1U << 3U};
-  static constexpr Bits<Flags> kReceiverEmpty{1U << 4U};
-  static constexpr Bits<LineControl> kEightBits{0x3U << 5U};  // no parity, one stop bit, FIFOs off
-  static constexpr Bits<Control> kEnable{1U << 0U};
-  static constexpr Bits<Control> kTransmitEnable{1U << 8U};
-  static constexpr Bits<Control> kReceiveEnable{1U << 9U};
-  static constexpr Bits<InterruptMask> kReceived{1U << 4U};
-  static constexpr Bits<InterruptMask> kTransmitted{1U << 5U};
-  static constexpr Bits<InterruptClear> kTransmittedClear{1U << 5U};
-  static constexpr Bits<MaskedInterrupts> kWasReceived{1U << 4U};
-  static constexpr Bits<MaskedInterrupts> kWasTransmitted{1U << 5U};
-
-  static ByteStatus status_of(Bits<Data> data) {
-    if (!data.has(kFramingError | kBreakError | kOverrunError)) {
-      return ByteStatus::Good;
-    }
-    if (data.has(kOverrunError)) {
-      return ByteStatus::Overrun;
-    }
-    return data.has(kBreakError) ? ByteStatus::Break : ByteStatus::FramingError;
-  }
-
-  /// Discards the echo of a sent byte, if the receiver gets it, so that the receiver is empty for the next
-  /// byte.
-  static void take_echo() {
-    if (!kFlags.read().has(kReceiverEmpty)) {
-      static_cast<void>(kData.read());
-    }
-  }
-
-  /// Sends the next byte, after the previous one has moved from the holding register to the shift register.
-  void send_next() {
-    Bytes& rest = rest_.in_interrupt();
-    if (rest.size != 0) {
-      kData.write(Bits<Data>(rest[0]));
-      rest = rest.from(1);
-    } else if (sending()) {
-      EndTimer::restart(character_);
-    }
-  }
-
-  Duration bit_;                   ///< duration of a bit, rounded up
-  Duration character_;             ///< duration of a character, rounded up
-  HandedToInterrupt<Bytes> rest_;  ///< `begun_` hands it to the interrupts, `ended_` returns it
-  WrittenByMainLoop<std::uint32_t> begun_;
-  WrittenByInterrupt<std::uint32_t> ended_;
+  static void start() { Gpio(pin.port).make_output(pin.mask(), 0); }
+  static void drive(bool on) { Gpio(pin.port).write(pin.mask(), on ? pin.mask() : 0); }
 };
+
+/// `number`: 0 or 1; `clock`: system clock in Hz; `driver_enable`: pin that is high while the module sends;
+/// for `EndTimer`, see pl011::Uart.
+template <unsigned number, std::uint32_t clock, const Pin& driver_enable, class EndTimer>
+using Uart = pl011::Uart<0x4000'C000U + number * 0x1000U, clock, DriverEnablePin<driver_enable>, EndTimer>;
 
 }  // namespace ex9000::hal::stellaris

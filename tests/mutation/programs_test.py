@@ -22,7 +22,7 @@ class Programs(unittest.TestCase):
 
     def test_tests_come_first_that_are_called_like_the_file(self):
         self.assertEqual(self.nearest("firmware", "firmware/line/crc16.hpp")[0], "crc16_test")
-        self.assertEqual(self.nearest("hal", "hal/stellaris/uart.hpp")[0], "uart_driver_test")
+        self.assertEqual(self.nearest("hal", "hal/pl011/uart.hpp")[0], "uart_driver_test")
         self.assertEqual(self.nearest("sim", "sim/bus/bus.cpp")[0], "bus_test")
 
     def test_then_those_that_name_its_header(self):

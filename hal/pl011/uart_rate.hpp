@@ -1,12 +1,12 @@
 // The UART's baud-rate divisor and its error. Sources: LM3S6965 data sheet, 12.3.2; TM4C123GH6PM data
-// sheet, 14.3.2.
+// sheet, 14.3.2; RP2040 data sheet, 4.2.7.1.
 #pragma once
 
 #include <cstdint>
 
 #include "firmware/model/baud.hpp"
 
-namespace ex9000::hal::stellaris {
+namespace ex9000::hal::pl011 {
 
 /// Returns the divisor of the clock for 16 samples per bit, in units of 1/64: 16 integer bits and 6
 /// fractional bits.
@@ -36,4 +36,4 @@ constexpr std::uint32_t largest_baud_error(std::uint32_t clock) {
 /// of that.
 constexpr std::uint32_t kTolerableBaudError = 10'000;
 
-}  // namespace ex9000::hal::stellaris
+}  // namespace ex9000::hal::pl011
