@@ -1,5 +1,5 @@
-// The interrupt controller of a Cortex-M3 or -M4, and sleep until an interrupt. Source: ARMv7-M Architecture
-// Reference Manual, B3.2 and B3.4.
+// The interrupt controller of a Cortex-M, and sleep until an interrupt. Sources: ARMv7-M Architecture
+// Reference Manual, B3.2 and B3.4; ARMv6-M Architecture Reference Manual, B3.2 and B3.4.
 #pragma once
 
 #include <cstdint>
@@ -16,7 +16,8 @@ class Interrupts {
   /// An interrupt cannot interrupt another interrupt. The stack therefore needs room for only one interrupt,
   /// and interrupts can share data without protection. Priorities only define the order of pending
   /// interrupts: SysTick, then the others by number, then `last`. The board passes the UART as `last`, so
-  /// that the end of a silence is processed before the byte that follows it.
+  /// that the end of a silence is processed before the byte that follows it. Not for a Cortex-M0+, where each
+  /// priority can interrupt a lower one.
   static void enable(std::uint32_t numbers, std::uint32_t last) {
     constexpr std::uint32_t kLowest = 0xFF;
     constexpr std::uint32_t kInterruptsAWord = 4;
@@ -24,8 +25,12 @@ class Interrupts {
     kApplicationInterrupt.write(kKey | kNoneInterrupts);
     Register<Priority>(0xE000'E400 + last / kInterruptsAWord * 4)
         .write(Bits<Priority>(kLowest << (last % kInterruptsAWord * kBits)));
-    kSetEnable.write(Bits<SetEnable>(numbers));
+    enable(numbers);
   }
+
+  /// Enables interrupts, which keep the equal priorities that they have after a reset. An interrupt cannot
+  /// interrupt another interrupt. Pending ones run in this order: SysTick, then the others by number.
+  static void enable(std::uint32_t numbers) { kSetEnable.write(Bits<SetEnable>(numbers)); }
 
   /// Sleeps until `has_work()` returns true. Interrupts run meanwhile. They are disabled only between the
   /// call of `has_work` and the sleep, so that no event is missed; a pending interrupt ends the sleep
@@ -42,7 +47,7 @@ class Interrupts {
   }
 
   /// Resets the microcontroller at once and does not return. Interrupts, faults and the main loop may call
-  /// it.
+  /// it. On an RP2040, it would reset only the processor.
   [[noreturn]] static void reset() {
     constexpr Bits<ApplicationInterrupt> kReset(1U << 2U);
     kApplicationInterrupt.write(kKey | kReset);

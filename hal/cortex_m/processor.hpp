@@ -1,4 +1,5 @@
-// Functions that need special instructions. Source: ARMv7-M Architecture Reference Manual, B5.2 and A7.7.
+// Functions that need special instructions. Sources: ARMv7-M Architecture Reference Manual, B5.2 and A7.7;
+// ARMv6-M Architecture Reference Manual, B4.2 and A6.7.
 #pragma once
 
 namespace ex9000::hal::cortex_m::processor {

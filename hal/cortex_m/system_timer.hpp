@@ -5,6 +5,7 @@
 
 #include "firmware/line/crossing.hpp"
 #include "firmware/time.hpp"
+#include "hal/cortex_m/system_tick.hpp"
 #include "hal/registers/register.hpp"
 #include "hal/tick.hpp"
 
@@ -14,12 +15,7 @@ namespace ex9000::hal::cortex_m {
 template <std::uint32_t cycles_per_microsecond>
 class SystemTimer {
  public:
-  static void start() {
-    constexpr Bits<Control> kRunWithInterruptOnProcessorClock(0x7);
-    kReload.write(Bits<Reload>(kPeriod - 1U));
-    kCurrent.write({});
-    kControl.write(kRunWithInterruptOnProcessorClock);
-  }
+  static void start() { SystemTick<cycles_per_microsecond>::start(); }
 
   [[nodiscard]] Time now() const {
     for (;;) {
@@ -47,19 +43,12 @@ class SystemTimer {
   void count_in_interrupt() { counted_.store_in_interrupt(counted_.load() + kTickMicroseconds); }
 
  private:
-  struct Control;
-  struct Reload;
   struct Current;
   struct InterruptControl;
-  static constexpr Register<Control> kControl{0xE000'E010};
-  static constexpr Register<Reload> kReload{0xE000'E014};
   static constexpr Register<Current> kCurrent{0xE000'E018};
   static constexpr Register<InterruptControl> kInterruptControl{0xE000'ED04};
   static constexpr std::uint32_t kTickMicroseconds = kTickPeriod.microseconds();
   static constexpr std::uint32_t kLastMicrosecond = kTickMicroseconds - 1U;  // the counter counts down to 0
-
-  static constexpr std::uint32_t kPeriod = kTickMicroseconds * cycles_per_microsecond;
-  static_assert(kPeriod <= 1U << 24U, "the counter has 24 bits");
 
   WrittenByInterrupt<std::uint32_t> counted_;  ///< microseconds of all counted ticks
 };

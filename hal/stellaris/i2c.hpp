@@ -1,5 +1,4 @@
-// I2C master 0. Sources: LM3S6965 data sheet, 14.3 to 14.5; TM4C123GH6PM data sheet, 16.3 to 16.5. For
-// freeing a stuck bus: NXP UM10204, 3.1.16, and the AT24C64 data sheet, "memory reset".
+// I2C master 0. Sources: LM3S6965 data sheet, 14.3 to 14.5; TM4C123GH6PM data sheet, 16.3 to 16.5.
 #pragma once
 
 #include <cstddef>
@@ -7,6 +6,7 @@
 
 #include "firmware/line/crossing.hpp"
 #include "firmware/time.hpp"
+#include "hal/i2c_bus_recovery.hpp"
 #include "hal/i2c_master.hpp"
 #include "hal/registers/register.hpp"
 #include "hal/stellaris/gpio.hpp"
@@ -35,7 +35,9 @@ class I2c {
       case Step::Idle:
         return false;
       case Step::Freeing:
-        free_bus(now);
+        if (recovery_.poll(now)) {
+          hand_over(now);
+        }
         return true;
       case Step::Moving:
         break;
@@ -103,53 +105,31 @@ class I2c {
   static constexpr std::uint32_t kBoth = kClock | kDataPin;
   static constexpr std::uint32_t kPortControlFunction = 3;
 
-  static constexpr Duration kHalfClock{5};
   /// A byte takes 90 us. The rest is the time for which the main loop may sleep.
   static constexpr Duration kByteTimeout = milliseconds(3);
 
   // --- freeing the bus ---
 
-  /// Begins to free the bus. A device that was interrupted during a byte may hold the data line low. The
-  /// driver sends up to nine clocks until the device releases the line, and then START and STOP. It also
-  /// resets the peripheral. Otherwise the peripheral would continue an unfinished byte and report its end as
-  /// the end of the next byte.
+  struct Wires {
+    static void take() {
+      kPort.take_from_peripheral(kBoth);
+      kPort.make_input(kBoth, true);  // with the weak pull-ups, the lines are high on a board without EEPROM
+    }
+    static void pull(bool clock_line, bool data_line) {
+      kPort.choose_outputs(kBoth, (clock_line ? kClock : 0) | (data_line ? kDataPin : 0));
+      kPort.write(kBoth, 0);
+    }
+    static bool data_is_high() { return kPort.read(kDataPin) != 0; }
+  };
+
+  /// Begins to free the bus. It also resets the peripheral. Otherwise the peripheral would continue an
+  /// unfinished byte and report its end as the end of the next byte.
   void begin_freeing() {
     constexpr Bits<SoftwareReset> kI2c0(1U << 12U);
     kSoftwareReset.write(kI2c0);
     kSoftwareReset.write({});
-    kPort.take_from_peripheral(kBoth);
-    kPort.make_input(kBoth, true);  // with the weak pull-ups, the lines are high on a board without EEPROM
+    recovery_.begin();
     step_ = Step::Freeing;
-    freeing_ = kFirstClock;
-    deadline_.disarm();
-  }
-
-  void free_bus(Time now) {
-    if (deadline_.armed() && !deadline_.reached(now)) {
-      return;
-    }
-    deadline_.set(now + kHalfClock);
-    const bool clock_released = freeing_ % 2 == kFirstClock;
-    if (freeing_ < kBusStart && clock_released && kPort.read(kDataPin) != 0) {
-      freeing_ = kBusStart;
-    }
-    if (freeing_ < kBusStart) {
-      pull(clock_released ? kClock : 0);
-    } else if (freeing_ == kBusStart) {
-      pull(kDataPin);
-    } else if (freeing_ == kBusStop) {
-      pull(0);
-    } else {
-      hand_over(now);
-      return;
-    }
-    ++freeing_;
-  }
-
-  /// Drives `pins` low and lets the other pins float.
-  static void pull(std::uint32_t pins) {
-    kPort.choose_outputs(kBoth, pins);
-    kPort.write(kBoth, 0);
   }
 
   /// Connects the pins to the peripheral and starts it.
@@ -226,18 +206,14 @@ class I2c {
     busy_ = false;
   }
 
-  static constexpr std::uint8_t kFirstClock = 0;
-  static constexpr std::uint8_t kBusStart = 18;  ///< after nine clocks
-  static constexpr std::uint8_t kBusStop = 19;
-
   Step step_ = Step::Freeing;
   I2cResult result_ = {};
   bool busy_ = false;
-  std::uint8_t freeing_ = kFirstClock;
   std::uint8_t done_ = 0;  ///< number of transferred bytes
   std::uint32_t completed_seen_ = 0;
   WrittenByInterrupt<std::uint32_t> completed_;
   Deadline deadline_;
+  I2cBusRecovery<Wires> recovery_;
   const I2cTransfer* transfer_ = nullptr;
 };
 

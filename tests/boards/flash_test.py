@@ -22,7 +22,7 @@ def openocd_scripts() -> dict[str, str]:
     for file in sorted(ROOT.glob("boards/*/board.cmake")):
         match = re.search(r"set\(openocd_script (\S+)\)", file.read_text())
         if match is not None:
-            scripts[file.parent.name] = match.group(1)
+            scripts[file.parent.name] = match.group(1).replace("${CMAKE_CURRENT_LIST_DIR}", str(file.parent))
     return scripts
 
 
@@ -48,7 +48,7 @@ def openocd(words: list[str]) -> subprocess.CompletedProcess[str]:
 
 class Flash(unittest.TestCase):
     def test_every_board_has_a_script_that_openocd_understands(self) -> None:
-        self.assertEqual(set(openocd_scripts()), {"ek-tm4c123gxl", "lm3s6965evb"})
+        self.assertEqual(set(openocd_scripts()), {"ek-tm4c123gxl", "lm3s6965evb", "pico"})
         for board, script in openocd_scripts().items():
             with self.subTest(board):
                 finished = openocd(["-f", script, "-c", "noinit", "-c", "shutdown"])

@@ -28,6 +28,9 @@ FOREIGN = {
     "memmove": Foreign(16, "newlib's, or newlib-nano's: loops, no calls"),
     "memset": Foreign(16, "newlib's, or newlib-nano's: loops, no calls"),
     "memcmp": Foreign(16, "newlib's, or newlib-nano's: loops, no calls"),
+    "__aeabi_uidiv": Foreign(8, "libgcc's division of a processor without one"),
+    "__aeabi_uidivmod": Foreign(0, "libgcc's: continues with the function before"),
+    "__aeabi_idiv0": Foreign(0, "libgcc's: returns"),
 }
 
 _VENEER = re.compile(r"__(.*)_veneer")
@@ -82,6 +85,8 @@ class LinkedGraph:
         calls = set()
         for title in record.calls:
             target = self._find(title)
+            if target is None and title.name.startswith("__aeabi_"):
+                continue  # the compiler has removed the call of its library after it wrote the record
             if target is None:
                 problem = f"calls {title.name}, which the image does not have"
             else:

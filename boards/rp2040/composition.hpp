@@ -1,0 +1,170 @@
+// An image for a board of this family, from reset to the main loop. This file connects the drivers to the
+// pins of `board.hpp`, the module to the drivers, and the interrupts to their handlers. The main.cpp of a
+// board includes it once.
+#pragma once
+
+#include <array>
+#include <cstdint>
+
+#include "boards/cortex_m/start_up.hpp"
+#include "boards/image.hpp"
+#include "boards/rp2040/memory.hpp"
+#include "firmware/model/built.hpp"
+#include "hal/at24c/at24c.hpp"
+#include "hal/cortex_m/interrupts.hpp"
+#include "hal/cortex_m/system_tick.hpp"
+#include "hal/device.hpp"
+#include "hal/pl011/uart.hpp"
+#include "hal/rp2040/clocks.hpp"
+#include "hal/rp2040/i2c.hpp"
+#include "hal/rp2040/inputs.hpp"
+#include "hal/rp2040/interrupts.hpp"
+#include "hal/rp2040/outputs.hpp"
+#include "hal/rp2040/resets.hpp"
+#include "hal/rp2040/switches.hpp"
+#include "hal/rp2040/timer.hpp"
+#include "hal/rp2040/watchdog.hpp"
+
+// NOLINTBEGIN(cert-dcl59-cpp,google-build-namespaces,misc-definitions-in-headers): included once
+namespace ex9000::board {
+namespace {
+
+using namespace hal::cortex_m;
+using namespace hal::rp2040;
+
+constexpr std::uint32_t kHertz = kClock.frequency();
+constexpr std::uint32_t kMegahertz = 1'000'000;
+constexpr std::uint32_t kUart0 = 0x4003'4000;
+
+using Tick = SystemTick<kHertz / kMegahertz>;
+using SilenceTimer = OneShotTimer<0>;
+using LineEndTimer = OneShotTimer<1>;
+using WakeTimer = OneShotTimer<2>;
+using Line = hal::pl011::Uart<kUart0, kHertz, DriverEnablePin<kDriverEnable>, LineEndTimer>;
+using Watchdog = HardwareWatchdog<kClock.crystal / kMegahertz>;
+static_assert(hal::kIsTick<Tick>,
+              "Tick: lacks a function, or a function has a wrong signature; see hal/tick.hpp");
+static_assert(
+    hal::kIsOneShotTimer<LineEndTimer>,
+    "LineEndTimer: lacks a function, or a function has a wrong signature; see hal/one_shot_timer.hpp");
+
+/// The memory of the settings: its driver, its start and its interrupt.
+template <Memory memory>
+struct MemoryOnBoard;
+template <>
+struct MemoryOnBoard<Memory::Eeprom> {
+  using Driver = hal::At24c<I2c<kI2cPins, kHertz>>;
+  static constexpr std::uint32_t kBlocks = static_cast<std::uint32_t>(Block::I2c0);
+  static constexpr Interrupt kInterrupt = Interrupt::I2c0;
+  static void start(Driver& driver) { driver.master().start(); }
+  static void on_interrupt(Driver& driver) { driver.master().on_interrupt(); }
+};
+// Memory::Flash: no driver yet. Its sectors are at `settings_begin` of the linker script.
+
+using Settings = MemoryOnBoard<kMemory>;
+
+/// See hal/board.hpp.
+struct Board {
+  Clock clock;
+  Line line;
+  SilenceTimer silence_timer;
+  WakeTimer wake_timer;
+  InputPins<kInputs, kOnlyModel.inputs, kInputsActiveHigh> inputs;
+  OutputPins<kOutputs, kOnlyModel.outputs, kOutputsActiveHigh> outputs;
+  Settings::Driver memory;
+  InitPin<kInitSwitch> init_switch;
+  LedPin<kStatusLed> status_led;
+  Watchdog watchdog;
+};
+
+hal::Device<Board> device(kOnlyModel, kTimingAt);
+Board& board = device.board();
+
+// --- interrupts; none can interrupt another, because they have the same priority ---
+
+void on_system_tick() { device.on_tick(); }
+
+void on_line() {
+  board.line.on_interrupt([](std::uint8_t byte, ByteStatus status) { device.on_receive(byte, status); });
+}
+
+void on_silence_timer() {
+  if (SilenceTimer::take_expiry()) {
+    device.on_silence();
+  }
+}
+
+void on_line_end_timer() {
+  if (LineEndTimer::take_expiry()) {
+    if (board.line.on_end_timer()) {
+      device.on_sent();
+    }
+  }
+}
+
+void on_wake_timer() {
+  if (WakeTimer::take_expiry()) {
+    device.on_wake_timer();
+  }
+}
+
+void on_memory() {
+  Settings::on_interrupt(board.memory);
+  device.on_memory();
+}
+
+void on_edges() {
+  board.inputs.take_edges([](unsigned channel, bool level) { device.on_edge(channel, level); });
+}
+
+constexpr start_up::Served served(Interrupt number, start_up::Handler handler) {
+  return {static_cast<unsigned>(number), handler};
+}
+constexpr auto kServed = table<start_up::Served>({
+    served(Interrupt::Timer0, on_silence_timer),
+    served(Interrupt::Timer1, on_line_end_timer),
+    served(Interrupt::Timer2, on_wake_timer),
+    served(Interrupt::Pins, decltype(board.inputs)::any() ? on_edges : nullptr),
+    served(Interrupt::Uart0, on_line),
+    served(Settings::kInterrupt, on_memory),
+});
+
+constexpr unsigned kInterrupts = 26;
+__attribute__((section(".vectors"), used)) constexpr auto kVectors =
+    start_up::vectors<kInterrupts>(on_system_tick, kServed);
+
+/// Starts the drivers. The watchdog is first, so that it can reset the MCU if a later step hangs. The outputs
+/// are next, because they float until then.
+void start() {
+  Watchdog::start();
+  Resets::stop_second_core();
+  Resets::release(Block::Pins | Block::Pads | Block::Timer);
+  board.outputs.start();
+  board.line.start();
+  board.init_switch.start();
+  board.status_led.start();
+  Clocks::use<kClock>();
+  Resets::release(Settings::kBlocks | Block::Uart0);  // the UART requires its clock
+  Gpio::make_peripheral(kUartPins.mask(), Function::Uart);
+  Settings::start(board.memory);
+  SilenceTimer::start();
+  LineEndTimer::start();
+  WakeTimer::start();
+  Tick::start();
+  device.start();
+  Interrupts::enable(start_up::numbers_of(kServed));
+}
+
+}  // namespace
+}  // namespace ex9000::board
+
+int main() {
+  using namespace ex9000::board;
+  start();
+  for (;;) {
+    while (device.turn()) {
+    }
+    Interrupts::sleep_until([] { return device.has_work(); });
+  }
+}
+// NOLINTEND(cert-dcl59-cpp,google-build-namespaces,misc-definitions-in-headers)

@@ -1,0 +1,13 @@
+// The memories in which an image can store its settings.
+#pragma once
+
+#include <cstdint>
+
+namespace ex9000::board {
+
+enum class Memory : std::uint8_t {
+  Flash,   ///< the end of the flash from which the image is started
+  Eeprom,  ///< an AT24C64 or a compatible FRAM on I2C
+};
+
+}  // namespace ex9000::board

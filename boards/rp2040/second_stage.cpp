@@ -1,0 +1,21 @@
+// The second stage of the boot sequence. The boot ROM copies the first 256 bytes of the flash to the end of
+// RAM and calls this function, if the checksum in the last four bytes is right. toolchain/seal-second-stage
+// writes the checksum. Source: RP2040 data sheet, 2.8.1.
+#include <cstdint>
+
+#include "hal/rp2040/boot.hpp"
+
+namespace ex9000::start_up {
+
+// Symbols of the linker script. The image begins with its vector table.
+extern "C" std::uint32_t image_begin[];
+extern "C" std::uint32_t image_end[];
+
+extern "C" [[noreturn]] __attribute__((section(".second_stage"), used, externally_visible)) void
+second_stage() {
+  constexpr std::uint32_t kImageInFlash = 256;
+  hal::rp2040::Boot::copy(kImageInFlash, image_begin, static_cast<std::uint32_t>(image_end - image_begin));
+  hal::rp2040::Boot::jump(image_begin);
+}
+
+}  // namespace ex9000::start_up

@@ -1,0 +1,22 @@
+// The start of an image after the second stage, which has copied code and initialised data to RAM.
+#include "boards/cortex_m/start_up.hpp"
+#include "hal/rp2040/watchdog.hpp"
+
+namespace ex9000::start_up {
+
+// Symbols of the linker script. Each is the beginning or the end of an array of words.
+extern "C" std::uint32_t zero_begin[];
+extern "C" std::uint32_t zero_end[];
+
+extern "C" void reset_handler() {
+  for (std::uint32_t* word = zero_begin; word != zero_end; ++word) {
+    *word = 0;
+  }
+  main();
+  fault_handler();
+}
+
+/// The processor's own reset request would leave the pins as they are, so the watchdog resets the chip.
+extern "C" void fault_handler() { hal::rp2040::WatchdogRegisters::reset_chip(); }
+
+}  // namespace ex9000::start_up

@@ -1,0 +1,61 @@
+// Frees an I2C bus that a device blocks. Sources: NXP UM10204, 3.1.16; AT24C64 data sheet, "memory reset".
+#pragma once
+
+#include <cstdint>
+
+#include "firmware/time.hpp"
+
+namespace ex9000::hal {
+
+/// A device that was interrupted during a byte may hold the data line low. This class sends up to nine clocks
+/// until the device releases the line, and then START and STOP. All functions are for the main loop and do
+/// not block.
+///
+/// `Wires` controls the two lines directly, as open-drain outputs with pull-ups:
+///
+///     void take()                           Disconnects the lines from the master and lets them float.
+///     void pull(bool clock, bool data)      Drives the given lines low and lets the others float.
+///     bool data_is_high()                   Returns the level of the data line.
+template <class Wires>
+class I2cBusRecovery {
+ public:
+  void begin() {
+    Wires::take();
+    step_ = kFirstClock;
+    deadline_.disarm();
+  }
+
+  /// Continues. Call it again at once until it returns true: the bus is free.
+  bool poll(Time now) {
+    if (deadline_.armed() && !deadline_.reached(now)) {
+      return false;
+    }
+    deadline_.set(now + kHalfClock);
+    const bool clock_released = step_ % 2 == kFirstClock;
+    if (step_ < kBusStart && clock_released && Wires::data_is_high()) {
+      step_ = kBusStart;
+    }
+    if (step_ < kBusStart) {
+      Wires::pull(clock_released, false);
+    } else if (step_ == kBusStart) {
+      Wires::pull(false, true);
+    } else if (step_ == kBusStop) {
+      Wires::pull(false, false);
+    } else {
+      return true;
+    }
+    ++step_;
+    return false;
+  }
+
+ private:
+  static constexpr std::uint8_t kFirstClock = 0;
+  static constexpr std::uint8_t kBusStart = 18;  ///< after nine clocks
+  static constexpr std::uint8_t kBusStop = 19;
+  static constexpr Duration kHalfClock{5};
+
+  std::uint8_t step_ = kFirstClock;
+  Deadline deadline_;
+};
+
+}  // namespace ex9000::hal

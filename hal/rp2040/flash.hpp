@@ -1,0 +1,138 @@
+// The flash chip beside the processor, by the synchronous serial interface (SSI). Sources: RP2040 data sheet,
+// 4.10 (SSI) and 2.19.6.2 (pins of the flash); W25Q16JV data sheet, 8.1 and 8.2 (instructions).
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+
+#include "firmware/bytes.hpp"
+#include "hal/registers/register.hpp"
+#include "hal/rp2040/shared_register.hpp"
+
+namespace ex9000::hal::rp2040 {
+
+/// Erases, programs and reads the flash with single-bit commands while the image runs from RAM. Interrupts
+/// stay enabled: the driver controls chip select itself, so a delay between two bytes does no harm. The flash
+/// is not mapped into memory after `start`.
+///
+/// All functions are for the main loop. None waits for the flash; each takes as long as its bytes on the
+/// wires: 0.5 us a byte, and four or five bytes for a command and its address.
+class Flash {
+ public:
+  static constexpr std::size_t kPage = 256;     ///< a program operation must not cross the end of a page
+  static constexpr std::size_t kSector = 4096;  ///< unit of an erase
+
+  /// Call this once, before the other functions. The flash may still be busy: a reset does not interrupt it.
+  static void start() {
+    constexpr std::uint32_t kDivider = 8;  // even; 15.6 MHz
+    constexpr Bits<Control> kBytesBothWays(7U << 16U);
+    select(false);
+    kEnable.write({});
+    kBaud.write(Bits<Baud>(kDivider));
+    kControl.write(kBytesBothWays);
+    kSlave.write(Bits<Slave>(1));
+    kEnable.write(Bits<Enable>(1));
+  }
+
+  /// Begins to erase the sector at `address`. Call it only while not `busy()`.
+  static void begin_erase(std::uint32_t address) {
+    command(kWriteEnable);
+    address_command(kSectorErase, address);
+    select(false);
+  }
+
+  /// Begins to program `bytes`, which only changes ones to zeros. Call it only while not `busy()`. `bytes`
+  /// must lie in one page. It is no longer required when the function returns.
+  static void begin_program(std::uint32_t address, Bytes bytes) {
+    command(kWriteEnable);
+    address_command(kPageProgram, address);
+    for (std::size_t i = 0; i < bytes.size; ++i) {
+      exchange(bytes[i]);
+    }
+    select(false);
+  }
+
+  /// Returns whether the flash erases or programs. While it is suspended, it is not busy.
+  [[nodiscard]] static bool busy() {
+    select(true);
+    exchange(kReadStatus);
+    const std::uint8_t status = exchange(0);
+    select(false);
+    return (status & kBusyBit) != 0;
+  }
+
+  /// Interrupts an erase or a program operation, within 20 us. Wait until the flash is not `busy()`. Then
+  /// other sectors can be read. It has no effect on a flash that is not busy.
+  static void suspend() { command(kSuspend); }
+  /// Continues the interrupted operation. Wait at least 20 us before the next `suspend`.
+  static void resume() { command(kResume); }
+
+  /// Reads bytes. Call it only while not `busy()`.
+  static void read(std::uint32_t address, MutableBytes destination) {
+    address_command(kReadData, address);
+    for (std::size_t i = 0; i < destination.size; ++i) {
+      destination.data[i] = exchange(0);
+    }
+    select(false);
+  }
+
+ private:
+  struct Control;
+  struct Enable;
+  struct Slave;
+  struct Baud;
+  struct Status;
+  struct Data;
+  struct SelectControl;
+  static constexpr std::uint32_t kBase = 0x1800'0000U;
+  static constexpr Register<Control> kControl{kBase + 0x00};
+  static constexpr Register<Enable> kEnable{kBase + 0x08};
+  static constexpr Register<Slave> kSlave{kBase + 0x10};
+  static constexpr Register<Baud> kBaud{kBase + 0x14};
+  static constexpr Register<Status> kStatus{kBase + 0x28};
+  static constexpr Register<Data> kData{kBase + 0x60};
+  static constexpr SharedRegister<SelectControl> kSelectControl{0x4001'800C};
+
+  static constexpr std::uint8_t kPageProgram = 0x02;
+  static constexpr std::uint8_t kReadData = 0x03;
+  static constexpr std::uint8_t kReadStatus = 0x05;
+  static constexpr std::uint8_t kWriteEnable = 0x06;
+  static constexpr std::uint8_t kSectorErase = 0x20;
+  static constexpr std::uint8_t kSuspend = 0x75;
+  static constexpr std::uint8_t kResume = 0x7A;
+  static constexpr std::uint8_t kBusyBit = 0x01;
+
+  /// Drives chip select directly, instead of the SSI, which would release it whenever its queue is empty.
+  static void select(bool on) {
+    constexpr Bits<SelectControl> kLow(0x2U << 8U);
+    constexpr Bits<SelectControl> kHigh(0x3U << 8U);
+    kSelectControl.write(on ? kLow : kHigh);
+    (void)kSelectControl.read();  // completes the write before the next access of the SSI
+  }
+
+  /// Sends a byte and returns the byte that is received at the same time.
+  static std::uint8_t exchange(std::uint8_t byte) {
+    constexpr Bits<Status> kReceived(1U << 3U);
+    kData.write(Bits<Data>(byte));
+    while (!kStatus.read().has(kReceived)) {
+    }
+    return static_cast<std::uint8_t>(kData.read().value());
+  }
+
+  static void command(std::uint8_t code) {
+    select(true);
+    exchange(code);
+    select(false);
+  }
+
+  /// Sends a command and an address, and leaves the chip selected.
+  static void address_command(std::uint8_t code, std::uint32_t address) {
+    select(true);
+    exchange(code);
+    exchange(static_cast<std::uint8_t>(address >> 16U));
+    exchange(static_cast<std::uint8_t>(address >> 8U));
+    exchange(static_cast<std::uint8_t>(address));
+  }
+};
+
+}  // namespace ex9000::hal::rp2040

@@ -1,0 +1,166 @@
+// General-purpose pins. Source: RP2040 data sheet, 2.3.1 (SIO), 2.19 (GPIO, functions, interrupts and pads).
+#pragma once
+
+#include <cstdint>
+
+#include "hal/registers/register.hpp"
+#include "hal/rp2040/shared_register.hpp"
+
+namespace ex9000::hal::rp2040 {
+
+/// A pin by the number in its name: GPIO0 to GPIO29.
+struct Pin {
+  std::uint8_t number;
+
+  [[nodiscard]] constexpr std::uint32_t mask() const { return 1U << number; }
+};
+
+/// Adjacent pins for adjacent channels.
+struct PinGroup {
+  std::uint8_t first_pin;
+  std::uint8_t count;
+
+  [[nodiscard]] constexpr std::uint32_t mask() const { return ((1U << count) - 1U) << first_pin; }
+};
+
+enum class Function : std::uint8_t { Uart = 2, I2c = 3, Software = 5 };
+
+/// All pins are in one register. `pins` is a mask, bit n is GPIOn. Only the main loop and interrupts that do
+/// not interrupt each other may call these functions; each writes the bits of `pins` only.
+class Gpio {
+ public:
+  [[nodiscard]] static std::uint32_t read(std::uint32_t pins) { return kLevels.read().value() & pins; }
+
+  /// Sets the levels of `pins` at the same time. A pin whose level does not change has no glitch.
+  static void write(std::uint32_t pins, std::uint32_t levels) {
+    kOutInvert.write(Bits<Out>((kOut.read().value() ^ levels) & pins));
+  }
+  static void set(std::uint32_t pins) { kOutSet.write(Bits<Out>(pins)); }
+  static void clear(std::uint32_t pins) { kOutClear.write(Bits<Out>(pins)); }
+
+  /// Makes `pins` inputs with the weak pull-up if `pull_up`, else with the weak pull-down. Select the
+  /// inactive level, so that an open pin reads as inactive.
+  static void make_input(std::uint32_t pins, bool pull_up) {
+    kDriveClear.write(Bits<Drive>(pins));
+    make(pins, Function::Software, pull_up ? kInputPulledUp : kInputPulledDown);
+  }
+
+  /// Makes `pins` outputs of 8 mA with the initial `levels`, without a glitch: a pin drives nothing until
+  /// software is its function. Until then, its weak pull-down and the connected circuit hold it low.
+  static void make_output(std::uint32_t pins, std::uint32_t levels) {
+    write(pins, levels);
+    kDriveSet.write(Bits<Drive>(pins));
+    make(pins, Function::Software, kOutput8Ma);
+  }
+
+  /// Connects `pins` to a peripheral, with the weak pull-up, so that an open line is idle.
+  static void make_peripheral(std::uint32_t pins, Function function) {
+    make(pins, function, kPeripheralPulledUp);
+  }
+
+  /// Makes the pins in `outputs` drive their level, and lets the other pins in `pins` float.
+  static void choose_outputs(std::uint32_t pins, std::uint32_t outputs) {
+    kDriveClear.write(Bits<Drive>(pins & ~outputs));
+    kDriveSet.write(Bits<Drive>(outputs));
+  }
+
+  // --- edges; a register has four bits for each of eight pins ---
+
+  /// Enables interrupts for both edges of `pins`. Edges that are already flagged cause an interrupt too.
+  static void watch_edges(std::uint32_t pins) {
+    for (std::uint32_t word = 0; word < kEdgeWords; ++word) {
+      edge_enable(word).set(Bits<EdgeEnable>(spread(pins >> (kPinsAWord * word))));
+    }
+  }
+  /// Returns the pins that have had an edge since `clear_edges`, of the pins that are watched.
+  [[nodiscard]] static std::uint32_t edges() {
+    std::uint32_t pins = 0;
+    for (std::uint32_t word = 0; word < kEdgeWords; ++word) {
+      pins |= gather(edge_status(word).read().value()) << (kPinsAWord * word);
+    }
+    return pins;
+  }
+  static void clear_edges(std::uint32_t pins) {
+    for (std::uint32_t word = 0; word < kEdgeWords; ++word) {
+      edge_clear(word).write(Bits<EdgeClear>(spread(pins >> (kPinsAWord * word))));
+    }
+  }
+
+ private:
+  struct Levels;
+  struct Out;
+  struct Drive;
+  struct Control;
+  struct Pad;
+  struct EdgeClear;
+  struct EdgeEnable;
+  struct EdgeStatus;
+
+  static constexpr Register<Levels> kLevels{0xD000'0004};
+  static constexpr Register<Out> kOut{0xD000'0010};
+  static constexpr Register<Out> kOutSet{0xD000'0014};
+  static constexpr Register<Out> kOutClear{0xD000'0018};
+  static constexpr Register<Out> kOutInvert{0xD000'001C};
+  static constexpr Register<Drive> kDriveSet{0xD000'0024};
+  static constexpr Register<Drive> kDriveClear{0xD000'0028};
+
+  static constexpr SharedRegister<Control> control(std::uint32_t pin) {
+    return SharedRegister<Control>(0x4001'4004U + 8U * pin);
+  }
+  static constexpr SharedRegister<Pad> pad(std::uint32_t pin) {
+    return SharedRegister<Pad>(0x4001'C004U + 4U * pin);
+  }
+  static constexpr Register<EdgeClear> edge_clear(std::uint32_t word) {
+    return Register<EdgeClear>(0x4001'40F0U + 4U * word);
+  }
+  static constexpr SharedRegister<EdgeEnable> edge_enable(std::uint32_t word) {
+    return SharedRegister<EdgeEnable>(0x4001'4100U + 4U * word);
+  }
+  static constexpr Register<EdgeStatus> edge_status(std::uint32_t word) {
+    return Register<EdgeStatus>(0x4001'4120U + 4U * word);
+  }
+
+  // Bits of a pad: output disable, input enable, drive strength, pull-up, pull-down, Schmitt trigger.
+  static constexpr Bits<Pad> kOutputDisable{1U << 7U};
+  static constexpr Bits<Pad> kInputEnable{1U << 6U};
+  static constexpr Bits<Pad> kDrive8Ma{0x2U << 4U};
+  static constexpr Bits<Pad> kPullUp{1U << 3U};
+  static constexpr Bits<Pad> kPullDown{1U << 2U};
+  static constexpr Bits<Pad> kSchmittTrigger{1U << 1U};
+  static constexpr Bits<Pad> kPeripheralPulledUp = kInputEnable | kPullUp | kSchmittTrigger | kDrive8Ma;
+  static constexpr Bits<Pad> kInputPulledUp = kInputEnable | kPullUp | kSchmittTrigger | kDrive8Ma;
+  static constexpr Bits<Pad> kInputPulledDown = kInputEnable | kPullDown | kSchmittTrigger | kDrive8Ma;
+  static constexpr Bits<Pad> kOutput8Ma = kInputEnable | kPullDown | kSchmittTrigger | kDrive8Ma;
+
+  /// Sets pad and function of each pin. The pad comes first, so that a function never meets a wrong pull.
+  [[gnu::noinline]] static void make(std::uint32_t pins, Function function, Bits<Pad> bits) {
+    for (std::uint32_t pin = 0; pins != 0; ++pin, pins >>= 1U) {
+      if ((pins & 1U) != 0) {
+        pad(pin).write(bits);
+        control(pin).write(Bits<Control>(static_cast<std::uint32_t>(function)));
+      }
+    }
+  }
+
+  static constexpr std::uint32_t kEdgeWords = 3;  // GPIO0 to GPIO23
+  static constexpr std::uint32_t kPinsAWord = 8;
+  static constexpr std::uint32_t kBothEdges = 0xC;
+
+  /// Returns both edge bits of each of the lowest eight pins.
+  static std::uint32_t spread(std::uint32_t pins) {
+    std::uint32_t bits = pins & 0xFFU;
+    bits = (bits | bits << 12U) & 0x000F'000FU;
+    bits = (bits | bits << 6U) & 0x0303'0303U;
+    bits = (bits | bits << 3U) & 0x1111'1111U;
+    return bits * kBothEdges;
+  }
+  /// Returns the pins that have an edge bit in `bits`, the inverse of `spread`.
+  static std::uint32_t gather(std::uint32_t bits) {
+    bits = (bits >> 2U | bits >> 3U) & 0x1111'1111U;
+    bits = (bits | bits >> 3U) & 0x0303'0303U;
+    bits = (bits | bits >> 6U) & 0x000F'000FU;
+    return (bits | bits >> 12U) & 0xFFU;
+  }
+};
+
+}  // namespace ex9000::hal::rp2040

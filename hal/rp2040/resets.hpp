@@ -1,0 +1,50 @@
+// The reset controller of the peripherals and the power-on state machine. Source: RP2040 data sheet, 2.13 and
+// 2.14.
+#pragma once
+
+#include <cstdint>
+
+#include "hal/rp2040/shared_register.hpp"
+
+namespace ex9000::hal::rp2040 {
+
+/// The peripherals that a reset leaves in reset, one bit for each.
+enum class Block : std::uint32_t {
+  I2c0 = 1U << 3U,
+  Pins = 1U << 5U,
+  Pads = 1U << 8U,
+  SystemPll = 1U << 12U,
+  Timer = 1U << 21U,
+  Uart0 = 1U << 22U,
+};
+constexpr std::uint32_t operator|(Block a, Block b) {
+  return static_cast<std::uint32_t>(a) | static_cast<std::uint32_t>(b);
+}
+constexpr std::uint32_t operator|(std::uint32_t a, Block b) { return a | static_cast<std::uint32_t>(b); }
+
+class Resets {
+ public:
+  /// Releases `blocks` from reset and waits for a few clocks until they can be used. Their clocks must run. A
+  /// block whose clock does not run never becomes usable, and the watchdog resets the MCU.
+  static void release(std::uint32_t blocks) {
+    kReset.clear(Bits<Reset>(blocks));
+    while ((kDone.read().value() & blocks) != blocks) {
+    }
+  }
+
+  /// Keeps the second core in reset until the next reset of the MCU.
+  static void stop_second_core() {
+    constexpr Bits<ForceOff> kSecondCore(1U << 16U);
+    kForceOff.set(kSecondCore);
+  }
+
+ private:
+  struct Reset;
+  struct Done;
+  struct ForceOff;
+  static constexpr SharedRegister<Reset> kReset{0x4000'C000};
+  static constexpr SharedRegister<Done> kDone{0x4000'C008};
+  static constexpr SharedRegister<ForceOff> kForceOff{0x4001'0004};
+};
+
+}  // namespace ex9000::hal::rp2040

@@ -1,0 +1,80 @@
+// The watchdog, the tick that drives it, and resets of the whole chip. Source: RP2040 data sheet, 4.7, 2.13.5
+// and erratum RP2040-E1.
+#pragma once
+
+#include <cstdint>
+
+#include "hal/rp2040/shared_register.hpp"
+#include "hal/watchdog.hpp"
+
+namespace ex9000::hal::rp2040 {
+
+enum class ResetReason : std::uint8_t {
+  PowerOn,    ///< or the RUN pin, or the debugger
+  Timeout,    ///< the watchdog was not fed in time
+  Requested,  ///< `WatchdogRegisters::reset_chip`, for example after a fault
+};
+
+class WatchdogRegisters {
+ public:
+  /// Resets the MCU at once and does not return. Interrupts, faults and the main loop may call it at any
+  /// time.
+  [[noreturn]] static void reset_chip() {
+    kResetBy.write(kAllButOscillators);
+    kControl.set(kTrigger);
+    for (;;) {
+    }
+  }
+
+  /// Returns the reason of the last reset.
+  [[nodiscard]] static ResetReason reset_reason() {
+    constexpr Bits<Reason> kTimeout(1U << 0U);
+    constexpr Bits<Reason> kRequest(1U << 1U);
+    const Bits<Reason> reason = kReason.read();
+    return reason.has(kRequest)   ? ResetReason::Requested
+           : reason.has(kTimeout) ? ResetReason::Timeout
+                                  : ResetReason::PowerOn;
+  }
+
+ protected:
+  struct Control;
+  struct Load;
+  struct Reason;
+  struct Tick;
+  struct ResetBy;
+  static constexpr SharedRegister<Control> kControl{0x4005'8000};
+  static constexpr SharedRegister<Load> kLoad{0x4005'8004};
+  static constexpr SharedRegister<Reason> kReason{0x4005'8008};
+  static constexpr SharedRegister<Tick> kTick{0x4005'802C};
+  static constexpr SharedRegister<ResetBy> kResetBy{0x4001'0008};
+  static constexpr Bits<Control> kEnable{1U << 30U};
+  static constexpr Bits<Control> kTrigger{1U << 31U};
+  static constexpr Bits<Tick> kTickEnable{1U << 9U};
+  /// Without these bits, a reset would leave the peripherals as they are. The oscillators need no reset.
+  static constexpr Bits<ResetBy> kAllButOscillators{0x1'FFFC};
+};
+
+/// `reference`: frequency of the reference clock in MHz after the start of the crystal.
+template <std::uint32_t reference>
+class HardwareWatchdog : public WatchdogRegisters {
+ public:
+  /// Starts the tick of watchdog and timer, and the watchdog, which then runs until the next reset. While the
+  /// ring oscillator is the reference clock, tick and countdown are up to twelve times longer.
+  static void start() {
+    kTick.write(Bits<Tick>(reference) | kTickEnable);
+    kControl.clear(kEnable);
+    kResetBy.write(kAllButOscillators);
+    feed();
+    kControl.set(kEnable);
+  }
+
+  static void feed() { kLoad.write(Bits<Load>(kCountdown)); }
+
+ private:
+  static constexpr Duration kPeriod = milliseconds(1500);
+  static_assert(kPeriod.microseconds() < kWatchdogPeriod.microseconds(), "the watchdog is late");
+  static constexpr std::uint32_t kCountdown = 2U * kPeriod.microseconds();  // E1: it counts down twice a tick
+  static_assert(kCountdown < 1U << 24U, "the counter has 24 bits");
+};
+
+}  // namespace ex9000::hal::rp2040
