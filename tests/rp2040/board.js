@@ -1,0 +1,264 @@
+// A Pico on its board: pins, transceiver, EEPROM, supply, and the master's end of the line.
+"use strict";
+const { ChipClock, Time } = require("./clock");
+const { Chip } = require("./chip");
+const { Eeprom } = require("./eeprom");
+const { FLASH_SIZE, FlashChip } = require("./flash_chip");
+const { BITS, Receiver, Sender } = require("./line");
+const { REASON } = require("./system");
+
+const PINS = 30;
+
+class Board {
+  // `image`: the content of the flash from its first byte on. `pins`: numbers of the pins transmit, receive,
+  // driverEnable and data (SDA; SCL is the next one).
+  constructor(image, pins) {
+    this.time = new Time();
+    this.pins = pins;
+    this.flash = new FlashChip(this.time, new Uint8Array(FLASH_SIZE).fill(0xff));
+    this.flash.content.set(image);
+    this.eeprom = new Eeprom(this.time);
+    this.outside = new Array(PINS).fill(null); // levels that the surroundings give to the pins
+    this.outside[pins.data] = true; // pull-ups
+    this.outside[pins.data + 1] = true;
+    this.chip = null;
+    this.transmitted = true;
+    this.driverOn = false;
+    this.echoes = true;
+    this.masterLevel = true;
+    this.queue = [];
+    this.heard = [];
+    this.masterBitTime = 1e9 / 9600;
+    this.master = new Sender(this.time, (level) => this.masterDrives(level), () => this.sendNext());
+    this.listener = new Receiver(this.time, (character) => this.hear(character));
+    this.stopWanted = false;
+    this.watched = null;
+    this.counts = { timeouts: 0, requests: 0, lost: 0, early: 0, late: 0, shorts: 0, drives: 0, framing: 0 };
+    this.lastStop = 0;
+    this.levels = new Array(PINS).fill(false);
+  }
+
+  // --- supply and resets ---
+
+  power(on) {
+    if (on && this.chip === null) {
+      this.start(REASON.powerOn);
+    } else if (!on && this.chip !== null) {
+      this.end();
+      this.flash.losePower();
+      this.eeprom.losePower();
+    }
+  }
+
+  // Resets the chip with its RUN pin.
+  reset() {
+    if (this.chip !== null) {
+      this.end();
+      this.start(REASON.powerOn);
+    }
+  }
+
+  start(reason) {
+    this.clock = new ChipClock(this.time);
+    this.reason = reason;
+    this.resetWanted = null;
+    this.transmitted = true;
+    this.chip = new Chip({
+      clock: this.clock,
+      flash: this.flash,
+      pins: this.pins,
+      reason,
+      transmitted: true,
+      transmit: (level) => this.transmit(level),
+      pinChanged: (number) => this.pinChanged(number),
+      reset: (why) => {
+        this.resetWanted = why;
+      },
+    });
+    const { chip } = this;
+    this.eeprom.attach(chip.i2c, this.clock, () => chip.i2cBitTime, () => chip.i2cConnected);
+    for (let number = 0; number < PINS; number += 1) {
+      this.pinChanged(number);
+    }
+  }
+
+  end() {
+    this.clock.end();
+    this.chip = null;
+    this.flash.select(false);
+    this.eeprom.reset();
+    for (let number = 0; number < PINS; number += 1) {
+      this.levels[number] = this.outside[number] ?? false;
+    }
+    this.updateLine();
+  }
+
+  // --- time ---
+
+  // Lets time pass until `until`, or until something sets `stopWanted`.
+  runUntil(until) {
+    const { time } = this;
+    this.stopWanted = false;
+    while (time.now < until && !this.stopWanted) {
+      if (this.chip === null) {
+        time.advanceTo(Math.min(until, time.next));
+      } else {
+        this.runChip(until);
+        if (this.resetWanted !== null) {
+          const reason = this.resetWanted;
+          this.counts[reason === REASON.timeout ? "timeouts" : "requests"] += 1;
+          this.end();
+          this.start(reason);
+        }
+      }
+    }
+    this.checkPins();
+  }
+
+  runChip(until) {
+    const { time } = this;
+    const { mcu, processor } = this.chip;
+    while (time.now < until && !this.stopWanted && this.resetWanted === null) {
+      const cycles = processor.step();
+      if (cycles === 0) {
+        time.advanceTo(Math.min(until, time.next));
+      } else {
+        const to = time.now + (cycles * 1e9) / mcu.clkSys;
+        if (to < time.next) {
+          time.now = to;
+        } else {
+          time.advanceTo(to);
+        }
+      }
+    }
+  }
+
+  // --- pins ---
+
+  setOutside(number, level) {
+    this.outside[number] = level;
+    this.pinChanged(number);
+  }
+
+  pinChanged(number) {
+    const { chip } = this;
+    if (chip === null || chip === undefined) {
+      this.levels[number] = this.outside[number] ?? false;
+      return;
+    }
+    const own = chip.level(number);
+    const outside = this.outside[number];
+    const isBus = number === this.pins.data || number === this.pins.data + 1;
+    if (own !== null && outside !== null && own !== outside && !isBus) {
+      this.counts.shorts += 1;
+    }
+    const level = own ?? outside ?? chip.pull(number) ?? false;
+    const pin = chip.mcu.gpio[number];
+    this.levels[number] = level;
+    if (pin.rawInputValue !== level) {
+      pin.setInputValue(level);
+    }
+    if (number === this.pins.driverEnable) {
+      this.enableDriver(level);
+    } else if (number === this.pins.receive) {
+      chip.uart.level(level);
+    }
+    if (this.watched !== null && number === this.watched.number && level !== this.watched.level) {
+      this.stopWanted = true;
+    }
+  }
+
+  // A digital input that floats may read as anything.
+  checkPins() {
+    if (this.chip === null) {
+      return;
+    }
+    this.chip.mcu.gpio.forEach((pin, number) => {
+      const floats = this.chip.level(number) === null && this.outside[number] === null
+        && this.chip.pull(number) === null;
+      if (floats && pin.inputEnable) {
+        throw new Error(`GPIO${number} floats`);
+      }
+    });
+  }
+
+  // --- the line ---
+
+  transmit(level) {
+    if (this.chip.uart.sender.left === BITS - 1 && !this.driverOn) {
+      this.counts.lost += 1; // a character begins
+    }
+    this.transmitted = level;
+    this.chip.board.transmitted = level;
+    this.lastStop = this.time.now + this.chip.uart.bitTime;
+    this.pinChanged(this.pins.transmit);
+    this.updateLine();
+  }
+
+  enableDriver(on) {
+    if (on === this.driverOn) {
+      return;
+    }
+    this.driverOn = on;
+    if (on) {
+      this.counts.drives += 1;
+    } else if (this.chip.uart.sender.busy) {
+      this.counts.early += 1;
+    } else if (this.time.now - this.lastStop > BITS * this.chip.uart.bitTime) {
+      this.counts.late += 1;
+    }
+    this.updateLine();
+  }
+
+  masterDrives(level) {
+    this.masterLevel = level;
+    this.updateLine();
+  }
+
+  updateLine() {
+    const driven = this.chip !== null && this.driverOn;
+    const line = (!driven || this.transmitted) && this.masterLevel;
+    if (!this.master.busy) {
+      this.listener.level(line);
+    }
+    const heard = driven && !this.echoes ? true : line;
+    if (this.outside[this.pins.receive] !== heard) {
+      this.setOutside(this.pins.receive, heard);
+    }
+  }
+
+  // --- the master ---
+
+  setBaud(baud) {
+    this.masterBitTime = 1e9 / baud;
+    this.listener.bitTime = this.masterBitTime;
+  }
+
+  send(bytes) {
+    this.queue.push(...bytes);
+    if (!this.master.busy) {
+      this.sendNext();
+    }
+  }
+
+  sendNext() {
+    if (this.queue.length === 0) {
+      this.stopWanted = true;
+      return;
+    }
+    this.listener.stop();
+    this.master.send(this.queue.shift(), this.masterBitTime);
+  }
+
+  hear({ byte, good }) {
+    this.heard.push({ byte, at: this.time.now });
+    this.counts.framing += good ? 0 : 1;
+    this.stopWanted = true;
+  }
+
+  takeHeard(count = this.heard.length) {
+    return this.heard.splice(0, count);
+  }
+}
+
+module.exports = { Board };

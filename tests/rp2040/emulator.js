@@ -1,0 +1,140 @@
+// Runs an image for the Pico in virtual time. Each line on standard input is a command; each gets one line on standard
+// output, which begins with "ok", or with "error" and a reason.
+"use strict";
+const fs = require("fs");
+const { Board } = require("./board");
+
+let board = null;
+
+const integer = (text) => {
+  const value = Number(text);
+  if (!Number.isSafeInteger(value)) {
+    throw new Error(`${text} is no integer`);
+  }
+  return value;
+};
+const hexOf = (bytes) => Buffer.from(bytes).toString("hex");
+const bytesOf = (text) => [...Buffer.from(text ?? "", "hex")];
+
+const COMMANDS = {
+  // new IMAGE.bin TRANSMIT RECEIVE DRIVER-ENABLE SDA: a board without supply, with an erased EEPROM
+  new(path, ...pins) {
+    const [transmit, receive, driverEnable, data] = pins.map(integer);
+    board = new Board(fs.readFileSync(path), { transmit, receive, driverEnable, data });
+  },
+  now: () => Math.round(board.time.now),
+  // run NANOSECONDS
+  run(nanoseconds) {
+    const until = board.time.now + integer(nanoseconds);
+    while (board.time.now < until) {
+      board.runUntil(until);
+    }
+  },
+  power: (on) => board.power(on === "on"),
+  reset: () => board.reset(),
+  echo(on) {
+    board.echoes = on === "on";
+  },
+  baud: (rate) => board.setBaud(integer(rate)),
+  // send HEX: returns when the last stop bit has been sent
+  send(hex) {
+    board.send(bytesOf(hex));
+    while (board.master.busy) {
+      board.runUntil(Infinity);
+    }
+  },
+  // queue HEX: begins to send, and returns at once
+  queue: (hex) => board.send(bytesOf(hex)),
+  // receive COUNT PATIENCE: lets time pass until COUNT bytes have arrived, or none for PATIENCE nanoseconds
+  receive(count, patience) {
+    let had = board.heard.length;
+    let until = board.time.now + integer(patience);
+    while (board.heard.length < integer(count) && board.time.now < until) {
+      board.runUntil(until);
+      if (board.heard.length !== had) {
+        had = board.heard.length;
+        until = board.time.now + integer(patience);
+      }
+    }
+    return hexOf(board.takeHeard(integer(count)).map(({ byte }) => byte));
+  },
+  heard: () => hexOf(board.takeHeard().map(({ byte }) => byte)),
+  // arrivals: the bytes with the time of the middle of their stop bits
+  arrivals: () => board.takeHeard().map(({ byte, at }) => `${byte}@${Math.round(at)}`).join(" "),
+  // pin NUMBER high|low|open: the surroundings drive a pin
+  pin: (number, level) => board.setOutside(integer(number), level === "open" ? null : level === "high"),
+  // pulses NUMBER COUNT NANOSECONDS: inverts the level of a pin twice, COUNT times, with this time between the edges
+  pulses(number, count, nanoseconds) {
+    const pin = integer(number);
+    const period = integer(nanoseconds);
+    for (let edge = 0; edge < 2 * integer(count); edge += 1) {
+      board.setOutside(pin, !board.levels[pin]);
+      const until = board.time.now + period;
+      while (board.time.now < until) {
+        board.runUntil(until);
+      }
+    }
+  },
+  levels: () => board.levels.reduce((mask, level, number) => mask + (level ? 2 ** number : 0), 0),
+  // watch NUMBER NANOSECONDS: lets time pass until the level of a pin changes; returns whether it did
+  watch(number, nanoseconds) {
+    const pin = integer(number);
+    const level = board.levels[pin];
+    const until = board.time.now + integer(nanoseconds);
+    board.watched = { number: pin, level };
+    while (board.time.now < until && board.levels[pin] === level) {
+      board.runUntil(until);
+    }
+    board.watched = null;
+    return Number(board.levels[pin] !== level);
+  },
+  memory(hex) {
+    board.eeprom.content.fill(0xff);
+    board.eeprom.content.set(bytesOf(hex));
+  },
+  stored: () => hexOf(board.eeprom.content),
+  // counts: events since `new`, as NAME=NUMBER
+  counts: () => Object.entries({ ...board.counts, pages: board.eeprom.pagesProgrammed, reason: board.reason,
+    depth: board.chip?.processor.deepest ?? 0, secondCoreOff: (board.chip?.psm.frceOff ?? 0) >> 16,
+    uart: board.chip?.uart.baud ?? 0 }).map(([name, value]) => `${name}=${value}`).join(" "),
+  // write ADDRESS HALFWORD: changes RAM
+  write: (address, value) => board.chip.mcu.writeUint16(integer(address), integer(value)),
+  // instructions: executed since the last reset of the chip, in cycles
+  cycles: () => board.chip?.mcu.core.cycles ?? 0,
+};
+
+function execute(line) {
+  const [name, ...words] = line.split(" ");
+  if (!Object.hasOwn(COMMANDS, name)) {
+    throw new Error(`there is no command ${name}`);
+  }
+  return COMMANDS[name](...words) ?? "";
+}
+
+function answer(line) {
+  try {
+    return `ok ${execute(line)}\n`;
+  } catch (error) {
+    return `error ${error.message.replaceAll("\n", " ")}\n`;
+  }
+}
+
+function main() {
+  const buffer = Buffer.alloc(65536);
+  let text = "";
+  for (;;) {
+    const size = fs.readSync(0, buffer, 0, buffer.length, null);
+    if (size === 0) {
+      return;
+    }
+    text += buffer.toString("latin1", 0, size);
+    let end = text.indexOf("\n");
+    while (end >= 0) {
+      fs.writeSync(1, answer(text.slice(0, end)));
+      text = text.slice(end + 1);
+      end = text.indexOf("\n");
+    }
+  }
+}
+
+main();

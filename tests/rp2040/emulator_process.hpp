@@ -1,0 +1,28 @@
+// The emulator of an RP2040, as a process of its own. Virtual time passes only during a command.
+#pragma once
+
+#include <string>
+
+namespace ex9000::pico {
+
+class EmulatorProcess {
+ public:
+  /// Starts the emulator. Throws std::runtime_error if that fails.
+  EmulatorProcess();
+  ~EmulatorProcess();
+  EmulatorProcess(const EmulatorProcess&) = delete;
+  EmulatorProcess& operator=(const EmulatorProcess&) = delete;
+
+  /// Executes a command, see emulator.js, and returns its result. Throws std::runtime_error with the reason
+  /// if the command fails, for example because the image does something that silicon rejects.
+  std::string execute(const std::string& command);
+
+ private:
+  std::string read_line();
+
+  int pid_ = -1;
+  int socket_ = -1;
+  std::string unread_;
+};
+
+}  // namespace ex9000::pico

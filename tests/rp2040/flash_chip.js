@@ -1,0 +1,163 @@
+// A W25Q16JV flash chip at byte level. Source: Winbond W25Q16JV data sheet (revision H), 8.2 (instructions) and 9.6
+// (times).
+"use strict";
+
+const SIZE = 2 * 1024 * 1024;
+const PAGE = 256;
+const SECTOR = 4096;
+const SUSPEND = 20_000; // ns, the largest tSUS
+
+class FlashChip {
+  // `content`: 2 MiB, which this object changes. `times`: { erase, program } in nanoseconds.
+  constructor(time, content, times = { erase: 45e6, program: 400e3 }) {
+    this.time = time;
+    this.content = content;
+    this.times = times;
+    this.selected = false;
+    this.bytes = [];
+    this.writeEnabled = false;
+    this.operation = null; // { apply(part), left }
+    this.ends = 0; // when the operation ends, if it runs
+    this.suspending = 0; // when a suspend takes effect
+    this.suspended = false;
+    this.erased = new Map(); // number of erases, by sector
+    this.done = time.createAlarm(() => this.finish());
+  }
+
+  get busy() {
+    return (this.operation !== null && !this.suspended) || this.time.now < this.suspending;
+  }
+
+  select(on) {
+    if (this.selected && !on) {
+      this.execute();
+    }
+    this.selected = on;
+    this.bytes = [];
+  }
+
+  // Takes a byte and returns the byte that the chip sends at the same time.
+  exchange(byte) {
+    if (!this.selected) {
+      return 0xff;
+    }
+    this.bytes.push(byte);
+    const [command] = this.bytes;
+    if (this.busy && command !== 0x05 && command !== 0x75) {
+      throw new Error(`flash: command ${command.toString(16)} while it is busy`);
+    }
+    if (command === 0x05) {
+      return (this.busy ? 1 : 0) | (this.writeEnabled ? 2 : 0);
+    }
+    if (command === 0x03 && this.bytes.length > 4) {
+      const address = (this.address() + this.bytes.length - 5) % SIZE;
+      if (this.operation !== null && Math.floor(address / SECTOR) === this.operation.sector) {
+        throw new Error("flash: the suspended sector is read");
+      }
+      return this.content[address];
+    }
+    return 0xff;
+  }
+
+  address() {
+    return ((this.bytes[1] << 16) | (this.bytes[2] << 8) | this.bytes[3]) % SIZE;
+  }
+
+  execute() {
+    const [command, ...data] = this.bytes;
+    switch (command) {
+    case undefined:
+    case 0x03:
+    case 0x05:
+      break;
+    case 0x06:
+      this.writeEnabled = true;
+      break;
+    case 0x02:
+      this.begin("program", this.address(), data.slice(3));
+      break;
+    case 0x20:
+      this.begin("erase", this.address(), data.slice(3));
+      break;
+    case 0x75:
+      this.suspend();
+      break;
+    case 0x7a:
+      this.resume();
+      break;
+    default:
+      throw new Error(`flash: command ${command.toString(16)} is not in this model`);
+    }
+  }
+
+  begin(kind, address, bytes) {
+    if (!this.writeEnabled) {
+      throw new Error(`flash: ${kind} without Write Enable`);
+    }
+    if (this.operation !== null) {
+      throw new Error(`flash: ${kind} while another operation is suspended`);
+    }
+    if (kind === "program" ? bytes.length === 0 || bytes.length > PAGE - (address % PAGE) : bytes.length !== 0) {
+      throw new Error(`flash: ${kind} of ${bytes.length} bytes at ${address.toString(16)}`);
+    }
+    this.operation = { kind, address, bytes, sector: Math.floor(address / SECTOR), left: this.times[kind] };
+    this.run();
+  }
+
+  run() {
+    this.ends = this.time.now + this.operation.left;
+    this.done.scheduleAt(this.ends);
+  }
+
+  finish() {
+    const { kind, address, bytes, sector } = this.operation;
+    if (kind === "erase") {
+      this.content.fill(0xff, sector * SECTOR, (sector + 1) * SECTOR);
+      this.erased.set(sector, (this.erased.get(sector) ?? 0) + 1);
+    } else {
+      bytes.forEach((byte, index) => {
+        this.content[address + index] &= byte;
+      });
+    }
+    this.operation = null;
+    this.writeEnabled = false;
+  }
+
+  suspend() {
+    if (this.operation === null || this.suspended) {
+      return;
+    }
+    this.operation.left = this.ends - this.time.now;
+    this.done.cancel();
+    this.suspended = true;
+    this.suspending = this.time.now + SUSPEND;
+  }
+
+  resume() {
+    if (this.suspended) {
+      this.suspended = false;
+      this.run();
+    }
+  }
+
+  // The supply fails. An unfinished operation leaves the cells that it has reached undefined; here, it has changed
+  // every second byte of them.
+  losePower() {
+    if (this.operation !== null) {
+      const { kind, address, bytes, sector } = this.operation;
+      const size = kind === "erase" ? SECTOR : bytes.length;
+      const first = kind === "erase" ? sector * SECTOR : address;
+      for (let index = 0; index < size; index += 2) {
+        this.content[first + index] = kind === "erase" ? 0xff : this.content[first + index] & bytes[index];
+      }
+    }
+    this.done.cancel();
+    this.operation = null;
+    this.suspended = false;
+    this.suspending = 0;
+    this.writeEnabled = false;
+    this.selected = false;
+  }
+}
+
+module.exports = { FlashChip, FLASH_SIZE: SIZE };

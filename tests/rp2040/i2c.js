@@ -1,0 +1,54 @@
+// Corrects the I2C master of rp2040js: the interrupt mask, the level of "queue is low", and the order of accesses that
+// silicon requires. Source: RP2040 data sheet, 4.3.
+"use strict";
+
+const CONTROL = 0x00;
+const TARGET = 0x04;
+const DATA_COMMAND = 0x10;
+const HIGH_COUNT = 0x14;
+const LOW_COUNT = 0x18;
+const INTERRUPT_MASK = 0x30;
+const RAW_INTERRUPTS = 0x34;
+const HOLD_TIME = 0x7c;
+const SPIKE_LENGTH = 0xa0;
+
+const ABORTED = 1 << 6;
+const QUEUE_LOW = 1 << 4;
+const ON = 1 << 0;
+
+const WHILE_OFF = [CONTROL, TARGET, HIGH_COUNT, LOW_COUNT, HOLD_TIME, SPIKE_LENGTH];
+
+function correctI2c(master) {
+  const i2c = master;
+  const read = i2c.readUint32.bind(i2c);
+  const write = i2c.writeUint32.bind(i2c);
+  const raw = () => {
+    const low = i2c.enable & ON && i2c.txFIFO.itemCount <= i2c.txThreshold;
+    return (i2c.intRaw & ~QUEUE_LOW) | (low ? QUEUE_LOW : 0);
+  };
+  i2c.checkInterrupts = () => i2c.rp2040.setInterrupt(i2c.irq, (raw() & i2c.intEnable) !== 0);
+  i2c.readUint32 = (offset) => {
+    const value = offset === RAW_INTERRUPTS ? raw() : read(offset);
+    i2c.checkInterrupts();
+    return value;
+  };
+  i2c.writeUint32 = (offset, value) => {
+    if (WHILE_OFF.includes(offset) && i2c.enable & ON) {
+      i2c.error(`register ${offset.toString(16)} is written while the master is on`);
+    }
+    if (offset === DATA_COMMAND && i2c.intRaw & ABORTED) {
+      i2c.error("a command is queued before the abort is cleared, and is discarded");
+    }
+    if (offset === DATA_COMMAND && (i2c.txFIFO.full || !(i2c.enable & ON))) {
+      i2c.error("a command is queued while there is no room for it, or while the master is off");
+    }
+    if (offset === INTERRUPT_MASK) {
+      i2c.intEnable = value;
+    } else if (offset !== HOLD_TIME) {
+      write(offset, value);
+    }
+    i2c.checkInterrupts();
+  };
+}
+
+module.exports = { correctI2c };

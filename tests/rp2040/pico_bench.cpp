@@ -1,0 +1,136 @@
+#include "tests/rp2040/pico_bench.hpp"
+
+#include <sstream>
+
+#include "boards/pico/board.hpp"
+#include "sim/bus/module.hpp"
+
+namespace ex9000::pico {
+
+namespace {
+
+using play::Bytes;
+using std::chrono::nanoseconds;
+
+std::string hex_of(const Bytes& bytes) {
+  constexpr const char* kDigits = "0123456789abcdef";
+  std::string hex;
+  for (const std::uint8_t byte : bytes) {
+    hex += kDigits[byte >> 4U];
+    hex += kDigits[byte & 0xFU];
+  }
+  return hex;
+}
+
+Bytes bytes_of(const std::string& hex) {
+  Bytes bytes;
+  for (std::size_t i = 0; i + 1 < hex.size(); i += 2) {
+    bytes.push_back(static_cast<std::uint8_t>(std::stoul(hex.substr(i, 2), nullptr, 16)));
+  }
+  return bytes;
+}
+
+template <class Groups>
+unsigned pin_of(const Groups& groups, unsigned channel) {
+  for (const board::PinGroup& group : groups) {
+    if (channel < group.count) {
+      return group.first_pin + channel;
+    }
+    channel -= group.count;
+  }
+  throw std::out_of_range("there is no pin for the channel");
+}
+
+}  // namespace
+
+std::string image_of(const Model& model, const char* suffix) {
+  return std::string(EX9000_PICO_IMAGES) + "/" + std::string(model.designation) + suffix;
+}
+
+void PicoBench::begin_anew(const Model& model, const Settings* settings) {
+  constexpr unsigned kTransmit = board::kUartPins.first_pin;
+  model_ = &model;
+  powered_ = false;
+  execute("new " + image_of(model, ".bin") + " " + std::to_string(kTransmit) + " " +
+          std::to_string(kTransmit + 1U) + " " + std::to_string(board::kDriverEnable.number) + " " +
+          std::to_string(board::kI2cPins.first_pin));
+  set_baud(9600);
+  if (settings != nullptr) {
+    const auto image = sim::SimulatedModule::memory_image(model, *settings);
+    execute("memory " + hex_of(Bytes(image.begin(), image.end())));
+  }
+}
+
+void PicoBench::power(bool on) {
+  execute(on ? "power on" : "power off");
+  powered_ = on;
+}
+
+void PicoBench::reset() { execute("reset"); }
+
+void PicoBench::run_for(nanoseconds time) { execute("run " + std::to_string(time.count())); }
+
+nanoseconds PicoBench::now() { return nanoseconds(std::stoll(execute("now"))); }
+
+void PicoBench::set_baud(std::uint32_t rate) { execute("baud " + std::to_string(rate)); }
+
+void PicoBench::send(const Bytes& bytes) {
+  if (!bytes.empty()) {
+    execute("send " + hex_of(bytes));
+  }
+}
+
+Bytes PicoBench::receive(std::size_t count, nanoseconds patience) {
+  return bytes_of(execute("receive " + std::to_string(count) + " " + std::to_string(patience.count())));
+}
+
+Bytes PicoBench::heard() { return bytes_of(execute("heard")); }
+
+void PicoBench::set_pin(unsigned number, const char* level) {
+  execute("pin " + std::to_string(number) + " " + level);
+}
+
+void PicoBench::set_init(bool asserted) { set_pin(board::kInitSwitch.number, asserted ? "low" : "open"); }
+
+void PicoBench::set_input(unsigned channel, bool level) {
+  const char* active = board::kInputsActiveHigh ? "high" : "low";
+  set_pin(pin_of(board::kInputs, channel), level ? active : "open");
+}
+
+void PicoBench::pulse_input(unsigned channel, std::uint32_t count, nanoseconds between) {
+  execute("pulses " + std::to_string(pin_of(board::kInputs, channel)) + " " + std::to_string(count) + " " +
+          std::to_string(between.count()));
+}
+
+std::uint32_t PicoBench::levels() { return static_cast<std::uint32_t>(std::stoul(execute("levels"))); }
+
+std::uint16_t PicoBench::outputs() {
+  const std::uint32_t pins = levels();
+  std::uint16_t channels = 0;
+  for (unsigned channel = 0; powered_ && channel < model_->outputs; ++channel) {
+    const bool high = (pins >> pin_of(board::kOutputs, channel) & 1U) != 0;
+    if (high == board::kOutputsActiveHigh) {
+      channels = static_cast<std::uint16_t>(channels | 1U << channel);
+    }
+  }
+  return channels;
+}
+
+bool PicoBench::led() { return (levels() & board::kStatusLed.mask()) != 0; }
+
+bool PicoBench::led_changes(nanoseconds patience) {
+  return execute("watch " + std::to_string(board::kStatusLed.number) + " " +
+                 std::to_string(patience.count())) == "1";
+}
+
+std::map<std::string, long> PicoBench::counts() {
+  std::map<std::string, long> result;
+  std::istringstream words(execute("counts"));
+  for (std::string word; words >> word;) {
+    const std::size_t equals = word.find('=');
+    result[word.substr(0, equals)] = std::stol(word.substr(equals + 1));
+  }
+  return result;
+}
+
+}  // namespace ex9000::pico

@@ -1,0 +1,66 @@
+// An image on an emulated Pico with transceiver, EEPROM and pins, in virtual time.
+#pragma once
+
+#include <chrono>
+#include <cstdint>
+#include <map>
+#include <string>
+
+#include "firmware/model/model.hpp"
+#include "firmware/settings/settings.hpp"
+#include "sim/play/transcript.hpp"
+#include "tests/rp2040/emulator_process.hpp"
+
+namespace ex9000::pico {
+
+/// All functions throw std::runtime_error if the image does something that silicon rejects.
+class PicoBench {
+ public:
+  /// Provides a new board with the image of `model`. Its supply is off. `settings` are in the EEPROM; if the
+  /// pointer is null, the EEPROM is erased.
+  void begin_anew(const Model& model, const Settings* settings);
+
+  void power(bool on);
+  [[nodiscard]] bool powered() const { return powered_; }
+  /// Resets the chip with its RUN pin.
+  void reset();
+  void run_for(std::chrono::nanoseconds time);
+  /// Returns the virtual time since `begin_anew`.
+  std::chrono::nanoseconds now();
+
+  /// Sets the rate of the master.
+  void set_baud(std::uint32_t rate);
+  /// Sends bytes without a gap. Returns when the last stop bit has ended.
+  void send(const play::Bytes& bytes);
+  /// Returns the bytes that arrive until there are `count` of them, or until none has arrived for `patience`.
+  play::Bytes receive(std::size_t count, std::chrono::nanoseconds patience);
+  /// Returns the bytes that have arrived.
+  play::Bytes heard();
+
+  void set_init(bool asserted);
+  void set_input(unsigned channel, bool level);
+  /// Inverts an input and restores it, `count` times, with `between` from edge to edge.
+  void pulse_input(unsigned channel, std::uint32_t count, std::chrono::nanoseconds between);
+  /// Returns the energised channels. Bit n is channel n.
+  std::uint16_t outputs();
+  bool led();
+  /// Lets time pass until the LED changes, at most `patience`. Returns whether it has changed.
+  bool led_changes(std::chrono::nanoseconds patience);
+
+  /// Returns the numbers that the emulator has counted since `begin_anew`, by name; see emulator.js.
+  std::map<std::string, long> counts();
+  std::string execute(const std::string& command) { return emulator_.execute(command); }
+
+ private:
+  void set_pin(unsigned number, const char* level);
+  std::uint32_t levels();
+
+  EmulatorProcess emulator_;
+  const Model* model_ = nullptr;
+  bool powered_ = false;
+};
+
+/// Returns the path of an image, for example of its .bin.
+std::string image_of(const Model& model, const char* suffix);
+
+}  // namespace ex9000::pico

@@ -1,0 +1,88 @@
+#include "tests/rp2040/pico_target.hpp"
+
+#include <string>
+
+namespace ex9000::pico {
+
+namespace {
+
+using std::chrono::microseconds;
+using std::chrono::milliseconds;
+
+/// The second stage copies the image in 70 ms, and the crystal starts in 1 ms.
+constexpr milliseconds kComingUp{150};
+/// The image processes a byte and updates its pins in less time.
+constexpr microseconds kSettling{100};
+constexpr microseconds kBetweenEdges{40};
+constexpr milliseconds kFlashes{600};  ///< a flashing LED changes within this time
+
+}  // namespace
+
+void PicoTarget::start(const Model& model, const Settings* preset) {
+  model_ = &model;
+  bench_.begin_anew(model, preset);
+  bench_.set_baud(baud_);
+  power(true);
+}
+
+play::Bytes PicoTarget::listen(std::chrono::nanoseconds time) {
+  bench_.run_for(time);
+  return bench_.heard();
+}
+
+void PicoTarget::set_baud(std::uint32_t rate) {
+  baud_ = rate;
+  if (model_ != nullptr) {
+    bench_.set_baud(rate);
+  }
+}
+
+void PicoTarget::power(bool on) {
+  bench_.power(on);
+  if (on) {
+    bench_.run_for(kComingUp);
+  }
+}
+
+void PicoTarget::reset() {
+  bench_.reset();
+  bench_.run_for(kComingUp);
+}
+
+void PicoTarget::set_input(unsigned channel, bool level) {
+  if (channel < model_->inputs) {
+    bench_.set_input(channel, level);
+    bench_.run_for(kBetweenEdges);
+  }
+}
+
+void PicoTarget::pulse_input(unsigned channel, std::uint32_t count) {
+  if (channel < model_->inputs) {
+    bench_.pulse_input(channel, count, kBetweenEdges);
+  }
+}
+
+std::uint16_t PicoTarget::outputs() {
+  bench_.run_for(kSettling);
+  return bench_.outputs();
+}
+
+play::step::Led::Shows PicoTarget::led(play::step::Led::Shows expected) {
+  using Shows = play::step::Led::Shows;
+  if (expected == Shows::Flashing && bench_.led_changes(kFlashes)) {
+    return Shows::Flashing;
+  }
+  return bench_.led() ? Shows::On : Shows::Off;
+}
+
+void PicoTarget::end() {
+  played_ += bench_.now();
+  const auto counts = bench_.counts();
+  for (const char* wrong : {"lost", "early", "late", "shorts", "timeouts", "requests"}) {
+    if (counts.at(wrong) != 0) {
+      throw std::runtime_error(std::string(wrong) + ": " + std::to_string(counts.at(wrong)));
+    }
+  }
+}
+
+}  // namespace ex9000::pico

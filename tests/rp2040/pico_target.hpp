@@ -1,0 +1,40 @@
+// A transcript target: an image on an emulated Pico.
+#pragma once
+
+#include "sim/play/target.hpp"
+#include "tests/rp2040/pico_bench.hpp"
+
+namespace ex9000::pico {
+
+/// Can play several transcripts, one after another. Time is virtual, so the host does not affect the result.
+class PicoTarget final : public play::Target {
+ public:
+  void start(const Model& model, const Settings* preset) override;
+  void send(const play::Bytes& bytes) override { bench_.send(bytes); }
+  play::Bytes receive(std::size_t count, std::chrono::milliseconds patience) override {
+    return bench_.receive(count, patience);
+  }
+  play::Bytes listen(std::chrono::nanoseconds time) override;
+  void set_baud(std::uint32_t rate) override;
+  void power(bool on) override;
+  void reset() override;
+  void set_init(bool asserted) override { bench_.set_init(asserted); }
+  void set_input(unsigned channel, bool level) override;
+  void pulse_input(unsigned channel, std::uint32_t count) override;
+  std::uint16_t outputs() override;
+  play::step::Led::Shows led(play::step::Led::Shows expected) override;
+  /// Throws if a bit was lost on the line, if the driver was on for too short or too long, if a pin was
+  /// shorted, or if the watchdog has reset the chip.
+  void end() override;
+
+  /// Returns the virtual time of all transcripts.
+  [[nodiscard]] std::chrono::nanoseconds played() const { return played_; }
+
+ private:
+  PicoBench bench_;
+  const Model* model_ = nullptr;
+  std::uint32_t baud_ = 9600;
+  std::chrono::nanoseconds played_{0};
+};
+
+}  // namespace ex9000::pico

@@ -1,0 +1,258 @@
+// A PL011 UART with line time, errors, overrun, FIFO levels and receive time-out. Sources: RP2040 data sheet, 4.2;
+// Arm PrimeCell UART (PL011) TRM, 2.4 and 3.3.
+"use strict";
+const { BasePeripheral } = require("rp2040js");
+const { Receiver, Sender } = require("./line");
+
+const RECEIVED = 1 << 4;
+const TRANSMITTED = 1 << 5;
+const RECEIVE_TIMEOUT = 1 << 6;
+const FRAMING_ERROR = 1 << 7;
+const BREAK_ERROR = 1 << 9;
+const OVERRUN_ERROR = 1 << 10;
+
+const DATA_FRAMING = 1 << 8;
+const DATA_BREAK = 1 << 10;
+const DATA_OVERRUN = 1 << 11;
+
+const ENABLED = 1 << 0;
+const TRANSMIT_ENABLED = 1 << 8;
+const RECEIVE_ENABLED = 1 << 9;
+const FIFOS_ON = 1 << 4;
+const EIGHT_BITS = 0x60;
+
+const DEPTH = 32;
+const LEVELS = [4, 8, 16, 24, 28]; // IFLS
+
+class Pl011 extends BasePeripheral {
+  // `wires`: { transmit(level), mayReceive(), mayTransmit() }
+  constructor(rp2040, name, irq, wires) {
+    super(rp2040, name);
+    this.irq = irq;
+    this.wires = wires;
+    this.integerDivisor = 0;
+    this.fractionalDivisor = 0;
+    this.bitTime = 0;
+    this.latched = false;
+    this.lineControl = 0;
+    this.control = TRANSMIT_ENABLED | RECEIVE_ENABLED;
+    this.levels = 0x12;
+    this.mask = 0;
+    this.raw = 0;
+    this.received = [];
+    this.overrun = false;
+    this.toSend = [];
+    this.sender = new Sender(rp2040.clock, (level) => wires.transmit(level), () => this.sent());
+    this.receiver = new Receiver(rp2040.clock, (character) => this.receive(character));
+    this.timeout = rp2040.clock.createAlarm(() => this.raise(RECEIVE_TIMEOUT));
+  }
+
+  get depth() {
+    return this.lineControl & FIFOS_ON ? DEPTH : 1;
+  }
+
+  get receiveLevel() {
+    return this.lineControl & FIFOS_ON ? LEVELS[(this.levels >> 3) & 7] : 1;
+  }
+
+  get transmitLevel() {
+    return this.lineControl & FIFOS_ON ? LEVELS[this.levels & 7] : 0;
+  }
+
+  readUint32(offset) {
+    switch (offset) {
+    case 0x00:
+      return this.takeReceived();
+    case 0x04:
+      return 0;
+    case 0x18:
+      return (this.sender.busy || this.toSend.length ? 1 << 3 : 0)
+        | (this.received.length === 0 ? 1 << 4 : 0)
+        | (this.toSend.length >= this.depth ? 1 << 5 : 0)
+        | (this.received.length >= this.depth ? 1 << 6 : 0)
+        | (this.toSend.length === 0 ? 1 << 7 : 0);
+    case 0x24:
+      return this.integerDivisor;
+    case 0x28:
+      return this.fractionalDivisor;
+    case 0x2c:
+      return this.lineControl;
+    case 0x30:
+      return this.control;
+    case 0x34:
+      return this.levels;
+    case 0x38:
+      return this.mask;
+    case 0x3c:
+      return this.raw;
+    case 0x40:
+      return this.raw & this.mask;
+    default:
+      return super.readUint32(offset);
+    }
+  }
+
+  writeUint32(offset, value) {
+    switch (offset) {
+    case 0x00:
+      this.transmit(value & 0xff);
+      break;
+    case 0x24:
+      this.setUp("the divisor");
+      this.integerDivisor = value & 0xffff;
+      this.latched = false;
+      break;
+    case 0x28:
+      this.setUp("the divisor");
+      this.fractionalDivisor = value & 0x3f;
+      this.latched = false;
+      break;
+    case 0x2c:
+      this.setUp("the line control");
+      if ((value & ~FIFOS_ON) !== EIGHT_BITS) {
+        this.error("this model has only 8N1");
+      }
+      this.lineControl = value;
+      this.latch();
+      break;
+    case 0x30:
+      if (this.sender.busy) {
+        this.error("the control register changes while a character is sent");
+      }
+      if (value & ENABLED && !this.latched) {
+        this.error("divisors have no effect until the line control register is written");
+      }
+      this.control = value;
+      this.listen();
+      break;
+    case 0x34:
+      this.levels = value;
+      break;
+    case 0x38:
+      this.mask = value;
+      this.tell();
+      break;
+    case 0x44:
+      this.raw &= ~value;
+      this.tell();
+      break;
+    default:
+      super.writeUint32(offset, value);
+    }
+  }
+
+  setUp(what) {
+    if (this.control & ENABLED) {
+      this.error(`${what} is written while the UART is enabled`);
+    }
+  }
+
+  latch() {
+    const { clkPeri, clocks } = this.rp2040;
+    if (clocks.periFreq === 0) {
+      this.error("the peripheral clock does not run");
+    }
+    this.latched = true;
+    this.bitTime = ((this.integerDivisor * 64 + this.fractionalDivisor) / 4 / clkPeri) * 1e9;
+    if (this.integerDivisor === 0) {
+      this.error("the divisor is 0");
+    }
+    this.listen();
+  }
+
+  listen() {
+    const on = (this.control & (ENABLED | RECEIVE_ENABLED)) === (ENABLED | RECEIVE_ENABLED);
+    this.receiver.bitTime = on ? this.bitTime : 0;
+  }
+
+  get baud() {
+    return this.control & ENABLED ? Math.round(1e9 / this.bitTime) : 0;
+  }
+
+  // --- sending ---
+
+  transmit(byte) {
+    if ((this.control & (ENABLED | TRANSMIT_ENABLED)) !== (ENABLED | TRANSMIT_ENABLED)) {
+      this.error("a byte is sent while the transmitter is off");
+    }
+    if (!this.wires.mayTransmit()) {
+      this.error("a byte is sent while the pin is not connected to the UART");
+    }
+    if (this.toSend.length >= this.depth) {
+      this.error("a byte is sent while there is no room for it");
+    }
+    if (this.sender.busy) {
+      this.toSend.push(byte);
+      if (this.toSend.length > this.transmitLevel) {
+        this.raw &= ~TRANSMITTED;
+        this.tell();
+      }
+    } else {
+      this.sender.send(byte, this.bitTime);
+      this.raise(TRANSMITTED); // the holding register is empty again
+    }
+  }
+
+  sent() {
+    if (this.toSend.length === 0) {
+      return;
+    }
+    this.sender.send(this.toSend.shift(), this.bitTime);
+    if (this.toSend.length === this.transmitLevel) {
+      this.raise(TRANSMITTED);
+    }
+  }
+
+  // --- receiving ---
+
+  level(high) {
+    this.receiver.level(this.wires.mayReceive() ? high : true);
+  }
+
+  receive({ byte, good, isBreak }) {
+    if (this.received.length >= this.depth) {
+      this.overrun = true;
+      this.raise(OVERRUN_ERROR);
+      return;
+    }
+    this.received.push(byte | (good ? 0 : DATA_FRAMING) | (isBreak ? DATA_BREAK : 0)
+      | (this.overrun ? DATA_OVERRUN : 0));
+    this.overrun = false;
+    if (!good) {
+      this.raise(isBreak ? BREAK_ERROR : FRAMING_ERROR);
+    }
+    if (this.received.length === this.receiveLevel) {
+      this.raise(RECEIVED);
+    }
+    if (this.lineControl & FIFOS_ON) {
+      this.timeout.schedule(32 * this.bitTime);
+    }
+  }
+
+  takeReceived() {
+    if (this.received.length === 0) {
+      this.error("the data register is read while nothing has been received");
+    }
+    const data = this.received.shift();
+    if (this.received.length < this.receiveLevel) {
+      this.raw &= ~RECEIVED;
+    }
+    if (this.received.length === 0) {
+      this.raw &= ~RECEIVE_TIMEOUT;
+      this.timeout.cancel();
+    }
+    this.tell();
+    return data;
+  }
+
+  raise(what) {
+    this.raw |= what;
+    this.tell();
+  }
+
+  tell() {
+    this.rp2040.setInterrupt(this.irq, (this.raw & this.mask) !== 0);
+  }
+}
+
+module.exports = { Pl011 };
