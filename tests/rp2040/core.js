@@ -61,7 +61,8 @@ class Processor {
     return (core.pendingInterrupts & core.enabledInterrupts) !== 0 || core.pendingSystick;
   }
 
-  // Executes an instruction. Returns its cycles, or 0 if the processor sleeps.
+  // Executes an instruction. Returns its cycles, or 0 if nothing changes until the next alarm: the processor sleeps, or
+  // it has branched to the same instruction.
   step() {
     const { core } = this;
     if (core.waiting) {
@@ -71,6 +72,7 @@ class Processor {
       core.waiting = false;
       core.interruptsUpdated = true;
     }
+    const { PC } = core;
     const cycles = core.executeInstruction();
     if (this.faulted) {
       this.faulted = false;
@@ -80,7 +82,7 @@ class Processor {
         core.exceptionEntry(HARD_FAULT);
       }
     }
-    return cycles;
+    return core.PC === PC && !core.interruptsUpdated ? 0 : cycles;
   }
 }
 

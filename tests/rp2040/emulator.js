@@ -92,14 +92,22 @@ const COMMANDS = {
     board.eeprom.content.fill(0xff);
     board.eeprom.content.set(bytesOf(hex));
   },
+  // absent: there is no EEPROM
+  absent() {
+    board.eeprom.present = false;
+  },
   stored: () => hexOf(board.eeprom.content),
   // counts: events since `new`, as NAME=NUMBER
   counts: () => Object.entries({ ...board.counts, pages: board.eeprom.pagesProgrammed, reason: board.reason,
     depth: board.chip?.processor.deepest ?? 0, secondCoreOff: (board.chip?.psm.frceOff ?? 0) >> 16,
     uart: board.chip?.uart.baud ?? 0 }).map(([name, value]) => `${name}=${value}`).join(" "),
+  // pc: the next instruction of the processor
+  pc: () => board.chip.mcu.core.PC,
+  // read ADDRESS: a word of RAM
+  read: (address) => board.chip.mcu.readUint32(integer(address)),
   // write ADDRESS HALFWORD: changes RAM
   write: (address, value) => board.chip.mcu.writeUint16(integer(address), integer(value)),
-  // instructions: executed since the last reset of the chip, in cycles
+  // cycles: of the processor, without sleep, since the last reset of the chip
   cycles: () => board.chip?.mcu.core.cycles ?? 0,
 };
 

@@ -44,6 +44,8 @@ class PicoBench {
   /// Returns the energised channels. Bit n is channel n.
   std::uint16_t outputs();
   bool led();
+  /// Returns the levels of all pins. Bit n is GPIOn.
+  std::uint32_t levels();
   /// Lets time pass until the LED changes, at most `patience`. Returns whether it has changed.
   bool led_changes(std::chrono::nanoseconds patience);
 
@@ -53,7 +55,6 @@ class PicoBench {
 
  private:
   void set_pin(unsigned number, const char* level);
-  std::uint32_t levels();
 
   EmulatorProcess emulator_;
   const Model* model_ = nullptr;

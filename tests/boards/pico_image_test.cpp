@@ -1,0 +1,235 @@
+// Tests the images for the Pico in the emulator: the driver of the line, resets by the watchdog, faults, and
+// a blocked EEPROM. RAM is changed to make an image hang; the second stage restores it from the flash.
+#include <gtest/gtest.h>
+
+#include <set>
+#include <string>
+
+#include "boards/pico/board.hpp"
+#include "firmware/model/baud.hpp"
+#include "tests/rp2040/pico_bench.hpp"
+
+namespace ex9000::pico {
+namespace {
+
+using std::chrono::milliseconds;
+using std::chrono::nanoseconds;
+
+constexpr milliseconds kComingUp{150};
+constexpr milliseconds kPatience{100};
+/// The longest period of the module's watchdog: wire.md 6.
+constexpr milliseconds kWatchdogPeriod{1600};
+
+constexpr std::uint32_t kVectors = 0x2000'0000;
+constexpr unsigned kSystemTick = 15;
+constexpr unsigned kFirstInterrupt = 16;
+
+constexpr unsigned kUart0 = 20;
+constexpr unsigned kBranchToItself = 0xE7FE;
+constexpr unsigned kUndefined = 0xDE00;
+
+play::Bytes text(const std::string& characters) { return {characters.begin(), characters.end()}; }
+
+class PicoImage : public testing::Test {
+ protected:
+  static constexpr std::uint16_t kPowerOnValue = 0x5A5A;
+  static constexpr std::uint16_t kSafeValue = 0xA5A4;
+
+  void begin(const char* designation = "EX9043D-M", std::uint32_t baud = 9600) {
+    const Model& model = *find_model(designation);
+    Settings settings = Settings::factory(model);
+    settings.protocol = Protocol::Ascii;
+    while (baud_rate(settings.baud_code) != baud) {
+      settings.baud_code = settings.baud_code == kLastBaudCode
+                               ? kFirstBaudCode
+                               : static_cast<std::uint8_t>(settings.baud_code + 1U);
+    }
+    settings.power_on_value = kPowerOnValue;
+    settings.safe_value = kSafeValue;
+    bench_.begin_anew(model, &settings);
+    bench_.set_baud(baud);
+    bench_.power(true);
+    bench_.run_for(kComingUp);
+  }
+
+  std::string ask(const std::string& request) {
+    bench_.send(text(request + "\r"));
+    const play::Bytes reply = bench_.receive(64, kPatience);
+    return {reply.begin(), reply.end()};
+  }
+
+  std::uint32_t number(const std::string& command) {
+    return static_cast<std::uint32_t>(std::stoul(bench_.execute(command)));
+  }
+  void put(std::uint32_t address, unsigned instruction) {
+    bench_.execute("write " + std::to_string(address) + " " + std::to_string(instruction));
+  }
+  /// Replaces the first instruction of an exception's handler.
+  void replace_handler(unsigned exception, unsigned instruction) {
+    put(number("read " + std::to_string(kVectors + 4U * exception)) & ~1U, instruction);
+  }
+  /// The processor sleeps in the main loop most of the time. It continues there when it wakes up.
+  void replace_main_loop(unsigned instruction) { put(number("pc"), instruction); }
+
+  PicoBench bench_;
+};
+
+TEST_F(PicoImage, NoOutputIsEnergisedBeforeTheSettingsAreRead) {
+  begin();
+  bench_.power(false);
+  bench_.power(true);
+  std::set<std::uint16_t> driven;
+  for (int i = 0; i < 1500; ++i) {
+    bench_.run_for(std::chrono::microseconds(100));
+    driven.insert(bench_.outputs());
+  }
+  EXPECT_EQ(driven, (std::set<std::uint16_t>{0, kPowerOnValue}));
+}
+
+TEST_F(PicoImage, OnlyTheFirstCoreRunsAndNoInterruptInterruptsAnother) {
+  begin();
+  EXPECT_EQ(ask("$01M"), "!019043M\r");
+  const auto counts = bench_.counts();
+  EXPECT_EQ(counts.at("secondCoreOff"), 1);
+  EXPECT_EQ(counts.at("depth"), 1);
+}
+
+TEST_F(PicoImage, TheDriverIsOnForAllBitsOfAReplyAndGoesOffWithinACharacter) {
+  for (const std::uint32_t baud : kBaudRates) {
+    for (const char* echo : {"on", "off"}) {
+      SCOPED_TRACE(std::to_string(baud) + " baud, echo " + echo);
+      begin("EX9043D-M", baud);
+      bench_.execute(std::string("echo ") + echo);
+      EXPECT_NEAR(static_cast<double>(bench_.counts().at("uart")), baud, baud / 1000.0);
+      constexpr int kRequests = 20;
+      for (int i = 0; i < kRequests; ++i) {
+        ASSERT_EQ(ask("$01M"), "!019043M\r");
+      }
+      const auto counts = bench_.counts();
+      EXPECT_EQ(counts.at("drives"), kRequests);
+      EXPECT_EQ(counts.at("lost"), 0);
+      EXPECT_EQ(counts.at("early"), 0);
+      EXPECT_EQ(counts.at("late"), 0);
+      EXPECT_EQ(counts.at("framing"), 0);
+    }
+  }
+}
+
+TEST_F(PicoImage, RequestsBackToBackAt115200AreAllAnswered) {
+  begin("EX9043D-M", 115200);
+  for (int i = 0; i < 500; ++i) {
+    bench_.send(text("$01M\r"));
+    const play::Bytes reply = bench_.receive(9, milliseconds(5));
+    ASSERT_EQ(std::string(reply.begin(), reply.end()), "!019043M\r") << i;
+  }
+}
+
+enum class Doing : std::uint8_t { Nothing, Receiving, Replying, Storing };
+const char* name_of(Doing doing) {
+  constexpr const char* kNames[] = {"Nothing", "Receiving", "Replying", "Storing"};
+  return kNames[static_cast<int>(doing)];
+}
+
+class HangingPicoImage : public PicoImage, public testing::WithParamInterface<Doing> {
+ protected:
+  void make_it_busy() {
+    switch (GetParam()) {
+      case Doing::Nothing:
+        break;
+      case Doing::Receiving:
+        bench_.execute("queue 2430314D2430314D2430314D");
+        bench_.run_for(milliseconds(3));
+        break;
+      case Doing::Replying:
+        bench_.send(text("$01M\r"));
+        bench_.run_for(milliseconds(3));
+        break;
+      case Doing::Storing:
+        bench_.send(text("~01OVALVE\r"));
+        bench_.run_for(milliseconds(4));
+        break;
+    }
+  }
+
+  /// Checks that the chip is reset once, `within` this time, and that the module then works.
+  void expect_reset(const char* count, long reason, nanoseconds within) {
+    bench_.run_for(within);
+    EXPECT_EQ(bench_.counts().at(count), 1);
+    EXPECT_EQ(bench_.counts().at("reason"), reason);
+    EXPECT_EQ(bench_.levels() & board::kDriverEnable.mask(), 0U) << "the driver is on";
+    bench_.run_for(kComingUp);
+    EXPECT_EQ(bench_.outputs(), kPowerOnValue);
+    bench_.heard();
+    ask("");
+    EXPECT_EQ(ask("$012"), "!01400600\r");
+    EXPECT_EQ(bench_.counts().at("timeouts") + bench_.counts().at("requests"), 1);
+  }
+};
+
+constexpr long kTimeout = 1;
+constexpr long kRequest = 2;
+
+TEST_P(HangingPicoImage, IsResetByTheWatchdogIfTheMainLoopHangs) {
+  begin();
+  ASSERT_EQ(ask("@01C35A"), ">\r");
+  ASSERT_EQ(bench_.outputs(), 0xC35A);
+  make_it_busy();
+  replace_main_loop(kBranchToItself);
+  expect_reset("timeouts", kTimeout, kWatchdogPeriod);
+}
+
+TEST_P(HangingPicoImage, IsResetByTheWatchdogIfAnInterruptHangs) {
+  for (const unsigned exception : {kSystemTick, kFirstInterrupt + kUart0}) {
+    begin();
+    make_it_busy();
+    replace_handler(exception, kBranchToItself);
+    bench_.execute("queue 24");  // causes a receive interrupt
+    expect_reset("timeouts", kTimeout, kWatchdogPeriod);
+  }
+}
+
+TEST_P(HangingPicoImage, IsResetAtOnceIfItFaults) {
+  begin();
+  make_it_busy();
+  replace_handler(kSystemTick, kUndefined);
+  expect_reset("requests", kRequest, milliseconds(11));
+}
+
+TEST_P(HangingPicoImage, IsResetByTheWatchdogIfAFaultHandlerFaults) {
+  begin();
+  make_it_busy();
+  constexpr unsigned kHardFault = 3;
+  replace_handler(kHardFault, kUndefined);
+  replace_handler(kSystemTick, kUndefined);
+  expect_reset("timeouts", kTimeout, kWatchdogPeriod);
+}
+
+INSTANTIATE_TEST_SUITE_P(While, HangingPicoImage,
+                         testing::Values(Doing::Nothing, Doing::Receiving, Doing::Replying, Doing::Storing),
+                         [](const auto& each) { return name_of(each.param); });
+
+TEST_F(PicoImage, AnEepromThatBlocksTheBusDoesNotStopTheModule) {
+  begin();
+  bench_.execute("pin " + std::to_string(board::kI2cPins.first_pin) + " low");
+  bench_.execute("absent");
+  EXPECT_EQ(ask("~01OVALVE"), "?01\r");
+  EXPECT_EQ(ask("$01M"), "!019043M\r");
+  bench_.power(false);
+  bench_.power(true);
+  bench_.run_for(milliseconds(1000));
+  EXPECT_EQ(bench_.counts().at("timeouts"), 0);
+}
+
+TEST_F(PicoImage, AModuleWithoutAnEepromWorksWithFactorySettings) {
+  const Model& model = *find_model("EX9043D");
+  bench_.begin_anew(model, nullptr);
+  bench_.execute("absent");
+  bench_.power(true);
+  bench_.run_for(milliseconds(1000));
+  EXPECT_EQ(ask("$01M"), "!019043D\r");
+  EXPECT_EQ(ask("~01OVALVE"), "?01\r");
+  EXPECT_EQ(bench_.counts().at("timeouts"), 0);
+}
+
+}  // namespace
+}  // namespace ex9000::pico
