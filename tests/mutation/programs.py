@@ -300,10 +300,12 @@ def areas():
     judged = [file for file in files("sim/*.cpp", "sim/*.hpp") if stem_of(file) not in PROCESS]
     core = [LIBRARY_UNITS["core"]]
     images = [image.unit for image in IMAGES]
+    # The drivers of the RP2040 run only in its emulator.
+    drivers = [file for file in files("hal/*.cpp", "hal/*.hpp") if not file.startswith("hal/rp2040/")]
     of_drivers = [hal, interleaved, sim, [players()], image_programs()]
     of_simulator = [LIBRARY_UNITS[name] for name in LIBRARIES["ex9000_app"] if name != "core"]
     return [
         Area("firmware", files("firmware/*.cpp", "firmware/*.hpp"), core + images, [[players()], of_core]),
-        Area("hal", files("hal/*.cpp", "hal/*.hpp"), core + images, of_drivers),
+        Area("hal", drivers, core + images, of_drivers),
         Area("sim", judged, of_simulator, [sim, [players()]]),
     ]

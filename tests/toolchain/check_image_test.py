@@ -58,6 +58,21 @@ class Accepts(unittest.TestCase):
         # The handler is alone on a separate level, and there is no handler on the shared level.
         self.assertEqual(self.stack(check(source, options="--level interrupt")), EXCEPTION + 40)
 
+    def test_a_processor_without_a_division_uses_that_of_libgcc(self) -> None:
+        verdict = check(
+            """
+            extern volatile unsigned a, b;
+            volatile unsigned a = 1, b = 1;
+            FAR void divide() { room<16>(); a = a / b + a % b; }
+            extern "C" void reset() { for (;;) divide(); }
+            """,
+            options="--verbose",
+            compile_options="-mcpu=cortex-m0plus",
+            link_options="-mcpu=cortex-m0plus -lgcc",
+        )
+        self.assertRegex(verdict.figures, r"reset \d+ -> divide \d+ -> __(aeabi_uidiv|udivsi3|aeabi_uidivmod)")
+        self.assertTrue(verdict.accepted, verdict.problems)
+
     def test_pointers_reach_functions_of_their_type_only(self) -> None:
         verdict = check(
             """
