@@ -1,0 +1,164 @@
+// Tests the alarms as one-shot timers, with delays at each access of the driver. Source: RP2040 data
+// sheet, 4.6.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <stdexcept>
+
+#include "hal/rp2040/timer.hpp"
+#include "tests/hal/rp2040/bus.hpp"
+
+namespace ex9000 {
+namespace {
+
+/// Alarm 0 of the timer. An alarm fires when the time equals it.
+class TimerModel final : public rp2040_model::Bus {
+ public:
+  static constexpr std::uint32_t kBase = 0x4005'4000;
+  static constexpr std::uint32_t kSet = 0x2000;
+  static constexpr std::uint32_t kClear = 0x3000;
+
+  std::uint32_t read(std::uint32_t address) override {
+    access();
+    switch (address - kBase) {
+      case 0x20:
+        return armed_ ? 1 : 0;
+      case 0x28:
+        return static_cast<std::uint32_t>(nanoseconds / 1000);
+      case 0x40:
+        return interrupt() ? 1 : 0;
+      default:
+        throw std::runtime_error("an unknown register is read");
+    }
+  }
+  void write(std::uint32_t address, std::uint32_t value) override {
+    access();
+    switch (address - kBase) {
+      case 0x10:
+        alarm_ = value;
+        armed_ = true;
+        break;
+      case 0x20:
+        armed_ = armed_ && value == 0;
+        break;
+      case 0x34:
+        raw_ = raw_ && value == 0;
+        break;
+      case 0x38 + kSet:
+        enabled_ = enabled_ || value != 0;
+        break;
+      case 0x3C + kSet:
+        forced_ = forced_ || value != 0;
+        break;
+      case 0x3C + kClear:
+        forced_ = forced_ && value == 0;
+        break;
+      default:
+        throw std::runtime_error("an unknown register is written");
+    }
+  }
+  [[nodiscard]] bool interrupt() const { return (raw_ && enabled_) || forced_; }
+  /// Lets time pass in steps in which no microsecond is skipped.
+  void pass(std::uint64_t duration) {
+    constexpr std::uint64_t kStep = 100;
+    for (const std::uint64_t end = nanoseconds + duration; nanoseconds < end;) {
+      const std::uint64_t before = nanoseconds / 1000;
+      nanoseconds += std::min(kStep, end - nanoseconds);
+      if (armed_ && nanoseconds / 1000 != before &&
+          static_cast<std::uint32_t>(nanoseconds / 1000) == alarm_) {
+        armed_ = false;
+        raw_ = true;
+      }
+    }
+  }
+  /// Delays access number `access` by `duration`, like an interrupt.
+  void delay(int access, std::uint64_t duration) {
+    delayed_ = accesses_ + access;
+    delay_ = duration;
+  }
+
+  std::uint64_t nanoseconds = 0;
+
+ private:
+  void access() { pass(accesses_++ == delayed_ ? delay_ : 16); }
+
+  bool armed_ = false;
+  bool raw_ = false;
+  bool enabled_ = false;
+  bool forced_ = false;
+  std::uint32_t alarm_ = 0;
+  int accesses_ = 0;
+  int delayed_ = -1;
+  std::uint64_t delay_ = 0;
+};
+
+using Timer = hal::rp2040::OneShotTimer<0>;
+
+/// Returns the nanoseconds from the return of `restart` to the interrupt.
+std::uint64_t time_to_interrupt(TimerModel& model) {
+  const std::uint64_t begin = model.nanoseconds;
+  while (!model.interrupt()) {
+    model.pass(100);
+    if (model.nanoseconds - begin > 100'000'000) {
+      ADD_FAILURE() << "it does not fire";
+      break;
+    }
+  }
+  return model.nanoseconds - begin;
+}
+
+TEST(OneShotTimer, FiresOnceNeverEarlyAndAtMostFiveMicrosecondsLate) {
+  for (const std::uint64_t start : {0ULL, 1ULL, 999ULL, 4'294'967'290'500ULL}) {
+    for (const std::uint32_t after : {1U, 2U, 60U, 1042U, 34'000U}) {
+      TimerModel model;
+      Timer::start();
+      model.nanoseconds = start;
+      Timer::restart(Duration(after));
+      time_to_interrupt(model);
+      EXPECT_GE(model.nanoseconds - start, after * 1000ULL);
+      EXPECT_LE(model.nanoseconds - start, after * 1000ULL + 5000);
+      EXPECT_TRUE(Timer::take_expiry());
+      EXPECT_FALSE(model.interrupt());
+      EXPECT_FALSE(Timer::take_expiry());
+      model.pass(100'000);
+      EXPECT_FALSE(model.interrupt());
+    }
+  }
+}
+
+TEST(OneShotTimer, FiresAlsoIfAnInterruptDelaysItsStart) {
+  constexpr int kAccesses = 7;
+  for (int access = 0; access < kAccesses; ++access) {
+    for (const std::uint64_t delay : {500ULL, 1000ULL, 1900ULL, 2000ULL, 3000ULL, 50'000ULL}) {
+      TimerModel model;
+      Timer::start();
+      model.delay(access, delay);
+      Timer::restart(Duration(2));
+      EXPECT_LE(time_to_interrupt(model), 3000U) << access << ", " << delay;
+      EXPECT_TRUE(Timer::take_expiry());
+      model.pass(100'000);
+      EXPECT_FALSE(model.interrupt());
+    }
+  }
+}
+
+TEST(OneShotTimer, RestartCancelsAnEarlierStartAndItsPendingInterrupt) {
+  TimerModel model;
+  Timer::start();
+  Timer::restart(Duration(10));
+  model.pass(20'000);
+  EXPECT_TRUE(model.interrupt());
+  Timer::restart(Duration(100));
+  EXPECT_FALSE(model.interrupt());
+  EXPECT_FALSE(Timer::take_expiry());
+  Timer::restart(Duration(50));
+  model.pass(49'000);
+  EXPECT_FALSE(model.interrupt());
+  model.pass(3'000);
+  EXPECT_TRUE(Timer::take_expiry());
+  model.pass(100'000);
+  EXPECT_FALSE(model.interrupt());
+}
+
+}  // namespace
+}  // namespace ex9000
