@@ -11,7 +11,7 @@
 #include <string>
 #include <vector>
 
-#include EX9000_BOARD_HEADER
+#include EX9000_PINS_HEADER
 #include "firmware/model/model.hpp"
 
 namespace ex9000::board {
@@ -62,22 +62,6 @@ Table table_of(const std::string& head) {
   }
   EXPECT_FALSE(found.empty()) << "no table of " << head;
   return found;
-}
-
-/// Returns for example "PA2".
-std::string name_of(Pin pin) {
-  return {'P', static_cast<char>('A' + static_cast<int>(pin.port)), static_cast<char>('0' + pin.number)};
-}
-
-template <class Groups>
-std::vector<std::string> names_of(const Groups& groups) {
-  std::vector<std::string> names;
-  for (const PinGroup& group : groups) {
-    for (unsigned i = 0; i < group.count; ++i) {
-      names.push_back(name_of({group.port, static_cast<std::uint8_t>(group.first_pin + i)}));
-    }
-  }
-  return names;
 }
 
 /// Returns the name of an output on the model's label: RL1 is channel 0 (wire.md section 1).
@@ -140,15 +124,10 @@ TEST(Wiring, TheReadmeListsThePinsOfTheCommonSignals) {
   // README's table describes the image with a transceiver; the image without one has its own section.
   static_assert(kUart == 1);
 #endif
-  const std::map<std::string, std::string> expected{
-      {"receive", name_of({kUartPins.port, kUartPins.first_pin})},
-      {"transmit", name_of({kUartPins.port, static_cast<std::uint8_t>(kUartPins.first_pin + 1)})},
-      {"driver enable", name_of(kDriverEnable)},
-      {"EEPROM clock", "PB2"},  // pins of I2C0 on both families
-      {"EEPROM data", "PB3"},
-      {"INIT*", name_of(kInitSwitch)},
-      {"status LED", name_of(kStatusLed)},
-  };
+  std::map<std::string, std::string> expected = names_of_peripherals();
+  expected["driver enable"] = name_of(kDriverEnable);
+  expected["INIT*"] = name_of(kInitSwitch);
+  expected["status LED"] = name_of(kStatusLed);
   EXPECT_EQ(written, expected);
 }
 
@@ -164,11 +143,10 @@ TEST(Wiring, NoPinHasTwoFunctions) {
   }
 }
 
-TEST(Wiring, NoDebuggerPinIsUsed) {
-  const std::array<std::string, 5> debugger{"PC0", "PC1", "PC2", "PC3", "PB7"};
+TEST(Wiring, NoPinIsUsedThatTheBoardRequiresItself) {
   for (const Table& table : {table_of("pin"), table_of("signal")}) {
     for (const Row& row : table) {
-      for (const std::string& pin : debugger) {
+      for (const std::string& pin : kReservedPins) {
         EXPECT_EQ(std::count(row.begin(), row.begin() + 2, pin), 0) << pin;
       }
     }
@@ -214,6 +192,35 @@ TEST(Wiring, EveryHeaderPositionInTheTextMatchesItsPin) {
       EXPECT_EQ(pin_at(position), text.substr(open + 2, 3)) << position;
       ++named;
     }
+  }
+  EXPECT_GE(named, 5);
+}
+#endif
+
+#ifdef EX9000_BOARD_HAS_POSITIONS
+TEST(Wiring, EveryPositionInTheTablesMatchesItsPin) {
+  for (const auto& [head, pin_column] : std::map<std::string, std::size_t>{{"pin", 0}, {"signal", 1}}) {
+    const Table table = table_of(head);
+    ASSERT_EQ(table[0].at(pin_column + 1), "position");
+    for (auto row = table.begin() + 1; row != table.end(); ++row) {
+      if (row->at(pin_column + 1) != kNone) {
+        const std::size_t position = std::stoul(row->at(pin_column + 1));
+        EXPECT_EQ(kPositions.at(position - 1), row->at(pin_column)) << position;
+      }
+    }
+  }
+}
+
+TEST(Wiring, EveryPositionInTheTextMatchesItsPin) {
+  std::ifstream file(EX9000_BOARD_README);
+  const std::string text{std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>()};
+  int named = 0;
+  for (auto open = text.find(" (GP"); open != std::string::npos; open = text.find(" (GP", open + 1)) {
+    const auto start = text.rfind(' ', open - 1) + 1;
+    const std::size_t position = std::stoul(text.substr(start, open - start));  // of "position 4 (GP2)"
+    EXPECT_EQ(kPositions.at(position - 1), text.substr(open + 2, text.find(')', open) - open - 2))
+        << position;
+    ++named;
   }
   EXPECT_GE(named, 5);
 }

@@ -31,6 +31,10 @@ class Generated(unittest.TestCase):
         written = section_of("sim/docs/bus-files.md", "toolchain/bus-file-keys")
         self.assertEqual(written, printed(["toolchain/bus-file-keys"], schema))
 
+    def test_the_wiring_of_the_pico(self) -> None:
+        drawn = (ROOT / "boards/pico/wiring.svg").read_text(encoding="utf-8")
+        self.assertEqual(drawn, printed(["toolchain/draw-wiring", "boards/pico/README.md"]))
+
 
 if __name__ == "__main__":
     unittest.main()

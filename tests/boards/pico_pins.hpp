@@ -1,0 +1,47 @@
+// The names of the pins of a Pico, as the wiring tables have them.
+#pragma once
+
+#include <array>
+#include <map>
+#include <string>
+#include <vector>
+
+#include EX9000_BOARD_HEADER
+
+namespace ex9000::board {
+
+inline std::string name_of(unsigned number) { return "GP" + std::to_string(number); }
+inline std::string name_of(Pin pin) { return name_of(pin.number); }
+
+template <class Groups>
+std::vector<std::string> names_of(const Groups& groups) {
+  std::vector<std::string> names;
+  for (const PinGroup& group : groups) {
+    for (unsigned i = 0; i < group.count; ++i) {
+      names.push_back(name_of(group.first_pin + i));
+    }
+  }
+  return names;
+}
+
+/// Returns the pins of the UART and of the EEPROM (RP2040 data sheet, 1.4.3: UART0 and I2C0).
+inline std::map<std::string, std::string> names_of_peripherals() {
+  static_assert(kUartPins.first_pin % 16 == 0 || kUartPins.first_pin % 16 == 12, "pins of UART0 TX and RX");
+  static_assert(kI2cPins.first_pin % 4 == 0, "pins of I2C0 SDA and SCL");
+  return {{"transmit", name_of(kUartPins.first_pin)},
+          {"receive", name_of(kUartPins.first_pin + 1U)},
+          {"EEPROM data", name_of(kI2cPins.first_pin)},
+          {"EEPROM clock", name_of(kI2cPins.first_pin + 1U)}};
+}
+
+/// The power supply of the Pico uses these pins (Raspberry Pi Pico data sheet, 2.1).
+inline const std::array<std::string, 3> kReservedPins{"GP23", "GP24", "GP29"};
+
+/// The positions of a Pico, from 1 on (Raspberry Pi Pico data sheet, 2.1). Empty: not a GPIO.
+inline const std::array<std::string, 40> kPositions{
+    "GP0",  "GP1",  "", "GP2",  "GP3",  "GP4",  "GP5",  "", "GP6",  "GP7",
+    "GP8",  "GP9",  "", "GP10", "GP11", "GP12", "GP13", "", "GP14", "GP15",
+    "GP16", "GP17", "", "GP18", "GP19", "GP20", "GP21", "", "GP22", "",
+    "GP26", "GP27", "", "GP28", "",     "",     "",     "", "",     ""};
+
+}  // namespace ex9000::board
