@@ -25,8 +25,8 @@ def elf(*segments: tuple[int, bytes]) -> bytes:
     for address, data in segments:
         table += struct.pack("<8I", 1, header + len(content), 0x20000000, address, len(data), len(data), 5, 4)
         content += data
-    start = b"\x7fELF\x01\x01".ljust(16, b"\0") + struct.pack("<2H5I6H", 2, 40, 1, 0, 52, 0, 0, 52, 32, len(segments), 0, 0, 0)
-    return start + table + content
+    fields = (2, 40, 1, 0, 52, 0, 0, 52, 32, len(segments), 0, 0, 0)
+    return b"\x7fELF\x01\x01".ljust(16, b"\0") + struct.pack("<2H5I6H", *fields) + table + content
 
 
 STAGE = bytes(range(252)) + bytes(4)
