@@ -9,3 +9,12 @@ set(starts_from_uf2 ON)
 
 # OpenOCD's script for the board.
 set(openocd_script ${CMAKE_CURRENT_LIST_DIR}/openocd.cfg)
+
+# The memory of the settings.
+set(EX9000_MEMORY eeprom CACHE STRING "Memory of the settings: eeprom (an AT24C64 on I2C) or flash (the end of the flash)")
+set_property(CACHE EX9000_MEMORY PROPERTY STRINGS eeprom flash)
+if(EX9000_MEMORY STREQUAL flash)
+  set(board_definitions EX9000_SETTINGS_IN_FLASH)
+elseif(NOT EX9000_MEMORY STREQUAL eeprom)
+  message(FATAL_ERROR "EX9000_MEMORY: ${EX9000_MEMORY} is not a memory; use eeprom or flash")
+endif()

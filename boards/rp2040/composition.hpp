@@ -50,7 +50,9 @@ static_assert(
 
 /// The memory of the settings: its driver, its start and its interrupt.
 template <Memory memory>
-struct MemoryOnBoard;
+struct MemoryOnBoard {
+  static_assert(memory != Memory::Flash, "this family has no store for settings in the flash yet");
+};
 template <>
 struct MemoryOnBoard<Memory::Eeprom> {
   using Driver = hal::At24c<I2c<kI2cPins, kHertz>>;
@@ -59,8 +61,6 @@ struct MemoryOnBoard<Memory::Eeprom> {
   static void start(Driver& driver) { driver.master().start(); }
   static void on_interrupt(Driver& driver) { driver.master().on_interrupt(); }
 };
-// Memory::Flash: no driver yet. Its sectors are at `settings_begin` of the linker script.
-
 using Settings = MemoryOnBoard<kMemory>;
 
 /// See hal/board.hpp.

@@ -1,0 +1,299 @@
+// Tests that the models reject what silicon rejects, and that they keep its times.
+"use strict";
+const assert = require("node:assert/strict");
+const { test } = require("node:test");
+const { RP2040 } = require("rp2040js");
+const { ChipClock, Time } = require("./clock");
+const { Processor } = require("./core");
+const { Eeprom } = require("./eeprom");
+const { FLASH_SIZE, FlashChip } = require("./flash_chip");
+const { correctI2c } = require("./i2c");
+const { Receiver, Sender } = require("./line");
+const { Pl011 } = require("./pl011");
+const { QspiPins, Ssi } = require("./ssi");
+const { Guarded, Resets, Watchdog } = require("./system");
+
+const BIT = 8680; // ns at 115200 baud
+const PERI_ENABLE = 1 << 11;
+
+function reject(name, message) {
+  throw new Error(`${name}: ${message}`);
+}
+
+function setUp() {
+  const time = new Time();
+  const mcu = new RP2040(new ChipClock(time));
+  mcu.logger = { debug() {}, info() {}, warn: reject, error: reject };
+  mcu.uart.forEach((uart) => Object.assign(uart, { clkPeriChanged: () => {} }));
+  return { time, mcu };
+}
+
+function uartOf({ mcu }, isOn = true) {
+  const levels = [];
+  const uart = new Pl011(mcu, "UART0", 20, {
+    transmit: (level) => levels.push(level),
+    mayTransmit: () => true,
+    mayReceive: () => true,
+  });
+  mcu.clocks.periCtrl = PERI_ENABLE;
+  mcu.clocks.sysCtrl = 1;
+  mcu.clkPeri = 125e6;
+  Object.defineProperty(mcu.clocks, "periFreq", { value: 125e6 });
+  if (isOn) {
+    uart.writeUint32(0x24, 67);
+    uart.writeUint32(0x28, 52);
+    uart.writeUint32(0x2c, 0x60);
+    uart.writeUint32(0x30, 0x301);
+  }
+  return { uart, levels };
+}
+
+function character(uart, time, byte, bitTime = BIT) {
+  const sender = new Sender(time, (level) => uart.level(level), () => {});
+  sender.send(byte, bitTime);
+  time.advanceTo(time.now + 10 * bitTime);
+}
+
+test("a receiver reports a byte in the middle of its stop bit", () => {
+  const time = new Time();
+  const received = [];
+  const receiver = new Receiver(time, (it) => received.push({ ...it, at: time.now }));
+  receiver.bitTime = BIT;
+  const sender = new Sender(time, (level) => receiver.level(level), () => {});
+  sender.send(0xa5, BIT);
+  time.advanceTo(20 * BIT);
+  assert.deepEqual(received, [{ byte: 0xa5, good: true, isBreak: false, at: 9.5 * BIT }]);
+});
+
+test("a receiver at another rate reports framing errors, and ignores glitches", () => {
+  const time = new Time();
+  const received = [];
+  const receiver = new Receiver(time, (it) => received.push(it));
+  receiver.bitTime = BIT;
+  receiver.level(false);
+  time.advanceTo(BIT / 4);
+  receiver.level(true);
+  time.advanceTo(20 * BIT);
+  assert.equal(received.length, 0);
+  const sender = new Sender(time, (level) => receiver.level(level), () => {});
+  sender.send(0x00, 2 * BIT);
+  time.advanceTo(40 * BIT);
+  assert.equal(received[0].good, false);
+});
+
+test("a UART sends with line time, and its transmit interrupt comes when the holding register is empty", () => {
+  const chip = setUp();
+  const { uart } = uartOf(chip);
+  uart.writeUint32(0x38, 1 << 5);
+  uart.writeUint32(0x00, 0x55);
+  assert.equal(uart.readUint32(0x40), 1 << 5);
+  uart.writeUint32(0x44, 1 << 5);
+  uart.writeUint32(0x00, 0xaa);
+  assert.equal(uart.readUint32(0x40), 0);
+  assert.throws(() => uart.writeUint32(0x00, 1), /no room/);
+  chip.time.advanceTo(10 * BIT + 100);
+  assert.equal(uart.readUint32(0x40), 1 << 5);
+  assert.equal(uart.readUint32(0x18) & 8, 8, "it is busy");
+  chip.time.advanceTo(20 * BIT + 100);
+  assert.equal(uart.readUint32(0x18) & 8, 0, "the stop bit is over");
+});
+
+test("a UART reports overrun with the next byte, framing errors and breaks", () => {
+  const chip = setUp();
+  const { uart } = uartOf(chip);
+  character(uart, chip.time, 1);
+  character(uart, chip.time, 2);
+  assert.equal(uart.readUint32(0x3c) & (1 << 10), 1 << 10);
+  assert.equal(uart.readUint32(0x00), 1);
+  character(uart, chip.time, 3);
+  assert.equal(uart.readUint32(0x00), 3 | (1 << 11));
+  uart.level(false);
+  chip.time.advanceTo(chip.time.now + 20 * BIT);
+  uart.level(true);
+  assert.equal(uart.readUint32(0x00), (1 << 8) | (1 << 10));
+});
+
+test("a UART with FIFOs has levels and a receive time-out", () => {
+  const chip = setUp();
+  const { uart } = uartOf(chip, false);
+  uart.writeUint32(0x24, 67);
+  uart.writeUint32(0x28, 52);
+  uart.writeUint32(0x2c, 0x70);
+  uart.writeUint32(0x34, 0); // 1/8
+  uart.writeUint32(0x30, 0x301);
+  for (let byte = 0; byte < 3; byte += 1) {
+    character(uart, chip.time, byte);
+  }
+  assert.equal(uart.readUint32(0x3c) & 0x50, 0);
+  chip.time.advanceTo(chip.time.now + 33 * BIT);
+  assert.equal(uart.readUint32(0x3c) & 0x50, 1 << 6, "time-out");
+  character(uart, chip.time, 3);
+  assert.equal(uart.readUint32(0x3c) & 0x50, (1 << 6) | (1 << 4));
+  for (let byte = 0; byte < 4; byte += 1) {
+    assert.equal(uart.readUint32(0x00), byte);
+  }
+  assert.equal(uart.readUint32(0x3c) & 0x50, 0);
+});
+
+test("a UART rejects a wrong order of its registers", () => {
+  const { uart } = uartOf(setUp());
+  assert.throws(() => uart.writeUint32(0x24, 1), /while the UART is enabled/);
+  assert.throws(() => uart.readUint32(0x00), /nothing has been received/);
+  const { uart: off } = uartOf(setUp(), false);
+  assert.throws(() => off.writeUint32(0x00, 1), /transmitter is off/);
+  off.writeUint32(0x24, 67);
+  assert.throws(() => off.writeUint32(0x30, 0x301), /divisors have no effect/);
+});
+
+test("the flash erases and programs in its times, and rejects what it cannot do", () => {
+  const time = new Time();
+  const flash = new FlashChip(time, new Uint8Array(FLASH_SIZE));
+  const send = (...bytes) => {
+    flash.select(true);
+    const received = bytes.map((byte) => flash.exchange(byte));
+    flash.select(false);
+    return received;
+  };
+  assert.throws(() => send(0x20, 0x1f, 0, 0), /without Write Enable/);
+  send(0x06);
+  send(0x20, 0x1f, 0, 0);
+  assert.equal(send(0x05, 0)[1] & 1, 1);
+  assert.throws(() => send(0x03, 0, 0, 0, 0), /while it is busy/);
+  flash.selected = false;
+  time.advanceTo(20e6);
+  send(0x75);
+  assert.equal(send(0x05, 0)[1] & 1, 1, "a suspend takes 20 us");
+  time.advanceTo(time.now + 20_000);
+  assert.equal(send(0x05, 0)[1] & 1, 0);
+  assert.equal(send(0x03, 0, 0, 0, 0)[4], 0);
+  assert.throws(() => send(0x03, 0x1f, 0, 0, 0), /suspended sector/);
+  flash.selected = false;
+  send(0x7a);
+  time.advanceTo(time.now + 25e6 - 1000);
+  assert.equal(send(0x05, 0)[1] & 1, 1);
+  time.advanceTo(time.now + 1000);
+  assert.equal(send(0x05, 0)[1] & 1, 0);
+  assert.equal(send(0x03, 0x1f, 0, 0, 0)[4], 0xff);
+  send(0x06);
+  send(0x02, 0x1f, 0, 0, 0x0f);
+  time.advanceTo(time.now + 400e3);
+  send(0x06);
+  send(0x02, 0x1f, 0, 0, 0xf3);
+  time.advanceTo(time.now + 400e3);
+  assert.equal(send(0x03, 0x1f, 0, 0, 0)[4], 0x03, "programming only clears bits");
+});
+
+test("a power failure leaves an erase undefined", () => {
+  const time = new Time();
+  const flash = new FlashChip(time, new Uint8Array(FLASH_SIZE));
+  flash.writeEnabled = true;
+  flash.begin("erase", 0x1f0000, []);
+  flash.losePower();
+  const sector = flash.content.subarray(0x1f0000, 0x1f1000);
+  assert.ok(sector.includes(0) && sector.includes(0xff));
+});
+
+test("the SSI rejects settings while it is enabled, and takes the time of each frame", () => {
+  const { mcu, time } = setUp();
+  const flash = new FlashChip(time, new Uint8Array(FLASH_SIZE).fill(0x5a));
+  const pins = new QspiPins(mcu, "IO_QSPI", flash);
+  const ssi = new Ssi(mcu, "SSI", flash, pins);
+  assert.throws(() => ssi.writeUint32(0x60, 0), /before the SSI is set up/);
+  ssi.writeUint32(0x14, 4);
+  ssi.writeUint32(0x00, (31 << 16) | (3 << 8));
+  ssi.writeUint32(0x04, 1);
+  ssi.writeUint32(0x10, 1);
+  ssi.writeUint32(0x08, 1);
+  assert.throws(() => ssi.writeUint32(0x14, 2), /while the SSI is enabled/);
+  ssi.writeUint32(0x60, 0x03000000);
+  const frame = (32 * 4 * 1e9) / mcu.clkSys;
+  time.advanceTo(3 * frame - 1);
+  assert.equal(ssi.readUint32(0x24), 1);
+  time.advanceTo(3 * frame + 1);
+  assert.equal(ssi.readUint32(0x24), 2);
+  assert.equal(ssi.readUint32(0x60), 0x5a5a5a5a);
+  assert.equal(flash.selected, false);
+});
+
+test("a block in reset, or without its clock, cannot be used", () => {
+  const { mcu } = setUp();
+  const resets = new Resets(mcu, "RESETS");
+  const uart = 1 << 22;
+  const guarded = new Guarded({ readUint32: () => 7 }, "uart", () => (resets.held & uart ? "it is held in reset" : ""));
+  assert.throws(() => guarded.readUint32(0), /held in reset/);
+  resets.writeUint32(0, resets.held & ~uart);
+  assert.equal(guarded.readUint32(0), 7);
+  assert.equal(resets.readUint32(8) & uart, 0, "its clock does not run");
+});
+
+test("the watchdog counts twice a tick, and requires a tick and a full reset", () => {
+  const { mcu, time } = setUp();
+  const psm = { wdsel: 0 };
+  const reasons = [];
+  const watchdog = new Watchdog(mcu, "WATCHDOG", psm, 0, (reason) => reasons.push(reason));
+  mcu.clocks.refCtrl = 2; // the crystal
+  watchdog.writeUint32(0x04, 2_000_000);
+  watchdog.writeUint32(0x00, 1 << 30);
+  time.advanceTo(5e9);
+  assert.deepEqual(reasons, [], "there is no tick");
+  watchdog.writeUint32(0x2c, (1 << 9) | 12);
+  watchdog.writeUint32(0x04, 2_000_000);
+  assert.throws(() => time.advanceTo(time.now + 2e9), /leaves parts/);
+  psm.wdsel = 0x1fffc;
+  watchdog.writeUint32(0x04, 2_000_000);
+  const fed = time.now;
+  time.advanceTo(fed + 1e9 - 1);
+  assert.deepEqual(reasons, []);
+  time.advanceTo(fed + 1e9);
+  assert.deepEqual(reasons, [1]);
+});
+
+test("an I2C master rejects settings while it is on, and reports a low queue as long as it is low", () => {
+  const { mcu, time } = setUp();
+  const master = mcu.i2c[0];
+  correctI2c(master);
+  const eeprom = new Eeprom(time);
+  eeprom.attach(master, mcu.clock, () => 10_000, () => true);
+  assert.throws(() => master.writeUint32(0x10, 0), /while the master is off/);
+  master.writeUint32(0x04, 0x50);
+  master.writeUint32(0x6c, 1);
+  assert.throws(() => master.writeUint32(0x04, 0x51), /while the master is on/);
+  assert.equal(master.readUint32(0x34) & 0x10, 0x10);
+  [0, 0, 0x42 | 0x200].forEach((command) => master.writeUint32(0x10, command));
+  time.advanceTo(time.now + 400_000);
+  assert.equal(master.readUint32(0x34) & 0x200, 0x200, "STOP");
+  assert.equal(eeprom.content[0], 0xff);
+  time.advanceTo(time.now + 5e6);
+  assert.equal(eeprom.content[0], 0x42);
+  master.writeUint32(0x6c, 0);
+  master.writeUint32(0x04, 0x51);
+  master.writeUint32(0x6c, 1);
+  master.writeUint32(0x10, 0x200);
+  time.advanceTo(time.now + 400_000);
+  assert.throws(() => master.writeUint32(0x10, 0), /before the abort is cleared/);
+});
+
+test("a pending interrupt wakes the processor, although PRIMASK keeps its handler from running", () => {
+  const { mcu } = setUp();
+  const { core } = mcu;
+  const processor = new Processor(mcu);
+  const WFI = 0xbf30;
+  const NOP = 0xbf00;
+  mcu.sramView.setUint16(0x100, WFI, true);
+  mcu.sramView.setUint16(0x102, NOP, true);
+  mcu.sramView.setUint32(4 * 16, 0x20000201, true);
+  core.VTOR = 0x20000000;
+  core.SP = 0x20001000;
+  core.PC = 0x20000100;
+  core.PM = true;
+  core.enabledInterrupts = 1;
+  processor.setLine(0, true);
+  processor.step();
+  assert.equal(core.PC, 0x20000102);
+  processor.step();
+  assert.equal(core.PC, 0x20000104, "the handler has not run");
+  core.PM = false;
+  core.interruptsUpdated = true;
+  processor.step();
+  assert.equal(core.IPSR, 16);
+});
