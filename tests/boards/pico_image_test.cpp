@@ -2,6 +2,7 @@
 // a blocked EEPROM. RAM is changed to make an image hang; the second stage restores it from the flash.
 #include <gtest/gtest.h>
 
+#include <map>
 #include <set>
 #include <string>
 
@@ -44,8 +45,10 @@ class PicoImage : public testing::Test {
                                ? kFirstBaudCode
                                : static_cast<std::uint8_t>(settings.baud_code + 1U);
     }
-    settings.power_on_value = kPowerOnValue;
-    settings.safe_value = kSafeValue;
+    if (model.outputs != 0) {
+      settings.power_on_value = kPowerOnValue;
+      settings.safe_value = kSafeValue;
+    }
     bench_.begin_anew(model, &settings);
     bench_.set_baud(baud);
     bench_.power(true);
@@ -122,6 +125,77 @@ TEST_F(PicoImage, RequestsBackToBackAt115200AreAllAnswered) {
     const play::Bytes reply = bench_.receive(9, milliseconds(5));
     ASSERT_EQ(std::string(reply.begin(), reply.end()), "!019043M\r") << i;
   }
+}
+
+/// Returns the time from the end of a request to the start bit of the reply.
+nanoseconds turn_around(PicoBench& bench, const play::Bytes& request, nanoseconds bit) {
+  bench.send(request);
+  const nanoseconds end = bench.now();
+  bench.run_for(milliseconds(20));
+  const std::string arrivals = bench.execute("arrivals");
+  const nanoseconds middle_of_stop_bit(std::stoll(arrivals.substr(arrivals.find('@') + 1)));
+  return middle_of_stop_bit - bit * 19 / 2 - end;
+}
+
+TEST_F(PicoImage, AReplyBeginsOneCharacterAfterTheRequest) {
+  constexpr nanoseconds kTolerance = std::chrono::microseconds(60);
+  for (const std::uint32_t baud : {9600U, 115200U}) {
+    begin("EX9043D-M", baud);
+    const nanoseconds bit(1'000'000'000 / baud);
+    const nanoseconds waited = turn_around(bench_, text("$01M\r"), bit);
+    EXPECT_GE(waited, 10 * bit) << baud;
+    EXPECT_LE(waited, 10 * bit + kTolerance) << baud;
+  }
+}
+
+TEST_F(PicoImage, AModbusReplyBeginsAfterTheSilenceOfThreeAndAHalfCharacters) {
+  constexpr nanoseconds kTolerance = std::chrono::microseconds(60);
+  const Model& model = *find_model("EX9043D-M");
+  Settings settings = Settings::factory(model);
+  settings.protocol = Protocol::ModbusRtu;
+  bench_.begin_anew(model, &settings);
+  bench_.power(true);
+  bench_.run_for(kComingUp);
+  const nanoseconds bit(1'000'000'000 / 9600);
+  const nanoseconds waited = turn_around(bench_, {1, 1, 0, 0, 0, 16, 0x3D, 0xC6}, bit);
+  EXPECT_GE(waited, bit * 77 / 2);
+  EXPECT_LE(waited, bit * 77 / 2 + kTolerance);
+}
+
+TEST_F(PicoImage, NoPulseOfEightInputsIsLostBetweenRequestsBackToBack) {
+  begin("EX9052D", 115200);
+  constexpr unsigned kPulses = 1500;
+  for (unsigned channel = 0; channel < 8; ++channel) {
+    bench_.execute("train " + std::to_string(board::kInputs[0].first_pin + channel) + " " +
+                   std::to_string(kPulses) + " " + std::to_string(100'000 + 7'000 * channel));
+  }
+  const nanoseconds end = bench_.now() + milliseconds(500);
+  while (bench_.now() < end) {
+    ASSERT_EQ(ask("$01M"), "!019052\r");
+  }
+  for (unsigned channel = 0; channel < 8; ++channel) {
+    EXPECT_EQ(ask("#01" + std::to_string(channel)), "!0101500\r");
+  }
+  EXPECT_EQ(bench_.counts().at("depth"), 1);
+}
+
+TEST_F(PicoImage, APowerFailureDuringAStoreLeavesTheOldOrTheNewName) {
+  std::map<std::string, int> names;
+  for (int cut = 0; cut < 60; ++cut) {
+    begin();
+    ASSERT_EQ(ask("~01OOLD"), "!01\r");
+    bench_.send(text("~01ONEW\r"));
+    bench_.run_for(std::chrono::microseconds(500) * cut);
+    bench_.power(false);
+    bench_.run_for(milliseconds(10));
+    bench_.power(true);
+    bench_.run_for(kComingUp);
+    bench_.heard();
+    ++names[ask("$01M")];
+  }
+  EXPECT_GT(names["!01OLD\r"], 0);
+  EXPECT_GT(names["!01NEW\r"], 0);
+  EXPECT_EQ(names.size(), 2U);
 }
 
 enum class Doing : std::uint8_t { Nothing, Receiving, Replying, Storing };

@@ -75,6 +75,21 @@ const COMMANDS = {
       }
     }
   },
+  // train NUMBER COUNT NANOSECONDS: like pulses, but begins them and returns at once
+  train(number, count, nanoseconds) {
+    const pin = integer(number);
+    let left = 2 * integer(count);
+    const alarm = board.time.createAlarm(() => {
+      board.setOutside(pin, !board.levels[pin]);
+      left -= 1;
+      if (left > 0) {
+        alarm.schedule(integer(nanoseconds));
+      } else {
+        board.time.alarms.delete(alarm);
+      }
+    });
+    alarm.schedule(integer(nanoseconds));
+  },
   levels: () => board.levels.reduce((mask, level, number) => mask + (level ? 2 ** number : 0), 0),
   // watch NUMBER NANOSECONDS: lets time pass until the level of a pin changes; returns whether it did
   watch(number, nanoseconds) {
@@ -97,8 +112,17 @@ const COMMANDS = {
     board.eeprom.present = false;
   },
   stored: () => hexOf(board.eeprom.content),
+  // flash ADDRESS SIZE: bytes of the flash chip
+  flash: (address, size) => hexOf(board.flash.content.subarray(integer(address), integer(address) + integer(size))),
+  // set-flash ADDRESS HEX
+  "set-flash": (address, hex) => board.flash.content.set(bytesOf(hex), integer(address)),
+  // flash-times ERASE PROGRAM: nanoseconds of an erase and of a page program
+  "flash-times"(erase, program) {
+    board.flash.times = { erase: integer(erase), program: integer(program) };
+  },
   // counts: events since `new`, as NAME=NUMBER
-  counts: () => Object.entries({ ...board.counts, pages: board.eeprom.pagesProgrammed, reason: board.reason,
+  counts: () => Object.entries({ ...board.counts, pages: board.eeprom.pagesProgrammed,
+    erases: [...board.flash.erased.values()].reduce((sum, each) => sum + each, 0), reason: board.reason,
     depth: board.chip?.processor.deepest ?? 0, secondCoreOff: (board.chip?.psm.frceOff ?? 0) >> 16,
     uart: board.chip?.uart.baud ?? 0 }).map(([name, value]) => `${name}=${value}`).join(" "),
   // pc: the next instruction of the processor
