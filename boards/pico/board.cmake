@@ -7,6 +7,8 @@ set(board_libraries gcc)
 # The image starts from the flash by a second stage, and is written to it as a UF2 file.
 set(starts_from_uf2 ON)
 
+set(test_programs tests/rp2040/flash_exercise)
+
 # OpenOCD's script for the board.
 set(openocd_script ${CMAKE_CURRENT_LIST_DIR}/openocd.cfg)
 

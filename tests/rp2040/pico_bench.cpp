@@ -44,18 +44,23 @@ unsigned pin_of(const Groups& groups, unsigned channel) {
 
 }  // namespace
 
-std::string image_of(const Model& model, const char* suffix) {
-  return std::string(EX9000_PICO_IMAGES) + "/" + std::string(model.designation) + suffix;
+std::string program_for_tests(const std::string& name) {
+  return std::string(EX9000_PICO_IMAGES) + "/" + name + ".bin";
+}
+
+std::string image_of(const Model& model) { return program_for_tests(std::string(model.designation)); }
+
+void PicoBench::begin_with(const std::string& file) {
+  constexpr unsigned kTransmit = board::kUartPins.first_pin;
+  powered_ = false;
+  execute("new " + file + " " + std::to_string(kTransmit) + " " + std::to_string(kTransmit + 1U) + " " +
+          std::to_string(board::kDriverEnable.number) + " " + std::to_string(board::kI2cPins.first_pin));
+  set_baud(9600);
 }
 
 void PicoBench::begin_anew(const Model& model, const Settings* settings) {
-  constexpr unsigned kTransmit = board::kUartPins.first_pin;
   model_ = &model;
-  powered_ = false;
-  execute("new " + image_of(model, ".bin") + " " + std::to_string(kTransmit) + " " +
-          std::to_string(kTransmit + 1U) + " " + std::to_string(board::kDriverEnable.number) + " " +
-          std::to_string(board::kI2cPins.first_pin));
-  set_baud(9600);
+  begin_with(image_of(model));
   if (settings != nullptr) {
     const auto image = sim::SimulatedModule::memory_image(model, *settings);
     execute("memory " + hex_of(Bytes(image.begin(), image.end())));

@@ -19,6 +19,8 @@ class PicoBench {
   /// Provides a new board with the image of `model`. Its supply is off. `settings` are in the EEPROM; if the
   /// pointer is null, the EEPROM is erased.
   void begin_anew(const Model& model, const Settings* settings);
+  /// Provides a new board with the content of its flash from a file, and an erased EEPROM.
+  void begin_with(const std::string& file);
 
   void power(bool on);
   [[nodiscard]] bool powered() const { return powered_; }
@@ -61,7 +63,8 @@ class PicoBench {
   bool powered_ = false;
 };
 
-/// Returns the path of an image, for example of its .bin.
-std::string image_of(const Model& model, const char* suffix);
+/// Returns the path of the content of the flash with the image of a model, or with a program for tests.
+std::string image_of(const Model& model);
+std::string program_for_tests(const std::string& name);
 
 }  // namespace ex9000::pico

@@ -1,0 +1,82 @@
+// Tests the flash driver in the emulator: a program runs from RAM, erases and programs the flash, and
+// receives bytes by interrupt at the same time.
+#include <gtest/gtest.h>
+
+#include <string>
+
+#include "tests/rp2040/pico_bench.hpp"
+
+namespace ex9000::pico {
+namespace {
+
+using std::chrono::milliseconds;
+
+/// The results of tests/rp2040/flash_exercise.
+enum Result : std::uint32_t { Received, Unexpected, Rounds, Wrong, Erasing };
+
+class PicoFlash : public testing::Test {
+ protected:
+  PicoFlash() {
+    bench_.begin_with(program_for_tests("flash_exercise"));
+    bench_.set_baud(115200);
+  }
+
+  unsigned long result(Result which) {
+    constexpr std::uint32_t kResults = 0x2004'1000;
+    return std::stoul(bench_.execute("read " + std::to_string(kResults + 4U * which)));
+  }
+  void wait_for_erase() {
+    for (int i = 0; i < 1000 && result(Erasing) != 1; ++i) {
+      bench_.run_for(milliseconds(1));
+    }
+    ASSERT_EQ(result(Erasing), 1U);
+  }
+
+  PicoBench bench_;
+};
+
+TEST_F(PicoFlash, NoByteIsLostDuringAnErase) {
+  bench_.power(true);
+  bench_.run_for(milliseconds(100));
+  wait_for_erase();  // it takes 45 ms, the bytes take 49 ms
+  play::Bytes bytes;
+  for (unsigned i = 0; i < 560; ++i) {
+    bytes.push_back(static_cast<std::uint8_t>(i));
+  }
+  bench_.send(bytes);
+  bench_.run_for(milliseconds(1));
+  EXPECT_EQ(result(Received), bytes.size());
+  EXPECT_EQ(result(Unexpected), 0U);
+  EXPECT_EQ(result(Wrong), 0U);
+}
+
+TEST_F(PicoFlash, BytesWithoutAPauseAndFlashOperationsWithoutAPauseDoNotDisturbEachOther) {
+  bench_.power(true);
+  bench_.run_for(milliseconds(100));
+  constexpr unsigned kParts = 40;
+  play::Bytes bytes;
+  for (unsigned i = 0; i < 256; ++i) {
+    bytes.push_back(static_cast<std::uint8_t>(i));
+  }
+  for (unsigned part = 0; part < kParts; ++part) {
+    bench_.send(bytes);
+  }
+  bench_.run_for(milliseconds(1));
+  EXPECT_EQ(result(Received), kParts * bytes.size());
+  EXPECT_EQ(result(Unexpected), 0U);
+  EXPECT_GE(result(Rounds), 5U);
+  EXPECT_EQ(result(Wrong), 0U);
+  EXPECT_EQ(bench_.counts().at("timeouts"), 0);
+}
+
+TEST_F(PicoFlash, TheLongestEraseAndTheLongestProgramDoNotDisturbIt) {
+  bench_.execute("flash-times 400000000 3000000");
+  bench_.power(true);
+  bench_.run_for(milliseconds(2000));
+  EXPECT_GE(result(Rounds), 2U);
+  EXPECT_EQ(result(Wrong), 0U);
+  EXPECT_EQ(bench_.counts().at("timeouts"), 0);
+}
+
+}  // namespace
+}  // namespace ex9000::pico

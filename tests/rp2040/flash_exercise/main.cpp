@@ -1,0 +1,137 @@
+// A program for the emulator: it erases, programs and reads the flash in an endless loop, while the interrupt
+// of the UART receives bytes. It runs from RAM, like an image.
+#include <array>
+#include <cstdint>
+
+#include "boards/cortex_m/start_up.hpp"
+#include "boards/pico/board.hpp"
+#include "firmware/table.hpp"
+#include "hal/cortex_m/interrupts.hpp"
+#include "hal/pl011/uart.hpp"
+#include "hal/rp2040/clocks.hpp"
+#include "hal/rp2040/flash.hpp"
+#include "hal/rp2040/interrupts.hpp"
+#include "hal/rp2040/resets.hpp"
+#include "hal/rp2040/switches.hpp"
+#include "hal/rp2040/timer.hpp"
+#include "hal/rp2040/watchdog.hpp"
+
+namespace ex9000::board {
+namespace {
+
+using namespace hal::rp2040;
+using hal::cortex_m::Interrupts;
+
+constexpr std::uint32_t kHertz = kClock.frequency();
+constexpr std::uint32_t kSector = 0x1F'0000;  // the first one for settings
+constexpr std::uint32_t kOtherSector = kSector + Flash::kSector;
+constexpr std::size_t kRecord = 32;
+
+using LineEndTimer = OneShotTimer<1>;
+using Line = hal::pl011::Uart<0x4003'4000, kHertz, DriverEnablePin<kDriverEnable>, LineEndTimer>;
+using Watchdog = HardwareWatchdog<kClock.crystal / 1'000'000>;
+
+/// The test reads these words from a bank of RAM that images do not use.
+struct Results {
+  std::uint32_t received;    ///< bytes
+  std::uint32_t unexpected;  ///< bytes with an error, or out of sequence
+  std::uint32_t rounds;      ///< an erase, and records up to the end of the sector
+  std::uint32_t wrong;       ///< bytes that were read and differ
+  std::uint32_t erasing;     ///< 1 during an erase
+};
+// NOLINTNEXTLINE(performance-no-int-to-ptr): a fixed address
+volatile Results& results() { return *reinterpret_cast<volatile Results*>(0x2004'1000); }
+
+Line line;
+
+void on_line() {
+  line.on_interrupt([](std::uint8_t byte, ByteStatus status) {
+    const std::uint32_t received = results().received;
+    if (status != ByteStatus::Good || byte != static_cast<std::uint8_t>(received)) {
+      results().unexpected = results().unexpected + 1U;
+    }
+    results().received = received + 1U;
+  });
+}
+
+constexpr auto kServed = table<start_up::Served>({{static_cast<unsigned>(Interrupt::Uart0), on_line}});
+__attribute__((section(".vectors"), used)) constexpr auto kVectors =
+    start_up::vectors<26>(start_up::fault_handler, kServed);
+
+void wait() {
+  while (Flash::busy()) {
+    Watchdog::feed();
+  }
+}
+
+std::uint8_t content(std::uint32_t address) {
+  return static_cast<std::uint8_t>(address * 7U + address / 256U);
+}
+
+void compare(std::uint32_t address, bool is_erased) {
+  std::array<std::uint8_t, kRecord> record{};
+  Flash::read(address, {record.data(), record.size()});
+  for (std::size_t i = 0; i < kRecord; ++i) {
+    const std::uint8_t expected = is_erased ? 0xFF : content(address + static_cast<std::uint32_t>(i));
+    if (record[i] != expected) {
+      results().wrong = results().wrong + 1U;
+    }
+  }
+}
+
+void program(std::uint32_t address) {
+  std::array<std::uint8_t, kRecord> record{};
+  for (std::size_t i = 0; i < kRecord; ++i) {
+    record[i] = content(address + static_cast<std::uint32_t>(i));
+  }
+  Flash::begin_program(address, {record.data(), record.size()});
+  wait();
+}
+
+/// Erases the sector. Once during the erase, it suspends it and reads the other sector.
+void erase() {
+  results().erasing = 1;
+  Flash::begin_erase(kSector);
+  for (int i = 0; i < 1000; ++i) {
+    static_cast<void>(Flash::busy());
+  }
+  Flash::suspend();
+  wait();
+  compare(kOtherSector, false);
+  Flash::resume();
+  wait();
+  results().erasing = 0;
+}
+
+}  // namespace
+}  // namespace ex9000::board
+
+int main() {
+  using namespace ex9000;
+  using namespace ex9000::board;
+  Watchdog::start();
+  Resets::release(Block::Pins | Block::Pads | Block::Timer);
+  line.start();
+  Clocks::use<kClock>();
+  Resets::release(static_cast<std::uint32_t>(Block::Uart0));
+  Gpio::make_peripheral(kUartPins.mask(), Function::Uart);
+  results().received = 0;
+  results().unexpected = 0;
+  results().rounds = 0;
+  results().wrong = 0;
+  results().erasing = 0;
+  line.open(115200);
+  Interrupts::enable(start_up::numbers_of(kServed));
+  Flash::start();
+  wait();
+  program(kOtherSector);
+  for (;;) {
+    erase();
+    for (std::uint32_t place = kSector; place < kOtherSector; place += kRecord) {
+      compare(place, true);
+      program(place);
+      compare(place, false);
+    }
+    results().rounds = results().rounds + 1U;
+  }
+}
