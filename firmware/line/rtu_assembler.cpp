@@ -66,7 +66,7 @@ void RtuAssembler::append(Frame& frame, std::uint8_t byte) {
 
 Verdict RtuAssembler::silence(FrameQueue& queue) {
   Verdict verdict = Verdict::Open;
-  switch (state_) {  // not covered: the cases are complete
+  switch (state_) {  // not covered: the enumeration has no other value
     case State::Idle:
       break;
     case State::Receiving:

@@ -101,7 +101,7 @@ constexpr const Model* find_model(std::string_view designation) {
 enum class Needs : std::uint8_t { Nothing, Outputs, Inputs, Modbus };
 
 constexpr bool meets(const Model& model, Needs needs) {
-  switch (needs) {  // not covered: the cases are complete
+  switch (needs) {  // not covered: the enumeration has no other value
     case Needs::Outputs:
       return model.has_outputs();
     case Needs::Inputs:

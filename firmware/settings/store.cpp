@@ -25,7 +25,7 @@ MemoryJob SettingsStore::job() {
 }
 
 void SettingsStore::done(bool ok) {
-  switch (step_) {  // not covered: the cases are complete
+  switch (step_) {  // not covered: the enumeration has no other value
     case Step::Load:
     case Step::LookAgain:
       read_page(ok);
