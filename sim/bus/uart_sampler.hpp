@@ -47,7 +47,7 @@ class UartSampler {
   /// Samples the wires up to `until`. Returns a byte when its stop bit is over; call again then.
   std::optional<Received> advance(const Waves& waves, std::uint32_t baud, VirtualTime until);
 
-  /// Returns whether it is in the middle of a byte or waits for the line to become idle.
+  /// Returns whether the sampler is in the middle of a byte or waits for the line to become idle.
   [[nodiscard]] bool busy() const { return receiving_ || waits_for_idle_ || complete_; }
   /// Returns when `advance` must be called again after a call with `now`: at the end of the byte, or after
   /// half a bit.

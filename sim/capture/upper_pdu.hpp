@@ -1,6 +1,7 @@
 // The header that lets Wireshark dissect a frame without the layers below it: LINKTYPE_WIRESHARK_UPPER_PDU,
-// see https://wiki.wireshark.org/Protocols/exported_pdu. No link type for serial lines records which side
-// sends the request. This link type does. It also names the dissector, so that users need not configure one.
+// see https://wiki.wireshark.org/Protocols/exported_pdu. This link type also records which side sends the
+// request, which no link type for serial lines does. It also names the dissector, so that users need not
+// configure one.
 #pragma once
 
 #include <cstdint>

@@ -92,7 +92,7 @@ std::size_t column_of(const Row& head, std::string_view model) {
   for (std::size_t column = 1; column < head.size(); ++column) {
     const std::vector<std::string> models = split(head[column], ',');
     if (std::find(models.begin(), models.end(), model) != models.end()) {
-      EXPECT_EQ(found, 0U) << model << " is there twice";
+      EXPECT_EQ(found, 0U) << model << " is listed twice";
       found = column;
     }
   }
@@ -107,7 +107,7 @@ TEST(Wiring, TheReadmeListsThePinOfEveryTerminalOfEveryModel) {
     std::map<std::string, std::string> written;
     for (auto row = table.begin() + 1; row != table.end(); ++row) {
       if (row->at(column) != kNone) {
-        EXPECT_TRUE(written.emplace(row->at(0), row->at(column)).second) << row->at(0) << " is there twice";
+        EXPECT_TRUE(written.emplace(row->at(0), row->at(column)).second) << row->at(0) << " is listed twice";
       }
     }
     EXPECT_EQ(written, terminals_of(model)) << model.designation;

@@ -32,10 +32,10 @@ TEST(Conformance, TheCorePassesEveryTranscriptOnEveryModelItNames) {
     }
   }
   for (const Model& model : kModels) {
-    EXPECT_EQ(models.count(model.designation), 1U) << model.designation << " is in no transcript";
+    EXPECT_EQ(models.count(model.designation), 1U) << model.designation << " has no transcript";
   }
   for (const std::string& id : coverage.missing()) {
-    ADD_FAILURE() << id << " is reached by no transcript";
+    ADD_FAILURE() << id << " is not reached by any transcript";
   }
   std::printf("core: %zu files, %zu runs, %zu steps, %zu rows and refusals reached\n", files.size(), runs,
               steps, coverage.reached());

@@ -32,7 +32,7 @@ class Accepts(unittest.TestCase):
         assert match
         return int(match.group(1)) - 2 * EXCEPTION
 
-    def test_a_main_loop_that_nothing_but_exceptions_interrupts(self) -> None:
+    def test_a_main_loop_without_interrupts(self) -> None:
         self.assertEqual(self.stack(check('extern "C" void reset() { for (;;) {} }')), EXCEPTION)
 
     def test_frames_add_up_along_the_deepest_calls(self) -> None:
@@ -73,7 +73,7 @@ class Accepts(unittest.TestCase):
         self.assertRegex(verdict.figures, r"reset \d+ -> divide \d+ -> __(aeabi_uidiv|udivsi3|aeabi_uidivmod)")
         self.assertTrue(verdict.accepted, verdict.problems)
 
-    def test_pointers_reach_functions_of_their_type_only(self) -> None:
+    def test_pointers_reach_only_functions_of_their_type(self) -> None:
         verdict = check(
             """
             struct One { int value; };
@@ -124,7 +124,7 @@ class Accepts(unittest.TestCase):
         self.assertRegex(verdict.figures, r"-> ask \d+ -> Deep::second 80\n")
         self.assertRegex(verdict.figures, r"ask, .*: Flat::second, Deep::second\n")
 
-    def test_static_functions_of_one_name_in_two_files_are_two(self) -> None:
+    def test_static_functions_with_the_same_name_in_two_files_are_different(self) -> None:
         verdict = check(
             """
             void other();
@@ -160,7 +160,7 @@ class Accepts(unittest.TestCase):
         self.assertRegex(verdict.figures, r"main loop \d+: reset 8 -> program 40\n")
         self.assertTrue(verdict.accepted, verdict.problems)
 
-    def test_newlibs_copying_has_the_stack_that_the_table_says(self) -> None:
+    def test_the_copy_functions_of_newlib_use_the_stack_in_the_table(self) -> None:
         source = """
             #include <string.h>
             unsigned char a[999], b[999];
@@ -198,7 +198,7 @@ class Accepts(unittest.TestCase):
         self.assertIn("(600 static,", verdict.figures)
         self.assertRegex(verdict.figures, r"^image: flash 196 bytes, RAM 708 bytes")
 
-    def test_interrupts_that_are_disabled_are_counted_along_the_longest_way(self) -> None:
+    def test_instructions_with_disabled_interrupts_are_counted_on_the_longest_path(self) -> None:
         verdict = check(
             """
             extern "C" void reset() {
@@ -212,7 +212,7 @@ class Accepts(unittest.TestCase):
             "interrupts disabled for 20 instructions\n", check(holding("nop\\n" * 20)).figures
         )
 
-    def test_data_that_reads_like_an_instruction_is_none(self) -> None:
+    def test_data_that_looks_like_an_instruction_is_ignored(self) -> None:
         for text in ("v-", "vmu", "vmul.f3"):
             verdict = check(
                 f"""
@@ -281,7 +281,7 @@ class Refuses(unittest.TestCase):
                 compile_options="-w",
             )
 
-    def test_an_assemblers_function_that_is_reached(self) -> None:
+    def test_a_reachable_assembler_function(self) -> None:
         self.refused(
             r"foreign has no recorded stack \(reached by reset -> foreign\)",
             """
@@ -292,7 +292,7 @@ class Refuses(unittest.TestCase):
             """,
         )
 
-    def test_a_copy_that_takes_more_than_the_table_says(self) -> None:
+    def test_a_copy_function_that_uses_more_stack_than_the_table_states(self) -> None:
         self.refused(
             "memset uses 64 bytes of stack, but the tool's table has only 16",
             """
@@ -354,7 +354,7 @@ class Refuses(unittest.TestCase):
             options="--level timer",
         )
 
-    def test_a_vector_that_is_no_function(self) -> None:
+    def test_a_vector_that_is_not_a_function(self) -> None:
         self.refused(
             "vector 15 is 0x[0-9a-f]+, which is not the address of a function",
             """
@@ -365,7 +365,7 @@ class Refuses(unittest.TestCase):
 
     # --- interrupts that are disabled ---
 
-    def test_interrupts_disabled_for_long(self) -> None:
+    def test_interrupts_disabled_for_too_long(self) -> None:
         self.refused("interrupts are disabled for 21 instructions; at most 20 are permitted", holding("nop\\n" * 21))
 
     def test_interrupts_disabled_in_a_loop(self) -> None:
@@ -480,7 +480,7 @@ class Refuses(unittest.TestCase):
             compile_options="-funwind-tables",
         )
 
-    def test_a_call_of_what_need_not_be_there(self) -> None:
+    def test_a_call_of_a_missing_weak_function(self) -> None:
         self.refused(
             "reset calls missing, which the image does not have",
             """
@@ -509,7 +509,7 @@ class Refuses(unittest.TestCase):
 
     # --- memory and records ---
 
-    def test_more_than_the_ram_holds(self) -> None:
+    def test_an_image_that_requires_too_much_ram(self) -> None:
         source = 'volatile char a[20372]; extern "C" void reset() { for (;;) a[0] = 1; }'
         self.assertTrue(check(source).accepted)  # the rest of RAM is for three exceptions
         verdict = check(source.replace("20372", "20376"))
@@ -518,7 +518,7 @@ class Refuses(unittest.TestCase):
             verdict.problems, "image: RAM is too small: the image requires 20484 bytes, and the board has 20480\n"
         )
 
-    def test_what_has_changed_since_it_was_recorded(self) -> None:
+    def test_changes_since_the_record_are_printed(self) -> None:
         source = 'volatile char a[100]; extern "C" void reset() { for (;;) a[0] = 1; }'
         with tempfile.NamedTemporaryFile("w", suffix=".txt") as record:
             record.write("a-board image 1 96 108\nanother image 1 1 1\n")
@@ -530,12 +530,12 @@ class Refuses(unittest.TestCase):
 class Growth(unittest.TestCase):
     RECORDED = records.Figures(1000, 400, 600)
 
-    def test_five_percent_may_come_without_a_new_record(self) -> None:
+    def test_five_percent_of_growth_requires_no_new_record(self) -> None:
         self.assertFalse(records.Figures(1050, 420, 630).exceeds(self.RECORDED))
         self.assertTrue(records.Figures(1051, 400, 600).exceeds(self.RECORDED))
         self.assertTrue(records.Figures(1000, 451, 600).exceeds(self.RECORDED))
 
-    def test_a_record_is_read_as_it_was_written(self) -> None:
+    def test_a_written_record_is_read_back(self) -> None:
         rows = {("a-board", "EX9042D"): self.RECORDED, ("another", "EX9055D"): records.Figures(1, 2, 3)}
         with tempfile.TemporaryDirectory() as folder:
             path = pathlib.Path(folder, "record")

@@ -29,7 +29,7 @@ class CompareSizes(unittest.TestCase):
         compared = self.compare("board IMAGE 1050 215 100")
         self.assertEqual((compared.returncode, compared.stderr), (0, ""))
 
-    def test_more_flash_is_refused_with_what_has_grown(self) -> None:
+    def test_more_flash_is_rejected_and_the_growth_is_printed(self) -> None:
         compared = self.compare("board IMAGE 1051 200 100")
         self.assertEqual(compared.returncode, 1)
         grown = "board IMAGE: has grown by more than 5 %: flash 1051 (+51), static 200, stack 100"
@@ -39,12 +39,12 @@ class CompareSizes(unittest.TestCase):
         self.assertEqual(self.compare("board IMAGE 1000 100 215").returncode, 0)
         self.assertEqual(self.compare("board IMAGE 1000 200 116").returncode, 1)
 
-    def test_an_image_that_is_not_in_the_record_is_refused(self) -> None:
+    def test_an_image_that_is_not_in_the_record_is_rejected(self) -> None:
         compared = self.compare("board OTHER 1 1 1")
         self.assertEqual(compared.returncode, 1)
         self.assertIn("board OTHER: is not in the record", compared.stderr)
 
-    def test_a_new_record_is_what_was_built(self) -> None:
+    def test_a_new_record_has_the_sizes_of_the_build(self) -> None:
         self.assertEqual(self.compare("board IMAGE 2000 400 300", "--record").returncode, 0)
         self.assertEqual(self.record.read_text(encoding="utf-8"), "board IMAGE 2000 400 300\n")
         self.assertEqual(self.compare("board IMAGE 2000 400 300").returncode, 0)

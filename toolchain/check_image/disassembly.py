@@ -61,7 +61,7 @@ class Instruction:
 
     @property
     def falls_through(self) -> bool:
-        """Whether the next instruction in memory can be executed after this one."""
+        """True if the next instruction in memory can be executed after this one."""
         if (
             self.is_data
             or self.jumps_by_table

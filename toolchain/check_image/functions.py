@@ -127,6 +127,6 @@ def _function_symbols(elf: Elf) -> list[Symbol]:
 
 
 def _holds(symbol: Symbol) -> bool:
-    """Whether code or data follows a label. Symbols of a linker script are also at the end of a section."""
+    """Returns whether code or data follows a label. Symbols of a linker script are also at the end of a section."""
     section = symbol.section
     return section is not None and section.address <= symbol.address < section.address + section.size

@@ -13,7 +13,8 @@ const trimmedFrom = 2000;
 /// added.
 const mostWaiting = 1000;
 const waitingTrimmedFrom = 1200;
-/// The minimum time between two drawings of the list, in ms. Otherwise a busy line would redraw it at every repaint.
+/// The minimum time between two drawings of the list, in ms. Without it, a busy line would redraw the list at each
+/// repaint.
 const slowest = 30;
 
 /// Returns the number of frames, including missed ones; notes do not count.
@@ -41,7 +42,7 @@ export class Timeline {
     this.begin([], null, null);
   }
 
-  /// Starts with an empty list. `lines`: {name}. `who(line, station)` returns the name of a sender;
+  /// Starts with an empty list. `lines` is an array of {name}. `who(line, station)` returns the name of a sender;
   /// without `station` it returns the name of the line. `now(line)` returns the time of the line in us.
   begin(lines, who, now) {
     this.who = who;

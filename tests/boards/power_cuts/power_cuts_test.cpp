@@ -1,6 +1,6 @@
 // Tests power cuts at every point of every command that stores, and of a timeout: wire.md section 8, "At the
-// next reset each command is either wholly done or not done at all". A command that was answered must be
-// done.
+// next reset each *command* is either done completely or not done at all". A command that was answered must
+// be done.
 //
 // The image stores settings with its own drivers. A reader without code of the firmware (StoredCopy) checks
 // all contents that a cut may leave in the EEPROM. The image also starts from some of them, chosen by a seed,
@@ -196,7 +196,7 @@ TEST_P(PowerCutsOf, InAMultiPageStoreLeaveEachCommandCompletelyStoredOrNotAtAll)
 ///
 /// After the second cut, the settings of the first command may be valid although they were not after the
 /// first cut: a page with a single wrong byte becomes valid as soon as the next store writes that byte with
-/// the same value. The first command is wholly done then, and nothing that was answered is lost.
+/// the same value. The first command is then done completely, and no command with a reply is lost.
 TEST_P(PowerCutsOf, TwiceInARowLeaveEachCommandCompletelyStoredOrNotAtAll) {
   for_each_command([this](const State& state, const StoringCommand& first) {
     cut_twice(state, first, all_cases_requested() ? SIZE_MAX : 2);

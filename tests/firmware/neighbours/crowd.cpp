@@ -199,7 +199,7 @@ void Crowd::exchange() {
     each.take_rules();
     ASSERT_EQ(answer.left_open, nullptr);
     if (!answer.reply.empty()) {
-      ASSERT_TRUE(expected.reply.empty()) << "two descriptions answer";
+      ASSERT_TRUE(expected.reply.empty()) << "two reference models reply";
       expected = std::move(answer);
     }
   }

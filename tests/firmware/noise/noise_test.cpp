@@ -48,7 +48,7 @@ TEST_P(Checks, MissAsManyDamagedFramesAsTheTheoryExpects) {
         seen.low, seen.high, tally.expected, static_cast<unsigned long long>(tally.taken_otherwise));
     std::fflush(stdout);
     // After such a command, the module is set up again, because the theory does not consider a module with
-    // another address. More such commands than this limit would not be chance.
+    // another address. Chance does not explain more such commands than this limit.
     std::printf("  %llu stored something\n", static_cast<unsigned long long>(tally.storing));
     EXPECT_LE(tally.storing, 1 + tally.sent / 10'000);
     // Twice as wide as the 95 % interval; otherwise one of the twelve rows would fail in every second run.

@@ -139,7 +139,8 @@ void NoisyLine::exchange(const FrameBytes& request, double flipped_bit, Tally& t
     ++(in_framing == 0 ? tally.taken_in_data : tally.taken_otherwise);
   }
   ASSERT_TRUE(damaged || requests == 1) << "the witness heard something else";
-  ASSERT_EQ(onlooker_.replies() - replies_before, requests) << "frames as received, and replies";
+  ASSERT_EQ(onlooker_.replies() - replies_before, requests)
+      << "the number of replies differs from the number of received frames";
   if (after.storing != before.storing) {
     // The command was executed correctly, but later requests must not depend on the stored values.
     ++tally.storing;
@@ -171,7 +172,7 @@ void NoisyLine::expect_the_first_clean_frame_is_answered() {
     }
   }
   send(request, kReplies);
-  EXPECT_EQ(to_master_, reply) << name_of(check_) << ": the first clean frame";
+  EXPECT_EQ(to_master_, reply) << name_of(check_) << ": the first valid frame after the noise";
 }
 
 sim::Levels NoisyLine::disturbed(const Sent& sent) {

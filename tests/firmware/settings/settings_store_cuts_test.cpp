@@ -1,4 +1,5 @@
-// Tests power cuts while the settings are saved: wire.md section 8, "Power may fail at any instant."
+// Tests power cuts while the settings are saved: wire.md section 8, "The power may fail at any time, also
+// during a write."
 #include <gtest/gtest.h>
 
 #include <cstddef>

@@ -1,5 +1,5 @@
 // Tests power cuts during the first save after an update, and during the save of a long record: wire.md
-// section 8, "Power may fail at any instant."
+// section 8, "The power may fail at any time, also during a write."
 #include <gtest/gtest.h>
 
 #include <cstddef>

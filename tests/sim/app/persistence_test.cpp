@@ -294,7 +294,7 @@ TEST(Persistence, ABlankImageGivesFactorySettingsDespitePresets) {
   EXPECT_TRUE(has(simulator.greeting(), "not from the command line")) << simulator.greeting();
 }
 
-// --- wire.md 8: a reply means that the settings are stored; power may fail at any instant ---
+// --- wire.md 8: a reply means that the settings are stored; the power may fail at any time ---
 
 /// Commands that read everything that the stores below change, and their replies.
 using Answers = std::map<std::string, std::string>;
