@@ -52,7 +52,7 @@ class UartSampler {
   /// Returns when `advance` must be called again after a call with `now`: at the end of the byte, or after
   /// half a bit.
   [[nodiscard]] VirtualTime next(std::uint32_t baud, VirtualTime now) const;
-  /// The sampler has processed everything before this time.
+  /// Returns the time up to which the sampler has processed the wires.
   [[nodiscard]] VirtualTime position() const { return position_; }
   void skip_to(VirtualTime position) { position_ = position; }
 

@@ -69,6 +69,7 @@ class Faults final : public Station {
     std::uint64_t reply = 0;
     bool waits = false;  ///< for noise: true until the reply is on the wires
   };
+  /// A fault that was added, and its strikes.
   struct Armed {
     std::size_t number = 0;
     Fault fault;

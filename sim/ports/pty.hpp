@@ -25,11 +25,11 @@ class Pty {
   Pty(const Pty&) = delete;
   Pty& operator=(const Pty&) = delete;
 
-  /// The simulator's end for reading and writing; non-blocking. Reading fails while no master has the slave
-  /// open.
+  /// Returns the simulator's end for reading and writing; non-blocking. Reading fails while no master has the
+  /// slave open.
   [[nodiscard]] int master_fd() const { return master_.get(); }
   [[nodiscard]] const std::string& link() const { return link_; }
-  /// The path of the slave, for example /dev/pts/5.
+  /// Returns the path of the slave, for example /dev/pts/5.
   [[nodiscard]] const std::string& device() const { return device_; }
   /// Call this when a master has opened or closed the slave. If a master has opened it after a time without
   /// any master, discards unread bytes, as a serial port does: a new master must not receive a reply to the

@@ -82,7 +82,7 @@ class ModuleBench {
     return reply;
   }
 
-  /// All characters received since the last `ask` or `forget_heard` began.
+  /// Returns all characters received since the last `ask` or `forget_heard` began.
   [[nodiscard]] std::string heard_text() const { return {heard_.begin(), heard_.end()}; }
   void forget_heard() { heard_.clear(); }
 

@@ -41,7 +41,7 @@ class Session final : public ModuleObserver {
   /// Valid from the last reset to the next one.
   [[nodiscard]] bool speaks_modbus() const { return witness_.hears_modbus(); }
   [[nodiscard]] const InForce& in_force() const { return state().in_force; }
-  /// T3.5, in microseconds. Also available in DCON, where it has no meaning.
+  /// Returns T3.5 in microseconds. Also available in DCON, where it has no meaning.
   [[nodiscard]] Microseconds silence() const { return witness_.silence(); }
 
   void reset() {

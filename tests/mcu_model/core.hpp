@@ -51,7 +51,8 @@ class Core final : public Peripheral {
   [[nodiscard]] bool held() const { return held_; }
   /// Returns whether a sleeping processor wakes up now.
   [[nodiscard]] bool wakes() const { return next_to_serve() != 0; }
-  /// The earliest time at which the latency of an enabled pending exception ends; kNever if there is none.
+  /// Returns the earliest time at which the latency of an enabled pending exception ends; kNever if there is
+  /// none.
   [[nodiscard]] Instant next_wake() const;
   /// Serves all exceptions that may be served now, one after the other.
   void serve_pending();
@@ -64,15 +65,15 @@ class Core final : public Peripheral {
   /// Returns the group priority: the part of a priority that decides whether one interrupt preempts another.
   [[nodiscard]] unsigned group(unsigned priority) const { return priority >> (group_shift_ + 1U); }
   [[nodiscard]] std::uint32_t tick_reload() const { return reload_; }
-  /// The time of the last tick, served or not; before the first one, the time at which the counter was
-  /// enabled.
+  /// Returns the time of the last tick, served or not; before the first one, the time at which the counter
+  /// was enabled.
   [[nodiscard]] Instant ticked() const { return tick_began_; }
 
  private:
   [[nodiscard]] std::uint32_t current() const;
   [[nodiscard]] unsigned priority_of(unsigned exception) const;
   [[nodiscard]] unsigned next_to_serve() const;
-  /// The exceptions that are pending and enabled.
+  /// Returns the exceptions that are pending and enabled.
   [[nodiscard]] std::uint64_t waiting() const {
     return pending_ & (1ULL << kTick | std::uint64_t{enabled_} << kFirstInterrupt);
   }

@@ -39,7 +39,7 @@ class EepromChip {
   /// still acknowledges every byte.
   void wear_out(std::uint16_t place, std::uint8_t bits, std::uint8_t stuck) { worn_[place] = {bits, stuck}; }
   void renew() { worn_.clear(); }
-  /// The number of times that a worn-out byte did not take the programmed value.
+  /// Returns the number of times that a worn-out byte did not take the programmed value.
   [[nodiscard]] unsigned spoiled() const { return spoiled_; }
 
   /// Sets the function to call after each START, byte and STOP on the bus, and when a page has been
@@ -52,8 +52,8 @@ class EepromChip {
     std::uint16_t place;
     std::uint8_t value;
   };
-  /// The bytes of the page write in progress, in the order in which they were sent; empty if none is in
-  /// progress.
+  /// Returns the bytes of the page write in progress, in the order in which they were sent; empty if none is
+  /// in progress.
   [[nodiscard]] std::vector<Cell> being_programmed() const;
   [[nodiscard]] bool pulls_data() const { return data_.driven_by(End::Device) == Drive::Low; }
   /// A page write: its first address, its number of bytes, and its time.
@@ -63,7 +63,7 @@ class EepromChip {
     Instant at;
   };
   [[nodiscard]] const std::vector<Programmed>& programmed() const { return programmed_pages_; }
-  /// The number of times that the chip was addressed during a page write.
+  /// Returns the number of times that the chip was addressed during a page write.
   [[nodiscard]] unsigned polls_refused() const { return polls_refused_; }
 
  private:

@@ -104,7 +104,7 @@ class Microcontroller {
   [[nodiscard]] std::uint64_t accesses() const { return accesses_; }
   void record(bool on) { recording_ = on; }
   [[nodiscard]] const std::vector<Access>& recorded() const { return recorded_; }
-  /// The greatest number of accesses while interrupts were held.
+  /// Returns the greatest number of accesses while interrupts were held.
   [[nodiscard]] std::uint64_t most_accesses_held() const { return most_held_; }
   [[nodiscard]] unsigned watchdog_expiries() const { return watchdog_expiries_; }
   /// Sets a function to call before each write takes effect.

@@ -25,7 +25,7 @@ class SystemControl final : public Peripheral {
   std::uint32_t read(std::uint32_t offset) override;
   void write(std::uint32_t offset, std::uint32_t value) override;
 
-  /// One period of the system clock.
+  /// Returns one period of the system clock.
   [[nodiscard]] Instant cycle() const { return cycle_; }
   /// Adds a function that receives the new period before it takes effect.
   void on_clock_change(std::function<void(Instant cycle)> act) { on_clock_change_.push_back(std::move(act)); }
@@ -40,7 +40,8 @@ class SystemControl final : public Peripheral {
     return (resets_.at(index) >> bit & 1U) != 0;
   }
 
-  /// Whether bit `bit` of RCGC`index` is set; TooFresh: it has not been set for long enough.
+  /// The state of a clock gate. Open: its bit in RCGC is set. TooFresh: the bit has not been set for long
+  /// enough.
   enum class Gate : std::uint8_t { Shut, TooFresh, Open };
   [[nodiscard]] Gate gate(unsigned index, unsigned bit) const;
 

@@ -101,7 +101,7 @@ class StoredCopy {
     settings.safe_value = static_cast<std::uint16_t>(reaches(at.safe, 2) ? word(at.safe) : 0);
     return settings;
   }
-  /// The size of a good copy in bytes.
+  /// Returns the size of a good copy in bytes.
   [[nodiscard]] std::size_t size() const { return check_at() + 4; }
 
  private:

@@ -63,14 +63,14 @@ class Crowd final : public sim::BusObserver {
 
   [[nodiscard]] std::uint64_t replies() const { return replies_; }
   [[nodiscard]] std::uint64_t broadcasts() const { return broadcasts_; }
-  /// The number of replies to commands that stored something.
+  /// Returns the number of replies to commands that stored something.
   [[nodiscard]] std::uint64_t stores() const { return stores_; }
-  /// The number of pulses on each input of the pulsed module.
+  /// Returns the number of pulses on each input of the pulsed module.
   [[nodiscard]] std::uint64_t pulses() const { return pulses_; }
   /// For each module, the outputs that have been on.
   [[nodiscard]] const std::vector<unsigned>& ever_on() const { return ever_on_; }
   [[nodiscard]] unsigned outputs_of(std::size_t module) const { return described_[module].row().outputs; }
-  /// The number of replies of each module.
+  /// Returns the number of replies of each module.
   [[nodiscard]] const std::vector<std::uint64_t>& of_each() const { return of_each_; }
 
   // --- sim::BusObserver ---

@@ -58,8 +58,8 @@ class NoisyLine final : public sim::Disturbance, public sim::Station {
   /// with one, the module answers the first frame correctly.
   void expect_the_first_clean_frame_is_answered();
 
-  /// The number of replies and changes of outputs. The witness has found a reason for each of them in the
-  /// bytes that the module received from any sender.
+  /// Returns the number of replies and changes of outputs. The witness has found a reason for each of them in
+  /// the bytes that the module received from any sender.
   [[nodiscard]] std::uint64_t replies_and_output_changes() const {
     return onlooker_.replies_and_output_changes();
   }

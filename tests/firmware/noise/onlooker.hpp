@@ -62,7 +62,7 @@ class Onlooker final : public sim::BusObserver {
     return witness_.counts();
   }
   [[nodiscard]] std::uint64_t replies() const { return replies_; }
-  /// The number of replies and changes of outputs.
+  /// Returns the number of replies and changes of outputs.
   [[nodiscard]] std::uint64_t replies_and_output_changes() const { return replies_and_output_changes_; }
 
   // --- sim::BusObserver ---

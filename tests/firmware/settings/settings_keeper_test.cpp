@@ -25,7 +25,7 @@ class SettingsKeeperTest : public testing::Test {
     drive_memory();
   }
   void pass(Duration time) { now_ = now_ + time; }
-  /// The number of writes to the memory.
+  /// Returns the number of writes to the memory.
   [[nodiscard]] std::size_t writes() const { return memory_.writes.size(); }
 
   FakeMemory memory_;

@@ -25,7 +25,7 @@ class RtuJudge {
         doubt_(doubt) {}
 
   [[nodiscard]] Microseconds character() const { return character_; }
-  /// The silence that ends a frame, T3.5.
+  /// Returns the silence that ends a frame, T3.5.
   [[nodiscard]] Microseconds silence() const { return silence_; }
 
   /// Moves the end of a byte to a later time if the gap before it is so near a limit that rounding to whole

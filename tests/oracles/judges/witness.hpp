@@ -88,7 +88,7 @@ class Witness {
   [[nodiscard]] bool hears_modbus() const { return rtu_.has_value(); }
   [[nodiscard]] bool wants_checksum() const { return dcon_ && dcon_->checksum(); }
   [[nodiscard]] Microseconds character() const { return character_; }
-  /// T3.5; defined for DCON too, but not used there.
+  /// Returns T3.5; defined for DCON too, but not used there.
   [[nodiscard]] Microseconds silence() const { return silence_; }
   /// See RtuJudge.
   [[nodiscard]] Microseconds beyond_doubt(Microseconds end) const {
@@ -251,7 +251,7 @@ class Witness {
     pending_count_ -= count;
   }
 
-  /// The least time from the last byte of a request, or of the module's previous reply, to a reply.
+  /// Returns the least time from the last byte of a request, or of the module's previous reply, to a reply.
   [[nodiscard]] Microseconds distance() const { return rtu_ ? silence_ : character_; }
 
   /// wire.md 3 and 7: the latest time at which the module executes `request`, if it was idle from `free` on.

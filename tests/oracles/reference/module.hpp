@@ -75,13 +75,13 @@ class Module {
 
   // --- visible state ---
 
-  /// The rules that have been applied since the last `take_rules`, as rules.cpp names them.
+  /// Returns the rules that have been applied since the last `take_rules`, as rules.cpp names them.
   [[nodiscard]] const std::vector<std::string>& rules() const { return rules_; }
   std::vector<std::string> take_rules() { return std::exchange(rules_, {}); }
 
   [[nodiscard]] bool powered() const { return powered_; }
   [[nodiscard]] unsigned outputs() const { return outputs_; }
-  /// wire.md 6: the LED flashes while the timeout status is set.
+  /// Returns whether the LED flashes: it does while the timeout status is set (wire.md 6).
   [[nodiscard]] bool led_flashes() const { return stored_.timed_out; }
   [[nodiscard]] unsigned rate() const;
   [[nodiscard]] bool runs_modbus() const { return runs_modbus_; }

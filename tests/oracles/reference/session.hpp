@@ -61,15 +61,15 @@ class Session {
   [[nodiscard]] const Module& reference() const { return reference_; }
   /// Returns the steps played so far as a conformance transcript (tests/conformance/README.md).
   [[nodiscard]] std::string transcript() const;
-  /// The rules that the reference has applied, as rules.cpp names them.
+  /// Returns the rules that the reference has applied, as rules.cpp names them.
   [[nodiscard]] std::vector<std::string> rules() const;
-  /// The number of requests that were sent.
+  /// Returns the number of requests that were sent.
   [[nodiscard]] std::uint64_t transactions() const { return transactions_; }
-  /// The number of requests that ended less than 0.1 s before the host watchdog could expire, and the number
-  /// of those that arrived while its expiry was being stored.
+  /// Return the number of requests that ended less than 0.1 s before the host watchdog could expire, and the
+  /// number of those that arrived while its expiry was being stored.
   [[nodiscard]] std::uint64_t before_expiry() const { return before_expiry_; }
   [[nodiscard]] std::uint64_t behind_expiry() const { return behind_expiry_; }
-  /// The number of requests that were not sent because the specification leaves their answer open.
+  /// Returns the number of requests that were not sent because the specification leaves their answer open.
   [[nodiscard]] std::uint64_t left_open() const { return left_open_; }
 
  private:
