@@ -26,7 +26,7 @@ struct Pace {
   VirtualTime lead{0};
   /// A frame to a module other than the last sender waits until a silence of T3.5 has passed; a frame to a
   /// Modbus module after an ASCII reply waits until the module no longer treats the reply as part of a frame.
-  /// If a master begins earlier, only the module that it has just talked to receives the frame, because that
+  /// If a master begins earlier, only the module that has just replied receives the frame, because that
   /// module does not receive its own reply; for all others the reply and the frame are one. Many masters, for
   /// example libmodbus, begin too early, which causes no problem with real adapters because of their delay.
   bool keep_frames_apart = true;

@@ -89,7 +89,7 @@ class Module {
   [[nodiscard]] unsigned address() const { return address_; }
   [[nodiscard]] bool init_mode() const { return init_mode_; }
   [[nodiscard]] bool init_asserted() const { return init_asserted_; }
-  /// Returns whether a reset would change the settings that the master needs to talk to the module.
+  /// Returns whether a reset would change the settings that the master needs to reach the module.
   [[nodiscard]] bool waits_for_reset() const;
   [[nodiscard]] const Stored& stored() const { return stored_; }
   [[nodiscard]] const ModelRow& row() const { return row_; }
