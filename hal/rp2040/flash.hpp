@@ -22,7 +22,8 @@ class Flash {
   static constexpr std::size_t kPage = 256;     ///< a program operation must not cross the end of a page
   static constexpr std::size_t kSector = 4096;  ///< unit of an erase
 
-  /// Call this once, before the other functions. The flash may still be busy: a reset does not interrupt it.
+  /// Call this once, before the other functions. A reset does not interrupt an operation of the flash. This
+  /// function continues it if it was suspended, so the flash may be busy afterwards.
   static void start() {
     constexpr std::uint32_t kDivider = 8;  // even; 15.6 MHz
     constexpr Bits<Control> kBytesBothWays(7U << 16U);
@@ -32,6 +33,7 @@ class Flash {
     kControl.write(kBytesBothWays);
     kSlave.write(Bits<Slave>(1));
     kEnable.write(Bits<Enable>(1));
+    resume();  // has no effect if nothing is suspended
   }
 
   /// Begins to erase the sector at `address`. Call it only while not `busy()`.

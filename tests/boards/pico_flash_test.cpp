@@ -3,7 +3,10 @@
 #include <gtest/gtest.h>
 
 #include <string>
+#include <string_view>
+#include <utility>
 
+#include "hal/rp2040/watchdog.hpp"
 #include "tests/rp2040/pico_bench.hpp"
 
 namespace ex9000::pico {
@@ -12,7 +15,7 @@ namespace {
 using std::chrono::milliseconds;
 
 /// The results of tests/rp2040/flash_exercise.
-enum Result : std::uint32_t { Received, Unexpected, Rounds, Wrong, Erasing };
+enum Result : std::uint32_t { Received, Unexpected, Rounds, Wrong, Erasing, Reason };
 
 class PicoFlash : public testing::Test {
  protected:
@@ -76,6 +79,24 @@ TEST_F(PicoFlash, TheLongestEraseAndTheLongestProgramDoNotDisturbIt) {
   EXPECT_GE(result(Rounds), 2U);
   EXPECT_EQ(result(Wrong), 0U);
   EXPECT_EQ(bench_.counts().at("timeouts"), 0);
+}
+
+TEST_F(PicoFlash, TheReasonOfAResetIsKnown) {
+  constexpr std::string_view kBranchToItself = " 59390";
+  constexpr std::string_view kUndefined = " 56832";
+  using hal::rp2040::ResetReason;
+  bench_.power(true);
+  bench_.run_for(milliseconds(100));
+  EXPECT_EQ(result(Reason), static_cast<unsigned>(ResetReason::PowerOn));
+  for (const auto& [instruction, reason] :
+       {std::pair{kBranchToItself, ResetReason::Timeout}, std::pair{kUndefined, ResetReason::Requested}}) {
+    bench_.execute("write " + bench_.execute("pc") + std::string(instruction));
+    bench_.run_for(milliseconds(1700));
+    EXPECT_EQ(result(Reason), static_cast<unsigned>(reason));
+  }
+  bench_.reset();
+  bench_.run_for(milliseconds(100));
+  EXPECT_EQ(result(Reason), static_cast<unsigned>(ResetReason::PowerOn));
 }
 
 }  // namespace

@@ -85,7 +85,7 @@ class Board {
   end() {
     this.clock.end();
     this.chip = null;
-    this.flash.select(false);
+    this.flash.interrupt();
     this.eeprom.reset();
     for (let number = 0; number < PINS; number += 1) {
       this.levels[number] = this.outside[number] ?? false;

@@ -12,6 +12,7 @@ const RAM = 0x20000000;
 const SECOND_STAGE = 0x20041f00;
 const SECOND_STAGE_SIZE = 256;
 const RING_OSCILLATOR = 6.5e6;
+const BOOT_ATTEMPT = 4e6; // ns, with the ring oscillator
 const PAD_AFTER_RESET = 0x56;
 const NO_FUNCTION = 0x1f;
 const UART_FUNCTION = 2;
@@ -158,8 +159,14 @@ class Chip {
     return pin.pullupEnabled;
   }
 
+  // The boot ROM reads the second stage until its checksum is right, so it waits for a flash that is busy.
   boot() {
     const { board, mcu } = this;
+    mcu.core.waiting = board.flash.busy;
+    if (board.flash.busy) {
+      board.clock.createAlarm(() => this.boot()).schedule(BOOT_ATTEMPT);
+      return;
+    }
     const stage = board.flash.content.slice(0, SECOND_STAGE_SIZE);
     const end = SECOND_STAGE_SIZE - 4;
     if (crc32(stage.subarray(0, end)) !== new DataView(stage.buffer).getUint32(end, true)) {

@@ -36,6 +36,16 @@ class FlashChip {
     this.bytes = [];
   }
 
+  // A reset releases chip select. An incomplete command has no effect.
+  interrupt() {
+    const [command] = this.bytes;
+    if (this.selected && (this.bytes.length > 4 || (command === 0x20 && this.bytes.length === 4))) {
+      this.execute();
+    }
+    this.selected = false;
+    this.bytes = [];
+  }
+
   // Takes a byte and returns the byte that the chip sends at the same time.
   exchange(byte) {
     if (!this.selected) {
@@ -43,7 +53,7 @@ class FlashChip {
     }
     this.bytes.push(byte);
     const [command] = this.bytes;
-    if (this.busy && command !== 0x05 && command !== 0x75) {
+    if (this.busy && ![0x05, 0x75, 0x7a].includes(command)) {
       throw new Error(`flash: command ${command.toString(16)} while it is busy`);
     }
     if (command === 0x05) {

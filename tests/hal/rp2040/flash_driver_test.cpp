@@ -35,7 +35,7 @@ class Chip {
     if (bytes_[0] == 0x05) {
       return busy ? 0x03 : 0x00;
     }
-    if (busy && bytes_[0] != 0x75) {
+    if (busy && bytes_[0] != 0x75 && bytes_[0] != 0x7A) {
       throw std::runtime_error("a command while the flash is busy");
     }
     return bytes_[0] == 0x03 && bytes_.size() > 4 ? content.at(address() + bytes_.size() - 5) : 0xFF;
@@ -72,7 +72,7 @@ class Chip {
         busy = false;
         break;
       case 0x7A:
-        busy = suspended;
+        busy = busy || suspended;
         suspended = false;
         break;
       default:
@@ -226,6 +226,17 @@ TEST_F(FlashDriver, ReadsAnotherSectorWhileAnEraseIsSuspended) {
   EXPECT_TRUE(Flash::busy());
   ssi_.chip.complete();
   EXPECT_FALSE(Flash::busy());
+}
+
+TEST_F(FlashDriver, ContinuesAnEraseThatAResetHasLeftSuspended) {
+  Flash::begin_erase(kPlace);
+  Flash::suspend();
+  Flash::start();
+  EXPECT_TRUE(Flash::busy());
+  ssi_.chip.complete();
+  Flash::begin_erase(kPlace);
+  Flash::start();
+  EXPECT_TRUE(Flash::busy());
 }
 
 }  // namespace

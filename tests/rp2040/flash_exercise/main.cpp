@@ -38,6 +38,7 @@ struct Results {
   std::uint32_t rounds;      ///< an erase, and records up to the end of the sector
   std::uint32_t wrong;       ///< bytes that were read and differ
   std::uint32_t erasing;     ///< 1 during an erase
+  std::uint32_t reason;      ///< ResetReason
 };
 // NOLINTNEXTLINE(performance-no-int-to-ptr): a fixed address
 volatile Results& results() { return *reinterpret_cast<volatile Results*>(0x2004'1000); }
@@ -120,6 +121,7 @@ int main() {
   results().rounds = 0;
   results().wrong = 0;
   results().erasing = 0;
+  results().reason = static_cast<std::uint32_t>(Watchdog::reset_reason());
   line.open(115200);
   Interrupts::enable(start_up::numbers_of(kServed));
   Flash::start();
