@@ -13,6 +13,7 @@
 #include <cstdlib>
 #include <fstream>
 #include <memory>
+#include <optional>
 #include <sstream>
 #include <string>
 #include <thread>
@@ -42,7 +43,7 @@ void print(const std::string& what, double ratio, double target) {
   std::printf("  %s: %.2f (target: %.2f)\n", what.c_str(), ratio, target);
 }
 
-/// Prints a ratio with its target, and fails if it is above `limit`.
+/// Prints a ratio with its target and its limit. Fails if the ratio is above the limit.
 void judge(const std::string& what, double ratio, double target, double limit) {
   std::printf("  %s: %.2f (target: %.2f, limit: %.2f)%s\n", what.c_str(), ratio, target, limit,
               ratio > limit ? "  TOO MUCH" : "");
@@ -98,7 +99,14 @@ void compare_one_module(milliseconds time, bool with_pymodbus) {
     std::printf("one module over %s:\n", transport);
     measure(servers, time);
     print("ex9000-sim / libmodbus", servers[0].median() / servers[1].median(), 1.25);
-    judge("ex9000-sim / libmodbus in the best rounds", servers[0].least() / servers[1].least(), 1.25, 1.5);
+    const std::optional<double> ours = servers[0].least();
+    const std::optional<double> theirs = servers[1].least();
+    if (ours && theirs) {
+      judge("ex9000-sim / libmodbus in the best rounds", *ours / *theirs, 1.25, 1.5);
+    } else {
+      std::printf("skipped: limit of ex9000-sim / libmodbus over %s: other programs use the processors\n",
+                  transport);
+    }
   }
 }
 
