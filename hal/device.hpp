@@ -152,13 +152,11 @@ class Device {
     board_.outputs.drive(driven_);
   }
 
-  /// Continues a memory job. Returns true if it must be called again at once.
+  /// Continues a memory job, or the work of the memory between jobs. Returns true if it must be called again
+  /// at once.
   bool poll_memory(Time now) {
-    if (!memory_job_under_way_) {
-      return false;
-    }
     const bool polls_again = board_.memory.poll(now);
-    if (!board_.memory.busy()) {
+    if (memory_job_under_way_ && !board_.memory.busy()) {
       memory_job_under_way_ = false;
       module_.memory_done(board_.memory.succeeded());
     }

@@ -14,8 +14,8 @@ namespace ex9000::hal {
 /// error.
 inline constexpr Duration kMemoryPollPeriod = milliseconds(1);
 
-/// A nonvolatile memory, for example an AT24C64. It carries out one job at a time while the main loop
-/// continues. If an interrupt occurs when the job can continue, that interrupt must call
+/// A nonvolatile memory, for example an AT24C64 or a part of a flash. It carries out one job at a time while
+/// the main loop continues. If an interrupt occurs when the job can continue, that interrupt must call
 /// `Device::on_memory`. All functions are for the main loop and do not block.
 ///
 ///     void start_read(std::uint16_t address, MutableBytes destination, Time now)
@@ -26,7 +26,8 @@ inline constexpr Duration kMemoryPollPeriod = milliseconds(1);
 ///         memory has programmed the bytes, not when it has received them. Call this only while not `busy()`.
 ///         `source` must stay valid while `busy()`.
 ///     bool poll(Time now)
-///         Continues the job. Call this after each interrupt of the memory and every `kMemoryPollPeriod`. If
+///         Continues the job. Call this after each interrupt of the memory and every `kMemoryPollPeriod`. If no
+///         job is running, call this in every pass of the main loop: a memory may prepare for the next job. If
 ///         it returns true, call this again at once, because no interrupt will occur.
 ///     bool busy() const
 ///         Returns whether a job is running.

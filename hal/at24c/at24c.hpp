@@ -37,8 +37,11 @@ class At24c {
   }
 
   bool poll(Time now) {
+    if (step_ == Step::Idle) {
+      return false;
+    }
     const bool again = master_.poll(now);
-    if (step_ != Step::Idle && !master_.busy()) {
+    if (!master_.busy()) {
       next(now);
     }
     return again;

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "hal/board.hpp"
+#include "hal/flash.hpp"
 #include "hal/i2c_master.hpp"
 #include "hal/tick.hpp"
 #include "tests/hal/right_board.hpp"
@@ -120,6 +121,36 @@ struct MasterWithoutAResult : RightMaster {
 };
 static_assert(kIsI2cMaster<RightMaster>);
 static_assert(!kIsI2cMaster<MasterWithoutAResult>);
+
+struct RightFlash {
+  static void start_erase(std::uint32_t address);
+  static void start_program(std::uint32_t address, Bytes source);
+  [[nodiscard]] static bool busy();
+  static void suspend();
+  static void resume();
+  static void read(std::uint32_t address, MutableBytes destination);
+};
+struct FlashOf64Kilobytes : RightFlash {
+  static void read(std::uint16_t address, MutableBytes destination);
+};
+struct FlashThatWritesWhatItPrograms : RightFlash {
+  static void start_program(std::uint32_t address, MutableBytes source);
+};
+struct FlashThatCannotContinue {
+  static void start_erase(std::uint32_t address);
+  static void start_program(std::uint32_t address, Bytes source);
+  [[nodiscard]] static bool busy();
+  static void suspend();
+  static void read(std::uint32_t address, MutableBytes destination);
+};
+struct FlashThatReturnsItsStatus : RightFlash {
+  [[nodiscard]] static std::uint8_t busy();
+};
+static_assert(kIsFlash<RightFlash>);
+static_assert(!kIsFlash<FlashOf64Kilobytes>);
+static_assert(!kIsFlash<FlashThatWritesWhatItPrograms>);
+static_assert(!kIsFlash<FlashThatCannotContinue>);
+static_assert(!kIsFlash<FlashThatReturnsItsStatus>);
 
 struct BoardThatRefers {
   RightClock& clock;

@@ -1,0 +1,59 @@
+#pragma once
+
+#include <cstdint>
+#include <type_traits>
+#include <utility>
+
+#include "firmware/bytes.hpp"
+#include "hal/promise.hpp"
+
+namespace ex9000::hal {
+
+/// The unit of an erase, in bytes.
+inline constexpr std::uint32_t kFlashSector = 4096;
+/// A program operation must not cross the end of such a page, in bytes.
+inline constexpr std::uint32_t kFlashPage = 256;
+
+/// A NOR flash, for example a W25Q16JV. An erase sets all bits of a sector to 1. A program operation changes
+/// ones to zeros. The flash carries out one operation at a time while the main loop continues. An address is
+/// an offset in the flash, in bytes. All functions are for the main loop and do not wait for the flash.
+///
+///     void start_erase(std::uint32_t address)
+///         Begins to erase the sector that begins at `address`: 45 ms typical, 400 ms at most. Call it only
+///         while not `busy()` and while no erase is suspended.
+///     void start_program(std::uint32_t address, Bytes source)
+///         Begins to program `source`: 0.4 ms typical, 3 ms at most. Call it only while not `busy()`. Another
+///         sector may be suspended. `source` is no longer required when the function returns.
+///     bool busy()
+///         Returns whether the flash erases or programs. While an erase is suspended, it is not busy.
+///     void suspend()
+///         Interrupts an erase, so that `busy()` is false 20 us later at most. Then other sectors can be read
+///         and programmed. It has no effect on a flash that is not busy. Do not call it during a program
+///         operation, or less than 20 us after `resume`.
+///     void resume()
+///         Continues a suspended erase; from then on the flash is `busy()`. It has no effect if no erase is
+///         suspended. Call it only while not `busy()`.
+///     void read(std::uint32_t address, MutableBytes destination)
+///         Reads `destination.size` bytes. Call it only while not `busy()`.
+///
+/// A reset of the MCU neither ends an operation nor a suspension. A power failure ends both: the bytes that
+/// were to be programmed, or the sector that was to be erased, then have undefined values.
+///
+/// The times are those of the W25Q16JV data sheet: 8.2, "Page Program (02h)", "Sector Erase (20h)" and
+/// "Erase / Program Suspend (75h)", and "AC electrical characteristics" (tPP, tSE, tSUS).
+///
+/// True if `T` has these functions.
+template <class T, class = void>
+inline constexpr bool kIsFlash = false;
+template <class T>
+inline constexpr bool
+    kIsFlash<T, std::void_t<Returns<void, decltype(std::declval<T&>().start_erase(Exactly<std::uint32_t>()))>,
+                            Returns<void, decltype(std::declval<T&>().start_program(Exactly<std::uint32_t>(),
+                                                                                    Exactly<Bytes>()))>,
+                            Returns<bool, decltype(std::declval<T&>().busy())>,
+                            Returns<void, decltype(std::declval<T&>().suspend())>,
+                            Returns<void, decltype(std::declval<T&>().resume())>,
+                            Returns<void, decltype(std::declval<T&>().read(
+                                              Exactly<std::uint32_t>(), Exactly<MutableBytes>()))>>> = true;
+
+}  // namespace ex9000::hal

@@ -1,0 +1,81 @@
+// An erase that gives way to other accesses.
+#pragma once
+
+#include <cstdint>
+
+#include "firmware/time.hpp"
+#include "hal/flash.hpp"
+
+namespace ex9000::hal::flash {
+
+/// For its functions, the flash must not be busy, unless they say otherwise.
+template <class Flash>
+class BackgroundErase {
+ public:
+  /// An erase runs at least this long before it is suspended again, so that it always makes progress. The
+  /// W25Q16JV requires 20 us; other manufacturers require up to 1 ms.
+  static constexpr Duration kShortestRun = milliseconds(1);
+
+  /// Begins to erase a sector. Call it only if no erase is `under_way()`.
+  void start(Flash& flash, unsigned sector, std::uint32_t address, Time now) {
+    flash.start_erase(address);
+    sector_ = sector;
+    run(now);
+  }
+
+  /// Suspends the erase of the run before a reset of the MCU, if there was one. The flash may be busy.
+  void suspend_unknown(Flash& flash, unsigned no_sector) {
+    flash.suspend();
+    sector_ = no_sector;
+    state_ = State::Suspended;
+  }
+
+  /// Suspends a running erase while the flash is busy. Returns whether the flash will be available within
+  /// 20 us. False if the flash does something else, or if the erase must run on for a moment.
+  bool suspend(Flash& flash, Time now) {
+    if (state_ == State::Running && now.since(began_) < kShortestRun) {
+      return false;
+    }
+    if (state_ == State::Running) {
+      flash.suspend();
+      state_ = State::Suspended;
+    }
+    return state_ == State::Suspended;
+  }
+
+  [[nodiscard]] bool suspended() const { return state_ == State::Suspended; }
+  void resume(Flash& flash, Time now) {
+    flash.resume();
+    run(now);
+  }
+
+  [[nodiscard]] bool under_way() const { return state_ != State::None; }
+  /// Returns whether an erase has just ended. From then on, none is `under_way()`.
+  bool take_end() {
+    const bool ended = state_ == State::Running;
+    if (ended) {
+      state_ = State::None;
+    }
+    return ended;
+  }
+  /// Returns the sector of the last erase.
+  [[nodiscard]] unsigned sector() const { return sector_; }
+
+ private:
+  enum class State : std::uint8_t {
+    None,
+    Running,
+    Suspended,  ///< or its end has come before it could be suspended
+  };
+
+  void run(Time now) {
+    began_ = now;
+    state_ = State::Running;
+  }
+
+  State state_ = State::None;
+  unsigned sector_ = 0;
+  Time began_;  ///< the time at which the erase began or was resumed
+};
+
+}  // namespace ex9000::hal::flash

@@ -1,0 +1,352 @@
+// A memory of pages in a NOR flash.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+
+#include "firmware/bytes.hpp"
+#include "firmware/time.hpp"
+#include "hal/flash.hpp"
+#include "hal/flash/background_erase.hpp"
+#include "hal/flash/entry.hpp"
+#include "hal/flash/mark.hpp"
+#include "hal/flash/sectors.hpp"
+#include "hal/flash/slot.hpp"
+#include "hal/flash/slot_map.hpp"
+#include "hal/memory.hpp"
+
+namespace ex9000::hal::flash {
+
+/// A memory of 12 pages of 32 bytes in the 14 sectors from `kBegin` on. For its functions, see
+/// hal/memory.hpp; for `Flash`, see hal/flash.hpp. A page that was never written reads FF.
+///
+/// A write appends an entry with the whole page to the log, and reads it back. The entry with the latest
+/// sequence is in force. If the power fails, an entry is either complete or its CRC is wrong, so the page has
+/// its new or its old content. No other entry changes.
+///
+/// A sector is erased when it holds no entry that is in force, so no erase can lose a page, and nothing has
+/// to be copied before it. There is always such a sector (slot.hpp). Only a sector with a mark (mark.hpp) is
+/// written. After a reset, the first write begins a new sector: the power failure may have torn the last slot
+/// of the old one, even if that slot reads FF.
+///
+/// All free sectors are erased ahead, by `poll`, while no job is running. A job suspends the erase. A write
+/// waits for an erase only if no erased sector is left:
+///
+/// - On the first start with this flash, until the first erase has ended: 45 ms typical, 400 ms at most.
+/// - If pages are written faster than sectors are erased. With the longest times of the data sheet, pages
+///   that are written at least 12 ms apart never wait. At any rate, the sectors that are erased ahead have
+///   room for 63 pages each.
+///
+/// A read takes at most 5 ms, and a write at most 14 ms, with the longest times of the data sheet and a poll
+/// every millisecond. They are typically 0 and 1 ms. A job that takes longer fails after kLongestRead or
+/// kLongestWrite. The first job after a reset also scans the log: 45 ms at most if the flash is read at
+/// 2 bytes per microsecond.
+template <class Flash, std::uint32_t kBegin>
+class PageStore {
+  static_assert(kIsFlash<Flash>,
+                "Flash: lacks a function, or a function has a wrong signature; see hal/flash.hpp");
+  static_assert(kBegin % kFlashSector == 0, "kBegin: not the start of a sector");
+
+ public:
+  /// The timeouts of jobs. A module replies within 100 ms of a reset, during which SettingsStore reads a
+  /// memory that does not answer six times. It refuses a command within 200 ms, during which SettingsStore
+  /// writes to such a memory six times at most.
+  static constexpr Duration kLongestRead = milliseconds(12);
+  static constexpr Duration kLongestWrite = milliseconds(25);
+
+  Flash& flash() { return flash_; }
+
+  void start_read(std::uint16_t address, MutableBytes destination, Time now) {
+    destination_ = destination;
+    begin(Job::Read, address, address + destination.size <= kSize, now + kLongestRead);
+    poll(now);
+  }
+
+  void start_write(std::uint16_t address, Bytes source, Time now) {
+    source_ = source;
+    begin(Job::Write, address, address % kPage + source.size <= kPage && address < kSize,
+          now + kLongestWrite);
+    poll(now);
+  }
+
+  bool poll(Time now) {
+    if (!busy() && step_ == Step::Free && !erases_ahead_) {
+      return false;
+    }
+    const bool waits = flash_.busy();
+    const bool again = waits ? wait(now) : proceed(now);
+    if (busy() && (waits || !again) && deadline_.reached(now)) {
+      waited_for_ = false;
+      finish(false);
+    }
+    return again;
+  }
+
+  [[nodiscard]] bool busy() const { return job_ != Job::None; }
+  [[nodiscard]] bool succeeded() const { return succeeded_; }
+
+ private:
+  enum class Job : std::uint8_t { None, Read, Write };
+  enum class Step : std::uint8_t {
+    Starting,  ///< ends the operation of the run before the reset
+    Scanning,  ///< reads the log
+    Free,      ///< can begin an operation, or an erase is running or suspended
+    Opening,   ///< programs zeros over the mark of the sector that is written next
+    Writing,   ///< programs an entry
+    Marking,   ///< programs the mark of a sector that has been erased
+  };
+
+  /// After this time a flash that is still busy is not programming, so it erases.
+  static constexpr Duration kLongestProgram = milliseconds(4);
+  static constexpr std::size_t kSize = kPages * kPage;
+  static constexpr unsigned kSlotsOfAPage = kFlashPage / kSlotSize;
+
+  static constexpr std::uint32_t address_of(Slot slot) { return kBegin + std::uint32_t{slot} * kSlotSize; }
+
+  /// `possible`: the store has these bytes, and a write stays within a page.
+  void begin(Job job, std::uint16_t address, bool possible, Time deadline) {
+    job_ = job;
+    address_ = address;
+    deadline_.set(deadline);
+    if (!possible) {
+      finish(false);
+    }
+  }
+  void finish(bool succeeded) {
+    succeeded_ = succeeded;
+    job_ = Job::None;
+    deadline_.disarm();
+  }
+
+  // --- the steps; they return true if `poll` must be called again at once ---
+
+  /// Called while the flash is busy.
+  bool wait(Time now) {
+    if (step_ == Step::Starting) {
+      return end_earlier_operation(now);
+    }
+    return step_ == Step::Free && can_begin_job() && erase_.suspend(flash_, now);
+  }
+
+  /// Called while the flash is not busy.
+  bool proceed(Time now) {
+    switch (step_) {  // not covered: the cases are complete
+      case Step::Starting:
+        erase_.suspend_unknown(flash_, Sectors::kNone);
+        step_ = Step::Scanning;
+        return true;
+      case Step::Scanning:
+        scan();
+        return true;
+      case Step::Opening:
+        finish_opening();
+        return true;
+      case Step::Writing:
+        finish_writing();
+        return true;
+      case Step::Marking:
+        finish_marking();
+        return true;
+      case Step::Free:
+        break;
+    }
+    if (erase_.take_end() && erase_.sector() != Sectors::kNone) {
+      program(Step::Marking, first_slot(erase_.sector()), {kMark.data(), kMark.size()});
+      return false;
+    }
+    if (can_begin_job()) {
+      return begin_job();
+    }
+    erase_ahead(now);
+    return false;
+  }
+
+  /// Returns whether the flash can do what the job requires next. If no erased sector is left, a write must
+  /// wait for an erase.
+  [[nodiscard]] bool can_begin_job() const {
+    return job_ == Job::Read ||
+           (job_ == Job::Write && (next_ != kNoSlot || sectors_.next_to_open() != Sectors::kNone));
+  }
+
+  bool begin_job() {
+    if (job_ == Job::Read) {
+      read_pages();
+      return erases_ahead_;
+    }
+    if (next_ == kNoSlot) {
+      opening_ = sectors_.next_to_open();
+      program(Step::Opening, first_slot(opening_), {kNoMark.data(), kNoMark.size()});
+    } else {
+      begin_writing();
+    }
+    return false;
+  }
+
+  void program(Step step, Slot slot, Bytes bytes) {
+    flash_.start_program(address_of(slot), bytes);
+    step_ = step;
+  }
+
+  // --- start ---
+
+  /// The MCU may have been reset, without loss of power, while the flash was programming or erasing.
+  bool end_earlier_operation(Time now) {
+    if (!program_end_.armed()) {
+      program_end_.set(now + kLongestProgram);
+    }
+    if (!program_end_.reached(now)) {
+      return false;
+    }
+    erase_.suspend_unknown(flash_, Sectors::kNone);
+    step_ = Step::Scanning;
+    return true;
+  }
+
+  /// Scans a page of the flash.
+  void scan() {
+    const Slot end = static_cast<Slot>(scanned_ + kSlotsOfAPage);
+    for (; scanned_ < end; ++scanned_) {
+      if (!is_for_mark(scanned_)) {
+        scan_entry(scanned_);
+      } else if (has_mark(sector_of(scanned_))) {
+        sectors_.set(sector_of(scanned_), Sectors::State::Erased);
+        scanned_ = static_cast<Slot>(scanned_ + kSlotsOfASector);
+        break;
+      }
+    }
+    if (scanned_ == kSlots) {
+      step_ = Step::Free;
+      erases_ahead_ = true;
+    }
+  }
+
+  void scan_entry(Slot slot) {
+    if (!read_entry(slot)) {
+      return;
+    }
+    const std::uint32_t sequence = sequence_of(entry_);
+    map_.add(entry_[kPageAt], sequence, slot);
+    if (sequence >= sequence_) {
+      sequence_ = sequence + 1;
+      sectors_.begin_after(sector_of(slot));
+    }
+  }
+
+  // --- reading ---
+
+  /// Reads into `entry_`. Returns whether it is a good entry.
+  bool read_entry(Slot slot) {
+    flash_.read(address_of(slot), {entry_.data(), entry_.size()});
+    return is_good(entry_);
+  }
+
+  bool has_mark(unsigned sector) {
+    MarkBytes mark{};
+    flash_.read(address_of(first_slot(sector)), {mark.data(), mark.size()});
+    return mark == kMark;
+  }
+
+  /// Reads a page into `entry_`. Returns false if its entry is damaged.
+  bool load_page(std::size_t page) {
+    const Slot slot = map_.newest(page);
+    if (slot != kNoSlot && read_entry(slot)) {
+      return true;
+    }
+    entry_.fill(0xFF);
+    return slot == kNoSlot;
+  }
+
+  void read_pages() {
+    bool good = true;
+    for (std::size_t i = 0; i < destination_.size; ++i) {
+      const std::size_t at = address_ + i;
+      if (i == 0 || at % kPage == 0) {
+        good = load_page(at / kPage) && good;
+      }
+      destination_.data[i] = entry_[kContentAt + at % kPage];
+    }
+    finish(good);
+  }
+
+  // --- writing ---
+
+  void begin_writing() {
+    const std::size_t page = address_ / kPage;
+    (void)load_page(page);  // if its entry is damaged, the bytes that are not written become FF
+    for (std::size_t i = 0; i < source_.size; ++i) {
+      entry_[kContentAt + address_ % kPage + i] = source_[i];
+    }
+    seal(entry_, sequence_, page);
+    program(Step::Writing, next_, {entry_.data(), entry_.size()});
+    waited_for_ = true;
+  }
+
+  void finish_opening() {
+    step_ = Step::Free;
+    if (has_mark(opening_)) {
+      sectors_.set(opening_, Sectors::State::Failed);
+      return;
+    }
+    sectors_.open(opening_);
+    next_ = static_cast<Slot>(first_slot(opening_) + 1U);
+  }
+
+  void finish_writing() {
+    step_ = Step::Free;
+    const EntryBytes written = entry_;
+    const bool good = read_entry(next_) && entry_ == written;
+    if (good) {
+      map_.add(entry_[kPageAt], sequence_, next_);
+    }
+    ++sequence_;
+    next_ = good ? next_slot(next_) : kNoSlot;  // a sector that fails is erased again before it is used
+    erases_ahead_ = true;
+    if (waited_for_) {
+      waited_for_ = false;
+      finish(good);
+    }
+  }
+
+  // --- erasing ahead ---
+
+  void erase_ahead(Time now) {
+    if (erase_.suspended()) {
+      erase_.resume(flash_, now);
+      return;
+    }
+    const unsigned sector =
+        sectors_.next_to_erase(map_, next_ == kNoSlot ? Sectors::kNone : sector_of(next_));
+    erases_ahead_ = sector != Sectors::kNone;
+    if (erases_ahead_) {
+      erase_.start(flash_, sector, address_of(first_slot(sector)), now);
+    }
+  }
+
+  void finish_marking() {
+    step_ = Step::Free;
+    const unsigned sector = erase_.sector();
+    sectors_.set(sector, has_mark(sector) ? Sectors::State::Erased : Sectors::State::Failed);
+  }
+
+  Flash flash_;
+  Job job_ = Job::None;
+  Step step_ = Step::Starting;
+  bool succeeded_ = false;
+  bool waited_for_ = false;    ///< the entry that is being programmed belongs to the job
+  bool erases_ahead_ = true;   ///< a sector is being erased, or may have to be
+  std::uint16_t address_ = 0;  ///< address of the job
+  Bytes source_;
+  MutableBytes destination_;
+  Deadline deadline_;     ///< timeout of the job
+  Deadline program_end_;  ///< end of a program operation that the run before the reset may have begun
+  BackgroundErase<Flash> erase_;
+  Sectors sectors_;
+  SlotMap map_;
+  std::uint32_t sequence_ = 1;  ///< sequence of the next entry
+  Slot next_ = kNoSlot;         ///< slot of the next entry; kNoSlot if it must go to another sector
+  unsigned opening_ = 0;
+  Slot scanned_ = 0;  ///< the slots before this one have been scanned
+  EntryBytes entry_{};
+};
+
+}  // namespace ex9000::hal::flash

@@ -1,0 +1,63 @@
+// Which sectors can be written, and which one comes next.
+#pragma once
+
+#include <array>
+#include <cstdint>
+
+#include "hal/flash/slot.hpp"
+#include "hal/flash/slot_map.hpp"
+
+namespace ex9000::hal::flash {
+
+/// The sectors form a ring, and the store uses them in this order, so that they wear out evenly. It skips
+/// sectors that hold an entry in force.
+class Sectors {
+ public:
+  static constexpr unsigned kNone = kSectors;
+
+  enum class State : std::uint8_t {
+    Used,    ///< was written, or its last erase was interrupted
+    Erased,  ///< erased and marked
+    Failed,  ///< cannot be marked; it is not tried again before the next reset
+  };
+
+  void set(unsigned sector, State state) { states_[sector] = state; }
+
+  /// Returns the sector to write when the current one is full; kNone if none is erased.
+  [[nodiscard]] unsigned next_to_open() const {
+    return first([this](unsigned sector) { return states_[sector] == State::Erased; });
+  }
+  /// Returns the sector to erase; kNone if there is none. The sector that is being written, `current`, and
+  /// those that `map` uses must not be erased.
+  [[nodiscard]] unsigned next_to_erase(const SlotMap& map, unsigned current) const {
+    return first([&](unsigned sector) {
+      return states_[sector] == State::Used && sector != current && !map.uses(sector);
+    });
+  }
+
+  /// Records that an erased sector will be written now.
+  void open(unsigned sector) {
+    set(sector, State::Used);
+    begin_after(sector);
+  }
+  /// Sets the sector that was opened last.
+  void begin_after(unsigned sector) { last_ = sector; }
+
+ private:
+  /// Returns the first sector after the one that was opened last for which `is_suitable` is true.
+  template <class IsSuitable>
+  [[nodiscard]] unsigned first(IsSuitable is_suitable) const {
+    for (unsigned i = 1; i <= kSectors; ++i) {
+      const unsigned sector = (last_ + i) % kSectors;
+      if (is_suitable(sector)) {
+        return sector;
+      }
+    }
+    return kNone;
+  }
+
+  std::array<State, kSectors> states_{};
+  unsigned last_ = kSectors - 1;
+};
+
+}  // namespace ex9000::hal::flash

@@ -1,0 +1,36 @@
+// The places for entries in the flash.
+#pragma once
+
+#include <cstdint>
+
+#include "hal/flash.hpp"
+#include "hal/flash/entry.hpp"
+
+namespace ex9000::hal::flash {
+
+/// The number of sectors that the store uses. At most one sector per page holds an entry that is in force, so
+/// at least two sectors hold none: one of them is written, the other one is erased ahead.
+inline constexpr unsigned kSectors = 14;
+static_assert(kSectors >= kPages + 2);
+
+/// A slot has room for an entry. Four slots share a page of the flash.
+inline constexpr unsigned kSlotSize = 64;
+inline constexpr unsigned kSlotsOfASector = kFlashSector / kSlotSize;
+inline constexpr unsigned kSlots = kSectors * kSlotsOfASector;
+static_assert(kEntrySize <= kSlotSize && kFlashPage % kSlotSize == 0, "an entry does not cross a page");
+
+/// The number of a slot, 0 to kSlots - 1. The first slot of each sector is for its mark.
+using Slot = std::uint16_t;
+/// No slot. Slot 0 is for a mark, so it never holds an entry.
+inline constexpr Slot kNoSlot = 0;
+
+constexpr unsigned sector_of(Slot slot) { return slot / kSlotsOfASector; }
+constexpr bool is_for_mark(Slot slot) { return slot % kSlotsOfASector == 0; }
+constexpr Slot first_slot(unsigned sector) { return static_cast<Slot>(sector * kSlotsOfASector); }
+/// Returns the next slot of the same sector; kNoSlot if there is none.
+constexpr Slot next_slot(Slot slot) {
+  const auto next = static_cast<Slot>(slot + 1U);
+  return is_for_mark(next) ? kNoSlot : next;
+}
+
+}  // namespace ex9000::hal::flash

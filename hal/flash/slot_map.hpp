@@ -1,0 +1,41 @@
+// Where the newest entry of each page is.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+
+#include "hal/flash/entry.hpp"
+#include "hal/flash/slot.hpp"
+
+namespace ex9000::hal::flash {
+
+class SlotMap {
+ public:
+  /// Returns the slot of the newest entry; kNoSlot if the page was never written.
+  [[nodiscard]] Slot newest(std::size_t page) const { return slots_[page]; }
+
+  /// Records a good entry. An entry that is older than the one known so far changes nothing.
+  void add(std::size_t page, std::uint32_t sequence, Slot slot) {
+    if (slots_[page] == kNoSlot || sequence > sequences_[page]) {
+      slots_[page] = slot;
+      sequences_[page] = sequence;
+    }
+  }
+
+  /// Returns whether the newest entry of a page is in this sector.
+  [[nodiscard]] bool uses(unsigned sector) const {
+    for (const Slot slot : slots_) {
+      if (slot != kNoSlot && sector_of(slot) == sector) {
+        return true;
+      }
+    }
+    return false;
+  }
+
+ private:
+  std::array<Slot, kPages> slots_{};
+  std::array<std::uint32_t, kPages> sequences_{};
+};
+
+}  // namespace ex9000::hal::flash

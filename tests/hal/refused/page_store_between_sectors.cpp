@@ -1,0 +1,16 @@
+// Must not compile: the store does not begin with a sector.
+#include "hal/flash/page_store.hpp"
+
+namespace ex9000::hal {
+
+struct Flash {
+  static void start_erase(std::uint32_t address);
+  static void start_program(std::uint32_t address, Bytes source);
+  [[nodiscard]] static bool busy();
+  static void suspend();
+  static void resume();
+  static void read(std::uint32_t address, MutableBytes destination);
+};
+template class flash::PageStore<Flash, 0x1100>;
+
+}  // namespace ex9000::hal
