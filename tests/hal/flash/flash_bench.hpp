@@ -44,6 +44,8 @@ inline Page numbered(unsigned number) {
 class Session {
  public:
   explicit Session(FlashChip& chip) : chip_(chip) { store_.flash().chip = &chip; }
+  /// Continues a run of `store` on a copy of its chip.
+  Session(FlashChip& chip, const Store& store) : chip_(chip), store_(store) { store_.flash().chip = &chip; }
 
   bool read(std::size_t address, std::vector<std::uint8_t>& into) {
     store_.start_read(static_cast<std::uint16_t>(address), {into.data(), into.size()}, chip_.time());

@@ -129,13 +129,16 @@ class FlashChip {
   [[nodiscard]] Time time() const { return Time(static_cast<std::uint32_t>(now)); }
   [[nodiscard]] Operation operation() const { return operation_; }
   [[nodiscard]] bool erase_suspended() const { return erase_suspended_; }
-  [[nodiscard]] unsigned operations() const { return operations_; }
-  [[nodiscard]] std::size_t size_of_operation() const {
-    return operation_ == Operation::Erase ? kSector : source_.size();
+  /// Returns all operations that have begun, in this order.
+  [[nodiscard]] const std::vector<Operation>& operations() const { return operations_; }
+  /// Returns the number of the erase that has not ended; of the next operation if there is none.
+  [[nodiscard]] std::size_t earliest_open() const {
+    const bool erasing = operation_ == Operation::Erase || erase_suspended_;
+    return erasing ? erase_number_ : operations_.size();
   }
 
   /// Cuts the power when operation number `number` would end, counted from the first one of this chip.
-  void cut(unsigned number, Tear tear) {
+  void cut(std::size_t number, Tear tear) {
     cut_ = number;
     tear_ = tear;
   }
@@ -176,13 +179,13 @@ class FlashChip {
     operation_ = operation;
     at_ = at;
     left_ = time;
-    number_ = operations_++;
     if (operation == Operation::Erase) {
-      erase_number_ = number_;
+      erase_number_ = operations_.size();
     }
+    operations_.push_back(operation);
   }
   void end() {
-    if (cut_ && *cut_ == (operation_ == Operation::Erase ? erase_number_ : number_)) {
+    if (cut_ == (operation_ == Operation::Erase ? erase_number_ : operations_.size() - 1)) {
       power_off(tear_);
       throw PowerFailure();
     }
@@ -267,10 +270,9 @@ class FlashChip {
   std::uint64_t erase_left_ = 0;
   std::optional<std::uint64_t> suspends_at_;
   std::uint64_t resumed_ = 0;
-  unsigned operations_ = 0;
-  unsigned number_ = 0;
-  unsigned erase_number_ = 0;
-  std::optional<unsigned> cut_;
+  std::vector<Operation> operations_;
+  std::size_t erase_number_ = 0;
+  std::optional<std::size_t> cut_;
   Tear tear_;
 };
 

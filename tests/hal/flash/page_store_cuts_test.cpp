@@ -1,0 +1,239 @@
+// Cuts the power at every program operation and every erase of the page store. After each cut, the page that
+// was being written has its old or its new content, and all other pages are unchanged.
+#include <gtest/gtest.h>
+
+#include <cstdio>
+#include <random>
+#include <vector>
+
+#include "tests/hal/flash/flash_bench.hpp"
+
+namespace ex9000::hal::flash {
+namespace {
+
+constexpr unsigned kSeed = 1;
+constexpr unsigned kSeedsOfAKind = 8;
+
+/// A chip, a run of the store on it, and the pages that the store must have.
+struct State {
+  FlashChip chip;
+  Store store;
+  std::vector<Page> pages;
+};
+
+/// A write, and the time until the next one.
+struct Write {
+  std::size_t page;
+  unsigned content;
+  std::uint64_t pause;  ///< us
+};
+
+/// Writes, and follows what the pages contain. Returns whether the power is still on.
+bool carry_out(State& state, const Write& write, bool& reported) {
+  Session run(state.chip, state.store);
+  reported = false;
+  bool power = true;
+  try {
+    reported = run.write(write.page, numbered(write.content));
+    run.run(write.pause);
+  } catch (const PowerFailure&) {
+    power = false;
+  }
+  state.store = run.store();
+  return power;
+}
+
+std::vector<Tear> tears_of(FlashChip::Operation operation) {
+  std::vector<Tear> tears;
+  for (unsigned seed = 1; seed <= kSeedsOfAKind; ++seed) {
+    for (const Tear::Kind kind : Tear::kEveryKind) {
+      const std::size_t size = operation == FlashChip::Operation::Erase ? FlashChip::kSector : kEntrySize;
+      tears.push_back({kind, size * seed / (kSeedsOfAKind + 1), kSeed * 100 + seed});
+    }
+  }
+  if (operation == FlashChip::Operation::Program) {
+    for (std::size_t prefix = 0; prefix <= kEntrySize; ++prefix) {
+      tears.push_back({Tear::Kind::Prefix, prefix, kSeed});
+    }
+  }
+  return tears;
+}
+
+class PageStoreCuts : public testing::Test {
+ protected:
+  void TearDown() override {
+    std::printf("power cuts in %s: %zu\n", testing::UnitTest::GetInstance()->current_test_info()->name(),
+                cuts_);
+  }
+
+  /// Carries out `write` with a power cut. Then starts the store again, checks all pages, and returns the run
+  /// in `state`.
+  void cut(State& state, const Write& write, std::size_t operation, Tear tear) {
+    state.chip.cut(operation, tear);
+    bool reported = false;
+    if (carry_out(state, write, reported)) {
+      state.chip.power_off(tear);  // in the middle of the operation
+    }
+    ++cuts_;
+    Session next(state.chip);
+    for (std::size_t page = 0; page < kPages; ++page) {
+      const Page found = next.page(page);
+      if (page == write.page && !reported && found != state.pages[page]) {
+        state.pages[page] = numbered(write.content);
+      } else if (page == write.page && reported) {
+        state.pages[page] = numbered(write.content);
+      }
+      ASSERT_EQ(found, state.pages[page])
+          << "page " << page << ", operation " << operation << ", tear " << static_cast<int>(tear.kind)
+          << ", prefix " << tear.prefix << ", seed " << tear.seed;
+    }
+    state.store = next.store();
+  }
+
+  /// Checks that the store works, and that it keeps all pages.
+  static void expect_works(State& state) {
+    Session run(state.chip, state.store);
+    run.settle();
+    for (const unsigned content : {9001U, 9002U}) {
+      const std::size_t page = content % 3;
+      state.pages[page] = numbered(content);
+      ASSERT_TRUE(run.write(page, numbered(content)));
+    }
+    Session next(state.chip);
+    for (std::size_t page = 0; page < kPages; ++page) {
+      ASSERT_EQ(next.page(page), state.pages[page]) << "page " << page;
+    }
+  }
+
+  /// Cuts at each operation of `write`, in every way. Then carries out the write.
+  void cut_everywhere(State& state, const Write& write, bool in_every_way = true) {
+    State whole = state;
+    bool reported = false;
+    carry_out(whole, write, reported);
+    ASSERT_TRUE(reported);
+    for (std::size_t i = state.chip.earliest_open(); i < whole.chip.operations().size(); ++i) {
+      for (const Tear& tear : tears_of(whole.chip.operations()[i])) {
+        if (!in_every_way && (tear.seed + tear.prefix) % 7 != 0) {
+          continue;
+        }
+        State torn = state;
+        cut(torn, write, i, tear);
+        expect_works(torn);
+        if (HasFatalFailure()) {
+          return;
+        }
+      }
+    }
+    whole.pages[write.page] = numbered(write.content);
+    state = whole;
+  }
+
+  static State blank() {
+    State state;
+    state.pages.assign(kPages, Page());
+    for (Page& page : state.pages) {
+      page.fill(0xFF);
+    }
+    return state;
+  }
+  static State settled(const FlashChip::Times& times = {}) {
+    State state = blank();
+    state.chip.times = times;
+    Session run(state.chip);
+    run.settle();
+    state.store = run.store();
+    return state;
+  }
+  static void write(State& state, const Write& write) {
+    bool reported = false;
+    ASSERT_TRUE(carry_out(state, write, reported) && reported);
+    state.pages[write.page] = numbered(write.content);
+  }
+  /// A flash with pages in many sectors, and a run that has only a few slots left in its sector.
+  static State full() {
+    State state = settled();
+    unsigned content = 1;
+    for (std::size_t page = 4; page < kPages; ++page) {
+      write(state, {page, content++, 0});
+      for (unsigned i = 0; i < kSlotsOfASector - 2; ++i) {
+        write(state, {i % 4, content++, 0});
+      }
+    }
+    for (unsigned i = 0; i < kSlotsOfASector - 4; ++i) {
+      write(state, {i % 4, content++, 0});
+    }
+    return state;
+  }
+
+  std::size_t cuts_ = 0;
+};
+
+TEST_F(PageStoreCuts, InTheFirstRunOnAFlash) {
+  State state = blank();
+  for (const unsigned content : {1U, 2U}) {
+    // A write that arrives before the first erase has ended may be refused, so this one arrives later.
+    Session run(state.chip, state.store);
+    run.run(50'000);
+    state.store = run.store();
+    cut_everywhere(state, {1, content, 300'000});
+  }
+}
+
+TEST_F(PageStoreCuts, AtTheFirstWritesAfterAReset) {
+  State state = settled();
+  write(state, {0, 1, 0});
+  write(state, {1, 2, 0});
+  Session run(state.chip);
+  run.run(20'000);
+  state.store = run.store();
+  for (const Write& write : {Write{0, 3, 100'000}, {1, 4, 1'000}, {0, 5, 1'000}, {2, 6, 100'000}}) {
+    cut_everywhere(state, write);
+  }
+}
+
+TEST_F(PageStoreCuts, AtTheEndOfASectorAndAtTheErasesAfterIt) {
+  State state = full();
+  unsigned content = 5000;
+  for (const unsigned pause : {1'000U, 3'000U, 3'000U, 10'000U, 60'000U, 3'000U, 100'000U}) {
+    cut_everywhere(state, {content % 4, content, pause});
+    ++content;
+  }
+}
+
+TEST_F(PageStoreCuts, WithTheLongestTimesOfTheFlash) {
+  State state = full();
+  state.chip.times = FlashChip::kLongest;
+  unsigned content = 5000;
+  for (const unsigned pause : {1'000U, 3'000U, 5'000U, 5'000U, 20'000U}) {
+    cut_everywhere(state, {content % 4, content, pause}, false);
+    ++content;
+  }
+}
+
+// The number of pairs grows with the square of the number of cuts, so this is a random sample with a fixed
+// seed.
+TEST_F(PageStoreCuts, SeveralTimesInARow) {
+  constexpr int kRounds = 100;
+  constexpr int kCutsInARow = 6;
+  std::mt19937 random(kSeed);
+  for (State beginning : {blank(), settled(), full()}) {
+    for (int round = 0; round < kRounds; ++round) {
+      State state = beginning;
+      for (int i = 0; i < kCutsInARow && !HasFatalFailure(); ++i) {
+        const auto content = static_cast<unsigned>(random() % 100'000);
+        const Write write{random() % 4, content, random() % 70'000};
+        const std::size_t operation = state.chip.earliest_open() + random() % 6;
+        cut(state, write, operation,
+            {Tear::kEveryKind[random() % 5], random() % FlashChip::kSector % (1U + random() % 100U),
+             static_cast<unsigned>(random())});
+      }
+      expect_works(state);
+      if (HasFatalFailure()) {
+        return;
+      }
+    }
+  }
+}
+
+}  // namespace
+}  // namespace ex9000::hal::flash

@@ -1,0 +1,141 @@
+// Measures how long the jobs of the page store take, and at which rate pages can be written.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cstdio>
+
+#include "tests/hal/flash/flash_bench.hpp"
+
+namespace ex9000::hal::flash {
+namespace {
+
+constexpr std::uint64_t kLongestReadEver = 5'000;    // us; PageStore states this
+constexpr std::uint64_t kLongestWriteEver = 14'000;  // us; PageStore states this
+
+/// Returns a chip with the given times, all of whose free sectors are erased.
+FlashChip settled(const FlashChip::Times& times) {
+  FlashChip chip;
+  chip.times = times;
+  Session(chip).settle();
+  return chip;
+}
+
+/// Writes pages `period` microseconds apart, or at once if the last one took longer. Returns the number of
+/// writes before the first one that failed.
+unsigned writes_without_failure(Session& run, FlashChip& chip, std::uint64_t period, unsigned most) {
+  for (unsigned writes = 0; writes < most; ++writes) {
+    const std::uint64_t next = chip.now + period;
+    if (!run.write(writes % 2, numbered(writes)) || run.page(writes % 2) != numbered(writes)) {
+      return writes;
+    }
+    if (chip.now < next) {
+      run.run(next - chip.now);
+    }
+  }
+  return most;
+}
+
+TEST(PageStoreTiming, AJobSuspendsAnEraseInAnyPhase) {
+  for (const FlashChip::Times& times : {FlashChip::Times(), FlashChip::kLongest}) {
+    std::uint64_t longest_read = 0;
+    std::uint64_t longest_write = 0;
+    unsigned suspensions = 0;
+    const FlashChip chip = settled(times);
+    for (std::uint64_t phase = 0; phase < times.erase + 10'000; phase += phase < 8'000 ? 333 : 5'333) {
+      FlashChip before = chip;
+      Session run(before);
+      // The write that opens the second sector leaves the first one free, so an erase begins.
+      for (unsigned i = 0; i < kSlotsOfASector; ++i) {
+        ASSERT_TRUE(run.write(0, numbered(i)));
+      }
+      const std::uint64_t begin = before.now;
+      while (before.now < begin + phase) {
+        while (run.store().poll(before.time())) {
+          before.run(10);
+        }
+        before.run(std::min<std::uint64_t>(333, begin + phase - before.now));
+      }
+      FlashChip for_read = before;
+      Session reader(for_read, run.store());
+      EXPECT_EQ(reader.page(0), numbered(kSlotsOfASector - 1));
+      longest_read = std::max(longest_read, reader.latency);
+      ASSERT_TRUE(run.write(1, numbered(phase & 0xFFFF)));
+      longest_write = std::max(longest_write, run.latency);
+      suspensions += before.suspensions;
+    }
+    EXPECT_GT(suspensions, 10U);
+    EXPECT_LE(longest_read, kLongestReadEver);
+    EXPECT_LE(longest_write, kLongestWriteEver);
+    std::printf("erase %u ms, program %.1f ms: longest read %.1f ms, longest write %.1f ms\n",
+                static_cast<unsigned>(times.erase / 1'000), static_cast<double>(times.program) / 1e3,
+                static_cast<double>(longest_read) / 1e3, static_cast<double>(longest_write) / 1e3);
+  }
+}
+
+TEST(PageStoreTiming, AWriteMayHaveToOpenASectorDuringAnErase) {
+  std::uint64_t longest = 0;
+  FlashChip chip = settled(FlashChip::kLongest);
+  Session run(chip);
+  for (unsigned i = 0; i < 2'000; ++i) {
+    ASSERT_TRUE(run.write(i % 2, numbered(i)));
+    longest = std::max(longest, run.latency);
+    run.run(12'000 + i % 7 * 331);
+  }
+  EXPECT_LE(longest, kLongestWriteEver);
+  std::printf("longest write of 2000: %.1f ms\n", static_cast<double>(longest) / 1e3);
+}
+
+TEST(PageStoreTiming, WritesAtTheDocumentedRateNeverWaitForAnErase) {
+  constexpr unsigned kWrites = 20'000;
+  FlashChip chip = settled(FlashChip::kLongest);
+  Session run(chip);
+  EXPECT_EQ(writes_without_failure(run, chip, 12'000, kWrites), kWrites);
+}
+
+TEST(PageStoreTiming, WithTypicalTimesWritesAtAnyRateNeverWaitForAnErase) {
+  constexpr unsigned kWrites = 20'000;
+  FlashChip chip = settled({});
+  Session run(chip);
+  EXPECT_EQ(writes_without_failure(run, chip, 4'000, kWrites), kWrites);
+}
+
+TEST(PageStoreTiming, TheSectorsErasedAheadHaveRoomForABurst) {
+  constexpr unsigned kBurst = (kSectors - 1) * (kSlotsOfASector - 1);
+  FlashChip chip = settled({1'000'000'000, 3'000});  // an erase that never ends
+  chip.times = {1'000'000'000, 3'000};
+  Session run(chip);
+  const unsigned writes = writes_without_failure(run, chip, 0, 10 * kBurst);
+  EXPECT_GE(writes, kBurst);
+  EXPECT_LE(run.latency, Store::kLongestWrite.microseconds() + 2'000) << "a write that fails";
+}
+
+TEST(PageStoreTiming, AWriteThatWaitsForAnEraseSucceedsWhenTheEraseEndsInTime) {
+  FlashChip chip;  // never used before, so no sector is known to be erased
+  chip.times.erase = 15'000;
+  Session run(chip);
+  EXPECT_TRUE(run.write(0, numbered(1)));
+  EXPECT_EQ(Session(chip).page(0), numbered(1));
+}
+
+TEST(PageStoreTiming, TheFirstReadAfterAResetScansTheLog) {
+  FlashChip chip = settled({});
+  chip.times = FlashChip::kLongest;
+  Session(chip).settle();
+  // All sectors except one have been written since they were erased.
+  FlashChip used = chip;
+  used.times.erase = 1'000'000'000;
+  Session run(used);
+  writes_without_failure(run, used, 0, 10'000);
+  used.power_off({});
+  used.bytes_read = 0;
+  Session next(used);
+  (void)next.page(0);
+  constexpr double kBytesAMicrosecond = 2;  // 16 MHz
+  const double most = static_cast<double>(used.bytes_read) / kBytesAMicrosecond / 1e3;
+  std::printf("scan of a full log: %llu bytes, %.1f ms\n", static_cast<unsigned long long>(used.bytes_read),
+              most);
+  EXPECT_LE(most, 20);
+}
+
+}  // namespace
+}  // namespace ex9000::hal::flash
