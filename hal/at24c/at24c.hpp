@@ -37,11 +37,8 @@ class At24c {
   }
 
   bool poll(Time now) {
-    if (step_ == Step::Idle) {
-      return false;
-    }
     const bool again = master_.poll(now);
-    if (!master_.busy()) {
+    if (step_ != Step::Idle && !master_.busy()) {
       next(now);
     }
     return again;

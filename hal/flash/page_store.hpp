@@ -35,7 +35,7 @@ namespace ex9000::hal::flash {
 /// - On the first start with this flash, until the first erase has ended: 45 ms typical, 400 ms at most.
 /// - If pages are written faster than sectors are erased. With the longest times of the data sheet, pages
 ///   that are written at least 12 ms apart never wait. At any rate, the sectors that are erased ahead have
-///   room for 63 pages each.
+///   room for 79 pages each.
 ///
 /// A read takes at most 5 ms, and a write at most 14 ms, with the longest times of the data sheet and a poll
 /// every millisecond. They are typically 0 and 1 ms. A job that takes longer fails after kLongestRead or
@@ -99,9 +99,8 @@ class PageStore {
   /// After this time a flash that is still busy is not programming, so it erases.
   static constexpr Duration kLongestProgram = milliseconds(4);
   static constexpr std::size_t kSize = kPages * kPage;
-  static constexpr unsigned kSlotsOfAPage = kFlashPage / kSlotSize;
 
-  static constexpr std::uint32_t address_of(Slot slot) { return kBegin + std::uint32_t{slot} * kSlotSize; }
+  static constexpr std::uint32_t address_of(Slot slot) { return kBegin + offset_of(slot); }
 
   /// `possible`: the store has these bytes, and a write stays within a page.
   void begin(Job job, std::uint16_t address, bool possible, Time deadline) {
@@ -204,7 +203,7 @@ class PageStore {
 
   /// Scans a page of the flash.
   void scan() {
-    const Slot end = static_cast<Slot>(scanned_ + kSlotsOfAPage);
+    const Slot end = static_cast<Slot>(scanned_ + kSlotsOfAFlashPage);
     for (; scanned_ < end; ++scanned_) {
       if (!is_for_mark(scanned_)) {
         scan_entry(scanned_);

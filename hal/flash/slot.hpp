@@ -13,17 +13,22 @@ namespace ex9000::hal::flash {
 inline constexpr unsigned kSectors = 14;
 static_assert(kSectors >= kPages + 2);
 
-/// A slot has room for an entry. Four slots share a page of the flash.
-inline constexpr unsigned kSlotSize = 64;
-inline constexpr unsigned kSlotsOfASector = kFlashSector / kSlotSize;
+/// A slot has room for an entry. A page of the flash has five slots, so that no entry crosses its end.
+inline constexpr unsigned kSlotsOfAFlashPage = 5;
+inline constexpr unsigned kSlotSize = 48;
+inline constexpr unsigned kSlotsOfASector = kFlashSector / kFlashPage * kSlotsOfAFlashPage;
 inline constexpr unsigned kSlots = kSectors * kSlotsOfASector;
-static_assert(kEntrySize <= kSlotSize && kFlashPage % kSlotSize == 0, "an entry does not cross a page");
+static_assert(kEntrySize <= kSlotSize && kSlotsOfAFlashPage * kSlotSize <= kFlashPage);
 
 /// The number of a slot, 0 to kSlots - 1. The first slot of each sector is for its mark.
 using Slot = std::uint16_t;
 /// No slot. Slot 0 is for a mark, so it never holds an entry.
 inline constexpr Slot kNoSlot = 0;
 
+/// Returns the offset of a slot from the begin of the first sector, in bytes.
+constexpr std::uint32_t offset_of(Slot slot) {
+  return slot / kSlotsOfAFlashPage * kFlashPage + slot % kSlotsOfAFlashPage * kSlotSize;
+}
 constexpr unsigned sector_of(Slot slot) { return slot / kSlotsOfASector; }
 constexpr bool is_for_mark(Slot slot) { return slot % kSlotsOfASector == 0; }
 constexpr Slot first_slot(unsigned sector) { return static_cast<Slot>(sector * kSlotsOfASector); }

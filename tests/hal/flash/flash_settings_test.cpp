@@ -155,6 +155,7 @@ bool cut(FlashChip& chip, const Settings& to, std::uint64_t after, std::size_t o
 TEST(FlashSettingsCuts, AtEveryOperationLeaveTheOldSettingsOrTheNew) {
   constexpr std::uint64_t kAfter = 60'000;
   std::size_t cuts = 0;
+  std::size_t cuts_of_erases = 0;
   for (const Beginning& beginning : beginnings()) {
     FlashChip whole = beginning.chip;
     {
@@ -168,6 +169,7 @@ TEST(FlashSettingsCuts, AtEveryOperationLeaveTheOldSettingsOrTheNew) {
         FlashChip chip = beginning.chip;
         const bool saved = cut(chip, numbered(200), kAfter, i, tear);
         ++cuts;
+        cuts_of_erases += whole.operations()[i] == FlashChip::Operation::Erase ? 1 : 0;
         OnFlash next(chip);
         ASSERT_FALSE(next.keeper().unreadable()) << beginning.what;
         ASSERT_TRUE(next.stored() == numbered(200) || (!saved && next.stored() == beginning.settings))
@@ -179,7 +181,8 @@ TEST(FlashSettingsCuts, AtEveryOperationLeaveTheOldSettingsOrTheNew) {
       }
     }
   }
-  std::printf("power cuts: %zu\n", cuts);
+  EXPECT_GT(cuts_of_erases, 0U);
+  std::printf("power cuts: %zu, %zu of them during erases\n", cuts, cuts_of_erases);
 }
 
 // This is a random sample with a fixed seed.
