@@ -26,9 +26,9 @@ inline constexpr Duration kMemoryPollPeriod = milliseconds(1);
 ///         memory has programmed the bytes, not when it has received them. Call this only while not `busy()`.
 ///         `source` must stay valid while `busy()`.
 ///     bool poll(Time now)
-///         Continues the job. Call this after each interrupt of the memory and every `kMemoryPollPeriod`. If no
-///         job is running, call this in every pass of the main loop: a memory may prepare for the next job. If
-///         it returns true, call this again at once, because no interrupt will occur.
+///         Continues the job. Call this after each interrupt of the memory and every `kMemoryPollPeriod`. If
+///         no job is running, call this in every pass of the main loop: a memory may prepare for the next
+///         job. If it returns true, call this again at once, because no interrupt will occur.
 ///     bool busy() const
 ///         Returns whether a job is running.
 ///     bool succeeded() const
