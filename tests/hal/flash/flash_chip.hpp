@@ -66,7 +66,7 @@ class FlashChip {
     EXPECT_EQ(at / kPageOfFlash, (at + source.size - 1) / kPageOfFlash) << "the address wraps";
     EXPECT_TRUE(!erase_suspended_ || at / kSector != erase_at_ / kSector) << "this sector is suspended";
     for (std::size_t i = 0; i < source.size; ++i) {
-      if (at + i != broken) {
+      if (!is_broken(at + i)) {
         EXPECT_EQ(cells[at + i] & source[i], source[i]) << "the byte is not erased";
       }
       EXPECT_TRUE(!weak_[at + i] || source[i] == 0) << "an interrupted operation has left this byte";
@@ -161,9 +161,12 @@ class FlashChip {
 
   std::vector<std::uint8_t> cells = std::vector<std::uint8_t>(std::size_t{kSectorsOfStore} * kSector, 0xFF);
   Times times;
-  bool hangs = false;             ///< the flash is always busy
-  std::size_t broken = SIZE_MAX;  ///< index of a byte whose lowest bit stays 0
-  std::uint64_t now = 1;          ///< us
+  bool hangs = false;  ///< the flash is always busy
+  /// Broken bytes. They begin at this index. Their lowest bit stays 0, or programming does not change them.
+  std::size_t broken = SIZE_MAX;
+  std::size_t broken_size = 1;
+  bool broken_keeps = false;  ///< programming does not change the broken bytes
+  std::uint64_t now = 1;      ///< us
   std::array<unsigned, kSectorsOfStore> erases{};
   unsigned programs = 0;
   unsigned suspensions = 0;
@@ -175,6 +178,7 @@ class FlashChip {
     EXPECT_TRUE(in_store) << "outside the store: " << address;
     return in_store ? address - kBegin : 0;
   }
+  [[nodiscard]] bool is_broken(std::size_t at) const { return at >= broken && at - broken < broken_size; }
   void begin(Operation operation, std::size_t at, std::uint64_t time) {
     operation_ = operation;
     at_ = at;
@@ -191,15 +195,17 @@ class FlashChip {
     }
     if (operation_ == Operation::Program) {
       for (std::size_t i = 0; i < source_.size(); ++i) {
-        cells[at_ + i] &= source_[i];
+        if (!broken_keeps || !is_broken(at_ + i)) {
+          cells[at_ + i] &= source_[i];
+        }
       }
     } else {
       const auto begin = static_cast<std::ptrdiff_t>(at_);
       std::fill_n(cells.begin() + begin, kSector, std::uint8_t{0xFF});
       std::fill_n(weak_.begin() + begin, kSector, false);
     }
-    if (broken < cells.size()) {
-      cells[broken] &= 0xFE;
+    for (std::size_t i = 0; !broken_keeps && i < broken_size && broken < cells.size(); ++i) {
+      cells[broken + i] &= 0xFE;
     }
     operation_ = Operation::None;
   }

@@ -212,6 +212,54 @@ TEST(PageStore, AWriteIntoABrokenSectorFailsOnceAndThenSucceedsElsewhere) {
   }
 }
 
+TEST(PageStore, AWriteIntoAWornOutSectorFailsOnceAndThenSucceedsElsewhere) {
+  FlashChip chip;
+  chip.broken = kFlashPage;
+  chip.broken_size = FlashChip::kSector - kFlashPage;
+  Session run(chip);
+  run.settle();
+  unsigned failures = 0;
+  for (unsigned i = 0; i < 3'000; ++i) {
+    const bool first = run.write(i % 2, numbered(i));
+    failures += first ? 0 : 1;
+    ASSERT_TRUE(first || run.write(i % 2, numbered(i)));
+    ASSERT_EQ(run.page(i % 2), numbered(i));
+    run.run(2'000);
+  }
+  EXPECT_LE(failures, 4U) << "once in each round through the sectors";
+}
+
+TEST(PageStore, ASectorThatCannotBeMarkedIsNotErasedAgainAndAgain) {
+  FlashChip chip;
+  chip.broken = 3 * FlashChip::kSector;
+  chip.broken_size = kMark.size();
+  chip.broken_keeps = true;
+  Session run(chip);
+  run.settle();
+  EXPECT_EQ(chip.erases[3], 1U);
+  for (unsigned i = 0; i < 1'000; ++i) {
+    ASSERT_TRUE(run.write(i % 2, numbered(i)));
+  }
+  EXPECT_EQ(Session(chip).page(1), numbered(999));
+}
+
+TEST(PageStore, ASectorWhoseMarkCannotBeClearedIsNotWritten) {
+  FlashChip chip;
+  Session(chip).settle();
+  chip.broken = 0;
+  chip.broken_size = kMark.size();
+  chip.broken_keeps = true;
+  Session run(chip);
+  for (unsigned i = 0; i < 1'000; ++i) {
+    ASSERT_TRUE(run.write(i % 2, numbered(i)));
+    run.settle();
+  }
+  const auto sector = chip.cells.begin();
+  EXPECT_EQ(std::count(sector + kMark.size(), sector + FlashChip::kSector, 0xFF),
+            static_cast<std::ptrdiff_t>(FlashChip::kSector - kMark.size()));
+  EXPECT_EQ(Session(chip).page(1), numbered(999));
+}
+
 TEST(PageStore, AFlashThatHangsFailsEachJobInTimeAndMayRecover) {
   FlashChip chip;
   Session run(chip);
@@ -251,6 +299,39 @@ TEST(PageStore, AnEntryWhoseProgrammingTookTooLongCountsIfItIsGood) {
   chip.times.program = 400;
   EXPECT_EQ(run.page(1), numbered(2)) << "a reset would load this entry";
   EXPECT_EQ(Session(chip).page(1), numbered(2));
+}
+
+TEST(PageStore, ASectorThatTookTooLongToOpenIsWrittenNext) {
+  FlashChip chip;
+  Session run(chip);
+  run.settle();
+  chip.times.program = 60'000;
+  EXPECT_FALSE(run.write(1, numbered(1)));
+  run.run(100'000);
+  chip.times.program = 400;
+  run.settle();
+  ASSERT_TRUE(run.write(1, numbered(2)));
+  EXPECT_EQ(run.page(1), numbered(2));
+  EXPECT_EQ(Session(chip).page(1), numbered(2));
+}
+
+TEST(PageStore, AnEraseThatWasResumedRunsForAMomentBeforeItIsSuspended) {
+  FlashChip chip;
+  Session run(chip);
+  std::vector<std::uint8_t> bytes(1);
+  ASSERT_TRUE(run.read(0, bytes));
+  run.run(3'000);
+  Store& store = run.store();
+  store.start_read(0, {bytes.data(), bytes.size()}, chip.time());
+  chip.run(FlashChip::kSuspend);
+  ASSERT_TRUE(chip.erase_suspended());
+  store.poll(chip.time());
+  ASSERT_FALSE(store.busy());
+  store.poll(chip.time());
+  ASSERT_EQ(chip.operation(), FlashChip::Operation::Erase);
+  chip.run(5);
+  ASSERT_TRUE(run.read(0, bytes));  // the chip rejects a suspension that is too early
+  EXPECT_EQ(chip.suspensions, 2U);
 }
 
 TEST(PageStore, ADamagedEntryFailsTheReadAndTheNextWriteReplacesIt) {
