@@ -28,8 +28,8 @@ inline constexpr std::uint32_t kFlashPage = 256;
 ///         Returns whether the flash erases or programs. While an erase is suspended, it is not busy.
 ///     void suspend()
 ///         Interrupts an erase, so that `busy()` is false 20 us later at most. Then other sectors can be read
-///         and programmed. It has no effect on a flash that is not busy. Do not call it during a program
-///         operation, or less than 20 us after `resume`.
+///         and programmed; not every flash permits the latter. It has no effect on a flash that is not busy.
+///         Do not call it during a program operation, or less than 20 us after `resume`.
 ///     void resume()
 ///         Continues a suspended erase; from then on the flash is `busy()`. It has no effect if no erase is
 ///         suspended. Call it only while not `busy()`.
