@@ -20,7 +20,7 @@ struct Exchange {
 
   Bytes frame;       ///< the request as the assembler accepted it
   Bytes args;        ///< the part of a DCON request after address and key
-  bool broadcast{};  ///< a Modbus request to address 0
+  bool broadcast{};  ///< a Modbus request to address 0; set for each Modbus request
 
   Outcome outcome;
   Reply reply;
@@ -30,7 +30,6 @@ struct Exchange {
   void begin(Bytes request) {
     frame = request;
     args = {};
-    broadcast = false;
     outcome.clear();
     outcome.refusal = Refusal::None;
     reply.clear();

@@ -45,10 +45,10 @@ class OwnEcho {
 
  private:
   /// Maximum time from the end of a byte on the line until the program reads it. An adapter may collect bytes
-  /// for 16 ms; a busy host can take much longer. If the limit were too short, a module would carry out its
+  /// for 16 ms; a busy host can take seconds. If the limit were too short, a module would carry out its
   /// own reply. If the adapter has no echo, a master's request that equals the reply is lost during this
   /// time.
-  static constexpr std::chrono::seconds kLatency{1};
+  static constexpr std::chrono::seconds kLatency{10};
 
   std::int64_t baud_;
   std::deque<std::uint8_t> awaited_;
