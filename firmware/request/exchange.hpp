@@ -19,7 +19,7 @@ struct Exchange {
   const LineTallies& tallies;  ///< the counts already include this request
 
   Bytes frame;       ///< the request as the assembler accepted it
-  Bytes args;        ///< the part of a DCON request after address and key
+  Bytes args;        ///< the part of a DCON request after address and key; set for each DCON request
   bool broadcast{};  ///< a Modbus request to address 0; set for each Modbus request
 
   Outcome outcome;
@@ -29,7 +29,6 @@ struct Exchange {
   /// Prepares the exchange for the next request.
   void begin(Bytes request) {
     frame = request;
-    args = {};
     outcome.clear();
     outcome.refusal = Refusal::None;
     reply.clear();
