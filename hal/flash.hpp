@@ -22,10 +22,10 @@ inline constexpr std::uint32_t kFlashPage = 256;
 ///         Begins to erase the sector that begins at `address`: 45 ms typical, 400 ms at most. Call it only
 ///         while not `busy()` and while no erase is suspended.
 ///     void start_program(std::uint32_t address, Bytes source)
-///         Begins to program `source`: 0.4 ms typical, 3 ms at most. Call it only while not `busy()`. Another
-///         sector may be suspended. `source` is no longer required when the function returns.
+///         Begins to program `source`: 0.4 ms typical, 3 ms at most. Call it only while not `busy()`. The
+///         erase of another sector may be suspended. `source` need not stay valid after the call.
 ///     bool busy()
-///         Returns whether the flash erases or programs. While an erase is suspended, it is not busy.
+///         Returns whether the flash is erasing or programming. A suspended erase does not make it busy.
 ///     void suspend()
 ///         Interrupts an erase, so that `busy()` is false 20 us later at most. Then other sectors can be read
 ///         and programmed; not every flash permits the latter. It has no effect on a flash that is not busy.
@@ -36,8 +36,8 @@ inline constexpr std::uint32_t kFlashPage = 256;
 ///     void read(std::uint32_t address, MutableBytes destination)
 ///         Reads `destination.size` bytes. Call it only while not `busy()`.
 ///
-/// A reset of the MCU neither ends an operation nor a suspension. A power failure ends both: the bytes that
-/// were to be programmed, or the sector that was to be erased, then have undefined values.
+/// A reset of the MCU does not affect an operation that is running or suspended. A power failure ends the
+/// operation: the bytes to program, or all bytes of the sector to erase, then have undefined values.
 ///
 /// The times are those of the W25Q16JV data sheet: 8.2, "Page Program (02h)", "Sector Erase (20h)" and
 /// "Erase / Program Suspend (75h)", and "AC electrical characteristics" (tPP, tSE, tSUS).

@@ -24,7 +24,7 @@ class Memory {
 
   void start_read(std::uint16_t address, MutableBytes destination, Time now);
   void start_write(std::uint16_t address, Bytes source, Time now);
-  /// Does nothing: `run` continues the job when the virtual time has come.
+  /// Does nothing: `run` ends the job when its virtual time has passed.
   bool poll(Time /*now*/) { return false; }
   [[nodiscard]] bool busy() const { return ends_ != kNever; }
   [[nodiscard]] bool succeeded() const { return succeeded_; }
@@ -37,8 +37,8 @@ class Memory {
   /// rest is old.
   void cut();
 
-  /// A function that saves each programmed range, so that the contents can outlive this object. It is called
-  /// before the job ends. If it returns false, the job fails.
+  /// A function that saves each programmed range outside this object. It is called before the job ends. If it
+  /// returns false, the job fails.
   using Keep = std::function<bool(std::uint16_t address, Bytes bytes)>;
   void keep(Keep keep) { keep_ = std::move(keep); }
 

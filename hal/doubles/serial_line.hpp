@@ -56,7 +56,7 @@ class SerialLine {
   std::size_t sent_ = 0;
   VirtualTime first_start_bit_{0};
   VirtualTime next_ = kNever;
-  VirtualTime over_ = kNever;  ///< when the driver should go off; kNever until the last byte is being sent
+  VirtualTime over_ = kNever;  ///< when the driver must go off; kNever until the last byte is being sent
   VirtualTime late_by_{0};
 };
 static_assert(kIsSerialLine<SerialLine>);

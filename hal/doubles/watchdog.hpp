@@ -5,7 +5,7 @@
 
 namespace ex9000::hal::doubles {
 
-/// The owner resets the module when `has_expired()` returns true.
+/// The owner of this object must reset the module when `has_expired()` returns true.
 class Watchdog {
  public:
   explicit Watchdog(const VirtualClock& clock) : clock_(clock) {}

@@ -1,4 +1,4 @@
-// An erase that gives way to other accesses.
+// An erase that is suspended while other accesses use the flash.
 #pragma once
 
 #include <cstdint>
@@ -8,12 +8,12 @@
 
 namespace ex9000::hal::flash {
 
-/// For its functions, the flash must not be busy, unless they say otherwise.
+/// Call a function only while the flash is not busy, unless its description says otherwise.
 template <class Flash>
 class BackgroundErase {
  public:
-  /// An erase runs at least this long before it is suspended again, so that it always makes progress. The
-  /// W25Q16JV requires 20 us; other manufacturers require up to 1 ms.
+  /// An erase runs at least this long before it is suspended again, so that it always makes progress. A
+  /// W25Q16JV requires 20 us; chips of other manufacturers require up to 1 ms.
   static constexpr Duration kShortestRun = milliseconds(1);
 
   /// Begins to erase a sector. Call it only if no erase is `under_way()`.
@@ -23,15 +23,16 @@ class BackgroundErase {
     run(now);
   }
 
-  /// Suspends the erase of the run before a reset of the MCU, if there was one. The flash may be busy.
+  /// Suspends an erase that was in progress at a reset of the MCU; if there was none, the flash ignores this.
+  /// The flash may be busy. `no_sector`: the value that `sector()` returns afterwards.
   void suspend_unknown(Flash& flash, unsigned no_sector) {
     flash.suspend();
     sector_ = no_sector;
     state_ = State::Suspended;
   }
 
-  /// Suspends a running erase while the flash is busy. Returns whether the flash will be available within
-  /// 20 us. False if the flash does something else, or if the erase must run on for a moment.
+  /// Suspends a running erase; call this while the flash is busy. Returns whether the flash will be available
+  /// within 20 us: false if no erase is under way, or if the erase has run for less than kShortestRun.
   bool suspend(Flash& flash, Time now) {
     if (state_ == State::Running && now.since(began_) < kShortestRun) {
       return false;
@@ -50,7 +51,7 @@ class BackgroundErase {
   }
 
   [[nodiscard]] bool under_way() const { return state_ != State::None; }
-  /// Returns whether an erase has just ended. From then on, none is `under_way()`.
+  /// Returns whether the erase has ended since `start` or `resume`. Then no erase is `under_way()` any more.
   bool take_end() {
     const bool ended = state_ == State::Running;
     if (ended) {
@@ -65,7 +66,7 @@ class BackgroundErase {
   enum class State : std::uint8_t {
     None,
     Running,
-    Suspended,  ///< or its end has come before it could be suspended
+    Suspended,  ///< suspended; or the erase ended before the flash could suspend it
   };
 
   void run(Time now) {

@@ -22,7 +22,8 @@ inline constexpr std::size_t kPages = 12;
 ///     5-36   content of the page
 ///     37-40  CRC-32 over bytes 0 to 36, low byte first
 ///
-/// If the power fails while an entry is programmed, the CRC is wrong, except once in 2^32 times.
+/// If the power fails while an entry is programmed, the CRC detects an incomplete entry, except once in 2^32
+/// times.
 inline constexpr std::size_t kPageAt = 4;
 inline constexpr std::size_t kContentAt = 5;
 inline constexpr std::size_t kCheckAt = kContentAt + kPage;
@@ -44,14 +45,15 @@ inline std::uint32_t check_of(const EntryBytes& entry) {
   return crc.value();
 }
 
-/// Completes an entry whose content is already in its place.
+/// Completes an entry that already has its content: sets sequence, page and CRC.
 inline void seal(EntryBytes& entry, std::uint32_t sequence, std::size_t page) {
   put_32(entry.data(), sequence);
   entry[kPageAt] = static_cast<std::uint8_t>(page);
   put_32(&entry[kCheckAt], check_of(entry));
 }
 
-/// Returns whether `entry` is complete and good. Erased bytes and a sector's mark are not.
+/// Returns whether `entry` is complete: its page exists and its CRC is right. False for erased bytes and for
+/// the mark of a sector.
 inline bool is_good(const EntryBytes& entry) {
   const Bytes bytes{entry.data(), entry.size()};
   return entry[kPageAt] < kPages && bytes.low_byte_first_32(kCheckAt) == check_of(entry);

@@ -17,30 +17,30 @@
 
 namespace ex9000::hal::flash {
 
-/// A memory of 12 pages of 32 bytes in the 14 sectors from `kBegin` on. For its functions, see
+/// A memory of 12 pages of 32 bytes in the 14 sectors from address `kBegin` on. For its functions, see
 /// hal/memory.hpp; for `Flash`, see hal/flash.hpp. A page that was never written reads FF.
 ///
-/// A write appends an entry with the whole page to the log, and reads it back. The entry with the latest
-/// sequence is in force. If the power fails, an entry is either complete or its CRC is wrong, so the page has
-/// its new or its old content. No other entry changes.
+/// The sectors contain a log of entries. A write appends an entry with the whole page to the log, and reads
+/// it back. For each page, the entry with the latest sequence is in force. If the power fails, an entry is
+/// either complete or its CRC is wrong, so the page has its new or its old content. No other entry changes.
 ///
-/// A sector is erased when it holds no entry that is in force, so no erase can lose a page, and nothing has
-/// to be copied before it. There is always such a sector (slot.hpp). Only a sector with a mark (mark.hpp) is
-/// written. After a reset, the first write begins a new sector: the power failure may have torn the last slot
-/// of the old one, even if that slot reads FF.
+/// The store erases a sector only if it holds no entry that is in force. Therefore an erase cannot lose a
+/// page, and the store need not copy entries before it. There is always such a sector (slot.hpp). The store
+/// writes only to a sector that had a mark (mark.hpp). After a reset, the first write begins a new sector,
+/// because a power failure may have interrupted the programming of the last slot, even if that slot reads FF.
 ///
-/// All free sectors are erased ahead, by `poll`, while no job is running. A job suspends the erase. A write
+/// While no job is running, `poll` erases all free sectors in advance. A job suspends the erase. A write
 /// waits for an erase only if no erased sector is left:
 ///
 /// - On the first start with this flash, until the first erase has ended: 45 ms typical, 400 ms at most.
-/// - If pages are written faster than sectors are erased. With the longest times of the data sheet, pages
-///   that are written at least 12 ms apart never wait. At any rate, the sectors that are erased ahead have
-///   room for 79 pages each.
+/// - If pages are written faster than sectors are erased. With the longest times of the data sheet, writes
+///   that are at least 12 ms apart never wait. If writes are closer together, each sector that has been
+///   erased in advance has room for 79 of them.
 ///
-/// A read takes at most 5 ms, and a write at most 14 ms, with the longest times of the data sheet and a poll
-/// every millisecond. Typically they take 0 and 1 ms. A job that takes longer fails after kLongestRead or
-/// kLongestWrite. The first job after a reset also scans the log. That takes at most 45 ms if the flash is
-/// read at 2 bytes per microsecond and a microsecond has 125 instructions.
+/// With the longest times of the data sheet and a poll every millisecond, a read takes at most 5 ms, and a
+/// write at most 14 ms. Typical times are 0 ms and 1 ms. A job fails if it has not ended after kLongestRead
+/// or kLongestWrite. The first job after a reset also waits for the scan of the log. The scan takes at most
+/// 45 ms if the flash is read at 2 bytes per microsecond and a microsecond has 125 instructions.
 ///
 /// tests/hal/flash measures these times, cuts the power at each operation, and counts erases.
 template <class Flash, std::uint32_t kBegin>
@@ -50,9 +50,9 @@ class PageStore {
   static_assert(kBegin % kFlashSector == 0, "kBegin: not the start of a sector");
 
  public:
-  /// The timeouts of jobs. A module replies within 100 ms of a reset, during which SettingsStore reads a
-  /// memory that does not answer six times. It refuses a command within 200 ms, during which SettingsStore
-  /// writes to such a memory six times at most.
+  /// The timeouts of jobs. If the memory does not answer, SettingsStore tries to read it six times after a
+  /// reset, and the module must reply within 100 ms of the reset. For a command, SettingsStore tries to write
+  /// to it at most six times, and the module must refuse the command within 200 ms.
   static constexpr Duration kLongestRead = milliseconds(12);
   static constexpr Duration kLongestWrite = milliseconds(25);
 
@@ -90,7 +90,7 @@ class PageStore {
  private:
   enum class Job : std::uint8_t { None, Read, Write };
   enum class Step : std::uint8_t {
-    Starting,  ///< ends the operation of the run before the reset
+    Starting,  ///< ends an operation that was in progress at the reset
     Scanning,  ///< reads the log
     Free,      ///< can begin an operation, or an erase is running or suspended
     Opening,   ///< programs zeros over the mark of the sector that is written next
@@ -98,13 +98,14 @@ class PageStore {
     Marking,   ///< programs the mark of a sector that has been erased
   };
 
-  /// After this time a flash that is still busy is not programming, so it erases.
+  /// A flash that is still busy after this time is erasing, because no program operation takes longer.
   static constexpr Duration kLongestProgram = milliseconds(4);
   static constexpr std::size_t kSize = kPages * kPage;
 
   static constexpr std::uint32_t address_of(Slot slot) { return kBegin + offset_of(slot); }
 
-  /// `possible`: the store has these bytes, and a write stays within a page.
+  /// Begins a job, or lets it fail at once if it is not `possible`. A job is possible if the store has these
+  /// bytes and, for a write, if they are in one page.
   void begin(Job job, std::uint16_t address, bool possible, Time deadline) {
     job_ = job;
     address_ = address;
@@ -190,7 +191,8 @@ class PageStore {
 
   // --- start ---
 
-  /// The MCU may have been reset, without loss of power, while the flash was programming or erasing.
+  /// Waits for a program operation, or suspends an erase, that was in progress when the MCU was reset without
+  /// loss of power.
   bool end_earlier_operation(Time now) {
     if (!program_end_.armed()) {
       program_end_.set(now + kLongestProgram);
@@ -203,7 +205,7 @@ class PageStore {
     return true;
   }
 
-  /// Scans a page of the flash.
+  /// Scans the entries in one page of the flash.
   void scan() {
     const Slot end = static_cast<Slot>(scanned_ + kSlotsOfAFlashPage);
     for (; scanned_ < end; ++scanned_) {
@@ -235,7 +237,7 @@ class PageStore {
 
   // --- reading ---
 
-  /// Reads into `entry_`. Returns whether it is a good entry.
+  /// Reads the slot into `entry_`. Returns whether it contains a good entry.
   bool read_entry(Slot slot) {
     flash_.read(address_of(slot), {entry_.data(), entry_.size()});
     return is_good(entry_);
@@ -300,7 +302,7 @@ class PageStore {
       map_.add(entry_[kPageAt], sequence_, next_);
     }
     ++sequence_;
-    next_ = good ? next_slot(next_) : kNoSlot;  // a sector that fails is erased again before it is used
+    next_ = good ? next_slot(next_) : kNoSlot;  // a sector that fails is erased before its next use
     erases_ahead_ = true;
     if (waited_for_) {
       waited_for_ = false;
@@ -339,7 +341,7 @@ class PageStore {
   Bytes source_;
   MutableBytes destination_;
   Deadline deadline_;     ///< timeout of the job
-  Deadline program_end_;  ///< end of a program operation that the run before the reset may have begun
+  Deadline program_end_;  ///< latest end of a program operation that was in progress at the reset
   BackgroundErase<Flash> erase_;
   Sectors sectors_;
   SlotMap map_;

@@ -1,4 +1,4 @@
-// Which sectors can be written, and which one comes next.
+// Keeps the state of each sector, and selects the next sector to write or to erase.
 #pragma once
 
 #include <array>
@@ -18,7 +18,7 @@ class Sectors {
   enum class State : std::uint8_t {
     Used,    ///< was written, or its last erase was interrupted
     Erased,  ///< erased and marked
-    Failed,  ///< cannot be marked; it is not tried again before the next reset
+    Failed,  ///< its mark cannot be programmed or cleared; not used before the next reset
   };
 
   void set(unsigned sector, State state) { states_[sector] = state; }
@@ -40,7 +40,7 @@ class Sectors {
     set(sector, State::Used);
     begin_after(sector);
   }
-  /// Sets the sector that was opened last.
+  /// Sets the sector that was opened last. The selection begins with the sector after it.
   void begin_after(unsigned sector) { last_ = sector; }
 
  private:

@@ -8,8 +8,9 @@
 
 namespace ex9000::hal::flash {
 
-/// The number of sectors that the store uses. At most one sector per page holds an entry that is in force, so
-/// at least two sectors hold none: one of them is written, the other one is erased ahead.
+/// The number of sectors that the store uses. Each page has one entry in force, so the entries in force are
+/// in at most 12 sectors. At least two sectors hold none: the store writes to one of them and erases the
+/// other one in advance.
 inline constexpr unsigned kSectors = 14;
 static_assert(kSectors >= kPages + 2);
 
@@ -25,7 +26,7 @@ using Slot = std::uint16_t;
 /// No slot. Slot 0 is for a mark, so it never holds an entry.
 inline constexpr Slot kNoSlot = 0;
 
-/// Returns the offset of a slot from the begin of the first sector, in bytes.
+/// Returns the offset of a slot from the beginning of the first sector, in bytes.
 constexpr std::uint32_t offset_of(Slot slot) {
   return slot / kSlotsOfAFlashPage * kFlashPage + slot % kSlotsOfAFlashPage * kSlotSize;
 }

@@ -1,4 +1,4 @@
-// Where the newest entry of each page is.
+// Maps each page to the slot of its newest entry.
 #pragma once
 
 #include <array>
@@ -15,7 +15,7 @@ class SlotMap {
   /// Returns the slot of the newest entry; kNoSlot if the page was never written.
   [[nodiscard]] Slot newest(std::size_t page) const { return slots_[page]; }
 
-  /// Records a good entry. An entry that is older than the one known so far changes nothing.
+  /// Records a good entry. Has no effect if a newer entry of this page is already recorded.
   void add(std::size_t page, std::uint32_t sequence, Slot slot) {
     if (slots_[page] == kNoSlot || sequence > sequences_[page]) {
       slots_[page] = slot;

@@ -15,8 +15,8 @@ namespace ex9000::hal::rp2040 {
 /// stay enabled: the driver controls chip select itself, so a delay between two bytes does no harm. The flash
 /// is not mapped into memory after `start`.
 ///
-/// All functions are for the main loop. None waits for the flash; each takes as long as its bytes on the
-/// wires: 0.5 us a byte, and four or five bytes for a command and its address.
+/// All functions are for the main loop. They do not wait until the flash has erased or programmed. A function
+/// takes 0.5 us for each byte on the wires. A command and its address have four or five bytes.
 class Flash {
  public:
   static constexpr std::size_t kPage = 256;     ///< a program operation must not cross the end of a page
@@ -44,7 +44,7 @@ class Flash {
   }
 
   /// Begins to program `bytes`, which only changes ones to zeros. Call it only while not `busy()`. `bytes`
-  /// must lie in one page. It is no longer required when the function returns.
+  /// must lie in one page and need not stay valid after the call.
   static void begin_program(std::uint32_t address, Bytes bytes) {
     command(kWriteEnable);
     address_command(kPageProgram, address);
@@ -54,7 +54,7 @@ class Flash {
     select(false);
   }
 
-  /// Returns whether the flash erases or programs. While it is suspended, it is not busy.
+  /// Returns whether the flash is erasing or programming. A suspended operation does not make it busy.
   [[nodiscard]] static bool busy() {
     select(true);
     exchange(kReadStatus);

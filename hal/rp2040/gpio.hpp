@@ -72,7 +72,7 @@ class Gpio {
       edge_enable(word).set(Bits<EdgeEnable>(spread(pins >> (kPinsAWord * word))));
     }
   }
-  /// Returns the pins that have had an edge since `clear_edges`, of the pins that are watched.
+  /// Returns the watched pins that have had an edge since `clear_edges`.
   [[nodiscard]] static std::uint32_t edges() {
     std::uint32_t pins = 0;
     for (std::uint32_t word = 0; word < kEdgeWords; ++word) {
@@ -132,7 +132,8 @@ class Gpio {
   static constexpr Bits<Pad> kInputPulledDown = kInputEnable | kPullDown | kSchmittTrigger | kDrive8Ma;
   static constexpr Bits<Pad> kOutput8Ma = kInputEnable | kPullDown | kSchmittTrigger | kDrive8Ma;
 
-  /// Sets pad and function of each pin. The pad comes first, so that a function never meets a wrong pull.
+  /// Sets pad and function of each pin. Sets the pad first, so that the new function never uses the pull of
+  /// the old pad setting.
   [[gnu::noinline]] static void make(std::uint32_t pins, Function function, Bits<Pad> bits) {
     for (std::uint32_t pin = 0; pins != 0; ++pin, pins >>= 1U) {
       if ((pins & 1U) != 0) {

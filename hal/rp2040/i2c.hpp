@@ -48,8 +48,8 @@ class I2c {
   [[nodiscard]] bool busy() const { return busy_; }
   [[nodiscard]] I2cResult result() const { return result_; }
 
-  /// Disables the interrupt, which stays asserted until the main loop has removed its reason. For the I2C
-  /// interrupt.
+  /// Disables the interrupt, because its line stays asserted until the main loop has removed the cause. For
+  /// the I2C interrupt.
   static void on_interrupt() { kInterruptMask.write({}); }
 
  private:

@@ -10,7 +10,7 @@
 namespace ex9000::hal::rp2040 {
 
 enum class ResetReason : std::uint8_t {
-  PowerOn,    ///< or the RUN pin, or the debugger
+  PowerOn,    ///< power-on, the RUN pin, or the debugger
   Timeout,    ///< the watchdog was not fed in time
   Requested,  ///< `WatchdogRegisters::reset_chip`, for example after a fault
 };

@@ -194,7 +194,7 @@ class I2c {
     }
   }
 
-  /// Aborts the transfer. Freeing the bus ends it for the device too.
+  /// Aborts the transfer and begins to free the bus, which ends the transfer in the device too.
   void give_up(I2cResult result) {
     finish(result);
     begin_freeing();
