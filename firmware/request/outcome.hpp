@@ -47,8 +47,8 @@ enum class Effect : std::uint8_t {
   ClearCounters,
 };
 
-/// Everything the module must do before it sends the reply. It stores a change of settings first, and then
-/// does the rest without interruption by another request.
+/// Everything that the module must do before it sends the reply. The module stores a change of settings
+/// first. Then it does the rest, and processes no other request in between.
 class Outcome {
  public:
   void request(Effect effect) { effects_ = static_cast<std::uint16_t>(effects_ | bit(effect)); }

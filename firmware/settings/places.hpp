@@ -28,8 +28,8 @@ struct Place {
 constexpr std::array<Place, 4> kPlaces{{{0x0080, false}, {0x0100, false}, {0x0000, true}, {0x0020, true}}};
 static_assert(kOldCopySize <= kMemoryPage && kRecordRoom <= 0x0080, "a copy fits its place");
 
-/// Returns the size in bytes of the copy whose first page is given. At a place that is not
-/// old, returns 0 if it is not the beginning of a record.
+/// Returns the size in bytes of the copy at `place` that begins with `first_page`. Returns 0 if the place is
+/// not old and the page is not the beginning of a record.
 std::size_t copy_size(const Place& place, Bytes first_page);
 
 /// Returns the settings if `copy`, the bytes at `place`, is a good copy. Otherwise returns nothing.

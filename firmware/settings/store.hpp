@@ -41,9 +41,9 @@ class SettingsStore {
     Unreadable,  ///< something else, or no answer; factory settings are used but not stored
   };
 
-  /// Begins to load: reads all places, each up to three times. If the memory did not answer at one place, the
-  /// store does not repeat a read without answer at the next place. `found()` and `stored()` are valid when
-  /// loading has ended.
+  /// Begins to load: reads all places, each up to three times. If the memory did not answer at a place and
+  /// does not answer the first read at the next place either, the store does not repeat that read. `found()`
+  /// and `stored()` are valid when loading has ended.
   explicit constexpr SettingsStore(const Model& model) : model_(model) {}
   [[nodiscard]] bool loading() const { return step_ == Step::Load; }
   [[nodiscard]] Found found() const { return found_; }
