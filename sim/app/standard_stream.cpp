@@ -37,7 +37,7 @@ bool StandardStream::write(const std::string& text) {
   return !ended_;
 }
 
-/// Returns false if it has given up.
+/// Waits until the stream accepts output. Returns false if `gives_up` has returned true.
 bool StandardStream::wait_for_room() const {
   constexpr int kAskEvery = 100;  // ms; a signal ends the wait, but not if another thread receives it
   pollfd stream{file_, POLLOUT, 0};

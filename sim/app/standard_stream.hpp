@@ -9,14 +9,14 @@ namespace ex9000::sim {
 /// A standard stream without a buffer, because a log is read while it grows. One thread at a time may use it.
 class StandardStream {
  public:
-  /// `file`: STDOUT_FILENO or STDERR_FILENO. `name` is for messages. `gives_up` says whether to stop waiting
-  /// for a reader that does not read; it must not throw.
+  /// `file`: STDOUT_FILENO or STDERR_FILENO. `name`: name of the stream in messages. `gives_up`: returns
+  /// whether to stop waiting for a reader that does not read; must not throw.
   StandardStream(
       int file, std::string name, std::function<bool()> gives_up = [] { return false; });
 
-  /// Writes `text`. Blocks while the reader of a full pipe does not read, until `gives_up`. Returns false if
-  /// it has given up or if the reader has closed the pipe; later texts are then discarded. Throws
-  /// std::runtime_error with a one-line message for all other errors.
+  /// Writes `text`. If the pipe is full, blocks until the reader reads or `gives_up` returns true. Returns
+  /// false if `gives_up` has returned true or the reader has closed the pipe; later texts are then discarded.
+  /// Throws std::runtime_error with a one-line message for all other errors.
   bool write(const std::string& text);
 
  private:

@@ -136,7 +136,7 @@ bool Bus::has_to_sample(const End& end) const {
          (end.sampler.busy() || !std::all_of(on_the_wire_.begin(), on_the_wire_.end(), gets_whole));
 }
 
-/// Starts to sample for each receiver that does not get all bytes on the wires whole.
+/// Starts to sample for each receiver that cannot get every byte on the wires as a whole byte.
 void Bus::begin_sampling() {
   for (const auto& end : ends_) {
     if (!end->samples && has_to_sample(*end)) {

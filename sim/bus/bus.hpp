@@ -20,7 +20,8 @@ using hal::doubles::Wire;
 /// A device on the two wires: a module or a master.
 class Station {
  public:
-  /// The bus calls this at the time that the station has set with BusEnd::run_at. This clears the time.
+  /// The bus calls this at the time that the station has set with BusEnd::run_at. Before the call, the bus
+  /// clears that time.
   virtual void run() = 0;
   /// The bus calls this after the stop bit of a byte, if the station listens. A station also receives its own
   /// bytes, because both directions share the two wires.
@@ -36,8 +37,8 @@ class BusEnd : public Wire {
   /// Makes the station receive at this rate in bits per second from now on; 0: the station does not listen. A
   /// receiver that begins in the middle of a byte samples the rest of it.
   virtual void listen(std::uint32_t baud) = 0;
-  /// Sets the time of the station's next `run`, in place of an earlier setting; kNever: it only waits for
-  /// bytes.
+  /// Sets the time of the station's next `run`, in place of an earlier setting; kNever: the bus does not call
+  /// `run`.
   virtual void run_at(VirtualTime when) = 0;
 
  protected:

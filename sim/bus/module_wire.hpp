@@ -31,8 +31,9 @@ class ModuleWire final : public Wire {
   using Begins = std::function<ReplyFate()>;
   /// Called when the driver is disabled, even if the reply is not on the wires yet.
   using Ends = std::function<void()>;
-  /// Called with true before a reply goes on the wires, and with false after its end or if the power fails
-  /// before that. `reply` counts all replies from 1. Lost replies are counted, but not reported.
+  /// Called with `on` true before the driver is enabled on the wires for a reply. Called with false after the
+  /// driver is disabled, or if the power fails earlier. `reply` is the number of the reply, from 1. Lost
+  /// replies have a number too, but are not reported.
   using OnTheWires = std::function<void(std::uint64_t reply, bool on)>;
   void watch(Begins begins, Ends ends, OnTheWires on_the_wires);
   /// Makes the UART run at `baud` regardless of the firmware's setting; 0: the firmware's setting applies.
@@ -41,11 +42,11 @@ class ModuleWire final : public Wire {
     return forced_ != 0 && baud != 0 ? forced_ : baud;
   }
 
-  /// Returns whether a late reply is being sent. The UART has finished with it by then.
+  /// Returns whether a late reply is on the wires. The UART may have sent it completely before that.
   [[nodiscard]] bool sends_late() const { return driving_late_; }
   [[nodiscard]] VirtualTime next() const { return late_.empty() ? kNever : late_.front().when; }
   void run();
-  /// Ends the delay of the first late reply; the later ones keep their distance from it.
+  /// Ends the delay of the first late reply. The replies after it keep their distance in time from it.
   void end_first_delay();
   /// Drops everything that has not been sent. Call this when the module loses its supply or is reset.
   void abort();

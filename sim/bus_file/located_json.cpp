@@ -116,8 +116,8 @@ class Locator final : public nlohmann::json_sax<json> {
   }
 
   bool open(bool is_array) {
-    // No bus file requires more levels. The limit saves memory, because the parser stores the whole path of
-    // each object and list that it has entered.
+    // No bus file requires more levels. Without this limit, a deeply nested file would take much memory,
+    // because the parser stores the whole path of each object and list that it has entered.
     constexpr std::size_t kDeepest = 16;
     if (open_.size() == kDeepest) {
       throw std::invalid_argument(std::to_string(line_) +

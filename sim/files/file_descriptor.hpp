@@ -7,7 +7,7 @@
 
 namespace ex9000::sim {
 
-/// Closes the file descriptor at the end of its life.
+/// Owns a file descriptor. The destructor closes it.
 class FileDescriptor {
  public:
   FileDescriptor() = default;

@@ -57,7 +57,7 @@ class Line {
   /// Starts `program`, which changes the level of an input of the module at `index`.
   void move_input(std::size_t index, const InputProgram& program);
   /// Returns whether something is in progress that ends by itself, usually within milliseconds: bytes on the
-  /// wires or on their way there, the silence after a Modbus frame, a delayed reply, a store, a module that
+  /// wires or in a queue, the silence after a Modbus frame, a delayed reply, a store, a module that
   /// starts up. Events that only depend on the clock do not count: a host watchdog, a scheduled fault, an
   /// input program.
   [[nodiscard]] bool pending() const;

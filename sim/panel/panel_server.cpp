@@ -369,7 +369,8 @@ std::size_t PanelServer::Listener::pages() const {
   }));
 }
 
-/// Looks at once for a new page. Starts regular looks when the first page opens.
+/// Captures the present state at once for a new page. When the first page opens, starts to capture the state
+/// regularly.
 void PanelServer::Listener::watch() {
   if (looking_) {
     look();

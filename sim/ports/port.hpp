@@ -13,7 +13,7 @@ namespace ex9000::sim {
 /// program's io_context.
 class Port {
  public:
-  /// Gets the bytes that have arrived. Returns false if it takes no more until `resume`.
+  /// Receives the bytes that have arrived. Returns false if the port must deliver no more until `resume`.
   using Received = std::function<bool(const std::uint8_t* bytes, std::size_t size)>;
 
   Port() = default;

@@ -30,8 +30,8 @@ class LineRecord final : private Station {
   void keep_in(Capture& capture, VirtualTime began);
   /// Requests that `take` gets every frame when it has ended, and `note` every remark about the line.
   void tell(FrameWatch::Take take, BusLog::Note note);
-  /// Ends the log and the capture at `end` in the line's time. Then they do not depend on how far the line
-  /// runs beyond `end`, which varies with the moments at which the program reads the wall clock.
+  /// Ends the log and the capture at `end` in the line's time. The line may run beyond `end`, because the
+  /// program reads the wall clock only at some moments; the log and the capture do not depend on this.
   void end_at(VirtualTime end);
   /// Returns the collector of the frames; null if no frames are recorded.
   FrameWatch* frames() { return listens_ ? &frames_ : nullptr; }

@@ -27,8 +27,9 @@ struct Pace {
   /// A frame to a module other than the last sender waits until a silence of T3.5 has passed; a frame to a
   /// Modbus module after an ASCII reply waits until the module no longer treats the reply as part of a frame.
   /// If a master begins earlier, only the module that has just replied receives the frame, because that
-  /// module does not receive its own reply; for all others the reply and the frame are one. Many masters, for
-  /// example libmodbus, begin too early, which causes no problem with real adapters because of their delay.
+  /// module does not receive its own reply. All other modules receive the reply and the frame as one frame.
+  /// Many masters, for example libmodbus, begin too early. With a real adapter this causes no problem,
+  /// because the adapter delays the frame.
   bool keep_frames_apart = true;
   /// The ratio of virtual time to the wall clock.
   double speed = 1;

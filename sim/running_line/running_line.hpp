@@ -43,7 +43,7 @@ class RunningLine {
   void start();
   /// Starts to process the line as soon as `io` runs, `speed` times faster than the wall clock.
   void start_paced(boost::asio::io_context& io, double speed);
-  /// Starts to process the line. Its time stands still until the caller moves it. `arrived` is called when
+  /// Starts to process the line. Its time does not pass until the caller moves it. `arrived` is called when
   /// bytes from masters have arrived.
   SteppedLine& start_stepped(SteppedLine::Arrived arrived);
   /// Ends the log and the capture when the modules have been up for `up`. Call this before `start`.
@@ -81,7 +81,7 @@ class RunningLine {
   LinePorts::All ports_;
   std::unique_ptr<LineRecord> record_;
   std::unique_ptr<Pacer> pacer_;          ///< null unless the line follows the clock
-  std::unique_ptr<SteppedLine> stepped_;  ///< null unless its time stands still
+  std::unique_ptr<SteppedLine> stepped_;  ///< null unless the line is in stepped time
 };
 
 }  // namespace ex9000::sim

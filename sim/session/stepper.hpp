@@ -27,17 +27,16 @@ class Stepper {
 
   /// Returns whether `command` is an `advance` command.
   static bool is_advance(const std::string& command);
-  /// Carries out `advance TIME [after N] [quiet]`. Does not block: `answer` is called, perhaps later, as soon
-  /// as all of these are true:
-  /// - N bytes have arrived at the ports that no earlier `advance` has put on a line, and everything
-  ///   available has been read and put on its line,
-  /// - TIME has passed, or, with `quiet`, less if nothing is pending on any line,
-  /// - every reply has been written to its port.
+  /// Carries out `advance TIME [after N] [quiet]`. Does not block: calls `answer`, perhaps later, as soon as
+  /// all of these are true:
+  /// - N bytes have arrived at the ports that no earlier `advance` has put on a line. Everything that is
+  ///   available has been read and put on its line.
+  /// - TIME has passed. With `quiet`, it is also sufficient that nothing is pending on any line.
+  /// - Every reply has been written to its port.
   ///
-  /// `answer` gets `ok NOW`, the lines' time in seconds, or `error: ...`. After an error nothing has changed,
-  /// except that time has passed if the program ends. A later call replaces one that still waits for bytes;
-  /// the replaced call gets an error. If the program is asked to end while time passes, time stops there and
-  /// `answer` gets an error.
+  /// `answer` gets `ok NOW`, the lines' time in seconds, or `error: ...`. If the command is wrong, nothing
+  /// changes. If the program is asked to end while time passes, time stops there and `answer` gets an error.
+  /// A later call replaces one that still waits for bytes; the replaced call gets an error.
   void advance(const std::string& command, Answer answer);
   /// Call this when bytes have arrived at a port.
   void arrived();
