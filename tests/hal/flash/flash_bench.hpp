@@ -40,11 +40,11 @@ inline Page numbered(unsigned number) {
   return page;
 }
 
-/// A run of the store. Each call of a function runs the main loop until the result is there.
+/// A page store from a reset on. Each function runs the main loop until its result is available.
 class Session {
  public:
   explicit Session(FlashChip& chip) : chip_(chip) { store_.flash().chip = &chip; }
-  /// Continues a run of `store` on a copy of its chip.
+  /// Continues with a copy of `store` on a copy of its chip.
   Session(FlashChip& chip, const Store& store) : chip_(chip), store_(store) { store_.flash().chip = &chip; }
 
   bool read(std::size_t address, std::vector<std::uint8_t>& into) {

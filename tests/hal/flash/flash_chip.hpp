@@ -1,5 +1,6 @@
 // A model of a NOR flash, written from the W25Q16JV data sheet: 7.1 (status registers), 8.2 (instructions),
-// AC electrical characteristics. A test fails if the store does anything that the data sheet does not allow.
+// "AC electrical characteristics". A test fails if the store does something that the data sheet does not
+// allow.
 #pragma once
 
 #include <gtest/gtest.h>
@@ -17,7 +18,7 @@
 
 namespace ex9000::hal::flash {
 
-/// Thrown by the operation during which the power fails.
+/// Thrown when the power fails at the end of an operation.
 struct PowerFailure {};
 
 /// The state in which a power failure leaves the bytes of an operation.
@@ -26,7 +27,7 @@ struct Tear {
     Nothing,  ///< all bytes are old
     Prefix,   ///< the first `prefix` bytes are new, the others are old
     Bits,     ///< random bits are new
-    Garbage,  ///< erase: random bytes; program: as Bits, behind the first `prefix` bytes
+    Garbage,  ///< erase: random bytes; program: as Prefix, but with random bits in the other bytes
     All,      ///< all bytes are new, but the operation has not ended
   };
   static constexpr Kind kEveryKind[] = {Kind::Nothing, Kind::Prefix, Kind::Bits, Kind::Garbage, Kind::All};
@@ -38,7 +39,7 @@ struct Tear {
 
 class FlashChip {
  public:
-  static constexpr std::uint32_t kBegin = 0x1F'2000;  ///< everything before it belongs to the image
+  static constexpr std::uint32_t kBegin = 0x1F'2000;  ///< address of the store; the image is below it
   static constexpr std::uint32_t kSector = 4096;
   static constexpr std::uint32_t kPageOfFlash = 256;
   static constexpr unsigned kSectorsOfStore = 14;
@@ -51,7 +52,7 @@ class FlashChip {
   static constexpr Times kLongest{400'000, 3'000};
   static constexpr std::uint64_t kSuspend = 20;  ///< us
 
-  // --- the contract of hal/flash.hpp ---
+  // --- the functions that hal/flash.hpp requires ---
 
   void start_erase(std::uint32_t address) {
     const std::size_t at = index(address, kSector);
@@ -101,9 +102,9 @@ class FlashChip {
     bytes_read += destination.size;
   }
 
-  // --- the test ---
+  // --- functions for the test ---
 
-  /// Lets time pass. Throws PowerFailure if it is `cut`.
+  /// Lets time pass. Throws PowerFailure if the operation that `cut` selects ends in this time.
   void run(std::uint64_t microseconds) {
     for (std::uint64_t i = 0; i < microseconds;) {
       std::uint64_t step = microseconds - i;
@@ -129,20 +130,21 @@ class FlashChip {
   [[nodiscard]] Time time() const { return Time(static_cast<std::uint32_t>(now)); }
   [[nodiscard]] Operation operation() const { return operation_; }
   [[nodiscard]] bool erase_suspended() const { return erase_suspended_; }
-  /// Returns all operations that have begun, in this order.
+  /// Returns all operations that have begun, in order.
   [[nodiscard]] const std::vector<Operation>& operations() const { return operations_; }
-  /// Returns the number of the erase that has not ended; of the next operation if there is none.
+  /// Returns the number of the erase that has not ended. If there is none, returns the number of the next
+  /// operation.
   [[nodiscard]] std::size_t earliest_open() const {
     const bool erasing = operation_ == Operation::Erase || erase_suspended_;
     return erasing ? erase_number_ : operations_.size();
   }
 
-  /// Cuts the power when operation number `number` would end, counted from the first one of this chip.
+  /// Cuts the power at the time when operation `number` would end. The first operation of the chip is 0.
   void cut(std::size_t number, Tear tear) {
     cut_ = number;
     tear_ = tear;
   }
-  /// Cuts the power now. A suspended erase is torn too.
+  /// Cuts the power now. A suspended erase is cut too, with a random Tear.
   void power_off(Tear tear) {
     cut_.reset();
     std::mt19937 random(tear.seed);

@@ -1,5 +1,5 @@
-// Tests a whole module that keeps its settings in the flash, in virtual time: replies are in time while
-// sectors are erased, and an idle module erases ahead.
+// Tests a whole module that keeps its settings in the flash, in virtual time: the module replies in time
+// while it erases sectors, and an idle module erases all free sectors in advance.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -24,7 +24,7 @@ using hal::flash::Session;
 constexpr std::uint64_t kForever = UINT64_MAX;
 constexpr std::uint32_t kBaud = 115'200;
 constexpr std::uint8_t kBaudCode = 0x0A;
-constexpr std::uint64_t kReplyLimit = 200'000;  ///< us after the request, wire.md section 2
+constexpr std::uint64_t kReplyLimit = 200'000;  ///< us after the request, wire.md section 7
 
 /// The board interface is described in hal/board.hpp. The clock is the time of the chip.
 struct FlashBoard {
@@ -185,7 +185,7 @@ class ModuleOnFlash {
   std::uint64_t next_tick_ = 0;
 };
 
-/// Returns a flash with settings, all of whose free sectors are erased.
+/// Returns a flash that contains settings with 115200 baud. All its free sectors are erased.
 FlashChip flash_at_115200() {
   FlashChip chip;
   Session run(chip);
@@ -200,7 +200,7 @@ FlashChip flash_at_115200() {
 
 TEST(FlashDevice, AnIdleModuleErasesAllFreeSectorsAhead) {
   FlashChip chip = flash_at_115200();
-  chip.cells.assign(chip.cells.size(), 0);  // content of something else, so the settings are gone too
+  chip.cells.assign(chip.cells.size(), 0);  // no sector is erased or contains settings
   FlashChip used = flash_at_115200();
   std::copy_n(used.cells.begin(), FlashChip::kSector, chip.cells.begin());
   const auto before = chip.erases;

@@ -1,5 +1,5 @@
-// Tests the settings of a module on the page store: power cuts at every operation of the flash, and the time
-// of a save. wire.md section 8.
+// Tests a module that keeps its settings in the page store: power cuts at every operation of the flash, and
+// the duration of a save (wire.md section 8).
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -21,7 +21,7 @@ using hal::flash::Session;
 using hal::flash::Tear;
 
 constexpr unsigned kSeed = 1;
-constexpr std::uint64_t kReplyLimit = 200'000;  ///< us; wire.md section 2
+constexpr std::uint64_t kReplyLimit = 200'000;  ///< us; wire.md sections 3 and 7
 
 static_assert(kStoredMemory == hal::flash::kStoreSize, "the store has the pages that the settings use");
 
@@ -40,7 +40,8 @@ class OnFlash {
     latency = chip_.now - began;
     return keeper_.saved();
   }
-  /// Does what the keeper does without a command, and erases ahead, for a time.
+  /// Runs the main loop without a command for this time: the keeper stores what it must, and the store erases
+  /// free sectors.
   void idle(std::uint64_t microseconds) {
     for (const std::uint64_t end = chip_.now + microseconds; chip_.now < end;) {
       keeper_.poll(keeper_.stored(), chip_.time());
@@ -136,8 +137,9 @@ std::vector<Tear> tears(FlashChip::Operation operation) {
   return all;
 }
 
-/// Starts a module, saves `to`, and goes on for `after` microseconds; with a power cut. Returns whether the
-/// module reported success.
+/// Starts a module, saves `to`, and runs the module for `after` more microseconds. Cuts the power at the end
+/// of `operation`, or at the end of the run if it has not ended by then. Returns whether the module reported
+/// success.
 bool cut(FlashChip& chip, const Settings& to, std::uint64_t after, std::size_t operation, const Tear& tear) {
   bool saved = false;
   try {
@@ -185,7 +187,7 @@ TEST(FlashSettingsCuts, AtEveryOperationLeaveTheOldSettingsOrTheNew) {
   std::printf("power cuts: %zu, %zu of them during erases\n", cuts, cuts_of_erases);
 }
 
-// This is a random sample with a fixed seed.
+// Tests a random sample of the pairs of cuts, with a fixed seed.
 TEST(FlashSettingsCuts, TwiceInARowLeaveTheOldSettingsOrTheNew) {
   constexpr int kPairs = 300;
   std::mt19937 random(kSeed);
@@ -263,7 +265,7 @@ TEST(FlashSettingsTime, LoadingIsFastEvenIfAnEraseWasRunning) {
     FlashChip chip = beginning.chip;
     chip.times = FlashChip::kLongest;
     OnFlash(chip).save(numbered(7));
-    OnFlash(chip).idle(100'000);  // the sector of the save before the reset is free after two saves
+    OnFlash(chip).idle(100'000);  // if a sector is free, its erase is running at the next reset
     const std::uint64_t began = chip.now;
     OnFlash next(chip);
     EXPECT_TRUE(next.stored() == numbered(7));

@@ -14,7 +14,7 @@ namespace {
 constexpr unsigned kSeed = 1;
 constexpr unsigned kSeedsOfAKind = 8;
 
-/// A chip, a run of the store on it, and the pages that the store must have.
+/// A chip, the store that runs on it, and the expected content of each page.
 struct State {
   FlashChip chip;
   Store store;
@@ -28,7 +28,8 @@ struct Write {
   std::uint64_t pause;  ///< us
 };
 
-/// Writes, and follows what the pages contain. Returns whether the power is still on.
+/// Carries out `write` and the pause after it. Sets `reported` to whether the store reported success. Returns
+/// whether the power is still on.
 bool carry_out(State& state, const Write& write, bool& reported) {
   Session run(state.chip, state.store);
   reported = false;
@@ -66,8 +67,8 @@ class PageStoreCuts : public testing::Test {
                 cuts_);
   }
 
-  /// Carries out `write` with a power cut. Then starts the store again, checks all pages, and returns the run
-  /// in `state`.
+  /// Carries out `write` with a power cut. Then starts the store again, checks all pages, and puts the
+  /// restarted store into `state`.
   void cut(State& state, const Write& write, std::size_t operation, Tear tear) {
     state.chip.cut(operation, tear);
     bool reported = false;
@@ -105,7 +106,8 @@ class PageStoreCuts : public testing::Test {
     }
   }
 
-  /// Cuts at each operation of `write`, in every way. Then carries out the write.
+  /// Cuts the power at each operation of `write`, with each state in which a cut may leave the bytes (or, if
+  /// `in_every_way` is false, with some of them). Then carries out the write without a cut.
   void cut_everywhere(State& state, const Write& write, bool in_every_way = true) {
     State whole = state;
     bool reported = false;
@@ -149,7 +151,8 @@ class PageStoreCuts : public testing::Test {
     ASSERT_TRUE(carry_out(state, write, reported) && reported);
     state.pages[write.page] = numbered(write.content);
   }
-  /// A flash with pages in many sectors, and a run that has only a few slots left in its sector.
+  /// Returns a flash whose pages are in many sectors, and a store that has only a few free slots in the
+  /// sector that it is writing.
   static State full() {
     State state = settled();
     unsigned content = 1;

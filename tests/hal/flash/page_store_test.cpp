@@ -1,4 +1,4 @@
-// Tests the page store without power failures: it is a memory, and it does not violate the rules of a flash.
+// Tests the page store without power failures: it returns what was written, and obeys the rules of a flash.
 #include <gtest/gtest.h>
 
 #include <algorithm>

@@ -12,7 +12,7 @@ namespace {
 constexpr std::uint64_t kLongestReadEver = 5'000;    // us; PageStore states this
 constexpr std::uint64_t kLongestWriteEver = 14'000;  // us; PageStore states this
 
-/// Returns a chip with the given times, all of whose free sectors are erased.
+/// Returns a chip with the given times. All its free sectors are erased.
 FlashChip settled(const FlashChip::Times& times) {
   FlashChip chip;
   chip.times = times;
@@ -20,8 +20,8 @@ FlashChip settled(const FlashChip::Times& times) {
   return chip;
 }
 
-/// Writes pages `period` microseconds apart, or at once if the last one took longer. Returns the number of
-/// writes before the first one that failed.
+/// Writes pages at most `most` times, one every `period` microseconds. If a write takes longer than `period`,
+/// the next one follows at once. Returns the number of writes before the first one that fails.
 unsigned writes_without_failure(Session& run, FlashChip& chip, std::uint64_t period, unsigned most) {
   for (unsigned writes = 0; writes < most; ++writes) {
     const std::uint64_t next = chip.now + period;

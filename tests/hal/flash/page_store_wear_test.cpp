@@ -29,7 +29,8 @@ class PageStoreWear : public testing::Test {
     }
   }
 
-  /// Carries out `store` many times. Returns how often it can be repeated until a sector wears out.
+  /// Carries out `store` many times. Returns how many stores are possible before a sector wears out,
+  /// calculated from the erases of the most erased sector.
   template <class Store>
   double stores_until_worn(const char* what, Store store) {
     constexpr unsigned kStores = 20'000;
