@@ -116,7 +116,7 @@ class WatchedModule : public EitherProtocol {
     }
     return bench.line.sent() + over_behind_its_last_bit();
   }
-  /// Waits until a host OK that is sent immediately after this call ends `phase` after a tick.
+  /// Waits, so that a host OK that the test sends directly after this call ends `phase` after a tick.
   void wait_until_a_host_ok_is_over_behind_a_tick(Instant phase) {
     constexpr unsigned kAscii = 4;
     constexpr unsigned kModbus = 8;

@@ -41,7 +41,7 @@ class PicoFlash : public testing::Test {
 TEST_F(PicoFlash, NoByteIsLostDuringAnErase) {
   bench_.power(true);
   bench_.run_for(milliseconds(100));
-  wait_for_erase();  // it takes 45 ms, the bytes take 49 ms
+  wait_for_erase();  // the erase takes 45 ms, and the bytes take 49 ms
   play::Bytes bytes;
   for (unsigned i = 0; i < 560; ++i) {
     bytes.push_back(static_cast<std::uint8_t>(i));

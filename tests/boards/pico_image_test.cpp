@@ -1,5 +1,6 @@
 // Tests the images for the Pico in the emulator: the driver of the line, resets by the watchdog, faults, and
-// a blocked EEPROM. RAM is changed to make an image hang; the second stage restores it from the flash.
+// a blocked EEPROM. To make an image hang, a test changes its code in RAM. After the reset, the second stage
+// copies the image from the flash again.
 #include <gtest/gtest.h>
 
 #include <map>
@@ -71,7 +72,8 @@ class PicoImage : public testing::Test {
   void replace_handler(unsigned exception, unsigned instruction) {
     put(number("read " + std::to_string(kVectors + 4U * exception)) & ~1U, instruction);
   }
-  /// The processor sleeps in the main loop most of the time. It continues there when it wakes up.
+  /// Replaces the instruction at which the main loop continues. Call this while the processor sleeps, which
+  /// it does most of the time.
   void replace_main_loop(unsigned instruction) { put(number("pc"), instruction); }
 
   PicoBench bench_;
@@ -225,7 +227,8 @@ class HangingPicoImage : public PicoImage, public testing::WithParamInterface<Do
     }
   }
 
-  /// Checks that the chip is reset once, `within` this time, and that the module then works.
+  /// Checks that the chip is reset once within this time, for this reason, and that the module then works.
+  /// `count`: the counter of the emulator for such resets.
   void expect_reset(const char* count, long reason, nanoseconds within) {
     bench_.run_for(within);
     EXPECT_EQ(bench_.counts().at(count), 1);

@@ -183,7 +183,7 @@ void check_effect(Watched& watched, const Words& words, const std::string& reply
   if (words[1] == "fault") {
     check_faults(watched, Words(words.begin() + 1, words.end()), reply);
   } else if (words[1] == "power") {
-    // A fault can have cut the supply after the switch.
+    // An active fault may interrupt the supply although its switch is on.
     require(module.powered() ? words[2] == "on" : words[2] == "off" || !watched.faults.empty(),
             "the supply has the requested state");
   } else if (words[1] == "input") {

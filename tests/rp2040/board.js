@@ -1,4 +1,4 @@
-// A Pico on its board: pins, transceiver, EEPROM, supply, and the master's end of the line.
+// A module with a Pico: pins, transceiver, EEPROM, supply, and the master's end of the line.
 "use strict";
 const { ChipClock, Time } = require("./clock");
 const { Chip } = require("./chip");
@@ -10,15 +10,15 @@ const { REASON } = require("./system");
 const PINS = 30;
 
 class Board {
-  // `image`: the content of the flash from its first byte on. `pins`: numbers of the pins transmit, receive,
-  // driverEnable and data (SDA; SCL is the next one).
+  // `image`: the content of the flash from its first byte on. `pins`: the numbers of the pins transmit, receive,
+  // driverEnable and data (SDA; SCL is the next pin).
   constructor(image, pins) {
     this.time = new Time();
     this.pins = pins;
     this.flash = new FlashChip(this.time, new Uint8Array(FLASH_SIZE).fill(0xff));
     this.flash.content.set(image);
     this.eeprom = new Eeprom(this.time);
-    this.outside = new Array(PINS).fill(null); // levels that the surroundings give to the pins
+    this.outside = new Array(PINS).fill(null); // the levels that the rest of the module drives, by pin; null: none
     this.outside[pins.data] = true; // pull-ups
     this.outside[pins.data + 1] = true;
     this.chip = null;
@@ -168,7 +168,7 @@ class Board {
     }
   }
 
-  // A digital input that floats may read as anything.
+  // Rejects an enabled input that floats, because it may read as either level.
   checkPins() {
     if (this.chip === null) {
       return;

@@ -1,5 +1,5 @@
-// One RP2040, from a reset to the next one: rp2040js with the models in this folder. It starts as the boot ROM leaves
-// it when it calls the second stage. Source: RP2040 data sheet, 2.8.1 (boot sequence).
+// One RP2040, from a reset to the next one: rp2040js with the models in this folder. It starts in the state in which
+// the boot ROM calls the second stage. Source: RP2040 data sheet, 2.8.1 (boot sequence).
 "use strict";
 const { RP2040, GPIOPinState } = require("rp2040js");
 const { Processor } = require("./core");
@@ -91,7 +91,8 @@ class Chip {
     peripherals[0x40054] = new Guarded(peripherals[0x40054], "timer", () => this.tickProblem());
   }
 
-  // The timer counts only with the tick. It counts microseconds if the tick matches the crystal.
+  // Returns what is wrong with the tick of the timer, or an empty text. The timer counts only while the tick runs, and
+  // counts microseconds only if the tick matches the crystal.
   tickProblem() {
     const { tickFrequency } = this.watchdog;
     if (tickFrequency === 0) {
@@ -105,7 +106,7 @@ class Chip {
     return ((i2c.sclLowPeriod + i2c.sclHighPeriod) / mcu.clkSys) * 1e9;
   }
 
-  // RAM has any content.
+  // Fills RAM with noise, because its content after power-on is undefined.
   fillRam() {
     let state = 0x2545f491;
     const { sram } = this.mcu;
@@ -139,7 +140,7 @@ class Chip {
     return this.listens(data, I2C_FUNCTION) && this.listens(data + 1, I2C_FUNCTION);
   }
 
-  // The level that the chip itself gives to a pin: true, false, or null if it floats.
+  // Returns the level to which the chip drives a pin, or null if the chip does not drive it.
   level(number) {
     const pin = this.mcu.gpio[number];
     if (number === this.board.pins.transmit && this.drives(number, UART_FUNCTION)) {
@@ -159,7 +160,8 @@ class Chip {
     return pin.pullupEnabled;
   }
 
-  // The boot ROM reads the second stage until its checksum is right, so it waits for a flash that is busy.
+  // Does what the boot ROM does: it reads the second stage until the checksum is right, so it waits while the flash is
+  // busy.
   boot() {
     const { board, mcu } = this;
     mcu.core.waiting = board.flash.busy;

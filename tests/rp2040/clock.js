@@ -1,4 +1,4 @@
-// Virtual time. It continues while the supply is off; each chip sees the time since its own reset.
+// Virtual time, in nanoseconds. It continues while the supply is off. The clock of a chip starts at its reset.
 "use strict";
 
 class Alarm {
@@ -31,7 +31,7 @@ class Time {
   constructor() {
     this.time = this; // a Time owns the alarms of the board
     this.now = 0; // nanoseconds
-    this.next = Infinity; // of the alarms
+    this.next = Infinity; // time of the next alarm
     this.alarms = new Set();
   }
 
@@ -76,7 +76,7 @@ class Time {
   }
 }
 
-// The clock of one chip, with the interface that rp2040js requires. It ends with the chip.
+// The clock of one chip, with the interface that rp2040js requires. `end` removes its alarms.
 class ChipClock {
   constructor(time) {
     this.time = time;

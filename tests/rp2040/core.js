@@ -7,8 +7,8 @@ const HARD_FAULT = 3;
 
 // - An interrupt line that is asserted makes its interrupt pending, until the handler is entered. When the handler
 //   returns and the line is still asserted, the interrupt is pending again.
-// - An interrupt wakes a sleeping processor, also if it became pending before, and also if PRIMASK disables it. In that
-//   case, the handler is not entered.
+// - An interrupt wakes a sleeping processor, even if it became pending before the sleep, and even if PRIMASK disables
+//   it. If PRIMASK disables it, the handler is not entered.
 // - SysTick wakes the processor too.
 // - A fault enters the HardFault handler. A fault in that handler stops the processor.
 class Processor {

@@ -26,8 +26,8 @@ class Eeprom {
     this.addressed = false;
   }
 
-  // Connects to the master of a chip. `bitTime()`: time of a bit in nanoseconds. `connected()`: the pins are the
-  // master's.
+  // Connects to the I2C master of a chip. `bitTime()`: the time of a bit in nanoseconds. `connected()`: whether the
+  // pins are connected to the master.
   attach(master, clock, bitTime, connected) {
     const later = (bits, act) => {
       const alarm = clock.createAlarm(() => {
@@ -86,7 +86,8 @@ class Eeprom {
     this.pagesProgrammed += 1;
   }
 
-  // The supply fails: the first bytes of the page are programmed, the next one is spoiled.
+  // Simulates a power failure. If a page is being programmed, its first bytes are new, in proportion to the time that
+  // has passed, and the next byte is corrupted.
   losePower() {
     if (this.programs !== null) {
       const part = Math.floor(((this.time.now - this.began) / PROGRAMMING) * this.programs.length);

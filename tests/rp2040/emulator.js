@@ -1,5 +1,5 @@
-// Runs an image for the Pico in virtual time. Each line on standard input is a command; each gets one line on standard
-// output, which begins with "ok", or with "error" and a reason.
+// Runs an image for the Pico in virtual time. Each line on standard input is a command. The reply is one line on
+// standard output: "ok" and the result, or "error" and the reason.
 "use strict";
 const fs = require("fs");
 const { Board } = require("./board");
@@ -17,13 +17,14 @@ const hexOf = (bytes) => Buffer.from(bytes).toString("hex");
 const bytesOf = (text) => [...Buffer.from(text ?? "", "hex")];
 
 const COMMANDS = {
-  // new IMAGE.bin TRANSMIT RECEIVE DRIVER-ENABLE SDA: a board without supply, with an erased EEPROM
+  // new IMAGE.bin TRANSMIT RECEIVE DRIVER-ENABLE SDA: creates a board with this image and these pins. Its supply is
+  // off, and its EEPROM is erased.
   new(path, ...pins) {
     const [transmit, receive, driverEnable, data] = pins.map(integer);
     board = new Board(fs.readFileSync(path), { transmit, receive, driverEnable, data });
   },
   now: () => Math.round(board.time.now),
-  // run NANOSECONDS
+  // run NANOSECONDS: lets time pass
   run(nanoseconds) {
     const until = board.time.now + integer(nanoseconds);
     while (board.time.now < until) {
@@ -45,7 +46,8 @@ const COMMANDS = {
   },
   // queue HEX: begins to send, and returns at once
   queue: (hex) => board.send(bytesOf(hex)),
-  // receive COUNT PATIENCE: lets time pass until COUNT bytes have arrived, or none for PATIENCE nanoseconds
+  // receive COUNT PATIENCE: lets time pass until COUNT bytes have arrived, or until none has arrived for PATIENCE
+  // nanoseconds. Returns the bytes.
   receive(count, patience) {
     let had = board.heard.length;
     let until = board.time.now + integer(patience);
@@ -59,9 +61,9 @@ const COMMANDS = {
     return hexOf(board.takeHeard(integer(count)).map(({ byte }) => byte));
   },
   heard: () => hexOf(board.takeHeard().map(({ byte }) => byte)),
-  // arrivals: the bytes with the time of the middle of their stop bits
+  // arrivals: returns the received bytes as BYTE@TIME, with the time of the middle of the stop bit in nanoseconds
   arrivals: () => board.takeHeard().map(({ byte, at }) => `${byte}@${Math.round(at)}`).join(" "),
-  // pin NUMBER high|low|open: the surroundings drive a pin
+  // pin NUMBER high|low|open: drives a pin from outside the chip, or stops driving it
   pin: (number, level) => board.setOutside(integer(number), level === "open" ? null : level === "high"),
   // pulses NUMBER COUNT NANOSECONDS: inverts the level of a pin twice, COUNT times, with this time between the edges
   pulses(number, count, nanoseconds) {
@@ -75,7 +77,7 @@ const COMMANDS = {
       }
     }
   },
-  // train NUMBER COUNT NANOSECONDS: like pulses, but begins them and returns at once
+  // train NUMBER COUNT NANOSECONDS: begins the same pulses, and returns at once
   train(number, count, nanoseconds) {
     const pin = integer(number);
     let left = 2 * integer(count);
@@ -107,31 +109,31 @@ const COMMANDS = {
     board.eeprom.content.fill(0xff);
     board.eeprom.content.set(bytesOf(hex));
   },
-  // absent: there is no EEPROM
+  // absent: removes the EEPROM
   absent() {
     board.eeprom.present = false;
   },
   stored: () => hexOf(board.eeprom.content),
-  // flash ADDRESS SIZE: bytes of the flash chip
+  // flash ADDRESS SIZE: returns bytes of the flash chip
   flash: (address, size) => hexOf(board.flash.content.subarray(integer(address), integer(address) + integer(size))),
-  // set-flash ADDRESS HEX
+  // set-flash ADDRESS HEX: changes bytes of the flash chip
   "set-flash": (address, hex) => board.flash.content.set(bytesOf(hex), integer(address)),
-  // flash-times ERASE PROGRAM: nanoseconds of an erase and of a page program
+  // flash-times ERASE PROGRAM: sets the durations of an erase and of a page program, in nanoseconds
   "flash-times"(erase, program) {
     board.flash.times = { erase: integer(erase), program: integer(program) };
   },
-  // counts: events since `new`, as NAME=NUMBER
+  // counts: returns the numbers of events since `new`, and other values, as NAME=NUMBER
   counts: () => Object.entries({ ...board.counts, pages: board.eeprom.pagesProgrammed,
     erases: [...board.flash.erased.values()].reduce((sum, each) => sum + each, 0), reason: board.reason,
     depth: board.chip?.processor.deepest ?? 0, secondCoreOff: (board.chip?.psm.frceOff ?? 0) >> 16,
     uart: board.chip?.uart.baud ?? 0 }).map(([name, value]) => `${name}=${value}`).join(" "),
-  // pc: the next instruction of the processor
+  // pc: returns the address of the next instruction
   pc: () => board.chip.mcu.core.PC,
-  // read ADDRESS: a word of RAM
+  // read ADDRESS: returns a word of RAM
   read: (address) => board.chip.mcu.readUint32(integer(address)),
   // write ADDRESS HALFWORD: changes RAM
   write: (address, value) => board.chip.mcu.writeUint16(integer(address), integer(value)),
-  // cycles: of the processor, without sleep, since the last reset of the chip
+  // cycles: returns the cycles of the processor since the last reset of the chip, without those of sleep
   cycles: () => board.chip?.mcu.core.cycles ?? 0,
 };
 

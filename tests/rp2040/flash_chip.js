@@ -17,8 +17,8 @@ class FlashChip {
     this.bytes = [];
     this.writeEnabled = false;
     this.operation = null; // { apply(part), left }
-    this.ends = 0; // when the operation ends, if it runs
-    this.suspending = 0; // when a suspend takes effect
+    this.ends = 0; // time at which a running operation ends
+    this.suspending = 0; // time at which a suspend takes effect
     this.suspended = false;
     this.erased = new Map(); // number of erases, by sector
     this.done = time.createAlarm(() => this.finish());
@@ -36,7 +36,7 @@ class FlashChip {
     this.bytes = [];
   }
 
-  // A reset releases chip select. An incomplete command has no effect.
+  // Simulates a reset of the microcontroller, which releases chip select. An incomplete command has no effect.
   interrupt() {
     const [command] = this.bytes;
     if (this.selected && (this.bytes.length > 4 || (command === 0x20 && this.bytes.length === 4))) {
@@ -150,8 +150,8 @@ class FlashChip {
     }
   }
 
-  // The supply fails. An unfinished operation leaves the cells that it has reached undefined; here, it has changed
-  // every second byte of them.
+  // Simulates a power failure. After an unfinished operation the cells are undefined; in this model, every second byte
+  // has changed.
   losePower() {
     if (this.operation !== null) {
       const { kind, address, bytes, sector } = this.operation;

@@ -1,4 +1,4 @@
-// Corrects the I2C master of rp2040js: the interrupt mask, the level of "queue is low", and the order of accesses that
+// Corrects the I2C master of rp2040js: the interrupt mask, the interrupt "queue is low", and the order of accesses that
 // silicon requires. Source: RP2040 data sheet, 4.3.
 "use strict";
 

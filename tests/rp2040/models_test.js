@@ -1,4 +1,4 @@
-// Tests that the models reject what silicon rejects, and that they keep its times.
+// Tests that the models reject what silicon rejects, and that they take as long as silicon does.
 "use strict";
 const assert = require("node:assert/strict");
 const { test } = require("node:test");

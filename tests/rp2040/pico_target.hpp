@@ -23,8 +23,8 @@ class PicoTarget final : public play::Target {
   void pulse_input(unsigned channel, std::uint32_t count) override;
   std::uint16_t outputs() override;
   play::step::Led::Shows led(play::step::Led::Shows expected) override;
-  /// Throws if a bit was lost on the line, if the driver was on for too short or too long, if a pin was
-  /// shorted, or if the watchdog has reset the chip.
+  /// Throws std::runtime_error if a bit was lost on the line, if the driver was on for too short or too long,
+  /// if two sides drove a pin to different levels, or if the watchdog has reset the chip.
   void end() override;
 
   /// Returns the virtual time of all transcripts.

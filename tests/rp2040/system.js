@@ -8,7 +8,7 @@ const IO_QSPI = 1 << 6;
 const PADS_QSPI = 1 << 9;
 const TIMER = 1 << 21;
 const UARTS = 3 << 22;
-// The boot ROM releases these.
+// The blocks that are in reset after the boot ROM has released the others.
 const AFTER_BOOT = ALL_BLOCKS & ~(IO_QSPI | PADS_QSPI | TIMER);
 
 class Resets extends BasePeripheral {
@@ -17,7 +17,7 @@ class Resets extends BasePeripheral {
     this.held = AFTER_BOOT;
   }
 
-  // A block whose clock does not run does not leave its reset.
+  // Returns the blocks that have left their reset. A block whose clock does not run stays in reset.
   get done() {
     const stopped = this.rp2040.clocks.periFreq === 0 ? UARTS : 0;
     return ALL_BLOCKS & ~this.held & ~stopped;
@@ -43,7 +43,7 @@ class Resets extends BasePeripheral {
   }
 }
 
-// A block that `problem()` describes a reason against, or an empty text.
+// A block that rejects each access while it cannot be used. `problem()` returns the reason, or an empty text.
 class Guarded {
   constructor(inner, name, problem) {
     this.inner = inner;

@@ -61,7 +61,7 @@ struct Attempt {
   unsigned spoiled = 0;    ///< bytes that the memory has stored incorrectly
   unsigned tries = 0;      ///< number of pages that were programmed with at least 20 bytes
   std::vector<Contents> meanwhile;  ///< until the reply began, or the last page was programmed
-  std::vector<Contents> behind;     ///< after that, for more than a second
+  std::vector<Contents> behind;     ///< after that time, for more than a second
   std::uint16_t outputs_before = 0;
   std::uint16_t outputs = 0;  ///< at the end
 };

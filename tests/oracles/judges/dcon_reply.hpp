@@ -104,7 +104,7 @@ inline bool is_answer(std::string_view shape, Bytes request, Bytes reply, const 
   return true;
 }
 
-/// D12: whether the refusal of this request carries no address.
+/// Returns whether the refusal of this request carries no address (wire.md D12).
 constexpr bool is_bare_where_refused(Bytes request, const DconRules& rules) {
   const bool is_of_outputs =
       (request[0] == '@' && request.size > 3) || (request[0] == '#' && (request.size != 4 || !rules.inputs));

@@ -22,7 +22,7 @@ struct Values {
   }
   friend constexpr bool operator!=(const Values& a, const Values& b) { return !(a == b); }
 
-  /// wire.md 6: the values after the host watchdog has expired.
+  /// Returns the values after the host watchdog has expired (wire.md 6).
   [[nodiscard]] constexpr Values expired() const {
     Values values = *this;
     values.outputs = safe;

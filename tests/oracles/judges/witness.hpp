@@ -254,7 +254,8 @@ class Witness {
   /// Returns the least time from the last byte of a request, or of the module's previous reply, to a reply.
   [[nodiscard]] Microseconds distance() const { return rtu_ ? silence_ : character_; }
 
-  /// wire.md 3 and 7: the latest time at which the module executes `request`, if it was idle from `free` on.
+  /// Returns the latest time at which the module executes `request`, if it was idle from `free` on (wire.md 3
+  /// and 7).
   [[nodiscard]] Microseconds latest_of(const Pending& request, Microseconds free) const {
     constexpr Microseconds kPlain = 20 * kMillisecond;
     constexpr Microseconds kStoring = 200 * kMillisecond;

@@ -35,8 +35,8 @@ using Watchdog = HardwareWatchdog<kClock.crystal / 1'000'000>;
 struct Results {
   std::uint32_t received;    ///< bytes
   std::uint32_t unexpected;  ///< bytes with an error, or out of sequence
-  std::uint32_t rounds;      ///< an erase, and records up to the end of the sector
-  std::uint32_t wrong;       ///< bytes that were read and differ
+  std::uint32_t rounds;      ///< rounds: one erase, then records up to the end of the sector
+  std::uint32_t wrong;       ///< bytes that differ from the expected ones when they are read
   std::uint32_t erasing;     ///< 1 during an erase
   std::uint32_t reason;      ///< ResetReason
 };
@@ -89,7 +89,7 @@ void program(std::uint32_t address) {
   wait();
 }
 
-/// Erases the sector. Once during the erase, it suspends it and reads the other sector.
+/// Erases the sector. Suspends the erase once, and reads the other sector in the meantime.
 void erase() {
   results().erasing = 1;
   Flash::begin_erase(kSector);
