@@ -65,7 +65,7 @@ struct HostWatchdogState {
 /// The content of the memory, whether the module is powered or not.
 struct Stored {
   struct Copy {
-    std::vector<std::uint8_t> bytes;        ///< all of them; of an invalid copy, the first page of its place
+    std::vector<std::uint8_t> bytes;        ///< the whole copy; if it is invalid, the first page of its place
     std::optional<std::uint16_t> sequence;  ///< nullopt: the copy is invalid
 
     friend bool operator==(const Copy& a, const Copy& b) { return a.bytes == b.bytes; }
@@ -74,7 +74,7 @@ struct Stored {
   std::vector<Copy> copies;            ///< in the order of kPlaces
   std::optional<std::size_t> current;  ///< the copy that a reset would load; nullopt: none is valid
   bool blank = false;                  ///< nothing has been stored: a reset would load factory settings
-  Settings settings;                   ///< those of `current`, or the factory settings
+  Settings settings;                   ///< the settings in `current`, or the factory settings
 
   friend bool operator==(const Stored& a, const Stored& b);
 };

@@ -9,8 +9,8 @@
 
 namespace ex9000::sim {
 
-/// A service of an io_context, so that all its pseudo-terminals share one inotify instance. On Debian, a
-/// user may have only 128 of them. Get it with boost::asio::use_service. No function blocks.
+/// A service of an io_context, so that all its pseudo-terminals share one inotify instance: on Debian, a user
+/// may have only 128 inotify instances. Call boost::asio::use_service to get the service. No function blocks.
 class Visits final : public boost::asio::io_context::service {
  public:
   static boost::asio::io_context::id id;

@@ -25,7 +25,7 @@ class LinePorts final : private BusObserver {
   /// each module whose rate differs from the line's, and for bytes that a port had no room for.
   LinePorts(Line& line, const All& ports, Notice notice);
 
-  /// Takes a byte from the master's end of the line. The line calls it for each byte that it receives.
+  /// Takes a byte that the master's end of the line has received. The line calls this for each such byte.
   void hear(std::uint8_t byte) { heard_.push_back(byte); }
   /// Returns whether a module has stopped sending since the last `hand_out`.
   [[nodiscard]] bool reply_is_complete() const { return stopped_sending_; }

@@ -25,7 +25,7 @@ class RunningLine {
 
   /// Opens everything that `setup` names. Throws std::invalid_argument or std::runtime_error with a one-line
   /// message; then everything is closed again, and no file has been created or changed. All arguments must
-  /// outlive this object. `stepped`: the behavior of the ports does not depend on the wall clock.
+  /// outlive this object. `stepped`: the behaviour of the ports does not depend on the wall clock.
   RunningLine(boost::asio::io_context& io, const LineSetup& setup, std::uint64_t seed, LogFormat format,
               bool stepped, Print print);
   RunningLine(const RunningLine&) = delete;

@@ -48,9 +48,9 @@ class LineThreads {
   void resume();
 
   boost::asio::io_context& main_;
-  std::deque<Worker> workers_;  ///< they keep their addresses
+  std::deque<Worker> workers_;  ///< a deque, because a Worker must not move
   std::size_t running_ = 0;     ///< number of started threads
-  std::mutex mutex_;            ///< of the members below
+  std::mutex mutex_;            ///< protects the members below
   std::condition_variable changed_;
   std::size_t paused_ = 0;    ///< number of threads in the present pause
   std::uint64_t pauses_ = 0;  ///< number of pauses that have ended

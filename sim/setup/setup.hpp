@@ -53,7 +53,7 @@ struct Writing {
 struct Speed {
   enum class Kind {
     Paced,    ///< with the wall clock
-    Max,      ///< freely: events follow each other as fast as they can be computed
+    Max,      ///< as fast as the computer can compute the events
     Stepped,  ///< only with the command `advance` of the control socket
   };
   Kind kind = Kind::Paced;
