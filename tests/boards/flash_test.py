@@ -17,7 +17,7 @@ ECHO_INSTEAD = "; ".join([f'proc {name} {{args}} {{ echo "> {name} $args" }}' fo
 
 
 def openocd_scripts() -> dict[str, str]:
-    """Return the OpenOCD script of each board that can be flashed."""
+    """Returns the OpenOCD script of each board that can be flashed."""
     scripts = {}
     for file in sorted(ROOT.glob("boards/*/board.cmake")):
         match = re.search(r"set\(openocd_script (\S+)\)", file.read_text())
@@ -32,7 +32,7 @@ def flash(script: str, *, path: str) -> subprocess.CompletedProcess[str]:
 
 
 def openocd_words(script: str) -> list[str]:
-    """Return the arguments with which toolchain/flash calls OpenOCD."""
+    """Returns the arguments with which toolchain/flash calls OpenOCD."""
     with tempfile.TemporaryDirectory() as directory:
         program = Path(directory, "openocd")
         program.write_text("#!/bin/sh\nprintf '%s\\n' \"$@\"\n")

@@ -122,7 +122,7 @@ PROCESS = set(
     "claim control_socket line_ports listening main new_file panel_server port program pty pty_port "
     "running_line serial_port session stop_signals tcp_port".split()
 )
-# Parts of it that only the whole program links.
+# Those of PROCESS that only the whole program links.
 WHOLE = {"main", "panel_server", "program", "session"}
 # Sources that take long to compile and that few tests reach, in addition to those that sim/CMakeLists.txt compiles
 # separately.

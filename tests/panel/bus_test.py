@@ -41,7 +41,7 @@ class Bus(Panel):
             master.ask("020200000008", 6)
 
     def asking_inputs(self, master):
-        """The strip shows only one second, so the requests continue until the test has seen the result."""
+        """Repeats requests while the block runs, because the strip shows only the last second."""
         return repeating(lambda: self.ask_inputs(master, 1))
 
     def faults_of(self, simulator):

@@ -157,8 +157,8 @@ class Server(unittest.TestCase):
         rounds = 0
 
         def again():
-            """Returns whether three rounds have passed. The slots of requests that disconnect are free immediately. If
-            they were free only after their timeout of 5 s, the rounds would take as long as a hang."""
+            """Carries out a round if the server has a free slot. Returns whether three rounds have passed. The slots of
+            requests that disconnect must be free immediately, not only after their timeout of 5 s."""
             nonlocal rounds
             if status(ask(self.port, request(self.port))) == 200:
                 waiting = [open_socket(self.port) for _ in range(MOST_REQUESTS)]

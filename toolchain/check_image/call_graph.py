@@ -68,7 +68,7 @@ def _parse_node(line: str, records: dict[str, Record]) -> None:
         raise NotACallGraph(line)
     label = match.group(2).split("\\n")
     stack = _STACK.match(label[2]) if len(label) > 2 else None
-    if stack:  # otherwise it is called here and compiled elsewhere
+    if stack:  # a node without a stack is a function that this unit calls, but does not contain
         records[match.group(1)] = Record(
             title=Title.parse(match.group(1)),
             location=label[1],

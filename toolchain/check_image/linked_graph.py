@@ -86,7 +86,7 @@ class LinkedGraph:
         for title in record.calls:
             target = self._find(title)
             if target is None and title.name.startswith("__aeabi_"):
-                continue  # the compiler has removed the call of its library after it wrote the record
+                continue  # after it wrote the record, the compiler removed this call of its run-time library
             if target is None:
                 problem = f"calls {title.name}, which the image does not have"
             else:

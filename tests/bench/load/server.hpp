@@ -62,7 +62,7 @@ class Server {
   /// Returns the median of the processor time for a transaction, in microseconds.
   [[nodiscard]] double median() const { return median_of(microseconds_); }
   /// Returns the least processor time for a transaction in an undisturbed round, in microseconds. Other
-  /// programs on the processors can only increase it. nullopt: they disturbed every round.
+  /// programs on the processors can only increase this time. nullopt: other programs disturbed every round.
   [[nodiscard]] std::optional<double> least() const {
     std::optional<double> result;
     for (std::size_t round = 0; round < kRounds; ++round) {
@@ -79,7 +79,8 @@ class Server {
 
   /// Returns whether the programs seldom waited for a processor. On a machine that runs nothing else, a
   /// transaction takes two to five times the server's processor time. If it takes much longer, other programs
-  /// run between each request and its reply, and each side finds its caches cold.
+  /// run between each request and its reply. They fill the caches with their own data, so the server needs
+  /// more processor time.
   [[nodiscard]] bool undisturbed(std::size_t round) const {
     constexpr double kMostTimesProcessorTime = 10;
     return 1e6 / rates_.at(round) < kMostTimesProcessorTime * microseconds_.at(round);

@@ -47,11 +47,12 @@ TEST_P(Checks, MissAsManyDamagedFramesAsTheTheoryExpects) {
         static_cast<unsigned long long>(tally.in_data), static_cast<unsigned long long>(tally.taken_in_data),
         seen.low, seen.high, tally.expected, static_cast<unsigned long long>(tally.taken_otherwise));
     std::fflush(stdout);
-    // After such a command, the module is set up again, because the theory does not consider a module with
-    // another address. Chance does not explain more such commands than this limit.
+    // After such a command, the test sets up the module again, because the theory does not consider a module
+    // with another address. More such commands than this limit would be very unlikely.
     std::printf("  %llu stored something\n", static_cast<unsigned long long>(tally.storing));
     EXPECT_LE(tally.storing, 1 + tally.sent / 10'000);
-    // Twice as wide as the 95 % interval; otherwise one of the twelve rows would fail in every second run.
+    // The limits are twice as wide as the 95 % interval. Otherwise one of the twelve rows would fail in every
+    // second run.
     const double centre = static_cast<double>(tally.taken_in_data);
     EXPECT_GE(tally.expected, centre - 2 * (centre - seen.low));
     EXPECT_LE(tally.expected, centre + 2 * (seen.high - centre));
