@@ -310,7 +310,7 @@ class PageStore {
     }
   }
 
-  // --- erasing ahead ---
+  // --- erasing in advance ---
 
   void erase_ahead(Time now) {
     if (erase_.suspended()) {
@@ -335,8 +335,8 @@ class PageStore {
   Job job_ = Job::None;
   Step step_ = Step::Starting;
   bool succeeded_ = false;
-  bool waited_for_ = false;    ///< the entry that is being programmed belongs to the job
-  bool erases_ahead_ = true;   ///< a sector is being erased, or may have to be
+  bool waited_for_ = false;    ///< the job waits for the entry that is being programmed
+  bool erases_ahead_ = true;   ///< `poll` is erasing a sector, or must check whether one must be erased
   std::uint16_t address_ = 0;  ///< address of the job
   Bytes source_;
   MutableBytes destination_;
