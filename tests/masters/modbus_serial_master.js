@@ -71,7 +71,10 @@ function reachesOwnPort({ tty }, frame) {
   return reads ? word(frame, 4) > 0 : [0x05, 0x06, 0x0f, 0x10].includes(frame[1]) || (tty && frame[1] === 0x2b);
 }
 
-/** connectTelnet is the library's RTU over TCP. Its TcpRTUBuffered uses the header of Modbus TCP. */
+/**
+ * Connects through a port of the library. connectTelnet is its port for RTU over TCP; its TcpRTUBuffered uses the
+ * header of Modbus TCP.
+ */
 async function connectOwnPort(client, { tty, host, port, baud }) {
   await (tty ? client.connectRTUBuffered(tty, { baudRate: baud }) : client.connectTelnet(host, { port }));
 }

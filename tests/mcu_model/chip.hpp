@@ -14,7 +14,7 @@ struct Chip {
   bool i2c_clock_open_drain;  ///< true: the pin of SCL must be open drain; false: it must not
   /// The clocks required between setting a clock gate and the first access to its peripheral.
   unsigned clocks_after_gate;
-  Instant cycle_at_reset;  ///< of the internal oscillator: 12 MHz and 16 MHz
+  Instant cycle_at_reset;  ///< period of the internal oscillator: 12 MHz or 16 MHz
   std::uint32_t rcc_at_reset;
   std::uint32_t rcc_kept;       ///< reserved bits of RCC, which must keep their value
   std::uint32_t crystal_code;   ///< value of RCC field XTAL for the crystal on its board

@@ -4,7 +4,7 @@
 const BITS = 10; // a start bit, eight data bits, a stop bit
 
 class Sender {
-  // `drive(level)`: sets the level; `ended()`: the stop bit is over.
+  // Calls `drive(level)` to set the level, and `ended()` when the stop bit is over.
   constructor(clock, drive, ended) {
     this.drive = drive;
     this.ended = ended;
@@ -36,12 +36,13 @@ class Sender {
 }
 
 class Receiver {
-  // `receive({ byte, good, isBreak })`: a character has ended, in the middle of its stop bit.
+  // Calls `receive({ byte, good, isBreak })` in the middle of the stop bit of each character. `good`: the stop bit is
+  // high.
   constructor(clock, receive) {
     this.receive = receive;
     this.bitTime = 0; // 0: off
     this.high = true;
-    this.sampled = -1; // number of samples of a character; -1: there is none
+    this.sampled = -1; // number of bits of the present character that have been sampled; -1: no character has begun
     this.bits = 0;
     this.alarm = clock.createAlarm(() => this.sample());
   }

@@ -7,7 +7,7 @@ const DEPTH = 16;
 const BOTH_WAYS = 0;
 const EEPROM_READ = 3;
 
-// Chip select: the SSI controls it, or software drives it low or high.
+// The pin of chip select. Either the SSI controls it, or software drives it low or high.
 class QspiPins extends BasePeripheral {
   constructor(rp2040, name, chip) {
     super(rp2040, name);
@@ -54,7 +54,7 @@ class Ssi extends BasePeripheral {
     this.divider = 0;
     this.toSend = [];
     this.received = [];
-    this.left = 0; // frames of an EEPROM read
+    this.left = 0; // number of frames that an EEPROM read has still to receive
     this.shifting = false;
     this.alarm = rp2040.clock.createAlarm(() => this.frameEnds());
   }
