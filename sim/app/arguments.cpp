@@ -256,8 +256,8 @@ bool is_number(const std::string& text) {
   return !text.empty() && text.find_first_not_of("0123456789") == std::string::npos;
 }
 
-/// The values of --log and --panel are optional, and the next word may be a module. CLI11 would take any next
-/// word as the value, so the value is attached to the option here.
+/// Returns the arguments with the values of --log and --panel attached to the options. These values are
+/// optional, and the next word may be a module, but CLI11 would take any next word as the value.
 std::vector<std::string> with_optional_values(int argc, const char* const* argv) {
   std::vector<std::string> words;
   for (int i = 1; i < argc; ++i) {

@@ -5,11 +5,11 @@
 
 namespace ex9000::sim::help {
 
-/// The modules, the control commands, the faults and examples.
+/// Returns the syntax of modules, control commands and faults, and examples.
 std::string of_the_program();
-/// The steps of transcripts and scenarios.
+/// Returns the steps of transcripts and scenarios.
 std::string of_play();
-/// Examples.
+/// Returns examples.
 std::string of_describe();
 
 }  // namespace ex9000::sim::help

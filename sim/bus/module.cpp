@@ -146,7 +146,8 @@ void SimulatedModule::stop_tick() {
 
 void SimulatedModule::store(const Settings& settings) { memory_.contents() = memory_image(model_, settings); }
 
-/// The memory of a factory-fresh module is blank (wire.md D8).
+/// Returns a blank image for factory settings, because the memory of a factory-fresh module is blank (wire.md
+/// D8).
 std::vector<std::uint8_t> SimulatedModule::memory_image(const Model& model, const Settings& settings) {
   std::vector<std::uint8_t> image(hal::doubles::Memory::kSize, 0xFF);
   if (settings != Settings::factory(model)) {

@@ -18,7 +18,7 @@ struct LocatedJson {
 /// or an object has the same key twice.
 LocatedJson parse_located(const std::string& text);
 
-/// These functions return the path of a member or an element of the value at `path`.
+/// Return the path of a member or an element of the value at `path`.
 std::string member_of(const std::string& path, const std::string& key);
 std::string element_of(const std::string& path, std::size_t index);
 

@@ -44,7 +44,8 @@ void Node::refuse_at(const std::string& path, const std::string& what) const {
   throw Located(place_of(path) + (path.empty() ? "" : path + ": ") + what);
 }
 
-/// A value that is missing in the file has the place of the object that should contain it.
+/// Returns the place of the value at `path`. If the file does not contain it, returns the place of the object
+/// or list that should contain it.
 std::string Node::place_of(const std::string& path) const {
   std::string place = path;
   while (file_->lines.find(place) == file_->lines.end()) {

@@ -31,7 +31,7 @@ class Capture {
   /// (since 1970-01-01 00:00:00 UTC) that corresponds to time 0 of the line. Returns the line's number for
   /// `write`.
   std::size_t add_line(const std::string& name, std::size_t modules, std::chrono::nanoseconds began);
-  /// Any thread may call this.
+  /// Writes a frame of a line. Any thread may call this.
   void write(std::size_t line, const Frame& frame);
 
  private:

@@ -220,7 +220,7 @@ std::string end_fault(Line& line, const Words& words) {
   return "";
 }
 
-/// `position` is the position of the line's first module, from 0.
+/// Returns the faults of the line as text. `position` is the position of the line's first module, from 0.
 std::string list_faults(Line& line, std::size_t position) {
   const std::vector<Faults::Info> faults = line.faults().list();
   std::string text = std::to_string(faults.size()) + (faults.size() == 1 ? " fault:" : " faults:");

@@ -31,7 +31,8 @@ class Control {
     bool quit = false;
   };
 
-  /// `command` is a line without its newline. A rejected command changes nothing.
+  /// Carries out a command and returns the reply. `command` is a line without its newline. A rejected command
+  /// changes nothing.
   Reply carry_out(const std::string& command);
 
  private:

@@ -17,8 +17,8 @@ class Echo final : public Station {
   Echo(const Echo&) = delete;
   Echo& operator=(const Echo&) = delete;
 
-  /// From now on the echo listens and sends at the rate of the line. It sends when no byte has arrived for
-  /// `delay`.
+  /// Starts to listen and to send at the rate of the line. The echo sends the received bytes when no byte has
+  /// arrived for `delay`.
   void switch_on(VirtualTime delay) {
     on_ = true;
     delay_ = delay;

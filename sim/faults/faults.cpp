@@ -17,7 +17,7 @@ constexpr std::size_t kMostForeign = 1024;
 
 bool is_of(const Fault& fault, std::size_t module) { return !fault.module || *fault.module == module; }
 
-/// Noise affects the wires, regardless of the sender.
+/// Returns whether the fault is noise, which affects the wires, regardless of the sender.
 bool is_noise(Trouble trouble) {
   return trouble == Trouble::BitErrors || trouble == Trouble::LostBytes ||
          trouble == Trouble::InsertedBytes || trouble == Trouble::StrayZeros;

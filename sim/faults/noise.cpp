@@ -38,7 +38,7 @@ Levels Noise::disturbed(const Sent& sent) {
   return levels;
 }
 
-/// The driver enable stays off, because no station drives the line to send a stray character.
+/// Puts the next stray character on the wires. The driver enable stays off, because no station sends it.
 void Noise::run() {
   const Stray stray = strays_.front();
   strays_.pop_front();

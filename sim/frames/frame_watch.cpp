@@ -11,8 +11,8 @@ namespace {
 
 constexpr std::size_t kMaster = 0;
 
-/// The longest pauses inside a frame; at low rates, four characters replace the first one. A master's writes
-/// may arrive in pieces, and a person pauses between two keys.
+/// The longest pauses inside a frame: between the pieces of a master's write, and between two keys of a
+/// person. The first one is at least the time of four characters, which is longer at low rates.
 constexpr VirtualTime kLongestPauseInWrite = std::chrono::milliseconds(5);
 constexpr VirtualTime kLongestPauseInTyping = std::chrono::seconds(5);
 

@@ -33,7 +33,8 @@ constexpr LineKind kInstant{4000, instantly};
 /// Station 0 of the bus is the master; the modules follow in the given order.
 class Line {
  public:
-  /// The supply of all modules is off at first. The master uses the factory's rate.
+  /// Creates a line with these modules. Their supply is off at first. The master uses the factory's rate, and
+  /// `receive` gets each byte that the master receives.
   Line(const std::vector<ModuleSpec>& modules, LineKind kind, Master::Receive receive);
 
   /// Switches on the supply of all modules and runs the line for 100 ms, in which the modules start up.

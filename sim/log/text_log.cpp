@@ -7,7 +7,8 @@ namespace ex9000::sim {
 
 namespace {
 
-/// The bytes of a collided frame or of an unknown station have no known meaning.
+/// Returns the errors and the meaning of a frame. `known`: the sender is the master or a module. The bytes of
+/// a collided frame or of an unknown station have no known meaning.
 std::string remarks(const Frame& frame, bool known) {
   const std::string error = line_error(frame);
   const std::string means = frame.collided || !known ? "" : meaning(frame.bytes, frame.speaker());

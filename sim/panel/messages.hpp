@@ -20,15 +20,16 @@ Message plate_layout(const Model& model);
 
 // The parts of a face are separate messages because they change independently.
 Message message_of(const Plate& plate);
-/// Contains the first `inputs` counters.
+/// Returns a message that contains the first `inputs` counters.
 Message message_of(const InputRecords& gathered, unsigned inputs);
 Message message_of(const HostWatchdogState& guard);
 Message message_of(const Stored& stored);
 
-/// `first` is the position of the line's first module, from 0.
+/// Returns the list of a line's faults. `first` is the position of the line's first module, from 0.
 Message message_of(const std::vector<Faults::Info>& faults, std::size_t first);
 
-/// `modules` is the number of modules on the line. A station with a higher number was added by a fault.
+/// Returns an entry of the traffic. `modules` is the number of modules on the line; a fault has added each
+/// station with a higher number.
 Message message_of(const RecentTraffic::Entry& entry, std::uint64_t number, std::size_t modules);
 
 /// A request of the page.

@@ -297,8 +297,8 @@ class PanelServer::Listener::Client : public std::enable_shared_from_this<Client
     });
   }
 
-  /// The next request is read only after the reply to this one has been queued, so a client cannot send
-  /// requests faster than they are answered.
+  /// Processes a request of the page. Reads the next request only when the reply to this one has been queued,
+  /// so a client cannot send requests faster than the server answers them.
   void answer_page_request() {
     answering_ = false;
     const std::string asked = beast::buffers_to_string(buffer_.data());

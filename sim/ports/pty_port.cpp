@@ -24,7 +24,7 @@ int PtyPort::watch() {
   return with_place(pty_.link() + ": ", [&] { return visits_.watch(pty_.device(), visited); });
 }
 
-/// The pseudo-terminal owns the file descriptor.
+/// Releases the file descriptor without closing it, because the pseudo-terminal owns it.
 PtyPort::~PtyPort() {
   visits_.ignore(watch_);
   descriptor_.release();
@@ -71,7 +71,7 @@ ssize_t PtyPort::take() {
   return size < 0 && errno == EAGAIN ? 0 : -1;
 }
 
-/// The pseudo-terminal buffers about 4 KiB before bytes are lost.
+/// Writes the bytes. The pseudo-terminal stores about 4 KiB that no master has read; further bytes are lost.
 std::size_t PtyPort::send(const std::vector<std::uint8_t>& bytes) {
   if (!pty_.visited()) {
     return 0;

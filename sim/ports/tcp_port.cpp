@@ -155,7 +155,8 @@ void TcpPort::resume() {
   }
 }
 
-/// A client that has only closed its sending side stays for the linger time.
+/// Removes a client that has closed the connection. If the client still `listens`, because it has only closed
+/// its sending side, the client stays for the linger time.
 void TcpPort::part_with(const ClientPointer& client, bool listens) {
   if (!listens) {
     forget(client);

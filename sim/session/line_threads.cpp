@@ -30,7 +30,7 @@ void LineThreads::start() {
   }
 }
 
-/// After an exception the thread continues, because `pause_for` waits for it.
+/// Runs the handlers of a thread. After an exception the thread continues, because `pause_for` waits for it.
 void LineThreads::run(boost::asio::io_context& io) {
   while (!io.stopped()) {
     try {

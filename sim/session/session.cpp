@@ -174,8 +174,8 @@ void Session::answer(const std::string& command, const ControlSocket::Answer& an
   }
 }
 
-/// If the lines do not follow a clock, the result must not depend on the time of day. Then the times in the
-/// capture begin at 0.
+/// Begins the capture. If the lines do not follow the wall clock, the times in the capture begin at 0, so
+/// that the capture does not depend on the time of day.
 void Session::keep_a_capture() {
   capture_->begin();
   const auto now = std::chrono::system_clock::now().time_since_epoch();
@@ -226,7 +226,8 @@ void Session::start() {
   }
 }
 
-/// Creates the files, and starts the lines. This follows everything that may fail for other reasons.
+/// Creates the files, and starts the lines. This is the last step of the start, so that no file is created if
+/// another step fails.
 void Session::begin() {
   make_files_and_greet();
   for (std::size_t i = 0; i < lines_.size(); ++i) {
@@ -251,7 +252,8 @@ bool Session::ends() const {
   return setup_.lasts && (!setup_.speed.paced() || *setup_.lasts / setup_.speed.factor < kLongestRun);
 }
 
-/// The timer expires some time after the end of the duration. The logs and captures end exactly at its end.
+/// Ends the run when the wall clock has reached its end. The timer may expire later than that, but the logs
+/// and the capture end exactly at the end of the run.
 void Session::end_by_the_clock() {
   end_.expires_after(std::chrono::duration_cast<VirtualTime>(*setup_.lasts / setup_.speed.factor));
   end_.async_wait([this](const boost::system::error_code& error) {

@@ -81,8 +81,8 @@ struct Setup : Writing {
 /// An error in a Setup. It identifies the place by key (an option of the command line or a member of a bus
 /// file), so that the message can use the syntax of either one.
 struct SetupError : std::invalid_argument {
-  /// In `what`, other keys are in braces, with or without a value: `cannot be combined with {serial}` or
-  /// `cannot be combined with {log json}`.
+  /// `what`: the message without its place. Other keys in it are in braces, with or without a value: `cannot
+  /// be combined with {serial}` or `cannot be combined with {log json}`.
   SetupError(std::optional<std::size_t> its_line, std::string its_key, const std::string& what,
              std::string its_value = "", std::optional<std::size_t> its_module = std::nullopt)
       : std::invalid_argument(what),
@@ -91,7 +91,7 @@ struct SetupError : std::invalid_argument {
         key(std::move(its_key)),
         value(std::move(its_value)) {}
 
-  /// `value` is empty, or a value of the key with a space before it.
+  /// Returns how a message refers to `key`. `value` is empty, or a value of the key with a space before it.
   using NameOfKey = std::function<std::string(const std::string& key, const std::string& value)>;
   /// Returns the message with the result of `name_of` in place of each pair of braces.
   [[nodiscard]] std::string named(const NameOfKey& name_of) const;
