@@ -25,7 +25,7 @@ class I2cBusRecovery {
     deadline_.disarm();
   }
 
-  /// Continues. Call it again at once until it returns true: the bus is free.
+  /// Continues to free the bus. Returns true when the bus is free. Until then, call this again at once.
   bool poll(Time now) {
     if (deadline_.armed() && !deadline_.reached(now)) {
       return false;

@@ -16,7 +16,8 @@ extern "C" void reset_handler() {
   fault_handler();
 }
 
-/// The processor's own reset request would leave the pins as they are, so the watchdog resets the chip.
+/// Resets the whole chip through the watchdog, because a reset request of the processor would not reset the
+/// pins.
 extern "C" void fault_handler() { hal::rp2040::WatchdogRegisters::reset_chip(); }
 
 }  // namespace ex9000::start_up

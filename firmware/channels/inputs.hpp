@@ -40,7 +40,7 @@ class Inputs {
   /// The range of the counters, after which they wrap: five decimal digits in ASCII, 16 bits in Modbus.
   enum class CounterRange : std::uint8_t { FiveDigits, SixteenBits };
 
-  /// `levels`: the same value as for InputEdges::begin.
+  /// Sets the levels at reset. `levels`: the same value as for InputEdges::begin.
   void begin(std::uint16_t levels) { levels_ = levels; }
   void configure(CounterRange range, bool count_rising_edges) {
     range_ = range;

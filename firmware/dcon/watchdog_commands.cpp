@@ -20,8 +20,8 @@ unsigned status_of(const State& state) {
 
 }  // namespace
 
-/// The receiver counts `~**` in the interrupt and does not queue it, so that it is never lost. This handler
-/// gives the same result if a caller passes such a frame to `answer`.
+/// Handles `~**` if a caller passes such a frame to `answer`. Normally the receiver counts `~**` in the
+/// interrupt and does not queue it, so that it is never lost. Both have the same result.
 Refusal host_ok(Exchange& exchange) {
   exchange.outcome.request(Effect::RestartHostWatchdog);
   return Refusal::None;

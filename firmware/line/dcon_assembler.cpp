@@ -48,7 +48,8 @@ Verdict DconAssembler::byte(FrameQueue& queue, std::uint8_t byte, ByteStatus sta
   return Verdict::Open;
 }
 
-/// The sum excludes the last two characters, because they may be the checksum.
+/// Appends a character and updates the sum, which excludes the last two characters, because they may be the
+/// checksum.
 void DconAssembler::add(std::uint8_t* text, std::uint8_t byte) {
   const unsigned size = size_;
   text[size] = byte;

@@ -41,7 +41,7 @@ struct Model {
   [[nodiscard]] constexpr bool speaks_modbus() const { return modbus_code != 0; }
   [[nodiscard]] constexpr bool has_inputs() const { return inputs != 0; }
   [[nodiscard]] constexpr bool has_outputs() const { return outputs != 0; }
-  /// These functions return a mask of the channels: bit n is set for each existing channel n.
+  /// Return a mask of the channels: bit n is set for each existing channel n.
   [[nodiscard]] constexpr std::uint16_t output_mask() const {
     return static_cast<std::uint16_t>((1UL << outputs) - 1U);
   }

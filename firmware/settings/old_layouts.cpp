@@ -8,7 +8,8 @@ bool has_check(const Model& model, Bytes page, std::size_t at) {
   return page.low_byte_first_32(at) == settings_check(model, page.first(at));
 }
 
-/// A name that is too long becomes an empty name, which no model could have stored.
+/// Returns the name at `at`. If `length` is too large, returns an empty name, which no model could have
+/// stored.
 Name name_at(Bytes page, std::size_t at, std::size_t length) {
   return Name(page.from(at).first(length <= kMaxNameLength ? length : 0));
 }

@@ -45,7 +45,7 @@ class Memory {
   /// Sets a function that is called after each successful write, before the job ends.
   void on_write(std::function<void()> written) { written_ = std::move(written); }
 
-  /// While `on`, all jobs fail and nothing is written.
+  /// Makes all jobs fail without an effect while `on` is true.
   void fail(bool on) { failing_ = on; }
 
   [[nodiscard]] const std::vector<std::uint8_t>& contents() const { return contents_; }
