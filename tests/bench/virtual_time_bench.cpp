@@ -33,8 +33,8 @@ std::vector<std::uint8_t> frame(const std::vector<std::uint8_t>& bytes) { return
 
 double seconds(VirtualTime time) { return std::chrono::duration<double>(time).count(); }
 
-/// All watchdogs are enabled. One module has timed out and its LED flashes. The master sends a host OK every
-/// 20 s.
+/// Measures a line without requests. All watchdogs are enabled. One module has timed out and its LED flashes.
+/// The master sends a host OK every 20 s.
 void idle_line(benchmark::State& state) {
   Line line(a_line_of_modules(), sim::kPaced, [](std::uint8_t, ByteStatus) {});
   const auto tell = [&line](const std::vector<std::uint8_t>& bytes, VirtualTime then) {
@@ -63,8 +63,8 @@ void idle_line(benchmark::State& state) {
 }
 BENCHMARK(idle_line)->Name("32 modules idle, watchdogs armed: x real time");
 
-/// The master polls the modules in turn. It sends each request when the silence after the previous reply
-/// ends.
+/// Measures a line whose master polls the modules in turn. The master sends each request when the silence
+/// after the previous reply ends.
 void loaded_line(benchmark::State& state) {
   bool heard = false;
   Line line(a_line_of_modules(), sim::kPaced, [&heard](std::uint8_t, ByteStatus) { heard = true; });

@@ -137,7 +137,8 @@ class FaultyImage : public testing::TestWithParam<Protocol>, protected EitherPro
   }
   void hang_interrupt() { make_interrupt_run(kSysTickVector, {0xE7FEE7FE}); }  // b .
   void stop_tick() { bus().write(kSysTickControl, 0); }
-  /// The handler requests the interrupt again each time, then does its normal work.
+  /// Starts an interrupt storm: the handler of I2C0 requests its interrupt again each time, and then does its
+  /// normal work.
   void storm() {
     make_interrupt_run(kI2c0Vector, {
                                         0x21014803,  // ldr r0, =kSetPending; movs r1, #1

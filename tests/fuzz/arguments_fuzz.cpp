@@ -80,7 +80,8 @@ void check_setup(const Setup& setup) {
   require(!setup.control || !setup.control->empty(), "a path is not empty");
 }
 
-/// Each line requires a unique name and pseudo-terminal. Otherwise a user could not distinguish the lines.
+/// Checks that each line has a name, and that the names and the pseudo-terminals are unique. Otherwise a user
+/// could not distinguish the lines.
 void check_several(const std::vector<LineSetup>& lines) {
   require(!lines.empty(), "a bus has a line");
   for (const LineSetup& line : lines) {

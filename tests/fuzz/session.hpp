@@ -38,7 +38,7 @@ class Session final : public ModuleObserver {
 
   LeanModule& module() { return module_; }
   Surroundings& around() { return module_.around(); }
-  /// Valid from the last reset to the next one.
+  /// Returns whether the module uses Modbus from the last reset to the next one.
   [[nodiscard]] bool speaks_modbus() const { return witness_.hears_modbus(); }
   [[nodiscard]] const InForce& in_force() const { return state().in_force; }
   /// Returns T3.5 in microseconds. Also available in DCON, where it has no meaning.

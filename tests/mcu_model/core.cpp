@@ -14,8 +14,8 @@ constexpr std::uint32_t kKey = 0x05FA;
 Core::Core(const SystemControl& clock, Timeline& timeline)
     : Peripheral(kBase), clock_(clock), timeline_(timeline), tick_(timeline, [this] { count_tick(); }) {}
 
-/// A write sets the counter to 0. The next clock loads the reload value, and each further clock
-/// decrements it. The exception becomes pending when the counter reaches 0.
+/// Returns the SysTick counter. A write sets it to 0. The next clock loads the reload value, and each further
+/// clock decrements the counter. The exception becomes pending when the counter reaches 0.
 std::uint32_t Core::current() const {
   if ((tick_control_ & 1U) == 0) {
     return 0;
@@ -110,7 +110,7 @@ void Core::pend(unsigned exception) {
   }
 }
 
-/// A pending exception stays pending when its line goes low.
+/// Sets the level of an interrupt line. A pending exception stays pending when its line goes low.
 void Core::interrupt_line_of(unsigned interrupt, bool asserted) {
   lines_.at(interrupt) = asserted || (stuck_ >> interrupt & 1U) != 0;
   if (lines_.at(interrupt)) {

@@ -74,7 +74,7 @@ void EepromChip::program(std::uint16_t place, std::uint8_t value) {
   contents_.at(place) = kept;
 }
 
-/// START and STOP are changes of the data line while the clock is high.
+/// Processes START and STOP, which are changes of the data line while the clock is high.
 void EepromChip::data_changed() {
   data_level_ = data_.level();
   if (!clock_level_ || step_ == Step::Off) {

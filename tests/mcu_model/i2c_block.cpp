@@ -173,7 +173,8 @@ void I2cBlock::clock(bool high) {
 }
 void I2cBlock::data(bool high) { port_.alternate(kDataPin, high ? Drive::High : Drive::Low); }
 
-/// Each move begins and ends with the clock low, except that the bus is free before a START and after a STOP.
+/// Begins the next move, for example a START or a bit. Each move begins and ends with the clock low, except
+/// that the bus is free before a START and after a STOP.
 void I2cBlock::begin_move() {
   phase_ = 0;
   if (moves_.empty()) {

@@ -133,8 +133,9 @@ Peripheral& Microcontroller::peripheral_at(std::uint32_t address) {
   throw Fault(address, "nothing is there");
 }
 
-/// On silicon, an access to a peripheral without a clock causes a fault, and a peripheral that is held in
-/// reset ignores every access. Both are errors of a driver.
+/// Throws Fault if the peripheral has no clock or is held in reset. On silicon, an access to a peripheral
+/// without a clock causes a fault, and a peripheral that is held in reset ignores every access. Both are
+/// errors of a driver.
 void Microcontroller::check_usable(const Place& place, std::uint32_t address) const {
   switch (system_control.gate(place.gate_index, place.gate_bit)) {
     case SystemControl::Gate::Shut:
@@ -171,7 +172,8 @@ void Microcontroller::pass_all(Instant to) {
   }
 }
 
-/// If the firmware is to hang here, does not return; only an exception, for example a ResetRequest, ends it.
+/// If the test has requested that the firmware hangs here, lets time pass without end. Only an exception, for
+/// example a ResetRequest, ends this.
 void Microcontroller::hang_if_requested() {
   if (hangs_ == Hangs::MainLoop && !core.in_handler()) {
     run_until(kNever);

@@ -128,7 +128,7 @@ void UartPort::transmit(std::uint8_t byte) {
   }
 }
 
-/// The start bit begins at a tick of the baud rate generator, which runs all the time.
+/// Begins to send a byte. The start bit begins at a tick of the baud rate generator, which runs all the time.
 void UartPort::begin_character(std::uint8_t byte, Instant not_before) {
   const Instant tick = bit_time_ / 16;
   shifting_ = true;

@@ -133,7 +133,7 @@ class StoredCopy {
   [[nodiscard]] std::size_t check_at() const {
     return layout_ == 3 ? std::size_t{4} + bytes_[1] : layout_ == 2 ? 24 : 21;
   }
-  /// A record of layout 3 may end before a setting.
+  /// Returns whether the copy contains `size` bytes at `at`. A record of layout 3 may end before a setting.
   [[nodiscard]] bool reaches(std::size_t at, std::size_t size) const {
     return layout_ != 3 || at + size <= check_at();
   }
@@ -143,7 +143,7 @@ class StoredCopy {
   [[nodiscard]] unsigned sequence() const { return word(fields().sequence); }
   [[nodiscard]] unsigned word(std::size_t at) const { return bytes_[at] + bytes_[at + 1] * 256U; }
 
-  /// CRC-32 of IEEE 802.3 over the designation and all bytes before the check.
+  /// Returns the CRC-32 of IEEE 802.3 over the designation and all bytes before the check.
   [[nodiscard]] std::uint32_t check() const {
     std::uint32_t crc = 0xFFFFFFFF;
     const auto add = [&crc](unsigned byte) {

@@ -40,10 +40,10 @@ class Emulator {
   QmpClient& qmp() { return *qmp_; }
   QtestClient& bus() { return *bus_; }
   GdbClient& gdb() { return *gdb_; }
-  /// The socket of the gate, where the processor waits at `kGate`. See gate.cpp.
+  /// Returns the socket of the gate, at which the processor waits at `kGate`. See gate.cpp.
   UnixSocket& gate() { return *gate_; }
-  /// The line of UART0, at any baud rate. The caller must read regularly: a full socket (278 bytes) halts the
-  /// machine.
+  /// Returns the line of UART0, which carries bytes at any baud rate. The caller must read regularly: a full
+  /// socket (278 bytes) halts the machine.
   UnixSocket& uart() { return *uart_; }
   [[nodiscard]] int pid() const { return process_->pid(); }
 

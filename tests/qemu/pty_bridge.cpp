@@ -18,7 +18,8 @@ namespace ex9000::rig {
 
 namespace {
 
-/// The shortest frame consists of address, function and CRC.
+/// Returns whether the bytes are a whole frame with a correct CRC. The shortest frame consists of address,
+/// function and CRC.
 bool is_whole(const std::vector<std::uint8_t>& request) {
   constexpr std::size_t kCrc = 2;
   constexpr std::size_t kShortest = 4;

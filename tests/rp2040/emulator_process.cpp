@@ -21,7 +21,7 @@ namespace {
 constexpr const char* kModules = "NODE_PATH=" EX9000_RP2040_MODULES;
 constexpr const char* kProgram = EX9000_RP2040_EMULATOR;
 
-/// The environment of the process: that of the test, and the folder of the npm package.
+/// Returns the environment of the process: the environment of the test, and the folder of the npm package.
 std::vector<char*> environment() {
   std::vector<char*> variables;
   for (char** each = environ; *each != nullptr; ++each) {

@@ -72,7 +72,7 @@ std::unique_ptr<ChildProcess> pymodbus_server(const std::vector<std::string>& ar
   return std::make_unique<ChildProcess>(command, "/");
 }
 
-/// One module over TCP and over a pseudo-terminal.
+/// Measures one module over TCP and over a pseudo-terminal, beside the other servers.
 void compare_one_module(milliseconds time, bool with_pymodbus) {
   const SimulatorProcess tcp_simulator(over_tcp(line_of(1)));
   const SimulatorProcess tty_simulator(line_of(1));
@@ -110,7 +110,7 @@ void compare_one_module(milliseconds time, bool with_pymodbus) {
   }
 }
 
-/// Many modules on one line.
+/// Measures 1, 32 and 247 modules on one line.
 void compare_modules(milliseconds time, bool with_pymodbus) {
   const std::array<unsigned, 3> sizes{1, kModules, kMostModules};
   std::vector<std::unique_ptr<SimulatorProcess>> simulators;
@@ -174,7 +174,7 @@ double memory_of(int pid) {
   return 0;
 }
 
-/// Eight lines in one process, each with a master of its own. Returns the transactions per second.
+/// Measures eight lines in one process, each with a master of its own. Returns the transactions per second.
 double load(milliseconds time, const std::string& threads) {
   const Directory directory;
   ex9000::system::write_file(directory / "bus.json", bus_file());

@@ -67,7 +67,7 @@ class Crowd final : public sim::BusObserver {
   [[nodiscard]] std::uint64_t stores() const { return stores_; }
   /// Returns the number of pulses on each input of the pulsed module.
   [[nodiscard]] std::uint64_t pulses() const { return pulses_; }
-  /// For each module, the outputs that have been on.
+  /// Returns, for each module, the outputs that have been on.
   [[nodiscard]] const std::vector<unsigned>& ever_on() const { return ever_on_; }
   [[nodiscard]] unsigned outputs_of(std::size_t module) const { return described_[module].row().outputs; }
   /// Returns the number of replies of each module.

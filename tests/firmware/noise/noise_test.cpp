@@ -108,7 +108,7 @@ void echo(NoisyLine& noisy, std::uint64_t exchanges) {
   repeater.switch_off();
 }
 
-/// Another master sends the same kinds of requests at random times.
+/// Adds another master, which sends the same kinds of requests at random times.
 void another_master(NoisyLine& noisy, std::uint64_t exchanges, std::uint32_t baud) {
   auto& other = noisy.attach<sim::Master>(baud, [](std::uint8_t, ByteStatus) {});
   for (std::uint64_t i = 0; i < exchanges; ++i) {

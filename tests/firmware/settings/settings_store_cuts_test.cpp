@@ -28,7 +28,7 @@ class PowerCuts : public testing::Test {
     return {blank, one_copy, two_copies, two_copies_the_other_way};
   }
 
-  /// The number of bytes that a complete save writes.
+  /// Returns the number of bytes that a complete save writes.
   static std::size_t bytes_of_a_save(FakeMemory memory, const Settings& to) {
     Boot run(memory);
     memory.bytes_written = 0;

@@ -10,7 +10,7 @@
 
 namespace ex9000::judges {
 
-/// `outputs`: the levels at the pins.
+/// Returns the values of the module. `outputs`: the levels at the pins.
 inline Values values_of(const State& state, std::uint16_t outputs) {
   const Settings& settings = state.settings;
   return {outputs,

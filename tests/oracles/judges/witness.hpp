@@ -375,7 +375,8 @@ class Witness {
     return static_cast<std::uint8_t>(value(request[3]) * 16 + value(request[4]));
   }
 
-  /// Between the end of the store and the reply to `%`, the new address is already in force.
+  /// Allows frames for a new address if a pending `%` sets this address. Between the end of the store and the
+  /// reply to `%`, the new address is already in force.
   void may_have_taken(std::uint8_t address) {
     for (std::size_t i = 0; i < pending_count_; ++i) {
       const Pending& each = pending(i);

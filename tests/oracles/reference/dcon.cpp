@@ -101,7 +101,7 @@ std::string Module::dcon_command(char delimiter, const std::string& body) {
   }
 }
 
-/// `%AANNTTCCFF`
+/// Executes `%AANNTTCCFF`.
 std::string Module::set_configuration(const std::string& body) {
   const std::optional<unsigned> all = number(body);
   if (body.size() != 8 || !all) {
@@ -157,7 +157,7 @@ std::string Module::hash_command(const std::string& body) {
   return "!" + aa() + digits;
 }
 
-/// `#AABBDD`
+/// Executes `#AABBDD`.
 std::string Module::set_group_or_single(const std::string& body) {
   const std::optional<unsigned> all = number(body);
   if (body.size() != 4 || !all) {
@@ -276,7 +276,7 @@ std::string Module::dollar_command(const std::string& body) {
   throw Refused{"$ no command"};
 }
 
-/// `$AAPN`
+/// Executes `$AAPN`.
 std::string Module::set_protocol(const std::string& body) {
   if (body != "0" && body != "1") {
     throw Refused{"$AAPN out of range"};
@@ -375,7 +375,7 @@ std::string Module::tilde_command(const std::string& body) {
   throw Refused{"~ no command"};
 }
 
-/// `~AA3EVV`
+/// Executes `~AA3EVV`.
 std::string Module::set_host_watchdog(const std::string& body) {
   const std::optional<unsigned> timeout = number(body.size() == 3 ? body.substr(1) : "");
   if (!timeout || (body[0] != '0' && body[0] != '1')) {

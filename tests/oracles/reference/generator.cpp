@@ -21,7 +21,8 @@ Step wait(const Module& module, Random& random) {
   return Wait{std::chrono::milliseconds(random.between(1, 300))};
 }
 
-/// Usually few pulses; sometimes enough to bring a counter to its overflow, or just past it.
+/// Returns a number of pulses: usually a few, sometimes enough to bring a counter to its overflow or just
+/// past it.
 std::uint32_t pulses(const Module& module, Random& random) {
   const std::uint32_t wraps = module.runs_modbus() ? 65536 : 100000;
   return random.once_in(60) ? wraps - 2 + random.below(5) : random.between(1, 5);

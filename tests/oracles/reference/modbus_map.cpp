@@ -62,8 +62,8 @@ bool coil_listed(const CoilRow& row, unsigned function) {
   return function == 0x01 ? row.by_01 : function == 0x05 ? row.by_05 : row.by_0f;
 }
 
-/// A range of coils must lie within one row. Holes, coils that the model does not have, and coils that are
-/// not listed for the function cause exception 02.
+/// Returns the row of a range of coils, which must lie within one row. Throws exception 02 for holes, for
+/// coils that the model does not have, and for coils that are not listed for the function.
 CoilRow listed_coils(const ModelRow& model, unsigned first, unsigned quantity, unsigned function) {
   const CoilRow row = coil_row(model, first);
   if (!coil_listed(row, function) || first + quantity > row.first + row.count) {

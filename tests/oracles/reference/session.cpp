@@ -294,7 +294,8 @@ bool Session::play_step(const Init& init) {
   return listen(kDebounced);
 }
 
-/// A transcript cannot set inputs that its model does not have, so those lines become comments.
+/// Returns the beginning of a line about an input. A transcript cannot set inputs that its model does not
+/// have, so such a line becomes a comment.
 std::string Session::lacking(unsigned channel) const { return channel < reference_.row().inputs ? "" : "; "; }
 
 bool Session::play_step(const Input& input) {

@@ -336,7 +336,8 @@ class Stores {
     std::generate(name.begin(), name.end(), [this] { return static_cast<char>(0x20U + below(0x5F)); });
     return {"", "~01O" + name, "$01M", "!01" + name};
   }
-  /// An enabled watchdog has a timeout of 20 s or more, so that it never expires in these tests.
+  /// Returns a store of the host watchdog's settings. An enabled watchdog has a timeout of 20 s or more, so
+  /// that it never expires in these tests.
   Store host_watchdog() {
     const bool on = below(2) == 0;
     const std::string value = (on ? "1" : "0") + reference::hex(on ? 200 + below(56) : 1 + below(255), 2);
