@@ -4,8 +4,9 @@ import {make, setAttribute, setText} from "/element.js";
 import {Switch} from "/switch.js";
 
 export class Faults {
-  /// `several`: there are several lines; `unfolded`: their lists are open at first; `usual`: the initial list of
-  /// faults; `modules`: {position, model} of each module on the line; `tell(command)` carries out a command.
+  /// `several`: whether there are several lines. `unfolded`: whether their lists are open at first. `usual`: the
+  /// initial list of faults. `modules`: {position, model} of each module on the line. `tell(command)` carries out a
+  /// command.
   constructor(line, {several, unfolded, usual}, modules, tell) {
     this.prefix = several ? `line ${line.name} ` : "";
     this.tell = tell;
@@ -55,7 +56,8 @@ export class Faults {
     return this.known.get(key);
   }
 
-  /// Actions run one after the other, because a fault has no number until it has been switched on.
+  /// Switches a fault on or off. Actions run one after the other, because a fault has no number until it has been
+  /// switched on.
   turn(text, module, on) {
     this.turned = this.turned.then(() => on ? this.begin(text, module) : this.end(this.learn(text, module).numbers));
     return this.turned;

@@ -7,7 +7,7 @@ const spareRows = 8;
 const seconds = (microseconds) => (microseconds / 1e6).toFixed(6);
 
 export class FrameList {
-  /// `rows` is the scrolling element; `filler` inside it is as high as all entries together.
+  /// `rows` is the scrolling element. `filler` is an element inside it that is as high as all entries together.
   constructor(rows, filler) {
     this.rows = rows;
     this.filler = filler;
@@ -36,7 +36,8 @@ export class FrameList {
     this.stale = true;
   }
 
-  /// `count` entries at the top were removed. Moves the scroll position so that the visible entries stay the same.
+  /// Call this when `count` entries at the top were removed. Moves the scroll position, so that the visible entries stay
+  /// the same.
   dropped(count) {
     if (!this.follows && count) {
       this.rows.scrollTop -= count * this.height;

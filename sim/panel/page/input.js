@@ -28,8 +28,8 @@ export class Input {
 
   command(on) { return `input ${this.channel} ${on ? "on" : "off"}`; }
 
-  /// Sets the other level while the button or key is down. The simulator undoes it if the page disconnects in the
-  /// meantime.
+  /// Sets the other level while the button or key is down. The simulator restores the level if the page disconnects
+  /// before `release`.
   press() {
     if (this.held === null) {
       this.held = this.level.on;
@@ -45,7 +45,7 @@ export class Input {
     }
   }
 
-  /// Call this when the connection is lost: the simulator then releases a held input.
+  /// Call this when the connection is lost, because the simulator then releases a held input.
   lost() { this.held = null; }
 
   listenToPointer(button) {

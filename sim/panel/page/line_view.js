@@ -2,7 +2,8 @@
 
 import {hexByte, make} from "/element.js";
 
-/// A page with more modules folds its lines, because a browser needs seconds for thousands of plates.
+/// The largest number of modules with which a page shows its lines unfolded at first. A browser needs seconds to create
+/// thousands of plates.
 export const mostUnfolded = 64;
 
 export class LineView {
@@ -27,7 +28,7 @@ export class LineView {
     this.fill();
   }
 
-  /// The plates of a folded line do not exist until the line is opened.
+  /// Creates the plates of an open line. The plates of a folded line do not exist until the line is opened.
   fill() {
     if (this.element.open) {
       this.plates.replaceChildren(...this.found.map(({position}) => this.plateOf(position).element));

@@ -2,10 +2,10 @@
 
 const firstWait = 100;
 const longestWait = 1000;
-/// The connection counts as lost if no message arrives for this time, in ms. The simulator sends a message at least
+/// The time without a message after which the connection counts as lost, in ms. The simulator sends a message at least
 /// every second.
 const patience = 3500;
-/// The close code if too many pages are open.
+/// The code with which the server closes the connection if too many pages are open.
 const tooMany = 1013;
 
 export class Live {
@@ -36,7 +36,7 @@ export class Live {
     socket.onclose = (event) => this.gone(socket, event.code === tooMany ? "tooMany" : "gone");
   }
 
-  /// Restarts the timeout that detects a stopped simulator or a broken connection. Neither of them closes the socket.
+  /// Restarts the timeout that detects a stopped simulator or a broken connection, because neither closes the socket.
   listen(socket) {
     clearTimeout(this.silence);
     this.silence = setTimeout(() => {

@@ -153,7 +153,7 @@ function lost(why) {
   }
 }
 
-/// Sticky elements below the header and scroll targets depend on its height.
+/// The header. The positions of sticky elements below it and of scroll targets depend on its height.
 const header = document.querySelector(".top");
 const measure = () => document.documentElement.style.setProperty("--top", `${header.offsetHeight}px`);
 new ResizeObserver(measure).observe(header);

@@ -86,7 +86,7 @@ export class Strip {
     return this.colours[name];
   }
 
-  /// Called once per repaint. Draws after a change, or while a visible entry moves.
+  /// Draws after a change, or while a visible entry moves. Called once per repaint.
   draw(when, entries) {
     const wait = unmoving.matches ? slowestUnmoving : slowest;
     if (this.lines.length && !(when - this.drawn < wait) && (this.stale || (!this.paused && !this.empty))) {

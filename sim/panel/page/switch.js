@@ -18,8 +18,8 @@ export class Switch {
     return knob;
   }
 
-  /// The requested state while a request is in progress, otherwise the shown state. Two quick clicks therefore switch
-  /// twice.
+  /// Returns the requested state while a request is in progress, otherwise the shown state. Two quick clicks therefore
+  /// switch twice.
   get on() { return this.asked ? this.wanted : this.element.getAttribute("aria-checked") === "true"; }
 
   async set(on) {

@@ -158,7 +158,7 @@ export class Timeline {
     setText(this.tally, `${of}${kept}${frames}${waiting}`);
   }
 
-  /// Called once per repaint.
+  /// Draws the changes. Called once per repaint.
   draw(when) {
     if (this.stale) {
       this.strip.stale = true;
