@@ -30,7 +30,7 @@ class Instruction:
 
     @property
     def branch_target(self) -> int | None:
-        """The target of a branch or call with a fixed address, else None."""
+        """Returns the target of a branch or call with a fixed address, else None."""
         target = _TARGET.match(self.operands) if _BRANCH.fullmatch(self.mnemonic) else None
         return int(target.group(1), 16) if target else None
 
@@ -40,7 +40,8 @@ class Instruction:
 
     @property
     def is_indirect(self) -> bool:
-        """True for a call or jump to a function whose address is in a register or in memory. False for a return."""
+        """Returns whether this calls or jumps to a function whose address is in a register or in memory. False for a
+        return."""
         if self.is_call:
             return self.branch_target is None
         if self.mnemonic.startswith("bx"):
@@ -61,7 +62,7 @@ class Instruction:
 
     @property
     def falls_through(self) -> bool:
-        """True if the next instruction in memory can be executed after this one."""
+        """Returns whether the next instruction in memory can be executed after this one."""
         if (
             self.is_data
             or self.jumps_by_table

@@ -102,7 +102,8 @@ def demangle(names: list[str]) -> dict[str, str]:
 
 
 def without_parameters(readable: str) -> str:
-    """`a::b(int)::{lambda(int)#1}::operator()(int) const` -> `a::b::{lambda#1}::operator()`."""
+    """Returns the name without parameters and return type: for `a::b(int)::{lambda(int)#1}::operator()(int) const` it
+    returns `a::b::{lambda#1}::operator()`."""
     text = readable.replace("(anonymous namespace)::", "").replace("operator()", "operator\0")
     while (shorter := re.sub(r"\([^()]*\)( const)?", "", text)) != text:
         text = shorter

@@ -100,7 +100,7 @@ class Machine:
 
     @property
     def send_queued_within(self) -> float:
-        """The time in seconds within which `send_queued` must be called."""
+        """Returns the time in seconds within which `send_queued` must be called."""
         return 0.001 if self._queued_bytes else 0.1
 
     def send_queued(self) -> None:

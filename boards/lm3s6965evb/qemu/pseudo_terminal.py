@@ -63,7 +63,7 @@ class PseudoTerminal:
         return not poll.poll(0)  # if no master has opened it, poll reports a hang-up
 
     def process_open_events(self) -> None:
-        """Call this when `open_events` is readable, because a master has opened or closed the terminal."""
+        """Processes the events of masters that open or close the terminal. Call this when `open_events` is readable."""
         with contextlib.suppress(BlockingIOError):
             while os.read(self.open_events, 4096):
                 pass
