@@ -18,7 +18,7 @@ class PlayRecord final : public play::PlayObserver {
  public:
   using Print = LineRecord::Print;
 
-  /// Writes the log and the capture that `writing` asks for. The capture file is opened when the first run
+  /// Writes the log and the capture that `writing` requests. The capture file is opened when the first run
   /// begins; from then on this class throws like Capture.
   PlayRecord(Writing writing, Print print);
 

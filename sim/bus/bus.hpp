@@ -73,7 +73,7 @@ class Disturbance {
     VirtualTime ends;
     bool contended;  ///< another driver is enabled
   };
-  /// Returns the levels that all receivers see instead of `sent`.
+  /// Returns the levels that all receivers get instead of those of `sent`.
   virtual Levels disturbed(const Sent& sent) = 0;
 
  protected:
@@ -82,8 +82,8 @@ class Disturbance {
 
 /// A half-duplex line with 8N1 characters. A byte lasts ten bit times at the rate of its sender. A receiver
 /// with the same rate gets the byte after its stop bit. A receiver with another rate samples the wave at its
-/// own rate and sees framing errors and garbage. If two drivers are enabled at once, a 0 from either driver
-/// wins, and receivers sample the resulting wave.
+/// own rate and gets framing errors and wrong bytes. If two drivers are enabled at once, a 0 from either
+/// driver wins, and receivers sample the resulting wave.
 ///
 /// The clock jumps from event to event; this class does not depend on real time.
 ///

@@ -19,7 +19,7 @@ namespace {
 struct Format {
   const char* name = "";
   std::string (*of_models)(const Models& models) = nullptr;
-  // These two require a model with Modbus.
+  // The next two functions require a model with Modbus.
   std::string (*of_model)(const Model& model) = nullptr;
   std::string (*of_module)(const Model& model, const NetworkAddress& network_address) = nullptr;
 };

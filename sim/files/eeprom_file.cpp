@@ -19,7 +19,7 @@ namespace {
 
 constexpr std::size_t kSize = hal::doubles::Memory::kSize;
 
-/// A file that gets its name when it is complete: if the process dies before, no incomplete file remains.
+/// A file that gets its name when it is complete. If the process ends earlier, no incomplete file remains.
 class Draft {
  public:
   /// Opens the file in the folder of `path`. Some file systems do not support files without a name, and only

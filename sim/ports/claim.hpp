@@ -7,9 +7,9 @@
 
 namespace ex9000::sim {
 
-/// Only one process holds a claim at a time, and the system releases it when the process ends in any way: if
-/// a path exists and no process holds its claim, a dead process has left it. Works between processes of one
-/// network namespace, for all users.
+/// Only one process holds a claim at a time, and the system releases it when the process ends in any way. If
+/// a path exists and no process holds its claim, the process that created the path has ended. Works between
+/// processes of one network namespace, for all users.
 class Claim {
  public:
   explicit Claim(const std::string& path);

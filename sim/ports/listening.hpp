@@ -15,7 +15,8 @@ inline boost::system::error_code listen_at(boost::asio::ip::tcp::acceptor& accep
   using boost::asio::ip::tcp;
   boost::system::error_code error;
   acceptor.open(endpoint.protocol(), error);
-  // Lingering connections of a dead process must not prevent this one from listening.
+  // Connections of a process that has ended may still exist. They must not prevent this process from
+  // listening.
   if (!error) {
     acceptor.set_option(tcp::acceptor::reuse_address(true), error);
   }

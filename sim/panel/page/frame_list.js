@@ -36,8 +36,8 @@ export class FrameList {
     this.stale = true;
   }
 
-  /// Call this when `count` entries at the top were removed. Moves the scroll position, so that the visible entries stay
-  /// the same.
+  /// Call this when `count` entries at the top were removed. Moves the scroll position, so that the visible entries
+  /// stay the same.
   dropped(count) {
     if (!this.follows && count) {
       this.rows.scrollTop -= count * this.height;
