@@ -28,8 +28,8 @@ constexpr std::uint32_t kSetPending = 0xE000'E200;
 constexpr std::uint32_t kSysTickVector = 15;
 constexpr std::uint32_t kI2c0 = 8;
 constexpr std::uint32_t kI2c0Vector = 16 + kI2c0;
-/// This address is above the RAM that the image and the rig use and below the image's stack at the top of
-/// RAM.
+/// The address of the code that hangs. It is above the RAM that the image and the test bench use, and below
+/// the image's stack at the top of RAM.
 constexpr std::uint32_t kCode = 0x2000'C000;
 constexpr std::uint32_t kThumb = 1;
 

@@ -1,5 +1,5 @@
 // A UART without its FIFOs. Data sheets: LM3S6965 12.3 to 12.5, TM4C123GH6PM 14.3 to 14.5. The manual of
-// their common block, ARM's PL011 (DDI 0183), says when its interrupts are raised and cleared.
+// their common block, ARM's PL011 (DDI 0183), specifies when its interrupts are raised and cleared.
 #pragma once
 
 #include <cstdint>

@@ -304,7 +304,7 @@ TEST(Record, AnyFourAdjacentBytesAreDeterminedByTheCheckAndTheOtherBytes) {
   }
 }
 
-// This tries the same with more than 1000 records for each place.
+// Tests the property of the previous test with more than 1000 records for each place.
 TEST(Record, TwoThatDifferInFourBytesOnlyNeverHaveTheSameCheck) {
   OfOneKind lines("address, baud code, format and protocol", 4);
   OfOneKind watchdogs("watchdog and timeout status", 8);

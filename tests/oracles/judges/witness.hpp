@@ -189,7 +189,7 @@ class Witness {
     Demand demand;
     bool broadcast;
     bool alone;  ///< the module was idle, and the frame is not doubtful
-    bool fresh;  ///< see mark_fresh
+    bool fresh;  ///< the request may still be executed; see mark_fresh
     bool done;   ///< an observed change of values has been attributed to this request
 
     [[nodiscard]] Bytes frame() const { return {bytes.data(), size}; }
