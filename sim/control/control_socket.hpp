@@ -25,9 +25,9 @@ class ControlSocket {
   /// client.
   using CarryOut = std::function<void(const std::string& command, const Answer& answer)>;
 
-  /// Starts to listen on `path`; replaces a socket of a process that has ended. Throws
-  /// std::invalid_argument with a one-line message if the path is in use or cannot be created. The reply to
-  /// the `quit` command is sent before `quit` is called.
+  /// Starts to listen on `path`; replaces a socket of a process that has ended. Throws std::invalid_argument
+  /// with a one-line message if the path is in use or cannot be created. The reply to the `quit` command is
+  /// sent before `quit` is called.
   ControlSocket(boost::asio::io_context& io, std::string path, CarryOut carry_out,
                 std::function<void()> quit);
   /// Removes the socket file, if it still belongs to this object.

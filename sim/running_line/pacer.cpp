@@ -94,7 +94,7 @@ void Pacer::follow() {
   catch_up(present);
   ports_.hand_out();
   if (frames_ != nullptr) {
-    frames_->run(present);  // the earlier time, because an event that is due since then may continue a frame
+    frames_->run(present);  // not a later time: an event that has become due since then may continue a frame
   }
   if (paused_ && !is_full()) {
     paused_ = false;

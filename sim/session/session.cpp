@@ -252,8 +252,8 @@ bool Session::ends() const {
   return setup_.lasts && (!setup_.speed.paced() || *setup_.lasts / setup_.speed.factor < kLongestRun);
 }
 
-/// Ends the run when the wall clock has reached its end. The timer may expire later than that, but the logs
-/// and the capture end exactly at the end of the run.
+/// Ends the run by the wall clock. The timer may expire after the end of the run, but the logs and the
+/// capture end exactly at the end of the run.
 void Session::end_by_the_clock() {
   end_.expires_after(std::chrono::duration_cast<VirtualTime>(*setup_.lasts / setup_.speed.factor));
   end_.async_wait([this](const boost::system::error_code& error) {
