@@ -288,8 +288,8 @@ TEST(Record, TwoThatDifferInAnyByteAreNotEqual) {
 
 // --- invalid records ---
 
-// This proves that the check finds every error in four adjacent bytes: for given other bytes and a given
-// check, only one value of the four bytes matches.
+// For given other bytes and a given check, only one value of four adjacent bytes matches. The check therefore
+// detects every error in four adjacent bytes.
 TEST(Record, AnyFourAdjacentBytesAreDeterminedByTheCheckAndTheOtherBytes) {
   std::mt19937 random(3);
   for (const Model& each : kModels) {
