@@ -29,7 +29,7 @@ class QspiPins extends BasePeripheral {
     this.update();
   }
 
-  wants(on) {
+  requestSelect(on) {
     this.wanted = on;
     this.update();
   }
@@ -134,7 +134,7 @@ class Ssi extends BasePeripheral {
       this.received = [];
       this.left = 0;
       this.shifting = false;
-      this.pins.wants(false);
+      this.pins.requestSelect(false);
     } else if (![BOTH_WAYS, EEPROM_READ].includes(this.mode) || ![8, 32].includes(this.frameBits)
       || (this.control & ~0x1f0300) !== 0) {
       this.error(`control ${this.control.toString(16)} is not in this model`);
@@ -150,7 +150,7 @@ class Ssi extends BasePeripheral {
     }
     this.toSend.push(value);
     if (!this.shifting) {
-      this.pins.wants(true);
+      this.pins.requestSelect(true);
       this.beginFrame();
     }
   }
@@ -176,7 +176,7 @@ class Ssi extends BasePeripheral {
       this.beginFrame();
     } else {
       this.shifting = false;
-      this.pins.wants(false);
+      this.pins.requestSelect(false);
     }
   }
 
