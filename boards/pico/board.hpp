@@ -16,11 +16,13 @@ using hal::rp2040::PinGroup;
 /// A 12 MHz crystal. The PLL's oscillator runs at 1500 MHz, processor and peripherals at 125 MHz.
 inline constexpr hal::rp2040::ClockTree kClock{12'000'000, 125, 6, 2};
 
-#ifdef EX9000_SETTINGS_IN_FLASH
-inline constexpr Memory kMemory = Memory::Flash;
-#else
+#ifdef EX9000_SETTINGS_IN_EEPROM
 inline constexpr Memory kMemory = Memory::Eeprom;
+#else
+inline constexpr Memory kMemory = Memory::Flash;
 #endif
+/// The first byte for settings, if they are in the flash: an offset in bytes. image.ld reserves the last 64 KiB.
+inline constexpr std::uint32_t kSettingsInFlash = (2048U - 64U) * 1024U;
 
 /// The line is UART0 on GPIO0 (transmit) and GPIO1 (receive).
 inline constexpr PinGroup kUartPins{0, 2};

@@ -14,8 +14,10 @@
 #include "hal/cortex_m/interrupts.hpp"
 #include "hal/cortex_m/system_tick.hpp"
 #include "hal/device.hpp"
+#include "hal/flash/page_store.hpp"
 #include "hal/pl011/uart.hpp"
 #include "hal/rp2040/clocks.hpp"
+#include "hal/rp2040/flash.hpp"
 #include "hal/rp2040/i2c.hpp"
 #include "hal/rp2040/inputs.hpp"
 #include "hal/rp2040/interrupts.hpp"
@@ -50,14 +52,20 @@ static_assert(
 
 /// The memory of the settings: its driver, its start and its interrupt.
 template <Memory memory>
-struct MemoryOnBoard {
-  static_assert(memory != Memory::Flash, "this family has no store for settings in the flash yet");
+struct MemoryOnBoard;
+template <>
+struct MemoryOnBoard<Memory::Flash> {
+  using Driver = hal::flash::PageStore<Flash, kSettingsInFlash>;
+  static constexpr std::uint32_t kBlocks = 0;
+  static constexpr bool kHasInterrupt = false;
+  static void start(Driver& driver) { driver.flash().start(); }
+  static void on_interrupt(Driver& /*driver*/) {}
 };
 template <>
 struct MemoryOnBoard<Memory::Eeprom> {
   using Driver = hal::At24c<I2c<kI2cPins, kHertz>>;
   static constexpr std::uint32_t kBlocks = static_cast<std::uint32_t>(Block::I2c0);
-  static constexpr Interrupt kInterrupt = Interrupt::I2c0;
+  static constexpr bool kHasInterrupt = true;
   static void start(Driver& driver) { driver.master().start(); }
   static void on_interrupt(Driver& driver) { driver.master().on_interrupt(); }
 };
@@ -126,7 +134,7 @@ constexpr auto kServed = table<start_up::Served>({
     served(Interrupt::Timer2, on_wake_timer),
     served(Interrupt::Pins, decltype(board.inputs)::any() ? on_edges : nullptr),
     served(Interrupt::Uart0, on_line),
-    served(Settings::kInterrupt, on_memory),
+    served(Interrupt::I2c0, Settings::kHasInterrupt ? on_memory : nullptr),
 });
 
 constexpr unsigned kInterrupts = 26;

@@ -6,6 +6,7 @@
 #include <cstdint>
 
 #include "hal/registers/register.hpp"
+#include "hal/rp2040/crystal.hpp"
 
 namespace ex9000::hal::rp2040 {
 
@@ -13,9 +14,23 @@ namespace ex9000::hal::rp2040 {
 /// other functions is not in RAM yet.
 class Boot {
  public:
-  /// Copies `words` words, at most 65,536, from `address` of the flash to `destination`. The ring oscillator
-  /// clocks the processor, so a word takes about 10 us. Read Data (03h) works on every flash, in every mode
-  /// that the boot ROM leaves it in, and without a setting in the flash.
+  /// Switches the processor and the flash to the crystal, because the ring oscillator may have less than 2 MHz.
+  /// Blocks for about 5 ms. If the crystal does not start, it returns without an effect, and the image waits
+  /// for the crystal when its watchdog runs.
+  [[gnu::always_inline]] static void use_crystal() {
+    constexpr unsigned kMostReads = 20'000;  // a read takes at least 0.5 us
+    Crystal::start();
+    for (unsigned read = 0; read < kMostReads; ++read) {
+      if (Crystal::stable()) {
+        Crystal::make_reference();
+        return;
+      }
+    }
+  }
+
+  /// Copies `words` words, at most 65,536, from `address` of the flash to `destination`. A word takes 64 clocks
+  /// of the processor: 5.3 us on a crystal of 12 MHz. Read Data (03h) works on every flash, in every mode that
+  /// the boot ROM leaves it in, and without a setting in the flash.
   [[gnu::always_inline]] static void copy(std::uint32_t address, std::uint32_t* destination,
                                           std::uint32_t words) {
     constexpr std::uint32_t kReadData = 0x03;

@@ -1,9 +1,10 @@
-// Clock tree: crystal oscillator, system PLL, and the clocks of processor and peripherals. Source: RP2040
-// data sheet, 2.15 (clocks), 2.16 (crystal oscillator) and 2.18 (PLL).
+// Clock tree: system PLL, and the clocks of processor and peripherals. Source: RP2040 data sheet, 2.15 (clocks)
+// and 2.18 (PLL).
 #pragma once
 
 #include <cstdint>
 
+#include "hal/rp2040/crystal.hpp"
 #include "hal/rp2040/resets.hpp"
 #include "hal/rp2040/shared_register.hpp"
 
@@ -23,18 +24,18 @@ struct ClockTree {
 
 class Clocks {
  public:
-  /// Switches the reference clock to the crystal, and processor and peripherals to the PLL. Call this once
-  /// after reset, when the watchdog is running. It blocks for about 2 ms, and the processor runs on the ring
-  /// oscillator meanwhile. If the crystal does not start or the PLL does not lock, the watchdog resets the
-  /// MCU.
+  /// Switches the reference clock to the crystal, which the second stage has started, and processor and
+  /// peripherals to the PLL. Call this once after reset, when the watchdog is running. It blocks for less than
+  /// 1 ms. If the crystal is not stable or the PLL does not lock, the watchdog resets the MCU.
   template <const ClockTree& clock>
   static void use() {
     static_assert(clock.oscillator() >= 750'000'000 && clock.oscillator() <= 1'600'000'000,
                   "the PLL's oscillator requires 750 MHz to 1600 MHz");
     static_assert(clock.frequency() <= 133'000'000, "the processor allows at most 133 MHz");
-    start_crystal(clock.crystal);
-    kReferenceControl.write(kFromCrystal);
-    while (!kReferenceSelected.read().has(kCrystalSelected)) {
+    while (!Crystal::stable()) {
+    }
+    Crystal::make_reference();
+    while (!Crystal::is_reference()) {
     }
     start_pll(clock);
     kSystemControl.write(kFromPll);  // after the reset, the auxiliary source is the system PLL
@@ -44,49 +45,25 @@ class Clocks {
   }
 
  private:
-  struct CrystalControl;
-  struct CrystalStatus;
-  struct CrystalStartUp;
   struct PllControl;
   struct PllPower;
   struct PllFeedback;
   struct PllDividers;
-  struct ReferenceControl;
-  struct ReferenceSelected;
   struct SystemControl;
   struct SystemSelected;
   struct PeripheralControl;
 
-  static constexpr SharedRegister<CrystalControl> kCrystalControl{0x4002'4000};
-  static constexpr SharedRegister<CrystalStatus> kCrystalStatus{0x4002'4004};
-  static constexpr SharedRegister<CrystalStartUp> kCrystalStartUp{0x4002'400C};
   static constexpr SharedRegister<PllControl> kPllControl{0x4002'8000};
   static constexpr SharedRegister<PllPower> kPllPower{0x4002'8004};
   static constexpr SharedRegister<PllFeedback> kPllFeedback{0x4002'8008};
   static constexpr SharedRegister<PllDividers> kPllDividers{0x4002'800C};
-  static constexpr SharedRegister<ReferenceControl> kReferenceControl{0x4000'8030};
-  static constexpr SharedRegister<ReferenceSelected> kReferenceSelected{0x4000'8038};
   static constexpr SharedRegister<SystemControl> kSystemControl{0x4000'803C};
   static constexpr SharedRegister<SystemSelected> kSystemSelected{0x4000'8044};
   static constexpr SharedRegister<PeripheralControl> kPeripheralControl{0x4000'8048};
 
-  static constexpr Bits<ReferenceControl> kFromCrystal{0x2};
-  static constexpr Bits<ReferenceSelected> kCrystalSelected{1U << 2U};
   static constexpr Bits<SystemControl> kFromPll{0x1};
   static constexpr Bits<SystemSelected> kAuxiliarySelected{1U << 1U};
   static constexpr Bits<PeripheralControl> kPeripheralEnable{1U << 11U};
-
-  static void start_crystal(std::uint32_t crystal) {
-    constexpr std::uint32_t kMillisecond = 1000;
-    constexpr std::uint32_t kUnit = 256;  // clocks of the crystal
-    constexpr Bits<CrystalControl> kRange(0xAA0);
-    constexpr Bits<CrystalControl> kEnable(0xFABU << 12U);
-    constexpr Bits<CrystalStatus> kStable(1U << 31U);
-    kCrystalStartUp.write(Bits<CrystalStartUp>((crystal / kMillisecond + kUnit / 2U) / kUnit));
-    kCrystalControl.write(kRange | kEnable);
-    while (!kCrystalStatus.read().has(kStable)) {
-    }
-  }
 
   static void start_pll(const ClockTree& clock) {
     constexpr Bits<PllControl> kReferenceDividedBy1(1);

@@ -6,22 +6,21 @@
 #include <cstdint>
 
 #include "firmware/bytes.hpp"
+#include "hal/flash.hpp"
 #include "hal/registers/register.hpp"
 #include "hal/rp2040/shared_register.hpp"
 
 namespace ex9000::hal::rp2040 {
 
-/// Erases, programs and reads the flash with single-bit commands while the image runs from RAM. Interrupts
-/// stay enabled: the driver controls chip select itself, so a delay between two bytes does no harm. The flash
-/// is not mapped into memory after `start`.
+/// Erases, programs and reads the flash with single-bit commands while the image runs from RAM. For the
+/// functions without a description, see hal/flash.hpp. Interrupts stay enabled: the driver controls chip
+/// select itself, so a delay between two bytes does no harm. The flash is not mapped into memory after
+/// `start`.
 ///
-/// All functions are for the main loop. They do not wait until the flash has erased or programmed. A function
-/// takes 0.5 us for each byte on the wires. A command and its address have four or five bytes.
+/// All functions are for the main loop. A function takes 0.5 us for each byte on the wires. A command and its
+/// address have four bytes.
 class Flash {
  public:
-  static constexpr std::size_t kPage = 256;     ///< a program operation must not cross the end of a page
-  static constexpr std::size_t kSector = 4096;  ///< unit of an erase
-
   /// Call this once, before the other functions. A reset does not interrupt an operation of the flash. This
   /// function continues it if it was suspended, so the flash may be busy afterwards.
   static void start() {
@@ -36,16 +35,13 @@ class Flash {
     resume();  // has no effect if nothing is suspended
   }
 
-  /// Begins to erase the sector at `address`. Call it only while not `busy()`.
-  static void begin_erase(std::uint32_t address) {
+  static void start_erase(std::uint32_t address) {
     command(kWriteEnable);
     address_command(kSectorErase, address);
     select(false);
   }
 
-  /// Begins to program `bytes`, which only changes ones to zeros. Call it only while not `busy()`. `bytes`
-  /// must lie in one page and need not stay valid after the call.
-  static void begin_program(std::uint32_t address, Bytes bytes) {
+  static void start_program(std::uint32_t address, Bytes bytes) {
     command(kWriteEnable);
     address_command(kPageProgram, address);
     for (std::size_t i = 0; i < bytes.size; ++i) {
@@ -54,7 +50,6 @@ class Flash {
     select(false);
   }
 
-  /// Returns whether the flash is erasing or programming. A suspended operation does not make it busy.
   [[nodiscard]] static bool busy() {
     select(true);
     exchange(kReadStatus);
@@ -63,13 +58,9 @@ class Flash {
     return (status & kBusyBit) != 0;
   }
 
-  /// Interrupts an erase or a program operation, within 20 us. Wait until the flash is not `busy()`. Then
-  /// other sectors can be read. It has no effect on a flash that is not busy.
   static void suspend() { command(kSuspend); }
-  /// Continues the interrupted operation. Wait at least 20 us before the next `suspend`.
   static void resume() { command(kResume); }
 
-  /// Reads bytes. Call it only while not `busy()`.
   static void read(std::uint32_t address, MutableBytes destination) {
     address_command(kReadData, address);
     for (std::size_t i = 0; i < destination.size; ++i) {
@@ -136,5 +127,6 @@ class Flash {
     exchange(static_cast<std::uint8_t>(address));
   }
 };
+static_assert(kIsFlash<Flash>);
 
 }  // namespace ex9000::hal::rp2040

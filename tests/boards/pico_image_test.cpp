@@ -17,7 +17,7 @@ namespace {
 using std::chrono::milliseconds;
 using std::chrono::nanoseconds;
 
-constexpr milliseconds kComingUp{150};
+constexpr milliseconds kComingUp{100};  ///< wire.md section 2
 constexpr milliseconds kPatience{100};
 /// The longest period of the module's watchdog: wire.md 6.
 constexpr milliseconds kWatchdogPeriod{1600};

@@ -3,6 +3,7 @@
 "use strict";
 const { RP2040, GPIOPinState } = require("rp2040js");
 const { Processor } = require("./core");
+const { Crystal, requireStable } = require("./crystal");
 const { correctI2c } = require("./i2c");
 const { Pl011 } = require("./pl011");
 const { QspiPins, Ssi } = require("./ssi");
@@ -78,6 +79,8 @@ class Chip {
     peripherals[0x18000] = new Ssi(mcu, "SSI", board.flash, qspi);
     peripherals[0x40018] = qspi;
     peripherals[0x4000c] = this.resets;
+    peripherals[0x40024] = new Crystal(mcu, "XOSC");
+    requireStable(mcu.clocks, peripherals[0x40024]);
     peripherals[0x40058] = this.watchdog;
     peripherals[0x40034] = this.uart;
     this.i2c = mcu.i2c[0];

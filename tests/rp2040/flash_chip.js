@@ -5,7 +5,7 @@
 const SIZE = 2 * 1024 * 1024;
 const PAGE = 256;
 const SECTOR = 4096;
-const SUSPEND = 20_000; // ns, the largest tSUS
+const SUSPEND = 20_000; // ns, the largest tSUS, and the shortest time from a resume to the next suspend
 
 class FlashChip {
   // `content`: 2 MiB, which this object changes. `times`: { erase, program } in nanoseconds.
@@ -16,16 +16,17 @@ class FlashChip {
     this.selected = false;
     this.bytes = [];
     this.writeEnabled = false;
-    this.operation = null; // { apply(part), left }
-    this.ends = 0; // time at which a running operation ends
+    this.operation = null; // the operation that is running: { kind, address, bytes, sector, left }
+    this.ends = 0; // time at which it ends
+    this.suspended = null; // the erase that is suspended
     this.suspending = 0; // time at which a suspend takes effect
-    this.suspended = false;
+    this.resumed = -Infinity; // time of the last resume
     this.erased = new Map(); // number of erases, by sector
     this.done = time.createAlarm(() => this.finish());
   }
 
   get busy() {
-    return (this.operation !== null && !this.suspended) || this.time.now < this.suspending;
+    return this.operation !== null || this.time.now < this.suspending;
   }
 
   select(on) {
@@ -61,9 +62,7 @@ class FlashChip {
     }
     if (command === 0x03 && this.bytes.length > 4) {
       const address = (this.address() + this.bytes.length - 5) % SIZE;
-      if (this.operation !== null && Math.floor(address / SECTOR) === this.operation.sector) {
-        throw new Error("flash: the suspended sector is read");
-      }
+      this.rejectSuspended(address, "read");
       return this.content[address];
     }
     return 0xff;
@@ -100,22 +99,30 @@ class FlashChip {
     }
   }
 
+  // Rejects an access to the sector whose erase is suspended.
+  rejectSuspended(address, access) {
+    if (this.suspended !== null && Math.floor(address / SECTOR) === this.suspended.sector) {
+      throw new Error(`flash: ${access} in the sector whose erase is suspended`);
+    }
+  }
+
   begin(kind, address, bytes) {
     if (!this.writeEnabled) {
       throw new Error(`flash: ${kind} without Write Enable`);
     }
-    if (this.operation !== null) {
-      throw new Error(`flash: ${kind} while another operation is suspended`);
+    if (kind === "erase" && this.suspended !== null) {
+      throw new Error("flash: erase while another one is suspended");
     }
+    this.rejectSuspended(address, kind);
     if (kind === "program" ? bytes.length === 0 || bytes.length > PAGE - (address % PAGE) : bytes.length !== 0) {
       throw new Error(`flash: ${kind} of ${bytes.length} bytes at ${address.toString(16)}`);
     }
-    this.operation = { kind, address, bytes, sector: Math.floor(address / SECTOR), left: this.times[kind] };
-    this.run();
+    this.run({ kind, address, bytes, sector: Math.floor(address / SECTOR), left: this.times[kind] });
   }
 
-  run() {
-    this.ends = this.time.now + this.operation.left;
+  run(operation) {
+    this.operation = operation;
+    this.ends = this.time.now + operation.left;
     this.done.scheduleAt(this.ends);
   }
 
@@ -134,27 +141,37 @@ class FlashChip {
   }
 
   suspend() {
-    if (this.operation === null || this.suspended) {
+    if (this.operation === null) {
       return;
     }
-    this.operation.left = this.ends - this.time.now;
+    if (this.operation.kind !== "erase") {
+      throw new Error("flash: a program operation is suspended");
+    }
+    if (this.time.now - this.resumed < SUSPEND) {
+      throw new Error("flash: suspend too early after resume");
+    }
+    this.suspended = { ...this.operation, left: this.ends - this.time.now };
+    this.operation = null;
     this.done.cancel();
-    this.suspended = true;
     this.suspending = this.time.now + SUSPEND;
   }
 
   resume() {
-    if (this.suspended) {
-      this.suspended = false;
-      this.run();
+    if (this.suspended !== null) {
+      if (this.busy) {
+        throw new Error("flash: resume while it is busy");
+      }
+      this.run(this.suspended);
+      this.suspended = null;
+      this.resumed = this.time.now;
     }
   }
 
   // Simulates a power failure. After an unfinished operation the cells are undefined; in this model, every second byte
   // has changed.
   losePower() {
-    if (this.operation !== null) {
-      const { kind, address, bytes, sector } = this.operation;
+    for (const unfinished of [this.operation, this.suspended].filter((each) => each !== null)) {
+      const { kind, address, bytes, sector } = unfinished;
       const size = kind === "erase" ? SECTOR : bytes.length;
       const first = kind === "erase" ? sector * SECTOR : address;
       for (let index = 0; index < size; index += 2) {
@@ -163,8 +180,9 @@ class FlashChip {
     }
     this.done.cancel();
     this.operation = null;
-    this.suspended = false;
+    this.suspended = null;
     this.suspending = 0;
+    this.resumed = -Infinity;
     this.writeEnabled = false;
     this.selected = false;
   }

@@ -5,6 +5,7 @@ const { test } = require("node:test");
 const { RP2040 } = require("rp2040js");
 const { ChipClock, Time } = require("./clock");
 const { Processor } = require("./core");
+const { Crystal, requireStable } = require("./crystal");
 const { Eeprom } = require("./eeprom");
 const { FLASH_SIZE, FlashChip } = require("./flash_chip");
 const { correctI2c } = require("./i2c");
@@ -166,9 +167,18 @@ test("the flash erases and programs in its times, and rejects what it cannot do"
   time.advanceTo(time.now + 20_000);
   assert.equal(send(0x05, 0)[1] & 1, 0);
   assert.equal(send(0x03, 0, 0, 0, 0)[4], 0);
-  assert.throws(() => send(0x03, 0x1f, 0, 0, 0), /suspended sector/);
+  assert.throws(() => send(0x03, 0x1f, 0, 0, 0), /read in the sector whose erase is suspended/);
   flash.selected = false;
+  send(0x06);
+  assert.throws(() => send(0x02, 0x1f, 0, 0, 0), /program in the sector whose erase is suspended/);
+  assert.throws(() => send(0x20, 0, 0, 0), /erase while another one is suspended/);
+  flash.content[0x1e0000] = 0xff;
+  send(0x02, 0x1e, 0, 0, 0x5a);
+  assert.throws(() => send(0x7a), /resume while it is busy/);
+  time.advanceTo(time.now + 400e3);
+  assert.equal(send(0x03, 0x1e, 0, 0, 0)[4], 0x5a, "another sector can be programmed");
   send(0x7a);
+  assert.throws(() => send(0x75), /too early/);
   time.advanceTo(time.now + 25e6 - 1000);
   assert.equal(send(0x05, 0)[1] & 1, 1);
   time.advanceTo(time.now + 1000);
@@ -181,6 +191,21 @@ test("the flash erases and programs in its times, and rejects what it cannot do"
   send(0x02, 0x1f, 0, 0, 0xf3);
   time.advanceTo(time.now + 400e3);
   assert.equal(send(0x03, 0x1f, 0, 0, 0)[4], 0x03, "programming only clears bits");
+});
+
+test("the crystal is stable after its delay, and cannot be the reference clock before", () => {
+  const { mcu, time } = setUp();
+  const crystal = new Crystal(mcu, "XOSC");
+  requireStable(mcu.clocks, crystal);
+  const stableAt = 1e6 + (0xc4 * 256 * 1e9) / 12e6;
+  crystal.writeUint32(0, 0xfabaa0);
+  time.advanceTo(stableAt - 1);
+  assert.equal(crystal.readUint32(4), 0);
+  assert.throws(() => mcu.clocks.writeUint32(0x30, 2), /before it is stable/);
+  time.advanceTo(stableAt + 1);
+  assert.equal(crystal.readUint32(4), 0x80000000);
+  mcu.clocks.writeUint32(0x30, 2);
+  assert.equal(mcu.clocks.refFreq, 12e6);
 });
 
 test("a power failure leaves an erase undefined", () => {

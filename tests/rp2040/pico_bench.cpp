@@ -4,6 +4,9 @@
 #include <sstream>
 
 #include "boards/pico/board.hpp"
+#include "hal/flash/entry.hpp"
+#include "hal/flash/mark.hpp"
+#include "hal/flash/slot.hpp"
 #include "sim/bus/module.hpp"
 
 namespace ex9000::pico {
@@ -42,13 +45,30 @@ unsigned pin_of(const Groups& groups, unsigned channel) {
   throw std::out_of_range("there is no pin for the channel");
 }
 
-}  // namespace
-
-std::string program_for_tests(const std::string& name) {
-  return std::string(EX9000_PICO_IMAGES) + "/" + name + ".bin";
+/// Returns the first sector of a page store that holds these pages.
+Bytes sector_with(const Bytes& memory) {
+  using namespace hal::flash;
+  Bytes sector(hal::kFlashSector, 0xFF);
+  std::copy(kNoMark.begin(), kNoMark.end(), sector.begin());
+  for (std::size_t page = 0; page < memory.size() / kPage; ++page) {
+    EntryBytes entry{};
+    std::copy_n(memory.begin() + static_cast<std::ptrdiff_t>(page * kPage), kPage, entry.begin() + kContentAt);
+    seal(entry, static_cast<std::uint32_t>(page) + 1U, page);
+    std::copy(entry.begin(), entry.end(), sector.begin() + offset_of(static_cast<Slot>(page + 1)));
+  }
+  return sector;
 }
 
-std::string image_of(const Model& model) { return program_for_tests(std::string(model.designation)); }
+}  // namespace
+
+std::string image_of(const Model& model, Memory memory) {
+  const char* preset = memory == Memory::Flash ? "/pico/" : "/pico-eeprom/";
+  return EX9000_BUILD_FOLDER + (preset + std::string(model.designation)) + ".bin";
+}
+
+std::string program_for_tests(const std::string& name) {
+  return EX9000_BUILD_FOLDER + ("/pico/" + name) + ".bin";
+}
 
 void PicoBench::begin_with(const std::string& file) {
   constexpr unsigned kTransmit = board::kUartPins.first_pin;
@@ -60,10 +80,16 @@ void PicoBench::begin_with(const std::string& file) {
 
 void PicoBench::begin_anew(const Model& model, const Settings* settings) {
   model_ = &model;
-  begin_with(image_of(model));
-  if (settings != nullptr) {
-    const auto image = sim::SimulatedModule::memory_image(model, *settings);
-    execute("memory " + hex_of(Bytes(image.begin(), image.end())));
+  begin_with(image_of(model, memory_));
+  if (settings == nullptr) {
+    return;
+  }
+  const auto memory = sim::SimulatedModule::memory_image(model, *settings);
+  const Bytes bytes(memory.begin(), memory.end());
+  if (memory_ == Memory::Eeprom) {
+    execute("memory " + hex_of(bytes));
+  } else {
+    execute("set-flash " + std::to_string(board::kSettingsInFlash) + " " + hex_of(sector_with(bytes)));
   }
 }
 

@@ -6,6 +6,7 @@
 #include <map>
 #include <string>
 
+#include "boards/rp2040/memory.hpp"
 #include "firmware/model/model.hpp"
 #include "firmware/settings/settings.hpp"
 #include "sim/play/transcript.hpp"
@@ -13,11 +14,16 @@
 
 namespace ex9000::pico {
 
+using board::Memory;
+
 /// All functions throw std::runtime_error if the image does something that silicon rejects.
 class PicoBench {
  public:
-  /// Provides a new board with the image of `model`. Its supply is off. `settings` are in the EEPROM; if the
-  /// pointer is null, the EEPROM is erased.
+  /// `memory`: where the images of this board store their settings.
+  explicit PicoBench(Memory memory = Memory::Flash) : memory_(memory) {}
+
+  /// Provides a new board with the image of `model`. Its supply is off. `settings` are in its memory; if the
+  /// pointer is null, the memory is erased.
   void begin_anew(const Model& model, const Settings* settings);
   /// Provides a new board with the content of its flash from a file, and an erased EEPROM.
   void begin_with(const std::string& file);
@@ -58,13 +64,14 @@ class PicoBench {
  private:
   void set_pin(unsigned number, const char* level);
 
+  Memory memory_;
   EmulatorProcess emulator_;
   const Model* model_ = nullptr;
   bool powered_ = false;
 };
 
 /// Returns the path of the content of the flash with the image of a model, or with a program for tests.
-std::string image_of(const Model& model);
+std::string image_of(const Model& model, Memory memory);
 std::string program_for_tests(const std::string& name);
 
 }  // namespace ex9000::pico

@@ -9,8 +9,8 @@ namespace {
 using std::chrono::microseconds;
 using std::chrono::milliseconds;
 
-/// The second stage copies the image in 70 ms, and the crystal starts in 1 ms.
-constexpr milliseconds kComingUp{150};
+/// A module replies within this time of a reset (wire.md section 2).
+constexpr milliseconds kComingUp{100};
 /// The image processes a byte and updates its pins in less time.
 constexpr microseconds kSettling{100};
 constexpr microseconds kBetweenEdges{40};

@@ -9,6 +9,8 @@ namespace ex9000::pico {
 /// Can play several transcripts, one after another. Time is virtual, so the host does not affect the result.
 class PicoTarget final : public play::Target {
  public:
+  explicit PicoTarget(Memory memory = Memory::Flash) : bench_(memory) {}
+
   void start(const Model& model, const Settings* preset) override;
   void send(const play::Bytes& bytes) override { bench_.send(bytes); }
   play::Bytes receive(std::size_t count, std::chrono::milliseconds patience) override {

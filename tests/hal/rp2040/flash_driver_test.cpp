@@ -97,8 +97,8 @@ class Chip {
     if (bytes_.size() != 4) {
       throw std::runtime_error("an erase with data");
     }
-    const std::size_t first = address() / Flash::kSector * Flash::kSector;
-    std::fill_n(content.begin() + static_cast<std::ptrdiff_t>(first), Flash::kSector, std::uint8_t{0xFF});
+    const std::size_t first = address() / hal::kFlashSector * hal::kFlashSector;
+    std::fill_n(content.begin() + static_cast<std::ptrdiff_t>(first), hal::kFlashSector, std::uint8_t{0xFF});
   }
 
   bool selected_ = false;
@@ -176,7 +176,7 @@ class FlashDriver : public testing::Test {
     return bytes;
   }
   void program(std::uint32_t address, const std::vector<std::uint8_t>& bytes) {
-    Flash::begin_program(address, {bytes.data(), bytes.size()});
+    Flash::start_program(address, {bytes.data(), bytes.size()});
     EXPECT_TRUE(Flash::busy());
     ssi_.chip.complete();
     EXPECT_FALSE(Flash::busy());
@@ -197,11 +197,11 @@ TEST_F(FlashDriver, ReadsWhatItHasProgrammed) {
 
 TEST_F(FlashDriver, ProgramsAWholePage) {
   std::vector<std::uint8_t> page;
-  for (unsigned i = 0; i < Flash::kPage; ++i) {
+  for (unsigned i = 0; i < hal::kFlashPage; ++i) {
     page.push_back(static_cast<std::uint8_t>(i));
   }
   program(0x1F'0100, page);
-  EXPECT_EQ(read(0x1F'0100, Flash::kPage), page);
+  EXPECT_EQ(read(0x1F'0100, hal::kFlashPage), page);
 }
 
 TEST_F(FlashDriver, ErasesOnlyTheSector) {
@@ -209,7 +209,7 @@ TEST_F(FlashDriver, ErasesOnlyTheSector) {
   program(0x1F'1000, {0});
   program(0x1F'1FFF, {0});
   program(0x1F'2000, {0});
-  Flash::begin_erase(kPlace);
+  Flash::start_erase(kPlace);
   EXPECT_TRUE(Flash::busy());
   ssi_.chip.complete();
   EXPECT_EQ(read(0x1F'0FFF, 2), (std::vector<std::uint8_t>{0, 0xFF}));
@@ -218,7 +218,7 @@ TEST_F(FlashDriver, ErasesOnlyTheSector) {
 
 TEST_F(FlashDriver, ReadsAnotherSectorWhileAnEraseIsSuspended) {
   program(0x1F'0000, {7});
-  Flash::begin_erase(kPlace);
+  Flash::start_erase(kPlace);
   Flash::suspend();
   EXPECT_FALSE(Flash::busy());
   EXPECT_EQ(read(0x1F'0000, 1), std::vector<std::uint8_t>{7});
@@ -229,12 +229,12 @@ TEST_F(FlashDriver, ReadsAnotherSectorWhileAnEraseIsSuspended) {
 }
 
 TEST_F(FlashDriver, ContinuesAnEraseThatAResetHasLeftSuspended) {
-  Flash::begin_erase(kPlace);
+  Flash::start_erase(kPlace);
   Flash::suspend();
   Flash::start();
   EXPECT_TRUE(Flash::busy());
   ssi_.chip.complete();
-  Flash::begin_erase(kPlace);
+  Flash::start_erase(kPlace);
   Flash::start();
   EXPECT_TRUE(Flash::busy());
 }

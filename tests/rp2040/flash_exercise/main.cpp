@@ -23,8 +23,8 @@ using namespace hal::rp2040;
 using hal::cortex_m::Interrupts;
 
 constexpr std::uint32_t kHertz = kClock.frequency();
-constexpr std::uint32_t kSector = 0x1F'0000;  // the first one for settings
-constexpr std::uint32_t kOtherSector = kSector + Flash::kSector;
+constexpr std::uint32_t kSector = kSettingsInFlash;
+constexpr std::uint32_t kOtherSector = kSector + hal::kFlashSector;
 constexpr std::size_t kRecord = 32;
 
 using LineEndTimer = OneShotTimer<1>;
@@ -85,14 +85,14 @@ void program(std::uint32_t address) {
   for (std::size_t i = 0; i < kRecord; ++i) {
     record[i] = content(address + static_cast<std::uint32_t>(i));
   }
-  Flash::begin_program(address, {record.data(), record.size()});
+  Flash::start_program(address, {record.data(), record.size()});
   wait();
 }
 
 /// Erases the sector. Suspends the erase once, and reads the other sector in the meantime.
 void erase() {
   results().erasing = 1;
-  Flash::begin_erase(kSector);
+  Flash::start_erase(kSector);
   for (int i = 0; i < 1000; ++i) {
     static_cast<void>(Flash::busy());
   }
