@@ -1,28 +1,50 @@
 // The CRC-32 of the stored settings.
 #pragma once
 
+#include <array>
 #include <cstdint>
-
-#include "firmware/bytes.hpp"
 
 namespace ex9000 {
 
-/// Computes the CRC-32 of IEEE 802.3, 3.2.9, byte by byte. It uses no table and needs about 60 instructions
-/// per byte, because settings are rarely loaded and stored.
+/// The remainders of four bits: a CRC takes two steps for each byte.
+class Crc32Remainders {
+ public:
+  static constexpr unsigned kBits = 4;
+
+  constexpr Crc32Remainders() {
+    constexpr std::uint32_t kReflectedPolynomial = 0xEDB8'8320;
+    for (std::uint32_t value = 0; value < remainders_.size(); ++value) {
+      std::uint32_t remainder = value;
+      for (unsigned bit = 0; bit < kBits; ++bit) {
+        remainder = (remainder & 1U) != 0 ? (remainder >> 1U) ^ kReflectedPolynomial : remainder >> 1U;
+      }
+      remainders_[value] = remainder;
+    }
+  }
+
+  /// Returns the remainder of the lowest bits of `value`.
+  constexpr std::uint32_t of(std::uint32_t value) const { return remainders_[value % remainders_.size()]; }
+
+ private:
+  std::array<std::uint32_t, 1U << kBits> remainders_{};
+};
+inline constexpr Crc32Remainders kCrc32Remainders;
+
+/// Computes the CRC-32 of IEEE 802.3, 3.2.9. It uses a table because a module with a page store computes up to
+/// a thousand of them before its first reply (hal/flash/page_store.hpp).
 class Crc32 {
  public:
   constexpr void add(std::uint8_t byte) {
-    constexpr unsigned kBits = 8;
-    constexpr std::uint32_t kReflectedPolynomial = 0xEDB8'8320;
     crc_ ^= byte;
-    for (unsigned bit = 0; bit < kBits; ++bit) {
-      crc_ = (crc_ & 1U) != 0 ? (crc_ >> 1U) ^ kReflectedPolynomial : crc_ >> 1U;
-    }
+    step();
+    step();
   }
 
   [[nodiscard]] constexpr std::uint32_t value() const { return ~crc_; }
 
  private:
+  constexpr void step() { crc_ = (crc_ >> Crc32Remainders::kBits) ^ kCrc32Remainders.of(crc_); }
+
   std::uint32_t crc_ = 0xFFFF'FFFF;
 };
 

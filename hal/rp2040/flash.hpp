@@ -17,14 +17,14 @@ namespace ex9000::hal::rp2040 {
 /// select itself, so a delay between two bytes does no harm. The flash is not mapped into memory after
 /// `start`.
 ///
-/// All functions are for the main loop. A function takes 0.5 us for each byte on the wires. A command and its
-/// address have four bytes.
+/// All functions are for the main loop. A byte that is read takes 0.3 us, and another one up to 0.6 us. A command
+/// and its address have four bytes.
 class Flash {
  public:
   /// Call this once, before the other functions. A reset does not interrupt an operation of the flash. This
   /// function continues it if it was suspended, so the flash may be busy afterwards.
   static void start() {
-    constexpr std::uint32_t kDivider = 8;  // even; 15.6 MHz
+    constexpr std::uint32_t kDivider = 4;  // even; 31.25 MHz. Read Data allows 50 MHz
     constexpr Bits<Control> kBytesBothWays(7U << 16U);
     select(false);
     kEnable.write({});
@@ -62,9 +62,14 @@ class Flash {
   static void resume() { command(kResume); }
 
   static void read(std::uint32_t address, MutableBytes destination) {
+    constexpr std::size_t kMostInTransit = 8;  // the queues have room for 16 bytes
     address_command(kReadData, address);
+    std::size_t requested = 0;
     for (std::size_t i = 0; i < destination.size; ++i) {
-      destination.data[i] = exchange(0);
+      for (; requested < destination.size && requested - i < kMostInTransit; ++requested) {
+        kData.write({});
+      }
+      destination.data[i] = take();
     }
     select(false);
   }
@@ -105,8 +110,13 @@ class Flash {
 
   /// Sends a byte and returns the byte that is received at the same time.
   static std::uint8_t exchange(std::uint8_t byte) {
-    constexpr Bits<Status> kReceived(1U << 3U);
     kData.write(Bits<Data>(byte));
+    return take();
+  }
+
+  /// Waits for a received byte and takes it from the queue.
+  static std::uint8_t take() {
+    constexpr Bits<Status> kReceived(1U << 3U);
     while (!kStatus.read().has(kReceived)) {
     }
     return static_cast<std::uint8_t>(kData.read().value());

@@ -45,18 +45,25 @@ unsigned pin_of(const Groups& groups, unsigned channel) {
   throw std::out_of_range("there is no pin for the channel");
 }
 
-/// Returns the first sector of a page store that holds these pages.
-Bytes sector_with(const Bytes& memory) {
+/// Returns a sector of a page store whose log contains the pages of `memory` again and again, in `entries`
+/// entries. `sequence` is the one of the first entry.
+Bytes sector_with(const Bytes& memory, std::uint32_t sequence, std::size_t entries) {
   using namespace hal::flash;
   Bytes sector(hal::kFlashSector, 0xFF);
   std::copy(kNoMark.begin(), kNoMark.end(), sector.begin());
-  for (std::size_t page = 0; page < memory.size() / kPage; ++page) {
+  for (std::size_t i = 0; i < entries; ++i) {
+    const std::size_t page = i % kPages;
     EntryBytes entry{};
     std::copy_n(memory.begin() + static_cast<std::ptrdiff_t>(page * kPage), kPage, entry.begin() + kContentAt);
-    seal(entry, static_cast<std::uint32_t>(page) + 1U, page);
-    std::copy(entry.begin(), entry.end(), sector.begin() + offset_of(static_cast<Slot>(page + 1)));
+    seal(entry, sequence + static_cast<std::uint32_t>(i), page);
+    std::copy(entry.begin(), entry.end(), sector.begin() + offset_of(static_cast<Slot>(i + 1)));
   }
   return sector;
+}
+
+Bytes memory_with(const Model& model, const Settings& settings) {
+  const auto memory = sim::SimulatedModule::memory_image(model, settings);
+  return {memory.begin(), memory.end()};
 }
 
 }  // namespace
@@ -84,13 +91,25 @@ void PicoBench::begin_anew(const Model& model, const Settings* settings) {
   if (settings == nullptr) {
     return;
   }
-  const auto memory = sim::SimulatedModule::memory_image(model, *settings);
-  const Bytes bytes(memory.begin(), memory.end());
+  const Bytes memory = memory_with(model, *settings);
   if (memory_ == Memory::Eeprom) {
-    execute("memory " + hex_of(bytes));
+    execute("memory " + hex_of(memory));
   } else {
-    execute("set-flash " + std::to_string(board::kSettingsInFlash) + " " + hex_of(sector_with(bytes)));
+    set_sector(0, sector_with(memory, 1, hal::flash::kPages));
   }
+}
+
+void PicoBench::fill_log(const Settings& settings) {
+  constexpr std::uint32_t kEntries = hal::flash::kSlotsOfASector - 1;
+  const Bytes memory = memory_with(*model_, settings);
+  for (unsigned sector = 0; sector < hal::flash::kSectors; ++sector) {
+    set_sector(sector, sector_with(memory, 1 + sector * kEntries, kEntries));
+  }
+}
+
+void PicoBench::set_sector(unsigned sector, const Bytes& bytes) {
+  execute("set-flash " + std::to_string(board::kSettingsInFlash + sector * hal::kFlashSector) + " " +
+          hex_of(bytes));
 }
 
 void PicoBench::power(bool on) {

@@ -25,6 +25,8 @@ class PicoBench {
   /// Provides a new board with the image of `model`. Its supply is off. `settings` are in its memory; if the
   /// pointer is null, the memory is erased.
   void begin_anew(const Model& model, const Settings* settings);
+  /// Lets the log of the page store be as long as possible: all sectors are full of entries with these settings.
+  void fill_log(const Settings& settings);
   /// Provides a new board with the content of its flash from a file, and an erased EEPROM.
   void begin_with(const std::string& file);
 
@@ -63,6 +65,8 @@ class PicoBench {
 
  private:
   void set_pin(unsigned number, const char* level);
+  /// Sets the bytes of a sector of the page store.
+  void set_sector(unsigned sector, const play::Bytes& bytes);
 
   Memory memory_;
   EmulatorProcess emulator_;

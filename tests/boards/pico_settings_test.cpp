@@ -1,0 +1,244 @@
+// Tests the images for the Pico that store their settings in the flash: requests and pulses while the flash
+// programs and erases, the time of a store, power failures, and the time of a start.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cstdint>
+#include <cstdio>
+#include <map>
+#include <random>
+#include <string>
+#include <vector>
+
+#include "boards/pico/board.hpp"
+#include "firmware/model/baud.hpp"
+#include "sim/play/modbus_frame.hpp"
+#include "tests/rp2040/pico_bench.hpp"
+
+namespace ex9000::pico {
+namespace {
+
+using play::Bytes;
+using std::chrono::microseconds;
+using std::chrono::milliseconds;
+using std::chrono::nanoseconds;
+
+// wire.md sections 2 and 7
+constexpr milliseconds kComingUp{100};
+constexpr milliseconds kLatestReply{20};
+constexpr milliseconds kLatestReplyToAStore{200};
+
+constexpr std::uint32_t kBaud = 115200;
+constexpr nanoseconds kBit(1'000'000'000 / kBaud);
+/// The silence before a request: 1.75 ms (Modbus over Serial Line V1.02, 2.5.1.1).
+constexpr microseconds kSilence{1750};
+
+constexpr std::uint8_t kAddress = 1;
+constexpr unsigned kInputs = 8;
+
+/// A request to write the timeout of the host watchdog, which is stored, and its reply.
+Bytes store_of(std::uint8_t timeout) { return with_crc({kAddress, 6, 0x01, 0xE8, 0, timeout}); }
+
+class PicoSettings : public testing::Test {
+ protected:
+  static constexpr std::uint8_t kFirstTimeout = 0xFF;
+
+  PicoSettings() : settings_(Settings::factory(model_)) {
+    while (baud_rate(settings_.baud_code) != kBaud) {
+      ++settings_.baud_code;
+    }
+  }
+
+  /// Provides a new board that replies at kBaud.
+  void prepare() {
+    bench_.begin_anew(model_, &settings_);
+    bench_.set_baud(kBaud);
+  }
+  void begin() {
+    prepare();
+    start();
+  }
+  void start() {
+    bench_.power(true);
+    bench_.run_for(kComingUp);
+    bench_.heard();
+  }
+  void cut() {
+    bench_.power(false);
+    bench_.run_for(milliseconds(10));
+  }
+
+  /// Sends a request after a silence, and returns `size` bytes of the reply. Sets `waited_` to the time from
+  /// the end of the request to the start of the reply.
+  Bytes ask(const Bytes& request, std::size_t size) {
+    bench_.run_for(kSilence);
+    bench_.send(request);
+    const nanoseconds end = bench_.now();
+    Bytes reply = bench_.receive(size, 2 * kLatestReplyToAStore);
+    waited_ = bench_.now() - end - static_cast<int>(size) * 10 * kBit + kBit / 2;
+    return reply;
+  }
+  void expect_store(std::uint8_t timeout) {
+    ASSERT_EQ(ask(store_of(timeout), 8), store_of(timeout));
+    ASSERT_LE(waited_, kLatestReplyToAStore);
+  }
+  unsigned stored_timeout() {
+    const Bytes reply = ask(with_crc({kAddress, 3, 0x01, 0xE8, 0, 1}), 7);
+    EXPECT_LE(waited_, kLatestReply);
+    EXPECT_EQ(reply.size(), 7U);
+    return reply.size() == 7U ? reply[4] : 0U;
+  }
+  long erases() { return bench_.counts().at("erases"); }
+
+  const Model& model_ = *find_model("EX9052D-M");
+  Settings settings_;
+  PicoBench bench_;
+  nanoseconds waited_{};
+};
+
+/// Returns the counters of all inputs, from the reply to a request for them.
+std::vector<unsigned> counters_in(const Bytes& reply) {
+  constexpr std::size_t kHead = 3;
+  std::vector<unsigned> counters;
+  for (std::size_t channel = 0; channel < kInputs; ++channel) {
+    counters.push_back(reply.at(kHead + 2 * channel) * 256U + reply.at(kHead + 2 * channel + 1));
+  }
+  return counters;
+}
+
+TEST_F(PicoSettings, NothingIsLostWhileSettingsAreStoredContinuously) {
+  begin();
+  constexpr unsigned kRequests = 10'000;
+  constexpr unsigned kPulses = 32'000;
+  constexpr unsigned kEdgeToEdge = 1'000'000;  // ns
+  constexpr unsigned kLaterPerChannel = 7'000;
+  for (unsigned channel = 0; channel < kInputs; ++channel) {
+    bench_.execute("train " + std::to_string(board::kInputs[0].first_pin + channel) + " " +
+                   std::to_string(kPulses) + " " + std::to_string(kEdgeToEdge + kLaterPerChannel * channel));
+  }
+  const Bytes read_counters = with_crc({kAddress, 4, 0, 0, 0, kInputs});
+  constexpr std::size_t kReplySize = 3 + 2 * kInputs + 2;
+  std::vector<unsigned> counters(kInputs);
+  nanoseconds longest_store{};
+  nanoseconds longest_read{};
+  for (unsigned i = 0; i < kRequests / 2; ++i) {
+    ASSERT_NO_FATAL_FAILURE(expect_store(static_cast<std::uint8_t>(1 + i % 200))) << i;
+    longest_store = std::max(longest_store, waited_);
+    const Bytes reply = ask(read_counters, kReplySize);
+    ASSERT_EQ(reply.size(), kReplySize) << i;
+    ASSERT_EQ(reply, with_crc({reply.begin(), reply.end() - 2})) << i;
+    ASSERT_LE(waited_, kLatestReply) << i;
+    longest_read = std::max(longest_read, waited_);
+    const std::vector<unsigned> before = counters;
+    counters = counters_in(reply);
+    for (unsigned channel = 0; channel < kInputs; ++channel) {
+      ASSERT_GE(counters[channel], before[channel]) << i;
+    }
+  }
+  const nanoseconds end(2ULL * kPulses * (kEdgeToEdge + kLaterPerChannel * kInputs));
+  EXPECT_LT(bench_.now(), end) << "there were no pulses during the last requests";
+  std::printf("%u requests, %ld erases; longest turn-around: %.1f ms after a store, %.2f ms after a read\n",
+              kRequests, erases(), static_cast<double>(longest_store.count()) / 1e6,
+              static_cast<double>(longest_read.count()) / 1e6);
+  EXPECT_GE(erases(), static_cast<long>(kRequests / 2 / 79));  // a sector has room for 79 entries
+  bench_.run_for(end + milliseconds(100) - bench_.now());
+  EXPECT_EQ(counters_in(ask(read_counters, kReplySize)), std::vector<unsigned>(kInputs, kPulses));
+  for (const char* wrong : {"lost", "early", "late", "framing", "shorts", "timeouts", "requests"}) {
+    EXPECT_EQ(bench_.counts().at(wrong), 0) << wrong;
+  }
+}
+
+TEST_F(PicoSettings, StoresHalfASecondApartReplyInTimeWithTheSlowestFlash) {
+  prepare();
+  bench_.execute("flash-times 400000000 3000000");
+  start();
+  constexpr int kStores = 170;  // more than two sectors hold
+  for (int i = 0; i < kStores; ++i) {
+    // The offset lets the stores meet every part of an erase.
+    bench_.run_for(milliseconds(500 + i % 7 * 9) - kSilence);
+    ASSERT_NO_FATAL_FAILURE(expect_store(static_cast<std::uint8_t>(1 + i))) << i;
+  }
+  EXPECT_GE(erases(), 13 + kStores / 79);  // those of the first start, and one for each full sector
+}
+
+TEST_F(PicoSettings, AnErasedFlashIsReadyForTheFirstCommand) {
+  settings_ = Settings::factory(model_);
+  bench_.begin_anew(model_, nullptr);
+  bench_.power(true);
+  bench_.run_for(kComingUp);
+  const Bytes request = store_of(7);
+  bench_.send(request);
+  EXPECT_EQ(bench_.receive(8, kLatestReplyToAStore), request);
+  EXPECT_TRUE(bench_.led());
+  cut();
+  start();
+  bench_.send(with_crc({kAddress, 3, 0x01, 0xE8, 0, 1}));
+  EXPECT_EQ(bench_.receive(7, kLatestReply), with_crc({kAddress, 3, 2, 0, 7}));
+}
+
+TEST_F(PicoSettings, AModuleWithAFullLogStartsInTime) {
+  settings_.watchdog_timeout = 77;
+  prepare();
+  bench_.fill_log(settings_);
+  start();
+  EXPECT_EQ(stored_timeout(), 77U);
+}
+
+TEST_F(PicoSettings, APowerFailureDuringAStoreLeavesTheOldOrTheNewValue) {
+  std::map<unsigned, int> found;
+  for (int i = 0; i < 60; ++i) {
+    begin();
+    ASSERT_NO_FATAL_FAILURE(expect_store(1));
+    bench_.run_for(milliseconds(1000));  // until all sectors have been erased
+    bench_.send(store_of(2));
+    bench_.run_for(microseconds(50) * i);
+    cut();
+    start();
+    ++found[stored_timeout()];
+  }
+  EXPECT_GT(found[1], 0);
+  EXPECT_GT(found[2], 0);
+  EXPECT_EQ(found.size(), 2U);
+}
+
+TEST_F(PicoSettings, PowerFailuresAtAnyTimeLoseNoValueThatWasStored) {
+  constexpr unsigned kSeed = 1;
+  std::mt19937 random(kSeed);
+  prepare();
+  unsigned stored = kFirstTimeout;
+  unsigned next = 0;
+  for (int i = 0; i < 100; ++i) {
+    start();
+    const unsigned found = stored_timeout();
+    ASSERT_TRUE(found == stored || found == next) << "power failure " << i << ": " << found << " instead of "
+                                                  << stored << " or " << next;
+    stored = found;
+    for (unsigned stores = random() % 40; stores != 0; --stores) {
+      stored = 1 + stored % 250;
+      ASSERT_NO_FATAL_FAILURE(expect_store(static_cast<std::uint8_t>(stored))) << i;
+    }
+    next = 1 + stored % 250;
+    bench_.run_for(kSilence + microseconds(random() % 200'000));
+    bench_.send(store_of(static_cast<std::uint8_t>(next)));
+    bench_.run_for(microseconds(random() % 4'000));
+    cut();
+  }
+  EXPECT_GT(erases(), 14);
+}
+
+TEST_F(PicoSettings, AResetDuringAnEraseWaitsForItsEnd) {
+  constexpr const char* kUndefined = " 56832";
+  constexpr milliseconds kErase{400};
+  begin();
+  ASSERT_NO_FATAL_FAILURE(expect_store(7));
+  bench_.execute("flash-times " + std::to_string(nanoseconds(kErase).count()) + " 400000");
+  bench_.run_for(milliseconds(100));  // until the next erase has begun
+  bench_.execute("write " + bench_.execute("pc") + kUndefined);
+  bench_.run_for(milliseconds(20));
+  EXPECT_EQ(bench_.counts().at("requests"), 1);
+  bench_.run_for(kErase + kComingUp);
+  EXPECT_EQ(stored_timeout(), 7U);
+}
+
+}  // namespace
+}  // namespace ex9000::pico
