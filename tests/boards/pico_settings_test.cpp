@@ -150,6 +150,7 @@ TEST_F(PicoSettings, NothingIsLostWhileSettingsAreStoredContinuously) {
 
 TEST_F(PicoSettings, StoresHalfASecondApartReplyInTimeWithTheSlowestFlash) {
   prepare();
+  bench_.forget_erased_sectors();
   bench_.execute("flash-times 400000000 3000000");
   start();
   constexpr int kStores = 170;  // more than two sectors hold
@@ -162,10 +163,8 @@ TEST_F(PicoSettings, StoresHalfASecondApartReplyInTimeWithTheSlowestFlash) {
 }
 
 TEST_F(PicoSettings, AnErasedFlashIsReadyForTheFirstCommand) {
-  settings_ = Settings::factory(model_);
-  bench_.begin_anew(model_, nullptr);
-  bench_.power(true);
-  bench_.run_for(kComingUp);
+  bench_.begin_with(image_of(model_, Memory::Flash));
+  start();
   const Bytes request = store_of(7);
   bench_.send(request);
   EXPECT_EQ(bench_.receive(8, kLatestReplyToAStore), request);
@@ -189,7 +188,7 @@ TEST_F(PicoSettings, APowerFailureDuringAStoreLeavesTheOldOrTheNewValue) {
   for (int i = 0; i < 60; ++i) {
     begin();
     ASSERT_NO_FATAL_FAILURE(expect_store(1));
-    bench_.run_for(milliseconds(1000));  // until all sectors have been erased
+    bench_.run_for(kSilence);
     bench_.send(store_of(2));
     bench_.run_for(microseconds(50) * i);
     cut();
@@ -210,8 +209,8 @@ TEST_F(PicoSettings, PowerFailuresAtAnyTimeLoseNoValueThatWasStored) {
   for (int i = 0; i < 100; ++i) {
     start();
     const unsigned found = stored_timeout();
-    ASSERT_TRUE(found == stored || found == next) << "power failure " << i << ": " << found << " instead of "
-                                                  << stored << " or " << next;
+    ASSERT_TRUE(found == stored || found == next)
+        << "power failure " << i << ": " << found << " instead of " << stored << " or " << next;
     stored = found;
     for (unsigned stores = random() % 40; stores != 0; --stores) {
       stored = 1 + stored % 250;
@@ -229,7 +228,9 @@ TEST_F(PicoSettings, PowerFailuresAtAnyTimeLoseNoValueThatWasStored) {
 TEST_F(PicoSettings, AResetDuringAnEraseWaitsForItsEnd) {
   constexpr const char* kUndefined = " 56832";
   constexpr milliseconds kErase{400};
-  begin();
+  prepare();
+  bench_.forget_erased_sectors();
+  start();
   ASSERT_NO_FATAL_FAILURE(expect_store(7));
   bench_.execute("flash-times " + std::to_string(nanoseconds(kErase).count()) + " 400000");
   bench_.run_for(milliseconds(100));  // until the next erase has begun

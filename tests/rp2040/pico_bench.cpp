@@ -54,7 +54,8 @@ Bytes sector_with(const Bytes& memory, std::uint32_t sequence, std::size_t entri
   for (std::size_t i = 0; i < entries; ++i) {
     const std::size_t page = i % kPages;
     EntryBytes entry{};
-    std::copy_n(memory.begin() + static_cast<std::ptrdiff_t>(page * kPage), kPage, entry.begin() + kContentAt);
+    std::copy_n(memory.begin() + static_cast<std::ptrdiff_t>(page * kPage), kPage,
+                entry.begin() + kContentAt);
     seal(entry, sequence + static_cast<std::uint32_t>(i), page);
     std::copy(entry.begin(), entry.end(), sector.begin() + offset_of(static_cast<Slot>(i + 1)));
   }
@@ -88,6 +89,11 @@ void PicoBench::begin_with(const std::string& file) {
 void PicoBench::begin_anew(const Model& model, const Settings* settings) {
   model_ = &model;
   begin_with(image_of(model, memory_));
+  if (memory_ == Memory::Flash) {
+    for (unsigned sector = 0; sector < hal::flash::kSectors; ++sector) {
+      set_sector(sector, {hal::flash::kMark.begin(), hal::flash::kMark.end()});
+    }
+  }
   if (settings == nullptr) {
     return;
   }
@@ -96,6 +102,12 @@ void PicoBench::begin_anew(const Model& model, const Settings* settings) {
     execute("memory " + hex_of(memory));
   } else {
     set_sector(0, sector_with(memory, 1, hal::flash::kPages));
+  }
+}
+
+void PicoBench::forget_erased_sectors() {
+  for (unsigned sector = 1; sector < hal::flash::kSectors; ++sector) {
+    set_sector(sector, Bytes(hal::flash::kMark.size(), 0xFF));
   }
 }
 

@@ -23,9 +23,11 @@ class PicoBench {
   explicit PicoBench(Memory memory = Memory::Flash) : memory_(memory) {}
 
   /// Provides a new board with the image of `model`. Its supply is off. `settings` are in its memory; if the
-  /// pointer is null, the memory is erased.
+  /// pointer is null, the memory holds none. A store in the flash knows that its free sectors are erased.
   void begin_anew(const Model& model, const Settings* settings);
-  /// Lets the log of the page store be as long as possible: all sectors are full of entries with these settings.
+  /// Lets the store in the flash of a new board erase all free sectors, as on the first start of a module.
+  void forget_erased_sectors();
+  /// Fills the log of the page store: all sectors are full of entries with these settings.
   void fill_log(const Settings& settings);
   /// Provides a new board with the content of its flash from a file, and an erased EEPROM.
   void begin_with(const std::string& file);
