@@ -21,7 +21,8 @@ inline constexpr Memory kMemory = Memory::Eeprom;
 #else
 inline constexpr Memory kMemory = Memory::Flash;
 #endif
-/// The first byte for settings, if they are in the flash: an offset in bytes. image.ld reserves the last 64 KiB.
+/// The first byte for settings, if they are in the flash: an offset in bytes. image.ld reserves the last 64
+/// KiB.
 inline constexpr std::uint32_t kSettingsInFlash = (2048U - 64U) * 1024U;
 
 /// The line is UART0 on GPIO0 (transmit) and GPIO1 (receive).

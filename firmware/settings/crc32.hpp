@@ -23,15 +23,17 @@ class Crc32Remainders {
   }
 
   /// Returns the remainder of the lowest bits of `value`.
-  constexpr std::uint32_t of(std::uint32_t value) const { return remainders_[value % remainders_.size()]; }
+  [[nodiscard]] constexpr std::uint32_t of(std::uint32_t value) const {
+    return remainders_[value % remainders_.size()];
+  }
 
  private:
   std::array<std::uint32_t, 1U << kBits> remainders_{};
 };
 inline constexpr Crc32Remainders kCrc32Remainders;
 
-/// Computes the CRC-32 of IEEE 802.3, 3.2.9. It uses a table because a module with a page store computes up to
-/// a thousand of them before its first reply (hal/flash/page_store.hpp).
+/// Computes the CRC-32 of IEEE 802.3, 3.2.9. It uses a table because a module with a page store computes up
+/// to a thousand of them before its first reply (hal/flash/page_store.hpp).
 class Crc32 {
  public:
   constexpr void add(std::uint8_t byte) {

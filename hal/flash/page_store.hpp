@@ -39,8 +39,8 @@ namespace ex9000::hal::flash {
 ///
 /// With the longest times of the data sheet and a poll every millisecond, a read takes at most 5 ms, and a
 /// write at most 14 ms. Typical times are 0 ms and 1 ms. A job fails if it has not ended after kLongestRead
-/// or kLongestWrite. The first job after a reset also waits for the scan of the log, which reads at most 50 KB
-/// and computes at most 1,100 CRCs.
+/// or kLongestWrite. The first job after a reset also waits for the scan of the log, which reads at most 50
+/// KB and computes at most 1,100 CRCs.
 ///
 /// tests/hal/flash measures these times, cuts the power at each operation, and counts erases.
 template <class Flash, std::uint32_t kBegin>

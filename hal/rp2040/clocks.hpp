@@ -1,5 +1,5 @@
-// Clock tree: system PLL, and the clocks of processor and peripherals. Source: RP2040 data sheet, 2.15 (clocks)
-// and 2.18 (PLL).
+// Clock tree: system PLL, and the clocks of processor and peripherals. Source: RP2040 data sheet, 2.15
+// (clocks) and 2.18 (PLL).
 #pragma once
 
 #include <cstdint>
@@ -25,8 +25,8 @@ struct ClockTree {
 class Clocks {
  public:
   /// Switches the reference clock to the crystal, which the second stage has started, and processor and
-  /// peripherals to the PLL. Call this once after reset, when the watchdog is running. It blocks for less than
-  /// 1 ms. If the crystal is not stable or the PLL does not lock, the watchdog resets the MCU.
+  /// peripherals to the PLL. Call this once after reset, when the watchdog is running. It blocks for less
+  /// than 1 ms. If the crystal is not stable or the PLL does not lock, the watchdog resets the MCU.
   template <const ClockTree& clock>
   static void use() {
     static_assert(clock.oscillator() >= 750'000'000 && clock.oscillator() <= 1'600'000'000,

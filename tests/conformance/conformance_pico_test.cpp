@@ -1,5 +1,6 @@
 // Plays the transcripts of the manuals' models on the images for the Pico, in an emulator and in virtual
-// time. All these images store their settings in the flash. One model also runs with its settings in an EEPROM.
+// time. All these images store their settings in the flash. One model also runs with its settings in an
+// EEPROM.
 #include <gtest/gtest.h>
 
 #include <algorithm>
