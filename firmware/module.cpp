@@ -1,5 +1,7 @@
 #include "firmware/module.hpp"
 
+#include <initializer_list>
+
 namespace ex9000 {
 
 namespace {
@@ -99,11 +101,12 @@ void Module::collect_edges() {
 }
 
 void Module::count_host_oks() {
-  const std::uint32_t host_oks = receiver_.host_oks();
-  if (host_oks != host_oks_seen_) {
-    host_oks_seen_ = host_oks;
+  if (!receiver_.host_oks().waiting()) {
+    return;
+  }
+  const HostOks::Times times = receiver_.host_oks().take_in_main_loop();
+  for (const Time received : {times.first, times.last}) {
     // A host OK counts from the time of its reception. It is too late if the watchdog expired before that.
-    const Time received = receiver_.host_ok_time();
     expire_host_watchdog(received);
     host_watchdog_.restart(received);
   }
@@ -156,10 +159,14 @@ Duration Module::turn_around() const {
 }
 
 void Module::continue_store(Time now) {
+  const bool awaiting_store = cycle_.phase() == RequestCycle::Phase::AwaitingStore;
   if (keeper_.busy()) {
+    if (awaiting_store) {
+      keeper_.let_command_through();
+    }
     return;
   }
-  if (cycle_.phase() == RequestCycle::Phase::AwaitingStore) {
+  if (awaiting_store) {
     const Settings changed = cycle_.outcome().change().applied_to(state_.settings);
     if (changed == keeper_.stored() && keeper_.certain()) {
       commit(now);  // a command that changes nothing writes nothing

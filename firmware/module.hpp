@@ -56,7 +56,7 @@ class Module {
   [[nodiscard]] bool request_waits() const { return receiver_.queue().has_frame(); }
   /// Returns whether a host OK has arrived that `step` has not processed yet. The call of `step` may be late,
   /// because the host watchdog restarts from the time at which the host OK was received. For the main loop.
-  [[nodiscard]] bool host_ok_waits() const { return receiver_.host_oks() != host_oks_seen_; }
+  [[nodiscard]] bool host_ok_waits() const { return receiver_.host_oks().waiting(); }
 
   // --- main loop ---
 
@@ -136,7 +136,6 @@ class Module {
   TimingAt timing_at_;
   Start start_ = Start::Loading;
   Deadline init_timeout_;
-  std::uint32_t host_oks_seen_ = 0;
 
   State state_;
   InputEdges edges_;

@@ -50,8 +50,7 @@ void Receiver::note(Verdict verdict, Time over) {
   }
   tallies_.count_in_interrupt(verdict);
   if (verdict == Verdict::HostOk) {
-    host_ok_time_.store_in_interrupt(over.microseconds());
-    host_oks_.store_in_interrupt(host_oks_.load() + 1U);
+    host_oks_.add_in_interrupt(over);
   }
 }
 

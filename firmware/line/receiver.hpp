@@ -3,9 +3,9 @@
 
 #include <cstdint>
 
-#include "firmware/line/crossing.hpp"
 #include "firmware/line/dcon_assembler.hpp"
 #include "firmware/line/frame_queue.hpp"
+#include "firmware/line/host_oks.hpp"
 #include "firmware/line/line_tallies.hpp"
 #include "firmware/line/rtu_assembler.hpp"
 #include "firmware/line/timing.hpp"
@@ -54,10 +54,8 @@ class Receiver {
   [[nodiscard]] const FrameQueue& queue() const { return queue_; }
   constexpr LineTallies& tallies() { return tallies_; }
   [[nodiscard]] constexpr const LineTallies& tallies() const { return tallies_; }
-  /// Returns the number of received host OKs; wraps. Interrupts may call this too.
-  [[nodiscard]] std::uint32_t host_oks() const { return host_oks_.load(); }
-  /// Returns the time of the last host OK: the time of its CR, or the end of the silence after it.
-  [[nodiscard]] Time host_ok_time() const { return Time(host_ok_time_.load()); }
+  HostOks& host_oks() { return host_oks_; }
+  [[nodiscard]] const HostOks& host_oks() const { return host_oks_; }
 
  private:
   [[nodiscard]] bool modbus() const { return kBuiltModbus && protocol_ == Protocol::ModbusRtu; }
@@ -67,8 +65,7 @@ class Receiver {
   RtuAssembler rtu_;
   Protocol protocol_ = Protocol::Ascii;
   LineTallies tallies_;
-  WrittenByInterrupt<std::uint32_t> host_oks_;
-  WrittenByInterrupt<std::uint32_t> host_ok_time_;
+  HostOks host_oks_;
   FrameQueue queue_;
 };
 

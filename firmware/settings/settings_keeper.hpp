@@ -40,6 +40,14 @@ class SettingsKeeper {
   /// Starts to store the settings of a command. Call this only while not `busy()`. `saved()` is valid as soon
   /// as `busy()` is false again.
   void save(const Settings& settings, Time now);
+  /// Shortens a save that does not belong to a command: its next failed attempt ends it, and it is retried a
+  /// second later. Call this while a command waits for this save, so that its reply is not late if the memory
+  /// fails.
+  void let_command_through() {
+    if (own_save_) {
+      store_.give_up_at_next_failure();
+    }
+  }
   [[nodiscard]] bool saved() const { return store_.saved(); }
 
   /// Call this when the settings in force have changed, so that the next `poll` compares them with the stored

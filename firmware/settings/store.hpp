@@ -56,6 +56,12 @@ class SettingsStore {
   /// is not used after the next reset.
   void begin_saving(const Settings& settings);
   [[nodiscard]] bool busy() const { return step_ != Step::Idle; }
+  /// Makes the running save fail at its next failed attempt to write. Does nothing while the store reads.
+  void give_up_at_next_failure() {
+    if (step_ == Step::Write || step_ == Step::Verify) {
+      attempt_ = kAttempts - 1;
+    }
+  }
   /// Returns whether the last save succeeded.
   [[nodiscard]] bool saved() const { return saved_; }
 

@@ -37,7 +37,10 @@ class ModuleTurns : public testing::Test {
   /// Does a memory job, without a step of the module afterwards.
   void do_memory_job() {
     const MemoryJob job = module_.memory_job();
-    for (std::size_t i = 0; i < job.bytes.size; ++i) {
+    if (job.kind == MemoryJob::Kind::Write) {
+      ++writes_;
+    }
+    for (std::size_t i = 0; answers_ && i < job.bytes.size; ++i) {
       if (job.kind == MemoryJob::Kind::Read) {
         job.bytes.data[i] = written_ ? page_[i] : 0xFF;
       } else {
@@ -45,7 +48,7 @@ class ModuleTurns : public testing::Test {
         written_ = true;
       }
     }
-    module_.memory_done(true);
+    module_.memory_done(answers_);
   }
 
   /// Sends a command and passes time until the turn-around is over.
@@ -65,6 +68,8 @@ class ModuleTurns : public testing::Test {
 
   Module module_{*find_model("EX9043D")};
   Time now_;
+  bool answers_ = true;  ///< the memory answers
+  unsigned writes_ = 0;  ///< number of writes, answered or not
 
  private:
   std::array<std::uint8_t, 32> page_{};
@@ -149,6 +154,33 @@ TEST_F(ModuleTurns, ATimeoutRequestsATurnForTheLedAndAnotherWhenItIsStored) {
   EXPECT_FALSE(requests_another_turn());
 }
 
+// Otherwise the reply could be later than 200 ms if a record takes several pages.
+TEST_F(ModuleTurns, ACommandBehindATimeoutThatCannotBeStoredWaitsForOneAttemptOnly) {
+  put("~013101");
+  module_.step(now_);
+  while (module_.needs_memory()) {
+    do_memory_job();
+  }
+  module_.step(now_);
+  ASSERT_EQ(take_reply(), "!01\r");
+  module_.reply_sent(now_);
+  pass(kUnitOfTimeout + milliseconds(1));
+  answers_ = false;
+  writes_ = 0;
+  module_.step(now_);  // begins to store the timeout
+  ASSERT_TRUE(module_.needs_memory());
+  put("~013105");
+  module_.step(now_);
+  while (module_.needs_memory()) {
+    do_memory_job();
+    module_.step(now_);
+  }
+  EXPECT_EQ(take_reply(), "?01\r");
+  // One attempt to store the timeout, three to store the command, and after each a write that invalidates the
+  // copy.
+  EXPECT_EQ(writes_, 1U + 1U + 3U + 1U);
+}
+
 TEST(ModuleComesUp, AfterItsMemoryIsRead) {
   Module module(*find_model("EX9043D"));
   module.start(0, Time());
@@ -168,6 +200,31 @@ TEST_F(ModuleTurns, AHostOkReceivedAfterATurnRequestsAnotherTurn) {
   EXPECT_TRUE(requests_another_turn());
   module_.step(now_);
   EXPECT_FALSE(requests_another_turn());
+}
+
+// wire.md section 6: a host OK restarts the host watchdog from the time of its reception, however late the
+// main loop is. Here one pass of the main loop follows two host OKs: one before the expiry, and one after it.
+TEST_F(ModuleTurns, AHostOkBeforeTheExpiryCountsEvenIfAnotherOneFollowsBeforeTheNextTurn) {
+  put("~013101");
+  module_.step(now_);
+  while (module_.needs_memory()) {
+    do_memory_job();
+  }
+  module_.step(now_);
+  ASSERT_TRUE(module_.state().settings.watchdog_enabled);
+  pass(kUnitOfTimeout - milliseconds(10));
+  put("~**");
+  put("~**");
+  put("~**");
+  ASSERT_TRUE(module_.host_watchdog_expiry().reached(now_));
+  module_.step(now_);
+  EXPECT_FALSE(module_.state().settings.timeout_status);
+  pass(kUnitOfTimeout - kCharacter - kCharacter);  // since the CR of the last host OK
+  module_.step(now_);
+  EXPECT_FALSE(module_.state().settings.timeout_status);
+  pass(Duration(1));
+  module_.step(now_);
+  EXPECT_TRUE(module_.state().settings.timeout_status);
 }
 
 // The receiver processes `~**` itself instead of queueing it, so that it is never lost. A direct call of

@@ -283,6 +283,14 @@ Step storing(const std::string& request, const std::string& reply) {
 /// Prepares a turn that begins while a reply is being sent.
 Step replying(const std::string& request, const std::string& reply) { return storing(request, reply); }
 
+/// Prepares a turn that begins `before` the host watchdog expires.
+Step until_expiry(Duration before) {
+  return [=](Bench& bench) {
+    const Duration remaining = bench.module().host_watchdog_expiry().remaining(Time(bench.hardware().now));
+    bench.rest(remaining - before);
+  };
+}
+
 /// Prepares a turn that begins while a reply is being sent and the next request waits.
 Step replying_with_one_more(const std::string& request, const std::string& reply, const std::string& next,
                             const std::string& next_reply) {
@@ -331,6 +339,8 @@ std::vector<Scenario> scenarios() {
       dcon("edges while storing", storing("~01ONEW\r", "!01\r"), edges + std::vector<Step>{memory_done},
            {{"!01\r"}}, inputs),
       dcon("ticks while idle", nothing, {tick, tick}, {{}}, outputs_and_name),
+      with_watchdog(dcon("two host OKs, one before and one after the expiry", until_expiry(Duration(500)),
+                         frame("~**\r", "host OK") + frame("~**\r", "host OK"), {{}}, restarted)),
       with_watchdog(dcon("host OK while idle", nothing, frame("~**\r", "host OK"), {{}}, restarted)),
       with_watchdog(dcon("host OK after a frame without a reply", asked("#**\r", ""),
                          frame("~**\r", "host OK"), {{}}, restarted)),

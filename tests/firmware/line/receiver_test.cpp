@@ -81,7 +81,8 @@ class ReceiverTest : public testing::Test {
     return since_last;
   }
   void expect_host_ok_between(Time earliest, Time latest) {
-    EXPECT_LE(receiver_.host_ok_time().since(earliest).microseconds(), latest.since(earliest).microseconds());
+    EXPECT_LE(receiver_.host_oks().last().since(earliest).microseconds(),
+              latest.since(earliest).microseconds());
   }
   bool took_frame() {
     if (!receiver_.queue().has_frame()) {
@@ -192,41 +193,41 @@ TEST_F(ReceiverTest, AnOpenFrameIsNotCounted) {
 
 TEST_F(ReceiverTest, AModbusHostOkIsReceivedAtTheEndOfItsSilence) {
   listen(Protocol::ModbusRtu);
-  const std::uint32_t before = receiver_.host_oks();
+  const std::uint32_t before = receiver_.host_oks().received();
   bytes(kHostOk);
   const Time end = now_;
-  EXPECT_EQ(receiver_.host_oks(), before);
+  EXPECT_EQ(receiver_.host_oks().received(), before);
   silence();
-  EXPECT_EQ(receiver_.host_oks(), before + 1);
+  EXPECT_EQ(receiver_.host_oks().received(), before + 1);
   expect_host_ok_between(end, now_);
 }
 
 TEST_F(ReceiverTest, AnAsciiHostOkIsReceivedAtItsCarriageReturn) {
   listen(Protocol::Ascii);
   text("~**\r");
-  EXPECT_EQ(receiver_.host_oks(), 1);
-  EXPECT_EQ(receiver_.host_ok_time().microseconds(), now_.microseconds());
+  EXPECT_EQ(receiver_.host_oks().received(), 1);
+  EXPECT_EQ(receiver_.host_oks().last().microseconds(), now_.microseconds());
 }
 
 TEST_F(ReceiverTest, EveryHostOkIsCounted) {
   listen(Protocol::Ascii);
   for (std::uint8_t i = 1; i <= 200; ++i) {
     text("~**\r");
-    EXPECT_EQ(receiver_.host_oks(), i);
+    EXPECT_EQ(receiver_.host_oks().received(), i);
   }
 }
 
 TEST_F(ReceiverTest, NoOtherFrameIsAHostOk) {
   listen(Protocol::Ascii);
   text("$01M\r$02M\r#**\r~**X\r");
-  EXPECT_EQ(receiver_.host_oks(), 0);
+  EXPECT_EQ(receiver_.host_oks().received(), 0);
 }
 
 TEST_F(ReceiverTest, AHostOkIsNotLostWhileAFrameWaits) {
   listen(Protocol::Ascii);
   text("$01M\r");
   text("~**\r");
-  EXPECT_EQ(receiver_.host_oks(), 1);
+  EXPECT_EQ(receiver_.host_oks().received(), 1);
   EXPECT_TRUE(took_frame());
   EXPECT_FALSE(took_frame());
 }
@@ -235,7 +236,7 @@ TEST_F(ReceiverTest, AHostOkAcrossTheWrapOfTheClockKeepsItsTime) {
   now_ = Time(0U - 4 * kCharacter.microseconds());
   listen(Protocol::Ascii);
   text("~**\r");
-  EXPECT_EQ(receiver_.host_ok_time().microseconds(), 0U);
+  EXPECT_EQ(receiver_.host_oks().last().microseconds(), 0U);
 }
 
 // --- protocol, checksum, address ---
@@ -326,7 +327,7 @@ TEST_F(ReceiverTest, AsciiRequiresNoSilenceAfterAHostOkOrIfTheQueueIsFull) {
   for (const char character : std::string_view("~**\r")) {
     EXPECT_EQ(byte(static_cast<std::uint8_t>(character)).microseconds(), 0U);
   }
-  EXPECT_EQ(receiver_.host_oks(), 1U);
+  EXPECT_EQ(receiver_.host_oks().received(), 1U);
   text("$01M\r");
   for (const char character : std::string_view("$012\r")) {
     EXPECT_EQ(byte(static_cast<std::uint8_t>(character)).microseconds(), 0U);
@@ -408,8 +409,8 @@ TEST_F(ReceiverTest, AHostOkWhoseSilenceIsCutOffByAReplyCountsFromTheEndOfTheRep
   bytes(kHostOk);
   const Time spoken = now_ + Duration(100);
   receiver_.on_own_driver_off(spoken);
-  EXPECT_EQ(receiver_.host_oks(), 1U);
-  EXPECT_EQ(receiver_.host_ok_time().microseconds(), spoken.microseconds());
+  EXPECT_EQ(receiver_.host_oks().received(), 1U);
+  EXPECT_EQ(receiver_.host_oks().last().microseconds(), spoken.microseconds());
 }
 
 TEST_F(ReceiverTest, AHostOkWhoseSilenceEndsDuringAReplyCountsFromTheEndOfItsSilence) {
@@ -417,8 +418,8 @@ TEST_F(ReceiverTest, AHostOkWhoseSilenceEndsDuringAReplyCountsFromTheEndOfItsSil
   bytes(kHostOk);
   const Time over = now_ + receiver_.timing().rtu_silence;
   receiver_.on_own_driver_off(now_ + milliseconds(50));
-  EXPECT_EQ(receiver_.host_oks(), 1U);
-  EXPECT_EQ(receiver_.host_ok_time().microseconds(), over.microseconds());
+  EXPECT_EQ(receiver_.host_oks().received(), 1U);
+  EXPECT_EQ(receiver_.host_oks().last().microseconds(), over.microseconds());
 }
 
 TEST_F(ReceiverTest, TheNextFrameDoesNotContinueADiscardedOne) {

@@ -108,6 +108,28 @@ TEST_F(SettingsKeeperTest, TriesAgainEverySecondUntilItIsStored) {
   EXPECT_FALSE(keeper_.retry().armed());
 }
 
+// A record may take four pages of 10 ms each. Three failed attempts of the keeper and three of the command
+// would take more than the 200 ms that the command's reply has.
+TEST_F(SettingsKeeperTest, ASaveForWhichACommandWaitsEndsAtItsNextFailure) {
+  keeper_.settings_changed();
+  keeper_.poll(numbered(5), now_);
+  keeper_.let_command_through();
+  memory_.unanswered_writes = 2;  // one attempt, and the write that would invalidate the copy
+  drive_memory();
+  EXPECT_EQ(writes(), 2U);
+  store(numbered(6));
+  EXPECT_TRUE(keeper_.saved());
+  EXPECT_TRUE(keeper_.stored() == numbered(6));
+}
+
+TEST_F(SettingsKeeperTest, TheSaveOfACommandIsNotShortened) {
+  keeper_.save(numbered(5), now_);
+  keeper_.let_command_through();
+  memory_.unanswered_writes = 2;
+  drive_memory();
+  EXPECT_TRUE(keeper_.saved());
+}
+
 TEST_F(SettingsKeeperTest, ACopyThatMayHoldRefusedSettingsIsMadeInvalid) {
   store(numbered(5));
   memory_.unanswered_writes = 4;

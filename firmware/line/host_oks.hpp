@@ -1,0 +1,55 @@
+// Passes the times of host OKs from interrupts to the main loop.
+#pragma once
+
+#include <cstdint>
+
+#include "firmware/line/crossing.hpp"
+#include "firmware/time.hpp"
+
+namespace ex9000 {
+
+/// Stores the first and the last host OK that the main loop has not taken yet. Those between them do not
+/// matter: one pass of the main loop is shorter than the shortest timeout of the host watchdog, 0.1 s, so the
+/// watchdog cannot expire between the first and the last.
+class HostOks {
+ public:
+  /// A host OK counts from the time of its CR, or from the end of the silence after it.
+  struct Times {
+    Time first;
+    Time last;
+  };
+
+  /// Stores the time of a host OK. For interrupts, which must not interrupt each other.
+  void add_in_interrupt(Time received) {
+    if (!waiting()) {
+      first_.store_in_interrupt(received.microseconds());
+    }
+    last_.store_in_interrupt(received.microseconds());
+    received_.store_in_interrupt(received_.load() + 1U);
+  }
+
+  /// Returns whether a host OK has not been taken yet.
+  [[nodiscard]] bool waiting() const { return received_.load() != taken_.load(); }
+
+  /// Takes all host OKs that are waiting. If another one arrives during the call, it is waiting afterwards,
+  /// and the next call returns the same first time again. For the main loop; call this only if `waiting()`.
+  Times take_in_main_loop() {
+    const std::uint32_t received = received_.load();
+    const Times times{Time(first_.load()), Time(last_.load())};
+    taken_.store_in_main_loop(received);
+    return times;
+  }
+
+  /// Returns the number of host OKs since reset; wraps.
+  [[nodiscard]] std::uint32_t received() const { return received_.load(); }
+  /// Returns the time of the last host OK; 0 if there was none.
+  [[nodiscard]] Time last() const { return Time(last_.load()); }
+
+ private:
+  WrittenByInterrupt<std::uint32_t> received_;
+  WrittenByMainLoop<std::uint32_t> taken_;
+  WrittenByInterrupt<std::uint32_t> first_;
+  WrittenByInterrupt<std::uint32_t> last_;
+};
+
+}  // namespace ex9000
