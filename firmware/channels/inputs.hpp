@@ -14,18 +14,19 @@ namespace ex9000 {
 /// edges alternate, so the main loop computes the number of each from the count and the previous level.
 class InputEdges {
  public:
-  /// Sets the levels at reset, bit n is channel n; they do not count as edges. The main loop calls this
-  /// before it enables edge interrupts.
+  /// Sets the levels at reset; bit n is channel n. These levels do not count as edges. The main loop calls
+  /// this before it enables edge interrupts.
   void begin(std::uint16_t levels) { levels_ = levels; }
 
-  /// The edge interrupt calls this when the hardware has flagged an edge on `channel`; `level` is its present
-  /// level. If that is the same level as before, there were two edges. Ignores channels from kMaxInputs on.
+  /// Counts one edge on `channel`, or two edges if `level`, the present level of the channel, is the same as
+  /// before. The edge interrupt calls this when the hardware has flagged an edge. Ignores the call if
+  /// `channel` is kMaxInputs or greater.
   void on_edge(unsigned channel, bool level);
 
-  /// Returns the number of calls of `on_edge` for all channels; it wraps.
+  /// Returns the number of calls of `on_edge`, of all channels together; it wraps.
   [[nodiscard]] std::uint32_t edges() const { return edges_.load(); }
-  /// Returns the number of edges of one channel since the last call. For the main loop, which must call this
-  /// at least every 65535 edges.
+  /// Returns the number of edges of `channel` since the last call for it. For the main loop, which must call
+  /// this at least every 65535 edges.
   std::uint16_t collect(unsigned channel) { return channels_[channel].collect(); }
 
  private:
@@ -37,7 +38,7 @@ class InputEdges {
 /// Levels, latches and counters as the protocols read them. For the main loop only.
 class Inputs {
  public:
-  /// The range of the counters, after which they wrap: five decimal digits in ASCII, 16 bits in Modbus.
+  /// The range of the counters: five decimal digits in ASCII, 16 bits in Modbus. A counter wraps to 0.
   enum class CounterRange : std::uint8_t { FiveDigits, SixteenBits };
 
   /// Sets the levels at reset. `levels`: the same value as for InputEdges::begin.

@@ -9,9 +9,10 @@ namespace ex9000 {
 
 namespace detail {
 
-/// One aligned value of at most a machine word, so that a load or a store is one instruction and needs no
-/// lock. It is volatile, so that the compiler keeps each access. There is only one core, so a compiler fence
-/// is sufficient: it prevents the compiler from moving other accesses across this one.
+/// An aligned value of at most a machine word, so that a load or a store is one instruction and needs no
+/// lock. It is volatile, so that the compiler keeps each access. The fences prevent the compiler from moving
+/// a later access before a load, or an earlier access after a store. Fences for the processor are not
+/// necessary, because the interrupts and the main loop run on the same core.
 template <class T>
 class Crossing {
   // NOLINTNEXTLINE(bugprone-sizeof-expression): if T is a pointer, the size of the pointer is meant

@@ -10,9 +10,9 @@
 
 namespace ex9000::hal::flash {
 
-/// The page of `hal::Memory`, in bytes.
+/// The size of a page in bytes. See hal/memory.hpp.
 inline constexpr std::size_t kPage = 32;
-/// The number of pages that the store has: 384 bytes.
+/// The number of pages in the store. Together they have 384 bytes.
 inline constexpr std::size_t kPages = 12;
 
 /// The bytes of an entry:
@@ -22,8 +22,8 @@ inline constexpr std::size_t kPages = 12;
 ///     5-36   content of the page
 ///     37-40  CRC-32 over bytes 0 to 36, low byte first
 ///
-/// If the power fails while an entry is programmed, the CRC detects an incomplete entry, except once in 2^32
-/// times.
+/// If the power fails while the flash programs an entry, the entry may be incomplete. Its CRC is then wrong,
+/// except with a probability of 2^-32.
 inline constexpr std::size_t kPageAt = 4;
 inline constexpr std::size_t kContentAt = 5;
 inline constexpr std::size_t kCheckAt = kContentAt + kPage;
@@ -52,8 +52,8 @@ inline void seal(EntryBytes& entry, std::uint32_t sequence, std::size_t page) {
   put_32(&entry[kCheckAt], check_of(entry));
 }
 
-/// Returns whether `entry` is complete: its page exists and its CRC is right. False for erased bytes and for
-/// the mark of a sector.
+/// Returns whether `entry` is complete: its page exists and its CRC is right. Returns false for erased bytes
+/// and for the mark of a sector.
 inline bool is_good(const EntryBytes& entry) {
   const Bytes bytes{entry.data(), entry.size()};
   return entry[kPageAt] < kPages && bytes.low_byte_first_32(kCheckAt) == check_of(entry);
