@@ -1,6 +1,6 @@
-// An image for a board of this family, from reset to the main loop. This file connects the drivers to the
-// pins of `board.hpp`, the module to the drivers, and the interrupts to their handlers. The main.cpp of a
-// board includes it once.
+// The parts of an image for a board of this family: drivers, module, vector table and `main`. This file
+// connects the drivers to the pins of `board.hpp`, the module to the drivers, and the interrupts to their
+// handlers. The main.cpp of a board includes it once.
 #pragma once
 
 #include <array>
@@ -50,7 +50,7 @@ static_assert(
     hal::kIsOneShotTimer<LineEndTimer>,
     "LineEndTimer: lacks a function, or a function has a wrong signature; see hal/one_shot_timer.hpp");
 
-/// The memory of the settings: its driver, its start and its interrupt.
+/// The memory of the settings: its driver, the blocks to release from reset, its start and its interrupt.
 template <Memory memory>
 struct MemoryOnBoard;
 template <>
@@ -88,7 +88,7 @@ struct Board {
 hal::Device<Board> device(kOnlyModel, kTimingAt);
 Board& board = device.board();
 
-// --- interrupts; none can interrupt another, because they have the same priority ---
+// --- interrupts; all have the same priority, so an interrupt never interrupts another one ---
 
 void on_system_tick() { device.on_tick(); }
 
@@ -141,8 +141,8 @@ constexpr unsigned kInterrupts = 26;
 __attribute__((section(".vectors"), used)) constexpr auto kVectors =
     start_up::vectors<kInterrupts>(on_system_tick, kServed);
 
-/// Starts the drivers. The watchdog is first, so that it can reset the MCU if a later step hangs. The outputs
-/// are next, because they float until then.
+/// Starts the drivers. The watchdog starts first, so that it can reset the MCU if a later step hangs. The
+/// outputs start as early as possible after it, because their pins float until then.
 void start() {
   Watchdog::start();
   Resets::stop_second_core();
@@ -152,7 +152,7 @@ void start() {
   board.init_switch.start();
   board.status_led.start();
   Clocks::use<kClock>();
-  Resets::release(Settings::kBlocks | Block::Uart0);  // the UART requires its clock
+  Resets::release(Settings::kBlocks | Block::Uart0);  // a UART without a clock would stay in reset
   Gpio::make_peripheral(kUartPins.mask(), Function::Uart);
   Settings::start(board.memory);
   SilenceTimer::start();

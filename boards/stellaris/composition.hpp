@@ -1,6 +1,6 @@
-// An image for a board of this family, from reset to the main loop. This file connects the drivers to the
-// pins of `board.hpp`, the module to the drivers, and the interrupts to their handlers. The main.cpp of a
-// board includes it once.
+// The parts of an image for a board of this family: drivers, module, vector table and `main`. This file
+// connects the drivers to the pins of `board.hpp`, the module to the drivers, and the interrupts to their
+// handlers. The main.cpp of a board includes it once.
 #pragma once
 
 #include <array>
@@ -63,7 +63,7 @@ struct Board {
 hal::Device<Board> device(kOnlyModel, kTimingAt);
 Board& board = device.board();
 
-// --- interrupts; none can interrupt another, because they have the same preemption priority ---
+// --- interrupts; all have the same preemption priority, so an interrupt never interrupts another one ---
 
 void on_system_tick() {
   board.clock.count_in_interrupt();
@@ -165,8 +165,8 @@ constexpr ClockGates kClockGates{
     ports_of_the_module(),
 };
 
-/// Starts the drivers. The watchdog is first, so that it can reset the MCU if a later step hangs. The outputs
-/// are next, because they float until then.
+/// Starts the drivers. The watchdog starts first, so that it can reset the MCU if a later step hangs. The
+/// outputs start as early as possible after it, because their pins float until then.
 void start() {
   SystemControl::open(kClockGates);
   Watchdog::start();

@@ -1,4 +1,4 @@
-"""Checks that an image is an ELF file for this board."""
+"""Checks that a file is an ELF image for this board."""
 
 from __future__ import annotations
 
@@ -9,11 +9,14 @@ from qemu.refusal import Refusal
 
 _ARM = 40
 _LOADED = 1  # PT_LOAD
-_TOP_OF_RAM = 0x20010000  # 64 KiB, as in image.ld
+_TOP_OF_RAM = 0x20010000  # the end of the RAM in image.ld; the stack of each image begins there
 
 
 def check(path: Path) -> None:
-    """Raises Refusal if the file is not an image for this board. QEMU would run it, but it would never reply."""
+    """Raises Refusal if the file is not an ELF image for this board.
+
+    QEMU starts any file. Without this check, the error would appear only after 60 s, if the UART is then still off.
+    """
     try:
         file = path.read_bytes()
     except OSError as error:
