@@ -1,4 +1,5 @@
-// The log for people: time, direction, bytes, meaning.
+// The log for people: a line for each frame, with its time, direction, sender, bytes, errors and meaning, and
+// a line for each note.
 #pragma once
 
 #include <string>

@@ -28,19 +28,19 @@ using boost::asio::ip::tcp;
 using boost::system::error_code;
 
 constexpr std::uint16_t kDefaultPort = 9042;
-/// The limit for open pages. Only clients that never disconnect can exceed it.
+/// The largest number of open pages. This limit protects the program from clients that never disconnect.
 constexpr std::size_t kMostPages = 16;
-/// The limit for simultaneous requests besides pages. A browser sends up to six at a time, for all its pages
-/// together.
+/// The largest number of requests in progress. Open pages do not count. A browser sends up to six at a time,
+/// for all its pages together.
 constexpr std::size_t kMostRequests = 64;
 constexpr std::uint32_t kLongestHeader = 8192;
 constexpr std::size_t kLongestPageRequest = 4096;
-/// The timeout for a request to arrive and for its response to be sent.
+/// The timeout of each step: receiving a request, sending its response, the handshake of a WebSocket.
 constexpr std::chrono::seconds kRequestTimeout{5};
-/// A page that does not answer pings for this time is disconnected.
+/// The server disconnects a page that sends nothing for this time, not even the replies to pings.
 constexpr std::chrono::seconds kIdle{20};
-/// The interval between two looks. A change must be on the screen within 100 ms. The interval is half of that
-/// time, minus the time to draw the change.
+/// The interval at which the server captures the state while a page is open. A page must show a change within
+/// 100 ms: the time that is left after the interval is for sending and drawing the change.
 constexpr std::chrono::milliseconds kLookEvery{30};
 
 tcp::endpoint here(std::uint16_t port) { return {boost::asio::ip::address_v4::loopback(), port}; }
@@ -77,7 +77,7 @@ class PanelServer::Listener : public std::enable_shared_from_this<PanelServer::L
 
   [[nodiscard]] std::uint16_t port() const { return port_; }
   void accept();
-  /// Closes all connections, because the source is about to be destroyed.
+  /// Stops accepting connections and closes the open ones. After this call, the source may be destroyed.
   void stop();
 
  private:
@@ -119,7 +119,7 @@ class PanelServer::Listener::Client : public std::enable_shared_from_this<Client
   /// Returns whether the connection is a page or will become one.
   [[nodiscard]] bool takes_a_page() const { return takes_a_page_; }
 
-  /// Sends the changes, unless the previous message is still being sent.
+  /// Sends the next message for the page, if there is one and if the previous one is not still being sent.
   void tell() {
     if (!viewer_ || writing_) {
       return;
@@ -196,7 +196,8 @@ class PanelServer::Listener::Client : public std::enable_shared_from_this<Client
     return request.method() == http::verb::get || request.method() == http::verb::head;
   }
 
-  /// Browsers do not send Origin with every request, but newer ones always send Sec-Fetch-Site.
+  /// Returns false if a page of another site has caused the request. Browsers do not send Origin with every
+  /// request, but newer browsers always send Sec-Fetch-Site. Accepts requests without Sec-Fetch-Site.
   [[nodiscard]] static bool is_fetched_by_us(const Request& request) {
     const auto fetched = request.equal_range("Sec-Fetch-Site");
     return std::all_of(fetched.first, fetched.second, [](const auto& field) {
@@ -229,8 +230,8 @@ class PanelServer::Listener::Client : public std::enable_shared_from_this<Client
         [self = shared_from_this()](const error_code& /*error*/, std::size_t /*size*/) { self->leave(); });
   }
 
-  /// Reads the rest of the request before closing. Otherwise the close resets the connection and the response
-  /// is lost.
+  /// Reads the rest of the request before the connection closes. If unread bytes were left, the close would
+  /// reset the connection, and the client could lose the response.
   void leave() {
     error_code ignored;
     stream().socket().shutdown(tcp::socket::shutdown_send, ignored);
@@ -277,8 +278,8 @@ class PanelServer::Listener::Client : public std::enable_shared_from_this<Client
     });
   }
 
-  /// Closes the WebSocket after it was accepted: a browser gives the page a reason for a closed WebSocket,
-  /// but not for a rejected one.
+  /// Closes the WebSocket after the server has accepted it. A browser tells the page why a WebSocket was
+  /// closed, but not why a WebSocket was rejected.
   void reject_page() {
     socket_.async_close({websocket::close_code::try_again_later, "too many pages are open already"},
                         [self = shared_from_this()](const error_code& /*error*/) {});

@@ -7,14 +7,15 @@
 
 namespace ex9000::sim {
 
-/// Only one process holds a claim at a time, and the system releases it when the process ends in any way. If
-/// a path exists and no process holds its claim, the process that created the path has ended. Works between
-/// processes of one network namespace, for all users.
+/// At most one process holds the claim for a path. The system releases the claim when this process ends, even
+/// if a signal kills it. If a path exists and no process holds its claim, the process that created the path
+/// has ended. A claim works between processes of all users, but only within one network namespace.
 class Claim {
  public:
   explicit Claim(const std::string& path);
 
-  /// Returns false if another process holds the claim.
+  /// Returns whether this object holds the claim. Returns false if another process or object holds it, or if
+  /// the system could not create a socket.
   [[nodiscard]] bool held() const { return socket_.is_open(); }
 
  private:
