@@ -1,4 +1,4 @@
-// Tests the timing of a module's reset, its replies and its driver.
+// Tests the timing of a module: its reset, INIT*, its replies, its driver, and its clock after long pauses.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -110,7 +110,8 @@ TEST(Driver, IsOnBeforeTheFirstStartBitAndOffWithinACharacterAfterTheLastStopBit
 }
 
 TEST(Driver, ItsOwnEchoIsNeverProcessedAsARequest) {
-  // The name is a command for this module; on a two-wire line the module receives it while it sends it.
+  // The name looks like a command for this module. On a two-wire line, the module receives the reply that it
+  // sends, and the reply contains the name.
   ModuleBench bench("EX9042D,name=$01M");
   EXPECT_EQ(bench.ask("$01M"), "!01$01M");
   bench.run(seconds(1));
@@ -127,10 +128,10 @@ TEST(Time, TheHostWatchdogExpiresOnTimeAcrossTheClockWrap) {
   bench.line().bus().run_until(kWrap - milliseconds(1000));
   ASSERT_EQ(bench.ask(Bytes{1, 0x05, 0x01, 0x04, 0xFF, 0x00}).at(1), 0x05);
   const Bytes host_ok = with_crc({1, 0x03, 0x30, 0x38, 0x00, 0x00});
-  // The frame is sent across the wrap.
+  // The clock wraps while the master sends the frame.
   bench.line().bus().run_until(kWrap - milliseconds(4));
   bench.send(host_ok);
-  const VirtualTime restarted = bench.now() + microseconds(4010);  // T3.5
+  const VirtualTime restarted = bench.now() + microseconds(4010);  // T3.5 after the frame
   ASSERT_GT(restarted, kWrap);
   std::vector<OutputChange> changes;
   bench.watch_outputs(changes);
@@ -184,7 +185,7 @@ TEST(Time, StoresInitSwitchAndHostWatchdogAreOnTimeAfterAnyPause) {
     bench.run(milliseconds(20));
     EXPECT_EQ(bench.ask("%0101400700"), "?01") << pause.count();
     bench.run(pause);
-    EXPECT_EQ(bench.ask("~013104"), "!01") << pause.count();  // 0.4 s; each request takes 0.25 s
+    EXPECT_EQ(bench.ask("~013104"), "!01") << pause.count();  // timeout 0.4 s; an `ask` takes over 0.25 s
     EXPECT_EQ(bench.ask("~010"), "!0180");
     EXPECT_EQ(bench.ask("~010"), "!0184");
     EXPECT_EQ(bench.ask("~011"), "!01");

@@ -1,5 +1,5 @@
-// Starts a module with arbitrary EEPROM content. The module must start, and must then store and restore
-// settings normally.
+// Starts a module with arbitrary EEPROM content. The module must start, and must then store settings and load
+// them after a reset.
 //
 // Byte 0 of the input selects the model. Byte 1:
 //
@@ -9,7 +9,7 @@
 //     bit 4, 5   correct the layout, length and check of the first (bit 4) and the second (bit 5) copy of
 //                layout 3
 //
-// The rest is the content of the memory from address 0. The remaining memory is erased.
+// The following bytes are the content of the memory from address 0. Memory after these bytes is erased.
 #include <algorithm>
 #include <array>
 #include <cstring>
@@ -89,7 +89,8 @@ class Trial {
  private:
   const State& state() { return session_.module().module().state(); }
 
-  /// Waits until the module has also stored a timeout of the host watchdog, which can occur at any time.
+  /// Waits until no store is pending. The host watchdog can expire at any time, and the module then stores
+  /// this timeout. If it expires during the wait, waits again.
   void wait_for_leftovers() {
     constexpr Microseconds kLongest = 1500 * kMillisecond;
     bool timed_out = false;
@@ -102,7 +103,7 @@ class Trial {
   void come_up_with(const Settings& settings) {
     const bool init = session_.around().init_asserted;
     const InForce& in_force = session_.in_force();
-    // No host watchdog timeout is so short that it can already have expired.
+    // The host watchdog cannot have expired yet, because `reset` returns before its shortest timeout, 0.1 s.
     require(same(state().settings, settings),
             "the module uses the newest valid copy, or else the factory settings");
     require(state().outputs == (settings.timeout_status ? settings.safe_value : settings.power_on_value),

@@ -22,10 +22,10 @@ ProcessTarget::ProcessTarget(std::unique_ptr<MasterPort> port, ControlClient& co
 
 void ProcessTarget::start(const Model& /*model*/, const Settings* /*preset*/) { power(true); }
 
-/// Lets the simulator's time pass. Returns after all bytes that the simulator has written to the port have
-/// been read.
+/// Lets the simulator's time pass, and reads all bytes that the simulator has written to the port. `how` is
+/// the end of the command `advance`, for example " quiet".
 void ProcessTarget::advance(std::chrono::nanoseconds time, const std::string& how) {
-  // Both commands are sent together, so that only one switch between the processes is necessary.
+  // Sends both commands together, because each switch between the processes takes time.
   control_.send("advance " + sim::seconds_text(time) + "s" + how + "\nline " + line_ + " sent\n");
   const std::string now = control_.line();
   const std::string sent = control_.line();
@@ -113,7 +113,7 @@ play::step::Led::Shows ProcessTarget::led(play::step::Led::Shows /*expected*/) {
   return shows == "on" ? play::step::Led::Shows::On : play::step::Led::Shows::Off;
 }
 
-/// Switches the module off, because it then requires no processor time while the next transcript is played.
+/// Switches the module off, so that it uses no processor time while the next transcript is played.
 void ProcessTarget::end() { power(false); }
 
 }  // namespace ex9000::system

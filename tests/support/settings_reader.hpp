@@ -32,20 +32,22 @@ struct FrameFormat {
 class SettingsReader {
  public:
   using Bytes = std::vector<std::uint8_t>;
-  /// Sends a frame and returns the reply. Returns nothing if there is no reply.
+  /// Sends a frame and returns the reply. Returns an empty vector if there is no reply.
   using Exchange = std::function<Bytes(const Bytes& frame)>;
 
   SettingsReader(const Model& model, FrameFormat frame_format, Exchange exchange)
       : model_(model), frame_format_(frame_format), exchange_(std::move(exchange)) {}
 
-  /// Reads all settings. Returns nothing if the module does not reply. Modbus has no register for the data
-  /// format, so the result contains `format` then. Throws std::out_of_range if a reply is too short.
+  /// Reads all settings. Returns nullopt if the first reply is missing or has a wrong length. Throws
+  /// std::out_of_range if a later reply is missing or too short. Modbus has no register for the data format,
+  /// so the result of a Modbus module contains the argument `format` instead.
   std::optional<Settings> read(std::uint8_t format);
 
   /// Sends a DCON command, given without its address: the delimiter and the text after the address. Returns
-  /// the reply without checksum and CR.
+  /// the reply without checksum and CR; empty if there is no reply.
   std::string ask(const std::string& command);
-  /// Sends a Modbus request, given without address and CRC. Returns the reply with its address, without CRC.
+  /// Sends a Modbus request, given without address and CRC. Returns the reply with its address, without CRC;
+  /// empty if there is no reply.
   Bytes ask(const Bytes& request);
 
  private:

@@ -20,8 +20,8 @@ namespace ex9000::bench {
 
 constexpr std::size_t kRounds = 7;
 
-/// Returns the first line that a server prints, when it is ready. Throws std::runtime_error if the server
-/// does not start.
+/// Waits until a server prints its first line, which shows that the server is ready, and returns this line.
+/// Throws std::runtime_error if the server does not start.
 inline std::string announced(system::ChildProcess& server) {
   if (!server.wait_for("\n")) {
     throw std::runtime_error("a server has not started");
@@ -33,7 +33,8 @@ inline std::uint16_t port_of(system::ChildProcess& server) {
   return static_cast<std::uint16_t>(std::stoul(announced(server)));
 }
 
-/// Returns the processor time that the process has used.
+/// Returns the processor time that the process has used, in seconds. Throws std::runtime_error if the system
+/// cannot read it.
 inline double processor_seconds(int pid) {
   clockid_t clock{};
   timespec time{};
@@ -59,10 +60,11 @@ class Server {
   }
 
   [[nodiscard]] const std::string& name() const { return name_; }
-  /// Returns the median of the processor time for a transaction, in microseconds.
+  /// Returns the processor time of the server for a transaction, in microseconds: the median of all rounds.
   [[nodiscard]] double median() const { return median_of(microseconds_); }
-  /// Returns the least processor time for a transaction in an undisturbed round, in microseconds. Other
-  /// programs on the processors can only increase this time. nullopt: other programs disturbed every round.
+  /// Returns the processor time of the server for a transaction, in microseconds: the least of all rounds
+  /// that were not disturbed, because other programs on the processors can only increase this time. Returns
+  /// nullopt if other programs disturbed every round.
   [[nodiscard]] std::optional<double> least() const {
     std::optional<double> result;
     for (std::size_t round = 0; round < kRounds; ++round) {
@@ -72,12 +74,13 @@ class Server {
     }
     return result;
   }
+  /// Returns the number of transactions per second: the median of all rounds.
   [[nodiscard]] double rate() const { return median_of(rates_); }
 
  private:
   using Figures = std::array<double, kRounds>;
 
-  /// Returns whether the programs seldom waited for a processor. On a machine that runs nothing else, a
+  /// Returns whether server and master seldom waited for a processor. On a machine that runs nothing else, a
   /// transaction takes two to five times the server's processor time. If it takes much longer, other programs
   /// run between each request and its reply. They fill the caches with their own data, so the server needs
   /// more processor time.
@@ -99,7 +102,7 @@ class Server {
   Figures rates_{};
 };
 
-/// Polls the servers in turn, and prints their medians.
+/// Polls each server for `time` in each round, and prints the medians of all rounds.
 inline void measure(std::vector<Server>& servers, std::chrono::milliseconds time) {
   for (std::size_t round = 0; round < kRounds; ++round) {
     for (Server& server : servers) {

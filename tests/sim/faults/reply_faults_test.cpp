@@ -1,4 +1,4 @@
-// Tests the effect of each fault of replies on a master, in virtual time.
+// Tests what a master receives during each fault that affects replies, in virtual time.
 #include <gtest/gtest.h>
 
 #include <string>
@@ -32,9 +32,9 @@ TEST(LateReply, MayComeAfterTheNextRequestAndBeforeItsReply) {
   bench.add("late-reply 50ms every 2nd reply");
   EXPECT_EQ(bench.ask("$01M"), kName);
   EXPECT_EQ(bench.ask("$01M", 20ms), "");  // the master's timeout is too short
-  EXPECT_EQ(bench.ask("$012", 1ms), "");   // it sends another request
+  EXPECT_EQ(bench.ask("$012", 1ms), "");   // the master sends another request
   bench.run(100ms);
-  EXPECT_EQ(bench.heard(), kName + "\r!01400600\r");  // and gets the first reply to the second request
+  EXPECT_EQ(bench.heard(), kName + "\r!01400600\r");  // both replies, in the order of the requests
   EXPECT_FALSE(bench.garbled());
 }
 
