@@ -27,7 +27,7 @@ class Title:
     @staticmethod
     def parse(text: str) -> Title:
         file, _, name = text.rpartition(":")
-        return Title(file, name.lstrip("*"))  # an asterisk precedes names that asm("") has set
+        return Title(file, name.lstrip("*"))  # an asterisk precedes a name that the source sets with asm("NAME")
 
 
 @dataclass
@@ -39,11 +39,11 @@ class Record:
     frame: int  # bytes
     is_bounded: bool  # false if the stack use is known only at run time
     calls: set[Title] = field(default_factory=set)
-    indirect_calls: list[str] = field(default_factory=list)  # their locations; empty if unknown to GCC
+    indirect_calls: list[str] = field(default_factory=list)  # the location of each; "" if GCC does not know it
 
 
 def parse(text: str) -> list[Record]:
-    """Returns the functions of one translation unit."""
+    """Returns the functions of one translation unit. Raises NotACallGraph at an unexpected line."""
     records: dict[str, Record] = {}
     for line in text.splitlines():
         if line.startswith("node: "):

@@ -1,4 +1,4 @@
-"""The recorded sizes of images: one line of BOARD IMAGE FLASH STATIC STACK for each image, in bytes."""
+"""Reads and writes files with the sizes of images: one line BOARD IMAGE FLASH STATIC STACK for each image, in bytes."""
 
 from __future__ import annotations
 
@@ -6,7 +6,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
 
-GROWTH = 1.05  # permitted growth without a new record
+GROWTH = 1.05  # an image may become larger than its record by this factor
 
 Key = tuple[str, str]  # board, image
 
@@ -29,13 +29,14 @@ class Figures:
         ]
 
     def exceeds(self, before: Figures) -> bool:
-        """Returns whether flash, or RAM as a whole, has grown by more than 5 %."""
+        """Returns whether the flash, or the RAM as a whole, is more than 5 % larger than `before`."""
         return self.flash > GROWTH * before.flash or self.static + self.stack > GROWTH * (
             before.static + before.stack
         )
 
 
 def read(path: Path | None) -> dict[Key, Figures]:
+    """Returns the sizes in a file. Returns no sizes if `path` is None or if the file does not exist."""
     if path is None or not path.exists():
         return {}
     rows = (line.split() for line in path.read_text(encoding="utf-8").splitlines())
