@@ -97,10 +97,9 @@ std::optional<std::size_t> take_position(std::string& text, std::size_t modules)
   if (text.empty() || end == 0 || text.find_first_not_of("0123456789") < end) {
     return std::nullopt;
   }
-  constexpr std::size_t kMostDigits = 6;
   const std::string number = text.substr(0, end);
-  const std::size_t position = number.size() > kMostDigits ? 0 : std::stoul(number);
-  if (position == 0 || position > modules) {
+  const std::size_t position = whole_number(number, modules).value_or(0);
+  if (position == 0) {
     fail(text + ": no module " + number + "; expected a position from 1 to " + std::to_string(modules));
   }
   text = end == std::string::npos ? "" : text.substr(end + 1);

@@ -1,6 +1,9 @@
 #include "sim/ports/tcp_address.hpp"
 
+#include <limits>
+
 #include "sim/text/fail.hpp"
+#include "sim/text/values.hpp"
 
 namespace ex9000::sim {
 
@@ -14,17 +17,15 @@ TcpAddress parse_tcp_address(const std::string& text) {
   const auto colon = text.rfind(':');
   std::string host = colon == std::string::npos ? "" : text.substr(0, colon);
   const std::string port = colon == std::string::npos ? text : text.substr(colon + 1);
-  constexpr unsigned long kLastPort = 65535;
-  const bool digits =
-      !port.empty() && port.size() <= 5 && port.find_first_not_of("0123456789") == std::string::npos;
+  const auto number = whole_number(port, std::numeric_limits<std::uint16_t>::max());
   const bool brackets = host.size() > 2 && host.front() == '[' && host.back() == ']';
   if (brackets) {
     host = host.substr(1, host.size() - 2);
   }
-  if (!digits || std::stoul(port) > kLastPort || (!brackets && host.find(':') != std::string::npos)) {
+  if (!number || (!brackets && host.find(':') != std::string::npos)) {
     fail("'" + text + "': expected HOST:PORT or a port, for example 127.0.0.1:5020");
   }
-  return {host.empty() ? kLoopback : host, static_cast<std::uint16_t>(std::stoul(port))};
+  return {host.empty() ? kLoopback : host, static_cast<std::uint16_t>(*number)};
 }
 
 }  // namespace ex9000::sim

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cctype>
-#include <charconv>
 #include <limits>
 #include <set>
 #include <utility>
@@ -215,13 +214,11 @@ Speed parse_speed(const std::string& text) {
   // `max` is available for that.
   constexpr double kSlowest = 0.001;
   constexpr double kFastest = 1000;
-  double speed = 0;
-  const char* const end = text.data() + text.size();
-  const auto [rest, error] = std::from_chars(text.data(), end, speed);
-  if (error != std::errc() || rest != end || !(speed >= kSlowest && speed <= kFastest)) {
+  const auto speed = decimal_number(text, kSlowest, kFastest);
+  if (!speed) {
     fail("'" + text + "': expected a number from 0.001 to 1000, max or step");
   }
-  return {Speed::Kind::Paced, speed};
+  return {Speed::Kind::Paced, *speed};
 }
 
 }  // namespace ex9000::sim

@@ -58,9 +58,14 @@ std::uint64_t parse_whole_number(const std::string& text, std::uint64_t least, s
   return *value;
 }
 
-double parse_probability(const std::string& text) {
+std::optional<double> decimal_number(const std::string& text, double least, double most) {
   const auto value = number<double>(text);
-  if (!value || !(*value > 0 && *value <= 1)) {
+  return value && *value >= least && *value <= most ? value : std::nullopt;
+}
+
+double parse_probability(const std::string& text) {
+  const auto value = decimal_number(text, 0, 1);
+  if (!value || *value == 0) {
     expect(text, "a probability above 0 and up to 1, for example 0.01 or 1e-4");
   }
   return *value;
@@ -72,7 +77,12 @@ std::uint32_t parse_baud_rate(const std::string& text) {
       return rate;
     }
   }
-  expect(text, "a baud rate: 1200, 2400, 4800, 9600, 19200, 38400, 57600 or 115200");
+  std::string rates;
+  for (const std::uint32_t rate : kBaudRates) {
+    const char* const separator = rate == kBaudRates.back() ? " or " : ", ";
+    rates += (rates.empty() ? "" : separator) + std::to_string(rate);
+  }
+  expect(text, "a baud rate: " + rates);
 }
 
 std::uint8_t parse_hex_byte(const std::string& text) {

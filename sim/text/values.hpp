@@ -18,6 +18,8 @@ bool parse_on_off(const std::string& text);
 bool parse_choice(const std::string& text, std::string_view yes, std::string_view no);
 /// Parses decimal digits; the value must be from `least` to `most`.
 std::uint64_t parse_whole_number(const std::string& text, std::uint64_t least, std::uint64_t most);
+/// Parses a decimal number, with or without a fraction, from `least` to `most`; nullopt for any other text.
+std::optional<double> decimal_number(const std::string& text, double least, double most);
 /// Parses a number above 0 and up to 1.
 double parse_probability(const std::string& text);
 /// Parses one of kBaudRates, in bits per second.
