@@ -216,6 +216,10 @@ void Module::commit_effects(Time now) {
     state_.in_force.address = state_.settings.address;
     receiver_.answer_to(state_.settings.address);
   }
+  if (outcome.asks_for(Effect::TakeCountingEdge)) {
+    collect_edges();  // the edges until now count under the previous setting
+    state_.inputs.count_rising_edges((state_.settings.format & kFormatRisingEdge) != 0);
+  }
   if (outcome.asks_for(Effect::TakeSample)) {
     state_.sample = {true, false, state_.outputs, state_.inputs.levels()};
   }

@@ -47,6 +47,8 @@ class Inputs {
     range_ = range;
     count_rising_edges_ = count_rising_edges;
   }
+  /// Selects whether the counters count rising or falling edges from the next `collect` on.
+  void count_rising_edges(bool rising) { count_rising_edges_ = rising; }
 
   /// Counts and latches the edges of the first `channels` channels. Must be called at least every 65535 edges
   /// of a channel.

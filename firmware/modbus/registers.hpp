@@ -95,6 +95,8 @@ Refusal write_clear_latches(const State& state, BitWrite bits, Outcome& outcome)
 std::uint16_t read_timeout_status(const State& state);
 Refusal write_clear_timeout_status(const State& state, BitWrite bits, Outcome& outcome);
 Refusal write_clear_counters(const State& state, BitWrite bits, Outcome& outcome);
+std::uint16_t read_counting_edge(const State& state);
+Refusal write_counting_edge(const State& state, BitWrite bits, Outcome& outcome);
 // word_rows.cpp
 std::uint16_t read_counter(const State& state, unsigned index);
 std::uint16_t read_module_code(const State& state, unsigned index);
@@ -179,6 +181,11 @@ inline constexpr auto kBitRegisters = table<BitRegister>({
      "1 clears; 0, by function 0F only, leaves it as it is",
      {0x0200, Width::PerInput, Needs::Inputs, kWriteSingleCoil | kWriteMultipleCoils, kOnlyOn, nullptr,
       write_clear_counters}},
+    {"counting-edge",
+     "edge that the counters count, stored and in force at once",
+     "0 falling, 1 rising; not by broadcast",
+     {0x08CA, Width::One, Needs::Inputs, kReadCoils | kWriteSingleCoil, kConfiguration, read_counting_edge,
+      write_counting_edge}},
 });
 
 inline constexpr auto kWordRegisters = table<WordRegister>({

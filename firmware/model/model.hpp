@@ -71,15 +71,24 @@ inline constexpr auto kModels = table<Model>({
     {"EX9068D-M", 0, 8, 0x9068, StatusStyle::TimeoutOnly, "9068D-M", 7, "8 relay outputs", OutputKind::Relay},
     {"EX9068AD-M", 0, 8, 0x9068, StatusStyle::TimeoutOnly, "9068D-M", 7, "8 PhotoMOS outputs",
      OutputKind::PhotoMos},
-    // Related models that speak ASCII only: outputs from the tables 2.3 and 2.11, inputs from the ICP DAS
-    // I-70xx.
+    // Related models: outputs from the tables 2.3 and 2.11, inputs from the ICP DAS I-70xx with the same
+    // number. The
+    // Modbus map of the -M models follows from the rules of section 7 of wire.md.
     {"EX9044D", 4, 8, 0, StatusStyle::TimeoutOnly, "9044", 6, "4 inputs, 8 open-collector outputs",
+     OutputKind::OpenCollector},
+    {"EX9044D-M", 4, 8, 0x9044, StatusStyle::TimeoutOnly, "9044M", 6, "4 inputs, 8 open-collector outputs",
      OutputKind::OpenCollector},
     {"EX9050D", 7, 8, 0, StatusStyle::TimeoutOnly, "9050", 6, "7 inputs, 8 open-collector outputs",
      OutputKind::OpenCollector},
+    {"EX9053D", 16, 0, 0, StatusStyle::EnableAndTimeout, "9053", 6, "16 inputs with latches and counters",
+     OutputKind::None},
+    {"EX9053D-M", 16, 0, 0x9053, StatusStyle::EnableAndTimeout, "9053M", 6,
+     "16 inputs with latches and counters", OutputKind::None},
     {"EX9055D", 8, 8, 0, StatusStyle::TimeoutOnly, "9055", 6, "8 inputs, 8 open-collector outputs",
      OutputKind::OpenCollector},
     {"EX9060D", 4, 4, 0, StatusStyle::TimeoutOnly, "9060", 6, "4 inputs, 4 relay outputs", OutputKind::Relay},
+    {"EX9060D-M", 4, 4, 0x9060, StatusStyle::TimeoutOnly, "9060M", 6, "4 inputs, 4 relay outputs",
+     OutputKind::Relay},
     {"EX9063D", 8, 3, 0, StatusStyle::TimeoutOnly, "9063", 6, "8 inputs, 3 relay outputs", OutputKind::Relay},
     {"EX9065D", 4, 5, 0, StatusStyle::TimeoutOnly, "9065", 6, "4 inputs, 5 relay outputs", OutputKind::Relay},
     {"EX9066D", 0, 7, 0, StatusStyle::TimeoutOnly, "9066", 6, "7 PhotoMOS outputs", OutputKind::PhotoMos},

@@ -38,7 +38,8 @@ struct Drive {
 /// Actions of a request other than settings and outputs. The module carries them out last.
 enum class Effect : std::uint8_t {
   RestartHostWatchdog,
-  TakeAddress,  ///< use the stored address from now on
+  TakeAddress,       ///< use the stored address from now on
+  TakeCountingEdge,  ///< count the edges that the stored format names from now on
   TakeSample,
   MarkSampleRead,
   ClearResetStatus,

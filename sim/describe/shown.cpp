@@ -33,6 +33,7 @@ constexpr auto kReadings = table<Reading>({
     {"timeout-status", Role::Problem, "Host watchdog timeout status", "clear-timeout-status",
      "Clear timeout status"},
     {"clear-counters", std::nullopt, "", "clear-counters", "Clear counter"},
+    {"counting-edge", std::nullopt, ""},
     {"counters", Role::Counter, "Counter"},
     {"module-code", std::nullopt, ""},
     {"address", std::nullopt, ""},

@@ -144,6 +144,15 @@ std::vector<StoringCommand> modbus_commands(const Model& model) {
         settings.address = kNewAddress;
         settings.baud_code = 0x08;
       });
+  if (model.inputs != 0) {
+    add(
+        "05 counting edge",
+        [](Settings& settings) {
+          settings.format = static_cast<std::uint8_t>(settings.format & ~kFormatRisingEdge);
+        },
+        {0x05, 0x08, 0xCA, 0xFF, 0x00},
+        [](Settings& settings, std::uint16_t) { settings.format |= kFormatRisingEdge; });
+  }
   if (model.outputs == 0) {
     return commands;
   }

@@ -42,6 +42,7 @@ constexpr Demand demand_of_one_coil(Bytes request, unsigned outputs) {
   Demand demand;
   switch (coil) {
     case 0x0100:
+    case 0x08CA:
       demand.stores_something = true;
       return demand;
     case 0x0104:

@@ -30,6 +30,9 @@ std::string Module::first_second(unsigned outputs, unsigned inputs) const {
   if (row_.outputs > 8) {
     return hex(outputs >> 8, 2) + hex(outputs, 2);
   }
+  if (row_.inputs > 8) {
+    return hex(inputs >> 8, 2) + hex(inputs, 2);
+  }
   return row_.outputs != 0 ? hex(outputs, 2) + hex(inputs, 2) : hex(inputs, 2) + "00";
 }
 

@@ -90,7 +90,8 @@ std::string name(const Module& module, Random& random) {
 /// Returns delimiter, address and body of a command, or of something similar to a command.
 std::string command(const Module& module, Random& random) {
   const std::string aa = hex(module.address(), 2);
-  const std::string channel = random.once_in(8) ? digit(random) : hex(random.below(8), 1);
+  const std::string channel =
+      random.once_in(8) ? digit(random) : hex(random.below(module.row().inputs > 8 ? 16 : 8), 1);
   switch (random.below(32)) {
     case 0:
     case 1:

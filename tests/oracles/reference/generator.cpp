@@ -72,7 +72,7 @@ Step next_step(const Module& module, Random& random) {
   }
   // Inputs that a model does not have may be wired, too; they have no effect.
   if (what < (module.row().inputs != 0 ? 40U : 15U)) {
-    const unsigned channel = random.below(8);
+    const unsigned channel = random.below(module.row().inputs > 8 ? 16 : 8);
     return random.once_in(2) ? Step(Input{channel, random.once_in(2)})
                              : Step(Pulse{channel, pulses(module, random)});
   }

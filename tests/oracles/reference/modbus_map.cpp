@@ -22,6 +22,7 @@ enum class Row {
   ClearLatches,
   TimeoutStatus,
   ClearCounters,
+  CountingEdge,
   None
 };
 
@@ -49,6 +50,7 @@ CoilRow coil_row(const ModelRow& model, unsigned address) {
       {Row::ClearLatches, "coil 0x0107", 0x0107, inputs != 0 ? 1U : 0U, false, true, false},
       {Row::TimeoutStatus, "coil 0x010D", 0x010D, 1, true, true, false},
       {Row::ClearCounters, "coil 0x0200", 0x0200, inputs, false, true, true},
+      {Row::CountingEdge, "coil 0x08CA", 0x08CA, inputs != 0 ? 1U : 0U, true, true, false},
   };
   for (const CoilRow& row : rows) {
     if (address >= row.first && address < row.first + row.count) {
@@ -120,6 +122,8 @@ bool Module::coil(unsigned address) const {
       return stored_.enabled;
     case Row::TimeoutStatus:
       return stored_.timed_out;
+    case Row::CountingEdge:
+      return (stored_.format & 0x80U) != 0;
     default:
       return false;  // not readable
   }
@@ -177,7 +181,7 @@ Bytes Module::read_registers(const Bytes& frame) {
   all_registers_listed(row_, first, quantity, function);
   Bytes reply = {frame[0], frame[1], static_cast<std::uint8_t>(2 * quantity)};
   for (unsigned i = 0; i < quantity; ++i) {
-    rule(function_name(function) + (first + i < 8 ? " counter" : " 0x" + hex(first + i, 4)));
+    rule(function_name(function) + (first + i < 16 ? " counter" : " 0x" + hex(first + i, 4)));
     append_word(reply, register_value(first + i));
   }
   return reply;
@@ -251,6 +255,11 @@ void Module::set_coils(unsigned first, const std::vector<bool>& values) {
       case Row::TimeoutStatus:
         clear_timeout_status();
         break;
+      case Row::CountingEdge:
+        // In force at once, unlike FF of `%`.
+        stored_.format = values[i] ? stored_.format | 0x80U : stored_.format & 0x7FU;
+        counts_rising_ = values[i];
+        break;
       case Row::ClearCounters:
         if (values[i]) {
           counters_[channel] = 0;
@@ -273,7 +282,7 @@ Bytes Module::write_coil(const Bytes& frame) {
   const std::vector<bool> values = {value == 0xFF00};
   judge_coils(address, values, 0x05);
   // Configuration is not allowed in broadcasts.
-  if (frame[0] == 0 && row.row == Row::Protocol) {
+  if (frame[0] == 0 && (row.row == Row::Protocol || row.row == Row::CountingEdge)) {
     rule("broadcast ignored: configuration");
     return {};
   }

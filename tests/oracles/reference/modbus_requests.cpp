@@ -18,9 +18,10 @@ unsigned coil_address(const Module& module, Random& random) {
     case 0:
       return random.one_of({0x0100U, 0x0104U, 0x0104U, 0x0107U, 0x010DU});
     case 1:
-      return module.row().inputs != 0 ? 0x0107 : random.one_of({0x0104U, 0x010DU});
+      return module.row().inputs != 0 ? random.one_of({0x0107U, 0x08CAU}) : random.one_of({0x0104U, 0x010DU});
     case 2:
-      return random.one_of({0x00FFU, 0x0101U, 0x0103U, 0x0105U, 0x0106U, 0x0108U, 0x010CU, 0x010EU, 0xFFFFU});
+      return random.one_of({0x00FFU, 0x0101U, 0x0103U, 0x0105U, 0x0106U, 0x0108U, 0x010CU, 0x010EU, 0x08C9U,
+                            0x08CBU, 0xFFFFU});
     case 3:
       return random.below(0x10000);
     default:
@@ -53,7 +54,7 @@ unsigned register_address(Random& random) {
     case 3:
     case 4:
     case 5:
-      return random.below(9);
+      return random.below(17);
     default:
       return random.one_of({0x01E2U, 0x01E3U, 0x01E4U, 0x01E5U, 0x01E8U, 0x01E8U});
   }

@@ -175,7 +175,7 @@ class Module {
   unsigned levels_ = 0;  ///< of the inputs; a reset does not change them
   unsigned latch_high_ = 0;
   unsigned latch_low_ = 0;
-  std::array<std::uint32_t, 8> counters_{};
+  std::array<std::uint32_t, 16> counters_{};
   struct Sample {
     std::string first_second;
     bool read = false;

@@ -269,7 +269,8 @@ TEST(DescribeMarkdown, ListsEveryFunction) {
   EXPECT_EQ(functions("EX9052D-M"),
             (Lines{"01", "02", "03", "04", "05", "06", "08", "0F", "10", "11", "2B", "46"}));
   EXPECT_EQ(row_beginning("01"), "| 01 | Read Coils | ignored | -M |");
-  EXPECT_EQ(row_beginning("02"), "| 02 | Read Discrete Inputs | ignored | EX9052D-M |");
+  EXPECT_EQ(row_beginning("02"),
+            "| 02 | Read Discrete Inputs | ignored | EX9052D-M, EX9044D-M, EX9053D-M, EX9060D-M |");
   EXPECT_EQ(row_beginning("10"),
             "| 10 | Write Multiple Registers | done by all modules, without answer | -M |");
 }
@@ -278,6 +279,7 @@ TEST(DescribeMarkdown, ListsEveryFunction) {
 const Lines kProtocol{"coil", "0x0100", "00257", "01, 05", "read, write"};
 const Lines kEnable{"coil", "0x0104", "00261", "01, 05", "read, write"};
 const Lines kTimeoutStatus{"coil", "0x010D", "00270", "01, 05", "read, write"};
+const Lines kCountingEdge{"coil", "0x08CA", "02251", "01, 05", "read, write"};
 const Lines kHostOkInput{"input register", "0x3038", "312345", "04", "read"};
 const Lines kCode{"holding register", "0x01E2-0x01E3", "40483-40484", "03", "read"};
 const Lines kAddress{"holding register", "0x01E4", "40485", "03, 06, 10", "read, write"};
@@ -327,10 +329,36 @@ TEST(DescribeMarkdown, ListsTheModbusMapOfEightInputs) {
                                 {"coil", "0x0107", "00264", "05", "write"},
                                 kTimeoutStatus,
                                 {"coil", "0x0200-0x0207", "00513-00520", "05, 0F", "write"},
+                                kCountingEdge,
                                 {"discrete input", "0x0000-0x0007", "10001-10008", "02", "read"},
                                 {"input register", "0x0000-0x0007", "30001-30008", "04", "read"},
                                 kHostOkInput,
                                 {"holding register", "0x0000-0x0007", "40001-40008", "03", "read"},
+                                kCode,
+                                kAddress,
+                                kBaud,
+                                kTimeout,
+                                kHostOk}));
+}
+
+TEST(DescribeMarkdown, ListsTheModbusMapOfInputsAndOutputs) {
+  EXPECT_EQ(map_of("EX9060D-M"),
+            (std::vector<Lines>{{"coil", "0x0000-0x0003", "00001-00004", "01, 05, 0F", "read, write"},
+                                {"coil", "0x0020-0x0023", "00033-00036", "01", "read"},
+                                {"coil", "0x0040-0x0043", "00065-00068", "01", "read"},
+                                {"coil", "0x0060-0x0063", "00097-00100", "01", "read"},
+                                {"coil", "0x0080-0x0083", "00129-00132", "01, 05, 0F", "read, write"},
+                                {"coil", "0x00A0-0x00A3", "00161-00164", "01, 05, 0F", "read, write"},
+                                kProtocol,
+                                kEnable,
+                                {"coil", "0x0107", "00264", "05", "write"},
+                                kTimeoutStatus,
+                                {"coil", "0x0200-0x0203", "00513-00516", "05, 0F", "write"},
+                                kCountingEdge,
+                                {"discrete input", "0x0000-0x0003", "10001-10004", "02", "read"},
+                                {"input register", "0x0000-0x0003", "30001-30004", "04", "read"},
+                                kHostOkInput,
+                                {"holding register", "0x0000-0x0003", "40001-40004", "03", "read"},
                                 kCode,
                                 kAddress,
                                 kBaud,
@@ -364,9 +392,11 @@ TEST(DescribeMarkdown, EqualMapsArePrintedOnce) {
     }
   }
   EXPECT_EQ(headings,
-            (Lines{"#### EX9042D-M", "#### EX9043D-M", "#### EX9052D-M", "#### EX9068D-M, EX9068AD-M"}));
+            (Lines{"#### EX9042D-M", "#### EX9043D-M", "#### EX9052D-M", "#### EX9068D-M, EX9068AD-M",
+                   "#### EX9044D-M", "#### EX9053D-M", "#### EX9060D-M"}));
   std::vector<Lines> maps;
-  for (const char* model : {"EX9042D-M", "EX9043D-M", "EX9052D-M", "EX9068D-M"}) {
+  for (const char* model :
+       {"EX9042D-M", "EX9043D-M", "EX9052D-M", "EX9068D-M", "EX9044D-M", "EX9053D-M", "EX9060D-M"}) {
     const std::vector<Lines> map = map_of(model);
     maps.insert(maps.end(), map.begin(), map.end());
   }
