@@ -1,7 +1,8 @@
 // Runs the examples of the documents. In each section, a `sh` block that starts the simulator runs in one
 // terminal. All other `sh` and `python` blocks run in a second terminal, and the `text` block is their
 // expected output. A `json` block is the content of the file `bus.json`. The working directory contains only
-// links to `boards` and `build`, because the images are there.
+// links to `boards` and `build`, because the images are there. For the block `sim/run`, the test runs the
+// command with which sim/run ends; tests/first-command runs sim/run itself, which builds the simulator.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -13,6 +14,7 @@
 #include <regex>
 #include <set>
 #include <sstream>
+#include <stdexcept>
 #include <string>
 #include <thread>
 #include <vector>
@@ -46,6 +48,20 @@ std::vector<std::string> documents() {
   return paths;
 }
 
+/// Returns the last command of sim/run, without the arguments that sim/run passes on. Throws
+/// std::runtime_error if sim/run starts no simulator.
+std::string command_of_sim_run() {
+  const std::string program = "exec \"$here/build/host/sim/ex9000-sim\" ";
+  std::ifstream file(EX9000_PROJECT "/sim/run");
+  for (std::string line; std::getline(file, line);) {
+    if (line.rfind(program, 0) == 0) {
+      const std::string arguments = line.substr(program.size());
+      return "ex9000-sim " + arguments.substr(0, arguments.find(" \"$@\"")) + "\n";
+    }
+  }
+  throw std::runtime_error("sim/run: no line starts the simulator; expected " + program);
+}
+
 std::vector<Section> sections_of(const std::string& document) {
   std::vector<Section> result(1, {document, {}});
   std::ifstream file(std::string(EX9000_PROJECT "/") + document);
@@ -57,7 +73,7 @@ std::vector<Section> sections_of(const std::string& document) {
         result.back().blocks.push_back({line.substr(3), ""});
       }
     } else if (inside) {
-      result.back().blocks.back().text += line + "\n";
+      result.back().blocks.back().text += line == "sim/run" ? command_of_sim_run() : line + "\n";
     } else if (line.rfind("##", 0) == 0) {
       result.push_back({document + line.substr(line.find(' ')), {}});
     }
@@ -73,10 +89,11 @@ void replace_port(std::string& text, const std::string& port) {
   }
 }
 
-/// Increases the timeouts of the documents, 0.3 s and 3 s, because a busy machine can take longer. socat
-/// waits for this time after each request.
+/// Increases the timeouts of the documents, because a busy machine can take longer: 0.3 s and 3 s for which
+/// socat waits after each request, and 1 s for which mbpoll waits for a reply.
 void extend_timeouts(std::string& text) {
   text = std::regex_replace(text, std::regex("socat -t [0-9.]+ "), "socat -t 10 ");
+  text = std::regex_replace(text, std::regex("mbpoll -"), "mbpoll -o 10 -");
 }
 
 /// Returns whether the section is an example of pymodbus, which `tests/run --without pymodbus` does not
@@ -172,7 +189,7 @@ void paste_all(std::vector<Section> pasted) {
 TEST(Documents, ExamplesPrintTheExpectedOutput) {
   std::vector<Section> pasted = sections_with_output();
   pasted.erase(std::remove_if(pasted.begin(), pasted.end(), requires_pymodbus), pasted.end());
-  EXPECT_GE(pasted.size(), 13U);
+  EXPECT_GE(pasted.size(), 14U);
   paste_all(std::move(pasted));
 }
 
