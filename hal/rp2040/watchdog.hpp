@@ -73,7 +73,8 @@ class HardwareWatchdog : public WatchdogRegisters {
  private:
   static constexpr Duration kPeriod = milliseconds(1500);
   static_assert(kPeriod.microseconds() < kWatchdogPeriod.microseconds(), "the watchdog is late");
-  static constexpr std::uint32_t kCountdown = 2U * kPeriod.microseconds();  // E1: it counts down twice a tick
+  /// Erratum RP2040-E1: the counter counts down twice a tick.
+  static constexpr std::uint32_t kCountdown = 2U * kPeriod.microseconds();
   static_assert(kCountdown < 1U << 24U, "the counter has 24 bits");
 };
 

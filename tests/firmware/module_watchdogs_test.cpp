@@ -131,7 +131,7 @@ TEST(HostWatchdog, ExpiryDrivesTheSafeValueAtOnceEvenWhileACommandIsBeingStored)
   EXPECT_EQ(changes[0].channels, 0);
   EXPECT_GE(changes[0].at, restarted + milliseconds(500));
   EXPECT_LE(changes[0].at, restarted + milliseconds(501));
-  EXPECT_FALSE(bench.heard_text().empty());  // stored and answered nevertheless (D6)
+  EXPECT_FALSE(bench.heard_text().empty());  // stored and answered nevertheless (wire.md D6)
   EXPECT_EQ(bench.module().module().state().settings.power_on_value, 0xFFFF);
   bench.power_cycle();
   EXPECT_TRUE(bench.module().module().state().settings.timeout_status);

@@ -211,7 +211,7 @@ class LeanModule {
     device_.emplace(model_, timing_at_, LeanBoard(around_));
     device_->start();
     main_loop();
-    constexpr Microseconds kLongest = 100 * kMillisecond;  // D13
+    constexpr Microseconds kLongest = 100 * kMillisecond;  // wire.md D13
     while (!module().listening()) {
       const Microseconds next = next_event();
       require(next <= began + kLongest, "a module answers within 100 ms of reset");

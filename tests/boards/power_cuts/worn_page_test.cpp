@@ -1,6 +1,7 @@
 // Tests a worn-out EEPROM: it acknowledges everything, but some bits of one byte keep a fixed value. The
 // firmware reads back every write, so wire.md 8 still holds: "If a write fails, the module replies `?AA` or
-// exception 04, and everything stays as it was." As D15 requires, the firmware tries the store three times.
+// exception 04, and everything stays as it was." As wire.md D15 requires, the firmware tries the store three
+// times.
 #include <gtest/gtest.h>
 
 #include <chrono>

@@ -16,7 +16,7 @@ constexpr Time kStarts[] = {Time(0), Time(123'456'789), Time(0xFFFF'FFFFU - 4'00
 
 Time ms(Time start, std::uint32_t after) { return start + milliseconds(after); }
 
-// --- INIT*, debounced for 10 ms (D13) ---
+// --- INIT*, debounced for 10 ms (wire.md D13) ---
 
 TEST(Debounce, TheLevelIsUnknownUntilItIsStableFor10Ms) {
   for (const Time start : kStarts) {

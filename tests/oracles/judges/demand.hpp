@@ -68,7 +68,7 @@ struct Demand {
   }
 
   /// Like `made_of`, if the host watchdog expired while the command was being stored: the command drives
-  /// nothing (D6) and clears nothing (D17). `outputs`: the outputs before the timeout.
+  /// nothing (wire.md D6) and clears nothing (wire.md D17). `outputs`: the outputs before the timeout.
   [[nodiscard]] constexpr Values values_after_a_timeout(Values values, std::uint16_t outputs) const {
     store(values, outputs);
     values.outputs = values.safe;

@@ -1,5 +1,5 @@
-// Decides which bytes are a Modbus frame for the module: an independent implementation of wire.md 7, D9 and
-// D11.
+// Decides which bytes are a Modbus frame for the module: an independent implementation of wire.md section 7,
+// wire.md D9 and wire.md D11.
 #pragma once
 
 #include <array>

@@ -241,7 +241,7 @@ class Witness {
   void note_silence() {
     if (rtu_) {
       Finding finding = rtu_->pass(now_);
-      finding.last += finding.kind == Finding::Kind::HostOk ? silence_ : 0;  // D11
+      finding.last += finding.kind == Finding::Kind::HostOk ? silence_ : 0;  // wire.md D11
       note(finding);
     }
   }

@@ -114,7 +114,7 @@ std::string Module::set_configuration(const std::string& body) {
   const unsigned type = *all >> 16 & 0xFFU;
   const unsigned baud_code = *all >> 8 & 0xFFU;
   const unsigned format = *all & 0xFFU;
-  if (type != 0x40 && type != 0x24) {  // E1
+  if (type != 0x40 && type != 0x24) {  // wire.md E1
     throw Refused{"%AANNTTCCFF TT out of range"};
   }
   if (baud_code < 0x03 || baud_code > 0x0A) {
@@ -177,7 +177,7 @@ std::string Module::set_group_or_single(const std::string& body) {
       throw Refused{"#AABBDD group lacking", true};
     }
     if ((data << shift & ~mask) != 0) {
-      throw Refused{"#AABBDD group's data beyond its channels", true};  // E2
+      throw Refused{"#AABBDD group's data beyond its channels", true};  // wire.md E2
     }
     wanted = (outputs_ & ~mask) | data << shift;
     reached = "#AABBDD group " + hex(group, 2);
@@ -304,7 +304,7 @@ std::string Module::at_command(const std::string& body) {
     throw Refused{"@AA(Data) lacking"};
   }
   const std::size_t longest = row_.outputs <= 4 ? 1 : row_.outputs <= 8 ? 2 : 4;
-  const std::size_t shorter = longest == 1 ? 1 : longest / 2;  // E4
+  const std::size_t shorter = longest == 1 ? 1 : longest / 2;  // wire.md E4
   const std::optional<unsigned> data = number(body);
   if ((body.size() != longest && body.size() != shorter) || !data) {
     throw Refused{"@AA(Data) out of form", true};
@@ -323,7 +323,7 @@ std::string Module::at_command(const std::string& body) {
 
 std::string Module::tilde_command(const std::string& body) {
   if (body == "0") {
-    // E7
+    // wire.md E7
     const bool on = row_.status_80_84;
     const std::string status = stored_.timed_out ? (on ? "84" : "04") : (on && stored_.enabled ? "80" : "00");
     rule("~AA0 " + status);
@@ -358,7 +358,7 @@ std::string Module::tilde_command(const std::string& body) {
       value = outputs_;
       return "!" + aa();
     }
-    // E6: the value is shown as on an output-only model, without inputs.
+    // wire.md E6: the value is shown as on an output-only model, without inputs.
     return "!" + aa() + first_second(value, 0);
   }
   if (command == 'O') {

@@ -204,7 +204,7 @@ void Module::judge_coils(unsigned first, const std::vector<bool>& values, unsign
       }
       break;
     case Row::ClearCounters:
-      // E8: in 0F, a 0 bit leaves the counter unchanged; 05 with 0000 is refused.
+      // wire.md E8: in 0F, a 0 bit leaves the counter unchanged; 05 with 0000 is refused.
       if (function == 0x05 && !values[0]) {
         throw Exception{0x03, value_refused};
       }

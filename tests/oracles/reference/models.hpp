@@ -14,7 +14,7 @@ struct ModelRow {
   bool both_protocols;    ///< the -M models: Modbus RTU and ASCII
   bool status_80_84;      ///< `~AA0` answers 00, 80 or 84; if false, 00 or 04
   const char* name;       ///< factory name, `$AAM`
-  unsigned longest_name;  ///< 7 on the -M models of the 9068, E5
+  unsigned longest_name;  ///< 7 on the -M models of the 9068, wire.md E5
   std::uint16_t code;     ///< Modbus module code; 0 without Modbus
   const char* in_words;   ///< object 04 of function 2B
 };
