@@ -26,7 +26,9 @@ constexpr int kModules = 32;
 constexpr int kBaud = 115200;
 constexpr int kOutputs = 13;
 constexpr int kInputs = 8;
-/// Permitted memory growth of a process after its first second, in KiB.
+/// The first transactions allocate memory that is used again. The master sends this many in about a second.
+constexpr long kFirstTransactions = 200;
+/// Permitted memory growth of a process after its first transactions, in KiB.
 constexpr long kGrowth = 256;
 
 bool has_outputs(int address) { return address % 2 == 1; }
@@ -115,9 +117,13 @@ int main(int argc, char** argv) {
   for (Bus& bus : buses) {
     masters.emplace_back([&bus, end] { bus.poll_until(end); });
   }
-  std::this_thread::sleep_for(
-      std::chrono::seconds(1));  // the first transactions allocate memory that is used again
-  const std::array<long, 2> before{buses[0].memory(), buses[1].memory()};
+  std::array<long, 2> before{};
+  for (std::size_t i = 0; i < buses.size(); ++i) {
+    while (buses[i].transactions() < kFirstTransactions && Clock::now() < end) {
+      std::this_thread::sleep_for(std::chrono::milliseconds(10));  // leaves the processor to the simulators
+    }
+    before[i] = buses[i].memory();
+  }
   constexpr std::chrono::seconds kReportInterval{60};
   for (auto report = Clock::now() + kReportInterval; report < end; report += kReportInterval) {
     std::this_thread::sleep_until(report);
@@ -131,7 +137,7 @@ int main(int argc, char** argv) {
   bool passed = true;
   for (std::size_t i = 0; i < buses.size(); ++i) {
     const long grown = buses[i].memory() - before[i];
-    std::printf("bus %zu: %ld transactions in %ld s, %ld wrong; %ld KiB, %+ld since the first second\n",
+    std::printf("bus %zu: %ld transactions in %ld s, %ld wrong; %ld KiB, %+ld since the first transactions\n",
                 i + 1, buses[i].transactions(), seconds, buses[i].wrong(), buses[i].memory(), grown);
     passed = passed && buses[i].wrong() == 0 && grown <= kGrowth && buses[i].transactions() > 0;
   }

@@ -211,7 +211,7 @@ void leave_reply_unread(const std::string& tty, const std::string& command, cons
 /// Repeats a request until its reply arrives, as a master does, because a module receives nothing while it
 /// sends or hangs.
 bool gets(const RunningImage& image, const std::string& command, const std::string& reply) {
-  constexpr std::chrono::seconds kRepeats{1};
+  constexpr std::chrono::seconds kRepeats{1};  // a busy machine can only cause more requests
   Terminal terminal(image.tty(), 9600);
   const auto gives_up = std::chrono::steady_clock::now() + kHang;
   while (std::chrono::steady_clock::now() < gives_up) {

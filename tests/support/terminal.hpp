@@ -20,10 +20,12 @@ class Terminal {
   /// Writes all bytes in one piece. Throws std::runtime_error if that fails.
   void write(const std::vector<std::uint8_t>& bytes);
   void type(const std::string& text);
-  /// Waits until bytes arrive and returns them. Returns nothing if none arrive within `patience`.
+  /// Waits until bytes arrive and returns them. Returns nothing if none arrive within `patience` on the wall
+  /// clock.
   std::vector<std::uint8_t> read(std::chrono::nanoseconds patience);
   /// Reads until the last received byte is a CR, and returns all bytes. Returns them without CR if no more
-  /// arrive within `patience`. The default only detects a program that hangs.
+  /// arrive within `patience`. The default only detects a program that hangs: a reply takes less than a
+  /// second, and on a busy machine a few seconds.
   std::string read_line(std::chrono::milliseconds patience = std::chrono::seconds(60));
   /// Returns the number of bytes that were read so far.
   [[nodiscard]] std::uint64_t received() const { return received_; }
