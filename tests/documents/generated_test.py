@@ -31,7 +31,7 @@ class Generated(unittest.TestCase):
         written = section_of("sim/docs/bus-files.md", "toolchain/bus-file-keys")
         self.assertEqual(written, printed(["toolchain/bus-file-keys"], schema))
 
-    def test_the_wiring_of_the_pico(self) -> None:
+    def test_the_wiring_of_the_pico_is_up_to_date(self) -> None:
         drawn = (ROOT / "boards/pico/wiring.svg").read_text(encoding="utf-8")
         self.assertEqual(drawn, printed(["toolchain/draw-wiring", "boards/pico/README.md"]))
 

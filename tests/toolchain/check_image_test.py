@@ -32,7 +32,7 @@ class Accepts(unittest.TestCase):
         assert match
         return int(match.group(1)) - 2 * EXCEPTION
 
-    def test_a_main_loop_without_interrupts(self) -> None:
+    def test_a_main_loop_without_interrupts_requires_one_exception_frame(self) -> None:
         self.assertEqual(self.stack(check('extern "C" void reset() { for (;;) {} }')), EXCEPTION)
 
     def test_frames_add_up_along_the_deepest_calls(self) -> None:
@@ -174,7 +174,7 @@ class Accepts(unittest.TestCase):
             verdict = check(source, link_options=library)
             self.assertTrue(verdict.accepted, verdict.problems)
 
-    def test_a_function_pointer_to_a_member_function(self) -> None:
+    def test_a_pointer_to_a_member_function_reaches_only_functions_of_its_type(self) -> None:
         verdict = check(
             """
             struct Thing { int value; FAR void plain() { room<40>(); } FAR void other(int) { room<400>(); } };
@@ -186,7 +186,7 @@ class Accepts(unittest.TestCase):
         )
         self.assertRegex(verdict.figures, r"main loop \d+: reset \d+ -> Thing::plain 40\n")
 
-    def test_flash_and_ram_of_an_image(self) -> None:
+    def test_flash_and_ram_of_an_image_are_printed(self) -> None:
         verdict = check(
             """
             volatile unsigned char with_value[100] = {1};
@@ -233,7 +233,7 @@ class Refuses(unittest.TestCase):
 
     # --- stack ---
 
-    def test_recursion(self) -> None:
+    def test_recursion_is_refused(self) -> None:
         self.refused(
             "recursion: ping -> pong -> ping$",
             """
@@ -244,7 +244,7 @@ class Refuses(unittest.TestCase):
             """,
         )
 
-    def test_recursion_through_a_pointer(self) -> None:
+    def test_recursion_through_a_pointer_is_refused(self) -> None:
         self.refused(
             "recursion: walk -> walk$",
             """
@@ -257,7 +257,7 @@ class Refuses(unittest.TestCase):
             """,
         )
 
-    def test_recursion_in_a_handler(self) -> None:
+    def test_recursion_in_a_handler_is_refused(self) -> None:
         self.refused(
             "recursion: interrupt -> interrupt$",
             """
@@ -267,7 +267,7 @@ class Refuses(unittest.TestCase):
             """,
         )
 
-    def test_an_unbounded_frame(self) -> None:
+    def test_an_unbounded_frame_is_refused(self) -> None:
         source = """
             extern "C" void reset() {{ for (volatile int n = 0;; n = n + 1) {{ {} }} }}
             """
@@ -281,7 +281,7 @@ class Refuses(unittest.TestCase):
                 compile_options="-w",
             )
 
-    def test_a_reachable_assembler_function(self) -> None:
+    def test_a_reachable_assembler_function_is_refused(self) -> None:
         self.refused(
             r"foreign has no recorded stack \(reached by reset -> foreign\)",
             """
@@ -292,7 +292,7 @@ class Refuses(unittest.TestCase):
             """,
         )
 
-    def test_a_copy_function_that_uses_more_stack_than_the_table_states(self) -> None:
+    def test_a_copy_function_that_uses_more_stack_than_the_table_states_is_refused(self) -> None:
         self.refused(
             "memset uses 64 bytes of stack, but the tool's table has only 16",
             """
@@ -304,7 +304,7 @@ class Refuses(unittest.TestCase):
             """,
         )
 
-    def test_a_call_that_the_compiler_has_not_seen(self) -> None:
+    def test_a_call_that_the_compiler_has_not_seen_is_refused(self) -> None:
         self.refused(
             "reset branches to hidden, but the compiler recorded no such call",
             """
@@ -313,7 +313,7 @@ class Refuses(unittest.TestCase):
             """,
         )
 
-    def test_a_jump_that_the_compiler_has_not_seen(self) -> None:
+    def test_a_jump_that_the_compiler_has_not_seen_is_refused(self) -> None:
         self.refused(
             "interrupt branches to hidden, but the compiler recorded no such call",
             """
@@ -323,7 +323,7 @@ class Refuses(unittest.TestCase):
             """,
         )
 
-    def test_a_call_through_a_register_that_the_compiler_has_not_seen(self) -> None:
+    def test_a_call_through_a_register_that_the_compiler_has_not_seen_is_refused(self) -> None:
         self.refused(
             "reset branches through a register, but the compiler recorded no indirect call",
             """
@@ -331,7 +331,7 @@ class Refuses(unittest.TestCase):
             """,
         )
 
-    def test_a_push_that_the_compiler_has_not_seen(self) -> None:
+    def test_a_push_that_the_compiler_has_not_seen_is_refused(self) -> None:
         self.refused(
             "reset uses 8 bytes of stack, but the compiler recorded only 0",
             """
@@ -339,7 +339,7 @@ class Refuses(unittest.TestCase):
             """,
         )
 
-    def test_a_stack_pointer_that_is_computed(self) -> None:
+    def test_a_stack_pointer_that_is_computed_is_refused(self) -> None:
         self.refused(
             "reset moves the stack pointer in a way that is not understood",
             """
@@ -347,14 +347,14 @@ class Refuses(unittest.TestCase):
             """,
         )
 
-    def test_a_level_of_a_handler_that_does_not_exist(self) -> None:
+    def test_a_level_of_a_handler_that_does_not_exist_is_refused(self) -> None:
         self.refused(
             "no interrupt's handler is called timer",
             'extern "C" void reset() { for (;;) {} }',
             options="--level timer",
         )
 
-    def test_a_vector_that_is_not_a_function(self) -> None:
+    def test_a_vector_that_is_not_a_function_is_refused(self) -> None:
         self.refused(
             "vector 15 is 0x[0-9a-f]+, which is not the address of a function",
             """
@@ -365,16 +365,16 @@ class Refuses(unittest.TestCase):
 
     # --- interrupts that are disabled ---
 
-    def test_interrupts_disabled_for_too_long(self) -> None:
+    def test_interrupts_disabled_for_too_long_are_refused(self) -> None:
         self.refused("interrupts are disabled for 21 instructions; at most 20 are permitted", holding("nop\\n" * 21))
 
-    def test_interrupts_disabled_in_a_loop(self) -> None:
+    def test_interrupts_disabled_in_a_loop_are_refused(self) -> None:
         self.refused(
             "0x[0-9a-f]+: interrupts are disabled, and then there is a loop at .*",
             holding("1: cbz r0, 2f\\nb 1b\\n2: "),
         )
 
-    def test_interrupts_disabled_during_a_call(self) -> None:
+    def test_interrupts_disabled_during_a_call_are_refused(self) -> None:
         self.refused(
             "0x[0-9a-f]+: interrupts are disabled, and then 0x[0-9a-f]+ makes a call or jump that check-image cannot"
             " follow",
@@ -390,7 +390,7 @@ class Refuses(unittest.TestCase):
             """,
         )
 
-    def test_interrupts_disabled_beyond_the_return(self) -> None:
+    def test_interrupts_disabled_beyond_the_return_are_refused(self) -> None:
         self.refused(
             "0x[0-9a-f]+: interrupts are disabled, and then 0x[0-9a-f]+ returns",
             """
@@ -399,7 +399,7 @@ class Refuses(unittest.TestCase):
             """,
         )
 
-    def test_interrupts_disabled_by_other_means(self) -> None:
+    def test_interrupts_disabled_by_other_means_are_refused(self) -> None:
         self.refused(
             "0x[0-9a-f]+: interrupts are disabled by PRIMASK, r0",
             'extern "C" void reset() { for (;;) asm volatile("msr primask, r0" ::: "memory"); }',
@@ -407,7 +407,7 @@ class Refuses(unittest.TestCase):
 
     # --- symbols and sections ---
 
-    def test_heap(self) -> None:
+    def test_heap_is_refused(self) -> None:
         for source in (
             """
             FAR void* operator new(size_t) { return &stack_top; }
@@ -422,7 +422,7 @@ class Refuses(unittest.TestCase):
         ):
             self.refused(r"(_Znwj|malloc): heap", source)
 
-    def test_floating_point(self) -> None:
+    def test_floating_point_is_refused(self) -> None:
         for kind, symbol in (("double", "__aeabi_dmul"), ("float", "__aeabi_fmul")):
             self.refused(
                 f"{symbol}: floating point",
@@ -435,7 +435,7 @@ class Refuses(unittest.TestCase):
             link_options="-lgcc",
         )
 
-    def test_a_floating_point_unit(self) -> None:
+    def test_a_floating_point_unit_is_refused(self) -> None:
         self.refused(
             "instructions of a floating-point unit",
             'volatile float f; extern "C" void reset() { for (;;) f = f * f; }',
@@ -443,7 +443,7 @@ class Refuses(unittest.TestCase):
             link_options="-mcpu=cortex-m4 -mfpu=fpv4-sp-d16 -mfloat-abi=softfp",
         )
 
-    def test_64_bit_division(self) -> None:
+    def test_64_bit_division_is_refused(self) -> None:
         for kind in ("int64_t", "uint64_t"):
             self.refused(
                 "__aeabi_u?ldivmod: 64-bit division",
@@ -451,7 +451,7 @@ class Refuses(unittest.TestCase):
                 link_options="-lgcc -lc",
             )
 
-    def test_the_cxx_runtime(self) -> None:
+    def test_the_cxx_runtime_is_refused(self) -> None:
         self.refused(
             "__cxa_guard_acquire: the C\\+\\+ run-time library",
             """
@@ -464,7 +464,7 @@ class Refuses(unittest.TestCase):
             compile_options="-fthreadsafe-statics",
         )
 
-    def test_globals_initialised_at_run_time(self) -> None:
+    def test_globals_initialised_at_run_time_are_refused(self) -> None:
         source = """
             volatile int before;
             volatile int global = before;
@@ -473,14 +473,14 @@ class Refuses(unittest.TestCase):
         self.refused("section .init_array: globals initialised at run time", source)
         self.refused(".*: globals initialised at run time", source, link_options="-Wl,--no-gc-sections")
 
-    def test_unwind_tables(self) -> None:
+    def test_unwind_tables_are_refused(self) -> None:
         self.refused(
             "section .ARM.exidx: unwind tables",
             'extern "C" void reset() { for (;;) {} } extern "C" void __aeabi_unwind_cpp_pr0() {}',
             compile_options="-funwind-tables",
         )
 
-    def test_a_call_of_a_missing_weak_function(self) -> None:
+    def test_a_call_of_a_missing_weak_function_is_refused(self) -> None:
         self.refused(
             "reset calls missing, which the image does not have",
             """
@@ -489,14 +489,14 @@ class Refuses(unittest.TestCase):
             """,
         )
 
-    def test_undefined_symbols(self) -> None:
+    def test_undefined_symbols_are_refused(self) -> None:
         self.refused(
             "missing is undefined",
             'extern "C" volatile int missing; extern "C" void reset() { for (;;) missing = 1; }',
             link_options="-Wl,--unresolved-symbols=ignore-all",
         )
 
-    def test_texts_for_people(self) -> None:
+    def test_texts_for_people_are_refused(self) -> None:
         self.refused(
             "section .text contains the text 'clear both latches', which an image must not contain",
             """
@@ -509,7 +509,7 @@ class Refuses(unittest.TestCase):
 
     # --- memory and records ---
 
-    def test_an_image_that_requires_too_much_ram(self) -> None:
+    def test_an_image_that_requires_too_much_ram_is_refused(self) -> None:
         source = 'volatile char a[20372]; extern "C" void reset() { for (;;) a[0] = 1; }'
         self.assertTrue(check(source).accepted)  # the rest of RAM is for three exceptions
         verdict = check(source.replace("20372", "20376"))

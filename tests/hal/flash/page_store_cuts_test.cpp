@@ -171,7 +171,7 @@ class PageStoreCuts : public testing::Test {
   std::size_t cuts_ = 0;
 };
 
-TEST_F(PageStoreCuts, InTheFirstRunOnAFlash) {
+TEST_F(PageStoreCuts, InTheFirstRunOnAFlashLeaveTheOldPageOrTheNew) {
   State state = blank();
   for (const unsigned content : {1U, 2U}) {
     // A write that arrives before the first erase has ended may be refused, so this one arrives later.
@@ -182,7 +182,7 @@ TEST_F(PageStoreCuts, InTheFirstRunOnAFlash) {
   }
 }
 
-TEST_F(PageStoreCuts, AtTheFirstWritesAfterAReset) {
+TEST_F(PageStoreCuts, AtTheFirstWritesAfterAResetLeaveTheOldPageOrTheNew) {
   State state = settled();
   write(state, {0, 1, 0});
   write(state, {1, 2, 0});
@@ -194,7 +194,7 @@ TEST_F(PageStoreCuts, AtTheFirstWritesAfterAReset) {
   }
 }
 
-TEST_F(PageStoreCuts, AtTheEndOfASectorAndAtTheErasesAfterIt) {
+TEST_F(PageStoreCuts, AtTheEndOfASectorAndAtTheErasesAfterItLeaveTheOldPageOrTheNew) {
   State state = full();
   unsigned content = 5000;
   for (const unsigned pause : {1'000U, 3'000U, 3'000U, 10'000U, 60'000U, 3'000U, 100'000U}) {
@@ -203,7 +203,7 @@ TEST_F(PageStoreCuts, AtTheEndOfASectorAndAtTheErasesAfterIt) {
   }
 }
 
-TEST_F(PageStoreCuts, WithTheLongestTimesOfTheFlash) {
+TEST_F(PageStoreCuts, WithTheLongestTimesOfTheFlashLeaveTheOldPageOrTheNew) {
   State state = full();
   state.chip.times = FlashChip::kLongest;
   unsigned content = 5000;
@@ -215,7 +215,7 @@ TEST_F(PageStoreCuts, WithTheLongestTimesOfTheFlash) {
 
 // The number of pairs grows with the square of the number of cuts, so this is a random sample with a fixed
 // seed.
-TEST_F(PageStoreCuts, SeveralTimesInARow) {
+TEST_F(PageStoreCuts, SeveralTimesInARowLeaveTheOldPageOrTheNew) {
   constexpr int kRounds = 100;
   constexpr int kCutsInARow = 6;
   std::mt19937 random(kSeed);

@@ -11,6 +11,7 @@ namespace {
 
 /// Erase cycles of a sector: W25Q16JV data sheet, "Features".
 constexpr double kCycles = 100'000;
+/// Stores until a sector wears out.
 constexpr double kRequired = 10e6;
 
 class PageStoreWear : public testing::Test {
@@ -60,12 +61,12 @@ class PageStoreWear : public testing::Test {
   unsigned content_ = 0;
 };
 
-TEST_F(PageStoreWear, OfSettingsInOnePage) {
+TEST_F(PageStoreWear, AllowsTenMillionStoresOfSettingsInOnePage) {
   stores_until_worn("settings of one page, two copies in turn",
                     [this](unsigned i) { write(i % 2 == 0 ? 4 : 8); });
 }
 
-TEST_F(PageStoreWear, OfSettingsInFourPages) {
+TEST_F(PageStoreWear, AllowsTenMillionStoresOfSettingsInFourPages) {
   stores_until_worn("settings of four pages, two copies in turn", [this](unsigned i) {
     for (std::size_t page = 0; page < 4; ++page) {
       write((i % 2 == 0 ? 4 : 8) + page);
@@ -73,7 +74,7 @@ TEST_F(PageStoreWear, OfSettingsInFourPages) {
   });
 }
 
-TEST_F(PageStoreWear, OfOnePageWhileAllOthersHoldASectorEach) {
+TEST_F(PageStoreWear, AllowsTenMillionStoresOfAPageWhileAllOthersHoldASectorEach) {
   for (std::size_t page = 1; page < kPages; ++page) {
     pin(page);
   }
@@ -107,7 +108,7 @@ TEST_F(PageStoreWear, OfResetsWithoutAStoreIsNone) {
 }
 
 // After a reset, the first store begins a new sector.
-TEST_F(PageStoreWear, OfAStoreAfterEachResetIsOneEraseOfOneOfManySectors) {
+TEST_F(PageStoreWear, AllowsAMillionStoresIfEachFollowsAReset) {
   constexpr unsigned kResets = 2'000;
   write(4);
   write(8);
