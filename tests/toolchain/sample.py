@@ -78,6 +78,13 @@ def check(
     return Verdict(done.returncode == 0, done.stdout, done.stderr)
 
 
+def holding(code: str) -> str:
+    """Returns a source that disables interrupts during this assembly code."""
+    return f"""
+        extern "C" void reset() {{ for (;;) asm volatile("cpsid i\\n{code}cpsie i" ::: "memory"); }}
+        """
+
+
 def _run(command: list[str]) -> None:
     done = subprocess.run(command, capture_output=True, text=True, check=False)
     if done.returncode != 0:

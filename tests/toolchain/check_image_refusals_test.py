@@ -1,0 +1,305 @@
+"""Tests check-image on images that it rejects: the reason that it prints."""
+
+from __future__ import annotations
+
+import unittest
+
+from sample import check, holding
+
+
+class Refuses(unittest.TestCase):
+    def refused(self, reason: str, source: str, *more: str, **how: str) -> None:
+        verdict = check(source, *more, **how)  # type: ignore[arg-type]
+        self.assertFalse(verdict.accepted, verdict.figures)
+        self.assertRegex(verdict.problems, f"(?m)^image: {reason}")
+
+    # --- stack ---
+
+    def test_recursion_is_refused(self) -> None:
+        self.refused(
+            "recursion: ping -> pong -> ping$",
+            """
+            FAR int pong(int n);
+            FAR int ping(int n) { return n ? pong(n - 1) + 1 : 0; }
+            FAR int pong(int n) { return n ? ping(n - 1) + 2 : 0; }
+            extern "C" void reset() { for (volatile int i = 0;; ) i = ping(i); }
+            """,
+        )
+
+    def test_recursion_through_a_pointer_is_refused(self) -> None:
+        self.refused(
+            "recursion: walk -> walk$",
+            """
+            struct Tree { int value; };
+            FAR int walk(const Tree& tree);
+            extern int (*const volatile visit)(const Tree&);
+            int (*const volatile visit)(const Tree&) = walk;
+            FAR int walk(const Tree& tree) { return visit(tree) + 1; }
+            extern "C" void reset() { Tree tree{1}; for (;;) tree.value = walk(tree); }
+            """,
+        )
+
+    def test_recursion_in_a_handler_is_refused(self) -> None:
+        self.refused(
+            "recursion: interrupt -> interrupt$",
+            """
+            volatile int n;
+            extern "C" void reset() { for (;;) {} }
+            extern "C" FAR void interrupt() { if (n) { interrupt(); n = n - 1; interrupt(); n = n + 1; } }
+            """,
+        )
+
+    def test_an_unbounded_frame_is_refused(self) -> None:
+        source = """
+            extern "C" void reset() {{ for (volatile int n = 0;; n = n + 1) {{ {} }} }}
+            """
+        for frame in (
+            "volatile char* p = static_cast<char*>(__builtin_alloca(unsigned(n))); *p = 1;",
+            "volatile char a[n]; a[0] = 1;",
+        ):
+            self.refused(
+                "reset uses an amount of stack that is known only at run time",
+                source.format(frame),
+                compile_options="-w",
+            )
+
+    def test_a_reachable_assembler_function_is_refused(self) -> None:
+        self.refused(
+            r"foreign has no recorded stack \(reached by reset -> foreign\)",
+            """
+            extern "C" void foreign();
+            asm(".section .text.foreign\\n.thumb_func\\n.global foreign\\n.type foreign, %function\\n"
+                "foreign: bx lr\\n.size foreign, .-foreign\\n.text");
+            extern "C" void reset() { for (;;) foreign(); }
+            """,
+        )
+
+    def test_a_copy_function_that_uses_more_stack_than_the_table_states_is_refused(self) -> None:
+        self.refused(
+            "memset uses 64 bytes of stack, but the tool's table has only 16",
+            """
+            extern "C" void* memset(void*, int, size_t);
+            asm(".section .text.memset\\n.thumb_func\\n.global memset\\n.type memset, %function\\n"
+                "memset: sub sp, #64\\nadd sp, #64\\nbx lr\\n.size memset, .-memset\\n.text");
+            volatile unsigned size;
+            extern "C" void reset() { for (;;) memset(&stack_top, 0, size); }
+            """,
+        )
+
+    def test_a_call_that_the_compiler_has_not_seen_is_refused(self) -> None:
+        self.refused(
+            "reset branches to hidden, but the compiler recorded no such call",
+            """
+            extern "C" __attribute__((used)) FAR void hidden() { room<40>(); }
+            extern "C" void reset() { for (;;) asm volatile("bl hidden" ::: "lr", "memory"); }
+            """,
+        )
+
+    def test_a_jump_that_the_compiler_has_not_seen_is_refused(self) -> None:
+        self.refused(
+            "interrupt branches to hidden, but the compiler recorded no such call",
+            """
+            extern "C" __attribute__((used)) FAR void hidden() { room<40>(); }
+            extern "C" void reset() { for (;;) {} }
+            extern "C" __attribute__((naked)) void interrupt() { asm volatile("mrs r0, msp\\nb.w hidden"); }
+            """,
+        )
+
+    def test_a_call_through_a_register_that_the_compiler_has_not_seen_is_refused(self) -> None:
+        self.refused(
+            "reset branches through a register, but the compiler recorded no indirect call",
+            """
+            extern "C" void reset() { for (;;) asm volatile("blx r3" ::: "r3", "lr", "memory"); }
+            """,
+        )
+
+    def test_a_push_that_the_compiler_has_not_seen_is_refused(self) -> None:
+        self.refused(
+            "reset uses 8 bytes of stack, but the compiler recorded only 0",
+            """
+            extern "C" void reset() { for (;;) asm volatile("push {r0, r1}\\npop {r0, r1}" ::: "memory"); }
+            """,
+        )
+
+    def test_a_stack_pointer_that_is_computed_is_refused(self) -> None:
+        self.refused(
+            "reset moves the stack pointer in a way that is not understood",
+            """
+            extern "C" void reset() { for (;;) asm volatile("sub sp, sp, r0" ::: "memory"); }
+            """,
+        )
+
+    def test_a_level_of_a_handler_that_does_not_exist_is_refused(self) -> None:
+        self.refused(
+            "no interrupt's handler is called timer",
+            'extern "C" void reset() { for (;;) {} }',
+            options="--level timer",
+        )
+
+    def test_a_vector_that_is_not_a_function_is_refused(self) -> None:
+        self.refused(
+            "vector 15 is 0x[0-9a-f]+, which is not the address of a function",
+            """
+            extern "C" void reset() { for (;;) {} }
+            asm(".global interrupt\\n.set interrupt, 0x08000003");
+            """,
+        )
+
+    # --- interrupts that are disabled ---
+
+    def test_interrupts_disabled_for_too_long_are_refused(self) -> None:
+        self.refused("interrupts are disabled for 21 instructions; at most 20 are permitted", holding("nop\\n" * 21))
+
+    def test_interrupts_disabled_in_a_loop_are_refused(self) -> None:
+        self.refused(
+            "0x[0-9a-f]+: interrupts are disabled, and then there is a loop at .*",
+            holding("1: cbz r0, 2f\\nb 1b\\n2: "),
+        )
+
+    def test_interrupts_disabled_during_a_call_are_refused(self) -> None:
+        self.refused(
+            "0x[0-9a-f]+: interrupts are disabled, and then 0x[0-9a-f]+ makes a call or jump that check-image cannot"
+            " follow",
+            """
+            FAR void far_away() { room<40>(); }
+            extern "C" void reset() {
+              for (;;) {
+                asm volatile("cpsid i" ::: "memory");
+                far_away();
+                asm volatile("cpsie i" ::: "memory");
+              }
+            }
+            """,
+        )
+
+    def test_interrupts_disabled_beyond_the_return_are_refused(self) -> None:
+        self.refused(
+            "0x[0-9a-f]+: interrupts are disabled, and then 0x[0-9a-f]+ returns",
+            """
+            FAR void hold() { asm volatile("cpsid i" ::: "memory"); }
+            extern "C" void reset() { for (;;) hold(); }
+            """,
+        )
+
+    def test_interrupts_disabled_by_other_means_are_refused(self) -> None:
+        self.refused(
+            "0x[0-9a-f]+: interrupts are disabled by PRIMASK, r0",
+            'extern "C" void reset() { for (;;) asm volatile("msr primask, r0" ::: "memory"); }',
+        )
+
+    # --- symbols and sections ---
+
+    def test_heap_is_refused(self) -> None:
+        for source in (
+            """
+            FAR void* operator new(size_t) { return &stack_top; }
+            volatile int* volatile p;
+            extern "C" void reset() { for (;;) p = new int(1); }
+            """,
+            """
+            extern "C" FAR void* malloc(size_t) { room<8>(); return &stack_top; }
+            void* volatile p;
+            extern "C" void reset() { for (;;) p = malloc(3); }
+            """,
+        ):
+            self.refused(r"(_Znwj|malloc): heap", source)
+
+    def test_floating_point_is_refused(self) -> None:
+        for kind, symbol in (("double", "__aeabi_dmul"), ("float", "__aeabi_fmul")):
+            self.refused(
+                f"{symbol}: floating point",
+                f'volatile {kind} d; extern "C" void reset() {{ for (;;) d = d * d; }}',
+                link_options="-lgcc",
+            )
+        self.refused(
+            "__aeabi_ui2d: floating point",
+            'volatile double d; volatile unsigned u; extern "C" void reset() { for (;;) d = u; }',
+            link_options="-lgcc",
+        )
+
+    def test_a_floating_point_unit_is_refused(self) -> None:
+        self.refused(
+            "instructions of a floating-point unit",
+            'volatile float f; extern "C" void reset() { for (;;) f = f * f; }',
+            compile_options="-mcpu=cortex-m4 -mfpu=fpv4-sp-d16 -mfloat-abi=softfp",
+            link_options="-mcpu=cortex-m4 -mfpu=fpv4-sp-d16 -mfloat-abi=softfp",
+        )
+
+    def test_64_bit_division_is_refused(self) -> None:
+        for kind in ("int64_t", "uint64_t"):
+            self.refused(
+                "__aeabi_u?ldivmod: 64-bit division",
+                f'volatile {kind} n = 7; extern "C" void reset() {{ for (;;) n = n / (n + 1); }}',
+                link_options="-lgcc -lc",
+            )
+
+    def test_the_cxx_runtime_is_refused(self) -> None:
+        self.refused(
+            "__cxa_guard_acquire: the C\\+\\+ run-time library",
+            """
+            volatile int source;
+            extern "C" FAR int __cxa_guard_acquire(void*) { room<8>(); return 1; }
+            extern "C" void __cxa_guard_release(void*) {}
+            FAR int once() { static int value = source; return value; }
+            extern "C" void reset() { for (;;) source = once(); }
+            """,
+            compile_options="-fthreadsafe-statics",
+        )
+
+    def test_globals_initialised_at_run_time_are_refused(self) -> None:
+        source = """
+            volatile int before;
+            volatile int global = before;
+            extern "C" void reset() { for (;;) before = global; }
+            """
+        self.refused("section .init_array: globals initialised at run time", source)
+        self.refused(".*: globals initialised at run time", source, link_options="-Wl,--no-gc-sections")
+
+    def test_unwind_tables_are_refused(self) -> None:
+        self.refused(
+            "section .ARM.exidx: unwind tables",
+            'extern "C" void reset() { for (;;) {} } extern "C" void __aeabi_unwind_cpp_pr0() {}',
+            compile_options="-funwind-tables",
+        )
+
+    def test_a_call_of_a_missing_weak_function_is_refused(self) -> None:
+        self.refused(
+            "reset calls missing, which the image does not have",
+            """
+            extern "C" __attribute__((weak)) void missing();
+            extern "C" void reset() { for (;;) if (missing) missing(); }
+            """,
+        )
+
+    def test_undefined_symbols_are_refused(self) -> None:
+        self.refused(
+            "missing is undefined",
+            'extern "C" volatile int missing; extern "C" void reset() { for (;;) missing = 1; }',
+            link_options="-Wl,--unresolved-symbols=ignore-all",
+        )
+
+    def test_texts_for_people_are_refused(self) -> None:
+        self.refused(
+            "section .text contains the text 'clear both latches', which an image must not contain",
+            """
+            extern const char text[];
+            const char text[] = "clear both latches of all channels";
+            volatile char c;
+            extern "C" void reset() { for (volatile int i = 0;;) c = text[i]; }
+            """,
+        )
+
+    # --- memory ---
+
+    def test_an_image_that_requires_too_much_ram_is_refused(self) -> None:
+        source = 'volatile char a[20372]; extern "C" void reset() { for (;;) a[0] = 1; }'
+        self.assertTrue(check(source).accepted)  # the rest of RAM is for three exceptions
+        verdict = check(source.replace("20372", "20376"))
+        self.assertFalse(verdict.accepted)
+        self.assertEqual(
+            verdict.problems, "image: RAM is too small: the image requires 20484 bytes, and the board has 20480\n"
+        )
+
+
+if __name__ == "__main__":
+    unittest.main()
