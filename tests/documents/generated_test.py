@@ -31,6 +31,12 @@ class Generated(unittest.TestCase):
         written = section_of("sim/docs/bus-files.md", "toolchain/bus-file-keys")
         self.assertEqual(written, printed(["toolchain/bus-file-keys"], schema))
 
+    def test_the_tables_of_recorded_figures_are_up_to_date(self) -> None:
+        for document, record in (("boards/README.md", "sizes"), ("tests/README.md", "instructions")):
+            with self.subTest(document=document):
+                written = section_of(document, f"toolchain/tabulate-records {record}")
+                self.assertEqual(written, printed(["toolchain/tabulate-records", record]))
+
     def test_the_wiring_of_the_pico_is_up_to_date(self) -> None:
         drawn = (ROOT / "boards/pico/wiring.svg").read_text(encoding="utf-8")
         self.assertEqual(drawn, printed(["toolchain/draw-wiring", "boards/pico/README.md"]))
