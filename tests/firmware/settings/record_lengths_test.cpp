@@ -1,0 +1,121 @@
+// Tests records of firmware with more or fewer settings, and which of several records is the newest.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <string_view>
+
+#include "tests/firmware/settings/record_bench.hpp"
+
+namespace ex9000 {
+namespace {
+
+/// Returns a record of firmware that has more or fewer settings.
+Record with_length(const Stored& stored, std::size_t length) {
+  Record record = record_of(stored);
+  Record settings(record.begin() + kSettingsAt, record.begin() + kCheckAt);
+  for (std::size_t more = settings.size(); more < length; ++more) {
+    settings.push_back(static_cast<std::uint8_t>(0xC1U ^ more));
+  }
+  settings.resize(length);
+  record.resize(kSettingsAt);
+  record[kLengthAt] = static_cast<std::uint8_t>(length);
+  record.insert(record.end(), settings.begin(), settings.end());
+  record.resize(record.size() + 4);
+  return with_check(the_model(), record);
+}
+
+TEST(Record, HasRoomFor96BytesOfSettingsAndMore) {
+  for (std::size_t length = kSettingsSize; length <= 120; ++length) {
+    const std::optional<StoredSettings> found = read(the_model(), with_length(changed_settings(), length));
+    ASSERT_TRUE(found) << length;
+    EXPECT_TRUE(found->settings == changed_settings().settings) << length;
+  }
+}
+
+TEST(Record, ThatIsLongerThanItsPlaceIsInvalid) {
+  for (std::size_t length = 121; length <= 255; ++length) {
+    const Record record = with_length(changed_settings(), length);
+    EXPECT_EQ(record_size({record.data(), record.size()}), 0U) << length;
+    EXPECT_FALSE(is_good(the_model(), record)) << length;
+  }
+}
+
+TEST(Record, ThatIsIncompleteIsNotRead) {
+  const Record record = with_length(changed_settings(), 60);
+  for (std::size_t size = kSettingsAt; size < record.size(); ++size) {
+    EXPECT_FALSE(read_record(the_model(), {record.data(), size})) << size;
+  }
+}
+
+TEST(Record, ThatLacksTheLastSettingsHasTheirFactoryValues) {
+  Settings expected = changed_settings().settings;
+  const auto found = [](std::size_t length) {
+    return read(the_model(), with_length(changed_settings(), length)).value().settings;
+  };
+  expected.safe_value = 0;
+  EXPECT_TRUE(found(18) == expected);
+  EXPECT_TRUE(found(17) == expected);
+  expected.power_on_value = 0;
+  EXPECT_TRUE(found(16) == expected);
+  EXPECT_TRUE(found(15) == expected);
+  expected.name = Name(std::string_view("9042M"));
+  EXPECT_TRUE(found(14) == expected);
+  EXPECT_TRUE(found(7) == expected);
+  expected.timeout_status = false;
+  EXPECT_TRUE(found(6) == expected);
+  EXPECT_TRUE(found(0) == Settings::factory(the_model()));
+}
+
+TEST(Record, ThatIsWrittenOverALongerOneKeepsTheUnknownSettings) {
+  for (std::size_t length = kSettingsSize; length <= 120; ++length) {
+    const Record longer = with_length(factory(), length);
+    RecordBytes bytes{};
+    std::copy(longer.begin(), longer.end(), bytes.begin());
+    write_record(the_model(), changed_settings().settings, changed_settings().sequence, bytes);
+    const Record written(bytes.begin(), bytes.begin() + static_cast<std::ptrdiff_t>(longer.size()));
+    EXPECT_EQ(written, with_length(changed_settings(), length)) << length;
+  }
+}
+
+TEST(Record, ThatIsWrittenOverAShorterOneIsAWholeOne) {
+  const Record shorter = with_length(changed_settings(), 7);
+  RecordBytes bytes{};
+  std::copy(shorter.begin(), shorter.end(), bytes.begin());
+  write_record(the_model(), changed_settings().settings, changed_settings().sequence, bytes);
+  EXPECT_TRUE(std::equal(bytes.begin(), bytes.begin() + kRecordSize, record_of(changed_settings()).begin()));
+}
+
+// --- the newest of several copies ---
+
+TEST(Edition, OfANewerLayoutIsNewerThanAnyOfAnOlderLayout) {
+  constexpr std::uint16_t kSequences[] = {0, 1, 0x7FFF, 0x8000, 0xFFFF};
+  for (const std::uint16_t a : kSequences) {
+    for (const std::uint16_t b : kSequences) {
+      EXPECT_TRUE((Edition{3, a}.is_newer_than({2, b})));
+      EXPECT_FALSE((Edition{2, a}.is_newer_than({3, b})));
+      EXPECT_TRUE((Edition{2, a}.is_newer_than({1, b})));
+      EXPECT_FALSE((Edition{1, a}.is_newer_than({2, b})));
+    }
+  }
+}
+
+TEST(Edition, OfALaterSequenceIsNewerAcrossTheWrap) {
+  for (unsigned from = 0; from < 0x10000; from += 0x1FF) {
+    const Edition older{3, static_cast<std::uint16_t>(from)};
+    for (const unsigned ahead : {1U, 2U, 0x7FFFU}) {
+      const Edition newer{3, static_cast<std::uint16_t>(from + ahead)};
+      EXPECT_TRUE(newer.is_newer_than(older));
+      EXPECT_FALSE(older.is_newer_than(newer));
+    }
+    EXPECT_FALSE(older.is_newer_than(older));
+    const Edition opposite{3, static_cast<std::uint16_t>(from + 0x8000)};
+    EXPECT_FALSE(opposite.is_newer_than(older));
+    EXPECT_FALSE(older.is_newer_than(opposite));
+  }
+}
+
+}  // namespace
+}  // namespace ex9000
