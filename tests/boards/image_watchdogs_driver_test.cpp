@@ -9,11 +9,9 @@
 #include <utility>
 #include <vector>
 
-#include "sim/bus/module.hpp"
 #include "tests/boards/images_under_test.hpp"
+#include "tests/boards/watched_module.hpp"
 #include "tests/mcu_model/board_bench.hpp"
-#include "tests/oracles/reference/hexadecimal.hpp"
-#include "tests/support/either_protocol.hpp"
 #include "tests/support/environment.hpp"
 
 namespace ex9000::registers {
@@ -24,9 +22,7 @@ using std::chrono::microseconds;
 using std::chrono::milliseconds;
 using std::chrono::seconds;
 
-constexpr milliseconds kComesUpWithin{100};
 constexpr milliseconds kResetsWithin{1600};
-constexpr milliseconds kTick{10};
 /// The module may restart its host watchdog this much too late: its clock counts microseconds, and it rounds
 /// up the end of a byte and of the silence after it, so that the host watchdog does not expire too early.
 constexpr microseconds kRounding{3};
@@ -35,182 +31,14 @@ constexpr microseconds kRounding{3};
 constexpr microseconds kTurn{5};
 constexpr milliseconds kExpiresWithin{1};
 
-constexpr std::uint16_t kPowerOnValue = 0x5A5A;
-constexpr std::uint16_t kSafeValue = 0xA5A4;
 constexpr std::uint16_t kDriven = 0xC35A;
-constexpr std::uint8_t kTimeout = 0x64;
-
-/// Returns two hex digits.
-std::string hex(unsigned value) { return reference::hex(value, 2); }
-
-/// Returns settings in which all output values differ from each other and from the driven value.
-Settings set_up(const Model& model, Protocol protocol) {
-  Settings settings = Settings::factory(model);
-  settings.protocol = protocol;
-  settings.watchdog_enabled = true;
-  settings.watchdog_timeout = kTimeout;
-  if (model.outputs != 0) {
-    settings.power_on_value = kPowerOnValue;
-    settings.safe_value = kSafeValue;
-  }
-  return settings;
-}
-
-/// A module on its board, with a master that uses its protocol.
-class WatchedModule : public EitherProtocol {
- public:
-  struct Change {
-    Instant at;
-    std::uint16_t outputs;
-  };
-
-  WatchedModule(const ImageName& name, const Settings& settings)
-      : EitherProtocol(settings.protocol, [this](const Bytes& frame) { return bench.exchange(frame); }),
-        model(*find_model(name.model)),
-        bench(image_of(name.board, name.model)) {
-    bench.memory = sim::SimulatedModule::memory_image(model, settings);
-    for (unsigned channel = 0; channel < bench.image.outputs; ++channel) {
-      bench.net(bench.image.output_pins.at(channel)).on_change([this] {
-        changes.push_back({bench.timeline.now(), bench.outputs()});
-      });
-    }
-    power_up();
-  }
-
-  void power_up() {
-    bench.power_on();
-    bench.run_for(kComesUpWithin);
-    ASSERT_TRUE(uart().enabled());
-  }
-  void power_cycle() {
-    bench.power_off();
-    bench.run_for(milliseconds(20));
-    power_up();
-  }
-
-  UartPort& uart() { return bench.image.uart == 0 ? bench.mcu->uart0 : bench.mcu->uart1; }
-
-  Bytes text(const std::string& reply) { return framed(reply, {}); }
-
-  /// Drives `value` on all outputs. Returns whether the module accepted it.
-  bool drive(std::uint16_t value) {
-    const Bytes reply = bench.exchange(drive_frame(value));
-    return ascii() ? reply == text(">") : reply.size() == 8 && reply[1] == 0x0F;
-  }
-  [[nodiscard]] Bytes drive_frame(std::uint16_t value) const {
-    return framed("@01" + hex(value / 256U) + hex(value),
-                  {1, 0x0F, 0, 0, 0, 16, 2, static_cast<std::uint8_t>(value & 0xFFU),
-                   static_cast<std::uint8_t>(value >> 8U)});
-  }
-  bool stores_a_timeout(std::uint8_t timeout) {
-    const Bytes reply = ask("~0131" + hex(timeout), {1, 0x06, 0x01, 0xE8, 0, timeout});
-    return ascii() ? reply == text("!01") : reply.size() == 8 && reply[1] == 0x06;
-  }
-  /// Sends a host OK and returns the time at which the module has received it: for Modbus the end of the
-  /// silence after the frame, for ASCII the middle of the last stop bit, at which the UART reports a
-  /// character.
-  Instant host_ok() {
-    bench.line.send(framed("~**", {1, 0x03, 0x30, 0x38, 0, 0}));
-    while (bench.line.sending()) {
-      bench.run_for(microseconds(10));
-    }
-    return bench.line.sent() + over_behind_its_last_bit();
-  }
-  /// Waits, so that a host OK that the test sends directly after this call ends `phase` after a tick.
-  void wait_until_a_host_ok_is_over_behind_a_tick(Instant phase) {
-    constexpr unsigned kAscii = 4;
-    constexpr unsigned kModbus = 8;
-    const Instant takes =
-        (ascii() ? kAscii : kModbus) * kBitsACharacter * bench.line.bit_time() + over_behind_its_last_bit();
-    const Instant tick = bench.mcu->core.ticked();
-    Instant wait = (tick + phase - bench.timeline.now() - takes) % kTick;
-    wait += wait < Instant(0) ? kTick : Instant(0);
-    bench.run_for(wait);
-  }
-
-  const Model& model;
-  std::vector<Change> changes;  ///< of the outputs; declared before `bench` because it must outlive `bench`
-  BoardBench bench;
-
- private:
-  Instant over_behind_its_last_bit() {
-    const Instant bit = bench.line.bit_time();
-    return ascii() ? -bit / 2 : 77 * bit / 2;
-  }
-};
-
-/// Runs until `condition` is true, checked every `step`. Returns false if it is not true within a second.
-template <class Condition>
-bool runs_until(BoardBench& bench, Condition condition, Instant step) {
-  const Instant gives_up = bench.timeline.now() + seconds(1);
-  while (!condition() && bench.timeline.now() < gives_up) {
-    bench.run_for(step);
-  }
-  return condition();
-}
 
 // --- module watchdog ---
-
-enum class Doing : std::uint8_t { Nothing, Receiving, Answering, OnTheEepromsBus, Programming };
-constexpr Doing kEverything[] = {Doing::Nothing, Doing::Receiving, Doing::Answering, Doing::OnTheEepromsBus,
-                                 Doing::Programming};
-const char* name_of(Doing doing) {
-  switch (doing) {
-    case Doing::Nothing:
-      return "idle";
-    case Doing::Receiving:
-      return "receiving";
-    case Doing::Answering:
-      return "answering";
-    case Doing::OnTheEepromsBus:
-      return "writing to the EEPROM";
-    case Doing::Programming:
-      return "waiting for the EEPROM";
-  }
-  return "";
-}
 
 class FaultOnBoard : public testing::TestWithParam<std::tuple<ImageName, Protocol>> {
  protected:
   [[nodiscard]] ImageName image() const { return std::get<0>(GetParam()); }
   [[nodiscard]] Protocol protocol() const { return std::get<1>(GetParam()); }
-
-  /// Brings the module into this activity. To store something, it sets the name, or in Modbus the timeout of
-  /// the host watchdog.
-  static void make_it(WatchedModule& module, Doing doing) {
-    BoardBench& bench = module.bench;
-    const Bytes harmless = module.framed("$01M", {1, 0x11});
-    const Bytes storing = module.framed("~01OPUMP", {1, 0x06, 0x01, 0xE8, 0, 0x65});
-    unsigned events = 0;
-    bench.line.drives.clear();
-    switch (doing) {
-      case Doing::Nothing:
-        break;
-      case Doing::Receiving:
-        bench.line.send({harmless.begin(), harmless.begin() + 2});
-        bench.run_for(kBitsACharacter * 3 / 2 * bench.line.bit_time());
-        break;
-      case Doing::Answering:
-        bench.line.send(harmless);
-        ASSERT_TRUE(runs_until(
-            bench, [&] { return !bench.line.drives.empty(); }, microseconds(100)));
-        bench.run_for(kBitsACharacter * 3 / 2 * bench.line.bit_time());
-        ASSERT_TRUE(bench.line.driven());
-        break;
-      case Doing::OnTheEepromsBus:
-        bench.eeprom.on_event([&events] { ++events; });
-        bench.line.send(storing);
-        ASSERT_TRUE(runs_until(
-            bench, [&] { return events >= 12; }, microseconds(10)));
-        bench.eeprom.on_event(nullptr);
-        break;
-      case Doing::Programming:
-        bench.line.send(storing);
-        ASSERT_TRUE(runs_until(
-            bench, [&] { return bench.eeprom.programming(); }, microseconds(100)));
-        break;
-    }
-  }
 
   template <class Fault>
   void expect_reset(const std::string& what, Fault fault) {
