@@ -49,4 +49,10 @@ std::vector<Packet> decoded(const std::string& path, const std::vector<std::stri
   return packets;
 }
 
+void expect_shown(const Packet& packet, const Packet& wanted) {
+  for (const auto& [field, value] : wanted) {
+    EXPECT_EQ(packet.at(field), value) << field;
+  }
+}
+
 }  // namespace ex9000::system
