@@ -14,22 +14,22 @@ constexpr VirtualTime kNever = VirtualTime::max();
 
 class VirtualClock {
  public:
-  [[nodiscard]] Time now() const {
-    return Time(
-        static_cast<std::uint32_t>(std::chrono::duration_cast<std::chrono::microseconds>(now_).count()));
-  }
+  [[nodiscard]] Time now() const { return Time(static_cast<std::uint32_t>(microseconds_.count())); }
   [[nodiscard]] Time now_in_interrupt() const { return now(); }
   [[nodiscard]] VirtualTime virtual_now() const { return now_; }
-  void set(VirtualTime now) { now_ = now; }
+  void set(VirtualTime now) {
+    now_ = now;
+    microseconds_ = std::chrono::duration_cast<std::chrono::microseconds>(now);
+  }
 
   /// Returns the first time at which `now()` is `after` later than it is now.
   [[nodiscard]] VirtualTime when(Duration after) const {
-    return std::chrono::duration_cast<std::chrono::microseconds>(now_) +
-           std::chrono::microseconds(after.microseconds());
+    return microseconds_ + std::chrono::microseconds(after.microseconds());
   }
 
  private:
   VirtualTime now_{0};
+  std::chrono::microseconds microseconds_{0};  ///< `now_`, rounded down; many modules read it at each event
 };
 static_assert(kIsClock<VirtualClock>);
 
