@@ -13,16 +13,6 @@ void Receiver::answer_to(std::uint8_t address) {
   rtu_.answer_to(address);
 }
 
-Duration Receiver::on_byte(std::uint8_t byte, ByteStatus status, Time now) {
-  if (modbus()) {
-    note(rtu_.byte(queue_, byte, status, now), now);
-    return timing().rtu_silence;
-  }
-  const Verdict verdict = dcon_.byte(queue_, byte, status, now);
-  note(verdict, now);
-  return verdict == Verdict::Accepted ? timing().dcon_turn_around : Duration();
-}
-
 Duration Receiver::on_silence() {
   if (!modbus()) {
     return {};
@@ -43,11 +33,7 @@ void Receiver::on_own_driver_off(Time now) {
   }
 }
 
-/// Counts the verdict. `over`: the time when the frame ended, if the verdict belongs to a frame.
-void Receiver::note(Verdict verdict, Time over) {
-  if (verdict == Verdict::Open) {
-    return;
-  }
+void Receiver::count(Verdict verdict, Time over) {
   tallies_.count_in_interrupt(verdict);
   if (verdict == Verdict::HostOk) {
     host_oks_.add_in_interrupt(over);

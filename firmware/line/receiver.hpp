@@ -59,7 +59,13 @@ class Receiver {
 
  private:
   [[nodiscard]] bool modbus() const { return kBuiltModbus && protocol_ == Protocol::ModbusRtu; }
-  void note(Verdict verdict, Time over);
+  /// Counts the verdict, if a frame has ended at `over`.
+  void note(Verdict verdict, Time over) {
+    if (verdict != Verdict::Open) {
+      count(verdict, over);
+    }
+  }
+  void count(Verdict verdict, Time over);
 
   DconAssembler dcon_;
   RtuAssembler rtu_;
@@ -68,5 +74,16 @@ class Receiver {
   HostOks host_oks_;
   FrameQueue queue_;
 };
+
+// Inline because it runs for each byte that any module receives.
+inline Duration Receiver::on_byte(std::uint8_t byte, ByteStatus status, Time now) {
+  if (modbus()) {
+    note(rtu_.byte(queue_, byte, status, now), now);
+    return timing().rtu_silence;
+  }
+  const Verdict verdict = dcon_.byte(queue_, byte, status, now);
+  note(verdict, now);
+  return verdict == Verdict::Accepted ? timing().dcon_turn_around : Duration();
+}
 
 }  // namespace ex9000

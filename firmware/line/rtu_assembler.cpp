@@ -8,61 +8,9 @@ namespace {
 
 constexpr unsigned kShortestFrame = 4;
 constexpr unsigned kCrcBytes = 2;
-constexpr std::uint8_t kTurnAround = 0x00;
 constexpr std::uint8_t kBroadcast = 0;
 
 }  // namespace
-
-Verdict RtuAssembler::byte(FrameQueue& queue, std::uint8_t byte, ByteStatus status, Time now) {
-  Verdict before = Verdict::Open;
-  const Duration gap = now.since(last_);
-  last_ = now;
-  if (state_ == State::GracePeriod && !(gap < timing_.rtu_silence + timing_.rtu_grace)) {
-    before = loss_verdict();  // the byte began after T3.5, but the timer interrupt has not run yet
-    state_ = State::Idle;
-  }
-  if (state_ == State::Idle) {
-    open();
-  } else if (timing_.rtu_slack < gap) {
-    spoil();
-  }
-  state_ = State::Receiving;
-  append(queue.assembling(), byte);
-  if (status != ByteStatus::Good) {
-    spoil();
-    overrun_ = overrun_ || status == ByteStatus::Overrun;
-  }
-  return before;
-}
-
-void RtuAssembler::open() {
-  received_ = 0;
-  first_spoiled_ = false;
-  rest_spoiled_ = false;
-  overrun_ = false;
-  whole_ = Crc16();
-  crc_after_first_ = Crc16();
-}
-
-/// Marks the last byte, or the gap after it, as faulty.
-void RtuAssembler::spoil() {
-  if (received_ == 1) {
-    first_spoiled_ = true;
-  } else {
-    rest_spoiled_ = true;
-  }
-}
-
-void RtuAssembler::append(Frame& frame, std::uint8_t byte) {
-  whole_.add(byte);
-  if (received_ != 0 && frame.storage[0] == kTurnAround) {
-    crc_after_first_.add(byte);
-  }
-  if (received_ < frame.storage.size()) {
-    frame.storage[received_] = byte;
-  }
-  ++received_;
-}
 
 Verdict RtuAssembler::silence(FrameQueue& queue) {
   Verdict verdict = Verdict::Open;

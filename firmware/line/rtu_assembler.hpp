@@ -51,6 +51,8 @@ class RtuAssembler {
     GracePeriod,  ///< T3.5 is over without a valid frame; a byte that began before that may still arrive
   };
 
+  static constexpr std::uint8_t kTurnAround = 0x00;
+
   void open();
   void spoil();
   void append(Frame& frame, std::uint8_t byte);
@@ -68,5 +70,59 @@ class RtuAssembler {
   Crc16 crc_after_first_;       ///< CRC of all bytes except the first, if that is 00
   Time last_;                   ///< end of the last byte
 };
+
+// The functions below are inline because they run for each byte that any module receives.
+
+inline Verdict RtuAssembler::byte(FrameQueue& queue, std::uint8_t byte, ByteStatus status, Time now) {
+  Verdict before = Verdict::Open;
+  const Duration gap = now.since(last_);
+  last_ = now;
+  if (state_ == State::GracePeriod && !(gap < timing_.rtu_silence + timing_.rtu_grace)) {
+    before = loss_verdict();  // the byte began after T3.5, but the timer interrupt has not run yet
+    state_ = State::Idle;
+  }
+  if (state_ == State::Idle) {
+    open();
+  } else if (timing_.rtu_slack < gap) {
+    spoil();
+  }
+  state_ = State::Receiving;
+  append(queue.assembling(), byte);
+  if (status != ByteStatus::Good) {
+    spoil();
+    overrun_ = overrun_ || status == ByteStatus::Overrun;
+  }
+  return before;
+}
+
+inline void RtuAssembler::open() {
+  received_ = 0;
+  first_spoiled_ = false;
+  rest_spoiled_ = false;
+  overrun_ = false;
+  whole_ = Crc16();
+  crc_after_first_ = Crc16();
+}
+
+/// Marks the last byte, or the gap after it, as faulty.
+inline void RtuAssembler::spoil() {
+  if (received_ == 1) {
+    first_spoiled_ = true;
+  } else {
+    rest_spoiled_ = true;
+  }
+}
+
+inline void RtuAssembler::append(Frame& frame, std::uint8_t byte) {
+  const std::uint32_t position = received_;
+  received_ = position + 1;
+  whole_.add(byte);
+  if (position != 0 && frame.storage[0] == kTurnAround) {
+    crc_after_first_.add(byte);
+  }
+  if (position < frame.storage.size()) {
+    frame.storage[position] = byte;
+  }
+}
 
 }  // namespace ex9000
