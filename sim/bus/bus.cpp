@@ -21,9 +21,6 @@ struct Bus::End final : BusEnd {
   Station& station;
   std::size_t index;
   bool driving = false;
-  std::uint32_t bit_rate = 0;  ///< of the receiver; 0: the station does not listen
-  bool samples = false;        ///< the receiver samples the wires instead of getting whole bytes
-  UartSampler sampler;
 };
 
 Bus::Bus(VirtualClock& clock, std::uint32_t times_faster) : clock_(clock), times_faster_(times_faster) {}
@@ -38,19 +35,25 @@ std::uint32_t Bus::bit_rate(std::uint32_t baud) const {
 }
 
 BusEnd& Bus::attach(Station& station) {
+  receivers_.push_back({&station});
   ends_.push_back(std::make_unique<End>(*this, station, due_times_.add()));
   return *ends_.back();
 }
 
-VirtualTime Bus::next() const { return std::min({next_byte_end_, next_sample_, due_times_.next()}); }
+void Bus::run_next() {
+  clock_.set(std::max(next(), clock_.virtual_now()));
+  const VirtualTime now = clock_.virtual_now();
+  if (std::min(next_byte_end_, next_sample_) <= now) {
+    run_wire();
+  }
+  if (due_times_.next() <= now) {
+    due_times_.run_due(now, [this](std::size_t station) { ends_[station]->station.run(); });
+  }
+}
 
 void Bus::run_until(VirtualTime until) {
-  for (VirtualTime now = next(); now <= until; now = next()) {
-    clock_.set(std::max(now, clock_.virtual_now()));
-    run_wire();
-    while (const auto station = due_times_.take(clock_.virtual_now())) {
-      ends_[*station]->station.run();
-    }
+  while (next() <= until) {
+    run_next();
   }
   clock_.set(std::max(until, clock_.virtual_now()));
 }
@@ -62,12 +65,12 @@ void Bus::drive(End& end, bool on) {
   end.driving = on;
   drivers_on_ += on ? 1U : -1U;
   const VirtualTime now = clock_.virtual_now();
-  for (Byte& byte : on_the_wire_) {
-    byte.collided = byte.collided || drivers_on_ > 1;
-    if (!on && byte.station == end.index && byte.wave->end() > now) {
+  for (Wave& wave : waves_) {
+    wave.collided = wave.collided || drivers_on_ > 1;
+    if (!on && wave.station == end.index && wave.end() > now) {
       // The sender leaves the line idle for the rest of the byte, and the receivers sample the result.
-      byte.collided = true;
-      byte.wave->cut_off = now;
+      wave.collided = true;
+      wave.cut_off = now;
     }
   }
   begin_sampling();
@@ -86,30 +89,34 @@ void Bus::put(End& end, std::uint8_t byte, std::uint32_t baud) {
       }
     }
   }
-  const bool collides = drivers_on_ > 1 || !on_the_wire_.empty();
-  for (Byte& other : on_the_wire_) {
+  wave.station = end.index;
+  wave.nominal_baud = baud;
+  wave.byte = byte;
+  wave.collided = drivers_on_ > 1 || carries();
+  for (Wave& other : waves_) {
     other.collided = true;
   }
   waves_.push_back(wave);
-  on_the_wire_.push_back({end.index, byte, collides, baud, &waves_.back()});
+  ++carried_;
   next_byte_end_ = std::min(next_byte_end_, wave.end());
-  if (!on_the_wire_.back().arrives_whole() || has_listeners_at_other_rates(wave.baud)) {
+  if (!wave.arrives_whole() || has_listeners_at_other_rates(wave.baud)) {
     begin_sampling();
   }
 }
 
 void Bus::listen(End& end, std::uint32_t baud) {
   const std::uint32_t rate = bit_rate(baud);
-  if (rate == end.bit_rate) {
+  Receiver& receiver = receivers_[end.index];
+  if (rate == receiver.bit_rate) {
     return;
   }
-  count_listener(end.bit_rate, -1);
+  count_listener(receiver.bit_rate, -1);
   count_listener(rate, 1);
-  end.bit_rate = rate;
-  sampling_ -= end.samples ? 1U : 0U;
-  end.samples = false;
-  end.sampler = UartSampler();
-  end.sampler.skip_to(clock_.virtual_now());
+  receiver.bit_rate = rate;
+  sampling_ -= receiver.samples ? 1U : 0U;
+  receiver.samples = false;
+  receiver.sampler = UartSampler();
+  receiver.sampler.skip_to(clock_.virtual_now());
   begin_sampling();
 }
 
@@ -124,48 +131,49 @@ bool Bus::has_listeners_at_other_rates(std::uint32_t rate) const {
 }
 
 /// Returns whether the receiver has the rate of the byte and has listened since its start.
-bool Bus::has_heard_from_the_start(const End& end, const Wave& wave) {
-  return wave.baud == end.bit_rate && end.sampler.position() <= wave.start;
+bool Bus::has_heard_from_the_start(const Receiver& receiver, const Wave& wave) {
+  return wave.baud == receiver.bit_rate && receiver.sampler.position() <= wave.start;
 }
 
-bool Bus::has_to_sample(const End& end) const {
-  const auto gets_whole = [&](const Byte& byte) {
-    return byte.arrives_whole() && has_heard_from_the_start(end, *byte.wave);
+bool Bus::has_to_sample(const Receiver& receiver) const {
+  const auto gets_whole = [&](const Wave& wave) {
+    return wave.over || (wave.arrives_whole() && has_heard_from_the_start(receiver, wave));
   };
-  return end.bit_rate != 0 &&
-         (end.sampler.busy() || !std::all_of(on_the_wire_.begin(), on_the_wire_.end(), gets_whole));
+  return receiver.bit_rate != 0 &&
+         (receiver.sampler.busy() || !std::all_of(waves_.begin(), waves_.end(), gets_whole));
 }
 
 /// Starts to sample for each receiver that cannot get every byte on the wires as a whole byte.
 void Bus::begin_sampling() {
-  for (const auto& end : ends_) {
-    if (!end->samples && has_to_sample(*end)) {
-      end->samples = true;
+  const auto first = std::find_if(waves_.begin(), waves_.end(), [](const Wave& wave) { return !wave.over; });
+  if (first == waves_.end()) {
+    return;
+  }
+  for (Receiver& receiver : receivers_) {
+    if (!receiver.samples && has_to_sample(receiver)) {
+      receiver.samples = true;
       ++sampling_;
       // Before the first of these bytes began, the line was idle or the receiver got whole bytes.
-      end->sampler.skip_to(std::max(end->sampler.position(), on_the_wire_.front().wave->start));
-      next_sample_ = std::min(next_sample_, end->sampler.next(end->bit_rate, clock_.virtual_now()));
+      receiver.sampler.skip_to(std::max(receiver.sampler.position(), first->start));
+      next_sample_ = std::min(next_sample_, receiver.sampler.next(receiver.bit_rate, clock_.virtual_now()));
     }
   }
 }
 
 void Bus::end_sampling() {
   next_sample_ = kNever;
-  for (const auto& end : ends_) {
-    if (end->samples && !has_to_sample(*end)) {
-      end->samples = false;
+  for (Receiver& receiver : receivers_) {
+    if (receiver.samples && !has_to_sample(receiver)) {
+      receiver.samples = false;
       --sampling_;
     }
-    if (end->samples) {
-      next_sample_ = std::min(next_sample_, end->sampler.next(end->bit_rate, clock_.virtual_now()));
+    if (receiver.samples) {
+      next_sample_ = std::min(next_sample_, receiver.sampler.next(receiver.bit_rate, clock_.virtual_now()));
     }
   }
 }
 
 void Bus::run_wire() {
-  if (std::min(next_byte_end_, next_sample_) > clock_.virtual_now()) {
-    return;
-  }
   if (sampling_ != 0) {
     run_samplers();
   }
@@ -177,13 +185,13 @@ void Bus::run_wire() {
 }
 
 void Bus::run_samplers() {
-  for (const auto& end : ends_) {
-    while (end->samples) {
-      const auto received = end->sampler.advance(waves_, end->bit_rate, clock_.virtual_now());
+  for (Receiver& receiver : receivers_) {
+    while (receiver.samples) {
+      const auto received = receiver.sampler.advance(waves_, receiver.bit_rate, clock_.virtual_now());
       if (!received) {
         break;
       }
-      end->station.receive(received->byte, received->status);
+      receiver.station->receive(received->byte, received->status);
     }
   }
 }
@@ -191,47 +199,53 @@ void Bus::run_samplers() {
 /// Removes the bytes that have ended from the wires, and delivers those that were not cut off.
 void Bus::finish_bytes() {
   const VirtualTime now = clock_.virtual_now();
-  for (std::size_t i = 0; i < on_the_wire_.size();) {
-    if (on_the_wire_[i].wave->end() > now) {
-      ++i;
+  next_byte_end_ = kNever;
+  for (std::size_t i = 0; i < waves_.size(); ++i) {  // receivers may put bytes
+    Wave& wave = waves_[i];
+    if (wave.over) {
       continue;
     }
-    const Byte over = on_the_wire_[i];
-    on_the_wire_.erase(on_the_wire_.begin() + static_cast<std::ptrdiff_t>(i));
-    if (over.wave->cut_off == kNever) {
-      deliver(over);
+    if (wave.end() > now) {
+      next_byte_end_ = std::min(next_byte_end_, wave.end());
+      continue;
     }
-  }
-  next_byte_end_ = kNever;
-  for (const Byte& byte : on_the_wire_) {
-    next_byte_end_ = std::min(next_byte_end_, byte.wave->end());
+    wave.over = true;
+    --carried_;
+    if (wave.cut_off == kNever) {
+      deliver(Wave(wave));
+    }
   }
 }
 
-void Bus::deliver(const Byte& over) {
+void Bus::deliver(const Wave& over) {
   for (BusObserver* observer : observers_) {
-    observer->byte(over.station, over.byte, over.baud, over.collided, over.wave->start, clock_.virtual_now());
+    observer->byte(over.station, over.byte, over.nominal_baud, over.collided, over.start,
+                   clock_.virtual_now());
   }
   if (!over.arrives_whole()) {
     return;
   }
-  for (const auto& end : ends_) {
-    if (!end->samples && has_heard_from_the_start(*end, *over.wave)) {
-      end->station.receive(over.byte, ByteStatus::Good);
+  for (const Receiver& receiver : receivers_) {
+    if (!receiver.samples && has_heard_from_the_start(receiver, over)) {
+      receiver.station->receive(over.byte, ByteStatus::Good);
     }
   }
 }
 
+/// Removes the bytes that have ended and that no sampler reads any more.
 void Bus::forget_waves() {
-  while (!waves_.empty() && waves_.front().end() <= clock_.virtual_now()) {
-    const bool needed = sampling_ != 0 && std::any_of(ends_.begin(), ends_.end(), [this](const auto& end) {
-                          return end->samples && end->sampler.position() < waves_.front().end();
-                        });
-    if (needed) {
-      return;
-    }
-    waves_.pop_front();
+  if (sampling_ == 0 && !carries()) {
+    waves_.clear();
+    return;
   }
+  const auto is_read = [this](const Wave& wave) {
+    return std::any_of(receivers_.begin(), receivers_.end(), [&wave](const Receiver& receiver) {
+      return receiver.samples && receiver.sampler.position() < wave.end();
+    });
+  };
+  waves_.erase(std::remove_if(waves_.begin(), waves_.end(),
+                              [&](const Wave& wave) { return wave.over && !is_read(wave); }),
+               waves_.end());
 }
 
 }  // namespace ex9000::sim

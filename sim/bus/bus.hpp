@@ -1,6 +1,7 @@
 // The virtual RS-485 line: any number of stations on two wires, in virtual time.
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
 #include <map>
 #include <memory>
@@ -104,38 +105,43 @@ class Bus {
   void disturb(Disturbance& disturbance) { disturbance_ = &disturbance; }
 
   /// Returns the time of the next event of the bus or of a station.
-  [[nodiscard]] VirtualTime next() const;
+  [[nodiscard]] VirtualTime next() const {
+    return std::min(std::min(next_byte_end_, next_sample_), due_times_.next());
+  }
+  /// Processes all events at the time `next`. Afterwards the clock shows that time.
+  void run_next();
   /// Processes all events up to and including `until`. Afterwards the clock shows `until`.
   void run_until(VirtualTime until);
   void run_for(VirtualTime duration) { run_until(clock_.virtual_now() + duration); }
 
   /// Returns whether at least one byte is on the wires.
-  [[nodiscard]] bool carries() const { return !on_the_wire_.empty(); }
+  [[nodiscard]] bool carries() const { return carried_ != 0; }
   /// Returns whether a byte is on the wires or a driver is enabled.
   [[nodiscard]] bool busy() const { return carries() || drivers_on_ != 0; }
+  /// Returns whether all stations that listen have this rate in bits per second.
+  [[nodiscard]] bool all_listen_at(std::uint32_t baud) const {
+    return !has_listeners_at_other_rates(bit_rate(baud));
+  }
   VirtualClock& clock() { return clock_; }
 
  private:
   struct End;
 
-  /// A byte that is being sent.
-  struct Byte {
-    std::size_t station;
-    std::uint8_t byte;
-    bool collided;
-    std::uint32_t baud;  ///< the rate that the sender is set to; the wave has the real bit rate
-    Wave* wave;
-
-    /// Returns whether a receiver with the same rate gets the byte unchanged.
-    [[nodiscard]] bool arrives_whole() const { return !collided && wave->levels == levels_of(byte); }
+  /// The receiver of a station. The receivers of a line are in one array, because each byte reaches all of
+  /// them.
+  struct Receiver {
+    Station* station;
+    std::uint32_t bit_rate = 0;  ///< 0: the station does not listen
+    bool samples = false;        ///< samples the wires instead of getting whole bytes
+    UartSampler sampler = {};
   };
 
   [[nodiscard]] std::uint32_t bit_rate(std::uint32_t baud) const;
   void drive(End& end, bool on);
   void put(End& end, std::uint8_t byte, std::uint32_t baud);
   void listen(End& end, std::uint32_t baud);
-  static bool has_heard_from_the_start(const End& end, const Wave& wave);
-  [[nodiscard]] bool has_to_sample(const End& end) const;
+  static bool has_heard_from_the_start(const Receiver& receiver, const Wave& wave);
+  [[nodiscard]] bool has_to_sample(const Receiver& receiver) const;
   void count_listener(std::uint32_t rate, int change);
   [[nodiscard]] bool has_listeners_at_other_rates(std::uint32_t rate) const;
   void begin_sampling();
@@ -143,17 +149,18 @@ class Bus {
   void run_wire();
   void run_samplers();
   void finish_bytes();
-  void deliver(const Byte& over);
+  void deliver(const Wave& over);
   void forget_waves();
 
   VirtualClock& clock_;
   std::uint32_t times_faster_;
-  std::vector<std::unique_ptr<End>> ends_;
+  std::vector<std::unique_ptr<End>> ends_;  ///< one for each station
+  std::vector<Receiver> receivers_;         ///< one for each station
   DueTimes due_times_;
   std::vector<BusObserver*> observers_;
   Disturbance* disturbance_ = nullptr;
-  std::vector<Byte> on_the_wire_;
-  Waves waves_;  ///< the waves of these bytes, and older ones that samplers may still read
+  Waves waves_;           ///< the bytes on the wires, and older ones that samplers may still read
+  unsigned carried_ = 0;  ///< number of bytes on the wires
   unsigned drivers_on_ = 0;
   std::map<std::uint32_t, int> listeners_;  ///< number of receivers for each bit rate
   unsigned sampling_ = 0;                   ///< number of receivers that sample

@@ -1,45 +1,28 @@
 #include "sim/bus/due_times.hpp"
 
-#include <algorithm>
-#include <utility>
-
 namespace ex9000::sim {
 
 std::size_t DueTimes::add() {
-  if (stations_ == leaves()) {
-    const DueTimes before = std::exchange(*this, {});
-    tree_.assign(2 * before.tree_.size(), kNever);
-    for (; stations_ < before.stations_; ++stations_) {
-      set(stations_, before.tree_[before.leaves() + stations_]);
-    }
+  if (stations_ == times_.size()) {
+    times_.resize(stations_ + kBlock, kNever);
+    earliest_of_.push_back(kNever);
+    changed_.push_back(0);
   }
   return stations_++;
 }
 
-void DueTimes::set(std::size_t station, VirtualTime when) {
-  std::size_t node = leaves() + station;
-  tree_[node] = when;
-  while (node != kRoot) {
-    const VirtualTime earlier = std::min(tree_[node], tree_[node ^ 1U]);
-    node /= 2;
-    if (tree_[node] == earlier) {
-      return;
+void DueTimes::search() const {
+  earliest_ = kNever;
+  for (std::size_t block = 0; block < earliest_of_.size(); ++block) {
+    if (changed_[block] != 0) {
+      changed_[block] = 0;
+      const VirtualTime* const begin = times_.data() + block * kBlock;
+      const VirtualTime* const end = times_.data() + std::min(stations_, (block + 1) * kBlock);
+      earliest_of_[block] = *std::min_element(begin, end);
     }
-    tree_[node] = earlier;
+    earliest_ = std::min(earliest_, earliest_of_[block]);
   }
-}
-
-std::optional<std::size_t> DueTimes::take(VirtualTime now) {
-  const VirtualTime when = next();
-  if (when > now) {
-    return std::nullopt;
-  }
-  std::size_t node = kRoot;
-  while (node < leaves()) {
-    node = tree_[2 * node] == when ? 2 * node : 2 * node + 1;
-  }
-  set(node - leaves(), kNever);
-  return node - leaves();
+  any_changed_ = false;
 }
 
 }  // namespace ex9000::sim

@@ -1,8 +1,8 @@
 // The times at which stations have to run, the earliest first.
 #pragma once
 
+#include <algorithm>
 #include <cstddef>
-#include <optional>
 #include <vector>
 
 #include "hal/doubles/virtual_clock.hpp"
@@ -12,30 +12,63 @@ namespace ex9000::sim {
 using hal::doubles::kNever;
 using hal::doubles::VirtualTime;
 
-/// Each station has one due time. The times are the leaves of a binary tree. Each other node holds the
-/// earlier time of its two children. If many stations set the same time in turn, for example receivers after
-/// each byte, half of the changes end at the first node above the leaf, and few reach the root.
+/// Each station has one due time. Blocks of stations have an earliest due time. After a change of due times,
+/// `next` searches only the blocks that have changed. Often all stations set their times between two calls of
+/// `next`, for example receivers after a byte, so a change of a due time must cost little.
 class DueTimes {
  public:
   /// Adds a station without a due time. Returns its number, counted from 0.
   std::size_t add();
   /// Sets the due time of a station in place of its last one; kNever: none.
-  void set(std::size_t station, VirtualTime when);
+  void set(std::size_t station, VirtualTime when) {
+    times_[station] = when;
+    changed_[station / kBlock] = 1;
+    any_changed_ = true;
+    if (when <= running_) {
+      next_to_run_ = std::min(next_to_run_, station);
+    }
+  }
   /// Returns the earliest due time; kNever if there is none.
-  [[nodiscard]] VirtualTime next() const { return tree_[kRoot]; }
-  /// Returns the station with the earliest due time, if that is not after `now`, and removes the due time. If
-  /// several stations have the same due time, returns the lowest number. Returns nullopt if no station is
-  /// due.
-  std::optional<std::size_t> take(VirtualTime now);
+  [[nodiscard]] VirtualTime next() const {
+    if (any_changed_) {
+      search();
+    }
+    return earliest_;
+  }
+  /// Calls `run` with the number of each station whose due time is not after `now`, until no such station is
+  /// left. The lowest number is always the first. Before the call the due time is removed. `run` may set due
+  /// times of all stations, but it must not call `run_due`.
+  template <class Run>
+  void run_due(VirtualTime now, Run run) {
+    running_ = now;
+    for (next_to_run_ = 0; next_to_run_ < stations_;) {
+      const std::size_t station = next_to_run_++;
+      if (times_[station] <= now) {
+        set(station, kNever);
+        run(station);
+      } else if (station % kBlock == 0 && changed_[station / kBlock] == 0 &&
+                 earliest_of_[station / kBlock] > now) {
+        next_to_run_ = station + kBlock;
+      }
+    }
+    running_ = kNoTime;
+  }
 
  private:
-  static constexpr std::size_t kRoot = 1;
+  static constexpr std::size_t kBlock = 8;
+  static constexpr VirtualTime kNoTime = VirtualTime::min();
 
-  [[nodiscard]] std::size_t leaves() const { return tree_.size() / 2; }
+  void search() const;
 
   std::size_t stations_ = 0;
-  /// The children of node n are 2n and 2n + 1; the second half of the nodes are the leaves.
-  std::vector<VirtualTime> tree_{kNever, kNever};
+  std::vector<VirtualTime> times_;  ///< whole blocks; kNever after the last station
+  VirtualTime running_ = kNoTime;   ///< the argument of `run_due` while it runs
+  std::size_t next_to_run_ = 0;     ///< no station before this one is due at `running_`
+  // Results of the last search.
+  mutable std::vector<VirtualTime> earliest_of_;  ///< of each block
+  mutable std::vector<unsigned char> changed_;    ///< for each block: 1 if a due time has changed since then
+  mutable VirtualTime earliest_ = kNever;
+  mutable bool any_changed_ = false;
 };
 
 }  // namespace ex9000::sim

@@ -28,8 +28,8 @@ SimulatedModule::SimulatedModule(Bus& bus, const Model& model, TimingAt timing_a
       model_(model),
       timing_at_(timing_at),
       end_(bus.attach(*this)),
-      wire_(clock_, end_),
-      memory_(clock_) {}
+      memory_(clock_),
+      wire_(clock_, end_) {}
 
 void SimulatedModule::power(bool on) {
   switched_on_ = on;
@@ -167,36 +167,49 @@ bool SimulatedModule::pending() const {
 
 /// Tells the bus when this module has to run next, and at which rate it receives.
 void SimulatedModule::settle() {
-  end_.listen(baud());
+  if (baud() != listens_at_) {
+    listens_at_ = baud();
+    end_.listen(listens_at_);
+  }
   if (mcu_) {
-    next_without_silence_ = std::min({wire_.next(), mcu_->line.next(), mcu_->wake_timer.next(),
-                                      mcu_->tick.next(), mcu_->watchdog.next(), memory_.next()});
+    const VirtualTime sends = std::min(wire_.next(), mcu_->line.next());
+    const VirtualTime stores = memory_.next();
+    const VirtualTime wakes = std::min(mcu_->wake_timer.next(), mcu_->tick.next());
+    next_without_silence_ = std::min(std::min(sends, stores), std::min(wakes, mcu_->watchdog.next()));
     wait();
   } else {
-    end_.run_at(kNever);
+    run_at(kNever);
   }
 }
 
-void SimulatedModule::wait() { end_.run_at(std::min(next_without_silence_, mcu_->silence_timer.next())); }
-
 void SimulatedModule::run() {
+  runs_at_ = kNever;
+  if (next_without_silence_ > clock_.virtual_now()) {
+    end_silence();  // often the only event
+    return;
+  }
   if (mcu_->watchdog.has_expired()) {
     ++watchdog_resets_;
     reset();
     return;
   }
-  const bool only_silence = next_without_silence_ > clock_.virtual_now();
-  if (!only_silence) {
-    run_line();
-    run_memory();
-  }
+  run_line();
+  run_memory();
   if (mcu_->silence_timer.fire()) {
     mcu_->device.on_silence();
   }
-  if (!only_silence) {
-    run_timers();
+  run_timers();
+  if (has_work()) {
+    turn();
   }
-  work();
+  settle();
+}
+
+void SimulatedModule::end_silence() {
+  if (mcu_->silence_timer.fire()) {
+    mcu_->device.on_silence();
+  }
+  work_or_wait();
 }
 
 void SimulatedModule::run_line() {
@@ -228,25 +241,24 @@ void SimulatedModule::receive(std::uint8_t byte, ByteStatus status) {
   if (mcu_->line.sending() || wire_.sends_late()) {
     return;
   }
-  if (mcu_->silence_timer.fire()) {
-    mcu_->device.on_silence();  // see hal/one_shot_timer.hpp
+  if (mcu_->silence_timer.next() <= clock_.virtual_now()) {
+    receive_after_silence(byte, status);
+    return;
   }
   mcu_->device.on_receive(byte, status);
-  work();
+  work_or_wait();  // most bytes only move the silence timer
 }
 
-/// Runs the main loop if an interrupt has woken it. A host OK could wait until the next turn, but the LED
-/// should show it at once.
+/// Runs the interrupt of the silence timer first, see hal/one_shot_timer.hpp.
+void SimulatedModule::receive_after_silence(std::uint8_t byte, ByteStatus status) {
+  mcu_->silence_timer.fire();
+  mcu_->device.on_silence();
+  receive(byte, status);
+}
+
 void SimulatedModule::work() {
-  const bool woken = mcu_->device.has_work() || mcu_->device.module().host_ok_waits();
-  if (woken) {
-    turn();
-  }
-  if (woken || next_without_silence_ <= clock_.virtual_now()) {
-    settle();
-  } else {
-    wait();  // most bytes and silences only move the silence timer
-  }
+  turn();
+  settle();
 }
 
 /// Runs the main loop until there is nothing left to do. It takes no virtual time.

@@ -2,6 +2,7 @@
 // composition file.
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
 #include <optional>
 #include <utility>
@@ -123,11 +124,32 @@ class SimulatedModule final : public Station {
     hal::Device<Board> device;
   };
 
+  void end_silence();
   void run_line();
   void run_memory();
   void run_timers();
-  void work();
-  void wait();
+  [[gnu::noinline]] void receive_after_silence(std::uint8_t byte, ByteStatus status);
+  /// Returns whether an interrupt has woken the main loop. A host OK could wait until the next turn, but the
+  /// LED should show it at once.
+  [[nodiscard]] bool has_work() const {
+    return mcu_->device.has_work() || mcu_->device.module().host_ok_waits();
+  }
+  [[gnu::noinline]] void work();
+  void work_or_wait() {
+    if (has_work()) {
+      work();
+    } else {
+      wait();
+    }
+  }
+  void wait() { run_at(std::min(next_without_silence_, mcu_->silence_timer.next())); }
+  /// Sets the time of the next `run`. On an instant line most bytes do not change it.
+  void run_at(VirtualTime when) {
+    if (when != runs_at_) {
+      runs_at_ = when;
+      end_.run_at(when);
+    }
+  }
   void settle();
   void follow_supply();
   void start();
@@ -140,19 +162,23 @@ class SimulatedModule final : public Station {
   const Model& model_;
   TimingAt timing_at_;
   BusEnd& end_;
-  ModuleWire wire_;
   hal::doubles::Memory memory_;
   hal::doubles::Inputs inputs_;
   hal::doubles::Outputs outputs_;
   hal::doubles::StatusLed led_;
   hal::doubles::InitSwitch init_switch_;
-  std::optional<Mcu> mcu_;
   VirtualTime driver_late_by_{0};
-  VirtualTime next_without_silence_ = kNever;
   bool switched_on_ = false;
   bool supply_interrupted_ = false;
   bool hung_ = false;
   std::uint64_t watchdog_resets_ = 0;
+  std::uint32_t listens_at_ = 0;  ///< the rate of the receiver
+  // Each byte uses the members from here on. They are next to each other, so that they take few cache lines:
+  // many modules may receive each byte.
+  ModuleWire wire_;
+  VirtualTime next_without_silence_ = kNever;
+  VirtualTime runs_at_ = kNever;  ///< when the bus calls `run`
+  std::optional<Mcu> mcu_;
 };
 
 }  // namespace ex9000::sim

@@ -34,11 +34,10 @@ void ModuleWire::hand_on(What what, std::uint8_t byte, std::uint32_t baud) {
   if (fate_.lost) {
     return;
   }
-  const Late what_it_is{clock_.virtual_now() + fate_.late_by, what, byte, baud, reply_};
   if (fate_.late_by == VirtualTime(0) && late_.empty()) {
-    carry_out(what_it_is);
+    carry_out(what, byte, baud, reply_);
   } else {
-    late_.push_back(what_it_is);
+    late_.push_back({clock_.virtual_now() + fate_.late_by, what, byte, baud, reply_});
   }
 }
 
@@ -48,18 +47,18 @@ void ModuleWire::tell(std::uint64_t reply, bool on) const {
   }
 }
 
-void ModuleWire::carry_out(const Late& due) {
-  switch (due.what) {
+void ModuleWire::carry_out(What what, std::uint8_t byte, std::uint32_t baud, std::uint64_t reply) {
+  switch (what) {
     case What::On:
-      tell(due.reply, true);
+      tell(reply, true);
       wire_.drive(true);
       break;
     case What::Byte:
-      wire_.put(due.byte, due.baud);
+      wire_.put(byte, baud);
       break;
     case What::Off:
       wire_.drive(false);
-      tell(due.reply, false);
+      tell(reply, false);
       break;
   }
 }
@@ -69,7 +68,7 @@ void ModuleWire::run() {
     const Late due = late_.front();
     late_.pop_front();
     driving_late_ = due.what != What::Off;
-    carry_out(due);
+    carry_out(due.what, due.byte, due.baud, due.reply);
   }
 }
 

@@ -72,7 +72,7 @@ class ModuleWire final : public Wire {
   static constexpr std::size_t kMostLate = 65'536;
 
   void hand_on(What what, std::uint8_t byte, std::uint32_t baud);
-  void carry_out(const Late& due);
+  void carry_out(What what, std::uint8_t byte, std::uint32_t baud, std::uint64_t reply);
   void tell(std::uint64_t reply, bool on) const;
   [[nodiscard]] std::uint32_t reply_rate(std::uint32_t baud) const {
     if (!drives_) {

@@ -3,8 +3,8 @@
 #pragma once
 
 #include <cstdint>
-#include <deque>
 #include <optional>
+#include <vector>
 
 #include "firmware/line/verdict.hpp"
 #include "hal/doubles/virtual_clock.hpp"
@@ -18,23 +18,36 @@ using Levels = std::uint16_t;
 constexpr Levels kIdleLevels = 0x3FF;
 constexpr Levels levels_of(std::uint8_t byte) { return static_cast<Levels>(0x200U | unsigned{byte} << 1U); }
 
-/// The levels of a byte as one driver puts them on the wires.
+/// The levels of a byte as one driver puts them on the wires, and the byte that its station has sent.
 struct Wave {
-  VirtualTime start{0};
-  std::uint32_t baud = 0;
-  Levels levels = kIdleLevels;
-  VirtualTime cut_off = hal::doubles::kNever;  ///< time at which the driver was disabled
+  /// `its_baud`: the bit rate, not 0.
+  Wave(VirtualTime its_start, std::uint32_t its_baud, Levels its_levels)
+      : start(its_start), baud(its_baud), levels(its_levels), ends(boundary(kBits)) {}
 
   static constexpr unsigned kBits = 10;
 
   /// Returns the time at which bit `index` begins; for kBits, the end of the byte.
   [[nodiscard]] VirtualTime boundary(unsigned index) const;
-  [[nodiscard]] VirtualTime end() const { return boundary(kBits); }
+  [[nodiscard]] VirtualTime end() const { return ends; }
   /// Returns true for the idle level. Outside the byte the level is idle too.
   [[nodiscard]] bool level(VirtualTime at) const;
+
+  VirtualTime start;
+  std::uint32_t baud;
+  Levels levels;
+  VirtualTime ends;
+  VirtualTime cut_off = hal::doubles::kNever;  ///< time at which the driver was disabled
+  std::size_t station = 0;
+  std::uint32_t nominal_baud = 0;  ///< the rate that the station is set to
+  std::uint8_t byte = 0;
+  bool collided = false;  ///< another driver was enabled, or another byte was on the wires
+  bool over = false;      ///< has ended; samplers may still read it
+
+  /// Returns whether a receiver with the same rate gets the byte unchanged.
+  [[nodiscard]] bool arrives_whole() const { return !collided && levels == levels_of(byte); }
 };
 
-using Waves = std::deque<Wave>;
+using Waves = std::vector<Wave>;
 
 /// Samples 8N1 characters: waits for a falling edge, then reads the middle of each bit.
 class UartSampler {

@@ -74,7 +74,7 @@ void Pacer::catch_up(VirtualTime until) {
   VirtualTime next = line_.bus().next();
   report_delay(next);
   for (; next <= until || leads(next); next = line_.bus().next()) {
-    line_.bus().run_until(next);
+    line_.bus().run_next();
   }
 }
 

@@ -10,45 +10,66 @@
 namespace ex9000::sim {
 namespace {
 
+/// Returns the stations that are due, in the order in which they run.
+std::vector<std::size_t> due(DueTimes& times, VirtualTime now) {
+  std::vector<std::size_t> ran;
+  times.run_due(now, [&](std::size_t station) { ran.push_back(station); });
+  return ran;
+}
+
+using Stations = std::vector<std::size_t>;
+
 TEST(DueTimes, AreNeverWithoutStations) {
   DueTimes times;
   EXPECT_EQ(times.next(), kNever);
-  EXPECT_EQ(times.take(VirtualTime(1)), std::nullopt);
+  EXPECT_EQ(due(times, VirtualTime(1)), Stations());
 }
 
-TEST(DueTimes, AreTakenEarliestFirstAndInTheOrderOfTheStations) {
+TEST(DueTimes, RunInTheOrderOfTheStations) {
   DueTimes times;
-  for (const int due : {30, 10, 20, 10, 40}) {
-    times.set(times.add(), VirtualTime(due));
+  for (const int when : {30, 10, 20, 10, 40}) {
+    times.set(times.add(), VirtualTime(when));
   }
-  std::vector<std::size_t> taken;
-  while (const auto station = times.take(VirtualTime(30))) {
-    taken.push_back(*station);
-  }
-  EXPECT_EQ(taken, (std::vector<std::size_t>{1, 3, 2, 0}));
+  EXPECT_EQ(due(times, VirtualTime(10)), (Stations{1, 3}));
+  EXPECT_EQ(times.next(), VirtualTime(20));
+  EXPECT_EQ(due(times, VirtualTime(30)), (Stations{0, 2}));
   EXPECT_EQ(times.next(), VirtualTime(40));
+  EXPECT_EQ(due(times, VirtualTime(30)), Stations());
 }
 
 TEST(DueTimes, EqualThoseOfASearchThroughAllStations) {
   std::mt19937_64 random(1);
   DueTimes times;
   std::vector<VirtualTime> expected;
+  const auto first_due = [&expected](VirtualTime now) {
+    return std::find_if(expected.begin(), expected.end(), [now](VirtualTime when) { return when <= now; });
+  };
+  const auto set = [&](std::size_t station, VirtualTime when) {
+    times.set(station, when);
+    expected[station] = when;
+  };
   for (unsigned step = 0; step < 20'000; ++step) {
-    if (step % 1'000 == 0) {
+    if (step % 400 == 0) {
       ASSERT_EQ(times.add(), expected.size());
       expected.push_back(kNever);
     }
-    const std::size_t station = random() % expected.size();
-    const VirtualTime when = random() % 4 == 0 ? kNever : VirtualTime(random() % 16);
-    times.set(station, when);
-    expected[station] = when;
-    const auto first = std::min_element(expected.begin(), expected.end());
-    ASSERT_EQ(times.next(), *first);
-    if (random() % 4 == 0 && *first != kNever) {
-      ASSERT_EQ(times.take(*first - VirtualTime(1)), std::nullopt);
-      ASSERT_EQ(times.take(*first), static_cast<std::size_t>(first - expected.begin()));
-      *first = kNever;
+    const VirtualTime now(step);
+    for (std::uint64_t changes = random() % 3; changes != 0; --changes) {
+      set(random() % expected.size(), random() % 4 == 0 ? kNever : now + VirtualTime(random() % 16));
     }
+    ASSERT_EQ(times.next(), *std::min_element(expected.begin(), expected.end()));
+    times.run_due(now, [&](std::size_t station) {
+      const auto first = first_due(now);
+      ASSERT_NE(first, expected.end());
+      ASSERT_EQ(station, static_cast<std::size_t>(first - expected.begin()));
+      *first = kNever;
+      // A station may set no time, its own, those of other stations, and times that are due already.
+      for (std::uint64_t changes = random() % 3; changes != 0; --changes) {
+        set(random() % 2 == 0 ? station : random() % expected.size(), now + VirtualTime(random() % 4));
+      }
+    });
+    ASSERT_EQ(first_due(now), expected.end());
+    ASSERT_EQ(times.next(), *std::min_element(expected.begin(), expected.end()));
   }
 }
 
