@@ -49,6 +49,7 @@ struct TcpPort::Client {
     socket.close(ignored);
   }
 
+  std::array<std::uint8_t, 4096> bytes{};
   bool reading = false;  ///< waits for more bytes
   bool paused = false;
   bool lingers = false;  ///< has closed its sending side
@@ -106,11 +107,10 @@ void TcpPort::read_waiting() {
 
 /// Reads the available bytes, up to the size of a buffer. Returns the error if there are none.
 boost::system::error_code TcpPort::take(Client& client) {
-  std::array<std::uint8_t, 4096> bytes{};
   boost::system::error_code error;
-  const std::size_t size = client.socket.read_some(boost::asio::buffer(bytes), error);
+  const std::size_t size = client.socket.read_some(boost::asio::buffer(client.bytes), error);
   if (!error) {
-    client.paused = !received_(bytes.data(), size);
+    client.paused = !received_(client.bytes.data(), size);
   }
   return error;
 }

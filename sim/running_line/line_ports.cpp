@@ -15,17 +15,17 @@ void LinePorts::driver(std::size_t station, bool on, VirtualTime /*now*/) {
 }
 
 void LinePorts::hand_out() {
-  const std::vector<std::uint8_t> heard = std::exchange(heard_, {});
   const bool stopped = std::exchange(stopped_sending_, false);
-  sent_ += heard.size();
+  sent_ += heard_.size();
   for (const auto& port : ports_) {
-    if (!heard.empty()) {
-      report_dropped(*port, port->send(heard));
+    if (!heard_.empty()) {
+      report_dropped(*port, port->send(heard_));
     }
     if (stopped) {
       port->sent();
     }
   }
+  heard_.clear();
 }
 
 void LinePorts::report_dropped(const Port& port, std::size_t bytes) {
@@ -48,6 +48,10 @@ void LinePorts::take_rate(const Port& port) {
 
 void LinePorts::report_mismatches() {
   const std::uint32_t rate = line_.master().baud();
+  if (!mismatches_ && line_.bus().all_listen_at(rate)) {
+    return;
+  }
+  mismatches_ = false;
   for (std::size_t i = 0; i < line_.size(); ++i) {
     const SimulatedModule& module = line_.module(i);
     const bool listens = module.powered() && module.module().listening();
@@ -60,6 +64,7 @@ void LinePorts::report_mismatches() {
     if (listens) {
       reported_[i] = mismatch;
     }
+    mismatches_ = mismatches_ || reported_[i] != Mismatch{};
   }
 }
 

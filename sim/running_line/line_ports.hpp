@@ -52,6 +52,7 @@ class LinePorts final : private BusObserver {
   Notice notice_;
   using Mismatch = std::pair<std::uint32_t, std::uint32_t>;  ///< rate of the line, rate of a module
   std::vector<Mismatch> reported_;                           ///< one for each module; zeros: no mismatch
+  bool mismatches_ = false;                                  ///< `reported_` contains a mismatch
   std::vector<std::uint8_t> heard_;
   std::uint64_t sent_ = 0;
   std::vector<const Port*> full_;  ///< ports whose dropped bytes have been reported
