@@ -200,8 +200,8 @@ void Bus::run_samplers() {
 void Bus::finish_bytes() {
   const VirtualTime now = clock_.virtual_now();
   next_byte_end_ = kNever;
-  for (std::size_t i = 0; i < waves_.size(); ++i) {  // receivers may put bytes
-    Wave& wave = waves_[i];
+  for (std::size_t next = 0; next < waves_.size();) {  // receivers may put bytes
+    Wave& wave = waves_[next++];
     if (wave.over) {
       continue;
     }

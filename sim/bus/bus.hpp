@@ -130,7 +130,7 @@ class Bus {
   /// The receiver of a station. The receivers of a line are in one array, because each byte reaches all of
   /// them.
   struct Receiver {
-    Station* station;
+    Station* station = nullptr;
     std::uint32_t bit_rate = 0;  ///< 0: the station does not listen
     bool samples = false;        ///< samples the wires instead of getting whole bytes
     UartSampler sampler = {};
