@@ -2,11 +2,13 @@
 #pragma once
 
 #include <time.h>
+#include <unistd.h>
 
 #include <algorithm>
 #include <array>
 #include <chrono>
 #include <cstdio>
+#include <fstream>
 #include <optional>
 #include <stdexcept>
 #include <string>
@@ -44,6 +46,26 @@ inline double processor_seconds(int pid) {
   return static_cast<double>(time.tv_sec) + static_cast<double>(time.tv_nsec) * 1e-9;
 }
 
+/// Returns the time that all processors of the machine have worked, for any program or another machine.
+inline double busy_seconds() {
+  std::ifstream file("/proc/stat");
+  std::string name;
+  double user = 0;
+  double nice = 0;
+  double system = 0;
+  double idle = 0;
+  double waiting = 0;
+  double interrupts = 0;
+  double soft_interrupts = 0;
+  double stolen = 0;
+  if (!(file >> name >> user >> nice >> system >> idle >> waiting >> interrupts >> soft_interrupts >>
+        stolen)) {
+    throw std::runtime_error("/proc/stat cannot be read");
+  }
+  return (user + nice + system + interrupts + soft_interrupts + stolen) /
+         static_cast<double>(sysconf(_SC_CLK_TCK));
+}
+
 /// A server and a master that polls its units in turn.
 class Server {
  public:
@@ -51,25 +73,32 @@ class Server {
       : name_(std::move(name)), pid_(pid), master_(std::move(master)), units_(units) {}
 
   void poll_for(std::chrono::milliseconds time, std::size_t round) {
+    constexpr double kMostOfAProcessor = 0.1;  // that other programs may use
     const double before = processor_seconds(pid_);
+    const double own_before = processor_seconds(getpid());
+    const double all_before = busy_seconds();
     const auto began = std::chrono::steady_clock::now();
     const auto transactions = static_cast<double>(master_.poll_until(began + time, units_));
     const std::chrono::duration<double> took = std::chrono::steady_clock::now() - began;
-    microseconds_.at(round) = 1e6 * (processor_seconds(pid_) - before) / transactions;
+    const double used = processor_seconds(pid_) - before;
+    const double others = busy_seconds() - all_before - used - (processor_seconds(getpid()) - own_before);
+    microseconds_.at(round) = 1e6 * used / transactions;
     rates_.at(round) = transactions / took.count();
+    disturbed_.at(round) = others > kMostOfAProcessor * took.count();
   }
 
   [[nodiscard]] const std::string& name() const { return name_; }
   /// Returns the processor time of the server for a transaction, in microseconds: the median of all rounds.
   [[nodiscard]] double median() const { return median_of(microseconds_); }
-  /// Returns the processor time of the server for a transaction, in microseconds: the least of all rounds
-  /// that were not disturbed, because other programs on the processors can only increase this time. Returns
-  /// nullopt if other programs disturbed every round.
-  [[nodiscard]] std::optional<double> least() const {
+  /// Returns the least ratio of the processor time for a transaction to that of `other`. Compares both
+  /// servers in the same round, in which the machine treats both alike. nullopt: other programs disturbed
+  /// every round.
+  [[nodiscard]] std::optional<double> least_ratio_to(const Server& other) const {
     std::optional<double> result;
     for (std::size_t round = 0; round < kRounds; ++round) {
-      if (undisturbed(round) && (!result || microseconds_.at(round) < *result)) {
-        result = microseconds_.at(round);
+      const double ratio = microseconds_.at(round) / other.microseconds_.at(round);
+      if (!disturbed_.at(round) && !other.disturbed_.at(round) && (!result || ratio < *result)) {
+        result = ratio;
       }
     }
     return result;
@@ -79,15 +108,6 @@ class Server {
 
  private:
   using Figures = std::array<double, kRounds>;
-
-  /// Returns whether server and master seldom waited for a processor. On a machine that runs nothing else, a
-  /// transaction takes two to five times the server's processor time. If it takes much longer, other programs
-  /// run between each request and its reply. They fill the caches with their own data, so the server needs
-  /// more processor time.
-  [[nodiscard]] bool undisturbed(std::size_t round) const {
-    constexpr double kMostTimesProcessorTime = 10;
-    return 1e6 / rates_.at(round) < kMostTimesProcessorTime * microseconds_.at(round);
-  }
 
   static double median_of(Figures figures) {
     std::sort(figures.begin(), figures.end());
@@ -100,6 +120,7 @@ class Server {
   unsigned units_;
   Figures microseconds_{};
   Figures rates_{};
+  std::array<bool, kRounds> disturbed_{};  ///< other programs used the processors during the round
 };
 
 /// Polls each server for `time` in each round, and prints the medians of all rounds.
