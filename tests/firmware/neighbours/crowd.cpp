@@ -175,7 +175,7 @@ void Crowd::account_for_pulses() {
   const std::uint32_t pulses = pulser_.take();
   pulses_ += pulses;
   for (unsigned channel = 0; pulses != 0 && channel < 8; ++channel) {
-    described_[0].pulse_input(channel, pulses);
+    described_[0].pulse_input(channel, pulses, now());
   }
 }
 

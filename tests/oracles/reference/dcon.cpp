@@ -2,25 +2,11 @@
 #include <algorithm>
 
 #include "tests/oracles/reference/dcon_check.hpp"
+#include "tests/oracles/reference/dcon_refusal.hpp"
 #include "tests/oracles/reference/hexadecimal.hpp"
 #include "tests/oracles/reference/module.hpp"
 
 namespace ex9000::reference {
-
-namespace {
-
-/// The command does not exist on this model, its arguments have a wrong format or range, or it requires
-/// INIT*. Nothing changes, and the answer is `?AA` or, with `bare`, `?`.
-struct Refused {
-  std::string rule;
-  bool bare = false;
-};
-
-unsigned with_bit(unsigned value, unsigned channel, bool on) {
-  return on ? value | 1U << channel : value & ~(1U << channel);
-}
-
-}  // namespace
 
 /// Returns the AA of replies. wire.md 2: in INIT mode every reply carries 00.
 std::string Module::aa() const { return hex(address_, 2); }
@@ -37,26 +23,31 @@ std::string Module::first_second(unsigned outputs, unsigned inputs) const {
 }
 
 /// Processes a frame from the delimiter to the character before CR. Returns no value if there is no reply.
+/// The line tallies count as function 08 does in Modbus: a reading includes the request that reads it.
 std::optional<std::string> Module::dcon_frame(std::string frame) {
   // wire.md 3: a frame has at most 32 characters.
   if (frame.size() > 32) {
     rule("ASCII frame too long");
+    counts_.crc_errors += 1;
     return std::nullopt;
   }
   // CHK follows all other characters. If it is wrong or missing, there is no reply.
   if (checksum_) {
     if (frame.size() < 3) {
       rule("ASCII frame too short");
+      counts_.crc_errors += 1;
       return std::nullopt;
     }
     const std::string check = frame.substr(frame.size() - 2);
     frame.resize(frame.size() - 2);
     if (check != check_of(frame)) {
       rule("CHK wrong or missing");
+      counts_.crc_errors += 1;
       return std::nullopt;
     }
     rule("CHK right");
   }
+  counts_.bus_messages += 1;
   if (frame.size() < 3) {
     rule("ASCII frame too short");
     return std::nullopt;
@@ -64,6 +55,8 @@ std::optional<std::string> Module::dcon_frame(std::string frame) {
   const std::string address = frame.substr(1, 2);
   if (address == "**") {
     // Broadcasts never answer.
+    counts_.server_messages += 1;
+    counts_.no_response += 1;
     if (frame == "#**") {
       rule("#**");
       take_sample();
@@ -79,11 +72,14 @@ std::optional<std::string> Module::dcon_frame(std::string frame) {
     rule("ASCII frame for another address");
     return std::nullopt;
   }
+  counts_.server_messages += 1;
+  restart_host_watchdog_by_request();
   std::string reply;
   try {
     reply = dcon_command(frame[0], frame.substr(3));
   } catch (const Refused& refused) {
     rule(refused.rule);
+    counts_.exceptions += 1;
     reply = refused.bare ? "?" : "?" + aa();
   }
   return reply + (checksum_ ? check_of(reply) : "") + "\r";
@@ -168,6 +164,7 @@ std::string Module::set_group_or_single(const std::string& body) {
   }
   const unsigned group = *all >> 8;
   const unsigned data = *all & 0xFFU;
+  unsigned channels = 0;
   unsigned wanted = 0;
   std::string reached;
   if (group == 0x00 || group == 0x0A || group == 0x0B) {
@@ -179,7 +176,8 @@ std::string Module::set_group_or_single(const std::string& body) {
     if ((data << shift & ~mask) != 0) {
       throw Refused{"#AABBDD group's data beyond its channels", true};  // wire.md E2
     }
-    wanted = (outputs_ & ~mask) | data << shift;
+    channels = mask;
+    wanted = data << shift;
     reached = "#AABBDD group " + hex(group, 2);
   } else {
     const unsigned lead = group >> 4;
@@ -194,7 +192,8 @@ std::string Module::set_group_or_single(const std::string& body) {
     if (data > 0x01) {
       throw Refused{"#AABBDD single DD out of range", true};
     }
-    wanted = with_bit(outputs_, channel, data == 0x01);
+    channels = 1U << channel;
+    wanted = data << channel;
     reached = "#AABBDD single " + hex(lead, 1) + "c";
   }
   // wire.md 6: the module checks format and range first, then the timeout status.
@@ -203,7 +202,7 @@ std::string Module::set_group_or_single(const std::string& body) {
     return "!";
   }
   rule(reached);
-  outputs_ = wanted;
+  drive(channels, wanted);
   return ">";
 }
 
@@ -253,7 +252,7 @@ std::string Module::dollar_command(const std::string& body) {
       throw Refused{"$AACN refused"};
     }
     rule("$AACN");
-    counters_[*channel] = 0;
+    clear_counter(*channel);
     return "!" + aa();
   }
   if (!body.empty() && body[0] == 'L') {
@@ -317,7 +316,7 @@ std::string Module::at_command(const std::string& body) {
     return "!";
   }
   rule("@AA(Data) of " + std::to_string(body.size()));
-  outputs_ = *data;
+  drive(all_outputs(), *data);
   return ">";
 }
 
@@ -355,7 +354,10 @@ std::string Module::tilde_command(const std::string& body) {
     unsigned& value = argument == "P" ? stored_.power_on : stored_.safe;
     if (command == '5') {
       // wire.md 6: this works while the timeout status is set, because it drives nothing.
-      value = outputs_;
+      if (timed_outputs() != 0) {
+        rule("~AA5V stores a timed output as off");
+      }
+      value = outputs_ & ~timed_outputs();
       return "!" + aa();
     }
     // wire.md E6: the value is shown as on an output-only model, without inputs.
@@ -374,6 +376,12 @@ std::string Module::tilde_command(const std::string& body) {
     rule("~AAO(Data) of " + std::to_string(argument.size()));
     stored_.name = argument;
     return "!" + aa();
+  }
+  if (command == 'R') {
+    return delay_command(argument);
+  }
+  if (command == 'X') {
+    return extension_command(argument);
   }
   throw Refused{"~ no command"};
 }

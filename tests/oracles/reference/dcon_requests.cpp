@@ -87,12 +87,22 @@ std::string name(const Module& module, Random& random) {
   return random.once_in(8) ? module.row().name : text;
 }
 
+/// Returns the digits after `~AAX`.
+std::string extension(const Module& module, Random& random) {
+  const unsigned address = extension_address(module, random);
+  if (random.once_in(12)) {
+    return random.once_in(2) ? digits(random, random.between(0, 9))
+                             : hex(address, 4) + digits(random, random.between(1, 3));
+  }
+  return hex(address, 4) + (random.once_in(3) ? hex(extension_content(module, address, random), 4) : "");
+}
+
 /// Returns delimiter, address and body of a command, or of something similar to a command.
 std::string command(const Module& module, Random& random) {
   const std::string aa = hex(module.address(), 2);
   const std::string channel =
       random.once_in(8) ? digit(random) : hex(random.below(module.row().inputs > 8 ? 16 : 8), 1);
-  switch (random.below(32)) {
+  switch (random.below(39)) {
     case 0:
     case 1:
       return "%" + aa + configuration(module, random);
@@ -143,6 +153,16 @@ std::string command(const Module& module, Random& random) {
              random.one_of<std::string>({"P", "S", "P", "S", "P", "S", "", "p", "T", "PS"});
     case 28:
       return random.one_of<std::string>({"#", "$", "%", "@", "~"}) + aa + noise(random, 8);
+    case 29:
+    case 30:
+    case 31:
+    case 32:
+    case 33:
+      return "~" + aa + "X" + extension(module, random);
+    case 34:
+      return "~" + aa + random.one_of<std::string>({"RD", "RD", "RD", "R", "RE", "RD0", "RD0A1"});
+    case 35:
+      return "~" + aa + "RD" + byte_text(random, 0x00, kLongestDelay + 1);
     default:
       return "$" + aa + random.one_of<std::string>({"2", "4", "4", "5", "6", "F", "M"});
   }

@@ -1,5 +1,6 @@
 #include "tests/oracles/reference/generator.hpp"
 
+#include <optional>
 #include <string>
 #include <utility>
 
@@ -72,7 +73,11 @@ Step next_step(const Module& module, Random& random) {
   }
   // Inputs that a model does not have may be wired, too; they have no effect.
   if (what < (module.row().inputs != 0 ? 40U : 15U)) {
-    const unsigned channel = random.below(module.row().inputs > 8 ? 16 : 8);
+    // Often an input whose filter is settling, or one of the first two, which have a filter more often.
+    const std::optional<unsigned> settling = module.settling_input();
+    const unsigned channel = settling && random.once_in(2) ? *settling
+                             : random.once_in(2)           ? random.below(2)
+                                                           : random.below(module.row().inputs > 8 ? 16 : 8);
     return random.once_in(2) ? Step(Input{channel, random.once_in(2)})
                              : Step(Pulse{channel, pulses(module, random)});
   }

@@ -18,6 +18,12 @@ Step next_step(const Module& module, Random& random);
 /// mistake, or other bytes before them.
 Bytes dcon_request(const Module& module, Random& random);
 
+/// Returns the address of an extension register, or one at which this model has none.
+unsigned extension_address(const Module& module, Random& random);
+
+/// Returns a value to write to the extension register at this address, in most cases one that it accepts.
+unsigned extension_content(const Module& module, unsigned address, Random& random);
+
 /// Returns a frame, in most cases with a correct CRC.
 Bytes modbus_request(const Module& module, Random& random);
 

@@ -60,6 +60,9 @@ Bytes Module::modbus_frame(Bytes frame) {
     return {};
   }
   counts_.server_messages += 1;
+  if (address != 0) {
+    restart_host_watchdog_by_request();
+  }
   // Host OK is recognised first, and never answered.
   if ((function == 0x03 || function == 0x04) && frame.size() == 6 && word(frame, 2) == kHostOk &&
       word(frame, 4) <= 1) {

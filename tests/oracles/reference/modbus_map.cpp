@@ -1,6 +1,7 @@
 // Coils and registers of the reference: wire.md 7, map.
 #include <algorithm>
 
+#include "tests/oracles/reference/extension_registers.hpp"
 #include "tests/oracles/reference/hexadecimal.hpp"
 #include "tests/oracles/reference/modbus_refusal.hpp"
 #include "tests/oracles/reference/module.hpp"
@@ -79,14 +80,23 @@ bool register_listed(const ModelRow& model, unsigned address, unsigned function)
   const bool counter = address < model.inputs;
   const bool code = address == 0x01E2 || address == 0x01E3;
   const bool setting = address == 0x01E4 || address == 0x01E5 || address == 0x01E8;
+  const ExtensionRow extension = extension_row(model, address);
   switch (function) {
     case 0x03:
-      return counter || code || setting;
+      return counter || code || setting || extension.row != Extension::None;
     case 0x04:
-      return counter;
+      return counter || extension.row != Extension::None;
     default:
-      return setting;
+      return setting || extension.written;
   }
+}
+
+/// Returns the name of a listed register as the rules in rules.cpp use it.
+std::string register_name(const ModelRow& model, unsigned address) {
+  const ExtensionRow extension = extension_row(model, address);
+  return address < 16                       ? "counter"
+         : extension.row != Extension::None ? extension.name
+                                            : "0x" + hex(address, 4);
 }
 
 void all_registers_listed(const ModelRow& model, unsigned first, unsigned quantity, unsigned function) {
@@ -154,7 +164,7 @@ Bytes Module::read_bits(const Bytes& frame) {
   return reply;
 }
 
-unsigned Module::register_value(unsigned address) const {
+unsigned Module::register_value(unsigned address) {
   switch (address) {
     case 0x01E2:
       return row_.code >> 8;
@@ -167,7 +177,7 @@ unsigned Module::register_value(unsigned address) const {
     case 0x01E8:
       return stored_.timeout;
     default:
-      return counters_[address];
+      return address < 16 ? counters_[address] : extension_word(address);
   }
 }
 
@@ -181,7 +191,7 @@ Bytes Module::read_registers(const Bytes& frame) {
   all_registers_listed(row_, first, quantity, function);
   Bytes reply = {frame[0], frame[1], static_cast<std::uint8_t>(2 * quantity)};
   for (unsigned i = 0; i < quantity; ++i) {
-    rule(function_name(function) + (first + i < 16 ? " counter" : " 0x" + hex(first + i, 4)));
+    rule(function_name(function) + " " + register_name(row_, first + i));
     append_word(reply, register_value(first + i));
   }
   return reply;
@@ -231,16 +241,16 @@ void Module::set_coils(unsigned first, const std::vector<bool>& values) {
     };
     switch (row.row) {
       case Row::Outputs:
-        put(outputs_);
+        drive(1U << channel, values[i] ? 1U << channel : 0U);
         break;
       case Row::Safe:
         // The outputs take the same values.
         put(stored_.safe);
-        put(outputs_);
+        drive(1U << channel, values[i] ? 1U << channel : 0U);
         break;
       case Row::PowerOn:
         put(stored_.power_on);
-        put(outputs_);
+        drive(1U << channel, values[i] ? 1U << channel : 0U);
         break;
       case Row::Protocol:
         stored_.modbus = values[i];
@@ -262,7 +272,7 @@ void Module::set_coils(unsigned first, const std::vector<bool>& values) {
         break;
       case Row::ClearCounters:
         if (values[i]) {
-          counters_[channel] = 0;
+          clear_counter(channel);
         }
         break;
       default:
@@ -328,7 +338,7 @@ void Module::judge_registers(unsigned first, const std::vector<unsigned>& values
           throw Exception{0x03, "register 0x01E5 03"};
         }
         break;
-      default:
+      case 0x01E8:
         if (value > 255) {
           throw Exception{0x03, "register 0x01E8 03"};
         }
@@ -336,7 +346,15 @@ void Module::judge_registers(unsigned first, const std::vector<unsigned>& values
           throw Exception{0x03, "register 0x01E8 03 0 while enabled"};
         }
         break;
+      default:
+        if (!extension_accepts(first + i, value)) {
+          throw Exception{0x03, "register " + register_name(row_, first + i) + " 03"};
+        }
+        break;
     }
+  }
+  if (extension_row(row_, first).row == Extension::TimedOutputs && stored_.timed_out) {
+    throw Exception{0x04, "register 0x0280 04"};
   }
 }
 
@@ -349,12 +367,33 @@ void Module::set_registers(unsigned first, const std::vector<unsigned>& values) 
       case 0x01E5:
         stored_.baud_code = values[i];  // takes effect at the next reset
         break;
-      default:
+      case 0x01E8:
         stored_.timeout = values[i];
         restart_host_watchdog();
         break;
+      default:
+        set_extension(first + i, values[i]);
+        break;
     }
   }
+}
+
+/// Returns whether a write that begins at this register is ignored at address 0. All registers that one
+/// request can write are alike in this.
+bool Module::broadcast_ignored(unsigned first) {
+  if (first == 0x01E4 || first == 0x01E5) {
+    rule("broadcast ignored: configuration");
+    return true;
+  }
+  if (extension_row(row_, first).row == Extension::TimedOutputs) {
+    rule("broadcast to timed outputs");
+    return false;
+  }
+  if (extension_row(row_, first).row != Extension::None) {
+    rule("broadcast ignored: extension register");
+    return true;
+  }
+  return false;
 }
 
 Bytes Module::write_register(const Bytes& frame) {
@@ -362,11 +401,10 @@ Bytes Module::write_register(const Bytes& frame) {
   const unsigned address = word(frame, 2);
   all_registers_listed(row_, address, 1, 0x06);
   judge_registers(address, {word(frame, 4)});
-  if (frame[0] == 0 && address != 0x01E8) {
-    rule("broadcast ignored: configuration");
+  if (frame[0] == 0 && broadcast_ignored(address)) {
     return {};
   }
-  rule("FC06 0x" + hex(address, 4) + (address == 0x01E8 && stored_.enabled ? " restarts" : ""));
+  rule("FC06 " + register_name(row_, address) + (address == 0x01E8 && stored_.enabled ? " restarts" : ""));
   set_registers(address, {word(frame, 4)});
   return frame;
 }
@@ -388,12 +426,20 @@ Bytes Module::write_registers(const Bytes& frame) {
     values.push_back(word(frame, 7 + 2 * i));
   }
   judge_registers(first, values);
-  if (frame[0] == 0 && first != 0x01E8) {
-    rule("broadcast ignored: configuration");
+  if (frame[0] == 0 && broadcast_ignored(first)) {
     return {};
   }
-  rule("FC10 0x" + hex(first, 4) + (quantity == 2 ? " and 0x01E5" : "") +
-       (first == 0x01E8 && stored_.enabled ? " restarts" : ""));
+  if (first == 0x01E4 && quantity == 2) {
+    rule("FC10 0x01E4 and 0x01E5");
+  } else {
+    for (unsigned i = 0; i < quantity; ++i) {
+      rule("FC10 " + register_name(row_, first + i) +
+           (first == 0x01E8 && stored_.enabled ? " restarts" : ""));
+    }
+    if (register_name(row_, first) != register_name(row_, first + quantity - 1)) {
+      rule("FC10 several rows of extension registers");
+    }
+  }
   set_registers(first, values);
   return Bytes(frame.begin(), frame.begin() + 6);
 }

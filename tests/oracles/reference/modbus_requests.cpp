@@ -43,8 +43,8 @@ unsigned coil_quantity(const Module& module, unsigned address, Random& random) {
   }
 }
 
-unsigned register_address(Random& random) {
-  switch (random.below(10)) {
+unsigned register_address(const Module& module, Random& random) {
+  switch (random.below(14)) {
     case 0:
       return 0x3038 + random.below(2);
     case 1:
@@ -55,6 +55,11 @@ unsigned register_address(Random& random) {
     case 4:
     case 5:
       return random.below(17);
+    case 6:
+    case 7:
+    case 8:
+    case 9:
+      return extension_address(module, random);
     default:
       return random.one_of({0x01E2U, 0x01E3U, 0x01E4U, 0x01E5U, 0x01E8U, 0x01E8U});
   }
@@ -75,6 +80,9 @@ unsigned register_quantity(Random& random) {
 }
 
 unsigned register_content(unsigned address, const Module& module, Random& random) {
+  if (address >= 0x0240 && address < 0x0310) {
+    return extension_content(module, address, random);
+  }
   if (address == 0x01E8 && random.once_in(4)) {
     return 0;
   }
@@ -97,7 +105,7 @@ Bytes request(const Module& module, Random& random) {
   Bytes pdu;
   const unsigned coil = coil_address(module, random);
   const unsigned coils = coil_quantity(module, coil, random);
-  const unsigned first = register_address(random);
+  const unsigned first = register_address(module, random);
   const unsigned registers = register_quantity(random);
   switch (random.below(30)) {
     case 0:

@@ -1,6 +1,7 @@
 // Power, inputs and watchdog of the reference: wire.md 2, 5 and 6.
 #include "tests/oracles/reference/module.hpp"
 
+#include <algorithm>
 #include <tuple>
 
 namespace ex9000::reference {
@@ -11,12 +12,14 @@ constexpr std::chrono::milliseconds kTimeoutUnit{100};  // wire.md 6: VV x 0.1 s
 /// wire.md 3: the reply starts at most 200 ms after a request that stores a setting. A Modbus frame ends up
 /// to 32 ms after its last byte.
 constexpr std::chrono::milliseconds kLongestStore{232};
+/// One tick, and the time until the module executes a received request.
+constexpr std::chrono::milliseconds kTick{3};
 /// The silence that ends a frame, wire.md 7, at 1200 baud. A host OK stores nothing.
 constexpr std::chrono::milliseconds kLongestSilence{33};
 
 auto members(const Stored& s) {
   return std::tie(s.address, s.baud_code, s.format, s.modbus, s.name, s.power_on, s.safe, s.enabled,
-                  s.timeout, s.timed_out);
+                  s.timeout, s.timed_out, s.restarted_by_requests, s.delay, s.filters, s.inversion);
 }
 
 }  // namespace
@@ -45,13 +48,17 @@ void Module::power(bool on, Time now) {
   powered_ = on;
   outputs_ = 0;
   expiry_.reset();
+  settling_ = {};
+  timers_ = {};
   if (on) {
+    reset_reason_ = 1;  // power-on
     come_up(now);
   }
 }
 
 void Module::reset(Time now) {
   if (powered_) {
+    reset_reason_ = 4;  // reset pin
     come_up(now);
   }
 }
@@ -68,44 +75,108 @@ void Module::come_up(Time now) {
   rule(init_mode_ ? "reset into INIT mode" : runs_modbus_ ? "reset into Modbus" : "reset into ASCII");
   outputs_ = stored_.timed_out ? stored_.safe : stored_.power_on;
   rule(stored_.timed_out ? "reset to the safe value" : "reset to the power-on value");
+  end_timed_outputs("reset");
   reset_status_ = true;
   counters_ = {};
+  wide_counters_ = {};
   clear_latches();
+  // wire.md, extensions: the raw levels at reset are the baseline, not edges.
+  levels_ = raw_levels();
+  settling_ = {};
   sample_.reset();
   framing_ = Framing::Nothing;
   frame_.clear();
   counts_ = {};
+  came_up_ = now;
+  timeouts_ = 0;
+  stores_ = 0;
+  read_blank_memory_ = blank_memory_;
+  stored_by_ = Time(0);
+  timeout_stored_ = Time(0);
   // wire.md 6: every reset starts the host watchdog with its full VV, in every mode.
   expiry_.reset();
   if (stored_.enabled) {
     rule("reset starts the host watchdog");
-    expiry_ = Expiry{now + stored_.timeout * kTimeoutUnit, now + kComingUp + stored_.timeout * kTimeoutUnit};
+    expiry_ = Moment{now + stored_.timeout * kTimeoutUnit, now + kComingUp + stored_.timeout * kTimeoutUnit};
   }
+}
+
+/// Returns the value of registers 0x0302 and 0x0303.
+unsigned Module::seconds_since_reset() {
+  const auto seconds = [](Time time) { return std::chrono::duration_cast<std::chrono::seconds>(time); };
+  const auto least = seconds(now_ - came_up_ - kComingUp);
+  const auto most = seconds(now_ - came_up_ + kLongestStore);
+  if (least != most) {
+    left_open_ = "the time of the reset is known to 0.1 s, and the request may wait for a store";
+  }
+  return static_cast<unsigned>(least.count());
 }
 
 // --- wire.md 5 ---
 
-void Module::set_input(unsigned channel, bool level) {
-  if (channel >= row_.inputs) {
+void Module::set_input(unsigned channel, bool level, Time now) {
+  if (channel >= row_.inputs || ((terminals_ >> channel & 1U) != 0) == level) {
     return;
   }
-  const bool was = (levels_ >> channel & 1U) != 0;
-  if (was != level) {
-    levels_ ^= 1U << channel;
-    edge(channel, level, 1);
+  terminals_ ^= 1U << channel;
+  last_edges_[channel] = now;
+  if (!powered_) {
+    return;
+  }
+  if (stored_.filters[channel] == 0) {
+    take_level(channel);
+  } else if (settling_[channel]) {
+    rule("level too short for the input filter");
+    settling_[channel].reset();
+  } else {
+    const Time settled = now + std::chrono::milliseconds(stored_.filters[channel]);
+    settling_[channel] = Moment{settled, settled};
   }
 }
 
-void Module::pulse_input(unsigned channel, std::uint32_t count) {
-  // A pulse goes to the other level and back, so it has as many rising as falling edges.
-  edge(channel, true, count);
-  edge(channel, false, count);
-}
-
-void Module::edge(unsigned channel, bool rising, std::uint32_t count) {
+void Module::pulse_input(unsigned channel, std::uint32_t count, Time now) {
   if (!powered_ || channel >= row_.inputs || count == 0) {
     return;
   }
+  last_edges_[channel] = now;
+  if (stored_.filters[channel] == 0) {
+    // A pulse goes to the other level and back, so it has as many rising as falling edges.
+    edge(channel, true, count);
+    edge(channel, false, count);
+  } else if (settling_[channel]) {
+    rule("pulse restarts the time of the input filter");
+    const Time settled = now + std::chrono::milliseconds(stored_.filters[channel]);
+    settling_[channel] = Moment{settled, settled};
+  } else {
+    rule("pulse too short for the input filter");
+  }
+}
+
+/// Makes the raw level the level that counts.
+void Module::take_level(unsigned channel) {
+  levels_ ^= 1U << channel;
+  edge(channel, (levels_ >> channel & 1U) != 0, 1);
+}
+
+/// A new time of a filter applies from the last edge at the terminal. If it is over already, the level counts
+/// as soon as the time is stored, which may have to wait for the store of a timeout.
+void Module::set_filter(unsigned channel, unsigned milliseconds) {
+  if (settling_[channel] && milliseconds != stored_.filters[channel]) {
+    const Time settled = last_edges_[channel] + std::chrono::milliseconds(milliseconds);
+    rule(settled <= now_ ? "new time of the input filter is over" : "new time of the input filter runs");
+    settling_[channel] = Moment{std::max(now_, settled), std::max(now_ + 2 * kLongestStore, settled)};
+  }
+  stored_.filters[channel] = milliseconds;
+}
+
+/// Raw levels and the levels that count change together, so that there is no edge.
+void Module::set_inversion(unsigned inversion) {
+  rule(inversion == stored_.inversion ? "inversion stays" : "inversion changes");
+  levels_ ^= inversion ^ stored_.inversion;
+  stored_.inversion = inversion;
+}
+
+void Module::edge(unsigned channel, bool rising, std::uint32_t count) {
   (rising ? latch_high_ : latch_low_) |= 1U << channel;
   if (rising == counts_rising_) {
     const std::uint64_t edges = std::uint64_t{counters_[channel]} + count;
@@ -113,7 +184,13 @@ void Module::edge(unsigned channel, bool rising, std::uint32_t count) {
       rule(runs_modbus_ ? "counter wraps after 65535" : "counter wraps after 99999");
     }
     counters_[channel] = static_cast<std::uint32_t>(edges % counter_modulus());
+    wide_counters_[channel] += count;
   }
+}
+
+void Module::clear_counter(unsigned channel) {
+  counters_[channel] = 0;
+  wide_counters_[channel] = 0;
 }
 
 void Module::clear_latches() {
@@ -123,23 +200,128 @@ void Module::clear_latches() {
 
 // --- wire.md 6 ---
 
-void Module::restart_host_watchdog() { restart_host_watchdog(kLongestStore); }
-
-void Module::restart_host_watchdog_by_host_ok() { restart_host_watchdog(kLongestSilence); }
-
-void Module::restart_host_watchdog(Time at_most_later) {
-  if (!stored_.enabled) {
-    return;
+/// Restarts it by a command, which takes effect when it is stored.
+void Module::restart_host_watchdog() {
+  if (stored_.enabled) {
+    restarted_ = true;
+    expiry_ =
+        Moment{now_ + stored_.timeout * kTimeoutUnit, now_ + kLongestStore + stored_.timeout * kTimeoutUnit};
   }
-  restarted_ = true;
-  expiry_ =
-      Expiry{now_ + stored_.timeout * kTimeoutUnit, now_ + at_most_later + stored_.timeout * kTimeoutUnit};
 }
+
+void Module::restart_host_watchdog_by_host_ok() {
+  if (stored_.enabled) {
+    // A command that restarts the host watchdog may still be being stored. It takes effect later than this.
+    const Time latest = now_ + kLongestSilence + stored_.timeout * kTimeoutUnit;
+    expiry_ =
+        Moment{now_ + stored_.timeout * kTimeoutUnit, expiry_ ? std::max(expiry_->latest, latest) : latest};
+  }
+}
+
+/// Call this for each complete request with this module's own address, before its execution.
+void Module::restart_host_watchdog_by_request() {
+  if (stored_.restarted_by_requests) {
+    rule(!expiry_       ? "request does not start a host watchdog that does not run"
+         : runs_modbus_ ? "Modbus request restarts the host watchdog"
+                        : "ASCII request restarts the host watchdog");
+    restart_host_watchdog_by_host_ok();
+  }
+}
+
+// --- wire.md, extensions: timed outputs ---
+
+/// Sets outputs by a command, which ends the timers of all channels that it covers.
+void Module::drive(unsigned channels, unsigned values) {
+  outputs_ = (outputs_ & ~channels) | (values & channels);
+  if ((timed_outputs() & channels) != 0) {
+    rule("command ends a timed output");
+  }
+  for (unsigned channel = 0; channel < row_.outputs; ++channel) {
+    if ((channels >> channel & 1U) != 0) {
+      timers_[channel].reset();
+    }
+  }
+}
+
+/// Switches an output on for `time` x 0.1 s; 0: switches it off.
+void Module::set_timed_output(unsigned channel, unsigned time) {
+  rule(time == 0 ? "timed output of 0" : "timed output starts");
+  const unsigned bit = 1U << channel;
+  drive(bit, time != 0 ? bit : 0);
+  if (time != 0) {
+    timers_[channel] = Moment{now_ + time * kTimeoutUnit, executed_by() + time * kTimeoutUnit};
+    timers_started_ |= bit;
+  }
+}
+
+/// Returns the time until a timed output ends, in 0.1 s, rounded up; 0 if none is running.
+unsigned Module::time_left(unsigned channel) {
+  const std::optional<Moment>& timer = timers_[channel];
+  rule(timer ? "0x0280 reads what is left" : "0x0280 reads 0");
+  if (!timer) {
+    return 0;
+  }
+  const auto rounded_up = [](Time time) { return (time + kTimeoutUnit - Time(1)) / kTimeoutUnit; };
+  const auto most = rounded_up(timer->latest + kTick - now_);
+  if (most != rounded_up(timer->earliest - kTick - executed_by())) {
+    left_open_ = "the time of a timed output that is left is not known exactly";
+  }
+  return static_cast<unsigned>(most);
+}
+
+void Module::end_timed_outputs(const std::string& by) {
+  if (timed_outputs() != 0) {
+    rule(by + " ends a timed output");
+  }
+  timers_ = {};
+}
+
+/// Returns the channels with a running timer.
+unsigned Module::timed_outputs() const {
+  unsigned channels = 0;
+  for (unsigned channel = 0; channel < row_.outputs; ++channel) {
+    channels |= timers_[channel] ? 1U << channel : 0U;
+  }
+  return channels;
+}
+
+/// Returns the latest time at which the module executes a request that it has received at `now_`, if the
+/// request itself stores nothing. It may wait while something else is being stored.
+Time Module::executed_by() const { return std::max({now_ + kLongestSilence, stored_by_, timeout_stored_}); }
 
 void Module::replied(Time now) {
   if (restarted_ && expiry_) {
     expiry_->latest = now + stored_.timeout * kTimeoutUnit;
   }
+  for (unsigned channel = 0; channel < row_.outputs; ++channel) {
+    if ((timers_started_ >> channel & 1U) != 0 && timers_[channel]) {
+      timers_[channel]->latest = now + (timers_[channel]->earliest - now_);
+    }
+  }
+}
+
+std::vector<Module::Moment> Module::moments() const {
+  std::vector<Moment> moments;
+  if (expiry_) {
+    moments.push_back(*expiry_);
+  }
+  for (unsigned channel = 0; channel < 16; ++channel) {
+    for (const std::optional<Moment>& moment : {settling_[channel], timers_[channel]}) {
+      if (moment) {
+        moments.push_back(*moment);
+      }
+    }
+  }
+  return moments;
+}
+
+std::optional<unsigned> Module::settling_input() const {
+  for (unsigned channel = 0; channel < row_.inputs; ++channel) {
+    if (settling_[channel]) {
+      return channel;
+    }
+  }
+  return std::nullopt;
 }
 
 void Module::pass(Time now) {
@@ -148,7 +330,26 @@ void Module::pass(Time now) {
     outputs_ = stored_.safe;
     stored_.timed_out = true;
     stored_.enabled = false;
+    timeouts_ += 1;
+    stores_ += 1;
+    blank_memory_ = false;
+    timeout_stored_ = expiry_->latest + kLongestStore;
     expiry_.reset();
+    end_timed_outputs("host watchdog");
+  }
+  for (unsigned channel = 0; channel < row_.outputs; ++channel) {
+    if (timers_[channel] && now > timers_[channel]->latest) {
+      rule("timed output ends");
+      timers_[channel].reset();
+      outputs_ &= ~(1U << channel);
+    }
+  }
+  for (unsigned channel = 0; channel < row_.inputs; ++channel) {
+    if (settling_[channel] && now > settling_[channel]->latest) {
+      rule("level has stood for the time of the input filter");
+      settling_[channel].reset();
+      take_level(channel);
+    }
   }
 }
 
@@ -161,8 +362,10 @@ Answer Module::on_request(const Bytes& bytes, Time now) {
   }
   now_ = now;
   restarted_ = false;
+  timers_started_ = 0;
   left_open_ = nullptr;
   const Stored before = stored_;
+  const bool delayed = reply_delay() != Time(0);
   if (runs_modbus_) {
     answer.reply = modbus_frame(bytes);
   } else {
@@ -197,10 +400,18 @@ Answer Module::on_request(const Bytes& bytes, Time now) {
       }
     }
   }
+  if (!answer.reply.empty() && before.delay != 0) {
+    rule(delayed ? "response delay" : "no response delay in INIT mode");
+  }
   if (!stored_.enabled) {
     expiry_.reset();
   }
   answer.stores = !(stored_ == before);
+  if (answer.stores) {
+    stores_ += 1;
+    blank_memory_ = false;
+    stored_by_ = answer.reply.empty() ? now_ + kLongestStore : stored_by_;
+  }
   answer.left_open = left_open_;
   return answer;
 }

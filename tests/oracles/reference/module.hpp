@@ -21,6 +21,8 @@ using Bytes = std::vector<std::uint8_t>;
 using Time = std::chrono::nanoseconds;
 /// wire.md 2: the longest time from power-on or reset until the module listens.
 inline constexpr std::chrono::milliseconds kComingUp{100};
+/// wire.md, extensions: the longest response delay, in ms.
+inline constexpr unsigned kLongestDelay = 0x1E;
 
 /// wire.md 8: the values that survive a power failure.
 struct Stored {
@@ -34,6 +36,11 @@ struct Stored {
   bool enabled = false;     ///< host watchdog enabled
   unsigned timeout = 0xFF;  ///< in 0.1 s
   bool timed_out = false;   ///< the timeout status
+  /// Any complete request for this module restarts the host watchdog.
+  bool restarted_by_requests = false;
+  unsigned delay = 0;                  ///< the response delay in ms
+  std::array<unsigned, 16> filters{};  ///< of the inputs, in ms
+  unsigned inversion = 0;              ///< bit n is input n
 };
 
 bool operator==(const Stored& a, const Stored& b);
@@ -55,22 +62,24 @@ class Module {
   // --- events ---
 
   /// Sets the values that the module loads at the next reset.
-  void store(const Stored& stored) { stored_ = stored; }
+  void store(const Stored& stored) {
+    stored_ = stored;
+    blank_memory_ = false;
+  }
   /// Switches the supply. A module that is switched on has 100 ms to start; its reset is at an unknown time
   /// within them.
   void power(bool on, Time now);
   /// Resets the module, which has 100 ms to start.
   void reset(Time now);
   void set_init(bool asserted) { init_asserted_ = asserted; }
-  void set_input(unsigned channel, bool level);
-  void pulse_input(unsigned channel, std::uint32_t count);
+  void set_input(unsigned channel, bool level, Time now);
+  void pulse_input(unsigned channel, std::uint32_t count, Time now);
   /// Processes all bytes that the master has sent. The last byte ended at `now`, and a silence follows.
   Answer on_request(const Bytes& bytes, Time now);
   /// Call this when the first byte of the reply to the last request began at `now`. All effects of the
   /// request are complete by then.
   void replied(Time now);
-  /// Lets time pass until `now`, which must not lie between the earliest and the latest expiry of the host
-  /// watchdog.
+  /// Lets time pass until `now`, which must not lie within one of the `moments`.
   void pass(Time now);
 
   // --- visible state ---
@@ -84,6 +93,9 @@ class Module {
   /// Returns whether the LED flashes: it does while the timeout status is set (wire.md 6).
   [[nodiscard]] bool led_flashes() const { return stored_.timed_out; }
   [[nodiscard]] unsigned rate() const;
+  /// Returns the response delay that applies to the next request: its reply starts no earlier than this after
+  /// the last stop bit. It is 0 in INIT mode.
+  [[nodiscard]] Time reply_delay() const { return std::chrono::milliseconds(init_mode_ ? 0 : stored_.delay); }
   [[nodiscard]] bool runs_modbus() const { return runs_modbus_; }
   [[nodiscard]] bool checksum() const { return checksum_; }
   [[nodiscard]] unsigned address() const { return address_; }
@@ -96,29 +108,47 @@ class Module {
   /// Returns whether the module has received the beginning of a frame but not its end.
   [[nodiscard]] bool frame_open() const { return framing_ != Framing::Nothing; }
 
-  /// The host watchdog expires between these two times. The exact time is unknown because the time of its
-  /// last restart is not visible from outside.
-  struct Expiry {
+  /// The module changes by itself between these two times. The exact time is unknown if the time at which a
+  /// command took effect is not visible from outside.
+  struct Moment {
     Time earliest;
     Time latest;
   };
-  [[nodiscard]] const std::optional<Expiry>& expiry() const { return expiry_; }
+  /// Returns when the host watchdog expires, if it is running.
+  [[nodiscard]] const std::optional<Moment>& expiry() const { return expiry_; }
+  /// Returns all moments at which the module changes by itself: the expiry of the host watchdog, the ends of
+  /// the times for which a new input level must stand, and the ends of timed outputs.
+  [[nodiscard]] std::vector<Moment> moments() const;
+  /// Returns the first input whose new level has not stood for the time of its filter yet, if there is one.
+  [[nodiscard]] std::optional<unsigned> settling_input() const;
 
  private:
   void rule(const std::string& rule) { rules_.push_back(rule); }
 
   // wire.md 2
   void come_up(Time now);
+  unsigned seconds_since_reset();
   // wire.md 5
+  [[nodiscard]] unsigned raw_levels() const { return terminals_ ^ stored_.inversion; }
   void edge(unsigned channel, bool rising, std::uint32_t count);
+  void take_level(unsigned channel);
+  void set_filter(unsigned channel, unsigned milliseconds);
+  void set_inversion(unsigned inversion);
   void clear_latches();
+  void clear_counter(unsigned channel);
   [[nodiscard]] std::uint32_t counter_modulus() const { return runs_modbus_ ? 65536 : 100000; }
   // wire.md 6
   void restart_host_watchdog();
   void restart_host_watchdog_by_host_ok();
-  void restart_host_watchdog(Time at_most_later);
+  void restart_host_watchdog_by_request();
   void clear_timeout_status() { stored_.timed_out = false; }
   [[nodiscard]] unsigned all_outputs() const { return (1U << row_.outputs) - 1; }
+  void drive(unsigned channels, unsigned values);
+  void set_timed_output(unsigned channel, unsigned time);
+  unsigned time_left(unsigned channel);
+  void end_timed_outputs(const std::string& by);
+  [[nodiscard]] unsigned timed_outputs() const;
+  [[nodiscard]] Time executed_by() const;
 
   // wire.md 3 and 4, dcon.cpp
   enum class Framing { Nothing, Open, ToTheCr };
@@ -153,13 +183,24 @@ class Module {
   [[nodiscard]] bool coil(unsigned address) const;
   void judge_coils(unsigned first, const std::vector<bool>& values, unsigned function);
   void set_coils(unsigned first, const std::vector<bool>& values);
-  [[nodiscard]] unsigned register_value(unsigned address) const;
+  [[nodiscard]] unsigned register_value(unsigned address);
   void judge_registers(unsigned first, const std::vector<unsigned>& values);
   void set_registers(unsigned first, const std::vector<unsigned>& values);
+  bool broadcast_ignored(unsigned first);
+
+  // wire.md, extensions; extension_registers.cpp
+  [[nodiscard]] unsigned tally(unsigned index) const;
+  unsigned extension_value(unsigned address);
+  unsigned extension_word(unsigned address);
+  [[nodiscard]] bool extension_accepts(unsigned address, unsigned value) const;
+  void set_extension(unsigned address, unsigned value);
+  std::string delay_command(const std::string& body);
+  std::string extension_command(const std::string& body);
 
   const ModelRow& row_;
   std::vector<std::string> rules_;
   Stored stored_;
+  bool blank_memory_ = true;  ///< nothing has been stored yet
 
   // State that lasts from one reset to the next.
   bool powered_ = false;
@@ -171,11 +212,18 @@ class Module {
   bool checksum_ = false;
   bool counts_rising_ = false;
   unsigned outputs_ = 0;
+  /// The moments at which timed outputs are switched off.
+  std::array<std::optional<Moment>, 16> timers_;
   bool reset_status_ = false;
-  unsigned levels_ = 0;  ///< of the inputs; a reset does not change them
+  unsigned terminals_ = 0;             ///< levels at the inputs; a reset does not change them
+  std::array<Time, 16> last_edges_{};  ///< of the terminals
+  /// The moments at which new levels have stood for the time of the input filter.
+  std::array<std::optional<Moment>, 16> settling_;
+  unsigned levels_ = 0;  ///< levels after inversion and filter
   unsigned latch_high_ = 0;
   unsigned latch_low_ = 0;
   std::array<std::uint32_t, 16> counters_{};
+  std::array<std::uint32_t, 16> wide_counters_{};
   struct Sample {
     std::string first_second;
     bool read = false;
@@ -183,7 +231,7 @@ class Module {
   std::optional<Sample> sample_;
   Framing framing_ = Framing::Nothing;
   std::string frame_;
-  /// The counters of function 08.
+  /// The counters of function 08, and their counterparts in ASCII.
   struct Counts {
     unsigned bus_messages = 0;
     unsigned crc_errors = 0;
@@ -191,11 +239,19 @@ class Module {
     unsigned server_messages = 0;
     unsigned no_response = 0;
   } counts_;
-  std::optional<Expiry> expiry_;
+  std::optional<Moment> expiry_;
+  Time came_up_{0};                 ///< the earliest time of the last reset
+  unsigned reset_reason_ = 0;       ///< register 0x0301
+  unsigned timeouts_ = 0;           ///< register 0x0304
+  unsigned stores_ = 0;             ///< register 0x0305
+  bool read_blank_memory_ = false;  ///< the last reset found nothing stored
+  Time stored_by_{0};               ///< the latest time at which the last command without reply is stored
+  Time timeout_stored_{0};          ///< the latest time at which the last timeout is stored
 
   // State during one call of `on_request`.
   Time now_{0};
   bool restarted_ = false;
+  unsigned timers_started_ = 0;  ///< bit n is channel n
   const char* left_open_ = nullptr;
 };
 

@@ -14,9 +14,9 @@ namespace {
 
 using std::chrono::milliseconds;
 
-/// The session decides, sends and compares nothing closer than this to the expiry of the host watchdog: one
-/// tick, and the time until the module executes a received request.
-constexpr milliseconds kExpiryMargin{3};
+/// The session decides, sends and compares nothing closer than this to a moment at which the module changes
+/// by itself: one tick, and the time until the module executes a received request.
+constexpr milliseconds kMargin{3};
 /// wire.md 6: after the expiry, the status and the enable are stored.
 constexpr milliseconds kStored{250};
 /// wire.md 3: the reply to a request that stores nothing starts within 20 ms.
@@ -117,23 +117,38 @@ bool Session::nothing_more() {
   return heard.empty() || differs("; nothing more", reply_line(heard));
 }
 
-/// If the host watchdog might expire within `needed`, lets it expire now.
+/// Returns whether the module might change by itself within `needed`.
+bool Session::changes_within(Time needed) {
+  const std::vector<Module::Moment> moments = reference_.moments();
+  return std::any_of(moments.begin(), moments.end(), [&](const Module::Moment& moment) {
+    return target_.now() + needed > moment.earliest - kMargin;
+  });
+}
+
+/// If the module might change by itself within `needed`, lets it change now.
 bool Session::settle(Time needed) {
-  if (reference_.expiry() && target_.now() + needed > reference_.expiry()->earliest - kExpiryMargin) {
-    return listen(std::chrono::duration_cast<milliseconds>(needed) + milliseconds(1));
+  while (changes_within(needed)) {
+    if (!listen(std::chrono::duration_cast<milliseconds>(needed) + milliseconds(1))) {
+      return false;
+    }
   }
   return true;
 }
 
-/// Listens for `time`, or until the host watchdog has expired if it is about to expire.
+/// Listens for `time`, or longer if the module might be changing by itself then.
 bool Session::listen(milliseconds time) {
+  const Time now = target_.now();
   const bool might_expire = reference_.expiry().has_value();
-  Time over{0};
-  if (might_expire) {
-    const Time now = target_.now();
-    over = reference_.expiry()->latest + kExpiryMargin;
-    if (now + time > reference_.expiry()->earliest - kExpiryMargin && now + time < over) {
-      time = std::chrono::duration_cast<milliseconds>(over - now) + milliseconds(1);
+  const Time expired = might_expire ? reference_.expiry()->latest + kMargin : Time(0);
+  const std::vector<Module::Moment> moments = reference_.moments();
+  for (bool changes = true; changes;) {
+    changes = false;
+    for (const Module::Moment& moment : moments) {
+      const Time over = moment.latest + kMargin;
+      if (now + time > moment.earliest - kMargin && now + time < over) {
+        time = std::chrono::duration_cast<milliseconds>(over - now) + milliseconds(1);
+        changes = true;
+      }
     }
   }
   lines_.push_back("wait " + std::to_string(time.count()) + "ms");
@@ -142,7 +157,7 @@ bool Session::listen(milliseconds time) {
   // Outputs and timeout status change at once. The next request may arrive while the timeout is being stored.
   storing_timeout_ = false;
   if (might_expire && !reference_.expiry()) {
-    timeout_stored_ = over + kStored;
+    timeout_stored_ = expired + kStored;
     storing_timeout_ = target_.now() < timeout_stored_;
   }
   return heard.empty() || differs("; silence", reply_line(heard));
@@ -182,22 +197,29 @@ bool Session::play_step(const Send& send) {
   // above 19200 baud.
   const Time modbus_silence = rate_ <= 19200 ? Time(77ULL * 1'000'000'000ULL / (2ULL * rate_))
                                              : Time(std::chrono::microseconds(1750));
-  const Time earliest = reference_.runs_modbus() ? modbus_silence : takes(1);
+  const Time turn_around = reference_.runs_modbus() ? modbus_silence : takes(1);
+  // The 20 and 200 ms count from the end of the response delay, if that is later.
+  const Time delay = reference_.reply_delay() > turn_around ? reference_.reply_delay() : Time(0);
+  const Time earliest = std::max(turn_around, delay);
   // wire.md 3 allows 20 ms for Modbus, too, but the silence alone takes 32 ms at 1200 baud and 16 ms at 2400
   // baud.
-  const Time answers = std::max<Time>(kAnswers, earliest + milliseconds(5));
+  const Time answers = std::max<Time>(kAnswers + delay, turn_around + milliseconds(5));
 
   Answer answer;
-  for (int look = 0; look < 2; ++look) {
+  while (true) {
     Module trial = reference_;
     answer = trial.on_request(send.bytes, target_.now() + takes(send.bytes.size()));
     if (answer.left_open != nullptr) {
       ++left_open_;
       return true;
     }
-    // The loop runs twice because the answer depends on whether the host watchdog has expired.
     const Time done = answer.stores ? answers + kStored : answer.reply.empty() ? Time(kNoAnswer) : answers;
-    const Time needed = takes(send.bytes.size() + answer.reply.size()) + done + kBetween;
+    const Time waits = storing_ || storing_timeout_ ? kAnswersStoring : milliseconds(0);
+    const Time needed = waits + takes(send.bytes.size() + answer.reply.size()) + done + kBetween;
+    // The loop repeats because the answer may depend on whether the module has changed.
+    if (!changes_within(needed)) {
+      break;
+    }
     if (!settle(needed)) {
       return false;
     }
@@ -236,7 +258,7 @@ bool Session::play_step(const Send& send) {
   const auto microseconds = [](Time time) {
     return std::to_string(std::chrono::duration_cast<std::chrono::microseconds>(time).count()) + " us";
   };
-  const Time latest = (answer.stores ? std::max<Time>(kAnswersStoring, answers) : answers) +
+  const Time latest = (answer.stores ? std::max<Time>(kAnswersStoring + delay, answers) : answers) +
                       (behind_another ? kAnswersStoring : milliseconds(0));
   const Time after = began - sent;
   if (after < earliest - std::chrono::microseconds(2) || after > latest) {
@@ -302,7 +324,7 @@ bool Session::play_step(const Input& input) {
   lines_.push_back(lacking(input.channel) + "input " + std::to_string(input.channel) +
                    (input.level ? " on" : " off"));
   target_.module().set_input(input.channel, input.level);
-  reference_.set_input(input.channel, input.level);
+  reference_.set_input(input.channel, input.level, target_.now());
   return true;
 }
 
@@ -310,7 +332,7 @@ bool Session::play_step(const Pulse& pulse) {
   lines_.push_back(lacking(pulse.channel) + "pulse " + std::to_string(pulse.channel) + " x" +
                    std::to_string(pulse.count));
   target_.module().pulse_input(pulse.channel, pulse.count);
-  reference_.pulse_input(pulse.channel, pulse.count);
+  reference_.pulse_input(pulse.channel, pulse.count, target_.now());
   return true;
 }
 

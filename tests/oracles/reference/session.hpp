@@ -47,8 +47,8 @@ struct Pulse {
 using Step = std::variant<Send, Wait, WaitForExpiry, Reset, Power, Init, Input, Pulse>;
 
 /// Plays steps on a firmware module and on a reference module, from factory settings. When a result could
-/// depend on the exact time at which the host watchdog expires, the session waits, because that time is
-/// specified to a tick, not to a nanosecond.
+/// depend on the exact time at which the module changes by itself, for example because the host watchdog
+/// expires, the session waits, because that time is specified to a tick, not to a nanosecond.
 class Session {
  public:
   explicit Session(const ModelRow& row);
@@ -83,6 +83,7 @@ class Session {
   bool play_step(const Pulse& pulse);
 
   bool stored();
+  bool changes_within(Time needed);
   bool settle(Time needed);
   bool compare();
   bool listen(std::chrono::milliseconds time);

@@ -1,0 +1,15 @@
+// The reason to refuse an ASCII command of the reference: wire.md 3.
+#pragma once
+
+#include <string>
+
+namespace ex9000::reference {
+
+/// The command does not exist on this model, its arguments have a wrong format or range, or it requires
+/// INIT*. Nothing changes, and the answer is `?AA` or, with `bare`, `?`.
+struct Refused {
+  std::string rule;
+  bool bare = false;
+};
+
+}  // namespace ex9000::reference

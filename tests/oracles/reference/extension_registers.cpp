@@ -1,0 +1,195 @@
+// Values of the extension registers of the reference, and `~AAX`: wire.md, extensions.
+#include "tests/oracles/reference/extension_registers.hpp"
+
+#include "tests/oracles/reference/dcon_refusal.hpp"
+#include "tests/oracles/reference/hexadecimal.hpp"
+#include "tests/oracles/reference/module.hpp"
+
+namespace ex9000::reference {
+
+ExtensionRow extension_row(const ModelRow& model, unsigned address) {
+  const unsigned inputs = model.inputs;
+  const ExtensionRow rows[] = {
+      {Extension::InputFilters, "0x0240", 0x0240, inputs, true, false},
+      {Extension::Inversion, "0x0250", 0x0250, inputs != 0 ? 1U : 0U, true, false},
+      {Extension::RestartedBy, "0x0251", 0x0251, 1, true, false},
+      {Extension::ResponseDelay, "0x0252", 0x0252, 1, true, false},
+      {Extension::WideCounters, "0x0260", 0x0260, 2 * inputs, false, true},
+      {Extension::TimedOutputs, "0x0280", 0x0280, model.outputs, true, false},
+      {Extension::Version, "0x0300", 0x0300, 1, false, false},
+      {Extension::ResetReason, "0x0301", 0x0301, 1, false, false},
+      {Extension::Uptime, "0x0302", 0x0302, 2, false, true},
+      {Extension::Timeouts, "0x0304", 0x0304, 1, true, false},
+      {Extension::Stores, "0x0305", 0x0305, 1, false, false},
+      {Extension::SettingsSource, "0x0306", 0x0306, 1, false, false},
+      {Extension::Tallies, "0x0308", 0x0308, 8, false, false},
+  };
+  for (const ExtensionRow& row : rows) {
+    if (address >= row.first && address < row.first + row.count) {
+      return row;
+    }
+  }
+  return {Extension::None, "", 0, 0, false, false};
+}
+
+/// Returns the number of bytes with errors and of lost frames as 0, because a session has none.
+unsigned Module::tally(unsigned index) const {
+  const unsigned tallies[] = {counts_.bus_messages,
+                              counts_.crc_errors,
+                              counts_.exceptions,
+                              counts_.server_messages,
+                              counts_.no_response,
+                              0,
+                              0,
+                              0};
+  return tallies[index];
+}
+
+/// Returns the value of a register, or the 32-bit value of which it is a part. Sets `left_open_` if the value
+/// is not known.
+unsigned Module::extension_value(unsigned address) {
+  const ExtensionRow row = extension_row(row_, address);
+  switch (row.row) {
+    case Extension::InputFilters:
+      return stored_.filters[address - row.first];
+    case Extension::Inversion:
+      return stored_.inversion;
+    case Extension::RestartedBy:
+      return stored_.restarted_by_requests ? 1 : 0;
+    case Extension::ResponseDelay:
+      return stored_.delay;
+    case Extension::WideCounters:
+      return wide_counters_[(address - row.first) / 2];
+    case Extension::TimedOutputs:
+      return time_left(address - row.first);
+    case Extension::Version:
+      return 0x0100;  // D01.00
+    case Extension::ResetReason:
+      rule(std::string("0x0301 reads ") + std::to_string(reset_reason_));
+      return reset_reason_;
+    case Extension::Uptime:
+      return seconds_since_reset();
+    case Extension::Timeouts:
+      rule(timeouts_ != 0 ? "0x0304 reads timeouts" : "0x0304 reads 0");
+      return timeouts_;
+    case Extension::Stores:
+      if (now_ < timeout_stored_) {
+        left_open_ = "the number of stores is not known while a timeout may be being stored";
+      }
+      rule(stores_ != 0 ? "0x0305 reads stores" : "0x0305 reads 0");
+      return stores_;
+    case Extension::SettingsSource:
+      rule(read_blank_memory_ ? "0x0306 reads 4" : "0x0306 reads 0");
+      return read_blank_memory_ ? 4 : 0;
+    case Extension::Tallies:
+      rule((runs_modbus_ ? "Modbus tally 0x" : "ASCII tally 0x") + hex(address, 4));
+      return tally(address - row.first);
+    default:
+      return 0;  // not in the table
+  }
+}
+
+unsigned Module::extension_word(unsigned address) {
+  const ExtensionRow row = extension_row(row_, address);
+  const unsigned value = extension_value(address);
+  return row.wide && (address - row.first) % 2 == 0 ? value >> 16 : value & 0xFFFFU;
+}
+
+/// Returns whether a register that can be written accepts the value.
+bool Module::extension_accepts(unsigned address, unsigned value) const {
+  switch (extension_row(row_, address).row) {
+    case Extension::InputFilters:
+      return value <= 2000;
+    case Extension::Inversion:
+      return value >> row_.inputs == 0;
+    case Extension::RestartedBy:
+      return value <= 1;
+    case Extension::ResponseDelay:
+      return value <= kLongestDelay;
+    case Extension::Timeouts:
+      return value == 0;
+    default:
+      return true;
+  }
+}
+
+void Module::set_extension(unsigned address, unsigned value) {
+  const ExtensionRow row = extension_row(row_, address);
+  switch (row.row) {
+    case Extension::InputFilters:
+      set_filter(address - row.first, value);
+      break;
+    case Extension::Inversion:
+      set_inversion(value);
+      break;
+    case Extension::RestartedBy:
+      stored_.restarted_by_requests = value == 1;
+      break;
+    case Extension::ResponseDelay:
+      stored_.delay = value;
+      break;
+    case Extension::TimedOutputs:
+      set_timed_output(address - row.first, value);
+      break;
+    case Extension::Timeouts:
+      timeouts_ = 0;
+      break;
+    default:
+      break;
+  }
+}
+
+/// Executes `~AARD` and `~AARDVV`.
+std::string Module::delay_command(const std::string& body) {
+  if (body == "D") {
+    rule("~AARD");
+    return "!" + aa() + hex(stored_.delay, 2);
+  }
+  const std::optional<unsigned> delay = number(body.size() == 3 ? body.substr(1) : "");
+  if (!delay || body[0] != 'D') {
+    throw Refused{"~AARD out of form"};
+  }
+  if (*delay > kLongestDelay) {
+    throw Refused{"~AARDVV out of range"};
+  }
+  rule("~AARDVV");
+  stored_.delay = *delay;
+  return "!" + aa();
+}
+
+/// Executes `~AAXRRRR` and `~AAXRRRRVVVV`.
+std::string Module::extension_command(const std::string& body) {
+  const std::optional<unsigned> digits = number(body);
+  if ((body.size() != 4 && body.size() != 8) || !digits) {
+    throw Refused{"~AAX out of form"};
+  }
+  const bool writes = body.size() == 8;
+  const unsigned address = writes ? *digits >> 16 : *digits;
+  const ExtensionRow row = extension_row(row_, address);
+  if (row.row == Extension::None) {
+    throw Refused{"~AAX lacking"};
+  }
+  if (!writes) {
+    if (row.wide && (address - row.first) % 2 != 0) {
+      throw Refused{"~AAXRRRR low word"};
+    }
+    rule(std::string("~AAXRRRR ") + row.name);
+    return "!" + aa() + hex(extension_value(address), row.wide ? 8 : 4);
+  }
+  if (!row.written) {
+    throw Refused{"~AAXRRRRVVVV read only"};
+  }
+  const unsigned value = *digits & 0xFFFFU;
+  if (!extension_accepts(address, value)) {
+    throw Refused{std::string("~AAXRRRRVVVV ") + row.name + " out of range"};
+  }
+  if (row.row == Extension::TimedOutputs && stored_.timed_out) {
+    rule("~AAXRRRRVVVV ignored");
+    return "!";
+  }
+  rule(std::string("~AAXRRRRVVVV ") + row.name);
+  set_extension(address, value);
+  return "!" + aa();
+}
+
+}  // namespace ex9000::reference
