@@ -8,23 +8,26 @@ namespace {
 
 constexpr Duration kInitTimeout = milliseconds(50);  // wire.md D13
 constexpr std::uint8_t kInitModeAddress = 0x00;
+constexpr Duration kClockResolution(1);  // a byte may have ended this much later than its recorded time
 
 constexpr Duration sooner(Duration a, Duration b) { return b < a ? b : a; }
 
 }  // namespace
 
-void Module::start(std::uint16_t input_levels, Time now) {
+void Module::start(std::uint16_t input_levels, Time now, ResetReason reason) {
   const auto levels = static_cast<std::uint16_t>(input_levels & state_.model().input_mask());
   edges_.begin(levels);
   state_.inputs.begin(levels);
   init_timeout_.set(now + kInitTimeout);
+  second_began_ = now;
+  state_.statistics.reset_reason = reason;
 }
 
 void Module::poll_panel(bool init_switch, Time now) {
   init_switch_.sample(init_switch, now);
   state_.init_asserted = init_switch_.level();
   led_.show(led_pattern_due(), now);
-  collect_edges();
+  collect_edges(now);
   cycle_.end_reply_gap(now);
 }
 
@@ -38,11 +41,13 @@ StatusLed::Pattern Module::led_pattern_due() const {
 
 void Module::step(Time now) {
   start_up(now);
+  update_statistics(now);
   if (start_ == Start::Loading) {
     return;
   }
   count_host_oks();
   expire_host_watchdog(now);  // must run before the steps that drive outputs
+  end_timed_outputs(now);
   continue_store(now);
   if (cycle_.phase() == RequestCycle::Phase::Idle) {
     dispatch(now);
@@ -66,6 +71,7 @@ void Module::start_up(Time now) {
 
 void Module::use_settings(Time now) {
   state_.settings = keeper_.stored();
+  state_.statistics.settings_source = keeper_.source();
   state_.outputs =
       state_.settings.timeout_status ? state_.settings.safe_value : state_.settings.power_on_value;
   host_watchdog_.restart(now);
@@ -86,18 +92,29 @@ void Module::listen() {
   state_.inputs.configure(in_force.protocol == Protocol::Ascii ? Inputs::CounterRange::FiveDigits
                                                                : Inputs::CounterRange::SixteenBits,
                           (settings.format & kFormatRisingEdge) != 0);
+  state_.inputs.invert(settings.inverted_inputs);
+  state_.inputs.use_filters(settings.input_filters);
   init_timeout_.disarm();
+  receiver_.restart_by_requests(settings.fed_by_requests);
   receiver_.listen({in_force.protocol, in_force.checksum, timing_at_(baud())});
   receiver_.answer_to(in_force.address);
 }
 
 // --- events from interrupts ---
 
-void Module::collect_edges() {
+void Module::collect_edges(Time now) {
   // Before `listen()`, it is not known whether the counters count rising or falling edges.
   if (listening()) {
-    state_.inputs.collect(edges_, state_.model().inputs);
+    state_.inputs.collect(edges_, state_.model().inputs, now);
   }
+}
+
+/// Applies the inversion and the filters of the settings. The edges until now count under the previous ones.
+void Module::configure_inputs(Time now) {
+  collect_edges(now);
+  state_.inputs.invert(state_.settings.inverted_inputs);
+  state_.inputs.use_filters(state_.settings.input_filters);
+  collect_edges(now);
 }
 
 void Module::count_host_oks() {
@@ -112,6 +129,15 @@ void Module::count_host_oks() {
   }
 }
 
+void Module::update_statistics(Time now) {
+  constexpr Duration kSecond = milliseconds(1000);
+  while (!(now.since(second_began_) < kSecond)) {
+    second_began_ = second_began_ + kSecond;
+    ++state_.statistics.seconds_up;
+  }
+  state_.statistics.stores = keeper_.saves();
+}
+
 void Module::expire_host_watchdog(Time now) {
   Settings& settings = state_.settings;
   if (!settings.watchdog_enabled || !host_watchdog_.expired(settings, now)) {
@@ -121,6 +147,8 @@ void Module::expire_host_watchdog(Time now) {
   settings.timeout_status = true;
   settings.watchdog_enabled = false;
   state_.outputs = settings.safe_value;
+  state_.output_timers.stop(state_.model().output_mask());
+  count_saturating(state_.statistics.timeouts);
   keeper_.settings_changed();
   cycle_.keep_timeout_status();
 }
@@ -132,8 +160,13 @@ void Module::dispatch(Time now) {
   if (!receiver_.queue().has_frame() || !(until_request(now) == Duration())) {
     return;
   }
-  collect_edges();
-  const Outcome& outcome = cycle_.judge(receiver_.queue().waiting().bytes());
+  collect_edges(now);
+  const Frame& request = receiver_.queue().waiting();
+  const Outcome& outcome = cycle_.judge(request.bytes());
+  if (!state_.in_force.init_mode && state_.settings.response_delay != 0) {
+    cycle_.hold_reply_until(request.received + receiver_.timing().rest_of_stop_bit +
+                            milliseconds(state_.settings.response_delay) + kClockResolution);
+  }
   receiver_.queue().drop_in_main_loop();
   if (outcome.changes_settings()) {
     continue_store(now);
@@ -187,18 +220,40 @@ void Module::continue_store(Time now) {
 /// Carries out a request that has been judged and whose settings are stored.
 void Module::commit(Time now) {
   if (cycle_.outcome().changes_settings()) {
-    commit_settings();
+    commit_settings(now);
   }
   if (!state_.outputs_blocked()) {
-    const Drive drive = cycle_.outcome().outputs_to_drive();
-    state_.outputs = static_cast<std::uint16_t>((state_.outputs & ~drive.mask) | (drive.value & drive.mask));
+    drive_outputs(now);
   }
   commit_effects(now);
   finish_request();
 }
 
-void Module::commit_settings() {
+void Module::drive_outputs(Time now) {
+  const Drive drive = cycle_.outcome().outputs_to_drive();
+  state_.outputs = static_cast<std::uint16_t>((state_.outputs & ~drive.mask) | (drive.value & drive.mask));
+  state_.output_timers.stop(drive.mask);
+
+  const TimedDrive& timed = cycle_.outcome().timed_outputs_to_drive();
+  state_.outputs = static_cast<std::uint16_t>(state_.outputs & ~timed.mask);
+  state_.output_timers.stop(timed.mask);
+  for (unsigned channel = 0; timed.mask >> channel != 0; ++channel) {
+    if ((timed.mask >> channel & 1U) != 0 && timed.units[channel] != 0) {
+      state_.outputs = static_cast<std::uint16_t>(state_.outputs | 1U << channel);
+      state_.output_timers.start(channel, timed.units[channel], now);
+    }
+  }
+}
+
+/// Switches the outputs off whose time is over.
+void Module::end_timed_outputs(Time now) {
+  state_.outputs = static_cast<std::uint16_t>(state_.outputs & ~state_.output_timers.expire(now));
+}
+
+void Module::commit_settings(Time now) {
   state_.settings = cycle_.outcome().change().applied_to(state_.settings);
+  configure_inputs(now);
+  receiver_.restart_by_requests(state_.settings.fed_by_requests);
   if (state_.settings.timeout_status) {
     state_.outputs = state_.settings.safe_value;  // the request may have changed it (wire.md D6)
   }
@@ -217,7 +272,7 @@ void Module::commit_effects(Time now) {
     receiver_.answer_to(state_.settings.address);
   }
   if (outcome.asks_for(Effect::TakeCountingEdge)) {
-    collect_edges();  // the edges until now count under the previous setting
+    collect_edges(now);  // the edges until now count under the previous setting
     state_.inputs.count_rising_edges((state_.settings.format & kFormatRisingEdge) != 0);
   }
   if (outcome.asks_for(Effect::TakeSample)) {
@@ -235,6 +290,9 @@ void Module::commit_effects(Time now) {
   if (outcome.asks_for(Effect::ClearCounters)) {
     state_.inputs.clear_counters(outcome.counters_to_clear);
   }
+  if (outcome.asks_for(Effect::ClearTimeoutCount)) {
+    state_.statistics.timeouts = 0;
+  }
   if (outcome.asks_for(Effect::ClearDiagnostics)) {
     receiver_.tallies().clear();
     state_.diagnostics = Diagnostics();
@@ -242,7 +300,10 @@ void Module::commit_effects(Time now) {
 }
 
 void Module::finish_request() {
-  const bool refused = cycle_.outcome().refusal != Refusal::None;
+  const Refusal refusal = cycle_.outcome().refusal;
+  // In ASCII only replies that begin with `?` count, and that of blocked outputs begins with `!`.
+  const bool refused =
+      refusal != Refusal::None && (state_.speaks_modbus() || refusal != Refusal::OutputsBlocked);
   Diagnostics& diagnostics = state_.diagnostics;
   if (!cycle_.finish()) {
     ++diagnostics.no_responses;
@@ -286,7 +347,8 @@ Duration Module::idle_for(Time now, Duration at_most) const {
   if (cycle_.phase() == RequestCycle::Phase::ReplyReady) {
     idle = sooner(idle, cycle_.until_reply(now));
   }
-  return idle;
+  idle = state_.inputs.until_settled(edges_, now, idle);
+  return state_.output_timers.until_due(now, idle);
 }
 
 }  // namespace ex9000

@@ -12,6 +12,7 @@
 #include "firmware/panel/status_led.hpp"
 #include "firmware/request/request_cycle.hpp"
 #include "firmware/request/state.hpp"
+#include "firmware/reset_reason.hpp"
 #include "firmware/settings/settings_keeper.hpp"
 #include "firmware/time.hpp"
 #include "firmware/watchdog/host_watchdog.hpp"
@@ -36,8 +37,8 @@ class Module {
   Module& operator=(const Module&) = delete;
 
   /// Call this once, before interrupts are enabled. `input_levels`: bit n is channel n, 1 = +4 to +30 V.
-  /// These levels do not count as edges.
-  void start(std::uint16_t input_levels, Time now);
+  /// These levels do not count as edges. `reason`: why the module was reset.
+  void start(std::uint16_t input_levels, Time now, ResetReason reason = ResetReason::Unknown);
 
   // --- interrupts ---
 
@@ -49,7 +50,7 @@ class Module {
   Duration on_silence() { return receiver_.on_silence(); }
   void on_own_driver_off(Time now) { receiver_.on_own_driver_off(now); }
   /// See InputEdges::on_edge.
-  void on_edge(unsigned channel, bool level) { edges_.on_edge(channel, level); }
+  void on_edge(unsigned channel, bool level, Time now) { edges_.on_edge(channel, level, now); }
   void on_tick() { module_watchdog_.tick_alive(); }
   /// Returns whether a complete request is waiting. The turn-around time of an ASCII request may still be
   /// running. The main loop may call this too.
@@ -122,12 +123,16 @@ class Module {
   void dispatch(Time now);
   void continue_store(Time now);
   void commit(Time now);
-  void commit_settings();
+  void commit_settings(Time now);
+  void drive_outputs(Time now);
+  void end_timed_outputs(Time now);
   void commit_effects(Time now);
   void finish_request();
   void count_host_oks();
+  void update_statistics(Time now);
   void expire_host_watchdog(Time now);
-  void collect_edges();
+  void collect_edges(Time now);
+  void configure_inputs(Time now);
   [[nodiscard]] Duration turn_around() const;
   [[nodiscard]] Duration until_request(Time now) const;
   [[nodiscard]] bool step_is_due() const;
@@ -136,6 +141,7 @@ class Module {
   TimingAt timing_at_;
   Start start_ = Start::Loading;
   Deadline init_timeout_;
+  Time second_began_;  ///< when the current second since reset began
 
   State state_;
   InputEdges edges_;

@@ -58,6 +58,8 @@ class Deadline {
     armed_ = true;
   }
   constexpr void disarm() { armed_ = false; }
+  /// Moves an armed deadline `by` later.
+  constexpr void postpone(Duration by) { when_ = when_ + by; }
 
   [[nodiscard]] constexpr bool armed() const { return armed_; }
   [[nodiscard, gnu::always_inline]] constexpr bool reached(Time now) const {

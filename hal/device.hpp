@@ -27,9 +27,10 @@ class Device {
   constexpr Device(const Model& model, TimingAt timing_at, const Board& board)
       : board_(board), module_(model, timing_at) {}
 
-  /// Call this once, before interrupts are enabled and after the tick has been started.
-  void start() {
-    module_.start(board_.inputs.start(), board_.clock.now());
+  /// Call this once, before interrupts are enabled and after the tick has been started. `reason`: why the
+  /// board was reset.
+  void start(ResetReason reason) {
+    module_.start(board_.inputs.start(), board_.clock.now(), reason);
     board_.watchdog.feed();
   }
 
@@ -61,7 +62,9 @@ class Device {
     module_.on_own_driver_off(board_.clock.now_in_interrupt());
     wake();
   }
-  void on_edge(unsigned channel, bool level) { module_.on_edge(channel, level); }
+  void on_edge(unsigned channel, bool level) {
+    module_.on_edge(channel, level, board_.clock.now_in_interrupt());
+  }
   void on_tick() {
     module_.on_tick();
     on_wake_timer();

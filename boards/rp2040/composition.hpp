@@ -159,7 +159,7 @@ void start() {
   LineEndTimer::start();
   WakeTimer::start();
   Tick::start();
-  device.start();
+  device.start(ResetReason::Unknown);
   Interrupts::enable(start_up::numbers_of(kServed));
 }
 

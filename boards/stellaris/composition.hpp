@@ -181,7 +181,7 @@ void start() {
   LineEndTimer::start();
   WakeTimer::start();
   board.clock.start();
-  device.start();
+  device.start(ResetReason::Unknown);
   Interrupts::enable(start_up::numbers_of(kServed), static_cast<std::uint32_t>(kLineInterrupt));
 }
 

@@ -2,7 +2,7 @@
 
 namespace ex9000 {
 
-void InputEdges::on_edge(unsigned channel, bool level) {
+void InputEdges::on_edge(unsigned channel, bool level, Time now) {
   if (channel >= kMaxInputs) {
     return;
   }
@@ -13,37 +13,82 @@ void InputEdges::on_edge(unsigned channel, bool level) {
     channels_[channel].count_in_interrupt(1);
     levels_ = static_cast<std::uint16_t>(levels_ ^ bit);
   }
+  last_edges_[channel].store_in_interrupt(now.microseconds());
   edges_.store_in_interrupt(edges_.load() + 1U);
 }
 
-void Inputs::collect(InputEdges& edges, unsigned channels) {
+void Inputs::invert(std::uint16_t channels) {
+  const auto changed = static_cast<std::uint16_t>(channels ^ inverted_);
+  inverted_ = channels;
+  standing_ = static_cast<std::uint16_t>(standing_ ^ changed);
+  levels_ = static_cast<std::uint16_t>(levels_ ^ changed);
+}
+
+void Inputs::collect(InputEdges& edges, unsigned channels, Time now) {
   const std::uint32_t all = edges.edges();
-  if (all == edges_seen_) {
+  if (all == edges_seen_ && settling() == 0) {
     return;
   }
   edges_seen_ = all;
-  const std::uint32_t modulus = range_ == CounterRange::FiveDigits ? 100'000U : 65'536U;
   for (unsigned channel = 0; channel < channels; ++channel) {
-    const std::uint32_t fresh = edges.collect(channel);
-    if (fresh == 0) {
-      continue;
-    }
     const std::uint32_t bit = 1U << channel;
-    const std::uint32_t was_high = levels_ >> channel & 1U;
-    const std::uint32_t rising = (fresh + 1U - was_high) / 2U;  // the first edge rises if the level was low
-    const std::uint32_t falling = fresh - rising;
-    latched_high_ = static_cast<std::uint16_t>(latched_high_ | (rising != 0 ? bit : 0U));
-    latched_low_ = static_cast<std::uint16_t>(latched_low_ | (falling != 0 ? bit : 0U));
-    levels_ = static_cast<std::uint16_t>(levels_ ^ (rising != falling ? bit : 0U));
-    const std::uint32_t count = counters_[channel] + (count_rising_edges_ ? rising : falling);
-    counters_[channel] = count < modulus ? count : count - modulus;
+    const std::uint32_t fresh = edges.collect(channel);
+    const bool filtered = filters_.of(channel) != 0;
+    if (!filtered && (settling() & bit) != 0) {
+      count(channel, 1);  // the filter was switched off while the level was settling
+    }
+    standing_ = static_cast<std::uint16_t>(standing_ ^ ((fresh & 1U) << channel));
+    if (!filtered) {
+      count(channel, fresh);
+    } else if ((settling() & bit) != 0 && settles_at(edges, channel).reached(now)) {
+      count(channel, 1);
+    }
   }
+}
+
+/// Counts and latches `edges` alternating edges of a channel, and changes its level.
+void Inputs::count(unsigned channel, std::uint32_t edges) {
+  if (edges == 0) {
+    return;
+  }
+  const std::uint32_t modulus = range_ == CounterRange::FiveDigits ? 100'000U : 65'536U;
+  const std::uint32_t bit = 1U << channel;
+  const std::uint32_t was_high = levels_ >> channel & 1U;
+  const std::uint32_t rising = (edges + 1U - was_high) / 2U;  // the first edge rises if the level was low
+  const std::uint32_t falling = edges - rising;
+  latched_high_ = static_cast<std::uint16_t>(latched_high_ | (rising != 0 ? bit : 0U));
+  latched_low_ = static_cast<std::uint16_t>(latched_low_ | (falling != 0 ? bit : 0U));
+  levels_ = static_cast<std::uint16_t>(levels_ ^ (rising != falling ? bit : 0U));
+  const std::uint32_t counted = count_rising_edges_ ? rising : falling;
+  const std::uint32_t sum = counters_[channel] + counted;
+  counters_[channel] = sum < modulus ? sum : sum - modulus;
+  long_counters_[channel] += counted;
+}
+
+/// Returns when the level of a channel that is settling counts.
+Deadline Inputs::settles_at(const InputEdges& edges, unsigned channel) const {
+  constexpr Duration kRoundUp(1);  // the edge may have happened up to 1 us later than its recorded time
+  Deadline deadline;
+  deadline.set(edges.last_edge(channel) + milliseconds(filters_.of(channel)) + kRoundUp);
+  return deadline;
+}
+
+Duration Inputs::until_settled(const InputEdges& edges, Time now, Duration at_most) const {
+  Duration until = at_most;
+  for (unsigned channel = 0; settling() >> channel != 0; ++channel) {
+    if ((settling() >> channel & 1U) != 0) {
+      const Duration remaining = settles_at(edges, channel).remaining(now);
+      until = remaining < until ? remaining : until;
+    }
+  }
+  return until;
 }
 
 void Inputs::clear_counters(std::uint16_t channels) {
   for (unsigned channel = 0; channel < kMaxInputs; ++channel) {
     if ((channels & (1U << channel)) != 0) {
       counters_[channel] = 0;
+      long_counters_[channel] = 0;
     }
   }
 }

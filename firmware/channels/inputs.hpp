@@ -7,6 +7,8 @@
 #include "firmware/line/crossing.hpp"
 #include "firmware/line/event_tally.hpp"
 #include "firmware/model/model.hpp"
+#include "firmware/settings/settings.hpp"
+#include "firmware/time.hpp"
 
 namespace ex9000 {
 
@@ -19,40 +21,53 @@ class InputEdges {
   void begin(std::uint16_t levels) { levels_ = levels; }
 
   /// Counts one edge on `channel`, or two edges if `level`, the present level of the channel, is the same as
-  /// before. The edge interrupt calls this when the hardware has flagged an edge. Ignores the call if
-  /// `channel` is kMaxInputs or greater.
-  void on_edge(unsigned channel, bool level);
+  /// before. The edge interrupt calls this at `now`, when the hardware has flagged an edge. Ignores the call
+  /// if `channel` is kMaxInputs or greater.
+  void on_edge(unsigned channel, bool level, Time now);
 
   /// Returns the number of calls of `on_edge`, of all channels together; it wraps.
   [[nodiscard]] std::uint32_t edges() const { return edges_.load(); }
   /// Returns the number of edges of `channel` since the last call for it. For the main loop, which must call
   /// this at least every 65535 edges.
   std::uint16_t collect(unsigned channel) { return channels_[channel].collect(); }
+  /// Returns the time of the last edge of `channel`. For the main loop.
+  [[nodiscard]] Time last_edge(unsigned channel) const { return Time(last_edges_[channel].load()); }
 
  private:
   std::uint16_t levels_ = 0;  // for the interrupt only
   WrittenByInterrupt<std::uint32_t> edges_;
   std::array<EventTally, kMaxInputs> channels_;
+  std::array<WrittenByInterrupt<std::uint32_t>, kMaxInputs> last_edges_;
 };
 
-/// Levels, latches and counters as the protocols read them. For the main loop only.
+/// Levels, latches and counters as the protocols read them. The order is: inversion, filter, everything else.
+/// For the main loop only.
+///
+/// A channel without filter counts every edge. With a filter, a level counts as one edge when it has stood
+/// for the filter time since the last edge.
 class Inputs {
  public:
   /// The range of the counters: five decimal digits in ASCII, 16 bits in Modbus. A counter wraps to 0.
   enum class CounterRange : std::uint8_t { FiveDigits, SixteenBits };
 
   /// Sets the levels at reset. `levels`: the same value as for InputEdges::begin.
-  void begin(std::uint16_t levels) { levels_ = levels; }
+  void begin(std::uint16_t levels) { levels_ = standing_ = levels; }
   void configure(CounterRange range, bool count_rising_edges) {
     range_ = range;
     count_rising_edges_ = count_rising_edges;
   }
   /// Selects whether the counters count rising or falling edges from the next `collect` on.
   void count_rising_edges(bool rising) { count_rising_edges_ = rising; }
+  /// Sets the inverted channels, bit n for channel n. The levels change at once, without an edge.
+  void invert(std::uint16_t channels);
+  /// Sets the filter times. They apply from the last edge of each channel on.
+  void use_filters(const InputFilters& filters) { filters_ = filters; }
 
-  /// Counts and latches the edges of the first `channels` channels. Must be called at least every 65535 edges
-  /// of a channel.
-  void collect(InputEdges& edges, unsigned channels);
+  /// Counts and latches the edges of the first `channels` channels, and the levels that have stood for their
+  /// filter time at `now`. Must be called at least every 65535 edges of a channel.
+  void collect(InputEdges& edges, unsigned channels, Time now);
+  /// Returns the time until a filtered level counts, at most `at_most`.
+  [[nodiscard]] Duration until_settled(const InputEdges& edges, Time now, Duration at_most) const;
 
   [[nodiscard]] std::uint16_t levels() const { return levels_; }
   /// Returns the channels with a rising edge since reset or `clear_latches`; bit n is channel n.
@@ -61,19 +76,30 @@ class Inputs {
   [[nodiscard]] std::uint16_t latched_low() const { return latched_low_; }
   /// Returns the counter of `channel`: 0 to 99999 in ASCII, 0 to 65535 in Modbus.
   [[nodiscard]] std::uint32_t counter(unsigned channel) const { return counters_[channel]; }
+  /// Returns the 32-bit counter of `channel`. It counts the same edges and is cleared at the same time.
+  [[nodiscard]] std::uint32_t long_counter(unsigned channel) const { return long_counters_[channel]; }
 
   void clear_latches() { latched_high_ = latched_low_ = 0; }
   /// Clears counter n for each bit n that is set in `channels`.
   void clear_counters(std::uint16_t channels);
 
  private:
+  void count(unsigned channel, std::uint32_t edges);
+  [[nodiscard]] Deadline settles_at(const InputEdges& edges, unsigned channel) const;
+  /// Returns the channels whose level has changed, but has not counted yet.
+  [[nodiscard]] std::uint16_t settling() const { return static_cast<std::uint16_t>(levels_ ^ standing_); }
+
   std::uint32_t edges_seen_ = 0;  ///< InputEdges::edges at the last `collect`
   CounterRange range_ = CounterRange::FiveDigits;
   bool count_rising_edges_ = false;
-  std::uint16_t levels_ = 0;
+  InputFilters filters_;
+  std::uint16_t inverted_ = 0;
+  std::uint16_t standing_ = 0;  ///< the levels after inversion, before the filter
+  std::uint16_t levels_ = 0;    ///< the levels after the filter
   std::uint16_t latched_high_ = 0;
   std::uint16_t latched_low_ = 0;
   std::array<std::uint32_t, kMaxInputs> counters_{};
+  std::array<std::uint32_t, kMaxInputs> long_counters_{};
 };
 
 }  // namespace ex9000

@@ -45,6 +45,11 @@ Refusal read_status(Exchange& exchange);
 Refusal clear_status(Exchange& exchange);
 Refusal read_watchdog(Exchange& exchange);
 Refusal set_watchdog(Exchange& exchange);
+// extension_commands.cpp
+Refusal read_extension(Exchange& exchange);
+Refusal write_extension(Exchange& exchange);
+Refusal read_response_delay(Exchange& exchange);
+Refusal set_response_delay(Exchange& exchange);
 
 constexpr char kNoKey = 0;
 constexpr char kBroadcastKey = '*';
@@ -280,6 +285,38 @@ inline constexpr auto kCommands = table<Command>({
      Access::Store,
      Init::NotRequired,
      {'~', '5', 1, 1, Needs::Outputs, store_preset_value}},
+    {"read-response-delay",
+     "~AARD",
+     "!AAVV",
+     "read the response delay",
+     "",
+     Access::Read,
+     Init::NotRequired,
+     {'~', 'R', 1, 1, Needs::Nothing, read_response_delay}},
+    {"set-response-delay",
+     "~AARDVV",
+     "!AA",
+     "set the response delay, from the next request on",
+     "VV: 00-1E, in ms",
+     Access::Store,
+     Init::NotRequired,
+     {'~', 'R', 3, 3, Needs::Nothing, set_response_delay}},
+    {"read-extension",
+     "~AAXRRRR",
+     "!AAVVVV, or !AAVVVVVVVV",
+     "read an extension register",
+     "RRRR: its address 0240-030F; of a 32-bit value the one of its high word, which reads both",
+     Access::Read,
+     Init::NotRequired,
+     {'~', 'X', 4, 4, Needs::Nothing, read_extension}},
+    {"write-extension",
+     "~AAXRRRRVVVV",
+     "!AA",
+     "write an extension register",
+     "RRRR: its address 0240-030F; VVVV: the value",
+     Access::Store,
+     Init::NotRequired,
+     {'~', 'X', 8, 8, Needs::Nothing, write_extension}},
 });
 
 }  // namespace ex9000::dcon

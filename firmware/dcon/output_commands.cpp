@@ -104,10 +104,13 @@ Refusal read_preset_value(Exchange& exchange) {
 }
 
 Refusal store_preset_value(Exchange& exchange) {
+  // An output that a timer will switch off is stored as off.
+  const State& state = exchange.state;
+  const auto value = static_cast<std::uint16_t>(state.outputs & ~state.output_timers.running());
   if (exchange.args[0] == 'P') {
-    exchange.outcome.change().power_on_value = exchange.state.outputs;
+    exchange.outcome.change().power_on_value = value;
   } else if (exchange.args[0] == 'S') {
-    exchange.outcome.change().safe_value = exchange.state.outputs;
+    exchange.outcome.change().safe_value = value;
   } else {
     return Refusal::OutOfRange;
   }

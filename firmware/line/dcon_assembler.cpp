@@ -28,7 +28,7 @@ Verdict DconAssembler::byte(FrameQueue& queue, std::uint8_t byte, ByteStatus sta
     // The byte's value is unreliable, so it neither ends a frame as CR nor begins one as delimiter.
     if (state_ == State::InFrame) {
       state_ = State::Spoiled;
-      loss_ = Verdict::LineError;
+      loss_ = status == ByteStatus::Overrun ? Verdict::Overrun : Verdict::LineError;
     }
     return Verdict::Open;
   }
@@ -84,26 +84,28 @@ Verdict DconAssembler::judge(FrameQueue& queue, Time now) {
   const std::uint8_t* text = frame.storage.data();
   unsigned size = size_;
   if (checksum_) {
-    if (size < kDelimiterAndAddress + kChecksumDigits) {
+    if (size <= kChecksumDigits) {
       return Verdict::TooShort;
     }
     size -= kChecksumDigits;
     if (!are_digits(text + size, hex_digits(sum_))) {
       return Verdict::BadCheck;
     }
-  } else if (size < kDelimiterAndAddress) {
-    return Verdict::TooShort;
   }
-  if (!are_digits(text + 1, own_digits_.load())) {
+  if (size < kDelimiterAndAddress) {
+    return Verdict::Foreign;  // it has no address, so it is for no module
+  }
+  broadcast_ = !are_digits(text + 1, own_digits_.load());
+  if (broadcast_) {
     constexpr std::uint16_t kEverybody = '*' | '*' << 8U;
-    if (!are_digits(text + 1, kEverybody) || size != kDelimiterAndAddress) {
+    if (!are_digits(text + 1, kEverybody)) {
       return Verdict::Foreign;
+    }
+    if (size != kDelimiterAndAddress || (text[0] != '~' && text[0] != '#')) {
+      return Verdict::Ignored;
     }
     if (text[0] == '~') {
       return Verdict::HostOk;
-    }
-    if (text[0] != '#') {
-      return Verdict::Foreign;
     }
   }
   frame.offset = 0;

@@ -27,6 +27,8 @@ class DconAssembler {
   /// and CR. For the receive interrupt.
   Verdict byte(FrameQueue& queue, std::uint8_t byte, ByteStatus status, Time now);
 
+  /// Returns whether the last frame with a right check for this module was a broadcast. For interrupts.
+  [[nodiscard]] bool last_was_broadcast() const { return broadcast_; }
   /// Drops an incomplete frame. For interrupts.
   void forget() { state_ = State::Hunting; }
 
@@ -47,6 +49,7 @@ class DconAssembler {
   State state_ = State::Hunting;
   Verdict loss_ = Verdict::Open;
   bool checksum_ = false;
+  bool broadcast_ = false;  ///< the last frame for this module was for all modules
   std::uint8_t size_ = 0;
   std::uint8_t sum_ = 0;  ///< sum of all characters except the last two
 };

@@ -1,4 +1,5 @@
-// The counters of the interrupts for Modbus function 08 (Modbus over Serial Line V1.02, appendix A).
+// The counters of the interrupts for Modbus function 08 (Modbus over Serial Line V1.02, appendix A) and for
+// registers 0x0308 to 0x030F (wire.md section 12).
 #pragma once
 
 #include <array>
@@ -21,6 +22,11 @@ class LineTallies {
     total.store_in_interrupt(total.load() + 1U);
   }
 
+  /// Counts a byte with a framing or parity error, or a break. For interrupts.
+  [[gnu::always_inline]] void count_damaged_byte_in_interrupt() {
+    damaged_bytes_.store_in_interrupt(damaged_bytes_.load() + 1U);
+  }
+
   /// Returns the number of frames with a verdict from `first` to `last` since reset or `clear`, modulo 65536.
   /// For the main loop.
   [[nodiscard, gnu::noinline]] std::uint16_t count(Verdict first, Verdict last) const {
@@ -32,10 +38,12 @@ class LineTallies {
   }
   [[nodiscard]] unsigned bus_messages() const { return count(Verdict::Accepted, Verdict::NoRoom); }
   [[nodiscard]] unsigned bus_errors() const { return count(Verdict::BadCheck, Verdict::Overrun); }
-  [[nodiscard]] unsigned server_messages() const { return count(Verdict::Accepted, Verdict::HostOk); }
-  [[nodiscard]] unsigned no_responses() const { return count(Verdict::HostOk, Verdict::HostOk); }
+  [[nodiscard]] unsigned server_messages() const { return count(Verdict::Accepted, Verdict::Ignored); }
+  [[nodiscard]] unsigned no_responses() const { return count(Verdict::HostOk, Verdict::Ignored); }
+  [[nodiscard]] unsigned lost_frames() const { return count(Verdict::NoRoom, Verdict::NoRoom); }
+  [[nodiscard]] unsigned damaged_bytes() const { return damaged_bytes_.load() - damaged_bytes_cleared_; }
   [[nodiscard]] unsigned overruns() const {
-    return count(Verdict::NoRoom, Verdict::NoRoom) + count(Verdict::Overrun, Verdict::Overrun);
+    return lost_frames() + count(Verdict::Overrun, Verdict::Overrun);
   }
 
   /// Sets all counters to 0. For the main loop.
@@ -43,6 +51,7 @@ class LineTallies {
     for (std::size_t each = 0; each < kVerdicts; ++each) {
       cleared_[each] = static_cast<std::uint16_t>(totals_[each].load());
     }
+    damaged_bytes_cleared_ = damaged_bytes_.load();
   }
 
  private:
@@ -50,6 +59,8 @@ class LineTallies {
 
   std::array<WrittenByInterrupt<std::uint32_t>, kVerdicts> totals_;
   std::array<std::uint16_t, kVerdicts> cleared_{};  // for the main loop only
+  WrittenByInterrupt<std::uint32_t> damaged_bytes_;
+  std::uint32_t damaged_bytes_cleared_ = 0;  // for the main loop only
 };
 
 }  // namespace ex9000

@@ -33,9 +33,15 @@ void Receiver::on_own_driver_off(Time now) {
   }
 }
 
+bool Receiver::restarts_host_watchdog(Verdict verdict) const {
+  const bool is_request = verdict == Verdict::Accepted || verdict == Verdict::NoRoom;
+  const bool to_all = modbus() ? rtu_.last_was_broadcast() : dcon_.last_was_broadcast();
+  return verdict == Verdict::HostOk || (is_request && !to_all && restarts_by_requests_.load());
+}
+
 void Receiver::count(Verdict verdict, Time over) {
   tallies_.count_in_interrupt(verdict);
-  if (verdict == Verdict::HostOk) {
+  if (restarts_host_watchdog(verdict)) {
     host_oks_.add_in_interrupt(over);
   }
 }

@@ -3,6 +3,7 @@
 
 #include <cstdint>
 
+#include "firmware/line/crossing.hpp"
 #include "firmware/line/dcon_assembler.hpp"
 #include "firmware/line/frame_queue.hpp"
 #include "firmware/line/host_oks.hpp"
@@ -48,12 +49,16 @@ class Receiver {
 
   /// Sets the module's address for all frames that end after this call. Call this after `listen`.
   void answer_to(std::uint8_t address);
+  /// Sets whether each frame with the module's own address and a right check restarts the host watchdog like
+  /// a host OK, for all frames that end after this call.
+  void restart_by_requests(bool on) { restarts_by_requests_.store_in_main_loop(on); }
   /// Returns the timing that was passed to `listen`.
   [[nodiscard]] const LineTiming& timing() const { return rtu_.timing(); }
   FrameQueue& queue() { return queue_; }
   [[nodiscard]] const FrameQueue& queue() const { return queue_; }
   constexpr LineTallies& tallies() { return tallies_; }
   [[nodiscard]] constexpr const LineTallies& tallies() const { return tallies_; }
+  /// The host OKs, and the requests that restart the host watchdog like one.
   HostOks& host_oks() { return host_oks_; }
   [[nodiscard]] const HostOks& host_oks() const { return host_oks_; }
 
@@ -66,17 +71,22 @@ class Receiver {
     }
   }
   void count(Verdict verdict, Time over);
+  [[nodiscard]] bool restarts_host_watchdog(Verdict verdict) const;
 
   DconAssembler dcon_;
   RtuAssembler rtu_;
   Protocol protocol_ = Protocol::Ascii;
   LineTallies tallies_;
   HostOks host_oks_;
+  WrittenByMainLoop<bool> restarts_by_requests_;
   FrameQueue queue_;
 };
 
 // Inline because it runs for each byte that any module receives.
 inline Duration Receiver::on_byte(std::uint8_t byte, ByteStatus status, Time now) {
+  if (status == ByteStatus::FramingError || status == ByteStatus::Break) {
+    tallies_.count_damaged_byte_in_interrupt();
+  }
   if (modbus()) {
     note(rtu_.byte(queue_, byte, status, now), now);
     return timing().rtu_silence;

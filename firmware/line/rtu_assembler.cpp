@@ -58,6 +58,7 @@ Verdict RtuAssembler::conclude(FrameQueue& queue) {
   if (address != own_address_.load() && address != kBroadcast) {
     return Verdict::Foreign;
   }
+  broadcast_ = address == kBroadcast;
   frame.offset = static_cast<std::uint16_t>(offset);
   frame.size = static_cast<std::uint16_t>(size - kCrcBytes);
   frame.received = last_;

@@ -41,6 +41,8 @@ class RtuAssembler {
   /// judged; any other frame is dropped (wire.md D9). For interrupts.
   Verdict cut_off(FrameQueue& queue);
 
+  /// Returns whether the last frame with a correct check for this module was a broadcast. For interrupts.
+  [[nodiscard]] bool last_was_broadcast() const { return broadcast_; }
   /// Returns the end of the silence after the last byte.
   [[nodiscard]] Time silent_since() const { return last_ + timing_.rtu_silence; }
 
@@ -69,6 +71,7 @@ class RtuAssembler {
   Crc16 whole_;                 ///< CRC of all bytes
   Crc16 crc_after_first_;       ///< CRC of all bytes except the first, if that is 00
   Time last_;                   ///< end of the last byte
+  bool broadcast_ = false;      ///< the last frame for this module was for all modules
 };
 
 // The functions below are inline because they run for each byte that any module receives.

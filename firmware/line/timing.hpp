@@ -18,6 +18,8 @@ struct LineTiming {
   Duration rtu_grace;
   /// The largest time between the ends of two bytes; a larger time makes the frame invalid.
   Duration rtu_slack;
+  /// Time from the report of a byte to the end of its stop bit, rounded up.
+  Duration rest_of_stop_bit;
 
   /// A value for `rtu_slack` that allows every gap.
   static constexpr Duration kAnyGap{0xFFFF'FFFFU};
@@ -43,6 +45,7 @@ struct LineTiming {
     const Duration half_bit(microseconds(1, baud) + 1U);
     timing.dcon_turn_around = timing.dcon_turn_around + half_bit;
     timing.rtu_silence = timing.rtu_silence + half_bit;
+    timing.rest_of_stop_bit = half_bit;
     timing.rtu_grace = timing.rtu_grace - half_bit;  // the UART reports the late byte half a bit early too
     return timing;
   }

@@ -15,13 +15,14 @@ enum class Verdict : std::uint8_t {
   Open,       ///< no frame ended
   Accepted,   ///< correct, and for this module or a broadcast; the frame is in the queue
   HostOk,     ///< a host OK; counted in the interrupt, so that it is never lost
+  Ignored,    ///< ASCII: correct and for all modules, but not a command
   Foreign,    ///< correct, but for another address
   NoRoom,     ///< correct and for this module, but lost because another frame is already waiting
   BadCheck,   ///< wrong or missing checksum, wrong CRC
-  TooShort,   ///< too short for an address and a check
+  TooShort,   ///< too short for a check; in Modbus also for an address
   TooLong,    ///< longer than the longest allowed frame
-  LineError,  ///< a byte had a framing error or a break; in ASCII also: an overrun
-  Overrun,    ///< Modbus: a byte was lost because the previous byte was not read in time
+  LineError,  ///< a byte had a framing error or a break
+  Overrun,    ///< a byte was lost because the previous byte was not read in time
 };
 
 }  // namespace ex9000

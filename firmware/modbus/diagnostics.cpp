@@ -1,6 +1,7 @@
 // Function 08: Modbus Application Protocol V1.1b3, 6.8. For the meaning of the counters, see Modbus over
 // Serial Line V1.02, appendix A, and wire.md D1.
 #include "firmware/modbus/functions.hpp"
+#include "firmware/modbus/tallies.hpp"
 
 namespace ex9000::modbus {
 
@@ -23,23 +24,21 @@ enum Subfunction : std::uint16_t {
 constexpr int kNoCounter = -1;
 
 int counter_of(const Exchange& exchange, std::uint16_t subfunction) {
-  const LineTallies& line = exchange.tallies;
-  const Diagnostics& own = exchange.state.diagnostics;
   switch (subfunction) {
     case kClearCounters:
       return 0;  // the reply echoes the request, whose data is 0
     case kBusMessages:
-      return static_cast<std::uint16_t>(line.bus_messages());
+      return count_of(exchange, Tally::BusMessages);
     case kBusErrors:
-      return static_cast<std::uint16_t>(line.bus_errors());
+      return count_of(exchange, Tally::BusErrors);
     case kExceptions:
-      return own.exceptions;
+      return count_of(exchange, Tally::Exceptions);
     case kServerMessages:
-      return static_cast<std::uint16_t>(line.server_messages());
+      return count_of(exchange, Tally::ServerMessages);
     case kNoResponses:
-      return static_cast<std::uint16_t>(line.no_responses() + own.no_responses);
+      return count_of(exchange, Tally::NoResponses);
     case kOverruns:
-      return static_cast<std::uint16_t>(line.overruns());
+      return count_of(exchange, Tally::Overruns);
     default:
       return kNoCounter;
   }

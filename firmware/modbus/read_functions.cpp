@@ -55,7 +55,7 @@ Refusal read_words(Exchange& exchange) {
     if (row == nullptr) {
       return Refusal::WrongAddress;
     }
-    exchange.reply.put_word(row->read(exchange.state, address - row->first));
+    exchange.reply.put_word(row->read(exchange, address - row->first));
   }
   return Refusal::None;
 }

@@ -35,4 +35,9 @@ const WordRow* find_word(const Model& model, Functions function, unsigned addres
   return find_in(kWordRows, model, function, address, 1);
 }
 
+const WordRow* find_extension(const Model& model, unsigned address) {
+  const WordRow* row = find_word(model, kReadHoldingRegisters, address);
+  return row != nullptr && row->has(kExtension) ? row : nullptr;
+}
+
 }  // namespace ex9000::modbus

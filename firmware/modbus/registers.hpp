@@ -7,6 +7,7 @@
 
 #include "firmware/modbus/host_ok.hpp"
 #include "firmware/model/model.hpp"
+#include "firmware/request/exchange.hpp"
 #include "firmware/request/outcome.hpp"
 #include "firmware/request/state.hpp"
 #include "firmware/table.hpp"
@@ -26,13 +27,16 @@ constexpr Functions kWriteMultipleCoils = 1U << 0xFU;
 constexpr Functions kWriteRegisters = kWriteSingleRegister;
 
 /// The number of coils or registers of a row: a fixed number, or the number of channels of the model.
-enum class Width : std::uint8_t { One = 1, Two = 2, PerOutput, PerInput };
+enum class Width : std::uint8_t { One = 1, Two = 2, Eight = 8, PerOutput, PerInput, PairPerInput };
 
 constexpr unsigned width_of(Width width, const Model& model) {
-  if (width <= Width::Two) {
+  if (width <= Width::Eight) {
     return static_cast<unsigned>(width);
   }
-  return width == Width::PerOutput ? model.outputs : model.inputs;
+  if (width == Width::PerOutput) {
+    return model.outputs;
+  }
+  return width == Width::PairPerInput ? 2U * model.inputs : model.inputs;
 }
 
 /// Coils to write: each coil whose bit is set in `mask` gets its bit in `value`. Bit 0 is the row's first
@@ -48,6 +52,8 @@ constexpr Rules kPlain = 0;
 constexpr Rules kDrivesOutputs = 1U << 0U;  ///< exception 04 while the timeout status is set
 constexpr Rules kOnlyOn = 1U << 1U;         ///< exception 03 for function 05 with 0000
 constexpr Rules kConfiguration = 1U << 2U;  ///< broadcasts are ignored
+constexpr Rules kExtension = 1U << 3U;  ///< an extension register: `~AAX` reaches it too (wire.md section 12)
+constexpr Rules kLong = 1U << 4U;       ///< pairs of registers with 32-bit values, high word first
 
 /// The part of a row of coils or discrete inputs that an image contains.
 struct BitRow {
@@ -69,10 +75,11 @@ struct WordRow {
   Needs needs = Needs::Nothing;
   Functions functions = 0;
   Rules rules = kPlain;
-  std::uint8_t lowest = 0;   ///< lowest value that may be written
-  std::uint8_t highest = 0;  ///< highest value that may be written
-  std::uint16_t (*read)(const State& state, unsigned index) = nullptr;
-  Refusal (*write)(const State& state, std::uint16_t value, Outcome& outcome) = nullptr;
+  std::uint16_t lowest = 0;   ///< lowest value that may be written
+  std::uint16_t highest = 0;  ///< highest value that may be written
+  /// `index`: position of the register in the row, from 0.
+  std::uint16_t (*read)(const Exchange& exchange, unsigned index) = nullptr;
+  Refusal (*write)(const State& state, unsigned index, std::uint16_t value, Outcome& outcome) = nullptr;
 
   [[nodiscard]] constexpr bool has(Rules rule) const { return (rules & rule) != 0; }
 };
@@ -98,14 +105,34 @@ Refusal write_clear_counters(const State& state, BitWrite bits, Outcome& outcome
 std::uint16_t read_counting_edge(const State& state);
 Refusal write_counting_edge(const State& state, BitWrite bits, Outcome& outcome);
 // word_rows.cpp
-std::uint16_t read_counter(const State& state, unsigned index);
-std::uint16_t read_module_code(const State& state, unsigned index);
-std::uint16_t read_address(const State& state, unsigned index);
-Refusal write_address(const State& state, std::uint16_t value, Outcome& outcome);
-std::uint16_t read_baud_code(const State& state, unsigned index);
-Refusal write_baud_code(const State& state, std::uint16_t value, Outcome& outcome);
-std::uint16_t read_watchdog_timeout(const State& state, unsigned index);
-Refusal write_watchdog_timeout(const State& state, std::uint16_t value, Outcome& outcome);
+std::uint16_t read_counter(const Exchange& exchange, unsigned index);
+std::uint16_t read_module_code(const Exchange& exchange, unsigned index);
+std::uint16_t read_address(const Exchange& exchange, unsigned index);
+Refusal write_address(const State& state, unsigned index, std::uint16_t value, Outcome& outcome);
+std::uint16_t read_baud_code(const Exchange& exchange, unsigned index);
+Refusal write_baud_code(const State& state, unsigned index, std::uint16_t value, Outcome& outcome);
+std::uint16_t read_watchdog_timeout(const Exchange& exchange, unsigned index);
+Refusal write_watchdog_timeout(const State& state, unsigned index, std::uint16_t value, Outcome& outcome);
+// extension_rows.cpp
+std::uint16_t read_input_filter(const Exchange& exchange, unsigned index);
+Refusal write_input_filter(const State& state, unsigned index, std::uint16_t value, Outcome& outcome);
+std::uint16_t read_inverted_inputs(const Exchange& exchange, unsigned index);
+Refusal write_inverted_inputs(const State& state, unsigned index, std::uint16_t value, Outcome& outcome);
+std::uint16_t read_fed_by_requests(const Exchange& exchange, unsigned index);
+Refusal write_fed_by_requests(const State& state, unsigned index, std::uint16_t value, Outcome& outcome);
+std::uint16_t read_response_delay(const Exchange& exchange, unsigned index);
+Refusal write_response_delay(const State& state, unsigned index, std::uint16_t value, Outcome& outcome);
+std::uint16_t read_long_counter(const Exchange& exchange, unsigned index);
+std::uint16_t read_time_left(const Exchange& exchange, unsigned index);
+Refusal write_timed_output(const State& state, unsigned index, std::uint16_t value, Outcome& outcome);
+std::uint16_t read_version(const Exchange& exchange, unsigned index);
+std::uint16_t read_reset_reason(const Exchange& exchange, unsigned index);
+std::uint16_t read_seconds_up(const Exchange& exchange, unsigned index);
+std::uint16_t read_timeout_count(const Exchange& exchange, unsigned index);
+Refusal clear_timeout_count(const State& state, unsigned index, std::uint16_t value, Outcome& outcome);
+std::uint16_t read_store_count(const Exchange& exchange, unsigned index);
+std::uint16_t read_settings_source(const Exchange& exchange, unsigned index);
+std::uint16_t read_tally(const Exchange& exchange, unsigned index);
 
 /// A row with its documentation. The firmware never uses the texts, so an image does not contain them.
 struct BitRegister {
@@ -188,6 +215,8 @@ inline constexpr auto kBitRegisters = table<BitRegister>({
       write_counting_edge}},
 });
 
+constexpr Functions kReadRegisters = kReadHoldingRegisters | kReadInputRegisters;
+
 inline constexpr auto kWordRegisters = table<WordRegister>({
     {"counters",
      "input counters",
@@ -214,6 +243,78 @@ inline constexpr auto kWordRegisters = table<WordRegister>({
      "0 to 255; not 0 while the host watchdog is enabled",
      {0x01E8, Width::One, Needs::Nothing, kReadHoldingRegisters | kWriteRegisters, kPlain, 0, 255,
       read_watchdog_timeout, write_watchdog_timeout}},
+    // --- extension registers, 0x0240 to 0x030F ---
+    WordRegister{
+        "input-filters",
+        "filter of the input in ms: a level counts when it has stood for this time",
+        "0 to 2000; not by broadcast",
+        {0x0240, Width::PerInput, Needs::Inputs, kReadRegisters | kWriteRegisters,
+         kExtension | kConfiguration, 0, InputFilters::kLongest, read_input_filter, write_input_filter}},
+    WordRegister{"inverted-inputs",
+                 "inverted inputs, bit n is input n",
+                 "only bits of inputs that the model has; not by broadcast",
+                 {0x0250, Width::One, Needs::Inputs, kReadRegisters | kWriteRegisters,
+                  kExtension | kConfiguration, 0, 0xFFFF, read_inverted_inputs, write_inverted_inputs}},
+    WordRegister{"watchdog-feed",
+                 "what restarts the host watchdog: 0 host OK alone, 1 also every request for this module",
+                 "0 or 1; not by broadcast",
+                 {0x0251, Width::One, Needs::Nothing, kReadRegisters | kWriteRegisters,
+                  kExtension | kConfiguration, 0, 1, read_fed_by_requests, write_fed_by_requests}},
+    WordRegister{
+        "response-delay",
+        "response delay in ms, from the next request on",
+        "0 to 30; not by broadcast",
+        {0x0252, Width::One, Needs::Nothing, kReadRegisters | kWriteRegisters, kExtension | kConfiguration, 0,
+         kLongestResponseDelay, read_response_delay, write_response_delay}},
+    WordRegister{"long-counters",
+                 "input counters with 32 bits, two registers each, high word first",
+                 "",
+                 {0x0260, Width::PairPerInput, Needs::Inputs, kReadRegisters, kExtension | kLong, 0, 0,
+                  read_long_counter, nullptr}},
+    WordRegister{"timed-outputs",
+                 "timed output: the time until the output is switched off, in units of 0.1 s",
+                 "1 to 65535: switch on for this time; 0: switch off",
+                 {0x0280, Width::PerOutput, Needs::Outputs, kReadRegisters | kWriteRegisters,
+                  kExtension | kDrivesOutputs, 0, 0xFFFF, read_time_left, write_timed_output}},
+    WordRegister{
+        "version",
+        "firmware version nn.nn, two BCD digits in each byte",
+        "",
+        {0x0300, Width::One, Needs::Nothing, kReadRegisters, kExtension, 0, 0, read_version, nullptr}},
+    WordRegister{
+        "reset-reason",
+        "reason of the last reset: 1 power-on, 2 module watchdog, 3 software, 4 reset pin, 5 fault; 0 if "
+        "the board cannot know",
+        "",
+        {0x0301, Width::One, Needs::Nothing, kReadRegisters, kExtension, 0, 0, read_reset_reason, nullptr}},
+    WordRegister{"uptime",
+                 "seconds since reset, 32 bits, high word first",
+                 "",
+                 {0x0302, Width::Two, Needs::Nothing, kReadRegisters, kExtension | kLong, 0, 0,
+                  read_seconds_up, nullptr}},
+    WordRegister{"timeout-count",
+                 "timeouts of the host watchdog since reset or clearing, at most 65535",
+                 "0 only: clears it; not by broadcast",
+                 {0x0304, Width::One, Needs::Nothing, kReadRegisters | kWriteRegisters,
+                  kExtension | kConfiguration, 0, 0, read_timeout_count, clear_timeout_count}},
+    WordRegister{
+        "store-count",
+        "stores of settings since reset, at most 65535",
+        "",
+        {0x0305, Width::One, Needs::Nothing, kReadRegisters, kExtension, 0, 0, read_store_count, nullptr}},
+    WordRegister{
+        "settings-source",
+        "what the settings were read from at reset: 0 good copies, 1 one copy bad, 2 no good copy: factory "
+        "settings, 3 an older layout, 4 blank memory: factory settings",
+        "",
+        {0x0306, Width::One, Needs::Nothing, kReadRegisters, kExtension, 0, 0, read_settings_source,
+         nullptr}},
+    WordRegister{
+        "line-tallies",
+        "counts of the line: bus messages, bus errors, exceptions, messages for this module, those without a "
+        "reply, overruns, damaged bytes, frames lost for want of room; they wrap",
+        "",
+        {0x0308, Width::Eight, Needs::Nothing, kReadRegisters, kExtension, 0, 0, read_tally, nullptr}},
     // This row is documentation only. The receiver recognises a host OK, so no function looks this row up.
     WordRegister{"host-ok",
                  "host OK: a request for 0 or 1 registers from here restarts the host watchdog and gets no "
@@ -228,5 +329,7 @@ const BitRow* find_bits(const Model& model, Functions function, unsigned address
 /// Returns the row that contains the register `address` and that `function` can access on this model, or
 /// null. `address` may be above 0xFFFF; the result is then null.
 const WordRow* find_word(const Model& model, Functions function, unsigned address);
+/// Returns the row of the extension register `address` (0 to 0xFFFF), or null if this model does not have it.
+const WordRow* find_extension(const Model& model, unsigned address);
 
 }  // namespace ex9000::modbus

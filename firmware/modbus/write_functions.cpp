@@ -33,11 +33,12 @@ Refusal write_bits(Exchange& exchange, const BitRow& row, BitWrite bits) {
   return Refusal::None;
 }
 
-Refusal check_value(Exchange& exchange, const WordRow& row, std::uint16_t value) {
+/// Checks the value of the register `address` of `row`, and records in the outcome what it changes.
+Refusal write_word(Exchange& exchange, const WordRow& row, unsigned address, std::uint16_t value) {
   if (value < row.lowest || value > row.highest) {
     return Refusal::WrongValue;
   }
-  return row.write(exchange.state, value, exchange.outcome);
+  return row.write(exchange.state, address - row.first, value, exchange.outcome);
 }
 
 /// Checks length, quantity and byte count of functions 0F and 10. `most`: largest quantity; `bits`: bits per
@@ -103,15 +104,20 @@ Refusal write_single_register(Exchange& exchange) {
   if (frame.size != kSingleSize) {
     return Refusal::WrongLength;
   }
-  const WordRow* row = find_word(exchange.model(), kWriteRegisters, frame.word(2));
+  const std::uint16_t address = frame.word(2);
+  const WordRow* row = find_word(exchange.model(), kWriteRegisters, address);
   if (row == nullptr) {
     return Refusal::WrongAddress;
   }
   if (exchange.broadcast && row->has(kConfiguration)) {
     return Refusal::None;
   }
+  const Refusal refusal = write_word(exchange, *row, address, frame.word(4));
+  if (refusal == Refusal::None && row->has(kDrivesOutputs) && exchange.state.outputs_blocked()) {
+    return Refusal::OutputsBlocked;
+  }
   put_echo(exchange);
-  return check_value(exchange, *row, frame.word(4));
+  return refusal;
 }
 
 Refusal write_multiple_registers(Exchange& exchange) {
@@ -123,22 +129,28 @@ Refusal write_multiple_registers(Exchange& exchange) {
   const unsigned start = frame.word(2);
   const unsigned quantity = frame.word(4);
   bool configuration = false;
+  bool drives_outputs = false;
   for (unsigned i = 0; i < quantity; ++i) {
     const WordRow* row = find_word(exchange.model(), kWriteRegisters, start + i);
     if (row == nullptr) {
       return Refusal::WrongAddress;
     }
     configuration |= row->has(kConfiguration);
+    drives_outputs |= row->has(kDrivesOutputs);
   }
   if (exchange.broadcast && configuration) {
     return Refusal::None;
   }
   for (unsigned i = 0; i < quantity; ++i) {
     const WordRow* row = find_word(exchange.model(), kWriteRegisters, start + i);
-    const Refusal wrong = check_value(exchange, *row, frame.word(kMultipleHeader + std::size_t{2} * i));
+    const Refusal wrong =
+        write_word(exchange, *row, start + i, frame.word(kMultipleHeader + std::size_t{2} * i));
     if (wrong != Refusal::None) {
       return wrong;
     }
+  }
+  if (drives_outputs && exchange.state.outputs_blocked()) {
+    return Refusal::OutputsBlocked;
   }
   put_echo(exchange);
   return Refusal::None;

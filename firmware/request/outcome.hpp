@@ -1,8 +1,10 @@
 // The outcome of a request: whether it is refused, and what the module must do before it sends the reply.
 #pragma once
 
+#include <array>
 #include <cstdint>
 
+#include "firmware/model/model.hpp"
 #include "firmware/settings/settings.hpp"
 
 namespace ex9000 {
@@ -35,6 +37,13 @@ struct Drive {
   std::uint16_t value = 0;
 };
 
+/// Timed outputs to switch: each channel whose bit is set in `mask` is switched on for `units` x 0.1 s, or
+/// off if that is 0.
+struct TimedDrive {
+  std::uint16_t mask = 0;
+  std::array<std::uint16_t, kMaxOutputs> units{};
+};
+
 /// Actions of a request other than settings and outputs. The module carries them out last.
 enum class Effect : std::uint8_t {
   RestartHostWatchdog,
@@ -46,6 +55,7 @@ enum class Effect : std::uint8_t {
   ClearLatches,
   ClearDiagnostics,
   ClearCounters,
+  ClearTimeoutCount,
 };
 
 /// Everything that the module must do before it sends the reply. The module stores a change of settings
@@ -60,6 +70,13 @@ class Outcome {
   /// Returns the outputs to drive; the mask is 0 if there are none.
   [[nodiscard]] Drive outputs_to_drive() const { return drive_; }
 
+  void drive_for(unsigned channel, std::uint16_t units) {
+    timed_drive_.mask = static_cast<std::uint16_t>(timed_drive_.mask | 1U << channel);
+    timed_drive_.units[channel] = units;
+  }
+  /// Returns the timed outputs to switch; the mask is 0 if there are none.
+  [[nodiscard]] const TimedDrive& timed_outputs_to_drive() const { return timed_drive_; }
+
   /// Returns the change of settings, so that the caller can add to it.
   SettingsChange& change() {
     changes_settings_ = true;
@@ -72,6 +89,7 @@ class Outcome {
   void clear() {
     effects_ = 0;
     drive_ = {};
+    timed_drive_.mask = 0;
     counters_to_clear = 0;
     if (changes_settings_) {
       changes_settings_ = false;
@@ -88,6 +106,7 @@ class Outcome {
   std::uint16_t effects_ = 0;
   bool changes_settings_ = false;
   Drive drive_;
+  TimedDrive timed_drive_;
   SettingsChange change_;
 };
 

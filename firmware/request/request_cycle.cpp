@@ -7,6 +7,7 @@ namespace ex9000 {
 
 const Outcome& RequestCycle::judge(Bytes frame) {
   exchange_.begin(frame);
+  reply_hold_.disarm();
   if (exchange_.state.speaks_modbus()) {
     modbus::answer(exchange_);
   } else {
@@ -55,7 +56,9 @@ Bytes RequestCycle::take_reply(Time now) {
 }
 
 Duration RequestCycle::until_reply(Time now) const {
-  return reply_gap_end_.armed() ? reply_gap_end_.remaining(now) : Duration();
+  const Duration gap = reply_gap_end_.armed() ? reply_gap_end_.remaining(now) : Duration();
+  const Duration hold = reply_hold_.armed() ? reply_hold_.remaining(now) : Duration();
+  return gap < hold ? hold : gap;
 }
 
 void RequestCycle::reply_sent(Time now, Duration silence) {

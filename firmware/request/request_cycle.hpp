@@ -30,6 +30,8 @@ class RequestCycle {
   /// frame. If the outcome changes settings, the phase becomes AwaitingStore. Otherwise carry out the outcome
   /// and then call `finish`.
   const Outcome& judge(Bytes frame);
+  /// Sets the earliest time of the reply to the request that is being processed.
+  void hold_reply_until(Time earliest) { reply_hold_.set(earliest); }
   /// Returns the outcome of the request. After `finish` it contains only the reason of a refusal.
   [[nodiscard]] const Outcome& outcome() const { return exchange_.outcome; }
   /// Call this while AwaitingStore, when the store has begun.
@@ -59,6 +61,7 @@ class RequestCycle {
  private:
   Phase phase_ = Phase::Idle;
   Deadline reply_gap_end_;  ///< end of the minimum gap after the last reply
+  Deadline reply_hold_;     ///< end of the response delay
   Exchange exchange_;
 };
 

@@ -4,8 +4,10 @@
 #include <cstdint>
 
 #include "firmware/channels/inputs.hpp"
+#include "firmware/channels/output_timers.hpp"
 #include "firmware/model/built.hpp"
 #include "firmware/model/model.hpp"
+#include "firmware/request/statistics.hpp"
 #include "firmware/settings/settings.hpp"
 
 namespace ex9000 {
@@ -27,10 +29,9 @@ struct Sample {
   std::uint16_t inputs = 0;
 };
 
-/// Counters of the main loop. Together with LineTallies they are the counters of Modbus function 08,
-/// sub-functions 0B to 0F and 12 (wire.md D1).
+/// Counters of the main loop. Together with LineTallies they are the line tallies (modbus/tallies.hpp).
 struct Diagnostics {
-  std::uint16_t exceptions = 0;
+  std::uint16_t exceptions = 0;  ///< exceptions, or in ASCII replies that begin with `?`
   std::uint16_t no_responses = 0;
 };
 
@@ -42,10 +43,12 @@ struct State {
   InForce in_force;
   bool init_asserted = false;  ///< whether INIT* is asserted now, debounced
   std::uint16_t outputs = 0;   ///< bit n is channel n, 1 = energised
+  OutputTimers output_timers;
   Inputs inputs;
   Sample sample;
   bool reset_status = true;  ///< true until `$AA5` reads it
   Diagnostics diagnostics;
+  Statistics statistics;
 
   [[nodiscard]] constexpr const Model& model() const { return chosen.get(); }
   [[nodiscard]] bool speaks_modbus() const {

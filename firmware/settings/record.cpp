@@ -21,7 +21,10 @@ constexpr std::size_t known_settings_size() {
   return size;
 }
 constexpr std::size_t kKnownSettings = known_settings_size();
-static_assert(sizeof(bool) == 1 && sizeof(Protocol) == 1 && sizeof(Name) == kMaxNameLength + 1,
+/// The settings up to `safe_value`: every record has them.
+constexpr std::size_t kFirstSettings = 19;
+static_assert(sizeof(bool) == 1 && sizeof(Protocol) == 1 && sizeof(Name) == kMaxNameLength + 1 &&
+                  sizeof(InputFilters) == 2 * kMaxInputs,
               "a setting takes as many bytes in a record as in the microcontroller");
 static_assert(kKnownSettings <= kRoomForSettings, "the settings do not fit in a record");
 
@@ -42,6 +45,11 @@ class Encoder {
     constexpr unsigned kBitsAHalf = 16;
     put(static_cast<std::uint16_t>(value));
     put(static_cast<std::uint16_t>(value >> kBitsAHalf));
+  }
+  void put(const InputFilters& filters) {
+    for (unsigned channel = 0; channel < kMaxInputs; ++channel) {
+      put(filters.of(channel));
+    }
   }
   void put(const Name& name) {
     const Bytes characters = name.bytes();
@@ -85,6 +93,11 @@ class Decoder {
     require(value <= Protocol::ModbusRtu);
   }
   void decode(std::uint16_t& value) { value = from_.low_byte_first_16(0); }
+  void decode(InputFilters& value) {
+    for (unsigned channel = 0; channel < kMaxInputs; ++channel) {
+      value.set(channel, from_.low_byte_first_16(std::size_t{2} * channel));
+    }
+  }
   void decode(Name& value) {
     // A name that is too long becomes an empty name, which no model could have stored.
     const std::size_t length = from_.data[kMaxNameLength];
@@ -100,6 +113,22 @@ class Decoder {
   bool valid_ = true;
 };
 
+/// Returns how many bytes of settings a record requires: up to the last one that differs from its factory
+/// value. A module that uses none of the newer settings therefore writes one page, as before.
+std::size_t required_size(const Model& model, const Settings& settings) {
+  const Settings factory = Settings::factory(model);
+  std::size_t size = 0;
+  std::size_t required = kFirstSettings;
+#define EX9000_MEASURE(type, name, factory_value, possible)  \
+  size += sizeof(type);                                      \
+  if (size > required && !(settings.name == factory.name)) { \
+    required = size;                                         \
+  }
+  EX9000_SETTINGS(EX9000_MEASURE)
+#undef EX9000_MEASURE
+  return required;
+}
+
 }  // namespace
 
 std::uint32_t settings_check(const Model& model, Bytes bytes) {
@@ -114,9 +143,9 @@ std::uint32_t settings_check(const Model& model, Bytes bytes) {
 }
 
 void write_record(const Model& model, const Settings& settings, std::uint16_t sequence, RecordBytes& record) {
-  if (record[kLengthAt] < kKnownSettings) {
+  if (record[kLengthAt] <= kKnownSettings) {  // otherwise it keeps the bytes of newer firmware
     record[kLayoutAt] = kLayout;
-    record[kLengthAt] = kKnownSettings;
+    record[kLengthAt] = static_cast<std::uint8_t>(required_size(model, settings));
   }
   Encoder(&record[kSequenceAt]).put(sequence);
   Encoder encoder(&record[kSettingsAt]);

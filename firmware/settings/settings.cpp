@@ -15,6 +15,15 @@ bool Name::is_possible(unsigned longest) const {
   return true;
 }
 
+bool InputFilters::are_possible(unsigned channels) const {
+  for (unsigned channel = 0; channel < kMaxInputs; ++channel) {
+    if (of(channel) > (channel < channels ? kLongest : 0)) {
+      return false;
+    }
+  }
+  return true;
+}
+
 Settings Settings::factory([[maybe_unused]] const Model& model) {
   Settings settings;
 #define EX9000_TAKE_FACTORY_VALUE(type, name, factory_value, possible) settings.name = factory_value;

@@ -66,6 +66,30 @@ class Name {
   std::uint8_t length_ = 0;
 };
 
+/// The filter time of each input channel in ms; 0: no filter.
+class InputFilters {
+ public:
+  static constexpr std::uint16_t kLongest = 2000;
+
+  [[nodiscard]] constexpr std::uint16_t of(unsigned channel) const { return milliseconds_[channel]; }
+  constexpr void set(unsigned channel, std::uint16_t milliseconds) { milliseconds_[channel] = milliseconds; }
+  /// Returns whether only the first `channels` channels have a filter and no time is too long.
+  [[nodiscard]] bool are_possible(unsigned channels) const;
+
+  friend constexpr bool operator==(const InputFilters& a, const InputFilters& b) {
+    for (unsigned channel = 0; channel < kMaxInputs; ++channel) {
+      if (a.of(channel) != b.of(channel)) {
+        return false;
+      }
+    }
+    return true;
+  }
+
+ private:
+  std::array<std::uint16_t, kMaxInputs> milliseconds_{};
+};
+
+constexpr std::uint8_t kLongestResponseDelay = 30;  // in ms
 constexpr std::uint8_t kFactoryAddress = 1;
 constexpr std::uint8_t kFactoryWatchdogTimeout = 0xFF;
 
@@ -84,6 +108,10 @@ constexpr std::uint8_t kFactoryWatchdogTimeout = 0xFF;
 ///     name              the module's name
 ///     power_on_value    outputs from reset on; bit n is output channel n
 ///     safe_value        outputs while the timeout status is set
+///     input_filters     register 0x0240 + n
+///     inverted_inputs   register 0x0250; bit n is input channel n
+///     fed_by_requests   register 0x0251: every request for this module restarts the host watchdog
+///     response_delay    register 0x0252, in ms
 #define EX9000_SETTINGS(SETTING)                                                               \
   SETTING(std::uint8_t, address, kFactoryAddress, true)                                        \
   SETTING(std::uint8_t, baud_code, kFactoryBaudCode, is_baud_code(value))                      \
@@ -95,7 +123,11 @@ constexpr std::uint8_t kFactoryWatchdogTimeout = 0xFF;
   SETTING(bool, timeout_status, false, true)                                                   \
   SETTING(Name, name, Name(model.factory_name), value.is_possible(model.longest_name))         \
   SETTING(std::uint16_t, power_on_value, 0, (value & ~model.output_mask()) == 0)               \
-  SETTING(std::uint16_t, safe_value, 0, (value & ~model.output_mask()) == 0)
+  SETTING(std::uint16_t, safe_value, 0, (value & ~model.output_mask()) == 0)                   \
+  SETTING(InputFilters, input_filters, {}, value.are_possible(model.inputs))                   \
+  SETTING(std::uint16_t, inverted_inputs, 0, (value & ~model.input_mask()) == 0)               \
+  SETTING(bool, fed_by_requests, false, true)                                                  \
+  SETTING(std::uint8_t, response_delay, 0, value <= kLongestResponseDelay)
 
 // NOLINTBEGIN(bugprone-macro-parentheses): the arguments are types and names
 struct Settings {

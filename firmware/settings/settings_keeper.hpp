@@ -28,6 +28,10 @@ class SettingsKeeper {
   /// model, and no settings have been stored since. False if the memory was blank.
   [[nodiscard]] bool unreadable() const { return store_.found() == SettingsStore::Found::Unreadable; }
 
+  /// See SettingsStore::source and SettingsStore::saves.
+  [[nodiscard]] SettingsStore::Source source() const { return store_.source(); }
+  [[nodiscard]] std::uint16_t saves() const { return store_.saves(); }
+
   /// Returns whether a reset now would certainly load `stored()`. True for a blank memory. False if the
   /// memory is `unreadable()` or contains a copy that must not be used, or if the first save after a firmware
   /// update is not finished.

@@ -1,5 +1,7 @@
 #include "firmware/settings/store.hpp"
 
+#include <limits>
+
 namespace ex9000 {
 
 // --- jobs ---
@@ -63,6 +65,7 @@ void SettingsStore::begin_copy(std::size_t place) {
 void SettingsStore::begin_reading(Step step) {
   step_ = step;
   blank_places_ = 0;
+  bad_copy_ = false;
   current_place_ = kNoPlace;
   old_copies_ = 0;
   silent_ = false;
@@ -95,6 +98,9 @@ void SettingsStore::read_page(bool ok) {
   }
   if (blank) {
     ++blank_places_;
+  }
+  if (!blank && !stored && !place.old) {
+    bad_copy_ = true;
   }
   if (stored) {
     take_copy(*stored);
@@ -137,9 +143,20 @@ void SettingsStore::finish_reading() {
   if (current_place_ == kNoPlace) {
     found_ = blank_places_ == kPlaces.size() ? Found::Blank : Found::Unreadable;
     stored_ = Settings::factory(model_.get());
-    return;
+  } else {
+    found_ = Found::Settings;
   }
-  found_ = Found::Settings;
+  source_ = source_of_settings();
+}
+
+SettingsStore::Source SettingsStore::source_of_settings() const {
+  if (found_ != Found::Settings) {
+    return found_ == Found::Blank ? Source::Blank : Source::NoneGood;
+  }
+  if (kPlaces[current_place_].old) {
+    return Source::OlderLayout;
+  }
+  return bad_copy_ ? Source::OneCopyBad : Source::Good;
 }
 
 // --- writing ---
@@ -203,6 +220,9 @@ void SettingsStore::finish_writing() {
   copies_to_invalidate_ = (copies_to_invalidate_ & ~bit(place_)) | old_copies_;
   old_copies_ = 0;
   saved_ = true;
+  if (saves_ != std::numeric_limits<std::uint16_t>::max()) {
+    ++saves_;
+  }
   invalidate_from(0);
 }
 

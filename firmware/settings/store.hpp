@@ -41,12 +41,25 @@ class SettingsStore {
     Unreadable,  ///< something else, or no answer; factory settings are used but not stored
   };
 
+  /// What `stored()` was read from when the store was created: register 0x0306 (wire.md section 12).
+  enum class Source : std::uint8_t {
+    Good,         ///< a good copy; the other one is good or blank
+    OneCopyBad,   ///< a good copy; the other one is not good and not blank
+    NoneGood,     ///< no good copy: factory settings
+    OlderLayout,  ///< a copy of an older layout
+    Blank,        ///< the memory was never written: factory settings
+  };
+
   /// Begins to load: reads all places, each up to three times. If the memory did not answer at a place and
   /// does not answer the first read at the next place either, the store does not repeat that read. `found()`
   /// and `stored()` are valid when loading has ended.
   explicit constexpr SettingsStore(const Model& model) : model_(model) {}
   [[nodiscard]] bool loading() const { return step_ == Step::Load; }
   [[nodiscard]] Found found() const { return found_; }
+  /// Valid when loading has ended; does not change after that.
+  [[nodiscard]] Source source() const { return source_; }
+  /// Returns the number of saves that have succeeded since reset, at most 65535.
+  [[nodiscard]] std::uint16_t saves() const { return saves_; }
 
   /// Begins to write and verify `settings`. The save fails when writing or verifying has failed three times.
   /// Call this only while not `busy()`. `saved()` and `stored()` are valid when the save has ended.
@@ -96,6 +109,7 @@ class SettingsStore {
   void take_copy(const StoredSettings& stored);
   void next_place();
   void finish_reading();
+  [[nodiscard]] Source source_of_settings() const;
   void begin_writing();
   void verify_page(bool ok);
   void retry_or_give_up();
@@ -111,7 +125,9 @@ class SettingsStore {
   ChosenModel model_;
   Step step_ = Step::Load;
   Found found_ = Found::Unreadable;
+  Source source_ = Source::NoneGood;
   bool saved_ = false;
+  std::uint16_t saves_ = 0;
 
   std::size_t place_ = 0;                ///< place of the copy that is being read or written
   std::size_t done_ = 0;                 ///< bytes of that copy that have been processed
@@ -119,6 +135,7 @@ class SettingsStore {
   std::uint8_t attempt_ = 0;             ///< failed attempts at that copy
   bool silent_ = false;                  ///< the memory did not answer at the last place
   std::uint8_t blank_places_ = 0;
+  bool bad_copy_ = false;                 ///< a place of this layout holds something else than a copy
   std::size_t current_place_ = kNoPlace;  ///< place of the current copy, which a reset would load
   unsigned old_copies_ = 0;               ///< bit n: place n holds a good copy of an older layout
   unsigned copies_to_invalidate_ = 0;     ///< bit n: the copy at place n must be invalidated

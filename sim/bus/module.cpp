@@ -47,7 +47,7 @@ void SimulatedModule::follow_supply() {
     return;
   }
   if (on) {
-    start();
+    start(ResetReason::PowerOn);
   } else {
     stop();
     led_.light(false);
@@ -55,20 +55,22 @@ void SimulatedModule::follow_supply() {
   settle();
 }
 
-void SimulatedModule::reset() {
+void SimulatedModule::reset() { restart(ResetReason::ResetPin); }
+
+void SimulatedModule::restart(ResetReason reason) {
   if (powered()) {
     stop();
-    start();
+    start(reason);
     settle();
   }
 }
 
-void SimulatedModule::start() {
+void SimulatedModule::start(ResetReason reason) {
   hung_ = false;
   mcu_.emplace(*this);
   mcu_->line.release_late(driver_late_by_);
   mcu_->tick.start();
-  mcu_->device.start();
+  mcu_->device.start(reason);
   turn();
 }
 
@@ -190,7 +192,7 @@ void SimulatedModule::run() {
   }
   if (mcu_->watchdog.has_expired()) {
     ++watchdog_resets_;
-    reset();
+    restart(ResetReason::ModuleWatchdog);
     return;
   }
   run_line();

@@ -152,7 +152,8 @@ class SimulatedModule final : public Station {
   }
   void settle();
   void follow_supply();
-  void start();
+  void start(ResetReason reason);
+  void restart(ResetReason reason);
   void stop();
   void turn();
   void edge(unsigned channel, bool level);

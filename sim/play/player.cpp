@@ -65,7 +65,13 @@ class Playing {
     expect(bytes_of(step.text + (checksum_ ? checksum_of(step.text) : "") + "\r"));
   }
   void operator()(const step::SendModbus& step) { send(with_crc(step.frame)); }
-  void operator()(const step::ExpectModbus& step) { expect(with_crc(step.frame)); }
+  void operator()(const step::ExpectModbus& step) {
+    std::vector<Bytes> permitted;
+    for (const Bytes& frame : step.frames) {
+      permitted.push_back(with_crc(frame));
+    }
+    expect_one_of(permitted);
+  }
   /// Does not check for earlier replies, because the bytes may be the rest of a frame.
   void operator()(const step::SendBytes& step) {
     target_.send(step.bytes);
@@ -127,11 +133,14 @@ class Playing {
     reply_pending_ = true;
   }
 
-  void expect(const Bytes& wanted) {
-    const Bytes heard = target_.receive(wanted.size(), kLongestReply);
+  void expect(const Bytes& wanted) { expect_one_of({wanted}); }
+
+  /// `permitted` contains at least one reply; all have the same length.
+  void expect_one_of(const std::vector<Bytes>& permitted) {
+    const Bytes heard = target_.receive(permitted.front().size(), kLongestReply);
     reply_pending_ = false;
-    if (heard != wanted) {
-      throw std::runtime_error("expected " + shown(wanted) + ", received " + shown(heard));
+    if (std::find(permitted.begin(), permitted.end(), heard) == permitted.end()) {
+      throw std::runtime_error("expected " + shown(permitted.front()) + ", received " + shown(heard));
     }
   }
 

@@ -182,6 +182,22 @@ Action parse_verb(const std::string& text) {
   fail("'" + text + "': expected a blank after " + lead);
 }
 
+/// Parses `HEX` or `HEX or HEX ...`.
+Action parse_modbus_reply(const std::string& text) {
+  const std::string separator = " or ";
+  step::ExpectModbus expected;
+  std::size_t from = 0;
+  for (std::size_t end = 0; end != std::string::npos; from = end + separator.size()) {
+    end = text.find(separator, from);
+    expected.frames.push_back(
+        parse_hex_bytes(text.substr(from, end == std::string::npos ? end : end - from)));
+    if (expected.frames.back().size() != expected.frames.front().size()) {
+      fail("'" + text + "': the replies differ in length; expected replies of the same length");
+    }
+  }
+  return expected;
+}
+
 Action parse_action(const std::string& text) {
   for (const std::string lead : {"<=", "=>", "<", ">"}) {
     if (text.rfind(lead, 0) != 0) {
@@ -192,7 +208,7 @@ Action parse_action(const std::string& text) {
     }
     const std::string rest = text.size() > lead.size() ? text.substr(lead.size() + 1) : "";
     if (lead == "<=") {
-      return step::ExpectModbus{parse_hex_bytes(rest)};
+      return parse_modbus_reply(rest);
     }
     if (lead == "=>") {
       return step::SendModbus{parse_hex_bytes(rest)};

@@ -27,8 +27,8 @@ struct SendModbus {
   Bytes frame;
 };  ///< without CRC
 struct ExpectModbus {
-  Bytes frame;
-};  ///< without CRC
+  std::vector<Bytes> frames;  ///< the permitted replies, at least one, all of the same length; without CRC
+};
 struct SendBytes {
   Bytes bytes;
 };

@@ -21,16 +21,16 @@ TEST(LongUptime, InputsLatchesAndCountersFollowEveryEdge) {
   const Inputs& inputs = bench.module().state().inputs;
   for (unsigned pulse = 1; pulse <= kAcrossTheWrap; ++pulse) {
     for (unsigned channel = 0; channel < 8; ++channel) {
-      bench.module().on_edge(channel, true);
+      bench.module().on_edge(channel, true, bench.now());
     }
     bench.pass(milliseconds(1));
     ASSERT_EQ(inputs.levels(), 0xFF) << pulse;
-    bench.module().on_edge(pulse % 8, false);
+    bench.module().on_edge(pulse % 8, false, bench.now());
     bench.pass(milliseconds(1));
     ASSERT_EQ(inputs.levels(), 0xFF ^ (1U << pulse % 8)) << pulse;
     for (unsigned channel = 0; channel < 8; ++channel) {
       if (channel != pulse % 8) {
-        bench.module().on_edge(channel, false);
+        bench.module().on_edge(channel, false, bench.now());
       }
     }
     bench.pass(milliseconds(1));
@@ -49,7 +49,7 @@ TEST(LongUptime, NoSingleEdgeIsMissed) {
   const Inputs& inputs = bench.module().state().inputs;
   for (unsigned edge = 0; edge < kAcrossTheWrap; ++edge) {
     const bool level = edge % 2 == 0;
-    bench.module().on_edge(0, level);
+    bench.module().on_edge(0, level, bench.now());
     bench.pass(milliseconds(1));
     ASSERT_EQ(inputs.levels(), level ? 1U : 0U) << edge;
     ASSERT_EQ(inputs.counter(0), (edge + 1) / 2) << edge;

@@ -95,6 +95,35 @@ TEST(Timing, AModbusReplyStartsAfterT35AndWithin20msOr200msIfStored) {
   }
 }
 
+// wire.md section 12: the response delay counts from the last stop bit, and the other limits from its end.
+TEST(Timing, AReplyStartsAtTheEndOfTheResponseDelayAndAStoreDoesNotAddToIt) {
+  for (const std::uint32_t baud : kBaudRates) {
+    ModuleBench bench("EX9055D,baud=" + std::to_string(baud));
+    ASSERT_EQ(bench.ask("~01RD1E"), "!01");
+    for (const std::string command : {"$012", "$01Z", "~01ONEW", "~01OOLD"}) {
+      bench.recorder().clear();
+      ASSERT_NE(bench.ask(command), "") << command;
+      const std::size_t request = command.size() + 1;
+      const VirtualTime gap = bench.recorder().bytes[request].start - bench.recorder().bytes[request - 1].end;
+      EXPECT_GE(gap, milliseconds(30)) << command << " at " << baud;
+      // At 1200 baud the turn-around and the store together take a little longer than the delay.
+      EXPECT_LE(gap, milliseconds(baud == 1200 ? 35 : 31)) << command << " at " << baud;
+    }
+  }
+}
+
+TEST(Timing, TheEffectOfARequestIsNotDelayed) {
+  ModuleBench bench("EX9043D,baud=115200");
+  ASSERT_EQ(bench.ask("~01RD1E"), "!01");
+  std::vector<OutputChange> changes;
+  bench.watch_outputs(changes);
+  bench.send("@010001\r");
+  const VirtualTime sent = bench.now();
+  bench.run(milliseconds(50));
+  ASSERT_EQ(changes.size(), 1U);
+  EXPECT_LE(changes[0].at - sent, milliseconds(1));
+}
+
 TEST(Driver, IsOnBeforeTheFirstStartBitAndOffWithinACharacterAfterTheLastStopBit) {
   for (const std::uint32_t baud : kBaudRates) {
     ModuleBench bench("EX9042D,baud=" + std::to_string(baud));

@@ -274,7 +274,7 @@ class InputBench {
   /// Serves the port of `channel` once.
   void serve(unsigned channel) {
     const auto deliver = [this](unsigned of, bool level) {
-      Points::interrupt([&] { edges_.on_edge(of, level); });
+      Points::interrupt([&] { edges_.on_edge(of, level, Time()); });
     };
     if (port_of(channel) == Port::B) {
       Pins::template take_edges<Port::B>(deliver);

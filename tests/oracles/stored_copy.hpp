@@ -19,6 +19,7 @@ struct StoringModel {
   bool speaks_modbus;
   unsigned longest_name;
   std::string_view factory_name;
+  unsigned inputs;
 };
 
 /// The settings in a copy.
@@ -33,6 +34,10 @@ struct CopiedSettings {
   std::string name;
   std::uint16_t power_on_value;
   std::uint16_t safe_value;
+  std::array<std::uint16_t, 16> filters{};  ///< in ms
+  std::uint16_t inverted = 0;
+  bool fed_by_requests = false;
+  std::uint8_t response_delay = 0;
 };
 
 /// The addresses of copies. The first two are for layout 3, the others for the older layouts.
@@ -99,6 +104,9 @@ class StoredCopy {
     }
     settings.power_on_value = static_cast<std::uint16_t>(reaches(at.power_on, 2) ? word(at.power_on) : 0);
     settings.safe_value = static_cast<std::uint16_t>(reaches(at.safe, 2) ? word(at.safe) : 0);
+    if (layout_ == 3) {
+      read_extensions(settings);
+    }
     return settings;
   }
   /// Returns the size of a good copy in bytes.
@@ -106,6 +114,20 @@ class StoredCopy {
 
  private:
   static constexpr std::uint8_t kLongest = 120;  // bytes of settings
+  // Offsets in a copy of layout 3.
+  static constexpr std::size_t kFilters = 23;  // two bytes for each of sixteen inputs
+  static constexpr std::size_t kInverted = kFilters + 32;
+  static constexpr std::size_t kFedByRequests = kInverted + 2;
+  static constexpr std::size_t kResponseDelay = kFedByRequests + 1;
+
+  void read_extensions(CopiedSettings& settings) const {
+    for (std::size_t channel = 0; channel < settings.filters.size() && reaches(kFilters, 32); ++channel) {
+      settings.filters[channel] = static_cast<std::uint16_t>(word(kFilters + 2 * channel));
+    }
+    settings.inverted = static_cast<std::uint16_t>(reaches(kInverted, 2) ? word(kInverted) : 0);
+    settings.fed_by_requests = byte(kFedByRequests, 0) != 0;
+    settings.response_delay = byte(kResponseDelay, 0);
+  }
 
   /// The offset of each setting in the copy.
   struct Fields {
@@ -186,7 +208,13 @@ class StoredCopy {
         !found.modbus || (model_.speaks_modbus && found.address >= 1 && found.address <= 247);
     const bool watchdog = !found.watchdog_enabled || found.watchdog_timeout != 0;
     const unsigned beyond = ~((1U << model_.outputs) - 1U);
-    return name && protocol && watchdog && found.baud_code >= 0x03 && found.baud_code <= 0x0A &&
+    const unsigned beyond_inputs = ~((1U << model_.inputs) - 1U);
+    bool extensions = (found.inverted & beyond_inputs) == 0 && found.response_delay <= 30 &&
+                      (layout_ != 3 || byte(kFedByRequests, 0) <= 1);
+    for (std::size_t channel = 0; channel < found.filters.size(); ++channel) {
+      extensions = extensions && found.filters[channel] <= (channel < model_.inputs ? 2000 : 0);
+    }
+    return extensions && name && protocol && watchdog && found.baud_code >= 0x03 && found.baud_code <= 0x0A &&
            (found.format & 0x3FU) == 0 && ((found.power_on_value | found.safe_value) & beyond) == 0;
   }
 

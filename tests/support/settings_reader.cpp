@@ -3,11 +3,18 @@
 #include <gtest/gtest.h>
 
 #include "sim/play/modbus_frame.hpp"
+#include "tests/oracles/reference/hexadecimal.hpp"
 #include "tests/support/storing_commands.hpp"
 
 namespace ex9000 {
 
 namespace {
+
+// The extension registers that are settings: wire.md 12.
+constexpr unsigned kFilters = 0x0240;
+constexpr unsigned kInversion = 0x0250;
+constexpr unsigned kFeed = 0x0251;
+constexpr unsigned kDelay = 0x0252;
 
 std::uint16_t word(const std::vector<std::uint8_t>& reply, std::size_t at) {
   return static_cast<std::uint16_t>(reply.at(at) << 8U | reply.at(at + 1));
@@ -77,6 +84,16 @@ std::optional<Settings> SettingsReader::read_ascii() {
     settings.power_on_value = value("~4P");
     settings.safe_value = value("~4S");
   }
+  const auto extension = [&](unsigned address) {
+    const std::string reply = ask("~X" + reference::hex(address, 4));
+    return static_cast<std::uint16_t>(hex_byte(reply, 3) << 8U | hex_byte(reply, 5));
+  };
+  for (unsigned channel = 0; channel < model_.inputs; ++channel) {
+    settings.input_filters.set(channel, extension(kFilters + channel));
+  }
+  settings.inverted_inputs = model_.inputs != 0 ? extension(kInversion) : std::uint16_t{0};
+  settings.fed_by_requests = extension(kFeed) != 0;
+  settings.response_delay = static_cast<std::uint8_t>(extension(kDelay));
   return settings;
 }
 
@@ -108,6 +125,17 @@ std::optional<Settings> SettingsReader::read_modbus(std::uint8_t format) {
     settings.safe_value = value(0x80);
     settings.power_on_value = value(0xA0);
   }
+  const auto extension = [&](unsigned address) {
+    return word(ask(Bytes{0x03, static_cast<std::uint8_t>(address >> 8U), static_cast<std::uint8_t>(address),
+                          0x00, 0x01}),
+                3);
+  };
+  for (unsigned channel = 0; channel < model_.inputs; ++channel) {
+    settings.input_filters.set(channel, extension(kFilters + channel));
+  }
+  settings.inverted_inputs = model_.inputs != 0 ? extension(kInversion) : std::uint16_t{0};
+  settings.fed_by_requests = extension(kFeed) != 0;
+  settings.response_delay = static_cast<std::uint8_t>(extension(kDelay));
   return settings;
 }
 

@@ -14,7 +14,8 @@
 namespace ex9000 {
 
 inline StoringModel storing_model(const Model& model) {
-  return {model.designation, model.outputs, model.speaks_modbus(), model.longest_name, model.factory_name};
+  return {model.designation,  model.outputs,      model.speaks_modbus(),
+          model.longest_name, model.factory_name, model.inputs};
 }
 
 inline Settings settings_of(const CopiedSettings& stored) {
@@ -29,6 +30,12 @@ inline Settings settings_of(const CopiedSettings& stored) {
   settings.name = Name(std::string_view(stored.name));
   settings.power_on_value = stored.power_on_value;
   settings.safe_value = stored.safe_value;
+  for (unsigned channel = 0; channel < stored.filters.size(); ++channel) {
+    settings.input_filters.set(channel, stored.filters[channel]);
+  }
+  settings.inverted_inputs = stored.inverted;
+  settings.fed_by_requests = stored.fed_by_requests;
+  settings.response_delay = stored.response_delay;
   return settings;
 }
 
@@ -69,11 +76,15 @@ inline void put_layout_2(const Model& model, const Settings& settings, std::uint
 /// Returns a byte that newer firmware has stored after the settings that this firmware supports.
 inline std::uint8_t unknown_byte(std::size_t index) { return static_cast<std::uint8_t>(0xC1U ^ index); }
 
-/// Extends the valid record of layout 3 at `place` to `length` bytes of settings.
+/// The bytes of settings that this firmware supports.
+inline constexpr std::size_t kSupportedSettings = 55;
+
+/// Extends the valid record of layout 3 at `place` to `length` bytes of settings. The settings that this
+/// firmware supports, but that the record lacks, get their factory values.
 inline void lengthen(const Model& model, std::uint8_t* memory, std::size_t place, std::uint8_t length) {
   std::uint8_t* bytes = memory + place;
   for (std::size_t index = bytes[1]; index < length; ++index) {
-    bytes[4 + index] = unknown_byte(index);
+    bytes[4 + index] = index < kSupportedSettings ? std::uint8_t{0} : unknown_byte(index);
   }
   bytes[1] = length;
   const StoringModel storing = storing_model(model);

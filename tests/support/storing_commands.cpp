@@ -95,6 +95,8 @@ std::vector<StoringCommand> ascii_commands(const Model& model) {
     });
     add("~AA1" + where, init, needs_status, always("1"),
         [](Settings& settings, std::uint16_t) { settings.timeout_status = false; });
+    add("~AARDVV" + where, init, needs_nothing, always("RD1E"),
+        [](Settings& settings, std::uint16_t) { settings.response_delay = 0x1E; });
     if (model.outputs != 0) {
       add("~AA5P" + where, init, needs_nothing, always("5P"),
           [](Settings& settings, std::uint16_t outputs) { settings.power_on_value = outputs; });
@@ -144,7 +146,18 @@ std::vector<StoringCommand> modbus_commands(const Model& model) {
         settings.address = kNewAddress;
         settings.baud_code = 0x08;
       });
+  add("06 response delay", needs_nothing, {0x06, 0x02, 0x52, 0x00, 0x1E},
+      [](Settings& settings, std::uint16_t) { settings.response_delay = 0x1E; });
+  add("06 watchdog feed", needs_nothing, {0x06, 0x02, 0x51, 0x00, 0x01},
+      [](Settings& settings, std::uint16_t) { settings.fed_by_requests = true; });
   if (model.inputs != 0) {
+    add("10 filters", needs_nothing, {0x10, 0x02, 0x40, 0x00, 0x02, 0x04, 0x00, 0x05, 0x07, 0xD0},
+        [](Settings& settings, std::uint16_t) {
+          settings.input_filters.set(0, 5);
+          settings.input_filters.set(1, 2000);
+        });
+    add("06 inversion", needs_nothing, {0x06, 0x02, 0x50, 0x00, 0x81},
+        [](Settings& settings, std::uint16_t) { settings.inverted_inputs = 0x81; });
     add(
         "05 counting edge",
         [](Settings& settings) {

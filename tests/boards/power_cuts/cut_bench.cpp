@@ -14,6 +14,7 @@ using std::chrono::microseconds;
 using std::chrono::milliseconds;
 
 constexpr milliseconds kComesUpWithin{100};
+constexpr milliseconds kRepliesWithin{25 + kLongestResponseDelay};
 constexpr milliseconds kStoresWithin{600};  // includes the wait for a timeout
 constexpr milliseconds kFinishesAnUpdateWithin{200};
 constexpr std::uint16_t kDriven = 0xC35A;  // set by a command before the command that stores
@@ -105,12 +106,12 @@ void CutBench::send(const Bytes& frame) {
   bench_.line.send(frame);
 }
 
-/// Returns the reply; empty if none begins within 25 ms.
+/// Returns the reply; empty if none begins in time.
 CutBench::Bytes CutBench::hear() {
   while (bench_.line.sending()) {
     bench_.run_for(microseconds(500));
   }
-  const Instant gives_up = bench_.timeline.now() + milliseconds(25);
+  const Instant gives_up = bench_.timeline.now() + kRepliesWithin;
   const auto& drives = bench_.line.drives;
   while (drives.empty() ? bench_.timeline.now() < gives_up : drives.back().to == kNever) {
     bench_.run_for(microseconds(500));

@@ -15,15 +15,15 @@ class InputsTest : public testing::Test {
     edges_.begin(levels);
     inputs_.begin(levels);
   }
-  void rise(unsigned channel) { edges_.on_edge(channel, true); }
-  void fall(unsigned channel) { edges_.on_edge(channel, false); }
+  void rise(unsigned channel) { edges_.on_edge(channel, true, now_); }
+  void fall(unsigned channel) { edges_.on_edge(channel, false, now_); }
   void pulse(unsigned channel, unsigned times) {
     for (unsigned i = 0; i < times; ++i) {
       rise(channel);
       fall(channel);
     }
   }
-  void collect(unsigned channels = kAll) { inputs_.collect(edges_, channels); }
+  void collect(unsigned channels = kAll) { inputs_.collect(edges_, channels, now_); }
   void pulse_and_collect(unsigned channel, unsigned times) {
     constexpr unsigned kAtOnce = 30'000;
     for (; times > kAtOnce; times -= kAtOnce) {
@@ -34,6 +34,7 @@ class InputsTest : public testing::Test {
     collect();
   }
 
+  Time now_;
   InputEdges edges_;
   Inputs inputs_;
 };
@@ -169,9 +170,9 @@ TEST_F(InputsTest, RisingAndFallingEdgesAreDistinguishedAtAnyLevelAndForAnyNumbe
         for (unsigned i = 0; i < edges; ++i) {
           level = !level;
           rising += level ? 1 : 0;
-          crossing.on_edge(4, level);
+          crossing.on_edge(4, level, now_);
         }
-        inputs.collect(crossing, kAll);
+        inputs.collect(crossing, kAll, now_);
         EXPECT_EQ(inputs.counter(4), count_rising ? rising : edges - rising) << edges << " from " << high;
         EXPECT_EQ(inputs.latched_high(), rising != 0 ? 0x0010 : 0) << edges << " from " << high;
         EXPECT_EQ(inputs.latched_low(), edges != rising ? 0x0010 : 0) << edges << " from " << high;
@@ -190,7 +191,7 @@ TEST_F(InputsTest, AnEdgeOnAnyChannelChangesTheTotalOfEdges) {
   for (unsigned channel = 0; channel < kAll; ++channel) {
     for (int i = 0; i < 2; ++i) {
       const std::uint32_t before = edges_.edges();
-      edges_.on_edge(channel, i == 0);
+      edges_.on_edge(channel, i == 0, now_);
       EXPECT_NE(edges_.edges(), before);
     }
   }
@@ -313,7 +314,7 @@ TEST_F(InputsTest, OnlyTheCountersOfTheMaskAreCleared) {
   pulse(0, 1);
   pulse(8, 2);
   pulse(15, 3);
-  inputs_.collect(edges_, kMaxInputs);
+  inputs_.collect(edges_, kMaxInputs, now_);
   inputs_.clear_counters(0x0100);
   EXPECT_EQ(inputs_.counter(0), 1U);
   EXPECT_EQ(inputs_.counter(8), 0U);
@@ -322,17 +323,17 @@ TEST_F(InputsTest, OnlyTheCountersOfTheMaskAreCleared) {
 
 TEST_F(InputsTest, SixteenChannelsHaveLevelsAndLatches) {
   for (unsigned channel = 0; channel < 16; ++channel) {
-    edges_.on_edge(channel, true);
-    inputs_.collect(edges_, 16);
+    edges_.on_edge(channel, true, now_);
+    inputs_.collect(edges_, 16, now_);
     EXPECT_EQ(inputs_.levels(), (2U << channel) - 1U);
     EXPECT_EQ(inputs_.latched_high(), (2U << channel) - 1U);
   }
 }
 
 TEST_F(InputsTest, EdgesOfChannelsThatNoModelHasAreIgnored) {
-  edges_.on_edge(16, true);
-  edges_.on_edge(31, true);
-  edges_.on_edge(1000, true);
+  edges_.on_edge(16, true, now_);
+  edges_.on_edge(31, true, now_);
+  edges_.on_edge(1000, true, now_);
   collect();
   EXPECT_EQ(inputs_.levels(), 0);
   EXPECT_EQ(inputs_.latched_high(), 0);

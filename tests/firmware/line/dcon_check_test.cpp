@@ -68,8 +68,8 @@ TEST_F(DconAssemblerTest, AFrameOfDelimiterAddressAndChecksumIsAccepted) {
 
 TEST_F(DconAssemblerTest, AFrameTooShortForAnAddressIsDroppedEvenWithACorrectChecksum) {
   assembler_.use_checksum(true);
-  EXPECT_EQ(put(with_checksum("$0") + "\r"), Verdict::TooShort);
-  EXPECT_EQ(put(with_checksum("$") + "\r"), Verdict::TooShort);
+  EXPECT_EQ(put(with_checksum("$0") + "\r"), Verdict::Foreign);
+  EXPECT_EQ(put(with_checksum("$") + "\r"), Verdict::Foreign);
 }
 
 TEST_F(DconAssemblerTest, ChecksumCharactersAreContentIfTheChecksumIsDisabled) {
@@ -158,15 +158,15 @@ TEST_F(DconAssemblerTest, ABroadcastWithoutOrWithAWrongChecksumIsDropped) {
   EXPECT_EQ(taken(), "nothing");
 }
 
-TEST_F(DconAssemblerTest, ABroadcastWithAChecksumIsForeignIfTheChecksumIsDisabled) {
-  EXPECT_EQ(put("~**D2\r"), Verdict::Foreign);
-  EXPECT_EQ(put("#**77\r"), Verdict::Foreign);
+TEST_F(DconAssemblerTest, ABroadcastWithAChecksumIsIgnoredIfTheChecksumIsDisabled) {
+  EXPECT_EQ(put("~**D2\r"), Verdict::Ignored);
+  EXPECT_EQ(put("#**77\r"), Verdict::Ignored);
   EXPECT_EQ(taken(), "nothing");
 }
 
-TEST_F(DconAssemblerTest, OtherFramesWithABroadcastAddressAreForeign) {
+TEST_F(DconAssemblerTest, OtherFramesWithABroadcastAddressAreIgnored) {
   for (const char* text : {"$**\r", "%**\r", "@**\r", "$**M\r", "@**FF\r", "#**0\r", "~**0\r"}) {
-    EXPECT_EQ(put(text), Verdict::Foreign) << text;
+    EXPECT_EQ(put(text), Verdict::Ignored) << text;
     EXPECT_EQ(taken(), "nothing");
   }
 }

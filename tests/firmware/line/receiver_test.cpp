@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "firmware/model/baud.hpp"
+#include "sim/play/modbus_frame.hpp"
 
 namespace ex9000 {
 namespace {
@@ -92,8 +93,18 @@ class ReceiverTest : public testing::Test {
     return true;
   }
 
+  /// Returns how often the host watchdog has been restarted since the last call.
+  std::uint32_t restarts() {
+    const std::uint32_t before = restarts_;
+    restarts_ = receiver_.host_oks().received();
+    return restarts_ - before;
+  }
+
   Receiver receiver_;
   Time now_{1000};
+
+ private:
+  std::uint32_t restarts_ = 0;
 };
 
 // --- counters ---
@@ -189,6 +200,43 @@ TEST_F(ReceiverTest, AnOpenFrameIsNotCounted) {
   EXPECT_EQ(counts(), (Counts{0, 0, 0, 0, 0}));
 }
 
+TEST_F(ReceiverTest, EveryDamagedByteIsCountedInBothProtocols) {
+  for (const Protocol protocol : {Protocol::Ascii, Protocol::ModbusRtu}) {
+    listen(protocol);
+    receiver_.tallies().clear();
+    byte('$', ByteStatus::FramingError);
+    byte('$', ByteStatus::Break);
+    byte('$', ByteStatus::Overrun);
+    byte('$');
+    silence();
+    EXPECT_EQ(receiver_.tallies().damaged_bytes(), 2U);
+    receiver_.tallies().clear();
+    EXPECT_EQ(receiver_.tallies().damaged_bytes(), 0U);
+  }
+}
+
+TEST_F(ReceiverTest, AFrameForWhichThereIsNoRoomIsCountedOnce) {
+  listen(Protocol::Ascii);
+  text("$01M\r$01F\r");
+  EXPECT_EQ(receiver_.tallies().lost_frames(), 1U);
+}
+
+TEST_F(ReceiverTest, InAsciiEachCompleteFrameIsABusMessageOrABusError) {
+  listen(Protocol::Ascii, true);
+  text("$01MD2\r");  // right
+  EXPECT_EQ(counts(), (Counts{1, 0, 1, 0, 0}));
+  text("$02MD3\r");  // for another module
+  EXPECT_EQ(counts(), (Counts{1, 0, 0, 0, 0}));
+  text("~**D2\r#**77\r$**78\r");  // host OK, a sample for which there is no room, no command
+  EXPECT_EQ(counts(), (Counts{3, 0, 2, 2, 1}));
+  text("$01MD3\r$0\r$01M78901234567890123456789012345\r");  // wrong, missing, too long
+  EXPECT_EQ(counts(), (Counts{0, 3, 0, 0, 0}));
+  byte('$');
+  byte('0', ByteStatus::Overrun);
+  text("1M\r");
+  EXPECT_EQ(counts(), (Counts{0, 1, 0, 0, 1}));
+}
+
 // --- host OK ---
 
 TEST_F(ReceiverTest, AModbusHostOkIsReceivedAtTheEndOfItsSilence) {
@@ -221,6 +269,44 @@ TEST_F(ReceiverTest, NoOtherFrameIsAHostOk) {
   listen(Protocol::Ascii);
   text("$01M\r$02M\r#**\r~**X\r");
   EXPECT_EQ(receiver_.host_oks().received(), 0);
+}
+
+// wire.md section 12, register 0x0251.
+TEST_F(ReceiverTest, ARequestForThisModuleRestartsTheHostWatchdogIfThatIsSelected) {
+  listen(Protocol::Ascii);
+  text("$01M\r");
+  EXPECT_EQ(restarts(), 0U);
+  receiver_.restart_by_requests(true);
+  text("$01M\r");  // the first one still waits, so there is no room
+  EXPECT_EQ(restarts(), 1U);
+  EXPECT_EQ(receiver_.host_oks().last().microseconds(), now_.microseconds());
+  took_frame();
+  text("$01Z\r");
+  EXPECT_EQ(restarts(), 1U);
+  text("~**\r");
+  EXPECT_EQ(restarts(), 1U);
+  text("$02M\r#**\r$**M\r$0\r!01\r$01M");  // incomplete at the end
+  EXPECT_EQ(restarts(), 0U);
+  receiver_.restart_by_requests(false);
+  text("\r");
+  EXPECT_EQ(restarts(), 0U);
+}
+
+TEST_F(ReceiverTest, AModbusRequestForThisModuleRestartsTheHostWatchdogAtTheEndOfItsSilence) {
+  listen(Protocol::ModbusRtu);
+  receiver_.restart_by_requests(true);
+  bytes(with_crc({kOwn, 0x01, 0x00, 0x00, 0x00, 0x01}));
+  EXPECT_EQ(restarts(), 0U);
+  const Time end = now_;
+  silence();
+  EXPECT_EQ(restarts(), 1U);
+  expect_host_ok_between(end, now_);
+  frame(with_crc({kOwn, 0x77}));  // an unknown function, and no room
+  EXPECT_EQ(restarts(), 1U);
+  frame(with_crc({0x00, 0x05, 0x00, 0x00, 0xFF, 0x00}));
+  frame(with_crc({0x02, 0x01, 0x00, 0x00, 0x00, 0x01}));
+  frame({kOwn, 0x01, 0x00, 0x00, 0x00, 0x01, 0x00, 0x00});
+  EXPECT_EQ(restarts(), 0U);
 }
 
 TEST_F(ReceiverTest, AHostOkIsNotLostWhileAFrameWaits) {

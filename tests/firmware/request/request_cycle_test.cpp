@@ -169,5 +169,29 @@ TEST_F(RequestCycleTest, AReplyLongAgoDoesNotDelayTheNextReply) {
   EXPECT_EQ(take_reply(), "!01D01.00\r");
 }
 
+// wire.md section 12: the response delay.
+TEST_F(RequestCycleTest, AReplyWaitsForTheLaterOfTheGapAndTheResponseDelay) {
+  for (const auto& [gap, delay] : {std::pair{5U, 30U}, {30U, 5U}}) {
+    judge("$01M");
+    cycle_.reply_sent(now_, milliseconds(gap));
+    judge("$01M");
+    cycle_.hold_reply_until(now_ + milliseconds(delay));
+    cycle_.finish();
+    now_ = now_ + milliseconds(29);
+    EXPECT_EQ(take_reply(), "");
+    EXPECT_EQ(cycle_.until_reply(now_).microseconds(), 1000U);
+    now_ = now_ + milliseconds(1);
+    EXPECT_NE(take_reply(), "");
+  }
+}
+
+TEST_F(RequestCycleTest, TheResponseDelayAppliesToOneRequest) {
+  judge("$01M");
+  cycle_.hold_reply_until(now_ + milliseconds(30));
+  judge("$01M");
+  cycle_.finish();
+  EXPECT_NE(take_reply(), "");
+}
+
 }  // namespace
 }  // namespace ex9000

@@ -12,12 +12,16 @@
 namespace ex9000 {
 namespace {
 
-/// Returns a record of firmware that has more or fewer settings.
+/// The bytes of settings that this firmware supports.
+constexpr std::size_t kSupported = 55;
+
+/// Returns a record of firmware that has more or fewer settings. The settings that this firmware supports
+/// beyond those of `stored` have their factory values.
 Record with_length(const Stored& stored, std::size_t length) {
   Record record = record_of(stored);
   Record settings(record.begin() + kSettingsAt, record.begin() + kCheckAt);
   for (std::size_t more = settings.size(); more < length; ++more) {
-    settings.push_back(static_cast<std::uint8_t>(0xC1U ^ more));
+    settings.push_back(more < kSupported ? std::uint8_t{0} : static_cast<std::uint8_t>(0xC1U ^ more));
   }
   settings.resize(length);
   record.resize(kSettingsAt);
@@ -70,7 +74,7 @@ TEST(Record, ThatLacksTheLastSettingsHasTheirFactoryValues) {
 }
 
 TEST(Record, ThatIsWrittenOverALongerOneKeepsTheUnknownSettings) {
-  for (std::size_t length = kSettingsSize; length <= 120; ++length) {
+  for (std::size_t length = kSupported + 1; length <= 120; ++length) {
     const Record longer = with_length(factory(), length);
     RecordBytes bytes{};
     std::copy(longer.begin(), longer.end(), bytes.begin());
@@ -78,6 +82,32 @@ TEST(Record, ThatIsWrittenOverALongerOneKeepsTheUnknownSettings) {
     const Record written(bytes.begin(), bytes.begin() + static_cast<std::ptrdiff_t>(longer.size()));
     EXPECT_EQ(written, with_length(changed_settings(), length)) << length;
   }
+}
+
+TEST(Record, EndsAfterTheLastSettingThatDiffersFromItsFactoryValue) {
+  Stored stored = factory();
+  EXPECT_EQ(record_of(stored).size(), kRecordSize);
+  stored.settings.fed_by_requests = true;
+  EXPECT_EQ(record_of(stored).size(), kSettingsAt + kSupported - 1 + 4);
+  stored.settings.response_delay = 30;
+  EXPECT_EQ(record_of(stored).size(), kSettingsAt + kSupported + 4);
+  stored.settings.fed_by_requests = false;
+  EXPECT_EQ(record_of(stored).size(), kSettingsAt + kSupported + 4);
+  Stored of_inputs{Settings::factory(model("EX9052D-M")), 1};
+  of_inputs.settings.input_filters.set(0, 1);
+  EXPECT_EQ(record_of(of_inputs, model("EX9052D-M")).size(), kRecordSize + 32);
+  of_inputs.settings.inverted_inputs = 0x80;
+  EXPECT_EQ(record_of(of_inputs, model("EX9052D-M")).size(), kRecordSize + 34);
+}
+
+TEST(Record, ThatIsWrittenOverOneWithMoreSettingsIsShortAgain) {
+  Stored stored = factory();
+  stored.settings.response_delay = 5;
+  RecordBytes bytes{};
+  write_record(the_model(), stored.settings, stored.sequence, bytes);
+  write_record(the_model(), factory().settings, factory().sequence, bytes);
+  EXPECT_EQ(record_size({bytes.data(), bytes.size()}), kRecordSize);
+  EXPECT_TRUE(std::equal(bytes.begin(), bytes.begin() + kRecordSize, record_of(factory()).begin()));
 }
 
 TEST(Record, ThatIsWrittenOverAShorterOneIsAWholeOne) {

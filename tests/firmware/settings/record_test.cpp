@@ -90,6 +90,22 @@ TEST(Record, HasTheDocumentedLayout) {
   EXPECT_EQ(record_of(factory()), from_the_factory);
 }
 
+TEST(Record, HasTheDocumentedLayoutOfTheExtensions) {
+  const Model& sixteen_inputs = model("EX9053D");
+  Stored stored{Settings::factory(sixteen_inputs), 1};
+  stored.settings.input_filters.set(0, 2000);
+  stored.settings.input_filters.set(15, 3);
+  stored.settings.inverted_inputs = 0x8001;
+  stored.settings.fed_by_requests = true;
+  stored.settings.response_delay = 30;
+  Record expected{3, 55, 1, 0, 1, 6, 0, 0, 0xFF, 0, 0, '9', '0', '5', '3', 0, 0, 0, 4, 0, 0, 0, 0};
+  expected.insert(expected.end(), {0xD0, 0x07});                           // filter of input 0
+  expected.resize(expected.size() + 28);                                   // inputs 1 to 14
+  expected.insert(expected.end(), {3, 0, 0x01, 0x80, 1, 30, 0, 0, 0, 0});  // input 15, the others, the check
+  EXPECT_EQ(record_of(stored, sixteen_inputs), with_check(sixteen_inputs, expected));
+  expect_round_trip(sixteen_inputs, stored);
+}
+
 TEST(Record, HasTheDocumentedCheck) {
   std::mt19937 random(2);
   for (const Model& each : kModels) {

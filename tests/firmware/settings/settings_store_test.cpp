@@ -303,5 +303,82 @@ TEST(SettingsStore, SettingsSavedAfterASilentMemoryAtResetAreFoundAtTheNextLoad)
   EXPECT_TRUE(Boot(memory).stored() == numbered(9));
 }
 
+// --- wire.md section 12: registers 0x0305 and 0x0306 ---
+
+using Source = SettingsStore::Source;
+
+Source source_of(FakeMemory& memory) {
+  SettingsStore store(the_model());
+  drive(store, memory);
+  return store.source();
+}
+
+TEST(SettingsSource, TellsWhatTheSettingsWereReadFrom) {
+  FakeMemory memory;
+  EXPECT_EQ(source_of(memory), Source::Blank);
+  put(memory, 0, numbered(5), 7);
+  EXPECT_EQ(source_of(memory), Source::Good);  // the other copy is blank
+  put(memory, 1, numbered(6), 8);
+  EXPECT_EQ(source_of(memory), Source::Good);
+  corrupt(memory, 0);
+  EXPECT_EQ(source_of(memory), Source::OneCopyBad);
+  corrupt(memory, 1);
+  EXPECT_EQ(source_of(memory), Source::NoneGood);
+}
+
+TEST(SettingsSource, OfAnOlderLayoutPrecedesThatOfABadCopy) {
+  FakeMemory memory;
+  put_old(memory, 0, numbered(5), 7);
+  EXPECT_EQ(source_of(memory), Source::OlderLayout);
+  memory.cells[kCopies[0]] = 0x55;
+  EXPECT_EQ(source_of(memory), Source::OlderLayout);
+}
+
+TEST(SettingsSource, IsGoodIfTheCopiesOfAnOlderLayoutAreInvalidated) {
+  FakeMemory memory;
+  put_old(memory, 0, numbered(5), 7);
+  Boot run(memory);
+  ASSERT_TRUE(run.save(numbered(6)));
+  EXPECT_EQ(source_of(memory), Source::Good);
+}
+
+TEST(SettingsSource, StaysTheSameAfterASave) {
+  FakeMemory memory;
+  SettingsStore store(the_model());
+  drive(store, memory);
+  store.begin_saving(numbered(5));
+  drive(store, memory);
+  EXPECT_EQ(store.source(), Source::Blank);
+  EXPECT_EQ(source_of(memory), Source::Good);
+}
+
+TEST(SettingsSaves, CountThoseThatSucceed) {
+  FakeMemory memory;
+  SettingsStore store(the_model());
+  drive(store, memory);
+  EXPECT_EQ(store.saves(), 0U);
+  store.begin_saving(numbered(5));
+  EXPECT_EQ(store.saves(), 0U);
+  drive(store, memory);
+  EXPECT_EQ(store.saves(), 1U);
+  memory.stuck = true;
+  store.begin_saving(numbered(6));
+  drive(store, memory);
+  EXPECT_EQ(store.saves(), 1U);
+}
+
+TEST(SettingsSaves, CountUpTo65535) {
+  FakeMemory memory;
+  SettingsStore store(the_model());
+  drive(store, memory);
+  for (unsigned i = 0; i < 65'540; ++i) {
+    store.begin_saving(numbered(i));
+    drive(store, memory);
+    memory.reads.clear();
+    memory.writes.clear();
+  }
+  EXPECT_EQ(store.saves(), 65'535U);
+}
+
 }  // namespace
 }  // namespace ex9000

@@ -385,5 +385,32 @@ TEST(Settings, AreAllZerosAtFirst) {
   EXPECT_EQ(untouched.safe_value, 0);
 }
 
+// wire.md section 12.
+TEST_F(Possible, AFilterTakesUpTo2000MsAndOnlyOnAnInputOfTheModel) {
+  use("EX9052D");
+  settings_.input_filters.set(7, 2000);
+  EXPECT_TRUE(possible());
+  settings_.input_filters.set(7, 2001);
+  EXPECT_FALSE(possible());
+  settings_.input_filters.set(7, 0);
+  settings_.input_filters.set(8, 1);
+  EXPECT_FALSE(possible());
+}
+
+TEST_F(Possible, OnlyInputsOfTheModelAreInverted) {
+  use("EX9052D");
+  settings_.inverted_inputs = 0x00FF;
+  EXPECT_TRUE(possible());
+  settings_.inverted_inputs = 0x0100;
+  EXPECT_FALSE(possible());
+}
+
+TEST_F(Possible, TheResponseDelayIsAtMost30Ms) {
+  settings_.response_delay = 30;
+  EXPECT_TRUE(possible());
+  settings_.response_delay = 31;
+  EXPECT_FALSE(possible());
+}
+
 }  // namespace
 }  // namespace ex9000

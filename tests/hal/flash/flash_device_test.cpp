@@ -89,7 +89,7 @@ class ModuleOnFlash {
 
   explicit ModuleOnFlash(FlashChip& chip)
       : chip_(chip), device_(the_model(), LineTiming::at, FlashBoard(chip)) {
-    device_.start();
+    device_.start(ResetReason::PowerOn);
     const std::uint64_t began = chip.now;
     while (!device_.module().listening()) {
       run(1'000);

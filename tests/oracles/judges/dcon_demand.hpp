@@ -7,6 +7,7 @@
 
 #include "firmware/bytes.hpp"
 #include "tests/oracles/judges/demand.hpp"
+#include "tests/oracles/judges/rtu_demand.hpp"
 
 namespace ex9000::judges {
 
@@ -70,7 +71,8 @@ constexpr Demand demand_of_all(Bytes digits, unsigned outputs) {
 /// `text`: a `~AA` command from the character after AA on.
 constexpr Demand demand_of_tilde(Bytes text, unsigned outputs) {
   Demand demand;
-  demand.stores_something = text[0] == 'O' || text[0] == '1' || text[0] == '3' || text[0] == '5';
+  demand.stores_something = text[0] == 'O' || text[0] == '1' || text[0] == '3' || text[0] == '5' ||
+                            (text[0] == 'X' && text.size == 9) || (text[0] == 'R' && text.size == 4);
   if (text[0] == '1' && text.size == 1) {
     demand.clears_timeout = true;
   } else if (text[0] == '3' && text.size == 4 && (text[1] == '0' || text[1] == '1')) {
@@ -83,6 +85,13 @@ constexpr Demand demand_of_tilde(Bytes text, unsigned outputs) {
   } else if (text[0] == '5' && text.size == 2 && outputs != 0) {
     demand.keeps_power_on = text[1] == 'P';
     demand.keeps_safe = text[1] == 'S';
+  } else if (text[0] == 'X' && text.size == 9) {
+    const auto address = hex_number(text.from(1).first(4));
+    const auto value = hex_number(text.from(5));
+    if (address && value && *address >= kTimedOutputs && *address < kTimedOutputs + outputs) {
+      add_timed_output(*address - kTimedOutputs, *value, demand);
+      demand.stores_something = false;
+    }
   }
   return demand;
 }

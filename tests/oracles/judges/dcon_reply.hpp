@@ -24,19 +24,21 @@ namespace detail {
 
 /// A request and its answer. In the request, `.` is any character, and `*` at the end is one or more
 /// characters. In the answer, aa is the address, ss the stored address, nn the address that `%` sets, h a hex
-/// digit, d a decimal digit, b 0 or 1, and t at the end a name of 1 to 7 characters.
+/// digit, d a decimal digit, b 0 or 1, t at the end a name of 1 to 7 characters, and w at the end 4 or 8 hex
+/// digits.
 struct Shape {
   std::string_view request;
   std::string_view answer;
 };
 
-constexpr std::array<Shape, 24> kShapes{{
-    {"%..........", "!nn"}, {"#......", ">"},   {"#...", "!aaddddd"}, {"$..2", "!sshhhhhh"},
-    {"$..4", "!bhhhh00"},   {"$..5", "!aab"},   {"$..6", "!hhhh00"},  {"$..F", "!aaDdd.dd"},
-    {"$..M", "!aat"},       {"$..C", "!aa"},    {"$..C.", "!aa"},     {"$..L0", "!hhhh00"},
-    {"$..L1", "!hhhh00"},   {"$..P", "!aa1b"},  {"$..P.", "!aa"},     {"@..", ">hhhh"},
-    {"@..*", ">"},          {"~..O*", "!aa"},   {"~..0", "!aahh"},    {"~..1", "!aa"},
-    {"~..2", "!aabhh"},     {"~..3...", "!aa"}, {"~..4.", "!aahhhh"}, {"~..5.", "!aa"},
+constexpr std::array<Shape, 26> kShapes{{
+    {"%..........", "!nn"}, {"#......", ">"},        {"#...", "!aaddddd"}, {"$..2", "!sshhhhhh"},
+    {"$..4", "!bhhhh00"},   {"$..5", "!aab"},        {"$..6", "!hhhh00"},  {"$..F", "!aaDdd.dd"},
+    {"$..M", "!aat"},       {"$..C", "!aa"},         {"$..C.", "!aa"},     {"$..L0", "!hhhh00"},
+    {"$..L1", "!hhhh00"},   {"$..P", "!aa1b"},       {"$..P.", "!aa"},     {"@..", ">hhhh"},
+    {"@..*", ">"},          {"~..O*", "!aa"},        {"~..0", "!aahh"},    {"~..1", "!aa"},
+    {"~..2", "!aabhh"},     {"~..3...", "!aa"},      {"~..4.", "!aahhhh"}, {"~..5.", "!aa"},
+    {"~..X....", "!aaw"},   {"~..X........", "!aa"},
 }};
 
 constexpr bool is_request(std::string_view shape, Bytes request) {
@@ -65,6 +67,15 @@ inline bool is_name(Bytes text) {
   return text.size >= 1 && text.size <= 7;
 }
 
+inline bool is_value(Bytes text) {
+  for (const std::uint8_t c : text) {
+    if (!is_hex(c)) {
+      return false;
+    }
+  }
+  return text.size == 4 || text.size == 8;
+}
+
 inline bool fits(char code, std::size_t at, Bytes request, Bytes reply, const DconRules& rules) {
   const std::uint8_t c = reply[at];
   const std::uint8_t own = upper_hex(at == 1 ? rules.address / 16U : rules.address);
@@ -88,9 +99,10 @@ inline bool fits(char code, std::size_t at, Bytes request, Bytes reply, const Dc
 
 inline bool is_answer(std::string_view shape, Bytes request, Bytes reply, const DconRules& rules) {
   std::size_t size = shape.size();
-  if (shape.back() == 't') {
+  if (shape.back() == 't' || shape.back() == 'w') {
     --size;
-    if (!is_name(reply.from(size))) {
+    if (reply.size < size ||
+        !(shape.back() == 't' ? is_name(reply.from(size)) : is_value(reply.from(size)))) {
       return false;
     }
   } else if (reply.size != size) {
@@ -122,6 +134,8 @@ inline ReplyForm dcon_reply_form(Bytes request, Bytes reply, const DconRules& ru
     }
   } else if (reply.size == 3 && reply[0] == '?' && are_digits_of(reply.data + 1, rules.address)) {
     return ReplyForm::Refusal;
+  } else if (reply.size == 1 && reply[0] == '!' && detail::is_request("~..X........", request)) {
+    return ReplyForm::Refusal;  // a timed output while the timeout status is set
   }
   for (const detail::Shape& shape : detail::kShapes) {
     if (detail::is_request(shape.request, request)) {

@@ -15,10 +15,11 @@ struct Values {
   std::uint8_t timeout = 0;    ///< of the host watchdog, in 0.1 s
   bool enabled = false;        ///< host watchdog enabled
   bool timed_out = false;      ///< timeout status; while it is set, output commands are refused
+  std::uint16_t timed = 0;     ///< the outputs that a timer will switch off
 
   friend constexpr bool operator==(const Values& a, const Values& b) {
     return a.outputs == b.outputs && a.power_on == b.power_on && a.safe == b.safe && a.timeout == b.timeout &&
-           a.enabled == b.enabled && a.timed_out == b.timed_out;
+           a.enabled == b.enabled && a.timed_out == b.timed_out && a.timed == b.timed;
   }
   friend constexpr bool operator!=(const Values& a, const Values& b) { return !(a == b); }
 
@@ -28,7 +29,19 @@ struct Values {
     values.outputs = safe;
     values.enabled = false;
     values.timed_out = true;
+    values.timed = 0;
     return values;
+  }
+  /// Returns the values after the timers of `channels` have ended (wire.md 12).
+  [[nodiscard]] constexpr Values without_timers(std::uint16_t channels) const {
+    Values values = *this;
+    values.outputs = static_cast<std::uint16_t>(values.outputs & ~channels);
+    values.timed = static_cast<std::uint16_t>(values.timed & ~channels);
+    return values;
+  }
+  /// Returns the outputs that `~AA5V` stores: one with a running timer is stored as off.
+  [[nodiscard]] constexpr std::uint16_t lasting_outputs() const {
+    return static_cast<std::uint16_t>(outputs & ~timed);
   }
 };
 
@@ -36,6 +49,7 @@ struct Values {
 struct Demand {
   std::uint16_t channels = 0;     ///< the driven channels; 0: not an output command
   std::uint16_t levels = 0;       ///< of the driven channels
+  std::uint16_t timers = 0;       ///< the driven channels whose timer starts; the others' timers end
   bool of_power_on = false;       ///< Modbus: the power-on value of these channels becomes `levels`
   bool of_safe = false;           ///< Modbus: the safe value of these channels becomes `levels`
   bool keeps_power_on = false;    ///< `~AA5P`: the outputs are stored as power-on value
@@ -62,13 +76,15 @@ struct Demand {
       return values;  // refused
     }
     values.outputs = merged(values.outputs);
-    store(values, values.outputs);
+    values.timed = static_cast<std::uint16_t>((values.timed & ~channels) | timers);
+    store(values, values.lasting_outputs());
     values.timed_out = values.timed_out && !clears_timeout;
     return values;
   }
 
   /// Like `made_of`, if the host watchdog expired while the command was being stored: the command drives
-  /// nothing (wire.md D6) and clears nothing (wire.md D17). `outputs`: the outputs before the timeout.
+  /// nothing (wire.md D6) and clears nothing (wire.md D17). `outputs`: the lasting outputs before the
+  /// timeout.
   [[nodiscard]] constexpr Values values_after_a_timeout(Values values, std::uint16_t outputs) const {
     store(values, outputs);
     values.outputs = values.safe;
@@ -76,17 +92,17 @@ struct Demand {
   }
 
   /// Returns whether `values` are possible after the command, if only a timeout has occurred since.
-  /// `outputs`: the outputs before the latest timeout. `since`: whether that timeout occurred after the
-  /// request was received.
+  /// `outputs`: the lasting outputs before the latest timeout. `since`: whether that timeout occurred after
+  /// the request was received.
   [[nodiscard]] constexpr bool is_met_by(const Values& values, std::uint16_t outputs, bool since) const {
     const auto are = [this](std::uint16_t value) { return (value & channels) == levels; };
     const auto kept = [&](std::uint16_t value) {
-      return value == values.outputs || (since && value == outputs);
+      return value == values.lasting_outputs() || (since && value == outputs);
     };
-    return (are(values.outputs) || (since && values.timed_out)) && (!of_power_on || are(values.power_on)) &&
-           (!of_safe || are(values.safe)) && (!keeps_power_on || kept(values.power_on)) &&
-           (!keeps_safe || kept(values.safe)) && (!clears_timeout || !values.timed_out || since) &&
-           (!timeout || values.timeout == *timeout) &&
+    return (are(values.outputs) || timers != 0 || (since && values.timed_out)) &&
+           (!of_power_on || are(values.power_on)) && (!of_safe || are(values.safe)) &&
+           (!keeps_power_on || kept(values.power_on)) && (!keeps_safe || kept(values.safe)) &&
+           (!clears_timeout || !values.timed_out || since) && (!timeout || values.timeout == *timeout) &&
            (!enabled || values.enabled == *enabled || (since && !values.enabled));
   }
 

@@ -18,7 +18,8 @@ inline Values values_of(const State& state, std::uint16_t outputs) {
           settings.safe_value,
           settings.watchdog_timeout,
           settings.watchdog_enabled,
-          settings.timeout_status};
+          settings.timeout_status,
+          state.output_timers.running()};
 }
 
 inline Listening listening_of(const State& state) {
@@ -29,6 +30,7 @@ inline Listening listening_of(const State& state) {
   listening.baud = baud_rate(now.baud_code);
   listening.checksum = now.checksum;
   listening.init_mode = now.init_mode;
+  listening.delays = state.settings.response_delay != 0;
   return listening;
 }
 

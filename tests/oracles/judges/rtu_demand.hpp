@@ -72,6 +72,32 @@ constexpr Demand demand_of_more_coils(Bytes request, unsigned outputs) {
   return demand_of_coils(request.word(2), count, request[7] | (bytes == 2 ? request[8] * 256U : 0U), outputs);
 }
 
+/// The timed outputs begin at this register.
+inline constexpr unsigned kTimedOutputs = 0x0280;
+
+/// Adds the effect of a write to the timed output `channel` (wire.md 12).
+constexpr void add_timed_output(unsigned channel, unsigned value, Demand& demand) {
+  const auto bit = static_cast<std::uint16_t>(1U << channel);
+  demand.channels = static_cast<std::uint16_t>(demand.channels | bit);
+  if (value != 0) {
+    demand.levels = static_cast<std::uint16_t>(demand.levels | bit);
+    demand.timers = static_cast<std::uint16_t>(demand.timers | bit);
+  }
+}
+
+/// Returns the effects of a write to `count` registers from `first` on, whose values are in `values`. Returns
+/// no effects unless all registers are timed outputs.
+constexpr Demand demand_of_timed_outputs(unsigned first, unsigned count, Bytes values, unsigned outputs) {
+  Demand demand;
+  if (first < kTimedOutputs || first + count > kTimedOutputs + outputs) {
+    return demand;
+  }
+  for (unsigned i = 0; i < count; ++i) {
+    add_timed_output(first + i - kTimedOutputs, values.word(std::size_t{2} * i), demand);
+  }
+  return demand;
+}
+
 constexpr Demand demand_of_register(unsigned address, unsigned value) {
   Demand demand;
   demand.stores_something = true;
@@ -84,6 +110,13 @@ constexpr Demand demand_of_register(unsigned address, unsigned value) {
 
 }  // namespace detail
 
+/// Returns whether a request with function 06 or 10 begins at a timed output that some model has.
+constexpr bool is_timed_output(Bytes request) {
+  constexpr unsigned kMost = 16;
+  return request.size >= 4 && request.word(2) >= detail::kTimedOutputs &&
+         request.word(2) < detail::kTimedOutputs + kMost;
+}
+
 /// Returns the effects of `request` on a module with `outputs` outputs. `request` has address and function,
 /// but no CRC.
 constexpr Demand rtu_demand(Bytes request, unsigned outputs) {
@@ -94,8 +127,18 @@ constexpr Demand rtu_demand(Bytes request, unsigned outputs) {
     case 0x0F:
       return detail::demand_of_more_coils(request, outputs);
     case 0x06:
+      if (request.size == 6 && is_timed_output(request)) {
+        return detail::demand_of_timed_outputs(request.word(2), 1, request.from(4), outputs);
+      }
       return request.size == 6 ? detail::demand_of_register(request.word(2), request.word(4)) : Demand{};
     case 0x10:
+      if (is_timed_output(request)) {
+        const bool formed =
+            request.size > 7 && request[6] == 2U * request.word(4) && request.size == 7U + request[6];
+        return formed ? detail::demand_of_timed_outputs(request.word(2), request.word(4), request.from(7),
+                                                        outputs)
+                      : Demand{};
+      }
       // A write of several registers cannot include the timeout register: no register next to it is writable.
       return request.size == kOneRegister && request.word(4) == 1 && request[6] == 2
                  ? detail::demand_of_register(request.word(2), request.word(7))
@@ -109,6 +152,9 @@ constexpr Demand rtu_demand(Bytes request, unsigned outputs) {
 
 /// Returns whether the module drives outputs on this request unless it refuses the request.
 constexpr bool is_rtu_output_command(Bytes request) {
+  if (request[1] == 0x06 || request[1] == 0x10) {
+    return is_timed_output(request);
+  }
   if (request.size < 4 || (request[1] != 0x05 && request[1] != 0x0F)) {
     return false;
   }

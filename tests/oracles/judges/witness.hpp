@@ -31,13 +31,15 @@ struct Listening {
   bool init_mode = false;
   bool strict_gaps = false;
   Microseconds doubt = 0;  ///< see RtuJudge
+  bool delays = false;     ///< a response delay is set
 };
 
 /// Reports a violated claim if
 ///  - a reply begins that no frame has requested, or begins too early or too late, or does not have the
 ///    format that the request demands;
 ///  - outputs, power-on value, safe value, timeout or enable of the host watchdog, or the timeout status
-///    change, except exactly as a received command demands or because the host watchdog expires;
+///    change, except exactly as a received command demands, because the host watchdog expires, or because the
+///    timer of an output ends;
 ///  - a command is answered, or an idle module receives a broadcast that drives outputs without storing, and
 ///    these values are not what the command demands;
 ///  - a command is refused although one of these values has changed, or a valid output command is refused;
@@ -83,6 +85,7 @@ class Witness {
     now_ = free_ = alive_ = busy_ = reset;
     expired_ = 0;
     held_ = sending_ = broadcast_ = false;
+    delays_ = listening.delays;
   }
 
   [[nodiscard]] bool hears_modbus() const { return rtu_.has_value(); }
@@ -234,6 +237,7 @@ class Witness {
     latest.broadcast = finding.kind == Finding::Kind::Broadcast;
     latest.alone = finding.first > busy_ && !finding.doubtful;
     latest.done = false;
+    delays_ = delays_ || (rtu_ ? sets_delay_by_rtu(finding.frame) : sets_delay_by_dcon(finding.frame));
     counts_.storing += latest.demand.stores_something ? 1U : 0U;
     broadcast_ =
         latest.alone && latest.broadcast && latest.demand.drives() && !latest.demand.stores_something;
@@ -254,12 +258,25 @@ class Witness {
   /// Returns the least time from the last byte of a request, or of the module's previous reply, to a reply.
   [[nodiscard]] Microseconds distance() const { return rtu_ ? silence_ : character_; }
 
+  static constexpr Microseconds kLongestDelay = 30 * kMillisecond;  // wire.md 12
+  static bool sets_delay_by_rtu(Bytes request) {
+    constexpr unsigned kDelay = 0x0252;
+    if (request.size < 6 || (request[1] != 0x06 && request[1] != 0x10)) {
+      return false;
+    }
+    const unsigned first = request.word(2);
+    return first <= kDelay && kDelay < first + (request[1] == 0x06 ? 1U : request.word(4));
+  }
+  static bool sets_delay_by_dcon(Bytes command) {
+    return command.size > 4 && command[0] == '~' && (command[3] == 'R' || command[3] == 'X');
+  }
+
   /// Returns the latest time at which the module executes `request`, if it was idle from `free` on (wire.md 3
   /// and 7).
   [[nodiscard]] Microseconds latest_of(const Pending& request, Microseconds free) const {
     constexpr Microseconds kPlain = 20 * kMillisecond;
     constexpr Microseconds kStoring = 200 * kMillisecond;
-    const Microseconds over = request.last + (rtu_ ? silence_ : 0);
+    const Microseconds over = request.last + std::max(rtu_ ? silence_ : 0, delays_ ? kLongestDelay : 0);
     return std::max(over, free) + (request.demand.stores_something ? kStoring : kPlain);
   }
   /// Returns whether the module stores something and sends no reply, so that it may be busy until the latest
@@ -445,7 +462,7 @@ class Witness {
     }
     if (count != 0 && may_expire(values_) && to == values_.expired()) {
       // The host watchdog may have expired instead. After a timeout it is disabled and does nothing more.
-      outputs_before_ = values_.outputs;
+      outputs_before_ = values_.lasting_outputs();
       expired_ = now_;
     } else if (count == 1) {
       only->done = true;
@@ -461,14 +478,18 @@ class Witness {
     return values.enabled && now_ - alive_ >= values.timeout * kUnit;
   }
 
-  /// Returns whether a timeout, or at most `most` commands from number `next` on, or both, can have changed
-  /// `from` to `to`.
+  /// Returns whether ended timers, a timeout, and at most `most` commands from number `next` on can have
+  /// changed `from` to `to`.
   bool some_lead(const Values& from, const Values& to, std::size_t next, unsigned most) {
     if (from == to) {
       return true;
     }
+    const auto ended = static_cast<std::uint16_t>(from.timed & ~to.timed);
+    if (ended != 0 && some_lead(from.without_timers(ended), to, next, most)) {
+      return true;
+    }
     if (may_expire(from)) {
-      const auto outputs = std::exchange(outputs_before_, from.outputs);
+      const auto outputs = std::exchange(outputs_before_, from.lasting_outputs());
       const auto expired = std::exchange(expired_, now_);
       if (some_lead(from.expired(), to, next, most)) {
         return true;
@@ -521,6 +542,7 @@ class Witness {
   std::uint16_t outputs_before_ = 0;  ///< the outputs before the latest timeout
   Microseconds expired_ = 0;          ///< time of the latest timeout; 0: none since the last reset
   bool held_ = false;
+  bool delays_ = false;  ///< a response delay may be in force
   bool sending_ = false;
   /// A broadcast has been received by an idle module, and its effect has not been checked yet.
   bool broadcast_ = false;

@@ -62,7 +62,7 @@ TEST(DescribeJson, HasThePropertiesOfAModel) {
 
 TEST(DescribeJson, HasAModelsCommands) {
   const Json commands = json_of_model("EX9052D-M").at("dcon_commands");
-  EXPECT_EQ(commands.size(), 21U);
+  EXPECT_EQ(commands.size(), 25U);
   const Json protocol = with(commands, "command", "$AAPN");
   EXPECT_EQ(protocol.at("reply"), "!AA");
   EXPECT_EQ(protocol.at("access"), "stored");

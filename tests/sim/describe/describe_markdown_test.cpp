@@ -12,6 +12,7 @@
 #include "firmware/dcon/commands.hpp"
 #include "firmware/modbus/functions.hpp"
 #include "firmware/modbus/registers.hpp"
+#include "sim/text/values.hpp"
 
 namespace ex9000::sim {
 namespace {
@@ -217,24 +218,27 @@ TEST(DescribeMarkdown, ListsEveryCommand) {
 }
 
 TEST(DescribeMarkdown, AModelWithOutputsAndModbusHasItsCommands) {
-  const Lines wanted{"%AANNTTCCFF", "#**",  "#AABBDD", "$AA2",  "$AA4",    "$AA5",      "$AA6",
-                     "$AAF",        "$AAM", "$AAP",    "$AAPN", "@AA",     "@AA(Data)", "~AAO(Name)",
-                     "~**",         "~AA0", "~AA1",    "~AA2",  "~AA3EVV", "~AA4V",     "~AA5V"};
+  const Lines wanted{
+      "%AANNTTCCFF", "#**",   "#AABBDD", "$AA2",      "$AA4",       "$AA5",     "$AA6",        "$AAF", "$AAM",
+      "$AAP",        "$AAPN", "@AA",     "@AA(Data)", "~AAO(Name)", "~**",      "~AA0",        "~AA1", "~AA2",
+      "~AA3EVV",     "~AA4V", "~AA5V",   "~AARD",     "~AARDVV",    "~AAXRRRR", "~AAXRRRRVVVV"};
   EXPECT_EQ(commands("EX9042D-M"), wanted);
   EXPECT_EQ(commands("EX9068AD-M"), wanted);
 }
 
 TEST(DescribeMarkdown, AModelWithInputsAndModbusHasItsCommands) {
-  EXPECT_EQ(commands("EX9052D-M"),
-            (Lines{"%AANNTTCCFF", "#**",        "#AAN", "$AA2",  "$AA4",  "$AA5", "$AA6",
-                   "$AAF",        "$AAM",       "$AAC", "$AACN", "$AALS", "$AAP", "$AAPN",
-                   "@AA",         "~AAO(Name)", "~**",  "~AA0",  "~AA1",  "~AA2", "~AA3EVV"}));
+  EXPECT_EQ(
+      commands("EX9052D-M"),
+      (Lines{"%AANNTTCCFF", "#**",   "#AAN",    "$AA2",  "$AA4",    "$AA5",     "$AA6",        "$AAF", "$AAM",
+             "$AAC",        "$AACN", "$AALS",   "$AAP",  "$AAPN",   "@AA",      "~AAO(Name)",  "~**",  "~AA0",
+             "~AA1",        "~AA2",  "~AA3EVV", "~AARD", "~AARDVV", "~AAXRRRR", "~AAXRRRRVVVV"}));
 }
 
 TEST(DescribeMarkdown, AModelWithInputsAndOutputsHasAllButTheProtocolCommands) {
-  const Lines wanted{"%AANNTTCCFF", "#**",  "#AABBDD", "#AAN",  "$AA2",    "$AA4",  "$AA5",      "$AA6",
-                     "$AAF",        "$AAM", "$AAC",    "$AACN", "$AALS",   "@AA",   "@AA(Data)", "~AAO(Name)",
-                     "~**",         "~AA0", "~AA1",    "~AA2",  "~AA3EVV", "~AA4V", "~AA5V"};
+  const Lines wanted{"%AANNTTCCFF", "#**",        "#AABBDD", "#AAN",    "$AA2",     "$AA4",        "$AA5",
+                     "$AA6",        "$AAF",       "$AAM",    "$AAC",    "$AACN",    "$AALS",       "@AA",
+                     "@AA(Data)",   "~AAO(Name)", "~**",     "~AA0",    "~AA1",     "~AA2",        "~AA3EVV",
+                     "~AA4V",       "~AA5V",      "~AARD",   "~AARDVV", "~AAXRRRR", "~AAXRRRRVVVV"};
   EXPECT_EQ(commands("EX9055D"), wanted);
   EXPECT_EQ(commands("EX9060D"), wanted);
 }
@@ -280,90 +284,136 @@ const Lines kProtocol{"coil", "0x0100", "00257", "01, 05", "read, write"};
 const Lines kEnable{"coil", "0x0104", "00261", "01, 05", "read, write"};
 const Lines kTimeoutStatus{"coil", "0x010D", "00270", "01, 05", "read, write"};
 const Lines kCountingEdge{"coil", "0x08CA", "02251", "01, 05", "read, write"};
-const Lines kHostOkInput{"input register", "0x3038", "312345", "04", "read"};
 const Lines kCode{"holding register", "0x01E2-0x01E3", "40483-40484", "03", "read"};
 const Lines kAddress{"holding register", "0x01E4", "40485", "03, 06, 10", "read, write"};
 const Lines kBaud{"holding register", "0x01E5", "40486", "03, 06, 10", "read, write"};
 const Lines kTimeout{"holding register", "0x01E8", "40489", "03, 06, 10", "read, write"};
-const Lines kHostOk{"holding register", "0x3038", "412345", "03", "read"};
+
+/// The extension registers of wire.md section 12 that a model has.
+struct Extension {
+  unsigned first;
+  unsigned last;
+  bool writes;
+};
+
+std::vector<Extension> extensions(unsigned inputs, unsigned outputs) {
+  std::vector<Extension> all;
+  if (inputs != 0) {
+    all.push_back({0x0240, 0x0240 + inputs - 1, true});
+    all.push_back({0x0250, 0x0250, true});
+  }
+  all.push_back({0x0251, 0x0251, true});
+  all.push_back({0x0252, 0x0252, true});
+  if (inputs != 0) {
+    all.push_back({0x0260, 0x0260 + 2 * inputs - 1, false});
+  }
+  if (outputs != 0) {
+    all.push_back({0x0280, 0x0280 + outputs - 1, true});
+  }
+  all.insert(all.end(), {{0x0300, 0x0300, false},
+                         {0x0301, 0x0301, false},
+                         {0x0302, 0x0303, false},
+                         {0x0304, 0x0304, true},
+                         {0x0305, 0x0305, false},
+                         {0x0306, 0x0306, false},
+                         {0x0308, 0x030F, false}});
+  return all;
+}
+
+/// Returns the rows of a map: `before`, the extensions and host OK as input registers, `general`, and the
+/// same as holding registers.
+std::vector<Lines> with_extensions(std::vector<Lines> before, unsigned inputs, unsigned outputs,
+                                   const std::vector<Lines>& general) {
+  const auto range = [](const Extension& extension, auto text) {
+    return text(extension.first) + (extension.first == extension.last ? "" : "-" + text(extension.last));
+  };
+  const auto add = [&](const char* table, const char* digit, bool holding) {
+    for (const Extension& each : extensions(inputs, outputs)) {
+      const auto number = [&](unsigned address) {
+        const std::string decimal = std::to_string(address + 1);
+        return digit + std::string(4 - decimal.size(), '0') + decimal;
+      };
+      const auto hex = [](unsigned address) { return "0x" + hex_word_text(address); };
+      before.push_back({table, range(each, hex), range(each, number),
+                        !holding      ? "04"
+                        : each.writes ? "03, 06, 10"
+                                      : "03",
+                        holding && each.writes ? "read, write" : "read"});
+    }
+  };
+  add("input register", "3", false);
+  before.push_back({"input register", "0x3038", "312345", "04", "read"});
+  before.insert(before.end(), general.begin(), general.end());
+  add("holding register", "4", true);
+  before.push_back({"holding register", "0x3038", "412345", "03", "read"});
+  return before;
+}
 
 TEST(DescribeMarkdown, ListsTheModbusMapOfThirteenOutputs) {
   EXPECT_EQ(map_of("EX9042D-M"),
-            (std::vector<Lines>{{"coil", "0x0000-0x000C", "00001-00013", "01, 05, 0F", "read, write"},
-                                {"coil", "0x0080-0x008C", "00129-00141", "01, 05, 0F", "read, write"},
-                                {"coil", "0x00A0-0x00AC", "00161-00173", "01, 05, 0F", "read, write"},
-                                kProtocol,
-                                kEnable,
-                                kTimeoutStatus,
-                                kHostOkInput,
-                                kCode,
-                                kAddress,
-                                kBaud,
-                                kTimeout,
-                                kHostOk}));
+            with_extensions({{"coil", "0x0000-0x000C", "00001-00013", "01, 05, 0F", "read, write"},
+                             {"coil", "0x0080-0x008C", "00129-00141", "01, 05, 0F", "read, write"},
+                             {"coil", "0x00A0-0x00AC", "00161-00173", "01, 05, 0F", "read, write"},
+                             kProtocol,
+                             kEnable,
+                             kTimeoutStatus},
+                            0, 13, {kCode, kAddress, kBaud, kTimeout}));
 }
 
 TEST(DescribeMarkdown, ListsTheModbusMapOfEightOutputs) {
   EXPECT_EQ(map_of("EX9068AD-M"),
-            (std::vector<Lines>{{"coil", "0x0000-0x0007", "00001-00008", "01, 05, 0F", "read, write"},
-                                {"coil", "0x0080-0x0087", "00129-00136", "01, 05, 0F", "read, write"},
-                                {"coil", "0x00A0-0x00A7", "00161-00168", "01, 05, 0F", "read, write"},
-                                kProtocol,
-                                kEnable,
-                                kTimeoutStatus,
-                                kHostOkInput,
-                                kCode,
-                                kAddress,
-                                kBaud,
-                                kTimeout,
-                                kHostOk}));
+            with_extensions({{"coil", "0x0000-0x0007", "00001-00008", "01, 05, 0F", "read, write"},
+                             {"coil", "0x0080-0x0087", "00129-00136", "01, 05, 0F", "read, write"},
+                             {"coil", "0x00A0-0x00A7", "00161-00168", "01, 05, 0F", "read, write"},
+                             kProtocol,
+                             kEnable,
+                             kTimeoutStatus},
+                            0, 8, {kCode, kAddress, kBaud, kTimeout}));
 }
 
 TEST(DescribeMarkdown, ListsTheModbusMapOfEightInputs) {
   EXPECT_EQ(map_of("EX9052D-M"),
-            (std::vector<Lines>{{"coil", "0x0020-0x0027", "00033-00040", "01", "read"},
-                                {"coil", "0x0040-0x0047", "00065-00072", "01", "read"},
-                                {"coil", "0x0060-0x0067", "00097-00104", "01", "read"},
-                                kProtocol,
-                                kEnable,
-                                {"coil", "0x0107", "00264", "05", "write"},
-                                kTimeoutStatus,
-                                {"coil", "0x0200-0x0207", "00513-00520", "05, 0F", "write"},
-                                kCountingEdge,
-                                {"discrete input", "0x0000-0x0007", "10001-10008", "02", "read"},
-                                {"input register", "0x0000-0x0007", "30001-30008", "04", "read"},
-                                kHostOkInput,
-                                {"holding register", "0x0000-0x0007", "40001-40008", "03", "read"},
-                                kCode,
-                                kAddress,
-                                kBaud,
-                                kTimeout,
-                                kHostOk}));
+            with_extensions({{"coil", "0x0020-0x0027", "00033-00040", "01", "read"},
+                             {"coil", "0x0040-0x0047", "00065-00072", "01", "read"},
+                             {"coil", "0x0060-0x0067", "00097-00104", "01", "read"},
+                             kProtocol,
+                             kEnable,
+                             {"coil", "0x0107", "00264", "05", "write"},
+                             kTimeoutStatus,
+                             {"coil", "0x0200-0x0207", "00513-00520", "05, 0F", "write"},
+                             kCountingEdge,
+                             {"discrete input", "0x0000-0x0007", "10001-10008", "02", "read"},
+                             {"input register", "0x0000-0x0007", "30001-30008", "04", "read"}},
+                            8, 0,
+                            {{"holding register", "0x0000-0x0007", "40001-40008", "03", "read"},
+                             kCode,
+                             kAddress,
+                             kBaud,
+                             kTimeout}));
 }
 
 TEST(DescribeMarkdown, ListsTheModbusMapOfInputsAndOutputs) {
   EXPECT_EQ(map_of("EX9060D-M"),
-            (std::vector<Lines>{{"coil", "0x0000-0x0003", "00001-00004", "01, 05, 0F", "read, write"},
-                                {"coil", "0x0020-0x0023", "00033-00036", "01", "read"},
-                                {"coil", "0x0040-0x0043", "00065-00068", "01", "read"},
-                                {"coil", "0x0060-0x0063", "00097-00100", "01", "read"},
-                                {"coil", "0x0080-0x0083", "00129-00132", "01, 05, 0F", "read, write"},
-                                {"coil", "0x00A0-0x00A3", "00161-00164", "01, 05, 0F", "read, write"},
-                                kProtocol,
-                                kEnable,
-                                {"coil", "0x0107", "00264", "05", "write"},
-                                kTimeoutStatus,
-                                {"coil", "0x0200-0x0203", "00513-00516", "05, 0F", "write"},
-                                kCountingEdge,
-                                {"discrete input", "0x0000-0x0003", "10001-10004", "02", "read"},
-                                {"input register", "0x0000-0x0003", "30001-30004", "04", "read"},
-                                kHostOkInput,
-                                {"holding register", "0x0000-0x0003", "40001-40004", "03", "read"},
-                                kCode,
-                                kAddress,
-                                kBaud,
-                                kTimeout,
-                                kHostOk}));
+            with_extensions({{"coil", "0x0000-0x0003", "00001-00004", "01, 05, 0F", "read, write"},
+                             {"coil", "0x0020-0x0023", "00033-00036", "01", "read"},
+                             {"coil", "0x0040-0x0043", "00065-00068", "01", "read"},
+                             {"coil", "0x0060-0x0063", "00097-00100", "01", "read"},
+                             {"coil", "0x0080-0x0083", "00129-00132", "01, 05, 0F", "read, write"},
+                             {"coil", "0x00A0-0x00A3", "00161-00164", "01, 05, 0F", "read, write"},
+                             kProtocol,
+                             kEnable,
+                             {"coil", "0x0107", "00264", "05", "write"},
+                             kTimeoutStatus,
+                             {"coil", "0x0200-0x0203", "00513-00516", "05, 0F", "write"},
+                             kCountingEdge,
+                             {"discrete input", "0x0000-0x0003", "10001-10004", "02", "read"},
+                             {"input register", "0x0000-0x0003", "30001-30004", "04", "read"}},
+                            4, 4,
+                            {{"holding register", "0x0000-0x0003", "40001-40004", "03", "read"},
+                             kCode,
+                             kAddress,
+                             kBaud,
+                             kTimeout}));
 }
 
 TEST(DescribeMarkdown, AModelWithoutModbusHasNoMap) {
@@ -375,7 +425,7 @@ TEST(DescribeMarkdown, AModelWithoutModbusHasNoMap) {
 }
 
 TEST(DescribeMarkdown, ShowsMeaningAndRangeOfARegister) {
-  const std::string text = text_of("EX9052D-M");
+  const std::string text = text_of("EX9060D-M");
   for (const modbus::WordRegister& row : modbus::kWordRegisters) {
     EXPECT_TRUE(has(text, " | " + std::string(row.meaning) + " |\n")) << row.id;
   }

@@ -193,14 +193,14 @@ TEST(ModbusMeaning, ReadingRegister3038WithAnotherQuantityIsNoHostOk) {
 }
 
 TEST(ModbusMeaning, AnAddressOutsideTheMapIsReportedAsUnknown) {
-  EXPECT_TRUE(has(of_request(FrameBytes{0x01, 0x01, 0x03, 0x00, 0x00, 0x01}), "unknown address"));
+  EXPECT_TRUE(has(of_request(FrameBytes{0x01, 0x01, 0x04, 0x00, 0x00, 0x01}), "unknown address"));
   EXPECT_TRUE(has(of_request(FrameBytes{0x01, 0x06, 0x01, 0xE2, 0x00, 0x01}), "unknown address"));
-  EXPECT_TRUE(has(of_request(FrameBytes{0x01, 0x03, 0x00, 0x08, 0x00, 0x01}), "unknown address"));
+  EXPECT_TRUE(has(of_request(FrameBytes{0x01, 0x03, 0x00, 0x10, 0x00, 0x01}), "unknown address"));
 }
 
-TEST(ModbusMeaning, AddressesOfMoreThan8InputsAreUnknown) {
-  EXPECT_TRUE(has(of_request(FrameBytes{0x01, 0x01, 0x00, 0x28, 0x00, 0x01}), "unknown address"));
-  EXPECT_TRUE(has(of_request(FrameBytes{0x01, 0x05, 0x02, 0x08, 0xFF, 0x00}), "unknown address"));
+TEST(ModbusMeaning, AddressesOfMoreThan16InputsAreUnknown) {
+  EXPECT_TRUE(has(of_request(FrameBytes{0x01, 0x01, 0x00, 0x30, 0x00, 0x01}), "unknown address"));
+  EXPECT_TRUE(has(of_request(FrameBytes{0x01, 0x05, 0x02, 0x10, 0xFF, 0x00}), "unknown address"));
 }
 
 TEST(ModbusMeaning, OtherFunctionsAreNamed) {

@@ -1,0 +1,51 @@
+#include "firmware/channels/output_timers.hpp"
+
+namespace ex9000 {
+
+namespace {
+
+constexpr Duration kUnit = milliseconds(100);
+/// The start may be up to 1 us later than its recorded time.
+constexpr Duration kLateStart(1);
+
+}  // namespace
+
+void OutputTimers::start(unsigned channel, std::uint16_t units, Time now) {
+  timers_[channel].units = units;
+  timers_[channel].unit_end.set(now + kUnit + kLateStart);
+  running_ = static_cast<std::uint16_t>(running_ | 1U << channel);
+}
+
+std::uint16_t OutputTimers::expire(Time now) {
+  std::uint16_t over = 0;
+  for (unsigned channel = 0; running_ >> channel != 0; ++channel) {
+    Timer& timer = timers_[channel];
+    while (is_running(channel) && timer.unit_end.reached(now)) {
+      timer.unit_end.postpone(kUnit);
+      --timer.units;
+      if (timer.units == 0) {
+        const auto bit = static_cast<std::uint16_t>(1U << channel);
+        over = static_cast<std::uint16_t>(over | bit);
+        stop(bit);
+      }
+    }
+  }
+  return over;
+}
+
+std::uint16_t OutputTimers::left(unsigned channel) const {
+  return is_running(channel) ? timers_[channel].units : std::uint16_t{0};
+}
+
+Duration OutputTimers::until_due(Time now, Duration at_most) const {
+  Duration until = at_most;
+  for (unsigned channel = 0; running_ >> channel != 0; ++channel) {
+    if (is_running(channel)) {
+      const Duration remaining = timers_[channel].unit_end.remaining(now);
+      until = remaining < until ? remaining : until;
+    }
+  }
+  return until;
+}
+
+}  // namespace ex9000

@@ -1,0 +1,108 @@
+// Tests the timers of timed outputs: wire.md section 12.
+#include "firmware/channels/output_timers.hpp"
+
+#include <gtest/gtest.h>
+
+namespace ex9000 {
+namespace {
+
+constexpr Duration kLong = milliseconds(10'000);
+
+class OutputTimersTest : public testing::Test {
+ protected:
+  void pass(Duration time) { now_ = now_ + time; }
+
+  OutputTimers timers_;
+  Time now_{0xFFFF'FF00U};  // times wrap soon
+};
+
+TEST_F(OutputTimersTest, NoneIsRunningAtFirst) {
+  EXPECT_EQ(timers_.running(), 0U);
+  EXPECT_EQ(timers_.left(0), 0U);
+  EXPECT_EQ(timers_.expire(now_), 0U);
+  EXPECT_TRUE(timers_.until_due(now_, kLong) == kLong);
+}
+
+TEST_F(OutputTimersTest, EachEndsAfterItsTimeNeverEarly) {
+  for (unsigned channel = 0; channel < kMaxOutputs; ++channel) {
+    timers_.start(channel, static_cast<std::uint16_t>(channel + 1), now_);
+  }
+  EXPECT_EQ(timers_.running(), 0xFFFFU);
+  for (unsigned channel = 0; channel < kMaxOutputs; ++channel) {
+    pass(milliseconds(100));
+    EXPECT_EQ(timers_.expire(now_), 0U) << channel;  // the start may have been up to 1 us late
+    pass(Duration(1));
+    EXPECT_EQ(timers_.expire(now_), 1U << channel);
+    now_ = Time(now_.microseconds() - 1U);
+  }
+  EXPECT_EQ(timers_.running(), 0U);
+}
+
+TEST_F(OutputTimersTest, WhatIsLeftIsRoundedUp) {
+  timers_.start(3, 3, now_);
+  EXPECT_EQ(timers_.left(3), 3U);
+  pass(milliseconds(100));
+  timers_.expire(now_);
+  EXPECT_EQ(timers_.left(3), 3U);
+  pass(Duration(1));
+  timers_.expire(now_);
+  EXPECT_EQ(timers_.left(3), 2U);
+  EXPECT_EQ(timers_.left(2), 0U);
+}
+
+TEST_F(OutputTimersTest, TheLongestTimeIsExactAlthoughItIsLongerThanTimesCanExpress) {
+  timers_.start(15, 0xFFFF, now_);
+  for (unsigned unit = 1; unit < 0xFFFF; ++unit) {
+    pass(milliseconds(100));
+    ASSERT_EQ(timers_.expire(now_), 0U) << unit;
+  }
+  pass(milliseconds(100));
+  EXPECT_EQ(timers_.expire(now_), 0U);
+  EXPECT_EQ(timers_.left(15), 1U);
+  pass(Duration(1));
+  EXPECT_EQ(timers_.expire(now_), 0x8000U);
+}
+
+TEST_F(OutputTimersTest, SeveralUnitsMayPassBetweenTwoCalls) {
+  timers_.start(0, 5, now_);
+  pass(milliseconds(350));
+  EXPECT_EQ(timers_.expire(now_), 0U);
+  EXPECT_EQ(timers_.left(0), 2U);
+  pass(milliseconds(1000));
+  EXPECT_EQ(timers_.expire(now_), 1U);
+}
+
+TEST_F(OutputTimersTest, OneThatIsStartedAgainRunsForItsNewTime) {
+  timers_.start(1, 1, now_);
+  pass(milliseconds(90));
+  timers_.start(1, 2, now_);
+  pass(milliseconds(200));
+  EXPECT_EQ(timers_.expire(now_), 0U);
+  pass(Duration(1));
+  EXPECT_EQ(timers_.expire(now_), 2U);
+}
+
+TEST_F(OutputTimersTest, OneThatIsStoppedNeverEnds) {
+  timers_.start(1, 1, now_);
+  timers_.start(2, 1, now_);
+  timers_.stop(1U << 1U);
+  EXPECT_EQ(timers_.running(), 1U << 2U);
+  EXPECT_EQ(timers_.left(1), 0U);
+  pass(milliseconds(1000));
+  EXPECT_EQ(timers_.expire(now_), 1U << 2U);
+}
+
+TEST_F(OutputTimersTest, TheNextUnitOfAnyTimerIsDueNext) {
+  timers_.start(7, 9, now_);
+  pass(milliseconds(30));
+  timers_.start(2, 9, now_);
+  EXPECT_EQ(timers_.until_due(now_, kLong).microseconds(), 70'001U);
+  EXPECT_EQ(timers_.until_due(now_, milliseconds(1)).microseconds(), 1000U);
+  pass(milliseconds(75));
+  EXPECT_TRUE(timers_.until_due(now_, kLong) == Duration());
+  timers_.expire(now_);
+  EXPECT_EQ(timers_.until_due(now_, kLong).microseconds(), 25'001U);
+}
+
+}  // namespace
+}  // namespace ex9000

@@ -1,0 +1,183 @@
+// Tests extensions of a whole module that depend on exact times, stores and resets: wire.md section 12.
+#include <gtest/gtest.h>
+
+#include <string>
+#include <vector>
+
+#include "sim/text/values.hpp"
+#include "tests/firmware/module_bench.hpp"
+
+namespace ex9000::sim {
+namespace {
+
+using std::chrono::microseconds;
+using std::chrono::milliseconds;
+using std::chrono::seconds;
+
+constexpr milliseconds kTick{1};
+
+std::uint16_t outputs_of(ModuleBench& bench) { return bench.module().outputs(); }
+
+// --- timed outputs ---
+
+TEST(TimedOutput, IsSwitchedOffAfterItsTimeNeverEarlyAndAtMostATickLate) {
+  for (const unsigned units : {1U, 2U, 7U, 600U}) {
+    ModuleBench bench("EX9043D,baud=115200");
+    std::vector<OutputChange> changes;
+    bench.watch_outputs(changes);
+    ASSERT_EQ(bench.ask("~01X0285" + hex_word_text(units)), "!01");
+    bench.run(milliseconds(100) * units + seconds(1));
+    ASSERT_EQ(changes.size(), 2U) << units;
+    EXPECT_EQ(changes[0].channels, 1U << 5U);
+    EXPECT_EQ(changes[1].channels, 0U);
+    EXPECT_GE(changes[1].at - changes[0].at, milliseconds(100) * units);
+    EXPECT_LE(changes[1].at - changes[0].at, milliseconds(100) * units + kTick);
+  }
+}
+
+TEST(TimedOutput, IsSwitchedOffInTimeWhileSettingsAreStoredOrAReplyIsSent) {
+  for (int offset = 0; offset < 60; ++offset) {
+    ModuleBench bench("EX9043D");
+    std::vector<OutputChange> changes;
+    bench.watch_outputs(changes);
+    ASSERT_EQ(bench.ask("~01X02800003"), "!01");  // ask waits for 250 ms, so 50 ms are left
+    bench.run(milliseconds(offset));
+    bench.send("~01ONAME" + std::to_string(offset % 10) + "\r");
+    bench.run(milliseconds(400));
+    ASSERT_EQ(changes.size(), 2U) << offset;
+    EXPECT_GE(changes[1].at - changes[0].at, milliseconds(300)) << offset;
+    EXPECT_LE(changes[1].at - changes[0].at, milliseconds(300) + kTick) << offset;
+  }
+}
+
+TEST(TimedOutput, EndsWithTheExpiryOfTheHostWatchdogAndIsNotSwitchedOffLater) {
+  ModuleBench bench("EX9043D,baud=115200");
+  ASSERT_EQ(bench.ask("@010001"), ">");
+  ASSERT_EQ(bench.ask("~015S"), "!01");  // the safe value has output 0 on
+  ASSERT_EQ(bench.ask("~01X0280000A"), "!01");
+  ASSERT_EQ(bench.ask("~013105"), "!01");
+  bench.run(milliseconds(500));
+  ASSERT_EQ(bench.ask("~010"), "!0104");
+  EXPECT_EQ(outputs_of(bench), 0x0001);
+  EXPECT_EQ(bench.ask("~01X0280"), "!010000");
+  bench.run(seconds(2));
+  EXPECT_EQ(outputs_of(bench), 0x0001);
+}
+
+TEST(TimedOutput, IsOffAfterAResetAndItsTimeIsGone) {
+  ModuleBench bench("EX9043D,baud=115200");
+  ASSERT_EQ(bench.ask("~01X0280FFFF"), "!01");
+  ASSERT_EQ(outputs_of(bench), 0x0001);
+  bench.module().reset();
+  bench.run(milliseconds(100));
+  EXPECT_EQ(outputs_of(bench), 0);
+  EXPECT_EQ(bench.ask("~01X0280"), "!010000");
+}
+
+TEST(TimedOutput, StoresNothing) {
+  ModuleBench bench("EX9043D,baud=115200");
+  ASSERT_EQ(bench.ask("~01X02800001"), "!01");
+  bench.run(seconds(1));
+  EXPECT_EQ(bench.ask("~01X0305"), "!010000");
+}
+
+// --- filters ---
+
+TEST(InputFilter, ALevelCountsAfterItsTimeNeverEarlyAndAtMostATickLate) {
+  for (const unsigned time : {1U, 30U, 2000U}) {
+    ModuleBench bench("EX9052D,baud=115200");
+    ASSERT_EQ(bench.ask("~01X0243" + hex_word_text(time)), "!01");
+    bench.module().set_input(3, true);
+    bench.run(milliseconds(time));
+    const State& state = bench.module().module().state();
+    EXPECT_EQ(state.inputs.levels(), 0) << time;
+    bench.run(kTick);
+    EXPECT_EQ(state.inputs.levels(), 1U << 3U) << time;
+  }
+}
+
+TEST(InputFilter, TheLevelAtResetIsTheBaselineAtOnce) {
+  ModuleBench bench("EX9052D,baud=115200");
+  ASSERT_EQ(bench.ask("~01X024307D0"), "!01");
+  ASSERT_EQ(bench.ask("~01X025000F0"), "!01");
+  bench.module().power(false);
+  bench.module().set_input(3, true);
+  bench.module().power(true);
+  bench.run(milliseconds(100));
+  EXPECT_EQ(bench.ask("@01"), ">F800");
+  EXPECT_EQ(bench.ask("$01L1"), "!000000");
+}
+
+// --- feeding the host watchdog by requests ---
+
+TEST(FedByRequests, ARequestRestartsTheHostWatchdogAtItsEnd) {
+  ModuleBench bench("EX9043D,baud=115200");
+  ASSERT_EQ(bench.ask("@010001"), ">");
+  ASSERT_EQ(bench.ask("~01X02510001"), "!01");
+  ASSERT_EQ(bench.ask("~013105"), "!01");
+  std::vector<OutputChange> changes;
+  bench.watch_outputs(changes);
+  bench.send("$01Z\r");
+  const VirtualTime fed = bench.now();
+  bench.run(seconds(1));
+  ASSERT_EQ(changes.size(), 1U);
+  EXPECT_GE(changes[0].at - fed, milliseconds(500));
+  EXPECT_LE(changes[0].at - fed, milliseconds(500) + kTick);
+}
+
+// The request ends in the same millisecond in which the watchdog would expire.
+TEST(FedByRequests, ARequestJustBeforeTheExpiryFeedsAndJustAfterItDoesNot) {
+  const std::string request = "$01M\r";
+  const VirtualTime takes = VirtualTime(10'000'000'000 / 115200) * static_cast<int>(request.size());
+  for (const int offset : {-900, -100, -10, 10, 100, 900}) {  // in us
+    ModuleBench bench("EX9043D,baud=115200");
+    ASSERT_EQ(bench.ask("~01X02510001"), "!01");
+    ASSERT_EQ(bench.ask("~01310A"), "!01");
+    bench.send(request);
+    const VirtualTime expires = bench.now() + seconds(1);
+    bench.line().bus().run_until(expires - takes + microseconds(offset));
+    bench.send(request);
+    bench.run(milliseconds(300));
+    EXPECT_EQ(bench.module().module().state().settings.timeout_status, offset > 0) << offset;
+  }
+}
+
+// --- reset reason and statistics ---
+
+TEST(ResetReasons, TellPowerOnResetPinAndModuleWatchdog) {
+  ModuleBench bench("EX9043D,baud=115200");
+  EXPECT_EQ(bench.ask("~01X0301"), "!010001");
+  bench.module().reset();
+  bench.run(milliseconds(100));
+  EXPECT_EQ(bench.ask("~01X0301"), "!010004");
+  bench.module().hang();
+  bench.run(seconds(3));
+  EXPECT_EQ(bench.ask("~01X0301"), "!010002");
+  bench.power_cycle();
+  EXPECT_EQ(bench.ask("~01X0301"), "!010001");
+}
+
+TEST(Uptime, CountsSecondsBeyondTheRangeOfTheClock) {
+  ModuleBench bench("EX9043D,baud=115200");
+  bench.run(std::chrono::hours(2));
+  const std::string reply = bench.ask("~01X0302");
+  ASSERT_EQ(reply.size(), 11U);
+  EXPECT_EQ(reply.substr(3), "00001C20");  // 7200
+  bench.module().reset();
+  bench.run(milliseconds(100));
+  EXPECT_EQ(bench.ask("~01X0302"), "!0100000000");
+}
+
+TEST(TimeoutCount, CountsEveryExpiryUntilItIsCleared) {
+  ModuleBench bench("EX9043D,baud=115200");
+  for (int i = 0; i < 3; ++i) {
+    ASSERT_EQ(bench.ask("~013101"), "!01");
+  }
+  EXPECT_EQ(bench.ask("~01X0304"), "!010003");
+  EXPECT_EQ(bench.ask("~01X03040001"), "?01");
+  EXPECT_EQ(bench.ask("~01X03040000"), "!01");
+  EXPECT_EQ(bench.ask("~01X0304"), "!010000");
+}
+
+}  // namespace
+}  // namespace ex9000::sim
