@@ -16,14 +16,20 @@ MOVES_A_BOARD = ("init", "reset", "flash", "verify_image", "poll")
 ECHO_INSTEAD = "; ".join([f'proc {name} {{args}} {{ echo "> {name} $args" }}' for name in MOVES_A_BOARD])
 
 
+def openocd_script(board: Path) -> str | None:
+    """Returns the OpenOCD script that a board.cmake, or the file that it includes, sets."""
+    text = board.read_text()
+    if match := re.search(r"set\(openocd_script (\S+)\)", text):
+        return match.group(1).replace("${CMAKE_CURRENT_LIST_DIR}", str(board.parent))
+    if match := re.search(r"include\(\${CMAKE_CURRENT_LIST_DIR}/(\S+)\)", text):
+        return openocd_script((board.parent / match.group(1)).resolve())
+    return None
+
+
 def openocd_scripts() -> dict[str, str]:
     """Returns the OpenOCD script of each board that can be flashed."""
-    scripts = {}
-    for file in sorted(ROOT.glob("boards/*/board.cmake")):
-        match = re.search(r"set\(openocd_script (\S+)\)", file.read_text())
-        if match is not None:
-            scripts[file.parent.name] = match.group(1).replace("${CMAKE_CURRENT_LIST_DIR}", str(file.parent))
-    return scripts
+    scripts = {file.parent.name: openocd_script(file) for file in sorted(ROOT.glob("boards/*/board.cmake"))}
+    return {board: script for board, script in scripts.items() if script is not None}
 
 
 def flash(script: str, *, path: str) -> subprocess.CompletedProcess[str]:
@@ -48,7 +54,7 @@ def openocd(words: list[str]) -> subprocess.CompletedProcess[str]:
 
 class Flash(unittest.TestCase):
     def test_every_board_has_a_script_that_openocd_understands(self) -> None:
-        self.assertEqual(set(openocd_scripts()), {"ek-tm4c123gxl", "lm3s6965evb", "pico"})
+        self.assertEqual(set(openocd_scripts()), {"ek-tm4c123gxl", "lm3s6965evb", "pico", "pico-w"})
         for board, script in openocd_scripts().items():
             with self.subTest(board):
                 finished = openocd(["-f", script, "-c", "noinit", "-c", "shutdown"])

@@ -316,5 +316,17 @@ TEST_F(PicoWithEeprom, AModuleWithoutAnEepromWorksWithFactorySettings) {
   EXPECT_EQ(bench_.counts().at("timeouts"), 0);
 }
 
+// The image for a Pico W drives the LED that the module has instead of the one behind the radio chip.
+TEST_F(PicoImage, TheStatusLedOfAPicoWIsAPinThatItsRadioDoesNotUse) {
+  constexpr std::uint32_t kLedOfPicoW = 1U << 22;
+  constexpr std::uint32_t kRadio = 1U << 23 | 1U << 24 | 1U << 25 | 1U << 29;
+  bench_.begin_with(EX9000_BUILD_FOLDER "/pico-w/EX9055D.bin");
+  bench_.power(true);
+  bench_.run_for(kComingUp);
+  EXPECT_EQ(ask("$01M"), "!019055\r");
+  EXPECT_EQ(bench_.levels() & (kLedOfPicoW | kRadio), kLedOfPicoW);
+  EXPECT_EQ(bench_.counts().at("drives"), 1);
+}
+
 }  // namespace
 }  // namespace ex9000::pico

@@ -34,9 +34,14 @@ std::vector<std::string> split(const std::string& text, char at) {
   return parts;
 }
 
-std::vector<Table> tables() {
+std::string text_of(const char* path) {
+  std::ifstream file(path);
+  return {std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>()};
+}
+
+std::vector<Table> tables_in(const char* readme) {
   std::vector<Table> result;
-  std::ifstream file(EX9000_BOARD_README);
+  std::istringstream file(text_of(readme));
   bool inside = false;
   for (std::string line; std::getline(file, line);) {
     if (line.rfind('|', 0) != 0) {
@@ -51,15 +56,35 @@ std::vector<Table> tables() {
   return result;
 }
 
-/// Returns the only table whose first column has this header.
-Table table_of(const std::string& head) {
+/// Returns the only table in a README whose first column has this header, or an empty table.
+Table table_in(const char* readme, const std::string& head) {
   Table found;
-  for (const Table& table : tables()) {
+  for (const Table& table : tables_in(readme)) {
     if (table[0][0] == head) {
       EXPECT_TRUE(found.empty()) << "two tables of " << head;
       found = table;
     }
   }
+  return found;
+}
+
+/// Returns the table of the board whose first column has this header.
+Table table_of(const std::string& head) {
+#ifdef EX9000_BASE_README
+  // The README of the board contains only the rows that differ from those of another board.
+  Table found = table_in(EX9000_BASE_README, head);
+  for (const Row& row : table_in(EX9000_BOARD_README, head)) {
+    const auto same = std::find_if(found.begin(), found.end(),
+                                   [&row](const Row& other) { return other.at(0) == row.at(0); });
+    if (same == found.end()) {
+      ADD_FAILURE() << row.at(0) << " is not in the table of the other board";
+    } else {
+      *same = row;
+    }
+  }
+#else
+  Table found = table_in(EX9000_BOARD_README, head);
+#endif
   EXPECT_FALSE(found.empty()) << "no table of " << head;
   return found;
 }
@@ -182,8 +207,7 @@ TEST(Wiring, EveryHeaderPositionInTheTablesMatchesItsPin) {
 }
 
 TEST(Wiring, EveryHeaderPositionInTheTextMatchesItsPin) {
-  std::ifstream file(EX9000_BOARD_README);
-  const std::string text{std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>()};
+  const std::string text = text_of(EX9000_BOARD_README);
   int named = 0;
   for (auto open = text.find(" (P"); open != std::string::npos; open = text.find(" (P", open + 1)) {
     const auto start = text.rfind(' ', open - 1) + 1;
@@ -212,8 +236,11 @@ TEST(Wiring, EveryPositionInTheTablesMatchesItsPin) {
 }
 
 TEST(Wiring, EveryPositionInTheTextMatchesItsPin) {
-  std::ifstream file(EX9000_BOARD_README);
-  const std::string text{std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>()};
+#ifdef EX9000_BASE_README
+  const std::string text = text_of(EX9000_BASE_README) + text_of(EX9000_BOARD_README);
+#else
+  const std::string text = text_of(EX9000_BOARD_README);
+#endif
   int named = 0;
   for (auto open = text.find(" (GP"); open != std::string::npos; open = text.find(" (GP", open + 1)) {
     const auto start = text.rfind(' ', open - 1) + 1;

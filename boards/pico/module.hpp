@@ -1,0 +1,45 @@
+// What the Raspberry Pi Pico and the Pico W have in common: clock, pins and polarity. The status LED differs.
+// README.md in this folder describes the wiring.
+#pragma once
+
+#include <array>
+#include <cstdint>
+
+#include "boards/rp2040/memory.hpp"
+#include "hal/rp2040/clocks.hpp"
+#include "hal/rp2040/gpio.hpp"
+
+namespace ex9000::board {
+
+using hal::rp2040::Pin;
+using hal::rp2040::PinGroup;
+
+/// A 12 MHz crystal. The PLL's oscillator runs at 1500 MHz, processor and peripherals at 125 MHz.
+inline constexpr hal::rp2040::ClockTree kClock{12'000'000, 125, 6, 2};
+
+#ifdef EX9000_SETTINGS_IN_EEPROM
+inline constexpr Memory kMemory = Memory::Eeprom;
+#else
+inline constexpr Memory kMemory = Memory::Flash;
+#endif
+/// The first byte for settings, if they are in the flash: an offset in bytes. image.ld reserves the last 64
+/// KiB.
+inline constexpr std::uint32_t kSettingsInFlash = (2048U - 64U) * 1024U;
+
+/// The line is UART0 on GPIO0 (transmit) and GPIO1 (receive).
+inline constexpr PinGroup kUartPins{0, 2};
+inline constexpr Pin kDriverEnable{2};
+
+inline constexpr Pin kInitSwitch{3};
+/// The EEPROM is on I2C0: GPIO4 (SDA) and GPIO5 (SCL).
+inline constexpr PinGroup kI2cPins{4, 2};
+
+/// The pins in the order of the channels. Outputs begin with the first eight pins, inputs with the second
+/// eight. A model with more than eight outputs has no inputs, so it can use all pins.
+inline constexpr std::array<PinGroup, 2> kOutputs{PinGroup{6, 8}, PinGroup{14, 8}};
+inline constexpr std::array<PinGroup, 2> kInputs{PinGroup{14, 8}, PinGroup{6, 8}};
+inline constexpr bool kOutputsActiveHigh = true;
+/// An optocoupler pulls the pin low while its input has 24 V.
+inline constexpr bool kInputsActiveHigh = false;
+
+}  // namespace ex9000::board
