@@ -20,3 +20,7 @@ if(EX9000_MEMORY STREQUAL eeprom)
 elseif(NOT EX9000_MEMORY STREQUAL flash)
   message(FATAL_ERROR "EX9000_MEMORY: ${EX9000_MEMORY} is not a memory; use flash or eeprom")
 endif()
+
+# Runs images in rp2040js.
+set(run_program ${CMAKE_CURRENT_LIST_DIR}/run)
+set(run_memory ${EX9000_MEMORY})

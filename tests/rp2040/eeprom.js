@@ -16,6 +16,7 @@ class Eeprom {
     this.programs = null; // bytes that are being programmed: [address, value]
     this.alarm = time.createAlarm(() => this.programmed());
     this.pagesProgrammed = 0;
+    this.changed = () => {}; // is called with the first address and the size of bytes that may have changed
     this.address = 0;
     this.reset();
   }
@@ -84,6 +85,7 @@ class Eeprom {
     });
     this.programs = null;
     this.pagesProgrammed += 1;
+    this.changed(0, SIZE);
   }
 
   // Simulates a power failure. If a page is being programmed, its first bytes are new, in proportion to the time that
@@ -96,6 +98,7 @@ class Eeprom {
       });
       this.alarm.cancel();
       this.programs = null;
+      this.changed(0, SIZE);
     }
     this.reset();
   }

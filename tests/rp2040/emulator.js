@@ -16,6 +16,21 @@ const integer = (text) => {
 const hexOf = (bytes) => Buffer.from(bytes).toString("hex");
 const bytesOf = (text) => [...Buffer.from(text ?? "", "hex")];
 
+// Loads a file to `address` of a memory, and writes each change of these bytes to it.
+function keep(memory, descriptor, address) {
+  const { size } = fs.fstatSync(descriptor);
+  fs.readSync(descriptor, memory.content, address, size, 0);
+  Object.assign(memory, {
+    changed(first, count) {
+      const begin = Math.max(first, address);
+      const end = Math.min(first + count, address + size);
+      if (begin < end) {
+        fs.writeSync(descriptor, memory.content, begin, end - begin, begin - address);
+      }
+    },
+  });
+}
+
 const COMMANDS = {
   // new IMAGE.bin TRANSMIT RECEIVE DRIVER-ENABLE SDA: creates a board with this image and these pins. Its supply is
   // off, and its EEPROM is erased.
@@ -118,6 +133,10 @@ const COMMANDS = {
   flash: (address, size) => hexOf(board.flash.content.subarray(integer(address), integer(address) + integer(size))),
   // set-flash ADDRESS HEX: changes bytes of the flash chip
   "set-flash": (address, hex) => board.flash.content.set(bytesOf(hex), integer(address)),
+  // keep-flash DESCRIPTOR ADDRESS: keeps the bytes of the flash chip from ADDRESS on in an open file
+  "keep-flash": (descriptor, address) => keep(board.flash, integer(descriptor), integer(address)),
+  // keep-eeprom DESCRIPTOR: keeps the content of the EEPROM in an open file
+  "keep-eeprom": (descriptor) => keep(board.eeprom, integer(descriptor), 0),
   // flash-times ERASE PROGRAM: sets the durations of an erase and of a page program, in nanoseconds
   "flash-times"(erase, program) {
     board.flash.times = { erase: integer(erase), program: integer(program) };

@@ -23,6 +23,7 @@ class FlashChip {
     this.resumed = -Infinity; // time of the last resume
     this.erased = new Map(); // number of erases, by sector
     this.done = time.createAlarm(() => this.finish());
+    this.changed = () => {}; // is called with the first address and the size of bytes that have changed
   }
 
   get busy() {
@@ -136,6 +137,7 @@ class FlashChip {
         this.content[address + index] &= byte;
       });
     }
+    this.changed(kind === "erase" ? sector * SECTOR : address, kind === "erase" ? SECTOR : bytes.length);
     this.operation = null;
     this.writeEnabled = false;
   }
@@ -177,6 +179,7 @@ class FlashChip {
       for (let index = 0; index < size; index += 2) {
         this.content[first + index] = kind === "erase" ? 0xff : this.content[first + index] & bytes[index];
       }
+      this.changed(first, size);
     }
     this.done.cancel();
     this.operation = null;

@@ -19,7 +19,8 @@ from collections import deque
 from pathlib import Path
 from typing import Any
 
-from qemu.refusal import Refusal
+from emulated.program import Ended
+from emulated.refusal import Refusal
 
 _PROGRAM = "qemu-system-arm"
 _INIT_RELEASED = "set_irq_in /machine/unattached/device[8] unnamed-gpio-in 7 1"  # PA7 high
@@ -29,18 +30,15 @@ _PR_SET_PDEATHSIG = 1
 _HANG = 60  # seconds; exceeded only if QEMU or the image hangs, even on a busy host
 
 
-class Ended(Exception):
-    """QEMU has ended."""
-
-
 class Machine:
-    """`line` is a non-blocking socket with the bytes of the module. When `events` is readable, call `take_events`."""
+    """A module in QEMU."""
 
     def __init__(self, image: Path, eeprom: int, init_grounded: bool, gdb_port: int | None) -> None:
         self._image = image
         self._init_grounded = init_grounded
-        self.line, line = socket.socketpair()
-        self.events, monitor = socket.socketpair()
+        self._line, line = socket.socketpair()
+        self._events, monitor = socket.socketpair()
+        self.watched = [self._line.fileno(), self._events.fileno()]
         self._test_port, test_port = socket.socketpair()
         self._unread = b""
         self._queued_bytes = b""
@@ -60,7 +58,7 @@ class Machine:
         self._process = self._start(words, [line.fileno(), monitor.fileno(), test_port.fileno(), eeprom])
         for socket_of_qemu in (line, monitor, test_port):
             socket_of_qemu.close()
-        self.line.setblocking(False)
+        self._line.setblocking(False)
         try:
             self._next_message()  # the greeting
             self._command("qmp_capabilities")
@@ -86,25 +84,28 @@ class Machine:
         except FileNotFoundError as error:
             raise Refusal(f"{_PROGRAM} is missing; install the package {_PROGRAM}") from error
 
-    def queue_request(self, data: bytes) -> None:
-        """Queues a master's bytes, which `send_queued` sends when the module's driver is off.
-
-        QEMU's UART sends without delay, so the master gets a reply before the driver goes off. Without this queue, the
-        module would lose the next request of a fast master. On a real line, no master can be that fast.
-        """
-        self._queued_bytes += data
-
-    def receive_reply(self) -> bytes:
-        """Returns the bytes from the module. Call this only while `line` is readable."""
-        return self._received_from(self.line)
-
     @property
-    def send_queued_within(self) -> float:
-        """Returns the time in seconds within which `send_queued` must be called."""
+    def carry_within(self) -> float:
+        """Returns the time in seconds within which `carry` must be called."""
         return 0.001 if self._queued_bytes else 0.1
 
-    def send_queued(self) -> None:
-        """Sends queued bytes. Bytes that the module does not receive are lost, as on a real line. Does not wait.
+    def carry(self, requests: bytes, ready: list[int]) -> bytes:
+        """Takes bytes of the master and returns bytes of the module. `ready`: the readable ones of `watched`.
+
+        Neither side waits for the other, because a blocked UART stops QEMU.
+        """
+        if self._events.fileno() in ready:
+            self._take_events()
+        reply = self._received_from(self._line) if self._line.fileno() in ready else b""
+        # QEMU's UART sends without delay, so the master gets a reply before the driver goes off. Without this queue,
+        # the module would lose the next request of a fast master. On a real line, no master can be that fast.
+        self._queued_bytes += requests
+        self._send_queued()
+        return reply
+
+    def _send_queued(self) -> None:
+        """Sends queued bytes if the module's driver is off. Bytes that the module does not receive are lost, as on a
+        real line.
 
         Must be called even if nothing is queued: if the module hangs, QEMU's virtual time may stop until QEMU gets a
         command. Without such a command, the watchdog would not reset the module.
@@ -112,10 +113,10 @@ class Machine:
         speaking = self._word_at(_DRIVER_ENABLE)
         if self._queued_bytes and not speaking:
             with contextlib.suppress(BlockingIOError, BrokenPipeError):
-                self.line.send(self._queued_bytes)
+                self._line.send(self._queued_bytes)
             self._queued_bytes = b""
 
-    def take_events(self) -> None:
+    def _take_events(self) -> None:
         """Reads events and resets the machine if the module has requested a reset."""
         self._pending_events.append(self._next_message())
         while self._pending_events or b"\n" in self._unread:
@@ -126,7 +127,7 @@ class Machine:
     def end(self) -> None:
         """Ends QEMU at once and waits for its end."""
         with contextlib.suppress(OSError):
-            self.events.sendall(b'{"execute": "quit"}\n')
+            self._events.sendall(b'{"execute": "quit"}\n')
         try:
             self._process.wait(_HANG)
         except subprocess.TimeoutExpired:
@@ -158,7 +159,7 @@ class Machine:
             time.sleep(0.001)
 
     def _command(self, name: str, **arguments: str) -> None:
-        self._send(self.events, json.dumps({"execute": name, "arguments": arguments}))
+        self._send(self._events, json.dumps({"execute": name, "arguments": arguments}))
         message = self._next_message()
         while "event" in message:
             self._pending_events.append(message)
@@ -178,7 +179,7 @@ class Machine:
 
     def _next_message(self) -> dict[str, Any]:
         while b"\n" not in self._unread:
-            self._unread += self._received_from(self.events)
+            self._unread += self._received_from(self._events)
         line, self._unread = self._unread.split(b"\n", 1)
         message: dict[str, Any] = json.loads(line)
         return message

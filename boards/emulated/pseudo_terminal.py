@@ -15,7 +15,7 @@ import termios
 import tty
 from pathlib import Path
 
-from qemu.refusal import Refusal
+from emulated.refusal import Refusal
 
 _IN_CLOSE_WRITE, _IN_CLOSE_NOWRITE, _IN_OPEN = 0x08, 0x10, 0x20
 

@@ -1,0 +1,67 @@
+"""Reads an image and checks that it is for a board."""
+
+from __future__ import annotations
+
+import struct
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Iterator
+
+from emulated.refusal import Refusal
+
+_ARM = 40
+_LOADED = 1  # PT_LOAD
+
+
+@dataclass(frozen=True)
+class Memory:
+    """What image.ld of a board says."""
+
+    preset: str
+    vectors: int  # address of the vector table
+    top_of_ram: int
+
+
+@dataclass(frozen=True)
+class Segment:
+    address: int  # in the running program
+    stored_at: int  # where the programmer of the board writes it
+    content: bytes
+
+
+def read(path: Path, memory: Memory) -> list[Segment]:
+    """Returns the loaded segments of an image.
+
+    Raises Refusal if the file is not an ELF image for this board. An emulator starts any file; without this check, the
+    error would appear only after 60 s, if the UART is then still off.
+    """
+    try:
+        file = path.read_bytes()
+    except OSError as error:
+        raise Refusal(
+            f"{path}: {error.strerror}; build an image with `cmake --build --preset {memory.preset}`"
+        ) from error
+    if file[:5] != b"\x7fELF\x01" or struct.unpack_from("<H", file, 18)[0] != _ARM:
+        raise Refusal(f"{path}: the file is not an ELF file for Arm; name MODEL.elf, not MODEL.bin or MODEL.hex")
+    segments = list(_segments(file))
+    if _word_at(segments, memory.vectors) != memory.top_of_ram:
+        raise Refusal(f"{path}: the image is for another board; name an image of the preset {memory.preset}")
+    return segments
+
+
+def _segments(file: bytes) -> Iterator[Segment]:
+    (headers,) = struct.unpack_from("<I", file, 28)
+    size, count = struct.unpack_from("<HH", file, 42)
+    for index in range(count):
+        kind, offset, address, stored_at, stored = struct.unpack_from("<5I", file, headers + index * size)
+        if kind == _LOADED and stored != 0:
+            yield Segment(address, stored_at, file[offset : offset + stored])
+
+
+def _word_at(segments: list[Segment], address: int) -> int | None:
+    """Returns the word at an address, or None if no segment begins there. The first word of the vectors is the initial
+    stack pointer."""
+    for segment in segments:
+        if segment.address == address and len(segment.content) >= 4:
+            return int(struct.unpack_from("<I", segment.content)[0])
+    return None

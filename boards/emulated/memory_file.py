@@ -1,0 +1,42 @@
+"""The contents of a memory chip, in a file or in RAM of the host."""
+
+from __future__ import annotations
+
+import fcntl
+import os
+from pathlib import Path
+
+from emulated.refusal import Refusal
+
+_BLANK = b"\xff"
+
+
+def in_memory(size: int, content: bytes = b"") -> int:
+    """Returns the descriptor of a memory of this size, which exists until the descriptor is closed. The bytes after
+    `content` are blank."""
+    descriptor = os.memfd_create("memory")
+    os.write(descriptor, content + _BLANK * (size - len(content)))
+    return descriptor
+
+
+def in_file(option: str, path: Path, size: int) -> int:
+    """Returns the descriptor of a memory file and locks it against other runs. Creates a missing file, blank.
+
+    Raises Refusal, with the name of the option, if the file cannot be written, is locked, or has another size.
+    """
+    try:
+        descriptor = os.open(path, os.O_RDWR | os.O_CREAT | os.O_CLOEXEC, 0o666)
+    except OSError as error:
+        raise Refusal(f"{option} {path}: {error.strerror}; name a file that can be written") from error
+    try:
+        fcntl.flock(descriptor, fcntl.LOCK_EX | fcntl.LOCK_NB)
+    except OSError as error:
+        raise Refusal(f"{option} {path}: another run uses this file; end that run or name another file") from error
+    found = os.fstat(descriptor).st_size
+    if found == 0:
+        os.write(descriptor, _BLANK * size)
+    elif found != size:
+        raise Refusal(
+            f"{option} {path}: the file has {found} bytes instead of {size}; name another file or remove this one"
+        )
+    return descriptor

@@ -1,0 +1,56 @@
+"""The program boards/pico/run."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+from emulated import image, memory_file, program
+from rp2040js.machine import Machine
+
+_BOARD = image.Memory(preset="pico", vectors=0x20000000, top_of_ram=0x20040000)
+_FLASH = 0x10000000
+_IMAGE_SIZE = (2048 - 64) * 1024  # image.ld
+_SETTINGS_SIZE = 64 * 1024
+_EEPROM_SIZE = 8192
+
+
+def _flash_of(segments: list[image.Segment]) -> bytes:
+    """Returns the content of the flash from its first byte on."""
+    content = bytearray()
+    for segment in segments:
+        begin = segment.stored_at - _FLASH
+        if 0 <= begin < _IMAGE_SIZE:
+            content += b"\xff" * (begin - len(content))
+            content[begin : begin + len(segment.content)] = segment.content
+    return bytes(content)
+
+
+def main(words: list[str]) -> int:
+    """Runs the program and returns its exit status. Wrong options raise SystemExit with status 2."""
+    parser = program.parser_for("rp2040js", f"{_BOARD.preset}, pico-eeprom or pico-w")
+    parser.add_argument(
+        "--flash",
+        metavar="FILE",
+        type=Path,
+        help="keep the end of the flash, where the settings are, in this file of 65536 bytes; create a missing file as "
+        "a factory-fresh module",
+    )
+    parser.add_argument(
+        "--eeprom",
+        metavar="FILE",
+        type=Path,
+        help="keep the contents of the EEPROM, where images of pico-eeprom store the settings, in this file of 8192 "
+        "bytes; create a missing file as a factory-fresh module",
+    )
+    arguments = parser.parse_args(words)
+
+    def memory(option: str, path: Path | None, size: int) -> int:
+        return memory_file.in_file(option, path, size) if path else memory_file.in_memory(size)
+
+    def start() -> Machine:
+        content = _flash_of(image.read(arguments.image, _BOARD))
+        settings = memory("--flash", arguments.flash, _SETTINGS_SIZE)
+        eeprom = memory("--eeprom", arguments.eeprom, _EEPROM_SIZE)
+        return Machine(memory_file.in_memory(len(content), content), settings, eeprom, arguments.init)
+
+    return program.run(arguments, "rp2040js", start)

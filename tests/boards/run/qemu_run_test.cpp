@@ -1,0 +1,152 @@
+// Tests what only boards/lm3s6965evb/run does: resets, and the errors of QEMU.
+#include <gtest/gtest.h>
+
+#include <array>
+#include <cstdio>
+#include <cstdlib>
+#include <thread>
+
+#include "firmware/hex.hpp"
+#include "tests/boards/run/running_image.hpp"
+#include "tests/support/free_port.hpp"
+#include "tests/support/socket_client.hpp"
+
+namespace ex9000::system {
+namespace {
+
+TEST(QemuRun, AMasterThatNeverReadsDoesNotStopTheModule) {
+  const RunningImage image("EX9042D");
+  {
+    Terminal terminal(image.tty(), 9600);
+    for (int request = 0; request < 1000; ++request) {  // the answers need twice the buffer of a terminal
+      terminal.type("$01M\r");
+      // Leaves time for an answer. The expectations do not depend on requests that are lost.
+      std::this_thread::sleep_for(std::chrono::milliseconds(5));
+    }
+  }
+  EXPECT_TRUE(gets(image, "$012", "!01400600"));
+}
+
+// --- resets ---
+
+/// A debugger, which stops the processor while it is connected.
+class Debugger {
+ public:
+  explicit Debugger(std::uint16_t port) : client_(port) {
+    ask("qXfer:features:read:target.xml:0,fff");  // QEMU then allows writes to single registers
+  }
+
+  void write_memory(std::uint32_t address, const std::string& hex) {
+    EXPECT_EQ(ask("M" + hex_of(address) + "," + std::to_string(hex.size() / 2) + ":" + hex), "OK");
+  }
+  void send_processor_to(std::uint32_t address) {
+    EXPECT_EQ(ask("Pf=" + hex_of(__builtin_bswap32(address))), "OK");
+  }
+  void leave() { EXPECT_EQ(ask("D"), "OK"); }
+
+ private:
+  static std::string hex_of(std::uint32_t word) {
+    std::array<char, 9> digits{};
+    std::snprintf(digits.data(), digits.size(), "%08x", word);
+    return digits.data();
+  }
+
+  /// Sends a command of GDB's remote protocol and returns the reply without its framing.
+  std::string ask(const std::string& command) {
+    unsigned sum = 0;
+    for (const char character : command) {
+      sum += static_cast<unsigned char>(character);
+    }
+    client_.send("$" + command + "#" + hex_of(sum & 0xFFU).substr(6));
+    std::string reply = packet();
+    while (!reply.empty() && reply[0] == 'T') {  // reports that the processor has stopped
+      reply = packet();
+    }
+    return reply;
+  }
+  std::string packet() {
+    const std::string text = (up_to('$'), up_to('#'));
+    up_to_end_of_check();
+    client_.send("+");
+    return text;
+  }
+  std::string up_to(char end) {
+    std::size_t at = received_.find(end);
+    while (at == std::string::npos) {
+      receive();
+      at = received_.find(end);
+    }
+    const std::string text = received_.substr(0, at);
+    received_.erase(0, at + 1);
+    return text;
+  }
+  void up_to_end_of_check() {
+    while (received_.size() < 2) {
+      receive();
+    }
+    received_.erase(0, 2);
+  }
+  void receive() {
+    const std::string more = client_.receive_text(1);
+    if (more.empty()) {
+      throw std::runtime_error("the debugger gets no answer");
+    }
+    received_ += more;
+  }
+
+  SocketClient client_;
+  std::string received_;
+};
+
+/// If INIT* were low, the module would start in INIT mode and no longer answer to 01.
+TEST(QemuRun, InitStaysReleasedWhenTheModuleResetsItself) {
+  constexpr std::uint32_t kNothingThere = 0xF0000000;
+  constexpr std::uint32_t kDeafLoop = 0x20008000;
+  constexpr std::uint32_t kLoop = kDeafLoop + 2;
+  const std::string port = std::to_string(free_port());
+  const RunningImage image("EX9042D", {"--gdb", port});
+  EXPECT_EQ(image.ask("$015"), "!011");
+  // The first address causes a fault; the others make the program hang until the watchdog resets it.
+  for (const std::uint32_t address : {kNothingThere, kLoop, kDeafLoop}) {
+    EXPECT_EQ(image.ask("$015"), "!010");
+    EXPECT_EQ(image.ask("@010005"), ">");
+    Debugger debugger(static_cast<std::uint16_t>(std::stoi(port)));
+    // The code is `cpsid i`, `b .`; neither data nor stack uses its address.
+    debugger.write_memory(kDeafLoop, "72b6fee7");
+    debugger.send_processor_to(address);
+    debugger.leave();
+    ASSERT_TRUE(gets(image, "$01M", "!019042D")) << address;
+    EXPECT_EQ(image.ask_behind("!019042D", "$015"), "!011");
+    EXPECT_EQ(image.ask("@01"), ">0000");
+  }
+}
+
+// --- refusals ---
+
+TEST(QemuRun, RefusesAnImageForTheLaunchPad) {
+  const Directory directory;
+  std::string image = bytes_of_file(image_of("EX9042D"));
+  const std::string top_of_ram("\x00\x00\x01\x20", 4);
+  const std::string top_of_the_launchpads("\x00\x80\x00\x20", 4);
+  image.replace(image.find(top_of_ram), top_of_ram.size(), top_of_the_launchpads);
+  write_file(directory / "other.elf", image);
+  expect_refusal(directory, {"other.elf"}, {"other.elf: the image is for another board", "lm3s6965evb"});
+}
+
+TEST(QemuRun, ReportsTheErrorMessageOfQemu) {
+  const Directory directory;
+  const std::string port = std::to_string(free_port());
+  const RunningImage other("EX9042D", {"--gdb", port});
+  expect_refusal(directory, {image_of("EX9042D"), "--gdb", port}, {"qemu-system-arm has ended", "in use"}, 1);
+}
+
+TEST(QemuRun, NamesTheMissingPackage) {
+  const Directory directory;
+  const std::string path = getenv("PATH");
+  setenv("PATH", directory.path().c_str(), 1);
+  expect_refusal(directory, {image_of("EX9042D")}, {"install the package qemu-system-arm"});
+  setenv("PATH", path.c_str(), 1);
+}
+
+}  // namespace
+}  // namespace ex9000::system
