@@ -10,7 +10,8 @@ from instruction_counts import capacity, counter, execution, requests  # noqa: E
 
 SLEEP = 0x100  # WFI; after it the main loop continues at 0x102
 TICKS_OWN = 0x300
-HANDLERS = {execution.TICK: 0x1000, execution.LINE: 0x2000, execution.SILENCE: 0x3000, execution.LINE_END: 0x4000}
+NUMBERS = execution.LM3S6965
+HANDLERS = {execution.TICK: 0x1000, NUMBERS.line: 0x2000, NUMBERS.silence: 0x3000, NUMBERS.line_end: 0x4000}
 
 
 def executed(*addresses):
@@ -47,7 +48,7 @@ def turn(interrupts, *addresses):
 
 
 def count(log):
-    its = counter.Counter(HANDLERS, {SLEEP}, {TICKS_OWN})
+    its = counter.Counter(HANDLERS, {SLEEP}, {TICKS_OWN}, NUMBERS)
     request = requests.Request("it", [b"\x01"])
     its.begin()
     its.nothing_happens = True
@@ -57,11 +58,11 @@ def count(log):
 
 
 class Passes(unittest.TestCase):
-    BYTE = interrupt(execution.LINE, 0x2000, received(1), 0x2002)
+    BYTE = interrupt(NUMBERS.line, 0x2000, received(1), 0x2002)
 
     def test_a_pass_is_all_interrupts_and_all_turns_that_they_wake(self):
-        log = ASLEEP + turn(self.BYTE) + turn(interrupt(execution.SILENCE, 0x3000), *TURN)
-        log += turn(interrupt(execution.LINE, 0x2000, SENT)) + turn(interrupt(execution.LINE_END, 0x4000), 0x500)
+        log = ASLEEP + turn(self.BYTE) + turn(interrupt(NUMBERS.silence, 0x3000), *TURN)
+        log += turn(interrupt(NUMBERS.line, 0x2000, SENT)) + turn(interrupt(NUMBERS.line_end, 0x4000), 0x500)
         its, found = count(log)
         self.assertEqual(found, (2 + 2) + (1 + 2 + 32) + (1 + 2) + (1 + 2 + 1))
         self.assertEqual((its.received_byte.count, its.sent_byte.count), (2, 1))
@@ -74,7 +75,7 @@ class Passes(unittest.TestCase):
 
     def test_at_rest_all_interrupts_and_their_turns_count(self):
         log = ASLEEP + turn(TICK, *TURN) + turn(interrupt(execution.ALARM, 0x5000))
-        log += turn(interrupt(execution.WAKE, 0x6000), 0x500)
+        log += turn(interrupt(NUMBERS.wake, 0x6000), 0x500)
         self.assertEqual(count(log)[0].idling.count, (2 + 2 + 32) + (1 + 2 + 1))
 
     def test_a_turn_of_a_byte_and_a_tick_excludes_the_work_of_the_tick(self):
@@ -85,7 +86,7 @@ class Passes(unittest.TestCase):
         self.assertEqual(count(log)[1], 2 + 2)
 
     def test_a_logged_instruction_that_was_not_executed_does_not_count(self):
-        byte = interrupt(execution.LINE, 0x2000, BEGUN_ANEW, 0x2000, received(1), 0x2002)
+        byte = interrupt(NUMBERS.line, 0x2000, BEGUN_ANEW, 0x2000, received(1), 0x2002)
         log = ASLEEP + executed(0x102) + byte + executed(0x400) + [STOPPED] + executed(0x400, SLEEP)
         self.assertEqual(count(log)[1], 2 + 3)
 
@@ -94,10 +95,10 @@ class Passes(unittest.TestCase):
         self.assertFalse(count(ASLEEP + executed(0x102) + self.BYTE)[0].at_rest)
 
     def test_a_request_is_answered_when_the_driver_goes_off(self):
-        self.assertFalse(count(ASLEEP + turn(interrupt(execution.LINE, 0x2000, SENT)))[0].answered)
+        self.assertFalse(count(ASLEEP + turn(interrupt(NUMBERS.line, 0x2000, SENT)))[0].answered)
 
     def test_an_interrupt_with_two_bytes_does_not_count_as_one_byte(self):
-        its, found = count(ASLEEP + turn(interrupt(execution.LINE, 0x2000, received(1), received(2))))
+        its, found = count(ASLEEP + turn(interrupt(NUMBERS.line, 0x2000, received(1), received(2))))
         self.assertEqual((its.received_byte.passes, found), (0, 1 + 2))
 
 

@@ -3,6 +3,7 @@
 "use strict";
 const fs = require("fs");
 const { Board } = require("./board");
+const { Trace } = require("./trace");
 
 let board = null;
 
@@ -152,6 +153,16 @@ const COMMANDS = {
   read: (address) => board.chip.mcu.readUint32(integer(address)),
   // write ADDRESS HALFWORD: changes RAM
   write: (address, value) => board.chip.mcu.writeUint16(integer(address), integer(value)),
+  // trace DESCRIPTOR: writes interrupts and bytes of the UART to an open file, from the next start of the chip on
+  trace(descriptor) {
+    board.trace = new Trace(integer(descriptor));
+  },
+  // trace-instructions on|off: writes each instruction too
+  "trace-instructions"(on) {
+    board.trace.instructions = on === "on";
+  },
+  // note TEXT: writes a line to the same file
+  note: (...words) => board.trace.note(words.join(" ")),
   // cycles: returns the cycles of the processor since the last reset of the chip, without those of sleep
   cycles: () => board.chip?.mcu.core.cycles ?? 0,
 };
@@ -169,6 +180,8 @@ function answer(line) {
     return `ok ${execute(line)}\n`;
   } catch (error) {
     return `error ${error.message.replaceAll("\n", " ")}\n`;
+  } finally {
+    board?.trace?.flush();
   }
 }
 

@@ -1,6 +1,9 @@
 // Tests that the models reject what silicon rejects, and that they take as long as silicon does.
 "use strict";
 const assert = require("node:assert/strict");
+const fs = require("node:fs");
+const os = require("node:os");
+const path = require("node:path");
 const { test } = require("node:test");
 const { RP2040 } = require("rp2040js");
 const { ChipClock, Time } = require("./clock");
@@ -13,6 +16,7 @@ const { Receiver, Sender } = require("./line");
 const { Pl011 } = require("./pl011");
 const { QspiPins, Ssi } = require("./ssi");
 const { Guarded, Resets, Watchdog } = require("./system");
+const { Trace } = require("./trace");
 
 const BIT = 8680; // ns at 115200 baud
 const PERI_ENABLE = 1 << 11;
@@ -321,4 +325,38 @@ test("a pending interrupt wakes the processor, although PRIMASK keeps its handle
   core.interruptsUpdated = true;
   processor.step();
   assert.equal(core.IPSR, 16);
+});
+
+test("a trace contains each instruction once, and the interrupt before the first one of its handler", () => {
+  const { mcu } = setUp();
+  const { core } = mcu;
+  const processor = new Processor(mcu);
+  const folder = fs.mkdtempSync(path.join(os.tmpdir(), "ex9000-trace-"));
+  const file = fs.openSync(path.join(folder, "trace"), "w+");
+  const trace = new Trace(file);
+  trace.attach({ mcu, uart: uartOf({ mcu }).uart });
+  const NOP = 0xbf00;
+  const RETURN = 0x4770; // BX LR
+  mcu.sramView.setUint16(0x100, NOP, true);
+  mcu.sramView.setUint16(0x102, NOP, true);
+  mcu.sramView.setUint16(0x200, NOP, true);
+  mcu.sramView.setUint16(0x202, RETURN, true);
+  mcu.sramView.setUint32(4 * 16, 0x20000201, true);
+  core.VTOR = 0x20000000;
+  core.SP = 0x20001000;
+  core.PC = 0x20000100;
+  core.enabledInterrupts = 1;
+  processor.step();
+  trace.instructions = true;
+  processor.setLine(0, true);
+  processor.step();
+  processor.setLine(0, false);
+  processor.step();
+  processor.step();
+  trace.flush();
+  assert.deepEqual(fs.readFileSync(path.join(folder, "trace"), "utf8").split("\n"), [
+    "nvic_acknowledge_irq IRQ: 16 now active", "T/20000200", "T/20000202", "nvic_complete_irq IRQ 16", "T/20000102", "",
+  ]);
+  fs.closeSync(file);
+  fs.rmSync(folder, { recursive: true });
 });

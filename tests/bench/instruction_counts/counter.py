@@ -69,7 +69,8 @@ class Counter:
     turns that only the alarm of this tool has woken.
     """
 
-    def __init__(self, handlers, sleeps, of_the_tick):
+    def __init__(self, handlers, sleeps, of_the_tick, numbers):
+        self._numbers = numbers  # an execution.Interrupts
         self._first = {number: execution.as_logged(address) for number, address in handlers.items()}
         self._awake = {execution.as_logged(address + 2) for address in sleeps}
         self._of_the_tick = {execution.as_logged(address) for address in of_the_tick}
@@ -124,7 +125,7 @@ class Counter:
             self._pass += span.addresses
         if self.nothing_happens:
             self.idling.note(span.addresses)
-        if span.exception == execution.LINE_END:
+        if span.exception == self._numbers.line_end:
             self.answered = True
 
     def slept(self, main):
@@ -140,10 +141,10 @@ class Counter:
             self._pass += [address for address in main.addresses if address not in self._of_the_tick]
 
     def _note_interrupt(self, span):
-        if span.exception == execution.LINE:
+        if span.exception == self._numbers.line:
             if len(span.received) + span.sent == 1:
                 (self.sent_byte if span.sent else self.received_byte).note(span.addresses)
-        elif span.exception in execution.EDGES:
+        elif span.exception in self._numbers.edges:
             self.edges.setdefault(self.edges_at_once, Highest()).note(span.addresses)
         else:
             self.interrupts.setdefault(span.exception, Highest()).note(span.addresses)

@@ -5,15 +5,16 @@ that accesses a peripheral ("cpu_io_recompile"), or an interrupt comes first ("S
 that event, and the line before it does not count.
 """
 
+import collections
+
 MAIN = 0
 TICK = 15
-EDGES = range(16, 21)  # ports A to E
-LINE = 21
-I2C = 24
-SILENCE = 35
-LINE_END = 37
-WAKE = 39
-ALARM = 51  # alarm interrupt of this tool: see emulator.py
+ALARM = 51  # alarm interrupt of this tool: see emulator.py. The RP2040 has no such interrupt
+
+# Exception numbers of a board. `edges`: of the ports.
+Interrupts = collections.namedtuple("Interrupts", "edges line i2c silence line_end wake")
+LM3S6965 = Interrupts(edges=range(16, 21), line=21, i2c=24, silence=35, line_end=37, wake=39)
+RP2040 = Interrupts(edges=[29], line=36, i2c=39, silence=16, line_end=17, wake=18)
 
 
 class Span:

@@ -8,7 +8,8 @@ import pathlib
 import sys
 
 from instruction_counts import execution
-from instruction_counts.capacity import Found, capacity
+from instruction_counts.boards import BOARDS
+from instruction_counts.capacity import Found
 from instruction_counts.emulator import ROOT, die_with_parent
 from instruction_counts.requests import Model
 from instruction_counts.session import REST, Session
@@ -27,7 +28,6 @@ SESSIONS = [
     (INPUTS, True, False),
 ]
 
-RECORD = pathlib.Path(__file__).resolve().parent.parent / "recorded_instructions"
 EDGE_PASSES = 20  # for each of eight inputs
 GROWTH = 1.05  # permitted growth without a new record
 
@@ -35,7 +35,8 @@ GROWTH = 1.05  # permitted growth without a new record
 Row = collections.namedtuple("Row", "name passes served until")
 
 
-def rows_of(counter):
+def rows_of(counter, numbers):
+    """Returns the rows of a counter. `numbers`: an execution.Interrupts."""
     rows = [Row(request.name, passes, 1, request.until) for request, passes in counter.requests.items()]
 
     def add(name, passes, served=1):
@@ -47,10 +48,10 @@ def rows_of(counter):
     add("sent byte", counter.sent_byte)
     names = {
         execution.TICK: "tick's interrupt",
-        execution.SILENCE: "silence's interrupt",
-        execution.I2C: "I2C's interrupt",
-        execution.LINE_END: "interrupt at the reply's end",
-        execution.WAKE: "wake timer's interrupt",
+        numbers.silence: "silence's interrupt",
+        numbers.i2c: "I2C's interrupt",
+        numbers.line_end: "interrupt at the reply's end",
+        numbers.wake: "wake timer's interrupt",
     }
     for exception, highest in sorted(counter.interrupts.items()):
         add(names.get(exception, f"exception {exception}"), highest)
@@ -65,9 +66,11 @@ def count_of(row):
 
 def run_session(options, model, is_ascii, general):
     """Returns the rows to print, the profiles, and the input for `capacity`."""
+    board = BOARDS[options.board]
     label = f"{model.name} {'ASCII' if is_ascii else 'RTU'}"
     everything = not options.only
-    with Session(os.path.join(options.folder, f"{model.name}.elf"), options.gate, model, is_ascii) as session:
+    image = os.path.join(options.folder, f"{model.name}.elf")
+    with Session(board, image, options.gate, model, is_ascii) as session:
         session.set_up()
         session.count_requests(
             general or options.all, lambda request: options.only in f"{label} {request.name}", options.passes
@@ -78,7 +81,7 @@ def run_session(options, model, is_ascii, general):
                 session.count_edges(EDGE_PASSES)
     rows = [
         row._replace(name=f"{label} {row.name}")
-        for row in rows_of(session.counter)
+        for row in rows_of(session.counter, board.interrupts)
         if everything or row.until and row.passes.passes
     ]
     profiles = [profile(session.image, row) for row in rows if options.profile and options.profile in row.name]
@@ -87,8 +90,8 @@ def run_session(options, model, is_ascii, general):
     return [(row.name, count_of(row), row.until) for row in rows], profiles, found
 
 
-def recorded():
-    lines = RECORD.read_text().splitlines() if RECORD.exists() else []
+def recorded(record):
+    lines = record.read_text().splitlines() if record.exists() else []
     return {name: int(count) for name, count in (line.rsplit(" ", 1) for line in lines)}
 
 
@@ -113,12 +116,15 @@ def profile(image, row):
 def main(arguments):
     parser = argparse.ArgumentParser(
         prog="instructions",
-        description="Counts the instructions that firmware images execute in QEMU for whole transactions, from the "
-        "first received byte to the last sent one. It counts all interrupts and the main loop without the tick, and "
-        "prints the median of 100 passes. For single interrupts it prints the highest count. It also prints the "
+        description="Counts the instructions that firmware images execute in an emulator for whole transactions, from "
+        "the first received byte to the last sent one. It counts all interrupts and the main loop without the tick, "
+        "and prints the median of 100 passes. For single interrupts it prints the highest count. It also prints the "
         "difference from the record. The exit status is 1 if a count has grown by more than 5 % since it was recorded.",
     )
-    parser.add_argument("folder", help="folder with the images for lm3s6965evb, as ELF files")
+    parser.add_argument("folder", help="folder with the images, as ELF files")
+    parser.add_argument(
+        "--board", choices=BOARDS, help="the board of the images (default: the last part of the folder's name)"
+    )
     parser.add_argument(
         "--only", default="", metavar="TEXT", help="count only requests whose names contain TEXT"
     )
@@ -139,9 +145,13 @@ def main(arguments):
     )
     parser.add_argument("--record", action="store_true", help="write the counts to the record")
     options = parser.parse_args(arguments)
+    options.board = options.board or pathlib.Path(options.folder).name
+    if options.board not in BOARDS:
+        parser.error(f"{options.folder}: names no board; add --board {' or --board '.join(BOARDS)}")
+    board = BOARDS[options.board]
     if options.record and (options.only or options.all):
         parser.error("--record: requires all counts; omit --only and --all")
-    before = recorded()
+    before = recorded(board.record)
     counts = {}
     found = Found()
     with concurrent.futures.ProcessPoolExecutor(options.jobs, initializer=die_with_parent) as pool:
@@ -152,10 +162,10 @@ def main(arguments):
             for name, count, until in rows:
                 print(text_of(name, count, until, before.get(name)))
             print("\n".join(profiles), end="", flush=True)
-    if not options.only:
-        print(capacity(found))
+    if not options.only and board.capacity:
+        print(board.capacity(found))
     if options.record:
-        RECORD.write_text("".join(f"{name} {count}\n" for name, count in counts.items()))
+        board.record.write_text("".join(f"{name} {count}\n" for name, count in counts.items()))
         return 0
     grown = [name for name, count in counts.items() if name in before and count > GROWTH * before[name]]
     if grown:

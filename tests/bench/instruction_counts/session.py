@@ -4,15 +4,11 @@ import threading
 
 from instruction_counts import execution
 from instruction_counts.counter import Counter
-from instruction_counts.emulator import HANG, Emulator
+from instruction_counts.emulator import HANG
 from instruction_counts.image import Image
 from instruction_counts.requests import DONE, IGNORED, ascii_requests, crc16, dcon, modbus_requests, rtu
 
-INIT = "A7"  # boards/lm3s6965evb/board.hpp
-INPUTS = ["B0", "B1", "B4", "B5", "B6", "C4", "C5", "C6"]
-
 # In seconds of emulated time.
-START_UP = 0.1
 DEBOUNCE = 0.03
 PATIENCE = 0.25  # for a reply
 DRIVER_OFF = 0.0006  # after a reply, at 115200 baud
@@ -29,7 +25,8 @@ QUIET = 0.004  # after a byte; then all frames have ended, and the module has pr
 class Session:
     """Sends requests to one image. ASCII sessions use checksums, because they require more instructions."""
 
-    def __init__(self, image, gate, model, is_ascii):
+    def __init__(self, board, image, gate, model, is_ascii):
+        self._board = board  # a boards.Board
         self.image = Image(image)
         self._model = model
         self._ascii = is_ascii
@@ -39,8 +36,8 @@ class Session:
                 f"{image}: no code of `poll_panel`; expected the function that the main loop calls for the tick"
             )
         self._sleeps = self.image.sleeps()
-        self.counter = Counter(self.image.handlers(), self._sleeps, of_the_tick)
-        self._emulator = Emulator(image, gate)
+        self.counter = Counter(self.image.handlers(), self._sleeps, of_the_tick, board.interrupts)
+        self._emulator = board.emulator(image, gate)
 
     def __enter__(self):
         return self
@@ -64,10 +61,9 @@ class Session:
                 self._set_init(False)
 
     def count_edges(self, passes):
-        """Changes each input alone, then all inputs of a port at once. Levels alternate between high and low."""
-        ports = sorted({pin[0] for pin in INPUTS})
-        together = [[pin for pin in INPUTS if pin[0] == port] for port in ports]
-        for pins in [[pin] for pin in INPUTS] + together:
+        """Changes each input alone, then all inputs of a group at once. Levels alternate between high and low."""
+        groups = self._board.groups
+        for pins in [[pin] for group in groups for pin in group] + groups:
             for attempt in range(passes):
                 self._log(True)
                 for pin in pins:
@@ -75,12 +71,15 @@ class Session:
                 self.counter.edges_at_once = len(pins)
                 self._run(SLICE)
                 self._log(False)
+                self._let_counter_catch_up()
 
     def count_rest(self):
+        self._let_counter_catch_up()
         self.counter.nothing_happens = True
         self._log(True)
         self._run(REST)
         self._log(False)
+        self._let_counter_catch_up()
         self.counter.nothing_happens = False
 
     def set_up(self):
@@ -103,12 +102,13 @@ class Session:
 
     def _power_up(self, init):
         """Switches the supply on. `init` is the level of INIT*."""
-        self._emulator.power_up({**dict.fromkeys(INPUTS, False), INIT: init})
+        inputs = [pin for group in self._board.groups for pin in group]
+        self._emulator.power_up({**dict.fromkeys(inputs, False), self._board.init: init})
         threading.Thread(
             target=execution.follow, args=(self._emulator.log, self._sleeps, self.counter), daemon=True
         ).start()
         self._run(SLICE)
-        self._run(START_UP)
+        self._run(self._board.start_up)
 
     def _count(self, request, passes):
         """Repeats a request. Its last frame restores the state that the module had before the request."""
@@ -192,7 +192,7 @@ class Session:
         return len(reply) >= 4 and crc16(reply[:-2]) == reply[-2:]
 
     def _set_init(self, asserted):
-        self._emulator.set_pin(INIT, not asserted)
+        self._emulator.set_pin(self._board.init, not asserted)
         self._run(DEBOUNCE)
 
     def _log(self, on):
