@@ -1,38 +1,34 @@
-// Tests unmodified third-party masters with the image of a module. The expected values come from
-// firmware/wire.md 7.
+// Tests unmodified third-party masters with the images of a module, on each emulated board. The expected
+// values come from firmware/wire.md 7.
 #include <gtest/gtest.h>
 #include <modbus/modbus.h>
 
 #include <array>
 #include <cerrno>
 #include <chrono>
-#include <optional>
 #include <string>
 #include <vector>
 
+#include EX9000_EMULATED_MODULE_HEADER
 #include "tests/masters/libmodbus_master.hpp"
-#include "tests/qemu/master.hpp"
-#include "tests/qemu/pty_bridge.hpp"
 #include "tests/support/child_process.hpp"
+#include "tests/support/pty_bridge.hpp"
 
-namespace ex9000::rig {
+namespace ex9000 {
 namespace {
+
+using Bytes = system::PtyBridge::Bytes;
 
 class ImageAndMaster : public testing::Test {
  protected:
-  ImageAndMaster() {
-    module_.power(true);
-    module_.run_for(kComesUpWithin);
-    bridge_.emplace(module_);
-  }
-  void TearDown() override { bridge_->end(); }
+  void TearDown() override { bridge_.end(); }
 
   std::string mbpoll(const std::vector<std::string>& options, const std::vector<std::string>& values = {}) {
     std::vector<std::string> command{"mbpoll", "-m", "rtu",  "-a", "1", "-b",
                                      "9600",   "-P", "none", "-0", "-1"};
     command.insert(command.end(), {"-o", std::to_string(kPatience.count())});
     command.insert(command.end(), options.begin(), options.end());
-    command.push_back(bridge_->tty());
+    command.push_back(bridge_.tty());
     command.insert(command.end(), values.begin(), values.end());
     const system::Finished finished = system::run(command);
     EXPECT_EQ(finished.status, 0) << finished.error;
@@ -43,8 +39,8 @@ class ImageAndMaster : public testing::Test {
   /// reply.
   static constexpr std::chrono::seconds kPatience{10};
 
-  TimedModule module_{*find_model("EX9042D-M")};
-  std::optional<PtyBridge> bridge_;
+  EmulatedModule module_;
+  system::PtyBridge bridge_{[this](const Bytes& request) { return module_.reply_of(request); }};
 };
 
 TEST_F(ImageAndMaster, MbpollWritesCoilsAndReadsThemBack) {
@@ -65,7 +61,7 @@ TEST_F(ImageAndMaster, MbpollReadsAndWritesRegisters) {
 TEST_F(ImageAndMaster, LibmodbusPollsItAThousandTimes) {
   constexpr int kPolls = 1000;
   constexpr int kCoils = 13;
-  system::LibmodbusMaster master(bridge_->tty(), 9600);
+  system::LibmodbusMaster master(bridge_.tty(), 9600);
   master.wait_for_replies(std::chrono::milliseconds(kPatience).count());
   modbus_t* const module = master.at(1);
   for (int i = 0; i < kPolls; ++i) {
@@ -80,4 +76,4 @@ TEST_F(ImageAndMaster, LibmodbusPollsItAThousandTimes) {
 }
 
 }  // namespace
-}  // namespace ex9000::rig
+}  // namespace ex9000

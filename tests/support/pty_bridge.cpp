@@ -1,4 +1,4 @@
-#include "tests/qemu/pty_bridge.hpp"
+#include "tests/support/pty_bridge.hpp"
 
 #include <fcntl.h>
 #include <poll.h>
@@ -12,25 +12,26 @@
 #include <utility>
 
 #include "sim/play/modbus_frame.hpp"
-#include "tests/qemu/master.hpp"
 
-namespace ex9000::rig {
+namespace ex9000::system {
 
 namespace {
 
 /// Returns whether the bytes are a whole frame with a correct CRC. The shortest frame consists of address,
 /// function and CRC.
-bool is_whole(const std::vector<std::uint8_t>& request) {
+bool is_whole(const PtyBridge::Bytes& request) {
   constexpr std::size_t kCrc = 2;
   constexpr std::size_t kShortest = 4;
   return request.size() >= kShortest &&
-         with_crc(std::vector<std::uint8_t>(request.begin(), request.end() - kCrc)) == request;
+         with_crc(PtyBridge::Bytes(request.begin(), request.end() - kCrc)) == request;
 }
 
 }  // namespace
 
-PtyBridge::PtyBridge(TimedModule& module)
-    : module_(module), fd_(posix_openpt(O_RDWR | O_NOCTTY | O_CLOEXEC)), over_(eventfd(0, EFD_CLOEXEC)) {
+PtyBridge::PtyBridge(std::function<Bytes(const Bytes&)> exchange)
+    : exchange_(std::move(exchange)),
+      fd_(posix_openpt(O_RDWR | O_NOCTTY | O_CLOEXEC)),
+      over_(eventfd(0, EFD_CLOEXEC)) {
   std::array<char, 64> name{};
   if (over_ < 0 || fd_ < 0 || grantpt(fd_) != 0 || unlockpt(fd_) != 0 ||
       ptsname_r(fd_, name.data(), name.size()) != 0) {
@@ -89,11 +90,11 @@ void PtyBridge::carry() {
 void PtyBridge::take(std::uint8_t byte) {
   request_.push_back(byte);
   if (is_whole(request_)) {
-    const std::vector<std::uint8_t> reply = reply_of(module_, std::exchange(request_, {}));
+    const Bytes reply = exchange_(std::exchange(request_, {}));
     if (write(fd_, reply.data(), reply.size()) != static_cast<ssize_t>(reply.size())) {
       throw std::runtime_error("the pseudo-terminal takes no reply");
     }
   }
 }
 
-}  // namespace ex9000::rig
+}  // namespace ex9000::system

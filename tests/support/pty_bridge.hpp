@@ -1,14 +1,14 @@
 // Connects a module to a pseudo-terminal, for masters that require a serial port.
 #pragma once
 
+#include <cstdint>
 #include <exception>
+#include <functional>
 #include <string>
 #include <thread>
 #include <vector>
 
-#include "tests/qemu/timed_module.hpp"
-
-namespace ex9000::rig {
+namespace ex9000::system {
 
 /// A gateway for Modbus RTU masters. It reads a whole request from the terminal, sends it to the module in
 /// the module's time, and returns the whole reply in one piece. The module receives the same bytes even if
@@ -19,7 +19,10 @@ namespace ex9000::rig {
 /// effect.
 class PtyBridge {
  public:
-  explicit PtyBridge(TimedModule& module);
+  using Bytes = std::vector<std::uint8_t>;
+
+  /// `exchange` sends a request to the module and returns its reply. A thread of the bridge calls it.
+  explicit PtyBridge(std::function<Bytes(const Bytes&)> exchange);
   ~PtyBridge();
   PtyBridge(const PtyBridge&) = delete;
   PtyBridge& operator=(const PtyBridge&) = delete;
@@ -33,14 +36,14 @@ class PtyBridge {
   void carry();
   void take(std::uint8_t byte);
 
-  TimedModule& module_;
+  std::function<Bytes(const Bytes&)> exchange_;
   int fd_;
   int held_open_ = -1;  ///< prevents a hang-up when a master disconnects
   int over_;            ///< an event descriptor, readable when the bridge is to stop
   std::string tty_;
-  std::vector<std::uint8_t> request_;
+  Bytes request_;
   std::exception_ptr failure_;
   std::thread carrier_;
 };
 
-}  // namespace ex9000::rig
+}  // namespace ex9000::system
