@@ -87,6 +87,49 @@ class Image:
         sources = ("tests/mcu_model/image_object.cpp", *files("firmware/*.cpp"))
         return Unit(self.name, sources, options + defined, more=(header,))
 
+    def commands(self, folder, obj, _overlay):
+        """Returns the commands that build the image in `folder`. `obj`: the object file of `unit`."""
+        return [["clang++", "-shared", obj, "-o", folder / f"{self.name}.so"]]
+
+
+@dataclasses.dataclass(frozen=True)
+class PicoImage:
+    """The content of the flash of a Pico. The unit is compiled for the host. It only shows which mutants change the
+    image."""
+
+    preset: str
+    model: str
+    defined: tuple = ()
+
+    @property
+    def name(self):
+        return f"{self.preset}_{self.model}"
+
+    @property
+    def unit(self):
+        options = ("-O1", SHADOW, f'-DEX9000_MODEL="{self.model}"', *self.defined)
+        return Unit(self.name, ("tests/mutation/pico_image.cpp",), options)
+
+    def commands(self, folder, _obj, overlay):
+        place = folder / self.preset
+        place.mkdir(exist_ok=True)
+        elf = place / f"{self.model}.elf"
+        sources = ["boards/pico/main.cpp", "boards/rp2040/start_up.cpp", "boards/rp2040/second_stage.cpp",
+                   "boards/memory_functions.cpp", *files("firmware/*.cpp")]
+        whole = place / f"{self.model}.cpp"
+        whole.write_text("".join(f'#include "{each}"\n' for each in sources))
+        options = ["-mcpu=cortex-m0plus", "-mthumb", "-std=c++17", "-O2", "-w", "-ffreestanding", "-fwhole-program",
+                   "-fno-exceptions", "-fno-rtti", "-fno-threadsafe-statics", "-fno-tree-loop-distribute-patterns",
+                   "-fno-jump-tables", "-fno-unwind-tables", "-fno-asynchronous-unwind-tables",
+                   "-ffunction-sections", "-fdata-sections", f'-DEX9000_MODEL="{self.model}"', *self.defined]
+        linked = ["-nostdlib", "-Wl,--gc-sections", "-Wl,-T,boards/pico/image.ld", "-Lboards"]
+        search = [f"-I{overlay}"] if overlay else []
+        return [
+            ["arm-none-eabi-g++", *options, *search, "-I.", *linked, whole, "-o", elf, "-lgcc"],
+            ["toolchain/seal-second-stage", elf],
+            ["arm-none-eabi-objcopy", "-O", "binary", elf, place / f"{self.model}.bin"],
+        ]
+
 
 @dataclasses.dataclass(frozen=True)
 class Program:
@@ -204,8 +247,8 @@ FILES = (f'-DEX9000_REGISTERS="{ROOT}/firmware/registers.md"',
          f'-DEX9000_STORED_BYTES="{ROOT}/tests/firmware/settings/stored_bytes"')
 
 
-def test_program(name, folder, sources, libraries):
-    options = ("-O0", *FILES, *(option for library in libraries for option in OPTIONS.get(library, ())))
+def test_program(name, folder, sources, libraries, shadow):
+    options = ("-O0", *FILES, *shadow, *(option for library in libraries for option in OPTIONS.get(library, ())))
     unit = Unit(name, tuple(f"{folder}/{source}" for source in sources), options)
     return Program(name, (unit,), tuple(dict.fromkeys(unit for library in libraries for unit in LIBRARIES[library])))
 
@@ -221,10 +264,12 @@ def listed_programs(folder):
     for test in re.finditer(r"ex9000_test\((\w+)\s+SOURCES\s+([\w/.\s]+?)\s+LIBRARIES\s+([\w\s]+?)\)", text):
         found.append((test[1], test[2].split(), test[3]))
     programs = []
+    shadows = dict(re.findall(r"target_include_directories\((\w+) BEFORE PRIVATE ([\w/]+)\)", text))
     for name, sources, libraries in found:
         of_process = any(stem_of(source).removesuffix("_test") in PROCESS for source in sources)
         if set(libraries.split()) <= set(LIBRARIES) and not of_process:
-            programs.append(test_program(name, folder, sources, libraries.split()))
+            shadow = (f"-I{folder}/{shadows[name]}",) if name in shadows else ()
+            programs.append(test_program(name, folder, sources, libraries.split(), shadow))
     return programs
 
 
@@ -245,6 +290,16 @@ def players():
     return Program("transcripts and random sessions", units, LIBRARIES["ex9000_runner"], enough)
 
 
+# The images of boards/pico_image_test.cpp, except those of the Pico W.
+PICO_IMAGES = (
+    PicoImage("pico", "EX9043D-M"),
+    PicoImage("pico", "EX9052D"),
+    PicoImage("pico-eeprom", "EX9043D-M", ("-DEX9000_SETTINGS_IN_EEPROM",)),
+)
+# Tests of them that together reach every driver.
+PICO_TESTS = "*RequestsBackToBack*:*NoPulse*:*OnlyTheFirst*:*MainLoopHangs/Nothing:*AReplyBegins*:*NoOutput*:*TheDriver*"\
+             ":PicoWithEeprom.APower*:*Blocks*"
+
 # One model with inputs and outputs for each board.
 IMAGES = tuple(Image(board, "EX9055D") for board in ("lm3s6965evb", "ek-tm4c123gxl"))
 
@@ -257,6 +312,19 @@ def image_programs():
         units = (*units_of("line"), "mcu_model")
         programs.append(Program(name, (test,), units, chosen, IMAGES, ("-rdynamic", "-ldl"), 40))
     return programs
+
+
+def pico_program():
+    """Returns the test of the images for the Pico in the emulator."""
+    options = ("-O0", '-DEX9000_BUILD_FOLDER="images"', f'-DEX9000_RP2040_EMULATOR="{ROOT}/tests/rp2040/emulator.js"',
+               f'-DEX9000_RP2040_MODULES="{ROOT}/build/rp2040js/node_modules"')
+    units = tuple(
+        Unit(f"pico-{stem_of(file)}", (file,), options)
+        for file in ("tests/boards/pico_image_test.cpp", "tests/rp2040/emulator_process.cpp",
+                     "tests/rp2040/pico_bench.cpp")
+    )
+    chosen = (("GTEST_FILTER", PICO_TESTS),)
+    return Program("pico_image_test", units, LIBRARIES["ex9000_runner"], chosen, PICO_IMAGES, (), 60)
 
 
 @dataclasses.dataclass(frozen=True)
@@ -300,12 +368,20 @@ def areas():
     judged = [file for file in files("sim/*.cpp", "sim/*.hpp") if stem_of(file) not in PROCESS]
     core = [LIBRARY_UNITS["core"]]
     images = [image.unit for image in IMAGES]
-    # The drivers of the RP2040 run only in its emulator.
-    drivers = [file for file in files("hal/*.cpp", "hal/*.hpp") if not file.startswith("hal/rp2040/")]
+    of_pico = [image.unit for image in PICO_IMAGES]
+    # boot.hpp runs before the image. A change there leaves nothing that runs, or nothing that a test can see.
+    of_the_pico = [file for file in files("hal/rp2040/*.hpp") if file != "hal/rp2040/boot.hpp"]
+    # Drivers that only the emulator runs are in an area of their own, because each mutant takes half a minute.
+    drivers = [
+        file
+        for file in files("hal/*.cpp", "hal/*.hpp")
+        if not file.startswith("hal/rp2040/") or any(file in unit.files for each in hal for unit in each.tests)
+    ]
     of_drivers = [hal, interleaved, sim, [players()], image_programs()]
     of_simulator = [LIBRARY_UNITS[name] for name in LIBRARIES["ex9000_app"] if name != "core"]
     return [
         Area("firmware", files("firmware/*.cpp", "firmware/*.hpp"), core + images, [[players()], of_core]),
-        Area("hal", drivers, core + images, of_drivers),
+        Area("hal", drivers, [*core, *images, *of_pico], of_drivers),
         Area("sim", judged, of_simulator, [sim, [players()]]),
+        Area("pico", [file for file in of_the_pico if file not in drivers], of_pico, [[pico_program()]]),
     ]

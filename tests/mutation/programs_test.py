@@ -23,15 +23,22 @@ class Programs(unittest.TestCase):
     def test_tests_come_first_that_are_called_like_the_file(self):
         self.assertEqual(self.nearest("firmware", "firmware/line/crc16.hpp")[0], "crc16_test")
         self.assertEqual(self.nearest("hal", "hal/pl011/uart.hpp")[0], "uart_driver_test")
+        self.assertEqual(self.nearest("hal", "hal/flash/page_store.hpp")[0], "page_store_test")
         self.assertEqual(self.nearest("sim", "sim/bus/bus.cpp")[0], "bus_test")
 
     def test_then_those_that_name_its_header(self):
         self.assertEqual(self.nearest("hal", "hal/stellaris/outputs.hpp")[0], "pins_driver_test")
         self.assertEqual(self.nearest("hal", "hal/at24c/at24c.hpp")[0], "eeprom_driver_test")
+        self.assertEqual(self.nearest("hal", "hal/rp2040/flash.hpp")[0], "rp2040_drivers_test")
 
     def test_whole_images_judge_what_no_driver_test_compiles(self):
         images = ["start_up_driver_test", "image_driver_test"]
         self.assertEqual(self.nearest("hal", "hal/cortex_m/interrupts.hpp"), images)
+
+    def test_every_shipped_driver_is_part_of_the_product(self):
+        product = {file for unit in self.areas["hal"].product for file in unit.files}
+        shipped = {file for file in self.areas["hal"].sources if not file.startswith("hal/doubles/")}
+        self.assertEqual(shipped - product - REACHED_BY_NONE, set())
 
     def test_a_shadowed_header_is_not_compiled_into_a_unit(self):
         unit = programs.LIBRARY_UNITS["mcu_model"]

@@ -134,9 +134,10 @@ class Workshop:
 
     def image(self, image):
         def build():
-            (BUILD / "images").mkdir(exist_ok=True)
-            place = BUILD / "images" / f"{image.name}.so"
-            run(["clang++", "-shared", self.unit(image.unit)[0], "-o", place])
+            place = BUILD / "images"
+            place.mkdir(exist_ok=True)
+            for command in image.commands(place, self.unit(image.unit)[0], None):
+                run(command)
             return place
 
         return self.once(("image", image.name), build)
@@ -160,6 +161,7 @@ class Bench:
         self.folder = folder
         self.file = file
         self.objects = {}
+        self.images = set()
         place = folder / file
         place.parent.mkdir(parents=True)
         place.write_text(changed)
@@ -206,7 +208,9 @@ class Bench:
         return run(command) and self.workshop.passes(program, place, self.folder)
 
     def make(self, image):
-        (self.folder / "images").mkdir(exist_ok=True)
-        place = self.folder / "images" / f"{image.name}.so"
-        if not place.exists():
-            run(["clang++", "-shared", self.object_of(image.unit), "-o", place])
+        place = self.folder / "images"
+        place.mkdir(exist_ok=True)
+        if image.name not in self.images:
+            self.images.add(image.name)
+            for command in image.commands(place, self.object_of(image.unit), self.folder):
+                run(command)

@@ -44,6 +44,54 @@ TEST(PageStore, KeepsPagesThroughAReset) {
   }
 }
 
+/// Flashes in the field hold these bytes, so a later firmware must read them.
+TEST(PageStore, ReadsTheBytesThatItHasAlwaysWritten) {
+  constexpr std::array<std::uint8_t, 8> kMarkOfAnErasedSector{0x45, 0x58, 0x39, 0xC6, 0xA7, 0x9B, 0x53, 0x1D};
+  // Sequence 7, page 3, bytes 0 to 31, and their CRC-32.
+  std::vector<std::uint8_t> entry{7, 0, 0, 0, 3};
+  Page content{};
+  for (std::size_t i = 0; i < content.size(); ++i) {
+    content[i] = static_cast<std::uint8_t>(i);
+  }
+  entry.insert(entry.end(), content.begin(), content.end());
+  entry.insert(entry.end(), {0x89, 0x8C, 0xD8, 0xC3});
+
+  FlashChip chip;
+  std::fill_n(chip.cells.begin(), 8, std::uint8_t{0});
+  std::copy(entry.begin(), entry.end(), chip.cells.begin() + 256 + 48);  // the second slot of the second page
+  for (std::size_t sector = 1; sector < 14; ++sector) {
+    std::copy(kMarkOfAnErasedSector.begin(), kMarkOfAnErasedSector.end(),
+              chip.cells.begin() + static_cast<std::ptrdiff_t>(sector * 4096));
+  }
+  Session run(chip);
+  EXPECT_EQ(run.page(3), content);
+  run.settle();
+  for (const auto erases : chip.erases) {
+    EXPECT_EQ(erases, 0U);
+  }
+
+  // The next entry is in the first slot after the mark of the next sector.
+  content[0] = 0xFF;
+  entry = {8, 0, 0, 0, 3};
+  entry.insert(entry.end(), content.begin(), content.end());
+  entry.insert(entry.end(), {0x3E, 0x11, 0x88, 0xC8});
+  entry.insert(entry.end(), 7, 0xFF);  // up to the next slot
+  ASSERT_TRUE(run.write(3, content));
+  EXPECT_EQ(std::vector<std::uint8_t>(chip.cells.begin() + 4096, chip.cells.begin() + 4104),
+            std::vector<std::uint8_t>(8, 0));
+  EXPECT_EQ(std::vector<std::uint8_t>(chip.cells.begin() + 4096 + 48, chip.cells.begin() + 4096 + 96), entry);
+}
+
+TEST(PageStore, SealingChangesNoByteAfterAnEntry) {
+  struct {
+    EntryBytes entry{};
+    std::uint8_t after = 0x55;
+  } bytes;
+  seal(bytes.entry, 0x0102'0304, 11);
+  EXPECT_EQ(bytes.after, 0x55);
+  EXPECT_TRUE(is_good(bytes.entry));
+}
+
 TEST(PageStore, AWriteOfAPartOfAPageKeepsTheRest) {
   FlashChip chip;
   Session run(chip);

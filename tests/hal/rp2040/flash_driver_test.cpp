@@ -21,6 +21,9 @@ class Chip {
   static constexpr std::size_t kSize = 2 * 1024 * 1024;
 
   void select(bool on) {
+    if (on && selected_) {
+      throw std::runtime_error("the last command has not ended");
+    }
     if (!on && selected_) {
       execute();
     }
@@ -33,7 +36,7 @@ class Chip {
     }
     bytes_.push_back(byte);
     if (bytes_[0] == 0x05) {
-      return busy ? 0x03 : 0x00;
+      return static_cast<std::uint8_t>((busy ? 1U : 0U) | (write_enabled ? 2U : 0U));
     }
     if (busy && bytes_[0] != 0x75 && bytes_[0] != 0x7A) {
       throw std::runtime_error("a command while the flash is busy");
@@ -48,6 +51,7 @@ class Chip {
   std::vector<std::uint8_t> content = std::vector<std::uint8_t>(kSize, 0xFF);
   bool busy = false;
   bool suspended = false;
+  bool write_enabled = false;
 
  private:
   [[nodiscard]] std::size_t address() const {
@@ -59,7 +63,7 @@ class Chip {
       case 0x05:
         break;
       case 0x06:
-        write_enabled_ = true;
+        write_enabled = true;
         break;
       case 0x02:
         program();
@@ -80,10 +84,10 @@ class Chip {
     }
   }
   void begin() {
-    if (!write_enabled_) {
+    if (!write_enabled) {
       throw std::runtime_error("no Write Enable");
     }
-    write_enabled_ = false;
+    write_enabled = false;
     busy = true;
   }
   void program() {
@@ -102,7 +106,6 @@ class Chip {
   }
 
   bool selected_ = false;
-  bool write_enabled_ = false;
   std::vector<std::uint8_t> bytes_;
 };
 
@@ -142,14 +145,18 @@ class Ssi final : public rp2040_model::Bus {
       case 0x1800'0014:
         EXPECT_EQ(value % 2, 0U);
         EXPECT_GE(value, 4U) << "the flash allows 50 MHz for Read Data";
+        divider_ = value;
         break;
       case 0x1800'0060:
-        if (!enabled_ || received_.size() == 16) {
-          throw std::runtime_error("the SSI is off, or a byte is lost");
+        if (!enabled_ || divider_ == 0 || received_.size() == 16) {
+          throw std::runtime_error("the SSI is off or has no clock, or a byte is lost");
         }
         received_.push_back(chip.exchange(static_cast<std::uint8_t>(value)));
         break;
       case 0x4001'800C:
+        if (value != 2U << 8U && value != 3U << 8U) {
+          throw std::runtime_error("chip select is neither low nor high");
+        }
         select_control_ = value;
         chip.select(value == 2U << 8U);
         break;
@@ -162,6 +169,7 @@ class Ssi final : public rp2040_model::Bus {
 
  private:
   bool enabled_ = true;
+  std::uint32_t divider_ = 0;
   std::uint32_t select_control_ = 0;
   std::deque<std::uint8_t> received_;
 };
@@ -193,6 +201,11 @@ TEST_F(FlashDriver, ReadsWhatItHasProgrammed) {
   EXPECT_EQ(read(kPlace, 4), bytes);
   EXPECT_EQ(read(kPlace - 1, 1), std::vector<std::uint8_t>{0xFF});
   EXPECT_EQ(read(kPlace + 4, 1), std::vector<std::uint8_t>{0xFF});
+}
+
+TEST_F(FlashDriver, IsNotBusyBecauseWritesAreEnabled) {
+  ssi_.chip.write_enabled = true;
+  EXPECT_FALSE(Flash::busy());
 }
 
 TEST_F(FlashDriver, ProgramsAWholePage) {

@@ -11,9 +11,11 @@
 namespace ex9000 {
 namespace {
 
-/// Alarm 0 of the timer. An alarm fires when the time equals it.
+/// One alarm of the timer. An alarm fires when the time equals it.
 class TimerModel final : public rp2040_model::Bus {
  public:
+  explicit TimerModel(unsigned number = 0) : number_(number) {}
+
   static constexpr std::uint32_t kBase = 0x4005'4000;
   static constexpr std::uint32_t kSet = 0x2000;
   static constexpr std::uint32_t kClear = 0x3000;
@@ -22,36 +24,38 @@ class TimerModel final : public rp2040_model::Bus {
     access();
     switch (address - kBase) {
       case 0x20:
-        return armed_ ? 1 : 0;
+        return armed_ ? bit() : 0;
       case 0x28:
         return static_cast<std::uint32_t>(nanoseconds / 1000);
       case 0x40:
-        return interrupt() ? 1 : 0;
+        return interrupt() ? bit() : 0;
       default:
         throw std::runtime_error("an unknown register is read");
     }
   }
   void write(std::uint32_t address, std::uint32_t value) override {
     access();
+    if (address == kBase + 0x10 + 4 * number_) {
+      alarm_ = value;
+      armed_ = true;
+      return;
+    }
+    const bool is_mine = value == bit();
     switch (address - kBase) {
-      case 0x10:
-        alarm_ = value;
-        armed_ = true;
-        break;
       case 0x20:
-        armed_ = armed_ && value == 0;
+        armed_ = armed_ && !is_mine;
         break;
       case 0x34:
-        raw_ = raw_ && value == 0;
+        raw_ = raw_ && !is_mine;
         break;
       case 0x38 + kSet:
-        enabled_ = enabled_ || value != 0;
+        enabled_ = enabled_ || is_mine;
         break;
       case 0x3C + kSet:
-        forced_ = forced_ || value != 0;
+        forced_ = forced_ || is_mine;
         break;
       case 0x3C + kClear:
-        forced_ = forced_ && value == 0;
+        forced_ = forced_ && !is_mine;
         break;
       default:
         throw std::runtime_error("an unknown register is written");
@@ -80,8 +84,10 @@ class TimerModel final : public rp2040_model::Bus {
   std::uint64_t nanoseconds = 0;
 
  private:
+  [[nodiscard]] std::uint32_t bit() const { return 1U << number_; }
   void access() { pass(accesses_++ == delayed_ ? delay_ : 16); }
 
+  unsigned number_;
   bool armed_ = false;
   bool raw_ = false;
   bool enabled_ = false;
@@ -126,6 +132,24 @@ TEST(OneShotTimer, FiresOnceNeverEarlyAndAtMostFiveMicrosecondsLate) {
   }
 }
 
+template <unsigned number>
+void expect_that_it_fires() {
+  TimerModel model(number);
+  hal::rp2040::OneShotTimer<number>::start();
+  hal::rp2040::OneShotTimer<number>::restart(Duration(10));
+  EXPECT_FALSE(model.interrupt());
+  time_to_interrupt(model);
+  EXPECT_TRUE(hal::rp2040::OneShotTimer<number>::take_expiry());
+  EXPECT_FALSE(model.interrupt());
+}
+
+TEST(OneShotTimer, EachOneUsesItsOwnAlarm) {
+  expect_that_it_fires<0>();
+  expect_that_it_fires<1>();
+  expect_that_it_fires<2>();
+  expect_that_it_fires<3>();
+}
+
 TEST(OneShotTimer, FiresAlsoIfAnInterruptDelaysItsStart) {
   constexpr int kAccesses = 7;
   for (int access = 0; access < kAccesses; ++access) {
@@ -138,8 +162,22 @@ TEST(OneShotTimer, FiresAlsoIfAnInterruptDelaysItsStart) {
       EXPECT_TRUE(Timer::take_expiry());
       model.pass(100'000);
       EXPECT_FALSE(model.interrupt());
+      // The counter of the timer has the same values again after 2^32 us.
+      model.nanoseconds += (1ULL << 32U) * 1000 - 200'000;
+      model.pass(200'000);
+      EXPECT_FALSE(model.interrupt()) << "the alarm is still armed: " << access << ", " << delay;
     }
   }
+}
+
+TEST(OneShotTimer, RestartCancelsAPendingInterruptAfterADelayedStart) {
+  TimerModel model;
+  Timer::start();
+  model.delay(5, 50'000);  // the alarm is written too late, so the driver forces the interrupt
+  Timer::restart(Duration(2));
+  ASSERT_TRUE(model.interrupt());
+  Timer::restart(Duration(100));
+  EXPECT_FALSE(model.interrupt());
 }
 
 TEST(OneShotTimer, RestartCancelsAnEarlierStartAndItsPendingInterrupt) {
