@@ -1,0 +1,101 @@
+// Plays transcripts in parallel and compares the result with the core.
+#pragma once
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <array>
+#include <cstdio>
+#include <exception>
+#include <string>
+#include <string_view>
+#include <thread>
+#include <utility>
+#include <vector>
+
+#include "sim/play/player.hpp"
+#include "sim/play/transcript.hpp"
+#include "tests/support/core_target.hpp"
+#include "tests/support/transcripts.hpp"
+
+namespace ex9000::conformance {
+
+/// A transcript and its result.
+struct Played {
+  play::Transcript transcript;
+  play::Result result;
+};
+
+/// Returns a run of each transcript for each model that it names.
+inline std::vector<Played> all_runs() {
+  std::vector<Played> runs;
+  for (const std::string& file : play::transcript_files(EX9000_CONFORMANCE_DIR)) {
+    for (play::Transcript& transcript : runner::load_transcripts(file)) {
+      runs.push_back({std::move(transcript), {}});
+    }
+  }
+  return runs;
+}
+
+inline constexpr std::array<std::string_view, 8> kModelsOfTheManuals{
+    "EX9042D", "EX9042D-M", "EX9043D", "EX9043D-M", "EX9052D", "EX9052D-M", "EX9068D-M", "EX9068AD-M"};
+
+/// Returns the runs of the models in the manuals.
+inline std::vector<Played> runs_of_the_manuals() {
+  std::vector<Played> runs = all_runs();
+  const auto others = std::remove_if(runs.begin(), runs.end(), [](const Played& run) {
+    return std::count(kModelsOfTheManuals.begin(), kModelsOfTheManuals.end(),
+                      run.transcript.model->designation) == 0;
+  });
+  runs.erase(others, runs.end());
+  return runs;
+}
+
+/// Sorts the longest runs to the front, so that the test does not wait for a few long runs at the end.
+/// `duration_of` returns the approximate duration of a transcript.
+template <class DurationOf>
+void put_longest_first(std::vector<Played>& runs, DurationOf duration_of) {
+  std::stable_sort(runs.begin(), runs.end(), [&](const Played& a, const Played& b) {
+    return duration_of(a.transcript) > duration_of(b.transcript);
+  });
+}
+
+/// Plays a run. An exception of the target becomes the failure of the run.
+inline void play_run(Played& run, play::Target& target) {
+  try {
+    run.result = play::play(run.transcript, target);
+  } catch (const std::exception& error) {
+    run.result.failure = run.transcript.file + ": " + error.what() + " (" +
+                         std::string(run.transcript.model->designation) + ")";
+  }
+}
+
+/// Calls `player` with the numbers 0 to `count` - 1, each in its own thread, and waits for all.
+template <class Player>
+void in_parallel(unsigned count, Player player) {
+  std::vector<std::thread> players;
+  for (unsigned number = 0; number < count; ++number) {
+    players.emplace_back([&player, number] { player(number); });
+  }
+  for (std::thread& each : players) {
+    each.join();
+  }
+}
+
+inline unsigned processors() { return std::max(1U, std::thread::hardware_concurrency()); }
+
+/// Expects that all runs have passed, with as many steps as on the core.
+inline void expect_the_result_of_the_core(const char* name, const std::vector<Played>& runs) {
+  std::size_t steps = 0;
+  std::size_t core_steps = 0;
+  for (const Played& run : runs) {
+    EXPECT_TRUE(run.result.passed()) << run.result.failure;
+    steps += run.result.steps;
+    runner::CoreTarget core;
+    core_steps += play::play(run.transcript, core).steps;
+  }
+  EXPECT_EQ(steps, core_steps);
+  std::printf("%s: %zu runs, %zu steps, as the core\n", name, runs.size(), steps);
+}
+
+}  // namespace ex9000::conformance
