@@ -7,6 +7,7 @@
 #include <cstdint>
 
 #include "boards/cortex_m/start_up.hpp"
+#include "boards/handlers.hpp"
 #include "boards/image.hpp"
 #include "boards/rp2040/memory.hpp"
 #include "firmware/model/built.hpp"
@@ -87,34 +88,11 @@ struct Board {
 
 hal::Device<Board> device(kOnlyModel, kTimingAt);
 Board& board = device.board();
+using Handle = Handlers<device, SilenceTimer, LineEndTimer, WakeTimer>;
 
 // --- interrupts; all have the same priority, so an interrupt never interrupts another one ---
 
 void on_system_tick() { device.on_tick(); }
-
-void on_line() {
-  board.line.on_interrupt([](std::uint8_t byte, ByteStatus status) { device.on_receive(byte, status); });
-}
-
-void on_silence_timer() {
-  if (SilenceTimer::take_expiry()) {
-    device.on_silence();
-  }
-}
-
-void on_line_end_timer() {
-  if (LineEndTimer::take_expiry()) {
-    if (board.line.on_end_timer()) {
-      device.on_sent();
-    }
-  }
-}
-
-void on_wake_timer() {
-  if (WakeTimer::take_expiry()) {
-    device.on_wake_timer();
-  }
-}
 
 void on_memory() {
   Settings::on_interrupt(board.memory);
@@ -129,11 +107,11 @@ constexpr start_up::Served served(Interrupt number, start_up::Handler handler) {
   return {static_cast<unsigned>(number), handler};
 }
 constexpr auto kServed = table<start_up::Served>({
-    served(Interrupt::Timer0, on_silence_timer),
-    served(Interrupt::Timer1, on_line_end_timer),
-    served(Interrupt::Timer2, on_wake_timer),
+    served(Interrupt::Timer0, Handle::on_silence_timer),
+    served(Interrupt::Timer1, Handle::on_line_end_timer),
+    served(Interrupt::Timer2, Handle::on_wake_timer),
     served(Interrupt::Pins, decltype(board.inputs)::any() ? on_edges : nullptr),
-    served(Interrupt::Uart0, on_line),
+    served(Interrupt::Uart0, Handle::on_line),
     served(Interrupt::I2c0, Settings::kHasInterrupt ? on_memory : nullptr),
 });
 
@@ -169,10 +147,6 @@ void start() {
 int main() {
   using namespace ex9000::board;
   start();
-  for (;;) {
-    while (device.turn()) {
-    }
-    Interrupts::sleep_until([] { return device.has_work(); });
-  }
+  Handle::run_main_loop();
 }
 // NOLINTEND(cert-dcl59-cpp,google-build-namespaces,misc-definitions-in-headers)

@@ -7,6 +7,7 @@
 #include <cstdint>
 
 #include "boards/cortex_m/start_up.hpp"
+#include "boards/handlers.hpp"
 #include "boards/image.hpp"
 #include "firmware/model/built.hpp"
 #include "hal/at24c/at24c.hpp"
@@ -62,36 +63,13 @@ struct Board {
 
 hal::Device<Board> device(kOnlyModel, kTimingAt);
 Board& board = device.board();
+using Handle = Handlers<device, SilenceTimer, LineEndTimer, WakeTimer>;
 
 // --- interrupts; all have the same preemption priority, so an interrupt never interrupts another one ---
 
 void on_system_tick() {
   board.clock.count_in_interrupt();
   device.on_tick();
-}
-
-void on_line() {
-  board.line.on_interrupt([](std::uint8_t byte, ByteStatus status) { device.on_receive(byte, status); });
-}
-
-void on_silence_timer() {
-  if (SilenceTimer::take_expiry()) {
-    device.on_silence();
-  }
-}
-
-void on_line_end_timer() {
-  if (LineEndTimer::take_expiry()) {
-    if (board.line.on_end_timer()) {
-      device.on_sent();
-    }
-  }
-}
-
-void on_wake_timer() {
-  if (WakeTimer::take_expiry()) {
-    device.on_wake_timer();
-  }
 }
 
 void on_i2c() {
@@ -123,10 +101,10 @@ constexpr start_up::Served served(Interrupt number, start_up::Handler handler) {
   return {static_cast<unsigned>(number), handler};
 }
 constexpr auto kServed = table<start_up::Served>({
-    served(kLineInterrupt, on_line),
-    served(Interrupt::Timer0A, on_silence_timer),
-    served(Interrupt::Timer1A, on_line_end_timer),
-    served(Interrupt::Timer2A, on_wake_timer),
+    served(kLineInterrupt, Handle::on_line),
+    served(Interrupt::Timer0A, Handle::on_silence_timer),
+    served(Interrupt::Timer1A, Handle::on_line_end_timer),
+    served(Interrupt::Timer2A, Handle::on_wake_timer),
     served(Interrupt::GpioA, handler_of_edges<Port::A>()),
     served(Interrupt::GpioB, handler_of_edges<Port::B>()),
     served(Interrupt::GpioC, handler_of_edges<Port::C>()),
@@ -191,10 +169,6 @@ void start() {
 int main() {
   using namespace ex9000::board;
   start();
-  for (;;) {
-    while (device.turn()) {
-    }
-    Interrupts::sleep_until([] { return device.has_work(); });
-  }
+  Handle::run_main_loop();
 }
 // NOLINTEND(cert-dcl59-cpp,google-build-namespaces,misc-definitions-in-headers)

@@ -297,8 +297,10 @@ PICO_IMAGES = (
     PicoImage("pico-eeprom", "EX9043D-M", ("-DEX9000_SETTINGS_IN_EEPROM",)),
 )
 # Tests of them that together reach every driver.
-PICO_TESTS = "*RequestsBackToBack*:*NoPulse*:*OnlyTheFirst*:*MainLoopHangs/Nothing:*AReplyBegins*:*NoOutput*:*TheDriver*"\
-             ":PicoWithEeprom.APower*:*Blocks*"
+PICO_TESTS = ":".join(
+    "*RequestsBackToBack* *NoPulse* *OnlyTheFirst* *MainLoopHangs/Nothing *AReplyBegins* *NoOutput* *TheDriver* "
+    "PicoWithEeprom.APower* *Blocks*".split()
+)
 
 # One model with inputs and outputs for each board.
 IMAGES = tuple(Image(board, "EX9055D") for board in ("lm3s6965evb", "ek-tm4c123gxl"))
