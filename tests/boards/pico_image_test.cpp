@@ -29,6 +29,7 @@ constexpr unsigned kFirstInterrupt = 16;
 constexpr unsigned kUart0 = 20;
 constexpr unsigned kBranchToItself = 0xE7FE;
 constexpr unsigned kUndefined = 0xDE00;
+constexpr unsigned kReturn = 0x4770;  // BX LR
 
 play::Bytes text(const std::string& characters) { return {characters.begin(), characters.end()}; }
 
@@ -183,14 +184,16 @@ TEST_F(PicoImage, NoPulseOfEightInputsIsLostBetweenRequestsBackToBack) {
   EXPECT_EQ(bench_.counts().at("depth"), 1);
 }
 
-enum class Doing : std::uint8_t { Nothing, Receiving, Replying, Storing };
+enum class Doing : std::uint8_t { Nothing, Receiving, Replying, Storing, Erasing };
 const char* name_of(Doing doing) {
-  constexpr const char* kNames[] = {"Nothing", "Receiving", "Replying", "Storing"};
+  constexpr const char* kNames[] = {"Nothing", "Receiving", "Replying", "Storing", "Erasing"};
   return kNames[static_cast<int>(doing)];
 }
 
 class HangingPicoImage : public PicoImage, public testing::WithParamInterface<Doing> {
  protected:
+  static constexpr milliseconds kLongestErase{400};
+
   void make_it_busy() {
     switch (GetParam()) {
       case Doing::Nothing:
@@ -208,6 +211,13 @@ class HangingPicoImage : public PicoImage, public testing::WithParamInterface<Do
         bench_.send(text("~01OVALVE\r"));
         bench_.run_for(milliseconds(2));
         break;
+      case Doing::Erasing:  // as on the first start, with a slow flash
+        bench_.power(false);
+        bench_.forget_erased_sectors();
+        bench_.execute("flash-times " + std::to_string(nanoseconds(kLongestErase).count()) + " 3000000");
+        bench_.power(true);
+        bench_.run_for(kComingUp);
+        break;
     }
   }
 
@@ -218,7 +228,8 @@ class HangingPicoImage : public PicoImage, public testing::WithParamInterface<Do
     EXPECT_EQ(bench_.counts().at(count), 1);
     EXPECT_EQ(bench_.counts().at("reason"), reason);
     EXPECT_EQ(bench_.levels() & board::kDriverEnable.mask(), 0U) << "the driver is on";
-    bench_.run_for(kComingUp);
+    // The boot ROM waits until the flash has ended an erase.
+    bench_.run_for(kComingUp + (GetParam() == Doing::Erasing ? kLongestErase : milliseconds(0)));
     EXPECT_EQ(bench_.outputs(), kPowerOnValue);
     bench_.heard();
     ask("");
@@ -249,6 +260,13 @@ TEST_P(HangingPicoImage, IsResetByTheWatchdogIfAnInterruptHangs) {
   }
 }
 
+TEST_P(HangingPicoImage, IsResetByTheWatchdogIfTheTickDoesNothing) {
+  begin();
+  make_it_busy();
+  replace_handler(kSystemTick, kReturn);
+  expect_reset("timeouts", kTimeout, kWatchdogPeriod);
+}
+
 TEST_P(HangingPicoImage, IsResetAtOnceIfItFaults) {
   begin();
   make_it_busy();
@@ -266,8 +284,22 @@ TEST_P(HangingPicoImage, IsResetByTheWatchdogIfAFaultHandlerFaults) {
 }
 
 INSTANTIATE_TEST_SUITE_P(While, HangingPicoImage,
-                         testing::Values(Doing::Nothing, Doing::Receiving, Doing::Replying, Doing::Storing),
+                         testing::Values(Doing::Nothing, Doing::Receiving, Doing::Replying, Doing::Storing,
+                                         Doing::Erasing),
                          [](const auto& each) { return name_of(each.param); });
+
+TEST_F(PicoImage, ALineThatIsNeverSilentDoesNotResetTheModule) {
+  begin("EX9043D-M", 115200);
+  const nanoseconds end = bench_.now() + 2 * kWatchdogPeriod;
+  while (bench_.now() < end) {
+    bench_.send(play::Bytes(500, 'U'));
+    bench_.send(text("$01"));
+  }
+  bench_.heard();
+  ask("");
+  EXPECT_EQ(ask("$01M"), "!019043M\r");
+  EXPECT_EQ(bench_.counts().at("timeouts") + bench_.counts().at("requests"), 0);
+}
 
 class PicoWithEeprom : public PicoImage {
  protected:
