@@ -153,6 +153,17 @@ TEST_F(PicoImage, AReplyBeginsOneCharacterAfterTheRequest) {
   }
 }
 
+/// The wake timer wakes the main loop, which polls the memory. The tick comes only every 10 ms.
+TEST_F(PicoImage, AReplyToAStoreBeginsWithoutWaitingForTheTick) {
+  begin("EX9043D-M", 115200);
+  const nanoseconds bit(1'000'000'000 / 115200);
+  bench_.run_for(milliseconds(1000));  // until no sector is left to erase
+  for (int i = 0; i < 10; ++i) {
+    const nanoseconds waited = turn_around(bench_, text(i % 2 == 0 ? "~01OVALVE\r" : "~01OPUMP\r"), bit);
+    EXPECT_LE(waited, milliseconds(5)) << i;
+  }
+}
+
 TEST_F(PicoImage, AModbusReplyBeginsAfterTheSilenceOfThreeAndAHalfCharacters) {
   constexpr nanoseconds kTolerance = std::chrono::microseconds(60);
   const Model& model = *find_model("EX9043D-M");
@@ -335,6 +346,23 @@ TEST_F(PicoWithEeprom, AnEepromThatBlocksTheBusDoesNotStopTheModule) {
   bench_.power(true);
   bench_.run_for(milliseconds(1000));
   EXPECT_EQ(bench_.counts().at("timeouts"), 0);
+}
+
+TEST_F(PicoWithEeprom, ABusThatTheEepromHoldsIsFreedAtTheStart) {
+  const unsigned data = board::kI2cPins.first_pin;
+  begin();
+  bench_.power(false);
+  bench_.execute("pin " + std::to_string(data) + " low");
+  bench_.power(true);
+  // The EEPROM releases the data line after nine clocks, as if a reset had interrupted a read.
+  constexpr int kEdges = 2 * 9;
+  for (int edge = 0; edge < kEdges; ++edge) {
+    ASSERT_EQ(bench_.execute("watch " + std::to_string(data + 1) + " 100000000"), "1") << edge;
+  }
+  bench_.execute("pin " + std::to_string(data) + " high");
+  bench_.run_for(kComingUp);
+  EXPECT_EQ(bench_.outputs(), kPowerOnValue) << "the settings have not been read";
+  EXPECT_EQ(ask("~01OVALVE"), "!01\r");
 }
 
 TEST_F(PicoWithEeprom, AModuleWithoutAnEepromWorksWithFactorySettings) {

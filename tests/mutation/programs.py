@@ -298,8 +298,8 @@ PICO_IMAGES = (
 )
 # Tests of them that together reach every driver.
 PICO_TESTS = ":".join(
-    "*RequestsBackToBack* *NoPulse* *OnlyTheFirst* *MainLoopHangs/Nothing *AReplyBegins* *NoOutput* *TheDriver* "
-    "PicoWithEeprom.APower* *Blocks*".split()
+    "*RequestsBackToBack* *NoPulse* *OnlyTheFirst* *MainLoopHangs/Nothing *AReply* *NoOutput* *TheDriver* "
+    "PicoWithEeprom.APower* *Blocks* *IsFreed*".split()
 )
 
 # One model with inputs and outputs for each board.

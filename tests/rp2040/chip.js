@@ -6,6 +6,7 @@ const { Processor } = require("./core");
 const { Crystal, requireStable } = require("./crystal");
 const { correctI2c } = require("./i2c");
 const { Pl011 } = require("./pl011");
+const { correctPll } = require("./pll");
 const { QspiPins, Ssi } = require("./ssi");
 const { Guarded, Resets, Watchdog } = require("./system");
 
@@ -81,6 +82,7 @@ class Chip {
     peripherals[0x4000c] = this.resets;
     peripherals[0x40024] = new Crystal(mcu, "XOSC");
     requireStable(mcu.clocks, peripherals[0x40024]);
+    correctPll(peripherals[0x40028], peripherals[0x40024], mcu.clocks);
     peripherals[0x40058] = this.watchdog;
     peripherals[0x40034] = this.uart;
     this.i2c = mcu.i2c[0];

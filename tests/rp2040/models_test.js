@@ -14,6 +14,7 @@ const { FLASH_SIZE, FlashChip } = require("./flash_chip");
 const { correctI2c } = require("./i2c");
 const { Receiver, Sender } = require("./line");
 const { Pl011 } = require("./pl011");
+const { correctPll } = require("./pll");
 const { QspiPins, Ssi } = require("./ssi");
 const { Guarded, Resets, Watchdog } = require("./system");
 const { Trace } = require("./trace");
@@ -325,6 +326,31 @@ test("a pending interrupt wakes the processor, although PRIMASK keeps its handle
   core.interruptsUpdated = true;
   processor.step();
   assert.equal(core.IPSR, 16);
+});
+
+test("the PLL locks while it has power, and cannot clock the system before", () => {
+  const { time, mcu } = setUp();
+  const pll = mcu.peripherals[0x40028];
+  const crystal = { stable: false };
+  correctPll(pll, crystal, mcu.clocks);
+  const isLocked = () => (pll.readUint32(0) & (1 << 31)) !== 0;
+  pll.writeUint32(0, 1);
+  assert.throws(() => pll.writeUint32(4, 0x0c), /without a reference/);
+  crystal.stable = true;
+  pll.writeUint32(4, 0x2d);
+  assert.throws(() => pll.writeUint32(4, 0x0c), /0 Hz/);
+  pll.writeUint32(4, 0x2d);
+  pll.writeUint32(8, 125);
+  assert.equal(isLocked(), false);
+  pll.writeUint32(4, 0x0c);
+  assert.equal(isLocked(), false);
+  assert.throws(() => mcu.clocks.writeUint32(0x3c, 1), /before it runs/);
+  time.advanceTo(time.now + 50_000);
+  assert.equal(isLocked(), true);
+  assert.throws(() => pll.writeUint32(8, 100), /set up while it runs/);
+  assert.throws(() => mcu.clocks.writeUint32(0x3c, 1), /before it runs/, "the dividers have no power");
+  pll.writeUint32(4, 0x04);
+  mcu.clocks.writeUint32(0x3c, 1);
 });
 
 test("a trace contains each instruction once, and the interrupt before the first one of its handler", () => {

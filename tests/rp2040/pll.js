@@ -1,0 +1,56 @@
+// Corrects the system PLL of rp2040js: it locks only while it has power and a reference, and it cannot clock the system
+// before. Sources: RP2040 data sheet, 2.18 (PLL), 2.15.3.2 (glitchless multiplexers).
+"use strict";
+
+const CONTROL = 0x00;
+const POWER = 0x04;
+const LOCKED = 1 << 31;
+const OFF = (1 << 0) | (1 << 5); // PD, VCOPD
+const DIVIDERS_OFF = 1 << 3; // POSTDIVPD
+const LOCKS = 50e3; // ns; the data sheet states no time
+const SYSTEM_CONTROL = 0x3c;
+const FROM_AUXILIARY = 1 << 0;
+const AUXILIARY = 7 << 5; // 0: the system PLL
+
+function correctPll(pll, crystal, clocks) {
+  const { clock } = pll.rp2040;
+  const inner = { read: pll.readUint32.bind(pll), write: pll.writeUint32.bind(pll),
+    clocks: clocks.writeUint32.bind(clocks) };
+  let lockedAt = Infinity;
+  const isLocked = () => clock.nanos >= lockedAt;
+  const start = () => {
+    const oscillator = (pll.rp2040.xoscFreq / pll.refdiv) * pll.fbdiv;
+    if (!crystal.stable || oscillator < 750e6 || oscillator > 1600e6) {
+      pll.error(`it starts without a reference, or with ${oscillator} Hz`);
+    }
+    lockedAt = clock.nanos + LOCKS;
+  };
+  Object.assign(pll, {
+    readUint32(offset) {
+      const value = inner.read(offset);
+      return offset === CONTROL && !isLocked() ? value & ~LOCKED : value;
+    },
+    writeUint32(offset, value) {
+      const wasOff = (inner.read(POWER) & OFF) !== 0;
+      inner.write(offset, value);
+      if (offset === POWER && value & OFF) {
+        lockedAt = Infinity;
+      } else if (offset === POWER && wasOff) {
+        start();
+      } else if (offset !== POWER && !wasOff && offset <= 0x08) {
+        pll.error("it is set up while it runs");
+      }
+    },
+  });
+  Object.assign(clocks, {
+    writeUint32(offset, value) {
+      const usesPll = offset === SYSTEM_CONTROL && value & FROM_AUXILIARY && !(value & AUXILIARY);
+      if (usesPll && (!isLocked() || inner.read(POWER) & DIVIDERS_OFF)) {
+        pll.error("it becomes the system clock before it runs");
+      }
+      inner.clocks(offset, value);
+    },
+  });
+}
+
+module.exports = { correctPll };
