@@ -93,7 +93,7 @@ void Module::listen() {
                                                                : Inputs::CounterRange::SixteenBits,
                           (settings.format & kFormatRisingEdge) != 0);
   state_.inputs.invert(settings.inverted_inputs);
-  state_.inputs.use_filters(settings.input_filters);
+  use_filters();
   init_timeout_.disarm();
   receiver_.restart_by_requests(settings.fed_by_requests);
   receiver_.listen({in_force.protocol, in_force.checksum, timing_at_(baud())});
@@ -109,11 +109,17 @@ void Module::collect_edges(Time now) {
   }
 }
 
+void Module::use_filters() {
+  edges_.time_edges(
+      state_.settings.input_filters.any());  // first, because the filters use the times of edges
+  state_.inputs.use_filters(state_.settings.input_filters);
+}
+
 /// Applies the inversion and the filters of the settings. The edges until now count under the previous ones.
 void Module::configure_inputs(Time now) {
   collect_edges(now);
   state_.inputs.invert(state_.settings.inverted_inputs);
-  state_.inputs.use_filters(state_.settings.input_filters);
+  use_filters();
   collect_edges(now);
 }
 

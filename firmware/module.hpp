@@ -51,6 +51,8 @@ class Module {
   void on_own_driver_off(Time now) { receiver_.on_own_driver_off(now); }
   /// See InputEdges::on_edge.
   void on_edge(unsigned channel, bool level, Time now) { edges_.on_edge(channel, level, now); }
+  /// See InputEdges::needs_times.
+  [[nodiscard]] bool edges_need_times() const { return edges_.needs_times(); }
   void on_tick() { module_watchdog_.tick_alive(); }
   /// Returns whether a complete request is waiting. The turn-around time of an ASCII request may still be
   /// running. The main loop may call this too.
@@ -133,6 +135,7 @@ class Module {
   void expire_host_watchdog(Time now);
   void collect_edges(Time now);
   void configure_inputs(Time now);
+  void use_filters();
   [[nodiscard]] Duration turn_around() const;
   [[nodiscard]] Duration until_request(Time now) const;
   [[nodiscard]] bool step_is_due() const;

@@ -63,7 +63,8 @@ class Device {
     wake();
   }
   void on_edge(unsigned channel, bool level) {
-    module_.on_edge(channel, level, board_.clock.now_in_interrupt());
+    const Time now = module_.edges_need_times() ? board_.clock.now_in_interrupt() : Time();
+    module_.on_edge(channel, level, now);
   }
   void on_tick() {
     module_.on_tick();

@@ -21,16 +21,22 @@ class InputEdges {
   void begin(std::uint16_t levels) { levels_ = levels; }
 
   /// Counts one edge on `channel`, or two edges if `level`, the present level of the channel, is the same as
-  /// before. The edge interrupt calls this at `now`, when the hardware has flagged an edge. Ignores the call
-  /// if `channel` is kMaxInputs or greater.
+  /// before. The edge interrupt calls this when the hardware has flagged an edge. Ignores the call if
+  /// `channel` is kMaxInputs or greater. `now` has an effect only if `needs_times()`.
   void on_edge(unsigned channel, bool level, Time now);
+
+  /// Sets whether filters need the times of edges from now on. Without filters, an interrupt need not read
+  /// the clock, so it can serve more edges. For the main loop.
+  void time_edges(bool on) { needs_times_.store_in_main_loop(on); }
+  [[nodiscard]] bool needs_times() const { return needs_times_.load(); }
 
   /// Returns the number of calls of `on_edge`, of all channels together; it wraps.
   [[nodiscard]] std::uint32_t edges() const { return edges_.load(); }
   /// Returns the number of edges of `channel` since the last call for it. For the main loop, which must call
   /// this at least every 65535 edges.
   std::uint16_t collect(unsigned channel) { return channels_[channel].collect(); }
-  /// Returns the time of the last edge of `channel`. For the main loop.
+  /// Returns the time of the last edge of `channel`, if `needs_times()` was true at that edge. For the main
+  /// loop.
   [[nodiscard]] Time last_edge(unsigned channel) const { return Time(last_edges_[channel].load()); }
 
  private:
@@ -38,6 +44,7 @@ class InputEdges {
   WrittenByInterrupt<std::uint32_t> edges_;
   std::array<EventTally, kMaxInputs> channels_;
   std::array<WrittenByInterrupt<std::uint32_t>, kMaxInputs> last_edges_;
+  WrittenByMainLoop<bool> needs_times_;
 };
 
 /// Levels, latches and counters as the protocols read them. The order is: inversion, filter, everything else.

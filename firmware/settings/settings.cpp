@@ -15,6 +15,8 @@ bool Name::is_possible(unsigned longest) const {
   return true;
 }
 
+bool InputFilters::any() const { return !(*this == InputFilters()); }
+
 bool InputFilters::are_possible(unsigned channels) const {
   for (unsigned channel = 0; channel < kMaxInputs; ++channel) {
     if (of(channel) > (channel < channels ? kLongest : 0)) {

@@ -73,6 +73,8 @@ class InputFilters {
 
   [[nodiscard]] constexpr std::uint16_t of(unsigned channel) const { return milliseconds_[channel]; }
   constexpr void set(unsigned channel, std::uint16_t milliseconds) { milliseconds_[channel] = milliseconds; }
+  /// Returns whether a channel has a filter.
+  [[nodiscard]] bool any() const;
   /// Returns whether only the first `channels` channels have a filter and no time is too long.
   [[nodiscard]] bool are_possible(unsigned channels) const;
 
