@@ -57,8 +57,9 @@ class Module {
   /// Returns whether a complete request is waiting. The turn-around time of an ASCII request may still be
   /// running. The main loop may call this too.
   [[nodiscard]] bool request_waits() const { return receiver_.queue().has_frame(); }
-  /// Returns whether a host OK has arrived that `step` has not processed yet. The call of `step` may be late,
-  /// because the host watchdog restarts from the time at which the host OK was received. For the main loop.
+  /// Returns whether a host OK, or a request that counts like one, has arrived that `step` has not processed
+  /// yet. The call of `step` may be late, because the host watchdog restarts from the time at which the host
+  /// OK was received. For the main loop.
   [[nodiscard]] bool host_ok_waits() const { return receiver_.host_oks().waiting(); }
 
   // --- main loop ---

@@ -303,9 +303,10 @@ inline constexpr auto kCommands = table<Command>({
      {'~', 'R', 3, 3, Needs::Nothing, set_response_delay}},
     {"read-extension",
      "~AAXRRRR",
-     "!AAVVVV, or !AAVVVVVVVV",
+     "!AAVVVV or !AAVVVVVVVV",
      "read an extension register",
-     "RRRR: its address 0240-030F; of a 32-bit value the one of its high word, which reads both",
+     "RRRR: its address 0240-030F. For a 32-bit value, use the address of the high word; the reply contains "
+     "both words",
      Access::Read,
      Init::NotRequired,
      {'~', 'X', 4, 4, Needs::Nothing, read_extension}},

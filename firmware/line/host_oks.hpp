@@ -40,7 +40,7 @@ class HostOks {
     return times;
   }
 
-  /// Returns the number of host OKs since reset; wraps.
+  /// Returns the number of host OKs, and of requests that count like one, since reset; wraps.
   [[nodiscard]] std::uint32_t received() const { return received_.load(); }
   /// Returns the time of the last host OK; 0 if there was none.
   [[nodiscard]] Time last() const { return Time(last_.load()); }

@@ -312,7 +312,7 @@ inline constexpr auto kWordRegisters = table<WordRegister>({
     WordRegister{
         "line-tallies",
         "counts of the line: bus messages, bus errors, exceptions, messages for this module, those without a "
-        "reply, overruns, damaged bytes, frames lost for want of room; they wrap",
+        "reply, overruns, damaged bytes, frames lost because no buffer was free; they wrap",
         "",
         {0x0308, Width::Eight, Needs::Nothing, kReadRegisters, kExtension, 0, 0, read_tally, nullptr}},
     // This row is documentation only. The receiver recognises a host OK, so no function looks this row up.

@@ -98,7 +98,9 @@ constexpr std::uint8_t kFactoryWatchdogTimeout = 0xFF;
 /// Declares each setting once: SETTING(type, name, factory value, whether `value` is possible). The last two
 /// may use `model`, and the last one may use `value`. This list defines the members of Settings and of
 /// SettingsChange and the layout of a record (record.hpp), in the same order. Append new settings. Never
-/// remove or move a setting or change its type, because memories in the field contain them.
+/// remove or move a setting or change its type, because memories in the field contain them. Never change the
+/// factory value of a setting after `safe_value`, because a record may end before a setting with its factory
+/// value.
 ///
 ///     address           the module's address
 ///     baud_code         CC (model/baud.hpp)

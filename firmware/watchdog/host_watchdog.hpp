@@ -11,7 +11,7 @@ namespace ex9000 {
 class HostWatchdog {
  public:
   /// Call this at reset, when a request enables the watchdog or writes the timeout of the enabled watchdog,
-  /// and at every host OK.
+  /// at every host OK, and at every request that restarts it like one (register 0x0251).
   constexpr void restart(Time now) { started_ = now; }
 
   /// Returns whether the watchdog is enabled and at least VV x 0.1 s have passed since the last restart.

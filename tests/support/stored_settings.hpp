@@ -76,6 +76,21 @@ inline void put_layout_2(const Model& model, const Settings& settings, std::uint
 /// Returns a byte that newer firmware has stored after the settings that this firmware supports.
 inline std::uint8_t unknown_byte(std::size_t index) { return static_cast<std::uint8_t>(0xC1U ^ index); }
 
+/// Returns the bytes of settings in a record without unknown settings: up to the last one that differs from
+/// its factory value, at least 19.
+inline std::size_t bytes_of_settings(const Settings& settings) {
+  if (settings.response_delay != 0) {
+    return 55;
+  }
+  if (settings.fed_by_requests) {
+    return 54;
+  }
+  if (settings.inverted_inputs != 0) {
+    return 53;
+  }
+  return settings.input_filters.any() ? 51 : 19;
+}
+
 /// The bytes of settings that this firmware supports.
 inline constexpr std::size_t kSupportedSettings = 55;
 

@@ -30,6 +30,7 @@ constexpr std::uint16_t kOneBit = 1U << 0U;
 void needs_nothing(Settings& /*settings*/) {}
 void needs_clear_status(Settings& settings) { settings.timeout_status = false; }
 void needs_status(Settings& settings) { settings.timeout_status = true; }
+void needs_a_delay(Settings& settings) { settings.response_delay = 1; }
 void needs_disabled(Settings& settings) { settings.watchdog_enabled = false; }
 void needs_enabled(Settings& settings) { settings.watchdog_enabled = true; }
 void needs_a_short_timeout(Settings& settings) {
@@ -148,6 +149,8 @@ std::vector<StoringCommand> modbus_commands(const Model& model) {
       });
   add("06 response delay", needs_nothing, {0x06, 0x02, 0x52, 0x00, 0x1E},
       [](Settings& settings, std::uint16_t) { settings.response_delay = 0x1E; });
+  add("06 no response delay", needs_a_delay, {0x06, 0x02, 0x52, 0x00, 0x00},
+      [](Settings& settings, std::uint16_t) { settings.response_delay = 0; });
   add("06 watchdog feed", needs_nothing, {0x06, 0x02, 0x51, 0x00, 0x01},
       [](Settings& settings, std::uint16_t) { settings.fed_by_requests = true; });
   if (model.inputs != 0) {

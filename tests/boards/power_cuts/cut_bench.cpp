@@ -15,6 +15,7 @@ using std::chrono::milliseconds;
 
 constexpr milliseconds kComesUpWithin{100};
 constexpr milliseconds kRepliesWithin{25 + kLongestResponseDelay};
+constexpr std::size_t kAroundSettings = 8;  // layout, length, sequence and check
 constexpr milliseconds kStoresWithin{600};  // includes the wait for a timeout
 constexpr milliseconds kFinishesAnUpdateWithin{200};
 constexpr std::uint16_t kDriven = 0xC35A;  // set by a command before the command that stores
@@ -40,16 +41,21 @@ bool CutBench::has_unfinished_update(const Contents& contents) const {
          (good(kStoredPlaces[2]) || good(kStoredPlaces[3]));
 }
 
-/// Returns the number of pages that the next store programs, including those that invalidate old copies
-/// (firmware/settings/store.hpp).
-std::size_t CutBench::pages_of_a_store(const Contents& contents) const {
+constexpr std::size_t pages_of(std::size_t bytes) { return (bytes + kStoredPage - 1) / kStoredPage; }
+
+/// Returns the number of pages that the next store, of `settings`, programs, including those that invalidate
+/// old copies (firmware/settings/store.hpp).
+std::size_t CutBench::pages_of_a_store(const Contents& contents, const Settings& settings) const {
   const StoringModel storing = storing_model(model_);
   const std::size_t place = place_that_counts(storing, contents.data());
   if (place == kStoredPlaces[0] || place == kStoredPlaces[1]) {
-    const std::size_t size = StoredCopy(storing, contents.data(), place).size();
-    return (size + kStoredPage - 1) / kStoredPage;
+    const std::size_t present = StoredCopy(storing, contents.data(), place).size();
+    // A record of newer firmware keeps its length.
+    return present > kSupportedSettings + kAroundSettings
+               ? pages_of(present)
+               : pages_of(bytes_of_settings(settings) + kAroundSettings);
   }
-  std::size_t pages = 1;
+  std::size_t pages = pages_of(bytes_of_settings(settings) + kAroundSettings);
   for (const std::size_t old : {kStoredPlaces[2], kStoredPlaces[3]}) {
     pages += StoredCopy(storing, contents.data(), old).is_good() ? 1U : 0U;
   }
@@ -282,7 +288,7 @@ Cuts CutBench::cut_everywhere(const Contents& contents, const Settings& before,
       EXPECT_EQ(bench_.outputs(), command.is_timeout() ? outputs_done : cuts.outputs);
     }
   });
-  carry_out(frame_format, command, before, pages_of_a_store(contents));
+  carry_out(frame_format, command, before, pages_of_a_store(contents, done));
   bench_.eeprom.on_event(nullptr);
   ++cuts.points;
   ++cuts.cuts;

@@ -106,7 +106,7 @@ class CutBench {
   UartPort& uart() { return bench_.image.uart == 0 ? bench_.mcu->uart0 : bench_.mcu->uart1; }
   [[nodiscard]] Contents contents() const;
   [[nodiscard]] bool has_unfinished_update(const Contents& contents) const;
-  [[nodiscard]] std::size_t pages_of_a_store(const Contents& contents) const;
+  [[nodiscard]] std::size_t pages_of_a_store(const Contents& contents, const Settings& settings) const;
   Outputs outputs();
   void finish_update();
   void note_cuts(Cuts& cuts);

@@ -50,6 +50,11 @@ void watched(Settings& settings) {
   settings.watchdog_timeout = 1;
 }
 
+void filtered(Settings& settings) {
+  settings.input_filters.set(0, 1);
+  settings.input_filters.set(1, 1);
+}
+
 // --- events ---
 
 void nothing(Bench& /*bench*/) {}
@@ -99,6 +104,17 @@ Parts inputs(Bench& bench) {
                     bit(inputs.latched_high()) + bit(inputs.latched_low()));
   }
   return parts;
+}
+/// Returns the inputs after their filters have settled.
+Parts settled_inputs(Bench& bench) {
+  bench.rest(milliseconds(3));
+  return inputs(bench);
+}
+/// Requires that a timed output has been switched off.
+Parts switched_off(Bench& bench) {
+  bench.rest(milliseconds(2));
+  require(bench.hardware().outputs == 0, "a timed output stays on");
+  return outputs_and_name(bench);
 }
 Parts no_matter(Bench& /*bench*/) { return {}; }
 /// Checks to 3 microseconds that the host OK, and nothing else, has restarted the watchdog.
@@ -261,6 +277,10 @@ Scenario with_watchdog(Scenario scenario) {
   scenario.settings = watched;
   return scenario;
 }
+Scenario with_filters(Scenario scenario) {
+  scenario.settings = filtered;
+  return scenario;
+}
 Scenario restless(Scenario scenario) {
   scenario.restless = true;
   return scenario;
@@ -332,6 +352,20 @@ std::vector<Scenario> scenarios() {
                     replying_with_one_more("~01ONEW\r", "!01\r", "$01M\r", "!01NEW\r"), {reply_leaves},
                     {{"!01\r", "!01NEW\r"}}, outputs_and_name)),
       dcon("edges while idle", nothing, edges, {{}}, inputs),
+      with_filters(dcon("edges on filtered inputs", nothing, edges, {{}}, settled_inputs)),
+      with_filters(dcon("edges on filtered inputs while a counter is read", asked("#010\r", ""), edges,
+                        {{"!0100000\r"}}, settled_inputs)),
+      dcon("a frame while register 0x0251 is stored", storing("~01X02510001\r", "!01\r"),
+           frame("$01M\r", "!019055\r") + std::vector<Step>{memory_done}, {{"!01\r", "!019055\r"}},
+           outputs_and_name),
+      dcon(
+          "a frame while a timed output ends",
+          [](Bench& bench) {
+            bench.asks("~01X02800001\r", "!01\r");
+            bench.silence();
+            bench.rest(milliseconds(100));
+          },
+          frame("$01M\r", "!019055\r"), {{"!01\r", "!019055\r"}}, switched_off),
       dcon("edges while a counter is read", asked("#010\r", ""), edges, {{"!0100000\r"}, {"!0100001\r"}},
            inputs),
       dcon("edges while latches are cleared", asked("$01C\r", "!01\r"), edges, {{"!01\r"}}, inputs),

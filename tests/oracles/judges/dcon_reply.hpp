@@ -31,14 +31,14 @@ struct Shape {
   std::string_view answer;
 };
 
-constexpr std::array<Shape, 26> kShapes{{
+constexpr std::array<Shape, 28> kShapes{{
     {"%..........", "!nn"}, {"#......", ">"},        {"#...", "!aaddddd"}, {"$..2", "!sshhhhhh"},
     {"$..4", "!bhhhh00"},   {"$..5", "!aab"},        {"$..6", "!hhhh00"},  {"$..F", "!aaDdd.dd"},
     {"$..M", "!aat"},       {"$..C", "!aa"},         {"$..C.", "!aa"},     {"$..L0", "!hhhh00"},
     {"$..L1", "!hhhh00"},   {"$..P", "!aa1b"},       {"$..P.", "!aa"},     {"@..", ">hhhh"},
     {"@..*", ">"},          {"~..O*", "!aa"},        {"~..0", "!aahh"},    {"~..1", "!aa"},
     {"~..2", "!aabhh"},     {"~..3...", "!aa"},      {"~..4.", "!aahhhh"}, {"~..5.", "!aa"},
-    {"~..X....", "!aaw"},   {"~..X........", "!aa"},
+    {"~..X....", "!aaw"},   {"~..X........", "!aa"}, {"~..RD", "!aahh"},   {"~..RD..", "!aa"},
 }};
 
 constexpr bool is_request(std::string_view shape, Bytes request) {

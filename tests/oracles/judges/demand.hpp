@@ -2,6 +2,7 @@
 // an independent implementation of wire.md 4, 6 and 7.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <optional>
 
@@ -47,16 +48,17 @@ struct Values {
 
 /// The effects of a command that is executed. A refused command has no effects.
 struct Demand {
-  std::uint16_t channels = 0;     ///< the driven channels; 0: not an output command
-  std::uint16_t levels = 0;       ///< of the driven channels
-  std::uint16_t timers = 0;       ///< the driven channels whose timer starts; the others' timers end
-  bool of_power_on = false;       ///< Modbus: the power-on value of these channels becomes `levels`
-  bool of_safe = false;           ///< Modbus: the safe value of these channels becomes `levels`
-  bool keeps_power_on = false;    ///< `~AA5P`: the outputs are stored as power-on value
-  bool keeps_safe = false;        ///< `~AA5S`: the outputs are stored as safe value
-  bool clears_timeout = false;    ///< clears the timeout status
-  bool restarts = false;          ///< restarts the host watchdog if it is enabled afterwards
-  bool stores_something = false;  ///< any setting; storing takes time and may fail
+  std::uint16_t channels = 0;             ///< the driven channels; 0: not an output command
+  std::uint16_t levels = 0;               ///< of the driven channels
+  std::uint16_t timers = 0;               ///< the driven channels whose timer starts; the others' timers end
+  std::array<std::uint16_t, 16> units{};  ///< of these timers, in 0.1 s
+  bool of_power_on = false;               ///< Modbus: the power-on value of these channels becomes `levels`
+  bool of_safe = false;                   ///< Modbus: the safe value of these channels becomes `levels`
+  bool keeps_power_on = false;            ///< `~AA5P`: the outputs are stored as power-on value
+  bool keeps_safe = false;                ///< `~AA5S`: the outputs are stored as safe value
+  bool clears_timeout = false;            ///< clears the timeout status
+  bool restarts = false;                  ///< restarts the host watchdog if it is enabled afterwards
+  bool stores_something = false;          ///< any setting; storing takes time and may fail
   std::optional<std::uint8_t> timeout{};
   std::optional<bool> enabled{};
 
@@ -96,10 +98,12 @@ struct Demand {
   /// the request was received.
   [[nodiscard]] constexpr bool is_met_by(const Values& values, std::uint16_t outputs, bool since) const {
     const auto are = [this](std::uint16_t value) { return (value & channels) == levels; };
+    // No timer ends before the reply, because the shortest time is 0.1 s.
+    const bool timers_run = (values.timed & channels) == timers;
     const auto kept = [&](std::uint16_t value) {
       return value == values.lasting_outputs() || (since && value == outputs);
     };
-    return (are(values.outputs) || timers != 0 || (since && values.timed_out)) &&
+    return ((are(values.outputs) && timers_run) || (since && values.timed_out)) &&
            (!of_power_on || are(values.power_on)) && (!of_safe || are(values.safe)) &&
            (!keeps_power_on || kept(values.power_on)) && (!keeps_safe || kept(values.safe)) &&
            (!clears_timeout || !values.timed_out || since) && (!timeout || values.timeout == *timeout) &&

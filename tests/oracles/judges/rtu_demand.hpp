@@ -82,6 +82,7 @@ constexpr void add_timed_output(unsigned channel, unsigned value, Demand& demand
   if (value != 0) {
     demand.levels = static_cast<std::uint16_t>(demand.levels | bit);
     demand.timers = static_cast<std::uint16_t>(demand.timers | bit);
+    demand.units[channel] = static_cast<std::uint16_t>(value);
   }
 }
 

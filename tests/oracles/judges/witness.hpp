@@ -45,9 +45,13 @@ struct Listening {
 ///  - a command is refused although one of these values has changed, or a valid output command is refused;
 ///  - an idle module does not answer a frame that is addressed to it;
 ///  - the host watchdog expires too early;
+///  - the timer of an output ends too early;
 ///  - the address changes without a command;
 ///  - outputs are not the safe value while the timeout status is set, or an output is driven that the model
 ///    does not have.
+///
+/// It does not check that a timer ends in time, that a reply waits for the response delay, and that requests
+/// restart the host watchdog if register 0x0251 is 1.
 ///
 /// `now` must never decrease from one call to the next.
 class Witness {
@@ -146,6 +150,7 @@ class Witness {
         report_violation_("values change only because of a command, a timeout or a reset");
       }
     }
+    note_timers(values);
     values_ = values;
     if (values.timed_out && values.outputs != values.safe) {
       report_violation_("outputs are the safe value while the timeout status is set");
@@ -473,6 +478,32 @@ class Witness {
     return count != 0;
   }
 
+  /// For each timer that has started, notes the earliest time at which it may end.
+  void note_timers(const Values& values) {
+    constexpr Microseconds kUnit = 100 * kMillisecond;
+    for (unsigned channel = 0; channel < timer_ends_.size(); ++channel) {
+      if (((values.timed & ~values_.timed) >> channel & 1U) == 0) {
+        continue;
+      }
+      timer_ends_[channel] = 0;
+      for (std::size_t i = 0; i < pending_count_; ++i) {
+        const Pending& each = pending(i);
+        const bool starts = (each.demand.timers >> channel & 1U) != 0;
+        const Microseconds end = each.last + each.demand.units[channel] * kUnit;
+        if (starts && (timer_ends_[channel] == 0 || end < timer_ends_[channel])) {
+          timer_ends_[channel] = end;
+        }
+      }
+    }
+  }
+  [[nodiscard]] std::uint16_t timers_that_may_end() const {
+    unsigned channels = 0;
+    for (unsigned channel = 0; channel < timer_ends_.size(); ++channel) {
+      channels |= now_ >= timer_ends_[channel] ? 1U << channel : 0U;
+    }
+    return static_cast<std::uint16_t>(channels);
+  }
+
   [[nodiscard]] bool may_expire(const Values& values) const {
     constexpr Microseconds kUnit = 100 * kMillisecond;
     return values.enabled && now_ - alive_ >= values.timeout * kUnit;
@@ -484,7 +515,7 @@ class Witness {
     if (from == to) {
       return true;
     }
-    const auto ended = static_cast<std::uint16_t>(from.timed & ~to.timed);
+    const auto ended = static_cast<std::uint16_t>(from.timed & ~to.timed & timers_that_may_end());
     if (ended != 0 && some_lead(from.without_timers(ended), to, next, most)) {
       return true;
     }
@@ -538,9 +569,10 @@ class Witness {
   std::size_t oldest_ = 0;
   std::size_t pending_count_ = 0;
   Pending answered_;
-  Values values_;                     ///< the values after all commands and timeouts so far
-  std::uint16_t outputs_before_ = 0;  ///< the outputs before the latest timeout
-  Microseconds expired_ = 0;          ///< time of the latest timeout; 0: none since the last reset
+  Values values_;                              ///< the values after all commands and timeouts so far
+  std::uint16_t outputs_before_ = 0;           ///< the outputs before the latest timeout
+  std::array<Microseconds, 16> timer_ends_{};  ///< the timers of outputs do not end earlier
+  Microseconds expired_ = 0;                   ///< time of the latest timeout; 0: none since the last reset
   bool held_ = false;
   bool delays_ = false;  ///< a response delay may be in force
   bool sending_ = false;
