@@ -148,6 +148,7 @@ constexpr ClockGates kClockGates{
 void start() {
   SystemControl::open(kClockGates);
   Watchdog::start();
+  const ResetReason reason = SystemControl::take_reset_reason();
   board.outputs.start();
   board.line.start();
   board.init_switch.start();
@@ -159,7 +160,7 @@ void start() {
   LineEndTimer::start();
   WakeTimer::start();
   board.clock.start();
-  device.start(ResetReason::Unknown);
+  device.start(reason);
   Interrupts::enable(start_up::numbers_of(kServed), static_cast<std::uint32_t>(kLineInterrupt));
 }
 

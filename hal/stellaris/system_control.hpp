@@ -1,10 +1,11 @@
-// Clock tree and clock gates. Sources: LM3S6965 data sheet, 6.4 and 6.5 (system control); TM4C123GH6PM data
-// sheet, 5.3 and 5.5. The legacy RCC and RCGCn registers of the TM4C have the same addresses and the same
-// meaning.
+// Clock tree, clock gates and the reason of a reset. Sources: LM3S6965 data sheet, 6.4 and 6.5 (system
+// control); TM4C123GH6PM data sheet, 5.3 and 5.5. The legacy RCC and RCGCn registers of the TM4C have the
+// same addresses and the same meaning.
 #pragma once
 
 #include <cstdint>
 
+#include "firmware/reset_reason.hpp"
 #include "hal/registers/register.hpp"
 
 namespace ex9000::hal::stellaris {
@@ -77,13 +78,34 @@ class SystemControl {
     }
   }
 
+  /// Returns the reason of the last reset, and clears it. Call this once after each reset, as early as
+  /// possible: the bits of RESC (data sheets, "Reset Cause") stay set until software clears them, so a reset
+  /// that comes before this call adds its bit to them.
+  static ResetReason take_reset_reason() {
+    constexpr Bits<ResetCause> kPin(1U << 0U);
+    constexpr Bits<ResetCause> kPowerOn(1U << 1U);
+    constexpr Bits<ResetCause> kBrownOut(1U << 2U);
+    constexpr Bits<ResetCause> kWatchdog(1U << 3U);
+    constexpr Bits<ResetCause> kSoftware(1U << 4U);
+    const Bits<ResetCause> causes = kResetCause.read();
+    kResetCause.write({});
+    // The supply comes first, because the pin may be low for longer than the power-on reset.
+    return causes.has(kPowerOn | kBrownOut) ? ResetReason::PowerOn
+           : causes.has(kPin)               ? ResetReason::ResetPin
+           : causes.has(kWatchdog)          ? ResetReason::ModuleWatchdog
+           : causes.has(kSoftware)          ? ResetReason::Fault  // an image resets itself only after a fault
+                                            : ResetReason::Unknown;
+  }
+
  private:
   struct Rcc;
+  struct ResetCause;
   struct InterruptStatus;
   struct Rcgc0;
   struct Rcgc1;
   struct Rcgc2;
   static constexpr Register<InterruptStatus> kRawInterruptStatus{0x400F'E050};
+  static constexpr Register<ResetCause> kResetCause{0x400F'E05C};
   static constexpr Register<Rcc> kRcc{0x400F'E060};
   static constexpr Register<Rcgc0> kRcgc0{0x400F'E100};
   static constexpr Register<Rcgc1> kRcgc1{0x400F'E104};

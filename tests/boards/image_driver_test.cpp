@@ -325,6 +325,34 @@ TEST_P(OnBoard, IsResetByTheWatchdogWithin1600msIfTheTickStops) {
   EXPECT_EQ(bench.ask("$015"), "!011");
 }
 
+/// wire.md section 12, register 0x0301.
+TEST_P(OnBoard, TellsTheReasonOfEachResetAndForgetsTheOneBefore) {
+  constexpr milliseconds kLongestWatchdogPeriod{1600};
+  constexpr unsigned kUnserved = 7;  // SSI0
+  const std::string ask_reason = "~01X0301";
+  power_up();
+  EXPECT_EQ(bench.ask(ask_reason), "!010001");
+  for (int pass = 0; pass < 2; ++pass) {
+    bench.mcu->hang(Hangs::MainLoop);
+    bench.run_for(kLongestWatchdogPeriod + kComesUpWithin);
+    EXPECT_EQ(bench.watchdog_resets, 1U + static_cast<unsigned>(pass));
+    EXPECT_EQ(bench.ask(ask_reason), "!010002");
+    // An unexpected interrupt is a fault.
+    bench.mcu->core.write(Core::kSetEnable, 1U << kUnserved);
+    bench.mcu->core.stick(kUnserved);
+    bench.run_for(kComesUpWithin);
+    EXPECT_EQ(bench.resets, 2U + 2U * static_cast<unsigned>(pass));
+    EXPECT_EQ(bench.ask(ask_reason), "!010005");
+    bench.reset();
+    bench.run_for(kComesUpWithin);
+    EXPECT_EQ(bench.ask(ask_reason), "!010004");
+    EXPECT_EQ(bench.ask(ask_reason), "!010004");
+    bench.power_off();
+    power_up();
+    EXPECT_EQ(bench.ask(ask_reason), "!010001");
+  }
+}
+
 /// wire.md D13. If the module sampled this switch only every 10 ms, the switch would seem to be stable.
 TEST_P(OnBoard, TreatsAnInitSwitchThatBouncesAfterResetAsReleased) {
   for (const bool most_of_the_time : {true, false}) {

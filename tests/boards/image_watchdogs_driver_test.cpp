@@ -72,6 +72,8 @@ class FaultOnBoard : public testing::TestWithParam<std::tuple<ImageName, Protoco
         }
         EXPECT_TRUE(module.was_reset());
         EXPECT_FALSE(module.was_reset());
+        const Bytes reason = module.ask("~01X0301", {1, 0x04, 0x03, 0x01, 0, 1});
+        EXPECT_EQ(reason, module.framed("!010002", {1, 0x04, 2, 0, 2}));
         EXPECT_EQ(module.timeout_status(), timeout_status);
         EXPECT_TRUE(module.enabled());
         EXPECT_TRUE(module.stores_a_timeout(0x40));

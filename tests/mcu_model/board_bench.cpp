@@ -24,10 +24,11 @@ BoardBench::BoardBench(const Image& of, I2cBehaviour behaviour)
 
 BoardBench::~BoardBench() { stop(); }
 
-void BoardBench::start() {
+void BoardBench::start(ResetCause cause, std::uint32_t causes_before) {
   began = timeline.now();
   output_came_on = kNever;
   mcu.emplace(image.chip(), timeline, pins, behaviour_);
+  mcu->system_control.was_reset_by(cause, causes_before);
   mcu->system_control.set_crystal_start(crystal_start);
   mcu->record(record);
   run_.emplace(image, *mcu, timeline);
@@ -38,16 +39,19 @@ void BoardBench::stop() {
   mcu.reset();
 }
 
-void BoardBench::power_on() { start(); }
+void BoardBench::power_on() { start(ResetCause::PowerOn, 0); }
 
 void BoardBench::power_off() {
   eeprom.lose_power();
   stop();
 }
 
-void BoardBench::reset() {
+void BoardBench::reset() { restart(ResetCause::Pin); }
+
+void BoardBench::restart(ResetCause cause) {
+  const std::uint32_t causes = powered() ? mcu->system_control.causes() : 0;
   stop();
-  start();
+  start(cause, causes);
 }
 
 void BoardBench::run_until(Instant when) {
@@ -57,10 +61,10 @@ void BoardBench::run_until(Instant when) {
   while (timeline.now() < when) {
     try {
       run_->run_until(when);
-    } catch (const ResetRequest&) {
+    } catch (const ResetRequest& request) {
       ++resets;
       watchdog_resets += mcu->watchdog_expiries();
-      reset();
+      restart(request.cause);
     }
   }
 }

@@ -61,7 +61,8 @@ class BoardBench {
   bool record = false;
 
  private:
-  void start();
+  void start(ResetCause cause, std::uint32_t causes_before);
+  void restart(ResetCause cause);
   void stop();
 
   I2cBehaviour behaviour_;

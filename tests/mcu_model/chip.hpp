@@ -12,6 +12,7 @@ struct Chip {
   unsigned ports;             ///< A to F, or A to G
   bool port_control;          ///< GPIOPCTL and GPIOAMSEL exist
   bool i2c_clock_open_drain;  ///< true: the pin of SCL must be open drain; false: it must not
+  bool pin_clears_causes;     ///< a reset by the pin clears the other bits of RESC
   /// The clocks required between setting a clock gate and the first access to its peripheral.
   unsigned clocks_after_gate;
   Instant cycle_at_reset;  ///< period of the internal oscillator: 12 MHz or 16 MHz
@@ -22,10 +23,10 @@ struct Chip {
 };
 
 /// LM3S6965 on its evaluation board, with an 8 MHz crystal.
-inline constexpr Chip kLm3s6965{"LM3S6965",   7,     false, true, 3, Instant(83'333), 0x078E'3AD1U,
+inline constexpr Chip kLm3s6965{"LM3S6965",   7,     false, true, true, 3, Instant(83'333), 0x078E'3AD1U,
                                 0x000E'1000U, 0x0EU, 0xFU};
 /// TM4C123GH6PM on a LaunchPad, with a 16 MHz crystal.
-inline constexpr Chip kTm4c123{"TM4C123GH6PM", 6,     true, false, 5, Instant(62'500), 0x078E'3AD1U,
+inline constexpr Chip kTm4c123{"TM4C123GH6PM", 6,     true, false, false, 5, Instant(62'500), 0x078E'3AD1U,
                                0x0000'1000U,   0x15U, 0x1FU};
 
 }  // namespace ex9000::registers

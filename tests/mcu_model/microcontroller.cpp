@@ -46,7 +46,7 @@ Microcontroller::Microcontroller(const Chip& chip, Timeline& timeline, Pins& pin
       watchdog(system_control, timeline,
                [this] {
                  ++watchdog_expiries_;
-                 reset_requested_ = true;
+                 reset_requested_ = ResetCause::Watchdog;
                }),
       i2c(chip, system_control, timeline, port('B'), pins.ports.at(1), behaviour) {
   for (unsigned i = 0; i < chip.ports; ++i) {
@@ -80,7 +80,7 @@ Microcontroller::Microcontroller(const Chip& chip, Timeline& timeline, Pins& pin
     }
     i2c.software_reset();
   });
-  core.on_reset_request([this] { reset_requested_ = true; });
+  core.on_reset_request([this] { reset_requested_ = ResetCause::Software; });
   pins.on_change = [this](unsigned changed_port, unsigned pin) { pin_changed(changed_port, pin); };
   current_one = this;
 }
@@ -153,7 +153,7 @@ void Microcontroller::check_usable(const Place& place, std::uint32_t address) co
 
 void Microcontroller::check_reset() const {
   if (reset_requested_) {
-    throw ResetRequest();
+    throw ResetRequest{*reset_requested_};
   }
 }
 

@@ -59,7 +59,9 @@ struct Access {
 };
 
 /// Thrown when the microcontroller must be reset.
-class ResetRequest {};
+struct ResetRequest {
+  ResetCause cause;
+};
 
 /// The part of the firmware that stops.
 enum class Hangs : std::uint8_t {
@@ -160,7 +162,7 @@ class Microcontroller {
   std::function<void(std::uint32_t, std::uint32_t)> on_write_;
   int clocks_an_access_ = 2;
   Hangs hangs_ = Hangs::Nothing;
-  bool reset_requested_ = false;
+  std::optional<ResetCause> reset_requested_;
   unsigned watchdog_expiries_ = 0;
   std::uint64_t accesses_ = 0;
   std::uint64_t held_since_ = 0;

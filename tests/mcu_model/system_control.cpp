@@ -29,6 +29,9 @@ std::uint32_t SystemControl::read(std::uint32_t offset) {
   if (offset == kRis) {
     return locked_ ? kLocked : 0;
   }
+  if (offset == kResc) {
+    return causes_;
+  }
   if (offset == kRcc) {
     return rcc_;
   }
@@ -44,6 +47,11 @@ std::uint32_t SystemControl::read(std::uint32_t offset) {
 void SystemControl::write(std::uint32_t offset, std::uint32_t value) {
   if (offset == kRcc) {
     write_rcc(value);
+  } else if (offset == kResc) {
+    if ((value & ~causes_) != 0) {
+      fault(kResc, "software can clear the causes of a reset, but not set them");
+    }
+    causes_ = value;
   } else if (offset >= kRcgc && offset < kRcgc + 12) {
     const unsigned index = (offset - kRcgc) / 4;
     for (unsigned bit = 0; bit < 32; ++bit) {
@@ -64,6 +72,14 @@ void SystemControl::write(std::uint32_t offset, std::uint32_t value) {
   } else {
     fault(offset, "no such register of system control may be written");
   }
+}
+
+/// A cause stays until software clears it or the supply is switched off. On the LM3S6965, an external reset
+/// also clears all others.
+void SystemControl::was_reset_by(ResetCause cause, std::uint32_t before) {
+  const bool clears_others =
+      cause == ResetCause::PowerOn || (cause == ResetCause::Pin && chip_.pin_clears_causes);
+  causes_ = (clears_others ? 0 : before) | static_cast<std::uint32_t>(cause);
 }
 
 SystemControl::Gate SystemControl::gate(unsigned index, unsigned bit) const {

@@ -1,4 +1,5 @@
-// Clock tree, clock gates and software resets. Data sheets: LM3S6965 6.3 to 6.5, TM4C123GH6PM 5.2 to 5.6.
+// Clock tree, clock gates, causes of resets and software resets. Data sheets: LM3S6965 6.3 to 6.5,
+// TM4C123GH6PM 5.2 to 5.6.
 #pragma once
 
 #include <array>
@@ -12,10 +13,20 @@
 
 namespace ex9000::registers {
 
+/// The bits of RESC.
+enum class ResetCause : std::uint32_t {
+  Pin = 0x01,
+  PowerOn = 0x02,
+  BrownOut = 0x04,
+  Watchdog = 0x08,
+  Software = 0x10
+};
+
 class SystemControl final : public Peripheral {
  public:
   static constexpr std::uint32_t kBase = 0x400F'E000;
   static constexpr std::uint32_t kRis = 0x050;
+  static constexpr std::uint32_t kResc = 0x05C;
   static constexpr std::uint32_t kRcc = 0x060;
   static constexpr std::uint32_t kRcgc = 0x100;  ///< three words
   static constexpr std::uint32_t kSrcr = 0x040;  ///< three words
@@ -24,6 +35,10 @@ class SystemControl final : public Peripheral {
 
   std::uint32_t read(std::uint32_t offset) override;
   void write(std::uint32_t offset, std::uint32_t value) override;
+
+  /// Sets RESC as after a reset. `before`: its value before the reset.
+  void was_reset_by(ResetCause cause, std::uint32_t before);
+  [[nodiscard]] std::uint32_t causes() const { return causes_; }
 
   /// Returns one period of the system clock.
   [[nodiscard]] Instant cycle() const { return cycle_; }
@@ -57,6 +72,7 @@ class SystemControl final : public Peripheral {
 
   const Chip& chip_;
   Timeline& timeline_;
+  std::uint32_t causes_ = 0;
   std::uint32_t rcc_;
   std::array<std::uint32_t, 3> gates_{};
   std::array<std::array<Instant, 32>, 3> opened_{};

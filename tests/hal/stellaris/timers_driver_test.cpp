@@ -1,10 +1,13 @@
-// Tests SysTick as the clock, the one-shot timers and the watchdog.
+// Tests SysTick as the clock, the one-shot timers, the watchdog and the reason of a reset.
 #include <gtest/gtest.h>
 
+#include <cstdint>
 #include <random>
+#include <vector>
 
 #include "hal/cortex_m/system_timer.hpp"
 #include "hal/stellaris/one_shot_timer.hpp"
+#include "hal/stellaris/system_control.hpp"
 #include "hal/stellaris/watchdog.hpp"
 #include "tests/mcu_model/driver_bench.hpp"
 
@@ -219,6 +222,51 @@ TEST(Watchdog, IsLockedAgainstUnintendedRegisterWrites) {
   Watchdog::start();
   EXPECT_THROW(bench.mcu.write(WatchdogTimer::kBase + WatchdogTimer::kClear, 1), Fault);
   EXPECT_THROW(bench.mcu.write(WatchdogTimer::kBase + WatchdogTimer::kControl, 0), Fault);
+}
+
+// --- reason of a reset ---
+
+/// Returns what the driver takes after these resets. No software clears RESC between them.
+ResetReason taken_after(const Chip& chip, const std::vector<ResetCause>& resets) {
+  DriverBench bench(chip);
+  SystemControl& system_control = bench.mcu.system_control;
+  for (const ResetCause cause : resets) {
+    system_control.was_reset_by(cause, system_control.causes());
+  }
+  return hal::stellaris::SystemControl::take_reset_reason();
+}
+
+TEST(ReasonOfAReset, IsKnownForEachCauseOnBothChips) {
+  for (const Chip* chip : {&kLm3s6965, &kTm4c123}) {
+    EXPECT_EQ(taken_after(*chip, {ResetCause::PowerOn}), ResetReason::PowerOn);
+    EXPECT_EQ(taken_after(*chip, {ResetCause::BrownOut}), ResetReason::PowerOn);
+    EXPECT_EQ(taken_after(*chip, {ResetCause::Pin}), ResetReason::ResetPin);
+    EXPECT_EQ(taken_after(*chip, {ResetCause::Watchdog}), ResetReason::ModuleWatchdog);
+    EXPECT_EQ(taken_after(*chip, {ResetCause::Software}), ResetReason::Fault);
+    EXPECT_EQ(taken_after(*chip, {}), ResetReason::Unknown);
+  }
+}
+
+TEST(ReasonOfAReset, IsTheSupplyIfThePinIsLowForLongerOrTheSupplyDips) {
+  EXPECT_EQ(taken_after(kTm4c123, {ResetCause::PowerOn, ResetCause::Pin}), ResetReason::PowerOn);
+  EXPECT_EQ(taken_after(kLm3s6965, {ResetCause::PowerOn, ResetCause::BrownOut}), ResetReason::PowerOn);
+  EXPECT_EQ(taken_after(kLm3s6965, {ResetCause::Watchdog, ResetCause::BrownOut}), ResetReason::PowerOn);
+}
+
+TEST(ReasonOfAReset, IsThePinIfAnEarlierResetHasLeftItsBit) {
+  for (const Chip* chip : {&kLm3s6965, &kTm4c123}) {
+    EXPECT_EQ(taken_after(*chip, {ResetCause::Watchdog, ResetCause::Pin}), ResetReason::ResetPin);
+  }
+}
+
+TEST(ReasonOfAReset, IsClearedWhenItIsTaken) {
+  DriverBench bench;
+  SystemControl& system_control = bench.mcu.system_control;
+  system_control.was_reset_by(ResetCause::Watchdog, 0);
+  system_control.was_reset_by(ResetCause::Software, system_control.causes());
+  EXPECT_EQ(hal::stellaris::SystemControl::take_reset_reason(), ResetReason::ModuleWatchdog);
+  EXPECT_EQ(system_control.causes(), 0U);
+  EXPECT_EQ(hal::stellaris::SystemControl::take_reset_reason(), ResetReason::Unknown);
 }
 
 }  // namespace
