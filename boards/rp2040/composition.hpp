@@ -122,6 +122,7 @@ __attribute__((section(".vectors"), used)) constexpr auto kVectors =
 /// Starts the drivers. The watchdog starts first, so that it can reset the MCU if a later step hangs. The
 /// outputs start as early as possible after it, because their pins float until then.
 void start() {
+  const ResetReason reason = Watchdog::reset_reason();
   Watchdog::start();
   Resets::stop_second_core();
   Resets::release(Block::Pins | Block::Pads | Block::Timer);
@@ -137,7 +138,7 @@ void start() {
   LineEndTimer::start();
   WakeTimer::start();
   Tick::start();
-  device.start(ResetReason::Unknown);
+  device.start(reason);
   Interrupts::enable(start_up::numbers_of(kServed));
 }
 

@@ -1,19 +1,14 @@
-// The watchdog, the tick that drives it, and resets of the whole chip. Source: RP2040 data sheet, 4.7, 2.13.5
-// and erratum RP2040-E1.
+// The watchdog, the tick that drives it, resets of the whole chip and their reasons. Source: RP2040 data
+// sheet, 4.7, 2.12.7, 2.13.5 and erratum RP2040-E1.
 #pragma once
 
 #include <cstdint>
 
+#include "firmware/reset_reason.hpp"
 #include "hal/rp2040/shared_register.hpp"
 #include "hal/watchdog.hpp"
 
 namespace ex9000::hal::rp2040 {
-
-enum class ResetReason : std::uint8_t {
-  PowerOn,    ///< power-on, the RUN pin, or the debugger
-  Timeout,    ///< the watchdog was not fed in time
-  Requested,  ///< `WatchdogRegisters::reset_chip`, for example after a fault
-};
 
 class WatchdogRegisters {
  public:
@@ -26,30 +21,47 @@ class WatchdogRegisters {
     }
   }
 
-  /// Returns the reason of the last reset.
+  /// Returns the reason of the last reset. Call this before the watchdog starts.
   [[nodiscard]] static ResetReason reset_reason() {
     constexpr Bits<Reason> kTimeout(1U << 0U);
     constexpr Bits<Reason> kRequest(1U << 1U);
+    constexpr Bits<ChipReset> kSupply(1U << 8U);
+    constexpr Bits<ChipReset> kRunPin(1U << 16U);
     const Bits<Reason> reason = kReason.read();
-    return reason.has(kRequest)   ? ResetReason::Requested
-           : reason.has(kTimeout) ? ResetReason::Timeout
-                                  : ResetReason::PowerOn;
+    if (reason.has(kRequest | kTimeout)) {
+      // The boot ROM also resets the chip with the watchdog, after it has copied an image to the flash.
+      return kMark.read().value() != kOfAnImage.value() ? ResetReason::Software
+             : reason.has(kRequest)                     ? ResetReason::Fault  // images request no other reset
+                                                        : ResetReason::ModuleWatchdog;
+    }
+    // A reset by the watchdog does not change the bits of the last chip-level reset.
+    const Bits<ChipReset> chip_reset = kChipReset.read();
+    return chip_reset.has(kSupply)   ? ResetReason::PowerOn
+           : chip_reset.has(kRunPin) ? ResetReason::ResetPin
+                                     : ResetReason::Unknown;  // the rescue reset of the debug port
   }
 
  protected:
   struct Control;
   struct Load;
   struct Reason;
+  struct Mark;
   struct Tick;
   struct ResetBy;
+  struct ChipReset;
   static constexpr SharedRegister<Control> kControl{0x4005'8000};
   static constexpr SharedRegister<Load> kLoad{0x4005'8004};
   static constexpr SharedRegister<Reason> kReason{0x4005'8008};
+  /// The first scratch register. A chip-level reset clears it, and a reset by the watchdog does not. The boot
+  /// sequence (2.8.1) uses only the last four.
+  static constexpr SharedRegister<Mark> kMark{0x4005'800C};
   static constexpr SharedRegister<Tick> kTick{0x4005'802C};
   static constexpr SharedRegister<ResetBy> kResetBy{0x4001'0008};
+  static constexpr SharedRegister<ChipReset> kChipReset{0x4006'4008};
   static constexpr Bits<Control> kEnable{1U << 30U};
   static constexpr Bits<Control> kTrigger{1U << 31U};
   static constexpr Bits<Tick> kTickEnable{1U << 9U};
+  static constexpr Bits<Mark> kOfAnImage{0x4558'9000};  ///< any value that other software does not write
   /// Without these bits, a reset would leave the peripherals as they are. The oscillators need no reset.
   static constexpr Bits<ResetBy> kAllButOscillators{0x1'FFFC};
 };
@@ -61,6 +73,7 @@ class HardwareWatchdog : public WatchdogRegisters {
   /// Starts the tick of watchdog and timer, and the watchdog, which then runs until the next reset. While the
   /// ring oscillator is the reference clock, tick and countdown are up to twelve times longer.
   static void start() {
+    kMark.write(kOfAnImage);
     kTick.write(Bits<Tick>(reference) | kTickEnable);
     kControl.clear(kEnable);
     kResetBy.write(kAllButOscillators);

@@ -6,7 +6,7 @@
 #include <string_view>
 #include <utility>
 
-#include "hal/rp2040/watchdog.hpp"
+#include "firmware/reset_reason.hpp"
 #include "tests/rp2040/pico_bench.hpp"
 
 namespace ex9000::pico {
@@ -84,19 +84,18 @@ TEST_F(PicoFlash, TheLongestEraseAndTheLongestProgramDoNotDisturbIt) {
 TEST_F(PicoFlash, TheReasonOfAResetIsKnown) {
   constexpr std::string_view kBranchToItself = " 59390";
   constexpr std::string_view kUndefined = " 56832";
-  using hal::rp2040::ResetReason;
   bench_.power(true);
   bench_.run_for(milliseconds(100));
   EXPECT_EQ(result(Reason), static_cast<unsigned>(ResetReason::PowerOn));
   for (const auto& [instruction, reason] :
-       {std::pair{kBranchToItself, ResetReason::Timeout}, std::pair{kUndefined, ResetReason::Requested}}) {
+       {std::pair{kBranchToItself, ResetReason::ModuleWatchdog}, std::pair{kUndefined, ResetReason::Fault}}) {
     bench_.execute("write " + bench_.execute("pc") + std::string(instruction));
     bench_.run_for(milliseconds(1700));
     EXPECT_EQ(result(Reason), static_cast<unsigned>(reason));
   }
   bench_.reset();
   bench_.run_for(milliseconds(100));
-  EXPECT_EQ(result(Reason), static_cast<unsigned>(ResetReason::PowerOn));
+  EXPECT_EQ(result(Reason), static_cast<unsigned>(ResetReason::ResetPin));
 }
 
 }  // namespace

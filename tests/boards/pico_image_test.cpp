@@ -299,6 +299,40 @@ INSTANTIATE_TEST_SUITE_P(While, HangingPicoImage,
                                          Doing::Erasing),
                          [](const auto& each) { return name_of(each.param); });
 
+/// wire.md section 12, register 0x0301.
+TEST_F(PicoImage, TheReasonOfEachResetIsKnown) {
+  const std::string ask_reason = "~01X0301";
+  begin();
+  EXPECT_EQ(ask(ask_reason), "!010001\r");
+  for (int pass = 0; pass < 2; ++pass) {
+    replace_main_loop(kBranchToItself);
+    bench_.run_for(kWatchdogPeriod + kComingUp);
+    EXPECT_EQ(ask(ask_reason), "!010002\r");
+    replace_handler(kSystemTick, kUndefined);
+    bench_.run_for(milliseconds(11) + kComingUp);
+    EXPECT_EQ(ask(ask_reason), "!010005\r");
+    bench_.reset();
+    bench_.run_for(kComingUp);
+    EXPECT_EQ(ask(ask_reason), "!010004\r");
+    bench_.power(false);
+    bench_.power(true);
+    bench_.run_for(kComingUp);
+    EXPECT_EQ(ask(ask_reason), "!010001\r");
+  }
+}
+
+/// The boot ROM resets the chip with the watchdog, although no watchdog has expired.
+TEST_F(PicoImage, TheResetAfterACopyToTheDriveIsOneBySoftware) {
+  begin();
+  bench_.power(false);
+  bench_.execute("power-after-copy");
+  bench_.run_for(kComingUp);
+  EXPECT_EQ(ask("~01X0301"), "!010003\r");
+  replace_main_loop(kBranchToItself);
+  bench_.run_for(kWatchdogPeriod + kComingUp);
+  EXPECT_EQ(ask("~01X0301"), "!010002\r");
+}
+
 TEST_F(PicoImage, ALineThatIsNeverSilentDoesNotResetTheModule) {
   begin("EX9043D-M", 115200);
   const nanoseconds end = bench_.now() + 2 * kWatchdogPeriod;

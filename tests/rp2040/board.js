@@ -5,7 +5,7 @@ const { Chip } = require("./chip");
 const { Eeprom } = require("./eeprom");
 const { FLASH_SIZE, FlashChip } = require("./flash_chip");
 const { BITS, Receiver, Sender } = require("./line");
-const { REASON } = require("./system");
+const { CHIP_RESET, REASON, SCRATCH_REGISTERS } = require("./system");
 
 const PINS = 30;
 
@@ -43,7 +43,7 @@ class Board {
 
   power(on) {
     if (on && this.chip === null) {
-      this.start(REASON.powerOn);
+      this.startCold(CHIP_RESET.supply);
     } else if (!on && this.chip !== null) {
       this.end();
       this.flash.losePower();
@@ -55,8 +55,20 @@ class Board {
   reset() {
     if (this.chip !== null) {
       this.end();
-      this.start(REASON.powerOn);
+      this.startCold(CHIP_RESET.run);
     }
+  }
+
+  // Starts the image as after a copy to the drive RPI-RP2: the boot ROM has reset the chip with the watchdog.
+  startAfterCopy() {
+    this.startCold(CHIP_RESET.supply, REASON.timeout);
+  }
+
+  // Starts after a chip-level reset.
+  startCold(chipReset, reason = REASON.none) {
+    this.chipReset = chipReset;
+    this.scratch = new Uint32Array(SCRATCH_REGISTERS);
+    this.start(reason);
   }
 
   start(reason) {
@@ -69,6 +81,8 @@ class Board {
       flash: this.flash,
       pins: this.pins,
       reason,
+      chipReset: this.chipReset,
+      scratch: this.scratch,
       transmitted: true,
       transmit: (level) => this.transmit(level),
       pinChanged: (number) => this.pinChanged(number),

@@ -8,7 +8,7 @@ const { correctI2c } = require("./i2c");
 const { Pl011 } = require("./pl011");
 const { correctPll } = require("./pll");
 const { QspiPins, Ssi } = require("./ssi");
-const { Guarded, Resets, Watchdog } = require("./system");
+const { ChipReset, Guarded, Resets, Watchdog } = require("./system");
 
 const RAM = 0x20000000;
 const SECOND_STAGE = 0x20041f00;
@@ -45,7 +45,7 @@ const REJECT = {
 };
 
 class Chip {
-  // `board`: { clock, flash, pins, reason, transmit(level), pinChanged(number), reset(reason) }
+  // `board`: { clock, flash, pins, reason, chipReset, scratch, transmit(level), pinChanged(number), reset(reason) }
   constructor(board) {
     this.board = board;
     this.mcu = new RP2040(board.clock);
@@ -64,7 +64,7 @@ class Chip {
     const { peripherals } = mcu;
     this.resets = new Resets(mcu, "RESETS");
     this.psm = peripherals[0x40010];
-    this.watchdog = new Watchdog(mcu, "WATCHDOG", this.psm, board.reason, (reason) => board.reset(reason));
+    this.watchdog = new Watchdog(mcu, "WATCHDOG", this.psm, board);
     this.uart = new Pl011(mcu, "UART0", UART0_IRQ, {
       transmit: (level) => board.transmit(level),
       mayTransmit: () => this.drives(board.pins.transmit, UART_FUNCTION),
@@ -84,6 +84,7 @@ class Chip {
     requireStable(mcu.clocks, peripherals[0x40024]);
     correctPll(peripherals[0x40028], peripherals[0x40024], mcu.clocks);
     peripherals[0x40058] = this.watchdog;
+    peripherals[0x40064] = new ChipReset(mcu, "CHIP_RESET", board.chipReset);
     peripherals[0x40034] = this.uart;
     this.i2c = mcu.i2c[0];
     correctI2c(this.i2c);

@@ -49,6 +49,8 @@ const COMMANDS = {
   },
   power: (on) => board.power(on === "on"),
   reset: () => board.reset(),
+  // power-after-copy: switches the supply on; the image starts as after a copy to the drive RPI-RP2
+  "power-after-copy": () => board.startAfterCopy(),
   echo(on) {
     board.echoes = on === "on";
   },

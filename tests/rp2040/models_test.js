@@ -16,7 +16,7 @@ const { Receiver, Sender } = require("./line");
 const { Pl011 } = require("./pl011");
 const { correctPll } = require("./pll");
 const { QspiPins, Ssi } = require("./ssi");
-const { Guarded, Resets, Watchdog } = require("./system");
+const { CHIP_RESET, ChipReset, Guarded, Resets, Watchdog } = require("./system");
 const { Trace } = require("./trace");
 
 const BIT = 8680; // ns at 115200 baud
@@ -260,7 +260,9 @@ test("the watchdog counts twice a tick, and requires a tick and a full reset", (
   const { mcu, time } = setUp();
   const psm = { wdsel: 0 };
   const reasons = [];
-  const watchdog = new Watchdog(mcu, "WATCHDOG", psm, 0, (reason) => reasons.push(reason));
+  const watchdog = new Watchdog(mcu, "WATCHDOG", psm, {
+    reason: 0, scratch: new Uint32Array(8), reset: (reason) => reasons.push(reason),
+  });
   mcu.clocks.refCtrl = 2; // the crystal
   watchdog.writeUint32(0x04, 2_000_000);
   watchdog.writeUint32(0x00, 1 << 30);
@@ -276,6 +278,16 @@ test("the watchdog counts twice a tick, and requires a tick and a full reset", (
   assert.deepEqual(reasons, []);
   time.advanceTo(fed + 1e9);
   assert.deepEqual(reasons, [1]);
+});
+
+test("the watchdog keeps its scratch registers, and the source of a chip-level reset is read-only", () => {
+  const { mcu } = setUp();
+  const scratch = new Uint32Array(8);
+  new Watchdog(mcu, "WATCHDOG", {}, { reason: 0, scratch }).writeUint32(0x28, 9);
+  assert.equal(new Watchdog(mcu, "WATCHDOG", {}, { reason: 1, scratch }).readUint32(0x28), 9);
+  const chipReset = new ChipReset(mcu, "CHIP_RESET", CHIP_RESET.run);
+  assert.equal(chipReset.readUint32(8), 0x10000);
+  assert.throws(() => chipReset.writeUint32(8, 0));
 });
 
 test("an I2C master rejects settings while it is on, and reports a low queue as long as it is low", () => {

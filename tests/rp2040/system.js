@@ -1,5 +1,6 @@
-// Resets of blocks, the power-on state machine, the watchdog with its tick, and a guard that rejects the use of a block
-// that silicon would not allow. Sources: RP2040 data sheet, 2.13, 2.14, 4.6.2 and 4.7; erratum RP2040-E1.
+// Resets of blocks, the power-on state machine, the source of the last chip-level reset, the watchdog with its tick,
+// and a guard that rejects the use of a block that silicon would not allow. Sources: RP2040 data sheet, 2.12.7, 2.13,
+// 2.14, 4.6.2 and 4.7; erratum RP2040-E1.
 "use strict";
 const { BasePeripheral } = require("rp2040js");
 
@@ -74,6 +75,20 @@ class Guarded {
   }
 }
 
+// The sources of a chip-level reset. A reset by the watchdog is none.
+const CHIP_RESET = { supply: 1 << 8, run: 1 << 16, debugPort: 1 << 20 };
+
+class ChipReset extends BasePeripheral {
+  constructor(rp2040, name, source) {
+    super(rp2040, name);
+    this.source = source;
+  }
+
+  readUint32(offset) {
+    return offset === 8 ? this.source : super.readUint32(offset);
+  }
+}
+
 const ENABLE = 1 << 30;
 const TRIGGER = 1 << 31;
 const TICK_ENABLE = 1 << 9;
@@ -81,12 +96,15 @@ const TICK_RUNNING = 1 << 10;
 const TICK_CYCLES = 0x1ff;
 const COUNT = 0xffffff;
 const COUNTS_A_TICK = 2; // RP2040-E1
-const REASON = { powerOn: 0, timeout: 1, request: 2 };
+const REASON = { none: 0, timeout: 1, request: 2 };
 const ALL_BUT_OSCILLATORS = 0x1fffc;
+const SCRATCH_REGISTERS = 8;
+const FIRST_SCRATCH = 0x0c;
+const isScratch = (offset) => offset >= FIRST_SCRATCH && offset < FIRST_SCRATCH + 4 * SCRATCH_REGISTERS;
 
 class Watchdog extends BasePeripheral {
-  // `reset(reason)` resets the chip.
-  constructor(rp2040, name, psm, reason, reset) {
+  // `scratch`: the scratch registers, which outlive the resets by the watchdog. `reset(reason)` resets the chip.
+  constructor(rp2040, name, psm, { reason, scratch, reset }) {
     super(rp2040, name);
     this.psm = psm;
     this.reason = reason;
@@ -94,7 +112,7 @@ class Watchdog extends BasePeripheral {
     this.enabled = false;
     this.tick = 0;
     this.load = 0;
-    this.scratch = new Uint32Array(8);
+    this.scratch = scratch;
     this.alarm = rp2040.clock.createAlarm(() => this.trigger(REASON.timeout));
   }
 
@@ -112,7 +130,7 @@ class Watchdog extends BasePeripheral {
     case 0x2c:
       return this.tick | (this.tick & TICK_ENABLE ? TICK_RUNNING : 0);
     default:
-      return offset >= 0x0c && offset <= 0x28 ? this.scratch[(offset - 0x0c) / 4] : super.readUint32(offset);
+      return isScratch(offset) ? this.scratch[(offset - FIRST_SCRATCH) / 4] : super.readUint32(offset);
     }
   }
 
@@ -134,7 +152,11 @@ class Watchdog extends BasePeripheral {
       this.run();
       break;
     default:
-      super.writeUint32(offset, value);
+      if (isScratch(offset)) {
+        this.scratch[(offset - FIRST_SCRATCH) / 4] = value;
+      } else {
+        super.writeUint32(offset, value);
+      }
     }
   }
 
@@ -155,4 +177,4 @@ class Watchdog extends BasePeripheral {
   }
 }
 
-module.exports = { Guarded, REASON, Resets, Watchdog };
+module.exports = { CHIP_RESET, ChipReset, Guarded, REASON, Resets, SCRATCH_REGISTERS, Watchdog };

@@ -110,6 +110,7 @@ void erase() {
 int main() {
   using namespace ex9000;
   using namespace ex9000::board;
+  const ResetReason reason = Watchdog::reset_reason();
   Watchdog::start();
   Resets::release(Block::Pins | Block::Pads | Block::Timer);
   line.start();
@@ -121,7 +122,7 @@ int main() {
   results().rounds = 0;
   results().wrong = 0;
   results().erasing = 0;
-  results().reason = static_cast<std::uint32_t>(Watchdog::reset_reason());
+  results().reason = static_cast<std::uint32_t>(reason);
   line.open(115200);
   Interrupts::enable(start_up::numbers_of(kServed));
   Flash::start();
