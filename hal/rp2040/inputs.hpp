@@ -1,6 +1,7 @@
 // Input channels on pins, with interrupts at both edges.
 #pragma once
 
+#include <array>
 #include <cstdint>
 
 #include "hal/rp2040/gpio.hpp"
@@ -18,7 +19,12 @@ class InputPins {
   static std::uint16_t start() {
     Gpio::make_input(kPins, !active_high);
     Gpio::watch_edges(kPins);
-    return static_cast<std::uint16_t>(settle(kPins).levels >> kFirst & ((1U << channels) - 1U));
+    const std::uint32_t levels = settle(kPins).levels;
+    unsigned of_channels = 0;
+    for (unsigned channel = 0; channel < channels; ++channel) {
+      of_channels |= (levels >> kPinOf[channel] & 1U) << channel;
+    }
+    return static_cast<std::uint16_t>(of_channels);
   }
 
   static constexpr bool any() { return channels != 0; }
@@ -27,19 +33,36 @@ class InputPins {
   template <class Deliver>
   static void take_edges(Deliver deliver) {
     const Settled settled = settle(Gpio::edges());
-    std::uint32_t flagged = settled.flagged >> kFirst;
-    std::uint32_t levels = settled.levels >> kFirst;
-    for (unsigned channel = 0; flagged != 0; ++channel, flagged >>= 1U, levels >>= 1U) {
-      if ((flagged & 1U) != 0) {
-        deliver(channel, (levels & 1U) != 0);
+    for (unsigned channel = 0; channel < channels; ++channel) {
+      const std::uint32_t pin = 1U << kPinOf[channel];
+      if ((settled.flagged & pin) != 0) {
+        deliver(channel, (settled.levels & pin) != 0);
       }
     }
   }
 
  private:
-  static constexpr unsigned kFirst = groups[0].first_pin;
-  static constexpr std::uint32_t kPins = ((1U << channels) - 1U) << kFirst;
-  static_assert(channels <= groups[0].count, "the inputs of a model must be in one group of pins");
+  /// Returns the pin of each channel.
+  static constexpr std::array<std::uint8_t, channels> pins_of_channels() {
+    std::array<std::uint8_t, channels> result{};
+    unsigned channel = 0;
+    for (const PinGroup& group : groups) {
+      for (unsigned i = 0; i < group.count && channel < channels; ++i, ++channel) {
+        result[channel] = static_cast<std::uint8_t>(group.first_pin + i);
+      }
+    }
+    return result;
+  }
+  static constexpr std::array<std::uint8_t, channels> kPinOf = pins_of_channels();
+
+  static constexpr std::uint32_t mask() {
+    std::uint32_t result = 0;
+    for (const std::uint8_t pin : kPinOf) {
+      result |= 1U << pin;
+    }
+    return result;
+  }
+  static constexpr std::uint32_t kPins = mask();
 
   struct Settled {
     std::uint32_t flagged;

@@ -209,7 +209,7 @@ class LeanModule {
     held_ = false;
     const Microseconds began = around_.now;
     device_.emplace(model_, timing_at_, LeanBoard(around_));
-    device_->start();
+    device_->start(ResetReason::PowerOn);
     main_loop();
     constexpr Microseconds kLongest = 100 * kMillisecond;  // wire.md D13
     while (!module().listening()) {

@@ -46,9 +46,9 @@ TEST(Neighbours, AnswerOnlyOwnRequestsAt9600BaudWhileOneCounts250PulsesPerSecond
   }
 }
 
-TEST(Neighbours, AnswerOnlyOwnRequestsAt115200BaudWhileOneCounts34500PulsesPerSecond) {
+TEST(Neighbours, AnswerOnlyOwnRequestsAt115200BaudWhileOneCounts32000PulsesPerSecond) {
   Crowd crowd(115200, number_in_environment("EX9000_SEED", 1));
-  crowd.pulser().start(34'500);
+  crowd.pulser().start(32'000);
   run(crowd, std::chrono::seconds(
                  std::min<std::uint64_t>(number_in_environment("EX9000_VIRTUAL_SECONDS", 60) / 15, 600)));
   crowd.pulser().stop();

@@ -150,6 +150,9 @@ class Witness {
         report_violation_("values change only because of a command, a timeout or a reset");
       }
     }
+    if ((values_.timed & ~values.timed) != 0) {
+      look_before_a_timer_ends();
+    }
     note_timers(values);
     values_ = values;
     if (values.timed_out && values.outputs != values.safe) {
@@ -554,6 +557,15 @@ class Witness {
         report_violation_("an idle module executes a broadcast");
       }
     }
+  }
+
+  /// The end of a timer can undo the effect of the latest broadcast, so this checks the broadcast before, or
+  /// not at all if the broadcast may take effect in the same turn.
+  void look_before_a_timer_ends() {
+    if (broadcast_ && now_ > latest_of(pending(0), free_)) {
+      look();
+    }
+    broadcast_ = false;
   }
 
   const Model& model_;
