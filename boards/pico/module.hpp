@@ -35,7 +35,8 @@ inline constexpr Pin kInitSwitch{3};
 inline constexpr PinGroup kI2cPins{4, 2};
 
 /// The pins in the order of the channels. Outputs begin with the first eight pins, inputs with the second
-/// eight. A model with more than eight outputs has no inputs, and the other way round, so it can use all pins.
+/// eight. A model with more than eight outputs has no inputs, and the other way round, so it can use all
+/// pins.
 inline constexpr std::array<PinGroup, 2> kOutputs{PinGroup{6, 8}, PinGroup{14, 8}};
 inline constexpr std::array<PinGroup, 2> kInputs{PinGroup{14, 8}, PinGroup{6, 8}};
 inline constexpr bool kOutputsActiveHigh = true;

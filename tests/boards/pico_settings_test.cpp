@@ -217,7 +217,7 @@ TEST_F(PicoSettings, PowerFailuresAtAnyTimeLoseNoValueThatWasStored) {
     ASSERT_TRUE(found == stored || found == next)
         << "power failure " << i << ": " << found << " instead of " << stored << " or " << next;
     stored = found;
-    for (unsigned stores = random() % 40; stores != 0; --stores) {
+    for (std::uint64_t stores = random() % 40; stores != 0; --stores) {
       stored = 1 + stored % 250;
       ASSERT_NO_FATAL_FAILURE(expect_store(static_cast<std::uint8_t>(stored))) << i;
     }

@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "firmware/request/statistics.hpp"
 #include "sim/text/values.hpp"
 #include "tests/firmware/module_bench.hpp"
 
@@ -177,6 +178,16 @@ TEST(TimeoutCount, CountsEveryExpiryUntilItIsCleared) {
   EXPECT_EQ(bench.ask("~01X03040001"), "?01");
   EXPECT_EQ(bench.ask("~01X03040000"), "!01");
   EXPECT_EQ(bench.ask("~01X0304"), "!010000");
+}
+
+// --- statistics ---
+
+TEST(Statistics, CountsSaturate) {
+  std::uint16_t count = 0xFFFE;
+  count_saturating(count);
+  EXPECT_EQ(count, 0xFFFF);
+  count_saturating(count);
+  EXPECT_EQ(count, 0xFFFF);
 }
 
 }  // namespace

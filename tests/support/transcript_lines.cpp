@@ -26,6 +26,8 @@ std::string line_of(const play::Transcript& transcript, std::size_t position, Tr
     line += std::string(R"(, "checksum": )") + ((preset.format & kFormatChecksum) != 0 ? "true" : "false");
     line += std::string(R"(, "edge": )") +
             ((preset.format & kFormatRisingEdge) != 0 ? R"("rising")" : R"("falling")");
+    const auto module_name = preset.name.bytes();
+    line += R"(, "name": ")" + std::string(module_name.begin(), module_name.end()) + "\"";
   }
   return line + "}]}";
 }

@@ -174,8 +174,8 @@ TEST(PageStore, AnySequenceOfWritesResetsAndPausesKeepsAllPages) {
         ASSERT_EQ(run.page(page), expected[page]) << "page " << page << ", seed " << seed;
       }
       run.settle();
-      for (unsigned writes = random() % 400; writes > 0; --writes) {
-        const unsigned page = random() % kPages;
+      for (std::uint64_t writes = random() % 400; writes > 0; --writes) {
+        const auto page = static_cast<unsigned>(random() % kPages);
         // Some pages are rarely written, so that their entries stay where they are.
         if (page >= 4 && random() % 100 != 0) {
           continue;
