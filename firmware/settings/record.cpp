@@ -24,7 +24,7 @@ constexpr std::size_t kKnownSettings = known_settings_size();
 /// The settings up to `safe_value`: every record has them.
 constexpr std::size_t kFirstSettings = 19;
 static_assert(sizeof(bool) == 1 && sizeof(Protocol) == 1 && sizeof(Name) == kMaxNameLength + 1 &&
-                  sizeof(InputFilters) == 2 * kMaxInputs,
+                  sizeof(InputFilters) == std::size_t{2} * kMaxInputs,
               "a setting takes as many bytes in a record as in the microcontroller");
 static_assert(kKnownSettings <= kRoomForSettings, "the settings do not fit in a record");
 
