@@ -23,7 +23,7 @@ class TerminalOutput final : public Terminal {
 
   /// Returns false if standard output is not a terminal, or if the cursor of the terminal cannot be moved. In
   /// this case no other function may be called.
-  [[nodiscard]] bool is_open() const { return fd_ >= 0; }
+  [[nodiscard]] bool is_open() const { return fd_ != kClosed; }
 
   // --- Terminal ---
   [[nodiscard]] Screen screen() const override;
@@ -34,7 +34,8 @@ class TerminalOutput final : public Terminal {
  private:
   void flush();
 
-  int fd_ = -1;
+  static constexpr int kClosed = -1;  ///< the result of open(2) after an error
+  int fd_ = kClosed;
   std::string waiting_;
 };
 
