@@ -45,7 +45,7 @@ void run(const Setup& setup) {
   const auto greet = [&errors](const std::string& text) { errors.write(text + "\n"); };
   std::optional<TerminalOutput> terminal;
   if (setup.watch) {
-    terminal.emplace();
+    terminal.emplace(STDOUT_FILENO);
   }
   Session session(io, setup, print_line, greet, terminal && terminal->is_open() ? &*terminal : nullptr);
   session.start();

@@ -8,6 +8,7 @@
 #include <cctype>
 #include <cerrno>
 #include <cstdlib>
+#include <string>
 
 namespace ex9000::sim {
 
@@ -43,9 +44,10 @@ bool names_utf8(const std::string& locale) {
   return plain.find("utf8") != std::string::npos;
 }
 
-TerminalOutput::TerminalOutput() {
-  if (isatty(STDOUT_FILENO) != 0 && environment("TERM") != "dumb") {
-    fd_ = open("/proc/self/fd/1", O_WRONLY | O_NONBLOCK | O_NOCTTY | O_CLOEXEC);
+TerminalOutput::TerminalOutput(int descriptor) {
+  if (isatty(descriptor) != 0 && environment("TERM") != "dumb") {
+    const std::string terminal = "/proc/self/fd/" + std::to_string(descriptor);
+    fd_ = open(terminal.c_str(), O_WRONLY | O_NONBLOCK | O_NOCTTY | O_CLOEXEC);
   }
 }
 

@@ -1,4 +1,4 @@
-// The terminal on standard output.
+// The terminal on standard output, or on another descriptor.
 #pragma once
 
 #include <string>
@@ -12,16 +12,17 @@ bool names_utf8(const std::string& locale);
 
 /// Stores output that the terminal has not accepted yet, so that a terminal stopped by Ctrl-S does not stop
 /// the program. Opens the terminal a second time for this, because the shell shares the file description of
-/// standard output.
+/// its descriptor.
 class TerminalOutput final : public Terminal {
  public:
-  TerminalOutput();
+  /// Opens the terminal of `descriptor`, which remains open.
+  explicit TerminalOutput(int descriptor);
   /// Discards output that the terminal has not accepted.
   ~TerminalOutput() override;
   TerminalOutput(const TerminalOutput&) = delete;
   TerminalOutput& operator=(const TerminalOutput&) = delete;
 
-  /// Returns false if standard output is not a terminal, or if the cursor of the terminal cannot be moved. In
+  /// Returns false if the descriptor is not a terminal, or if the cursor of the terminal cannot be moved. In
   /// this case no other function may be called.
   [[nodiscard]] bool is_open() const { return fd_ != kClosed; }
 

@@ -9,8 +9,6 @@
 #include <utility>
 #include <vector>
 
-#include "sim/watch/terminal_output.hpp"
-
 namespace ex9000::sim {
 namespace {
 
@@ -141,15 +139,6 @@ TEST_F(WatchTest, PrintsNothingOnATerminalThatIsNotReady) {
   module().set_init(true);
   terminal_.takes = true;
   EXPECT_NE(looked()[0].find("power on, INIT*"), std::string::npos);  // shows the present state
-}
-
-TEST(TerminalOutput, RecognizesUtf8InAnySpelling) {
-  for (const char* name : {"C.UTF-8", "en_US.utf8", "de_DE.UTF8", "en_GB.utf-8", "nl_NL.UTF-8@euro"}) {
-    EXPECT_TRUE(names_utf8(name)) << name;
-  }
-  for (const char* name : {"", "C", "POSIX", "en_US.ISO-8859-1"}) {
-    EXPECT_FALSE(names_utf8(name)) << name;
-  }
 }
 
 TEST_F(WatchTest, SeveralLinesHaveTheirNames) {
