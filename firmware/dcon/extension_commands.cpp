@@ -25,11 +25,6 @@ const WordRow* row_of(const Model& model, int address) {
   return address < 0 ? nullptr : modbus::find_extension(model, static_cast<unsigned>(address));
 }
 
-void put_word(Reply& reply, std::uint16_t value) {
-  reply.put_hex(value >> 8U);
-  reply.put_hex(value & 0xFFU);
-}
-
 }  // namespace
 
 Refusal read_extension(Exchange& exchange) {
@@ -44,9 +39,9 @@ Refusal read_extension(Exchange& exchange) {
     return Refusal::OutOfRange;  // a low word alone could belong to another moment than its high word
   }
   put_valid(exchange);
-  put_word(exchange.reply, row->read(exchange, index));
+  put_hex_word(exchange.reply, row->read(exchange, index));
   if (is_long) {
-    put_word(exchange.reply, row->read(exchange, index + 1));
+    put_hex_word(exchange.reply, row->read(exchange, index + 1));
   }
   return Refusal::None;
 }

@@ -1,4 +1,4 @@
-// Writes channels and addresses into DCON replies.
+// Writes words, channels and addresses into DCON replies.
 #pragma once
 
 #include <cstdint>
@@ -7,15 +7,19 @@
 
 namespace ex9000::dcon {
 
+/// Writes the four hex digits of `value`.
+inline void put_hex_word(Reply& reply, std::uint16_t value) {
+  reply.put_hex(value >> 8U);
+  reply.put_hex(value & 0xFFU);
+}
+
 /// Writes First and Second data (manuals 1.10). More than 8 outputs or inputs use both, high byte first.
 /// Otherwise First contains the outputs and Second the inputs. On a module without outputs, First contains
 /// the inputs and Second is 00.
 inline void put_data(const Model& model, std::uint16_t outputs, std::uint16_t inputs, Reply& reply) {
   constexpr unsigned kChannelsOfAByte = 8;
   if (model.outputs > kChannelsOfAByte || model.inputs > kChannelsOfAByte) {
-    const std::uint16_t channels = model.has_outputs() ? outputs : inputs;
-    reply.put_hex(channels >> 8U);
-    reply.put_hex(channels & 0xFFU);
+    put_hex_word(reply, model.has_outputs() ? outputs : inputs);
   } else if (model.has_outputs()) {
     reply.put_hex(outputs);
     reply.put_hex(inputs);
