@@ -90,12 +90,39 @@ std::string status(SimulatedModule& module, const Words& /*args*/) {
   std::ostringstream rest;
   rest << " power=on address=" << hex_byte_text(in_force.address)
        << " protocol=" << (in_force.protocol == Protocol::Ascii ? "ascii" : "modbus")
-       << " baud=" << baud_rate(in_force.baud_code) << " checksum=" << (in_force.checksum ? "on" : "off")
+       << " baud=" << baud_rate(in_force.baud_code)
+       << " format=" << line_format_text(line_format(in_force.baud_code))
+       << " checksum=" << (in_force.checksum ? "on" : "off")
        << " mode=" << (in_force.init_mode ? "init" : "normal")
        << " host-watchdog=" << host_watchdog(state.settings) << " timeout=" << std::fixed
        << std::setprecision(1) << state.settings.watchdog_timeout / 10.0
-       << "s watchdog-resets=" << module.watchdog_resets();
+       << "s fed-by=" << (state.settings.fed_by_requests ? "requests" : "host-ok")
+       << " response-delay=" << static_cast<unsigned>(state.settings.response_delay)
+       << "ms inverted=" << hex_word_text(state.settings.inverted_inputs)
+       << " watchdog-resets=" << module.watchdog_resets();
   return text + rest.str();
+}
+
+/// Returns one number for each channel, with a space between them.
+template <class NumberOf>
+std::string for_each_channel(unsigned channels, NumberOf number_of) {
+  std::string text;
+  for (unsigned channel = 0; channel < channels; ++channel) {
+    text += (channel == 0 ? "" : " ") + std::to_string(number_of(channel));
+  }
+  return text;
+}
+
+std::string timers(SimulatedModule& module, const Words& /*args*/) {
+  require_power(module);
+  const OutputTimers& timers = module.module().state().output_timers;
+  return for_each_channel(module.model().outputs, [&](unsigned channel) { return timers.left(channel); });
+}
+
+std::string filters(SimulatedModule& module, const Words& /*args*/) {
+  require_power(module);
+  const InputFilters& filters = module.module().state().settings.input_filters;
+  return for_each_channel(module.model().inputs, [&](unsigned channel) { return filters.of(channel); });
 }
 
 /// A command for one module. The position of the module precedes it.
@@ -108,7 +135,7 @@ struct Verb {
   std::string (*handler)(SimulatedModule& module, const Words& args);
 };
 
-constexpr std::array<Verb, 10> kVerbs{{
+constexpr std::array<Verb, 12> kVerbs{{
     {"power", "on|off", 1, 1, "switches the supply", power},
     {"reset", "", 0, 0, "resets the module; the supply stays on", reset},
     {"init", "on|off", 1, 1, "ties INIT* to GND, or releases it", init},
@@ -116,6 +143,8 @@ constexpr std::array<Verb, 10> kVerbs{{
     {"pulse", "C [COUNT]", 1, 2, "gives COUNT full pulses on input C at once (default 1)", pulse},
     {"inputs", "", 0, 0, "reads the input levels in hex; bit n is input n", inputs},
     {"outputs", "", 0, 0, "reads the outputs in hex; bit n is output n", outputs},
+    {"timers", "", 0, 0, "reads what is left of each timed output in 0.1 s; 0: not timed", timers},
+    {"filters", "", 0, 0, "reads the filter of each input in ms", filters},
     {"led", "", 0, 0, "reads the status LED: on, off or flashing", led},
     {"hang", "", 0, 0, "stops the main loop until the module watchdog resets the module", hang},
     {"status", "", 0, 0, "reads address, protocol, rate, mode and watchdogs", status},
@@ -132,8 +161,9 @@ struct LineVerb {
   }
 };
 
-constexpr std::array<LineVerb, 5> kLineVerbs{{
+constexpr std::array<LineVerb, 6> kLineVerbs{{
     {"baud", "RATE", "sets the line's rate, for ports without a rate; a pseudo-terminal overrides it"},
+    {"format", "FORMAT", "sets the line's format: 8N1, 8N2, 8E1 or 8O1"},
     {"sent", "", "reads how many bytes the line has written to its ports"},
     {"fault", "FAULT", "adds a fault, see below; replies with its number. With N: for that module"},
     {"fault off", "K|all", "ends the fault with this number, or all"},
@@ -240,6 +270,14 @@ std::string set_rate(Line& line, const Words& words) {
   return "";
 }
 
+std::string set_format(Line& line, const Words& words) {
+  if (words.size() != 2) {
+    fail("expected format FORMAT");
+  }
+  line.master().set_format(parse_line_format(words[1]));
+  return "";
+}
+
 std::string on_line(const Control::ControlledLine& controlled, std::size_t position, const Words& words) {
   Line& line = controlled.line;
   if (words[0] == "sent" && words.size() == 1) {
@@ -250,6 +288,9 @@ std::string on_line(const Control::ControlledLine& controlled, std::size_t posit
   }
   if (words[0] == "baud") {
     return set_rate(line, words);
+  }
+  if (words[0] == "format") {
+    return set_format(line, words);
   }
   if (words[0] == "fault" && words.size() >= 2) {
     return words[1] == "off" ? end_fault(line, words)
@@ -323,7 +364,7 @@ Control::Reply Control::carry_out(const std::string& command) {
     } else if (first == "advance") {
       fail("'advance' requires --speed step; the lines' time moves by itself");
     } else if (first == "line" || first == "fault" || first == "faults" || first == "baud" ||
-               first == "sent") {
+               first == "format" || first == "sent") {
       result = on_some_line(lines_, words);
     } else if (first.empty() || first.find_first_not_of("0123456789") != std::string::npos) {
       fail("'" + first + "' is not a command; expected one of " + all_shapes());
@@ -348,7 +389,7 @@ std::string control_commands() {
   for (const LineVerb& verb : kLineVerbs) {
     row(verb.shape(), verb.does);
   }
-  row("line NAME ...", "one of the five above, for that line; required if there are several lines");
+  row("line NAME ...", "one of the six above, for that line; required if there are several lines");
   text << "  advance TIME [after N] [quiet]\n";
   row("", "with --speed step: waits until N bytes have arrived at the ports, sends all of them on the");
   row("", "lines, and lets TIME pass; with 'quiet' only until nothing is pending. Replies with the time");

@@ -10,7 +10,7 @@
 
 namespace ex9000::sim {
 
-/// The largest number of pulses on an input in one command; they take some milliseconds to compute.
+/// The largest number of pulses on an input in one command. The program needs some milliseconds for them.
 constexpr unsigned long kMostPulses = 1'000'000;
 
 /// The commands of `--control`, without the socket.

@@ -19,7 +19,7 @@ namespace {
 
 using Local = boost::asio::local::stream_protocol;
 
-constexpr std::size_t kLongestLine = 1000;  // without the newline
+constexpr std::size_t kLongestLine = 1000;  // characters, without the newline
 /// The limit for clients. Only clients that never disconnect can exceed it.
 constexpr std::size_t kMostClients = 64;
 

@@ -16,8 +16,9 @@
 
 namespace ex9000::sim {
 
-/// Serves any number of clients. Each line from a client is a command and gets one line as reply, in order.
-/// Nothing blocks: the server does not read from a client that does not read its replies.
+/// Serves any number of clients. Each line from a client is a command. The reply to each command is one line,
+/// and replies keep the order of the commands. No function blocks: the server does not read from a client
+/// that does not read its replies.
 class ControlSocket {
  public:
   using Answer = std::function<void(const Control::Reply&)>;

@@ -1,7 +1,9 @@
+#include <algorithm>
 #include <array>
 
 #include "firmware/model/baud.hpp"
 #include "sim/describe/formats.hpp"
+#include "sim/describe/register_map.hpp"
 #include "sim/describe/shown.hpp"
 #include "sim/describe/yaml.hpp"
 #include "sim/text/values.hpp"
@@ -12,13 +14,13 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-// Home Assistant warns about intervals shorter than 5 s. It shortens the timeout if an interval is not
-// longer than the timeout.
+// Home Assistant warns about intervals shorter than 5 s. If an interval is not longer than the timeout, Home
+// Assistant shortens the timeout.
 constexpr unsigned kOftenSeconds = 5;
 constexpr unsigned kSeldomSeconds = 30;
 constexpr unsigned kTimeoutSeconds = 2;
-/// The silence between two frames, 3.5 characters of 10 bits, takes 29.2 ms at 1200 baud.
-constexpr unsigned kWaitMilliseconds = 30;
+/// The silence between two frames, 3.5 characters of 11 bits, takes 32.1 ms at 1200 baud.
+constexpr unsigned kWaitMilliseconds = 33;
 
 /// In the order of Table.
 constexpr std::array<const char*, 4> kInputTypes{"coil", "discrete_input", "input", "holding"};
@@ -47,6 +49,20 @@ class Hub {
     return hub;
   }
 
+  /// Returns the actions with which polling restarts the host watchdog.
+  [[nodiscard]] std::string watchdog_actions() const {
+    return "# With register 0x0251 = 1, each poll restarts the host watchdog, so that it watches Home "
+           "Assistant. It "
+           "expires if the\n"
+           "# polls stop for longer than its timeout (register 0x01E8; from the factory 25.5 s). Polls of "
+           "any other "
+           "master restart\n"
+           "# it too. Call these actions once:\n" +
+           write("register", "watchdog-feed", "value: 1") + write("coil", "watchdog-enable", "state: true") +
+           "# After a timeout, the outputs keep their safe values until you call these:\n" +
+           write("coil", "timeout-status", "state: true") + write("coil", "watchdog-enable", "state: true");
+  }
+
   /// Returns actions for the items of role Button, which have no entity. Automations and dashboards can call
   /// these actions.
   [[nodiscard]] std::string actions() const {
@@ -62,6 +78,16 @@ class Hub {
   }
 
  private:
+  /// Returns a call of an action that writes the item `id` of the register map.
+  [[nodiscard]] std::string write(const std::string& kind, std::string_view id,
+                                  const std::string& value) const {
+    const std::vector<MapRow> map = register_map(model_);
+    const auto row = std::find_if(map.begin(), map.end(), [id](const MapRow& each) { return each.id == id; });
+    return "#   modbus.write_" + kind + " with hub: " + key_ +
+           ", slave: " + std::to_string(network_address_.address) +
+           ", address: " + std::to_string(row->first) + ", " + value + "\n";
+  }
+
   [[nodiscard]] Json entity(const Shown& shown, unsigned index, unsigned seconds) const {
     return {{"name", std::string(model_.designation) + " " + hex_byte_text(network_address_.address) + " " +
                          shown.name_of(index)},
@@ -160,7 +186,7 @@ std::string head(const Model& model, const NetworkAddress& network_address) {
 std::string home_assistant_hub(const Model& model, const NetworkAddress& network_address) {
   const Hub hub(model, network_address);
   return head(model, network_address) + yaml_of(Json::array({hub.hub()})) +
-         "# Actions for items without an entity:\n" + hub.actions();
+         "# Actions for items without an entity:\n" + hub.actions() + hub.watchdog_actions();
 }
 
 }  // namespace ex9000::sim

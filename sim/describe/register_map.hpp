@@ -49,7 +49,8 @@ struct MapRow {
 /// not support Modbus.
 std::vector<MapRow> register_map(const Model& model);
 
-/// Returns the number as PLCs count: from 1, with at least four digits after the digit of the table.
+/// Returns the PLC number of the item. PLC numbers count from 1 and have at least four digits after the digit
+/// of the table.
 std::string plc_number(const Area& area, unsigned address);
 
 }  // namespace ex9000::sim

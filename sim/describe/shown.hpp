@@ -15,14 +15,14 @@ enum class Role : std::uint8_t {
   Output,   ///< read and written
   Input,    ///< a level or a latch; read-only
   Counter,  ///< counts up; after its highest value, it continues with 0
-  Preset,   ///< a stored value of the outputs; read-only, because a write would also drive them
+  Preset,   ///< a stored value of the outputs; read-only, because a write also drives the outputs
   State,    ///< on or off, both are normal
   Problem,  ///< on means a problem
   Tenths,   ///< units of 0.1 s; read-only
   Button,   ///< a coil that starts an action when 1 is written to it
 };
 
-/// One row of the map, or a button for it.
+/// One row of the map, or a button for a row.
 struct Shown {
   std::string_view id;  ///< unique in the model, and stable
   Role role = Role::State;

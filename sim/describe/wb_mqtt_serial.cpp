@@ -17,8 +17,8 @@ constexpr std::array<const char*, 4> kRegisterTypes{"coil", "discrete", "input",
 
 const char* register_type(Table table) { return kRegisterTypes[static_cast<std::size_t>(table)]; }
 
-/// The silence between two frames at the factory's rate, in microseconds: 3.5 characters of 10 bits.
-constexpr unsigned kSilenceMicroseconds = 35'000'000 / baud_rate(kFactoryBaudCode);
+/// The silence between two frames at the factory baud rate, in microseconds: 3.5 characters of 11 bits.
+constexpr unsigned kSilenceMicroseconds = 38'500'000 / baud_rate(kFactoryBaudCode);
 
 Json channel(const Shown& shown, unsigned index) {
   Json channel{

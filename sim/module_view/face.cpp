@@ -36,9 +36,12 @@ Plate plate_of(const SimulatedModule& module) {
     const InForce& in_force = module.module().state().in_force;
     plate.init_mode = in_force.init_mode;
     plate.address = in_force.address;
-    plate.baud = baud_rate(in_force.baud_code);
+    plate.mode = {baud_rate(in_force.baud_code), line_format(in_force.baud_code)};
     plate.protocol = in_force.protocol;
     plate.checksum = in_force.checksum;
+    for (unsigned channel = 0; channel < module.model().outputs; ++channel) {
+      plate.timers[channel] = module.module().state().output_timers.left(channel);
+    }
   }
   return plate;
 }
@@ -113,8 +116,9 @@ Stored stored_of(const SimulatedModule& module) {
 
 bool operator==(const Plate& a, const Plate& b) {
   const auto all = [](const Plate& p) {
-    return std::tie(p.switched_on, p.powered, p.init, p.listening, p.init_mode, p.address, p.baud, p.protocol,
-                    p.checksum, p.led, p.outputs, p.inputs, p.watchdog_resets);
+    return std::tie(p.switched_on, p.powered, p.init, p.listening, p.init_mode, p.address, p.mode.baud,
+                    p.mode.format, p.protocol, p.checksum, p.led, p.outputs, p.inputs, p.timers,
+                    p.watchdog_resets);
   };
   return all(a) == all(b);
 }

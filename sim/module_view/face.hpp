@@ -29,14 +29,16 @@ struct Plate {
   bool init = false;         ///< INIT* is connected to GND
   bool listening = false;    ///< the module has started up
   bool init_mode = false;    ///< the module has started up with INIT*
-  // address, baud, protocol and checksum are valid only if `listening`.
+  // address, mode, protocol and checksum are valid only if `listening`.
   std::uint8_t address = 0;  ///< the address in force
-  std::uint32_t baud = 0;
+  hal::SerialMode mode;      ///< rate and format in force
   Protocol protocol = Protocol::Ascii;
   bool checksum = false;
   Led led = Led::Off;
   std::uint16_t outputs = 0;  ///< driven outputs; bit n is channel n
   std::uint16_t inputs = 0;   ///< levels at the terminals; bit n is channel n
+  /// What is left of each timed output, in 0.1 s; 0: the output is not timed.
+  std::array<std::uint16_t, kMaxOutputs> timers{};
   std::uint64_t watchdog_resets = 0;
 
   friend bool operator==(const Plate& a, const Plate& b);

@@ -19,8 +19,13 @@ std::int64_t microseconds(VirtualTime time) {
 std::string_view protocol_text(Protocol protocol) { return protocol == Protocol::Ascii ? "ascii" : "modbus"; }
 
 Message message_of(const Settings& settings) {
+  Message filters = Message::array();
+  for (unsigned channel = 0; channel < kMaxInputs; ++channel) {
+    filters.push_back(settings.input_filters.of(channel));
+  }
   return {{"address", settings.address},
           {"baud", baud_rate(settings.baud_code)},
+          {"format", line_format_text(line_format(settings.baud_code))},
           {"protocol", protocol_text(settings.protocol)},
           {"checksum", (settings.format & kFormatChecksum) != 0},
           {"edge", (settings.format & kFormatRisingEdge) != 0 ? "rising" : "falling"},
@@ -29,7 +34,11 @@ Message message_of(const Settings& settings) {
           {"safe", settings.safe_value},
           {"watchdog", settings.watchdog_enabled},
           {"timeout", settings.watchdog_timeout},
-          {"timedOut", settings.timeout_status}};
+          {"timedOut", settings.timeout_status},
+          {"responseDelay", settings.response_delay},
+          {"fedByRequests", settings.fed_by_requests},
+          {"inverted", settings.inverted_inputs},
+          {"filters", filters}};
 }
 
 }  // namespace
@@ -56,13 +65,15 @@ Message message_of(const Plate& plate) {
   if (plate.listening) {
     message["initMode"] = plate.init_mode;
     message["address"] = plate.address;
-    message["baud"] = plate.baud;
+    message["baud"] = plate.mode.baud;
+    message["format"] = line_format_text(plate.mode.format);
     message["protocol"] = protocol_text(plate.protocol);
     message["checksum"] = plate.checksum;
   }
   message["led"] = led_text(plate.led);
   message["outputs"] = plate.outputs;
   message["inputs"] = plate.inputs;
+  message["timers"] = plate.timers;
   message["resets"] = plate.watchdog_resets;
   return message;
 }

@@ -67,7 +67,7 @@ struct Panel::Watched {
   std::size_t first_module = 0;  ///< position across all lines
   std::vector<Module> modules;
   RecentTraffic recent;
-  ChangeTracked<std::uint32_t> baud;
+  ChangeTracked<SerialMode> mode;
   ChangeTracked<std::vector<Faults::Info>> faults;
 };
 
@@ -207,8 +207,9 @@ class Panel::Viewer final : public PanelViewer {
   [[nodiscard]] Message news_of(const Watched& watched) const {
     Message message;
     message["now"] = std::chrono::duration_cast<std::chrono::microseconds>(watched.now).count();
-    if (watched.baud.has_changed_since(sent_look_)) {
-      message["baud"] = watched.baud.value();
+    if (watched.mode.has_changed_since(sent_look_)) {
+      message["baud"] = watched.mode.value().baud;
+      message["format"] = line_format_text(watched.mode.value().format);
     }
     if (watched.faults.has_changed_since(sent_look_)) {
       message["faults"] = message_of(watched.faults.value(), watched.first_module);
@@ -279,7 +280,7 @@ void Panel::look() {
       module.guard.set(face.guard, look);
       module.stored.set(face.stored, look);
     }
-    watched.baud.set(watched.line->master().baud(), look);
+    watched.mode.set(watched.line->master().mode(), look);
     const Faults* faults = watched.line->faults_so_far();
     watched.faults.set(faults == nullptr ? std::vector<Faults::Info>() : faults->list(), look);
   }

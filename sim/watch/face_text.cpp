@@ -14,7 +14,7 @@ namespace {
 constexpr std::size_t kMargin = 3;
 constexpr std::size_t kDesignation = 12;
 constexpr std::size_t kName = 8;
-constexpr std::size_t kInForce = 24;
+constexpr std::size_t kInForce = 26;
 constexpr std::size_t kLed = 15;
 constexpr std::size_t kTerminal = 8;
 constexpr std::size_t kChannel = 3;
@@ -44,7 +44,8 @@ std::string in_force_text(const Plate& plate) {
     return plate.powered ? "starting" : "";
   }
   const bool ascii = plate.protocol == Protocol::Ascii;
-  return hex_byte_text(plate.address) + (ascii ? " DCON " : " Modbus RTU ") + std::to_string(plate.baud) +
+  return hex_byte_text(plate.address) + (ascii ? " DCON " : " Modbus RTU ") +
+         std::to_string(plate.mode.baud) + " " + line_format_text(plate.mode.format) +
          (ascii && plate.checksum ? " checksum" : "");
 }
 

@@ -4,7 +4,7 @@ drawer, and the messages if there is nothing to display."""
 import unittest
 
 from panel_page import DI3, INPUTS, OUTPUTS, Panel, text
-from simulator import wait_until
+from simulator import Master, wait_until
 from web_socket import Page
 
 MOST_PAGES = 16
@@ -96,6 +96,27 @@ class Looks(Panel):
             return [left > 0 && table.scrollLeft === left, document.querySelector("{OUTPUTS} .drawer dd") === kept,
                     document.activeElement === table, selected !== '' && String(getSelection()) === selected];""")
         self.assertTrue(scrolled and same and focused and selected, (scrolled, same, focused, selected))
+
+    def test_the_plate_counts_a_timed_output_down_and_the_drawer_shows_the_extensions(self):
+        simulator = self.show("EX9055D@01,format=8E1")
+        master = Master(simulator.lines[0])
+        self.addCleanup(master.close)
+        plate = "[aria-label='1 EX9055D']"
+        self.browser.click(f"{plate} summary")
+        self.browser.until(text(plate, ".drawer dl", "8E1"))
+        self.browser.until(text(plate, ".readouts", "9600 8E1"))
+        self.assertEqual(master.say("~01X02420064"), "!01")
+        self.assertEqual(master.say("~01X02500081"), "!01")
+        self.assertEqual(master.say("~01X02510001"), "!01")
+        self.assertEqual(master.say("~01RD05"), "!01")
+        for shown in ("DI2 100 ms", "DI0, DI7", "host OK and requests", "5 ms"):
+            self.browser.until(text(plate, ".drawer dl", shown))
+        self.assertEqual(master.say("~01X0283FFFF"), "!01")  # output 3 for 6553.5 s
+        left = f"""[...document.querySelectorAll("{plate} .left")]"""
+        self.browser.until(f"{left}.filter((each) => !each.hidden).length === 1 && {left}[3].textContent < '6553.0 s'")
+        self.picture("timed-output", whole=True)
+        self.assertEqual(master.say("@0100"), ">")
+        self.browser.until(f"{left}.every((each) => each.hidden)")
 
     def let_in(self, simulator):
         """Returns another page, or None if the server has no room for it."""

@@ -9,8 +9,10 @@ export class Drawer {
     this.kept = make("h4", {});
     this.settings = {};
     this.copies = [1, 2, 3, 4].map(() => ({state: make("h4", {}), bytes: make("code", {})}));
-    const names = ["Name", "Address", "Baud", "Protocol", "Checksum", layout.inputs.length ? "Counts" : null,
-      "Host watchdog", "Timeout status", "Reset status", "Module watchdog"].filter(Boolean);
+    const inputs = layout.inputs.length ? ["Counts", "Input filters", "Inverted inputs"] : [];
+    this.inputs = layout.inputs;
+    const names = ["Name", "Address", "Baud", "Line format", "Protocol", "Checksum", ...inputs, "Response delay",
+      "Host watchdog", "Restarted by", "Timeout status", "Reset status", "Module watchdog"];
     for (const name of names) {
       this.settings[name] = make("dd", {});
     }
@@ -41,10 +43,15 @@ export class Drawer {
       "Name": settings.name,
       "Address": hexByte(settings.address),
       "Baud": String(settings.baud),
+      "Line format": settings.format,
       "Protocol": settings.protocol === "modbus" ? "Modbus RTU" : "ASCII",
       "Checksum": settings.checksum ? "on" : "off",
       "Counts": `${settings.edge} edges`,
+      "Input filters": this.ofInputs((channel) => settings.filters[channel], (time) => ` ${time} ms`),
+      "Inverted inputs": this.ofInputs((channel) => bit(settings.inverted, channel), () => ""),
+      "Response delay": `${settings.responseDelay} ms`,
       "Host watchdog": `${settings.watchdog ? "enabled" : "disabled"}, ${(settings.timeout / 10).toFixed(1)} s`,
+      "Restarted by": settings.fedByRequests ? "host OK and requests" : "host OK",
       "Timeout status": settings.timedOut ? "set" : "clear",
       "Reset status": plate.listening && guard?.resetStatus ? "reset since last asked" : "–",
       "Module watchdog": `${plate.resets} resets`,
@@ -59,6 +66,13 @@ export class Drawer {
       setText(state, `${name}: ${copyState(copy, index === stored.current)}`);
       setText(bytes, copy.bytes.match(/../g).join(" "));
     });
+  }
+
+  /// Returns the labels of the inputs with a value, and a text for each value; "none" if there are no such inputs.
+  ofInputs(read, textOf) {
+    const labels = this.inputs.flatMap((label, channel) =>
+      read(channel) ? [`${label}${textOf(read(channel))}`] : []);
+    return labels.join(", ") || "none";
   }
 
   valueTable(outputs, title) {

@@ -72,8 +72,9 @@ export class Plate {
 
   makeOutput(label) {
     const led = make("span", {class: "led output", role: "img", "aria-label": `${label} off`});
-    return {label, led, item: make("li", {}, make("span", {class: "screw", "aria-hidden": "true"}),
-      make("span", {class: "label", "aria-hidden": "true"}, label), led)};
+    const left = make("span", {class: "left", hidden: ""});
+    return {label, led, left, item: make("li", {}, make("span", {class: "screw", "aria-hidden": "true"}),
+      make("span", {class: "label", "aria-hidden": "true"}, label), led, left)};
   }
 
   /// Call this when the connection is lost.
@@ -110,13 +111,16 @@ export class Plate {
     setText(this.ledText, plate.initMode ? `${supply}, INIT mode` : supply);
     const on = plate.listening;
     setText(this.address.value, on ? hexByte(plate.address) : "––");
-    setText(this.baud.value, on ? String(plate.baud) : "––");
+    setText(this.baud.value, on ? `${plate.baud} ${plate.format}` : "––");
     const ascii = plate.checksum ? "ASCII+Σ" : "ASCII";
     setText(this.protocol.value, !on ? "––" : plate.protocol === "modbus" ? "RTU" : ascii);
-    this.outputs.forEach(({label, led}, channel) => {
+    this.outputs.forEach(({label, led, left}, channel) => {
       const lit = bit(plate.outputs, channel);
+      const tenths = plate.timers[channel];
       setAttribute(led, "data-on", lit);
       setAttribute(led, "aria-label", `${label} ${lit ? "on" : "off"}`);
+      left.hidden = tenths === 0;
+      setText(left, `${(tenths / 10).toFixed(1)} s`);
     });
     this.inputs.forEach((input, channel) => input.show(bit(plate.inputs, channel)));
   }

@@ -43,9 +43,11 @@ TEST(ControlLine, APositionWithoutAModuleIsRefused) {
 TEST(ControlLine, HelpNamesEveryCommand) {
   ControlBench bench("EX9052D");
   const std::string text = bench.tell("help");
-  for (const char* command : {"power", "reset", "init", "input", "pulse", "inputs", "outputs", "led", "hang",
-                              "status", "fault FAULT", "fault off K|all", "faults", "baud RATE", "sent",
-                              "list", "help", "quit", "advance TIME [after N] [quiet]"}) {
+  for (const char* command : {"power",  "reset",     "init",          "input",
+                              "pulse",  "inputs",    "outputs",       "led",
+                              "hang",   "status",    "fault FAULT",   "fault off K|all",
+                              "faults", "baud RATE", "format FORMAT", "sent",
+                              "list",   "help",      "quit",          "advance TIME [after N] [quiet]"}) {
     EXPECT_TRUE(has(text, command)) << command;
     EXPECT_TRUE(has(control_commands(), command)) << command;
   }
@@ -114,10 +116,22 @@ TEST(ControlLines, AFaultBelongsToTheNamedLineOrToTheLineOfItsModule) {
 TEST(ControlLine, BaudSetsTheRateOfTheMaster) {
   ControlBench bench("EX9052D");
   EXPECT_EQ(bench.tell("baud 19200"), "ok");
-  EXPECT_EQ(bench.line().master().baud(), 19200U);
+  EXPECT_EQ(bench.line().master().mode().baud, 19200U);
   for (const char* wrong : {"baud", "baud 0", "baud 9601", "baud fast", "baud 9600 now"}) {
     EXPECT_EQ(bench.tell(wrong).rfind("error: ", 0), 0U) << wrong;
-    EXPECT_EQ(bench.line().master().baud(), 19200U) << wrong;
+    EXPECT_EQ(bench.line().master().mode().baud, 19200U) << wrong;
+  }
+}
+
+TEST(ControlLine, FormatSetsTheLineFormatOfTheMaster) {
+  ControlBench bench("EX9052D,format=8E1");
+  EXPECT_EQ(bench.tell("format 8n1"), "ok");
+  EXPECT_EQ(bench.ask("$01M"), "");
+  EXPECT_EQ(bench.tell("format 8E1"), "ok");
+  EXPECT_EQ(bench.ask("$01M"), "!019052");
+  for (const char* wrong : {"format", "format 8", "format 7E1", "format even", "format 8E1 now"}) {
+    EXPECT_EQ(bench.tell(wrong).rfind("error: ", 0), 0U) << wrong;
+    EXPECT_EQ(bench.line().master().mode().format, LineFormat::k8E1) << wrong;
   }
 }
 
@@ -139,13 +153,16 @@ TEST(ControlLine, AdvanceRequiresSteppedTime) {
 TEST(ControlLines, BaudAppliesOnlyToTheNamedLine) {
   TwoLines lines;
   EXPECT_EQ(lines.tell("line yard baud 115200"), "ok");
-  EXPECT_EQ(lines.yard().master().baud(), 115200U);
-  EXPECT_EQ(lines.hall().master().baud(), 9600U);
+  EXPECT_EQ(lines.yard().master().mode().baud, 115200U);
+  EXPECT_EQ(lines.tell("line yard format 8O1"), "ok");
+  EXPECT_EQ(lines.yard().master().mode().format, LineFormat::k8O1);
+  EXPECT_EQ(lines.hall().master().mode().format, LineFormat::k8N1);
+  EXPECT_EQ(lines.hall().master().mode().baud, 9600U);
 }
 
 TEST(ControlLines, LineCommandsRequireTheLineName) {
   TwoLines lines;
-  for (const char* command : {"fault gone", "faults", "fault off all", "baud 9600", "sent"}) {
+  for (const char* command : {"fault gone", "faults", "fault off all", "baud 9600", "format 8N1", "sent"}) {
     EXPECT_EQ(lines.tell(command), "error: there are several lines; put 'line NAME' before the command")
         << command;
   }

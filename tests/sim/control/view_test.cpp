@@ -52,10 +52,10 @@ TEST(ControlLed, ItFlashesWhileTheSettingsCannotBeRead) {
 }
 
 TEST(ControlStatus, ReportsTheSettingsInForce) {
-  ControlBench ascii("EX9042D@1f,baud=115200,checksum=on");
+  ControlBench ascii("EX9042D@1f,baud=115200,format=8E1,checksum=on");
   const std::string of_ascii = ascii.tell("1 status");
-  for (const char* part : {"EX9042D", "address=1F", "protocol=ascii", "baud=115200", "checksum=on",
-                           "mode=normal", "host-watchdog=disabled"}) {
+  for (const char* part : {"EX9042D", "address=1F", "protocol=ascii", "baud=115200", "format=8E1",
+                           "checksum=on", "mode=normal", "host-watchdog=disabled"}) {
     EXPECT_TRUE(has(of_ascii, part)) << of_ascii;
   }
   ControlBench modbus("EX9068D-M@F7,baud=1200,init=off");
@@ -78,6 +78,35 @@ TEST(ControlStatus, ItFollowsTheHostWatchdog) {
   EXPECT_TRUE(bench.status_has("host-watchdog=expired"));
   ASSERT_EQ(bench.ask("~011"), "!01");
   EXPECT_TRUE(bench.status_has("host-watchdog=disabled"));
+}
+
+TEST(ControlStatus, ShowsTheExtensionsThatAreSet) {
+  ControlBench bench("EX9055D");
+  EXPECT_TRUE(bench.status_has("fed-by=host-ok response-delay=0ms inverted=0000"));
+  ASSERT_EQ(bench.ask("~01X02510001"), "!01");
+  ASSERT_EQ(bench.ask("~01RD1E"), "!01");
+  ASSERT_EQ(bench.ask("~01X025000A1"), "!01");
+  EXPECT_TRUE(bench.status_has("fed-by=requests response-delay=30ms inverted=00A1"));
+}
+
+TEST(ControlView, TimersAreWhatIsLeftOfTimedOutputs) {
+  ControlBench bench("EX9063D");
+  EXPECT_EQ(bench.tell("1 timers"), "ok 0 0 0");
+  bench.send("~01X02810003\r");  // output 1 for 0.3 s; the request takes 14 ms
+  bench.run(milliseconds(150));
+  EXPECT_EQ(bench.tell("1 timers"), "ok 0 2 0");
+  bench.run(milliseconds(200));
+  EXPECT_EQ(bench.tell("1 timers"), "ok 0 0 0");
+  bench.tell("1 power off");
+  EXPECT_EQ(bench.tell("1 timers"), "error: the module has no power; switch it on with 'power on'");
+}
+
+TEST(ControlView, FiltersAreThoseOfTheInputs) {
+  ControlBench bench("EX9060D");
+  ASSERT_EQ(bench.ask("~01X02400014"), "!01");
+  ASSERT_EQ(bench.ask("~01X024307D0"), "!01");
+  EXPECT_EQ(bench.tell("1 filters"), "ok 20 0 0 2000");
+  EXPECT_EQ(bench.tell("1 timers"), "ok 0 0 0 0");
 }
 
 TEST(ControlStatus, IsReportedDuringStartAndWithoutPower) {

@@ -111,7 +111,20 @@ TEST(DescribeHomeAssistant, ClearCommandsAreListedAsActions) {
       "true\n"));  // 0x0207
   EXPECT_TRUE(
       has_once(text, "#   Clear latches: modbus.write_coil with hub: ex9052d_m_02, slave: 2, address: 263,"));
-  EXPECT_EQ(times(configuration_of("EX9042D-M"), "modbus.write_coil"), 1);
+  EXPECT_EQ(times(configuration_of("EX9042D-M"), "Clear "), 1);
+}
+
+// wire.md section 7, Map: coils 0x0104 and 0x010D; firmware/extensions.md: register 0x0251.
+TEST(DescribeHomeAssistant, TellsHowPollingFeedsTheHostWatchdogAndWhatToDoAfterATimeout) {
+  const std::string text = configuration_of("EX9042D-M", {{}, 0x02});
+  const std::string to = " with hub: ex9042d_m_02, slave: 2, address: ";
+  const std::size_t feed = text.find("#   modbus.write_register" + to +
+                                     "593, value: 1\n#   modbus.write_coil" + to + "260, state: true\n");
+  const std::size_t after = text.find("#   modbus.write_coil" + to +
+                                      "269, state: true\n#   modbus.write_coil" + to + "260, state: true\n");
+  ASSERT_NE(feed, std::string::npos) << text;
+  ASSERT_NE(after, std::string::npos) << text;
+  EXPECT_LT(feed, after);
 }
 
 TEST(DescribeHomeAssistant, DoesNotPollHostOkCommunicationSettingsOrClearRegisters) {

@@ -289,7 +289,7 @@ const Lines kAddress{"holding register", "0x01E4", "40485", "03, 06, 10", "read,
 const Lines kBaud{"holding register", "0x01E5", "40486", "03, 06, 10", "read, write"};
 const Lines kTimeout{"holding register", "0x01E8", "40489", "03, 06, 10", "read, write"};
 
-/// The extension registers of wire.md section 12 that a model has.
+/// The extension registers of firmware/extensions.md that a model has.
 struct Extension {
   unsigned first;
   unsigned last;

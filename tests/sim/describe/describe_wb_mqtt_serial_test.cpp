@@ -36,7 +36,7 @@ TEST(DescribeWbMqttSerial, IsNamedAfterItsModel) {
 TEST(DescribeWbMqttSerial, AllowsAReadOfAllChannelsAfterAGuardInterval) {
   EXPECT_EQ(template_of("EX9043D-M").at("device").at("max_read_registers"), 16);
   EXPECT_EQ(template_of("EX9052D-M").at("device").at("max_read_registers"), 8);
-  EXPECT_EQ(template_of("EX9052D-M").at("device").at("guard_interval_us"), 3645);  // 35 bits at 9600 baud
+  EXPECT_EQ(template_of("EX9052D-M").at("device").at("guard_interval_us"), 4010);  // 38.5 bits at 9600 baud
 }
 
 TEST(DescribeWbMqttSerial, OutputsAreSwitches) {

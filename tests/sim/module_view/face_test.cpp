@@ -18,12 +18,12 @@ using std::chrono::milliseconds;
 Face face_of(ModuleBench& bench) { return face_of(bench.module(), bench.now()); }
 
 TEST(Face, ShowsTheActiveSettingsAndTheLed) {
-  ModuleBench bench("EX9042D@2A,baud=19200,checksum=on,name=PUMPS");
+  ModuleBench bench("EX9042D@2A,baud=19200,format=8E1,checksum=on,name=PUMPS");
   const Plate plate = face_of(bench).plate;
   EXPECT_TRUE(plate.switched_on && plate.powered && plate.listening);
   EXPECT_FALSE(plate.init || plate.init_mode);
   EXPECT_EQ(plate.address, 0x2A);
-  EXPECT_EQ(plate.baud, 19200U);
+  EXPECT_EQ(plate.mode, (SerialMode{19200, LineFormat::k8E1}));
   EXPECT_EQ(plate.protocol, Protocol::Ascii);
   EXPECT_TRUE(plate.checksum);
   EXPECT_EQ(plate.led, Led::On);
@@ -43,6 +43,18 @@ TEST(Face, ShowsOutputsInputsCountersAndLatches) {
   EXPECT_EQ(face.gathered.latched_low, 0x80);
   EXPECT_EQ(face.gathered.counters[7], 3U);
   EXPECT_EQ(face.gathered.counters[1], 0U);
+}
+
+TEST(Face, ShowsWhatIsLeftOfATimedOutput) {
+  ModuleBench bench("EX9055D");
+  ASSERT_EQ(bench.ask("~01X02820064"), "!01");  // output 2 for 10 s
+  const unsigned left = face_of(bench).plate.timers[2];
+  EXPECT_GT(left, 90U);
+  bench.run(milliseconds(1000));
+  EXPECT_EQ(face_of(bench).plate.timers[2], left - 10);
+  EXPECT_EQ(face_of(bench).plate.timers[1], 0);
+  bench.run(milliseconds(10'000));
+  EXPECT_EQ(face_of(bench).plate.timers[2], 0);
 }
 
 TEST(Face, WithoutPowerShowsOnlySwitchesInputsAndStoredSettings) {

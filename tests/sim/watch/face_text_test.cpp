@@ -23,7 +23,7 @@ TEST(FaceText, ShowsAModuleWithOutputs) {
   ModuleBench bench("EX9042D@2A,checksum=off,name=PUMPS");
   ASSERT_EQ(bench.ask("@2A1005"), ">");
   EXPECT_EQ(shown(bench), (Lines{
-                              "1  EX9042D     PUMPS   2A DCON 9600            LED * on       power on",
+                              "1  EX9042D     PUMPS   2A DCON 9600 8N1          LED * on       power on",
                               "   DO      0  1  2  3  4  5  6  7  8  9  10 11 12",
                               "           *  -  *  -  -  -  -  -  -  -  -  -  *",
                               "   power-on 0000, safe 0000",
@@ -36,7 +36,7 @@ TEST(FaceText, ShowsAModuleWithInputs) {
   bench.module().set_input(1, true);
   bench.module().pulse_input(7, 12);
   EXPECT_EQ(shown(bench), (Lines{
-                              "1  EX9052D-M   9052M   02 Modbus RTU 9600      LED * on       power on",
+                              "1  EX9052D-M   9052M   02 Modbus RTU 9600 8N1    LED * on       power on",
                               "   DI      0  1  2  3  4  5  6  7",
                               "           -  *  -  -  -  -  -  -",
                               "   counters 0 1 0 0 0 0 0 12",
@@ -81,7 +81,7 @@ TEST(FaceText, WithoutPowerShowsOnlyTheSwitchesAndTheTerminals) {
   bench.module().power(false);
   EXPECT_EQ(shown(bench),
             (Lines{
-                "1  EX9052D     9052                            LED - off      power off, INIT*",
+                "1  EX9052D     9052                              LED - off      power off, INIT*",
                 "   DI      0  1  2  3  4  5  6  7",
                 "           *  -  -  -  -  -  -  -",
             }));
@@ -116,10 +116,10 @@ TEST(FaceText, ShowsTheHostWatchdogsCountdownAndThenTheFlashingLed) {
 TEST(FaceChanges, ListsEverythingIfThereIsNoPreviousFace) {
   ModuleBench bench("EX9055D@0A");
   const Face face = face_of(bench.module(), bench.now());
-  EXPECT_EQ(
-      changes_text(bench.module().model(), nullptr, face),
-      (Lines{"power on", "INIT* off", "0A DCON 9600", "LED on", "outputs 0000", "power-on 0000, safe 0000",
-             "inputs 00", "counters 0 0 0 0 0 0 0 0", "latched high 00, low 00", "host watchdog off"}));
+  EXPECT_EQ(changes_text(bench.module().model(), nullptr, face),
+            (Lines{"power on", "INIT* off", "0A DCON 9600 8N1", "LED on", "outputs 0000",
+                   "power-on 0000, safe 0000", "inputs 00", "counters 0 0 0 0 0 0 0 0",
+                   "latched high 00, low 00", "host watchdog off"}));
 }
 
 TEST(FaceChanges, ListsNothingIfNothingHasChanged) {

@@ -14,7 +14,7 @@ namespace {
 
 using Prints = std::vector<std::string>;
 
-constexpr const char* kRelays = "1  EX9067D     9067    01 DCON 9600            LED * on       power on";
+constexpr const char* kRelays = "1  EX9067D     9067    01 DCON 9600 8N1          LED * on       power on";
 constexpr const char* kLabels = "   RL      1  2  3  4  5  6  7";
 constexpr const char* kAllOff = "           -  -  -  -  -  -  -";
 constexpr const char* kRest = "   power-on 0000, safe 0000\n   host watchdog off";
@@ -73,9 +73,10 @@ TEST_F(WatchTest, PaintsModulesAndRepaintsThemInPlaceAfterAChange) {
   EXPECT_EQ(looked(), Prints{});
   module().power(false);
   // The sequence moves the cursor five lines up to the first column and erases everything below.
-  EXPECT_EQ(looked(),
-            (Prints{"\x1b[5F\x1b[J1  EX9067D     9067                            LED - off      power off\n" +
-                    std::string(kLabels) + "\n" + kAllOff + "\n   power-on 0000, safe 0000\n"}));
+  EXPECT_EQ(
+      looked(),
+      (Prints{"\x1b[5F\x1b[J1  EX9067D     9067                              LED - off      power off\n" +
+              std::string(kLabels) + "\n" + kAllOff + "\n   power-on 0000, safe 0000\n"}));
   module().power(true);
   EXPECT_EQ(looked()[0].substr(0, 7), "\x1b[4F\x1b[J");
 }
