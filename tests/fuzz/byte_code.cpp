@@ -125,6 +125,9 @@ class Life {
       case 'f':
         status_ = ByteStatus::FramingError;
         return;
+      case 'y':
+        status_ = ByteStatus::ParityError;
+        return;
       case 'b':
         status_ = ByteStatus::Break;
         return;

@@ -24,10 +24,13 @@ namespace ex9000::fuzz {
 ///     \s      250 ms without a byte
 ///     \g N    a gap of N/64 times T3.5
 ///     \w N    N times N ms without a byte
-///     \f \b \o   the next byte arrives with a framing error, as a break, with an overrun
+///     \f      the next byte arrives with a framing error
+///     \y      the next byte arrives with wrong parity
+///     \b      the next byte arrives as a break
+///     \o      the next byte arrives with an overrun
 ///     \p N    the previous byte arrives N more times
 ///     \h N    the main loop does nothing for the next N times 0.1 ms
-///     \0 to \7   input 0 to 7 changes its level
+///     \0-\7   input 0 to 7 changes its level
 ///     \t      a tick
 ///     \i      INIT* is connected to GND, or disconnected
 ///     \m      the memory stops acknowledging, or acknowledges again

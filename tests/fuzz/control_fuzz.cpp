@@ -1,7 +1,9 @@
 // Sends commands of the control socket, one on each line, to three modules. A line `+N` lets N times 10 ms
 // pass. The target decides independently whether a command is valid. An invalid command must receive a reply
 // of one line and must change nothing.
+#include <array>
 #include <chrono>
+#include <optional>
 #include <set>
 #include <sstream>
 #include <string>
@@ -71,6 +73,18 @@ bool is_number(const std::string& text, unsigned long least, unsigned long most)
 
 bool is_switch(const std::string& text) { return text == "on" || text == "off"; }
 
+std::optional<LineFormat> format_called(const std::string& text) {
+  constexpr std::array<const char*, 4> kNames{"8n1", "8n2", "8e1", "8o1"};
+  for (std::size_t i = 0; i < kNames.size(); ++i) {
+    std::string upper = kNames[i];
+    upper[1] = static_cast<char>(upper[1] - 'a' + 'A');
+    if (text == kNames[i] || text == upper) {
+      return static_cast<LineFormat>(i);
+    }
+  }
+  return std::nullopt;
+}
+
 /// The line, and its faults according to the commands so far.
 struct Watched {
   Line line{specs(), sim::kPaced, [this](std::uint8_t /*byte*/, ByteStatus /*status*/) { ++heard; }};
@@ -86,6 +100,9 @@ bool is_of_the_line(const Watched& watched, Words words, sim::VirtualTime now) {
   }
   if (words.size() == 2 && words[0] == "baud") {
     return fault::is_rate(words[1]);
+  }
+  if (words.size() == 2 && words[0] == "format") {
+    return format_called(words[1]).has_value();
   }
   if (words.empty() || words[0] != "fault") {
     return false;
@@ -117,7 +134,7 @@ bool is_command(Watched& watched, const Words& words) {
     return words.size() == 1;
   }
   if (words[0] == "line" || words[0] == "fault" || words[0] == "faults" || words[0] == "baud" ||
-      words[0] == "sent") {
+      words[0] == "format" || words[0] == "sent") {
     return is_of_the_line(watched, of_the_line(words), now);
   }
   if (words.size() < 2 || !is_number(words[0], 1, line.size())) {
@@ -140,7 +157,7 @@ bool is_command(Watched& watched, const Words& words) {
   if (verb == "pulse") {
     return has_channel && (args == 1 || (args == 2 && is_number(words[3], 1, 1'000'000)));
   }
-  if (verb == "reset" || verb == "hang") {
+  if (verb == "reset" || verb == "hang" || verb == "timers" || verb == "filters") {
     return args == 0 && module.powered();
   }
   return args == 0 && (verb == "inputs" || verb == "outputs" || verb == "led" || verb == "status");
@@ -165,7 +182,13 @@ void check_faults(Watched& watched, const Words& words, const std::string& reply
 void check_effect(Watched& watched, const Words& words, const std::string& reply) {
   const Words on_line = of_the_line(words);
   if (on_line[0] == "baud") {
-    require(watched.line.master().baud() == std::stoul(on_line[1]), "the line has the requested baud rate");
+    require(watched.line.master().mode().baud == std::stoul(on_line[1]),
+            "the line has the requested baud rate");
+    return;
+  }
+  if (on_line[0] == "format") {
+    require(watched.line.master().mode().format == format_called(on_line[1]),
+            "the line has the requested format");
     return;
   }
   if (on_line[0] == "sent") {

@@ -50,7 +50,9 @@ bool same(const Settings& a, const Settings& b) {
   return a.address == b.address && a.baud_code == b.baud_code && a.format == b.format &&
          a.protocol == b.protocol && a.watchdog_timeout == b.watchdog_timeout &&
          a.watchdog_enabled == b.watchdog_enabled && a.timeout_status == b.timeout_status &&
-         same_name(a.name, b.name) && a.power_on_value == b.power_on_value && a.safe_value == b.safe_value;
+         same_name(a.name, b.name) && a.power_on_value == b.power_on_value && a.safe_value == b.safe_value &&
+         a.response_delay == b.response_delay && a.fed_by_requests == b.fed_by_requests &&
+         a.inverted_inputs == b.inverted_inputs && a.input_filters == b.input_filters;
 }
 
 class Trial {

@@ -71,11 +71,15 @@ struct LeanBoard {
   struct Line {
     Surroundings& around;
     std::uint32_t baud = 0;
+    LineFormat format = LineFormat::k8N1;
     Microseconds ends = kNever;
 
-    void open(std::uint32_t rate) { baud = rate; }
+    void open(std::uint32_t its_baud, LineFormat its_format) {
+      baud = its_baud;
+      format = its_format;
+    }
     void send(Bytes bytes) {
-      ends = around.now + 4 + bytes.size * 10'000'000ULL / baud;
+      ends = around.now + 4 + bytes.size * bits_of_character(format) * 1'000'000ULL / baud;
       around.observer.reply_begins(bytes);
     }
     [[nodiscard]] bool sending() const { return ends != kNever; }
