@@ -1,5 +1,6 @@
 // Plays random sessions on the firmware and on the reference.
-//   EX9000_TRANSACTIONS  number of requests; default 200000; the long form is 10000000
+//   EX9000_TRANSACTIONS  number of requests; default 200000, or 50000 without extensions; the long form is
+//                        10000000
 //   EX9000_SEED          seed of the first session, default 9042; each further session has the next number
 #include <gtest/gtest.h>
 
@@ -21,20 +22,24 @@ namespace {
 /// The number of steps of a session. It is large enough for one step to influence many others.
 constexpr unsigned kSteps = 300;
 
-/// Consecutive seeds return each model in turn; models with two protocols occur three times as often.
-const ModelRow& row_of(std::uint64_t seed) {
+/// Consecutive seeds return each model in turn; models with two protocols occur three times as often. Without
+/// extensions, it does not return the models that came with them.
+const ModelRow& row_of(std::uint64_t seed, Extensions extensions) {
   std::vector<const ModelRow*> rows;
   for (const ModelRow& row : kModelRows) {
-    rows.insert(rows.end(), row.both_protocols ? 3 : 1, &row);
+    if (!row.extension || extensions == Extensions::Present) {
+      rows.insert(rows.end(), row.both_protocols ? 3 : 1, &row);
+    }
   }
   return *rows[seed % rows.size()];
 }
 
 /// A session and its steps, up to the first step at which firmware and reference differ.
 struct Played {
-  Played(std::uint64_t seed, unsigned length) : row(row_of(seed)), session(row) {
+  Played(std::uint64_t seed, unsigned length, Extensions extensions)
+      : row(row_of(seed, extensions)), session(row, extensions) {
     Random random(seed);
-    steps = first_steps(row, random);
+    steps = first_steps(session.reference(), random);
     for (std::size_t at = 0; alike && at < length; ++at) {
       if (at == steps.size()) {
         steps.push_back(next_step(session.reference(), random));
@@ -49,19 +54,21 @@ struct Played {
   bool alike = true;
 };
 
-TEST(RandomSessions, TheFirmwareDoesWhatTheReferenceSays) {
-  const std::uint64_t wanted = number_in_environment("EX9000_TRANSACTIONS", 200'000);
+/// Plays sessions until `wanted` requests have been sent. Fails if firmware and reference differ, or if a
+/// rule is never reached.
+void play_sessions(std::uint64_t wanted, Extensions extensions) {
   std::uint64_t seed = number_in_environment("EX9000_SEED", 9042);
   std::uint64_t transactions = 0;
   std::uint64_t left_open = 0;
   std::uint64_t before_expiry = 0;
   std::uint64_t behind_expiry = 0;
   std::uint64_t sessions = 0;
-  Rules rules;
+  Rules rules(extensions);
   for (; transactions < wanted; ++seed, ++sessions) {
-    const Played played(seed, kSteps);
+    const Played played(seed, kSteps, extensions);
     ASSERT_TRUE(played.alike) << "seed " << seed << "\n"
-                              << transcript_of(played.row, shrink(played.row, played.steps));
+                              << transcript_of(played.row, shrink(played.row, played.steps, extensions),
+                                               extensions);
     transactions += played.session.transactions();
     left_open += played.session.left_open();
     before_expiry += played.session.before_expiry();
@@ -77,8 +84,9 @@ TEST(RandomSessions, TheFirmwareDoesWhatTheReferenceSays) {
     ADD_FAILURE() << rule << " was never reached";
   }
   std::printf(
-      "reference: %llu transactions in %llu sessions, %zu of %zu rules reached; %llu requests less than "
+      "reference%s: %llu transactions in %llu sessions, %zu of %zu rules reached; %llu requests less than "
       "0.1 s before an expiry, %llu while an expiry was being stored; %llu requests omitted\n",
+      extensions == Extensions::Absent ? " without extensions" : "",
       static_cast<unsigned long long>(transactions), static_cast<unsigned long long>(sessions),
       rules.size() - rules.missing().size(), rules.size(), static_cast<unsigned long long>(before_expiry),
       static_cast<unsigned long long>(behind_expiry), static_cast<unsigned long long>(left_open));
@@ -86,11 +94,21 @@ TEST(RandomSessions, TheFirmwareDoesWhatTheReferenceSays) {
   EXPECT_GT(behind_expiry, wanted / 1000);
 }
 
+TEST(RandomSessions, TheFirmwareDoesWhatTheReferenceSays) {
+  play_sessions(number_in_environment("EX9000_TRANSACTIONS", 200'000), Extensions::Present);
+}
+
+/// A factory-fresh module replies to the requests of the manuals as if it had no extensions. The reference
+/// has none here, and `Rules` rejects every rule of an extension.
+TEST(RandomSessions, RequestsOfTheManualsGetTheRepliesOfAModuleWithoutExtensions) {
+  play_sessions(number_in_environment("EX9000_TRANSACTIONS", 50'000), Extensions::Absent);
+}
+
 TEST(RandomSessions, CanBeReplayedByTheRunnerFromTheirTranscript) {
   const system::Directory directory;
   const std::string path = directory / "session.txt";
   for (std::uint64_t seed = 0; seed < 27; ++seed) {
-    const Played played(seed, kSteps / 3);
+    const Played played(seed, kSteps / 3, Extensions::Present);
     ASSERT_TRUE(played.alike) << played.session.transcript();
     system::write_file(path, played.session.transcript());
     for (const play::Transcript& transcript : runner::load_transcripts(path)) {

@@ -1,6 +1,6 @@
 // One copy of the settings in the EEPROM, read without the firmware's code. It implements the layouts of
 // firmware/settings/record.hpp and old_layouts.hpp independently, the check from its definition, and the
-// settings that commands can store from wire.md sections 4 and 8.
+// settings that commands can store from wire.md sections 4, 8 and 12.
 #pragma once
 
 #include <algorithm>
@@ -214,7 +214,9 @@ class StoredCopy {
     for (std::size_t channel = 0; channel < found.filters.size(); ++channel) {
       extensions = extensions && found.filters[channel] <= (channel < model_.inputs ? 2000 : 0);
     }
-    return extensions && name && protocol && watchdog && found.baud_code >= 0x03 && found.baud_code <= 0x0A &&
+    // Bits 7 and 6 are the line format; all four formats exist.
+    const unsigned rate = found.baud_code % 0x40U;
+    return extensions && name && protocol && watchdog && rate >= 0x03 && rate <= 0x0A &&
            (found.format & 0x3FU) == 0 && ((found.power_on_value | found.safe_value) & beyond) == 0;
   }
 

@@ -5,6 +5,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <optional>
+#include <string_view>
 
 #include "tests/oracles/judges/checks.hpp"
 #include "tests/oracles/judges/finding.hpp"
@@ -13,10 +14,8 @@ namespace ex9000::judges {
 
 class DconJudge {
  public:
-  DconJudge(std::uint8_t own_address, std::uint32_t baud, bool checksum)
-      : own_(own_address), character_(10'000'000ULL / baud), checksum_(checksum) {}
+  DconJudge(std::uint8_t own_address, bool checksum) : own_(own_address), checksum_(checksum) {}
 
-  [[nodiscard]] Microseconds character() const { return character_; }
   [[nodiscard]] bool checksum() const { return checksum_; }
   [[nodiscard]] std::uint8_t own_address() const { return own_; }
   /// Call this when `%` has been answered.
@@ -95,7 +94,6 @@ class DconJudge {
 
   std::uint8_t own_;
   std::optional<std::uint8_t> next_;
-  Microseconds character_;
   bool checksum_;
   State state_ = State::Hunting;
   bool spoiled_ = false;

@@ -28,6 +28,7 @@ inline Listening listening_of(const State& state) {
   listening.modbus = now.protocol == Protocol::ModbusRtu;
   listening.address = now.address;
   listening.baud = baud_rate(now.baud_code);
+  listening.format = line_format(now.baud_code);
   listening.checksum = now.checksum;
   listening.init_mode = now.init_mode;
   listening.delays = state.settings.response_delay != 0;

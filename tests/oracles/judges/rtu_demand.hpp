@@ -162,4 +162,14 @@ constexpr bool is_rtu_output_command(Bytes request) {
   return request.word(2) < 0x0100;
 }
 
+/// Returns whether the request sets the response delay unless the module refuses it (wire.md 12).
+constexpr bool may_set_delay_by_rtu(Bytes request) {
+  constexpr unsigned kDelay = 0x0252;
+  if (request.size < 6 || (request[1] != 0x06 && request[1] != 0x10)) {
+    return false;
+  }
+  const unsigned first = request.word(2);
+  return first <= kDelay && kDelay < first + (request[1] == 0x06 ? 1U : request.word(4));
+}
+
 }  // namespace ex9000::judges

@@ -9,6 +9,7 @@
 
 #include "tests/oracles/judges/checks.hpp"
 #include "tests/oracles/judges/finding.hpp"
+#include "tests/oracles/judges/line_times.hpp"
 
 namespace ex9000::judges {
 
@@ -17,25 +18,21 @@ class RtuJudge {
   /// `strict`: a gap of more than 1.5 characters invalidates a frame. `doubt`: the module has its own clock,
   /// so if a gap differs by at most this much from the silence that ends a frame, the module may or may not
   /// end the frame; then the judge considers both cases.
-  RtuJudge(std::uint8_t own_address, std::uint32_t baud, bool strict, Microseconds doubt = 0)
+  RtuJudge(std::uint8_t own_address, const LineTimes& times, bool strict, Microseconds doubt = 0)
       : own_(own_address),
-        character_(10'000'000ULL / baud),
-        silence_(baud <= 19200 ? 38'500'000ULL / baud : 1750),
-        apart_(strict ? character_ + (baud <= 19200 ? 16'500'000ULL / baud : 750) : kNever),
+        received_(times.received),
+        silence_(times.silence),
+        apart_(strict ? times.slack : kNever),
         doubt_(doubt) {}
 
-  [[nodiscard]] Microseconds character() const { return character_; }
-  /// Returns the silence that ends a frame, T3.5.
-  [[nodiscard]] Microseconds silence() const { return silence_; }
-
-  /// Moves the end of a byte to a later time if the gap before it is so near a limit that rounding to whole
-  /// microseconds, by the clock or by the module, could change the result. Returns the new end.
+  /// Moves the report of a byte to a later time if the gap before it is so near a limit that rounding to
+  /// whole microseconds, by the clock or by the module, could change the result. Returns the new time.
   [[nodiscard]] Microseconds beyond_doubt(Microseconds end) const {
     if (size_ == 0) {
       return end;
     }
     constexpr Microseconds kDoubt = 6;
-    for (const Microseconds border : {silence_, silence_ + character_, apart_}) {
+    for (const Microseconds border : {silence_, silence_ + received_, apart_}) {
       const Microseconds gap = end - last_;
       if (border != kNever && gap + kDoubt > border && gap < border + kDoubt) {
         end = last_ + border + kDoubt;
@@ -52,7 +49,7 @@ class RtuJudge {
     const Microseconds gap = now - last_;
     Finding finding = judge();
     const bool known = std::exchange(judged_, size_) == size_;
-    const Microseconds border = finding.kind != Finding::Kind::Nothing ? silence_ : silence_ + character_;
+    const Microseconds border = finding.kind != Finding::Kind::Nothing ? silence_ : silence_ + received_;
     if (gap >= border + doubt_) {
       size_ = 0;
     } else if (gap + doubt_ >= border) {
@@ -62,7 +59,7 @@ class RtuJudge {
     return known ? Finding{} : finding;
   }
 
-  /// Call this at the end of a byte, after `pass` for the time before it.
+  /// Call this when a byte is reported, after `pass` for the time before it.
   void byte(std::uint8_t byte, bool good, Microseconds now) {
     if (size_ == 0) {
       first_ = now;
@@ -129,9 +126,9 @@ class RtuJudge {
   }
 
   std::uint8_t own_;
-  Microseconds character_;
+  Microseconds received_;  ///< a byte that began before the end of the silence is reported within this time
   Microseconds silence_;
-  Microseconds apart_;  ///< the greatest time between the ends of two bytes of a frame
+  Microseconds apart_;  ///< the greatest time between the reports of two bytes of a frame
   Microseconds doubt_;
   /// Two more than the longest frame, so that a longer one is noticed.
   static constexpr std::size_t kMost = kLongest + 2;

@@ -2,23 +2,25 @@
 #pragma once
 
 #include <algorithm>
-#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <optional>
-#include <utility>
 
 #include "firmware/bytes.hpp"
+#include "firmware/model/line_format.hpp"
 #include "firmware/model/model.hpp"
 #include "tests/oracles/judges/dcon_demand.hpp"
 #include "tests/oracles/judges/dcon_judge.hpp"
 #include "tests/oracles/judges/dcon_reply.hpp"
 #include "tests/oracles/judges/demand.hpp"
 #include "tests/oracles/judges/finding.hpp"
+#include "tests/oracles/judges/line_times.hpp"
+#include "tests/oracles/judges/requests.hpp"
 #include "tests/oracles/judges/rtu_demand.hpp"
 #include "tests/oracles/judges/rtu_judge.hpp"
 #include "tests/oracles/judges/rtu_reply.hpp"
 #include "tests/oracles/judges/time.hpp"
+#include "tests/oracles/judges/value_changes.hpp"
 
 namespace ex9000::judges {
 
@@ -27,6 +29,7 @@ struct Listening {
   bool modbus = false;
   std::uint8_t address = 0;
   std::uint32_t baud = 0;
+  LineFormat format = LineFormat::k8N1;
   bool checksum = false;
   bool init_mode = false;
   bool strict_gaps = false;
@@ -76,27 +79,25 @@ class Witness {
   void comes_up(const Listening& listening, const Values& values, Microseconds reset) {
     rtu_.reset();
     dcon_.reset();
+    times_ = LineTimes::at(listening.baud, listening.format);
     if (listening.modbus) {
-      rtu_.emplace(listening.address, listening.baud, listening.strict_gaps, listening.doubt);
+      rtu_.emplace(listening.address, times_, listening.strict_gaps, listening.doubt);
     } else {
-      dcon_.emplace(listening.address, listening.baud, listening.checksum);
+      dcon_.emplace(listening.address, listening.checksum);
     }
     listening_ = listening;
-    character_ = 10'000'000ULL / listening.baud;
-    silence_ = listening.baud <= 19200 ? 38'500'000ULL / listening.baud : 1750;
-    values_ = values;
-    pending_count_ = 0;
-    now_ = free_ = alive_ = busy_ = reset;
-    expired_ = 0;
+    changes_.module_reset(values, reset);
+    pending_.clear();
+    now_ = free_ = busy_ = reset;
     held_ = sending_ = broadcast_ = false;
     delays_ = listening.delays;
   }
 
   [[nodiscard]] bool hears_modbus() const { return rtu_.has_value(); }
   [[nodiscard]] bool wants_checksum() const { return dcon_ && dcon_->checksum(); }
-  [[nodiscard]] Microseconds character() const { return character_; }
+  [[nodiscard]] Microseconds character() const { return times_.character; }
   /// Returns T3.5; defined for DCON too, but not used there.
-  [[nodiscard]] Microseconds silence() const { return silence_; }
+  [[nodiscard]] Microseconds silence() const { return times_.t35; }
   /// See RtuJudge.
   [[nodiscard]] Microseconds beyond_doubt(Microseconds end) const {
     return rtu_ ? rtu_->beyond_doubt(end) : end;
@@ -119,8 +120,8 @@ class Witness {
     look();
   }
 
-  /// Call this at the end of a byte that arrived while the module's driver was off, before the module
-  /// receives the byte. `address`: the address that the module answers to.
+  /// Call this at the end of the first stop bit of a byte that arrived while the module's driver was off,
+  /// before the module receives the byte. `address`: the address that the module answers to.
   void hears(std::uint8_t byte, bool good, std::uint8_t address, Microseconds now) {
     pass(now);
     if (rtu_) {
@@ -130,31 +131,27 @@ class Witness {
       note(dcon_->byte(byte, good, now));
     }
     drop_stale();
-    if (pending_count_ != 0 || held_) {
+    if (pending_.size() != 0 || held_) {
       busy_ = now;
     }
   }
 
   /// Call this after a turn of the main loop with the values of the module.
   void follow(const Values& values, Microseconds now) {
-    if (values == values_) {
+    if (values == changes_.values()) {
       return;
     }
     now_ = now;
     note_silence();
     mark_fresh();
-    if (!one_leads_to(values)) {
-      if (values.timed_out && !values_.timed_out && !may_expire(values_)) {
-        report_violation_("the host watchdog never expires too early");
-      } else if (!some_lead(values_, values, 0, kMostInATurn)) {
-        report_violation_("values change only because of a command, a timeout or a reset");
-      }
+    const char* const objection = changes_.objection_to_change(values, pending_, now_);
+    if (objection != nullptr) {
+      report_violation_(objection);
     }
-    if ((values_.timed & ~values.timed) != 0) {
+    if ((changes_.values().timed & ~values.timed) != 0) {
       look_before_a_timer_ends();
     }
-    note_timers(values);
-    values_ = values;
+    changes_.change(values, pending_);
     if (values.timed_out && values.outputs != values.safe) {
       report_violation_("outputs are the safe value while the timeout status is set");
     }
@@ -165,7 +162,7 @@ class Witness {
 
   /// Call this after a turn of the main loop with the address of the module.
   void follow_address(std::uint8_t address) {
-    if (dcon_ && pending_count_ == 0 && address != dcon_->own_address()) {
+    if (dcon_ && pending_.size() == 0 && address != dcon_->own_address()) {
       report_violation_("the address changes by a command only");
     }
   }
@@ -191,25 +188,6 @@ class Witness {
   }
 
  private:
-  struct Pending {
-    std::array<std::uint8_t, 256> bytes;
-    std::size_t size;
-    Microseconds last;
-    /// The time at which it became a frame: the silence after it ended, or the module replied.
-    Microseconds over;
-    Demand demand;
-    bool broadcast;
-    bool alone;  ///< the module was idle, and the frame is not doubtful
-    bool fresh;  ///< the request may still be executed; see mark_fresh
-    bool done;   ///< an observed change of values has been attributed to this request
-
-    [[nodiscard]] Bytes frame() const { return {bytes.data(), size}; }
-  };
-  /// The module keeps one frame and executes another one. It may lose further frames, which cannot be seen
-  /// from outside. This is the greatest number of frames that the witness keeps; it drops the oldest one if
-  /// another arrives.
-  static constexpr std::size_t kMostPending = 32;
-
   void note(const Finding& finding) {
     switch (finding.kind) {
       case Finding::Kind::Nothing:
@@ -221,7 +199,7 @@ class Witness {
         ++counts_.silent;
         ++counts_.host_oks;
         if (!held_) {  // while it is held, the module uses only the last one
-          alive_ = std::max(alive_, finding.last);
+          changes_.watchdog().restarts_at_the_earliest(finding.last);
         }
         return;
       case Finding::Kind::Request:
@@ -231,21 +209,17 @@ class Witness {
         ++counts_.silent;
         break;
     }
-    if (pending_count_ == kMostPending) {
-      drop_oldest(1);
+    if (pending_.size() == Requests::kMost) {
+      pending_.drop_oldest(1);
       broadcast_ = false;
     }
-    Pending& latest = pending(pending_count_++);
-    std::copy(finding.frame.begin(), finding.frame.end(), latest.bytes.begin());
-    latest.size = finding.frame.size;
-    latest.last = finding.last;
-    latest.over = rtu_ ? std::min(finding.last + silence_, now_) : finding.last + character_;
+    Request& latest = pending_.append(finding);
+    latest.over = rtu_ ? std::min(finding.last + times_.silence, now_) : finding.last + times_.turn_around;
     latest.demand =
         rtu_ ? rtu_demand(finding.frame, model_.outputs) : dcon_demand(finding.frame, model_.outputs);
-    latest.broadcast = finding.kind == Finding::Kind::Broadcast;
     latest.alone = finding.first > busy_ && !finding.doubtful;
-    latest.done = false;
-    delays_ = delays_ || (rtu_ ? sets_delay_by_rtu(finding.frame) : sets_delay_by_dcon(finding.frame));
+    changes_.note(latest);
+    delays_ = delays_ || (rtu_ ? may_set_delay_by_rtu(finding.frame) : may_set_delay_by_dcon(finding.frame));
     counts_.storing += latest.demand.stores_something ? 1U : 0U;
     broadcast_ =
         latest.alone && latest.broadcast && latest.demand.drives() && !latest.demand.stores_something;
@@ -253,61 +227,41 @@ class Witness {
   void note_silence() {
     if (rtu_) {
       Finding finding = rtu_->pass(now_);
-      finding.last += finding.kind == Finding::Kind::HostOk ? silence_ : 0;  // wire.md D11
+      finding.last += finding.kind == Finding::Kind::HostOk ? times_.silence : 0;  // wire.md D11
       note(finding);
     }
   }
-  Pending& pending(std::size_t index) { return pending_[(oldest_ + index) % kMostPending]; }
-  void drop_oldest(std::size_t count) {
-    oldest_ = (oldest_ + count) % kMostPending;
-    pending_count_ -= count;
-  }
 
-  /// Returns the least time from the last byte of a request, or of the module's previous reply, to a reply.
-  [[nodiscard]] Microseconds distance() const { return rtu_ ? silence_ : character_; }
+  /// Returns the least time from the report of the last byte of a request to a reply.
+  [[nodiscard]] Microseconds distance() const { return rtu_ ? times_.silence : times_.turn_around; }
 
   static constexpr Microseconds kLongestDelay = 30 * kMillisecond;  // wire.md 12
-  static bool sets_delay_by_rtu(Bytes request) {
-    constexpr unsigned kDelay = 0x0252;
-    if (request.size < 6 || (request[1] != 0x06 && request[1] != 0x10)) {
-      return false;
-    }
-    const unsigned first = request.word(2);
-    return first <= kDelay && kDelay < first + (request[1] == 0x06 ? 1U : request.word(4));
-  }
-  static bool sets_delay_by_dcon(Bytes command) {
-    return command.size > 4 && command[0] == '~' && (command[3] == 'R' || command[3] == 'X');
-  }
 
   /// Returns the latest time at which the module executes `request`, if it was idle from `free` on (wire.md 3
   /// and 7).
-  [[nodiscard]] Microseconds latest_of(const Pending& request, Microseconds free) const {
+  [[nodiscard]] Microseconds latest_of(const Request& request, Microseconds free) const {
     constexpr Microseconds kPlain = 20 * kMillisecond;
     constexpr Microseconds kStoring = 200 * kMillisecond;
-    const Microseconds over = request.last + std::max(rtu_ ? silence_ : 0, delays_ ? kLongestDelay : 0);
+    const Microseconds over =
+        request.last + times_.rest + std::max(rtu_ ? times_.t35 : 0, delays_ ? kLongestDelay : 0);
     return std::max(over, free) + (request.demand.stores_something ? kStoring : kPlain);
-  }
-  /// Returns whether the module stores something and sends no reply, so that it may be busy until the latest
-  /// permitted time.
-  static bool is_silent_store(const Pending& request) {
-    return request.broadcast && request.demand.stores_something;
   }
 
   /// Marks the requests that may still be executed.
   void mark_fresh() {
     Microseconds free = free_;
-    for (std::size_t i = 0; i < pending_count_; ++i) {
-      Pending& each = pending(i);
+    for (std::size_t i = 0; i < pending_.size(); ++i) {
+      Request& each = pending_[i];
       const Microseconds latest = latest_of(each, free);
       each.fresh = now_ <= latest;
-      free = is_silent_store(each) ? latest : free;
+      free = each.is_silent_store() ? latest : free;
     }
   }
 
   /// Drops requests that can no longer be executed.
   void drop_stale() {
-    while (pending_count_ != 0 && !held_ && !sending_) {
-      const Pending& oldest = pending(0);
+    while (pending_.size() != 0 && !held_ && !sending_) {
+      const Request& oldest = pending_[0];
       const Microseconds latest = latest_of(oldest, free_);
       if (now_ <= latest) {
         return;
@@ -315,10 +269,10 @@ class Witness {
       if (!oldest.broadcast && oldest.alone) {
         report_violation_("a module with nothing else to do answers in time");
       }
-      if (is_silent_store(oldest)) {
+      if (oldest.is_silent_store()) {
         free_ = latest;
       }
-      drop_oldest(1);
+      pending_.drop_oldest(1);
     }
   }
 
@@ -328,8 +282,8 @@ class Witness {
   ReplyForm answered(bool refuses_outputs, FormOf form_of) {
     mark_fresh();
     const char* objection = "only a frame for the module is answered";
-    for (std::size_t i = 0; i < pending_count_; ++i) {
-      const Pending& request = pending(i);
+    for (std::size_t i = 0; i < pending_.size(); ++i) {
+      const Request& request = pending_[i];
       if (request.broadcast || !request.fresh) {
         continue;
       }
@@ -344,10 +298,10 @@ class Witness {
         report_violation_("a reply does not begin too early");
       }
       if (form == ReplyForm::Answer && request.demand.restarts) {
-        alive_ = std::max(alive_, request.over);
+        changes_.watchdog().restarts_at_the_earliest(request.over);
       }
       answered_ = request;
-      drop_oldest(i + 1);
+      pending_.drop_oldest(i + 1);
       return form;
     }
     report_violation_(objection);
@@ -393,18 +347,11 @@ class Witness {
     dcon_->may_answer_to(std::nullopt);
   }
 
-  /// Returns the address in characters 3 and 4 of a `%` command. They are hex digits in every command that is
-  /// answered.
-  static std::uint8_t new_address(Bytes request) {
-    const auto value = [](unsigned digit) { return digit > '9' ? digit - 'A' + 10 : digit - '0'; };
-    return static_cast<std::uint8_t>(value(request[3]) * 16 + value(request[4]));
-  }
-
   /// Allows frames for a new address if a pending `%` sets this address. Between the end of the store and the
   /// reply to `%`, the new address is already in force.
   void may_have_taken(std::uint8_t address) {
-    for (std::size_t i = 0; i < pending_count_; ++i) {
-      const Pending& each = pending(i);
+    for (std::size_t i = 0; i < pending_.size(); ++i) {
+      const Request& each = pending_[i];
       if (each.bytes[0] == '%' && each.size == 11 && new_address(each.frame()) == address) {
         dcon_->may_answer_to(address);
       }
@@ -413,14 +360,14 @@ class Witness {
 
   /// Returns why the module cannot have refused the request, or null. `refuses_outputs`: the reply says that
   /// outputs are blocked or that a Modbus request could not be stored.
-  [[nodiscard]] const char* objection_to_refusal(const Pending& request, bool refuses_outputs) const {
+  [[nodiscard]] const char* objection_to_refusal(const Request& request, bool refuses_outputs) const {
     const Demand& demand = request.demand;
     if (request.done) {
       return "a refused request changes nothing";
     }
     const bool may_fail = rtu_ && demand.stores_something;
     if (demand.drives()) {
-      return refuses_outputs && (values_.timed_out || may_fail)
+      return refuses_outputs && (changes_.values().timed_out || may_fail)
                  ? nullptr
                  : "an output command of the right form is refused only after a timeout";
     }
@@ -428,132 +375,26 @@ class Witness {
   }
 
   /// Returns why the module cannot have executed the request, or null.
-  [[nodiscard]] const char* objection_to_answer(const Pending& request) const {
+  [[nodiscard]] const char* objection_to_answer(const Request& request) const {
     const Demand& demand = request.demand;
-    const bool since = has_expired_since(request);
+    const bool since = changes_.has_expired_since(request);
     const bool output_command = rtu_ ? judges::is_rtu_output_command(request.frame())
                                      : judges::is_dcon_output_command(request.frame());
     if (output_command && !demand.drives()) {
       return "an output command of a wrong form is refused";
     }
-    if (demand.drives() && values_.timed_out && !since) {
+    if (demand.drives() && changes_.values().timed_out && !since) {
       return "an output command is refused while the timeout status is set";
     }
-    return demand.is_met_by(values_, outputs_before_, since)
-               ? nullptr
-               : "an answered command has exactly the effects that it requires";
-  }
-
-  [[nodiscard]] bool has_expired_since(const Pending& request) const { return expired_ >= request.last; }
-
-  /// The greatest number of commands that take effect in one turn of the main loop: a broadcast whose storing
-  /// ends, the broadcast after it, and the frame that ends with the silence after that.
-  static constexpr unsigned kMostInATurn = 3;
-
-  [[nodiscard]] bool leads(const Pending& request, const Values& from, const Values& to) const {
-    const Demand& demand = request.demand;
-    return request.fresh && !request.done && demand.changes_values() &&
-           (demand.made_of(from) == to || (from.timed_out && has_expired_since(request) &&
-                                           demand.values_after_a_timeout(from, outputs_before_) == to));
-  }
-
-  /// Returns whether one command can have changed the values to `to`, which is nearly always the case. Also
-  /// records the change.
-  bool one_leads_to(const Values& to) {
-    Pending* only = nullptr;
-    unsigned count = 0;
-    for (std::size_t i = 0; i < pending_count_; ++i) {
-      if (leads(pending(i), values_, to)) {
-        only = &pending(i);
-        ++count;
-      }
-    }
-    if (count != 0 && may_expire(values_) && to == values_.expired()) {
-      // The host watchdog may have expired instead. After a timeout it is disabled and does nothing more.
-      outputs_before_ = values_.lasting_outputs();
-      expired_ = now_;
-    } else if (count == 1) {
-      only->done = true;
-      if (only->demand.restarts) {
-        alive_ = now_;
-      }
-    }
-    return count != 0;
-  }
-
-  /// For each timer that has started, notes the earliest time at which it may end.
-  void note_timers(const Values& values) {
-    constexpr Microseconds kUnit = 100 * kMillisecond;
-    for (unsigned channel = 0; channel < timer_ends_.size(); ++channel) {
-      if (((values.timed & ~values_.timed) >> channel & 1U) == 0) {
-        continue;
-      }
-      timer_ends_[channel] = 0;
-      for (std::size_t i = 0; i < pending_count_; ++i) {
-        const Pending& each = pending(i);
-        const bool starts = (each.demand.timers >> channel & 1U) != 0;
-        const Microseconds end = each.last + each.demand.units[channel] * kUnit;
-        if (starts && (timer_ends_[channel] == 0 || end < timer_ends_[channel])) {
-          timer_ends_[channel] = end;
-        }
-      }
-    }
-  }
-  [[nodiscard]] std::uint16_t timers_that_may_end() const {
-    unsigned channels = 0;
-    for (unsigned channel = 0; channel < timer_ends_.size(); ++channel) {
-      channels |= now_ >= timer_ends_[channel] ? 1U << channel : 0U;
-    }
-    return static_cast<std::uint16_t>(channels);
-  }
-
-  [[nodiscard]] bool may_expire(const Values& values) const {
-    constexpr Microseconds kUnit = 100 * kMillisecond;
-    return values.enabled && now_ - alive_ >= values.timeout * kUnit;
-  }
-
-  /// Returns whether ended timers, a timeout, and at most `most` commands from number `next` on can have
-  /// changed `from` to `to`.
-  bool some_lead(const Values& from, const Values& to, std::size_t next, unsigned most) {
-    if (from == to) {
-      return true;
-    }
-    const auto ended = static_cast<std::uint16_t>(from.timed & ~to.timed & timers_that_may_end());
-    if (ended != 0 && some_lead(from.without_timers(ended), to, next, most)) {
-      return true;
-    }
-    if (may_expire(from)) {
-      const auto outputs = std::exchange(outputs_before_, from.lasting_outputs());
-      const auto expired = std::exchange(expired_, now_);
-      if (some_lead(from.expired(), to, next, most)) {
-        return true;
-      }
-      outputs_before_ = outputs;
-      expired_ = expired;
-    }
-    for (std::size_t i = next; most != 0 && i < pending_count_; ++i) {
-      const Pending& each = pending(i);
-      if (leads(each, from, to)) {
-        return true;
-      }
-      if (each.fresh && !each.done && each.demand.changes_values()) {
-        if (some_lead(each.demand.made_of(from), to, i + 1, most - 1)) {
-          return true;
-        }
-        if (from.timed_out && has_expired_since(each) &&
-            some_lead(each.demand.values_after_a_timeout(from, outputs_before_), to, i + 1, most - 1)) {
-          return true;
-        }
-      }
-    }
-    return false;
+    return changes_.meet(request, since) ? nullptr
+                                         : "an answered command has exactly the effects that it requires";
   }
 
   /// Checks that an idle module has executed the latest broadcast.
   void look() {
     if (broadcast_ && !held_) {
       broadcast_ = false;
-      if (!values_.timed_out && !pending(0).demand.is_met_by(values_, outputs_before_, false)) {
+      if (!changes_.values().timed_out && !changes_.meet(pending_[0], false)) {
         report_violation_("an idle module executes a broadcast");
       }
     }
@@ -562,7 +403,7 @@ class Witness {
   /// The end of a timer can undo the effect of the latest broadcast, so this checks the broadcast before, or
   /// not at all if the broadcast may take effect in the same turn.
   void look_before_a_timer_ends() {
-    if (broadcast_ && now_ > latest_of(pending(0), free_)) {
+    if (broadcast_ && now_ > latest_of(pending_[0], free_)) {
       look();
     }
     broadcast_ = false;
@@ -575,24 +416,17 @@ class Witness {
   std::optional<DconJudge> dcon_;
   Counts counts_;
   Microseconds now_ = 0;
-  Microseconds character_ = 0;
-  Microseconds silence_ = 0;
-  std::array<Pending, kMostPending> pending_;
-  std::size_t oldest_ = 0;
-  std::size_t pending_count_ = 0;
-  Pending answered_;
-  Values values_;                              ///< the values after all commands and timeouts so far
-  std::uint16_t outputs_before_ = 0;           ///< the outputs before the latest timeout
-  std::array<Microseconds, 16> timer_ends_{};  ///< the timers of outputs do not end earlier
-  Microseconds expired_ = 0;                   ///< time of the latest timeout; 0: none since the last reset
+  LineTimes times_;
+  Requests pending_;
+  Request answered_;
+  ValueChanges changes_;
   bool held_ = false;
   bool delays_ = false;  ///< a response delay may be in force
   bool sending_ = false;
   /// A broadcast has been received by an idle module, and its effect has not been checked yet.
   bool broadcast_ = false;
-  Microseconds alive_ = 0;  ///< the latest restart of the host watchdog was not earlier than this
-  Microseconds free_ = 0;   ///< from this time on only requests can delay the next request
-  Microseconds busy_ = 0;   ///< time of the last byte that arrived while the module was busy
+  Microseconds free_ = 0;  ///< from this time on only requests can delay the next request
+  Microseconds busy_ = 0;  ///< time of the last byte that arrived while the module was busy
 };
 
 }  // namespace ex9000::judges

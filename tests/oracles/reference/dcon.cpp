@@ -3,6 +3,7 @@
 
 #include "tests/oracles/reference/dcon_check.hpp"
 #include "tests/oracles/reference/dcon_refusal.hpp"
+#include "tests/oracles/reference/extension_forms.hpp"
 #include "tests/oracles/reference/hexadecimal.hpp"
 #include "tests/oracles/reference/module.hpp"
 
@@ -24,7 +25,12 @@ std::string Module::first_second(unsigned outputs, unsigned inputs) const {
 
 /// Processes a frame from the delimiter to the character before CR. Returns no value if there is no reply.
 /// The line tallies count as function 08 does in Modbus: a reading includes the request that reads it.
-std::optional<std::string> Module::dcon_frame(std::string frame) {
+std::optional<std::string> Module::dcon_frame(std::string frame, bool spoiled) {
+  if (spoiled) {
+    rule("ASCII frame spoiled");
+    counts_.crc_errors += 1;
+    return std::nullopt;
+  }
   // wire.md 3: a frame has at most 32 characters.
   if (frame.size() > 32) {
     rule("ASCII frame too long");
@@ -86,6 +92,9 @@ std::optional<std::string> Module::dcon_frame(std::string frame) {
 }
 
 std::string Module::dcon_command(char delimiter, const std::string& body) {
+  if (refuses_extension(is_extension_command(delimiter, body))) {
+    throw Refused{"ASCII extension"};
+  }
   switch (delimiter) {
     case '%':
       return set_configuration(body);
@@ -113,8 +122,9 @@ std::string Module::set_configuration(const std::string& body) {
   if (type != 0x40 && type != 0x24) {  // wire.md E1
     throw Refused{"%AANNTTCCFF TT out of range"};
   }
-  if (baud_code < 0x03 || baud_code > 0x0A) {
-    throw Refused{"%AANNTTCCFF CC out of range"};
+  if (!baud_code_exists(baud_code)) {
+    throw Refused{baud_code < 0x40 ? "%AANNTTCCFF CC out of range"
+                                   : "%AANNTTCCFF CC with a line format out of range"};
   }
   if ((format & 0x3FU) != 0) {
     throw Refused{"%AANNTTCCFF FF out of range"};
@@ -125,9 +135,12 @@ std::string Module::set_configuration(const std::string& body) {
   }
   const bool checksum_differs = ((format ^ stored_.format) & 0x40U) != 0;
   if ((baud_code != stored_.baud_code || checksum_differs) && !permission()) {
-    throw Refused{"%AANNTTCCFF without permission"};
+    throw Refused{format_of(baud_code) != format_of(stored_.baud_code)
+                      ? "%AANNTTCCFF without permission for another line format"
+                      : "%AANNTTCCFF without permission"};
   }
   rule(type == 0x24 ? "%AANNTTCCFF with TT 24" : "%AANNTTCCFF");
+  rule(std::string("%AANNTTCCFF ") + name_of(format_of(baud_code)));
   stored_.address = address;
   stored_.baud_code = baud_code;
   stored_.format = format;

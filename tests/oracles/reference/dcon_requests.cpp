@@ -30,13 +30,17 @@ std::string noise(Random& random, unsigned longest) {
   return text;
 }
 
+/// Returns CC with a rate in or just out of range.
+std::string baud_code(const Module& module, Random& random) {
+  return hex(baud_code_with(random.between(0x02, 0x0B), module, random), 2);
+}
+
 std::string configuration(const Module& module, Random& random) {
   const Stored& stored = module.stored();
   std::string text = random.once_in(3) ? random.one_of<std::string>({"00", "01", "F7", "F8", "FF", "2A"})
                                        : hex(stored.address, 2);
   text += random.once_in(6) ? random.one_of<std::string>({"24", "24", "41", "00", "FF"}) : "40";
-  text +=
-      random.once_in(module.init_mode() ? 2 : 6) ? byte_text(random, 0x02, 0x0B) : hex(stored.baud_code, 2);
+  text += random.once_in(module.init_mode() ? 2 : 6) ? baud_code(module, random) : hex(stored.baud_code, 2);
   text += random.once_in(3) ? random.one_of<std::string>({"00", "40", "80", "C0", "C0", "01", "20", "60"})
                             : hex(stored.format ^ (random.once_in(3) ? 0x80U : 0U), 2);
   return text;
@@ -97,12 +101,24 @@ std::string extension(const Module& module, Random& random) {
   return hex(address, 4) + (random.once_in(3) ? hex(extension_content(module, address, random), 4) : "");
 }
 
+/// Returns the number of one of the cases in `command`. A module without extensions does not get theirs.
+unsigned kind_of_command(const Module& module, Random& random) {
+  constexpr unsigned kAll = 39;
+  constexpr unsigned kFirstExtension = 29;
+  constexpr unsigned kExtensions = 7;
+  if (module.has_extensions()) {
+    return random.below(kAll);
+  }
+  const unsigned kind = random.below(kAll - kExtensions);
+  return kind < kFirstExtension ? kind : kind + kExtensions;
+}
+
 /// Returns delimiter, address and body of a command, or of something similar to a command.
 std::string command(const Module& module, Random& random) {
   const std::string aa = hex(module.address(), 2);
   const std::string channel =
       random.once_in(8) ? digit(random) : hex(random.below(module.row().inputs > 8 ? 16 : 8), 1);
-  switch (random.below(39)) {
+  switch (kind_of_command(module, random)) {
     case 0:
     case 1:
       return "%" + aa + configuration(module, random);

@@ -32,16 +32,12 @@ ExtensionRow extension_row(const ModelRow& model, unsigned address) {
   return {Extension::None, "", 0, 0, false, false};
 }
 
-/// Returns the number of bytes with errors and of lost frames as 0, because a session has none.
+/// Returns the number of overruns and of lost frames as 0, because a session has none.
 unsigned Module::tally(unsigned index) const {
-  const unsigned tallies[] = {counts_.bus_messages,
-                              counts_.crc_errors,
-                              counts_.exceptions,
-                              counts_.server_messages,
-                              counts_.no_response,
-                              0,
-                              0,
-                              0};
+  const unsigned tallies[] = {counts_.bus_messages, counts_.crc_errors,
+                              counts_.exceptions,   counts_.server_messages,
+                              counts_.no_response,  0,
+                              counts_.bad_bytes,    0};
   return tallies[index];
 }
 
@@ -83,6 +79,9 @@ unsigned Module::extension_value(unsigned address) {
       return read_blank_memory_ ? 4 : 0;
     case Extension::Tallies:
       rule((runs_modbus_ ? "Modbus tally 0x" : "ASCII tally 0x") + hex(address, 4));
+      if (address == 0x030E && counts_.bad_bytes != 0) {
+        rule("0x030E reads bad bytes");
+      }
       return tally(address - row.first);
     default:
       return 0;  // not in the table

@@ -29,9 +29,21 @@ std::uint32_t pulses(const Module& module, Random& random) {
   return random.once_in(60) ? wraps - 2 + random.below(5) : random.between(1, 5);
 }
 
+/// Returns a line format whose bytes a module with `format` can tell from each other, and which has another
+/// parity.
+LineFormat another_format(LineFormat format, Random& random) {
+  const LineFormat other_parity = format == LineFormat::k8E1 ? LineFormat::k8O1 : LineFormat::k8E1;
+  const bool has_parity = format == LineFormat::k8E1 || format == LineFormat::k8O1;
+  return random.once_in(2) ? other_parity : has_parity ? LineFormat::k8N2 : LineFormat::k8O1;
+}
+
 }  // namespace
 
-std::vector<Step> first_steps(const ModelRow& row, Random& random) {
+unsigned baud_code_with(unsigned rate, const Module& module, Random& random) {
+  return rate | (!module.has_extensions() || random.once_in(2) ? 0U : random.below(4) << 6);
+}
+
+std::vector<Step> first_steps(const Module& module, Random& random) {
   if (random.once_in(2)) {
     return {};
   }
@@ -41,9 +53,9 @@ std::vector<Step> first_steps(const ModelRow& row, Random& random) {
   };
   std::vector<Step> steps = {Init{true}, Reset{}};
   steps.emplace_back(send("%00" + hex(random.between(0x01, 0xF7), 2) + "40" +
-                          hex(random.between(0x03, 0x0A), 2) +
+                          hex(baud_code_with(random.between(0x03, 0x0A), module, random), 2) +
                           random.one_of<std::string>({"00", "40", "80", "C0"})));
-  if (row.both_protocols) {
+  if (module.row().both_protocols) {
     steps.emplace_back(send(std::string("$00P") + random.one_of({'0', '1'})));
   }
   steps.emplace_back(Init{false});
@@ -85,6 +97,9 @@ Step next_step(const Module& module, Random& random) {
   const bool mistaken = module.row().both_protocols && random.once_in(100);
   Bytes bytes =
       module.runs_modbus() != mistaken ? modbus_request(module, random) : dcon_request(module, random);
+  if (random.once_in(60)) {
+    return SendInAnotherFormat{another_format(module.format(), random), std::move(bytes)};
+  }
   return Send{std::move(bytes), random.once_in(2)};
 }
 

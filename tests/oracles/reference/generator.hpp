@@ -1,5 +1,6 @@
 // Generates random steps for a session. They suit the current state of the reference module: its protocol,
-// address, checksum and model.
+// address, checksum and model. For a module without extensions, they contain no request that only the
+// extensions have, except by chance.
 #pragma once
 
 #include "tests/oracles/reference/random.hpp"
@@ -8,8 +9,8 @@
 namespace ex9000::reference {
 
 /// Returns the first steps of a session: either none, or the steps by which a person sets another address,
-/// baud rate, checksum and protocol through INIT*. Random steps alone seldom have this order.
-std::vector<Step> first_steps(const ModelRow& row, Random& random);
+/// baud rate, line format, checksum and protocol through INIT*. Random steps alone seldom have this order.
+std::vector<Step> first_steps(const Module& module, Random& random);
 
 /// Returns the next step, in most cases a request.
 Step next_step(const Module& module, Random& random);
@@ -17,6 +18,9 @@ Step next_step(const Module& module, Random& random);
 /// Returns a command with CR, and CHK before it if the module uses the checksum. Some commands have a
 /// mistake, or other bytes before them.
 Bytes dcon_request(const Module& module, Random& random);
+
+/// Returns a CC with this rate, in half of the cases with a random line format if the module has extensions.
+unsigned baud_code_with(unsigned rate, const Module& module, Random& random);
 
 /// Returns the address of an extension register, or one at which this model has none.
 unsigned extension_address(const Module& module, Random& random);

@@ -1,6 +1,7 @@
 // Modbus RTU of the reference, wire.md 7: whole frames and the dispatch to functions.
 #include <algorithm>
 
+#include "tests/oracles/reference/extension_forms.hpp"
 #include "tests/oracles/reference/hexadecimal.hpp"
 #include "tests/oracles/reference/modbus_check.hpp"
 #include "tests/oracles/reference/modbus_refusal.hpp"
@@ -23,17 +24,24 @@ bool known_function(const ModelRow& model, unsigned function) {
 /// Processes a complete frame of any content. Returns the reply with its CRC, or nothing. Function 08 counts
 /// as in Modbus Application Protocol V1.1b3, 6.8. If that specification is unclear, it follows Modbus over
 /// Serial Line V1.02: a frame too short for a CRC is a CRC error, and a broadcast is a message without
-/// response.
-Bytes Module::modbus_frame(Bytes frame) {
-  // A turn-around 00 before a frame does not invalidate it.
-  if (frame.size() > 4 && !crc_is_right(frame) && frame[0] == 0x00) {
+/// response. `bad`: which bytes have a line error.
+Bytes Module::modbus_frame(Bytes frame, std::vector<bool> bad) {
+  const auto spoiled = [&] { return std::find(bad.begin(), bad.end(), true) != bad.end(); };
+  // A turn-around 00 before a frame, with or without a line error, does not invalidate it.
+  if (frame.size() > 4 && (spoiled() || !crc_is_right(frame)) && frame[0] == 0x00) {
     if (frame.size() > 256) {
       left_open_ = "whether a frame of 256 bytes may have a turn-around 00 before it";
     }
     frame.erase(frame.begin());
-    if (crc_is_right(frame)) {
+    bad.erase(bad.begin());
+    if (crc_is_right(frame) && !spoiled()) {
       rule("turn-around 00 before a Modbus frame");
     }
+  }
+  if (spoiled()) {
+    rule("Modbus frame spoiled");
+    counts_.crc_errors += 1;
+    return {};
   }
   // A frame has 4 to 256 bytes.
   if (frame.size() < 4) {
@@ -100,6 +108,9 @@ Bytes Module::modbus_frame(Bytes frame) {
 
 Bytes Module::modbus_function(const Bytes& frame) {
   const unsigned function = frame[1];
+  if (refuses_extension(is_extension_function(frame))) {
+    throw Exception{0x02, "Modbus extension"};
+  }
   if (!known_function(row_, function)) {
     throw Exception{0x01, function == 0x02 ? "FC02 lacking" : "unknown function"};
   }

@@ -334,8 +334,9 @@ void Module::judge_registers(unsigned first, const std::vector<unsigned>& values
         }
         break;
       case 0x01E5:
-        if (value < 0x03 || value > 0x0A) {
-          throw Exception{0x03, "register 0x01E5 03"};
+        if (!baud_code_exists(value)) {
+          throw Exception{0x03, value < 0x40 || value > 0xFF ? "register 0x01E5 03"
+                                                             : "register 0x01E5 03 with a line format"};
         }
         break;
       case 0x01E8:
@@ -365,6 +366,7 @@ void Module::set_registers(unsigned first, const std::vector<unsigned>& values) 
         stored_.address = values[i];  // takes effect at the next reset
         break;
       case 0x01E5:
+        rule(std::string("register 0x01E5 ") + name_of(format_of(values[i])));
         stored_.baud_code = values[i];  // takes effect at the next reset
         break;
       case 0x01E8:

@@ -18,7 +18,10 @@ unsigned coil_address(const Module& module, Random& random) {
     case 0:
       return random.one_of({0x0100U, 0x0104U, 0x0104U, 0x0107U, 0x010DU});
     case 1:
-      return module.row().inputs != 0 ? random.one_of({0x0107U, 0x08CAU}) : random.one_of({0x0104U, 0x010DU});
+      if (module.row().inputs == 0) {
+        return random.one_of({0x0104U, 0x010DU});
+      }
+      return module.has_extensions() ? random.one_of({0x0107U, 0x08CAU}) : 0x0107U;
     case 2:
       return random.one_of({0x00FFU, 0x0101U, 0x0103U, 0x0105U, 0x0106U, 0x0108U, 0x010CU, 0x010EU, 0x08C9U,
                             0x08CBU, 0xFFFFU});
@@ -59,7 +62,10 @@ unsigned register_address(const Module& module, Random& random) {
     case 7:
     case 8:
     case 9:
-      return extension_address(module, random);
+      if (module.has_extensions()) {
+        return extension_address(module, random);
+      }
+      [[fallthrough]];
     default:
       return random.one_of({0x01E2U, 0x01E3U, 0x01E4U, 0x01E5U, 0x01E8U, 0x01E8U});
   }
@@ -86,6 +92,9 @@ unsigned register_content(unsigned address, const Module& module, Random& random
   if (address == 0x01E8 && random.once_in(4)) {
     return 0;
   }
+  if (module.has_extensions() && address == 0x01E5 && random.once_in(8)) {
+    return random.one_of({0x40U, 0x42U, 0x4BU, 0x80U, 0x82U, 0x8BU, 0xC0U, 0xC2U, 0xCBU, 0x0143U, 0x8006U});
+  }
   if (random.once_in(5)) {
     return random.one_of({0U, 1U, 2U, 3U, 0x0AU, 0x0BU, 247U, 248U, 255U, 256U, 0xFFFFU, 0x0103U});
   }
@@ -93,8 +102,10 @@ unsigned register_content(unsigned address, const Module& module, Random& random
     case 0x01E4:
       return random.once_in(2) ? module.stored().address : random.between(1, 247);
     case 0x01E5:
-      return random.once_in(2) ? module.stored().baud_code
-                               : random.one_of({3U, 4U, 5U, 6U, 7U, 8U, 9U, 0x0AU, 0x0AU, 0x0AU});
+      return random.once_in(2)
+                 ? module.stored().baud_code
+                 : baud_code_with(random.one_of({3U, 4U, 5U, 6U, 7U, 8U, 9U, 0x0AU, 0x0AU, 0x0AU}), module,
+                                  random);
     default:
       return random.between(1, 24);
   }

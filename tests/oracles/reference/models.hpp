@@ -6,6 +6,14 @@
 
 namespace ex9000::reference {
 
+/// Whether a module has the extensions of wire.md 12.
+enum class Extensions {
+  Present,
+  /// The module has only what the manuals describe. For a request that only the extensions have, the answer
+  /// is left open, because the firmware always has them.
+  Absent,
+};
+
 /// One row of the table of models.
 struct ModelRow {
   const char* designation;
@@ -17,6 +25,8 @@ struct ModelRow {
   unsigned longest_name;  ///< 7 on the -M models of the 9068, wire.md E5
   std::uint16_t code;     ///< Modbus module code; 0 without Modbus
   const char* in_words;   ///< object 04 of function 2B
+  /// Neither a model of the manuals nor named in their parameter tables; it came with the extensions.
+  bool extension = false;
 };
 
 constexpr ModelRow kModelRows[] = {
@@ -29,13 +39,13 @@ constexpr ModelRow kModelRows[] = {
     {"EX9068D-M", 0, 8, true, false, "9068D-M", 7, 0x9068, "8 relay outputs"},
     {"EX9068AD-M", 0, 8, true, false, "9068D-M", 7, 0x9068, "8 PhotoMOS outputs"},
     {"EX9044D", 4, 8, false, false, "9044", 6, 0, ""},
-    {"EX9044D-M", 4, 8, true, false, "9044M", 6, 0x9044, "4 inputs, 8 open-collector outputs"},
+    {"EX9044D-M", 4, 8, true, false, "9044M", 6, 0x9044, "4 inputs, 8 open-collector outputs", true},
     {"EX9050D", 7, 8, false, false, "9050", 6, 0, ""},
-    {"EX9053D", 16, 0, false, true, "9053", 6, 0, ""},
-    {"EX9053D-M", 16, 0, true, true, "9053M", 6, 0x9053, "16 inputs with latches and counters"},
+    {"EX9053D", 16, 0, false, true, "9053", 6, 0, "", true},
+    {"EX9053D-M", 16, 0, true, true, "9053M", 6, 0x9053, "16 inputs with latches and counters", true},
     {"EX9055D", 8, 8, false, false, "9055", 6, 0, ""},
     {"EX9060D", 4, 4, false, false, "9060", 6, 0, ""},
-    {"EX9060D-M", 4, 4, true, false, "9060M", 6, 0x9060, "4 inputs, 4 relay outputs"},
+    {"EX9060D-M", 4, 4, true, false, "9060M", 6, 0x9060, "4 inputs, 4 relay outputs", true},
     {"EX9063D", 8, 3, false, false, "9063", 6, 0, ""},
     {"EX9065D", 4, 5, false, false, "9065", 6, 0, ""},
     {"EX9066D", 0, 7, false, false, "9066", 6, 0, ""},

@@ -1,4 +1,4 @@
-// Power, inputs and watchdog of the reference: wire.md 2, 5 and 6.
+// Power, watchdog, timed outputs and whole requests of the reference: wire.md 2, 3, 6 and 12.
 #include "tests/oracles/reference/module.hpp"
 
 #include <algorithm>
@@ -9,9 +9,6 @@ namespace ex9000::reference {
 namespace {
 
 constexpr std::chrono::milliseconds kTimeoutUnit{100};  // wire.md 6: VV x 0.1 s
-/// wire.md 3: the reply starts at most 200 ms after a request that stores a setting. A Modbus frame ends up
-/// to 32 ms after its last byte.
-constexpr std::chrono::milliseconds kLongestStore{232};
 /// One tick, and the time until the module executes a received request.
 constexpr std::chrono::milliseconds kTick{3};
 /// The silence that ends a frame, wire.md 7, at 1200 baud. A host OK stores nothing.
@@ -22,11 +19,58 @@ auto members(const Stored& s) {
                   s.timeout, s.timed_out, s.restarted_by_requests, s.delay, s.filters, s.inversion);
 }
 
+/// Returns the level behind the data bits: the parity bit, or the first stop bit.
+bool ninth_bit(std::uint8_t byte, LineFormat format) {
+  unsigned ones = 0;
+  for (unsigned bit = 0; bit < 8; ++bit) {
+    ones += byte >> bit & 1U;
+  }
+  switch (format) {
+    case LineFormat::k8E1:
+      return ones % 2 != 0;
+    case LineFormat::k8O1:
+      return ones % 2 == 0;
+    default:
+      return true;
+  }
+}
+
 }  // namespace
+
+bool baud_code_exists(unsigned code) {
+  constexpr unsigned kFirst[] = {0x03, 0x43, 0x83, 0xC3};
+  constexpr unsigned kLast[] = {0x0A, 0x4A, 0x8A, 0xCA};
+  for (unsigned format = 0; format < 4; ++format) {
+    if (code >= kFirst[format] && code <= kLast[format]) {
+      return true;
+    }
+  }
+  return false;
+}
+
+LineFormat format_of(unsigned baud_code) {
+  return baud_code >= 0xC3   ? LineFormat::k8O1
+         : baud_code >= 0x83 ? LineFormat::k8E1
+         : baud_code >= 0x43 ? LineFormat::k8N2
+                             : LineFormat::k8N1;
+}
+
+const char* name_of(LineFormat format) {
+  switch (format) {
+    case LineFormat::k8N1:
+      return "8N1";
+    case LineFormat::k8N2:
+      return "8N2";
+    case LineFormat::k8E1:
+      return "8E1";
+    default:
+      return "8O1";
+  }
+}
 
 bool operator==(const Stored& a, const Stored& b) { return members(a) == members(b); }
 
-Module::Module(const ModelRow& row) : row_(row) {
+Module::Module(const ModelRow& row, Extensions extensions) : row_(row), extensions_(extensions) {
   // wire.md 2, factory settings.
   stored_.modbus = row.both_protocols;
   stored_.name = row.name;
@@ -35,7 +79,7 @@ Module::Module(const ModelRow& row) : row_(row) {
 unsigned Module::rate() const {
   // The baud rates of CC: README, DCON commands.
   constexpr unsigned kRates[] = {1200, 2400, 4800, 9600, 19200, 38400, 57600, 115200};
-  return kRates[baud_code_ - 3];
+  return kRates[baud_code_ % 0x40 - 3];
 }
 
 bool Module::waits_for_reset() const {
@@ -64,8 +108,8 @@ void Module::reset(Time now) {
 }
 
 void Module::come_up(Time now) {
-  // wire.md 2: INIT* is sampled only at reset. If asserted, the module uses ASCII, address 00, 9600 baud and
-  // no checksum.
+  // wire.md 2: INIT* is sampled only at reset. If asserted, the module uses ASCII, address 00, 9600 baud,
+  // 8N1 and no checksum.
   init_mode_ = init_asserted_;
   runs_modbus_ = !init_mode_ && stored_.modbus;
   address_ = init_mode_ ? 0x00 : stored_.address;
@@ -73,6 +117,7 @@ void Module::come_up(Time now) {
   checksum_ = !init_mode_ && (stored_.format & 0x40) != 0;
   counts_rising_ = (stored_.format & 0x80) != 0;
   rule(init_mode_ ? "reset into INIT mode" : runs_modbus_ ? "reset into Modbus" : "reset into ASCII");
+  rule(std::string("reset into ") + name_of(format()));
   outputs_ = stored_.timed_out ? stored_.safe : stored_.power_on;
   rule(stored_.timed_out ? "reset to the safe value" : "reset to the power-on value");
   end_timed_outputs("reset");
@@ -86,6 +131,7 @@ void Module::come_up(Time now) {
   sample_.reset();
   framing_ = Framing::Nothing;
   frame_.clear();
+  spoiled_ = false;
   counts_ = {};
   came_up_ = now;
   timeouts_ = 0;
@@ -110,92 +156,6 @@ unsigned Module::seconds_since_reset() {
     left_open_ = "the time of the reset is known to 0.1 s, and the request may wait for a store";
   }
   return static_cast<unsigned>(least.count());
-}
-
-// --- wire.md 5 ---
-
-void Module::set_input(unsigned channel, bool level, Time now) {
-  if (channel >= row_.inputs || ((terminals_ >> channel & 1U) != 0) == level) {
-    return;
-  }
-  terminals_ ^= 1U << channel;
-  last_edges_[channel] = now;
-  if (!powered_) {
-    return;
-  }
-  if (stored_.filters[channel] == 0) {
-    take_level(channel);
-  } else if (settling_[channel]) {
-    rule("level too short for the input filter");
-    settling_[channel].reset();
-  } else {
-    const Time settled = now + std::chrono::milliseconds(stored_.filters[channel]);
-    settling_[channel] = Moment{settled, settled};
-  }
-}
-
-void Module::pulse_input(unsigned channel, std::uint32_t count, Time now) {
-  if (!powered_ || channel >= row_.inputs || count == 0) {
-    return;
-  }
-  last_edges_[channel] = now;
-  if (stored_.filters[channel] == 0) {
-    // A pulse goes to the other level and back, so it has as many rising as falling edges.
-    edge(channel, true, count);
-    edge(channel, false, count);
-  } else if (settling_[channel]) {
-    rule("pulse restarts the time of the input filter");
-    const Time settled = now + std::chrono::milliseconds(stored_.filters[channel]);
-    settling_[channel] = Moment{settled, settled};
-  } else {
-    rule("pulse too short for the input filter");
-  }
-}
-
-/// Makes the raw level the level that counts.
-void Module::take_level(unsigned channel) {
-  levels_ ^= 1U << channel;
-  edge(channel, (levels_ >> channel & 1U) != 0, 1);
-}
-
-/// A new time of a filter applies from the last edge at the terminal. If it is over already, the level counts
-/// as soon as the time is stored, which may have to wait for the store of a timeout.
-void Module::set_filter(unsigned channel, unsigned milliseconds) {
-  if (settling_[channel] && milliseconds != stored_.filters[channel]) {
-    const Time settled = last_edges_[channel] + std::chrono::milliseconds(milliseconds);
-    rule(settled <= now_ ? "new time of the input filter is over" : "new time of the input filter runs");
-    settling_[channel] = Moment{std::max(now_, settled), std::max(now_ + 2 * kLongestStore, settled)};
-  }
-  stored_.filters[channel] = milliseconds;
-}
-
-/// Raw levels and the levels that count change together, so that there is no edge.
-void Module::set_inversion(unsigned inversion) {
-  rule(inversion == stored_.inversion ? "inversion stays" : "inversion changes");
-  levels_ ^= inversion ^ stored_.inversion;
-  stored_.inversion = inversion;
-}
-
-void Module::edge(unsigned channel, bool rising, std::uint32_t count) {
-  (rising ? latch_high_ : latch_low_) |= 1U << channel;
-  if (rising == counts_rising_) {
-    const std::uint64_t edges = std::uint64_t{counters_[channel]} + count;
-    if (edges >= counter_modulus()) {
-      rule(runs_modbus_ ? "counter wraps after 65535" : "counter wraps after 99999");
-    }
-    counters_[channel] = static_cast<std::uint32_t>(edges % counter_modulus());
-    wide_counters_[channel] += count;
-  }
-}
-
-void Module::clear_counter(unsigned channel) {
-  counters_[channel] = 0;
-  wide_counters_[channel] = 0;
-}
-
-void Module::clear_latches() {
-  latch_high_ = 0;
-  latch_low_ = 0;
 }
 
 // --- wire.md 6 ---
@@ -315,15 +275,6 @@ std::vector<Module::Moment> Module::moments() const {
   return moments;
 }
 
-std::optional<unsigned> Module::settling_input() const {
-  for (unsigned channel = 0; channel < row_.inputs; ++channel) {
-    if (settling_[channel]) {
-      return channel;
-    }
-  }
-  return std::nullopt;
-}
-
 void Module::pass(Time now) {
   if (powered_ && expiry_ && now > expiry_->latest) {
     rule(stored_.timed_out ? "host watchdog expires again" : "host watchdog expires");
@@ -355,7 +306,7 @@ void Module::pass(Time now) {
 
 // --- whole requests ---
 
-Answer Module::on_request(const Bytes& bytes, Time now) {
+Answer Module::on_bytes(const Bytes& bytes, LineFormat sent_in, Time now) {
   Answer answer;
   if (!powered_) {
     return answer;
@@ -366,18 +317,30 @@ Answer Module::on_request(const Bytes& bytes, Time now) {
   left_open_ = nullptr;
   const Stored before = stored_;
   const bool delayed = reply_delay() != Time(0);
+  // A byte is bad if its parity bit is wrong, or if the parity bit of the master is at the place of the stop
+  // bit and low.
+  std::vector<bool> bad;
+  for (const std::uint8_t byte : bytes) {
+    bad.push_back(ninth_bit(byte, sent_in) != ninth_bit(byte, format()));
+    counts_.bad_bytes += bad.back() ? 1U : 0U;
+  }
   if (runs_modbus_) {
-    answer.reply = modbus_frame(bytes);
+    answer.reply = modbus_frame(bytes, bad);
   } else {
     // wire.md 3: the first delimiter, or the first lead of a reply, decides. A CR ends any frame.
     for (std::size_t i = 0; i < bytes.size(); ++i) {
       const char character = static_cast<char>(bytes[i]);
       // If one of several frames restarts the host watchdog, the restart happens at the end of that frame.
-      now_ = now - Time((bytes.size() - 1 - i) * 10 * 1'000'000'000ULL / rate());
+      now_ = now - Time((bytes.size() - 1 - i) * character_bits(sent_in) * 1'000'000'000ULL / rate());
       if (!answer.reply.empty()) {
         left_open_ = "the effect of bytes that arrive while the module answers depends on its timing";
       }
-      if (framing_ == Framing::Nothing) {
+      if (bad[i]) {
+        // It is noise where no frame is open, and spoils an open one. A CR with a line error is not a CR.
+        rule(framing_ == Framing::Nothing ? "bad byte outside an ASCII frame" : "bad byte in an ASCII frame");
+        spoiled_ = true;
+      } else if (framing_ == Framing::Nothing) {
+        spoiled_ = false;
         if (std::string("#$%@~").find(character) != std::string::npos) {
           framing_ = Framing::Open;
           frame_ = character;
@@ -391,7 +354,7 @@ Answer Module::on_request(const Bytes& bytes, Time now) {
         const bool judged = framing_ == Framing::Open;
         framing_ = Framing::Nothing;
         if (judged) {
-          const std::optional<std::string> reply = dcon_frame(frame_);
+          const std::optional<std::string> reply = dcon_frame(frame_, spoiled_);
           if (reply) {
             answer.reply.assign(reply->begin(), reply->end());
           }

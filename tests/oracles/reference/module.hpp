@@ -1,7 +1,7 @@
 // A second implementation of a module, written from the specification alone and as simply as possible: it
 // takes whole frames and returns whole frames, has no interrupts, and stores settings at once. It shares no
-// code with the firmware. If both agree on a random session, two independent readings of the specification
-// agree. Section, E and D numbers refer to wire.md.
+// code with the firmware, except the names of the line formats. If both agree on a random session, two
+// independent readings of the specification agree. Section, E and D numbers refer to wire.md.
 #pragma once
 
 #include <array>
@@ -12,6 +12,7 @@
 #include <utility>
 #include <vector>
 
+#include "firmware/model/line_format.hpp"
 #include "tests/oracles/reference/models.hpp"
 
 namespace ex9000::reference {
@@ -21,14 +22,26 @@ using Bytes = std::vector<std::uint8_t>;
 using Time = std::chrono::nanoseconds;
 /// wire.md 2: the longest time from power-on or reset until the module listens.
 inline constexpr std::chrono::milliseconds kComingUp{100};
+/// wire.md 3: the reply starts at most 200 ms after a request that stores a setting. A Modbus frame ends up
+/// to 32 ms after its last byte.
+inline constexpr std::chrono::milliseconds kLongestStore{232};
 /// wire.md, extensions: the longest response delay, in ms.
 inline constexpr unsigned kLongestDelay = 0x1E;
+
+/// Returns the number of bits of a character: wire.md, extensions.
+constexpr unsigned character_bits(LineFormat format) { return format == LineFormat::k8N1 ? 10 : 11; }
+/// Returns whether CC exists: a rate and a line format.
+bool baud_code_exists(unsigned code);
+/// Returns the line format of a CC that exists.
+LineFormat format_of(unsigned baud_code);
+/// Returns the line format as a transcript names it.
+const char* name_of(LineFormat format);
 
 /// wire.md 8: the values that survive a power failure.
 struct Stored {
   unsigned address = 0x01;
-  unsigned baud_code = 0x06;
-  unsigned format = 0x00;  ///< bit 7: rising edges are counted; bit 6: checksum
+  unsigned baud_code = 0x06;  ///< bits 5:0: the rate; bits 7:6: the line format
+  unsigned format = 0x00;     ///< bit 7: rising edges are counted; bit 6: checksum
   bool modbus = false;
   std::string name;
   unsigned power_on = 0;    ///< bit n is channel n
@@ -57,7 +70,7 @@ struct Answer {
 /// A module. Its supply is off at first.
 class Module {
  public:
-  explicit Module(const ModelRow& row);
+  explicit Module(const ModelRow& row, Extensions extensions = Extensions::Present);
 
   // --- events ---
 
@@ -75,7 +88,10 @@ class Module {
   void set_input(unsigned channel, bool level, Time now);
   void pulse_input(unsigned channel, std::uint32_t count, Time now);
   /// Processes all bytes that the master has sent. The last byte ended at `now`, and a silence follows.
-  Answer on_request(const Bytes& bytes, Time now);
+  Answer on_request(const Bytes& bytes, Time now) { return on_bytes(bytes, format(), now); }
+  /// Like `on_request`, for a master that uses another line format. If the module has parity, `sent_in` must
+  /// not be 8N1: without a gap between them, such bytes have no defined end for the module.
+  Answer on_bytes(const Bytes& bytes, LineFormat sent_in, Time now);
   /// Call this when the first byte of the reply to the last request began at `now`. All effects of the
   /// request are complete by then.
   void replied(Time now);
@@ -93,6 +109,7 @@ class Module {
   /// Returns whether the LED flashes: it does while the timeout status is set (wire.md 6).
   [[nodiscard]] bool led_flashes() const { return stored_.timed_out; }
   [[nodiscard]] unsigned rate() const;
+  [[nodiscard]] LineFormat format() const { return format_of(baud_code_); }
   /// Returns the response delay that applies to the next request: its reply starts no earlier than this after
   /// the last stop bit. It is 0 in INIT mode.
   [[nodiscard]] Time reply_delay() const { return std::chrono::milliseconds(init_mode_ ? 0 : stored_.delay); }
@@ -105,6 +122,7 @@ class Module {
   [[nodiscard]] bool waits_for_reset() const;
   [[nodiscard]] const Stored& stored() const { return stored_; }
   [[nodiscard]] const ModelRow& row() const { return row_; }
+  [[nodiscard]] bool has_extensions() const { return extensions_ == Extensions::Present; }
   /// Returns whether the module has received the beginning of a frame but not its end.
   [[nodiscard]] bool frame_open() const { return framing_ != Framing::Nothing; }
 
@@ -124,6 +142,13 @@ class Module {
 
  private:
   void rule(const std::string& rule) { rules_.push_back(rule); }
+  /// Returns whether this module refuses the request because it does not have the extension that the request
+  /// requires, and leaves the answer open in this case. `needed`: whether it requires an extension.
+  bool refuses_extension(bool needed) {
+    const bool refuses = needed && !has_extensions();
+    left_open_ = refuses ? "only a module with extensions has this request" : left_open_;
+    return refuses;
+  }
 
   // wire.md 2
   void come_up(Time now);
@@ -152,7 +177,7 @@ class Module {
 
   // wire.md 3 and 4, dcon.cpp
   enum class Framing { Nothing, Open, ToTheCr };
-  std::optional<std::string> dcon_frame(std::string frame);
+  std::optional<std::string> dcon_frame(std::string frame, bool spoiled);
   std::string dcon_command(char delimiter, const std::string& body);
   std::string set_configuration(const std::string& body);
   std::string hash_command(const std::string& body);
@@ -168,7 +193,7 @@ class Module {
   [[nodiscard]] bool permission() const { return init_mode_ || init_asserted_; }
 
   // wire.md 7, modbus.cpp
-  Bytes modbus_frame(Bytes frame);
+  Bytes modbus_frame(Bytes frame, std::vector<bool> bad);
   Bytes modbus_function(const Bytes& frame);
   Bytes read_bits(const Bytes& frame);
   Bytes read_registers(const Bytes& frame);
@@ -198,6 +223,7 @@ class Module {
   std::string extension_command(const std::string& body);
 
   const ModelRow& row_;
+  Extensions extensions_;
   std::vector<std::string> rules_;
   Stored stored_;
   bool blank_memory_ = true;  ///< nothing has been stored yet
@@ -231,6 +257,7 @@ class Module {
   std::optional<Sample> sample_;
   Framing framing_ = Framing::Nothing;
   std::string frame_;
+  bool spoiled_ = false;  ///< a byte of `frame_` had a line error
   /// The counters of function 08, and their counterparts in ASCII.
   struct Counts {
     unsigned bus_messages = 0;
@@ -238,6 +265,7 @@ class Module {
     unsigned exceptions = 0;
     unsigned server_messages = 0;
     unsigned no_response = 0;
+    unsigned bad_bytes = 0;
   } counts_;
   std::optional<Moment> expiry_;
   Time came_up_{0};                 ///< the earliest time of the last reset

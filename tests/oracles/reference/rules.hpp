@@ -6,12 +6,15 @@
 #include <string>
 #include <vector>
 
+#include "tests/oracles/reference/models.hpp"
+
 namespace ex9000::reference {
 
 /// Counts how often each rule of a fixed list was reached, so that a rule that no session reaches is found.
 class Rules {
  public:
-  Rules();
+  /// Without extensions, the list has only the rules of what the manuals describe.
+  explicit Rules(Extensions extensions = Extensions::Present);
 
   /// Throws std::logic_error if `rule` is not in the list.
   void reached(const std::string& rule);
@@ -19,9 +22,10 @@ class Rules {
   [[nodiscard]] std::vector<std::string> missing() const;
   /// Returns the list as text: on each line a rule and how often it was reached.
   [[nodiscard]] std::string table() const;
-  [[nodiscard]] std::size_t size() const { return counts_.size(); }
+  [[nodiscard]] std::size_t size() const { return list_.size(); }
 
  private:
+  std::vector<const char*> list_;
   std::map<std::string, std::uint64_t> counts_;
 };
 

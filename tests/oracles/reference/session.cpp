@@ -53,7 +53,7 @@ std::string hex_of(const Bytes& bytes) {
 
 }  // namespace
 
-Session::Session(const ModelRow& row) : reference_(row) {
+Session::Session(const ModelRow& row, Extensions extensions) : reference_(row, extensions) {
   target_.start(sim::model_called(row.designation), nullptr);
   reference_.power(true, target_.now() - kComingUp);
   lines_.emplace_back("source: a random session");
@@ -94,7 +94,7 @@ bool Session::stored() {
   return !(storing || target_.now() < timeout_stored_) || listen(kStored);
 }
 
-/// Sets the master to the baud rate and checksum of the reference.
+/// Sets the master to the baud rate, line format and checksum of the reference.
 bool Session::follow() {
   if (reference_.rate() != rate_) {
     if (!nothing_more()) {
@@ -104,11 +104,21 @@ bool Session::follow() {
     lines_.push_back("baud " + std::to_string(rate_));
     target_.set_baud(rate_);
   }
+  if (reference_.format() != format_) {
+    format_ = reference_.format();
+    set_format(format_);
+  }
   if (reference_.checksum() != checksum_) {
     checksum_ = reference_.checksum();
     lines_.emplace_back(checksum_ ? "checksum on" : "checksum off");
   }
   return true;
+}
+
+/// Sets the line format of the master. This takes no time.
+void Session::set_format(LineFormat format) {
+  lines_.push_back(std::string("format ") + name_of(format));
+  target_.set_format(format);
 }
 
 /// Lets a short time pass that the transcript does not mention, and checks that nothing is sent.
@@ -189,8 +199,17 @@ bool Session::compare() {
          differs(names[static_cast<unsigned>(expected)], names[static_cast<unsigned>(led)]);
 }
 
-/// Returns the time that bytes take on the line, with ten bits each.
-Time Session::takes(std::size_t bytes) const { return Time(bytes * 10 * 1'000'000'000ULL / rate_); }
+/// Returns the time that bytes take on the line.
+Time Session::takes(std::size_t bytes, LineFormat format) const {
+  return Time(bytes * character_bits(format) * 1'000'000'000ULL / rate_);
+}
+
+/// Returns the time from the first start bit of a reply until the master has heard it: the end of the first
+/// stop bit of the last byte.
+Time Session::heard_in(std::size_t bytes) const {
+  const unsigned second_stop_bit = format_ == LineFormat::k8N2 ? 1 : 0;
+  return Time((bytes * character_bits(format_) - second_stop_bit) * 1'000'000'000ULL / rate_);
+}
 
 bool Session::play_step(const Send& send) {
   // wire.md 7: a Modbus frame ends, and a reply starts, after 3.5 characters of 11 bits, or after 1.75 ms
@@ -253,7 +272,7 @@ bool Session::play_step(const Send& send) {
     return differs(reply_line(answer.reply), reply_line(heard));
   }
   lines_.push_back(reply_line(answer.reply));
-  const Time began = target_.now() - takes(heard.size());
+  const Time began = target_.now() - heard_in(heard.size());
   reference_.replied(began);
   const auto microseconds = [](Time time) {
     return std::to_string(std::chrono::duration_cast<std::chrono::microseconds>(time).count()) + " us";
@@ -266,6 +285,28 @@ bool Session::play_step(const Send& send) {
                    "after " + microseconds(after));
   }
   return true;
+}
+
+bool Session::play_step(const SendInAnotherFormat& send) {
+  if (!settle(takes(send.bytes.size(), send.format) + kNoAnswer + kStored + kBetween)) {
+    return false;
+  }
+  Module trial = reference_;
+  const Answer answer = trial.on_bytes(send.bytes, send.format,
+                                       target_.now() + kBetween + takes(send.bytes.size(), send.format));
+  if (answer.left_open != nullptr || !answer.reply.empty()) {
+    ++left_open_;  // the module hears some bytes nevertheless, but the master cannot read the reply
+    return true;
+  }
+  if (!listen(kBetween)) {
+    return false;
+  }
+  set_format(send.format);
+  lines_.push_back("bytes " + hex_of(send.bytes));
+  target_.send(send.bytes);
+  set_format(format_);
+  const bool stores = reference_.on_bytes(send.bytes, send.format, target_.now()).stores;
+  return listen(stores ? kStored : kNoAnswer);
 }
 
 bool Session::play_step(const Wait& wait) { return listen(wait.time); }
@@ -372,20 +413,20 @@ std::string Session::reply_line(const Bytes& bytes) const {
 
 namespace {
 
-bool makes_a_difference(const ModelRow& row, const std::vector<Step>& steps) {
-  Session session(row);
+bool makes_a_difference(const ModelRow& row, const std::vector<Step>& steps, Extensions extensions) {
+  Session session(row, extensions);
   return !std::all_of(steps.begin(), steps.end(), [&](const Step& step) { return session.play(step); });
 }
 
 }  // namespace
 
-std::vector<Step> shrink(const ModelRow& row, std::vector<Step> steps) {
+std::vector<Step> shrink(const ModelRow& row, std::vector<Step> steps, Extensions extensions) {
   for (std::size_t size = steps.size() / 2; size != 0; size /= 2) {
     for (std::size_t at = 0; at + size <= steps.size();) {
       std::vector<Step> fewer = steps;
       const auto from = fewer.begin() + static_cast<std::ptrdiff_t>(at);
       fewer.erase(from, from + static_cast<std::ptrdiff_t>(size));
-      if (makes_a_difference(row, fewer)) {
+      if (makes_a_difference(row, fewer, extensions)) {
         steps = std::move(fewer);
       } else {
         at += size;
@@ -395,8 +436,8 @@ std::vector<Step> shrink(const ModelRow& row, std::vector<Step> steps) {
   return steps;
 }
 
-std::string transcript_of(const ModelRow& row, const std::vector<Step>& steps) {
-  Session session(row);
+std::string transcript_of(const ModelRow& row, const std::vector<Step>& steps, Extensions extensions) {
+  Session session(row, extensions);
   std::all_of(steps.begin(), steps.end(), [&](const Step& step) { return session.play(step); });
   return session.transcript();
 }

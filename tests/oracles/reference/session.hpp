@@ -15,11 +15,18 @@
 
 namespace ex9000::reference {
 
-/// The master sends these bytes without a gap, at the baud rate of the reference. A silence follows.
+/// The master sends these bytes without a gap, at the baud rate and in the line format of the reference. A
+/// silence follows.
 struct Send {
   Bytes bytes;
   /// If the request gets no answer, the next request may follow while the module is still storing.
   bool next_may_follow_at_once = false;
+};
+/// The master sends these bytes with another parity than the module has, and then uses the module's line
+/// format again.
+struct SendInAnotherFormat {
+  LineFormat format;
+  Bytes bytes;
 };
 struct Wait {
   std::chrono::milliseconds time;
@@ -44,14 +51,15 @@ struct Pulse {
   std::uint32_t count;
 };
 
-using Step = std::variant<Send, Wait, WaitForExpiry, Reset, Power, Init, Input, Pulse>;
+using Step = std::variant<Send, SendInAnotherFormat, Wait, WaitForExpiry, Reset, Power, Init, Input, Pulse>;
 
-/// Plays steps on a firmware module and on a reference module, from factory settings. When a result could
+/// Plays steps on a firmware module and on a reference module, from factory settings. `extensions`: those of
+/// the reference module; the firmware always has them. When a result could
 /// depend on the exact time at which the module changes by itself, for example because the host watchdog
 /// expires, the session waits, because that time is specified to a tick, not to a nanosecond.
 class Session {
  public:
-  explicit Session(const ModelRow& row);
+  explicit Session(const ModelRow& row, Extensions extensions = Extensions::Present);
 
   /// Plays a step on both modules and compares reply, outputs and LED. Returns false if they differ; the last
   /// lines of the transcript describe the difference. Does not send a request whose answer the specification
@@ -74,6 +82,7 @@ class Session {
 
  private:
   bool play_step(const Send& send);
+  bool play_step(const SendInAnotherFormat& send);
   bool play_step(const Wait& wait);
   bool play_step(const WaitForExpiry& wait);
   bool play_step(const Reset& reset);
@@ -89,11 +98,14 @@ class Session {
   bool listen(std::chrono::milliseconds time);
   bool differs(const std::string& expected, const std::string& got);
   bool follow();
+  void set_format(LineFormat format);
   bool nothing_more();
   [[nodiscard]] std::string lacking(unsigned channel) const;
   [[nodiscard]] std::string sent_line(const Bytes& bytes) const;
   [[nodiscard]] std::string reply_line(const Bytes& bytes) const;
-  [[nodiscard]] Time takes(std::size_t bytes) const;
+  [[nodiscard]] Time takes(std::size_t bytes) const { return takes(bytes, format_); }
+  [[nodiscard]] Time takes(std::size_t bytes, LineFormat format) const;
+  [[nodiscard]] Time heard_in(std::size_t bytes) const;
 
   Module reference_;
   runner::CoreTarget target_;
@@ -104,6 +116,7 @@ class Session {
   /// The time by which the latest timeout status has been stored, independently of later requests.
   Time timeout_stored_{0};
   unsigned rate_ = 9600;
+  LineFormat format_ = LineFormat::k8N1;
   bool checksum_ = false;
   std::vector<std::string> lines_;
   std::vector<std::string> rules_;
@@ -115,9 +128,9 @@ class Session {
 
 /// Removes steps as long as the rest still makes the two modules differ, and returns the rest. `steps` must
 /// make them differ.
-std::vector<Step> shrink(const ModelRow& row, std::vector<Step> steps);
+std::vector<Step> shrink(const ModelRow& row, std::vector<Step> steps, Extensions extensions);
 
 /// Returns the transcript of these steps, up to the first difference.
-std::string transcript_of(const ModelRow& row, const std::vector<Step>& steps);
+std::string transcript_of(const ModelRow& row, const std::vector<Step>& steps, Extensions extensions);
 
 }  // namespace ex9000::reference

@@ -1,0 +1,48 @@
+// The earliest time at which the host watchdog of a module may expire: an independent implementation of
+// wire.md 6.
+#pragma once
+
+#include <algorithm>
+#include <cstdint>
+
+#include "tests/oracles/judges/demand.hpp"
+#include "tests/oracles/judges/time.hpp"
+
+namespace ex9000::judges {
+
+/// Knows the latest restart and the latest timeout of the host watchdog. It does not know whether requests
+/// restart it because register 0x0251 is 1.
+class HostWatchdog {
+ public:
+  void module_reset(Microseconds now) {
+    restarted_ = now;
+    timed_out_ = 0;
+  }
+  /// Call this when a command has restarted it exactly now.
+  void restarted(Microseconds now) { restarted_ = now; }
+  /// Call this when a host OK or a command restarts it at `when` or later.
+  void restarts_at_the_earliest(Microseconds when) { restarted_ = std::max(restarted_, when); }
+
+  /// Returns whether a module with these values may have had a timeout until now.
+  [[nodiscard]] bool may_expire(const Values& values, Microseconds now) const {
+    constexpr Microseconds kUnit = 100 * kMillisecond;
+    return values.enabled && now - restarted_ >= values.timeout * kUnit;
+  }
+
+  /// Call this when it has expired. `values`: those before the timeout.
+  void expired(const Values& values, Microseconds now) {
+    outputs_before_ = values.lasting_outputs();
+    timed_out_ = now;
+  }
+  /// Returns whether the latest timeout was at `time` or later.
+  [[nodiscard]] bool has_expired_since(Microseconds time) const { return timed_out_ >= time; }
+  /// Returns the lasting outputs before the latest timeout.
+  [[nodiscard]] std::uint16_t outputs_before() const { return outputs_before_; }
+
+ private:
+  Microseconds restarted_ = 0;  ///< the latest restart was not earlier than this
+  Microseconds timed_out_ = 0;  ///< time of the latest timeout; 0: none since the last reset
+  std::uint16_t outputs_before_ = 0;
+};
+
+}  // namespace ex9000::judges

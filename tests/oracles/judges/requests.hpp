@@ -1,0 +1,69 @@
+// The requests that a module has received and may still execute or answer.
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <cstddef>
+#include <cstdint>
+
+#include "firmware/bytes.hpp"
+#include "tests/oracles/judges/demand.hpp"
+#include "tests/oracles/judges/finding.hpp"
+#include "tests/oracles/judges/time.hpp"
+
+namespace ex9000::judges {
+
+struct Request {
+  std::array<std::uint8_t, 256> bytes;
+  std::size_t size;
+  Microseconds last;
+  /// The time at which it became a frame: the silence after it ended, or the module replied.
+  Microseconds over;
+  Demand demand;
+  bool broadcast;
+  bool alone;  ///< the module was idle, and the frame is not doubtful
+  bool fresh;  ///< the module may still execute it; see Witness::mark_fresh
+  bool done;   ///< an observed change of values has been attributed to this request
+
+  [[nodiscard]] Bytes frame() const { return {bytes.data(), size}; }
+  /// Returns whether the module stores something and sends no reply, so that it may be busy until the latest
+  /// permitted time.
+  [[nodiscard]] bool is_silent_store() const { return broadcast && demand.stores_something; }
+};
+
+/// A queue. The module keeps one frame and executes another one. It may lose further frames, which cannot be
+/// seen from outside, so the queue keeps some more.
+class Requests {
+ public:
+  /// The greatest number of requests in the queue.
+  static constexpr std::size_t kMost = 32;
+
+  [[nodiscard]] std::size_t size() const { return size_; }
+  /// Returns a request; 0 is the oldest one.
+  Request& operator[](std::size_t index) { return requests_[(oldest_ + index) % kMost]; }
+  const Request& operator[](std::size_t index) const { return requests_[(oldest_ + index) % kMost]; }
+
+  void clear() { size_ = 0; }
+  void drop_oldest(std::size_t count) {
+    oldest_ = (oldest_ + count) % kMost;
+    size_ -= count;
+  }
+  /// Appends a request with the bytes of this frame. The queue must not be full. The caller sets the other
+  /// members, except `fresh`.
+  Request& append(const Finding& finding) {
+    Request& latest = (*this)[size_++];
+    std::copy(finding.frame.begin(), finding.frame.end(), latest.bytes.begin());
+    latest.size = finding.frame.size;
+    latest.last = finding.last;
+    latest.broadcast = finding.kind == Finding::Kind::Broadcast;
+    latest.done = false;
+    return latest;
+  }
+
+ private:
+  std::array<Request, kMost> requests_;
+  std::size_t oldest_ = 0;
+  std::size_t size_ = 0;
+};
+
+}  // namespace ex9000::judges
