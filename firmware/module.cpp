@@ -96,14 +96,14 @@ void Module::listen() {
   use_filters();
   init_timeout_.disarm();
   receiver_.restart_by_requests(settings.fed_by_requests);
-  receiver_.listen({in_force.protocol, in_force.checksum, timing_at_(baud())});
+  receiver_.listen({in_force.protocol, in_force.checksum, timing_at_(baud(), format())});
   receiver_.answer_to(in_force.address);
 }
 
 // --- events from interrupts ---
 
 void Module::collect_edges(Time now) {
-  // Before `listen()`, it is not known whether the counters count rising or falling edges.
+  // Before `listen()`, the module does not know whether the counters count rising or falling edges.
   if (listening()) {
     state_.inputs.collect(edges_, state_.model().inputs, now);
   }
@@ -251,7 +251,7 @@ void Module::drive_outputs(Time now) {
   }
 }
 
-/// Switches the outputs off whose time is over.
+/// Switches off the outputs whose timers have expired.
 void Module::end_timed_outputs(Time now) {
   state_.outputs = static_cast<std::uint16_t>(state_.outputs & ~state_.output_timers.expire(now));
 }
@@ -307,7 +307,7 @@ void Module::commit_effects(Time now) {
 
 void Module::finish_request() {
   const Refusal refusal = cycle_.outcome().refusal;
-  // In ASCII only replies that begin with `?` count, and that of blocked outputs begins with `!`.
+  // In ASCII only replies that begin with `?` count. The reply for blocked outputs begins with `!`.
   const bool refused =
       refusal != Refusal::None && (state_.speaks_modbus() || refusal != Refusal::OutputsBlocked);
   Diagnostics& diagnostics = state_.diagnostics;

@@ -80,10 +80,12 @@ class Module {
   /// Returns whether to feed the hardware watchdog. See ModuleWatchdog::main_loop_alive.
   bool feed_watchdog() { return module_watchdog_.main_loop_alive(); }
 
-  /// Returns whether the settings and INIT* are known, so that the line can be opened at `baud()`.
+  /// Returns whether the settings and INIT* are known, so that the line can be opened at `baud()` with
+  /// `format()`.
   [[nodiscard]] bool listening() const { return start_ == Start::Done; }
-  /// Returns the baud rate in bits per second. It does not change while `listening()`.
+  /// Return the baud rate in bits per second and the line format. They do not change while `listening()`.
   [[nodiscard]] std::uint32_t baud() const { return baud_rate(state_.in_force.baud_code); }
+  [[nodiscard]] LineFormat format() const { return line_format(state_.in_force.baud_code); }
 
   [[nodiscard]] bool needs_memory() const { return keeper_.busy(); }
   /// Returns the memory access to carry out; valid while `needs_memory()`. It stays the same until

@@ -5,14 +5,14 @@
 
 namespace ex9000 {
 
-/// The values of register 0x0301 (wire.md section 12).
+/// The values of register 0x0301 (firmware/extensions.md).
 enum class ResetReason : std::uint8_t {
-  Unknown,  ///< the board cannot know
+  Unknown,  ///< the board cannot detect the reason
   PowerOn,
   ModuleWatchdog,
   Software,
   ResetPin,
-  Fault,  ///< of the processor
+  Fault,  ///< a fault of the processor
 };
 
 }  // namespace ex9000

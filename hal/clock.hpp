@@ -14,8 +14,8 @@ namespace ex9000::hal {
 ///         Returns the time, which never goes back. Interrupts and the main loop may call this; does not
 ///         block.
 ///     Time now_in_interrupt() const
-///         Returns the same and may be faster. Only for interrupts that the clock's own interrupt does not
-///         interrupt.
+///         Returns the same time and may be faster. Only for interrupts that the clock's own interrupt does
+///         not interrupt.
 ///
 /// True if `T` has these functions.
 template <class T, class = void>

@@ -120,7 +120,7 @@ class Device {
         return;
       }
       line_open_ = true;
-      board_.line.open(module_.baud());
+      board_.line.open(module_.baud(), module_.format());
     }
     if (reply_under_way_) {
       if (board_.line.sending()) {

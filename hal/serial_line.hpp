@@ -5,22 +5,24 @@
 #include <utility>
 
 #include "firmware/bytes.hpp"
+#include "firmware/model/line_format.hpp"
 #include "hal/promise.hpp"
 
 namespace ex9000::hal {
 
-/// The UART and its RS-485 driver, 8N1, half duplex.
+/// The UART and its RS-485 driver, half duplex.
 ///
 /// The receive interrupt calls `Device::on_receive` for each byte, including bytes with errors, but not while
 /// the driver is on, because these bytes are the echo. When a reply has been sent, an interrupt of the same
 /// priority calls `Device::on_sent`.
 ///
-///     void open(std::uint32_t baud)
+///     void open(std::uint32_t baud, LineFormat format)
 ///         Starts to receive at `baud` bits per second (1200 to 115200). Before this call, the driver is off
-///         and nothing is received. For the main loop, once after reset; does not block.
+///         and nothing is received. A byte with wrong parity is reported as ByteStatus::ParityError. The
+///         receiver checks only the first stop bit. For the main loop, once after reset; does not block.
 ///     void send(Bytes bytes)
 ///         Turns the driver on, sends `bytes` and turns the driver off. The driver is on before the first
-///         start bit. It goes off within one character time after the last stop bit has left the shift
+///         start bit. It is turned off within one character time after the last stop bit has left the shift
 ///         register (transmission complete, not "data register empty"). For the main loop, only while not
 ///         `sending()`; does not block. `bytes` must stay valid while `sending()`.
 ///     bool sending() const
@@ -30,9 +32,10 @@ namespace ex9000::hal {
 template <class T, class = void>
 inline constexpr bool kIsSerialLine = false;
 template <class T>
-inline constexpr bool
-    kIsSerialLine<T, std::void_t<Returns<void, decltype(std::declval<T&>().open(Exactly<std::uint32_t>()))>,
-                                 Returns<void, decltype(std::declval<T&>().send(Exactly<Bytes>()))>,
-                                 Returns<bool, decltype(std::declval<const T&>().sending())>>> = true;
+inline constexpr bool kIsSerialLine<
+    T, std::void_t<
+           Returns<void, decltype(std::declval<T&>().open(Exactly<std::uint32_t>(), Exactly<LineFormat>()))>,
+           Returns<void, decltype(std::declval<T&>().send(Exactly<Bytes>()))>,
+           Returns<bool, decltype(std::declval<const T&>().sending())>>> = true;
 
 }  // namespace ex9000::hal

@@ -8,14 +8,14 @@
 
 namespace ex9000::hal {
 
-/// The longest time without a feed after which the hardware watchdog resets the MCU (wire.md section 6).
+/// If the hardware watchdog is not fed, it resets the MCU after this time at the latest (wire.md section 6).
 inline constexpr Duration kWatchdogPeriod = milliseconds(1600);
 
 /// The MCU's own watchdog. It is running after the first `feed` at the latest and cannot be stopped.
 ///
 ///     void feed()
-///         Restarts the watchdog's time, which is at most `kWatchdogPeriod`. For the main loop; does not
-///         block.
+///         Restarts the watchdog's countdown, which takes at most `kWatchdogPeriod`. For the main loop; does
+///         not block.
 ///
 /// True if `T` has this function.
 template <class T, class = void>

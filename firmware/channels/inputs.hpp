@@ -33,7 +33,7 @@ class InputEdges {
   /// Returns the number of calls of `on_edge`, of all channels together; it wraps.
   [[nodiscard]] std::uint32_t edges() const { return edges_.load(); }
   /// Returns the number of edges of `channel` since the last call for it. For the main loop, which must call
-  /// this at least every 65535 edges.
+  /// this at least once every 65535 edges.
   std::uint16_t collect(unsigned channel) { return channels_[channel].collect(); }
   /// Returns the time of the last edge of `channel`, if `needs_times()` was true at that edge. For the main
   /// loop.
@@ -50,8 +50,8 @@ class InputEdges {
 /// Levels, latches and counters as the protocols read them. The order is: inversion, filter, everything else.
 /// For the main loop only.
 ///
-/// A channel without filter counts every edge. With a filter, a level counts as one edge when it has stood
-/// for the filter time since the last edge.
+/// A channel without filter counts every edge. With a filter, a level counts as one edge when it has been
+/// stable for the filter time since the last edge.
 class Inputs {
  public:
   /// The range of the counters: five decimal digits in ASCII, 16 bits in Modbus. A counter wraps to 0.
@@ -70,8 +70,8 @@ class Inputs {
   /// Sets the filter times. They apply from the last edge of each channel on.
   void use_filters(const InputFilters& filters) { filters_ = filters; }
 
-  /// Counts and latches the edges of the first `channels` channels, and the levels that have stood for their
-  /// filter time at `now`. Must be called at least every 65535 edges of a channel.
+  /// Counts and latches the edges of the first `channels` channels, and the levels that have been stable
+  /// for their filter time at `now`. Call this at least once every 65535 edges of a channel.
   void collect(InputEdges& edges, unsigned channels, Time now);
   /// Returns the time until a filtered level counts, at most `at_most`.
   [[nodiscard]] Duration until_settled(const InputEdges& edges, Time now, Duration at_most) const;

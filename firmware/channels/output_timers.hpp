@@ -1,4 +1,4 @@
-// Timers that switch outputs off - wire.md section 12.
+// Timers that switch outputs off - firmware/extensions.md.
 #pragma once
 
 #include <array>
@@ -9,29 +9,28 @@
 
 namespace ex9000 {
 
-/// One timer for each output. A timer counts units of 0.1 s, because a time of up to 6553.5 s is longer than
-/// a Deadline can be. For the main loop only.
+/// One timer for each output. A timer counts units of 0.1 s, because its time of up to 6553.5 s is longer
+/// than a Deadline permits (time.hpp). For the main loop only.
 class OutputTimers {
  public:
-  /// Starts the timer of `channel` with `units` x 0.1 s, 1 to 65535; a running one starts again.
+  /// Starts the timer of `channel` with `units` x 0.1 s, 1 to 65535. A running timer starts again.
   void start(unsigned channel, std::uint16_t units, Time now);
   /// Stops the timers of `channels`, bit n for channel n.
   void stop(std::uint16_t channels) { running_ = static_cast<std::uint16_t>(running_ & ~channels); }
-  /// Stops the timers that are over. Returns their channels. Call this in every pass of the main loop, at
+  /// Stops the timers that have expired. Returns their channels. Call this in every pass of the main loop, at
   /// least every 30 minutes.
   std::uint16_t expire(Time now);
 
   /// Returns the channels whose timer is running; bit n is channel n.
   [[nodiscard]] std::uint16_t running() const { return running_; }
-  /// Returns what is left in units of 0.1 s, rounded up, at the time of the last `expire`; 0 if the timer is
-  /// not running.
+  /// Returns the time left at the last `expire`, in units of 0.1 s, rounded up; 0 if the timer does not run.
   [[nodiscard]] std::uint16_t left(unsigned channel) const;
-  /// Returns the time until `expire` has something to do, at most `at_most`.
+  /// Returns the time until `expire` must be called, at most `at_most`.
   [[nodiscard]] Duration until_due(Time now, Duration at_most) const;
 
  private:
   struct Timer {
-    std::uint16_t units = 0;  ///< left, including the current one
+    std::uint16_t units = 0;  ///< units left, including the current one
     Deadline unit_end;        ///< end of the current unit
   };
 

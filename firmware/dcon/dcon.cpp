@@ -45,7 +45,7 @@ bool refused_without_address(const Model& model, Bytes frame) {
   if (frame[0] == '#') {
     return !(model.has_inputs() && body == 1);
   }
-  return frame[0] == '@';  // the frame has data, because `@AA` without data is never refused
+  return frame[0] == '@';  // this frame has data, because `@AA` without data is never refused
 }
 
 void refuse(Exchange& exchange, Refusal refusal) {

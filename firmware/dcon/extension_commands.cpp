@@ -1,4 +1,4 @@
-// The commands of wire.md section 12: `~AAX` and `~AARD`.
+// The commands of firmware/extensions.md: `~AAX` and `~AARD`.
 #include "firmware/dcon/commands.hpp"
 #include "firmware/dcon/writing.hpp"
 #include "firmware/hex.hpp"

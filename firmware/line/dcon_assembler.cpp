@@ -93,7 +93,7 @@ Verdict DconAssembler::judge(FrameQueue& queue, Time now) {
     }
   }
   if (size < kDelimiterAndAddress) {
-    return Verdict::Foreign;  // it has no address, so it is for no module
+    return Verdict::Foreign;  // the frame has no address, so it is for no module
   }
   broadcast_ = !are_digits(text + 1, own_digits_.load());
   if (broadcast_) {

@@ -1,5 +1,5 @@
 // The counters of the interrupts for Modbus function 08 (Modbus over Serial Line V1.02, appendix A) and for
-// registers 0x0308 to 0x030F (wire.md section 12).
+// registers 0x0308 to 0x030F (firmware/extensions.md).
 #pragma once
 
 #include <array>

@@ -37,8 +37,8 @@ class Receiver {
   /// DCON, the result is the turn-around time for the CR of an accepted frame, otherwise 0.
   Duration on_byte(std::uint8_t byte, ByteStatus status, Time now);
 
-  /// Call this when the time that `on_byte` or `on_silence` returned is over. The result has the same meaning
-  /// as that of `on_byte`.
+  /// Call this when the time that `on_byte` or `on_silence` returned has passed. The result has the same
+  /// meaning as that of `on_byte`.
   Duration on_silence();
 
   /// Call this when the module's own driver has been on until `now`; `on_byte` must not be called during that
@@ -84,7 +84,7 @@ class Receiver {
 
 // Inline because it runs for each byte that any module receives.
 inline Duration Receiver::on_byte(std::uint8_t byte, ByteStatus status, Time now) {
-  if (status == ByteStatus::FramingError || status == ByteStatus::Break) {
+  if (status != ByteStatus::Good && status != ByteStatus::Overrun) {
     tallies_.count_damaged_byte_in_interrupt();
   }
   if (modbus()) {

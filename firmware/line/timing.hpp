@@ -3,63 +3,70 @@
 
 #include <cstdint>
 
+#include "firmware/model/line_format.hpp"
 #include "firmware/time.hpp"
 
 namespace ex9000 {
 
 struct LineTiming {
-  /// Time between CR and the reply: one character of 10 bits, rounded up.
+  /// Time between the report of CR and the reply: the rest of its stop bits and one character, rounded up.
   Duration dcon_turn_around;
-  /// T3.5, the silence that ends a Modbus RTU frame and precedes a reply. It is rounded up, so that a reply
-  /// is never early.
+  /// Time from the report of a byte to the end of the silence that ends a Modbus RTU frame and precedes a
+  /// reply: the rest of the stop bits and T3.5. It is rounded up, so that a reply is never early.
   Duration rtu_silence;
   /// Time after `rtu_silence` within which a byte that began before T3.5 becomes complete: one character. It
   /// is rounded down, so that a byte that begins after exactly T3.5 begins a new frame.
   Duration rtu_grace;
-  /// The largest time between the ends of two bytes; a larger time makes the frame invalid.
+  /// The largest time between the reports of two bytes; a larger time makes the frame invalid.
   Duration rtu_slack;
-  /// Time from the report of a byte to the end of its stop bit, rounded up.
+  /// Time from the report of a byte to the end of its last stop bit, rounded up.
   Duration rest_of_stop_bit;
 
   /// A value for `rtu_slack` that allows every gap.
   static constexpr Duration kAnyGap{0xFFFF'FFFFU};
 
-  /// Returns the times of Modbus over Serial Line V1.02, 2.5.1.1: T3.5 is 3.5 characters of 11 bits up to
-  /// 19200 baud, and fixed above that. Gaps within a frame are allowed, because USB adapters and gateways
-  /// cause them. `baud`: 50 to 4000000 bits per second.
-  static constexpr LineTiming at(std::uint32_t baud) {
-    const std::uint32_t character = microseconds(2 * 10, baud);
-    const std::uint32_t t35 = silence(7, baud, 1750);
+  /// Returns the times for a UART that reports a byte at the end of its first stop bit. T3.5 is 3.5
+  /// characters of 11 bits in every format up to 19200 baud, and fixed above that (Modbus over Serial Line
+  /// V1.02, 2.5.1.1). Gaps within a frame are allowed, because USB adapters and gateways cause them. `baud`:
+  /// 50 to 4000000 bits per second.
+  static constexpr LineTiming at(std::uint32_t baud, LineFormat format) {
+    const unsigned second_stop_bit = bits_of_character(format) - bits_received(format);
+    const std::uint32_t until_report = microseconds(2 * bits_received(format), baud);
     LineTiming timing;
-    timing.dcon_turn_around = Duration(character + kRoundUp);
-    timing.rtu_silence = Duration(t35 + kRoundUp);
-    timing.rtu_grace = Duration(character > kRoundDown ? character - kRoundDown : 1);
+    timing.rest_of_stop_bit = Duration(second_stop_bit == 0 ? 0 : microseconds(2, baud) + 1U);
+    timing.dcon_turn_around =
+        timing.rest_of_stop_bit + Duration(microseconds(2 * bits_of_character(format), baud) + kRoundUp);
+    timing.rtu_silence = timing.rest_of_stop_bit + Duration(silence(7, baud, 1750) + kRoundUp);
+    timing.rtu_grace = Duration(until_report > kRoundDown ? until_report - kRoundDown : 1);
     timing.rtu_slack = kAnyGap;
     return timing;
   }
 
-  /// Returns the times of `at` for a UART that reports a byte in the middle of its stop bit, half a bit
+  /// Returns the times of `at` for a UART that reports a byte in the middle of its first stop bit, half a bit
   /// before the end. `baud` must be one of kBaudRates.
-  static constexpr LineTiming reported_in_stop_bit(std::uint32_t baud) {
-    LineTiming timing = at(baud);
+  static constexpr LineTiming reported_in_stop_bit(std::uint32_t baud, LineFormat format) {
+    LineTiming timing = at(baud, format);
     const Duration half_bit(microseconds(1, baud) + 1U);
     timing.dcon_turn_around = timing.dcon_turn_around + half_bit;
     timing.rtu_silence = timing.rtu_silence + half_bit;
-    timing.rest_of_stop_bit = half_bit;
+    timing.rest_of_stop_bit = timing.rest_of_stop_bit + half_bit;
     timing.rtu_grace = timing.rtu_grace - half_bit;  // the UART reports the late byte half a bit early too
     return timing;
   }
 
   /// Return the same times as the functions above, except that a gap of more than T1.5 makes the frame
   /// invalid, as 2.5.1.1 requires.
-  static constexpr LineTiming strictly_at(std::uint32_t baud) { return strictly(at(baud), baud); }
-  static constexpr LineTiming strictly_reported_in_stop_bit(std::uint32_t baud) {
-    return strictly(reported_in_stop_bit(baud), baud);
+  static constexpr LineTiming strictly_at(std::uint32_t baud, LineFormat format) {
+    return strictly(at(baud, format), baud, format);
+  }
+  static constexpr LineTiming strictly_reported_in_stop_bit(std::uint32_t baud, LineFormat format) {
+    return strictly(reported_in_stop_bit(baud, format), baud, format);
   }
 
  private:
-  static constexpr LineTiming strictly(LineTiming timing, std::uint32_t baud) {
-    timing.rtu_slack = Duration(silence(3, baud, 750) + microseconds(2 * 10, baud) + kRoundUp);
+  static constexpr LineTiming strictly(LineTiming timing, std::uint32_t baud, LineFormat format) {
+    timing.rtu_slack =
+        Duration(silence(3, baud, 750) + microseconds(2 * bits_of_character(format), baud) + kRoundUp);
     return timing;
   }
 
@@ -79,8 +86,8 @@ struct LineTiming {
   }
 };
 
-/// A function that returns the times at a baud rate, for example `LineTiming::at`. A line on which bytes take
-/// no time uses another function.
-using TimingAt = LineTiming (*)(std::uint32_t baud);
+/// A function that returns the times at a baud rate and format, for example `LineTiming::at`. A line on which
+/// bytes take no time uses another function.
+using TimingAt = LineTiming (*)(std::uint32_t baud, LineFormat format);
 
 }  // namespace ex9000

@@ -6,7 +6,7 @@
 namespace ex9000 {
 
 /// The status of a byte as the UART reports it.
-enum class ByteStatus : std::uint8_t { Good, FramingError, Break, Overrun };
+enum class ByteStatus : std::uint8_t { Good, FramingError, ParityError, Break, Overrun };
 
 /// The verdict on a frame that a byte or a silence has ended. The module sends no reply to a frame unless it
 /// is Accepted; only these frames reach the main loop. LineTallies uses the order: frames with a correct
@@ -15,13 +15,13 @@ enum class Verdict : std::uint8_t {
   Open,       ///< no frame ended
   Accepted,   ///< correct, and for this module or a broadcast; the frame is in the queue
   HostOk,     ///< a host OK; counted in the interrupt, so that it is never lost
-  Ignored,    ///< ASCII: correct and for all modules, but not a command
+  Ignored,    ///< ASCII: correct and a broadcast, but not a command
   Foreign,    ///< correct, but for another address
   NoRoom,     ///< correct and for this module, but lost because another frame is already waiting
   BadCheck,   ///< wrong or missing checksum, wrong CRC
-  TooShort,   ///< too short for a check; in Modbus also for an address
+  TooShort,   ///< too short to contain a check or, in Modbus, an address
   TooLong,    ///< longer than the longest allowed frame
-  LineError,  ///< a byte had a framing error or a break
+  LineError,  ///< a byte had a framing error, wrong parity or a break
   Overrun,    ///< a byte was lost because the previous byte was not read in time
 };
 

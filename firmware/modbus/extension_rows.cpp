@@ -1,4 +1,4 @@
-// The read and write functions of the extension registers - wire.md section 12.
+// The read and write functions of the extension registers - firmware/extensions.md.
 #include <optional>
 
 #include "firmware/modbus/registers.hpp"

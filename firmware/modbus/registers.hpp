@@ -52,8 +52,9 @@ constexpr Rules kPlain = 0;
 constexpr Rules kDrivesOutputs = 1U << 0U;  ///< exception 04 while the timeout status is set
 constexpr Rules kOnlyOn = 1U << 1U;         ///< exception 03 for function 05 with 0000
 constexpr Rules kConfiguration = 1U << 2U;  ///< broadcasts are ignored
-constexpr Rules kExtension = 1U << 3U;  ///< an extension register: `~AAX` reaches it too (wire.md section 12)
-constexpr Rules kLong = 1U << 4U;       ///< pairs of registers with 32-bit values, high word first
+constexpr Rules kExtension =
+    1U << 3U;                      ///< an extension register: `~AAX` accesses it too (firmware/extensions.md)
+constexpr Rules kLong = 1U << 4U;  ///< pairs of registers with 32-bit values, high word first
 
 /// The part of a row of coils or discrete inputs that an image contains.
 struct BitRow {
@@ -234,10 +235,10 @@ inline constexpr auto kWordRegisters = table<WordRegister>({
      {0x01E4, Width::One, Needs::Nothing, kReadHoldingRegisters | kWriteRegisters, kConfiguration,
       kFirstModbusAddress, kLastModbusAddress, read_address, write_address}},
     {"baud-code",
-     "stored baud code, from the next reset on",
-     "0x03 to 0x0A; not by broadcast",
+     "stored baud code with the line format, from the next reset on",
+     "0x03 to 0x0A (8N1), 0x43 to 0x4A (8N2), 0x83 to 0x8A (8E1), 0xC3 to 0xCA (8O1); not by broadcast",
      {0x01E5, Width::One, Needs::Nothing, kReadHoldingRegisters | kWriteRegisters, kConfiguration,
-      kFirstBaudCode, kLastBaudCode, read_baud_code, write_baud_code}},
+      kFirstBaudCode, kLargestBaudCode, read_baud_code, write_baud_code}},
     {"watchdog-timeout",
      "host watchdog timeout in units of 0.1 s",
      "0 to 255; not 0 while the host watchdog is enabled",
@@ -315,7 +316,7 @@ inline constexpr auto kWordRegisters = table<WordRegister>({
         "reply, overruns, damaged bytes, frames lost because no buffer was free; they wrap",
         "",
         {0x0308, Width::Eight, Needs::Nothing, kReadRegisters, kExtension, 0, 0, read_tally, nullptr}},
-    // This row is documentation only. The receiver recognises a host OK, so no function looks this row up.
+    // This row is documentation only. The receiver detects a host OK, so no function uses this row.
     WordRegister{"host-ok",
                  "host OK: a request for 0 or 1 registers from here restarts the host watchdog and gets no "
                  "reply; address 0 reaches all modules",

@@ -1,4 +1,4 @@
-// The line tallies: what a module has counted on its line since reset (wire.md section 12 and D1).
+// The line tallies: what a module has counted on its line since reset (firmware/extensions.md and D1).
 #pragma once
 
 #include <cstdint>

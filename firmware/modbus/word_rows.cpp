@@ -27,6 +27,9 @@ std::uint16_t read_baud_code(const Exchange& exchange, unsigned /*index*/) {
 }
 
 Refusal write_baud_code(const State& /*state*/, unsigned /*index*/, std::uint16_t value, Outcome& outcome) {
+  if (!is_baud_code(value)) {
+    return Refusal::WrongValue;
+  }
   outcome.change().baud_code = static_cast<std::uint8_t>(value);
   return Refusal::None;
 }

@@ -1,22 +1,41 @@
-// Baud-rate codes CC (manuals 1.10).
+// Baud-rate codes CC: bits 5:0 the rate (manuals 1.10), bits 7:6 the line format (firmware/extensions.md).
 #pragma once
 
 #include <array>
 #include <cstdint>
+
+#include "firmware/model/line_format.hpp"
 
 namespace ex9000 {
 
 constexpr std::uint8_t kFirstBaudCode = 0x03;
 constexpr std::uint8_t kLastBaudCode = 0x0A;
 constexpr std::uint8_t kFactoryBaudCode = 0x06;
+constexpr std::uint8_t kRateBits = 0x3F;
+constexpr unsigned kFormatShift = 6;
+/// The largest code: the last rate with the last format.
+constexpr std::uint8_t kLargestBaudCode = 0xC0 | kLastBaudCode;
 
 /// Baud rates in bits per second of the codes 03 to 0A.
 constexpr std::array<std::uint32_t, kLastBaudCode - kFirstBaudCode + 1> kBaudRates{
     1200, 2400, 4800, 9600, 19200, 38400, 57600, 115200};
 
-constexpr bool is_baud_code(unsigned code) { return code >= kFirstBaudCode && code <= kLastBaudCode; }
+constexpr bool is_baud_code(unsigned code) {
+  const unsigned rate = code & kRateBits;
+  return code <= kLargestBaudCode && rate >= kFirstBaudCode && rate <= kLastBaudCode;
+}
 
 /// Returns the baud rate of `code` in bits per second. `code` must be a baud-rate code.
-constexpr std::uint32_t baud_rate(std::uint8_t code) { return kBaudRates[code - kFirstBaudCode]; }
+constexpr std::uint32_t baud_rate(std::uint8_t code) {
+  return kBaudRates[(code & kRateBits) - kFirstBaudCode];
+}
+
+/// Returns the line format of `code`, which must be a baud-rate code.
+constexpr LineFormat line_format(std::uint8_t code) { return static_cast<LineFormat>(code >> kFormatShift); }
+
+/// Returns `code` with another line format.
+constexpr std::uint8_t with_line_format(std::uint8_t code, LineFormat format) {
+  return static_cast<std::uint8_t>((code & kRateBits) | static_cast<unsigned>(format) << kFormatShift);
+}
 
 }  // namespace ex9000

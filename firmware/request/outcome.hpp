@@ -48,7 +48,7 @@ struct TimedDrive {
 enum class Effect : std::uint8_t {
   RestartHostWatchdog,
   TakeAddress,       ///< use the stored address from now on
-  TakeCountingEdge,  ///< count the edges that the stored format names from now on
+  TakeCountingEdge,  ///< from now on, count the edges that the stored format selects
   TakeSample,
   MarkSampleRead,
   ClearResetStatus,
@@ -58,8 +58,8 @@ enum class Effect : std::uint8_t {
   ClearTimeoutCount,
 };
 
-/// Everything that the module must do before it sends the reply. The module stores a change of settings
-/// first. Then it does the rest, and processes no other request in between.
+/// Everything that the module must do before it sends the reply. The module first stores a change of
+/// settings and then does the rest. It processes no other request in between.
 class Outcome {
  public:
   void request(Effect effect) { effects_ = static_cast<std::uint16_t>(effects_ | bit(effect)); }
@@ -85,7 +85,7 @@ class Outcome {
   [[nodiscard]] const SettingsChange& change() const { return change_; }
   [[nodiscard]] bool changes_settings() const { return changes_settings_; }
 
-  /// Removes everything that is to be done, but keeps the reason of a refusal.
+  /// Removes all actions, but keeps the reason of a refusal.
   void clear() {
     effects_ = 0;
     drive_ = {};

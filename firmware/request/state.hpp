@@ -21,7 +21,7 @@ struct InForce {
   bool init_mode = false;
 };
 
-/// The synchronized sample of `#**` (manuals 2.2, 2.5).
+/// The synchronised sample of `#**` (manuals 2.2, 2.5).
 struct Sample {
   bool taken = false;
   bool read = false;

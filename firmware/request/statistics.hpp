@@ -1,4 +1,4 @@
-// What a module reports about itself since its last reset - wire.md section 12.
+// What a module reports about itself since its last reset - firmware/extensions.md.
 #pragma once
 
 #include <cstdint>

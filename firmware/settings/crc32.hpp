@@ -32,8 +32,8 @@ class Crc32Remainders {
 };
 inline constexpr Crc32Remainders kCrc32Remainders;
 
-/// Computes the CRC-32 of IEEE 802.3, 3.2.9. It uses a table because a module with a page store computes up
-/// to a thousand of them before its first reply (hal/flash/page_store.hpp).
+/// Computes the CRC-32 of IEEE 802.3, 3.2.9. It uses a table because a module with a page store computes
+/// about 1,100 of them before its first reply (hal/flash/page_store.hpp).
 class Crc32 {
  public:
   constexpr void add(std::uint8_t byte) {

@@ -62,7 +62,7 @@ class SettingsKeeper {
   void poll(const Settings& in_force, Time now);
   /// Returns whether a save without a command has ended and `poll` has not processed its result yet.
   [[nodiscard]] bool has_work() const { return own_save_ && !busy(); }
-  /// Returns when the keeper tries again; disarmed if nothing failed.
+  /// Returns when the keeper retries a failed action; disarmed if no action has failed.
   [[nodiscard]] Deadline retry() const { return retry_; }
 
   // --- memory access; see SettingsStore ---

@@ -41,7 +41,7 @@ class SettingsStore {
     Unreadable,  ///< something else, or no answer; factory settings are used but not stored
   };
 
-  /// What `stored()` was read from when the store was created: register 0x0306 (wire.md section 12).
+  /// The origin of the settings that were loaded at reset: register 0x0306 (firmware/extensions.md).
   enum class Source : std::uint8_t {
     Good,         ///< a good copy; the other one is good or blank
     OneCopyBad,   ///< a good copy; the other one is not good and not blank
@@ -135,7 +135,7 @@ class SettingsStore {
   std::uint8_t attempt_ = 0;             ///< failed attempts at that copy
   bool silent_ = false;                  ///< the memory did not answer at the last place
   std::uint8_t blank_places_ = 0;
-  bool bad_copy_ = false;                 ///< a place of this layout holds something else than a copy
+  bool bad_copy_ = false;                 ///< a place of this layout holds something other than a copy
   std::size_t current_place_ = kNoPlace;  ///< place of the current copy, which a reset would load
   unsigned old_copies_ = 0;               ///< bit n: place n holds a good copy of an older layout
   unsigned copies_to_invalidate_ = 0;     ///< bit n: the copy at place n must be invalidated

@@ -15,9 +15,9 @@ namespace ex9000::hal {
 /// An EEPROM of 8 KiB in pages of 32 bytes. For its functions, see hal/memory.hpp; for `Master`, see
 /// I2cTransfer.
 ///
-/// The EEPROM does not answer while it programs a page, so the driver repeats its address until it answers.
-/// For a read, the driver sends STOP between the address and the data, because not every master supports a
-/// repeated START. The EEPROM's address counter keeps the address.
+/// The EEPROM acknowledges nothing while it programs a page, so the driver repeats the device address until
+/// the EEPROM acknowledges it. For a read, the driver sends STOP between the address and the data, because
+/// not every master supports a repeated START. The EEPROM's address counter keeps the address.
 template <class Master>
 class At24c {
   static_assert(kIsI2cMaster<Master>,
@@ -53,13 +53,13 @@ class At24c {
     Addressing,  ///< sends the address for a read
     Reading,
     Writing,      ///< sends bytes of one page
-    Programming,  ///< waits until the EEPROM answers again
+    Programming,  ///< waits until the EEPROM acknowledges again
   };
 
   static constexpr std::uint8_t kDevice = 0x50;  // A2, A1 and A0 are connected to GND
   static constexpr std::size_t kPage = 32;
   /// The timeout. Programming a page takes at most 10 ms. The first read after a reset may have to wait for
-  /// that too.
+  /// the end of programming too.
   static constexpr Duration kAnswerTimeout = milliseconds(12);
 
   void begin(Step step, std::uint16_t address, Time now) {

@@ -16,8 +16,8 @@ class Interrupts {
   /// An interrupt cannot interrupt another interrupt. The stack therefore needs room for only one interrupt,
   /// and interrupts can share data without protection. Priorities only define the order of pending
   /// interrupts: SysTick, then the others by number, then `last`. The board passes the UART as `last`, so
-  /// that the end of a silence is processed before the byte that follows it. Not for a Cortex-M0+, where each
-  /// priority can interrupt a lower one.
+  /// that the end of a silence is processed before the byte that follows it. Do not call this on a
+  /// Cortex-M0+, on which each priority can interrupt a lower one.
   static void enable(std::uint32_t numbers, std::uint32_t last) {
     constexpr std::uint32_t kLowest = 0xFF;
     constexpr std::uint32_t kInterruptsAWord = 4;

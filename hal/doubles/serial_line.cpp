@@ -22,9 +22,9 @@ void SerialLine::run() {
     wire_.drive(false);
     return;
   }
-  wire_.put(bytes_[sent_++], baud_);
+  wire_.put(bytes_[sent_++], mode_);
   // The time is calculated from the first start bit, so that rounding errors do not add up.
-  next_ = first_start_bit_ + wire_.takes(sent_, baud_);
+  next_ = first_start_bit_ + wire_.takes(sent_, mode_);
   if (sent_ == bytes_.size) {
     over_ = next_ + kDriverTail;
     next_ = over_ + late_by_;
@@ -43,7 +43,7 @@ void SerialLine::abort() {
     driving_ = false;
     wire_.drive(false);
   }
-  baud_ = 0;
+  mode_ = {};
   next_ = over_ = kNever;
 }
 

@@ -5,6 +5,7 @@
 
 #include "hal/doubles/virtual_clock.hpp"
 #include "hal/serial_line.hpp"
+#include "hal/serial_mode.hpp"
 
 namespace ex9000::hal::doubles {
 
@@ -13,11 +14,10 @@ class Wire {
  public:
   /// Turns the driver of this end on or off.
   virtual void drive(bool on) = 0;
-  /// Begins to send `byte` with its start bit now: start bit, 8 data bits and stop bit at `baud`. The driver
-  /// is on.
-  virtual void put(std::uint8_t byte, std::uint32_t baud) = 0;
-  /// Returns the duration of `bytes` bytes without a gap at `baud`.
-  [[nodiscard]] virtual VirtualTime takes(std::size_t bytes, std::uint32_t baud) const = 0;
+  /// Begins to send `byte` with its start bit now. The driver is on.
+  virtual void put(std::uint8_t byte, SerialMode mode) = 0;
+  /// Returns the duration of `bytes` bytes without a gap.
+  [[nodiscard]] virtual VirtualTime takes(std::size_t bytes, SerialMode mode) const = 0;
 
  protected:
   ~Wire() = default;
@@ -33,12 +33,12 @@ class SerialLine {
 
   SerialLine(VirtualClock& clock, Wire& wire) : clock_(clock), wire_(wire) {}
 
-  void open(std::uint32_t baud) { baud_ = baud; }
+  void open(std::uint32_t baud, LineFormat format) { mode_ = {baud, format}; }
   void send(Bytes bytes);
   [[nodiscard]] bool sending() const { return driving_; }
 
-  /// Returns the baud rate; 0 until `open`.
-  [[nodiscard]] std::uint32_t baud() const { return baud_; }
+  /// Returns the rate and format; the rate is 0 until `open`.
+  [[nodiscard]] SerialMode mode() const { return mode_; }
   /// Delays the end of the driver enable by `by`. This also applies to a reply that is being sent.
   void release_late(VirtualTime by);
   /// Returns when `run` must be called.
@@ -50,7 +50,7 @@ class SerialLine {
  private:
   VirtualClock& clock_;
   Wire& wire_;
-  std::uint32_t baud_ = 0;
+  SerialMode mode_;
   bool driving_ = false;
   Bytes bytes_;
   std::size_t sent_ = 0;

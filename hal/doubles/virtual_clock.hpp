@@ -7,7 +7,7 @@
 
 namespace ex9000::hal::doubles {
 
-/// The time since the start of the simulation; 64 bits of nanoseconds last 292 years.
+/// The time since the start of the simulation, in nanoseconds. Its 64 bits are sufficient for 292 years.
 using VirtualTime = std::chrono::nanoseconds;
 
 constexpr VirtualTime kNever = VirtualTime::max();

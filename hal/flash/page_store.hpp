@@ -40,7 +40,7 @@ namespace ex9000::hal::flash {
 /// With the longest times of the data sheet and a poll every millisecond, a read takes at most 5 ms, and a
 /// write at most 14 ms. Typical times are 0 ms and 1 ms. A job fails if it has not ended after kLongestRead
 /// or kLongestWrite. The first job after a reset also waits for the scan of the log, which reads at most 50
-/// KB and computes at most 1,100 CRCs.
+/// kB and computes about 1,100 CRCs at most.
 ///
 /// tests/hal/flash measures these times, cuts the power at each operation, and counts erases.
 template <class Flash, std::uint32_t kBegin>
@@ -104,7 +104,7 @@ class PageStore {
 
   static constexpr std::uint32_t address_of(Slot slot) { return kBegin + offset_of(slot); }
 
-  /// Begins a job, or lets it fail at once if it is not `possible`. A job is possible if the store has these
+  /// Begins a job, or makes it fail at once if it is not `possible`. A job is possible if the store has these
   /// bytes and, for a write, if they are in one page.
   void begin(Job job, std::uint16_t address, bool possible, Time deadline) {
     job_ = job;

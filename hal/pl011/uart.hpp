@@ -7,6 +7,7 @@
 #include "firmware/bytes.hpp"
 #include "firmware/line/crossing.hpp"
 #include "firmware/line/verdict.hpp"
+#include "firmware/model/line_format.hpp"
 #include "firmware/time.hpp"
 #include "hal/pl011/uart_rate.hpp"
 #include "hal/registers/register.hpp"
@@ -31,16 +32,15 @@ class Uart {
 
   // --- main loop; see hal/serial_line.hpp ---
 
-  void open(std::uint32_t baud) {
-    constexpr std::uint32_t kBitsACharacter = 10;
+  void open(std::uint32_t baud, LineFormat format) {
     constexpr std::uint32_t kMicroseconds = 1'000'000;
     const std::uint32_t divisor = baud_divisor(clock, baud);
     bit_ = Duration(kMicroseconds / baud + 1U);
-    character_ = Duration(kBitsACharacter * kMicroseconds / baud + 1U);
+    character_ = Duration(bits_of_character(format) * kMicroseconds / baud + 1U);
     kControl.write({});
     kIntegerDivisor.write(Bits<IntegerDivisor>(divisor >> 6U));
     kFractionalDivisor.write(Bits<FractionalDivisor>(divisor & 0x3FU));
-    kLineControl.write(kEightBits);  // must follow the divisors, because this write activates them
+    kLineControl.write(line_control(format));  // must follow the divisors, because this write activates them
     kInterruptMask.write(kReceived | kTransmitted);
     kControl.write(kEnable | kTransmitEnable | kReceiveEnable);
   }
@@ -109,11 +109,15 @@ class Uart {
   static constexpr Register<InterruptClear> kInterruptClear{base + 0x044};
 
   static constexpr Bits<Data> kFramingError{1U << 8U};
+  static constexpr Bits<Data> kParityError{1U << 9U};
   static constexpr Bits<Data> kBreakError{1U << 10U};
   static constexpr Bits<Data> kOverrunError{1U << 11U};
   static constexpr Bits<Flags> kBusy{1U << 3U};
   static constexpr Bits<Flags> kReceiverEmpty{1U << 4U};
-  static constexpr Bits<LineControl> kEightBits{0x3U << 5U};  // no parity, one stop bit, FIFOs off
+  static constexpr Bits<LineControl> kParityEnable{1U << 1U};
+  static constexpr Bits<LineControl> kEvenParity{1U << 2U};
+  static constexpr Bits<LineControl> kTwoStopBits{1U << 3U};
+  static constexpr Bits<LineControl> kEightBits{0x3U << 5U};
   static constexpr Bits<Control> kEnable{1U << 0U};
   static constexpr Bits<Control> kTransmitEnable{1U << 8U};
   static constexpr Bits<Control> kReceiveEnable{1U << 9U};
@@ -123,14 +127,32 @@ class Uart {
   static constexpr Bits<MaskedInterrupts> kWasReceived{1U << 4U};
   static constexpr Bits<MaskedInterrupts> kWasTransmitted{1U << 5U};
 
+  /// Returns 8 data bits and `format`; the FIFOs are off.
+  static Bits<LineControl> line_control(LineFormat format) {
+    switch (format) {  // not covered: the enumeration has no other value
+      case LineFormat::k8N1:
+        break;
+      case LineFormat::k8N2:
+        return kEightBits | kTwoStopBits;
+      case LineFormat::k8E1:
+        return kEightBits | kParityEnable | kEvenParity;
+      case LineFormat::k8O1:
+        return kEightBits | kParityEnable;
+    }
+    return kEightBits;
+  }
+
   static ByteStatus status_of(Bits<Data> data) {
-    if (!data.has(kFramingError | kBreakError | kOverrunError)) {
+    if (!data.has(kFramingError | kParityError | kBreakError | kOverrunError)) {
       return ByteStatus::Good;
     }
     if (data.has(kOverrunError)) {
       return ByteStatus::Overrun;
     }
-    return data.has(kBreakError) ? ByteStatus::Break : ByteStatus::FramingError;
+    if (data.has(kBreakError)) {
+      return ByteStatus::Break;
+    }
+    return data.has(kFramingError) ? ByteStatus::FramingError : ByteStatus::ParityError;
   }
 
   /// Discards the echo of a sent byte, if the receiver gets it, so that the receiver is empty for the next

@@ -31,9 +31,9 @@ constexpr std::uint32_t largest_baud_error(std::uint32_t clock) {
   return largest;
 }
 
-/// The largest allowed error of the module, in millionths. A receiver samples the stop bit 9.5 bits after the
-/// edge of the start bit, so the errors of both ends together must be below 1/20. The module may use a fifth
-/// of that.
+/// The largest allowed error of the module, in millionths. With parity, a receiver samples the stop bit 10.5
+/// bits after the edge of the start bit, so the errors of both ends together must be below 1/21. The module
+/// may use about a fifth of that.
 constexpr std::uint32_t kTolerableBaudError = 10'000;
 
 }  // namespace ex9000::hal::pl011

@@ -14,9 +14,9 @@ namespace ex9000::hal::rp2040 {
 /// other functions is not in RAM yet.
 class Boot {
  public:
-  /// Switches the processor and the flash to the crystal, because the ring oscillator may have less than 2
-  /// MHz. Blocks for about 5 ms. If the crystal does not start, it returns without an effect, and the image
-  /// waits for the crystal when its watchdog runs.
+  /// Switches the processor and the flash to the crystal, because the ring oscillator may run at less than 2
+  /// MHz. Blocks for about 5 ms. If the crystal does not start, this function has no effect, and the image
+  /// waits for the crystal when its watchdog is running.
   [[gnu::always_inline]] static void use_crystal() {
     constexpr unsigned kMostReads = 20'000;  // a read takes at least 0.5 us
     Crystal::start();

@@ -17,8 +17,8 @@ namespace ex9000::hal::rp2040 {
 /// select itself, so a delay between two bytes does no harm. The flash is not mapped into memory after
 /// `start`.
 ///
-/// All functions are for the main loop. A byte that is read takes 0.3 us, and another one up to 0.6 us. A
-/// command and its address have four bytes.
+/// All functions are for the main loop. Reading a data byte takes 0.3 us; any other byte takes up to
+/// 0.6 us. A command and its address have four bytes.
 class Flash {
  public:
   /// Call this once, before the other functions. A reset does not interrupt an operation of the flash. This

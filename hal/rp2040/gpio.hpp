@@ -45,8 +45,9 @@ class Gpio {
     make(pins, Function::Software, pull_up ? kInputPulledUp : kInputPulledDown);
   }
 
-  /// Makes `pins` outputs of 8 mA with the initial `levels`, without a glitch: a pin drives nothing until
-  /// software is its function. Until then, its weak pull-down and the connected circuit hold it low.
+  /// Makes `pins` outputs of 8 mA with the initial `levels`, without a glitch: a pin drives nothing until its
+  /// function is software control (SIO). Until then, its weak pull-down and the connected circuit hold it
+  /// low.
   static void make_output(std::uint32_t pins, std::uint32_t levels) {
     write(pins, levels);
     kDriveSet.write(Bits<Drive>(pins));

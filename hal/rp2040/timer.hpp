@@ -36,7 +36,7 @@ class OneShotTimer {
     const Time begin = Clock::now();
     const Duration to_alarm = after + Duration(1);
     kAlarm.write(Bits<Alarm>((begin + to_alarm).microseconds()));
-    // The alarm fires only when the time equals it. An interrupt may have delayed the write until later.
+    // The alarm fires only when the time equals its value. An interrupt may have delayed the write too long.
     if (!(Clock::now().since(begin) < to_alarm) && kArmed.read().has(Bits<Armed>(kThis))) {
       kArmed.write(Bits<Armed>(kThis));
       kForce.set(Bits<Force>(kThis));

@@ -79,8 +79,8 @@ class SystemControl {
   }
 
   /// Returns the reason of the last reset, and clears it. Call this once after each reset, as early as
-  /// possible: the bits of RESC (data sheets, "Reset Cause") stay set until software clears them, so a reset
-  /// that comes before this call adds its bit to them.
+  /// possible: the bits of RESC (data sheets, "Reset Cause") stay set until software clears them, so another
+  /// reset before this call adds its bit to them.
   static ResetReason take_reset_reason() {
     constexpr Bits<ResetCause> kPin(1U << 0U);
     constexpr Bits<ResetCause> kPowerOn(1U << 1U);
@@ -89,7 +89,7 @@ class SystemControl {
     constexpr Bits<ResetCause> kSoftware(1U << 4U);
     const Bits<ResetCause> causes = kResetCause.read();
     kResetCause.write({});
-    // The supply comes first, because the pin may be low for longer than the power-on reset.
+    // The supply is checked first, because the pin may be low for longer than the power-on reset.
     return causes.has(kPowerOn | kBrownOut) ? ResetReason::PowerOn
            : causes.has(kPin)               ? ResetReason::ResetPin
            : causes.has(kWatchdog)          ? ResetReason::ModuleWatchdog

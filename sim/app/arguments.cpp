@@ -56,6 +56,7 @@ struct Texts {
   std::optional<std::string> tcp;
   std::optional<std::string> serial;
   std::optional<std::string> baud;
+  std::optional<std::string> line_format;
   std::optional<std::string> line;
   bool echo = false;
   bool strict_gaps = false;
@@ -144,6 +145,7 @@ LineSetup line_of(const Texts& texts) {
   line.echo = texts.echo;
   line.strict_gaps = texts.strict_gaps;
   take_option("--baud", texts.baud, parse_baud_rate, line.baud);
+  take_option("--format", texts.line_format, parse_line_format, line.format);
   take_option("--line", texts.line, parse_line_kind, line.instant);
   take_option("--tcp", texts.tcp, parse_tcp_address, line.tcp);
   return line;
@@ -151,12 +153,16 @@ LineSetup line_of(const Texts& texts) {
 
 /// Rejects other modules and options of a line, because the bus file defines them.
 void reject_line_options(const Texts& texts) {
-  const std::pair<const char*, bool> given[] = {
-      {"--input", !texts.inputs.empty()},     {"--fault", !texts.faults.empty()},
-      {"--pty", texts.pty.has_value()},       {"--tcp", texts.tcp.has_value()},
-      {"--serial", texts.serial.has_value()}, {"--baud", texts.baud.has_value()},
-      {"--line", texts.line.has_value()},     {"--echo", texts.echo},
-      {"--strict-gaps", texts.strict_gaps}};
+  const std::pair<const char*, bool> given[] = {{"--input", !texts.inputs.empty()},
+                                                {"--fault", !texts.faults.empty()},
+                                                {"--pty", texts.pty.has_value()},
+                                                {"--tcp", texts.tcp.has_value()},
+                                                {"--serial", texts.serial.has_value()},
+                                                {"--baud", texts.baud.has_value()},
+                                                {"--line", texts.line.has_value()},
+                                                {"--format", texts.line_format.has_value()},
+                                                {"--echo", texts.echo},
+                                                {"--strict-gaps", texts.strict_gaps}};
   for (const auto& [option, is_given] : given) {
     if (is_given) {
       fail(std::string(option) + ": cannot be combined with a bus file; add it to a line of the bus file");
@@ -415,6 +421,9 @@ Parsed parse_arguments(int argc, const char* const* argv) {
   app.add_option("--baud", texts.baud,
                  "set the line's rate until a master sets one (default: the first module's)")
       ->type_name("RATE");
+  app.add_option("--format", texts.line_format,
+                 "set the line's format: 8N1, 8N2, 8E1 or 8O1 (default: the first module's)")
+      ->type_name("FORMAT");
   app.add_option("--line", texts.line,
                  "paced (default): bytes take as long as on a real line; instant: bytes take no time")
       ->type_name("paced|instant");

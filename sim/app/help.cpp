@@ -12,6 +12,7 @@ A module is MODEL[@ADDR][,KEY=VALUE]... MODEL is a name from --models, in upper 
 ADDR is the address in hex, as in `$AA2` (default: 01). The keys:
   protocol=ascii|modbus    sets the protocol (default: modbus for -M models, else ascii)
   baud=RATE                sets the baud rate: 1200, 2400, 4800, 9600, 19200, 38400, 57600 or 115200
+  format=FORMAT            sets the line format: 8N1, 8N2, 8E1 or 8O1
   checksum=on|off          switches the checksum of ASCII frames on or off
   edge=falling|rising      sets the edge that the counters count
   name=TEXT                sets the name that `$AAM` reads
@@ -27,8 +28,8 @@ on the command line, or in the bus file through all lines, from 1:
 
 constexpr const char* kPlayHelp = R"(
 A file is a list of steps: `> $01M` and `< !019042` for DCON, `=> 01 01 0000 000D` and `<= ...` for Modbus
-without its CRC, `silence`, `wait 1.5s`, `bytes HEX`, `checksum on|off`, `baud RATE`, and for a module `power on|off`,
-`power-cycle`, `reset`, `init on|off`, `input C on|off`, `pulse C [xCOUNT]`, `outputs HHHH`, `led on|off|flashing`.
+without its CRC, `silence`, `wait 1.5s`, `bytes HEX`, `checksum on|off`, `baud RATE`, `format FORMAT`, and for a module
+`power on|off`, `power-cycle`, `reset`, `init on|off`, `input C on|off`, `pulse C [xCOUNT]`, `outputs HHHH`, `led on|off|flashing`.
 With `source:` and `model:` lines before the steps the file is a transcript, which is played on each model. Without
 them it is a scenario for the modules or the bus file on the command line. A scenario has more steps: `module N`,
 `line NAME`, `fault [N] FAULT` as for --fault, and `fault off K|all`. See tests/conformance/README.md.
@@ -63,7 +64,7 @@ Examples:
   ex9000-sim EX9052D@01 --input '1 0 square 100ms' --fault '1 lost-reply every 10th reply' --log
   ex9000-sim EX9042D-M@01 --tcp 5020 --control test.ctl --speed step
   ex9000-sim --example > bus.json && ex9000-sim bus.json
-The rate that a master sets on the pseudo-terminal becomes the line's rate.)";
+The rate that a master sets on the pseudo-terminal becomes the line's rate. A pseudo-terminal carries no parity.)";
 
 }  // namespace
 

@@ -9,12 +9,13 @@ struct Bus::End final : BusEnd {
       : bus(its_bus), station(its_station), index(its_index) {}
 
   void drive(bool on) override { bus.drive(*this, on); }
-  void put(std::uint8_t byte, std::uint32_t baud) override { bus.put(*this, byte, baud); }
-  [[nodiscard]] VirtualTime takes(std::size_t bytes, std::uint32_t baud) const override {
+  void put(std::uint8_t byte, SerialMode mode) override { bus.put(*this, byte, mode); }
+  [[nodiscard]] VirtualTime takes(std::size_t bytes, SerialMode mode) const override {
     constexpr std::int64_t kBitNanoseconds = 1'000'000'000;
-    return VirtualTime(static_cast<std::int64_t>(bytes * Wave::kBits) * kBitNanoseconds / bus.bit_rate(baud));
+    return VirtualTime(static_cast<std::int64_t>(bytes * bits_of_character(mode.format)) * kBitNanoseconds /
+                       bus.bit_rate(mode.baud));
   }
-  void listen(std::uint32_t baud) override { bus.listen(*this, baud); }
+  void listen(SerialMode mode) override { bus.listen(*this, mode); }
   void run_at(VirtualTime when) override { bus.due_times_.set(index, when); }
 
   Bus& bus;
@@ -27,11 +28,17 @@ Bus::Bus(VirtualClock& clock, std::uint32_t times_faster) : clock_(clock), times
 
 Bus::~Bus() = default;
 
-/// Returns the real bit rate. It is limited, because samplers only make progress if half a bit lasts at least
-/// a nanosecond. No module reaches this limit.
+/// Returns the bit rate in virtual time: the nominal rate times `times_faster`, at most 500 Mbit/s. A sampler
+/// makes progress only if half a bit lasts at least 1 ns. No module reaches this limit.
 std::uint32_t Bus::bit_rate(std::uint32_t baud) const {
   constexpr std::uint64_t kFastest = 500'000'000;
   return static_cast<std::uint32_t>(std::min(std::uint64_t{baud} * times_faster_, kFastest));
+}
+
+/// Returns the bit rate in virtual time and the format as receivers read it. A receiver gets the bytes of a
+/// sender unchanged if this result is the same for both.
+SerialMode Bus::on_the_wires(SerialMode mode) const {
+  return {bit_rate(mode.baud), as_received(mode.format)};
 }
 
 BusEnd& Bus::attach(Station& station) {
@@ -79,18 +86,18 @@ void Bus::drive(End& end, bool on) {
   }
 }
 
-void Bus::put(End& end, std::uint8_t byte, std::uint32_t baud) {
-  Wave wave{clock_.virtual_now(), bit_rate(baud), levels_of(byte)};
+void Bus::put(End& end, std::uint8_t byte, SerialMode mode) {
+  Wave wave{clock_.virtual_now(), on_the_wires(mode), levels_of(byte, mode.format)};
   if (disturbance_ != nullptr) {
-    wave.levels = disturbance_->disturbed({wave.levels, baud, wave.end(), drivers_on_ > 1});
+    wave.levels = disturbance_->disturbed({wave.levels, mode, wave.end(), drivers_on_ > 1});
     for (BusObserver* observer : observers_) {
-      if (wave.levels != levels_of(byte)) {
+      if (wave.levels != levels_of(byte, mode.format)) {
         observer->changed(end.index, wave.levels);
       }
     }
   }
   wave.station = end.index;
-  wave.nominal_baud = baud;
+  wave.nominal = mode;
   wave.byte = byte;
   wave.collided = drivers_on_ > 1 || carries();
   for (Wave& other : waves_) {
@@ -99,20 +106,20 @@ void Bus::put(End& end, std::uint8_t byte, std::uint32_t baud) {
   waves_.push_back(wave);
   ++carried_;
   next_byte_end_ = std::min(next_byte_end_, wave.end());
-  if (!wave.arrives_whole() || has_listeners_at_other_rates(wave.baud)) {
+  if (!wave.arrives_whole() || has_other_listeners(wave.mode)) {
     begin_sampling();
   }
 }
 
-void Bus::listen(End& end, std::uint32_t baud) {
-  const std::uint32_t rate = bit_rate(baud);
+void Bus::listen(End& end, SerialMode mode) {
+  const SerialMode now = on_the_wires(mode);
   Receiver& receiver = receivers_[end.index];
-  if (rate == receiver.bit_rate) {
+  if (now == receiver.mode) {
     return;
   }
-  count_listener(receiver.bit_rate, -1);
-  count_listener(rate, 1);
-  receiver.bit_rate = rate;
+  count_listener(receiver.mode, -1);
+  count_listener(now, 1);
+  receiver.mode = now;
   sampling_ -= receiver.samples ? 1U : 0U;
   receiver.samples = false;
   receiver.sampler = UartSampler();
@@ -120,30 +127,32 @@ void Bus::listen(End& end, std::uint32_t baud) {
   begin_sampling();
 }
 
-void Bus::count_listener(std::uint32_t rate, int change) {
-  if (rate != 0 && (listeners_[rate] += change) == 0) {
-    listeners_.erase(rate);
+void Bus::count_listener(SerialMode mode, int change) {
+  const auto key = std::pair(mode.baud, mode.format);
+  if (mode.baud != 0 && (listeners_[key] += change) == 0) {
+    listeners_.erase(key);
   }
 }
 
-bool Bus::has_listeners_at_other_rates(std::uint32_t rate) const {
-  return listeners_.size() > 1 || (listeners_.size() == 1 && listeners_.begin()->first != rate);
+bool Bus::has_other_listeners(SerialMode mode) const {
+  return listeners_.size() > 1 ||
+         (listeners_.size() == 1 && listeners_.begin()->first != std::pair(mode.baud, mode.format));
 }
 
-/// Returns whether the receiver has the rate of the byte and has listened since its start.
+/// Returns whether the receiver has the mode of the byte and has listened since its start.
 bool Bus::has_heard_from_the_start(const Receiver& receiver, const Wave& wave) {
-  return wave.baud == receiver.bit_rate && receiver.sampler.position() <= wave.start;
+  return wave.mode == receiver.mode && receiver.sampler.position() <= wave.start;
 }
 
 bool Bus::has_to_sample(const Receiver& receiver) const {
   const auto gets_whole = [&](const Wave& wave) {
     return wave.over || (wave.arrives_whole() && has_heard_from_the_start(receiver, wave));
   };
-  return receiver.bit_rate != 0 &&
+  return receiver.mode.baud != 0 &&
          (receiver.sampler.busy() || !std::all_of(waves_.begin(), waves_.end(), gets_whole));
 }
 
-/// Starts to sample for each receiver that cannot get every byte on the wires as a whole byte.
+/// Starts the sampler of each receiver that cannot get every byte on the wires unchanged.
 void Bus::begin_sampling() {
   const auto first = std::find_if(waves_.begin(), waves_.end(), [](const Wave& wave) { return !wave.over; });
   if (first == waves_.end()) {
@@ -153,9 +162,9 @@ void Bus::begin_sampling() {
     if (!receiver.samples && has_to_sample(receiver)) {
       receiver.samples = true;
       ++sampling_;
-      // Before the first of these bytes began, the line was idle or the receiver got whole bytes.
+      // Before the first of these bytes began, the line was idle, or the receiver got the bytes unchanged.
       receiver.sampler.skip_to(std::max(receiver.sampler.position(), first->start));
-      next_sample_ = std::min(next_sample_, receiver.sampler.next(receiver.bit_rate, clock_.virtual_now()));
+      next_sample_ = std::min(next_sample_, receiver.sampler.next(receiver.mode, clock_.virtual_now()));
     }
   }
 }
@@ -168,7 +177,7 @@ void Bus::end_sampling() {
       --sampling_;
     }
     if (receiver.samples) {
-      next_sample_ = std::min(next_sample_, receiver.sampler.next(receiver.bit_rate, clock_.virtual_now()));
+      next_sample_ = std::min(next_sample_, receiver.sampler.next(receiver.mode, clock_.virtual_now()));
     }
   }
 }
@@ -187,7 +196,7 @@ void Bus::run_wire() {
 void Bus::run_samplers() {
   for (Receiver& receiver : receivers_) {
     while (receiver.samples) {
-      const auto received = receiver.sampler.advance(waves_, receiver.bit_rate, clock_.virtual_now());
+      const auto received = receiver.sampler.advance(waves_, receiver.mode, clock_.virtual_now());
       if (!received) {
         break;
       }
@@ -218,9 +227,9 @@ void Bus::finish_bytes() {
 }
 
 void Bus::deliver(const Wave& over) {
+  const VirtualTime ends = over.start + ends_[over.station]->takes(1, over.nominal);
   for (BusObserver* observer : observers_) {
-    observer->byte(over.station, over.byte, over.nominal_baud, over.collided, over.start,
-                   clock_.virtual_now());
+    observer->byte(over.station, over.byte, over.nominal, over.collided, over.start, ends);
   }
   if (!over.arrives_whole()) {
     return;

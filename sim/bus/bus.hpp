@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <map>
 #include <memory>
+#include <utility>
 #include <vector>
 
 #include "firmware/line/verdict.hpp"
@@ -15,6 +16,7 @@
 
 namespace ex9000::sim {
 
+using hal::SerialMode;
 using hal::doubles::VirtualClock;
 using hal::doubles::Wire;
 
@@ -35,9 +37,9 @@ class Station {
 /// A station's end of the wires.
 class BusEnd : public Wire {
  public:
-  /// Makes the station receive at this rate in bits per second from now on; 0: the station does not listen. A
-  /// receiver that begins in the middle of a byte samples the rest of it.
-  virtual void listen(std::uint32_t baud) = 0;
+  /// Makes the station receive in this mode from now on; a rate of 0: the station does not listen. A receiver
+  /// that begins in the middle of a byte samples the rest of it.
+  virtual void listen(SerialMode mode) = 0;
   /// Sets the time of the station's next `run`, in place of an earlier setting; kNever: the bus does not call
   /// `run`.
   virtual void run_at(VirtualTime when) = 0;
@@ -55,11 +57,12 @@ class BusObserver {
   /// Called when the disturbance has changed the byte that `station` begins to send now. Receivers get the
   /// levels `arrives` instead.
   virtual void changed(std::size_t /*station*/, Levels /*arrives*/) {}
-  /// Called when a byte that began at `start` has ended. A byte is not reported if its driver was disabled
-  /// before its end. `byte` is the byte that was sent. `collided`: another driver was enabled, or another
-  /// byte was on the wires, during this byte.
-  virtual void byte(std::size_t station, std::uint8_t byte, std::uint32_t baud, bool collided,
-                    VirtualTime start, VirtualTime end) = 0;
+  /// Called at the end of the first stop bit of a byte that began at `start` and whose last stop bit ends at
+  /// `end`. A byte is not reported if its driver was disabled before its first stop bit was over. `byte` is
+  /// the byte that was sent. `collided`: another driver was enabled, or another byte was on the wires, during
+  /// this byte.
+  virtual void byte(std::size_t station, std::uint8_t byte, SerialMode mode, bool collided, VirtualTime start,
+                    VirtualTime end) = 0;
 
  protected:
   ~BusObserver() = default;
@@ -70,9 +73,9 @@ class Disturbance {
  public:
   struct Sent {
     Levels levels;
-    std::uint32_t baud;
-    VirtualTime ends;
-    bool contended;  ///< another driver is enabled
+    SerialMode mode;
+    VirtualTime ends;  ///< the end of the first stop bit
+    bool contended;    ///< another driver is enabled
   };
   /// Returns the levels that all receivers get instead of those of `sent`.
   virtual Levels disturbed(const Sent& sent) = 0;
@@ -81,10 +84,10 @@ class Disturbance {
   ~Disturbance() = default;
 };
 
-/// A half-duplex line with 8N1 characters. A byte lasts ten bit times at the rate of its sender. A receiver
-/// with the same rate gets the byte after its stop bit. A receiver with another rate samples the wave at its
-/// own rate and gets framing errors and wrong bytes. If two drivers are enabled at once, a 0 from either
-/// driver wins, and receivers sample the resulting wave.
+/// A half-duplex line. A byte lasts ten or eleven bit times at the rate of its sender. A receiver with the
+/// same rate and parity gets the byte after its first stop bit. A receiver with another rate or parity
+/// samples the wave in its own mode and gets framing errors, parity errors and wrong bytes. If two drivers
+/// are enabled at the same time, a 0 from either driver wins, and receivers sample the resulting wave.
 ///
 /// The clock jumps from event to event; this class does not depend on real time.
 ///
@@ -108,9 +111,9 @@ class Bus {
   [[nodiscard]] VirtualTime next() const {
     return std::min(std::min(next_byte_end_, next_sample_), due_times_.next());
   }
-  /// Processes all events at the time `next`. Afterwards the clock shows that time.
+  /// Processes all events at the time `next`. Sets the clock to that time.
   void run_next();
-  /// Processes all events up to and including `until`. Afterwards the clock shows `until`.
+  /// Processes all events up to and including `until`. Sets the clock to `until`.
   void run_until(VirtualTime until);
   void run_for(VirtualTime duration) { run_until(clock_.virtual_now() + duration); }
 
@@ -118,10 +121,8 @@ class Bus {
   [[nodiscard]] bool carries() const { return carried_ != 0; }
   /// Returns whether a byte is on the wires or a driver is enabled.
   [[nodiscard]] bool busy() const { return carries() || drivers_on_ != 0; }
-  /// Returns whether all stations that listen have this rate in bits per second.
-  [[nodiscard]] bool all_listen_at(std::uint32_t baud) const {
-    return !has_listeners_at_other_rates(bit_rate(baud));
-  }
+  /// Returns whether all stations that listen have the rate and the parity of `mode`.
+  [[nodiscard]] bool all_hear(SerialMode mode) const { return !has_other_listeners(on_the_wires(mode)); }
   VirtualClock& clock() { return clock_; }
 
  private:
@@ -131,19 +132,20 @@ class Bus {
   /// them.
   struct Receiver {
     Station* station = nullptr;
-    std::uint32_t bit_rate = 0;  ///< 0: the station does not listen
-    bool samples = false;        ///< samples the wires instead of getting whole bytes
+    SerialMode mode = {};  ///< on the wires; a rate of 0: the station does not listen
+    bool samples = false;  ///< samples the wires, because whole bytes are not possible
     UartSampler sampler = {};
   };
 
   [[nodiscard]] std::uint32_t bit_rate(std::uint32_t baud) const;
+  [[nodiscard]] SerialMode on_the_wires(SerialMode mode) const;
   void drive(End& end, bool on);
-  void put(End& end, std::uint8_t byte, std::uint32_t baud);
-  void listen(End& end, std::uint32_t baud);
+  void put(End& end, std::uint8_t byte, SerialMode mode);
+  void listen(End& end, SerialMode mode);
   static bool has_heard_from_the_start(const Receiver& receiver, const Wave& wave);
   [[nodiscard]] bool has_to_sample(const Receiver& receiver) const;
-  void count_listener(std::uint32_t rate, int change);
-  [[nodiscard]] bool has_listeners_at_other_rates(std::uint32_t rate) const;
+  void count_listener(SerialMode mode, int change);
+  [[nodiscard]] bool has_other_listeners(SerialMode mode) const;
   void begin_sampling();
   void end_sampling();
   void run_wire();
@@ -162,8 +164,8 @@ class Bus {
   Waves waves_;           ///< the bytes on the wires, and older ones that samplers may still read
   unsigned carried_ = 0;  ///< number of bytes on the wires
   unsigned drivers_on_ = 0;
-  std::map<std::uint32_t, int> listeners_;  ///< number of receivers for each bit rate
-  unsigned sampling_ = 0;                   ///< number of receivers that sample
+  std::map<std::pair<std::uint32_t, LineFormat>, int> listeners_;  ///< number of receivers for each mode
+  unsigned sampling_ = 0;                                          ///< number of receivers that sample
   VirtualTime next_byte_end_ = kNever;
   VirtualTime next_sample_ = kNever;
 };

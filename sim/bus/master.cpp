@@ -5,9 +5,9 @@
 
 namespace ex9000::sim {
 
-Master::Master(Bus& bus, std::uint32_t baud, Receive receive)
-    : clock_(bus.clock()), wire_(bus.attach(*this)), baud_(baud), receive_(std::move(receive)) {
-  wire_.listen(baud_);
+Master::Master(Bus& bus, SerialMode mode, Receive receive)
+    : clock_(bus.clock()), wire_(bus.attach(*this)), mode_(mode), receive_(std::move(receive)) {
+  wire_.listen(mode_);
 }
 
 void Master::send(const std::uint8_t* bytes, std::size_t size, VirtualTime not_before) {
@@ -20,14 +20,14 @@ void Master::send(const std::uint8_t* bytes, std::size_t size, VirtualTime not_b
   }
 }
 
-void Master::set_baud(std::uint32_t baud) {
-  if (baud != baud_) {
-    baud_ = baud;
+void Master::set_mode(SerialMode mode) {
+  if (mode != mode_) {
+    mode_ = mode;
     burst_began_ = next_;
     burst_bytes_ = 0;
-    wire_.listen(baud_);
+    wire_.listen(mode_);
     if (changed_) {
-      changed_(baud_);
+      changed_(mode_);
     }
   }
 }
@@ -52,9 +52,9 @@ void Master::run() {
   }
   const std::uint8_t byte = waiting_.front();
   waiting_.pop_front();
-  wire_.put(byte, baud_);
+  wire_.put(byte, mode_);
   // The end is calculated from the first byte, so that rounding errors do not accumulate.
-  wake_at(burst_began_ + wire_.takes(++burst_bytes_, baud_));
+  wake_at(burst_began_ + wire_.takes(++burst_bytes_, mode_));
 }
 
 void Master::receive(std::uint8_t byte, ByteStatus status) {

@@ -14,12 +14,12 @@ class Master final : public Station {
   using Receive = std::function<void(std::uint8_t byte, ByteStatus status)>;
 
   /// Attaches itself to `bus`. `receive` is called for each byte that arrives while the master does not send.
-  Master(Bus& bus, std::uint32_t baud, Receive receive);
+  Master(Bus& bus, SerialMode mode, Receive receive);
   Master(const Master&) = delete;
   Master& operator=(const Master&) = delete;
 
   /// Returns how long `bytes` bytes take on this line.
-  [[nodiscard]] VirtualTime takes(std::size_t bytes) const { return wire_.takes(bytes, baud_); }
+  [[nodiscard]] VirtualTime takes(std::size_t bytes) const { return wire_.takes(bytes, mode_); }
   /// Sends the bytes after those that already wait or are on the wires. If there are none, sends them at
   /// once, but not before `not_before`. The driver is enabled from the first byte to the last. Does not
   /// block.
@@ -29,12 +29,16 @@ class Master final : public Station {
   /// Returns how many bytes wait for their start bit.
   [[nodiscard]] std::size_t waiting() const { return waiting_.size(); }
 
-  /// Sets the rate in bits per second. The receiver uses it at once, and the sender from the next byte on.
-  void set_baud(std::uint32_t baud);
+  /// Sets the rate and format. The receiver uses them at once, and the sender from the next byte on.
+  void set_mode(SerialMode mode);
+  /// Sets the rate in bits per second and keeps the format.
+  void set_baud(std::uint32_t baud) { set_mode({baud, mode_.format}); }
+  /// Sets the format and keeps the rate.
+  void set_format(LineFormat format) { set_mode({mode_.baud, format}); }
 
-  [[nodiscard]] std::uint32_t baud() const { return baud_; }
-  /// Sets a function to call when the rate changes.
-  void on_rate(std::function<void(std::uint32_t baud)> changed) { changed_ = std::move(changed); }
+  [[nodiscard]] SerialMode mode() const { return mode_; }
+  /// Sets a function to call when the rate or the format changes.
+  void on_mode(std::function<void(SerialMode mode)> changed) { changed_ = std::move(changed); }
 
   // --- Station ---
   void run() override;
@@ -43,9 +47,9 @@ class Master final : public Station {
  private:
   VirtualClock& clock_;
   BusEnd& wire_;
-  std::uint32_t baud_;
+  SerialMode mode_;
   Receive receive_;
-  std::function<void(std::uint32_t baud)> changed_;
+  std::function<void(SerialMode mode)> changed_;
   std::deque<std::uint8_t> waiting_;
   bool driving_ = false;
   VirtualTime burst_began_{0};

@@ -8,7 +8,8 @@ namespace ex9000::sim {
 
 namespace {
 
-/// The wake timer serves all deadlines here. The tick only resets the watchdog, so a slow tick is sufficient.
+/// The wake timer handles all deadlines of a simulated module. The tick only feeds the hardware watchdog, so
+/// a slow tick is sufficient.
 constexpr Duration kTick = milliseconds(400);
 
 }  // namespace
@@ -109,7 +110,7 @@ void SimulatedModule::pulse_input(unsigned channel, std::uint32_t count) {
   take_edges();
 }
 
-/// Lets the device process the edges. The main loop of a real board does this continuously.
+/// Makes the device process the edges. On a real board, the main loop does this continuously.
 void SimulatedModule::take_edges() {
   if (powered()) {
     turn();
@@ -167,11 +168,11 @@ bool SimulatedModule::pending() const {
           (mcu_->silence_timer.next() != kNever || mcu_->line.sending() || !mcu_->device.module().at_rest()));
 }
 
-/// Tells the bus when this module has to run next, and at which rate it receives.
+/// Passes the mode of the receiver and the time of the next `run` to the bus.
 void SimulatedModule::settle() {
-  if (baud() != listens_at_) {
-    listens_at_ = baud();
-    end_.listen(listens_at_);
+  if (mode() != listens_in_) {
+    listens_in_ = mode();
+    end_.listen(listens_in_);
   }
   if (mcu_) {
     const VirtualTime sends = std::min(wire_.next(), mcu_->line.next());
@@ -187,7 +188,7 @@ void SimulatedModule::settle() {
 void SimulatedModule::run() {
   runs_at_ = kNever;
   if (next_without_silence_ > clock_.virtual_now()) {
-    end_silence();  // often the only event
+    end_silence();  // usually this is the only event
     return;
   }
   if (mcu_->watchdog.has_expired()) {
@@ -248,7 +249,7 @@ void SimulatedModule::receive(std::uint8_t byte, ByteStatus status) {
     return;
   }
   mcu_->device.on_receive(byte, status);
-  work_or_wait();  // most bytes only move the silence timer
+  work_or_wait();  // most bytes only restart the silence timer
 }
 
 /// Runs the interrupt of the silence timer first, see hal/one_shot_timer.hpp.
@@ -263,13 +264,13 @@ void SimulatedModule::work() {
   settle();
 }
 
-/// Runs the main loop until there is nothing left to do. It takes no virtual time.
+/// Runs the main loop until it has no work. This takes no virtual time.
 void SimulatedModule::turn() {
   if (hung_) {
     return;
   }
   do {
-    mcu_->device.on_wake_timer();  // runs due work at once: people would notice the delay of the slow tick
+    mcu_->device.on_wake_timer();  // runs due work at once: the slow tick would delay it visibly
   } while (mcu_->device.turn() || mcu_->device.has_work());
 }
 

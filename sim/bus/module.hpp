@@ -26,8 +26,8 @@
 
 namespace ex9000::sim {
 
-/// One module on a bus; its supply is off at first. The functions of this class include every action that is
-/// possible on a real module from outside.
+/// One module on a bus. Its supply is off at first. This class has a function for each action that a user can
+/// perform on a real module.
 class SimulatedModule final : public Station {
  public:
   /// Attaches itself to `bus`. `model` is a row of kModels.
@@ -40,7 +40,7 @@ class SimulatedModule final : public Station {
   /// Switches the supply on or off. Switching off interrupts a write in progress and clears all state except
   /// the memory.
   void power(bool on);
-  /// Simulates a supply that fails although its switch is on, or that recovers. A failure has the same
+  /// Simulates a supply failure while the switch is on, or the end of the failure. A failure has the same
   /// effects as switching off.
   void interrupt_supply(bool interrupted);
   [[nodiscard]] bool powered() const { return mcu_.has_value(); }
@@ -53,7 +53,7 @@ class SimulatedModule final : public Station {
   [[nodiscard]] bool init_asserted() const { return init_switch_.asserted(); }
   /// Sets the level of an input channel, counted from 0. Has no effect on channels that the model lacks.
   void set_input(unsigned channel, bool level);
-  /// Applies `count` full pulses at this instant; each one leaves the present level and returns to it.
+  /// Applies `count` full pulses at this instant. Each pulse changes the level and changes it back.
   void pulse_input(unsigned channel, std::uint32_t count);
   /// Stops the main loop until the next reset.
   void hang() { hung_ = true; }
@@ -61,8 +61,8 @@ class SimulatedModule final : public Station {
   void release_driver_late(VirtualTime by);
   /// Makes the module receive and send at `baud` regardless of its settings; 0: its settings apply.
   void force_rate(std::uint32_t baud);
-  /// Returns the rate at which the module receives; 0 if it does not listen.
-  [[nodiscard]] std::uint32_t baud() const { return mcu_ ? wire_.rate(mcu_->line.baud()) : 0; }
+  /// Returns the rate and format in which the module receives; a rate of 0: it does not listen.
+  [[nodiscard]] SerialMode mode() const { return mcu_ ? wire_.forced(mcu_->line.mode()) : SerialMode{}; }
   /// See ModuleWire::end_first_delay.
   void release_late_replies();
   /// See ModuleWire::watch.
@@ -85,8 +85,8 @@ class SimulatedModule final : public Station {
   [[nodiscard]] const hal::doubles::Memory& memory() const { return memory_; }
   hal::doubles::Outputs& output_pins() { return outputs_; }
   hal::doubles::StatusLed& led() { return led_; }
-  /// Returns whether the module receives, waits for a silence, has a request to reply to, sends, stores or
-  /// starts up.
+  /// Returns whether the module is receiving, waiting for the end of a silence, processing a request,
+  /// sending, storing or starting up.
   [[nodiscard]] bool pending() const;
   /// Returns how often the hardware watchdog has reset the module since this object was constructed.
   [[nodiscard]] std::uint64_t watchdog_resets() const { return watchdog_resets_; }
@@ -129,8 +129,8 @@ class SimulatedModule final : public Station {
   void run_memory();
   void run_timers();
   [[gnu::noinline]] void receive_after_silence(std::uint8_t byte, ByteStatus status);
-  /// Returns whether an interrupt has woken the main loop. A host OK could wait until the next turn, but the
-  /// LED should show it at once.
+  /// Returns whether an interrupt has woken the main loop. A host OK could wait until the next turn, but
+  /// viewers show the time that is left of the host watchdog.
   [[nodiscard]] bool has_work() const {
     return mcu_->device.has_work() || mcu_->device.module().host_ok_waits();
   }
@@ -173,7 +173,7 @@ class SimulatedModule final : public Station {
   bool supply_interrupted_ = false;
   bool hung_ = false;
   std::uint64_t watchdog_resets_ = 0;
-  std::uint32_t listens_at_ = 0;  ///< the rate of the receiver
+  SerialMode listens_in_;  ///< the mode of the receiver
   // Each byte uses the members from here on. They are next to each other, so that they take few cache lines:
   // many modules may receive each byte.
   ModuleWire wire_;

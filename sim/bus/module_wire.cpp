@@ -22,22 +22,22 @@ void ModuleWire::drive(bool on) {
       fate_.late_by = std::max(fate_.late_by, late_.back().when - clock_.virtual_now());
     }
   }
-  hand_on(on ? What::On : What::Off, 0, 0);
+  hand_on(on ? What::On : What::Off, 0, {});
   if (!on && ends_) {
     ends_();
   }
 }
 
-void ModuleWire::put(std::uint8_t byte, std::uint32_t baud) { hand_on(What::Byte, byte, reply_rate(baud)); }
+void ModuleWire::put(std::uint8_t byte, SerialMode mode) { hand_on(What::Byte, byte, reply_mode(mode)); }
 
-void ModuleWire::hand_on(What what, std::uint8_t byte, std::uint32_t baud) {
+void ModuleWire::hand_on(What what, std::uint8_t byte, SerialMode mode) {
   if (fate_.lost) {
     return;
   }
   if (fate_.late_by == VirtualTime(0) && late_.empty()) {
-    carry_out(what, byte, baud, reply_);
+    carry_out(what, byte, mode, reply_);
   } else {
-    late_.push_back({clock_.virtual_now() + fate_.late_by, what, byte, baud, reply_});
+    late_.push_back({clock_.virtual_now() + fate_.late_by, what, byte, mode, reply_});
   }
 }
 
@@ -47,14 +47,14 @@ void ModuleWire::tell(std::uint64_t reply, bool on) const {
   }
 }
 
-void ModuleWire::carry_out(What what, std::uint8_t byte, std::uint32_t baud, std::uint64_t reply) {
+void ModuleWire::carry_out(What what, std::uint8_t byte, SerialMode mode, std::uint64_t reply) {
   switch (what) {
     case What::On:
       tell(reply, true);
       wire_.drive(true);
       break;
     case What::Byte:
-      wire_.put(byte, baud);
+      wire_.put(byte, mode);
       break;
     case What::Off:
       wire_.drive(false);
@@ -68,7 +68,7 @@ void ModuleWire::run() {
     const Late due = late_.front();
     late_.pop_front();
     driving_late_ = due.what != What::Off;
-    carry_out(due.what, due.byte, due.baud, due.reply);
+    carry_out(due.what, due.byte, due.mode, due.reply);
   }
 }
 

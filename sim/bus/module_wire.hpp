@@ -11,6 +11,7 @@
 
 namespace ex9000::sim {
 
+using hal::SerialMode;
 using hal::doubles::kNever;
 using hal::doubles::VirtualClock;
 using hal::doubles::VirtualTime;
@@ -22,12 +23,12 @@ struct ReplyFate {
   VirtualTime late_by{0};
 };
 
-/// Passes on the bytes that a UART sends. They are unchanged unless a defect is set.
+/// Passes on the bytes that a UART sends. Without a defect, the bytes and their times are unchanged.
 class ModuleWire final : public Wire {
  public:
   ModuleWire(const VirtualClock& clock, Wire& wire) : clock_(clock), wire_(wire) {}
 
-  /// Called when the driver is enabled. It must not switch off the module's power.
+  /// Called when the driver is enabled. The function must not switch off the module's power.
   using Begins = std::function<ReplyFate()>;
   /// Called when the driver is disabled, even if the reply is not on the wires yet.
   using Ends = std::function<void()>;
@@ -38,9 +39,8 @@ class ModuleWire final : public Wire {
   void watch(Begins begins, Ends ends, OnTheWires on_the_wires);
   /// Makes the UART run at `baud` regardless of the firmware's setting; 0: the firmware's setting applies.
   void force_rate(std::uint32_t baud) { forced_ = baud; }
-  [[nodiscard]] std::uint32_t rate(std::uint32_t baud) const {
-    return forced_ != 0 && baud != 0 ? forced_ : baud;
-  }
+  /// Returns `mode` with the forced rate, if there is one and the UART is on.
+  [[nodiscard]] SerialMode forced(SerialMode mode) const { return with_rate(forced_, mode); }
 
   /// Returns whether a late reply is on the wires. The UART may have sent it completely before that.
   [[nodiscard]] bool sends_late() const { return driving_late_; }
@@ -48,14 +48,14 @@ class ModuleWire final : public Wire {
   void run();
   /// Ends the delay of the first late reply. The replies after it keep their distance in time from it.
   void end_first_delay();
-  /// Drops everything that has not been sent. Call this when the module loses its supply or is reset.
+  /// Drops all bytes that have not been sent. Call this when the module loses its supply or is reset.
   void abort();
 
   // --- Wire ---
   void drive(bool on) override;
-  void put(std::uint8_t byte, std::uint32_t baud) override;
-  [[nodiscard]] VirtualTime takes(std::size_t bytes, std::uint32_t baud) const override {
-    return wire_.takes(bytes, reply_rate(baud));
+  void put(std::uint8_t byte, SerialMode mode) override;
+  [[nodiscard]] VirtualTime takes(std::size_t bytes, SerialMode mode) const override {
+    return wire_.takes(bytes, reply_mode(mode));
   }
 
  private:
@@ -64,21 +64,21 @@ class ModuleWire final : public Wire {
     VirtualTime when;
     What what;
     std::uint8_t byte;
-    std::uint32_t baud;
+    SerialMode mode;
     std::uint64_t reply;
   };
 
   /// Replies are lost if more entries than this are queued, so that endless requests cannot fill the memory.
   static constexpr std::size_t kMostLate = 65'536;
 
-  void hand_on(What what, std::uint8_t byte, std::uint32_t baud);
-  void carry_out(What what, std::uint8_t byte, std::uint32_t baud, std::uint64_t reply);
+  void hand_on(What what, std::uint8_t byte, SerialMode mode);
+  void carry_out(What what, std::uint8_t byte, SerialMode mode, std::uint64_t reply);
   void tell(std::uint64_t reply, bool on) const;
-  [[nodiscard]] std::uint32_t reply_rate(std::uint32_t baud) const {
-    if (!drives_) {
-      return rate(baud);
-    }
-    return forced_for_reply_ != 0 ? forced_for_reply_ : baud;
+  [[nodiscard]] SerialMode reply_mode(SerialMode mode) const {
+    return with_rate(drives_ ? forced_for_reply_ : forced_, mode);
+  }
+  static SerialMode with_rate(std::uint32_t baud, SerialMode mode) {
+    return baud != 0 && mode.baud != 0 ? SerialMode{baud, mode.format} : mode;
   }
 
   const VirtualClock& clock_;

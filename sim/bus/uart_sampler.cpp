@@ -22,7 +22,7 @@ std::optional<VirtualTime> find_level(const Waves& waves, bool level, VirtualTim
   }
   std::vector<VirtualTime> boundaries;
   for (const Wave& wave : waves) {
-    for (unsigned bit = 0; bit <= Wave::kBits; ++bit) {
+    for (unsigned bit = 0; bit <= wave.bits(); ++bit) {
       if (wave.boundary(bit) > from && wave.boundary(bit) < until) {
         boundaries.push_back(wave.boundary(bit));
       }
@@ -37,13 +37,22 @@ std::optional<VirtualTime> find_level(const Waves& waves, bool level, VirtualTim
   return found == boundaries.end() ? std::nullopt : std::optional(*found);
 }
 
-VirtualTime end_of_byte(VirtualTime start, std::uint32_t baud) {
-  return start + VirtualTime(Wave::kBits * kSecond / baud);
+VirtualTime end_of_byte(VirtualTime start, SerialMode mode) {
+  return start + VirtualTime(bits_received(mode.format) * kSecond / mode.baud);
+}
+
+/// Returns what a UART reports for the levels of a character.
+UartSampler::Received received(Levels levels, LineFormat format) {
+  const auto byte = static_cast<std::uint8_t>(levels >> 1U);
+  if (!has_stop_bit(levels, format)) {
+    return {byte, levels == 0 ? ByteStatus::Break : ByteStatus::FramingError};
+  }
+  return {byte, levels == levels_of(byte, format) ? ByteStatus::Good : ByteStatus::ParityError};
 }
 
 }  // namespace
 
-VirtualTime Wave::boundary(unsigned index) const { return start + VirtualTime(index * kSecond / baud); }
+VirtualTime Wave::boundary(unsigned index) const { return start + VirtualTime(index * kSecond / mode.baud); }
 
 bool Wave::level(VirtualTime at) const {
   if (at < start || at >= end() || at >= cut_off) {
@@ -56,11 +65,11 @@ bool Wave::level(VirtualTime at) const {
   return (levels >> bit & 1U) != 0;
 }
 
-std::optional<UartSampler::Received> UartSampler::advance(const Waves& waves, std::uint32_t baud,
+std::optional<UartSampler::Received> UartSampler::advance(const Waves& waves, SerialMode mode,
                                                           VirtualTime until) {
   while (position_ < until) {
     if (complete_) {
-      return end_of_byte(start_, baud) <= until ? std::exchange(complete_, std::nullopt) : std::nullopt;
+      return end_of_byte(start_, mode) <= until ? std::exchange(complete_, std::nullopt) : std::nullopt;
     }
     if (!receiving_) {
       const auto found = find_level(waves, waits_for_idle_, position_, until);
@@ -75,9 +84,9 @@ std::optional<UartSampler::Received> UartSampler::advance(const Waves& waves, st
       receiving_ = true;
       start_ = *found;
       bit_ = 0;
-      byte_ = 0;
+      levels_ = 0;
     }
-    const VirtualTime middle = start_ + VirtualTime((2 * bit_ + 1) * kSecond / (2 * std::int64_t{baud}));
+    const VirtualTime middle = start_ + VirtualTime((2 * bit_ + 1) * kSecond / (2 * std::int64_t{mode.baud}));
     if (middle >= until) {
       position_ = until;
       break;
@@ -86,21 +95,21 @@ std::optional<UartSampler::Received> UartSampler::advance(const Waves& waves, st
     const bool level = level_of(waves, middle);
     if (bit_ == 0 && level) {
       receiving_ = false;  // a spike, not a start bit
-    } else if (bit_ == Wave::kBits - 1) {
-      receiving_ = false;
-      waits_for_idle_ = !level;
-      const ByteStatus error = byte_ == 0 ? ByteStatus::Break : ByteStatus::FramingError;
-      complete_ = Received{byte_, level ? ByteStatus::Good : error};
-    } else if (bit_ != 0) {
-      byte_ = static_cast<std::uint8_t>(byte_ | (level ? 1U << (bit_ - 1) : 0U));
+    } else {
+      levels_ = static_cast<Levels>(levels_ | (level ? 1U << bit_ : 0U));
+      if (bit_ == bits_received(mode.format) - 1) {
+        receiving_ = false;
+        waits_for_idle_ = !level;
+        complete_ = received(levels_, mode.format);
+      }
     }
     ++bit_;
   }
   return std::nullopt;
 }
 
-VirtualTime UartSampler::next(std::uint32_t baud, VirtualTime now) const {
-  return complete_ ? end_of_byte(start_, baud) : now + VirtualTime(kSecond / 2 / baud);
+VirtualTime UartSampler::next(SerialMode mode, VirtualTime now) const {
+  return complete_ ? end_of_byte(start_, mode) : now + VirtualTime(kSecond / 2 / mode.baud);
 }
 
 }  // namespace ex9000::sim

@@ -7,49 +7,85 @@
 #include <vector>
 
 #include "firmware/line/verdict.hpp"
+#include "firmware/model/line_format.hpp"
 #include "hal/doubles/virtual_clock.hpp"
+#include "hal/serial_mode.hpp"
 
 namespace ex9000::sim {
 
+using hal::SerialMode;
 using hal::doubles::VirtualTime;
 
-/// The levels of a byte on the wires, from bit 0 on: start bit, 8 data bits with the lowest first, stop bit.
+/// The levels of a byte on the wires, from bit 0 on: start bit, 8 data bits with the lowest first, parity bit
+/// if the format has one, first stop bit. A second stop bit is idle time for all receivers.
 using Levels = std::uint16_t;
-constexpr Levels kIdleLevels = 0x3FF;
-constexpr Levels levels_of(std::uint8_t byte) { return static_cast<Levels>(0x200U | unsigned{byte} << 1U); }
+constexpr Levels kIdleLevels = 0x7FF;
+
+/// Returns the format as receivers read it: they ignore a second stop bit.
+constexpr LineFormat as_received(LineFormat format) {
+  return format == LineFormat::k8N2 ? LineFormat::k8N1 : format;
+}
+
+/// Returns whether receivers in these modes get each other's bytes.
+constexpr bool hear_each_other(SerialMode a, SerialMode b) {
+  return a.baud == b.baud && as_received(a.format) == as_received(b.format);
+}
+
+constexpr bool has_odd_number_of_ones(std::uint8_t byte) {
+  bool odd = false;
+  for (unsigned rest = byte; rest != 0; rest &= rest - 1U) {
+    odd = !odd;
+  }
+  return odd;
+}
+
+constexpr Levels levels_of(std::uint8_t byte, LineFormat format = LineFormat::k8N1) {
+  constexpr unsigned kNinthBit = 1U << 9U;
+  constexpr unsigned kTenthBit = 1U << 10U;
+  const unsigned start_and_data = unsigned{byte} << 1U;
+  if (!has_parity(format)) {
+    return static_cast<Levels>(kNinthBit | start_and_data);
+  }
+  const bool parity = has_odd_number_of_ones(byte) == (format == LineFormat::k8E1);
+  return static_cast<Levels>(kTenthBit | (parity ? kNinthBit : 0U) | start_and_data);
+}
+
+/// Returns whether the first stop bit in `levels` is an idle level.
+constexpr bool has_stop_bit(Levels levels, LineFormat format) {
+  return (levels >> (bits_received(format) - 1U) & 1U) != 0;
+}
 
 /// The levels of a byte as one driver puts them on the wires, and the byte that its station has sent.
 struct Wave {
-  /// `its_baud`: the bit rate, not 0.
-  Wave(VirtualTime its_start, std::uint32_t its_baud, Levels its_levels)
-      : start(its_start), baud(its_baud), levels(its_levels), ends(boundary(kBits)) {}
+  /// `its_mode`: the bit rate, not 0, and the format as receivers read it.
+  Wave(VirtualTime its_start, SerialMode its_mode, Levels its_levels)
+      : start(its_start), mode(its_mode), levels(its_levels), ends(boundary(bits())) {}
 
-  static constexpr unsigned kBits = 10;
-
-  /// Returns the time at which bit `index` begins; for kBits, the end of the byte.
+  [[nodiscard]] unsigned bits() const { return bits_received(mode.format); }
+  /// Returns the time at which bit `index` begins; for `bits()`, the end of the first stop bit.
   [[nodiscard]] VirtualTime boundary(unsigned index) const;
   [[nodiscard]] VirtualTime end() const { return ends; }
   /// Returns true for the idle level. Outside the byte the level is idle too.
   [[nodiscard]] bool level(VirtualTime at) const;
 
   VirtualTime start;
-  std::uint32_t baud;
+  SerialMode mode;
   Levels levels;
   VirtualTime ends;
   VirtualTime cut_off = hal::doubles::kNever;  ///< time at which the driver was disabled
   std::size_t station = 0;
-  std::uint32_t nominal_baud = 0;  ///< the rate that the station is set to
+  SerialMode nominal;  ///< the rate and format that the station is set to
   std::uint8_t byte = 0;
   bool collided = false;  ///< another driver was enabled, or another byte was on the wires
   bool over = false;      ///< has ended; samplers may still read it
 
-  /// Returns whether a receiver with the same rate gets the byte unchanged.
-  [[nodiscard]] bool arrives_whole() const { return !collided && levels == levels_of(byte); }
+  /// Returns whether a receiver with the same mode gets the byte unchanged.
+  [[nodiscard]] bool arrives_whole() const { return !collided && levels == levels_of(byte, mode.format); }
 };
 
 using Waves = std::vector<Wave>;
 
-/// Samples 8N1 characters: waits for a falling edge, then reads the middle of each bit.
+/// Samples characters: waits for a falling edge, then reads the middle of each bit.
 class UartSampler {
  public:
   struct Received {
@@ -57,14 +93,15 @@ class UartSampler {
     ByteStatus status;
   };
 
-  /// Samples the wires up to `until`. Returns a byte when its stop bit is over; call again then.
-  std::optional<Received> advance(const Waves& waves, std::uint32_t baud, VirtualTime until);
+  /// Samples the wires up to `until`. Returns a byte when its first stop bit is over; call this again then.
+  /// `mode` has the bit rate on the wires, and must be the same in all calls.
+  std::optional<Received> advance(const Waves& waves, SerialMode mode, VirtualTime until);
 
   /// Returns whether the sampler is in the middle of a byte or waits for the line to become idle.
   [[nodiscard]] bool busy() const { return receiving_ || waits_for_idle_ || complete_; }
   /// Returns when `advance` must be called again after a call with `now`: at the end of the byte, or after
   /// half a bit.
-  [[nodiscard]] VirtualTime next(std::uint32_t baud, VirtualTime now) const;
+  [[nodiscard]] VirtualTime next(SerialMode mode, VirtualTime now) const;
   /// Returns the time up to which the sampler has processed the wires.
   [[nodiscard]] VirtualTime position() const { return position_; }
   void skip_to(VirtualTime position) { position_ = position; }
@@ -73,10 +110,10 @@ class UartSampler {
   bool receiving_ = false;
   bool waits_for_idle_ = false;
   unsigned bit_ = 0;
-  std::uint8_t byte_ = 0;
+  Levels levels_ = 0;  ///< the bits that have been sampled so far
   VirtualTime start_{0};
   VirtualTime position_{0};
-  std::optional<Received> complete_;  ///< a byte whose stop bit has been sampled, but is not over
+  std::optional<Received> complete_;  ///< a byte whose stop bit has been sampled, but has not ended
 };
 
 }  // namespace ex9000::sim

@@ -18,6 +18,7 @@ constexpr std::string_view kTexts = R"({"type": "array", "items": {"type": "stri
 constexpr std::string_view kRate =
     R"({"enum": [1200, 2400, 4800, 9600, 19200, 38400, 57600, 115200,
                  "1200", "2400", "4800", "9600", "19200", "38400", "57600", "115200"]})";
+constexpr std::string_view kFormat = R"({"enum": ["8N1", "8N2", "8E1", "8O1"]})";
 constexpr std::string_view kPort =
     R"({"anyOf": [{"type": "integer", "minimum": 0, "maximum": 65535}, {"type": "string", "minLength": 1}]})";
 constexpr std::string_view kNumber =
@@ -103,7 +104,7 @@ const std::array<BusFileKey<Setup>, 7> bus_keys{{
      [](Setup& setup, const Node& value) { setup.seed = parse_seed(value.number_or_text()); }},
 }};
 
-const std::array<BusFileKey<LineSetup>, 10> line_keys{{
+const std::array<BusFileKey<LineSetup>, 11> line_keys{{
     {"name", kText, "the line's name, one word (default: line1, line2, ...)",
      [](LineSetup& line, const Node& value) { line.name = value.text(); }},
     {"pty", kPath,
@@ -117,6 +118,9 @@ const std::array<BusFileKey<LineSetup>, 10> line_keys{{
      [](LineSetup& line, const Node& value) { line.echo = value.flag(); }},
     {"baud", kRate, "the line's rate until a master sets one (default: the first module's)",
      [](LineSetup& line, const Node& value) { line.baud = parse_baud_rate(value.number_or_text()); }},
+    {"format", kFormat,
+     "the line's format, because a pseudo-terminal and TCP carry none (default: the first module's)",
+     [](LineSetup& line, const Node& value) { line.format = parse_line_format(value.text()); }},
     {"line", R"({"enum": ["paced", "instant"]})",
      "paced: bytes take as long as on a real line; instant: bytes take no time (default: paced)",
      [](LineSetup& line, const Node& value) { line.instant = parse_line_kind(value.text()); }},
@@ -133,7 +137,7 @@ const std::array<BusFileKey<LineSetup>, 10> line_keys{{
      }},
 }};
 
-const std::array<BusFileKey<ModuleObject>, 11> module_keys{{
+const std::array<BusFileKey<ModuleObject>, 12> module_keys{{
     {"model", kText, "the model, as --models lists it, in any case, with or without EX; required",
      [](ModuleObject& /*module*/, const Node& /*value*/) {
      }},  // read_module has read it already, because other keys depend on it
@@ -142,6 +146,7 @@ const std::array<BusFileKey<ModuleObject>, 11> module_keys{{
     {"protocol", R"({"enum": ["ascii", "modbus"]})",
      "the module's protocol (default: modbus for -M models, else ascii)", take_setting<&Node::text>},
     {"baud", kRate, "the module's rate (default 9600)", take_setting<&Node::number_or_text>},
+    {"format", kFormat, "the module's line format (default 8N1)", take_setting<&Node::text>},
     {"checksum", kOnOff, "checksums of ASCII frames (default off)", take_setting<&Node::flag_or_text>},
     {"edge", R"({"enum": ["falling", "rising"]})", "the edge that the counters count (default falling)",
      take_setting<&Node::text>},

@@ -26,8 +26,8 @@ struct ModuleObject {
 };
 
 extern const std::array<BusFileKey<Setup>, 7> bus_keys;
-extern const std::array<BusFileKey<LineSetup>, 10> line_keys;
-extern const std::array<BusFileKey<ModuleObject>, 11> module_keys;
+extern const std::array<BusFileKey<LineSetup>, 11> line_keys;
+extern const std::array<BusFileKey<ModuleObject>, 12> module_keys;
 
 /// Reads all keys of a bus file. Throws like Node.
 Setup read_bus(const Node& root);

@@ -2,10 +2,10 @@
 
 namespace ex9000::sim {
 
-void Echo::set_baud(std::uint32_t baud) {
-  baud_ = baud;
+void Echo::set_mode(SerialMode mode) {
+  mode_ = mode;
   if (on_) {
-    wire_.listen(baud_);
+    wire_.listen(mode_);
   }
 }
 
@@ -24,13 +24,13 @@ void Echo::receive(std::uint8_t byte, ByteStatus /*status*/) {
 void Echo::run() {
   if (!driving_ && bus_.carries()) {
     // A byte on the wires may already have ended the silence; `receive` is called only after its stop bit.
-    wake_at(clock_.virtual_now() + wire_.takes(1, baud_));
+    wake_at(clock_.virtual_now() + wire_.takes(1, mode_));
     return;
   }
   if (!driving_) {
     driving_ = true;
     began_ = clock_.virtual_now();
-    sends_at_ = baud_;
+    sends_in_ = mode_;
     wire_.drive(true);
   }
   if (sent_ == heard_.size()) {
@@ -41,9 +41,9 @@ void Echo::run() {
     wire_.drive(false);
     return;
   }
-  wire_.put(heard_[sent_], sends_at_);
+  wire_.put(heard_[sent_], sends_in_);
   // The end is calculated from the first byte, so that rounding errors do not accumulate.
-  wake_at(began_ + wire_.takes(++sent_, sends_at_));
+  wake_at(began_ + wire_.takes(++sent_, sends_in_));
 }
 
 }  // namespace ex9000::sim

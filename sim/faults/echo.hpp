@@ -11,26 +11,25 @@ namespace ex9000::sim {
 
 class Echo final : public Station {
  public:
-  /// Attaches itself to `bus`; the echo is off at first. `baud` is the present rate of the line.
-  Echo(Bus& bus, std::uint32_t baud)
-      : bus_(bus), clock_(bus.clock()), wire_(bus.attach(*this)), baud_(baud) {}
+  /// Attaches itself to `bus`; the echo is off at first. `mode` is the present mode of the line.
+  Echo(Bus& bus, SerialMode mode) : bus_(bus), clock_(bus.clock()), wire_(bus.attach(*this)), mode_(mode) {}
   Echo(const Echo&) = delete;
   Echo& operator=(const Echo&) = delete;
 
-  /// Starts to listen and to send at the rate of the line. The echo sends the received bytes when no byte has
-  /// arrived for `delay`.
+  /// Starts to receive and to send in the mode of the line. The echo sends the received bytes when no byte
+  /// has arrived for `delay`.
   void switch_on(VirtualTime delay) {
     on_ = true;
     delay_ = delay;
-    wire_.listen(baud_);
+    wire_.listen(mode_);
   }
   /// Stops listening; bytes already received are still sent.
   void switch_off() {
     on_ = false;
-    wire_.listen(0);
+    wire_.listen({});
   }
-  /// Sets the rate of the line.
-  void set_baud(std::uint32_t baud);
+  /// Sets the rate and format of the line.
+  void set_mode(SerialMode mode);
   /// Returns whether bytes wait or are being sent.
   [[nodiscard]] bool sending() const { return next_ != kNever; }
 
@@ -44,9 +43,9 @@ class Echo final : public Station {
   const Bus& bus_;
   VirtualClock& clock_;
   BusEnd& wire_;
-  std::uint32_t baud_;
+  SerialMode mode_;
   bool on_ = false;
-  std::uint32_t sends_at_ = 0;  ///< rate of the present transmission, from its first byte to its last
+  SerialMode sends_in_;  ///< mode of the present transmission, from its first byte to its last
   VirtualTime delay_{0};
   std::vector<std::uint8_t> heard_;
   std::size_t sent_ = 0;

@@ -76,11 +76,11 @@ void Faults::prepare(Trouble trouble) {
   if (is_noise(trouble) && !noise_) {
     noise_ = std::make_unique<Noise>(bus_, NoiseRates(), chance_.number());
   } else if (trouble == Trouble::Echo && !echo_) {
-    echo_ = std::make_unique<Echo>(bus_, master_.baud());
-    master_.on_rate([this](std::uint32_t baud) { echo_->set_baud(baud); });
+    echo_ = std::make_unique<Echo>(bus_, master_.mode());
+    master_.on_mode([this](SerialMode mode) { echo_->set_mode(mode); });
   } else if (trouble == Trouble::ForeignTraffic && !stranger_) {
     stranger_ =
-        std::make_unique<Master>(bus_, master_.baud(), [](std::uint8_t /*byte*/, ByteStatus /*status*/) {});
+        std::make_unique<Master>(bus_, master_.mode(), [](std::uint8_t /*byte*/, ByteStatus /*status*/) {});
   }
 }
 
@@ -408,7 +408,7 @@ void Faults::set_echo() {
 }
 
 void Faults::say_foreign(const std::vector<std::uint8_t>& bytes) {
-  stranger_->set_baud(master_.baud());
+  stranger_->set_mode(master_.mode());
   if (stranger_->waiting() < kMostForeign) {
     stranger_->send(bytes.data(), bytes.size());
   }

@@ -23,8 +23,8 @@ namespace ex9000::sim {
 class Faults final : public Station {
  public:
   using Modules = std::vector<std::unique_ptr<SimulatedModule>>;
-  /// Gets one line of text for people when a fault strikes or ends. Faults that depend on replies and faults
-  /// without a schedule of strikes (When::Always) are not reported.
+  /// Receives one line of text for people when a fault strikes or ends. Faults that depend on replies and
+  /// faults without a schedule of strikes (When::Always) are not reported.
   using Notice = std::function<void(const std::string&)>;
 
   /// Attaches itself to `bus`. `master` has the line's rate; `notice` may be empty. All arguments must live

@@ -14,7 +14,7 @@ Levels Noise::disturbed(const Sent& sent) {
     return sent.levels;
   }
   Levels levels = sent.levels;
-  for (unsigned bit = 0; bit < Wave::kBits; ++bit) {
+  for (unsigned bit = 0; bit < bits_received(sent.mode.format); ++bit) {
     const auto mask = static_cast<Levels>(1U << bit);
     if (chance_.happens(rates_.flipped_bit)) {
       levels = static_cast<Levels>(levels ^ mask);
@@ -31,7 +31,7 @@ Levels Noise::disturbed(const Sent& sent) {
     const std::uint8_t byte = zero ? 0 : static_cast<std::uint8_t>(chance_.number());
     const auto later = std::find_if(strays_.begin(), strays_.end(),
                                     [&sent](const Stray& stray) { return sent.ends < stray.at; });
-    strays_.insert(later, {sent.ends, byte, sent.baud});
+    strays_.insert(later, {sent.ends, byte, sent.mode});
     wait_for_next();
   }
   strikes_ += levels != sent.levels ? 1U : 0U;
@@ -44,7 +44,7 @@ void Noise::run() {
   strays_.pop_front();
   ++strikes_;
   straying_ = true;
-  wire_.put(stray.byte, stray.baud);
+  wire_.put(stray.byte, stray.mode);
   straying_ = false;
   wait_for_next();
 }

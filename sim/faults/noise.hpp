@@ -9,14 +9,14 @@
 
 namespace ex9000::sim {
 
-/// How often noise strikes. Each value is a probability from 0 to 1.
+/// The frequency of each kind of noise, as a probability from 0 to 1.
 struct NoiseRates {
   double flipped_bit = 0;     ///< for each bit, including start and stop bits
   double lost_character = 0;  ///< for each character: receivers see an idle line
   /// After each character: a character with a random byte follows directly. If the sender continues without a
   /// gap, the two collide.
   double stray_character = 0;
-  /// After each character: a 00 follows, as the turn-around of a line produces it.
+  /// After each character: a byte 00 follows, as after the turn-around of a real line.
   double stray_zero = 0;
   /// For each 0 that is sent while another driver is enabled and holds the idle level.
   double lost_in_contention = 0;
@@ -44,7 +44,7 @@ class Noise final : public Disturbance, public Station {
   struct Stray {
     VirtualTime at;
     std::uint8_t byte;
-    std::uint32_t baud;
+    SerialMode mode;
   };
 
   void wait_for_next();
@@ -53,7 +53,7 @@ class Noise final : public Disturbance, public Station {
   NoiseRates rates_;
   Chance chance_;
   std::uint64_t strikes_ = 0;
-  std::deque<Stray> strays_;  ///< strays that are still to come, the next one first
+  std::deque<Stray> strays_;  ///< characters that have not been added yet, the next one first
   bool straying_ = false;
 };
 

@@ -17,7 +17,14 @@ std::string told(const Frame::Change& change) {
     return which + "break instead of " + sent;
   }
   const std::string instead = hex_byte_text(*byte) + " instead of " + sent;
-  return which + (change.status() == ByteStatus::FramingError ? "framing error, " : "") + instead;
+  switch (change.status()) {
+    case ByteStatus::FramingError:
+      return which + "framing error, " + instead;
+    case ByteStatus::ParityError:
+      return which + "parity error" + (*byte == change.sent ? "" : ", " + instead);
+    default:
+      return which + instead;
+  }
 }
 
 void append(std::string& text, const std::string& more) {
@@ -34,9 +41,9 @@ std::string line_error(const Frame& frame) {
     append(changes, told(change));
   }
   std::string text = frame.collided ? "collision: another station drove the line at the same time" : "";
-  if (frame.sent_at != frame.line_at) {
-    append(text, "sent at " + std::to_string(frame.sent_at) + " baud on a line at " +
-                     std::to_string(frame.line_at));
+  if (!hear_each_other(frame.sent_in, frame.line_in)) {
+    append(text, "sent at " + mode_text(frame.sent_in.baud, frame.sent_in.format) + " on a line at " +
+                     mode_text(frame.line_in.baud, frame.line_in.format));
   }
   append(text, changes.empty() ? "" : "noise: " + changes);
   return text;

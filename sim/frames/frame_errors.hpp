@@ -7,7 +7,7 @@
 
 namespace ex9000::sim {
 
-/// Describes a collision, a sender at another baud rate than the line, and bytes that a disturbance has
+/// Describes a collision, a sender in another mode than the line, and bytes that a disturbance has
 /// changed. Positions count from 1. Returns an empty string if there is no error.
 std::string line_error(const Frame& frame);
 

@@ -11,11 +11,11 @@ using FrameBytes = std::vector<std::uint8_t>;
 
 enum class Speaker { Master, Module };
 
-/// Returns whether the bytes look like a DCON frame: a delimiter or the first character of a reply, then
-/// printable characters, then optionally CR. Bytes 00 and LF may precede a delimiter.
+/// Returns whether the bytes have the form of a DCON frame: a delimiter or the first character of a reply,
+/// then printable characters, then optionally CR. Bytes 00 and LF may precede a delimiter.
 bool looks_like_dcon(const FrameBytes& bytes);
-/// Returns whether the bytes look like a DCON frame or like a damaged one. A damaged one begins and ends like
-/// a DCON frame and has no correct CRC.
+/// Returns whether the bytes have the form of a DCON frame or of a damaged DCON frame. A damaged frame begins
+/// and ends like a DCON frame and has no correct CRC.
 bool was_dcon(const FrameBytes& bytes);
 
 /// Returns the bytes as text for people: DCON as text with \r, \n and \0, everything else in hex.
@@ -23,7 +23,7 @@ std::string shown(const FrameBytes& bytes);
 
 /// Describes an error that receivers detect: a wrong CRC, too few bytes, a wrong checksum if the request has
 /// one, or characters that are not printable. Returns an empty string if there is no error, or if the bytes
-/// do not show it.
+/// alone do not reveal it.
 std::string check_error(const FrameBytes& bytes, Speaker speaker);
 
 /// Returns the meaning of a frame, its error (see `check_error`), or both; empty if neither is known.

@@ -11,13 +11,12 @@ namespace {
 
 constexpr std::size_t kMaster = 0;
 
-/// The longest pauses inside a frame: between the pieces of a master's write, and between two keys of a
-/// person. The first one is at least the time of four characters, which is longer at low rates.
+/// The longest pauses inside a frame: between the pieces of a master's write, and between two key presses
+/// of a person. The first one is at least the time of four characters, which is longer at low rates.
 constexpr VirtualTime kLongestPauseInWrite = std::chrono::milliseconds(5);
 constexpr VirtualTime kLongestPauseInTyping = std::chrono::seconds(5);
 
 constexpr Levels kStartBit = 1U;
-constexpr Levels kStopBit = 1U << 9U;
 
 }  // namespace
 
@@ -29,10 +28,12 @@ std::optional<std::uint8_t> Frame::Change::byte() const {
 }
 
 ByteStatus Frame::Change::status() const {
-  if ((arrives & kStopBit) != 0) {
-    return ByteStatus::Good;
+  if (!has_stop_bit(arrives, format)) {
+    return arrives == 0 ? ByteStatus::Break : ByteStatus::FramingError;
   }
-  return arrives == 0 ? ByteStatus::Break : ByteStatus::FramingError;
+  const auto byte = static_cast<std::uint8_t>(arrives >> 1U);
+  const bool right = !has_parity(format) || arrives == levels_of(byte, format);
+  return right ? ByteStatus::Good : ByteStatus::ParityError;
 }
 
 FrameWatch::Sender& FrameWatch::sender(std::size_t station) {
@@ -55,7 +56,7 @@ bool FrameWatch::begins_another(VirtualTime start, VirtualTime end) {
 
 void FrameWatch::changed(std::size_t station, Levels arrives) { sender(station).change = arrives; }
 
-void FrameWatch::byte(std::size_t station, std::uint8_t byte, std::uint32_t baud, bool collided,
+void FrameWatch::byte(std::size_t station, std::uint8_t byte, SerialMode mode, bool collided,
                       VirtualTime start, VirtualTime end) {
   if (station == kMaster && begins_another(start, end)) {
     hand_out(kMaster);
@@ -64,12 +65,12 @@ void FrameWatch::byte(std::size_t station, std::uint8_t byte, std::uint32_t baud
   Frame& frame = sending.frame;
   if (sending.sent == 0) {
     frame.began = start;
-    frame.sent_at = baud;
-    frame.line_at = line_rate_();
+    frame.sent_in = mode;
+    frame.line_in = line_mode_();
   }
   std::optional<std::uint8_t> arrives = byte;
   if (const auto levels = std::exchange(sending.change, std::nullopt)) {
-    frame.changes.push_back({sending.sent, byte, *levels});
+    frame.changes.push_back({sending.sent, byte, *levels, mode.format});
     arrives = frame.changes.back().byte();
   }
   if (arrives) {
@@ -83,9 +84,9 @@ void FrameWatch::byte(std::size_t station, std::uint8_t byte, std::uint32_t baud
   if ((dcon && frame.bytes.back() == '\r') || sending.sent >= kLongest) {
     hand_out(station);
   } else {
-    constexpr VirtualTime kFourCharacters{40'000'000'000};  // the time of 40 bits at 1 baud, in ns
+    constexpr VirtualTime kFourCharacters{44'000'000'000};  // the time of 44 bits at 1 baud, in ns
     sending.frame_deadline =
-        end + (dcon ? kLongestPauseInTyping : std::max(kLongestPauseInWrite, kFourCharacters / baud));
+        end + (dcon ? kLongestPauseInTyping : std::max(kLongestPauseInWrite, kFourCharacters / mode.baud));
   }
 }
 

@@ -19,25 +19,26 @@ struct Frame {
     std::size_t position;  ///< among the sent bytes, from 0
     std::uint8_t sent;
     Levels arrives;
+    LineFormat format = LineFormat::k8N1;
 
     /// Returns the byte that receivers read; nullopt if it has no start bit, because receivers do not detect
     /// it.
     [[nodiscard]] std::optional<std::uint8_t> byte() const;
-    /// Returns the status at receivers: Good if the stop bit is present, Break if all bits are 0, otherwise
-    /// FramingError.
+    /// Returns the status at receivers: Break if all bits are 0, FramingError if the stop bit is missing,
+    /// ParityError if the parity is wrong, otherwise Good.
     [[nodiscard]] ByteStatus status() const;
   };
 
   std::size_t station = 0;  ///< in the order of attachment; 0 is the master
-  /// The bytes as a receiver at the sender's rate gets them. A collision does not change them here. If a
+  /// The bytes as a receiver in the sender's mode gets them. A collision does not change them here. If a
   /// start bit is lost, the data that a receiver reads from the rest of the byte is not included.
   FrameBytes bytes;
   std::vector<Change> changes;
-  bool collided = false;  ///< a byte overlapped with another enabled driver or another byte
-  /// The rates of the sender and of the line, in baud. Receivers of the line get these bytes only if both are
-  /// equal.
-  std::uint32_t sent_at = 0;
-  std::uint32_t line_at = 0;
+  bool collided = false;  ///< during a byte, another driver was enabled or another byte was on the wires
+  /// The modes of the sender and of the line. Receivers of the line get these bytes only if rate and parity
+  /// are equal.
+  SerialMode sent_in;
+  SerialMode line_in;
   VirtualTime began{0};  ///< first start bit
   VirtualTime ended{0};  ///< last stop bit
 
@@ -50,12 +51,12 @@ struct Frame {
 class FrameWatch final : public BusObserver {
  public:
   using Take = std::function<void(const Frame&)>;
-  /// Returns the present rate of the line in baud.
-  using Rate = std::function<std::uint32_t()>;
+  /// Returns the present mode of the line.
+  using Mode = std::function<SerialMode()>;
 
-  explicit FrameWatch(Rate line_rate) : line_rate_(std::move(line_rate)) {}
+  explicit FrameWatch(Mode line_mode) : line_mode_(std::move(line_mode)) {}
 
-  /// Registers a receiver: `take` gets each later frame when it has ended.
+  /// Registers a receiver: `take` is called with each later frame when the frame has ended.
   void add_receiver(Take take) { takers_.push_back(std::move(take)); }
 
   /// Returns the time at which `run` must pass on the first unfinished frame if no byte follows; kNever if
@@ -69,7 +70,7 @@ class FrameWatch final : public BusObserver {
   // --- BusObserver ---
   void driver(std::size_t station, bool on, VirtualTime now) override;
   void changed(std::size_t station, Levels arrives) override;
-  void byte(std::size_t station, std::uint8_t byte, std::uint32_t baud, bool collided, VirtualTime start,
+  void byte(std::size_t station, std::uint8_t byte, SerialMode mode, bool collided, VirtualTime start,
             VirtualTime end) override;
 
  private:
@@ -84,7 +85,7 @@ class FrameWatch final : public BusObserver {
   [[nodiscard]] bool begins_another(VirtualTime start, VirtualTime end);
   void hand_out(std::size_t station);
 
-  Rate line_rate_;
+  Mode line_mode_;
   std::vector<Take> takers_;
   std::vector<Sender> senders_;
 };

@@ -12,7 +12,7 @@ constexpr std::chrono::milliseconds kComingUp{100};
 }  // namespace
 
 /// Bytes of one frame arrive without a gap, so a very short silence ends a frame.
-LineTiming instantly(std::uint32_t /*baud*/) {
+LineTiming instantly(std::uint32_t /*baud*/, LineFormat /*format*/) {
   constexpr Duration kSilence(6);
   constexpr Duration kQuiet = milliseconds(2);
   LineTiming timing;
@@ -26,7 +26,7 @@ LineTiming instantly(std::uint32_t /*baud*/) {
 Line::Line(const std::vector<ModuleSpec>& modules, LineKind kind, Master::Receive receive)
     : kind_(kind),
       bus_(clock_, kind.times_faster),
-      master_(bus_, baud_rate(kFactoryBaudCode), std::move(receive)) {
+      master_(bus_, SerialMode{baud_rate(kFactoryBaudCode)}, std::move(receive)) {
   for (const ModuleSpec& spec : modules) {
     modules_.push_back(std::make_unique<SimulatedModule>(bus_, *spec.model, kind.timing_at));
     SimulatedModule& module = *modules_.back();
@@ -63,13 +63,15 @@ bool Line::pending() const {
          std::any_of(modules_.begin(), modules_.end(), [](const auto& module) { return module->pending(); });
 }
 
+LineTiming Line::timing() const { return kind_.timing_at(master_.mode().baud, master_.mode().format); }
+
 VirtualTime Line::rtu_silence() const {
-  return std::chrono::microseconds(kind_.timing_at(master_.baud()).rtu_silence.microseconds());
+  return std::chrono::microseconds(timing().rtu_silence.microseconds());
 }
 
 VirtualTime Line::rtu_separate() const {
-  const LineTiming timing = kind_.timing_at(master_.baud());
-  return std::chrono::microseconds((timing.rtu_silence + timing.rtu_grace).microseconds());
+  const LineTiming times = timing();
+  return std::chrono::microseconds((times.rtu_silence + times.rtu_grace).microseconds());
 }
 
 }  // namespace ex9000::sim

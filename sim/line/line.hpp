@@ -26,7 +26,7 @@ constexpr LineKind kPaced{};
 constexpr LineKind kStrictlyPaced{1, LineTiming::strictly_at};
 /// Returns the timing of an instant line: a Modbus frame ends when no byte follows at once and its CRC is
 /// correct, otherwise after a silence of 2 ms.
-LineTiming instantly(std::uint32_t baud);
+LineTiming instantly(std::uint32_t baud, LineFormat format);
 /// Bytes take almost no time: 0.02 us at 115200 baud and 2 us at 1200 baud.
 constexpr LineKind kInstant{4000, instantly};
 
@@ -62,13 +62,15 @@ class Line {
   /// starts up. Events that only depend on the clock do not count: a host watchdog, a scheduled fault, an
   /// input program.
   [[nodiscard]] bool pending() const;
-  /// Returns T3.5 on this line at the master's rate.
+  /// Returns T3.5 on this line in the master's mode.
   [[nodiscard]] VirtualTime rtu_silence() const;
   /// Returns the silence after which earlier bytes cannot belong to the next frame, even if their CRC is
   /// wrong.
   [[nodiscard]] VirtualTime rtu_separate() const;
 
  private:
+  [[nodiscard]] LineTiming timing() const;
+
   VirtualClock clock_;
   LineKind kind_;
   Bus bus_;

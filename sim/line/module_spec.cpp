@@ -56,7 +56,7 @@ void apply_setting(ModuleSpec& spec, const std::string& key, const std::string& 
   } else if (set_by_name(spec.settings, *spec.model, key, value)) {
     spec.settings_given = true;
   } else {
-    fail("unknown key; expected one of protocol, baud, checksum, edge, name, init, eeprom");
+    fail("unknown key; expected one of protocol, baud, format, checksum, edge, name, init, eeprom");
   }
 }
 

@@ -21,9 +21,10 @@ Protocol parse_protocol(const Model& model, const std::string& value) {
   return Protocol::ModbusRtu;
 }
 
-std::uint8_t parse_baud_code(const std::string& value) {
-  const auto* const rate = std::find(kBaudRates.begin(), kBaudRates.end(), parse_baud_rate(value));
-  return static_cast<std::uint8_t>(kFirstBaudCode + (rate - kBaudRates.begin()));
+std::uint8_t with_rate(std::uint8_t baud_code, std::uint32_t rate) {
+  const auto* const found = std::find(kBaudRates.begin(), kBaudRates.end(), rate);
+  const auto code = static_cast<std::uint8_t>(kFirstBaudCode + (found - kBaudRates.begin()));
+  return with_line_format(code, line_format(baud_code));
 }
 
 Name parse_name(const Model& model, const std::string& value) {
@@ -45,7 +46,9 @@ bool set_by_name(Settings& settings, const Model& model, const std::string& key,
   if (key == "protocol") {
     settings.protocol = parse_protocol(model, value);
   } else if (key == "baud") {
-    settings.baud_code = parse_baud_code(value);
+    settings.baud_code = with_rate(settings.baud_code, parse_baud_rate(value));
+  } else if (key == "format") {
+    settings.baud_code = with_line_format(settings.baud_code, parse_line_format(value));
   } else if (key == "checksum") {
     set_format(settings, kFormatChecksum, parse_on_off(value));
   } else if (key == "edge") {

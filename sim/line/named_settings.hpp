@@ -9,9 +9,9 @@
 
 namespace ex9000::sim {
 
-/// Sets the setting that `key` names: protocol, baud, checksum, edge or name. Returns false and changes
-/// nothing if the key is a different one. Throws std::invalid_argument with a one-line message if the value
-/// is not valid for this setting.
+/// Sets the setting that `key` names: protocol, baud, format, checksum, edge or name. Returns false and
+/// changes nothing if the key is a different one. Throws std::invalid_argument with a one-line message if the
+/// value is not valid for this setting.
 bool set_by_name(Settings& settings, const Model& model, const std::string& key, const std::string& value);
 
 }  // namespace ex9000::sim

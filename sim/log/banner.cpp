@@ -22,11 +22,40 @@ std::string quoted(const std::string& path) {
   return text + "'";
 }
 
-/// Returns commands for mbpoll, which counts addresses from 1. They contain `-P none` because the default of
-/// mbpoll is even parity: a pseudo-terminal ignores the parity, but a real bus does not.
+/// The default of mbpoll is 8E1. A pseudo-terminal ignores the format, but a real bus does not.
+std::string mbpoll_format(LineFormat format) {
+  switch (format) {
+    case LineFormat::k8N1:
+      return " -P none ";
+    case LineFormat::k8N2:
+      return " -P none -s 2 ";
+    case LineFormat::k8E1:
+      return " -P even ";
+    case LineFormat::k8O1:
+      return " -P odd ";
+  }
+  return " ";
+}
+
+/// The default of picocom is 8N1.
+std::string picocom_format(LineFormat format) {
+  switch (format) {
+    case LineFormat::k8N1:
+      return "";
+    case LineFormat::k8N2:
+      return " -p 2";
+    case LineFormat::k8E1:
+      return " -y e";
+    case LineFormat::k8O1:
+      return " -y o";
+  }
+  return "";
+}
+
+/// Returns commands for mbpoll, which counts addresses from 1.
 std::string mbpoll(const ModuleSummary& module, const std::string& link) {
   const std::string common = "mbpoll -m rtu -a " + std::to_string(module.address) + " -b " +
-                             std::to_string(module.baud) + " -P none ";
+                             std::to_string(module.mode.baud) + mbpoll_format(module.mode.format);
   std::string text;
   if (module.outputs != 0) {
     text += "    " + common + "-t 0 -r 1 -c " + std::to_string(module.outputs) + " -1 " + link +
@@ -44,8 +73,9 @@ std::string mbpoll(const ModuleSummary& module, const std::string& link) {
 
 /// Returns a command for a terminal program.
 std::string terminal(const ModuleSummary& module, const std::string& link) {
-  return "    picocom -q -b " + std::to_string(module.baud) + " --imap crcrlf --echo " + link +
-         "    # then type $" + hex_byte_text(module.address) + "M and Enter\n";
+  return "    picocom -q -b " + std::to_string(module.mode.baud) + picocom_format(module.mode.format) +
+         " --imap crcrlf --echo " + link + "    # then type $" + hex_byte_text(module.address) +
+         "M and Enter\n";
 }
 
 std::string ports(const LineSummary& line) {
@@ -78,11 +108,13 @@ std::string shared_addresses(const std::vector<ModuleSummary>& modules) {
 }
 
 std::string introduction(const LineSummary& line) {
-  std::string text = (line.name.empty() ? "line" : line.name) + " at " + std::to_string(line.baud) + " baud" +
+  std::string text = (line.name.empty() ? "line" : line.name) + " at " +
+                     mode_text(line.mode.baud, line.mode.format) +
                      (line.instant ? ", bytes take no time" : "") + ":\n" + ports(line);
   for (const ModuleSummary& module : line.modules) {
     text += "  " + module.designation + " at " + hex_byte_text(module.address) + ", " +
-            (module.speaks_ascii ? "ASCII" : "Modbus RTU") + ", " + std::to_string(module.baud) + " baud" +
+            (module.speaks_ascii ? "ASCII" : "Modbus RTU") + ", " +
+            mode_text(module.mode.baud, module.mode.format) +
             (module.remark.empty() ? "" : "; " + module.remark) + "\n";
     if (!line.pty.empty()) {
       const std::string link = quoted(line.pty);

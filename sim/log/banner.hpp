@@ -5,6 +5,8 @@
 #include <string>
 #include <vector>
 
+#include "hal/serial_mode.hpp"
+
 namespace ex9000::sim {
 
 /// A module after it has started up.
@@ -14,13 +16,13 @@ struct ModuleSummary {
   unsigned outputs = 0;
   std::uint8_t address = 0;
   bool speaks_ascii = false;
-  std::uint32_t baud = 0;
+  hal::SerialMode mode;
   std::string remark;  ///< about its settings; empty: none
 };
 
 struct LineSummary {
   std::string name;  ///< empty for the line of a command line
-  std::uint32_t baud = 0;
+  hal::SerialMode mode;
   bool instant = false;
   std::vector<ModuleSummary> modules;
   std::string pty;         ///< link of the pseudo-terminal; empty: none

@@ -61,7 +61,7 @@ void BusTarget::add_line(const sim::LineSetup& setup, Memories::const_iterator m
     }
   }
   line.come_up();
-  line.master().set_baud(setup.baud.value_or(line.module(0).baud()));
+  line.master().set_mode(sim::first_mode(setup, line));
   line.configure_faults(seed, observer_ == nullptr ? nullptr : observer_->line_started(line, setup.name));
   sim::begin_programs(line, setup);
 }

@@ -44,6 +44,7 @@ class BusTarget : public Target {
   Bytes receive(std::size_t count, std::chrono::milliseconds patience) override;
   Bytes listen(std::chrono::nanoseconds time) override;
   void set_baud(std::uint32_t rate) override { chosen().master().set_baud(rate); }
+  void set_format(LineFormat format) override { chosen().master().set_format(format); }
   void power(bool on) override;
   void reset() override;
   void set_init(bool asserted) override { module().set_init(asserted); }

@@ -80,6 +80,7 @@ class Playing {
   void operator()(const step::Silence& /*step*/) { nothing_for(kSilence); }
   void operator()(const step::Wait& step) { nothing_for(step.time); }
   void operator()(const step::Checksum& step) { checksum_ = step.on; }
+  void operator()(const step::Format& step) { target_.set_format(step.format); }
   void operator()(const step::Baud& step) {
     nothing_more();
     target_.set_baud(step.rate);
@@ -154,7 +155,7 @@ class Playing {
 
   Target& target_;
   bool checksum_;
-  bool reply_pending_ = false;  ///< something was sent, and a reply may still come
+  bool reply_pending_ = false;  ///< bytes were sent, and a reply may still arrive
 };
 
 }  // namespace
@@ -167,6 +168,7 @@ Result play(const Transcript& transcript, Target& target) {
   if (transcript.model != nullptr) {
     target.start(*transcript.model, transcript.preset_given ? &transcript.preset : nullptr);
     target.set_baud(baud_rate(transcript.preset.baud_code));
+    target.set_format(line_format(transcript.preset.baud_code));
     checksum = (transcript.preset.format & kFormatChecksum) != 0;
     who = " (" + std::string(transcript.model->designation) + ")";
   }

@@ -28,12 +28,14 @@ class Target {
 
   /// Sends `bytes` on the line without a gap, at the master's rate.
   virtual void send(const Bytes& bytes) = 0;
-  /// Returns the bytes that arrive until there are `count` of them, or until none has arrived for `patience`.
+  /// Returns the received bytes when `count` bytes have arrived, or when none has arrived for `patience`.
   virtual Bytes receive(std::size_t count, std::chrono::milliseconds patience) = 0;
   /// Returns the bytes received while `time` passes.
   virtual Bytes listen(std::chrono::nanoseconds time) = 0;
   /// Sets the master's rate.
   virtual void set_baud(std::uint32_t rate) = 0;
+  /// Sets the master's line format.
+  virtual void set_format(LineFormat format) = 0;
 
   /// Switches the supply. After switching on, returns when the module has had the time to start up.
   virtual void power(bool on) = 0;
@@ -43,8 +45,8 @@ class Target {
   virtual void set_input(unsigned channel, bool level) = 0;
   virtual void pulse_input(unsigned channel, std::uint32_t count) = 0;
   virtual std::uint16_t outputs() = 0;
-  /// Returns what the LED shows. `expected` is the value in the transcript: a target that can only watch the
-  /// LED need not watch it longer than necessary to distinguish this value from all others.
+  /// Returns the state of the LED. `expected` is the value in the transcript: a target that can only watch
+  /// the LED watches it just long enough to distinguish this value from all others.
   virtual step::Led::Shows led(step::Led::Shows expected) = 0;
 
   // Functions for a bus with several modules and faults. They throw std::runtime_error if the module, the

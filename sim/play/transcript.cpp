@@ -70,7 +70,7 @@ void apply_preset(const std::string& word, const Model& model, Settings& setting
     if (key == "address") {
       settings.address = parse_hex_byte(value);
     } else if (!sim::set_by_name(settings, model, key, value)) {
-      fail("unknown key; expected one of address, protocol, baud, checksum, edge, name");
+      fail("unknown key; expected one of address, protocol, baud, format, checksum, edge, name");
     }
   });
 }
@@ -123,7 +123,7 @@ using sim::Words;
 constexpr std::size_t kAnyNumber = 1000;
 constexpr unsigned long kMostModules = 999'999;
 
-constexpr std::array<Verb, 17> kVerbs{{
+constexpr std::array<Verb, 18> kVerbs{{
     {"bytes", "HEX", 1, kAnyNumber,
      [](const Words& words) -> Action { return step::SendBytes{parse_hex_bytes(sim::joined(words))}; }},
     {"silence", "", 0, 0, [](const Words& /*words*/) -> Action { return step::Silence{}; }},
@@ -133,6 +133,8 @@ constexpr std::array<Verb, 17> kVerbs{{
      [](const Words& words) -> Action { return step::Checksum{parse_on_off(words[0])}; }},
     {"baud", "RATE", 1, 1,
      [](const Words& words) -> Action { return step::Baud{sim::parse_baud_rate(words[0])}; }},
+    {"format", "8N1|8N2|8E1|8O1", 1, 1,
+     [](const Words& words) -> Action { return step::Format{sim::parse_line_format(words[0])}; }},
     {"power", "on|off", 1, 1,
      [](const Words& words) -> Action { return step::Power{parse_on_off(words[0])}; }},
     {"power-cycle", "", 0, 0, [](const Words& /*words*/) -> Action { return step::PowerCycle{}; }},

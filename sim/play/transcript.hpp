@@ -42,6 +42,9 @@ struct Checksum {
 struct Baud {
   std::uint32_t rate;
 };
+struct Format {
+  LineFormat format;
+};
 struct Power {
   bool on;
 };
@@ -64,7 +67,7 @@ struct Outputs {
 struct Led {
   enum class Shows { On, Off, Flashing } shows;
 };
-// The following steps are only valid in scenarios, because only scenarios have a bus.
+// The following steps are valid only in scenarios, because transcripts have no bus.
 struct OnModule {
   std::size_t position;
 };  ///< from 0, across all lines
@@ -77,10 +80,11 @@ struct FaultCommand {
 
 }  // namespace step
 
-using Action = std::variant<step::SendDcon, step::ExpectDcon, step::SendModbus, step::ExpectModbus,
-                            step::SendBytes, step::Silence, step::Wait, step::Checksum, step::Baud,
-                            step::Power, step::PowerCycle, step::Reset, step::Init, step::Input, step::Pulse,
-                            step::Outputs, step::Led, step::OnModule, step::OnLine, step::FaultCommand>;
+using Action =
+    std::variant<step::SendDcon, step::ExpectDcon, step::SendModbus, step::ExpectModbus, step::SendBytes,
+                 step::Silence, step::Wait, step::Checksum, step::Baud, step::Format, step::Power,
+                 step::PowerCycle, step::Reset, step::Init, step::Input, step::Pulse, step::Outputs,
+                 step::Led, step::OnModule, step::OnLine, step::FaultCommand>;
 
 struct Step {
   unsigned line;     ///< line number in the file, from 1

@@ -54,7 +54,8 @@ void keep_accepting(Acceptor& acceptor, boost::asio::steady_timer& next_try, Adm
   });
 }
 
-/// Describes the error; adds `mend` unless another program uses the port.
+/// Describes the error for a message. Appends `mend`, the advice for the user, unless another program uses
+/// the port.
 inline std::string why_not_listening(const boost::system::error_code& error, const std::string& mend) {
   return error == boost::asio::error::address_in_use
              ? "another program listens there; end it or name another port"

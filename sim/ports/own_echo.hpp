@@ -7,6 +7,7 @@
 #include <deque>
 
 #include "firmware/bytes.hpp"
+#include "hal/serial_mode.hpp"
 
 namespace ex9000::sim {
 
@@ -17,13 +18,13 @@ class OwnEcho {
  public:
   using Clock = std::chrono::steady_clock;
 
-  explicit OwnEcho(std::uint32_t baud) : baud_(baud) {}
+  explicit OwnEcho(hal::SerialMode mode) : mode_(mode) {}
 
   /// Records that the program sends `bytes` at `now`, so that `in` expects their echo.
   void sent(Bytes bytes, Clock::time_point now) {
-    constexpr std::chrono::nanoseconds kCharacterBits{10'000'000'000};
+    const std::chrono::nanoseconds bits = std::chrono::seconds(bits_of_character(mode_.format));
     awaited_.insert(awaited_.end(), bytes.begin(), bytes.end());
-    until_ = now + kCharacterBits * static_cast<std::int64_t>(awaited_.size()) / baud_ + kLatency;
+    until_ = now + bits * awaited_.size() / mode_.baud + kLatency;
   }
 
   /// Returns how many of the bytes received at `now` are the echo: the leading bytes that match the sent ones
@@ -50,7 +51,7 @@ class OwnEcho {
   /// time.
   static constexpr std::chrono::seconds kLatency{10};
 
-  std::int64_t baud_;
+  hal::SerialMode mode_;
   std::deque<std::uint8_t> awaited_;
   Clock::time_point until_;
 };

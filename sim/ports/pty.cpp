@@ -26,8 +26,8 @@ std::optional<std::string> link_target(const std::string& link) {
                   : std::optional<std::string>(std::string(target.data(), static_cast<std::size_t>(size)));
 }
 
-/// Removes a link to a pseudo-terminal at `link`. Throws if another simulator uses the path, or if something
-/// else is there.
+/// Removes a link to a pseudo-terminal at `link`. Throws if another simulator uses the path, or if any
+/// other file is there.
 void remove_stale(const std::string& link, const Claim& claim) {
   if (!claim.held()) {
     throw std::invalid_argument(link + ": another simulator is running there; end it or name another path");

@@ -61,7 +61,7 @@ void PtyPort::read_waiting() {
 
 /// Returns the number of bytes read; 0 if there are none, negative if no master has the pseudo-terminal open.
 ssize_t PtyPort::take() {
-  visits_.take();  // detect a new master before replying to its bytes
+  visits_.take();  // a new master must be detected before the program replies to its bytes
   std::array<std::uint8_t, 4096> bytes{};
   const ssize_t size = ::read(pty_.master_fd(), bytes.data(), bytes.size());
   if (size > 0) {

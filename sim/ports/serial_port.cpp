@@ -16,13 +16,14 @@
 #include "sim/ports/termios_rates.hpp"
 #include "sim/text/fail.hpp"
 #include "sim/text/system_error.hpp"
+#include "sim/text/values.hpp"
 
 namespace ex9000::sim {
 
 namespace {
 
-/// The beginning of a reply waits this long, or until the reply is complete, so that delays of the host do
-/// not cause gaps in the reply.
+/// The port holds back the beginning of a reply for this time, or until the reply is complete, so that delays
+/// of the host do not cause gaps in the reply.
 constexpr std::chrono::milliseconds kCushion{10};
 
 /// Asks the driver for low latency, because adapters may wait up to 16 ms for more bytes, which splits
@@ -35,8 +36,25 @@ void ask_for_low_latency(int fd) {
   }
 }
 
+/// The flags of termios that define the line format; 8 bits are always set.
+constexpr tcflag_t kFormatFlags = CSTOPB | PARENB | PARODD;
+
+tcflag_t termios_format(LineFormat format) {
+  switch (format) {
+    case LineFormat::k8N1:
+      return 0;
+    case LineFormat::k8N2:
+      return CSTOPB;
+    case LineFormat::k8E1:
+      return PARENB;
+    case LineFormat::k8O1:
+      return PARENB | PARODD;
+  }
+  return 0;
+}
+
 /// Configures the open port; throws if that fails.
-void set_up(int fd, const std::string& device, std::uint32_t baud) {
+void set_up(int fd, const std::string& device, hal::SerialMode mode) {
   const auto refuse = [&device](const std::string& why) { throw std::invalid_argument(device + ": " + why); };
   termios settings{};
   if (tcgetattr(fd, &settings) != 0) {
@@ -46,23 +64,25 @@ void set_up(int fd, const std::string& device, std::uint32_t baud) {
     refuse("another program uses it; end that program or name another port");
   }
   cfmakeraw(&settings);
-  // No XON/XOFF, because XOFF would go out on the line; no parity check, because bytes with errors are also
-  // read.
-  settings.c_iflag = 0;
-  settings.c_cflag &= ~static_cast<tcflag_t>(CSTOPB | CRTSCTS);
-  settings.c_cflag |= CLOCAL | CREAD;
-  const auto speed = termios_speed(baud);
+  // No XON/XOFF, because XOFF would go out on the line. A byte with wrong parity is read as 00, which makes
+  // its frame invalid.
+  settings.c_iflag = has_parity(mode.format) ? INPCK : 0;
+  settings.c_cflag &= ~static_cast<tcflag_t>(kFormatFlags | CRTSCTS);
+  settings.c_cflag |= CLOCAL | CREAD | termios_format(mode.format);
+  const auto speed = termios_speed(mode.baud);
   termios taken{};  // tcsetattr succeeds even if it applies only a part of the settings
   if (!speed || cfsetspeed(&settings, *speed) != 0 || tcsetattr(fd, TCSANOW, &settings) != 0 ||
-      tcgetattr(fd, &taken) != 0 || termios_rate(taken) != baud) {
-    refuse("cannot be set to " + std::to_string(baud) + " baud; choose another rate for the line");
+      tcgetattr(fd, &taken) != 0 || termios_rate(taken) != mode.baud ||
+      ((taken.c_cflag ^ settings.c_cflag) & kFormatFlags) != 0) {
+    refuse("cannot be set to " + mode_text(mode.baud, mode.format) +
+           "; choose another rate or format for the line");
   }
   ask_for_low_latency(fd);
   tcflush(fd, TCIOFLUSH);
 }
 
 /// Opens the port. The caller has to close it.
-int open_port(const std::string& device, std::uint32_t baud) {
+int open_port(const std::string& device, hal::SerialMode mode) {
   FileDescriptor port(open(device.c_str(), O_RDWR | O_NOCTTY | O_NONBLOCK | O_CLOEXEC));
   if (!port.is_open()) {
     throw std::invalid_argument(device + ": " +
@@ -70,17 +90,17 @@ int open_port(const std::string& device, std::uint32_t baud) {
                                      ? "another program uses it; end that program or name another port"
                                      : reason() + "; name a serial port that can be read and written"));
   }
-  set_up(port.get(), device, baud);
+  set_up(port.get(), device, mode);
   return port.release();
 }
 
 }  // namespace
 
 SerialPort::SerialPort(boost::asio::io_context& io, const std::string& place, const std::string& device,
-                       std::uint32_t baud, bool echo)
-    : where_(place + device), descriptor_(io, with_place(place, [&] { return open_port(device, baud); })) {
+                       hal::SerialMode mode, bool echo)
+    : where_(place + device), descriptor_(io, with_place(place, [&] { return open_port(device, mode); })) {
   if (echo) {
-    echo_.emplace(baud);
+    echo_.emplace(mode);
   }
 }
 

@@ -8,6 +8,7 @@
 #include <optional>
 #include <string>
 
+#include "hal/serial_mode.hpp"
 #include "sim/ports/own_echo.hpp"
 #include "sim/ports/port.hpp"
 
@@ -15,13 +16,13 @@ namespace ex9000::sim {
 
 class SerialPort final : public Port {
  public:
-  /// Opens `device` with 8N1 at `baud` and prevents others from opening it. `echo`: the adapter receives what
+  /// Opens `device` in `mode` and prevents others from opening it. `echo`: the adapter receives what
   /// it sends. Throws std::invalid_argument with a one-line message if the device or the settings are not
   /// available. `place` is the prefix of the device in all messages.
   SerialPort(boost::asio::io_context& io, const std::string& place, const std::string& device,
-             std::uint32_t baud, bool echo);
+             hal::SerialMode mode, bool echo);
 
-  /// If the port disappears, the io_context's run ends with a std::runtime_error.
+  /// If the port disappears, `run` of the io_context throws std::runtime_error.
   void start(Received received) override;
   void resume() override;
   std::size_t send(const std::vector<std::uint8_t>& bytes) override;

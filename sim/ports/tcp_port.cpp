@@ -42,7 +42,7 @@ struct TcpPort::Client {
 
   tcp::socket socket;
   boost::asio::steady_timer linger;
-  /// Cancels pending operations; their handlers do nothing then.
+  /// Cancels pending operations. Their handlers then do nothing.
   void close() {
     boost::system::error_code ignored;
     linger.cancel(ignored);

@@ -16,7 +16,7 @@
 namespace ex9000::sim {
 
 /// Transfers only the bytes: no MBAP header, no telnet negotiation. All clients receive everything that
-/// modules send, and everything that a client sends goes on the line.
+/// modules send. The port puts everything that a client sends on the line.
 class TcpPort final : public Port {
  public:
   /// How long a client that has closed its sending side may wait for the rest of the replies; nullopt:
@@ -32,7 +32,7 @@ class TcpPort final : public Port {
   void resume() override;
   void read_waiting() override;
   std::size_t send(const std::vector<std::uint8_t>& bytes) override;
-  /// Returns the HOST:PORT on which it listens.
+  /// Returns the HOST:PORT on which the port listens.
   [[nodiscard]] std::string address() const;
 
  private:

@@ -47,19 +47,21 @@ void LinePorts::take_rate(const Port& port) {
 }
 
 void LinePorts::report_mismatches() {
-  const std::uint32_t rate = line_.master().baud();
-  if (!mismatches_ && line_.bus().all_listen_at(rate)) {
+  const SerialMode mode = line_.master().mode();
+  if (!mismatches_ && line_.bus().all_hear(mode)) {
     return;
   }
   mismatches_ = false;
   for (std::size_t i = 0; i < line_.size(); ++i) {
     const SimulatedModule& module = line_.module(i);
     const bool listens = module.powered() && module.module().listening();
-    const Mismatch mismatch = listens && module.baud() != rate ? Mismatch{rate, module.baud()} : Mismatch{};
+    const bool hears = !listens || hear_each_other(module.mode(), mode);
+    const Mismatch mismatch = hears ? Mismatch{} : Mismatch{mode, module.mode()};
     if (mismatch != reported_[i] && mismatch != Mismatch{}) {
-      notice_("the line is at " + std::to_string(rate) + " baud, " + std::string(module.model().designation) +
-              " at " + hex_byte_text(module.module().state().in_force.address) + " listens at " +
-              std::to_string(module.baud()));
+      notice_("the line is at " + mode_text(mode.baud, mode.format) + ", " +
+              std::string(module.model().designation) + " at " +
+              hex_byte_text(module.module().state().in_force.address) + " listens at " +
+              mode_text(module.mode().baud, module.mode().format));
     }
     if (listens) {
       reported_[i] = mismatch;

@@ -21,22 +21,22 @@ class LinePorts final : private BusObserver {
   using All = std::vector<std::unique_ptr<Port>>;
   using Notice = std::function<void(const std::string&)>;
 
-  /// All arguments must live as long as the line's bus is used. `notice` gets one line of text for people for
-  /// each module whose rate differs from the line's, and for bytes that a port had no room for.
+  /// All arguments must live as long as the line's bus is used. `notice` receives one line of text for people
+  /// for each module that cannot receive because of its rate or format, and for bytes that a port drops.
   LinePorts(Line& line, const All& ports, Notice notice);
 
-  /// Takes a byte that the master's end of the line has received. The line calls this for each such byte.
+  /// Stores a byte that the master's end of the line has received. The line calls this for each such byte.
   void hear(std::uint8_t byte) { heard_.push_back(byte); }
   /// Returns whether a module has stopped sending since the last `hand_out`.
   [[nodiscard]] bool reply_is_complete() const { return stopped_sending_; }
-  /// Writes the bytes received since the last call to all ports. Does not block: bytes without room are
-  /// dropped, with a notice for the first of them.
+  /// Writes the bytes received since the last call to all ports. Does not block: if a port has no room, drops
+  /// the bytes and reports the first drop with a notice.
   void hand_out();
   /// Sets the line to the rate of the port, if the port has one, and reports mismatches.
   void take_rate(const Port& port);
   /// Returns the number of bytes written to each port so far, including dropped bytes.
   [[nodiscard]] std::uint64_t sent() const { return sent_; }
-  /// Reports each mismatch of rates once, until it ends.
+  /// Reports each mismatch of rates and formats once, until it ends.
   void report_mismatches();
 
   [[nodiscard]] const All& all() const { return ports_; }
@@ -44,15 +44,15 @@ class LinePorts final : private BusObserver {
  private:
   void report_dropped(const Port& port, std::size_t bytes);
   void driver(std::size_t station, bool on, VirtualTime now) override;
-  void byte(std::size_t /*station*/, std::uint8_t /*byte*/, std::uint32_t /*baud*/, bool /*collided*/,
+  void byte(std::size_t /*station*/, std::uint8_t /*byte*/, SerialMode /*mode*/, bool /*collided*/,
             VirtualTime /*start*/, VirtualTime /*end*/) override {}
 
   Line& line_;
   const All& ports_;
   Notice notice_;
-  using Mismatch = std::pair<std::uint32_t, std::uint32_t>;  ///< rate of the line, rate of a module
-  std::vector<Mismatch> reported_;                           ///< one for each module; zeros: no mismatch
-  bool mismatches_ = false;                                  ///< `reported_` contains a mismatch
+  using Mismatch = std::pair<SerialMode, SerialMode>;  ///< mode of the line, mode of a module
+  std::vector<Mismatch> reported_;                     ///< one for each module; zeros: no mismatch
+  bool mismatches_ = false;                            ///< `reported_` contains a mismatch
   std::vector<std::uint8_t> heard_;
   std::uint64_t sent_ = 0;
   std::vector<const Port*> full_;  ///< ports whose dropped bytes have been reported

@@ -18,7 +18,7 @@ class LineRecord final : private Station {
   using Print = BusLog::Print;
 
   /// Records a line that has started up. `line` must outlive this object; `name` is its name in the records.
-  /// `print` gets the lines of its log.
+  /// `print` receives the lines of its log.
   LineRecord(Line& line, std::string name, LogFormat format, const Print& print);
 
   /// Writes a remark about the line at its present time; remarks are printed even if frames are not.
@@ -28,7 +28,7 @@ class LineRecord final : private Station {
   /// Requests that frames are written to `capture`, which must outlive this object. `began` is the wall clock
   /// time (since 1970-01-01 00:00:00 UTC) that corresponds to time 0 of the line.
   void keep_in(Capture& capture, VirtualTime began);
-  /// Requests that `take` gets every frame when it has ended, and `note` every remark about the line.
+  /// Requests that `take` is called with each frame when the frame has ended, and `note` with each remark.
   void tell(FrameWatch::Take take, BusLog::Note note);
   /// Ends the log and the capture at `end` in the line's time. The line may run beyond `end`, because the
   /// program reads the wall clock only at some moments; the log and the capture do not depend on this.
@@ -47,7 +47,7 @@ class LineRecord final : private Station {
   Line& line_;
   std::string name_;
   std::unique_ptr<BusLog> log_;
-  FrameWatch frames_{[this] { return line_.master().baud(); }};
+  FrameWatch frames_{[this] { return line_.master().mode(); }};
   BusLog::Note also_note_;
   bool listens_ = false;
   bool over_ = false;

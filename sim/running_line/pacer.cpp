@@ -236,7 +236,7 @@ bool Pacer::is_for_modbus(std::uint8_t address) {
   return false;
 }
 
-void Pacer::byte(std::size_t station, std::uint8_t /*byte*/, std::uint32_t /*baud*/, bool /*collided*/,
+void Pacer::byte(std::size_t station, std::uint8_t /*byte*/, SerialMode /*mode*/, bool /*collided*/,
                  VirtualTime /*start*/, VirtualTime end) {
   last_speaker_ = station;
   last_byte_ = end;

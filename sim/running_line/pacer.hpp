@@ -47,7 +47,7 @@ class Pacer final : private BusObserver {
  public:
   /// Sends the bytes that the master of `line` receives to all `ports`, and puts the bytes from the ports on
   /// the line. `frames` may be null. All arguments must live as long as `io` runs. `notice`: see LinePorts;
-  /// it also gets a message if a delay of the host has affected the line.
+  /// it also receives a message if a delay of the host has affected the line.
   Pacer(boost::asio::io_context& io, Line& line, const LinePorts::All& ports, FrameWatch* frames, Pace pace,
         LinePorts::Notice notice);
 
@@ -56,9 +56,9 @@ class Pacer final : private BusObserver {
   void hear(std::uint8_t byte) { ports_.hear(byte); }
   /// See LinePorts::sent.
   [[nodiscard]] std::uint64_t sent() const { return ports_.sent(); }
-  /// Returns the line's time at this moment. The line's clock shows the time of the last event.
+  /// Returns the line's present time. The line's clock has the time of the last event, which may be earlier.
   [[nodiscard]] VirtualTime present() const { return std::max(wall(), line_.clock().virtual_now()); }
-  /// Performs an action on the line from outside, at this moment.
+  /// Runs `action`, which acts on the line from outside, at the line's present time.
   void now(const std::function<void()>& action);
 
  private:
@@ -75,7 +75,7 @@ class Pacer final : private BusObserver {
   static std::size_t first_frame_size(Bytes bytes);
   [[nodiscard]] VirtualTime silence_before(std::uint8_t address);
   [[nodiscard]] bool is_for_modbus(std::uint8_t address);
-  void byte(std::size_t station, std::uint8_t byte, std::uint32_t baud, bool collided, VirtualTime start,
+  void byte(std::size_t station, std::uint8_t byte, SerialMode mode, bool collided, VirtualTime start,
             VirtualTime end) override;
 
   boost::asio::steady_timer timer_;

@@ -42,7 +42,7 @@ RunningLine::RunningLine(boost::asio::io_context& io, const LineSetup& setup, st
   use_memories();
   line_->come_up();
   came_up_ = line_->clock().virtual_now();
-  line_->master().set_baud(setup.baud.value_or(line_->module(0).baud()));
+  line_->master().set_mode(first_mode(setup, *line_));
   introduce();
   open_ports(io, stepped);
   record_ = std::make_unique<LineRecord>(*line_, log_name(), format, print_);
@@ -59,10 +59,10 @@ void RunningLine::use_memories() {
 }
 
 void RunningLine::open_ports(boost::asio::io_context& io, bool stepped) {
-  const std::uint32_t baud = line_->master().baud();
+  const SerialMode mode = line_->master().mode();
   if (setup_.pty) {
     auto port = with_place(place_of(setup_.places, "pty"),
-                           [&] { return std::make_unique<PtyPort>(io, *setup_.pty, baud); });
+                           [&] { return std::make_unique<PtyPort>(io, *setup_.pty, mode.baud); });
     introduced_.pty = port->pty().link();
     introduced_.pty_device = port->pty().device();
     ports_.push_back(std::move(port));
@@ -75,7 +75,7 @@ void RunningLine::open_ports(boost::asio::io_context& io, bool stepped) {
     ports_.push_back(std::move(port));
   }
   if (setup_.serial) {
-    ports_.push_back(std::make_unique<SerialPort>(io, place_of(setup_.places, "serial"), *setup_.serial, baud,
+    ports_.push_back(std::make_unique<SerialPort>(io, place_of(setup_.places, "serial"), *setup_.serial, mode,
                                                   setup_.echo));
     introduced_.serial = *setup_.serial;
   }
@@ -142,9 +142,9 @@ void RunningLine::introduce() {
     const InForce& in_force = module.module().state().in_force;
     introduced_.modules.push_back({std::string(module.model().designation), module.model().inputs,
                                    module.model().outputs, in_force.address,
-                                   in_force.protocol == Protocol::Ascii, module.baud(), remark(i)});
+                                   in_force.protocol == Protocol::Ascii, module.mode(), remark(i)});
   }
-  introduced_.baud = line_->master().baud();
+  introduced_.mode = line_->master().mode();
   introduced_.instant = setup_.instant;
 }
 

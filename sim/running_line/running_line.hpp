@@ -24,24 +24,25 @@ class RunningLine {
   using Print = std::function<void(const std::string& line)>;
 
   /// Opens everything that `setup` names. Throws std::invalid_argument or std::runtime_error with a one-line
-  /// message; then everything is closed again, and no file has been created or changed. All arguments must
-  /// outlive this object. `stepped`: the behaviour of the ports does not depend on the wall clock.
+  /// message. After an exception, everything is closed again, and no file has been created or changed. All
+  /// arguments must outlive this object. `stepped`: the behaviour of the ports does not depend on the wall
+  /// clock.
   RunningLine(boost::asio::io_context& io, const LineSetup& setup, std::uint64_t seed, LogFormat format,
               bool stepped, Print print);
   RunningLine(const RunningLine&) = delete;
   RunningLine& operator=(const RunningLine&) = delete;
 
-  /// Updates existing EEPROM files with the data that modules have stored while they started up. Throws like
-  /// the constructor.
+  /// Updates existing EEPROM files with the data that modules have stored during their start. Throws like the
+  /// constructor.
   void renew_memories();
   /// Creates the missing EEPROM files and appends them to `made`. Throws like the constructor.
   void make_missing_memories(std::list<NewFile>& made);
 
   /// Returns the records of the line.
   LineRecord& record() { return *record_; }
-  /// Connects the memories to their files: from now on, the files get everything that modules store.
+  /// Connects the memories to their files: from now on, all data that modules store is written to the files.
   void start();
-  /// Starts to process the line as soon as `io` runs, `speed` times faster than the wall clock.
+  /// Starts to process the line as soon as `io` runs, at `speed` times the speed of the wall clock.
   void start_paced(boost::asio::io_context& io, double speed);
   /// Starts to process the line. Its time does not pass until the caller moves it. `arrived` is called when
   /// bytes from masters have arrived.
@@ -76,7 +77,7 @@ class RunningLine {
   Print print_;
   std::vector<std::unique_ptr<EepromFile>> memories_;  ///< one for each module; null: none
   std::unique_ptr<Line> line_;
-  VirtualTime came_up_{0};  ///< when the modules had started up, in the line's time
+  VirtualTime came_up_{0};  ///< the line's time at which all modules had started up
   LineSummary introduced_;
   LinePorts::All ports_;
   std::unique_ptr<LineRecord> record_;

@@ -119,8 +119,8 @@ void Session::watch_lines() {
   }
 }
 
-/// Updates the view of the modules every 50 ms. If the lines do not follow a clock, the code that moves the
-/// time calls look() instead.
+/// Updates the view of the modules every 50 ms. If the lines do not follow the wall clock, the code that
+/// moves their time calls look() instead.
 void Session::keep_watching() {
   constexpr auto kBetweenLooks = std::chrono::milliseconds(50);
   threads_.pause_for([this] { watch_->look(); });

@@ -31,9 +31,10 @@ class Session : private PanelSource {
   using Print = RunningLine::Print;
 
   /// Opens everything that `setup` names. Throws std::invalid_argument or std::runtime_error with a one-line
-  /// message; then everything is closed again, and no file has been created or changed. `print` gets the log
-  /// and the greeting; if the log is JSON, `greet` gets the greeting instead. `terminal` is the terminal that
-  /// `print` writes to, or null. `io` and `terminal` must outlive this object.
+  /// message. After an exception, everything is closed again, and no file has been created or changed.
+  /// `print` receives the log and the greeting; if the log is JSON, `greet` receives the greeting instead.
+  /// `terminal` is the terminal that `print` writes to, or null. `io` and `terminal` must outlive this
+  /// object.
   Session(boost::asio::io_context& io, Setup setup, Print print, Print greet, Terminal* terminal);
   ~Session() override;
   Session(const Session&) = delete;

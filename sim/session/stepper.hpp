@@ -1,4 +1,4 @@
-// The command `advance`: moves the time of lines that stand still.
+// The command `advance`: moves the time of lines in stepped time.
 #pragma once
 
 #include <cstddef>
@@ -34,9 +34,9 @@ class Stepper {
   /// - TIME has passed. With `quiet`, it is also sufficient that nothing is pending on any line.
   /// - Every reply has been written to its port.
   ///
-  /// `answer` gets `ok NOW`, the lines' time in seconds, or `error: ...`. If the command is wrong, nothing
-  /// changes. If the program is asked to end while time passes, time stops there and `answer` gets an error.
-  /// A later call replaces one that still waits for bytes; the replaced call gets an error.
+  /// `answer` receives `ok NOW`, the lines' time in seconds, or `error: ...`. If the command is wrong,
+  /// nothing changes. If the program is asked to end while time passes, time stops and `answer` receives an
+  /// error. A later call replaces a call that still waits for bytes; the replaced call receives an error.
   void advance(const std::string& command, Answer answer);
   /// Call this when bytes have arrived at a port.
   void arrived();

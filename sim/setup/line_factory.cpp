@@ -20,6 +20,11 @@ std::unique_ptr<Line> make_line(const LineSetup& setup, Master::Receive receive)
   return std::make_unique<Line>(setup.modules, kind_of(setup), std::move(receive));
 }
 
+SerialMode first_mode(const LineSetup& setup, const Line& line) {
+  const SerialMode first = line.module(0).mode();
+  return {setup.baud.value_or(first.baud), setup.format.value_or(first.format)};
+}
+
 void begin_programs(Line& line, const LineSetup& setup) {
   for (std::size_t i = 0; i < setup.modules.size(); ++i) {
     for (const InputProgram& program : setup.modules[i].inputs) {

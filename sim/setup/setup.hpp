@@ -10,6 +10,8 @@
 #include <string>
 #include <vector>
 
+#include "firmware/model/line_format.hpp"
+
 #include "sim/faults/fault.hpp"
 #include "sim/line/module_spec.hpp"
 #include "sim/ports/tcp_address.hpp"
@@ -31,6 +33,7 @@ struct LineSetup {
   std::optional<TcpAddress> tcp;      ///< address to listen on
   std::optional<std::string> serial;  ///< the serial port; excludes all other ports
   std::optional<std::uint32_t> baud;  ///< rate of the line until a master sets one
+  std::optional<LineFormat> format;   ///< format of the line
   bool echo = false;                  ///< the serial port receives what it sends
   bool instant = false;               ///< bytes take no time
   bool strict_gaps = false;

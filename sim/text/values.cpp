@@ -1,6 +1,8 @@
 #include "sim/text/values.hpp"
 
 #include <algorithm>
+#include <array>
+#include <cctype>
 #include <charconv>
 #include <limits>
 
@@ -11,6 +13,9 @@
 namespace ex9000::sim {
 
 namespace {
+
+/// In the order of LineFormat.
+constexpr std::array<std::string_view, 4> kLineFormats{"8N1", "8N2", "8E1", "8O1"};
 
 /// Parses the whole text as a number; returns nullopt for any other text and for numbers that are too large.
 template <class Number, class... Format>
@@ -69,6 +74,25 @@ double parse_probability(const std::string& text) {
     expect(text, "a probability above 0 and up to 1, for example 0.01 or 1e-4");
   }
   return *value;
+}
+
+LineFormat parse_line_format(const std::string& text) {
+  std::string upper = text;
+  std::transform(upper.begin(), upper.end(), upper.begin(),
+                 [](unsigned char c) { return static_cast<char>(std::toupper(c)); });
+  const auto* const found = std::find(kLineFormats.begin(), kLineFormats.end(), upper);
+  if (found == kLineFormats.end()) {
+    expect(text, "a line format: 8N1, 8N2, 8E1 or 8O1");
+  }
+  return static_cast<LineFormat>(found - kLineFormats.begin());
+}
+
+std::string line_format_text(LineFormat format) {
+  return std::string(kLineFormats[static_cast<std::size_t>(format)]);
+}
+
+std::string mode_text(std::uint32_t baud, LineFormat format) {
+  return std::to_string(baud) + " baud " + line_format_text(format);
 }
 
 std::uint32_t parse_baud_rate(const std::string& text) {

@@ -8,6 +8,8 @@
 #include <string_view>
 #include <vector>
 
+#include "firmware/model/line_format.hpp"
+
 namespace ex9000::sim {
 
 // Each parser requires that the whole text is a value. It throws std::invalid_argument with a one-line
@@ -22,6 +24,12 @@ std::uint64_t parse_whole_number(const std::string& text, std::uint64_t least, s
 std::optional<double> decimal_number(const std::string& text, double least, double most);
 /// Parses a number above 0 and up to 1.
 double parse_probability(const std::string& text);
+/// Parses 8N1, 8N2, 8E1 or 8O1, in upper or lower case.
+LineFormat parse_line_format(const std::string& text);
+/// Returns the name that `parse_line_format` reads, in upper case.
+std::string line_format_text(LineFormat format);
+/// Returns a rate and a format for people, for example `9600 baud 8N1`.
+std::string mode_text(std::uint32_t baud, LineFormat format);
 /// Parses one of kBaudRates, in bits per second.
 std::uint32_t parse_baud_rate(const std::string& text);
 /// Parses one or two hex digits, in upper or lower case.

@@ -180,8 +180,8 @@ TEST_P(OnBoard, RepliesImmediatelyAfterTheTurnAroundTime) {
     EXPECT_EQ(bench.ask("$01M"), "!019055");
     ASSERT_EQ(bench.line.drives.size(), 1U);
     const Instant silence = bench.line.drives[0].from - bench.line.sent();
-    EXPECT_GE(silence, kBitsACharacter * bench.line.bit_time());
-    EXPECT_LE(silence, kBitsACharacter * bench.line.bit_time() + kAtOnce);
+    EXPECT_GE(silence, bench.line.character_time());
+    EXPECT_LE(silence, bench.line.character_time() + kAtOnce);
   }
 }
 
@@ -325,7 +325,7 @@ TEST_P(OnBoard, IsResetByTheWatchdogWithin1600msIfTheTickStops) {
   EXPECT_EQ(bench.ask("$015"), "!011");
 }
 
-/// wire.md section 12, register 0x0301.
+/// firmware/extensions.md, register 0x0301.
 TEST_P(OnBoard, TellsTheReasonOfEachResetAndForgetsTheOneBefore) {
   constexpr milliseconds kLongestWatchdogPeriod{1600};
   constexpr unsigned kUnserved = 7;  // SSI0

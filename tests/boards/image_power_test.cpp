@@ -5,6 +5,7 @@
 // a page after a cut.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <chrono>
 #include <cstdio>
 #include <map>
@@ -13,6 +14,7 @@
 #include <vector>
 
 #include "sim/bus/module.hpp"
+#include "tests/firmware/settings/stored_bytes.hpp"
 #include "tests/qemu/master.hpp"
 #include "tests/qemu/timed_module.hpp"
 #include "tests/support/environment.hpp"
@@ -83,17 +85,17 @@ class CutModule {
       module_.run_for(milliseconds(25));  // debounce time of INIT*, wire.md D13
     }
     done_ = command_.done_to(before_, module_.outputs());
-    module_.hear(module_.baud());
+    module_.hear(module_.mode());
     if (!command_.is_timeout()) {
       const FrameFormat frame_format = init_mode ? FrameFormat::init_mode() : FrameFormat::of(before_);
-      module_.send(frame_format.framed(command_.frame(before_)), module_.baud());
+      module_.send(frame_format.framed(command_.frame(before_)), module_.mode());
     }
     module_.watch_stores(kI2c, kRegisters);
     bool stopped = true;
     for (unsigned i = 0; i < stores && stopped; ++i) {
       stopped = module_.run_to_store(milliseconds(700));
     }
-    answered_ = !module_.hear(module_.baud()).empty();
+    answered_ = !module_.hear(module_.mode()).empty();
     module_.kill();
     return stopped;
   }
@@ -108,7 +110,7 @@ class CutModule {
     // contents.
     std::optional<Settings>& found = known_[module_.memory()];
     for (const Settings* guess : {&done_, &before_}) {
-      if (!found && baud_rate(guess->baud_code) == nearest_rate(module_.baud())) {
+      if (!found && is_used(guess->baud_code)) {
         found = spoken_to(FrameFormat::of(*guess)).read(guess->format);
       }
     }
@@ -133,25 +135,22 @@ class CutModule {
     module_.set_init(init);
     module_.power(true);
     module_.run_for(milliseconds(60));
-    ASSERT_NE(module_.baud(), 0U) << "the module does not start";
+    ASSERT_NE(module_.mode().baud, 0U) << "the module does not start";
   }
-  /// Returns the standard baud rate within 5 % of the rate that the divisors give; 0 if there is none.
-  static std::uint32_t nearest_rate(std::uint32_t rate) {
-    for (const std::uint32_t each : kBaudRates) {
-      if (rate > each - each / 20 && rate < each + each / 20) {
-        return each;
-      }
-    }
-    return 0;
+  /// Returns whether the module uses the line format of a baud-rate code, and its rate within 5 %.
+  bool is_used(std::uint8_t code) {
+    const std::uint32_t rate = baud_rate(code);
+    const hal::SerialMode mode = module_.mode();
+    return mode.format == line_format(code) && mode.baud > rate - rate / 20 && mode.baud < rate + rate / 20;
   }
   SettingsReader spoken_to(const FrameFormat& frame_format) {
     return {module_.model(), frame_format, [this](const Bytes& frame) {
               constexpr milliseconds kSilence{5};
               module_.run_for(kSilence);
-              module_.hear(module_.baud());
-              module_.send(frame, module_.baud());
+              module_.hear(module_.mode());
+              module_.send(frame, module_.mode());
               module_.run_for(kSilence);
-              return module_.hear(module_.baud());
+              return module_.hear(module_.mode());
             }};
   }
 
@@ -164,6 +163,40 @@ class CutModule {
   unsigned olds_ = 0;
   unsigned news_ = 0;
 };
+
+/// Returns a reader of the settings of `module`, which has started.
+SettingsReader reader_of(TimedModule& module, const FrameFormat& frame_format) {
+  return {module.model(), frame_format, [&module](const std::vector<std::uint8_t>& frame) {
+            constexpr milliseconds kSilence{5};
+            module.run_for(kSilence);
+            module.hear(module.mode());
+            module.send(frame, module.mode());
+            module.run_for(milliseconds(100));
+            return module.hear(module.mode());
+          }};
+}
+
+TEST(ImageAfterAnUpdate, HasAllSettingsThatEarlierFirmwareHasStored) {
+  unsigned updates = 0;
+  for (const StoredBytes& stored : all_stored_bytes()) {
+    if (stored.model->designation != "EX9042D-M" && stored.model->designation != "EX9055D") {
+      continue;
+    }
+    std::string memory(0x2000, '\xFF');  // an AT24C64
+    std::copy(stored.memory.begin(), stored.memory.end(), memory.begin());
+    TimedModule module(*stored.model);
+    module.power(false);
+    module.set_memory(memory);
+    module.power(true);
+    module.run_for(kComesUpWithin);
+    const auto found = reader_of(module, FrameFormat::of(stored.settings)).read(stored.settings.format);
+    ASSERT_TRUE(found) << stored.file << ": it does not reply";
+    EXPECT_TRUE(*found == stored.settings) << stored.file;
+    EXPECT_EQ(module.memory(), memory) << stored.file;
+    ++updates;
+  }
+  EXPECT_GE(updates, 6U);  // two models, three layouts
+}
 
 TEST(ImageWithoutPower, HasOldOrNewSettingsAfterAPowerCutBetweenAnyTwoI2cRegisterWrites) {
   const Model& model = *find_model("EX9043D-M");

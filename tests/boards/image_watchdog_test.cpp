@@ -51,10 +51,10 @@ class FaultyImage : public testing::TestWithParam<Protocol>, protected EitherPro
   Bytes exchange(const Bytes& frame) {
     constexpr milliseconds kSilence{5};
     module_.run_for(kSilence);
-    module_.hear(module_.baud());
-    module_.send(frame, module_.baud());
+    module_.hear(module_.mode());
+    module_.send(frame, module_.mode());
     module_.run_for(3 * kSilence);
-    return module_.hear(module_.baud());
+    return module_.hear(module_.mode());
   }
   bool stores() {
     const Bytes reply = ask("~01OVALVE", {1, 0x06, 0x01, 0xE8, 0, 0x40});
@@ -84,10 +84,10 @@ class FaultyImage : public testing::TestWithParam<Protocol>, protected EitherPro
       case Doing::Nothing:
         break;
       case Doing::Receiving:
-        module_.send({harmless.begin(), harmless.begin() + 2}, module_.baud());
+        module_.send({harmless.begin(), harmless.begin() + 2}, module_.mode());
         break;
       case Doing::Answering:
-        module_.send(harmless, module_.baud());
+        module_.send(harmless, module_.mode());
         for (int i = 0; i < kLooks && !level_of(bus(), board::kDriverEnable); ++i) {
           module_.run_for(std::chrono::microseconds(13));
         }
@@ -96,7 +96,7 @@ class FaultyImage : public testing::TestWithParam<Protocol>, protected EitherPro
       case Doing::Storing:
         // The emulated EEPROM stores immediately. Therefore the test disables the I2C interrupt until the
         // image has received the request and waits for the end of a byte.
-        module_.send(framed("~01OPUMP", {1, 0x06, 0x01, 0xE8, 0, 0x41}), module_.baud());
+        module_.send(framed("~01OPUMP", {1, 0x06, 0x01, 0xE8, 0, 0x41}), module_.mode());
         bus().write(kClearEnable, 1U << kI2c0);
         module_.run_for(std::chrono::microseconds(ascii() ? 2500 : 5500));
         bus().write(kSetEnable, 1U << kI2c0);
@@ -239,10 +239,10 @@ TEST_P(FaultyImage, RunsWithABlockedEepromBusAndStoresOnceItIsFree) {
     if (doing == Doing::Receiving) {
       ask("", {});
     }
-    module_.hear(module_.baud());
-    module_.send(framed("~01OVALVE", {1, 0x06, 0x01, 0xE8, 0, 0x42}), module_.baud());
+    module_.hear(module_.mode());
+    module_.send(framed("~01OVALVE", {1, 0x06, 0x01, 0xE8, 0, 0x42}), module_.mode());
     module_.run_for(milliseconds(200));
-    const Bytes reply = module_.hear(module_.baud());
+    const Bytes reply = module_.hear(module_.mode());
     ASSERT_GE(reply.size(), 3U);
     EXPECT_TRUE(ascii() ? reply[0] == '?' : reply[1] == 0x86U);
     EXPECT_FALSE(timeout_status());
@@ -308,7 +308,7 @@ TEST_F(HungImage, AnswersAfterAFloodOfBytes) {
   module_.run_for(kComesUpWithin);
   EXPECT_EQ(ask(module_, "@011FFF"), ">");
   EXPECT_EQ(ask(module_, "$015"), "!011");
-  module_.send(TimedModule::Bytes(65536, 'U'), module_.baud());
+  module_.send(TimedModule::Bytes(65536, 'U'), module_.mode());
   EXPECT_EQ(ask(module_, "$015"), "!010");
   EXPECT_EQ(ask(module_, "@01"), ">1FFF");
   EXPECT_EQ(module_.outputs(), 0x1FFF);

@@ -393,9 +393,9 @@ TEST_P(HostWatchdogOnBoard, NoCommandedValueReturnsAfterAPowerCutFollowingExpiry
         const Bytes command = module.framed(
             "~01O" + new_name, {1, 0x0F, 0, 0xA0, 0, 16, 2, static_cast<std::uint8_t>(new_value & 0xFFU),
                                 static_cast<std::uint8_t>(new_value >> 8U)});
-        const Instant bit = bench.line.bit_time();
-        const Instant takes = static_cast<std::int64_t>(command.size()) * kBitsACharacter * bit +
-                              (module.ascii() ? kBitsACharacter * bit : 77 * bit / 2);
+        const Instant character = bench.line.character_time();
+        const Instant takes = static_cast<std::int64_t>(command.size()) * character +
+                              (module.ascii() ? character : 77 * bench.line.bit_time() / 2);
         bench.run_until(over - takes -
                         (storing == Storing::OnTheBus ? microseconds(400) : microseconds(4000)));
         const std::size_t had_programmed = bench.eeprom.programmed().size();

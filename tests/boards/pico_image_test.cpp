@@ -123,6 +123,35 @@ TEST_F(PicoImage, TheDriverIsOnForAllBitsOfAReplyAndGoesOffWithinACharacter) {
   }
 }
 
+TEST_F(PicoImage, AModuleWithAStoredFormatRepliesInItAndIgnoresAMasterWithAnotherParity) {
+  const Model& model = *find_model("EX9043D-M");
+  const std::map<LineFormat, long> line_control{
+      {LineFormat::k8N2, 0x68}, {LineFormat::k8E1, 0x66}, {LineFormat::k8O1, 0x62}};
+  for (const auto& [format, value] : line_control) {
+    SCOPED_TRACE(value);
+    Settings settings = Settings::factory(model);
+    settings.protocol = Protocol::Ascii;
+    settings.baud_code = with_line_format(settings.baud_code, format);
+    bench_.begin_anew(model, &settings);
+    bench_.set_format(format);
+    bench_.power(true);
+    bench_.run_for(kComingUp);
+    EXPECT_EQ(bench_.counts().at("lineControl"), value);
+    EXPECT_EQ(ask("$01M"), "!019043M\r");
+    const LineFormat other = format == LineFormat::k8O1 ? LineFormat::k8E1 : LineFormat::k8O1;
+    bench_.set_format(other);
+    EXPECT_EQ(ask("$01M"), "");
+    bench_.set_format(format);
+    ask("");  // the CR was damaged, so the frame may still be open
+    const std::string damaged_bytes = ask("~01X030E");
+    EXPECT_GT(std::stoul(damaged_bytes.substr(3), nullptr, 16), 0U);
+    EXPECT_EQ(ask("$01M"), "!019043M\r");
+    for (const char* wrong : {"lost", "early", "late", "framing", "parity"}) {
+      EXPECT_EQ(bench_.counts().at(wrong), 0) << wrong;
+    }
+  }
+}
+
 TEST_F(PicoImage, RequestsBackToBackAt115200AreAllAnswered) {
   begin("EX9043D-M", 115200);
   for (int i = 0; i < 500; ++i) {
@@ -299,7 +328,7 @@ INSTANTIATE_TEST_SUITE_P(While, HangingPicoImage,
                                          Doing::Erasing),
                          [](const auto& each) { return name_of(each.param); });
 
-/// wire.md section 12, register 0x0301.
+/// firmware/extensions.md, register 0x0301.
 TEST_F(PicoImage, TheReasonOfEachResetIsKnown) {
   const std::string ask_reason = "~01X0301";
   begin();

@@ -13,7 +13,9 @@
 #include "boards/pico/board.hpp"
 #include "firmware/model/baud.hpp"
 #include "sim/play/modbus_frame.hpp"
+#include "tests/firmware/settings/stored_bytes.hpp"
 #include "tests/rp2040/pico_bench.hpp"
+#include "tests/support/settings_reader.hpp"
 
 namespace ex9000::pico {
 namespace {
@@ -244,6 +246,41 @@ TEST_F(PicoSettings, AResetDuringAnEraseWaitsForItsEnd) {
   EXPECT_EQ(bench_.counts().at("requests"), 1);
   bench_.run_for(kErase + kComingUp);
   EXPECT_EQ(stored_timeout(), 7U);
+}
+
+class PicoAfterAnUpdate : public testing::TestWithParam<Memory> {};
+
+INSTANTIATE_TEST_SUITE_P(, PicoAfterAnUpdate, testing::Values(Memory::Flash, Memory::Eeprom),
+                         [](const auto& memory) {
+                           return memory.param == Memory::Flash ? "Flash" : "Eeprom";
+                         });
+
+// The emulator is slow, so one model plays for all. The other tests of updates do not depend on the board.
+TEST_P(PicoAfterAnUpdate, HasAllSettingsThatEarlierFirmwareHasStored) {
+  unsigned updates = 0;
+  for (const StoredBytes& stored : all_stored_bytes()) {
+    if (stored.model->designation != "EX9055D" || stored.file.find("-9055d") == std::string::npos) {
+      continue;
+    }
+    PicoBench bench(GetParam());
+    bench.begin_anew(*stored.model, stored.memory);
+    bench.set_baud(baud_rate(stored.settings.baud_code));
+    bench.power(true);
+    bench.run_for(kComingUp);
+    SettingsReader reader(*stored.model, FrameFormat::of(stored.settings), [&bench](const Bytes& frame) {
+      bench.run_for(milliseconds(5));
+      bench.send(frame);
+      Bytes reply = bench.receive(1, milliseconds(50));
+      const Bytes rest = bench.receive(256, milliseconds(5));
+      reply.insert(reply.end(), rest.begin(), rest.end());
+      return reply;
+    });
+    const auto found = reader.read(stored.settings.format);
+    ASSERT_TRUE(found) << stored.file << ": it does not reply";
+    EXPECT_TRUE(*found == stored.settings) << stored.file;
+    ++updates;
+  }
+  EXPECT_EQ(updates, 3U);  // one for each layout
 }
 
 }  // namespace

@@ -104,7 +104,7 @@ class WatchedModule : public EitherProtocol {
     constexpr unsigned kAscii = 4;
     constexpr unsigned kModbus = 8;
     const Instant takes =
-        (ascii() ? kAscii : kModbus) * kBitsACharacter * bench.line.bit_time() + over_behind_its_last_bit();
+        (ascii() ? kAscii : kModbus) * bench.line.character_time() + over_behind_its_last_bit();
     const Instant tick = bench.mcu->core.ticked();
     Instant wait = (tick + phase - bench.timeline.now() - takes) % kTick;
     wait += wait < Instant(0) ? kTick : Instant(0);
@@ -164,13 +164,13 @@ inline void make_it(WatchedModule& module, Doing doing) {
       break;
     case Doing::Receiving:
       bench.line.send({harmless.begin(), harmless.begin() + 2});
-      bench.run_for(kBitsACharacter * 3 / 2 * bench.line.bit_time());
+      bench.run_for(3 * bench.line.character_time() / 2);
       break;
     case Doing::Answering:
       bench.line.send(harmless);
       ASSERT_TRUE(runs_until(
           bench, [&] { return !bench.line.drives.empty(); }, std::chrono::microseconds(100)));
-      bench.run_for(kBitsACharacter * 3 / 2 * bench.line.bit_time());
+      bench.run_for(3 * bench.line.character_time() / 2);
       ASSERT_TRUE(bench.line.driven());
       break;
     case Doing::OnTheEepromsBus:

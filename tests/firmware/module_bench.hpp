@@ -28,7 +28,7 @@ class ModuleBench {
         line_({spec_}, kPaced, [this](std::uint8_t byte, ByteStatus /*status*/) { heard_.push_back(byte); }) {
     line_.bus().observe(recorder_);
     line_.come_up();
-    line_.master().set_baud(line_.module(0).baud());
+    line_.master().set_mode(line_.module(0).mode());
     recorder_.clear();
   }
 

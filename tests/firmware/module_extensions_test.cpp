@@ -1,12 +1,16 @@
-// Tests extensions of a whole module that depend on exact times, stores and resets: wire.md section 12.
+// Tests extensions of a whole module that depend on exact times, stores and resets: firmware/extensions.md.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <string>
 #include <vector>
 
 #include "firmware/request/statistics.hpp"
+#include "firmware/settings/places.hpp"
+#include "sim/play/modbus_frame.hpp"
 #include "sim/text/values.hpp"
 #include "tests/firmware/module_bench.hpp"
+#include "tests/firmware/settings/stored_bytes.hpp"
 
 namespace ex9000::sim {
 namespace {
@@ -143,6 +147,24 @@ TEST(FedByRequests, ARequestJustBeforeTheExpiryFeedsAndJustAfterItDoesNot) {
   }
 }
 
+// The frame ends T3.5 after its last byte, 1.75 ms at 115200 baud.
+TEST(FedByRequests, AModbusRequestFeedsAtTheEndOfItsSilence) {
+  const std::vector<std::uint8_t> request = with_crc({0x01, 0x01, 0, 0, 0, 1});
+  const VirtualTime takes = VirtualTime(10'000'000'000 / 115200) * static_cast<int>(request.size());
+  for (const int offset : {-900, -100, -10, 10, 100, 900}) {  // in us
+    ModuleBench bench("EX9043D-M,baud=115200");
+    ASSERT_EQ(bench.ask(std::vector<std::uint8_t>{0x01, 0x06, 0x02, 0x51, 0, 1}).size(), 6U);
+    ASSERT_EQ(bench.ask(std::vector<std::uint8_t>{0x01, 0x06, 0x01, 0xE8, 0, 10}).size(), 6U);
+    ASSERT_EQ(bench.ask(std::vector<std::uint8_t>{0x01, 0x05, 0x01, 0x04, 0xFF, 0}).size(), 6U);
+    bench.send(request);
+    const VirtualTime expires = bench.now() + microseconds(1750) + seconds(1);
+    bench.line().bus().run_until(expires - takes - microseconds(1750) + microseconds(offset));
+    bench.send(request);
+    bench.run(milliseconds(300));
+    EXPECT_EQ(bench.module().module().state().settings.timeout_status, offset > 0) << offset;
+  }
+}
+
 // --- reset reason and statistics ---
 
 TEST(ResetReasons, TellPowerOnResetPinAndModuleWatchdog) {
@@ -164,6 +186,8 @@ TEST(Uptime, CountsSecondsBeyondTheRangeOfTheClock) {
   const std::string reply = bench.ask("~01X0302");
   ASSERT_EQ(reply.size(), 11U);
   EXPECT_EQ(reply.substr(3), "00001C20");  // 7200
+  bench.run(std::chrono::hours(17));
+  EXPECT_EQ(bench.ask("~01X0302").substr(3), "00010B30");  // 68400, beyond 16 bits
   bench.module().reset();
   bench.run(milliseconds(100));
   EXPECT_EQ(bench.ask("~01X0302"), "!0100000000");
@@ -181,6 +205,80 @@ TEST(TimeoutCount, CountsEveryExpiryUntilItIsCleared) {
 }
 
 // --- statistics ---
+
+/// Returns the value of register 0x0306 of a module that starts with this memory.
+std::string settings_source(const std::string& model, const std::vector<std::uint8_t>& memory) {
+  ModuleBench bench(model);
+  bench.module().power(false);
+  std::copy(memory.begin(), memory.end(), bench.module().memory().contents().begin());
+  bench.module().power(true);
+  bench.run(milliseconds(100));
+  return bench.ask("~" + hex_byte_text(bench.module().module().state().in_force.address) + "X0306").substr(3);
+}
+
+TEST(SettingsSourceRegister, ReadsWhatTheSettingsWereReadFrom) {
+  const Model& model = *find_model("EX9043D");
+  EXPECT_EQ(settings_source("EX9043D", std::vector<std::uint8_t>(0x180, 0xFF)), "0004");
+  Settings settings = Settings::factory(model);
+  settings.watchdog_timeout = 0x11;
+  std::vector<std::uint8_t> memory = SimulatedModule::memory_image(model, settings);
+  EXPECT_EQ(settings_source("EX9043D", memory), "0000");  // the second copy is blank
+  std::vector<std::uint8_t> one_bad = memory;
+  one_bad[kPlaces[1].address] = 0x00;
+  EXPECT_EQ(settings_source("EX9043D", one_bad), "0001");
+  one_bad[kPlaces[0].address + 8U] ^= 1U;
+  EXPECT_EQ(settings_source("EX9043D", one_bad), "0002");
+  for (const StoredBytes& stored : all_stored_bytes()) {
+    if (stored.settings.protocol == Protocol::Ascii && stored.file.rfind("layout-2-9", 0) == 0) {
+      EXPECT_EQ(settings_source(std::string(stored.model->designation) + ",baud=19200", stored.memory),
+                "0003")
+          << stored.file;
+    }
+  }
+}
+
+TEST(TimeoutCount, StopsAt65535) {
+  ModuleBench bench("EX9043D,baud=115200");
+  for (int i = 0; i < 0xFFFF; ++i) {
+    bench.send("~013101\r");
+    bench.run(milliseconds(200));
+  }
+  EXPECT_EQ(bench.ask("~01X0304"), "!01FFFF");
+  ASSERT_EQ(bench.ask("~013101"), "!01");
+  EXPECT_EQ(bench.ask("~01X0304"), "!01FFFF");
+}
+
+// --- line tallies ---
+
+std::vector<std::uint8_t> read_word(std::uint8_t high, std::uint8_t low) {
+  return {0x01, 0x03, high, low, 0, 1};
+}
+
+TEST(LineTallyRegisters, CountRequestsThatAreLostWhileAStoreIsUnderWayUntilTheyAreCleared) {
+  ModuleBench bench("EX9043D-M,baud=115200");
+  bench.recorder().clear();
+  bench.send(with_crc({0x01, 0x06, 0x01, 0xE8, 0, 50}));
+  for (int i = 0; i < 3; ++i) {
+    bench.run(microseconds(1900));
+    bench.send(with_crc({0x01, 0x01, 0, 0, 0, 1}));
+  }
+  bench.run(milliseconds(100));
+  const std::size_t replied = (bench.recorder().sent_by(1).size() - 8) / 6;  // after the reply to the store
+  ASSERT_LT(replied, 3U);
+  EXPECT_EQ(bench.ask(read_word(0x03, 0x0F)),
+            (std::vector<std::uint8_t>{0x01, 0x03, 2, 0, static_cast<std::uint8_t>(3 - replied)}));
+  ASSERT_EQ(bench.ask(std::vector<std::uint8_t>{0x01, 0x08, 0, 0x0A, 0, 0}).size(), 6U);
+  EXPECT_EQ(bench.ask(read_word(0x03, 0x0F)), (std::vector<std::uint8_t>{0x01, 0x03, 2, 0, 0}));
+}
+
+TEST(LineTallyRegisters, CountDamagedBytesWith16BitsThatWrap) {
+  ModuleBench bench("EX9043D-M,baud=115200");
+  for (unsigned i = 0; i < 0x10004; ++i) {
+    bench.module().receive(0x55, i % 2 == 0 ? ByteStatus::FramingError : ByteStatus::ParityError);
+  }
+  bench.run(milliseconds(10));
+  EXPECT_EQ(bench.ask(read_word(0x03, 0x0E)), (std::vector<std::uint8_t>{0x01, 0x03, 2, 0, 4}));
+}
 
 TEST(Statistics, CountsSaturate) {
   std::uint16_t count = 0xFFFE;

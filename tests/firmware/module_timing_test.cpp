@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <array>
 #include <cstdio>
+#include <ostream>
 #include <string>
 #include <utility>
 #include <vector>
@@ -54,11 +55,51 @@ TEST(Reset, ABouncingInitSwitchIsReadOnlyAfterItIsStable) {
   EXPECT_EQ(bench.ask("$002"), "!01400600");
 }
 
-// --- wire.md 3 and 7: start of a reply; 9: the driver ---
+// --- wire.md 3 and 7: start of a reply; 9: the driver; firmware/extensions.md: line formats ---
+
+/// A rate and a line format, and the duration of a character.
+struct LineMode {
+  std::uint32_t baud;
+  const char* format;
+  VirtualTime character;
+
+  /// Returns a specification of a module with this mode.
+  [[nodiscard]] std::string of(const std::string& model) const {
+    return model + ",baud=" + std::to_string(baud) + ",format=" + format;
+  }
+  friend std::ostream& operator<<(std::ostream& out, const LineMode& mode) {
+    return out << mode.baud << " baud " << mode.format;
+  }
+};
+
+std::vector<LineMode> all_line_modes() {
+  std::vector<LineMode> modes;
+  for (const std::uint32_t baud : kBaudRates) {
+    modes.push_back({baud, "8N1", VirtualTime(10'000'000'000 / baud)});
+    for (const char* const format : {"8N2", "8E1", "8O1"}) {
+      modes.push_back({baud, format, VirtualTime(11'000'000'000 / baud)});
+    }
+  }
+  return modes;
+}
+
+TEST(Timing, ACharacterHasTenBitsIn8N1AndElevenInTheOtherFormats) {
+  for (const LineMode& mode : all_line_modes()) {
+    ModuleBench bench(mode.of("EX9055D"));
+    ASSERT_EQ(bench.ask("$01M"), "!019055") << mode;
+    const auto& bytes = bench.recorder().bytes;
+    ASSERT_EQ(bytes.size(), 13U) << mode;
+    for (std::size_t i = 6; i < bytes.size(); ++i) {  // bytes of the reply, which follow each other
+      EXPECT_NEAR(static_cast<double>((bytes[i].start - bytes[i - 1].start).count()),
+                  static_cast<double>(mode.character.count()), 2.0)
+          << mode;
+    }
+  }
+}
 
 TEST(Timing, AnAsciiReplyStartsAfterOneCharacterAndWithin20msOr200msIfStored) {
-  for (const std::uint32_t baud : kBaudRates) {
-    ModuleBench bench("EX9055D,baud=" + std::to_string(baud));
+  for (const LineMode& mode : all_line_modes()) {
+    ModuleBench bench(mode.of("EX9055D"));
     for (const auto& [command, most] :
          std::vector<std::pair<std::string, VirtualTime>>{{"$012", milliseconds(20)},
                                                           {"@01FF", milliseconds(20)},
@@ -70,15 +111,16 @@ TEST(Timing, AnAsciiReplyStartsAfterOneCharacterAndWithin20msOr200msIfStored) {
       ASSERT_NE(bench.ask(command), "") << command;
       const std::size_t request = command.size() + 1;
       const VirtualTime gap = bench.recorder().bytes[request].start - bench.recorder().bytes[request - 1].end;
-      EXPECT_GE(gap, VirtualTime(10'000'000'000 / baud)) << command << " at " << baud;
-      EXPECT_LE(gap, most) << command << " at " << baud;
+      EXPECT_GE(gap, mode.character) << command << " at " << mode;
+      EXPECT_LE(gap, most) << command << " at " << mode;
     }
   }
 }
 
 TEST(Timing, AModbusReplyStartsAfterT35AndWithin20msOr200msIfStored) {
-  for (const std::uint32_t baud : kBaudRates) {
-    ModuleBench bench("EX9042D-M,baud=" + std::to_string(baud));
+  for (const LineMode& mode : all_line_modes()) {
+    ModuleBench bench(mode.of("EX9042D-M"));
+    const std::uint32_t baud = mode.baud;
     const VirtualTime silence = baud > 19200 ? VirtualTime(1'750'000) : VirtualTime(38'500'000'000 / baud);
     for (const auto& [frame, most] :
          std::vector<std::pair<Bytes, VirtualTime>>{{{1, 0x01, 0, 0, 0, 13}, milliseconds(20)},
@@ -89,25 +131,27 @@ TEST(Timing, AModbusReplyStartsAfterT35AndWithin20msOr200msIfStored) {
       ASSERT_FALSE(bench.ask(frame).empty());
       const std::size_t request = frame.size() + 2;
       const VirtualTime gap = bench.recorder().bytes[request].start - bench.recorder().bytes[request - 1].end;
-      EXPECT_GE(gap, silence) << baud;
-      EXPECT_LE(gap, silence + most) << baud;
+      EXPECT_GE(gap, silence) << mode;
+      EXPECT_LE(gap, silence + most) << mode;
     }
   }
 }
 
-// wire.md section 12: the response delay counts from the last stop bit, and the other limits from its end.
+// firmware/extensions.md: the response delay counts from the last stop bit, and the other limits from its
+// end.
 TEST(Timing, AReplyStartsAtTheEndOfTheResponseDelayAndAStoreDoesNotAddToIt) {
-  for (const std::uint32_t baud : kBaudRates) {
-    ModuleBench bench("EX9055D,baud=" + std::to_string(baud));
+  for (const LineMode& mode : all_line_modes()) {
+    ModuleBench bench(mode.of("EX9055D"));
+    const std::uint32_t baud = mode.baud;
     ASSERT_EQ(bench.ask("~01RD1E"), "!01");
     for (const std::string command : {"$012", "$01Z", "~01ONEW", "~01OOLD"}) {
       bench.recorder().clear();
       ASSERT_NE(bench.ask(command), "") << command;
       const std::size_t request = command.size() + 1;
       const VirtualTime gap = bench.recorder().bytes[request].start - bench.recorder().bytes[request - 1].end;
-      EXPECT_GE(gap, milliseconds(30)) << command << " at " << baud;
+      EXPECT_GE(gap, milliseconds(30)) << command << " at " << mode;
       // At 1200 baud the turn-around and the store together take a little longer than the delay.
-      EXPECT_LE(gap, milliseconds(baud == 1200 ? 35 : 31)) << command << " at " << baud;
+      EXPECT_LE(gap, milliseconds(baud == 1200 ? 35 : 31)) << command << " at " << mode;
     }
   }
 }
@@ -125,8 +169,8 @@ TEST(Timing, TheEffectOfARequestIsNotDelayed) {
 }
 
 TEST(Driver, IsOnBeforeTheFirstStartBitAndOffWithinACharacterAfterTheLastStopBit) {
-  for (const std::uint32_t baud : kBaudRates) {
-    ModuleBench bench("EX9042D,baud=" + std::to_string(baud));
+  for (const LineMode& mode : all_line_modes()) {
+    ModuleBench bench(mode.of("EX9042D"));
     bench.ask("$01M");
     const auto& drivers = bench.recorder().drivers;
     const auto& bytes = bench.recorder().bytes;
@@ -134,7 +178,7 @@ TEST(Driver, IsOnBeforeTheFirstStartBitAndOffWithinACharacterAfterTheLastStopBit
     ASSERT_EQ(drivers[2].station, 1U);
     EXPECT_LT(drivers[2].at, bytes[5].start);
     EXPECT_GE(drivers[3].at, bytes.back().end);
-    EXPECT_LE(drivers[3].at, bytes.back().end + VirtualTime(10'000'000'000 / baud));
+    EXPECT_LE(drivers[3].at, bytes.back().end + mode.character);
   }
 }
 

@@ -4,6 +4,7 @@
 #include <cstdint>
 
 #include "firmware/bytes.hpp"
+#include "firmware/model/line_format.hpp"
 #include "firmware/time.hpp"
 
 namespace ex9000 {
@@ -12,7 +13,7 @@ namespace ex9000 {
 struct Nothing {
   [[nodiscard]] static Time now();
   [[nodiscard]] static Time now_in_interrupt();
-  static void open(std::uint32_t baud);
+  static void open(std::uint32_t baud, LineFormat format);
   static void send(Bytes bytes);
   [[nodiscard]] static bool sending();
   static void restart(Duration after);

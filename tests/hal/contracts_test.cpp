@@ -29,17 +29,23 @@ static_assert(!kIsClock<ClockThatCannotBeConst>);
 static_assert(!kIsClock<ClockOfPlainNumbers>);
 
 struct LineOfNarrowRates {
-  static void open(std::uint16_t baud);
+  static void open(std::uint16_t baud, LineFormat format);
+  static void send(Bytes bytes);
+  [[nodiscard]] static bool sending();
+};
+struct LineOfOneFormat {
+  static void open(std::uint32_t baud);
   static void send(Bytes bytes);
   [[nodiscard]] static bool sending();
 };
 struct LineThatWritesWhatItSends {
-  static void open(std::uint32_t baud);
+  static void open(std::uint32_t baud, LineFormat format);
   static void send(MutableBytes bytes);
   [[nodiscard]] static bool sending();
 };
 static_assert(kIsSerialLine<RightLine>);
 static_assert(!kIsSerialLine<LineOfNarrowRates>);
+static_assert(!kIsSerialLine<LineOfOneFormat>);
 static_assert(!kIsSerialLine<LineThatWritesWhatItSends>);
 
 struct TimerThatTakesByReference {

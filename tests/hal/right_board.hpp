@@ -4,6 +4,7 @@
 #include <cstdint>
 
 #include "firmware/bytes.hpp"
+#include "firmware/model/line_format.hpp"
 #include "firmware/time.hpp"
 
 namespace ex9000::hal {
@@ -14,7 +15,7 @@ struct RightClock {
 };
 
 struct RightLine {
-  static void open(std::uint32_t baud);
+  static void open(std::uint32_t baud, LineFormat format);
   static void send(Bytes bytes);
   [[nodiscard]] static bool sending();
 };

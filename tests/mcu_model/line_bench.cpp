@@ -19,9 +19,12 @@ LineBench::LineBench(Timeline& timeline, Net& transmit, Net& enable, Net& receiv
             go_on();
           }),
       ear_(timeline, [this](SerialReceiver::Received received) {
-        const Instant started = timeline_.now() - bit_time_ / 2 - (kBitsACharacter - 1) * bit_time_;
-        last_ended_ = started + kBitsACharacter * bit_time_;
-        heard.push_back({started, last_ended_, received.byte, !received.framing_error});
+        const unsigned stop_bit = first_stop_bit(format_);
+        const Instant started = timeline_.now() - bit_time_ / 2 - stop_bit * bit_time_;
+        last_safe_ = started + (stop_bit + 1) * bit_time_;
+        last_ended_ = started + character_time();
+        heard.push_back(
+            {started, last_ended_, received.byte, !received.framing_error && !received.parity_error});
       }) {
   // The resistors that every board has: the line is idle and the driver off while the pins float.
   transmit_.drive(End::Resistor, Drive::WeakHigh);
@@ -37,9 +40,14 @@ void LineBench::set_baud(std::uint32_t baud) {
   ear_.set_bit_time(bit_time_);
 }
 
+void LineBench::set_format(LineFormat format) {
+  format_ = format;
+  ear_.set_format(format);
+}
+
 void LineBench::send(const std::vector<std::uint8_t>& bytes) {
   for (const std::uint8_t byte : bytes) {
-    waiting_.push_back({byte, true, 0});
+    waiting_.push_back({byte});
   }
   if (!sender_.busy()) {
     go_on();
@@ -61,7 +69,7 @@ void LineBench::go_on() {
   }
   const Character next = waiting_.front();
   waiting_.pop_front();
-  sender_.begin(next, bit_time_, timeline_.now());
+  sender_.begin(next, format_, bit_time_, timeline_.now());
 }
 
 void LineBench::board_speaks() {
@@ -76,8 +84,8 @@ void LineBench::driver_switched() {
     drives.push_back({timeline_.now(), kNever});
   } else {
     drives.back().to = timeline_.now();
-    let_go_early += ear_.busy() || drives.back().to < last_ended_ - bit_time_ / 10 ? 1U : 0U;
-    let_go_late += drives.back().to > last_ended_ + kBitsACharacter * bit_time_ ? 1U : 0U;
+    let_go_early += ear_.busy() || drives.back().to < last_safe_ - bit_time_ / 10 ? 1U : 0U;
+    let_go_late += drives.back().to > last_ended_ + character_time() ? 1U : 0U;
   }
   update();
 }

@@ -20,7 +20,7 @@ class LineBench {
     Instant started;
     Instant ended;
     std::uint8_t byte;
-    bool good;
+    bool good;  ///< the parity and the first stop bit were right
   };
   /// A time during which the board's driver was on.
   struct Driven {
@@ -32,8 +32,12 @@ class LineBench {
   /// `echo`: the board receives the bytes that it sends.
   LineBench(Timeline& timeline, Net& transmit, Net& enable, Net& receive, bool echo = true);
 
+  /// Sets the rate of the master.
   void set_baud(std::uint32_t baud);
+  /// Sets the format of the master, 8N1 at first. Applies to the next character.
+  void set_format(LineFormat format);
   [[nodiscard]] Instant bit_time() const { return bit_time_; }
+  [[nodiscard]] Instant character_time() const { return bits_on_wire(format_) * bit_time_; }
   /// Queues characters for the line; they follow the waiting ones without a gap.
   void send(const std::vector<std::uint8_t>& bytes);
   void send_one(Character character);
@@ -47,9 +51,10 @@ class LineBench {
   /// The number of times that the board's transmit pin went low while its driver was off. These bits do not
   /// appear on the line.
   unsigned bits_lost = 0;
-  /// The number of times that the driver went off before the end of the last stop bit (with a tolerance of a
-  /// tenth of a bit for the difference of the clocks), and the number of times that it stayed on for more
-  /// than a character after it.
+  /// The number of times that the driver went off before the end of the first stop bit of the last character
+  /// (with a tolerance of a tenth of a bit for the difference of the clocks), and the number of times that it
+  /// stayed on for more than a character after the last stop bit. On the wires, a second stop bit cannot be
+  /// told from the idle line.
   unsigned let_go_early = 0;
   unsigned let_go_late = 0;
 
@@ -65,8 +70,10 @@ class LineBench {
   Net& receive_;
   bool echo_;
   bool master_level_ = true;
+  LineFormat format_ = LineFormat::k8N1;
   Instant bit_time_{0};
   Instant sent_{0};
+  Instant last_safe_{0};   ///< end of the first stop bit of the last received character
   Instant last_ended_{0};  ///< end of the last received character
   std::deque<Character> waiting_;
   SerialSender sender_;

@@ -24,7 +24,7 @@ void RegisterTarget::start(const Model& model, const Settings* preset) {
 
 void RegisterTarget::send(const play::Bytes& bytes) {
   const auto characters = static_cast<std::int64_t>(bytes.size());
-  const Instant ends = bench_.timeline.now() + characters * kBitsACharacter * bench_.line.bit_time();
+  const Instant ends = bench_.timeline.now() + characters * bench_.line.character_time();
   bench_.line.send(bytes);
   bench_.run_until(ends);
 }
@@ -33,7 +33,7 @@ play::Bytes RegisterTarget::receive(std::size_t count, milliseconds patience) {
   std::size_t had = bench_.line.heard.size();
   Instant gives_up = bench_.timeline.now() + patience;
   while (bench_.line.heard.size() < count && bench_.timeline.now() < gives_up) {
-    bench_.run_for(kBitsACharacter * bench_.line.bit_time());
+    bench_.run_for(bench_.line.character_time());
     if (bench_.line.heard.size() != had) {
       had = bench_.line.heard.size();
       gives_up = bench_.timeline.now() + patience;
@@ -50,7 +50,9 @@ play::Bytes RegisterTarget::listen(std::chrono::nanoseconds time) {
 play::Bytes RegisterTarget::take_heard() {
   play::Bytes bytes;
   for (const LineBench::Heard& each : bench_.line.heard) {
-    bytes.push_back(each.byte);
+    if (each.good) {  // a master drops a byte with wrong parity or without a stop bit
+      bytes.push_back(each.byte);
+    }
   }
   bench_.line.heard.clear();
   return bytes;

@@ -18,6 +18,7 @@ class RegisterTarget final : public play::Target {
   play::Bytes receive(std::size_t count, std::chrono::milliseconds patience) override;
   play::Bytes listen(std::chrono::nanoseconds time) override;
   void set_baud(std::uint32_t rate) override { bench_.line.set_baud(rate); }
+  void set_format(LineFormat format) override { bench_.line.set_format(format); }
   void power(bool on) override;
   void reset() override;
   void set_init(bool asserted) override { bench_.set_init(asserted); }

@@ -1,22 +1,50 @@
-// Characters as levels on a wire: 8N1, low bit first, idle high.
+// Characters as levels on a wire: a start bit, 8 data bits with the lowest first, a parity bit in some
+// formats, one or two stop bits. The line is idle high.
 #pragma once
 
 #include <cstdint>
 #include <functional>
-#include <optional>
 #include <utility>
 
+#include "firmware/model/line_format.hpp"
 #include "tests/mcu_model/timeline.hpp"
 
 namespace ex9000::registers {
 
-constexpr unsigned kBitsACharacter = 10;
+/// The parts of a format. They are stated here again, so that the model does not depend on the firmware.
+struct Form {
+  bool parity_bit;
+  bool odd;
+  unsigned stop_bits;
+};
+constexpr Form form_of(LineFormat format) {
+  return {format == LineFormat::k8E1 || format == LineFormat::k8O1, format == LineFormat::k8O1,
+          format == LineFormat::k8N2 ? 2U : 1U};
+}
+
+/// Returns the position of the first stop bit in a character; the start bit is at 0.
+constexpr unsigned first_stop_bit(LineFormat format) { return form_of(format).parity_bit ? 10 : 9; }
+
+/// Returns the duration of a character in bits, with all its stop bits.
+constexpr unsigned bits_on_wire(LineFormat format) {
+  return first_stop_bit(format) + form_of(format).stop_bits;
+}
+
+/// Returns the right level of the parity bit. `format` must have one.
+constexpr bool parity_of(std::uint8_t byte, LineFormat format) {
+  bool level = form_of(format).odd;
+  for (unsigned bit = 0; bit < 8; ++bit) {
+    level = level != ((byte >> bit & 1U) != 0);
+  }
+  return level;
+}
 
 /// One character, and its faults.
 struct Character {
   std::uint8_t byte = 0;
-  bool stop = true;       ///< false: the stop bit is low
-  unsigned low_bits = 0;  ///< not 0: a break, this many bits low instead of a character
+  bool stop = true;           ///< false: the last stop bit is low
+  unsigned low_bits = 0;      ///< not 0: a break, this many bits low instead of a character
+  bool wrong_parity = false;  ///< for formats with a parity bit
 };
 
 /// Puts characters on a wire, one at a time.
@@ -26,8 +54,9 @@ class SerialSender {
   SerialSender(Timeline& timeline, std::function<void(bool)> level, std::function<void()> done)
       : level_(std::move(level)), done_(std::move(done)), next_bit_(timeline, [this] { go_on(); }) {}
 
-  void begin(Character character, Instant bit_time, Instant start) {
+  void begin(Character character, LineFormat format, Instant bit_time, Instant start) {
     character_ = character;
+    format_ = format;
     bit_time_ = bit_time;
     start_ = start;
     bit_ = 0;
@@ -38,42 +67,57 @@ class SerialSender {
 
  private:
   void go_on() {
-    const unsigned bits = character_.low_bits != 0 ? character_.low_bits + 1 : kBitsACharacter;
+    const unsigned bits = character_.low_bits != 0 ? character_.low_bits + 1 : bits_on_wire(format_);
     if (bit_ == bits) {
       done_();
       return;
     }
-    const bool level = bit_ + 1 == bits                        ? character_.stop
-                       : bit_ == 0 || character_.low_bits != 0 ? false
-                                                               : (character_.byte >> (bit_ - 1) & 1U) != 0;
+    const bool level =
+        bit_ + 1 == bits ? character_.stop : character_.low_bits == 0 && level_before_the_end();
     ++bit_;
     next_bit_.set(start_ + bit_ * bit_time_);
     level_(level);
+  }
+
+  [[nodiscard]] bool level_before_the_end() const {
+    constexpr unsigned kDataBits = 8;
+    if (bit_ == 0) {
+      return false;
+    }
+    if (bit_ <= kDataBits) {
+      return (character_.byte >> (bit_ - 1) & 1U) != 0;
+    }
+    return bit_ == first_stop_bit(format_) || parity_of(character_.byte, format_) != character_.wrong_parity;
   }
 
   std::function<void(bool)> level_;
   std::function<void()> done_;
   Alarm next_bit_;
   Character character_;
+  LineFormat format_ = LineFormat::k8N1;
   Instant bit_time_{0};
   Instant start_{0};
   unsigned bit_ = 0;
 };
 
-/// Receives characters from a wire: after a falling edge it samples the middle of each bit.
+/// Receives characters from a wire: after a falling edge it samples the middle of each bit, up to the first
+/// stop bit.
 class SerialReceiver {
  public:
   struct Received {
     std::uint8_t byte;
+    bool parity_error;
     bool framing_error;  ///< the stop bit was low
     bool was_break;      ///< all other bits were low, too
   };
 
-  /// Calls `deliver` in the middle of the stop bit.
+  /// Calls `deliver` in the middle of the first stop bit.
   SerialReceiver(Timeline& timeline, std::function<void(Received)> deliver)
       : deliver_(std::move(deliver)), next_look_(timeline, [this] { look(); }), timeline_(timeline) {}
 
   void set_bit_time(Instant time) { bit_time_ = time; }
+  /// A character that is being received continues in the new format.
+  void set_format(LineFormat format) { format_ = format; }
   [[nodiscard]] bool busy() const { return next_look_.is_set(); }
 
   /// Must be called when the level of the wire has changed.
@@ -82,7 +126,7 @@ class SerialReceiver {
     level_ = high;
     if (fell && !busy() && bit_time_.count() != 0) {
       bit_ = 0;
-      byte_ = 0;
+      levels_ = 0;
       start_ = timeline_.now();
       next_look_.set(start_ + bit_time_ / 2);
     }
@@ -90,28 +134,34 @@ class SerialReceiver {
 
  private:
   void look() {
-    if (bit_ == 0) {
-      if (level_) {
-        return;  // a spike, not a start bit
-      }
-    } else if (bit_ < kBitsACharacter - 1) {
-      byte_ = static_cast<std::uint8_t>(byte_ | (level_ ? 1U : 0U) << (bit_ - 1));
-    } else {
-      deliver_({byte_, !level_, !level_ && byte_ == 0});
+    if (bit_ == 0 && level_) {
+      return;  // a spike, not a start bit
+    }
+    levels_ |= (level_ ? 1U : 0U) << bit_;
+    if (bit_ >= first_stop_bit(format_)) {
+      deliver_(received());
       return;
     }
     ++bit_;
     next_look_.set(start_ + bit_ * bit_time_ + bit_time_ / 2);
   }
 
+  [[nodiscard]] Received received() const {
+    constexpr unsigned kParityBit = 9;
+    const auto byte = static_cast<std::uint8_t>(levels_ >> 1U);
+    const bool parity = (levels_ >> kParityBit & 1U) != 0;
+    return {byte, form_of(format_).parity_bit && parity != parity_of(byte, format_), !level_, levels_ == 0};
+  }
+
   std::function<void(Received)> deliver_;
   Alarm next_look_;
   Timeline& timeline_;
+  LineFormat format_ = LineFormat::k8N1;
   Instant bit_time_{0};
   Instant start_{0};
   bool level_ = true;
   unsigned bit_ = 0;
-  std::uint8_t byte_ = 0;
+  unsigned levels_ = 0;  ///< the bits that have been sampled so far, from the start bit on
 };
 
 }  // namespace ex9000::registers

@@ -1,5 +1,7 @@
 #include "tests/mcu_model/uart_port.hpp"
 
+#include "tests/support/line_control.hpp"
+
 namespace ex9000::registers {
 
 namespace {
@@ -76,10 +78,12 @@ void UartPort::write(std::uint32_t offset, std::uint32_t value) {
       divisors_latched_ = false;
       break;
     case kLineControl:
-      if ((value & kFifosOn) != 0 || (value & 0xFFU) != 0x60) {
-        fault(offset, "the simulation supports only 8N1 with the FIFOs off");
+      if ((value & kFifosOn) != 0 || !line_format_of(value)) {
+        fault(offset, "the simulation supports only 8N1, 8N2, 8E1 and 8O1, with the FIFOs off");
       }
       line_control_ = value;
+      format_ = *line_format_of(value);
+      receiver_.set_format(format_);
       divisors_latched_ = true;
       bit_time_ = (64 * integer_divisor_ + fractional_divisor_) * clock_.cycle() / 4;
       receiver_.set_bit_time(bit_time_);
@@ -132,7 +136,7 @@ void UartPort::transmit(std::uint8_t byte) {
 void UartPort::begin_character(std::uint8_t byte, Instant not_before) {
   const Instant tick = bit_time_ / 16;
   shifting_ = true;
-  sender_.begin({byte, true, 0}, bit_time_, (not_before + tick - Instant(1)) / tick * tick);
+  sender_.begin({byte}, format_, bit_time_, (not_before + tick - Instant(1)) / tick * tick);
   raise(kTransmittedBit);  // the holding register is empty
 }
 
@@ -142,7 +146,7 @@ void UartPort::character_is_over() {
     const std::uint8_t byte = *transmit_holding_;
     transmit_holding_.reset();
     shifting_ = true;
-    sender_.begin({byte, true, 0}, bit_time_, timeline_.now());
+    sender_.begin({byte}, format_, bit_time_, timeline_.now());
     raise(kTransmittedBit);
   }
 }
@@ -164,7 +168,8 @@ void UartPort::receive(SerialReceiver::Received received) {
   }
   // The overrun bit reports bytes that were lost before this byte.
   receive_holding_ = received.byte | (received.framing_error ? 1U << 8U : 0) |
-                     (received.was_break ? 1U << 10U : 0) | (overrun_ ? 1U << 11U : 0);
+                     (received.parity_error ? 1U << 9U : 0) | (received.was_break ? 1U << 10U : 0) |
+                     (overrun_ ? 1U << 11U : 0);
   overrun_ = false;
   raise(kReceivedBit);
 }

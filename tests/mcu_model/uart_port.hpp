@@ -46,6 +46,8 @@ class UartPort final : public Peripheral {
   void receive_level(bool high);
 
   [[nodiscard]] Instant bit_time() const { return bit_time_; }
+  [[nodiscard]] LineFormat format() const { return format_; }
+  [[nodiscard]] std::uint32_t line_control() const { return line_control_; }
   [[nodiscard]] bool enabled() const { return (control_ & 1U) != 0; }
   /// Returns the number of bytes that were lost because the receiver was not read in time.
   [[nodiscard]] unsigned overruns() const { return overruns_; }
@@ -72,6 +74,7 @@ class UartPort final : public Peripheral {
   std::uint32_t mask_ = 0;
   std::uint32_t raw_ = 0;
   Instant bit_time_{0};
+  LineFormat format_ = LineFormat::k8N1;
   std::optional<std::uint8_t> transmit_holding_;
   std::optional<std::uint32_t> receive_holding_;
   bool overrun_ = false;

@@ -1,8 +1,11 @@
 #include "tests/qemu/emulated_board.hpp"
 
+#include <stdexcept>
+
 #include "sim/bus/module.hpp"
 #include "tests/qemu/signals.hpp"
 #include "tests/qemu/uart_registers.hpp"
+#include "tests/support/line_control.hpp"
 
 namespace ex9000::rig {
 
@@ -106,14 +109,22 @@ std::uint16_t EmulatedBoard::outputs() {
 
 bool EmulatedBoard::led_lit() { return powered() && level_of(emulator_->bus(), board::kStatusLed); }
 
-std::uint32_t EmulatedBoard::baud() {
+hal::SerialMode EmulatedBoard::mode() {
   if (!powered()) {
-    return 0;
+    return {};
   }
-  const std::vector<std::uint32_t> uart = emulator_->bus().read(
-      {kUart0 + kUartControl, kUart0 + kUartIntegerDivisor, kUart0 + kUartFractionalDivisor});
+  const std::vector<std::uint32_t> uart =
+      emulator_->bus().read({kUart0 + kUartControl, kUart0 + kUartIntegerDivisor,
+                             kUart0 + kUartFractionalDivisor, kUart0 + kUartLineControl});
   const std::uint32_t divisor = uart[1] * 64 + uart[2];
-  return (uart[0] & kUartEnabled) == 0 || divisor == 0 ? 0 : board::kClock.frequency() / 16 * 64 / divisor;
+  if ((uart[0] & kUartEnabled) == 0 || divisor == 0) {
+    return {};
+  }
+  const auto format = line_format_of(uart[3]);
+  if (!format || (uart[3] & kUartFifosOn) != 0) {
+    throw std::runtime_error("the line control register of the image is " + std::to_string(uart[3]));
+  }
+  return {board::kClock.frequency() / 16 * 64 / divisor, *format};
 }
 
 }  // namespace ex9000::rig

@@ -82,4 +82,6 @@ void Emulator::reset() {
   bus_->read(kUart0);  // an unread byte would keep its flag and its interrupt
 }
 
+void Emulator::send_break() { qmp_->execute("chardev-send-break", "return", R"({"id": "uart"})"); }
+
 }  // namespace ex9000::rig

@@ -45,6 +45,8 @@ class Emulator {
   /// Returns the line of UART0, which carries bytes at any baud rate. The caller must read regularly: a full
   /// socket (278 bytes) halts the machine.
   UnixSocket& uart() { return *uart_; }
+  /// Makes UART0 receive a break, which is the only line error that the emulated UART knows.
+  void send_break();
   [[nodiscard]] int pid() const { return process_->pid(); }
 
  private:

@@ -33,12 +33,12 @@ void ImageTarget::start(const Model& model, const Settings* preset) {
 }
 
 void ImageTarget::send(const Bytes& bytes) {
-  module_->send(bytes, baud_);
+  module_->send(bytes, mode_);
   settled_ = module_->now() + kSettling;
 }
 
 void ImageTarget::hear() {
-  const Bytes bytes = module_->hear(baud_);
+  const Bytes bytes = module_->hear(mode_);
   heard_.insert(heard_.end(), bytes.begin(), bytes.end());
 }
 

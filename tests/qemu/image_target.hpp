@@ -17,7 +17,8 @@ class ImageTarget final : public play::Target {
   void send(const play::Bytes& bytes) override;
   play::Bytes receive(std::size_t count, std::chrono::milliseconds patience) override;
   play::Bytes listen(std::chrono::nanoseconds time) override;
-  void set_baud(std::uint32_t rate) override { baud_ = rate; }
+  void set_baud(std::uint32_t rate) override { mode_.baud = rate; }
+  void set_format(LineFormat format) override { mode_.format = format; }
   void power(bool on) override;
   void reset() override;
   void set_init(bool asserted) override;
@@ -34,7 +35,7 @@ class ImageTarget final : public play::Target {
 
   std::map<const Model*, TimedModule> modules_;
   TimedModule* module_ = nullptr;
-  std::uint32_t baud_ = 9600;
+  hal::SerialMode mode_{9600};
   std::chrono::nanoseconds settled_{
       0};  ///< the time at which the image has processed everything that was sent
   play::Bytes heard_;

@@ -1,4 +1,4 @@
-// A master that uses the module's baud rate and the module's time.
+// A master that uses the module's baud rate, line format and time.
 #pragma once
 
 #include <chrono>
@@ -22,13 +22,13 @@ inline TimedModule::Bytes reply_of(TimedModule& module, const TimedModule::Bytes
   constexpr std::chrono::milliseconds kLongestReply{250};
   constexpr std::chrono::milliseconds kSlice{1};
   module.run_for(kSilence);
-  module.hear(module.baud());
-  module.send(request, module.baud());
+  module.hear(module.mode());
+  module.send(request, module.mode());
   TimedModule::Bytes reply;
   const std::chrono::nanoseconds gives_up = module.now() + kLongestReply;
   while ((reply.empty() || module.speaks()) && module.now() < gives_up) {
     module.run_for(kSlice);
-    const TimedModule::Bytes more = module.hear(module.baud());
+    const TimedModule::Bytes more = module.hear(module.mode());
     reply.insert(reply.end(), more.begin(), more.end());
   }
   return reply;

@@ -3,8 +3,6 @@
 #include <algorithm>
 #include <stdexcept>
 
-#include "tests/qemu/wrong_rate.hpp"
-
 namespace ex9000::rig {
 
 using std::chrono::microseconds;
@@ -110,7 +108,7 @@ void TimedModule::hold_memory(bool hold) {
   emulator().bus().write(hold ? kClearEnable : kSetEnable, kI2c0);
 }
 
-void TimedModule::send(const Bytes& bytes, std::uint32_t baud) {
+void TimedModule::send(const Bytes& bytes, SerialMode mode) {
   constexpr milliseconds kLongestHold{2};
   constexpr microseconds kSlice{200};
   // On a real line a byte takes time, and the driver enable goes off soon after the last byte has arrived.
@@ -121,7 +119,7 @@ void TimedModule::send(const Bytes& bytes, std::uint32_t baud) {
     run_for(kSlice);
   }
   const nanoseconds begin = now_;
-  const nanoseconds end = begin + duration_at(baud, bytes.size());
+  const nanoseconds end = begin + duration_in(mode, bytes.size());
   if (powered()) {
     hold_memory(true);
     bool held = true;
@@ -133,9 +131,9 @@ void TimedModule::send(const Bytes& bytes, std::uint32_t baud) {
       }
       run_until(when);
     };
-    for (const Arrival& arrival : heard_at_rate(bytes, baud, this->baud())) {
+    for (const Arrival& arrival : heard_in_mode(bytes, mode, this->mode())) {
       go_to(begin + arrival.at);
-      put(arrival.byte);
+      put(arrival);
     }
     go_to(std::max(now_, end));
     if (held) {
@@ -145,21 +143,25 @@ void TimedModule::send(const Bytes& bytes, std::uint32_t baud) {
   run_until(end);
 }
 
-void TimedModule::put(std::uint8_t byte) {
+void TimedModule::put(const Arrival& arrival) {
   if (clock_->driver_on()) {
     return;
   }
   if (!clock_->receiver_empty()) {
     throw std::runtime_error("the image has not read the previous byte");
   }
-  emulator().uart().send(&byte, 1);
+  if (arrival.status == ByteStatus::Good) {
+    emulator().uart().send(&arrival.byte, 1);
+  } else {
+    emulator().send_break();
+  }
   constexpr std::uint32_t kUartFlags = 0x4000'C018;
   constexpr std::uint32_t kReceiverEmpty = 1U << 4U;
   while ((emulator().bus().read(kUartFlags) & kReceiverEmpty) != 0) {
   }
 }
 
-TimedModule::Bytes TimedModule::hear(std::uint32_t baud) {
+TimedModule::Bytes TimedModule::hear(SerialMode mode) {
   Bytes sent;
   if (powered()) {
     for (Bytes more = emulator().uart().receive(nanoseconds(0)); !more.empty();
@@ -169,7 +171,7 @@ TimedModule::Bytes TimedModule::hear(std::uint32_t baud) {
   }
   Bytes heard;
   if (!sent.empty()) {
-    for (const Arrival& arrival : heard_at_rate(sent, this->baud(), baud)) {
+    for (const Arrival& arrival : heard_in_mode(sent, this->mode(), mode)) {
       heard.push_back(arrival.byte);
     }
   }

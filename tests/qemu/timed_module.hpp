@@ -11,6 +11,7 @@
 #include "tests/qemu/alarm_clock.hpp"
 #include "tests/qemu/emulated_board.hpp"
 #include "tests/qemu/lamp_watch.hpp"
+#include "tests/qemu/wrong_mode.hpp"
 
 namespace ex9000::rig {
 
@@ -51,12 +52,13 @@ class TimedModule : public EmulatedBoard {
   /// call only `reset` is allowed. Throws std::runtime_error if this does not occur within `time`.
   void run_to_reset(const std::string& event, std::chrono::nanoseconds time);
 
-  /// Waits up to 100 ms until the module does not send, then sends bytes at `baud` bits per second. The
-  /// module loses bytes that arrive while it sends.
-  void send(const Bytes& bytes, std::uint32_t baud);
-  /// Returns the bytes that the module has sent since the last call, as a receiver at `baud` samples them. No
-  /// time passes.
-  Bytes hear(std::uint32_t baud);
+  /// Waits up to 100 ms until the module does not send, then sends bytes in `mode`. The module loses bytes
+  /// that arrive while it sends. The emulated UART has no parity and no framing errors, so a byte that a
+  /// receiver in the module's mode gets with such an error arrives as a break, which is an error too.
+  void send(const Bytes& bytes, hal::SerialMode mode);
+  /// Returns the bytes that the module has sent since the last call, as a receiver in `mode` samples them,
+  /// also those with errors. No time passes.
+  Bytes hear(hal::SerialMode mode);
   /// Returns whether the driver enable was on at the last stop.
   [[nodiscard]] bool speaks() const { return powered() && clock_->driver_on(); }
 
@@ -71,7 +73,7 @@ class TimedModule : public EmulatedBoard {
   void come_up();
   void halt();
   void run_until(std::chrono::nanoseconds when);
-  void put(std::uint8_t byte);
+  void put(const Arrival& arrival);
   void hold_memory(bool hold);
 
   std::optional<AlarmClock> clock_;  ///< since the first power-on

@@ -4,7 +4,7 @@ const { ChipClock, Time } = require("./clock");
 const { Chip } = require("./chip");
 const { Eeprom } = require("./eeprom");
 const { FLASH_SIZE, FlashChip } = require("./flash_chip");
-const { BITS, Receiver, Sender } = require("./line");
+const { FORMATS, Receiver, Sender } = require("./line");
 const { CHIP_RESET, REASON, SCRATCH_REGISTERS } = require("./system");
 
 const PINS = 30;
@@ -30,11 +30,13 @@ class Board {
     this.queue = [];
     this.heard = [];
     this.masterBitTime = 1e9 / 9600;
+    this.masterFormat = FORMATS["8N1"];
     this.master = new Sender(this.time, (level) => this.masterDrives(level), () => this.sendNext());
     this.listener = new Receiver(this.time, (character) => this.hear(character));
     this.stopWanted = false;
     this.watched = null;
-    this.counts = { timeouts: 0, requests: 0, lost: 0, early: 0, late: 0, shorts: 0, drives: 0, framing: 0 };
+    this.counts = { timeouts: 0, requests: 0, lost: 0, early: 0, late: 0, shorts: 0, drives: 0, framing: 0,
+      parity: 0 };
     this.lastStop = 0;
     this.levels = new Array(PINS).fill(false);
   }
@@ -203,8 +205,8 @@ class Board {
   // --- the line ---
 
   transmit(level) {
-    if (this.chip.uart.sender.left === BITS - 1 && !this.driverOn) {
-      this.counts.lost += 1; // a character begins
+    if (this.chip.uart.sender.atStartBit && !this.driverOn) {
+      this.counts.lost += 1;
     }
     this.transmitted = level;
     this.chip.board.transmitted = level;
@@ -218,11 +220,12 @@ class Board {
       return;
     }
     this.driverOn = on;
+    this.stopWanted = !on || this.stopWanted;
     if (on) {
       this.counts.drives += 1;
     } else if (this.chip.uart.sender.busy) {
       this.counts.early += 1;
-    } else if (this.time.now - this.lastStop > BITS * this.chip.uart.bitTime) {
+    } else if (this.time.now - this.lastStop > this.chip.uart.characterTime) {
       this.counts.late += 1;
     }
     this.updateLine();
@@ -252,6 +255,14 @@ class Board {
     this.listener.bitTime = this.masterBitTime;
   }
 
+  setFormat(name) {
+    if (!Object.hasOwn(FORMATS, name)) {
+      throw new Error(`${name} is no line format`);
+    }
+    this.masterFormat = FORMATS[name];
+    this.listener.format = this.masterFormat;
+  }
+
   send(bytes) {
     this.queue.push(...bytes);
     if (!this.master.busy) {
@@ -265,12 +276,13 @@ class Board {
       return;
     }
     this.listener.stop();
-    this.master.send(this.queue.shift(), this.masterBitTime);
+    this.master.send(this.queue.shift(), this.masterBitTime, this.masterFormat);
   }
 
-  hear({ byte, good }) {
+  hear({ byte, good, rightParity }) {
     this.heard.push({ byte, at: this.time.now });
     this.counts.framing += good ? 0 : 1;
+    this.counts.parity += rightParity ? 0 : 1;
     this.stopWanted = true;
   }
 

@@ -55,11 +55,20 @@ const COMMANDS = {
     board.echoes = on === "on";
   },
   baud: (rate) => board.setBaud(integer(rate)),
+  // format 8N1|8N2|8E1|8O1: sets the line format of the master, 8N1 at first
+  format: (name) => board.setFormat(name),
   // send HEX: returns when the last stop bit has been sent
   send(hex) {
     board.send(bytesOf(hex));
     while (board.master.busy) {
       board.runUntil(Infinity);
+    }
+  },
+  // await-release NANOSECONDS: lets time pass until the module's driver is off, at most this time
+  "await-release"(nanoseconds) {
+    const until = board.time.now + integer(nanoseconds);
+    while (board.driverOn && board.time.now < until) {
+      board.runUntil(until);
     }
   },
   // queue HEX: begins to send, and returns at once
@@ -79,7 +88,7 @@ const COMMANDS = {
     return hexOf(board.takeHeard(integer(count)).map(({ byte }) => byte));
   },
   heard: () => hexOf(board.takeHeard().map(({ byte }) => byte)),
-  // arrivals: returns the received bytes as BYTE@TIME, with the time of the middle of the stop bit in nanoseconds
+  // arrivals: returns the received bytes as BYTE@TIME, with the time of the middle of the first stop bit in nanoseconds
   arrivals: () => board.takeHeard().map(({ byte, at }) => `${byte}@${Math.round(at)}`).join(" "),
   // pin NUMBER high|low|open: drives a pin from outside the chip, or stops driving it
   pin: (number, level) => board.setOutside(integer(number), level === "open" ? null : level === "high"),
@@ -148,7 +157,8 @@ const COMMANDS = {
   counts: () => Object.entries({ ...board.counts, pages: board.eeprom.pagesProgrammed,
     erases: [...board.flash.erased.values()].reduce((sum, each) => sum + each, 0), reason: board.reason,
     depth: board.chip?.processor.deepest ?? 0, secondCoreOff: (board.chip?.psm.frceOff ?? 0) >> 16,
-    uart: board.chip?.uart.baud ?? 0 }).map(([name, value]) => `${name}=${value}`).join(" "),
+    uart: board.chip?.uart.baud ?? 0, lineControl: board.chip?.uart.lineControl ?? 0 })
+    .map(([name, value]) => `${name}=${value}`).join(" "),
   // pc: returns the address of the next instruction
   pc: () => board.chip.mcu.core.PC,
   // read ADDRESS: returns a word of RAM

@@ -1,10 +1,36 @@
-// A serial line of characters 8N1: a sender, and a receiver that samples each bit in its middle.
+// A serial line: a sender of characters, and a receiver that samples each bit in its middle.
 "use strict";
 
-const BITS = 10; // a start bit, eight data bits, a stop bit
+// A character has a start bit, eight data bits, a parity bit in some formats, and stop bits. `parity`: null, or the
+// level of the parity bit of 00.
+const FORMATS = {
+  "8N1": { parity: null, stopBits: 1 },
+  "8N2": { parity: null, stopBits: 2 },
+  "8E1": { parity: 0, stopBits: 1 },
+  "8O1": { parity: 1, stopBits: 1 },
+};
+
+// The position of the first stop bit, which is the last bit that a receiver reads. The start bit is at 0.
+const firstStopBit = (format) => (format.parity === null ? 9 : 10);
+// The duration of a character in bits.
+const bitsOf = (format) => firstStopBit(format) + format.stopBits;
+
+function parityOf(byte, format) {
+  let level = format.parity;
+  for (let rest = byte; rest !== 0; rest >>= 1) {
+    level ^= rest & 1;
+  }
+  return level;
+}
+
+// The levels of a character, the start bit at bit 0.
+function levelsOf(byte, format) {
+  const stopBits = ((1 << format.stopBits) - 1) << firstStopBit(format);
+  return (byte << 1) | stopBits | (format.parity === null ? 0 : parityOf(byte, format) << 9);
+}
 
 class Sender {
-  // Calls `drive(level)` to set the level, and `ended()` when the stop bit is over.
+  // Calls `drive(level)` to set the level, and `ended()` when the last stop bit is over.
   constructor(clock, drive, ended) {
     this.drive = drive;
     this.ended = ended;
@@ -14,11 +40,12 @@ class Sender {
     this.busy = false;
   }
 
-  send(byte, bitTime) {
+  send(byte, bitTime, format = FORMATS["8N1"]) {
     this.busy = true;
     this.bitTime = bitTime;
-    this.bits = (byte << 1) | 0x200;
-    this.left = BITS;
+    this.bits = levelsOf(byte, format);
+    this.left = bitsOf(format);
+    this.atStartBit = true;
     this.nextBit();
   }
 
@@ -31,16 +58,18 @@ class Sender {
     this.drive((this.bits & 1) !== 0);
     this.bits >>= 1;
     this.left -= 1;
+    this.atStartBit = false;
     this.alarm.schedule(this.bitTime);
   }
 }
 
 class Receiver {
-  // Calls `receive({ byte, good, isBreak })` in the middle of the stop bit of each character. `good`: the stop bit is
-  // high.
+  // Calls `receive({ byte, good, rightParity, isBreak })` in the middle of the first stop bit of each character.
+  // `good`: the stop bit is high.
   constructor(clock, receive) {
     this.receive = receive;
     this.bitTime = 0; // 0: off
+    this.format = FORMATS["8N1"];
     this.high = true;
     this.sampled = -1; // number of bits of the present character that have been sampled; -1: no character has begun
     this.bits = 0;
@@ -65,13 +94,14 @@ class Receiver {
       this.bits |= 1 << this.sampled;
     }
     this.sampled += 1;
-    if (this.sampled < BITS) {
+    if (this.sampled <= firstStopBit(this.format)) {
       this.alarm.schedule(this.bitTime);
       return;
     }
     this.sampled = -1;
     const byte = (this.bits >> 1) & 0xff;
-    this.receive({ byte, good: this.high, isBreak: this.bits === 0 });
+    const rightParity = this.format.parity === null || ((this.bits >> 9) & 1) === parityOf(byte, this.format);
+    this.receive({ byte, good: this.high, rightParity, isBreak: this.bits === 0 });
   }
 
   stop() {
@@ -80,4 +110,4 @@ class Receiver {
   }
 }
 
-module.exports = { BITS, Receiver, Sender };
+module.exports = { FORMATS, Receiver, Sender, bitsOf };

@@ -12,7 +12,7 @@ const { Crystal, requireStable } = require("./crystal");
 const { Eeprom } = require("./eeprom");
 const { FLASH_SIZE, FlashChip } = require("./flash_chip");
 const { correctI2c } = require("./i2c");
-const { Receiver, Sender } = require("./line");
+const { FORMATS, Receiver, Sender, bitsOf } = require("./line");
 const { Pl011 } = require("./pl011");
 const { correctPll } = require("./pll");
 const { QspiPins, Ssi } = require("./ssi");
@@ -54,10 +54,10 @@ function uartOf({ mcu }, isOn = true) {
   return { uart, levels };
 }
 
-function character(uart, time, byte, bitTime = BIT) {
+function character(uart, time, byte, bitTime = BIT, format = FORMATS["8N1"]) {
   const sender = new Sender(time, (level) => uart.level(level), () => {});
-  sender.send(byte, bitTime);
-  time.advanceTo(time.now + 10 * bitTime);
+  sender.send(byte, bitTime, format);
+  time.advanceTo(time.now + bitsOf(format) * bitTime);
 }
 
 test("a receiver reports a byte in the middle of its stop bit", () => {
@@ -68,7 +68,7 @@ test("a receiver reports a byte in the middle of its stop bit", () => {
   const sender = new Sender(time, (level) => receiver.level(level), () => {});
   sender.send(0xa5, BIT);
   time.advanceTo(20 * BIT);
-  assert.deepEqual(received, [{ byte: 0xa5, good: true, isBreak: false, at: 9.5 * BIT }]);
+  assert.deepEqual(received, [{ byte: 0xa5, good: true, rightParity: true, isBreak: false, at: 9.5 * BIT }]);
 });
 
 test("a receiver at another rate reports framing errors, and ignores glitches", () => {
@@ -102,6 +102,68 @@ test("a UART sends with line time, and its transmit interrupt comes when the hol
   assert.equal(uart.readUint32(0x18) & 8, 8, "it is busy");
   chip.time.advanceTo(20 * BIT + 100);
   assert.equal(uart.readUint32(0x18) & 8, 0, "the stop bit is over");
+});
+
+// Sends a byte in one format, and returns what a receiver in another one reports.
+function receivedIn(format, byte, sentIn) {
+  const time = new Time();
+  const received = [];
+  const receiver = new Receiver(time, (it) => received.push({ ...it, at: time.now }));
+  receiver.bitTime = BIT;
+  receiver.format = FORMATS[format];
+  const sender = new Sender(time, (level) => receiver.level(level), () => received.push({ sentAt: time.now }));
+  sender.send(byte, BIT, FORMATS[sentIn]);
+  time.advanceTo(20 * BIT);
+  return received;
+}
+
+test("a character has the bits of its format, and a receiver reports it in its first stop bit", () => {
+  const middleOfStopBit = { "8N1": 9.5, "8N2": 9.5, "8E1": 10.5, "8O1": 10.5 };
+  const ends = { "8N1": 10, "8N2": 11, "8E1": 11, "8O1": 11 };
+  for (const format of Object.keys(FORMATS)) {
+    for (const byte of [0x00, 0x01, 0x55, 0x57, 0xff]) {
+      assert.deepEqual(receivedIn(format, byte, format), [
+        { byte, good: true, rightParity: true, isBreak: false, at: middleOfStopBit[format] * BIT },
+        { sentAt: ends[format] * BIT },
+      ]);
+    }
+  }
+});
+
+test("a receiver reports wrong parity, and a parity bit without a stop bit", () => {
+  for (const [format, sentIn] of [["8E1", "8O1"], ["8O1", "8E1"]]) {
+    const [{ byte, good, rightParity }] = receivedIn(format, 0x55, sentIn);
+    assert.deepEqual({ byte, good, rightParity }, { byte: 0x55, good: true, rightParity: false });
+  }
+  assert.equal(receivedIn("8N1", 0x55, "8E1")[0].good, false);
+  assert.equal(receivedIn("8N1", 0x57, "8E1")[0].good, true, "its parity bit is 1, like a stop bit");
+  assert.equal(receivedIn("8N1", 0x55, "8N2")[0].good, true);
+});
+
+test("a UART takes its format from the line control register, and reports wrong parity", () => {
+  const values = { 0x60: "8N1", 0x62: "8O1", 0x66: "8E1", 0x68: "8N2" };
+  for (const [value, format] of Object.entries(values)) {
+    const chip = setUp();
+    const { uart, levels } = uartOf(chip, false);
+    uart.writeUint32(0x24, 67);
+    uart.writeUint32(0x28, 52);
+    uart.writeUint32(0x2c, Number(value));
+    uart.writeUint32(0x30, 0x301);
+    uart.writeUint32(0x00, 0x57);
+    chip.time.advanceTo(20 * BIT);
+    const parity = { "8E1": [true], "8O1": [false] }[format] ?? [];
+    const stop = format === "8N2" ? [true, true] : [true];
+    assert.deepEqual(levels, [false, true, true, true, false, true, false, true, false, ...parity, ...stop]);
+    character(uart, chip.time, 0x57, BIT, FORMATS[format]);
+    assert.equal(uart.readUint32(0x00), 0x57);
+    if (parity.length !== 0) {
+      character(uart, chip.time, 0x57, BIT, FORMATS[format === "8E1" ? "8O1" : "8E1"]);
+      assert.equal(uart.readUint32(0x3c) & (1 << 8), 1 << 8);
+      assert.equal(uart.readUint32(0x00), 0x57 | (1 << 9));
+    }
+  }
+  const { uart } = uartOf(setUp(), false);
+  assert.throws(() => uart.writeUint32(0x2c, 0x6e), /only 8N1, 8N2, 8E1 and 8O1/);
 });
 
 test("a UART reports overrun with the next byte, framing errors and breaks", () => {

@@ -8,6 +8,7 @@
 #include "hal/flash/mark.hpp"
 #include "hal/flash/slot.hpp"
 #include "sim/bus/module.hpp"
+#include "sim/text/values.hpp"
 
 namespace ex9000::pico {
 
@@ -87,6 +88,10 @@ void PicoBench::begin_with(const std::string& file) {
 }
 
 void PicoBench::begin_anew(const Model& model, const Settings* settings) {
+  begin_anew(model, settings == nullptr ? Bytes() : memory_with(model, *settings));
+}
+
+void PicoBench::begin_anew(const Model& model, const Bytes& memory) {
   model_ = &model;
   begin_with(image_of(model, memory_));
   if (memory_ == Memory::Flash) {
@@ -94,10 +99,9 @@ void PicoBench::begin_anew(const Model& model, const Settings* settings) {
       set_sector(sector, {hal::flash::kMark.begin(), hal::flash::kMark.end()});
     }
   }
-  if (settings == nullptr) {
+  if (memory.empty()) {
     return;
   }
-  const Bytes memory = memory_with(model, *settings);
   if (memory_ == Memory::Eeprom) {
     execute("memory " + hex_of(memory));
   } else {
@@ -136,6 +140,8 @@ void PicoBench::run_for(nanoseconds time) { execute("run " + std::to_string(time
 nanoseconds PicoBench::now() { return nanoseconds(std::stoll(execute("now"))); }
 
 void PicoBench::set_baud(std::uint32_t rate) { execute("baud " + std::to_string(rate)); }
+
+void PicoBench::set_format(LineFormat format) { execute("format " + sim::line_format_text(format)); }
 
 void PicoBench::send(const Bytes& bytes) {
   if (!bytes.empty()) {

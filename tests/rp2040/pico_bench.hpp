@@ -25,6 +25,8 @@ class PicoBench {
   /// Provides a new board with the image of `model`. Its supply is off. `settings` are in its memory; if the
   /// pointer is null, the memory holds none. A store in the flash knows that its free sectors are erased.
   void begin_anew(const Model& model, const Settings* settings);
+  /// The same with the contents of the memory in place of the settings, 384 bytes.
+  void begin_anew(const Model& model, const play::Bytes& memory);
   /// Lets the store in the flash of a new board erase all free sectors, as on the first start of a module.
   void forget_erased_sectors();
   /// Fills the log of the page store: all sectors are full of entries with these settings.
@@ -42,6 +44,8 @@ class PicoBench {
 
   /// Sets the rate of the master.
   void set_baud(std::uint32_t rate);
+  /// Sets the line format of the master, which is 8N1 on a new board.
+  void set_format(LineFormat format);
   /// Sends bytes without a gap. Returns when the last stop bit has ended.
   void send(const play::Bytes& bytes);
   /// Returns the bytes that arrive until there are `count` of them, or until none has arrived for `patience`.

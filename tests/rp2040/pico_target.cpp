@@ -22,7 +22,16 @@ void PicoTarget::start(const Model& model, const Settings* preset) {
   model_ = &model;
   bench_.begin_anew(model, preset);
   bench_.set_baud(baud_);
+  bench_.set_format(format_);
   power(true);
+}
+
+/// A byte of a reply arrives in the middle of its first stop bit. A master does not begin to send before the
+/// reply is over and the driver of the module is off, which is at most 12 bits later.
+void PicoTarget::send(const play::Bytes& bytes) {
+  constexpr std::uint64_t kLongestTail = 12'000'000'000;  // 12 bits at 1 baud, in ns
+  bench_.execute("await-release " + std::to_string(kLongestTail / baud_));
+  bench_.send(bytes);
 }
 
 play::Bytes PicoTarget::listen(std::chrono::nanoseconds time) {
@@ -34,6 +43,13 @@ void PicoTarget::set_baud(std::uint32_t rate) {
   baud_ = rate;
   if (model_ != nullptr) {
     bench_.set_baud(rate);
+  }
+}
+
+void PicoTarget::set_format(LineFormat format) {
+  format_ = format;
+  if (model_ != nullptr) {
+    bench_.set_format(format);
   }
 }
 

@@ -12,12 +12,13 @@ class PicoTarget final : public play::Target {
   explicit PicoTarget(Memory memory = Memory::Flash) : bench_(memory) {}
 
   void start(const Model& model, const Settings* preset) override;
-  void send(const play::Bytes& bytes) override { bench_.send(bytes); }
+  void send(const play::Bytes& bytes) override;
   play::Bytes receive(std::size_t count, std::chrono::milliseconds patience) override {
     return bench_.receive(count, patience);
   }
   play::Bytes listen(std::chrono::nanoseconds time) override;
   void set_baud(std::uint32_t rate) override;
+  void set_format(LineFormat format) override;
   void power(bool on) override;
   void reset() override;
   void set_init(bool asserted) override { bench_.set_init(asserted); }
@@ -36,6 +37,7 @@ class PicoTarget final : public play::Target {
   PicoBench bench_;
   const Model* model_ = nullptr;
   std::uint32_t baud_ = 9600;
+  LineFormat format_ = LineFormat::k8N1;
   std::chrono::nanoseconds played_{0};
 };
 

@@ -2,16 +2,18 @@
 // Arm PrimeCell UART (PL011) TRM, 2.4 and 3.3.
 "use strict";
 const { BasePeripheral } = require("rp2040js");
-const { Receiver, Sender } = require("./line");
+const { FORMATS, Receiver, Sender, bitsOf } = require("./line");
 
 const RECEIVED = 1 << 4;
 const TRANSMITTED = 1 << 5;
 const RECEIVE_TIMEOUT = 1 << 6;
 const FRAMING_ERROR = 1 << 7;
+const PARITY_ERROR = 1 << 8;
 const BREAK_ERROR = 1 << 9;
 const OVERRUN_ERROR = 1 << 10;
 
 const DATA_FRAMING = 1 << 8;
+const DATA_PARITY = 1 << 9;
 const DATA_BREAK = 1 << 10;
 const DATA_OVERRUN = 1 << 11;
 
@@ -19,7 +21,8 @@ const ENABLED = 1 << 0;
 const TRANSMIT_ENABLED = 1 << 8;
 const RECEIVE_ENABLED = 1 << 9;
 const FIFOS_ON = 1 << 4;
-const EIGHT_BITS = 0x60;
+// The formats that modules have, by the value of UARTLCR_H without FEN: WLEN with PEN, EPS and STP2.
+const LINE_CONTROL = { 0x60: FORMATS["8N1"], 0x62: FORMATS["8O1"], 0x66: FORMATS["8E1"], 0x68: FORMATS["8N2"] };
 
 const DEPTH = 32;
 const LEVELS = [4, 8, 16, 24, 28]; // IFLS
@@ -109,8 +112,8 @@ class Pl011 extends BasePeripheral {
       break;
     case 0x2c:
       this.setUp("the line control");
-      if ((value & ~FIFOS_ON) !== EIGHT_BITS) {
-        this.error("this model has only 8N1");
+      if (!Object.hasOwn(LINE_CONTROL, value & ~FIFOS_ON)) {
+        this.error("this model has only 8N1, 8N2, 8E1 and 8O1");
       }
       this.lineControl = value;
       this.latch();
@@ -163,6 +166,15 @@ class Pl011 extends BasePeripheral {
   listen() {
     const on = (this.control & (ENABLED | RECEIVE_ENABLED)) === (ENABLED | RECEIVE_ENABLED);
     this.receiver.bitTime = on ? this.bitTime : 0;
+    this.receiver.format = this.format;
+  }
+
+  get format() {
+    return LINE_CONTROL[this.lineControl & ~FIFOS_ON] ?? FORMATS["8N1"];
+  }
+
+  get characterTime() {
+    return bitsOf(this.format) * this.bitTime;
   }
 
   get baud() {
@@ -188,7 +200,7 @@ class Pl011 extends BasePeripheral {
         this.tell();
       }
     } else {
-      this.sender.send(byte, this.bitTime);
+      this.sender.send(byte, this.bitTime, this.format);
       this.raise(TRANSMITTED); // the holding register is empty again
     }
   }
@@ -197,7 +209,7 @@ class Pl011 extends BasePeripheral {
     if (this.toSend.length === 0) {
       return;
     }
-    this.sender.send(this.toSend.shift(), this.bitTime);
+    this.sender.send(this.toSend.shift(), this.bitTime, this.format);
     if (this.toSend.length === this.transmitLevel) {
       this.raise(TRANSMITTED);
     }
@@ -209,17 +221,20 @@ class Pl011 extends BasePeripheral {
     this.receiver.level(this.wires.mayReceive() ? high : true);
   }
 
-  receive({ byte, good, isBreak }) {
+  receive({ byte, good, rightParity, isBreak }) {
     if (this.received.length >= this.depth) {
       this.overrun = true;
       this.raise(OVERRUN_ERROR);
       return;
     }
-    this.received.push(byte | (good ? 0 : DATA_FRAMING) | (isBreak ? DATA_BREAK : 0)
+    this.received.push(byte | (good ? 0 : DATA_FRAMING) | (rightParity ? 0 : DATA_PARITY) | (isBreak ? DATA_BREAK : 0)
       | (this.overrun ? DATA_OVERRUN : 0));
     this.overrun = false;
     if (!good) {
       this.raise(isBreak ? BREAK_ERROR : FRAMING_ERROR);
+    }
+    if (!rightParity) {
+      this.raise(PARITY_ERROR);
     }
     if (this.received.length === this.receiveLevel) {
       this.raise(RECEIVED);

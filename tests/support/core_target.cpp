@@ -21,7 +21,7 @@ play::Bytes CoreTarget::listen(std::chrono::nanoseconds time) {
 
 void CoreTarget::note_coverage(const play::Bytes& heard) {
   if (coverage_ != nullptr && !sent_.empty() && module().powered() &&
-      module().baud() == chosen().master().baud()) {
+      sim::hear_each_other(module().mode(), chosen().master().mode())) {
     coverage_->note(module().module(), sent_, heard);
   }
   sent_.clear();

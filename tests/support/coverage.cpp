@@ -94,7 +94,7 @@ void Coverage::note(const Module& module, const play::Bytes& sent, const play::B
     }
   } else {
     RtuAssembler assembler;
-    assembler.use(LineTiming::at(module.baud()));
+    assembler.use(LineTiming::at(module.baud(), module.format()));
     assembler.answer_to(in_force.address);
     for (const std::uint8_t byte : sent) {
       assembler.byte(queue, byte, ByteStatus::Good, Time());

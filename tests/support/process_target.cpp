@@ -3,6 +3,7 @@
 #include <utility>
 
 #include "sim/text/durations.hpp"
+#include "sim/text/values.hpp"
 
 namespace ex9000::system {
 
@@ -41,8 +42,8 @@ void ProcessTarget::advance(std::chrono::nanoseconds time, const std::string& ho
 
 void ProcessTarget::send(const Bytes& bytes) {
   port_->write(bytes);
-  constexpr std::chrono::nanoseconds kCharacterBits{10'000'000'000};
-  advance(kCharacterBits * static_cast<std::int64_t>(bytes.size()) / std::int64_t{baud_},
+  const std::chrono::nanoseconds bits = std::chrono::seconds(bits_of_character(format_));
+  advance(bits * static_cast<std::int64_t>(bytes.size()) / std::int64_t{baud_},
           " after " + std::to_string(bytes.size()));
 }
 
@@ -73,6 +74,11 @@ void ProcessTarget::set_baud(std::uint32_t rate) {
   if (!port_->set_baud(rate)) {
     control_.ok("line " + line_ + " baud " + std::to_string(rate));
   }
+}
+
+void ProcessTarget::set_format(LineFormat format) {
+  format_ = format;
+  control_.ok("line " + line_ + " format " + sim::line_format_text(format));
 }
 
 std::string ProcessTarget::control(const std::string& command) {

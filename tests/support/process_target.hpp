@@ -27,6 +27,7 @@ class ProcessTarget final : public play::Target {
   play::Bytes receive(std::size_t count, std::chrono::milliseconds patience) override;
   play::Bytes listen(std::chrono::nanoseconds time) override;
   void set_baud(std::uint32_t rate) override;
+  void set_format(LineFormat format) override;
   void power(bool on) override;
   void reset() override;
   void set_init(bool asserted) override;
@@ -46,6 +47,7 @@ class ProcessTarget final : public play::Target {
   std::string line_;
   std::string number_;
   std::uint32_t baud_ = 0;
+  LineFormat format_ = LineFormat::k8N1;
   std::size_t read_ = 0;  ///< number of bytes read from the port so far
   play::Bytes heard_;
 };

@@ -70,7 +70,8 @@ std::optional<Settings> SettingsReader::read_ascii() {
   settings.address = hex_byte(configuration, 1);
   settings.baud_code = hex_byte(configuration, 5);
   settings.format = hex_byte(configuration, 7);
-  settings.protocol = ask(std::string("$P")).at(4) == '1' ? Protocol::ModbusRtu : Protocol::Ascii;
+  const bool modbus = model_.speaks_modbus() && ask(std::string("$P")).at(4) == '1';
+  settings.protocol = modbus ? Protocol::ModbusRtu : Protocol::Ascii;
   settings.name = Name(std::string_view(ask(std::string("$M")).substr(3)));
   settings.timeout_status = (hex_byte(ask(std::string("~0")), 3) & 0x04U) != 0;
   const std::string watchdog = ask(std::string("~2"));
@@ -79,7 +80,9 @@ std::optional<Settings> SettingsReader::read_ascii() {
   if (model_.outputs != 0) {
     const auto value = [&](const char* command) {
       const std::string reply = ask(std::string(command));
-      return static_cast<std::uint16_t>(hex_byte(reply, 3) << 8U | hex_byte(reply, 5));
+      const unsigned first = hex_byte(reply, 3);  // up to eight outputs, or the higher ones of more
+      const bool has_two_groups = model_.outputs > 8;
+      return static_cast<std::uint16_t>(has_two_groups ? first << 8U | hex_byte(reply, 5) : first);
     };
     settings.power_on_value = value("~4P");
     settings.safe_value = value("~4S");
@@ -119,8 +122,8 @@ std::optional<Settings> SettingsReader::read_modbus(std::uint8_t format) {
   settings.name = Name(std::string(identification.begin(), identification.end()).substr(6));
   if (model_.outputs != 0) {
     const auto value = [&](std::uint8_t row) {
-      const Bytes reply = ask(Bytes{0x01, 0x00, row, 0x00, 0x10});
-      return static_cast<std::uint16_t>(reply.at(3) | reply.at(4) << 8U);
+      const Bytes reply = ask(Bytes{0x01, 0x00, row, 0x00, static_cast<std::uint8_t>(model_.outputs)});
+      return static_cast<std::uint16_t>(reply.at(3) | (model_.outputs > 8 ? reply.at(4) << 8U : 0));
     };
     settings.safe_value = value(0x80);
     settings.power_on_value = value(0xA0);

@@ -23,6 +23,7 @@ std::string line_of(const play::Transcript& transcript, std::size_t position, Tr
     line += std::string(R"(, "protocol": )") +
             (preset.protocol == Protocol::Ascii ? R"("ascii")" : R"("modbus")");
     line += R"(, "baud": )" + std::to_string(baud_rate(preset.baud_code));
+    line += R"(, "format": ")" + sim::line_format_text(line_format(preset.baud_code)) + "\"";
     line += std::string(R"(, "checksum": )") + ((preset.format & kFormatChecksum) != 0 ? "true" : "false");
     line += std::string(R"(, "edge": )") +
             ((preset.format & kFormatRisingEdge) != 0 ? R"("rising")" : R"("falling")");

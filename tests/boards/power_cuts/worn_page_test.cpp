@@ -29,8 +29,8 @@ struct Stuck {
 constexpr Stuck kStuck[] = {{23, 0xFF, 0x00}, {4, 0x80, 0x80},  {25, 0xFF, 0xFF},
                             {2, 0x03, 0x03},  {24, 0x55, 0xAA}, {14, 0xFF, 0x00}};
 
-/// Returns the number of pages of a record with these settings. Those of wire.md section 12 are in the second
-/// page.
+/// Returns the number of pages of a record with these settings. Those of firmware/extensions.md are in the
+/// second page.
 unsigned pages_of(const Settings& settings) { return bytes_of_settings(settings) > 19 ? 2 : 1; }
 
 class WornPageOf : public testing::TestWithParam<ImageName> {

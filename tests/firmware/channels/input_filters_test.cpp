@@ -1,4 +1,4 @@
-// Tests the filters and the inversion of inputs: wire.md section 12.
+// Tests the filters and the inversion of inputs: firmware/extensions.md.
 #include <gtest/gtest.h>
 
 #include "firmware/channels/inputs.hpp"

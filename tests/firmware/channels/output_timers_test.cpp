@@ -1,4 +1,4 @@
-// Tests the timers of timed outputs: wire.md section 12.
+// Tests the timers of timed outputs: firmware/extensions.md.
 #include "firmware/channels/output_timers.hpp"
 
 #include <gtest/gtest.h>

@@ -134,7 +134,7 @@ Parts restarted(Bench& bench) {
 
 /// Does the same for Modbus: a host OK counts from the end of its silence.
 Parts modbus_restarted(Bench& bench) {
-  bench.asked["host OK"] += LineTiming::at(115200).rtu_silence.microseconds();
+  bench.asked["host OK"] += LineTiming::at(115200, LineFormat::k8N1).rtu_silence.microseconds();
   return restarted(bench);
 }
 

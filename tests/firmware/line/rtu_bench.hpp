@@ -48,23 +48,28 @@ inline Nanoseconds t35(std::uint32_t baud) { return silence_of_half_characters(7
 /// keep this distance from a limit.
 inline constexpr Nanoseconds kClock = 5'000;
 
-/// A wire at one baud rate, with its silence timer. A byte takes ten bits; the assembler receives it when the
-/// last bit ends.
+/// A wire at one baud rate, with its silence timer. A byte takes ten bits in 8N1 and eleven in the other
+/// formats; the assembler receives it when its first stop bit ends.
 class Wire {
  public:
-  Wire(RtuAssembler& assembler, FrameQueue& queue, std::uint32_t baud)
-      : assembler_(assembler), queue_(queue), baud_(baud) {
-    assembler_.use(LineTiming::at(baud));
+  Wire(RtuAssembler& assembler, FrameQueue& queue, std::uint32_t baud, LineFormat format = LineFormat::k8N1)
+      : assembler_(assembler),
+        queue_(queue),
+        bit_(Nanoseconds{1'000'000'000} / baud),
+        bits_(format == LineFormat::k8N1 ? 10 : 11),
+        second_stop_bit_(format == LineFormat::k8N2 ? 1 : 0) {
+    assembler_.use(LineTiming::at(baud, format));
   }
 
-  [[nodiscard]] Nanoseconds character() const { return Nanoseconds{10} * 1'000'000'000 / baud_; }
+  [[nodiscard]] Nanoseconds character() const { return bits_ * bit_; }
 
   void byte(std::uint8_t value, ByteStatus status = ByteStatus::Good) {
-    now_ += character();
+    now_ += character() - second_stop_bit_ * bit_;
     run_timer();
     assembler_.answer_to(own);
     note(assembler_.byte(queue_, value, status, time()));
     due_ = now_ / 1000 + assembler_.timing().rtu_silence.microseconds();
+    now_ += second_stop_bit_ * bit_;
   }
   void bytes(const FrameBytes& values) {
     for (const std::uint8_t value : values) {
@@ -119,7 +124,9 @@ class Wire {
 
   RtuAssembler& assembler_;
   FrameQueue& queue_;
-  Nanoseconds baud_;
+  Nanoseconds bit_;
+  Nanoseconds bits_;
+  Nanoseconds second_stop_bit_;  ///< in bits
   Nanoseconds now_ = 1'000'000'000;
   std::optional<Nanoseconds> due_;  // microseconds
 };

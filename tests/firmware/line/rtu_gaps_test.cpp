@@ -2,9 +2,11 @@
 // to the next start bit: wire.md section 7, "Framing", and D11; Modbus over Serial Line V1.02, 2.5.1.
 #include <gtest/gtest.h>
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <string>
+#include <tuple>
 
 #include "firmware/line/rtu_assembler.hpp"
 #include "firmware/model/baud.hpp"
@@ -13,7 +15,7 @@
 namespace ex9000 {
 namespace {
 
-class RtuGaps : public testing::TestWithParam<std::uint32_t> {
+class RtuGaps : public testing::TestWithParam<std::tuple<std::uint32_t, LineFormat>> {
  protected:
   /// Sends the first `split` bytes, a gap, and the other bytes.
   void with_gap(const FrameBytes& frame, std::size_t split, Nanoseconds gap) {
@@ -22,19 +24,31 @@ class RtuGaps : public testing::TestWithParam<std::uint32_t> {
     wire_.silence(gap);
     wire_.frame({middle, frame.end()});
   }
-  std::uint32_t baud_ = GetParam();
+  std::uint32_t baud_ = std::get<0>(GetParam());
+  LineFormat format_ = std::get<1>(GetParam());
   FrameQueue queue_;
   RtuAssembler assembler_;
-  Wire wire_{assembler_, queue_, baud_};
+  Wire wire_{assembler_, queue_, baud_, format_};
 };
 
 // A simulated line can have any baud rate.
 TEST(LineTimingAt, FourMegabaudHasAGraceOfAtLeastOneMicrosecond) {
-  EXPECT_EQ(LineTiming::at(4'000'000).rtu_grace.microseconds(), 1U);
+  EXPECT_EQ(LineTiming::at(4'000'000, LineFormat::k8N1).rtu_grace.microseconds(), 1U);
 }
 
-INSTANTIATE_TEST_SUITE_P(AllRates, RtuGaps, testing::ValuesIn(kBaudRates),
-                         [](const auto& rate) { return "Baud" + std::to_string(rate.param); });
+constexpr std::array<LineFormat, 4> kFormats{LineFormat::k8N1, LineFormat::k8N2, LineFormat::k8E1,
+                                             LineFormat::k8O1};
+
+std::string name_of(const testing::TestParamInfo<RtuGaps::ParamType>& mode) {
+  constexpr std::array<const char*, 4> kNames{"8N1", "8N2", "8E1", "8O1"};
+  const auto [baud, format] = mode.param;
+  return "Baud" + std::to_string(baud) + "Format" + kNames.at(static_cast<std::size_t>(format));
+}
+
+// Every format has the same silences, of characters of 11 bits.
+INSTANTIATE_TEST_SUITE_P(AllRatesAndFormats, RtuGaps,
+                         testing::Combine(testing::ValuesIn(kBaudRates), testing::ValuesIn(kFormats)),
+                         name_of);
 
 TEST_P(RtuGaps, AGapShorterThanT35StaysWithinTheFrame) {
   for (std::size_t split = 1; split < kChannel0On.size(); ++split) {
@@ -174,8 +188,8 @@ TEST_P(RtuGaps, TheSilenceEndsT35AfterTheLastByteAndNeverEarlier) {
 
 // The UART reports a byte half a bit before its end, so silences that begin there are half a bit longer.
 TEST_P(RtuGaps, SilencesAreHalfABitLongerIfTheUartReportsBytesInTheStopBit) {
-  const LineTiming end = LineTiming::at(baud_);
-  const LineTiming middle = LineTiming::reported_in_stop_bit(baud_);
+  const LineTiming end = LineTiming::at(baud_, format_);
+  const LineTiming middle = LineTiming::reported_in_stop_bit(baud_, format_);
   const std::uint32_t half_bit = 500'000 / baud_;
   for (const auto silence : {&LineTiming::rtu_silence, &LineTiming::dcon_turn_around}) {
     const std::uint32_t longer = (middle.*silence).microseconds() - (end.*silence).microseconds();
@@ -188,10 +202,10 @@ TEST_P(RtuGaps, SilencesAreHalfABitLongerIfTheUartReportsBytesInTheStopBit) {
 }
 
 TEST_P(RtuGaps, StrictTimingKeepsItsGapsIfTheUartReportsBytesInTheStopBit) {
-  const LineTiming end = LineTiming::strictly_at(baud_);
-  const LineTiming middle = LineTiming::strictly_reported_in_stop_bit(baud_);
+  const LineTiming end = LineTiming::strictly_at(baud_, format_);
+  const LineTiming middle = LineTiming::strictly_reported_in_stop_bit(baud_, format_);
   EXPECT_TRUE(middle.rtu_slack == end.rtu_slack);
-  EXPECT_TRUE(middle.rtu_silence == LineTiming::reported_in_stop_bit(baud_).rtu_silence);
+  EXPECT_TRUE(middle.rtu_silence == LineTiming::reported_in_stop_bit(baud_, format_).rtu_silence);
 }
 
 TEST_P(RtuGaps, AFrameAcrossTheWrapOfTheClockIsOneFrame) {
@@ -204,7 +218,7 @@ TEST_P(RtuGaps, AFrameAcrossTheWrapOfTheClockIsOneFrame) {
 }
 
 TEST_P(RtuGaps, StrictTimingRejectsAGapLongerThanT15) {
-  assembler_.use(LineTiming::strictly_at(baud_));
+  assembler_.use(LineTiming::strictly_at(baud_, format_));
   for (std::size_t split = 1; split < kChannel0On.size(); ++split) {
     wire_.verdicts.clear();
     with_gap(kChannel0On, split, t15(baud_) + kClock);
@@ -215,7 +229,7 @@ TEST_P(RtuGaps, StrictTimingRejectsAGapLongerThanT15) {
 }
 
 TEST_P(RtuGaps, StrictTimingAllowsAGapOfT15) {
-  assembler_.use(LineTiming::strictly_at(baud_));
+  assembler_.use(LineTiming::strictly_at(baud_, format_));
   for (std::size_t split = 1; split < kChannel0On.size(); ++split) {
     wire_.verdicts.clear();
     with_gap(kChannel0On, split, t15(baud_));
@@ -224,7 +238,7 @@ TEST_P(RtuGaps, StrictTimingAllowsAGapOfT15) {
 }
 
 TEST_P(RtuGaps, StrictTimingAcceptsAFrameWithoutGapsAfterASpoiledOne) {
-  assembler_.use(LineTiming::strictly_at(baud_));
+  assembler_.use(LineTiming::strictly_at(baud_, format_));
   with_gap(kChannel0On, 4, t15(baud_) + kClock);
   wire_.verdicts.clear();
   wire_.frame(kChannel0On);
@@ -232,7 +246,7 @@ TEST_P(RtuGaps, StrictTimingAcceptsAFrameWithoutGapsAfterASpoiledOne) {
 }
 
 TEST_P(RtuGaps, StrictTimingDoesNotEndAFrameAtAGapShorterThanT35) {
-  assembler_.use(LineTiming::strictly_at(baud_));
+  assembler_.use(LineTiming::strictly_at(baud_, format_));
   with_gap(frame_of(20), 12, t35(baud_) - kClock);
   EXPECT_EQ(wire_.verdicts.size(), 1U);
   EXPECT_TRUE(wire_.frames.empty());
@@ -240,7 +254,7 @@ TEST_P(RtuGaps, StrictTimingDoesNotEndAFrameAtAGapShorterThanT35) {
 
 // The gap would invalidate a frame that contains it, but the frame without the 00 is valid.
 TEST_P(RtuGaps, StrictTimingAllowsAGapAfterATurnAround00) {
-  assembler_.use(LineTiming::strictly_at(baud_));
+  assembler_.use(LineTiming::strictly_at(baud_, format_));
   with_gap(behind(0x00, kChannel0On), 1, t15(baud_) + kClock);
   EXPECT_EQ(wire_.verdicts, Verdicts{Verdict::Accepted});
 }

@@ -75,7 +75,7 @@ class Crowd final : public sim::BusObserver {
 
   // --- sim::BusObserver ---
   void driver(std::size_t station, bool on, sim::VirtualTime now) override;
-  void byte(std::size_t /*station*/, std::uint8_t /*byte*/, std::uint32_t /*baud*/, bool collided,
+  void byte(std::size_t /*station*/, std::uint8_t /*byte*/, hal::SerialMode /*mode*/, bool collided,
             sim::VirtualTime /*start*/, sim::VirtualTime /*end*/) override {
     collided_ = collided_ || collided;
   }

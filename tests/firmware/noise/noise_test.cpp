@@ -99,7 +99,7 @@ void late_driver(NoisyLine& noisy, std::uint64_t exchanges) {
 }
 
 void echo(NoisyLine& noisy, std::uint64_t exchanges) {
-  auto& repeater = noisy.attach<sim::Echo>(NoisyLine::kBaud);
+  auto& repeater = noisy.attach<sim::Echo>(hal::SerialMode{NoisyLine::kBaud});
   repeater.switch_on(milliseconds(3));
   for (std::uint64_t i = 0; i < exchanges; ++i) {
     ask(noisy);
@@ -109,8 +109,8 @@ void echo(NoisyLine& noisy, std::uint64_t exchanges) {
 }
 
 /// Adds another master, which sends the same kinds of requests at random times.
-void another_master(NoisyLine& noisy, std::uint64_t exchanges, std::uint32_t baud) {
-  auto& other = noisy.attach<sim::Master>(baud, [](std::uint8_t, ByteStatus) {});
+void another_master(NoisyLine& noisy, std::uint64_t exchanges, hal::SerialMode mode) {
+  auto& other = noisy.attach<sim::Master>(mode, [](std::uint8_t, ByteStatus) {});
   for (std::uint64_t i = 0; i < exchanges; ++i) {
     const FrameBytes request = noisy.a_request();
     other.send(request.data(), request.size(),
@@ -143,13 +143,17 @@ const std::vector<Trouble>& troubles() {
       {"ADriverThatGoesOffLate", late_driver},
       {"AnEcho", echo},
       {"AMasterAtAQuarterOfTheRate",
-       [](NoisyLine& noisy, std::uint64_t exchanges) { another_master(noisy, exchanges, 28800); }},
+       [](NoisyLine& noisy, std::uint64_t exchanges) { another_master(noisy, exchanges, {28800}); }},
       {"AMasterAtHalfTheRate",
-       [](NoisyLine& noisy, std::uint64_t exchanges) { another_master(noisy, exchanges, 57600); }},
+       [](NoisyLine& noisy, std::uint64_t exchanges) { another_master(noisy, exchanges, {57600}); }},
       {"AMasterAtTwiceTheRate",
-       [](NoisyLine& noisy, std::uint64_t exchanges) { another_master(noisy, exchanges, 230400); }},
-      {"TwoMasters",
-       [](NoisyLine& noisy, std::uint64_t exchanges) { another_master(noisy, exchanges, NoisyLine::kBaud); }},
+       [](NoisyLine& noisy, std::uint64_t exchanges) { another_master(noisy, exchanges, {230400}); }},
+      {"TwoMasters", [](NoisyLine& noisy,
+                        std::uint64_t exchanges) { another_master(noisy, exchanges, {NoisyLine::kBaud}); }},
+      {"AMasterWithEvenParity",
+       [](NoisyLine& noisy, std::uint64_t exchanges) {
+         another_master(noisy, exchanges, {NoisyLine::kBaud, LineFormat::k8E1});
+       }},
   };
   return all;
 }

@@ -64,7 +64,7 @@ NoisyLine::NoisyLine(Check check, std::uint64_t seed)
       noise_(line_.bus(), {}, seed),
       random_(seed + 1),
       onlooker_(line_.bus(), line_.module(0), kModule) {
-  line_.bus().attach(*this).listen(kBaud);
+  line_.bus().attach(*this).listen({kBaud});
   line_.bus().disturb(*this);
   line_.master().set_baud(kBaud);
   come_up();

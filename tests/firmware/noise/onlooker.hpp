@@ -82,7 +82,7 @@ class Onlooker final : public sim::BusObserver {
       witness_.reply_ends(now());
     }
   }
-  void byte(std::size_t station, std::uint8_t byte, std::uint32_t /*baud*/, bool /*collided*/,
+  void byte(std::size_t station, std::uint8_t byte, hal::SerialMode /*mode*/, bool /*collided*/,
             sim::VirtualTime /*start*/, sim::VirtualTime /*end*/) override {
     if (station == station_) {
       reply_.push_back(byte);

@@ -169,7 +169,7 @@ TEST_F(RequestCycleTest, AReplyLongAgoDoesNotDelayTheNextReply) {
   EXPECT_EQ(take_reply(), "!01D01.00\r");
 }
 
-// wire.md section 12: the response delay.
+// firmware/extensions.md: the response delay.
 TEST_F(RequestCycleTest, AReplyWaitsForTheLaterOfTheGapAndTheResponseDelay) {
   for (const auto& [gap, delay] : {std::pair{5U, 30U}, {30U, 5U}}) {
     judge("$01M");

@@ -303,7 +303,7 @@ TEST(SettingsStore, SettingsSavedAfterASilentMemoryAtResetAreFoundAtTheNextLoad)
   EXPECT_TRUE(Boot(memory).stored() == numbered(9));
 }
 
-// --- wire.md section 12: registers 0x0305 and 0x0306 ---
+// --- firmware/extensions.md: registers 0x0305 and 0x0306 ---
 
 using Source = SettingsStore::Source;
 

@@ -43,7 +43,7 @@ struct FlashBoard {
     std::uint64_t begins = 0;
     std::uint64_t ends = kForever;
     std::vector<std::uint8_t> reply{};
-    static void open(std::uint32_t baud) { EXPECT_EQ(baud, kBaud); }
+    static void open(std::uint32_t baud, LineFormat /*format*/) { EXPECT_EQ(baud, kBaud); }
     void send(Bytes bytes) {
       reply.assign(bytes.begin(), bytes.end());
       begins = chip->now;

@@ -1,6 +1,8 @@
 // Tests the UART driver and its RS-485 driver enable, on wires with a master that records the line.
 #include <gtest/gtest.h>
 
+#include <array>
+#include <string>
 #include <tuple>
 #include <vector>
 
@@ -34,7 +36,7 @@ class UartBench : public DriverBench {
     bool while_sending;
   };
 
-  explicit UartBench(const Chip& chip, std::uint32_t baud)
+  UartBench(const Chip& chip, std::uint32_t baud, LineFormat format)
       : DriverBench(chip), line(timeline, pins.at('A', 1), pins.at('A', 6), pins.at('A', 0)) {
     uart.start();
     if (chip.port_control) {
@@ -54,15 +56,15 @@ class UartBench : public DriverBench {
       }
     });
     line.set_baud(baud);
-    uart.open(baud);
+    line.set_format(format);
+    uart.open(baud, format);
   }
 
   /// Sends bytes and waits until the RS-485 driver is off.
   void send(const std::vector<std::uint8_t>& bytes) {
     uart.send({bytes.data(), bytes.size()});
     EXPECT_TRUE(uart.sending());
-    const Instant patience =
-        now() + 4 * kBitsACharacter * static_cast<unsigned>(bytes.size() + 2) * line.bit_time();
+    const Instant patience = now() + 4 * static_cast<unsigned>(bytes.size() + 2) * line.character_time();
     while (uart.sending() && now() < patience) {
       mcu.run_for(line.bit_time() / 4);
     }
@@ -82,14 +84,26 @@ std::vector<std::uint8_t> some_bytes(std::size_t count) {
   return bytes;
 }
 
-class Sending : public testing::TestWithParam<std::tuple<bool, std::uint32_t>> {
+constexpr std::array<LineFormat, 4> kFormats{LineFormat::k8N1, LineFormat::k8N2, LineFormat::k8E1,
+                                             LineFormat::k8O1};
+
+std::string name_of(LineFormat format) {
+  constexpr std::array<const char*, 4> kNames{"8N1", "8N2", "8E1", "8O1"};
+  return kNames.at(static_cast<std::size_t>(format));
+}
+
+class Sending : public testing::TestWithParam<std::tuple<bool, std::uint32_t, LineFormat>> {
  protected:
   [[nodiscard]] const Chip& chip() const { return std::get<0>(GetParam()) ? kTm4c123 : kLm3s6965; }
   [[nodiscard]] std::uint32_t baud() const { return std::get<1>(GetParam()); }
-  [[nodiscard]] Instant character() const { return Instant(10'000'000'000'000 / baud()); }
+  [[nodiscard]] LineFormat format() const { return std::get<2>(GetParam()); }
+  /// Returns the duration of a character in bits: 10 in 8N1, 11 in the other formats
+  /// (firmware/extensions.md).
+  [[nodiscard]] int bits() const { return format() == LineFormat::k8N1 ? 10 : 11; }
+  [[nodiscard]] Instant character() const { return Instant(bits() * 1'000'000'000'000 / baud()); }
 
-  /// Checks the conditions that must always hold: all bytes are on the line, and the driver is on from before
-  /// the first byte until after the last byte.
+  /// Checks the conditions that must always hold: all bytes are on the line with right parity and stop bits,
+  /// and the driver is on from before the first byte until after the last stop bit.
   void expect_whole(const UartBench& bench, const std::vector<std::uint8_t>& bytes) {
     ASSERT_EQ(bench.line.heard.size(), bytes.size());
     for (std::size_t i = 0; i < bytes.size(); ++i) {
@@ -101,7 +115,7 @@ class Sending : public testing::TestWithParam<std::tuple<bool, std::uint32_t>> {
     EXPECT_EQ(bench.line.bits_lost, 0U);
     // The last stop bit has the length that the microcontroller's clock gives it.
     const Instant bit = bench.mcu.uart0.bit_time();
-    EXPECT_GE(bench.line.drives[0].to, bench.line.heard.back().started + kBitsACharacter * bit);
+    EXPECT_GE(bench.line.drives[0].to, bench.line.heard.back().started + bits() * bit);
   }
 };
 
@@ -111,7 +125,7 @@ TEST_P(Sending, TheDriverIsOnForAllBytesAndOffWithinOneCharacterAfterThem) {
          {Instant(0), Instant(microseconds(2)), Instant(microseconds(10)), 3 * character() / 10}) {
       for (const Instant phase : {Instant(0), Instant(1'230'000)}) {
         SCOPED_TRACE(std::to_string(size) + " bytes, latency " + std::to_string(latency.count()));
-        UartBench bench(chip(), baud());
+        UartBench bench(chip(), baud(), format());
         bench.mcu.core.set_latency(latency);
         bench.mcu.run_for(character() + phase);
         const std::vector<std::uint8_t> bytes = some_bytes(size);
@@ -122,7 +136,7 @@ TEST_P(Sending, TheDriverIsOnForAllBytesAndOffWithinOneCharacterAfterThem) {
         const Instant bit = bench.mcu.uart0.bit_time();
         EXPECT_NEAR(
             static_cast<double>((bench.line.heard.back().started - bench.line.heard.front().started).count()),
-            static_cast<double>((static_cast<int>(size - 1) * 10 * bit).count()), 1e6);
+            static_cast<double>((static_cast<int>(size - 1) * bits() * bit).count()), 1e6);
       }
     }
     if (size > 9 && baud() < 9600) {
@@ -133,7 +147,7 @@ TEST_P(Sending, TheDriverIsOnForAllBytesAndOffWithinOneCharacterAfterThem) {
 
 TEST_P(Sending, TheDriverIsNotSwitchedOffEarlyIfInterruptsAreLate) {
   for (const int tenths : {8, 11, 15, 24}) {
-    UartBench bench(chip(), baud());
+    UartBench bench(chip(), baud(), format());
     bench.mcu.core.set_latency(tenths * character() / 10);
     const std::vector<std::uint8_t> bytes = some_bytes(5);
     bench.send(bytes);
@@ -143,7 +157,7 @@ TEST_P(Sending, TheDriverIsNotSwitchedOffEarlyIfInterruptsAreLate) {
 
 TEST_P(Sending, ItsOwnEchoIsNotReceived) {
   for (const Instant latency : {Instant(0), Instant(microseconds(30))}) {
-    UartBench bench(chip(), baud());
+    UartBench bench(chip(), baud(), format());
     bench.mcu.core.set_latency(latency);
     const std::vector<std::uint8_t> bytes = some_bytes(20);
     bench.send(bytes);
@@ -158,7 +172,7 @@ TEST_P(Sending, ItsOwnEchoIsNotReceived) {
 }
 
 TEST_P(Sending, ManyRepliesCanBeSentInSequence) {
-  UartBench bench(chip(), baud());
+  UartBench bench(chip(), baud(), format());
   for (int i = 0; i < 300; ++i) {  // past the wrap of 8-bit counts
     bench.line.heard.clear();
     bench.line.drives.clear();
@@ -169,7 +183,7 @@ TEST_P(Sending, ManyRepliesCanBeSentInSequence) {
 }
 
 TEST_P(Sending, ReceivesTheBytesThatTheMasterSends) {
-  UartBench bench(chip(), baud());
+  UartBench bench(chip(), baud(), format());
   const std::vector<std::uint8_t> bytes = some_bytes(256);
   bench.line.send(bytes);
   bench.mcu.run_for(258 * character());
@@ -181,17 +195,20 @@ TEST_P(Sending, ReceivesTheBytesThatTheMasterSends) {
   EXPECT_TRUE(bench.line.drives.empty());
 }
 
-INSTANTIATE_TEST_SUITE_P(AtAllRates, Sending,
-                         testing::Combine(testing::Bool(), testing::ValuesIn(kBaudRates)),
+INSTANTIATE_TEST_SUITE_P(AtAllRatesAndFormats, Sending,
+                         testing::Combine(testing::Bool(), testing::ValuesIn(kBaudRates),
+                                          testing::ValuesIn(kFormats)),
                          [](const auto& each) {
                            return std::string(std::get<0>(each.param) ? "Tm4c" : "Lm3s") +
-                                  std::to_string(std::get<1>(each.param));
+                                  std::to_string(std::get<1>(each.param)) + "At" +
+                                  name_of(std::get<2>(each.param));
                          });
 
-class Receiving : public testing::Test {
+class Receiving : public testing::TestWithParam<LineFormat> {
  protected:
   static constexpr std::uint32_t kBaud = 9600;
-  static constexpr Instant kCharacter{10'000'000'000'000 / kBaud};
+
+  [[nodiscard]] Instant character() const { return bench.line.character_time(); }
 
   std::vector<ByteStatus> statuses() {
     std::vector<ByteStatus> result;
@@ -201,55 +218,130 @@ class Receiving : public testing::Test {
     return result;
   }
 
-  UartBench bench{kLm3s6965, kBaud};
+  UartBench bench{kLm3s6965, kBaud, GetParam()};
 };
+class ReceivingParity : public Receiving {};
 
-TEST_F(Receiving, ALowStopBitIsAFramingError) {
+/// PL011 TRM, 3.3.7: WLEN is bits 6:5, STP2 bit 3, EPS bit 2, PEN bit 1; FEN, bit 4, is 0.
+TEST_P(Receiving, TheLineControlRegisterSelectsTheFormat) {
+  constexpr std::array<std::uint32_t, 4> kLineControl{0x60, 0x68, 0x66, 0x62};
+  EXPECT_EQ(bench.mcu.uart0.line_control(), kLineControl.at(static_cast<std::size_t>(GetParam())));
+}
+
+TEST_P(Receiving, ALowStopBitIsAFramingError) {
+  bench.line.set_format(has_parity(GetParam()) ? GetParam() : LineFormat::k8N1);
   bench.line.send_one(Character{0x55, false, 0});
-  bench.mcu.run_for(4 * kCharacter);
+  bench.mcu.run_for(4 * character());
   bench.line.send({0x41});
-  bench.mcu.run_for(2 * kCharacter);
+  bench.mcu.run_for(2 * character());
   EXPECT_EQ(statuses(), (std::vector<ByteStatus>{ByteStatus::FramingError, ByteStatus::Good}));
   EXPECT_EQ(bench.received[1].byte, 0x41);
 }
 
-TEST_F(Receiving, ALongBreakIsReportedOnce) {
+TEST_P(Receiving, ALongBreakIsReportedOnce) {
   bench.line.send_one(Character{0, true, 50});
   bench.line.send({0x42});
-  bench.mcu.run_for(8 * kCharacter);
+  bench.mcu.run_for(8 * character());
   EXPECT_EQ(statuses(), (std::vector<ByteStatus>{ByteStatus::Break, ByteStatus::Good}));
   EXPECT_EQ(bench.received[1].byte, 0x42);
 }
 
-TEST_F(Receiving, AByteThatWasNotReadInTimeIsReportedAsAnOverrun) {
+TEST_P(Receiving, AByteThatWasNotReadInTimeIsReportedAsAnOverrun) {
   bench.mcu.core.hold(true);
   bench.line.send({1, 2, 3});
-  bench.mcu.run_for(4 * kCharacter);
+  bench.mcu.run_for(4 * character());
   bench.mcu.core.hold(false);
-  bench.mcu.run_for(kCharacter);
+  bench.mcu.run_for(character());
   bench.line.send({4, 5});
-  bench.mcu.run_for(3 * kCharacter);
+  bench.mcu.run_for(3 * character());
   EXPECT_EQ(bench.mcu.uart0.overruns(), 2U);
   EXPECT_EQ(statuses(), (std::vector<ByteStatus>{ByteStatus::Good, ByteStatus::Overrun, ByteStatus::Good}));
 }
 
-TEST_F(Receiving, NoByteIsLostIfTheInterruptIsLateByLessThanOneCharacter) {
-  bench.mcu.core.set_latency(95 * kCharacter / 100);
+TEST_P(Receiving, NoByteIsLostIfTheInterruptIsLateByLessThanOneCharacter) {
+  bench.mcu.core.set_latency(95 * character() / 100);
   const std::vector<std::uint8_t> bytes = some_bytes(100);
   bench.line.send(bytes);
-  bench.mcu.run_for(102 * kCharacter);
+  bench.mcu.run_for(102 * character());
   EXPECT_EQ(bench.mcu.uart0.overruns(), 0U);
   EXPECT_EQ(bench.received.size(), bytes.size());
 }
 
-TEST_F(Receiving, ASpikeIsNotReceivedAsAByte) {
-  bench.mcu.run_for(kCharacter);
+TEST_P(Receiving, ASpikeIsNotReceivedAsAByte) {
+  bench.mcu.run_for(character());
   bench.pins.at('A', 0).drive(End::Board, Drive::Low);
   bench.mcu.run_for(microseconds(20));
   bench.pins.at('A', 0).drive(End::Board, Drive::High);
-  bench.mcu.run_for(2 * kCharacter);
+  bench.mcu.run_for(2 * character());
   EXPECT_TRUE(bench.received.empty());
 }
+
+INSTANTIATE_TEST_SUITE_P(InAllFormats, Receiving, testing::ValuesIn(kFormats),
+                         [](const auto& format) { return name_of(format.param); });
+
+TEST_P(ReceivingParity, AByteWithWrongParityIsAParityError) {
+  bench.line.send({0x43});
+  bench.line.send_one(Character{0x43, true, 0, true});
+  bench.line.send({0x43});
+  bench.mcu.run_for(5 * character());
+  EXPECT_EQ(statuses(),
+            (std::vector<ByteStatus>{ByteStatus::Good, ByteStatus::ParityError, ByteStatus::Good}));
+}
+
+TEST_P(ReceivingParity, ALowStopBitAfterWrongParityIsAFramingError) {
+  bench.line.send_one(Character{0x55, false, 0, true});
+  bench.mcu.run_for(4 * character());
+  EXPECT_EQ(statuses(), std::vector<ByteStatus>{ByteStatus::FramingError});
+}
+
+TEST_P(ReceivingParity, AnOverrunIsReportedEvenIfTheNextByteHasWrongParity) {
+  bench.mcu.core.hold(true);
+  bench.line.send({1, 2});
+  bench.mcu.run_for(3 * character());
+  bench.mcu.core.hold(false);
+  bench.mcu.run_for(character());
+  bench.line.send_one(Character{3, true, 0, true});
+  bench.mcu.run_for(2 * character());
+  EXPECT_EQ(statuses(), (std::vector<ByteStatus>{ByteStatus::Good, ByteStatus::Overrun}));
+}
+
+TEST_P(ReceivingParity, EachByteOfAMasterWithTheOppositeParityIsAParityError) {
+  bench.line.set_format(GetParam() == LineFormat::k8E1 ? LineFormat::k8O1 : LineFormat::k8E1);
+  bench.line.send(some_bytes(256));
+  bench.mcu.run_for(258 * character());
+  EXPECT_EQ(statuses(), std::vector<ByteStatus>(256, ByteStatus::ParityError));
+}
+
+INSTANTIATE_TEST_SUITE_P(InBothFormats, ReceivingParity, testing::Values(LineFormat::k8E1, LineFormat::k8O1),
+                         [](const auto& format) { return name_of(format.param); });
+
+class ReceivingWithoutParity : public Receiving {};
+
+/// A receiver looks at the first stop bit only.
+TEST_P(ReceivingWithoutParity, BytesWithAnotherNumberOfStopBitsAreReceived) {
+  bench.line.set_format(GetParam() == LineFormat::k8N1 ? LineFormat::k8N2 : LineFormat::k8N1);
+  const std::vector<std::uint8_t> bytes = some_bytes(256);
+  bench.line.send(bytes);
+  bench.mcu.run_for(258 * character());
+  EXPECT_EQ(statuses(), std::vector<ByteStatus>(256, ByteStatus::Good));
+  bench.send(bytes);
+  ASSERT_EQ(bench.line.heard.size(), bytes.size());
+  for (std::size_t i = 0; i < bytes.size(); ++i) {
+    EXPECT_EQ(bench.line.heard[i].byte, bytes[i]);
+    EXPECT_TRUE(bench.line.heard[i].good);
+  }
+}
+
+TEST_P(ReceivingWithoutParity, AMasterWithParityCausesFramingErrors) {
+  bench.line.set_format(LineFormat::k8E1);
+  bench.line.send({0x55});  // its parity bit is 0, which is no stop bit
+  bench.mcu.run_for(2 * character());
+  EXPECT_EQ(statuses(), std::vector<ByteStatus>{ByteStatus::FramingError});
+}
+
+INSTANTIATE_TEST_SUITE_P(InBothFormats, ReceivingWithoutParity,
+                         testing::Values(LineFormat::k8N1, LineFormat::k8N2),
+                         [](const auto& format) { return name_of(format.param); });
 
 }  // namespace
 }  // namespace ex9000::registers

@@ -123,7 +123,7 @@ int main() {
   results().wrong = 0;
   results().erasing = 0;
   results().reason = static_cast<std::uint32_t>(reason);
-  line.open(115200);
+  line.open(115200, LineFormat::k8N1);
   Interrupts::enable(start_up::numbers_of(kServed));
   Flash::start();
   wait();

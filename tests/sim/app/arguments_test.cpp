@@ -35,6 +35,7 @@ TEST(Arguments, OneModuleIsEnough) {
   ASSERT_EQ(arguments.modules.size(), 1U);
   EXPECT_EQ(arguments.modules[0].model->designation, "EX9042D-M");
   EXPECT_FALSE(arguments.baud);
+  EXPECT_FALSE(arguments.format);
   EXPECT_FALSE(all_accepted({"EX9042D-M"}).log);
   EXPECT_FALSE(arguments.strict_gaps);
   EXPECT_FALSE(arguments.instant);
@@ -208,6 +209,12 @@ TEST(Arguments, AWrongRateIsRefusedWithAListOfValidRates) {
   for (const char* rate : {"300", "9601", "9600x", "fast", "-1", "0"}) {
     expect_error({"EX9042D", "--baud", rate}, rate, "9600");
   }
+}
+
+TEST(Arguments, TheFormatOfTheLineIsOneOfFour) {
+  EXPECT_EQ(accepted({"EX9042D", "--format", "8N2"}).format, LineFormat::k8N2);
+  EXPECT_EQ(accepted({"EX9042D", "--format", "8o1"}).format, LineFormat::k8O1);
+  expect_error({"EX9042D", "--format", "8M1"}, "--format", "8N1, 8N2, 8E1 or 8O1");
 }
 
 TEST(Arguments, AnEmptyRateIsRefused) { expect_error({"EX9042D", "--baud", ""}, "--baud", "9600"); }

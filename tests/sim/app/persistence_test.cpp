@@ -8,6 +8,9 @@
 #include <random>
 #include <string>
 
+#include "firmware/model/baud.hpp"
+#include "sim/text/values.hpp"
+#include "tests/firmware/settings/stored_bytes.hpp"
 #include "tests/sim/app/persistent_simulator.hpp"
 #include "tests/support/directory.hpp"
 
@@ -35,6 +38,27 @@ TEST(Persistence, AMissingFileIsCreatedFromThePresetsAndKeptAfterTheProgramEnds)
     EXPECT_EQ(second.tell("1 status"), status);
     EXPECT_TRUE(has(second.greeting(), "EX9042D-M at 1A, ASCII")) << second.greeting();
     EXPECT_EQ(second.ask("$1AME3"), "!1APUMPD5");
+  }
+}
+
+// The files contain what earlier firmware has stored, in each layout, for each model that it had.
+TEST(Persistence, AFileOfEarlierFirmwareGivesAllItsSettingsAndIsNotWritten) {
+  for (const StoredBytes& stored : all_stored_bytes()) {
+    const Directory directory;
+    std::string image(kImageSize, '\xFF');
+    std::copy(stored.memory.begin(), stored.memory.end(), image.begin());
+    write_file(directory / "image", image);
+    Simulator simulator({std::string(stored.model->designation) + image_in(directory)});
+    const std::string status = simulator.tell("1 status");
+    const bool ascii = stored.settings.protocol == Protocol::Ascii;
+    for (const std::string& part :
+         {"address=" + sim::hex_byte_text(stored.settings.address),
+          "baud=" + std::to_string(baud_rate(stored.settings.baud_code)), std::string("format=8N1"),
+          std::string(ascii ? "protocol=ascii" : "protocol=modbus")}) {
+      EXPECT_TRUE(has(status, part)) << stored.file << ": " << status;
+    }
+    EXPECT_TRUE(has(simulator.greeting(), "settings from " + directory / "image")) << stored.file;
+    EXPECT_EQ(bytes_of_file(directory / "image"), image) << stored.file;
   }
 }
 

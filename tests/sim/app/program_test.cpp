@@ -192,7 +192,7 @@ TEST(Program, WrongArgumentsGiveAOneLineErrorAndStatus2AndCreateNoFiles) {
       {{"EX9052D,edge=up"}, "edge=up", "rising or falling"},
       {{"EX9042D,name="}, "name=", "1 to 6"},
       {{"EX9042D,name=SEVENTY"}, "name=SEVENTY", "1 to 6"},
-      {{"EX9042D,colour=red"}, "colour=red: colour=: unknown key", "expected one of protocol, baud"},
+      {{"EX9042D,colour=red"}, "colour=red: colour=: unknown key", "expected one of protocol, baud, format"},
       {{"EX9042D,init"}, "init", "on or off"},
       {{"EX9042D", "--baud", "12"}, "--baud: '12'", "1200"},
       {{"EX9042D", "--bogus"}, "--bogus", "--help"},
@@ -350,10 +350,10 @@ TEST(Program, PrintsItsVersionModelsAndHelp) {
   EXPECT_NE(models.output.find("EX9068AD-M"), std::string::npos);
   const Finished help = simulator({"--help"}, directory.path());
   EXPECT_EQ(help.status, 0);
-  for (const char* option :
-       {"--pty",     "--baud", "--log",     "--models",  "--version", "--strict-gaps", "--tcp",
-        "--serial",  "--line", "--control", "--capture", "describe",  "eeprom=",       "N pulse C",
-        "protocol=", "edge=",  "checksum=", "name=",     "init=",     "baud="}) {
+  for (const char* option : {"--pty",         "--baud",  "--format",  "--log",     "--models",  "--version",
+                             "--strict-gaps", "--tcp",   "--serial",  "--line",    "--control", "--capture",
+                             "describe",      "eeprom=", "N pulse C", "protocol=", "edge=",     "checksum=",
+                             "name=",         "init=",   "baud=",     "format="}) {
     EXPECT_NE(help.output.find(option), std::string::npos) << option;
   }
   EXPECT_TRUE(fs::is_empty(directory.path()));

@@ -27,7 +27,7 @@ class BusRecorder final : public BusObserver {
   void driver(std::size_t station, bool on, VirtualTime now) override {
     drivers.push_back({station, on, now});
   }
-  void byte(std::size_t station, std::uint8_t byte, std::uint32_t /*baud*/, bool collided, VirtualTime start,
+  void byte(std::size_t station, std::uint8_t byte, SerialMode /*mode*/, bool collided, VirtualTime start,
             VirtualTime end) override {
     bytes.push_back({station, byte, collided, start, end});
   }

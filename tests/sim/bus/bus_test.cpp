@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <array>
 #include <memory>
 #include <vector>
 
@@ -26,8 +27,9 @@ struct Heard {
 /// A station that records the bytes that it receives.
 class Listener final : public Station {
  public:
-  Listener(Bus& bus, std::uint32_t baud) : clock_(bus.clock()), wire_(bus.attach(*this)) {
-    wire_.listen(baud);
+  Listener(Bus& bus, std::uint32_t baud, LineFormat format = LineFormat::k8N1)
+      : clock_(bus.clock()), wire_(bus.attach(*this)) {
+    wire_.listen({baud, format});
   }
 
   void run() override {}
@@ -35,7 +37,7 @@ class Listener final : public Station {
     heard.push_back({byte, status, clock_.virtual_now()});
   }
 
-  void set_baud(std::uint32_t baud) { wire_.listen(baud); }
+  void set_baud(std::uint32_t baud) { wire_.listen({baud}); }
 
   std::vector<Heard> heard;
 
@@ -46,8 +48,9 @@ class Listener final : public Station {
 
 class BusTest : public testing::Test {
  protected:
-  std::unique_ptr<Master> master(std::uint32_t baud) {
-    return std::make_unique<Master>(bus_, baud, [](std::uint8_t /*byte*/, ByteStatus /*status*/) {});
+  std::unique_ptr<Master> master(std::uint32_t baud, LineFormat format = LineFormat::k8N1) {
+    return std::make_unique<Master>(bus_, SerialMode{baud, format},
+                                    [](std::uint8_t /*byte*/, ByteStatus /*status*/) {});
   }
   static void send(Master& master, std::vector<std::uint8_t> bytes) {
     master.send(bytes.data(), bytes.size());
@@ -61,7 +64,7 @@ TEST_F(BusTest, AByteTakesTenBitsAtItsSendersRate) {
   for (const std::uint32_t baud : kBaudRates) {
     VirtualClock clock;
     Bus bus(clock);
-    Master sender(bus, baud, [](std::uint8_t /*byte*/, ByteStatus /*status*/) {});
+    Master sender(bus, SerialMode{baud}, [](std::uint8_t /*byte*/, ByteStatus /*status*/) {});
     Listener listener(bus, baud);
     const std::vector<std::uint8_t> bytes(100, 0x55);
     sender.send(bytes.data(), bytes.size());
@@ -70,6 +73,75 @@ TEST_F(BusTest, AByteTakesTenBitsAtItsSendersRate) {
     EXPECT_EQ(listener.heard.front().at, nanoseconds(10'000'000'000 / baud)) << baud;
     EXPECT_NEAR(static_cast<double>(listener.heard.back().at.count()), 1000e9 / baud, 2.0) << baud;
   }
+}
+
+constexpr std::array<LineFormat, 4> kFormats{LineFormat::k8N1, LineFormat::k8N2, LineFormat::k8E1,
+                                             LineFormat::k8O1};
+
+TEST_F(BusTest, AByteTakesElevenBitsInTheFormatsOtherThan8N1) {
+  for (const std::uint32_t baud : kBaudRates) {
+    for (const LineFormat format : {LineFormat::k8N2, LineFormat::k8E1, LineFormat::k8O1}) {
+      VirtualClock clock;
+      Bus bus(clock);
+      Master sender(bus, {baud, format}, [](std::uint8_t /*byte*/, ByteStatus /*status*/) {});
+      EXPECT_EQ(sender.takes(1), nanoseconds(11'000'000'000 / baud));
+      Listener listener(bus, baud, format);
+      const std::vector<std::uint8_t> bytes(100, 0x55);
+      sender.send(bytes.data(), bytes.size());
+      bus.run_for(std::chrono::seconds(2));
+      ASSERT_EQ(listener.heard.size(), 100U) << baud;
+      // Receivers ignore a second stop bit, so they get the byte before it.
+      const double first = format == LineFormat::k8N2 ? 10e9 / baud : 11e9 / baud;
+      EXPECT_NEAR(static_cast<double>(listener.heard.front().at.count()), first, 1.0) << baud;
+      EXPECT_NEAR(static_cast<double>(listener.heard.back().at.count()), 99 * 11e9 / baud + first, 2.0)
+          << baud;
+    }
+  }
+}
+
+TEST_F(BusTest, OnlyReceiversWithTheSendersParityGetGoodBytes) {
+  for (const LineFormat sent : kFormats) {
+    for (const LineFormat heard : kFormats) {
+      VirtualClock clock;
+      Bus bus(clock);
+      Master sender(bus, {9600, sent}, [](std::uint8_t /*byte*/, ByteStatus /*status*/) {});
+      Listener listener(bus, 9600, heard);
+      bool all_good = true;
+      for (const std::uint8_t byte : std::vector<std::uint8_t>{0x00, 0x01, 0x03, 0x80, 0xAA, 0xFE, 0xFF}) {
+        sender.send(&byte, 1);
+        bus.run_for(milliseconds(3));
+        ASSERT_FALSE(listener.heard.empty());
+        all_good = all_good && listener.heard[0].status == ByteStatus::Good && listener.heard[0].byte == byte;
+        listener.heard.clear();
+      }
+      const bool same_parity = sent == heard || (!has_parity(sent) && !has_parity(heard));
+      EXPECT_EQ(all_good, same_parity) << static_cast<int>(sent) << " to " << static_cast<int>(heard);
+    }
+  }
+}
+
+TEST_F(BusTest, AReceiverWithTheOtherParityReportsTheByteWithAParityError) {
+  const auto sender = master(9600, LineFormat::k8E1);
+  Listener odd(bus_, 9600, LineFormat::k8O1);
+  send(*sender, {0x00, 0x31, 0xFF});
+  bus_.run_for(milliseconds(10));
+  ASSERT_EQ(odd.heard.size(), 3U);
+  EXPECT_EQ(odd.heard[1].byte, 0x31);
+  for (const Heard& heard : odd.heard) {
+    EXPECT_EQ(heard.status, ByteStatus::ParityError);
+  }
+}
+
+// The parity bit of 0x30 is 0, and a receiver without parity reads it as the stop bit. That of 0x31 is 1.
+TEST_F(BusTest, AReceiverWithoutParityReadsTheParityBitAsTheStopBit) {
+  const auto sender = master(9600, LineFormat::k8E1);
+  Listener plain(bus_, 9600);
+  send(*sender, {0x30, 0x31});
+  bus_.run_for(milliseconds(10));
+  ASSERT_EQ(plain.heard.size(), 2U);
+  EXPECT_EQ(plain.heard[0].status, ByteStatus::FramingError);
+  EXPECT_EQ(plain.heard[1].status, ByteStatus::Good);
+  EXPECT_EQ(plain.heard[1].byte, 0x31);
 }
 
 TEST_F(BusTest, EveryStationAtTheSameRateReceivesEveryByteIntact) {
@@ -186,7 +258,7 @@ TEST_F(BusTest, ACommandSentToAnUnpoweredModuleIsNotExecutedLater) {
   send(*sender, {0x00});
   bus_.run_for(microseconds(300));
   module.power(false);
-  EXPECT_EQ(module.baud(), 0U);
+  EXPECT_EQ(module.mode().baud, 0U);
   bus_.run_for(milliseconds(10));
   send(*sender, {'@', '0', '1', 'F', 'F', 'F', 'F', '\r'});
   bus_.run_for(milliseconds(100));

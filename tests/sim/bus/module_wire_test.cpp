@@ -17,11 +17,11 @@ struct Wires final : Wire {
   explicit Wires(const VirtualClock& its_clock) : clock(its_clock) {}
 
   void drive(bool on) override { note(on ? "on" : "off"); }
-  void put(std::uint8_t byte, std::uint32_t baud) override {
-    note(std::string(1, static_cast<char>(byte)) + " " + std::to_string(baud));
+  void put(std::uint8_t byte, hal::SerialMode mode) override {
+    note(std::string(1, static_cast<char>(byte)) + " " + std::to_string(mode.baud));
   }
-  [[nodiscard]] VirtualTime takes(std::size_t bytes, std::uint32_t baud) const override {
-    return bytes * VirtualTime(10'000'000'000) / baud;
+  [[nodiscard]] VirtualTime takes(std::size_t bytes, hal::SerialMode mode) const override {
+    return bytes * VirtualTime(10'000'000'000) / mode.baud;
   }
   void note(const std::string& what) {
     happened.push_back(std::to_string(clock.virtual_now() / 1ms) + " " + what);
@@ -44,7 +44,7 @@ class ModuleWireTest : public testing::Test {
   void reply(VirtualTime at, char byte) {
     run_until(at);
     wire.drive(true);
-    wire.put(static_cast<std::uint8_t>(byte), 9600);
+    wire.put(static_cast<std::uint8_t>(byte), {9600});
     run_until(at + 1ms);
     wire.drive(false);
   }
@@ -67,13 +67,13 @@ TEST_F(ModuleWireTest, AReplyKeepsItsForcedRateToTheEnd) {
   wire.force_rate(1200);
   run_until(5ms);
   wire.drive(true);
-  wire.put('a', 9600);
+  wire.put('a', {9600});
   wire.force_rate(0);
-  wire.put('b', 9600);
-  EXPECT_EQ(wire.takes(2, 9600), wires.takes(2, 1200));
+  wire.put('b', {9600});
+  EXPECT_EQ(wire.takes(2, {9600}), wires.takes(2, {1200}));
   wire.drive(false);
   wire.drive(true);
-  wire.put('c', 9600);
+  wire.put('c', {9600});
   EXPECT_EQ(wires.happened, (Happened{"5 on", "5 a 1200", "5 b 1200", "5 off", "5 on", "5 c 9600"}));
 }
 
@@ -198,12 +198,12 @@ TEST_F(ModuleWireTest, AForcedRateAppliesToEveryByteAndItsDuration) {
   wire.force_rate(1200);
   reply(5ms, 'a');
   EXPECT_EQ(wires.happened[1], "5 a 1200");
-  EXPECT_EQ(wire.takes(3, 9600), wires.takes(3, 1200));
-  EXPECT_EQ(wire.rate(9600), 1200U);
-  EXPECT_EQ(wire.rate(0), 0U);  // a UART that is off stays off
+  EXPECT_EQ(wire.takes(3, {9600}), wires.takes(3, {1200}));
+  EXPECT_EQ(wire.forced({9600, LineFormat::k8E1}), (hal::SerialMode{1200, LineFormat::k8E1}));
+  EXPECT_EQ(wire.forced({}), hal::SerialMode{});  // a UART that is off stays off
   wire.force_rate(0);
-  EXPECT_EQ(wire.rate(9600), 9600U);
-  EXPECT_EQ(wire.takes(3, 9600), wires.takes(3, 9600));
+  EXPECT_EQ(wire.forced({9600}), hal::SerialMode{9600});
+  EXPECT_EQ(wire.takes(3, {9600}), wires.takes(3, {9600}));
 }
 
 }  // namespace

@@ -34,11 +34,12 @@ struct Received {
 /// How the traffic of a test is troubled. Each number is a probability.
 struct Trouble {
   const char* name;
-  double noise = 0;       ///< that a byte arrives with other levels
-  double collision = 0;   ///< that a station begins although another one sends
-  double cut_off = 0;     ///< that a driver is disabled in the middle of a byte
-  double other_rate = 0;  ///< that a station sends, or a receiver listens, at another rate
-  double stray = 0;       ///< that a byte appears although its station drives nothing, as noise does
+  double noise = 0;         ///< that a byte arrives with other levels
+  double collision = 0;     ///< that a station begins although another one sends
+  double cut_off = 0;       ///< that a driver is disabled in the middle of a byte
+  double other_rate = 0;    ///< that a station sends, or a receiver listens, at another rate
+  double stray = 0;         ///< that a byte appears although its station drives nothing, as noise does
+  double other_format = 0;  ///< that a station sends, or a receiver listens, in another line format
   std::uint32_t times_faster = 1;
 
   friend std::ostream& operator<<(std::ostream& out, const Trouble& trouble) { return out << trouble.name; }
@@ -54,10 +55,17 @@ VirtualTime between(Random& random, VirtualTime least, VirtualTime most) {
   return VirtualTime(std::uniform_int_distribution<std::int64_t>(least.count(), most.count())(random));
 }
 
-constexpr std::uint32_t kUsualRate = 9600;
+constexpr hal::SerialMode kUsualMode{9600, LineFormat::k8N1};
 
-std::uint32_t some_rate(Random& random, double other_rate) {
-  return happens(random, other_rate) ? kBaudRates[random() % kBaudRates.size()] : kUsualRate;
+hal::SerialMode some_mode(Random& random, const Trouble& trouble) {
+  hal::SerialMode mode = kUsualMode;
+  if (happens(random, trouble.other_rate)) {
+    mode.baud = kBaudRates[random() % kBaudRates.size()];
+  }
+  if (happens(random, trouble.other_format)) {
+    mode.format = static_cast<LineFormat>(random() % 4);
+  }
+  return mode;
 }
 
 /// Changes some bytes, and records the waves of all bytes.
@@ -69,7 +77,8 @@ class Recorder final : public Disturbance {
   Levels disturbed(const Sent& sent) override {
     const Levels levels =
         happens(random_, trouble_.noise) ? static_cast<Levels>(random_() & kIdleLevels) : sent.levels;
-    waves.push_back({clock_.virtual_now(), sent.baud * trouble_.times_faster, levels});
+    waves.push_back(
+        {clock_.virtual_now(), {sent.mode.baud * trouble_.times_faster, sent.mode.format}, levels});
     return levels;
   }
 
@@ -86,7 +95,7 @@ class Talker final : public Station {
  public:
   Talker(Bus& bus, Recorder& recorder, Random& random, const Trouble& trouble)
       : bus_(bus), end_(bus.attach(*this)), recorder_(recorder), random_(random), trouble_(trouble) {
-    end_.listen(kUsualRate);
+    end_.listen(kUsualMode);
     rest();
   }
 
@@ -113,7 +122,7 @@ class Talker final : public Station {
  private:
   void rest() {
     left_ = 1 + random_() % 12;
-    baud_ = some_rate(random_, trouble_.other_rate);
+    mode_ = some_mode(random_, trouble_);
     end_.run_at(bus_.clock().virtual_now() + between(random_, VirtualTime(1), std::chrono::milliseconds(20)));
   }
   void send() {
@@ -121,9 +130,9 @@ class Talker final : public Station {
     driving_ = true;
     end_.drive(true);
     wave_ = recorder_.waves.size();
-    end_.put(static_cast<std::uint8_t>(random_()), baud_);
+    end_.put(static_cast<std::uint8_t>(random_()), mode_);
     --left_;
-    const VirtualTime takes = end_.takes(1, baud_);
+    const VirtualTime takes = end_.takes(1, mode_);
     cuts_off_ = happens(random_, trouble_.cut_off);
     end_.run_at(now + (cuts_off_ ? between(random_, VirtualTime(1), takes - VirtualTime(1)) : takes));
   }
@@ -136,7 +145,7 @@ class Talker final : public Station {
   bool driving_ = false;
   bool cuts_off_ = false;
   std::size_t left_ = 0;
-  std::uint32_t baud_ = kUsualRate;
+  hal::SerialMode mode_ = kUsualMode;
   std::size_t wave_ = 0;
 };
 
@@ -150,7 +159,7 @@ class Stray final : public Station {
 
   void run() override {
     if (happens(random_, trouble_.stray)) {
-      end_.put(static_cast<std::uint8_t>(random_()), some_rate(random_, trouble_.other_rate));
+      end_.put(static_cast<std::uint8_t>(random_()), some_mode(random_, trouble_));
     }
     end_.run_at(bus_.clock().virtual_now() + between(random_, VirtualTime(1), std::chrono::milliseconds(20)));
   }
@@ -162,26 +171,26 @@ class Stray final : public Station {
   const Trouble& trouble_;
 };
 
-/// Receives, and changes its rate at random times.
+/// Receives, and changes its rate and format at random times.
 class RetunedListener final : public Station {
  public:
   struct Period {
     VirtualTime begins;
-    std::uint32_t baud;
+    hal::SerialMode mode;
     std::vector<Received> received = {};
   };
 
-  RetunedListener(Bus& bus, Random& random, double other_rate)
-      : clock_(bus.clock()), end_(bus.attach(*this)), random_(random), other_rate_(other_rate) {
+  RetunedListener(Bus& bus, Random& random, const Trouble& trouble)
+      : clock_(bus.clock()), end_(bus.attach(*this)), random_(random), trouble_(trouble) {
     run();
   }
 
   void run() override {
-    const std::uint32_t baud = happens(random_, 0.1) ? 0 : some_rate(random_, other_rate_);
-    if (periods.empty() || periods.back().baud != baud) {
-      periods.push_back({clock_.virtual_now(), baud});
+    const hal::SerialMode mode = happens(random_, 0.1) ? hal::SerialMode{} : some_mode(random_, trouble_);
+    if (periods.empty() || begins_anew(periods.back().mode, mode)) {
+      periods.push_back({clock_.virtual_now(), mode});
     }
-    end_.listen(baud);
+    end_.listen(mode);
     end_.run_at(clock_.virtual_now() + between(random_, VirtualTime(1), std::chrono::milliseconds(500)));
   }
   void receive(std::uint8_t byte, ByteStatus status) override {
@@ -191,17 +200,23 @@ class RetunedListener final : public Station {
   std::vector<Period> periods;
 
  private:
+  /// A receiver ignores a second stop bit, so it goes on between 8N1 and 8N2.
+  static bool begins_anew(hal::SerialMode from, hal::SerialMode to) {
+    const bool parity = has_parity(from.format) || has_parity(to.format);
+    return from.baud != to.baud || (parity && from.format != to.format);
+  }
+
   VirtualClock& clock_;
   BusEnd& end_;
   Random& random_;
-  double other_rate_;
+  const Trouble& trouble_;
 };
 
 /// A receiver that samples every bit of the recorded traffic: it waits for a falling edge, reads the middle
-/// of ten bits, and has received the byte when the stop bit is over.
+/// of ten or eleven bits, and has received the byte when the first stop bit is over.
 class SamplingReceiver {
  public:
-  SamplingReceiver(const Waves& waves, std::uint32_t baud) : waves_(waves), baud_(baud) {}
+  SamplingReceiver(const Waves& waves, hal::SerialMode mode) : waves_(waves), mode_(mode) {}
 
   /// Returns what it receives if it listens from `begins` to `ends`.
   std::vector<Received> listen(VirtualTime begins, VirtualTime ends) {
@@ -213,20 +228,24 @@ class SamplingReceiver {
         continue;  // a spike
       }
       unsigned byte = 0;
+      unsigned ones = 0;
       for (unsigned bit = 0; bit < 8; ++bit) {
-        byte |= level(*start + bits(2 * bit + 3)) ? 1U << bit : 0U;
+        const bool one = level(*start + bits(2 * bit + 3));
+        byte |= one ? 1U << bit : 0U;
+        ones += one ? 1U : 0U;
       }
-      now = *start + bits(19);
+      const bool has_parity_bit = mode_.format == LineFormat::k8E1 || mode_.format == LineFormat::k8O1;
+      ones += has_parity_bit && level(*start + bits(19)) ? 1U : 0U;
+      now = *start + bits(has_parity_bit ? 21 : 19);
       const bool stop_bit = level(now);
-      const VirtualTime at = *start + bits(20);
+      const VirtualTime at = *start + bits(has_parity_bit ? 22 : 20);
       if (at > ends) {
         break;
       }
-      received.push_back({static_cast<std::uint8_t>(byte),
-                          stop_bit    ? ByteStatus::Good
-                          : byte == 0 ? ByteStatus::Break
-                                      : ByteStatus::FramingError,
-                          at});
+      const bool right_parity = !has_parity_bit || (ones % 2 == 1) == (mode_.format == LineFormat::k8O1);
+      const ByteStatus without_stop_bit = ones == 0 ? ByteStatus::Break : ByteStatus::FramingError;
+      const ByteStatus with_stop_bit = right_parity ? ByteStatus::Good : ByteStatus::ParityError;
+      received.push_back({static_cast<std::uint8_t>(byte), stop_bit ? with_stop_bit : without_stop_bit, at});
       if (!stop_bit) {
         const auto idle = find(true, now, ends);
         if (!idle) {
@@ -241,7 +260,7 @@ class SamplingReceiver {
  private:
   /// Returns the duration of `halves` half bits.
   [[nodiscard]] VirtualTime bits(unsigned halves) const {
-    return VirtualTime(std::int64_t{halves} * 1'000'000'000 / (2 * std::int64_t{baud_}));
+    return VirtualTime(std::int64_t{halves} * 1'000'000'000 / (2 * std::int64_t{mode_.baud}));
   }
 
   [[nodiscard]] bool level(VirtualTime at) const {
@@ -271,7 +290,7 @@ class SamplingReceiver {
   [[nodiscard]] VirtualTime edge_after(VirtualTime at) const {
     VirtualTime edge = kNever;
     for (std::size_t i = first_; i < waves_.size() && waves_[i].start < edge; ++i) {
-      for (unsigned bit = 0; bit <= Wave::kBits; ++bit) {
+      for (unsigned bit = 0; bit <= waves_[i].bits(); ++bit) {
         if (waves_[i].boundary(bit) > at) {
           edge = std::min(edge, waves_[i].boundary(bit));
         }
@@ -284,16 +303,17 @@ class SamplingReceiver {
   }
 
   const Waves& waves_;
-  std::uint32_t baud_;
+  hal::SerialMode mode_;
   std::size_t first_ = 0;
 };
 
 constexpr std::chrono::seconds kDuration{15};
 
 /// Returns what a receiver gets, sampling every bit from `begins` to `ends`.
-std::vector<Received> sampled(const Recorder& recorder, const Trouble& trouble, std::uint32_t baud,
+std::vector<Received> sampled(const Recorder& recorder, const Trouble& trouble, hal::SerialMode mode,
                               VirtualTime begins, VirtualTime ends) {
-  return SamplingReceiver(recorder.waves, baud * trouble.times_faster).listen(begins, ends);
+  return SamplingReceiver(recorder.waves, {mode.baud * trouble.times_faster, mode.format})
+      .listen(begins, ends);
 }
 
 class Reception : public testing::TestWithParam<Trouble> {};
@@ -309,27 +329,28 @@ std::size_t compare(const Trouble& trouble, std::uint64_t seed) {
   std::vector<std::unique_ptr<RetunedListener>> listeners;
   for (unsigned i = 0; i < 3; ++i) {
     talkers.push_back(std::make_unique<Talker>(bus, recorder, random, trouble));
-    listeners.push_back(std::make_unique<RetunedListener>(bus, random, trouble.other_rate));
+    listeners.push_back(std::make_unique<RetunedListener>(bus, random, trouble));
   }
   Stray stray(bus, random, trouble);
   bus.run_until(kDuration);
 
   std::size_t compared = 0;
   for (const auto& talker : talkers) {
-    EXPECT_EQ(talker->received, sampled(recorder, trouble, kUsualRate, VirtualTime(0), kDuration));
+    EXPECT_EQ(talker->received, sampled(recorder, trouble, kUsualMode, VirtualTime(0), kDuration));
     compared += talker->received.size();
   }
   for (const auto& listener : listeners) {
     for (std::size_t i = 0; i < listener->periods.size(); ++i) {
       const RetunedListener::Period& period = listener->periods[i];
-      if (period.baud == 0) {
+      if (period.mode.baud == 0) {
         EXPECT_TRUE(period.received.empty());
         continue;
       }
       const VirtualTime ends =
           i + 1 < listener->periods.size() ? listener->periods[i + 1].begins : VirtualTime(kDuration);
-      EXPECT_EQ(period.received, sampled(recorder, trouble, period.baud, period.begins, ends))
-          << period.baud << " baud from " << period.begins.count() << " ns on";
+      EXPECT_EQ(period.received, sampled(recorder, trouble, period.mode, period.begins, ends))
+          << period.mode.baud << " baud, format " << static_cast<int>(period.mode.format) << ", from "
+          << period.begins.count() << " ns on";
       compared += period.received.size();
     }
   }
@@ -349,8 +370,9 @@ INSTANTIATE_TEST_SUITE_P(, Reception,
                                          Trouble{"collisions", 0, 0.5}, Trouble{"cut_off_bytes", 0, 0, 0.05},
                                          Trouble{"other_rates", 0, 0, 0, 0.3},
                                          Trouble{"stray_bytes", 0, 0, 0, 0, 0.3},
-                                         Trouble{"everything", 0.05, 0.5, 0.05, 0.3, 0.3},
-                                         Trouble{"everything_faster", 0.05, 0.5, 0.05, 0.3, 0.3, 1000}),
+                                         Trouble{"other_formats", 0, 0, 0, 0, 0, 0.3},
+                                         Trouble{"everything", 0.05, 0.5, 0.05, 0.3, 0.3, 0.3},
+                                         Trouble{"everything_faster", 0.05, 0.5, 0.05, 0.3, 0.3, 0.3, 1000}),
                          [](const auto& instance) { return std::string(instance.param.name); });
 
 }  // namespace

@@ -80,6 +80,7 @@ TEST(BusFile, TheExampleGivesTheExpectedSetup) {
   EXPECT_EQ(yard.tcp.value_or(TcpAddress()).port, 5020);
   EXPECT_TRUE(yard.instant);
   EXPECT_FALSE(yard.baud);
+  EXPECT_FALSE(yard.format);
   ASSERT_EQ(yard.modules.size(), 2U);
   EXPECT_EQ(yard.modules[0].settings.protocol, Protocol::Ascii);
   EXPECT_EQ(yard.modules[0].settings.format, 0x40);
@@ -136,6 +137,7 @@ TEST(BusFile, ALineAcceptsTheOptionsOfTheCommandLine) {
   EXPECT_EQ(line_of("\"serial\": \"/dev/ttyUSB0\", \"echo\": true").serial, "/dev/ttyUSB0");
   EXPECT_TRUE(line_of("\"serial\": \"/dev/ttyUSB0\", \"echo\": true").echo);
   EXPECT_EQ(line_of("\"pty\": \"a\", \"baud\": 19200").baud, 19200U);
+  EXPECT_EQ(line_of("\"pty\": \"a\", \"format\": \"8E1\"").format, LineFormat::k8E1);
   EXPECT_EQ(line_of("\"pty\": \"a\", \"baud\": \"19200\"").baud, 19200U);
   EXPECT_FALSE(line_of("\"pty\": \"a\", \"line\": \"paced\"").instant);
   EXPECT_TRUE(line_of("\"pty\": \"a\", \"line\": \"instant\"").instant);
@@ -146,6 +148,7 @@ TEST(BusFile, AModuleAcceptsTheKeysOfTheCommandLine) {
   EXPECT_EQ(module_of("\"address\": \"F\"").settings.address, 0x0F);
   EXPECT_EQ(module_of("\"protocol\": \"ascii\"").settings.protocol, Protocol::Ascii);
   EXPECT_EQ(module_of("\"baud\": 115200").settings.baud_code, 0x0A);
+  EXPECT_EQ(module_of("\"format\": \"8O1\"").settings.baud_code, 0xC6);
   EXPECT_EQ(module_of("\"checksum\": true").settings.format, 0x40);
   EXPECT_EQ(module_of("\"checksum\": \"on\"").settings.format, 0x40);
   EXPECT_EQ(module_of("\"checksum\": false").settings.format, 0x00);
@@ -270,6 +273,7 @@ TEST(WrongModuleOfABusFile, IsRefusedWithFileLineKeyAndRemedy) {
            {"\"protocol\": true", "protocol: expected a text in quotes"},
            {"\"baud\": 9601", "baud: '9601': expected a baud rate: 1200"},
            {"\"baud\": true", "baud: expected a whole number"},
+           {"\"format\": \"8N3\"", "format: '8N3': expected a line format: 8N1, 8N2, 8E1 or 8O1"},
            {"\"checksum\": 2", "checksum: expected true, false or a text in quotes"},
            {"\"checksum\": \"2\"", "checksum: '2': expected on or off"},
            {"\"edge\": null", "edge: expected a text in quotes"},
@@ -451,6 +455,7 @@ TEST(BusFile, RejectsLineOptionsOnTheCommandLine) {
                                              {"--tcp", "1"},
                                              {"--serial", "a"},
                                              {"--baud", "9600"},
+                                             {"--format", "8E1"},
                                              {"--line", "paced"},
                                              {"--echo"},
                                              {"--strict-gaps"},

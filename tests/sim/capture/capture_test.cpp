@@ -467,7 +467,7 @@ TEST(JsonLog, IsTheOnlyTextOnStandardOutput) {
     EXPECT_TRUE(objects.back()["time"].is_number());
   }
   ASSERT_EQ(objects.size(), 3U);
-  EXPECT_EQ(objects[0]["note"], "the line is at 9600 baud, EX9052D at 02 listens at 19200");
+  EXPECT_EQ(objects[0]["note"], "the line is at 9600 baud 8N1, EX9052D at 02 listens at 19200 baud 8N1");
   EXPECT_EQ(objects[1]["from"], "master");
   EXPECT_EQ(objects[1]["text"], "$01M\r");
   EXPECT_EQ(objects[2]["from"], "01 EX9042D");

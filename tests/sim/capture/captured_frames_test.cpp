@@ -70,7 +70,7 @@ Packet of_a_spoiled(const Bytes& request, OneHit hit) {
   sim::Line line({sim::parse_module_spec("EX9042D-M@01")}, sim::kPaced, [](std::uint8_t, ByteStatus) {});
   line.come_up();
   sim::Capture capture(directory / "line.pcapng", "--capture ");
-  sim::FrameWatch frames([&line] { return line.master().baud(); });
+  sim::FrameWatch frames([&line] { return line.master().mode(); });
   line.bus().observe(frames);
   line.bus().disturb(hit);
   capture.begin();

@@ -23,8 +23,8 @@ struct TwoOnALine {
   VirtualClock clock;
   Bus bus{clock};
   Heard heard;
-  Master sender{bus, 9600, [](std::uint8_t, ByteStatus) {}};
-  Master receiver{bus, 9600,
+  Master sender{bus, hal::SerialMode{9600}, [](std::uint8_t, ByteStatus) {}};
+  Master receiver{bus, hal::SerialMode{9600},
                   [this](std::uint8_t byte, ByteStatus status) { heard.emplace_back(byte, status); }};
 
   void send(const std::vector<std::uint8_t>& bytes) {
@@ -117,7 +117,7 @@ TEST(Noise, IsReproducibleFromItsSeed) {
 
 TEST(Echo, RepeatsTheReceivedBytesOnceTheLineIsQuiet) {
   TwoOnALine line;
-  Echo echo(line.bus, 9600);
+  Echo echo(line.bus, {9600});
   echo.switch_on(milliseconds(5));
   line.send({1, 2, 3});
   EXPECT_EQ(line.heard, (Heard{{1, ByteStatus::Good},

@@ -29,7 +29,7 @@ class FrameWatchTest : public testing::Test {
 
   void send(std::size_t station, const FrameBytes& bytes, bool collided = false) {
     for (const std::uint8_t byte : bytes) {
-      watch.byte(station, byte, kBaud, collided, now, now + kCharacter);
+      watch.byte(station, byte, {kBaud}, collided, now, now + kCharacter);
       now += kCharacter;
     }
   }
@@ -42,20 +42,20 @@ class FrameWatchTest : public testing::Test {
     watch.run(now);
   }
 
-  std::uint32_t line_rate = kBaud;
-  FrameWatch watch{[this] { return line_rate; }};
+  SerialMode line_mode{kBaud};
+  FrameWatch watch{[this] { return line_mode; }};
   std::vector<Frame> frames;
   VirtualTime now{0};
 };
 
-TEST_F(FrameWatchTest, AFrameHasTheBaudRatesOfItsSenderAndOfTheLine) {
-  line_rate = 1200;
+TEST_F(FrameWatchTest, AFrameHasTheModesOfItsSenderAndOfTheLine) {
+  line_mode = {1200, LineFormat::k8E1};
   watch.driver(kModule, true, now);
   send(kModule, {1});
   watch.driver(kModule, false, now);
   ASSERT_EQ(frames.size(), 1U);
-  EXPECT_EQ(frames[0].sent_at, kBaud);
-  EXPECT_EQ(frames[0].line_at, 1200U);
+  EXPECT_EQ(frames[0].sent_in, SerialMode{kBaud});
+  EXPECT_EQ(frames[0].line_in, (SerialMode{1200, LineFormat::k8E1}));
 }
 
 TEST_F(FrameWatchTest, AModulesFrameEndsWhenItsDriverIsSwitchedOff) {

@@ -85,6 +85,17 @@ TEST(ModuleSpec, EveryBaudRateOfSection4CanBeChosen) {
   }
 }
 
+TEST(ModuleSpec, EveryLineFormatCanBeChosenWithEveryRateInAnyOrder) {
+  const std::vector<std::pair<std::string, unsigned>> formats{
+      {"8N1", 0x00}, {"8N2", 0x40}, {"8E1", 0x80}, {"8O1", 0xC0}};
+  for (const auto& [format, bits] : formats) {
+    EXPECT_EQ(parse_module_spec("EX9042D,format=" + format).settings.baud_code, bits | 0x06U);
+    EXPECT_EQ(parse_module_spec("EX9042D,baud=115200,format=" + format).settings.baud_code, bits | 0x0AU);
+    EXPECT_EQ(parse_module_spec("EX9042D,format=" + format + ",baud=1200").settings.baud_code, bits | 0x03U);
+  }
+  EXPECT_EQ(parse_module_spec("EX9042D,format=8e1").settings.baud_code, 0x86);
+}
+
 TEST(ModuleSpec, ChecksumAndEdgeSetTheirBitOfTheFormat) {
   EXPECT_EQ(parse_module_spec("EX9052D,checksum=on").settings.format, 0x40);
   EXPECT_EQ(parse_module_spec("EX9052D,checksum=off").settings.format, 0x00);
@@ -163,6 +174,8 @@ TEST(ModuleSpec, AWrongValueIsRefusedWithTheAllowedValues) {
   expect_error("EX9042D-M,checksum=yes", "on or off");
   expect_error("EX9042D-M,edge=both", "rising or falling");
   expect_error("EX9042D-M,init=1", "on or off");
+  expect_error("EX9042D-M,format=7E1", "format=: '7E1': expected a line format: 8N1, 8N2, 8E1 or 8O1");
+  expect_error("EX9042D-M,format=", "8N1, 8N2, 8E1 or 8O1");
   expect_error("EX9042D-M,baud=300", "1200, 2400, 4800, 9600, 19200, 38400, 57600 or 115200");
   expect_error("EX9042D-M,baud=9600x", "9600");
   expect_error("EX9042D-M,baud=", "9600");
@@ -183,7 +196,8 @@ TEST(ModuleSpec, ANameTheModelCannotStoreIsRefused) {
 
 TEST(ModuleSpec, AnUnknownKeyIsRefusedWithTheKnownKeys) {
   for (const char* text : {"EX9042D,adress=01", "EX9042D,,baud=9600", "EX9042D,Baud=9600", "EX9042D,x"}) {
-    expect_error(text, "=: unknown key; expected one of protocol, baud, checksum, edge, name, init, eeprom");
+    expect_error(
+        text, "=: unknown key; expected one of protocol, baud, format, checksum, edge, name, init, eeprom");
   }
 }
 

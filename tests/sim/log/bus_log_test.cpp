@@ -40,13 +40,23 @@ std::string json_line_of(const Frame& frame) {
 }
 nlohmann::json json_of(const Frame& frame) { return nlohmann::json::parse(json_line_of(frame)); }
 
-TEST(BusLog, ReportsTheBaudRateOfAFrameIfItDiffersFromTheLines) {
+TEST(BusLog, ReportsRateAndFormatOfAFrameIfStationsOfTheLineDoNotHearIt) {
   Frame frame = frame_of(1, {1, 2, 3});
-  frame.sent_at = 115200;
-  frame.line_at = 9600;
-  EXPECT_NE(text_of(frame).find("sent at 115200 baud on a line at 9600"), std::string::npos);
-  frame.line_at = 115200;
+  frame.sent_in = {115200, LineFormat::k8N1};
+  frame.line_in = {9600, LineFormat::k8N1};
+  EXPECT_NE(text_of(frame).find("sent at 115200 baud 8N1 on a line at 9600 baud 8N1"), std::string::npos);
+  frame.line_in = {115200, LineFormat::k8O1};
+  EXPECT_NE(text_of(frame).find("sent at 115200 baud 8N1 on a line at 115200 baud 8O1"), std::string::npos);
+  frame.line_in = {115200, LineFormat::k8N2};  // receivers look at the first stop bit only
   EXPECT_EQ(text_of(frame).find("sent at"), std::string::npos);
+}
+
+TEST(BusLog, ReportsAParityErrorOfAChangedByte) {
+  Frame frame = frame_of(1, {1, 2, 3});
+  frame.changes.push_back({1, 0x02, levels_of(0x03, LineFormat::k8E1) ^ (1U << 9U), LineFormat::k8E1});
+  frame.changes.push_back({2, 0x03, levels_of(0x03, LineFormat::k8O1), LineFormat::k8E1});
+  EXPECT_NE(text_of(frame).find("byte 2: parity error, 03 instead of 02; byte 3: parity error"),
+            std::string::npos);
 }
 
 TEST(TextLog, AFrameIsALine) {

@@ -54,7 +54,7 @@ class PanelBench : public ModuleBench {
   Control control_;
   std::chrono::steady_clock::time_point wall_clock_{std::chrono::hours(1)};
   Panel panel_;
-  FrameWatch frames_{[this] { return line().master().baud(); }};
+  FrameWatch frames_{[this] { return line().master().mode(); }};
   std::unique_ptr<PanelViewer> viewer_;
 };
 

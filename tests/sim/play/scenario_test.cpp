@@ -338,9 +338,10 @@ std::string refusal_of(const std::string& step) {
 }
 
 TEST(Step, AcceptsValidSyntaxOnly) {
-  for (const char* step : {"> $01M", ">", "< >", "<\t!01", "=> 01 05 0000 FF00", "bytes 01 02", "input 15 on",
-                           "pulse 0", "pulse 0 x1000000", "outputs 5", "outputs FFFF", "module 1",
-                           "baud 1200", "wait 0s", "wait 1.5ms", "fault 2 gone", "fault off all", "faults"}) {
+  for (const char* step :
+       {"> $01M", ">", "< >", "<\t!01", "=> 01 05 0000 FF00", "bytes 01 02", "input 15 on", "pulse 0",
+        "pulse 0 x1000000", "outputs 5", "outputs FFFF", "module 1", "baud 1200", "format 8E1", "wait 0s",
+        "wait 1.5ms", "fault 2 gone", "fault off all", "faults"}) {
     EXPECT_EQ(refusal_of(step), "") << step;
   }
   struct Wrong {
@@ -372,6 +373,7 @@ TEST(Step, AcceptsValidSyntaxOnly) {
                              Wrong{"module 0", "'0'", "from 1 to"},
                              Wrong{"baud 0", "'0'", "1200, 2400, 4800, 9600"},
                              Wrong{"baud 9601", "'9601'", "1200, 2400, 4800, 9600"},
+                             Wrong{"format 9N1", "'9N1'", "8N1, 8N2, 8E1 or 8O1"},
                              Wrong{"wait -1s", "'-1s'", "12.5s"},
                              Wrong{"fault", "'fault'", "[N] FAULT"},
                              Wrong{"wiat 1s", "'wiat 1s' is not a step", "wait TIME"},

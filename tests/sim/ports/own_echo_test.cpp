@@ -21,7 +21,7 @@ class Adapter {
   }
 
  private:
-  OwnEcho echo_{9600};
+  OwnEcho echo_{hal::SerialMode{9600}};
 };
 
 TEST(OwnEcho, SentBytesAreRecognizedOnceInTheReceivedBytes) {

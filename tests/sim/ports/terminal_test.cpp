@@ -51,7 +51,7 @@ TEST(Dcon, AMasterThatDisconnectsDoesNotDisconnectTheOthers) {
 
 TEST(Dcon, TheLineTakesTheMastersBaudRateAndReportsAMismatch) {
   SimulatorProcess simulator({"EX9042D@05,baud=19200", "--baud", "9600"});
-  EXPECT_TRUE(simulator.wait_for("the line is at 9600 baud, EX9042D at 05 listens at 19200"))
+  EXPECT_TRUE(simulator.wait_for("the line is at 9600 baud 8N1, EX9042D at 05 listens at 19200 baud 8N1"))
       << simulator.output();
   {
     Terminal terminal(simulator.tty(), 19200);
@@ -60,7 +60,7 @@ TEST(Dcon, TheLineTakesTheMastersBaudRateAndReportsAMismatch) {
   }
   Terminal terminal(simulator.tty(), 1200);
   terminal.type("$052\r");
-  EXPECT_TRUE(simulator.wait_for("the line is at 1200 baud, EX9042D at 05 listens at 19200"))
+  EXPECT_TRUE(simulator.wait_for("the line is at 1200 baud 8N1, EX9042D at 05 listens at 19200 baud 8N1"))
       << simulator.output();
   EXPECT_EQ(terminal.read_line(std::chrono::milliseconds(500)), "");  // a busy machine can only hide an error
 }

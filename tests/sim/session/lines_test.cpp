@@ -131,8 +131,8 @@ TEST(Lines, EachHasItsOwnBaudRateAndIsNamedInTheLog) {
   Lines lines(R"({"lines": [
     {"name": "hall", "pty": "hall.tty", "modules": [{"model": "EX9042D", "baud": 9600}]},
     {"pty": "yard.tty", "modules": [{"model": "EX9052D", "baud": 115200}]}], "log": true})");
-  EXPECT_TRUE(has(lines.process().output(), "hall at 9600 baud:\n")) << lines.process().output();
-  EXPECT_TRUE(has(lines.process().output(), "line2 at 115200 baud:\n")) << lines.process().output();
+  EXPECT_TRUE(has(lines.process().output(), "hall at 9600 baud 8N1:\n")) << lines.process().output();
+  EXPECT_TRUE(has(lines.process().output(), "line2 at 115200 baud 8N1:\n")) << lines.process().output();
   Terminal yard(lines / "yard.tty", 115200);
   EXPECT_EQ(ask(yard, "$01M"), "!019052");
   Terminal hall(lines / "hall.tty", 9600);

@@ -1,0 +1,137 @@
+// Tests images whose stored line format is not 8N1.
+#include <gtest/gtest.h>
+
+#include <string>
+#include <tuple>
+#include <vector>
+
+#include "firmware/model/baud.hpp"
+#include "firmware/model/model.hpp"
+#include "firmware/settings/settings.hpp"
+#include "sim/bus/module.hpp"
+#include "sim/play/modbus_frame.hpp"
+#include "sim/text/values.hpp"
+#include "tests/boards/images_under_test.hpp"
+#include "tests/mcu_model/board_bench.hpp"
+
+namespace ex9000::registers {
+namespace {
+
+using std::chrono::microseconds;
+using std::chrono::milliseconds;
+
+using ImageAndFormat = std::tuple<ImageName, LineFormat>;
+
+class ImageInFormat : public testing::TestWithParam<ImageAndFormat> {
+ protected:
+  ImageInFormat() {
+    const Model& model = *find_model(bench.image.model);
+    Settings settings = Settings::factory(model);
+    settings.baud_code = with_line_format(settings.baud_code, format());
+    settings.protocol = protocol();
+    bench.memory = sim::SimulatedModule::memory_image(model, settings);
+    bench.line.set_format(format());
+    bench.power_on();
+    bench.run_for(milliseconds(100));
+  }
+  ~ImageInFormat() override {
+    EXPECT_EQ(bench.line.let_go_early, 0U);
+    EXPECT_EQ(bench.line.let_go_late, 0U);
+    EXPECT_EQ(bench.resets, 0U);
+  }
+
+  [[nodiscard]] static LineFormat format() { return std::get<1>(GetParam()); }
+  [[nodiscard]] Protocol protocol() const {
+    return find_model(bench.image.model)->speaks_modbus() ? Protocol::ModbusRtu : Protocol::Ascii;
+  }
+  /// Reads the register 0x030E, the number of bytes with framing or parity errors.
+  unsigned damaged_bytes() {
+    if (protocol() == Protocol::Ascii) {
+      return static_cast<unsigned>(std::stoul(bench.ask("~01X030E").substr(3), nullptr, 16));
+    }
+    const std::vector<std::uint8_t> reply = bench.exchange(with_crc({1, 4, 0x03, 0x0E, 0, 1}));
+    return reply.size() == 7 ? reply[3] * 256U + reply[4] : 0xFFFF'FFFF;
+  }
+  /// Sends a request that every module answers.
+  std::vector<std::uint8_t> reply() {
+    return bench.exchange(protocol() == Protocol::Ascii ? std::vector<std::uint8_t>{'$', '0', '1', 'M', '\r'}
+                                                        : with_crc({1, 0x11}));
+  }
+
+  BoardBench bench{image_of(std::get<0>(GetParam()).board, std::get<0>(GetParam()).model)};
+};
+
+TEST_P(ImageInFormat, RepliesToAMasterInTheSameFormat) {
+  for (int i = 0; i < 20; ++i) {
+    bench.run_for(milliseconds(5));
+    bench.line.heard.clear();
+    ASSERT_GT(reply().size(), 4U);
+    for (const LineBench::Heard& each : bench.line.heard) {
+      EXPECT_TRUE(each.good);
+    }
+  }
+  EXPECT_EQ(damaged_bytes(), 0U);
+}
+
+/// firmware/extensions.md: in ASCII, one character of the format; in Modbus, T3.5 of 11-bit characters.
+TEST_P(ImageInFormat, RepliesImmediatelyAfterTheTurnAroundTimeOfTheFormat) {
+  constexpr microseconds kAtOnce{100};
+  const int character = format() == LineFormat::k8N1 ? 10 : 11;
+  const Instant earliest =
+      protocol() == Protocol::Ascii ? character * bench.line.bit_time() : 77 * bench.line.bit_time() / 2;
+  for (int i = 0; i < 20; ++i) {
+    bench.run_for(milliseconds(20) + microseconds(51 * i));
+    bench.line.drives.clear();
+    ASSERT_FALSE(reply().empty());
+    ASSERT_EQ(bench.line.drives.size(), 1U);
+    const Instant silence = bench.line.drives[0].from - bench.line.sent();
+    EXPECT_GE(silence, earliest);
+    EXPECT_LE(silence, earliest + kAtOnce);
+  }
+}
+
+TEST_P(ImageInFormat, IgnoresFramesWithAnotherParityAndCountsTheirBytes) {
+  for (const LineFormat other : {LineFormat::k8N1, LineFormat::k8N2, LineFormat::k8E1, LineFormat::k8O1}) {
+    SCOPED_TRACE(sim::line_format_text(other));
+    const bool understands = form_of(other).parity_bit == form_of(format()).parity_bit &&
+                             form_of(other).odd == form_of(format()).odd;
+    const unsigned before = damaged_bytes();
+    bench.line.set_format(other);
+    const std::vector<std::uint8_t> its_reply = reply();
+    bench.line.set_format(format());
+    if (understands) {
+      EXPECT_GT(its_reply.size(), 4U);
+      EXPECT_EQ(damaged_bytes(), before);
+      continue;
+    }
+    EXPECT_TRUE(its_reply.empty());
+    bench.run_for(milliseconds(20));
+    if (protocol() == Protocol::Ascii) {
+      bench.ask("");  // the CR was damaged, so the frame is still open
+    }
+    EXPECT_GT(damaged_bytes(), before);
+  }
+}
+
+TEST_P(ImageInFormat, UsesNineThousandSixHundredBaud8N1InInitMode) {
+  bench.power_off();
+  bench.set_init(true);
+  bench.power_on();
+  bench.run_for(milliseconds(100));
+  bench.line.set_format(LineFormat::k8N1);
+  EXPECT_EQ(bench.ask("$002").substr(0, 5), "!0140");
+}
+
+INSTANTIATE_TEST_SUITE_P(Images, ImageInFormat,
+                         testing::Combine(testing::Values(ImageName{"lm3s6965evb", "EX9055D"},
+                                                          ImageName{"ek-tm4c123gxl", "EX9043D-M"}),
+                                          testing::Values(LineFormat::k8N2, LineFormat::k8E1,
+                                                          LineFormat::k8O1)),
+                         [](const auto& each) {
+                           const ImageName& image = std::get<0>(each.param);
+                           return name_of(testing::TestParamInfo<ImageName>(image, 0)) + "_" +
+                                  sim::line_format_text(std::get<1>(each.param));
+                         });
+
+}  // namespace
+}  // namespace ex9000::registers
