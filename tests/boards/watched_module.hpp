@@ -89,11 +89,13 @@ class WatchedModule : public EitherProtocol {
     const Bytes reply = ask("~0131" + hex(timeout), {1, 0x06, 0x01, 0xE8, 0, timeout});
     return ascii() ? reply == text("!01") : reply.size() == 8 && reply[1] == 0x06;
   }
-  /// Sends a host OK and returns the time at which the module has received it: for Modbus the end of the
+  /// Sends a host OK and returns the time at which the module has received it.
+  Instant host_ok() { return receives(framed("~**", {1, 0x03, 0x30, 0x38, 0, 0})); }
+  /// Sends a frame and returns the time at which the module has received it: for Modbus the end of the
   /// silence after the frame, for ASCII the middle of the last stop bit, at which the UART reports a
   /// character.
-  Instant host_ok() {
-    bench.line.send(framed("~**", {1, 0x03, 0x30, 0x38, 0, 0}));
+  Instant receives(const Bytes& frame) {
+    bench.line.send(frame);
     while (bench.line.sending()) {
       bench.run_for(std::chrono::microseconds(10));
     }

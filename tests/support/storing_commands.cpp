@@ -19,7 +19,7 @@ std::string configuration(unsigned address, unsigned baud_code, unsigned format)
 }
 
 /// Returns a code other than `code`.
-std::uint8_t other_baud_code(std::uint8_t code) { return code == kFactoryBaudCode ? 0x0A : kFactoryBaudCode; }
+std::uint8_t other_baud_code(std::uint8_t code) { return code == kFactoryBaudCode ? 0x4A : kFactoryBaudCode; }
 
 constexpr std::uint8_t kNewAddress = 0x2B;
 constexpr std::uint8_t kNewTimeout = 0x64;
@@ -139,8 +139,8 @@ std::vector<StoringCommand> modbus_commands(const Model& model) {
   }
   add("06 address", needs_nothing, {0x06, 0x01, 0xE4, 0x00, kNewAddress}, take_address);
   add("46 address", needs_nothing, {0x46, 0x04, kNewAddress, 0x00, 0x00, 0x00}, take_address);
-  add("06 rate", needs_nothing, {0x06, 0x01, 0xE5, 0x00, 0x08},
-      [](Settings& settings, std::uint16_t) { settings.baud_code = 0x08; });
+  add("06 rate and line format", needs_nothing, {0x06, 0x01, 0xE5, 0x00, 0xC8},
+      [](Settings& settings, std::uint16_t) { settings.baud_code = 0xC8; });
   add("10 address and rate", needs_nothing,
       {0x10, 0x01, 0xE4, 0x00, 0x02, 0x04, 0x00, kNewAddress, 0x00, 0x08},
       [](Settings& settings, std::uint16_t) {

@@ -100,7 +100,9 @@ void CutBench::power_up(const Contents& contents, bool init) {
 }
 
 FrameFormat CutBench::speak_as(const Settings& settings, bool init_mode) {
-  bench_.line.set_baud(baud_rate(init_mode ? kFactoryBaudCode : settings.baud_code));
+  const std::uint8_t baud_code = init_mode ? kFactoryBaudCode : settings.baud_code;
+  bench_.line.set_baud(baud_rate(baud_code));
+  bench_.line.set_format(line_format(baud_code));
   return init_mode ? FrameFormat::init_mode() : FrameFormat::of(settings);
 }
 

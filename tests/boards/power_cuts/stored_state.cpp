@@ -23,7 +23,7 @@ Settings full_settings(const Model& model, const StoringCommand& command) {
   Settings settings = Settings::factory(model);
   settings.protocol = command.init == Init::SinceReset ? Protocol::Ascii : command.protocol;
   settings.address = 0x37;
-  settings.baud_code = 0x0A;
+  settings.baud_code = 0x8A;
   settings.format = kFormatMask;
   settings.name = Name(std::string_view("Pump 3"));
   settings.watchdog_enabled = true;
