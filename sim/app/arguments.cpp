@@ -6,11 +6,12 @@
 #include <utility>
 
 #include "sim/app/help.hpp"
+#include "sim/app/line_options.hpp"
+#include "sim/app/option_values.hpp"
 #include "sim/bus_file/bus_file.hpp"
 #include "sim/describe/describe.hpp"
 #include "sim/text/durations.hpp"
 #include "sim/text/fail.hpp"
-#include "sim/text/values.hpp"
 
 namespace ex9000::sim {
 
@@ -47,20 +48,9 @@ struct WritingTexts {
   std::optional<std::string> capture;
 };
 
-/// The arguments as text. The options of a single line come first.
+/// The arguments as text.
 struct Texts {
-  std::vector<std::string> modules;
-  std::vector<std::string> inputs;
-  std::vector<std::string> faults;
-  std::optional<std::string> pty;
-  std::optional<std::string> tcp;
-  std::optional<std::string> serial;
-  std::optional<std::string> baud;
-  std::optional<std::string> line_format;
-  std::optional<std::string> line;
-  bool echo = false;
-  bool strict_gaps = false;
-
+  LineTexts line;
   std::optional<std::string> control;
   std::optional<std::string> speed;
   std::optional<std::string> threads;
@@ -71,105 +61,10 @@ struct Texts {
   WritingTexts writing;
 };
 
-/// Returns the value of an option, as `parse` reads it.
-template <class Parse>
-auto of_option(const char* option, const std::string& text, Parse parse) {
-  return with_place(std::string(option) + ": ", [&] { return parse(text); });
-}
-
-/// Sets `value` if the option is given.
-template <class Parse, class Value>
-void take_option(const char* option, const std::optional<std::string>& text, Parse parse, Value& value) {
-  if (text) {
-    value = of_option(option, *text, parse);
-  }
-}
-
 void apply_writing(const WritingTexts& texts, Writing& writing) {
   take_option("--log", texts.log, parse_log, writing.log);
   if (texts.capture) {
     writing.capture = texts.capture;
-  }
-}
-
-/// Removes the position at the start of `text` and returns it, counted from 0; nullopt if there is none.
-std::optional<std::size_t> take_position(std::string& text, std::size_t modules) {
-  const auto end = text.find(' ');
-  if (text.empty() || end == 0 || text.find_first_not_of("0123456789") < end) {
-    return std::nullopt;
-  }
-  const std::string number = text.substr(0, end);
-  const std::size_t position = whole_number(number, modules).value_or(0);
-  if (position == 0) {
-    fail(text + ": no module " + number + "; expected a position from 1 to " + std::to_string(modules));
-  }
-  text = end == std::string::npos ? "" : text.substr(end + 1);
-  return position - 1;
-}
-
-Fault parse_fault_of_line(std::string text, std::size_t modules) {
-  const std::string whole = text;
-  const auto module = take_position(text, modules);
-  Fault fault = parse_fault(text);
-  if (module && !concerns_a_module(fault.trouble)) {
-    fail(whole + ": concerns the line, not a module; leave out the module's position");
-  }
-  fault.module = module;
-  return fault;
-}
-
-void add_input(std::string text, std::vector<ModuleSpec>& modules) {
-  const std::string whole = text;
-  const auto module = take_position(text, modules.size());
-  if (!module) {
-    fail("'" + whole + "': expected a module's position first, for example '1 0 square 100ms'");
-  }
-  modules[*module].inputs.push_back(parse_input_program(text, *modules[*module].model));
-}
-
-LineSetup line_of(const Texts& texts) {
-  LineSetup line;
-  for (const std::string& module : texts.modules) {
-    line.modules.push_back(parse_module_spec(module));
-  }
-  for (const std::string& input : texts.inputs) {
-    of_option("--input", input, [&](const std::string& text) { add_input(text, line.modules); });
-  }
-  for (const std::string& fault : texts.faults) {
-    line.faults.push_back(of_option("--fault", fault, [&](const std::string& text) {
-      return parse_fault_of_line(text, line.modules.size());
-    }));
-  }
-  line.pty = texts.pty;
-  line.serial = texts.serial;
-  line.echo = texts.echo;
-  line.strict_gaps = texts.strict_gaps;
-  take_option("--baud", texts.baud, parse_baud_rate, line.baud);
-  take_option("--format", texts.line_format, parse_line_format, line.format);
-  take_option("--line", texts.line, parse_line_kind, line.instant);
-  take_option("--tcp", texts.tcp, parse_tcp_address, line.tcp);
-  return line;
-}
-
-/// Rejects other modules and options of a line, because the bus file defines them.
-void reject_line_options(const Texts& texts) {
-  const std::pair<const char*, bool> given[] = {{"--input", !texts.inputs.empty()},
-                                                {"--fault", !texts.faults.empty()},
-                                                {"--pty", texts.pty.has_value()},
-                                                {"--tcp", texts.tcp.has_value()},
-                                                {"--serial", texts.serial.has_value()},
-                                                {"--baud", texts.baud.has_value()},
-                                                {"--line", texts.line.has_value()},
-                                                {"--format", texts.line_format.has_value()},
-                                                {"--echo", texts.echo},
-                                                {"--strict-gaps", texts.strict_gaps}};
-  for (const auto& [option, is_given] : given) {
-    if (is_given) {
-      fail(std::string(option) + ": cannot be combined with a bus file; add it to a line of the bus file");
-    }
-  }
-  if (texts.modules.size() != 1) {
-    fail(texts.modules[0] + ": a bus file has all modules; leave out the other arguments");
   }
 }
 
@@ -218,16 +113,16 @@ void apply_options(const Texts& texts, Setup& setup) {
 
 /// Throws std::invalid_argument with a one-line message.
 Setup setup_of(const Texts& texts) {
-  if (texts.modules.empty()) {
+  if (texts.line.modules.empty()) {
     fail("no module given; try 'ex9000-sim EX9042D-M' or --help");
   }
   Setup setup;
-  if (std::any_of(texts.modules.begin(), texts.modules.end(), is_bus_file)) {
-    reject_line_options(texts);
-    setup = read_bus_file(texts.modules[0]);
-    setup.file = texts.modules[0];
+  if (std::any_of(texts.line.modules.begin(), texts.line.modules.end(), is_bus_file)) {
+    reject_line_options(texts.line);
+    setup = read_bus_file(texts.line.modules[0]);
+    setup.file = texts.line.modules[0];
   } else {
-    setup.lines.push_back(line_of(texts));
+    setup.lines.push_back(line_of(texts.line));
   }
   apply_options(texts, setup);
   for (LineSetup& line : setup.lines) {
@@ -310,7 +205,7 @@ play::Task task_of(const PlayTexts& play_texts) {
   }
   if (!play_texts.modules.empty()) {
     Texts texts;
-    texts.modules = play_texts.modules;
+    texts.line.modules = play_texts.modules;
     texts.seed = play_texts.seed;
     task.bus = setup_of(texts);
   }
@@ -408,23 +303,24 @@ Parsed parse_arguments(int argc, const char* const* argv) {
   bool models = false;
   bool example = false;
   bool schema = false;
-  app.add_option("MODULE", texts.modules, "the modules on the line, or BUS.json");
-  app.add_option("--pty", texts.pty,
+  app.add_option("MODULE", texts.line.modules, "the modules on the line, or BUS.json");
+  app.add_option("--pty", texts.line.pty,
                  std::string("create a pseudo-terminal and link it at this path (default: ") + kDefaultPty +
                      " without --tcp, --serial and --speed max)")
       ->type_name("LINK");
-  app.add_option("--tcp", texts.tcp, "serve the line's bytes over TCP (default HOST: 127.0.0.1)")
+  app.add_option("--tcp", texts.line.tcp, "serve the line's bytes over TCP (default HOST: 127.0.0.1)")
       ->type_name("HOST:PORT");
-  app.add_option("--serial", texts.serial, "connect the modules to a real line through this serial port")
+  app.add_option("--serial", texts.line.serial, "connect the modules to a real line through this serial port")
       ->type_name("DEVICE");
-  app.add_flag("--echo", texts.echo, "expect that the adapter of the serial port receives what it sends");
-  app.add_option("--baud", texts.baud,
+  app.add_flag("--echo", texts.line.echo,
+               "expect that the adapter of the serial port receives what it sends");
+  app.add_option("--baud", texts.line.baud,
                  "set the line's rate until a master sets one (default: the first module's)")
       ->type_name("RATE");
-  app.add_option("--format", texts.line_format,
+  app.add_option("--format", texts.line.format,
                  "set the line's format: 8N1, 8N2, 8E1 or 8O1 (default: the first module's)")
       ->type_name("FORMAT");
-  app.add_option("--line", texts.line,
+  app.add_option("--line", texts.line.kind,
                  "paced (default): bytes take as long as on a real line; instant: bytes take no time")
       ->type_name("paced|instant");
   app.add_option("--control", texts.control, "create a UNIX socket for commands at this path")
@@ -438,11 +334,11 @@ Parsed parse_arguments(int argc, const char* const* argv) {
   app.add_flag("--watch", texts.watch,
                "show the modules in the terminal; print a line for each change if standard output is not a "
                "terminal");
-  app.add_option("--input", texts.inputs,
+  app.add_option("--input", texts.line.inputs,
                  "let an input change by itself, for example '2 0 square 100ms'; see below")
       ->type_name("'N INPUT'")
       ->allow_extra_args(false);
-  app.add_option("--fault", texts.faults,
+  app.add_option("--fault", texts.line.faults,
                  "add a fault, for example 'bit-errors 1e-4' or '2 lost-reply every 10th reply'; see below")
       ->type_name("'[N] FAULT'")
       ->allow_extra_args(false);
@@ -461,7 +357,7 @@ Parsed parse_arguments(int argc, const char* const* argv) {
       ->type_name("NUMBER");
   add_writing(app, texts.writing);
   app.add_flag(
-      "--strict-gaps", texts.strict_gaps,
+      "--strict-gaps", texts.line.strict_gaps,
       "reject a Modbus frame with a gap of more than 1.5 characters, and do not insert the silence between "
       "frames that a master omits");
   app.add_flag("--example", example, "print an example of a bus file and exit");

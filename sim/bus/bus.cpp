@@ -89,9 +89,11 @@ void Bus::drive(End& end, bool on) {
 void Bus::put(End& end, std::uint8_t byte, SerialMode mode) {
   Wave wave{clock_.virtual_now(), on_the_wires(mode), levels_of(byte, mode.format)};
   if (disturbance_ != nullptr) {
-    wave.levels = disturbance_->disturbed({wave.levels, mode, wave.end(), drivers_on_ > 1});
+    const Levels sent = wave.levels;
+    wave.levels = disturbance_->disturbed({sent, mode, wave.end(), drivers_on_ > 1});
+    wave.disturbed = wave.levels != sent;
     for (BusObserver* observer : observers_) {
-      if (wave.levels != levels_of(byte, mode.format)) {
+      if (wave.disturbed) {
         observer->changed(end.index, wave.levels);
       }
     }
@@ -227,7 +229,10 @@ void Bus::finish_bytes() {
 }
 
 void Bus::deliver(const Wave& over) {
-  const VirtualTime ends = over.start + ends_[over.station]->takes(1, over.nominal);
+  const VirtualTime now = clock_.virtual_now();
+  const bool has_second_stop_bit = over.nominal.format == LineFormat::k8N2;
+  const VirtualTime ends =
+      has_second_stop_bit ? over.start + ends_[over.station]->takes(1, over.nominal) : now;
   for (BusObserver* observer : observers_) {
     observer->byte(over.station, over.byte, over.nominal, over.collided, over.start, ends);
   }

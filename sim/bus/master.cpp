@@ -5,13 +5,35 @@
 
 namespace ex9000::sim {
 
+namespace {
+
+SerialMode with_other_parity(SerialMode mode) {
+  switch (mode.format) {
+    case LineFormat::k8E1:
+      return {mode.baud, LineFormat::k8O1};
+    case LineFormat::k8O1:
+      return {mode.baud, LineFormat::k8E1};
+    default:
+      return mode;
+  }
+}
+
+}  // namespace
+
 Master::Master(Bus& bus, SerialMode mode, Receive receive)
     : clock_(bus.clock()), wire_(bus.attach(*this)), mode_(mode), receive_(std::move(receive)) {
   wire_.listen(mode_);
 }
 
-void Master::send(const std::uint8_t* bytes, std::size_t size, VirtualTime not_before) {
-  waiting_.insert(waiting_.end(), bytes, bytes + size);
+void Master::send(const std::uint8_t* bytes, std::size_t size, VirtualTime not_before,
+                  const std::vector<std::size_t>& damaged) {
+  const std::size_t first = waiting_.size();
+  for (std::size_t i = 0; i < size; ++i) {
+    waiting_.push_back({bytes[i], false});
+  }
+  for (const std::size_t position : damaged) {
+    waiting_[first + position].damaged = true;
+  }
   if (!sending() && !waiting_.empty()) {
     wake_at(std::max(clock_.virtual_now(), not_before));
     if (next_ == clock_.virtual_now()) {
@@ -50,9 +72,9 @@ void Master::run() {
     burst_began_ = clock_.virtual_now();
     burst_bytes_ = 0;
   }
-  const std::uint8_t byte = waiting_.front();
+  const Waiting next = waiting_.front();
   waiting_.pop_front();
-  wire_.put(byte, mode_);
+  wire_.put(next.byte, next.damaged ? with_other_parity(mode_) : mode_);
   // The end is calculated from the first byte, so that rounding errors do not accumulate.
   wake_at(burst_began_ + wire_.takes(++burst_bytes_, mode_));
 }

@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <deque>
 #include <functional>
+#include <vector>
 
 #include "sim/bus/bus.hpp"
 
@@ -23,7 +24,9 @@ class Master final : public Station {
   /// Sends the bytes after those that already wait or are on the wires. If there are none, sends them at
   /// once, but not before `not_before`. The driver is enabled from the first byte to the last. Does not
   /// block.
-  void send(const std::uint8_t* bytes, std::size_t size, VirtualTime not_before = VirtualTime(0));
+  /// The bytes at the positions `damaged` have wrong parity, if the format has one.
+  void send(const std::uint8_t* bytes, std::size_t size, VirtualTime not_before = VirtualTime(0),
+            const std::vector<std::size_t>& damaged = {});
   /// Returns whether bytes wait or are on the wires.
   [[nodiscard]] bool sending() const { return next_ != kNever; }
   /// Returns how many bytes wait for their start bit.
@@ -50,7 +53,12 @@ class Master final : public Station {
   SerialMode mode_;
   Receive receive_;
   std::function<void(SerialMode mode)> changed_;
-  std::deque<std::uint8_t> waiting_;
+  struct Waiting {
+    std::uint8_t byte;
+    bool damaged;
+  };
+
+  std::deque<Waiting> waiting_;
   bool driving_ = false;
   VirtualTime burst_began_{0};
   std::size_t burst_bytes_ = 0;

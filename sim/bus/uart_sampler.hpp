@@ -76,11 +76,12 @@ struct Wave {
   std::size_t station = 0;
   SerialMode nominal;  ///< the rate and format that the station is set to
   std::uint8_t byte = 0;
-  bool collided = false;  ///< another driver was enabled, or another byte was on the wires
-  bool over = false;      ///< has ended; samplers may still read it
+  bool disturbed = false;  ///< the levels are not those of `byte`
+  bool collided = false;   ///< another driver was enabled, or another byte was on the wires
+  bool over = false;       ///< has ended; samplers may still read it
 
   /// Returns whether a receiver with the same mode gets the byte unchanged.
-  [[nodiscard]] bool arrives_whole() const { return !collided && levels == levels_of(byte, mode.format); }
+  [[nodiscard]] bool arrives_whole() const { return !collided && !disturbed; }
 };
 
 using Waves = std::vector<Wave>;

@@ -162,8 +162,9 @@ struct LineVerb {
 };
 
 constexpr std::array<LineVerb, 6> kLineVerbs{{
-    {"baud", "RATE", "sets the line's rate, for ports without a rate; a pseudo-terminal overrides it"},
-    {"format", "FORMAT", "sets the line's format: 8N1, 8N2, 8E1 or 8O1"},
+    {"baud", "RATE",
+     "sets the line's rate, for TCP; a pseudo-terminal overrides it, and a serial port has its own"},
+    {"format", "FORMAT", "sets the line's format: 8N1, 8N2, 8E1 or 8O1; a serial port has its own"},
     {"sent", "", "reads how many bytes the line has written to its ports"},
     {"fault", "FAULT", "adds a fault, see below; replies with its number. With N: for that module"},
     {"fault off", "K|all", "ends the fault with this number, or all"},
@@ -207,11 +208,12 @@ std::string list(const Lines& lines) {
   const std::size_t modules = modules_of(lines);
   std::string text = std::to_string(modules) + (modules == 1 ? " module:" : " modules:");
   std::size_t position = 0;
-  for (const auto& [name, line, sent] : lines) {
-    for (std::size_t i = 0; i < line.size(); ++i) {
-      const SimulatedModule& module = line.module(i);
+  for (const Control::ControlledLine& controlled : lines) {
+    for (std::size_t i = 0; i < controlled.line.size(); ++i) {
+      const SimulatedModule& module = controlled.line.module(i);
       text += std::string(position == 0 ? " " : ", ") + std::to_string(position + 1) + " " +
-              std::string(module.model().designation) + where(module) + (name.empty() ? "" : " on " + name);
+              std::string(module.model().designation) + where(module) +
+              (controlled.name.empty() ? "" : " on " + controlled.name);
       ++position;
     }
   }
@@ -262,19 +264,27 @@ std::string list_faults(Line& line, std::size_t position) {
   return text;
 }
 
-std::string set_rate(Line& line, const Words& words) {
+void require_no_serial_port(const Control::ControlledLine& controlled, const std::string& key) {
+  if (controlled.has_serial_port) {
+    fail("the line's serial port keeps its " + key + "; start the program with another one");
+  }
+}
+
+std::string set_rate(const Control::ControlledLine& controlled, const Words& words) {
   if (words.size() != 2) {
     fail("expected baud RATE");
   }
-  line.master().set_baud(parse_baud_rate(words[1]));
+  require_no_serial_port(controlled, "rate");
+  controlled.line.master().set_baud(parse_baud_rate(words[1]));
   return "";
 }
 
-std::string set_format(Line& line, const Words& words) {
+std::string set_format(const Control::ControlledLine& controlled, const Words& words) {
   if (words.size() != 2) {
     fail("expected format FORMAT");
   }
-  line.master().set_format(parse_line_format(words[1]));
+  require_no_serial_port(controlled, "line format");
+  controlled.line.master().set_format(parse_line_format(words[1]));
   return "";
 }
 
@@ -287,10 +297,10 @@ std::string on_line(const Control::ControlledLine& controlled, std::size_t posit
     return list_faults(line, position);
   }
   if (words[0] == "baud") {
-    return set_rate(line, words);
+    return set_rate(controlled, words);
   }
   if (words[0] == "format") {
-    return set_format(line, words);
+    return set_format(controlled, words);
   }
   if (words[0] == "fault" && words.size() >= 2) {
     return words[1] == "off" ? end_fault(line, words)

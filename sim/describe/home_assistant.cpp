@@ -51,15 +51,16 @@ class Hub {
 
   /// Returns the actions with which polling restarts the host watchdog.
   [[nodiscard]] std::string watchdog_actions() const {
+    const std::string after =
+        model_.outputs == 0 ? "the timeout status stays set" : "the outputs keep their safe values";
     return "# With register 0x0251 = 1, each poll restarts the host watchdog, so that it watches Home "
-           "Assistant. It "
-           "expires if the\n"
-           "# polls stop for longer than its timeout (register 0x01E8; from the factory 25.5 s). Polls of "
-           "any other "
-           "master restart\n"
-           "# it too. Call these actions once:\n" +
+           "Assistant. It expires if the\n"
+           "# polls stop for longer than its timeout (register 0x01E8; from the factory 25.5 s), which must "
+           "be "
+           "longer than the\n"
+           "# scan_interval. Polls of any other master restart it too. Call these actions once:\n" +
            write("register", "watchdog-feed", "value: 1") + write("coil", "watchdog-enable", "state: true") +
-           "# After a timeout, the outputs keep their safe values until you call these:\n" +
+           "# After a timeout, " + after + " until you call these:\n" +
            write("coil", "timeout-status", "state: true") + write("coil", "watchdog-enable", "state: true");
   }
 

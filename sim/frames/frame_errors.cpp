@@ -6,6 +6,17 @@ namespace ex9000::sim {
 
 namespace {
 
+std::string error_text(ByteStatus status) {
+  switch (status) {
+    case ByteStatus::FramingError:
+      return "framing error";
+    case ByteStatus::ParityError:
+      return "parity error";
+    default:
+      return "";
+  }
+}
+
 std::string told(const Frame::Change& change) {
   const std::string sent = hex_byte_text(change.sent);
   const std::string which = "byte " + std::to_string(change.position + 1) + ": ";
@@ -16,15 +27,9 @@ std::string told(const Frame::Change& change) {
   if (change.status() == ByteStatus::Break) {
     return which + "break instead of " + sent;
   }
-  const std::string instead = hex_byte_text(*byte) + " instead of " + sent;
-  switch (change.status()) {
-    case ByteStatus::FramingError:
-      return which + "framing error, " + instead;
-    case ByteStatus::ParityError:
-      return which + "parity error" + (*byte == change.sent ? "" : ", " + instead);
-    default:
-      return which + instead;
-  }
+  const std::string instead = *byte == change.sent ? "" : hex_byte_text(*byte) + " instead of " + sent;
+  const std::string error = error_text(change.status());
+  return which + error + (error.empty() || instead.empty() ? "" : ", ") + instead;
 }
 
 void append(std::string& text, const std::string& more) {

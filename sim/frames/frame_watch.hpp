@@ -16,9 +16,9 @@ namespace ex9000::sim {
 struct Frame {
   /// A byte that a disturbance has changed.
   struct Change {
-    std::size_t position;  ///< among the sent bytes, from 0
-    std::uint8_t sent;
-    Levels arrives;
+    std::size_t position = 0;  ///< among the sent bytes, from 0
+    std::uint8_t sent = 0;
+    Levels arrives = 0;
     LineFormat format = LineFormat::k8N1;
 
     /// Returns the byte that receivers read; nullopt if it has no start bit, because receivers do not detect

@@ -62,7 +62,8 @@ class Line {
   /// starts up. Events that only depend on the clock do not count: a host watchdog, a scheduled fault, an
   /// input program.
   [[nodiscard]] bool pending() const;
-  /// Returns T3.5 on this line in the master's mode.
+  /// Returns the silence that modules of this line require after the first stop bit of the last byte: the
+  /// rest of the stop bits and T3.5, in the master's mode.
   [[nodiscard]] VirtualTime rtu_silence() const;
   /// Returns the silence after which earlier bytes cannot belong to the next frame, even if their CRC is
   /// wrong.

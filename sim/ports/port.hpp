@@ -13,8 +13,11 @@ namespace ex9000::sim {
 /// program's io_context.
 class Port {
  public:
-  /// Receives the bytes that have arrived. Returns false if the port must deliver no more until `resume`.
-  using Received = std::function<bool(const std::uint8_t* bytes, std::size_t size)>;
+  /// Positions of bytes, in ascending order.
+  using Positions = std::vector<std::size_t>;
+  /// Receives the bytes that have arrived, and the positions of those with wrong parity. Returns false if the
+  /// port must deliver no more until `resume`.
+  using Received = std::function<bool(const std::uint8_t* bytes, std::size_t size, const Positions& damaged)>;
 
   Port() = default;
   Port(const Port&) = delete;

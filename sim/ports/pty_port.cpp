@@ -65,7 +65,7 @@ ssize_t PtyPort::take() {
   std::array<std::uint8_t, 4096> bytes{};
   const ssize_t size = ::read(pty_.master_fd(), bytes.data(), bytes.size());
   if (size > 0) {
-    paused_ = !received_(bytes.data(), static_cast<std::size_t>(size));
+    paused_ = !received_(bytes.data(), static_cast<std::size_t>(size), {});
     return size;
   }
   return size < 0 && errno == EAGAIN ? 0 : -1;

@@ -7,6 +7,7 @@
 #include <termios.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <boost/asio/buffer.hpp>
 #include <cerrno>
 #include <stdexcept>
@@ -36,44 +37,28 @@ void ask_for_low_latency(int fd) {
   }
 }
 
-/// The flags of termios that define the line format; 8 bits are always set.
-constexpr tcflag_t kFormatFlags = CSTOPB | PARENB | PARODD;
-
-tcflag_t termios_format(LineFormat format) {
-  switch (format) {
-    case LineFormat::k8N1:
-      return 0;
-    case LineFormat::k8N2:
-      return CSTOPB;
-    case LineFormat::k8E1:
-      return PARENB;
-    case LineFormat::k8O1:
-      return PARENB | PARODD;
-  }
-  return 0;
-}
-
 /// Configures the open port; throws if that fails.
 void set_up(int fd, const std::string& device, hal::SerialMode mode) {
   const auto refuse = [&device](const std::string& why) { throw std::invalid_argument(device + ": " + why); };
-  termios settings{};
-  if (tcgetattr(fd, &settings) != 0) {
+  termios before{};
+  if (tcgetattr(fd, &before) != 0) {
     refuse("is not a serial port; name one, for example /dev/ttyUSB0");
   }
   if (flock(fd, LOCK_EX | LOCK_NB) != 0 || ioctl(fd, TIOCEXCL) != 0) {
     refuse("another program uses it; end that program or name another port");
   }
+  termios settings = before;
   cfmakeraw(&settings);
-  // No XON/XOFF, because XOFF would go out on the line. A byte with wrong parity is read as 00, which makes
-  // its frame invalid.
-  settings.c_iflag = has_parity(mode.format) ? INPCK : 0;
-  settings.c_cflag &= ~static_cast<tcflag_t>(kFormatFlags | CRTSCTS);
+  // No XON/XOFF, because XOFF would go out on the line. Bytes with wrong parity are marked, see ParityMarks.
+  settings.c_iflag = has_parity(mode.format) ? INPCK | PARMRK : 0;
+  settings.c_cflag &= ~static_cast<tcflag_t>(kTermiosFormat | CRTSCTS);
   settings.c_cflag |= CLOCAL | CREAD | termios_format(mode.format);
   const auto speed = termios_speed(mode.baud);
   termios taken{};  // tcsetattr succeeds even if it applies only a part of the settings
   if (!speed || cfsetspeed(&settings, *speed) != 0 || tcsetattr(fd, TCSANOW, &settings) != 0 ||
       tcgetattr(fd, &taken) != 0 || termios_rate(taken) != mode.baud ||
-      ((taken.c_cflag ^ settings.c_cflag) & kFormatFlags) != 0) {
+      ((taken.c_cflag ^ settings.c_cflag) & kTermiosFormat) != 0) {
+    tcsetattr(fd, TCSANOW, &before);
     refuse("cannot be set to " + mode_text(mode.baud, mode.format) +
            "; choose another rate or format for the line");
   }
@@ -101,6 +86,9 @@ SerialPort::SerialPort(boost::asio::io_context& io, const std::string& place, co
     : where_(place + device), descriptor_(io, with_place(place, [&] { return open_port(device, mode); })) {
   if (echo) {
     echo_.emplace(mode);
+  }
+  if (has_parity(mode.format)) {
+    marks_.emplace();
   }
 }
 
@@ -133,8 +121,23 @@ void SerialPort::read() {
 }
 
 void SerialPort::take(std::size_t size) {
-  const std::size_t echo = echo_ ? echo_->in({buffer_.data(), size}, OwnEcho::Clock::now()) : 0;
-  paused_ = echo < size && !received_(buffer_.data() + echo, size - echo);
+  Positions damaged;
+  std::size_t taken = size;
+  if (marks_) {
+    taken = 0;
+    for (const ParityMarks::Arrived each : marks_->read(buffer_.data(), size)) {
+      if (each.damaged) {
+        damaged.push_back(taken);
+      }
+      buffer_[taken++] = each.byte;
+    }
+  }
+  const std::size_t echo = echo_ ? echo_->in({buffer_.data(), taken}, OwnEcho::Clock::now()) : 0;
+  damaged.erase(damaged.begin(), std::lower_bound(damaged.begin(), damaged.end(), echo));
+  for (std::size_t& position : damaged) {
+    position -= echo;
+  }
+  paused_ = echo < taken && !received_(buffer_.data() + echo, taken - echo, damaged);
 }
 
 std::size_t SerialPort::send(const std::vector<std::uint8_t>& bytes) {

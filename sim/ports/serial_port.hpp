@@ -10,6 +10,7 @@
 
 #include "hal/serial_mode.hpp"
 #include "sim/ports/own_echo.hpp"
+#include "sim/ports/parity_marks.hpp"
 #include "sim/ports/port.hpp"
 
 namespace ex9000::sim {
@@ -43,6 +44,7 @@ class SerialPort final : public Port {
   OwnEcho::Clock::time_point began_;  ///< arrival time of the first byte in held_back_
   bool under_way_ = false;            ///< the beginning of a reply has been written
   std::optional<OwnEcho> echo_;
+  std::optional<ParityMarks> marks_;  ///< of formats with parity
 };
 
 }  // namespace ex9000::sim

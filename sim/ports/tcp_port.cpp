@@ -110,7 +110,7 @@ boost::system::error_code TcpPort::take(Client& client) {
   boost::system::error_code error;
   const std::size_t size = client.socket.read_some(boost::asio::buffer(client.bytes), error);
   if (!error) {
-    client.paused = !received_(client.bytes.data(), size);
+    client.paused = !received_(client.bytes.data(), size, {});
   }
   return error;
 }

@@ -38,4 +38,18 @@ std::optional<std::uint32_t> termios_rate(const termios& settings) {
   return std::nullopt;
 }
 
+tcflag_t termios_format(LineFormat format) {
+  switch (format) {
+    case LineFormat::k8N1:
+      return 0;
+    case LineFormat::k8N2:
+      return CSTOPB;
+    case LineFormat::k8E1:
+      return PARENB;
+    case LineFormat::k8O1:
+      return PARENB | PARODD;
+  }
+  return 0;
+}
+
 }  // namespace ex9000::sim

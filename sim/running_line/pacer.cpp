@@ -45,9 +45,10 @@ void Pacer::start() {
   first_ = line_.clock().virtual_now();
   ports_.report_mismatches();
   for (const auto& port : ports_.all()) {
-    port->start([this, &port = *port](const std::uint8_t* bytes, std::size_t size) {
-      return receive(port, bytes, size);
-    });
+    port->start(
+        [this, &port = *port](const std::uint8_t* bytes, std::size_t size, const Port::Positions& damaged) {
+          return receive(port, {bytes, size}, damaged);
+        });
   }
   follow();
 }
@@ -155,21 +156,21 @@ void Pacer::now(const std::function<void()>& action) {
   follow();
 }
 
-bool Pacer::receive(const Port& port, const std::uint8_t* bytes, std::size_t size) {
-  const VirtualTime travelled = port.is_a_line() ? line_.master().takes(size) : VirtualTime(0);
+bool Pacer::receive(const Port& port, Bytes bytes, const Port::Positions& damaged) {
+  const VirtualTime travelled = port.is_a_line() ? line_.master().takes(bytes.size) : VirtualTime(0);
   const auto latency = std::chrono::duration_cast<VirtualTime>(pace_.host_latency * pace_.speed);
   const VirtualTime written = wall() - latency - travelled;
   catch_up(written);
   line_.bus().run_until(std::max(written, line_.clock().virtual_now()));
   ports_.take_rate(port);
-  Bytes rest{bytes, size};
-  const bool splits = pace_.lead != VirtualTime(0);
+  Bytes rest = bytes;
+  const bool splits = pace_.lead != VirtualTime(0) && damaged.empty();
   if (!splits) {
     report_joined(rest);
   }
   while (rest.size != 0) {
     const Bytes piece = rest.first(splits ? first_frame_size(rest) : rest.size);
-    line_.master().send(piece.data, piece.size, silence_before(piece[0]));
+    line_.master().send(piece.data, piece.size, silence_before(piece[0]), damaged);
     rest = rest.from(piece.size);
     if (rest.size != 0) {
       catch_up(wall());

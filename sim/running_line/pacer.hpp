@@ -71,7 +71,7 @@ class Pacer final : private BusObserver {
   void arm_timer();
   void report_delay(VirtualTime next);
   void report_joined(Bytes bytes);
-  bool receive(const Port& port, const std::uint8_t* bytes, std::size_t size);
+  bool receive(const Port& port, Bytes bytes, const Port::Positions& damaged);
   static std::size_t first_frame_size(Bytes bytes);
   [[nodiscard]] VirtualTime silence_before(std::uint8_t address);
   [[nodiscard]] bool is_for_modbus(std::uint8_t address);

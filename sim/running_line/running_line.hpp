@@ -55,6 +55,7 @@ class RunningLine {
   void finish() { record_->finish(); }
 
   [[nodiscard]] const std::string& name() const { return setup_.name; }
+  [[nodiscard]] bool has_serial_port() const { return setup_.serial.has_value(); }
   Line& line() { return *line_; }
   /// Call this only if the line follows the clock.
   Pacer& pacer() { return *pacer_; }

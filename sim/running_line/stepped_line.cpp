@@ -12,9 +12,10 @@ void SteppedLine::start(Arrived arrived) {
   arrived_ = std::move(arrived);
   ports_.report_mismatches();
   for (const auto& port : ports_.all()) {
-    port->start([this, &port = *port](const std::uint8_t* bytes, std::size_t size) {
-      return receive(port, bytes, size);
-    });
+    // Only serial ports report wrong parity, and they cannot be combined with stepped time.
+    port->start(
+        [this, &port = *port](const std::uint8_t* bytes, std::size_t size,
+                              const Port::Positions& /*damaged*/) { return receive(port, bytes, size); });
   }
 }
 

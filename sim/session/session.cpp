@@ -65,7 +65,8 @@ void Session::open_control() {
   }
   std::vector<Control::ControlledLine> lines;
   for (const auto& running : lines_) {
-    lines.push_back({running->name(), running->line(), [&line = *running] { return line.sent(); }});
+    lines.push_back({running->name(), running->line(), [&line = *running] { return line.sent(); },
+                     running->has_serial_port()});
   }
   control_.emplace(std::move(lines));
   if (!setup_.control) {

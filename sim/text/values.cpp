@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <array>
-#include <cctype>
 #include <charconv>
 #include <limits>
 
@@ -77,10 +76,7 @@ double parse_probability(const std::string& text) {
 }
 
 LineFormat parse_line_format(const std::string& text) {
-  std::string upper = text;
-  std::transform(upper.begin(), upper.end(), upper.begin(),
-                 [](unsigned char c) { return static_cast<char>(std::toupper(c)); });
-  const auto* const found = std::find(kLineFormats.begin(), kLineFormats.end(), upper);
+  const auto* const found = std::find(kLineFormats.begin(), kLineFormats.end(), text);
   if (found == kLineFormats.end()) {
     expect(text, "a line format: 8N1, 8N2, 8E1 or 8O1");
   }

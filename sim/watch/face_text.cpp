@@ -46,7 +46,7 @@ std::string in_force_text(const Plate& plate) {
   const bool ascii = plate.protocol == Protocol::Ascii;
   return hex_byte_text(plate.address) + (ascii ? " DCON " : " Modbus RTU ") +
          std::to_string(plate.mode.baud) + " " + line_format_text(plate.mode.format) +
-         (ascii && plate.checksum ? " checksum" : "");
+         (ascii && plate.checksum ? " CHK" : "");
 }
 
 std::string guard_text(const HostWatchdogState& guard) {

@@ -74,11 +74,9 @@ bool is_number(const std::string& text, unsigned long least, unsigned long most)
 bool is_switch(const std::string& text) { return text == "on" || text == "off"; }
 
 std::optional<LineFormat> format_called(const std::string& text) {
-  constexpr std::array<const char*, 4> kNames{"8n1", "8n2", "8e1", "8o1"};
+  constexpr std::array<const char*, 4> kNames{"8N1", "8N2", "8E1", "8O1"};
   for (std::size_t i = 0; i < kNames.size(); ++i) {
-    std::string upper = kNames[i];
-    upper[1] = static_cast<char>(upper[1] - 'a' + 'A');
-    if (text == kNames[i] || text == upper) {
+    if (text == kNames[i]) {
       return static_cast<LineFormat>(i);
     }
   }

@@ -213,7 +213,7 @@ TEST(Arguments, AWrongRateIsRefusedWithAListOfValidRates) {
 
 TEST(Arguments, TheFormatOfTheLineIsOneOfFour) {
   EXPECT_EQ(accepted({"EX9042D", "--format", "8N2"}).format, LineFormat::k8N2);
-  EXPECT_EQ(accepted({"EX9042D", "--format", "8o1"}).format, LineFormat::k8O1);
+  EXPECT_EQ(accepted({"EX9042D", "--format", "8O1"}).format, LineFormat::k8O1);
   expect_error({"EX9042D", "--format", "8M1"}, "--format", "8N1, 8N2, 8E1 or 8O1");
 }
 

@@ -132,6 +132,23 @@ TEST_F(BusTest, AReceiverWithTheOtherParityReportsTheByteWithAParityError) {
   }
 }
 
+TEST_F(BusTest, ADamagedByteOfTheMasterArrivesWithAParityErrorAndTheOthersAreGood) {
+  for (const LineFormat format : {LineFormat::k8E1, LineFormat::k8O1}) {
+    VirtualClock clock;
+    Bus bus(clock);
+    Master sender(bus, {9600, format}, [](std::uint8_t /*byte*/, ByteStatus /*status*/) {});
+    Listener listener(bus, 9600, format);
+    const std::vector<std::uint8_t> bytes{0x24, 0x30, 0x31, 0x4D, 0x0D};
+    sender.send(bytes.data(), bytes.size(), VirtualTime(0), {1, 4});
+    bus.run_for(milliseconds(10));
+    ASSERT_EQ(listener.heard.size(), 5U);
+    for (std::size_t i = 0; i < bytes.size(); ++i) {
+      EXPECT_EQ(listener.heard[i].byte, bytes[i]);
+      EXPECT_EQ(listener.heard[i].status, i == 1 || i == 4 ? ByteStatus::ParityError : ByteStatus::Good) << i;
+    }
+  }
+}
+
 // The parity bit of 0x30 is 0, and a receiver without parity reads it as the stop bit. That of 0x31 is 1.
 TEST_F(BusTest, AReceiverWithoutParityReadsTheParityBitAsTheStopBit) {
   const auto sender = master(9600, LineFormat::k8E1);

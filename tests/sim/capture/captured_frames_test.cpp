@@ -91,8 +91,7 @@ TEST(Capture, ADamagedByteIsShownAsReceivedWithTheSentByteInAComment) {
                {{"frame.comment", "noise: byte 4: 06 instead of 02; wrong CRC"},
                 {"mbrtu.crc16.status", "0"},
                 {"modbus.reference_num", "6"}});
-  EXPECT_EQ(of_a_spoiled(request, OneHit(3, 1U << 9U)).at("frame.comment"),
-            "noise: byte 4: framing error, 02 instead of 02");
+  EXPECT_EQ(of_a_spoiled(request, OneHit(3, 1U << 9U)).at("frame.comment"), "noise: byte 4: framing error");
   EXPECT_EQ(of_a_spoiled(request, OneHit(2, 1U << 9U)).at("frame.comment"),
             "noise: byte 3: break instead of 00");
   EXPECT_EQ(of_a_spoiled(request, OneHit(0, 1U)).at("frame.comment"),

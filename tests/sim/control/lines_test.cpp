@@ -125,7 +125,7 @@ TEST(ControlLine, BaudSetsTheRateOfTheMaster) {
 
 TEST(ControlLine, FormatSetsTheLineFormatOfTheMaster) {
   ControlBench bench("EX9052D,format=8E1");
-  EXPECT_EQ(bench.tell("format 8n1"), "ok");
+  EXPECT_EQ(bench.tell("format 8N1"), "ok");
   EXPECT_EQ(bench.ask("$01M"), "");
   EXPECT_EQ(bench.tell("format 8E1"), "ok");
   EXPECT_EQ(bench.ask("$01M"), "!019052");
@@ -133,6 +133,16 @@ TEST(ControlLine, FormatSetsTheLineFormatOfTheMaster) {
     EXPECT_EQ(bench.tell(wrong).rfind("error: ", 0), 0U) << wrong;
     EXPECT_EQ(bench.line().master().mode().format, LineFormat::k8E1) << wrong;
   }
+}
+
+TEST(ControlLine, RateAndFormatOfASerialPortCannotBeChanged) {
+  ModuleBench bench("EX9052D");
+  Control control({{"", bench.line(), nullptr, true}});
+  EXPECT_EQ(control.carry_out("format 8E1").text,
+            "error: the line's serial port keeps its line format; start the program with another one");
+  EXPECT_EQ(control.carry_out("baud 19200").text,
+            "error: the line's serial port keeps its rate; start the program with another one");
+  EXPECT_EQ(bench.line().master().mode(), hal::SerialMode{9600});
 }
 
 TEST(ControlLine, SentReportsTheNumberOfBytesSentToThePorts) {

@@ -122,6 +122,8 @@ TEST(DescribeHomeAssistant, TellsHowPollingFeedsTheHostWatchdogAndWhatToDoAfterA
                                      "593, value: 1\n#   modbus.write_coil" + to + "260, state: true\n");
   const std::size_t after = text.find("#   modbus.write_coil" + to +
                                       "269, state: true\n#   modbus.write_coil" + to + "260, state: true\n");
+  EXPECT_NE(text.find("the outputs keep their safe values"), std::string::npos);
+  EXPECT_EQ(configuration_of("EX9052D-M").find("the outputs"), std::string::npos);  // it has none
   ASSERT_NE(feed, std::string::npos) << text;
   ASSERT_NE(after, std::string::npos) << text;
   EXPECT_LT(feed, after);

@@ -325,6 +325,22 @@ TEST(SerialPort, IsSetToTheLinesBaudRateAndRawModeWithoutFlowControl) {
   EXPECT_EQ(cable.read_line(), "!069052\r");
 }
 
+TEST(SerialPort, IsSetToTheLineFormat) {
+  const Cable cable;
+  SimulatorProcess simulator({"EX9042D@05,format=8N2", "--serial", cable.device()});
+  EXPECT_EQ(cable.settings().c_cflag & static_cast<tcflag_t>(CSIZE | CSTOPB | PARENB),
+            static_cast<tcflag_t>(CS8 | CSTOPB));
+  cable.write("$05M\r");
+  EXPECT_EQ(cable.read_line(), "!059042D\r");
+}
+
+// A pseudo-terminal has no parity.
+TEST(SerialPort, APortThatCannotHaveTheLineFormatIsRefused) {
+  const Cable cable;
+  expect_refused(run({simulator_path(), "EX9042D", "--serial", cable.device(), "--format", "8E1"}),
+                 "--serial " + cable.device(), "cannot be set to 9600 baud 8E1");
+}
+
 // 248 characters take a quarter of a second, so the program writes the reply in pieces.
 TEST(SerialPort, ALongReplyIsSentCompletely) {
   const Cable cable;

@@ -22,7 +22,7 @@ bool run_one(boost::asio::io_context& io) { return io.run_one_for(std::chrono::s
 class TcpPortClients : public testing::Test {
  protected:
   TcpPortClients() {
-    port_.start([this](const std::uint8_t* bytes, std::size_t size) {
+    port_.start([this](const std::uint8_t* bytes, std::size_t size, const Port::Positions& /*damaged*/) {
       received_.insert(received_.end(), bytes, bytes + size);
       return true;
     });

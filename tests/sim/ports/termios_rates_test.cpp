@@ -60,5 +60,13 @@ TEST(TermiosRates, OtherRatesHaveNoSpeedConstant) {
   EXPECT_FALSE(termios_rate(hung_up));
 }
 
+// POSIX.1-2017, 11.2.4.
+TEST(TermiosFormats, HaveTheFlagsOfTheirParityAndStopBits) {
+  EXPECT_EQ(termios_format(LineFormat::k8N1), 0U);
+  EXPECT_EQ(termios_format(LineFormat::k8N2), static_cast<tcflag_t>(CSTOPB));
+  EXPECT_EQ(termios_format(LineFormat::k8E1), static_cast<tcflag_t>(PARENB));
+  EXPECT_EQ(termios_format(LineFormat::k8O1), static_cast<tcflag_t>(PARENB | PARODD));
+}
+
 }  // namespace
 }  // namespace ex9000::sim

@@ -1,0 +1,58 @@
+// The marks with which a serial port reports bytes with wrong parity.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+namespace ex9000::sim {
+
+/// Reads the bytes of a port with the flags INPCK and PARMRK (POSIX.1-2017, 11.2.2): FF 00 X is a byte X with
+/// a line error, FF FF is a byte FF, and all other bytes are themselves. A mark may be split between two
+/// reads.
+class ParityMarks {
+ public:
+  struct Arrived {
+    std::uint8_t byte;
+    bool damaged;
+
+    friend bool operator==(Arrived a, Arrived b) { return a.byte == b.byte && a.damaged == b.damaged; }
+  };
+
+  std::vector<Arrived> read(const std::uint8_t* bytes, std::size_t size) {
+    std::vector<Arrived> arrived;
+    for (std::size_t i = 0; i < size; ++i) {
+      const std::uint8_t byte = bytes[i];
+      switch (state_) {
+        case State::Plain:
+          if (byte == kMark) {
+            state_ = State::AfterMark;
+          } else {
+            arrived.push_back({byte, false});
+          }
+          break;
+        case State::AfterMark:
+          if (byte == 0) {
+            state_ = State::BeforeDamaged;
+          } else {
+            arrived.push_back({byte, false});
+            state_ = State::Plain;
+          }
+          break;
+        case State::BeforeDamaged:
+          arrived.push_back({byte, true});
+          state_ = State::Plain;
+          break;
+      }
+    }
+    return arrived;
+  }
+
+ private:
+  enum class State : std::uint8_t { Plain, AfterMark, BeforeDamaged };
+  static constexpr std::uint8_t kMark = 0xFF;
+
+  State state_ = State::Plain;
+};
+
+}  // namespace ex9000::sim

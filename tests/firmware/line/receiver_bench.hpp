@@ -1,0 +1,109 @@
+// A receiver on a line with a clock, for its tests.
+#pragma once
+
+#include <gtest/gtest.h>
+
+#include <cstdint>
+#include <ostream>
+#include <string_view>
+#include <vector>
+
+#include "firmware/line/receiver.hpp"
+
+namespace ex9000 {
+
+using FrameBytes = std::vector<std::uint8_t>;
+
+inline constexpr std::uint8_t kOwn = 0x01;
+inline constexpr std::uint32_t kBaud = 9600;
+inline constexpr Duration kCharacter = Duration(1042);
+
+inline const FrameBytes kChannel0On{0x01, 0x05, 0x00, 0x00, 0xFF, 0x00, 0x8C, 0x3A};
+inline const FrameBytes kHostOk{0x01, 0x03, 0x30, 0x38, 0x00, 0x00, 0xCB, 0x07};
+inline const FrameBytes kGuideExample{0x02, 0x07, 0x41, 0x12};  // addressed to module 02
+
+/// The receiver's counters, in the order of sub-functions 0B, 0C, 0E, 0F, 12.
+struct Counts {
+  unsigned bus_messages;
+  unsigned bus_errors;
+  unsigned server_messages;
+  unsigned no_responses;
+  unsigned overruns;
+
+  friend bool operator==(const Counts& a, const Counts& b) {
+    return a.bus_messages == b.bus_messages && a.bus_errors == b.bus_errors &&
+           a.server_messages == b.server_messages && a.no_responses == b.no_responses &&
+           a.overruns == b.overruns;
+  }
+  friend std::ostream& operator<<(std::ostream& out, const Counts& c) {
+    return out << "0B " << c.bus_messages << ", 0C " << c.bus_errors << ", 0E " << c.server_messages
+               << ", 0F " << c.no_responses << ", 12 " << c.overruns;
+  }
+};
+
+class ReceiverTest : public testing::Test {
+ protected:
+  void listen(Protocol protocol, bool checksum = false) {
+    receiver_.listen({protocol, checksum, LineTiming::at(kBaud, LineFormat::k8N1)});
+    receiver_.answer_to(kOwn);
+  }
+
+  Duration byte(std::uint8_t value, ByteStatus status = ByteStatus::Good) {
+    now_ = now_ + kCharacter;
+    return receiver_.on_byte(value, status, now_);
+  }
+  void bytes(const FrameBytes& values) {
+    for (const std::uint8_t value : values) {
+      byte(value);
+    }
+  }
+  void text(std::string_view characters) {
+    for (const char character : characters) {
+      byte(static_cast<std::uint8_t>(character));
+    }
+  }
+  /// Passes a silence that is long enough to end every frame.
+  void silence() {
+    now_ = now_ + milliseconds(50);
+    while (!(receiver_.on_silence() == Duration())) {
+    }
+  }
+  void frame(const FrameBytes& values) {
+    bytes(values);
+    silence();
+  }
+
+  Counts counts() {
+    LineTallies& tallies = receiver_.tallies();
+    const Counts since_last{tallies.bus_messages(), tallies.bus_errors(), tallies.server_messages(),
+                            tallies.no_responses(), tallies.overruns()};
+    tallies.clear();
+    return since_last;
+  }
+  void expect_host_ok_between(Time earliest, Time latest) {
+    EXPECT_LE(receiver_.host_oks().last().since(earliest).microseconds(),
+              latest.since(earliest).microseconds());
+  }
+  bool took_frame() {
+    if (!receiver_.queue().has_frame()) {
+      return false;
+    }
+    receiver_.queue().drop_in_main_loop();
+    return true;
+  }
+
+  /// Returns how often the host watchdog has been restarted since the last call.
+  std::uint32_t restarts() {
+    const std::uint32_t before = restarts_;
+    restarts_ = receiver_.host_oks().received();
+    return restarts_ - before;
+  }
+
+  Receiver receiver_;
+  Time now_{1000};
+
+ private:
+  std::uint32_t restarts_ = 0;
+};
+
+}  // namespace ex9000
