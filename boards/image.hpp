@@ -1,5 +1,5 @@
 // Checks and definitions for all images, on any microcontroller. Include this file once, after the
-// `board.hpp` of a board. There, kOutputs and kInputs must be arrays of pin groups, each with a `count`.
+// `board.hpp` of a board, which must define kOutputs and kInputs: arrays of pin groups, each with a `count`.
 #pragma once
 
 #include "firmware/line/timing.hpp"

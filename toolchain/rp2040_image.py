@@ -13,7 +13,7 @@ _UF2_END = 0x0AB16F30
 _UF2_HAS_FAMILY = 0x00002000
 _UF2_RP2040 = 0xE48BFF56
 _PAGE = 256
-_BLOCK_DATA = 476  # bytes of a block; a page and zeros
+_BLOCK_DATA = 476  # bytes of data in a block: a page, then zeros
 
 _LOAD = 1  # p_type
 

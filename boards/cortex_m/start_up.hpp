@@ -33,8 +33,8 @@ extern "C" std::uint32_t stack_top[];
 /// Copies the initialised data to RAM, clears the other variables in RAM, and calls `main`.
 extern "C" [[noreturn]] __attribute__((externally_visible)) void reset_handler();
 
-/// Resets the microcontroller at once, which de-energises all outputs. Handles faults and unexpected
-/// interrupts.
+/// Handles faults and unexpected interrupts: resets the microcontroller at once, which switches all outputs
+/// off.
 extern "C" [[noreturn]] void fault_handler();
 
 /// An interrupt and its handler.

@@ -1,1 +1,1 @@
-"""What the programs that run an image in an emulator have in common."""
+"""Common code of the programs that run an image in an emulator."""

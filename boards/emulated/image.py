@@ -1,4 +1,4 @@
-"""Reads an image and checks that it is for a board."""
+"""Reads an image and checks that this image is for the board."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ _LOADED = 1  # PT_LOAD
 
 @dataclass(frozen=True)
 class Memory:
-    """What image.ld of a board says."""
+    """The addresses that image.ld of a board defines."""
 
     preset: str
     vectors: int  # address of the vector table
@@ -32,8 +32,8 @@ class Segment:
 def read(path: Path, memory: Memory) -> list[Segment]:
     """Returns the loaded segments of an image.
 
-    Raises Refusal if the file is not an ELF image for this board. An emulator starts any file; without this check, the
-    error would appear only after 60 s, if the UART is then still off.
+    Raises Refusal if the file is not an ELF image for this board. An emulator starts any file. Without this
+    check, a wrong file would cause an error only after 60 s, and only if its UART is still off then.
     """
     try:
         file = path.read_bytes()

@@ -29,7 +29,8 @@ class Machine(Protocol):
         """Returns the time in seconds within which `carry` must be called."""
 
     def carry(self, requests: bytes, ready: list[int]) -> bytes:
-        """Takes bytes of the master and returns bytes of the module. `ready`: the readable ones of `watched`.
+        """Takes bytes of the master and returns bytes of the module. `ready`: the descriptors of `watched` that are
+        readable.
 
         Does not wait. Raises Ended if the emulator has ended.
         """

@@ -1,7 +1,7 @@
 """A pseudo-terminal that masters open and close like a serial port.
 
-QEMU can create one itself, but it only checks from time to time whether a master has opened it. The module's bytes to a
-new master would be lost for the first 0.7 s.
+QEMU can create a pseudo-terminal itself, but only checks from time to time whether a master has opened it. During the
+first 0.7 s, a new master would lose the bytes that the module sends.
 """
 
 from __future__ import annotations

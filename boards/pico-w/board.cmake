@@ -1,3 +1,3 @@
 # A Pico W differs from a Pico only in board.hpp.
 include(${CMAKE_CURRENT_LIST_DIR}/../pico/board.cmake)
-unset(test_programs)  # they run on a Pico
+unset(test_programs)  # these programs run on a Pico

@@ -1,10 +1,10 @@
 # The start-up code of the board's processor.
 set(start_up rp2040/start_up.cpp rp2040/second_stage.cpp)
 
-# The processor has no instruction for a division.
+# The images need libgcc, because the processor has no instruction for a division.
 set(board_libraries gcc)
 
-# The image starts from the flash by a second stage, and is written to it as a UF2 file.
+# The second stage starts the image from the flash. Users copy the image to the flash as a UF2 file.
 set(starts_from_uf2 ON)
 
 set(test_programs tests/rp2040/flash_exercise)

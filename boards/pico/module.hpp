@@ -1,4 +1,4 @@
-// What the Raspberry Pi Pico and the Pico W have in common: clock, pins and polarity. The status LED differs.
+// The clock, the pins and the polarity of the Raspberry Pi Pico and the Pico W. Only the status LED differs.
 // README.md in this folder describes the wiring.
 #pragma once
 
@@ -14,7 +14,8 @@ namespace ex9000::board {
 using hal::rp2040::Pin;
 using hal::rp2040::PinGroup;
 
-/// A 12 MHz crystal. The PLL's oscillator runs at 1500 MHz, processor and peripherals at 125 MHz.
+/// The crystal oscillates at 12 MHz and the oscillator of the PLL at 1500 MHz. The processor and the
+/// peripherals run at 125 MHz.
 inline constexpr hal::rp2040::ClockTree kClock{12'000'000, 125, 6, 2};
 
 #ifdef EX9000_SETTINGS_IN_EEPROM
@@ -22,8 +23,8 @@ inline constexpr Memory kMemory = Memory::Eeprom;
 #else
 inline constexpr Memory kMemory = Memory::Flash;
 #endif
-/// The first byte for settings, if they are in the flash: an offset in bytes. image.ld reserves the last 64
-/// KiB.
+/// The offset in the flash, in bytes, of the first byte for settings; used only by images that store the
+/// settings in the flash. image.ld reserves the last 64 KiB for them.
 inline constexpr std::uint32_t kSettingsInFlash = (2048U - 64U) * 1024U;
 
 /// The line is UART0 on GPIO0 (transmit) and GPIO1 (receive).
@@ -35,8 +36,7 @@ inline constexpr Pin kInitSwitch{3};
 inline constexpr PinGroup kI2cPins{4, 2};
 
 /// The pins in the order of the channels. Outputs begin with the first eight pins, inputs with the second
-/// eight. A model with more than eight outputs has no inputs, and the other way round, so it can use all
-/// pins.
+/// eight. A model with more than eight outputs has no inputs, and vice versa, so it can use all pins.
 inline constexpr std::array<PinGroup, 2> kOutputs{PinGroup{6, 8}, PinGroup{14, 8}};
 inline constexpr std::array<PinGroup, 2> kInputs{PinGroup{14, 8}, PinGroup{6, 8}};
 inline constexpr bool kOutputsActiveHigh = true;

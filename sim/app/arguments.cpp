@@ -22,7 +22,7 @@ constexpr const char* kDescription =
     "or on a real serial port.";
 
 constexpr const char* kDefaultPty = "ex9000.tty";
-/// The value of --panel if no port is given.
+/// Represents the value of --panel if the user gives no port.
 constexpr const char* kUsualPort = "usual";
 
 std::string list_models() {
@@ -145,7 +145,7 @@ void add_writing(CLI::App& app, WritingTexts& texts) {
          "--log", texts.log,
          "print the frames on the bus, one on each line: time, direction, bytes, meaning; json: one JSON "
          "object on each line, and nothing else on standard output")
-      ->multi_option_policy(CLI::MultiOptionPolicy::TakeLast)  // later options override those in a script
+      ->multi_option_policy(CLI::MultiOptionPolicy::TakeLast)  // lets a user override a script's option
       ->type_name("[text|json|off]");
   app.add_option("--capture", texts.capture,
                  "write the frames to this pcapng file for Wireshark; overwrites the file")
@@ -157,7 +157,7 @@ bool is_number(const std::string& text) {
 }
 
 /// Returns the arguments with the values of --log and --panel attached to the options. These values are
-/// optional, and the next word may be a module, but CLI11 would take any next word as the value.
+/// optional. CLI11 would take any next word as the value, even if that word is a module.
 std::vector<std::string> with_optional_values(int argc, const char* const* argv) {
   std::vector<std::string> words;
   for (int i = 1; i < argc; ++i) {
@@ -198,7 +198,7 @@ play::Task task_of(const PlayTexts& play_texts) {
   task.path = play_texts.file;
   apply_writing(play_texts.writing, task.writing);
   if (play_texts.seed) {
-    of_option("--seed", *play_texts.seed, parse_seed);  // check it even if it has no effect
+    of_option("--seed", *play_texts.seed, parse_seed);  // reject a wrong seed even if the seed has no effect
   }
   if (task.writing.capture && task.writing.capture->empty()) {
     fail("--capture: is empty; name a path");
@@ -273,8 +273,8 @@ void reject_arguments_before(const CLI::App& subcommand, const CLI::App& app) {
                        : ", where it has no effect; leave it out, or see 'ex9000-sim " + name + " --help'"));
 }
 
-/// Rejects arguments beside an option that prints text and runs nothing. Throws std::invalid_argument with a
-/// one-line message.
+/// Rejects arguments in addition to an option that prints text and runs nothing. Throws std::invalid_argument
+/// with a one-line message.
 void reject_other_arguments(const std::string& printing, const CLI::App& app) {
   for (const CLI::Option* option : given_of(app)) {
     if (option->get_name() != printing) {

@@ -7,9 +7,9 @@ namespace ex9000::sim::help {
 
 /// Returns the syntax of modules, control commands and faults, and examples.
 std::string of_the_program();
-/// Returns the steps of transcripts and scenarios.
+/// Returns the syntax of the steps of transcripts and scenarios.
 std::string of_play();
-/// Returns examples.
+/// Returns examples of `describe`.
 std::string of_describe();
 
 }  // namespace ex9000::sim::help

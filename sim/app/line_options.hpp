@@ -27,7 +27,7 @@ struct LineTexts {
 /// Returns the line that the arguments define. Throws std::invalid_argument with a one-line message.
 LineSetup line_of(const LineTexts& texts);
 
-/// Rejects other modules and options of a line beside a bus file, because the bus file defines them. Throws
+/// Rejects modules and options of a line in addition to a bus file, because the bus file defines them. Throws
 /// std::invalid_argument with a one-line message.
 void reject_line_options(const LineTexts& texts);
 

@@ -30,7 +30,7 @@ Faults::Notice PlayRecord::line_started(Line& line, const std::string& name) {
     record.print_frames();
   }
   if (capture_) {
-    record.keep_in(*capture_, VirtualTime(0));  // independent of the time of day
+    record.keep_in(*capture_, VirtualTime(0));  // the capture must not depend on the time of day
     capture_file_->keep();
   }
   if (!writing_.log) {

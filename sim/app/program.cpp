@@ -40,7 +40,7 @@ void run(const Setup& setup) {
     }
   };
   boost::asio::signal_set signals(io);
-  add_stop_signals(signals);  // before anything is created that has to be removed at the end
+  add_stop_signals(signals);  // before the program creates files that it has to remove
   signals.async_wait([&io](const boost::system::error_code& /*error*/, int /*signal*/) { io.stop(); });
   const auto greet = [&errors](const std::string& text) { errors.write(text + "\n"); };
   std::optional<TerminalOutput> terminal;

@@ -16,7 +16,7 @@ namespace ex9000::sim {
 StandardStream::StandardStream(int file, std::string name, std::function<bool()> gives_up)
     : file_(file), name_(std::move(name)), gives_up_(std::move(gives_up)) {}
 
-/// A pipe with room accepts PIPE_BUF bytes at once, so that no write blocks.
+/// Writes at most PIPE_BUF bytes at a time. If a pipe has room, it accepts this number without blocking.
 bool StandardStream::write(const std::string& text) {
   for (std::size_t done = 0; done < text.size() && !ended_;) {
     if (!wait_for_room()) {

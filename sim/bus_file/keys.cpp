@@ -24,7 +24,7 @@ constexpr std::string_view kPort =
 constexpr std::string_view kNumber =
     R"({"anyOf": [{"type": "integer", "minimum": 0}, {"type": "string", "pattern": "^[0-9]+$"}]})";
 
-/// Calls `take` of its key for each member of an object, and records its place. Rejects unknown keys.
+/// For each member of an object, records its place and calls the `take` of its key. Rejects unknown keys.
 template <class Object, std::size_t kSize>
 void read_members(const Node& node, const std::array<BusFileKey<Object>, kSize>& keys, Object& object) {
   node.members([&](const std::string& name, const Node& member) {

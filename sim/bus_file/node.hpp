@@ -21,7 +21,8 @@ class Node {
   Node(const LocatedJson& file, const std::string& name) : Node(file, name, file.value, "") {}
 
   [[noreturn]] void refuse(const std::string& what) const { refuse_at(path_, what); }
-  /// Reports an error in a value below this one, which may be missing. `path` is relative to this node.
+  /// Reports an error in a value below this one, even if that value is missing. `path` is relative to this
+  /// node.
   [[noreturn]] void refuse(const std::string& path, const std::string& what) const {
     refuse_at(member_of(path_, path), what);
   }
@@ -73,7 +74,7 @@ class Node {
   Node(const LocatedJson& file, const std::string& name, const json& value, std::string path)
       : file_(&file), name_(&name), value_(&value), path_(std::move(path)) {}
 
-  /// Runs `action` and adds this node's place to its errors that have no place yet.
+  /// Runs `action`. Adds this node's place to each error of `action` that has no place yet.
   template <class Action>
   void guarded(Action action) const {
     try {

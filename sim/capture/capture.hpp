@@ -16,10 +16,11 @@ namespace ex9000::sim {
 /// requests from replies: set mbrtu.tcp.port to this value.
 constexpr std::uint16_t kCapturedModulesPort = 9000;
 
-/// Every line becomes an interface and every frame a packet: inbound if the master receives it, outbound if
-/// the master sends it. Frames that look like DCON are stored as text, all others as Modbus RTU or, if they
-/// are too short for that, as bytes. The errors of a frame become its comment. Frames that faults put on a
-/// line are not marked as request or reply.
+/// Each line becomes an interface, and each frame becomes a packet. A packet is inbound if the master
+/// receives the frame, and outbound if the master sends it. A frame that looks like DCON is stored as text.
+/// All other frames are stored as Modbus RTU or, if they are too short for that, as bytes. The errors of a
+/// frame become the comment of its packet. A frame that a fault puts on a line is not marked as request or
+/// reply.
 class Capture {
  public:
   /// Opens the file. All functions throw the exceptions of CaptureFile.

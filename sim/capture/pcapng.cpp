@@ -91,8 +91,8 @@ Block enhanced_packet(const EnhancedPacket& packet) {
   put(body, packet.interface_id);
   put(body, static_cast<std::uint32_t>(timestamp >> 32U));
   put(body, static_cast<std::uint32_t>(timestamp));
-  put(body, length);  // captured
-  put(body, length);  // original
+  put(body, length);  // captured length
+  put(body, length);  // original length
   put_padded(body, packet.data);
   put(body, kPacketFlags);
   put(body, static_cast<std::uint16_t>(sizeof packet.direction));

@@ -16,7 +16,7 @@ using Block = std::vector<std::uint8_t>;
 Block section_header(const std::string& userappl);
 
 /// Returns an Interface Description Block (4.2), which describes a source of packets. Interfaces are numbered
-/// from 0 in the order of their blocks. Packets may have any length. Their times are in nanoseconds
+/// from 0 in the order of their blocks. Packets may have any length. The times of packets are in nanoseconds
 /// (if_tsresol 9).
 Block interface_description(std::uint16_t link_type, const std::string& name);
 

@@ -9,8 +9,8 @@ namespace ex9000::sim {
 
 namespace {
 
-/// Returns the position of the data byte that contains a channel. It formats a reply in which only this
-/// channel is on.
+/// Returns the position of the data byte that contains a channel: formats a reply in which only this channel
+/// is on, and finds the byte that is not 0.
 std::size_t data_byte_of(const Model& model, bool is_output, unsigned channel) {
   const auto on = static_cast<std::uint16_t>(1U << channel);
   Reply reply;

@@ -12,9 +12,9 @@ namespace ex9000::sim {
 
 // The commands and registers, generated from the firmware's tables.
 
-/// Returns Markdown, for people. It describes all models, for firmware/registers.md.
+/// Returns Markdown that describes all models: the content of firmware/registers.md.
 std::string markdown_of_all();
-/// Describes only this model.
+/// Returns Markdown that describes one model.
 std::string markdown_of(const Model& model);
 
 /// Returns JSON, for programs: an object with the firmware's version and, under `models`, one object for each
@@ -36,8 +36,8 @@ struct NetworkAddress {
   std::uint8_t address = 0x01;  ///< 1 to 247
 };
 
-/// Returns YAML for Home Assistant's modbus integration, for `modbus: !include FILE` in configuration.yaml: a
-/// hub with switches, binary sensors and sensors.
+/// Returns YAML for Home Assistant's modbus integration: a hub with switches, binary sensors and sensors. The
+/// user saves the text as FILE and adds `modbus: !include FILE` to configuration.yaml.
 std::string home_assistant_hub(const Model& model, const NetworkAddress& network_address);
 
 /// Returns a flow to import into Node-RED with node-red-contrib-modbus, as a JSON array: a tab that reads all

@@ -14,15 +14,15 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-// Home Assistant warns about intervals shorter than 5 s. If an interval is not longer than the timeout, Home
-// Assistant shortens the timeout.
+// The polling intervals, and the timeout of a request. Home Assistant warns about polling intervals shorter
+// than 5 s. If a polling interval is not longer than the timeout, Home Assistant shortens the timeout.
 constexpr unsigned kOftenSeconds = 5;
 constexpr unsigned kSeldomSeconds = 30;
 constexpr unsigned kTimeoutSeconds = 2;
 /// The silence between two frames, 3.5 characters of 11 bits, takes 32.1 ms at 1200 baud.
 constexpr unsigned kWaitMilliseconds = 33;
 
-/// In the order of Table.
+/// The values of input_type, in the order of the enumeration Table.
 constexpr std::array<const char*, 4> kInputTypes{"coil", "discrete_input", "input", "holding"};
 
 const char* input_type(Table table) { return kInputTypes[static_cast<std::size_t>(table)]; }
@@ -49,7 +49,7 @@ class Hub {
     return hub;
   }
 
-  /// Returns the actions with which polling restarts the host watchdog.
+  /// Returns the actions that let polls restart the host watchdog.
   [[nodiscard]] std::string watchdog_actions() const {
     const std::string after =
         model_.outputs == 0 ? "the timeout status stays set" : "the outputs keep their safe values";

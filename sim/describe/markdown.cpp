@@ -88,7 +88,7 @@ std::string who(const Models& models, Has has) {
   return joined(names, ", ");
 }
 
-/// Adds the column of models, which is not necessary for a single model.
+/// Adds the cell of the column that names models. A description of a single model has no such column.
 void add_who(const Models& models, Cells& cells, const std::string& text) {
   if (models.size() > 1) {
     cells.push_back(text);
@@ -225,7 +225,7 @@ std::string map_notes() {
          "Baud codes are those of `CC` above.\n";
 }
 
-/// Models with the same map, and their map.
+/// The models that have the same map, and this map.
 struct SharedMap {
   std::vector<std::string> models;
   std::string table;

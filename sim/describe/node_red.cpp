@@ -18,7 +18,7 @@ constexpr unsigned kLeft = 140;
 constexpr unsigned kColumn = 240;
 constexpr unsigned kRow = 40;
 
-/// In the order of Table.
+/// The values of dataType, in the order of the enumeration Table.
 constexpr std::array<const char*, 4> kDataTypes{"Coil", "Input", "InputRegister", "HoldingRegister"};
 
 const char* data_type(Table table) { return kDataTypes[static_cast<std::size_t>(table)]; }
@@ -79,7 +79,7 @@ class Flow {
          {"tcpHost", network_address_.tcp.host},
          {"tcpPort", std::to_string(network_address_.tcp.port)},
          {"tcpType", "TELNET"},  // sends the bytes as on the line; other types add the header of Modbus TCP
-         // One request at a time, because all modules share one line.
+         // The client sends one request at a time, because all modules share one line.
          {"bufferCommands", true},
          {"parallelUnitIdsAllowed", false},
          {"unit_id", std::to_string(network_address_.address)},

@@ -45,8 +45,8 @@ struct MapRow {
   std::string_view meaning;
 };
 
-/// Returns coils first, then discrete inputs, input registers and holding registers. Empty if the model does
-/// not support Modbus.
+/// Returns the rows of coils first, then those of discrete inputs, input registers and holding registers.
+/// Returns no rows if the model does not support Modbus.
 std::vector<MapRow> register_map(const Model& model);
 
 /// Returns the PLC number of the item. PLC numbers count from 1 and have at least four digits after the digit

@@ -64,8 +64,8 @@ constexpr const Reading* reading_of(std::string_view id) {
   return nullptr;
 }
 
-/// Returns whether kReadings covers all rows of the firmware's tables. A new row must be added to kReadings,
-/// with a button if it has the rule kOnlyOn.
+/// Returns whether kReadings covers all rows of the firmware's tables. Add each new row to kReadings, with a
+/// button if the row has the rule kOnlyOn.
 constexpr bool covers_every_row() {
   for (const modbus::BitRegister& row : modbus::kBitRegisters) {
     const Reading* const reading = reading_of(row.id);

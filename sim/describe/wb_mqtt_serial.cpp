@@ -12,7 +12,7 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-/// In the order of Table.
+/// The values of reg_type, in the order of the enumeration Table.
 constexpr std::array<const char*, 4> kRegisterTypes{"coil", "discrete", "input", "holding"};
 
 const char* register_type(Table table) { return kRegisterTypes[static_cast<std::size_t>(table)]; }

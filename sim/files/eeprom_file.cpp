@@ -46,9 +46,9 @@ class Draft {
   Draft(const Draft&) = delete;
   Draft& operator=(const Draft&) = delete;
 
-  /// Gives the file to the caller; it is not open if opening has failed.
+  /// Transfers the file to the caller. The file is not open if opening has failed.
   [[nodiscard]] FileDescriptor take_file() { return std::move(file_); }
-  /// Does not replace an existing file. Returns false if the system call fails.
+  /// Names the file `path`. Returns false if the system call fails, for example because `path` exists.
   [[nodiscard]] bool link_to(const std::string& path) const {
     return linkat(AT_FDCWD, name_.c_str(), AT_FDCWD, path.c_str(), AT_SYMLINK_FOLLOW) == 0;
   }
@@ -129,7 +129,7 @@ void EepromFile::create(const std::vector<std::uint8_t>& image) {
 }
 
 bool EepromFile::write(std::uint16_t address, Bytes bytes) const {
-  // After an incomplete write, the next one fails with the reason.
+  // After an incomplete write, the next write fails and sets errno to the reason.
   ssize_t written = 0;
   for (std::size_t done = 0; done < bytes.size && written >= 0; done += static_cast<std::size_t>(written)) {
     written = pwrite(file_.get(), bytes.data + done, bytes.size - done, static_cast<off_t>(address + done));

@@ -17,7 +17,7 @@ namespace ex9000::sim {
 /// message if the file is not an image or is not readable.
 std::optional<std::vector<std::uint8_t>> read_eeprom_file(const std::string& path);
 
-/// An image of the whole memory, byte for byte like the chip: 8192 bytes, erased bytes are FF. While this
+/// An image of the whole memory, byte for byte like the chip: 8192 bytes; erased bytes are FFh. While this
 /// object lives, the file is locked: no other EepromFile can open it, in this process or in another one.
 ///
 /// When `write` returns true, the kernel has the data: it survives any end of this process, but not a crash

@@ -7,7 +7,7 @@
 
 namespace ex9000::sim {
 
-/// Returns the same text for all spellings of `path`. A link at `path` itself is not followed.
+/// Returns the same text for all spellings of `path`. Does not follow a symbolic link at `path` itself.
 inline std::string one_spelling(const std::string& path) {
   std::error_code error;
   const std::filesystem::path absolute = std::filesystem::absolute(path, error);

@@ -13,7 +13,7 @@ namespace ex9000::sim {
 namespace {
 
 constexpr VirtualTime kShortest = std::chrono::microseconds(10);
-/// How many times contacts bounce during the bounce time.
+/// The number of times that a contact bounces during the bounce time.
 constexpr unsigned kChatters = 4;
 
 /// Parses durations. Each duration follows its keyword, and no keyword may appear twice.

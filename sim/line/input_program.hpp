@@ -20,7 +20,7 @@ struct InputProgram {
 
   unsigned channel = 0;
   Kind kind = Kind::Square;
-  VirtualTime time{0};    ///< Square, KeyAgain: the period; KeyOnce: since the start of the line's time
+  VirtualTime time{0};    ///< Square, KeyAgain: the period; KeyOnce: line time of the key press
   VirtualTime high{0};    ///< how long the input is on
   VirtualTime bounce{0};  ///< how long the contacts bounce
 };
@@ -35,7 +35,7 @@ unsigned parse_input(const std::string& text, const Model& model);
 /// Changes the level of one input, even if the module has no power.
 class MovedInput final : public Station {
  public:
-  /// Attaches itself to `bus` and begins now. The same `seed` produces the same bouncing.
+  /// Attaches itself to `bus` and starts the program now. The same `seed` produces the same bouncing.
   MovedInput(Bus& bus, SimulatedModule& module, const InputProgram& program, std::uint64_t seed);
   MovedInput(const MovedInput&) = delete;
   MovedInput& operator=(const MovedInput&) = delete;

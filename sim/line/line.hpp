@@ -53,7 +53,7 @@ class Line {
   void configure_faults(std::uint64_t seed, Faults::Notice notice);
   /// Returns the faults of this line. The first call attaches them to the bus.
   Faults& faults();
-  /// Returns null if `faults` has not been called yet; changes nothing.
+  /// Returns the faults of this line without attaching them; null if `faults` has not been called yet.
   [[nodiscard]] const Faults* faults_so_far() const { return faults_.get(); }
   /// Starts `program`, which changes the level of an input of the module at `index`.
   void move_input(std::size_t index, const InputProgram& program);
@@ -65,8 +65,8 @@ class Line {
   /// Returns the silence that modules of this line require after the first stop bit of the last byte: the
   /// rest of the stop bits and T3.5, in the master's mode.
   [[nodiscard]] VirtualTime rtu_silence() const;
-  /// Returns the silence after which earlier bytes cannot belong to the next frame, even if their CRC is
-  /// wrong.
+  /// Returns the silence after which earlier bytes cannot belong to the next frame, even if the CRC of these
+  /// bytes is wrong.
   [[nodiscard]] VirtualTime rtu_separate() const;
 
  private:

@@ -1,5 +1,5 @@
-// Settings by their names for people: KEY=VALUE of a module on the command line, in a bus file or in a
-// transcript.
+// Sets the settings of a module by the names that users write: KEY=VALUE on the command line, in a bus file
+// or in a transcript.
 #pragma once
 
 #include <string>
@@ -10,8 +10,8 @@
 namespace ex9000::sim {
 
 /// Sets the setting that `key` names: protocol, baud, format, checksum, edge or name. Returns false and
-/// changes nothing if the key is a different one. Throws std::invalid_argument with a one-line message if the
-/// value is not valid for this setting.
+/// changes nothing for any other key. Throws std::invalid_argument with a one-line message if the value is
+/// not valid for this setting.
 bool set_by_name(Settings& settings, const Model& model, const std::string& key, const std::string& value);
 
 }  // namespace ex9000::sim

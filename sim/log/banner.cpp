@@ -22,7 +22,8 @@ std::string quoted(const std::string& path) {
   return text + "'";
 }
 
-/// The default of mbpoll is 8E1. A pseudo-terminal ignores the format, but a real bus does not.
+/// Returns the options of mbpoll, whose default is 8E1. A pseudo-terminal ignores the format, but a real bus
+/// does not.
 std::string mbpoll_format(LineFormat format) {
   switch (format) {
     case LineFormat::k8N1:
@@ -37,7 +38,7 @@ std::string mbpoll_format(LineFormat format) {
   return " ";
 }
 
-/// The default of picocom is 8N1.
+/// Returns the options of picocom, whose default is 8N1.
 std::string picocom_format(LineFormat format) {
   switch (format) {
     case LineFormat::k8N1:

@@ -37,8 +37,8 @@ struct BannerContent {
   std::string control;  ///< path of the control socket; empty: none
 };
 
-/// Returns several lines of text: the lines, their ports, their modules, and for each module on a
-/// pseudo-terminal commands to paste that read it or switch an output.
+/// Returns several lines of text: the lines, their ports and their modules. For each module on a
+/// pseudo-terminal, adds commands that the user can paste to read the module or to switch an output.
 std::string greeting(const BannerContent& all);
 
 }  // namespace ex9000::sim

@@ -92,7 +92,7 @@ Stored::Copy copy_of(const std::vector<std::uint8_t>& memory, const Place& place
   return read;
 }
 
-/// Chooses the copy in force from the valid copies, see wire.md section 8.
+/// Reads the copies, and selects the copy that a reset would load (wire.md section 8).
 Stored stored_of(const SimulatedModule& module) {
   Stored stored;
   stored.settings = Settings::factory(module.model());

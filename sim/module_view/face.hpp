@@ -37,7 +37,7 @@ struct Plate {
   Led led = Led::Off;
   std::uint16_t outputs = 0;  ///< driven outputs; bit n is channel n
   std::uint16_t inputs = 0;   ///< levels at the terminals; bit n is channel n
-  /// What is left of each timed output, in 0.1 s; 0: the output is not timed.
+  /// The remaining time of each timed output, in units of 0.1 s; 0: no time is running.
   std::array<std::uint16_t, kMaxOutputs> timers{};
   std::uint64_t watchdog_resets = 0;
 
@@ -57,7 +57,7 @@ struct InputRecords {
 struct HostWatchdogState {
   bool enabled = false;
   bool timed_out = false;              ///< the timeout status
-  std::uint8_t timeout = 0;            ///< in 0.1 s
+  std::uint8_t timeout = 0;            ///< in units of 0.1 s
   std::optional<VirtualTime> expires;  ///< line time of the expiry if no host OK comes; nullopt: not running
   bool reset_status = false;           ///< the reset status that `$AA5` would report
 

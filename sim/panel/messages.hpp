@@ -36,7 +36,7 @@ Message message_of(const RecentTraffic::Entry& entry, std::uint64_t number, std:
 struct PageRequest {
   std::uint64_t id = 0;             ///< chosen by the page, for the reply
   std::string command;              ///< a command of the control socket
-  std::optional<std::string> undo;  ///< carried out if the page disconnects without requesting it
+  std::optional<std::string> undo;  ///< carried out if the page disconnects before it sends this command
 };
 
 /// Returns nullopt if `text` is not a request.

@@ -13,14 +13,15 @@
 #include "sim/panel/change_tracked.hpp"
 #include "sim/panel/messages.hpp"
 #include "sim/panel/recent_traffic.hpp"
+#include "sim/text/values.hpp"
 #include "sim/text/words.hpp"
 
 namespace ex9000::sim {
 
 namespace {
 
-/// The maximum number of frames in one message, for all lines together. It is more than two lines at 115200
-/// baud can carry between two messages, and small enough to be written without a delay that a master notices.
+/// The maximum number of frames in one message, for all lines together. Between two messages, two lines at
+/// 115200 baud carry fewer frames. Writing this number of frames causes no delay that a master notices.
 constexpr std::size_t kMostFrames = 250;
 /// The limit for each line is at least this number, even if there are many lines.
 constexpr std::size_t kFewestFrames = 20;

@@ -23,8 +23,8 @@ class Panel final : public PanelSource {
 
   using WallClock = std::function<std::chrono::steady_clock::time_point()>;
 
-  /// `speed` is the ratio of the lines' time to the wall clock. `wall_clock` decides when an idle page gets a
-  /// keep-alive message.
+  /// `speed` is the ratio of the lines' time to the wall clock. `wall_clock` is the clock for the keep-alive
+  /// messages to idle pages.
   Panel(CarryOut carry_out, double speed, WallClock wall_clock = std::chrono::steady_clock::now);
   ~Panel() override;
   Panel(const Panel&) = delete;

@@ -40,7 +40,7 @@ constexpr std::chrono::seconds kRequestTimeout{5};
 /// The server disconnects a page that sends nothing for this time, not even the replies to pings.
 constexpr std::chrono::seconds kIdle{20};
 /// The interval at which the server captures the state while a page is open. A page must show a change within
-/// 100 ms: the time that is left after the interval is for sending and drawing the change.
+/// 100 ms. The rest of the 100 ms is for sending and drawing the change.
 constexpr std::chrono::milliseconds kLookEvery{30};
 
 tcp::endpoint here(std::uint16_t port) { return {boost::asio::ip::address_v4::loopback(), port}; }
@@ -119,7 +119,7 @@ class PanelServer::Listener::Client : public std::enable_shared_from_this<Client
   /// Returns whether the connection is a page or will become one.
   [[nodiscard]] bool takes_a_page() const { return takes_a_page_; }
 
-  /// Sends the next message for the page, if there is one and if the previous one is not still being sent.
+  /// Sends the next message for the page if there is one and the previous message has been sent.
   void tell() {
     if (!viewer_ || writing_) {
       return;

@@ -23,8 +23,8 @@ class PanelViewer {
   /// Carries out a request of the page; `next` returns the reply. Returns false if `text` is not a request.
   /// Actions that the page holds active are undone when this object is destroyed.
   virtual bool ask(const std::string& text) = 0;
-  /// Returns the next message for the page: the reply to its request, and the changes up to the last look
-  /// that it does not have yet. Returns an empty text if there is nothing to send.
+  /// Returns the next message for the page: the reply to its request, and those changes before the last look
+  /// that the page has not received yet. Returns an empty text if there is nothing to send.
   virtual std::string next() = 0;
 };
 
@@ -49,9 +49,9 @@ class PanelSource {
 /// sites.
 class PanelServer {
  public:
-  /// Listens on `port`. If `port` is nullopt, listens on 9042, or on any free port if 9042 is in use. If it
-  /// is 0, listens on any free port. Throws std::invalid_argument with a one-line message if a given port is
-  /// not available. `io` and `source` must outlive this object.
+  /// Listens on `port`. If `port` is nullopt, listens on 9042, or on any free port if 9042 is in use. If
+  /// `port` is 0, listens on any free port. Throws std::invalid_argument with a one-line message if a given
+  /// port is not available. `io` and `source` must outlive this object.
   PanelServer(boost::asio::io_context& io, std::optional<std::uint16_t> port, PanelSource& source);
   ~PanelServer();
   PanelServer(const PanelServer&) = delete;

@@ -1,5 +1,6 @@
 #include "sim/play/player.hpp"
 
+#include <algorithm>
 #include <array>
 #include <stdexcept>
 

@@ -11,13 +11,13 @@ namespace ex9000::sim {
 /// Creates a line. Its modules have no power yet, and its master uses the factory baud rate and 8N1.
 std::unique_ptr<Line> make_line(const LineSetup& setup, Master::Receive receive);
 
-/// Returns the mode of the line's master until it sets one: that of the setup, otherwise that of the first
-/// module of `line`, which has started up.
+/// Returns the mode of the line until a master sets one: the mode in the setup, otherwise the mode of the
+/// first module. Call this after `line` has started up.
 SerialMode first_mode(const LineSetup& setup, const Line& line);
 
 /// Starts the input programs and the faults. Call this after the line has started up. Throws
-/// std::invalid_argument with a one-line message if a fault names a module that the line lacks. A fault whose
-/// time has already passed strikes at once.
+/// std::invalid_argument with a one-line message if a fault names a module that the line does not have. A
+/// fault whose time has already passed strikes at once.
 void begin_programs(Line& line, const LineSetup& setup);
 
 }  // namespace ex9000::sim

@@ -70,7 +70,7 @@ class Once {
 };
 
 /// Rejects speeds that cannot be combined with the ports, the control socket, the panel or the duration. Real
-/// masters keep the wall clock's time.
+/// masters follow the wall clock.
 void check_speed(const Setup& setup) {
   const auto wrong = [](const std::string& what) { throw SetupError(std::nullopt, "speed", what); };
   for (const LineSetup& line : setup.lines) {
@@ -210,8 +210,8 @@ Speed parse_speed(const std::string& text) {
   if (text == "step") {
     return {Speed::Kind::Stepped};
   }
-  // Above the maximum, time would advance in leaps, because the wall clock's timers are not precise enough;
-  // `max` is available for that.
+  // Above kFastest, line time would advance in large steps, because the timers of the wall clock are not
+  // precise enough. Users can choose `max` instead.
   constexpr double kSlowest = 0.001;
   constexpr double kFastest = 1000;
   const auto speed = decimal_number(text, kSlowest, kFastest);

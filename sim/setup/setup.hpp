@@ -81,8 +81,8 @@ struct Setup : Writing {
   Places places;
 };
 
-/// An error in a Setup. It identifies the place by key (an option of the command line or a member of a bus
-/// file), so that the message can use the syntax of either one.
+/// An error in a Setup. A key identifies the place: an option of the command line or a member of a bus file.
+/// The message can therefore use the syntax of either one.
 struct SetupError : std::invalid_argument {
   /// `what`: the message without its place. Other keys in it are in braces, with or without a value: `cannot
   /// be combined with {serial}` or `cannot be combined with {log json}`.
@@ -111,12 +111,12 @@ void check(const Setup& setup);
 // Values with the same syntax on the command line and in a bus file. The parsers throw std::invalid_argument
 // with a one-line message.
 
-/// Returns whether bytes take no time.
+/// Parses `instant` or `paced`. Returns true for `instant`: bytes take no time.
 bool parse_line_kind(const std::string& text);
 /// Parses a whole number of up to 64 bits.
 std::uint64_t parse_seed(const std::string& text);
-/// The limit of the number of threads. A thread whose lines have pseudo-terminals requires an inotify
-/// instance. On Debian, a user may have 128 of them.
+/// The highest number of threads. A thread whose lines have pseudo-terminals requires an inotify instance. On
+/// Debian, a user may have 128 of them.
 inline constexpr std::size_t kMostThreads = 64;
 
 /// Parses a number of threads, 1 to kMostThreads.

@@ -11,8 +11,8 @@ namespace ex9000::sim {
 bool names_utf8(const std::string& locale);
 
 /// Stores output that the terminal has not accepted yet, so that a terminal stopped by Ctrl-S does not stop
-/// the program. Opens the terminal a second time for this, because the shell shares the file description of
-/// its descriptor.
+/// the program. Opens the terminal a second time, because the shell shares the file description of
+/// `descriptor`, and O_NONBLOCK there would also affect the shell.
 class TerminalOutput final : public Terminal {
  public:
   /// Opens the terminal of `descriptor`, which remains open.

@@ -68,8 +68,8 @@ void Watch::put(const std::string& lines) {
   }
 }
 
-/// Returns the lines of as many modules as fit. Leaves one row for the cursor and, if modules are missing,
-/// one for their number.
+/// Returns the lines of as many modules as fit on the screen. Keeps one row for the cursor. If not all
+/// modules fit, adds a line with the number of hidden modules.
 std::vector<std::string> Watch::painting() const {
   const std::vector<std::vector<std::string>> faces = all_faces();
   std::size_t rows = 0;

@@ -1,5 +1,5 @@
-// Measures the time that the core itself requires from the first byte of a request to its reply. This
-// includes the receive interrupts, but not the time that the bytes take on a serial line.
+// Measures the processor time that the core requires from the first byte of a request to its reply. The
+// result includes the receive interrupts, but not the time that the bytes take on a serial line.
 #include <benchmark/benchmark.h>
 
 #include <string>

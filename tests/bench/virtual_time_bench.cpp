@@ -33,8 +33,8 @@ std::vector<std::uint8_t> frame(const std::vector<std::uint8_t>& bytes) { return
 
 double seconds(VirtualTime time) { return std::chrono::duration<double>(time).count(); }
 
-/// Measures a line without requests. All watchdogs are enabled. One module has timed out and its LED flashes.
-/// The master sends a host OK every 20 s.
+/// Measures a line on which the master sends no request except a host OK every 20 s. All watchdogs are
+/// enabled. One module has timed out and its LED flashes.
 void idle_line(benchmark::State& state) {
   Line line(a_line_of_modules(), sim::kPaced, [](std::uint8_t, ByteStatus) {});
   const auto tell = [&line](const std::vector<std::uint8_t>& bytes, VirtualTime then) {

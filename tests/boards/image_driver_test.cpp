@@ -1,4 +1,4 @@
-// Tests faults around a board, and the reaction of its image.
+// Tests how an image reacts to faults of the parts around its microcontroller.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -41,7 +41,7 @@ class OnBoard : public testing::TestWithParam<ImageName> {
     EXPECT_EQ(bench.ask("$01M"), "!019055");
   }
   /// Sends the command that stores a name. After the time `after`, switches the supply off for 50 ms. Returns
-  /// whether the module had begun to answer.
+  /// whether the module had begun to reply.
   bool cut_while_it_stores(const std::string& name, Instant after) {
     const std::string command = "~01O" + name + "\r";
     bench.line.heard.clear();
@@ -54,10 +54,10 @@ class OnBoard : public testing::TestWithParam<ImageName> {
     power_up();
     return answered;
   }
-  /// Numbers of cuts.
+  /// The numbers of cuts with each outcome.
   struct Outcomes {
     unsigned old = 0;
-    unsigned stored_only = 0;  ///< stored but not answered
+    unsigned stored_only = 0;  ///< stored, but no reply
     unsigned answered = 0;
   };
   Net& clock() { return bench.pins.at('B', I2cBlock::kClockPin); }
@@ -423,7 +423,7 @@ class OnBoardForMonths : public OnBoard {};
 
 TEST_P(OnBoardForMonths, WorksAcrossTheWrapOfEvery32BitCount) {
   power_up();
-  Instant shortest = kNever;  // silence before the answer to a store
+  Instant shortest = kNever;  // silence before the reply to a store
   Instant longest{0};
   const auto store = [&](const std::string& command) {
     bench.line.drives.clear();

@@ -35,7 +35,7 @@ class ImageAndMaster : public testing::Test {
     return finished.output;
   }
 
-  /// The module answers in simulated time; this is the time that a busy host may need for a request and its
+  /// The module replies in simulated time. This is the time that a busy host may need for a request and its
   /// reply.
   static constexpr std::chrono::seconds kPatience{10};
 

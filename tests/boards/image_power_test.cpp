@@ -1,7 +1,7 @@
 // Tests power cuts. Each power-on starts a new emulator, which uses the EEPROM file of the previous one.
 //
 // The emulated EEPROM stores a page at once when STOP arrives. Therefore this test shows in which order the
-// image writes, reads back and answers, and that it starts afterwards. power_cuts_test checks the contents of
+// image writes, reads back and replies, and that it starts afterwards. power_cuts_test checks the contents of
 // a page after a cut.
 #include <gtest/gtest.h>
 
@@ -101,12 +101,12 @@ class CutModule {
   }
 
   /// Checks that the module starts with the old or the new settings, and with the matching outputs. The
-  /// settings must be the new ones if `must_be_done` is true or if the module had begun to answer.
+  /// settings must be the new ones if `must_be_done` is true or if the module had begun to reply.
   void expect_wholly_done_or_not_at_all(bool must_be_done) {
     module_.set_init(false);
     power_up(false);
     const std::uint16_t outputs = module_.outputs();
-    // The answers depend only on the contents of the EEPROM, so the test reads the settings once for each
+    // The replies depend only on the contents of the EEPROM, so the test reads the settings once for each
     // contents.
     std::optional<Settings>& found = known_[module_.memory()];
     for (const Settings* guess : {&done_, &before_}) {
@@ -158,13 +158,13 @@ class CutModule {
   Settings before_;
   Settings done_;
   TimedModule module_;
-  std::map<std::string, std::optional<Settings>> known_;  ///< by contents of the EEPROM
+  std::map<std::string, std::optional<Settings>> known_;  ///< found settings, by contents of the EEPROM
   bool answered_ = false;
   unsigned olds_ = 0;
   unsigned news_ = 0;
 };
 
-/// Returns a reader of the settings of `module`, which has started.
+/// Returns a reader of the settings of `module`. The module must have started.
 SettingsReader reader_of(TimedModule& module, const FrameFormat& frame_format) {
   return {module.model(), frame_format, [&module](const std::vector<std::uint8_t>& frame) {
             constexpr milliseconds kSilence{5};

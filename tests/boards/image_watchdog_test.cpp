@@ -161,8 +161,8 @@ class FaultyImage : public testing::TestWithParam<Protocol>, protected EitherPro
   }
 
  protected:
-  /// Waits until the watchdog resets the module. Also checks the watchdog's load register, because the time
-  /// cannot be observed in all cases.
+  /// Waits until the watchdog resets the module. Also checks the load register of the watchdog, because the
+  /// time until the reset cannot be observed in all cases.
   void expect_reset_in_time() {
     constexpr std::uint32_t kWatchdogLoad = 0x4000'0000;
     constexpr std::uint32_t kCountdowns = 2;

@@ -23,8 +23,9 @@ using std::chrono::milliseconds;
 using std::chrono::seconds;
 
 constexpr milliseconds kResetsWithin{1600};
-/// The module may restart its host watchdog this much too late: its clock counts microseconds, and it rounds
-/// up the end of a byte and of the silence after it, so that the host watchdog does not expire too early.
+/// The module may restart its host watchdog this much too late. Its clock counts microseconds, and it rounds
+/// up the end of a byte and of the silence after the byte, so that the host watchdog does not expire too
+/// early.
 constexpr microseconds kRounding{3};
 /// The time from the interrupt at the expiry until the main loop has set the last of sixteen pins, which
 /// change one after the other. The measured time is 2.5 us.
@@ -144,12 +145,12 @@ TEST_P(FaultOnBoard, AStuckEepromBusCausesRefusedStoresButNoReset) {
       module.changes.clear();
       bench.run_for(seconds(2));
       if (doing == Doing::OnTheEepromsBus || doing == Doing::Programming) {
-        // The module answers with a refusal: a value that cannot be read back is not stored.
+        // The module refuses the command, because a value that cannot be read back is not stored.
         ASSERT_GE(bench.line.heard.size(), 3U);
         EXPECT_TRUE(module.ascii() ? bench.line.heard[0].byte == '?' : bench.line.heard[1].byte == 0x86U);
       }
       if (doing == Doing::Receiving) {
-        module.ask("", {});  // ends the incomplete request, whatever the module answers
+        module.ask("", {});  // ends the incomplete request, whatever the module replies
       }
       EXPECT_FALSE(module.stores_a_timeout(0x40));
       if (bench.image.outputs != 0) {

@@ -52,7 +52,7 @@ class ImageInFormat : public testing::TestWithParam<ImageAndFormat> {
     const std::vector<std::uint8_t> reply = bench.exchange(with_crc({1, 4, 0x03, 0x0E, 0, 1}));
     return reply.size() == 7 ? reply[3] * 256U + reply[4] : 0xFFFF'FFFF;
   }
-  /// Sends a request that every module answers.
+  /// Sends a request to which every module replies.
   std::vector<std::uint8_t> reply() {
     return bench.exchange(protocol() == Protocol::Ascii ? std::vector<std::uint8_t>{'$', '0', '1', 'M', '\r'}
                                                         : with_crc({1, 0x11}));

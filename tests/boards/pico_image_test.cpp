@@ -439,7 +439,7 @@ TEST_F(PicoWithEeprom, AModuleWithoutAnEepromWorksWithFactorySettings) {
   EXPECT_EQ(bench_.counts().at("timeouts"), 0);
 }
 
-// The image for a Pico W drives the LED that the module has instead of the one behind the radio chip.
+// The LED of a Pico W is behind the radio chip, so the image for a Pico W drives an LED of the module.
 TEST_F(PicoImage, TheStatusLedOfAPicoWIsAPinThatItsRadioDoesNotUse) {
   constexpr std::uint32_t kLedOfPicoW = 1U << 22;
   constexpr std::uint32_t kRadio = 1U << 23 | 1U << 24 | 1U << 25 | 1U << 29;

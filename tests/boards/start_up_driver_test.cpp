@@ -276,8 +276,8 @@ TEST_P(StartUp, StartsTheWatchdogBeforeItConfiguresTheClock) {
   come_up();
   Writes writes = writes_to(WatchdogTimer::kBase);
   writes.resize(3);
-  // 37,500,000 clocks are 750 ms; the watchdog resets after two of these periods. It is not locked after a
-  // reset.
+  // 37,500,000 clocks are 750 ms; the watchdog resets after two of these periods. After a reset the watchdog
+  // is not locked.
   EXPECT_EQ(writes, (Writes{{0x000, 37'500'000}, {0x008, 3}, {0xC00, 0}}));
   EXPECT_TRUE(bench.mcu->watchdog.locked());
   EXPECT_LT(first_setting(WatchdogTimer::kBase + WatchdogTimer::kControl, 1),

@@ -1,5 +1,5 @@
-// Users wire a board according to its README, so its tables must match board.hpp. This test is built once for
-// each board.
+// Users wire a board according to its README, so the tables of the README must match board.hpp. This test is
+// built once for each board.
 #include <gtest/gtest.h>
 
 #include <algorithm>

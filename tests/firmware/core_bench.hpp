@@ -40,7 +40,7 @@ class CoreBench {
     now_ = now_ + kCharacter;
     module_.on_byte(value, status, now_);
   }
-  /// Passes a silence that is long enough to end every frame.
+  /// Lets a silence pass that is long enough to end every frame.
   void silence() {
     now_ = now_ + milliseconds(50);
     while (!(module_.on_silence() == Duration())) {

@@ -1,5 +1,5 @@
-// Tests that a module never answers a request for another address. The requests combine every other address
-// with every command and every function code.
+// Tests that a module never replies to a request for another address. The requests combine every other
+// address with every command and every function code.
 #include <gtest/gtest.h>
 
 #include <string>

@@ -1,5 +1,5 @@
-// Tests a module that has run for months: when the 32-bit counts of the interrupts wrap, its behaviour does
-// not change.
+// Tests a module that has run for months: its behaviour does not change when the 32-bit counts of the
+// interrupts wrap.
 #include <gtest/gtest.h>
 
 #include "firmware/watchdog/module_watchdog.hpp"
@@ -92,7 +92,7 @@ TEST(LongUptime, DiagnosticCountersKeepCounting) {
   const auto high = static_cast<std::uint8_t>(kAcrossTheWrap >> 8U);
   EXPECT_EQ(bench.ask({0x01, 0x08, 0x00, 0x0C, 0x00, 0x00}),
             CoreBench::with_crc({0x01, 0x08, 0x00, 0x0C, high, low}));
-  // The two diagnostic requests are bus messages, too.
+  // The two diagnostic requests are bus messages too.
   EXPECT_EQ(bench.ask({0x01, 0x08, 0x00, 0x0B, 0x00, 0x00}),
             CoreBench::with_crc({0x01, 0x08, 0x00, 0x0B, high, static_cast<std::uint8_t>(low + 2)}));
 }

@@ -45,7 +45,7 @@ TEST(TimedOutput, IsSwitchedOffInTimeWhileSettingsAreStoredOrAReplyIsSent) {
     ModuleBench bench("EX9043D");
     std::vector<OutputChange> changes;
     bench.watch_outputs(changes);
-    ASSERT_EQ(bench.ask("~01X02800003"), "!01");  // ask waits for 250 ms, so 50 ms are left
+    ASSERT_EQ(bench.ask("~01X02800003"), "!01");  // `ask` waits for 250 ms, so 50 ms are left
     bench.run(milliseconds(offset));
     bench.send("~01ONAME" + std::to_string(offset % 10) + "\r");
     bench.run(milliseconds(400));

@@ -18,7 +18,7 @@ constexpr Duration kLong = milliseconds(10);
 
 class ModuleTurns : public testing::Test {
  protected:
-  /// Starts on an erased memory.
+  /// Starts with an erased memory.
   ModuleTurns() {
     module_.start(0, now_);
     while (module_.needs_memory()) {
@@ -69,7 +69,7 @@ class ModuleTurns : public testing::Test {
   Module module_{*find_model("EX9043D")};
   Time now_;
   bool answers_ = true;  ///< the memory answers
-  unsigned writes_ = 0;  ///< number of writes, answered or not
+  unsigned writes_ = 0;  ///< number of writes, whether or not the memory answers them
 
  private:
   std::array<std::uint8_t, 32> page_{};
@@ -154,7 +154,7 @@ TEST_F(ModuleTurns, ATimeoutRequestsATurnForTheLedAndAnotherWhenItIsStored) {
   EXPECT_FALSE(requests_another_turn());
 }
 
-// Otherwise the reply could be later than 200 ms if a record takes several pages.
+// Otherwise the reply could come later than 200 ms after the request if a record takes several pages.
 TEST_F(ModuleTurns, ACommandBehindATimeoutThatCannotBeStoredWaitsForOneAttemptOnly) {
   put("~013101");
   module_.step(now_);

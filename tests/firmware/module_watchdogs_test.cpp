@@ -1,4 +1,5 @@
-// Tests a module's host watchdog and its hardware watchdog, to the microsecond and while the memory is busy.
+// Tests a module's host watchdog and its hardware watchdog, with a resolution of a microsecond and while the
+// memory is busy.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -131,7 +132,7 @@ TEST(HostWatchdog, ExpiryDrivesTheSafeValueAtOnceEvenWhileACommandIsBeingStored)
   EXPECT_EQ(changes[0].channels, 0);
   EXPECT_GE(changes[0].at, restarted + milliseconds(500));
   EXPECT_LE(changes[0].at, restarted + milliseconds(501));
-  EXPECT_FALSE(bench.heard_text().empty());  // stored and answered nevertheless (wire.md D6)
+  EXPECT_FALSE(bench.heard_text().empty());  // the command is stored and gets a reply (wire.md D6)
   EXPECT_EQ(bench.module().module().state().settings.power_on_value, 0xFFFF);
   bench.power_cycle();
   EXPECT_TRUE(bench.module().module().state().settings.timeout_status);

@@ -22,8 +22,8 @@ namespace {
 /// The number of steps of a session. It is large enough for one step to influence many others.
 constexpr unsigned kSteps = 300;
 
-/// Consecutive seeds return each model in turn; models with two protocols occur three times as often. Without
-/// extensions, it does not return the models that came with them.
+/// Returns the model for a seed. Consecutive seeds give each model in turn; models with two protocols occur
+/// three times as often. Without extensions, the function does not return the models that came with them.
 const ModelRow& row_of(std::uint64_t seed, Extensions extensions) {
   std::vector<const ModelRow*> rows;
   for (const ModelRow& row : kModelRows) {

@@ -150,7 +150,7 @@ TEST(SilenceAfterRequest, TheInitSwitchIsEvaluatedAtTheEndOfTheSilence) {
 TEST(SilenceAfterRequest, ABusMessageCountIncludesItsOwnRequest) {
   ModuleBench bench("EX9052D-M");
   EXPECT_EQ(bench.ask(kBusMessages), (Bytes{0x01, 0x08, 0x00, 0x0B, 0x00, 0x01}));
-  // The request also counts itself if an input changes in the silence after it.
+  // The request also counts itself if an input changes during the silence after the request.
   EXPECT_EQ(answer(bench, kBusMessages, [&] { bench.module().pulse_input(0, 1); }),
             with_crc({0x01, 0x08, 0x00, 0x0B, 0x00, 0x02}));
   EXPECT_EQ(bench.ask(kBusMessages), (Bytes{0x01, 0x08, 0x00, 0x0B, 0x00, 0x03}));

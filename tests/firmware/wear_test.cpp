@@ -1,4 +1,4 @@
-// Tests how often an EEPROM is written in use, compared with the manufacturer's guarantee.
+// Tests how often an EEPROM is written in use, and compares the result with the manufacturer's guarantee.
 #include <gtest/gtest.h>
 
 #include <array>

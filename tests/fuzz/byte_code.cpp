@@ -61,7 +61,7 @@ class Life {
     }
   }
 
-  /// Requires that the module still replies to requests to its own address, whatever has happened before.
+  /// Requires that the module still replies to requests to its own address, regardless of the earlier events.
   void ends() {
     session_.wait_for_quiet();
     const std::uint8_t& address = session_.in_force().address;
@@ -179,8 +179,8 @@ bool is_code(const std::uint8_t* data, std::size_t size, std::size_t at, char co
   return at + 1 < size && data[at] == kEscape && data[at + 1] == static_cast<std::uint8_t>(code);
 }
 
-/// Before a gap, replaces the last two bytes with their check. Before a CR, inserts the check. Returns the
-/// new size.
+/// In Modbus, replaces the two bytes before each gap with `\c`. In ASCII, inserts `\c` before each CR.
+/// Returns the new size in bytes.
 std::size_t mend(std::uint8_t* data, std::size_t size, std::size_t most, bool modbus) {
   std::size_t plain = 0;  // consecutive bytes on the line before `at`
   for (std::size_t at = kHeader; at < size;) {

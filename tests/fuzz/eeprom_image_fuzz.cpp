@@ -92,7 +92,7 @@ class Trial {
   const State& state() { return session_.module().module().state(); }
 
   /// Waits until no store is pending. The host watchdog can expire at any time, and the module then stores
-  /// this timeout. If it expires during the wait, waits again.
+  /// the timeout status. If the watchdog expires during the wait, waits again.
   void wait_for_leftovers() {
     constexpr Microseconds kLongest = 1500 * kMillisecond;
     bool timed_out = false;

@@ -1,6 +1,6 @@
 // Runs the device on peripherals that are plain values, in virtual microseconds. The module of the simulator
-// also has a bus, logs and real ports, and is too slow: the fuzz targets must run a hundred million modules
-// in an hour.
+// also has a bus, logs and real ports, which makes it too slow: the fuzz targets must run a hundred million
+// modules in an hour.
 #pragma once
 
 #include <algorithm>

@@ -41,7 +41,7 @@ class Session final : public ModuleObserver {
   /// Returns whether the module uses Modbus from the last reset to the next one.
   [[nodiscard]] bool speaks_modbus() const { return witness_.hears_modbus(); }
   [[nodiscard]] const InForce& in_force() const { return state().in_force; }
-  /// Returns T3.5 in microseconds. Also available in DCON, where it has no meaning.
+  /// Returns T3.5 in microseconds. In DCON the function returns a value too, but T3.5 has no meaning there.
   [[nodiscard]] Microseconds silence() const { return witness_.silence(); }
 
   void reset() {

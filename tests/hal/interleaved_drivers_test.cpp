@@ -23,7 +23,7 @@ namespace bus = hal::bus;
 constexpr unsigned kMegahertz = 50;
 constexpr unsigned kPeriod = 10'000 * kMegahertz;
 
-/// Each access takes some cycles; the interrupt occurs when the counter restarts, or some accesses later.
+/// Each access takes some cycles. The interrupt occurs when the counter restarts, or some accesses later.
 class SysTick final : public bus::Peripherals {
  public:
   SysTick(unsigned cycles, unsigned cycles_an_access, unsigned accesses_late)
@@ -104,8 +104,8 @@ class I2cController final : public bus::Peripherals {
   static constexpr std::uint32_t kControl = 0x4002'0004;
 };
 
-/// Sends a byte that is complete at the point `completes` of the turn in which the driver gives it up.
-/// Returns the number of points of that turn.
+/// Sends a byte that is complete at the point `completes` of the turn in which the driver stops waiting for
+/// the byte. Returns the number of points of that turn.
 unsigned give_up_a_byte_that_completes(unsigned completes) {
   I2cController controller;
   hal::stellaris::I2c<hal::stellaris::Family::Lm3s, 50'000'000> i2c;

@@ -14,7 +14,7 @@ using Arguments = std::vector<std::string>;
 
 class Mbpoll : public testing::TestWithParam<Way> {
  protected:
-  /// Runs mbpoll once with these arguments. Its references count from 0, as the addresses on the line.
+  /// Runs mbpoll once with these arguments. Its references count from 0, as the addresses on the line do.
   Finished mbpoll(const Arguments& options, const Arguments& values = {}) {
     Arguments command{"mbpoll", "-m", "rtu", "-b", std::to_string(GetParam().baud), "-P", "none",
                       "-0",     "-1", "-o",  "10"};  // response timeout in seconds for a busy machine

@@ -58,7 +58,7 @@ def turnaround(baud):
 
 
 class IdentificationRequest(ReadDeviceInformationRequest):
-    """A request with the length of its reply. Without the length, the library waits for a pause or for its timeout."""
+    """A request with the length of its reply. Without that length, the library waits for a pause or for its timeout."""
 
     def __init__(self, data, reply_size):
         super().__init__(data[1], data[2])

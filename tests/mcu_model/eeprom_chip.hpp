@@ -27,8 +27,8 @@ class EepromChip {
   void set_programming_time(Instant time) { programming_time_ = time; }
   /// Removes the chip from its wires, with or without the pull-ups.
   void remove(bool pull_ups_too);
-  /// Makes the supply fail. If a page is being programmed, the elapsed time decides how many of its first
-  /// bytes are complete; the next byte is spoiled, and the rest keep their old values. The chip forgets the
+  /// Makes the supply fail. If a page is being programmed, the elapsed time determines how many of its first
+  /// bytes are complete; the next byte is spoiled, and the rest keep their old values. The chip loses the
   /// state of the bus.
   void lose_power();
   /// Makes the chip acknowledge at most `bytes` bytes of each transfer from now on, including the address

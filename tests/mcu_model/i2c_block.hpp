@@ -46,7 +46,7 @@ class I2cBlock final : public Peripheral {
   /// Called when the level of the clock line has changed.
   void look_at_clock();
 
-  /// Returns the length of a bit, as set in the registers.
+  /// Returns the duration of a bit, as set in the registers.
   [[nodiscard]] Instant bit_time() const { return 20 * (period_ + 1) * clock_.cycle(); }
 
  private:

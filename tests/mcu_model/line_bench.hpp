@@ -54,7 +54,7 @@ class LineBench {
   /// The number of times that the driver went off before the end of the first stop bit of the last character
   /// (with a tolerance of a tenth of a bit for the difference of the clocks), and the number of times that it
   /// stayed on for more than a character after the last stop bit. On the wires, a second stop bit cannot be
-  /// told from the idle line.
+  /// distinguished from the idle line.
   unsigned let_go_early = 0;
   unsigned let_go_late = 0;
 

@@ -10,7 +10,7 @@ namespace ex9000::registers {
 
 class RegisterTarget final : public play::Target {
  public:
-  /// `image` must be built for the model that is passed to `start`.
+  /// `image` must be built for the model that the caller passes to `start`.
   explicit RegisterTarget(const Image& image) : bench_(image) {}
 
   void start(const Model& model, const Settings* preset) override;

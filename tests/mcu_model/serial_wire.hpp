@@ -108,7 +108,7 @@ class SerialReceiver {
     std::uint8_t byte;
     bool parity_error;
     bool framing_error;  ///< the stop bit was low
-    bool was_break;      ///< all other bits were low, too
+    bool was_break;      ///< all other bits were low too
   };
 
   /// Calls `deliver` in the middle of the first stop bit.

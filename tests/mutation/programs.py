@@ -147,7 +147,7 @@ class Program:
 
     @functools.cached_property
     def units(self):
-        """Returns the units of the tests and those library units whose header a unit includes, directly or
+        """Returns the units of the tests, and the library units whose header one of them includes, directly or
         indirectly."""
         known = [LIBRARY_UNITS[name] for name in self.libraries]
         reached = list(self.tests) + [image.unit for image in self.images]

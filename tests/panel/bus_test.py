@@ -141,7 +141,7 @@ class Bus(Panel):
         master = Master(simulator.lines[0])
         self.addCleanup(master.close)
         error = "document.querySelector('.row[data-kind=error]')"
-        # A frame of 0.3 s. During this time the simulator makes notes, and the page receives them before the frame.
+        # A frame of 0.3 s. During this time the simulator writes notes, and the page receives them before the frame.
         page.say("1 fault hang every 50ms")
         master.send(bytes([7] * 40))
         pause = "(document.getElementById('pause').click(), true)"  # otherwise more notes would move it out of sight

@@ -40,7 +40,7 @@ def text(plate, selector, wanted):
 
 @functools.cache
 def the_browser():
-    """Returns one browser for all tests, because its start takes as long as most tests."""
+    """Returns one browser for all tests, because the start of a browser takes as long as most tests."""
     browser = Browser()
     atexit.register(browser.close)
     return browser

@@ -10,7 +10,7 @@ from simulator import HANG
 
 
 def open_socket(port, receives=None):
-    """Opens a connection. `receives` is the size of a smaller receive buffer than the default, in bytes."""
+    """Opens a connection. `receives` is the size of the receive buffer in bytes, smaller than the default."""
     connection = socket.socket()
     connection.settimeout(HANG)
     if receives:

@@ -18,15 +18,15 @@ class Halted : public std::runtime_error {
 };
 
 /// The machine stands still between calls. The same calls have the same effects, independently of the host,
-/// with one exception: when the emulator advances time for a processor that has just gone to sleep, it can
-/// lose the last instructions, depending on the host. About one of a hundred transcripts then ends up to 2 us
+/// with one exception. When the emulator advances time for a processor that has just gone to sleep, it can
+/// lose the last instructions, depending on the host. About one in a hundred transcripts then ends up to 2 us
 /// later or earlier than in the previous run, or up to 7 us with input pulses.
 ///
-/// GPTM3, which no image uses, interrupts when the time has elapsed. Its interrupt code, in RAM that no image
-/// uses, reaches the gate (gate.cpp), where the processor waits. The image and its vectors are not changed: a
-/// copy of the vectors with one more entry replaces them. Like the interrupts of the image, it cannot preempt
-/// others and they cannot preempt it. It delays them by 0.5 us each time the machine stops, and uses as much
-/// stack as they do.
+/// GPTM3, which no image uses, interrupts when the time has elapsed. Its interrupt code is in RAM that no
+/// image uses, and reaches the gate (gate.cpp), where the processor waits. The image and its vectors are not
+/// changed: a copy of the vectors with one more entry replaces them. Neither this interrupt nor the
+/// interrupts of the image can preempt another one. This interrupt delays those of the image by 0.5 us each
+/// time the machine stops, and uses as much stack as they do.
 ///
 /// All functions throw std::runtime_error on an unexpected state, and Halted if the machine is about to be
 /// reset.

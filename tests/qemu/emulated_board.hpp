@@ -45,9 +45,9 @@ class EmulatedBoard {
   EmulatedBoard(const Model& model, const Settings* settings);
   ~EmulatedBoard() = default;
 
-  /// Switches the supply. When it goes on, the machine is halted before its first instruction, and only the
-  /// EEPROM has kept its content. The start of an emulator takes most of the time of a short test, so this
-  /// function halts and resets the same emulator: it reads the EEPROM's file again, and RAM is filled with
+  /// Switches the supply. When the supply goes on, the machine is halted before its first instruction, and
+  /// only the EEPROM has kept its content. The start of an emulator takes most of the time of a short test,
+  /// so this function halts and resets the same emulator, reads the EEPROM's file again, and fills RAM with
   /// noise.
   void supply(bool on);
   /// Switches the supply off and kills the emulator with SIGKILL. The next `supply` starts a new emulator.

@@ -26,7 +26,7 @@ namespace ex9000::rig {
 /// machine.
 class Emulator {
  public:
-  /// The address of the instruction at which the processor waits until it may continue.
+  /// The address of the instruction at which the processor waits until the host lets it continue.
   static constexpr std::uint32_t kGate = 0x2000'9048;
 
   /// Runs the ELF file `image`. `memory` is the file with the 8192 bytes of the EEPROM. Throws
@@ -45,7 +45,7 @@ class Emulator {
   /// Returns the line of UART0, which carries bytes at any baud rate. The caller must read regularly: a full
   /// socket (278 bytes) halts the machine.
   UnixSocket& uart() { return *uart_; }
-  /// Makes UART0 receive a break, which is the only line error that the emulated UART knows.
+  /// Makes UART0 receive a break, which is the only line error that the emulated UART supports.
   void send_break();
   [[nodiscard]] int pid() const { return process_->pid(); }
 

@@ -1,6 +1,6 @@
-// A plugin of the emulator. AlarmClock uses it. At one specified instruction, which loads a byte, the
+// A plugin of the emulator, which AlarmClock uses. At one specified instruction, which loads a byte, the
 // processor waits until the other end of a socket lets it continue. Only the processor waits, and no emulated
-// time passes. A halt of the whole machine, which a debugger uses, takes ten times as long.
+// time passes. A debugger would halt the whole machine, which takes ten times as long.
 //
 //     -plugin gate.so,address=INSTRUCTION,socket=PATH
 //

@@ -7,10 +7,10 @@
 
 namespace ex9000::rig {
 
-/// Verifies later that a lit LED is on steadily and does not flash. A wait for the next flash would take time
-/// that the surrounding steps measure. The transcript assumes that the LED is on. This class compares the
-/// assumption with later states. A flashing LED is never lit for longer than `kPhase`, so an LED that goes
-/// dark earlier was flashing.
+/// Verifies later that a lit LED is on steadily and does not flash. Waiting for the next flash would take
+/// time that the surrounding steps measure. The transcript assumes that the LED is on, and this class
+/// compares the assumption with later states. A flashing LED is never lit for longer than `kPhase`, so an LED
+/// that goes dark earlier was flashing.
 class LampWatch {
  public:
   /// How long the LED is lit when it flashes at 2 Hz after a timeout. Flashes for other reasons are shorter.

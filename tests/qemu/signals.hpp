@@ -21,7 +21,7 @@ std::uint32_t port_address(Pin pin);
 std::uint32_t data_address(Pin pin);
 
 bool level_of(QtestClient& bus, Pin pin);
-/// Sets the level of an input, which stays until the next reset.
+/// Sets the level of an input. The level stays until the next reset.
 void set_pin_level(QtestClient& bus, Pin pin, bool level);
 
 }  // namespace ex9000::rig

@@ -27,7 +27,7 @@ class TimedModule : public EmulatedBoard {
   void begin_anew(const Settings* settings);
   /// Switches the supply. No time passes.
   void power(bool on);
-  /// Switches the supply off and kills the emulator. Only the EEPROM's file stays. No time passes.
+  /// Switches the supply off and kills the emulator. Only the EEPROM's file remains. No time passes.
   void kill();
   /// Resets the module with the reset pin. Does nothing without power. No time passes.
   void reset();
@@ -38,7 +38,7 @@ class TimedModule : public EmulatedBoard {
 
   /// Lets time pass. The image runs if the module is powered.
   void run_for(std::chrono::nanoseconds time);
-  /// Returns the time that has passed.
+  /// Returns the time that has passed since the module was created.
   [[nodiscard]] std::chrono::nanoseconds now() const { return now_; }
 
   /// From now on `run_to_store` stops the module before each store to these bytes of the bus. Until `kill`,
@@ -53,11 +53,11 @@ class TimedModule : public EmulatedBoard {
   void run_to_reset(const std::string& event, std::chrono::nanoseconds time);
 
   /// Waits up to 100 ms until the module does not send, then sends bytes in `mode`. The module loses bytes
-  /// that arrive while it sends. The emulated UART has no parity and no framing errors, so a byte that a
-  /// receiver in the module's mode gets with such an error arrives as a break, which is an error too.
+  /// that arrive while it sends. The emulated UART has no parity and no framing errors. Therefore a byte in
+  /// which a receiver in the module's mode finds such an error arrives as a break, which is an error too.
   void send(const Bytes& bytes, hal::SerialMode mode);
   /// Returns the bytes that the module has sent since the last call, as a receiver in `mode` samples them,
-  /// also those with errors. No time passes.
+  /// including those with errors. No time passes.
   Bytes hear(hal::SerialMode mode);
   /// Returns whether the driver enable was on at the last stop.
   [[nodiscard]] bool speaks() const { return powered() && clock_->driver_on(); }

@@ -8,8 +8,8 @@
 
 namespace ex9000::rig {
 
-/// The maximum time to wait for a reply of the emulator. It only detects a hang: a reply takes milliseconds,
-/// or seconds on a busy machine.
+/// The maximum time to wait for a reply of the emulator. The limit only detects a hang: a reply takes
+/// milliseconds, or seconds on a busy machine.
 inline constexpr std::chrono::seconds kHang{60};
 
 /// A connection. The functions that send or receive throw std::runtime_error on errors.

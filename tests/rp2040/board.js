@@ -115,7 +115,7 @@ class Board {
 
   // --- time ---
 
-  // Lets time pass until `until`, or until something sets `stopWanted`.
+  // Lets time pass until `until` (in nanoseconds), or until something sets `stopWanted`.
   runUntil(until) {
     const { time } = this;
     this.stopWanted = false;

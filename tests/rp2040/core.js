@@ -6,7 +6,7 @@ const FIRST_INTERRUPT = 16;
 const HARD_FAULT = 3;
 
 // - An interrupt line that is asserted makes its interrupt pending, until the handler is entered. When the handler
-//   returns and the line is still asserted, the interrupt is pending again.
+//   returns and the line is still asserted, the interrupt becomes pending again.
 // - An interrupt wakes a sleeping processor, even if it became pending before the sleep, and even if PRIMASK disables
 //   it. If PRIMASK disables it, the handler is not entered.
 // - SysTick wakes the processor too.

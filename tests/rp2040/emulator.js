@@ -120,7 +120,8 @@ const COMMANDS = {
     alarm.schedule(integer(nanoseconds));
   },
   levels: () => board.levels.reduce((mask, level, number) => mask + (level ? 2 ** number : 0), 0),
-  // watch NUMBER NANOSECONDS: lets time pass until the level of a pin changes; returns whether it did
+  // watch NUMBER NANOSECONDS: lets at most this time pass until the level of a pin changes; returns whether it has
+  // changed
   watch(number, nanoseconds) {
     const pin = integer(number);
     const level = board.levels[pin];
@@ -153,7 +154,7 @@ const COMMANDS = {
   "flash-times"(erase, program) {
     board.flash.times = { erase: integer(erase), program: integer(program) };
   },
-  // counts: returns the numbers of events since `new`, and other values, as NAME=NUMBER
+  // counts: returns the number of each event since `new`, and other values, as NAME=NUMBER
   counts: () => Object.entries({ ...board.counts, pages: board.eeprom.pagesProgrammed,
     erases: [...board.flash.erased.values()].reduce((sum, each) => sum + each, 0), reason: board.reason,
     depth: board.chip?.processor.deepest ?? 0, secondCoreOff: (board.chip?.psm.frceOff ?? 0) >> 16,

@@ -169,8 +169,8 @@ class FlashChip {
     }
   }
 
-  // Simulates a power failure. After an unfinished operation the cells are undefined; in this model, every second byte
-  // has changed.
+  // Simulates a power failure. After an unfinished operation the content of the cells is undefined. In this model,
+  // every second byte has changed.
   losePower() {
     for (const unfinished of [this.operation, this.suspended].filter((each) => each !== null)) {
       const { kind, address, bytes, sector } = unfinished;

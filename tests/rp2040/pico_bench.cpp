@@ -167,7 +167,7 @@ void PicoBench::set_input(unsigned channel, bool level) {
 }
 
 void PicoBench::pulse_input(unsigned channel, std::uint32_t count, nanoseconds between) {
-  // In parts, so that the emulator replies in time on a busy machine.
+  // Makes the pulses in parts, so that the emulator replies in time on a busy machine.
   constexpr std::uint32_t kPart = 1000;
   for (; count != 0; count -= std::min(count, kPart)) {
     execute("pulses " + std::to_string(pin_of(board::kInputs, channel)) + " " +

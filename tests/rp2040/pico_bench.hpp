@@ -23,7 +23,8 @@ class PicoBench {
   explicit PicoBench(Memory memory = Memory::Flash) : memory_(memory) {}
 
   /// Provides a new board with the image of `model`. Its supply is off. `settings` are in its memory; if the
-  /// pointer is null, the memory holds none. A store in the flash knows that its free sectors are erased.
+  /// pointer is null, the memory holds no settings. A store in the flash knows that its free sectors are
+  /// erased.
   void begin_anew(const Model& model, const Settings* settings);
   /// The same with the contents of the memory in place of the settings, 384 bytes.
   void begin_anew(const Model& model, const play::Bytes& memory);

@@ -1,5 +1,5 @@
-// Corrects the system PLL of rp2040js: it locks only while it has power and a reference, and it cannot clock the system
-// before. Sources: RP2040 data sheet, 2.18 (PLL), 2.15.3.2 (glitchless multiplexers).
+// Corrects the system PLL of rp2040js: the PLL locks only while it has power and a reference, and it cannot clock the
+// system before it has locked. Sources: RP2040 data sheet, 2.18 (PLL), 2.15.3.2 (glitchless multiplexers).
 "use strict";
 
 const CONTROL = 0x00;

@@ -75,7 +75,7 @@ class Guarded {
   }
 }
 
-// The sources of a chip-level reset. A reset by the watchdog is none.
+// The sources of a chip-level reset. A reset by the watchdog is not a chip-level reset.
 const CHIP_RESET = { supply: 1 << 8, run: 1 << 16, debugPort: 1 << 20 };
 
 class ChipReset extends BasePeripheral {

@@ -16,7 +16,7 @@ from check_image.stack import Graph, Node
 
 @dataclass(frozen=True)
 class Foreign:
-    """A function without a compiler record whose stack is known for another reason."""
+    """A function that has no record of the compiler. Its stack is known for another reason."""
 
     frame: int  # bytes, at most
     reason: str

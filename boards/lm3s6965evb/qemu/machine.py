@@ -90,15 +90,17 @@ class Machine:
         return 0.001 if self._queued_bytes else 0.1
 
     def carry(self, requests: bytes, ready: list[int]) -> bytes:
-        """Takes bytes of the master and returns bytes of the module. `ready`: the readable ones of `watched`.
+        """Takes bytes of the master and returns bytes of the module. `ready`: the descriptors of `watched` that are
+        readable.
 
         Neither side waits for the other, because a blocked UART stops QEMU.
         """
         if self._events.fileno() in ready:
             self._take_events()
         reply = self._received_from(self._line) if self._line.fileno() in ready else b""
-        # QEMU's UART sends without delay, so the master gets a reply before the driver goes off. Without this queue,
-        # the module would lose the next request of a fast master. On a real line, no master can be that fast.
+        # QEMU's UART sends without delay, so the master gets a reply before the module disables its driver. Without
+        # this queue, the module would lose the next request of a fast master. On a real line, no master can be that
+        # fast.
         self._queued_bytes += requests
         self._send_queued()
         return reply

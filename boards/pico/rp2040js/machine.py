@@ -1,6 +1,7 @@
 """Starts and ends a Pico in rp2040js. Its virtual time follows the clock of the host.
 
-tests/rp2040/emulator.js is the emulator. It executes one command a line, and its time passes only during a command.
+tests/rp2040/emulator.js is the emulator. It executes one command for each line of its input. Its time passes only
+during a command.
 """
 
 from __future__ import annotations
@@ -85,7 +86,7 @@ class Machine:
         module."""
         now = time.monotonic()
         due = round((now - self._began) * _NANOSECONDS)
-        # A host that was busy for too long must not make the module run as fast as it can.
+        # If the host was busy for too long, the module must not make up for the lost time at full speed.
         lag = due - self._passed - _LARGEST_LAG * _NANOSECONDS
         if lag > 0:
             self._began += lag / _NANOSECONDS

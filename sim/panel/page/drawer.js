@@ -1,5 +1,5 @@
-// The values of a module: present, power-on and safe value, its settings, and the bytes of all copies. The elements
-// are created once and only their texts change, so that the reader's position and selection are kept.
+// The values of a module: present, power-on and safe value, its settings, and the bytes of all stored copies. The
+// elements are created once and only their texts change, so that the reader's position and selection are kept.
 
 import {bit, hexByte, make, setAttribute, setText} from "/element.js";
 

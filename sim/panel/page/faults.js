@@ -42,7 +42,7 @@ export class Faults {
 
   key(text, module) { return `${module ?? ""} ${text}`; }
 
-  /// Adds a fault to the list. It stays there after its end, so that the user can switch it on again.
+  /// Adds a fault to the list. The list keeps a fault that has ended, so that the user can switch it on again.
   learn(text, module) {
     const key = this.key(text, module);
     if (!this.known.has(key)) {

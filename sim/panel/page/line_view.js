@@ -1,8 +1,8 @@
-// A line with the face plates of its modules. It can be folded, and its modules can be searched.
+// A line with the face plates of its modules. The user can fold the line and search for modules.
 
 import {hexByte, make} from "/element.js";
 
-/// The largest number of modules with which a page shows its lines unfolded at first. A browser needs seconds to create
+/// The largest number of modules for which the page opens lines by itself, because a browser needs seconds to create
 /// thousands of plates.
 export const mostUnfolded = 64;
 

@@ -65,8 +65,8 @@ export class Live {
     this.wait = Math.min(2 * this.wait, longestWait);
   }
 
-  /// Sends a command of the control socket; resolves to {ok, text}. The simulator carries out the command `undo` if
-  /// the page disconnects without having sent it.
+  /// Sends a command of the control socket; resolves to {ok, text}. The simulator carries out the command `undo` if the
+  /// page disconnects before it has sent `undo`.
   tell(command, undo) {
     if (this.socket?.readyState !== WebSocket.OPEN) {
       return Promise.resolve({ok: false, text: "error: there is no connection to the simulator"});

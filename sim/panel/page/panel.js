@@ -28,7 +28,7 @@ const now = (line) => {
 
 function begin(hello) {
   if (version !== null && hello.version !== version) {
-    location.reload();  // the page may have changed too
+    location.reload();  // the files of the page may have changed too
     return;
   }
   version = hello.version;

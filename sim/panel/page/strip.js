@@ -168,7 +168,7 @@ export class Strip {
     this.pen.fillText(line.name, 4, top + 12);
   }
 
-  /// Entries are drawn from the last to the first.
+  /// Call this for the last entry of a lane first, because `lane.before` is the frame that follows the entry.
   drawEntry(entry, lane) {
     if (entry.note || entry.missed) {
       this.pen.fillStyle = this.colour("note");

@@ -91,8 +91,8 @@ export class Timeline {
     }
   }
 
-  /// Adds entries during a pause. If there are too many, replaces the oldest ones by one entry for each line with
-  /// their number.
+  /// Adds entries during a pause. If there are too many, replaces the oldest entries of each line by one entry that
+  /// states how many frames are missing.
   addWhilePaused(fresh) {
     this.pending.push(...fresh);
     if (this.pending.length > waitingTrimmedFrom) {

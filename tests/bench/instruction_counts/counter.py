@@ -23,8 +23,8 @@ class Highest:
 
 
 class Median:
-    """Keeps all passes and returns the median. A tick occurs during some passes, and its instructions cannot be
-    separated completely if the same turn of the main loop also does other work."""
+    """Keeps all passes and returns the median. A tick occurs during some passes. Its instructions cannot be separated
+    completely if the same turn of the main loop also does other work."""
 
     def __init__(self):
         self._passes = []

@@ -1,6 +1,6 @@
 """Divides the emulator's execution log into interrupts and turns of the main loop.
 
-QEMU logs a line before it executes the instruction. Two events can prevent the execution: QEMU restarts an instruction
+QEMU logs a line before it executes an instruction. Two events can prevent the execution: QEMU restarts an instruction
 that accesses a peripheral ("cpu_io_recompile"), or an interrupt comes first ("Stopped"). The next line then reports
 that event, and the line before it does not count.
 """

@@ -1,4 +1,4 @@
-// A typical Modbus RTU server that uses libmodbus: unit 1 with 13 coils. It serves until it is terminated.
+// A typical Modbus RTU server that uses libmodbus: unit 1 with 13 coils. It runs until it is terminated.
 //
 //     libmodbus_server        on a pseudo-terminal; prints its path
 //     libmodbus_server tcp    RTU frames over TCP, one client at a time; prints the port

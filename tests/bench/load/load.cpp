@@ -1,12 +1,13 @@
-// Measures the processor time that the simulator uses for a transaction, beside servers that use libmodbus
-// and pymodbus on the same transport; then the cost of many modules, of many lines and of memory.
+// Compares the processor time that the simulator uses for a transaction with that of servers that use
+// libmodbus and pymodbus on the same transport. Then measures the cost of many modules, of many lines and of
+// memory.
 //
 //     load [--without pymodbus] [MILLISECONDS]    duration of each measurement; default 1000
 //
 // Fails if one module costs more than its limit, or if a module requires too much memory. The limit applies
-// to the best round, because other programs on the processors disturb single rounds. The cost of many
-// modules is only printed, because other programs that use the caches change it;
-// tests/bench/simulator_instructions judges it.
+// to the best round, because other programs on the processors disturb single rounds. The cost of many modules
+// is only printed, because other programs change it if they use the caches.
+// tests/bench/simulator_instructions judges that cost.
 #include <sched.h>
 
 #include <array>
@@ -52,9 +53,9 @@ void judge(const std::string& what, double ratio, double target, double limit) {
   failed = failed || ratio > limit;
 }
 
-/// Restricts this process, and the servers that it starts, to one processor while this object exists. To wake
-/// a program on another processor can take ten times the processor time of a transaction, or nothing, and
-/// which of both happens changes from round to round.
+/// Restricts this process, and the servers that it starts, to one processor while this object exists. On two
+/// processors, a program that wakes another one sometimes needs ten times the processor time of a transaction
+/// for that, and sometimes none. This changes from round to round.
 class OneProcessor {
  public:
   OneProcessor() {
@@ -94,7 +95,7 @@ std::unique_ptr<ChildProcess> pymodbus_server(const std::vector<std::string>& ar
   return std::make_unique<ChildProcess>(command, "/");
 }
 
-/// Measures one module over TCP and over a pseudo-terminal, beside the other servers.
+/// Measures one module over TCP and over a pseudo-terminal, and compares it with the other servers.
 void compare_one_module(milliseconds time, bool with_pymodbus) {
   const SimulatorProcess tcp_simulator(over_tcp(line_of(1)));
   const SimulatorProcess tty_simulator(line_of(1));

@@ -4,7 +4,7 @@
     pymodbus_server.py tcp UNITS      over TCP; prints its port
     pymodbus_server.py DEVICE UNITS   on a serial port; prints its path
 
-It serves until it is terminated.
+It runs until it is terminated.
 """
 
 import asyncio

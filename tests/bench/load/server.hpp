@@ -46,7 +46,8 @@ inline double processor_seconds(int pid) {
   return static_cast<double>(time.tv_sec) + static_cast<double>(time.tv_nsec) * 1e-9;
 }
 
-/// Returns the time that all processors of the machine have worked, for any program or another machine.
+/// Returns the time that all processors of the machine together have been busy since it started, in seconds.
+/// Includes all programs and the time that a hypervisor has given to other machines.
 inline double busy_seconds() {
   std::ifstream file("/proc/stat");
   std::string name;
@@ -90,8 +91,8 @@ class Server {
   [[nodiscard]] const std::string& name() const { return name_; }
   /// Returns the processor time of the server for a transaction, in microseconds: the median of all rounds.
   [[nodiscard]] double median() const { return median_of(microseconds_); }
-  /// Returns the least ratio of the processor time for a transaction to that of `other`. Compares both
-  /// servers in the same round, in which the machine treats both alike. nullopt: other programs disturbed
+  /// Returns the smallest ratio of the processor time for a transaction to that of `other`. Compares the two
+  /// servers only within a round, in which the machine treats both equally. nullopt: other programs disturbed
   /// every round.
   [[nodiscard]] std::optional<double> least_ratio_to(const Server& other) const {
     std::optional<double> result;

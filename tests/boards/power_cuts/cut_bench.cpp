@@ -203,7 +203,7 @@ void CutBench::set_outputs(const FrameFormat& frame_format) {
   ASSERT_EQ(bench_.outputs(), kDriven);
 }
 
-/// Executes a command until it is stored and answered, and the bus and the line are idle.
+/// Executes a command until it is stored, the reply is sent, and the bus and the line are idle.
 void CutBench::carry_out(const FrameFormat& frame_format, const StoringCommand& command,
                          const Settings& before, std::size_t pages) {
   const std::size_t had_programmed = bench_.eeprom.programmed().size();

@@ -26,9 +26,8 @@ using Contents = std::array<std::uint8_t, kStoredMemory>;
 struct Cuts {
   std::size_t points = 0;  ///< on the bus, and within each byte that is programmed
   std::size_t cuts = 0;    ///< points, multiplied by the effects that a cut may have on the page
-  /// Each of the resulting contents, once. True: at least one of these cuts came after the command was
-  /// certainly done, because the reply had begun, or because enough time had passed if the command has no
-  /// reply.
+  /// Each of the resulting contents, once. True: after at least one of these cuts the command was certainly
+  /// done, because the reply had begun, or because enough time had passed for a command without a reply.
   std::map<Contents, bool> left;
   std::uint16_t outputs = 0;    ///< before the command
   std::vector<Instant> events;  ///< times of events on the EEPROM's bus, from the beginning of the command
@@ -43,7 +42,7 @@ struct Outputs {
 
 /// The state that a master finds when a module has started.
 struct Found {
-  std::optional<Settings> settings;  ///< no value: the module does not answer
+  std::optional<Settings> settings;  ///< no value: the module does not reply
   Outputs outputs;                   ///< before the first request
 };
 
@@ -71,7 +70,7 @@ class CutBench {
   CutBench(const Image& image, const Model& model);
 
   /// Executes the command on a module that starts with `contents`, which store `before`. Also checks that the
-  /// module answers correctly and drives the correct outputs at the correct time.
+  /// module replies correctly and drives the correct outputs at the correct time.
   Cuts cut_everywhere(const Contents& contents, const Settings& before, const StoringCommand& command);
 
   /// Executes the command in the same way, but resets the microcontroller at `time` after the beginning of
@@ -95,8 +94,8 @@ class CutBench {
   [[nodiscard]] std::uint16_t outputs_before(const Settings& settings) const;
 
   /// Starts the module with `contents` and reads all its settings with the protocol, baud rate and address of
-  /// the first of `guesses` for which it answers. Modbus cannot read the data format: if `thoroughly`, it is
-  /// read in INIT mode; otherwise it is taken from the guess.
+  /// the first of `guesses` to which the module replies. Modbus cannot read the data format: if `thoroughly`,
+  /// the format is read in INIT mode; otherwise it is taken from the guess.
   Found come_up(const Contents& contents, const std::vector<Settings>& guesses, bool thoroughly);
 
  private:

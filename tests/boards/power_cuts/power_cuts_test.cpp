@@ -1,6 +1,6 @@
 // Tests power cuts at every point of every command that stores, and of a timeout: wire.md section 8, "At the
-// next reset each *command* is either done completely or not done at all". A command that was answered must
-// be done.
+// next reset each *command* is either done completely or not done at all". A command that got a reply must be
+// done.
 //
 // The image stores settings with its own drivers. A reader without code of the firmware (StoredCopy) checks
 // all contents that a cut may leave in the EEPROM. The image also starts from some of them, chosen by a seed,

@@ -1,5 +1,5 @@
-// A board with the number of pins from the command line. It does not suit the model from the command line, or
-// there are fewer images than models.
+// A board whose numbers of pins come from the command line of the compiler. The board does not suit the model
+// from that command line, or there are fewer images than models.
 #include <array>
 
 namespace ex9000::board {

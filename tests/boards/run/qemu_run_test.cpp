@@ -18,9 +18,9 @@ TEST(QemuRun, AMasterThatNeverReadsDoesNotStopTheModule) {
   const RunningImage image("EX9042D");
   {
     Terminal terminal(image.tty(), 9600);
-    for (int request = 0; request < 1000; ++request) {  // the answers need twice the buffer of a terminal
+    for (int request = 0; request < 1000; ++request) {  // the replies fill the buffer of a terminal twice
       terminal.type("$01M\r");
-      // Leaves time for an answer. The expectations do not depend on requests that are lost.
+      // Leaves time for a reply. The expectations do not depend on requests that are lost.
       std::this_thread::sleep_for(std::chrono::milliseconds(5));
     }
   }
@@ -98,7 +98,7 @@ class Debugger {
   std::string received_;
 };
 
-/// If INIT* were low, the module would start in INIT mode and no longer answer to 01.
+/// If INIT* were low, the module would start in INIT mode and no longer reply at address 01.
 TEST(QemuRun, InitStaysReleasedWhenTheModuleResetsItself) {
   constexpr std::uint32_t kNothingThere = 0xF0000000;
   constexpr std::uint32_t kDeafLoop = 0x20008000;

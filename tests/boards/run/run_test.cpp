@@ -45,7 +45,7 @@ TEST(Run, LibmodbusReadsAndWrites) {
 }
 
 TEST(Run, ACommandMayBeTypedByHand) {
-  // A busy machine makes the pauses longer, which does not matter.
+  // A busy machine makes the pauses longer, which does not affect the result.
   constexpr std::chrono::milliseconds kBetweenKeys{50};
   const RunningImage image("EX9042D");
   Terminal terminal(image.tty(), 9600);

@@ -23,7 +23,7 @@ namespace fs = std::filesystem;
 using Arguments = std::vector<std::string>;
 
 inline const std::string kRun = EX9000_RUN;
-/// A limit that only detects hangs: the program and the emulator answer within seconds even on a busy
+/// A limit that only detects hangs: the program and the emulator respond within seconds even on a busy
 /// machine.
 inline constexpr std::chrono::seconds kHang{60};
 /// The time that a master waits for a reply, long enough for a busy machine.
@@ -54,9 +54,9 @@ class RunningImage {
     return child;
   }
 
-  /// Sends a command and its CR, and returns the answer up to CR.
+  /// Sends a command and its CR, and returns the reply up to its CR.
   [[nodiscard]] std::string ask(const std::string& command) const { return ask_behind("", command); }
-  /// Like `ask`, but first skips answers to earlier requests, which are all `before`.
+  /// Like `ask`, but first skips replies to earlier requests, which are all `before`.
   [[nodiscard]] std::string ask_behind(const std::string& before, const std::string& command) const {
     Terminal terminal(tty(), 9600);
     terminal.type(command + "\r");

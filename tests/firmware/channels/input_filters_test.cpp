@@ -17,7 +17,7 @@ class InputFiltersTest : public testing::Test {
     inputs_.use_filters(filters_);
   }
   void edge(bool level, unsigned channel = kChannel) { edges_.on_edge(channel, level, now_); }
-  /// Passes time and collects the edges.
+  /// Lets time pass and collects the edges.
   void pass(Duration time) {
     now_ = now_ + time;
     inputs_.collect(edges_, kMaxInputs, now_);

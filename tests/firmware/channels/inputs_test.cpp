@@ -10,7 +10,7 @@ constexpr unsigned kAll = kMaxInputs;
 
 class InputsTest : public testing::Test {
  protected:
-  /// Begins with these levels at reset.
+  /// Starts with these levels at reset.
   void begin(std::uint16_t levels) {
     edges_.begin(levels);
     inputs_.begin(levels);

@@ -7,7 +7,8 @@ namespace ex9000 {
 namespace {
 
 constexpr Duration kLong = milliseconds(10'000);
-/// A timer ends this much later, because the output is switched on during a pass of the main loop.
+/// A timer ends this many microseconds late, because the output is switched on during a pass of the main
+/// loop.
 constexpr std::uint32_t kLate = 300;
 
 class OutputTimersTest : public testing::Test {

@@ -24,8 +24,8 @@ struct Tried {
   void print() const { std::printf("points: %u, interleavings: %u\n", points, interleavings); }
 };
 
-/// Plays one scenario with many places of its steps, and compares each part of the outcome with the permitted
-/// ones.
+/// Plays one scenario with its steps at many points, and compares each part of the outcome with the permitted
+/// parts.
 class Interleaver {
  public:
   Interleaver(const Scenario& scenario, Tried& counted)

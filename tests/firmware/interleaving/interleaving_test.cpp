@@ -1,4 +1,4 @@
-// Tests interrupts at every point at which the main loop accesses data that it shares with them.
+// Tests interrupts at every point at which the main loop accesses data that it shares with interrupts.
 //
 // The core's own sources and hal/device.hpp run here with crossings, a clock and registers that report every
 // access (observed/). The test runs an interrupt before and after each access. Each part of the outcome must
@@ -64,8 +64,8 @@ TEST(Interleaving, ASilenceBelongsToTheFrameBeforeIt) {
   EXPECT_GT(all.interleavings, 200U);
 }
 
-/// Sends a whole frame at each point of the turn that answers an earlier frame. The new frame must not be
-/// lost from the point at which the earlier frame has been processed until the driver is switched on.
+/// Sends a whole frame at each point of the turn that replies to an earlier frame. The new frame must not be
+/// lost if it arrives after the earlier frame has been processed and before the driver is switched on.
 void expect_one_more_is_kept(Scenario scenario, const std::string& request, const std::string& reply) {
   bool driving = false;
   std::size_t answered = 0;

@@ -62,7 +62,7 @@ inline Parts restarted(Bench& bench) {
   return {};
 }
 
-/// Does the same as `restarted` for Modbus: a host OK counts from the end of its silence.
+/// Does the same as `restarted` for Modbus, in which a host OK counts from the end of its silence.
 inline Parts modbus_restarted(Bench& bench) {
   bench.asked["host OK"] += LineTiming::at(115200, LineFormat::k8N1).rtu_silence.microseconds();
   return restarted(bench);

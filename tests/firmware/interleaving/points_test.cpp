@@ -1,4 +1,5 @@
-// Tests that interrupts at every point find typical errors in data that the main loop shares with them.
+// Tests that interrupts at every point reveal typical errors in data that the main loop shares with
+// interrupts.
 #include "tests/support/interleaving/points.hpp"
 
 #include <gtest/gtest.h>

@@ -62,7 +62,7 @@ inline void require(bool holds, const std::string& what) {
   }
 }
 
-/// Checks the minimum time between two replies, and between a request in `asked` and its reply.
+/// Checks the minimum time between two replies, and between a request in `asked` and the reply to it.
 inline void require_distances(const Bench& bench, const Chip& hardware, const Scenario& scenario) {
   const std::vector<Sent>& sent = hardware.sent;
   for (std::size_t i = 0; i < sent.size(); ++i) {

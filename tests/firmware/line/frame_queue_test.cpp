@@ -6,7 +6,7 @@
 namespace ex9000 {
 namespace {
 
-/// Assembles a frame of one byte. Returns false if there is no space for it.
+/// Assembles a frame of one byte. Returns false if the queue has no space for the frame.
 bool put(FrameQueue& queue, std::uint8_t byte) {
   Frame& frame = queue.assembling();
   frame.offset = 0;

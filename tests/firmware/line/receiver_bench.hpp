@@ -62,7 +62,7 @@ class ReceiverTest : public testing::Test {
       byte(static_cast<std::uint8_t>(character));
     }
   }
-  /// Passes a silence that is long enough to end every frame.
+  /// Lets a silence pass that is long enough to end every frame.
   void silence() {
     now_ = now_ + milliseconds(50);
     while (!(receiver_.on_silence() == Duration())) {

@@ -76,9 +76,9 @@ class Wire {
       byte(value);
     }
   }
-  /// Passes time between a stop bit and the next start bit.
+  /// Lets time pass between a stop bit and the next start bit.
   void silence(Nanoseconds length) { now_ += length; }
-  /// Passes time until no timer runs.
+  /// Lets time pass until no timer runs.
   void rest() {
     silence(1'000'000'000);
     run_timer();

@@ -219,7 +219,7 @@ void Crowd::exchange() {
     ++replies_;
     ++of_each_[module];
     stores_ += expected.stores ? 1U : 0U;
-    // The other modules receive the reply, too.
+    // The other modules receive the reply too.
     for (std::size_t i = 0; i < kModules; ++i) {
       if (i != module) {
         ASSERT_TRUE(described_[i].on_request(heard_, now()).reply.empty());

@@ -1,5 +1,5 @@
-// Tests noise on the line: the module answers and changes outputs only for frames whose received bytes pass
-// the check. The test also counts the damaged frames that pass it.
+// Tests noise on the line: the module replies and changes outputs only if the received bytes of a frame pass
+// the check. The test also counts the damaged frames that pass the check.
 //
 //     EX9000_FRAMES=N    frames for each check and error rate; default 10,000
 //     EX9000_SEED=N      default 1

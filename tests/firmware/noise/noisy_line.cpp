@@ -22,7 +22,7 @@ constexpr unsigned kOutputs = 13;
 /// The time from the last byte of a request until the next request may follow. It is long enough for a reply
 /// of at most 9 characters.
 constexpr VirtualTime kReplies = milliseconds(6);
-/// Longer than a store or any other effect of a frame takes.
+/// Longer than a store, or any other effect of a frame, takes.
 constexpr VirtualTime kLongest = milliseconds(300);
 std::string spec_of(Check check) {
   const std::string spec = "EX9042D-M@01,baud=115200";

@@ -38,8 +38,8 @@ double krawtchouk(unsigned bits, unsigned weight, unsigned marked) {
   return sum;
 }
 
-/// Returns, for each place, the change of the CRC if that bit is flipped. Apart from its start value, a CRC
-/// is linear.
+/// Returns, for each place, the change of the CRC if that bit is flipped. A CRC is linear except for its
+/// start value.
 std::vector<unsigned> syndromes(unsigned bits) {
   std::vector<unsigned> all;
   for (unsigned place = 0; place < bits; ++place) {

@@ -1,4 +1,4 @@
-// Tests the check of a record of settings: it detects errors in the stored bytes and torn writes (wire.md
+// Tests the check of a record of settings, which detects errors in the stored bytes and torn writes (wire.md
 // D8).
 #include <gtest/gtest.h>
 
@@ -53,7 +53,7 @@ std::uint32_t word_that_must_be_at(std::size_t missing, const Record& record, co
   return undone(behind, 32) ^ before;
 }
 
-/// Records that differ in up to four adjacent bytes only. Requires that their checks differ, too.
+/// Records that differ only in up to four adjacent bytes. Requires that their checks differ too.
 class OfOneKind {
  public:
   OfOneKind(const char* what, std::size_t at) : what_(what), at_(at) {}

@@ -89,7 +89,7 @@ TEST(SettingsAfterAnUpdate, AFirstStoreThatFailsLeavesTheOldOnes) {
   }
 }
 
-/// The power failed after the new copy was written and perhaps verified, but before the old copies were
+/// The power failed after the new copy was written, and perhaps verified, but before the old copies were
 /// invalidated.
 TEST(SettingsAfterAnUpdate, OldCopiesStayValidUntilTheSettingsAreSavedAgain) {
   FakeMemory memory = updated();

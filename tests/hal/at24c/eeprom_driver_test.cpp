@@ -29,8 +29,8 @@ constexpr milliseconds kLongestJob{40};
 /// The greatest permitted number of register accesses in a turn of the main loop.
 constexpr std::uint64_t kMostAccessesATurn = 24;
 
-/// The driver and a main loop. A turn of the main loop runs after each interrupt, every millisecond, and at
-/// once if the driver requests it.
+/// The driver and a main loop. The main loop makes a turn after each interrupt, every millisecond, and at
+/// once if the driver requests another turn.
 template <Family family>
 class Bench {
  public:
@@ -114,8 +114,8 @@ class Bench {
     driver->master().start();
   }
 
-  /// Runs one turn of the main loop and the time until the next one, at most up to `end`, so that a test can
-  /// continue in the middle of a byte.
+  /// Runs one turn of the main loop, and then the time until the next turn. Stops at `end` at the latest, so
+  /// that a test can continue in the middle of a byte.
   void turn(Instant end = kNever) {
     woken_ = false;
     const std::uint64_t before = mcu->accesses();
@@ -345,8 +345,8 @@ TYPED_TEST(Eeprom, AReadSucceedsAfterAResetAtAnyTimeDuringARead) {
 }
 
 // A reset releases both pins. If the clock line rises while the data line is low, the data line rises after
-// it, and this makes a STOP. Directly after a byte the STOP ends the write, and the EEPROM programs the bytes
-// that it has received. No driver can prevent that; the driver frees the bus afterwards.
+// it, and this makes a STOP. If this happens directly after a byte, the STOP ends the write, and the EEPROM
+// programs the bytes that it has received. No driver can prevent that; the driver frees the bus afterwards.
 TYPED_TEST(Eeprom, FreeingTheBusAfterAResetDuringAWriteProgramsNothing) {
   constexpr std::uint16_t kPlace = 0x20;
   unsigned nothing = 0;

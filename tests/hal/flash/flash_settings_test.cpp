@@ -40,8 +40,8 @@ class OnFlash {
     latency = chip_.now - began;
     return keeper_.saved();
   }
-  /// Runs the main loop without a command for this time: the keeper stores what it must, and the store erases
-  /// free sectors.
+  /// Runs the main loop for this time without a command. The keeper stores pending settings, and the store
+  /// erases free sectors.
   void idle(std::uint64_t microseconds) {
     for (const std::uint64_t end = chip_.now + microseconds; chip_.now < end;) {
       keeper_.poll(keeper_.stored(), chip_.time());

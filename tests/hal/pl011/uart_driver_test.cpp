@@ -113,7 +113,7 @@ class Sending : public testing::TestWithParam<std::tuple<bool, std::uint32_t, Li
     ASSERT_EQ(bench.line.drives.size(), 1U) << "it is switched on and off once";
     EXPECT_LT(bench.line.drives[0].from, bench.line.heard.front().started);
     EXPECT_EQ(bench.line.bits_lost, 0U);
-    // The last stop bit has the length that the microcontroller's clock gives it.
+    // The clock of the microcontroller determines the length of the last stop bit.
     const Instant bit = bench.mcu.uart0.bit_time();
     EXPECT_GE(bench.line.drives[0].to, bench.line.heard.back().started + bits() * bit);
   }
@@ -317,7 +317,7 @@ INSTANTIATE_TEST_SUITE_P(InBothFormats, ReceivingParity, testing::Values(LineFor
 
 class ReceivingWithoutParity : public Receiving {};
 
-/// A receiver looks at the first stop bit only.
+/// A receiver checks only the first stop bit.
 TEST_P(ReceivingWithoutParity, BytesWithAnotherNumberOfStopBitsAreReceived) {
   bench.line.set_format(GetParam() == LineFormat::k8N1 ? LineFormat::k8N2 : LineFormat::k8N1);
   const std::vector<std::uint8_t> bytes = some_bytes(256);

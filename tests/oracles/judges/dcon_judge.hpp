@@ -18,9 +18,9 @@ class DconJudge {
 
   [[nodiscard]] bool checksum() const { return checksum_; }
   [[nodiscard]] std::uint8_t own_address() const { return own_; }
-  /// Call this when `%` has been answered.
+  /// Call this when the module has replied to `%`.
   void answer_to(std::uint8_t address) { own_ = address; }
-  /// Call this while `%` is being executed: the module may already answer to this address.
+  /// Call this while `%` is being executed: the module may already reply at this address.
   void may_answer_to(std::optional<std::uint8_t> address) { next_ = address; }
 
   Finding byte(std::uint8_t byte, bool good, Microseconds now) {

@@ -22,8 +22,8 @@ struct DconRules {
 
 namespace detail {
 
-/// A request and its answer. In the request, `.` is any character, and `*` at the end is one or more
-/// characters. In the answer, aa is the address, ss the stored address, nn the address that `%` sets, h a hex
+/// A request and its reply. In the request, `.` is any character, and `*` at the end is one or more
+/// characters. In the reply, aa is the address, ss the stored address, nn the address that `%` sets, h a hex
 /// digit, d a decimal digit, b 0 or 1, t at the end a name of 1 to 7 characters, and w at the end 4 or 8 hex
 /// digits.
 struct Shape {

@@ -10,9 +10,9 @@ struct Finding {
   enum class Kind {
     Nothing,    ///< no frame, or a frame whose check is wrong
     Foreign,    ///< for another module
-    Request,    ///< for the module, which may answer once
-    Broadcast,  ///< for every module; none answers
-    HostOk,     ///< for every module; none answers, and it restarts the host watchdog
+    Request,    ///< for the module, which may reply once
+    Broadcast,  ///< for every module; none replies
+    HostOk,     ///< for every module; none replies, and each restarts its host watchdog
   };
 
   Kind kind = Kind::Nothing;

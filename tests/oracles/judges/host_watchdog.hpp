@@ -10,17 +10,17 @@
 
 namespace ex9000::judges {
 
-/// Knows the latest restart and the latest timeout of the host watchdog. It does not know whether requests
-/// restart it because register 0x0251 is 1.
+/// Stores the latest restart and the latest timeout of the host watchdog. Ignores restarts by requests if
+/// register 0x0251 is 1.
 class HostWatchdog {
  public:
   void module_reset(Microseconds now) {
     restarted_ = now;
     timed_out_ = 0;
   }
-  /// Call this when a command has restarted it exactly now.
+  /// Call this when a command has restarted the host watchdog exactly now.
   void restarted(Microseconds now) { restarted_ = now; }
-  /// Call this when a host OK or a command restarts it at `when` or later.
+  /// Call this when a host OK or a command restarts the host watchdog at `when` or later.
   void restarts_at_the_earliest(Microseconds when) { restarted_ = std::max(restarted_, when); }
 
   /// Returns whether a module with these values may have had a timeout until now.
@@ -29,7 +29,7 @@ class HostWatchdog {
     return values.enabled && now - restarted_ >= values.timeout * kUnit;
   }
 
-  /// Call this when it has expired. `values`: those before the timeout.
+  /// Call this when the host watchdog has expired. `values`: those before the timeout.
   void expired(const Values& values, Microseconds now) {
     outputs_before_ = values.lasting_outputs();
     timed_out_ = now;

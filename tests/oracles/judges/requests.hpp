@@ -1,4 +1,4 @@
-// The requests that a module has received and may still execute or answer.
+// The requests that a module has received and that it may still execute or reply to.
 #pragma once
 
 #include <algorithm>
@@ -17,7 +17,7 @@ struct Request {
   std::array<std::uint8_t, 256> bytes;
   std::size_t size;
   Microseconds last;
-  /// The time at which it became a frame: the silence after it ended, or the module replied.
+  /// The time at which the bytes became a frame: the silence after them ended, or the module replied.
   Microseconds over;
   Demand demand;
   bool broadcast;
@@ -31,8 +31,8 @@ struct Request {
   [[nodiscard]] bool is_silent_store() const { return broadcast && demand.stores_something; }
 };
 
-/// A queue. The module keeps one frame and executes another one. It may lose further frames, which cannot be
-/// seen from outside, so the queue keeps some more.
+/// A queue of requests. The module keeps one frame and executes another one. It may lose further frames. Such
+/// a loss cannot be seen from outside, so the queue keeps some more.
 class Requests {
  public:
   /// The greatest number of requests in the queue.

@@ -140,7 +140,8 @@ constexpr Demand rtu_demand(Bytes request, unsigned outputs) {
                                                         outputs)
                       : Demand{};
       }
-      // A write of several registers cannot include the timeout register: no register next to it is writable.
+      // A write of several registers cannot include the timeout register, because no register next to it is
+      // writable.
       return request.size == kOneRegister && request.word(4) == 1 && request[6] == 2
                  ? detail::demand_of_register(request.word(2), request.word(7))
                  : detail::demand_of_register(0, 0);

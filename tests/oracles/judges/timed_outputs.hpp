@@ -11,12 +11,12 @@
 
 namespace ex9000::judges {
 
-/// Knows for each output the earliest time at which its timer may end. Commands that end a timer, or that
-/// switch an output off, are not its subject.
+/// Stores for each output the earliest time at which its timer may end. Ignores commands that end a timer or
+/// switch an output off.
 class TimedOutputs {
  public:
-  /// Call this when a request that ended at `last` has been received. It can start the timer of an output
-  /// again while it is running, with a shorter time. This changes no values, so `started` is not called.
+  /// Call this when a request that ended at `last` has been received. The request can restart the running
+  /// timer of an output with a shorter time. This changes no values, so `started` is not called.
   void may_be_restarted(const Demand& demand, Microseconds last) {
     for (unsigned channel = 0; channel < ends_.size(); ++channel) {
       if (starts(demand, channel)) {

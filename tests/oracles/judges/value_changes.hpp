@@ -31,7 +31,7 @@ class ValueChanges {
   void note(const Request& request) { timers_.may_be_restarted(request.demand, request.last); }
 
   /// Returns the claim that a change of the values to `to` violates, or null. Only `fresh` requests can cause
-  /// a change. Call `change` after it.
+  /// a change. Call `change` after this function.
   const char* objection_to_change(const Values& to, Requests& requests, Microseconds now) {
     if (one_leads_to(to, requests, now)) {
       return nullptr;

@@ -39,14 +39,14 @@ struct Listening {
 
 /// Reports a violated claim if
 ///  - a reply begins that no frame has requested, or begins too early or too late, or does not have the
-///    format that the request demands;
+///    format that the request requires;
 ///  - outputs, power-on value, safe value, timeout or enable of the host watchdog, or the timeout status
 ///    change, except exactly as a received command demands, because the host watchdog expires, or because the
 ///    timer of an output ends;
-///  - a command is answered, or an idle module receives a broadcast that drives outputs without storing, and
+///  - a command gets a reply, or an idle module receives a broadcast that drives outputs without storing, and
 ///    these values are not what the command demands;
 ///  - a command is refused although one of these values has changed, or a valid output command is refused;
-///  - an idle module does not answer a frame that is addressed to it;
+///  - an idle module does not reply to a frame that is addressed to it;
 ///  - the host watchdog expires too early;
 ///  - the timer of an output ends too early;
 ///  - the address changes without a command;
@@ -64,7 +64,7 @@ class Witness {
   /// Numbers of received frames.
   struct Counts {
     std::uint64_t requests = 0;
-    std::uint64_t silent = 0;    ///< executed without an answer
+    std::uint64_t silent = 0;    ///< executed without a reply
     std::uint64_t host_oks = 0;  ///< the part of `silent` that are host OKs
     std::uint64_t foreign = 0;
     std::uint64_t storing = 0;  ///< the part of `requests` and `silent` that store something
@@ -121,7 +121,7 @@ class Witness {
   }
 
   /// Call this at the end of the first stop bit of a byte that arrived while the module's driver was off,
-  /// before the module receives the byte. `address`: the address that the module answers to.
+  /// before the module receives the byte. `address`: the address at which the module replies.
   void hears(std::uint8_t byte, bool good, std::uint8_t address, Microseconds now) {
     pass(now);
     if (rtu_) {
@@ -276,8 +276,8 @@ class Witness {
     }
   }
 
-  /// Finds the request that this reply answers, according to `form_of` and to the values. Drops it and all
-  /// requests before it.
+  /// Finds the request to which this reply belongs, according to `form_of` and to the values. Drops it and
+  /// all requests before it.
   template <class FormOf>
   ReplyForm answered(bool refuses_outputs, FormOf form_of) {
     mark_fresh();
@@ -400,8 +400,8 @@ class Witness {
     }
   }
 
-  /// The end of a timer can undo the effect of the latest broadcast, so this checks the broadcast before, or
-  /// not at all if the broadcast may take effect in the same turn.
+  /// The end of a timer can undo the effect of the latest broadcast. Therefore this function checks the
+  /// broadcast before the end of the timer, or not at all if the broadcast may take effect in the same turn.
   void look_before_a_timer_ends() {
     if (broadcast_ && now_ > latest_of(pending_[0], free_)) {
       look();

@@ -24,7 +24,8 @@ std::string Module::first_second(unsigned outputs, unsigned inputs) const {
 }
 
 /// Processes a frame from the delimiter to the character before CR. Returns no value if there is no reply.
-/// The line tallies count as function 08 does in Modbus: a reading includes the request that reads it.
+/// The line tallies count as function 08 does in Modbus: a value that is read includes the request that reads
+/// it.
 std::optional<std::string> Module::dcon_frame(std::string frame, bool spoiled) {
   if (spoiled) {
     rule("ASCII frame spoiled");
@@ -60,7 +61,7 @@ std::optional<std::string> Module::dcon_frame(std::string frame, bool spoiled) {
   }
   const std::string address = frame.substr(1, 2);
   if (address == "**") {
-    // Broadcasts never answer.
+    // Broadcasts never get a reply.
     counts_.server_messages += 1;
     counts_.no_response += 1;
     if (frame == "#**") {
@@ -144,7 +145,7 @@ std::string Module::set_configuration(const std::string& body) {
   stored_.address = address;
   stored_.baud_code = baud_code;
   stored_.format = format;
-  // The new address is in force at once; in INIT mode the module continues to answer as 00.
+  // The new address is in force at once. In INIT mode the module continues to reply as 00.
   if (!init_mode_) {
     address_ = address;
   }

@@ -6,7 +6,7 @@
 namespace ex9000::reference {
 
 /// The command does not exist on this model, its arguments have a wrong format or range, or it requires
-/// INIT*. Nothing changes, and the answer is `?AA` or, with `bare`, `?`.
+/// INIT*. Nothing changes, and the reply is `?AA` or, with `bare`, `?`.
 struct Refused {
   std::string rule;
   bool bare = false;

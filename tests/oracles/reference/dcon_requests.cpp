@@ -256,14 +256,14 @@ Bytes dcon_request(const Module& module, Random& random) {
     case 2:
       sent = random.one_of<std::string>({"\n", std::string(1, '\0'), "\r", " ", "\n\r"}) + sent;
       break;
-    case 3:  // another module answers another master
+    case 3:  // another module replies to another master
       sent = random.one_of<std::string>({"!", ">", "?"}) + noise(random, 4) + sent +
              (random.once_in(2) ? sent : "");
       break;
     case 4:
       sent = "$" + hex(module.address() ^ 0x10U, 2) + "M\r" + sent;
       break;
-    case 5:  // immediately after a command that gets no answer
+    case 5:  // immediately after a command that gets no reply
       sent = checked(module, random.one_of<std::string>({"~**", "#**"}), random) + "\r" + sent;
       break;
     default:

@@ -1,5 +1,5 @@
-// Recognises the requests that only a module with extensions has: wire.md 12. A description without
-// extensions requires nothing else about them.
+// Recognises the requests that only a module with extensions has: wire.md 12. A reference module without
+// extensions leaves the reply to these requests open.
 #pragma once
 
 #include <string>
@@ -8,7 +8,7 @@
 
 namespace ex9000::reference {
 
-/// Returns whether CC has bits 7:6, which are the line format.
+/// Returns whether bits 7:6 of CC, which are the line format, are not 0.
 bool has_line_format(unsigned baud_code);
 
 /// Returns whether the command begins like `~AARD` or `~AAX`, or is a `%` with a line format.

@@ -29,8 +29,8 @@ std::uint32_t pulses(const Module& module, Random& random) {
   return random.once_in(60) ? wraps - 2 + random.below(5) : random.between(1, 5);
 }
 
-/// Returns a line format whose bytes a module with `format` can tell from each other, and which has another
-/// parity.
+/// Returns a line format that has another parity, and whose bytes a module with `format` can separate from
+/// each other.
 LineFormat another_format(LineFormat format, Random& random) {
   const LineFormat other_parity = format == LineFormat::k8E1 ? LineFormat::k8O1 : LineFormat::k8E1;
   const bool has_parity = format == LineFormat::k8E1 || format == LineFormat::k8O1;
@@ -83,7 +83,7 @@ Step next_step(const Module& module, Random& random) {
   if (what < 14) {
     return wait(module, random);
   }
-  // Inputs that a model does not have may be wired, too; they have no effect.
+  // Inputs that a model does not have may be wired too; they have no effect.
   if (what < (module.row().inputs != 0 ? 40U : 15U)) {
     // Often an input whose filter is settling, or one of the first two, which have a filter more often.
     const std::optional<unsigned> settling = module.settling_input();

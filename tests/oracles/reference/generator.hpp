@@ -9,7 +9,7 @@
 namespace ex9000::reference {
 
 /// Returns the first steps of a session: either none, or the steps by which a person sets another address,
-/// baud rate, line format, checksum and protocol through INIT*. Random steps alone seldom have this order.
+/// baud rate, line format, checksum and protocol through INIT*. Random steps alone rarely have this order.
 std::vector<Step> first_steps(const Module& module, Random& random);
 
 /// Returns the next step, in most cases a request.

@@ -49,8 +49,8 @@ void Module::take_level(unsigned channel) {
   edge(channel, (levels_ >> channel & 1U) != 0, 1);
 }
 
-/// A new time of a filter applies from the last edge at the terminal. If it is over already, the level counts
-/// as soon as the time is stored, which may have to wait for the store of a timeout.
+/// A new filter time applies from the last edge at the terminal. If that time is already over, the level
+/// counts as soon as the setting is stored, which may have to wait for the store of a timeout.
 void Module::set_filter(unsigned channel, unsigned milliseconds) {
   if (settling_[channel] && milliseconds != stored_.filters[channel]) {
     const Time settled = last_edges_[channel] + std::chrono::milliseconds(milliseconds);

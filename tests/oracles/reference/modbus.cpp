@@ -71,7 +71,7 @@ Bytes Module::modbus_frame(Bytes frame, std::vector<bool> bad) {
   if (address != 0) {
     restart_host_watchdog_by_request();
   }
-  // Host OK is recognised first, and never answered.
+  // A host OK is recognised first and never gets a reply.
   if ((function == 0x03 || function == 0x04) && frame.size() == 6 && word(frame, 2) == kHostOk &&
       word(frame, 4) <= 1) {
     rule(std::string(address == 0 ? "broadcast " : "") + "host OK by " + function_name(function));

@@ -380,8 +380,8 @@ void Module::set_registers(unsigned first, const std::vector<unsigned>& values) 
   }
 }
 
-/// Returns whether a write that begins at this register is ignored at address 0. All registers that one
-/// request can write are alike in this.
+/// Returns whether a write that begins at this register is ignored at address 0. The result is the same for
+/// all registers that one request can write.
 bool Module::broadcast_ignored(unsigned first) {
   if (first == 0x01E4 || first == 0x01E5) {
     rule("broadcast ignored: configuration");

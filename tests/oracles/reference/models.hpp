@@ -9,8 +9,8 @@ namespace ex9000::reference {
 /// Whether a module has the extensions of wire.md 12.
 enum class Extensions {
   Present,
-  /// The module has only what the manuals describe. For a request that only the extensions have, the answer
-  /// is left open, because the firmware always has them.
+  /// The module has only what the manuals describe. The reply to a request that only the extensions have is
+  /// left open, because the firmware always has the extensions.
   Absent,
 };
 
@@ -20,7 +20,7 @@ struct ModelRow {
   unsigned inputs;
   unsigned outputs;
   bool both_protocols;    ///< the -M models: Modbus RTU and ASCII
-  bool status_80_84;      ///< `~AA0` answers 00, 80 or 84; if false, 00 or 04
+  bool status_80_84;      ///< `~AA0` returns 00, 80 or 84; if false, 00 or 04
   const char* name;       ///< factory name, `$AAM`
   unsigned longest_name;  ///< 7 on the -M models of the 9068, wire.md E5
   std::uint16_t code;     ///< Modbus module code; 0 without Modbus

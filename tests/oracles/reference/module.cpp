@@ -19,7 +19,7 @@ auto members(const Stored& s) {
                   s.timeout, s.timed_out, s.restarted_by_requests, s.delay, s.filters, s.inversion);
 }
 
-/// Returns the level behind the data bits: the parity bit, or the first stop bit.
+/// Returns the level after the data bits: the parity bit, or the first stop bit.
 bool ninth_bit(std::uint8_t byte, LineFormat format) {
   unsigned ones = 0;
   for (unsigned bit = 0; bit < 8; ++bit) {
@@ -160,7 +160,7 @@ unsigned Module::seconds_since_reset() {
 
 // --- wire.md 6 ---
 
-/// Restarts it by a command, which takes effect when it is stored.
+/// Restarts the host watchdog by a command, which takes effect when it is stored.
 void Module::restart_host_watchdog() {
   if (stored_.enabled) {
     restarted_ = true;
@@ -171,7 +171,8 @@ void Module::restart_host_watchdog() {
 
 void Module::restart_host_watchdog_by_host_ok() {
   if (stored_.enabled) {
-    // A command that restarts the host watchdog may still be being stored. It takes effect later than this.
+    // A command that restarts the host watchdog may still be being stored. The restart then happens later
+    // than this.
     const Time latest = now_ + kLongestSilence + stored_.timeout * kTimeoutUnit;
     expiry_ =
         Moment{now_ + stored_.timeout * kTimeoutUnit, expiry_ ? std::max(expiry_->latest, latest) : latest};
@@ -336,7 +337,8 @@ Answer Module::on_bytes(const Bytes& bytes, LineFormat sent_in, Time now) {
         left_open_ = "the effect of bytes that arrive while the module answers depends on its timing";
       }
       if (bad[i]) {
-        // It is noise where no frame is open, and spoils an open one. A CR with a line error is not a CR.
+        // Outside a frame the byte is noise, and inside a frame it spoils the frame. A CR with a line error
+        // is not a CR.
         rule(framing_ == Framing::Nothing ? "bad byte outside an ASCII frame" : "bad byte in an ASCII frame");
         spoiled_ = true;
       } else if (framing_ == Framing::Nothing) {

@@ -143,7 +143,7 @@ class Module {
  private:
   void rule(const std::string& rule) { rules_.push_back(rule); }
   /// Returns whether this module refuses the request because it does not have the extension that the request
-  /// requires, and leaves the answer open in this case. `needed`: whether it requires an extension.
+  /// requires, and leaves the reply open in this case. `needed`: whether the request requires an extension.
   bool refuses_extension(bool needed) {
     const bool refuses = needed && !has_extensions();
     left_open_ = refuses ? "only a module with extensions has this request" : left_open_;

@@ -14,8 +14,8 @@ namespace {
 
 using std::chrono::milliseconds;
 
-/// The session decides, sends and compares nothing closer than this to a moment at which the module changes
-/// by itself: one tick, and the time until the module executes a received request.
+/// The session decides, sends and compares nothing within this time before or after a moment at which the
+/// module changes by itself. It covers one tick, and the time until the module executes a received request.
 constexpr milliseconds kMargin{3};
 /// wire.md 6: after the expiry, the status and the enable are stored.
 constexpr milliseconds kStored{250};
@@ -204,8 +204,8 @@ Time Session::takes(std::size_t bytes, LineFormat format) const {
   return Time(bytes * character_bits(format) * 1'000'000'000ULL / rate_);
 }
 
-/// Returns the time from the first start bit of a reply until the master has heard it: the end of the first
-/// stop bit of the last byte.
+/// Returns the time from the first start bit of a reply until the master has received the reply: the end of
+/// the first stop bit of the last byte.
 Time Session::heard_in(std::size_t bytes) const {
   const unsigned second_stop_bit = format_ == LineFormat::k8N2 ? 1 : 0;
   return Time((bytes * character_bits(format_) - second_stop_bit) * 1'000'000'000ULL / rate_);
@@ -220,7 +220,7 @@ bool Session::play_step(const Send& send) {
   // The 20 and 200 ms count from the end of the response delay, if that is later.
   const Time delay = reference_.reply_delay() > turn_around ? reference_.reply_delay() : Time(0);
   const Time earliest = std::max(turn_around, delay);
-  // wire.md 3 allows 20 ms for Modbus, too, but the silence alone takes 32 ms at 1200 baud and 16 ms at 2400
+  // wire.md 3 allows 20 ms for Modbus too, but the silence alone takes 32 ms at 1200 baud and 16 ms at 2400
   // baud.
   const Time answers = std::max<Time>(kAnswers + delay, turn_around + milliseconds(5));
 
@@ -235,7 +235,7 @@ bool Session::play_step(const Send& send) {
     const Time done = answer.stores ? answers + kStored : answer.reply.empty() ? Time(kNoAnswer) : answers;
     const Time waits = storing_ || storing_timeout_ ? kAnswersStoring : milliseconds(0);
     const Time needed = waits + takes(send.bytes.size() + answer.reply.size()) + done + kBetween;
-    // The loop repeats because the answer may depend on whether the module has changed.
+    // The loop repeats because the reply may depend on whether the module has changed.
     if (!changes_within(needed)) {
       break;
     }
@@ -295,7 +295,7 @@ bool Session::play_step(const SendInAnotherFormat& send) {
   const Answer answer = trial.on_bytes(send.bytes, send.format,
                                        target_.now() + kBetween + takes(send.bytes.size(), send.format));
   if (answer.left_open != nullptr || !answer.reply.empty()) {
-    ++left_open_;  // the module hears some bytes nevertheless, but the master cannot read the reply
+    ++left_open_;  // the module receives some bytes correctly, but the master cannot read the reply
     return true;
   }
   if (!listen(kBetween)) {

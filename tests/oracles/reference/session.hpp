@@ -19,7 +19,7 @@ namespace ex9000::reference {
 /// silence follows.
 struct Send {
   Bytes bytes;
-  /// If the request gets no answer, the next request may follow while the module is still storing.
+  /// If the request gets no reply, the next request may follow while the module is still storing.
   bool next_may_follow_at_once = false;
 };
 /// The master sends these bytes with another parity than the module has, and then uses the module's line
@@ -54,15 +54,15 @@ struct Pulse {
 using Step = std::variant<Send, SendInAnotherFormat, Wait, WaitForExpiry, Reset, Power, Init, Input, Pulse>;
 
 /// Plays steps on a firmware module and on a reference module, from factory settings. `extensions`: those of
-/// the reference module; the firmware always has them. When a result could
-/// depend on the exact time at which the module changes by itself, for example because the host watchdog
-/// expires, the session waits, because that time is specified to a tick, not to a nanosecond.
+/// the reference module; the firmware always has them. Sometimes a result could depend on the exact time at
+/// which the module changes by itself, for example because the host watchdog expires. The session then waits,
+/// because that time is specified to a tick, not to a nanosecond.
 class Session {
  public:
   explicit Session(const ModelRow& row, Extensions extensions = Extensions::Present);
 
   /// Plays a step on both modules and compares reply, outputs and LED. Returns false if they differ; the last
-  /// lines of the transcript describe the difference. Does not send a request whose answer the specification
+  /// lines of the transcript describe the difference. Does not send a request whose reply the specification
   /// leaves open.
   bool play(const Step& step);
 
@@ -77,7 +77,7 @@ class Session {
   /// number of those that arrived while its expiry was being stored.
   [[nodiscard]] std::uint64_t before_expiry() const { return before_expiry_; }
   [[nodiscard]] std::uint64_t behind_expiry() const { return behind_expiry_; }
-  /// Returns the number of requests that were not sent because the specification leaves their answer open.
+  /// Returns the number of requests that were not sent because the specification leaves their reply open.
   [[nodiscard]] std::uint64_t left_open() const { return left_open_; }
 
  private:

@@ -102,7 +102,7 @@ TEST(Arguments, WatchIsAcceptedExceptWithAJsonLog) {
                "both write to standard output; leave out one of them");
 }
 
-/// A user of `sim/run`, which passes both options, may repeat them.
+/// `sim/run` passes both options, so a user of `sim/run` may repeat them.
 TEST(Arguments, TheLastPanelAndLogOptionWins) {
   EXPECT_EQ(all_accepted({"EX9042D", "--panel", "--log", "--panel", "8080"}).panel->port, 8080);
   EXPECT_EQ(all_accepted({"EX9042D", "--panel", "--log", "--log", "json"}).log, LogFormat::Json);

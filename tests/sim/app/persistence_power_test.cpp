@@ -81,8 +81,8 @@ class PowerFailureChecker {
 
   [[nodiscard]] std::string module() const { return "EX9042D" + image_in(directory_); }
 
-  /// Call this after a start. The last command must be carried out completely or not at all, and completely
-  /// if it was acknowledged.
+  /// Call this after a start. The last command must be executed completely or not at all, and completely if
+  /// it got a reply.
   void check(Simulator& simulator) {
     Answers answers;
     for (const auto& [question, answer] : before_) {
@@ -99,8 +99,8 @@ class PowerFailureChecker {
     acknowledged_ = true;
   }
 
-  /// Sends up to two stores and waits for their acknowledgements. Then sends another store, which may not be
-  /// acknowledged in time.
+  /// Sends up to two stores and waits for their replies. Then sends another store, to which the module may
+  /// not reply in time.
   void begin_cut(Simulator& simulator) {
     for (unsigned i = stores_.below(3); i > 0; --i) {
       const Store store = begin(simulator);

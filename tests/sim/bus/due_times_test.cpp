@@ -63,7 +63,7 @@ TEST(DueTimes, EqualThoseOfASearchThroughAllStations) {
       ASSERT_NE(first, expected.end());
       ASSERT_EQ(station, static_cast<std::size_t>(first - expected.begin()));
       *first = kNever;
-      // A station may set no time, its own, those of other stations, and times that are due already.
+      // A station may set no time, its own time, times of other stations, and times that are already due.
       for (std::uint64_t changes = random() % 3; changes != 0; --changes) {
         set(random() % 2 == 0 ? station : random() % expected.size(), now + VirtualTime(random() % 4));
       }

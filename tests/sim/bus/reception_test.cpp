@@ -1,5 +1,5 @@
-// Compares what stations receive with receivers that sample every bit of the whole traffic. The bus samples
-// only where it has to.
+// Compares what stations receive with receivers that sample every bit of the whole traffic. The bus itself
+// samples only the bits that it must sample.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -31,7 +31,7 @@ struct Received {
   }
 };
 
-/// How the traffic of a test is troubled. Each number is a probability.
+/// The disturbances in the traffic of a test. Each number is a probability.
 struct Trouble {
   const char* name;
   double noise = 0;         ///< that a byte arrives with other levels
@@ -200,7 +200,7 @@ class RetunedListener final : public Station {
   std::vector<Period> periods;
 
  private:
-  /// A receiver ignores a second stop bit, so it goes on between 8N1 and 8N2.
+  /// A receiver ignores a second stop bit, so a change between 8N1 and 8N2 does not begin a new period.
   static bool begins_anew(hal::SerialMode from, hal::SerialMode to) {
     const bool parity = has_parity(from.format) || has_parity(to.format);
     return from.baud != to.baud || (parity && from.format != to.format);

@@ -434,7 +434,7 @@ TEST(Capture, NeverOverwritesAFileThatTheRunUses) {
       command.insert(command.end(), named.begin(), named.end());
       const Finished finished = run(command, directory.path());
       EXPECT_EQ(finished.status, 2) << finished.error;
-      // While the target of the link does not exist, the program cannot know that both are the same file.
+      // While the target of the link does not exist, the program cannot detect that both are the same file.
       if (path != "n.bin" || !named.empty()) {
         EXPECT_NE(finished.error.find(": is " + what + ", "), std::string::npos) << finished.error;
       }

@@ -14,7 +14,7 @@ using Packet = std::map<std::string, std::string>;
 /// tshark reports an error in the file.
 std::vector<Packet> decoded(const std::string& path, const std::vector<std::string>& fields);
 
-/// Expects that the packet has these values. It may have values of other fields, too.
+/// Expects that the packet has these values. The packet may also have values of other fields.
 void expect_shown(const Packet& packet, const Packet& wanted);
 
 }  // namespace ex9000::system

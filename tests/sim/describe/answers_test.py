@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Tests that the simulated module has each register in the maps, and does what the maps say."""
+"""Tests that the simulated module has each register in the maps, and works as the maps state."""
 
 import json
 import re

@@ -68,7 +68,7 @@ TEST(DescribeCsv, HasOneRowPerCommandCoilAndRegister) {
   // 25 commands, 3 x 13 coils for outputs, 3 general coils, 5 holding registers; host OK and the extensions
   // (2 settings, 13 timed outputs, 15 others) in two tables
   EXPECT_EQ(table_of("EX9042D-M").size(), 1U + 25 + 39 + 3 + 5 + 2 * (1 + 2 + 13 + 15));
-  // 27 commands, because the model has inputs and outputs; no registers, because it does not speak Modbus
+  // 27 commands, because the model has inputs and outputs; no registers, because it does not support Modbus
   EXPECT_EQ(table_of("EX9055D").size(), 1U + 27);
 }
 

@@ -20,7 +20,7 @@ def crc16(data):
 
 
 class Line:
-    """One module at address 01. It is reached over TCP with Modbus RTU frames."""
+    """One module at address 01, which a master reaches over TCP with Modbus RTU frames."""
 
     def __init__(self, model):
         command = [PROGRAM, f"{model}@01", "--tcp", "0", "--line", "instant"]

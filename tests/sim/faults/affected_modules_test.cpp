@@ -1,4 +1,4 @@
-// Tests which modules a fault affects, and the effect of several faults together.
+// Tests which modules a fault affects, and the combined effect of several faults.
 #include <gtest/gtest.h>
 
 #include <string>

@@ -47,7 +47,7 @@ TEST(BusLog, ReportsRateAndFormatOfAFrameIfStationsOfTheLineDoNotHearIt) {
   EXPECT_NE(text_of(frame).find("sent at 115200 baud 8N1 on a line at 9600 baud 8N1"), std::string::npos);
   frame.line_in = {115200, LineFormat::k8O1};
   EXPECT_NE(text_of(frame).find("sent at 115200 baud 8N1 on a line at 115200 baud 8O1"), std::string::npos);
-  frame.line_in = {115200, LineFormat::k8N2};  // receivers look at the first stop bit only
+  frame.line_in = {115200, LineFormat::k8N2};  // receivers check only the first stop bit
   EXPECT_EQ(text_of(frame).find("sent at"), std::string::npos);
 }
 

@@ -1,4 +1,4 @@
-// Tests how bytes with wrong parity are told from others: POSIX.1-2017, 11.2.2, PARMRK.
+// Tests how bytes with wrong parity are distinguished from other bytes: POSIX.1-2017, 11.2.2, PARMRK.
 #include "sim/ports/parity_marks.hpp"
 
 #include <gtest/gtest.h>

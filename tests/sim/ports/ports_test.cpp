@@ -112,7 +112,7 @@ TEST_P(Tcp, AClientThatResetsItsConnectionDoesNoHarm) {
   EXPECT_EQ(simulator.end(SIGTERM), 0);
 }
 
-// While the flood is on the line, the client's command and its reply collide with the flood.
+// The client's command and the reply to it collide with the flood.
 TEST_P(Tcp, AFloodOfInvalidBytesDoesNotBlockTheLine) {
   SimulatorProcess simulator({"EX9042D@05,baud=115200", "--tcp", "0", "--line", GetParam()});
   {

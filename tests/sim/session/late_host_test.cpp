@@ -58,8 +58,8 @@ TEST(LateHost, IsReportedWithItsDelay) {
   suspend(simulator.pid(), std::chrono::milliseconds(300));
   // An event is due every 5 ms, so the program is late by at least 295 ms when it continues. It reports a
   // delay only if that delay is at least twice the longest delay that it has reported before. If a busy host
-  // has caused a report before, this delay may not be reported, but then the earlier report is of more than
-  // 147 ms.
+  // has caused a report before, this delay may not be reported, but then the earlier report states a delay of
+  // more than 147 ms.
   for (unsigned reports = 1; longest_delay(simulator.output()) < std::chrono::milliseconds(147); ++reports) {
     ASSERT_TRUE(simulator.wait_for(": modules reply later", reports)) << simulator.output();
   }
