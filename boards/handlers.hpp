@@ -1,4 +1,4 @@
-// The interrupts that the module of every board handles in the same way, and its main loop.
+// The interrupt handlers and the main loop that the compositions of all boards share.
 #pragma once
 
 #include <cstdint>

@@ -12,13 +12,13 @@
 
 namespace ex9000::sim {
 
-/// Stores the bytes that arrive at the line's ports until they are put on the line. No function reads a clock
-/// or blocks.
+/// Stores the bytes that arrive at the line's ports until they are put on the line. No function reads the
+/// wall clock or blocks.
 class SteppedLine {
  public:
   using Arrived = std::function<void()>;
 
-  /// If this many bytes are stored, masters have to wait.
+  /// If this many bytes are stored, the ports deliver no more until `put_on_line`.
   static constexpr std::size_t kMostBytes = 65'536;
 
   /// `frames` may be null. All arguments must outlive this object.
@@ -37,7 +37,7 @@ class SteppedLine {
   void put_on_line();
 
   [[nodiscard]] VirtualTime now() const { return line_.clock().virtual_now(); }
-  /// Returns the time of the next event; kNever: events only follow an action from outside.
+  /// Returns the time of the next event; kNever: none occurs without an action from outside.
   [[nodiscard]] VirtualTime next() const { return line_.bus().next(); }
   /// Processes all events up to and including `until`.
   void run_until(VirtualTime until);
@@ -45,7 +45,7 @@ class SteppedLine {
   [[nodiscard]] bool pending() const { return line_.pending(); }
   /// See LinePorts::sent.
   [[nodiscard]] std::uint64_t sent() const { return ports_.sent(); }
-  /// Writes the received bytes to the ports.
+  /// Writes the bytes that the master's end has received from the line to the ports.
   void hand_out() { ports_.hand_out(); }
 
  private:

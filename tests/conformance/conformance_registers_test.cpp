@@ -54,7 +54,7 @@ TEST_P(ConformanceOnRegisters, PassesTheTranscriptsOfItsModel) {
       EXPECT_TRUE(result.passed()) << result.failure;
       EXPECT_EQ(result.steps, transcript.steps.size());
       BoardBench& bench = target.bench();
-      EXPECT_EQ(bench.line.bits_lost, 0U) << "bits sent before the driver was on";
+      EXPECT_EQ(bench.line.bits_lost, 0U) << "bits sent before driver enable was on";
       EXPECT_EQ(bench.line.let_go_early, 0U);
       EXPECT_EQ(bench.line.let_go_late, 0U);
       EXPECT_FALSE(bench.pins.any_was_shorted());

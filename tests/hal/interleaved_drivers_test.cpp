@@ -80,7 +80,7 @@ TEST(SystemTimer, ReturnsTheCorrectTimeIfATickOccursAtAnyPoint) {
       }
     }
   }
-  std::printf("times told: %u\n", asked);
+  std::printf("readings of the clock checked: %u\n", asked);
 }
 
 // --- I2C ---
@@ -136,7 +136,8 @@ unsigned give_up_a_byte_that_completes(unsigned completes) {
   controller.bytes_begun = 0;
   i2c.begin(transfer, now);
   i2c.poll(now);
-  EXPECT_EQ(controller.bytes_begun, 1U) << "at " << completes << ": the byte before was taken for this one";
+  EXPECT_EQ(controller.bytes_begun, 1U)
+      << "at " << completes << ": the driver used the completion of the previous byte for this byte";
   Points::interrupt([&] { i2c.on_interrupt(); });
   i2c.poll(now);
   EXPECT_EQ(controller.bytes_begun, 2U) << "at " << completes;
@@ -296,8 +297,9 @@ class InputBench {
   unsigned counted(unsigned channel) {
     const unsigned count = edges_.collect(channel);
     const bool told = ((baseline_ >> channel ^ count) & 1U) != 0;
-    EXPECT_EQ(told, level(channel)) << "channel " << channel
-                                    << ": the level in the registers differs from the level reported";
+    EXPECT_EQ(told, level(channel))
+        << "channel " << channel
+        << ": the level computed from the counted edges differs from the level of the wire";
     return count;
   }
 

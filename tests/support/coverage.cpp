@@ -63,7 +63,7 @@ std::string register_id(const char* kind, const Register& row, unsigned function
   return std::string(kind) + "/" + std::string(row.id) + "/" + hex_code(function);
 }
 
-/// Returns the codes of `functions` in ascending order. Function 10 is allowed for the same rows as 06.
+/// Returns the codes of `functions` in ascending order. Function 0x10 is allowed for the same rows as 0x06.
 std::vector<unsigned> functions_of(modbus::Functions functions) {
   std::vector<unsigned> codes;
   for (unsigned code = 1; code < 16; ++code) {

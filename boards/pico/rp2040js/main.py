@@ -40,7 +40,7 @@ def main(words: list[str]) -> int:
         metavar="FILE",
         type=Path,
         help="keep the contents of the EEPROM, where images of pico-eeprom store the settings, in this file of 8192 "
-        "bytes; create a missing file as a factory-fresh module",
+        "bytes; if the file is missing, create it with the memory of a factory-fresh module",
     )
     arguments = parser.parse_args(words)
 

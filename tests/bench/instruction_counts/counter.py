@@ -90,7 +90,7 @@ class Counter:
         self.interrupts = {}  # other interrupts, by exception number
         self.edges = {}  # by the number of edges served at once
         self.ticks_turn = Highest()
-        self.idling = Sum()  # everything that is executed while nothing happens
+        self.idling = Sum()  # all code that is executed while only ticks occur
 
     def begin(self):
         """Starts a pass. The main loop must be asleep."""

@@ -124,7 +124,9 @@ TEST(Lines, DoNotReceiveEachOthersBytes) {
   EXPECT_EQ(yard.read_line(), "!019052\r");
   EXPECT_EQ(ask(yard, "$01F"), "!01D01.00");
   EXPECT_EQ(ask(hall, "$02M"), "!029055");
-  EXPECT_TRUE(hall.read(milliseconds(50)).empty());  // a busy machine can only hide an error
+  EXPECT_TRUE(
+      hall.read(milliseconds(50))
+          .empty());  // on a busy machine this check can miss an error, but it cannot fail without one
 }
 
 TEST(Lines, EachHasItsOwnBaudRateAndIsNamedInTheLog) {
@@ -149,7 +151,7 @@ TEST(Lines, EachHasItsOwnBaudRateAndIsNamedInTheLog) {
   EXPECT_EQ(halls, "x");
 }
 
-TEST(Lines, ModulesAreNumberedThroughAllLines) {
+TEST(Lines, ModuleNumbersContinueFromLineToLine) {
   Lines lines(kHallAndYard);
   EXPECT_EQ(lines.control().ask("list"),
             "ok 3 modules: 1 EX9042D at 01 on hall, 2 EX9055D at 02 on hall, 3 EX9052D at 01 on yard");
@@ -175,7 +177,9 @@ TEST(Lines, FaultsAffectTheNamedLineOnly) {
   hall.type("$02M\r");
   EXPECT_TRUE(lines.process().wait_for("  > master  $02M"));  // before the faults end
   EXPECT_TRUE(lines.process().wait_for("  > master  $01M", 2));
-  EXPECT_TRUE(yard.read(milliseconds(100)).empty());  // a busy machine can only hide an error
+  EXPECT_TRUE(
+      yard.read(milliseconds(100))
+          .empty());  // on a busy machine this check can miss an error, but it cannot fail without one
   EXPECT_TRUE(hall.read(milliseconds(100)).empty());
   EXPECT_EQ(lines.control().ask("line yard fault off 2"), "ok");
   EXPECT_EQ(lines.control().ask("line hall fault off all"), "ok");
@@ -298,7 +302,7 @@ TEST(Lines, AnEepromErrorNamesItsPlaceInTheBusFile) {
   }
 }
 
-TEST(Lines, GlobalErrorsNameTheBusFileOrTheOption) {
+TEST(Lines, ErrorsInSettingsForAllLinesNameTheBusFileOrTheOption) {
   const SimulatorProcess other({"EX9042D", "--panel", "0"});
   const std::string address = other.output().substr(0, other.output().find("/\n"));
   const std::string port = address.substr(address.rfind(':') + 1);
@@ -318,7 +322,7 @@ TEST(Lines, GlobalErrorsNameTheBusFileOrTheOption) {
   }
 }
 
-TEST(Lines, AWrongBusFileIsRefusedWithItsNameLineAndKey) {
+TEST(Lines, AnErrorInABusFileNamesTheFileTheLineNumberAndTheKey) {
   const Directory directory;
   const BusFile file("{\"lines\": [{\"modules\": [{\"model\": \"EX9042D\",\n\"colour\": 1}]}]}");
   const Finished finished = run({simulator_path(), file.path()}, directory.path());
@@ -369,7 +373,7 @@ std::string strikes(const std::string& seed) {
   return struck;
 }
 
-TEST(LineOfTheCommandLine, EqualSeedsAffectTheSameReplies) {
+TEST(LineOfTheCommandLine, WithEqualSeedsAFaultStrikesTheSameReplies) {
   const std::string of_seed = strikes("7");
   EXPECT_EQ(strikes("7"), of_seed);
   EXPECT_NE(strikes("8"), of_seed);
