@@ -3,8 +3,8 @@
 // copies only a few dozen bytes per second.
 #include <cstddef>
 
-// Without this attribute, the compiler would recognise the loop as a copy and replace it with a call of the
-// same function.
+// Without this attribute, the compiler would recognise the loop, for example as a copy, and replace it with a
+// call of the same function. The function would then call itself without end.
 #define NO_SELF_CALL __attribute__((optimize("no-tree-loop-distribute-patterns"), externally_visible))
 
 extern "C" {

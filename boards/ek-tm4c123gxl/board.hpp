@@ -20,7 +20,7 @@ inline constexpr auto kFamily = hal::stellaris::Family::Tm4c;
 inline constexpr hal::stellaris::ClockTree kClock{0x15, 4};
 
 #ifdef EX9000_BUS_ON_USB
-/// The line is UART0, which the debugger connects to a serial port on USB.
+/// The line is UART0. The debugger on the LaunchPad connects UART0 to a USB serial port.
 inline constexpr unsigned kUart = 0;
 inline constexpr PinGroup kUartPins{Port::A, 0, 2};
 inline constexpr std::uint32_t kUartFunction = 1;

@@ -2,4 +2,4 @@
 
 
 class Refusal(Exception):
-    """Its one-line message names the argument or program, the error, and the remedy."""
+    """An error that the user can fix. Its one-line message names the argument or program, the error, and the remedy."""

@@ -1,6 +1,6 @@
 // The parts of an image for a board of this family: drivers, module, vector table and `main`. This file
 // connects the drivers to the pins of `board.hpp`, the module to the drivers, and the interrupts to their
-// handlers. The main.cpp of a board includes it once.
+// handlers. Only the main.cpp of a board includes it.
 #pragma once
 
 #include <array>
@@ -47,7 +47,7 @@ static_assert(
     hal::kIsOneShotTimer<LineEndTimer>,
     "LineEndTimer: lacks a function, or a function has a wrong signature; see hal/one_shot_timer.hpp");
 
-/// See hal/board.hpp.
+/// The peripherals that the firmware requires. hal/board.hpp lists the members and their contracts.
 struct Board {
   Clock clock;
   Line line;

@@ -66,19 +66,19 @@ struct Dispatch {
 
 enum class Access : std::uint8_t { Read, Write, Store };
 
-/// The mark (I) of a command. Required: the command is permitted only in INIT mode or while INIT* is
-/// asserted.
+/// The mark (I) of a command in wire.md section 4. Required: the command is permitted only in INIT mode or
+/// while INIT* is asserted.
 enum class Init : std::uint8_t { NotRequired, Required };
 
 /// A row with its documentation. The firmware never uses the texts, so an image does not contain them.
 struct Command {
   std::string_view id;      ///< stable, for coverage and cross-reference
   std::string_view syntax;  ///< in the notation of the manuals
-  std::string_view reply;   ///< reply if the command is valid; empty if there is none
+  std::string_view reply;   ///< reply to a valid command; empty if the module does not reply
   std::string_view meaning;
   std::string_view range;  ///< range of the arguments
-  Access access;           ///< Store: the reply is sent after the EEPROM has stored the settings
-  Init init;               ///< for `%`: required only if the baud rate or the checksum changes
+  Access access;           ///< Store: the module replies after it has stored the settings
+  Init init;               ///< for `%`: required only to change the baud rate, line format or checksum
   Dispatch dispatch;
 };
 
@@ -104,7 +104,7 @@ inline constexpr auto kCommands = table<Command>({
     {"set-output-group",
      "#AABBDD",
      ">",
-     "set a group of outputs, or one",
+     "set a group of outputs or one output",
      "BB: 00 or 0A outputs 0-7, 0B outputs 8 and up, DD: their bits; BB: 1c or Ac output c, Bc output 8+c, "
      "DD: 00 off, 01 on",
      Access::Write,
@@ -129,7 +129,7 @@ inline constexpr auto kCommands = table<Command>({
     {"read-sample",
      "$AA4",
      "!S(First)(Second)00",
-     "read the synchronized sample; S is 1 the first time",
+     "read the synchronized sample; S is 1 on the first read of a sample, then 0",
      "",
      Access::Read,
      Init::NotRequired,
@@ -233,7 +233,7 @@ inline constexpr auto kCommands = table<Command>({
     {"host-ok",
      "~**",
      "",
-     "all modules: the host is alive; restarts the host watchdog",
+     "tell all modules that the host is alive; restarts the host watchdog",
      "",
      Access::Write,
      Init::NotRequired,
@@ -281,7 +281,7 @@ inline constexpr auto kCommands = table<Command>({
     {"store-preset-value",
      "~AA5V",
      "!AA",
-     "store the outputs as power-on or safe value",
+     "store the present outputs as the power-on or safe value",
      "V: P power-on value, S safe value",
      Access::Store,
      Init::NotRequired,

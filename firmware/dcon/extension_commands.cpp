@@ -20,7 +20,7 @@ int hex_word(Bytes args, std::size_t at) {
   return high < 0 || low < 0 ? -1 : high * kByte + low;
 }
 
-/// Returns the row of the register RRRR, or null.
+/// Returns the row of the extension register at `address`, or null if the model has no such register.
 const WordRow* row_of(const Model& model, int address) {
   return address < 0 ? nullptr : modbus::find_extension(model, static_cast<unsigned>(address));
 }
@@ -36,7 +36,7 @@ Refusal read_extension(Exchange& exchange) {
   const unsigned index = static_cast<unsigned>(address) - row->first;
   const bool is_long = row->has(modbus::kLong);
   if (is_long && index % 2 != 0) {
-    return Refusal::OutOfRange;  // a low word alone could belong to another moment than its high word
+    return Refusal::OutOfRange;  // two separate reads could return words of two different values
   }
   put_valid(exchange);
   put_hex_word(exchange.reply, row->read(exchange, index));

@@ -20,7 +20,8 @@ Refusal drive(Exchange& exchange, Drive drive) {
   return Refusal::None;
 }
 
-/// Returns the outputs of a group, BB = 00, 0A or 0B; the mask is 0 if they are out of range.
+/// Returns the outputs that `#AABBDD` selects with BB = 00, 0A or 0B, and their levels. The mask is 0 if the
+/// model has no such group, or if `data` sets an output that the model does not have.
 Drive group(const Model& model, std::uint8_t selector, int data) {
   const bool high = selector == 'B';
   const unsigned channels = model.output_mask() & (high ? ~unsigned{kLowGroup} : unsigned{kLowGroup});
@@ -31,7 +32,8 @@ Drive group(const Model& model, std::uint8_t selector, int data) {
   return {static_cast<std::uint16_t>(channels), static_cast<std::uint16_t>(value)};
 }
 
-/// Returns one output, BB = 1c, Ac or Bc; the mask is 0 if it is out of range.
+/// Returns the output that `#AABBDD` selects with BB = 1c, Ac or Bc, and its level. The mask is 0 if the
+/// model has no such output, or if `data` is not 0 or 1.
 Drive single(const Model& model, std::uint8_t selector, int channel, int data) {
   const bool high = selector == 'B';
   if ((selector != '1' && selector != 'A' && !high) || channel < 0 || channel > 7 || data > 1) {
@@ -44,8 +46,8 @@ Drive single(const Model& model, std::uint8_t selector, int channel, int data) {
   return {static_cast<std::uint16_t>(bit), static_cast<std::uint16_t>(data == 1 ? bit : 0U)};
 }
 
-/// The number of hex digits for all outputs of a model, 4 outputs for each digit, and the number in the
-/// shorter form of the manuals' examples (wire.md E4).
+/// How many hex digits `@AA(Data)` accepts for all outputs of a model: in the full form, and in the shorter
+/// form of the manuals' examples (wire.md E4).
 struct Digits {
   std::size_t full;
   std::size_t shortened;

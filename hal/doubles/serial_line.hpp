@@ -14,9 +14,9 @@ class Wire {
  public:
   /// Turns the driver of this end on or off.
   virtual void drive(bool on) = 0;
-  /// Begins to send `byte` with its start bit now. The driver is on.
+  /// Begins to send `byte`: its start bit begins now. Call this only while the driver is on.
   virtual void put(std::uint8_t byte, SerialMode mode) = 0;
-  /// Returns the duration of `bytes` bytes without a gap.
+  /// Returns how long `bytes` bytes take if there is no gap between them.
   [[nodiscard]] virtual VirtualTime takes(std::size_t bytes, SerialMode mode) const = 0;
 
  protected:
@@ -26,8 +26,8 @@ class Wire {
 /// A UART that sends exactly at its baud rate. The owner of the wire passes received bytes to the device.
 class SerialLine {
  public:
-  /// The driver is on for these times before the first start bit and after the last stop bit, about the
-  /// duration of one or two register writes. `release_late` extends the second time.
+  /// How long the driver is on before the first start bit and after the last stop bit: about as long as one
+  /// or two register writes take. `release_late` extends the second time.
   static constexpr VirtualTime kDriverLead = std::chrono::microseconds(2);
   static constexpr VirtualTime kDriverTail = std::chrono::microseconds(2);
 
@@ -37,11 +37,12 @@ class SerialLine {
   void send(Bytes bytes);
   [[nodiscard]] bool sending() const { return driving_; }
 
-  /// Returns the rate and format; the rate is 0 until `open`.
+  /// Returns the baud rate and the line format. The baud rate is 0 before `open` and after `abort`.
   [[nodiscard]] SerialMode mode() const { return mode_; }
-  /// Delays the end of the driver enable by `by`. This also applies to a reply that is being sent.
+  /// Keeps the driver on for longer after each reply, by the time `by`. This also applies to a reply that is
+  /// being sent.
   void release_late(VirtualTime by);
-  /// Returns when `run` must be called.
+  /// Returns the time at which `run` must be called next.
   [[nodiscard]] VirtualTime next() const { return next_; }
   void run();
   /// Turns the driver off at once, even during a byte, as a power failure or a reset does.
@@ -56,7 +57,8 @@ class SerialLine {
   std::size_t sent_ = 0;
   VirtualTime first_start_bit_{0};
   VirtualTime next_ = kNever;
-  VirtualTime over_ = kNever;  ///< when the driver must go off; kNever until the last byte is being sent
+  /// When the driver goes off if `late_by_` is 0; kNever until the last byte is being sent.
+  VirtualTime over_ = kNever;
   VirtualTime late_by_{0};
 };
 static_assert(kIsSerialLine<SerialLine>);

@@ -35,7 +35,7 @@ class Port {
   /// Sends bytes from modules. They are lost if no master has the port open, as on real wires. Returns how
   /// many bytes were dropped because a master has the port open and does not read.
   virtual std::size_t send(const std::vector<std::uint8_t>& bytes) = 0;
-  /// Called when the module that was sending has stopped.
+  /// Called when a module has turned its driver off, so that no more bytes of its reply follow.
   virtual void sent() {}
 
   /// Returns the rate that a master has set at this port, in bits per second; nullopt if the port has no rate

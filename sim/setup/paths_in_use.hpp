@@ -8,9 +8,9 @@
 
 namespace ex9000::sim {
 
-/// A file that is read or opened in addition to the capture.
+/// A file, socket or device, other than the capture, that the program uses.
 struct InUse {
-  std::string what;  ///< a description for people
+  std::string what;  ///< what the file is, for an error message
   std::string path;
 };
 
@@ -18,7 +18,7 @@ struct InUse {
 std::vector<InUse> in_use_by(const Setup& setup);
 
 /// Throws std::invalid_argument with a one-line message if `capture` is one of `others`, even under another
-/// name. Opens and changes nothing.
+/// name. Does not open or change any file.
 void refuse_overwriting(const std::string& capture, const std::vector<InUse>& others);
 
 }  // namespace ex9000::sim

@@ -1,5 +1,6 @@
-// Plays transcripts on images that run on simulated microcontrollers. The drivers are unchanged; the bits on
-// the line and on the EEPROM's wires are simulated.
+// Plays transcripts on firmware images that are compiled for the host: the drivers are unchanged, and their
+// register accesses go to a model of the microcontroller. The model simulates each bit on the line and on the
+// EEPROM's wires.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -18,9 +19,9 @@
 namespace ex9000::registers {
 namespace {
 
-/// Folders with transcripts that depend on the drivers of the line and the pins: timing of bytes, baud rates,
-/// the state after a reset, edges and levels, and the time that a store takes. The other folders test the
-/// contents of replies.
+/// Folders with transcripts whose results depend on the drivers of the line and the pins: they test the
+/// timing of bytes, baud rates, the state after a reset, edges and levels, and the time that a store takes.
+/// The other folders test the contents of replies.
 constexpr std::array<const char*, 6> kFoldersOfDrivers{
     "framing", "init", "inputs", "modbus-framing", "modbus-persistence", "persistence"};
 

@@ -1,5 +1,6 @@
 // Tests that the module processes a request when the silence after it is over, and that events during that
-// silence still count: wire.md sections 3, 7 and 8.
+// silence still count: wire.md sections 3, 7 and 8. In this file, silence means T3.5 in Modbus and the
+// turn-around in ASCII.
 #include <gtest/gtest.h>
 
 #include <chrono>
@@ -15,7 +16,7 @@ using std::chrono::microseconds;
 using std::chrono::milliseconds;
 using Bytes = ModuleBench::Bytes;
 
-/// Shorter than every silence at 9600 baud; the shortest is one character.
+/// Shorter than both silences at 9600 baud. The shorter one is the turn-around, one character.
 constexpr microseconds kWithinAnySilence{300};
 constexpr milliseconds kLong{50};
 
@@ -25,7 +26,7 @@ const Bytes kReadOutputs{0x01, 0x01, 0x00, 0x00, 0x00, 0x08};
 const Bytes kOutput0On{0x01, 0x05, 0x00, 0x00, 0xFF, 0x00};
 const Bytes kBusMessages{0x01, 0x08, 0x00, 0x0B, 0x00, 0x00};
 
-/// Returns the reply to a request; `event` happens in the silence after its last byte.
+/// Sends a request, calls `event` in the silence after the last byte of the request, and returns the reply.
 template <class Event>
 std::string answer(ModuleBench& bench, const std::string& command, Event event) {
   bench.forget_heard();
@@ -83,7 +84,7 @@ TEST(SilenceAfterRequest, AnOutputCommandIsRefusedIfTheHostWatchdogExpiresDuring
   EXPECT_EQ(bench.module().outputs(), 0U);
 }
 
-TEST(SilenceAfterRequest, NothingIsDoneWithinTheSilence) {
+TEST(SilenceAfterRequest, OutputsChangeOnlyAtTheEndOfTheSilence) {
   for (const char* model : {"EX9042D", "EX9042D-M"}) {
     ModuleBench bench(model);
     std::vector<OutputChange> changes;
@@ -97,7 +98,7 @@ TEST(SilenceAfterRequest, NothingIsDoneWithinTheSilence) {
     const VirtualTime ended = bench.now();
     bench.run(kLong);
     ASSERT_EQ(changes.size(), 1U) << model;
-    // The silence is one character of ten bits, or 3.5 characters of eleven bits.
+    // The silence is one character of ten bits in ASCII, and 3.5 characters of eleven bits in Modbus.
     EXPECT_GE(changes[0].at - ended, ascii ? microseconds(1041) : microseconds(4010)) << model;
     EXPECT_LE(changes[0].at - ended, ascii ? microseconds(1060) : microseconds(4030)) << model;
   }
@@ -147,7 +148,7 @@ TEST(SilenceAfterRequest, TheInitSwitchIsEvaluatedAtTheEndOfTheSilence) {
   }
 }
 
-TEST(SilenceAfterRequest, ABusMessageCountIncludesItsOwnRequest) {
+TEST(SilenceAfterRequest, TheBusMessageCountIncludesTheRequestThatReadsIt) {
   ModuleBench bench("EX9052D-M");
   EXPECT_EQ(bench.ask(kBusMessages), (Bytes{0x01, 0x08, 0x00, 0x0B, 0x00, 0x01}));
   // The request also counts itself if an input changes during the silence after the request.

@@ -20,7 +20,7 @@ Pin pin_of(const Groups& groups, unsigned channel) {
   throw std::out_of_range("the board has no such channel");
 }
 
-/// Returns QEMU's path of the port.
+/// Returns the path of the GPIO port in QEMU's object tree.
 std::string path_of(Port port) {
   constexpr int kPortA = 8;
   return "/machine/unattached/device[" + std::to_string(kPortA + static_cast<int>(port)) + "]";

@@ -1,4 +1,4 @@
-// A running ex9000-sim in stepped time, with one line for each transcript.
+// Starts one ex9000-sim in stepped time, with one line for each transcript.
 #pragma once
 
 #include <cstddef>
@@ -13,15 +13,15 @@
 
 namespace ex9000::system {
 
-/// One process serves all transcripts, because the start of a process takes longer than most transcripts. Its
-/// lines share one time, so a test must play the transcripts one after another.
+/// One process serves all transcripts, because the start of a process takes longer than most transcripts. All
+/// its lines have the same line time, so a test must play the transcripts one after another.
 class TranscriptLines {
  public:
   enum class Over { PseudoTerminal, Tcp };
 
-  /// Each line has the module with which the transcript at the same position begins. Its supply is off. With
-  /// TCP, the program is the shipped one; with pseudo-terminals, it is the program under test, which can have
-  /// sanitizers.
+  /// Each line has one module, with the model and the settings of the transcript at the same position. The
+  /// supplies of all modules are off. With TCP, the program is the shipped one; with pseudo-terminals, it is
+  /// the program under test, which can have sanitizers.
   TranscriptLines(const std::vector<const play::Transcript*>& transcripts, Over over);
 
   /// Returns the module for the transcript at `position`.

@@ -18,8 +18,8 @@ def main(words: list[str]) -> int:
         "--eeprom",
         metavar="FILE",
         type=Path,
-        help="keep the contents of the EEPROM in this file of 8192 bytes; create a missing file as a factory-fresh "
-        "module",
+        help="keep the contents of the EEPROM in this file of 8192 bytes; if the file is missing, create it with the "
+        "memory of a factory-fresh module",
     )
     parser.add_argument("--gdb", metavar="PORT", type=int, help="let a debugger connect to 127.0.0.1:PORT")
     arguments = parser.parse_args(words)

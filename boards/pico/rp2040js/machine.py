@@ -22,7 +22,7 @@ _EMULATOR = _ROOT / "tests/rp2040/emulator.js"
 _PACKAGES = _ROOT / "build/rp2040js/node_modules"
 _PR_SET_PDEATHSIG = 1
 
-# module.hpp of the Pico
+# GPIO numbers, and the offset of the settings in the flash: boards/pico/module.hpp.
 _TRANSMIT, _RECEIVE, _DRIVER_ENABLE, _INIT, _EEPROM_DATA = range(5)
 _SETTINGS_IN_FLASH = (2048 - 64) * 1024
 
@@ -35,8 +35,8 @@ class Machine:
     """A module on a Pico in rp2040js. Only `carry` lets time pass."""
 
     def __init__(self, image: int, settings: int, eeprom: int, init_grounded: bool) -> None:
-        """Starts the emulator and the module. The arguments are descriptors of the content of the flash, of the end of
-        the flash, and of the EEPROM."""
+        """Starts the emulator and the module. `image`, `settings` and `eeprom` are descriptors of files that contain
+        the flash, the settings at its end, and the EEPROM."""
         self.watched: list[int] = []
         self._errors = tempfile.TemporaryFile()
         self._process = self._start([image, settings, eeprom])
@@ -78,7 +78,7 @@ class Machine:
 
     @property
     def carry_within(self) -> float:
-        """Returns the time in seconds within which `carry` must be called: soon while a master polls the module."""
+        """Returns the time in seconds within which `carry` must be called; less while a master polls the module."""
         return 0.002 if time.monotonic() - self._last_byte < 1 else 0.02
 
     def carry(self, requests: bytes, _ready: list[int]) -> bytes:
@@ -108,13 +108,14 @@ class Machine:
         self._process.wait()
 
     def _follow_baud_rate(self) -> None:
-        """Sets the master to the rate of the module, as if the user had found the right one."""
+        """Sets the master to the baud rate of the module, so that the user does not need to know this rate."""
         counts = dict(word.split("=") for word in self._ask("counts").split())
         if counts["uart"] != "0":
             self._ask("baud", counts["uart"])
 
     def _ask(self, *words: str | int) -> str:
-        """Executes a command of the emulator and returns its result."""
+        """Sends a command to the emulator and returns its result. Raises Ended if the emulator has ended, or if it
+        reports an error."""
         assert self._process.stdin and self._process.stdout
         try:
             self._process.stdin.write(" ".join(map(str, words)).encode() + b"\n")
@@ -126,7 +127,7 @@ class Machine:
             raise Ended(self._exit_message())
         state, _, result = reply.rstrip("\n").partition(" ")
         if state != "ok":
-            raise Ended(f"the module does what a Pico rejects: {result}")
+            raise Ended(f"the image performs an operation that an RP2040 rejects: {result}")
         return result
 
     def _exit_message(self) -> str:

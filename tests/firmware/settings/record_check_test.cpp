@@ -31,7 +31,8 @@ std::uint32_t word_at(const Record& record, std::size_t at) {
 std::uint32_t check_in(const Record& record) { return word_at(record, record.size() - 4); }
 
 /// The inverse of `taken_in`: returns the exclusive or of CRC and data from which `taken_in` computed
-/// `result`. The highest bit of the polynomial shows in which steps it was applied.
+/// `result`. The highest bit of `kReflectedPolynomial` is 1, so the highest bit of `result` shows whether the
+/// last step applied the polynomial.
 std::uint32_t undone(std::uint32_t result, int bits) {
   for (int bit = 0; bit < bits; ++bit) {
     const bool divided = result >> 31U != 0;
@@ -40,7 +41,8 @@ std::uint32_t undone(std::uint32_t result, int bits) {
   return result;
 }
 
-/// Returns the only four bytes from `missing` on that match the check and the other bytes of the record.
+/// Returns the four bytes from `missing` on, low byte first, calculated from the check and the other bytes of
+/// the record.
 std::uint32_t word_that_must_be_at(std::size_t missing, const Record& record, const Model& which) {
   std::uint32_t behind = ~check_in(record);
   for (std::size_t i = record.size() - 5; i > missing + 3; --i) {
@@ -53,7 +55,8 @@ std::uint32_t word_that_must_be_at(std::size_t missing, const Record& record, co
   return undone(behind, 32) ^ before;
 }
 
-/// Records that differ only in up to four adjacent bytes. Requires that their checks differ too.
+/// Collects records that may differ only in the four bytes from `at` on and in their checks. The test fails
+/// if another byte differs, if two records have the same check, or if there are no more than 1000 records.
 class OfOneKind {
  public:
   OfOneKind(const char* what, std::size_t at) : what_(what), at_(at) {}
@@ -81,8 +84,8 @@ class OfOneKind {
 
 // --- what the check determines ---
 
-// For given other bytes and a given check, only one value of four adjacent bytes matches. The check therefore
-// detects every error in four adjacent bytes.
+// If the check and all other bytes are known, only one value is possible for four adjacent bytes. The check
+// therefore detects every error that is limited to four adjacent bytes.
 TEST(Record, AnyFourAdjacentBytesAreDeterminedByTheCheckAndTheOtherBytes) {
   std::mt19937 random(3);
   for (const Model& each : kModels) {
@@ -97,8 +100,9 @@ TEST(Record, AnyFourAdjacentBytesAreDeterminedByTheCheckAndTheOtherBytes) {
   }
 }
 
-// Tests the property of the previous test with more than 1000 records for each place.
-TEST(Record, TwoThatDifferInFourBytesOnlyNeverHaveTheSameCheck) {
+// Follows from the property that the previous test checks. Compares more than 1000 records for each group of
+// adjacent settings.
+TEST(Record, ThatDifferInUpToFourAdjacentBytesHaveDifferentChecks) {
   OfOneKind lines("address, baud code, format and protocol", 4);
   OfOneKind watchdogs("watchdog and timeout status", 8);
   OfOneKind beginnings("the name's first characters", 11);

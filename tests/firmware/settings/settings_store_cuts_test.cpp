@@ -36,8 +36,8 @@ class PowerCuts : public testing::Test {
     return memory.bytes_written;
   }
 
-  /// Saves `to` with a power cut after `bytes` bytes. Checks the settings that the next load finds, and
-  /// returns them.
+  /// Saves `to` with a power cut after `bytes` bytes, and returns the settings that the next load finds.
+  /// Expects that these are either the previous settings or `to`.
   Settings cut_and_load(FakeMemory& memory, const Settings& to, std::size_t bytes,
                         FakeMemory::Garbage garbage) {
     Boot run(memory);
@@ -91,7 +91,7 @@ TEST_F(PowerCuts, AfterTheLastByteLeaveTheNewSettings) {
   }
 }
 
-TEST_F(PowerCuts, AfterASaveWasReportedLeaveTheNewSettings) {
+TEST_F(PowerCuts, AfterASuccessfulSaveLeaveTheNewSettings) {
   for (const FakeMemory& beginning : beginnings()) {
     FakeMemory memory = beginning;
     ASSERT_TRUE(Boot(memory).save(numbered(200)));

@@ -1,6 +1,6 @@
-// Reads the files in stored_bytes/: memory contents that released firmware has stored. The files are
-// committed once and never regenerated, so that they hold the bytes of memories in the field, not the bytes
-// that this firmware would store.
+// Reads the files in stored_bytes/: memory contents that this firmware and earlier versions of it have
+// stored. Each file is committed once and never regenerated, so that it keeps the bytes that modules in the
+// field can contain, even if the firmware changes and would store other bytes.
 //
 //     # comment
 //     model DESIGNATION

@@ -1,4 +1,5 @@
-// Random numbers that are the same on every platform: the standard's engine without its distributions.
+// Random numbers that are the same on every platform. The standard specifies the numbers of its engine, but
+// not those of its distributions, so this file does not use the distributions.
 #pragma once
 
 #include <cstdint>

@@ -1,4 +1,4 @@
-// Parses a command line of ex9000-sim, and checks the message if it is wrong.
+// Parses a command line of ex9000-sim, and checks the error message of a wrong command line.
 #pragma once
 
 #include <gtest/gtest.h>
@@ -17,7 +17,8 @@ inline Parsed parse(const std::vector<const char*>& words) {
   return parse_arguments(static_cast<int>(argv.size()), argv.data());
 }
 
-/// Expects that the program rejects `words` with a one-line message that contains `wrong` and `mend`.
+/// Expects that the program rejects `words` with a one-line message that contains `wrong`, which says what is
+/// wrong, and `mend`, which says what would be right.
 inline void expect_error(const std::vector<const char*>& words, const std::string& wrong,
                          const std::string& mend) {
   const Parsed parsed = parse(words);

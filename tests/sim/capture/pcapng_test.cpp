@@ -1,5 +1,5 @@
-// Compares the blocks of a capture with the pcapng draft byte by byte, and tests the header of a frame in
-// Wireshark's own link type.
+// Compares each byte in the blocks of a capture with the draft of the pcapng format. Tests the header of a
+// frame in Wireshark's own link type, Upper PDU.
 #include "sim/capture/pcapng.hpp"
 
 #include <gtest/gtest.h>
@@ -24,7 +24,7 @@ std::string hex(const std::vector<std::uint8_t>& bytes) {
 
 TEST(Pcapng, ASectionBeginsWithItsHeader) {
   EXPECT_EQ(hex(pcapng::section_header("abcde")),
-            "0A0D0D0A 2C000000 4D3C2B1A 01000000 FFFFFFFF FFFFFFFF "  // magic, 1.0, of unknown length
+            "0A0D0D0A 2C000000 4D3C2B1A 01000000 FFFFFFFF FFFFFFFF "  // magic, version 1.0, unknown length
             "04000500 61626364 65000000 00000000 2C000000");
 }
 

@@ -14,7 +14,7 @@ std::string name_of(const ModuleSpec& spec) {
   return {name.begin(), name.end()};
 }
 
-/// Returns the error message for an argument; empty if the argument is valid.
+/// Returns the error message for an argument, or an empty text if the argument is valid.
 std::string error_of(const std::string& text) {
   try {
     parse_module_spec(text);
@@ -24,7 +24,8 @@ std::string error_of(const std::string& text) {
   return "";
 }
 
-/// Expects a one-line message that begins with the argument and contains `mend`.
+/// Expects a one-line error message that begins with the argument and contains `mend`, which says what would
+/// be right.
 void expect_error(const std::string& text, const std::string& mend) {
   const std::string error = error_of(text);
   EXPECT_EQ(error.find(text + ": "), 0U) << text << " -> " << error;
@@ -45,7 +46,7 @@ TEST(ModuleSpec, AModelAloneHasItsFactorySettings) {
   }
 }
 
-TEST(ModuleSpec, AModelIsFoundInLowerCaseAndWithoutItsEX) {
+TEST(ModuleSpec, AModelCanBeInLowerCaseAndWithoutEX) {
   for (const char* text : {"EX9042D-M", "ex9042d-m", "9042D-M", "9042d-m", "Ex9042D-m"}) {
     EXPECT_EQ(parse_module_spec(text).model->designation, "EX9042D-M") << text;
   }

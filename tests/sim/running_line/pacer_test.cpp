@@ -1,5 +1,5 @@
 // Tests how long a frame has to wait on a line that follows the wall clock. The line is so slow that the
-// delays of a busy host are small in comparison. All expected times are lower bounds in the line's time.
+// delays of a busy host are small in comparison. All expected times are lower bounds, in line time.
 #include "sim/running_line/pacer.hpp"
 
 #include <gtest/gtest.h>
@@ -35,7 +35,8 @@ class ImmediatePort final : public Port {
   Received& received_;
 };
 
-/// At 115200 baud, T3.5 is 1.75 ms. On the wall clock this takes 35 ms.
+/// Line time passes at 0.05 times the speed of the wall clock. At 115200 baud, T3.5 is 1.75 ms of line time,
+/// which takes 35 ms on the wall clock.
 constexpr Pace kSlow{VirtualTime(0), VirtualTime(0), true, 0.05};
 
 class PacedLine : public testing::Test {
@@ -65,7 +66,8 @@ class PacedLine : public testing::Test {
       ASSERT_GT(io_.run_one(), 0U);
     }
   }
-  /// Returns the length of the silence before the master's last frame, which has `characters` characters.
+  /// Returns the time without a byte before the last frame on the line. This frame is from the master and has
+  /// `characters` characters.
   [[nodiscard]] VirtualTime silence_before_last(std::size_t characters) const {
     const auto& bytes = recorder_.bytes;
     const std::size_t first = bytes.size() - characters;
@@ -102,7 +104,7 @@ TEST_F(PacedLine, AModbusRequestImmediatelyAfterAnAsciiReplyGetsItsReply) {
   EXPECT_EQ(recorder_.sent_by(2), with_crc({0x02, 0x02, 0x01, 0x00}));
 }
 
-TEST_F(PacedLine, DelaysABroadcastAfterAModbusReplyForT35) {
+TEST_F(PacedLine, DelaysABroadcastAfterAModbusReplyUntilT35HasPassed) {
   ask(kInputs2, 6);
   send(kAllFirstOn);
   rest();
