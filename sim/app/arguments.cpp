@@ -126,7 +126,7 @@ Setup setup_of(const Texts& texts) {
   }
   apply_options(texts, setup);
   for (LineSetup& line : setup.lines) {
-    if (!line.pty && !line.tcp && !line.serial && !setup.speed.max()) {
+    if (line.first_port().empty() && !line.serial && !setup.speed.max()) {
       line.pty = line.name.empty() ? kDefaultPty : line.name + ".tty";
     }
   }
@@ -232,6 +232,10 @@ CLI::App* add_describe(CLI::App& app, DescribeTexts& texts) {
       ->add_option("--tcp", texts.tcp,
                    "the TCP port of the simulator, for home-assistant and node-red (default: 127.0.0.1:5020)")
       ->type_name("HOST:PORT");
+  describe
+      ->add_option("--modbus-tcp", texts.modbus_tcp,
+                   "the Modbus TCP port of the simulator, in place of --tcp, for the same formats")
+      ->type_name("HOST:PORT");
   return describe;
 }
 
@@ -306,10 +310,13 @@ Parsed parse_arguments(int argc, const char* const* argv) {
   app.add_option("MODULE", texts.line.modules, "the modules on the line, or BUS.json");
   app.add_option("--pty", texts.line.pty,
                  std::string("create a pseudo-terminal and link it at this path (default: ") + kDefaultPty +
-                     " without --tcp, --serial and --speed max)")
+                     " without --tcp, --modbus-tcp, --serial and --speed max)")
       ->type_name("LINK");
   app.add_option("--tcp", texts.line.tcp, "serve the line's bytes over TCP (default HOST: 127.0.0.1)")
-      ->type_name("HOST:PORT");
+      ->type_name("[HOST:]PORT");
+  app.add_option("--modbus-tcp", texts.line.modbus_tcp,
+                 "serve the Modbus modules of the line as a gateway for Modbus TCP (default HOST: 127.0.0.1)")
+      ->type_name("[HOST:]PORT");
   app.add_option("--serial", texts.line.serial, "connect the modules to a real line through this serial port")
       ->type_name("DEVICE");
   app.add_flag("--echo", texts.line.echo,

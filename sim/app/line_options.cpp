@@ -69,7 +69,8 @@ LineSetup line_of(const LineTexts& texts) {
   take_option("--baud", texts.baud, parse_baud_rate, line.baud);
   take_option("--format", texts.format, parse_line_format, line.format);
   take_option("--line", texts.kind, parse_line_kind, line.instant);
-  take_option("--tcp", texts.tcp, parse_tcp_address, line.tcp);
+  take_option("--tcp", texts.tcp, parse_listening_address, line.tcp);
+  take_option("--modbus-tcp", texts.modbus_tcp, parse_listening_address, line.modbus_tcp);
   return line;
 }
 
@@ -78,6 +79,7 @@ void reject_line_options(const LineTexts& texts) {
                                                 {"--fault", !texts.faults.empty()},
                                                 {"--pty", texts.pty.has_value()},
                                                 {"--tcp", texts.tcp.has_value()},
+                                                {"--modbus-tcp", texts.modbus_tcp.has_value()},
                                                 {"--serial", texts.serial.has_value()},
                                                 {"--baud", texts.baud.has_value()},
                                                 {"--line", texts.kind.has_value()},

@@ -16,6 +16,7 @@ struct LineTexts {
   std::vector<std::string> faults;
   std::optional<std::string> pty;
   std::optional<std::string> tcp;
+  std::optional<std::string> modbus_tcp;
   std::optional<std::string> serial;
   std::optional<std::string> baud;
   std::optional<std::string> format;

@@ -104,14 +104,19 @@ const std::array<BusFileKey<Setup>, 7> bus_keys{{
      [](Setup& setup, const Node& value) { setup.seed = parse_seed(value.number_or_text()); }},
 }};
 
-const std::array<BusFileKey<LineSetup>, 11> line_keys{{
+const std::array<BusFileKey<LineSetup>, 12> line_keys{{
     {"name", kText, "the line's name, one word (default: line1, line2, ...)",
      [](LineSetup& line, const Node& value) { line.name = value.text(); }},
     {"pty", kPath,
-     "creates a pseudo-terminal and links it at this path (default: NAME.tty without tcp and serial)",
+     "creates a pseudo-terminal and links it at this path (default: NAME.tty without another port)",
      [](LineSetup& line, const Node& value) { line.pty = value.text(); }},
     {"tcp", kPort, "serves the line's bytes at HOST:PORT, or at a port of 127.0.0.1",
-     [](LineSetup& line, const Node& value) { line.tcp = parse_tcp_address(value.number_or_text()); }},
+     [](LineSetup& line, const Node& value) { line.tcp = parse_listening_address(value.number_or_text()); }},
+    {"modbus-tcp", kPort,
+     "serves the line's Modbus modules at HOST:PORT, or at a port of 127.0.0.1, for Modbus TCP",
+     [](LineSetup& line, const Node& value) {
+       line.modbus_tcp = parse_listening_address(value.number_or_text());
+     }},
     {"serial", kPath, "connects the modules to this serial port",
      [](LineSetup& line, const Node& value) { line.serial = value.text(); }},
     {"echo", kFlag, "ignores the echo of an adapter that receives what it sends",

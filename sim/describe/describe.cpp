@@ -58,11 +58,11 @@ std::uint8_t parse_modbus_address(const std::string& text) {
   return address;
 }
 
-TcpAddress parse_master_address(const std::string& text) {
-  TcpAddress tcp = with_place("--tcp ", [&] { return parse_tcp_address(text); });
+TcpAddress parse_master_address(const std::string& option, const std::string& text) {
+  TcpAddress tcp = with_place(option + " ", [&] { return parse_tcp_address(text); });
   const std::string of_hosts = "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789.-_:%";
   if (tcp.port == 0 || tcp.host.find_first_not_of(of_hosts) != std::string::npos) {
-    reject("--tcp " + text, "expected HOST:PORT of a simulator, for example 127.0.0.1:5020");
+    reject(option + " " + text, "expected HOST:PORT of a simulator, for example 127.0.0.1:5020");
   }
   return tcp;
 }
@@ -72,8 +72,15 @@ NetworkAddress parse_network_address(const DescribeTexts& texts) {
   if (texts.address) {
     network_address.address = parse_modbus_address(*texts.address);
   }
+  if (texts.tcp && texts.modbus_tcp) {
+    reject("--modbus-tcp", "cannot be combined with --tcp; leave out one of them");
+  }
   if (texts.tcp) {
-    network_address.tcp = parse_master_address(*texts.tcp);
+    network_address.tcp = parse_master_address("--tcp", *texts.tcp);
+  }
+  if (texts.modbus_tcp) {
+    network_address.tcp = parse_master_address("--modbus-tcp", *texts.modbus_tcp);
+    network_address.modbus_tcp = true;
   }
   return network_address;
 }
@@ -81,7 +88,8 @@ NetworkAddress parse_network_address(const DescribeTexts& texts) {
 /// Rejects options that are valid only with formats for one module.
 void refuse_place(const DescribeTexts& texts) {
   for (const auto& [option, given] :
-       {std::pair("--address", texts.address.has_value()), std::pair("--tcp", texts.tcp.has_value())}) {
+       {std::pair("--address", texts.address.has_value()), std::pair("--tcp", texts.tcp.has_value()),
+        std::pair("--modbus-tcp", texts.modbus_tcp.has_value())}) {
     if (given) {
       reject(option, "--format " + texts.format + " has no such option; leave it out");
     }

@@ -12,6 +12,7 @@ struct DescribeTexts {
   std::string format = "markdown";
   std::optional<std::string> address;
   std::optional<std::string> tcp;
+  std::optional<std::string> modbus_tcp = std::nullopt;
 };
 
 /// Returns `markdown|json|...`, for the help text.

@@ -34,6 +34,7 @@ std::string csv_of(const Models& models);
 struct NetworkAddress {
   TcpAddress tcp{"127.0.0.1", 5020};
   std::uint8_t address = 0x01;  ///< 1 to 247
+  bool modbus_tcp = false;      ///< the port speaks Modbus TCP; false: the bytes of the line
 };
 
 /// Returns YAML for Home Assistant's modbus integration: a hub with switches, binary sensors and sensors. The

@@ -36,7 +36,7 @@ class Hub {
 
   [[nodiscard]] Json hub() const {
     Json hub{{"name", key_},
-             {"type", "rtuovertcp"},
+             {"type", network_address_.modbus_tcp ? "tcp" : "rtuovertcp"},
              {"host", network_address_.tcp.host},
              {"port", network_address_.tcp.port},
              {"timeout", kTimeoutSeconds},

@@ -71,22 +71,22 @@ class Flow {
   }
 
   void add_client() {
-    nodes_.push_back(
-        {{"id", id("client")},
-         {"type", "modbus-client"},
-         {"name", "line of " + module_},
-         {"clienttype", "tcp"},
-         {"tcpHost", network_address_.tcp.host},
-         {"tcpPort", std::to_string(network_address_.tcp.port)},
-         {"tcpType", "TELNET"},  // sends the bytes as on the line; other types add the header of Modbus TCP
-         // The client sends one request at a time, because all modules share one line.
-         {"bufferCommands", true},
-         {"parallelUnitIdsAllowed", false},
-         {"unit_id", std::to_string(network_address_.address)},
-         {"commandDelay", "30"},
-         {"clientTimeout", "1000"},
-         {"reconnectOnTimeout", true},
-         {"reconnectTimeout", "2000"}});
+    nodes_.push_back({{"id", id("client")},
+                      {"type", "modbus-client"},
+                      {"name", "line of " + module_},
+                      {"clienttype", "tcp"},
+                      {"tcpHost", network_address_.tcp.host},
+                      {"tcpPort", std::to_string(network_address_.tcp.port)},
+                      // TELNET sends the bytes as on the line; DEFAULT adds the header of Modbus TCP.
+                      {"tcpType", network_address_.modbus_tcp ? "DEFAULT" : "TELNET"},
+                      // The client sends one request at a time, because all modules share one line.
+                      {"bufferCommands", true},
+                      {"parallelUnitIdsAllowed", false},
+                      {"unit_id", std::to_string(network_address_.address)},
+                      {"commandDelay", "30"},
+                      {"clientTimeout", "1000"},
+                      {"reconnectOnTimeout", true},
+                      {"reconnectTimeout", "2000"}});
   }
 
   void add(const Shown& shown) {

@@ -26,7 +26,14 @@ LineTiming instantly(std::uint32_t /*baud*/, LineFormat /*format*/) {
 Line::Line(const std::vector<ModuleSpec>& modules, LineKind kind, Master::Receive receive)
     : kind_(kind),
       bus_(clock_, kind.times_faster),
-      master_(bus_, SerialMode{baud_rate(kFactoryBaudCode)}, std::move(receive)) {
+      master_(bus_, SerialMode{baud_rate(kFactoryBaudCode)},
+              [this, receive = std::move(receive)](std::uint8_t byte, ByteStatus status) {
+                if (requests_) {
+                  requests_->hear(byte, status);
+                }
+                receive(byte, status);
+              }),
+      spacing_(*this) {
   for (const ModuleSpec& spec : modules) {
     modules_.push_back(std::make_unique<SimulatedModule>(bus_, *spec.model, kind.timing_at));
     SimulatedModule& module = *modules_.back();
@@ -54,14 +61,23 @@ Faults& Line::faults() {
   return *faults_;
 }
 
+RequestQueue& Line::requests() {
+  if (!requests_) {
+    requests_ = std::make_unique<RequestQueue>(*this);
+  }
+  return *requests_;
+}
+
 void Line::move_input(std::size_t index, const InputProgram& program) {
   moved_inputs_.push_back(std::make_unique<MovedInput>(bus_, *modules_[index], program, chance_.number()));
 }
 
-bool Line::pending() const {
+bool Line::unsettled() const {
   return bus_.busy() || master_.sending() || (faults_ && faults_->pending()) ||
          std::any_of(modules_.begin(), modules_.end(), [](const auto& module) { return module->pending(); });
 }
+
+bool Line::pending() const { return unsettled() || (requests_ && requests_->busy()); }
 
 LineTiming Line::timing() const { return kind_.timing_at(master_.mode().baud, master_.mode().format); }
 

@@ -8,8 +8,10 @@
 #include "sim/bus/master.hpp"
 #include "sim/bus/module.hpp"
 #include "sim/faults/faults.hpp"
+#include "sim/line/frame_spacing.hpp"
 #include "sim/line/input_program.hpp"
 #include "sim/line/module_spec.hpp"
+#include "sim/line/request_queue.hpp"
 
 namespace ex9000::sim {
 
@@ -45,6 +47,10 @@ class Line {
   Bus& bus() { return bus_; }
   Master& master() { return master_; }
   [[nodiscard]] const Master& master() const { return master_; }
+  [[nodiscard]] const FrameSpacing& spacing() const { return spacing_; }
+  /// Returns the queue of requests that other clients than the ports send. The first call attaches it to the
+  /// bus.
+  RequestQueue& requests();
   [[nodiscard]] std::size_t size() const { return modules_.size(); }
   SimulatedModule& module(std::size_t index) { return *modules_[index]; }
   [[nodiscard]] const SimulatedModule& module(std::size_t index) const { return *modules_[index]; }
@@ -61,6 +67,8 @@ class Line {
   /// wires or in a queue, the silence after a Modbus frame, a delayed reply, a store, a module that
   /// starts up. Events that only depend on the clock do not count: a host watchdog, a scheduled fault, an
   /// input program.
+  [[nodiscard]] bool unsettled() const;
+  /// Returns whether the line is unsettled, or a request of the queue waits for the line or for its reply.
   [[nodiscard]] bool pending() const;
   /// Returns the silence that modules of this line require after the first stop bit of the last byte: the
   /// rest of the stop bits and T3.5, in the master's mode.
@@ -76,11 +84,13 @@ class Line {
   LineKind kind_;
   Bus bus_;
   Master master_;
+  FrameSpacing spacing_;
   std::vector<std::unique_ptr<SimulatedModule>> modules_;
   Chance chance_{1};
   Faults::Notice notice_;
   std::unique_ptr<Faults> faults_;
   std::vector<std::unique_ptr<MovedInput>> moved_inputs_;
+  std::unique_ptr<RequestQueue> requests_;
 };
 
 }  // namespace ex9000::sim

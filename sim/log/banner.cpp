@@ -1,5 +1,7 @@
 #include "sim/log/banner.hpp"
 
+#include <algorithm>
+#include <iterator>
 #include <map>
 
 #include "firmware/model/model.hpp"
@@ -22,61 +24,74 @@ std::string quoted(const std::string& path) {
   return text + "'";
 }
 
-/// Returns the options of mbpoll, whose default is 8E1. A pseudo-terminal ignores the format, but a real bus
-/// does not.
-std::string mbpoll_format(LineFormat format) {
-  switch (format) {
-    case LineFormat::k8N1:
-      return " -P none ";
-    case LineFormat::k8N2:
-      return " -P none -s 2 ";
-    case LineFormat::k8E1:
-      return " -P even ";
-    case LineFormat::k8O1:
-      return " -P odd ";
-  }
-  return " ";
+/// The options that set a line format.
+struct FormatOptions {
+  LineFormat format;
+  const char* mbpoll;   ///< its default is 8E1
+  const char* picocom;  ///< its default is 8N1
+};
+
+constexpr FormatOptions kFormatOptions[] = {
+    {LineFormat::k8N1, " -P none", ""},
+    {LineFormat::k8N2, " -P none -s 2", " -p 2"},
+    {LineFormat::k8E1, " -P even", " -y e"},
+    {LineFormat::k8O1, " -P odd", " -y o"},
+};
+
+/// A pseudo-terminal ignores the format, but a real bus does not.
+const FormatOptions& options_of(LineFormat format) {
+  return *std::find_if(std::begin(kFormatOptions), std::end(kFormatOptions),
+                       [format](const FormatOptions& options) { return options.format == format; });
 }
 
-/// Returns the options of picocom, whose default is 8N1.
-std::string picocom_format(LineFormat format) {
-  switch (format) {
-    case LineFormat::k8N1:
-      return "";
-    case LineFormat::k8N2:
-      return " -p 2";
-    case LineFormat::k8E1:
-      return " -y e";
-    case LineFormat::k8O1:
-      return " -y o";
-  }
-  return "";
+/// The part of an mbpoll command that names the port.
+struct MbpollPort {
+  std::string options;
+  std::string name;
+};
+
+MbpollPort pty_of(const LineSummary& line, const ModuleSummary& module) {
+  return {"-m rtu -b " + std::to_string(module.mode.baud) + options_of(module.mode.format).mbpoll,
+          quoted(line.pty)};
+}
+
+MbpollPort gateway_of(const LineSummary& line) {
+  const auto colon = line.modbus_tcp.rfind(':');
+  return {"-m tcp -p " + line.modbus_tcp.substr(colon + 1), line.modbus_tcp.substr(0, colon)};
 }
 
 /// Returns commands for mbpoll, which counts addresses from 1.
-std::string mbpoll(const ModuleSummary& module, const std::string& link) {
-  const std::string common = "mbpoll -m rtu -a " + std::to_string(module.address) + " -b " +
-                             std::to_string(module.mode.baud) + mbpoll_format(module.mode.format);
+std::string mbpoll(const ModuleSummary& module, const MbpollPort& port) {
+  const std::string common = "    mbpoll " + port.options + " -a " + std::to_string(module.address);
+  const auto read = [&](const char* type, unsigned count, const char* what) {
+    return common + " -t " + type + " -r 1 -c " + std::to_string(count) + " -1 " + port.name +
+           "    # read the " + what + "\n";
+  };
   std::string text;
   if (module.outputs != 0) {
-    text += "    " + common + "-t 0 -r 1 -c " + std::to_string(module.outputs) + " -1 " + link +
-            "    # read the outputs\n";
-    text += "    " + common + "-t 0 -r 1 " + link + " 1" + "    # switch output 0 on\n";
+    text += read("0", module.outputs, "outputs");
+    text += common + " -t 0 -r 1 " + port.name + " 1    # switch output 0 on\n";
   }
   if (module.inputs != 0) {
-    text += "    " + common + "-t 1 -r 1 -c " + std::to_string(module.inputs) + " -1 " + link +
-            "    # read the inputs\n";
-    text += "    " + common + "-t 3 -r 1 -c " + std::to_string(module.inputs) + " -1 " + link +
-            "    # read the counters\n";
+    text += read("1", module.inputs, "inputs");
+    text += read("3", module.inputs, "counters");
   }
   return text;
 }
 
 /// Returns a command for a terminal program.
 std::string terminal(const ModuleSummary& module, const std::string& link) {
-  return "    picocom -q -b " + std::to_string(module.mode.baud) + picocom_format(module.mode.format) +
+  return "    picocom -q -b " + std::to_string(module.mode.baud) + options_of(module.mode.format).picocom +
          " --imap crcrlf --echo " + link + "    # then type $" + hex_byte_text(module.address) +
          "M and Enter\n";
+}
+
+/// Returns commands that a user can paste to use the module; empty if there is no port for them.
+std::string commands(const LineSummary& line, const ModuleSummary& module) {
+  if (!line.pty.empty()) {
+    return module.speaks_ascii ? terminal(module, quoted(line.pty)) : mbpoll(module, pty_of(line, module));
+  }
+  return line.modbus_tcp.empty() || module.speaks_ascii ? "" : mbpoll(module, gateway_of(line));
 }
 
 std::string ports(const LineSummary& line) {
@@ -86,6 +101,9 @@ std::string ports(const LineSummary& line) {
   }
   if (!line.tcp.empty()) {
     text += "  TCP " + line.tcp + ", the bytes as they are: Modbus RTU (not Modbus TCP) and ASCII\n";
+  }
+  if (!line.modbus_tcp.empty()) {
+    text += "  Modbus TCP " + line.modbus_tcp + ", a gateway to the modules that speak Modbus RTU\n";
   }
   if (!line.serial.empty()) {
     text += "  serial port " + line.serial + "\n";
@@ -117,10 +135,7 @@ std::string introduction(const LineSummary& line) {
             (module.speaks_ascii ? "ASCII" : "Modbus RTU") + ", " +
             mode_text(module.mode.baud, module.mode.format) +
             (module.remark.empty() ? "" : "; " + module.remark) + "\n";
-    if (!line.pty.empty()) {
-      const std::string link = quoted(line.pty);
-      text += module.speaks_ascii ? terminal(module, link) : mbpoll(module, link);
-    }
+    text += commands(line, module);
   }
   return text + shared_addresses(line.modules);
 }

@@ -27,7 +27,8 @@ struct LineSummary {
   std::vector<ModuleSummary> modules;
   std::string pty;         ///< link of the pseudo-terminal; empty: none
   std::string pty_device;  ///< the device to which the link points
-  std::string tcp;         ///< HOST:PORT; empty: none
+  std::string tcp;         ///< HOST:PORT of the line's bytes; empty: none
+  std::string modbus_tcp;  ///< HOST:PORT of the gateway; empty: none
   std::string serial;      ///< the serial port; empty: none
 };
 
@@ -38,7 +39,8 @@ struct BannerContent {
 };
 
 /// Returns several lines of text: the lines, their ports and their modules. For each module on a
-/// pseudo-terminal, adds commands that the user can paste to read the module or to switch an output.
+/// pseudo-terminal or behind a gateway, adds commands that the user can paste to read the module or to switch
+/// an output.
 std::string greeting(const BannerContent& all);
 
 }  // namespace ex9000::sim

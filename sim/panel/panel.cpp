@@ -175,7 +175,8 @@ class Panel::Viewer final : public PanelViewer {
         modules.back()["line"] = lines.size();
       }
       Message ports = Message::array();
-      for (const std::string& port : {watched.summary.pty, watched.summary.tcp, watched.summary.serial}) {
+      for (const std::string& port :
+           {watched.summary.pty, watched.summary.tcp, watched.summary.modbus_tcp, watched.summary.serial}) {
         if (!port.empty()) {
           ports.push_back(port);
         }

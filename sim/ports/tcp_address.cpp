@@ -1,5 +1,6 @@
 #include "sim/ports/tcp_address.hpp"
 
+#include <boost/asio/ip/address.hpp>
 #include <limits>
 
 #include "sim/text/fail.hpp"
@@ -26,6 +27,19 @@ TcpAddress parse_tcp_address(const std::string& text) {
     fail("'" + text + "': expected HOST:PORT or a port, for example 127.0.0.1:5020");
   }
   return {host.empty() ? kLoopback : host, static_cast<std::uint16_t>(*number)};
+}
+
+TcpAddress parse_listening_address(const std::string& text) {
+  TcpAddress address = parse_tcp_address(text);
+  if (address.host == "localhost") {
+    address.host = kLoopback;
+  }
+  boost::system::error_code error;
+  boost::asio::ip::make_address(address.host, error);
+  if (error) {
+    fail("'" + text + "': expected a numeric address or localhost as HOST, for example 127.0.0.1:5020");
+  }
+  return address;
 }
 
 }  // namespace ex9000::sim

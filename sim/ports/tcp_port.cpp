@@ -3,11 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <boost/asio/buffer.hpp>
-#include <cctype>
-#include <stdexcept>
 #include <utility>
-
-#include "sim/ports/listening.hpp"
 
 namespace ex9000::sim {
 
@@ -17,23 +13,6 @@ using boost::asio::ip::tcp;
 
 /// The maximum number of masters on one line. In practice only clients that never disconnect reach it.
 constexpr std::size_t kMostMasters = 64;
-
-[[noreturn]] void refuse(const TcpAddress& address, const std::string& why) {
-  const std::string host =
-      address.host.find(':') == std::string::npos ? address.host : "[" + address.host + "]";
-  throw std::invalid_argument(host + ":" + std::to_string(address.port) + ": " + why);
-}
-
-tcp::endpoint endpoint_of(boost::asio::io_context& io, const TcpAddress& address) {
-  boost::system::error_code error;
-  tcp::resolver resolver(io);
-  const auto found = resolver.resolve(address.host, std::to_string(address.port),
-                                      tcp::resolver::passive | tcp::resolver::numeric_service, error);
-  if (error || found.empty()) {
-    refuse(address, error.message() + "; name an address of this machine");
-  }
-  return found.begin()->endpoint();
-}
 
 }  // namespace
 
@@ -56,11 +35,7 @@ struct TcpPort::Client {
 };
 
 TcpPort::TcpPort(boost::asio::io_context& io, const TcpAddress& address, Linger linger)
-    : io_(io), acceptor_(io), next_try_(io), linger_(linger) {
-  if (const boost::system::error_code error = listen_at(acceptor_, endpoint_of(io, address))) {
-    refuse(address, why_not_listening(error, "name an address and a free port of this machine"));
-  }
-}
+    : io_(io), listener_(io, address), linger_(linger) {}
 
 TcpPort::~TcpPort() {
   for (const ClientPointer& client : clients_) {
@@ -68,24 +43,14 @@ TcpPort::~TcpPort() {
   }
 }
 
-std::string TcpPort::address() const {
-  const tcp::endpoint endpoint = acceptor_.local_endpoint();
-  const std::string host = endpoint.address().to_string();
-  return (endpoint.address().is_v6() ? "[" + host + "]" : host) + ":" + std::to_string(endpoint.port());
-}
-
 void TcpPort::start(Received received) {
   received_ = std::move(received);
-  keep_accepting(acceptor_, next_try_, [this](tcp::socket socket) { admit(std::move(socket)); });
+  listener_.start([this](tcp::socket socket) { admit(std::move(socket)); });
 }
 
 void TcpPort::admit(tcp::socket socket) {
   make_room();
   if (clients_.size() < kMostMasters) {
-    boost::system::error_code ignored;
-    socket.set_option(tcp::no_delay(true), ignored);
-    socket.set_option(tcp::socket::keep_alive(true), ignored);
-    socket.non_blocking(true, ignored);
     clients_.push_back(std::make_shared<Client>(io_, std::move(socket)));
     read(clients_.back());
   }
@@ -93,11 +58,7 @@ void TcpPort::admit(tcp::socket socket) {
 
 /// Errors of a client are handled later, when the io_context runs.
 void TcpPort::read_waiting() {
-  boost::system::error_code error;
-  acceptor_.non_blocking(true, error);
-  for (tcp::socket socket = acceptor_.accept(error); !error; socket = acceptor_.accept(error)) {
-    admit(std::move(socket));
-  }
+  listener_.accept_waiting();
   const std::list<ClientPointer> clients = clients_;
   for (const ClientPointer& client : clients) {
     while (!client->paused && !take(*client)) {

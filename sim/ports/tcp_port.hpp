@@ -11,7 +11,7 @@
 #include <string>
 
 #include "sim/ports/port.hpp"
-#include "sim/ports/tcp_address.hpp"
+#include "sim/ports/tcp_listener.hpp"
 
 namespace ex9000::sim {
 
@@ -33,7 +33,7 @@ class TcpPort final : public Port {
   void read_waiting() override;
   std::size_t send(const std::vector<std::uint8_t>& bytes) override;
   /// Returns the HOST:PORT on which the port listens.
-  [[nodiscard]] std::string address() const;
+  [[nodiscard]] std::string address() const { return listener_.address(); }
 
  private:
   struct Client;
@@ -50,8 +50,7 @@ class TcpPort final : public Port {
   void forget(const ClientPointer& client);
 
   boost::asio::io_context& io_;
-  boost::asio::ip::tcp::acceptor acceptor_;
-  boost::asio::steady_timer next_try_;
+  TcpListener listener_;
   Linger linger_;
   Received received_;
   std::list<ClientPointer> clients_;

@@ -35,9 +35,7 @@ Pacer::Pacer(boost::asio::io_context& io, Line& line, const LinePorts::All& port
       notice_(std::move(notice)),
       ports_(line, ports, notice_),
       frames_(frames),
-      pace_(pace) {
-  line.bus().observe(*this);
-}
+      pace_(pace) {}
 
 void Pacer::start() {
   prctl(PR_SET_TIMERSLACK, kTimerSlackNanoseconds);
@@ -51,6 +49,14 @@ void Pacer::start() {
         });
   }
   follow();
+}
+
+void Pacer::serve(ModbusTcpServer& server) {
+  server_ = &server;
+  server.start([this](std::size_t /*size*/, const std::function<void()>& process) {
+    now(process);
+    return !pause_if_full();
+  });
 }
 
 VirtualTime Pacer::wall() const {
@@ -81,7 +87,8 @@ void Pacer::catch_up(VirtualTime until) {
 
 /// Returns whether the event at `next` need not wait for the wall clock.
 bool Pacer::leads(VirtualTime next) const {
-  return pace_.lead != VirtualTime(0) && (line_.bus().carries() || next <= last_byte_ + pace_.lead);
+  return pace_.lead != VirtualTime(0) &&
+         (line_.bus().carries() || next <= line_.spacing().last_byte() + pace_.lead);
 }
 
 /// Returns whether masters have to wait, because the line has many bytes to carry or virtual time has run too
@@ -102,8 +109,20 @@ void Pacer::follow() {
     for (const auto& port : ports_.all()) {
       port->resume();
     }
+    if (server_ != nullptr) {
+      server_->resume();
+    }
   }
   arm_timer();
+}
+
+/// Lets masters wait if the line is full. Returns whether they wait.
+bool Pacer::pause_if_full() {
+  if (is_full()) {
+    paused_ = true;
+    arm_timer();
+  }
+  return paused_;
 }
 
 void Pacer::arm_timer() {
@@ -170,18 +189,14 @@ bool Pacer::receive(const Port& port, Bytes bytes, const Port::Positions& damage
   }
   while (rest.size != 0) {
     const Bytes piece = rest.first(splits ? first_frame_size(rest) : rest.size);
-    line_.master().send(piece.data, piece.size, silence_before(piece[0]), damaged);
+    line_.master().send(piece.data, piece.size, earliest_frame(piece[0]), damaged);
     rest = rest.from(piece.size);
     if (rest.size != 0) {
       catch_up(wall());
     }
   }
   follow();
-  if (is_full()) {
-    paused_ = true;
-    arm_timer();
-  }
-  return !paused_;
+  return !pause_if_full();
 }
 
 /// Returns the size of the first frame in `bytes`. After a request without a reply the next request often
@@ -200,47 +215,17 @@ std::size_t Pacer::first_frame_size(Bytes bytes) {
   return crc.value() == 0 ? bytes.size : first;
 }
 
-/// Returns how long a frame to `address` has to wait, so that a module that has received the earlier bytes
+/// Returns the earliest time of a frame to `address`, so that a module that has received the earlier bytes
 /// does not treat both as one frame.
-VirtualTime Pacer::silence_before(std::uint8_t address) {
+VirtualTime Pacer::earliest_frame(std::uint8_t address) const {
   if (!pace_.keep_frames_apart) {
     return VirtualTime(0);
   }
-  if (last_speaker_ == 0) {
-    return pace_.lead == VirtualTime(0) ? VirtualTime(0) : last_byte_ + line_.rtu_silence();
+  const FrameSpacing& spacing = line_.spacing();
+  if (spacing.master_was_last()) {
+    return pace_.lead == VirtualTime(0) ? VirtualTime(0) : spacing.after_own();
   }
-  if (last_speaker_ > line_.size()) {  // a foreign station, whose bytes all modules have received
-    return is_for_modbus(address) ? last_byte_ + line_.rtu_separate() : VirtualTime(0);
-  }
-  const SimulatedModule& speaker = line_.module(last_speaker_ - 1);
-  if (!speaker.powered()) {
-    return VirtualTime(0);
-  }
-  const InForce& in_force = speaker.module().state().in_force;
-  if (in_force.protocol == Protocol::Ascii) {
-    return is_for_modbus(address) ? last_byte_ + line_.rtu_separate() : VirtualTime(0);
-  }
-  return in_force.address == address ? VirtualTime(0) : last_byte_ + line_.rtu_silence();
-}
-
-/// Returns whether a frame that begins with this byte may be for a Modbus module.
-bool Pacer::is_for_modbus(std::uint8_t address) {
-  for (std::size_t i = 0; i < line_.size(); ++i) {
-    const SimulatedModule& module = line_.module(i);
-    if (module.powered()) {
-      const InForce& in_force = module.module().state().in_force;
-      if (in_force.protocol == Protocol::ModbusRtu && (address == 0 || address == in_force.address)) {
-        return true;
-      }
-    }
-  }
-  return false;
-}
-
-void Pacer::byte(std::size_t station, std::uint8_t /*byte*/, SerialMode /*mode*/, bool /*collided*/,
-                 VirtualTime /*start*/, VirtualTime end) {
-  last_speaker_ = station;
-  last_byte_ = end;
+  return spacing.after_others(address);
 }
 
 }  // namespace ex9000::sim

@@ -10,6 +10,7 @@
 
 #include "sim/frames/frame_watch.hpp"
 #include "sim/line/line.hpp"
+#include "sim/modbus_tcp/modbus_tcp_server.hpp"
 #include "sim/running_line/line_ports.hpp"
 
 namespace ex9000::sim {
@@ -43,7 +44,7 @@ constexpr Pace kStrictWallPace{kWallPace.host_latency, kWallPace.lead, false};
 constexpr Pace kInstantPace{VirtualTime(0), std::chrono::microseconds(200), true};
 
 /// Virtual time follows the wall clock from `start` on.
-class Pacer final : private BusObserver {
+class Pacer final {
  public:
   /// Sends the bytes that the master of `line` receives to all `ports`, and puts the bytes from the ports on
   /// the line. `frames` may be null. All arguments must live as long as `io` runs. `notice`: see LinePorts;
@@ -52,6 +53,9 @@ class Pacer final : private BusObserver {
         LinePorts::Notice notice);
 
   void start();
+  /// Starts `server`, whose requests go to the line, too. Call this after `start`; `server` must live as long
+  /// as `io` runs.
+  void serve(ModbusTcpServer& server);
   /// See LinePorts::hear.
   void hear(std::uint8_t byte) { ports_.hear(byte); }
   /// See LinePorts::sent.
@@ -69,14 +73,12 @@ class Pacer final : private BusObserver {
   [[nodiscard]] bool leads(VirtualTime next) const;
   [[nodiscard]] bool is_full() const;
   void arm_timer();
+  bool pause_if_full();
   void report_delay(VirtualTime next);
   void report_joined(Bytes bytes);
   bool receive(const Port& port, Bytes bytes, const Port::Positions& damaged);
   static std::size_t first_frame_size(Bytes bytes);
-  [[nodiscard]] VirtualTime silence_before(std::uint8_t address);
-  [[nodiscard]] bool is_for_modbus(std::uint8_t address);
-  void byte(std::size_t station, std::uint8_t byte, SerialMode mode, bool collided, VirtualTime start,
-            VirtualTime end) override;
+  [[nodiscard]] VirtualTime earliest_frame(std::uint8_t address) const;
 
   boost::asio::steady_timer timer_;
   VirtualTime timer_expires_ = kNever;  ///< kNever: the timer is not set
@@ -84,14 +86,13 @@ class Pacer final : private BusObserver {
   LinePorts::Notice notice_;
   LinePorts ports_;
   FrameWatch* frames_;
+  ModbusTcpServer* server_ = nullptr;
   Pace pace_;
   std::chrono::steady_clock::time_point began_;
   VirtualTime first_{0};  ///< the line's time at `began_`
-  bool paused_ = false;   ///< a port waits for `resume`
+  bool paused_ = false;   ///< the ports and the server wait for `resume`
   /// The longest delay of the host that was reported, in wall clock time.
   VirtualTime longest_delay_{0};
-  std::size_t last_speaker_ = 0;  ///< the station that has sent last; 0: the master
-  VirtualTime last_byte_{0};      ///< end of its last byte
 };
 
 }  // namespace ex9000::sim

@@ -74,6 +74,12 @@ void RunningLine::open_ports(boost::asio::io_context& io, bool stepped) {
     introduced_.tcp = port->address();
     ports_.push_back(std::move(port));
   }
+  if (setup_.modbus_tcp) {
+    modbus_tcp_ = with_place(place_of(setup_.places, "modbus-tcp"), [&] {
+      return std::make_unique<ModbusTcpServer>(io, *line_, *setup_.modbus_tcp);
+    });
+    introduced_.modbus_tcp = modbus_tcp_->address();
+  }
   if (setup_.serial) {
     ports_.push_back(std::make_unique<SerialPort>(io, place_of(setup_.places, "serial"), *setup_.serial, mode,
                                                   setup_.echo));
@@ -105,9 +111,10 @@ void RunningLine::make_missing_memories(std::list<NewFile>& made) {
 }
 
 /// Returns the name of the line. If the line has no name, returns the name of its first port, in the order
-/// pseudo-terminal, TCP, serial; "line" if it has no port.
+/// pseudo-terminal, TCP, Modbus TCP, serial; "line" if it has no port.
 std::string RunningLine::log_name() const {
-  for (const std::string& name : {setup_.name, introduced_.pty, introduced_.tcp, introduced_.serial}) {
+  for (const std::string& name :
+       {setup_.name, introduced_.pty, introduced_.tcp, introduced_.modbus_tcp, introduced_.serial}) {
     if (!name.empty()) {
       return name;
     }
@@ -163,12 +170,18 @@ void RunningLine::start_paced(boost::asio::io_context& io, double speed) {
   pacer_ = std::make_unique<Pacer>(io, *line_, ports_, record_->frames(), pace,
                                    [this](const std::string& text) { record_->note(text); });
   pacer_->start();
+  if (modbus_tcp_) {
+    pacer_->serve(*modbus_tcp_);
+  }
 }
 
 SteppedLine& RunningLine::start_stepped(SteppedLine::Arrived arrived) {
   stepped_ = std::make_unique<SteppedLine>(*line_, ports_, record_->frames(),
                                            [this](const std::string& text) { record_->note(text); });
   stepped_->start(std::move(arrived));
+  if (modbus_tcp_) {
+    stepped_->serve(*modbus_tcp_);
+  }
   return *stepped_;
 }
 

@@ -12,6 +12,7 @@
 #include "sim/files/new_file.hpp"
 #include "sim/line/line.hpp"
 #include "sim/log/banner.hpp"
+#include "sim/modbus_tcp/modbus_tcp_server.hpp"
 #include "sim/running_line/line_record.hpp"
 #include "sim/running_line/pacer.hpp"
 #include "sim/running_line/stepped_line.hpp"
@@ -81,6 +82,7 @@ class RunningLine {
   VirtualTime came_up_{0};  ///< the line's time at which all modules had started up
   LineSummary introduced_;
   LinePorts::All ports_;
+  std::unique_ptr<ModbusTcpServer> modbus_tcp_;  ///< null: none
   std::unique_ptr<LineRecord> record_;
   std::unique_ptr<Pacer> pacer_;          ///< null unless the line follows the clock
   std::unique_ptr<SteppedLine> stepped_;  ///< null unless the line is in stepped time

@@ -13,14 +13,23 @@ void SteppedLine::start(Arrived arrived) {
   ports_.report_mismatches();
   for (const auto& port : ports_.all()) {
     // Only serial ports report wrong parity, and they cannot be combined with stepped time.
-    port->start(
-        [this, &port = *port](const std::uint8_t* bytes, std::size_t size,
-                              const Port::Positions& /*damaged*/) { return receive(port, bytes, size); });
+    port->start([this, &port = *port](const std::uint8_t* bytes, std::size_t size,
+                                      const Port::Positions& /*damaged*/) {
+      return receive(size, [this, &port, copy = std::vector<std::uint8_t>(bytes, bytes + size)] {
+        ports_.take_rate(port);
+        line_.master().send(copy.data(), copy.size());
+      });
+    });
   }
 }
 
-bool SteppedLine::receive(const Port& port, const std::uint8_t* bytes, std::size_t size) {
-  chunks_.push_back({&port, {bytes, bytes + size}});
+void SteppedLine::serve(ModbusTcpServer& server) {
+  server_ = &server;
+  server.start([this](std::size_t size, Put process) { return receive(size, std::move(process)); });
+}
+
+bool SteppedLine::receive(std::size_t size, Put put) {
+  arrivals_.push_back(std::move(put));
   waiting_ += size;
   arrived_();
   return !full();
@@ -30,18 +39,23 @@ void SteppedLine::read_ports() {
   for (const auto& port : ports_.all()) {
     port->read_waiting();
   }
+  if (server_ != nullptr) {
+    server_->read_waiting();
+  }
 }
 
 void SteppedLine::put_on_line() {
-  for (const Chunk& chunk : std::exchange(chunks_, {})) {
-    ports_.take_rate(*chunk.port);
-    line_.master().send(chunk.bytes.data(), chunk.bytes.size());
+  for (const Put& put : std::exchange(arrivals_, {})) {
+    put();
   }
   const bool paused = full();
   waiting_ = 0;
   if (paused) {
     for (const auto& port : ports_.all()) {
       port->resume();
+    }
+    if (server_ != nullptr) {
+      server_->resume();
     }
   }
 }

@@ -8,6 +8,7 @@
 
 #include "sim/frames/frame_watch.hpp"
 #include "sim/line/line.hpp"
+#include "sim/modbus_tcp/modbus_tcp_server.hpp"
 #include "sim/running_line/line_ports.hpp"
 
 namespace ex9000::sim {
@@ -26,12 +27,15 @@ class SteppedLine {
 
   /// Accepts masters. `arrived` is called whenever bytes have arrived.
   void start(Arrived arrived);
+  /// Starts `server`, whose requests go to the line, too. Call this after `start`; `server` must outlive this
+  /// object.
+  void serve(ModbusTcpServer& server);
   /// See LinePorts::hear.
   void hear(std::uint8_t byte) { ports_.hear(byte); }
 
   /// Returns how many bytes have arrived that are not on the line yet.
   [[nodiscard]] std::size_t waiting() const { return waiting_; }
-  /// Reads everything that is available at the ports.
+  /// Reads everything that is available at the ports and at the server.
   void read_ports();
   /// Puts the stored bytes on the line, without a gap, after those that the master still has to send.
   void put_on_line();
@@ -49,12 +53,10 @@ class SteppedLine {
   void hand_out() { ports_.hand_out(); }
 
  private:
-  struct Chunk {
-    const Port* port;
-    std::vector<std::uint8_t> bytes;
-  };
+  /// Puts bytes that have arrived together on the line.
+  using Put = std::function<void()>;
 
-  bool receive(const Port& port, const std::uint8_t* bytes, std::size_t size);
+  bool receive(std::size_t size, Put put);
   /// Returns whether the ports wait for `resume`.
   [[nodiscard]] bool full() const { return waiting_ >= kMostBytes; }
 
@@ -62,7 +64,8 @@ class SteppedLine {
   LinePorts ports_;
   FrameWatch* frames_;
   Arrived arrived_;
-  std::vector<Chunk> chunks_;  ///< in the order of arrival
+  ModbusTcpServer* server_ = nullptr;
+  std::vector<Put> arrivals_;  ///< in the order of arrival
   std::size_t waiting_ = 0;    ///< number of bytes in them
 };
 

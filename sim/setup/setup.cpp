@@ -29,10 +29,10 @@ void check(const LineSetup& line, std::size_t position) {
     wrong("name", "expected one word of ASCII characters, for 'line NAME' on the control socket",
           "'" + line.name + "'");
   }
-  if (line.serial && (line.pty || line.tcp)) {
+  if (line.serial && !line.first_port().empty()) {
     wrong("serial",
-          "cannot be combined with {pty} or {tcp}, because the master is on the serial line; leave out one "
-          "of them");
+          "cannot be combined with {pty}, {tcp} or {modbus-tcp}, because the master is on the serial "
+          "line; leave out one of them");
   }
   if (line.echo && !line.serial) {
     wrong("echo", "requires {serial}; add it, or leave this out");
@@ -77,9 +77,9 @@ void check_speed(const Setup& setup) {
     if (line.serial && !(setup.speed.paced() && setup.speed.factor == 1)) {
       wrong("cannot be combined with {serial}, whose line has its own time; leave out one of them");
     }
-    if (setup.speed.max() && (line.pty || line.tcp)) {
-      wrong(std::string("max cannot be combined with ") + (line.pty ? "{pty}" : "{tcp}") +
-            ", whose masters keep the wall clock's time; leave out one of them");
+    if (setup.speed.max() && !line.first_port().empty()) {
+      wrong("max cannot be combined with {" + line.first_port() +
+            "}, whose masters keep the wall clock's time; leave out one of them");
     }
   }
   if (setup.speed.stepped() && !setup.control) {
@@ -151,7 +151,7 @@ void check(const Setup& setup) {
   }
   Once files("two modules cannot share a file; name one for each", one_spelling);
   Once ports("two lines cannot share a port; name one for each", one_spelling);
-  Once addresses("two lines cannot share a port; name one for each");
+  Once addresses("two ports cannot share an address; name one for each");
   Once names("two lines have this name; give each its own");
   for (std::size_t i = 0; i < setup.lines.size(); ++i) {
     const LineSetup& line = setup.lines[i];
@@ -161,8 +161,11 @@ void check(const Setup& setup) {
     }
     ports.add(i, "pty", line.pty);
     ports.add(i, "serial", line.serial);
-    if (line.tcp && line.tcp->port != 0) {
-      addresses.add(i, "tcp", line.tcp->host + ":" + std::to_string(line.tcp->port));
+    for (const auto& [key, address] :
+         {std::pair("tcp", line.tcp), std::pair("modbus-tcp", line.modbus_tcp)}) {
+      if (address && address->port != 0) {
+        addresses.add(i, key, address->host + ":" + std::to_string(address->port));
+      }
     }
     names.add(i, "name", line.name);
   }

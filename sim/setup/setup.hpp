@@ -27,11 +27,18 @@ std::string place_of(const Places& places, const std::string& key);
 
 struct LineSetup {
   Places places;
-  std::string name;                   ///< name in the logs; empty for the line of a command line
-  std::vector<ModuleSpec> modules;    ///< at least one
-  std::optional<std::string> pty;     ///< path of the link to a pseudo-terminal
-  std::optional<TcpAddress> tcp;      ///< address to listen on
-  std::optional<std::string> serial;  ///< the serial port; excludes all other ports
+  std::string name;                      ///< name in the logs; empty for the line of a command line
+  std::vector<ModuleSpec> modules;       ///< at least one
+  std::optional<std::string> pty;        ///< path of the link to a pseudo-terminal
+  std::optional<TcpAddress> tcp;         ///< address to listen on, for the line's bytes
+  std::optional<TcpAddress> modbus_tcp;  ///< address of the gateway from Modbus TCP
+  std::optional<std::string> serial;     ///< the serial port; excludes all other ports
+  /// Returns the key of a port whose masters follow the wall clock: the first of pty, tcp and modbus-tcp that
+  /// is set; empty if none is.
+  [[nodiscard]] std::string first_port() const {
+    return pty ? "pty" : tcp ? "tcp" : modbus_tcp ? "modbus-tcp" : "";
+  }
+
   std::optional<std::uint32_t> baud;  ///< rate of the line until a master sets one
   std::optional<LineFormat> format;   ///< format of the line
   bool echo = false;                  ///< the serial port receives what it sends

@@ -141,12 +141,30 @@ TEST(Arguments, TcpTakesHostAndPortOrAPortAlone) {
   EXPECT_EQ(tcp("5020"), "127.0.0.1 5020");
   EXPECT_EQ(tcp(":5020"), "127.0.0.1 5020");
   EXPECT_EQ(tcp("0.0.0.0:0"), "0.0.0.0 0");
-  EXPECT_EQ(tcp("localhost:65535"), "localhost 65535");
+  EXPECT_EQ(tcp("localhost:65535"), "127.0.0.1 65535");
   EXPECT_EQ(tcp("[::1]:5020"), "::1 5020");
   for (const char* wrong :
        {"", ":", "localhost", "localhost:", ":65536", "::1:5020", "a:-1", "5020x", "1:2:3"}) {
     expect_error({"EX9042D", "--tcp", wrong}, "--tcp", "HOST:PORT");
   }
+  for (const char* name : {"simulator.local:5020", "256.0.0.1:5020", "[::g]:5020"}) {
+    expect_error({"EX9042D", "--tcp", name}, "--tcp", "expected a numeric address or localhost as HOST");
+  }
+}
+
+TEST(Arguments, ModbusTcpTakesTheSameAddressesAndReplacesTheDefaultPseudoTerminal) {
+  const LineSetup line = accepted({"EX9042D-M", "--modbus-tcp", "502"});
+  EXPECT_EQ(line.modbus_tcp.value_or(TcpAddress()).host, "127.0.0.1");
+  EXPECT_EQ(line.modbus_tcp.value_or(TcpAddress()).port, 502);
+  EXPECT_FALSE(line.tcp);
+  EXPECT_FALSE(line.pty);
+  EXPECT_EQ(accepted({"EX9042D-M", "--modbus-tcp", "502", "--tcp", "503", "--pty", "a"}).pty, "a");
+  expect_error({"EX9042D-M", "--modbus-tcp", "a:502"}, "--modbus-tcp",
+               "expected a numeric address or localhost");
+  expect_error({"EX9042D-M", "--modbus-tcp", "502", "--tcp", "localhost:502"}, "--modbus-tcp: 127.0.0.1:502",
+               "two ports cannot share an address; name one for each");
+  expect_error({"EX9042D-M", "--modbus-tcp", "502", "--speed", "max", "--for", "1s"}, "--speed: ",
+               "max cannot be combined with --modbus-tcp, whose masters keep the wall clock's time");
 }
 
 TEST(Arguments, LineIsPacedOrInstantAndStrictGapsRequirePaced) {
@@ -157,12 +175,13 @@ TEST(Arguments, LineIsPacedOrInstantAndStrictGapsRequirePaced) {
                "--strict-gaps: ", "cannot be combined with --line instant");
 }
 
-TEST(Arguments, ASerialLineCannotBeCombinedWithPtyOrTcp) {
+TEST(Arguments, ASerialLineCannotBeCombinedWithAnotherPort) {
   const std::string mend =
-      "cannot be combined with --pty or --tcp, because the master is on the serial line; leave out one of "
-      "them";
+      "cannot be combined with --pty, --tcp or --modbus-tcp, because the master is on the serial line; leave "
+      "out one of them";
   expect_error({"EX9042D", "--serial", "/dev/ttyUSB0", "--tcp", "5020"}, "--serial: ", mend);
   expect_error({"EX9042D", "--serial", "/dev/ttyUSB0", "--pty", "a"}, "--serial: ", mend);
+  expect_error({"EX9042D", "--serial", "/dev/ttyUSB0", "--modbus-tcp", "502"}, "--serial: ", mend);
 }
 
 TEST(Arguments, EchoRequiresASerialLineWhichCannotBeInstant) {

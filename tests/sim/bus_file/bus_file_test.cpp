@@ -133,6 +133,8 @@ TEST(BusFile, LinesWithoutANameAreNumbered) {
 TEST(BusFile, ALineAcceptsTheOptionsOfTheCommandLine) {
   EXPECT_EQ(line_of("\"tcp\": 5020").tcp.value_or(TcpAddress()).host, "127.0.0.1");
   EXPECT_EQ(line_of("\"tcp\": \"[::1]:5020\"").tcp.value_or(TcpAddress()).host, "::1");
+  EXPECT_EQ(line_of("\"modbus-tcp\": 502").modbus_tcp.value_or(TcpAddress()).port, 502);
+  EXPECT_EQ(line_of("\"modbus-tcp\": \"localhost:502\"").modbus_tcp.value_or(TcpAddress()).host, "127.0.0.1");
   EXPECT_EQ(line_of("\"pty\": \"a\"").pty, "a");
   EXPECT_EQ(line_of("\"serial\": \"/dev/ttyUSB0\", \"echo\": true").serial, "/dev/ttyUSB0");
   EXPECT_TRUE(line_of("\"serial\": \"/dev/ttyUSB0\", \"echo\": true").echo);
@@ -308,8 +310,9 @@ TEST(WrongLineOfABusFile, InvalidOrConflictingKeysAreRefusedWithTheirPlace) {
   for (const auto& [members, why] : std::vector<std::pair<std::string, std::string>>{
            {"\"pty\": \"\"", "pty: is empty; name a path"},
            {"\"serial\": \"a\", \"pty\": \"b\"",
-            "serial: cannot be combined with 'pty' or 'tcp', because the master is on the serial line; leave "
-            "out one of them"},
+            "serial: cannot be combined with 'pty', 'tcp' or 'modbus-tcp', because the master is on the "
+            "serial "
+            "line; leave out one of them"},
            {"\"pty\": \"a\", \"echo\": true", "echo: requires 'serial'; add it, or leave this out"},
            {"\"serial\": \"a\", \"line\": \"instant\"",
             "line: instant cannot be combined with 'serial', where bytes take time; leave out one of them"},
@@ -337,7 +340,10 @@ TEST(WrongLinesOfABusFile, TwoLinesCannotShareAPortOrAName) {
   EXPECT_EQ(why_not(two_lines("\"serial\": \"a\"", "\"serial\": \"a\"")),
             "bus.json:5: lines[1].serial: a: two lines cannot share a port; name one for each");
   EXPECT_EQ(why_not(two_lines("\"tcp\": 5020", "\"tcp\": \"127.0.0.1:5020\"")),
-            "bus.json:5: lines[1].tcp: 127.0.0.1:5020: two lines cannot share a port; name one for each");
+            "bus.json:5: lines[1].tcp: 127.0.0.1:5020: two ports cannot share an address; name one for each");
+  EXPECT_EQ(why_not(two_lines("\"tcp\": 5020", "\"modbus-tcp\": 5020")),
+            "bus.json:5: lines[1].modbus-tcp: 127.0.0.1:5020: two ports cannot share an address; name one "
+            "for each");
   EXPECT_EQ(why_not(two_lines("\"tcp\": 0, \"name\": \"a\"", "\"tcp\": 0, \"name\": \"a\"")),
             "bus.json:5: lines[1].name: a: two lines have this name; give each its own");
   EXPECT_EQ(parsed(two_lines("\"tcp\": 0", "\"tcp\": 0")).lines.size(), 2U);

@@ -214,8 +214,10 @@ TEST(TcpPort, IsRefusedIfInUseAndReusableAfterItsProcessWasKilled) {
 TEST(TcpPort, AnAddressOfAnotherHostIsRefused) {
   expect_refused(run({simulator_path(), "EX9042D", "--tcp", "192.0.2.1:5020"}), "--tcp 192.0.2.1:5020",
                  "name");
+  expect_refused(run({simulator_path(), "EX9042D-M", "--modbus-tcp", "192.0.2.1:502"}),
+                 "--modbus-tcp 192.0.2.1:502", "name");
   expect_refused(run({simulator_path(), "EX9042D", "--tcp", "no.such.host.invalid:5020"}),
-                 "--tcp no.such.host.invalid:5020", "name");
+                 "--tcp: 'no.such.host.invalid:5020'", "expected a numeric address or localhost");
 }
 
 /// The far end of a serial cable. The near end is the device that the program opens.

@@ -1,0 +1,112 @@
+#include "sim/line/request_queue.hpp"
+
+#include <algorithm>
+#include <utility>
+
+#include "sim/line/line.hpp"
+
+namespace ex9000::sim {
+
+RequestQueue::RequestQueue(Line& line) : line_(line), timer_(line.bus().attach(*this)) {}
+
+void RequestQueue::ask(Request request) {
+  waiting_.push_back(std::move(request));
+  if (state_ == State::Idle) {
+    send_next();
+  }
+}
+
+void RequestQueue::send_next() {
+  while (!waiting_.empty() && waiting_.front().owner.expired()) {
+    waiting_.pop_front();
+  }
+  if (waiting_.empty()) {
+    enter(State::Idle, kNever);
+    return;
+  }
+  deadline_ = line_.clock().virtual_now() + kReplyTimeout;
+  send();
+}
+
+/// Returns whether another master, or a late reply, is or was on the line and has not settled yet.
+bool RequestQueue::others_use_the_line() const {
+  return line_.master().sending() || line_.bus().carries() ||
+         (line_.spacing().last_byte() != own_byte_ && line_.unsettled());
+}
+
+/// Sends the first request, perhaps later.
+void RequestQueue::send() {
+  constexpr VirtualTime kBetweenLooks = std::chrono::milliseconds(1);
+  const VirtualTime now = line_.clock().virtual_now();
+  if (others_use_the_line() && now < deadline_) {
+    enter(State::WaitsForLine, now + kBetweenLooks);
+    return;
+  }
+  Master& master = line_.master();
+  const Request& request = waiting_.front();
+  const FrameSpacing& spacing = line_.spacing();
+  const VirtualTime earliest =
+      spacing.master_was_last() ? spacing.after_own() : spacing.after_others(request.bytes[0]);
+  sent_ = std::max(now, earliest) + master.takes(request.bytes.size());
+  deadline_ = sent_ + (request.expects_reply ? kReplyTimeout : kTurnaround);
+  reply_ = {};
+  enter(request.expects_reply ? State::WaitsForReply : State::TurnsAround, deadline_);
+  master.send(request.bytes.data(), request.bytes.size(), earliest);
+}
+
+void RequestQueue::hear(std::uint8_t byte, ByteStatus status) {
+  const VirtualTime now = line_.clock().virtual_now();
+  const bool waits = state_ == State::WaitsForReply || state_ == State::Receives;
+  if (!waits || now < sent_) {
+    return;
+  }
+  if (reply_.bytes.empty()) {
+    reply_.delay = now - sent_;
+  }
+  reply_.bytes.push_back(byte);
+  reply_.damaged |= status != ByteStatus::Good;
+  enter(State::Receives, now + line_.rtu_silence());
+}
+
+void RequestQueue::run() {
+  switch (state_) {
+    case State::Idle:
+      return;
+    case State::WaitsForLine:
+      send();
+      return;
+    case State::WaitsForReply:
+    case State::TurnsAround:
+      finish({});
+      return;
+    case State::Receives:
+      break;
+  }
+  const Request& request = waiting_.front();
+  if (!request.is_reply ||
+      (!reply_.damaged && request.is_reply({reply_.bytes.data(), reply_.bytes.size()}))) {
+    finish(reply_);
+  } else if (line_.clock().virtual_now() < deadline_) {
+    reply_ = {};
+    enter(State::WaitsForReply, deadline_);
+  } else {
+    finish({});
+  }
+}
+
+/// Sends the next request before it reports this one, so that a request which the report causes comes last.
+void RequestQueue::finish(const Reply& reply) {
+  const Reply result = reply;
+  const Request request = std::move(waiting_.front());
+  waiting_.pop_front();
+  own_byte_ = line_.spacing().last_byte();
+  send_next();
+  request.done(result);
+}
+
+void RequestQueue::enter(State state, VirtualTime until) {
+  state_ = state;
+  timer_.run_at(until);
+}
+
+}  // namespace ex9000::sim

@@ -1,0 +1,86 @@
+// Requests of several clients on one half-duplex line, one at a time.
+#pragma once
+
+#include <cstdint>
+#include <deque>
+#include <functional>
+#include <memory>
+#include <vector>
+
+#include "sim/bus/bus.hpp"
+
+namespace ex9000::sim {
+
+class Line;
+
+/// Sends each request as the master of the line, then waits for its reply, as a serial device server does.
+/// Keeps the order of the requests, and the silence between frames that modules require. No function blocks;
+/// all times are in line time.
+///
+/// If another master has used the line, a request first waits until everything on the line has settled. The
+/// other master does not wait for this queue, so its requests and replies can still collide with these.
+class RequestQueue final : private Station {
+ public:
+  /// How long the first byte of a reply may take after the last byte of a request: more than twice the time
+  /// that a module may take to store settings and to reply (wire.md section 7).
+  static constexpr VirtualTime kReplyTimeout = std::chrono::milliseconds(500);
+  /// The time after a request without a reply in which modules can process the request (Modbus over Serial
+  /// Line V1.02, 2.4.1: 100 ms to 200 ms).
+  static constexpr VirtualTime kTurnaround = std::chrono::milliseconds(100);
+
+  struct Reply {
+    std::vector<std::uint8_t> bytes;  ///< empty: no reply in time, or none expected
+    bool damaged = false;             ///< a byte had a framing or parity error
+    VirtualTime delay{0};             ///< from the end of the request to the end of the first byte
+  };
+
+  struct Request {
+    std::vector<std::uint8_t> bytes;  ///< the frame on the line, at least one byte
+    bool expects_reply = true;
+    /// Returns whether the frame is the reply. Other frames are ignored, as if they had not arrived. Empty:
+    /// every frame is the reply, even a damaged one.
+    std::function<bool(Bytes frame)> is_reply;
+    /// Called exactly once, unless the owner no longer exists when the turn of the request comes.
+    std::function<void(const Reply& reply)> done;
+    std::weak_ptr<void> owner;  ///< the client
+  };
+
+  /// Attaches a timer to the bus of `line`, which must outlive this object.
+  explicit RequestQueue(Line& line);
+  RequestQueue(const RequestQueue&) = delete;
+  RequestQueue& operator=(const RequestQueue&) = delete;
+
+  /// Sends the request when all earlier requests are done.
+  void ask(Request request);
+  /// Call this for each byte that the master's end of the line receives.
+  void hear(std::uint8_t byte, ByteStatus status);
+  /// Returns whether a request is in progress.
+  [[nodiscard]] bool busy() const { return state_ != State::Idle; }
+
+ private:
+  enum class State {
+    Idle,           ///< nothing to send
+    WaitsForLine,   ///< others use the line; the request waits for at most kReplyTimeout
+    WaitsForReply,  ///< the request is being sent, or no byte has arrived yet
+    Receives,       ///< the reply ends with a silence
+    TurnsAround,    ///< the request has no reply
+  };
+
+  void run() override;
+  void send_next();
+  void send();
+  [[nodiscard]] bool others_use_the_line() const;
+  void finish(const Reply& reply);
+  void enter(State state, VirtualTime until);
+
+  Line& line_;
+  BusEnd& timer_;
+  State state_ = State::Idle;
+  std::deque<Request> waiting_;  ///< the first one is in progress, unless the state is Idle or WaitsForLine
+  VirtualTime own_byte_{0};      ///< end of the last byte on the line when this queue last used it
+  VirtualTime sent_{0};          ///< end of the last byte of the request
+  VirtualTime deadline_{0};      ///< of the line in WaitsForLine, of the reply in WaitsForReply and Receives
+  Reply reply_;
+};
+
+}  // namespace ex9000::sim

@@ -1,0 +1,42 @@
+// The frames of Modbus TCP (MODBUS Messaging on TCP/IP Implementation Guide V1.0b, 3.1.3).
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <vector>
+
+#include "firmware/bytes.hpp"
+
+namespace ex9000::sim {
+
+/// A request or a reply: the header without its protocol and its length, and the PDU.
+struct MbapFrame {
+  std::uint16_t transaction = 0;  ///< chosen by the client; a reply has the number of its request
+  std::uint8_t unit = 0;          ///< address of the module
+  std::vector<std::uint8_t> pdu;  ///< 1 to 253 bytes: the function code and its data
+};
+
+/// Finds the frames in the bytes of a connection, however TCP has split or joined them.
+class MbapReader {
+ public:
+  /// Appends received bytes.
+  void add(Bytes bytes);
+  /// Removes and returns the next complete frame; nullopt if it is not complete yet, or if the stream is
+  /// broken.
+  std::optional<MbapFrame> next();
+  /// Returns whether a header has a wrong protocol or length. Where the next frame begins is unknown then, so
+  /// the connection must be closed. Frames before that header are still valid.
+  [[nodiscard]] bool broken() const { return broken_; }
+  /// Returns the number of bytes that `next` has not returned yet.
+  [[nodiscard]] std::size_t size() const { return bytes_.size(); }
+
+ private:
+  std::vector<std::uint8_t> bytes_;
+  bool broken_ = false;
+};
+
+/// Returns the bytes of a frame.
+std::vector<std::uint8_t> mbap_bytes(const MbapFrame& frame);
+
+}  // namespace ex9000::sim

@@ -1,0 +1,46 @@
+#include "sim/modbus_tcp/mbap_session.hpp"
+
+namespace ex9000::sim {
+
+void MbapSession::receive(Bytes bytes) {
+  reader_.add(bytes);
+  pass_on();
+}
+
+void MbapSession::resume() {
+  blocked_ = false;
+  pass_on();
+}
+
+void MbapSession::pass_on() {
+  if (passing_on_) {
+    return;  // an answer that came at once; the loop below continues
+  }
+  passing_on_ = true;
+  while (waiting_ < kMostWaiting && !blocked_) {
+    const std::optional<MbapFrame> request = reader_.next();
+    if (!request) {
+      break;
+    }
+    ++waiting_;
+    const std::weak_ptr<MbapSession*> lives = lives_;
+    gateway_.ask(*request, lives,
+                 [lives, request = *request](const std::optional<std::vector<std::uint8_t>>& pdu) {
+                   if (const auto session = lives.lock()) {
+                     (*session)->answer(request, pdu);
+                   }
+                 });
+  }
+  passing_on_ = false;
+}
+
+void MbapSession::answer(const MbapFrame& request, const std::optional<std::vector<std::uint8_t>>& pdu) {
+  --waiting_;
+  if (pdu && !send_(mbap_bytes({request.transaction, request.unit, *pdu}))) {
+    blocked_ = true;
+  }
+  pass_on();
+  answered_();
+}
+
+}  // namespace ex9000::sim

@@ -1,0 +1,165 @@
+// Tests the gateway from Modbus TCP to a line, in line time.
+#include "sim/modbus_tcp/gateway.hpp"
+
+#include <gtest/gtest.h>
+
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace ex9000::sim {
+namespace {
+
+using Pdu = std::vector<std::uint8_t>;
+using std::chrono::milliseconds;
+using std::chrono::seconds;
+
+constexpr std::uint8_t kPathUnavailable = 0x0A;
+constexpr std::uint8_t kNoReply = 0x0B;
+const Pdu kReadOutputs{0x01, 0x00, 0x00, 0x00, 0x0D};
+const Pdu kOutputsOff{0x01, 0x02, 0x00, 0x00};
+const Pdu kOutput0On{0x05, 0x00, 0x00, 0xFF, 0x00};
+
+class GatewayLine {
+ public:
+  explicit GatewayLine(const std::vector<std::string>& modules)
+      : line(specs(modules), kPaced, [](auto...) {}) {
+    line.come_up();
+  }
+
+  struct Result {
+    bool answered = false;
+    std::optional<Pdu> pdu;
+    VirtualTime at{0};
+  };
+
+  /// Returns the answer after two seconds of line time.
+  Result ask(std::uint8_t unit, const Pdu& pdu) {
+    Result result;
+    gateway.ask({1, unit, pdu}, owner, [&](const std::optional<Pdu>& answer) {
+      EXPECT_FALSE(result.answered) << "answered twice";
+      result = {true, answer, line.clock().virtual_now()};
+    });
+    line.bus().run_for(seconds(2));
+    return result;
+  }
+  Pdu reply(std::uint8_t unit, const Pdu& pdu) { return ask(unit, pdu).pdu.value_or(Pdu()); }
+
+  Line line;
+  Gateway gateway{line};
+  std::shared_ptr<int> owner = std::make_shared<int>();
+
+ private:
+  static std::vector<ModuleSpec> specs(const std::vector<std::string>& modules) {
+    std::vector<ModuleSpec> all;
+    for (const std::string& module : modules) {
+      all.push_back(parse_module_spec(module));
+    }
+    return all;
+  }
+};
+
+TEST(Gateway, TheModuleAtTheAddressOfTheUnitReplies) {
+  GatewayLine bench({"EX9042D-M@01", "EX9052D-M@F7"});
+  EXPECT_EQ(bench.reply(0x01, kReadOutputs), kOutputsOff);
+  EXPECT_EQ(bench.reply(0xF7, {0x02, 0x00, 0x00, 0x00, 0x08}), (Pdu{0x02, 0x01, 0x00}));
+}
+
+TEST(Gateway, AnExceptionOfTheModuleIsItsReply) {
+  GatewayLine bench({"EX9042D-M@01"});
+  EXPECT_EQ(bench.reply(0x01, {0x03, 0x00, 0x00, 0x00, 0x01}), (Pdu{0x83, 0x02}));
+  EXPECT_EQ(bench.reply(0x01, {0x07}), (Pdu{0x87, 0x01}));
+}
+
+TEST(Gateway, Unit0IsABroadcastWithoutReply) {
+  GatewayLine bench({"EX9042D-M@01", "EX9042D-M@02"});
+  const GatewayLine::Result result = bench.ask(0x00, kOutput0On);
+  EXPECT_TRUE(result.answered);
+  EXPECT_FALSE(result.pdu);
+  EXPECT_EQ(bench.line.module(0).outputs(), 0x0001);
+  EXPECT_EQ(bench.line.module(1).outputs(), 0x0001);
+}
+
+TEST(Gateway, UnitsAbove247GetException0A) {
+  GatewayLine bench({"EX9042D-M@01"});
+  for (unsigned unit = 248; unit <= 255; ++unit) {
+    EXPECT_EQ(bench.reply(static_cast<std::uint8_t>(unit), kReadOutputs), (Pdu{0x81, kPathUnavailable}))
+        << unit;
+  }
+}
+
+TEST(Gateway, AUnitWithoutModuleGetsException0BAfterTheTimeout) {
+  GatewayLine bench({"EX9042D-M@01"});
+  const VirtualTime asked = bench.line.clock().virtual_now();
+  const GatewayLine::Result result = bench.ask(0x02, kReadOutputs);
+  EXPECT_EQ(result.pdu, (Pdu{0x81, kNoReply}));
+  EXPECT_GE(result.at - asked, RequestQueue::kReplyTimeout);
+}
+
+TEST(Gateway, HostOkGetsException0BBecauseAModuleNeverRepliesToIt) {
+  GatewayLine bench({"EX9042D-M@01"});
+  EXPECT_EQ(bench.reply(0x01, {0x03, 0x30, 0x38, 0x00, 0x01}), (Pdu{0x83, kNoReply}));
+  EXPECT_EQ(bench.reply(0x01, {0x04, 0x30, 0x38, 0x00, 0x00}), (Pdu{0x84, kNoReply}));
+}
+
+TEST(Gateway, ALineThatSpeaksAsciiGetsException0A) {
+  GatewayLine bench({"EX9042D@01", "EX9042D-M@02,protocol=ascii"});
+  EXPECT_EQ(bench.reply(0x01, kReadOutputs), (Pdu{0x81, kPathUnavailable}));
+  EXPECT_EQ(bench.reply(0x05, {0x46, 0x00}), (Pdu{0xC6, kPathUnavailable}));
+  EXPECT_FALSE(bench.ask(0x00, kOutput0On).pdu);
+  EXPECT_EQ(bench.line.module(0).outputs(), 0);
+}
+
+TEST(Gateway, AModuleWithInitSpeaksAsciiUntilItStartsWithoutIt) {
+  GatewayLine bench({"EX9042D-M@01,init=on"});
+  EXPECT_EQ(bench.reply(0x01, kReadOutputs), (Pdu{0x81, kPathUnavailable}));
+  bench.line.module(0).set_init(false);
+  bench.line.module(0).power(false);
+  bench.line.module(0).power(true);
+  bench.line.bus().run_for(seconds(1));
+  EXPECT_EQ(bench.reply(0x01, kReadOutputs), kOutputsOff);
+}
+
+TEST(Gateway, AModbusModuleIsReachedBesideAsciiModules) {
+  GatewayLine bench({"EX9042D@01", "EX9042D-M@02"});
+  EXPECT_EQ(bench.reply(0x02, kReadOutputs), kOutputsOff);
+  EXPECT_EQ(bench.reply(0x01, kReadOutputs), (Pdu{0x81, kNoReply}));
+}
+
+TEST(Gateway, AModuleWithoutSupplyGetsException0B) {
+  GatewayLine bench({"EX9042D-M@01"});
+  bench.line.module(0).power(false);
+  EXPECT_EQ(bench.reply(0x01, kReadOutputs), (Pdu{0x81, kNoReply}));
+}
+
+TEST(Gateway, ALostReplyGetsException0BAndTheNextRequestItsReply) {
+  GatewayLine bench({"EX9042D-M@01"});
+  bench.line.faults().add(parse_fault("lost-reply every 2nd reply"));
+  EXPECT_EQ(bench.reply(0x01, kReadOutputs), kOutputsOff);
+  EXPECT_EQ(bench.reply(0x01, kOutput0On), (Pdu{0x85, kNoReply}));
+  EXPECT_EQ(bench.reply(0x01, kReadOutputs), (Pdu{0x01, 0x02, 0x01, 0x00}));
+}
+
+TEST(Gateway, AReplyAfterTheTimeoutIsNotTheReplyToTheNextRequest) {
+  GatewayLine bench({"EX9042D-M@01", "EX9052D-M@02"});
+  bench.line.faults().add(parse_fault("late-reply 600ms every 2nd reply"));
+  EXPECT_EQ(bench.reply(0x01, kReadOutputs), kOutputsOff);
+  bench.gateway.ask({1, 0x01, kReadOutputs}, bench.owner, [](const std::optional<Pdu>& answer) {
+    EXPECT_EQ(answer, (Pdu{0x81, kNoReply}));
+  });
+  bench.line.bus().run_for(milliseconds(520));
+  EXPECT_EQ(bench.reply(0x03, kReadOutputs), (Pdu{0x81, kNoReply}));
+}
+
+TEST(Gateway, AllPdusUpTo253BytesReachTheLine) {
+  GatewayLine bench({"EX9042D-M@01"});
+  for (const std::size_t size : {1U, 2U, 100U, 252U, 253U}) {
+    Pdu pdu(size, 0x00);
+    pdu[0] = 0x65;
+    EXPECT_EQ(bench.reply(0x01, pdu), (Pdu{0xE5, 0x01})) << size;
+  }
+}
+
+}  // namespace
+}  // namespace ex9000::sim

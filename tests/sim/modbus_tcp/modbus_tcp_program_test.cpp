@@ -1,0 +1,103 @@
+// Tests the option --modbus-tcp of the program, in stepped time where times matter.
+#include <gtest/gtest.h>
+
+#include <string>
+#include <vector>
+
+#include "tests/support/control_client.hpp"
+#include "tests/support/directory.hpp"
+#include "tests/support/simulator_process.hpp"
+#include "tests/support/socket_client.hpp"
+
+namespace ex9000::system {
+namespace {
+
+using Buffer = std::vector<std::uint8_t>;
+
+/// Transactions 1 and 2: read the outputs of unit 1.
+const Buffer kFirst{0x00, 0x01, 0x00, 0x00, 0x00, 0x06, 0x01, 0x01, 0x00, 0x00, 0x00, 0x0D};
+const Buffer kSecond{0x00, 0x02, 0x00, 0x00, 0x00, 0x06, 0x01, 0x01, 0x00, 0x00, 0x00, 0x0D};
+const Buffer kFirstReply{0x00, 0x01, 0x00, 0x00, 0x00, 0x05, 0x01, 0x01, 0x02, 0x00, 0x00};
+const Buffer kSecondReply{0x00, 0x02, 0x00, 0x00, 0x00, 0x05, 0x01, 0x01, 0x02, 0x00, 0x00};
+/// Transaction 3: unit 9, which does not exist.
+const Buffer kToNobody{0x00, 0x03, 0x00, 0x00, 0x00, 0x06, 0x09, 0x01, 0x00, 0x00, 0x00, 0x0D};
+const Buffer kNoReply{0x00, 0x03, 0x00, 0x00, 0x00, 0x03, 0x09, 0x81, 0x0B};
+
+Buffer operator+(Buffer first, const Buffer& second) {
+  first.insert(first.end(), second.begin(), second.end());
+  return first;
+}
+
+TEST(ModbusTcpProgram, AMasterReadsAModuleInRealTime) {
+  for (const char* kind : {"paced", "instant"}) {
+    SimulatorProcess simulator({"EX9042D-M@01", "--modbus-tcp", "0", "--line", kind});
+    SocketClient master(simulator.tcp_port());
+    for (int i = 0; i < 20; ++i) {
+      master.send(kFirst);
+      master.send(kSecond);
+      EXPECT_EQ(master.receive(22), kFirstReply + kSecondReply);
+    }
+    master.send(kToNobody);
+    EXPECT_EQ(master.receive(9), kNoReply);
+  }
+}
+
+TEST(ModbusTcpProgram, TheGreetingNamesThePortAndCommandsThatReadAModule) {
+  SimulatorProcess simulator({"EX9042D-M@01", "--modbus-tcp", "0"});
+  const std::string port = std::to_string(simulator.tcp_port());
+  EXPECT_NE(simulator.output().find("  Modbus TCP 127.0.0.1:" + port), std::string::npos)
+      << simulator.output();
+  EXPECT_NE(simulator.output().find("mbpoll -m tcp -p " + port + " -a 1 -t 0 -r 1 -c 13 -1 127.0.0.1    #"),
+            std::string::npos)
+      << simulator.output();
+}
+
+TEST(ModbusTcpProgram, InSteppedTimeTheRequestsOfOneAdvanceAreAnsweredInIt) {
+  SimulatorProcess simulator({"EX9042D-M@01", "--modbus-tcp", "0", "--speed", "step", "--control", "ctl"});
+  ControlClient control(simulator.directory() + "/ctl");
+  SocketClient master(simulator.tcp_port());
+  master.send(kFirst);
+  master.send(kToNobody);
+  master.send(kSecond);
+  // 100 ms of start-up, and 500 ms without reply
+  EXPECT_EQ(control.ok("advance 10s after 36 quiet").rfind("0.6", 0), 0U);
+  EXPECT_EQ(master.receive(31), kFirstReply + kNoReply + kSecondReply);
+}
+
+TEST(ModbusTcpProgram, TheSameCommandsGiveTheSameTimes) {
+  std::vector<std::string> runs;
+  for (int run = 0; run < 2; ++run) {
+    SimulatorProcess simulator(
+        {"EX9042D-M@01", "--modbus-tcp", "0", "--speed", "step", "--control", "ctl", "--log"});
+    ControlClient control(simulator.directory() + "/ctl");
+    SocketClient master(simulator.tcp_port());
+    for (int i = 0; i < 3; ++i) {
+      master.send(kFirst);
+      master.send(kToNobody);
+      control.ok("advance 1s after 24 quiet");
+      control.ok("advance 123ms");
+    }
+    simulator.end(15);
+    const std::string& output = simulator.output();
+    runs.push_back(output.substr(output.find("press Ctrl-C")));
+  }
+  EXPECT_EQ(runs[0], runs[1]);
+}
+
+TEST(ModbusTcpProgram, ABusFileHasOneGatewayForEachLine) {
+  Directory directory;
+  const std::string file = directory.path() + "/bus.json";
+  write_file(file, R"({"lines": [
+    {"name": "a", "modbus-tcp": 0, "modules": [{"model": "EX9042D-M", "address": "01"}]},
+    {"name": "b", "modbus-tcp": "localhost:0", "modules": [{"model": "EX9042D-M", "address": "09"}]}]})");
+  SimulatorProcess simulator({file});
+  SocketClient first(simulator.tcp_port(0));
+  SocketClient second(simulator.tcp_port(1));
+  first.send(kFirst);
+  EXPECT_EQ(first.receive(11), kFirstReply);
+  second.send(kToNobody);
+  EXPECT_EQ(second.receive(11), (Buffer{0x00, 0x03, 0x00, 0x00, 0x00, 0x05, 0x09, 0x01, 0x02, 0x00, 0x00}));
+}
+
+}  // namespace
+}  // namespace ex9000::system
