@@ -41,15 +41,6 @@ VirtualTime end_of_byte(VirtualTime start, SerialMode mode) {
   return start + VirtualTime(bits_received(mode.format) * kSecond / mode.baud);
 }
 
-/// Returns what a UART reports for the levels of a character.
-UartSampler::Received received(Levels levels, LineFormat format) {
-  const auto byte = static_cast<std::uint8_t>(levels >> 1U);
-  if (!has_stop_bit(levels, format)) {
-    return {byte, levels == 0 ? ByteStatus::Break : ByteStatus::FramingError};
-  }
-  return {byte, levels == levels_of(byte, format) ? ByteStatus::Good : ByteStatus::ParityError};
-}
-
 }  // namespace
 
 VirtualTime Wave::boundary(unsigned index) const { return start + VirtualTime(index * kSecond / mode.baud); }
@@ -100,7 +91,7 @@ std::optional<UartSampler::Received> UartSampler::advance(const Waves& waves, Se
       if (bit_ == bits_received(mode.format) - 1) {
         receiving_ = false;
         waits_for_idle_ = !level;
-        complete_ = received(levels_, mode.format);
+        complete_ = {byte_of(levels_), status_of(levels_, mode.format)};
       }
     }
     ++bit_;

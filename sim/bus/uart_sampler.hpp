@@ -55,6 +55,19 @@ constexpr bool has_stop_bit(Levels levels, LineFormat format) {
   return (levels >> (bits_received(format) - 1U) & 1U) != 0;
 }
 
+/// Returns the data bits in `levels`.
+constexpr std::uint8_t byte_of(Levels levels) { return static_cast<std::uint8_t>(levels >> 1U); }
+
+/// Returns what a UART reports for a character that has a start bit: Break if all bits are 0, FramingError if
+/// the first stop bit is missing, ParityError if the parity is wrong, otherwise Good.
+constexpr ByteStatus status_of(Levels levels, LineFormat format) {
+  if (!has_stop_bit(levels, format)) {
+    return levels == 0 ? ByteStatus::Break : ByteStatus::FramingError;
+  }
+  const bool right = !has_parity(format) || levels == levels_of(byte_of(levels), format);
+  return right ? ByteStatus::Good : ByteStatus::ParityError;
+}
+
 /// The levels of a byte as one driver puts them on the wires, and the byte that its station has sent.
 struct Wave {
   /// `its_mode`: the bit rate, not 0, and the format as receivers read it.

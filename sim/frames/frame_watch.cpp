@@ -24,16 +24,7 @@ std::optional<std::uint8_t> Frame::Change::byte() const {
   if ((arrives & kStartBit) != 0) {
     return std::nullopt;
   }
-  return static_cast<std::uint8_t>(arrives >> 1U);
-}
-
-ByteStatus Frame::Change::status() const {
-  if (!has_stop_bit(arrives, format)) {
-    return arrives == 0 ? ByteStatus::Break : ByteStatus::FramingError;
-  }
-  const auto byte = static_cast<std::uint8_t>(arrives >> 1U);
-  const bool right = !has_parity(format) || arrives == levels_of(byte, format);
-  return right ? ByteStatus::Good : ByteStatus::ParityError;
+  return byte_of(arrives);
 }
 
 FrameWatch::Sender& FrameWatch::sender(std::size_t station) {

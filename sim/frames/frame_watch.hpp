@@ -24,9 +24,8 @@ struct Frame {
     /// Returns the byte that receivers read; nullopt if it has no start bit, because receivers do not detect
     /// it.
     [[nodiscard]] std::optional<std::uint8_t> byte() const;
-    /// Returns the status at receivers: Break if all bits are 0, FramingError if the stop bit is missing,
-    /// ParityError if the parity is wrong, otherwise Good.
-    [[nodiscard]] ByteStatus status() const;
+    /// Returns the status at receivers that detect the byte.
+    [[nodiscard]] ByteStatus status() const { return status_of(arrives, format); }
   };
 
   std::size_t station = 0;  ///< in the order of attachment; 0 is the master
