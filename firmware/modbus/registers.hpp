@@ -52,9 +52,8 @@ constexpr Rules kPlain = 0;
 constexpr Rules kDrivesOutputs = 1U << 0U;  ///< exception 04 while the timeout status is set
 constexpr Rules kOnlyOn = 1U << 1U;         ///< exception 03 for function 05 with 0000
 constexpr Rules kConfiguration = 1U << 2U;  ///< broadcasts are ignored
-constexpr Rules kExtension =
-    1U << 3U;                      ///< an extension register: `~AAX` accesses it too (firmware/extensions.md)
-constexpr Rules kLong = 1U << 4U;  ///< pairs of registers with 32-bit values, high word first
+constexpr Rules kExtension = 1U << 3U;      ///< `~AAX` accesses it too (firmware/extensions.md)
+constexpr Rules kLong = 1U << 4U;           ///< pairs of registers with 32-bit values, high word first
 
 /// The part of a row of coils or discrete inputs that an image contains.
 struct BitRow {

@@ -28,8 +28,9 @@ on the command line, or in the bus file through all lines, from 1:
 
 constexpr const char* kPlayHelp = R"(
 A file is a list of steps: `> $01M` and `< !019042` for DCON, `=> 01 01 0000 000D` and `<= ...` for Modbus
-without its CRC, `silence`, `wait 1.5s`, `bytes HEX`, `checksum on|off`, `baud RATE`, `format FORMAT`, and for a module
-`power on|off`, `power-cycle`, `reset`, `init on|off`, `input C on|off`, `pulse C [xCOUNT]`, `outputs HHHH`, `led on|off|flashing`.
+without its CRC, `silence`, `wait 1.5s`, `bytes HEX`, `checksum on|off`, `baud RATE`, `format FORMAT`, and for a
+module `power on|off`, `power-cycle`, `reset`, `init on|off`, `input C on|off`, `pulse C [xCOUNT]`, `outputs HHHH`,
+`led on|off|flashing`.
 With `source:` and `model:` lines before the steps the file is a transcript, which is played on each model. Without
 them it is a scenario for the modules or the bus file on the command line. A scenario has more steps: `module N`,
 `line NAME`, `fault [N] FAULT` as for --fault, and `fault off K|all`. See tests/conformance/README.md.
