@@ -9,7 +9,12 @@ struct Bus::End final : BusEnd {
       : bus(its_bus), station(its_station), index(its_index) {}
 
   void drive(bool on) override { bus.drive(*this, on); }
-  void put(std::uint8_t byte, SerialMode mode) override { bus.put(*this, byte, mode); }
+  void put(std::uint8_t byte, SerialMode mode) override {
+    bus.put(*this, byte, mode, levels_of(byte, mode.format));
+  }
+  void put_with_wrong_parity(std::uint8_t byte, SerialMode mode) override {
+    bus.put(*this, byte, mode, with_wrong_parity(levels_of(byte, mode.format), mode.format));
+  }
   [[nodiscard]] VirtualTime takes(std::size_t bytes, SerialMode mode) const override {
     constexpr std::int64_t kBitNanoseconds = 1'000'000'000;
     return VirtualTime(static_cast<std::int64_t>(bytes * bits_of_character(mode.format)) * kBitNanoseconds /
@@ -86,16 +91,16 @@ void Bus::drive(End& end, bool on) {
   }
 }
 
-void Bus::put(End& end, std::uint8_t byte, SerialMode mode) {
-  Wave wave{clock_.virtual_now(), on_the_wires(mode), levels_of(byte, mode.format)};
+/// `sent`: the levels that the station sends for `byte`.
+void Bus::put(End& end, std::uint8_t byte, SerialMode mode, Levels sent) {
+  Wave wave{clock_.virtual_now(), on_the_wires(mode), sent};
   if (disturbance_ != nullptr) {
-    const Levels sent = wave.levels;
     wave.levels = disturbance_->disturbed({sent, mode, wave.end(), drivers_on_ > 1});
-    wave.disturbed = wave.levels != sent;
+  }
+  wave.disturbed = wave.levels != levels_of(byte, mode.format);
+  if (wave.disturbed) {
     for (BusObserver* observer : observers_) {
-      if (wave.disturbed) {
-        observer->changed(end.index, wave.levels);
-      }
+      observer->changed(end.index, wave.levels);
     }
   }
   wave.station = end.index;

@@ -43,6 +43,8 @@ class BusEnd : public Wire {
   /// Sets the time of the station's next `run`, in place of an earlier setting; kNever: the bus does not call
   /// `run`.
   virtual void run_at(VirtualTime when) = 0;
+  /// Like `put`, but the byte has wrong parity if the format has a parity bit.
+  virtual void put_with_wrong_parity(std::uint8_t byte, SerialMode mode) = 0;
 
  protected:
   ~BusEnd() = default;
@@ -54,8 +56,8 @@ class BusObserver {
   /// Called when the driver of `station` was enabled or disabled. `station` counts from 0 in the order of
   /// attachment.
   virtual void driver(std::size_t /*station*/, bool /*on*/, VirtualTime /*now*/) {}
-  /// Called when the disturbance has changed the byte that `station` begins to send now. Receivers get the
-  /// levels `arrives` instead.
+  /// Called when the byte that `station` begins to send now has wrong parity, or when the disturbance has
+  /// changed it. Receivers get the levels `arrives` instead of those of the byte.
   virtual void changed(std::size_t /*station*/, Levels /*arrives*/) {}
   /// Called at the end of the first stop bit of a byte that began at `start` and whose last stop bit ends at
   /// `end`. A byte is not reported if its driver was disabled before its first stop bit was over. `byte` is
@@ -140,7 +142,7 @@ class Bus {
   [[nodiscard]] std::uint32_t bit_rate(std::uint32_t baud) const;
   [[nodiscard]] SerialMode on_the_wires(SerialMode mode) const;
   void drive(End& end, bool on);
-  void put(End& end, std::uint8_t byte, SerialMode mode);
+  void put(End& end, std::uint8_t byte, SerialMode mode, Levels sent);
   void listen(End& end, SerialMode mode);
   static bool has_heard_from_the_start(const Receiver& receiver, const Wave& wave);
   [[nodiscard]] bool has_to_sample(const Receiver& receiver) const;

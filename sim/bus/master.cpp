@@ -5,21 +5,6 @@
 
 namespace ex9000::sim {
 
-namespace {
-
-SerialMode with_other_parity(SerialMode mode) {
-  switch (mode.format) {
-    case LineFormat::k8E1:
-      return {mode.baud, LineFormat::k8O1};
-    case LineFormat::k8O1:
-      return {mode.baud, LineFormat::k8E1};
-    default:
-      return mode;
-  }
-}
-
-}  // namespace
-
 Master::Master(Bus& bus, SerialMode mode, Receive receive)
     : clock_(bus.clock()), wire_(bus.attach(*this)), mode_(mode), receive_(std::move(receive)) {
   wire_.listen(mode_);
@@ -74,7 +59,11 @@ void Master::run() {
   }
   const Waiting next = waiting_.front();
   waiting_.pop_front();
-  wire_.put(next.byte, next.damaged ? with_other_parity(mode_) : mode_);
+  if (next.damaged) {
+    wire_.put_with_wrong_parity(next.byte, mode_);
+  } else {
+    wire_.put(next.byte, mode_);
+  }
   // The end is calculated from the first byte, so that rounding errors do not accumulate.
   wake_at(burst_began_ + wire_.takes(++burst_bytes_, mode_));
 }

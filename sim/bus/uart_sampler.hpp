@@ -50,6 +50,12 @@ constexpr Levels levels_of(std::uint8_t byte, LineFormat format = LineFormat::k8
   return static_cast<Levels>(kTenthBit | (parity ? kNinthBit : 0U) | start_and_data);
 }
 
+/// Returns `levels` with the other parity bit. Levels without a parity bit stay the same.
+constexpr Levels with_wrong_parity(Levels levels, LineFormat format) {
+  constexpr unsigned kParityBit = 1U << 9U;
+  return static_cast<Levels>(has_parity(format) ? levels ^ kParityBit : levels);
+}
+
 /// Returns whether the first stop bit in `levels` is an idle level.
 constexpr bool has_stop_bit(Levels levels, LineFormat format) {
   return (levels >> (bits_received(format) - 1U) & 1U) != 0;

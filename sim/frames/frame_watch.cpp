@@ -67,9 +67,6 @@ void FrameWatch::byte(std::size_t station, std::uint8_t byte, SerialMode mode, b
   if (arrives) {
     frame.bytes.push_back(*arrives);
   }
-  if (mode != frame.sent_in && mode.baud == frame.sent_in.baud) {
-    frame.changes.push_back({sending.sent, byte, levels_of(byte, mode.format), frame.sent_in.format});
-  }
   ++sending.sent;
   frame.collided |= collided;
   frame.ended = end;

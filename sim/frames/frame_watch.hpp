@@ -14,7 +14,7 @@ namespace ex9000::sim {
 
 /// The bytes that one station has sent in one transmission.
 struct Frame {
-  /// A byte that a disturbance has changed.
+  /// A byte that was sent with wrong parity or that a disturbance has changed.
   struct Change {
     std::size_t position = 0;  ///< among the sent bytes, from 0
     std::uint8_t sent = 0;
@@ -34,8 +34,8 @@ struct Frame {
   FrameBytes bytes;
   std::vector<Change> changes;
   bool collided = false;  ///< during a byte, another driver was enabled or another byte was on the wires
-  /// The modes of the sender and of the line. Receivers of the line get these bytes only if rate and parity
-  /// are equal.
+  /// The modes of the sender and of the line at the first byte. Receivers of the line get these bytes only if
+  /// rate and parity are equal. A change of the mode during the frame is not reported.
   SerialMode sent_in;
   SerialMode line_in;
   VirtualTime began{0};  ///< first start bit

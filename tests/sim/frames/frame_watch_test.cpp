@@ -5,6 +5,8 @@
 
 #include <string_view>
 
+#include "sim/bus/master.hpp"
+#include "sim/frames/frame_errors.hpp"
 #include "sim/play/modbus_frame.hpp"
 
 namespace ex9000::sim {
@@ -29,7 +31,7 @@ class FrameWatchTest : public testing::Test {
 
   void send(std::size_t station, const FrameBytes& bytes, bool collided = false) {
     for (const std::uint8_t byte : bytes) {
-      watch.byte(station, byte, {kBaud}, collided, now, now + kCharacter);
+      watch.byte(station, byte, sender_mode, collided, now, now + kCharacter);
       now += kCharacter;
     }
   }
@@ -42,6 +44,7 @@ class FrameWatchTest : public testing::Test {
     watch.run(now);
   }
 
+  SerialMode sender_mode{kBaud};
   SerialMode line_mode{kBaud};
   FrameWatch watch{[this] { return line_mode; }};
   std::vector<Frame> frames;
@@ -200,6 +203,34 @@ TEST_F(FrameWatchTest, AByteWithoutItsStopBitIsAFramingErrorOrABreak) {
   const Frame::Change brk{0, 0x41, 0};
   EXPECT_EQ(brk.byte(), 0x00);
   EXPECT_EQ(brk.status(), ByteStatus::Break);
+}
+
+TEST_F(FrameWatchTest, AChangeOfTheLineFormatDuringAFrameIsNoNoise) {
+  for (const LineFormat format :
+       {LineFormat::k8N1, LineFormat::k8N2, LineFormat::k8E1, LineFormat::k8O1, LineFormat::k8N1}) {
+    line_mode.format = format;
+    sender_mode.format = format;
+    send(kMaster, {0x31});
+  }
+  watch.finish();
+  ASSERT_EQ(frames.size(), 1U);
+  EXPECT_EQ(frames[0].bytes, (FrameBytes{0x31, 0x31, 0x31, 0x31, 0x31}));
+  EXPECT_EQ(line_error(frames[0]), "");
+}
+
+TEST_F(FrameWatchTest, AByteThatTheMasterSendsWithWrongParityHasAParityError) {
+  hal::doubles::VirtualClock clock;
+  Bus bus(clock);
+  bus.observe(watch);
+  Master master(bus, {kBaud, LineFormat::k8E1}, [](std::uint8_t /*byte*/, ByteStatus /*status*/) {});
+  line_mode = master.mode();
+  const FrameBytes sent{0x01, 0x05, 0x07};
+  master.send(sent.data(), sent.size(), VirtualTime(0), {0, 2});
+  bus.run_for(milliseconds(10));
+  watch.finish();
+  ASSERT_EQ(frames.size(), 1U);
+  EXPECT_EQ(frames[0].bytes, sent);
+  EXPECT_EQ(line_error(frames[0]), "noise: byte 1: parity error; byte 3: parity error");
 }
 
 TEST_F(FrameWatchTest, AChangeOfAnAbortedByteDoesNotAffectALaterByte) {
