@@ -41,20 +41,6 @@ Expected expected_of(const Model& model, const std::uint8_t* memory, bool answer
   return {settings_from(model, memory), false};
 }
 
-bool same_name(const Name& a, const Name& b) {
-  return a.bytes().size == b.bytes().size &&
-         std::equal(a.bytes().begin(), a.bytes().end(), b.bytes().begin());
-}
-
-bool same(const Settings& a, const Settings& b) {
-  return a.address == b.address && a.baud_code == b.baud_code && a.format == b.format &&
-         a.protocol == b.protocol && a.watchdog_timeout == b.watchdog_timeout &&
-         a.watchdog_enabled == b.watchdog_enabled && a.timeout_status == b.timeout_status &&
-         same_name(a.name, b.name) && a.power_on_value == b.power_on_value && a.safe_value == b.safe_value &&
-         a.response_delay == b.response_delay && a.fed_by_requests == b.fed_by_requests &&
-         a.inverted_inputs == b.inverted_inputs && a.input_filters == b.input_filters;
-}
-
 class Trial {
  public:
   Trial(const Model& model, std::uint8_t flags, const std::uint8_t* contents, std::size_t size)
@@ -106,7 +92,7 @@ class Trial {
     const bool init = session_.around().init_asserted;
     const InForce& in_force = session_.in_force();
     // The host watchdog cannot have expired yet, because `reset` returns before its shortest timeout, 0.1 s.
-    require(same(state().settings, settings),
+    require(state().settings == settings,
             "the module uses the newest valid copy, or else the factory settings");
     require(state().outputs == (settings.timeout_status ? settings.safe_value : settings.power_on_value),
             "outputs start with the power-on value, or with the safe value after a timeout");
@@ -141,7 +127,7 @@ class Trial {
                 are_digits_of(configuration.data + 7, settings.format),
             "the configuration is read as it is stored");
     const Bytes name = ask("$..M").from(3);
-    require(same_name(Name(name), settings.name), "the name is read as it is stored");
+    require(Name(name) == settings.name, "the name is read as it is stored");
   }
 
   void store_something() {
@@ -152,9 +138,9 @@ class Trial {
               "an address is stored");
       return;
     }
-    const bool is_pump = same_name(state().settings.name, Name(std::string_view("pump")));
+    const bool is_pump = state().settings.name == Name(std::string_view("pump"));
     const std::string_view name = is_pump ? "fan" : "pump";
-    require(ask("~..O" + std::string(name)).size == 3 && same_name(state().settings.name, Name(name)),
+    require(ask("~..O" + std::string(name)).size == 3 && state().settings.name == Name(name),
             "a name is stored");
   }
   Bytes ask(const std::string& command) { return ask(std::string_view(command)); }
