@@ -1,4 +1,5 @@
-// A module on its board and its master, for tests of the watchdogs: its settings, and its activities.
+// A module on its board and its master, for tests of the watchdogs: its settings, its activities, and the
+// fixture of the tests.
 #pragma once
 
 #include <gtest/gtest.h>
@@ -6,6 +7,7 @@
 #include <chrono>
 #include <cstdint>
 #include <string>
+#include <tuple>
 #include <vector>
 
 #include "sim/bus/module.hpp"
@@ -21,12 +23,13 @@ inline constexpr std::chrono::milliseconds kTick{10};
 
 inline constexpr std::uint16_t kPowerOnValue = 0x5A5A;
 inline constexpr std::uint16_t kSafeValue = 0xA5A4;
+inline constexpr std::uint16_t kDriven = 0xC35A;
 inline constexpr std::uint8_t kTimeout = 0x64;
 
 /// Returns two hex digits.
 inline std::string hex(unsigned value) { return reference::hex(value, 2); }
 
-/// Returns settings in which all output values differ from each other and from the driven value.
+/// Returns settings in which all output values differ from each other and from kDriven.
 inline Settings set_up(const Model& model, Protocol protocol) {
   Settings settings = Settings::factory(model);
   settings.protocol = protocol;
@@ -188,6 +191,21 @@ inline void make_it(WatchedModule& module, Doing doing) {
           bench, [&] { return bench.eeprom.programming(); }, std::chrono::microseconds(100)));
       break;
   }
+}
+
+/// A test of an image whose module uses one of the protocols.
+class WatchedImage : public testing::TestWithParam<std::tuple<ImageName, Protocol>> {
+ protected:
+  [[nodiscard]] ImageName image() const { return std::get<0>(GetParam()); }
+  [[nodiscard]] Protocol protocol() const { return std::get<1>(GetParam()); }
+};
+
+inline const auto kBothProtocols = testing::Values(Protocol::Ascii, Protocol::ModbusRtu);
+
+/// For INSTANTIATE_TEST_SUITE_P.
+inline std::string name_of_watched_image(const testing::TestParamInfo<WatchedImage::ParamType>& info) {
+  return name_of(testing::TestParamInfo<ImageName>(std::get<0>(info.param), info.index)) +
+         (std::get<1>(info.param) == Protocol::Ascii ? "_ASCII" : "_Modbus");
 }
 
 }  // namespace ex9000::registers

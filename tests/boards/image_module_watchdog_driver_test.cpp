@@ -1,0 +1,160 @@
+// Tests that the module watchdog of an image resets the module if it hangs, during each of its activities:
+// wire.md section 6.
+#include <gtest/gtest.h>
+
+#include <cstdio>
+#include <string>
+#include <vector>
+
+#include "tests/boards/images_under_test.hpp"
+#include "tests/boards/watched_module.hpp"
+#include "tests/mcu_model/board_bench.hpp"
+
+namespace ex9000::registers {
+namespace {
+
+using Bytes = std::vector<std::uint8_t>;
+using std::chrono::milliseconds;
+using std::chrono::seconds;
+
+constexpr milliseconds kResetsWithin{1600};
+
+class FaultOnBoard : public WatchedImage {
+ protected:
+  template <class Fault>
+  void expect_reset(const std::string& what, Fault fault) {
+    for (const bool timeout_status : {false, true}) {
+      for (const Doing doing : kEverything) {
+        SCOPED_TRACE(what + " while " + name_of(doing) + (timeout_status ? ", timeout status set" : ""));
+        Settings settings = set_up(*find_model(image().model), protocol());
+        settings.timeout_status = timeout_status;
+        WatchedModule module(image(), settings);
+        BoardBench& bench = module.bench;
+        ASSERT_TRUE(module.was_reset());
+        ASSERT_FALSE(module.was_reset());
+        if (bench.image.outputs != 0) {
+          ASSERT_EQ(module.drive(kDriven), !timeout_status);
+        }
+        const std::uint16_t before = bench.outputs();
+        make_it(module, doing);
+        fault(bench);
+        module.changes.clear();
+        bench.run_for(kResetsWithin);
+        ASSERT_EQ(bench.watchdog_resets, 1U);
+        ASSERT_EQ(bench.resets, 1U);
+        bench.run_for(kComesUpWithin);
+        const std::uint16_t after = bench.image.outputs == 0 ? 0
+                                    : timeout_status         ? kSafeValue
+                                                             : kPowerOnValue;
+        EXPECT_EQ(bench.outputs(), after);
+        for (const WatchedModule::Change& change : module.changes) {
+          // All outputs are off from the reset on; then they take their reset value, pin by pin.
+          EXPECT_EQ(change.at <= bench.began ? change.outputs & ~before : change.outputs & ~after, 0);
+        }
+        EXPECT_TRUE(module.was_reset());
+        EXPECT_FALSE(module.was_reset());
+        const Bytes reason = module.ask("~01X0301", {1, 0x04, 0x03, 0x01, 0, 1});
+        EXPECT_EQ(reason, module.framed("!010002", {1, 0x04, 2, 0, 2}));
+        EXPECT_EQ(module.timeout_status(), timeout_status);
+        EXPECT_TRUE(module.enabled());
+        EXPECT_TRUE(module.stores_a_timeout(0x40));
+        ASSERT_FALSE(HasFailure());
+        ++resets_;
+      }
+    }
+  }
+
+  void TearDown() override {
+    if (resets_ != 0) {
+      std::printf("%s: %u resets\n", testing::UnitTest::GetInstance()->current_test_info()->name(), resets_);
+    }
+  }
+
+  unsigned resets_ = 0;
+};
+
+TEST_P(FaultOnBoard, AHungMainLoopCausesAReset) {
+  expect_reset("the main loop hangs", [](BoardBench& bench) { bench.mcu->hang(Hangs::MainLoop); });
+}
+
+TEST_P(FaultOnBoard, AHungInterruptHandlerCausesAReset) {
+  expect_reset("an interrupt hangs", [](BoardBench& bench) {
+    bench.mcu->hang(Hangs::Handler);
+    // The hang begins at a register access. The handler of this interrupt, I2C0, accesses a register.
+    bench.mcu->core.stick(8);
+  });
+}
+
+TEST_P(FaultOnBoard, AStoppedTickCausesAReset) {
+  expect_reset("the tick stops", [](BoardBench& bench) {
+    bench.mcu->core.write(Core::kTickControl, 4);
+    bench.mcu->set_clocks_an_access(1000);  // the clock stands still, so the wake timer fires repeatedly
+  });
+}
+
+TEST_P(FaultOnBoard, AnInterruptStormCausesAReset) {
+  WatchedModule module(image(), set_up(*find_model(image().model), protocol()));
+  const std::uint32_t enabled = module.bench.mcu->core.enabled();
+  ASSERT_NE(enabled, 0U);
+  for (unsigned interrupt = 0; interrupt < 32; ++interrupt) {
+    if ((enabled >> interrupt & 1U) != 0) {
+      expect_reset("interrupt " + std::to_string(interrupt) + " storms", [interrupt](BoardBench& stormy) {
+        stormy.mcu->core.stick(interrupt);
+        stormy.mcu->set_clocks_an_access(1000);  // so that the storm does not take millions of accesses
+      });
+    }
+  }
+}
+
+TEST_P(FaultOnBoard, AStuckEepromBusCausesRefusedStoresButNoReset) {
+  for (const unsigned line : {I2cBlock::kClockPin, I2cBlock::kDataPin}) {
+    for (const Doing doing : kEverything) {
+      SCOPED_TRACE(std::string(line == I2cBlock::kClockPin ? "the clock" : "the data line") +
+                   " stuck while " + name_of(doing));
+      WatchedModule module(image(), set_up(*find_model(image().model), protocol()));
+      BoardBench& bench = module.bench;
+      if (bench.image.outputs != 0) {
+        ASSERT_TRUE(module.drive(kDriven));
+      }
+      const std::uint16_t outputs = bench.outputs();
+      ASSERT_TRUE(module.stores_a_timeout(0xC8));
+      bench.line.heard.clear();
+      make_it(module, doing);
+      Net& wire = bench.pins.at('B', line);
+      wire.drive(End::Fault, Drive::Low);
+      module.changes.clear();
+      bench.run_for(seconds(2));
+      if (doing == Doing::OnTheEepromsBus || doing == Doing::Programming) {
+        // The module refuses the command, because a value that cannot be read back is not stored.
+        ASSERT_GE(bench.line.heard.size(), 3U);
+        EXPECT_TRUE(module.ascii() ? bench.line.heard[0].byte == '?' : bench.line.heard[1].byte == 0x86U);
+      }
+      if (doing == Doing::Receiving) {
+        module.ask("", {});  // ends the incomplete request, whatever the module replies
+      }
+      EXPECT_FALSE(module.stores_a_timeout(0x40));
+      if (bench.image.outputs != 0) {
+        EXPECT_TRUE(module.drive(outputs));
+      }
+      EXPECT_FALSE(module.timeout_status());
+      EXPECT_EQ(bench.resets, 0U);
+      EXPECT_TRUE(module.changes.empty());
+      wire.drive(End::Fault, Drive::Nothing);
+      bench.run_for(seconds(3));
+      EXPECT_TRUE(module.stores_a_timeout(0x40));
+      module.power_cycle();
+      const Bytes reply = module.ask("~012", {1, 0x03, 0x01, 0xE8, 0, 1});
+      EXPECT_EQ(reply, module.framed("!01140", {1, 0x03, 2, 0, 0x40}));
+      ASSERT_FALSE(HasFailure());
+    }
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(Images, FaultOnBoard,
+                         testing::Combine(testing::Values(ImageName{"ek-tm4c123gxl", "EX9043D-M"},
+                                                          ImageName{"ek-tm4c123gxl", "EX9052D-M"}),
+                                          kBothProtocols),
+                         name_of_watched_image);
+
+}  // namespace
+}  // namespace ex9000::registers
