@@ -11,6 +11,7 @@
 #include "sim/text/values.hpp"
 #include "tests/firmware/module_bench.hpp"
 #include "tests/firmware/settings/stored_bytes.hpp"
+#include "tests/support/stored_settings.hpp"
 
 namespace ex9000::sim {
 namespace {
@@ -206,13 +207,17 @@ TEST(TimeoutCount, CountsEveryExpiryUntilItIsCleared) {
 
 // --- statistics ---
 
-/// Returns the value of register 0x0306 of a module that starts with this memory.
-std::string settings_source(const std::string& model, const std::vector<std::uint8_t>& memory) {
-  ModuleBench bench(model);
+void restart_with(ModuleBench& bench, const std::vector<std::uint8_t>& memory) {
   bench.module().power(false);
   std::copy(memory.begin(), memory.end(), bench.module().memory().contents().begin());
   bench.module().power(true);
   bench.run(milliseconds(100));
+}
+
+/// Returns the value of register 0x0306 of a module that starts with this memory.
+std::string settings_source(const std::string& model, const std::vector<std::uint8_t>& memory) {
+  ModuleBench bench(model);
+  restart_with(bench, memory);
   return bench.ask("~" + hex_byte_text(bench.module().module().state().in_force.address) + "X0306").substr(3);
 }
 
@@ -235,6 +240,40 @@ TEST(SettingsSourceRegister, ReadsWhatTheSettingsWereReadFrom) {
           << stored.file;
     }
   }
+}
+
+/// Returns a memory with two copies of layout 2.
+std::vector<std::uint8_t> memory_of_earlier_firmware(const Model& model) {
+  std::vector<std::uint8_t> memory(kStoredMemory, 0xFF);
+  put_layout_2(model, Settings::factory(model), 7, memory.data(), kPlaces[2].address);
+  put_layout_2(model, Settings::factory(model), 8, memory.data(), kPlaces[3].address);
+  return memory;
+}
+
+TEST(StoreCount, ReadsZeroAfterAnUpdateUntilTheFirstStore) {
+  ModuleBench bench("EX9043D");
+  restart_with(bench, memory_of_earlier_firmware(*find_model("EX9043D")));
+  EXPECT_EQ(bench.ask("~01X0306"), "!010003");
+  EXPECT_EQ(bench.ask("~01X0305"), "!010000");
+  ASSERT_EQ(bench.ask("~013011"), "!01");
+  EXPECT_EQ(bench.ask("~01X0305"), "!010001");
+}
+
+// The power failed during the first store after the update: the new copy is complete, and the old ones are
+// still valid.
+TEST(StoreCount, CountsTheStoreThatFinishesAnUpdateAtStart) {
+  const Model& model = *find_model("EX9043D");
+  std::vector<std::uint8_t> memory = memory_of_earlier_firmware(model);
+  Settings settings = Settings::factory(model);
+  settings.watchdog_timeout = 0x11;
+  const std::vector<std::uint8_t> image = SimulatedModule::memory_image(model, settings);
+  std::copy_n(image.begin() + kPlaces[0].address, kMemoryPage, memory.begin() + kPlaces[0].address);
+  ModuleBench bench("EX9043D");
+  restart_with(bench, memory);
+  EXPECT_EQ(bench.ask("~01X0305"), "!010001");
+  EXPECT_EQ(bench.ask("~012"), "!01011");
+  bench.power_cycle();
+  EXPECT_EQ(bench.ask("~01X0305"), "!010000");
 }
 
 TEST(TimeoutCount, StopsAt65535) {
