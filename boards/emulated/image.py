@@ -41,9 +41,12 @@ def read(path: Path, memory: Memory) -> list[Segment]:
         raise Refusal(
             f"{path}: {error.strerror}; build an image with `cmake --build --preset {memory.preset}`"
         ) from error
-    if file[:5] != b"\x7fELF\x01" or struct.unpack_from("<H", file, 18)[0] != _ARM:
-        raise Refusal(f"{path}: the file is not an ELF file for Arm; name MODEL.elf, not MODEL.bin or MODEL.hex")
-    segments = list(_segments(file))
+    try:
+        if file[:5] != b"\x7fELF\x01" or struct.unpack_from("<H", file, 18)[0] != _ARM:
+            raise Refusal(f"{path}: the file is not an ELF file for Arm; name MODEL.elf, not MODEL.bin or MODEL.hex")
+        segments = list(_segments(file))
+    except struct.error as error:
+        raise Refusal(f"{path}: the file is incomplete; build the image again") from error
     if _word_at(segments, memory.vectors) != memory.top_of_ram:
         raise Refusal(f"{path}: the image is for another board; name an image of the preset {memory.preset}")
     return segments

@@ -101,7 +101,8 @@ def _watch(device: str) -> int:
     descriptor = int(libc.inotify_init1(os.O_NONBLOCK | os.O_CLOEXEC))
     events = _IN_OPEN | _IN_CLOSE_WRITE | _IN_CLOSE_NOWRITE
     if descriptor < 0 or libc.inotify_add_watch(descriptor, os.fsencode(device), events) < 0:
-        raise Refusal(f"{device}: {os.strerror(ctypes.get_errno())}")
+        reason = os.strerror(ctypes.get_errno())
+        raise Refusal(f"{device}: cannot be watched: {reason}; end other programs that use inotify")
     return descriptor
 
 

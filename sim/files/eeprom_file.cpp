@@ -65,7 +65,7 @@ std::string flaw_of(const struct stat& status) {
     return "is not a regular file; name another path";
   }
   if (status.st_size != static_cast<off_t>(kSize)) {
-    return "has " + std::to_string(status.st_size) + " bytes, an image of the EEPROM has " +
+    return "has " + std::to_string(status.st_size) + " bytes, but an image of the EEPROM has " +
            std::to_string(kSize) + "; remove it or name another path";
   }
   return "";
@@ -111,7 +111,7 @@ EepromFile::EepromFile(std::string path)
   }
   // A file without any write permission is protected; open() alone would let root write to it.
   if ((status.st_mode & (S_IWUSR | S_IWGRP | S_IWOTH)) == 0) {
-    refuse("is read-only; chmod u+w, or name another path");
+    refuse("is read-only; make it writable with chmod u+w, or name another path");
   }
   lock();
   found_ = image_in(file_, path_);
@@ -123,7 +123,8 @@ void EepromFile::create(const std::vector<std::uint8_t>& image) {
   if (!file_.is_open() || !write(0, {image.data(), image.size()}) ||
       flock(file_.get(), LOCK_EX | LOCK_NB) != 0 || !draft.link_to(path_)) {
     const std::string why =
-        errno == EEXIST ? "the file was created meanwhile, or the path is a dangling link" : reason();
+        errno == EEXIST ? "another program has created the file, or the path is a link to a missing file"
+                        : reason();
     refuse("cannot be created: " + why + "; name a path that can be written");
   }
 }

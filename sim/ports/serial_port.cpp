@@ -45,7 +45,7 @@ void set_up(int fd, const std::string& device, hal::SerialMode mode) {
     refuse("is not a serial port; name one, for example /dev/ttyUSB0");
   }
   if (flock(fd, LOCK_EX | LOCK_NB) != 0 || ioctl(fd, TIOCEXCL) != 0) {
-    refuse("another program uses it; end that program or name another port");
+    refuse("is in use by another program; end that program or name another port");
   }
   termios settings = before;
   cfmakeraw(&settings);
@@ -72,7 +72,7 @@ int open_port(const std::string& device, hal::SerialMode mode) {
   if (!port.is_open()) {
     throw std::invalid_argument(device + ": " +
                                 (errno == EBUSY
-                                     ? "another program uses it; end that program or name another port"
+                                     ? "is in use by another program; end that program or name another port"
                                      : reason() + "; name a serial port that can be read and written"));
   }
   set_up(port.get(), device, mode);
@@ -111,7 +111,8 @@ void SerialPort::read() {
           return;
         }
         if (error) {
-          throw std::runtime_error(where_ + ": " + error.message() + "; the port has disappeared");
+          throw std::runtime_error(where_ + ": the port has disappeared (" + error.message() +
+                                   "); connect it and start the simulator again");
         }
         take(size);
         if (!paused_) {

@@ -152,7 +152,7 @@ nanoseconds AlarmClock::make_edges(Pin pin, std::uint32_t edges) {
 void AlarmClock::run(std::uint32_t clocks, const std::string& orders) {
   begin_to_run(clocks, orders);
   if (!wait_for_alarm()) {
-    throw std::runtime_error("unexpected stop before a watched store");
+    throw std::runtime_error("emulator: it stops before a watched store; expected it to run until the alarm");
   }
 }
 
@@ -193,7 +193,9 @@ bool AlarmClock::wait_for_alarm() {
   for (int asked = 0; !machine_.gdb().has_packet() && !machine_.gate().has_bytes();) {
     if (!wait_for_any({&machine_.gdb().socket(), &machine_.gate()})) {
       if (++asked > kMostQuestions) {
-        throw std::runtime_error("the machine does not come to a stop");
+        throw std::runtime_error(
+            "emulator: it does not stop for 6 minutes; expected it to stop at the alarm or before a watched "
+            "store");
       }
       machine_.bus().read(kTickCounter);
     }
@@ -212,7 +214,7 @@ bool AlarmClock::wait_for_alarm() {
   if (packet.rfind("T05", 0) == 0 && packet.find("watch:") != std::string::npos) {
     return false;
   }
-  throw Halted("the image has stopped running (" + packet + ")");
+  throw Halted("image: it has stopped with " + packet + "; expected it to run until the alarm");
 }
 
 /// Makes the interrupt code request the halt, because the emulator cannot halt a processor that waits at the
@@ -225,7 +227,7 @@ void AlarmClock::halt() {
   go_on();
   const std::string packet = machine_.gdb().receive();
   if (packet.rfind("Fwrite,", 0) != 0) {
-    throw std::runtime_error("the machine does not halt (" + packet + ")");
+    throw std::runtime_error("emulator: it replies " + packet + " to a halt; expected Fwrite");
   }
   go_on_ = "F0";
   machine_.bus().write(kOrders + kHalt, 0);
@@ -238,7 +240,7 @@ void AlarmClock::watch_stores(std::uint32_t address, std::uint32_t size) {
   watched_ = range.data();
   machine_.gdb().send(GdbClient::framed("Z" + watched_));
   if (machine_.gdb().receive() != "OK") {
-    throw std::runtime_error("the emulator rejects the watchpoint");
+    throw std::runtime_error("emulator: it rejects the watchpoint " + watched_ + "; expected OK");
   }
 }
 
@@ -252,7 +254,7 @@ bool AlarmClock::run_to_store(nanoseconds time) {
     }
     gdb.send(GdbClient::framed("Z" + watched_) + GdbClient::framed("c"));
     if (gdb.receive() != "OK") {
-      throw std::runtime_error("the emulator rejects the watchpoint");
+      throw std::runtime_error("emulator: it rejects the watchpoint " + watched_ + "; expected OK");
     }
   } else {
     begin_to_run(clocks(time - kInterruptTakes), {});

@@ -122,7 +122,8 @@ hal::SerialMode EmulatedBoard::mode() {
   }
   const auto format = line_format_of(uart[3]);
   if (!format || (uart[3] & kUartFifosOn) != 0) {
-    throw std::runtime_error("the line control register of the image is " + std::to_string(uart[3]));
+    throw std::runtime_error("UART0: the line control register is " + std::to_string(uart[3]) +
+                             "; expected 8 data bits, and the FIFOs off");
   }
   return {board::kClock.frequency() / 16 * 64 / divisor, *format};
 }

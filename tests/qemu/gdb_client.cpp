@@ -34,7 +34,7 @@ std::string GdbClient::receive() {
     }
     const std::vector<std::uint8_t> bytes = socket_.receive(kHang);
     if (bytes.empty()) {
-      throw std::runtime_error("gdb: the machine neither stops nor answers");
+      throw std::runtime_error("gdb: the emulator has sent nothing for 60 s; expected a reply or a stop");
     }
     received_.append(bytes.begin(), bytes.end());
   }

@@ -25,7 +25,8 @@ void QmpClient::execute(const std::string& command, const std::string& event, co
   while (!accepted || !done) {
     const std::string line = socket_.receive_line();
     if (has(line, "error")) {
-      throw std::runtime_error(command + ": " + line);
+      throw std::runtime_error("QMP command " + command + ": the emulator replies " + line +
+                               "; expected no error");
     }
     accepted = accepted || has(line, "return");
     done = done || has(line, event);

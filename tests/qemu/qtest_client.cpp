@@ -23,7 +23,7 @@ QtestClient::QtestClient(UnixSocket socket) : socket_(std::move(socket)) {}
 std::string QtestClient::reply() {
   std::string line = socket_.receive_line();
   if (line.rfind("OK", 0) != 0) {
-    throw std::runtime_error("qtest: " + line);
+    throw std::runtime_error("qtest: the emulator replies " + line + "; expected OK");
   }
   return line.substr(2);
 }

@@ -11,13 +11,15 @@ using hal::stellaris::Port;
 
 template <class Groups>
 Pin pin_of(const Groups& groups, unsigned channel) {
+  unsigned first = 0;
   for (const PinGroup& group : groups) {
-    if (channel < group.count) {
-      return {group.port, static_cast<std::uint8_t>(group.first_pin + channel)};
+    if (channel < first + group.count) {
+      return {group.port, static_cast<std::uint8_t>(group.first_pin + channel - first)};
     }
-    channel -= group.count;
+    first += group.count;
   }
-  throw std::out_of_range("the board has no such channel");
+  throw std::out_of_range("channel " + std::to_string(channel) +
+                          ": the board has no such channel; expected less than " + std::to_string(first));
 }
 
 /// Returns the path of the GPIO port in QEMU's object tree.

@@ -148,7 +148,9 @@ void TimedModule::put(const Arrival& arrival) {
     return;
   }
   if (!clock_->receiver_empty()) {
-    throw std::runtime_error("the image has not read the previous byte");
+    throw std::runtime_error(
+        "UART0: the image has not read a byte before the next one arrives; expected it to read each byte in "
+        "time");
   }
   if (arrival.status == ByteStatus::Good) {
     emulator().uart().send(&arrival.byte, 1);

@@ -6,6 +6,8 @@
 #include <unistd.h>
 
 #include <array>
+#include <cerrno>
+#include <cstring>
 #include <ctime>
 #include <stdexcept>
 #include <utility>
@@ -37,7 +39,7 @@ void UnixSocket::send(const std::uint8_t* bytes, std::size_t size) {
   while (size != 0) {
     const ssize_t taken = ::send(fd_, bytes, size, MSG_NOSIGNAL);
     if (taken <= 0) {
-      throw std::runtime_error("the emulator does not listen any more");
+      throw std::runtime_error("emulator: it has closed the connection; expected it to take all bytes");
     }
     bytes += taken;
     size -= static_cast<std::size_t>(taken);
@@ -55,7 +57,7 @@ std::vector<std::uint8_t> UnixSocket::receive(std::chrono::nanoseconds patience)
   }
   const ssize_t size = recv(fd_, buffer.data(), buffer.size(), 0);
   if (size <= 0) {
-    throw std::runtime_error("the emulator has closed the connection");
+    throw std::runtime_error("emulator: it has closed the connection; expected bytes");
   }
   return {buffer.begin(), buffer.begin() + size};
 }
@@ -64,7 +66,8 @@ void UnixSocket::receive_all(std::uint8_t* bytes, std::size_t size) {
   while (size != 0) {
     const ssize_t received = readable(fd_, kHang) ? recv(fd_, bytes, size, 0) : 0;
     if (received <= 0) {
-      throw std::runtime_error("the emulator has closed the connection, or has sent nothing for 60 s");
+      throw std::runtime_error(
+          "emulator: it has closed the connection or sent nothing for 60 s; expected more bytes");
     }
     bytes += received;
     size -= static_cast<std::size_t>(received);
@@ -86,7 +89,7 @@ std::string UnixSocket::receive_line() {
   for (std::size_t end = received_.find('\n'); end == std::string::npos; end = received_.find('\n')) {
     const std::vector<std::uint8_t> bytes = receive(kHang);
     if (bytes.empty()) {
-      throw std::runtime_error("the emulator does not answer");
+      throw std::runtime_error("emulator: it has sent nothing for 60 s; expected a line");
     }
     received_.append(bytes.begin(), bytes.end());
   }
@@ -100,12 +103,14 @@ UnixListener::UnixListener(const std::string& path) : fd_(socket(AF_UNIX, SOCK_S
   sockaddr_un address{};
   address.sun_family = AF_UNIX;
   if (path.size() >= sizeof address.sun_path) {
-    throw std::runtime_error(path + ": too long for a socket");
+    throw std::runtime_error(path + ": the path is too long for a socket; expected fewer than " +
+                             std::to_string(sizeof address.sun_path) + " characters");
   }
   path.copy(static_cast<char*>(address.sun_path), path.size());
   if (bind(fd_, reinterpret_cast<const sockaddr*>(&address), sizeof address) != 0 || listen(fd_, 1) != 0) {
+    const std::string why = std::strerror(errno);
     close(fd_);
-    throw std::runtime_error(path + ": cannot listen there");
+    throw std::runtime_error(path + ": cannot listen: " + why + "; expected a path that can be created");
   }
 }
 
@@ -113,7 +118,8 @@ UnixListener::~UnixListener() { close(fd_); }
 
 UnixSocket UnixListener::accept() {
   if (!readable(fd_, kHang)) {
-    throw std::runtime_error("the emulator has not connected within 60 s");
+    throw std::runtime_error(
+        "emulator: it has not connected for 60 s; expected it to connect when it starts");
   }
   return UnixSocket(accept4(fd_, nullptr, nullptr, SOCK_CLOEXEC));
 }

@@ -2,13 +2,16 @@
 
 from __future__ import annotations
 
+import contextlib
+import io
 import sys
+import tempfile
 import unittest
 from pathlib import Path
 
 sys.path.insert(0, str(Path(__file__).resolve().parents[2] / "toolchain"))
 
-from check_image import call_graph, call_sites  # noqa: E402
+from check_image import call_graph, call_sites, main  # noqa: E402
 from check_image.disassembly import Instruction, StackPointerUnknown, stack_of  # noqa: E402
 from check_image.functions import Function, demangle, without_parameters  # noqa: E402
 from check_image.stack import DeepestChains, Graph, Level, Node, Unbounded, worst_case  # noqa: E402
@@ -101,14 +104,34 @@ class WorstCase(unittest.TestCase):
         self.assertEqual(worst_case(self.GRAPH, 0, levels).size, 112 + (36 + 24) + (36 + 16))
 
     def test_recursion_has_no_bound(self) -> None:
-        with self.assertRaisesRegex(Unbounded, "^recursion: again -> and_again -> again$"):
+        with self.assertRaisesRegex(Unbounded, "^recursion: again -> and_again -> again; use a loop$"):
             worst_case(self.GRAPH, 20, [])
 
     def test_a_reachable_function_without_a_stack_record_has_no_bound(self) -> None:
         with self.assertRaisesRegex(
-            Unbounded, r"^unknown has no recorded stack \(reached by asks -> unknown\)$"
+            Unbounded, "^unknown, reached by asks -> unknown: has no recorded stack$"
         ):
             worst_case(self.GRAPH, 0, [Level("interrupts", [31])])
+
+
+class UnsuitableFiles(unittest.TestCase):
+    def test_are_named_with_the_error_and_the_remedy(self) -> None:
+        with tempfile.TemporaryDirectory() as folder:
+            image, missing = Path(folder, "image.elf"), Path(folder, "missing.elf")
+            image.write_text("text", encoding="utf-8")
+            self.assertEqual(
+                self.printed(missing), f"{missing}: No such file or directory; check-image requires this file\n"
+            )
+            self.assertEqual(
+                self.printed(image),
+                f"{image}: the file is not a 32-bit little-endian ELF file for Arm; name the linked image\n",
+            )
+
+    @staticmethod
+    def printed(image: Path) -> str:
+        with contextlib.redirect_stderr(io.StringIO()) as errors:
+            assert main.main([str(image), "unit.ci"]) == 1
+        return errors.getvalue()
 
 
 class CallsThroughPointers(unittest.TestCase):

@@ -17,7 +17,7 @@ class Refuses(unittest.TestCase):
 
     def test_recursion_is_refused(self) -> None:
         self.refused(
-            "recursion: ping -> pong -> ping$",
+            "recursion: ping -> pong -> ping; use a loop$",
             """
             FAR int pong(int n);
             FAR int ping(int n) { return n ? pong(n - 1) + 1 : 0; }
@@ -28,7 +28,7 @@ class Refuses(unittest.TestCase):
 
     def test_recursion_through_a_pointer_is_refused(self) -> None:
         self.refused(
-            "recursion: walk -> walk$",
+            "recursion: walk -> walk; use a loop$",
             """
             struct Tree { int value; };
             FAR int walk(const Tree& tree);
@@ -41,7 +41,7 @@ class Refuses(unittest.TestCase):
 
     def test_recursion_in_a_handler_is_refused(self) -> None:
         self.refused(
-            "recursion: interrupt -> interrupt$",
+            "recursion: interrupt -> interrupt; use a loop$",
             """
             volatile int n;
             extern "C" void reset() { for (;;) {} }
@@ -58,14 +58,14 @@ class Refuses(unittest.TestCase):
             "volatile char a[n]; a[0] = 1;",
         ):
             self.refused(
-                "reset uses an amount of stack that is known only at run time",
+                "reset, reached by reset: uses an amount of stack that is known only at run time; use objects",
                 source.format(frame),
                 compile_options="-w",
             )
 
     def test_a_reachable_assembler_function_is_refused(self) -> None:
         self.refused(
-            r"foreign has no recorded stack \(reached by reset -> foreign\)",
+            "foreign, reached by reset -> foreign: the compiler recorded no stack; add it to FOREIGN",
             """
             extern "C" void foreign();
             asm(".section .text.foreign\\n.thumb_func\\n.global foreign\\n.type foreign, %function\\n"
@@ -76,7 +76,7 @@ class Refuses(unittest.TestCase):
 
     def test_a_copy_function_that_uses_more_stack_than_the_table_states_is_refused(self) -> None:
         self.refused(
-            "memset uses 64 bytes of stack, but the tool's table has only 16",
+            "memset, reached by reset -> memset: uses 64 bytes of stack; FOREIGN in linked_graph.py permits 16",
             """
             extern "C" void* memset(void*, int, size_t);
             asm(".section .text.memset\\n.thumb_func\\n.global memset\\n.type memset, %function\\n"
@@ -88,7 +88,7 @@ class Refuses(unittest.TestCase):
 
     def test_a_call_that_the_compiler_has_not_seen_is_refused(self) -> None:
         self.refused(
-            "reset branches to hidden, but the compiler recorded no such call",
+            "reset: branches to hidden, but the compiler recorded no such call; call it from C",
             """
             extern "C" __attribute__((used)) FAR void hidden() { room<40>(); }
             extern "C" void reset() { for (;;) asm volatile("bl hidden" ::: "lr", "memory"); }
@@ -97,7 +97,7 @@ class Refuses(unittest.TestCase):
 
     def test_a_jump_that_the_compiler_has_not_seen_is_refused(self) -> None:
         self.refused(
-            "interrupt branches to hidden, but the compiler recorded no such call",
+            "interrupt: branches to hidden, but the compiler recorded no such call; call it from C",
             """
             extern "C" __attribute__((used)) FAR void hidden() { room<40>(); }
             extern "C" void reset() { for (;;) {} }
@@ -107,7 +107,7 @@ class Refuses(unittest.TestCase):
 
     def test_a_call_through_a_register_that_the_compiler_has_not_seen_is_refused(self) -> None:
         self.refused(
-            "reset branches through a register, but the compiler recorded no indirect call",
+            "reset: branches through a register, but the compiler recorded no indirect call; call through a pointer",
             """
             extern "C" void reset() { for (;;) asm volatile("blx r3" ::: "r3", "lr", "memory"); }
             """,
@@ -115,7 +115,7 @@ class Refuses(unittest.TestCase):
 
     def test_a_push_that_the_compiler_has_not_seen_is_refused(self) -> None:
         self.refused(
-            "reset uses 8 bytes of stack, but the compiler recorded only 0",
+            "reset: uses 8 bytes of stack, but the compiler recorded only 0; do not push in assembler code",
             """
             extern "C" void reset() { for (;;) asm volatile("push {r0, r1}\\npop {r0, r1}" ::: "memory"); }
             """,
@@ -123,7 +123,7 @@ class Refuses(unittest.TestCase):
 
     def test_a_stack_pointer_that_is_computed_is_refused(self) -> None:
         self.refused(
-            "reset moves the stack pointer in a way that is not understood",
+            "reset: moves the stack pointer with 'sub.*'; push, pop, or add or subtract a constant",
             """
             extern "C" void reset() { for (;;) asm volatile("sub sp, sp, r0" ::: "memory"); }
             """,
@@ -131,14 +131,14 @@ class Refuses(unittest.TestCase):
 
     def test_a_level_of_a_handler_that_does_not_exist_is_refused(self) -> None:
         self.refused(
-            "no interrupt's handler is called timer",
+            "--level: no interrupt has the handler timer; name another one",
             'extern "C" void reset() { for (;;) {} }',
             options="--level timer",
         )
 
     def test_a_vector_that_is_not_a_function_is_refused(self) -> None:
         self.refused(
-            "vector 15 is 0x[0-9a-f]+, which is not the address of a function",
+            "vector 15: 0x[0-9a-f]+ is not the address of a function; name a handler",
             """
             extern "C" void reset() { for (;;) {} }
             asm(".global interrupt\\n.set interrupt, 0x08000003");
@@ -183,7 +183,7 @@ class Refuses(unittest.TestCase):
 
     def test_interrupts_disabled_by_other_means_are_refused(self) -> None:
         self.refused(
-            "0x[0-9a-f]+: interrupts are disabled by PRIMASK, r0",
+            "0x[0-9a-f]+: interrupts are disabled by PRIMASK, r0; use cpsid i",
             'extern "C" void reset() { for (;;) asm volatile("msr primask, r0" ::: "memory"); }',
         )
 
@@ -219,7 +219,7 @@ class Refuses(unittest.TestCase):
 
     def test_a_floating_point_unit_is_refused(self) -> None:
         self.refused(
-            "instructions of a floating-point unit",
+            "instructions of a floating-point unit: floating point; compile with -mfloat-abi=soft",
             'volatile float f; extern "C" void reset() { for (;;) f = f * f; }',
             compile_options="-mcpu=cortex-m4 -mfpu=fpv4-sp-d16 -mfloat-abi=softfp",
             link_options="-mcpu=cortex-m4 -mfpu=fpv4-sp-d16 -mfloat-abi=softfp",
@@ -264,7 +264,7 @@ class Refuses(unittest.TestCase):
 
     def test_a_call_of_a_missing_weak_function_is_refused(self) -> None:
         self.refused(
-            "reset calls missing, which the image does not have",
+            "reset, reached by reset: calls missing, which the image does not have; link it",
             """
             extern "C" __attribute__((weak)) void missing();
             extern "C" void reset() { for (;;) if (missing) missing(); }
@@ -273,14 +273,14 @@ class Refuses(unittest.TestCase):
 
     def test_undefined_symbols_are_refused(self) -> None:
         self.refused(
-            "missing is undefined",
+            "missing: undefined; link a definition",
             'extern "C" volatile int missing; extern "C" void reset() { for (;;) missing = 1; }',
             link_options="-Wl,--unresolved-symbols=ignore-all",
         )
 
     def test_texts_for_people_are_refused(self) -> None:
         self.refused(
-            "section .text contains the text 'clear both latches', which an image must not contain",
+            "section .text: contains the text 'clear both latches'; an image must not contain it",
             """
             extern const char text[];
             const char text[] = "clear both latches of all channels";
@@ -296,9 +296,7 @@ class Refuses(unittest.TestCase):
         self.assertTrue(check(source).accepted)  # the rest of RAM is for three exceptions
         verdict = check(source.replace("20372", "20376"))
         self.assertFalse(verdict.accepted)
-        self.assertEqual(
-            verdict.problems, "image: RAM is too small: the image requires 20484 bytes, and the board has 20480\n"
-        )
+        self.assertEqual(verdict.problems, "image: requires 20484 bytes of RAM; the board has 20480\n")
 
 
 if __name__ == "__main__":

@@ -14,7 +14,7 @@ _STACK = re.compile(r"(\d+) bytes \((static|dynamic|dynamic,bounded)\)$")
 
 
 class NotACallGraph(Exception):
-    """The text does not have the format of GCC 12."""
+    """The text does not have the format of GCC 12. The message is the unexpected line."""
 
 
 @dataclass(frozen=True)

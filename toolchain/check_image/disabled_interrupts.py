@@ -32,7 +32,7 @@ class DisabledInterrupts:
         for address in addresses:
             instruction = self._code[address]
             if instruction.mnemonic.startswith("msr") and _MASKS.match(instruction.operands):
-                self.problems.append(f"{address:#x}: interrupts are disabled by {instruction.operands}")
+                self.problems.append(f"{address:#x}: interrupts are disabled by {instruction.operands}; use cpsid i")
             if instruction.mnemonic.startswith(_DISABLE):
                 self._follow(address)
         if self.longest > MOST:
@@ -44,7 +44,7 @@ class DisabledInterrupts:
         try:
             self.longest = max(self.longest, self._longest_after(disabled_at, []))
         except _NeverEnabled as reason:
-            self.problems.append(f"{disabled_at:#x}: interrupts are disabled, and then {reason}")
+            self.problems.append(f"{disabled_at:#x}: interrupts are disabled, and then {reason}; use cpsie i before")
 
     def _longest_after(self, address: int, way: list[int]) -> int:
         """Returns the maximum number of instructions between this one and the `cpsie i`."""

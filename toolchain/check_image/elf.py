@@ -53,7 +53,7 @@ class Elf:
     def __init__(self, path: Path) -> None:
         self._file = path.read_bytes()
         if self._file[:6] != b"\x7fELF\x01\x01" or struct.unpack_from("<H", self._file, 18)[0] != _ARM:
-            raise NotAnImage(f"{path} is not a 32-bit little-endian ELF file for Arm")
+            raise NotAnImage(f"{path}: the file is not a 32-bit little-endian ELF file for Arm; name the linked image")
         offset, entry_size, count, names = struct.unpack_from("<32xI10xHHH", self._file)
         headers = [struct.unpack_from("<10I", self._file, offset + i * entry_size) for i in range(count)]
         name_table = headers[names][4]

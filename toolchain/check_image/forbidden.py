@@ -40,7 +40,7 @@ def problems(elf: Elf, records: Iterable[Record], disassembly: Disassembly) -> l
     found = []
     for symbol in elf.symbols:
         if symbol.is_undefined:
-            found.append(f"{symbol.name} is undefined")
+            found.append(f"{symbol.name}: undefined; link a definition")
         what = _what(symbol.name)
         if what:
             found.append(f"{symbol.name}: {what}")
@@ -51,7 +51,7 @@ def problems(elf: Elf, records: Iterable[Record], disassembly: Disassembly) -> l
         for text in _TEXTS:
             if text in section.data:
                 found.append(
-                    f"section {section.name} contains the text '{text.decode()}', which an image must not contain"
+                    f"section {section.name}: contains the text '{text.decode()}'; an image must not contain it"
                 )
     # A linker script without .init_array would silently discard these.
     for record in records:
@@ -59,7 +59,7 @@ def problems(elf: Elf, records: Iterable[Record], disassembly: Disassembly) -> l
             found.append(f"{record.location}: globals initialised at run time")
     # Such a unit would also make an exception frame longer than this tool calculates.
     if any(each.mnemonic.startswith("v") and each.operands for each in disassembly.instructions.values()):
-        found.append("instructions of a floating-point unit: floating point")
+        found.append("instructions of a floating-point unit: floating point; compile with -mfloat-abi=soft")
     return found
 
 

@@ -34,6 +34,7 @@ FOREIGN = {
 }
 
 _VENEER = re.compile(r"__(.*)_veneer")
+_NOT_UNDERSTOOD = "moves the stack pointer with '{}'; push, pop, or add or subtract a constant"
 
 
 class LinkedGraph:
@@ -81,20 +82,24 @@ class LinkedGraph:
         return in_file or self._functions.global_named(title.name)
 
     def _add(self, function: Function, record: Record) -> None:
-        problem = "" if record.is_bounded else "uses an amount of stack that is known only at run time"
+        problem = (
+            ""
+            if record.is_bounded
+            else "uses an amount of stack that is known only at run time; use objects of a fixed size"
+        )
         calls = set()
         for title in record.calls:
             target = self._find(title)
             if target is None and title.name.startswith("__aeabi_"):
                 continue  # after it wrote the record, the compiler removed this call of its run-time library
             if target is None:
-                problem = f"calls {title.name}, which the image does not have"
+                problem = f"calls {title.name}, which the image does not have; link it"
             else:
                 calls.add(target.address)
         for location in record.indirect_calls:
             targets = self._indirect_targets(record.title.name, location)
             if not targets:
-                problem = f"calls through a pointer at {location}, but no function of the image matches"
+                problem = f"calls through a pointer at {location}, but no function matches; remove the call"
             calls |= targets
             self.pointer_calls[str(function), location] = [
                 str(self._functions.at(t)) for t in sorted(targets)
@@ -162,19 +167,23 @@ class LinkedGraph:
         code = self._disassembly.of(function)
         for target in self._targets_in_code(function, code):
             if target.address not in node.calls:
-                self.problems.append(f"{node.name} branches to {target}, but the compiler recorded no such call")
+                self.problems.append(
+                    f"{node.name}: branches to {target}, but the compiler recorded no such call; call it from C++"
+                )
         if any(i.is_indirect for i in code) and function.address not in self._calls_indirectly:
-            self.problems.append(f"{node.name} branches through a register, but the compiler recorded no indirect call")
+            self.problems.append(
+                f"{node.name}: branches through a register, but the compiler recorded no indirect call;"
+                " call through a pointer from C++"
+            )
         try:
             pushed = stack_of(code)
         except StackPointerUnknown as unknown:
-            self.problems.append(
-                f"{node.name} moves the stack pointer in a way that is not understood: {unknown}"
-            )
+            self.problems.append(f"{node.name}: {_NOT_UNDERSTOOD.format(unknown)}")
             return
         if pushed > node.frame:
             self.problems.append(
-                f"{node.name} uses {pushed} bytes of stack, but the compiler recorded only {node.frame}"
+                f"{node.name}: uses {pushed} bytes of stack, but the compiler recorded only {node.frame};"
+                " do not push in assembler code"
             )
 
     def _targets_in_code(self, function: Function, code: list[Instruction]) -> list[Function]:
@@ -203,7 +212,7 @@ class LinkedGraph:
         code = self._disassembly.of(function)
         calls = frozenset(t.address for t in self._targets_in_code(function, code))
         known = next((FOREIGN[name] for name in function.names if name in FOREIGN), None)
-        frame, problem = 0, "has no recorded stack"
+        frame, problem = 0, "the compiler recorded no stack; add it to FOREIGN in linked_graph.py"
         if known is not None:
             frame, problem = known.frame, _compare_with_table(known, code)
         self.graph[function.address] = Node(str(function), frame, calls, problem)
@@ -218,9 +227,9 @@ def _compare_with_table(known: Foreign, code: list[Instruction]) -> str:
     try:
         pushed = stack_of(code)
     except StackPointerUnknown as unknown:
-        return f"moves the stack pointer in a way that is not understood: {unknown}"
+        return _NOT_UNDERSTOOD.format(unknown)
     if pushed > known.frame:
-        return f"uses {pushed} bytes of stack, but the tool's table has only {known.frame}"
+        return f"uses {pushed} bytes of stack; FOREIGN in linked_graph.py permits {known.frame}"
     if any(instruction.is_indirect for instruction in code):
-        return "branches through a register"
+        return "branches through a register; FOREIGN in linked_graph.py requires direct branches"
     return ""

@@ -32,9 +32,14 @@ def main(arguments: list[str]) -> int:
     options = _parse(arguments)
     try:
         return _check(options)
-    except (NotAnImage, BadVectors, Unbounded, call_graph.NotACallGraph, OSError) as error:
-        print(f"{options.image.stem}: {error}", file=sys.stderr)
-        return 1
+    except OSError as error:
+        problem = f"{error.filename}: {error.strerror}; check-image requires this file"
+    except (NotAnImage, call_graph.NotACallGraph) as error:
+        problem = str(error)
+    except BadVectors as error:
+        problem = f"{options.image.stem}: {error}"
+    print(problem, file=sys.stderr)
+    return 1
 
 
 def _parse(arguments: list[str]) -> argparse.Namespace:
@@ -91,9 +96,8 @@ def _check(options: argparse.Namespace) -> int:
         problems.append(str(unbounded))
         if linked.untyped:
             problems.append(
-                f"{linked.untyped} calls through pointers may reach every function whose address is taken:"
-                " the dump of -fdump-tree-optimized-lineno is missing next to the call graph, or does not contain"
-                " these calls"
+                f"{linked.untyped} calls through pointers may reach every function whose address is taken, because no"
+                " dump next to the call graph contains them; compile with -fdump-tree-optimized-lineno"
             )
     else:
         problems += _report(options, Figures(sizes.flash(elf), sizes.static_ram(elf), stack.size), vectors, disabled)
@@ -112,7 +116,12 @@ def _read_units(paths: list[Path]) -> Units:
         graph = path.with_suffix(".ci") if path.suffix in (".o", ".obj") else path
         if graph != path and not graph.exists():
             continue
-        units.records.extend(call_graph.parse(graph.read_text()))
+        try:
+            units.records.extend(call_graph.parse(graph.read_text()))
+        except call_graph.NotACallGraph as line:
+            raise call_graph.NotACallGraph(
+                f"{graph}: unexpected line '{line}'; compile with GCC 12 and -fcallgraph-info=su"
+            ) from line
         for dump in graph.parent.glob(graph.stem + ".*t.optimized"):
             for place, sites in call_sites.parse(dump.read_text()).items():
                 units.call_sites.setdefault(place, set()).update(sites)
@@ -133,7 +142,7 @@ def _report(
     records.write(options.image.with_suffix(".size"), {(options.board, options.image.stem): figures})
     ram = vectors.stack_top - sizes.RAM.start
     used = figures.static + figures.stack
-    return [f"RAM is too small: the image requires {used} bytes, and the board has {ram}"] if used > ram else []
+    return [f"requires {used} bytes of RAM; the board has {ram}"] if used > ram else []
 
 
 def _report_stack(stack: WorstCase) -> None:

@@ -60,11 +60,11 @@ class DeepestChains:
             return self._found[address]
         if address in self._path:
             cycle = self._path[self._path.index(address) :] + [address]
-            raise Unbounded("recursion: " + self._names(cycle))
+            raise Unbounded(f"recursion: {self._names(cycle)}; use a loop")
         self._path.append(address)
         node = self._graph[address]
         if node.problem:
-            raise Unbounded(f"{node.name} {node.problem} (reached by {self._names(self._path)})")
+            raise Unbounded(f"{node.name}, reached by {self._names(self._path)}: {node.problem}")
         deepest = max(
             (self.below(callee) for callee in sorted(node.calls)), key=lambda c: c.size, default=Chain(())
         )

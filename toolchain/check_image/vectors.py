@@ -23,7 +23,7 @@ class Vectors:
     def __init__(self, elf: Elf, functions: Functions) -> None:
         section = elf.named(".vectors")
         if section is None or len(section.data) < 8:
-            raise BadVectors("there is no section .vectors with a vector table")
+            raise BadVectors("the section .vectors is missing; link with the image.ld of a board")
         words = struct.unpack(f"<{len(section.data) // 4}I", section.data[: len(section.data) // 4 * 4])
         self.stack_top = words[0]
         self.handlers: dict[int, Function] = {}  # by exception number, including Reset
@@ -32,10 +32,10 @@ class Vectors:
                 continue
             function = functions.at(word & ~1)
             if function is None or word & 1 == 0:
-                raise BadVectors(f"vector {number} is {word:#010x}, which is not the address of a function")
+                raise BadVectors(f"vector {number}: {word:#010x} is not the address of a function; name a handler")
             self.handlers[number] = function
         if _RESET not in self.handlers:
-            raise BadVectors("there is no reset handler")
+            raise BadVectors("the vector table has no reset handler; name the function that starts the image")
 
     @property
     def reset(self) -> Function:
@@ -56,7 +56,8 @@ class Vectors:
             chosen = {number for number, handler in left.items() if set(handler.names) & set(names)}
             missing = set(names) - {name for number in chosen for name in left[number].names}
             if missing:
-                raise BadVectors(f"no interrupt's handler is called {', '.join(sorted(missing))}")
+                names_of_missing = ", ".join(sorted(missing))
+                raise BadVectors(f"--level: no interrupt has the handler {names_of_missing}; name another one")
             own.append(Level("+".join(names), [left.pop(number).address for number in sorted(chosen)]))
         return [
             Level("interrupts", _addresses(left)),

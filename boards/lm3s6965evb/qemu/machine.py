@@ -82,7 +82,7 @@ class Machine:
                 preexec_fn=lambda: libc.prctl(_PR_SET_PDEATHSIG, signal.SIGKILL),
             )
         except FileNotFoundError as error:
-            raise Refusal(f"{_PROGRAM} is missing; install the package {_PROGRAM}") from error
+            raise Refusal(f"{_PROGRAM}: the program is missing; install the package {_PROGRAM}") from error
 
     @property
     def carry_within(self) -> float:
@@ -167,7 +167,7 @@ class Machine:
             self._pending_events.append(message)
             message = self._next_message()
         if "error" in message:
-            raise Ended(f"{_PROGRAM} refuses {name}: {message['error']['desc']}")
+            raise Ended(f"{_PROGRAM}: the command {name} fails: {message['error']['desc']}; install QEMU 7.2 or later")
 
     def _word_at(self, address: int) -> int:
         return int(self._test(f"readl {address:#x}").split()[1], 16)
@@ -207,4 +207,7 @@ class Machine:
         lines = self._errors.read().decode(errors="replace").splitlines()
         why = [line for line in lines if line.startswith(_PROGRAM) and "warning" not in line]
         how = f"signal {-status}" if status < 0 else f"status {status}"
-        return f"{_PROGRAM} has ended with {how}" + (f": {why[-1]}" if why else "")
+        if not why:
+            return f"{_PROGRAM}: the emulator has ended with {how}; start it again"
+        cause = why[-1].removeprefix(f"{_PROGRAM}: ")
+        return f"{_PROGRAM}: the emulator has ended with {how}: {cause}; remove the cause and start it again"

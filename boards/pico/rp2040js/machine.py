@@ -59,7 +59,10 @@ class Machine:
 
     def _start(self, descriptors: list[int]) -> subprocess.Popen[bytes]:
         if not _PACKAGES.is_dir():
-            raise Refusal("rp2040js is missing; install it with `toolchain/install-npm tests/rp2040 build/rp2040js`")
+            raise Refusal(
+                "rp2040js: the package is missing; install it with"
+                " `toolchain/install-npm tests/rp2040 build/rp2040js`"
+            )
         libc = ctypes.CDLL(None)
         try:
             # The emulator gets its own session, so that Ctrl-C does not reach it; `end` ends it.
@@ -74,7 +77,7 @@ class Machine:
                 preexec_fn=lambda: libc.prctl(_PR_SET_PDEATHSIG, signal.SIGKILL),
             )
         except FileNotFoundError as error:
-            raise Refusal("node is missing; install the package nodejs") from error
+            raise Refusal("node: the program is missing; install the package nodejs") from error
 
     @property
     def carry_within(self) -> float:
@@ -127,7 +130,9 @@ class Machine:
             raise Ended(self._exit_message())
         state, _, result = reply.rstrip("\n").partition(" ")
         if state != "ok":
-            raise Ended(f"the image performs an operation that an RP2040 rejects: {result}")
+            raise Ended(
+                f"rp2040js: an RP2040 rejects an operation of the image: {result}; name an image of this firmware"
+            )
         return result
 
     def _exit_message(self) -> str:
@@ -135,4 +140,6 @@ class Machine:
         self._errors.seek(0, os.SEEK_SET)
         lines = [line for line in self._errors.read().decode(errors="replace").splitlines() if "Error" in line]
         how = f"signal {-status}" if status < 0 else f"status {status}"
-        return f"node has ended with {how}" + (f": {lines[-1]}" if lines else "")
+        if not lines:
+            return f"node: the emulator has ended with {how}; start it again"
+        return f"node: the emulator has ended with {how}: {lines[-1]}; remove the cause and start it again"

@@ -137,14 +137,16 @@ TEST(QemuRun, ReportsTheErrorMessageOfQemu) {
   const Directory directory;
   const std::string port = std::to_string(free_port());
   const RunningImage other("EX9042D", {"--gdb", port});
-  expect_refusal(directory, {image_of("EX9042D"), "--gdb", port}, {"qemu-system-arm has ended", "in use"}, 1);
+  expect_refusal(directory, {image_of("EX9042D"), "--gdb", port},
+                 {"qemu-system-arm: the emulator has ended", "in use", "start it again"}, 1);
 }
 
 TEST(QemuRun, NamesTheMissingPackage) {
   const Directory directory;
   const std::string path = getenv("PATH");
   setenv("PATH", directory.path().c_str(), 1);
-  expect_refusal(directory, {image_of("EX9042D")}, {"install the package qemu-system-arm"});
+  expect_refusal(directory, {image_of("EX9042D")},
+                 {"qemu-system-arm: the program is missing; install the package qemu-system-arm"});
   setenv("PATH", path.c_str(), 1);
 }
 

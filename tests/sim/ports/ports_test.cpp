@@ -392,7 +392,7 @@ TEST(SerialPort, AMissingUnsuitableOrUsedPortIsRefused) {
   const int holder = open(cable.device().c_str(), O_RDWR | O_NOCTTY | O_CLOEXEC);
   ASSERT_EQ(flock(holder, LOCK_EX | LOCK_NB), 0);
   expect_refused(run({simulator_path(), "EX9042D", "--serial", cable.device()}), "--serial " + cable.device(),
-                 "another program uses it");
+                 "is in use by another program");
   close(holder);
 }
 
