@@ -319,7 +319,7 @@ TEST(LineTallyRegisters, CountDamagedBytesWith16BitsThatWrap) {
   EXPECT_EQ(bench.ask(read_word(0x03, 0x0E)), (std::vector<std::uint8_t>{0x01, 0x03, 2, 0, 4}));
 }
 
-TEST(Statistics, CountsSaturate) {
+TEST(Statistics, ACountStopsAt65535) {
   std::uint16_t count = 0xFFFE;
   count_saturating(count);
   EXPECT_EQ(count, 0xFFFF);

@@ -181,7 +181,7 @@ TEST_F(ModuleTurns, ACommandBehindATimeoutThatCannotBeStoredWaitsForOneAttemptOn
   EXPECT_EQ(writes_, 1U + 1U + 3U + 1U);
 }
 
-TEST(ModuleComesUp, AfterItsMemoryIsRead) {
+TEST(ModuleComesUp, WaitsUntilItsMemoryIsReadAndThenRequestsATurn) {
   Module module(*find_model("EX9043D"));
   module.start(0, Time());
   module.poll_panel(false, Time());

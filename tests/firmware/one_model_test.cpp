@@ -16,7 +16,7 @@ namespace {
 
 EX9000_CONSTINIT hal::Device<NoBoard> untouched_device(kOnlyModel, LineTiming::at);
 
-TEST(OneModel, ADeviceIsMadeByTheCompiler) {
+TEST(OneModel, ADeviceIsInitialisedAtCompileTime) {
   EXPECT_EQ(&untouched_device.module().state().model(), &kOnlyModel);
 }
 

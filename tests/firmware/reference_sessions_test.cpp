@@ -94,7 +94,7 @@ void play_sessions(std::uint64_t wanted, Extensions extensions) {
   EXPECT_GT(behind_expiry, wanted / 1000);
 }
 
-TEST(RandomSessions, TheFirmwareDoesWhatTheReferenceSays) {
+TEST(RandomSessions, TheFirmwareBehavesLikeTheSecondDescription) {
   play_sessions(number_in_environment("EX9000_TRANSACTIONS", 200'000), Extensions::Present);
 }
 

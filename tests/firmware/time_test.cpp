@@ -30,7 +30,9 @@ TEST(Duration, IsEqualOnlyToADurationOfTheSameLength) {
   EXPECT_FALSE(Duration(999) == milliseconds(1));
 }
 
-TEST(Duration, Adds) { EXPECT_EQ((Duration(40) + milliseconds(2)).microseconds(), 2040U); }
+TEST(Duration, ASumHasTheMicrosecondsOfBothDurations) {
+  EXPECT_EQ((Duration(40) + milliseconds(2)).microseconds(), 2040U);
+}
 
 TEST(Time, ReturnsTheMicrosecondsOfItsConstructor) {
   EXPECT_EQ(Time().microseconds(), 0U);
@@ -90,7 +92,7 @@ TEST(Deadline, StaysReachedAcrossTheWrap) {
   EXPECT_TRUE(deadline.reached(Time(0)));
 }
 
-TEST(Deadline, CoversHalfTheRangeAheadAndBack) {
+TEST(Deadline, IsAheadForHalfTheRangeAndReachedForTheOtherHalf) {
   Deadline deadline;
   deadline.set(Time(kHalf));
   EXPECT_FALSE(deadline.reached(Time(0)));
@@ -125,7 +127,7 @@ TEST(Deadline, IsNotReachedOnceItIsDisarmed) {
   EXPECT_FALSE(deadline.reached(Time(1000)));
 }
 
-TEST(Deadline, CanBeSetAgain) {
+TEST(Deadline, IsReachedOnlyAtItsNewPointIfItIsSetAgain) {
   Deadline deadline;
   deadline.set(Time(1000));
   deadline.set(Time(2000));

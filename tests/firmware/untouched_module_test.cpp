@@ -14,7 +14,7 @@ constexpr const Model& kModel = kModels[0];
 EX9000_CONSTINIT Module untouched_module(kModel);
 EX9000_CONSTINIT hal::Device<NoBoard> untouched_device(kModel, LineTiming::at);
 
-TEST(UntouchedModule, IsItsModel) {
+TEST(UntouchedModule, HasTheModelOfItsConstructor) {
   EXPECT_EQ(&untouched_module.state().model(), &kModel);
   EXPECT_EQ(&untouched_device.module().state().model(), &kModel);
 }

@@ -69,7 +69,7 @@ std::string logged(const Frame& frame) {
 
 class LibmodbusRaw : public testing::TestWithParam<Way> {};
 
-TEST_P(LibmodbusRaw, CompletesTheWholeConversation) {
+TEST_P(LibmodbusRaw, GetsEveryExpectedReplyOfTheConversation) {
   using std::chrono::milliseconds;
   TwoModules modules(GetParam());
   LibmodbusMaster master(modules.tty(), GetParam().baud);

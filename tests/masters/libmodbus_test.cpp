@@ -65,7 +65,7 @@ class Libmodbus : public testing::TestWithParam<Way> {
   }
 };
 
-TEST_P(Libmodbus, PollsBothModulesAlternately) {
+TEST_P(Libmodbus, GetsTheRepliesOfTwoModulesThatItPollsInTurn) {
   for (int i = 0; i < 50; ++i) {
     const int channel = i % 13;
     ASSERT_EQ(modbus_write_bit(master_.at(kOutputs), channel, 1), 1) << modbus_strerror(errno);
@@ -75,7 +75,7 @@ TEST_P(Libmodbus, PollsBothModulesAlternately) {
   }
 }
 
-TEST_P(Libmodbus, ReadsAndWritesValues) {
+TEST_P(Libmodbus, ReadsBackTheValuesThatItHasWritten) {
   const Bits pattern{1, 0, 1, 1, 0, 0, 1, 0, 1, 1, 1, 0, 1};
   EXPECT_EQ(write_coils(kOutputs, 0, pattern), 13);
   EXPECT_EQ(input_registers(kInputs, 0, 8), Words(8, 0));
@@ -132,7 +132,7 @@ TEST_P(Libmodbus, BroadcastsAndHostOkHaveNoReply) {
   }
 }
 
-TEST_P(Libmodbus, GetsTheExpectedExceptions) {
+TEST_P(Libmodbus, RejectedRequestsGetTheirExceptionAndChangeNothing) {
   Bits bits(2000);
   Words words(125);
   struct Refused {

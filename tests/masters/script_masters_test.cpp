@@ -53,19 +53,19 @@ class ScriptMaster : public testing::TestWithParam<Master> {
   }
 };
 
-TEST_P(ScriptMaster, PlaysTheConversationOnThePseudoTerminal) {
+TEST_P(ScriptMaster, GetsEveryExpectedReplyOnThePseudoTerminal) {
   SimulatorProcess simulator(modules("9600"));
   expect_to_pass({"--tty", simulator.tty(), "--baud", "9600"});
 }
 
-TEST_P(ScriptMaster, PlaysTheConversationOverTcp) {
+TEST_P(ScriptMaster, GetsEveryExpectedReplyOverTcp) {
   std::vector<std::string> arguments = modules("115200");
   arguments.insert(arguments.end(), {"--tcp", "0"});
   SimulatorProcess simulator(arguments);
   expect_to_pass({"--tcp", "127.0.0.1:" + std::to_string(simulator.tcp_port()), "--baud", "115200"});
 }
 
-TEST_P(ScriptMaster, PlaysTheConversationOnAnInstantLine) {
+TEST_P(ScriptMaster, GetsEveryExpectedReplyOnAnInstantLine) {
   std::vector<std::string> arguments = modules("9600");
   arguments.insert(arguments.end(), {"--line", "instant"});
   SimulatorProcess simulator(arguments);

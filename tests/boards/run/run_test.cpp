@@ -22,7 +22,7 @@ constexpr std::size_t kMemorySize = EX9000_MEMORY_SIZE;
 
 // --- masters ---
 
-TEST(Run, MbpollReadsAndWrites) {
+TEST(Run, MbpollReadsBackTheCoilThatItHasWritten) {
   const RunningImage image("EX9042D-M");
   EXPECT_TRUE(has(image.mbpoll({"-a", "1", "-t", "0", "-r", "3"}, {"1"}).output, "Written 1 references."));
   EXPECT_TRUE(has(image.mbpoll({"-a", "1", "-t", "0", "-r", "1", "-c", "13"}).output,
@@ -30,7 +30,7 @@ TEST(Run, MbpollReadsAndWrites) {
                   "[9]: \t0\n[10]: \t0\n[11]: \t0\n[12]: \t0\n[13]: \t0\n"));
 }
 
-TEST(Run, LibmodbusReadsAndWrites) {
+TEST(Run, LibmodbusReadsBackTheCoilsThatItHasWritten) {
   const RunningImage image("EX9042D-M");
   LibmodbusMaster master(image.tty(), 9600);
   master.wait_for_replies(static_cast<unsigned>(std::chrono::milliseconds(kMasterReplyTimeout).count()));

@@ -26,7 +26,7 @@ const std::vector<FrameBytes> kWorkedFrames{
     {0x01, 0x11, 0x08, 0x90, 0x42, 0xFF, 0x39, 0x30, 0x34, 0x32, 0x4D, 0x4D, 0x71},
 };
 
-TEST(Crc16, StartsAtFFFF) { EXPECT_EQ(Crc16().value(), 0xFFFF); }
+TEST(Crc16, OfNoBytesIsFFFF) { EXPECT_EQ(Crc16().value(), 0xFFFF); }
 
 TEST(Crc16, TheCheckValueIs4B37) {
   Crc16 crc;

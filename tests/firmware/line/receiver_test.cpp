@@ -42,7 +42,7 @@ TEST_F(ReceiverTest, EveryHostOkIsCounted) {
   }
 }
 
-TEST_F(ReceiverTest, NoOtherFrameIsAHostOk) {
+TEST_F(ReceiverTest, AsciiFramesOtherThanAHostOkAreNotCountedAsOne) {
   listen(Protocol::Ascii);
   text("$01M\r$02M\r#**\r~**X\r");
   EXPECT_EQ(receiver_.host_oks().received(), 0);
@@ -104,14 +104,14 @@ TEST_F(ReceiverTest, AHostOkAcrossTheWrapOfTheClockKeepsItsTime) {
 
 // --- protocol, checksum, address ---
 
-TEST_F(ReceiverTest, ModbusIgnoresAscii) {
+TEST_F(ReceiverTest, AModuleWithModbusIgnoresAsciiCommands) {
   listen(Protocol::ModbusRtu);
   text("$01M\r");
   silence();
   EXPECT_FALSE(took_frame());
 }
 
-TEST_F(ReceiverTest, AsciiIgnoresModbus) {
+TEST_F(ReceiverTest, AModuleWithAsciiIgnoresModbusFrames) {
   listen(Protocol::Ascii);
   frame(kChannel0On);
   byte('\r');

@@ -245,7 +245,7 @@ TEST_F(RtuAssemblerTest, OnlyOneTurnAround00IsRemoved) {
   EXPECT_TRUE(wire_.frames.empty());
 }
 
-TEST_F(RtuAssemblerTest, NoOtherByteIsRemoved) {
+TEST_F(RtuAssemblerTest, AByteOtherThan00BeforeAFrameIsNotRemoved) {
   for (unsigned first = 1; first < 256; ++first) {
     EXPECT_EQ(verdict_of(behind(static_cast<std::uint8_t>(first), kChannel0On)), Verdict::BadCheck) << first;
   }
@@ -282,7 +282,7 @@ TEST_F(RtuAssemblerTest, ReadingRegister3038WithQuantity0Or1IsAHostOk) {
             Verdict::HostOk);  // wire.md, worked example
 }
 
-TEST_F(RtuAssemblerTest, NothingElseIsAHostOk) {
+TEST_F(RtuAssemblerTest, AnotherFunctionRegisterQuantityOrLengthIsNoHostOk) {
   const std::vector<FrameBytes> others{
       {0x01, 0x03, 0x30, 0x38, 0x00, 0x02},                    // quantity
       {0x01, 0x03, 0x30, 0x38, 0x01, 0x00},                    // quantity 256

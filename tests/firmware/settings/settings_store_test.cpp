@@ -170,7 +170,7 @@ TEST(SettingsStore, AfterAnUnreadableCopyANoisyReadOfTheOtherIsRetried) {
   EXPECT_TRUE(store.stored() == numbered(6));
 }
 
-TEST(SettingsStore, EachCopyHasThreeReads) {
+TEST(SettingsStore, EachCopyIsReadUpToThreeTimesAfterABadOneToo) {
   FakeMemory memory;
   put(memory, 0, numbered(5), 8);
   corrupt(memory, 0);

@@ -264,7 +264,7 @@ TEST(SettingsChange, OfOneFieldChangesThatFieldAlone) {
   }
 }
 
-TEST(SettingsChange, OfOneFieldMakesADifference) {
+TEST(SettingsChange, OfAnyFieldMakesTheSettingsUnequal) {
   const Settings factory = Settings::factory(model("EX9042D-M"));
   for (const FieldChange& each : changes_of_each_field(factory)) {
     EXPECT_TRUE(each.change.applied_to(factory) != factory) << each.field;

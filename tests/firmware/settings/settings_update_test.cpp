@@ -57,7 +57,7 @@ TEST(SettingsAfterAnUpdate, TheFirstStoreMakesANewCopyAndInvalidatesTheOldOnes) 
   expect_no_old_copy_counts(memory);
 }
 
-TEST(SettingsAfterAnUpdate, TheSecondStoreIsLikeAnyOther) {
+TEST(SettingsAfterAnUpdate, TheSecondStoreWritesOnlyTheOtherPlace) {
   FakeMemory memory = updated();
   EXPECT_TRUE(Boot(memory).save(numbered(9)));
   memory.writes.clear();

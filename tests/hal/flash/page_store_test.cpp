@@ -45,7 +45,7 @@ TEST(PageStore, KeepsPagesThroughAReset) {
 }
 
 /// Flashes in the field hold these bytes, so a later firmware must read them.
-TEST(PageStore, ReadsTheBytesThatItHasAlwaysWritten) {
+TEST(PageStore, ReadsAndWritesTheSameBytesAsEarlierFirmware) {
   constexpr std::array<std::uint8_t, 8> kMarkOfAnErasedSector{0x45, 0x58, 0x39, 0xC6, 0xA7, 0x9B, 0x53, 0x1D};
   // Sequence 7, page 3, bytes 0 to 31, and their CRC-32.
   std::vector<std::uint8_t> entry{7, 0, 0, 0, 3};
@@ -109,7 +109,7 @@ TEST(PageStore, AWriteOfAPartOfAPageKeepsTheRest) {
   EXPECT_EQ(run.page(6), last);
 }
 
-TEST(PageStore, AReadMayCrossPages) {
+TEST(PageStore, AReadAcrossPagesReturnsTheBytesOfEach) {
   FlashChip chip;
   Session run(chip);
   run.settle();

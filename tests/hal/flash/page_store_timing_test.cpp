@@ -72,7 +72,7 @@ TEST(PageStoreTiming, AJobSuspendsAnEraseInAnyPhase) {
   }
 }
 
-TEST(PageStoreTiming, AWriteMayHaveToOpenASectorDuringAnErase) {
+TEST(PageStoreTiming, AWriteThatOpensASectorDuringAnEraseEndsInTime) {
   std::uint64_t longest = 0;
   FlashChip chip = settled(FlashChip::kLongest);
   Session run(chip);

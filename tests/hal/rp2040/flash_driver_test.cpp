@@ -203,7 +203,7 @@ TEST_F(FlashDriver, ReadsWhatItHasProgrammed) {
   EXPECT_EQ(read(kPlace + 4, 1), std::vector<std::uint8_t>{0xFF});
 }
 
-TEST_F(FlashDriver, IsNotBusyBecauseWritesAreEnabled) {
+TEST_F(FlashDriver, AFlashThatHasWritesEnabledIsNotBusy) {
   ssi_.chip.write_enabled = true;
   EXPECT_FALSE(Flash::busy());
 }

@@ -198,7 +198,7 @@ TEST(Arguments, TwoModulesCannotShareAnEepromFile) {
   EXPECT_EQ(accepted({"EX9042D,eeprom=a", "EX9052D@02,eeprom=b"}).modules[1].eeprom, "b");
 }
 
-TEST(Arguments, APathHasOneUse) {
+TEST(Arguments, TwoOptionsCannotUseTheSamePath) {
   expect_error({"EX9042D,eeprom=a", "--pty", "b", "--control", "./b"},
                "--pty: ", "b: has another use too; name another path");
   expect_error({"EX9042D,eeprom=a", "--control", "a"},

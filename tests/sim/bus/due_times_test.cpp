@@ -19,7 +19,7 @@ std::vector<std::size_t> due(DueTimes& times, VirtualTime now) {
 
 using Stations = std::vector<std::size_t>;
 
-TEST(DueTimes, AreNeverWithoutStations) {
+TEST(DueTimes, WithoutStationsNothingIsEverDue) {
   DueTimes times;
   EXPECT_EQ(times.next(), kNever);
   EXPECT_EQ(due(times, VirtualTime(1)), Stations());

@@ -40,7 +40,7 @@ std::string refusal(const std::string& path) {
   return "";
 }
 
-TEST(CaptureFile, IsCreatedAndAppendedTo) {
+TEST(CaptureFile, BeginCreatesItAndEachBlockIsAppended) {
   const Directory directory;
   CaptureFile file(directory / "a", kPlace);
   file.begin();

@@ -44,7 +44,7 @@ TEST(Pcapng, APacketHasItsInterfaceTimeAndDirection) {
             "02000400 02000000 00000000 34000000");
 }
 
-TEST(Pcapng, APacketMayHaveAComment) {
+TEST(Pcapng, ACommentIsAnOptionOfItsPacket) {
   pcapng::EnhancedPacket packet;
   packet.comment = "bad";
   EXPECT_EQ(hex(pcapng::enhanced_packet(packet)),
@@ -65,7 +65,7 @@ TEST(UpperPdu, NamesTheDissectorAndThePorts) {
             "000C0008 6D627274 75000000 00180004 00000002 00190004 00001234 001A0004 00005678 00000000");
 }
 
-TEST(UpperPdu, MayNameTheProtocol) {
+TEST(UpperPdu, ContainsTheNameOfTheProtocolIfThereIsOne) {
   EXPECT_EQ(
       hex(UpperPdu{"data", "DCON", 1, 2}.header()),
       "000C0004 64617461 00180004 00000002 00190004 00000001 001A0004 00000002 00210004 44434F4E 00000000");

@@ -89,7 +89,7 @@ TEST(ControlStatus, ShowsTheExtensionsThatAreSet) {
   EXPECT_TRUE(bench.status_has("fed-by=requests response-delay=30ms inverted=00A1"));
 }
 
-TEST(ControlView, TimersAreWhatIsLeftOfTimedOutputs) {
+TEST(ControlView, TimersReadsWhatIsLeftOfEachTimedOutput) {
   ControlBench bench("EX9063D");
   EXPECT_EQ(bench.tell("1 timers"), "ok 0 0 0");
   bench.send("~01X02810003\r");  // output 1 for 0.3 s; the request takes 14 ms
@@ -101,7 +101,7 @@ TEST(ControlView, TimersAreWhatIsLeftOfTimedOutputs) {
   EXPECT_EQ(bench.tell("1 timers"), "error: the module has no power; switch it on with 'power on'");
 }
 
-TEST(ControlView, FiltersAreThoseOfTheInputs) {
+TEST(ControlView, FiltersReadsTheFilterOfEachInput) {
   ControlBench bench("EX9060D");
   ASSERT_EQ(bench.ask("~01X02400014"), "!01");
   ASSERT_EQ(bench.ask("~01X024307D0"), "!01");

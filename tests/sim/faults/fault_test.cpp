@@ -88,21 +88,21 @@ TEST(Fault, TheUsualFaultsAreOneOfEachKind) {
 
 // --- schedules ---
 
-TEST(FaultSchedule, MayBeATime) {
+TEST(FaultSchedule, AtIsReadWithItsTimeAndNoDuration) {
   const Schedule schedule = parse_fault("gone at 12.5s").schedule;
   EXPECT_EQ(schedule.when, When::At);
   EXPECT_EQ(schedule.time, 12'500ms);
   EXPECT_FALSE(schedule.lasts);
 }
 
-TEST(FaultSchedule, MayBeAPeriod) {
+TEST(FaultSchedule, EveryIsReadWithItsPeriodAndDuration) {
   const Schedule schedule = parse_fault("foreign-traffic 00 every 5s").schedule;
   EXPECT_EQ(schedule.when, When::EveryTime);
   EXPECT_EQ(schedule.time, 5s);
   EXPECT_EQ(parse_fault("gone every 5s for 4s").schedule.lasts, 4s);
 }
 
-TEST(FaultSchedule, MayDependOnReplies) {
+TEST(FaultSchedule, EveryNthReplyAndAProbabilityAreReadAsSchedulesOfReplies) {
   EXPECT_EQ(parse_fault("lost-reply every reply").schedule.when, When::EveryReply);
   EXPECT_EQ(parse_fault("lost-reply every reply").schedule.count, 1U);
   for (const auto& [word, count] : std::vector<std::pair<std::string, std::uint64_t>>{
@@ -118,7 +118,7 @@ TEST(FaultSchedule, MayDependOnReplies) {
   EXPECT_TRUE(probable.of_replies());
 }
 
-TEST(FaultSchedule, MayDependOnWrites) {
+TEST(FaultSchedule, AfterWritesIsReadWithItsNumber) {
   EXPECT_EQ(parse_fault("power-cut after 3 writes").schedule.when, When::AfterWrites);
   EXPECT_EQ(parse_fault("power-cut after 3 writes").schedule.count, 3U);
   EXPECT_EQ(parse_fault("power-cut after 1 write").schedule.count, 1U);

@@ -80,11 +80,11 @@ TEST(LooksLikeDcon, IsFalseForAllOtherFrames) {
 
 // --- text for people ---
 
-TEST(Shown, DconIsText) { EXPECT_EQ(shown(dcon("$01M\r")), "$01M\\r"); }
+TEST(Shown, DconFramesAreShownAsText) { EXPECT_EQ(shown(dcon("$01M\r")), "$01M\\r"); }
 
-TEST(Shown, DconWithoutACarriageReturnIsText) { EXPECT_EQ(shown(dcon("$01M")), "$01M"); }
+TEST(Shown, DconFramesWithoutACarriageReturnAreShownAsText) { EXPECT_EQ(shown(dcon("$01M")), "$01M"); }
 
-TEST(Shown, AllOtherBytesAreHex) {
+TEST(Shown, AllOtherFramesAreShownInHex) {
   EXPECT_EQ(shown({0x01, 0x05, 0x00, 0x00, 0xFF, 0x00, 0x8C, 0x3A}), "01 05 00 00 FF 00 8C 3A");
   EXPECT_EQ(shown({0x00}), "00");
   EXPECT_EQ(shown({}), "");

@@ -59,7 +59,7 @@ TEST(BusLog, ReportsAParityErrorOfAChangedByte) {
             std::string::npos);
 }
 
-TEST(TextLog, AFrameIsALine) {
+TEST(TextLog, AFrameIsPrintedOnOneLine) {
   EXPECT_EQ(text_of(frame_of(0, with_crc({1, 5, 0, 2, 0xFF, 0}))),
             "   12.345679  > master  01 05 00 02 FF 00 2D FA  ; 01: Write Single Coil 0002 = FF00, outputs|");
   EXPECT_EQ(text_of(dcon(1, ">0004\r")), "   12.345679  < 01 EX9042D-M  >0004\\r  ; reply|");
@@ -85,7 +85,7 @@ TEST(TextLog, ChangesByNoiseAreReportedWithTheMeaning) {
             "   12.345679  < 01 EX9042D-M  01 02 03 04  ; noise: byte 3: 03 instead of 07; wrong CRC|");
 }
 
-TEST(TextLog, ANoteIsALineToo) {
+TEST(TextLog, ANoteIsPrintedOnOneLine) {
   std::string printed;
   TextLog(names(), [&printed](const std::string& line) { printed = line; }).note(kBegan, "a remark");
   EXPECT_EQ(printed, "   12.345679  - a remark");
@@ -101,7 +101,7 @@ TEST(JsonLog, AFrameIsAnObjectWithItsKeysInOrder) {
             R"("meaning":"01: Write Single Coil 0002 = FF00, outputs","collided":false})");
 }
 
-TEST(JsonLog, DconIsTextAsWell) {
+TEST(JsonLog, ADconFrameHasItsTextInAdditionToItsBytes) {
   EXPECT_EQ(json_line_of(dcon(1, "!01\"\\\r")),
             R"({"time":12.345678901,"line":"pump","from":"01 EX9042D-M","bytes":"213031225C0D",)"
             R"("text":"!01\"\\\r","meaning":"reply","collided":false})");

@@ -38,7 +38,7 @@ std::string failure_of(const std::string& steps, const sim::Setup& setup = two_l
   return play(load(directory / "steps.txt").front(), target).failure;
 }
 
-TEST(Scenario, CommunicatesWithTheModulesOfALine) {
+TEST(Scenario, RequestsGetTheRepliesOfTheModulesOfALine) {
   EXPECT_EQ(failure_of("> $01M\n< !019042D\n> $02M\n< !029052\n> $0AM\nsilence\n"), "");
 }
 
@@ -64,7 +64,7 @@ TEST(Scenario, AllLinesHaveTheSameTime) {
 }
 
 // At 9600 baud, the first byte of the reply ends 2.1 ms after the request if the reply is not late.
-TEST(Scenario, SilenceIsThatOf250ms) {
+TEST(Scenario, SilencePassesIfNoByteArrivesFor250ms) {
   EXPECT_NE(failure_of("fault late-reply 247500us\n> $01M\nsilence\n"), "");
   EXPECT_EQ(failure_of("fault late-reply 248500us\n> $01M\nsilence\n< !019042D\n"), "");
 }

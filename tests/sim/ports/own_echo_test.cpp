@@ -47,7 +47,7 @@ TEST(OwnEcho, IsRecognizedIfABusyHostReadsItLate) {
   EXPECT_EQ(adapter.echo_in({1, 2, 3}, milliseconds(10'000)), 3U);
 }
 
-TEST(OwnEcho, OtherBytesEndIt) {
+TEST(OwnEcho, AByteThatDiffersFromTheSentOneEndsTheEcho) {
   Adapter adapter;
   adapter.sends({1, 2, 3}, milliseconds(0));
   EXPECT_EQ(adapter.echo_in({1, 9}, milliseconds(5)), 1U);

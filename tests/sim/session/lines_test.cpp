@@ -227,7 +227,7 @@ TEST(Lines, RunOnAnyNumberOfThreadsWithLogCaptureAndCommands) {
   }
 }
 
-TEST(Lines, OfTheExampleBusFileStart) {
+TEST(Lines, OfTheExampleBusFileStartAndTheirModulesReply) {
   std::string example = run({simulator_path(), "--example"}).output;
   const std::string port = "127.0.0.1:5020";
   ASSERT_TRUE(has(example, port));
@@ -340,7 +340,7 @@ TEST(Lines, AnErrorInABusFileNamesTheFileTheLineNumberAndTheKey) {
 
 // --- one line on the command line ---
 
-TEST(LineOfTheCommandLine, HasFaultsAndInputPrograms) {
+TEST(LineOfTheCommandLine, RunsTheFaultsAndInputProgramsOfItsOptions) {
   SimulatorProcess simulator({"EX9042D@01", "EX9052D@02", "--line", "instant", "--control", "control",
                               "--input", "2 5 square 2ms", "--fault", "1 late-reply 20ms", "--fault",
                               "2 gone at 1h"});

@@ -68,7 +68,7 @@ TEST(FaceText, HasNoLineOf80OrMoreCharacters) {
   }
 }
 
-TEST(FaceText, MayHaveRoundLamps) {
+TEST(FaceText, ShowsOutputsAsRoundLampsIfRequested) {
   ModuleBench bench("EX9060D");
   ASSERT_EQ(bench.ask("@011"), ">");
   EXPECT_EQ(shown(bench, kRoundLamps)[2], "           ●  ○  ○  ○");
