@@ -144,9 +144,10 @@ Message message_of(const RecentTraffic::Entry& entry, std::uint64_t number, std:
   return message;
 }
 
-std::optional<PageRequest> parse_page_request(const std::string& text) {
+Message message_in(const std::string& text) { return Message::parse(text, nullptr, false); }
+
+std::optional<PageRequest> parse_page_request(const Message& message) {
   constexpr std::size_t kLongest = 1000;
-  const Message message = Message::parse(text, nullptr, false);
   if (!message.is_object()) {
     return std::nullopt;
   }

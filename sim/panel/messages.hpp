@@ -32,16 +32,18 @@ Message message_of(const std::vector<Faults::Info>& faults, std::size_t first);
 /// station with a higher number.
 Message message_of(const RecentTraffic::Entry& entry, std::uint64_t number, std::size_t modules);
 
-/// A request of the page.
+/// A request of the page to carry out a command.
 struct PageRequest {
   std::uint64_t id = 0;             ///< chosen by the page, for the reply
   std::string command;              ///< a command of the control socket
   std::optional<std::string> undo;  ///< carried out if the page disconnects before it sends this command
 };
 
-/// Returns nullopt if `text` is not a request.
-std::optional<PageRequest> parse_page_request(const std::string& text);
+/// Returns nullopt if `message` is not a request.
+std::optional<PageRequest> parse_page_request(const Message& message);
 
+/// Returns the message in `text`; a message that is no object if `text` is not JSON.
+Message message_in(const std::string& text);
 /// Returns the text to send over the socket; invalid UTF-8 is replaced.
 std::string text_of(const Message& message);
 

@@ -5,12 +5,14 @@
 #include <optional>
 #include <random>
 #include <set>
+#include <stdexcept>
 #include <string_view>
 #include <utility>
 
 #include "firmware/model/model.hpp"
 #include "sim/module_view/face.hpp"
 #include "sim/panel/change_tracked.hpp"
+#include "sim/panel/console.hpp"
 #include "sim/panel/messages.hpp"
 #include "sim/panel/recent_traffic.hpp"
 #include "sim/text/values.hpp"
@@ -28,6 +30,9 @@ constexpr std::size_t kFewestFrames = 20;
 
 /// The limit for actions that a page holds active; only a faulty page exceeds it.
 constexpr std::size_t kMostHeld = 256;
+
+/// The limit for requests of the console of one page that wait for the line.
+constexpr std::size_t kMostAsked = 16;
 
 /// The longest time between two messages to a page. Without messages, the page cannot distinguish an idle
 /// simulator from a stopped one.
@@ -95,7 +100,11 @@ class Panel::Viewer final : public PanelViewer {
   }
 
   bool ask(const std::string& text) override {
-    const std::optional<PageRequest> request = parse_page_request(text);
+    const Message message = message_in(text);
+    if (const std::optional<ConsoleRequest> request = parse_console_request(message)) {
+      return ask_line(*request);
+    }
+    const std::optional<PageRequest> request = parse_page_request(message);
     if (!request || (request->undo && held_.size() >= kMostHeld)) {
       return false;
     }
@@ -116,6 +125,9 @@ class Panel::Viewer final : public PanelViewer {
     }
     if (reply_) {
       message["reply"] = *std::exchange(reply_, std::nullopt);
+    }
+    if (!answers_.empty()) {
+      message["answers"] = std::exchange(answers_, Message::array());
     }
     Message modules = Message::array();
     Message lines = Message::array();
@@ -154,6 +166,33 @@ class Panel::Viewer final : public PanelViewer {
   }
 
  private:
+  /// Sends a request of the console. Its answer follows in a later message.
+  bool ask_line(const ConsoleRequest& request) {
+    if (request.line >= state().lines.size()) {
+      return false;
+    }
+    if (asked_ >= kMostAsked) {
+      answers_.push_back(
+          rejection_of(request, "too many requests wait for the line; wait for their replies"));
+      return true;
+    }
+    try {
+      RequestQueue::Request frame = frame_of(request);
+      frame.owner = lives_;
+      frame.done = [lives = std::weak_ptr<Viewer*>(lives_), request](const RequestQueue::Reply& reply) {
+        if (const auto viewer = lives.lock()) {
+          --(*viewer)->asked_;
+          (*viewer)->answers_.push_back(answer_to(request, reply));
+        }
+      };
+      ++asked_;
+      panel_.ask_(request.line, std::move(frame));
+    } catch (const std::invalid_argument& error) {
+      answers_.push_back(rejection_of(request, error.what()));
+    }
+    return true;
+  }
+
   [[nodiscard]] std::string carry_out(const std::string& command) const {
     const Words words = words_of(command);
     return !words.empty() && words[0] == "quit"
@@ -234,12 +273,16 @@ class Panel::Viewer final : public PanelViewer {
   std::uint64_t sent_look_ = 0;
   std::vector<std::uint64_t> next_entries_;  ///< number of the next entry, for each line
   std::optional<Message> reply_;
+  Message answers_ = Message::array();  ///< to requests of the console
+  std::size_t asked_ = 0;               ///< requests of the console without an answer
+  std::shared_ptr<Viewer*> lives_ = std::make_shared<Viewer*>(this);
   std::set<std::string> held_;  ///< commands that undo the actions that the page holds active
   std::chrono::steady_clock::time_point last_sent_at_;
 };
 
-Panel::Panel(CarryOut carry_out, double speed, WallClock wall_clock)
+Panel::Panel(CarryOut carry_out, Ask ask, double speed, WallClock wall_clock)
     : carry_out_(std::move(carry_out)),
+      ask_(std::move(ask)),
       wall_clock_(std::move(wall_clock)),
       state_(std::make_unique<State>()) {
   state_->speed = speed;

@@ -21,11 +21,15 @@ class Panel final : public PanelSource {
  public:
   using CarryOut = std::function<Control::Reply(const std::string& command)>;
 
+  /// Sends a request on a line; `line` is its position, from 0. `done` must be called on the thread of this
+  /// object.
+  using Ask = std::function<void(std::size_t line, RequestQueue::Request request)>;
+
   using WallClock = std::function<std::chrono::steady_clock::time_point()>;
 
   /// `speed` is the ratio of the lines' time to the wall clock. `wall_clock` is the clock for the keep-alive
   /// messages to idle pages.
-  Panel(CarryOut carry_out, double speed, WallClock wall_clock = std::chrono::steady_clock::now);
+  Panel(CarryOut carry_out, Ask ask, double speed, WallClock wall_clock = std::chrono::steady_clock::now);
   ~Panel() override;
   Panel(const Panel&) = delete;
   Panel& operator=(const Panel&) = delete;
@@ -48,6 +52,7 @@ class Panel final : public PanelSource {
   class Viewer;
 
   CarryOut carry_out_;
+  Ask ask_;
   WallClock wall_clock_;
   std::unique_ptr<State> state_;
 };

@@ -13,6 +13,7 @@
 #include <string_view>
 #include <utility>
 
+#include "sim/describe/formats.hpp"
 #include "sim/panel/loopback.hpp"
 #include "sim/panel/page_files.hpp"
 #include "sim/ports/listening.hpp"
@@ -185,6 +186,8 @@ class PanelServer::Listener::Client : public std::enable_shared_from_this<Client
       answer(http::status::upgrade_required, "text/plain", "this path requires a WebSocket\n");
     } else if (live) {
       accept_page(request);
+    } else if (request.target() == "/models.json") {
+      answer(http::status::ok, "application/json", json_of(all_models()));
     } else if (const PageFile* file = page_file(view_of(request.target()))) {
       answer(http::status::ok, file->type, file->content);
     } else {

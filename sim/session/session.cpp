@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <boost/asio/dispatch.hpp>
+#include <boost/asio/post.hpp>
 #include <chrono>
 #include <thread>
 #include <utility>
@@ -84,8 +85,10 @@ void Session::open_panel() {
   if (!setup_.panel) {
     return;
   }
-  panel_ = std::make_unique<Panel>([this](const std::string& command) { return carry_out(command); },
-                                   setup_.speed.factor);
+  panel_ = std::make_unique<Panel>(
+      [this](const std::string& command) { return carry_out(command); },
+      [this](std::size_t line, RequestQueue::Request request) { ask(line, std::move(request)); },
+      setup_.speed.factor);
   for (std::size_t i = 0; i < lines_.size(); ++i) {
     RunningLine& running = *lines_[i];
     panel_->add_line(running.introduced(), running.line(), [&running] { return running.pacer().present(); });
@@ -160,6 +163,16 @@ Control::Reply Session::carry_out(const std::string& command) {
   }
   threads_.pause_for(action);
   return reply;
+}
+
+/// Adds a request to the queue of a line. The line's thread finds the reply, and the main thread reports it.
+void Session::ask(std::size_t line, RequestQueue::Request request) {
+  request.done = [this, done = std::move(request.done)](const RequestQueue::Reply& reply) {
+    boost::asio::post(io_, [done, reply] { done(reply); });
+  };
+  RunningLine& running = *lines_[line];
+  threads_.pause_for(
+      [&] { running.pacer().now([&] { running.line().requests().ask(std::move(request)); }); });
 }
 
 void Session::answer(const std::string& command, const ControlSocket::Answer& answer) {

@@ -68,6 +68,7 @@ class Session : private PanelSource {
   std::unique_ptr<PanelViewer> viewer() override;
 
   Control::Reply carry_out(const std::string& command);
+  void ask(std::size_t line, RequestQueue::Request request);
   void answer(const std::string& command, const ControlSocket::Answer& answer);
   void start_stepped();
 

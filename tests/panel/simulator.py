@@ -49,7 +49,7 @@ class Simulator:
                 break
         self.address = re.match(r"panel: (\S+)\n", greeting).group(1)
         self.port = urllib.parse.urlsplit(self.address).port
-        self.lines = [int(port) for port in re.findall(r"TCP 127\.0\.0\.1:(\d+)", greeting)]
+        self.lines = [int(port) for port in re.findall(r"  TCP 127\.0\.0\.1:(\d+)", greeting)]
 
     def kill(self):
         self.process.kill()

@@ -67,14 +67,19 @@ export class Live {
 
   /// Sends a command of the control socket; resolves to {ok, text}. The simulator carries out the command `undo` if the
   /// page disconnects before it has sent `undo`.
-  tell(command, undo) {
+  tell(command, undo) { return this.send({do: command, undo}); }
+
+  /// Sends a request {line, address, ask} on a line; resolves to {ok, text, meaning, delay}.
+  ask(request) { return this.send(request); }
+
+  send(message) {
     if (this.socket?.readyState !== WebSocket.OPEN) {
       return Promise.resolve({ok: false, text: "error: there is no connection to the simulator"});
     }
     const id = ++this.asked;
     return new Promise((resolve) => {
       this.waiting.set(id, resolve);
-      this.socket.send(JSON.stringify({id, do: command, undo}));
+      this.socket.send(JSON.stringify({id, ...message}));
     });
   }
 }

@@ -1,5 +1,6 @@
 // The panel: one page that shows the simulator's messages as they arrive.
 
+import {Console} from "/console.js";
 import {setText} from "/element.js";
 import {Faults} from "/faults.js";
 import {LineView, mostUnfolded} from "/line_view.js";
@@ -64,7 +65,9 @@ function begin(hello) {
     const faults = new Faults(line, {several, unfolded, usual: hello.usualFaults}, modules,
       (command) => live.tell(command));
     const view = several ? new LineView(line, modules, count, unfolded, (position) => states[position], plateOf) : null;
-    return {...line, modules, faults, view};
+    const console = new Console(line, {several, index}, modules, (position) => states[position],
+      (request) => live.ask(request));
+    return {...line, modules, faults, view, console};
   });
   at("finder").hidden = !several;
   at("find").value = "";
@@ -72,6 +75,7 @@ function begin(hello) {
   at("plates").replaceChildren(...(several ? lines.map(({view}) => view.element)
     : states.map((_, position) => plateOf(position).element)));
   at("faultlines").replaceChildren(...lines.map((line) => line.faults.element));
+  at("consoles").replaceChildren(...lines.map((line) => line.console.element));
   timeline.begin(lines, (line, station) => {
     if (station === undefined) {
       return several ? lines[line].name : "line";
@@ -87,9 +91,9 @@ function find() {
   const words = at("find").value.toLowerCase().split(/\s+/).filter(Boolean);
   const found = lines.map(({view}) => view.matches(words));
   const total = found.reduce((sum, modules) => sum + modules.length, 0);
-  lines.forEach(({view, faults}, index) => {
+  lines.forEach(({view, faults, console}, index) => {
     view.show(found[index]);
-    faults.element.hidden = !found[index].length;
+    faults.element.hidden = console.element.hidden = !found[index].length;
     view.unfold(found[index].length > 0 && total <= mostUnfolded);
   });
   setText(at("found"), words.length ? `${total} modules found` : "");
@@ -107,6 +111,9 @@ function show(message) {
   }
   if (message.frames) {
     timeline.add(message.frames);
+  }
+  for (const answer of message.answers ?? []) {
+    live.answer(answer);
   }
   if (message.reply) {
     live.answer(message.reply);
@@ -150,6 +157,7 @@ function lost(why) {
   setText(at("lost"), why ? reasons[why] : "");
   if (why) {
     plates.forEach((plate) => plate.lost());
+    lines.forEach(({console}) => console.lost());
   }
 }
 

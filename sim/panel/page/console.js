@@ -1,0 +1,152 @@
+// The console of a line: sends a request to a module, once or repeatedly, and shows the replies.
+
+import {hexByte, make} from "/element.js";
+
+/// The number of replies that stay visible.
+const mostReplies = 50;
+const intervals = [["200", "0.2 s"], ["1000", "1 s"], ["5000", "5 s"]];
+const everyModule = "all";
+/// The largest numbers of bits and of registers in one request.
+const mostBits = 2000;
+const mostWords = 125;
+
+let models = null;
+
+/// Returns the description of each model by its name, as `ex9000-sim describe --format json` prints it.
+function described() {
+  models ??= fetch("/models.json").then((response) => response.json()).then((all) =>
+    new Map(all.models.map((model) => [model.model, model])));
+  return models;
+}
+
+const hexWord = (value) => value.toString(16).toUpperCase().padStart(4, "0");
+
+/// Returns {label, request} for each access to the registers of a model.
+function modbusItems(model) {
+  return model.modbus_registers.flatMap(({first, last, functions, meaning}) => functions.flatMap((code) => {
+    const span = first === last ? hexWord(first) : `${hexWord(first)}–${hexWord(last)}`;
+    const item = (verb, ...words) => [{label: `${verb} ${span}: ${meaning}`,
+      request: [hexByte(code), ...words.map(hexWord)].join(" ")}];
+    const count = Math.min(last - first + 1, code <= 2 ? mostBits : mostWords);
+    return code <= 4 ? item("Read", first, count)
+      : code === 5 ? item("Write", first, 0xFF00) : code === 6 ? item("Write", first, 0) : [];
+  }));
+}
+
+/// Returns {label, request} for each command of a model at an address.
+function dconItems(model, address) {
+  return model.dcon_commands.map(({command, meaning}) => ({
+    label: `${command}: ${meaning}`,
+    request: command.replace(/^(.)AA/, `$1${hexByte(address)}`),
+  }));
+}
+
+export class Console {
+  /// `several`: whether there are several lines. `modules`: {position, model} of each module on the line.
+  /// `stateOf(position)` returns the state of a module. `ask(request)` sends a request, see Live.
+  constructor(line, {several, index}, modules, stateOf, ask) {
+    this.index = index;
+    this.modules = modules;
+    this.stateOf = stateOf;
+    this.ask = ask;
+    this.timer = null;
+    const name = line.name || "the line";
+    this.module = make("select", {"aria-label": `Module on ${name}`, onchange: () => this.fillItems()});
+    this.item = make("select", {"aria-label": `Item for ${name}`, onchange: () => this.choose()});
+    this.text = make("input", {type: "text", size: "28", autocomplete: "off", spellcheck: "false",
+      placeholder: "01 0000 0008 or $01M", "aria-label": `Request on ${name}`});
+    this.poll = make("input", {type: "checkbox", onchange: () => this.schedule(0)});
+    this.interval = make("select", {"aria-label": `Interval on ${name}`, onchange: () => this.schedule(0)},
+      ...intervals.map(([value, label]) => make("option", {value, selected: value === "1000"}, label)));
+    this.replies = make("div", {class: "replies", role: "log", "aria-label": `Replies on ${name}`, tabindex: "0"});
+    const form = make("form", {class: "bar", onsubmit: (event) => {
+      event.preventDefault();
+      this.send();
+    }}, this.module, this.item, this.text, make("button", {type: "submit"}, "Send"),
+    make("label", {}, this.poll, " every"), this.interval);
+    this.element = make("details", {class: "faultline", ontoggle: () => this.open()},
+      make("summary", {}, make("h3", {}, several ? line.name : "Send a request")), form, this.replies);
+  }
+
+  /// Fills the lists when the user opens the console, because addresses and protocols can change before.
+  open() {
+    if (!this.element.open) {
+      this.poll.checked = false;
+      this.schedule(0);
+      return;
+    }
+    this.module.replaceChildren(...this.modules.map(({position, model}) => {
+      const {plate} = this.stateOf(position);
+      const address = plate?.listening ? ` at ${hexByte(plate.address)}` : "";
+      return make("option", {value: String(position)}, `${position + 1} ${model}${address}`);
+    }), make("option", {value: everyModule}, "all modules"));
+    this.fillItems();
+  }
+
+  get plate() { return this.stateOf(Number(this.module.value))?.plate; }
+
+  async fillItems() {
+    const chosen = this.modules.find(({position}) => String(position) === this.module.value);
+    const all = await described();
+    const model = all.get(chosen?.model);
+    const plate = chosen && this.plate;
+    this.items = !model || !plate?.listening ? []
+      : plate.protocol === "modbus" ? modbusItems(model) : dconItems(model, plate.address);
+    this.item.replaceChildren(make("option", {value: ""}, this.items.length ? "choose, or type" : "type a request"),
+      ...this.items.map(({label}, index) => make("option", {value: String(index)}, label)));
+  }
+
+  choose() {
+    if (this.item.value !== "") {
+      this.text.value = this.items[Number(this.item.value)].request;
+    }
+  }
+
+  /// Returns the text to send: with a checksum if the module expects one.
+  get request() {
+    const text = this.text.value.trim();
+    const isDcon = /^[$#%@~]/.test(text);
+    if (!isDcon || this.module.value === everyModule || !this.plate?.checksum) {
+      return text;
+    }
+    return text + hexByte([...text].reduce((sum, character) => sum + character.charCodeAt(0), 0) & 0xFF);
+  }
+
+  async send() {
+    const ask = this.request;
+    if (!ask) {
+      return;
+    }
+    const address = this.module.value === everyModule ? 0 : this.plate?.address ?? 1;
+    const reply = await this.ask({line: this.index, address, ask});
+    this.show(ask, reply);
+  }
+
+  show(asked, {ok, text, meaning, delay}) {
+    const took = delay === undefined ? "" : `${(delay / 1000).toFixed(2)} ms`;
+    this.replies.append(make("div", {"data-ok": ok}, make("code", {}, asked), " → ", make("code", {}, text ?? ""),
+      meaning ? ` ${meaning}` : "", " ", make("span", {class: "quiet"}, took)));
+    while (this.replies.children.length > mostReplies) {
+      this.replies.firstChild.remove();
+    }
+    this.replies.scrollTop = this.replies.scrollHeight;
+  }
+
+  /// Sends after `delay` ms, and then again after each reply, while polling is switched on.
+  schedule(delay) {
+    clearTimeout(this.timer);
+    if (!this.poll.checked) {
+      return;
+    }
+    this.timer = setTimeout(async () => {
+      await this.send();
+      this.schedule(Number(this.interval.value));
+    }, delay);
+  }
+
+  /// Call this when the connection is lost.
+  lost() {
+    this.poll.checked = false;
+    this.schedule(0);
+  }
+}
