@@ -29,8 +29,8 @@ inline Bytes pdu_of(Bytes frame) { return frame.first(frame.size - 2).from(1); }
 /// Returns whether `frame` is a valid reply, perhaps an exception, to a request with this address and
 /// function code.
 inline bool is_rtu_reply(std::uint8_t address, std::uint8_t function, Bytes frame) {
-  constexpr std::size_t kShortest = 5;  // an exception
-  return frame.size >= kShortest && crc16(frame).value() == 0 && frame[0] == address &&
+  constexpr std::size_t kExceptionSize = 5;  // no reply is shorter
+  return frame.size >= kExceptionSize && crc16(frame).value() == 0 && frame[0] == address &&
          (frame[1] | kRtuException) == (function | kRtuException);
 }
 

@@ -48,7 +48,7 @@ void check_line(const LineSetup& line) {
     require(std::count_if(line.modules.begin(), line.modules.end(), same_file) <= 1,
             "each EEPROM has a file of its own");
   }
-  require(!line.serial || (!line.pty && !line.tcp && !line.instant),
+  require(!line.serial || (!line.pty && !line.tcp && !line.modbus_tcp && !line.instant),
           "a serial port excludes other ports and an instant line");
   require(!line.echo || line.serial, "only a serial port has an echo");
   require(!line.instant || !line.strict_gaps, "an instant line has no strict gaps");
@@ -60,6 +60,7 @@ void check_line(const LineSetup& line) {
   require(!line.baud || std::any_of(kBaudRates.begin(), kBaudRates.end(), is_rate),
           "the line's rate is one of eight");
   require(!line.tcp || !line.tcp->host.empty(), "a TCP address has a host");
+  require(!line.modbus_tcp || !line.modbus_tcp->host.empty(), "an address of Modbus TCP has a host");
   for (const sim::Fault& fault : line.faults) {
     require(!fault.module || *fault.module < line.modules.size(), "a fault belongs to an existing module");
     require(!fault.module || sim::concerns_a_module(fault.trouble),
@@ -71,7 +72,7 @@ void check_line(const LineSetup& line) {
 void check_setup(const Setup& setup) {
   for (const LineSetup& line : setup.lines) {
     check_line(line);
-    require(!setup.speed.max() || (!line.pty && !line.tcp && !line.serial),
+    require(!setup.speed.max() || (!line.pty && !line.tcp && !line.modbus_tcp && !line.serial),
             "maximum speed has no port for a master");
   }
   require(!setup.speed.max() || setup.lasts, "maximum speed requires a duration");
@@ -133,7 +134,8 @@ void parse(const std::string& text) {
             "a setup comes without text and error");
     require(parsed.setup->lines.size() == 1, "a command line has one line");
     const LineSetup& line = parsed.setup->lines[0];
-    require(parsed.setup->speed.max() || line.pty || line.tcp || line.serial, "the line has a port");
+    require(parsed.setup->speed.max() || line.pty || line.tcp || line.modbus_tcp || line.serial,
+            "the line has a port");
     check_setup(*parsed.setup);
   } else if (parsed.task) {
     require(parsed.output.empty() && parsed.error.empty() && parsed.exit_status == 0,

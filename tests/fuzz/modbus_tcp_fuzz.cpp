@@ -1,0 +1,155 @@
+// Lets four clients of Modbus TCP send any bytes to one line, split and joined in any way. The target finds
+// the requests in the bytes of each client independently: each request except a broadcast must get exactly
+// one reply, and nothing else may arrive.
+//
+// The input is a sequence of events:
+//
+//     0-3  N, N bytes   the bytes arrive from this client, in one piece
+//     4-7               the client, number 0 to 3, leaves, and another one takes its place
+//     8    N            N times 4 ms pass
+//
+// Other values have no effect.
+#include <algorithm>
+#include <array>
+#include <chrono>
+#include <deque>
+#include <memory>
+#include <vector>
+
+#include "sim/modbus_tcp/mbap_session.hpp"
+#include "tests/fuzz/require.hpp"
+
+namespace ex9000::fuzz {
+namespace {
+
+using Buffer = std::vector<std::uint8_t>;
+using std::chrono::milliseconds;
+
+constexpr std::size_t kHeader = 7;
+constexpr std::uint8_t kLastUnit = 247;
+
+unsigned word(const Buffer& bytes, std::size_t at) { return bytes[at] * 256U + bytes[at + 1]; }
+
+/// A client with the requests that have no reply yet.
+class Client {
+ public:
+  explicit Client(sim::Gateway& gateway)
+      : session_(
+            gateway, [this](const Buffer& bytes) { return take(bytes); }, [] {}) {}
+
+  void send(const std::uint8_t* bytes, std::size_t size) {
+    sent_.insert(sent_.end(), bytes, bytes + size);
+    find_requests();
+    session_.receive({bytes, size});
+  }
+  void check_end() const {
+    require(asked_.empty(), "each request gets a reply");
+    require(session_.idle(), "the session knows that all requests are answered");
+    require(session_.broken() == broken_, "a wrong header breaks the stream");
+  }
+
+ private:
+  struct Asked {
+    unsigned transaction;
+    std::uint8_t unit;
+    std::uint8_t function;
+  };
+
+  /// Finds complete frames from the definition of the header: transaction, protocol 0, length 2 to 254, unit.
+  void find_requests() {
+    while (!broken_ && sent_.size() >= kHeader - 1) {
+      const unsigned length = word(sent_, 4);
+      if (word(sent_, 2) != 0 || length < 2 || length > 254) {
+        broken_ = true;
+      } else if (sent_.size() >= 6 + length) {
+        if (sent_[6] != 0) {
+          asked_.push_back({word(sent_, 0), sent_[6], sent_[7]});
+        }
+        sent_.erase(sent_.begin(), sent_.begin() + 6 + static_cast<std::ptrdiff_t>(length));
+      } else {
+        return;
+      }
+    }
+  }
+
+  bool take(const Buffer& reply) {
+    require(reply.size() > kHeader && reply.size() <= 260, "a reply has a header and a PDU");
+    require(word(reply, 2) == 0 && word(reply, 4) == reply.size() - 6, "the header is correct");
+    // Exception 0A does not wait for the line, so it may overtake other replies.
+    for (auto asked = asked_.begin(); asked != asked_.end(); ++asked) {
+      const bool is_its = asked->transaction == word(reply, 0) && asked->unit == reply[6];
+      if (is_its) {
+        check(*asked, reply);
+        asked_.erase(asked);
+        return true;
+      }
+      require(reply[6] > kLastUnit || asked->unit > kLastUnit,
+              "replies from the line keep the order of requests");
+    }
+    require(false, "a reply belongs to a request");
+    return true;
+  }
+
+  static void check(const Asked& asked, const Buffer& reply) {
+    require((reply[kHeader] | 0x80U) == (asked.function | 0x80U), "a reply has the function of its request");
+    if (asked.unit > kLastUnit) {
+      require(reply.size() == kHeader + 2 && reply[kHeader + 1] == 0x0A,
+              "a unit above 247 gets exception 0A");
+    } else if (asked.unit > 2) {
+      require(reply.size() == kHeader + 2 && reply[kHeader + 1] == 0x0B,
+              "a unit without module gets exception 0B");
+    }
+  }
+
+  Buffer sent_;
+  bool broken_ = false;
+  std::deque<Asked> asked_;
+  sim::MbapSession session_;
+};
+
+class Clients {
+ public:
+  Clients() {
+    line_.come_up();
+    for (auto& client : clients_) {
+      client = std::make_unique<Client>(gateway_);
+    }
+  }
+
+  void live(const std::uint8_t* data, std::size_t size) {
+    for (std::size_t at = 0; at + 1 < size;) {
+      const std::uint8_t event = data[at++];
+      if (event < 4) {
+        const std::size_t piece = std::min<std::size_t>(data[at], size - at - 1);
+        clients_[event]->send(data + at + 1, piece);
+        at += 1 + piece;
+      } else if (event < 8) {
+        clients_[event - 4U] = std::make_unique<Client>(gateway_);
+      } else if (event == 8) {
+        line_.bus().run_for(milliseconds(4 * data[at++]));
+      }
+    }
+    while (line_.requests().busy()) {
+      line_.bus().run_for(milliseconds(50));
+    }
+    for (const auto& client : clients_) {
+      client->check_end();
+    }
+  }
+
+ private:
+  sim::Line line_{{sim::parse_module_spec("EX9042D-M@01"), sim::parse_module_spec("EX9052D-M@02"),
+                   sim::parse_module_spec("EX9042D@03")},
+                  sim::kInstant,
+                  [](std::uint8_t /*byte*/, ByteStatus /*status*/) {}};
+  sim::Gateway gateway_{line_};
+  std::array<std::unique_ptr<Client>, 4> clients_;
+};
+
+}  // namespace
+}  // namespace ex9000::fuzz
+
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+  ex9000::fuzz::Clients().live(data, size);
+  return 0;
+}
