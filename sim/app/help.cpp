@@ -59,7 +59,7 @@ constexpr const char* kExamples = R"(
 Examples:
   ex9000-sim EX9042D-M@01 EX9052D-M@02,edge=rising 9068d-m@0A,protocol=ascii --log
   ex9000-sim EX9042D-M@01,eeprom=pump.bin --tcp 5020 --control pump.ctl
-  ex9000-sim EX9042D-M@01 EX9052D-M@02 --panel
+  ex9000-sim EX9042D-M@01 EX9052D-M@02 --modbus-tcp 1502 --panel
   ex9000-sim EX9052D@01 --watch --input '1 3 square 2s'
   ex9000-sim EX9042D-M@01 --capture line.pcapng --log json > line.json
   ex9000-sim EX9052D@01 --input '1 0 square 100ms' --fault '1 lost-reply every 10th reply' --log
