@@ -2,7 +2,7 @@
 
 import unittest
 
-from panel_page import Panel, lit
+from panel_page import MANY, Panel, lit
 
 FORM = "#consoles details"
 MODULE = f"{FORM} select[aria-label^='Module']"
@@ -74,6 +74,18 @@ class Console(Panel):
         self.browser.click(POLL)
         self.send("46 00")  # its reply comes after those of all polls
         self.browser.until(f"{REPLIES}.some((each) => each.startsWith('46 00'))")
+
+    def test_each_line_has_a_console_of_its_own(self):
+        self.browser.open(self.bus(MANY).address)
+        yard = "#consoles details:nth-child(2)"
+        self.browser.until(f"document.querySelector('{yard}') !== null")
+        self.browser.click(f"{yard} > summary")
+        self.browser.until(f"document.querySelector('{yard} select').options.length === 33")
+        self.browser.run(f"""document.querySelector("{yard} input[type=text]").value = "05 0000 FF00" """)
+        self.browser.click(f"{yard} button")
+        self.browser.until("document.querySelector('[aria-label=\"33 EX9042D-M\"] .output').dataset.on === 'true'")
+        lamp = "document.querySelector('[aria-label=\"1 EX9042D-M\"] .output').dataset.on"
+        self.assertEqual(self.browser.run(f"return {lamp}"), "false")
 
     def test_errors_are_shown(self):
         self.open("EX9042D-M@01")

@@ -74,6 +74,11 @@ class Server(unittest.TestCase):
                 self.assertIn(part, answer)
         self.expect(200, request(self.port, host=f"localhost:{self.port}"))
 
+    def test_the_maps_of_all_models_are_those_of_describe(self):
+        answer = self.expect(200, request(self.port, "/models.json"))
+        printed = subprocess.run([PROGRAM, "describe", "--format", "json"], stdout=subprocess.PIPE, check=True).stdout
+        self.assertEqual(json.loads(answer.partition(b"\r\n\r\n")[2]), json.loads(printed))
+
     def test_another_host_name_is_refused(self):
         for host in ("example.org", f"example.org:{self.port}", "127.0.0.1", f"127.0.0.1:{self.port + 1}", False,
                      f"127.0.0.1:{self.port}.example.org"):

@@ -64,7 +64,7 @@ export class Console {
       this.send();
     }}, this.module, this.item, this.text, make("button", {type: "submit"}, "Send"),
     make("label", {}, this.poll, " every"), this.interval);
-    this.element = make("details", {class: "faultline", ontoggle: () => this.open()},
+    this.element = make("details", {class: "console", ontoggle: () => this.open()},
       make("summary", {}, make("h3", {}, several ? line.name : "Send a request")), form, this.replies);
   }
 
