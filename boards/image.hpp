@@ -2,6 +2,7 @@
 // `board.hpp` of a board, which must define kOutputs and kInputs: arrays of pin groups, each with a `count`.
 #pragma once
 
+#include "boards/image_info.hpp"
 #include "firmware/line/timing.hpp"
 #include "firmware/model/built.hpp"
 
@@ -11,6 +12,13 @@ namespace ex9000::board {
 static_assert(kModels.size() == EX9000_IMAGES,
               "a row of the model table has no image; begin the row with {\"EX9..., inputs, outputs, so that "
               "boards/CMakeLists.txt reads it");
+#endif
+
+#ifdef EX9000_PRESET
+/// Only image files have it; boards/CMakeLists.txt defines EX9000_PRESET and EX9000_COMMIT.
+// NOLINTNEXTLINE(misc-definitions-in-headers): included once
+__attribute__((section(".image_info"), used)) constexpr ImageInfo kImageInfo{
+    {kImageMark}, {kFirmwareVersion}, {EX9000_PRESET}, {kOnlyModel.designation}, {EX9000_COMMIT}};
 #endif
 
 template <class Groups>

@@ -1,0 +1,38 @@
+"""Tests that each image says what it is, in every format that the build writes."""
+
+from __future__ import annotations
+
+import re
+import subprocess
+import unittest
+from pathlib import Path
+
+ROOT = Path(__file__).resolve().parents[2]
+FORMATS = ("elf", "hex", "bin", "uf2")
+PRESETS = ("lm3s6965evb", "ek-tm4c123gxl", "ek-tm4c123gxl-usb", "pico", "pico-eeprom", "pico-w")
+MODEL = "EX9055D"  # tests/images builds this model with each preset
+
+
+def firmware_version() -> str:
+    match = re.search(r'kFirmwareVersion = "([^"]+)"', (ROOT / "firmware/model/model.hpp").read_text("utf-8"))
+    assert match
+    return match[1]
+
+
+class ImageInfo(unittest.TestCase):
+    def test_each_file_of_each_board_says_what_it_is(self) -> None:
+        version = firmware_version()
+        for preset in PRESETS:
+            files = [ROOT / "build" / preset / f"{MODEL}.{kind}" for kind in FORMATS]
+            files = [file for file in files if file.suffix != ".uf2" or preset.startswith("pico")]
+            for file in files:
+                with self.subTest(file=str(file.relative_to(ROOT))):
+                    done = subprocess.run(
+                        [ROOT / "toolchain/image-info", file], capture_output=True, text=True, check=False
+                    )
+                    expected = f"version {version}\nboard {preset}\nmodel {MODEL}\ncommit development\n"
+                    self.assertEqual((done.stdout, done.stderr), (expected, ""))
+
+
+if __name__ == "__main__":
+    unittest.main()

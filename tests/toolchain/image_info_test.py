@@ -1,0 +1,127 @@
+"""Tests image-info on small files whose every byte is known. tests/boards/image_info_test.py reads real images."""
+
+from __future__ import annotations
+
+import pathlib
+import struct
+import subprocess
+import sys
+import tempfile
+import unittest
+
+TOOLCHAIN = pathlib.Path(__file__).resolve().parents[2] / "toolchain"
+sys.path.insert(0, str(TOOLCHAIN))
+
+from image_info.flash_content import NotAnImage, flash_content  # noqa: E402
+from image_info.info import info_of  # noqa: E402
+
+INFO = struct.pack("<8s8s24s16s40s", b"EX9INFO1", b"D01.00", b"a-board", b"EX9042D-M", b"0123abcd" * 5)
+EXPECTED = {"version": "D01.00", "board": "a-board", "model": "EX9042D-M", "commit": "0123abcd" * 5}
+STELLARIS = bytes(0xC0) + INFO + b"code"
+PICO = bytes(0x1A8) + INFO + b"code"
+
+
+def elf(*segments: tuple[int, bytes]) -> bytes:
+    header = 52 + 32 * len(segments)
+    table, content = b"", b""
+    for address, data in segments:
+        table += struct.pack("<8I", 1, header + len(content), 0x20000000, address, len(data), len(data), 5, 4)
+        content += data
+    fields = (2, 40, 1, 0, 52, 0, 0, 52, 32, len(segments), 0, 0, 0)
+    return b"\x7fELF\x01\x01".ljust(16, b"\0") + struct.pack("<2H5I6H", *fields) + table + content
+
+
+def uf2(begin: int, content: bytes) -> bytes:
+    pages = [content[start : start + 256] for start in range(0, len(content), 256)]
+    file = b""
+    for number, page in enumerate(pages):
+        header = (0x0A324655, 0x9E5D5157, 0x2000, begin + 256 * number, len(page), number, len(pages), 0xE48BFF56)
+        file += struct.pack("<8I", *header) + page.ljust(476, b"\0") + struct.pack("<I", 0x0AB16F30)
+    return file
+
+
+def record(kind: int, address: int, data: bytes) -> bytes:
+    content = bytes([len(data)]) + address.to_bytes(2, "big") + bytes([kind]) + data
+    return b":" + (content + bytes([-sum(content) % 256])).hex().upper().encode() + b"\r\n"
+
+
+def hex_file(begin: int, content: bytes) -> bytes:
+    file = record(4, 0, (begin >> 16).to_bytes(2, "big"))
+    for start in range(0, len(content), 16):
+        file += record(0, (begin + start) & 0xFFFF, content[start : start + 16])
+    return file + record(5, 0, bytes(4)) + record(1, 0, b"")
+
+
+class Reads(unittest.TestCase):
+    def test_each_format_has_the_same_content(self) -> None:
+        for content, begin in ((STELLARIS, 0), (PICO, 0x10000000)):
+            files = {
+                "ELF": elf((begin, content[:100]), (begin + 100, content[100:])),
+                "UF2": uf2(begin, content),
+                "HEX": hex_file(begin, content),
+                "BIN": content,
+            }
+            for name, file in files.items():
+                with self.subTest(name, begin=begin):
+                    self.assertEqual(flash_content(file), content)
+                    self.assertEqual(info_of(flash_content(file)), EXPECTED)
+
+    def test_a_gap_is_erased_flash(self) -> None:
+        self.assertEqual(flash_content(elf((0, b"ab"), (4, b"c"))), b"ab\xff\xffc")
+
+
+class Rejects(unittest.TestCase):
+    def refused(self, file: bytes, message: str) -> None:
+        with self.assertRaisesRegex(NotAnImage, message):
+            info_of(flash_content(file))
+
+    def test_a_file_without_information(self) -> None:
+        message = "no information about an image at 0xc0 or 0x1a8"
+        for file in (b"text", bytes(1000), bytes(0xC1) + INFO, b"\x7fELF\x02\x01" + bytes(500)):
+            self.refused(file, message)
+        self.refused(b"", "contains no data")
+
+    def test_a_truncated_file(self) -> None:
+        self.refused(STELLARIS[:-20], "ends within the information")
+        self.refused(elf((0, STELLARIS))[:-20], "truncated ELF file")
+        self.refused(elf((0, STELLARIS))[:60], "truncated ELF file")
+        self.refused(uf2(0x10000000, PICO)[:-20], "truncated UF2 file")
+        self.refused(hex_file(0, STELLARIS)[:-13], "truncated HEX file")
+
+    def test_a_damaged_file(self) -> None:
+        self.refused(STELLARIS.replace(b"a-board", b"a\xffboard"), "damaged information")
+        self.refused(STELLARIS.replace(b"a-board", bytes(7)), "damaged information")
+        self.refused(uf2(0, PICO)[:512] + bytes(512), "block 1 is not a UF2 block")
+        good = hex_file(0, STELLARIS)
+        self.refused(good.replace(b"45583949", b"45583948", 1), "line 14 has a wrong checksum")
+        self.refused(good.replace(b":", b":0", 1), "line 1 is not a record")
+        self.refused(record(7, 0, b"") + good, "record type 7")
+
+    def test_addresses_that_no_flash_has(self) -> None:
+        self.refused(elf((0, b"a"), (0x20000000, b"b")), "at most 16 MiB")
+
+
+class Program(unittest.TestCase):
+    def run_on(self, *words: str) -> subprocess.CompletedProcess[str]:
+        return subprocess.run([str(TOOLCHAIN / "image-info"), *words], capture_output=True, text=True, check=False)
+
+    def test_it_prints_four_lines(self) -> None:
+        with tempfile.NamedTemporaryFile() as file:
+            file.write(PICO)
+            file.flush()
+            done = self.run_on(file.name)
+        self.assertEqual(done.stdout, "".join(f"{name} {text}\n" for name, text in EXPECTED.items()))
+        self.assertEqual(done.returncode, 0)
+
+    def test_it_reports_a_wrong_file_in_one_line(self) -> None:
+        missing = self.run_on("/missing.bin")
+        self.assertEqual(missing.stderr, "/missing.bin: No such file or directory; name a file that you can read\n")
+        self.assertEqual(missing.returncode, 1)
+        wrong = self.run_on(__file__)
+        self.assertRegex(wrong.stderr, f"^{__file__}: has no information about an image .*; expected .*\n$")
+        self.assertEqual((wrong.returncode, wrong.stdout), (1, ""))
+        self.assertEqual(self.run_on().returncode, 2)
+
+
+if __name__ == "__main__":
+    unittest.main()

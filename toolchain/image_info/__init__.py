@@ -1,0 +1,1 @@
+"""Reads what a firmware image says about itself."""
