@@ -1,0 +1,57 @@
+"""Reads the sections of .github/CHANGELOG.md."""
+
+from __future__ import annotations
+
+import datetime
+import re
+from dataclasses import dataclass
+
+_RELEASE = re.compile(r"^## (\d+\.\d+) - (\d{4}-\d\d-\d\d)$")
+_UNRELEASED = "## Unreleased"
+
+
+class NoSection(Exception):
+    """The changelog has no section of this version."""
+
+
+@dataclass
+class Section:
+    version: str
+    date: datetime.date | None  # None: not released
+    lines: list[str]
+
+
+def section_of(version: str, changelog: str, unreleased: bool) -> Section:
+    """Returns the section of a version; `unreleased` selects the section of changes after the last release."""
+    lines = changelog.splitlines()
+    for number, line in enumerate(lines):
+        release = _RELEASE.match(line)
+        if (unreleased and line == _UNRELEASED) or (not unreleased and release and release[1] == version):
+            following = (at for at in range(number + 1, len(lines)) if lines[at].startswith("## "))
+            content = lines[number + 1 : next(following, len(lines))]
+            date = datetime.date.fromisoformat(release[2]) if release else None
+            return Section(version, date, "\n".join(content).strip("\n").splitlines())
+    expected = _UNRELEASED if unreleased else f"## {version} - YYYY-MM-DD"
+    raise NoSection(f"has no section for this release; add the heading '{expected}'")
+
+
+def release_notes(section: Section, commit: str) -> str:
+    """Returns the section as a document of its own. Links to files of the repository become plain text."""
+    title = f"# OpenEX9000 {section.version}" + ("" if section.date else ", not released")
+    text = re.sub(r"\[([^\]]+)\]\((?![a-z]+:)[^)]*\)", r"\1", "\n".join(section.lines))
+    text = re.sub(r"^###", "##", text, flags=re.MULTILINE)
+    return f"{title}\n\nCommit {commit}.\n\n{text}\n"
+
+
+def debian_changelog(section: Section, maintainer: str, released: datetime.datetime) -> str:
+    """Returns the changelog of a Debian package: one entry with the items of the section."""
+    items = re.sub(r"\[([^\]]+)\]\([^)]*\)", r"\1", "\n".join(section.lines))
+    body = []
+    for line in items.splitlines():
+        if line.startswith("- "):
+            body.append(f"  * {line[2:]}")
+        elif line.startswith("  "):
+            body.append(f"    {line.strip()}")
+    stamp = released.strftime("%a, %d %b %Y %H:%M:%S +0000")
+    entry = [f"ex9000-sim ({section.version}) stable; urgency=medium", "", *body, "", f" -- {maintainer}  {stamp}"]
+    return "\n".join(entry) + "\n"

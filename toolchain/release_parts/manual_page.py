@@ -1,0 +1,167 @@
+"""Writes the manual page of ex9000-sim, in the language mdoc, from its help texts."""
+
+from __future__ import annotations
+
+import datetime
+import re
+
+from help_text import Help, Option
+
+# A list entry of the notes: two spaces, the term, two or more spaces, the description.
+_ENTRY = re.compile(r"^  (\S+(?: \S+)*) {2,}(\S.*)$")
+_CONTINUED = re.compile(r"^ {10,}(\S.*)$")
+
+
+def manual_page(program: Help, subcommands: dict[str, Help], released: datetime.date) -> str:
+    """Returns the page. `released` is the date that the page shows."""
+    lines = [
+        f".Dd {released.strftime('%B')} {released.day}, {released.year}",
+        ".Dt EX9000-SIM 1",
+        ".Os",
+        ".Sh NAME",
+        ".Nm ex9000-sim",
+        ".Nd simulated EX9000 modules on RS-485 lines",
+        ".Sh SYNOPSIS",
+        *_synopsis(program),
+    ]
+    for name, help_of in subcommands.items():
+        lines += [".Nm", f".Cm {name}", *_usage(help_of)]
+    lines += [".Sh DESCRIPTION", *_prose(program.description)]
+    lines += [".Sh OPTIONS", *_options(program)]
+    notes, examples = _without_examples(program.notes)
+    lines += [".Sh COMMANDS"]
+    for name, help_of in subcommands.items():
+        its_notes, its_examples = _without_examples(help_of.notes)
+        examples += its_examples
+        lines += [f".Ss {name}", *_prose(_sentence(help_of.description)), *_options(help_of), *_notes(its_notes)]
+    lines += [".Sh MODULES, BUS FILES, CONTROL SOCKET, FAULTS", *_first(_notes(notes))]
+    lines += [".Sh FILES", ".Bl -tag -width Ds", *_FILES, ".El"]
+    lines += [".Sh EXIT STATUS", *_EXIT_STATUS]
+    lines += [".Sh EXAMPLES", *_first(_notes(examples))]
+    return "\n".join(lines) + "\n"
+
+
+_FILES = [
+    ".It Pa /etc/ex9000/NAME.json",
+    "the bus file of the service",
+    ".Ql ex9000-sim@NAME",
+    ".It Pa /var/lib/ex9000/NAME",
+    "the directory in which this service runs, with its links and EEPROM files",
+    ".It Pa /run/ex9000/NAME",
+    "a directory for the control socket of this service",
+]
+_EXIT_STATUS = [
+    ".Bl -tag -width Ds",
+    ".It 0",
+    "a user, a signal, the control command",
+    ".Ql quit ,",
+    "the reader of the log or",
+    ".Fl \\-for",
+    "has ended the program",
+    ".It 1",
+    "any other error has occurred, for example a serial port has disappeared",
+    ".It 2",
+    "an argument is wrong, a path or a port is in use, or a file is not an EEPROM",
+    "image",
+    ".El",
+]
+
+
+def _synopsis(program: Help) -> list[str]:
+    return [".Nm", ".Op Ar OPTIONS", *(f".Ar {_text(p.names[0])} ..." for p in program.positionals)]
+
+
+def _usage(subcommand: Help) -> list[str]:
+    lines = [".Op Ar OPTIONS"]
+    for positional in subcommand.positionals:
+        lines.append(f".Op Ar {_text(positional.names[0])}{' ...' if positional.repeats else ''}")
+    return lines
+
+
+def _options(help_of: Help) -> list[str]:
+    if not help_of.options:
+        return []
+    lines = [".Bl -tag -width Ds"]
+    for option in help_of.positionals:
+        lines += [f".It Ar {_text(option.names[0])}", *_prose(option.text)]
+    for option in help_of.options:
+        lines += [_tag(option), *_prose(option.text)]
+    return [*lines, ".El"]
+
+
+def _tag(option: Option) -> str:
+    names = " , ".join("Fl " + _text(name[1:]) for name in option.names)
+    return f".It {names}" + (f' Ar "{_text(option.value)}"' if option.value else "")
+
+
+def _without_examples(notes: list[str]) -> tuple[list[str], list[str]]:
+    """Separates the examples, which end the notes, from the rest."""
+    if "Examples:" not in notes:
+        return notes, []
+    at = notes.index("Examples:")
+    return notes[:at], notes[at + 1 :]
+
+
+def _notes(notes: list[str]) -> list[str]:
+    """Converts paragraphs, lists and commands of the notes."""
+    lines: list[str] = []
+    kind = ""
+    for index, note in enumerate(notes):
+        entry, continued = _ENTRY.match(note), _CONTINUED.match(note)
+        following = notes[index + 1] if index + 1 < len(notes) else ""
+        if not note:
+            lines += _end(kind)
+            kind = ""
+        elif kind == "list" and continued:
+            lines += _prose(continued[1])
+        elif entry or (note.startswith("  ") and _CONTINUED.match(following)):
+            lines += [] if kind == "list" else [*_end(kind), ".Bl -tag -width Ds"]
+            kind = "list"
+            tag, text = (entry[1], entry[2]) if entry else (note.strip(), "")
+            lines += [f'.It Li "{_text(tag)}"', *_prose(text)]
+        elif note.startswith("  ex9000-sim "):
+            lines += _end(kind)
+            kind = "command"
+            lines.append(f".Dl {_text(note.strip())}")
+        else:
+            lines += [] if kind == "paragraph" else [*_end(kind), ".Pp"]
+            kind = "paragraph"
+            lines += _prose(note.strip())
+    return lines + _end(kind)
+
+
+def _first(lines: list[str]) -> list[str]:
+    """Returns the lines of a section. Its first paragraph requires no macro."""
+    return lines[1:] if lines[:1] == [".Pp"] else lines
+
+
+def _end(kind: str) -> list[str]:
+    return [".El"] if kind == "list" else []
+
+
+def _sentence(text: str) -> str:
+    return text[:1].upper() + text[1:].removesuffix(".") + "."
+
+
+def _prose(text: str) -> list[str]:
+    """Returns lines of at most about 80 characters. A sentence begins on a new line, as mdoc requires."""
+    lines = []
+    for sentence in re.split(r"(?<=[.!?]) +(?=[A-Z`-])", text):
+        line = ""
+        for word in _text(sentence).split():
+            if line and len(line) + len(word) > 78:
+                lines.append(line)
+                line = ""
+            line = f"{line} {word}".strip()
+        lines.append(line)
+    return [_not_a_macro(line) for line in lines if line]
+
+
+def _text(text: str) -> str:
+    """Returns a text for an argument of a macro."""
+    return text.replace("\\", "\\e").replace('"', "\\(dq").replace("-", "\\-").replace("'", "\\(aq").replace("`", "\\(ga")
+
+
+def _not_a_macro(line: str) -> str:
+    """Protects a line of text that begins with a dot."""
+    return "\\&" + line if line.startswith(".") else line
