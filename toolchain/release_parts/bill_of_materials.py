@@ -76,12 +76,6 @@ PRODUCTS = (
 )
 
 
-def in_the_simulator() -> list[Component]:
-    """Returns the components that the static program contains."""
-    static = next(product for product in PRODUCTS if product.key == "static")
-    return [component for component in COMPONENTS if component.key in static.parts]
-
-
 def bill_of_materials(version: str, commit: str, seconds: int, versions: Mapping[str, str]) -> str:
     """Returns the document. `versions` has the version of each Debian package, `seconds` is the date of the release."""
     created = datetime.datetime.fromtimestamp(seconds, datetime.timezone.utc).strftime("%Y-%m-%dT%H:%M:%SZ")

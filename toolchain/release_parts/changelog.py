@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import datetime
 import re
+import textwrap
 from dataclasses import dataclass
 
 _RELEASE = re.compile(r"^## (\d+\.\d+) - (\d{4}-\d\d-\d\d)$")
@@ -45,13 +46,9 @@ def release_notes(section: Section, commit: str) -> str:
 
 def debian_changelog(section: Section, maintainer: str, released: datetime.datetime) -> str:
     """Returns the changelog of a Debian package: one entry with the items of the section."""
-    items = re.sub(r"\[([^\]]+)\]\([^)]*\)", r"\1", "\n".join(section.lines))
-    body = []
-    for line in items.splitlines():
-        if line.startswith("- "):
-            body.append(f"  * {line[2:]}")
-        elif line.startswith("  "):
-            body.append(f"    {line.strip()}")
+    text = re.sub(r"\[([^\]]+)\]\([^)]*\)", r"\1", "\n".join(section.lines))
+    items = re.findall(r"^- (.*(?:\n  .*)*)", text, flags=re.MULTILINE)
+    body = [textwrap.fill(" ".join(item.split()), 78, initial_indent="  * ", subsequent_indent="    ") for item in items]
     stamp = released.strftime("%a, %d %b %Y %H:%M:%S +0000")
     entry = [f"ex9000-sim ({section.version}) stable; urgency=medium", "", *body, "", f" -- {maintainer}  {stamp}"]
     return "\n".join(entry) + "\n"
