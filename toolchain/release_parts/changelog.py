@@ -48,7 +48,8 @@ def debian_changelog(section: Section, maintainer: str, released: datetime.datet
     """Returns the changelog of a Debian package: one entry with the items of the section."""
     text = re.sub(r"\[([^\]]+)\]\([^)]*\)", r"\1", "\n".join(section.lines))
     items = re.findall(r"^- (.*(?:\n  .*)*)", text, flags=re.MULTILINE)
-    body = [textwrap.fill(" ".join(item.split()), 78, initial_indent="  * ", subsequent_indent="    ") for item in items]
+    indents = {"initial_indent": "  * ", "subsequent_indent": "    "}
+    body = [textwrap.fill(" ".join(item.split()), 78, **indents) for item in items]
     stamp = released.strftime("%a, %d %b %Y %H:%M:%S +0000")
     entry = [f"ex9000-sim ({section.version}) stable; urgency=medium", "", *body, "", f" -- {maintainer}  {stamp}"]
     return "\n".join(entry) + "\n"

@@ -110,7 +110,8 @@ def _zsh_arguments(help_of: Help, first: str, offset: int | None) -> list[str]:
             place = "*" if positional.repeats else str(number)
             action = "_files" if positional.names[0] == "FILE" else "_ex9000_sim_modules"
             specs.append(f"{place}:{positional.names[0]}:{action}")
-    return ["    _arguments \\", *(f"      {shlex.quote(spec)} \\" for spec in specs[:-1]), f"      {shlex.quote(specs[-1])}"]
+    *most, last = [f"      {shlex.quote(spec)}" for spec in specs]
+    return ["    _arguments \\", *(f"{spec} \\" for spec in most), last]
 
 
 def _zsh_option(option: Option) -> list[str]:

@@ -11,6 +11,9 @@ from help_text import Help, Option
 _ENTRY = re.compile(r"^  (\S+(?: \S+)*) {2,}(\S.*)$")
 _CONTINUED = re.compile(r"^ {10,}(\S.*)$")
 
+# Without these, a reader would see typographic characters that a shell does not understand. The backslash is first.
+_ESCAPES = {"\\": "\\e", '"': "\\(dq", "-": "\\-", "'": "\\(aq", "`": "\\(ga"}
+
 
 def manual_page(program: Help, subcommands: dict[str, Help], released: datetime.date) -> str:
     """Returns the page. `released` is the date that the page shows."""
@@ -159,7 +162,9 @@ def _prose(text: str) -> list[str]:
 
 def _text(text: str) -> str:
     """Returns a text for an argument of a macro."""
-    return text.replace("\\", "\\e").replace('"', "\\(dq").replace("-", "\\-").replace("'", "\\(aq").replace("`", "\\(ga")
+    for character, escape in _ESCAPES.items():
+        text = text.replace(character, escape)
+    return text
 
 
 def _not_a_macro(line: str) -> str:

@@ -1,0 +1,65 @@
+"""Tests the bill of materials: its form, and whether it names all that the sources include."""
+
+from __future__ import annotations
+
+import json
+import re
+import subprocess
+import unittest
+
+from parts import ROOT, SECONDS
+from bill_of_materials import COMPONENTS, bill_of_materials
+
+VERSIONS = {component.package: "1.0+x-1" for component in COMPONENTS}
+# Folders of the include path that belong to a component.
+FOLDERS = {"boost": "Boost", "CLI": "CLI11", "nlohmann": "nlohmann-json"}
+SYSTEM = {"sys", "netinet", "asm", "linux", "arpa"}  # the C library and the kernel
+
+
+class BillOfMaterials(unittest.TestCase):
+    def setUp(self) -> None:
+        self.document = json.loads(bill_of_materials("1.00", "abc", SECONDS, VERSIONS))
+
+    def test_it_has_the_fields_that_spdx_requires(self) -> None:
+        self.assertEqual(self.document["spdxVersion"], "SPDX-2.3")
+        self.assertEqual(self.document["dataLicense"], "CC0-1.0")
+        self.assertEqual(self.document["SPDXID"], "SPDXRef-DOCUMENT")
+        self.assertEqual(self.document["creationInfo"]["created"], "2026-09-21T14:13:20Z")
+        self.assertIn("abc", self.document["documentNamespace"])
+        for package in self.document["packages"]:
+            self.assertRegex(package["SPDXID"], r"^SPDXRef-[A-Za-z0-9.-]+$")
+            self.assertTrue({"name", "downloadLocation", "licenseConcluded", "copyrightText"} <= set(package))
+
+    def test_each_relationship_has_two_ends(self) -> None:
+        known = {package["SPDXID"] for package in self.document["packages"]} | {"SPDXRef-DOCUMENT"}
+        self.assertEqual(len(known), len(self.document["packages"]) + 1)
+        ends = {end for r in self.document["relationships"] for end in (r["spdxElementId"], r["relatedSpdxElement"])}
+        self.assertEqual(ends, known)
+
+    def test_it_names_what_the_simulator_includes(self) -> None:
+        included = set()
+        for path in self.includes("sim"):
+            folder = path.partition("/")[0]
+            if "/" in path and folder not in SYSTEM:
+                included.add(FOLDERS[folder])
+        self.assertEqual(included, set(FOLDERS.values()))
+        self.assertTrue(included <= {component.key for component in COMPONENTS})
+
+    def test_the_firmware_includes_only_headers_of_the_language(self) -> None:
+        for path in self.includes("firmware", "hal", "boards"):
+            self.assertRegex(path, r"^[a-z_]+$")
+
+    def includes(self, *folders: str) -> set[str]:
+        """Returns the headers in angle brackets."""
+        listed = subprocess.run(
+            ["git", "grep", "-hoE", "^#include <[^>]+>", "--", *folders],
+            cwd=ROOT,
+            capture_output=True,
+            text=True,
+            check=True,
+        )
+        return set(re.findall(r"<(.+)>", listed.stdout))
+
+
+if __name__ == "__main__":
+    unittest.main()

@@ -1,0 +1,77 @@
+"""Tests the completions of the built program in the shells themselves."""
+
+from __future__ import annotations
+
+import shutil
+import subprocess
+import tempfile
+import unittest
+
+from parts import PROGRAM, printed, written
+
+_COMPLETE = """
+cd "$1"
+source "$2"
+shift 2
+COMP_WORDS=("$@")
+COMP_CWORD=$(($# - 1))
+_ex9000_sim
+printf '%s\\n' "${COMPREPLY[@]}"
+"""
+
+
+class Bash(unittest.TestCase):
+    @classmethod
+    def setUpClass(cls) -> None:
+        cls.script = written("bash-completion", str(PROGRAM))
+
+    def complete(self, *words: str) -> list[str]:
+        """Returns the completions of the last word in a folder that contains bus.json."""
+        with tempfile.TemporaryDirectory() as folder, tempfile.NamedTemporaryFile("w") as script:
+            open(f"{folder}/bus.json", "w", encoding="utf-8").close()
+            script.write(self.script)
+            script.flush()
+            command = ["bash", "-c", _COMPLETE, "bash", folder, script.name, "ex9000-sim", *words]
+            return subprocess.run(command, capture_output=True, text=True, check=True).stdout.split()
+
+    def test_options_of_the_program_and_of_a_subcommand(self) -> None:
+        self.assertEqual(self.complete("--c"), ["--control", "--capture"])
+        self.assertEqual(self.complete("describe", "EX9042D-M", "--f"), ["--format"])
+
+    def test_models_subcommands_and_bus_files(self) -> None:
+        models = [line.split()[0] for line in printed("--models").splitlines()]
+        self.assertEqual(self.complete(""), ["play", "describe", *models])
+        self.assertEqual(self.complete("describe", "EX9042"), ["EX9042D", "EX9042D-M"])
+        self.assertEqual(self.complete("bus"), ["bus.json"])
+        self.assertEqual(self.complete("play", "b"), ["bus.json"])
+
+    def test_values_of_options(self) -> None:
+        self.assertEqual(self.complete("EX9042D", "--line", ""), ["paced", "instant"])
+        self.assertEqual(self.complete("EX9042D", "--log", "j"), ["json"])
+        self.assertEqual(self.complete("EX9042D", "--log", "EX9052"), ["EX9052D", "EX9052D-M"])
+        self.assertEqual(self.complete("EX9042D", "--capture", "b"), ["bus.json"])
+        self.assertEqual(self.complete("EX9042D", "--baud", ""), [])
+        self.assertIn("home-assistant", self.complete("describe", "EX9042D-M", "--format", ""))
+
+    @unittest.skipUnless(shutil.which("shellcheck"), "shellcheck is not installed")
+    def test_shellcheck_has_no_complaint(self) -> None:
+        command = ["shellcheck", "-s", "bash", "-"]
+        done = subprocess.run(command, input=self.script, capture_output=True, text=True, check=False)
+        self.assertEqual(done.stdout, "")
+
+
+class Zsh(unittest.TestCase):
+    def test_it_names_the_program_and_its_options(self) -> None:
+        script = written("zsh-completion", str(PROGRAM))
+        self.assertTrue(script.startswith("#compdef ex9000-sim\n"))
+        self.assertIn("--tcp[", script)
+
+    @unittest.skipUnless(shutil.which("zsh"), "zsh is not installed")
+    def test_zsh_accepts_it(self) -> None:
+        script = written("zsh-completion", str(PROGRAM))
+        done = subprocess.run(["zsh", "-n", "/dev/stdin"], input=script, capture_output=True, text=True, check=False)
+        self.assertEqual((done.stderr, done.returncode), ("", 0))
+
+
+if __name__ == "__main__":
+    unittest.main()

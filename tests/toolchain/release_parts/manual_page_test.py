@@ -1,0 +1,48 @@
+"""Tests the manual page of the built program."""
+
+from __future__ import annotations
+
+import re
+import shutil
+import subprocess
+import unittest
+
+from parts import PROGRAM, printed, written
+from help_text import read
+
+
+class ManualPage(unittest.TestCase):
+    @classmethod
+    def setUpClass(cls) -> None:
+        cls.page = written("manual-page", str(PROGRAM))
+
+    def test_it_has_every_option_and_subcommand(self) -> None:
+        helps = read(printed("--help"))
+        for option in [*helps.options, *read(printed("describe", "--help")).options]:
+            for name in option.names:
+                self.assertIn("Fl " + name[1:].replace("-", "\\-"), self.page)
+        self.assertGreaterEqual(len(helps.subcommands), 2)
+        for name in helps.subcommands:
+            self.assertIn(f"\n.Ss {name}\n", self.page)
+
+    def test_its_date_is_that_of_the_release(self) -> None:
+        self.assertTrue(self.page.startswith(".Dd September 21, 2026\n"))
+
+    @unittest.skipUnless(shutil.which("mandoc"), "mandoc is not installed")
+    def test_mandoc_has_no_complaint(self) -> None:
+        done = subprocess.run(["mandoc", "-Tlint"], input=self.page, capture_output=True, text=True, check=False)
+        self.assertEqual((done.stdout, done.stderr, done.returncode), ("", "", 0))
+
+    @unittest.skipUnless(shutil.which("mandoc"), "mandoc is not installed")
+    def test_a_reader_sees_every_word_of_the_help(self) -> None:
+        command = ["mandoc", "-Tascii", "-Owidth=200"]
+        done = subprocess.run(command, input=self.page, capture_output=True, text=True, check=True)
+        shown = re.sub(".\b", "", done.stdout)  # bold text is overstruck
+        only_in_help = {"-h,--help", "[MODULE...]", "[SUBCOMMAND]", "REQUIRED", "TEXT", "Usage:"}
+        only_in_help |= {"Positionals:", "Options:", "Subcommands:", "Examples:"}
+        missing = {word for word in printed("--help").split() if word not in shown}
+        self.assertEqual(missing - only_in_help, set())
+
+
+if __name__ == "__main__":
+    unittest.main()

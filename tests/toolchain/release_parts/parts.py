@@ -1,0 +1,28 @@
+"""What the tests of the release parts have in common."""
+
+from __future__ import annotations
+
+import pathlib
+import subprocess
+import sys
+
+ROOT = pathlib.Path(__file__).resolve().parents[3]
+PROGRAM = ROOT / "build/host-debug/sim/ex9000-sim"
+WRITE = ROOT / "toolchain/release_parts/write"
+SECONDS = 1_790_000_000  # 2026-09-21
+
+sys.dont_write_bytecode = True
+sys.path.insert(0, str(ROOT / "toolchain/release_parts"))
+
+
+def written(*words: str) -> str:
+    """Returns what toolchain/release_parts/write writes."""
+    environment = {"PATH": "/usr/bin:/bin", "SOURCE_DATE_EPOCH": str(SECONDS)}
+    done = subprocess.run([str(WRITE), *words], env=environment, capture_output=True, text=True, check=False)
+    assert done.returncode == 0, done.stderr
+    return done.stdout
+
+
+def printed(*words: str) -> str:
+    """Returns what the program prints."""
+    return subprocess.run([str(PROGRAM), *words], capture_output=True, text=True, check=True).stdout
