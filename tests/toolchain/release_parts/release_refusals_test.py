@@ -22,7 +22,7 @@ class Refusals(unittest.TestCase):
             (self.tree / file).parent.mkdir(parents=True, exist_ok=True)
             shutil.copy(ROOT / file, self.tree / file)
         shutil.copytree(ROOT / "toolchain/release_parts", self.tree / "toolchain/release_parts")
-        self.write("firmware/model/model.hpp", 'constexpr std::string_view kFirmwareVersion = "D1.07";\n')
+        self.write("firmware/model/model.hpp", 'constexpr std::string_view kFirmwareVersion = "D01.07";\n')
         self.git("init", "--quiet")
         self.git("add", ".")
         self.commit()
