@@ -10,8 +10,9 @@ const FIRST_RATE_CODE = 3;
 const TIMEOUT = 10000; // long enough for a busy machine; in milliseconds, like all times in this file
 // The time that a master waits after a broadcast, which has no reply: the duration of the longest broadcast on the
 // line, plus 5 s. The line runs in real time: even on a busy machine, the simulator must read the broadcast within this
-// time.
-const turnaround = (baud) => 5000 + 150000 / baud;
+// time. A gateway for Modbus TCP keeps the requests apart by itself. There, the time only has to be long enough for a
+// reply.
+const turnaround = ({ modbusTcp, baud }) => (modbusTcp ? 250 : 5000 + 150000 / baud);
 
 const hex = (bytes) => Buffer.from(bytes).toString("hex").toUpperCase().replace(/..(?=.)/g, "$& ");
 const word = (frame, at) => frame.readUInt16BE(at);
@@ -34,20 +35,21 @@ function written(frame, address, value) {
   return answer;
 }
 
-/** Returns the lines of the conversation without its comments. */
-function lines(baud) {
+/** Returns the lines of the conversation without its comments. Lines for a gateway are only for Modbus TCP. */
+function lines({ modbusTcp, baud }) {
   const text = fs.readFileSync(path.join(__dirname, "conversation.txt"), "utf8");
   return text
     .replaceAll("{BAUD}", hex([FIRST_RATE_CODE + RATES.indexOf(baud)]))
     .split("\n")
     .map((line) => line.split(";")[0].trim())
-    .filter((line) => line);
+    .filter((line) => line && (modbusTcp || !line.startsWith("gateway ")))
+    .map((line) => line.replace(/^gateway /, ""));
 }
 
 /** Returns the steps of the conversation: each request with its reply, and each wait as a step of its own. */
-function steps(baud) {
+function steps(where) {
   const result = [];
-  for (const line of lines(baud)) {
+  for (const line of lines(where)) {
     if (line.startsWith("=> ")) {
       result.push({ asked: line, frame: Buffer.from(line.slice(3).replaceAll(" ", ""), "hex") });
     } else if (line.startsWith("wait ")) {
@@ -95,35 +97,36 @@ function options() {
   const given = {};
   for (let i = 2; i < process.argv.length; i += 2) {
     const [option, value] = process.argv.slice(i);
-    if (!["--tty", "--tcp", "--baud"].includes(option) || value === undefined) {
-      giveUp(`${option}: expected --tty PATH or --tcp HOST:PORT, and --baud RATE`);
+    if (!["--tty", "--tcp", "--modbus-tcp", "--baud"].includes(option) || value === undefined) {
+      giveUp(`${option}: expected --tty PATH, --tcp HOST:PORT or --modbus-tcp HOST:PORT, and --baud RATE`);
     }
     given[option.slice(2)] = value;
   }
   return given;
 }
 
-/** Returns { tty, baud } or { host, port, baud }. */
+/** Returns { tty, baud } or { host, port, modbusTcp, baud }. */
 function portOptions() {
-  const { tty, tcp, baud = 9600 } = options();
+  const { tty, tcp, "modbus-tcp": modbusTcp, baud = 9600 } = options();
   if (!RATES.includes(Number(baud))) {
     giveUp(`--baud ${baud}: expected one of ${RATES.join(", ")}`);
   }
-  if ((tty === undefined) === (tcp === undefined)) {
-    giveUp("expected either --tty PATH or --tcp HOST:PORT");
+  if ([tty, tcp, modbusTcp].filter((port) => port !== undefined).length !== 1) {
+    giveUp("expected one of --tty PATH, --tcp HOST:PORT and --modbus-tcp HOST:PORT");
   }
   if (tty !== undefined) {
     return { tty, baud: Number(baud) };
   }
-  const [, host, port] = tcp.match(/^(.+):(\d+)$/) ?? giveUp(`--tcp ${tcp}: expected HOST:PORT`);
-  return { host, port: Number(port), baud: Number(baud) };
+  const address = tcp ?? modbusTcp;
+  const [, host, port] = address.match(/^(.+):(\d+)$/) ?? giveUp(`${address}: expected HOST:PORT`);
+  return { host, port: Number(port), modbusTcp: modbusTcp !== undefined, baud: Number(baud) };
 }
 
 /** Runs `converse(where, steps, checks)` and prints the result. */
 async function main(library, converse) {
   const where = portOptions();
   const checks = new Checks();
-  await converse(where, steps(where.baud), checks).catch((error) => giveUp(error.message));
+  await converse(where, steps(where), checks).catch((error) => giveUp(error.message));
   const { version } = require(`${library}/package.json`);
   const failed = checks.failed ? `, ${checks.failed} failed` : "";
   console.log(`${library} ${version}: ${checks.passed} checks passed${failed}`);

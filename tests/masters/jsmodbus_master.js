@@ -1,4 +1,4 @@
-// Plays conversation.txt with jsmodbus over a serial line, or as RTU frames over TCP.
+// Plays conversation.txt with jsmodbus over a serial line, as RTU frames over TCP, or over Modbus TCP.
 "use strict";
 const events = require("events");
 const net = require("net");
@@ -35,7 +35,10 @@ const ANSWERS = {
 /** Returns whether the library rejects the request because it reads more than 2000 coils or inputs. */
 const refused = (frame) => frame[1] <= 0x02 && word(frame, 4) > 2000;
 
-/** Returns whether the library reports a CRC error for a correct reply to "on". It expects the CRC of "off". */
+/**
+ * Returns whether the library treats a correct reply to "on" as "off". Without Modbus TCP it then reports a CRC error,
+ * because it expects the CRC of "off".
+ */
 const misread = (frame) => frame[1] === 0x05 && word(frame, 4) === 0xff00;
 
 const granted = ({ wait, frame, expected }) => !wait && expected === hex(frame);
@@ -74,11 +77,24 @@ async function open({ tty, host, port, baud }) {
   return socket;
 }
 
+/** Returns a connected client of the library for each address, in a Map. */
+async function openClients(where, addresses) {
+  const timeout = (address) => (address === 0 ? turnaround(where) : TIMEOUT);
+  const clientsOf = (Client, line) =>
+    new Map(addresses.map((address) => [address, new Client(line, address, timeout(address))]));
+  if (!where.modbusTcp) {
+    return clientsOf(jsmodbus.client.RTU, await open(where));
+  }
+  const socket = net.connect(where.port, where.host);
+  const clients = clientsOf(jsmodbus.client.TCP, socket); // before "connect", because they wait for this event
+  await events.once(socket, "connect");
+  return clients;
+}
+
 main("jsmodbus", async (where, steps, checks) => {
-  const line = await open(where);
-  const clients = [turnaround(where.baud), TIMEOUT, TIMEOUT].map(
-    (timeout, address) => new jsmodbus.client.RTU(line, address, timeout),
-  );
-  await checks.play(supportedSteps(steps), (frame) => ask(clients[frame[0]], frame));
-  line.destroy();
+  const supported = supportedSteps(steps);
+  const addresses = new Set(supported.filter(({ wait }) => !wait).map(({ frame }) => frame[0]));
+  const clients = await openClients(where, [...addresses]);
+  await checks.play(supported, (frame) => ask(clients.get(frame[0]), frame));
+  clients.get(1).socket.destroy();
 });

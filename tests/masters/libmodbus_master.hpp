@@ -1,9 +1,10 @@
-// A Modbus master on a pseudo-terminal that uses libmodbus.
+// A Modbus master on a pseudo-terminal or over Modbus TCP that uses libmodbus.
 #pragma once
 
 #include <modbus/modbus.h>
 
 #include <cerrno>
+#include <cstdint>
 #include <memory>
 #include <stdexcept>
 #include <string>
@@ -16,12 +17,9 @@ class LibmodbusMaster {
   static constexpr unsigned kReplies = 10'000;
 
   LibmodbusMaster(const std::string& tty, int baud)
-      : context_(modbus_new_rtu(tty.c_str(), baud, 'N', 8, 1), modbus_free) {
-    wait_for_replies(kReplies);
-    if (modbus_connect(context_.get()) != 0) {
-      throw std::runtime_error(modbus_strerror(errno));
-    }
-  }
+      : LibmodbusMaster(modbus_new_rtu(tty.c_str(), baud, 'N', 8, 1)) {}
+  /// Connects to a Modbus TCP port of this machine.
+  explicit LibmodbusMaster(std::uint16_t port) : LibmodbusMaster(modbus_new_tcp("127.0.0.1", port)) {}
   ~LibmodbusMaster() { modbus_close(context_.get()); }
   LibmodbusMaster(const LibmodbusMaster&) = delete;
   LibmodbusMaster& operator=(const LibmodbusMaster&) = delete;
@@ -36,6 +34,13 @@ class LibmodbusMaster {
   }
 
  private:
+  explicit LibmodbusMaster(modbus_t* context) : context_(context, modbus_free) {
+    wait_for_replies(kReplies);
+    if (modbus_connect(context_.get()) != 0) {
+      throw std::runtime_error(modbus_strerror(errno));
+    }
+  }
+
   std::unique_ptr<modbus_t, void (*)(modbus_t*)> context_;
 };
 

@@ -52,8 +52,11 @@ class Libmodbus : public testing::TestWithParam<Way> {
     return modbus_write_registers(master_.at(address), first, static_cast<int>(values.size()), values.data());
   }
 
+  static bool over_modbus_tcp() { return GetParam().port == Way::ModbusTcp; }
+
   TwoModules modules_{GetParam()};
-  LibmodbusMaster master_{modules_.tty(), GetParam().baud};
+  LibmodbusMaster master_ = over_modbus_tcp() ? LibmodbusMaster(modules_.modbus_tcp_port())
+                                              : LibmodbusMaster(modules_.tty(), GetParam().baud);
 
  private:
   template <typename Values, typename Function>
@@ -110,20 +113,27 @@ TEST_P(Libmodbus, ReadsBackTheValuesThatItHasWritten) {
 TEST_P(Libmodbus, BroadcastsAndHostOkHaveNoReply) {
   // The line runs in real time. If the next request came before the program has read this one, both would
   // form one frame, so the test waits until the program has logged this one.
-  const auto unanswered = [this](int result, const std::string& frame) {
-    const bool timed_out = result == -1 && errno == ETIMEDOUT;
-    return timed_out && modules_.simulator().wait_for("> master  " + frame);
+  const auto fails_with = [this](int error, int result, const std::string& frame) {
+    const bool failed = result == -1 && errno == error;
+    return failed && modules_.simulator().wait_for("> master  " + frame);
+  };
+  const auto unanswered = [&](int result, const std::string& frame) {
+    return fails_with(ETIMEDOUT, result, frame);
   };
   master_.wait_for_replies(500);  // no reply arrives
   EXPECT_TRUE(unanswered(write_coils(kBroadcast, 0, {1, 1, 1}), "00 0F 00 00 00 03 01 07"));
   EXPECT_TRUE(unanswered(modbus_write_bit(master_.at(kBroadcast), 1, 0), "00 05 00 01 00 00"));
   EXPECT_TRUE(unanswered(modbus_write_register(master_.at(kBroadcast), kTimeout, 50), "00 06 01 E8 00 32"));
   EXPECT_TRUE(unanswered(write_registers(kBroadcast, kAddress, {9, 7}), "00 10 01 E4 00 02 04 00 09 00 07"));
+  if (over_modbus_tcp()) {
+    master_.wait_for_replies(LibmodbusMaster::kReplies);
+  }
+  const int without_reply = over_modbus_tcp() ? EMBXGTAR : ETIMEDOUT;  // the gateway replies for the module
   std::uint16_t word = 0;
-  EXPECT_TRUE(
-      unanswered(modbus_read_registers(master_.at(kOutputs), kHostOk, 1, &word), "01 03 30 38 00 01"));
-  EXPECT_TRUE(
-      unanswered(modbus_read_input_registers(master_.at(kInputs), kHostOk, 0, &word), "02 04 30 38 00 00"));
+  EXPECT_TRUE(fails_with(without_reply, modbus_read_registers(master_.at(kOutputs), kHostOk, 1, &word),
+                         "01 03 30 38 00 01"));
+  EXPECT_TRUE(fails_with(without_reply, modbus_read_input_registers(master_.at(kInputs), kHostOk, 0, &word),
+                         "02 04 30 38 00 00"));
   master_.wait_for_replies(LibmodbusMaster::kReplies);
   EXPECT_EQ(coils(kOutputs, 0, 3), (Bits{1, 0, 1}));
   for (const int address : {kOutputs, kInputs}) {
@@ -213,8 +223,24 @@ TEST_P(Libmodbus, ATimeoutOfTheHostWatchdogBlocksTheOutputs) {
   EXPECT_EQ(coils(kOutputs, 0, 1), Bits{1});
 }
 
+using LibmodbusOverModbusTcp = Libmodbus;
+
+TEST_P(LibmodbusOverModbusTcp, GetsTheExceptionsOfTheGateway) {
+  std::uint8_t bit = 0;
+  constexpr int kAbsent = 3;
+  EXPECT_EQ(modbus_read_bits(master_.at(kAbsent), 0, 1, &bit), -1);
+  EXPECT_EQ(errno, EMBXGTAR) << modbus_strerror(errno);
+  // The default of libmodbus. It rejects 248 to 254 by itself.
+  EXPECT_EQ(modbus_write_bit(master_.at(MODBUS_TCP_SLAVE), 0, 1), -1);
+  EXPECT_EQ(errno, EMBXGPATH) << modbus_strerror(errno);
+  EXPECT_EQ(coils(kOutputs, 0, 1), Bits{0});
+}
+
+INSTANTIATE_TEST_SUITE_P(Ways, LibmodbusOverModbusTcp, testing::Values(Way{Way::ModbusTcp, 115200}));
+
 INSTANTIATE_TEST_SUITE_P(Ways, Libmodbus,
-                         testing::Values(Way{false, 9600}, Way{false, 115200}, Way{true, 115200}));
+                         testing::Values(Way{Way::Pty, 9600}, Way{Way::Pty, 115200}, Way{Way::Tcp, 115200},
+                                         Way{Way::ModbusTcp, 115200}));
 
 }  // namespace
 }  // namespace ex9000::system

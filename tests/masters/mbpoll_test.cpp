@@ -16,13 +16,17 @@ class Mbpoll : public testing::TestWithParam<Way> {
  protected:
   /// Runs mbpoll once with these arguments. Its references count from 0, as the addresses on the line do.
   Finished mbpoll(const Arguments& options, const Arguments& values = {}) {
-    Arguments command{"mbpoll", "-m", "rtu", "-b", std::to_string(GetParam().baud), "-P", "none",
-                      "-0",     "-1", "-o",  "10"};  // response timeout in seconds for a busy machine
+    Arguments command{"mbpoll", "-0", "-1", "-o", "10"};  // response timeout in seconds for a busy machine
+    const Arguments port = over_modbus_tcp()
+                               ? Arguments{"-m", "tcp", "-p", std::to_string(modules_.modbus_tcp_port())}
+                               : Arguments{"-m", "rtu", "-b", std::to_string(GetParam().baud), "-P", "none"};
+    command.insert(command.end(), port.begin(), port.end());
     command.insert(command.end(), options.begin(), options.end());
-    command.push_back(modules_.tty());
+    command.push_back(over_modbus_tcp() ? "127.0.0.1" : modules_.tty());
     command.insert(command.end(), values.begin(), values.end());
     return run(command);
   }
+  static bool over_modbus_tcp() { return GetParam().port == Way::ModbusTcp; }
 
   void expect_line(const Arguments& options, const std::string& line, const Arguments& values = {}) {
     const Finished finished = mbpoll(options, values);
@@ -69,6 +73,11 @@ TEST_P(Mbpoll, ReadsAndWritesBothModulesAlternately) {
 }
 
 TEST_P(Mbpoll, ReportsTheServerId) {
+  if (over_modbus_tcp()) {
+    const std::string only_rtu = mbpoll({"-a", "1", "-u"}).error;
+    EXPECT_NE(only_rtu.find("-u is available only in RTU mode"), std::string::npos) << only_rtu;
+    return;
+  }
   // mbpoll uses the first byte as the whole id and the second as the status. It prints FF in hex because FF
   // is not a printable character.
   expect_line({"-a", "1", "-u"}, "Length: 8\nId    : 0x90\nStatus: On\nData  : \\FF9042M");
@@ -96,9 +105,13 @@ TEST_P(Mbpoll, NamesTheExceptionsItGets) {
 }
 
 TEST_P(Mbpoll, HostOkHasNoReplyAndATimeoutBlocksTheOutputs) {
-  // No reply arrives, so mbpoll need not wait long. The program must have read this request before the next
-  // one.
-  expect_refusal({"-a", "1", "-t", "4", "-r", "0x3038", "-o", "0.2"}, "Connection timed out");
+  if (over_modbus_tcp()) {
+    expect_refusal({"-a", "1", "-t", "4", "-r", "0x3038"}, "Target device failed to respond");
+  } else {
+    // No reply arrives, so mbpoll need not wait long. The program must have read this request before the next
+    // one.
+    expect_refusal({"-a", "1", "-t", "4", "-r", "0x3038", "-o", "0.2"}, "Connection timed out");
+  }
   expect_sent("01 03 30 38 00 01");
   expect_line({"-a", "1", "-t", "4", "-r", "0x1E8"}, "Written 1 references.", {"1"});
   expect_line({"-a", "1", "-t", "0", "-r", "0x104"}, "Written 1 references.", {"1"});
@@ -111,8 +124,27 @@ TEST_P(Mbpoll, HostOkHasNoReplyAndATimeoutBlocksTheOutputs) {
   expect_line({"-a", "1", "-t", "0", "-r", "0"}, "Written 1 references.", {"1"});
 }
 
+using MbpollOverModbusTcp = Mbpoll;
+
+TEST_P(MbpollOverModbusTcp, NamesTheExceptionsOfTheGateway) {
+  expect_refusal({"-a", "3", "-t", "0", "-r", "0"}, "Target device failed to respond");
+  expect_refusal({"-a", "3", "-t", "0", "-r", "0"}, "Target device failed to respond", {"1"});
+  // mbpoll sends 255 for 248 to 254, too.
+  expect_refusal({"-a", "255", "-t", "0", "-r", "0"}, "Gateway path unavailable");
+  expect_refusal({"-a", "255", "-t", "4", "-r", "0x1E8"}, "Gateway path unavailable", {"1"});
+}
+
+TEST_P(MbpollOverModbusTcp, WritesTheOutputsOfAllModulesWithoutAReply) {
+  expect_refusal({"-a", "0", "-t", "0", "-r", "2", "-o", "0.2"}, "Connection timed out", {"1"});
+  expect_sent("00 05 00 02 FF 00");
+  expect_line({"-a", "1", "-t", "0", "-r", "2"}, "[2]: \t1");
+}
+
+INSTANTIATE_TEST_SUITE_P(Ways, MbpollOverModbusTcp, testing::Values(Way{Way::ModbusTcp, 115200}));
+
 INSTANTIATE_TEST_SUITE_P(Ways, Mbpoll,
-                         testing::Values(Way{false, 9600}, Way{false, 115200}, Way{true, 115200}));
+                         testing::Values(Way{Way::Pty, 9600}, Way{Way::Pty, 115200}, Way{Way::Tcp, 115200},
+                                         Way{Way::ModbusTcp, 115200}));
 
 }  // namespace
 }  // namespace ex9000::system

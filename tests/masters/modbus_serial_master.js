@@ -1,4 +1,4 @@
-// Plays conversation.txt with modbus-serial over a serial line, or as RTU frames over TCP.
+// Plays conversation.txt with modbus-serial over a serial line, as RTU frames over TCP, or over Modbus TCP.
 "use strict";
 const events = require("events");
 const net = require("net");
@@ -46,9 +46,9 @@ const ANSWERS = {
   0x2b: identification,
 };
 
-async function ask(client, baud, frame) {
+async function ask(client, where, frame) {
   client.setID(frame[0]);
-  client.setTimeout(frame[0] === 0 ? turnaround(baud) : TIMEOUT);
+  client.setTimeout(frame[0] === 0 ? turnaround(where) : TIMEOUT);
   try {
     return hex(ANSWERS[frame[1]](frame, await REQUESTS[frame[1]](client, frame)));
   } catch (error) {
@@ -59,14 +59,24 @@ async function ask(client, baud, frame) {
   }
 }
 
-/** Returns whether the library can send the request. It sends no MEI type other than 0E. */
-const sends = (frame) => frame[1] in REQUESTS && !(frame[1] === 0x2b && frame[2] !== 0x0e);
+/**
+ * Returns whether the library can send the request. It sends no MEI type other than 0E. Over Modbus TCP it drops
+ * function 11, because it considers the request too short.
+ */
+function sends({ modbusTcp }, frame) {
+  const dropped = (frame[1] === 0x2b && frame[2] !== 0x0e) || (modbusTcp && frame[1] === 0x11);
+  return frame[1] in REQUESTS && !dropped;
+}
 
 /**
  * Returns whether the library's own port delivers the reply. The port delivers a reply only if it can calculate the
  * length, and supports few functions. On a serial line it delivers the reply to function 11 before it is complete.
+ * The header of Modbus TCP contains the length.
  */
-function reachesOwnPort({ tty }, frame) {
+function reachesOwnPort({ tty, modbusTcp }, frame) {
+  if (modbusTcp) {
+    return true;
+  }
   const reads = frame[1] <= 0x04;
   return reads ? word(frame, 4) > 0 : [0x05, 0x06, 0x0f, 0x10].includes(frame[1]) || (tty && frame[1] === 0x2b);
 }
@@ -75,8 +85,12 @@ function reachesOwnPort({ tty }, frame) {
  * Connects through a port of the library. connectTelnet is its port for RTU over TCP; its TcpRTUBuffered uses the
  * header of Modbus TCP.
  */
-async function connectOwnPort(client, { tty, host, port, baud }) {
-  await (tty ? client.connectRTUBuffered(tty, { baudRate: baud }) : client.connectTelnet(host, { port }));
+async function connectOwnPort(client, { tty, host, port, modbusTcp, baud }) {
+  if (tty) {
+    await client.connectRTUBuffered(tty, { baudRate: baud });
+  } else {
+    await (modbusTcp ? client.connectTCP(host, { port }) : client.connectTelnet(host, { port }));
+  }
 }
 
 /** A port for the other replies. The library accepts custom ports. A reply is complete when its CRC is correct. */
@@ -115,16 +129,19 @@ async function openLine({ tty, host, port, baud }) {
 
 async function play(client, where, steps, checks) {
   client.isDebugEnabled = true; // provides `responses`
-  await checks.play(steps, (frame) => ask(client, where.baud, frame));
+  await checks.play(steps, (frame) => ask(client, where, frame));
   await client.close();
 }
 
 main("modbus-serial", async (where, steps, checks) => {
-  const able = steps.filter(({ wait, frame }) => wait || sends(frame));
+  const able = steps.filter(({ wait, frame }) => wait || sends(where, frame));
   const own = new ModbusRTU();
   await connectOwnPort(own, where);
   await play(own, where, able.filter(({ wait, frame }) => wait || reachesOwnPort(where, frame)), checks);
 
+  if (where.modbusTcp) {
+    return;
+  }
   const rest = new ModbusRTU(new FramePort(await openLine(where)));
   await new Promise((resolve) => rest.open(resolve));
   await play(rest, where, able.filter(({ wait, frame }) => !wait && !reachesOwnPort(where, frame)), checks);

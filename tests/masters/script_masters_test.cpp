@@ -1,5 +1,5 @@
 // Tests masters in Python and JavaScript (tests/masters/) that use unmodified third-party libraries, on the
-// pseudo-terminal and as RTU frames over TCP.
+// pseudo-terminal, as RTU frames over TCP, and over Modbus TCP.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -63,6 +63,13 @@ TEST_P(ScriptMaster, GetsEveryExpectedReplyOverTcp) {
   arguments.insert(arguments.end(), {"--tcp", "0"});
   SimulatorProcess simulator(arguments);
   expect_to_pass({"--tcp", "127.0.0.1:" + std::to_string(simulator.tcp_port()), "--baud", "115200"});
+}
+
+TEST_P(ScriptMaster, GetsEveryExpectedReplyOverModbusTcp) {
+  std::vector<std::string> arguments = modules("115200");
+  arguments.insert(arguments.end(), {"--modbus-tcp", "0"});
+  SimulatorProcess simulator(arguments);
+  expect_to_pass({"--modbus-tcp", "127.0.0.1:" + std::to_string(simulator.tcp_port()), "--baud", "115200"});
 }
 
 TEST_P(ScriptMaster, GetsEveryExpectedReplyOnAnInstantLine) {

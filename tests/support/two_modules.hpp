@@ -1,7 +1,8 @@
 // An EX9042D-M at address 01 and an EX9052D-M at address 02 on one line, for masters that require a serial
-// port.
+// port or Modbus TCP.
 #pragma once
 
+#include <cstdint>
 #include <optional>
 #include <ostream>
 #include <string>
@@ -13,11 +14,18 @@ namespace ex9000::system {
 
 /// How a master connects to the line, and the baud rate of the line.
 struct Way {
-  bool over_tcp;  ///< over socat, which connects a pseudo-terminal to a TCP port
+  enum Port {
+    Pty,
+    Tcp,        ///< over socat, which connects a pseudo-terminal to a TCP port
+    ModbusTcp,  ///< over the gateway; there is no serial port
+  };
+
+  Port port;
   int baud;
 
   friend std::ostream& operator<<(std::ostream& out, const Way& way) {
-    return out << (way.over_tcp ? "TCP" : "pty") << " at " << way.baud;
+    constexpr const char* kNames[] = {"pty", "TCP", "Modbus TCP"};
+    return out << kNames[way.port] << " at " << way.baud;
   }
 };
 
@@ -25,9 +33,8 @@ class TwoModules {
  public:
   explicit TwoModules(Way way)
       : simulator_({"EX9042D-M@01,baud=" + std::to_string(way.baud),
-                    "EX9052D-M@02,baud=" + std::to_string(way.baud), "--log",
-                    way.over_tcp ? "--tcp=0" : "--pty=ex9000.tty"}) {
-    if (way.over_tcp) {
+                    "EX9052D-M@02,baud=" + std::to_string(way.baud), "--log", option_of(way.port)}) {
+    if (way.port == Way::Tcp) {
       bridge_.emplace(
           std::vector<std::string>{"socat", "-d", "-d", "PTY,link=ex9000.tty,raw,echo=0",
                                    "TCP:127.0.0.1:" + std::to_string(simulator_.tcp_port()) + ",nodelay"},
@@ -37,9 +44,23 @@ class TwoModules {
   }
 
   [[nodiscard]] std::string tty() const { return simulator_.tty(); }
+  /// Requires Way::ModbusTcp.
+  [[nodiscard]] std::uint16_t modbus_tcp_port() const { return simulator_.tcp_port(); }
   SimulatorProcess& simulator() { return simulator_; }
 
  private:
+  static const char* option_of(Way::Port port) {
+    switch (port) {
+      case Way::Pty:
+        return "--pty=ex9000.tty";
+      case Way::Tcp:
+        return "--tcp=0";
+      case Way::ModbusTcp:
+        break;
+    }
+    return "--modbus-tcp=0";
+  }
+
   SimulatorProcess simulator_;
   std::optional<ChildProcess> bridge_;
 };
