@@ -1,6 +1,7 @@
 #!/usr/bin/env python3
 """Tests that the simulated module has each register in the maps, and works as the maps state."""
 
+import itertools
 import json
 import re
 import unittest
@@ -13,6 +14,10 @@ from program import describe, models_with_modbus
 # The terms of the tools, and the terms of Line: coil, discrete_input, holding and input.
 NODE_RED = {"Coil": "coil", "Input": "discrete_input", "HoldingRegister": "holding", "InputRegister": "input"}
 WIREN_BOARD = {"coil": "coil", "discrete": "discrete_input", "holding": "holding", "input": "input"}
+
+# How the tools name the frames on each port of the program.
+HOME_ASSISTANT = {"--tcp": "rtuovertcp", "--modbus-tcp": "tcp"}
+NODE_RED_CLIENTS = {"--tcp": "TELNET", "--modbus-tcp": "DEFAULT"}
 
 # The number of outputs and of inputs (wire.md section 1).
 CHANNELS = {
@@ -44,9 +49,9 @@ def ranges_to_read(model):
 
 
 class EveryMap(unittest.TestCase):
-    def of_each_model(self, play):
-        for model in models_with_modbus():
-            with self.subTest(model=model), Line(model) as line:
+    def of_each_model(self, play, options=("--tcp", "--modbus-tcp")):
+        for model, option in itertools.product(models_with_modbus(), options):
+            with self.subTest(model=model, option=option), Line(model, option) as line:
                 play(line, model)
 
     def expect_switch(self, line, read, write):
@@ -56,8 +61,9 @@ class EveryMap(unittest.TestCase):
 
     def test_every_entity_of_home_assistant_reads_and_switches_its_channel(self):
         def play(line, model):
-            text = describe(model, "--format", "home-assistant")
+            text = describe(model, "--format", "home-assistant", line.option, f"127.0.0.1:{line.port}")
             hub = yaml.safe_load(text)[0]
+            self.assertEqual((hub["type"], hub["port"]), (HOME_ASSISTANT[line.option], line.port))
             switches, sensors = hub.get("switches", []), hub.get("binary_sensors", []) + hub.get("sensors", [])
             self.assertEqual({switch["address"] for switch in switches}, set(range(CHANNELS[model][0])))
             for switch in switches:
@@ -77,10 +83,14 @@ class EveryMap(unittest.TestCase):
 
     def test_every_node_of_node_red_reads_or_writes_its_channel(self):
         def play(line, model):
-            nodes = {node["id"]: node for node in json.loads(describe(model, "--format", "node-red"))}
+            text = describe(model, "--format", "node-red", line.option, f"127.0.0.1:{line.port}")
+            nodes = {node["id"]: node for node in json.loads(text)}
             read, written = set(), set()
             for node in nodes.values():
-                if node["type"] == "modbus-read":
+                if node["type"] == "modbus-client":
+                    client = (node["tcpType"], node["tcpPort"])
+                    self.assertEqual(client, (NODE_RED_CLIENTS[line.option], str(line.port)))
+                elif node["type"] == "modbus-read":
                     first, count = int(node["adr"]), int(node["quantity"])
                     self.assertEqual(len(line.read(NODE_RED[node["dataType"]], first, count)), count)
                     read.add((first, count))
@@ -113,7 +123,7 @@ class EveryMap(unittest.TestCase):
                     written |= {(channel["address"], True), (channel["address"], False)}
             self.assertEqual(written, coils_to_write(model))
 
-        self.of_each_model(play)
+        self.of_each_model(play, ["--tcp"])  # a template contains no port
 
 
 if __name__ == "__main__":

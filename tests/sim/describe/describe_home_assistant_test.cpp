@@ -36,6 +36,17 @@ TEST(DescribeHomeAssistant, UsesRtuOverTcpOnTheSimulatorsPort) {
                        "  port: 4001\n"));
 }
 
+TEST(DescribeHomeAssistant, OverModbusTcpOnlyTheTypeOfTheHubDiffers) {
+  std::string text = configuration_of("EX9042D-M", {{"gateway", 502}, 0xF7, true});
+  EXPECT_TRUE(has_once(text,
+                       "- name: ex9042d_m_F7\n"
+                       "  type: tcp\n"
+                       "  host: gateway\n"
+                       "  port: 502\n"));
+  text.replace(text.find("type: tcp"), std::string("type: tcp").size(), "type: rtuovertcp");
+  EXPECT_EQ(text, configuration_of("EX9042D-M", {{"gateway", 502}, 0xF7}));
+}
+
 TEST(DescribeHomeAssistant, OutputsAreSwitchesThatAreReadBack) {
   const std::string text = configuration_of("EX9042D-M", {{}, 0x0A});
   EXPECT_EQ(times(text, "      write_type: coil\n"), 13);

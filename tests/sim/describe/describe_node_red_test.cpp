@@ -45,6 +45,17 @@ TEST(DescribeNodeRed, SendsRtuFramesOverTcpToTheGivenPort) {
   EXPECT_EQ(client.at("parallelUnitIdsAllowed"), false);
 }
 
+TEST(DescribeNodeRed, OverModbusTcpOnlyTheTypeOfTheClientDiffers) {
+  Json flow = flow_of("EX9042D-M", {{"gateway", 502}, 0x0A, true});
+  const auto client = std::find_if(flow.begin(), flow.end(),
+                                   [](const Json& node) { return node.at("type") == "modbus-client"; });
+  ASSERT_NE(client, flow.end());
+  EXPECT_EQ(client->at("tcpType"), "DEFAULT");
+  EXPECT_EQ(client->at("tcpPort"), "502");
+  client->at("tcpType") = "TELNET";
+  EXPECT_EQ(flow, flow_of("EX9042D-M", {{"gateway", 502}, 0x0A}));
+}
+
 TEST(DescribeNodeRed, ReadsTheRegistersOfAModelWithOutputs) {
   EXPECT_EQ(asked(flow_of("EX9042D-M"), "modbus-read"),
             (std::vector<std::string>{"Coil 0 13", "Coil 128 13", "Coil 160 13", "Coil 260 1", "Coil 269 1",

@@ -75,17 +75,36 @@ TEST(Describe, AnAddressIsOneOrTwoHexDigitsFrom01ToF7) {
 TEST(Describe, AnInvalidTcpHostOrPortIsRefused) {
   for (const char* tcp : {"", "0", "localhost:0", "localhost", "65536", "a b:1", "\xFF:1", "\"a\":1"}) {
     expect_refused({"EX9042D-M", "node-red", {}, tcp}, "--tcp ", "HOST:PORT");
+    expect_refused({"EX9042D-M", "node-red", {}, {}, tcp}, "--modbus-tcp ", "HOST:PORT");
   }
   const std::string text = describe({"EX9042D-M", "node-red", {}, "[fe80::1%eth0]:4001"});
   EXPECT_NE(text.find("\"tcpHost\": \"fe80::1%eth0\""), std::string::npos);
   EXPECT_NE(text.find("\"tcpPort\": \"4001\""), std::string::npos);
 }
 
-TEST(Describe, FormatsOtherThanHomeAssistantAndNodeRedRefuseAddressAndTcp) {
+TEST(Describe, AModbusTcpPortSetsHostPortAndType) {
+  const std::string hub = describe({"EX9042D-M", "home-assistant", {}, {}, "[fe80::1%eth0]:502"});
+  EXPECT_NE(hub.find("  type: tcp\n  host: \"fe80::1%eth0\"\n  port: 502\n"), std::string::npos) << hub;
+  const std::string flow = describe({"EX9042D-M", "node-red", {}, {}, "5020"});
+  EXPECT_NE(flow.find("\"tcpHost\": \"127.0.0.1\""), std::string::npos);
+  EXPECT_NE(flow.find("\"tcpPort\": \"5020\""), std::string::npos);
+  EXPECT_NE(flow.find("\"tcpType\": \"DEFAULT\""), std::string::npos);
+}
+
+TEST(Describe, TcpAndModbusTcpTogetherAreRefused) {
+  for (const char* format : {"home-assistant", "node-red"}) {
+    expect_refused({"EX9042D-M", format, {}, "127.0.0.1:5020", "127.0.0.1:502"},
+                   "--modbus-tcp: cannot be combined with --tcp", "leave out one of them");
+  }
+}
+
+TEST(Describe, FormatsOtherThanHomeAssistantAndNodeRedRefuseAddressAndPorts) {
   for (const char* format : {"markdown", "json", "csv", "wb-mqtt-serial"}) {
     expect_refused({"EX9042D-M", format, "01", {}}, "--address: --format " + std::string(format),
                    "leave it out");
     expect_refused({"EX9042D-M", format, {}, "5020"}, "--tcp: --format " + std::string(format),
+                   "leave it out");
+    expect_refused({"EX9042D-M", format, {}, {}, "5020"}, "--modbus-tcp: --format " + std::string(format),
                    "leave it out");
   }
 }

@@ -12,6 +12,7 @@ import yaml
 from program import describe, models_with_modbus
 
 SCHEMA = json.loads(pathlib.Path(__file__).with_name("home_assistant_modbus.schema.json").read_text(encoding="utf-8"))
+OPTIONS = ["--tcp", "--modbus-tcp"]
 LISTS = ["switches", "binary_sensors", "sensors"]
 
 
@@ -47,7 +48,8 @@ class HomeAssistant(unittest.TestCase):
         self.assertGreaterEqual(len(models), 5)
         for model in models:
             with self.subTest(model=model):
-                jsonschema.validate(hubs(model), SCHEMA, jsonschema.Draft7Validator)
+                for port in [[], ["--modbus-tcp", "192.0.2.7:502"]]:
+                    jsonschema.validate(hubs(model, *port), SCHEMA, jsonschema.Draft7Validator)
 
     def test_the_serial_port_in_the_comment_fits_the_schema(self):
         for model in models_with_modbus():
@@ -75,6 +77,11 @@ class HomeAssistant(unittest.TestCase):
         hub = hubs("EX9052D-M", "--address", "2a", "--tcp", "192.0.2.7:4001")[0]
         self.assertEqual((hub["host"], hub["port"], hub["name"]), ("192.0.2.7", 4001, "ex9052d_m_2A"))
         self.assertEqual({entity["slave"] for _, entity in entities(hub)}, {0x2A})
+
+    def test_over_modbus_tcp_only_the_type_of_the_hub_differs(self):
+        over_tcp, over_modbus_tcp = (hubs("EX9052D-M", option, "192.0.2.7:502")[0] for option in OPTIONS)
+        self.assertEqual((over_tcp.pop("type"), over_modbus_tcp.pop("type")), ("rtuovertcp", "tcp"))
+        self.assertEqual(over_tcp, over_modbus_tcp)
 
     def test_the_schema_rejects_wrong_hubs(self):
         def hub_with(**keys):

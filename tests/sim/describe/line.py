@@ -20,14 +20,19 @@ def crc16(data):
 
 
 class Line:
-    """One module at address 01, which a master reaches over TCP with Modbus RTU frames."""
+    """One module at address 01, which a master reaches over TCP.
 
-    def __init__(self, model):
-        command = [PROGRAM, f"{model}@01", "--tcp", "0", "--line", "instant"]
+    The option of the program decides how: --tcp with Modbus RTU frames, --modbus-tcp with frames of Modbus TCP.
+    """
+
+    def __init__(self, model, option="--tcp"):
+        self.option = option
+        command = [PROGRAM, f"{model}@01", option, "0", "--line", "instant"]
         self._program = subprocess.Popen(command, stdout=subprocess.PIPE, encoding="utf-8")
         greeting = "".join(iter(self._program.stdout.readline, "press Ctrl-C to end\n"))
-        port = int(re.search(r"TCP 127\.0\.0\.1:(\d+)", greeting).group(1))
-        self._socket = socket.create_connection(("127.0.0.1", port), timeout=60)  # seconds; only detects a hang
+        self.port = int(re.search(r"TCP 127\.0\.0\.1:(\d+)", greeting).group(1))
+        self._socket = socket.create_connection(("127.0.0.1", self.port), timeout=60)  # seconds; only detects a hang
+        self._transaction = 0
 
     def __enter__(self):
         return self
@@ -47,18 +52,35 @@ class Line:
             data += received
         return data
 
-    def _ask(self, function, first, value):
-        """Returns the data of the reply, without address, function and CRC. Raises ValueError for an exception."""
-        request = struct.pack(">BBHH", 1, function, first, value)
+    def _ask_rtu(self, request):
+        """Returns address, function and data of the reply."""
         self._socket.sendall(request + crc16(request))
         reply = self._receive(3)
         if reply[1] & 0x80:
-            self._receive(2)
-            raise ValueError(f"exception {reply[2]:02} to {request.hex(' ')}")
-        reply += self._receive(5 if function >= 5 else reply[2] + 2)
+            reply += self._receive(2)
+        else:
+            reply += self._receive(5 if reply[1] >= 5 else reply[2] + 2)
         if crc16(reply[:-2]) != reply[-2:]:
             raise ValueError(f"wrong CRC: {reply.hex(' ')}")
-        return reply[2:-2]
+        return reply[:-2]
+
+    def _ask_modbus_tcp(self, request):
+        """Returns address, function and data of the reply."""
+        self._transaction += 1
+        self._socket.sendall(struct.pack(">HHH", self._transaction, 0, len(request)) + request)
+        header = self._receive(6)
+        transaction, protocol, length = struct.unpack(">HHH", header)
+        if (transaction, protocol) != (self._transaction, 0):
+            raise ValueError(f"wrong header: {header.hex(' ')}")
+        return self._receive(length)
+
+    def _ask(self, function, first, value):
+        """Returns the data of the reply, without address and function. Raises ValueError for an exception."""
+        request = struct.pack(">BBHH", 1, function, first, value)
+        reply = self._ask_modbus_tcp(request) if self.option == "--modbus-tcp" else self._ask_rtu(request)
+        if reply[:2] != request[:2]:
+            raise ValueError(f"{reply.hex(' ')} in reply to {request.hex(' ')}")
+        return reply[2:]
 
     def read(self, kind, first, count=1):
         """Returns bits or registers as numbers. Raises ValueError if the reply is an exception."""

@@ -65,10 +65,12 @@ class NodeRed(unittest.TestCase):
         for model in models:
             with self.subTest(model=model):
                 self.assertEqual(mistakes(flow(model)), [])
+                self.assertEqual(mistakes(flow(model, "--modbus-tcp", "192.0.2.7:502")), [])
 
     def test_ids_are_stable_and_differ_between_modules(self):
         ids = [node["id"] for node in flow("EX9042D-M")]
-        self.assertEqual(ids, [node["id"] for node in flow("EX9042D-M", "--tcp", "192.0.2.7:4001")])
+        for option in ["--tcp", "--modbus-tcp"]:
+            self.assertEqual(ids, [node["id"] for node in flow("EX9042D-M", option, "192.0.2.7:4001")])
         others = flow("EX9042D-M", "--address", "02") + flow("EX9043D-M")
         self.assertEqual(set(ids) & {node["id"] for node in others}, set())
 
