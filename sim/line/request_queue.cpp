@@ -7,6 +7,13 @@
 
 namespace ex9000::sim {
 
+namespace {
+
+/// The most bytes of a frame on the line: those of Modbus RTU. DCON frames are shorter.
+constexpr std::size_t kLongestFrame = 256;
+
+}  // namespace
+
 RequestQueue::RequestQueue(Line& line) : line_(line), timer_(line.bus().attach(*this)) {}
 
 void RequestQueue::ask(Request request) {
@@ -63,9 +70,15 @@ void RequestQueue::hear(std::uint8_t byte, ByteStatus status) {
   if (reply_.bytes.empty()) {
     reply_.delay = now - sent_;
   }
-  reply_.bytes.push_back(byte);
   reply_.damaged |= status != ByteStatus::Good;
-  enter(State::Receives, now + line_.rtu_silence());
+  VirtualTime ends = now + line_.rtu_silence();
+  if (reply_.bytes.size() < kLongestFrame) {
+    reply_.bytes.push_back(byte);
+  } else {  // not a frame; a station that never stops sending must not hold the request for ever
+    reply_.damaged = true;
+    ends = std::min(ends, std::max(now, deadline_));
+  }
+  enter(State::Receives, ends);
 }
 
 void RequestQueue::run() {

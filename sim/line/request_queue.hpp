@@ -29,8 +29,8 @@ class RequestQueue final : private Station {
   static constexpr VirtualTime kTurnaround = std::chrono::milliseconds(100);
 
   struct Reply {
-    std::vector<std::uint8_t> bytes;  ///< empty: no reply in time, or none expected
-    bool damaged = false;             ///< a byte had a framing or parity error
+    std::vector<std::uint8_t> bytes;  ///< at most 256; empty: no reply in time, or none expected
+    bool damaged = false;             ///< a byte had a framing or parity error, or more bytes followed
     VirtualTime delay{0};             ///< from the end of the request to the end of the first byte
   };
 

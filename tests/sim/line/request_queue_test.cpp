@@ -207,6 +207,41 @@ TEST_P(Queue, ALineThatIsNeverSilentDoesNotHoldARequestForEver) {
   EXPECT_EQ(results_.size(), 1U);
 }
 
+/// Sends a byte each `period` from now on.
+class Babbler final : public Station {
+ public:
+  Babbler(Bus& bus, VirtualTime period) : bus_(bus), end_(bus.attach(*this)), period_(period) { run(); }
+
+  void run() override {
+    end_.drive(true);
+    end_.put(0x55, {9600, LineFormat::k8N1});
+    end_.run_at(bus_.clock().virtual_now() + period_);
+  }
+
+ private:
+  Bus& bus_;
+  BusEnd& end_;
+  VirtualTime period_;
+};
+
+/// Only a paced line: on an instant line, a station without a silence sends millions of bytes.
+using PacedQueue = Queue;
+
+TEST_P(PacedQueue, AStationThatNeverStopsSendingDoesNotHoldARequestForEver) {
+  RequestQueue::Request checked = request(kToNobody, "checked");
+  checked.is_reply = [](Bytes /*frame*/) { return true; };
+  line_.requests().ask(std::move(checked));
+  ask(kToNobody, "raw");
+  run(milliseconds(20));  // the request is on the line
+  const Babbler babbler(line_.bus(), line_.rtu_silence() / 2);
+  run(RequestQueue::kReplyTimeout + milliseconds(80));
+  EXPECT_EQ(results_, (Results{{"checked", {}}}));
+  run(2 * RequestQueue::kReplyTimeout + milliseconds(100));
+  ASSERT_EQ(results_.size(), 2U);
+  EXPECT_TRUE(last_.damaged);
+  EXPECT_LE(last_.bytes.size(), 256U);
+}
+
 TEST_P(Queue, TheDelayOfAReplyIsFromTheRequestToTheFirstByte) {
   ask(kRead1, "a");
   run(milliseconds(200));
@@ -216,6 +251,7 @@ TEST_P(Queue, TheDelayOfAReplyIsFromTheRequestToTheFirstByte) {
   EXPECT_NEAR(static_cast<double>(last_.delay.count()), static_cast<double>((whole - rest).count()), 3000);
 }
 
+INSTANTIATE_TEST_SUITE_P(Paced, PacedQueue, testing::Values(false));
 INSTANTIATE_TEST_SUITE_P(Lines, Queue, testing::Bool(),
                          [](const auto& kind) { return kind.param ? "Instant" : "Paced"; });
 
