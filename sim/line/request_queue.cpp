@@ -98,7 +98,7 @@ void RequestQueue::run() {
   const Request& request = waiting_.front();
   if (!request.is_reply ||
       (!reply_.damaged && request.is_reply({reply_.bytes.data(), reply_.bytes.size()}))) {
-    finish(reply_);
+    finish(std::exchange(reply_, {}));
   } else if (line_.clock().virtual_now() < deadline_) {
     reply_ = {};
     enter(State::WaitsForReply, deadline_);
@@ -109,12 +109,11 @@ void RequestQueue::run() {
 
 /// Sends the next request before it reports this one, so that a request which the report causes comes last.
 void RequestQueue::finish(const Reply& reply) {
-  const Reply result = reply;
   const Request request = std::move(waiting_.front());
   waiting_.pop_front();
   own_byte_ = line_.spacing().last_byte();
   send_next();
-  request.done(result);
+  request.done(reply);
 }
 
 void RequestQueue::enter(State state, VirtualTime until) {
