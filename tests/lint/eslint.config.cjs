@@ -5,8 +5,8 @@ const js = require("@eslint/js");
 // Only the globals that the code uses. The full set of a browser contains `name`, `event` and `top`, which would hide a
 // missing declaration.
 const known = (...names) => Object.fromEntries(names.map((name) => [name, "readonly"]));
-const BROWSER = known("ResizeObserver", "WebSocket", "clearTimeout", "devicePixelRatio", "document", "getComputedStyle",
-  "location", "matchMedia", "performance", "requestAnimationFrame", "setTimeout");
+const BROWSER = known("ResizeObserver", "WebSocket", "clearTimeout", "devicePixelRatio", "document", "fetch",
+  "getComputedStyle", "location", "matchMedia", "performance", "requestAnimationFrame", "setTimeout");
 const NODE = known("Buffer", "__dirname", "console", "process");
 
 module.exports = [
