@@ -17,12 +17,12 @@ void MbapSession::pass_on() {
     return;  // an answer that came at once; the loop below continues
   }
   passing_on_ = true;
-  while (waiting_ < kMostWaiting && !blocked_) {
+  while (!waiting_ && !blocked_) {
     const std::optional<MbapFrame> request = reader_.next();
     if (!request) {
       break;
     }
-    ++waiting_;
+    waiting_ = true;
     const std::weak_ptr<MbapSession*> lives = lives_;
     gateway_.ask(*request, lives,
                  [lives, request = *request](const std::optional<std::vector<std::uint8_t>>& pdu) {
@@ -35,7 +35,7 @@ void MbapSession::pass_on() {
 }
 
 void MbapSession::answer(const MbapFrame& request, const std::optional<std::vector<std::uint8_t>>& pdu) {
-  --waiting_;
+  waiting_ = false;
   if (pdu && !send_(mbap_bytes({request.transaction, request.unit, *pdu}))) {
     blocked_ = true;
   }

@@ -14,14 +14,11 @@
 
 namespace ex9000::sim {
 
-/// Takes the requests from the bytes of a client, and passes them to the gateway. Requests that have not been
-/// sent when this object is destroyed are dropped. No function blocks.
+/// Takes the requests from the bytes of a client, and passes them to the gateway one after the other, so that
+/// the clients of a line take turns. Replies have the order of the requests. Requests that have not been sent
+/// when this object is destroyed are dropped. No function blocks.
 class MbapSession {
  public:
-  /// How many requests of one client may wait for the line, so that a client cannot delay the others for
-  /// long.
-  static constexpr std::size_t kMostWaiting = 16;
-
   /// Sends a reply to the client. Returns false if the client accepts no more at present.
   using Send = std::function<bool(const std::vector<std::uint8_t>& bytes)>;
 
@@ -41,7 +38,7 @@ class MbapSession {
   /// Returns whether the client has sent a wrong header. Its later bytes are ignored.
   [[nodiscard]] bool broken() const { return reader_.broken(); }
   /// Returns whether all complete requests have been answered.
-  [[nodiscard]] bool idle() const { return waiting_ == 0 && !blocked_ && !passing_on_; }
+  [[nodiscard]] bool idle() const { return !waiting_ && !blocked_ && !passing_on_; }
 
  private:
   void pass_on();
@@ -51,8 +48,8 @@ class MbapSession {
   Send send_;
   std::function<void()> answered_;
   MbapReader reader_;
-  std::size_t waiting_ = 0;  ///< requests that are not answered yet
-  bool blocked_ = false;     ///< `send` has returned false
+  bool waiting_ = false;  ///< a request is not answered yet
+  bool blocked_ = false;  ///< `send` has returned false
   bool passing_on_ = false;
   std::shared_ptr<MbapSession*> lives_ = std::make_shared<MbapSession*>(this);
 };

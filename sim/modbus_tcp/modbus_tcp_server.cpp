@@ -16,8 +16,9 @@ using boost::asio::ip::tcp;
 
 /// The maximum number of clients. The next one is disconnected.
 constexpr std::size_t kMostClients = 64;
-/// The server reads nothing more from a client while this many of its bytes wait to become requests.
-constexpr std::size_t kMostUnread = 4096;
+/// The server reads nothing more from a client while this many of its bytes wait to become requests. This is
+/// also the most for which `advance ... after N` can wait, see SteppedLine::kMostBytes.
+constexpr std::size_t kMostUnread = 65536;
 /// The system stores about this many bytes of replies to a client that does not read. Then the server passes
 /// on no more requests of this client.
 constexpr int kMostUnsent = 65536;

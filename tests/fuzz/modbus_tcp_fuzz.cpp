@@ -75,18 +75,12 @@ class Client {
   bool take(const Buffer& reply) {
     require(reply.size() > kHeader && reply.size() <= 260, "a reply has a header and a PDU");
     require(word(reply, 2) == 0 && word(reply, 4) == reply.size() - 6, "the header is correct");
-    // Exception 0A does not wait for the line, so it may overtake other replies.
-    for (auto asked = asked_.begin(); asked != asked_.end(); ++asked) {
-      const bool is_its = asked->transaction == word(reply, 0) && asked->unit == reply[6];
-      if (is_its) {
-        check(*asked, reply);
-        asked_.erase(asked);
-        return true;
-      }
-      require(reply[6] > kLastUnit || asked->unit > kLastUnit,
-              "replies from the line keep the order of requests");
-    }
-    require(false, "a reply belongs to a request");
+    require(!asked_.empty(), "a reply belongs to a request");
+    const Asked asked = asked_.front();
+    asked_.pop_front();
+    require(asked.transaction == word(reply, 0) && asked.unit == reply[6],
+            "replies keep the order of requests");
+    check(asked, reply);
     return true;
   }
 

@@ -8,6 +8,8 @@
 #include <string>
 #include <vector>
 
+#include "sim/line/rtu_frame.hpp"
+
 namespace ex9000::sim {
 namespace {
 
@@ -139,6 +141,30 @@ TEST(Gateway, ALostReplyGetsException0BAndTheNextRequestItsReply) {
   EXPECT_EQ(bench.reply(0x01, kReadOutputs), kOutputsOff);
   EXPECT_EQ(bench.reply(0x01, kOutput0On), (Pdu{0x85, kNoReply}));
   EXPECT_EQ(bench.reply(0x01, kReadOutputs), (Pdu{0x01, 0x02, 0x01, 0x00}));
+}
+
+TEST(Gateway, TheEchoOfARequestThatReadsIsNotItsReply) {
+  GatewayLine bench({"EX9042D-M@01"});
+  bench.line.faults().add(parse_fault("echo 1ms"));
+  EXPECT_EQ(bench.reply(0x09, kReadOutputs), (Pdu{0x81, kNoReply}));
+}
+
+TEST(RtuReply, HasTheAddressTheFunctionAndTheLengthOfItsFunction) {
+  const auto is_reply = [](const Pdu& pdu, std::uint8_t function, std::uint8_t address = 0x01) {
+    const std::vector<std::uint8_t> frame = rtu_frame(0x01, pdu);
+    return is_rtu_reply(address, function, {frame.data(), frame.size()});
+  };
+  EXPECT_TRUE(is_reply({0x01, 0x02, 0x00, 0x00}, 0x01));
+  EXPECT_FALSE(is_reply({0x01, 0x02, 0x00, 0x00}, 0x01, 0x02));
+  EXPECT_FALSE(is_reply({0x01, 0x02, 0x00, 0x00}, 0x02));
+  EXPECT_FALSE(is_reply({0x01, 0x02, 0x00}, 0x01));
+  EXPECT_FALSE(is_reply({0x04, 0x02, 0x00, 0x00, 0x00}, 0x04));
+  EXPECT_TRUE(is_reply({0x05, 0x00, 0x00, 0xFF, 0x00}, 0x05));
+  EXPECT_FALSE(is_reply({0x10, 0x00, 0x00, 0x00}, 0x10));
+  EXPECT_TRUE(is_reply({0x83, 0x02}, 0x03));
+  EXPECT_FALSE(is_reply({0x83, 0x02, 0x00}, 0x03));
+  EXPECT_TRUE(is_reply({0x46, 0x00, 0x00, 0x90, 0x42, 0x00}, 0x46));
+  EXPECT_FALSE(is_reply({0x46}, 0x46));
 }
 
 TEST(Gateway, AReplyAfterTheTimeoutIsNotTheReplyToTheNextRequest) {

@@ -64,6 +64,27 @@ TEST(ModbusTcpProgram, InSteppedTimeTheRequestsOfOneAdvanceAreAnsweredInIt) {
   EXPECT_EQ(master.receive(31), kFirstReply + kNoReply + kSecondReply);
 }
 
+TEST(ModbusTcpProgram, InSteppedTimeAnAdvanceFindsItsBytesBehindRequestsThatWait) {
+  SimulatorProcess simulator({"EX9042D-M@01", "--modbus-tcp", "0", "--speed", "step", "--control", "ctl"});
+  ControlClient control(simulator.directory() + "/ctl");
+  SocketClient master(simulator.tcp_port());
+  constexpr std::size_t kMany = 1000;
+  Buffer requests;
+  for (std::size_t i = 0; i < kMany; ++i) {
+    requests = requests + kFirst;
+  }
+  master.send(requests);
+  control.ok("advance 10ms after 12000");
+  master.send(kSecond);
+  control.ok("advance 10ms after 12");
+  control.ok("advance 100s quiet");
+  Buffer replies;
+  for (std::size_t i = 0; i < kMany; ++i) {
+    replies = replies + kFirstReply;
+  }
+  EXPECT_EQ(master.receive(11 * (kMany + 1)), replies + kSecondReply);
+}
+
 TEST(ModbusTcpProgram, TheSameCommandsGiveTheSameTimes) {
   std::vector<std::string> runs;
   for (int run = 0; run < 2; ++run) {
