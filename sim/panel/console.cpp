@@ -72,7 +72,7 @@ std::string decoded(const ConsoleRequest& request, const std::vector<std::uint8_
   const std::vector<std::uint8_t> sent = frame_of(request).bytes;
   const Bytes frame{reply.data(), reply.size()};
   if (!is_dcon(request.text) && is_rtu_reply(sent[0], sent[1], frame)) {
-    const std::string values = values_text(pdu_of({sent.data(), sent.size()}), pdu_of(frame));
+    std::string values = values_text(pdu_of({sent.data(), sent.size()}), pdu_of(frame));
     if (!values.empty()) {
       return values;
     }
