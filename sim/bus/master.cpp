@@ -13,6 +13,7 @@ Master::Master(Bus& bus, SerialMode mode, Receive receive)
 void Master::send(const std::uint8_t* bytes, std::size_t size, VirtualTime not_before,
                   const std::vector<std::size_t>& damaged) {
   const std::size_t first = waiting_.size();
+  taken_ += size;
   for (std::size_t i = 0; i < size; ++i) {
     waiting_.push_back({bytes[i], false});
   }

@@ -29,6 +29,8 @@ class Master final : public Station {
             const std::vector<std::size_t>& damaged = {});
   /// Returns whether bytes wait or are on the wires.
   [[nodiscard]] bool sending() const { return next_ != kNever; }
+  /// Returns how many bytes `send` has taken so far.
+  [[nodiscard]] std::uint64_t taken() const { return taken_; }
   /// Returns how many bytes wait for their start bit.
   [[nodiscard]] std::size_t waiting() const { return waiting_.size(); }
 
@@ -59,6 +61,7 @@ class Master final : public Station {
   };
 
   std::deque<Waiting> waiting_;
+  std::uint64_t taken_ = 0;
   bool driving_ = false;
   VirtualTime burst_began_{0};
   std::size_t burst_bytes_ = 0;

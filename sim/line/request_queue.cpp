@@ -17,6 +17,10 @@ constexpr std::size_t kLongestFrame = 256;
 RequestQueue::RequestQueue(Line& line) : line_(line), timer_(line.bus().attach(*this)) {}
 
 void RequestQueue::ask(Request request) {
+  const auto first = waiting_.begin() + (state_ == State::Idle ? 0 : 1);
+  waiting_.erase(
+      std::remove_if(first, waiting_.end(), [](const Request& each) { return each.owner.expired(); }),
+      waiting_.end());
   waiting_.push_back(std::move(request));
   if (state_ == State::Idle) {
     send_next();
@@ -44,12 +48,16 @@ bool RequestQueue::others_use_the_line() const {
 /// Sends the first request, perhaps later.
 void RequestQueue::send() {
   constexpr VirtualTime kBetweenLooks = std::chrono::milliseconds(1);
+  Master& master = line_.master();
   const VirtualTime now = line_.clock().virtual_now();
   if (others_use_the_line() && now < deadline_) {
     enter(State::WaitsForLine, now + kBetweenLooks);
     return;
   }
-  Master& master = line_.master();
+  if (master.sending()) {  // the request would follow the bytes of the other master much later
+    finish({});
+    return;
+  }
   const Request& request = waiting_.front();
   const FrameSpacing& spacing = line_.spacing();
   const VirtualTime earliest =
@@ -59,6 +67,7 @@ void RequestQueue::send() {
   reply_ = {};
   enter(request.expects_reply ? State::WaitsForReply : State::TurnsAround, deadline_);
   master.send(request.bytes.data(), request.bytes.size(), earliest);
+  taken_ = master.taken();
 }
 
 void RequestQueue::hear(std::uint8_t byte, ByteStatus status) {
@@ -86,7 +95,7 @@ void RequestQueue::run() {
     case State::Idle:
       return;
     case State::WaitsForLine:
-      send();
+      waiting_.front().owner.expired() ? send_next() : send();
       return;
     case State::WaitsForReply:
     case State::TurnsAround:
@@ -95,9 +104,8 @@ void RequestQueue::run() {
     case State::Receives:
       break;
   }
-  const Request& request = waiting_.front();
-  if (!request.is_reply ||
-      (!reply_.damaged && request.is_reply({reply_.bytes.data(), reply_.bytes.size()}))) {
+  if (is_reply()) {
+    own_byte_ = line_.spacing().last_byte();
     finish(std::exchange(reply_, {}));
   } else if (line_.clock().virtual_now() < deadline_) {
     reply_ = {};
@@ -107,11 +115,20 @@ void RequestQueue::run() {
   }
 }
 
+/// Returns whether the received frame is the reply to the request in progress. If another master has sent
+/// meanwhile, it may be the reply to that master.
+bool RequestQueue::is_reply() const {
+  const Request& request = waiting_.front();
+  const bool is_for_this_queue = line_.master().taken() == taken_;
+  return is_for_this_queue &&
+         (!request.is_reply ||
+          (!reply_.damaged && request.is_reply({reply_.bytes.data(), reply_.bytes.size()})));
+}
+
 /// Sends the next request before it reports this one, so that a request which the report causes comes last.
 void RequestQueue::finish(const Reply& reply) {
   const Request request = std::move(waiting_.front());
   waiting_.pop_front();
-  own_byte_ = line_.spacing().last_byte();
   send_next();
   request.done(reply);
 }

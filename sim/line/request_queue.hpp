@@ -17,8 +17,9 @@ class Line;
 /// Keeps the order of the requests, and the silence between frames that modules require. No function blocks;
 /// all times are in line time.
 ///
-/// If another master has used the line, a request first waits until everything on the line has settled. The
-/// other master does not wait for this queue, so its requests and replies can still collide with these.
+/// If another master has used the line, or a reply is late, a request first waits until everything on the
+/// line has settled, for at most kReplyTimeout. The other master does not wait for this queue. If it sends
+/// during a request, the request gets no reply.
 class RequestQueue final : private Station {
  public:
   /// How long the first byte of a reply may take after the last byte of a request: more than twice the time
@@ -40,7 +41,7 @@ class RequestQueue final : private Station {
     /// Returns whether the frame is the reply. Other frames are ignored, as if they had not arrived. Empty:
     /// every frame is the reply, even a damaged one.
     std::function<bool(Bytes frame)> is_reply;
-    /// Called exactly once, unless the owner no longer exists when the turn of the request comes.
+    /// Called exactly once, unless the owner no longer exists before the request is sent.
     std::function<void(const Reply& reply)> done;
     std::weak_ptr<void> owner;  ///< the client
   };
@@ -70,6 +71,7 @@ class RequestQueue final : private Station {
   void send_next();
   void send();
   [[nodiscard]] bool others_use_the_line() const;
+  [[nodiscard]] bool is_reply() const;
   void finish(const Reply& reply);
   void enter(State state, VirtualTime until);
 
@@ -77,7 +79,8 @@ class RequestQueue final : private Station {
   BusEnd& timer_;
   State state_ = State::Idle;
   std::deque<Request> waiting_;  ///< the first one is in progress, unless the state is Idle or WaitsForLine
-  VirtualTime own_byte_{0};      ///< end of the last byte on the line when this queue last used it
+  VirtualTime own_byte_{0};      ///< end of the last reply; nobody has used the line if no byte followed it
+  std::uint64_t taken_ = 0;      ///< see Master::taken, when the request was sent
   VirtualTime sent_{0};          ///< end of the last byte of the request
   VirtualTime deadline_{0};      ///< of the line in WaitsForLine, of the reply in WaitsForReply and Receives
   Reply reply_;

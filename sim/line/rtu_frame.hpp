@@ -1,6 +1,7 @@
 // Modbus RTU frames of a master.
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
 #include <vector>
 
@@ -26,36 +27,36 @@ inline std::vector<std::uint8_t> rtu_frame(std::uint8_t address, const std::vect
 /// Returns the PDU in a frame of at least three bytes.
 inline Bytes pdu_of(Bytes frame) { return frame.first(frame.size - 2).from(1); }
 
-/// Returns whether a frame of at least five bytes has the length that its function code, and the number of
-/// bytes in it, require (MODBUS Application Protocol V1.1b3, section 6). Other functions may have any length.
-inline bool has_length_of_a_reply(Bytes frame) {
-  constexpr std::size_t kAddressFunctionAndCrc = 4;
+/// Returns whether `frame` is a valid reply, perhaps an exception, to `request`; both are complete frames. A
+/// reply has the address and the function of its request, and the length and the values that these require
+/// (MODBUS Application Protocol V1.1b3, section 6). This tells it from an echo, and from most late replies to
+/// other requests. Functions with other codes may have any reply.
+inline bool is_rtu_reply(Bytes request, Bytes frame) {
+  constexpr std::size_t kException = 5;        // size of an exception; no reply is shorter
+  constexpr std::size_t kAddressAndCount = 8;  // least size of the requests below
+  if (frame.size < kException || crc16(frame).value() != 0 || frame[0] != request[0] ||
+      (frame[1] | kRtuException) != (request[1] | kRtuException)) {
+    return false;
+  }
   const std::uint8_t function = frame[1];
   if ((function & kRtuException) != 0) {
-    return frame.size == kAddressFunctionAndCrc + 1;
+    return frame.size == kException;
   }
-  switch (function) {
-    case 0x01:
-    case 0x02:
-    case 0x03:
-    case 0x04:
-      return frame.size == kAddressFunctionAndCrc + 1U + frame[2];
-    case 0x05:
-    case 0x06:
-    case 0x0F:
-    case 0x10:
-      return frame.size == kAddressFunctionAndCrc + 4;
-    default:
-      return true;
+  const bool reads_bits = function == 0x01 || function == 0x02;
+  const bool reads_words = function == 0x03 || function == 0x04;
+  const bool writes = function == 0x05 || function == 0x06 || function == 0x0F || function == 0x10;
+  if (!reads_bits && !reads_words && !writes) {
+    return true;
   }
-}
-
-/// Returns whether `frame` is a valid reply, perhaps an exception, to a request with this address and
-/// function code. The length tells a reply from the echo of a request that reads.
-inline bool is_rtu_reply(std::uint8_t address, std::uint8_t function, Bytes frame) {
-  constexpr std::size_t kLeastSize = 5;  // an exception
-  return frame.size >= kLeastSize && crc16(frame).value() == 0 && frame[0] == address &&
-         (frame[1] | kRtuException) == (function | kRtuException) && has_length_of_a_reply(frame);
+  if (request.size < kAddressAndCount) {
+    return false;
+  }
+  if (writes) {  // repeats the address, and the value or the count
+    return frame.size == kAddressAndCount && std::equal(frame.begin(), frame.begin() + 6, request.begin());
+  }
+  const std::size_t count = request.word(4);
+  const std::size_t bytes = reads_bits ? (count + 7) / 8 : 2 * count;
+  return frame[2] == bytes && frame.size == kException + bytes;
 }
 
 }  // namespace ex9000::sim

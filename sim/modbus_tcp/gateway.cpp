@@ -23,8 +23,8 @@ void Gateway::ask(const MbapFrame& request, const std::weak_ptr<void>& owner, co
   asked.bytes = rtu_frame(request.unit, request.pdu);
   asked.expects_reply = !broadcast;
   asked.owner = owner;
-  asked.is_reply = [unit = request.unit, function = request.pdu[0]](Bytes frame) {
-    return is_rtu_reply(unit, function, frame);
+  asked.is_reply = [sent = asked.bytes](Bytes frame) {
+    return is_rtu_reply({sent.data(), sent.size()}, frame);
   };
   asked.done = [broadcast, answer, no_reply = exception_pdu(request, GatewayException::NoReply)](
                    const RequestQueue::Reply& reply) {
@@ -40,12 +40,12 @@ void Gateway::ask(const MbapFrame& request, const std::weak_ptr<void>& owner, co
   line_.requests().ask(std::move(asked));
 }
 
-/// Returns whether modules have power, and all of these speak ASCII.
+/// Returns whether modules listen, and all of these speak ASCII.
 bool Gateway::speaks_only_ascii() const {
   bool ascii = false;
   for (std::size_t i = 0; i < line_.size(); ++i) {
     const SimulatedModule& module = line_.module(i);
-    if (module.powered()) {
+    if (module.powered() && module.module().listening()) {
       if (module.module().state().in_force.protocol == Protocol::ModbusRtu) {
         return false;
       }

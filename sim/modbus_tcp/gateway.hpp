@@ -29,7 +29,7 @@ class Gateway {
 
   /// Calls `answer` once, at once or later, unless `owner` no longer exists. The answer is:
   /// - for unit 0: none, after the broadcast;
-  /// - for a unit above 247, or if all modules of the line speak ASCII: exception 0x0A;
+  /// - for a unit above 247, or if all modules that listen speak ASCII: exception 0x0A;
   /// - if no valid reply arrives within RequestQueue::kReplyTimeout: exception 0x0B;
   /// - otherwise the reply of the module.
   void ask(const MbapFrame& request, const std::weak_ptr<void>& owner, const Answer& answer);

@@ -184,8 +184,15 @@ void ModbusTcpServer::go_on(const ClientPointer& client) {
   }
 }
 
-/// Closes the connection. The client lives until the functions that are running now have returned.
+/// Closes the connection. The client lives until the functions that are running now have returned. Bytes that
+/// have arrived are read first: otherwise the close would reset the connection, and the client could lose its
+/// last replies.
 void ModbusTcpServer::forget(const ClientPointer& client) {
+  constexpr int kMostPieces = 64;
+  boost::system::error_code ended;
+  for (int i = 0; i < kMostPieces && !ended; ++i) {
+    client->socket.read_some(boost::asio::buffer(client->bytes), ended);
+  }
   boost::system::error_code ignored;
   client->socket.close(ignored);
   boost::asio::post(io_, [client] {});

@@ -15,7 +15,7 @@ namespace ex9000::sim {
 
 namespace {
 
-constexpr std::size_t kLongestText = 600;
+constexpr std::size_t kLongestText = 1000;  // a PDU of 253 bytes with blanks has 758 characters
 constexpr std::size_t kLongestPdu = 253;
 constexpr std::string_view kDelimiters = "$#%@~";
 
@@ -68,11 +68,9 @@ std::string values_text(Bytes request, Bytes reply) {
   return "from " + hex_word_text(request.word(1)) + ": " + values;
 }
 
-std::string decoded(const ConsoleRequest& request, const std::vector<std::uint8_t>& reply) {
-  const std::vector<std::uint8_t> sent = frame_of(request).bytes;
-  const Bytes frame{reply.data(), reply.size()};
-  if (!is_dcon(request.text) && is_rtu_reply(sent[0], sent[1], frame)) {
-    std::string values = values_text(pdu_of({sent.data(), sent.size()}), pdu_of(frame));
+std::string decoded(const ConsoleRequest& request, Bytes sent, const std::vector<std::uint8_t>& reply) {
+  if (!is_dcon(request.text)) {
+    std::string values = values_text(pdu_of(sent), pdu_of({reply.data(), reply.size()}));
     if (!values.empty()) {
       return values;
     }
@@ -93,17 +91,22 @@ std::optional<ConsoleRequest> parse_console_request(const Message& message) {
   ConsoleRequest request;
   request.id = message["id"].get<std::uint64_t>();
   request.line = message["line"].get<std::size_t>();
-  request.address = message["address"].get<unsigned>();
-  request.text = message["ask"].get<std::string>();
-  if (request.address > kLastRtuAddress || request.text.size() > kLongestText) {
+  const auto address = message["address"].get<std::uint64_t>();
+  if (address > kLastRtuAddress) {
     return std::nullopt;
   }
+  request.address = static_cast<std::uint8_t>(address);
+  request.text = message["ask"].get<std::string>();
   return request;
 }
 
 RequestQueue::Request frame_of(const ConsoleRequest& request) {
   RequestQueue::Request frame;
   frame.expects_reply = !is_broadcast(request);
+  if (request.text.size() > kLongestText) {
+    fail(std::to_string(request.text.size()) + " characters: expected at most " +
+         std::to_string(kLongestText));
+  }
   if (is_dcon(request.text)) {
     frame.bytes.assign(request.text.begin(), request.text.end());
     frame.bytes.push_back('\r');
@@ -120,7 +123,7 @@ RequestQueue::Request frame_of(const ConsoleRequest& request) {
     fail(std::to_string(pdu.size()) + " bytes: expected a PDU of at most " + std::to_string(kLongestPdu) +
          " bytes");
   }
-  frame.bytes = rtu_frame(static_cast<std::uint8_t>(request.address), pdu);
+  frame.bytes = rtu_frame(request.address, pdu);
   return frame;
 }
 
@@ -136,13 +139,23 @@ Message answer_to(const ConsoleRequest& request, const RequestQueue::Reply& repl
     const auto limit = duration_cast<std::chrono::milliseconds>(RequestQueue::kReplyTimeout).count();
     return rejection_of(request, "no reply within " + std::to_string(limit) + " ms");
   }
-  const std::string means =
-      reply.damaged ? "a byte has a wrong stop bit or parity" : decoded(request, reply.bytes);
-  return {{"id", request.id},
-          {"ok", true},
-          {"text", shown(reply.bytes)},
-          {"meaning", means},
-          {"delay", duration_cast<std::chrono::microseconds>(reply.delay).count()}};
+  const std::vector<std::uint8_t> frame = frame_of(request).bytes;
+  const Bytes sent{frame.data(), frame.size()};
+  Message answer{{"id", request.id},
+                 {"ok", true},
+                 {"text", shown(reply.bytes)},
+                 {"meaning", ""},
+                 {"delay", duration_cast<std::chrono::microseconds>(reply.delay).count()}};
+  if (reply.damaged) {
+    answer["ok"] = false;
+    answer["meaning"] = "damaged: a byte has a wrong stop bit or parity, or the frame is too long";
+  } else if (!is_dcon(request.text) && !is_rtu_reply(sent, {reply.bytes.data(), reply.bytes.size()})) {
+    answer["ok"] = false;
+    answer["meaning"] = "not a reply to this request";
+  } else {
+    answer["meaning"] = decoded(request, sent, reply.bytes);
+  }
+  return answer;
 }
 
 Message rejection_of(const ConsoleRequest& request, const std::string& why) {

@@ -13,10 +13,10 @@ namespace ex9000::sim {
 
 /// A request of the page for a line: a PDU for a Modbus address, or a DCON command.
 struct ConsoleRequest {
-  std::uint64_t id = 0;  ///< chosen by the page, for the reply
-  std::size_t line = 0;  ///< position of the line, from 0
-  unsigned address = 0;  ///< of the module; 0: all modules. Unused for a DCON command
-  std::string text;      ///< a DCON command if it begins with a delimiter, otherwise a PDU in hex
+  std::uint64_t id = 0;      ///< chosen by the page, for the reply
+  std::size_t line = 0;      ///< position of the line, from 0
+  std::uint8_t address = 0;  ///< of the module; 0: all modules. Unused for a DCON command
+  std::string text;          ///< a DCON command if it begins with a delimiter, otherwise a PDU in hex
 };
 
 /// Returns nullopt if `message` is not a request for the console.

@@ -60,6 +60,11 @@ class Console(Panel):
         self.browser.click(SEND)
         self.assertIn("$0AM → !0A9042D\\r reply", self.replies(1)[0])
 
+    def test_an_ascii_address_may_be_higher_than_those_of_modbus(self):
+        self.open("EX9042D@FF")
+        self.send("$FFM")
+        self.assertIn("$FFM → !FF9042D\\r reply", self.replies(1)[0])
+
     def test_a_checksum_is_added_if_the_module_expects_one(self):
         self.open("EX9042D@01,checksum=on")
         self.send("$01M")

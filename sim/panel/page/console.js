@@ -15,10 +15,14 @@ let models = null;
 /// Returns the description of each model by its name, as `ex9000-sim describe --format json` prints it.
 function described() {
   models ??= fetch("/models.json").then((response) => response.json()).then((all) =>
-    new Map(all.models.map((model) => [model.model, model])));
+    new Map(all.models.map((model) => [model.model, model]))).catch(() => {
+    models = null;  // the next call tries again
+    return new Map();
+  });
   return models;
 }
 
+const isDcon = (text) => /^[$#%@~]/.test(text);
 const hexWord = (value) => value.toString(16).toUpperCase().padStart(4, "0");
 
 /// Returns {label, request} for each access to the registers of a model.
@@ -53,7 +57,7 @@ export class Console {
     const name = line.name || "the line";
     this.module = make("select", {"aria-label": `Module on ${name}`, onchange: () => this.fillItems()});
     this.item = make("select", {"aria-label": `Item for ${name}`, onchange: () => this.choose()});
-    this.text = make("input", {type: "text", size: "28", autocomplete: "off", spellcheck: "false",
+    this.text = make("input", {type: "text", size: "28", autocomplete: "off", spellcheck: "false", maxlength: "900",
       placeholder: "01 0000 0008 or $01M", "aria-label": `Request on ${name}`});
     this.poll = make("input", {type: "checkbox", onchange: () => this.schedule(0)});
     this.interval = make("select", {"aria-label": `Interval on ${name}`, onchange: () => this.schedule(0)},
@@ -105,8 +109,7 @@ export class Console {
   /// Returns the text to send: with a checksum if the module expects one.
   get request() {
     const text = this.text.value.trim();
-    const isDcon = /^[$#%@~]/.test(text);
-    if (!isDcon || this.module.value === everyModule || !this.plate?.checksum) {
+    if (!isDcon(text) || this.module.value === everyModule || !this.plate?.checksum) {
       return text;
     }
     return text + hexByte([...text].reduce((sum, character) => sum + character.charCodeAt(0), 0) & 0xFF);
@@ -117,7 +120,8 @@ export class Console {
     if (!ask) {
       return;
     }
-    const address = this.module.value === everyModule ? 0 : this.plate?.address ?? 1;
+    // A DCON command contains its address, which may be higher than a Modbus address.
+    const address = isDcon(ask) || this.module.value === everyModule ? 0 : this.plate?.address ?? 1;
     const reply = await this.ask({line: this.index, address, ask});
     this.show(ask, reply);
   }

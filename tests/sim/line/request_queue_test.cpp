@@ -178,6 +178,37 @@ TEST_P(Queue, ARequestWhoseOwnerIsGoneIsNotSent) {
   EXPECT_EQ(watch_.began.size(), 2U);
 }
 
+TEST_P(Queue, RequestsOfOwnersThatAreGoneTakeNoRoom) {
+  ask(kToNobody, "a");
+  auto other = std::make_shared<int>();
+  const std::weak_ptr<int> its_request = [&] {
+    auto content = std::make_shared<int>();
+    RequestQueue::Request asked = request(kRead2, "gone");
+    asked.owner = other;
+    asked.is_reply = [content](Bytes /*frame*/) { return true; };
+    line_.requests().ask(std::move(asked));
+    return std::weak_ptr<int>(content);
+  }();
+  other.reset();
+  EXPECT_FALSE(its_request.expired());
+  ask(kRead1, "b");
+  EXPECT_TRUE(its_request.expired());
+}
+
+TEST_P(Queue, ARequestThatCannotBeSentInTimeIsNotSentLater) {
+  const Frame commands(1000, '$');
+  line_.master().set_baud(1200);
+  line_.master().send(commands.data(), commands.size());  // takes 8.3 s on the paced line
+  ask(kRead1, "late");
+  run(std::chrono::seconds(1));
+  ASSERT_EQ(results_.size(), 1U);
+  const bool paced = !GetParam();
+  if (paced) {
+    run(std::chrono::seconds(10));
+    EXPECT_EQ(watch_.began.size(), 1U);  // only the other master's bytes
+  }
+}
+
 TEST_P(Queue, ARequestThatAReportCausesComesAfterThoseThatWait) {
   RequestQueue::Request first = request(kRead1, "a");
   first.done = [this](const RequestQueue::Reply& /*reply*/) {

@@ -149,22 +149,69 @@ TEST(Gateway, TheEchoOfARequestThatReadsIsNotItsReply) {
   EXPECT_EQ(bench.reply(0x09, kReadOutputs), (Pdu{0x81, kNoReply}));
 }
 
-TEST(RtuReply, HasTheAddressTheFunctionAndTheLengthOfItsFunction) {
-  const auto is_reply = [](const Pdu& pdu, std::uint8_t function, std::uint8_t address = 0x01) {
-    const std::vector<std::uint8_t> frame = rtu_frame(0x01, pdu);
-    return is_rtu_reply(address, function, {frame.data(), frame.size()});
+TEST(RtuReply, HasTheAddressTheFunctionAndTheValuesOfItsRequest) {
+  const auto is_reply = [](const Pdu& reply, const Pdu& request, std::uint8_t address = 0x01) {
+    const std::vector<std::uint8_t> frame = rtu_frame(0x01, reply);
+    const std::vector<std::uint8_t> sent = rtu_frame(address, request);
+    return is_rtu_reply({sent.data(), sent.size()}, {frame.data(), frame.size()});
   };
-  EXPECT_TRUE(is_reply({0x01, 0x02, 0x00, 0x00}, 0x01));
-  EXPECT_FALSE(is_reply({0x01, 0x02, 0x00, 0x00}, 0x01, 0x02));
-  EXPECT_FALSE(is_reply({0x01, 0x02, 0x00, 0x00}, 0x02));
-  EXPECT_FALSE(is_reply({0x01, 0x02, 0x00}, 0x01));
-  EXPECT_FALSE(is_reply({0x04, 0x02, 0x00, 0x00, 0x00}, 0x04));
-  EXPECT_TRUE(is_reply({0x05, 0x00, 0x00, 0xFF, 0x00}, 0x05));
-  EXPECT_FALSE(is_reply({0x10, 0x00, 0x00, 0x00}, 0x10));
-  EXPECT_TRUE(is_reply({0x83, 0x02}, 0x03));
-  EXPECT_FALSE(is_reply({0x83, 0x02, 0x00}, 0x03));
-  EXPECT_TRUE(is_reply({0x46, 0x00, 0x00, 0x90, 0x42, 0x00}, 0x46));
-  EXPECT_FALSE(is_reply({0x46}, 0x46));
+  const Pdu read_coils{0x01, 0x00, 0x00, 0x00, 0x0D};
+  EXPECT_TRUE(is_reply({0x01, 0x02, 0x00, 0x00}, read_coils));
+  EXPECT_FALSE(is_reply({0x01, 0x02, 0x00, 0x00}, read_coils, 0x02));
+  EXPECT_FALSE(is_reply({0x01, 0x01, 0x00}, read_coils));
+  EXPECT_FALSE(is_reply({0x01, 0x02, 0x00}, read_coils));
+  EXPECT_FALSE(is_reply(read_coils, read_coils));
+  EXPECT_FALSE(is_reply({0x02, 0x02, 0x00, 0x00}, read_coils));
+  const Pdu read_words{0x04, 0x00, 0x00, 0x00, 0x02};
+  EXPECT_TRUE(is_reply({0x04, 0x04, 0x00, 0x00, 0x00, 0x00}, read_words));
+  EXPECT_FALSE(is_reply({0x04, 0x02, 0x00, 0x00}, read_words));
+  const Pdu write_coil{0x05, 0x00, 0x01, 0xFF, 0x00};
+  EXPECT_TRUE(is_reply(write_coil, write_coil));
+  EXPECT_FALSE(is_reply({0x05, 0x00, 0x02, 0xFF, 0x00}, write_coil));
+  EXPECT_FALSE(is_reply({0x05, 0x00, 0x01, 0x00, 0x00}, write_coil));
+  const Pdu write_words{0x10, 0x01, 0xE8, 0x00, 0x01, 0x02, 0x00, 0x64};
+  EXPECT_TRUE(is_reply({0x10, 0x01, 0xE8, 0x00, 0x01}, write_words));
+  EXPECT_FALSE(is_reply({0x10, 0x01, 0xE8, 0x00, 0x02}, write_words));
+  EXPECT_FALSE(is_reply({0x10, 0x01, 0xE8}, write_words));
+  EXPECT_TRUE(is_reply({0x81, 0x02}, read_coils));
+  EXPECT_FALSE(is_reply({0x81, 0x02, 0x00}, read_coils));
+  EXPECT_TRUE(is_reply({0x81, 0x03}, {0x01}));
+  EXPECT_FALSE(is_reply({0x01, 0x02, 0x00, 0x00}, {0x01}));
+  EXPECT_TRUE(is_reply({0x46, 0x00, 0x00, 0x90, 0x42, 0x00}, {0x46, 0x00}));
+}
+
+TEST(Gateway, ALateReplyIsNotTheReplyToTheNextClient) {
+  GatewayLine bench({"EX9042D-M@01"});
+  bench.line.faults().add(parse_fault("late-reply 600ms"));
+  std::vector<Pdu> replies;
+  for (std::uint8_t coil = 0; coil < 6; ++coil) {
+    bench.gateway.ask({1, 0x01, {0x05, 0x00, coil, 0xFF, 0x00}}, bench.owner,
+                      [&](const std::optional<Pdu>& answer) { replies.push_back(answer.value_or(Pdu())); });
+  }
+  bench.line.bus().run_for(seconds(10));
+  EXPECT_EQ(replies, std::vector<Pdu>(6, Pdu{0x85, kNoReply}));
+}
+
+TEST(Gateway, ARequestDuringWhichAnotherMasterSendsGetsException0B) {
+  GatewayLine bench({"EX9042D-M@01"});
+  std::optional<Pdu> reply;
+  bench.gateway.ask({1, 0x01, {0x01, 0x00, 0x00, 0x00, 0x01}}, bench.owner,
+                    [&](const std::optional<Pdu>& answer) { reply = answer; });
+  const std::vector<std::uint8_t> other = rtu_frame(0x01, {0x01, 0x00, 0x05, 0x00, 0x01});
+  while (bench.line.master().sending()) {
+    bench.line.bus().run_next();
+  }
+  bench.line.bus().run_for(milliseconds(1));
+  bench.line.master().send(other.data(), other.size());
+  bench.line.bus().run_for(seconds(2));
+  EXPECT_EQ(reply, (Pdu{0x81, kNoReply}));
+}
+
+TEST(Gateway, AModuleThatStartsUpIsNotTakenForOneThatSpeaksAscii) {
+  GatewayLine bench({"EX9042D-M@01"});
+  bench.line.module(0).power(false);
+  bench.line.module(0).power(true);
+  EXPECT_NE(bench.reply(0x01, kReadOutputs), (Pdu{0x81, kPathUnavailable}));
 }
 
 TEST(Gateway, AReplyAfterTheTimeoutIsNotTheReplyToTheNextRequest) {

@@ -433,6 +433,30 @@ TEST(PanelConsole, ATextThatIsNoRequestIsRefusedWithAReason) {
   EXPECT_EQ(console_answer(bench, longest)["text"], "254 bytes: expected a PDU of at most 253 bytes");
 }
 
+TEST(PanelConsole, AFrameThatIsNotAReplyToTheRequestIsMarked) {
+  PanelBench bench("EX9052D-M@01");
+  bench.line().faults().add(parse_fault("foreign-traffic 0105000AFF00AC38"));  // strikes once
+  const Message request{{"id", 9}, {"line", 0}, {"address", 2}, {"ask", "02 0000 0008"}};
+  ASSERT_TRUE(bench.viewer().ask(request.dump()));
+  bench.run(milliseconds(50));
+  bench.line().faults().add(parse_fault("foreign-traffic 0105000AFF00AC38"));
+  bench.run(std::chrono::seconds(1));
+  const Message answer = bench.look()["answers"][0];
+  EXPECT_EQ(answer["ok"], false);
+  EXPECT_EQ(answer["text"], "01 05 00 0A FF 00 AC 38");
+  EXPECT_EQ(answer["meaning"], "not a reply to this request");
+}
+
+TEST(PanelConsole, ALongPduMayHaveBlanks) {
+  PanelBench bench("EX9052D-M@01");
+  std::string longest = "65";
+  for (int i = 1; i < 253; ++i) {
+    longest += " 00";
+  }
+  EXPECT_EQ(console_answer(bench, longest)["meaning"], "exception 01: illegal function");
+  EXPECT_EQ(console_answer(bench, std::string(1001, ' '))["text"], "1001 characters: expected at most 1000");
+}
+
 TEST(PanelConsole, OnePageMayHaveSixteenRequestsInTheQueue) {
   PanelBench bench("EX9052D-M@01");
   const std::string request = R"({"id": 1, "line": 0, "address": 1, "ask": "02 0000 0008"})";
@@ -450,6 +474,7 @@ TEST(PanelConsole, ARequestForALineOrAnAddressThatDoesNotExistEndsThePage) {
   PanelBench bench("EX9052D-M@01");
   EXPECT_FALSE(bench.viewer().ask(R"({"id": 1, "line": 1, "address": 1, "ask": "07"})"));
   EXPECT_FALSE(bench.viewer().ask(R"({"id": 1, "line": 0, "address": 248, "ask": "07"})"));
+  EXPECT_FALSE(bench.viewer().ask(R"({"id": 1, "line": 0, "address": 4294967297, "ask": "07"})"));
   EXPECT_FALSE(bench.viewer().ask(R"({"id": 1, "line": 0, "address": 1, "ask": 7})"));
   EXPECT_FALSE(bench.viewer().ask(R"({"id": 1, "line": 0, "address": 1, "ask": "07", "do": "list"})"));
 }
