@@ -55,7 +55,9 @@ void RequestQueue::send() {
     return;
   }
   if (master.sending()) {  // the request would follow the bytes of the other master much later
-    finish({});
+    Reply none;
+    none.sent = false;
+    finish(none);
     return;
   }
   const Request& request = waiting_.front();
@@ -95,7 +97,11 @@ void RequestQueue::run() {
     case State::Idle:
       return;
     case State::WaitsForLine:
-      waiting_.front().owner.expired() ? send_next() : send();
+      if (waiting_.front().owner.expired()) {
+        send_next();
+      } else {
+        send();
+      }
       return;
     case State::WaitsForReply:
     case State::TurnsAround:

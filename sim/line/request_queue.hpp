@@ -31,6 +31,7 @@ class RequestQueue final : private Station {
 
   struct Reply {
     std::vector<std::uint8_t> bytes;  ///< at most 256; empty: no reply in time, or none expected
+    bool sent = true;                 ///< false: the request was not sent, because others used the line
     bool damaged = false;             ///< a byte had a framing or parity error, or more bytes followed
     VirtualTime delay{0};             ///< from the end of the request to the end of the first byte
   };

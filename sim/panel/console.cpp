@@ -129,6 +129,11 @@ RequestQueue::Request frame_of(const ConsoleRequest& request) {
 
 Message answer_to(const ConsoleRequest& request, const RequestQueue::Reply& reply) {
   using std::chrono::duration_cast;
+  const auto limit = duration_cast<std::chrono::milliseconds>(RequestQueue::kReplyTimeout).count();
+  const std::string within = "within " + std::to_string(limit) + " ms";
+  if (!reply.sent) {
+    return rejection_of(request, "not sent: other masters did not stop sending " + within);
+  }
   if (is_broadcast(request)) {
     return {{"id", request.id},
             {"ok", true},
@@ -136,8 +141,7 @@ Message answer_to(const ConsoleRequest& request, const RequestQueue::Reply& repl
             {"meaning", "sent to all modules, which do not reply"}};
   }
   if (reply.bytes.empty()) {
-    const auto limit = duration_cast<std::chrono::milliseconds>(RequestQueue::kReplyTimeout).count();
-    return rejection_of(request, "no reply within " + std::to_string(limit) + " ms");
+    return rejection_of(request, "no reply " + within);
   }
   const std::vector<std::uint8_t> frame = frame_of(request).bytes;
   const Bytes sent{frame.data(), frame.size()};

@@ -30,6 +30,7 @@ RIGHT = {
         "name": "hall",
         "pty": "hall.tty",
         "tcp": 0,
+        "modbus-tcp": 0,
         "serial": "/dev/ttyUSB0",
         "echo": False,
         "baud": 19200,

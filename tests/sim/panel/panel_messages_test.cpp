@@ -447,6 +447,15 @@ TEST(PanelConsole, AFrameThatIsNotAReplyToTheRequestIsMarked) {
   EXPECT_EQ(answer["meaning"], "not a reply to this request");
 }
 
+TEST(PanelConsole, ABroadcastThatWasNotSentIsReported) {
+  PanelBench bench("EX9055D@01");
+  const std::vector<std::uint8_t> many(1500, '$');  // 1.6 s at 9600 baud
+  bench.line().master().send(many.data(), many.size());
+  const Message answer = console_answer(bench, "~**");
+  EXPECT_EQ(answer["ok"], false);
+  EXPECT_EQ(answer["text"], "not sent: other masters did not stop sending within 500 ms");
+}
+
 TEST(PanelConsole, ALongPduMayHaveBlanks) {
   PanelBench bench("EX9052D-M@01");
   std::string longest = "65";
