@@ -10,10 +10,12 @@ struct Bus::End final : BusEnd {
 
   void drive(bool on) override { bus.drive(*this, on); }
   void put(std::uint8_t byte, SerialMode mode) override {
-    bus.put(*this, byte, mode, levels_of(byte, mode.format));
+    const Levels right = levels_of(byte, mode.format);
+    bus.put(*this, byte, mode, right, right);
   }
   void put_with_wrong_parity(std::uint8_t byte, SerialMode mode) override {
-    bus.put(*this, byte, mode, with_wrong_parity(levels_of(byte, mode.format), mode.format));
+    const Levels right = levels_of(byte, mode.format);
+    bus.put(*this, byte, mode, right, with_wrong_parity(right, mode.format));
   }
   [[nodiscard]] VirtualTime takes(std::size_t bytes, SerialMode mode) const override {
     constexpr std::int64_t kBitNanoseconds = 1'000'000'000;
@@ -91,13 +93,13 @@ void Bus::drive(End& end, bool on) {
   }
 }
 
-/// `sent`: the levels that the station sends for `byte`.
-void Bus::put(End& end, std::uint8_t byte, SerialMode mode, Levels sent) {
+/// `right`: the levels of `byte`. `sent`: those that the station sends.
+void Bus::put(End& end, std::uint8_t byte, SerialMode mode, Levels right, Levels sent) {
   Wave wave{clock_.virtual_now(), on_the_wires(mode), sent};
   if (disturbance_ != nullptr) {
     wave.levels = disturbance_->disturbed({sent, mode, wave.end(), drivers_on_ > 1});
   }
-  wave.disturbed = wave.levels != levels_of(byte, mode.format);
+  wave.disturbed = wave.levels != right;
   if (wave.disturbed) {
     for (BusObserver* observer : observers_) {
       observer->changed(end.index, wave.levels);

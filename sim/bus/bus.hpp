@@ -142,7 +142,7 @@ class Bus {
   [[nodiscard]] std::uint32_t bit_rate(std::uint32_t baud) const;
   [[nodiscard]] SerialMode on_the_wires(SerialMode mode) const;
   void drive(End& end, bool on);
-  void put(End& end, std::uint8_t byte, SerialMode mode, Levels sent);
+  void put(End& end, std::uint8_t byte, SerialMode mode, Levels right, Levels sent);
   void listen(End& end, SerialMode mode);
   static bool has_heard_from_the_start(const Receiver& receiver, const Wave& wave);
   [[nodiscard]] bool has_to_sample(const Receiver& receiver) const;

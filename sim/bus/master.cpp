@@ -71,6 +71,9 @@ void Master::run() {
 
 void Master::receive(std::uint8_t byte, ByteStatus status) {
   if (!driving_) {
+    if (also_receive_) {
+      also_receive_(byte, status);
+    }
     receive_(byte, status);
   }
 }

@@ -41,6 +41,9 @@ class Master final : public Station {
   /// Sets the format and keeps the rate.
   void set_format(LineFormat format) { set_mode({mode_.baud, format}); }
 
+  /// Sets a function that gets each received byte too, before `receive` of the constructor.
+  void also_receive(Receive receive) { also_receive_ = std::move(receive); }
+
   [[nodiscard]] SerialMode mode() const { return mode_; }
   /// Sets a function to call when the rate or the format changes.
   void on_mode(std::function<void(SerialMode mode)> changed) { changed_ = std::move(changed); }
@@ -54,6 +57,7 @@ class Master final : public Station {
   BusEnd& wire_;
   SerialMode mode_;
   Receive receive_;
+  Receive also_receive_;
   std::function<void(SerialMode mode)> changed_;
   struct Waiting {
     std::uint8_t byte;

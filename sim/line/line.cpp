@@ -26,13 +26,7 @@ LineTiming instantly(std::uint32_t /*baud*/, LineFormat /*format*/) {
 Line::Line(const std::vector<ModuleSpec>& modules, LineKind kind, Master::Receive receive)
     : kind_(kind),
       bus_(clock_, kind.times_faster),
-      master_(bus_, SerialMode{baud_rate(kFactoryBaudCode)},
-              [this, receive = std::move(receive)](std::uint8_t byte, ByteStatus status) {
-                if (requests_) {
-                  requests_->hear(byte, status);
-                }
-                receive(byte, status);
-              }),
+      master_(bus_, SerialMode{baud_rate(kFactoryBaudCode)}, std::move(receive)),
       spacing_(*this) {
   for (const ModuleSpec& spec : modules) {
     modules_.push_back(std::make_unique<SimulatedModule>(bus_, *spec.model, kind.timing_at));
@@ -64,6 +58,7 @@ Faults& Line::faults() {
 RequestQueue& Line::requests() {
   if (!requests_) {
     requests_ = std::make_unique<RequestQueue>(*this);
+    master_.also_receive([this](std::uint8_t byte, ByteStatus status) { requests_->hear(byte, status); });
   }
   return *requests_;
 }
