@@ -192,16 +192,30 @@ TEST(Gateway, ALateReplyIsNotTheReplyToTheNextClient) {
   EXPECT_EQ(replies, std::vector<Pdu>(6, Pdu{0x85, kNoReply}));
 }
 
-TEST(Gateway, ARequestDuringWhichAnotherMasterSendsGetsException0B) {
+TEST(Gateway, ALateReplyWithOtherValuesIsNotTheReplyToTheNextClient) {
   GatewayLine bench({"EX9042D-M@01"});
-  std::optional<Pdu> reply;
-  bench.gateway.ask({1, 0x01, {0x01, 0x00, 0x00, 0x00, 0x01}}, bench.owner,
-                    [&](const std::optional<Pdu>& answer) { reply = answer; });
-  const std::vector<std::uint8_t> other = rtu_frame(0x01, {0x01, 0x00, 0x05, 0x00, 0x01});
-  while (bench.line.master().sending()) {
-    bench.line.bus().run_next();
+  bench.reply(0x01, kOutput0On);
+  bench.line.faults().add(parse_fault("late-reply 600ms"));
+  std::vector<Pdu> replies;
+  for (std::uint8_t coil = 0; coil < 6; ++coil) {  // all replies have the same form
+    bench.gateway.ask({1, 0x01, {0x01, 0x00, coil, 0x00, 0x01}}, bench.owner,
+                      [&](const std::optional<Pdu>& answer) { replies.push_back(answer.value_or(Pdu())); });
   }
-  bench.line.bus().run_for(milliseconds(1));
+  bench.line.bus().run_for(seconds(10));
+  EXPECT_EQ(replies, std::vector<Pdu>(6, Pdu{0x81, kNoReply}));
+}
+
+TEST(Gateway, TheReplyToAnotherMasterIsNotTheReplyToTheClient) {
+  GatewayLine bench({"EX9042D-M@01"});
+  bench.reply(0x01, kOutput0On);
+  bench.line.faults().add(parse_fault("lost-reply every 2nd reply"));
+  const Pdu read_coil_0{0x01, 0x00, 0x00, 0x00, 0x01};
+  EXPECT_EQ(bench.reply(0x01, read_coil_0), (Pdu{0x01, 0x01, 0x01}));
+  std::optional<Pdu> reply;
+  bench.gateway.ask({1, 0x01, read_coil_0}, bench.owner,
+                    [&](const std::optional<Pdu>& answer) { reply = answer; });
+  bench.line.bus().run_for(milliseconds(100));  // the reply was lost
+  const std::vector<std::uint8_t> other = rtu_frame(0x01, {0x01, 0x00, 0x05, 0x00, 0x01});
   bench.line.master().send(other.data(), other.size());
   bench.line.bus().run_for(seconds(2));
   EXPECT_EQ(reply, (Pdu{0x81, kNoReply}));
