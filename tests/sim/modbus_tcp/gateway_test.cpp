@@ -180,29 +180,33 @@ TEST(RtuReply, HasTheAddressTheFunctionAndTheValuesOfItsRequest) {
   EXPECT_TRUE(is_reply({0x46, 0x00, 0x00, 0x90, 0x42, 0x00}, {0x46, 0x00}));
 }
 
-TEST(Gateway, ALateReplyIsNotTheReplyToTheNextClient) {
-  GatewayLine bench({"EX9042D-M@01"});
+/// Returns the answers to a request for each of the coils 0 to 5. All are asked at once, and each reply of
+/// the module is 600 ms late.
+template <class RequestFor>
+std::vector<Pdu> answers_if_replies_are_late(GatewayLine& bench, RequestFor request_for) {
   bench.line.faults().add(parse_fault("late-reply 600ms"));
-  std::vector<Pdu> replies;
+  std::vector<Pdu> answers;
   for (std::uint8_t coil = 0; coil < 6; ++coil) {
-    bench.gateway.ask({1, 0x01, {0x05, 0x00, coil, 0xFF, 0x00}}, bench.owner,
-                      [&](const std::optional<Pdu>& answer) { replies.push_back(answer.value_or(Pdu())); });
+    bench.gateway.ask({1, 0x01, request_for(coil)}, bench.owner,
+                      [&](const std::optional<Pdu>& answer) { answers.push_back(answer.value_or(Pdu())); });
   }
   bench.line.bus().run_for(seconds(10));
-  EXPECT_EQ(replies, std::vector<Pdu>(6, Pdu{0x85, kNoReply}));
+  return answers;
+}
+
+TEST(Gateway, ALateReplyIsNotTheReplyToTheNextClient) {
+  GatewayLine bench({"EX9042D-M@01"});
+  const auto write = [](std::uint8_t coil) { return Pdu{0x05, 0x00, coil, 0xFF, 0x00}; };
+  EXPECT_EQ(answers_if_replies_are_late(bench, write), std::vector<Pdu>(6, Pdu{0x85, kNoReply}));
 }
 
 TEST(Gateway, ALateReplyWithOtherValuesIsNotTheReplyToTheNextClient) {
   GatewayLine bench({"EX9042D-M@01"});
   bench.reply(0x01, kOutput0On);
-  bench.line.faults().add(parse_fault("late-reply 600ms"));
-  std::vector<Pdu> replies;
-  for (std::uint8_t coil = 0; coil < 6; ++coil) {  // all replies have the same form
-    bench.gateway.ask({1, 0x01, {0x01, 0x00, coil, 0x00, 0x01}}, bench.owner,
-                      [&](const std::optional<Pdu>& answer) { replies.push_back(answer.value_or(Pdu())); });
-  }
-  bench.line.bus().run_for(seconds(10));
-  EXPECT_EQ(replies, std::vector<Pdu>(6, Pdu{0x81, kNoReply}));
+  const auto read = [](std::uint8_t coil) {
+    return Pdu{0x01, 0x00, coil, 0x00, 0x01};
+  };  // the form is the same
+  EXPECT_EQ(answers_if_replies_are_late(bench, read), std::vector<Pdu>(6, Pdu{0x81, kNoReply}));
 }
 
 TEST(Gateway, TheReplyToAnotherMasterIsNotTheReplyToTheClient) {

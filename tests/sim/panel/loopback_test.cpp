@@ -1,5 +1,7 @@
 #include <gtest/gtest.h>
 
+#include <string>
+
 #include "sim/panel/loopback.hpp"
 
 namespace ex9000::sim {
