@@ -203,9 +203,8 @@ TEST(Gateway, ALateReplyIsNotTheReplyToTheNextClient) {
 TEST(Gateway, ALateReplyWithOtherValuesIsNotTheReplyToTheNextClient) {
   GatewayLine bench({"EX9042D-M@01"});
   bench.reply(0x01, kOutput0On);
-  const auto read = [](std::uint8_t coil) {
-    return Pdu{0x01, 0x00, coil, 0x00, 0x01};
-  };  // the form is the same
+  // All replies have the same form, but only the first one has the value 1.
+  const auto read = [](std::uint8_t coil) { return Pdu{0x01, 0x00, coil, 0x00, 0x01}; };
   EXPECT_EQ(answers_if_replies_are_late(bench, read), std::vector<Pdu>(6, Pdu{0x81, kNoReply}));
 }
 
