@@ -9,7 +9,7 @@
 #include "sim/app/line_options.hpp"
 #include "sim/app/option_values.hpp"
 #include "sim/bus_file/bus_file.hpp"
-#include "sim/describe/describe.hpp"
+#include "sim/exports/describe.hpp"
 #include "sim/text/durations.hpp"
 #include "sim/text/fail.hpp"
 

@@ -15,8 +15,8 @@
 #include "sim/app/play_record.hpp"
 #include "sim/app/standard_stream.hpp"
 #include "sim/play/play.hpp"
-#include "sim/session/session.hpp"
-#include "sim/session/stop_signals.hpp"
+#include "sim/running_program/running_program.hpp"
+#include "sim/running_program/stop_signals.hpp"
 #include "sim/watch/terminal_output.hpp"
 
 namespace ex9000::sim {
@@ -47,14 +47,15 @@ void run(const Setup& setup) {
   if (setup.watch) {
     terminal.emplace(STDOUT_FILENO);
   }
-  Session session(io, setup, print_line, greet, terminal && terminal->is_open() ? &*terminal : nullptr);
-  session.start();
+  RunningProgram running(io, setup, print_line, greet,
+                         terminal && terminal->is_open() ? &*terminal : nullptr);
+  running.start();
   if (setup.speed.max()) {
-    session.run_unpaced();
+    running.run_unpaced();
   } else {
     io.run();
   }
-  session.finish();
+  running.finish();
 }
 
 bool play_task(const play::Task& task) {

@@ -13,7 +13,7 @@
 #include <string_view>
 #include <utility>
 
-#include "sim/describe/formats.hpp"
+#include "sim/exports/formats.hpp"
 #include "sim/panel/loopback.hpp"
 #include "sim/panel/page_files.hpp"
 #include "sim/ports/listening.hpp"

@@ -9,7 +9,7 @@
 #include "sim/app/arguments.hpp"
 #include "sim/bus_file/bus_file.hpp"
 #include "sim/control/control.hpp"
-#include "sim/describe/formats.hpp"
+#include "sim/exports/formats.hpp"
 #include "tests/sim/app/parsed_arguments.hpp"
 
 namespace ex9000::sim {
