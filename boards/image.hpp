@@ -15,7 +15,8 @@ static_assert(kModels.size() == EX9000_IMAGES,
 #endif
 
 #ifdef EX9000_PRESET
-/// Only image files have it; boards/CMakeLists.txt defines EX9000_PRESET and EX9000_COMMIT.
+/// Only image files have this information; boards/CMakeLists.txt defines EX9000_PRESET and EX9000_COMMIT for
+/// them.
 // NOLINTNEXTLINE(misc-definitions-in-headers): included once
 __attribute__((section(".image_info"), used)) constexpr ImageInfo kImageInfo{
     {kImageMark}, {kFirmwareVersion}, {EX9000_PRESET}, {kOnlyModel.designation}, {EX9000_COMMIT}};

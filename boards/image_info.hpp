@@ -1,6 +1,6 @@
 // What an image says about itself: version, board, model and commit. The linker script puts this information
-// directly after the vector table, so it is at a fixed place in the flash of each family of processors.
-// toolchain/image-info reads it. boards/README.md describes it.
+// directly after the vector table, so its place in the flash is the same for all images of a family of
+// processors. toolchain/image-info reads it. boards/README.md describes it.
 #pragma once
 
 #include <array>
@@ -14,7 +14,7 @@ template <std::size_t size>
 struct InfoText {
   std::array<char, size> characters{};
 
-  /// Must be a constant expression; a text that is too long is then an error of the compiler.
+  /// Call this only in a constant expression. The compiler then rejects a text that is too long.
   constexpr InfoText(std::string_view text) {  // NOLINT(google-explicit-constructor)
     for (std::size_t index = 0; index < text.size(); ++index) {
       characters[index] = text[index];

@@ -3,8 +3,8 @@
 // copies only a few dozen bytes per second.
 #include <cstddef>
 
-// Without this attribute, the compiler would recognise the loop, for example as a copy, and replace it with a
-// call of the same function. The function would then call itself without end.
+// Without this attribute, the compiler would recognise the loop, for example as a copy, and replace the loop
+// with a call of the same function. The function would then call itself endlessly.
 #define NO_SELF_CALL __attribute__((optimize("no-tree-loop-distribute-patterns"), externally_visible))
 
 extern "C" {

@@ -115,7 +115,8 @@ void Module::use_filters() {
   state_.inputs.use_filters(state_.settings.input_filters);
 }
 
-/// Applies the inversion and the filters of the settings. The edges until now count under the previous ones.
+/// Applies the inversion and the filters of the settings. The edges until now count under the previous
+/// inversion and filters.
 void Module::configure_inputs(Time now) {
   collect_edges(now);
   state_.inputs.invert(state_.settings.inverted_inputs);
@@ -129,7 +130,8 @@ void Module::count_host_oks() {
   }
   const HostOks::Times times = receiver_.host_oks().take_in_main_loop();
   for (const Time received : {times.first, times.last}) {
-    // A host OK counts from the time of its reception. It is too late if the watchdog expired before that.
+    // A host OK counts from the time of its reception. If the watchdog expired before that time, the host OK
+    // is too late.
     expire_host_watchdog(received);
     host_watchdog_.restart(received);
   }
@@ -307,7 +309,8 @@ void Module::commit_effects(Time now) {
 
 void Module::finish_request() {
   const Refusal refusal = cycle_.outcome().refusal;
-  // In ASCII only replies that begin with `?` count. The reply for blocked outputs begins with `!`.
+  // In ASCII, only replies that begin with `?` count as exceptions. The reply for blocked outputs begins with
+  // `!`.
   const bool refused =
       refusal != Refusal::None && (state_.speaks_modbus() || refusal != Refusal::OutputsBlocked);
   Diagnostics& diagnostics = state_.diagnostics;

@@ -24,10 +24,10 @@ namespace ex9000 {
 /// edges, levels and the time as arguments, and reads the outputs, the LED, the reply and the memory job. An
 /// object exists from one reset to the next.
 ///
-/// Interrupts call `request_waits` and the functions named `on_...`. `on_byte`, `on_silence` and
-/// `on_own_driver_off` must not interrupt each other, so they share one interrupt priority; if several are
-/// pending, `on_silence` must run first (hal/one_shot_timer.hpp). `on_edge` and `on_tick` may have other
-/// priorities. The main loop calls all other functions. No function blocks.
+/// Interrupts call `request_waits`, `edges_need_times` and the functions named `on_...`. `on_byte`,
+/// `on_silence` and `on_own_driver_off` must not interrupt each other, so they share one interrupt priority;
+/// if several are pending, `on_silence` must run first (hal/one_shot_timer.hpp). `on_edge` and `on_tick` may
+/// have other priorities. The main loop calls all other functions. No function blocks.
 class Module {
  public:
   /// `timing_at` returns the times of this line; not null.
@@ -53,25 +53,26 @@ class Module {
   void on_edge(unsigned channel, bool level, Time now) { edges_.on_edge(channel, level, now); }
   /// See InputEdges::needs_times.
   [[nodiscard]] bool edges_need_times() const { return edges_.needs_times(); }
+  /// See ModuleWatchdog::tick_alive.
   void on_tick() { module_watchdog_.tick_alive(); }
   /// Returns whether a complete request is waiting. The turn-around time of an ASCII request may still be
   /// running. The main loop may call this too.
   [[nodiscard]] bool request_waits() const { return receiver_.queue().has_frame(); }
-  /// Returns whether a host OK, or a request that counts like one, has arrived that `step` has not processed
-  /// yet. The call of `step` may be late, because the host watchdog restarts from the time at which the host
-  /// OK was received. For the main loop.
+  /// Returns whether a host OK, or a request that counts like one, is waiting for `step`. `step` may be
+  /// called late, because the host watchdog restarts from the time at which the host OK was received. For the
+  /// main loop.
   [[nodiscard]] bool host_ok_waits() const { return receiver_.host_oks().waiting(); }
 
   // --- main loop ---
 
   /// Updates the INIT* switch and the status LED, collects edges, and ends the gap after a reply. Call this
-  /// at every tick and when the time that `idle_for` returned is over. `init_switch`: whether INIT* is
+  /// at every tick and when the time that `idle_for` returned has passed. `init_switch`: whether INIT* is
   /// asserted (tied to GND), not debounced.
   void poll_panel(bool init_switch, Time now);
   /// Runs one pass of the main loop: processes the events from interrupts and everything that is due.
   void step(Time now);
   /// Returns how long the main loop may sleep, at most `at_most`. An interrupt or a finished memory job must
-  /// wake it earlier. If the result is 0, call `poll_panel` and `step` again at once.
+  /// wake it earlier. If the result is 0, call `poll_panel` and `step` again immediately.
   [[nodiscard]] Duration idle_for(Time now, Duration at_most) const;
 
   /// Returns the levels to drive: bit n is channel n, 1 = energised. All are 0 until the settings are loaded.
@@ -87,14 +88,16 @@ class Module {
   [[nodiscard]] std::uint32_t baud() const { return baud_rate(state_.in_force.baud_code); }
   [[nodiscard]] LineFormat format() const { return line_format(state_.in_force.baud_code); }
 
+  /// See SettingsKeeper::busy.
   [[nodiscard]] bool needs_memory() const { return keeper_.busy(); }
   /// Returns the memory access to carry out; valid while `needs_memory()`. It stays the same until
   /// `memory_done`.
   [[nodiscard]] MemoryJob memory_job() { return keeper_.job(); }
+  /// See SettingsStore::done.
   void memory_done(bool ok) { keeper_.done(ok); }
 
-  /// Returns the reply to send now, or nothing if there is no reply or it is too early to send it. The bytes
-  /// are valid until `reply_sent`.
+  /// Returns the reply to send now; empty if there is no reply, or if the time to send it has not come. The
+  /// bytes are valid until `reply_sent`.
   Bytes take_reply(Time now) { return cycle_.take_reply(now); }
   /// Call this when the last stop bit has been sent and the driver is off.
   void reply_sent(Time now) { cycle_.reply_sent(now, turn_around()); }
@@ -111,7 +114,8 @@ class Module {
   }
   /// See RequestCycle::outcome.
   [[nodiscard]] const Outcome& outcome() const { return cycle_.outcome(); }
-  /// Returns whether the settings in the memory could not be read at reset and none have been stored since.
+  /// Returns whether the settings in the memory could not be read at reset, and no settings have been stored
+  /// since. Valid when loading has ended.
   [[nodiscard]] bool settings_unreadable() const { return keeper_.unreadable(); }
 
  private:

@@ -1,4 +1,4 @@
-// Time in the core: 32-bit microseconds, which wrap every 71.6 minutes. The caller supplies them.
+// Time in the core: 32-bit microseconds, which wrap every 71.6 minutes. The caller supplies the time.
 #pragma once
 
 #include <cstdint>

@@ -15,9 +15,9 @@
 
 namespace ex9000::hal {
 
-/// `Board` must be a struct with a member of each of these names. Each member is a driver or a reference to a
-/// driver. If a member is missing or lacks a function that its header requires, compilation fails with a
-/// message that names the member.
+/// Returns true if `Board` is a struct with the members that are listed below. Each member is a driver or a
+/// reference to a driver. If a member is missing or lacks a function that its header requires, compilation
+/// fails with a message that names the member.
 // NOLINTBEGIN(bugprone-macro-parentheses): the arguments are names
 template <class Board>
 constexpr bool is_board() {

@@ -11,11 +11,11 @@ namespace ex9000::hal {
 /// A free-running clock. Its time wraps; see Time.
 ///
 ///     Time now() const
-///         Returns the time, which never goes back. Interrupts and the main loop may call this; does not
-///         block.
+///         Returns the time. It never goes back, except when it wraps. For interrupts and the main loop; does
+///         not block.
 ///     Time now_in_interrupt() const
-///         Returns the same time and may be faster. Only for interrupts that the clock's own interrupt does
-///         not interrupt.
+///         Returns the same time as `now`, but may be faster. Only for interrupts that the clock's own
+///         interrupt cannot interrupt.
 ///
 /// True if `T` has these functions.
 template <class T, class = void>

@@ -11,9 +11,9 @@
 
 namespace ex9000::hal {
 
-/// An object exists from one reset to the next. A composition file creates it, calls `start`, and makes the
-/// interrupts call the `on_...` functions. Then it repeats the following in an endless loop: it calls `turn`
-/// until that returns false, and sleeps until `has_work` returns true.
+/// A module on a board. The object exists from one reset to the next. A composition file creates it, calls
+/// `start`, and makes the interrupts call the `on_...` functions. Then it repeats the following in an endless
+/// loop: it calls `turn` until `turn` returns false, and sleeps until `has_work` returns true.
 ///
 /// `Board`: see hal/board.hpp.
 template <class Board>
@@ -27,8 +27,8 @@ class Device {
   constexpr Device(const Model& model, TimingAt timing_at, const Board& board)
       : board_(board), module_(model, timing_at) {}
 
-  /// Call this once, before interrupts are enabled and after the tick has been started. `reason`: why the
-  /// board was reset.
+  /// Starts the module. Call this once, after the tick has started and before interrupts are enabled.
+  /// `reason`: why the board was reset.
   void start(ResetReason reason) {
     module_.start(board_.inputs.start(), board_.clock.now(), reason);
     board_.watchdog.feed();
@@ -37,8 +37,8 @@ class Device {
   // --- interrupts ---
   // on_receive, on_silence and on_sent must have the same priority. The others may have other priorities.
 
-  /// Call this for each byte that was received while the module's own driver was off, with or without an
-  /// error.
+  /// Processes a received byte. Call this for each byte, even if it has an error, but not for a byte that was
+  /// received while the module's own driver was on.
   void on_receive(std::uint8_t byte, ByteStatus status) {
     const Duration silence = module_.on_byte(byte, status, board_.clock.now_in_interrupt());
     if (!(silence == Duration())) {
@@ -57,7 +57,7 @@ class Device {
       wake();
     }
   }
-  /// Call this when the last stop bit has been sent and the driver is off.
+  /// Processes the end of a reply. Call this when the last stop bit has been sent and the driver is off.
   void on_sent() {
     module_.on_own_driver_off(board_.clock.now_in_interrupt());
     wake();
@@ -74,15 +74,15 @@ class Device {
     times_due_.store_in_interrupt(times_due_.load() + 1U);
     wake();
   }
-  /// Call this when the memory can continue its job.
+  /// Wakes the main loop. Call this when the memory can continue its job.
   void on_memory() { wake(); }
 
   // --- main loop; no function blocks ---
 
   [[nodiscard]] bool has_work() const { return wakes_.load() != wakes_seen_; }
 
-  /// Runs one pass: processes requests, settings, outputs and the panel. If it returns true, call this again
-  /// at once, because no interrupt will wake the main loop.
+  /// Runs one pass of the main loop: processes requests, settings, outputs and the panel. If it returns true,
+  /// call this again immediately, because no interrupt will wake the main loop.
   bool turn() {
     wakes_seen_ = wakes_.load();  // must be first, so that later events cause another pass
     const Time now = board_.clock.now();
@@ -103,8 +103,8 @@ class Device {
   [[nodiscard]] const Module& module() const { return module_; }
 
  private:
-  /// Processes INIT*, the status LED and the hardware watchdog, at every tick and when the wake timer has
-  /// fired. It also drives the outputs again, in case a disturbance has changed their registers.
+  /// Processes INIT*, the status LED and the hardware watchdog. Also drives the outputs again, in case a
+  /// disturbance has changed their registers.
   void poll_panel() {
     module_.poll_panel(board_.init_switch.asserted(), board_.clock.now());
     board_.status_led.light(module_.led_lit());
@@ -140,7 +140,8 @@ class Device {
     board_.line.send(reply);
   }
 
-  /// Returns whether the tick or the wake timer has fired, or the last `idle_for` was 0.
+  /// Returns whether the tick or the wake timer has fired since the last call, or an event was due at the end
+  /// of the last pass.
   bool panel_is_due() {
     const std::uint32_t times_due = times_due_.load();
     const bool due = due_now_ || times_due != times_seen_;
@@ -157,7 +158,7 @@ class Device {
   }
 
   /// Continues a memory job, or the work of the memory between jobs. Returns true if it must be called again
-  /// at once.
+  /// immediately.
   bool poll_memory(Time now) {
     const bool polls_again = board_.memory.poll(now);
     if (memory_job_under_way_ && !board_.memory.busy()) {
@@ -180,8 +181,8 @@ class Device {
     memory_job_under_way_ = true;
   }
 
-  /// Sets the wake timer to the next event. The duration of this pass delays that event, but delays do not
-  /// add up. Returns true if the event is due now.
+  /// Sets the wake timer to the next event. The duration of this pass delays that event, but these delays do
+  /// not add up. If the event is already due, returns true and does not set the timer.
   bool set_wake_timer(Time now) {
     const Duration idle = module_.idle_for(now, memory_job_under_way_ ? kMemoryPollPeriod : kLongestWake);
     due_now_ = idle == Duration();

@@ -11,7 +11,7 @@ namespace ex9000::hal {
 
 /// The unit of an erase, in bytes.
 inline constexpr std::uint32_t kFlashSector = 4096;
-/// A program operation must not cross the end of such a page, in bytes.
+/// The size of a page, in bytes. A program operation must not cross the end of a page.
 inline constexpr std::uint32_t kFlashPage = 256;
 
 /// A NOR flash, for example a W25Q16JV. An erase sets all bits of a sector to 1. A program operation changes
@@ -19,20 +19,21 @@ inline constexpr std::uint32_t kFlashPage = 256;
 /// an offset in the flash, in bytes. All functions are for the main loop and do not wait for the flash.
 ///
 ///     void start_erase(std::uint32_t address)
-///         Begins to erase the sector that begins at `address`: 45 ms typical, 400 ms at most. Call it only
-///         while not `busy()` and while no erase is suspended.
+///         Begins to erase the sector that begins at `address`. This takes 45 ms typically and 400 ms at
+///         most. Call it only while not `busy()` and while no erase is suspended.
 ///     void start_program(std::uint32_t address, Bytes source)
-///         Begins to program `source`: 0.4 ms typical, 3 ms at most. Call it only while not `busy()`. The
-///         erase of another sector may be suspended. `source` need not stay valid after the call.
+///         Begins to program `source`. This takes 0.4 ms typically and 3 ms at most. Call it only while not
+///         `busy()`. The erase of another sector may be suspended. `source` need not stay valid after the
+///         call.
 ///     bool busy()
 ///         Returns whether the flash is erasing or programming. A suspended erase does not make it busy.
 ///     void suspend()
-///         Interrupts an erase, so that `busy()` is false 20 us later at most. Then other sectors can be read
-///         and programmed; not every flash permits the latter. It has no effect on a flash that is not busy.
-///         Do not call it during a program operation, or less than 20 us after `resume`.
+///         Suspends an erase, so that `busy()` is false after at most 20 us. Then other sectors can be read
+///         and, if the flash permits this, programmed. Has no effect on a flash that is not busy. Do not call
+///         it during a program operation, or less than 20 us after `resume`.
 ///     void resume()
-///         Continues a suspended erase; from then on the flash is `busy()`. It has no effect if no erase is
-///         suspended. Call it only while not `busy()`.
+///         Continues a suspended erase. The flash is then `busy()`. Has no effect if no erase is suspended.
+///         Call it only while not `busy()`.
 ///     void read(std::uint32_t address, MutableBytes destination)
 ///         Reads `destination.size` bytes. Call it only while not `busy()`.
 ///

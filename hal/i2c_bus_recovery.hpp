@@ -7,15 +7,15 @@
 
 namespace ex9000::hal {
 
-/// A device that was interrupted during a byte may hold the data line low. This class sends up to nine clocks
-/// until the device releases the line, and then START and STOP. All functions are for the main loop and do
-/// not block.
+/// A device that was interrupted during a byte may hold the data line low. This class sends up to nine clock
+/// pulses until the device releases the line, and then sends START and STOP. All functions are for the main
+/// loop and do not block.
 ///
 /// `Wires` controls the two lines directly, as open-drain outputs with pull-ups:
 ///
-///     void take()                           Disconnects the lines from the master and lets them float.
-///     void pull(bool clock, bool data)      Drives the given lines low and lets the others float.
-///     bool data_is_high()                   Returns the level of the data line.
+///     void take()                         Disconnects the lines from the master and lets them float.
+///     void pull(bool clock, bool data)    Drives a line low if its argument is true; else lets it float.
+///     bool data_is_high()                 Returns whether the data line is high.
 template <class Wires>
 class I2cBusRecovery {
  public:
@@ -25,7 +25,7 @@ class I2cBusRecovery {
     deadline_.disarm();
   }
 
-  /// Continues to free the bus. Returns true when the bus is free. Until then, call this again at once.
+  /// Continues the recovery. Returns true when it has ended. Until then, call this again immediately.
   bool poll(Time now) {
     if (deadline_.armed() && !deadline_.reached(now)) {
       return false;

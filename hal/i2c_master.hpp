@@ -19,8 +19,8 @@ namespace ex9000::hal {
 ///         Begins a transfer. Call this only while not `busy()`. The transfer must stay valid while `busy()`.
 ///     bool poll(Time now)
 ///         Continues the transfer. While `busy()`, call this after each interrupt of the master and at least
-///         every `kMemoryPollPeriod` (hal/memory.hpp). If it returns true, call this again at once, because
-///         no interrupt will occur.
+///         every `kMemoryPollPeriod` (hal/memory.hpp). If it returns true, call this again immediately,
+///         because no interrupt will occur.
 ///     bool busy() const
 ///         Returns whether a transfer is running.
 ///     I2cResult result() const

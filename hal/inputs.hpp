@@ -8,11 +8,11 @@
 
 namespace ex9000::hal {
 
-/// The input channels. The edge interrupt calls `Device::on_edge` for each edge. It must clear the edge flag
-/// before it reads the level.
+/// The input channels. The edge interrupt calls `Device::on_edge` for each edge. The interrupt must clear the
+/// edge flag before it reads the level.
 ///
 ///     std::uint16_t start()
-///         Enables the reporting of edges. Returns the levels before the first edge: bit n is channel n, 1 =
+///         Starts to report edges, and returns the levels before the first edge: bit n is channel n, 1 =
 ///         logic 1 (+4 to +30 V). For the main loop, once after reset; does not block.
 ///
 /// True if `T` has this function.

@@ -15,8 +15,8 @@ namespace ex9000::hal {
 inline constexpr Duration kMemoryPollPeriod = milliseconds(1);
 
 /// A nonvolatile memory, for example an AT24C64 or a part of a flash. It carries out one job at a time while
-/// the main loop continues. If an interrupt occurs when the job can continue, that interrupt must call
-/// `Device::on_memory`. All functions are for the main loop and do not block.
+/// the main loop continues. If the driver has an interrupt that occurs when the job can continue, this
+/// interrupt must call `Device::on_memory`. All functions are for the main loop and do not block.
 ///
 ///     void start_read(std::uint16_t address, MutableBytes destination, Time now)
 ///         Begins to read `destination.size` bytes from `address` on. Call this only while not `busy()`.
@@ -28,12 +28,12 @@ inline constexpr Duration kMemoryPollPeriod = milliseconds(1);
 ///     bool poll(Time now)
 ///         Continues the job. Call this after each interrupt of the memory and every `kMemoryPollPeriod`. If
 ///         no job is running, call this in every pass of the main loop: a memory may prepare for the next
-///         job. If it returns true, call this again at once, because no interrupt will occur.
+///         job. If it returns true, call this again immediately, because no interrupt will occur.
 ///     bool busy() const
 ///         Returns whether a job is running.
 ///     bool succeeded() const
-///         Returns whether the last job succeeded; false if the memory did not answer or took longer than its
-///         data sheet allows. Call this only while not `busy()`.
+///         Returns whether the last job succeeded. A job fails, for example, if the memory does not answer or
+///         takes longer than its data sheet allows. Call this only while not `busy()`.
 ///
 /// True if `T` has these functions.
 template <class T, class = void>

@@ -8,7 +8,7 @@
 
 namespace ex9000::hal {
 
-/// The output channels: open collectors, relays or PhotoMOS. All are de-energised from reset to the first
+/// The output channels: open collectors, relays or PhotoMOS. All are de-energised from reset until the first
 /// `drive`.
 ///
 ///     void drive(std::uint16_t channels)

@@ -13,7 +13,7 @@ struct Exactly {
   operator U() const;  // NOLINT(google-explicit-constructor): the implicit conversion is intended
 };
 
-/// A valid type only if a call returns exactly `Wanted`.
+/// A type that is valid only if `Returned`, the return type of a call, is exactly `Wanted`.
 template <class Wanted, class Returned>
 using Returns = std::enable_if_t<std::is_same_v<Wanted, Returned>>;
 

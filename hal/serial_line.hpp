@@ -12,9 +12,9 @@ namespace ex9000::hal {
 
 /// The UART and its RS-485 driver, half duplex.
 ///
-/// The receive interrupt calls `Device::on_receive` for each byte, including bytes with errors, but not while
-/// the driver is on, because these bytes are the echo. When a reply has been sent, an interrupt of the same
-/// priority calls `Device::on_sent`.
+/// The receive interrupt calls `Device::on_receive` for each byte, including bytes with errors. While the
+/// driver is on, it does not call this function, because the received bytes are the echo. When a reply has
+/// been sent, an interrupt of the same priority calls `Device::on_sent`.
 ///
 ///     void open(std::uint32_t baud, LineFormat format)
 ///         Starts to receive at `baud` bits per second (1200 to 115200). Before this call, the driver is off

@@ -1,4 +1,4 @@
-// The mode of a UART, for code that handles UARTs from outside: doubles, simulated lines, and ports.
+// The mode of a UART, for code outside the firmware: doubles, simulated lines, and ports.
 #pragma once
 
 #include <cstdint>
@@ -7,7 +7,7 @@
 
 namespace ex9000::hal {
 
-/// The rate in bits per second and the line format; a rate of 0: the UART is off.
+/// The baud rate in bits per second, and the line format. A baud rate of 0 means that the UART is off.
 struct SerialMode {
   std::uint32_t baud = 0;
   LineFormat format = LineFormat::k8N1;

@@ -9,8 +9,8 @@
 namespace ex9000::hal {
 
 /// The period of a board's tick. It limits the delay of events that have no deadline: a change of INIT*, or
-/// an output register that must be written again. The wake timer serves all other events on time. A longer
-/// period would save little, and a shorter one would wake an idle module too often.
+/// an output register that must be written again. For all other events, the wake timer wakes the main loop on
+/// time. A longer period would save little, and a shorter one would wake an idle module too often.
 inline constexpr Duration kTickPeriod = milliseconds(10);
 
 /// A periodic interrupt that calls `Device::on_tick`. The hardware watchdog is fed only if both the tick and

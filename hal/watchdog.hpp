@@ -8,10 +8,10 @@
 
 namespace ex9000::hal {
 
-/// If the hardware watchdog is not fed, it resets the MCU after this time at the latest (wire.md section 6).
+/// If the hardware watchdog is not fed, it resets the MCU within this time (wire.md section 6).
 inline constexpr Duration kWatchdogPeriod = milliseconds(1600);
 
-/// The MCU's own watchdog. It is running after the first `feed` at the latest and cannot be stopped.
+/// The MCU's own watchdog. It starts at the first `feed` or earlier, and the firmware never stops it.
 ///
 ///     void feed()
 ///         Restarts the watchdog's countdown, which takes at most `kWatchdogPeriod`. For the main loop; does

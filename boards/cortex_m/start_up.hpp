@@ -7,8 +7,8 @@ namespace ex9000::start_up {
 
 using Handler = void (*)();
 
-/// The table that the processor reads from address 0 on (ARMv7-M Architecture Reference Manual, B1.5.3): the
-/// initial stack pointer, the system exceptions, and the interrupts by number.
+/// The vector table of the processor (ARMv7-M Architecture Reference Manual, B1.5.3): the initial stack
+/// pointer, the system exceptions, and the interrupts by number.
 template <unsigned interrupts>
 struct VectorTable {
   const void* stack_top;
@@ -30,11 +30,11 @@ struct VectorTable {
 /// The beginning of the stack, which grows down. The linker script defines this symbol.
 extern "C" std::uint32_t stack_top[];
 
-/// Copies the initialised data to RAM, clears the other variables in RAM, and calls `main`.
+/// Completes the initialisation of the variables in RAM, and calls `main`.
 extern "C" [[noreturn]] __attribute__((externally_visible)) void reset_handler();
 
-/// Handles faults and unexpected interrupts: resets the microcontroller at once, which switches all outputs
-/// off.
+/// Handles faults and unexpected interrupts: resets the microcontroller immediately, which switches all
+/// outputs off.
 extern "C" [[noreturn]] void fault_handler();
 
 /// An interrupt and its handler.

@@ -36,7 +36,7 @@ class Machine(Protocol):
         """
 
     def end(self) -> None:
-        """Ends the emulator at once."""
+        """Ends the emulator."""
 
 
 def parser_for(emulator: str, preset: str) -> argparse.ArgumentParser:

@@ -40,7 +40,7 @@ inline constexpr PinGroup kI2cPins{4, 2};
 inline constexpr std::array<PinGroup, 2> kOutputs{PinGroup{6, 8}, PinGroup{14, 8}};
 inline constexpr std::array<PinGroup, 2> kInputs{PinGroup{14, 8}, PinGroup{6, 8}};
 inline constexpr bool kOutputsActiveHigh = true;
-/// An optocoupler pulls the pin low while its input has 24 V.
+/// An optocoupler pulls the pin low while its input is logic 1.
 inline constexpr bool kInputsActiveHigh = false;
 
 }  // namespace ex9000::board

@@ -65,7 +65,7 @@ void Inputs::count(unsigned channel, std::uint32_t edges) {
   long_counters_[channel] += counted;
 }
 
-/// Returns when the level of a channel that is settling counts.
+/// Returns the time at which the level of `channel` counts. Call this only while the channel is settling.
 Deadline Inputs::settles_at(const InputEdges& edges, unsigned channel) const {
   constexpr Duration kRoundUp(1);  // the edge may have happened up to 1 us later than its recorded time
   Deadline deadline;

@@ -65,7 +65,8 @@ class Inputs {
   }
   /// Selects whether the counters count rising or falling edges from the next `collect` on.
   void count_rising_edges(bool rising) { count_rising_edges_ = rising; }
-  /// Sets the inverted channels, bit n for channel n. The levels change at once, without an edge.
+  /// Sets the inverted channels, bit n for channel n. The levels change immediately, and this change does not
+  /// count as an edge.
   void invert(std::uint16_t channels);
   /// Sets the filter times. They apply from the last edge of each channel on.
   void use_filters(const InputFilters& filters) { filters_ = filters; }
@@ -83,7 +84,8 @@ class Inputs {
   [[nodiscard]] std::uint16_t latched_low() const { return latched_low_; }
   /// Returns the counter of `channel`: 0 to 99999 in ASCII, 0 to 65535 in Modbus.
   [[nodiscard]] std::uint32_t counter(unsigned channel) const { return counters_[channel]; }
-  /// Returns the 32-bit counter of `channel`. It counts the same edges and is cleared at the same time.
+  /// Returns the 32-bit counter of `channel`. It counts the same edges as `counter` and is cleared together
+  /// with it.
   [[nodiscard]] std::uint32_t long_counter(unsigned channel) const { return long_counters_[channel]; }
 
   void clear_latches() { latched_high_ = latched_low_ = 0; }
@@ -93,7 +95,7 @@ class Inputs {
  private:
   void count(unsigned channel, std::uint32_t edges);
   [[nodiscard]] Deadline settles_at(const InputEdges& edges, unsigned channel) const;
-  /// Returns the channels whose level has changed, but has not counted yet.
+  /// Returns the channels with a changed level that does not count yet.
   [[nodiscard]] std::uint16_t settling() const { return static_cast<std::uint16_t>(levels_ ^ standing_); }
 
   std::uint32_t edges_seen_ = 0;  ///< InputEdges::edges at the last `collect`

@@ -5,7 +5,7 @@ namespace ex9000 {
 namespace {
 
 constexpr Duration kUnit = milliseconds(100);
-/// The output is switched on in the pass of the main loop that began at the recorded time, and a pass may
+/// The recorded time is the beginning of the pass of the main loop that switches the output on. The pass may
 /// take this long.
 constexpr Duration kLateStart(300);
 

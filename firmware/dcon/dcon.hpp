@@ -16,12 +16,13 @@ constexpr std::size_t kNoCommand = static_cast<std::size_t>(-1);
 /// and no CR.
 std::size_t find_command(const Model& model, Bytes frame);
 
-/// Judges the frame of `exchange` and writes its outcome and its reply, including checksum and CR. The module
-/// must carry out the outcome before it sends the reply. The reply is empty if the frame is a broadcast or is
-/// for another address. Changes nothing but `exchange`.
+/// Judges the frame of `exchange` and writes its outcome and its reply, including the checksum, if it is in
+/// force, and CR. The module must carry out the outcome before it sends the reply. The reply is empty if the
+/// frame is a broadcast or is for another address. Changes nothing but `exchange`.
 void answer(Exchange& exchange);
 
-/// Replaces the reply with `?AA`, checksum and CR. Call this if the settings could not be stored.
+/// Replaces the reply with `?AA`, the checksum if it is in force, and CR. Call this if the settings could not
+/// be stored.
 void refuse_store(Exchange& exchange);
 
 }  // namespace ex9000::dcon

@@ -21,7 +21,8 @@ unsigned status_of(const State& state) {
 }  // namespace
 
 /// Handles `~**` if a caller passes such a frame to `answer`. Normally the receiver counts `~**` in the
-/// interrupt and does not queue it, so that it is never lost. Both have the same result.
+/// interrupt and does not queue the frame, so that no host OK is lost. In both cases the host watchdog
+/// restarts.
 Refusal host_ok(Exchange& exchange) {
   exchange.outcome.request(Effect::RestartHostWatchdog);
   return Refusal::None;

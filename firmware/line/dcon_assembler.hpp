@@ -23,11 +23,12 @@ class DconAssembler {
   /// this while bytes are received.
   void answer_to(std::uint8_t address) { own_digits_.store_in_main_loop(hex_digits(address)); }
 
-  /// Processes a received byte. An accepted frame contains the characters from the delimiter on, without CHK
-  /// and CR. For the receive interrupt.
+  /// Processes a received byte. Returns the verdict on the frame that this byte ends, else Open. An accepted
+  /// frame contains the characters from the delimiter on, without CHK and CR. For the receive interrupt.
   Verdict byte(FrameQueue& queue, std::uint8_t byte, ByteStatus status, Time now);
 
-  /// Returns whether the last frame with a right check for this module was a broadcast. For interrupts.
+  /// Returns whether the last frame with a correct check was a broadcast. Valid only if that frame was not
+  /// Foreign. For interrupts.
   [[nodiscard]] bool last_was_broadcast() const { return broadcast_; }
   /// Drops an incomplete frame. For interrupts.
   void forget() { state_ = State::Hunting; }
@@ -49,7 +50,7 @@ class DconAssembler {
   State state_ = State::Hunting;
   Verdict loss_ = Verdict::Open;
   bool checksum_ = false;
-  bool broadcast_ = false;  ///< the last frame for this module was for all modules
+  bool broadcast_ = false;  ///< the last frame with a correct check was a broadcast or Foreign
   std::uint8_t size_ = 0;
   std::uint8_t sum_ = 0;  ///< sum of all characters except the last two
 };

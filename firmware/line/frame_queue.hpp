@@ -16,7 +16,7 @@ namespace ex9000 {
 /// length of the longest DCON frame that is accepted.
 constexpr std::size_t kLongestFrame = kBuiltModbus ? 256 : 32;
 
-/// A frame for this module whose check is correct.
+/// A frame that is being assembled, or a complete frame with a correct check for this module or all modules.
 struct Frame {
   std::uint16_t offset = 0;  ///< index of the first byte; 1 after a turn-around byte
   std::uint16_t size = 0;    ///< number of bytes from `offset` on, without checksum, CRC and CR

@@ -8,12 +8,12 @@
 
 namespace ex9000 {
 
-/// Stores the first and the last host OK that the main loop has not taken yet. Those between them do not
-/// matter: one pass of the main loop is shorter than the shortest timeout of the host watchdog, 0.1 s, so the
-/// watchdog cannot expire between the first and the last.
+/// Stores the times of the first and the last host OK that the main loop has not taken yet. The host OKs
+/// between them do not matter: one pass of the main loop is shorter than the shortest timeout of the host
+/// watchdog, 0.1 s, so the watchdog cannot expire between the first and the last.
 class HostOks {
  public:
-  /// A host OK counts from the time of its CR, or from the end of the silence after it.
+  /// A host OK counts from its CR in ASCII, and from the end of its silence in Modbus.
   struct Times {
     Time first;
     Time last;
@@ -28,7 +28,7 @@ class HostOks {
     received_.store_in_interrupt(received_.load() + 1U);
   }
 
-  /// Returns whether a host OK has not been taken yet.
+  /// Returns whether there is a host OK that the main loop has not taken yet.
   [[nodiscard]] bool waiting() const { return received_.load() != taken_.load(); }
 
   /// Takes all host OKs that are waiting. If another one arrives during the call, it is waiting afterwards,

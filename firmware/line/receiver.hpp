@@ -31,10 +31,11 @@ class Receiver {
 
   // --- interrupts, which must not interrupt each other ---
 
-  /// Processes a received byte. `now` is the end of its stop bit, or earlier if the timing allows for that.
-  /// Returns the time from `now` after which `on_silence` must be called: restart the timer with this time.
-  /// Do not change the timer if the result is 0. In Modbus, the result is `rtu_silence` for each byte. In
-  /// DCON, the result is the turn-around time for the CR of an accepted frame, otherwise 0.
+  /// Processes a received byte. `now` is the time at which the UART reports the byte; the timing takes into
+  /// account the part of the stop bits that is left. Returns the time from `now` after which `on_silence`
+  /// must be called: restart the timer with this time. Do not change the timer if the result is 0. In Modbus,
+  /// the result is `rtu_silence` for each byte. In DCON, the result is the turn-around time for the CR of an
+  /// accepted frame, otherwise 0.
   Duration on_byte(std::uint8_t byte, ByteStatus status, Time now);
 
   /// Call this when the time that `on_byte` or `on_silence` returned has passed. The result has the same
@@ -42,15 +43,15 @@ class Receiver {
   Duration on_silence();
 
   /// Call this when the module's own driver has been on until `now`; `on_byte` must not be called during that
-  /// time. Drops an incomplete frame (wire.md D9).
+  /// time. Drops an incomplete frame, except an RTU frame that lacks only its silence (wire.md D9).
   void on_own_driver_off(Time now);
 
   // --- main loop ---
 
   /// Sets the module's address for all frames that end after this call. Call this after `listen`.
   void answer_to(std::uint8_t address);
-  /// Sets whether each frame with the module's own address and a right check restarts the host watchdog like
-  /// a host OK, for all frames that end after this call.
+  /// Sets whether each frame with the module's own address and a correct check restarts the host watchdog
+  /// like a host OK, for all frames that end after this call.
   void restart_by_requests(bool on) { restarts_by_requests_.store_in_main_loop(on); }
   /// Returns the timing that was passed to `listen`.
   [[nodiscard]] const LineTiming& timing() const { return rtu_.timing(); }
@@ -58,7 +59,7 @@ class Receiver {
   [[nodiscard]] const FrameQueue& queue() const { return queue_; }
   constexpr LineTallies& tallies() { return tallies_; }
   [[nodiscard]] constexpr const LineTallies& tallies() const { return tallies_; }
-  /// The host OKs, and the requests that restart the host watchdog like one.
+  /// Returns the times of the host OKs, and of the requests that restart the host watchdog like one.
   HostOks& host_oks() { return host_oks_; }
   [[nodiscard]] const HostOks& host_oks() const { return host_oks_; }
 
@@ -82,7 +83,7 @@ class Receiver {
   FrameQueue queue_;
 };
 
-// Inline because it runs for each byte that any module receives.
+// Inline because it runs for each byte on the line, including bytes for other modules.
 inline Duration Receiver::on_byte(std::uint8_t byte, ByteStatus status, Time now) {
   if (status != ByteStatus::Good && status != ByteStatus::Overrun) {
     tallies_.count_damaged_byte_in_interrupt();

@@ -26,13 +26,13 @@ class RtuAssembler {
   void answer_to(std::uint8_t address) { own_address_.store_in_main_loop(address); }
 
   /// Processes a byte that was complete at `now`. Restart the timer with T3.5 after this call. Returns the
-  /// verdict on the previous frame if this byte shows that it has ended, else Open. For the receive
-  /// interrupt.
+  /// verdict on the previous frame if this byte shows that the previous frame has ended, else Open. For the
+  /// receive interrupt.
   Verdict byte(FrameQueue& queue, std::uint8_t byte, ByteStatus status, Time now);
 
-  /// Call this when the timer has expired. Restart the timer with `next_wait()` after this call. An accepted
-  /// frame contains address, function and data, but neither the CRC nor a leading turn-around byte 00. For
-  /// the timer interrupt.
+  /// Call this when the timer has expired. Restart the timer with `next_wait()` after this call. Returns the
+  /// verdict on the frame that has ended, or Open if none has ended. An accepted frame contains address,
+  /// function and data, but neither the CRC nor a leading turn-around byte 00. For the timer interrupt.
   Verdict silence(FrameQueue& queue);
   /// Returns the next time for the timer; 0 if none is necessary.
   [[nodiscard]] Duration next_wait() const;
@@ -50,7 +50,7 @@ class RtuAssembler {
   enum class State : std::uint8_t {
     Idle,         ///< no frame is open
     Receiving,    ///< a frame is open, and T3.5 is not over
-    GracePeriod,  ///< T3.5 is over without a valid frame; a byte that began before that may still arrive
+    GracePeriod,  ///< T3.5 is over without a valid frame; a byte that began earlier may still arrive
   };
 
   static constexpr std::uint8_t kTurnAround = 0x00;
@@ -74,7 +74,8 @@ class RtuAssembler {
   bool broadcast_ = false;      ///< the last frame for this module was for all modules
 };
 
-// The functions below are inline because they run for each byte that any module receives.
+// The functions below are inline because they run for each byte on the line, including bytes for other
+// modules.
 
 inline Verdict RtuAssembler::byte(FrameQueue& queue, std::uint8_t byte, ByteStatus status, Time now) {
   Verdict before = Verdict::Open;

@@ -14,8 +14,8 @@ struct LineTiming {
   /// Time from the report of a byte to the end of the silence that ends a Modbus RTU frame and precedes a
   /// reply: the rest of the stop bits and T3.5. It is rounded up, so that a reply is never early.
   Duration rtu_silence;
-  /// Time after `rtu_silence` within which a byte that began before T3.5 becomes complete: one character. It
-  /// is rounded down, so that a byte that begins after exactly T3.5 begins a new frame.
+  /// Time after `rtu_silence` within which a byte that began before the end of T3.5 becomes complete: one
+  /// character. It is rounded down, so that a byte that begins after exactly T3.5 begins a new frame.
   Duration rtu_grace;
   /// The largest time between the reports of two bytes; a larger time makes the frame invalid.
   Duration rtu_slack;
@@ -72,7 +72,7 @@ struct LineTiming {
 
   /// In microseconds: 1 for the rounding of the division, 1 for the resolution of the clock.
   static constexpr std::uint32_t kRoundUp = 2;
-  /// In microseconds: kRoundUp, because rtu_silence is already rounded up by it, and 1 more.
+  /// In microseconds: 1 more than kRoundUp, because rtu_silence is already rounded up by kRoundUp.
   static constexpr std::uint32_t kRoundDown = kRoundUp + 1;
 
   static constexpr std::uint32_t microseconds(std::uint32_t half_bits, std::uint32_t baud) {

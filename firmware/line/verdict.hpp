@@ -8,16 +8,15 @@ namespace ex9000 {
 /// The status of a byte as the UART reports it.
 enum class ByteStatus : std::uint8_t { Good, FramingError, ParityError, Break, Overrun };
 
-/// The verdict on a frame that a byte or a silence has ended. The module sends no reply to a frame unless it
-/// is Accepted; only these frames reach the main loop. LineTallies uses the order: frames with a correct
-/// check come first.
+/// The verdict on a frame that a byte or a silence has ended. Only Accepted frames reach the main loop, so
+/// the module replies to no other frame. LineTallies uses the order: frames with a correct check come first.
 enum class Verdict : std::uint8_t {
   Open,       ///< no frame ended
   Accepted,   ///< correct, and for this module or a broadcast; the frame is in the queue
   HostOk,     ///< a host OK; counted in the interrupt, so that it is never lost
   Ignored,    ///< ASCII: correct and a broadcast, but not a command
   Foreign,    ///< correct, but for another address
-  NoRoom,     ///< correct and for this module, but lost because another frame is already waiting
+  NoRoom,     ///< correct, and for this module or a broadcast, but lost because another frame is waiting
   BadCheck,   ///< wrong or missing checksum, wrong CRC
   TooShort,   ///< too short to contain a check or, in Modbus, an address
   TooLong,    ///< longer than the longest allowed frame

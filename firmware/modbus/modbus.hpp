@@ -9,7 +9,7 @@ namespace ex9000::modbus {
 /// outcome has been carried out; it is empty for a broadcast. Changes nothing but `exchange`.
 void answer(Exchange& exchange);
 
-/// Replaces the reply with an exception, because the settings could not be stored. An empty reply to a
+/// Replaces the reply with an exception. Call this if the settings could not be stored. The empty reply to a
 /// broadcast stays empty.
 void refuse_store(Exchange& exchange);
 

@@ -39,8 +39,8 @@ constexpr unsigned width_of(Width width, const Model& model) {
   return width == Width::PairPerInput ? 2U * model.inputs : model.inputs;
 }
 
-/// Coils to write: each coil whose bit is set in `mask` gets its bit in `value`. Bit 0 is the row's first
-/// coil.
+/// Coils to write: each coil whose bit is set in `mask` gets the value of its bit in `value`. Bit 0 is the
+/// row's first coil.
 struct BitWrite {
   std::uint16_t mask = 0;
   std::uint16_t value = 0;
@@ -165,22 +165,22 @@ inline constexpr auto kBitRegisters = table<BitRegister>({
                 "",
                 {0x0020, Width::PerInput, Needs::Inputs, kReadCoils, kPlain, read_inputs, nullptr}},
     BitRegister{"latch-high",
-                "latch high: a rising edge was seen",
+                "latch high: a rising edge has occurred",
                 "",
                 {0x0040, Width::PerInput, Needs::Inputs, kReadCoils, kPlain, read_latch_high, nullptr}},
     BitRegister{"latch-low",
-                "latch low: a falling edge was seen",
+                "latch low: a falling edge has occurred",
                 "",
                 {0x0060, Width::PerInput, Needs::Inputs, kReadCoils, kPlain, read_latch_low, nullptr}},
     BitRegister{
         "safe-value",
-        "safe value; the outputs follow",
+        "safe value; a write also drives the outputs",
         "0 off, 1 on",
         {0x0080, Width::PerOutput, Needs::Outputs, kReadCoils | kWriteSingleCoil | kWriteMultipleCoils,
          kDrivesOutputs, read_safe_value, write_safe_value}},
     BitRegister{
         "power-on-value",
-        "power-on value; the outputs follow",
+        "power-on value; a write also drives the outputs",
         "0 off, 1 on",
         {0x00A0, Width::PerOutput, Needs::Outputs, kReadCoils | kWriteSingleCoil | kWriteMultipleCoils,
          kDrivesOutputs, read_power_on_value, write_power_on_value}},
@@ -209,7 +209,7 @@ inline constexpr auto kBitRegisters = table<BitRegister>({
      {0x0200, Width::PerInput, Needs::Inputs, kWriteSingleCoil | kWriteMultipleCoils, kOnlyOn, nullptr,
       write_clear_counters}},
     {"counting-edge",
-     "edge that the counters count, stored and in force at once",
+     "edge that the counters count, stored and in force immediately",
      "0 falling, 1 rising; not by broadcast",
      {0x08CA, Width::One, Needs::Inputs, kReadCoils | kWriteSingleCoil, kConfiguration, read_counting_edge,
       write_counting_edge}},
@@ -246,7 +246,7 @@ inline constexpr auto kWordRegisters = table<WordRegister>({
     // --- extension registers, 0x0240 to 0x030F ---
     WordRegister{
         "input-filters",
-        "filter of the input in ms: a level counts when it has stood for this time",
+        "filter of the input in ms: a level counts when it has been stable for this time",
         "0 to 2000; not by broadcast",
         {0x0240, Width::PerInput, Needs::Inputs, kReadRegisters | kWriteRegisters,
          kExtension | kConfiguration, 0, InputFilters::kLongest, read_input_filter, write_input_filter}},
@@ -256,7 +256,7 @@ inline constexpr auto kWordRegisters = table<WordRegister>({
                  {0x0250, Width::One, Needs::Inputs, kReadRegisters | kWriteRegisters,
                   kExtension | kConfiguration, 0, 0xFFFF, read_inverted_inputs, write_inverted_inputs}},
     WordRegister{"watchdog-feed",
-                 "what restarts the host watchdog: 0 host OK alone, 1 also every request for this module",
+                 "what restarts the host watchdog: 0 only a host OK, 1 also every request for this module",
                  "0 or 1; not by broadcast",
                  {0x0251, Width::One, Needs::Nothing, kReadRegisters | kWriteRegisters,
                   kExtension | kConfiguration, 0, 1, read_fed_by_requests, write_fed_by_requests}},
@@ -284,7 +284,7 @@ inline constexpr auto kWordRegisters = table<WordRegister>({
     WordRegister{
         "reset-reason",
         "reason of the last reset: 1 power-on, 2 module watchdog, 3 software, 4 reset pin, 5 fault; 0 if "
-        "the board cannot know",
+        "the board cannot detect it",
         "",
         {0x0301, Width::One, Needs::Nothing, kReadRegisters, kExtension, 0, 0, read_reset_reason, nullptr}},
     WordRegister{"uptime",
@@ -302,13 +302,12 @@ inline constexpr auto kWordRegisters = table<WordRegister>({
         "stores of settings since reset, at most 65535",
         "",
         {0x0305, Width::One, Needs::Nothing, kReadRegisters, kExtension, 0, 0, read_store_count, nullptr}},
-    WordRegister{
-        "settings-source",
-        "what the settings were read from at reset: 0 good copies, 1 one copy bad, 2 no good copy: factory "
-        "settings, 3 an older layout, 4 blank memory: factory settings",
-        "",
-        {0x0306, Width::One, Needs::Nothing, kReadRegisters, kExtension, 0, 0, read_settings_source,
-         nullptr}},
+    WordRegister{"settings-source",
+                 "source of the settings at reset: 0 good copies, 1 one copy bad, 2 no good copy: factory "
+                 "settings, 3 an older layout, 4 blank memory: factory settings",
+                 "",
+                 {0x0306, Width::One, Needs::Nothing, kReadRegisters, kExtension, 0, 0, read_settings_source,
+                  nullptr}},
     WordRegister{
         "line-tallies",
         "counts of the line: bus messages, bus errors, exceptions, messages for this module, those without a "

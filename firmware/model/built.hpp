@@ -55,7 +55,7 @@ constexpr bool has(const Model& model, Needs needs) {
 #endif
 }
 
-/// True if a built model can speak Modbus. If false, the program contains no Modbus code.
+/// True if a built model can speak Modbus. If false, the program contains no code for Modbus RTU.
 constexpr bool kBuiltModbus = some_model_meets(Needs::Modbus);
 
 /// Returns the member `part` of each row of `table`, without the rows that no built model has.

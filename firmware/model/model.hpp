@@ -23,7 +23,7 @@ enum class OutputKind : std::uint8_t { None, OpenCollector, Relay, PhotoMos };
 
 /// The place at which the user ties INIT* to GND. This is documentation for users only. Section 1.4 of the
 /// manuals: older modules have a terminal, newer modules have a slide switch at the rear. The first pages of
-/// two manuals name the models.
+/// two manuals name the models that have a switch.
 enum class InitInput : std::uint8_t { Terminal, RearSwitch };
 
 struct Model {

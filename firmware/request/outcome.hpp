@@ -38,7 +38,7 @@ struct Drive {
 };
 
 /// Timed outputs to switch: each channel whose bit is set in `mask` is switched on for `units` x 0.1 s, or
-/// off if that is 0.
+/// off if its `units` is 0.
 struct TimedDrive {
   std::uint16_t mask = 0;
   std::array<std::uint16_t, kMaxOutputs> units{};

@@ -19,7 +19,7 @@ class RequestCycle {
     AwaitingStore,  ///< judged; the store of the changed settings has not begun
     Storing,        ///< judged; the memory is storing the changed settings
     ReplyReady,     ///< done; the reply waits until the line has been idle for long enough
-    Replying,       ///< the driver is on
+    Replying,       ///< the reply is being sent
   };
 
   constexpr RequestCycle(const State& state, const LineTallies& tallies) : exchange_(state, tallies) {}
@@ -46,14 +46,14 @@ class RequestCycle {
   /// next request may be judged.
   bool finish();
 
-  /// Returns the reply to send now, or nothing if there is no reply or it is too early to send it. The bytes
-  /// are valid until `reply_sent`.
+  /// Returns the reply to send now; empty if there is no reply, or if the time to send it has not come. The
+  /// bytes are valid until `reply_sent`.
   Bytes take_reply(Time now);
   /// Call this when the last stop bit has been sent and the driver is off. The next reply is sent `silence`
   /// later at the earliest (wire.md D18).
   void reply_sent(Time now, Duration silence);
-  /// Disarms the deadline of `reply_sent` when it is reached. Call this at least every few minutes: times
-  /// wrap, so an old deadline would later appear to be in the future.
+  /// Disarms the deadline of `reply_sent` if this deadline is reached. Call this at least every few minutes:
+  /// times wrap, so an old deadline would later appear to be in the future.
   void end_reply_gap(Time now);
   /// Returns the time until `take_reply` returns the reply. Call this only while ReplyReady.
   [[nodiscard]] Duration until_reply(Time now) const;

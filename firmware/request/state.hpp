@@ -14,7 +14,7 @@ namespace ex9000 {
 
 /// Values that are taken from the settings or from INIT mode at reset and apply until the next reset.
 struct InForce {
-  std::uint8_t address = 0;  ///< exception: `%` changes it at once, but not in INIT mode
+  std::uint8_t address = 0;  ///< exception: `%` changes it immediately, but not in INIT mode
   std::uint8_t baud_code = kFactoryBaudCode;
   Protocol protocol = Protocol::Ascii;
   bool checksum = false;
@@ -31,7 +31,7 @@ struct Sample {
 
 /// Counters of the main loop. Together with LineTallies they are the line tallies (modbus/tallies.hpp).
 struct Diagnostics {
-  std::uint16_t exceptions = 0;  ///< exceptions, or in ASCII replies that begin with `?`
+  std::uint16_t exceptions = 0;  ///< exceptions; in ASCII, replies that begin with `?`
   std::uint16_t no_responses = 0;
 };
 

@@ -6,7 +6,7 @@
 
 namespace ex9000 {
 
-/// The remainders of four bits: a CRC takes two steps for each byte.
+/// The remainders of all values of four bits. A CRC takes two steps for each byte.
 class Crc32Remainders {
  public:
   static constexpr unsigned kBits = 4;
@@ -32,8 +32,8 @@ class Crc32Remainders {
 };
 inline constexpr Crc32Remainders kCrc32Remainders;
 
-/// Computes the CRC-32 of IEEE 802.3, 3.2.9. It uses a table because a module with a page store computes
-/// about 1,100 of them before its first reply (hal/flash/page_store.hpp).
+/// Computes the CRC-32 of IEEE 802.3, 3.2.9. It uses a table because a module with a page store computes up
+/// to about 1,100 CRCs before its first reply (hal/flash/page_store.hpp).
 class Crc32 {
  public:
   constexpr void add(std::uint8_t byte) {

@@ -113,8 +113,8 @@ class Decoder {
   bool valid_ = true;
 };
 
-/// Returns how many bytes of settings a record requires: up to the last one that differs from its factory
-/// value. A module that uses none of the newer settings therefore writes one page, as before.
+/// Returns how many bytes of settings a record requires: up to the last setting that differs from its factory
+/// value. A module that uses none of the newer settings therefore writes one page, as older firmware does.
 std::size_t required_size(const Model& model, const Settings& settings) {
   const Settings factory = Settings::factory(model);
   std::size_t size = 0;

@@ -54,8 +54,8 @@ constexpr std::size_t kRecordRoom = 128;
 ///
 /// The CRC includes the designation, so that settings of another model are never used: their power-on value
 /// is intended for other outputs. The CRC detects every error burst of up to 32 bits and every error of two
-/// or three bits. It misses any other error, for example a record with only some new pages, once in 2^32
-/// times.
+/// or three bits. It misses any other error, for example a record with only some new pages, with a
+/// probability of 2^-32.
 constexpr std::uint8_t kLayout = 3;
 using RecordBytes = std::array<std::uint8_t, kRecordRoom>;
 

@@ -73,7 +73,7 @@ class InputFilters {
 
   [[nodiscard]] constexpr std::uint16_t of(unsigned channel) const { return milliseconds_[channel]; }
   constexpr void set(unsigned channel, std::uint16_t milliseconds) { milliseconds_[channel] = milliseconds; }
-  /// Returns whether a channel has a filter.
+  /// Returns whether any channel has a filter.
   [[nodiscard]] bool any() const;
   /// Returns whether only the first `channels` channels have a filter and no time is too long.
   [[nodiscard]] bool are_possible(unsigned channels) const;
@@ -99,7 +99,7 @@ constexpr std::uint8_t kFactoryWatchdogTimeout = 0xFF;
 /// may use `model`, and the last one may use `value`. This list defines the members of Settings and of
 /// SettingsChange and the layout of a record (record.hpp), in the same order. Append new settings. Never
 /// remove or move a setting or change its type, because memories in the field contain them. Never change the
-/// factory value of a setting after `safe_value`, because a record may end before a setting with its factory
+/// factory value of a setting after `safe_value`, because a record may omit a setting that has its factory
 /// value.
 ///
 ///     address           the module's address

@@ -10,7 +10,7 @@ namespace ex9000 {
 
 /// Loads the settings at reset and stores the settings of a command. In addition, it does the following
 /// without a command:
-/// - It stores a watchdog timeout, which changes the settings in force at once.
+/// - It stores a watchdog timeout, which changes the settings in force immediately.
 /// - It repeats the first save after a firmware update if the power failed during that save.
 /// - It invalidates copies that must not be used.
 ///
@@ -24,8 +24,9 @@ class SettingsKeeper {
   [[nodiscard]] bool loading() const { return store_.loading(); }
   /// Returns the settings that a reset now would load, if `certain()`.
   [[nodiscard]] const Settings& stored() const { return store_.stored(); }
-  /// Returns whether the memory did not answer at reset, or contained something other than settings of this
-  /// model, and no settings have been stored since. False if the memory was blank.
+  /// Returns whether the settings could not be read at reset, and no settings have been stored since: the
+  /// memory did not answer, or it contained something other than settings of this model. False if the memory
+  /// was blank.
   [[nodiscard]] bool unreadable() const { return store_.found() == SettingsStore::Found::Unreadable; }
 
   /// See SettingsStore::source and SettingsStore::saves.
@@ -44,9 +45,9 @@ class SettingsKeeper {
   /// Starts to store the settings of a command. Call this only while not `busy()`. `saved()` is valid as soon
   /// as `busy()` is false again.
   void save(const Settings& settings, Time now);
-  /// Shortens a save that does not belong to a command: its next failed attempt ends it, and it is retried a
-  /// second later. Call this while a command waits for this save, so that its reply is not late if the memory
-  /// fails.
+  /// Shortens a save that does not belong to a command: the next failed attempt ends the save, and the keeper
+  /// retries it a second later. Call this while a command waits for this save, so that the reply to the
+  /// command is not late if the memory fails.
   void let_command_through() {
     if (own_save_) {
       store_.give_up_at_next_failure();
@@ -60,7 +61,7 @@ class SettingsKeeper {
   /// Starts to store `in_force` or to invalidate a copy, if necessary. Call this in every pass of the main
   /// loop.
   void poll(const Settings& in_force, Time now);
-  /// Returns whether a save without a command has ended and `poll` has not processed its result yet.
+  /// Returns whether an action without a command has ended and `poll` has not processed its result yet.
   [[nodiscard]] bool has_work() const { return own_save_ && !busy(); }
   /// Returns when the keeper retries a failed action; disarmed if no action has failed.
   [[nodiscard]] Deadline retry() const { return retry_; }
@@ -75,7 +76,7 @@ class SettingsKeeper {
 
   SettingsStore store_;
   bool may_differ_ = false;  ///< the settings in force may differ from the stored settings
-  bool own_save_ = false;    ///< the running save does not belong to a command
+  bool own_save_ = false;    ///< the running action does not belong to a command
   Deadline retry_;
 };
 

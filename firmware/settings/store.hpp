@@ -38,7 +38,7 @@ class SettingsStore {
   enum class Found : std::uint8_t {
     Settings,    ///< the memory contains a good copy
     Blank,       ///< the memory was never written; factory settings are used
-    Unreadable,  ///< something else, or no answer; factory settings are used but not stored
+    Unreadable,  ///< no good copy, or no answer; factory settings are used but not stored
   };
 
   /// The origin of the settings that were loaded at reset: register 0x0306 (firmware/extensions.md).
@@ -69,7 +69,8 @@ class SettingsStore {
   /// is not used after the next reset.
   void begin_saving(const Settings& settings);
   [[nodiscard]] bool busy() const { return step_ != Step::Idle; }
-  /// Makes the running save fail at its next failed attempt to write. Does nothing while the store reads.
+  /// Makes the running save fail at its next failed attempt to write. Has no effect unless the store is
+  /// writing or verifying.
   void give_up_at_next_failure() {
     if (step_ == Step::Write || step_ == Step::Verify) {
       attempt_ = kAttempts - 1;
@@ -80,7 +81,7 @@ class SettingsStore {
 
   /// Returns whether the power failed during the first save after a firmware update. The new copy is then
   /// used, but copies of an older layout are still valid. One successful read does not prove that the new
-  /// copy is well written, so the old copies stay until the settings have been saved again. If that save
+  /// copy will stay readable, so the old copies stay until the settings have been saved again. If that save
   /// fails, the old copies are invalidated nevertheless.
   [[nodiscard]] bool update_unfinished() const {
     return found_ == Found::Settings && old_copies_ != 0 && !kPlaces[current_place_].old;

@@ -58,8 +58,8 @@ class At24c {
 
   static constexpr std::uint8_t kDevice = 0x50;  // A2, A1 and A0 are connected to GND
   static constexpr std::size_t kPage = 32;
-  /// The timeout. Programming a page takes at most 10 ms. The first read after a reset may have to wait for
-  /// the end of programming too.
+  /// The timeout. Programming a page takes at most 10 ms. The first read after a reset may also have to wait
+  /// until a page has been programmed.
   static constexpr Duration kAnswerTimeout = milliseconds(12);
 
   void begin(Step step, std::uint16_t address, Time now) {

@@ -11,7 +11,7 @@ namespace ex9000::hal::cortex_m {
 
 class Interrupts {
  public:
-  /// Enables interrupts. `numbers` is a mask, bit n is interrupt n, 0 to 31.
+  /// Enables interrupts. `numbers` is a mask; bit n is interrupt n, 0 to 31.
   ///
   /// An interrupt cannot interrupt another interrupt. The stack therefore needs room for only one interrupt,
   /// and interrupts can share data without protection. Priorities only define the order of pending
@@ -28,13 +28,13 @@ class Interrupts {
     enable(numbers);
   }
 
-  /// Enables interrupts, which keep the equal priorities that they have after a reset. An interrupt cannot
-  /// interrupt another interrupt. Pending ones run in this order: SysTick, then the others by number.
+  /// Enables interrupts with the equal priorities that they have after a reset. An interrupt cannot interrupt
+  /// another interrupt. Pending ones run in this order: SysTick, then the others by number.
   static void enable(std::uint32_t numbers) { kSetEnable.write(Bits<SetEnable>(numbers)); }
 
-  /// Sleeps until `has_work()` returns true. Interrupts run meanwhile. They are disabled only between the
-  /// call of `has_work` and the sleep, so that no event is missed; a pending interrupt ends the sleep
-  /// nevertheless. For the main loop.
+  /// Sleeps until `has_work()` returns true. Interrupts run meanwhile. They are disabled only from the call
+  /// of `has_work` to the end of each sleep, so that no event is missed. A pending interrupt ends the sleep
+  /// even while interrupts are disabled. For the main loop.
   template <class HasWork>
   static void sleep_until(HasWork has_work) {
     processor::disable_interrupts();
@@ -46,8 +46,8 @@ class Interrupts {
     processor::enable_interrupts();
   }
 
-  /// Resets the microcontroller at once and does not return. Interrupts, faults and the main loop may call
-  /// it. On an RP2040, it would reset only the processor.
+  /// Resets the microcontroller immediately and does not return. Interrupts, faults and the main loop may
+  /// call it. On an RP2040, it would reset only the processor.
   [[noreturn]] static void reset() {
     constexpr Bits<ApplicationInterrupt> kReset(1U << 2U);
     kApplicationInterrupt.write(kKey | kReset);

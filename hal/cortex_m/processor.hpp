@@ -6,7 +6,8 @@ namespace ex9000::hal::cortex_m::processor {
 
 /// Disables interrupts, but not faults, until `enable_interrupts`. For the main loop.
 inline void disable_interrupts() { __asm volatile("cpsid i" ::: "memory"); }
-/// Enables interrupts. Pending interrupts run before the next instruction, even if that disables them again.
+/// Enables interrupts. Pending interrupts run before the next instruction, even if that instruction disables
+/// them again.
 inline void enable_interrupts() { __asm volatile("cpsie i\n\tisb" ::: "memory"); }
 
 /// Sleeps until an interrupt is pending, even if interrupts are disabled. For the main loop.

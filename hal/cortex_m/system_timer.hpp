@@ -1,4 +1,4 @@
-// SysTick as clock and tick. Source: ARMv7-M Architecture Reference Manual, B3.3, and B3.2.4 (ICSR).
+// SysTick as the clock and the tick. Source: ARMv7-M Architecture Reference Manual, B3.3, and B3.2.4 (ICSR).
 #pragma once
 
 #include <cstdint>

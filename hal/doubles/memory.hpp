@@ -11,8 +11,8 @@
 
 namespace ex9000::hal::doubles {
 
-/// Simulates an AT24C64: 8 KiB, erased to FF, on a 100 kHz bus, 5 ms to program a page. `cut` simulates a
-/// power failure during a job.
+/// Simulates an AT24C64 of 8 KiB on a 100 kHz bus. At first, all bytes are FF. The AT24C64 takes 5 ms to
+/// program a page. `cut` simulates a power failure during a job.
 class Memory {
  public:
   static constexpr std::size_t kSize = 8192;
@@ -24,7 +24,7 @@ class Memory {
 
   void start_read(std::uint16_t address, MutableBytes destination, Time now);
   void start_write(std::uint16_t address, Bytes source, Time now);
-  /// Does nothing: `run` ends the job when its virtual time has passed.
+  /// Has no effect, because `run` ends the job when its virtual time has passed.
   bool poll(Time /*now*/) { return false; }
   [[nodiscard]] bool busy() const { return ends_ != kNever; }
   [[nodiscard]] bool succeeded() const { return succeeded_; }
@@ -45,7 +45,7 @@ class Memory {
   /// Sets a function that is called after each successful write, before the job ends.
   void on_write(std::function<void()> written) { written_ = std::move(written); }
 
-  /// Makes all jobs fail without an effect while `on` is true.
+  /// While `on` is true, all jobs fail and change nothing.
   void fail(bool on) { failing_ = on; }
 
   [[nodiscard]] const std::vector<std::uint8_t>& contents() const { return contents_; }

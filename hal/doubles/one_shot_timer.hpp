@@ -12,7 +12,7 @@ class OneShotTimer {
   void restart(Duration after) { fires_ = clock_.when(after); }
 
   [[nodiscard]] VirtualTime next() const { return fires_; }
-  /// Returns whether the timer fires now; the caller must then call its interrupt.
+  /// Returns whether the timer fires now. If it does, the caller must call its interrupt.
   bool fire() {
     if (fires_ > clock_.virtual_now()) {
       return false;

@@ -27,7 +27,7 @@ class Wire {
 class SerialLine {
  public:
   /// How long the driver is on before the first start bit and after the last stop bit: about as long as one
-  /// or two register writes take. `release_late` extends the second time.
+  /// or two register writes take. `release_late` extends the time after the last stop bit.
   static constexpr VirtualTime kDriverLead = std::chrono::microseconds(2);
   static constexpr VirtualTime kDriverTail = std::chrono::microseconds(2);
 
@@ -39,13 +39,13 @@ class SerialLine {
 
   /// Returns the baud rate and the line format. The baud rate is 0 before `open` and after `abort`.
   [[nodiscard]] SerialMode mode() const { return mode_; }
-  /// Keeps the driver on for longer after each reply, by the time `by`. This also applies to a reply that is
-  /// being sent.
+  /// Makes the driver stay on longer after each reply. `by`: the additional time. This also applies to a
+  /// reply that is being sent.
   void release_late(VirtualTime by);
   /// Returns the time at which `run` must be called next.
   [[nodiscard]] VirtualTime next() const { return next_; }
   void run();
-  /// Turns the driver off at once, even during a byte, as a power failure or a reset does.
+  /// Turns the driver off immediately, even during a byte, as a power failure or a reset does.
   void abort();
 
  private:
@@ -57,7 +57,7 @@ class SerialLine {
   std::size_t sent_ = 0;
   VirtualTime first_start_bit_{0};
   VirtualTime next_ = kNever;
-  /// When the driver goes off if `late_by_` is 0; kNever until the last byte is being sent.
+  /// The time at which the driver turns off if `late_by_` is 0; kNever until the last byte is being sent.
   VirtualTime over_ = kNever;
   VirtualTime late_by_{0};
 };

@@ -1,4 +1,4 @@
-// The clock of the doubles and of the virtual bus, which the simulator or a test sets.
+// The clock of the doubles and of the virtual bus. The simulator or a test sets it.
 #pragma once
 
 #include <chrono>
@@ -22,7 +22,7 @@ class VirtualClock {
     microseconds_ = std::chrono::duration_cast<std::chrono::microseconds>(now);
   }
 
-  /// Returns the first time at which `now()` is `after` later than it is now.
+  /// Returns the first virtual time at which `now()` is later than its current value by `after`.
   [[nodiscard]] VirtualTime when(Duration after) const {
     return microseconds_ + std::chrono::microseconds(after.microseconds());
   }

@@ -23,8 +23,8 @@ class BackgroundErase {
     run(now);
   }
 
-  /// Suspends an erase that was in progress at a reset of the MCU; if there was none, the flash ignores this.
-  /// The flash may be busy. `no_sector`: the value that `sector()` returns afterwards.
+  /// Suspends an erase that was in progress at a reset of the MCU; if there was none, the flash ignores the
+  /// command. The flash may be busy. `no_sector`: the value that `sector()` returns afterwards.
   void suspend_unknown(Flash& flash, unsigned no_sector) {
     flash.suspend();
     sector_ = no_sector;
@@ -51,7 +51,8 @@ class BackgroundErase {
   }
 
   [[nodiscard]] bool under_way() const { return state_ != State::None; }
-  /// Returns whether the erase has ended since `start` or `resume`. Then no erase is `under_way()` any more.
+  /// Returns whether the erase has ended since `start` or `resume`. If it has ended, no erase is
+  /// `under_way()` any more.
   bool take_end() {
     const bool ended = state_ == State::Running;
     if (ended) {

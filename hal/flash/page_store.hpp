@@ -18,21 +18,23 @@
 namespace ex9000::hal::flash {
 
 /// A memory of 12 pages of 32 bytes in the 14 sectors from address `kBegin` on. For its functions, see
-/// hal/memory.hpp; for `Flash`, see hal/flash.hpp. A page that was never written reads FF.
+/// hal/memory.hpp; for `Flash`, see hal/flash.hpp. A page that was never written contains FF.
 ///
 /// The sectors contain a log of entries. A write appends an entry with the whole page to the log, and reads
-/// it back. For each page, the entry with the latest sequence is in force. If the power fails, an entry is
+/// it back. For each page, the entry with the highest sequence is in force. If the power fails, an entry is
 /// either complete or its CRC is wrong, so the page has its new or its old content. No other entry changes.
 ///
-/// The store erases a sector only if it holds no entry that is in force. Therefore an erase cannot lose a
-/// page, and the store need not copy entries before it. There is always such a sector (slot.hpp). The store
-/// writes only to a sector that had a mark (mark.hpp). After a reset, the first write begins a new sector,
-/// because a power failure may have interrupted the programming of the last slot, even if that slot reads FF.
+/// The store never erases a sector that holds an entry in force. Therefore an erase cannot lose a page, and
+/// the store need not copy entries before an erase. There is always a sector without an entry in force
+/// (slot.hpp). The store writes only to a sector that had a mark (mark.hpp). After a reset, the first write
+/// begins a new sector, because a power failure may have interrupted the programming of the last slot, even
+/// if that slot reads FF.
 ///
 /// While no job is running, `poll` erases all free sectors in advance. A job suspends the erase. A write
-/// waits for an erase only if no erased sector is left:
+/// waits for an erase only if no erased sector is left. This occurs in two cases:
 ///
-/// - On the first start with this flash, until the first erase has ended: 45 ms typical, 400 ms at most.
+/// - On the first start with this flash, until the first erase has ended, after 45 ms typically and 400 ms at
+///   most.
 /// - If pages are written faster than sectors are erased. With the longest times of the data sheet, writes
 ///   that are at least 12 ms apart never wait. If writes are closer together, each sector that has been
 ///   erased in advance has room for 79 of them.
@@ -40,9 +42,9 @@ namespace ex9000::hal::flash {
 /// With the longest times of the data sheet and a poll every millisecond, a read takes at most 5 ms, and a
 /// write at most 14 ms. Typical times are 0 ms and 1 ms. A job fails if it has not ended after kLongestRead
 /// or kLongestWrite. The first job after a reset also waits for the scan of the log, which reads at most 50
-/// kB and computes about 1,100 CRCs at most.
+/// kB and computes at most about 1,100 CRCs.
 ///
-/// tests/hal/flash measures these times, cuts the power at each operation, and counts erases.
+/// The tests in tests/hal/flash measure these times, cut the power at each operation, and count erases.
 template <class Flash, std::uint32_t kBegin>
 class PageStore {
   static_assert(kIsFlash<Flash>,
@@ -104,8 +106,8 @@ class PageStore {
 
   static constexpr std::uint32_t address_of(Slot slot) { return kBegin + offset_of(slot); }
 
-  /// Begins a job, or makes it fail at once if it is not `possible`. A job is possible if the store has these
-  /// bytes and, for a write, if they are in one page.
+  /// Begins a job, or makes it fail immediately if it is not `possible`. A read is possible if the store has
+  /// these bytes. For a write, they must also be in one page.
   void begin(Job job, std::uint16_t address, bool possible, Time deadline) {
     job_ = job;
     address_ = address;
@@ -120,9 +122,9 @@ class PageStore {
     deadline_.disarm();
   }
 
-  // --- the steps; they return true if `poll` must be called again at once ---
+  // --- the steps; they return true if `poll` must be called again immediately ---
 
-  /// Called while the flash is busy.
+  /// Runs a step while the flash is busy.
   bool wait(Time now) {
     if (step_ == Step::Starting) {
       return end_earlier_operation(now);
@@ -130,7 +132,7 @@ class PageStore {
     return step_ == Step::Free && can_begin_job() && erase_.suspend(flash_, now);
   }
 
-  /// Called while the flash is not busy.
+  /// Runs a step while the flash is not busy.
   bool proceed(Time now) {
     switch (step_) {  // not covered: the cases are complete
       case Step::Starting:
@@ -163,8 +165,8 @@ class PageStore {
     return false;
   }
 
-  /// Returns whether the flash can do what the job requires next. If no erased sector is left, a write must
-  /// wait for an erase.
+  /// Returns whether the next operation of the job can begin. A write must wait for an erase if it needs
+  /// another sector and no erased sector is left.
   [[nodiscard]] bool can_begin_job() const {
     return job_ == Job::Read ||
            (job_ == Job::Write && (next_ != kNoSlot || sectors_.next_to_open() != Sectors::kNone));
@@ -191,8 +193,8 @@ class PageStore {
 
   // --- start ---
 
-  /// Waits for a program operation, or suspends an erase, that was in progress when the MCU was reset without
-  /// loss of power.
+  /// Ends an operation that was in progress when the MCU was reset without loss of power. If the flash is
+  /// still busy after the longest program operation, it is erasing, and this function suspends the erase.
   bool end_earlier_operation(Time now) {
     if (!program_end_.armed()) {
       program_end_.set(now + kLongestProgram);
@@ -205,7 +207,7 @@ class PageStore {
     return true;
   }
 
-  /// Scans the entries in one page of the flash.
+  /// Scans the slots in one page of the flash, or skips a sector that has its mark.
   void scan() {
     const Slot end = static_cast<Slot>(scanned_ + kSlotsOfAFlashPage);
     for (; scanned_ < end; ++scanned_) {

@@ -27,8 +27,8 @@ class Sectors {
   [[nodiscard]] unsigned next_to_open() const {
     return first([this](unsigned sector) { return states_[sector] == State::Erased; });
   }
-  /// Returns the sector to erase; kNone if there is none. The sector that is being written, `current`, and
-  /// those that `map` uses must not be erased.
+  /// Returns the sector to erase; kNone if there is none. Skips `current`, the sector that is being written,
+  /// and the sectors that `map` uses.
   [[nodiscard]] unsigned next_to_erase(const SlotMap& map, unsigned current) const {
     return first([&](unsigned sector) {
       return states_[sector] == State::Used && sector != current && !map.uses(sector);
@@ -44,7 +44,8 @@ class Sectors {
   void begin_after(unsigned sector) { last_ = sector; }
 
  private:
-  /// Returns the first sector after the one that was opened last for which `is_suitable` is true.
+  /// Searches the ring, beginning after the sector that was opened last. Returns the first sector for which
+  /// `is_suitable` returns true; kNone if there is none.
   template <class IsSuitable>
   [[nodiscard]] unsigned first(IsSuitable is_suitable) const {
     for (unsigned i = 1; i <= kSectors; ++i) {

@@ -19,12 +19,12 @@ namespace ex9000::hal::pl011 {
 /// this UART only, whose interrupt calls `on_end_timer`.
 ///
 /// The FIFOs stay off, so that each byte causes an interrupt when it arrives and the silence after it can be
-/// measured. The disadvantage is an overrun if an interrupt is delayed by more than a character.
+/// measured. The disadvantage is an overrun if an interrupt is delayed by more than a character time.
 ///
 /// The main loop writes `begun_` and the interrupts write `ended_`. The driver is on while the two differ.
 template <std::uint32_t base, std::uint32_t clock, class DriverEnable, class EndTimer>
 class Uart {
-  static_assert(largest_baud_error(clock) < kTolerableBaudError, "this clock cannot make all baud rates");
+  static_assert(largest_baud_error(clock) < kTolerableBaudError, "this clock cannot generate all baud rates");
 
  public:
   /// Turns the driver off. Call this once, before `open`.
@@ -72,9 +72,9 @@ class Uart {
     }
   }
 
-  /// Call this when the end timer has expired, after the time of the last byte. A PL011 has no interrupt
-  /// for the end of transmission, so this checks the busy flag. Returns true if the last byte has been sent
-  /// and the driver is off; otherwise it restarts the timer. For the interrupt of the end timer.
+  /// Turns the driver off and returns true if the last byte has been sent; else restarts the end timer and
+  /// returns false. A PL011 has no interrupt for the end of a transmission, so this function checks the busy
+  /// flag. For the interrupt of the end timer, which expires after the time of the last byte.
   bool on_end_timer() {
     if (kFlags.read().has(kBusy)) {
       EndTimer::restart(bit_);
@@ -127,7 +127,7 @@ class Uart {
   static constexpr Bits<MaskedInterrupts> kWasReceived{1U << 4U};
   static constexpr Bits<MaskedInterrupts> kWasTransmitted{1U << 5U};
 
-  /// Returns 8 data bits and `format`; the FIFOs are off.
+  /// Returns the value of the line-control register for `format`: 8 data bits, and the FIFOs off.
   static Bits<LineControl> line_control(LineFormat format) {
     switch (format) {  // not covered: the enumeration has no other value
       case LineFormat::k8N1:

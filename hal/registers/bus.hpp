@@ -5,8 +5,9 @@
 
 namespace ex9000::hal::bus {
 
-/// Read or write the 32-bit register at `address`, a multiple of 4. Each call is exactly one access, which
-/// the compiler does not remove, repeat or move. For interrupts and the main loop; does not block.
+/// Reads or writes the 32-bit register at `address`, which must be a multiple of 4. Each call is exactly one
+/// access, which the compiler does not remove, repeat or move. For interrupts and the main loop; does not
+/// block.
 // NOLINTBEGIN(performance-no-int-to-ptr): the address of a register is a number
 inline std::uint32_t read(std::uint32_t address) {
   return *reinterpret_cast<volatile std::uint32_t*>(address);

@@ -1,5 +1,5 @@
-// Types for registers and their bits, so that the compiler rejects a write of the bits of one
-// register to another register.
+// Types for registers and their bits. If code writes the bits of one register to another register, the
+// compiler rejects it.
 #pragma once
 
 #include <cstdint>
@@ -25,8 +25,8 @@ class Bits {
   std::uint32_t value_ = 0;
 };
 
-/// A 32-bit register. `set` and `clear` read and then write, so use them only if no interrupt can write the
-/// same register in between.
+/// A 32-bit register. `set` and `clear` read the register and then write it. Use them only if no interrupt
+/// can write the same register in between.
 template <class Name>
 class Register {
  public:

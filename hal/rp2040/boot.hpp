@@ -16,7 +16,7 @@ class Boot {
  public:
   /// Switches the processor and the flash to the crystal, because the ring oscillator may run at less than 2
   /// MHz. Blocks for about 5 ms. If the crystal does not start, this function has no effect, and the image
-  /// waits for the crystal when its watchdog is running.
+  /// waits for the crystal after it has started the watchdog.
   [[gnu::always_inline]] static void use_crystal() {
     constexpr unsigned kMostReads = 20'000;  // a read takes at least 0.5 us
     Crystal::start();
@@ -29,8 +29,8 @@ class Boot {
   }
 
   /// Copies `words` words, at most 65,536, from `address` of the flash to `destination`. A word takes 64
-  /// clocks of the processor: 5.3 us on a crystal of 12 MHz. Read Data (03h) works on every flash, in every
-  /// mode that the boot ROM leaves it in, and without a setting in the flash.
+  /// clocks of the processor: 5.3 us on a crystal of 12 MHz. The command Read Data (03h) works on every flash
+  /// chip, in every mode in which the boot ROM can leave the chip. It requires no configuration of the chip.
   [[gnu::always_inline]] static void copy(std::uint32_t address, std::uint32_t* destination,
                                           std::uint32_t words) {
     constexpr std::uint32_t kReadData = 0x03;

@@ -1,5 +1,5 @@
-// Clock tree: system PLL, and the clocks of processor and peripherals. Source: RP2040 data sheet, 2.15
-// (clocks) and 2.18 (PLL).
+// Clock tree: the system PLL, and the clocks of the processor and the peripherals. Source: RP2040 data sheet,
+// 2.15 (clocks) and 2.18 (PLL).
 #pragma once
 
 #include <cstdint>
@@ -18,15 +18,16 @@ struct ClockTree {
   std::uint32_t divider_2;   ///< 1 to 7
 
   [[nodiscard]] constexpr std::uint32_t oscillator() const { return crystal * multiplier; }
-  /// Returns the frequency of processor and peripherals in Hz.
+  /// Returns the frequency of the processor and the peripherals in Hz.
   [[nodiscard]] constexpr std::uint32_t frequency() const { return oscillator() / divider_1 / divider_2; }
 };
 
 class Clocks {
  public:
-  /// Switches the reference clock to the crystal, which the second stage has started, and processor and
-  /// peripherals to the PLL. Call this once after reset, when the watchdog is running. It blocks for less
-  /// than 1 ms. If the crystal is not stable or the PLL does not lock, the watchdog resets the MCU.
+  /// Switches the reference clock to the crystal, and the processor and the peripherals to the PLL. The
+  /// second stage has already started the crystal. Call this once after reset, when the watchdog is running.
+  /// It blocks for less than 1 ms. If the crystal is not stable or the PLL does not lock, the watchdog resets
+  /// the MCU.
   template <const ClockTree& clock>
   static void use() {
     static_assert(clock.oscillator() >= 750'000'000 && clock.oscillator() <= 1'600'000'000,

@@ -10,8 +10,8 @@ namespace ex9000::hal::rp2040 {
 /// RAM. None of them blocks.
 class Crystal {
  public:
-  /// Starts the oscillator. It becomes stable after the start-up delay, which is 50,176 of its periods after
-  /// a reset: 4.2 ms at 12 MHz.
+  /// Starts the oscillator. It is `stable` after the start-up delay of 50,176 periods, the value after a
+  /// reset: 4.2 ms at 12 MHz.
   [[gnu::always_inline]] static void start() {
     constexpr Bits<Control> kRange(0xAA0);
     constexpr Bits<Control> kEnable(0xFABU << 12U);
@@ -22,8 +22,9 @@ class Crystal {
     return kStatus.read().has(kStable);
   }
 
-  /// Makes the crystal the source of the reference clock, in place of the ring oscillator. Processor and
-  /// flash follow until they have another clock. Call this only while the crystal is `stable`.
+  /// Makes the crystal the source of the reference clock, in place of the ring oscillator. The processor and
+  /// the flash run on the reference clock until they get another clock. Call this only while the crystal is
+  /// `stable`.
   [[gnu::always_inline]] static void make_reference() {
     constexpr Bits<ReferenceControl> kFromCrystal(0x2);
     kReferenceControl.write(kFromCrystal);

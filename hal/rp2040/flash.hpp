@@ -1,4 +1,4 @@
-// The flash chip beside the processor, by the synchronous serial interface (SSI). Sources: RP2040 data sheet,
+// The flash chip on the board, through the synchronous serial interface (SSI). Sources: RP2040 data sheet,
 // 4.10 (SSI) and 2.19.6.2 (pins of the flash); W25Q16JV data sheet, 8.1 and 8.2 (instructions).
 #pragma once
 
@@ -14,15 +14,15 @@ namespace ex9000::hal::rp2040 {
 
 /// Erases, programs and reads the flash with single-bit commands while the image runs from RAM. For the
 /// functions without a description, see hal/flash.hpp. Interrupts stay enabled: the driver controls chip
-/// select itself, so a delay between two bytes does no harm. The flash is not mapped into memory after
+/// select itself, so a delay between two bytes is harmless. The flash is not mapped into memory after
 /// `start`.
 ///
 /// All functions are for the main loop. Reading a data byte takes 0.3 us; any other byte takes up to
 /// 0.6 us. A command and its address have four bytes.
 class Flash {
  public:
-  /// Call this once, before the other functions. A reset does not interrupt an operation of the flash. This
-  /// function continues it if it was suspended, so the flash may be busy afterwards.
+  /// Starts the SSI. Call this once, before the other functions. A reset of the MCU does not end an operation
+  /// of the flash. This function continues a suspended operation, so the flash may be busy afterwards.
   static void start() {
     constexpr std::uint32_t kDivider = 4;  // even; 31.25 MHz. Read Data allows 50 MHz
     constexpr Bits<Control> kBytesBothWays(7U << 16U);
@@ -100,7 +100,7 @@ class Flash {
   static constexpr std::uint8_t kResume = 0x7A;
   static constexpr std::uint8_t kBusyBit = 0x01;
 
-  /// Drives chip select directly, instead of the SSI, which would release it whenever its queue is empty.
+  /// Drives chip select directly. The SSI would release chip select whenever its queue is empty.
   static void select(bool on) {
     constexpr Bits<SelectControl> kLow(0x2U << 8U);
     constexpr Bits<SelectControl> kHigh(0x3U << 8U);

@@ -25,8 +25,8 @@ struct PinGroup {
 
 enum class Function : std::uint8_t { Uart = 2, I2c = 3, Software = 5 };
 
-/// All pins are in one register. `pins` is a mask, bit n is GPIOn. Only the main loop and interrupts that do
-/// not interrupt each other may call these functions; each writes the bits of `pins` only.
+/// All pins are in one register. `pins` is a mask; bit n is GPIOn. Each function changes only the bits of
+/// `pins`. Only the main loop and interrupts that do not interrupt each other may call these functions.
 class Gpio {
  public:
   [[nodiscard]] static std::uint32_t read(std::uint32_t pins) { return kLevels.read().value() & pins; }
@@ -38,7 +38,7 @@ class Gpio {
   static void set(std::uint32_t pins) { kOutSet.write(Bits<Out>(pins)); }
   static void clear(std::uint32_t pins) { kOutClear.write(Bits<Out>(pins)); }
 
-  /// Makes `pins` inputs with the weak pull-up if `pull_up`, else with the weak pull-down. Select the
+  /// Makes `pins` inputs. Enables the weak pull-up if `pull_up` is true, else the weak pull-down. Select the
   /// inactive level, so that an open pin reads as inactive.
   static void make_input(std::uint32_t pins, bool pull_up) {
     kDriveClear.write(Bits<Drive>(pins));
@@ -133,8 +133,8 @@ class Gpio {
   static constexpr Bits<Pad> kInputPulledDown = kInputEnable | kPullDown | kSchmittTrigger | kDrive8Ma;
   static constexpr Bits<Pad> kOutput8Ma = kInputEnable | kPullDown | kSchmittTrigger | kDrive8Ma;
 
-  /// Sets pad and function of each pin. Sets the pad first, so that the new function never uses the pull of
-  /// the old pad setting.
+  /// Sets the pad and the function of each pin. Sets the pad first, so that the new function never uses the
+  /// pull-up or pull-down of the old pad setting.
   [[gnu::noinline]] static void make(std::uint32_t pins, Function function, Bits<Pad> bits) {
     for (std::uint32_t pin = 0; pins != 0; ++pin, pins >>= 1U) {
       if ((pins & 1U) != 0) {
@@ -148,7 +148,7 @@ class Gpio {
   static constexpr std::uint32_t kPinsAWord = 8;
   static constexpr std::uint32_t kBothEdges = 0xC;
 
-  /// Returns both edge bits of each of the lowest eight pins.
+  /// Returns both edge bits of each pin that is set in the lowest eight bits of `pins`.
   static std::uint32_t spread(std::uint32_t pins) {
     std::uint32_t bits = pins & 0xFFU;
     bits = (bits | bits << 12U) & 0x000F'000FU;
@@ -156,7 +156,7 @@ class Gpio {
     bits = (bits | bits << 3U) & 0x1111'1111U;
     return bits * kBothEdges;
   }
-  /// Returns the pins that have an edge bit in `bits`, the inverse of `spread`.
+  /// Returns the pins that have an edge bit in `bits`. This is the inverse of `spread`.
   static std::uint32_t gather(std::uint32_t bits) {
     bits = (bits >> 2U | bits >> 3U) & 0x1111'1111U;
     bits = (bits | bits >> 3U) & 0x0303'0303U;

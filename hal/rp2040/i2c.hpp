@@ -13,8 +13,8 @@
 namespace ex9000::hal::rp2040 {
 
 /// A single master at 100 kHz. `lines`: the pins of data and clock; `clock`: system clock in Hz. The main
-/// loop fills the queue of commands and empties the queue of received bytes. An interrupt only wakes it. For
-/// its functions, see I2cTransfer.
+/// loop fills the queue of commands and empties the queue of received bytes. An interrupt only wakes the main
+/// loop. For the functions of a master, see I2cTransfer.
 template <const PinGroup& lines, std::uint32_t clock>
 class I2c {
  public:
@@ -95,7 +95,7 @@ class I2c {
 
   /// The queues have 16 entries.
   static constexpr std::size_t kQueue = 16;
-  /// A queue of bytes takes 1.5 ms. The rest is the time for which the main loop may sleep.
+  /// The bytes of a full queue take 1.5 ms. The rest is the time for which the main loop may sleep.
   static constexpr Duration kTimeout = milliseconds(5);
 
   // --- freeing the bus ---
@@ -193,7 +193,8 @@ class I2c {
     kInterruptMask.write(kStopped | kAborted | (more ? kQueueLow : Bits<Interrupts>()));
   }
 
-  /// Returns whether another command fits into the queue, and its byte into the queue of received bytes.
+  /// Returns whether the queue of commands has room for another command and, for a read, the queue of
+  /// received bytes has room for its byte.
   [[nodiscard]] bool has_room() const {
     return kStatus.read().has(kRoom) && (transfer_->writes() || queued_ - received_ < kQueue);
   }

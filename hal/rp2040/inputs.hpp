@@ -13,8 +13,8 @@ namespace ex9000::hal::rp2040 {
 template <const auto& groups, unsigned channels, bool active_high>
 class InputPins {
  public:
-  /// Enables edge interrupts and returns the levels, bit n is channel n. Each later edge is flagged. An edge
-  /// during the read would count as two edges, so the levels are read until no edge has occurred during the
+  /// Enables edge interrupts and returns the levels; bit n is channel n. Each later edge is flagged. An edge
+  /// during the read would count as two edges, so this function reads again until no edge occurs during the
   /// read.
   static std::uint16_t start() {
     Gpio::make_input(kPins, !active_high);
@@ -70,8 +70,8 @@ class InputPins {
   };
 
   /// Clears the flags of `flagged` and those of new edges, and reads the levels after the last of these
-  /// edges. This is repeated because an edge between flag and level would count twice: now because of its
-  /// level, and later because of its flag.
+  /// edges. Repeats this if a new edge is flagged, because an edge between the clearing of the flags and the
+  /// read of the levels would count twice: now because of its level, and later because of its flag.
   static Settled settle(std::uint32_t flagged) {
     Settled settled{0, 0};
     do {

@@ -8,7 +8,7 @@
 
 namespace ex9000::hal::rp2040 {
 
-/// The peripherals that a reset leaves in reset, one bit for each.
+/// The peripherals that stay in reset after a reset of the MCU. Each has one bit.
 enum class Block : std::uint32_t {
   I2c0 = 1U << 3U,
   Pins = 1U << 5U,
@@ -24,8 +24,8 @@ constexpr std::uint32_t operator|(std::uint32_t a, Block b) { return a | static_
 
 class Resets {
  public:
-  /// Releases `blocks` from reset and waits for a few clocks until they can be used. Their clocks must run. A
-  /// block whose clock does not run never becomes usable, and the watchdog resets the MCU.
+  /// Releases `blocks` from reset and waits for a few clocks until they can be used. Their clocks must run.
+  /// If the clock of a block does not run, this function waits until the watchdog resets the MCU.
   static void release(std::uint32_t blocks) {
     kReset.clear(Bits<Reset>(blocks));
     while ((kDone.read().value() & blocks) != blocks) {

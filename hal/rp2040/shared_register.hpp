@@ -9,8 +9,8 @@
 namespace ex9000::hal::rp2040 {
 
 /// A register of a peripheral on the APB or AHB-Lite bus. It has two more addresses at which a write sets or
-/// clears only the given bits. An interrupt can therefore not change the register between a read and a write.
-/// The registers of SIO and of the SSI do not have these addresses.
+/// clears only the given bits. `set` and `clear` therefore do not read the register first, so no interrupt
+/// can change it between a read and a write. The registers of SIO and of the SSI do not have these addresses.
 template <class Name>
 class SharedRegister {
  public:

@@ -21,8 +21,8 @@ class LedPin {
   static void light(bool on) { Gpio::write(pin.mask(), on ? pin.mask() : 0); }
 };
 
-/// An RS-485 driver that is on while its pin is high. The main loop turns it on and an interrupt turns it
-/// off, so each is a single write.
+/// An RS-485 driver that is on while its pin is high. The main loop turns the driver on and an interrupt
+/// turns it off, so `drive` must be a single write to a register.
 template <const Pin& pin>
 class DriverEnablePin {
  public:

@@ -25,7 +25,7 @@ class Clock {
 template <unsigned number>
 class OneShotTimer {
  public:
-  /// Call this once, before `restart`.
+  /// Enables the interrupt of the timer. Call this once, before `restart`.
   static void start() { kEnable.set(Bits<Enable>(kThis)); }
 
   static void restart(Duration after) {
@@ -36,7 +36,8 @@ class OneShotTimer {
     const Time begin = Clock::now();
     const Duration to_alarm = after + Duration(1);
     kAlarm.write(Bits<Alarm>((begin + to_alarm).microseconds()));
-    // The alarm fires only when the time equals its value. An interrupt may have delayed the write too long.
+    // The alarm fires only when the time equals its value. An interrupt may have delayed the write until
+    // after this time.
     if (!(Clock::now().since(begin) < to_alarm) && kArmed.read().has(Bits<Armed>(kThis))) {
       kArmed.write(Bits<Armed>(kThis));
       kForce.set(Bits<Force>(kThis));

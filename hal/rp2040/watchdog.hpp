@@ -12,7 +12,7 @@ namespace ex9000::hal::rp2040 {
 
 class WatchdogRegisters {
  public:
-  /// Resets the MCU at once and does not return. Interrupts, faults and the main loop may call it at any
+  /// Resets the MCU immediately and does not return. Interrupts, faults and the main loop may call it at any
   /// time.
   [[noreturn]] static void reset_chip() {
     kResetBy.write(kAllButOscillators);
@@ -70,8 +70,9 @@ class WatchdogRegisters {
 template <std::uint32_t reference>
 class HardwareWatchdog : public WatchdogRegisters {
  public:
-  /// Starts the tick of watchdog and timer, and the watchdog, which then runs until the next reset. While the
-  /// ring oscillator is the reference clock, tick and countdown are up to twelve times longer.
+  /// Starts the tick of the watchdog and the timer, and then the watchdog. The watchdog runs until the next
+  /// reset. While the ring oscillator is the reference clock, the tick and the countdown are up to twelve
+  /// times longer.
   static void start() {
     kMark.write(kOfAnImage);
     kTick.write(Bits<Tick>(reference) | kTickEnable);
@@ -85,8 +86,8 @@ class HardwareWatchdog : public WatchdogRegisters {
 
  private:
   static constexpr Duration kPeriod = milliseconds(1500);
-  static_assert(kPeriod.microseconds() < kWatchdogPeriod.microseconds(), "the watchdog is late");
-  /// Erratum RP2040-E1: the counter counts down twice a tick.
+  static_assert(kPeriod.microseconds() < kWatchdogPeriod.microseconds(), "the period is too long");
+  /// Erratum RP2040-E1: the counter counts down by 2 at each tick.
   static constexpr std::uint32_t kCountdown = 2U * kPeriod.microseconds();
   static_assert(kCountdown < 1U << 24U, "the counter has 24 bits");
 };

@@ -1,5 +1,5 @@
-// General-purpose pins. Sources: LM3S6965 data sheet, 8.3 to 8.5; TM4C123GH6PM data sheet, 10.3 to 10.5 (it
-// has the same registers on its APB aperture, and also GPIOPCTL and GPIOAMSEL).
+// General-purpose pins. Sources: LM3S6965 data sheet, 8.3 to 8.5; TM4C123GH6PM data sheet, 10.3 to 10.5. The
+// TM4C has the same registers on its APB aperture, and also GPIOPCTL and GPIOAMSEL.
 #pragma once
 
 #include <cstdint>
@@ -31,21 +31,21 @@ struct PinGroup {
   [[nodiscard]] constexpr std::uint32_t mask() const { return ((1U << count) - 1U) << first_pin; }
 };
 
-/// The registers of one port. `pins` is a mask, bit n is pin n.
+/// The registers of one port. `pins` is a mask; bit n is pin n.
 class Gpio {
  public:
   constexpr explicit Gpio(Port port)
       : base_(port < Port::E ? 0x4000'4000U + static_cast<std::uint32_t>(port) * 0x1000U
                              : 0x4002'4000U + (static_cast<std::uint32_t>(port) - 4U) * 0x1000U) {}
 
-  /// Read or write the data register. It has 256 addresses, whose bits 2 to 9 select the pins. A write
-  /// therefore requires no read to preserve the other pins, so no interrupt can change them between a read
-  /// and a write.
+  /// Reads or writes the data register. It has 256 addresses, whose bits 2 to 9 select the pins. A write
+  /// therefore preserves the other pins without a read, so no interrupt can change them between a read and a
+  /// write.
   [[nodiscard]] std::uint32_t read(std::uint32_t pins) const { return data(pins).read().value(); }
   void write(std::uint32_t pins, std::uint32_t levels) const { data(pins).write(Bits<Data>(levels)); }
 
-  /// Makes `pins` digital inputs with the weak pull-up if `pull_up`, else with the weak pull-down. Select the
-  /// inactive level, so that an open pin reads as inactive.
+  /// Makes `pins` digital inputs. Enables the weak pull-up if `pull_up` is true, else the weak pull-down.
+  /// Select the inactive level, so that an open pin reads as inactive.
   void make_input(std::uint32_t pins, bool pull_up) const { make_input_of(*this, pins, pull_up); }
   [[gnu::noinline]] static void make_input_of(Gpio port, std::uint32_t pins, bool pull_up) {
     (pull_up ? port.pull_up_register() : port.pull_down_register()).set(Bits<Pull>(pins));
@@ -63,7 +63,7 @@ class Gpio {
     port.digital_enable().set(Bits<DigitalEnable>(pins));
   }
 
-  /// Connects the pins to their peripheral. `function`: number of the peripheral function in GPIOPCTL, for a
+  /// Connects `pins` to their peripheral. `function`: number of the peripheral function in GPIOPCTL, for a
   /// TM4C.
   template <Family family, std::uint32_t pins, std::uint32_t function>
   void make_peripheral() const {
@@ -91,7 +91,7 @@ class Gpio {
     both_edges().set(Bits<BothEdges>(pins));
     interrupt_mask().set(Bits<InterruptMask>(pins));
   }
-  /// Returns the pins that have had an edge since `clear_edges`.
+  /// Returns the watched pins that have had an edge since `clear_edges`.
   [[nodiscard]] std::uint32_t edges() const { return masked_interrupt_status().read().value(); }
   void clear_edges(std::uint32_t pins) const { interrupt_clear().write(Bits<InterruptClear>(pins)); }
 

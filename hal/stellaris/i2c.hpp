@@ -13,8 +13,8 @@
 
 namespace ex9000::hal::stellaris {
 
-/// A single master at 100 kHz. After each byte, the interrupt counts it and wakes the main loop, which
-/// continues the transfer. For its functions, see I2cTransfer.
+/// A single master at 100 kHz. The interrupt counts each byte and wakes the main loop, which continues the
+/// transfer. For the functions of a master, see I2cTransfer.
 template <Family family, std::uint32_t clock>
 class I2c {
  public:
@@ -122,7 +122,7 @@ class I2c {
     static bool data_is_high() { return kPort.read(kDataPin) != 0; }
   };
 
-  /// Begins to free the bus. It also resets the peripheral. Otherwise the peripheral would continue an
+  /// Begins to free the bus, and resets the peripheral. Without this reset, the peripheral would continue an
   /// unfinished byte and report its end as the end of the next byte.
   void begin_freeing() {
     constexpr Bits<SoftwareReset> kI2c0(1U << 12U);
@@ -146,7 +146,7 @@ class I2c {
     kConfiguration.write(kMaster);
     kTimerPeriod.write(
         Bits<TimerPeriod>((clock + kClocksAStep * kBitRate - 1U) / (kClocksAStep * kBitRate) - 1U));
-    kControlStatus.write(kStop);  // the master may consider the bus busy since before a reset
+    kControlStatus.write(kStop);  // after a reset, the master may still consider the bus busy
     kInterruptMask.write(Bits<InterruptMask>(1));
     step_ = Step::Idle;
     if (busy_) {

@@ -13,8 +13,8 @@ namespace ex9000::hal::stellaris {
 template <const auto& groups, unsigned channels, bool active_high>
 class InputPins {
  public:
-  /// Enables edge interrupts and returns the levels, bit n is channel n. Each later edge is flagged. An edge
-  /// during the read would count as two edges, so the levels are read until no edge has occurred during the
+  /// Enables edge interrupts and returns the levels; bit n is channel n. Each later edge is flagged. An edge
+  /// during the read would count as two edges, so this function reads again until no edge occurs during the
   /// read.
   static std::uint16_t start() {
     unsigned first = 0;
@@ -54,9 +54,10 @@ class InputPins {
 
  private:
   /// Clears the flags of `flagged` and those of new edges of `pins`, and reads the levels after the last of
-  /// these edges. This is repeated because an edge between flag and level would count twice: now because of
-  /// its level, and later because of its flag. Other pins keep their flags, because their levels are not
-  /// used. Returns the cleared flags in bits 0 to 7 and the levels of all pins in bits 8 to 15.
+  /// these edges. Repeats this if a new edge is flagged, because an edge between the clearing of the flags
+  /// and the read of the levels would count twice: now because of its level, and later because of its flag.
+  /// Other pins keep their flags, because their levels are not used. Returns the cleared flags in bits 0 to 7
+  /// and the levels of all pins in bits 8 to 15.
   [[gnu::noinline]] static std::uint32_t settle(Gpio gpio, std::uint32_t pins, std::uint32_t flagged) {
     std::uint32_t cleared = 0;
     std::uint32_t levels = 0;

@@ -13,7 +13,8 @@ namespace ex9000::hal::stellaris {
 template <unsigned number, std::uint32_t cycles_per_microsecond>
 class OneShotTimer {
  public:
-  /// Call this once, before `restart`. After reset, the timer is stopped and 32 bits wide.
+  /// Makes the timer a one-shot timer and enables its interrupt. Call this once, before `restart`. After
+  /// reset, the timer is stopped and 32 bits wide.
   static void start() {
     constexpr Bits<Mode> kOneShot(0x1);
     kMode.write(kOneShot);

@@ -20,7 +20,7 @@ struct ClockTree {
   [[nodiscard]] constexpr std::uint32_t frequency() const { return 200'000'000U / divider; }
 };
 
-/// The peripherals that need a clock, one bit for each.
+/// The peripherals that need a clock. Each has one bit.
 struct ClockGates {
   std::uint32_t rcgc0;
   std::uint32_t rcgc1;

@@ -127,7 +127,7 @@ class Machine:
                 self._reset()
 
     def end(self) -> None:
-        """Ends QEMU at once and waits for its end."""
+        """Ends QEMU and waits for its end. Kills QEMU if it has not ended after 60 s."""
         with contextlib.suppress(OSError):
             self._events.sendall(b'{"execute": "quit"}\n')
         try:

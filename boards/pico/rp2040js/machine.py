@@ -32,7 +32,7 @@ _LARGEST_LAG = 0.1  # seconds
 
 
 class Machine:
-    """A module on a Pico in rp2040js. Only `carry` lets time pass."""
+    """A module on a Pico in rp2040js. After the start, only `carry` lets time pass."""
 
     def __init__(self, image: int, settings: int, eeprom: int, init_grounded: bool) -> None:
         """Starts the emulator and the module. `image`, `settings` and `eeprom` are descriptors of files that contain
@@ -81,7 +81,7 @@ class Machine:
 
     @property
     def carry_within(self) -> float:
-        """Returns the time in seconds within which `carry` must be called; less while a master polls the module."""
+        """Returns the time in seconds within which `carry` must be called. It is shorter after a recent byte."""
         return 0.002 if time.monotonic() - self._last_byte < 1 else 0.02
 
     def carry(self, requests: bytes, _ready: list[int]) -> bytes:
@@ -89,7 +89,8 @@ class Machine:
         module."""
         now = time.monotonic()
         due = round((now - self._began) * _NANOSECONDS)
-        # If the host was busy for too long, the module must not make up for the lost time at full speed.
+        # If the host was busy for too long, the lost time is skipped. Otherwise the module would run too fast until its
+        # time is the time of the host again.
         lag = due - self._passed - _LARGEST_LAG * _NANOSECONDS
         if lag > 0:
             self._began += lag / _NANOSECONDS
@@ -106,7 +107,7 @@ class Machine:
         return reply
 
     def end(self) -> None:
-        """Ends the emulator at once and waits for its end."""
+        """Ends the emulator and waits for its end."""
         self._process.kill()
         self._process.wait()
 
