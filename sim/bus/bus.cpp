@@ -81,7 +81,7 @@ void Bus::drive(End& end, bool on) {
   const VirtualTime now = clock_.virtual_now();
   for (Wave& wave : waves_) {
     wave.collided = wave.collided || drivers_on_ > 1;
-    if (!on && wave.station == end.index && wave.end() > now) {
+    if (!on && wave.station == end.index && wave.cut_off == kNever && wave.end() > now) {
       // The sender leaves the line idle for the rest of the byte, and the receivers sample the result.
       wave.collided = true;
       wave.cut_off = now;

@@ -75,6 +75,27 @@ TEST_F(BusTest, AByteTakesTenBitsAtItsSendersRate) {
   }
 }
 
+TEST_F(BusTest, AByteThatWasCutOffStaysOffWhenItsStationCutsOffAnotherByte) {
+  struct Sender final : Station {
+    void run() override {}
+  } sender;
+  BusEnd& end = bus_.attach(sender);
+  Listener listener(bus_, 9600);
+  end.drive(true);
+  end.put(0x00, {1200});  // would last 8.3 ms
+  bus_.run_for(microseconds(200));
+  end.drive(false);
+  bus_.run_for(milliseconds(4));
+  end.drive(true);
+  end.put(0xFF, {9600});
+  bus_.run_for(microseconds(370));  // just after the middle of the data bit 2
+  end.drive(false);
+  bus_.run_for(milliseconds(10));
+  ASSERT_EQ(listener.heard.size(), 2U);
+  EXPECT_EQ(listener.heard[0].byte, 0xFE);  // 0.2 ms are the start bit and a data bit
+  EXPECT_EQ(listener.heard[1].byte, 0xFF);
+}
+
 constexpr std::array<LineFormat, 4> kFormats{LineFormat::k8N1, LineFormat::k8N2, LineFormat::k8E1,
                                              LineFormat::k8O1};
 
