@@ -78,14 +78,15 @@ class Trial {
   const State& state() { return session_.module().module().state(); }
 
   /// Waits until no store is pending. The host watchdog can expire at any time, and the module then stores
-  /// the timeout status. If the watchdog expires during the wait, waits again.
+  /// that the watchdog is off and that the timeout status is set. If the settings change during the wait,
+  /// waits again.
   void wait_for_leftovers() {
     constexpr Microseconds kLongest = 1500 * kMillisecond;
-    bool timed_out = false;
+    Settings before;
     do {
-      timed_out = state().settings.timeout_status;
+      before = state().settings;
       session_.wait(kLongest);
-    } while (timed_out != state().settings.timeout_status);
+    } while (state().settings != before);
   }
 
   void come_up_with(const Settings& settings) {
