@@ -23,7 +23,8 @@ std::uint8_t other_baud_code(std::uint8_t code) { return code == kFactoryBaudCod
 
 constexpr std::uint8_t kNewAddress = 0x2B;
 constexpr std::uint8_t kNewTimeout = 0x64;
-constexpr std::uint8_t kShortTimeout = 0x05;  // long enough to read all settings
+constexpr std::uint8_t kShortTimeout = 0x05;  // long enough to read all settings with the new response delay
+constexpr std::uint8_t kNewDelay = 2;
 constexpr std::uint16_t kNewValue = 0x3C96;
 constexpr std::uint16_t kOneBit = 1U << 0U;
 
@@ -96,8 +97,8 @@ std::vector<StoringCommand> ascii_commands(const Model& model) {
     });
     add("~AA1" + where, init, needs_status, always("1"),
         [](Settings& settings, std::uint16_t) { settings.timeout_status = false; });
-    add("~AARDVV" + where, init, needs_nothing, always("RD1E"),
-        [](Settings& settings, std::uint16_t) { settings.response_delay = 0x1E; });
+    add("~AARDVV" + where, init, needs_nothing, always("RD02"),
+        [](Settings& settings, std::uint16_t) { settings.response_delay = kNewDelay; });
     if (model.outputs != 0) {
       add("~AA5P" + where, init, needs_nothing, always("5P"),
           [](Settings& settings, std::uint16_t outputs) { settings.power_on_value = outputs; });
@@ -147,8 +148,8 @@ std::vector<StoringCommand> modbus_commands(const Model& model) {
         settings.address = kNewAddress;
         settings.baud_code = 0x08;
       });
-  add("06 response delay", needs_nothing, {0x06, 0x02, 0x52, 0x00, 0x1E},
-      [](Settings& settings, std::uint16_t) { settings.response_delay = 0x1E; });
+  add("06 response delay", needs_nothing, {0x06, 0x02, 0x52, 0x00, kNewDelay},
+      [](Settings& settings, std::uint16_t) { settings.response_delay = kNewDelay; });
   add("06 no response delay", needs_a_delay, {0x06, 0x02, 0x52, 0x00, 0x00},
       [](Settings& settings, std::uint16_t) { settings.response_delay = 0; });
   add("06 watchdog feed", needs_nothing, {0x06, 0x02, 0x51, 0x00, 0x01},
