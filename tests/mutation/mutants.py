@@ -152,7 +152,7 @@ def spread(sources, seed):
     chance = random.Random(seed)
     heaps = []
     for file, source in sorted(sources.items()):
-        # Takes the rules in turn as well, because there are many constants, and they rarely reveal a missing test.
+        # Also takes the rules in turn, because constants have many mutants, which rarely reveal a missing test.
         of_rules = {}
         for mutant in all_of(file, source):
             of_rules.setdefault(mutant.rule, []).append(mutant)

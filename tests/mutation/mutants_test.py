@@ -25,7 +25,7 @@ def changed(rule):
 
 
 class Mutants(unittest.TestCase):
-    def test_operators_between_operands_become_others(self):
+    def test_binary_operators_are_replaced(self):
         lines = changed(mutants.of_operators)
         self.assertIn("if (a <= b && b != 7) {", lines)
         self.assertIn("if (a < b || b != 7) {", lines)
@@ -33,37 +33,37 @@ class Mutants(unittest.TestCase):
         self.assertIn("return a - b;", lines)
         self.assertIn("c -= 0x10U;", lines)
 
-    def test_references_comments_and_strings_are_left_alone(self):
+    def test_references_comments_and_strings_do_not_change(self):
         for line in changed(mutants.of_operators) | changed(mutants.of_constants):
             self.assertNotIn("|", line.replace("||", ""))
             self.assertFalse(line.startswith("#"))
             self.assertFalse(line.startswith("const char* raw"))
         self.assertNotIn('store(a, "x != y");', changed(mutants.of_operators))
 
-    def test_constants_are_one_more_or_one_less(self):
+    def test_constants_are_increased_or_decreased_by_one(self):
         lines = changed(mutants.of_constants)
         self.assertIn("c += 17U;", lines)
         self.assertIn("c += 15U;", lines)
         self.assertIn("int c = 1;", lines)
         self.assertIn("return false ? c : -1;", lines)
 
-    def test_octal_and_binary_constants_are_read_as_such(self):
+    def test_octal_and_binary_constants_are_read_in_their_base(self):
         mode = "const int mode = 0644;\nconst int bits = 0b101;\n"
         changed_to = {each.text for each in mutants.of_constants("f", mode)}
         self.assertEqual(changed_to, {str(0o645), str(0o643), "6", "4"})
 
-    def test_calls_and_assignments_are_left_out_and_declarations_stay(self):
+    def test_calls_and_assignments_are_removed_but_declarations_are_not(self):
         left_out = [SOURCE[each.begin : each.end] for each in mutants.of_statements("f", SOURCE)]
         self.assertEqual(left_out, ['store(a, "x == y");', "c += 0x10U;"])
 
-    def test_a_condition_is_turned_round(self):
+    def test_a_condition_is_negated(self):
         self.assertEqual(changed(mutants.of_branches), {"if (!(a < b && b != 7)) {"})
 
-    def test_no_static_assert_is_touched(self):
+    def test_a_static_assert_does_not_change(self):
         for each in mutants.all_of("f", SOURCE):
             self.assertNotIn("static_assert", SOURCE[SOURCE.rfind("\n", 0, each.begin) : each.end])
 
-    def test_the_same_seed_gives_the_same_order_which_takes_files_in_turn(self):
+    def test_the_order_depends_only_on_the_seed_and_takes_files_in_turn(self):
         sources = {"a": SOURCE, "b": SOURCE, "c": SOURCE}
         order = list(mutants.spread(sources, 1))
         self.assertEqual(order, list(mutants.spread(sources, 1)))

@@ -20,18 +20,18 @@ class Programs(unittest.TestCase):
             unreached = {file for file in area.sources if not area.nearest_first(file)}
             self.assertEqual(unreached - REACHED_BY_NONE, set(), area.name)
 
-    def test_tests_come_first_that_are_called_like_the_file(self):
+    def test_tests_with_the_name_of_the_file_come_first(self):
         self.assertEqual(self.nearest("firmware", "firmware/line/crc16.hpp")[0], "crc16_test")
         self.assertEqual(self.nearest("hal", "hal/pl011/uart.hpp")[0], "uart_driver_test")
         self.assertEqual(self.nearest("hal", "hal/flash/page_store.hpp")[0], "page_store_test")
         self.assertEqual(self.nearest("sim", "sim/bus/bus.cpp")[0], "bus_test")
 
-    def test_then_those_that_name_its_header(self):
+    def test_otherwise_tests_that_include_the_header_come_first(self):
         self.assertEqual(self.nearest("hal", "hal/stellaris/outputs.hpp")[0], "pins_driver_test")
         self.assertEqual(self.nearest("hal", "hal/at24c/at24c.hpp")[0], "eeprom_driver_test")
         self.assertEqual(self.nearest("hal", "hal/rp2040/flash.hpp")[0], "rp2040_drivers_test")
 
-    def test_whole_images_judge_what_no_driver_test_compiles(self):
+    def test_whole_images_test_what_no_driver_test_compiles(self):
         images = ["start_up_driver_test", "image_driver_test"]
         self.assertEqual(self.nearest("hal", "hal/cortex_m/interrupts.hpp"), images)
 
